@@ -1,0 +1,27 @@
+// A vector whose storage starts on a cache line, so that a 64-byte record never straddles two.
+#pragma once
+
+#include <cstddef>
+#include <new>
+#include <vector>
+
+namespace dartcast {
+
+template <class T>
+struct CacheLineAllocator {
+  using value_type = T;
+  static constexpr std::align_val_t alignment{64};
+
+  CacheLineAllocator() = default;
+  template <class U>
+  constexpr CacheLineAllocator(const CacheLineAllocator<U>&) noexcept {}
+
+  [[nodiscard]] T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), alignment)); }
+  void deallocate(T* p, std::size_t) noexcept { ::operator delete(p, alignment); }
+  constexpr bool operator==(const CacheLineAllocator&) const = default;
+};
+
+template <class T>
+using AlignedVector = std::vector<T, CacheLineAllocator<T>>;
+
+}  // namespace dartcast

@@ -1,0 +1,33 @@
+// Errors: bad input is an exception whose text says what, where and what to do. A collision is a result, never an error.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace dartcast {
+
+/// Base of everything that dartcast throws. State is unchanged after a throw, unless a function's contract says otherwise.
+class Error : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// An argument that breaks a stated precondition: a size that does not match, a number that is not finite, a stale handle.
+class InvalidArgument : public Error {
+ public:
+  using Error::Error;
+};
+
+/// A mesh or a file that cannot be used. The text names the file and the line, cell or point.
+class InvalidMesh : public Error {
+ public:
+  using Error::Error;
+};
+
+/// A broken invariant of dartcast itself: please report it, with the replay in the text.
+class InternalError : public Error {
+ public:
+  using Error::Error;
+};
+
+}  // namespace dartcast

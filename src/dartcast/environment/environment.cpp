@@ -1,0 +1,140 @@
+#include "dartcast/environment/environment.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "dartcast/base/error.hpp"
+#include "dartcast/mesh/inspect.hpp"
+
+namespace dartcast {
+
+namespace {
+
+constexpr std::size_t grain = 512;
+
+void check_point(const Vec3& x, const char* what, std::size_t index) {
+  if (in_exact_range(x)) return;
+  throw InvalidArgument(fmt::format("{} {} is ({}, {}, {}): coordinates must be finite, and 0 or between 2^-300 and 2^300 in magnitude",
+                                    what, index, x.x, x.y, x.z));
+}
+
+MeshData inspected(MeshData mesh) {
+  const MeshReport report = inspect(mesh);
+  if (!report.defects.empty()) throw InvalidMesh(report.defects.front().message);
+  return mesh;
+}
+
+}  // namespace
+
+void Particles::remove(std::span<const std::uint8_t> marks) {
+  if (marks.size() != size()) throw InvalidArgument("remove: one mark per particle is needed");
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (marks[i] != 0) continue;
+    states_[kept] = states_[i];
+    weights_[kept++] = weights_[i];
+  }
+  states_.resize(kept);
+  weights_.resize(kept);
+}
+
+void Particles::reorder(std::span<const std::uint32_t> order) {
+  std::vector<std::uint8_t> seen(size(), 0);
+  const bool permutation = order.size() == size() && std::all_of(order.begin(), order.end(), [&](std::uint32_t i) {
+                             return i < seen.size() && seen[i]++ == 0;
+                           });
+  if (!permutation) throw InvalidArgument("reorder: the order is no permutation of the particles");
+  std::vector<State> states(size());
+  std::vector<Weights> weights(size());
+  for (std::size_t i = 0; i < size(); ++i) {
+    states[i] = states_[order[i]];
+    weights[i] = weights_[order[i]];
+  }
+  states_ = std::move(states);
+  weights_ = std::move(weights);
+}
+
+Environment::Environment(MeshData mesh, Threads threads) : complex_(inspected(std::move(mesh)), threads), threads_(threads) {
+  const auto& invalid = complex_.invalid_cells();
+  if (invalid.empty()) return;
+  throw InvalidMesh(fmt::format("{} cells can't be divided into positive simplices; the first: {}; mend or remesh them",
+                                invalid.size(), invalid.front().message));
+}
+
+Location Environment::locate(const Vec3& x) { return locate(std::span<const Vec3>(&x, 1)).front(); }
+
+std::vector<Location> Environment::locate(std::span<const Vec3> points) {
+  for (std::size_t i = 0; i < points.size(); ++i) check_point(points[i], "point", i);
+  if (!locator_) locator_ = std::make_unique<Locator>(complex_);
+  std::vector<Location> locations(points.size());
+  parallel_for(points.size(), grain, threads_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) locations[i] = locator_->locate(complex_, points[i]);
+  });
+  return locations;
+}
+
+std::vector<Added> Environment::add(Particles& particles, std::span<const Vec3> positions) {
+  if (particles.size() == 0) particles.moves_ = moves_;
+  if (particles.moves_ != moves_) throw InvalidArgument("add: advance the particles first, they have not followed the last move");
+  const std::vector<Location> locations = locate(positions);
+  std::vector<Added> added(positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    added[i].location = locations[i];
+    if (locations[i].place != Place::free) continue;
+    added[i].particle = static_cast<std::uint32_t>(particles.size());
+    particles.states_.emplace_back().put(locations[i].simplex, positions[i]);
+    particles.weights_.emplace_back();
+  }
+  return added;
+}
+
+void Environment::move() {
+  complex_.commit_positions();
+  locator_.reset();
+  ++moves_;
+}
+
+void Environment::move(std::span<const Vec3> positions) {
+  if (positions.size() != complex_.point_count())
+    throw InvalidArgument(fmt::format("move: {} positions for {} points", positions.size(), complex_.point_count()));
+  std::copy(positions.begin(), positions.end(), next_positions().begin());
+  move();
+}
+
+void Environment::check_targets(const Particles& particles, std::span<const Vec3> targets) const {
+  if (targets.size() != particles.size())
+    throw InvalidArgument(fmt::format("advance: {} targets for {} particles", targets.size(), particles.size()));
+  if (particles.size() > 0 && particles.moves_ + 1 < moves_)
+    throw InvalidArgument("advance: the particles missed a move: advance every set once after each move");
+  for (std::size_t i = 0; i < targets.size(); ++i) check_point(targets[i], "the target of particle", i);
+}
+
+StepReport Environment::advance(Particles& particles, std::span<const Vec3> targets, const Respond& respond,
+                                const StepOptions& options) {
+  check_targets(particles, targets);
+  const Stepper stepper(complex_, particles.moves_ != moves_, options, respond);
+  std::vector<StepReport> parts(chunk_count(particles.size(), grain));
+  parallel_for(particles.size(), grain, threads_, [&](std::size_t begin, std::size_t end) {
+    StepReport& part = parts[begin / grain];
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto particle = static_cast<std::uint32_t>(i);
+      const StepResult result =
+          stepper.step(particle, particles.states_[i], particles.weights_[i], targets[i], part.contacts, part.counters);
+      if (result.held) part.held.push_back({particle, result.invalid_cell});
+      if (result.stopped) part.stopped.push_back({particle, result.unused});
+    }
+  });
+  particles.moves_ = moves_;
+  StepReport report;
+  for (const StepReport& part : parts) {
+    report.contacts.append(part.contacts);
+    report.held.insert(report.held.end(), part.held.begin(), part.held.end());
+    report.stopped.insert(report.stopped.end(), part.stopped.begin(), part.stopped.end());
+    report.counters += part.counters;
+  }
+  return report;
+}
+
+}  // namespace dartcast

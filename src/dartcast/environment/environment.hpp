@@ -1,0 +1,112 @@
+// The environment: a complex that deforms, and the particles in it. What most programs use.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "dartcast/base/ids.hpp"
+#include "dartcast/base/parallel.hpp"
+#include "dartcast/geometry/complex.hpp"
+#include "dartcast/geometry/validity.hpp"
+#include "dartcast/mesh/mesh_data.hpp"
+#include "dartcast/walk/contact.hpp"
+#include "dartcast/walk/counters.hpp"
+#include "dartcast/walk/locate.hpp"
+#include "dartcast/walk/step.hpp"
+
+namespace dartcast {
+
+/// A set of particles: plain states, made and advanced by an Environment.
+class Particles {
+ public:
+  [[nodiscard]] std::size_t size() const { return states_.size(); }
+  [[nodiscard]] std::span<const State> states() const { return states_; }
+  [[nodiscard]] const State& operator[](std::size_t i) const { return states_[i]; }
+  /// Barycentric coordinates of a held particle in its simplex.
+  [[nodiscard]] const Weights& held_weights(std::size_t i) const { return weights_[i]; }
+
+  /// Removes the particles marked with 1; the others keep their order. `marks`: one per particle.
+  void remove(std::span<const std::uint8_t> marks);
+  /// Reorders: particle i becomes what particle order[i] was. `order`: a permutation.
+  void reorder(std::span<const std::uint32_t> order);
+
+ private:
+  friend class Environment;
+
+  std::vector<State> states_;
+  std::vector<Weights> weights_;
+  std::uint64_t moves_ = 0;  // of the environment, that these states have followed
+};
+
+/// What came of a request to add one particle.
+struct Added {
+  Location location;
+  std::uint32_t particle = 0xffffffffU;  ///< its index in the set; none (0xffffffff) unless the place is free
+};
+
+/// A particle stopped at a contact before its target.
+struct Stopped {
+  std::uint32_t particle = 0;
+  Vec3 unused;  ///< displacement left, relative to the wall
+};
+
+struct StepReport {
+  ContactList contacts;          ///< by particle, then by time
+  std::vector<Held> held;        ///< by particle
+  std::vector<Stopped> stopped;  ///< by particle
+  Counters counters;
+};
+
+class Environment {
+ public:
+  /// Builds the complex. Throws InvalidMesh where inspect() finds a defect, or where a cell has a simplex that is not positive
+  /// (with the first of them); `mesh` is not changed by repairs: call inspect() first to see and keep them.
+  explicit Environment(MeshData mesh, Threads threads = {});
+
+  [[nodiscard]] const Complex& complex() const { return complex_; }
+  [[nodiscard]] const Map& map() const { return complex_.map(); }
+  [[nodiscard]] std::span<const Vec3> positions() const { return complex_.positions().first(complex_.point_count()); }
+
+  /// Where a point is. Throws InvalidArgument where it is not finite or outside the exact range. The first call after a move
+  /// makes a grid over all cells; not to be called from several threads at once.
+  [[nodiscard]] Location locate(const Vec3& x);
+  /// Locates many points, in parallel. Throws as locate(), naming the point.
+  [[nodiscard]] std::vector<Location> locate(std::span<const Vec3> points);
+
+  /// Adds a particle for every position in a free cell, in their order, and reports on every position: one in a blocked cell or
+  /// outside is not added, and says so. Throws as locate(), nothing added.
+  std::vector<Added> add(Particles& particles, std::span<const Vec3> positions);
+
+  /// Where to write the next positions of all the mesh's points before move(). The content is what it was two moves ago.
+  [[nodiscard]] std::span<Vec3> next_positions() { return complex_.next_positions(); }
+  /// Makes the positions written current, at no cost per cell: every set of particles must then be advanced once before the next
+  /// move. Between the two calls the environment's particles may be stepped to targets relative to positions before the move.
+  void move();
+  /// Copies new positions of all the mesh's points, then move(). Throws InvalidArgument where the number does not match.
+  void move(std::span<const Vec3> positions);
+
+  /// Advances every particle towards its target; after a move(), along with the vertices (see docs/method.md). Without
+  /// `respond` a particle stops at its first contact. Results are the same bits for any number of threads and order of
+  /// particles. Throws InvalidArgument, nothing changed, where a target is not finite or outside the exact range, the sizes do
+  /// not match, or the particles missed a move. Cost: a few orientation tests per particle, whatever the size of the scene.
+  StepReport advance(Particles& particles, std::span<const Vec3> targets, const Respond& respond = {},
+                     const StepOptions& options = {});
+
+  /// Checks every simplex of the scene; exact, parallel, streaming.
+  [[nodiscard]] Validity validity(std::size_t most = 10) const { return check_validity(complex_, threads_, most); }
+
+  void set_threads(Threads threads) { threads_ = threads; }
+  [[nodiscard]] Threads threads() const { return threads_; }
+
+ private:
+  void check_targets(const Particles& particles, std::span<const Vec3> targets) const;
+
+  Complex complex_;
+  Threads threads_;
+  std::uint64_t moves_ = 0;
+  std::unique_ptr<Locator> locator_;  // of the current positions, when it was asked for
+};
+
+}  // namespace dartcast

@@ -1,0 +1,39 @@
+#include "dartcast/geometry/complex.hpp"
+
+#include <utility>
+
+#include "dartcast/geometry/interior.hpp"
+#include "dartcast/geometry/validity.hpp"
+
+namespace dartcast {
+
+Complex::Complex(const MeshData& mesh, Threads threads) : map_(mesh), front_(mesh.points) {
+  constexpr std::size_t all = static_cast<std::size_t>(-1);
+  invalid_ = check_validity(map_, front_, threads, all).first;
+  if (!invalid_.empty()) {
+    std::vector<Cell> bad;
+    for (const InvalidCell& cell : invalid_) bad.push_back(cell.cell);
+    InteriorSolution solution = find_interior_points(mesh, map_, bad);
+    interior_ = std::move(solution.weights);
+    map_ = Map(mesh, solution.points);
+    front_.resize(mesh.points.size() + interior_.count());
+    compute_interior(interior_, front_);
+    invalid_ = check_validity(map_, front_, threads, all).first;
+  }
+  for (const Cell c : map_.cells()) simplex_count_ += map_.shape(c).simplices().size();
+}
+
+std::span<Vec3> Complex::next_positions() {
+  if (back_.empty()) back_ = front_;
+  return std::span<Vec3>(back_).first(point_count());
+}
+
+void Complex::commit_positions() {
+  if (back_.empty()) back_ = front_;
+  compute_interior(interior_, back_);
+  std::swap(front_, back_);
+}
+
+std::size_t Complex::bytes() const { return map_.bytes() + interior_.bytes() + front_.size() * sizeof(Vec3); }
+
+}  // namespace dartcast

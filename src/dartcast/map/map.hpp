@@ -1,0 +1,162 @@
+// The 3D combinatorial map: darts with phi1, phi2, phi3 over convex cells, free or blocked. No coordinates.
+//
+// T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism for continuous collision detection in deformable
+// environments", SPM 2009, section 3.1. No dart is stored: a dart is a cell and a number in the cell's shape; phi1 and
+// phi2 look up in the shape, phi3 goes through the record of the cell.
+//
+// Records, in 32-bit words (a walk reads one record per cell it enters; a hexahedron's fills one cache line):
+//   standard types   [shape 16, version 16] [neighbours' face numbers 3 each, wall mask 6, free 1] [vertices] [neighbours]
+//   any other cell   [shape 32] [version 16, free 1] [vertices] [neighbours] [neighbours' face numbers 16, wall 16 each]
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "dartcast/base/aligned.hpp"
+#include "dartcast/base/ids.hpp"
+#include "dartcast/map/shape.hpp"
+#include "dartcast/mesh/mesh_data.hpp"
+
+namespace dartcast {
+
+/// What a walk reads of a cell. Valid until the map is edited.
+class CellView {
+ public:
+  CellView(const std::uint32_t* word, const Shape& shape, bool general)
+      : word_(word), shape_(&shape), face_count_(shape.face_count()), general_(general) {}
+
+  [[nodiscard]] const Shape& shape() const { return *shape_; }
+  [[nodiscard]] Vertex vertex(std::uint16_t local) const { return Vertex{word_[2U + local]}; }
+  [[nodiscard]] std::span<const std::uint32_t> vertices() const { return {word_ + 2, shape_->point_count()}; }
+  [[nodiscard]] bool is_free() const { return ((word_[1] >> (general_ ? 16U : 24U)) & 1U) != 0; }
+  [[nodiscard]] std::uint16_t version() const {
+    return static_cast<std::uint16_t>(general_ ? word_[1] & 0xffffU : word_[0] >> 16U);
+  }
+  /// The cell on the other side of a face; invalid on the boundary.
+  [[nodiscard]] Cell neighbour(std::uint16_t face) const { return Cell{word_[2U + shape_->point_count() + face]}; }
+  /// The number that the neighbour gives to the face. Precondition: there is a neighbour.
+  [[nodiscard]] std::uint16_t neighbour_face(std::uint16_t face) const {
+    if (general_) return static_cast<std::uint16_t>(extra(face) & 0xffffU);
+    return static_cast<std::uint16_t>((word_[1] >> (3U * face)) & 7U);
+  }
+  /// Whether the face is on the boundary, or between a free and a blocked cell.
+  [[nodiscard]] bool is_wall(std::uint16_t face) const {
+    if (general_) return (extra(face) >> 16U) != 0;
+    return ((word_[1] >> (18U + face)) & 1U) != 0;
+  }
+
+ private:
+  [[nodiscard]] std::uint32_t extra(std::uint16_t face) const {
+    return word_[2U + shape_->point_count() + face_count_ + face];
+  }
+
+  const std::uint32_t* word_;
+  const Shape* shape_;
+  std::uint16_t face_count_;
+  bool general_;
+};
+
+/// Interior points that cells need where the plain pulling triangulation is not positive (see geometry/complex.hpp).
+/// Numbers are vertices beyond the mesh's own points.
+struct InteriorPoints {
+  std::vector<std::pair<std::uint32_t, Vertex>> of_cells;  ///< mesh cell, its point; sorted
+  struct FacePoint {
+    std::uint32_t cell;  ///< mesh cell
+    std::uint16_t face;  ///< in the mesh's order of faces
+    Vertex point;        ///< the same from both sides
+  };
+  std::vector<FacePoint> of_faces;  ///< sorted by cell and face
+};
+
+class Map {
+ public:
+  static constexpr std::uint32_t general_pool = 4;  ///< pools 0 to 3: tetrahedra, hexahedra, prisms, pyramids
+
+  Map() = default;
+  /// Builds cells, sews faces by their vertices, and takes over free marks and patches. Cost: linear but for sorting.
+  /// Preconditions: inspect() found no defect. Throws InvalidMesh where a face has three cells or two on the same side, or a
+  /// cell is not closed: names the cell by its number in the mesh.
+  explicit Map(const MeshData& mesh, const InteriorPoints& interior = {});
+
+  // Darts. Preconditions: dart and cell of this map.
+  [[nodiscard]] Dart phi1(Dart d) const { return {d.cell, shape(d.cell).phi1(d.number)}; }
+  [[nodiscard]] Dart phi_1(Dart d) const { return {d.cell, shape(d.cell).phi_1(d.number)}; }
+  [[nodiscard]] Dart phi2(Dart d) const { return {d.cell, shape(d.cell).phi2(d.number)}; }
+  /// The same edge of the same face from the other side; invalid on the boundary.
+  [[nodiscard]] Dart phi3(Dart d) const;
+  /// The dart that follows in the vertex of d: phi1(phi2(d)).
+  [[nodiscard]] Dart alpha1(Dart d) const { return phi1(phi2(d)); }
+  [[nodiscard]] Vertex origin(Dart d) const {
+    const CellView c = view(d.cell);
+    return c.vertex(c.shape().origin(d.number));
+  }
+  [[nodiscard]] CellFace face(Dart d) const { return {d.cell, shape(d.cell).face_of(d.number)}; }
+  /// The same face from the other side; invalid on the boundary.
+  [[nodiscard]] CellFace opposite(CellFace f) const;
+
+  // Cells.
+  [[nodiscard]] CellView view(Cell c) const {
+    const Pool& pool = pools_[c.pool()];
+    const bool general = c.pool() == general_pool;
+    const std::uint32_t* word = pool.words.data() + (general ? pool.offsets[c.index()] : std::size_t{c.index()} * pool.stride);
+    return {word, shapes_[general ? word[0] : word[0] & 0xffffU], general};
+  }
+  [[nodiscard]] const Shape& shape(Cell c) const { return view(c).shape(); }
+  [[nodiscard]] bool contains(Cell c) const {
+    return c.valid() && c.pool() < pools_.size() && c.index() < pools_[c.pool()].count;
+  }
+  [[nodiscard]] CellType type(Cell c) const;
+  [[nodiscard]] std::size_t cell_count() const;
+  [[nodiscard]] std::size_t cell_count(std::uint32_t pool) const { return pools_[pool].count; }
+  [[nodiscard]] std::size_t vertex_count() const { return vertex_count_; }
+  [[nodiscard]] const ShapeTable& shapes() const { return shapes_; }
+  /// The cell's index in the mesh (or the file that it was read from).
+  [[nodiscard]] std::uint32_t source(Cell c) const;
+  /// All cells, pool by pool.
+  [[nodiscard]] std::vector<Cell> cells() const;
+
+  // Marks.
+  [[nodiscard]] bool is_free(Cell c) const { return view(c).is_free(); }
+  /// Marks a cell free or blocked; its faces and those of its neighbours become walls or cease to be. Cost: its faces.
+  void set_free(Cell c, bool free);
+
+  // Patches: named groups of faces.
+  [[nodiscard]] Patch patch(CellFace f) const;
+  /// Index 0 is "" (the unnamed rest).
+  [[nodiscard]] const std::vector<std::string>& patch_names() const { return patch_names_; }
+  /// Throws InvalidArgument that lists the names there are.
+  [[nodiscard]] Patch patch(std::string_view name) const;
+  /// Number of wall faces seen from free cells.
+  [[nodiscard]] std::size_t wall_face_count() const;
+
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  friend class MapBuilder;
+
+  struct Pool {
+    std::uint32_t stride = 0;
+    std::size_t count = 0;
+    AlignedVector<std::uint32_t> words;
+    std::vector<std::size_t> offsets;    // general pool only: start of each record
+    std::vector<std::uint32_t> source;   // empty: the index in the pool is the index in the mesh
+  };
+
+  [[nodiscard]] std::uint32_t* record(Cell c) { return const_cast<std::uint32_t*>(std::as_const(*this).record(c)); }
+  [[nodiscard]] const std::uint32_t* record(Cell c) const;
+  void set_neighbour(CellFace f, CellFace other);
+  void set_wall(CellFace f, bool wall);
+  void mark_walls(Cell c);
+
+  std::array<Pool, 5> pools_;
+  ShapeTable shapes_;
+  std::size_t vertex_count_ = 0;
+  std::vector<std::string> patch_names_ = {""};
+  std::vector<std::pair<CellFace, Patch>> patches_;  // sorted
+};
+
+}  // namespace dartcast

@@ -1,0 +1,160 @@
+#include "dartcast/map/shape.hpp"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "dartcast/base/error.hpp"
+
+namespace dartcast {
+
+namespace {
+
+// Throws where a face is not a cycle of distinct corners, or numbers would not fit in 15 bits.
+void check_key(const ShapeKey& key) {
+  std::size_t darts = 0;
+  for (const auto& face : key.faces) {
+    const std::set<std::uint16_t> distinct(face.corners.begin(), face.corners.end());
+    if (face.corners.size() < 3 || distinct.size() != face.corners.size() || *distinct.rbegin() >= key.corner_count)
+      throw InvalidMesh("a face of the cell has fewer than three distinct corners");
+    darts += face.corners.size();
+  }
+  if (darts > 0x3fffU) throw InvalidMesh("the cell has more than 16383 darts: split it");
+}
+
+}  // namespace
+
+Shape::Shape(ShapeKey key) : key_(std::move(key)) {
+  check_key(key_);
+  point_count_ = key_.corner_count;
+  for (const auto& face : key_.faces) point_count_ = static_cast<std::uint16_t>(point_count_ + (face.has_point ? 1 : 0));
+  if (key_.has_point) ++point_count_;
+  number_darts();
+  sew_darts();
+  make_simplices();
+  connect_simplices();
+}
+
+void Shape::number_darts() {
+  first_dart_.push_back(0);
+  for (std::uint16_t f = 0; f < face_count(); ++f) {
+    for (const std::uint16_t corner : key_.faces[f].corners) {
+      origin_.push_back(corner);
+      face_of_.push_back(f);
+    }
+    first_dart_.push_back(static_cast<std::uint16_t>(origin_.size()));
+  }
+}
+
+void Shape::sew_darts() {
+  std::map<std::pair<std::uint16_t, std::uint16_t>, std::uint16_t> by_ends;
+  for (std::uint16_t d = 0; d < dart_count(); ++d) {
+    if (!by_ends.try_emplace({origin_[d], origin_[phi1(d)]}, d).second)
+      throw InvalidMesh("two faces of the cell run the same way along an edge");
+  }
+  phi2_.resize(dart_count());
+  for (std::uint16_t d = 0; d < dart_count(); ++d) {
+    const auto other = by_ends.find({origin_[phi1(d)], origin_[d]});
+    if (other == by_ends.end()) throw InvalidMesh("the faces of the cell do not close: an edge has only one face");
+    phi2_[d] = other->second;
+  }
+}
+
+std::uint16_t Shape::face_of_point(std::uint16_t point) const {
+  std::uint16_t next = key_.corner_count;
+  for (std::uint16_t f = 0; f < face_count(); ++f) {
+    if (key_.faces[f].has_point && next++ == point) return f;
+  }
+  return face_count();
+}
+
+std::array<std::uint16_t, 3> Shape::triangle(std::uint16_t face, std::uint16_t t) const {
+  const auto& corners = key_.faces[face].corners;
+  if (!key_.faces[face].has_point) return {corners[0], corners[t + 1U], corners[t + 2U]};
+  std::uint16_t point = key_.corner_count;
+  for (std::uint16_t f = 0; f < face; ++f) point = static_cast<std::uint16_t>(point + (key_.faces[f].has_point ? 1 : 0));
+  return {point, corners[t], corners[(t + 1U) % corners.size()]};
+}
+
+void Shape::make_simplices() {
+  const std::uint16_t apex = key_.has_point ? static_cast<std::uint16_t>(point_count_ - 1) : key_.apex;
+  for (std::uint16_t f = 0; f < face_count(); ++f) {
+    for (std::uint16_t t = 0; t < triangle_count(f); ++t) {
+      const auto [a, b, c] = triangle(f, t);
+      if (a != apex && b != apex && c != apex) simplices_.push_back({{apex, a, b, c}, {}});
+    }
+  }
+}
+
+void Shape::connect_simplices() {
+  using Triple = std::array<std::uint16_t, 3>;
+  const auto sorted = [](Triple t) {
+    std::sort(t.begin(), t.end());
+    return t;
+  };
+  std::map<Triple, Across> open;  // facets that still wait for their other side
+  for (std::uint16_t s = 0; s < simplices_.size(); ++s) {
+    for (std::uint16_t i = 0; i < 4; ++i) {
+      Triple facet{};
+      std::copy_if(simplices_[s].vertex.begin(), simplices_[s].vertex.end(), facet.begin(),
+                   [&](std::uint16_t v) { return v != simplices_[s].vertex[i]; });
+      const auto [other, first] = open.try_emplace(sorted(facet), Across{s, i});
+      if (first) continue;
+      simplices_[s].across[i] = other->second;
+      simplices_[other->second.index].across[other->second.place] = {s, i};
+      open.erase(other);
+    }
+  }
+  for (std::uint16_t f = 0; f < face_count(); ++f) {
+    first_entry_.push_back(static_cast<std::uint16_t>(entries_.size()));
+    for (std::uint16_t t = 0; t < triangle_count(f); ++t) {
+      const auto behind = open.find(sorted(triangle(f, t)));
+      if (behind == open.end()) throw InvalidMesh("the faces of the cell do not bound one solid");
+      entries_.push_back(behind->second);
+      simplices_[behind->second.index].across[behind->second.place] = {static_cast<std::uint16_t>(Across::outer_bit | f), t};
+      open.erase(behind);
+    }
+  }
+  if (!open.empty()) throw InvalidMesh("the faces of the cell do not bound one solid");
+}
+
+Shape::Feature Shape::feature(std::span<const std::uint16_t> points) const {
+  if (points.size() == 4) return {Kind::volume, 0};
+  for (std::uint16_t f = 0; f < face_count(); ++f) {
+    const auto on_face = [&](std::uint16_t p) {
+      const auto& corners = key_.faces[f].corners;
+      return p < key_.corner_count ? std::find(corners.begin(), corners.end(), p) != corners.end() : face_of_point(p) == f;
+    };
+    if (!std::all_of(points.begin(), points.end(), on_face)) continue;
+    for (std::uint16_t d = first_dart_[f]; d < first_dart_[f + 1]; ++d) {
+      if (points.size() == 1 && origin_[d] == points[0]) return {Kind::vertex, d};
+      if (points.size() == 2 && ((origin_[d] == points[0] && origin_[phi1(d)] == points[1]) ||
+                                 (origin_[d] == points[1] && origin_[phi1(d)] == points[0])))
+        return {Kind::edge, d};
+    }
+    return {Kind::face, first_dart_[f]};
+  }
+  return {Kind::volume, 0};
+}
+
+std::size_t Shape::bytes() const {
+  return sizeof(Shape) + dart_count() * 4 * sizeof(std::uint16_t) + simplices_.size() * sizeof(ImplicitSimplex) +
+         entries_.size() * sizeof(Across);
+}
+
+std::uint32_t ShapeTable::intern(const ShapeKey& key) {
+  const auto found = numbers_.find(key);
+  if (found != numbers_.end()) return found->second;
+  shapes_.emplace_back(key);
+  const auto number = static_cast<std::uint32_t>(shapes_.size() - 1);
+  numbers_.emplace(key, number);
+  return number;
+}
+
+std::size_t ShapeTable::bytes() const {
+  std::size_t sum = 0;
+  for (const Shape& s : shapes_) sum += s.bytes();
+  return sum;
+}
+
+}  // namespace dartcast

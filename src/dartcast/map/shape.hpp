@@ -1,0 +1,137 @@
+// The combinatorial type of a cell: its darts, faces, fans and implicit simplices, shared by all cells alike.
+//
+// The darts are those of a combinatorial map: T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism for
+// continuous collision detection in deformable environments", SPM 2009, section 3.1. The simplices are a pulling
+// triangulation: each face is fanned from its lowest-numbered vertex (or from an interior point of its own), and the cell
+// is coned from its lowest-numbered vertex over the fan triangles that do not contain it (or from an interior point).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <span>
+#include <vector>
+
+namespace dartcast {
+
+/// The kind of cell of the map in whose interior a point lies; the value is its dimension.
+enum class Kind : std::uint8_t { vertex = 0, edge = 1, face = 2, volume = 3 };
+
+/// What a shape is made from. Points of the cell have local numbers: corners, then face points, then the cell's point.
+struct ShapeKey {
+  struct Face {
+    std::vector<std::uint16_t> corners;  ///< from the lowest-numbered vertex, counterclockwise seen from the outside
+    bool has_point = false;              ///< fanned from a point of its own
+    auto operator<=>(const Face&) const = default;
+  };
+  std::uint16_t corner_count = 0;
+  std::uint16_t apex = 0;  ///< local number of the lowest-numbered corner, where the cell has no point of its own
+  bool has_point = false;  ///< coned from a point of its own
+  std::vector<Face> faces;
+  auto operator<=>(const ShapeKey&) const = default;
+};
+
+/// What lies beyond a facet of a simplex: another simplex of the cell, or a triangle of a face's fan.
+struct Across {
+  static constexpr std::uint16_t outer_bit = 0x8000U;
+
+  std::uint16_t index = 0;  ///< simplex, or outer_bit + face
+  std::uint16_t place = 0;  ///< facet of that simplex, or triangle of the fan
+
+  [[nodiscard]] constexpr bool outer() const { return (index & outer_bit) != 0; }
+  [[nodiscard]] constexpr std::uint16_t face() const { return index & static_cast<std::uint16_t>(~outer_bit); }
+  constexpr bool operator==(const Across&) const = default;
+};
+
+/// A tetrahedron with points of the cell as corners, positive: det[v1 - v0, v2 - v0, v3 - v0] > 0 in a valid cell.
+struct ImplicitSimplex {
+  std::array<std::uint16_t, 4> vertex;  ///< local numbers
+  std::array<Across, 4> across;         ///< beyond the facet opposite to vertex i
+};
+
+/// Immutable. Darts are numbered face by face, from the face's lowest-numbered vertex.
+class Shape {
+ public:
+  /// Throws InvalidMesh where the faces do not close: an edge not used once in each direction, a fan that does not fit.
+  explicit Shape(ShapeKey key);
+
+  [[nodiscard]] std::uint16_t corner_count() const { return key_.corner_count; }
+  /// Corners and interior points.
+  [[nodiscard]] std::uint16_t point_count() const { return point_count_; }
+  [[nodiscard]] std::uint16_t face_count() const { return static_cast<std::uint16_t>(key_.faces.size()); }
+  [[nodiscard]] std::uint16_t dart_count() const { return static_cast<std::uint16_t>(origin_.size()); }
+  [[nodiscard]] const ShapeKey& key() const { return key_; }
+
+  [[nodiscard]] std::uint16_t origin(std::uint16_t dart) const { return origin_[dart]; }
+  [[nodiscard]] std::uint16_t face_of(std::uint16_t dart) const { return face_of_[dart]; }
+  [[nodiscard]] std::uint16_t first_dart(std::uint16_t face) const { return first_dart_[face]; }
+  [[nodiscard]] std::uint16_t degree(std::uint16_t face) const {
+    return static_cast<std::uint16_t>(first_dart_[face + 1] - first_dart_[face]);
+  }
+  [[nodiscard]] std::uint16_t phi1(std::uint16_t dart) const {
+    const std::uint16_t f = face_of_[dart];
+    return dart + 1 == first_dart_[f + 1] ? first_dart_[f] : static_cast<std::uint16_t>(dart + 1);
+  }
+  [[nodiscard]] std::uint16_t phi_1(std::uint16_t dart) const {
+    const std::uint16_t f = face_of_[dart];
+    return static_cast<std::uint16_t>((dart == first_dart_[f] ? first_dart_[f + 1] : dart) - 1);
+  }
+  [[nodiscard]] std::uint16_t phi2(std::uint16_t dart) const { return phi2_[dart]; }
+  [[nodiscard]] std::span<const std::uint16_t> corners(std::uint16_t face) const { return key_.faces[face].corners; }
+
+  [[nodiscard]] const std::vector<ImplicitSimplex>& simplices() const { return simplices_; }
+  /// Number of triangles in a face's fan: degree - 2, or degree where the face has a point of its own.
+  [[nodiscard]] std::uint16_t triangle_count(std::uint16_t face) const {
+    return static_cast<std::uint16_t>(degree(face) - (key_.faces[face].has_point ? 0 : 2));
+  }
+  /// Local numbers of the corners of a fan triangle, counterclockwise seen from the outside.
+  [[nodiscard]] std::array<std::uint16_t, 3> triangle(std::uint16_t face, std::uint16_t t) const;
+  /// The number that the cell on the other side gives to a triangle of this face.
+  [[nodiscard]] std::uint16_t triangle_from_other_side(std::uint16_t face, std::uint16_t t) const {
+    return static_cast<std::uint16_t>(triangle_count(face) - 1 - t);
+  }
+  /// The simplex behind a fan triangle, and its facet: `index` and `place`.
+  [[nodiscard]] Across entry(std::uint16_t face, std::uint16_t t) const { return entries_[first_entry_[face] + t]; }
+
+  /// The face that a point of its own fans; face_count() where `point` is a corner or the cell's point.
+  [[nodiscard]] std::uint16_t face_of_point(std::uint16_t point) const;
+
+  struct Feature {
+    Kind kind;
+    std::uint16_t dart;  ///< of that face, edge or vertex (its origin); of no meaning for a volume
+  };
+  /// The cell of the map whose interior holds the relative interior of the given points' hull. `points`: local numbers,
+  /// 1 to 4 corners of one simplex.
+  [[nodiscard]] Feature feature(std::span<const std::uint16_t> points) const;
+
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  void number_darts();
+  void sew_darts();
+  void make_simplices();
+  void connect_simplices();
+
+  ShapeKey key_;
+  std::uint16_t point_count_ = 0;
+  std::vector<std::uint16_t> origin_, face_of_, first_dart_, phi2_;
+  std::vector<ImplicitSimplex> simplices_;
+  std::vector<std::uint16_t> first_entry_;
+  std::vector<Across> entries_;
+};
+
+/// Shapes by number; equal keys share one.
+class ShapeTable {
+ public:
+  std::uint32_t intern(const ShapeKey& key);
+  [[nodiscard]] const Shape& operator[](std::uint32_t number) const { return shapes_[number]; }
+  [[nodiscard]] std::size_t size() const { return shapes_.size(); }
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  std::deque<Shape> shapes_;
+  std::map<ShapeKey, std::uint32_t> numbers_;
+};
+
+}  // namespace dartcast

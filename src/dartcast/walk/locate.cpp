@@ -1,0 +1,129 @@
+#include "dartcast/walk/locate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "dartcast/walk/ride.hpp"
+
+namespace dartcast {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+void extend(Vec3& low, Vec3& high, const Vec3& x) {
+  low = {std::min(low.x, x.x), std::min(low.y, x.y), std::min(low.z, x.z)};
+  high = {std::max(high.x, x.x), std::max(high.y, x.y), std::max(high.z, x.z)};
+}
+
+// Not decreasing in x, as each operation is: so a cell's box covers the bin of every point in it.
+std::uint32_t bin_along(double x, double low, double high, std::uint32_t bins) {
+  const double at = (x - low) / (high - low) * bins;
+  if (!(at > 0.0)) return 0;
+  return std::min(bins - 1, static_cast<std::uint32_t>(std::min(at, 4e9)));
+}
+
+// The closed simplex of the cell that holds x; nothing where the cell has one that is not positive.
+Location locate_in(const Complex& complex, Cell c, const Vec3& x) {
+  const CellView cell = complex.map().view(c);
+  const Space<Stored> space = current_space(complex);
+  const auto& simplices = cell.shape().simplices();
+  for (std::uint16_t s = 0; s < simplices.size(); ++s) {
+    const Corners v = space.corners(cell, simplices[s]);
+    if (volume_sign(v) != Sign::positive) return {};
+  }
+  for (std::uint16_t s = 0; s < simplices.size(); ++s) {
+    const Corners v = space.corners(cell, simplices[s]);
+    if (!detail::in_closed_simplex(v, x)) continue;
+    const Placement p = placement(complex.map(), {c, s}, v, x);
+    return {cell.is_free() ? Place::free : Place::blocked, {c, s}, p.kind, p.dart};
+  }
+  return {};
+}
+
+}  // namespace
+
+Locator::Locator(const Complex& complex) {
+  bounds_ = {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+  for (const Vec3& x : complex.positions()) {
+    if (in_exact_range(x)) extend(bounds_.low, bounds_.high, x);
+  }
+  const std::vector<Cell> cells = complex.map().cells();
+  choose_bins(cells.size());
+  // Cells much larger than a bin would fill the grid: then the bins grow.
+  while (bins_ != std::array<std::uint32_t, 3>{1, 1, 1} && entry_count(complex, cells) > 32 * cells.size()) {
+    for (auto& n : bins_) n = std::max(1U, n / 2);
+  }
+  fill(complex, cells);
+}
+
+Locator::Box Locator::box_of(const Complex& complex, Cell c) {
+  Box box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+  const auto positions = complex.positions();
+  for (const std::uint32_t v : complex.map().view(c).vertices()) extend(box.low, box.high, positions[v]);
+  return box;
+}
+
+std::array<std::uint32_t, 3> Locator::bin_of(const Vec3& x) const {
+  return {bin_along(x.x, bounds_.low.x, bounds_.high.x, bins_[0]), bin_along(x.y, bounds_.low.y, bounds_.high.y, bins_[1]),
+          bin_along(x.z, bounds_.low.z, bounds_.high.z, bins_[2])};
+}
+
+template <class Visit>
+void Locator::for_each_bin(const Box& box, Visit&& visit) const {
+  const auto low = bin_of(box.low);
+  const auto high = bin_of(box.high);
+  for (std::uint32_t k = low[2]; k <= high[2]; ++k) {
+    for (std::uint32_t j = low[1]; j <= high[1]; ++j) {
+      for (std::uint32_t i = low[0]; i <= high[0]; ++i) visit(bin_index(i, j, k));
+    }
+  }
+}
+
+void Locator::choose_bins(std::size_t cells) {
+  const std::array<double, 3> size = {bounds_.high.x - bounds_.low.x, bounds_.high.y - bounds_.low.y,
+                                      bounds_.high.z - bounds_.low.z};
+  const double largest = std::max({size[0], size[1], size[2]});
+  if (!(largest > 0.0)) return;
+  std::array<double, 3> share{};
+  for (unsigned a = 0; a < 3; ++a) share[a] = std::max(size[a] / largest, 1e-3);
+  const double per_largest = std::cbrt(static_cast<double>(cells) / (share[0] * share[1] * share[2]));
+  for (unsigned a = 0; a < 3; ++a) bins_[a] = static_cast<std::uint32_t>(std::clamp(per_largest * share[a], 1.0, 4096.0));
+}
+
+std::size_t Locator::entry_count(const Complex& complex, const std::vector<Cell>& cells) const {
+  std::size_t count = 0;
+  for (const Cell c : cells) {
+    const Box box = box_of(complex, c);
+    const auto low = bin_of(box.low);
+    const auto high = bin_of(box.high);
+    count += std::size_t{high[0] - low[0] + 1U} * (high[1] - low[1] + 1U) * (high[2] - low[2] + 1U);
+  }
+  return count;
+}
+
+void Locator::fill(const Complex& complex, const std::vector<Cell>& cells) {
+  first_.assign(std::size_t{bins_[0]} * bins_[1] * bins_[2] + 1, 0);
+  for (const Cell c : cells) for_each_bin(box_of(complex, c), [&](std::size_t bin) { ++first_[bin + 1]; });
+  for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
+  entries_.resize(first_.back());
+  auto next = first_;
+  for (const Cell c : cells) for_each_bin(box_of(complex, c), [&](std::size_t bin) { entries_[next[bin]++] = c; });
+}
+
+Location Locator::locate(const Complex& complex, const Vec3& x) const {
+  if (!bounds_.holds(x)) return {};
+  const auto [i, j, k] = bin_of(x);
+  const std::size_t bin = bin_index(i, j, k);
+  Location best;
+  for (std::size_t e = first_[bin]; e < first_[bin + 1]; ++e) {
+    if (!box_of(complex, entries_[e]).holds(x)) continue;
+    const Location here = locate_in(complex, entries_[e], x);
+    if (here.place == Place::free) return here;
+    if (here.place == Place::blocked && best.place == Place::outside) best = here;
+  }
+  return best;
+}
+
+}  // namespace dartcast

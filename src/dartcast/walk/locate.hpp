@@ -1,0 +1,56 @@
+// Exact location of points: by a grid over the cells' bounding boxes, then exact signs.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "dartcast/geometry/complex.hpp"
+#include "dartcast/walk/state.hpp"
+
+namespace dartcast {
+
+enum class Place : std::uint8_t { free, blocked, outside };
+
+struct Location {
+  Place place = Place::outside;
+  SimplexId simplex;               ///< invalid outside
+  Kind kind = Kind::volume;        ///< of the cell of the map that holds the point in its interior
+  Dart dart;                       ///< of that face, edge or vertex; invalid for a volume
+};
+
+/// A grid over one complex at one instant: make it again after a move or an edit. Cost to make: linear in the cells.
+class Locator {
+ public:
+  explicit Locator(const Complex& complex);
+
+  /// Where x is in the complex that the grid was made for. A point on the border of a free cell is free; among equals the lowest cell and simplex are named. Cells with a
+  /// simplex that is not positive are skipped. Precondition: x is finite and in the exact range. Cost: the cells whose boxes
+  /// share x's grid bin.
+  [[nodiscard]] Location locate(const Complex& complex, const Vec3& x) const;
+
+ private:
+  struct Box {
+    Vec3 low, high;
+    [[nodiscard]] bool holds(const Vec3& x) const {
+      return low.x <= x.x && x.x <= high.x && low.y <= x.y && x.y <= high.y && low.z <= x.z && x.z <= high.z;
+    }
+  };
+  [[nodiscard]] static Box box_of(const Complex& complex, Cell c);
+  [[nodiscard]] std::array<std::uint32_t, 3> bin_of(const Vec3& x) const;
+  [[nodiscard]] std::size_t bin_index(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
+    return (std::size_t{k} * bins_[1] + j) * bins_[0] + i;
+  }
+  template <class Visit>
+  void for_each_bin(const Box& box, Visit&& visit) const;
+  void choose_bins(std::size_t cells);
+  [[nodiscard]] std::size_t entry_count(const Complex& complex, const std::vector<Cell>& cells) const;
+  void fill(const Complex& complex, const std::vector<Cell>& cells);
+
+  Box bounds_;
+  std::array<std::uint32_t, 3> bins_{1, 1, 1};
+  std::vector<std::size_t> first_;  // per bin, into entries_
+  std::vector<Cell> entries_;
+};
+
+}  // namespace dartcast

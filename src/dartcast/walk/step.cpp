@@ -1,0 +1,257 @@
+#include "dartcast/walk/step.hpp"
+
+#include <cmath>
+
+#include "dartcast/walk/meet.hpp"
+
+namespace dartcast {
+
+namespace {
+
+// The state of one particle's step.
+struct Run {
+  std::uint32_t particle;
+  State& state;
+  ContactList& contacts;
+  Counters& counters;
+  StepResult result{};
+  unsigned contact_count = 0;
+  std::uint32_t first_wall = 0;  // of this particle in this step
+  TestCounts tests{};
+};
+
+// The stretch of the step that is walked in one geometry: the particle's motion from time `begin` to time `end`.
+struct Stretch {
+  double begin;
+  double end;
+  Vec3 later;  // displacement planned after `end`, not relative to anything
+};
+
+void touch(State& state, std::span<const WallHit> walls) {
+  state.touching_count = 0;
+  for (const WallHit& wall : walls) {
+    if (state.touching_count == state.touching.size()) break;
+    const auto end = state.touching.begin() + state.touching_count;
+    if (std::find(state.touching.begin(), end, wall.face) == end) state.touching[state.touching_count++] = wall.face;
+  }
+}
+
+template <class Positions>
+class Part {
+ public:
+  Part(const Complex& complex, bool moved, const Space<Positions>& space, const StepOptions& options, const Respond& respond)
+      : complex_(complex), moved_(moved), space_(space), options_(options), respond_(respond) {}
+
+  // Walks to q, with the contacts on the way. Returns the displacement still planned after this stretch.
+  Vec3 move(Run& run, Vec3 q, Stretch stretch) const {
+    while (q != run.state.position) {
+      const Vec3 p = run.state.position;
+      const Walk w = walk(space_, run.state.at(), p, q, run.tests);
+      if (w.end == WalkEnd::invalid_cell) {
+        run.result.held = true;
+        run.result.invalid_cell = w.simplex.cell;
+        return {};
+      }
+      if (w.end == WalkEnd::arrived) {
+        run.state.put(w.simplex, q);
+        run.state.touching_count = 0;
+        return stretch.later;
+      }
+      const Continuation next = meet(run, w, p, q, stretch);
+      if (run.result.stopped) return {};
+      const double share = stretch.end < 1.0 ? (stretch.end - stretch.begin) / (1.0 - stretch.begin) : 1.0;
+      stretch.later = next.displacement * (1.0 - share) + run.contacts.contacts.back().wall_displacement * (1.0 - stretch.end);
+      q = aim(run, next, share);
+    }
+    return stretch.later;
+  }
+
+ private:
+  // Records the contact, puts the particle there, and asks what follows.
+  Continuation meet(Run& run, const Walk& w, const Vec3& p, const Vec3& q, Stretch& stretch) const {
+    Contact contact;
+    contact.particle = run.particle;
+    const double t = detail::describe_contact(space_, w, p, q, contact, run.contacts);
+    contact.earlier = contact.first_wall - run.first_wall;
+    contact.last = ++run.contact_count >= options_.max_contacts;
+    stretch.begin += t * (stretch.end - stretch.begin);
+    contact.time_of_impact = stretch.begin;
+    place(run, w, p, contact);
+    if (moved_) {
+      const WallPlane plane = wall_plane(space_, w.wall_simplex, w.wall_facet);
+      contact.wall_displacement = detail::wall_displacement(complex_, w.wall_simplex, w.wall_facet, plane, contact.point);
+    }
+    const Vec3 later = stretch.later - contact.wall_displacement * (1.0 - stretch.end);
+    contact.displacement = (q - p) + later;
+    contact.unused = (q - p) * (1.0 - t) + later;
+    ++run.counters.contacts[static_cast<std::size_t>(contact.kind)];
+    run.contacts.contacts.push_back(contact);
+    touch(run.state, run.contacts.walls_of(contact));
+    return follow(run, contact);
+  }
+
+  Continuation follow(Run& run, const Contact& contact) const {
+    if (!respond_ || run.contact_count > options_.max_contacts) {
+      run.counters.unfinished += respond_ ? 1 : 0;
+      run.result.stopped = true;
+      run.result.unused = contact.unused;
+      return {};
+    }
+    return respond_(contact, run.contacts.walls_of(contact), run.contacts.earlier_walls_of(contact));
+  }
+
+  // The contact point is rounded: it is settled, from the simplex at the wall where it lies in it, else from p.
+  void place(Run& run, const Walk& w, const Vec3& p, const Contact& contact) const {
+    if (w.at_end) {
+      run.state.put(w.simplex, contact.point);
+    } else if (detail::in_closed_simplex(space_.corners(w.wall_simplex), contact.point)) {
+      run.state.put(w.wall_simplex, contact.point);
+    } else {
+      detail::WallPlanes planes;
+      planes.add(wall_plane(space_, w.wall_simplex, w.wall_facet));
+      TestCounts uncounted;
+      const Settled settled = settle(space_, run.state.at(), p, contact.point, planes, uncounted);
+      run.state.put(settled.simplex, settled.position);
+    }
+  }
+
+  // Where to go after a contact; along a wall, the target is lifted off the planes that rounding put it behind.
+  [[nodiscard]] Vec3 aim(const Run& run, const Continuation& next, double share) const {
+    Vec3 q = detail::flushed(run.state.position + next.displacement * share);
+    if (!next.along || q == run.state.position) return q;
+    const Contact& contact = run.contacts.contacts.back();
+    detail::WallPlanes planes;
+    const auto add = [&](std::span<const WallHit> walls) {
+      for (const WallHit& wall : walls) {
+        const Across behind = space_.map->shape(wall.face.cell).entry(wall.face.face, wall.triangle);
+        planes.add(wall_plane(space_, {wall.face.cell, behind.index}, behind.place));
+      }
+    };
+    add(run.contacts.walls_of(contact));
+    add(run.contacts.earlier_walls_of(contact));
+    detail::lift_off(planes, q);
+    return detail::flushed(q);
+  }
+
+  const Complex& complex_;
+  bool moved_;
+  const Space<Positions>& space_;
+  const StepOptions& options_;
+  const Respond& respond_;
+};
+
+bool positive(const Corners& v) { return Determinants(v, v[0]).proves_positive() || volume_sign(v) == Sign::positive; }
+
+// Whether p, standing still, would have left the simplex by the vertices' motion alone. For the statistics only.
+bool left_behind(const Corners& moved, const Vec3& p) {
+  const Determinants d(moved, p);
+  return std::any_of(d.value.begin(), d.value.end(), [&](double v) { return v < -d.bound; });
+}
+
+// One particle's step while the vertices move.
+class MovingStep {
+ public:
+  MovingStep(const Complex& complex, const StepOptions& options, const Respond& respond)
+      : complex_(complex), options_(options), respond_(respond) {}
+
+  void run(Run& run, Weights& weights, const Vec3& target) const {
+    const Corners before = previous_space(complex_).corners(run.state.at());
+    const Corners after = current_space(complex_).corners(run.state.at());
+    if (!run.state.held) {
+      if (!positive(before)) return hold(run, weights, detail::barycentric(before, run.state.position), run.state.cell);
+      weights = detail::barycentric(before, run.state.position);
+    }
+    if (!positive(after)) return hold(run, weights, weights, run.state.cell);
+    const unsigned parts = run.state.held ? 1 : part_count(before, after, weights, target);
+    run.state.held = false;
+    if (parts == 1) {
+      ride(current_space(complex_), run, weights);
+      Part<Stored>(complex_, true, space_, options_, respond_).move(run, target, {0.0, 1.0, {}});
+      return;
+    }
+    ++run.counters.steps_split;
+    in_parts(run, weights, target, parts);
+  }
+
+ private:
+  void hold(Run& run, Weights& kept, const Weights& weights, Cell cell) const {
+    kept = weights;
+    run.state.held = true;
+    run.state.position = detail::combine(current_space(complex_).corners(run.state.at()), weights);
+    run.result.held = true;
+    run.result.invalid_cell = cell;
+  }
+
+  template <class Positions>
+  void ride(const Space<Positions>& space, Run& run, const Weights& weights) const {
+    const Settled settled = detail::ridden(space, run.state.at(), weights);
+    run.state.put(settled.simplex, settled.position);
+  }
+
+  [[nodiscard]] unsigned part_count(const Corners& before, const Corners& after, const Weights& weights,
+                                    const Vec3& target) const {
+    const auto [gradient, edge] = detail::deformation(before, after);
+    const double own = norm(target - detail::combine(after, weights));
+    const double parts = std::ceil(std::sqrt(gradient * own / (2.0 * options_.tolerance * edge)));
+    if (!(parts > 1.0)) return 1;
+    return parts < options_.max_parts ? static_cast<unsigned>(parts) : options_.max_parts;
+  }
+
+  // Each part rides and walks in the geometry at its end; the parts' targets lie on the line to what is left of the motion.
+  void in_parts(Run& run, Weights& weights, const Vec3& target, unsigned parts) const {
+    Vec3 planned = target - run.state.position;
+    bool own_motion = true;
+    for (unsigned j = 1; j <= parts; ++j) {
+      const Space<Between> from = space_between(complex_, static_cast<double>(j - 1) / parts);
+      const Space<Between> to = space_between(complex_, static_cast<double>(j) / parts);
+      const Corners before = from.corners(run.state.at());
+      const Vec3 here = run.state.position;
+      weights = detail::barycentric(before, here);
+      if (!positive(to.corners(run.state.at()))) return hold(run, weights, weights, run.state.cell);
+      ride(to, run, weights);
+      if (!own_motion) continue;
+      const Vec3 share = planned * (1.0 / (parts - j + 1));
+      const Vec3 q = j == parts && run.contact_count == 0 ? target : detail::flushed(here + share);
+      planned = Part<Between>(complex_, true, to, options_, respond_)
+                    .move(run, q, {static_cast<double>(j - 1) / parts, static_cast<double>(j) / parts, planned - share});
+      own_motion = !run.result.stopped && !run.result.held;
+    }
+  }
+
+  const Complex& complex_;
+  const StepOptions& options_;
+  const Respond& respond_;
+  Space<Stored> space_ = current_space(complex_);
+};
+
+}  // namespace
+
+StepResult Stepper::step(std::uint32_t particle, State& state, Weights& weights, const Vec3& target, ContactList& contacts,
+                         Counters& counters) const {
+  Run run{particle, state, contacts, counters};
+  run.first_wall = static_cast<std::uint32_t>(contacts.walls.size());
+  const SimplexId start = state.at();
+  const Vec3 p = state.position;
+  if (moved_) {
+    MovingStep(complex_, options_, respond_).run(run, weights, target);
+  } else {
+    const Space<Stored> space = current_space(complex_);
+    if (state.held && !positive(space.corners(start))) {
+      run.result.held = true;
+      run.result.invalid_cell = state.cell;
+    } else {
+      state.held = false;
+      Part<Stored>(complex_, false, space, options_, respond_).move(run, target, {0.0, 1.0, {}});
+    }
+  }
+  ++counters.particle_steps;
+  counters.orientation.tests += run.tests.tests;
+  counters.orientation.exact += run.tests.exact;
+  ++counters.histogram[std::min<std::size_t>(run.tests.tests, Counters::histogram_size - 1)];
+  const bool kept = state.at() == start && run.contact_count == 0 && !run.result.held;
+  counters.forecast_kept += kept ? 1 : 0;
+  if (moved_ && state.at() != start && left_behind(current_space(complex_).corners(start), p)) ++counters.updated_by_deformation;
+  return run.result;
+}
+
+}  // namespace dartcast

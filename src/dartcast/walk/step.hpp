@@ -1,0 +1,60 @@
+// One step of one particle: riding along with the vertices, walking, contacts, and what follows them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "dartcast/geometry/complex.hpp"
+#include "dartcast/walk/contact.hpp"
+#include "dartcast/walk/counters.hpp"
+#include "dartcast/walk/state.hpp"
+
+namespace dartcast {
+
+struct StepOptions {
+  /// Contacts allowed to a particle in one step; at the last one it is asked to slide.
+  unsigned max_contacts = 16;
+  /// How far the chord may be off the true motion relative to the vertices, as a share of the local edge: a step is split into
+  /// ceil(sqrt(|A| |r| / (2 tolerance edge))) parts, A the displacement gradient of the vertices, r the particle's own motion.
+  double tolerance = 0.05;
+  /// Parts at most; a step that would need more is taken in this many.
+  unsigned max_parts = 256;
+};
+
+/// A particle that a cell kept from its step, and why.
+struct Held {
+  std::uint32_t particle = 0;
+  Cell cell;  ///< the invalid cell: its own, or one on its way
+};
+
+struct StepResult {
+  bool held = false;
+  Cell invalid_cell;
+  bool stopped = false;  ///< at a contact that nothing followed
+  Vec3 unused;           ///< displacement left when it stopped, relative to the wall
+};
+
+/// Barycentric coordinates that a held particle keeps.
+using Weights = std::array<double, 4>;
+
+/// Carries particles through one step of a complex. A plain reader of the complex: any number may run at once.
+class Stepper {
+ public:
+  /// `moved`: the complex's positions have been committed for this step; targets then are relative to positions before the move
+  /// (they are absolute points, computed by the caller from where the particle was).
+  Stepper(const Complex& complex, bool moved, const StepOptions& options, const Respond& respond)
+      : complex_(complex), moved_(moved), options_(options), respond_(respond) {}
+
+  /// Steps one particle to `target`, a finite point in the exact range. Adds its contacts in order of time.
+  StepResult step(std::uint32_t particle, State& state, Weights& weights, const Vec3& target, ContactList& contacts,
+                  Counters& counters) const;
+
+ private:
+  const Complex& complex_;
+  bool moved_;
+  const StepOptions& options_;
+  const Respond& respond_;
+};
+
+}  // namespace dartcast
