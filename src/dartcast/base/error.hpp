@@ -1,4 +1,5 @@
-// Errors: bad input is an exception whose text says what, where and what to do. A collision is a result, never an error.
+// Errors: bad input is an exception whose text says what, where and what to do. A collision is a result, never an
+// error.
 #pragma once
 
 #include <stdexcept>
@@ -6,13 +7,15 @@
 
 namespace dartcast {
 
-/// Base of everything that dartcast throws. State is unchanged after a throw, unless a function's contract says otherwise.
+/// Base of everything that dartcast throws. State is unchanged after a throw, unless a function's contract says
+/// otherwise.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// An argument that breaks a stated precondition: a size that does not match, a number that is not finite, a stale handle.
+/// An argument that breaks a stated precondition: a size that does not match, a number that is not finite, a stale
+/// handle.
 class InvalidArgument : public Error {
  public:
   using Error::Error;

@@ -16,8 +16,8 @@ using ChunkBody = void (*)(void* context, std::size_t begin, std::size_t end);
 void parallel_chunks(std::size_t count, std::size_t grain, Threads threads, ChunkBody body, void* context);
 }  // namespace detail
 
-/// Calls body(begin, end) for consecutive chunks of at most `grain` items that cover [0, count). The chunks are the same for
-/// any number of threads. The first exception by chunk order is thrown again after all chunks have ended.
+/// Calls body(begin, end) for consecutive chunks of at most `grain` items that cover [0, count). The chunks are the
+/// same for any number of threads. The first exception by chunk order is thrown again after all chunks have ended.
 template <class Body>
 void parallel_for(std::size_t count, std::size_t grain, Threads threads, Body&& body) {
   using B = std::remove_reference_t<Body>;

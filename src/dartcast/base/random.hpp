@@ -30,9 +30,7 @@ class Random {
   constexpr double uniform(double low, double high) { return low + (high - low) * uniform(); }
 
   /// An integer in [0, n), n > 0; uniform to n / 2^32.
-  constexpr std::uint32_t below(std::uint32_t n) {
-    return static_cast<std::uint32_t>(((next() >> 32U) * n) >> 32U);
-  }
+  constexpr std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(((next() >> 32U) * n) >> 32U); }
 
  private:
   std::uint64_t state_;

@@ -16,8 +16,9 @@ constexpr std::size_t grain = 512;
 
 void check_point(const Vec3& x, const char* what, std::size_t index) {
   if (in_exact_range(x)) return;
-  throw InvalidArgument(fmt::format("{} {} is ({}, {}, {}): coordinates must be finite, and 0 or between 2^-300 and 2^300 in magnitude",
-                                    what, index, x.x, x.y, x.z));
+  throw InvalidArgument(
+      fmt::format("{} {} is ({}, {}, {}): coordinates must be finite, and 0 or between 2^-300 and 2^300 in magnitude",
+                  what, index, x.x, x.y, x.z));
 }
 
 MeshData inspected(MeshData mesh) {
@@ -56,7 +57,8 @@ void Particles::reorder(std::span<const std::uint32_t> order) {
   weights_ = std::move(weights);
 }
 
-Environment::Environment(MeshData mesh, Threads threads) : complex_(inspected(std::move(mesh)), threads), threads_(threads) {
+Environment::Environment(MeshData mesh, Threads threads)
+    : complex_(inspected(std::move(mesh)), threads), threads_(threads) {
   const auto& invalid = complex_.invalid_cells();
   if (invalid.empty()) return;
   throw InvalidMesh(fmt::format("{} cells can't be divided into positive simplices; the first: {}; mend or remesh them",
@@ -77,7 +79,8 @@ std::vector<Location> Environment::locate(std::span<const Vec3> points) {
 
 std::vector<Added> Environment::add(Particles& particles, std::span<const Vec3> positions) {
   if (particles.size() == 0) particles.moves_ = moves_;
-  if (particles.moves_ != moves_) throw InvalidArgument("add: advance the particles first, they have not followed the last move");
+  if (particles.moves_ != moves_)
+    throw InvalidArgument("add: advance the particles first, they have not followed the last move");
   const std::vector<Location> locations = locate(positions);
   std::vector<Added> added(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -111,11 +114,8 @@ void Environment::check_targets(const Particles& particles, std::span<const Vec3
   for (std::size_t i = 0; i < targets.size(); ++i) check_point(targets[i], "the target of particle", i);
 }
 
-StepReport Environment::advance(Particles& particles, std::span<const Vec3> targets, const Respond& respond,
-                                const StepOptions& options) {
-  check_targets(particles, targets);
-  const Stepper stepper(complex_, particles.moves_ != moves_, options, respond);
-  std::vector<StepReport> parts(chunk_count(particles.size(), grain));
+void Environment::step_all(Particles& particles, std::span<const Vec3> targets, const Stepper& stepper,
+                           std::vector<StepReport>& parts) const {
   parallel_for(particles.size(), grain, threads_, [&](std::size_t begin, std::size_t end) {
     StepReport& part = parts[begin / grain];
     for (std::size_t i = begin; i < end; ++i) {
@@ -126,6 +126,24 @@ StepReport Environment::advance(Particles& particles, std::span<const Vec3> targ
       if (result.stopped) part.stopped.push_back({particle, result.unused});
     }
   });
+}
+
+StepReport Environment::advance(Particles& particles, std::span<const Vec3> targets, const Respond& respond,
+                                const StepOptions& options) {
+  check_targets(particles, targets);
+  const Stepper stepper(complex_, particles.moves_ != moves_, options, respond);
+  std::vector<StepReport> parts(chunk_count(particles.size(), grain));
+  if (respond) {
+    const Particles before = particles;  // a response is the caller's code: it may throw
+    try {
+      step_all(particles, targets, stepper, parts);
+    } catch (...) {
+      particles = before;
+      throw;
+    }
+  } else {
+    step_all(particles, targets, stepper, parts);
+  }
   particles.moves_ = moves_;
   StepReport report;
   for (const StepReport& part : parts) {

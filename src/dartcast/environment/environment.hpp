@@ -61,36 +61,40 @@ struct StepReport {
 
 class Environment {
  public:
-  /// Builds the complex. Throws InvalidMesh where inspect() finds a defect, or where a cell has a simplex that is not positive
-  /// (with the first of them); `mesh` is not changed by repairs: call inspect() first to see and keep them.
+  /// Builds the complex. Throws InvalidMesh where inspect() finds a defect, or where a cell has a simplex that is not
+  /// positive (with the first of them); `mesh` is not changed by repairs: call inspect() first to see and keep them.
   explicit Environment(MeshData mesh, Threads threads = {});
 
   [[nodiscard]] const Complex& complex() const { return complex_; }
   [[nodiscard]] const Map& map() const { return complex_.map(); }
   [[nodiscard]] std::span<const Vec3> positions() const { return complex_.positions().first(complex_.point_count()); }
 
-  /// Where a point is. Throws InvalidArgument where it is not finite or outside the exact range. The first call after a move
-  /// makes a grid over all cells; not to be called from several threads at once.
+  /// Where a point is. Throws InvalidArgument where it is not finite or outside the exact range. The first call after a
+  /// move makes a grid over all cells; not to be called from several threads at once.
   [[nodiscard]] Location locate(const Vec3& x);
   /// Locates many points, in parallel. Throws as locate(), naming the point.
   [[nodiscard]] std::vector<Location> locate(std::span<const Vec3> points);
 
-  /// Adds a particle for every position in a free cell, in their order, and reports on every position: one in a blocked cell or
-  /// outside is not added, and says so. Throws as locate(), nothing added.
+  /// Adds a particle for every position in a free cell, in their order, and reports on every position: one in a blocked
+  /// cell or outside is not added, and says so. Throws as locate(), nothing added.
   std::vector<Added> add(Particles& particles, std::span<const Vec3> positions);
 
-  /// Where to write the next positions of all the mesh's points before move(). The content is what it was two moves ago.
+  /// Where to write the next positions of all the mesh's points before move(). The content is what it was two moves
+  /// ago.
   [[nodiscard]] std::span<Vec3> next_positions() { return complex_.next_positions(); }
-  /// Makes the positions written current, at no cost per cell: every set of particles must then be advanced once before the next
-  /// move. Between the two calls the environment's particles may be stepped to targets relative to positions before the move.
+  /// Makes the positions written current, at no cost per cell: every set of particles must then be advanced once before
+  /// the next move. Between the two calls the environment's particles may be stepped to targets relative to positions
+  /// before the move.
   void move();
-  /// Copies new positions of all the mesh's points, then move(). Throws InvalidArgument where the number does not match.
+  /// Copies new positions of all the mesh's points, then move(). Throws InvalidArgument where the number does not
+  /// match.
   void move(std::span<const Vec3> positions);
 
   /// Advances every particle towards its target; after a move(), along with the vertices (see docs/method.md). Without
   /// `respond` a particle stops at its first contact. Results are the same bits for any number of threads and order of
-  /// particles. Throws InvalidArgument, nothing changed, where a target is not finite or outside the exact range, the sizes do
-  /// not match, or the particles missed a move. Cost: a few orientation tests per particle, whatever the size of the scene.
+  /// particles. Throws InvalidArgument, nothing changed, where a target is not finite or outside the exact range, the
+  /// sizes do not match, the particles missed a move, or a response throws or returns such a displacement. Cost: a few
+  /// orientation tests per particle, whatever the size of the scene.
   StepReport advance(Particles& particles, std::span<const Vec3> targets, const Respond& respond = {},
                      const StepOptions& options = {});
 
@@ -102,6 +106,8 @@ class Environment {
 
  private:
   void check_targets(const Particles& particles, std::span<const Vec3> targets) const;
+  void step_all(Particles& particles, std::span<const Vec3> targets, const Stepper& stepper,
+                std::vector<StepReport>& parts) const;
 
   Complex complex_;
   Threads threads_;

@@ -28,7 +28,8 @@ enum class Sign : std::int8_t { negative = -1, zero = 0, positive = 1, undecidab
 constexpr Sign operator-(Sign s) { return s == Sign::undecidable ? s : static_cast<Sign>(-static_cast<int>(s)); }
 
 /// Sign of det[b - a, c - a, d - a]: positive where a, b, c turn counterclockwise seen from d; the volume of the
-/// tetrahedron (a, b, c, d) is a sixth of the determinant. Cost: about 5 ns when the filter decides, 0.1 to 2 us when not.
+/// tetrahedron (a, b, c, d) is a sixth of the determinant. Cost: about 5 ns when the filter decides, 0.1 to 2 us when
+/// not.
 Sign orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 /// The same, counting in `exact` the signs that the filter left open.
@@ -37,21 +38,21 @@ Sign orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, std::u
 /// The same sign without the filter: for callers that have filtered a batch by themselves.
 Sign orient3d_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
-/// What a filter needs. A determinant u . (v x w) of differences of stored doubles, evaluated in doubles in this order, is off
-/// by at most determinant_error times the product m of the largest |x|, |y| and |z| among u, v and w, as long as
-/// filter_applies(): Shewchuk's bound (7 + 56 e) e of the permanent, e = 2^-53; the permanent is at most 6 m. The last factor
-/// pays for rounding m, and for products that underflow: at most 6 * 2^-1075 * 2^301, against e m >= 2^-753.
+/// What a filter needs. A determinant u . (v x w) of differences of stored doubles, evaluated in doubles in this order,
+/// is off by at most determinant_error times the product m of the largest |x|, |y| and |z| among u, v and w, as long as
+/// filter_applies(): Shewchuk's bound (7 + 56 e) e of the permanent, e = 2^-53; the permanent is at most 6 m. The last
+/// factor pays for rounding m, and for products that underflow: at most 6 * 2^-1075 * 2^301, against e m >= 2^-753.
 inline constexpr double determinant_error = 6.0 * (7.0 + 56.0 * 0x1p-53) * 0x1p-53 * (1.0 + 0x1p-10);
 
 /// `largest`: the largest of the three factors of m. False where something is not finite or too large or too small.
 constexpr bool filter_applies(double largest, double m) { return largest <= 0x1p+301 && m >= 0x1p-700; }
 
-/// The same determinant as a double: right to a few units in the last place, and of the exact sign (0 only where it is 0).
-/// Not a number where a coordinate is outside the range.
+/// The same determinant as a double: right to a few units in the last place, and of the exact sign (0 only where it is
+/// 0). Not a number where a coordinate is outside the range.
 double orient3d_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
-/// A point infinitesimally beside p, for ties: p + e w + (e^2, e^3, e^4), with w the sum of (opposite vertex - p) over the
-/// facets on which p lies (none: w = 0). It is the first non-vanishing term that decides, so no tie is left.
+/// A point infinitesimally beside p, for ties: p + e w + (e^2, e^3, e^4), with w the sum of (opposite vertex - p) over
+/// the facets on which p lies (none: w = 0). It is the first non-vanishing term that decides, so no tie is left.
 class Shift {
  public:
   /// `opposite`: the vertices opposite to the facets on which p lies; at most 3.
@@ -60,7 +61,8 @@ class Shift {
   /// Sign of orient3d(a, b, c, q + shift) where orient3d(a, b, c, q) is zero. Zero only where a, b, c are collinear.
   [[nodiscard]] Sign of_plane(const Vec3& a, const Vec3& b, const Vec3& c) const;
 
-  /// Sign of orient3d(a, b, p + shift, q + shift) where orient3d(a, b, p, q) is zero. Zero only where pq is parallel to ab.
+  /// Sign of orient3d(a, b, p + shift, q + shift) where orient3d(a, b, p, q) is zero. Zero only where pq is parallel to
+  /// ab.
   [[nodiscard]] Sign of_line(const Vec3& a, const Vec3& b, const Vec3& p, const Vec3& q) const;
 
  private:

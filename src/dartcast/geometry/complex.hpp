@@ -1,8 +1,8 @@
 // The cell complex: a map with positions. It is all that a walk reads.
 //
-// Every cell is a union of implicit simplices with vertices as corners (map/shape.hpp), so that the complex is watertight
-// for any positions (guarantee G2). A cell whose pulling triangulation is not positive takes interior points: extra
-// vertices, affine combinations of its corners with stored weights, computed again at each move.
+// Every cell is a union of implicit simplices with vertices as corners (map/shape.hpp), so that the complex is
+// watertight for any positions (guarantee G2). A cell whose pulling triangulation is not positive takes interior
+// points: extra vertices, affine combinations of its corners with stored weights, computed again at each move.
 #pragma once
 
 #include <array>
@@ -41,9 +41,9 @@ struct InteriorWeights {
 
 class Complex {
  public:
-  /// Builds the map, finds interior points where they are needed, and checks every simplex. Cells for which no interior point
-  /// makes all simplices positive are listed in invalid_cells(); the complex can be used, particles there are held.
-  /// Preconditions and errors as for Map. Cost: linear.
+  /// Builds the map, finds interior points where they are needed, and checks every simplex. Cells for which no interior
+  /// point makes all simplices positive are listed in invalid_cells(); the complex can be used, particles there are
+  /// held. Preconditions and errors as for Map. Cost: linear.
   explicit Complex(const MeshData& mesh, Threads threads = {});
 
   [[nodiscard]] const Map& map() const { return map_; }
@@ -57,11 +57,11 @@ class Complex {
   /// Number of the mesh's own points: the first entries of positions().
   [[nodiscard]] std::size_t point_count() const { return front_.size() - interior_.count(); }
 
-  /// Where the next positions of the mesh's points are to be written, all of them; the content is what it was two moves ago.
-  /// Ends the validity of previous_positions().
+  /// Where the next positions of the mesh's points are to be written, all of them; the content is what it was two moves
+  /// ago. Ends the validity of previous_positions().
   [[nodiscard]] std::span<Vec3> next_positions();
-  /// Makes the positions written current. Cost: a swap, and the interior points. No vertex is checked: one that is not finite,
-  /// or outside the exact range, is found by the walk that meets it, and by check_validity().
+  /// Makes the positions written current. Cost: a swap, and the interior points. No vertex is checked: one that is not
+  /// finite, or outside the exact range, is found by the walk that meets it, and by check_validity().
   void commit_positions();
 
   [[nodiscard]] std::array<Vertex, 4> vertices(SimplexId s) const {

@@ -16,7 +16,8 @@ using Faces = std::vector<std::vector<std::uint32_t>>;
 
 Faces faces_of(const MeshData& mesh, std::uint32_t c) {
   Faces faces;
-  for_each_face(mesh, c, [&](std::span<const std::uint32_t> corners) { faces.emplace_back(corners.begin(), corners.end()); });
+  for_each_face(mesh, c,
+                [&](std::span<const std::uint32_t> corners) { faces.emplace_back(corners.begin(), corners.end()); });
   return faces;
 }
 
@@ -54,8 +55,8 @@ bool all_positive(const Vec3& apex, const std::vector<Triangle>& triangles) {
                      [&](const Triangle& t) { return orient3d(apex, t.a, t.b, t.c) == Sign::positive; });
 }
 
-// A point strictly behind all triangles, found by moving away from the nearest one; `start` where there is none. What it
-// returns is only a proposal: the validity check decides.
+// A point strictly behind all triangles, found by moving away from the nearest one; `start` where there is none. What
+// it returns is only a proposal: the validity check decides.
 Vec3 kernel_point(const Vec3& start, const std::vector<Triangle>& triangles, double size) {
   constexpr int steps = 400;
   Vec3 x = start;
@@ -85,7 +86,8 @@ Vec3 kernel_point(const Vec3& start, const std::vector<Triangle>& triangles, dou
 }
 
 // Weights over the corners, summing to 1, that give x: the equal weights and the least correction.
-std::vector<double> weights_for(const Vec3& x, const std::vector<Vec3>& points, const std::vector<std::uint32_t>& corners) {
+std::vector<double> weights_for(const Vec3& x, const std::vector<Vec3>& points,
+                                const std::vector<std::uint32_t>& corners) {
   const Vec3 m = mean(points, corners);
   const auto n = static_cast<Eigen::Index>(corners.size());
   Eigen::Matrix3Xd centred(3, n);
@@ -97,7 +99,8 @@ std::vector<double> weights_for(const Vec3& x, const std::vector<Vec3>& points, 
   const Eigen::Matrix3d gram = centred * centred.transpose();
   const Eigen::VectorXd correction = centred.transpose() * gram.ldlt().solve(offset);
   std::vector<double> weights(corners.size());
-  for (Eigen::Index i = 0; i < n; ++i) weights[static_cast<std::size_t>(i)] = 1.0 / static_cast<double>(n) + correction(i);
+  for (Eigen::Index i = 0; i < n; ++i)
+    weights[static_cast<std::size_t>(i)] = 1.0 / static_cast<double>(n) + correction(i);
   return weights;
 }
 
@@ -121,7 +124,8 @@ class Solver {
  private:
   // The plain map has a cell for each of the mesh, in the mesh's order within each type.
   void number_cells() {
-    for (std::uint32_t c = 0; c < mesh_.cell_count(); ++c) number_[static_cast<std::size_t>(mesh_.types[c])].push_back(c);
+    for (std::uint32_t c = 0; c < mesh_.cell_count(); ++c)
+      number_[static_cast<std::size_t>(mesh_.types[c])].push_back(c);
     cell_.resize(mesh_.cell_count());
     for (std::uint32_t p = 0; p < number_.size(); ++p) {
       for (std::uint32_t i = 0; i < number_[p].size(); ++i) cell_[number_[p][i]] = Cell(p, i);

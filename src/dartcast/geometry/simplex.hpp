@@ -23,15 +23,16 @@ struct SimplexId {
 using Corners = std::array<Vec3, 4>;
 
 /// The corners of the facet opposite to corner i, so that orient3d(a, b, c, x) is positive on the side of corner i.
-inline constexpr std::array<std::array<std::uint8_t, 3>, 4> facet_corners = {{{2, 1, 3}, {0, 2, 3}, {1, 0, 3}, {0, 1, 2}}};
+inline constexpr std::array<std::array<std::uint8_t, 3>, 4> facet_corners = {
+    {{2, 1, 3}, {0, 2, 3}, {1, 0, 3}, {0, 1, 2}}};
 
 inline Sign orient_facet(const Corners& v, unsigned facet, const Vec3& x) {
   const auto& f = facet_corners[facet];
   return orient3d(v[f[0]], v[f[1]], v[f[2]], x);
 }
 
-/// det_i: the determinant of the simplex with corner i replaced by x. All four are positive inside a valid simplex, and sum to
-/// six times its volume; det_i over the sum is x's barycentric coordinate i.
+/// det_i: the determinant of the simplex with corner i replaced by x. All four are positive inside a valid simplex, and
+/// sum to six times its volume; det_i over the sum is x's barycentric coordinate i.
 struct Determinants {
   std::array<double, 4> value;
   double bound;  ///< largest error of each value
@@ -57,7 +58,8 @@ struct Determinants {
   }
 
   [[nodiscard]] double volume6() const { return (value[0] + value[1]) + (value[2] + value[3]); }
-  /// The four errors, and the rounding of three sums of values that are at most 6 m each (m = bound / determinant_error).
+  /// The four errors, and the rounding of three sums of values that are at most 6 m each (m = bound /
+  /// determinant_error).
   [[nodiscard]] bool proves_positive() const { return applies && volume6() > 8.0 * bound; }
   [[nodiscard]] bool decides(unsigned i) const { return applies && std::abs(value[i]) > bound; }
 };

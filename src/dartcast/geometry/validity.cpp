@@ -22,7 +22,8 @@ std::optional<InvalidCell> check_cell(const Map& map, std::span<const Vec3> posi
   for (std::uint16_t s = 0; s < simplices.size(); ++s) {
     Corners corners;
     for (unsigned i = 0; i < 4; ++i) corners[i] = positions[v.vertex(simplices[s].vertex[i]).value];
-    if (const Sign sign = volume_sign(corners); sign != Sign::positive) return InvalidCell{c, s, describe(map, c, s, sign)};
+    if (const Sign sign = volume_sign(corners); sign != Sign::positive)
+      return InvalidCell{c, s, describe(map, c, s, sign)};
   }
   return {};
 }

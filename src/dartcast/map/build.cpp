@@ -41,8 +41,8 @@ std::vector<Permutation> rotations(CellType type) {
 // Faces from their lowest vertex; `vertices` by local number.
 ShapeKey::Face from_lowest(std::span<const std::uint16_t> corners, std::span<const std::uint32_t> vertices) {
   ShapeKey::Face face;
-  const auto lowest = std::min_element(corners.begin(), corners.end(),
-                                       [&](auto a, auto b) { return vertices[a] < vertices[b]; });
+  const auto lowest =
+      std::min_element(corners.begin(), corners.end(), [&](auto a, auto b) { return vertices[a] < vertices[b]; });
   face.corners.assign(corners.begin(), corners.end());
   std::rotate(face.corners.begin(), face.corners.begin() + (lowest - corners.begin()), face.corners.end());
   return face;
@@ -78,13 +78,14 @@ class MapBuilder {
 
   void add_cells() {
     place_cells();
+    // Standard cells first: their shapes are few, and their numbers fit in 16 bits.
     for (std::uint32_t c = 0; c < mesh_.cell_count(); ++c) {
+      if (place_[c].pool() != Map::general_pool) add_standard(c);
+    }
+    for (std::uint32_t c = 0; c < mesh_.cell_count(); ++c) {
+      if (place_[c].pool() != Map::general_pool) continue;
       try {
-        if (place_[c].pool() == Map::general_pool) {
-          add_general(c);
-        } else {
-          add_standard(c);
-        }
+        add_general(c);
       } catch (const InvalidMesh& e) {
         throw InvalidMesh("cell " + std::to_string(source(c)) + ": " + e.what());
       }
@@ -108,9 +109,9 @@ class MapBuilder {
       map_.pools_[p].stride = strides[p];
       map_.pools_[p].words.assign(map_.pools_[p].count * strides[p], 0);
     }
-    const bool identity = mesh_.source.empty() && std::any_of(map_.pools_.begin(), map_.pools_.end(), [&](const auto& pool) {
-                            return pool.count == mesh_.cell_count();
-                          });
+    const bool identity =
+        mesh_.source.empty() && std::any_of(map_.pools_.begin(), map_.pools_.end(),
+                                            [&](const auto& pool) { return pool.count == mesh_.cell_count(); });
     if (identity) return;
     for (std::uint32_t c = 0; c < mesh_.cell_count(); ++c) map_.pools_[place_[c].pool()].source.push_back(source(c));
   }
@@ -206,7 +207,8 @@ class MapBuilder {
 
   [[nodiscard]] Vertex cell_point(std::uint32_t c) const {
     const auto& all = interior_.of_cells;
-    const auto found = std::lower_bound(all.begin(), all.end(), c, [](const auto& e, auto key) { return e.first < key; });
+    const auto found =
+        std::lower_bound(all.begin(), all.end(), c, [](const auto& e, auto key) { return e.first < key; });
     return found != all.end() && found->first == c ? found->second : Vertex{};
   }
 
@@ -246,7 +248,8 @@ class MapBuilder {
     });
   }
 
-  // Whether two faces with the same lowest vertex have the same corners, run around in opposite directions or in the same.
+  // Whether two faces with the same lowest vertex have the same corners, run around in opposite directions or in the
+  // same.
   [[nodiscard]] bool same_corners(CellFace f, CellFace g, bool opposite) const {
     const CellView a = map_.view(f.cell);
     const CellView b = map_.view(g.cell);
@@ -290,11 +293,13 @@ class MapBuilder {
         if (!across && !same_corners(f, g, false)) continue;
         others.push_back(g);
         opposite = opposite && across;
-        if (others.size() > 1) throw InvalidMesh(describe({f, others[0], others[1]}) + " share one face: at most two cells can");
+        if (others.size() > 1)
+          throw InvalidMesh(describe({f, others[0], others[1]}) + " share one face: at most two cells can");
       }
       if (others.empty()) continue;
       if (!opposite)
-        throw InvalidMesh(describe({f, others[0]}) + " lie on the same side of their common face: one of them is inverted");
+        throw InvalidMesh(describe({f, others[0]}) +
+                          " lie on the same side of their common face: one of them is inverted");
       map_.set_neighbour(f, others[0]);
     }
   }
@@ -351,9 +356,9 @@ class MapBuilder {
   Map& map_;
   const MeshData& mesh_;
   const InteriorPoints& interior_;
-  const std::array<std::vector<Permutation>, 4> rotations_ = {
-      rotations(CellType::tetrahedron), rotations(CellType::hexahedron), rotations(CellType::prism),
-      rotations(CellType::pyramid)};
+  const std::array<std::vector<Permutation>, 4> rotations_ = {rotations(CellType::tetrahedron),
+                                                              rotations(CellType::hexahedron),
+                                                              rotations(CellType::prism), rotations(CellType::pyramid)};
   std::unordered_map<std::uint32_t, std::uint32_t> standard_shapes_;
   std::vector<Cell> place_;
   std::vector<std::size_t> bucket_;

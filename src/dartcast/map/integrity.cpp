@@ -27,8 +27,8 @@ class Checker {
   void expect(bool holds, const char* constraint, Dart d, const std::string& seen = {}) {
     if (holds || full()) return;
     found_.push_back({constraint, d,
-                      "cell " + std::to_string(map_.source(d.cell)) + ", dart " + std::to_string(d.number) + ": " + constraint +
-                          " is broken" + (seen.empty() ? "" : " (" + seen + ")")});
+                      "cell " + std::to_string(map_.source(d.cell)) + ", dart " + std::to_string(d.number) + ": " +
+                          constraint + " is broken" + (seen.empty() ? "" : " (" + seen + ")")});
   }
 
   void check_vertices(Cell c, const CellView& v) {
@@ -102,6 +102,8 @@ std::vector<Violation> check_integrity(const Map& map, std::span<const Cell> cel
   return checker.take();
 }
 
-std::vector<Violation> check_integrity(const Map& map, std::size_t most) { return check_integrity(map, map.cells(), most); }
+std::vector<Violation> check_integrity(const Map& map, std::size_t most) {
+  return check_integrity(map, map.cells(), most);
+}
 
 }  // namespace dartcast

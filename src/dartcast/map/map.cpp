@@ -102,7 +102,8 @@ Patch Map::patch(std::string_view name) const {
   if (found != patch_names_.end()) return Patch{static_cast<std::uint16_t>(found - patch_names_.begin())};
   std::string known;
   for (std::size_t i = 1; i < patch_names_.size(); ++i) known += (i > 1 ? ", " : "") + patch_names_[i];
-  throw InvalidArgument("no patch is named \"" + std::string(name) + "\"; there are: " + (known.empty() ? "none" : known));
+  throw InvalidArgument("no patch is named \"" + std::string(name) +
+                        "\"; there are: " + (known.empty() ? "none" : known));
 }
 
 std::size_t Map::wall_face_count() const {

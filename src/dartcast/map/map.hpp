@@ -1,12 +1,13 @@
 // The 3D combinatorial map: darts with phi1, phi2, phi3 over convex cells, free or blocked. No coordinates.
 //
-// T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism for continuous collision detection in deformable
-// environments", SPM 2009, section 3.1. No dart is stored: a dart is a cell and a number in the cell's shape; phi1 and
-// phi2 look up in the shape, phi3 goes through the record of the cell.
+// T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism for continuous collision detection in
+// deformable environments", SPM 2009, section 3.1. No dart is stored: a dart is a cell and a number in the cell's
+// shape; phi1 and phi2 look up in the shape, phi3 goes through the record of the cell.
 //
 // Records, in 32-bit words (a walk reads one record per cell it enters; a hexahedron's fills one cache line):
-//   standard types   [shape 16, version 16] [neighbours' face numbers 3 each, wall mask 6, free 1] [vertices] [neighbours]
-//   any other cell   [shape 32] [version 16, free 1] [vertices] [neighbours] [neighbours' face numbers 16, wall 16 each]
+//   standard types   [shape 16, version 16] [neighbours' face numbers 3 each, wall mask 6, free 1] [vertices]
+//   [neighbours] any other cell   [shape 32] [version 16, free 1] [vertices] [neighbours] [neighbours' face numbers 16,
+//   wall 16 each]
 #pragma once
 
 #include <array>
@@ -78,8 +79,8 @@ class Map {
 
   Map() = default;
   /// Builds cells, sews faces by their vertices, and takes over free marks and patches. Cost: linear but for sorting.
-  /// Preconditions: inspect() found no defect. Throws InvalidMesh where a face has three cells or two on the same side, or a
-  /// cell is not closed: names the cell by its number in the mesh.
+  /// Preconditions: inspect() found no defect. Throws InvalidMesh where a face has three cells or two on the same side,
+  /// or a cell is not closed: names the cell by its number in the mesh.
   explicit Map(const MeshData& mesh, const InteriorPoints& interior = {});
 
   // Darts. Preconditions: dart and cell of this map.
@@ -102,7 +103,8 @@ class Map {
   [[nodiscard]] CellView view(Cell c) const {
     const Pool& pool = pools_[c.pool()];
     const bool general = c.pool() == general_pool;
-    const std::uint32_t* word = pool.words.data() + (general ? pool.offsets[c.index()] : std::size_t{c.index()} * pool.stride);
+    const std::uint32_t* word =
+        pool.words.data() + (general ? pool.offsets[c.index()] : std::size_t{c.index()} * pool.stride);
     return {word, shapes_[general ? word[0] : word[0] & 0xffffU], general};
   }
   [[nodiscard]] const Shape& shape(Cell c) const { return view(c).shape(); }
@@ -142,8 +144,8 @@ class Map {
     std::uint32_t stride = 0;
     std::size_t count = 0;
     AlignedVector<std::uint32_t> words;
-    std::vector<std::size_t> offsets;    // general pool only: start of each record
-    std::vector<std::uint32_t> source;   // empty: the index in the pool is the index in the mesh
+    std::vector<std::size_t> offsets;   // general pool only: start of each record
+    std::vector<std::uint32_t> source;  // empty: the index in the pool is the index in the mesh
   };
 
   [[nodiscard]] std::uint32_t* record(Cell c) { return const_cast<std::uint32_t*>(std::as_const(*this).record(c)); }

@@ -34,15 +34,18 @@ std::vector<Dart> vertex_orbit(const Map& map, Dart d) {
 }
 
 std::vector<Dart> edge_orbit(const Map& map, Dart d) {
-  return closure(d, [&](Dart x) { return map.phi2(x); }, [&](Dart x) { return map.phi3(x); });
+  return closure(
+      d, [&](Dart x) { return map.phi2(x); }, [&](Dart x) { return map.phi3(x); });
 }
 
 std::vector<Dart> face_orbit(const Map& map, Dart d) {
-  return closure(d, [&](Dart x) { return map.phi1(x); }, [&](Dart x) { return map.phi3(x); });
+  return closure(
+      d, [&](Dart x) { return map.phi1(x); }, [&](Dart x) { return map.phi3(x); });
 }
 
 std::vector<Dart> cell_orbit(const Map& map, Dart d) {
-  return closure(d, [&](Dart x) { return map.phi1(x); }, [&](Dart x) { return map.phi2(x); });
+  return closure(
+      d, [&](Dart x) { return map.phi1(x); }, [&](Dart x) { return map.phi2(x); });
 }
 
 }  // namespace dartcast

@@ -7,8 +7,9 @@
 
 namespace dartcast {
 
-// Each returns every dart of the orbit once, d first. Where the map has a boundary an orbit holds what is connected to d
-// across faces: a vertex at which two parts touch without a common face has an orbit for each. Cost: its size, times its log.
+// Each returns every dart of the orbit once, d first. Where the map has a boundary an orbit holds what is connected to
+// d across faces: a vertex at which two parts touch without a common face has an orbit for each. Cost: its size, times
+// its log.
 
 /// All darts that start at the vertex of d.
 std::vector<Dart> vertex_orbit(const Map& map, Dart d);

@@ -27,7 +27,8 @@ void check_key(const ShapeKey& key) {
 Shape::Shape(ShapeKey key) : key_(std::move(key)) {
   check_key(key_);
   point_count_ = key_.corner_count;
-  for (const auto& face : key_.faces) point_count_ = static_cast<std::uint16_t>(point_count_ + (face.has_point ? 1 : 0));
+  for (const auto& face : key_.faces)
+    point_count_ = static_cast<std::uint16_t>(point_count_ + (face.has_point ? 1 : 0));
   if (key_.has_point) ++point_count_;
   number_darts();
   sew_darts();
@@ -72,7 +73,8 @@ std::array<std::uint16_t, 3> Shape::triangle(std::uint16_t face, std::uint16_t t
   const auto& corners = key_.faces[face].corners;
   if (!key_.faces[face].has_point) return {corners[0], corners[t + 1U], corners[t + 2U]};
   std::uint16_t point = key_.corner_count;
-  for (std::uint16_t f = 0; f < face; ++f) point = static_cast<std::uint16_t>(point + (key_.faces[f].has_point ? 1 : 0));
+  for (std::uint16_t f = 0; f < face; ++f)
+    point = static_cast<std::uint16_t>(point + (key_.faces[f].has_point ? 1 : 0));
   return {point, corners[t], corners[(t + 1U) % corners.size()]};
 }
 
@@ -111,7 +113,8 @@ void Shape::connect_simplices() {
       const auto behind = open.find(sorted(triangle(f, t)));
       if (behind == open.end()) throw InvalidMesh("the faces of the cell do not bound one solid");
       entries_.push_back(behind->second);
-      simplices_[behind->second.index].across[behind->second.place] = {static_cast<std::uint16_t>(Across::outer_bit | f), t};
+      simplices_[behind->second.index].across[behind->second.place] = {
+          static_cast<std::uint16_t>(Across::outer_bit | f), t};
       open.erase(behind);
     }
   }
@@ -123,7 +126,8 @@ Shape::Feature Shape::feature(std::span<const std::uint16_t> points) const {
   for (std::uint16_t f = 0; f < face_count(); ++f) {
     const auto on_face = [&](std::uint16_t p) {
       const auto& corners = key_.faces[f].corners;
-      return p < key_.corner_count ? std::find(corners.begin(), corners.end(), p) != corners.end() : face_of_point(p) == f;
+      return p < key_.corner_count ? std::find(corners.begin(), corners.end(), p) != corners.end()
+                                   : face_of_point(p) == f;
     };
     if (!std::all_of(points.begin(), points.end(), on_face)) continue;
     for (std::uint16_t d = first_dart_[f]; d < first_dart_[f + 1]; ++d) {
@@ -145,7 +149,7 @@ std::size_t Shape::bytes() const {
 std::uint32_t ShapeTable::intern(const ShapeKey& key) {
   const auto found = numbers_.find(key);
   if (found != numbers_.end()) return found->second;
-  shapes_.emplace_back(key);
+  shapes_.push_back(std::make_shared<const Shape>(key));
   const auto number = static_cast<std::uint32_t>(shapes_.size() - 1);
   numbers_.emplace(key, number);
   return number;
@@ -153,7 +157,7 @@ std::uint32_t ShapeTable::intern(const ShapeKey& key) {
 
 std::size_t ShapeTable::bytes() const {
   std::size_t sum = 0;
-  for (const Shape& s : shapes_) sum += s.bytes();
+  for (const auto& s : shapes_) sum += s->bytes();
   return sum;
 }
 

@@ -2,14 +2,15 @@
 //
 // The darts are those of a combinatorial map: T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism for
 // continuous collision detection in deformable environments", SPM 2009, section 3.1. The simplices are a pulling
-// triangulation: each face is fanned from its lowest-numbered vertex (or from an interior point of its own), and the cell
-// is coned from its lowest-numbered vertex over the fan triangles that do not contain it (or from an interior point).
+// triangulation: each face is fanned from its lowest-numbered vertex (or from an interior point of its own), and the
+// cell is coned from its lowest-numbered vertex over the fan triangles that do not contain it (or from an interior
+// point).
 #pragma once
 
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <map>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -125,12 +126,12 @@ class Shape {
 class ShapeTable {
  public:
   std::uint32_t intern(const ShapeKey& key);
-  [[nodiscard]] const Shape& operator[](std::uint32_t number) const { return shapes_[number]; }
+  [[nodiscard]] const Shape& operator[](std::uint32_t number) const { return *shapes_[number]; }
   [[nodiscard]] std::size_t size() const { return shapes_.size(); }
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  std::deque<Shape> shapes_;
+  std::vector<std::shared_ptr<const Shape>> shapes_;  // shared by copies of the table: they are immutable
   std::map<ShapeKey, std::uint32_t> numbers_;
 };
 

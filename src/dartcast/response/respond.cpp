@@ -11,7 +11,8 @@ namespace {
 
 void check(const Response& r) {
   if (!(r.restitution >= 0.0 && r.restitution <= 1.0)) throw InvalidArgument("a restitution must be between 0 and 1");
-  if (!(r.friction >= 0.0) || !std::isfinite(r.friction)) throw InvalidArgument("a friction must be finite and not negative");
+  if (!(r.friction >= 0.0) || !std::isfinite(r.friction))
+    throw InvalidArgument("a friction must be finite and not negative");
 }
 
 const WallHit* most_opposed(const Vec3& v, std::span<const WallHit> walls) {

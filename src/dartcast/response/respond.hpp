@@ -46,9 +46,10 @@ class Responses {
 /// What has become of a particle.
 enum class Fate : std::uint8_t { alive, stuck, absorbed, escaped };
 
-/// A callable for Environment::advance() that answers contacts by `responses` (the patch of the wall met first decides) and
-/// writes each particle's new velocity and fate. `velocities` in length per time, `dt` the step's duration > 0. The spans, one
-/// entry per particle, and `responses` must outlive it. A particle already absorbed, escaped or stuck stays where it is.
+/// A callable for Environment::advance() that answers contacts by `responses` (the patch of the wall met first decides)
+/// and writes each particle's new velocity and fate. `velocities` in length per time, `dt` the step's duration > 0. The
+/// spans, one entry per particle, and `responses` must outlive it. A particle already absorbed, escaped or stuck stays
+/// where it is.
 Respond respond_with(const Responses& responses, std::span<Vec3> velocities, std::span<Fate> fates, double dt);
 
 // The operators, for a caller's own responses. Vectors are relative to the wall; walls in the order of a contact's.
@@ -56,8 +57,8 @@ Respond respond_with(const Responses& responses, std::span<Vec3> velocities, std
 /// Rebound from every wall that v points into, the one most opposed first.
 Vec3 reflected(Vec3 v, std::span<const WallHit> walls, double restitution, double friction);
 
-/// Projection on the newest walls; an earlier wall joins (a crease, a corner) only if the projected vector points into it:
-/// joined at once, two nearly coplanar fan triangles would make a false crease.
+/// Projection on the newest walls; an earlier wall joins (a crease, a corner) only if the projected vector points into
+/// it: joined at once, two nearly coplanar fan triangles would make a false crease.
 Vec3 slid(const Vec3& v, std::span<const WallHit> walls, std::span<const WallHit> earlier);
 
 }  // namespace dartcast

@@ -17,22 +17,23 @@ struct WallHit {
   CellFace face;               ///< of the free cell
   std::uint16_t triangle = 0;  ///< in the face's fan
   Patch patch;
-  Vec3 normal;                 ///< unit, into the free side
+  Vec3 normal;  ///< unit, into the free side
 };
 
 struct Contact {
   std::uint32_t particle = 0;
-  Kind kind = Kind::face;       ///< of the place on the wall: face, edge or vertex
-  Dart dart;                    ///< of that face, edge or vertex, in the free cell at the wall
-  std::uint32_t first_wall = 0; ///< its walls are walls[first_wall .. first_wall + wall_count) of the list; the one met first
+  Kind kind = Kind::face;  ///< of the place on the wall: face, edge or vertex
+  Dart dart;               ///< of that face, edge or vertex, in the free cell at the wall
+  std::uint32_t first_wall =
+      0;  ///< its walls are walls[first_wall .. first_wall + wall_count) of the list; the one met first
   std::uint32_t wall_count = 0;
   std::uint32_t earlier = 0;    ///< number of walls before those that this particle met earlier in the same step
   bool last = false;            ///< no further contact is allowed in this step
   double time_of_impact = 0.0;  ///< fraction of the step, in [0, 1]
   Vec3 point;                   ///< on the wall, rounded; the particle is put into the free closed cell there
   Vec3 wall_displacement;       ///< of the wall at that point, over the whole step; zero where the scene stands still
-  Vec3 displacement;            ///< of the particle relative to the wall, over the whole of the motion that led to the contact
-  Vec3 unused;                  ///< displacement not used, relative to the wall
+  Vec3 displacement;  ///< of the particle relative to the wall, over the whole of the motion that led to the contact
+  Vec3 unused;        ///< displacement not used, relative to the wall
 };
 
 /// Contacts of a batch: by particle, then by time.
@@ -40,7 +41,9 @@ struct ContactList {
   std::vector<Contact> contacts;
   std::vector<WallHit> walls;
 
-  [[nodiscard]] std::span<const WallHit> walls_of(const Contact& c) const { return {walls.data() + c.first_wall, c.wall_count}; }
+  [[nodiscard]] std::span<const WallHit> walls_of(const Contact& c) const {
+    return {walls.data() + c.first_wall, c.wall_count};
+  }
   /// Walls that the particle met earlier in the same step, oldest first.
   [[nodiscard]] std::span<const WallHit> earlier_walls_of(const Contact& c) const {
     return {walls.data() + c.first_wall - c.earlier, c.earlier};
@@ -59,8 +62,9 @@ struct Continuation {
   bool along = false;  ///< meant to run along the walls touched: rounding must not turn it into them
 };
 
-/// Decides what follows a contact: given the contact, its walls, and those met earlier in the same step. Called from several
-/// threads at once for different particles; an empty function stops the particle at the wall until the end of the step.
+/// Decides what follows a contact: given the contact, its walls, and those met earlier in the same step. Called from
+/// several threads at once for different particles; an empty function stops the particle at the wall until the end of
+/// the step.
 using Respond =
     std::function<Continuation(const Contact&, std::span<const WallHit> walls, std::span<const WallHit> earlier)>;
 

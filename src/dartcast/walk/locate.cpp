@@ -66,7 +66,8 @@ Locator::Box Locator::box_of(const Complex& complex, Cell c) {
 }
 
 std::array<std::uint32_t, 3> Locator::bin_of(const Vec3& x) const {
-  return {bin_along(x.x, bounds_.low.x, bounds_.high.x, bins_[0]), bin_along(x.y, bounds_.low.y, bounds_.high.y, bins_[1]),
+  return {bin_along(x.x, bounds_.low.x, bounds_.high.x, bins_[0]),
+          bin_along(x.y, bounds_.low.y, bounds_.high.y, bins_[1]),
           bin_along(x.z, bounds_.low.z, bounds_.high.z, bins_[2])};
 }
 
@@ -89,7 +90,8 @@ void Locator::choose_bins(std::size_t cells) {
   std::array<double, 3> share{};
   for (unsigned a = 0; a < 3; ++a) share[a] = std::max(size[a] / largest, 1e-3);
   const double per_largest = std::cbrt(static_cast<double>(cells) / (share[0] * share[1] * share[2]));
-  for (unsigned a = 0; a < 3; ++a) bins_[a] = static_cast<std::uint32_t>(std::clamp(per_largest * share[a], 1.0, 4096.0));
+  for (unsigned a = 0; a < 3; ++a)
+    bins_[a] = static_cast<std::uint32_t>(std::clamp(per_largest * share[a], 1.0, 4096.0));
 }
 
 std::size_t Locator::entry_count(const Complex& complex, const std::vector<Cell>& cells) const {

@@ -14,9 +14,9 @@ enum class Place : std::uint8_t { free, blocked, outside };
 
 struct Location {
   Place place = Place::outside;
-  SimplexId simplex;               ///< invalid outside
-  Kind kind = Kind::volume;        ///< of the cell of the map that holds the point in its interior
-  Dart dart;                       ///< of that face, edge or vertex; invalid for a volume
+  SimplexId simplex;         ///< invalid outside
+  Kind kind = Kind::volume;  ///< of the cell of the map that holds the point in its interior
+  Dart dart;                 ///< of that face, edge or vertex; invalid for a volume
 };
 
 /// A grid over one complex at one instant: make it again after a move or an edit. Cost to make: linear in the cells.
@@ -24,9 +24,9 @@ class Locator {
  public:
   explicit Locator(const Complex& complex);
 
-  /// Where x is in the complex that the grid was made for. A point on the border of a free cell is free; among equals the lowest cell and simplex are named. Cells with a
-  /// simplex that is not positive are skipped. Precondition: x is finite and in the exact range. Cost: the cells whose boxes
-  /// share x's grid bin.
+  /// Where x is in the complex that the grid was made for. A point on the border of a free cell is free; among equals
+  /// the lowest cell and simplex are named. Cells with a simplex that is not positive are skipped. Precondition: x is
+  /// finite and in the exact range. Cost: the cells whose boxes share x's grid bin.
   [[nodiscard]] Location locate(const Complex& complex, const Vec3& x) const;
 
  private:

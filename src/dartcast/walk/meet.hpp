@@ -36,7 +36,8 @@ double fraction_at_wall(const Space<Positions>& space, const Walk& w, const Vec3
   return std::clamp(before / (before - after), 0.0, 1.0);
 }
 
-/// Adds every wall triangle that meets at the feature, the one that was hit first; a plane face's triangles count as one.
+/// Adds every wall triangle that meets at the feature, the one that was hit first; a plane face's triangles count as
+/// one.
 template <class Positions>
 void add_walls(const Space<Positions>& space, const Walk& w, const Feature& feature, ContactList& list) {
   const std::size_t first = list.walls.size();
@@ -48,10 +49,12 @@ void add_walls(const Space<Positions>& space, const Walk& w, const Feature& feat
     hit.triangle = across.place;
     hit.patch = space.map->patch(hit.face);
     hit.normal = wall_plane(space, id, facet).normal;
-    const bool known = std::any_of(list.walls.begin() + static_cast<std::ptrdiff_t>(first), list.walls.end(), [&](const WallHit& h) {
-      constexpr double same_plane = 1.0 - 1e-14;  // unit normals, rounded: only which triangles are listed depends on it
-      return h.face == hit.face && dot(h.normal, hit.normal) > same_plane;
-    });
+    const bool known =
+        std::any_of(list.walls.begin() + static_cast<std::ptrdiff_t>(first), list.walls.end(), [&](const WallHit& h) {
+          constexpr double same_plane =
+              1.0 - 1e-14;  // unit normals, rounded: only which triangles are listed depends on it
+          return h.face == hit.face && dot(h.normal, hit.normal) > same_plane;
+        });
     if (!known) list.walls.push_back(hit);
   };
   add(w.wall_simplex, w.wall_facet);
@@ -64,9 +67,10 @@ void add_walls(const Space<Positions>& space, const Walk& w, const Feature& feat
       });
 }
 
-/// Displacement over the whole step of the wall's material point nearest to x: the triangle's corners' displacements, weighted
-/// by x's barycentric coordinates in it.
-inline Vec3 wall_displacement(const Complex& complex, SimplexId simplex, unsigned facet, const WallPlane& plane, const Vec3& x) {
+/// Displacement over the whole step of the wall's material point nearest to x: the triangle's corners' displacements,
+/// weighted by x's barycentric coordinates in it.
+inline Vec3 wall_displacement(const Complex& complex, SimplexId simplex, unsigned facet, const WallPlane& plane,
+                              const Vec3& x) {
   const auto vertices = complex.vertices(simplex);
   const std::array<Vec3, 3> corner = {plane.a, plane.b, plane.c};
   const Vec3 n = cross(plane.b - plane.a, plane.c - plane.a);

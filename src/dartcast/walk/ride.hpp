@@ -46,8 +46,8 @@ inline bool in_closed_simplex(const Corners& v, const Vec3& x) {
   return true;
 }
 
-/// The particle with coordinates w, in the moved simplex; settled from the heaviest corner where rounding put it outside.
-/// Precondition: the moved simplex is positive.
+/// The particle with coordinates w, in the moved simplex; settled from the heaviest corner where rounding put it
+/// outside. Precondition: the moved simplex is positive.
 template <class Positions>
 Settled ridden(const Space<Positions>& space, SimplexId simplex, const Weights& w) {
   const Corners v = space.corners(simplex);

@@ -10,7 +10,8 @@
 
 namespace dartcast {
 
-/// The plane of a wall's fan triangle: a, b, c counterclockwise seen from the free side, and the unit normal to that side.
+/// The plane of a wall's fan triangle: a, b, c counterclockwise seen from the free side, and the unit normal to that
+/// side.
 struct WallPlane {
   Vec3 a, b, c;
   Vec3 normal;
@@ -52,7 +53,8 @@ inline void lift_off(const WallPlanes& planes, Vec3& x) {
   for (int k = 0; k < lift_tries && !planes.none_behind(x); ++k) planes.lift(x, std::ldexp(1.0, k));
 }
 
-/// A component that is not zero but below the exact range counts as zero; results of arithmetic are passed through this.
+/// A component that is not zero but below the exact range counts as zero; results of arithmetic are passed through
+/// this.
 inline Vec3 flushed(Vec3 x) {
   const auto flush = [](double& c) {
     if (std::abs(c) < smallest_magnitude) c = 0.0;
@@ -86,9 +88,9 @@ struct Settled {
   Vec3 position;
 };
 
-/// Walks from p, which lies in the closed simplex `start`, to x. Where a wall is in the way by rounding, x is lifted off it by
-/// one unit in the last place, doubling; after 16 tries the way from p is halved; in the end p is returned. The result lies
-/// in the closed simplex returned, which is free and reached from `start` without passing a wall.
+/// Walks from p, which lies in the closed simplex `start`, to x. Where a wall is in the way by rounding, x is lifted
+/// off it by one unit in the last place, doubling; after 16 tries the way from p is halved; in the end p is returned.
+/// The result lies in the closed simplex returned, which is free and reached from `start` without passing a wall.
 template <class Positions>
 Settled settle(const Space<Positions>& space, SimplexId start, const Vec3& p, Vec3 x, detail::WallPlanes planes,
                TestCounts& counts) {

@@ -49,7 +49,8 @@ inline Space<Stored> previous_space(const Complex& complex) {
   return {&complex.map(), {complex.previous_positions().data()}, complex.simplex_count()};
 }
 inline Space<Between> space_between(const Complex& complex, double s) {
-  return {&complex.map(), {complex.previous_positions().data(), complex.positions().data(), s}, complex.simplex_count()};
+  return {
+      &complex.map(), {complex.previous_positions().data(), complex.positions().data(), s}, complex.simplex_count()};
 }
 
 /// The simplex on the other side of a facet, and the facet's number there. Preconditions: the facet is no boundary.

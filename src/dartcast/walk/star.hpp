@@ -19,47 +19,55 @@ struct Feature {
   unsigned count = 0;
 
   void add(Vertex v) { vertex[count++] = v; }
-  [[nodiscard]] bool has(Vertex v) const { return std::find(vertex.begin(), vertex.begin() + count, v) != vertex.begin() + count; }
+  [[nodiscard]] bool has(Vertex v) const {
+    return std::find(vertex.begin(), vertex.begin() + count, v) != vertex.begin() + count;
+  }
 };
 
 namespace detail {
 
-// A set that stays on the stack while it is small, as stars are: some tens of simplices.
-class VisitedSimplices {
+// The simplices found so far, each once, in order. Stars have some tens of simplices: then all stays on the stack.
+class FoundSimplices {
  public:
-  bool insert(SimplexId s) {
-    if (!large_.empty()) return large_.insert(key(s)).second;
-    const auto end = small_.begin() + count_;
-    if (std::find(small_.begin(), end, key(s)) != end) return false;
-    if (count_ < small_.size()) {
-      small_[count_++] = key(s);
-      return true;
+  void add(SimplexId s) {
+    if (count_ < near_.size()) {
+      if (std::find(near_.begin(), near_.begin() + count_, s) != near_.begin() + count_) return;
+      near_[count_++] = s;
+      return;
     }
-    large_.insert(small_.begin(), small_.end());
-    return large_.insert(key(s)).second;
+    if (seen_.empty()) {
+      for (const SimplexId known : near_) seen_.insert(key(known));
+    }
+    if (!seen_.insert(key(s)).second) return;
+    far_.push_back(s);
+    ++count_;
+  }
+  [[nodiscard]] std::size_t size() const { return count_; }
+  [[nodiscard]] SimplexId operator[](std::size_t i) const {
+    return i < near_.size() ? near_[i] : far_[i - near_.size()];
   }
 
  private:
   static std::uint64_t key(SimplexId s) { return (std::uint64_t{s.cell.value} << 16U) | s.simplex; }
 
-  std::array<std::uint64_t, 64> small_;
-  unsigned count_ = 0;
-  std::unordered_set<std::uint64_t> large_;
+  std::array<SimplexId, 64> near_;
+  std::size_t count_ = 0;
+  std::vector<SimplexId> far_;
+  std::unordered_set<std::uint64_t> seen_;  // of all, once they are many
 };
 
 }  // namespace detail
 
 /// Goes through the simplices around `feature` that are reached from `start` (one of them) through facets that hold the
 /// feature and are no walls. Calls on_simplex(SimplexId, CellView, ImplicitSimplex) for each, start first, and
-/// on_wall(SimplexId, CellView, ImplicitSimplex, facet) for each wall facet that holds the feature; either ends the search by
-/// returning false. Purely combinatorial: no coordinate is read. Cost: linear in the star.
+/// on_wall(SimplexId, CellView, ImplicitSimplex, facet) for each wall facet that holds the feature; either ends the
+/// search by returning false. Purely combinatorial: no coordinate is read. Cost: linear in the star.
 template <class OnSimplex, class OnWall>
 void search_star(const Map& map, SimplexId start, const Feature& feature, OnSimplex&& on_simplex, OnWall&& on_wall) {
-  detail::VisitedSimplices visited;
-  visited.insert(start);
-  std::vector<SimplexId> queue = {start};
-  for (std::size_t next = 0; next < queue.size(); ++next) {
-    const SimplexId id = queue[next];
+  detail::FoundSimplices found;
+  found.add(start);
+  for (std::size_t next = 0; next < found.size(); ++next) {
+    const SimplexId id = found[next];
     const CellView cell = map.view(id.cell);
     const ImplicitSimplex& s = cell.shape().simplices()[id.simplex];
     if (!on_simplex(id, cell, s)) return;
@@ -70,8 +78,7 @@ void search_star(const Map& map, SimplexId start, const Feature& feature, OnSimp
         if (!on_wall(id, cell, s, facet)) return;
         continue;
       }
-      const SimplexId other = pass(map, id, cell, across).simplex;
-      if (visited.insert(other)) queue.push_back(other);
+      found.add(pass(map, id, cell, across).simplex);
     }
   }
 }

@@ -22,7 +22,8 @@ Forecast forecast(const Map& map, const State& state, const Corners& corners) {
   const CellView cell = map.view(state.cell);
   const Across base = cell.shape().simplices()[state.simplex].across[0];
   Forecast result;
-  // Facet 0 is the fan triangle over which the simplex is coned; its side opposite to the fan's centre is an edge of the face.
+  // Facet 0 is the fan triangle over which the simplex is coned; its side opposite to the fan's centre is an edge of
+  // the face.
   const std::uint16_t face = base.face();
   const bool has_point = cell.shape().key().faces[face].has_point;
   const auto dart = static_cast<std::uint16_t>(cell.shape().first_dart(face) + base.place + (has_point ? 0 : 1));

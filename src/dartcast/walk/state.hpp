@@ -9,8 +9,8 @@
 
 namespace dartcast {
 
-/// A plain record. It says: `position` lies in the closed simplex named, and the cell is free (guarantee G3). The walls are
-/// those of the last contact, until the particle leaves them.
+/// A plain record. It says: `position` lies in the closed simplex named, and the cell is free (guarantee G3). The walls
+/// are those of the last contact, until the particle leaves them.
 struct State {
   Vec3 position;
   Cell cell;
@@ -30,7 +30,7 @@ struct State {
 /// The paper's k and i, derived from a state.
 struct Forecast {
   Kind kind = Kind::volume;  ///< of the cell of the map that the particle is in, or touches after a contact
-  Dart dart;                 ///< aimed at: the edge of the base of the particle's simplex; its face is the face aimed at
+  Dart dart;  ///< aimed at: the edge of the base of the particle's simplex; its face is the face aimed at
   CellFace face;
 };
 
@@ -38,7 +38,8 @@ struct Forecast {
 /// simplex. Cost: four exact signs.
 Forecast forecast(const Map& map, const State& state, const Corners& corners);
 
-/// Kind, and a dart of that face, edge or vertex (invalid for a volume), of the cell of the map that holds x in its interior.
+/// Kind, and a dart of that face, edge or vertex (invalid for a volume), of the cell of the map that holds x in its
+/// interior.
 struct Placement {
   Kind kind = Kind::volume;
   Dart dart;

@@ -1,7 +1,9 @@
 #include "dartcast/walk/step.hpp"
 
 #include <cmath>
+#include <string>
 
+#include "dartcast/base/error.hpp"
 #include "dartcast/walk/meet.hpp"
 
 namespace dartcast {
@@ -39,7 +41,8 @@ void touch(State& state, std::span<const WallHit> walls) {
 template <class Positions>
 class Part {
  public:
-  Part(const Complex& complex, bool moved, const Space<Positions>& space, const StepOptions& options, const Respond& respond)
+  Part(const Complex& complex, bool moved, const Space<Positions>& space, const StepOptions& options,
+       const Respond& respond)
       : complex_(complex), moved_(moved), space_(space), options_(options), respond_(respond) {}
 
   // Walks to q, with the contacts on the way. Returns the displacement still planned after this stretch.
@@ -60,7 +63,8 @@ class Part {
       const Continuation next = meet(run, w, p, q, stretch);
       if (run.result.stopped) return {};
       const double share = stretch.end < 1.0 ? (stretch.end - stretch.begin) / (1.0 - stretch.begin) : 1.0;
-      stretch.later = next.displacement * (1.0 - share) + run.contacts.contacts.back().wall_displacement * (1.0 - stretch.end);
+      stretch.later =
+          next.displacement * (1.0 - share) + run.contacts.contacts.back().wall_displacement * (1.0 - stretch.end);
       q = aim(run, next, share);
     }
     return stretch.later;
@@ -79,7 +83,8 @@ class Part {
     place(run, w, p, contact);
     if (moved_) {
       const WallPlane plane = wall_plane(space_, w.wall_simplex, w.wall_facet);
-      contact.wall_displacement = detail::wall_displacement(complex_, w.wall_simplex, w.wall_facet, plane, contact.point);
+      contact.wall_displacement =
+          detail::wall_displacement(complex_, w.wall_simplex, w.wall_facet, plane, contact.point);
     }
     const Vec3 later = stretch.later - contact.wall_displacement * (1.0 - stretch.end);
     contact.displacement = (q - p) + later;
@@ -118,6 +123,9 @@ class Part {
   // Where to go after a contact; along a wall, the target is lifted off the planes that rounding put it behind.
   [[nodiscard]] Vec3 aim(const Run& run, const Continuation& next, double share) const {
     Vec3 q = detail::flushed(run.state.position + next.displacement * share);
+    if (!in_exact_range(q))
+      throw InvalidArgument("the response for particle " + std::to_string(run.particle) +
+                            " returned a displacement that is not finite, or out of range");
     if (!next.along || q == run.state.position) return q;
     const Contact& contact = run.contacts.contacts.back();
     detail::WallPlanes planes;
@@ -197,7 +205,8 @@ class MovingStep {
     return parts < options_.max_parts ? static_cast<unsigned>(parts) : options_.max_parts;
   }
 
-  // Each part rides and walks in the geometry at its end; the parts' targets lie on the line to what is left of the motion.
+  // Each part rides and walks in the geometry at its end; the parts' targets lie on the line to what is left of the
+  // motion.
   void in_parts(Run& run, Weights& weights, const Vec3& target, unsigned parts) const {
     Vec3 planned = target - run.state.position;
     bool own_motion = true;
@@ -212,8 +221,9 @@ class MovingStep {
       if (!own_motion) continue;
       const Vec3 share = planned * (1.0 / (parts - j + 1));
       const Vec3 q = j == parts && run.contact_count == 0 ? target : detail::flushed(here + share);
-      planned = Part<Between>(complex_, true, to, options_, respond_)
-                    .move(run, q, {static_cast<double>(j - 1) / parts, static_cast<double>(j) / parts, planned - share});
+      planned =
+          Part<Between>(complex_, true, to, options_, respond_)
+              .move(run, q, {static_cast<double>(j - 1) / parts, static_cast<double>(j) / parts, planned - share});
       own_motion = !run.result.stopped && !run.result.held;
     }
   }
@@ -226,8 +236,8 @@ class MovingStep {
 
 }  // namespace
 
-StepResult Stepper::step(std::uint32_t particle, State& state, Weights& weights, const Vec3& target, ContactList& contacts,
-                         Counters& counters) const {
+StepResult Stepper::step(std::uint32_t particle, State& state, Weights& weights, const Vec3& target,
+                         ContactList& contacts, Counters& counters) const {
   Run run{particle, state, contacts, counters};
   run.first_wall = static_cast<std::uint32_t>(contacts.walls.size());
   const SimplexId start = state.at();
@@ -250,7 +260,8 @@ StepResult Stepper::step(std::uint32_t particle, State& state, Weights& weights,
   ++counters.histogram[std::min<std::size_t>(run.tests.tests, Counters::histogram_size - 1)];
   const bool kept = state.at() == start && run.contact_count == 0 && !run.result.held;
   counters.forecast_kept += kept ? 1 : 0;
-  if (moved_ && state.at() != start && left_behind(current_space(complex_).corners(start), p)) ++counters.updated_by_deformation;
+  if (moved_ && state.at() != start && left_behind(current_space(complex_).corners(start), p))
+    ++counters.updated_by_deformation;
   return run.result;
 }
 

@@ -15,8 +15,9 @@ namespace dartcast {
 struct StepOptions {
   /// Contacts allowed to a particle in one step; at the last one it is asked to slide.
   unsigned max_contacts = 16;
-  /// How far the chord may be off the true motion relative to the vertices, as a share of the local edge: a step is split into
-  /// ceil(sqrt(|A| |r| / (2 tolerance edge))) parts, A the displacement gradient of the vertices, r the particle's own motion.
+  /// How far the chord may be off the true motion relative to the vertices, as a share of the local edge: a step is
+  /// split into ceil(sqrt(|A| |r| / (2 tolerance edge))) parts, A the displacement gradient of the vertices, r the
+  /// particle's own motion.
   double tolerance = 0.05;
   /// Parts at most; a step that would need more is taken in this many.
   unsigned max_parts = 256;
@@ -41,8 +42,8 @@ using Weights = std::array<double, 4>;
 /// Carries particles through one step of a complex. A plain reader of the complex: any number may run at once.
 class Stepper {
  public:
-  /// `moved`: the complex's positions have been committed for this step; targets then are relative to positions before the move
-  /// (they are absolute points, computed by the caller from where the particle was).
+  /// `moved`: the complex's positions have been committed for this step; targets then are relative to positions before
+  /// the move (they are absolute points, computed by the caller from where the particle was).
   Stepper(const Complex& complex, bool moved, const StepOptions& options, const Respond& respond)
       : complex_(complex), moved_(moved), options_(options), respond_(respond) {}
 

@@ -1,7 +1,8 @@
 // The exact walk along a segment, through simplices, up to its end or to the first wall.
 //
-// After T. Jund, D. Cazier, J.-F. Dufourd, SPM 2009, section 5, made exact: every decision is the sign of a determinant of
-// vertices and of the segment's ends, and ties are broken by an infinitesimal shift of the whole segment (docs/method.md).
+// After T. Jund, D. Cazier, J.-F. Dufourd, SPM 2009, section 5, made exact: every decision is the sign of a determinant
+// of vertices and of the segment's ends, and ties are broken by an infinitesimal shift of the whole segment
+// (docs/method.md).
 #pragma once
 
 #include <bit>
@@ -24,12 +25,12 @@ enum class WalkEnd : std::uint8_t {
 
 struct Walk {
   WalkEnd end = WalkEnd::arrived;
-  SimplexId simplex;         ///< the last one reached
-  std::uint8_t zeros = 0;    ///< arrived, or ends on a wall: bit i is set where q lies on the facet opposite to corner i
-  SimplexId wall_simplex;    ///< wall: the free simplex at the wall, and which of its facets is the wall
+  SimplexId simplex;       ///< the last one reached
+  std::uint8_t zeros = 0;  ///< arrived, or ends on a wall: bit i is set where q lies on the facet opposite to corner i
+  SimplexId wall_simplex;  ///< wall: the free simplex at the wall, and which of its facets is the wall
   std::uint8_t wall_facet = 0;
-  bool at_start = false;     ///< wall: met at p itself
-  bool at_end = false;       ///< wall: met at q itself, which is in `simplex`
+  bool at_start = false;  ///< wall: met at p itself
+  bool at_end = false;    ///< wall: met at q itself, which is in `simplex`
 };
 
 /// Sees every simplex that a walk leaves: visit(SimplexId, facet through which it leaves).
@@ -39,7 +40,8 @@ struct NoVisitor {
 
 namespace detail {
 
-// (k, l) such that (i, j, k, l) is an even permutation: orient3d(v_k, v_l, p, q) > 0 where the segment leaves by i before j.
+// (k, l) such that (i, j, k, l) is an even permutation: orient3d(v_k, v_l, p, q) > 0 where the segment leaves by i
+// before j.
 inline constexpr std::uint8_t side_edge[4][4][2] = {{{0, 0}, {2, 3}, {3, 1}, {1, 2}},
                                                     {{3, 2}, {0, 0}, {0, 3}, {2, 0}},
                                                     {{1, 3}, {3, 0}, {0, 0}, {0, 1}},
@@ -193,9 +195,11 @@ inline unsigned zeros_of(const Corners& v, const Vec3& x) {
   return zeros;
 }
 
-/// A free simplex around p from which the segment to q does not leave at once: no facet that holds p has q strictly beyond.
+/// A free simplex around p from which the segment to q does not leave at once: no facet that holds p has q strictly
+/// beyond.
 template <class Positions>
-SimplexId simplex_towards(const Space<Positions>& space, SimplexId at, const Vec3& p, const Vec3& q, TestCounts& counts) {
+SimplexId simplex_towards(const Space<Positions>& space, SimplexId at, const Vec3& p, const Vec3& q,
+                          TestCounts& counts) {
   const CellView first = space.map->view(at.cell);
   const ImplicitSimplex& s0 = first.shape().simplices()[at.simplex];
   const Feature around = feature_of(first, s0, zeros_of(space.corners(first, s0), p));
@@ -222,6 +226,10 @@ template <class Positions>
 void find_wall_at_end(const Space<Positions>& space, Walk& walk) {
   const CellView cell = space.map->view(walk.simplex.cell);
   const ImplicitSimplex& s = cell.shape().simplices()[walk.simplex.simplex];
+  if (std::has_single_bit(walk.zeros)) {  // inside a facet: no other wall can be there
+    const Across across = s.across[static_cast<unsigned>(std::countr_zero(walk.zeros))];
+    if (!across.outer() || !cell.is_wall(across.face())) return;
+  }
   search_star(
       *space.map, walk.simplex, feature_of(cell, s, walk.zeros),
       [](SimplexId, const CellView&, const ImplicitSimplex&) { return true; },
@@ -236,9 +244,9 @@ void find_wall_at_end(const Space<Positions>& space, Walk& walk) {
 
 }  // namespace detail
 
-/// Walks from p to q. Preconditions: p lies in the closed simplex `start` of a free cell; p and q are finite and in the exact
-/// range; p differs from q. Cost: three or four orientation tests in each simplex met, whatever the size of the scene.
-/// Throws InternalError with a replay where a walk among valid cells does not end (guarantee G4: a bug).
+/// Walks from p to q. Preconditions: p lies in the closed simplex `start` of a free cell; p and q are finite and in the
+/// exact range; p differs from q. Cost: three or four orientation tests in each simplex met, whatever the size of the
+/// scene. Throws InternalError with a replay where a walk among valid cells does not end (guarantee G4: a bug).
 template <class Positions, class Visitor = NoVisitor>
 Walk walk(const Space<Positions>& space, SimplexId start, const Vec3& p, const Vec3& q, TestCounts& counts,
           Visitor&& visit = {}) {

@@ -1,0 +1,110 @@
+#include "dartcast/io/read_mesh.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "dartcast/base/error.hpp"
+#include "dartcast/io/file_text.hpp"
+#include "dartcast/io/gmsh.hpp"
+#include "dartcast/io/medit.hpp"
+#include "dartcast/io/parsed_mesh.hpp"
+#include "dartcast/io/vtk_mesh.hpp"
+#include "dartcast/mesh/inspect.hpp"
+
+namespace dartcast {
+namespace {
+
+constexpr std::string_view supported = ".vtu, .vtk (legacy), .msh (Gmsh 1, 2 or 4; also .msh2, .msh4) and .mesh (Medit)";
+
+std::string ending_of(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+bool starts(std::string_view text, std::string_view with) { return text.substr(0, with.size()) == with; }
+
+/// The content from its first byte that is not white space.
+std::string_view body(std::string_view content) {
+  return content.substr(std::min(content.find_first_not_of(" \t\r\n"), content.size()));
+}
+
+ParsedMesh parse_msh(std::string_view content) {
+  const std::string_view text = body(content);
+  if (starts(text, "(")) throw InvalidMesh("this .msh is of ANSYS Fluent, which is not supported; convert it to Gmsh's");
+  if (starts(text, "$")) return parse_gmsh(content);
+  if (starts(text, "MeshVersionFormatted")) throw InvalidMesh("this .msh is of Medit; rename it to .mesh");
+  throw InvalidMesh("this .msh is not of Gmsh: it does not start with '$'");
+}
+
+ParsedMesh parse_mesh(std::string_view content) {
+  const std::string_view text = body(content);
+  if (starts(text, "MFEM NC mesh")) {
+    throw InvalidMesh("this .mesh is of MFEM, non-conforming (MFEM NC mesh), which is not supported; make it conforming and write Gmsh's or VTK's format");
+  }
+  if (starts(text, "MFEM ")) {
+    throw InvalidMesh(fmt::format("this .mesh is of MFEM ({}), which is not supported; write Gmsh's or VTK's format", text.substr(0, std::min<std::size_t>(text.find_first_of("\r\n"), 40))));
+  }
+  return parse_medit(content);
+}
+
+ParsedMesh parse(const std::filesystem::path& path) {
+  const std::string ending = ending_of(path);
+  const bool vtu = ending == ".vtu";
+  const bool vtk = ending == ".vtk";
+  const bool msh = ending == ".msh" || ending == ".msh2" || ending == ".msh4";
+  if (!vtu && !vtk && !msh && ending != ".mesh") {
+    throw InvalidMesh(fmt::format("files that end in '{}' are not supported; supported are {}", ending, supported));
+  }
+  const std::string content = read_bytes(path);
+  if (content.empty()) throw InvalidMesh("the file is empty");
+  if (vtu) return parse_vtu(path, content);
+  if (vtk && starts(body(content), "<")) throw InvalidMesh("this .vtk is one of VTK's XML files; rename it to .vtu");
+  if (vtk) return parse_legacy_vtk(path, content);
+  return msh ? parse_msh(content) : parse_mesh(content);
+}
+
+}  // namespace
+
+MeshFile read_mesh(const std::filesystem::path& path) {
+  MeshFile out;
+  const auto refuse = [&](std::string message) { out.report.defects.push_back({"file", 1, {}, std::move(message)}); };
+  try {
+    ParsedMesh parsed = parse(path);
+    out.mesh = std::move(parsed.mesh);
+    const bool nothing = out.mesh.types.empty() && out.mesh.patch_tags.empty();
+    if (!nothing) out.report = inspect(out.mesh);
+    out.report.format = parsed.format;
+    add_finding(out.report.defects, parsed.second_order);
+    add_finding(out.report.defects, parsed.unsupported);
+  } catch (const Error& error) {
+    refuse(error.what());
+  } catch (const std::bad_alloc&) {
+    refuse("the mesh is too large for this machine's memory");
+  } catch (const std::length_error&) {
+    refuse("an array is too large");
+  }
+  out.report.file = path.string();
+  return out;
+}
+
+MeshFile read_volume_mesh(const std::filesystem::path& path) {
+  MeshFile out = read_mesh(path);
+  if (!out.report.valid()) {
+    const Finding& defect = out.report.defects.front();
+    std::string places;
+    if (!defect.first.empty()) places = fmt::format(" ({} in all, the first at {})", defect.count, defect.first.front());
+    throw InvalidMesh(fmt::format("{}: {}{}", path.string(), defect.message, places));
+  }
+  if (out.report.dimension == 2) {
+    throw InvalidMesh(fmt::format("{}: a planar mesh: 2D is not supported yet", path.string()));
+  }
+  return out;
+}
+
+}  // namespace dartcast

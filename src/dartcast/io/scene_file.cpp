@@ -1,0 +1,188 @@
+#include "dartcast/io/scene_file.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <sstream>
+
+#include "dartcast/base/error.hpp"
+#include "dartcast/io/scene_mesh_keys.hpp"
+#include "dartcast/io/toml_table.hpp"
+
+namespace dartcast {
+
+namespace {
+
+constexpr double unlimited = std::numeric_limits<double>::max();
+constexpr Range positive = {0.0, unlimited, true};
+constexpr Range not_negative = {0.0, unlimited};
+constexpr Range any_number = {-unlimited, unlimited};
+
+class Reader {
+ public:
+  explicit Reader(const std::filesystem::path& path) : folder_(path.parent_path()) {}
+
+  Scene read(TomlTable root) const {
+    Scene scene;
+    root.get("seed", scene.seed, 0, std::numeric_limits<std::int64_t>::max());
+    root.require("environment", "say [environment] with mesh = \"FILE\" or generator = \"box\"");
+    scene.environment = read_environment(root.table("environment"), folder_);
+    for (TomlTable& t : root.tables("deformation")) scene.deformation.push_back(deformation(t));
+    for (TomlTable& t : root.tables("particles")) scene.particles.push_back(particles(t));
+    scene.motion = motion(root.table("motion"));
+    scene.contact = contact(root.table("contact"));
+    scene.output = output(root.table("output"));
+    root.finish();
+    return scene;
+  }
+
+ private:
+  DeformationScene deformation(TomlTable& t) const {
+    DeformationScene scene;
+    DeformationStep& step = scene.step;
+    std::string kind;
+    t.require("kind", "rotate, swing, bend, twist, stretch, pulse, bump or frames");
+    t.get("kind", kind);
+    const auto found = deformation_kind(kind);
+    if (!found) t.fail("kind", fmt::format("kind = \"{}\": it must be one of {}", kind, "rotate, swing, bend, twist, stretch, pulse, bump, frames"));
+    step.kind = *found;
+    if (step.kind == DeformationKind::frames) {
+      frames(t, scene);
+    } else {
+      t.get("period", step.period, positive);
+      t.get("axis", step.axis);
+      t.get("centre", step.centre);
+      if (step.kind != DeformationKind::rotate) {
+        t.require("amplitude", "how much: an angle (swing, bend, twist), a length (bump) or a share (stretch, pulse)");
+        t.get("amplitude", step.amplitude, any_number);
+      }
+      if (step.kind == DeformationKind::bend) t.get("direction", step.direction);
+      if (step.kind == DeformationKind::pulse) {
+        t.get("wavelength", step.wavelength, not_negative);
+        t.get("field", scene.field);
+        t.get("path", scene.path);
+      }
+      if (step.kind == DeformationKind::bend || step.kind == DeformationKind::twist || step.kind == DeformationKind::bump) {
+        t.require("length", "the length over which it acts");
+        t.get("length", step.length, positive);
+      }
+    }
+    t.finish();
+    return scene;
+  }
+
+  void frames(TomlTable& t, DeformationScene& scene) const {
+    std::vector<std::string> files;
+    t.require("files", "mesh files with the same points, one per time");
+    t.require("times", "in seconds, increasing, one per file");
+    t.get("files", files);
+    t.get("times", scene.step.times);
+    if (files.size() != scene.step.times.size()) {
+      t.fail("times", fmt::format("there are {} times for {} files", scene.step.times.size(), files.size()));
+    }
+    for (const std::string& file : files) scene.frames.push_back(folder_ / file);
+  }
+
+  ParticlesScene particles(TomlTable& t) const {
+    ParticlesScene scene;
+    double radius = 0.0;
+    if (t.get("radius", radius, any_number) && radius != 0.0) {
+      t.fail("radius", fmt::format("radius = {}: particles are points so far; leave radius out or set it to 0", radius));
+    }
+    t.get("velocity", scene.velocity);
+    std::uint64_t count = 0;
+    std::string positions;
+    InletParticles inlet;
+    const int sources = (t.get("count", count, 0, 0xfffffffeU) ? 1 : 0) + (t.get("positions", positions) ? 1 : 0) +
+                        (t.get("inlet", inlet.patch) ? 1 : 0);
+    const bool has_rate = t.get("rate", inlet.rate, not_negative);
+    if (sources != 1) t.fail("", "give one of count, positions, or inlet with rate");
+    if (has_rate == inlet.patch.empty()) t.fail("rate", "inlet and rate (particles per second) belong together");
+    if (!positions.empty()) {
+      scene.source = PlacedParticles{folder_ / positions};
+    } else if (!inlet.patch.empty()) {
+      scene.source = inlet;
+    } else {
+      scene.source = RandomParticles{count};
+    }
+    t.finish();
+    return scene;
+  }
+
+  static MotionScene motion(TomlTable t) {
+    MotionScene scene;
+    t.get("dt", scene.dt, positive);
+    t.get("steps", scene.steps, 0, std::uint64_t{1} << 53U);
+    t.get("gravity", scene.gravity);
+    t.get("drag", scene.drag, not_negative);
+    t.get("substeps", scene.substeps, 1U, 1000U);
+    t.get("field", scene.field);
+    std::size_t frame = 0;
+    if (t.get("field_frame", frame, {"space", "mesh"}) && scene.field.empty()) {
+      t.fail("field_frame", "field_frame needs a field");
+    }
+    scene.frame = static_cast<FieldFrame>(frame);
+    t.finish();
+    return scene;
+  }
+
+  static void response(TomlTable& t, Response& r) {
+    std::size_t kind = 0;
+    if (t.get("response", kind, {"reflect", "slide", "stick", "absorb", "escape"})) r.kind = static_cast<ResponseKind>(kind);
+    t.get("restitution", r.restitution, {0.0, 1.0});
+    t.get("friction", r.friction, not_negative);
+  }
+
+  static ContactScene contact(TomlTable t) {
+    ContactScene scene;
+    response(t, scene.general);
+    TomlTable patches = t.table("patch");
+    for (const std::string& name : patches.keys()) {
+      TomlTable patch = patches.table(name);
+      Response& r = scene.by_patch[name] = scene.general;
+      response(patch, r);
+      patch.finish();
+    }
+    t.finish();
+    return scene;
+  }
+
+  static OutputScene output(TomlTable t) {
+    OutputScene scene;
+    t.get("every", scene.every, 0, std::uint64_t{1} << 53U);
+    t.get("contacts", scene.contacts);
+    t.finish();
+    return scene;
+  }
+
+  std::filesystem::path folder_;
+};
+
+}  // namespace
+
+Scene parse_scene(const std::string& text, const std::filesystem::path& path) {
+  toml::table root;
+  try {
+    root = toml::parse(text, path.string());
+  } catch (const toml::parse_error& e) {
+    throw Error(fmt::format("{}:{}: this is not TOML: {}", path.string(), e.source().begin.line, e.description()));
+  }
+  Scene scene = Reader(path).read(TomlTable(root, path.string(), ""));
+  scene.name = path.stem().string();
+  scene.file = path;
+  scene.text = text;
+  return scene;
+}
+
+Scene read_scene(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  if (std::filesystem::is_directory(path) || !file || !(text << file.rdbuf())) {
+    throw Error(fmt::format("{}: the scene cannot be read; check the path", path.string()));
+  }
+  return parse_scene(text.str(), path);
+}
+
+}  // namespace dartcast

@@ -1,0 +1,29 @@
+// VTK's error texts, caught instead of printed.
+#pragma once
+
+#include <string>
+
+#include <vtkSmartPointer.h>
+
+class vtkOutputWindow;
+
+namespace dartcast {
+
+/// While it lives, errors and warnings of VTK go here and not to the terminal. One at a time: others wait.
+class VtkErrors {
+ public:
+  VtkErrors();
+  ~VtkErrors();
+  VtkErrors(const VtkErrors&) = delete;
+  VtkErrors& operator=(const VtkErrors&) = delete;
+
+  /// The first line of the first error; empty: none so far.
+  [[nodiscard]] std::string first() const;
+
+ private:
+  int verbosity_;
+  vtkSmartPointer<vtkOutputWindow> before_;
+  vtkSmartPointer<vtkOutputWindow> window_;
+};
+
+}  // namespace dartcast

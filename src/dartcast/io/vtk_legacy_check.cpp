@@ -1,0 +1,279 @@
+#include "dartcast/io/vtk_legacy_check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "dartcast/io/face_stream.hpp"
+#include "dartcast/io/file_text.hpp"
+
+namespace dartcast {
+namespace {
+
+std::string lower(std::string_view word) {
+  std::string out(word);
+  std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return out;
+}
+
+struct NumberType {
+  std::string_view name;
+  std::size_t bytes;  // in binary; 0: eight to a byte
+  bool real;
+  std::int64_t low;
+  std::int64_t high;
+};
+
+constexpr std::array<NumberType, 14> number_types = {{{"bit", 0, false, 0, 1},
+                                                      {"char", 1, false, INT8_MIN, INT8_MAX},
+                                                      {"signed_char", 1, false, INT8_MIN, INT8_MAX},
+                                                      {"unsigned_char", 1, false, 0, UINT8_MAX},
+                                                      {"short", 2, false, INT16_MIN, INT16_MAX},
+                                                      {"unsigned_short", 2, false, 0, UINT16_MAX},
+                                                      {"int", 4, false, INT32_MIN, INT32_MAX},
+                                                      {"unsigned_int", 4, false, 0, UINT32_MAX},
+                                                      {"vtkidtype", 4, false, INT32_MIN, INT32_MAX},
+                                                      {"long", 8, false, INT64_MIN, INT64_MAX},
+                                                      {"unsigned_long", 8, false, 0, INT64_MAX},
+                                                      {"vtktypeint64", 8, false, INT64_MIN, INT64_MAX},
+                                                      {"float", 4, true, 0, 0},
+                                                      {"double", 8, true, 0, 0}}};
+
+class Walk {
+ public:
+  explicit Walk(std::string_view content) : text_(content) {}
+
+  void run() {
+    head();
+    while (!text_.at_end()) section();
+    if (!cells_.has_value()) text_.fail("the file ends before its CELLS; it is truncated");
+    if (!typed_) text_.fail("the file ends before its CELL_TYPES; it is truncated");
+  }
+
+ private:
+  struct Cells {
+    std::vector<std::int64_t> offsets;
+    std::vector<std::int64_t> points;
+  };
+
+  void head() {
+    const std::string_view first = text_.line();
+    if (first.substr(0, 23) != "# vtk DataFile Version ") text_.fail("'# vtk DataFile Version' should stand here");
+    // From version 5 on VTK looks for offsets, before for a stream of corners, whatever stands there.
+    const std::string_view version = first.substr(23, first.find_last_not_of(' ') - 22);
+    if (version.size() != 3 || version[0] < '1' || version[0] > '5' || version[1] != '.' || version[2] < '0' || version[2] > '9') {
+      text_.fail("the version is not one of 1.0 to 5.9");
+    }
+    with_offsets_ = version[0] == '5';
+    text_.line();  // the title
+    const std::string kind = lower(text_.word("ASCII or BINARY"));
+    if (kind != "ascii" && kind != "binary") text_.fail("ASCII or BINARY should stand here");
+    binary_ = kind == "binary";
+    if (lower(text_.word("DATASET")) != "dataset") text_.fail("DATASET should stand here");
+    const std::string data_set(text_.word("the kind of data set"));
+    if (lower(data_set) != "unstructured_grid") {
+      text_.fail(fmt::format("the data set is {}, not UNSTRUCTURED_GRID: it has no volume cells to use", data_set.substr(0, 40)));
+    }
+  }
+
+  void section() {
+    const std::string name = lower(text_.word("a section"));
+    if (name == "points") {
+      if (points_.has_value()) text_.fail("a second section of points");
+      points_ = text_.count("points", binary_ ? 3 : 6);
+      data("points", *points_, 3, type());
+    } else if (name == "cells") {
+      read_cells();
+    } else if (name == "cell_types") {
+      read_types();
+    } else if (name == "point_data" || name == "cell_data") {
+      const auto owners = name == "point_data" ? points_ : cell_count();
+      items_ = static_cast<std::uint64_t>(text_.integer("a number of items", 0, INT64_MAX));
+      if (!owners.has_value() || *owners != items_) text_.fail("the number of data items is not that of the points or cells");
+    } else if (name == "metadata") {
+      metadata();
+    } else {
+      attribute(name);
+    }
+  }
+
+  void attribute(const std::string& name) {
+    if (name == "field") return field();
+    if (name == "lookup_table") return lookup_table();
+    text_.word("the name of an array");
+    if (name == "color_scalars") {
+      const auto components = static_cast<std::uint64_t>(text_.integer("a number of components", 1, 4));
+      return binary_ ? data(name, items_, components, find_type("unsigned_char")) : data(name, items_, components, find_type("float"));
+    }
+    if (name == "texture_coordinates") {
+      const auto dimension = static_cast<std::uint64_t>(text_.integer("a dimension", 1, 3));
+      return data(name, items_, dimension, type());
+    }
+    const NumberType& kind = type();
+    if (name == "scalars") {
+      std::uint64_t components = 1;
+      if (!text_.line_ends()) components = static_cast<std::uint64_t>(text_.integer("a number of components", 1, 4));
+      if (lower(text_.word("LOOKUP_TABLE")) != "lookup_table") text_.fail("LOOKUP_TABLE should stand here");
+      text_.word("the name of a table");
+      return data(name, items_, components, kind);
+    }
+    if (name == "vectors" || name == "normals") return data(name, items_, 3, kind);
+    if (name == "tensors") return data(name, items_, 9, kind);
+    if (name == "tensors6") return data(name, items_, 6, kind);
+    if (name == "global_ids" || name == "pedigree_ids" || name == "edge_flags") return data(name, items_, 1, kind);
+    text_.fail(fmt::format("'{}' is not a section of a legacy VTK file", name.substr(0, 40)));
+  }
+
+  void field() {
+    text_.word("the name of a field");
+    const std::size_t arrays = text_.count("arrays", 1);
+    for (std::size_t i = 0; i < arrays; ++i) {
+      if (lower(text_.peek()) == "metadata") {
+        text_.word("METADATA");
+        metadata();
+      }
+      const std::string_view name = text_.word("the name of an array");
+      if (name == "NULL_ARRAY") continue;
+      const auto components = static_cast<std::uint64_t>(text_.integer("a number of components", 0, INT32_MAX));
+      const auto items = static_cast<std::uint64_t>(text_.integer("a number of items", 0, INT64_MAX));
+      data(name, items, components, type());
+    }
+  }
+
+  void lookup_table() {
+    text_.word("the name of a table");
+    const std::size_t size = text_.count("colours", binary_ ? 4 : 8);
+    data("colours", size, 4, find_type(binary_ ? "unsigned_char" : "float"));
+  }
+
+  /// Lines up to an empty one.
+  void metadata() {
+    text_.line();
+    while (text_.left() > 0 && !text_.line().empty()) {
+    }
+  }
+
+  const NumberType& find_type(std::string_view name) {
+    const std::string wanted = lower(name);
+    const auto* found = std::find_if(number_types.begin(), number_types.end(), [&](const NumberType& t) { return t.name == wanted; });
+    if (found == number_types.end()) text_.fail(fmt::format("'{}' is not a type of numbers that can be read", wanted.substr(0, 40)));
+    return *found;
+  }
+  const NumberType& type() { return find_type(text_.word("a type of numbers")); }
+
+  /// Walks over items x components numbers.
+  void data(std::string_view what, std::uint64_t items, std::uint64_t components, const NumberType& kind) {
+    text_.check_count(what, items, 1);
+    text_.check_count(what, components, 1);
+    if (components != 0 && items > UINT64_MAX / components) text_.fail("an array is too large");
+    const std::uint64_t n = items * components;
+    if (binary_) {
+      text_.line();
+      const std::uint64_t bytes = kind.bytes == 0 ? n / 8 + (n % 8 != 0 ? 1 : 0) : n;
+      text_.check_count(what, bytes, std::max<std::size_t>(kind.bytes, 1));
+      text_.raw(bytes * std::max<std::size_t>(kind.bytes, 1), what);
+      return;
+    }
+    text_.check_count(what, n, 1);
+    for (std::uint64_t i = 0; i < n; ++i) {
+      if (!kind.real) {
+        text_.integer(what, kind.low, kind.high);
+      } else if (const double x = text_.number(what); !(x - x == 0.0)) {
+        text_.fail(fmt::format("a number of {} is not finite", what));
+      }
+    }
+  }
+
+  std::vector<std::int64_t> integers(std::string_view what, std::size_t n, const NumberType& kind) {
+    if (kind.real || kind.bytes < 4) text_.fail("a type of whole numbers of 4 or 8 bytes should stand here");
+    text_.check_count(what, n, binary_ ? kind.bytes : 2);
+    std::vector<std::int64_t> out;
+    out.reserve(n);
+    if (!binary_) {
+      for (std::size_t i = 0; i < n; ++i) out.push_back(text_.integer(what, kind.low, kind.high));
+      return out;
+    }
+    text_.line();
+    const std::string_view raw = text_.raw(n * kind.bytes, what);
+    for (std::size_t i = 0; i < n; ++i) {
+      std::uint64_t value = 0;
+      for (std::size_t b = 0; b < kind.bytes; ++b) {
+        value = (value << 8U) | static_cast<unsigned char>(raw[i * kind.bytes + b]);
+      }
+      out.push_back(kind.bytes == 8 ? static_cast<std::int64_t>(value)
+                                    : static_cast<std::int64_t>(static_cast<std::int32_t>(static_cast<std::uint32_t>(value))));
+    }
+    return out;
+  }
+
+  [[nodiscard]] std::optional<std::size_t> cell_count() const {
+    return cells_.has_value() ? std::optional(cells_->offsets.size() - 1) : std::nullopt;
+  }
+
+  void read_cells() {
+    if (cells_.has_value()) text_.fail("a second section of cells");
+    const std::size_t first = text_.count("cells", 1);
+    const std::size_t second = text_.count("corners", 1);
+    Cells cells;
+    if (with_offsets_) {
+      if (lower(text_.word("OFFSETS")) != "offsets") text_.fail("OFFSETS should stand here");
+      cells.offsets = integers("offsets", first, type());
+      if (lower(text_.word("CONNECTIVITY")) != "connectivity") text_.fail("CONNECTIVITY should stand here");
+      cells.points = integers("corners", second, type());
+      if (cells.offsets.empty() || cells.offsets.front() != 0 || !std::is_sorted(cells.offsets.begin(), cells.offsets.end()) ||
+          cells.offsets.back() != static_cast<std::int64_t>(second)) {
+        text_.fail("the cells' offsets do not ascend from 0 to the number of corners");
+      }
+    } else {
+      const auto stream = integers("corners", second, find_type("int"));
+      cells.offsets.push_back(0);
+      for (std::size_t at = 0; at < stream.size();) {
+        const std::int64_t n = stream[at++];
+        if (n < 0 || n > static_cast<std::int64_t>(stream.size() - at)) {
+          text_.fail(fmt::format("cell {} has {} corners, more than the section holds", cells.offsets.size() - 1, n));
+        }
+        cells.points.insert(cells.points.end(), stream.begin() + static_cast<std::ptrdiff_t>(at),
+                            stream.begin() + static_cast<std::ptrdiff_t>(at) + n);
+        cells.offsets.push_back(static_cast<std::int64_t>(cells.points.size()));
+        at += static_cast<std::size_t>(n);
+      }
+      if (cells.offsets.size() != first + 1) text_.fail("the number of cells is not the one announced");
+    }
+    cells_ = std::move(cells);
+  }
+
+  void read_types() {
+    const std::size_t n = text_.count("cell types", binary_ ? 4 : 2);
+    if (!cells_.has_value() || cells_->offsets.size() != n + 1) text_.fail("the number of cell types is not that of the cells");
+    const auto types = integers("cell types", n, find_type("int"));
+    for (std::size_t c = 0; c < n; ++c) {
+      if (types[c] < 0 || types[c] > 255) text_.fail(fmt::format("cell {} has the unknown type {}", c, types[c]));
+      const auto begin = static_cast<std::size_t>(cells_->offsets[c]);
+      const auto size = static_cast<std::size_t>(cells_->offsets[c + 1]) - begin;
+      if (types[c] == 42 && !is_face_stream({cells_->points.data() + begin, size})) {
+        text_.fail(fmt::format("the faces of polyhedron {} do not fit its numbers", c));
+      }
+    }
+    typed_ = true;
+  }
+
+  FileText text_;
+  bool binary_ = false;
+  bool with_offsets_ = false;
+  bool typed_ = false;
+  std::optional<std::size_t> points_;
+  std::optional<Cells> cells_;
+  std::uint64_t items_ = 0;
+};
+
+}  // namespace
+
+void check_legacy_vtk(std::string_view content) { Walk(content).run(); }
+
+}  // namespace dartcast

@@ -1,0 +1,166 @@
+#include "dartcast/mesh/conformity.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "dartcast/exact/predicates.hpp"
+#include "dartcast/mesh/box_tree.hpp"
+#include "dartcast/mesh/plane.hpp"
+
+namespace dartcast {
+namespace {
+
+constexpr double flatness = 1e-9;       // off the plane by rounding, relative to the size of the face
+constexpr std::size_t pairs_a_face = 200;
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+double largest(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
+/// Normal of largest component 1: no product of coordinates overflows in what follows.
+Vec3 normal_of(const MeshData& mesh, const Triangle& t) {
+  const auto& p = mesh.points;
+  Vec3 u = p[t[1]] - p[t[0]];
+  Vec3 v = p[t[2]] - p[t[0]];
+  if (largest(u) > 0.0) u = u * (1.0 / largest(u));
+  if (largest(v) > 0.0) v = v * (1.0 / largest(v));
+  const Vec3 n = cross(u, v);
+  return largest(n) > 0.0 ? n * (1.0 / largest(n)) : n;
+}
+
+int main_axis(const Vec3& n) {
+  const Vec3 a = {std::abs(n.x), std::abs(n.y), std::abs(n.z)};
+  if (a.x >= a.y && a.x >= a.z) return 0;
+  return a.y >= a.z ? 1 : 2;
+}
+
+/// Whether all of t lies on or to the right of an edge of s, s being counterclockwise (turn positive) in the plane.
+bool separates(const MeshData& mesh, const Triangle& s, const Triangle& t, int axis, Sign turn) {
+  const auto at = [&](std::uint32_t v) { return drop(mesh.points[v], axis); };
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint32_t a = s[k];
+    const std::uint32_t b = s[(k + 1) % 3];
+    bool outside = true;
+    for (const std::uint32_t v : t) {
+      if (v == a || v == b || !outside) continue;
+      outside = orient2d(at(a), at(b), at(v)) != turn;
+    }
+    if (outside) return true;
+  }
+  return false;
+}
+
+/// Whether the insides of two triangles, seen along `axis`, have a point in common. Two convex polygons have none exactly
+/// where an edge of one has the other on its far side.
+bool areas_overlap(const MeshData& mesh, const Triangle& s, const Triangle& t, int axis) {
+  const auto turn = [&](const Triangle& x) {
+    return orient2d(drop(mesh.points[x[0]], axis), drop(mesh.points[x[1]], axis), drop(mesh.points[x[2]], axis));
+  };
+  const Sign turn_s = turn(s);
+  const Sign turn_t = turn(t);
+  if (turn_s == Sign::zero || turn_t == Sign::zero) return false;
+  return !separates(mesh, s, t, axis, turn_s) && !separates(mesh, t, s, axis, turn_t);
+}
+
+double size_of(const MeshData& mesh, const Triangle& t) {
+  const auto& p = mesh.points;
+  return std::max(largest(p[t[1]] - p[t[0]]), largest(p[t[2]] - p[t[0]]));
+}
+
+bool lie_against(const MeshData& mesh, const Triangle& s, const Triangle& t) {
+  const auto& p = mesh.points;
+  const Vec3 n = normal_of(mesh, s);
+  const double thickness = 3.0 * flatness * std::max(size_of(mesh, s), size_of(mesh, t));
+  for (const std::uint32_t v : t) {
+    if (std::abs(dot(n, p[v] - p[s[0]])) > thickness) return false;
+  }
+  const bool facing = dot(n, normal_of(mesh, t)) < 0.0;
+  const auto on_plane = [&](std::uint32_t v) { return orient3d(p[s[0]], p[s[1]], p[s[2]], p[v]) == Sign::zero; };
+  if (!facing && !(on_plane(t[0]) && on_plane(t[1]) && on_plane(t[2]))) return false;
+  return areas_overlap(mesh, s, t, main_axis(n));
+}
+
+/// Triangle k of a face's fan from its lowest-numbered corner.
+Triangle fan_triangle(std::span<const std::uint32_t> face, std::size_t k) {
+  const auto low = static_cast<std::size_t>(std::min_element(face.begin(), face.end()) - face.begin());
+  return {face[low], face[(low + k + 1) % face.size()], face[(low + k + 2) % face.size()]};
+}
+
+bool faces_lie_against(const MeshData& mesh, std::span<const std::uint32_t> f, std::span<const std::uint32_t> g) {
+  for (std::size_t i = 0; i + 2 < f.size(); ++i) {
+    for (std::size_t j = 0; j + 2 < g.size(); ++j) {
+      if (lie_against(mesh, fan_triangle(f, i), fan_triangle(g, j))) return true;
+    }
+  }
+  return false;
+}
+
+Box box_of(const MeshData& mesh, std::span<const std::uint32_t> face) {
+  Box box = {mesh.points[face[0]], mesh.points[face[0]]};
+  for (const std::uint32_t v : face) box = join(box, {mesh.points[v], mesh.points[v]});
+  const double margin = flatness * largest(box.high - box.low);
+  const Vec3 m = {margin, margin, margin};
+  return {box.low - m, box.high + m};
+}
+
+/// Marks faces that overlap in space.
+void mark_overlaps(const MeshData& mesh, const BoundaryFaces& boundary, Conformity& out, std::vector<bool>& marked) {
+  std::vector<Box> boxes(boundary.size());
+  for (std::size_t f = 0; f < boxes.size(); ++f) boxes[f] = box_of(mesh, boundary.face(f));
+  const BoxTree tree(boxes);
+  std::size_t budget = pairs_a_face * boundary.size() + 1000;
+  for (std::uint32_t f = 0; f < boundary.size() && out.complete; ++f) {
+    const auto face = boundary.face(f);
+    tree.query(boxes[f], [&](std::uint32_t g) {
+      if (g <= f || boundary.cells[g] == boundary.cells[f]) return true;
+      const std::size_t cost = (face.size() - 2) * (boundary.face(g).size() - 2);
+      if (budget < cost) return out.complete = false;
+      budget -= cost;
+      if (marked[f] && marked[g]) return true;
+      if (faces_lie_against(mesh, face, boundary.face(g))) marked[f] = marked[g] = true;
+      return true;
+    });
+  }
+}
+
+/// Marks triangles that have their corners in a row in a larger face, and that face: warped faces are not coplanar.
+void mark_shared_corners(const BoundaryFaces& boundary, std::vector<bool>& marked) {
+  struct Row {
+    Triangle corners;
+    std::uint32_t face;
+  };
+  std::vector<Row> rows;
+  for (std::uint32_t f = 0; f < boundary.size(); ++f) {
+    const auto face = boundary.face(f);
+    for (std::size_t k = 0; k < (face.size() == 3 ? 1 : face.size()); ++k) {
+      Row row = {{face[k], face[(k + 1) % face.size()], face[(k + 2) % face.size()]}, f};
+      std::sort(row.corners.begin(), row.corners.end());
+      rows.push_back(row);
+    }
+  }
+  std::sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) {
+    return a.corners != b.corners ? a.corners < b.corners : a.face < b.face;
+  });
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    if (rows[i].corners != rows[i - 1].corners || rows[i].face == rows[i - 1].face) continue;
+    if (boundary.cells[rows[i].face] == boundary.cells[rows[i - 1].face]) continue;
+    marked[rows[i].face] = marked[rows[i - 1].face] = true;
+  }
+}
+
+}  // namespace
+
+Conformity find_unmatched_faces(const MeshData& mesh, const BoundaryFaces& boundary) {
+  Conformity out;
+  std::vector<bool> marked(boundary.size(), false);
+  mark_shared_corners(boundary, marked);
+  mark_overlaps(mesh, boundary, out, marked);
+  for (std::uint32_t f = 0; f < boundary.size(); ++f) {
+    if (marked[f]) out.faces.push_back(f);
+  }
+  return out;
+}
+
+}  // namespace dartcast

@@ -1,0 +1,236 @@
+#include "dartcast/simulation/flow.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "dartcast/base/error.hpp"
+#include "dartcast/simulation/polyline.hpp"
+#include "dartcast/walk/ride.hpp"
+
+namespace dartcast {
+
+namespace {
+
+constexpr std::size_t grain = 512;
+
+// Adds the time that it lives to a sum of seconds.
+class Timer {
+ public:
+  explicit Timer(double& seconds) : seconds_(seconds) {}
+  ~Timer() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  Timer(const Timer&) = delete;
+  Timer& operator=(const Timer&) = delete;
+
+ private:
+  double& seconds_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+void check(const FlowOptions& o) {
+  if (!(o.dt > 0.0) || !std::isfinite(o.dt)) throw InvalidArgument("flow: dt must be positive and finite");
+  if (!(o.drag >= 0.0) || !std::isfinite(o.drag)) throw InvalidArgument("flow: drag must be finite and not negative");
+  if (!is_finite(o.gravity)) throw InvalidArgument("flow: gravity must be finite");
+  if (o.substeps == 0) throw InvalidArgument("flow: substeps must be at least 1");
+}
+
+template <class T>
+void keep_unmarked(std::vector<T>& values, std::span<const std::uint8_t> marks) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (marks[i] == 0) values[kept++] = values[i];
+  }
+  values.resize(kept);
+}
+
+}  // namespace
+
+Flow::Flow(Environment& environment, const FlowOptions& options, Responses responses)
+    : environment_(environment), options_(options), responses_(std::move(responses)), random_(options.seed) {
+  check(options);
+  totals_.contacts_by_patch.resize(environment.map().patch_names().size());
+}
+
+void Flow::set_deformation(Deformation deformation) {
+  if (deformation.size() != environment_.positions().size()) {
+    throw InvalidArgument("flow: the deformation is made for another number of points than the environment has");
+  }
+  deformation_ = std::move(deformation);
+}
+
+void Flow::add_inlet(Patch patch, double rate, const Vec3& velocity) {
+  if (!(rate >= 0.0) || !std::isfinite(rate)) throw InvalidArgument("flow: an inlet's rate must be finite and not negative");
+  if (!is_finite(velocity)) throw InvalidArgument("flow: an inlet's velocity must be finite");
+  inlets_.push_back({PatchSampler(environment_.complex(), patch), rate, velocity});
+}
+
+std::vector<Added> Flow::add(std::span<const Vec3> positions, const Vec3& velocity) {
+  if (!is_finite(velocity)) throw InvalidArgument("flow: a particle's velocity must be finite");
+  std::vector<Added> added = append(positions, velocity);
+  totals_.start = next_id_ - totals_.injected;
+  return added;
+}
+
+std::vector<Added> Flow::append(std::span<const Vec3> positions, const Vec3& velocity) {
+  std::vector<Added> added = environment_.add(particles_, positions);
+  for (std::size_t i = ids_.size(); i < particles_.size(); ++i) {
+    ids_.push_back(next_id_++);
+    velocities_.push_back(velocity);
+    fates_.push_back(Fate::alive);
+    contact_counts_.push_back(0);
+  }
+  return added;
+}
+
+// Sampled points are rounded: one that fell out of the free cells is drawn again.
+template <class Sampler>
+void Flow::add_sampled(const Sampler& sampler, std::size_t count, const Vec3& velocity) {
+  const std::size_t wanted = particles_.size() + count;
+  for (int round = 0; round < 100 && particles_.size() < wanted; ++round) {
+    std::vector<Vec3> points(wanted - particles_.size());
+    for (Vec3& p : points) p = detail::flushed(sampler.sample(environment_.complex(), random_));
+    append(points, velocity);
+  }
+  if (particles_.size() < wanted) {
+    throw InvalidArgument("flow: random points fall outside the free cells again and again: their cells are too thin or not valid");
+  }
+}
+
+void Flow::add_random(std::size_t count, const Vec3& velocity) {
+  if (!is_finite(velocity)) throw InvalidArgument("flow: a particle's velocity must be finite");
+  if (count > 0) add_sampled(VolumeSampler(environment_.complex()), count, velocity);
+  totals_.start = next_id_ - totals_.injected;
+}
+
+const FlowStep& Flow::step() {
+  last_ = {};
+  inject();
+  move_vertices();
+  for (unsigned segment = 0; segment < options_.substeps; ++segment) advance_segment(segment);
+  const Timer timer(totals_.seconds_respond);
+  totals_.counters += last_.report.counters;
+  count_contacts();
+  remove_gone();
+  ++steps_;
+  return last_;
+}
+
+void Flow::inject() {
+  const Timer timer(totals_.seconds_respond);
+  for (Inlet& inlet : inlets_) {
+    const auto up_to = [&](std::uint64_t steps) { return std::floor(inlet.rate * options_.dt * static_cast<double>(steps)); };
+    const auto count = static_cast<std::uint64_t>(up_to(steps_ + 1) - up_to(steps_));
+    if (count == 0) continue;
+    if (deformation_) inlet.sampler.update(environment_.complex());
+    add_sampled(inlet.sampler, count, inlet.velocity);
+    last_.injected += count;
+  }
+  totals_.injected += last_.injected;
+}
+
+void Flow::move_vertices() {
+  if (!deformation_) return;
+  const Timer timer(totals_.seconds_deform);
+  const double end = static_cast<double>(steps_ + 1) * options_.dt;
+  deformation_->positions(end, environment_.next_positions(), environment_.threads());
+  environment_.move();
+}
+
+void Flow::advance_segment(unsigned segment) {
+  {
+    const Timer timer(totals_.seconds_respond);
+    aim(options_.dt / options_.substeps, deformation_ && segment == 0);
+  }
+  const Timer timer(totals_.seconds_detect);
+  const Respond respond = respond_with(responses_, velocities_, fates_, options_.dt);
+  StepReport report = environment_.advance(particles_, targets_, respond, options_.step);
+  append_segment(last_.report, std::move(report), segment, options_.substeps);
+}
+
+void Flow::aim(double dt, bool moving) {
+  targets_.resize(particles_.size());
+  parallel_for(particles_.size(), grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Aim a = fates_[i] == Fate::absorbed || fates_[i] == Fate::escaped ? Aim{velocities_[i], particles_[i].position}
+                                                                              : aim_at(i, dt, moving);
+      velocities_[i] = a.velocity;
+      targets_[i] = detail::flushed(a.target);
+    }
+  });
+}
+
+Vec3 Flow::accelerated(const Vec3& v, const Vec3& flow, double dt) const {
+  if (options_.drag == 0.0) return field_ ? flow : v + options_.gravity * dt;
+  const double lost = -std::expm1(-options_.drag * dt);
+  return v + (flow + options_.gravity * (1.0 / options_.drag) - v) * lost;
+}
+
+// A particle's velocity after the acceleration, and where it then wants to go: relative to positions before a move.
+Flow::Aim Flow::aim_at(std::size_t i, double dt, bool moving) const {
+  const State& s = particles_[i];
+  const bool stuck = fates_[i] == Fate::stuck;
+  if (!stuck && !field_) {
+    const Vec3 v = accelerated(velocities_[i], {}, dt);
+    return {v, s.position + v * dt};
+  }
+  if (stuck && !moving) return {velocities_[i], s.position};
+  const Complex& complex = environment_.complex();
+  const Corners now = complex.corners(s.at());
+  Corners before = now;
+  if (deforms()) {
+    const auto vertices = complex.vertices(s.at());
+    for (unsigned k = 0; k < 4; ++k) before[k] = complex.previous_positions()[vertices[k].value];
+  }
+  const Weights w = s.held ? particles_.held_weights(i) : detail::barycentric(moving ? before : now, s.position);
+  const Vec3 carried = detail::combine(now, w) - detail::combine(before, w);
+  const Vec3 ridden = detail::combine(now, w);
+  if (stuck) return {carried * (1.0 / options_.dt), ridden};
+  const Vec3 flow = field_->at(complex, s.at(), w, now);
+  if (field_->frame() == FieldFrame::space) {
+    const Vec3 v = accelerated(velocities_[i], flow, dt);
+    return {v, s.position + v * dt};
+  }
+  const Vec3 mesh = carried * (1.0 / options_.dt);
+  const Vec3 v = accelerated(velocities_[i], flow + mesh, dt);
+  return {v, (moving ? ridden : s.position) + (v - mesh) * dt};
+}
+
+void Flow::count_contacts() {
+  const ContactList& list = last_.report.contacts;
+  last_.contact_ids.reserve(list.contacts.size());
+  for (const Contact& c : list.contacts) {
+    last_.contact_ids.push_back(ids_[c.particle]);
+    ++contact_counts_[c.particle];
+    ++totals_.contacts_by_patch[list.walls_of(c).front().patch.value];
+  }
+}
+
+void Flow::remove_gone() {
+  std::vector<std::uint8_t> gone(particles_.size(), 0);
+  for (std::size_t i = 0; i < gone.size(); ++i) {
+    const Fate fate = fates_[i];
+    if (fate != Fate::absorbed && fate != Fate::escaped) continue;
+    gone[i] = 1;
+    ++(fate == Fate::absorbed ? last_.absorbed : last_.escaped);
+    gone_.add(ids_[i], particles_[i], velocities_[i], static_cast<std::uint64_t>(fate));
+  }
+  totals_.absorbed += last_.absorbed;
+  totals_.escaped += last_.escaped;
+  if (last_.absorbed + last_.escaped == 0) return;
+  particles_.remove(gone);
+  keep_unmarked(ids_, gone);
+  keep_unmarked(velocities_, gone);
+  keep_unmarked(fates_, gone);
+  keep_unmarked(contact_counts_, gone);
+}
+
+StateHash Flow::state_hash() const {
+  StateHash hash = gone_;
+  for (std::size_t i = 0; i < ids_.size(); ++i) {
+    hash.add(ids_[i], particles_[i], velocities_[i], static_cast<std::uint64_t>(fates_[i]));
+  }
+  return hash;
+}
+
+}  // namespace dartcast

@@ -1,0 +1,138 @@
+// The flow simulation: particles with velocities under gravity, drag or a velocity field, in an environment that may deform.
+//
+// T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism for continuous collision detection in deformable
+// environments", SPM 2009, section 7.2.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "dartcast/base/random.hpp"
+#include "dartcast/environment/environment.hpp"
+#include "dartcast/environment/state_hash.hpp"
+#include "dartcast/response/respond.hpp"
+#include "dartcast/simulation/deformation.hpp"
+#include "dartcast/simulation/field.hpp"
+#include "dartcast/simulation/seeding.hpp"
+
+namespace dartcast {
+
+/// SI units: seconds, metres per square second, 1 / second.
+struct FlowOptions {
+  double dt = 1e-3;             ///< of a step, > 0
+  Vec3 gravity = {0.0, 0.0, 0.0};
+  double drag = 0.0;            ///< >= 0: the velocity relaxes to the field's (to 0 without a field) as exp(-drag t)
+  unsigned substeps = 1;        ///< > 0: a step's way is a polyline of so many segments; vertices move with the first one
+  std::uint64_t seed = 1;       ///< for all that is random
+  StepOptions step = {};
+};
+
+/// What happened in one step. `report.contacts` name particles by their index during the step; contact_ids are their ids.
+struct FlowStep {
+  StepReport report;
+  std::vector<std::uint64_t> contact_ids;
+  std::uint64_t injected = 0;
+  std::uint64_t absorbed = 0;
+  std::uint64_t escaped = 0;
+};
+
+/// Sums over all steps so far.
+struct FlowTotals {
+  std::uint64_t start = 0;  ///< particles added by add() and add_random()
+  std::uint64_t injected = 0;
+  std::uint64_t absorbed = 0;
+  std::uint64_t escaped = 0;
+  Counters counters;
+  std::vector<std::uint64_t> contacts_by_patch;  ///< by the number of the patch met first
+  double seconds_detect = 0.0;   ///< advancing particles, responses included
+  double seconds_deform = 0.0;   ///< computing and setting the vertices' positions
+  double seconds_respond = 0.0;  ///< injecting, velocities and targets before, fates after
+};
+
+/// Carries particles through the steps of a simulation. Each step:
+///  1. inlets inject; 2. vertices move; 3. velocities change: without a field, and with drag, dv/dt = gravity - drag (v - u) is solved
+///  exactly for constant u (the field's velocity at the particle, or 0); with a field and no drag v = u, and gravity is without
+///  effect; 4. particles advance by v dt, wall responses included; 5. those absorbed or escaped leave.
+/// Results are the same bits for any number of threads.
+class Flow {
+ public:
+  /// `environment` outlives the flow, and is moved by it alone. Throws InvalidArgument where an option is out of range.
+  Flow(Environment& environment, const FlowOptions& options, Responses responses = Responses{});
+
+  void set_field(VelocityField field) { field_ = std::move(field); }
+  /// Throws InvalidArgument where it is not made for the environment's number of points.
+  void set_deformation(Deformation deformation);
+  /// Injects `rate` particles a second at random places of a patch, from the first step on. Throws InvalidArgument where the
+  /// patch has no face at a free cell, or the rate is negative or not finite.
+  void add_inlet(Patch patch, double rate, const Vec3& velocity);
+
+  /// Adds particles at these positions, as Environment::add().
+  std::vector<Added> add(std::span<const Vec3> positions, const Vec3& velocity);
+  /// Adds particles at random places of the free cells, uniformly by volume. Throws InvalidArgument where no cell is free.
+  void add_random(std::size_t count, const Vec3& velocity);
+
+  const FlowStep& step();
+
+  [[nodiscard]] double time() const { return static_cast<double>(steps_) * options_.dt; }
+  [[nodiscard]] std::uint64_t steps() const { return steps_; }
+  [[nodiscard]] const Environment& environment() const { return environment_; }
+  [[nodiscard]] bool deforms() const { return deformation_.has_value(); }
+
+  // Particles in the scene; entry i of each belongs to the same particle. Ids persist, in the order of adding from 0.
+  [[nodiscard]] const Particles& particles() const { return particles_; }
+  [[nodiscard]] std::span<const std::uint64_t> ids() const { return ids_; }
+  [[nodiscard]] std::span<const Vec3> velocities() const { return velocities_; }
+  [[nodiscard]] std::span<const Fate> fates() const { return fates_; }
+  [[nodiscard]] std::span<const std::uint32_t> contact_counts() const { return contact_counts_; }
+
+  [[nodiscard]] const FlowTotals& totals() const { return totals_; }
+  /// Of every particle that there has been: those that left count with their last state.
+  [[nodiscard]] StateHash state_hash() const;
+
+ private:
+  struct Inlet {
+    PatchSampler sampler;
+    double rate;
+    Vec3 velocity;
+  };
+  struct Aim {
+    Vec3 velocity;
+    Vec3 target;
+  };
+
+  void inject();
+  void move_vertices();
+  void advance_segment(unsigned segment);
+  void aim(double dt, bool moving);
+  [[nodiscard]] Aim aim_at(std::size_t i, double dt, bool moving) const;
+  [[nodiscard]] Vec3 accelerated(const Vec3& v, const Vec3& flow, double dt) const;
+  void count_contacts();
+  void remove_gone();
+  std::vector<Added> append(std::span<const Vec3> positions, const Vec3& velocity);
+  template <class Sampler>
+  void add_sampled(const Sampler& sampler, std::size_t count, const Vec3& velocity);
+
+  Environment& environment_;
+  FlowOptions options_;
+  Responses responses_;
+  std::optional<VelocityField> field_;
+  std::optional<Deformation> deformation_;
+  std::vector<Inlet> inlets_;
+  Random random_;
+
+  Particles particles_;
+  std::vector<std::uint64_t> ids_;
+  std::vector<Vec3> velocities_;
+  std::vector<Fate> fates_;
+  std::vector<std::uint32_t> contact_counts_;
+  std::vector<Vec3> targets_;
+  std::uint64_t next_id_ = 0;
+  std::uint64_t steps_ = 0;
+  FlowStep last_;
+  FlowTotals totals_;
+  StateHash gone_;
+};
+
+}  // namespace dartcast

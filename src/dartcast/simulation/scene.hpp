@@ -1,0 +1,95 @@
+// A scene: all that a run needs, as plain data. Files of scenes: io/scene_file.hpp; their keys: docs/scene.md.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "dartcast/mesh/generate_box.hpp"
+#include "dartcast/mesh/generate_octahedra.hpp"
+#include "dartcast/mesh/generate_vessel.hpp"
+#include "dartcast/response/respond.hpp"
+#include "dartcast/simulation/deformation.hpp"
+#include "dartcast/simulation/field.hpp"
+
+namespace dartcast {
+
+/// A mesh file, or a generator's options.
+using MeshSource = std::variant<std::filesystem::path, BoxOptions, OctahedraOptions, VesselOptions>;
+
+struct FreeRegions {
+  std::vector<std::string> regions;
+};
+struct FreeValues {
+  std::string array;
+  std::vector<double> values;
+};
+
+struct EnvironmentScene {
+  MeshSource mesh;
+  std::variant<std::monostate, FreeRegions, FreeValues> free;  ///< none: as the mesh says, else all
+  std::optional<std::vector<std::string>> patches;             ///< the wall groups to tell apart; none: all that the mesh has
+};
+
+/// One step of a deformation; what stands in arrays or files of the mesh is named here and read when the mesh is.
+struct DeformationScene {
+  DeformationStep step;
+  std::string field;                          ///< pulse: a point array of three components; empty: none
+  std::string path;                           ///< pulse: a point array of one component; empty: none
+  std::vector<std::filesystem::path> frames;  ///< frames: mesh files with the same points
+};
+
+struct RandomParticles {
+  std::size_t count = 0;
+};
+struct PlacedParticles {
+  std::filesystem::path positions;  ///< .vtp or .csv
+};
+struct InletParticles {
+  std::string patch;
+  double rate = 0.0;  ///< particles per second
+};
+
+struct ParticlesScene {
+  std::variant<RandomParticles, PlacedParticles, InletParticles> source;
+  Vec3 velocity;
+};
+
+struct MotionScene {
+  double dt = 1e-3;
+  std::uint64_t steps = 1000;
+  Vec3 gravity;
+  std::string field;  ///< a point array of three components; empty: none
+  FieldFrame frame = FieldFrame::space;
+  double drag = 0.0;
+  unsigned substeps = 1;
+};
+
+struct ContactScene {
+  Response general = {ResponseKind::reflect, 1.0, 0.0};
+  std::map<std::string, Response> by_patch;
+};
+
+struct OutputScene {
+  std::uint64_t every = 10;  ///< steps between two frames; 0: none
+  bool contacts = false;
+};
+
+struct Scene {
+  std::string name;            ///< the file's, without its ending
+  std::filesystem::path file;  ///< empty where the scene comes from none
+  std::string text;            ///< of the file
+  std::uint64_t seed = 1;
+  EnvironmentScene environment;
+  std::vector<DeformationScene> deformation;
+  std::vector<ParticlesScene> particles;
+  MotionScene motion;
+  ContactScene contact;
+  OutputScene output;
+};
+
+}  // namespace dartcast

@@ -1,0 +1,44 @@
+// Where new particles are put: at random in the free cells, or just inside a patch of walls.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "dartcast/base/random.hpp"
+#include "dartcast/geometry/complex.hpp"
+
+namespace dartcast {
+
+/// Points of equal likelihood by volume in the free cells, at the complex's positions when it was made. Cost to make: linear.
+class VolumeSampler {
+ public:
+  /// Throws InvalidArgument where no cell is free.
+  explicit VolumeSampler(const Complex& complex);
+  /// Inside a free cell up to rounding: to be located exactly, and drawn again where it is not. Cost: the logarithm of the cells.
+  [[nodiscard]] Vec3 sample(const Complex& complex, Random& random) const;
+
+ private:
+  std::vector<Cell> cells_;
+  std::vector<double> volume_up_to_;
+};
+
+/// Points of equal likelihood by area on a patch's faces, moved inwards by 1/64 of the way to the opposite corner of the simplex there.
+class PatchSampler {
+ public:
+  /// Throws InvalidArgument where the patch has no face at a free cell.
+  PatchSampler(const Complex& complex, Patch patch);
+  /// Takes the areas at the complex's current positions. Cost: the patch's faces.
+  void update(const Complex& complex);
+  /// As VolumeSampler::sample().
+  [[nodiscard]] Vec3 sample(const Complex& complex, Random& random) const;
+
+ private:
+  struct Triangle {
+    SimplexId simplex;
+    std::uint16_t facet;
+  };
+  std::vector<Triangle> triangles_;
+  std::vector<double> area_up_to_;
+};
+
+}  // namespace dartcast
