@@ -78,9 +78,11 @@ void block(MeshData& mesh, Inside&& inside) {
 
 class DeformingByType : public testing::TestWithParam<CellType> {};
 INSTANTIATE_TEST_SUITE_P(Types, DeformingByType,
-                         testing::Values(CellType::hexahedron, CellType::tetrahedron, CellType::prism, CellType::pyramid));
+                         testing::Values(CellType::hexahedron, CellType::tetrahedron, CellType::prism,
+                                         CellType::pyramid));
 
-// A blocked slab travels through a box of particles at rest: each stays on its side, and only those on its way are moved.
+// A blocked slab travels through a box of particles at rest: each stays on its side, and only those on its way are
+// moved.
 TEST_P(DeformingByType, SlabThatSweepsOverParticlesAtRest) {
   MeshData mesh = box({10, 3, 3}, GetParam());
   block(mesh, [](const Vec3& m) { return m.x > 4.0 && m.x < 5.0; });
@@ -101,9 +103,10 @@ TEST_P(DeformingByType, SlabThatSweepsOverParticlesAtRest) {
       return p;
     });
     const auto targets = positions_of(particles);
-    env.advance(particles, targets, [](const Contact& c, std::span<const WallHit> walls, std::span<const WallHit> earlier) {
-      return Continuation{slid(c.unused, walls, earlier), true};
-    });
+    env.advance(particles, targets,
+                [](const Contact& c, std::span<const WallHit> walls, std::span<const WallHit> earlier) {
+                  return Continuation{slid(c.unused, walls, earlier), true};
+                });
     ASSERT_NO_FATAL_FAILURE(expect_valid(env, particles));
   }
   for (std::size_t i = 0; i < particles.size(); ++i) {
@@ -169,8 +172,8 @@ struct Ring {
   }
 };
 
-// Two chambers of a ring, parted by a blade, turn about particles at rest: none changes chambers, and a particle is moved
-// only when the blade or an end of the ring has come to it.
+// Two chambers of a ring, parted by a blade, turn about particles at rest: none changes chambers, and a particle is
+// moved only when the blade or an end of the ring has come to it.
 TEST_P(DeformingByType, BladeThatTurns) {
   const std::uint32_t sectors = 40;
   MeshData mesh = box({6, sectors, 2}, GetParam());
@@ -231,7 +234,8 @@ TEST(Deforming, LargeTurnsAreSplit) {
   for (Vec3& p : mesh.points) p = ring(p, 0.0);
   Environment env(mesh);
   Particles particles;
-  // Just outside the inner border, and away from the ends: the true motion (rest) meets no wall; the chord's sagitta would.
+  // Just outside the inner border, and away from the ends: the true motion (rest) meets no wall; the chord's sagitta
+  // would.
   std::vector<Vec3> points;
   for (int i = 12; i < 36; ++i) points.push_back(ring({0.02, i + 0.37, 1.0}, 0.0));
   for (int i = 12; i < 36; ++i) points.push_back(ring({3.0, i + 0.37, 1.0}, 0.0));
@@ -294,8 +298,8 @@ TEST(Deforming, RandomMotionOfAllVertices) {
   }
 }
 
-// The rebound from a wall in motion uses the wall motion that the detection used: elastic, from a piston of speed w, a particle
-// of speed v comes back with v + 2 w.
+// The rebound from a wall in motion uses the wall motion that the detection used: elastic, from a piston of speed w, a
+// particle of speed v comes back with v + 2 w.
 TEST(Deforming, ReboundFromPiston) {
   const MeshData mesh = box({4, 2, 2}, CellType::hexahedron);
   Environment env(mesh);

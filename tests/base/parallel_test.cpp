@@ -1,0 +1,90 @@
+#include "dartcast/base/parallel.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace dartcast {
+namespace {
+
+class ParallelFor : public ::testing::TestWithParam<unsigned> {};
+
+std::vector<std::pair<std::size_t, std::size_t>> chunks_of(std::size_t count, std::size_t grain, unsigned threads) {
+  std::vector<std::pair<std::size_t, std::size_t>> chunks;
+  std::mutex mutex;
+  parallel_for(count, grain, {threads}, [&](std::size_t begin, std::size_t end) {
+    const std::lock_guard lock(mutex);
+    chunks.emplace_back(begin, end);
+  });
+  std::sort(chunks.begin(), chunks.end());
+  return chunks;
+}
+
+TEST_P(ParallelFor, CoversEveryItemOnceInChunksOfTheGrain) {
+  for (const std::size_t count : {0U, 1U, 5U, 63U, 64U, 65U, 1000U}) {
+    for (const std::size_t grain : {1U, 7U, 64U, 5000U}) {
+      const auto chunks = chunks_of(count, grain, GetParam());
+      ASSERT_EQ(chunks.size(), chunk_count(count, grain));
+      for (std::size_t c = 0; c < chunks.size(); ++c) {
+        EXPECT_EQ(chunks[c].first, c * grain);
+        EXPECT_EQ(chunks[c].second, std::min(count, (c + 1) * grain));
+      }
+    }
+  }
+}
+
+TEST_P(ParallelFor, ThrowsTheFirstExceptionByChunkOrderAfterAllChunks) {
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    std::vector<int> done(100, 0);
+    std::string what;
+    try {
+      parallel_for(100, 1, {GetParam()}, [&](std::size_t begin, std::size_t) {
+        done[begin] = 1;
+        if (begin == 17 || begin == 18 || begin == 99) throw std::runtime_error(std::to_string(begin));
+      });
+    } catch (const std::runtime_error& e) {
+      what = e.what();
+    }
+    EXPECT_EQ(what, "17");
+    EXPECT_EQ(std::count(done.begin(), done.end(), 1), 100);
+  }
+}
+
+TEST_P(ParallelFor, GivesTheSameResultForAnyNumberOfThreads) {
+  std::vector<double> result(10'000);
+  const auto body = [&](std::size_t begin, std::size_t end) {
+    double sum = 0.0;
+    for (std::size_t i = begin; i < end; ++i) result[i] = sum += 1.0 / static_cast<double>(i + 1);
+  };
+  parallel_for(result.size(), 33, {1}, body);
+  const std::vector<double> serial = std::exchange(result, std::vector<double>(result.size()));
+  parallel_for(result.size(), 33, {GetParam()}, body);
+  EXPECT_EQ(result, serial);
+}
+
+TEST_P(ParallelFor, TakesABodyThatIsConst) {
+  std::vector<int> done(10, 0);
+  const auto body = [&done](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) done[i] = 1;
+  };
+  parallel_for(10, 3, {GetParam()}, body);
+  EXPECT_EQ(done, std::vector<int>(10, 1));
+}
+
+TEST_P(ParallelFor, MayBeNested) {
+  std::vector<int> done(64, 0);
+  parallel_for(8, 1, {GetParam()}, [&](std::size_t outer, std::size_t) {
+    parallel_for(8, 1, {GetParam()}, [&](std::size_t inner, std::size_t) { ++done[8 * outer + inner]; });
+  });
+  EXPECT_EQ(done, std::vector<int>(64, 1));
+}
+
+INSTANTIATE_TEST_SUITE_P(Threads, ParallelFor, ::testing::Values(0U, 1U, 2U, 7U));
+
+}  // namespace
+}  // namespace dartcast

@@ -1,0 +1,220 @@
+#include "dartcast/exact/predicates.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <limits>
+
+#include "exact/dyadic.hpp"
+#include "exact/quadruples.hpp"
+
+namespace dartcast::test {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+int cases(int quick) {
+  if (std::getenv("DARTCAST_FULL") != nullptr) quick *= 30;
+  if (std::getenv("DARTCAST_SANITIZED") != nullptr) quick /= 20;
+  return quick;
+}
+
+Sign true_sign(const Quadruple& q) { return static_cast<Sign>(determinant(q[0], q[1], q[2], q[3]).sign()); }
+
+Sign filtered(const Quadruple& q) { return orient3d(q[0], q[1], q[2], q[3]); }
+Sign unfiltered(const Quadruple& q) { return orient3d_exact(q[0], q[1], q[2], q[3]); }
+double value(const Quadruple& q) { return orient3d_value(q[0], q[1], q[2], q[3]); }
+
+std::string text(const Quadruple& q) {
+  std::string s;
+  char buffer[128];
+  for (const Vec3& p : q) {
+    std::snprintf(buffer, sizeof buffer, "(%a, %a, %a) ", p.x, p.y, p.z);
+    s += buffer;
+  }
+  return s;
+}
+
+bool all_in_range(const Quadruple& q) {
+  return std::all_of(q.begin(), q.end(), [](const Vec3& p) { return in_exact_range(p); });
+}
+
+TEST(Orient3d, IsPositiveWhereTheFirstThreeTurnCounterclockwiseSeenFromTheFourth) {
+  const Vec3 a{0, 0, 0};
+  const Vec3 b{1, 0, 0};
+  const Vec3 c{0, 1, 0};
+  EXPECT_EQ(orient3d(a, b, c, {0, 0, 1}), Sign::positive);
+  EXPECT_EQ(orient3d(a, b, c, {0, 0, -1}), Sign::negative);
+  EXPECT_EQ(orient3d(a, b, c, {5, 7, 0}), Sign::zero);
+  EXPECT_EQ(orient3d_value(a, b, c, {0, 0, 1}), 1.0);
+}
+
+TEST(Orient3d, HasTheExactSignOnEveryKindOfQuadruple) {
+  const int n = cases(40'000);
+  for (int k = 0; k < quadruple_kinds; ++k) {
+    Quadruples quadruples(100 + static_cast<std::uint64_t>(k));
+    int zeros = 0;
+    for (int i = 0; i < n; ++i) {
+      const Quadruple q = quadruples.make(static_cast<QuadrupleKind>(k));
+      const Sign truth = true_sign(q);
+      zeros += truth == Sign::zero ? 1 : 0;
+      ASSERT_EQ(filtered(q), truth) << "kind " << k << ": " << text(q);
+      ASSERT_EQ(unfiltered(q), truth) << "kind " << k << ": " << text(q);
+    }
+    const auto kind = static_cast<QuadrupleKind>(k);
+    if (kind == QuadrupleKind::exactly_coplanar || kind == QuadrupleKind::small_lattice) {
+      EXPECT_GT(zeros, kind == QuadrupleKind::exactly_coplanar ? n - 1 : n / 100);
+    }
+  }
+}
+
+TEST(Orient3d, HasTheExactSignWhenScaledByPowersOfTwo) {
+  Quadruples quadruples(7);
+  const int n = cases(40'000);
+  for (int i = 0; i < n; ++i) {
+    Quadruple q = quadruples.make(static_cast<QuadrupleKind>(quadruples.random().below(quadruple_kinds)));
+    const double scale = std::ldexp(1.0, static_cast<int>(quadruples.random().below(590)) - 295);
+    for (Vec3& p : q) p *= scale;
+    const Sign truth = true_sign(q);
+    if (all_in_range(q)) {
+      ASSERT_EQ(unfiltered(q), truth) << text(q);
+      ASSERT_EQ(filtered(q), truth) << text(q);
+    } else {
+      ASSERT_EQ(unfiltered(q), Sign::undecidable) << text(q);
+      ASSERT_TRUE(filtered(q) == truth || filtered(q) == Sign::undecidable) << text(q);
+    }
+  }
+}
+
+// Coordinates of any magnitude in the range, its ends among them, side by side: the worst for overflow and underflow.
+TEST(Orient3d, HasTheExactSignOverTheWholeRange) {
+  Quadruples quadruples(8);
+  const int n = cases(40'000);
+  for (int i = 0; i < n; ++i) {
+    Quadruple q;
+    for (Vec3& p : q) {
+      for (double* x : {&p.x, &p.y, &p.z}) {
+        const std::uint32_t which = quadruples.random().below(8);
+        *x = quadruples.signed_power(-300, 300);
+        if (which == 0) *x = std::copysign(largest_magnitude, *x);
+        if (which == 1) *x = std::copysign(smallest_magnitude, *x);
+        if (which == 2) *x = std::copysign(smallest_magnitude * (1.0 + 0x1p-52), *x);
+        if (which == 3) *x = 0.0;
+      }
+    }
+    if (i % 3 == 0) q[3] = q[0];  // exact zeros, and differences that cancel
+    if (i % 3 == 1) q[2].x = q[0].x;
+    ASSERT_TRUE(all_in_range(q)) << text(q);
+    const Sign truth = true_sign(q);
+    ASSERT_EQ(unfiltered(q), truth) << text(q);
+    ASSERT_EQ(filtered(q), truth) << text(q);
+  }
+}
+
+TEST(Orient3d, IsRightOrUndecidableForAnyFiniteInput) {
+  Quadruples quadruples(9);
+  int refused = 0;
+  const int n = cases(20'000);
+  for (int i = 0; i < n; ++i) {
+    Quadruple q;
+    const int lowest = i % 2 == 0 ? -1074 : 240;
+    const int highest = i % 2 == 0 ? -240 : 1023;
+    for (Vec3& p : q)
+      p = {quadruples.signed_power(lowest, highest), quadruples.signed_power(lowest, highest),
+           quadruples.signed_power(lowest, highest)};
+    if (i % 5 == 0) q[3] = q[0] + 2.0 * (q[1] - q[0]);
+    if (!is_finite(q[3])) continue;
+    const Sign truth = true_sign(q);
+    ASSERT_TRUE(filtered(q) == truth || filtered(q) == Sign::undecidable) << text(q);
+    ASSERT_EQ(unfiltered(q), all_in_range(q) ? truth : Sign::undecidable) << text(q);
+    refused += filtered(q) == Sign::undecidable ? 1 : 0;
+  }
+  EXPECT_GT(refused, n / 10);
+}
+
+TEST(Orient3d, RefusesWhatIsOutsideItsRange) {
+  const Quadruple good = {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+  const std::array<double, 8> bad = {
+      nan, infinity, -infinity, 0x1p-1074, -0x1p-1023, 0x1.fffffffffffffp-301, 0x1.0000000000001p+300, 1e308};
+  for (const double x : bad) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (double Vec3::*coordinate : {&Vec3::x, &Vec3::y, &Vec3::z}) {
+        Quadruple q = good;
+        q[i].*coordinate = x;
+        EXPECT_FALSE(in_exact_range(q[i]));
+        EXPECT_EQ(unfiltered(q), Sign::undecidable) << text(q);
+        if (!std::isfinite(x)) {
+          EXPECT_EQ(filtered(q), Sign::undecidable) << text(q);
+          EXPECT_TRUE(std::isnan(value(q))) << text(q);
+        } else {
+          EXPECT_TRUE(filtered(q) == true_sign(q) || filtered(q) == Sign::undecidable) << text(q);
+        }
+        for (Vec3& p : q) p = {x, x, x};  // all alike: differences are 0, or not a number
+        EXPECT_EQ(filtered(q), Sign::undecidable) << text(q);
+        EXPECT_TRUE(std::isnan(value(q))) << text(q);
+      }
+    }
+  }
+  EXPECT_TRUE(in_exact_range(Vec3{0.0, smallest_magnitude, -largest_magnitude}));
+}
+
+// A batch that filters by itself relies on determinant_error and filter_applies alone: this is that filter, written
+// out.
+TEST(Filter, ItsErrorNeverExceedsItsBound) {
+  const int n = cases(40'000);
+  double worst = 0.0;
+  for (int k = 0; k < quadruple_kinds; ++k) {
+    Quadruples quadruples(200 + static_cast<std::uint64_t>(k));
+    for (int i = 0; i < n; ++i) {
+      Quadruple q = quadruples.make(static_cast<QuadrupleKind>(k));
+      const double scale = std::ldexp(1.0, static_cast<int>(quadruples.random().below(600)) - 300);
+      if (i % 4 == 0) {
+        for (Vec3& p : q) p *= scale;
+      }
+      const Vec3 u = q[0] - q[3];
+      const Vec3 v = q[2] - q[3];
+      const Vec3 w = q[1] - q[3];
+      const double x = std::max({std::abs(u.x), std::abs(v.x), std::abs(w.x)});
+      const double y = std::max({std::abs(u.y), std::abs(v.y), std::abs(w.y)});
+      const double z = std::max({std::abs(u.z), std::abs(v.z), std::abs(w.z)});
+      const double m = x * y * z;
+      if (!filter_applies(std::max({x, y, z}), m)) continue;
+      const double rounded = dot(u, cross(v, w));
+      const Dyadic error = (Dyadic(rounded) - determinant(q[0], q[1], q[2], q[3])).abs();
+      ASSERT_FALSE(Dyadic(determinant_error * m) < error) << "kind " << k << ": " << text(q);
+      for (const double share : {0.1, 0.05, 0.02}) {
+        if (worst < share && Dyadic(share * determinant_error * m) < error) worst = share;
+      }
+    }
+  }
+  EXPECT_GE(worst, 0.05) << "the cases are too tame to say anything about the bound";
+}
+
+TEST(Filter, NeverDecidesWhatIsNotFinite) {
+  EXPECT_FALSE(filter_applies(infinity, 1.0));
+  EXPECT_FALSE(filter_applies(nan, 1.0));
+  EXPECT_FALSE(filter_applies(1.0, nan));
+  EXPECT_FALSE(filter_applies(0x1.0000000000001p+301, 1.0));
+  EXPECT_FALSE(filter_applies(1.0, 0x1p-701));
+  EXPECT_TRUE(filter_applies(1.0, 1.0));
+}
+
+TEST(Orient3dValue, IsNearTheTrueValueAndOfItsSign) {
+  const int n = cases(40'000);
+  for (int k = 0; k < quadruple_kinds; ++k) {
+    Quadruples quadruples(300 + static_cast<std::uint64_t>(k));
+    for (int i = 0; i < n; ++i) {
+      const Quadruple q = quadruples.make(static_cast<QuadrupleKind>(k));
+      const Dyadic truth = determinant(q[0], q[1], q[2], q[3]);
+      const double v = value(q);
+      ASSERT_EQ((v > 0.0) - (v < 0.0), truth.sign()) << text(q);
+      const Dyadic error = (Dyadic(v) - truth).abs();
+      ASSERT_FALSE(Dyadic(0x1p-44) * truth.abs() < error) << "kind " << k << ": " << text(q);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace dartcast::test

@@ -1,0 +1,296 @@
+// Every format, read from files made by hand and written back.
+#include <gtest/gtest.h>
+
+#include "dartcast/base/error.hpp"
+#include "dartcast/io/gmsh.hpp"
+#include "dartcast/io/medit.hpp"
+#include "dartcast/io/read_mesh.hpp"
+#include "dartcast/io/report.hpp"
+#include "dartcast/io/write_mesh.hpp"
+#include "io/sample_mesh.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace dartcast::test {
+namespace {
+
+using Faces = std::vector<std::pair<std::int32_t, std::vector<std::uint32_t>>>;
+
+Faces faces_of(const MeshData& mesh) {
+  Faces faces;
+  for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) {
+    faces.push_back({mesh.patch_tags[f], {mesh.patch_faces.begin() + static_cast<std::ptrdiff_t>(mesh.patch_offsets[f]),
+                                          mesh.patch_faces.begin() + static_cast<std::ptrdiff_t>(mesh.patch_offsets[f + 1])}});
+  }
+  return faces;
+}
+
+using Cells = std::vector<std::tuple<CellType, std::int32_t, std::vector<std::uint32_t>>>;
+
+/// Cells with their regions, sorted: formats keep no order between types.
+Cells cells_of(const MeshData& mesh) {
+  Cells cells;
+  for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
+    cells.emplace_back(mesh.types[c], mesh.regions.empty() ? 0 : mesh.regions[c],
+                       std::vector<std::uint32_t>(mesh.cell(c).begin(), mesh.cell(c).end()));
+  }
+  std::sort(cells.begin(), cells.end());
+  return cells;
+}
+
+void expect_same(const MeshData& a, const MeshData& b) {
+  EXPECT_EQ(a.points, b.points);
+  EXPECT_EQ(cells_of(a), cells_of(b));
+  auto x = faces_of(a);
+  auto y = faces_of(b);
+  std::sort(x.begin(), x.end());
+  std::sort(y.begin(), y.end());
+  EXPECT_EQ(x, y);
+}
+
+void expect_accepted(const MeshFile& file) { EXPECT_EQ(file.report.verdict(), Verdict::accept) << report_text(file.report); }
+
+TEST(Formats, GmshOfEveryVersion) {
+  const MeshData mesh = mixed_mesh();
+  const Folder folder;
+  const std::vector<std::pair<std::string, std::string>> files = {
+      {"Gmsh 1 ASCII", gmsh_1(mesh)},
+      {"Gmsh 2.2 ASCII", format_gmsh_2(mesh)},
+      {"Gmsh 2.2 binary", gmsh_22_binary(mesh, false)},
+      {"Gmsh 2.2 binary", gmsh_22_binary(mesh, true)},
+      {"Gmsh 4 binary", gmsh_4_binary(mesh, false, false)},
+      {"Gmsh 4 binary", gmsh_4_binary(mesh, false, true)},
+      {"Gmsh 4.1 ASCII", format_gmsh_4(mesh)},
+      {"Gmsh 4.1 binary", gmsh_4_binary(mesh, true, false)},
+      {"Gmsh 4.1 binary", gmsh_4_binary(mesh, true, true)},
+  };
+  for (const auto& [format, content] : files) {
+    const MeshFile file = read_mesh(folder.file("a.msh", content));
+    SCOPED_TRACE(format);
+    expect_accepted(file);
+    EXPECT_EQ(file.report.format, format);
+    expect_same(file.mesh, mesh);
+    EXPECT_EQ(file.mesh.source, (std::vector<std::uint32_t>(format[5] == '1' ? std::vector<std::uint32_t>{3, 4, 5, 6}
+                                                                             : std::vector<std::uint32_t>{2, 3, 4, 5})));
+  }
+}
+
+TEST(Formats, Gmsh40AsciiByHand) {
+  const std::string text =
+      "$MeshFormat\n4 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 5 \"wall\"\n3 6 \"the inside\"\n$EndPhysicalNames\n"
+      "$Entities\n0 0 1 1\n3 0 0 0 1 1 1 1 5 0\n4 0 0 0 1 1 1 2 6 9 1 3\n$EndEntities\n"
+      "$Nodes\n1 4\n4 3 0 4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n40 0 0 1\n$EndNodes\n"
+      "$Elements\n2 2\n3 2 2 1\n1 1 3 2\n4 3 4 1\n2 1 2 3 40\n$EndElements\n";
+  const ParsedMesh parsed = parse_gmsh(text);
+  EXPECT_EQ(parsed.mesh.points.size(), 4U);
+  EXPECT_EQ(cells_of(parsed.mesh), (Cells{{CellType::tetrahedron, 6, {0, 1, 2, 3}}}));
+  EXPECT_EQ(faces_of(parsed.mesh), (Faces{{5, {0, 2, 1}}}));
+  EXPECT_EQ(parsed.mesh.region_names.at(6), "the inside");
+  EXPECT_EQ(parsed.mesh.patch_names.at(5), "wall");
+}
+
+TEST(Formats, Gmsh20AsciiSkipsOtherSectionsAndElements) {
+  const std::string text =
+      "$Comments\nanything $Nodes\n$EndComments\n$MeshFormat\n2 0 8\n$EndMeshFormat\n"
+      "$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n"
+      "$Elements\n4\n1 15 2 1 1 1\n2 1 2 1 1 1 2\n3 2 0 1 3 2\n4 4 3 8 1 0 1 2 3 4\n$EndElements\n"
+      "$NodeData\n1\n\"a\"\n$EndNodeData\n";
+  const ParsedMesh parsed = parse_gmsh(text);
+  EXPECT_EQ(cells_of(parsed.mesh), (Cells{{CellType::tetrahedron, 8, {0, 1, 2, 3}}}));
+  EXPECT_EQ(parsed.mesh.source, std::vector<std::uint32_t>{3});
+  EXPECT_TRUE(parsed.mesh.patch_tags.empty());  // no tag: no patch
+}
+
+TEST(Formats, MeditByHand) {
+  const std::string text =
+      " MeshVersionFormatted 1\n# a comment 7\nDimension\n3\nVertices 5\n0 0 0 1\n1 0 0 1\n0 1 0 1\n0 0 1 +2\n9.5e0 9 9 0\n"
+      "Corners\n2\n1 2\nNormals\n1\n0.5 .5 1\nTriangles\n2\n1 3 2 4\n1 2 4 0\nTetrahedra\n1\n1 2 3 4 17\nEnd\n";
+  const Folder folder;
+  const MeshFile file = read_mesh(folder.file("a.mesh", text));
+  EXPECT_EQ(file.report.verdict(), Verdict::repair);
+  ASSERT_EQ(file.report.repairs.size(), 1U);
+  EXPECT_EQ(file.report.repairs[0].kind, "unused_points");
+  EXPECT_EQ(file.report.repairs[0].first, std::vector<std::size_t>{4});
+  EXPECT_EQ(cells_of(file.mesh), (Cells{{CellType::tetrahedron, 17, {0, 1, 2, 3}}}));
+  EXPECT_EQ(faces_of(file.mesh), (Faces{{4, {0, 2, 1}}}));
+}
+
+TEST(Formats, LegacyVtkOfBothWaysToWriteCells) {
+  const std::string head = "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\n";
+  const std::string points = "POINTS 8 float\n0 0 0 1 0 0 0 1 0 1 1 0 0 0 1 1 0 1 0 1 1 1 1 1\n";
+  const std::string data =
+      "CELL_TYPES 2\n11 1\nCELL_DATA 2\nSCALARS region int 1\nLOOKUP_TABLE default\n4 5\nPOINT_DATA 8\nVECTORS v double\n"
+      "1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24\nFIELD more 1\nt 1 8 float\n1 2 3 4 5 6 7 8\n";
+  const Folder folder;
+  for (const std::string& cells : {std::string("CELLS 2 11\n8 0 1 2 3 4 5 6 7\n1 3\n"),
+                                   std::string("CELLS 3 9\nOFFSETS vtktypeint64\n0 8 9\nCONNECTIVITY vtktypeint64\n0 1 2 3 4 5 6 7 3\n")}) {
+    const std::string version = cells.find("OFFSETS") == std::string::npos ? head : "# vtk DataFile Version 5.1" + head.substr(26);
+    const MeshFile file = read_mesh(folder.file("a.vtk", version + points + cells + data));
+    expect_accepted(file);
+    EXPECT_EQ(cells_of(file.mesh), (Cells{{CellType::hexahedron, 4, {0, 1, 3, 2, 4, 5, 7, 6}}}));  // a voxel
+    ASSERT_EQ(file.mesh.point_data.size(), 2U);
+    EXPECT_EQ(file.mesh.point_data[0].name, "v");
+    EXPECT_EQ(file.mesh.point_data[0].components, 3U);
+    EXPECT_EQ(file.mesh.point_data[0].values[23], 24.0);
+    ASSERT_EQ(file.mesh.cell_data.size(), 1U);
+    EXPECT_EQ(file.mesh.cell_data[0].values, std::vector<double>{4.0});
+    EXPECT_EQ(file.mesh.source, std::vector<std::uint32_t>{0});
+  }
+}
+
+TEST(Formats, PrismsInEitherOrderOfVtk) {
+  const std::string head =
+      "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 6 float\n0 0 0 1 0 0 0 1 0 0 0 1 1 0 1 0 1 1\n";
+  const Folder folder;
+  // VTK's own order: the first triangle's normal points outwards.
+  const MeshFile documented = read_mesh(folder.file("a.vtk", head + "CELLS 1 7\n6 0 2 1 3 5 4\nCELL_TYPES 1\n13\n"));
+  expect_accepted(documented);
+  const MeshFile as_gmsh = read_mesh(folder.file("a.vtk", head + "CELLS 1 7\n6 0 1 2 3 4 5\nCELL_TYPES 1\n13\n"));
+  EXPECT_EQ(as_gmsh.report.verdict(), Verdict::repair);
+  EXPECT_EQ(as_gmsh.mesh.connectivity, documented.mesh.connectivity);
+  EXPECT_EQ(documented.mesh.connectivity, (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5}));
+}
+
+TEST(Formats, VtuAsciiByHand) {
+  const std::string text = R"(<?xml version="1.0"?>
+<!-- > a comment < -->
+<VTKFile type="UnstructuredGrid" version="0.1" byte_order="BigEndian"><UnstructuredGrid>
+<Piece NumberOfPoints='4' NumberOfCells="1">
+<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points>
+<Cells><DataArray type="Int32" Name="connectivity" format="ascii">0 1 2 3</DataArray>
+<DataArray type="Int32" Name="offsets" format="ascii">4</DataArray>
+<DataArray type="UInt8" Name="types" format="ascii">10</DataArray></Cells>
+<CellData><DataArray type="Float32" Name="heat" format="ascii">0.5</DataArray></CellData>
+</Piece></UnstructuredGrid></VTKFile>)";
+  const Folder folder;
+  const MeshFile file = read_mesh(folder.file("a.vtu", text));
+  expect_accepted(file);
+  EXPECT_EQ(cells_of(file.mesh), (Cells{{CellType::tetrahedron, 0, {0, 1, 2, 3}}}));
+  ASSERT_EQ(file.mesh.cell_data.size(), 1U);
+  EXPECT_EQ(file.mesh.cell_data[0].values, std::vector<double>{0.5});
+}
+
+TEST(RoundTrip, EveryFormatKeepsPointsCellsRegionsAndPatches) {
+  const MeshData mesh = mixed_mesh();
+  const Folder folder;
+  for (const std::string ending : {"vtu", "vtk", "msh", "msh2", "msh4", "mesh"}) {
+    SCOPED_TRACE(ending);
+    write_mesh(mesh, folder / ("a." + ending));
+    const MeshFile file = read_mesh(folder / ("a." + ending));
+    expect_accepted(file);
+    expect_same(file.mesh, mesh);
+    if (ending == "vtk" || ending == "mesh") continue;
+    EXPECT_EQ(file.mesh.region_names, mesh.region_names);
+    EXPECT_EQ(file.mesh.patch_names, mesh.patch_names);
+  }
+}
+
+TEST(RoundTrip, VtkKeepsPolyhedraArraysAndFree) {
+  MeshData mesh = polyhedra();
+  mesh.point_data = {{"velocity", 3, std::vector<double>(27, 1.0 / 3.0)}};
+  mesh.cell_data = {{"heat", 1, {0.1, -0.0}}};
+  mesh.free = {1, 0};
+  const Folder folder;
+  for (const std::string ending : {"vtu", "vtk"}) {
+    SCOPED_TRACE(ending);
+    write_mesh(mesh, folder / ("p." + ending));
+    const MeshFile file = read_mesh(folder / ("p." + ending));
+    expect_accepted(file);
+    expect_same(file.mesh, mesh);
+    ASSERT_EQ(file.mesh.point_data.size(), 1U);
+    EXPECT_EQ(file.mesh.point_data[0].values, mesh.point_data[0].values);
+    ASSERT_EQ(file.mesh.cell_data.size(), 2U);
+    EXPECT_EQ(file.mesh.cell_data[0].name, "heat");
+    EXPECT_EQ(file.mesh.cell_data[0].values, mesh.cell_data[0].values);
+    EXPECT_EQ(file.mesh.cell_data[1].name, "free");
+    EXPECT_EQ(file.mesh.cell_data[1].values, (std::vector<double>{1.0, 0.0}));
+  }
+}
+
+TEST(RoundTrip, WhatAFormatCannotHoldIsRefused) {
+  const Folder folder;
+  for (const std::string ending : {"msh", "msh4", "mesh"}) {
+    EXPECT_THROW(write_mesh(polyhedra(), folder / ("p." + ending)), InvalidArgument) << ending;
+  }
+  EXPECT_THROW(write_mesh(mixed_mesh(), folder / "a.obj"), InvalidArgument);
+  for (const std::string ending : {"vtu", "vtk", "msh", "mesh"}) {
+    EXPECT_THROW(write_mesh(mixed_mesh(), folder / ("no/such/folder/a." + ending)), Error) << ending;
+  }
+}
+
+TEST(Formats, OthersAreRefusedByName) {
+  const Folder folder;
+  const auto message = [&](const std::string& name, const std::string& content) {
+    const MeshFile file = read_mesh(folder.file(name, content));
+    EXPECT_EQ(file.report.verdict(), Verdict::refuse) << name;
+    return file.report.defects.empty() ? std::string() : file.report.defects[0].message;
+  };
+  EXPECT_NE(message("a.obj", "v 0 0 0\n").find(".vtu"), std::string::npos);
+  EXPECT_NE(message("a.mesh", "MFEM mesh v1.0\n\ndimension\n3\n").find("MFEM mesh v1.0"), std::string::npos);
+  EXPECT_NE(message("b.mesh", "MFEM NC mesh v1.0\n\ndimension\n3\n").find("MFEM NC mesh"), std::string::npos);
+  EXPECT_NE(message("a.msh", "(0 \"GAMBIT to Fluent File\")\n").find("Fluent"), std::string::npos);
+  EXPECT_NE(message("b.msh", "MeshVersionFormatted 2\n").find("Medit"), std::string::npos);
+  EXPECT_NE(message("a.vtk", "<VTKFile type=\"UnstructuredGrid\"></VTKFile>").find(".vtu"), std::string::npos);
+  EXPECT_NE(message("b.vtk", "# vtk DataFile Version 3.0\nt\nBINARY\nDATASET POLYDATA\n").find("POLYDATA"), std::string::npos);
+  EXPECT_NE(message("a.vtu", "<VTKFile type=\"PolyData\"></VTKFile>").find("PolyData"), std::string::npos);
+  EXPECT_NE(message("c.msh", "$MeshFormat\n3.0 0 8\n$EndMeshFormat\n").find("3.0"), std::string::npos);
+  EXPECT_NE(message("e.vtk", "").find("empty"), std::string::npos);
+  EXPECT_FALSE(read_mesh(folder / "none.vtu").report.valid());
+  EXPECT_FALSE(read_mesh(std::filesystem::temp_directory_path()).report.valid());
+}
+
+TEST(Formats, SecondOrderCellsAreRefusedByName) {
+  const Folder folder;
+  const std::string gmsh =
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n"
+      "$Elements\n1\n1 11 0 1 1 1 1 1 1 1 1 1 1\n$EndElements\n";
+  const std::string medit =
+      "MeshVersionFormatted 2\nDimension 3\nVertices\n1\n0 0 0 0\nTetrahedraP2\n1\n1 1 1 1 1 1 1 1 1 1 0\nEnd\n";
+  const std::string vtk =
+      "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 1 float\n0 0 0\nCELLS 1 11\n"
+      "10 0 0 0 0 0 0 0 0 0 0\nCELL_TYPES 1\n24\n";
+  for (const auto& path : {folder.file("a.msh", gmsh), folder.file("a.mesh", medit), folder.file("a.vtk", vtk)}) {
+    const MeshReport report = read_mesh(path).report;
+    ASSERT_EQ(report.defects.size(), 1U) << path << report_text(report);
+    EXPECT_EQ(report.defects[0].kind, "second_order");
+    EXPECT_EQ(report.defects[0].count, 1U);
+  }
+}
+
+TEST(Formats, PlanarMeshesAreReadButHoldNoVolume) {
+  const Folder folder;
+  const std::string text =
+      "MeshVersionFormatted 2\nDimension 2\nVertices\n4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\nTriangles\n2\n1 2 3 5\n1 4 3 6\nEnd\n";
+  const MeshFile file = read_mesh(folder.file("a.mesh", text));
+  EXPECT_EQ(file.report.dimension, 2);
+  EXPECT_EQ(file.report.verdict(), Verdict::repair);
+  EXPECT_EQ(file.report.cells, (std::map<std::string, std::size_t>{{"triangle", 2}}));
+  try {
+    (void)read_volume_mesh(folder / "a.mesh");
+    FAIL();
+  } catch (const InvalidMesh& error) {
+    EXPECT_NE(std::string(error.what()).find("planar"), std::string::npos);
+  }
+}
+
+TEST(Report, JsonHasTheFieldsOfTheInterface) {
+  const Folder folder;
+  write_mesh(mixed_mesh(), folder / "a.msh");
+  const auto json = nlohmann::json::parse(report_json(read_mesh(folder / "a.msh").report));
+  EXPECT_EQ(json["file"], (folder / "a.msh").string());
+  EXPECT_EQ(json["format"], "Gmsh 2.2 ASCII");
+  EXPECT_EQ(json["points"], 12);
+  EXPECT_EQ(json["cells"], (nlohmann::json{{"hexahedron", 1}, {"prism", 1}, {"pyramid", 1}, {"tetrahedron", 1}}));
+  EXPECT_EQ(json["regions"], (nlohmann::json{{"lumen", 2}, {"a wall, thick", 1}, {"rest", 1}}));
+  EXPECT_EQ(json["valid"], true);
+  EXPECT_TRUE(json["repairs"].empty() && json["warnings"].empty() && json["defects"].empty());
+
+  const auto refused = nlohmann::json::parse(report_json(read_mesh(folder.file("\xff.msh", "$\xfe\n")).report));
+  EXPECT_EQ(refused["valid"], false);
+  EXPECT_EQ(refused["defects"][0]["kind"], "file");
+  const std::string text = report_text(read_mesh(folder / "a.msh").report);
+  EXPECT_NE(text.find("verdict: accept"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace dartcast::test

@@ -1,0 +1,229 @@
+// Small meshes and files for the tests of readers and writers.
+#pragma once
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <unistd.h>
+
+#include "dartcast/io/write_mesh.hpp"
+#include "dartcast/mesh/mesh_data.hpp"
+
+namespace dartcast::test {
+
+inline void add(MeshData& mesh, CellType type, std::vector<std::uint32_t> corners) { mesh.add_cell(type, corners); }
+inline void add_face(MeshData& mesh, std::vector<std::uint32_t> corners, std::int32_t tag) { mesh.add_patch_face(corners, tag); }
+
+/// A hexahedron, a prism beside it, a pyramid on top and a tetrahedron on that: every standard type, three regions, two patches,
+/// coordinates that need all their digits.
+inline MeshData mixed_mesh() {
+  MeshData mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1},     {1, 0, 1},
+                 {1, 1, 1}, {0, 1, 1}, {2, .5, 0}, {2, .5, 1}, {.5, .5, 2}, {.5, -1, 1.5}};
+  for (Vec3& p : mesh.points) p = {p.x / 3.0 + 0.1, p.y * 0.7 - 0.2, p.z * 1.1e-3};
+  add(mesh, CellType::hexahedron, {0, 1, 2, 3, 4, 5, 6, 7});
+  add(mesh, CellType::prism, {1, 8, 2, 5, 9, 6});
+  add(mesh, CellType::pyramid, {4, 5, 6, 7, 10});
+  add(mesh, CellType::tetrahedron, {4, 5, 10, 11});
+  mesh.regions = {1, 1, 2, 3};
+  mesh.region_names = {{1, "lumen"}, {2, "a wall, thick"}, {3, "rest"}};
+  add_face(mesh, {0, 3, 2, 1}, 10);
+  add_face(mesh, {1, 2, 8}, 11);
+  mesh.patch_names = {{10, "inlet"}, {11, "outlet"}};
+  return mesh;
+}
+
+/// A cube as a polyhedron, with a tetrahedron-like cap of five faces (a pyramid as polyhedron) on top.
+inline MeshData polyhedra() {
+  MeshData mesh = mixed_mesh();
+  MeshData out;
+  out.points.assign(mesh.points.begin(), mesh.points.begin() + 8);
+  out.points.push_back(mesh.points[10]);
+  add(out, CellType::polyhedron, {6, 4, 0, 3, 2, 1, 4, 4, 5, 6, 7, 4, 0, 1, 5, 4, 4, 1, 2, 6, 5, 4, 2, 3, 7, 6, 4, 3, 0, 4, 7});
+  add(out, CellType::polyhedron, {5, 4, 4, 7, 6, 5, 3, 4, 5, 8, 3, 5, 6, 8, 3, 6, 7, 8, 3, 7, 4, 8});
+  return out;
+}
+
+/// A folder that is removed with its content.
+class Folder {
+ public:
+  Folder() {
+    static int number = 0;
+    const std::string name = "dartcast_io_" + std::to_string(::getpid()) + "_" + std::to_string(number++);
+    path_ = std::filesystem::temp_directory_path() / name;
+    std::filesystem::create_directories(path_);
+  }
+  ~Folder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+  /// Writes a file and returns its path.
+  [[nodiscard]] std::filesystem::path file(const std::string& name, const std::string& content) const {
+    std::filesystem::remove(path_ / name);  // a new file is written much faster than an old one is overwritten
+    write_bytes(path_ / name, content);
+    return path_ / name;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Bytes of numbers, in this machine's order or the other one.
+class Bytes {
+ public:
+  explicit Bytes(bool swapped = false) : swapped_(swapped) {}
+
+  Bytes& text(const std::string& s) {
+    out += s;
+    return *this;
+  }
+  template <class T>
+  Bytes& number(T value) {
+    char raw[sizeof(T)];
+    std::memcpy(raw, &value, sizeof(T));
+    if (swapped_) std::reverse(raw, raw + sizeof(T));
+    out.append(raw, sizeof(T));
+    return *this;
+  }
+
+  std::string out;
+
+ private:
+  bool swapped_;
+};
+
+/// Gmsh's number of a cell type.
+inline int gmsh_type(CellType type) { return 4 + static_cast<int>(type); }
+
+/// The mixed mesh in Gmsh 2.2 binary, one block per element.
+inline std::string gmsh_22_binary(const MeshData& mesh, bool swapped) {
+  Bytes b(swapped);
+  b.text("$MeshFormat\n2.2 1 8\n").number<std::int32_t>(1).text("\n$EndMeshFormat\n$Nodes\n");
+  b.text(std::to_string(mesh.points.size()) + "\n");
+  for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+    b.number(static_cast<std::int32_t>(p + 1)).number(mesh.points[p].x).number(mesh.points[p].y).number(mesh.points[p].z);
+  }
+  b.text("\n$EndNodes\n$Elements\n" + std::to_string(mesh.cell_count() + mesh.patch_tags.size()) + "\n");
+  std::int32_t number = 1;
+  const auto element = [&](int type, std::int32_t tag, std::span<const std::uint32_t> corners) {
+    b.number(type).number(std::int32_t{1}).number(std::int32_t{2}).number(number++).number(tag).number(tag);
+    for (const std::uint32_t v : corners) b.number(static_cast<std::int32_t>(v + 1));
+  };
+  for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) {
+    const std::size_t n = mesh.patch_offsets[f + 1] - mesh.patch_offsets[f];
+    element(n == 3 ? 2 : 3, mesh.patch_tags[f], {mesh.patch_faces.data() + mesh.patch_offsets[f], n});
+  }
+  for (std::size_t c = 0; c < mesh.cell_count(); ++c) element(gmsh_type(mesh.types[c]), mesh.regions[c], mesh.cell(c));
+  return b.text("\n$EndElements\n").out;
+}
+
+/// The mixed mesh in Gmsh 4.0 or 4.1, binary. One entity for each tag.
+inline std::string gmsh_4_binary(const MeshData& mesh, bool v41, bool swapped) {
+  Bytes b(swapped);
+  const auto size = [&](std::size_t n) { b.number(static_cast<std::uint64_t>(n)); };
+  const auto integer = [&](std::int64_t n) { b.number(static_cast<std::int32_t>(n)); };
+  const auto node = [&](std::size_t n) { v41 ? size(n) : integer(static_cast<std::int64_t>(n)); };
+  b.text(v41 ? "$MeshFormat\n4.1 1 8\n" : "$MeshFormat\n4 1 8\n").number<std::int32_t>(1).text("\n$EndMeshFormat\n$Entities\n");
+  for (const std::size_t n : {1, 1, 2, 3}) size(n);
+  integer(1);  // a point
+  for (int k = 0; k < (v41 ? 3 : 6); ++k) b.number(0.5);
+  size(0);
+  const auto entity = [&](int tag, int group, int boundary) {
+    integer(tag);
+    for (int k = 0; k < 6; ++k) b.number(0.5);
+    size(group != 0 ? 1 : 0);
+    if (group != 0) integer(group);
+    size(boundary != 0 ? 1 : 0);
+    if (boundary != 0) integer(boundary);
+  };
+  entity(7, 0, 1);
+  entity(1, 10, -7);
+  entity(2, -11, 0);
+  for (const int tag : {1, 2, 3}) entity(tag, tag, 1);
+  b.text("\n$EndEntities\n$Nodes\n");
+  size(2);
+  size(mesh.points.size());
+  if (v41) {
+    size(1);
+    size(mesh.points.size());
+  }
+  // The first point alone, with a parameter on its curve; then the others.
+  for (const bool first : {true, false}) {
+    const std::size_t begin = first ? 0 : 1;
+    const std::size_t end = first ? 1 : mesh.points.size();
+    integer(v41 ? (first ? 1 : 3) : 7);
+    integer(v41 ? 7 : (first ? 1 : 3));
+    integer(first ? 1 : 0);
+    size(end - begin);
+    for (std::size_t p = begin; v41 && p < end; ++p) size(p + 1);
+    for (std::size_t p = begin; p < end; ++p) {
+      if (!v41) node(p + 1);
+      b.number(mesh.points[p].x).number(mesh.points[p].y).number(mesh.points[p].z);
+      if (first) b.number(0.25);
+    }
+  }
+  b.text("\n$EndNodes\n$Elements\n");
+  size(mesh.cell_count() + mesh.patch_tags.size());
+  size(mesh.cell_count() + mesh.patch_tags.size());
+  if (v41) {
+    size(1);
+    size(mesh.cell_count() + mesh.patch_tags.size());
+  }
+  std::size_t number = 1;
+  const auto element = [&](int dimension, int tag, int type, std::span<const std::uint32_t> corners) {
+    integer(v41 ? dimension : tag);
+    integer(v41 ? tag : dimension);
+    integer(type);
+    size(1);
+    node(number++);
+    for (const std::uint32_t v : corners) node(v + 1);
+  };
+  for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) {
+    const std::size_t n = mesh.patch_offsets[f + 1] - mesh.patch_offsets[f];
+    element(2, mesh.patch_tags[f] - 9, n == 3 ? 2 : 3, {mesh.patch_faces.data() + mesh.patch_offsets[f], n});
+  }
+  for (std::size_t c = 0; c < mesh.cell_count(); ++c) element(3, mesh.regions[c], gmsh_type(mesh.types[c]), mesh.cell(c));
+  return b.text("\n$EndElements\n").out;
+}
+
+/// The mixed mesh in Gmsh 1, with node numbers far apart.
+inline std::string gmsh_1(const MeshData& mesh) {
+  std::string out = "$NOD\n" + std::to_string(mesh.points.size()) + "\n";
+  char line[200];
+  const auto number = [](std::size_t p) { return std::to_string(1000000 - 7 * p); };
+  for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+    std::snprintf(line, sizeof line, " %.17g %.17g %.17g\n", mesh.points[p].x, mesh.points[p].y, mesh.points[p].z);
+    out += number(p) + line;
+  }
+  out += "$ENDNOD\n$ELM\n" + std::to_string(mesh.cell_count() + mesh.patch_tags.size() + 1) + "\n1 15 9 9 1 " + number(0) + "\n";
+  const auto element = [&](int type, std::int32_t tag, std::span<const std::uint32_t> corners) {
+    out += "5 " + std::to_string(type) + " " + std::to_string(tag) + " 1 " + std::to_string(corners.size());
+    for (const std::uint32_t v : corners) out += " " + number(v);
+    out += "\n";
+  };
+  for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) {
+    const std::size_t n = mesh.patch_offsets[f + 1] - mesh.patch_offsets[f];
+    element(n == 3 ? 2 : 3, mesh.patch_tags[f], {mesh.patch_faces.data() + mesh.patch_offsets[f], n});
+  }
+  for (std::size_t c = 0; c < mesh.cell_count(); ++c) element(gmsh_type(mesh.types[c]), mesh.regions[c], mesh.cell(c));
+  return out + "$ENDELM\n";
+}
+
+inline std::string slurp(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+}  // namespace dartcast::test

@@ -1,0 +1,91 @@
+// Finds boxes that overlap a box. Comparisons and monotone rounding only, so nothing is missed.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "dartcast/exact/vec3.hpp"
+
+namespace dartcast::oracle {
+
+struct Box {
+  Vec3 low;
+  Vec3 high;
+
+  static Box around(std::initializer_list<Vec3> points) {
+    Box b{*points.begin(), *points.begin()};
+    for (const Vec3& p : points) {
+      b.low = {std::min(b.low.x, p.x), std::min(b.low.y, p.y), std::min(b.low.z, p.z)};
+      b.high = {std::max(b.high.x, p.x), std::max(b.high.y, p.y), std::max(b.high.z, p.z)};
+    }
+    return b;
+  }
+
+  [[nodiscard]] bool overlaps(const Box& b) const {
+    return low.x <= b.high.x && b.low.x <= high.x && low.y <= b.high.y && b.low.y <= high.y && low.z <= b.high.z &&
+           b.low.z <= high.z;
+  }
+};
+
+/// A uniform grid over some boxes.
+class BoxGrid {
+ public:
+  BoxGrid() = default;
+  explicit BoxGrid(std::vector<Box> boxes) : boxes_(std::move(boxes)) {
+    if (boxes_.empty()) return;
+    Box all = boxes_[0];
+    for (const Box& b : boxes_) all = Box::around({all.low, all.high, b.low, b.high});
+    low_ = {all.low.x, all.low.y, all.low.z};
+    const std::array<double, 3> high = {all.high.x, all.high.y, all.high.z};
+    for (std::size_t a = 0; a < 3; ++a) per_length_[a] = high[a] > low_[a] ? side / (high[a] - low_[a]) : 0.0;
+    for (std::uint32_t i = 0; i < boxes_.size(); ++i) {
+      each_place(boxes_[i], [&](std::size_t place) { places_[place].push_back(i); });
+    }
+  }
+
+  /// Calls visit(index) once for each box that overlaps b.
+  template <class Visit>
+  void each_overlapping(const Box& b, Visit&& visit) const {
+    if (boxes_.empty()) return;
+    std::vector<std::uint32_t> found;
+    each_place(b, [&](std::size_t place) {
+      for (const std::uint32_t i : places_[place]) {
+        if (boxes_[i].overlaps(b)) found.push_back(i);
+      }
+    });
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    for (const std::uint32_t i : found) visit(i);
+  }
+
+ private:
+  static constexpr int side = 12;
+
+  // Never falls as x grows: boxes that overlap share a place.
+  [[nodiscard]] int place(double x, std::size_t axis) const {
+    const double scaled = (x - low_[axis]) * per_length_[axis];
+    return static_cast<int>(std::clamp(scaled, 0.0, side - 1.0));
+  }
+
+  template <class Visit>
+  void each_place(const Box& b, Visit&& visit) const {
+    const std::array<int, 3> from = {place(b.low.x, 0), place(b.low.y, 1), place(b.low.z, 2)};
+    const std::array<int, 3> to = {place(b.high.x, 0), place(b.high.y, 1), place(b.high.z, 2)};
+    for (int k = from[2]; k <= to[2]; ++k) {
+      for (int j = from[1]; j <= to[1]; ++j) {
+        for (int i = from[0]; i <= to[0]; ++i) visit(static_cast<std::size_t>(i + side * (j + side * k)));
+      }
+    }
+  }
+
+  std::vector<Box> boxes_;
+  std::array<double, 3> low_ = {};
+  std::array<double, 3> per_length_ = {};
+  std::array<std::vector<std::uint32_t>, std::size_t{side} * side * side> places_;
+};
+
+}  // namespace dartcast::oracle

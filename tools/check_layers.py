@@ -1,0 +1,64 @@
+#!/usr/bin/env python3
+"""Checks who includes whom: a folder includes only folders to its left, and each dependency stays in its place."""
+import pathlib
+import re
+import sys
+
+LAYERS = ["base", "exact", "mesh", "map", "geometry", "walk", "environment", "response", "simulation", "io"]
+
+# Third-party headers, and the folders of src/dartcast whose .cpp files may include them. Headers may include none:
+# whoever uses the library needs only its own headers.
+THIRD_PARTY = [
+    (re.compile(r"^(vtk|vtk-)"), {"io"}),
+    (re.compile(r"^(tbb|oneapi)/"), {"base"}),
+    (re.compile(r"^Eigen/"), set(LAYERS)),
+    (re.compile(r"^boost/"), set(LAYERS)),
+    (re.compile(r"^fmt/"), set(LAYERS)),
+    (re.compile(r"^nlohmann/"), {"simulation", "io"}),
+    (re.compile(r"^toml\+\+/"), {"simulation", "io"}),
+]
+# Code that must stay independent of the walk's predicates, so that it can judge them.
+INDEPENDENT = re.compile(r"(^tests/oracle/|/audit[a-z_]*\.[ch]pp$)")
+PREDICATES = re.compile(r"^dartcast/exact/(?!vec3\.hpp)")
+
+STANDARD = re.compile(r"^([a-z_]+|sys/[a-z]+\.h)$")
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
+
+
+def allowed(header: str, folder: str, suffix: str) -> bool:
+    """Whether a .cpp or .hpp file of a folder of src/dartcast may include a header."""
+    if header.startswith("dartcast/"):
+        target = header.split("/")[1]
+        return target in LAYERS[: LAYERS.index(folder) + 1] and pathlib.Path("src", header).is_file()
+    for pattern, folders in THIRD_PARTY:
+        if pattern.match(header):
+            return folder in folders and suffix == ".cpp"
+    return STANDARD.match(header) is not None
+
+
+def problems_of(path: pathlib.Path) -> list[str]:
+    """What is wrong with the includes of one file under src/dartcast, apps, examples or tests."""
+    name = path.as_posix()
+    parts = path.parts
+    folder = parts[2] if parts[0] == "src" else None
+    found = []
+    if folder is not None and folder not in LAYERS:
+        return [f"{name}: '{folder}' is no layer; tools/check_layers.py lists them"]
+    for header in INCLUDE.findall(path.read_text(encoding="utf-8")):
+        if INDEPENDENT.search(name) and PREDICATES.match(header):
+            found.append(f"{name}: includes {header}, which it is there to judge")
+        if folder is not None and not allowed(header, folder, path.suffix):
+            found.append(f"{name}: must not include {header}")
+    return found
+
+
+def main() -> int:
+    files = [p for root in ("src", "apps", "examples", "tests") for p in sorted(pathlib.Path(root).rglob("*.[ch]pp"))]
+    found = [line for path in files for line in problems_of(path)]
+    print("\n".join(found + [f"{len(files)} files, {len(found)} wrong includes"]))
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
