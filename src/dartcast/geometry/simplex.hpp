@@ -61,6 +61,10 @@ struct Determinants {
   /// The four errors, and the rounding of three sums of values that are at most 6 m each (m = bound /
   /// determinant_error).
   [[nodiscard]] bool proves_positive() const { return applies && volume6() > 8.0 * bound; }
+  /// x is strictly inside, and the simplex positive.
+  [[nodiscard]] bool all_proved_positive() const {
+    return applies && std::min(std::min(value[0], value[1]), std::min(value[2], value[3])) > bound;
+  }
   [[nodiscard]] bool decides(unsigned i) const { return applies && std::abs(value[i]) > bound; }
 };
 

@@ -105,6 +105,7 @@ void Flow::add_random(std::size_t count, const Vec3& velocity) {
 
 const FlowStep& Flow::step() {
   last_ = {};
+  last_.duration = options_.dt;
   inject();
   move_vertices();
   for (unsigned segment = 0; segment < options_.substeps; ++segment) advance_segment(segment);

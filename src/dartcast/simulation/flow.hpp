@@ -31,6 +31,7 @@ struct FlowOptions {
 
 /// What happened in one step. `report.contacts` name particles by their index during the step; contact_ids are their ids.
 struct FlowStep {
+  double duration = 0.0;  ///< s
   StepReport report;
   std::vector<std::uint64_t> contact_ids;
   std::uint64_t injected = 0;
