@@ -6,8 +6,8 @@ import sys
 
 LAYERS = ["base", "exact", "mesh", "map", "geometry", "walk", "environment", "response", "simulation", "io"]
 
-# Third-party headers, and the folders of src/dartcast whose .cpp files may include them. Headers may include none:
-# whoever uses the library needs only its own headers.
+# Third-party headers, and the folders of src/dartcast that may include them: in .cpp files and in headers that are not
+# installed, for whoever uses the library needs only its own headers.
 THIRD_PARTY = [
     (re.compile(r"^(vtk|vtk-)"), {"io"}),
     (re.compile(r"^(tbb|oneapi)/"), {"base"}),
@@ -23,17 +23,23 @@ PREDICATES = re.compile(r"^dartcast/exact/(?!vec3\.hpp)")
 
 STANDARD = re.compile(r"^([a-z_]+|sys/[a-z]+\.h)$")
 
+# Headers that are not installed, by the list in CMakeLists.txt.
+PRIVATE = set(re.search(r"set\(private_headers ([^)]*)\)", pathlib.Path("CMakeLists.txt").read_text()).group(1).split())
+
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
 
 
-def allowed(header: str, folder: str, suffix: str) -> bool:
-    """Whether a .cpp or .hpp file of a folder of src/dartcast may include a header."""
+def allowed(header: str, folder: str, installed: bool) -> bool:
+    """Whether a file of a folder of src/dartcast may include a header."""
     if header.startswith("dartcast/"):
         target = header.split("/")[1]
-        return target in LAYERS[: LAYERS.index(folder) + 1] and pathlib.Path("src", header).is_file()
+        file = pathlib.Path("src", header)
+        if installed and file.as_posix() in PRIVATE:
+            return False
+        return target in LAYERS[: LAYERS.index(folder) + 1] and file.is_file()
     for pattern, folders in THIRD_PARTY:
         if pattern.match(header):
-            return folder in folders and suffix == ".cpp"
+            return folder in folders and not installed
     return STANDARD.match(header) is not None
 
 
@@ -42,13 +48,14 @@ def problems_of(path: pathlib.Path) -> list[str]:
     name = path.as_posix()
     parts = path.parts
     folder = parts[2] if parts[0] == "src" else None
+    installed = path.suffix == ".hpp" and name not in PRIVATE
     found = []
     if folder is not None and folder not in LAYERS:
         return [f"{name}: '{folder}' is no layer; tools/check_layers.py lists them"]
     for header in INCLUDE.findall(path.read_text(encoding="utf-8")):
         if INDEPENDENT.search(name) and PREDICATES.match(header):
             found.append(f"{name}: includes {header}, which it is there to judge")
-        if folder is not None and not allowed(header, folder, path.suffix):
+        if folder is not None and not allowed(header, folder, installed):
             found.append(f"{name}: must not include {header}")
     return found
 

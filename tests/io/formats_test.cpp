@@ -1,6 +1,8 @@
 // Every format, read from files made by hand and written back.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "dartcast/base/error.hpp"
 #include "dartcast/io/gmsh.hpp"
 #include "dartcast/io/medit.hpp"
@@ -8,8 +10,6 @@
 #include "dartcast/io/report.hpp"
 #include "dartcast/io/write_mesh.hpp"
 #include "io/sample_mesh.hpp"
-
-#include <nlohmann/json.hpp>
 
 namespace dartcast::test {
 namespace {
@@ -19,8 +19,9 @@ using Faces = std::vector<std::pair<std::int32_t, std::vector<std::uint32_t>>>;
 Faces faces_of(const MeshData& mesh) {
   Faces faces;
   for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) {
-    faces.push_back({mesh.patch_tags[f], {mesh.patch_faces.begin() + static_cast<std::ptrdiff_t>(mesh.patch_offsets[f]),
-                                          mesh.patch_faces.begin() + static_cast<std::ptrdiff_t>(mesh.patch_offsets[f + 1])}});
+    faces.push_back({mesh.patch_tags[f],
+                     {mesh.patch_faces.begin() + static_cast<std::ptrdiff_t>(mesh.patch_offsets[f]),
+                      mesh.patch_faces.begin() + static_cast<std::ptrdiff_t>(mesh.patch_offsets[f + 1])}});
   }
   return faces;
 }
@@ -48,7 +49,9 @@ void expect_same(const MeshData& a, const MeshData& b) {
   EXPECT_EQ(x, y);
 }
 
-void expect_accepted(const MeshFile& file) { EXPECT_EQ(file.report.verdict(), Verdict::accept) << report_text(file.report); }
+void expect_accepted(const MeshFile& file) {
+  EXPECT_EQ(file.report.verdict(), Verdict::accept) << report_text(file.report);
+}
 
 TEST(Formats, GmshOfEveryVersion) {
   const MeshData mesh = mixed_mesh();
@@ -70,8 +73,9 @@ TEST(Formats, GmshOfEveryVersion) {
     expect_accepted(file);
     EXPECT_EQ(file.report.format, format);
     expect_same(file.mesh, mesh);
-    EXPECT_EQ(file.mesh.source, (std::vector<std::uint32_t>(format[5] == '1' ? std::vector<std::uint32_t>{3, 4, 5, 6}
-                                                                             : std::vector<std::uint32_t>{2, 3, 4, 5})));
+    EXPECT_EQ(file.mesh.source,
+              (std::vector<std::uint32_t>(format[5] == '1' ? std::vector<std::uint32_t>{3, 4, 5, 6}
+                                                           : std::vector<std::uint32_t>{2, 3, 4, 5})));
   }
 }
 
@@ -103,7 +107,8 @@ TEST(Formats, Gmsh20AsciiSkipsOtherSectionsAndElements) {
 
 TEST(Formats, MeditByHand) {
   const std::string text =
-      " MeshVersionFormatted 1\n# a comment 7\nDimension\n3\nVertices 5\n0 0 0 1\n1 0 0 1\n0 1 0 1\n0 0 1 +2\n9.5e0 9 9 0\n"
+      " MeshVersionFormatted 1\n# a comment 7\nDimension\n3\nVertices 5\n0 0 0 1\n1 0 0 1\n0 1 0 1\n0 0 1 +2\n9.5e0 9 "
+      "9 0\n"
       "Corners\n2\n1 2\nNormals\n1\n0.5 .5 1\nTriangles\n2\n1 3 2 4\n1 2 4 0\nTetrahedra\n1\n1 2 3 4 17\nEnd\n";
   const Folder folder;
   const MeshFile file = read_mesh(folder.file("a.mesh", text));
@@ -119,12 +124,15 @@ TEST(Formats, LegacyVtkOfBothWaysToWriteCells) {
   const std::string head = "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\n";
   const std::string points = "POINTS 8 float\n0 0 0 1 0 0 0 1 0 1 1 0 0 0 1 1 0 1 0 1 1 1 1 1\n";
   const std::string data =
-      "CELL_TYPES 2\n11 1\nCELL_DATA 2\nSCALARS region int 1\nLOOKUP_TABLE default\n4 5\nPOINT_DATA 8\nVECTORS v double\n"
+      "CELL_TYPES 2\n11 1\nCELL_DATA 2\nSCALARS region int 1\nLOOKUP_TABLE default\n4 5\nPOINT_DATA 8\nVECTORS v "
+      "double\n"
       "1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24\nFIELD more 1\nt 1 8 float\n1 2 3 4 5 6 7 8\n";
   const Folder folder;
-  for (const std::string& cells : {std::string("CELLS 2 11\n8 0 1 2 3 4 5 6 7\n1 3\n"),
-                                   std::string("CELLS 3 9\nOFFSETS vtktypeint64\n0 8 9\nCONNECTIVITY vtktypeint64\n0 1 2 3 4 5 6 7 3\n")}) {
-    const std::string version = cells.find("OFFSETS") == std::string::npos ? head : "# vtk DataFile Version 5.1" + head.substr(26);
+  for (const std::string& cells :
+       {std::string("CELLS 2 11\n8 0 1 2 3 4 5 6 7\n1 3\n"),
+        std::string("CELLS 3 9\nOFFSETS vtktypeint64\n0 8 9\nCONNECTIVITY vtktypeint64\n0 1 2 3 4 5 6 7 3\n")}) {
+    const std::string version =
+        cells.find("OFFSETS") == std::string::npos ? head : "# vtk DataFile Version 5.1" + head.substr(26);
     const MeshFile file = read_mesh(folder.file("a.vtk", version + points + cells + data));
     expect_accepted(file);
     EXPECT_EQ(cells_of(file.mesh), (Cells{{CellType::hexahedron, 4, {0, 1, 3, 2, 4, 5, 7, 6}}}));  // a voxel
@@ -140,7 +148,8 @@ TEST(Formats, LegacyVtkOfBothWaysToWriteCells) {
 
 TEST(Formats, PrismsInEitherOrderOfVtk) {
   const std::string head =
-      "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 6 float\n0 0 0 1 0 0 0 1 0 0 0 1 1 0 1 0 1 1\n";
+      "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 6 float\n0 0 0 1 0 0 0 1 0 0 0 1 1 0 1 "
+      "0 1 1\n";
   const Folder folder;
   // VTK's own order: the first triangle's normal points outwards.
   const MeshFile documented = read_mesh(folder.file("a.vtk", head + "CELLS 1 7\n6 0 2 1 3 5 4\nCELL_TYPES 1\n13\n"));
@@ -168,6 +177,20 @@ TEST(Formats, VtuAsciiByHand) {
   EXPECT_EQ(cells_of(file.mesh), (Cells{{CellType::tetrahedron, 0, {0, 1, 2, 3}}}));
   ASSERT_EQ(file.mesh.cell_data.size(), 1U);
   EXPECT_EQ(file.mesh.cell_data[0].values, std::vector<double>{0.5});
+}
+
+TEST(Formats, VtuBinaryInEitherByteOrder) {
+  const Folder folder;
+  for (const std::string format : {"binary", "appended"}) {
+    for (const bool big_endian : {false, true}) {
+      const MeshFile file = read_mesh(folder.file("a.vtu", binary_vtu(format, big_endian)));
+      expect_accepted(file);
+      EXPECT_EQ(cells_of(file.mesh),
+                (Cells{{CellType::tetrahedron, 0, {0, 1, 2, 3}}, {CellType::tetrahedron, 0, {0, 2, 1, 4}}}));
+      ASSERT_EQ(file.mesh.points.size(), 5U);
+      EXPECT_EQ(file.mesh.points[4].z, -1. / 3.);
+    }
+  }
 }
 
 TEST(RoundTrip, EveryFormatKeepsPointsCellsRegionsAndPatches) {
@@ -231,12 +254,38 @@ TEST(Formats, OthersAreRefusedByName) {
   EXPECT_NE(message("a.msh", "(0 \"GAMBIT to Fluent File\")\n").find("Fluent"), std::string::npos);
   EXPECT_NE(message("b.msh", "MeshVersionFormatted 2\n").find("Medit"), std::string::npos);
   EXPECT_NE(message("a.vtk", "<VTKFile type=\"UnstructuredGrid\"></VTKFile>").find(".vtu"), std::string::npos);
-  EXPECT_NE(message("b.vtk", "# vtk DataFile Version 3.0\nt\nBINARY\nDATASET POLYDATA\n").find("POLYDATA"), std::string::npos);
+  EXPECT_NE(message("b.vtk", "# vtk DataFile Version 3.0\nt\nBINARY\nDATASET POLYDATA\n").find("POLYDATA"),
+            std::string::npos);
   EXPECT_NE(message("a.vtu", "<VTKFile type=\"PolyData\"></VTKFile>").find("PolyData"), std::string::npos);
   EXPECT_NE(message("c.msh", "$MeshFormat\n3.0 0 8\n$EndMeshFormat\n").find("3.0"), std::string::npos);
   EXPECT_NE(message("e.vtk", "").find("empty"), std::string::npos);
   EXPECT_FALSE(read_mesh(folder / "none.vtu").report.valid());
   EXPECT_FALSE(read_mesh(std::filesystem::temp_directory_path()).report.valid());
+}
+
+TEST(Formats, NumbersThatNameNoPointAreFound) {
+  const Folder folder;
+  for (const std::string number : {"0", "-1", "5", "4294967297", "4294967296"}) {
+    const std::string medit =
+        "MeshVersionFormatted 2\nDimension 3\nVertices\n4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n"
+        "Tetrahedra\n1\n1 2 3 " +
+        number + " 0\nEnd\n";
+    const std::string gmsh =
+        "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 4 1 4\n3 1 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n0 1 0\n"
+        "0 0 1\n$EndNodes\n$Elements\n1 1 1 1\n3 1 4 1\n1 1 2 3 " +
+        number + "\n$EndElements\n";
+    const std::string vtk =
+        "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\n"
+        "CELLS 1 5\n4 0 1 2 " +
+        (number == "0" ? "4" : number) + "\nCELL_TYPES 1\n10\n";
+    for (const auto& path : {folder.file("a.mesh", medit), folder.file("a.msh", gmsh), folder.file("a.vtk", vtk)}) {
+      const MeshReport report = read_mesh(path).report;
+      ASSERT_EQ(report.defects.size(), 1U) << path << " " << number;
+      const bool unreadable = number.size() > 9 && path.extension() == ".vtk";  // not in VTK's 32 bits
+      const bool negative = number == "-1" && path.extension() == ".msh";
+      EXPECT_EQ(report.defects[0].kind, unreadable || negative ? "file" : "id_out_of_range") << path << " " << number;
+    }
+  }
 }
 
 TEST(Formats, SecondOrderCellsAreRefusedByName) {
@@ -260,7 +309,8 @@ TEST(Formats, SecondOrderCellsAreRefusedByName) {
 TEST(Formats, PlanarMeshesAreReadButHoldNoVolume) {
   const Folder folder;
   const std::string text =
-      "MeshVersionFormatted 2\nDimension 2\nVertices\n4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\nTriangles\n2\n1 2 3 5\n1 4 3 6\nEnd\n";
+      "MeshVersionFormatted 2\nDimension 2\nVertices\n4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\nTriangles\n2\n1 2 3 5\n1 4 3 "
+      "6\nEnd\n";
   const MeshFile file = read_mesh(folder.file("a.mesh", text));
   EXPECT_EQ(file.report.dimension, 2);
   EXPECT_EQ(file.report.verdict(), Verdict::repair);

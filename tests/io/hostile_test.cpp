@@ -1,11 +1,10 @@
 // Damaged files: every one must get a verdict, soon, with little memory, and what is accepted must be sound.
 #include <gtest/gtest.h>
-
-#include <chrono>
-#include <cstdlib>
-#include <random>
-
 #include <sys/resource.h>
+
+#include <cstdlib>
+#include <ctime>
+#include <random>
 
 #include "dartcast/io/read_mesh.hpp"
 #include "dartcast/io/report.hpp"
@@ -18,7 +17,6 @@ namespace {
 struct Sample {
   std::string name;
   std::string content;
-  std::size_t byte_step;  // damage each byte_step-th byte
 };
 
 /// A .vtu with its arrays inline, by hand, with a polyhedron.
@@ -36,7 +34,8 @@ std::string ascii_vtu() {
 }
 
 std::string ascii_vtk() {
-  return "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 double\n0 0 0 1 0 0 0 1 0 0 0 1 1 1 1\n"
+  return "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 double\n0 0 0 1 0 0 0 1 0 0 0 1 1 "
+         "1 1\n"
          "CELLS 2 23\n4 0 1 2 3\n17 4 3 1 3 2 3 1 2 4 3 2 3 4 3 3 1 4\nCELL_TYPES 2\n10\n42\nCELL_DATA 2\n"
          "SCALARS region int 1\nLOOKUP_TABLE default\n1 2\nPOINT_DATA 5\nFIELD f 1\nheat 1 5 double\n1 2 3 4 5\n";
 }
@@ -49,22 +48,23 @@ std::string written(const MeshData& mesh, const std::string& name) {
 
 std::vector<Sample> samples() {
   const MeshData mesh = mixed_mesh();
-  return {{"a.msh", gmsh_1(mesh), 1},
-          {"b.msh", written(mesh, "b.msh"), 1},
-          {"c.msh", gmsh_22_binary(mesh, false), 1},
-          {"d.msh", gmsh_4_binary(mesh, false, true), 1},
-          {"e.msh", written(mesh, "e.msh4"), 1},
-          {"f.msh", gmsh_4_binary(mesh, true, false), 1},
-          {"g.mesh", written(mesh, "g.mesh"), 1},
-          {"h.vtk", ascii_vtk(), 3},
-          {"i.vtk", written(polyhedra(), "i.vtk"), 5},
-          {"j.vtu", ascii_vtu(), 5},
-          {"k.vtu", written(polyhedra(), "k.vtu"), 5},
-          {"l.vtu", written(mesh, "l.vtu"), 7}};
+  return {{"a.msh", gmsh_1(mesh)},
+          {"b.msh", written(mesh, "b.msh")},
+          {"c.msh", gmsh_22_binary(mesh, false)},
+          {"d.msh", gmsh_4_binary(mesh, false, true)},
+          {"e.msh", written(mesh, "e.msh4")},
+          {"f.msh", gmsh_4_binary(mesh, true, false)},
+          {"g.mesh", written(mesh, "g.mesh")},
+          {"h.vtk", ascii_vtk()},
+          {"i.vtk", written(polyhedra(), "i.vtk")},
+          {"j.vtu", ascii_vtu()},
+          {"k.vtu", written(polyhedra(), "k.vtu")},
+          {"l.vtu", written(mesh, "l.vtu")},
+          {"m.vtu", binary_vtu("appended", false)},
+          {"n.vtu", binary_vtu("binary", true)}};
 }
 
-/// The full tier damages every byte; in the quick tier, as the sample says.
-std::size_t step_of(const Sample& sample) { return std::getenv("DARTCAST_FULL") != nullptr ? 1 : sample.byte_step; }
+bool full_tier() { return std::getenv("DARTCAST_FULL") != nullptr; }
 
 /// Reads the content; what is accepted must hold up when it is inspected again.
 bool expect_verdict(const Folder& folder, const std::string& name, const std::string& content, const std::string& how) {
@@ -82,16 +82,17 @@ bool expect_verdict(const Folder& folder, const std::string& name, const std::st
 class Hostile : public testing::Test {
  protected:
   void TearDown() override {
-    const auto seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    if (std::getenv("DARTCAST_SANITIZED") != nullptr || std::getenv("DARTCAST_FULL") != nullptr) return;
-    EXPECT_LT(seconds, 60.0);
+    if (std::getenv("DARTCAST_SANITIZED") != nullptr) return;
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
+    EXPECT_LT(processor_seconds() - start_, full_tier() ? 600.0 : 60.0);
     EXPECT_LT(usage.ru_maxrss, 600 * 1024) << "kilobytes";
   }
 
+  static double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
   Folder folder_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  double start_ = processor_seconds();
 };
 
 TEST_F(Hostile, SamplesAreAcceptedWhole) {
@@ -102,7 +103,7 @@ TEST_F(Hostile, TruncatedAnywhere) {
   for (const Sample& s : samples()) {
     // Without its last byte, a line's end, a file may still be whole.
     const std::size_t whole = s.content.find_last_not_of(" \r\n");
-    for (std::size_t n = 0; n < whole; n += step_of(s)) {
+    for (std::size_t n = 0; n < whole; ++n) {
       const bool accepted = expect_verdict(folder_, s.name, s.content.substr(0, n), "cut at " + std::to_string(n));
       // Only what follows the last array of .vtk, or "End" of .mesh, may be missed.
       const bool open_end = s.name == "g.mesh" || s.name == "h.vtk" || s.name == "i.vtk";
@@ -113,43 +114,53 @@ TEST_F(Hostile, TruncatedAnywhere) {
 
 TEST_F(Hostile, BytesChanged) {
   std::mt19937 random(7);
-  for (const Sample& s : samples()) {
-    for (std::size_t at = 0; at < s.content.size(); at += step_of(s)) {
-      std::string content = s.content;
-      content[at] = static_cast<char>(random() % 256);
-      expect_verdict(folder_, s.name, content, "byte " + std::to_string(at));
+  for (int round = 0; round < (full_tier() ? 30 : 1); ++round) {
+    for (const Sample& s : samples()) {
+      for (std::size_t at = 0; at < s.content.size(); ++at) {
+        std::string content = s.content;
+        content[at] = static_cast<char>(random() % 256);
+        expect_verdict(folder_, s.name, content, "byte " + std::to_string(at));
+      }
     }
   }
 }
 
 TEST_F(Hostile, NumbersReplaced) {
-  const std::vector<std::string> numbers = {"-1", "0", "3", "1e400", "nan", "inf", "4294967295", "-2147483648", "1000000000",
-                                            "9223372036854775807", "99999999999999999999", "x"};
-  std::mt19937 random(8);
+  const std::vector<std::string> numbers = {"-1",
+                                            "0",
+                                            "3",
+                                            "1e400",
+                                            "nan",
+                                            "inf",
+                                            "4294967295",
+                                            "-2147483648",
+                                            "1000000000",
+                                            "9223372036854775807",
+                                            "99999999999999999999",
+                                            "x"};
   for (const Sample& s : samples()) {
     std::vector<std::size_t> starts;
     for (std::size_t i = 1; i < s.content.size(); ++i) {
       const auto digit = [](char c) { return (c >= '0' && c <= '9') || c == '-' || c == '.'; };
       if (digit(s.content[i]) && !digit(s.content[i - 1])) starts.push_back(i);
     }
-    const bool vtk = s.name.find(".vt") != std::string::npos;
     for (const std::size_t at : starts) {
       const std::size_t end = std::min(s.content.find_first_not_of("0123456789-.e+", at), s.content.size());
       for (const std::string& number : numbers) {
-        if (vtk && step_of(s) > 1 && random() % 4 != 0) continue;
-        expect_verdict(folder_, s.name, s.content.substr(0, at) + number + s.content.substr(end), number + " at " + std::to_string(at));
+        expect_verdict(folder_, s.name, s.content.substr(0, at) + number + s.content.substr(end),
+                       number + " at " + std::to_string(at));
       }
     }
   }
 }
 
 TEST_F(Hostile, WordsOfBinaryFilesReplaced) {
-  const std::vector<std::uint64_t> words = {0, 1, 0xffffffffU, 0x7fffffffU, 0x80000000U, 0x7fffffffffffffffU, 0xffffffffffffffffU};
+  const std::vector<std::uint64_t> words = {
+      0, 1, 0xffffffffU, 0x7fffffffU, 0x80000000U, 0x7fffffffffffffffU, 0xffffffffffffffffU};
   for (const Sample& s : samples()) {
     if (s.name[0] != 'c' && s.name[0] != 'd' && s.name[0] != 'f' && s.name[0] != 'i') continue;
-    for (std::size_t at = 20; at + 8 <= s.content.size(); at += step_of(s)) {
+    for (std::size_t at = 20; at + 8 <= s.content.size(); ++at) {
       for (const std::uint64_t word : words) {
-        if (s.name[0] == 'i' && word > 1 && at % 2 != 0 && step_of(s) > 1) continue;
         std::string content = s.content;
         std::memcpy(content.data() + at, &word, word > 0xffffffffU ? 8 : 4);
         expect_verdict(folder_, s.name, content, "word at " + std::to_string(at));
@@ -164,6 +175,9 @@ TEST_F(Hostile, MemoryBombs) {
     EXPECT_FALSE(expect_verdict(folder_, name, content, "bomb")) << content;
   };
   refused("a.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + big + "\n");
+  const auto file = read_mesh(folder_ / "a.msh");
+  EXPECT_NE(file.report.defects[0].message.find("line 5: " + big + " nodes are announced"), std::string::npos)
+      << file.report.defects[0].message;
   refused("a.msh", "$NOD\n" + big + "\n");
   refused("a.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 " + big + " 1 1\n3 1 0 " + big + "\n");
   refused("a.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n0 0 0 " + big + "\n");

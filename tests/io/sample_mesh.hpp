@@ -1,6 +1,8 @@
 // Small meshes and files for the tests of readers and writers.
 #pragma once
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
@@ -11,21 +13,21 @@
 #include <string>
 #include <vector>
 
-#include <unistd.h>
-
 #include "dartcast/io/write_mesh.hpp"
 #include "dartcast/mesh/mesh_data.hpp"
 
 namespace dartcast::test {
 
 inline void add(MeshData& mesh, CellType type, std::vector<std::uint32_t> corners) { mesh.add_cell(type, corners); }
-inline void add_face(MeshData& mesh, std::vector<std::uint32_t> corners, std::int32_t tag) { mesh.add_patch_face(corners, tag); }
+inline void add_face(MeshData& mesh, std::vector<std::uint32_t> corners, std::int32_t tag) {
+  mesh.add_patch_face(corners, tag);
+}
 
-/// A hexahedron, a prism beside it, a pyramid on top and a tetrahedron on that: every standard type, three regions, two patches,
-/// coordinates that need all their digits.
+/// A hexahedron, a prism beside it, a pyramid on top and a tetrahedron on that: every standard type, three regions, two
+/// patches, coordinates that need all their digits.
 inline MeshData mixed_mesh() {
   MeshData mesh;
-  mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1},     {1, 0, 1},
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0},  {0, 1, 0},  {0, 0, 1},   {1, 0, 1},
                  {1, 1, 1}, {0, 1, 1}, {2, .5, 0}, {2, .5, 1}, {.5, .5, 2}, {.5, -1, 1.5}};
   for (Vec3& p : mesh.points) p = {p.x / 3.0 + 0.1, p.y * 0.7 - 0.2, p.z * 1.1e-3};
   add(mesh, CellType::hexahedron, {0, 1, 2, 3, 4, 5, 6, 7});
@@ -46,7 +48,8 @@ inline MeshData polyhedra() {
   MeshData out;
   out.points.assign(mesh.points.begin(), mesh.points.begin() + 8);
   out.points.push_back(mesh.points[10]);
-  add(out, CellType::polyhedron, {6, 4, 0, 3, 2, 1, 4, 4, 5, 6, 7, 4, 0, 1, 5, 4, 4, 1, 2, 6, 5, 4, 2, 3, 7, 6, 4, 3, 0, 4, 7});
+  add(out, CellType::polyhedron,
+      {6, 4, 0, 3, 2, 1, 4, 4, 5, 6, 7, 4, 0, 1, 5, 4, 4, 1, 2, 6, 5, 4, 2, 3, 7, 6, 4, 3, 0, 4, 7});
   add(out, CellType::polyhedron, {5, 4, 4, 7, 6, 5, 3, 4, 5, 8, 3, 5, 6, 8, 3, 6, 7, 8, 3, 7, 4, 8});
   return out;
 }
@@ -113,7 +116,10 @@ inline std::string gmsh_22_binary(const MeshData& mesh, bool swapped) {
   b.text("$MeshFormat\n2.2 1 8\n").number<std::int32_t>(1).text("\n$EndMeshFormat\n$Nodes\n");
   b.text(std::to_string(mesh.points.size()) + "\n");
   for (std::size_t p = 0; p < mesh.points.size(); ++p) {
-    b.number(static_cast<std::int32_t>(p + 1)).number(mesh.points[p].x).number(mesh.points[p].y).number(mesh.points[p].z);
+    b.number(static_cast<std::int32_t>(p + 1))
+        .number(mesh.points[p].x)
+        .number(mesh.points[p].y)
+        .number(mesh.points[p].z);
   }
   b.text("\n$EndNodes\n$Elements\n" + std::to_string(mesh.cell_count() + mesh.patch_tags.size()) + "\n");
   std::int32_t number = 1;
@@ -135,7 +141,9 @@ inline std::string gmsh_4_binary(const MeshData& mesh, bool v41, bool swapped) {
   const auto size = [&](std::size_t n) { b.number(static_cast<std::uint64_t>(n)); };
   const auto integer = [&](std::int64_t n) { b.number(static_cast<std::int32_t>(n)); };
   const auto node = [&](std::size_t n) { v41 ? size(n) : integer(static_cast<std::int64_t>(n)); };
-  b.text(v41 ? "$MeshFormat\n4.1 1 8\n" : "$MeshFormat\n4 1 8\n").number<std::int32_t>(1).text("\n$EndMeshFormat\n$Entities\n");
+  b.text(v41 ? "$MeshFormat\n4.1 1 8\n" : "$MeshFormat\n4 1 8\n")
+      .number<std::int32_t>(1)
+      .text("\n$EndMeshFormat\n$Entities\n");
   for (const std::size_t n : {1, 1, 2, 3}) size(n);
   integer(1);  // a point
   for (int k = 0; k < (v41 ? 3 : 6); ++k) b.number(0.5);
@@ -194,7 +202,8 @@ inline std::string gmsh_4_binary(const MeshData& mesh, bool v41, bool swapped) {
     const std::size_t n = mesh.patch_offsets[f + 1] - mesh.patch_offsets[f];
     element(2, mesh.patch_tags[f] - 9, n == 3 ? 2 : 3, {mesh.patch_faces.data() + mesh.patch_offsets[f], n});
   }
-  for (std::size_t c = 0; c < mesh.cell_count(); ++c) element(3, mesh.regions[c], gmsh_type(mesh.types[c]), mesh.cell(c));
+  for (std::size_t c = 0; c < mesh.cell_count(); ++c)
+    element(3, mesh.regions[c], gmsh_type(mesh.types[c]), mesh.cell(c));
   return b.text("\n$EndElements\n").out;
 }
 
@@ -207,7 +216,8 @@ inline std::string gmsh_1(const MeshData& mesh) {
     std::snprintf(line, sizeof line, " %.17g %.17g %.17g\n", mesh.points[p].x, mesh.points[p].y, mesh.points[p].z);
     out += number(p) + line;
   }
-  out += "$ENDNOD\n$ELM\n" + std::to_string(mesh.cell_count() + mesh.patch_tags.size() + 1) + "\n1 15 9 9 1 " + number(0) + "\n";
+  out += "$ENDNOD\n$ELM\n" + std::to_string(mesh.cell_count() + mesh.patch_tags.size() + 1) + "\n1 15 9 9 1 " +
+         number(0) + "\n";
   const auto element = [&](int type, std::int32_t tag, std::span<const std::uint32_t> corners) {
     out += "5 " + std::to_string(type) + " " + std::to_string(tag) + " 1 " + std::to_string(corners.size());
     for (const std::uint32_t v : corners) out += " " + number(v);
@@ -219,6 +229,49 @@ inline std::string gmsh_1(const MeshData& mesh) {
   }
   for (std::size_t c = 0; c < mesh.cell_count(); ++c) element(gmsh_type(mesh.types[c]), mesh.regions[c], mesh.cell(c));
   return out + "$ENDELM\n";
+}
+
+inline std::string base64(const std::string& bytes) {
+  static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    unsigned bits = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      bits = (bits << 8U) | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    }
+    for (std::size_t k = 0; k < 4; ++k) out += i + k > bytes.size() ? '=' : digits[(bits >> (18U - 6U * k)) & 63U];
+  }
+  return out;
+}
+
+/// Two tetrahedra in a .vtu with 64-bit headers and arrays that are not compressed: `format` is "binary" (inline
+/// base64) or "appended" (raw).
+inline std::string binary_vtu(const std::string& format, bool big_endian) {
+  std::string appended;
+  const auto array = [&](const std::string& tag, const std::string& data) {
+    Bytes head(big_endian);
+    head.number(static_cast<std::uint64_t>(data.size()));
+    const std::string out = "<DataArray " + tag + " format=\"" + format + "\"";
+    if (format == "binary") return out + ">\n" + base64(head.out + data) + "\n</DataArray>\n";
+    const std::string offset = std::to_string(appended.size());
+    appended += head.out + data;
+    return out + " offset=\"" + offset + "\"/>\n";
+  };
+  Bytes points(big_endian);
+  for (const double x : {0., 0., 0., 1., 0., 0., 0., 1., 0., 0., 0., 1., 0., 0., -1. / 3.}) points.number(x);
+  Bytes corners(big_endian);
+  for (const std::int32_t v : {0, 1, 2, 3, 0, 2, 1, 4}) corners.number(v);
+  Bytes ends(big_endian);
+  ends.number(std::int32_t{4}).number(std::int32_t{8});
+  std::string out = "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" header_type=\"UInt64\" byte_order=\"" +
+                    std::string(big_endian ? "BigEndian" : "LittleEndian") + "\"><UnstructuredGrid>\n" +
+                    "<Piece NumberOfPoints=\"5\" NumberOfCells=\"2\"><Points>\n";
+  out += array("type=\"Float64\" NumberOfComponents=\"3\"", points.out) + "</Points><Cells>\n";
+  out +=
+      array("type=\"Int32\" Name=\"connectivity\"", corners.out) + array("type=\"Int32\" Name=\"offsets\"", ends.out);
+  out += array("type=\"UInt8\" Name=\"types\"", "\x0a\x0a") + "</Cells></Piece></UnstructuredGrid>\n";
+  if (format == "appended") out += "<AppendedData encoding=\"raw\">\n_" + appended + "\n</AppendedData>\n";
+  return out + "</VTKFile>\n";
 }
 
 inline std::string slurp(const std::filesystem::path& path) {

@@ -27,10 +27,10 @@ std::filesystem::path data_folder() {
   return folder == nullptr ? std::filesystem::path() : std::filesystem::path(folder);
 }
 
-#define NEED_DATA()                                                                                   \
-  if (data_folder().empty()) {                                                                        \
-    std::cout << "left out: DARTCAST_DATA does not name the folder of meshes made by others\n";       \
-    GTEST_SKIP();                                                                                     \
+#define NEED_DATA()                                                                             \
+  if (data_folder().empty()) {                                                                  \
+    std::cout << "left out: DARTCAST_DATA does not name the folder of meshes made by others\n"; \
+    GTEST_SKIP();                                                                               \
   }
 
 std::vector<Expected> volumes() {
@@ -101,7 +101,8 @@ TEST(SharedData, NoVolumeIsForgotten) {
         EXPECT_EQ(read_mesh(entry.path()).report.verdict(), Verdict::refuse) << entry.path();
         continue;
       }
-      EXPECT_EQ(listed.count(std::filesystem::relative(entry.path(), data_folder()).generic_string()), 1U) << entry.path();
+      EXPECT_EQ(listed.count(std::filesystem::relative(entry.path(), data_folder()).generic_string()), 1U)
+          << entry.path();
     }
   }
 }
@@ -159,7 +160,8 @@ TEST(SharedData, EveryVolumeSurvivesARoundTrip) {
     for (const char* name : {"a.vtu", "a.vtk", "a.msh", "a.msh4", "a.mesh"}) {
       write_mesh(original.mesh, folder / name);
       const MeshFile copy = read_mesh(folder / name);
-      EXPECT_EQ(copy.report.verdict(), Verdict::accept) << expected.file << " " << name << "\n" << report_text(copy.report);
+      EXPECT_EQ(copy.report.verdict(), Verdict::accept) << expected.file << " " << name << "\n"
+                                                        << report_text(copy.report);
       EXPECT_TRUE(copy.mesh.points == original.mesh.points) << expected.file << " " << name;
       EXPECT_EQ(copy.report.cells, original.report.cells) << expected.file << " " << name;
       EXPECT_EQ(copy.mesh.patch_tags.size(), original.mesh.patch_tags.size()) << expected.file << " " << name;

@@ -49,22 +49,21 @@ class EveryMesh : public testing::TestWithParam<Case> {
   std::vector<MeshData> meshes_;
 };
 
-INSTANTIATE_TEST_SUITE_P(
-    Map, EveryMesh,
-    testing::Values(Case{"tetrahedra", [] { return box(CellType::tetrahedron); }},
-                    Case{"hexahedra", [] { return box(CellType::hexahedron); }},
-                    Case{"prisms", [] { return box(CellType::prism); }},
-                    Case{"pyramids", [] { return box(CellType::pyramid); }},
-                    Case{"mixed", [] { return box(CellType::hexahedron, true); }},
-                    Case{"octahedra",
-                         [] {
-                           OctahedraOptions o;
-                           o.cells = {2, 2, 1};
-                           o.blocked_share = 0.3;
-                           return generate_octahedra(o);
-                         }},
-                    Case{"handmade", [] { return test::mixed_mesh(); }}),
-    [](const auto& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(Map, EveryMesh,
+                         testing::Values(Case{"tetrahedra", [] { return box(CellType::tetrahedron); }},
+                                         Case{"hexahedra", [] { return box(CellType::hexahedron); }},
+                                         Case{"prisms", [] { return box(CellType::prism); }},
+                                         Case{"pyramids", [] { return box(CellType::pyramid); }},
+                                         Case{"mixed", [] { return box(CellType::hexahedron, true); }},
+                                         Case{"octahedra",
+                                              [] {
+                                                OctahedraOptions o;
+                                                o.cells = {2, 2, 1};
+                                                o.blocked_share = 0.3;
+                                                return generate_octahedra(o);
+                                              }},
+                                         Case{"handmade", [] { return test::mixed_mesh(); }}),
+                         [](const auto& i) { return std::string(i.param.name); });
 
 std::vector<Dart> all_darts(const Map& map) {
   std::vector<Dart> darts;
@@ -172,7 +171,8 @@ TEST_P(EveryMesh, EveryCellIsASphere) {
 // All darts that `holds` accepts, in the cells reached from d's over faces that hold all of `corners`.
 template <class Holds>
 std::set<Dart> brute_orbit(const Map& map, const std::map<FaceKey, std::set<std::uint32_t>>& faces,
-                           const std::map<std::uint32_t, Cell>& cell_of, Dart d, const FaceKey& corners, Holds&& holds) {
+                           const std::map<std::uint32_t, Cell>& cell_of, Dart d, const FaceKey& corners,
+                           Holds&& holds) {
   std::set<std::uint32_t> reached = {map.source(d.cell)};
   for (bool grown = true; grown;) {
     grown = false;
@@ -297,7 +297,9 @@ TEST(Map, SourceNumbersOfAMixedMeshAreThoseOfTheInput) {
 TEST(Map, PatchesOfABoxAreItsSides) {
   const MeshData mesh = box(CellType::prism);
   const Map map(mesh);
-  EXPECT_EQ(map.patch_names(), (std::vector<std::string>{"", "xmin", "xmax", "ymin", "ymax", "zmin", "zmax"}));
+  const std::set<std::string> names(map.patch_names().begin(), map.patch_names().end());
+  EXPECT_EQ(names, (std::set<std::string>{"", "xmin", "xmax", "ymin", "ymax", "zmin", "zmax"}));
+  EXPECT_EQ(map.patch_names()[0], "");
   std::map<std::string, int> faces;
   for (const Cell c : map.cells()) {
     const CellView v = map.view(c);
@@ -321,10 +323,12 @@ TEST(Map, PatchesOfABoxAreItsSides) {
 
 TEST(Map, APatchFaceInsideIsNamedFromBothSides) {
   MeshData mesh = test::mixed_mesh();
-  mesh.add_patch_face(std::vector<std::uint32_t>{6, 5, 1, 2}, 5);  // between hexahedron and pyramid, from another corner
-  mesh.add_patch_face(std::vector<std::uint32_t>{1, 2, 8}, 9);     // between pyramid and tetrahedron: a tag without a name
+  mesh.add_patch_face(std::vector<std::uint32_t>{6, 5, 1, 2},
+                      5);                                       // between hexahedron and pyramid, from another corner
+  mesh.add_patch_face(std::vector<std::uint32_t>{1, 2, 8}, 9);  // between pyramid and tetrahedron: a tag without a name
   mesh.add_patch_face(std::vector<std::uint32_t>{5, 6, 2, 1}, 9);  // named twice: the first counts
   mesh.add_patch_face(std::vector<std::uint32_t>{1, 6, 2, 5}, 9);  // no face: crossed
+  mesh.add_patch_face(std::vector<std::uint32_t>{1, 2, 8, 5}, 9);  // no face: one corner is another
   mesh.patch_names[5] = "gate";
   const Map map(mesh);
   const Patch gate = map.patch("gate");
@@ -347,7 +351,9 @@ TEST(Map, AnUnknownPatchListsTheKnownOnes) {
   } catch (const InvalidArgument& e) {
     const std::string text = e.what();
     EXPECT_NE(text.find("\"inlet\""), std::string::npos) << text;
-    EXPECT_NE(text.find("xmin, xmax, ymin, ymax, zmin, zmax"), std::string::npos) << text;
+    for (const char* name : {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"}) {
+      EXPECT_NE(text.find(name), std::string::npos) << text;
+    }
   }
   try {
     (void)Map(test::mixed_mesh()).patch("inlet");

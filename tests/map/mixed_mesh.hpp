@@ -1,4 +1,5 @@
-// A small mesh with every type of cell side by side, one with a polyhedron too, and one cell that touches it in a vertex only.
+// A small mesh with every type of cell side by side, one with a polyhedron too, and one cell that touches it in a
+// vertex only.
 #pragma once
 
 #include <array>
@@ -20,25 +21,27 @@ inline void add_tetrahedron(MeshData& mesh, std::array<std::uint32_t, 4> v) {
   mesh.add_cell(CellType::tetrahedron, v);
 }
 
-/// Cell 0: the unit cube as a hexahedron; 1: a pyramid on its side x = 1; 2: a prism on its side y = 1; 3, 4: tetrahedra on the pyramid;
-/// 5: a tetrahedron on the prism; 6: the cube below it as a polyhedron; 7: a tetrahedron that shares only vertex 4 with the rest.
+/// Cell 0: the unit cube as a hexahedron; 1: a pyramid on its side x = 1; 2: a prism on its side y = 1; 3, 4:
+/// tetrahedra on the pyramid; 5: a tetrahedron on the prism; 6: the cube below it as a polyhedron; 7: a tetrahedron
+/// that shares only vertex 4 with the rest.
 inline MeshData mixed_mesh() {
   MeshData mesh;
-  mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1},  // the cube
-                 {2, 0.5, 0.5}, {1.5, 0.5, -1}, {1.5, 0.5, 2},                                            // beyond x = 1
-                 {0, 2, 0.5}, {1, 2, 0.5}, {2, 1.5, 0.5},                                                 // beyond y = 1
-                 {0, 0, -1}, {1, 0, -1}, {1, 1, -1}, {0, 1, -1},                                          // below
-                 {-1, 0, 2}, {0, -1, 2}, {0, 0, 2}};                                                      // far
+  mesh.points = {{0, 0, 0},     {1, 0, 0},      {1, 1, 0},     {0, 1, 0},
+                 {0, 0, 1},     {1, 0, 1},      {1, 1, 1},     {0, 1, 1},   // the cube
+                 {2, 0.5, 0.5}, {1.5, 0.5, -1}, {1.5, 0.5, 2},              // beyond x = 1
+                 {0, 2, 0.5},   {1, 2, 0.5},    {2, 1.5, 0.5},              // beyond y = 1
+                 {0, 0, -1},    {1, 0, -1},     {1, 1, -1},    {0, 1, -1},  // below
+                 {-1, 0, 2},    {0, -1, 2},     {0, 0, 2}};                 // far
   add(mesh, CellType::hexahedron, {0, 1, 2, 3, 4, 5, 6, 7});
   add(mesh, CellType::pyramid, {1, 2, 6, 5, 8});
   add(mesh, CellType::prism, {3, 11, 7, 2, 12, 6});
   add_tetrahedron(mesh, {1, 2, 8, 9});
   add_tetrahedron(mesh, {5, 6, 8, 10});
   add_tetrahedron(mesh, {2, 12, 6, 13});
-  add(mesh, CellType::polyhedron, {6,                                        //
-                                   4, 14, 17, 16, 15, 4, 0, 1, 2, 3,         // below, above
-                                   4, 14, 15, 1, 0, 4, 15, 16, 2, 1,         //
-                                   4, 16, 17, 3, 2, 4, 17, 14, 0, 3});
+  add(mesh, CellType::polyhedron, {6,                                   //
+                                   4, 14, 17, 16, 15, 4, 0,  1,  2, 3,  // below, above
+                                   4, 14, 15, 1,  0,  4, 15, 16, 2, 1,  //
+                                   4, 16, 17, 3,  2,  4, 17, 14, 0, 3});
   add_tetrahedron(mesh, {4, 18, 19, 20});
   return mesh;
 }

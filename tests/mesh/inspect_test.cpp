@@ -1,16 +1,19 @@
 // Every kind of finding, made on purpose, one at a time.
+#include "dartcast/mesh/inspect.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <numeric>
 #include <random>
+#include <set>
 
 #include "dartcast/mesh/cell_types.hpp"
 #include "dartcast/mesh/conformity.hpp"
-#include "dartcast/mesh/inspect.hpp"
 
 namespace dartcast {
 namespace {
@@ -89,14 +92,29 @@ TEST(Inspect, GoodCellsAreAccepted) {
   }
 }
 
+/// The faces of cell 0, each from its smallest corner on, run backwards if asked.
+std::set<std::vector<std::uint32_t>> faces_of(const MeshData& mesh, bool backwards) {
+  std::set<std::vector<std::uint32_t>> faces;
+  for_each_face(mesh, 0, [&](std::span<const std::uint32_t> face) {
+    std::vector<std::uint32_t> f(face.begin(), face.end());
+    if (backwards) std::reverse(f.begin(), f.end());
+    std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());
+    faces.insert(f);
+  });
+  return faces;
+}
+
 TEST(Inspect, CellsInsideOutAreMirrored) {
   for (const CellType type : all_types) {
     MeshData mesh = one_of(type);
+    inspect(mesh);  // drops unused points
     for (Vec3& p : mesh.points) p.x = -p.x;
+    const auto expected = faces_of(mesh, true);
     const MeshReport report = inspect(mesh);
     EXPECT_TRUE(report.valid());
-    EXPECT_EQ(kinds(report.repairs)["orientation"], 1U) << static_cast<int>(type);
-    EXPECT_EQ(kinds(inspect(mesh).repairs).count("orientation"), 0U);
+    EXPECT_EQ(kinds(report.repairs), (Kinds{{"orientation", 1}})) << static_cast<int>(type);
+    EXPECT_EQ(faces_of(mesh, false), expected) << static_cast<int>(type);
+    EXPECT_EQ(inspect(mesh).verdict(), Verdict::accept);
   }
 }
 
@@ -234,6 +252,19 @@ TEST(Inspect, PolyhedraMustBeClosed) {
   open.offsets.back() = 26;
   EXPECT_EQ(kinds(inspect(open).defects), (Kinds{{"polyhedron", 1}}));
 
+  // Two tetrahedra that share an edge only, as one cell: that edge is used four times.
+  MeshData pinched;
+  pinched.points = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}};
+  std::vector<std::uint32_t> faces = {8};
+  for (const auto& t : {std::array{0U, 1U, 2U, 3U}, std::array{0U, 1U, 4U, 5U}}) {
+    for (const auto& face : standard_faces(CellType::tetrahedron)) {
+      faces.push_back(3);
+      for (const std::uint8_t k : face) faces.push_back(t[k]);
+    }
+  }
+  add(pinched, CellType::polyhedron, faces);
+  EXPECT_EQ(kinds(inspect(pinched).defects), (Kinds{{"polyhedron", 1}}));
+
   MeshData stream = one_of(CellType::polyhedron);
   stream.connectivity[1] = 40;
   EXPECT_EQ(kinds(inspect(stream).defects), (Kinds{{"polyhedron", 1}}));
@@ -295,8 +326,8 @@ TEST(Inspect, DiagonalsThatDisagree) {
   for (const double warp : {0.0, 0.1}) {
     MeshData mesh;
     mesh.points = {{0, 0, 0}, {1, 0, warp}, {1, 1, 0}, {0, 1, warp}, {.5, .5, 1}, {.5, .5, -1}};
-    add(mesh, CellType::tetrahedron, {0, 1, 2, 4});
-    add(mesh, CellType::tetrahedron, {0, 2, 3, 4});
+    add(mesh, CellType::tetrahedron, {0, 1, 3, 4});
+    add(mesh, CellType::tetrahedron, {1, 2, 3, 4});
     add(mesh, CellType::pyramid, {0, 3, 2, 1, 5});
     EXPECT_EQ(kinds(inspect(mesh).warnings)["non_conforming"], 3U) << warp;
   }

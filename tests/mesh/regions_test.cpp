@@ -43,7 +43,9 @@ TEST(SelectFree, ByRegionNameOrTag) {
 TEST(SelectFree, AnUnknownRegionNamesThoseThereAre) {
   MeshData mesh = three_cells();
   mesh.free = {0, 1, 0};
-  const std::string message = message_of([&] { select_free_regions(mesh, std::vector<std::string>{"lumen", "nowhere"}); });
+  const std::string message = message_of([&] {
+    select_free_regions(mesh, std::vector<std::string>{"lumen", "nowhere"});
+  });
   EXPECT_NE(message.find("'nowhere'"), std::string::npos);
   EXPECT_NE(message.find("-6, lumen (4), 5"), std::string::npos) << message;
   EXPECT_EQ(mesh.free, (Free{0, 1, 0}));
@@ -53,7 +55,8 @@ TEST(SelectFree, ByValuesOfAnArray) {
   MeshData mesh = three_cells();
   select_free_values(mesh, "heat", std::vector<double>{1.0, 7.0});
   EXPECT_EQ(mesh.free, (Free{0, 1, 1}));
-  EXPECT_NE(message_of([&] { select_free_values(mesh, "cold", std::vector<double>{1.0}); }).find("heat, velocity"), std::string::npos);
+  EXPECT_NE(message_of([&] { select_free_values(mesh, "cold", std::vector<double>{1.0}); }).find("heat, velocity"),
+            std::string::npos);
   EXPECT_NE(message_of([&] { select_free_values(mesh, "velocity", std::vector<double>{1.0}); }), "");
   EXPECT_NE(message_of([&] { select_free_values(mesh, "heat", std::vector<double>{3.0}); }), "");
   EXPECT_EQ(mesh.free, (Free{0, 1, 1}));

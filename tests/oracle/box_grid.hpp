@@ -43,7 +43,7 @@ class BoxGrid {
     const std::array<double, 3> high = {all.high.x, all.high.y, all.high.z};
     for (std::size_t a = 0; a < 3; ++a) per_length_[a] = high[a] > low_[a] ? side / (high[a] - low_[a]) : 0.0;
     for (std::uint32_t i = 0; i < boxes_.size(); ++i) {
-      each_place(boxes_[i], [&](std::size_t place) { places_[place].push_back(i); });
+      each_place(boxes_[i], [&](const Place& at) { places_[number(at)].push_back(i); });
     }
   }
 
@@ -51,19 +51,27 @@ class BoxGrid {
   template <class Visit>
   void each_overlapping(const Box& b, Visit&& visit) const {
     if (boxes_.empty()) return;
-    std::vector<std::uint32_t> found;
-    each_place(b, [&](std::size_t place) {
-      for (const std::uint32_t i : places_[place]) {
-        if (boxes_[i].overlaps(b)) found.push_back(i);
+    // Two ranges of places that overlap do so from one lowest place on: there, and only there, the box is visited.
+    each_place(b, [&](const Place& at) {
+      for (const std::uint32_t i : places_[number(at)]) {
+        if (lowest_common(boxes_[i], b) == at && boxes_[i].overlaps(b)) visit(i);
       }
     });
-    std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
-    for (const std::uint32_t i : found) visit(i);
   }
 
  private:
   static constexpr int side = 12;
+  using Place = std::array<int, 3>;
+
+  static std::size_t number(const Place& at) { return static_cast<std::size_t>(at[0] + side * (at[1] + side * at[2])); }
+
+  [[nodiscard]] Place place_of(const Vec3& x) const { return {place(x.x, 0), place(x.y, 1), place(x.z, 2)}; }
+
+  [[nodiscard]] Place lowest_common(const Box& a, const Box& b) const {
+    const Place p = place_of(a.low);
+    const Place q = place_of(b.low);
+    return {std::max(p[0], q[0]), std::max(p[1], q[1]), std::max(p[2], q[2])};
+  }
 
   // Never falls as x grows: boxes that overlap share a place.
   [[nodiscard]] int place(double x, std::size_t axis) const {
@@ -73,11 +81,11 @@ class BoxGrid {
 
   template <class Visit>
   void each_place(const Box& b, Visit&& visit) const {
-    const std::array<int, 3> from = {place(b.low.x, 0), place(b.low.y, 1), place(b.low.z, 2)};
-    const std::array<int, 3> to = {place(b.high.x, 0), place(b.high.y, 1), place(b.high.z, 2)};
+    const Place from = place_of(b.low);
+    const Place to = place_of(b.high);
     for (int k = from[2]; k <= to[2]; ++k) {
       for (int j = from[1]; j <= to[1]; ++j) {
-        for (int i = from[0]; i <= to[0]; ++i) visit(static_cast<std::size_t>(i + side * (j + side * k)));
+        for (int i = from[0]; i <= to[0]; ++i) visit(Place{i, j, k});
       }
     }
   }

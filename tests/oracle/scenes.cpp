@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numeric>
+#include <utility>
 
 #include "dartcast/base/random.hpp"
 #include "dartcast/mesh/generate_box.hpp"
@@ -34,7 +36,7 @@ MeshData octahedra(Random& random) {
 MeshData box(SceneKind kind, Random& random) {
   BoxOptions o;
   const std::uint32_t least = kind == SceneKind::slivers ? 2 : 1;  // they need points inside
-  const std::uint32_t most = kind == SceneKind::hexahedra ? 5 : 3;
+  const std::uint32_t most = kind == SceneKind::hexahedra || kind == SceneKind::flat_corners ? 5 : 3;
   for (std::uint32_t& n : o.cells) n = least + random.below(most + 1 - least);
   o.size = {edge * o.cells[0], edge * o.cells[1], edge * o.cells[2]};
   o.mixed = kind == SceneKind::mixed;
@@ -48,6 +50,40 @@ MeshData box(SceneKind kind, Random& random) {
     default: break;
   }
   return generate_box(o);
+}
+
+// Puts a vertex in the middle of some edges; every cell becomes a polyhedron.
+MeshData with_flat_corners(MeshData mesh, Random& random) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middle;  // none: not cut
+  MeshData result = mesh;
+  result.types.clear();
+  result.offsets = {0};
+  result.connectivity.clear();
+  for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
+    const auto faces = faces_of(mesh, c);
+    std::vector<std::uint32_t> cell = {static_cast<std::uint32_t>(faces.size())};
+    for (const auto& face : faces) {
+      const std::size_t count_at = cell.size();
+      cell.push_back(0);
+      for (std::size_t i = 0; i < face.size(); ++i) {
+        const std::uint32_t a = face[i];
+        const std::uint32_t b = face[(i + 1) % face.size()];
+        const auto [found, is_new] = middle.try_emplace({std::min(a, b), std::max(a, b)}, none);
+        if (is_new && random.below(8) == 0) {
+          found->second = static_cast<std::uint32_t>(result.points.size());
+          result.points.push_back((mesh.points[a] + mesh.points[b]) * 0.5);
+        }
+        cell.push_back(a);
+        if (found->second != none) cell.push_back(found->second);
+      }
+      cell[count_at] = static_cast<std::uint32_t>(cell.size() - count_at - 1);
+    }
+    result.add_cell(CellType::polyhedron, cell);
+  }
+  result.patch_faces.clear();
+  result.patch_offsets = {0};
+  result.patch_tags.clear();
+  return result;
 }
 
 // Fans and cones start at lowest-numbered vertices: other numbers, other simplices.
@@ -150,14 +186,15 @@ void scale_and_shift(std::vector<Vec3>& points, Random& random) {
 }  // namespace
 
 std::string name_of(SceneKind kind) {
-  static const std::array<const char*, scene_kinds> names = {"tetrahedra", "hexahedra", "prisms", "pyramids",
-                                                             "mixed",      "octahedra", "slivers"};
+  static const std::array<const char*, scene_kinds> names = {"tetrahedra", "hexahedra", "prisms",       "pyramids",
+                                                             "mixed",      "octahedra", "flat_corners", "slivers"};
   return names[static_cast<std::size_t>(kind)];
 }
 
 MeshData lattice_scene(SceneKind kind, std::uint64_t seed) {
   Random random(seed, 1);
   MeshData mesh = kind == SceneKind::octahedra ? octahedra(random) : box(kind, random);
+  if (kind == SceneKind::flat_corners) mesh = with_flat_corners(std::move(mesh), random);
   block_single_cells(mesh, random);
   keep_one_free(mesh);
   renumber(mesh, random);

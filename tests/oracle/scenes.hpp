@@ -8,15 +8,17 @@
 
 namespace dartcast::oracle {
 
-enum class SceneKind { tetrahedra, hexahedra, prisms, pyramids, mixed, octahedra, slivers };
-inline constexpr int scene_kinds = 7;
+enum class SceneKind { tetrahedra, hexahedra, prisms, pyramids, mixed, octahedra, flat_corners, slivers };
+inline constexpr int scene_kinds = 8;
 
 std::string name_of(SceneKind kind);
 
 /// A conforming mesh of some ten to two hundred cells, all that is random drawn from the seed: the size, a share of
 /// blocked cells, the numbers of the points, a displacement of each point (which warps faces) times `warp` in [0, 1], a
 /// rotation, a scale by a power of two and a shift. With a large warp some cells may be invalid; with 0 none is.
-/// Slivers are tetrahedra of which some are squashed to about 1e-12 of their volume.
+/// Flat corners are hexahedra with
+/// vertices in the middle of some edges: simplices are flat unless faces and cells get points of their own. Slivers are
+/// tetrahedra of which some are squashed to about 1e-12 of their volume.
 MeshData random_scene(SceneKind kind, std::uint64_t seed, double warp);
 
 /// The same with points on integers, nothing warped, rotated or squashed. Coordinates up to 16, edges of length 2 and

@@ -37,13 +37,17 @@ std::pair<std::uint32_t, std::uint32_t> ordered(std::uint32_t a, std::uint32_t b
 
 bool contains(const auto& list, std::uint32_t x) { return std::find(list.begin(), list.end(), x) != list.end(); }
 
+// Counterclockwise seen from outside of a positive tetrahedron.
 Triangle facet(const Tetrahedron& t, std::size_t opposite) {
-  Triangle f{};
-  std::size_t n = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    if (i != opposite) f[n++] = t[i];
-  }
-  return f;
+  static constexpr std::array<Triangle, 4> outward = {{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+  const Triangle& f = outward[opposite];
+  return {t[f[0]], t[f[1]], t[f[2]]};
+}
+
+// Turned so that the lowest number comes first.
+Triangle turned(Triangle t) {
+  std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+  return t;
 }
 
 }  // namespace
@@ -79,7 +83,10 @@ std::vector<Triangle> fan(const Face& face, std::uint32_t point) {
 }
 
 Triangulation::Triangulation(const MeshData& mesh, const InteriorVertices& interior)
-    : mesh_point_count_(mesh.points.size()), free_(mesh.cell_count(), true), faces_(mesh.cell_count()) {
+    : mesh_point_count_(mesh.points.size()),
+      free_(mesh.cell_count(), true),
+      faces_(mesh.cell_count()),
+      fans_(mesh.cell_count()) {
   for (std::uint32_t c = 0; c < mesh.cell_count(); ++c) {
     if (!mesh.free.empty()) free_[c] = mesh.free[c] != 0;
     add_cell(mesh, c, interior);
@@ -99,6 +106,7 @@ void Triangulation::add_cell(const MeshData& mesh, std::uint32_t cell, const Int
     const auto centre = interior.of_face.find({cell, f});
     const std::uint32_t point = centre == interior.of_face.end() ? none : centre->second;
     for (const Triangle& t : fan(face, point)) {
+      fans_[cell][turned(t)] = f;
       if (!contains(t, apex)) add_simplex(cell, t, apex);
     }
     if (point != none) face.push_back(point);
@@ -117,10 +125,25 @@ void Triangulation::add_simplex(std::uint32_t cell, const Triangle& t, std::uint
   simplices_.push_back(s);
 }
 
+// The face whose fan has this facet: by the turn of its corners seen from outside, too, since two faces that bend
+// around the same three corners may share a triangle, one from each side.
+std::uint32_t Triangulation::face_with(std::uint32_t cell, const Triangle& outward) const {
+  const auto& triangles = fans_[cell];
+  const auto found = triangles.find(turned(outward));
+  return found == triangles.end() ? none : found->second;
+}
+
 void Triangulation::connect() {
-  std::map<Triangle, std::vector<std::pair<std::uint32_t, std::uint32_t>>> sides;
+  using Side = std::pair<std::uint32_t, std::uint32_t>;
+  std::map<std::pair<std::vector<std::uint32_t>, Triangle>, std::vector<Side>> sides;  // by face or cell, and corners
   for (std::uint32_t s = 0; s < simplices_.size(); ++s) {
-    for (std::uint32_t i = 0; i < 4; ++i) sides[sorted(facet(simplices_[s].vertex, i))].emplace_back(s, i);
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      const Triangle outward = facet(simplices_[s].vertex, i);
+      const std::uint32_t cell = simplices_[s].cell;
+      const std::uint32_t face = face_with(cell, outward);
+      const auto place = face == none ? std::vector{none, cell} : faces_[cell][face];
+      sides[{place, sorted(outward)}].emplace_back(s, i);
+    }
   }
   for (const auto& [triangle, both] : sides) {
     if (both.size() > 2) throw std::logic_error("oracle: a triangle of three simplices");
@@ -138,14 +161,9 @@ void Triangulation::connect() {
 void Triangulation::add_wall(std::uint32_t simplex, std::uint32_t opposite) {
   Simplex& s = simplices_[simplex];
   WallTriangle wall;
-  // In a positive tetrahedron (0, 1, 2, 3) these turn counterclockwise seen from outside.
-  static constexpr std::array<Triangle, 4> outward = {{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
-  for (std::size_t i = 0; i < 3; ++i) wall.vertex[i] = s.vertex[outward[opposite][i]];
+  wall.vertex = facet(s.vertex, opposite);
   wall.cell = s.cell;
-  for (std::uint32_t f = 0; f < faces_[s.cell].size(); ++f) {
-    const Triangle t = sorted(wall.vertex);
-    if (std::includes(faces_[s.cell][f].begin(), faces_[s.cell][f].end(), t.begin(), t.end())) wall.face = f;
-  }
+  wall.face = face_with(s.cell, wall.vertex);
   if (wall.face == none)
     throw std::logic_error("oracle: a wall inside of a cell; does a shared face differ from its other side?");
   for (std::size_t i = 0; i < 3; ++i) {
@@ -161,6 +179,7 @@ std::uint32_t Triangulation::find(std::uint32_t cell, Tetrahedron vertices) cons
 }
 
 int Triangulation::dimension(std::uint32_t cell, const std::vector<std::uint32_t>& vertices) const {
+  if (vertices.size() == 4) return 3;
   if (vertices.size() == 1 && vertices[0] < mesh_point_count_) return 0;
   if (vertices.size() == 2 && edges_.contains(ordered(vertices[0], vertices[1]))) return 1;
   for (const auto& face : faces_[cell]) {

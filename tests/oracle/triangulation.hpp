@@ -69,6 +69,7 @@ class Triangulation {
 
   void add_cell(const MeshData& mesh, std::uint32_t cell, const InteriorVertices& interior);
   void add_simplex(std::uint32_t cell, const Triangle& t, std::uint32_t apex);
+  [[nodiscard]] std::uint32_t face_with(std::uint32_t cell, const Triangle& outward) const;
   void connect();
   void add_wall(std::uint32_t simplex, std::uint32_t facet);
 
@@ -77,6 +78,7 @@ class Triangulation {
   std::vector<Simplex> simplices_;
   std::vector<WallTriangle> walls_;
   std::vector<std::vector<std::vector<std::uint32_t>>> faces_;  // per cell: sorted corners, and the face's point
+  std::vector<std::map<Triangle, std::uint32_t>> fans_;         // per cell: triangles, and their faces
   std::set<Edge> edges_;
   std::map<std::pair<std::uint32_t, Tetrahedron>, std::uint32_t> by_vertices_;
 };

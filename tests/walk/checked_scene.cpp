@@ -52,6 +52,7 @@ const oracle::Touch* find(const oracle::Trace& trace, std::uint32_t wall) {
 }  // namespace
 
 CheckedScene::CheckedScene(MeshData mesh) : mesh_(std::move(mesh)), complex_(mesh_, Threads{1}) {
+  if (!complex_.invalid_cells().empty()) return;
   const auto positions = complex_.positions();
   oracle_ = std::make_unique<oracle::Oracle>(mesh_, std::vector<Vec3>(positions.begin(), positions.end()),
                                              interior_of(complex_, mesh_));
@@ -88,18 +89,15 @@ std::uint32_t CheckedScene::oracle_wall(const WallHit& hit) const {
   return oracle_wall({hit.face.cell, behind.index}, behind.place);
 }
 
-std::string CheckedScene::check_walk(SimplexId start, const Vec3& p, const Vec3& q) const {
+std::string CheckedScene::check_walk(SimplexId start, const Vec3& p, const Vec3& q, const oracle::Trace& trace) const {
   TestCounts counts;
   const Walk w = walk(current_space(complex_), start, p, q, counts);
-  const oracle::Trace trace = oracle_->trace(p, q);
-  std::string wrong;
   switch (w.end) {
-    case WalkEnd::arrived: wrong = check_arrival(w, q, trace); break;
-    case WalkEnd::wall: wrong = check_wall(w, start, p, q, trace); break;
-    case WalkEnd::invalid_cell: wrong = "stopped at a cell that is valid"; break;
+    case WalkEnd::arrived: return check_arrival(w, q, trace);
+    case WalkEnd::wall: return check_wall(w, start, p, q, trace);
+    case WalkEnd::invalid_cell: break;
   }
-  if (wrong.empty()) return {};
-  return fmt::format("{}; from {} in simplex {} to {}", wrong, text(p), oracle_simplex(start), text(q));
+  return "stopped at a cell that is valid";
 }
 
 std::string CheckedScene::check_arrival(const Walk& w, const Vec3& q, const oracle::Trace& trace) const {
@@ -159,7 +157,8 @@ std::string CheckedScene::check_state(const State& state) const {
 
 std::string CheckedScene::check_step(State& state, const Vec3& q, ContactList& contacts) const {
   const State before = state;
-  std::string wrong = q == state.position ? "" : check_walk(state.at(), state.position, q);
+  const oracle::Trace trace = oracle_->trace(state.position, q);
+  std::string wrong = q == state.position ? "" : check_walk(state.at(), state.position, q, trace);
   contacts.clear();
   Counters counters;
   Weights weights{};
@@ -172,17 +171,16 @@ std::string CheckedScene::check_step(State& state, const Vec3& q, ContactList& c
   if (wrong.empty() && contacts.contacts.empty() && state.position != q) wrong = "neither arrived nor met a wall";
   if (wrong.empty() && !contacts.contacts.empty()) {
     const Contact& c = contacts.contacts[0];
-    wrong = check_contact(c, contacts.walls_of(c), before, state, q);
+    wrong = check_contact(c, contacts.walls_of(c), before, state, q, trace);
   }
   if (wrong.empty()) return {};
-  return fmt::format("step: {}; from {} in simplex {} to {}", wrong, text(before.position), oracle_simplex(before.at()),
+  return fmt::format("{}; from {} in simplex {} to {}", wrong, text(before.position), oracle_simplex(before.at()),
                      text(q));
 }
 
 std::string CheckedScene::check_contact(const Contact& contact, std::span<const WallHit> walls, const State& before,
-                                        const State& after, const Vec3& q) const {
+                                        const State& after, const Vec3& q, const oracle::Trace& trace) const {
   const Vec3& p = before.position;
-  const oracle::Trace trace = oracle_->trace(p, q);
   if (walls.empty()) return "a contact without a wall";
   const oracle::Touch* first = find(trace, oracle_wall(walls[0]));
   if (first == nullptr) return "a contact with a wall that is not touched";
@@ -200,14 +198,7 @@ std::string CheckedScene::check_contact(const Contact& contact, std::span<const 
   for (const Vec3& x : oracle_->points()) largest = std::max({largest, std::abs(x.x), std::abs(x.y), std::abs(x.z)});
   const Vec3 point = p + (q - p) * time;
   if (norm(contact.point - point) > 1e-13 * (largest + norm(q - p))) return "the contact point is off";
-  if (norm(after.position - contact.point) > 1e-11 * largest) {
-    // Where walls meet at a very sharp angle, settling gives up lifting and halves the way.
-    ++retreats_;
-    const Vec3 way = contact.point - p;
-    const double share = dot(after.position - p, way) / dot(way, way);
-    const bool on_the_way = share >= 0.0 && share < 1.0 && norm(p + way * share - after.position) <= 1e-11 * largest;
-    if (!on_the_way) return "the particle is far from the contact point";
-  }
+  if (norm(after.position - contact.point) > 1e-11 * largest) return "the particle is far from the contact point";
   for (const WallHit& hit : walls) {
     const std::uint32_t wall = oracle_wall(hit);
     if (wall == oracle::none) return "a contact lists what is no wall";

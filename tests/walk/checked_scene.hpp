@@ -19,7 +19,8 @@ class CheckedScene {
  public:
   explicit CheckedScene(MeshData mesh);
 
-  [[nodiscard]] bool valid() const { return complex_.invalid_cells().empty() && oracle_->all_positive(); }
+  /// Whether the library and the oracle find every simplex positive; nothing else may be asked where it is false.
+  [[nodiscard]] bool valid() const { return oracle_ != nullptr && oracle_->all_positive(); }
   [[nodiscard]] const Complex& complex() const { return complex_; }
   [[nodiscard]] const MeshData& mesh() const { return mesh_; }
   [[nodiscard]] const oracle::Oracle& oracle() const { return *oracle_; }
@@ -32,32 +33,26 @@ class CheckedScene {
   [[nodiscard]] std::uint32_t oracle_wall(SimplexId s, unsigned facet) const;
   [[nodiscard]] std::uint32_t oracle_wall(const WallHit& hit) const;
 
-  /// What is wrong with the walk from p, which lies in the closed simplex `start`, to q; empty if nothing is.
-  [[nodiscard]] std::string check_walk(SimplexId start, const Vec3& p, const Vec3& q) const;
-
-  /// Steps the state towards q without a response, and says what is wrong with the contact and the new state.
+  /// Steps the state towards q without a response, and says what is wrong with the walk, the contact and the new state;
+  /// empty if nothing is.
   [[nodiscard]] std::string check_step(State& state, const Vec3& q, ContactList& contacts) const;
-
-  /// Contacts after which the particle was put back on its way, away from the contact point, for want of a point nearer
-  /// to it.
-  [[nodiscard]] std::uint64_t retreats() const { return retreats_; }
 
   /// Whether the state is what it must always be: the position in the closed simplex named, in a free cell.
   [[nodiscard]] std::string check_state(const State& state) const;
 
  private:
+  [[nodiscard]] std::string check_walk(SimplexId start, const Vec3& p, const Vec3& q, const oracle::Trace& trace) const;
   [[nodiscard]] std::string check_arrival(const Walk& w, const Vec3& q, const oracle::Trace& trace) const;
   [[nodiscard]] std::string check_wall(const Walk& w, SimplexId start, const Vec3& p, const Vec3& q,
                                        const oracle::Trace& trace) const;
   [[nodiscard]] std::string check_contact(const Contact& contact, std::span<const WallHit> walls, const State& before,
-                                          const State& after, const Vec3& q) const;
+                                          const State& after, const Vec3& q, const oracle::Trace& trace) const;
 
   MeshData mesh_;
   Complex complex_;
   std::unique_ptr<oracle::Oracle> oracle_;
   std::vector<SimplexId> library_;
   std::vector<std::uint32_t> free_simplices_;
-  mutable std::uint64_t retreats_ = 0;
 };
 
 }  // namespace dartcast::test

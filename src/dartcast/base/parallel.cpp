@@ -8,8 +8,12 @@
 #include <atomic>
 #include <thread>
 #else
+#include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+
+#include <optional>
 #endif
 
 namespace dartcast::detail {
@@ -61,6 +65,11 @@ void run_parallel(Chunks& chunks, unsigned threads) {
 }
 #else
 void run_parallel(Chunks& chunks, unsigned threads) {
+  // Asked for more threads than there are cores, TBB would start fewer and complain on stderr.
+  std::optional<tbb::global_control> more;
+  if (threads > static_cast<unsigned>(tbb::info::default_concurrency())) {
+    more.emplace(tbb::global_control::max_allowed_parallelism, threads);
+  }
   tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads));
   arena.execute([&] {
     tbb::parallel_for(

@@ -1,6 +1,7 @@
 #include "dartcast/environment/environment.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <utility>
@@ -23,7 +24,10 @@ void check_point(const Vec3& x, const char* what, std::size_t index) {
 
 MeshData inspected(MeshData mesh) {
   const MeshReport report = inspect(mesh);
-  if (!report.defects.empty()) throw InvalidMesh(report.defects.front().message);
+  if (!report.defects.empty()) {
+    const Finding& f = report.defects.front();
+    throw InvalidMesh(fmt::format("{}: {}, the first: {}", f.message, f.count, fmt::join(f.first, ", ")));
+  }
   return mesh;
 }
 
@@ -70,9 +74,15 @@ Location Environment::locate(const Vec3& x) { return locate(std::span<const Vec3
 std::vector<Location> Environment::locate(std::span<const Vec3> points) {
   for (std::size_t i = 0; i < points.size(); ++i) check_point(points[i], "point", i);
   if (!locator_) locator_ = std::make_unique<Locator>(complex_);
+  std::vector<std::pair<std::size_t, std::size_t>> order(points.size());  // by bin: bin, point
+  for (std::size_t i = 0; i < points.size(); ++i) order[i] = {locator_->bin(points[i]), i};
+  std::sort(order.begin(), order.end());
   std::vector<Location> locations(points.size());
   parallel_for(points.size(), grain, threads_, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) locations[i] = locator_->locate(complex_, points[i]);
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t point = order[i].second;
+      locations[point] = locator_->locate(complex_, points[point]);
+    }
   });
   return locations;
 }
@@ -131,6 +141,8 @@ void Environment::step_all(Particles& particles, std::span<const Vec3> targets, 
 StepReport Environment::advance(Particles& particles, std::span<const Vec3> targets, const Respond& respond,
                                 const StepOptions& options) {
   check_targets(particles, targets);
+  if (!(options.tolerance > 0.0) || options.max_parts == 0)
+    throw InvalidArgument("advance: the tolerance and the number of parts must be positive");
   const Stepper stepper(complex_, particles.moves_ != moves_, options, respond);
   std::vector<StepReport> parts(chunk_count(particles.size(), grain));
   if (respond) {

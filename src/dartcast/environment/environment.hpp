@@ -93,8 +93,8 @@ class Environment {
   /// Advances every particle towards its target; after a move(), along with the vertices (see docs/method.md). Without
   /// `respond` a particle stops at its first contact. Results are the same bits for any number of threads and order of
   /// particles. Throws InvalidArgument, nothing changed, where a target is not finite or outside the exact range, the
-  /// sizes do not match, the particles missed a move, or a response throws or returns such a displacement. Cost: a few
-  /// orientation tests per particle, whatever the size of the scene.
+  /// sizes do not match, an option is not positive, the particles missed a move, or a response throws or returns such a
+  /// displacement. Cost: a few orientation tests per particle, whatever the size of the scene.
   StepReport advance(Particles& particles, std::span<const Vec3> targets, const Respond& respond = {},
                      const StepOptions& options = {});
 

@@ -66,7 +66,7 @@ Vec3 kernel_point(const Vec3& start, const std::vector<Triangle>& triangles, dou
     double nearest = 2.0 * size;
     Vec3 inward;
     for (const Triangle& t : triangles) {
-      Vec3 n = cross(t.c - t.a, t.b - t.a);
+      Vec3 n = cross((t.c - t.a) * (1.0 / size), (t.b - t.a) * (1.0 / size));  // of a magnitude that can be squared
       const double length = norm(n);
       if (!(length > 0.0)) continue;
       n *= 1.0 / length;
@@ -109,10 +109,8 @@ class Solver {
   Solver(const MeshData& mesh, const Map& plain) : mesh_(mesh), plain_(plain) { number_cells(); }
 
   InteriorSolution solve(std::span<const Cell> cells) {
-    std::vector<std::uint32_t> bad;
-    for (const Cell c : cells) bad.push_back(number_[c.pool()][c.index()]);
-    for (const std::uint32_t c : bad) with_point_.insert(c);
-    for (const std::uint32_t c : bad) choose_face_points(c);
+    for (const Cell c : cells) add_cell(number_[c.pool()][c.index()]);
+    for (std::size_t i = 0; i < chosen_.size(); ++i) choose_face_points(chosen_[i]);
     for (const auto& [corners, sides] : face_points_) add_face_point(corners, sides);
     for (const std::uint32_t c : with_point_) add_cell_point(c);
     std::sort(solution_.points.of_faces.begin(), solution_.points.of_faces.end(), [](const auto& a, const auto& b) {
@@ -132,6 +130,11 @@ class Solver {
     }
   }
 
+  // A cell that is to have a point of its own: no longer coned from a corner, all its fans must be positive.
+  void add_cell(std::uint32_t c) {
+    if (with_point_.insert(c).second) chosen_.push_back(c);
+  }
+
   // A face whose triangles are not all positive seen from the mean of the cell's corners, but would be with a point.
   void choose_face_points(std::uint32_t c) {
     const Faces faces = faces_of(mesh_, c);
@@ -141,7 +144,7 @@ class Solver {
       if (!all_positive(m, fan(mesh_.points, face, true))) continue;
       auto& sides = face_points_[sorted(face)];
       sides = cells_at(c, face);
-      for (const auto& side : sides) with_point_.insert(side.first);
+      for (const auto& side : sides) add_cell(side.first);
     }
   }
 
@@ -212,6 +215,7 @@ class Solver {
   std::array<std::vector<std::uint32_t>, 5> number_;  // by pool and index: the cell's number in the mesh
   std::vector<Cell> cell_;                            // and back
   std::set<std::uint32_t> with_point_;
+  std::vector<std::uint32_t> chosen_;  // the same, in the order found
   std::map<std::vector<std::uint32_t>, std::vector<Side>> face_points_;
   InteriorSolution solution_;
 };

@@ -1,12 +1,12 @@
 #include "dartcast/io/file_text.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
 #include <fstream>
 #include <system_error>
-
-#include <fmt/format.h>
 
 #include "dartcast/base/error.hpp"
 
@@ -18,7 +18,8 @@ bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 /// For messages: a word cut short, without bytes that a terminal would take for commands.
 std::string shown(std::string_view word) {
   std::string out(word.substr(0, 40));
-  std::replace_if(out.begin(), out.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  std::replace_if(
+      out.begin(), out.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
   return out;
 }
 
@@ -108,7 +109,8 @@ double FileText::number(std::string_view what) {
 
 void FileText::check_count(std::string_view what, std::uint64_t n, std::size_t bytes_each) const {
   if (n > left() / bytes_each) {
-    fail(fmt::format("{} {} are announced, but only {} bytes are left in the file; it is truncated or damaged", n, what, left()));
+    fail(fmt::format("{} {} are announced, but only {} bytes are left in the file; it is truncated or damaged", n, what,
+                     left()));
   }
 }
 

@@ -1,9 +1,9 @@
 #include "dartcast/io/gmsh.hpp"
 
+#include <fmt/format.h>
+
 #include <cstring>
 #include <string>
-
-#include <fmt/format.h>
 
 #include "dartcast/base/error.hpp"
 #include "dartcast/io/gmsh_parts.hpp"

@@ -39,7 +39,8 @@ void read_elements_1(Numbers& in, Model& model) {
     const std::int32_t physical = in.int32("a physical group");
     in.int32("an elementary group");
     const int count = in.int32("a number of nodes");
-    if (count != known_nodes(in, type)) in.text.fail(fmt::format("element type {} does not have {} nodes", type, count));
+    if (count != known_nodes(in, type))
+      in.text.fail(fmt::format("element type {} does not have {} nodes", type, count));
     nodes.clear();
     for (int k = 0; k < count; ++k) nodes.push_back(node_number(in));
     model.add_element(type, nodes, physical);

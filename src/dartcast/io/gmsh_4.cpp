@@ -1,7 +1,7 @@
 // Versions 4.0 and 4.1 of Gmsh's format.
-#include <cstdlib>
-
 #include <fmt/format.h>
+
+#include <cstdlib>
 
 #include "dartcast/io/gmsh_parts.hpp"
 

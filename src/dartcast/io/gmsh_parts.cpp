@@ -1,10 +1,10 @@
 #include "dartcast/io/gmsh_parts.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstring>
-
-#include <fmt/format.h>
 
 #include "dartcast/base/error.hpp"
 
@@ -63,8 +63,8 @@ std::uint32_t NodeTable::find(std::uint64_t number) const {
 }
 
 int node_count(int type) {
-  static constexpr std::array<int, 32> counts = {0, 2,  3,  4,  4,  8,  6, 5,  3,  6,  9,  10, 27, 18, 14, 1,
-                                                 8, 20, 15, 13, 9,  10, 12, 15, 15, 21, 4,  5,  6,  20, 35, 56};
+  static constexpr std::array<int, 32> counts = {0, 2,  3,  4,  4, 8,  6,  5,  3,  6,  9, 10, 27, 18, 14, 1,
+                                                 8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5,  6,  20, 35, 56};
   if (type == 92) return 64;
   if (type == 93) return 125;
   return type > 0 && type < static_cast<int>(counts.size()) ? counts[static_cast<std::size_t>(type)] : 0;

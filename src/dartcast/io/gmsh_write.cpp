@@ -1,9 +1,9 @@
+#include <fmt/format.h>
+
 #include <array>
 #include <iterator>
 #include <set>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "dartcast/base/error.hpp"
 #include "dartcast/io/gmsh.hpp"
@@ -18,7 +18,8 @@ int element_type(CellType type) {
 }
 
 int face_type(std::size_t corners) {
-  if (corners < 3 || corners > 4) throw InvalidArgument("Gmsh's format cannot hold faces of more than four corners; write .vtu");
+  if (corners < 3 || corners > 4)
+    throw InvalidArgument("Gmsh's format cannot hold faces of more than four corners; write .vtu");
   return corners == 3 ? 2 : 3;
 }
 
@@ -59,7 +60,9 @@ void append_names(std::string& out, const MeshData& mesh) {
   out += "$EndPhysicalNames\n";
 }
 
-void append_point(std::string& out, const Vec3& p) { fmt::format_to(std::back_inserter(out), "{} {} {}\n", p.x, p.y, p.z); }
+void append_point(std::string& out, const Vec3& p) {
+  fmt::format_to(std::back_inserter(out), "{} {} {}\n", p.x, p.y, p.z);
+}
 
 }  // namespace
 
@@ -107,7 +110,8 @@ std::string format_gmsh_4(const MeshData& mesh) {
       return x.dimension == elements[e].dimension && x.tag == elements[e].tag && x.type == elements[e].type;
     };
     for (end = e + 1; end < elements.size() && same(elements[end]);) ++end;
-    fmt::format_to(std::back_inserter(blocks), "{} {} {} {}\n", elements[e].dimension, elements[e].tag, elements[e].type, end - e);
+    fmt::format_to(std::back_inserter(blocks), "{} {} {} {}\n", elements[e].dimension, elements[e].tag,
+                   elements[e].type, end - e);
     for (std::size_t k = e; k < end; ++k) {
       fmt::format_to(std::back_inserter(blocks), "{}", k + 1);
       append_corners(blocks, elements[k]);

@@ -1,10 +1,10 @@
 #include "dartcast/io/medit.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
-
-#include <fmt/format.h>
 
 #include "dartcast/base/error.hpp"
 #include "dartcast/io/file_text.hpp"
@@ -27,9 +27,9 @@ constexpr std::array<Keyword, 6> keywords = {{{"Tetrahedra", 4, CellType::tetrah
                                               {"Quadrilaterals", 4, CellType::polyhedron, true}}};
 
 constexpr std::array<std::string_view, 16> higher_order = {
-    "TrianglesP2",   "TrianglesP3",   "TrianglesP4",   "QuadrilateralsQ2", "QuadrilateralsQ3", "QuadrilateralsQ4",
-    "TetrahedraP2",  "TetrahedraP3",  "TetrahedraP4",  "HexahedraQ2",      "HexahedraQ3",      "HexahedraQ4",
-    "PrismsP2",      "PrismsP3",      "PyramidsP2",    "PyramidsP3"};
+    "TrianglesP2",  "TrianglesP3",  "TrianglesP4",  "QuadrilateralsQ2", "QuadrilateralsQ3", "QuadrilateralsQ4",
+    "TetrahedraP2", "TetrahedraP3", "TetrahedraP4", "HexahedraQ2",      "HexahedraQ3",      "HexahedraQ4",
+    "PrismsP2",     "PrismsP3",     "PyramidsP2",   "PyramidsP3"};
 
 void read_vertices(FileText& text, MeshData& mesh, int dimension) {
   if (dimension == 0) text.fail("Vertices stand before Dimension");
@@ -79,18 +79,21 @@ ParsedMesh parse_medit(std::string_view content) {
   parsed.format = "Medit ASCII";
   int dimension = 0;
   bool ended = false;
-  if (text.word("'MeshVersionFormatted'") != "MeshVersionFormatted") text.fail("'MeshVersionFormatted' should stand here");
+  if (text.word("'MeshVersionFormatted'") != "MeshVersionFormatted")
+    text.fail("'MeshVersionFormatted' should stand here");
   text.integer("the version", 0, 4);
   while (!text.at_end() && !ended) {
     const std::string_view name = text.word("a keyword");
     if (std::isalpha(static_cast<unsigned char>(name[0])) == 0) {
-      text.fail(fmt::format("'{}' stands where a keyword should; a section is longer than it announces", name.substr(0, 40)));
+      text.fail(
+          fmt::format("'{}' stands where a keyword should; a section is longer than it announces", name.substr(0, 40)));
     }
     if (name == "Dimension") {
       dimension = static_cast<int>(text.integer("the dimension", 2, 3));
     } else if (name == "Vertices") {
       read_vertices(text, parsed.mesh, dimension);
-    } else if (const auto* k = std::find_if(keywords.begin(), keywords.end(), [&](const Keyword& x) { return x.name == name; });
+    } else if (const auto* k =
+                   std::find_if(keywords.begin(), keywords.end(), [&](const Keyword& x) { return x.name == name; });
                k != keywords.end()) {
       read_elements(text, parsed.mesh, *k);
     } else if (std::find(higher_order.begin(), higher_order.end(), name) != higher_order.end()) {

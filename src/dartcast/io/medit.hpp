@@ -12,8 +12,8 @@ namespace dartcast {
 /// Throws InvalidMesh with the line where the content is not right.
 ParsedMesh parse_medit(std::string_view content);
 
-/// The mesh in Medit's format, every coordinate with the digits it needs to be read back exactly; regions and patches as references.
-/// Throws InvalidArgument for polyhedra and faces of more than four corners.
+/// The mesh in Medit's format, every coordinate with the digits it needs to be read back exactly; regions and patches
+/// as references. Throws InvalidArgument for polyhedra and faces of more than four corners.
 std::string format_medit(const MeshData& mesh);
 
 }  // namespace dartcast

@@ -1,7 +1,7 @@
+#include <fmt/format.h>
+
 #include <array>
 #include <iterator>
-
-#include <fmt/format.h>
 
 #include "dartcast/base/error.hpp"
 #include "dartcast/io/medit.hpp"
@@ -36,7 +36,8 @@ void append_cells(std::string& out, const MeshData& mesh, CellType type, const c
   std::string lines;
   std::size_t count = 0;
   for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
-    if (mesh.types[c] == CellType::polyhedron) throw InvalidArgument("Medit's format cannot hold polyhedra; write .vtu");
+    if (mesh.types[c] == CellType::polyhedron)
+      throw InvalidArgument("Medit's format cannot hold polyhedra; write .vtu");
     if (mesh.types[c] != type) continue;
     append_element(lines, mesh.cell(c), mesh.regions.empty() ? 0 : mesh.regions[c]);
     ++count;

@@ -9,19 +9,23 @@
 
 namespace dartcast {
 
-/// Ids that name no point are kept as 0xffffffff, for inspect() to find. Faces of groups and, in planar meshes, all faces
-/// are in the mesh's patch faces.
+/// Ids that name no point are kept as 0xffffffff, for inspect() to find. Faces of groups and, in planar meshes, all
+/// faces are in the mesh's patch faces.
 struct ParsedMesh {
   MeshData mesh;
   std::string format;
-  Finding second_order{"second_order", 0, {}, "cells of second or higher order, with curved sides; write the mesh with linear "
-                                              "cells (Gmsh: -order 1)"};
+  Finding second_order{"second_order",
+                       0,
+                       {},
+                       "cells of second or higher order, with curved sides; write the mesh with linear "
+                       "cells (Gmsh: -order 1)"};
   Finding unsupported{"cell_type", 0, {}, "cells of a type that cannot be used"};
 };
 
 inline constexpr std::uint32_t no_point = 0xffffffffU;
 
-/// Last step of each reader. In a mesh with cells only faces with a tag are kept; without names or tags regions stay empty.
+/// Last step of each reader. In a mesh with cells only faces with a tag are kept; without names or tags regions stay
+/// empty.
 inline void finish(ParsedMesh& parsed) {
   MeshData& mesh = parsed.mesh;
   bool tagged = false;

@@ -1,12 +1,12 @@
 #include "dartcast/io/read_mesh.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <new>
 #include <stdexcept>
 #include <string>
-
-#include <fmt/format.h>
 
 #include "dartcast/base/error.hpp"
 #include "dartcast/io/file_text.hpp"
@@ -19,11 +19,13 @@
 namespace dartcast {
 namespace {
 
-constexpr std::string_view supported = ".vtu, .vtk (legacy), .msh (Gmsh 1, 2 or 4; also .msh2, .msh4) and .mesh (Medit)";
+constexpr std::string_view supported =
+    ".vtu, .vtk (legacy), .msh (Gmsh 1, 2 or 4; also .msh2, .msh4) and .mesh (Medit)";
 
 std::string ending_of(const std::filesystem::path& path) {
   std::string ending = path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return ending;
 }
 
@@ -36,7 +38,8 @@ std::string_view body(std::string_view content) {
 
 ParsedMesh parse_msh(std::string_view content) {
   const std::string_view text = body(content);
-  if (starts(text, "(")) throw InvalidMesh("this .msh is of ANSYS Fluent, which is not supported; convert it to Gmsh's");
+  if (starts(text, "("))
+    throw InvalidMesh("this .msh is of ANSYS Fluent, which is not supported; convert it to Gmsh's");
   if (starts(text, "$")) return parse_gmsh(content);
   if (starts(text, "MeshVersionFormatted")) throw InvalidMesh("this .msh is of Medit; rename it to .mesh");
   throw InvalidMesh("this .msh is not of Gmsh: it does not start with '$'");
@@ -45,10 +48,13 @@ ParsedMesh parse_msh(std::string_view content) {
 ParsedMesh parse_mesh(std::string_view content) {
   const std::string_view text = body(content);
   if (starts(text, "MFEM NC mesh")) {
-    throw InvalidMesh("this .mesh is of MFEM, non-conforming (MFEM NC mesh), which is not supported; make it conforming and write Gmsh's or VTK's format");
+    throw InvalidMesh(
+        "this .mesh is of MFEM, non-conforming (MFEM NC mesh), which is not supported; make it conforming and write "
+        "Gmsh's or VTK's format");
   }
   if (starts(text, "MFEM ")) {
-    throw InvalidMesh(fmt::format("this .mesh is of MFEM ({}), which is not supported; write Gmsh's or VTK's format", text.substr(0, std::min<std::size_t>(text.find_first_of("\r\n"), 40))));
+    throw InvalidMesh(fmt::format("this .mesh is of MFEM ({}), which is not supported; write Gmsh's or VTK's format",
+                                  text.substr(0, std::min<std::size_t>(text.find_first_of("\r\n"), 40))));
   }
   return parse_medit(content);
 }
@@ -98,7 +104,8 @@ MeshFile read_volume_mesh(const std::filesystem::path& path) {
   if (!out.report.valid()) {
     const Finding& defect = out.report.defects.front();
     std::string places;
-    if (!defect.first.empty()) places = fmt::format(" ({} in all, the first at {})", defect.count, defect.first.front());
+    if (!defect.first.empty())
+      places = fmt::format(" ({} in all, the first at {})", defect.count, defect.first.front());
     throw InvalidMesh(fmt::format("{}: {}{}", path.string(), defect.message, places));
   }
   if (out.report.dimension == 2) {

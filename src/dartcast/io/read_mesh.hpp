@@ -13,13 +13,13 @@ struct MeshFile {
   MeshReport report;
 };
 
-/// Reads .vtu, .vtk (legacy), .msh, .msh2, .msh4 (Gmsh 1, 2 and 4) or .mesh (Medit), by ending and content, and inspects it.
-/// Nothing in the file makes this throw: what cannot be read is a defect of kind "file" in the report, with line or byte.
-/// Cost: a few times the file's size in memory.
+/// Reads .vtu, .vtk (legacy), .msh, .msh2, .msh4 (Gmsh 1, 2 and 4) or .mesh (Medit), by ending and content, and
+/// inspects it. Nothing in the file makes this throw: what cannot be read is a defect of kind "file" in the report,
+/// with line or byte. Cost: a few times the file's size in memory.
 MeshFile read_mesh(const std::filesystem::path& path);
 
-/// The same for who needs volume cells: throws InvalidMesh, with the file's name and the first defect, where the mesh is refused or
-/// planar.
+/// The same for who needs volume cells: throws InvalidMesh, with the file's name and the first defect, where the mesh
+/// is refused or planar.
 MeshFile read_volume_mesh(const std::filesystem::path& path);
 
 }  // namespace dartcast

@@ -1,10 +1,10 @@
 #include "dartcast/io/report.hpp"
 
-#include <vector>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
 #include <nlohmann/json.hpp>
+#include <vector>
 
 namespace dartcast {
 namespace {
@@ -22,7 +22,8 @@ void append_findings(std::string& out, const char* title, const std::vector<Find
     out += fmt::format("{}: {}: ", title, f.kind);
     if (!f.first.empty()) out += fmt::format("{} ", f.count);
     out += f.message;
-    if (!f.first.empty()) out += fmt::format(" (at {}{})", fmt::join(f.first, ", "), f.count > f.first.size() ? ", ..." : "");
+    if (!f.first.empty())
+      out += fmt::format(" (at {}{})", fmt::join(f.first, ", "), f.count > f.first.size() ? ", ..." : "");
     out += '\n';
   }
 }
@@ -55,8 +56,9 @@ std::string report_text(const MeshReport& report) {
   std::string out = fmt::format("{}\n", report.file);
   if (!report.format.empty()) out += fmt::format("format: {}\n", report.format);
   if (!report.cells.empty()) {
-    out += fmt::format("{} points; {}{}\n", report.points, counts(report.cells),
-                       report.dimension == 2 ? "; a planar mesh (2D)" : fmt::format("; {} connected parts", report.parts));
+    out +=
+        fmt::format("{} points; {}{}\n", report.points, counts(report.cells),
+                    report.dimension == 2 ? "; a planar mesh (2D)" : fmt::format("; {} connected parts", report.parts));
   }
   if (!report.regions.empty()) out += fmt::format("regions: {}\n", counts(report.regions));
   append_findings(out, "repaired", report.repairs);

@@ -7,7 +7,8 @@
 
 namespace dartcast {
 
-/// One JSON object, as the interface says, with `dimension`, `parts` and `verdict` besides; UTF-8, invalid bytes replaced.
+/// One JSON object, as the interface says, with `dimension`, `parts` and `verdict` besides; UTF-8, invalid bytes
+/// replaced.
 std::string report_json(const MeshReport& report);
 
 /// The same for people, in a few lines that end with the verdict.

@@ -46,7 +46,9 @@ class Reader {
     t.require("kind", "rotate, swing, bend, twist, stretch, pulse, bump or frames");
     t.get("kind", kind);
     const auto found = deformation_kind(kind);
-    if (!found) t.fail("kind", fmt::format("kind = \"{}\": it must be one of {}", kind, "rotate, swing, bend, twist, stretch, pulse, bump, frames"));
+    if (!found)
+      t.fail("kind", fmt::format("kind = \"{}\": it must be one of {}", kind,
+                                 "rotate, swing, bend, twist, stretch, pulse, bump, frames"));
     step.kind = *found;
     if (step.kind == DeformationKind::frames) {
       frames(t, scene);
@@ -64,7 +66,8 @@ class Reader {
         t.get("field", scene.field);
         t.get("path", scene.path);
       }
-      if (step.kind == DeformationKind::bend || step.kind == DeformationKind::twist || step.kind == DeformationKind::bump) {
+      if (step.kind == DeformationKind::bend || step.kind == DeformationKind::twist ||
+          step.kind == DeformationKind::bump) {
         t.require("length", "the length over which it acts");
         t.get("length", step.length, positive);
       }
@@ -89,7 +92,8 @@ class Reader {
     ParticlesScene scene;
     double radius = 0.0;
     if (t.get("radius", radius, any_number) && radius != 0.0) {
-      t.fail("radius", fmt::format("radius = {}: particles are points so far; leave radius out or set it to 0", radius));
+      t.fail("radius",
+             fmt::format("radius = {}: particles are points so far; leave radius out or set it to 0", radius));
     }
     t.get("velocity", scene.velocity);
     std::uint64_t count = 0;
@@ -130,7 +134,8 @@ class Reader {
 
   static void response(TomlTable& t, Response& r) {
     std::size_t kind = 0;
-    if (t.get("response", kind, {"reflect", "slide", "stick", "absorb", "escape"})) r.kind = static_cast<ResponseKind>(kind);
+    if (t.get("response", kind, {"reflect", "slide", "stick", "absorb", "escape"}))
+      r.kind = static_cast<ResponseKind>(kind);
     t.get("restitution", r.restitution, {0.0, 1.0});
     t.get("friction", r.friction, not_negative);
   }

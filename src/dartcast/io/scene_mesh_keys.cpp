@@ -1,5 +1,6 @@
 #include "dartcast/io/scene_mesh_keys.hpp"
 
+#include <cmath>
 #include <limits>
 
 namespace dartcast {
@@ -14,7 +15,7 @@ void get_cells(TomlTable& t, std::array<std::uint32_t, 3>& cells) {
   std::vector<double> list;
   if (!t.get("cells", list, 3)) return;
   for (std::size_t i = 0; i < 3; ++i) {
-    if (list[i] != static_cast<std::uint32_t>(list[i] > 0 && list[i] < 0x1p29 ? list[i] : 0.5)) {
+    if (!(list[i] >= 1.0 && list[i] <= 0x1p29 && list[i] == std::floor(list[i]))) {
       t.fail("cells", "cells must be three whole numbers from 1 to 2^29");
     }
     cells[i] = static_cast<std::uint32_t>(list[i]);
@@ -74,7 +75,8 @@ MeshSource read_source(TomlTable& t, const std::filesystem::path& folder) {
   std::size_t generator = 0;
   const bool from_file = t.get("mesh", mesh);
   const bool generated = t.get("generator", generator, {"box", "bar", "octahedra", "vessel"});
-  if (from_file == generated) t.fail("mesh", "give either mesh = \"FILE\" or generator = \"box\", \"bar\", \"octahedra\" or \"vessel\"");
+  if (from_file == generated)
+    t.fail("mesh", "give either mesh = \"FILE\" or generator = \"box\", \"bar\", \"octahedra\" or \"vessel\"");
   if (from_file) return folder / mesh;
   if (generator == 0) return read_box(t);
   if (generator == 1) return bar_options();

@@ -128,7 +128,8 @@ bool TomlTable::get(std::string_view key, std::vector<double>& value, std::size_
   } else {
     fail(key, fmt::format("{} must be a list of {} numbers; here is a {}", key, count, type_name(*node)));
   }
-  if (count != 0 && value.size() != count) fail(key, fmt::format("{} must have {} numbers; it has {}", key, count, value.size()));
+  if (count != 0 && value.size() != count)
+    fail(key, fmt::format("{} must have {} numbers; it has {}", key, count, value.size()));
   return true;
 }
 
@@ -136,7 +137,8 @@ bool TomlTable::get(std::string_view key, std::size_t& value, std::initializer_l
   std::string name;
   if (!get(key, name)) return false;
   const auto* found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) fail(key, fmt::format("{} = \"{}\": it must be one of {}", key, name, fmt::join(names, ", ")));
+  if (found == names.end())
+    fail(key, fmt::format("{} = \"{}\": it must be one of {}", key, name, fmt::join(names, ", ")));
   value = static_cast<std::size_t>(found - names.begin());
   return true;
 }
@@ -144,7 +146,8 @@ bool TomlTable::get(std::string_view key, std::size_t& value, std::initializer_l
 TomlTable TomlTable::table(std::string_view key) {
   static const toml::table nothing;
   const toml::node* node = find(key);
-  const std::string name = name_.empty() ? fmt::format("[{}]", key) : fmt::format("[{}.{}]", name_.substr(1, name_.size() - 2), key);
+  const std::string name =
+      name_.empty() ? fmt::format("[{}]", key) : fmt::format("[{}.{}]", name_.substr(1, name_.size() - 2), key);
   if (node == nullptr) return {nothing, file_, name};
   if (!node->is_table()) fail(key, fmt::format("{} must be a table: {}; here is a {}", key, name, type_name(*node)));
   return {*node->as_table(), file_, name};

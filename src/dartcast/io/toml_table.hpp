@@ -1,6 +1,8 @@
 // Reading TOML strictly: every value checked where it stands, every key accounted for.
 #pragma once
 
+#include <toml++/toml.h>
+
 #include <cstdint>
 #include <initializer_list>
 #include <set>
@@ -8,8 +10,6 @@
 #include <string_view>
 #include <utility>
 #include <vector>
-
-#include <toml++/toml.h>
 
 #include "dartcast/exact/vec3.hpp"
 
@@ -22,8 +22,8 @@ struct Range {
   bool low_open = false;
 };
 
-/// A table of a scene. Each getter leaves `value` as it is where the key is absent, and throws Error with file, line, key, what is
-/// expected and what stands there, where it is of the wrong type or out of range.
+/// A table of a scene. Each getter leaves `value` as it is where the key is absent, and throws Error with file, line,
+/// key, what is expected and what stands there, where it is of the wrong type or out of range.
 class TomlTable {
  public:
   /// `name`: as it stands in the file, for messages: "[motion]".

@@ -1,10 +1,10 @@
 #include "dartcast/io/vtk_errors.hpp"
 
-#include <mutex>
-
 #include <vtkLogger.h>
 #include <vtkObjectFactory.h>
 #include <vtkOutputWindow.h>
+
+#include <mutex>
 
 namespace dartcast {
 namespace {

@@ -1,9 +1,9 @@
 // VTK's error texts, caught instead of printed.
 #pragma once
 
-#include <string>
-
 #include <vtkSmartPointer.h>
+
+#include <string>
 
 class vtkOutputWindow;
 

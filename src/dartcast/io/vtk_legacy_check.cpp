@@ -1,5 +1,7 @@
 #include "dartcast/io/vtk_legacy_check.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -7,8 +9,6 @@
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <fmt/format.h>
 
 #include "dartcast/io/face_stream.hpp"
 #include "dartcast/io/file_text.hpp"
@@ -18,7 +18,8 @@ namespace {
 
 std::string lower(std::string_view word) {
   std::string out(word);
-  std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(out.begin(), out.end(), out.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return out;
 }
 
@@ -67,7 +68,8 @@ class Walk {
     if (first.substr(0, 23) != "# vtk DataFile Version ") text_.fail("'# vtk DataFile Version' should stand here");
     // From version 5 on VTK looks for offsets, before for a stream of corners, whatever stands there.
     const std::string_view version = first.substr(23, first.find_last_not_of(' ') - 22);
-    if (version.size() != 3 || version[0] < '1' || version[0] > '5' || version[1] != '.' || version[2] < '0' || version[2] > '9') {
+    if (version.size() != 3 || version[0] < '1' || version[0] > '5' || version[1] != '.' || version[2] < '0' ||
+        version[2] > '9') {
       text_.fail("the version is not one of 1.0 to 5.9");
     }
     with_offsets_ = version[0] == '5';
@@ -78,7 +80,8 @@ class Walk {
     if (lower(text_.word("DATASET")) != "dataset") text_.fail("DATASET should stand here");
     const std::string data_set(text_.word("the kind of data set"));
     if (lower(data_set) != "unstructured_grid") {
-      text_.fail(fmt::format("the data set is {}, not UNSTRUCTURED_GRID: it has no volume cells to use", data_set.substr(0, 40)));
+      text_.fail(fmt::format("the data set is {}, not UNSTRUCTURED_GRID: it has no volume cells to use",
+                             data_set.substr(0, 40)));
     }
   }
 
@@ -95,7 +98,8 @@ class Walk {
     } else if (name == "point_data" || name == "cell_data") {
       const auto owners = name == "point_data" ? points_ : cell_count();
       items_ = static_cast<std::uint64_t>(text_.integer("a number of items", 0, INT64_MAX));
-      if (!owners.has_value() || *owners != items_) text_.fail("the number of data items is not that of the points or cells");
+      if (!owners.has_value() || *owners != items_)
+        text_.fail("the number of data items is not that of the points or cells");
     } else if (name == "metadata") {
       metadata();
     } else {
@@ -109,7 +113,8 @@ class Walk {
     text_.word("the name of an array");
     if (name == "color_scalars") {
       const auto components = static_cast<std::uint64_t>(text_.integer("a number of components", 1, 4));
-      return binary_ ? data(name, items_, components, find_type("unsigned_char")) : data(name, items_, components, find_type("float"));
+      return binary_ ? data(name, items_, components, find_type("unsigned_char"))
+                     : data(name, items_, components, find_type("float"));
     }
     if (name == "texture_coordinates") {
       const auto dimension = static_cast<std::uint64_t>(text_.integer("a dimension", 1, 3));
@@ -161,8 +166,10 @@ class Walk {
 
   const NumberType& find_type(std::string_view name) {
     const std::string wanted = lower(name);
-    const auto* found = std::find_if(number_types.begin(), number_types.end(), [&](const NumberType& t) { return t.name == wanted; });
-    if (found == number_types.end()) text_.fail(fmt::format("'{}' is not a type of numbers that can be read", wanted.substr(0, 40)));
+    const auto* found =
+        std::find_if(number_types.begin(), number_types.end(), [&](const NumberType& t) { return t.name == wanted; });
+    if (found == number_types.end())
+      text_.fail(fmt::format("'{}' is not a type of numbers that can be read", wanted.substr(0, 40)));
     return *found;
   }
   const NumberType& type() { return find_type(text_.word("a type of numbers")); }
@@ -206,8 +213,9 @@ class Walk {
       for (std::size_t b = 0; b < kind.bytes; ++b) {
         value = (value << 8U) | static_cast<unsigned char>(raw[i * kind.bytes + b]);
       }
-      out.push_back(kind.bytes == 8 ? static_cast<std::int64_t>(value)
-                                    : static_cast<std::int64_t>(static_cast<std::int32_t>(static_cast<std::uint32_t>(value))));
+      out.push_back(kind.bytes == 8
+                        ? static_cast<std::int64_t>(value)
+                        : static_cast<std::int64_t>(static_cast<std::int32_t>(static_cast<std::uint32_t>(value))));
     }
     return out;
   }
@@ -226,7 +234,8 @@ class Walk {
       cells.offsets = integers("offsets", first, type());
       if (lower(text_.word("CONNECTIVITY")) != "connectivity") text_.fail("CONNECTIVITY should stand here");
       cells.points = integers("corners", second, type());
-      if (cells.offsets.empty() || cells.offsets.front() != 0 || !std::is_sorted(cells.offsets.begin(), cells.offsets.end()) ||
+      if (cells.offsets.empty() || cells.offsets.front() != 0 ||
+          !std::is_sorted(cells.offsets.begin(), cells.offsets.end()) ||
           cells.offsets.back() != static_cast<std::int64_t>(second)) {
         text_.fail("the cells' offsets do not ascend from 0 to the number of corners");
       }
@@ -250,7 +259,8 @@ class Walk {
 
   void read_types() {
     const std::size_t n = text_.count("cell types", binary_ ? 4 : 2);
-    if (!cells_.has_value() || cells_->offsets.size() != n + 1) text_.fail("the number of cell types is not that of the cells");
+    if (!cells_.has_value() || cells_->offsets.size() != n + 1)
+      text_.fail("the number of cell types is not that of the cells");
     const auto types = integers("cell types", n, find_type("int"));
     for (std::size_t c = 0; c < n; ++c) {
       if (types[c] < 0 || types[c] > 255) text_.fail(fmt::format("cell {} has the unknown type {}", c, types[c]));

@@ -8,17 +8,17 @@
 
 namespace dartcast {
 
-/// Cells of three dimensions become cells: voxels as hexahedra, prisms from VTK's order of corners, which is the mirror of
-/// MeshData's. All their arrays are kept; `region`, `gmsh:physical` or `medit:ref` (the first there is, of whole numbers) gives
-/// the regions and, at triangles, quadrangles and polygons, the patches. Names come from the field arrays `region_names` and
-/// `patch_names` of write_vtk_mesh(). Lines and points are left out.
-/// `content` is what the file holds: it is checked first, then VTK reads the file. Throws InvalidMesh.
+/// Cells of three dimensions become cells: voxels as hexahedra, prisms from VTK's order of corners, which is the mirror
+/// of MeshData's. All their arrays are kept; `region`, `gmsh:physical` or `medit:ref` (the first there is, of whole
+/// numbers) gives the regions and, at triangles, quadrangles and polygons, the patches. Names come from the field
+/// arrays `region_names` and `patch_names` of write_vtk_mesh(). Lines and points are left out. `content` is what the
+/// file holds: it is checked first, then VTK reads the file. Throws InvalidMesh.
 ParsedMesh parse_vtu(const std::filesystem::path& path, std::string_view content);
 ParsedMesh parse_legacy_vtk(const std::filesystem::path& path, std::string_view content);
 
-/// Writes cells, patch faces and arrays so that the functions above read them back bit by bit: .vtu (compressed), or legacy .vtk
-/// (binary, without the names of regions and patches). `free` becomes a cell array of that name.
-/// Throws Error where the file cannot be written.
+/// Writes cells, patch faces and arrays so that the functions above read them back bit by bit: .vtu (compressed), or
+/// legacy .vtk (binary, without the names of regions and patches). `free` becomes a cell array of that name. Throws
+/// Error where the file cannot be written.
 void write_vtu(const MeshData& mesh, const std::filesystem::path& path);
 void write_legacy_vtk(const MeshData& mesh, const std::filesystem::path& path);
 

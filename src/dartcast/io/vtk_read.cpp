@@ -1,9 +1,3 @@
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <new>
-#include <set>
-
 #include <fmt/format.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -18,6 +12,12 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkUnstructuredGridReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <new>
+#include <set>
 
 #include "dartcast/base/error.hpp"
 #include "dartcast/io/face_stream.hpp"
@@ -53,9 +53,9 @@ const Standard* find_standard(int vtk) {
 }
 
 bool is_point_or_line(int vtk) {
-  static const std::set<int> types = {VTK_EMPTY_CELL, VTK_VERTEX,         VTK_POLY_VERTEX, VTK_LINE, VTK_POLY_LINE,
-                                      VTK_QUADRATIC_EDGE, VTK_CUBIC_LINE, VTK_PARAMETRIC_CURVE, VTK_HIGHER_ORDER_EDGE,
-                                      VTK_LAGRANGE_CURVE, VTK_BEZIER_CURVE};
+  static const std::set<int> types = {VTK_EMPTY_CELL,        VTK_VERTEX,         VTK_POLY_VERTEX, VTK_LINE,
+                                      VTK_POLY_LINE,         VTK_QUADRATIC_EDGE, VTK_CUBIC_LINE,  VTK_PARAMETRIC_CURVE,
+                                      VTK_HIGHER_ORDER_EDGE, VTK_LAGRANGE_CURVE, VTK_BEZIER_CURVE};
   return types.count(vtk) > 0;
 }
 
@@ -63,7 +63,9 @@ bool is_higher_order(int vtk) {
   return (vtk >= VTK_QUADRATIC_EDGE && vtk <= VTK_TRIQUADRATIC_PYRAMID) || (vtk >= VTK_HIGHER_ORDER_EDGE && vtk <= 81);
 }
 
-std::uint32_t checked_id(std::int64_t id) { return id >= 0 && id < no_point ? static_cast<std::uint32_t>(id) : no_point; }
+std::uint32_t checked_id(std::int64_t id) {
+  return id >= 0 && id < no_point ? static_cast<std::uint32_t>(id) : no_point;
+}
 
 /// What becomes of each cell of the file: the index of a cell here, or of a patch face.
 struct Places {
@@ -85,7 +87,8 @@ void copy_points(vtkUnstructuredGrid& grid, MeshData& mesh) {
 void add_polyhedron(vtkUnstructuredGrid& grid, vtkIdType c, MeshData& mesh) {
   vtkIdTypeArray* faces = grid.GetFaces();
   vtkIdTypeArray* locations = grid.GetFaceLocations();
-  const vtkIdType begin = faces == nullptr || locations == nullptr || c >= locations->GetNumberOfTuples() ? -1 : locations->GetValue(c);
+  const vtkIdType begin =
+      faces == nullptr || locations == nullptr || c >= locations->GetNumberOfTuples() ? -1 : locations->GetValue(c);
   if (begin < 0 || begin >= faces->GetNumberOfTuples()) throw InvalidMesh(fmt::format("polyhedron {} has no faces", c));
   const vtkIdType size = faces->GetNumberOfTuples();
   std::vector<std::uint32_t> stream = {checked_id(faces->GetValue(begin))};
@@ -101,7 +104,8 @@ void add_polyhedron(vtkUnstructuredGrid& grid, vtkIdType c, MeshData& mesh) {
 }
 
 /// Adds cell c of the grid, with its corners.
-void add_cell(vtkUnstructuredGrid& grid, vtkIdType c, std::span<const vtkIdType> ids, ParsedMesh& parsed, Places& places) {
+void add_cell(vtkUnstructuredGrid& grid, vtkIdType c, std::span<const vtkIdType> ids, ParsedMesh& parsed,
+              Places& places) {
   const int vtk = grid.GetCellTypesArray()->GetValue(c);
   MeshData& mesh = parsed.mesh;
   const Standard* standard = find_standard(vtk);
@@ -109,7 +113,8 @@ void add_cell(vtkUnstructuredGrid& grid, vtkIdType c, std::span<const vtkIdType>
   std::vector<std::uint32_t> corners;
   if (standard != nullptr) {
     if (ids.size() != standard->order.size()) {
-      throw InvalidMesh(fmt::format("cell {} of VTK's type {} has {} corners instead of {}", c, vtk, ids.size(), standard->order.size()));
+      throw InvalidMesh(fmt::format("cell {} of VTK's type {} has {} corners instead of {}", c, vtk, ids.size(),
+                                    standard->order.size()));
     }
     for (const int k : standard->order) corners.push_back(checked_id(ids[static_cast<std::size_t>(k)]));
   } else {
@@ -125,7 +130,8 @@ void add_cell(vtkUnstructuredGrid& grid, vtkIdType c, std::span<const vtkIdType>
   } else if (vtk == VTK_POLYHEDRON) {
     add_polyhedron(grid, c, mesh);
   } else {
-    if (!is_point_or_line(vtk)) (is_higher_order(vtk) ? parsed.second_order : parsed.unsupported).add(static_cast<std::size_t>(c));
+    if (!is_point_or_line(vtk))
+      (is_higher_order(vtk) ? parsed.second_order : parsed.unsupported).add(static_cast<std::size_t>(c));
     return;
   }
   places.cells.push_back(static_cast<std::uint32_t>(c));
@@ -136,8 +142,8 @@ Places copy_cells(vtkUnstructuredGrid& grid, ParsedMesh& parsed) {
   vtkCellArray* cells = grid.GetCells();
   const vtkIdType n = grid.GetNumberOfCells();
   if (n >= static_cast<vtkIdType>(no_point)) throw InvalidMesh("more than 2^32 - 2 cells");
-  if (n > 0 && (cells == nullptr || grid.GetCellTypesArray() == nullptr || grid.GetCellTypesArray()->GetNumberOfTuples() != n ||
-                !cells->IsValid())) {
+  if (n > 0 && (cells == nullptr || grid.GetCellTypesArray() == nullptr ||
+                grid.GetCellTypesArray()->GetNumberOfTuples() != n || !cells->IsValid())) {
     throw InvalidMesh("the cells' types or offsets do not fit the cells");
   }
   for (vtkIdType c = 0; c < n; ++c) {
@@ -169,8 +175,9 @@ void for_each_array(vtkFieldData& data, vtkIdType n, Take&& take) {
     vtkDataArray* array = data.GetArray(a);
     if (array == nullptr || array->GetNumberOfComponents() < 1) continue;
     if (array->GetNumberOfTuples() != n) {
-      throw InvalidMesh(fmt::format("array '{}' has {} items instead of {}", array->GetName() == nullptr ? "" : array->GetName(),
-                                    array->GetNumberOfTuples(), n));
+      throw InvalidMesh(fmt::format("array '{}' has {} items instead of {}",
+                                    array->GetName() == nullptr ? "" : array->GetName(), array->GetNumberOfTuples(),
+                                    n));
     }
     take(*array);
   }
@@ -225,7 +232,8 @@ ParsedMesh convert(vtkUnstructuredGrid& grid, std::string format) {
   copy_tags(grid, places, mesh);
   copy_names(grid, "region_names", mesh.region_names);
   copy_names(grid, "patch_names", mesh.patch_names);
-  const bool anything = !mesh.types.empty() || !mesh.patch_tags.empty() || parsed.second_order.count + parsed.unsupported.count > 0;
+  const bool anything =
+      !mesh.types.empty() || !mesh.patch_tags.empty() || parsed.second_order.count + parsed.unsupported.count > 0;
   if (!anything) throw InvalidMesh("the file has no cells");
   mesh.source = places.cells;
   finish(parsed);
@@ -236,7 +244,9 @@ ParsedMesh convert(vtkUnstructuredGrid& grid, std::string format) {
 template <class Reader>
 ParsedMesh read_with(Reader& reader, const std::string& format) {
   const VtkErrors errors;
-  const auto refuse = [&](const std::string& text) { throw InvalidMesh(fmt::format("VTK cannot read the file: {}", text)); };
+  const auto refuse = [&](const std::string& text) {
+    throw InvalidMesh(fmt::format("VTK cannot read the file: {}", text));
+  };
   try {
     reader.Update();
   } catch (const std::bad_alloc&) {

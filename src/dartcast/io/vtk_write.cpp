@@ -1,7 +1,3 @@
-#include <algorithm>
-#include <array>
-#include <string>
-
 #include <fmt/format.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -16,6 +12,10 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkUnstructuredGridWriter.h>
 #include <vtkXMLUnstructuredGridWriter.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
 
 #include "dartcast/base/error.hpp"
 #include "dartcast/io/vtk_errors.hpp"
@@ -78,7 +78,8 @@ void add_tags(const MeshData& mesh, vtkUnstructuredGrid& grid) {
   if (mesh.regions.empty() && mesh.patch_tags.empty()) return;
   vtkNew<vtkIntArray> array;
   array->SetName("region");
-  for (std::size_t c = 0; c < mesh.cell_count(); ++c) array->InsertNextValue(mesh.regions.empty() ? 0 : mesh.regions[c]);
+  for (std::size_t c = 0; c < mesh.cell_count(); ++c)
+    array->InsertNextValue(mesh.regions.empty() ? 0 : mesh.regions[c]);
   for (const std::int32_t tag : mesh.patch_tags) array->InsertNextValue(tag);
   grid.GetCellData()->AddArray(array);
 }
@@ -107,7 +108,8 @@ vtkSmartPointer<vtkUnstructuredGrid> make_grid(const MeshData& mesh) {
     if (a.name != "region" && a.name != "free") add_array(*grid->GetCellData(), a, grid->GetNumberOfCells());
   }
   if (!mesh.free.empty()) {
-    add_array(*grid->GetCellData(), DataArray{"free", 1, {mesh.free.begin(), mesh.free.end()}}, grid->GetNumberOfCells());
+    add_array(*grid->GetCellData(), DataArray{"free", 1, {mesh.free.begin(), mesh.free.end()}},
+              grid->GetNumberOfCells());
   }
   add_tags(mesh, *grid);
   return grid;
@@ -119,8 +121,9 @@ void write_with(Writer& writer, vtkUnstructuredGrid& grid, const std::filesystem
   writer.SetFileName(path.c_str());
   writer.SetInputData(&grid);
   if (writer.Write() != 1 || writer.GetErrorCode() != 0 || !errors.first().empty()) {
-    throw Error(fmt::format("{}: the file cannot be written; {}", path.string(),
-                            errors.first().empty() ? "check the folder, its permissions and the disk's space" : errors.first()));
+    throw Error(fmt::format(
+        "{}: the file cannot be written; {}", path.string(),
+        errors.first().empty() ? "check the folder, its permissions and the disk's space" : errors.first()));
   }
 }
 

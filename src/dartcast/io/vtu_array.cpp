@@ -1,15 +1,15 @@
 #include "dartcast/io/vtu_array.hpp"
 
-#include <algorithm>
-#include <array>
-#include <optional>
-
 #include <fmt/format.h>
 #include <vtkDataCompressor.h>
 #include <vtkLZ4DataCompressor.h>
 #include <vtkLZMADataCompressor.h>
 #include <vtkSmartPointer.h>
 #include <vtkZLibDataCompressor.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
 
 #include "dartcast/base/error.hpp"
 #include "dartcast/io/file_text.hpp"
@@ -74,9 +74,8 @@ class Base64 {
   }
 
  private:
-  /// Value of the next digit, 64 for padding; nothing at the end or at a byte that is no digit.
+  /// Value of the next digit, 64 for padding; nothing at the end or at a byte that is no digit: VTK skips none either.
   std::optional<unsigned> next() {
-    while (at_ < text_.size() && (text_[at_] == ' ' || (text_[at_] >= '\t' && text_[at_] <= '\r'))) ++at_;
     if (at_ >= text_.size()) return std::nullopt;
     const char c = text_[at_++];
     if (c >= 'A' && c <= 'Z') return static_cast<unsigned>(c - 'A');
@@ -100,6 +99,8 @@ class Source {
     if (array.format == "appended") {
       if (array.offset >= encoding.appended.size()) fail(array, "its data lie behind the end of the file");
       text_ = encoding.appended.substr(array.offset);
+    } else {
+      text_.remove_prefix(std::min(text_.find_first_not_of(" \t\r\n"), text_.size()));
     }
     base64_ = Base64(text_);
   }
@@ -113,19 +114,10 @@ class Source {
   /// Goes on behind a padding: a compressed array's header is encoded in two runs that VTK decodes as one.
   void restart(std::uint64_t bytes) {
     if (raw_) return;
-    // Base64 of the header as one run ends at a multiple of four digits.
-    base64_ = Base64(skip_digits(text_, (bytes + 2) / 3 * 4));
+    base64_ = Base64(text_.substr(std::min<std::uint64_t>((bytes + 2) / 3 * 4, text_.size())));
   }
 
  private:
-  static std::string_view skip_digits(std::string_view text, std::uint64_t digits) {
-    std::size_t at = 0;
-    for (; at < text.size() && digits > 0; ++at) {
-      if (text[at] != ' ' && (text[at] < '\t' || text[at] > '\r')) --digits;
-    }
-    return text.substr(at);
-  }
-
   bool raw_;
   std::string_view text_;
   Base64 base64_;
@@ -145,12 +137,16 @@ struct Blocks {
   std::uint64_t size = 0;  // of each block but the last, decompressed
   std::uint64_t last = 0;
 
-  [[nodiscard]] std::uint64_t size_of(std::size_t b) const { return b + 1 == compressed.size() && last != 0 ? last : size; }
+  [[nodiscard]] std::uint64_t size_of(std::size_t b) const {
+    return b + 1 == compressed.size() && last != 0 ? last : size;
+  }
 };
 
 Blocks read_blocks(const VtuArray& array, const VtuEncoding& encoding, Source& source, std::uint64_t available) {
   const std::size_t h = encoding.header_bytes;
-  const auto get = [&](std::string_view bytes, std::size_t i) { return integer_at(bytes, i * h, h, encoding.big_endian); };
+  const auto get = [&](std::string_view bytes, std::size_t i) {
+    return integer_at(bytes, i * h, h, encoding.big_endian);
+  };
   std::string head = source.take(3 * h);
   if (head.size() < 3 * h) fail(array, "its header is cut off; the file is truncated");
   Blocks blocks;
@@ -158,7 +154,8 @@ Blocks read_blocks(const VtuArray& array, const VtuEncoding& encoding, Source& s
   blocks.size = get(head, 1);
   blocks.last = get(head, 2);
   if (n > available / h) fail(array, fmt::format("its header announces {} blocks, more than the file holds", n));
-  if (blocks.size > available * 1100 + 65536 || blocks.last > blocks.size) fail(array, "its header announces blocks too large");
+  if (blocks.size > available * 1100 + 65536 || blocks.last > blocks.size)
+    fail(array, "its header announces blocks too large");
   source = Source(array, encoding);
   head = source.take((3 + n) * h);
   if (head.size() < (3 + n) * h) fail(array, "its header is cut off; the file is truncated");
@@ -167,15 +164,17 @@ Blocks read_blocks(const VtuArray& array, const VtuEncoding& encoding, Source& s
     blocks.compressed.push_back(get(head, 3 + b));
     if (blocks.compressed.back() > left) fail(array, "its compressed data are cut off; the file is truncated");
     left -= blocks.compressed.back();
-    if (blocks.size_of(b) > 1100 * blocks.compressed.back() + 65536) fail(array, "a block would grow too much when decompressed");
+    if (blocks.size_of(b) > 1100 * blocks.compressed.back() + 65536)
+      fail(array, "a block would grow too much when decompressed");
   }
   source.restart((3 + n) * h);
   return blocks;
 }
 
 std::uint64_t available_bytes(const VtuArray& array, const VtuEncoding& encoding) {
-  return array.format == "appended" ? encoding.appended.size() - std::min<std::uint64_t>(array.offset, encoding.appended.size())
-                                    : array.text.size();
+  return array.format == "appended"
+             ? encoding.appended.size() - std::min<std::uint64_t>(array.offset, encoding.appended.size())
+             : array.text.size();
 }
 
 std::uint64_t total_bytes(const Blocks& blocks) {

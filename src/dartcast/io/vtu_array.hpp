@@ -12,8 +12,8 @@ namespace dartcast {
 struct VtuEncoding {
   bool big_endian = false;
   std::size_t header_bytes = 4;
-  std::string compressor;           ///< empty: not compressed
-  std::string_view appended;        ///< behind the '_' of the appended data
+  std::string compressor;     ///< empty: not compressed
+  std::string_view appended;  ///< behind the '_' of the appended data
   bool appended_raw = false;
 };
 
@@ -21,18 +21,18 @@ struct VtuEncoding {
 struct VtuArray {
   std::string name;
   std::string type;
-  std::string format;               ///< ascii, binary or appended
+  std::string format;  ///< ascii, binary or appended
   std::uint64_t components = 1;
-  std::uint64_t tuples = 0;         ///< announced; field data only
-  std::uint64_t offset = 0;         ///< appended
-  std::string_view text;            ///< inline
+  std::uint64_t tuples = 0;  ///< announced; field data only
+  std::uint64_t offset = 0;  ///< appended
+  std::string_view text;     ///< inline
 };
 
 /// Bytes of one number of a type; 0 for a type that is not known, 1 for strings.
 std::size_t vtu_type_bytes(std::string_view type);
 
-/// The number of numbers that the data announce; the bytes to hold them have been seen to be there, or for compressed data the
-/// compressed ones. For ASCII every number is read. Throws InvalidMesh.
+/// The number of numbers that the data announce; the bytes to hold them have been seen to be there, or for compressed
+/// data the compressed ones. For ASCII every number is read. Throws InvalidMesh.
 std::uint64_t count_numbers(const VtuArray& array, const VtuEncoding& encoding);
 
 /// All numbers of an array of whole numbers. Throws InvalidMesh.

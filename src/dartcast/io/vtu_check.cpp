@@ -1,5 +1,7 @@
 #include "dartcast/io/vtu_check.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
@@ -7,8 +9,6 @@
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <fmt/format.h>
 
 #include "dartcast/base/error.hpp"
 #include "dartcast/io/face_stream.hpp"
@@ -50,7 +50,8 @@ void read_head(const XmlTags& tags, const XmlTag& tag, File& file) {
   if (tag.name != "VTKFile") tags.fail("<VTKFile> should stand here");
   const std::string type = attribute(tag, "type", "");
   if (type != "UnstructuredGrid") {
-    tags.fail(fmt::format("the data set is {}, not UnstructuredGrid: it has no volume cells to use", type.substr(0, 40)));
+    tags.fail(
+        fmt::format("the data set is {}, not UnstructuredGrid: it has no volume cells to use", type.substr(0, 40)));
   }
   const std::string order = attribute(tag, "byte_order", "LittleEndian");
   if (order != "LittleEndian" && order != "BigEndian") tags.fail("byte_order is neither LittleEndian nor BigEndian");
@@ -66,7 +67,8 @@ VtuArray read_array(const XmlTags& tags, const XmlTag& tag, std::string_view con
   array.name = attribute(tag, "Name", "");
   array.type = attribute(tag, "type", "");
   array.format = attribute(tag, "format", "ascii");
-  if (vtu_type_bytes(array.type) == 0) tags.fail(fmt::format("'{}' is not a type of numbers", array.type.substr(0, 40)));
+  if (vtu_type_bytes(array.type) == 0)
+    tags.fail(fmt::format("'{}' is not a type of numbers", array.type.substr(0, 40)));
   if (array.format != "ascii" && array.format != "binary" && array.format != "appended") {
     tags.fail(fmt::format("'{}' is not a format of data", array.format.substr(0, 40)));
   }
@@ -81,11 +83,15 @@ VtuArray read_array(const XmlTags& tags, const XmlTag& tag, std::string_view con
 
 /// The appended data, which need not be XML: they end before the last closing tag of their own.
 void read_appended(XmlTags& tags, const XmlTag& tag, std::string_view content, File& file) {
-  const std::size_t begin = content.find('_', tag.end);
+  // VTK looks for the tag's text and takes the first byte behind white space for the mark, whatever it is.
+  const std::size_t first = content.find('>', content.find("<AppendedData"));
+  const std::size_t begin = content.find_first_not_of(" \t\r\n", tag.end);
   const std::size_t end = content.rfind("</AppendedData");
-  if (begin == std::string_view::npos || end == std::string_view::npos || end <= begin) {
-    tags.fail("the appended data are not closed; the file is truncated");
+  if (first + 1 != tag.end || begin == std::string_view::npos || content[begin] != '_') {
+    tags.fail("the appended data do not start with '_' behind their tag");
   }
+  if (end == std::string_view::npos || end <= begin)
+    tags.fail("the appended data are not closed; the file is truncated");
   file.encoding.appended = content.substr(begin + 1, end - begin - 1);
   file.encoding.appended_raw = attribute(tag, "encoding", "base64") == "raw";
   tags.move_to(end);
@@ -105,7 +111,8 @@ File read_tags(std::string_view content) {
     } else if (tag.name == "UnstructuredGrid") {
       grid = true;
     } else if (tag.name == "Piece") {
-      file.pieces.push_back({number_of(tags, tag, "NumberOfPoints", "0"), number_of(tags, tag, "NumberOfCells", "0"), {}});
+      file.pieces.push_back(
+          {number_of(tags, tag, "NumberOfPoints", "0"), number_of(tags, tag, "NumberOfCells", "0"), {}});
     } else if (tag.name == "AppendedData") {
       read_appended(tags, tag, content, file);
     } else if (tag.name == "Points" || tag.name == "Cells" || tag.name == "PointData" || tag.name == "CellData" ||
@@ -135,8 +142,8 @@ File read_tags(std::string_view content) {
 void check_size(const VtuArray& array, const VtuEncoding& encoding, std::uint64_t items) {
   const std::uint64_t found = count_numbers(array, encoding);
   if (items > INT64_MAX / array.components || found != items * array.components) {
-    fail(array, fmt::format("it has {} numbers, where {} x {} should stand; the file is truncated or damaged", found, items,
-                            array.components));
+    fail(array, fmt::format("it has {} numbers, where {} x {} should stand; the file is truncated or damaged", found,
+                            items, array.components));
   }
 }
 
@@ -210,17 +217,26 @@ void check_piece(const Piece& piece, const VtuEncoding& encoding) {
   if (piece.cells > 0) check_cells(piece, encoding);
 }
 
+/// VTK makes room for the values that the tag announces, and trusts it.
+void check_field(const VtuArray& array, const VtuEncoding& encoding) {
+  if (array.type != "String") {
+    if (array.tuples > 0) check_size(array, encoding, array.tuples);
+    return;
+  }
+  const std::vector<std::int64_t> characters = decode_integers(array, encoding);
+  if (!characters.empty() && characters.back() != 0) fail(array, "its last text does not end");
+  const auto texts = static_cast<std::uint64_t>(std::count(characters.begin(), characters.end(), 0));
+  if (array.components != 1 || texts != array.tuples) {
+    fail(array, fmt::format("it has {} texts, where {} should stand", texts, array.tuples));
+  }
+}
+
 }  // namespace
 
 void check_vtu(std::string_view content) {
   const File file = read_tags(content);
   for (const Piece& piece : file.pieces) check_piece(piece, file.encoding);
-  for (const VtuArray& array : file.field) {
-    const std::uint64_t found = count_numbers(array, file.encoding);
-    if (array.tuples > found || (array.type != "String" && found / array.components < array.tuples)) {
-      fail(array, "it has fewer values than it announces");
-    }
-  }
+  for (const VtuArray& array : file.field) check_field(array, file.encoding);
 }
 
 }  // namespace dartcast

@@ -1,8 +1,8 @@
 #include "dartcast/io/xml_tags.hpp"
 
-#include <algorithm>
-
 #include <fmt/format.h>
+
+#include <algorithm>
 
 #include "dartcast/base/error.hpp"
 

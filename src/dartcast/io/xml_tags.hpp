@@ -22,8 +22,8 @@ class XmlTags {
  public:
   explicit XmlTags(std::string_view content) : content_(content) {}
 
-  /// The next tag, comments and declarations left out; false at the end of the file. Throws where a tag is damaged, closes
-  /// another one than the last opened, or is open at the end.
+  /// The next tag, comments and declarations left out; false at the end of the file. Throws where a tag is damaged,
+  /// closes another one than the last opened, or is open at the end.
   bool next(XmlTag& tag);
 
   /// Moves to a byte, over content that is not XML.

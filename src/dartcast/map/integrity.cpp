@@ -63,7 +63,8 @@ class Checker {
     }
     const Dart other = map_.phi3(d);
     const CellView w = map_.view(other.cell);
-    if (w.neighbour(w.shape().face_of(other.number)) != d.cell) {
+    const std::uint16_t back = w.shape().face_of(other.number);
+    if (w.neighbour(back) != d.cell || w.neighbour_face(back) != f.face) {
       expect(false, "phi3 is an involution", d);
       return;
     }

@@ -111,14 +111,25 @@ void Shape::connect_simplices() {
     first_entry_.push_back(static_cast<std::uint16_t>(entries_.size()));
     for (std::uint16_t t = 0; t < triangle_count(f); ++t) {
       const auto behind = open.find(sorted(triangle(f, t)));
-      if (behind == open.end()) throw InvalidMesh("the faces of the cell do not bound one solid");
+      if (behind == open.end()) return make_flat();
       entries_.push_back(behind->second);
       simplices_[behind->second.index].across[behind->second.place] = {
           static_cast<std::uint16_t>(Across::outer_bit | f), t};
       open.erase(behind);
     }
   }
-  if (!open.empty()) throw InvalidMesh("the faces of the cell do not bound one solid");
+  if (!open.empty()) make_flat();
+}
+
+// One simplex without extent, entered by every triangle: nothing can be in it, and no walk goes on from it.
+void Shape::make_flat() {
+  simplices_.assign(1, ImplicitSimplex{{key_.apex, key_.apex, key_.apex, key_.apex}, {}});
+  first_entry_.clear();
+  entries_.clear();
+  for (std::uint16_t f = 0; f < face_count(); ++f) {
+    first_entry_.push_back(static_cast<std::uint16_t>(entries_.size()));
+    entries_.insert(entries_.end(), triangle_count(f), Across{});
+  }
 }
 
 Shape::Feature Shape::feature(std::span<const std::uint16_t> points) const {

@@ -54,7 +54,9 @@ struct ImplicitSimplex {
 /// Immutable. Darts are numbered face by face, from the face's lowest-numbered vertex.
 class Shape {
  public:
-  /// Throws InvalidMesh where the faces do not close: an edge not used once in each direction, a fan that does not fit.
+  /// Throws InvalidMesh where the faces do not close: an edge not used once in each direction. Where two fans hold the
+  /// same triangle (faces that meet in an edge with a corner on it), the fans bound no solid: the shape then has one
+  /// simplex, flat at any positions, so that the cell is invalid until such faces take points of their own.
   explicit Shape(ShapeKey key);
 
   [[nodiscard]] std::uint16_t corner_count() const { return key_.corner_count; }
@@ -113,6 +115,7 @@ class Shape {
   void sew_darts();
   void make_simplices();
   void connect_simplices();
+  void make_flat();
 
   ShapeKey key_;
   std::uint16_t point_count_ = 0;

@@ -27,8 +27,8 @@ BoxTree::BoxTree(std::vector<Box> boxes) : boxes_(std::move(boxes)), order_(boxe
     for (std::uint32_t i = node.begin + 1; i < node.end; ++i) node.box = join(node.box, boxes_[order_[i]]);
     if (node.end - node.begin > leaf_size) {
       const Vec3 size = node.box.high - node.box.low;
-      double Vec3::*axis = size.x >= size.y ? (size.x >= size.z ? &Vec3::x : &Vec3::z)
-                                            : (size.y >= size.z ? &Vec3::y : &Vec3::z);
+      double Vec3::*axis =
+          size.x >= size.y ? (size.x >= size.z ? &Vec3::x : &Vec3::z) : (size.y >= size.z ? &Vec3::y : &Vec3::z);
       const std::uint32_t middle = node.begin + (node.end - node.begin) / 2;
       std::nth_element(order_.begin() + node.begin, order_.begin() + middle, order_.begin() + node.end,
                        [&](std::uint32_t a, std::uint32_t b) {

@@ -12,12 +12,19 @@
 namespace dartcast {
 namespace {
 
-constexpr double flatness = 1e-9;       // off the plane by rounding, relative to the size of the face
+constexpr double flatness = 1e-9;  // off the plane by rounding, relative to the size of the face
 constexpr std::size_t pairs_a_face = 200;
 
 using Triangle = std::array<std::uint32_t, 3>;
 
 double largest(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
+/// A triangle of a face's fan, with what is asked of it again and again.
+struct Piece {
+  Triangle corners;
+  Vec3 normal;
+  double size;
+};
 
 /// Normal of largest component 1: no product of coordinates overflows in what follows.
 Vec3 normal_of(const MeshData& mesh, const Triangle& t) {
@@ -52,8 +59,8 @@ bool separates(const MeshData& mesh, const Triangle& s, const Triangle& t, int a
   return false;
 }
 
-/// Whether the insides of two triangles, seen along `axis`, have a point in common. Two convex polygons have none exactly
-/// where an edge of one has the other on its far side.
+/// Whether the insides of two triangles, seen along `axis`, have a point in common. Two convex polygons have none
+/// exactly where an edge of one has the other on its far side.
 bool areas_overlap(const MeshData& mesh, const Triangle& s, const Triangle& t, int axis) {
   const auto turn = [&](const Triangle& x) {
     return orient2d(drop(mesh.points[x[0]], axis), drop(mesh.points[x[1]], axis), drop(mesh.points[x[2]], axis));
@@ -69,17 +76,31 @@ double size_of(const MeshData& mesh, const Triangle& t) {
   return std::max(largest(p[t[1]] - p[t[0]]), largest(p[t[2]] - p[t[0]]));
 }
 
-bool lie_against(const MeshData& mesh, const Triangle& s, const Triangle& t) {
+/// Whether the two ranges of coordinates have more than an end in common.
+bool ranges_overlap(double a, double b, double c, double x, double y, double z) {
+  return std::min({a, b, c}) < std::max({x, y, z}) && std::min({x, y, z}) < std::max({a, b, c});
+}
+
+bool boxes_overlap(const MeshData& mesh, const Triangle& s, const Triangle& t, int axis) {
+  const auto at = [&](std::uint32_t v) { return drop(mesh.points[v], axis); };
+  const Vec2 a = at(s[0]), b = at(s[1]), c = at(s[2]), x = at(t[0]), y = at(t[1]), z = at(t[2]);
+  return ranges_overlap(a.x, b.x, c.x, x.x, y.x, z.x) && ranges_overlap(a.y, b.y, c.y, x.y, y.y, z.y);
+}
+
+bool lie_against(const MeshData& mesh, const Piece& f, const Piece& g) {
   const auto& p = mesh.points;
-  const Vec3 n = normal_of(mesh, s);
-  const double thickness = 3.0 * flatness * std::max(size_of(mesh, s), size_of(mesh, t));
+  const Triangle& s = f.corners;
+  const Triangle& t = g.corners;
+  const double thickness = 3.0 * flatness * std::max(f.size, g.size);
   for (const std::uint32_t v : t) {
-    if (std::abs(dot(n, p[v] - p[s[0]])) > thickness) return false;
+    if (std::abs(dot(f.normal, p[v] - p[s[0]])) > thickness) return false;
   }
-  const bool facing = dot(n, normal_of(mesh, t)) < 0.0;
+  const int axis = main_axis(f.normal);
+  if (!boxes_overlap(mesh, s, t, axis)) return false;
+  const bool facing = dot(f.normal, g.normal) < 0.0;
   const auto on_plane = [&](std::uint32_t v) { return orient3d(p[s[0]], p[s[1]], p[s[2]], p[v]) == Sign::zero; };
   if (!facing && !(on_plane(t[0]) && on_plane(t[1]) && on_plane(t[2]))) return false;
-  return areas_overlap(mesh, s, t, main_axis(n));
+  return areas_overlap(mesh, s, t, axis);
 }
 
 /// Triangle k of a face's fan from its lowest-numbered corner.
@@ -88,10 +109,23 @@ Triangle fan_triangle(std::span<const std::uint32_t> face, std::size_t k) {
   return {face[low], face[(low + k + 1) % face.size()], face[(low + k + 2) % face.size()]};
 }
 
-bool faces_lie_against(const MeshData& mesh, std::span<const std::uint32_t> f, std::span<const std::uint32_t> g) {
-  for (std::size_t i = 0; i + 2 < f.size(); ++i) {
-    for (std::size_t j = 0; j + 2 < g.size(); ++j) {
-      if (lie_against(mesh, fan_triangle(f, i), fan_triangle(g, j))) return true;
+/// The fans of all faces, one after another: face f of n corners has its n - 2 pieces from offsets[f] - 2 f on.
+std::vector<Piece> make_pieces(const MeshData& mesh, const BoundaryFaces& boundary) {
+  std::vector<Piece> pieces;
+  pieces.reserve(boundary.corners.size() - 2 * boundary.size());
+  for (std::size_t f = 0; f < boundary.size(); ++f) {
+    for (std::size_t k = 0; k + 2 < boundary.face(f).size(); ++k) {
+      const Triangle t = fan_triangle(boundary.face(f), k);
+      pieces.push_back({t, normal_of(mesh, t), size_of(mesh, t)});
+    }
+  }
+  return pieces;
+}
+
+bool pieces_lie_against(const MeshData& mesh, std::span<const Piece> f, std::span<const Piece> g) {
+  for (const Piece& s : f) {
+    for (const Piece& t : g) {
+      if (lie_against(mesh, s, t)) return true;
     }
   }
   return false;
@@ -110,16 +144,20 @@ void mark_overlaps(const MeshData& mesh, const BoundaryFaces& boundary, Conformi
   std::vector<Box> boxes(boundary.size());
   for (std::size_t f = 0; f < boxes.size(); ++f) boxes[f] = box_of(mesh, boundary.face(f));
   const BoxTree tree(boxes);
+  const std::vector<Piece> pieces = make_pieces(mesh, boundary);
+  const auto pieces_of = [&](std::size_t f) {
+    return std::span(pieces).subspan(boundary.offsets[f] - 2 * f, boundary.face(f).size() - 2);
+  };
   std::size_t budget = pairs_a_face * boundary.size() + 1000;
   for (std::uint32_t f = 0; f < boundary.size() && out.complete; ++f) {
-    const auto face = boundary.face(f);
+    const auto own = pieces_of(f);
     tree.query(boxes[f], [&](std::uint32_t g) {
       if (g <= f || boundary.cells[g] == boundary.cells[f]) return true;
-      const std::size_t cost = (face.size() - 2) * (boundary.face(g).size() - 2);
+      const std::size_t cost = own.size() * pieces_of(g).size();
       if (budget < cost) return out.complete = false;
       budget -= cost;
       if (marked[f] && marked[g]) return true;
-      if (faces_lie_against(mesh, face, boundary.face(g))) marked[f] = marked[g] = true;
+      if (pieces_lie_against(mesh, own, pieces_of(g))) marked[f] = marked[g] = true;
       return true;
     });
   }

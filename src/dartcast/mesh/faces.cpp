@@ -15,10 +15,10 @@ constexpr std::uint32_t none = 0xffffffffU;
 struct FaceKey {
   std::array<std::uint32_t, 4> corners;  // ascending; the last is `none` for a triangle
   std::uint32_t cell;
-  std::uint32_t place;        // from the cell's start in connectivity for a polyhedron; else the face's number
+  std::uint32_t place;  // from the cell's start in connectivity for a polyhedron; else the face's number
   std::uint32_t size : 16;
-  std::uint32_t forward : 1;  // the corner after the smallest is smaller than the one before it
-  std::uint32_t opposite : 2; // of a quadrangle: which of corners[1..3] lies opposite the smallest
+  std::uint32_t forward : 1;   // the corner after the smallest is smaller than the one before it
+  std::uint32_t opposite : 2;  // of a quadrangle: which of corners[1..3] lies opposite the smallest
 };
 
 FaceKey make_key(std::span<const std::uint32_t> face, std::size_t cell, std::size_t place) {

@@ -12,9 +12,9 @@ namespace dartcast {
 
 /// The faces that one cell alone uses.
 struct BoundaryFaces {
-  std::vector<std::uint32_t> corners;     ///< counterclockwise seen from the outside
+  std::vector<std::uint32_t> corners;  ///< counterclockwise seen from the outside
   std::vector<std::size_t> offsets = {0};
-  std::vector<std::uint32_t> cells;       ///< the cell of each face
+  std::vector<std::uint32_t> cells;  ///< the cell of each face
 
   [[nodiscard]] std::size_t size() const { return cells.size(); }
   [[nodiscard]] std::span<const std::uint32_t> face(std::size_t f) const {
@@ -25,11 +25,11 @@ struct BoundaryFaces {
 /// How the cells of a mesh meet.
 struct FaceMatch {
   BoundaryFaces boundary;
-  std::vector<std::uint32_t> crowded;     ///< a cell for each face that three or more cells use
-  std::vector<std::uint32_t> same_side;   ///< a cell for each face that two cells use from the same side
-  std::vector<std::uint32_t> twisted;     ///< a cell for each face that two cells use with corners in another order
-  std::size_t parts = 0;                  ///< groups of cells connected by faces
-  std::vector<std::uint32_t> part;        ///< per cell: one cell of its group, the same for all of them
+  std::vector<std::uint32_t> crowded;    ///< a cell for each face that three or more cells use
+  std::vector<std::uint32_t> same_side;  ///< a cell for each face that two cells use from the same side
+  std::vector<std::uint32_t> twisted;    ///< a cell for each face that two cells use with corners in another order
+  std::size_t parts = 0;                 ///< groups of cells connected by faces
+  std::vector<std::uint32_t> part;       ///< per cell: one cell of its group, the same for all of them
 };
 
 /// Matches all faces by their corners. Precondition: connectivity is well formed and no face repeats a corner.

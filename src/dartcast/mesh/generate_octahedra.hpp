@@ -24,7 +24,7 @@ struct OctahedraOptions {
 /// outside. `free` is filled where a cell is blocked.
 ///
 /// Throws InvalidArgument: no cubes along an axis, 2^29 cells or more, a size that is not positive, a number that is
-/// not finite, a share outside [0, 1]. Cost: about 1.5 us per cell.
+/// not finite, a share outside [0, 1]. Cost: about 2 us per cell.
 MeshData generate_octahedra(const OctahedraOptions& options);
 
 }  // namespace dartcast

@@ -40,7 +40,8 @@ void count_contents(const MeshData& mesh, MeshReport& report) {
 
 void check_coordinates(const MeshData& mesh, const std::vector<std::uint32_t>& point_source, MeshReport& report) {
   Finding not_finite{"not_finite", 0, {}, "points with a coordinate that is not a finite number"};
-  Finding out{"out_of_range", 0, {}, "points with a coordinate too large or too small for exact signs (1e-90 to 1e+90)"};
+  Finding out{
+      "out_of_range", 0, {}, "points with a coordinate too large or too small for exact signs (1e-90 to 1e+90)"};
   for (std::size_t p = 0; p < mesh.points.size(); ++p) {
     if (in_exact_range(mesh.points[p])) continue;
     (is_finite(mesh.points[p]) ? out : not_finite).add(point_source[p]);
@@ -79,9 +80,12 @@ void check_repeated_points(const MeshData& mesh, const std::vector<std::uint32_t
     if (mesh.points[keys[i].point] == mesh.points[keys[i - 1].point]) repeated.push_back(keys[i].point);
   }
   std::sort(repeated.begin(), repeated.end());
-  Finding finding{"repeated_points", 0, {},
-                  "points at the place of another one: the cells on both sides are not connected, and particles meet a wall "
-                  "there; merge the points unless that is meant"};
+  Finding finding{
+      "repeated_points",
+      0,
+      {},
+      "points at the place of another one: the cells on both sides are not connected, and particles meet a wall "
+      "there; merge the points unless that is meant"};
   for (const std::uint32_t p : repeated) finding.add(point_source[p]);
   add_finding(report.warnings, finding);
 }
@@ -102,8 +106,11 @@ void close_polyhedra(MeshData& mesh, MeshReport& report) {
 void orient_cells(MeshData& mesh, MeshReport& report) {
   Finding mirrored{"orientation", 0, {}, "cells were inside out; their corners have been reordered"};
   Finding flat{"flat", 0, {}, "cells without volume; remove them from the mesh"};
-  Finding inverted{"inverted", 0, {}, "cells that stay inverted in whichever order: as many corners turn inwards as outwards; "
-                                      "check the order of their corners, or remesh them"};
+  Finding inverted{"inverted",
+                   0,
+                   {},
+                   "cells that stay inverted in whichever order: as many corners turn inwards as outwards; "
+                   "check the order of their corners, or remesh them"};
   for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
     switch (orient_cell(mesh, c)) {
       case Orientation::positive: break;
@@ -127,9 +134,10 @@ void check_faces(const MeshData& mesh, const FaceMatch& match, MeshReport& repor
   report.parts = match.parts;
   add_cells(mesh, match.crowded, {"face_shared", 0, {}, "faces used by three cells or more; one of the cells is named"},
             report.defects);
-  add_cells(mesh, match.same_side,
-            {"same_side", 0, {}, "faces that two cells use from the same side: the cells overlap; one of them is named"},
-            report.defects);
+  add_cells(
+      mesh, match.same_side,
+      {"same_side", 0, {}, "faces that two cells use from the same side: the cells overlap; one of them is named"},
+      report.defects);
   add_cells(mesh, match.twisted,
             {"face_order", 0, {}, "faces whose corners two cells give in different orders; one of the cells is named"},
             report.defects);
@@ -142,11 +150,15 @@ void check_boundary(const MeshData& mesh, const FaceMatch& match, const std::vec
   std::vector<std::uint32_t> cells;
   for (const std::uint32_t f : conformity.faces) cells.push_back(boundary.cells[f]);
   add_cells(mesh, std::move(cells),
-            {"non_conforming", 0, {}, "faces that lie against other cells' faces without matching them: particles meet a wall "
-                                      "there; make the mesh conforming unless that is meant"},
+            {"non_conforming",
+             0,
+             {},
+             "faces that lie against other cells' faces without matching them: particles meet a wall "
+             "there; make the mesh conforming unless that is meant"},
             report.warnings);
   if (!conformity.complete) {
-    report.warnings.push_back({"unfinished", 1, {0}, "too many boundary faces overlap for all non-conforming ones to be found"});
+    report.warnings.push_back(
+        {"unfinished", 1, {0}, "too many boundary faces overlap for all non-conforming ones to be found"});
   }
   const Pinches pinches = find_pinches(match);
   Finding edges{"boundary_edges", 0, {}, "edges where the boundary meets itself; one end of each is named"};

@@ -9,8 +9,9 @@
 namespace dartcast {
 
 struct Pinches {
-  std::vector<std::uint32_t> edges;   ///< one end of each boundary edge that more or fewer than two boundary faces use
-  std::vector<std::uint32_t> points;  ///< points where the boundary of one part touches itself, ends of such edges left out
+  std::vector<std::uint32_t> edges;  ///< one end of each boundary edge that more or fewer than two boundary faces use
+  std::vector<std::uint32_t>
+      points;  ///< points where the boundary of one part touches itself, ends of such edges left out
 };
 
 /// Precondition: what match_faces() found. Cost: n log n in the boundary faces.

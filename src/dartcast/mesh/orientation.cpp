@@ -52,8 +52,8 @@ Votes count_corners(const MeshData& mesh, std::size_t c) {
   return votes;
 }
 
-/// Each face of a convex polyhedron has all corners behind it. The first and last corner in the order of coordinates are
-/// corners of the hull whatever the cell's shape.
+/// Each face of a convex polyhedron has all corners behind it. The first and last corner in the order of coordinates
+/// are corners of the hull whatever the cell's shape.
 Votes count_faces(const MeshData& mesh, std::size_t c) {
   const auto& p = mesh.points;
   const auto before = [&](std::uint32_t a, std::uint32_t b) {

@@ -14,10 +14,10 @@ enum class Orientation {
   inverted,  ///< as many corners turn one way as the other: reordering does not help
 };
 
-/// Orients cell c in place. For the standard types the exact signs of the corners' determinants decide by majority; for a
-/// polyhedron those of its faces seen from its two extreme corners. A cell that is positive here may still have a corner
-/// that is turned in: whether it can be cut into positive simplices is tested in geometry/.
-/// Preconditions: connectivity is well formed, polyhedra are closed with consistent faces, coordinates in the exact range.
+/// Orients cell c in place. For the standard types the exact signs of the corners' determinants decide by majority; for
+/// a polyhedron those of its faces seen from its two extreme corners. A cell that is positive here may still have a
+/// corner that is turned in: whether it can be cut into positive simplices is tested in geometry/. Preconditions:
+/// connectivity is well formed, polyhedra are closed with consistent faces, coordinates in the exact range.
 Orientation orient_cell(MeshData& mesh, std::size_t c);
 
 }  // namespace dartcast

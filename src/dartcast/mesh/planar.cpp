@@ -128,7 +128,9 @@ void inspect_planar(MeshData& mesh, MeshReport& report) {
   report.dimension = 2;
   const int axis = flat_axis(mesh);
   if (axis < 0) {
-    report.defects.push_back({"no_volume", mesh.patch_tags.size(), {0},
+    report.defects.push_back({"no_volume",
+                              mesh.patch_tags.size(),
+                              {0},
                               "a surface in space without volume cells; mesh the volume inside it first"});
     return;
   }

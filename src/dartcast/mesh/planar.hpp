@@ -7,8 +7,9 @@
 namespace dartcast {
 
 /// Inspects a mesh that has patch faces and no cells, and repairs their orientation (counterclockwise) in place.
-/// Finds faces that are flat or not convex, sides that three faces use, points that hang on a side, and surfaces that do not
-/// lie in a plane x, y or z = constant. Preconditions: ids in range, no repeated corners, coordinates in the exact range.
+/// Finds faces that are flat or not convex, sides that three faces use, points that hang on a side, and surfaces that
+/// do not lie in a plane x, y or z = constant. Preconditions: ids in range, no repeated corners, coordinates in the
+/// exact range.
 void inspect_planar(MeshData& mesh, MeshReport& report);
 
 }  // namespace dartcast

@@ -17,8 +17,8 @@ enum class Closure {
   open,      ///< an edge is not used exactly twice, the faces fall into parts, or they cannot be turned the same way
 };
 
-/// Turns over, in place, the faces of polyhedron c that disagree with its first face. Whether all of it is then inside out
-/// is for orient_cell(). Precondition: the cell's connectivity is well formed. Cost: n log n in its edges.
+/// Turns over, in place, the faces of polyhedron c that disagree with its first face. Whether all of it is then inside
+/// out is for orient_cell(). Precondition: the cell's connectivity is well formed. Cost: n log n in its edges.
 Closure close_polyhedron(MeshData& mesh, std::size_t c);
 
 }  // namespace dartcast

@@ -1,11 +1,11 @@
 #include "dartcast/mesh/regions.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <set>
 #include <string_view>
-
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "dartcast/base/error.hpp"
 
@@ -35,7 +35,8 @@ void select_free_regions(MeshData& mesh, std::span<const std::string> regions) {
     if (wanted.size() == before) {
       std::vector<std::string> names;
       for (const std::int32_t tag : present) names.push_back(name_of(mesh, tag));
-      throw InvalidMesh(fmt::format("the mesh has no region '{}'; its regions are: {}", region, fmt::join(names, ", ")));
+      throw InvalidMesh(
+          fmt::format("the mesh has no region '{}'; its regions are: {}", region, fmt::join(names, ", ")));
     }
   }
   std::vector<std::uint8_t> free(mesh.cell_count());

@@ -62,7 +62,8 @@ bool repeats_corner(const MeshData& mesh, std::size_t c, std::vector<std::uint32
 bool too_many_corners(const MeshData& mesh, std::size_t c, std::vector<std::uint32_t>& work) {
   if (mesh.types[c] != CellType::polyhedron || mesh.cell(c).size() <= polyhedron_limit) return false;
   work.clear();
-  for_each_face(mesh, c, [&](std::span<const std::uint32_t> face) { work.insert(work.end(), face.begin(), face.end()); });
+  for_each_face(mesh, c,
+                [&](std::span<const std::uint32_t> face) { work.insert(work.end(), face.begin(), face.end()); });
   std::sort(work.begin(), work.end());
   return std::unique(work.begin(), work.end()) - work.begin() > static_cast<std::ptrdiff_t>(polyhedron_limit);
 }
@@ -154,9 +155,7 @@ std::vector<std::uint32_t> sorted_face(std::span<const std::uint32_t> face) {
 
 void check_arrays(const MeshData& mesh, MeshReport& report) {
   const std::size_t cells = mesh.types.size();
-  const auto refuse = [&](const char* kind, const char* message) {
-    report.defects.push_back({kind, 1, {0}, message});
-  };
+  const auto refuse = [&](const char* kind, const char* message) { report.defects.push_back({kind, 1, {0}, message}); };
   if (cells >= (std::size_t{1} << 29U)) refuse("too_large", "more than 2^29 cells");
   if (mesh.points.size() >= unused) refuse("too_large", "more than 2^32 - 2 points");
   if (!ascends(mesh.offsets, cells, mesh.connectivity.size())) {
@@ -176,7 +175,8 @@ void check_arrays(const MeshData& mesh, MeshReport& report) {
     break;
   }
   for (const DataArray& array : mesh.point_data) {
-    if (!has_size(array, mesh.points.size())) refuse("structure", "an array of point_data does not have one item per point");
+    if (!has_size(array, mesh.points.size()))
+      refuse("structure", "an array of point_data does not have one item per point");
   }
   for (const DataArray& array : mesh.cell_data) {
     if (!has_size(array, cells)) refuse("structure", "an array of cell_data does not have one item per cell");
@@ -185,15 +185,19 @@ void check_arrays(const MeshData& mesh, MeshReport& report) {
 
 void check_structure(const MeshData& mesh, MeshReport& report) {
   Finding size{"structure", 0, {}, "cells with a number of corners that their type does not have"};
-  Finding polyhedron{"polyhedron", 0, {}, "polyhedra with fewer than 4 faces, a face of fewer than 3 corners, more than 1000 "
-                                          "faces or corners, or numbers that do not fit together"};
+  Finding polyhedron{"polyhedron",
+                     0,
+                     {},
+                     "polyhedra with fewer than 4 faces, a face of fewer than 3 corners, more than 1000 "
+                     "faces or corners, or numbers that do not fit together"};
   Finding range{"id_out_of_range", 0, {}, "cells that name points which do not exist"};
   Finding repeated{"repeated_corner", 0, {}, "cells that name a point twice; give each its proper type, or remove it"};
   std::vector<std::uint32_t> work;
   for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
     const std::size_t place = mesh.source.empty() ? c : mesh.source[c];
     bool in_range = true;
-    const bool well_formed = visit_corners(mesh, c, [&](std::uint32_t v) { in_range = in_range && v < mesh.points.size(); });
+    const bool well_formed =
+        visit_corners(mesh, c, [&](std::uint32_t v) { in_range = in_range && v < mesh.points.size(); });
     if (!well_formed) {
       (mesh.types[c] == CellType::polyhedron ? polyhedron : size).add(place);
     } else if (!in_range) {

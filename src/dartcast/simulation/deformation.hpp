@@ -21,16 +21,17 @@ enum class DeformationKind : std::uint8_t {
   rotate,  ///< steady turns about the axis through the centre, one a period: by the angle 2 pi t / period. No
            ///< amplitude.
   swing,   ///< to and fro about that axis: by the angle A w(t)
-  bend,  ///< the axis becomes a circle's arc towards d: with k = A w(t) / length, a point at height s on the axis goes
-         ///< to centre + a sin(ks) / k + d (1 - cos(ks)) / k, its cross-section turning with it. Valid where k h < 1.
-  twist,    ///< cross-sections turn about the axis by A w(t) s / length
+  bend,   ///< the axis becomes a circle's arc towards d: with k = A w(t) / length, a point at height s on the axis goes
+          ///< to centre + a sin(ks) / k + d (1 - cos(ks)) / k, its cross-section turning with it. Valid where k h < 1.
+  twist,  ///< cross-sections turn about the axis by A w(t) s / length
   stretch,  ///< along the axis by f = 1 + A w(t), across it by 1 / sqrt(f): volumes stay. |A| < 1.
   pulse,    ///< x + A sin(2 pi (t / period - p / wavelength)) e, a wave that travels with p. e is the vertex's `field`;
-          ///< without one r - a s (away from the axis), or r (away from the centre) where the axis is 0. p is the
-          ///< vertex's `path`; without one s. No wave travels where wavelength is 0.
-  bump,    ///< x + a A w(t) (1 - |r|^2 / length^2)^2 within `length` of the centre: a smooth bulge along the axis
-  frames,  ///< positions given at `times`, linear between them, the first before and the last after them. First in a
-           ///< list only.
+            ///< without one r - a s (away from the axis), or r (away from the centre) where the axis is 0. p is the
+            ///< vertex's `path`; without one s. No wave travels where wavelength is 0; where
+            ///< one does, points are off their rest at t = 0 too.
+  bump,     ///< x + a A w(t) (1 - |r|^2 / length^2)^2 within `length` of the centre: a smooth bulge along the axis
+  frames,   ///< positions given at `times`, linear between them, the first before and the last after them. First in a
+            ///< list only.
 };
 inline constexpr std::string_view deformation_kind_names[] = {"rotate",  "swing", "bend", "twist",
                                                               "stretch", "pulse", "bump", "frames"};

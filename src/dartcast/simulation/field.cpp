@@ -35,15 +35,18 @@ Vec3 mapped(const Corners& from, const Corners& to, const Vec3& u) {
 
 VelocityField::VelocityField(const Complex& complex, std::span<const Vec3> values, FieldFrame frame) : frame_(frame) {
   if (values.size() != complex.point_count()) {
-    throw InvalidArgument(fmt::format("the velocity field has {} values for {} points", values.size(), complex.point_count()));
+    throw InvalidArgument(
+        fmt::format("the velocity field has {} values for {} points", values.size(), complex.point_count()));
   }
   const auto bad = std::find_if_not(values.begin(), values.end(), is_finite);
-  if (bad != values.end()) throw InvalidArgument(fmt::format("the velocity at point {} is not finite", bad - values.begin()));
+  if (bad != values.end())
+    throw InvalidArgument(fmt::format("the velocity at point {} is not finite", bad - values.begin()));
   values_ = at_all_vertices(complex, values);
   if (frame == FieldFrame::mesh) rest_.assign(complex.positions().begin(), complex.positions().end());
 }
 
-Vec3 VelocityField::at(const Complex& complex, SimplexId simplex, const std::array<double, 4>& w, const Corners& now) const {
+Vec3 VelocityField::at(const Complex& complex, SimplexId simplex, const std::array<double, 4>& w,
+                       const Corners& now) const {
   const auto v = complex.vertices(simplex);
   const Vec3 u = (values_[v[0].value] * w[0] + values_[v[1].value] * w[1]) +
                  (values_[v[2].value] * w[2] + values_[v[3].value] * w[3]);

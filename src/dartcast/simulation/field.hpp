@@ -15,15 +15,16 @@ enum class FieldFrame {
 
 class VelocityField {
  public:
-  /// `values`: one velocity per point of the mesh; interior points take theirs by their weights. The complex's positions are
-  /// those at rest. Throws InvalidArgument where the number does not match or a value is not finite.
+  /// `values`: one velocity per point of the mesh; interior points take theirs by their weights. The complex's
+  /// positions are those at rest. Throws InvalidArgument where the number does not match or a value is not finite.
   VelocityField(const Complex& complex, std::span<const Vec3> values, FieldFrame frame = FieldFrame::space);
 
   [[nodiscard]] FieldFrame frame() const { return frame_; }
 
-  /// The velocity at the point of barycentric coordinates w in a simplex with these corners now. In the mesh's frame: relative to
-  /// the mesh, taken from rest by the simplex's own linear map, so that a flow along a wall stays along it.
-  [[nodiscard]] Vec3 at(const Complex& complex, SimplexId simplex, const std::array<double, 4>& w, const Corners& now) const;
+  /// The velocity at the point of barycentric coordinates w in a simplex with these corners now. In the mesh's frame:
+  /// relative to the mesh, taken from rest by the simplex's own linear map, so that a flow along a wall stays along it.
+  [[nodiscard]] Vec3 at(const Complex& complex, SimplexId simplex, const std::array<double, 4>& w,
+                        const Corners& now) const;
 
  private:
   std::vector<Vec3> values_;  // of all vertices, interior ones last

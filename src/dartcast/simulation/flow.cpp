@@ -35,6 +35,12 @@ void check(const FlowOptions& o) {
   if (o.substeps == 0) throw InvalidArgument("flow: substeps must be at least 1");
 }
 
+Corners previous_corners(const Complex& complex, SimplexId simplex) {
+  const auto v = complex.vertices(simplex);
+  const auto before = complex.previous_positions();
+  return {before[v[0].value], before[v[1].value], before[v[2].value], before[v[3].value]};
+}
+
 template <class T>
 void keep_unmarked(std::vector<T>& values, std::span<const std::uint8_t> marks) {
   std::size_t kept = 0;
@@ -60,7 +66,8 @@ void Flow::set_deformation(Deformation deformation) {
 }
 
 void Flow::add_inlet(Patch patch, double rate, const Vec3& velocity) {
-  if (!(rate >= 0.0) || !std::isfinite(rate)) throw InvalidArgument("flow: an inlet's rate must be finite and not negative");
+  if (!(rate >= 0.0) || !std::isfinite(rate))
+    throw InvalidArgument("flow: an inlet's rate must be finite and not negative");
   if (!is_finite(velocity)) throw InvalidArgument("flow: an inlet's velocity must be finite");
   inlets_.push_back({PatchSampler(environment_.complex(), patch), rate, velocity});
 }
@@ -93,7 +100,8 @@ void Flow::add_sampled(const Sampler& sampler, std::size_t count, const Vec3& ve
     append(points, velocity);
   }
   if (particles_.size() < wanted) {
-    throw InvalidArgument("flow: random points fall outside the free cells again and again: their cells are too thin or not valid");
+    throw InvalidArgument(
+        "flow: random points fall outside the free cells again and again: their cells are too thin or not valid");
   }
 }
 
@@ -120,7 +128,9 @@ const FlowStep& Flow::step() {
 void Flow::inject() {
   const Timer timer(totals_.seconds_respond);
   for (Inlet& inlet : inlets_) {
-    const auto up_to = [&](std::uint64_t steps) { return std::floor(inlet.rate * options_.dt * static_cast<double>(steps)); };
+    const auto up_to = [&](std::uint64_t steps) {
+      return std::floor(inlet.rate * options_.dt * static_cast<double>(steps));
+    };
     const auto count = static_cast<std::uint64_t>(up_to(steps_ + 1) - up_to(steps_));
     if (count == 0) continue;
     if (deformation_) inlet.sampler.update(environment_.complex());
@@ -153,8 +163,9 @@ void Flow::aim(double dt, bool moving) {
   targets_.resize(particles_.size());
   parallel_for(particles_.size(), grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Aim a = fates_[i] == Fate::absorbed || fates_[i] == Fate::escaped ? Aim{velocities_[i], particles_[i].position}
-                                                                              : aim_at(i, dt, moving);
+      const Aim a = fates_[i] == Fate::absorbed || fates_[i] == Fate::escaped
+                        ? Aim{velocities_[i], particles_[i].position}
+                        : aim_at(i, dt, moving);
       velocities_[i] = a.velocity;
       targets_[i] = detail::flushed(a.target);
     }
@@ -167,9 +178,12 @@ Vec3 Flow::accelerated(const Vec3& v, const Vec3& flow, double dt) const {
   return v + (flow + options_.gravity * (1.0 / options_.drag) - v) * lost;
 }
 
-// A particle's velocity after the acceleration, and where it then wants to go: relative to positions before a move.
+// A particle's velocity after the acceleration, and where it then wants to go: relative to positions before a move. One
+// that is held takes no step; one that sticks goes where riding along puts it, to the last bit, so that no contact
+// follows.
 Flow::Aim Flow::aim_at(std::size_t i, double dt, bool moving) const {
   const State& s = particles_[i];
+  if (s.held) return {velocities_[i], s.position};
   const bool stuck = fates_[i] == Fate::stuck;
   if (!stuck && !field_) {
     const Vec3 v = accelerated(velocities_[i], {}, dt);
@@ -178,21 +192,19 @@ Flow::Aim Flow::aim_at(std::size_t i, double dt, bool moving) const {
   if (stuck && !moving) return {velocities_[i], s.position};
   const Complex& complex = environment_.complex();
   const Corners now = complex.corners(s.at());
-  Corners before = now;
-  if (deforms()) {
-    const auto vertices = complex.vertices(s.at());
-    for (unsigned k = 0; k < 4; ++k) before[k] = complex.previous_positions()[vertices[k].value];
-  }
-  const Weights w = s.held ? particles_.held_weights(i) : detail::barycentric(moving ? before : now, s.position);
-  const Vec3 carried = detail::combine(now, w) - detail::combine(before, w);
+  const Corners before = deforms() ? previous_corners(complex, s.at()) : now;
+  const Weights w = detail::barycentric(moving ? before : now, s.position);
   const Vec3 ridden = detail::combine(now, w);
-  if (stuck) return {carried * (1.0 / options_.dt), ridden};
+  const Vec3 mesh = (ridden - detail::combine(before, w)) * (1.0 / options_.dt);
+  if (stuck) {
+    const bool positive = volume_sign(now) == Sign::positive;
+    return {mesh, positive ? detail::ridden(current_space(complex), s.at(), w).position : s.position};
+  }
   const Vec3 flow = field_->at(complex, s.at(), w, now);
   if (field_->frame() == FieldFrame::space) {
     const Vec3 v = accelerated(velocities_[i], flow, dt);
     return {v, s.position + v * dt};
   }
-  const Vec3 mesh = carried * (1.0 / options_.dt);
   const Vec3 v = accelerated(velocities_[i], flow + mesh, dt);
   return {v, (moving ? ridden : s.position) + (v - mesh) * dt};
 }

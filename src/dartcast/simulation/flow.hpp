@@ -1,7 +1,8 @@
-// The flow simulation: particles with velocities under gravity, drag or a velocity field, in an environment that may deform.
+// The flow simulation: particles with velocities under gravity, drag or a velocity field, in an environment that may
+// deform.
 //
-// T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism for continuous collision detection in deformable
-// environments", SPM 2009, section 7.2.
+// T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism for continuous collision detection in
+// deformable environments", SPM 2009, section 7.2.
 #pragma once
 
 #include <cstdint>
@@ -21,15 +22,16 @@ namespace dartcast {
 
 /// SI units: seconds, metres per square second, 1 / second.
 struct FlowOptions {
-  double dt = 1e-3;             ///< of a step, > 0
+  double dt = 1e-3;  ///< of a step, > 0
   Vec3 gravity = {0.0, 0.0, 0.0};
-  double drag = 0.0;            ///< >= 0: the velocity relaxes to the field's (to 0 without a field) as exp(-drag t)
-  unsigned substeps = 1;        ///< > 0: a step's way is a polyline of so many segments; vertices move with the first one
-  std::uint64_t seed = 1;       ///< for all that is random
+  double drag = 0.0;       ///< >= 0: the velocity relaxes to the field's (to 0 without a field) as exp(-drag t)
+  unsigned substeps = 1;   ///< > 0: a step's way is a polyline of so many segments; vertices move with the first one
+  std::uint64_t seed = 1;  ///< for all that is random
   StepOptions step = {};
 };
 
-/// What happened in one step. `report.contacts` name particles by their index during the step; contact_ids are their ids.
+/// What happened in one step. `report.contacts` name particles by their index during the step; contact_ids are their
+/// ids.
 struct FlowStep {
   double duration = 0.0;  ///< s
   StepReport report;
@@ -47,15 +49,16 @@ struct FlowTotals {
   std::uint64_t escaped = 0;
   Counters counters;
   std::vector<std::uint64_t> contacts_by_patch;  ///< by the number of the patch met first
-  double seconds_detect = 0.0;   ///< advancing particles, responses included
-  double seconds_deform = 0.0;   ///< computing and setting the vertices' positions
-  double seconds_respond = 0.0;  ///< injecting, velocities and targets before, fates after
+  double seconds_detect = 0.0;                   ///< advancing particles, responses included
+  double seconds_deform = 0.0;                   ///< computing and setting the vertices' positions
+  double seconds_respond = 0.0;                  ///< injecting, velocities and targets before, fates after
 };
 
 /// Carries particles through the steps of a simulation. Each step:
-///  1. inlets inject; 2. vertices move; 3. velocities change: without a field, and with drag, dv/dt = gravity - drag (v - u) is solved
-///  exactly for constant u (the field's velocity at the particle, or 0); with a field and no drag v = u, and gravity is without
-///  effect; 4. particles advance by v dt, wall responses included; 5. those absorbed or escaped leave.
+///  1. inlets inject; 2. vertices move; 3. velocities change: without a field, and with drag, dv/dt = gravity - drag (v
+///  - u) is solved exactly for constant u (the field's velocity at the particle, or 0); with a field and no drag v = u,
+///  and gravity is without effect; 4. particles advance by v dt, wall responses included; 5. those absorbed or escaped
+///  leave.
 /// Results are the same bits for any number of threads.
 class Flow {
  public:
@@ -65,13 +68,14 @@ class Flow {
   void set_field(VelocityField field) { field_ = std::move(field); }
   /// Throws InvalidArgument where it is not made for the environment's number of points.
   void set_deformation(Deformation deformation);
-  /// Injects `rate` particles a second at random places of a patch, from the first step on. Throws InvalidArgument where the
-  /// patch has no face at a free cell, or the rate is negative or not finite.
+  /// Injects `rate` particles a second at random places of a patch, from the first step on. Throws InvalidArgument
+  /// where the patch has no face at a free cell, or the rate is negative or not finite.
   void add_inlet(Patch patch, double rate, const Vec3& velocity);
 
   /// Adds particles at these positions, as Environment::add().
   std::vector<Added> add(std::span<const Vec3> positions, const Vec3& velocity);
-  /// Adds particles at random places of the free cells, uniformly by volume. Throws InvalidArgument where no cell is free.
+  /// Adds particles at random places of the free cells, uniformly by volume. Throws InvalidArgument where no cell is
+  /// free.
   void add_random(std::size_t count, const Vec3& velocity);
 
   const FlowStep& step();

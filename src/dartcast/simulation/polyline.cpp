@@ -15,14 +15,15 @@ namespace {
 
 void check(const Particles& particles, std::span<const Vec3> targets, std::size_t segments) {
   if (segments == 0 || targets.size() != particles.size() * segments) {
-    throw InvalidArgument(fmt::format("advance_polyline: {} targets for {} particles of {} segments each", targets.size(),
-                                      particles.size(), segments));
+    throw InvalidArgument(fmt::format("advance_polyline: {} targets for {} particles of {} segments each",
+                                      targets.size(), particles.size(), segments));
   }
   const auto bad = std::find_if_not(targets.begin(), targets.end(), in_exact_range);
   if (bad == targets.end()) return;
   const auto at = static_cast<std::size_t>(bad - targets.begin());
-  throw InvalidArgument(fmt::format("advance_polyline: target {} of particle {} is not finite or outside the exact range",
-                                    at % segments, at / segments));
+  throw InvalidArgument(
+      fmt::format("advance_polyline: target {} of particle {} is not finite or outside the exact range", at % segments,
+                  at / segments));
 }
 
 }  // namespace
@@ -39,15 +40,15 @@ void append_segment(StepReport& report, StepReport segment, std::size_t index, s
                      [](const Contact& a, const Contact& b) { return a.particle < b.particle; });
   }
   std::vector<Held> held;
-  std::set_union(report.held.begin(), report.held.end(), segment.held.begin(), segment.held.end(), std::back_inserter(held),
-                 [](const Held& a, const Held& b) { return a.particle < b.particle; });
+  std::set_union(report.held.begin(), report.held.end(), segment.held.begin(), segment.held.end(),
+                 std::back_inserter(held), [](const Held& a, const Held& b) { return a.particle < b.particle; });
   report.held = std::move(held);
   report.stopped = std::move(segment.stopped);
   report.counters += segment.counters;
 }
 
-StepReport advance_polyline(Environment& environment, Particles& particles, std::span<const Vec3> targets, std::size_t segments,
-                            const Respond& respond, const StepOptions& options) {
+StepReport advance_polyline(Environment& environment, Particles& particles, std::span<const Vec3> targets,
+                            std::size_t segments, const Respond& respond, const StepOptions& options) {
   check(particles, targets, segments);
   std::vector<std::uint8_t> ended(particles.size(), 0);
   std::vector<Vec3> aims(particles.size());

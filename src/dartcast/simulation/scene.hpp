@@ -32,7 +32,7 @@ struct FreeValues {
 struct EnvironmentScene {
   MeshSource mesh;
   std::variant<std::monostate, FreeRegions, FreeValues> free;  ///< none: as the mesh says, else all
-  std::optional<std::vector<std::string>> patches;             ///< the wall groups to tell apart; none: all that the mesh has
+  std::optional<std::vector<std::string>> patches;  ///< the wall groups to tell apart; none: all that the mesh has
 };
 
 /// One step of a deformation; what stands in arrays or files of the mesh is named here and read when the mesh is.

@@ -9,12 +9,14 @@
 
 namespace dartcast {
 
-/// Points of equal likelihood by volume in the free cells, at the complex's positions when it was made. Cost to make: linear.
+/// Points of equal likelihood by volume in the free cells, at the complex's positions when it was made. Cost to make:
+/// linear.
 class VolumeSampler {
  public:
   /// Throws InvalidArgument where no cell is free.
   explicit VolumeSampler(const Complex& complex);
-  /// Inside a free cell up to rounding: to be located exactly, and drawn again where it is not. Cost: the logarithm of the cells.
+  /// Inside a free cell up to rounding: to be located exactly, and drawn again where it is not. Cost: the logarithm of
+  /// the cells.
   [[nodiscard]] Vec3 sample(const Complex& complex, Random& random) const;
 
  private:
@@ -22,7 +24,8 @@ class VolumeSampler {
   std::vector<double> volume_up_to_;
 };
 
-/// Points of equal likelihood by area on a patch's faces, moved inwards by 1/64 of the way to the opposite corner of the simplex there.
+/// Points of equal likelihood by area on a patch's faces, moved inwards by 1/64 of the way to the opposite corner of
+/// the simplex there.
 class PatchSampler {
  public:
   /// Throws InvalidArgument where the patch has no face at a free cell.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "dartcast/geometry/validity.hpp"
 #include "dartcast/walk/ride.hpp"
 
 namespace dartcast {
@@ -31,11 +32,8 @@ Location locate_in(const Complex& complex, Cell c, const Vec3& x) {
   const auto& simplices = cell.shape().simplices();
   for (std::uint16_t s = 0; s < simplices.size(); ++s) {
     const Corners v = space.corners(cell, simplices[s]);
-    if (volume_sign(v) != Sign::positive) return {};
-  }
-  for (std::uint16_t s = 0; s < simplices.size(); ++s) {
-    const Corners v = space.corners(cell, simplices[s]);
     if (!detail::in_closed_simplex(v, x)) continue;
+    if (check_cell(complex.map(), complex.positions(), c)) return {};
     const Placement p = placement(complex.map(), {c, s}, v, x);
     return {cell.is_free() ? Place::free : Place::blocked, {c, s}, p.kind, p.dart};
   }
@@ -116,10 +114,9 @@ void Locator::fill(const Complex& complex, const std::vector<Cell>& cells) {
 
 Location Locator::locate(const Complex& complex, const Vec3& x) const {
   if (!bounds_.holds(x)) return {};
-  const auto [i, j, k] = bin_of(x);
-  const std::size_t bin = bin_index(i, j, k);
+  const std::size_t at = bin(x);
   Location best;
-  for (std::size_t e = first_[bin]; e < first_[bin + 1]; ++e) {
+  for (std::size_t e = first_[at]; e < first_[at + 1]; ++e) {
     if (!box_of(complex, entries_[e]).holds(x)) continue;
     const Location here = locate_in(complex, entries_[e], x);
     if (here.place == Place::free) return here;

@@ -73,19 +73,19 @@ inline Vec3 wall_displacement(const Complex& complex, SimplexId simplex, unsigne
                               const Vec3& x) {
   const auto vertices = complex.vertices(simplex);
   const std::array<Vec3, 3> corner = {plane.a, plane.b, plane.c};
-  const Vec3 n = cross(plane.b - plane.a, plane.c - plane.a);
   std::array<double, 3> weight{};
   double sum = 0.0;
   for (unsigned i = 0; i < 3; ++i) {
     const Vec3& b = corner[(i + 1) % 3];
     const Vec3& c = corner[(i + 2) % 3];
-    weight[i] = std::max(0.0, dot(n, cross(b - x, c - x)));
+    weight[i] = std::max(0.0, dot(plane.normal, cross(b - x, c - x)));
     sum += weight[i];
   }
   Vec3 result;
   for (unsigned i = 0; i < 3; ++i) {
     const std::uint32_t v = vertices[facet_corners[facet][i]].value;
     const Vec3 moved = complex.positions()[v] - complex.previous_positions()[v];
+    if (!is_finite(moved)) continue;  // the move has mended a vertex that was not finite
     result += moved * (sum > 0.0 ? weight[i] / sum : 1.0 / 3.0);
   }
   return result;

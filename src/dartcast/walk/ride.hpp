@@ -35,27 +35,11 @@ inline Vec3 combine(const Corners& v, const Weights& w) {
   return (v[0] * w[0] + v[1] * w[1]) + (v[2] * w[2] + v[3] * w[3]);
 }
 
-/// Whether x lies in the closed simplex; exact. Precondition: the simplex is positive.
-inline bool in_closed_simplex(const Corners& v, const Vec3& x) {
-  const Determinants d(v, x);
-  std::uint64_t exact = 0;
-  for (unsigned i = 0; i < 4; ++i) {
-    const Sign s = sign_of(d, i, v, x, exact);
-    if (s == Sign::negative || s == Sign::undecidable) return false;
-  }
-  return true;
-}
-
-/// The particle with coordinates w, in the moved simplex; settled from the heaviest corner where rounding put it
-/// outside. Precondition: the moved simplex is positive.
+/// The particle with coordinates w, in the moved simplex; settled where rounding put it outside. Precondition: the
+/// moved simplex is positive.
 template <class Positions>
 Settled ridden(const Space<Positions>& space, SimplexId simplex, const Weights& w) {
-  const Corners v = space.corners(simplex);
-  const Vec3 x = flushed(combine(v, w));
-  if (in_closed_simplex(v, x)) return {simplex, x};
-  const auto heaviest = static_cast<std::size_t>(std::max_element(w.begin(), w.end()) - w.begin());
-  TestCounts uncounted;
-  return settle(space, simplex, v[heaviest], x, {}, uncounted);
+  return settle(space, simplex, combine(space.corners(simplex), w));
 }
 
 /// Frobenius norm of the gradient of the displacement that takes simplex v to simplex w, and v's shortest edge.
@@ -72,14 +56,14 @@ inline Deformation deformation(const Corners& v, const Corners& w) {
   double sum = 0.0;  // A = sum of u_i dual_i^T / volume
   for (unsigned row = 0; row < 3; ++row) {
     const auto at = [row](const Vec3& x) { return row == 0 ? x.x : row == 1 ? x.y : x.z; };
-    const Vec3 a = dual[0] * at(u[0]) + dual[1] * at(u[1]) + dual[2] * at(u[2]);
+    const Vec3 a = (dual[0] * at(u[0]) + dual[1] * at(u[1]) + dual[2] * at(u[2])) * (1.0 / volume);
     sum += dot(a, a);
   }
   double shortest = std::numeric_limits<double>::max();
   for (unsigned i = 0; i < 4; ++i) {
     for (unsigned j = i + 1; j < 4; ++j) shortest = std::min(shortest, dot(v[j] - v[i], v[j] - v[i]));
   }
-  return {std::sqrt(sum) / volume, std::sqrt(shortest)};
+  return {std::sqrt(sum), std::sqrt(shortest)};
 }
 
 }  // namespace dartcast::detail

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "dartcast/walk/walk.hpp"
 
@@ -26,13 +27,11 @@ class WallPlanes {
     if (count_ < planes_.size()) planes_[count_++] = plane;
   }
 
-  /// Moves x by `ulps` units in the last place along the inward normal of each plane that it is exactly behind.
-  void lift(Vec3& x, double ulps) const {
+  /// Moves x by `distance` along the inward normal of each plane that it is exactly behind.
+  void lift(Vec3& x, double distance) const {
     for (unsigned i = 0; i < count_; ++i) {
       const WallPlane& w = planes_[i];
-      if (orient3d(w.a, w.b, w.c, x) != Sign::negative) continue;
-      const double largest = std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)});
-      x += w.normal * (ulps * std::max(largest * std::numeric_limits<double>::epsilon(), smallest_magnitude));
+      if (orient3d(w.a, w.b, w.c, x) == Sign::negative) x += w.normal * distance;
     }
   }
 
@@ -48,9 +47,28 @@ class WallPlanes {
 
 constexpr int lift_tries = 16;
 
-/// Lifts x until it is behind none of the planes; after 16 doublings it is left where it is.
-inline void lift_off(const WallPlanes& planes, Vec3& x) {
-  for (int k = 0; k < lift_tries && !planes.none_behind(x); ++k) planes.lift(x, std::ldexp(1.0, k));
+/// The k-th distance to lift x by, which was computed from p: one unit in the last place of the larger of the two,
+/// doubling. It is p that tells how large the rounding is: x alone may be next to the origin.
+inline double lift_distance(const Vec3& p, const Vec3& x, int k) {
+  const double largest =
+      std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z), std::abs(x.x), std::abs(x.y), std::abs(x.z)});
+  return std::ldexp(std::max(largest * std::numeric_limits<double>::epsilon(), smallest_magnitude), k);
+}
+
+/// Lifts x, computed from p, until it is behind none of the planes; after 16 doublings it is left where it is.
+inline void lift_off(const WallPlanes& planes, const Vec3& p, Vec3& x) {
+  for (int k = 0; k < lift_tries && !planes.none_behind(x); ++k) planes.lift(x, lift_distance(p, x, k));
+}
+
+/// Whether x lies in the closed simplex; exact. Precondition: the simplex is positive.
+inline bool in_closed_simplex(const Corners& v, const Vec3& x) {
+  const Determinants d(v, x);
+  std::uint64_t exact = 0;
+  for (unsigned i = 0; i < 4; ++i) {
+    const Sign s = sign_of(d, i, v, x, exact);
+    if (s == Sign::negative || s == Sign::undecidable) return false;
+  }
+  return true;
 }
 
 /// A component that is not zero but below the exact range counts as zero; results of arithmetic are passed through
@@ -88,31 +106,63 @@ struct Settled {
   Vec3 position;
 };
 
-/// Walks from p, which lies in the closed simplex `start`, to x. Where a wall is in the way by rounding, x is lifted
-/// off it by one unit in the last place, doubling; after 16 tries the way from p is halved; in the end p is returned.
-/// The result lies in the closed simplex returned, which is free and reached from `start` without passing a wall.
+namespace detail {
+
+/// Walks from p to x; nothing where x is not reached.
 template <class Positions>
-Settled settle(const Space<Positions>& space, SimplexId start, const Vec3& p, Vec3 x, detail::WallPlanes planes,
-               TestCounts& counts) {
-  for (int k = 0; k < detail::lift_tries; ++k) {
-    x = detail::flushed(x);
-    if (x == p) return {start, p};
-    const Walk w = walk(space, start, p, x, counts);
-    if (w.end == WalkEnd::arrived || w.at_end) return {w.simplex, x};
-    if (w.end == WalkEnd::invalid_cell) return {start, p};
+std::optional<Settled> reached(const Space<Positions>& space, SimplexId start, const Vec3& p, const Vec3& x) {
+  if (x == p) return Settled{start, p};
+  TestCounts uncounted;
+  const Walk w = walk(space, start, p, x, uncounted);
+  if (w.end == WalkEnd::arrived || w.at_end) return Settled{w.simplex, x};
+  return {};
+}
+
+/// Lifts x off the walls in the way from p, one unit in the last place at first, doubling; nothing where that does not
+/// do.
+template <class Positions>
+std::optional<Settled> lifted(const Space<Positions>& space, SimplexId start, const Vec3& p, Vec3 x) {
+  constexpr int tries = 6;
+  WallPlanes planes;
+  for (int k = 0; k < tries; ++k) {
+    TestCounts uncounted;
+    const Walk w = walk(space, start, p, x, uncounted);
+    if (w.end == WalkEnd::arrived || w.at_end) return Settled{w.simplex, x};
+    if (w.end == WalkEnd::invalid_cell) return {};
     if (planes.none_behind(x)) planes.add(wall_plane(space, w.wall_simplex, w.wall_facet));
-    if (planes.none_behind(x)) break;  // a wall that stands in the way, not one that rounding put x behind
-    planes.lift(x, std::ldexp(1.0, k));
+    if (planes.none_behind(x)) return {};
+    planes.lift(x, lift_distance(p, x, k));
+    x = flushed(x);
+    if (x == p) return {};
   }
-  constexpr int halvings = 64;
-  for (int k = 0; k < halvings; ++k) {
-    x = detail::flushed(p + (x - p) * 0.5);
-    if (x == p) break;
-    const Walk w = walk(space, start, p, x, counts);
-    if (w.end == WalkEnd::arrived || w.at_end) return {w.simplex, x};
-    if (w.end == WalkEnd::invalid_cell) break;
+  return {};
+}
+
+}  // namespace detail
+
+/// Puts x, a point rounded out of the closed simplex `simplex`, into a free closed simplex: from a point p of the
+/// simplex (its mean, where that is exactly inside; else its corner nearest to x) it walks to x. Where a wall is in the
+/// way by rounding, x is lifted off it; where several walls are too close together for that, x is drawn back towards p
+/// by a unit in the last place of the way, doubling; in the end it is p. No wall is passed. Precondition: the simplex
+/// is positive, its cell free.
+template <class Positions>
+Settled settle(const Space<Positions>& space, SimplexId simplex, const Vec3& rounded) {
+  const Corners v = space.corners(simplex);
+  const Vec3 x = detail::flushed(rounded);
+  if (detail::in_closed_simplex(v, x)) return {simplex, x};
+  Vec3 p = detail::flushed(((v[0] + v[1]) + (v[2] + v[3])) * 0.25);
+  if (!detail::in_closed_simplex(v, p)) {
+    p = *std::min_element(v.begin(), v.end(),
+                          [&](const Vec3& a, const Vec3& b) { return dot(a - x, a - x) < dot(b - x, b - x); });
   }
-  return {start, p};
+  if (const auto settled = detail::reached(space, simplex, p, x)) return *settled;
+  if (const auto settled = detail::lifted(space, simplex, p, x)) return *settled;
+  constexpr int digits = std::numeric_limits<double>::digits;
+  for (int k = digits; k > 0; --k) {
+    const Vec3 back = detail::flushed(x + (p - x) * std::ldexp(1.0, -k));
+    if (const auto settled = detail::reached(space, simplex, p, back)) return *settled;
+  }
+  return {simplex, p};
 }
 
 }  // namespace dartcast

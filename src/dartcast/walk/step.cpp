@@ -80,7 +80,7 @@ class Part {
     contact.last = ++run.contact_count >= options_.max_contacts;
     stretch.begin += t * (stretch.end - stretch.begin);
     contact.time_of_impact = stretch.begin;
-    place(run, w, p, contact);
+    place(run, w, contact);
     if (moved_) {
       const WallPlane plane = wall_plane(space_, w.wall_simplex, w.wall_facet);
       contact.wall_displacement =
@@ -105,19 +105,11 @@ class Part {
     return respond_(contact, run.contacts.walls_of(contact), run.contacts.earlier_walls_of(contact));
   }
 
-  // The contact point is rounded: it is settled, from the simplex at the wall where it lies in it, else from p.
-  void place(Run& run, const Walk& w, const Vec3& p, const Contact& contact) const {
-    if (w.at_end) {
-      run.state.put(w.simplex, contact.point);
-    } else if (detail::in_closed_simplex(space_.corners(w.wall_simplex), contact.point)) {
-      run.state.put(w.wall_simplex, contact.point);
-    } else {
-      detail::WallPlanes planes;
-      planes.add(wall_plane(space_, w.wall_simplex, w.wall_facet));
-      TestCounts uncounted;
-      const Settled settled = settle(space_, run.state.at(), p, contact.point, planes, uncounted);
-      run.state.put(settled.simplex, settled.position);
-    }
+  // The contact point is rounded: it is settled in the simplex at the wall.
+  void place(Run& run, const Walk& w, const Contact& contact) const {
+    const Settled settled =
+        w.at_end ? Settled{w.simplex, contact.point} : settle(space_, w.wall_simplex, contact.point);
+    run.state.put(settled.simplex, settled.position);
   }
 
   // Where to go after a contact; along a wall, the target is lifted off the planes that rounding put it behind.
@@ -137,7 +129,7 @@ class Part {
     };
     add(run.contacts.walls_of(contact));
     add(run.contacts.earlier_walls_of(contact));
-    detail::lift_off(planes, q);
+    detail::lift_off(planes, run.state.position, q);
     return detail::flushed(q);
   }
 
@@ -182,12 +174,17 @@ class MovingStep {
   }
 
  private:
+  // It takes no step. Where its simplex is not positive at the end of the move, it is held until it is; else (only the
+  // way there leads through an invalid cell) it rides along all the same.
   void hold(Run& run, Weights& kept, const Weights& weights, Cell cell) const {
     kept = weights;
-    run.state.held = true;
-    run.state.position = detail::combine(current_space(complex_).corners(run.state.at()), weights);
     run.result.held = true;
     run.result.invalid_cell = cell;
+    const Corners after = space_.corners(run.state.at());
+    if (positive(after)) return ride(space_, run, weights);
+    run.state.held = true;
+    const Vec3 ridden = detail::flushed(detail::combine(after, weights));
+    if (in_exact_range(ridden)) run.state.position = ridden;  // else a corner is not finite: it stays where it was
   }
 
   template <class Positions>

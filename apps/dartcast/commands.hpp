@@ -1,0 +1,18 @@
+// The verbs of the command. Each adds itself to the command line, and writes its exit status when it has run.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace dartcast::app {
+
+/// Exit status of the command.
+inline constexpr int done = 0;
+inline constexpr int failed = 1;
+inline constexpr int wrong_usage = 2;
+
+void add_run(CLI::App& app, int& status);
+void add_check(CLI::App& app, int& status);
+void add_info(CLI::App& app, int& status);
+void add_convert(CLI::App& app, int& status);
+
+}  // namespace dartcast::app

@@ -1,0 +1,68 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "commands.hpp"
+#include "dartcast/io/check_mesh.hpp"
+#include "dartcast/io/info.hpp"
+#include "dartcast/io/read_mesh.hpp"
+#include "dartcast/io/report.hpp"
+#include "dartcast/io/scene_file.hpp"
+#include "dartcast/io/scene_mesh.hpp"
+#include "dartcast/io/write_mesh.hpp"
+
+namespace dartcast::app {
+
+namespace {
+
+int check(const std::string& mesh, bool json) {
+  const MeshReport report = check_mesh(mesh).report;
+  fmt::print("{}{}", json ? report_json(report) : report_text(report), json ? "\n" : "");
+  return report.valid() ? done : failed;
+}
+
+int info(const std::string& path, bool json) {
+  const bool is_scene = std::filesystem::path(path).extension() == ".toml";
+  const MeshData mesh = is_scene ? load_scene_mesh(read_scene(path).environment).mesh : read_volume_mesh(path).mesh;
+  const MeshInfo result = mesh_info(mesh, path);
+  fmt::print("{}{}", json ? info_json(result) : info_text(result), json ? "\n" : "");
+  return done;
+}
+
+int convert(const std::string& in, const std::string& out) {
+  write_mesh(read_volume_mesh(in).mesh, out);
+  return done;
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, int& status) {
+  const auto mesh = std::make_shared<std::string>();
+  const auto json = std::make_shared<bool>(false);
+  CLI::App* verb = app.add_subcommand("check", "Say what is in a mesh file, and whether it is valid.");
+  verb->add_option("MESH", *mesh, "a mesh: .vtu .vtk .msh .msh2 .msh4 .mesh")->required();
+  verb->add_flag("--json", *json, "print one JSON object, and nothing else");
+  verb->callback([mesh, json, &status] { status = check(*mesh, *json); });
+}
+
+void add_info(CLI::App& app, int& status) {
+  const auto path = std::make_shared<std::string>();
+  const auto json = std::make_shared<bool>(false);
+  CLI::App* verb = app.add_subcommand("info", "Print counts, bounds, shapes and memory.");
+  verb->add_option("MESH_OR_SCENE", *path, "a mesh file, or a scene (.toml)")->required();
+  verb->add_flag("--json", *json, "print one JSON object, and nothing else");
+  verb->callback([path, json, &status] { status = info(*path, *json); });
+}
+
+void add_convert(CLI::App& app, int& status) {
+  const auto in = std::make_shared<std::string>();
+  const auto out = std::make_shared<std::string>();
+  CLI::App* verb = app.add_subcommand("convert", "Write a mesh in another format, given by the ending.");
+  verb->add_option("IN", *in, "the mesh to read")->required();
+  verb->add_option("OUT", *out, "the file to write: .vtu .vtk .msh .msh2 .msh4 .mesh")->required();
+  verb->callback([in, out, &status] { status = convert(*in, *out); });
+}
+
+}  // namespace dartcast::app

@@ -1,0 +1,33 @@
+#include "dartcast/io/check_mesh.hpp"
+
+#include <fmt/format.h>
+
+#include "dartcast/base/error.hpp"
+#include "dartcast/geometry/complex.hpp"
+
+namespace dartcast {
+
+namespace {
+
+Finding indivisible_cells(const MeshData& mesh, Threads threads) {
+  const Complex complex(mesh, threads);
+  Finding finding{
+      "not_star_shaped", 0, {}, "cells that cannot be divided into positive simplices; mend or remesh them"};
+  for (const InvalidCell& invalid : complex.invalid_cells()) finding.add(complex.map().source(invalid.cell));
+  return finding;
+}
+
+}  // namespace
+
+MeshFile check_mesh(const std::filesystem::path& path, Threads threads) {
+  MeshFile file = read_mesh(path);
+  if (!file.report.valid() || file.report.dimension != 3) return file;
+  try {
+    add_finding(file.report.defects, indivisible_cells(file.mesh, threads));
+  } catch (const InvalidMesh& e) {
+    file.report.defects.push_back({"structure", 1, {}, e.what()});
+  }
+  return file;
+}
+
+}  // namespace dartcast

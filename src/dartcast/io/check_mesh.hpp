@@ -1,0 +1,16 @@
+// The whole verdict on a mesh file: `dartcast check`.
+#pragma once
+
+#include <filesystem>
+
+#include "dartcast/base/parallel.hpp"
+#include "dartcast/io/read_mesh.hpp"
+
+namespace dartcast {
+
+/// Reads and inspects a file; where no defect is found, also divides every cell into simplices. A cell that has no
+/// division into positive ones, not even around a point of its own, is a defect of kind "not_star_shaped". Throws
+/// nothing for a file's content.
+MeshFile check_mesh(const std::filesystem::path& path, Threads threads = {});
+
+}  // namespace dartcast

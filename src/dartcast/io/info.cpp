@@ -1,0 +1,103 @@
+#include "dartcast/io/info.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "dartcast/geometry/complex.hpp"
+
+namespace dartcast {
+
+namespace {
+
+using Counts = std::map<std::string, std::size_t>;
+
+void count_cells(const MeshData& mesh, MeshInfo& info) {
+  for (const CellType type : mesh.types) ++info.cells[std::string(cell_type_names[static_cast<std::size_t>(type)])];
+  for (const std::int32_t tag : mesh.regions) {
+    const auto name = mesh.region_names.find(tag);
+    ++info.regions[name == mesh.region_names.end() ? std::to_string(tag) : name->second];
+  }
+}
+
+void count_walls(const Map& map, MeshInfo& info) {
+  info.wall_faces = map.wall_face_count();
+  for (const Cell c : map.cells()) {
+    const CellView view = map.view(c);
+    if (!view.is_free()) continue;
+    ++info.free_cells;
+    for (std::uint16_t f = 0; f < view.shape().face_count(); ++f) {
+      if (!view.is_wall(f)) continue;
+      const Patch patch = map.patch({c, f});
+      if (patch.value != 0) ++info.patches[map.patch_names()[patch.value]];
+    }
+  }
+}
+
+void find_bounds(const std::vector<Vec3>& points, MeshInfo& info) {
+  if (points.empty()) return;
+  info.low = info.high = points.front();
+  for (const Vec3& p : points) {
+    info.low = {std::min(info.low.x, p.x), std::min(info.low.y, p.y), std::min(info.low.z, p.z)};
+    info.high = {std::max(info.high.x, p.x), std::max(info.high.y, p.y), std::max(info.high.z, p.z)};
+  }
+}
+
+std::string list(const Counts& counts) {
+  std::string text;
+  for (const auto& [name, count] : counts) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, name);
+  return text;
+}
+
+}  // namespace
+
+std::size_t MeshInfo::cell_count() const {
+  std::size_t sum = 0;
+  for (const auto& entry : cells) sum += entry.second;
+  return sum;
+}
+
+MeshInfo mesh_info(const MeshData& mesh, std::string name, Threads threads) {
+  MeshInfo info;
+  info.name = std::move(name);
+  info.points = mesh.points.size();
+  count_cells(mesh, info);
+  find_bounds(mesh.points, info);
+  const Complex complex(mesh, threads);
+  count_walls(complex.map(), info);
+  info.shapes = complex.map().shapes().size();
+  info.simplices = complex.simplex_count();
+  info.interior_points = complex.interior_point_count();
+  info.bytes = complex.bytes();
+  return info;
+}
+
+std::string info_json(const MeshInfo& i) {
+  nlohmann::ordered_json json = {{"name", i.name},
+                                 {"points", i.points},
+                                 {"cells", i.cells},
+                                 {"regions", i.regions},
+                                 {"patches", i.patches},
+                                 {"free_cells", i.free_cells},
+                                 {"wall_faces", i.wall_faces},
+                                 {"shapes", i.shapes},
+                                 {"simplices", i.simplices},
+                                 {"interior_points", i.interior_points},
+                                 {"bounds", {{i.low.x, i.low.y, i.low.z}, {i.high.x, i.high.y, i.high.z}}},
+                                 {"bytes", i.bytes}};
+  if (i.cell_count() > 0) json["bytes_per_cell"] = static_cast<double>(i.bytes) / static_cast<double>(i.cell_count());
+  return json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+std::string info_text(const MeshInfo& i) {
+  std::string out = fmt::format("{}\n{} points; {}; {} free\n", i.name, i.points, list(i.cells), i.free_cells);
+  if (!i.regions.empty()) out += fmt::format("regions: {}\n", list(i.regions));
+  out += fmt::format("wall faces: {}{}{}\n", i.wall_faces, i.patches.empty() ? "" : ", by patch: ", list(i.patches));
+  out += fmt::format("bounds: ({}, {}, {}) to ({}, {}, {})\n", i.low.x, i.low.y, i.low.z, i.high.x, i.high.y, i.high.z);
+  out += fmt::format("{} shapes, {} simplices, {} interior points\n", i.shapes, i.simplices, i.interior_points);
+  const double per_cell = static_cast<double>(i.bytes) / static_cast<double>(std::max<std::size_t>(1, i.cell_count()));
+  return out + fmt::format("memory: {} bytes, {:.1f} per cell\n", i.bytes, per_cell);
+}
+
+}  // namespace dartcast

@@ -1,0 +1,34 @@
+// Counts, bounds, shapes and memory of a mesh in use: `dartcast info`.
+#pragma once
+
+#include <string>
+
+#include "dartcast/base/parallel.hpp"
+#include "dartcast/mesh/mesh_data.hpp"
+
+namespace dartcast {
+
+struct MeshInfo {
+  std::string name;
+  std::size_t points = 0;
+  std::map<std::string, std::size_t> cells;    ///< by type
+  std::map<std::string, std::size_t> regions;  ///< by name, or tag
+  std::map<std::string, std::size_t> patches;  ///< wall faces by patch, where there is one
+  std::size_t free_cells = 0;
+  std::size_t wall_faces = 0;
+  std::size_t shapes = 0;  ///< kinds of cell that the map tells apart
+  std::uint64_t simplices = 0;
+  std::size_t interior_points = 0;  ///< added where a cell needs one
+  Vec3 low, high;                   ///< of the points
+  std::size_t bytes = 0;            ///< of the map, its positions and tables
+
+  [[nodiscard]] std::size_t cell_count() const;
+};
+
+/// Builds the complex of a mesh that inspect() found valid. Throws InvalidMesh where that is not possible.
+MeshInfo mesh_info(const MeshData& mesh, std::string name, Threads threads = {});
+
+std::string info_json(const MeshInfo& info);
+std::string info_text(const MeshInfo& info);
+
+}  // namespace dartcast

@@ -1,0 +1,53 @@
+// The output folder of a run: frames for ParaView, tables, the scene as run.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "dartcast/mesh/mesh_data.hpp"
+#include "dartcast/simulation/flow.hpp"
+
+namespace dartcast {
+
+/// Writes particles.pvd with a .vtp per frame, environment.pvd with a .vtu per frame (one where nothing deforms),
+/// stats.csv, contacts.csv on request, scene.toml and summary.json. Every write throws Error where it fails.
+class Recording {
+ public:
+  struct Options {
+    std::filesystem::path folder;
+    bool deforms = false;
+    bool contacts = false;
+  };
+
+  /// Makes the folder, or takes over one that is empty or holds an earlier run, whose files are removed. Throws Error,
+  /// nothing changed, where the folder holds anything else. `mesh`: the environment's, points at rest.
+  Recording(Options options, const MeshData& mesh, const std::string& scene_text);
+
+  /// Adds the particles, and the environment where it deforms, as they are now.
+  void add_frame(const Flow& flow);
+  /// Adds a step's row to stats.csv, and its contacts.
+  void add_step(const Flow& flow, const FlowStep& step);
+  /// Writes summary.json and ends the tables.
+  void finish(const std::string& summary_json);
+
+ private:
+  void write_particles(const Flow& flow, const std::filesystem::path& path) const;
+  void write_environment(std::span<const Vec3> points, double time, std::uint64_t step);
+  void write_contacts(const Flow& flow, const FlowStep& step);
+
+  Options options_;
+  MeshData mesh_;  // cells, regions and free marks alone
+  std::ofstream stats_;
+  std::ofstream contacts_;
+  std::vector<std::pair<double, std::string>> particle_frames_;
+  std::vector<std::pair<double, std::string>> environment_frames_;
+};
+
+/// Whether a run may write to this folder: it does not exist, is empty, or holds an earlier run. Throws Error that says
+/// why not.
+void check_output_folder(const std::filesystem::path& folder);
+
+}  // namespace dartcast

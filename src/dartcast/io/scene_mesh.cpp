@@ -1,0 +1,123 @@
+#include "dartcast/io/scene_mesh.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+
+#include "dartcast/base/error.hpp"
+#include "dartcast/io/read_mesh.hpp"
+#include "dartcast/mesh/inspect.hpp"
+#include "dartcast/mesh/regions.hpp"
+
+namespace dartcast {
+
+namespace {
+
+SceneMesh load_source(const MeshSource& source) {
+  if (const auto* path = std::get_if<std::filesystem::path>(&source)) {
+    MeshFile file = read_volume_mesh(*path);
+    return {std::move(file.mesh), std::move(file.report)};
+  }
+  MeshData mesh;
+  if (const auto* box = std::get_if<BoxOptions>(&source)) mesh = generate_box(*box);
+  if (const auto* octahedra = std::get_if<OctahedraOptions>(&source)) mesh = generate_octahedra(*octahedra);
+  if (const auto* vessel = std::get_if<VesselOptions>(&source)) mesh = generate_vessel(*vessel);
+  MeshReport report = inspect(mesh);
+  report.format = "generated";
+  if (!report.valid()) throw InvalidMesh(report.defects.front().message);
+  return {std::move(mesh), std::move(report)};
+}
+
+void select_free(MeshData& mesh, const EnvironmentScene& scene) {
+  if (const auto* by_region = std::get_if<FreeRegions>(&scene.free)) select_free_regions(mesh, by_region->regions);
+  const auto* by_value = std::get_if<FreeValues>(&scene.free);
+  if (by_value == nullptr) return;
+  const bool has_array = std::any_of(mesh.cell_data.begin(), mesh.cell_data.end(),
+                                     [&](const DataArray& a) { return a.name == by_value->array; });
+  if (by_value->array != "region" || has_array) {
+    select_free_values(mesh, by_value->array, by_value->values);
+    return;
+  }
+  std::vector<std::string> tags;  // formats without arrays have their groups as regions
+  for (const double value : by_value->values) tags.push_back(fmt::format("{}", value));
+  select_free_regions(mesh, tags);
+}
+
+// Keeps the groups of faces that are named, and drops the others.
+void select_patches(MeshData& mesh, const std::vector<std::string>& names) {
+  std::set<std::int32_t> kept;
+  for (const std::string& name : names) {
+    const auto found = std::find_if(mesh.patch_names.begin(), mesh.patch_names.end(),
+                                    [&](const auto& entry) { return entry.second == name; });
+    if (found == mesh.patch_names.end()) {
+      std::vector<std::string> known;
+      for (const auto& entry : mesh.patch_names) known.push_back(entry.second);
+      throw InvalidMesh(fmt::format("the mesh has no patch '{}'; its patches are: {}", name,
+                                    known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))));
+    }
+    kept.insert(found->first);
+  }
+  MeshData all;
+  std::swap(all.patch_faces, mesh.patch_faces);
+  std::swap(all.patch_offsets, mesh.patch_offsets);
+  std::swap(all.patch_tags, mesh.patch_tags);
+  for (std::size_t f = 0; f < all.patch_tags.size(); ++f) {
+    if (kept.count(all.patch_tags[f]) == 0) continue;
+    const std::size_t begin = all.patch_offsets[f];
+    mesh.add_patch_face({all.patch_faces.data() + begin, all.patch_offsets[f + 1] - begin}, all.patch_tags[f]);
+  }
+}
+
+const DataArray& point_array(const MeshData& mesh, const std::string& name, std::size_t components) {
+  std::vector<std::string> known;
+  for (const DataArray& a : mesh.point_data) {
+    if (a.name == name && a.components == components) return a;
+    known.push_back(fmt::format("{} ({})", a.name, a.components));
+  }
+  throw InvalidMesh(
+      fmt::format("the mesh has no point array '{}' of {} components; its point arrays (components) are: {}", name,
+                  components, known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))));
+}
+
+std::vector<Vec3> frame_positions(const std::filesystem::path& file, const MeshData& mesh) {
+  MeshData frame = read_volume_mesh(file).mesh;
+  if (frame.points.size() != mesh.points.size()) {
+    throw InvalidMesh(fmt::format("{}: {} points; the scene's mesh has {}: frames must have the same points",
+                                  file.string(), frame.points.size(), mesh.points.size()));
+  }
+  return std::move(frame.points);
+}
+
+}  // namespace
+
+SceneMesh load_scene_mesh(const EnvironmentScene& scene) {
+  SceneMesh result = load_source(scene.mesh);
+  select_free(result.mesh, scene);
+  if (scene.patches) select_patches(result.mesh, *scene.patches);
+  return result;
+}
+
+std::vector<Vec3> point_vectors(const MeshData& mesh, const std::string& array) {
+  const DataArray& data = point_array(mesh, array, 3);
+  std::vector<Vec3> result(mesh.points.size());
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    result[i] = {data.values[3 * i], data.values[3 * i + 1], data.values[3 * i + 2]};
+  }
+  return result;
+}
+
+std::vector<DeformationStep> load_deformation(std::span<const DeformationScene> scene, const MeshData& mesh) {
+  std::vector<DeformationStep> steps;
+  for (const DeformationScene& s : scene) {
+    DeformationStep& step = steps.emplace_back(s.step);
+    if (!s.field.empty()) step.field = point_vectors(mesh, s.field);
+    if (!s.path.empty()) step.path = point_array(mesh, s.path, 1).values;
+    for (const auto& file : s.frames) step.frames.push_back(frame_positions(file, mesh));
+  }
+  return steps;
+}
+
+}  // namespace dartcast

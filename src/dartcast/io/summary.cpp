@@ -1,0 +1,118 @@
+#include "dartcast/io/summary.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+namespace dartcast {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double ratio(double a, double b) { return a / b; }
+double ratio(std::uint64_t a, std::uint64_t b) { return static_cast<double>(a) / static_cast<double>(b); }
+
+Json orientation_tests(const Summary& s) {
+  const Counters& c = s.totals.counters;
+  std::size_t size = c.histogram.size();
+  while (size > 1 && c.histogram[size - 1] == 0) --size;
+  Json json = {{"mean", ratio(c.orientation.tests, c.particle_steps)},
+               {"histogram", std::vector<std::uint64_t>(c.histogram.begin(),
+                                                        c.histogram.begin() + static_cast<std::ptrdiff_t>(size))}};
+  if (c.orientation.tests > 0) json["exact_share"] = ratio(c.orientation.exact, c.orientation.tests);
+  json["forecast_kept_share"] = ratio(c.forecast_kept, c.particle_steps);
+  if (s.deforms) json["updated_by_deformation_share"] = ratio(c.updated_by_deformation, c.particle_steps);
+  return json;
+}
+
+Json contacts(const Summary& s) {
+  const auto& by_kind = s.totals.counters.contacts;
+  Json by_patch = Json::object();
+  for (std::size_t i = 1; i < s.patch_names.size(); ++i) by_patch[s.patch_names[i]] = s.totals.contacts_by_patch[i];
+  if (s.totals.contacts_by_patch[0] > 0) by_patch[""] = s.totals.contacts_by_patch[0];
+  return {{"total", by_kind[0] + by_kind[1] + by_kind[2]},
+          {"face", by_kind[2]},
+          {"edge", by_kind[1]},
+          {"vertex", by_kind[0]},
+          {"by_patch", by_patch}};
+}
+
+Json seconds(const Summary& s) {
+  Json json = {{"load", s.seconds_load}, {"locate", s.seconds_locate}, {"detect", s.totals.seconds_detect}};
+  if (s.deforms) json["deform"] = s.totals.seconds_deform;
+  json["respond"] = s.totals.seconds_respond;
+  json["write"] = s.seconds_write;
+  return json;
+}
+
+double ns_per_particle_step(const Summary& s) {
+  return ratio(s.totals.seconds_detect * 1e9, static_cast<double>(s.totals.counters.particle_steps));
+}
+
+}  // namespace
+
+std::string version() { return DARTCAST_VERSION; }
+
+std::string summary_json(const Summary& s) {
+  const FlowTotals& t = s.totals;
+  Json json = {{"version", version()},
+               {"scene", s.scene},
+               {"threads", s.threads},
+               {"steps", s.steps},
+               {"particle_steps", t.counters.particle_steps},
+               {"environment",
+                {{"cells", s.cells},
+                 {"free_cells", s.free_cells},
+                 {"vertices", s.vertices},
+                 {"wall_faces", s.wall_faces},
+                 {"bytes", s.bytes}}},
+               {"particles",
+                {{"start", t.start},
+                 {"injected", t.injected},
+                 {"absorbed", t.absorbed},
+                 {"escaped", t.escaped},
+                 {"alive", s.alive},
+                 {"held", s.held},
+                 {"lost", s.lost}}}};
+  if (t.counters.particle_steps > 0) json["orientation_tests"] = orientation_tests(s);
+  json["contacts"] = contacts(s);
+  json["seconds"] = seconds(s);
+  if (t.counters.particle_steps > 0) json["ns_per_particle_step"] = ns_per_particle_step(s);
+  if (s.audit) json["audit"] = {{"checked", s.audit->checked}, {"failed", s.audit->failed}};
+  json["state_hash"] = s.state_hash;
+  return json.dump(1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string summary_text(const Summary& s) {
+  const FlowTotals& t = s.totals;
+  const Counters& c = t.counters;
+  std::string out = fmt::format("{}: {} steps, {} cells ({} free), {} wall faces, {:.1f} MB\n", s.scene, s.steps,
+                                s.cells, s.free_cells, s.wall_faces, static_cast<double>(s.bytes) / 1e6);
+  out += fmt::format("particles: {} at the start, {} injected, {} absorbed, {} escaped, {} alive, {} held, {} lost\n",
+                     t.start, t.injected, t.absorbed, t.escaped, s.alive, s.held, s.lost);
+  out += fmt::format("contacts: {} ({} with faces, {} with edges, {} with vertices)\n",
+                     c.contacts[0] + c.contacts[1] + c.contacts[2], c.contacts[2], c.contacts[1], c.contacts[0]);
+  if (c.particle_steps > 0) {
+    out += fmt::format(
+        "per particle-step: {:.2f} orientation tests, {:.0f} ns with {} threads; forecast kept in {:.1f}%\n",
+        ratio(c.orientation.tests, c.particle_steps), ns_per_particle_step(s), s.threads,
+        100.0 * ratio(c.forecast_kept, c.particle_steps));
+  }
+  out += fmt::format(
+      "seconds: load {:.2f}, locate {:.2f}, detect {:.2f}, deform {:.2f}, respond {:.2f}, write {:.2f}\n",
+      s.seconds_load, s.seconds_locate, t.seconds_detect, t.seconds_deform, t.seconds_respond, s.seconds_write);
+  if (s.audit) out += fmt::format("audit: {} checked, {} failed\n", s.audit->checked, s.audit->failed);
+  return out + fmt::format("state hash: {}\n", s.state_hash);
+}
+
+std::string histogram_text(const Summary& s) {
+  const Counters& c = s.totals.counters;
+  std::string out = "orientation tests: share of particle-steps\n";
+  for (std::size_t i = 0; i < c.histogram.size(); ++i) {
+    if (c.histogram[i] > 0) out += fmt::format("{:4}: {:.4f}%\n", i, 100.0 * ratio(c.histogram[i], c.particle_steps));
+  }
+  return out;
+}
+
+}  // namespace dartcast

@@ -1,0 +1,276 @@
+// The command as its users see it: exit status, stdout, stderr, files.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Result {
+  int status = -1;
+  std::string out;
+  std::string error;
+};
+
+class Command : public testing::Test {
+ protected:
+  void SetUp() override {
+    const char* path = std::getenv("DARTCAST_BINARY");
+    const char* scenes = std::getenv("DARTCAST_SCENES");
+    ASSERT_TRUE(path != nullptr && scenes != nullptr) << "run this through ctest";
+    binary = path;
+    scenes_folder = scenes;
+    folder = fs::temp_directory_path() / ("dartcast_command_" + std::to_string(::getpid()));
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+  }
+  void TearDown() override { fs::remove_all(folder); }
+
+  static std::string content(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  [[nodiscard]] fs::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder / name, std::ios::binary) << text;
+    return folder / name;
+  }
+
+  // Runs the command in the test's folder.
+  [[nodiscard]] Result run(const std::string& arguments) const {
+    Result result;
+    const std::string line = "cd '" + folder.string() + "' && '" + binary + "' " + arguments + " 2> error.txt";
+    FILE* pipe = popen(line.c_str(), "r");
+    std::array<char, 4096> buffer{};
+    for (std::size_t n = 0; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
+      result.out.append(buffer.data(), n);
+    const int status = pclose(pipe);
+    result.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    result.error = content(folder / "error.txt");
+    return result;
+  }
+
+  // One clear line on stderr, nothing on stdout.
+  void expect_failure(const std::string& arguments, int status, const std::string& part) const {
+    const Result r = run(arguments);
+    EXPECT_EQ(r.status, status) << arguments << "\n" << r.error;
+    EXPECT_EQ(r.out, "") << arguments;
+    EXPECT_EQ(std::count(r.error.begin(), r.error.end(), '\n'), 1) << arguments << "\n" << r.error;
+    EXPECT_EQ(r.error.rfind("dartcast: ", 0), 0U) << r.error;
+    EXPECT_NE(r.error.find(part), std::string::npos) << arguments << "\n" << r.error;
+  }
+
+  [[nodiscard]] std::string scene(const std::string& name) const {
+    return "'" + (fs::path(scenes_folder) / name).string() + "'";
+  }
+
+  // A tetrahedron, as Medit text.
+  [[nodiscard]] static std::string tetrahedron(const std::string& corners = "1 2 3 4") {
+    return "MeshVersionFormatted 2\nDimension 3\nVertices\n4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\nTetrahedra\n1\n" +
+           corners + " 5\nEnd\n";
+  }
+
+  std::string binary;
+  std::string scenes_folder;
+  fs::path folder;
+};
+
+TEST_F(Command, RunWritesItsFolderAndSaysSo) {
+  const Result r = run("run " + scene("box.toml") + " --steps 5");
+  EXPECT_EQ(r.status, 0) << r.error;
+  EXPECT_EQ(r.error, "");
+  EXPECT_NE(r.out.find("5 steps"), std::string::npos) << r.out;
+  EXPECT_NE(r.out.find("box-out"), std::string::npos) << r.out;
+  EXPECT_TRUE(fs::exists(folder / "box-out/particles.pvd"));
+  EXPECT_EQ(content(folder / "box-out/scene.toml"), content(fs::path(scenes_folder) / "box.toml"));
+}
+
+TEST_F(Command, JsonIsOneObjectAndQuietIsNothing) {
+  const Result r = run("run " + scene("box.toml") + " --steps 5 --json -o a");
+  const auto json = nlohmann::json::parse(r.out);
+  EXPECT_EQ(r.error, "");
+  EXPECT_EQ(json["steps"], 5);
+  EXPECT_EQ(json["particles"]["alive"], 200);
+  EXPECT_EQ(json, nlohmann::json::parse(content(folder / "a/summary.json")));
+  const Result quiet = run("run " + scene("box.toml") + " --steps 5 -q -o b");
+  EXPECT_EQ(quiet.status, 0);
+  EXPECT_EQ(quiet.out + quiet.error, "");
+}
+
+TEST_F(Command, TheHashDependsOnTheSeedButNotOnThreads) {
+  const auto hash = [&](const std::string& options) {
+    const Result r = run("run " + scene("bar_deforming.toml") + " --steps 60 --json --audit -o out " + options);
+    EXPECT_EQ(r.status, 0) << r.error;
+    const auto json = nlohmann::json::parse(r.out);
+    EXPECT_EQ(json["audit"]["failed"], 0);
+    EXPECT_EQ(json["audit"]["checked"], 60000);
+    EXPECT_EQ(json["particles"]["lost"], 0);
+    return json["state_hash"].get<std::string>();
+  };
+  const std::string one = hash("-j 1");
+  EXPECT_EQ(hash("-j 2"), one);
+  EXPECT_EQ(hash("-j 7"), one);
+  EXPECT_NE(hash("-j 2 --seed 9"), one);
+}
+
+// The paper took 6.75 and 6.85 orientation tests; our bound is 6.
+TEST_F(Command, BarsTakeAtMostSixOrientationTests) {
+  for (const std::string name : {"bar_static.toml", "bar_deforming.toml"}) {
+    const Result r = run("run " + scene(name) + " --json -o out");
+    ASSERT_EQ(r.status, 0) << r.error;
+    const auto json = nlohmann::json::parse(r.out);
+    EXPECT_EQ(json["particle_steps"], 1000000);
+    EXPECT_LE(json["orientation_tests"]["mean"], 6.0) << name;
+    EXPECT_EQ(json["particles"]["held"], 0) << name;
+    EXPECT_GT(json["contacts"]["total"], 1000) << name;
+  }
+}
+
+TEST_F(Command, TheVesselsParticlesComeInAndLeave) {
+  const Result r = run("run " + scene("vessel.toml") + " --steps 60 --json --audit -o out");
+  ASSERT_EQ(r.status, 0) << r.error;
+  const auto json = nlohmann::json::parse(r.out);
+  EXPECT_GE(json["environment"]["cells"], 20000);
+  const auto& p = json["particles"];
+  EXPECT_EQ(p["start"], 10000);
+  EXPECT_GT(p["injected"], 0);
+  EXPECT_GT(p["escaped"], 0);
+  EXPECT_EQ(p["lost"], 0);
+  EXPECT_EQ(json["audit"]["failed"], 0);
+  EXPECT_GT(json["contacts"]["by_patch"]["outlet_left"], 0);
+  EXPECT_GT(json["contacts"]["by_patch"]["outlet_right"], 0);
+}
+
+TEST_F(Command, WrongUsageIsTwo) {
+  expect_failure("", 2, "run, check, info, convert");
+  expect_failure("fly", 2, "fly");
+  expect_failure("run", 2, "SCENE");
+  expect_failure("run a.toml --fast", 2, "--fast");
+  expect_failure("run a.toml -j 0", 2, "threads");
+  expect_failure("run a.toml --steps many", 2, "steps");
+  expect_failure("run a.toml -q -v", 2, "quiet");
+  expect_failure("convert a", 2, "OUT");
+  EXPECT_EQ(run("--help").status, 0);
+  EXPECT_EQ(run("run --help").status, 0);
+  EXPECT_EQ(run("--version").out.find_first_not_of("0123456789.\n"), std::string::npos);
+}
+
+TEST_F(Command, FailuresAreOneWithOneLine) {
+  expect_failure("run missing.toml", 1, "missing.toml");
+  (void)write("a.toml", "[environment]\ngenerator = 'box'\nradius = 1\n");
+  expect_failure("run a.toml", 1, "a.toml:3: [environment] the key 'radius' is unknown");
+  (void)write("b.toml", "[environment]\nmesh = 'no.vtu'\n");
+  expect_failure("run b.toml", 1, "no.vtu");
+  expect_failure("info no.vtu", 1, "no.vtu");
+  expect_failure("convert no.vtu b.vtu", 1, "no.vtu");
+  (void)write("flat.mesh", tetrahedron("1 2 3 3"));
+  expect_failure("convert flat.mesh b.vtu", 1, "flat.mesh");
+  (void)write("good.mesh", tetrahedron());
+  expect_failure("convert good.mesh b.stl", 1, ".stl");
+  EXPECT_FALSE(fs::exists(folder / "b.vtu"));
+  fs::create_directories(folder / "mine");
+  (void)write("mine/thesis.txt", "years of work");
+  expect_failure("run " + scene("box.toml") + " -o mine", 1, "mine");
+}
+
+TEST_F(Command, CheckGivesItsVerdict) {
+  (void)write("good.mesh", tetrahedron());
+  (void)write("turned.mesh", tetrahedron("1 3 2 4"));
+  (void)write("bad.mesh", tetrahedron("1 2 3 9"));
+  Result r = run("check good.mesh --json");
+  EXPECT_EQ(r.status, 0);
+  auto json = nlohmann::json::parse(r.out);
+  EXPECT_EQ(json["valid"], true);
+  EXPECT_EQ(json["cells"]["tetrahedron"], 1);
+  EXPECT_TRUE(json["repairs"].empty() && json["warnings"].empty() && json["defects"].empty());
+  r = run("check turned.mesh --json");
+  EXPECT_EQ(r.status, 0);
+  json = nlohmann::json::parse(r.out);
+  EXPECT_EQ(json["repairs"][0]["kind"], "orientation");
+  EXPECT_EQ(json["repairs"][0]["first"], nlohmann::json::array({0}));
+  r = run("check bad.mesh --json");
+  EXPECT_EQ(r.status, 1);
+  json = nlohmann::json::parse(r.out);
+  EXPECT_EQ(json["valid"], false);
+  EXPECT_FALSE(json["defects"].empty());
+  EXPECT_NE(run("check bad.mesh").out.find("verdict: refuse"), std::string::npos);
+  EXPECT_EQ(run("check missing.mesh").status, 1);
+}
+
+// A cube whose top is turned by a quarter: no point sees all of its faces.
+TEST_F(Command, CheckFindsCellsThatNoPointSees) {
+  (void)write("twisted.mesh",
+              "MeshVersionFormatted 2\nDimension 3\nVertices\n8\n0 0 0 0\n1 0 0 0\n1 1 0 0\n0 1 0 0\n"
+              "1.3 0.1 1 0\n1.2 1.2 1 0\n0.2 1.1 1 0\n0.1 -0.2 1 0\nHexahedra\n1\n1 2 3 4 6 7 8 5 1\nEnd\n");
+  const Result r = run("check twisted.mesh --json");
+  EXPECT_EQ(r.status, 1) << r.out;
+  EXPECT_EQ(nlohmann::json::parse(r.out)["defects"][0]["kind"], "not_star_shaped") << r.out;
+}
+
+TEST_F(Command, InfoTellsOfMeshesAndScenes) {
+  (void)write("good.mesh", tetrahedron());
+  Result r = run("info good.mesh --json");
+  ASSERT_EQ(r.status, 0) << r.error;
+  auto json = nlohmann::json::parse(r.out);
+  EXPECT_EQ(json["points"], 4);
+  EXPECT_EQ(json["simplices"], 1);
+  EXPECT_EQ(json["wall_faces"], 4);
+  EXPECT_EQ(json["bounds"], nlohmann::json::parse("[[0.0,0.0,0.0],[1.0,1.0,1.0]]"));
+  r = run("info " + scene("bar_static.toml") + " --json");
+  ASSERT_EQ(r.status, 0) << r.error;
+  json = nlohmann::json::parse(r.out);
+  EXPECT_EQ(json["cells"]["hexahedron"], 700);
+  EXPECT_EQ(json["free_cells"], 234);
+  EXPECT_LE(json["bytes_per_cell"], 200.0);  // a small mesh: its outside and its shapes weigh more
+  EXPECT_NE(run("info good.mesh").out.find("per cell"), std::string::npos);
+}
+
+TEST_F(Command, ConvertGoesRoundThroughAllFormats) {
+  (void)write("a.mesh", tetrahedron());
+  std::string from = "a.mesh";
+  for (const std::string to : {"b.vtu", "c.vtk", "d.msh", "e.msh4", "f.msh2", "g.mesh"}) {
+    const Result r = run("convert " + from + " " + to);
+    ASSERT_EQ(r.status, 0) << to << ": " << r.error;
+    EXPECT_EQ(r.out + r.error, "");
+    const auto json = nlohmann::json::parse(run("check " + to + " --json").out);
+    EXPECT_EQ(json["cells"]["tetrahedron"], 1) << to;
+    EXPECT_EQ(json["regions"].begin().value(), 1) << to;
+    EXPECT_TRUE(json["repairs"].empty()) << to;
+    from = to;
+  }
+}
+
+// Real meshes: all that are well formed are accepted, divided into simplices, and can be run.
+TEST_F(Command, SharedDataIsAccepted) {
+  const char* data = std::getenv("DARTCAST_DATA");
+  if (data == nullptr) GTEST_SKIP() << "left out without DARTCAST_DATA: dartcast check over real meshes";
+  int count = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(data) / "volumes")) {
+    const std::string ending = entry.path().extension();
+    const bool ours = ending == ".vtu" || ending == ".vtk" || ending == ".msh" ||
+                      (ending == ".mesh" && entry.path().string().find("/mfem/") == std::string::npos);
+    if (!ours) continue;
+    const Result r = run("check '" + entry.path().string() + "'");
+    EXPECT_EQ(r.status, 0) << r.out;
+    ++count;
+  }
+  EXPECT_GE(count, 20);
+  (void)write("liver.toml",
+              "[environment]\nmesh = '" + (fs::path(data) / "volumes/sofa/liver2.msh").string() +
+                  "'\n[[particles]]\ncount = 500\nvelocity = [1, 2, 3]\n[motion]\ndt = 0.05\nsteps = 50\n");
+  const Result r = run("run liver.toml --audit --json");
+  ASSERT_EQ(r.status, 0) << r.error;
+  EXPECT_EQ(nlohmann::json::parse(r.out)["audit"]["checked"], 25000);
+}
+
+}  // namespace

@@ -1,0 +1,127 @@
+// The four determinants of a simplex, against rational numbers.
+#include "dartcast/geometry/simplex.hpp"
+
+#include <gtest/gtest.h>
+
+#include <boost/multiprecision/cpp_int.hpp>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "dartcast/base/random.hpp"
+
+namespace dartcast {
+namespace {
+
+using Rational = boost::multiprecision::cpp_rational;
+
+Rational determinant(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const auto minus = [&](const Vec3& p) {
+    return std::array<Rational, 3>{Rational(p.x) - Rational(a.x), Rational(p.y) - Rational(a.y),
+                                   Rational(p.z) - Rational(a.z)};
+  };
+  const auto u = minus(b);
+  const auto v = minus(c);
+  const auto w = minus(d);
+  return u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) + u[2] * (v[0] * w[1] - v[1] * w[0]);
+}
+
+// Random simplices, from fat ones to exactly flat ones and slivers a rounding apart; a point in, on or near them.
+class Sample {
+ public:
+  explicit Sample(std::uint64_t seed) : random_(seed) {
+    const double shift = random_.below(3) == 0 ? std::ldexp(1.0, static_cast<int>(random_.below(30))) : 0.0;
+    const double grid = random_.below(3) == 0 ? 8.0 : 0x1p+40;
+    for (Vec3& p : v) p = point(shift, grid);
+    switch (random_.below(4)) {
+      case 0: v[3] = mix(v[0], v[1], v[2]); break;  // as good as flat
+      case 1: v[2] = mix(v[0], v[1], v[1]); break;
+      default: break;
+    }
+    switch (random_.below(4)) {
+      case 0: x = point(shift, grid); break;
+      case 1: x = mix(v[0], v[1], v[2]); break;
+      case 2: x = v[random_.below(4)]; break;
+      default: x = mix(mix(v[0], v[1], v[2]), v[3], v[0]); break;
+    }
+  }
+
+  Corners v;
+  Vec3 x;
+
+ private:
+  Vec3 point(double shift, double grid) {
+    const auto c = [&] { return shift + std::floor(random_.uniform() * grid) / grid; };
+    return {c(), c(), c()};
+  }
+  Vec3 mix(const Vec3& a, const Vec3& b, const Vec3& c) {
+    const double s = random_.uniform();
+    const double t = random_.uniform() * (1.0 - s);
+    return a * s + b * t + c * (1.0 - s - t);
+  }
+  Random random_;
+};
+
+TEST(Determinants, SignsAndProofsAgreeWithRationals) {
+  int undecided = 0, proved = 0, not_positive = 0;
+  for (std::uint64_t seed = 1; seed <= 3000; ++seed) {
+    const Sample s(seed);
+    const Determinants d(s.v, s.x);
+    Rational sum = 0;
+    std::uint64_t exact = 0;
+    for (unsigned i = 0; i < 4; ++i) {
+      Corners replaced = s.v;
+      replaced[i] = s.x;
+      const Rational truth = determinant(replaced[0], replaced[1], replaced[2], replaced[3]);
+      sum += truth;
+      const std::uint64_t before = exact;
+      EXPECT_EQ(static_cast<int>(sign_of(d, i, s.v, s.x, exact)), truth.sign()) << "seed " << seed << ", det " << i;
+      EXPECT_EQ(static_cast<int>(orient_facet(s.v, i, s.x)), truth.sign());
+      EXPECT_EQ(exact - before, d.decides(i) ? 0U : 1U);
+      if (d.applies)
+        EXPECT_LE(abs(Rational(d.value[i]) - truth), Rational(d.bound)) << "seed " << seed << ", det " << i;
+    }
+    undecided += exact > 0 ? 1 : 0;
+    const Rational volume = determinant(s.v[0], s.v[1], s.v[2], s.v[3]);
+    EXPECT_EQ(sum, volume);
+    EXPECT_EQ(static_cast<int>(volume_sign(s.v)), volume.sign());
+    if (d.proves_positive()) EXPECT_GT(volume, 0) << "seed " << seed;
+    proved += d.proves_positive() ? 1 : 0;
+    not_positive += volume <= 0 ? 1 : 0;
+  }
+  EXPECT_GT(undecided, 100);
+  EXPECT_GT(proved, 500);
+  EXPECT_GT(not_positive, 500);
+}
+
+TEST(Determinants, NothingIsProvedWhereSomethingIsNotFinite) {
+  const Corners v = {Vec3{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double bad : {std::nan(""), infinity, -infinity, 0x1p+400}) {
+    for (unsigned i = 0; i < 5; ++i) {
+      for (unsigned axis = 0; axis < 3; ++axis) {
+        Corners w = v;
+        Vec3 x{0.2, 0.3, 0.1};
+        Vec3& target = i < 4 ? w[i] : x;
+        (axis == 0 ? target.x : axis == 1 ? target.y : target.z) = bad;
+        const Determinants d(w, x);
+        EXPECT_FALSE(d.proves_positive());
+        for (unsigned k = 0; k < 4; ++k) {
+          if (k != i) EXPECT_FALSE(d.decides(k));  // det_i does not read corner i
+        }
+        if (i < 4) EXPECT_EQ(volume_sign(w), Sign::undecidable);
+      }
+    }
+  }
+}
+
+TEST(Determinants, OrderOfFacetCorners) {
+  const Corners v = {Vec3{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (unsigned i = 0; i < 4; ++i) {
+    EXPECT_EQ(orient_facet(v, i, v[i]), Sign::positive);
+    EXPECT_EQ(orient_facet(v, i, v[(i + 1) % 4]), Sign::zero);
+  }
+}
+
+}  // namespace
+}  // namespace dartcast

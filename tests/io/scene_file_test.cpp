@@ -1,0 +1,239 @@
+#include "dartcast/io/scene_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <sstream>
+#include <string>
+
+#include "dartcast/base/error.hpp"
+
+namespace dartcast {
+namespace {
+
+const std::string box = "[environment]\ngenerator = 'box'\n";
+
+// The text of the error that a scene gives; empty: none.
+std::string error_of(const std::string& text) {
+  try {
+    parse_scene(text, "folder/scene.toml");
+    return "";
+  } catch (const Error& e) {
+    return e.what();
+  }
+}
+
+void expect_error(const std::string& text, const std::string& start, const std::string& part) {
+  const std::string error = error_of(text);
+  EXPECT_EQ(error.rfind("folder/scene.toml:" + start, 0), 0U) << text << "\n-> " << error;
+  EXPECT_NE(error.find(part), std::string::npos) << text << "\n-> " << error;
+}
+
+TEST(SceneFile, DefaultsAreThoseOfTheDocumentation) {
+  const Scene s = parse_scene(box, "folder/scene.toml");
+  EXPECT_EQ(s.name, "scene");
+  EXPECT_EQ(s.seed, 1U);
+  EXPECT_EQ(s.motion.dt, 1e-3);
+  EXPECT_EQ(s.motion.steps, 1000U);
+  EXPECT_EQ(s.motion.gravity, Vec3());
+  EXPECT_EQ(s.motion.drag, 0.0);
+  EXPECT_EQ(s.motion.substeps, 1U);
+  EXPECT_EQ(s.contact.general.kind, ResponseKind::reflect);
+  EXPECT_EQ(s.contact.general.restitution, 1.0);
+  EXPECT_EQ(s.contact.general.friction, 0.0);
+  EXPECT_EQ(s.output.every, 10U);
+  EXPECT_FALSE(s.output.contacts);
+  EXPECT_TRUE(s.particles.empty());
+  const auto& b = std::get<BoxOptions>(s.environment.mesh);
+  EXPECT_EQ(b.cells, (std::array<std::uint32_t, 3>{1, 1, 1}));
+  EXPECT_EQ(b.type, CellType::hexahedron);
+}
+
+TEST(SceneFile, EveryKeyIsRead) {
+  const Scene s = parse_scene(R"(
+seed = 5
+[environment]
+mesh = "a/vessel.vtu"
+free = { region = ["lumen", "2"] }
+patches = ["inlet", "wall"]
+[[deformation]]
+kind = "bend"
+amplitude = 0.5
+period = 2
+axis = [0, 1, 0]
+centre = [1, 2, 3]
+direction = [0, 0, 1]
+length = 4.0
+[[deformation]]
+kind = "pulse"
+amplitude = 0.1
+wavelength = 3.0
+field = "f"
+path = "p"
+[[particles]]
+count = 10
+radius = 0.0
+velocity = [1, 2, 3.5]
+[[particles]]
+positions = "seeds.csv"
+[[particles]]
+inlet = "inlet"
+rate = 2.5
+[motion]
+dt = 0.25
+steps = 7
+gravity = [0, 0, -1]
+field = "velocity"
+field_frame = "mesh"
+drag = 3
+substeps = 4
+[contact]
+response = "slide"
+restitution = 0.25
+friction = 0.5
+[contact.patch.outlet]
+response = "escape"
+[contact.patch."a wall, thick"]
+restitution = 0.75
+[output]
+every = 3
+contacts = true
+)",
+                              "folder/scene.toml");
+  EXPECT_EQ(std::get<std::filesystem::path>(s.environment.mesh), "folder/a/vessel.vtu");
+  EXPECT_EQ(std::get<FreeRegions>(s.environment.free).regions, (std::vector<std::string>{"lumen", "2"}));
+  EXPECT_EQ(s.environment.patches, (std::vector<std::string>{"inlet", "wall"}));
+  ASSERT_EQ(s.deformation.size(), 2U);
+  const DeformationStep& bend = s.deformation[0].step;
+  EXPECT_EQ(bend.kind, DeformationKind::bend);
+  EXPECT_EQ(bend.amplitude, 0.5);
+  EXPECT_EQ(bend.period, 2.0);
+  EXPECT_EQ(bend.axis, (Vec3{0, 1, 0}));
+  EXPECT_EQ(bend.centre, (Vec3{1, 2, 3}));
+  EXPECT_EQ(bend.direction, (Vec3{0, 0, 1}));
+  EXPECT_EQ(bend.length, 4.0);
+  EXPECT_EQ(s.deformation[1].step.wavelength, 3.0);
+  EXPECT_EQ(s.deformation[1].field, "f");
+  EXPECT_EQ(s.deformation[1].path, "p");
+  ASSERT_EQ(s.particles.size(), 3U);
+  EXPECT_EQ(std::get<RandomParticles>(s.particles[0].source).count, 10U);
+  EXPECT_EQ(s.particles[0].velocity, (Vec3{1, 2, 3.5}));
+  EXPECT_EQ(std::get<PlacedParticles>(s.particles[1].source).positions, "folder/seeds.csv");
+  EXPECT_EQ(std::get<InletParticles>(s.particles[2].source).patch, "inlet");
+  EXPECT_EQ(std::get<InletParticles>(s.particles[2].source).rate, 2.5);
+  EXPECT_EQ(s.motion.dt, 0.25);
+  EXPECT_EQ(s.motion.steps, 7U);
+  EXPECT_EQ(s.motion.gravity, (Vec3{0, 0, -1}));
+  EXPECT_EQ(s.motion.field, "velocity");
+  EXPECT_EQ(s.motion.frame, FieldFrame::mesh);
+  EXPECT_EQ(s.motion.drag, 3.0);
+  EXPECT_EQ(s.motion.substeps, 4U);
+  EXPECT_EQ(s.contact.general.kind, ResponseKind::slide);
+  EXPECT_EQ(s.contact.by_patch.at("outlet").kind, ResponseKind::escape);
+  EXPECT_EQ(s.contact.by_patch.at("outlet").friction, 0.5);  // the rest as in [contact]
+  EXPECT_EQ(s.contact.by_patch.at("a wall, thick").kind, ResponseKind::slide);
+  EXPECT_EQ(s.contact.by_patch.at("a wall, thick").restitution, 0.75);
+  EXPECT_EQ(s.output.every, 3U);
+  EXPECT_TRUE(s.output.contacts);
+}
+
+TEST(SceneFile, GeneratorsTakeTheirParameters) {
+  const Scene s = parse_scene(
+      "[environment]\ngenerator = 'box'\ncells = [5, 5, 28]\nsize = [5.0, 5.0, 14.0]\norigin = [1, 2, 3]\ntype = "
+      "'tetrahedron'\n"
+      "blocked_layer = true\nblocked_share = 0.1\nseed = 3\njitter = 0.2\n",
+      "s.toml");
+  const auto& b = std::get<BoxOptions>(s.environment.mesh);
+  EXPECT_EQ(b.cells, (std::array<std::uint32_t, 3>{5, 5, 28}));
+  EXPECT_EQ(b.size, (Vec3{5, 5, 14}));
+  EXPECT_EQ(b.origin, (Vec3{1, 2, 3}));
+  EXPECT_EQ(b.type, CellType::tetrahedron);
+  EXPECT_TRUE(b.blocked_layer);
+  EXPECT_EQ(b.blocked_share, 0.1);
+  EXPECT_EQ(b.seed, 3U);
+  EXPECT_EQ(b.jitter, 0.2);
+  const Scene o = parse_scene("[environment]\ngenerator = 'octahedra'\ncells = [2, 3, 4]\n", "s.toml");
+  EXPECT_EQ(std::get<OctahedraOptions>(o.environment.mesh).size, (Vec3{2, 3, 4}));
+  const Scene v =
+      parse_scene("[environment]\ngenerator = 'vessel'\ncore = 4\nbranch_lengths = [0.03, 0.04]\n", "s.toml");
+  EXPECT_EQ(std::get<VesselOptions>(v.environment.mesh).core, 4U);
+  EXPECT_EQ(std::get<VesselOptions>(v.environment.mesh).branch_lengths[1], 0.04);
+}
+
+TEST(SceneFile, MistakesAreNamedWithLineAndRemedy) {
+  expect_error("x = [", "1:", "not TOML");
+  expect_error("", "", "environment is missing");
+  expect_error("[environment]\n", "1:", "mesh");
+  expect_error("[environment]\nmesh = 'a.vtu'\ngenerator = 'box'\n", "2:", "either");
+  expect_error("[environment]\ngenerator = 'sphere'\n", "2:", "box, bar, octahedra, vessel");
+  expect_error(box + "cells = [1, 2]\n", "3:", "3 numbers");
+  expect_error(box + "cells = [1, 2, 0]\n", "3:", "whole numbers");
+  expect_error(box + "cells = [1, 2, 2.5]\n", "3:", "whole numbers");
+  expect_error(box + "cells = [1, 2, 1e12]\n", "3:", "whole numbers");
+  expect_error(box + "size = [1, 2, -1]\n", "3:", "more than 0");
+  expect_error(box + "radius = 1\n", "3:", "the key 'radius' is unknown");
+  expect_error(box + "free = { values = [1] }\n", "3:", "region");
+  expect_error(box + "[motion]\ndt = 0\n", "4:", "more than 0");
+  expect_error(box + "[motion]\ndt = 'fast'\n", "4:", "number");
+  expect_error(box + "[motion]\ndt = inf\n", "4:", "finite");
+  expect_error(box + "[motion]\ndt = nan\n", "4:", "finite");
+  expect_error(box + "[motion]\nsteps = 1.5\n", "4:", "whole number");
+  expect_error(box + "[motion]\nsteps = -1\n", "4:", "between 0");
+  expect_error(box + "[motion]\nfield_frame = 'mesh'\n", "4:", "needs a field");
+  expect_error(box + "[motion]\ndrags = 1\n", "4:", "'drags' is unknown");
+  expect_error(box + "[contact]\nresponse = 'bounce'\n", "4:", "reflect, slide, stick, absorb, escape");
+  expect_error(box + "[contact]\nrestitution = 1.5\n", "4:", "at most 1");
+  expect_error(box + "[contact.patch.a]\nrestitutions = 1\n", "4:", "unknown");
+  expect_error(box + "[[particles]]\nradius = 0.1\ncount = 1\n", "4:", "points so far");
+  expect_error(box + "[[particles]]\nvelocity = [1, 2, 3]\n", "3:", "one of count");
+  expect_error(box + "[[particles]]\ncount = 1\npositions = 'a.csv'\n", "3:", "one of count");
+  expect_error(box + "[[particles]]\ninlet = 'a'\n", "3:", "rate");
+  expect_error(box + "[[particles]]\ncount = 1\nrate = 2\n", "5:", "belong together");
+  expect_error(box + "[[deformation]]\nkind = 'wobble'\n", "4:", "must be one of");
+  expect_error(box + "[[deformation]]\nkind = 'bend'\nlength = 1\n", "3:", "amplitude is missing");
+  expect_error(box + "[[deformation]]\nkind = 'rotate'\namplitude = 1\n", "5:", "unknown");
+  expect_error(box + "[[deformation]]\nkind = 'frames'\nfiles = ['a.vtu']\ntimes = [0, 1]\n",
+               "6:", "2 times for 1 files");
+  expect_error(box + "[output]\nevery = true\n", "4:", "whole number");
+  expect_error(box + "[outputs]\n", "3:", "unknown");
+  expect_error("particles = 3\n" + box, "1:", "tables");
+}
+
+TEST(SceneFile, AMissingFileIsNamed) {
+  try {
+    read_scene("no/such/scene.toml");
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("no/such/scene.toml"), std::string::npos);
+  }
+  EXPECT_THROW(read_scene("."), Error);
+}
+
+// The scenes that come with the project, and those in its documentation, are valid.
+TEST(SceneFile, ScenesOfTheProjectAreRead) {
+  const char* folder = std::getenv("DARTCAST_SCENES");
+  ASSERT_NE(folder, nullptr);
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".toml") continue;
+    EXPECT_NO_THROW(read_scene(entry.path())) << entry.path();
+    ++count;
+  }
+  EXPECT_GE(count, 4);
+  std::ifstream file(std::filesystem::path(folder) / "../docs/scene.md");
+  std::stringstream text;
+  text << file.rdbuf();
+  const std::string page = text.str();
+  const std::regex block("```toml\n([^`]*)```");
+  int blocks = 0;
+  for (std::sregex_iterator i(page.begin(), page.end(), block), end; i != end; ++i, ++blocks) {
+    EXPECT_EQ(error_of((*i)[1].str()), "") << (*i)[1].str();
+  }
+  EXPECT_GE(blocks, 6);
+}
+
+}  // namespace
+}  // namespace dartcast
