@@ -107,7 +107,8 @@ TEST_P(WalkOracle, AgreesOnRandomWalks) {
     ADD_FAILURE() << wrong;
   }
   EXPECT_GT(tally.contacts, scenes * steps_per_scene / 10);
-  if (kind == oracle::SceneKind::hexahedra || kind == oracle::SceneKind::flat_corners) {
+  const bool some_have_them = kind == oracle::SceneKind::hexahedra || kind == oracle::SceneKind::flat_corners;
+  if (some_have_them && scenes >= 10) {  // not in the few scenes that sanitizers get
     EXPECT_GT(tally.with_interior_points, 0U);
   }
 }

@@ -78,7 +78,7 @@ Sign orient3d_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) 
 
 double orient3d_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Filtered f = filtered_determinant(a, b, c, d);
-  constexpr double enough = 0x1p+44;  // leaves an error of a few units in the last place
+  constexpr double enough = 0x1p+49;
   if (f.decided() && std::abs(f.value) > enough * f.bound) return f.value;
   if (!all_in_range(a, b, c, d)) return std::numeric_limits<double>::quiet_NaN();
   return exact_determinant(a, b, c, d).estimate();

@@ -22,7 +22,8 @@ inline constexpr double largest_magnitude = 0x1p+300;
 /// Whether exact signs can be taken of determinants of this point: finite, and within the range above.
 bool in_exact_range(const Vec3& p);
 
-/// A sign, or `undecidable` where a coordinate is not finite or outside the range above: never a wrong sign.
+/// A sign, or `undecidable` where a coordinate is not finite or outside the range above: never a wrong sign. (Just
+/// outside it a filter may still decide, rightly.)
 enum class Sign : std::int8_t { negative = -1, zero = 0, positive = 1, undecidable = 2 };
 
 constexpr Sign operator-(Sign s) { return s == Sign::undecidable ? s : static_cast<Sign>(-static_cast<int>(s)); }
@@ -47,8 +48,8 @@ inline constexpr double determinant_error = 6.0 * (7.0 + 56.0 * 0x1p-53) * 0x1p-
 /// `largest`: the largest of the three factors of m. False where something is not finite or too large or too small.
 constexpr bool filter_applies(double largest, double m) { return largest <= 0x1p+301 && m >= 0x1p-700; }
 
-/// The same determinant as a double: right to a few units in the last place, and of the exact sign (0 only where it is
-/// 0). Not a number where a coordinate is outside the range.
+/// The same determinant as a double: right to 2^-49 of itself, and of the exact sign (0 only where it is 0). Not a
+/// number where a coordinate is outside the range.
 double orient3d_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 /// A point infinitesimally beside p, for ties: p + e w + (e^2, e^3, e^4), with w the sum of (opposite vertex - p) over

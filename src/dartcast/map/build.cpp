@@ -315,12 +315,7 @@ class MapBuilder {
     for (std::size_t i = 0; i + 1 < mesh_.patch_offsets.size(); ++i) {
       const std::int32_t tag = mesh_.patch_tags[i];
       const auto [found, fresh] = by_tag.try_emplace(tag);
-      if (fresh) {
-        const auto name = mesh_.patch_names.find(tag);
-        found->second = Patch{static_cast<std::uint16_t>(map_.patch_names_.size())};
-        if (map_.patch_names_.size() > 0xffffU) throw InvalidMesh("more than 65535 patches");
-        map_.patch_names_.push_back(name != mesh_.patch_names.end() ? name->second : std::to_string(tag));
-      }
+      if (fresh) found->second = patch_of(tag);
       const std::span<const std::uint32_t> corners(mesh_.patch_faces.data() + mesh_.patch_offsets[i],
                                                    mesh_.patch_offsets[i + 1] - mesh_.patch_offsets[i]);
       add_patch_face(corners, found->second);
@@ -331,6 +326,18 @@ class MapBuilder {
     const auto last = std::unique(map_.patches_.begin(), map_.patches_.end(),
                                   [](const auto& a, const auto& b) { return a.first == b.first; });
     map_.patches_.erase(last, map_.patches_.end());
+  }
+
+  // The patch of a tag; tags of one name are one patch.
+  Patch patch_of(std::int32_t tag) {
+    const auto named = mesh_.patch_names.find(tag);
+    const std::string name = named != mesh_.patch_names.end() ? named->second : std::to_string(tag);
+    auto& names = map_.patch_names_;
+    const auto known = std::find(names.begin() + 1, names.end(), name);
+    if (names.size() > 0xffffU) throw InvalidMesh("more than 65535 patches");
+    const auto number = static_cast<std::uint16_t>(known - names.begin());
+    if (known == names.end()) names.push_back(name);
+    return Patch{number};
   }
 
   // A patch face is matched to the cells' faces by its corners; one that belongs to no cell is no wall and is left out.

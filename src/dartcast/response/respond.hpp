@@ -48,8 +48,8 @@ enum class Fate : std::uint8_t { alive, stuck, absorbed, escaped };
 
 /// A callable for Environment::advance() that answers contacts by `responses` (the patch of the wall met first decides)
 /// and writes each particle's new velocity and fate. `velocities` in length per time, `dt` the step's duration > 0. The
-/// spans, one entry per particle, and `responses` must outlive it. A particle already absorbed, escaped or stuck stays
-/// where it is.
+/// spans, one entry per particle, and `responses` must outlive it. A particle already absorbed, escaped or
+/// stuck goes no further at a contact: give it its own position as the target.
 Respond respond_with(const Responses& responses, std::span<Vec3> velocities, std::span<Fate> fates, double dt);
 
 // The operators, for a caller's own responses. Vectors are relative to the wall; walls in the order of a contact's.

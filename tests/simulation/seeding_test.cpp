@@ -1,0 +1,104 @@
+#include "dartcast/simulation/seeding.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "dartcast/base/error.hpp"
+#include "dartcast/mesh/generate_box.hpp"
+#include "dartcast/simulation/flow.hpp"
+
+namespace dartcast {
+namespace {
+
+constexpr int count = 20000;
+
+// Within 6 standard deviations of what is expected of `count` draws.
+void expect_share(int found, double share) {
+  EXPECT_NEAR(found, count * share, 6 * std::sqrt(count * share * (1 - share)));
+}
+
+MeshData corner_tetrahedron() {
+  MeshData mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  mesh.add_cell(CellType::tetrahedron, std::vector<std::uint32_t>{0, 1, 2, 3});
+  mesh.add_patch_face(std::vector<std::uint32_t>{0, 2, 1}, 5);
+  mesh.patch_names = {{5, "base"}};
+  return mesh;
+}
+
+// The part of a tetrahedron within half its height of a corner is an eighth of it.
+TEST(VolumeSampler, FillsATetrahedronEvenly) {
+  const Complex complex(corner_tetrahedron());
+  const VolumeSampler sampler(complex);
+  Random random(1);
+  std::array<int, 4> near_corner{};
+  for (int i = 0; i < count; ++i) {
+    const Vec3 p = sampler.sample(complex, random);
+    const std::array<double, 4> w = {1 - p.x - p.y - p.z, p.x, p.y, p.z};
+    for (std::size_t k = 0; k < 4; ++k) {
+      ASSERT_GE(w[k], -1e-15);
+      near_corner[k] += w[k] > 0.5 ? 1 : 0;
+    }
+  }
+  for (const int n : near_corner) expect_share(n, 0.125);
+}
+
+// A quarter of a triangle is within half its height of a corner.
+TEST(PatchSampler, FillsATriangleEvenlyJustInside) {
+  const Complex complex(corner_tetrahedron());
+  const PatchSampler sampler(complex, complex.map().patch("base"));
+  Random random(1);
+  std::array<int, 3> near_corner{};
+  for (int i = 0; i < count; ++i) {
+    const Vec3 p = sampler.sample(complex, random);
+    ASSERT_DOUBLE_EQ(p.z, 1.0 / 64);
+    const std::array<double, 3> w = {1 - (p.x + p.y) * 64 / 63, p.x * 64 / 63, p.y * 64 / 63};
+    for (std::size_t k = 0; k < 3; ++k) {
+      ASSERT_GE(w[k], -1e-15);
+      near_corner[k] += w[k] > 0.5 ? 1 : 0;
+    }
+  }
+  for (const int n : near_corner) expect_share(n, 0.25);
+}
+
+// Two faces of equal size; the plane between them moves, so that one is three times as large.
+TEST(PatchSampler, FollowsTheMovingMesh) {
+  BoxOptions box;
+  box.cells = {2, 1, 1};
+  box.size = {2, 1, 1};
+  const MeshData mesh = generate_box(box);
+  DeformationStep frames;
+  frames.kind = DeformationKind::frames;
+  frames.times = {0.0, 1.0};
+  frames.frames = {mesh.points, mesh.points};
+  for (Vec3& p : frames.frames[1]) p.x += p.x == 1.0 ? 0.5 : 0.0;
+  Environment environment(mesh);
+  FlowOptions options;
+  options.dt = 1.0;
+  Flow flow(environment, options);
+  flow.set_deformation(Deformation({frames}, mesh.points));
+  flow.add_inlet(environment.map().patch("zmin"), count, {});
+  const auto in_first_cell = [&](std::size_t from) {
+    int n = 0;
+    for (std::size_t i = from; i < flow.particles().size(); ++i) {
+      n += environment.map().source(flow.particles()[i].cell) == 0 ? 1 : 0;
+    }
+    return n;
+  };
+  flow.step();  // put in at rest, where the faces were equal: those beside x = 1 change cell as it passes
+  flow.step();
+  expect_share(in_first_cell(count), 0.75);
+}
+
+TEST(Samplers, NeedSomewhereToPutParticles) {
+  MeshData mesh = corner_tetrahedron();
+  mesh.free = {0};
+  const Complex complex(mesh);
+  EXPECT_THROW(VolumeSampler{complex}, InvalidArgument);
+  EXPECT_THROW(PatchSampler(complex, complex.map().patch("base")), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace dartcast
