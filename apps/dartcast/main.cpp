@@ -24,26 +24,26 @@ int complain(int status, const std::string& text) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  using namespace dartcast::app;
+  namespace verbs = dartcast::app;
   CLI::App app("Carries particles through deforming meshes, exactly.", "dartcast");
   app.set_version_flag("--version", dartcast::version());
   app.require_subcommand(0, 1);
-  int status = done;
-  add_run(app, status);
-  add_check(app, status);
-  add_info(app, status);
-  add_convert(app, status);
+  int status = verbs::done;
+  verbs::add_run(app, status);
+  verbs::add_check(app, status);
+  verbs::add_info(app, status);
+  verbs::add_convert(app, status);
   try {
     app.parse(argc, argv);
     if (app.get_subcommands().empty()) throw CLI::RequiredError("one of run, check, info, convert");
   } catch (const CLI::Success& e) {
     return app.exit(e);  // help, version
   } catch (const CLI::ParseError& e) {
-    return complain(wrong_usage, fmt::format("{}; see dartcast --help", e.what()));
+    return complain(verbs::wrong_usage, fmt::format("{}; see dartcast --help", e.what()));
   } catch (const std::bad_alloc&) {
-    return complain(failed, "there is not enough memory for this");
+    return complain(verbs::failed, "there is not enough memory for this");
   } catch (const std::exception& e) {
-    return complain(failed, e.what());
+    return complain(verbs::failed, e.what());
   }
   return status;
 }
