@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
 #include <random>
 
@@ -10,14 +9,12 @@
 #include "dartcast/mesh/generate_box.hpp"
 #include "dartcast/mesh/generate_octahedra.hpp"
 #include "dartcast/response/respond.hpp"
+#include "tier.hpp"
 
 namespace dartcast {
 namespace {
 
-std::size_t scaled(std::size_t quick, std::size_t full) {
-  if (std::getenv("DARTCAST_FULL") != nullptr) return full;
-  return std::getenv("DARTCAST_SANITIZED") != nullptr ? quick / 10 : quick;
-}
+using test::scaled;
 
 // Exact: in the closed simplex named, of a free cell, at the current positions.
 void expect_valid(const Environment& env, const Particles& particles) {
@@ -89,7 +86,7 @@ TEST_P(DeformingByType, SlabThatSweepsOverParticlesAtRest) {
   Environment env(mesh);
   const std::vector<Vec3> rest(mesh.points);
   Particles particles;
-  scatter(env, particles, scaled(2000, 20000), {10.0, 3.0, 3.0}, 1);
+  scatter(env, particles, scaled<std::size_t>(2000, 20000), {10.0, 3.0, 3.0}, 1);
   const std::vector<Vec3> start = positions_of(particles);
   const std::size_t steps = 60;
   double travelled = 0.0;
@@ -136,7 +133,7 @@ TEST_P(DeformingByType, ContactWithMovingFloorFor10000Steps) {
   env.add(particles, std::vector<Vec3>{{1.3, 1.6, 0.0}, {0.7, 2.2, 0.25}, {1.5, 1.5, 0.0}, {2.0, 1.0, 0.0}});
   ASSERT_EQ(particles.size(), 4U);
   const auto start = positions_of(particles);
-  const std::size_t steps = scaled(10000, 100000);
+  const std::size_t steps = scaled<std::size_t>(10000, 100000);
   for (std::size_t step = 1; step <= steps; ++step) {
     const double floor = 0.4 * std::sin(0.05 * static_cast<double>(step));
     move_all(env, rest, [&](Vec3 p) {
@@ -187,7 +184,7 @@ TEST_P(DeformingByType, BladeThatTurns) {
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   std::vector<Vec3> points;
   std::vector<double> turn;  // place along the ring, in sectors
-  for (std::size_t i = 0; i < scaled(2000, 20000); ++i) {
+  for (std::size_t i = 0; i < scaled<std::size_t>(2000, 20000); ++i) {
     const double y = unit(random) < 0.5 ? 20.0 * unit(random) : 21.0 + 19.0 * unit(random);
     const Vec3 p = ring({0.3 + 5.4 * unit(random), y, 2.0 * unit(random)}, 0.0);
     if (env.locate(p).place != Place::free) continue;
@@ -258,7 +255,7 @@ TEST(Deforming, LargeTurnsAreSplit) {
 
 // Random scenes of all types, obstacles and responses, all vertices moving at random at every step: states stay exact.
 TEST(Deforming, RandomMotionOfAllVertices) {
-  const std::size_t rounds = scaled(24, 240);
+  const unsigned rounds = test::full_tier() ? 240 : test::sanitized() ? 6 : 24;
   for (unsigned seed = 0; seed < rounds; ++seed) {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> unit(0.0, 1.0);

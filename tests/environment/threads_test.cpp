@@ -12,11 +12,12 @@
 #include "dartcast/response/respond.hpp"
 #include "environment/particle_checks.hpp"
 #include "map/mixed_mesh.hpp"
+#include "tier.hpp"
 
 namespace dartcast {
 namespace {
 
-bool full_tier() { return std::getenv("DARTCAST_FULL") != nullptr; }
+using test::full_tier;
 
 // Everything that a run leaves behind, by the particles' numbers.
 struct Outcome {

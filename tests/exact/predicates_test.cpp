@@ -8,6 +8,7 @@
 
 #include "exact/dyadic.hpp"
 #include "exact/quadruples.hpp"
+#include "tier.hpp"
 
 namespace dartcast::test {
 namespace {
@@ -15,11 +16,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-int cases(int quick) {
-  if (std::getenv("DARTCAST_FULL") != nullptr) quick *= 30;
-  if (std::getenv("DARTCAST_SANITIZED") != nullptr) quick /= 20;
-  return quick;
-}
+int cases(int quick) { return scaled(quick, 30 * quick); }
 
 Sign true_sign(const Quadruple& q) { return static_cast<Sign>(determinant(q[0], q[1], q[2], q[3]).sign()); }
 

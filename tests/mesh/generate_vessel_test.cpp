@@ -8,6 +8,7 @@
 #include "dartcast/base/error.hpp"
 #include "dartcast/base/random.hpp"
 #include "generate_checks.hpp"
+#include "tier.hpp"
 
 namespace dartcast {
 namespace {
@@ -203,7 +204,7 @@ TEST(GenerateVessel, PulseDirectionsPointFromTheCentreLine) {
 }
 
 TEST(GenerateVessel, IsValidOverTheWholeRangeOfItsOptions) {
-  const unsigned stride = std::getenv("DARTCAST_FULL") == nullptr ? 5 : 1;
+  const unsigned stride = test::full_tier() ? 1 : test::sanitized() ? 85 : 5;
   for (unsigned bits = 0; bits < 256; bits += stride) {
     const auto pick = [&](unsigned bit, double low, double high) { return ((bits >> bit) & 1U) == 0 ? low : high; };
     VesselOptions o;

@@ -11,6 +11,7 @@
 #include "dartcast/mesh/generate_box.hpp"
 #include "dartcast/mesh/generate_octahedra.hpp"
 #include "mesh/generate_checks.hpp"
+#include "tier.hpp"
 
 namespace dartcast {
 namespace {
@@ -90,7 +91,7 @@ TEST(Locate, RandomPointsAgreeWithASearchThroughAllCells) {
     const Locator locator(complex);
     const Brute brute(complex);
     Random random(static_cast<std::uint64_t>(which));
-    for (int i = 0; i < 17000; ++i) {
+    for (int i = 0; i < test::scaled(17000, 17000); ++i) {
       Vec3 x{random.uniform(-0.5, 4), random.uniform(-0.5, 4), random.uniform(-0.5, 4)};
       if (i % 4 == 1) x = {std::floor(x.x * 4) / 4, std::floor(x.y * 4) / 4, std::floor(x.z * 4) / 4};
       if (i % 4 == 2) {  // on or beside a face's middle
@@ -105,9 +106,9 @@ TEST(Locate, RandomPointsAgreeWithASearchThroughAllCells) {
       ++(place == Place::free ? free : place == Place::blocked ? blocked : outside);
     }
   }
-  EXPECT_GT(free, 20000);
-  EXPECT_GT(blocked, 10000);
-  EXPECT_GT(outside, 10000);
+  EXPECT_GT(free, test::scaled(20000, 20000));
+  EXPECT_GT(blocked, test::scaled(10000, 10000));
+  EXPECT_GT(outside, test::scaled(10000, 10000));
 }
 
 TEST(Locate, CellsOfVeryDifferentSizes) {

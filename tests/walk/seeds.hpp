@@ -3,22 +3,15 @@
 
 #include <atomic>
 #include <cstdint>
-#include <cstdlib>
 #include <exception>
 #include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "tier.hpp"
+
 namespace dartcast::test {
-
-inline bool full_tier() { return std::getenv("DARTCAST_FULL") != nullptr; }
-
-/// How many cases to take: fewer under sanitizers.
-inline std::uint64_t scaled(std::uint64_t quick, std::uint64_t full) {
-  const std::uint64_t n = full_tier() ? full : quick;
-  return std::getenv("DARTCAST_SANITIZED") != nullptr ? n / 20 : n;
-}
 
 /// Calls check(seed), which says what is wrong, for the seeds from 1 to `count`. Returns the first few complaints.
 template <class Check>
