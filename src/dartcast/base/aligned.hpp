@@ -14,8 +14,8 @@ struct CacheLineAllocator {
 
   CacheLineAllocator() = default;
   template <class U>
-  constexpr CacheLineAllocator(const CacheLineAllocator<U>&) noexcept {
-  }  // NOLINT(google-explicit-constructor): rebinds
+  // NOLINTNEXTLINE(google-explicit-constructor): allocators rebind by conversion
+  constexpr CacheLineAllocator(const CacheLineAllocator<U>&) noexcept {}
 
   [[nodiscard]] T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), alignment)); }
   void deallocate(T* p, std::size_t) noexcept { ::operator delete(p, alignment); }

@@ -1,11 +1,10 @@
 // VTK's error texts, caught instead of printed.
 #pragma once
 
+#include <vtkOutputWindow.h>
 #include <vtkSmartPointer.h>
 
 #include <string>
-
-class vtkOutputWindow;
 
 namespace dartcast {
 

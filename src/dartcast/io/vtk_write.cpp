@@ -101,7 +101,7 @@ vtkSmartPointer<vtkUnstructuredGrid> make_grid(const MeshData& mesh) {
     points->SetPoint(static_cast<vtkIdType>(p), mesh.points[p].x, mesh.points[p].y, mesh.points[p].z);
   }
   grid->SetPoints(points);
-  grid->AllocateEstimate(static_cast<vtkIdType>(mesh.cell_count() + mesh.patch_tags.size()), 8);
+  grid->AllocateEstimate(static_cast<vtkIdType>(mesh.cell_count()) + static_cast<vtkIdType>(mesh.patch_tags.size()), 8);
   add_cells(mesh, *grid);
   for (const DataArray& a : mesh.point_data) add_array(*grid->GetPointData(), a, grid->GetNumberOfPoints());
   for (const DataArray& a : mesh.cell_data) {

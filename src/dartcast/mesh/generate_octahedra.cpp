@@ -132,7 +132,7 @@ class Builder {
 
   std::uint32_t point(const Place& p) {
     const auto index = [&](std::size_t a) { return static_cast<std::size_t>(p[a]); };
-    const auto extent = [&](std::size_t a) { return static_cast<std::size_t>(4 * n_[a] + 3); };
+    const auto extent = [&](std::size_t a) { return 4 * static_cast<std::size_t>(n_[a]) + 3; };
     std::uint32_t& number = numbers_[index(0) + extent(0) * (index(1) + extent(1) * index(2))];
     if (number == none) {
       number = static_cast<std::uint32_t>(mesh_.points.size());

@@ -296,7 +296,8 @@ class Builder {
     const std::size_t carina = halves_[0].carina();
     for (std::size_t i = 0; i <= carina; ++i) {
       // The halves share the line, which each of them runs along from its other end; the columns lie on it.
-      Ids left(section_.vertex_count, none), right = left;
+      Ids left(section_.vertex_count, none);
+      Ids right(section_.vertex_count, none);
       const std::array<std::vector<Node>, 2> nodes = {slice_nodes(halves_[0].slices()[i]),
                                                       slice_nodes(halves_[1].slices()[i])};
       for (std::uint32_t j = 0; j <= last; ++j) {

@@ -30,27 +30,28 @@ struct DataArray {
 /// Corners of a positive cell:
 ///  - tetrahedron 0 1 2 3: det[p1 - p0, p2 - p0, p3 - p0] > 0;
 ///  - hexahedron: 0 1 2 3 the base, counterclockwise seen from the inside, 4 5 6 7 above them (VTK and Gmsh agree);
-///  - prism: 0 1 2 the base, counterclockwise seen from the inside, 3 4 5 above them (Gmsh; VTK's own order is the mirror);
+///  - prism: 0 1 2 the base, counterclockwise seen from the inside, 3 4 5 above them (Gmsh; VTK's own order is the
+///  mirror);
 ///  - pyramid: 0 1 2 3 the base, counterclockwise seen from the inside, 4 the apex (VTK and Gmsh agree);
 ///  - polyhedron: connectivity holds the number of faces, then for each face its number of corners and the corners,
 ///    counterclockwise seen from the outside.
 struct MeshData {
   std::vector<Vec3> points;
 
-  std::vector<CellType> types;                ///< one per cell
-  std::vector<std::size_t> offsets = {0};     ///< cells + 1; cell c owns connectivity[offsets[c] .. offsets[c + 1])
-  std::vector<std::uint32_t> connectivity;    ///< point indices in the order above
-  std::vector<std::uint32_t> source;          ///< the cell's index in the input file; empty: the cell's own index
+  std::vector<CellType> types;              ///< one per cell
+  std::vector<std::size_t> offsets = {0};   ///< cells + 1; cell c owns connectivity[offsets[c] .. offsets[c + 1])
+  std::vector<std::uint32_t> connectivity;  ///< point indices in the order above
+  std::vector<std::uint32_t> source;        ///< the cell's index in the input file; empty: the cell's own index
 
-  std::vector<std::int32_t> regions;          ///< tag per cell; empty: all 0
+  std::vector<std::int32_t> regions;  ///< tag per cell; empty: all 0
   std::map<std::int32_t, std::string> region_names;
 
-  std::vector<std::uint32_t> patch_faces;     ///< faces in named groups: corners, one face after another
+  std::vector<std::uint32_t> patch_faces;        ///< faces in named groups: corners, one face after another
   std::vector<std::size_t> patch_offsets = {0};  ///< patch faces + 1, into patch_faces
-  std::vector<std::int32_t> patch_tags;       ///< tag per patch face
+  std::vector<std::int32_t> patch_tags;          ///< tag per patch face
   std::map<std::int32_t, std::string> patch_names;
 
-  std::vector<std::uint8_t> free;             ///< 1 free, 0 blocked, per cell; empty: all free
+  std::vector<std::uint8_t> free;  ///< 1 free, 0 blocked, per cell; empty: all free
 
   std::vector<DataArray> point_data;
   std::vector<DataArray> cell_data;
