@@ -7,6 +7,7 @@
 
 #include "exact/dyadic.hpp"
 #include "exact/quadruples.hpp"
+#include "tier.hpp"
 
 namespace dartcast::test {
 namespace {
@@ -50,7 +51,7 @@ void expect_is(const Expansion<N>& e, const Dyadic& truth) {
 
 TEST(Expansion, SumsDifferencesAndProductsAreExact) {
   Quadruples quadruples(1);
-  for (int i = 0; i < 40'000; ++i) {
+  for (int i = 0; i < scaled(40'000, 40'000); ++i) {
     const int spread = 1 + i % 80;
     const auto number = [&] { return i % 3 == 0 ? quadruples.integer(3) : quadruples.signed_power(-spread, spread); };
     const double x[6] = {number(), number(), number(), number(), number(), number()};
