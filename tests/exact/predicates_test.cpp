@@ -208,7 +208,7 @@ TEST(Orient3dValue, IsNearTheTrueValueAndOfItsSign) {
       const double v = value(q);
       ASSERT_EQ((v > 0.0) - (v < 0.0), truth.sign()) << text(q);
       const Dyadic error = (Dyadic(v) - truth).abs();
-      ASSERT_FALSE(Dyadic(0x1p-44) * truth.abs() < error) << "kind " << k << ": " << text(q);
+      ASSERT_FALSE(Dyadic(0x1p-49) * truth.abs() < error) << "kind " << k << ": " << text(q);
     }
   }
 }

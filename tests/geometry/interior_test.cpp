@@ -278,7 +278,7 @@ MeshData warped_cube(std::uint64_t seed, double most) {
 TEST(InteriorPoints, WarpedHexahedraWithAKernelGetThem) {
   for (const double most : {0.4, 0.55}) {
     int plain = 0, bad = 0, with_kernel = 0, with_kernel_mended = 0, mended = 0;
-    for (std::uint64_t seed = 1; seed <= 1500; seed += test::sanitized() ? 5 : 1) {
+    for (std::uint64_t seed = 1; seed <= 1500; seed += test::sanitized() ? 3 : 1) {
       const MeshData mesh = warped_cube(seed, most);
       const Complex complex(mesh);
       const bool valid = complex.invalid_cells().empty();
@@ -299,8 +299,8 @@ TEST(InteriorPoints, WarpedHexahedraWithAKernelGetThem) {
     SCOPED_TRACE(std::to_string(plain) + " plain, " + std::to_string(with_kernel_mended) + " of " +
                  std::to_string(with_kernel) + " with a kernel, " + std::to_string(mended) + " of " +
                  std::to_string(bad) + " in all");
-    EXPECT_GT(plain, (most < 0.5 ? 1350 : 800) / (test::sanitized() ? 5 : 1));
-    EXPECT_GT(with_kernel, test::sanitized() ? 2 : 20);
+    EXPECT_GT(plain, (most < 0.5 ? 1350 : 800) / (test::sanitized() ? 3 : 1));
+    EXPECT_GT(with_kernel, 20 / (test::sanitized() ? 3 : 1));
     EXPECT_GE(with_kernel_mended * 100, with_kernel * 95);
     EXPECT_GE(mended * 100, bad * (most < 0.5 ? 98 : 80));
   }
