@@ -21,6 +21,7 @@ struct Arguments {
   std::optional<std::uint64_t> steps;
   std::optional<std::uint64_t> seed;
   bool audit = false;
+  bool resume = false;
   bool quiet = false;
   bool verbose = false;
   bool json = false;
@@ -62,6 +63,7 @@ int run(const Arguments& a) {
   options.steps = a.steps;
   options.seed = a.seed;
   options.audit = a.audit;
+  options.resume = a.resume;
   ProgressBar bar;
   Progress progress;
   if (!a.quiet && !a.json && isatty(STDERR_FILENO) != 0)
@@ -87,6 +89,7 @@ void add_run(CLI::App& app, int& status) {
   verb->add_option("--steps", a->steps, "number of steps, instead of the scene's");
   verb->add_option("--seed", a->seed, "seed for all that is random, instead of the scene's");
   verb->add_flag("--audit", a->audit, "check each particle after each step in exact arithmetic (slow)");
+  verb->add_flag("--resume", a->resume, "go on where an earlier run in the folder was cut off, or to more --steps");
   auto* quiet = verb->add_flag("-q,--quiet", a->quiet, "print nothing but errors");
   verb->add_flag("-v,--verbose", a->verbose, "print more")->excludes(quiet);
   verb->add_flag("--json", a->json, "print the summary as one JSON object, and nothing else");

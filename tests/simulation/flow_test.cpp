@@ -52,6 +52,32 @@ TEST(Flow, FallsAsEulersMethodSays) {
   EXPECT_EQ(flow.totals().counters.particle_steps, 100U);
 }
 
+// A checkpoint that does not fit is refused as a whole.
+TEST(Flow, RestoresOnlyStatesThatHold) {
+  Environment environment(box_mesh(3));
+  Flow flow(environment, options(0.01));
+  flow.add_random(20, {1, 2, 3});
+  flow.step();
+  const FlowCheckpoint good = flow.checkpoint();
+  const std::string hash = flow.state_hash().hex();
+  const auto expect_refused = [&](auto&& spoil) {
+    FlowCheckpoint bad = good;
+    spoil(bad.particles[7].state);
+    EXPECT_THROW(flow.restore(bad), InvalidArgument);
+    EXPECT_EQ(flow.state_hash().hex(), hash);
+  };
+  expect_refused([](State& s) { s.cell = Cell(); });
+  expect_refused([](State& s) { s.cell = Cell{s.cell.value + 1}; });
+  expect_refused([](State& s) { s.simplex = 6; });
+  expect_refused([](State& s) { s.simplex = s.simplex == 0 ? 1 : 0; });
+  expect_refused([](State& s) { s.position.x += 4.0; });
+  expect_refused([](State& s) { s.position.x = std::numeric_limits<double>::quiet_NaN(); });
+  expect_refused([](State& s) { s.touching_count = 4; });
+  expect_refused([](State& s) { s.touching_count = 1; });
+  flow.restore(good);
+  EXPECT_EQ(flow.state_hash().hex(), hash);
+}
+
 TEST(Flow, DragTakesSpeedExponentiallyWhateverTheStep) {
   for (const double dt : {0.001, 0.5}) {
     Environment environment(box_mesh(2));

@@ -35,7 +35,7 @@ TEST(VolumeSampler, FillsATetrahedronEvenly) {
   Random random(1);
   std::array<int, 4> near_corner{};
   for (int i = 0; i < count; ++i) {
-    const Vec3 p = sampler.sample(complex, random);
+    const Vec3 p = sampler.sample(complex, random).position;
     const std::array<double, 4> w = {1 - p.x - p.y - p.z, p.x, p.y, p.z};
     for (std::size_t k = 0; k < 4; ++k) {
       ASSERT_GE(w[k], -1e-15);
@@ -52,7 +52,7 @@ TEST(PatchSampler, FillsATriangleEvenlyJustInside) {
   Random random(1);
   std::array<int, 3> near_corner{};
   for (int i = 0; i < count; ++i) {
-    const Vec3 p = sampler.sample(complex, random);
+    const Vec3 p = sampler.sample(complex, random).position;
     ASSERT_DOUBLE_EQ(p.z, 1.0 / 64);
     const std::array<double, 3> w = {1 - (p.x + p.y) * 64 / 63, p.x * 64 / 63, p.y * 64 / 63};
     for (std::size_t k = 0; k < 3; ++k) {

@@ -14,6 +14,7 @@ namespace dartcast {
 namespace {
 
 constexpr std::size_t grain = 512;
+constexpr const char* missed_move = "add: advance the particles first, they have not followed the last move";
 
 void check_point(const Vec3& x, const char* what, std::size_t index) {
   if (in_exact_range(x)) return;
@@ -29,6 +30,38 @@ MeshData inspected(MeshData mesh) {
     throw InvalidMesh(fmt::format("{}: {}, the first: {}", f.message, f.count, fmt::join(f.first, ", ")));
   }
   return mesh;
+}
+
+bool names_free_simplex(const Map& map, SimplexId s) {
+  return map.contains(s.cell) && map.is_free(s.cell) && s.simplex < map.shape(s.cell).simplices().size();
+}
+
+// Whether x lies in a closed simplex that is positive and of a free cell.
+bool holds(const Complex& complex, SimplexId s, const Vec3& x) {
+  if (!names_free_simplex(complex.map(), s)) return false;
+  const Corners v = complex.corners(s);
+  const auto not_negative = [&](unsigned facet) {
+    const Sign sign = orient_facet(v, facet, x);
+    return sign == Sign::positive || sign == Sign::zero;
+  };
+  return volume_sign(v) == Sign::positive && not_negative(0) && not_negative(1) && not_negative(2) && not_negative(3);
+}
+
+bool is_wall(const Map& map, CellFace f) {
+  return map.contains(f.cell) && f.face < map.shape(f.cell).face_count() && map.view(f.cell).is_wall(f.face);
+}
+
+bool are_weights(const Weights& w) {
+  return std::all_of(w.begin(), w.end(), [](double c) { return c >= 0.0 && c <= 1.0; });
+}
+
+bool can_be(const Complex& complex, const State& s, const Weights& weights) {
+  if (!in_exact_range(s.position) || s.touching_count > s.touching.size()) return false;
+  for (unsigned i = 0; i < s.touching_count; ++i) {
+    if (!is_wall(complex.map(), s.touching[i])) return false;
+  }
+  if (s.held) return names_free_simplex(complex.map(), s.at()) && are_weights(weights);
+  return holds(complex, s.at(), s.position);
 }
 
 }  // namespace
@@ -89,8 +122,7 @@ std::vector<Location> Environment::locate(std::span<const Vec3> points) {
 
 std::vector<Added> Environment::add(Particles& particles, std::span<const Vec3> positions) {
   if (particles.size() == 0) particles.moves_ = moves_;
-  if (particles.moves_ != moves_)
-    throw InvalidArgument("add: advance the particles first, they have not followed the last move");
+  if (particles.moves_ != moves_) throw InvalidArgument(missed_move);
   const std::vector<Location> locations = locate(positions);
   std::vector<Added> added(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -101,6 +133,29 @@ std::vector<Added> Environment::add(Particles& particles, std::span<const Vec3> 
     particles.weights_.emplace_back();
   }
   return added;
+}
+
+bool Environment::add(Particles& particles, SimplexId simplex, const Vec3& position) {
+  if (particles.size() == 0) particles.moves_ = moves_;
+  if (particles.moves_ != moves_) throw InvalidArgument(missed_move);
+  if (!in_exact_range(position) || !holds(complex_, simplex, position)) return false;
+  particles.states_.emplace_back().put(simplex, position);
+  particles.weights_.emplace_back();
+  return true;
+}
+
+Particles Environment::restored(std::span<const State> states, std::span<const Weights> weights) const {
+  if (weights.size() != states.size()) throw InvalidArgument("restored: one set of weights per state is needed");
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    if (!can_be(complex_, states[i], weights[i]))
+      throw InvalidArgument(
+          fmt::format("restored: the state of particle {} is not one of this environment as it stands", i));
+  }
+  Particles particles;
+  particles.states_.assign(states.begin(), states.end());
+  particles.weights_.assign(weights.begin(), weights.end());
+  particles.moves_ = moves_;
+  return particles;
 }
 
 void Environment::move() {

@@ -78,6 +78,15 @@ class Environment {
   /// Adds a particle for every position in a free cell, in their order, and reports on every position: one in a blocked
   /// cell or outside is not added, and says so. Throws as locate(), nothing added.
   std::vector<Added> add(Particles& particles, std::span<const Vec3> positions);
+  /// Adds a particle where the caller knows the simplex, without a search: false, and nothing added, unless the
+  /// position lies exactly in that closed simplex, which is positive and of a free cell. Throws InvalidArgument where
+  /// the particles have missed a move. Cost: five exact signs.
+  bool add(Particles& particles, SimplexId simplex, const Vec3& position);
+
+  /// Particles with these states, as if they had been here since the last move: for those saved from an equal
+  /// environment. `weights`: one per state, read where it is held. Throws InvalidArgument, naming the first state that
+  /// does not hold here: guarantee G3, or a wall touched that is none.
+  [[nodiscard]] Particles restored(std::span<const State> states, std::span<const Weights> weights) const;
 
   /// Where to write the next positions of all the mesh's points before move(). The content is what it was two moves
   /// ago.

@@ -11,6 +11,9 @@
 #include <vtkXMLPolyDataWriter.h>
 
 #include <algorithm>
+#include <set>
+#include <span>
+#include <string>
 #include <string_view>
 
 #include "dartcast/base/error.hpp"
@@ -34,7 +37,7 @@ constexpr std::string_view contacts_header =
 // Whether a file is one that a run writes: by its name.
 bool is_ours(const std::string& name) {
   static constexpr std::string_view fixed[] = {"summary.json",    "stats.csv",    "particles.pvd", "environment.pvd",
-                                               "environment.vtu", "contacts.csv", "scene.toml"};
+                                               "environment.vtu", "contacts.csv", "scene.toml",    "checkpoint.bin"};
   if (std::find(std::begin(fixed), std::end(fixed), name) != std::end(fixed)) return true;
   for (const auto& [start, end] :
        {std::pair<std::string_view, std::string_view>{"particles_", ".vtp"}, {"environment_", ".vtu"}}) {
@@ -53,10 +56,15 @@ bool holds_a_run(const fs::path& folder) {
   return std::getline(file, line) && line == stats_header;
 }
 
-void write_pvd(const fs::path& path, const std::vector<std::pair<double, std::string>>& frames) {
+std::string particles_name(std::uint64_t step) { return fmt::format("particles_{:06}.vtp", step); }
+std::string environment_name(std::uint64_t step) { return fmt::format("environment_{:06}.vtu", step); }
+
+// A collection for ParaView: a file per frame.
+template <class Name>
+void write_pvd(const fs::path& path, std::span<const RecordingFrame> frames, Name&& name) {
   std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n <Collection>\n";
-  for (const auto& [time, file] : frames) {
-    text += fmt::format("  <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", time, file);
+  for (const RecordingFrame& frame : frames) {
+    text += fmt::format("  <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", frame.time, name(frame.step));
   }
   write_bytes(path, text + " </Collection>\n</VTKFile>\n");
 }
@@ -67,6 +75,24 @@ std::ofstream open_table(const fs::path& path, std::string_view header) {
   if (!table)
     throw Error(fmt::format("{}: the file cannot be written; check the folder and its permissions", path.string()));
   return table;
+}
+
+// Opens a table to write on behind its first `bytes` bytes.
+std::ofstream reopen_table(const fs::path& path, std::uint64_t bytes) {
+  std::error_code error;
+  if (fs::file_size(path, error) < bytes || error)
+    throw Error(
+        fmt::format("{}: the file is shorter than when the checkpoint was made; run without --resume", path.string()));
+  fs::resize_file(path, bytes, error);
+  std::ofstream table(path, std::ios::binary | std::ios::app);
+  if (error || !table)
+    throw Error(fmt::format("{}: the file cannot be written; check the folder and its permissions", path.string()));
+  return table;
+}
+
+// Sends a table to its file; its length then.
+std::uint64_t written(std::ofstream& table) {
+  return table.is_open() ? static_cast<std::uint64_t>(table.flush().tellp()) : 0;
 }
 
 void close_table(std::ofstream& table, const char* name, const fs::path& folder) {
@@ -121,30 +147,56 @@ Recording::Recording(Options options, const MeshData& mesh, const std::string& s
   stats_ = open_table(folder / "stats.csv", stats_header);
   if (options_.contacts) contacts_ = open_table(folder / "contacts.csv", contacts_header);
   if (!scene_text.empty()) write_bytes(folder / "scene.toml", scene_text);
+  keep_cells(mesh);
+  if (!options_.deforms) write_environment(mesh.points, "environment.vtu");
+}
+
+Recording::Recording(Options options, const MeshData& mesh, const RecordingProgress& progress)
+    : options_(std::move(options)), frames_(progress.frames) {
+  stats_ = reopen_table(options_.folder / "stats.csv", progress.stats_bytes);
+  if (options_.contacts) contacts_ = reopen_table(options_.folder / "contacts.csv", progress.contacts_bytes);
+  keep_cells(mesh);
+  std::set<std::string> kept = {"environment.vtu"};
+  for (const RecordingFrame& frame : frames_) kept.insert({particles_name(frame.step), environment_name(frame.step)});
+  for (const auto& entry : fs::directory_iterator(options_.folder)) {
+    const std::string name = entry.path().filename().string();
+    const bool frame = entry.path().extension() == ".vtp" || entry.path().extension() == ".vtu";
+    if (frame && is_ours(name) && !kept.contains(name)) fs::remove(entry.path());
+  }
+}
+
+void Recording::keep_cells(const MeshData& mesh) {
   mesh_.types = mesh.types;
   mesh_.offsets = mesh.offsets;
   mesh_.connectivity = mesh.connectivity;
   mesh_.regions = mesh.regions;
   mesh_.region_names = mesh.region_names;
   mesh_.free = mesh.free;
-  if (!options_.deforms) write_environment(mesh.points, 0.0, 0);
 }
 
-void Recording::write_environment(std::span<const Vec3> points, double time, std::uint64_t step) {
-  const std::string name = options_.deforms ? fmt::format("environment_{:06}.vtu", step) : "environment.vtu";
+void Recording::write_environment(std::span<const Vec3> points, const std::string& name) {
   mesh_.points.assign(points.begin(), points.end());
   write_vtu(mesh_, options_.folder / name);
-  environment_frames_.emplace_back(time, name);
-  write_pvd(options_.folder / "environment.pvd", environment_frames_);
 }
 
 void Recording::add_frame(const Flow& flow) {
-  const std::string name = fmt::format("particles_{:06}.vtp", flow.steps());
-  write_particles(flow, options_.folder / name);
-  particle_frames_.emplace_back(flow.time(), name);
-  write_pvd(options_.folder / "particles.pvd", particle_frames_);
-  if (options_.deforms) write_environment(flow.environment().positions(), flow.time(), flow.steps());
+  write_particles(flow, options_.folder / particles_name(flow.steps()));
+  if (options_.deforms) write_environment(flow.environment().positions(), environment_name(flow.steps()));
+  if (frames_.empty() || frames_.back().step != flow.steps()) frames_.push_back({flow.steps(), flow.time()});
+  write_lists();
 }
+
+void Recording::write_lists() const {
+  write_pvd(options_.folder / "particles.pvd", frames_, particles_name);
+  if (options_.deforms) {
+    write_pvd(options_.folder / "environment.pvd", frames_, environment_name);
+  } else {
+    const RecordingFrame at_rest;
+    write_pvd(options_.folder / "environment.pvd", {&at_rest, 1}, [](std::uint64_t) { return "environment.vtu"; });
+  }
+}
+
+RecordingProgress Recording::progress() { return {written(stats_), written(contacts_), frames_}; }
 
 void Recording::write_particles(const Flow& flow, const fs::path& path) const {
   const Particles& particles = flow.particles();

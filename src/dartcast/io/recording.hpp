@@ -12,6 +12,18 @@
 
 namespace dartcast {
 
+struct RecordingFrame {
+  std::uint64_t step = 0;
+  double time = 0.0;  ///< s
+};
+
+/// How far a recording has come: enough to go on with its files.
+struct RecordingProgress {
+  std::uint64_t stats_bytes = 0;
+  std::uint64_t contacts_bytes = 0;
+  std::vector<RecordingFrame> frames;
+};
+
 /// Writes particles.pvd with a .vtp per frame, environment.pvd with a .vtu per frame (one where nothing deforms),
 /// stats.csv, contacts.csv on request, scene.toml and summary.json. Every write throws Error where it fails.
 class Recording {
@@ -26,24 +38,31 @@ class Recording {
   /// nothing changed, where the folder holds anything else. `mesh`: the environment's, points at rest.
   Recording(Options options, const MeshData& mesh, const std::string& scene_text);
 
+  /// Goes on with the files of an earlier run: what was written to them after `progress` is taken back. Throws Error
+  /// where a file is shorter than that.
+  Recording(Options options, const MeshData& mesh, const RecordingProgress& progress);
+
   /// Adds the particles, and the environment where it deforms, as they are now.
   void add_frame(const Flow& flow);
   /// Adds a step's row to stats.csv, and its contacts.
   void add_step(const Flow& flow, const FlowStep& step);
+  /// Sends the tables to their files, and says how far they have come.
+  RecordingProgress progress();
   /// Writes summary.json and ends the tables.
   void finish(const std::string& summary_json);
 
  private:
+  void keep_cells(const MeshData& mesh);
   void write_particles(const Flow& flow, const std::filesystem::path& path) const;
-  void write_environment(std::span<const Vec3> points, double time, std::uint64_t step);
+  void write_environment(std::span<const Vec3> points, const std::string& name);
+  void write_lists() const;
   void write_contacts(const Flow& flow, const FlowStep& step);
 
   Options options_;
   MeshData mesh_;  // cells, regions and free marks alone
   std::ofstream stats_;
   std::ofstream contacts_;
-  std::vector<std::pair<double, std::string>> particle_frames_;
-  std::vector<std::pair<double, std::string>> environment_frames_;
+  std::vector<RecordingFrame> frames_;
 };
 
 /// Whether a run may write to this folder: it does not exist, is empty, or holds an earlier run. Throws Error that says

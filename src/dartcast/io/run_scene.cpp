@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <optional>
+#include <string>
 #include <thread>
 #include <utility>
 
 #include "dartcast/base/error.hpp"
+#include "dartcast/io/checkpoint.hpp"
 #include "dartcast/io/point_file.hpp"
 #include "dartcast/io/recording.hpp"
 #include "dartcast/io/scene_mesh.hpp"
@@ -52,13 +55,17 @@ void add_placed(Flow& flow, const std::filesystem::path& file, const Vec3& veloc
   }
 }
 
+void add_inlets(Flow& flow, const Scene& scene) {
+  for (const ParticlesScene& p : scene.particles) {
+    if (const auto* inlet = std::get_if<InletParticles>(&p.source))
+      flow.add_inlet(flow.environment().map().patch(inlet->patch), inlet->rate, p.velocity);
+  }
+}
+
 void add_particles(Flow& flow, const Scene& scene) {
   for (const ParticlesScene& p : scene.particles) {
     if (const auto* random = std::get_if<RandomParticles>(&p.source)) flow.add_random(random->count, p.velocity);
     if (const auto* placed = std::get_if<PlacedParticles>(&p.source)) add_placed(flow, placed->positions, p.velocity);
-    if (const auto* inlet = std::get_if<InletParticles>(&p.source)) {
-      flow.add_inlet(flow.environment().map().patch(inlet->patch), inlet->rate, p.velocity);
-    }
   }
 }
 
@@ -74,46 +81,108 @@ void describe(const Environment& environment, Summary& summary) {
   summary.patch_names = map.patch_names();
 }
 
+// The output folder of a run: its recording, and checkpoints beside it. Without a folder it does nothing.
+class Output {
+ public:
+  Output(const Scene& scene, const RunOptions& options, const MeshData& mesh, Summary& summary)
+      : recording_options_{options.folder, summary.deforms, scene.output.contacts},
+        scene_text_(scene.text),
+        every_(scene.output.every),
+        resume_(options.resume),
+        summary_(summary) {
+    if (!folder().empty()) identity_ = run_identity(scene.text, mesh, options.seed.value_or(scene.seed));
+  }
+
+  /// The checkpoint to go on from to so many steps; none: start.
+  const std::optional<Checkpoint>& read(std::uint64_t steps) {
+    if (folder().empty() || !resume_) return found_;
+    found_ = read_checkpoint(file(), identity_);
+    if (!found_) return found_;
+    const std::uint64_t done = found_->flow.steps;
+    if (done > steps)
+      throw Error(
+          fmt::format("{}: {} steps are done already; ask for as many or more with --steps", folder().string(), done));
+    if (done < steps) std::erase_if(found_->recording.frames, [&](const auto& f) { return !on_schedule(f.step); });
+    return found_;
+  }
+
+  void open(const MeshData& mesh) {
+    timed([&] {
+      recording_ = found_ ? std::make_unique<Recording>(recording_options_, mesh, found_->recording)
+                          : std::make_unique<Recording>(recording_options_, mesh, scene_text_);
+    });
+  }
+
+  [[nodiscard]] const std::optional<Checkpoint>& found() const { return found_; }
+
+  void add_step(const Flow& flow, const FlowStep& step) {
+    timed([&] { recording_->add_step(flow, step); });
+  }
+
+  /// To be called before the first step and after each: a frame and a checkpoint where the scene wants one, and at the
+  /// end.
+  void add_frame(const Flow& flow, bool last) {
+    if (!last && !on_schedule(flow.steps())) return;
+    timed([&] {
+      if (every_ > 0) recording_->add_frame(flow);
+      const std::uint64_t audited = summary_.audit ? summary_.audit->checked : 0;
+      write_checkpoint(file(), {identity_, flow.checkpoint(), recording_->progress(), summary_.held, audited});
+    });
+  }
+
+  void finish() {
+    if (recording_) recording_->finish(summary_json(summary_));
+  }
+
+ private:
+  [[nodiscard]] const std::filesystem::path& folder() const { return recording_options_.folder; }
+  [[nodiscard]] std::filesystem::path file() const { return folder() / "checkpoint.bin"; }
+  [[nodiscard]] bool on_schedule(std::uint64_t step) const { return every_ > 0 && step % every_ == 0; }
+
+  template <class Write>
+  void timed(Write&& write) {
+    if (folder().empty()) return;
+    const Stopwatch watch;
+    write();
+    summary_.seconds_write += watch.seconds();
+  }
+
+  Recording::Options recording_options_;
+  const std::string& scene_text_;
+  std::uint64_t every_;
+  bool resume_;
+  Summary& summary_;
+  RunIdentity identity_;
+  std::optional<Checkpoint> found_;
+  std::unique_ptr<Recording> recording_;
+};
+
 // The steps of a run, with their output and audit.
 class Run {
  public:
-  Run(Flow& flow, Recording* recording, const Scene& scene, const RunOptions& options, Summary& summary)
-      : flow_(flow),
-        recording_(recording),
-        every_(scene.output.every),
-        steps_(options.steps.value_or(scene.motion.steps)),
-        audit_(options.audit),
-        summary_(summary) {}
+  Run(Flow& flow, Output& output, std::uint64_t steps, bool audit, Summary& summary)
+      : flow_(flow), output_(output), steps_(steps), audit_(audit), summary_(summary) {
+    if (audit_) summary_.audit.emplace();
+    if (const auto& found = output.found()) {
+      summary_.held = found->held;
+      if (audit_) summary_.audit->checked = found->audited;
+    }
+  }
 
   void run(const Progress& progress) {
-    if (audit_) summary_.audit.emplace();
-    write([&] { add_frame(); });
-    for (std::uint64_t i = 0; i < steps_; ++i) {
+    if (flow_.steps() == 0) output_.add_frame(flow_, steps_ == 0);
+    while (flow_.steps() < steps_) {
       const FlowStep& step = flow_.step();
       summary_.held = step.report.held.size();
       if (audit_) *summary_.audit += check();
-      write([&] {
-        recording_->add_step(flow_, step);
-        if ((i + 1) % std::max<std::uint64_t>(every_, 1) == 0 || i + 1 == steps_) add_frame();
-      });
-      if (progress) progress(i + 1, steps_);
+      output_.add_step(flow_, step);
+      output_.add_frame(flow_, flow_.steps() == steps_);
+      if (progress) progress(flow_.steps(), steps_);
     }
     finish();
   }
 
  private:
-  void add_frame() {
-    if (every_ > 0) recording_->add_frame(flow_);
-  }
-
-  template <class Write>
-  void write(Write&& action) {
-    if (recording_ == nullptr) return;
-    const Stopwatch watch;
-    action();
-    summary_.seconds_write += watch.seconds();
-  }
-
   [[nodiscard]] Audit check() const {
     return audit(flow_.environment().complex(), flow_.particles(), flow_.environment().threads());
   }
@@ -129,12 +198,21 @@ class Run {
   }
 
   Flow& flow_;
-  Recording* recording_;
-  std::uint64_t every_;
+  Output& output_;
   std::uint64_t steps_;
   bool audit_;
   Summary& summary_;
 };
+
+// Particles at the start, or as a checkpoint has them.
+void start(Flow& flow, const Scene& scene, const std::optional<Checkpoint>& checkpoint) {
+  add_inlets(flow, scene);
+  if (checkpoint) {
+    flow.restore(checkpoint->flow);
+  } else {
+    add_particles(flow, scene);
+  }
+}
 
 }  // namespace
 
@@ -153,18 +231,14 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
   if (summary.deforms) flow.set_deformation(Deformation(load_deformation(scene.deformation, mesh), mesh.points));
   describe(environment, summary);
   summary.seconds_load = load.seconds();
+  const std::uint64_t steps = options.steps.value_or(scene.motion.steps);
+  Output output(scene, options, mesh, summary);
   const Stopwatch locate;
-  add_particles(flow, scene);
+  start(flow, scene, output.read(steps));
   summary.seconds_locate = locate.seconds();
-  std::unique_ptr<Recording> recording;
-  if (!options.folder.empty()) {
-    const Stopwatch write;
-    recording = std::make_unique<Recording>(Recording::Options{options.folder, summary.deforms, scene.output.contacts},
-                                            mesh, scene.text);
-    summary.seconds_write = write.seconds();
-  }
-  Run(flow, recording.get(), scene, options, summary).run(progress);
-  if (recording) recording->finish(summary_json(summary));
+  output.open(mesh);
+  Run(flow, output, steps, options.audit, summary).run(progress);
+  output.finish();
   return summary;
 }
 

@@ -18,6 +18,9 @@ struct RunOptions {
   std::optional<std::uint64_t> steps;  ///< instead of the scene's
   std::optional<std::uint64_t> seed;   ///< instead of the scene's
   bool audit = false;                  ///< check each particle after each step
+  /// Go on from the last checkpoint in the folder; from the start where there is none. The outcome is that of a run
+  /// that was never cut off.
+  bool resume = false;
 };
 
 /// Called after each step with the number of steps done and of all.

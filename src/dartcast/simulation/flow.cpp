@@ -74,35 +74,85 @@ void Flow::add_inlet(Patch patch, double rate, const Vec3& velocity) {
 
 std::vector<Added> Flow::add(std::span<const Vec3> positions, const Vec3& velocity) {
   if (!is_finite(velocity)) throw InvalidArgument("flow: a particle's velocity must be finite");
-  std::vector<Added> added = append(positions, velocity);
+  std::vector<Added> added = environment_.add(particles_, positions);
+  complete(velocity);
   totals_.start = next_id_ - totals_.injected;
   return added;
 }
 
-std::vector<Added> Flow::append(std::span<const Vec3> positions, const Vec3& velocity) {
-  std::vector<Added> added = environment_.add(particles_, positions);
+// Gives ids and velocities to the particles added last.
+void Flow::complete(const Vec3& velocity) {
   for (std::size_t i = ids_.size(); i < particles_.size(); ++i) {
     ids_.push_back(next_id_++);
     velocities_.push_back(velocity);
     fates_.push_back(Fate::alive);
     contact_counts_.push_back(0);
   }
-  return added;
 }
 
-// Sampled points are rounded: one that fell out of the free cells is drawn again.
+// Sampled points are rounded: one that fell out of its simplex is drawn again.
 template <class Sampler>
 void Flow::add_sampled(const Sampler& sampler, std::size_t count, const Vec3& velocity) {
-  const std::size_t wanted = particles_.size() + count;
-  for (int round = 0; round < 100 && particles_.size() < wanted; ++round) {
-    std::vector<Vec3> points(wanted - particles_.size());
-    for (Vec3& p : points) p = detail::flushed(sampler.sample(environment_.complex(), random_));
-    append(points, velocity);
+  constexpr int most_tries = 1000;
+  for (std::size_t i = 0; i < count; ++i) {
+    int tries = 0;
+    while (true) {
+      const Sample s = sampler.sample(environment_.complex(), random_);
+      if (environment_.add(particles_, s.simplex, detail::flushed(s.position))) break;
+      if (++tries == most_tries) {
+        complete(velocity);
+        throw InvalidArgument(
+            "flow: random points fall outside the free cells again and again: their cells are too thin or not valid");
+      }
+    }
   }
-  if (particles_.size() < wanted) {
-    throw InvalidArgument(
-        "flow: random points fall outside the free cells again and again: their cells are too thin or not valid");
+  complete(velocity);
+}
+
+FlowCheckpoint Flow::checkpoint() const {
+  FlowCheckpoint saved;
+  saved.steps = steps_;
+  saved.next_id = next_id_;
+  saved.random = random_;
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    saved.particles.push_back(
+        {ids_[i], particles_[i], particles_.held_weights(i), velocities_[i], fates_[i], contact_counts_[i]});
   }
+  saved.totals = totals_;
+  saved.gone = gone_;
+  return saved;
+}
+
+void Flow::restore(const FlowCheckpoint& saved) {
+  if (saved.totals.contacts_by_patch.size() != totals_.contacts_by_patch.size())
+    throw InvalidArgument("flow: the checkpoint is of an environment with other patches");
+  if (deformation_ && saved.steps > 0) {
+    deformation_->positions(static_cast<double>(saved.steps) * options_.dt, environment_.next_positions(),
+                            environment_.threads());
+    environment_.move();
+  }
+  std::vector<State> states;
+  std::vector<Weights> weights;
+  for (const FlowCheckpoint::Particle& p : saved.particles) {
+    states.push_back(p.state);
+    weights.push_back(p.held_weights);
+  }
+  particles_ = environment_.restored(states, weights);
+  ids_.clear();
+  velocities_.clear();
+  fates_.clear();
+  contact_counts_.clear();
+  for (const FlowCheckpoint::Particle& p : saved.particles) {
+    ids_.push_back(p.id);
+    velocities_.push_back(p.velocity);
+    fates_.push_back(p.fate);
+    contact_counts_.push_back(p.contacts);
+  }
+  steps_ = saved.steps;
+  next_id_ = saved.next_id;
+  random_ = saved.random;
+  totals_ = saved.totals;
+  gone_ = saved.gone;
 }
 
 void Flow::add_random(std::size_t count, const Vec3& velocity) {

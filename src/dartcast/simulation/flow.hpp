@@ -54,6 +54,24 @@ struct FlowTotals {
   double seconds_respond = 0.0;                  ///< injecting, velocities and targets before, fates after
 };
 
+/// All that a flow goes on from after a step; what it was made with (mesh, options, field, inlets, ...) is not in it.
+struct FlowCheckpoint {
+  struct Particle {
+    std::uint64_t id = 0;
+    State state;
+    Weights held_weights{};
+    Vec3 velocity;
+    Fate fate = Fate::alive;
+    std::uint32_t contacts = 0;
+  };
+  std::uint64_t steps = 0;
+  std::uint64_t next_id = 0;
+  Random random = Random(0);
+  std::vector<Particle> particles;
+  FlowTotals totals;
+  StateHash gone;
+};
+
 /// Carries particles through the steps of a simulation. Each step:
 ///  1. inlets inject; 2. vertices move; 3. velocities change: without a field, and with drag, dv/dt = gravity - drag (v
 ///  - u) is solved exactly for constant u (the field's velocity at the particle, or 0); with a field and no drag v = u,
@@ -79,6 +97,12 @@ class Flow {
   void add_random(std::size_t count, const Vec3& velocity);
 
   const FlowStep& step();
+
+  [[nodiscard]] FlowCheckpoint checkpoint() const;
+  /// Goes on from a checkpoint of a flow made with the same environment, options, deformation, field and inlets: every
+  /// later step is then the same to the last bit. Replaces all particles; vertices move to the checkpoint's time.
+  /// Throws InvalidArgument, the particles unchanged, where a state does not hold in this environment.
+  void restore(const FlowCheckpoint& saved);
 
   [[nodiscard]] double time() const { return static_cast<double>(steps_) * options_.dt; }
   [[nodiscard]] std::uint64_t steps() const { return steps_; }
@@ -115,7 +139,7 @@ class Flow {
   [[nodiscard]] Vec3 accelerated(const Vec3& v, const Vec3& flow, double dt) const;
   void count_contacts();
   void remove_gone();
-  std::vector<Added> append(std::span<const Vec3> positions, const Vec3& velocity);
+  void complete(const Vec3& velocity);
   template <class Sampler>
   void add_sampled(const Sampler& sampler, std::size_t count, const Vec3& velocity);
 

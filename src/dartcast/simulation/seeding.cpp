@@ -43,16 +43,17 @@ VolumeSampler::VolumeSampler(const Complex& complex) {
   if (cells_.empty() || !(sum > 0.0)) throw InvalidArgument("there is no free cell to put particles into");
 }
 
-Vec3 VolumeSampler::sample(const Complex& complex, Random& random) const {
+Sample VolumeSampler::sample(const Complex& complex, Random& random) const {
   const Cell cell = cells_[choose(volume_up_to_, random)];
   std::vector<double> up_to;
   double sum = 0.0;
   for (std::size_t s = 0; s < complex.map().shape(cell).simplices().size(); ++s) {
     up_to.push_back(sum += volume6(complex.corners({cell, static_cast<std::uint16_t>(s)})));
   }
-  const Corners v = complex.corners({cell, static_cast<std::uint16_t>(choose(up_to, random))});
+  const SimplexId simplex{cell, static_cast<std::uint16_t>(choose(up_to, random))};
+  const Corners v = complex.corners(simplex);
   const auto w = random_weights<4>(random);
-  return (v[0] * w[0] + v[1] * w[1]) + (v[2] * w[2] + v[3] * w[3]);
+  return {simplex, (v[0] * w[0] + v[1] * w[1]) + (v[2] * w[2] + v[3] * w[3])};
 }
 
 PatchSampler::PatchSampler(const Complex& complex, Patch patch) {
@@ -83,13 +84,13 @@ void PatchSampler::update(const Complex& complex) {
   }
 }
 
-Vec3 PatchSampler::sample(const Complex& complex, Random& random) const {
+Sample PatchSampler::sample(const Complex& complex, Random& random) const {
   const Triangle& t = triangles_[choose(area_up_to_, random)];
   const Corners v = complex.corners(t.simplex);
   const auto& f = facet_corners[t.facet];
   const auto w = random_weights<3>(random);
   const Vec3 on_face = v[f[0]] * w[0] + v[f[1]] * w[1] + v[f[2]] * w[2];
-  return on_face + (v[t.facet] - on_face) * 0x1p-6;
+  return {t.simplex, on_face + (v[t.facet] - on_face) * 0x1p-6};
 }
 
 }  // namespace dartcast

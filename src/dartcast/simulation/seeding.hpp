@@ -9,15 +9,20 @@
 
 namespace dartcast {
 
+/// A point, and the simplex that it lies in up to rounding: to be added exactly, and drawn again where that fails.
+struct Sample {
+  SimplexId simplex;
+  Vec3 position;
+};
+
 /// Points of equal likelihood by volume in the free cells, at the complex's positions when it was made. Cost to make:
 /// linear.
 class VolumeSampler {
  public:
   /// Throws InvalidArgument where no cell is free.
   explicit VolumeSampler(const Complex& complex);
-  /// Inside a free cell up to rounding: to be located exactly, and drawn again where it is not. Cost: the logarithm of
-  /// the cells.
-  [[nodiscard]] Vec3 sample(const Complex& complex, Random& random) const;
+  /// In a free cell. Cost: the logarithm of the cells.
+  [[nodiscard]] Sample sample(const Complex& complex, Random& random) const;
 
  private:
   std::vector<Cell> cells_;
@@ -32,8 +37,7 @@ class PatchSampler {
   PatchSampler(const Complex& complex, Patch patch);
   /// Takes the areas at the complex's current positions. Cost: the patch's faces.
   void update(const Complex& complex);
-  /// As VolumeSampler::sample().
-  [[nodiscard]] Vec3 sample(const Complex& complex, Random& random) const;
+  [[nodiscard]] Sample sample(const Complex& complex, Random& random) const;
 
  private:
   struct Triangle {

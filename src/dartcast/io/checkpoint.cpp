@@ -1,0 +1,231 @@
+#include "dartcast/io/checkpoint.hpp"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <span>
+#include <string_view>
+#include <type_traits>
+
+#include "dartcast/base/error.hpp"
+#include "dartcast/io/file_text.hpp"
+#include "dartcast/io/summary.hpp"
+#include "dartcast/io/write_mesh.hpp"
+
+namespace dartcast {
+
+namespace {
+
+constexpr std::uint64_t magic = 0x31706b6374726164U;  // "dartckp1" on a machine of this byte order
+
+// Mixes in 8 bytes at a time. It finds damage and changes, not forgery.
+std::uint64_t digest(std::string_view bytes, std::uint64_t start = 0) {
+  std::uint64_t h = start ^ (bytes.size() * 0x9e3779b97f4a7c15U);
+  for (std::size_t i = 0; i < bytes.size(); i += 8) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes.data() + i, std::min<std::size_t>(8, bytes.size() - i));
+    h = (h ^ word) * 0xbf58476d1ce4e5b9U;
+    h ^= h >> 29U;
+  }
+  return h;
+}
+
+template <class T>
+std::string_view bytes_of(const std::vector<T>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+}
+
+// A file is a sequence of plain values. Writer and Reader go through the same list of them, below.
+class Writer {
+ public:
+  template <class T>
+  void value(T& v) {
+    static_assert(std::is_arithmetic_v<T> && !std::is_same_v<T, bool>);
+    text_.append(reinterpret_cast<const char*>(&v), sizeof v);
+  }
+  template <class T, class Each>
+  void list(std::vector<T>& values, Each&& each) {
+    std::uint64_t count = values.size();
+    value(count);
+    for (T& v : values) each(v);
+  }
+  void characters(std::string& s) {
+    std::uint64_t count = s.size();
+    value(count);
+    text_ += s;
+  }
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+class Reader {
+ public:
+  explicit Reader(std::string_view text) : text_(text) {}
+
+  template <class T>
+  void value(T& v) {
+    static_assert(std::is_arithmetic_v<T> && !std::is_same_v<T, bool>);
+    need(sizeof v);
+    std::memcpy(&v, text_.data(), sizeof v);
+    text_.remove_prefix(sizeof v);
+  }
+  template <class T, class Each>
+  void list(std::vector<T>& values, Each&& each) {
+    std::uint64_t count = 0;
+    value(count);
+    need(count);  // every entry takes a byte at least
+    values.assign(count, T{});
+    for (T& v : values) each(v);
+  }
+  void characters(std::string& s) {
+    std::uint64_t count = 0;
+    value(count);
+    need(count);
+    s = text_.substr(0, count);
+    text_.remove_prefix(count);
+  }
+  [[nodiscard]] bool at_end() const { return text_.empty(); }
+
+ private:
+  void need(std::uint64_t bytes) const {
+    if (bytes > text_.size()) throw Error("it ends too early");
+  }
+
+  std::string_view text_;
+};
+
+template <class Archive, class... Values>
+void values(Archive& a, Values&... v) {
+  (a.value(v), ...);
+}
+
+// A value that is kept as another type.
+template <class As, class Archive, class T>
+void value_as(Archive& a, T& v) {
+  As as = static_cast<As>(v);
+  a.value(as);
+  v = static_cast<T>(as);
+}
+
+template <class Archive>
+void fields(Archive& a, RunIdentity& r) {
+  a.characters(r.version);
+  values(a, r.scene, r.mesh, r.seed);
+}
+
+template <class Archive>
+void fields(Archive& a, Vec3& v) {
+  values(a, v.x, v.y, v.z);
+}
+
+template <class Archive>
+void fields(Archive& a, FlowCheckpoint::Particle& p) {
+  a.value(p.id);
+  fields(a, p.state.position);
+  values(a, p.state.cell.value, p.state.simplex, p.state.touching_count);
+  value_as<std::uint8_t>(a, p.state.held);
+  for (CellFace& f : p.state.touching) values(a, f.cell.value, f.face);
+  for (double& w : p.held_weights) a.value(w);
+  fields(a, p.velocity);
+  value_as<std::uint8_t>(a, p.fate);
+  a.value(p.contacts);
+  if (p.fate > Fate::escaped) throw Error("a particle has no such fate");
+}
+
+template <class Archive>
+void fields(Archive& a, Counters& c) {
+  values(a, c.particle_steps, c.orientation.tests, c.orientation.exact);
+  for (std::uint64_t& n : c.histogram) a.value(n);
+  values(a, c.forecast_kept, c.updated_by_deformation, c.steps_split);
+  for (std::uint64_t& n : c.contacts) a.value(n);
+  a.value(c.unfinished);
+}
+
+template <class Archive>
+void fields(Archive& a, FlowTotals& t) {
+  values(a, t.start, t.injected, t.absorbed, t.escaped);
+  fields(a, t.counters);
+  a.list(t.contacts_by_patch, [&](std::uint64_t& n) { a.value(n); });
+  values(a, t.seconds_detect, t.seconds_deform, t.seconds_respond);
+}
+
+template <class Archive>
+void fields(Archive& a, Checkpoint& c) {
+  fields(a, c.run);
+  std::uint64_t random = c.flow.random.state();
+  StateHash::Words gone = c.flow.gone.words();
+  values(a, c.flow.steps, c.flow.next_id, random, gone[0], gone[1]);
+  c.flow.random = Random::from_state(random);
+  c.flow.gone = StateHash(gone);
+  a.list(c.flow.particles, [&](FlowCheckpoint::Particle& p) { fields(a, p); });
+  fields(a, c.flow.totals);
+  values(a, c.recording.stats_bytes, c.recording.contacts_bytes);
+  a.list(c.recording.frames, [&](RecordingFrame& f) { values(a, f.step, f.time); });
+  values(a, c.held, c.audited);
+}
+
+void check_same(const RunIdentity& saved, const RunIdentity& run) {
+  const auto differs = [](const std::string& what) {
+    throw Error(what + "; undo the change, or run without --resume");
+  };
+  if (saved.version != run.version) differs(fmt::format("it is of version {}, this is {}", saved.version, run.version));
+  if (saved.scene != run.scene) differs("the scene has changed since (for more steps use --steps)");
+  if (saved.mesh != run.mesh) differs("the mesh has changed since");
+  if (saved.seed != run.seed) differs(fmt::format("it was run with seed {}, not {}", saved.seed, run.seed));
+}
+
+Checkpoint parse(const std::string& text, const RunIdentity& run) {
+  std::uint64_t mark = 0;
+  std::uint64_t sum = 0;
+  Reader head(text);
+  values(head, mark, sum);
+  if (mark != magic) throw Error("this is no checkpoint of this machine's kind");
+  const std::string_view body = std::string_view(text).substr(16);
+  if (digest(body) != sum) throw Error("it is damaged");
+  Reader reader(body);
+  RunIdentity saved;  // checked first: what follows may be of another version
+  fields(reader, saved);
+  check_same(saved, run);
+  Checkpoint checkpoint;
+  Reader whole(body);
+  fields(whole, checkpoint);
+  if (!whole.at_end()) throw Error("it is longer than it says");
+  return checkpoint;
+}
+
+}  // namespace
+
+RunIdentity run_identity(const std::string& scene_text, const MeshData& mesh, std::uint64_t seed) {
+  std::uint64_t cells = digest(bytes_of(mesh.points));
+  for (const std::string_view bytes : {bytes_of(mesh.types), bytes_of(mesh.connectivity), bytes_of(mesh.free)})
+    cells = digest(bytes, cells);
+  return {version(), digest(scene_text), cells, seed};
+}
+
+void write_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint) {
+  Writer body;
+  Checkpoint copy = checkpoint;  // the list of fields is one for reading and writing
+  fields(body, copy);
+  Writer head;
+  std::uint64_t mark = magic;
+  std::uint64_t sum = digest(body.text());
+  values(head, mark, sum);
+  const std::filesystem::path beside = path.string() + ".new";
+  write_bytes(beside, head.text() + body.text());
+  std::error_code error;
+  std::filesystem::rename(beside, path, error);
+  if (error) throw Error(fmt::format("{}: the file cannot be written: {}", path.string(), error.message()));
+}
+
+std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& path, const RunIdentity& run) {
+  if (!std::filesystem::exists(path)) return std::nullopt;
+  try {
+    return parse(read_bytes(path), run);
+  } catch (const Error& e) {
+    throw Error(fmt::format("{}: the run cannot be resumed: {}", path.string(), e.what()));
+  }
+}
+
+}  // namespace dartcast

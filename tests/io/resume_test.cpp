@@ -1,0 +1,175 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+
+#include "dartcast/base/error.hpp"
+#include "dartcast/io/file_text.hpp"
+#include "dartcast/io/run_scene.hpp"
+#include "dartcast/io/scene_file.hpp"
+#include "dartcast/io/write_mesh.hpp"
+#include "io/sample_mesh.hpp"
+
+namespace dartcast {
+namespace {
+
+namespace fs = std::filesystem;
+
+// All that a state can hold: particles injected, stuck, absorbed and gone, moving vertices, polylines.
+const std::string scene_text = R"(
+seed = 5
+[environment]
+generator = "box"
+cells = [5, 5, 5]
+blocked_share = 0.1
+[[deformation]]
+kind = "twist"
+amplitude = 0.4
+length = 5.0
+period = 0.7
+[[particles]]
+count = 200
+velocity = [3.0, 1.0, 0.5]
+[[particles]]
+inlet = "xmin"
+rate = 170.0
+velocity = [4.0, 0.5, 0.0]
+[motion]
+dt = 0.02
+steps = 47
+substeps = 2
+gravity = [0.0, 0.0, -5.0]
+[contact.patch.xmax]
+response = "escape"
+[contact.patch.zmin]
+response = "stick"
+[contact.patch.ymax]
+response = "absorb"
+[output]
+every = 10
+contacts = true
+)";
+
+struct Cut : std::exception {};
+
+class Resume : public testing::Test {
+ protected:
+  // Runs the scene; cut off after `cut` steps where that is not 0.
+  static Summary run(const fs::path& to, bool resume, std::uint64_t steps, std::uint64_t cut = 0,
+                     const std::string& text = scene_text) {
+    RunOptions options;
+    options.folder = to;
+    options.resume = resume;
+    options.steps = steps;
+    options.audit = true;
+    return run_scene(parse_scene(text, "test.toml"), options, [&](std::uint64_t done, std::uint64_t) {
+      if (done == cut) throw Cut();
+    });
+  }
+
+  // All files but those with times in them: timings, and the checkpoint that repeats them.
+  static std::map<std::string, std::string> files(const fs::path& of) {
+    std::map<std::string, std::string> result;
+    for (const auto& entry : fs::directory_iterator(of)) {
+      const std::string name = entry.path().filename();
+      if (name != "summary.json" && name != "checkpoint.bin") result[name] = read_bytes(entry.path());
+    }
+    return result;
+  }
+
+  void expect_same(const Summary& whole, const Summary& resumed) const {
+    EXPECT_EQ(resumed.state_hash, whole.state_hash);
+    EXPECT_EQ(resumed.steps, whole.steps);
+    EXPECT_EQ(resumed.held, whole.held);
+    EXPECT_EQ(resumed.audit->checked, whole.audit->checked);
+    EXPECT_EQ(resumed.audit->failed, 0U);
+    EXPECT_EQ(resumed.totals.injected, whole.totals.injected);
+    EXPECT_EQ(resumed.totals.contacts_by_patch, whole.totals.contacts_by_patch);
+    EXPECT_EQ(resumed.totals.counters.histogram, whole.totals.counters.histogram);
+    const auto expected = files(one);
+    const auto found = files(two);
+    for (const auto& [name, content] : expected) {
+      ASSERT_TRUE(found.contains(name)) << name;
+      EXPECT_TRUE(found.at(name) == content) << name;
+    }
+    EXPECT_EQ(found.size(), expected.size());
+  }
+
+  std::string failure(const std::string& text = scene_text) const {
+    try {
+      run(two, true, 47, 0, text);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return {};
+  }
+
+  test::Folder temporary;
+  fs::path one = temporary / "one";
+  fs::path two = temporary / "two";
+};
+
+TEST_F(Resume, ARunCutOffAnywhereEndsAsIfItWereNot) {
+  const Summary whole = run(one, false, 47);
+  EXPECT_GT(whole.totals.absorbed, 0U);
+  EXPECT_GT(whole.totals.escaped, 0U);
+  for (const std::uint64_t cut : {1U, 9U, 10U, 23U, 46U}) {
+    EXPECT_THROW(run(two, false, 47, cut), Cut);
+    expect_same(whole, run(two, true, 47));
+  }
+}
+
+TEST_F(Resume, ARunCutOffAgainAndAgainComesToTheSameEnd) {
+  const Summary whole = run(one, false, 47);
+  for (const std::uint64_t cut : {12U, 13U, 25U, 46U}) EXPECT_THROW(run(two, true, 47, cut), Cut);
+  expect_same(whole, run(two, true, 47));
+}
+
+TEST_F(Resume, AFinishedRunGoesOnToMoreSteps) {
+  const Summary whole = run(one, false, 47);
+  run(two, false, 25);
+  expect_same(whole, run(two, true, 47));
+  expect_same(whole, run(two, true, 47));  // nothing left to do
+  EXPECT_THROW(run(two, true, 46), Error);
+}
+
+TEST_F(Resume, WithoutACheckpointItStarts) { expect_same(run(one, false, 47), run(two, true, 47)); }
+
+TEST_F(Resume, AnotherSceneMeshOrSeedIsRefused) {
+  run(two, false, 10);
+  const auto before = files(two);
+  EXPECT_NE(failure(scene_text + "\n").find("the scene has changed"), std::string::npos);
+  RunOptions options;
+  options.folder = two;
+  options.resume = true;
+  options.seed = 6;
+  EXPECT_THROW(run_scene(parse_scene(scene_text, "test.toml"), options), Error);
+  EXPECT_EQ(files(two), before);
+}
+
+// Whatever byte of a checkpoint is damaged, or wherever it ends: an error, and nothing else.
+TEST_F(Resume, ADamagedCheckpointIsRefused) {
+  run(two, false, 10);
+  const std::string good = read_bytes(two / "checkpoint.bin");
+  const auto before = files(two);
+  const auto expect_refused = [&](const std::string& bytes) {
+    write_bytes(two / "checkpoint.bin", bytes);
+    EXPECT_NE(failure().find("checkpoint.bin: the run cannot be resumed"), std::string::npos);
+  };
+  for (std::size_t i = 0; i < good.size(); i += good.size() / 50 + 1) {
+    std::string bad = good;
+    bad[i] = static_cast<char>(bad[i] ^ 0x10);
+    expect_refused(bad);
+    expect_refused(good.substr(0, i));
+  }
+  expect_refused(good + "x");
+  EXPECT_EQ(files(two), before);
+  write_bytes(two / "checkpoint.bin", good);
+  fs::resize_file(two / "stats.csv", fs::file_size(two / "stats.csv") - 1);
+  EXPECT_NE(failure().find("stats.csv: the file is shorter"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace dartcast
