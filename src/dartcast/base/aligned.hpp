@@ -1,4 +1,5 @@
-// A vector whose storage starts on a cache line, so that a 64-byte record never straddles two.
+// A vector whose storage starts on a cache line, so that a 64-byte record never straddles two; some bytes behind its
+// last element can be read, so that vector instructions may load more than they use.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +18,11 @@ struct CacheLineAllocator {
   // NOLINTNEXTLINE(google-explicit-constructor): allocators rebind by conversion
   constexpr CacheLineAllocator(const CacheLineAllocator<U>&) noexcept {}
 
-  [[nodiscard]] T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), alignment)); }
+  static constexpr std::size_t readable_behind = 64;
+
+  [[nodiscard]] T* allocate(std::size_t n) {
+    return static_cast<T*>(::operator new(n * sizeof(T) + readable_behind, alignment));
+  }
   void deallocate(T* p, std::size_t) noexcept { ::operator delete(p, alignment); }
   constexpr bool operator==(const CacheLineAllocator&) const = default;
 };

@@ -4,16 +4,18 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "dartcast/base/error.hpp"
 #include "dartcast/mesh/inspect.hpp"
+#include "dartcast/walk/filtered.hpp"
 
 namespace dartcast {
 
 namespace {
 
-constexpr std::size_t grain = 512;
+constexpr std::size_t grain = detail::filtered_batch;
 constexpr const char* missed_move = "add: advance the particles first, they have not followed the last move";
 
 void check_point(const Vec3& x, const char* what, std::size_t index) {
@@ -179,18 +181,33 @@ void Environment::check_targets(const Particles& particles, std::span<const Vec3
   for (std::size_t i = 0; i < targets.size(); ++i) check_point(targets[i], "the target of particle", i);
 }
 
-void Environment::step_all(Particles& particles, std::span<const Vec3> targets, const Stepper& stepper,
-                           std::vector<StepReport>& parts) const {
-  parallel_for(particles.size(), grain, threads_, [&](std::size_t begin, std::size_t end) {
-    StepReport& part = parts[begin / grain];
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto particle = static_cast<std::uint32_t>(i);
-      const StepResult result =
-          stepper.step(particle, particles.states_[i], particles.weights_[i], targets[i], part.contacts, part.counters);
-      if (result.held) part.held.push_back({particle, result.invalid_cell});
-      if (result.stopped) part.stopped.push_back({particle, result.unused});
-    }
-  });
+// One call of advance().
+struct Environment::Steps {
+  Particles& particles;
+  std::span<const Vec3> targets;
+  Stepper stepper;
+  detail::FilteredScene filtered;
+};
+
+void Environment::step_chunk(const Steps& steps, std::size_t begin, std::size_t end, StepReport& part) const {
+  const std::size_t size = end - begin;
+  const std::span<State> states = std::span(steps.particles.states_).subspan(begin, size);
+  const std::span<const Vec3> targets = steps.targets.subspan(begin, size);
+  std::array<std::uint8_t, grain> left;
+  detail::step_filtered(steps.filtered, states, targets, std::span(left).first(size), part.counters);
+  for (std::size_t i = 0; i < size; ++i) {
+    if (left[i] == 0) continue;
+    const auto particle = static_cast<std::uint32_t>(begin + i);
+    const StepResult result = steps.stepper.step(particle, states[i], steps.particles.weights_[particle], targets[i],
+                                                 part.contacts, part.counters);
+    if (result.held) part.held.push_back({particle, result.invalid_cell});
+    if (result.stopped) part.stopped.push_back({particle, result.unused});
+  }
+}
+
+void Environment::step_all(const Steps& steps, std::vector<StepReport>& parts) const {
+  parallel_for(steps.targets.size(), grain, threads_,
+               [&](std::size_t begin, std::size_t end) { step_chunk(steps, begin, end, parts[begin / grain]); });
 }
 
 StepReport Environment::advance(Particles& particles, std::span<const Vec3> targets, const Respond& respond,
@@ -198,18 +215,20 @@ StepReport Environment::advance(Particles& particles, std::span<const Vec3> targ
   check_targets(particles, targets);
   if (!(options.tolerance > 0.0) || options.max_parts == 0)
     throw InvalidArgument("advance: the tolerance and the number of parts must be positive");
-  const Stepper stepper(complex_, particles.moves_ != moves_, options, respond);
+  const bool moved = particles.moves_ != moves_;
+  const Steps steps{
+      particles, targets, Stepper(complex_, moved, options, respond), {&complex_, moved, options.tolerance}};
   std::vector<StepReport> parts(chunk_count(particles.size(), grain));
   if (respond) {
     const Particles before = particles;  // a response is the caller's code: it may throw
     try {
-      step_all(particles, targets, stepper, parts);
+      step_all(steps, parts);
     } catch (...) {
       particles = before;
       throw;
     }
   } else {
-    step_all(particles, targets, stepper, parts);
+    step_all(steps, parts);
   }
   particles.moves_ = moves_;
   StepReport report;

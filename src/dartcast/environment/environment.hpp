@@ -115,8 +115,9 @@ class Environment {
 
  private:
   void check_targets(const Particles& particles, std::span<const Vec3> targets) const;
-  void step_all(Particles& particles, std::span<const Vec3> targets, const Stepper& stepper,
-                std::vector<StepReport>& parts) const;
+  struct Steps;
+  void step_chunk(const Steps& steps, std::size_t begin, std::size_t end, StepReport& part) const;
+  void step_all(const Steps& steps, std::vector<StepReport>& parts) const;
 
   Complex complex_;
   Threads threads_;

@@ -7,7 +7,7 @@
 
 namespace dartcast {
 
-Complex::Complex(const MeshData& mesh, Threads threads) : map_(mesh), front_(mesh.points) {
+Complex::Complex(const MeshData& mesh, Threads threads) : map_(mesh), front_(mesh.points.begin(), mesh.points.end()) {
   constexpr std::size_t all = static_cast<std::size_t>(-1);
   invalid_ = check_validity(map_, front_, threads, all).first;
   if (!invalid_.empty()) {

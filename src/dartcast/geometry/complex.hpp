@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "dartcast/base/aligned.hpp"
 #include "dartcast/base/parallel.hpp"
 #include "dartcast/exact/vec3.hpp"
 #include "dartcast/geometry/simplex.hpp"
@@ -53,7 +54,9 @@ class Complex {
   /// Positions of the mesh's points (in the mesh's order), then of interior points.
   [[nodiscard]] std::span<const Vec3> positions() const { return front_; }
   /// Positions before the last commit_positions(); equal to positions() before the first.
-  [[nodiscard]] std::span<const Vec3> previous_positions() const { return back_.empty() ? front_ : back_; }
+  [[nodiscard]] std::span<const Vec3> previous_positions() const {
+    return back_.empty() ? positions() : std::span<const Vec3>(back_);
+  }
   /// Number of the mesh's own points: the first entries of positions().
   [[nodiscard]] std::size_t point_count() const { return front_.size() - interior_.count(); }
 
@@ -82,8 +85,8 @@ class Complex {
  private:
   Map map_;
   InteriorWeights interior_;
-  std::vector<Vec3> front_;
-  std::vector<Vec3> back_;  // empty until the first move
+  AlignedVector<Vec3> front_;
+  AlignedVector<Vec3> back_;  // empty until the first move
   std::vector<InvalidCell> invalid_;
   std::uint64_t simplex_count_ = 0;
 };

@@ -25,12 +25,6 @@ CellFace Map::opposite(CellFace f) const {
   return other.valid() ? CellFace{other, c.neighbour_face(f.face)} : CellFace{};
 }
 
-const std::uint32_t* Map::record(Cell c) const {
-  const Pool& pool = pools_[c.pool()];
-  return pool.words.data() +
-         (c.pool() == general_pool ? pool.offsets[c.index()] : std::size_t{c.index()} * pool.stride);
-}
-
 CellType Map::type(Cell c) const { return static_cast<CellType>(c.pool()); }
 
 std::size_t Map::cell_count() const {

@@ -27,10 +27,13 @@ namespace dartcast {
 /// What a walk reads of a cell. Valid until the map is edited.
 class CellView {
  public:
+  CellView() = default;
   CellView(const std::uint32_t* word, const Shape& shape, bool general)
-      : word_(word), shape_(&shape), face_count_(shape.face_count()), general_(general) {}
+      : word_(word), shape_(&shape), general_(general) {}
 
   [[nodiscard]] const Shape& shape() const { return *shape_; }
+  /// The record itself.
+  [[nodiscard]] const std::uint32_t* words() const { return word_; }
   [[nodiscard]] Vertex vertex(std::uint16_t local) const { return Vertex{word_[2U + local]}; }
   [[nodiscard]] std::span<const std::uint32_t> vertices() const { return {word_ + 2, shape_->point_count()}; }
   [[nodiscard]] bool is_free() const { return ((word_[1] >> (general_ ? 16U : 24U)) & 1U) != 0; }
@@ -52,13 +55,12 @@ class CellView {
 
  private:
   [[nodiscard]] std::uint32_t extra(std::uint16_t face) const {
-    return word_[2U + shape_->point_count() + face_count_ + face];
+    return word_[2U + shape_->point_count() + shape_->face_count() + face];
   }
 
-  const std::uint32_t* word_;
-  const Shape* shape_;
-  std::uint16_t face_count_;
-  bool general_;
+  const std::uint32_t* word_ = nullptr;
+  const Shape* shape_ = nullptr;
+  bool general_ = false;
 };
 
 /// Interior points that cells need where the plain pulling triangulation is not positive (see geometry/complex.hpp).
@@ -100,11 +102,15 @@ class Map {
   [[nodiscard]] CellFace opposite(CellFace f) const;
 
   // Cells.
-  [[nodiscard]] CellView view(Cell c) const {
+  /// Where a cell's record starts: to ask memory for it ahead of time.
+  [[nodiscard]] const std::uint32_t* record(Cell c) const {
     const Pool& pool = pools_[c.pool()];
+    return pool.words.data() +
+           (c.pool() == general_pool ? pool.offsets[c.index()] : std::size_t{c.index()} * pool.stride);
+  }
+  [[nodiscard]] CellView view(Cell c) const {
     const bool general = c.pool() == general_pool;
-    const std::uint32_t* word =
-        pool.words.data() + (general ? pool.offsets[c.index()] : std::size_t{c.index()} * pool.stride);
+    const std::uint32_t* word = record(c);
     return {word, shapes_[general ? word[0] : word[0] & 0xffffU], general};
   }
   [[nodiscard]] const Shape& shape(Cell c) const { return view(c).shape(); }
@@ -149,7 +155,6 @@ class Map {
   };
 
   [[nodiscard]] std::uint32_t* record(Cell c) { return const_cast<std::uint32_t*>(std::as_const(*this).record(c)); }
-  [[nodiscard]] const std::uint32_t* record(Cell c) const;
   void set_neighbour(CellFace f, CellFace other);
   void set_wall(CellFace f, bool wall);
   void mark_walls(Cell c);

@@ -26,6 +26,7 @@ void check_key(const ShapeKey& key) {
 
 Shape::Shape(ShapeKey key) : key_(std::move(key)) {
   check_key(key_);
+  face_count_ = static_cast<std::uint16_t>(key_.faces.size());
   point_count_ = key_.corner_count;
   for (const auto& face : key_.faces)
     point_count_ = static_cast<std::uint16_t>(point_count_ + (face.has_point ? 1 : 0));

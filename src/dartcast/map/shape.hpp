@@ -62,7 +62,7 @@ class Shape {
   [[nodiscard]] std::uint16_t corner_count() const { return key_.corner_count; }
   /// Corners and interior points.
   [[nodiscard]] std::uint16_t point_count() const { return point_count_; }
-  [[nodiscard]] std::uint16_t face_count() const { return static_cast<std::uint16_t>(key_.faces.size()); }
+  [[nodiscard]] std::uint16_t face_count() const { return face_count_; }
   [[nodiscard]] std::uint16_t dart_count() const { return static_cast<std::uint16_t>(origin_.size()); }
   [[nodiscard]] const ShapeKey& key() const { return key_; }
 
@@ -118,6 +118,7 @@ class Shape {
   void make_flat();
 
   ShapeKey key_;
+  std::uint16_t face_count_ = 0;
   std::uint16_t point_count_ = 0;
   std::vector<std::uint16_t> origin_, face_of_, first_dart_, phi2_;
   std::vector<ImplicitSimplex> simplices_;
