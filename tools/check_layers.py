@@ -17,11 +17,13 @@ THIRD_PARTY = [
     (re.compile(r"^nlohmann/"), {"simulation", "io"}),
     (re.compile(r"^toml\+\+/"), {"simulation", "io"}),
 ]
+# Competitors' headers, and the one folder that may include them.
+COMPETITORS = re.compile(r"^(Bullet|LinearMath/|bt[A-Z]|embree)")
 # Code that must stay independent of the walk's predicates, so that it can judge them.
 INDEPENDENT = re.compile(r"(^tests/oracle/|/audit[a-z_]*\.[ch]pp$)")
 PREDICATES = re.compile(r"^dartcast/exact/(?!vec3\.hpp)")
 
-STANDARD = re.compile(r"^([a-z_]+|sys/[a-z]+\.h)$")
+STANDARD = re.compile(r"^([a-z_]+|sys/[a-z]+\.h|immintrin\.h)$")
 
 # Headers that are not installed, by the list in CMakeLists.txt.
 PRIVATE = set(re.search(r"set\(private_headers ([^)]*)\)", pathlib.Path("CMakeLists.txt").read_text()).group(1).split())
@@ -44,7 +46,7 @@ def allowed(header: str, folder: str, installed: bool) -> bool:
 
 
 def problems_of(path: pathlib.Path) -> list[str]:
-    """What is wrong with the includes of one file under src/dartcast, apps, examples or tests."""
+    """What is wrong with the includes of one file under src/dartcast, apps, bench, examples or tests."""
     name = path.as_posix()
     parts = path.parts
     folder = parts[2] if parts[0] == "src" else None
@@ -55,13 +57,15 @@ def problems_of(path: pathlib.Path) -> list[str]:
     for header in INCLUDE.findall(path.read_text(encoding="utf-8")):
         if INDEPENDENT.search(name) and PREDICATES.match(header):
             found.append(f"{name}: includes {header}, which it is there to judge")
+        if parts[0] != "bench" and COMPETITORS.match(header):
+            found.append(f"{name}: includes {header}, which only bench/ may")
         if folder is not None and not allowed(header, folder, installed):
             found.append(f"{name}: must not include {header}")
     return found
 
 
 def main() -> int:
-    files = [p for root in ("src", "apps", "examples", "tests") for p in sorted(pathlib.Path(root).rglob("*.[ch]pp"))]
+    files = [p for root in ("src", "apps", "bench", "examples", "tests") for p in sorted(pathlib.Path(root).rglob("*.[ch]pp"))]
     found = [line for path in files for line in problems_of(path)]
     print("\n".join(found + [f"{len(files)} files, {len(found)} wrong includes"]))
     return 1 if found else 0

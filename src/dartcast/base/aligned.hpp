@@ -3,16 +3,20 @@
 #pragma once
 
 #include <cstddef>
-#include <new>
 #include <vector>
 
 namespace dartcast {
 
+namespace detail {
+// On a cache line; large arrays on huge pages where the system has them: without, most of the time in a large scene
+// goes into finding pages.
+void* allocate_aligned(std::size_t bytes);
+void deallocate_aligned(void* p, std::size_t bytes) noexcept;
+}  // namespace detail
+
 template <class T>
 struct CacheLineAllocator {
   using value_type = T;
-  static constexpr std::align_val_t alignment{64};
-
   CacheLineAllocator() = default;
   template <class U>
   // NOLINTNEXTLINE(google-explicit-constructor): allocators rebind by conversion
@@ -21,9 +25,9 @@ struct CacheLineAllocator {
   static constexpr std::size_t readable_behind = 64;
 
   [[nodiscard]] T* allocate(std::size_t n) {
-    return static_cast<T*>(::operator new(n * sizeof(T) + readable_behind, alignment));
+    return static_cast<T*>(detail::allocate_aligned(n * sizeof(T) + readable_behind));
   }
-  void deallocate(T* p, std::size_t) noexcept { ::operator delete(p, alignment); }
+  void deallocate(T* p, std::size_t n) noexcept { detail::deallocate_aligned(p, n * sizeof(T) + readable_behind); }
   constexpr bool operator==(const CacheLineAllocator&) const = default;
 };
 

@@ -9,7 +9,6 @@
 
 #include "dartcast/base/error.hpp"
 #include "dartcast/mesh/inspect.hpp"
-#include "dartcast/walk/filtered.hpp"
 
 namespace dartcast {
 
@@ -74,10 +73,12 @@ void Particles::remove(std::span<const std::uint8_t> marks) {
   for (std::size_t i = 0; i < size(); ++i) {
     if (marks[i] != 0) continue;
     states_[kept] = states_[i];
-    weights_[kept++] = weights_[i];
+    weights_[kept] = weights_[i];
+    vertices_[kept++] = vertices_[i];
   }
   states_.resize(kept);
   weights_.resize(kept);
+  vertices_.resize(kept);
 }
 
 void Particles::reorder(std::span<const std::uint32_t> order) {
@@ -88,12 +89,15 @@ void Particles::reorder(std::span<const std::uint32_t> order) {
   if (!permutation) throw InvalidArgument("reorder: the order is no permutation of the particles");
   std::vector<State> states(size());
   std::vector<Weights> weights(size());
+  std::vector<detail::VertexNumbers> vertices(size());
   for (std::size_t i = 0; i < size(); ++i) {
     states[i] = states_[order[i]];
     weights[i] = weights_[order[i]];
+    vertices[i] = vertices_[order[i]];
   }
   states_ = std::move(states);
   weights_ = std::move(weights);
+  vertices_ = std::move(vertices);
 }
 
 Environment::Environment(MeshData mesh, Threads threads)
@@ -131,18 +135,22 @@ std::vector<Added> Environment::add(Particles& particles, std::span<const Vec3> 
     added[i].location = locations[i];
     if (locations[i].place != Place::free) continue;
     added[i].particle = static_cast<std::uint32_t>(particles.size());
-    particles.states_.emplace_back().put(locations[i].simplex, positions[i]);
-    particles.weights_.emplace_back();
+    add_to(particles, locations[i].simplex, positions[i]);
   }
   return added;
+}
+
+void Environment::add_to(Particles& particles, SimplexId simplex, const Vec3& position) const {
+  particles.states_.emplace_back().put(simplex, position);
+  particles.weights_.emplace_back();
+  particles.vertices_.push_back(detail::vertex_numbers(complex_, simplex));
 }
 
 bool Environment::add(Particles& particles, SimplexId simplex, const Vec3& position) {
   if (particles.size() == 0) particles.moves_ = moves_;
   if (particles.moves_ != moves_) throw InvalidArgument(missed_move);
   if (!in_exact_range(position) || !holds(complex_, simplex, position)) return false;
-  particles.states_.emplace_back().put(simplex, position);
-  particles.weights_.emplace_back();
+  add_to(particles, simplex, position);
   return true;
 }
 
@@ -156,6 +164,7 @@ Particles Environment::restored(std::span<const State> states, std::span<const W
   Particles particles;
   particles.states_.assign(states.begin(), states.end());
   particles.weights_.assign(weights.begin(), weights.end());
+  for (const State& s : states) particles.vertices_.push_back(detail::vertex_numbers(complex_, s.at()));
   particles.moves_ = moves_;
   return particles;
 }
@@ -178,6 +187,7 @@ void Environment::check_targets(const Particles& particles, std::span<const Vec3
     throw InvalidArgument(fmt::format("advance: {} targets for {} particles", targets.size(), particles.size()));
   if (particles.size() > 0 && particles.moves_ + 1 < moves_)
     throw InvalidArgument("advance: the particles missed a move: advance every set once after each move");
+  if (detail::all_in_exact_range(targets)) return;
   for (std::size_t i = 0; i < targets.size(); ++i) check_point(targets[i], "the target of particle", i);
 }
 
@@ -194,12 +204,14 @@ void Environment::step_chunk(const Steps& steps, std::size_t begin, std::size_t 
   const std::span<State> states = std::span(steps.particles.states_).subspan(begin, size);
   const std::span<const Vec3> targets = steps.targets.subspan(begin, size);
   std::array<std::uint8_t, grain> left;
-  detail::step_filtered(steps.filtered, states, targets, std::span(left).first(size), part.counters);
+  const std::span<detail::VertexNumbers> vertices = std::span(steps.particles.vertices_).subspan(begin, size);
+  detail::step_filtered(steps.filtered, {states, vertices, targets, std::span(left).first(size)}, part.counters);
   for (std::size_t i = 0; i < size; ++i) {
     if (left[i] == 0) continue;
     const auto particle = static_cast<std::uint32_t>(begin + i);
     const StepResult result = steps.stepper.step(particle, states[i], steps.particles.weights_[particle], targets[i],
                                                  part.contacts, part.counters);
+    vertices[i] = detail::vertex_numbers(complex_, states[i].at());
     if (result.held) part.held.push_back({particle, result.invalid_cell});
     if (result.stopped) part.stopped.push_back({particle, result.unused});
   }

@@ -13,6 +13,7 @@
 #include "dartcast/mesh/mesh_data.hpp"
 #include "dartcast/walk/contact.hpp"
 #include "dartcast/walk/counters.hpp"
+#include "dartcast/walk/filtered.hpp"
 #include "dartcast/walk/locate.hpp"
 #include "dartcast/walk/step.hpp"
 
@@ -37,6 +38,7 @@ class Particles {
 
   std::vector<State> states_;
   std::vector<Weights> weights_;
+  std::vector<detail::VertexNumbers> vertices_;
   std::uint64_t moves_ = 0;  // of the environment, that these states have followed
 };
 
@@ -115,6 +117,7 @@ class Environment {
 
  private:
   void check_targets(const Particles& particles, std::span<const Vec3> targets) const;
+  void add_to(Particles& particles, SimplexId simplex, const Vec3& position) const;
   struct Steps;
   void step_chunk(const Steps& steps, std::size_t begin, std::size_t end, StepReport& part) const;
   void step_all(const Steps& steps, std::vector<StepReport>& parts) const;

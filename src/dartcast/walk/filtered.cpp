@@ -17,12 +17,11 @@ namespace dartcast::detail {
 namespace {
 
 // How vectors are passed does not matter: no function here is called from elsewhere.
-#if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wpsabi"
-#endif
 
 // Four doubles. Where the instruction set has no such register, the compiler takes two of half the size.
 using Quad = double __attribute__((vector_size(32)));
+using UnalignedQuad = double __attribute__((vector_size(32), aligned(8), may_alias));
 using Mask = long long __attribute__((vector_size(32)));
 
 // Sign of u . (v x w), evaluated as in exact/predicates.cpp; 0 where the filter leaves it open.
@@ -45,15 +44,16 @@ inline unsigned lanes_set(const Mask& m) {
 }
 
 inline Quad load_row(const Vec3& x) { return Quad{x.x, x.y, x.z, x.z}; }
+inline void store_where(bool condition, const Quad& row, Vec3& x) {
+  if (condition) x = {row[0], row[1], row[2]};
+}
 
 #define DARTCAST_TARGET
 #include "dartcast/walk/filtered_kernel.hpp"
 #undef DARTCAST_TARGET
 
-void step(const FilteredScene& scene, std::span<State> states, std::span<const Vec3> targets,
-          std::span<std::uint8_t> left, Counters& counters) {
-  Batch(scene, states, targets, left, counters)
-      .run(static_cast<std::uint32_t>(states.size()), scene.complex->simplex_count());
+void step(const FilteredScene& scene, const FilteredSteps& steps, Counters& counters) {
+  Batch(scene, steps, counters).run(scene.complex->simplex_count());
 }
 
 }  // namespace portable
@@ -68,13 +68,15 @@ DARTCAST_TARGET inline unsigned lanes_set(const Mask& m) {
 }
 
 DARTCAST_TARGET inline Quad load_row(const Vec3& x) { return _mm256_maskload_pd(&x.x, __m256i{-1, -1, -1, 0}); }
+DARTCAST_TARGET inline void store_where(bool condition, const Quad& row, Vec3& x) {
+  const long long all = condition ? -1 : 0;
+  _mm256_maskstore_pd(&x.x, __m256i{all, all, all, 0}, row);
+}
 
 #include "dartcast/walk/filtered_kernel.hpp"
 
-DARTCAST_TARGET void step(const FilteredScene& scene, std::span<State> states, std::span<const Vec3> targets,
-                          std::span<std::uint8_t> left, Counters& counters) {
-  Batch(scene, states, targets, left, counters)
-      .run(static_cast<std::uint32_t>(states.size()), scene.complex->simplex_count());
+DARTCAST_TARGET void step(const FilteredScene& scene, const FilteredSteps& steps, Counters& counters) {
+  Batch(scene, steps, counters).run(scene.complex->simplex_count());
 }
 
 #undef DARTCAST_TARGET
@@ -84,12 +86,30 @@ DARTCAST_TARGET void step(const FilteredScene& scene, std::span<State> states, s
 
 }  // namespace
 
-void step_filtered(const FilteredScene& scene, std::span<State> states, std::span<const Vec3> targets,
-                   std::span<std::uint8_t> left, Counters& counters) {
+InstructionSet best_instruction_set() {
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) return avx2::step(scene, states, targets, left, counters);
+  static const bool has_avx2 = __builtin_cpu_supports("avx2") != 0;
+  if (has_avx2) return InstructionSet::avx2;
 #endif
-  portable::step(scene, states, targets, left, counters);
+  return InstructionSet::portable;
+}
+
+void step_filtered(const FilteredScene& scene, const FilteredSteps& steps, Counters& counters,
+                   [[maybe_unused]] InstructionSet set) {
+#if defined(__x86_64__)
+  if (set == InstructionSet::avx2) return avx2::step(scene, steps, counters);
+#endif
+  portable::step(scene, steps, counters);
+}
+
+bool all_in_exact_range(std::span<const Vec3> points) {
+  if (points.empty()) return true;
+  const double* x = &points[0].x;
+#if defined(__x86_64__)
+  if (best_instruction_set() == InstructionSet::avx2)
+    return avx2::all_between(x, 3 * points.size(), smallest_magnitude, largest_magnitude);
+#endif
+  return portable::all_between(x, 3 * points.size(), smallest_magnitude, largest_magnitude);
 }
 
 }  // namespace dartcast::detail

@@ -4,6 +4,8 @@
 // the step is left as it was for Stepper (walk/step.hpp), which comes to the same result wherever both do.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -14,7 +16,7 @@
 namespace dartcast::detail {
 
 /// Particles in one call, at most.
-inline constexpr std::size_t filtered_batch = 512;
+inline constexpr std::size_t filtered_batch = 1024;
 
 struct FilteredScene {
   const Complex* complex = nullptr;
@@ -22,10 +24,34 @@ struct FilteredScene {
   double tolerance = 0.0;  ///< as in StepOptions
 };
 
-/// Takes the steps that it can, counts them, and marks the others with 1 in `left`. All spans: one entry per particle.
-/// Preconditions: as for Stepper::step(). Cost: about 20 ns a step; memory is asked for ahead of time, so that a large
-/// scene costs little more than a small one.
-void step_filtered(const FilteredScene& scene, std::span<State> states, std::span<const Vec3> targets,
-                   std::span<std::uint8_t> left, Counters& counters);
+/// The numbers of the vertices of the simplex that a particle is in: kept beside its state, so that a step that ends in
+/// the same simplex need not look them up.
+using VertexNumbers = std::array<std::uint32_t, 4>;
+
+inline VertexNumbers vertex_numbers(const Complex& complex, SimplexId s) {
+  const auto v = complex.vertices(s);
+  return {v[0].value, v[1].value, v[2].value, v[3].value};
+}
+
+/// One entry per particle in each.
+struct FilteredSteps {
+  std::span<State> states;
+  std::span<VertexNumbers> vertices;  ///< of each state
+  std::span<const Vec3> targets;
+  std::span<std::uint8_t> left;  ///< out: 1 where the step is not taken
+};
+
+enum class InstructionSet : std::uint8_t { portable, avx2 };
+/// The best that this machine has.
+InstructionSet best_instruction_set();
+
+/// Takes the steps that it can, and counts them. The same bits with every instruction set. Preconditions: as for
+/// Stepper::step(). Cost: about 20 ns a step; memory is asked for ahead of time, so that a large scene costs little
+/// more than a small one.
+void step_filtered(const FilteredScene& scene, const FilteredSteps& steps, Counters& counters,
+                   InstructionSet set = best_instruction_set());
+
+/// Whether all points are in the exact range (exact/predicates.hpp).
+bool all_in_exact_range(std::span<const Vec3> points);
 
 }  // namespace dartcast::detail

@@ -1,14 +1,15 @@
 // The loop of walk/filtered.cpp, compiled there once per instruction set: no include guard, no includes, and not to be
 // included elsewhere. Defined before: DARTCAST_TARGET, the attribute of every function, and lanes_set(Mask).
 
-// The rows of a simplex: x, y, z and one double that means nothing, per corner.
+// The corners of a simplex: x, y, z and one double that means nothing.
 struct Rows {
-  std::array<Quad, 4> corner;
+  Quad corner[4];
 
-  // `offset`: in doubles.
-  DARTCAST_TARGET Rows(const double* positions, const std::array<std::size_t, 4>& offset) {
-    for (unsigned i = 0; i < 4; ++i) std::memcpy(&corner[i], positions + offset[i], sizeof(Quad));
-  }
+  DARTCAST_TARGET Rows(const Vec3* positions, const VertexNumbers& v)
+      : corner{at(positions + v[0]), at(positions + v[1]), at(positions + v[2]), at(positions + v[3])} {}
+
+ private:
+  DARTCAST_TARGET static Quad at(const Vec3* row) { return *reinterpret_cast<const UnalignedQuad*>(row); }
 };
 
 DARTCAST_TARGET inline Vec3 vec_of(const Quad& row) { return {row[0], row[1], row[2]}; }
@@ -23,9 +24,10 @@ DARTCAST_TARGET inline double square(const Quad& row) { return row[0] * row[0] +
 // The determinants of geometry/simplex.hpp, by the same operations, one in each lane; and their bound.
 struct FilteredDeterminants {
   Quad value;
-  double bound = 0.0;
-  bool applies = false;
+  double bound;
+  bool applies;
 
+  FilteredDeterminants() = default;
   DARTCAST_TARGET FilteredDeterminants(const Rows& v, const Quad& point) {
     const Quad r0 = v.corner[0] - point;
     const Quad r1 = v.corner[1] - point;
@@ -56,13 +58,17 @@ struct FilteredDeterminants {
     value = xs * mx + ys * my + zs * mz;
   }
 
-  DARTCAST_TARGET [[nodiscard]] double volume6() const { return (value[0] + value[1]) + (value[2] + value[3]); }
-  DARTCAST_TARGET [[nodiscard]] bool proves_positive() const { return applies && volume6() > 8.0 * bound; }
+  [[nodiscard]] DARTCAST_TARGET double volume6() const { return (value[0] + value[1]) + (value[2] + value[3]); }
+  [[nodiscard]] DARTCAST_TARGET bool proves_positive() const { return applies && volume6() > 8.0 * bound; }
   // Bit i: value i is proved positive, or negative.
-  DARTCAST_TARGET [[nodiscard]] unsigned positive() const { return lanes_set(value > bound); }
-  DARTCAST_TARGET [[nodiscard]] unsigned negative() const { return lanes_set(value < -bound); }
-  DARTCAST_TARGET [[nodiscard]] bool all_positive() const { return applies && positive() == 15U; }
+  [[nodiscard]] DARTCAST_TARGET unsigned positive() const { return lanes_set(value > bound); }
+  [[nodiscard]] DARTCAST_TARGET unsigned negative() const { return lanes_set(value < -bound); }
+  [[nodiscard]] DARTCAST_TARGET bool all_positive() const { return applies && positive() == 15U; }
 };
+
+DARTCAST_TARGET inline Corners corners_of(const Rows& v) {
+  return {vec_of(v.corner[0]), vec_of(v.corner[1]), vec_of(v.corner[2]), vec_of(v.corner[3])};
+}
 
 // The coordinates of walk/ride.hpp, and the point that has them in the moved simplex. False where the filter does not
 // prove that the simplexes are positive, and the point inside.
@@ -103,206 +109,240 @@ DARTCAST_TARGET inline bool is_one_part(const Rows& before, const Rows& now, con
 // A simplex that a walk has come to.
 struct Visit {
   std::uint32_t particle;
-  Cell cell;
+  std::uint32_t cell;   // its value
   std::uint16_t index;  // of the simplex, or of the face that was entered through
-  std::uint16_t place;  // facet that was entered by, or triangle of that face
+  std::uint16_t place;  // facet that was entered by (4: none), or triangle of that face
   std::uint16_t tests;  // so far
   bool through_face;
 };
 
-// A simplex, found in memory.
-struct Place {
-  const std::uint32_t* word;  // the cell's record
-  const Shape* shape;
-  const ImplicitSimplex* simplex;
-  std::array<std::size_t, 4> offset;  // of its corners in the positions, in doubles
-};
-
+// Simplices are taken block by block, in passes without branches as far as possible: all are found, so that their
+// corners are on the way from memory before the first is used; all are tested; then those that are left go on.
 class Batch {
  public:
-  DARTCAST_TARGET Batch(const FilteredScene& scene, std::span<State> states, std::span<const Vec3> targets,
-                        std::span<std::uint8_t> left, Counters& counters)
+  DARTCAST_TARGET Batch(const FilteredScene& scene, const FilteredSteps& steps, Counters& counters)
       : map_(scene.complex->map()),
-        now_(&scene.complex->positions().data()->x),
-        before_(scene.moved ? &scene.complex->previous_positions().data()->x : nullptr),
+        now_(scene.complex->positions().data()),
+        before_(scene.moved ? scene.complex->previous_positions().data() : nullptr),
         tolerance_(scene.tolerance),
-        states_(states.data()),
-        targets_(targets.data()),
-        left_(left.data()),
+        size_(static_cast<std::uint32_t>(steps.states.size())),
+        states_(steps.states.data()),
+        vertices_(steps.vertices.data()),
+        targets_(steps.targets.data()),
+        left_(steps.left.data()),
         counters_(counters) {}
 
-  DARTCAST_TARGET void run(std::uint32_t size, std::uint64_t most_rounds) {
-    std::size_t count = before_ == nullptr ? begin<false>(size) : begin<true>(size);
+  DARTCAST_TARGET void run(std::uint64_t most_rounds) {
+    std::size_t count = before_ == nullptr ? begin<false>() : begin<true>();
     for (std::uint64_t round = 1; count > 0; ++round) {
-      if (round == most_rounds) return leave(count);
+      if (round == most_rounds) return leave_all(count);
       count = walk_on(count);
     }
   }
 
  private:
-  // Simplices are found block by block, so that the corners of all in a block are on their way from memory before the
-  // first is used; and cells two blocks ahead.
-  static constexpr std::uint32_t block = 16;
+  static constexpr std::uint32_t block = 32;
 
-  // The first simplex of each step: most steps end there. Returns the number of walks that go on.
+  // The first simplex of each step: most end there. Returns the number of walks that go on.
   template <bool moved>
-  DARTCAST_TARGET std::size_t begin(std::uint32_t size) {
-    for (std::uint32_t i = 0; i < std::min(size, block); ++i) ask_for(states_[i].cell);
-    std::array<Place, block> places;
+  DARTCAST_TARGET std::size_t begin() {
+    std::memset(left_, 0, size_);
     std::size_t count = 0;
-    std::uint64_t kept = 0;
-    for (std::uint32_t first = 0; first < size; first += block) {
-      const std::uint32_t end = std::min(first + block, size);
-      for (std::uint32_t i = first; i < end; ++i) {
-        if (i + block < size) ask_for(states_[i + block].cell);
-        find<moved>(states_[i].cell, states_[i].simplex, places[i - first]);
+    for (std::uint32_t i = 0; i < std::min(size_, block); ++i) ask_for<moved>(vertices_[i]);
+    for (std::uint32_t first = 0; first < size_; first += block) {
+      const std::uint32_t n = std::min(block, size_ - first);
+      for (std::uint32_t k = 0; k < n; ++k) {
+        if (first + k + block < size_) ask_for<moved>(vertices_[first + k + block]);
+        test<moved>(first + k, k);
       }
-      for (std::uint32_t i = first; i < end; ++i) {
-        if (begin_one<moved>(i, places[i - first], visits_[count], kept)) ++count;
+      const std::uint32_t leaving = end_inside<moved>(first, n);
+      for (std::uint32_t l = 0; l < leaving; ++l) {
+        const std::uint32_t i = first + leaving_[l];
+        if (moved && !ride(i)) continue;
+        visits_[count] = {i, states_[i].cell.value, states_[i].simplex, 4, 4, false};
+        if (leave_simplex(visits_[count], vertices_[i], determinants_[leaving_[l]])) ++count;
       }
     }
-    counters_.particle_steps += kept;
-    counters_.orientation.tests += 4 * kept;
-    counters_.histogram[4] += kept;
-    counters_.forecast_kept += kept;
     return count;
   }
 
-  // Takes one step's first simplex; true where the walk goes on, with `visit` in the next.
   template <bool moved>
-  DARTCAST_TARGET bool begin_one(std::uint32_t i, const Place& place, Visit& visit, std::uint64_t& kept) {
-    State& s = states_[i];
-    const Rows now(now_, place.offset);
-    const FilteredDeterminants d(now, load_row(targets_[i]));
-    // Strictly inside: wherever it comes from in this simplex, nothing is in the way.
-    bool stays = d.all_positive();
-    left_[i] = 1;
-    if (s.held || (s.touching_count != 0 && s.position == targets_[i])) return false;
+  DARTCAST_TARGET void test(std::uint32_t i, std::uint32_t k) {
+    const Rows now(now_, vertices_[i]);
+    determinants_[k] = FilteredDeterminants(now, load_row(targets_[i]));
+    inside_[k] = determinants_[k].all_positive();
     if constexpr (moved) {
-      const Rows before(before_, place.offset);
-      if (!is_one_part(before, now, s.position, targets_[i], tolerance_)) return false;
-      if (!stays || s.touching_count != 0) {
-        if (!ride_along(before, now, s.position, start_[i]) || start_[i] == targets_[i]) return false;
-        left_behind_[i] = FilteredDeterminants(now, load_row(s.position)).negative() != 0;
+      one_part_[k] = is_one_part(Rows(before_, vertices_[i]), now, states_[i].position, targets_[i], tolerance_);
+    }
+  }
+
+  // Ends the steps whose targets lie strictly inside: wherever they come from in the same simplex, nothing is in the
+  // way. Lists the others in leaving_.
+  template <bool moved>
+  DARTCAST_TARGET std::uint32_t end_inside(std::uint32_t first, std::uint32_t n) {
+    std::uint32_t leaving = 0;
+    std::uint32_t ended = 0;
+    for (std::uint32_t k = 0; k < n; ++k) {
+      const std::uint32_t i = first + k;
+      State& s = states_[i];
+      if (s.held || (moved && !one_part_[k] && !is_one_part_after_all(i)) ||
+          (s.touching_count != 0 && rests<moved>(i))) {
+        left_[i] = 1;
+        continue;
       }
+      const bool inside = inside_[k];
+      leaving_[leaving] = k;
+      leaving += inside ? 0 : 1;
+      ended += inside ? 1 : 0;
+      store_where(inside, load_row(targets_[i]), s.position);
+      s.touching_count = inside ? 0 : s.touching_count;
     }
-    left_[i] = 0;
-    if (stays) {
-      s.position = targets_[i];
-      s.touching_count = 0;
-      ++kept;
-      return false;
-    }
-    visit.particle = i;
-    visit.cell = s.cell;
-    visit.tests = 4;
-    return leave_simplex(visit, place, now, d, 4, moved ? start_[i] : s.position);
+    counters_.particle_steps += ended;
+    counters_.orientation.tests += std::uint64_t{4} * ended;
+    counters_.histogram[4] += ended;
+    counters_.forecast_kept += ended;
+    return leaving;
+  }
+
+  // The rule itself, where the bound of it does not do.
+  DARTCAST_TARGET bool is_one_part_after_all(std::uint32_t i) const {
+    const Rows before(before_, vertices_[i]);
+    const Rows now(now_, vertices_[i]);
+    Vec3 ridden;
+    if (!ride_along(before, now, states_[i].position, ridden)) return false;
+    const auto [gradient, edge] = deformation(corners_of(before), corners_of(now));
+    return gradient * norm(targets_[i] - ridden) <= 2.0 * tolerance_ * edge;
+  }
+
+  // Whether a particle that touches a wall is to stay at its place: it goes on touching it.
+  template <bool moved>
+  DARTCAST_TARGET bool rests(std::uint32_t i) const {
+    if constexpr (!moved) return states_[i].position == targets_[i];
+    Vec3 ridden;
+    return !ride_along(Rows(before_, vertices_[i]), Rows(now_, vertices_[i]), states_[i].position, ridden) ||
+           ridden == targets_[i];
+  }
+
+  // Moves the start of a walk along with the vertices; false where the step is left.
+  DARTCAST_TARGET bool ride(std::uint32_t i) {
+    const Rows now(now_, vertices_[i]);
+    const Vec3 p = states_[i].position;
+    left_behind_[i] = FilteredDeterminants(now, load_row(p)).negative() != 0;
+    Vec3 ridden;
+    if (!ride_along(Rows(before_, vertices_[i]), now, p, ridden) || ridden == targets_[i]) return leave(i);
+    ridden_[i] = load_row(ridden);
+    return true;
   }
 
   // The next simplex of every walk. Returns the number of walks that go on.
   DARTCAST_TARGET std::size_t walk_on(std::size_t count) {
-    std::array<Place, block> places;
-    std::array<Across, block> at;  // simplex, and facet entered by
     std::size_t next = 0;
     for (std::size_t first = 0; first < count; first += block) {
-      const std::size_t size = std::min<std::size_t>(block, count - first);
-      for (std::size_t k = 0; k < size; ++k) {
-        const Visit& v = visits_[first + k];
-        at[k] = {v.index, v.place};
-        if (v.through_face) at[k] = map_.shape(v.cell).entry(v.index, v.place);
-        find<false>(v.cell, at[k].index, places[k]);
+      const std::size_t n = std::min<std::size_t>(block, count - first);
+      for (std::size_t k = 0; k < n; ++k) enter(visits_[first + k], corners_[k]);
+      for (std::size_t k = 0; k < n; ++k) {
+        determinants_[k] =
+            FilteredDeterminants(Rows(now_, corners_[k]), load_row(targets_[visits_[first + k].particle]));
       }
-      for (std::size_t k = 0; k < size; ++k) {
-        visits_[next] = visits_[first + k];
-        if (visit_one(visits_[next], places[k], at[k])) ++next;
+      for (std::size_t k = 0; k < n; ++k) {
+        Visit& v = visits_[next] = visits_[first + k];
+        v.tests = static_cast<std::uint16_t>(v.tests + 3);
+        if (determinants_[k].all_positive()) {
+          arrive(v, corners_[k]);
+        } else if (leave_simplex(v, corners_[k], determinants_[k])) {
+          ++next;
+        }
       }
     }
     return next;
   }
 
-  DARTCAST_TARGET bool visit_one(Visit& visit, const Place& place, const Across& at) {
-    const std::uint32_t i = visit.particle;
-    const Rows now(now_, place.offset);
-    const FilteredDeterminants d(now, load_row(targets_[i]));
-    visit.tests = static_cast<std::uint16_t>(visit.tests + 3);
-    if (d.all_positive()) {
-      arrive(visit, at.index);
-      return false;
+  // Finds the simplex behind the face that was entered through, and its corners.
+  DARTCAST_TARGET void enter(Visit& v, VertexNumbers& corners) const {
+    const CellView cell = map_.view(Cell(v.cell));
+    if (v.through_face) {
+      const Across at = cell.shape().entry(v.index, v.place);
+      v.index = at.index;
+      v.place = at.place;
     }
-    return leave_simplex(visit, place, now, d, at.place, before_ == nullptr ? states_[i].position : start_[i]);
+    const auto& local = cell.shape().simplices()[v.index].vertex;
+    for (unsigned i = 0; i < 4; ++i) corners[i] = cell.vertex(local[i]).value;
+    ask_for<false>(corners);
   }
-
-  DARTCAST_TARGET void ask_for(Cell c) const { __builtin_prefetch(map_.record(c)); }
 
   template <bool moved>
-  DARTCAST_TARGET void find(Cell cell, std::uint16_t simplex, Place& place) const {
-    const CellView view = map_.view(cell);
-    place.word = view.words();
-    place.shape = &view.shape();
-    place.simplex = place.shape->simplices().data() + simplex;
+  DARTCAST_TARGET void ask_for(const VertexNumbers& v) const {
     for (unsigned i = 0; i < 4; ++i) {
-      place.offset[i] = std::size_t{3} * view.vertex(place.simplex->vertex[i]).value;
-      __builtin_prefetch(now_ + place.offset[i]);
-      if constexpr (moved) __builtin_prefetch(before_ + place.offset[i]);
+      __builtin_prefetch(now_ + v[i]);
+      __builtin_prefetch(&(now_ + v[i])->z);
+      if constexpr (moved) __builtin_prefetch(before_ + v[i]);
+      if constexpr (moved) __builtin_prefetch(&(before_ + v[i])->z);
     }
   }
 
-  // Goes on into the next simplex, if the filter says which.
-  DARTCAST_TARGET bool leave_simplex(Visit& visit, const Place& place, const Rows& now, const FilteredDeterminants& d,
-                                     unsigned entered, const Vec3& from) {
+  // Goes on into the next simplex, if the filter says which; else leaves the step.
+  DARTCAST_TARGET bool leave_simplex(Visit& visit, const VertexNumbers& corners, const FilteredDeterminants& d) {
+    const unsigned known = 1U << visit.place;
     const unsigned negative = d.negative();
-    const unsigned known = 1U << entered;
-    unsigned behind = negative & ~known;
-    const bool proved = d.proves_positive() && ((d.positive() | negative | known) & 15U) == 15U;
-    if (!proved || behind == 0) return give_up(visit);
+    const bool proved = ((d.positive() | negative | known) & 15U) == 15U;
+    const unsigned behind = negative & ~known;
+    if (!d.proves_positive() || !proved || behind == 0) return leave(visit.particle);
+    unsigned facet = static_cast<unsigned>(std::countr_zero(behind));
+    if ((behind & (behind - 1)) != 0) facet = first_exit(visit, corners, behind);
+    return facet < 4 ? pass_on(visit, facet) : leave(visit.particle);
+  }
+
+  // Of several facets that the target lies behind, the one by which the segment leaves; 4 where the filter does not
+  // say.
+  DARTCAST_TARGET unsigned first_exit(Visit& visit, const VertexNumbers& corners, unsigned behind) const {
+    const Rows now(now_, corners);
+    const std::uint32_t i = visit.particle;
+    const Vec3 p = before_ == nullptr ? states_[i].position : vec_of(ridden_[i]);
+    const Vec3& q = targets_[i];
     unsigned facet = static_cast<unsigned>(std::countr_zero(behind));
     while ((behind &= behind - 1) != 0) {
       const unsigned other = static_cast<unsigned>(std::countr_zero(behind));
-      const int first = leaves_first(now, facet, other, from, targets_[visit.particle]);
+      const auto& edge = side_edge[facet][other];
+      const int first = filtered_sign(vec_of(now.corner[edge[0]]) - q, p - q, vec_of(now.corner[edge[1]]) - q);
       ++visit.tests;
-      if (first == 0) return give_up(visit);
+      if (first == 0) return 4;
       if (first < 0) facet = other;
     }
-    return pass_on(visit, place, facet);
+    return facet;
   }
 
-  // 1 where the segment leaves by facet i before j, -1 where not, 0 where the filter does not say.
-  DARTCAST_TARGET static int leaves_first(const Rows& rows, unsigned i, unsigned j, const Vec3& p, const Vec3& q) {
-    const Vec3 u = vec_of(rows.corner[side_edge[i][j][0]]) - q;
-    const Vec3 w = vec_of(rows.corner[side_edge[i][j][1]]) - q;
-    return filtered_sign(u, p - q, w);
-  }
-
-  DARTCAST_TARGET bool pass_on(Visit& visit, const Place& place, unsigned facet) {
-    const Across across = place.simplex->across[facet];
+  DARTCAST_TARGET bool pass_on(Visit& visit, unsigned facet) {
+    const CellView cell = map_.view(Cell(visit.cell));
+    const Across across = cell.shape().simplices()[visit.index].across[facet];
     visit.through_face = across.outer();
     if (!across.outer()) {
       visit.index = across.index;
       visit.place = across.place;
       return true;
     }
-    const CellView cell(place.word, *place.shape, visit.cell.pool() == Map::general_pool);
     const std::uint16_t face = across.face();
-    if (cell.is_wall(face)) return give_up(visit);
-    visit.cell = cell.neighbour(face);
+    if (cell.is_wall(face)) return leave(visit.particle);
+    visit.cell = cell.neighbour(face).value;
     visit.index = cell.neighbour_face(face);
-    visit.place = place.shape->triangle_from_other_side(face, across.place);
-    ask_for(visit.cell);
+    visit.place = cell.shape().triangle_from_other_side(face, across.place);
+    __builtin_prefetch(map_.record(Cell(visit.cell)));
     return true;
   }
 
-  DARTCAST_TARGET bool give_up(const Visit& visit) {
-    left_[visit.particle] = 1;
+  // The step is not taken here. Returns false: it does not go on.
+  DARTCAST_TARGET bool leave(std::uint32_t i) {
+    left_[i] = 1;
     return false;
   }
-  DARTCAST_TARGET void leave(std::size_t count) {
-    for (std::size_t k = 0; k < count; ++k) left_[visits_[k].particle] = 1;
+  DARTCAST_TARGET void leave_all(std::size_t count) {
+    for (std::size_t k = 0; k < count; ++k) leave(visits_[k].particle);
   }
 
-  DARTCAST_TARGET void arrive(const Visit& visit, std::uint16_t simplex) {
+  DARTCAST_TARGET void arrive(const Visit& visit, const VertexNumbers& corners) {
     State& s = states_[visit.particle];
-    s.put({visit.cell, simplex}, targets_[visit.particle]);
+    s.put({Cell(visit.cell), visit.index}, targets_[visit.particle]);
     s.touching_count = 0;
+    vertices_[visit.particle] = corners;
     ++counters_.particle_steps;
     counters_.orientation.tests += visit.tests;
     ++counters_.histogram[std::min<std::size_t>(visit.tests, Counters::histogram_size - 1)];
@@ -310,14 +350,38 @@ class Batch {
   }
 
   const Map& map_;
-  const double* now_;
-  const double* before_;  // null where the scene stands still
+  const Vec3* now_;
+  const Vec3* before_;  // null where the scene stands still
   double tolerance_;
+  std::uint32_t size_;
   State* states_;
+  VertexNumbers* vertices_;
   const Vec3* targets_;
   std::uint8_t* left_;
   Counters& counters_;
+
+  // Of the block.
+  std::array<VertexNumbers, block> corners_;
+  std::array<FilteredDeterminants, block> determinants_;
+  std::array<bool, block> inside_;
+  std::array<bool, block> one_part_;
+  std::array<std::uint32_t, block> leaving_;
+
+  // Of the batch.
   std::array<Visit, filtered_batch> visits_;  // walks that go on
-  std::array<Vec3, filtered_batch> start_;    // where each particle has ridden to
+  std::array<Quad, filtered_batch> ridden_;   // where particles have ridden to
   std::array<bool, filtered_batch> left_behind_;
 };
+
+// Whether every number is 0 or between the two magnitudes.
+DARTCAST_TARGET inline bool all_between(const double* x, std::size_t count, double low, double high) {
+  Mask outside{};
+  std::size_t i = 0;
+  for (; i + 4 <= count; i += 4) {
+    const Quad m = magnitude(*reinterpret_cast<const UnalignedQuad*>(x + i));
+    outside |= ~(((m >= low) & (m <= high)) | (m == 0.0));
+  }
+  bool rest = true;
+  for (; i < count; ++i) rest = rest && (x[i] == 0.0 || (std::abs(x[i]) >= low && std::abs(x[i]) <= high));
+  return rest && lanes_set(outside) == 0;
+}

@@ -1,0 +1,71 @@
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/chart.hpp"
+#include "bench/plan.hpp"
+#include "bench/race.hpp"
+#include "bench/report.hpp"
+#include "commands.hpp"
+#include "dartcast/base/error.hpp"
+
+namespace dartcast::app {
+
+namespace {
+
+struct Arguments {
+  bench::PlanOptions plan;
+  std::string folder = "bench-out";
+  bool json = false;
+};
+
+void write(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream out(file);
+  out << text;
+  if (!out.flush()) throw Error(fmt::format("{}: cannot be written", file.string()));
+}
+
+int run(const Arguments& a) {
+  const std::vector<bench::WorkloadOptions> plan = bench::plan(a.plan);
+  std::filesystem::create_directories(a.folder);
+  const std::vector<bench::PeerKind> kinds = bench::peer_kinds();
+  for (const std::string& name : bench::left_out()) fmt::print(stderr, "left out: {}\n", name);
+  std::vector<bench::Row> rows;
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    fmt::print(stderr, "[{}/{}] {}\n", i + 1, plan.size(), bench::title(plan[i]));
+    for (bench::Row& row : bench::race(plan[i], kinds)) rows.push_back(std::move(row));
+  }
+  const std::filesystem::path folder = a.folder;
+  write(folder / "bench.json", bench::report_json(rows) + "\n");
+  write(folder / "bench.csv", bench::report_csv(rows));
+  write(folder / "bench.svg", bench::chart_svg(rows));
+  if (a.json) {
+    fmt::print("{}\n", bench::report_json(rows));
+  } else {
+    fmt::print("{}\noutput: {}\n", bench::report_text(rows), folder.string());
+  }
+  return done;
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app, int& status) {
+  const auto a = std::make_shared<Arguments>();
+  CLI::App* verb = app.add_subcommand("bench", "Compare with bounding volume hierarchies on this machine.");
+  verb->add_flag("--quick", a->plan.quick, "the main figures only, in under two minutes");
+  verb->add_option("--only", a->plan.only, "workloads to run, as in W1,W3 (all)")->delimiter(',');
+  verb->add_option("--steps", a->plan.steps, "steps of a workload at most (15 to 1000)")
+      ->check(CLI::Range(1U, 1000000U));
+  verb->add_option("-o,--output", a->folder, "folder for bench.json, bench.csv and bench.svg (bench-out)")->take_last();
+  verb->add_flag("--json", a->json, "print one JSON object, and nothing else");
+  verb->callback([a, &status] { status = run(*a); });
+}
+
+}  // namespace dartcast::app

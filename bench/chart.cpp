@@ -1,0 +1,160 @@
+#include "bench/chart.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace dartcast::bench {
+
+namespace {
+
+constexpr double width = 860.0;
+constexpr double height = 560.0;
+constexpr double left = 80.0;
+constexpr double right = 640.0;
+constexpr double top = 56.0;
+constexpr double bottom = 490.0;
+
+struct Style {
+  const char* name;
+  const char* label;
+  const char* colour;
+};
+constexpr std::array<Style, 5> styles = {{{"dartcast", "dartcast", "#c1272d"},
+                                          {"bullet", "Bullet", "#1f6fb4"},
+                                          {"embree_single", "Embree, single", "#2a8a4a"},
+                                          {"embree_packet", "Embree, packets of 16", "#8a5fb0"},
+                                          {"paper", "the paper's scheme", "#7a7a7a"}}};
+
+struct Point {
+  double cells;
+  double ns;
+};
+
+// Decades of the axes, and where values lie on the page.
+struct Axes {
+  int x_low = 3, x_high = 7;
+  int y_low = 1, y_high = 3;
+
+  [[nodiscard]] double x(double cells) const {
+    return left + (right - left) * (std::log10(cells) - x_low) / (x_high - x_low);
+  }
+  [[nodiscard]] double y(double ns) const {
+    return bottom - (bottom - top) * (std::log10(ns) - y_low) / (y_high - y_low);
+  }
+};
+
+std::vector<Point> points_of(std::span<const Row> rows, const char* workload, const char* name) {
+  std::vector<Point> points;
+  for (const Row& row : rows) {
+    const Lane* lane = row.lane(name);
+    if (row.workload.name != workload || row.workload.particles != 1000 || lane == nullptr) continue;
+    points.push_back({static_cast<double>(row.cells), lane->ns_per_particle_step(row.workload.particles)});
+  }
+  std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.cells < b.cells; });
+  return points;
+}
+
+Axes axes_for(std::span<const Row> rows) {
+  Axes axes;
+  for (const Style& style : styles) {
+    for (const char* workload : {"W1", "W2"}) {
+      for (const Point& p : points_of(rows, workload, style.name)) {
+        axes.y_low = std::min(axes.y_low, static_cast<int>(std::floor(std::log10(p.ns))));
+        axes.y_high = std::max(axes.y_high, static_cast<int>(std::ceil(std::log10(p.ns))));
+      }
+    }
+  }
+  return axes;
+}
+
+std::string line(double x1, double y1, double x2, double y2, const char* colour) {
+  return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\"/>\n", x1, y1, x2, y2,
+                     colour);
+}
+
+std::string text(double x, double y, const char* anchor, const std::string& content) {
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x, y, anchor, content);
+}
+
+std::string power(int exponent) { return fmt::format("10<tspan dy=\"-6\" font-size=\"10\">{}</tspan>", exponent); }
+
+std::string grid(const Axes& axes) {
+  std::string out;
+  for (int e = axes.x_low; e <= axes.x_high; ++e) {
+    const double x = axes.x(std::pow(10.0, e));
+    out += line(x, top, x, bottom, "#d0d0d0") + text(x, bottom + 22, "middle", power(e));
+  }
+  for (int e = axes.y_low; e <= axes.y_high; ++e) {
+    const double y = axes.y(std::pow(10.0, e));
+    out += line(left, y, right, y, "#d0d0d0") + text(left - 10, y + 5, "end", power(e));
+    for (int k = 2; k < 10 && e < axes.y_high; ++k) {
+      const double minor = axes.y(k * std::pow(10.0, e));
+      out += line(left, minor, right, minor, "#f0f0f0");
+    }
+  }
+  out += text((left + right) / 2, bottom + 52, "middle", "cells of the scene");
+  out += fmt::format(
+      "<text transform=\"translate(24 {:.1f}) rotate(-90)\" text-anchor=\"middle\">"
+      "ns per particle-step</text>\n",
+      (top + bottom) / 2);
+  return out;
+}
+
+std::string curve(const Axes& axes, const std::vector<Point>& points, const Style& style, bool deforms) {
+  std::string path;
+  std::string marks;
+  for (const Point& p : points) {
+    path += fmt::format("{:.1f},{:.1f} ", axes.x(p.cells), axes.y(p.ns));
+    marks += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\" fill=\"{}\" stroke=\"{}\" stroke-width=\"2\"/>\n",
+                         axes.x(p.cells), axes.y(p.ns), deforms ? "white" : style.colour, style.colour);
+  }
+  return fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\"{}/>\n", path, style.colour,
+                     deforms ? " stroke-dasharray=\"7 4\"" : "") +
+         marks;
+}
+
+std::string legend(const std::vector<Style>& shown) {
+  std::string out;
+  double y = top + 16;
+  for (const Style& style : shown) {
+    out += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"22\" height=\"10\" fill=\"{}\"/>\n", right + 24, y - 10,
+                       style.colour);
+    out += text(right + 54, y, "start", style.label);
+    y += 24;
+  }
+  y += 8;
+  for (const bool deforms : {false, true}) {
+    out += fmt::format(
+        "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#222\" stroke-width=\"2\"{}/>\n",
+        right + 20, y - 5, right + 50, y - 5, deforms ? " stroke-dasharray=\"7 4\"" : "");
+    out += text(right + 54, y, "start", deforms ? "every vertex moving" : "standing still");
+    y += 24;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string chart_svg(std::span<const Row> rows) {
+  const Axes axes = axes_for(rows);
+  std::string curves;
+  std::vector<Style> shown;
+  for (const Style& style : styles) {
+    const std::vector<Point> still = points_of(rows, "W1", style.name);
+    const std::vector<Point> moving = points_of(rows, "W2", style.name);
+    if (still.empty() && moving.empty()) continue;
+    shown.push_back(style);
+    curves += curve(axes, still, style, false) + curve(axes, moving, style, true);
+  }
+  return fmt::format(
+             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" font-family=\"sans-serif\" "
+             "font-size=\"14\" fill=\"#222\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
+             width, height) +
+         text(left, 32, "start", "1,000 particles in a box of n hexahedra, a tenth of a cell a step, one thread") +
+         grid(axes) + curves + legend(shown) + "</svg>\n";
+}
+
+}  // namespace dartcast::bench

@@ -1,0 +1,51 @@
+// What a competitor must do: keep the walls' triangles, and find the first one that a segment meets.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "dartcast/exact/vec3.hpp"
+#include "dartcast/walk/state.hpp"
+
+namespace dartcast::bench {
+
+struct Segment {
+  Vec3 from;
+  Vec3 to;
+  /// Where it starts on a wall that the particle has just met: the share of the segment in which floats can't tell that
+  /// wall from others. Hits there are passed over, as whoever casts rays from walls does. Else 0.
+  double blind = 0.0;
+};
+
+/// The first wall triangle met, by its number (walls.hpp), or none; `time` is the fraction of the segment.
+struct Hit {
+  static constexpr std::uint32_t none = 0xffffffffU;
+  static constexpr std::uint32_t failed = 0xfffffffeU;  ///< the competitor found no answer
+
+  std::uint32_t triangle = none;
+  double time = 1.0;
+};
+
+/// A way to find contacts that stands beside dartcast. Runs on one thread, and is not for use by several at once.
+class Peer {
+ public:
+  Peer() = default;
+  Peer(const Peer&) = delete;
+  Peer& operator=(const Peer&) = delete;
+  virtual ~Peer() = default;
+
+  /// Takes over the walls' points after a move, before refit(): writing vertices counts for nobody. Not timed.
+  virtual void write(std::span<const Vec3> points) = 0;
+  /// Makes the hierarchy follow the points written. Timed.
+  virtual void refit() = 0;
+  /// Where the particles of the next segments are, for those who remember particles. Not timed.
+  virtual void place(std::span<const State> /*states*/) {}
+  /// The first hit of every segment. Timed. `hits`: as many as segments.
+  virtual void cast(std::span<const Segment> segments, std::span<Hit> hits) = 0;
+  /// Writes into the hits what cast() knew by other names. Not timed.
+  virtual void translate(std::span<Hit> /*hits*/) {}
+  /// Orientation tests so far; 0 for those who make none.
+  [[nodiscard]] virtual std::uint64_t tests() const { return 0; }
+};
+
+}  // namespace dartcast::bench

@@ -1,0 +1,223 @@
+#include "bench/race.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <utility>
+
+#include "dartcast/walk/ride.hpp"
+
+namespace dartcast::bench {
+
+namespace {
+
+constexpr std::size_t block_size = 100;
+constexpr double same_place = 1e-4;  // cells
+
+template <class Work>
+double nanoseconds(Work&& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count();
+}
+
+// One step as dartcast took it, and what the others are asked.
+struct Record {
+  std::vector<State> before;
+  std::vector<Vec3> targets;
+  ContactList contacts;
+  std::vector<Segment> segments;
+  std::vector<Hit> hits;
+  std::vector<Vec3> points;  // of the walls, where the scene deforms
+};
+
+class Race {
+ public:
+  Race(const WorkloadOptions& options, std::span<const PeerKind> kinds)
+      : options_(options), workload_(options), records_(options.deforms || !options.against_peers ? 1 : block_size) {
+    if (options.against_peers) make_peers(kinds);
+    for (const unsigned threads : options.threads) {
+      Row& row = rows_.emplace_back();
+      row.workload = options;
+      row.threads = threads;
+      row.cells = workload_.environment().map().cell_count();
+      row.wall_triangles = walls_.triangles.size();
+    }
+    clear();
+  }
+
+  std::vector<Row> run() {
+    block(records_.size());  // for the caches
+    clear();
+    const std::size_t all = options_.steps * rows_.size();
+    for (std::size_t done = 0; done < all; done += records_.size()) block(std::min(records_.size(), all - done));
+    for (Row& row : rows_) {
+      row.lanes[0].tests = row.counters.orientation.tests;
+      for (std::size_t k = 0; k < peers_.size(); ++k) row.lanes[k + 1].tests = peers_[k]->tests() - tests_before_[k];
+    }
+    return std::move(rows_);
+  }
+
+ private:
+  void make_peers(std::span<const PeerKind> kinds) {
+    walls_ = walls_of(workload_.environment().complex());
+    std::vector<Vec3> points;
+    walls_.gather(workload_.environment().complex().positions(), points);
+    for (const PeerKind& kind : kinds) {
+      names_.push_back(kind.name);
+      peers_.push_back(kind.make(
+          {workload_.environment().complex(), walls_, points, workload_.particles().states(), options_.deforms}));
+    }
+  }
+
+  void clear() {
+    tests_before_.clear();
+    for (const auto& peer : peers_) tests_before_.push_back(peer->tests());
+    for (Row& row : rows_) {
+      row.counters = {};
+      row.lanes.assign(1, {"dartcast", {}});
+      for (const std::string& name : names_) row.lanes.push_back({name, {}});
+    }
+  }
+
+  void block(std::size_t size) {
+    const std::span<Record> records = std::span(records_).first(size);
+    for (Record& record : records) lead(record);
+    for (Record& record : records) ask(record);
+    for (std::size_t k = 0; k < peers_.size(); ++k) {
+      const std::size_t peer = (k + blocks_) % peers_.size();
+      for (const Record& record : records) answer(peer, record);
+    }
+    ++blocks_;
+  }
+
+  void lead(Record& record) {
+    Row& row = rows_[steps_++ % rows_.size()];
+    Environment& environment = workload_.environment();
+    environment.set_threads(Threads{row.threads});
+    workload_.aim();
+    const auto states = workload_.particles().states();
+    if (!peers_.empty()) record.before.assign(states.begin(), states.end());
+    StepReport report;
+    row.lanes[0].step_ns.push_back(nanoseconds([&] {
+      if (options_.deforms) environment.move();
+      report = environment.advance(workload_.particles(), workload_.targets());
+    }));
+    row.counters += report.counters;
+    workload_.follow(report);
+    if (peers_.empty()) return;
+    record.targets.assign(workload_.targets().begin(), workload_.targets().end());
+    record.contacts = std::move(report.contacts);
+  }
+
+  // Not while dartcast leads: it would drive its data out of the caches.
+  void ask(Record& record) const {
+    if (peers_.empty()) return;
+    const Complex& complex = workload_.environment().complex();
+    record.segments.resize(record.before.size());
+    for (std::size_t i = 0; i < record.before.size(); ++i) {
+      const State& before = record.before[i];
+      Segment& s = record.segments[i];
+      s = {options_.deforms ? ridden(complex, before) : before.position, record.targets[i]};
+      if (before.touching_count > 0) s.blind = std::min(1.0, same_place * workload_.cell_size() / norm(s.to - s.from));
+    }
+    record.hits.assign(record.before.size(), {});
+    for (const Contact& c : record.contacts.contacts) {
+      const WallHit& wall = record.contacts.walls_of(c).front();
+      record.hits[c.particle] = {walls_.number({wall.face, wall.triangle}), c.time_of_impact};
+    }
+    if (options_.deforms) walls_.gather(complex.positions(), record.points);
+  }
+
+  // Where the walk began: in the geometry after the move.
+  static Vec3 ridden(const Complex& complex, const State& before) {
+    const Weights weights = detail::barycentric(previous_space(complex).corners(before.at()), before.position);
+    return detail::ridden(current_space(complex), before.at(), weights).position;
+  }
+
+  void answer(std::size_t k, const Record& record) {
+    Peer& peer = *peers_[k];
+    if (options_.deforms) peer.write(record.points);
+    peer.place(record.before);
+    answers_.resize(record.segments.size());
+    Lane& lane = rows_[0].lanes[k + 1];
+    lane.step_ns.push_back(nanoseconds([&] {
+      if (options_.deforms) peer.refit();
+      peer.cast(record.segments, answers_);
+    }));
+    peer.translate(answers_);
+    for (std::size_t i = 0; i < answers_.size(); ++i) {
+      compare(lane, record.hits[i], answers_[i], record.segments[i]);
+    }
+  }
+
+  void compare(Lane& lane, const Hit& ours, const Hit& theirs, const Segment& s) const {
+    const double tolerance = same_place * workload_.cell_size();
+    const double length = norm(s.to - s.from);
+    if (agree(ours, theirs, tolerance / length)) return;
+    ++lane.disagreements;
+    const bool met_at_start = theirs.triangle < Hit::failed && theirs.time * length <= tolerance;
+    lane.at_start += s.blind > 0.0 || met_at_start ? 1 : 0;
+    lane.failed += theirs.triangle == Hit::failed ? 1 : 0;
+  }
+
+  // Neither meets a wall, or both the same, or both at the same place: where triangles meet, any of them will do.
+  static bool agree(const Hit& a, const Hit& b, double tolerance) {
+    if (a.triangle == b.triangle) return true;
+    if (a.triangle >= Hit::failed || b.triangle >= Hit::failed) return false;
+    return std::abs(a.time - b.time) <= tolerance;
+  }
+
+  WorkloadOptions options_;
+  Workload workload_;
+  Walls walls_;
+  std::vector<std::string> names_;
+  std::vector<std::unique_ptr<Peer>> peers_;
+  std::vector<std::uint64_t> tests_before_;
+  std::vector<Record> records_;
+  std::vector<Hit> answers_;
+  std::vector<Row> rows_;
+  std::size_t steps_ = 0;
+  std::size_t blocks_ = 0;
+};
+
+}  // namespace
+
+double Lane::ns_per_particle_step(std::size_t particles) const {
+  constexpr std::size_t most_blocks = 50;
+  const std::size_t size = (step_ns.size() + most_blocks - 1) / most_blocks;
+  std::vector<double> means;
+  for (std::size_t first = 0; first < step_ns.size(); first += size) {
+    const std::size_t count = std::min(size, step_ns.size() - first);
+    const auto begin = step_ns.begin() + static_cast<std::ptrdiff_t>(first);
+    means.push_back(std::accumulate(begin, begin + static_cast<std::ptrdiff_t>(count), 0.0) /
+                    static_cast<double>(count));
+  }
+  const auto middle = means.begin() + static_cast<std::ptrdiff_t>(means.size() / 2);
+  std::nth_element(means.begin(), middle, means.end());
+  return *middle / static_cast<double>(particles);
+}
+
+double Lane::mean_ns_per_particle_step(std::size_t particles) const {
+  return std::accumulate(step_ns.begin(), step_ns.end(), 0.0) / static_cast<double>(step_ns.size() * particles);
+}
+
+double Lane::quantile_ns(double share) const {
+  std::vector<double> sorted = step_ns;
+  std::sort(sorted.begin(), sorted.end());
+  const double rank = std::ceil(share * static_cast<double>(sorted.size()));
+  return sorted[std::clamp<std::size_t>(static_cast<std::size_t>(rank), 1, sorted.size()) - 1];
+}
+
+const Lane* Row::lane(std::string_view name) const {
+  const auto found = std::find_if(lanes.begin(), lanes.end(), [&](const Lane& l) { return l.name == name; });
+  return found == lanes.end() ? nullptr : &*found;
+}
+
+std::vector<Row> race(const WorkloadOptions& options, std::span<const PeerKind> kinds) {
+  return Race(options, kinds).run();
+}
+
+}  // namespace dartcast::bench

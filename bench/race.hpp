@@ -1,0 +1,52 @@
+// The timed loop: dartcast and its competitors on the very same segments and triangles, in turns.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/peers.hpp"
+#include "bench/workload.hpp"
+#include "dartcast/walk/counters.hpp"
+
+namespace dartcast::bench {
+
+/// How one competitor did.
+struct Lane {
+  std::string name;
+  std::vector<double> step_ns;      ///< per step, of all its particles: refitting and casting
+  std::uint64_t disagreements = 0;  ///< segments where it answers otherwise than dartcast
+  std::uint64_t at_start = 0;       ///< of these: the segment starts on a wall, just met or met by it alone
+  std::uint64_t failed = 0;         ///< of these: it finds no answer
+  std::uint64_t tests = 0;          ///< orientation tests; 0 where it makes none
+
+  /// Median over up to 50 blocks of steps, per particle.
+  [[nodiscard]] double ns_per_particle_step(std::size_t particles) const;
+  /// All steps, per particle.
+  [[nodiscard]] double mean_ns_per_particle_step(std::size_t particles) const;
+  /// Of the times of single steps, ns; `share` 0.5: the median, 1: the longest.
+  [[nodiscard]] double quantile_ns(double share) const;
+};
+
+/// One workload with one number of threads.
+struct Row {
+  WorkloadOptions workload;
+  unsigned threads = 1;
+  std::size_t cells = 0;
+  std::size_t wall_triangles = 0;
+  std::vector<Lane> lanes;  ///< dartcast first
+  Counters counters;        ///< dartcast's
+
+  [[nodiscard]] const Lane* lane(std::string_view name) const;
+};
+
+/// Runs a workload: a row for each number of threads. dartcast leads, in blocks of 100 steps (of one where the scene
+/// deforms); each competitor then answers the block's segments, every block another one first. The first block is not
+/// counted. Where the scene stands still each so works with its own data in the caches; what disturbs one disturbs all.
+///
+/// A competitor disagrees on a segment where one of the two meets a wall and the other does not, or where both do and
+/// neither the triangle nor the time (within 1e-4 of a cell) is the same. What dartcast finds is what happens.
+std::vector<Row> race(const WorkloadOptions& options, std::span<const PeerKind> kinds);
+
+}  // namespace dartcast::bench

@@ -1,0 +1,88 @@
+#include "bench/report.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "bench/figures.hpp"
+#include "bench/peers.hpp"
+
+namespace dartcast::bench {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double per_step(const Row& row, std::uint64_t count) {
+  return static_cast<double>(count) / static_cast<double>(row.counters.particle_steps);
+}
+
+std::uint64_t contacts(const Row& row) {
+  return row.counters.contacts[0] + row.counters.contacts[1] + row.counters.contacts[2];
+}
+
+Json workload_json(const Row& row) {
+  const WorkloadOptions& w = row.workload;
+  Json json = {{"workload", w.name}, {"cells", row.cells}, {"deforms", w.deforms}};
+  if (w.scene == Scene::tube) json["faces_of_a_cell"] = w.size + 2;
+  json["particles"] = w.particles;
+  if (w.name == "W3") json["order"] = w.cell_order ? "cell" : "random";
+  if (w.scene == Scene::box || w.scene == Scene::tube) json["step_length_in_cells"] = w.step_length;
+  json["steps"] = row.lanes[0].step_ns.size();
+  json["threads"] = row.threads;
+  if (w.against_peers) json["wall_triangles"] = row.wall_triangles;
+  return json;
+}
+
+Json row_json(const Row& row) {
+  Json json = workload_json(row);
+  for (const Lane& lane : row.lanes) {
+    json["ns_per_particle_step"][lane.name] = lane.ns_per_particle_step(row.workload.particles);
+    json["mean_ns_per_particle_step"][lane.name] = lane.mean_ns_per_particle_step(row.workload.particles);
+    json["step_us"][lane.name] = {{"median", lane.quantile_ns(0.5) / 1e3},
+                                  {"p99", lane.quantile_ns(0.99) / 1e3},
+                                  {"longest", lane.quantile_ns(1.0) / 1e3}};
+    if (lane.tests > 0) json["orientation_tests_per_particle_step"][lane.name] = per_step(row, lane.tests);
+    if (&lane == row.lanes.data()) continue;
+    json["ratio"][lane.name] = ratio_to_dartcast(row, lane);
+    json["disagreements"][lane.name] = lane.disagreements;
+    json["disagreements_at_start"][lane.name] = lane.at_start;
+    if (lane.failed > 0) json["failed"][lane.name] = lane.failed;
+  }
+  if (const Lane* best = best_of_embree(row)) json["ratio"]["embree_best"] = ratio_to_dartcast(row, *best);
+  const TestCounts& tests = row.counters.orientation;
+  if (tests.tests > 0) json["exact_share"] = static_cast<double>(tests.exact) / static_cast<double>(tests.tests);
+  json["contacts_per_particle_step"] = per_step(row, contacts(row));
+  return json;
+}
+
+}  // namespace
+
+std::string report_json(std::span<const Row> rows) {
+  Json json = {{"version", DARTCAST_VERSION}, {"left_out", left_out()}, {"rows", Json::array()}};
+  for (const Row& row : rows) json["rows"].push_back(row_json(row));
+  json["figures"] = Json::object();
+  for (const Figure& figure : figures(rows)) json["figures"][figure.key] = figure.value;
+  return json.dump(1);
+}
+
+std::string report_csv(std::span<const Row> rows) {
+  std::string out =
+      "workload,cells,deforms,faces_of_a_cell,particles,order,step_length_in_cells,steps,threads,competitor,"
+      "ns_per_particle_step,mean_ns_per_particle_step,step_us_median,step_us_p99,step_us_longest,"
+      "orientation_tests_per_particle_step,disagreements,disagreements_at_start,failed\n";
+  for (const Row& row : rows) {
+    const WorkloadOptions& w = row.workload;
+    for (const Lane& lane : row.lanes) {
+      out += fmt::format("{},{},{:d},{},{},{},{},{},{},{},{:.2f},{:.2f},{:.2f},{:.2f},{:.2f},{:.3f},{},{},{}\n", w.name,
+                         row.cells, w.deforms, w.scene == Scene::tube ? fmt::to_string(w.size + 2) : "", w.particles,
+                         w.cell_order ? "cell" : "random", w.step_length, lane.step_ns.size(), row.threads, lane.name,
+                         lane.ns_per_particle_step(w.particles), lane.mean_ns_per_particle_step(w.particles),
+                         lane.quantile_ns(0.5) / 1e3, lane.quantile_ns(0.99) / 1e3, lane.quantile_ns(1.0) / 1e3,
+                         per_step(row, lane.tests), lane.disagreements, lane.at_start, lane.failed);
+    }
+  }
+  return out;
+}
+
+}  // namespace dartcast::bench

@@ -1,0 +1,207 @@
+// The batch that the filter decides against the step of one particle: the same bits wherever the batch takes a step.
+#include "dartcast/walk/filtered.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "dartcast/base/random.hpp"
+#include "dartcast/walk/step.hpp"
+#include "environment/particle_checks.hpp"
+#include "oracle/scenes.hpp"
+#include "tier.hpp"
+#include "walk/seeds.hpp"
+
+namespace dartcast::test {
+namespace {
+
+constexpr std::size_t particles = 40;
+constexpr std::size_t steps_per_scene = 30;
+
+struct Tally {
+  std::atomic<std::uint64_t> steps{0};
+  std::atomic<std::uint64_t> taken{0};
+  std::atomic<std::uint64_t> moved_on{0};  // taken into another simplex
+};
+
+// A scene whose particles are stepped both ways.
+class BothWays {
+ public:
+  BothWays(MeshData mesh, std::uint64_t seed, bool moves)
+      : mesh_(std::move(mesh)), complex_(mesh_), random_(seed, 9), moves_(moves) {
+    std::vector<SimplexId> free;
+    for (const Cell c : complex_.map().cells()) {
+      for (std::uint16_t s = 0; s < complex_.map().shape(c).simplices().size(); ++s) {
+        if (complex_.map().is_free(c)) free.push_back({c, s});
+      }
+    }
+    while (states_.size() < particles) {
+      State state;
+      const SimplexId at = free[random_.below(static_cast<std::uint32_t>(free.size()))];
+      state.put(at, point_of(complex_.corners(at)));
+      states_.push_back(state);
+    }
+  }
+
+  [[nodiscard]] bool usable() const { return complex_.invalid_cells().empty(); }
+
+  // One step of all particles; what differs.
+  std::string step(Tally& tally) {
+    if (moves_) move();
+    std::vector<Vec3> targets;
+    for (const State& s : states_) targets.push_back(target(s));
+    const Filtered portable = filtered(targets, detail::InstructionSet::portable);
+    const Filtered best = filtered(targets, detail::best_instruction_set());
+    if (portable.left != best.left) return "instruction sets leave different steps";
+    const StepOptions options;
+    const Respond none;
+    const Stepper stepper(complex_, moves_, options, none);
+    Counters counters;  // of the steps taken
+    std::vector<State> next = states_;
+    for (std::size_t i = 0; i < particles; ++i) {
+      Weights weights{};
+      ContactList contacts;
+      Counters own;
+      const StepResult result =
+          stepper.step(static_cast<std::uint32_t>(i), next[i], weights, targets[i], contacts, own);
+      const bool taken = best.left[i] == 0;
+      const State& expected = taken ? next[i] : states_[i];
+      if (!same_bits(best.states[i], expected) || !same_bits(portable.states[i], expected))
+        return fmt::format("particle {}: another state", i);
+      if (taken && (result.held || !contacts.contacts.empty())) return fmt::format("particle {}: held or stopped", i);
+      if (best.vertices[i] != detail::vertex_numbers(complex_, expected.at()))
+        return fmt::format("particle {}: other vertices", i);
+      if (taken) counters += own;
+      tally.steps += 1;
+      tally.taken += taken ? 1 : 0;
+      tally.moved_on += taken && next[i].at() != states_[i].at() ? 1 : 0;
+    }
+    states_ = next;
+    return same(counters, best.counters) && same(counters, portable.counters) ? "" : "other counts";
+  }
+
+ private:
+  struct Filtered {
+    std::vector<State> states;
+    std::vector<detail::VertexNumbers> vertices;
+    std::vector<std::uint8_t> left;
+    Counters counters;
+  };
+
+  Filtered filtered(std::span<const Vec3> targets, detail::InstructionSet set) const {
+    Filtered f{states_, {}, std::vector<std::uint8_t>(particles, 7), {}};
+    for (const State& s : states_) f.vertices.push_back(detail::vertex_numbers(complex_, s.at()));
+    detail::step_filtered({&complex_, moves_, StepOptions{}.tolerance}, {f.states, f.vertices, targets, f.left},
+                          f.counters, set);
+    return f;
+  }
+
+  static bool same(const Counters& a, const Counters& b) {
+    return a.particle_steps == b.particle_steps && a.orientation.tests == b.orientation.tests &&
+           a.histogram == b.histogram && a.forecast_kept == b.forecast_kept &&
+           a.updated_by_deformation == b.updated_by_deformation && a.contacts == b.contacts;
+  }
+
+  Vec3 point_of(const dartcast::Corners& v) {
+    Vec3 sum;
+    double weights = 0.0;
+    for (const Vec3& c : v) {
+      const double w = !moves_ && random_.below(8) == 0 ? 0.0 : random_.uniform();
+      sum += c * w;
+      weights += w;
+    }
+    if (weights == 0.0) return v[0];
+    const Vec3 p = sum * (1.0 / weights);
+    std::uint64_t exact = 0;
+    const Determinants d(v, p);
+    for (unsigned i = 0; i < 4; ++i) {
+      if (sign_of(d, i, v, p, exact) == Sign::negative) return v[0];
+    }
+    return p;
+  }
+
+  // Mostly small steps; some to a corner, some nowhere, some out of the scene.
+  Vec3 target(const State& s) {
+    const dartcast::Corners v = complex_.corners(s.at());
+    const double edge = norm(v[1] - v[0]);
+    const std::uint32_t kind = random_.below(16);
+    if (kind == 0 && s.touching_count > 0) return s.position;  // at rest elsewhere only the counts differ
+    if (kind == 1) return v[random_.below(4)];
+    const double length = edge * std::exp2(random_.uniform(-6.0, kind == 2 ? 4.0 : 1.0));
+    return s.position + Vec3{random_.uniform(-1, 1), random_.uniform(-1, 1), random_.uniform(-1, 1)} * length;
+  }
+
+  // Every vertex moves: all alike, each its own way, seldom far enough to turn cells.
+  void move() {
+    const double edge = norm(complex_.positions()[1] - complex_.positions()[0]);
+    const double own = edge * std::exp2(random_.uniform(-20.0, random_.below(8) == 0 ? 0.0 : -7.0));
+    const Vec3 all = Vec3{random_.uniform(-1, 1), random_.uniform(-1, 1), random_.uniform(-1, 1)} * edge;
+    const std::span<Vec3> next = complex_.next_positions();
+    for (std::size_t i = 0; i < next.size(); ++i) {
+      next[i] = mesh_.points[i] + all * 0.1 +
+                Vec3{random_.uniform(-1, 1), random_.uniform(-1, 1), random_.uniform(-1, 1)} * own;
+    }
+    complex_.commit_positions();
+  }
+
+  MeshData mesh_;
+  Complex complex_;
+  Random random_;
+  bool moves_;
+  std::vector<State> states_;
+};
+
+class FilteredBatch : public ::testing::TestWithParam<std::tuple<int, bool>> {};
+
+TEST_P(FilteredBatch, TakesStepsAsOneParticleDoes) {
+  const auto kind = static_cast<oracle::SceneKind>(std::get<0>(GetParam()));
+  const bool moves = std::get<1>(GetParam());
+  Tally tally;
+  const auto complaints = run_seeds(scaled(20, 2000), [&](std::uint64_t seed) -> std::string {
+    BothWays scene(seed % 4 == 0 ? oracle::lattice_scene(kind, seed) : oracle::random_scene(kind, seed, 0.5), seed,
+                   moves);
+    if (!scene.usable()) return {};
+    for (std::size_t i = 0; i < steps_per_scene; ++i) {
+      const std::string wrong = scene.step(tally);
+      if (!wrong.empty()) return fmt::format("{}, seed {}, step {}: {}", oracle::name_of(kind), seed, i, wrong);
+    }
+    return {};
+  });
+  for (const std::string& wrong : complaints) ADD_FAILURE() << wrong;
+  // Not in slivers, and not in so many cells that have no way on.
+  if (kind == oracle::SceneKind::slivers) return;
+  EXPECT_GT(tally.taken, tally.steps / (moves ? 8 : 4));
+  EXPECT_GT(tally.moved_on, tally.steps / 50);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, FilteredBatch,
+                         ::testing::Combine(::testing::Range(0, oracle::scene_kinds), ::testing::Bool()),
+                         [](const auto& info) {
+                           return oracle::name_of(static_cast<oracle::SceneKind>(std::get<0>(info.param))) +
+                                  (std::get<1>(info.param) ? "_moving" : "_still");
+                         });
+
+TEST(FilteredBatch, RangesAreCheckedToTheLastNumber) {
+  const double good[] = {0.0, -0.0, smallest_magnitude, -largest_magnitude, 1.0};
+  const double bad[] = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+                        largest_magnitude * 1.0000000000000002, -smallest_magnitude * 0.9999999999999999, 5e-324};
+  for (std::size_t count = 0; count < 9; ++count) {
+    std::vector<Vec3> points(count, Vec3{good[count % 5], good[(count + 1) % 5], good[(count + 2) % 5]});
+    EXPECT_TRUE(detail::all_in_exact_range(points));
+    for (Vec3& p : points) {
+      for (double* c : {&p.x, &p.y, &p.z}) {
+        const double kept = *c;
+        for (const double b : bad) {
+          *c = b;
+          EXPECT_FALSE(detail::all_in_exact_range(points)) << b;
+        }
+        *c = kept;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace dartcast::test
