@@ -198,6 +198,70 @@ TEST(Filter, NeverDecidesWhatIsNotFinite) {
   EXPECT_TRUE(filter_applies(1.0, 1.0));
 }
 
+// Points of a lattice with another unit along each axis, about so many units apart, far from the origin or not: exact
+// in doubles, just about, or not.
+struct LatticeQuadruple {
+  Quadruple q;
+  bool nudged;  // one coordinate, by a unit in the last place
+
+  LatticeQuadruple(Quadruples& numbers, int spread) : nudged(numbers.random().below(4) == 0) {
+    for (double Vec3::*axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
+      const int unit = static_cast<int>(numbers.random().below(200)) - 100;
+      const double offset = numbers.random().below(2) == 0 ? 0.0 : numbers.integer(1 << 30);
+      for (Vec3& p : q) p.*axis = std::ldexp(offset + numbers.integer(spread), unit);
+    }
+    double& x = q[numbers.random().below(4)].*(numbers.random().below(2) == 0 ? &Vec3::x : &Vec3::z);
+    if (nudged) x = std::nextafter(x, 4.0 * x + 1.0);
+  }
+};
+
+TEST(RoundsNothing, IsTrueOnlyWhereTheDeterminantIsExact) {
+  Quadruples numbers(400);
+  int true_at_limit = 0;
+  int false_at_limit = 0;
+  const int n = cases(100'000);
+  for (int i = 0; i < n; ++i) {
+    const int bits = 8 + i % 13;  // differences below 2^(bits + 1) units
+    const LatticeQuadruple lattice(numbers, 1 << bits);
+    const auto& [a, b, c, d] = lattice.q;
+    const Vec3 extent = extent_of(a - d, b - d, c - d);
+    const double m = extent.x * extent.y * extent.z;
+    if (!filter_applies(std::max({extent.x, extent.y, extent.z}), m)) continue;
+    const bool exact = rounds_nothing(extent, a, b, c, d);
+    if (exact) {
+      ASSERT_EQ(Dyadic(dot(a - d, cross(c - d, b - d))), determinant(a, b, c, d)) << text(lattice.q);
+    }
+    if (bits < 15 && !lattice.nudged) {
+      ASSERT_TRUE(exact) << text(lattice.q);
+    }
+    true_at_limit += bits == 16 && exact ? 1 : 0;
+    false_at_limit += bits == 16 && !exact && !lattice.nudged ? 1 : 0;
+    ASSERT_EQ(filtered(lattice.q), true_sign(lattice.q)) << text(lattice.q);
+  }
+  EXPECT_GT(true_at_limit, n / 200);
+  EXPECT_GT(false_at_limit, n / 200);
+}
+
+TEST(RoundsNothing, IsFalseWhereSomethingIsNotFiniteOrOffTheLattice) {
+  const Vec3 extent{1, 1, 1};
+  EXPECT_TRUE(rounds_nothing(extent, Vec3{0x1p+60, -3, 0.25}, Vec3{}));
+  EXPECT_TRUE(rounds_nothing(extent, Vec3{1.0 - 0x1p-15, 0, 0}));
+  EXPECT_FALSE(rounds_nothing(extent, Vec3{1.0 - 0x1p-16, 0, 0}));
+  EXPECT_FALSE(rounds_nothing(extent, Vec3{}, Vec3{0, 0, 0x1p-1074}));
+  for (const double bad : {nan, infinity, -infinity}) EXPECT_FALSE(rounds_nothing(extent, Vec3{0, bad, 0}));
+}
+
+// Where all twelve coordinates are at the limit, every bit of the double is used: one more, and it would round.
+TEST(RoundsNothing, HoldsForTheLargestDeterminantOfALattice) {
+  for (const double n : {0x1p+15 - 1.0, 0x1p+16 - 1.0, 0x1p+17 - 1.0, 0x1p+18 - 1.0}) {
+    const Quadruple q = {Vec3{n, -n, n}, Vec3{n, n, -n}, Vec3{-n, n, n}, Vec3{0, 0, 0}};
+    const Vec3 extent{n, n, n};
+    const Dyadic rounded(dot(q[0], cross(q[2], q[1])));
+    EXPECT_EQ(rounds_nothing(extent, q[0], q[1], q[2], q[3]), n < 0x1p+16);
+    EXPECT_EQ(rounded == determinant(q[0], q[1], q[2], q[3]), n < 0x1p+17) << n;
+  }
+}
+
 TEST(Orient3dValue, IsNearTheTrueValueAndOfItsSign) {
   const int n = cases(40'000);
   for (int k = 0; k < quadruple_kinds; ++k) {

@@ -63,25 +63,37 @@ class Sample {
 };
 
 TEST(Determinants, SignsAndProofsAgreeWithRationals) {
-  int undecided = 0, proved = 0, not_positive = 0;
+  int undecided = 0, on_lattice = 0, proved = 0, not_positive = 0;
   for (std::uint64_t seed = 1; seed <= 3000; ++seed) {
     const Sample s(seed);
     const Determinants d(s.v, s.x);
     Rational sum = 0;
     std::uint64_t exact = 0;
+    unsigned negative = 0, zero = 0;
     for (unsigned i = 0; i < 4; ++i) {
       Corners replaced = s.v;
       replaced[i] = s.x;
       const Rational truth = determinant(replaced[0], replaced[1], replaced[2], replaced[3]);
       sum += truth;
+      negative |= truth < 0 ? 1U << i : 0U;
+      zero |= truth == 0 ? 1U << i : 0U;
       const std::uint64_t before = exact;
       EXPECT_EQ(static_cast<int>(sign_of(d, i, s.v, s.x, exact)), truth.sign()) << "seed " << seed << ", det " << i;
       EXPECT_EQ(static_cast<int>(orient_facet(s.v, i, s.x)), truth.sign());
       EXPECT_EQ(exact - before, d.decides(i) ? 0U : 1U);
+      if (d.exact(s.v, s.x)) EXPECT_EQ(Rational(d.value[i]), truth) << "seed " << seed << ", det " << i;
       if (d.applies)
         EXPECT_LE(abs(Rational(d.value[i]) - truth), Rational(d.bound)) << "seed " << seed << ", det " << i;
     }
+    for (unsigned asked = 0; asked < 16; ++asked) {
+      std::uint64_t left = 0;
+      const DeterminantSigns signs = signs_of(d, s.v, s.x, asked, left);
+      EXPECT_EQ(signs.negative, negative & asked) << "seed " << seed;
+      EXPECT_EQ(signs.zero, zero & asked) << "seed " << seed;
+      if (asked == 15) EXPECT_EQ(left, exact);
+    }
     undecided += exact > 0 ? 1 : 0;
+    on_lattice += exact > 0 && d.exact(s.v, s.x) ? 1 : 0;
     const Rational volume = determinant(s.v[0], s.v[1], s.v[2], s.v[3]);
     EXPECT_EQ(sum, volume);
     EXPECT_EQ(static_cast<int>(volume_sign(s.v)), volume.sign());
@@ -90,6 +102,8 @@ TEST(Determinants, SignsAndProofsAgreeWithRationals) {
     not_positive += volume <= 0 ? 1 : 0;
   }
   EXPECT_GT(undecided, 100);
+  EXPECT_GT(on_lattice, 20);
+  EXPECT_GT(undecided - on_lattice, 100);
   EXPECT_GT(proved, 500);
   EXPECT_GT(not_positive, 500);
 }

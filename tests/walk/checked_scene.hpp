@@ -47,6 +47,9 @@ class CheckedScene {
                                        const oracle::Trace& trace) const;
   [[nodiscard]] std::string check_contact(const Contact& contact, std::span<const WallHit> walls, const State& before,
                                           const State& after, const Vec3& q, const oracle::Trace& trace) const;
+  /// A distance within which, by an exact proof, no double lies in a closed free simplex: `from` or more, where that
+  /// can be shown, else 0.
+  [[nodiscard]] double least_distance(const Vec3& x, double from) const;
 
   MeshData mesh_;
   Complex complex_;

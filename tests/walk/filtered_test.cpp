@@ -178,9 +178,9 @@ TEST_P(FilteredBatch, TakesStepsAsOneParticleDoes) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, FilteredBatch,
                          ::testing::Combine(::testing::Range(0, oracle::scene_kinds), ::testing::Bool()),
-                         [](const auto& info) {
-                           return oracle::name_of(static_cast<oracle::SceneKind>(std::get<0>(info.param))) +
-                                  (std::get<1>(info.param) ? "_moving" : "_still");
+                         [](const auto& scene) {
+                           return oracle::name_of(static_cast<oracle::SceneKind>(std::get<0>(scene.param))) +
+                                  (std::get<1>(scene.param) ? "_moving" : "_still");
                          });
 
 TEST(FilteredBatch, RangesAreCheckedToTheLastNumber) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 
@@ -94,6 +95,65 @@ std::string walk_scene(oracle::SceneKind kind, std::uint64_t seed, Tally& tally)
     tally.contacts += contacts.contacts.size();
   }
   return {};
+}
+
+struct SliverStep {
+  std::uint64_t seed;
+  std::uint32_t simplex;
+  Vec3 from, to;
+};
+
+// Contacts between walls at angles of 1e-9 to 1e-17, where few doubles are inside. They were put back by up to 1e11
+// units in the last place.
+constexpr std::array sliver_steps = {
+    SliverStep{115,
+               69,
+               {0x1.9cc1d0257faefp+1, 0x1.ff58387481ad1p+1, 0x1.7d85b126a02bep+2},
+               {0x1.fd1e9036e7c38p+0, 0x1.00f21500335cep+2, 0x1.3fd63f6c23f33p+2}},
+    SliverStep{
+        254, 25, {0x1.8e0eee30d151cp+1, 0x1.2ca236ac7776cp+1, 0x1.6550e02061c43p-2}, {0x1.8p+2, 0x0p+0, 0x1.8p+2}},
+    SliverStep{361,
+               25,
+               {0x1.d91a54d220d02p+0, 0x1.c966db67aba8fp-1, 0x1.aa59bda67adfbp+1},
+               {0x1.de43ca4bb3752p-1, -0x1.73c274d7761aap-2, 0x1.1de8dba427826p+1}},
+    SliverStep{406,
+               86,
+               {0x1.258b22c959c44p+2, 0x1.06fc32b1e3dcep+2, 0x1.5ae5b684c175cp+0},
+               {0x1.1e5e5b580d8dfp+1, 0x1.78bd60c0439eep+2, 0x1.047f3e86bff77p+2}},
+    SliverStep{444, 60, {0x1.49d308749c8b2p+0, 0x1.5274c21c9e4aep+2, 0x1.515ae4021afa8p+1}, {0x0p+0, 0x0p+0, 0x1p+2}},
+    SliverStep{462, 17, {0x1.08984872962a2p+2, 0x1.13090e52c5477p-3, 0x1.70ce9e18b72efp+0}, {0x0p+0, 0x1p+1, 0x0p+0}},
+    SliverStep{633,
+               46,
+               {0x1.0ab9926800632p+2, 0x1.09c395eb6706cp+2, 0x1.115796d83cd74p+2},
+               {0x1.6b7a07af72215p+1, 0x1.fc294d9a9600fp+0, 0x1.012838a441d12p+2}},
+    SliverStep{642,
+               44,
+               {0x1.e112d9412d978p+1, 0x1p+2, 0x1.51db50cf23ffep+1},
+               {0x1.e48fb9ccf29b6p+1, 0x1.f5ec43df23366p+1, 0x1.49ddeef860287p+1}},
+    SliverStep{664,
+               46,
+               {0x1.ae3c328f80214p+1, 0x1.6c2b0e448d9ddp+1, 0x1.fffffffe90bb8p+1},
+               {0x1.a39999635c926p+1, 0x1.c3ad6583ab32dp+1, 0x1.fffffffe60f64p+1}},
+    SliverStep{817,
+               69,
+               {0x1.ee4893d8a8859p+1, 0x1.87ecc248a5d14p+2, 0x1.07f6783aee8dap+2},
+               {0x1.f07d7f086176p+0, 0x1.8af0cfb8fee18p+2, 0x1.790ff36bf0bb6p+1}},
+    SliverStep{953,
+               69,
+               {0x1.d25420145f6edp+0, 0x1.8adc801d0f052p+2, 0x1.8c837ed669bfp+1},
+               {0x1.bd11f68061689p+0, 0x1.8c1adedb97c1fp+2, 0x1.82a57af431974p+1}}};
+
+TEST(SliverContacts, KeepsContactsBetweenWallsAtSmallAnglesInPlace) {
+  for (const SliverStep& step : sliver_steps) {
+    const auto scene = make_valid(oracle::SceneKind::slivers, step.seed);
+    ASSERT_TRUE(scene->valid()) << step.seed;
+    ASSERT_TRUE(scene->oracle().contains(step.simplex, step.from)) << step.seed;
+    State state;
+    state.put(scene->library_simplex(step.simplex), step.from);
+    ContactList contacts;
+    EXPECT_EQ(scene->check_step(state, step.to, contacts), "") << step.seed;
+    EXPECT_EQ(contacts.contacts.size(), 1U) << step.seed;
+  }
 }
 
 class WalkOracle : public ::testing::TestWithParam<int> {};

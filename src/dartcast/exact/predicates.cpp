@@ -11,27 +11,62 @@ namespace {
 
 bool in_exact_range(double x) {
   const double m = std::abs(x);
-  return m == 0.0 || (m >= smallest_magnitude && m <= largest_magnitude);  // false for NaN
+  return m <= largest_magnitude && (m >= smallest_magnitude || m == 0.0);  // false for NaN
 }
 
+template <class... Points>
+bool all_in_range(const Points&... points) {
+  return (in_exact_range(points) && ...);
+}
+
+Sign sign(double x) { return x > 0.0 ? Sign::positive : x < 0.0 ? Sign::negative : Sign::zero; }
+
+// Differences of N components each: 2, or 1 where none of them is rounded.
+template <std::size_t N>
 struct ExactVector {
-  Expansion<2> x, y, z;
+  Expansion<N> x, y, z;
 };
 
-ExactVector exact_difference(const Vec3& a, const Vec3& b) {
-  return {difference(a.x, b.x), difference(a.y, b.y), difference(a.z, b.z)};
+template <std::size_t N>
+ExactVector<N> exact_difference(const Vec3& a, const Vec3& b) {
+  if constexpr (N == 2) {
+    return {difference(a.x, b.x), difference(a.y, b.y), difference(a.z, b.z)};
+  } else {
+    ExactVector<N> d;
+    d.x.push(a.x - b.x);
+    d.y.push(a.y - b.y);
+    d.z.push(a.z - b.z);
+    return d;
+  }
+}
+
+bool rounds_difference(const Vec3& a, const Vec3& b) {
+  return detail::two_sum(a.x, -b.x).low != 0.0 || detail::two_sum(a.y, -b.y).low != 0.0 ||
+         detail::two_sum(a.z, -b.z).low != 0.0;
+}
+
+template <std::size_t N>
+ExactVector<4 * N * N> exact_cross(const ExactVector<N>& u, const ExactVector<N>& v) {
+  return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+}
+
+template <std::size_t N, std::size_t M>
+auto exact_dot(const ExactVector<N>& u, const ExactVector<M>& v) {
+  return u.x * v.x + u.y * v.y + u.z * v.z;
 }
 
 // det[b - a, c - a, d - a], expanded along the coordinates of a - d.
-Expansion<192> exact_determinant(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  const ExactVector u = exact_difference(a, d);
-  const ExactVector v = exact_difference(c, d);
-  const ExactVector w = exact_difference(b, d);
-  return u.x * (v.y * w.z - v.z * w.y) + u.y * (v.z * w.x - v.x * w.z) + u.z * (v.x * w.y - v.y * w.x);
+template <std::size_t N>
+auto exact_determinant(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  return exact_dot(exact_difference<N>(a, d), exact_cross(exact_difference<N>(c, d), exact_difference<N>(b, d)));
 }
 
-bool all_in_range(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  return in_exact_range(a) && in_exact_range(b) && in_exact_range(c) && in_exact_range(d);
+// use(determinant), an expansion no longer than it must be.
+template <class Use>
+auto with_exact_determinant(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, Use&& use) {
+  if (rounds_difference(a, d) || rounds_difference(b, d) || rounds_difference(c, d))
+    return use(exact_determinant<2>(a, b, c, d));
+  return use(exact_determinant<1>(a, b, c, d));
 }
 
 // The determinant in doubles and a bound of its error.
@@ -39,6 +74,7 @@ struct Filtered {
   double value;
   double bound;
   bool applies;
+  Vec3 extent;
 
   [[nodiscard]] bool decided() const { return applies && std::abs(value) > bound; }
 };
@@ -47,12 +83,10 @@ Filtered filtered_determinant(const Vec3& a, const Vec3& b, const Vec3& c, const
   const Vec3 u = a - d;
   const Vec3 v = c - d;
   const Vec3 w = b - d;
-  const auto largest = [](double p, double q, double r) { return std::max({std::abs(p), std::abs(q), std::abs(r)}); };
-  const double x = largest(u.x, v.x, w.x);
-  const double y = largest(u.y, v.y, w.y);
-  const double z = largest(u.z, v.z, w.z);
-  const double m = x * y * z;
-  return {dot(u, cross(v, w)), determinant_error * m, filter_applies(std::max({x, y, z}), m)};
+  const Vec3 extent = extent_of(u, v, w);
+  const double m = extent.x * extent.y * extent.z;
+  return {dot(u, cross(v, w)), determinant_error * m, filter_applies(std::max({extent.x, extent.y, extent.z}), m),
+          extent};
 }
 
 }  // namespace
@@ -66,14 +100,18 @@ Sign orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
 
 Sign orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, std::uint64_t& exact) {
   const Filtered f = filtered_determinant(a, b, c, d);
-  if (f.decided()) return f.value > 0.0 ? Sign::positive : Sign::negative;
+  if (f.decided()) return sign(f.value);
   ++exact;
   return orient3d_exact(a, b, c, d);
 }
 
 Sign orient3d_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   if (!all_in_range(a, b, c, d)) return Sign::undecidable;
-  return static_cast<Sign>(exact_determinant(a, b, c, d).sign());
+  const Filtered f = filtered_determinant(a, b, c, d);
+  // Points of a plane across an axis: a difference is 0 only where it is 0 exactly.
+  if (f.extent.x == 0.0 || f.extent.y == 0.0 || f.extent.z == 0.0) return Sign::zero;
+  if (f.applies && rounds_nothing(f.extent, a, b, c, d)) return sign(f.value);
+  return with_exact_determinant(a, b, c, d, [](const auto& value) { return static_cast<Sign>(value.sign()); });
 }
 
 double orient3d_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
@@ -81,52 +119,47 @@ double orient3d_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d
   constexpr double enough = 0x1p+49;
   if (f.decided() && std::abs(f.value) > enough * f.bound) return f.value;
   if (!all_in_range(a, b, c, d)) return std::numeric_limits<double>::quiet_NaN();
-  return exact_determinant(a, b, c, d).estimate();
+  if (f.applies && rounds_nothing(f.extent, a, b, c, d)) return f.value;
+  return with_exact_determinant(a, b, c, d, [](const auto& value) { return value.estimate(); });
 }
 
-namespace {
-
-using ExactNormal = std::array<Expansion<16>, 3>;
-
-// Cross product of two differences.
-ExactNormal exact_cross(const ExactVector& u, const ExactVector& v) {
-  return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+Shift::Shift(const Vec3& p, std::span<const Vec3> opposite) : p_(p), in_range_(in_exact_range(p)) {
+  opposite_.fill(p);
+  std::copy(opposite.begin(), opposite.end(), opposite_.begin());
+  for (const Vec3& o : opposite_) in_range_ = in_range_ && in_exact_range(o);
 }
 
-}  // namespace
-
-Shift::Shift(const Vec3& p, std::span<const Vec3> opposite) : count_(opposite.size()), in_range_(in_exact_range(p)) {
-  for (std::size_t i = 0; i < count_; ++i) {
-    const ExactVector d = exact_difference(opposite[i], p);
-    toward_[i] = {d.x, d.y, d.z};
-    in_range_ = in_range_ && in_exact_range(opposite[i]);
-  }
-}
-
-template <class Normal>
-Sign Shift::sign_along(const Normal& n) const {
-  Expansion<576> along;
-  for (std::size_t i = 0; i < count_; ++i) {
-    const auto& w = toward_[i];
-    const auto sum = along + (n[0] * w[0] + n[1] * w[1] + n[2] * w[2]);
-    along.size = std::min<std::size_t>(sum.size, 576);
-    std::copy_n(sum.component.begin(), along.size, along.component.begin());
-  }
-  if (const int s = along.sign(); s != 0) return static_cast<Sign>(s);
-  for (const auto& coordinate : n) {
-    if (const int s = coordinate.sign(); s != 0) return static_cast<Sign>(s);
+// With n = (q - p) x (b - a), the terms are n.w, n.x, n.y and n.z.
+Sign Shift::of_line(const Vec3& a, const Vec3& b, const Vec3& q) const {
+  if (!in_range_ || !all_in_range(a, b, q)) return Sign::undecidable;
+  const auto& [o0, o1, o2] = opposite_;
+  const Vec3 extent = extent_of(q - p_, b - a, o0 - p_, o1 - p_, o2 - p_);
+  const Vec3 n = cross(q - p_, b - a);
+  const double along = dot(n, (o0 - p_) + (o1 - p_) + (o2 - p_));
+  // Four roundings in a component of n, three in one of w, one in their product and two in the sum: 10 e, of 18
+  // products that are at most m each. The last factor is that of determinant_error.
+  constexpr double error = 180.0 * 0x1p-53 * (1.0 + 0x1p-10);
+  const double m = extent.x * extent.y * extent.z;
+  if (filter_applies(std::max({extent.x, extent.y, extent.z}), m) && std::abs(along) > error * m) return sign(along);
+  const auto large_enough = [](double e) { return e == 0.0 || e >= 0x1p-250; };
+  if (!large_enough(extent.x) || !large_enough(extent.y) || !large_enough(extent.z) ||
+      !rounds_nothing(extent, p_, q, a, b, o0, o1, o2))
+    return of_line_exact(a, b, q);
+  for (const double term : {along, n.x, n.y, n.z}) {
+    if (term != 0.0) return sign(term);
   }
   return Sign::zero;
 }
 
-Sign Shift::of_plane(const Vec3& a, const Vec3& b, const Vec3& c) const {
-  if (!in_range_ || !in_exact_range(a) || !in_exact_range(b) || !in_exact_range(c)) return Sign::undecidable;
-  return sign_along(exact_cross(exact_difference(b, a), exact_difference(c, a)));
-}
-
-Sign Shift::of_line(const Vec3& a, const Vec3& b, const Vec3& p, const Vec3& q) const {
-  if (!in_range_ || !all_in_range(a, b, p, q)) return Sign::undecidable;
-  return sign_along(exact_cross(exact_difference(q, p), exact_difference(b, a)));
+Sign Shift::of_line_exact(const Vec3& a, const Vec3& b, const Vec3& q) const {
+  const auto n = exact_cross(exact_difference<2>(q, p_), exact_difference<2>(b, a));
+  const auto along = exact_dot(n, exact_difference<2>(opposite_[0], p_)) +
+                     exact_dot(n, exact_difference<2>(opposite_[1], p_)) +
+                     exact_dot(n, exact_difference<2>(opposite_[2], p_));
+  for (const int term : {along.sign(), n.x.sign(), n.y.sign(), n.z.sign()}) {
+    if (term != 0) return static_cast<Sign>(term);
+  }
+  return Sign::zero;
 }
 
 }  // namespace dartcast

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -37,6 +38,7 @@ struct Determinants {
   std::array<double, 4> value;
   double bound;  ///< largest error of each value
   bool applies;  ///< whether the bound holds (everything finite and in range)
+  Vec3 extent;   ///< of the differences
 
   Determinants(const Corners& v, const Vec3& x) {
     const Vec3 r0 = v[0] - x;
@@ -46,15 +48,10 @@ struct Determinants {
     const Vec3 n01 = cross(r0, r1);
     const Vec3 n23 = cross(r2, r3);
     value = {dot(r1, n23), -dot(r0, n23), dot(r3, n01), -dot(r2, n01)};
-    const auto largest = [](double a, double b, double c, double d) {
-      return std::max(std::max(std::abs(a), std::abs(b)), std::max(std::abs(c), std::abs(d)));
-    };
-    const double mx = largest(r0.x, r1.x, r2.x, r3.x);
-    const double my = largest(r0.y, r1.y, r2.y, r3.y);
-    const double mz = largest(r0.z, r1.z, r2.z, r3.z);
-    const double m = mx * my * mz;
+    extent = extent_of(r0, r1, r2, r3);
+    const double m = extent.x * extent.y * extent.z;
     bound = determinant_error * m;
-    applies = filter_applies(std::max(std::max(mx, my), mz), m);
+    applies = filter_applies(std::max(std::max(extent.x, extent.y), extent.z), m);
   }
 
   [[nodiscard]] double volume6() const { return (value[0] + value[1]) + (value[2] + value[3]); }
@@ -66,12 +63,55 @@ struct Determinants {
     return applies && std::min(std::min(value[0], value[1]), std::min(value[2], value[3])) > bound;
   }
   [[nodiscard]] bool decides(unsigned i) const { return applies && std::abs(value[i]) > bound; }
+  /// Whether the values are exact. `v`, `x`: those that the determinants are of.
+  [[nodiscard]] bool exact(const Corners& v, const Vec3& x) const {
+    return applies && rounds_nothing(extent, v[0], v[1], v[2], v[3], x);
+  }
 };
+
+/// Of some of the four determinants: bit i is set where det_i is negative, or zero. In neither: positive, or
+/// undecidable.
+struct DeterminantSigns {
+  unsigned negative = 0;
+  unsigned zero = 0;
+};
+
+/// Exact signs of the determinants in the mask `asked`; `exact` counts the signs that the filter left open.
+inline DeterminantSigns signs_of(const Determinants& d, const Corners& v, const Vec3& x, unsigned asked,
+                                 std::uint64_t& exact) {
+  DeterminantSigns signs;
+  unsigned open = 0;
+  for (unsigned i = 0; i < 4; ++i) {
+    signs.negative |= d.value[i] < 0.0 ? 1U << i : 0U;
+    signs.zero |= d.value[i] == 0.0 ? 1U << i : 0U;
+    open |= d.decides(i) ? 0U : 1U << i;
+  }
+  open &= asked;
+  signs.negative &= asked;
+  signs.zero &= asked;
+  if (open == 0) return signs;
+  const bool exact_values = d.exact(v, x);
+  if (!exact_values) {
+    signs.negative &= ~open;
+    signs.zero &= ~open;
+  }
+  for (; open != 0; open &= open - 1) {
+    ++exact;
+    if (exact_values) continue;
+    const auto i = static_cast<unsigned>(std::countr_zero(open));
+    const auto& f = facet_corners[i];
+    const Sign s = orient3d_exact(v[f[0]], v[f[1]], v[f[2]], x);
+    signs.negative |= s == Sign::negative ? 1U << i : 0U;
+    signs.zero |= s == Sign::zero ? 1U << i : 0U;
+  }
+  return signs;
+}
 
 /// Exact sign of det_i; `exact` counts the signs that the filter left open.
 inline Sign sign_of(const Determinants& d, unsigned i, const Corners& v, const Vec3& x, std::uint64_t& exact) {
   if (d.decides(i)) return d.value[i] > 0.0 ? Sign::positive : Sign::negative;
   ++exact;
+  if (d.exact(v, x)) return d.value[i] > 0.0 ? Sign::positive : d.value[i] < 0.0 ? Sign::negative : Sign::zero;
   const auto& f = facet_corners[i];
   return orient3d_exact(v[f[0]], v[f[1]], v[f[2]], x);
 }

@@ -86,9 +86,16 @@ void Map::set_free(Cell c, bool free) {
 }
 
 Patch Map::patch(CellFace f) const {
-  const auto found = std::lower_bound(patches_.begin(), patches_.end(), f,
-                                      [](const auto& entry, const CellFace& key) { return entry.first < key; });
-  return found != patches_.end() && found->first == f ? found->second : Patch{};
+  if (patches_.empty()) return {};
+  // Bisection without branches: where it goes can't be foretold.
+  const auto key = [](const CellFace& g) { return (std::uint64_t{g.cell.value} << 16U) | g.face; };
+  const auto* entry = patches_.data();
+  for (std::size_t count = patches_.size(); count > 1;) {
+    const std::size_t half = count / 2;
+    entry += key(entry[half].first) <= key(f) ? half : 0;
+    count -= half;
+  }
+  return entry->first == f ? entry->second : Patch{};
 }
 
 Patch Map::patch(std::string_view name) const {

@@ -19,7 +19,10 @@ DARTCAST_TARGET inline Quad magnitude(const Quad& v) {
                                 Mask{all_but_sign, all_but_sign, all_but_sign, all_but_sign});
 }
 DARTCAST_TARGET inline Quad larger(const Quad& a, const Quad& b) { return a > b ? a : b; }
-DARTCAST_TARGET inline double square(const Quad& row) { return row[0] * row[0] + row[1] * row[1] + row[2] * row[2]; }
+DARTCAST_TARGET inline double square(const Quad& row) {
+  const Quad squares = row * row;
+  return (squares[0] + squares[1]) + squares[2];
+}
 
 // The determinants of geometry/simplex.hpp, by the same operations, one in each lane; and their bound.
 struct FilteredDeterminants {
@@ -59,7 +62,9 @@ struct FilteredDeterminants {
   }
 
   [[nodiscard]] DARTCAST_TARGET double volume6() const { return (value[0] + value[1]) + (value[2] + value[3]); }
-  [[nodiscard]] DARTCAST_TARGET bool proves_positive() const { return applies && volume6() > 8.0 * bound; }
+  // Surely no more than six times the volume.
+  [[nodiscard]] DARTCAST_TARGET double least_volume6() const { return volume6() - 8.0 * bound; }
+  [[nodiscard]] DARTCAST_TARGET bool proves_positive() const { return applies && least_volume6() > 0.0; }
   // Bit i: value i is proved positive, or negative.
   [[nodiscard]] DARTCAST_TARGET unsigned positive() const { return lanes_set(value > bound); }
   [[nodiscard]] DARTCAST_TARGET unsigned negative() const { return lanes_set(value < -bound); }
@@ -84,26 +89,26 @@ DARTCAST_TARGET inline bool ride_along(const Rows& before, const Rows& now, cons
   return FilteredDeterminants(now, load_row(ridden)).all_positive();
 }
 
-// Whether a step relative to moving vertices surely needs no splitting (walk/step.hpp). With u the corners'
-// displacements relative to the first, D the longest, L the longest edge from there and V six times the volume before:
-// |A| <= 3 D L^2 / V, the shortest edge is at least V / L^2, and the particle's own motion at most |q - p - u0| + D.
-DARTCAST_TARGET inline bool is_one_part(const Rows& before, const Rows& now, const Vec3& p, const Vec3& q,
-                                        double tolerance) {
+// Whether a step relative to moving vertices surely needs no splitting (walk/step.hpp). With D the longest displacement
+// of a corner relative to the first, L the longest edge from there, before and after, and V six times the volume
+// before: |A| <= 3 D L^2 / V, the shortest edge is at least V / L^2, V at least the volume after less 3 D L^2, and the
+// particle's own motion at most |q - p - u0| + D.
+DARTCAST_TARGET inline bool is_one_part(const Rows& before, const Rows& now, double volume_now, const Vec3& p,
+                                        const Quad& q, double tolerance) {
   const Quad u0 = now.corner[0] - before.corner[0];
-  Quad longest{};
-  Quad farthest{};
-  std::array<Quad, 3> edge;
-  for (unsigned i = 0; i < 3; ++i) {
-    edge[i] = before.corner[i + 1] - before.corner[0];
-    longest = larger(longest, magnitude(edge[i]));
-    farthest = larger(farthest, magnitude((now.corner[i + 1] - before.corner[i + 1]) - u0));
+  Quad longest = magnitude(now.corner[1] - now.corner[0]);
+  Quad farthest = magnitude((now.corner[1] - before.corner[1]) - u0);
+  for (unsigned i = 2; i < 4; ++i) {
+    longest = larger(longest, magnitude(now.corner[i] - now.corner[0]));
+    farthest = larger(farthest, magnitude((now.corner[i] - before.corner[i]) - u0));
   }
-  const double volume = dot(vec_of(edge[0]), cross(vec_of(edge[1]), vec_of(edge[2])));
-  const double l2 = square(longest);
   const double d = std::sqrt(square(farthest));
-  const double own = std::sqrt(square(load_row(q) - load_row(p) - u0)) + d;
+  const double own = std::sqrt(square(q - load_row(p) - u0)) + d;
+  const double l = std::sqrt(square(longest)) + d;
   constexpr double rounding = 1.01;
-  return 3.0 * rounding * d * own * l2 * l2 <= 2.0 * tolerance * volume * volume;
+  const double change = 3.0 * rounding * d * l * l;  // of the volume
+  const double volume = volume_now - change;
+  return volume > 0.0 && change * own * l * l <= 2.0 * tolerance * volume * volume;
 }
 
 // A simplex that a walk has come to.
@@ -172,7 +177,8 @@ class Batch {
     determinants_[k] = FilteredDeterminants(now, load_row(targets_[i]));
     inside_[k] = determinants_[k].all_positive();
     if constexpr (moved) {
-      one_part_[k] = is_one_part(Rows(before_, vertices_[i]), now, states_[i].position, targets_[i], tolerance_);
+      one_part_[k] = is_one_part(Rows(before_, vertices_[i]), now, determinants_[k].least_volume6(),
+                                 states_[i].position, load_row(targets_[i]), tolerance_);
     }
   }
 

@@ -2,69 +2,97 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "dartcast/walk/contact.hpp"
 #include "dartcast/walk/ride.hpp"
 
 namespace dartcast::detail {
 
-/// The corners of the wall facet's simplex that span the feature in whose interior the segment meets the wall.
-template <class Positions>
-unsigned zeros_at_wall(const Space<Positions>& space, const Walk& w, const Vec3& p, const Vec3& q) {
-  const Corners v = space.corners(w.wall_simplex);
-  if (w.at_start) return zeros_of(v, p);
-  if (w.at_end) return zeros_of(v, q);
-  unsigned zeros = 1U << w.wall_facet;
-  for (unsigned i = 0; i < 4; ++i) {
-    if (i == w.wall_facet) continue;
-    // On the side of the facet opposite to corner i, if the segment meets that side's line.
-    const auto& e = side_edge[w.wall_facet][i];
-    if (orient3d(v[e[0]], v[e[1]], p, q) == Sign::zero) zeros |= 1U << i;
+/// A determinant of three differences of stored doubles, in doubles, and its permanent: the error is at most Shewchuk's
+/// share of that, a sixth of determinant_error (exact/predicates.hpp).
+struct Determinant {
+  double value;
+  double permanent;
+
+  Determinant(const Vec3& u, const Vec3& v, const Vec3& w)
+      : value(dot(u, cross(v, w))),
+        permanent(std::abs(u.x) * (std::abs(v.y * w.z) + std::abs(v.z * w.y)) +
+                  std::abs(u.y) * (std::abs(v.z * w.x) + std::abs(v.x * w.z)) +
+                  std::abs(u.z) * (std::abs(v.x * w.y) + std::abs(v.y * w.x))) {}
+
+  static constexpr double error = determinant_error / 6.0;
+
+  /// Whether the value exceeds `times` its error.
+  [[nodiscard]] bool exceeds(double times) const {
+    return filter_applies(0.0, permanent) && std::abs(value) > times * error * permanent;
   }
-  return zeros;
+};
+
+/// How a segment from p, before a wall's triangle, to q, beyond it, passes. All differences are to p.
+class Passing {
+ public:
+  Passing(const WallPlane& w, const Vec3& p, const Vec3& q)
+      : wall_(w),
+        p_(p),
+        q_(q),
+        height_(w.a - p, w.c - p, w.b - p),
+        sides_{Determinant(q - p, w.c - p, w.b - p), Determinant(q - p, w.a - p, w.c - p),
+               Determinant(q - p, w.b - p, w.a - p)} {}
+
+  /// Whether the line meets the side opposite to corner i of the triangle; exact.
+  [[nodiscard]] bool meets_side(unsigned i) const {
+    if (sides_[i].exceeds(1.0)) return false;
+    const std::array<Vec3, 3> corner = {wall_.a, wall_.b, wall_.c};
+    return orient3d_exact(corner[(i + 1) % 3], corner[(i + 2) % 3], p_, q_) == Sign::zero;
+  }
+
+  /// Where on the segment the wall is met: right to 2^-40 of itself. The sides' determinants sum to the difference of
+  /// the heights of p and q.
+  [[nodiscard]] double fraction() const {
+    constexpr double enough = 0x1p+42;
+    const double before = height_.exceeds(enough) ? height_.value : orient3d_value(wall_.a, wall_.b, wall_.c, p_);
+    double whole = sides_[0].value + sides_[1].value + sides_[2].value;
+    const double permanent = sides_[0].permanent + sides_[1].permanent + sides_[2].permanent;
+    if (!filter_applies(0.0, permanent) || !(std::abs(whole) > enough * Determinant::error * permanent))
+      whole = before - orient3d_value(wall_.a, wall_.b, wall_.c, q_);
+    return std::clamp(before / whole, 0.0, 1.0);
+  }
+
+ private:
+  const WallPlane& wall_;
+  const Vec3& p_;
+  const Vec3& q_;
+  Determinant height_;
+  std::array<Determinant, 3> sides_;
+};
+
+/// The wall behind a facet.
+inline WallHit wall_hit(const Map& map, SimplexId id, const CellView& cell, unsigned facet, const Vec3& normal) {
+  const Across across = cell.shape().simplices()[id.simplex].across[facet];
+  const CellFace face = {id.cell, across.face()};
+  return {face, across.place, map.patch(face), normal};
 }
 
-/// Where on the segment the wall is met.
+/// Adds the other wall triangles that meet at an edge or a vertex; a plane face's triangles count as one. Precondition:
+/// the one that was hit is the last of the list.
 template <class Positions>
-double fraction_at_wall(const Space<Positions>& space, const Walk& w, const Vec3& p, const Vec3& q) {
-  if (w.at_start) return 0.0;
-  if (w.at_end) return 1.0;
-  const Corners v = space.corners(w.wall_simplex);
-  const auto& f = facet_corners[w.wall_facet];
-  const double before = orient3d_value(v[f[0]], v[f[1]], v[f[2]], p);
-  const double after = orient3d_value(v[f[0]], v[f[1]], v[f[2]], q);
-  return std::clamp(before / (before - after), 0.0, 1.0);
-}
-
-/// Adds every wall triangle that meets at the feature, the one that was hit first; a plane face's triangles count as
-/// one.
-template <class Positions>
-void add_walls(const Space<Positions>& space, const Walk& w, const Feature& feature, ContactList& list) {
-  const std::size_t first = list.walls.size();
-  const auto add = [&](SimplexId id, unsigned facet) {
-    const CellView cell = space.map->view(id.cell);
-    const Across across = cell.shape().simplices()[id.simplex].across[facet];
-    WallHit hit;
-    hit.face = {id.cell, across.face()};
-    hit.triangle = across.place;
-    hit.patch = space.map->patch(hit.face);
-    hit.normal = wall_plane(space, id, facet).normal;
-    const bool known =
-        std::any_of(list.walls.begin() + static_cast<std::ptrdiff_t>(first), list.walls.end(), [&](const WallHit& h) {
-          constexpr double same_plane =
-              1.0 - 1e-14;  // unit normals, rounded: only which triangles are listed depends on it
-          return h.face == hit.face && dot(h.normal, hit.normal) > same_plane;
-        });
+void add_other_walls(const Space<Positions>& space, const Walk& w, const Feature& feature, ContactList& list) {
+  const auto first = static_cast<std::ptrdiff_t>(list.walls.size()) - 1;
+  const auto add = [&](SimplexId id, const CellView& cell, const ImplicitSimplex& s, unsigned facet) {
+    const WallHit hit = wall_hit(*space.map, id, cell, facet, facet_plane(space.corners(cell, s), facet).normal);
+    const bool known = std::any_of(list.walls.begin() + first, list.walls.end(), [&](const WallHit& h) {
+      constexpr double same_plane =
+          1.0 - 1e-14;  // unit normals, rounded: only which triangles are listed depends on it
+      return h.face == hit.face && dot(h.normal, hit.normal) > same_plane;
+    });
     if (!known) list.walls.push_back(hit);
+    return true;
   };
-  add(w.wall_simplex, w.wall_facet);
-  if (feature.count == 3) return;
   search_star(
       *space.map, w.wall_simplex, feature, [](SimplexId, const CellView&, const ImplicitSimplex&) { return true; },
-      [&](SimplexId id, const CellView&, const ImplicitSimplex&, unsigned facet) {
-        add(id, facet);
-        return true;
-      });
+      add);
 }
 
 /// Displacement over the whole step of the wall's material point nearest to x: the triangle's corners' displacements,
@@ -91,25 +119,48 @@ inline Vec3 wall_displacement(const Complex& complex, SimplexId simplex, unsigne
   return result;
 }
 
-/// Fills the parts of a contact that the geometry gives: kind, dart, walls, point, and the fraction of the segment.
-template <class Positions>
-double describe_contact(const Space<Positions>& space, const Walk& w, const Vec3& p, const Vec3& q, Contact& contact,
-                        ContactList& list) {
-  const CellView cell = space.map->view(w.wall_simplex.cell);
-  const ImplicitSimplex& s = cell.shape().simplices()[w.wall_simplex.simplex];
-  const unsigned zeros = zeros_at_wall(space, w, p, q);
+/// The cell of the map that holds the points of a simplex in whose interior a point with these zero facets lies.
+inline Shape::Feature map_feature(const Shape& shape, const ImplicitSimplex& s, unsigned wall_facet, unsigned zeros) {
+  if (zeros == 1U << wall_facet)  // inside the triangle
+    return {Kind::face, shape.first_dart(s.across[wall_facet].face())};
   std::array<std::uint16_t, 4> points{};
   std::size_t count = 0;
   for (unsigned i = 0; i < 4; ++i) {
     if (((zeros >> i) & 1U) == 0) points[count++] = s.vertex[i];
   }
-  const auto feature = cell.shape().feature(std::span<const std::uint16_t>(points.data(), count));
+  return shape.feature(std::span<const std::uint16_t>(points.data(), count));
+}
+
+/// Where a walk met a wall: the fraction of the segment, and bit i is set where the point lies on the facet opposite to
+/// corner i of the wall's simplex.
+struct Meeting {
+  double fraction;
+  unsigned zeros;
+};
+inline Meeting meeting(const Corners& v, const WallPlane& wall, const Walk& w, const Vec3& p, const Vec3& q) {
+  if (w.at_start) return {0.0, zeros_of(v, p)};
+  if (w.at_end) return {1.0, zeros_of(v, q)};
+  const Passing passing(wall, p, q);
+  unsigned zeros = 1U << w.wall_facet;
+  for (unsigned i = 0; i < 3; ++i) zeros |= passing.meets_side(i) ? 1U << facet_corners[w.wall_facet][i] : 0U;
+  return {passing.fraction(), zeros};
+}
+
+/// Fills the parts of a contact that the geometry gives: kind, dart, walls, point. Returns the fraction of the segment.
+/// `v`, `wall`: the corners of the simplex at the wall, and the plane of the facet met.
+template <class Positions>
+double describe_contact(const Space<Positions>& space, const Walk& w, const Corners& v, const WallPlane& wall,
+                        const Vec3& p, const Vec3& q, Contact& contact, ContactList& list) {
+  const CellView cell = space.map->view(w.wall_simplex.cell);
+  const ImplicitSimplex& s = cell.shape().simplices()[w.wall_simplex.simplex];
+  const auto [t, zeros] = meeting(v, wall, w, p, q);
+  const Shape::Feature feature = map_feature(cell.shape(), s, w.wall_facet, zeros);
   contact.kind = feature.kind;
   contact.dart = {w.wall_simplex.cell, feature.dart};
   contact.first_wall = static_cast<std::uint32_t>(list.walls.size());
-  add_walls(space, w, feature_of(cell, s, zeros), list);
+  list.walls.push_back(wall_hit(*space.map, w.wall_simplex, cell, w.wall_facet, wall.normal));
+  if (zeros != 1U << w.wall_facet) add_other_walls(space, w, feature_of(cell, s, zeros), list);
   contact.wall_count = static_cast<std::uint32_t>(list.walls.size()) - contact.first_wall;
-  const double t = fraction_at_wall(space, w, p, q);
   contact.point = w.at_start ? p : w.at_end ? q : flushed(p + (q - p) * t);
   return t;
 }

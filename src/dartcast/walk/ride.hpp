@@ -39,7 +39,8 @@ inline Vec3 combine(const Corners& v, const Weights& w) {
 /// moved simplex is positive.
 template <class Positions>
 Settled ridden(const Space<Positions>& space, SimplexId simplex, const Weights& w) {
-  return settle(space, simplex, combine(space.corners(simplex), w));
+  const Corners v = space.corners(simplex);
+  return settle(space, simplex, v, combine(v, w));
 }
 
 /// Frobenius norm of the gradient of the displacement that takes simplex v to simplex w, and v's shortest edge.

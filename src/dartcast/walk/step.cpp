@@ -22,6 +22,8 @@ struct Run {
   TestCounts tests{};
 };
 
+constexpr int lift_doublings = 16;  // for targets along walls
+
 // The stretch of the step that is walked in one geometry: the particle's motion from time `begin` to time `end`.
 struct Stretch {
   double begin;
@@ -73,24 +75,23 @@ class Part {
  private:
   // Records the contact, puts the particle there, and asks what follows.
   Continuation meet(Run& run, const Walk& w, const Vec3& p, const Vec3& q, Stretch& stretch) const {
-    Contact contact;
+    Contact& contact = run.contacts.contacts.emplace_back();
     contact.particle = run.particle;
-    const double t = detail::describe_contact(space_, w, p, q, contact, run.contacts);
+    const Corners corners = space_.corners(w.wall_simplex);
+    const WallPlane wall = facet_plane(corners, w.wall_facet);
+    const double t = detail::describe_contact(space_, w, corners, wall, p, q, contact, run.contacts);
     contact.earlier = contact.first_wall - run.first_wall;
     contact.last = ++run.contact_count >= options_.max_contacts;
     stretch.begin += t * (stretch.end - stretch.begin);
     contact.time_of_impact = stretch.begin;
-    place(run, w, contact);
-    if (moved_) {
-      const WallPlane plane = wall_plane(space_, w.wall_simplex, w.wall_facet);
+    place(run, w, corners, contact);
+    if (moved_)
       contact.wall_displacement =
-          detail::wall_displacement(complex_, w.wall_simplex, w.wall_facet, plane, contact.point);
-    }
+          detail::wall_displacement(complex_, w.wall_simplex, w.wall_facet, wall, contact.point);
     const Vec3 later = stretch.later - contact.wall_displacement * (1.0 - stretch.end);
     contact.displacement = (q - p) + later;
     contact.unused = (q - p) * (1.0 - t) + later;
     ++run.counters.contacts[static_cast<std::size_t>(contact.kind)];
-    run.contacts.contacts.push_back(contact);
     touch(run.state, run.contacts.walls_of(contact));
     return follow(run, contact);
   }
@@ -106,9 +107,12 @@ class Part {
   }
 
   // The contact point is rounded: it is settled in the simplex at the wall.
-  void place(Run& run, const Walk& w, const Contact& contact) const {
-    const Settled settled =
-        w.at_end ? Settled{w.simplex, contact.point} : settle(space_, w.wall_simplex, contact.point);
+  void place(Run& run, const Walk& w, const Corners& corners, const Contact& contact) const {
+    Settled settled{w.simplex, contact.point};
+    if (!w.at_end) {
+      const auto proved = detail::proved_inside(corners, contact.point);
+      settled = proved ? Settled{w.wall_simplex, *proved} : settle(space_, w.wall_simplex, corners, contact.point);
+    }
     run.state.put(settled.simplex, settled.position);
   }
 
@@ -123,13 +127,14 @@ class Part {
     detail::WallPlanes planes;
     const auto add = [&](std::span<const WallHit> walls) {
       for (const WallHit& wall : walls) {
-        const Across behind = space_.map->shape(wall.face.cell).entry(wall.face.face, wall.triangle);
-        planes.add(wall_plane(space_, {wall.face.cell, behind.index}, behind.place));
+        const CellView cell = space_.map->view(wall.face.cell);
+        const Across behind = cell.shape().entry(wall.face.face, wall.triangle);
+        planes.add(facet_plane(space_.corners(cell, cell.shape().simplices()[behind.index]), behind.place));
       }
     };
     add(run.contacts.walls_of(contact));
     add(run.contacts.earlier_walls_of(contact));
-    detail::lift_off(planes, run.state.position, q);
+    detail::lift_off(planes, run.state.position, q, lift_doublings);
     return detail::flushed(q);
   }
 

@@ -2,7 +2,12 @@
 //
 // After T. Jund, D. Cazier, J.-F. Dufourd, SPM 2009, section 5, made exact: every decision is the sign of a determinant
 // of vertices and of the segment's ends, and ties are broken by an infinitesimal shift of the whole segment
-// (docs/method.md).
+// (docs/method.md). The walk ends in the first closed simplex that holds q.
+//
+// Why it is the shifted segment's walk up to there: that leaves a simplex by the first facet that shifted q is beyond.
+// Where q itself is strictly beyond a facet, one whose plane holds q is never the first: the segment meets that plane
+// at its end, or lies in it and is shifted to the inner side, since the shifted segment does pass through the simplex.
+// So only facets that q is strictly beyond count, and ties are left between two of these alone.
 #pragma once
 
 #include <bit>
@@ -47,6 +52,13 @@ inline constexpr std::uint8_t side_edge[4][4][2] = {{{0, 0}, {2, 3}, {3, 1}, {1,
                                                     {{1, 3}, {3, 0}, {0, 0}, {0, 1}},
                                                     {{2, 1}, {0, 2}, {1, 0}, {0, 0}}};
 
+/// Bit i is set where x lies on the facet opposite to corner i.
+inline unsigned zeros_of(const Corners& v, const Vec3& x) {
+  constexpr unsigned all = 15;
+  std::uint64_t exact = 0;
+  return signs_of(Determinants(v, x), v, x, all, exact).zero;
+}
+
 /// The shift that breaks a walk's ties, made at the first tie.
 template <class Positions>
 class Ties {
@@ -54,24 +66,22 @@ class Ties {
   Ties(const Space<Positions>& space, SimplexId start, const Vec3& p, const Vec3& q)
       : space_(space), start_(start), p_(p), q_(q) {}
 
-  [[nodiscard]] Sign plane(const Corners& v, unsigned facet) {
-    const auto& f = facet_corners[facet];
-    return shift().of_plane(v[f[0]], v[f[1]], v[f[2]]);
+  /// Sign of orient3d(a, b, p, q) of the shifted segment, where it is zero.
+  [[nodiscard]] Sign line(const Vec3& a, const Vec3& b) {
+    if (!shift_) make_shift();
+    return shift_->of_line(a, b, q_);
   }
-  [[nodiscard]] Sign line(const Vec3& a, const Vec3& b) { return shift().of_line(a, b, p_, q_); }
 
  private:
-  const Shift& shift() {
-    if (!shift_) {
-      const Corners v = space_.corners(start_);
-      std::array<Vec3, 3> opposite;
-      unsigned count = 0;
-      for (unsigned i = 0; i < 4; ++i) {
-        if (count < 3 && orient_facet(v, i, p_) == Sign::zero) opposite[count++] = v[i];
-      }
-      shift_.emplace(p_, std::span<const Vec3>(opposite.data(), count));
+  void make_shift() {
+    const Corners v = space_.corners(start_);
+    const unsigned zeros = zeros_of(v, p_);
+    std::array<Vec3, 3> opposite;
+    unsigned count = 0;
+    for (unsigned i = 0; i < 4; ++i) {
+      if (count < 3 && ((zeros >> i) & 1U) != 0) opposite[count++] = v[i];
     }
-    return *shift_;
+    shift_.emplace(p_, std::span<const Vec3>(opposite.data(), count));
   }
 
   const Space<Positions>& space_;
@@ -83,86 +93,48 @@ class Ties {
 
 [[noreturn]] void throw_overrun(const Map& map, SimplexId start, const Vec3& p, const Vec3& q);
 
-/// One simplex of a walk: which facets q lies beyond, and by which of them the segment leaves.
+/// The facet by which the shifted segment leaves a simplex that it passes through: one of those that q is strictly
+/// beyond. Precondition: `behind`, their bits, is not 0.
 template <class Positions>
-class Crossing {
- public:
-  Crossing(const Corners& v, const Vec3& p, const Vec3& q, Ties<Positions>& ties, TestCounts& counts)
-      : v_(v), p_(p), q_(q), d_(v, q), ties_(ties), counts_(counts) {}
-
-  [[nodiscard]] bool valid() const { return d_.proves_positive() || volume_sign(v_) == Sign::positive; }
-
-  /// Tests the facets other than the one entered by; sets behind() and zeros().
-  void test(unsigned entered) {
-    for (unsigned i = 0; i < 4; ++i) {
-      if (i == entered) continue;
-      ++counts_.tests;
-      Sign s = sign_of(d_, i, v_, q_, counts_.exact);
-      if (s == Sign::zero) {
-        zeros_ |= 1U << i;
-        s = ties_.plane(v_, i);
-      }
-      if (s == Sign::negative) behind_ |= 1U << i;
-    }
+unsigned exit_facet(const Corners& v, unsigned behind, const Vec3& p, const Vec3& q, Ties<Positions>& ties,
+                    TestCounts& counts) {
+  auto best = static_cast<unsigned>(std::countr_zero(behind));
+  while ((behind &= behind - 1) != 0) {
+    const auto other = static_cast<unsigned>(std::countr_zero(behind));
+    const Vec3& a = v[side_edge[best][other][0]];
+    const Vec3& b = v[side_edge[best][other][1]];
+    ++counts.tests;
+    Sign s = orient3d(a, b, p, q, counts.exact);
+    if (s == Sign::zero) s = ties.line(a, b);
+    if (s != Sign::positive) best = other;
   }
+  return best;
+}
 
-  /// The facet by which the segment leaves. Precondition: behind() is not empty.
-  [[nodiscard]] unsigned exit() {
-    unsigned best = static_cast<unsigned>(std::countr_zero(behind_));
-    for (unsigned j = best + 1; j < 4; ++j) {
-      if (((behind_ >> j) & 1U) != 0 && !leaves_first(best, j)) best = j;
-    }
-    return best;
-  }
-
-  [[nodiscard]] unsigned behind() const { return behind_; }
-  [[nodiscard]] unsigned zeros() const { return zeros_; }
-
- private:
-  [[nodiscard]] bool leaves_first(unsigned i, unsigned j) {
-    const Vec3& a = v_[side_edge[i][j][0]];
-    const Vec3& b = v_[side_edge[i][j][1]];
-    ++counts_.tests;
-    Sign s = orient3d(a, b, p_, q_, counts_.exact);
-    if (s == Sign::zero) s = ties_.line(a, b);
-    return s == Sign::positive;
-  }
-
-  const Corners& v_;
-  const Vec3& p_;
-  const Vec3& q_;
-  const Determinants d_;
-  Ties<Positions>& ties_;
-  TestCounts& counts_;
-  unsigned behind_ = 0;
-  unsigned zeros_ = 0;
-};
-
-/// The walk of the shifted segment: up to the simplex that holds q, or to the first wall facet.
+/// The walk of the shifted segment: up to the closed simplex that holds q, or to the first wall facet that q is beyond.
 template <class Positions, class Visitor>
-Walk walk_shifted(const Space<Positions>& space, SimplexId start, const Vec3& p, const Vec3& q, TestCounts& counts,
+Walk walk_to_wall(const Space<Positions>& space, SimplexId start, const Vec3& p, const Vec3& q, TestCounts& counts,
                   Visitor& visit) {
   Ties<Positions> ties(space, start, p, q);
   Walk walk;
   walk.simplex = start;
-  unsigned entered = 4;
-  bool entered_on_zero = false;
+  unsigned asked = 15;  // all facets but that entered by: q is strictly on this side of it
   for (std::uint64_t met = 0; met <= space.simplex_count; ++met) {
     const CellView cell = space.map->view(walk.simplex.cell);
     const ImplicitSimplex& s = cell.shape().simplices()[walk.simplex.simplex];
     const Corners v = space.corners(cell, s);
-    Crossing<Positions> crossing(v, p, q, ties, counts);
-    if (!crossing.valid()) {
+    const Determinants d(v, q);
+    if (!d.proves_positive() && volume_sign(v) != Sign::positive) {
       walk.end = WalkEnd::invalid_cell;
       return walk;
     }
-    crossing.test(entered);
-    const unsigned zeros = crossing.zeros() | (entered_on_zero ? 1U << entered : 0U);
-    if (crossing.behind() == 0) {
-      walk.zeros = static_cast<std::uint8_t>(zeros);
+    const DeterminantSigns signs = signs_of(d, v, q, asked, counts.exact);
+    counts.tests += met == 0 ? 4 : 3;
+    if (signs.negative == 0) {
+      walk.zeros = static_cast<std::uint8_t>(signs.zero);
       return walk;
     }
-    const unsigned facet = crossing.exit();
+    const unsigned facet = exit_facet(v, signs.negative, p, q, ties, counts);
     visit(walk.simplex, facet);
     const Across across = s.across[facet];
     if (across.outer() && cell.is_wall(across.face())) {
@@ -173,8 +145,7 @@ Walk walk_shifted(const Space<Positions>& space, SimplexId start, const Vec3& p,
     }
     const Passage next = pass(*space.map, walk.simplex, cell, across);
     walk.simplex = next.simplex;
-    entered = next.facet;
-    entered_on_zero = ((zeros >> facet) & 1U) != 0;
+    asked = 15U & ~(1U << next.facet);
   }
   throw_overrun(*space.map, start, p, q);
 }
@@ -186,13 +157,6 @@ inline Feature feature_of(const CellView& cell, const ImplicitSimplex& s, unsign
     if (((zeros >> i) & 1U) == 0) feature.add(cell.vertex(s.vertex[i]));
   }
   return feature;
-}
-
-/// Bit i is set where x lies on the facet opposite to corner i.
-inline unsigned zeros_of(const Corners& v, const Vec3& x) {
-  unsigned zeros = 0;
-  for (unsigned i = 0; i < 4; ++i) zeros |= orient_facet(v, i, x) == Sign::zero ? 1U << i : 0U;
-  return zeros;
 }
 
 /// A free simplex around p from which the segment to q does not leave at once: no facet that holds p has q strictly
@@ -207,13 +171,10 @@ SimplexId simplex_towards(const Space<Positions>& space, SimplexId at, const Vec
   search_star(
       *space.map, at, around,
       [&](SimplexId id, const CellView& cell, const ImplicitSimplex& s) {
+        const unsigned asked = facets_holding(around, cell, s);
+        for (unsigned left = asked; left != 0; left &= left - 1) ++counts.tests;
         const Corners v = space.corners(cell, s);
-        for (unsigned i = 0; i < 4; ++i) {
-          if (around.has(cell.vertex(s.vertex[i]))) continue;
-          ++counts.tests;
-          const auto& f = facet_corners[i];
-          if (orient3d(v[f[0]], v[f[1]], v[f[2]], q, counts.exact) == Sign::negative) return true;
-        }
+        if (signs_of(Determinants(v, q), v, q, asked, counts.exact).negative != 0) return true;
         found = id;
         return false;
       },
@@ -222,24 +183,15 @@ SimplexId simplex_towards(const Space<Positions>& space, SimplexId at, const Vec
 }
 
 /// Walls are closed: where q lies exactly on one, the walk ends at it.
-template <class Positions>
-void find_wall_at_end(const Space<Positions>& space, Walk& walk) {
-  const CellView cell = space.map->view(walk.simplex.cell);
+inline void find_wall_at_end(const Map& map, Walk& walk) {
+  const CellView cell = map.view(walk.simplex.cell);
   const ImplicitSimplex& s = cell.shape().simplices()[walk.simplex.simplex];
-  if (std::has_single_bit(walk.zeros)) {  // inside a facet: no other wall can be there
-    const Across across = s.across[static_cast<unsigned>(std::countr_zero(walk.zeros))];
-    if (!across.outer() || !cell.is_wall(across.face())) return;
-  }
-  search_star(
-      *space.map, walk.simplex, feature_of(cell, s, walk.zeros),
-      [](SimplexId, const CellView&, const ImplicitSimplex&) { return true; },
-      [&](SimplexId id, const CellView&, const ImplicitSimplex&, unsigned facet) {
-        walk.end = WalkEnd::wall;
-        walk.at_end = true;
-        walk.wall_simplex = id;
-        walk.wall_facet = static_cast<std::uint8_t>(facet);
-        return false;
-      });
+  const auto wall = find_wall(map, walk.simplex, walk.zeros, feature_of(cell, s, walk.zeros));
+  if (!wall) return;
+  walk.end = WalkEnd::wall;
+  walk.at_end = true;
+  walk.wall_simplex = wall->simplex;
+  walk.wall_facet = static_cast<std::uint8_t>(wall->facet);
 }
 
 }  // namespace detail
@@ -250,25 +202,17 @@ void find_wall_at_end(const Space<Positions>& space, Walk& walk) {
 template <class Positions, class Visitor = NoVisitor>
 Walk walk(const Space<Positions>& space, SimplexId start, const Vec3& p, const Vec3& q, TestCounts& counts,
           Visitor&& visit = {}) {
-  if (Determinants(space.corners(start), q).all_proved_positive()) {  // the usual case: the forecast is kept
-    counts.tests += 4;
-    Walk here;
-    here.simplex = start;
-    return here;
-  }
-  Walk result = detail::walk_shifted(space, start, p, q, counts, visit);
+  Walk result = detail::walk_to_wall(space, start, p, q, counts, visit);
   if (result.end == WalkEnd::wall) {
     ++counts.tests;
     if (orient_facet(space.corners(result.wall_simplex), result.wall_facet, p) == Sign::zero) {
       // p lies on the wall itself. It is met only if no free simplex around p leads towards q.
       const SimplexId restart = detail::simplex_towards(space, result.wall_simplex, p, q, counts);
       result.at_start = !restart.valid();
-      if (restart.valid()) result = detail::walk_shifted(space, restart, p, q, counts, visit);
+      if (restart.valid()) result = detail::walk_to_wall(space, restart, p, q, counts, visit);
     }
   }
-  if (result.end == WalkEnd::arrived && result.zeros != 0) detail::find_wall_at_end(space, result);
-  if (result.end == WalkEnd::wall && !result.at_start && !result.at_end)
-    result.at_end = detail::zeros_of(space.corners(result.wall_simplex), q) >> result.wall_facet & 1U;
+  if (result.end == WalkEnd::arrived && result.zeros != 0) detail::find_wall_at_end(*space.map, result);
   return result;
 }
 

@@ -1,0 +1,23 @@
+# Counts the instructions of Environment::advance() per particle-step, exactly, and holds them under a bound.
+foreach(kind_and_bound still=700 moving=1500 lattice=9000)
+  string(REGEX MATCH "(.*)=(.*)" ignored ${kind_and_bound})
+  set(kind ${CMAKE_MATCH_1})
+  set(bound ${CMAKE_MATCH_2})
+  execute_process(
+    COMMAND ${VALGRIND} --tool=callgrind --callgrind-out-file=/dev/null "--toggle-collect=dartcast::Environment::advance(*" ${PROGRAM} ${kind}
+    RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE log)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "${kind}: ${output}${log}")
+  endif()
+  string(REGEX MATCH "([0-9]+) particle-steps" ignored "${output}")
+  set(steps ${CMAKE_MATCH_1})
+  string(REGEX MATCH "Collected : ([0-9]+)" ignored "${log}")
+  math(EXPR each "${CMAKE_MATCH_1} / ${steps}")
+  message(STATUS "${kind}: ${each} instructions per particle-step, at most ${bound}; ${output}")
+  if(each GREATER bound OR each LESS 50)
+    set(wrong "${wrong} ${kind}")
+  endif()
+endforeach()
+if(wrong)
+  message(FATAL_ERROR "more instructions than allowed, or fewer than there can be:${wrong}")
+endif()

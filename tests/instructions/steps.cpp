@@ -1,0 +1,95 @@
+// A fixed small scene to count instructions in: `steps still`, `steps moving` or `steps lattice`. What counts is what
+// Environment::advance() executes (run.cmake); the number of particle-steps is printed.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <numbers>
+#include <vector>
+
+#include "dartcast/base/random.hpp"
+#include "dartcast/environment/environment.hpp"
+#include "dartcast/mesh/generate_box.hpp"
+#include "dartcast/simulation/seeding.hpp"
+
+namespace {
+
+using namespace dartcast;
+
+constexpr std::uint32_t edge = 10;
+constexpr std::size_t particles = 1000;
+constexpr std::size_t steps = 50;
+
+Environment make_environment() {
+  BoxOptions box;
+  box.cells = {edge, edge, edge};
+  box.size = {edge, edge, edge};
+  box.blocked_layer = true;
+  box.blocked_share = 0.1;
+  return Environment(generate_box(box), Threads{1});
+}
+
+// A twist of 0.06 cells a step at most.
+void twist(std::span<const Vec3> rest, double time, std::span<Vec3> out) {
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    const double x = rest[i].x - edge / 2.0;
+    const double y = rest[i].y - edge / 2.0;
+    const double angle = 0.3 * std::sin(2e-2 * std::numbers::pi * time) * rest[i].z / edge;
+    out[i] = {x * std::cos(angle) - y * std::sin(angle), x * std::sin(angle) + y * std::cos(angle), rest[i].z};
+  }
+}
+
+// A tenth of a cell a step: any way, or along the lattice's lines.
+std::vector<Vec3> random_velocities(Random& random, bool along_lattice) {
+  std::vector<Vec3> velocities;
+  while (velocities.size() < particles) {
+    const Vec3 v{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+    velocities.push_back(along_lattice ? Vec3{v.x < 0 ? -0.125 : 0.125, 0, 0} : v * (0.1 / norm(v)));
+  }
+  return velocities;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const char* kind = argc == 2 ? argv[1] : "";
+  const bool moving = std::strcmp(kind, "moving") == 0;
+  const bool lattice = std::strcmp(kind, "lattice") == 0;
+  Environment environment = make_environment();
+  const std::vector<Vec3> rest(environment.positions().begin(), environment.positions().end());
+  Random random(5);
+  const VolumeSampler sampler(environment.complex());
+  Particles set;
+  while (set.size() < particles) {
+    const Sample s = sampler.sample(environment.complex(), random);
+    const auto nearest = [](double x) { return std::round(8.0 * x) / 8.0; };
+    const Vec3 on_lattice{nearest(s.position.x), std::round(s.position.y), std::round(s.position.z)};
+    if (lattice) {
+      environment.add(set, std::span<const Vec3>(&on_lattice, 1));
+    } else {
+      environment.add(set, s.simplex, s.position);
+    }
+  }
+  std::vector<Vec3> velocities = random_velocities(random, lattice);
+  std::vector<Vec3> targets(particles);
+  std::uint64_t contacts = 0;
+  for (std::size_t step = 1; step <= steps; ++step) {
+    for (std::size_t i = 0; i < particles; ++i) targets[i] = set[i].position + velocities[i];
+    if (moving) {
+      twist(rest, static_cast<double>(step), environment.next_positions());
+      environment.move();
+    }
+    const StepReport report = environment.advance(set, targets);
+    contacts += report.contacts.contacts.size();
+    for (const Contact& c : report.contacts.contacts) {
+      Vec3& v = velocities[c.particle];
+      if (lattice) {
+        v = v * -1.0;
+        continue;
+      }
+      const Vec3 n = report.contacts.walls_of(c).front().normal;
+      v -= n * (2.0 * std::min(0.0, dot(v, n)));
+    }
+  }
+  std::printf("%zu particle-steps, %llu contacts\n", particles * steps, static_cast<unsigned long long>(contacts));
+}
