@@ -101,7 +101,8 @@ class BothWays {
   static bool same(const Counters& a, const Counters& b) {
     return a.particle_steps == b.particle_steps && a.orientation.tests == b.orientation.tests &&
            a.histogram == b.histogram && a.forecast_kept == b.forecast_kept &&
-           a.updated_by_deformation == b.updated_by_deformation && a.contacts == b.contacts;
+           a.updated_by_deformation == b.updated_by_deformation && a.contacts == b.contacts &&
+           a.orientation.exact == b.orientation.exact;
   }
 
   Vec3 point_of(const dartcast::Corners& v) {

@@ -75,6 +75,20 @@ DARTCAST_TARGET inline Corners corners_of(const Rows& v) {
   return {vec_of(v.corner[0]), vec_of(v.corner[1]), vec_of(v.corner[2]), vec_of(v.corner[3])};
 }
 
+// Whether the determinants' values are exact (rounds_nothing() in exact/predicates.hpp), where the filter applies.
+DARTCAST_TARGET inline bool is_exact(const Rows& v, const Quad& point) {
+  Quad extent = magnitude(v.corner[0] - point);
+  for (unsigned i = 1; i < 4; ++i) extent = larger(extent, magnitude(v.corner[i] - point));
+  const Quad unit = extent * 0x1p+37;
+  const Quad m = magnitude(point);
+  Mask rounded = ((m + unit) - unit) != m;
+  for (const Quad& corner : v.corner) {
+    const Quad c = magnitude(corner);
+    rounded |= ((c + unit) - unit) != c;
+  }
+  return (lanes_set(rounded) & 7U) == 0;
+}
+
 // The coordinates of walk/ride.hpp, and the point that has them in the moved simplex. False where the filter does not
 // prove that the simplexes are positive, and the point inside.
 DARTCAST_TARGET inline bool ride_along(const Rows& before, const Rows& now, const Vec3& p, Vec3& ridden) {
@@ -118,6 +132,7 @@ struct Visit {
   std::uint16_t index;  // of the simplex, or of the face that was entered through
   std::uint16_t place;  // facet that was entered by (4: none), or triangle of that face
   std::uint16_t tests;  // so far
+  std::uint16_t exact;  // of these, those that the filter left open
   bool through_face;
 };
 
@@ -164,7 +179,7 @@ class Batch {
       for (std::uint32_t l = 0; l < leaving; ++l) {
         const std::uint32_t i = first + leaving_[l];
         if (moved && !ride(i)) continue;
-        visits_[count] = {i, states_[i].cell.value, states_[i].simplex, 4, 4, false};
+        visits_[count] = {i, states_[i].cell.value, states_[i].simplex, 4, 4, 0, false};
         if (leave_simplex(visits_[count], vertices_[i], determinants_[leaving_[l]])) ++count;
       }
     }
@@ -288,14 +303,32 @@ class Batch {
 
   // Goes on into the next simplex, if the filter says which; else leaves the step.
   DARTCAST_TARGET bool leave_simplex(Visit& visit, const VertexNumbers& corners, const FilteredDeterminants& d) {
-    const unsigned known = 1U << visit.place;
-    const unsigned negative = d.negative();
-    const bool proved = ((d.positive() | negative | known) & 15U) == 15U;
-    const unsigned behind = negative & ~known;
-    if (!d.proves_positive() || !proved || behind == 0) return leave(visit.particle);
+    if (!d.proves_positive()) return leave(visit.particle);
+    const unsigned asked = 15U & ~(1U << visit.place);
+    unsigned behind = d.negative() & asked;
+    unsigned on = 0;
+    if (const unsigned open = asked & ~(d.positive() | behind); open != 0) {
+      if (!is_exact(Rows(now_, corners), load_row(targets_[visit.particle]))) return leave(visit.particle);
+      behind = lanes_set(d.value < 0.0) & asked;
+      on = lanes_set(d.value == 0.0) & asked;
+      visit.exact = static_cast<std::uint16_t>(visit.exact + std::popcount(open));
+    }
+    if (behind == 0) {
+      if (touches_wall(visit, on)) return leave(visit.particle);
+      arrive(visit, corners);
+      return false;
+    }
     unsigned facet = static_cast<unsigned>(std::countr_zero(behind));
     if ((behind & (behind - 1)) != 0) facet = first_exit(visit, corners, behind);
     return facet < 4 ? pass_on(visit, facet) : leave(visit.particle);
+  }
+
+  // Whether a target that lies on facets of its simplex lies on a wall.
+  DARTCAST_TARGET bool touches_wall(const Visit& visit, unsigned on) const {
+    const SimplexId id{Cell(visit.cell), visit.index};
+    const CellView cell = map_.view(id.cell);
+    const ImplicitSimplex& s = cell.shape().simplices()[id.simplex];
+    return find_wall(map_, id, on, feature_of(cell, s, on)).has_value();
   }
 
   // Of several facets that the target lies behind, the one by which the segment leaves; 4 where the filter does not
@@ -351,8 +384,11 @@ class Batch {
     vertices_[visit.particle] = corners;
     ++counters_.particle_steps;
     counters_.orientation.tests += visit.tests;
+    counters_.orientation.exact += visit.exact;
     ++counters_.histogram[std::min<std::size_t>(visit.tests, Counters::histogram_size - 1)];
-    if (before_ != nullptr) counters_.updated_by_deformation += left_behind_[visit.particle] ? 1 : 0;
+    const bool kept = visit.place == 4;
+    counters_.forecast_kept += kept ? 1 : 0;
+    if (before_ != nullptr && !kept) counters_.updated_by_deformation += left_behind_[visit.particle] ? 1 : 0;
   }
 
   const Map& map_;
