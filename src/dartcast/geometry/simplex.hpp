@@ -58,6 +58,9 @@ struct Determinants {
   /// The four errors, and the rounding of three sums of values that are at most 6 m each (m = bound /
   /// determinant_error).
   [[nodiscard]] bool proves_positive() const { return applies && volume6() > 8.0 * bound; }
+  /// The values over their sum are the coordinates of a point of the simplex right to 2^-26: each value is off by at
+  /// most the bound, the sum by eight times that.
+  [[nodiscard]] bool proves_coordinates() const { return applies && volume6() > 0x1p+30 * bound; }
   /// x is strictly inside, and the simplex positive.
   [[nodiscard]] bool all_proved_positive() const {
     return applies && std::min(std::min(value[0], value[1]), std::min(value[2], value[3])) > bound;

@@ -65,6 +65,7 @@ struct FilteredDeterminants {
   // Surely no more than six times the volume.
   [[nodiscard]] DARTCAST_TARGET double least_volume6() const { return volume6() - 8.0 * bound; }
   [[nodiscard]] DARTCAST_TARGET bool proves_positive() const { return applies && least_volume6() > 0.0; }
+  [[nodiscard]] DARTCAST_TARGET bool proves_coordinates() const { return applies && volume6() > 0x1p+30 * bound; }
   // Bit i: value i is proved positive, or negative.
   [[nodiscard]] DARTCAST_TARGET unsigned positive() const { return lanes_set(value > bound); }
   [[nodiscard]] DARTCAST_TARGET unsigned negative() const { return lanes_set(value < -bound); }
@@ -93,7 +94,7 @@ DARTCAST_TARGET inline bool is_exact(const Rows& v, const Quad& point) {
 // prove that the simplexes are positive, and the point inside.
 DARTCAST_TARGET inline bool ride_along(const Rows& before, const Rows& now, const Vec3& p, Vec3& ridden) {
   const FilteredDeterminants at(before, load_row(p));
-  if (!at.proves_positive()) return false;
+  if (!at.proves_coordinates()) return false;
   const Quad w = larger(at.value, Quad{});
   const double sum = ((w[0] + w[1]) + w[2]) + w[3];
   const Quad share = w / sum;

@@ -15,7 +15,7 @@ namespace dartcast::detail {
 inline Weights barycentric(const Corners& v, const Vec3& x) {
   const Determinants d(v, x);
   Weights w = d.value;
-  if (!d.proves_positive()) {  // a sliver: the filter's values are mostly rounding
+  if (!d.proves_coordinates()) {  // a sliver: the filter's values are mostly rounding
     for (unsigned i = 0; i < 4; ++i) {
       const auto& f = facet_corners[i];
       w[i] = orient3d_value(v[f[0]], v[f[1]], v[f[2]], x);
