@@ -276,6 +276,42 @@ TEST(Environment, AddReportsWhatItDoesNotAdd) {
   EXPECT_EQ(test::check_states(environment, particles), "");
 }
 
+// Where the caller names the simplex, it is taken at his word only as far as exact signs bear him out.
+TEST(Environment, AddsAtASimplexOnlyWhatLiesInIt) {
+  MeshData mesh = box(3);
+  mesh.free.assign(27, 1);
+  mesh.free[13] = 0;
+  Environment environment(mesh);
+  const std::vector<Vec3> places = {{0.3, 0.4, 0.45}, {1, 1, 1}, {2.5, 2.5, 2.5}, {1.5, 1.5, 1.4}};
+  Particles particles;
+  for (const Vec3& x : places) {
+    const Location at = environment.locate(x);
+    std::size_t taken = 0;
+    for (const Cell c : environment.map().cells()) {
+      for (std::uint16_t s = 0; s < environment.map().shape(c).simplices().size(); ++s) {
+        const std::size_t before = particles.size();
+        const bool added = environment.add(particles, SimplexId{c, s}, x);
+        ASSERT_EQ(particles.size(), before + (added ? 1 : 0));
+        taken += added ? 1 : 0;
+        if (SimplexId{c, s} == at.simplex) EXPECT_EQ(added, at.place == Place::free);
+      }
+    }
+    EXPECT_EQ(taken > 0, at.place == Place::free);
+    if (at.kind == Kind::volume) EXPECT_LE(taken, 6U);
+  }
+  EXPECT_EQ(test::check_states(environment, particles), "");
+  const SimplexId first = environment.locate(places[0]).simplex;
+  const std::size_t size = particles.size();
+  for (const double bad : bad_numbers) {
+    EXPECT_FALSE(environment.add(particles, first, {places[0].x, bad, places[0].z}));
+  }
+  EXPECT_FALSE(environment.add(particles, SimplexId{first.cell, 6}, places[0]));
+  EXPECT_FALSE(environment.add(particles, SimplexId{}, places[0]));
+  EXPECT_EQ(particles.size(), size);
+  environment.move(mesh.points);
+  EXPECT_THROW(environment.add(particles, first, places[0]), InvalidArgument);
+}
+
 TEST(Environment, RemoveAndReorderKeepTheRest) {
   Environment environment(box(2));
   Particles particles;

@@ -51,7 +51,7 @@ class Quadruples {
   }
 
   double integer(int largest) {
-    return static_cast<double>(random_.below(static_cast<std::uint32_t>(2 * largest + 1))) - largest;
+    return static_cast<double>(random_.below(2U * static_cast<std::uint32_t>(largest) + 1U)) - largest;
   }
 
   Random& random() { return random_; }

@@ -14,7 +14,8 @@ namespace {
 TEST(Barycentric, IsRightInSlivers) {
   Random random(3);
   int thin = 0;
-  for (std::uint64_t i = 0; i < test::scaled(20'000, 2'000'000); ++i) {
+  const int cases = test::scaled(20000, 2000000);
+  for (int i = 0; i < cases; ++i) {
     const double height = std::exp2(random.uniform(-52.0, 0.0));
     Corners v;
     for (Vec3& c : v) c = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1) * height};
@@ -37,7 +38,7 @@ TEST(Barycentric, IsRightInSlivers) {
     const Weights w = detail::barycentric(v, x);
     for (unsigned k = 0; k < 4; ++k) ASSERT_NEAR(w[k], truth[k], 0x1p-26) << "case " << i << ", height " << height;
   }
-  EXPECT_GT(thin, 1000);
+  EXPECT_GT(thin, cases / 20);
 }
 
 }  // namespace

@@ -21,7 +21,8 @@ namespace {
 
 // Four doubles. Where the instruction set has no such register, the compiler takes two of half the size.
 using Quad = double __attribute__((vector_size(32)));
-using UnalignedQuad = double __attribute__((vector_size(32), aligned(8), may_alias));
+// clang++ takes no notice of the alignment in an alias.
+typedef double UnalignedQuad __attribute__((vector_size(32), aligned(8), may_alias));  // NOLINT(modernize-use-using)
 using Mask = long long __attribute__((vector_size(32)));
 
 // Sign of u . (v x w), evaluated as in exact/predicates.cpp; 0 where the filter leaves it open.

@@ -421,7 +421,8 @@ DARTCAST_TARGET inline bool all_between(const double* x, std::size_t count, doub
   Mask outside{};
   std::size_t i = 0;
   for (; i + 4 <= count; i += 4) {
-    const Quad m = magnitude(*reinterpret_cast<const UnalignedQuad*>(x + i));
+    const Quad numbers = *reinterpret_cast<const UnalignedQuad*>(x + i);
+    const Quad m = magnitude(numbers);
     outside |= ~(((m >= low) & (m <= high)) | (m == 0.0));
   }
   bool rest = true;
