@@ -79,8 +79,9 @@ TEST_F(RecordingTest, AStaticRunLeavesItsFilesAndNoOthers) {
   for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename());
   std::sort(names.begin(), names.end());
   EXPECT_EQ(names, (std::vector<std::string>{"checkpoint.bin", "contacts.csv", "environment.pvd", "environment.vtu",
-                                             "particles.pvd", "particles_000000.vtp", "particles_000010.vtp", "particles_000020.vtp",
-                                             "particles_000025.vtp", "scene.toml", "stats.csv", "summary.json"}));
+                                             "particles.pvd", "particles_000000.vtp", "particles_000010.vtp",
+                                             "particles_000020.vtp", "particles_000025.vtp", "scene.toml", "stats.csv",
+                                             "summary.json"}));
   EXPECT_EQ(content(folder / "scene.toml"), scene_text);
   EXPECT_EQ(lines(folder / "stats.csv").size(), 26U);
   const auto& by_kind = summary.totals.counters.contacts;
