@@ -123,12 +123,20 @@ class BothWays {
     return p;
   }
 
-  // Mostly small steps; some to a corner, some nowhere, some out of the scene.
+  // A target other than the place, but for particles that touch a wall: at rest elsewhere only the counts differ.
   Vec3 target(const State& s) {
+    const Vec3 q = any_target(s);
+    if (q != s.position || s.touching_count > 0) return q;
+    const dartcast::Corners v = complex_.corners(s.at());
+    return q + (v[1] - v[0]) * 0x1p-6;
+  }
+
+  // Mostly small steps; some to a corner, some nowhere, some out of the scene.
+  Vec3 any_target(const State& s) {
     const dartcast::Corners v = complex_.corners(s.at());
     const double edge = norm(v[1] - v[0]);
     const std::uint32_t kind = random_.below(16);
-    if (kind == 0 && s.touching_count > 0) return s.position;  // at rest elsewhere only the counts differ
+    if (kind == 0) return s.position;
     if (kind == 1) return v[random_.below(4)];
     const double length = edge * std::exp2(random_.uniform(-6.0, kind == 2 ? 4.0 : 1.0));
     return s.position + Vec3{random_.uniform(-1, 1), random_.uniform(-1, 1), random_.uniform(-1, 1)} * length;

@@ -173,6 +173,14 @@ TEST_P(WalkOracle, AgreesOnRandomWalks) {
   }
 }
 
+// Steps that once ended on walls that they did not meet: at vertices and edges of cells with flat corners.
+TEST(WalkOracleSeeds, FlatCornersDoNotJoinWallsThatAreApart) {
+  Tally tally;
+  for (const std::uint64_t seed : {60U, 93U, 111U, 120U, 139U, 152U}) {
+    EXPECT_EQ(walk_scene(oracle::SceneKind::flat_corners, seed, tally), "");
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, WalkOracle, ::testing::Range(0, oracle::scene_kinds),
                          [](const auto& kind) { return oracle::name_of(static_cast<oracle::SceneKind>(kind.param)); });
 

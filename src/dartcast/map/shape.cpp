@@ -39,10 +39,8 @@ Shape::Shape(ShapeKey key) : key_(std::move(key)) {
 
 void Shape::number_darts() {
   first_dart_.push_back(0);
-  dart_at_.resize(key_.corner_count);
   for (std::uint16_t f = 0; f < face_count(); ++f) {
     for (const std::uint16_t corner : key_.faces[f].corners) {
-      dart_at_[corner] = static_cast<std::uint16_t>(origin_.size());
       origin_.push_back(corner);
       face_of_.push_back(f);
     }
@@ -156,8 +154,8 @@ Shape::Feature Shape::feature(std::span<const std::uint16_t> points) const {
 }
 
 std::size_t Shape::bytes() const {
-  return sizeof(Shape) + (dart_count() * 4U + corner_count()) * sizeof(std::uint16_t) +
-         simplices_.size() * sizeof(ImplicitSimplex) + entries_.size() * sizeof(Across);
+  return sizeof(Shape) + dart_count() * 4U * sizeof(std::uint16_t) + simplices_.size() * sizeof(ImplicitSimplex) +
+         entries_.size() * sizeof(Across);
 }
 
 std::uint32_t ShapeTable::intern(const ShapeKey& key) {

@@ -67,8 +67,6 @@ class Shape {
   [[nodiscard]] const ShapeKey& key() const { return key_; }
 
   [[nodiscard]] std::uint16_t origin(std::uint16_t dart) const { return origin_[dart]; }
-  /// One of the darts that start at a corner.
-  [[nodiscard]] std::uint16_t dart_at(std::uint16_t corner) const { return dart_at_[corner]; }
   [[nodiscard]] std::uint16_t face_of(std::uint16_t dart) const { return face_of_[dart]; }
   [[nodiscard]] std::uint16_t first_dart(std::uint16_t face) const { return first_dart_[face]; }
   [[nodiscard]] std::uint16_t degree(std::uint16_t face) const {
@@ -122,7 +120,7 @@ class Shape {
   ShapeKey key_;
   std::uint16_t face_count_ = 0;
   std::uint16_t point_count_ = 0;
-  std::vector<std::uint16_t> origin_, dart_at_, face_of_, first_dart_, phi2_;
+  std::vector<std::uint16_t> origin_, face_of_, first_dart_, phi2_;
   std::vector<ImplicitSimplex> simplices_;
   std::vector<std::uint16_t> first_entry_;
   std::vector<Across> entries_;
