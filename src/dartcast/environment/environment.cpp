@@ -9,6 +9,7 @@
 
 #include "dartcast/base/error.hpp"
 #include "dartcast/mesh/inspect.hpp"
+#include "dartcast/walk/nearby.hpp"
 
 namespace dartcast {
 
@@ -41,11 +42,7 @@ bool names_free_simplex(const Map& map, SimplexId s) {
 bool holds(const Complex& complex, SimplexId s, const Vec3& x) {
   if (!names_free_simplex(complex.map(), s)) return false;
   const Corners v = complex.corners(s);
-  const auto not_negative = [&](unsigned facet) {
-    const Sign sign = orient_facet(v, facet, x);
-    return sign == Sign::positive || sign == Sign::zero;
-  };
-  return volume_sign(v) == Sign::positive && not_negative(0) && not_negative(1) && not_negative(2) && not_negative(3);
+  return volume_sign(v) == Sign::positive && detail::in_closed_simplex(v, x);
 }
 
 bool is_wall(const Map& map, CellFace f) {
