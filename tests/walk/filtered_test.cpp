@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "dartcast/base/random.hpp"
@@ -52,33 +53,40 @@ class BothWays {
     if (moves_) move();
     std::vector<Vec3> targets;
     for (const State& s : states_) targets.push_back(target(s));
-    const Filtered portable = filtered(targets, detail::InstructionSet::portable);
-    const Filtered best = filtered(targets, detail::best_instruction_set());
-    if (portable.left != best.left) return "instruction sets leave different steps";
+    const Filtered portable = filtered(targets, detail::InstructionSet::portable, {});
+    const Filtered best = filtered(targets, detail::best_instruction_set(), trails_);
+    if (portable.taken != best.taken) return "instruction sets leave different steps";
     const StepOptions options;
     const Respond none;
     const Stepper stepper(complex_, moves_, options, none);
     Counters counters;  // of the steps taken
     std::vector<State> next = states_;
+    std::vector<detail::Trail> next_trails;
     for (std::size_t i = 0; i < particles; ++i) {
       Weights weights{};
       ContactList contacts;
       Counters own;
       const StepResult result =
           stepper.step(static_cast<std::uint32_t>(i), next[i], weights, targets[i], contacts, own);
-      const bool taken = best.left[i] == 0;
+      const bool taken = best.taken[i] == detail::taken_all;
       const State& expected = taken ? next[i] : states_[i];
       if (!same_bits(best.states[i], expected) || !same_bits(portable.states[i], expected))
         return fmt::format("particle {}: another state", i);
       if (taken && (result.held || !contacts.contacts.empty())) return fmt::format("particle {}: held or stopped", i);
       if (best.vertices[i] != detail::vertex_numbers(complex_, expected.at()))
         return fmt::format("particle {}: other vertices", i);
+      const detail::Trail trail =
+          detail::trail_of(complex_.positions(), detail::vertex_numbers(complex_, next[i].at()), next[i].position);
+      if (moves_ && taken && (!equal(best.trails[i], trail) || !equal(portable.trails[i], trail)))
+        return fmt::format("particle {}: another trail", i);
+      if (moves_) next_trails.push_back(trail);
       if (taken) counters += own;
       tally.steps += 1;
       tally.taken += taken ? 1 : 0;
       tally.moved_on += taken && next[i].at() != states_[i].at() ? 1 : 0;
     }
     states_ = next;
+    trails_ = next_trails;
     return same(counters, best.counters) && same(counters, portable.counters) ? "" : "other counts";
   }
 
@@ -86,17 +94,24 @@ class BothWays {
   struct Filtered {
     std::vector<State> states;
     std::vector<detail::VertexNumbers> vertices;
-    std::vector<std::uint8_t> left;
+    std::vector<detail::Trail> trails;
+    std::vector<detail::Taken> taken;
+    std::vector<Begun> begun;
     Counters counters;
   };
 
-  Filtered filtered(std::span<const Vec3> targets, detail::InstructionSet set) const {
-    Filtered f{states_, {}, std::vector<std::uint8_t>(particles, 7), {}};
+  // With the trails of the step before, or none.
+  Filtered filtered(std::span<const Vec3> targets, detail::InstructionSet set,
+                    const std::vector<detail::Trail>& trails) const {
+    Filtered f{states_, {}, trails, std::vector<detail::Taken>(particles), std::vector<Begun>(detail::most_begun), {}};
+    f.trails.resize(moves_ ? particles : 0);
     for (const State& s : states_) f.vertices.push_back(detail::vertex_numbers(complex_, s.at()));
-    detail::step_filtered({&complex_, moves_, StepOptions{}.tolerance}, {f.states, f.vertices, targets, f.left},
-                          f.counters, set);
+    detail::step_filtered({&complex_, moves_, !trails.empty(), StepOptions{}.tolerance},
+                          {f.states, f.vertices, f.trails, targets, f.taken, f.begun}, f.counters, set);
     return f;
   }
+
+  static bool equal(const detail::Trail& a, const detail::Trail& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
   static bool same(const Counters& a, const Counters& b) {
     return a.particle_steps == b.particle_steps && a.orientation.tests == b.orientation.tests &&
@@ -160,6 +175,7 @@ class BothWays {
   Random random_;
   bool moves_;
   std::vector<State> states_;
+  std::vector<detail::Trail> trails_;  // of these, once vertices have moved
 };
 
 class FilteredBatch : public ::testing::TestWithParam<std::tuple<int, bool>> {};

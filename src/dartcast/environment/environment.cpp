@@ -71,11 +71,13 @@ void Particles::remove(std::span<const std::uint8_t> marks) {
     if (marks[i] != 0) continue;
     states_[kept] = states_[i];
     weights_[kept] = weights_[i];
+    if (!trails_.empty()) trails_[kept] = trails_[i];
     vertices_[kept++] = vertices_[i];
   }
   states_.resize(kept);
   weights_.resize(kept);
   vertices_.resize(kept);
+  if (!trails_.empty()) trails_.resize(kept);
 }
 
 void Particles::reorder(std::span<const std::uint32_t> order) {
@@ -87,14 +89,17 @@ void Particles::reorder(std::span<const std::uint32_t> order) {
   std::vector<State> states(size());
   std::vector<Weights> weights(size());
   std::vector<detail::VertexNumbers> vertices(size());
+  std::vector<detail::Trail> trails(trails_.size());
   for (std::size_t i = 0; i < size(); ++i) {
     states[i] = states_[order[i]];
     weights[i] = weights_[order[i]];
     vertices[i] = vertices_[order[i]];
+    if (!trails_.empty()) trails[i] = trails_[order[i]];
   }
   states_ = std::move(states);
   weights_ = std::move(weights);
   vertices_ = std::move(vertices);
+  trails_ = std::move(trails);
 }
 
 Environment::Environment(MeshData mesh, Threads threads)
@@ -140,7 +145,9 @@ std::vector<Added> Environment::add(Particles& particles, std::span<const Vec3> 
 void Environment::add_to(Particles& particles, SimplexId simplex, const Vec3& position) const {
   particles.states_.emplace_back().put(simplex, position);
   particles.weights_.emplace_back();
-  particles.vertices_.push_back(detail::vertex_numbers(complex_, simplex));
+  const auto& vertices = particles.vertices_.emplace_back(detail::vertex_numbers(complex_, simplex));
+  if (!particles.trails_.empty())
+    particles.trails_.push_back(detail::trail_of(complex_.positions(), vertices, position));
 }
 
 bool Environment::add(Particles& particles, SimplexId simplex, const Vec3& position) {
@@ -200,15 +207,21 @@ void Environment::step_chunk(const Steps& steps, std::size_t begin, std::size_t 
   const std::size_t size = end - begin;
   const std::span<State> states = std::span(steps.particles.states_).subspan(begin, size);
   const std::span<const Vec3> targets = steps.targets.subspan(begin, size);
-  std::array<std::uint8_t, grain> left;
+  std::array<detail::Taken, grain> taken;
+  std::array<Begun, detail::most_begun> begun;
   const std::span<detail::VertexNumbers> vertices = std::span(steps.particles.vertices_).subspan(begin, size);
-  detail::step_filtered(steps.filtered, {states, vertices, targets, std::span(left).first(size)}, part.counters);
+  std::span<detail::Trail> trails = steps.particles.trails_;
+  if (!trails.empty()) trails = trails.subspan(begin, size);
+  detail::step_filtered(steps.filtered, {states, vertices, trails, targets, std::span(taken).first(size), begun},
+                        part.counters);
   for (std::size_t i = 0; i < size; ++i) {
-    if (left[i] == 0) continue;
+    if (taken[i] == detail::taken_all) continue;
     const auto particle = static_cast<std::uint32_t>(begin + i);
-    const StepResult result = steps.stepper.step(particle, states[i], steps.particles.weights_[particle], targets[i],
-                                                 part.contacts, part.counters);
+    const StepResult result =
+        steps.stepper.step(particle, states[i], steps.particles.weights_[particle], targets[i], part.contacts,
+                           part.counters, taken[i] == detail::taken_nothing ? nullptr : &begun[taken[i]]);
     vertices[i] = detail::vertex_numbers(complex_, states[i].at());
+    if (!trails.empty()) trails[i] = detail::trail_of(complex_.positions(), vertices[i], states[i].position);
     if (result.held) part.held.push_back({particle, result.invalid_cell});
     if (result.stopped) part.stopped.push_back({particle, result.unused});
   }
@@ -225,11 +238,15 @@ StepReport Environment::advance(Particles& particles, std::span<const Vec3> targ
   if (!(options.tolerance > 0.0) || options.max_parts == 0)
     throw InvalidArgument("advance: the tolerance and the number of parts must be positive");
   const bool moved = particles.moves_ != moves_;
-  const Steps steps{
-      particles, targets, Stepper(complex_, moved, options, respond), {&complex_, moved, options.tolerance}};
+  const bool trails_match = moved && particles.trails_.size() == particles.size();
+  const Steps steps{particles,
+                    targets,
+                    Stepper(complex_, moved, options, respond),
+                    {&complex_, moved, trails_match, options.tolerance}};
   std::vector<StepReport> parts(chunk_count(particles.size(), grain));
+  const Particles before = respond ? particles : Particles{};  // a response is the caller's code: it may throw
+  particles.trails_.resize(moved ? particles.size() : 0);
   if (respond) {
-    const Particles before = particles;  // a response is the caller's code: it may throw
     try {
       step_all(steps, parts);
     } catch (...) {

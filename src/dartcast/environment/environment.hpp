@@ -39,6 +39,7 @@ class Particles {
   std::vector<State> states_;
   std::vector<Weights> weights_;
   std::vector<detail::VertexNumbers> vertices_;
+  std::vector<detail::Trail> trails_;  // of these states; empty where vertices have not moved
   std::uint64_t moves_ = 0;  // of the environment, that these states have followed
 };
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstring>
+#include <limits>
 
 #include "dartcast/walk/ride.hpp"
 
@@ -23,6 +23,8 @@ namespace {
 using Quad = double __attribute__((vector_size(32)));
 // clang++ takes no notice of the alignment in an alias.
 typedef double UnalignedQuad __attribute__((vector_size(32), aligned(8), may_alias));  // NOLINT(modernize-use-using)
+using Floats = float __attribute__((vector_size(16)));
+typedef float UnalignedFloats __attribute__((vector_size(16), aligned(4), may_alias));  // NOLINT(modernize-use-using)
 using Mask = long long __attribute__((vector_size(32)));
 
 // Sign of u . (v x w), evaluated as in exact/predicates.cpp; 0 where the filter leaves it open.
@@ -93,6 +95,14 @@ InstructionSet best_instruction_set() {
   if (has_avx2) return InstructionSet::avx2;
 #endif
   return InstructionSet::portable;
+}
+
+Trail trail_of(std::span<const Vec3> positions, const VertexNumbers& vertices, const Vec3& p) {
+  portable::Lanes relative;
+  const portable::FilteredDeterminants d(portable::Rows(positions.data(), vertices), portable::load_row(p), relative);
+  Trail trail;
+  portable::leave_trail(relative, d, trail);
+  return trail;
 }
 
 void step_filtered(const FilteredScene& scene, const FilteredSteps& steps, Counters& counters,

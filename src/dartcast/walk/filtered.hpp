@@ -1,7 +1,8 @@
 // The steps of many particles at once, as far as the filter alone decides them: the usual case, made fast.
 //
-// It decides nothing of its own: where a sign is not proved, a wall is met, or anything else is out of the ordinary,
-// the step is left as it was for Stepper (walk/step.hpp), which comes to the same result wherever both do.
+// It decides nothing of its own: where a sign is not proved, or anything else is out of the ordinary, the step is left
+// as it was for Stepper (walk/step.hpp), which comes to the same result wherever both do. What follows at a wall is
+// left to it, too.
 #pragma once
 
 #include <array>
@@ -12,6 +13,7 @@
 #include "dartcast/geometry/complex.hpp"
 #include "dartcast/walk/counters.hpp"
 #include "dartcast/walk/state.hpp"
+#include "dartcast/walk/step.hpp"
 
 namespace dartcast::detail {
 
@@ -20,8 +22,9 @@ inline constexpr std::size_t filtered_batch = 1024;
 
 struct FilteredScene {
   const Complex* complex = nullptr;
-  bool moved = false;      ///< as for Stepper
-  double tolerance = 0.0;  ///< as in StepOptions
+  bool moved = false;         ///< as for Stepper
+  bool trails_match = false;  ///< moved: the trails are those of the states, before the move
+  double tolerance = 0.0;     ///< as in StepOptions
 };
 
 /// The numbers of the vertices of the simplex that a particle is in: kept beside its state, so that a step that ends in
@@ -33,12 +36,32 @@ inline VertexNumbers vertex_numbers(const Complex& complex, SimplexId s) {
   return {v[0].value, v[1].value, v[2].value, v[3].value};
 }
 
+/// What the next step among moving vertices reads of a particle's simplex as it was. Kept beside the state: the old
+/// positions themselves, long since driven out of the caches, need not be read again.
+struct Trail {
+  std::array<float, 4> x, y, z;        ///< of the corners relative to the particle, rounded
+  std::array<double, 4> determinants;  ///< of the particle; NaN where they don't prove its coordinates
+};
+
+/// The trail of a particle at p. `positions`: of all vertices.
+Trail trail_of(std::span<const Vec3> positions, const VertexNumbers& vertices, const Vec3& p);
+
+/// What was done of a step: all, nothing, or, where it has come to its first wall, the number of its Begun; its state
+/// is as it was, then.
+using Taken = std::uint8_t;
+inline constexpr Taken taken_all = 0xff;
+inline constexpr Taken taken_nothing = 0xfe;
+/// Room for walks that have come to walls; if there are more, nothing is done of these.
+inline constexpr std::size_t most_begun = 128;
+
 /// One entry per particle in each.
 struct FilteredSteps {
   std::span<State> states;
   std::span<VertexNumbers> vertices;  ///< of each state
+  std::span<Trail> trails;            ///< moved: in where they match; out for each step taken
   std::span<const Vec3> targets;
-  std::span<std::uint8_t> left;  ///< out: 1 where the step is not taken
+  std::span<Taken> taken;  ///< out
+  std::span<Begun> begun;  ///< out: most_begun places
 };
 
 enum class InstructionSet : std::uint8_t { portable, avx2 };

@@ -19,10 +19,23 @@ DARTCAST_TARGET inline Quad magnitude(const Quad& v) {
                                 Mask{all_but_sign, all_but_sign, all_but_sign, all_but_sign});
 }
 DARTCAST_TARGET inline Quad larger(const Quad& a, const Quad& b) { return a > b ? a : b; }
-DARTCAST_TARGET inline double square(const Quad& row) {
-  const Quad squares = row * row;
-  return (squares[0] + squares[1]) + squares[2];
+DARTCAST_TARGET inline Quad smaller(const Quad& a, const Quad& b) { return a < b ? a : b; }
+
+// The corners of a simplex relative to a point, one in each lane.
+struct Lanes {
+  Quad x, y, z;
+};
+DARTCAST_TARGET inline Quad square(const Lanes& v) { return v.x * v.x + v.y * v.y + v.z * v.z; }
+DARTCAST_TARGET inline Lanes operator-(const Lanes& u, const Lanes& v) { return {u.x - v.x, u.y - v.y, u.z - v.z}; }
+// Each lane from the lane named.
+template <int a, int b, int c, int d>
+DARTCAST_TARGET inline Lanes lanes(const Lanes& v) {
+  return {__builtin_shufflevector(v.x, v.x, a, b, c, d), __builtin_shufflevector(v.y, v.y, a, b, c, d),
+          __builtin_shufflevector(v.z, v.z, a, b, c, d)};
 }
+DARTCAST_TARGET inline double sum(const Quad& v) { return (v[0] + v[1]) + (v[2] + v[3]); }
+DARTCAST_TARGET inline double most(const Quad& v) { return std::max(std::max(v[0], v[1]), std::max(v[2], v[3])); }
+DARTCAST_TARGET inline double least(const Quad& v) { return std::min(std::min(v[0], v[1]), std::min(v[2], v[3])); }
 
 // The determinants of geometry/simplex.hpp, by the same operations, one in each lane; and their bound.
 struct FilteredDeterminants {
@@ -32,25 +45,28 @@ struct FilteredDeterminants {
 
   FilteredDeterminants() = default;
   DARTCAST_TARGET FilteredDeterminants(const Rows& v, const Quad& point) {
+    Lanes ignored;
+    *this = FilteredDeterminants(v, point, ignored);
+  }
+  // Leaves the corners relative to the point in `relative`.
+  DARTCAST_TARGET FilteredDeterminants(const Rows& v, const Quad& point, Lanes& relative) {
     const Quad r0 = v.corner[0] - point;
     const Quad r1 = v.corner[1] - point;
     const Quad r2 = v.corner[2] - point;
     const Quad r3 = v.corner[3] - point;
-    const Quad most = larger(larger(magnitude(r0), magnitude(r1)), larger(magnitude(r2), magnitude(r3)));
-    const double m = most[0] * most[1] * most[2];
+    const Quad extent = larger(larger(magnitude(r0), magnitude(r1)), larger(magnitude(r2), magnitude(r3)));
+    const double m = extent[0] * extent[1] * extent[2];
     bound = determinant_error * m;
-    applies = (lanes_set(most > 0x1p+301) & 7U) == 0 && m >= 0x1p-700;
+    applies = (lanes_set(extent > 0x1p+301) & 7U) == 0 && m >= 0x1p-700;
     // Corners in lanes, as they are and with neighbours exchanged: (r1, r0, r3, r2).
     const Quad xz01 = __builtin_shufflevector(r0, r1, 0, 4, 2, 6);
     const Quad xz23 = __builtin_shufflevector(r2, r3, 0, 4, 2, 6);
     const Quad y01 = __builtin_shufflevector(r0, r1, 1, 5, 3, 7);
     const Quad y23 = __builtin_shufflevector(r2, r3, 1, 5, 3, 7);
-    const Quad x = __builtin_shufflevector(xz01, xz23, 0, 1, 4, 5);
-    const Quad y = __builtin_shufflevector(y01, y23, 0, 1, 4, 5);
-    const Quad z = __builtin_shufflevector(xz01, xz23, 2, 3, 6, 7);
-    const Quad xs = __builtin_shufflevector(x, x, 1, 0, 3, 2);
-    const Quad ys = __builtin_shufflevector(y, y, 1, 0, 3, 2);
-    const Quad zs = __builtin_shufflevector(z, z, 1, 0, 3, 2);
+    relative = {__builtin_shufflevector(xz01, xz23, 0, 1, 4, 5), __builtin_shufflevector(y01, y23, 0, 1, 4, 5),
+                __builtin_shufflevector(xz01, xz23, 2, 3, 6, 7)};
+    const auto& [x, y, z] = relative;
+    const auto [xs, ys, zs] = lanes<1, 0, 3, 2>(relative);
     // (n, -n, n', -n') with n = r0 x r1, n' = r2 x r3; then its halves exchanged.
     const Quad nx = y * zs - z * ys;
     const Quad ny = z * xs - x * zs;
@@ -61,7 +77,7 @@ struct FilteredDeterminants {
     value = xs * mx + ys * my + zs * mz;
   }
 
-  [[nodiscard]] DARTCAST_TARGET double volume6() const { return (value[0] + value[1]) + (value[2] + value[3]); }
+  [[nodiscard]] DARTCAST_TARGET double volume6() const { return sum(value); }
   // Surely no more than six times the volume.
   [[nodiscard]] DARTCAST_TARGET double least_volume6() const { return volume6() - 8.0 * bound; }
   [[nodiscard]] DARTCAST_TARGET bool proves_positive() const { return applies && least_volume6() > 0.0; }
@@ -90,40 +106,73 @@ DARTCAST_TARGET inline bool is_exact(const Rows& v, const Quad& point) {
   return (lanes_set(rounded) & 7U) == 0;
 }
 
+// What is kept of a simplex for the particle that its corners are relative to, d being its determinants.
+DARTCAST_TARGET inline void leave_trail(const Lanes& relative, const FilteredDeterminants& d, Trail& trail) {
+  const auto store = [](const Quad& four, std::array<float, 4>& out) DARTCAST_TARGET {
+    *reinterpret_cast<UnalignedFloats*>(out.data()) = __builtin_convertvector(four, Floats);
+  };
+  store(relative.x, trail.x);
+  store(relative.y, trail.y);
+  store(relative.z, trail.z);
+  constexpr double unproved = std::numeric_limits<double>::quiet_NaN();
+  const Quad value = d.proves_coordinates() ? d.value : Quad{unproved, unproved, unproved, unproved};
+  *reinterpret_cast<UnalignedQuad*>(trail.determinants.data()) = value;
+}
+DARTCAST_TARGET inline Quad load_four(const std::array<double, 4>& numbers) {
+  return *reinterpret_cast<const UnalignedQuad*>(numbers.data());
+}
+
+// The corners before the move, relative to where the particle was.
+DARTCAST_TARGET inline Lanes corners_before(const Trail& trail) {
+  const auto load = [](const std::array<float, 4>& in) DARTCAST_TARGET {
+    const Floats four = *reinterpret_cast<const UnalignedFloats*>(in.data());
+    return __builtin_convertvector(four, Quad);
+  };
+  return {load(trail.x), load(trail.y), load(trail.z)};
+}
+
 // The coordinates of walk/ride.hpp, and the point that has them in the moved simplex. False where the filter does not
 // prove that the simplexes are positive, and the point inside.
-DARTCAST_TARGET inline bool ride_along(const Rows& before, const Rows& now, const Vec3& p, Vec3& ridden) {
-  const FilteredDeterminants at(before, load_row(p));
-  if (!at.proves_coordinates()) return false;
-  const Quad w = larger(at.value, Quad{});
-  const double sum = ((w[0] + w[1]) + w[2]) + w[3];
-  const Quad share = w / sum;
+DARTCAST_TARGET inline bool ride_along(const Trail& trail, const Rows& now, Vec3& ridden) {
+  if (std::isnan(trail.determinants[0])) return false;
+  const Quad w = larger(load_four(trail.determinants), Quad{});
+  const Quad share = w / (((w[0] + w[1]) + w[2]) + w[3]);
   const Quad x =
       (now.corner[0] * share[0] + now.corner[1] * share[1]) + (now.corner[2] * share[2] + now.corner[3] * share[3]);
   ridden = flushed(vec_of(x));
   return FilteredDeterminants(now, load_row(ridden)).all_positive();
 }
 
-// Whether a step relative to moving vertices surely needs no splitting (walk/step.hpp). With D the longest displacement
-// of a corner relative to the first, L the longest edge from there, before and after, and V six times the volume
-// before: |A| <= 3 D L^2 / V, the shortest edge is at least V / L^2, V at least the volume after less 3 D L^2, and the
-// particle's own motion at most |q - p - u0| + D.
-DARTCAST_TARGET inline bool is_one_part(const Rows& before, const Rows& now, double volume_now, const Vec3& p,
-                                        const Quad& q, double tolerance) {
-  const Quad u0 = now.corner[0] - before.corner[0];
-  Quad longest = magnitude(now.corner[1] - now.corner[0]);
-  Quad farthest = magnitude((now.corner[1] - before.corner[1]) - u0);
-  for (unsigned i = 2; i < 4; ++i) {
-    longest = larger(longest, magnitude(now.corner[i] - now.corner[0]));
-    farthest = larger(farthest, magnitude((now.corner[i] - before.corner[i]) - u0));
-  }
-  const double d = std::sqrt(square(farthest));
-  const double own = std::sqrt(square(q - load_row(p) - u0)) + d;
-  const double l = std::sqrt(square(longest)) + d;
-  constexpr double rounding = 1.01;
-  const double change = 3.0 * rounding * d * l * l;  // of the volume
-  const double volume = volume_now - change;
-  return volume > 0.0 && change * own * l * l <= 2.0 * tolerance * volume * volume;
+// Whether a step relative to moving vertices surely needs no splitting (walk/step.hpp): |A| |r| <= 2 tolerance edge.
+// `after`: the moved corners relative to the target q; p: where the particle was.
+//
+// The corners' displacements d_i, less the particle's own q - p, have -r as a mean: |r| <= max |d_i|. With
+// u_i = d_i - d_0 and n_i the cross products of the old edges e_i from corner 0, A = sum of u_i n_i^T / V, so that
+// |A|^2 V^2 <= sum of |u_i|^2 times sum of |n_i|^2. Squares are compared. L is the largest old coordinate: floats
+// rounded the old corners by 2^-24 L, and the rule's own doubles round u_i by as much at most, as |q - p| and |d_i| are
+// below 2^28 L. So the coordinates of d_i, u_i, n_i and the edges are off by 2^-24 L, 3 2^-24 L, 2^-20 L^2 and 2^-23 L;
+// squares count that as (a + b)^2 <= 17/16 a^2 + 17 b^2. With L as bounded nothing overflows or underflows.
+DARTCAST_TARGET inline bool is_one_part(const Trail& trail, const Lanes& after, const Quad& p, const Quad& q,
+                                        double tolerance) {
+  const Lanes before = corners_before(trail);
+  const Lanes d = after - before;
+  const Lanes u = d - lanes<0, 0, 0, 0>(d);
+  const Lanes e = before - lanes<0, 0, 0, 0>(before);
+  const Lanes f = lanes<0, 2, 3, 1>(e);
+  const Lanes n = {e.y * f.z - e.z * f.y, e.z * f.x - e.x * f.z, e.x * f.y - e.y * f.x};
+  const Quad edges = smaller(square(before - lanes<1, 2, 3, 0>(before)), square(before - lanes<2, 3, 0, 1>(before)));
+  const double l = most(larger(larger(magnitude(before.x), magnitude(before.y)), magnitude(before.z)));
+  const double l2 = l * l;
+  const double farthest = most(square(d));
+  const double r2 = 0x1.1p+0 * farthest + 0x1p-42 * l2;
+  const double u2 = 0x1.1p+0 * sum(square(u)) + 0x1p-37 * l2;
+  const double n2 = 0x1.1p+0 * sum(square(n)) + 0x1p-32 * l2 * l2;
+  const double edge2 = 0.94 * (least(edges) - 0x1p-40 * l2);
+  const double volume = sum(load_four(trail.determinants));  // NaN: then nothing is less
+  const double limit = 1.98 * tolerance * volume;
+  const bool in_range =
+      l > 0x1p-100 && l < 0x1p+100 && farthest < 0x1p+56 * l2 && (lanes_set(magnitude(q - p) < 0x1p+28 * l) & 7U) == 7U;
+  return in_range && u2 * n2 * r2 <= limit * limit * edge2;
 }
 
 // A simplex that a walk has come to.
@@ -145,15 +194,19 @@ class Batch {
       : map_(scene.complex->map()),
         now_(scene.complex->positions().data()),
         before_(scene.moved ? scene.complex->previous_positions().data() : nullptr),
+        trails_match_(scene.trails_match),
         tolerance_(scene.tolerance),
         size_(static_cast<std::uint32_t>(steps.states.size())),
         states_(steps.states.data()),
         vertices_(steps.vertices.data()),
+        trails_(steps.trails.data()),
         targets_(steps.targets.data()),
-        left_(steps.left.data()),
+        taken_(steps.taken.data()),
+        begun_(steps.begun.data()),
         counters_(counters) {}
 
   DARTCAST_TARGET void run(std::uint64_t most_rounds) {
+    if (before_ != nullptr && !trails_match_) look_back();
     std::size_t count = before_ == nullptr ? begin<false>() : begin<true>();
     for (std::uint64_t round = 1; count > 0; ++round) {
       if (round == most_rounds) return leave_all(count);
@@ -167,13 +220,13 @@ class Batch {
   // The first simplex of each step: most end there. Returns the number of walks that go on.
   template <bool moved>
   DARTCAST_TARGET std::size_t begin() {
-    std::memset(left_, 0, size_);
+    std::fill_n(taken_, size_, taken_all);
     std::size_t count = 0;
-    for (std::uint32_t i = 0; i < std::min(size_, block); ++i) ask_for<moved>(vertices_[i]);
+    for (std::uint32_t i = 0; i < std::min(size_, block); ++i) ask_for(now_, vertices_[i]);
     for (std::uint32_t first = 0; first < size_; first += block) {
       const std::uint32_t n = std::min(block, size_ - first);
       for (std::uint32_t k = 0; k < n; ++k) {
-        if (first + k + block < size_) ask_for<moved>(vertices_[first + k + block]);
+        if (first + k + block < size_) ask_for(now_, vertices_[first + k + block]);
         test<moved>(first + k, k);
       }
       const std::uint32_t leaving = end_inside<moved>(first, n);
@@ -181,21 +234,40 @@ class Batch {
         const std::uint32_t i = first + leaving_[l];
         if (moved && !ride(i)) continue;
         visits_[count] = {i, states_[i].cell.value, states_[i].simplex, 4, 4, 0, false};
-        if (leave_simplex(visits_[count], vertices_[i], determinants_[leaving_[l]])) ++count;
+        if (leave_simplex(visits_[count], vertices_[i], leaving_[l])) ++count;
       }
+      if constexpr (moved) leave_trails(first, n);
     }
     return count;
+  }
+
+  // The trails of particles that followed an earlier move, or none.
+  DARTCAST_TARGET void look_back() {
+    for (std::uint32_t i = 0; i < size_; ++i) {
+      if (i + block < size_) ask_for(before_, vertices_[i + block]);
+      const Rows before(before_, vertices_[i]);
+      const Quad p = load_row(states_[i].position);
+      Lanes relative;
+      const FilteredDeterminants d(before, p, relative);
+      leave_trail(relative, d, trails_[i]);
+    }
+  }
+
+  // Of all the block: who goes on, or is left, gets another one later.
+  DARTCAST_TARGET void leave_trails(std::uint32_t first, std::uint32_t n) {
+    for (std::uint32_t k = 0; k < n; ++k) {
+      leave_trail(relative_[k], determinants_[k], trails_[first + k]);
+    }
   }
 
   template <bool moved>
   DARTCAST_TARGET void test(std::uint32_t i, std::uint32_t k) {
     const Rows now(now_, vertices_[i]);
-    determinants_[k] = FilteredDeterminants(now, load_row(targets_[i]));
+    const Quad target = load_row(targets_[i]);
+    determinants_[k] = FilteredDeterminants(now, target, relative_[k]);
     inside_[k] = determinants_[k].all_positive();
-    if constexpr (moved) {
-      one_part_[k] = is_one_part(Rows(before_, vertices_[i]), now, determinants_[k].least_volume6(),
-                                 states_[i].position, load_row(targets_[i]), tolerance_);
-    }
+    if constexpr (moved)
+      one_part_[k] = is_one_part(trails_[i], relative_[k], load_row(states_[i].position), target, tolerance_);
   }
 
   // Ends the steps whose targets lie strictly inside: wherever they come from in the same simplex, nothing is in the
@@ -209,7 +281,7 @@ class Batch {
       State& s = states_[i];
       if (s.held || (moved && !one_part_[k] && !is_one_part_after_all(i)) ||
           (s.touching_count != 0 && rests<moved>(i))) {
-        left_[i] = 1;
+        leave(i);
         continue;
       }
       const bool inside = inside_[k];
@@ -228,11 +300,10 @@ class Batch {
 
   // The rule itself, where the bound of it does not do.
   DARTCAST_TARGET bool is_one_part_after_all(std::uint32_t i) const {
-    const Rows before(before_, vertices_[i]);
     const Rows now(now_, vertices_[i]);
     Vec3 ridden;
-    if (!ride_along(before, now, states_[i].position, ridden)) return false;
-    const auto [gradient, edge] = deformation(corners_of(before), corners_of(now));
+    if (!ride_along(trails_[i], now, ridden)) return false;
+    const auto [gradient, edge] = deformation(corners_of(Rows(before_, vertices_[i])), corners_of(now));
     return gradient * norm(targets_[i] - ridden) <= 2.0 * tolerance_ * edge;
   }
 
@@ -241,8 +312,7 @@ class Batch {
   DARTCAST_TARGET bool rests(std::uint32_t i) const {
     if constexpr (!moved) return states_[i].position == targets_[i];
     Vec3 ridden;
-    return !ride_along(Rows(before_, vertices_[i]), Rows(now_, vertices_[i]), states_[i].position, ridden) ||
-           ridden == targets_[i];
+    return !ride_along(trails_[i], Rows(now_, vertices_[i]), ridden) || ridden == targets_[i];
   }
 
   // Moves the start of a walk along with the vertices; false where the step is left.
@@ -251,7 +321,7 @@ class Batch {
     const Vec3 p = states_[i].position;
     left_behind_[i] = FilteredDeterminants(now, load_row(p)).negative() != 0;
     Vec3 ridden;
-    if (!ride_along(Rows(before_, vertices_[i]), now, p, ridden) || ridden == targets_[i]) return leave(i);
+    if (!ride_along(trails_[i], now, ridden) || ridden == targets_[i]) return leave(i);
     ridden_[i] = load_row(ridden);
     return true;
   }
@@ -263,15 +333,15 @@ class Batch {
       const std::size_t n = std::min<std::size_t>(block, count - first);
       for (std::size_t k = 0; k < n; ++k) enter(visits_[first + k], corners_[k]);
       for (std::size_t k = 0; k < n; ++k) {
-        determinants_[k] =
-            FilteredDeterminants(Rows(now_, corners_[k]), load_row(targets_[visits_[first + k].particle]));
+        determinants_[k] = FilteredDeterminants(Rows(now_, corners_[k]),
+                                                load_row(targets_[visits_[first + k].particle]), relative_[k]);
       }
       for (std::size_t k = 0; k < n; ++k) {
         Visit& v = visits_[next] = visits_[first + k];
         v.tests = static_cast<std::uint16_t>(v.tests + 3);
         if (determinants_[k].all_positive()) {
-          arrive(v, corners_[k]);
-        } else if (leave_simplex(v, corners_[k], determinants_[k])) {
+          arrive(v, corners_[k], k);
+        } else if (leave_simplex(v, corners_[k], k)) {
           ++next;
         }
       }
@@ -289,21 +359,19 @@ class Batch {
     }
     const auto& local = cell.shape().simplices()[v.index].vertex;
     for (unsigned i = 0; i < 4; ++i) corners[i] = cell.vertex(local[i]).value;
-    ask_for<false>(corners);
+    ask_for(now_, corners);
   }
 
-  template <bool moved>
-  DARTCAST_TARGET void ask_for(const VertexNumbers& v) const {
+  DARTCAST_TARGET static void ask_for(const Vec3* positions, const VertexNumbers& v) {
     for (unsigned i = 0; i < 4; ++i) {
-      __builtin_prefetch(now_ + v[i]);
-      __builtin_prefetch(&(now_ + v[i])->z);
-      if constexpr (moved) __builtin_prefetch(before_ + v[i]);
-      if constexpr (moved) __builtin_prefetch(&(before_ + v[i])->z);
+      __builtin_prefetch(positions + v[i]);
+      __builtin_prefetch(&(positions + v[i])->z);
     }
   }
 
   // Goes on into the next simplex, if the filter says which; else leaves the step.
-  DARTCAST_TARGET bool leave_simplex(Visit& visit, const VertexNumbers& corners, const FilteredDeterminants& d) {
+  DARTCAST_TARGET bool leave_simplex(Visit& visit, const VertexNumbers& corners, std::size_t k) {
+    const FilteredDeterminants& d = determinants_[k];
     if (!d.proves_positive()) return leave(visit.particle);
     const unsigned asked = 15U & ~(1U << visit.place);
     unsigned behind = d.negative() & asked;
@@ -316,7 +384,7 @@ class Batch {
     }
     if (behind == 0) {
       if (touches_wall(visit, on)) return leave(visit.particle);
-      arrive(visit, corners);
+      arrive(visit, corners, k);
       return false;
     }
     unsigned facet = static_cast<unsigned>(std::countr_zero(behind));
@@ -361,7 +429,7 @@ class Batch {
       return true;
     }
     const std::uint16_t face = across.face();
-    if (cell.is_wall(face)) return leave(visit.particle);
+    if (cell.is_wall(face)) return come_to_wall(visit, facet);
     visit.cell = cell.neighbour(face).value;
     visit.index = cell.neighbour_face(face);
     visit.place = cell.shape().triangle_from_other_side(face, across.place);
@@ -371,14 +439,24 @@ class Batch {
 
   // The step is not taken here. Returns false: it does not go on.
   DARTCAST_TARGET bool leave(std::uint32_t i) {
-    left_[i] = 1;
+    taken_[i] = taken_nothing;
+    return false;
+  }
+  DARTCAST_TARGET bool come_to_wall(const Visit& visit, unsigned facet) {
+    if (begun_count_ == most_begun) return leave(visit.particle);
+    const std::uint32_t i = visit.particle;
+    taken_[i] = static_cast<Taken>(begun_count_);
+    begun_[begun_count_++] = {before_ == nullptr ? states_[i].position : vec_of(ridden_[i]),
+                              {Cell(visit.cell), visit.index},
+                              static_cast<std::uint8_t>(facet),
+                              {visit.tests, visit.exact}};
     return false;
   }
   DARTCAST_TARGET void leave_all(std::size_t count) {
     for (std::size_t k = 0; k < count; ++k) leave(visits_[k].particle);
   }
 
-  DARTCAST_TARGET void arrive(const Visit& visit, const VertexNumbers& corners) {
+  DARTCAST_TARGET void arrive(const Visit& visit, const VertexNumbers& corners, std::size_t k) {
     State& s = states_[visit.particle];
     s.put({Cell(visit.cell), visit.index}, targets_[visit.particle]);
     s.touching_count = 0;
@@ -387,6 +465,7 @@ class Batch {
     counters_.orientation.tests += visit.tests;
     counters_.orientation.exact += visit.exact;
     ++counters_.histogram[std::min<std::size_t>(visit.tests, Counters::histogram_size - 1)];
+    if (before_ != nullptr) leave_trail(relative_[k], determinants_[k], trails_[visit.particle]);
     const bool kept = visit.place == 4;
     counters_.forecast_kept += kept ? 1 : 0;
     if (before_ != nullptr && !kept) counters_.updated_by_deformation += left_behind_[visit.particle] ? 1 : 0;
@@ -395,17 +474,22 @@ class Batch {
   const Map& map_;
   const Vec3* now_;
   const Vec3* before_;  // null where the scene stands still
+  bool trails_match_;
   double tolerance_;
   std::uint32_t size_;
   State* states_;
   VertexNumbers* vertices_;
+  Trail* trails_;
   const Vec3* targets_;
-  std::uint8_t* left_;
+  Taken* taken_;
+  Begun* begun_;
+  std::size_t begun_count_ = 0;
   Counters& counters_;
 
   // Of the block.
   std::array<VertexNumbers, block> corners_;
   std::array<FilteredDeterminants, block> determinants_;
+  std::array<Lanes, block> relative_;
   std::array<bool, block> inside_;
   std::array<bool, block> one_part_;
   std::array<std::uint32_t, block> leaving_;

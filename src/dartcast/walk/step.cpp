@@ -48,10 +48,11 @@ class Part {
       : complex_(complex), moved_(moved), space_(space), options_(options), respond_(respond) {}
 
   // Walks to q, with the contacts on the way. Returns the displacement still planned after this stretch.
-  Vec3 move(Run& run, Vec3 q, Stretch stretch) const {
+  Vec3 move(Run& run, Vec3 q, Stretch stretch, const Begun* begun = nullptr) const {
     while (q != run.state.position) {
       const Vec3 p = run.state.position;
-      const Walk w = walk(space_, run.state.at(), p, q, run.tests);
+      const Walk w = begun != nullptr ? go_on(*begun, p, q, run.tests) : walk(space_, run.state.at(), p, q, run.tests);
+      begun = nullptr;
       if (w.end == WalkEnd::invalid_cell) {
         run.result.held = true;
         run.result.invalid_cell = w.simplex.cell;
@@ -73,6 +74,15 @@ class Part {
   }
 
  private:
+  [[nodiscard]] Walk go_on(const Begun& begun, const Vec3& p, const Vec3& q, TestCounts& tests) const {
+    NoVisitor none;
+    Walk w;
+    w.end = WalkEnd::wall;
+    w.simplex = w.wall_simplex = begun.wall_simplex;
+    w.wall_facet = begun.wall_facet;
+    return detail::end_walk(space_, w, p, q, tests, none);
+  }
+
   // Records the contact, puts the particle there, and asks what follows.
   Continuation meet(Run& run, const Walk& w, const Vec3& p, const Vec3& q, Stretch& stretch) const {
     Contact& contact = run.contacts.contacts.emplace_back();
@@ -239,12 +249,17 @@ class MovingStep {
 }  // namespace
 
 StepResult Stepper::step(std::uint32_t particle, State& state, Weights& weights, const Vec3& target,
-                         ContactList& contacts, Counters& counters) const {
+                         ContactList& contacts, Counters& counters, const Begun* begun) const {
   Run run{particle, state, contacts, counters};
   run.first_wall = static_cast<std::uint32_t>(contacts.walls.size());
   const SimplexId start = state.at();
   const Vec3 p = state.position;
-  if (moved_) {
+  if (begun != nullptr) {
+    run.tests = begun->tests;
+    state.position = begun->from;
+    Part<Stored>(complex_, moved_, current_space(complex_), options_, respond_)
+        .move(run, target, {0.0, 1.0, {}}, begun);
+  } else if (moved_) {
     MovingStep(complex_, options_, respond_).run(run, weights, target);
   } else {
     const Space<Stored> space = current_space(complex_);

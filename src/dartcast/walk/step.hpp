@@ -9,6 +9,7 @@
 #include "dartcast/walk/contact.hpp"
 #include "dartcast/walk/counters.hpp"
 #include "dartcast/walk/state.hpp"
+#include "dartcast/walk/walk.hpp"
 
 namespace dartcast {
 
@@ -39,6 +40,14 @@ struct StepResult {
 /// Barycentric coordinates that a held particle keeps.
 using Weights = std::array<double, 4>;
 
+/// A step that has been walked up to its first wall: see Stepper::step().
+struct Begun {
+  Vec3 from;  ///< where the walk began: the particle's place, after riding along with the vertices
+  SimplexId wall_simplex;
+  std::uint8_t wall_facet = 0;
+  TestCounts tests;  ///< made so far
+};
+
 /// Carries particles through one step of a complex. A plain reader of the complex: any number may run at once.
 class Stepper {
  public:
@@ -47,9 +56,10 @@ class Stepper {
   Stepper(const Complex& complex, bool moved, const StepOptions& options, const Respond& respond)
       : complex_(complex), moved_(moved), options_(options), respond_(respond) {}
 
-  /// Steps one particle to `target`, a finite point in the exact range. Adds its contacts in order of time.
+  /// Steps one particle to `target`, a finite point in the exact range. Adds its contacts in order of time. `begun`:
+  /// goes on from there, if it is not null; the step is one that is not split.
   StepResult step(std::uint32_t particle, State& state, Weights& weights, const Vec3& target, ContactList& contacts,
-                  Counters& counters) const;
+                  Counters& counters, const Begun* begun = nullptr) const;
 
  private:
   const Complex& complex_;

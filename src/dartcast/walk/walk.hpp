@@ -194,6 +194,23 @@ inline void find_wall_at_end(const Map& map, Walk& walk) {
   walk.wall_facet = static_cast<std::uint8_t>(wall->facet);
 }
 
+/// What remains of a walk that has come to its first wall, or to the closed simplex that holds q.
+template <class Positions, class Visitor>
+Walk end_walk(const Space<Positions>& space, Walk walk, const Vec3& p, const Vec3& q, TestCounts& counts,
+              Visitor& visit) {
+  if (walk.end == WalkEnd::wall) {
+    ++counts.tests;
+    if (orient_facet(space.corners(walk.wall_simplex), walk.wall_facet, p) == Sign::zero) {
+      // p lies on the wall itself. It is met only if no free simplex around p leads towards q.
+      const SimplexId restart = simplex_towards(space, walk.wall_simplex, p, q, counts);
+      walk.at_start = !restart.valid();
+      if (restart.valid()) walk = walk_to_wall(space, restart, p, q, counts, visit);
+    }
+  }
+  if (walk.end == WalkEnd::arrived && walk.zeros != 0) find_wall_at_end(*space.map, walk);
+  return walk;
+}
+
 }  // namespace detail
 
 /// Walks from p to q. Preconditions: p lies in the closed simplex `start` of a free cell; p and q are finite and in the
@@ -202,18 +219,7 @@ inline void find_wall_at_end(const Map& map, Walk& walk) {
 template <class Positions, class Visitor = NoVisitor>
 Walk walk(const Space<Positions>& space, SimplexId start, const Vec3& p, const Vec3& q, TestCounts& counts,
           Visitor&& visit = {}) {
-  Walk result = detail::walk_to_wall(space, start, p, q, counts, visit);
-  if (result.end == WalkEnd::wall) {
-    ++counts.tests;
-    if (orient_facet(space.corners(result.wall_simplex), result.wall_facet, p) == Sign::zero) {
-      // p lies on the wall itself. It is met only if no free simplex around p leads towards q.
-      const SimplexId restart = detail::simplex_towards(space, result.wall_simplex, p, q, counts);
-      result.at_start = !restart.valid();
-      if (restart.valid()) result = detail::walk_to_wall(space, restart, p, q, counts, visit);
-    }
-  }
-  if (result.end == WalkEnd::arrived && result.zeros != 0) detail::find_wall_at_end(*space.map, result);
-  return result;
+  return detail::end_walk(space, detail::walk_to_wall(space, start, p, q, counts, visit), p, q, counts, visit);
 }
 
 }  // namespace dartcast
