@@ -257,6 +257,7 @@ StepReport Environment::advance(Particles& particles, std::span<const Vec3> targ
     step_all(steps, parts);
   }
   particles.moves_ = moves_;
+  if (parts.size() == 1) return std::move(parts.front());
   StepReport report;
   for (const StepReport& part : parts) {
     report.contacts.append(part.contacts);

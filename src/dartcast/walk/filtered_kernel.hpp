@@ -229,10 +229,9 @@ class Batch {
         if (first + k + block < size_) ask_for(now_, vertices_[first + k + block]);
         test<moved>(first + k, k);
       }
-      const std::uint32_t leaving = end_inside<moved>(first, n);
+      const std::uint32_t leaving = ride_all<moved>(first, end_inside<moved>(first, n));
       for (std::uint32_t l = 0; l < leaving; ++l) {
         const std::uint32_t i = first + leaving_[l];
-        if (moved && !ride(i)) continue;
         visits_[count] = {i, states_[i].cell.value, states_[i].simplex, 4, 4, 0, false};
         if (leave_simplex(visits_[count], vertices_[i], leaving_[l])) ++count;
       }
@@ -296,6 +295,21 @@ class Batch {
     counters_.histogram[4] += ended;
     counters_.forecast_kept += ended;
     return leaving;
+  }
+
+  // Of those in leaving_, who goes on. Meanwhile their cells are on the way from memory.
+  template <bool moved>
+  DARTCAST_TARGET std::uint32_t ride_all(std::uint32_t first, std::uint32_t leaving) {
+    for (std::uint32_t l = 0; l < leaving; ++l) {
+      __builtin_prefetch(map_.record(states_[first + leaving_[l]].cell));
+    }
+    if constexpr (!moved) return leaving;
+    std::uint32_t riding = 0;
+    for (std::uint32_t l = 0; l < leaving; ++l) {
+      const std::uint32_t k = leaving_[riding] = leaving_[l];
+      riding += ride(first + k) ? 1 : 0;
+    }
+    return riding;
   }
 
   // The rule itself, where the bound of it does not do.
