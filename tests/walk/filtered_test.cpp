@@ -24,7 +24,8 @@ constexpr std::size_t steps_per_scene = 30;
 struct Tally {
   std::atomic<std::uint64_t> steps{0};
   std::atomic<std::uint64_t> taken{0};
-  std::atomic<std::uint64_t> moved_on{0};  // taken into another simplex
+  std::atomic<std::uint64_t> moved_on{0};     // taken into another simplex
+  std::atomic<std::uint64_t> handed_over{0};  // taken up to a wall
 };
 
 // A scene whose particles are stepped both ways.
@@ -69,6 +70,17 @@ class BothWays {
       const StepResult result =
           stepper.step(static_cast<std::uint32_t>(i), next[i], weights, targets[i], contacts, own);
       const bool taken = best.taken[i] == detail::taken_all;
+      if (!taken && best.taken[i] != detail::taken_nothing) {
+        State state = states_[i];
+        Weights unused{};
+        ContactList handed_over;
+        Counters counts;
+        stepper.step(static_cast<std::uint32_t>(i), state, unused, targets[i], handed_over, counts,
+                     &best.begun[best.taken[i]]);
+        if (!same_bits(state, next[i]) || !same(handed_over, contacts) || !same(counts, own))
+          return fmt::format("particle {}: another end of a step handed over", i);
+        tally.handed_over += 1;
+      }
       const State& expected = taken ? next[i] : states_[i];
       if (!same_bits(best.states[i], expected) || !same_bits(portable.states[i], expected))
         return fmt::format("particle {}: another state", i);
@@ -103,12 +115,24 @@ class BothWays {
   // With the trails of the step before, or none.
   Filtered filtered(std::span<const Vec3> targets, detail::InstructionSet set,
                     const std::vector<detail::Trail>& trails) const {
-    Filtered f{states_, {}, trails, std::vector<detail::Taken>(particles), std::vector<Begun>(detail::most_begun), {}};
+    Filtered f{states_, {}, trails, std::vector<detail::Taken>(particles), {}, {}};
     f.trails.resize(moves_ ? particles : 0);
     for (const State& s : states_) f.vertices.push_back(detail::vertex_numbers(complex_, s.at()));
     detail::step_filtered({&complex_, moves_, !trails.empty(), StepOptions{}.tolerance},
                           {f.states, f.vertices, f.trails, targets, f.taken, f.begun}, f.counters, set);
     return f;
+  }
+
+  static bool same(const ContactList& a, const ContactList& b) {
+    const auto equal_contacts = [](const Contact& x, const Contact& y) {
+      return x.kind == y.kind && x.dart == y.dart && x.time_of_impact == y.time_of_impact && x.point == y.point &&
+             x.wall_displacement == y.wall_displacement && x.unused == y.unused && x.wall_count == y.wall_count;
+    };
+    const auto equal_walls = [](const WallHit& x, const WallHit& y) {
+      return x.face == y.face && x.triangle == y.triangle && x.normal == y.normal;
+    };
+    return std::ranges::equal(a.contacts, b.contacts, equal_contacts) &&
+           std::ranges::equal(a.walls, b.walls, equal_walls);
   }
 
   static bool equal(const detail::Trail& a, const detail::Trail& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
@@ -199,6 +223,7 @@ TEST_P(FilteredBatch, TakesStepsAsOneParticleDoes) {
   if (kind == oracle::SceneKind::slivers) return;
   EXPECT_GT(tally.taken, tally.steps / (moves ? 8 : 4));
   EXPECT_GT(tally.moved_on, tally.steps / 50);
+  EXPECT_GT(tally.handed_over, tally.steps / 100);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, FilteredBatch,

@@ -208,7 +208,8 @@ void Environment::step_chunk(const Steps& steps, std::size_t begin, std::size_t 
   const std::span<State> states = std::span(steps.particles.states_).subspan(begin, size);
   const std::span<const Vec3> targets = steps.targets.subspan(begin, size);
   std::array<detail::Taken, grain> taken;
-  std::array<Begun, detail::most_begun> begun;
+  std::vector<Begun> begun;
+  begun.reserve(size);
   const std::span<detail::VertexNumbers> vertices = std::span(steps.particles.vertices_).subspan(begin, size);
   std::span<detail::Trail> trails = steps.particles.trails_;
   if (!trails.empty()) trails = trails.subspan(begin, size);

@@ -62,6 +62,7 @@ class MapBuilder {
 
   void build() {
     map_.vertex_count_ = mesh_.points.size() + interior_vertices();
+    map_.wall_vertices_.assign(map_.vertex_count_ / 64 + 1, 0);
     add_cells();
     sew();
     for (const Cell c : map_.cells()) map_.mark_walls(c);

@@ -75,6 +75,16 @@ void Map::mark_walls(Cell c) {
     const bool wall = !other.valid() || is_free(other.cell) != v.is_free();
     set_wall({c, f}, wall);
     if (other.valid()) set_wall(other, wall);
+    if (wall) mark_wall_vertices(v, f);
+  }
+}
+
+void Map::mark_wall_vertices(const CellView& cell, std::uint16_t face) {
+  for (std::uint16_t t = 0; t < cell.shape().triangle_count(face); ++t) {
+    for (const std::uint16_t corner : cell.shape().triangle(face, t)) {
+      const std::uint32_t v = cell.vertex(corner).value;
+      wall_vertices_[v / 64U] |= std::uint64_t{1} << (v % 64U);
+    }
   }
 }
 
@@ -118,7 +128,8 @@ std::size_t Map::wall_face_count() const {
 }
 
 std::size_t Map::bytes() const {
-  std::size_t sum = sizeof(Map) + shapes_.bytes() + patches_.size() * sizeof(patches_[0]);
+  std::size_t sum = sizeof(Map) + shapes_.bytes() + wall_vertices_.size() * sizeof(std::uint64_t) +
+                    patches_.size() * sizeof(patches_[0]);
   for (const Pool& pool : pools_) {
     sum += pool.words.size() * sizeof(std::uint32_t) + pool.offsets.size() * sizeof(std::size_t) +
            pool.source.size() * sizeof(std::uint32_t);

@@ -131,6 +131,10 @@ class Map {
   [[nodiscard]] bool is_free(Cell c) const { return view(c).is_free(); }
   /// Marks a cell free or blocked; its faces and those of its neighbours become walls or cease to be. Cost: its faces.
   void set_free(Cell c, bool free);
+  /// False only where no wall has the vertex. True where one has, or has had.
+  [[nodiscard]] bool may_touch_wall(Vertex v) const {
+    return ((wall_vertices_[v.value / 64U] >> (v.value % 64U)) & 1U) != 0;
+  }
 
   // Patches: named groups of faces.
   [[nodiscard]] Patch patch(CellFace f) const;
@@ -158,10 +162,12 @@ class Map {
   void set_neighbour(CellFace f, CellFace other);
   void set_wall(CellFace f, bool wall);
   void mark_walls(Cell c);
+  void mark_wall_vertices(const CellView& cell, std::uint16_t face);
 
   std::array<Pool, 5> pools_;
   ShapeTable shapes_;
   std::size_t vertex_count_ = 0;
+  std::vector<std::uint64_t> wall_vertices_;  // a bit for each
   std::vector<std::string> patch_names_ = {""};
   std::vector<std::pair<CellFace, Patch>> patches_;  // sorted
 };

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "dartcast/geometry/complex.hpp"
 #include "dartcast/walk/counters.hpp"
@@ -48,11 +49,9 @@ Trail trail_of(std::span<const Vec3> positions, const VertexNumbers& vertices, c
 
 /// What was done of a step: all, nothing, or, where it has come to its first wall, the number of its Begun; its state
 /// is as it was, then.
-using Taken = std::uint8_t;
-inline constexpr Taken taken_all = 0xff;
-inline constexpr Taken taken_nothing = 0xfe;
-/// Room for walks that have come to walls; if there are more, nothing is done of these.
-inline constexpr std::size_t most_begun = 128;
+using Taken = std::uint16_t;
+inline constexpr Taken taken_all = 0xffff;
+inline constexpr Taken taken_nothing = 0xfffe;
 
 /// One entry per particle in each.
 struct FilteredSteps {
@@ -60,8 +59,8 @@ struct FilteredSteps {
   std::span<VertexNumbers> vertices;  ///< of each state
   std::span<Trail> trails;            ///< moved: in where they match; out for each step taken
   std::span<const Vec3> targets;
-  std::span<Taken> taken;  ///< out
-  std::span<Begun> begun;  ///< out: most_begun places
+  std::span<Taken> taken;     ///< out
+  std::vector<Begun>& begun;  ///< out; empty before
 };
 
 enum class InstructionSet : std::uint8_t { portable, avx2 };

@@ -202,7 +202,7 @@ class Batch {
         trails_(steps.trails.data()),
         targets_(steps.targets.data()),
         taken_(steps.taken.data()),
-        begun_(steps.begun.data()),
+        begun_(steps.begun),
         counters_(counters) {}
 
   DARTCAST_TARGET void run(std::uint64_t most_rounds) {
@@ -397,7 +397,7 @@ class Batch {
       visit.exact = static_cast<std::uint16_t>(visit.exact + std::popcount(open));
     }
     if (behind == 0) {
-      if (touches_wall(visit, on)) return leave(visit.particle);
+      if (const auto wall = find_touched_wall(visit, on)) return end_on_wall(visit, on, *wall);
       arrive(visit, corners, k);
       return false;
     }
@@ -406,12 +406,12 @@ class Batch {
     return facet < 4 ? pass_on(visit, facet) : leave(visit.particle);
   }
 
-  // Whether a target that lies on facets of its simplex lies on a wall.
-  DARTCAST_TARGET bool touches_wall(const Visit& visit, unsigned on) const {
+  // The wall that a target lies on that lies on facets of its simplex.
+  DARTCAST_TARGET std::optional<SimplexFacet> find_touched_wall(const Visit& visit, unsigned on) const {
     const SimplexId id{Cell(visit.cell), visit.index};
     const CellView cell = map_.view(id.cell);
     const ImplicitSimplex& s = cell.shape().simplices()[id.simplex];
-    return find_wall(map_, id, on, feature_of(cell, s, on)).has_value();
+    return find_wall(map_, id, on, feature_of(cell, s, on));
   }
 
   // Of several facets that the target lies behind, the one by which the segment leaves; 4 where the filter does not
@@ -443,7 +443,7 @@ class Batch {
       return true;
     }
     const std::uint16_t face = across.face();
-    if (cell.is_wall(face)) return come_to_wall(visit, facet);
+    if (cell.is_wall(face)) return end_at_wall(visit, facet);
     visit.cell = cell.neighbour(face).value;
     visit.index = cell.neighbour_face(face);
     visit.place = cell.shape().triangle_from_other_side(face, across.place);
@@ -456,14 +456,30 @@ class Batch {
     taken_[i] = taken_nothing;
     return false;
   }
-  DARTCAST_TARGET bool come_to_wall(const Visit& visit, unsigned facet) {
-    if (begun_count_ == most_begun) return leave(visit.particle);
+  // The target is beyond a wall.
+  DARTCAST_TARGET bool end_at_wall(const Visit& visit, unsigned facet) {
+    Walk walk;
+    walk.end = WalkEnd::wall;
+    walk.simplex = walk.wall_simplex = {Cell(visit.cell), visit.index};
+    walk.wall_facet = static_cast<std::uint8_t>(facet);
+    return hand_over(visit, walk);
+  }
+  // The target is on a wall.
+  DARTCAST_TARGET bool end_on_wall(const Visit& visit, unsigned on, const SimplexFacet& wall) {
+    Walk walk;
+    walk.end = WalkEnd::wall;
+    walk.simplex = {Cell(visit.cell), visit.index};
+    walk.zeros = static_cast<std::uint8_t>(on);
+    walk.wall_simplex = wall.simplex;
+    walk.wall_facet = static_cast<std::uint8_t>(wall.facet);
+    walk.at_end = true;
+    return hand_over(visit, walk);
+  }
+  // What follows is not done here. Returns false, too.
+  DARTCAST_TARGET bool hand_over(const Visit& visit, const Walk& walk) {
     const std::uint32_t i = visit.particle;
-    taken_[i] = static_cast<Taken>(begun_count_);
-    begun_[begun_count_++] = {before_ == nullptr ? states_[i].position : vec_of(ridden_[i]),
-                              {Cell(visit.cell), visit.index},
-                              static_cast<std::uint8_t>(facet),
-                              {visit.tests, visit.exact}};
+    taken_[i] = static_cast<Taken>(begun_.size());
+    begun_.push_back({before_ == nullptr ? states_[i].position : vec_of(ridden_[i]), walk, {visit.tests, visit.exact}});
     return false;
   }
   DARTCAST_TARGET void leave_all(std::size_t count) {
@@ -496,8 +512,7 @@ class Batch {
   Trail* trails_;
   const Vec3* targets_;
   Taken* taken_;
-  Begun* begun_;
-  std::size_t begun_count_ = 0;
+  std::vector<Begun>& begun_;
   Counters& counters_;
 
   // Of the block.

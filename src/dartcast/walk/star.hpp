@@ -122,6 +122,9 @@ inline std::optional<SimplexFacet> find_wall(const Map& map, SimplexId simplex, 
     if (!across.outer() || !cell.is_wall(across.face())) return {};
     return SimplexFacet{simplex, facet};
   }
+  for (unsigned i = 0; i < feature.count; ++i) {
+    if (!map.may_touch_wall(feature.vertex[i])) return {};
+  }
   std::optional<SimplexFacet> found;
   search_star(
       map, simplex, feature, [](SimplexId, const CellView&, const ImplicitSimplex&) { return true; },

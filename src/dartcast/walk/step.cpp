@@ -51,7 +51,8 @@ class Part {
   Vec3 move(Run& run, Vec3 q, Stretch stretch, const Begun* begun = nullptr) const {
     while (q != run.state.position) {
       const Vec3 p = run.state.position;
-      const Walk w = begun != nullptr ? go_on(*begun, p, q, run.tests) : walk(space_, run.state.at(), p, q, run.tests);
+      const Walk w = begun != nullptr ? detail::end_walk(space_, begun->walk, p, q, run.tests)
+                                      : walk(space_, run.state.at(), p, q, run.tests);
       begun = nullptr;
       if (w.end == WalkEnd::invalid_cell) {
         run.result.held = true;
@@ -74,15 +75,6 @@ class Part {
   }
 
  private:
-  [[nodiscard]] Walk go_on(const Begun& begun, const Vec3& p, const Vec3& q, TestCounts& tests) const {
-    NoVisitor none;
-    Walk w;
-    w.end = WalkEnd::wall;
-    w.simplex = w.wall_simplex = begun.wall_simplex;
-    w.wall_facet = begun.wall_facet;
-    return detail::end_walk(space_, w, p, q, tests, none);
-  }
-
   // Records the contact, puts the particle there, and asks what follows.
   Continuation meet(Run& run, const Walk& w, const Vec3& p, const Vec3& q, Stretch& stretch) const {
     Contact& contact = run.contacts.contacts.emplace_back();

@@ -42,9 +42,8 @@ using Weights = std::array<double, 4>;
 
 /// A step that has been walked up to its first wall: see Stepper::step().
 struct Begun {
-  Vec3 from;  ///< where the walk began: the particle's place, after riding along with the vertices
-  SimplexId wall_simplex;
-  std::uint8_t wall_facet = 0;
+  Vec3 from;         ///< where the walk began: the particle's place, after riding along with the vertices
+  Walk walk;         ///< ends at a wall: one that q is beyond, or one that q is on
   TestCounts tests;  ///< made so far
 };
 

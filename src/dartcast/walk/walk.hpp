@@ -195,10 +195,10 @@ inline void find_wall_at_end(const Map& map, Walk& walk) {
 }
 
 /// What remains of a walk that has come to its first wall, or to the closed simplex that holds q.
-template <class Positions, class Visitor>
+template <class Positions, class Visitor = NoVisitor>
 Walk end_walk(const Space<Positions>& space, Walk walk, const Vec3& p, const Vec3& q, TestCounts& counts,
-              Visitor& visit) {
-  if (walk.end == WalkEnd::wall) {
+              Visitor&& visit = {}) {
+  if (walk.end == WalkEnd::wall && !walk.at_end) {
     ++counts.tests;
     if (orient_facet(space.corners(walk.wall_simplex), walk.wall_facet, p) == Sign::zero) {
       // p lies on the wall itself. It is met only if no free simplex around p leads towards q.
