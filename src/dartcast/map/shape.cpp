@@ -35,6 +35,8 @@ Shape::Shape(ShapeKey key) : key_(std::move(key)) {
   sew_darts();
   make_simplices();
   connect_simplices();
+  const bool flat = simplices_[0].vertex[0] == simplices_[0].vertex[1];
+  if (!flat) stars_ = Stars(simplices_);
 }
 
 void Shape::number_darts() {
@@ -155,7 +157,7 @@ Shape::Feature Shape::feature(std::span<const std::uint16_t> points) const {
 
 std::size_t Shape::bytes() const {
   return sizeof(Shape) + dart_count() * 4U * sizeof(std::uint16_t) + simplices_.size() * sizeof(ImplicitSimplex) +
-         entries_.size() * sizeof(Across);
+         entries_.size() * sizeof(Across) + stars_.bytes();
 }
 
 std::uint32_t ShapeTable::intern(const ShapeKey& key) {

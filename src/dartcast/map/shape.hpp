@@ -14,6 +14,8 @@
 #include <span>
 #include <vector>
 
+#include "dartcast/map/stars.hpp"
+
 namespace dartcast {
 
 /// The kind of cell of the map in whose interior a point lies; the value is its dimension.
@@ -84,6 +86,8 @@ class Shape {
   [[nodiscard]] std::span<const std::uint16_t> corners(std::uint16_t face) const { return key_.faces[face].corners; }
 
   [[nodiscard]] const std::vector<ImplicitSimplex>& simplices() const { return simplices_; }
+  /// Empty where the shape is flat.
+  [[nodiscard]] const Stars& stars() const { return stars_; }
   /// Number of triangles in a face's fan: degree - 2, or degree where the face has a point of its own.
   [[nodiscard]] std::uint16_t triangle_count(std::uint16_t face) const {
     return static_cast<std::uint16_t>(degree(face) - (key_.faces[face].has_point ? 0 : 2));
@@ -122,6 +126,7 @@ class Shape {
   std::uint16_t point_count_ = 0;
   std::vector<std::uint16_t> origin_, face_of_, first_dart_, phi2_;
   std::vector<ImplicitSimplex> simplices_;
+  Stars stars_;
   std::vector<std::uint16_t> first_entry_;
   std::vector<Across> entries_;
 };

@@ -80,19 +80,18 @@ inline WallHit wall_hit(const Map& map, SimplexId id, const CellView& cell, unsi
 template <class Positions>
 void add_other_walls(const Space<Positions>& space, const Walk& w, const Feature& feature, ContactList& list) {
   const auto first = static_cast<std::ptrdiff_t>(list.walls.size()) - 1;
-  const auto add = [&](SimplexId id, const CellView& cell, const ImplicitSimplex& s, unsigned facet) {
-    const WallHit hit = wall_hit(*space.map, id, cell, facet, facet_plane(space.corners(cell, s), facet).normal);
-    const bool known = std::any_of(list.walls.begin() + first, list.walls.end(), [&](const WallHit& h) {
-      constexpr double same_plane =
-          1.0 - 1e-14;  // unit normals, rounded: only which triangles are listed depends on it
-      return h.face == hit.face && dot(h.normal, hit.normal) > same_plane;
-    });
-    if (!known) list.walls.push_back(hit);
-    return true;
-  };
-  search_star(
-      *space.map, w.wall_simplex, feature, [](SimplexId, const CellView&, const ImplicitSimplex&) { return true; },
-      add);
+  search_walls(*space.map, w.wall_simplex, feature,
+               [&](SimplexId id, const CellView& cell, const ImplicitSimplex& s, unsigned facet) {
+                 const CellFace face = {id.cell, s.across[facet].face()};
+                 const Vec3 normal = facet_plane(space.corners(cell, s), facet).normal;
+                 const bool known = std::any_of(list.walls.begin() + first, list.walls.end(), [&](const WallHit& h) {
+                   constexpr double same_plane =
+                       1.0 - 1e-14;  // unit normals, rounded: only which triangles are listed depends on it
+                   return h.face == face && dot(h.normal, normal) > same_plane;
+                 });
+                 if (!known) list.walls.push_back(wall_hit(*space.map, id, cell, facet, normal));
+                 return true;
+               });
 }
 
 /// Displacement over the whole step of the wall's material point nearest to x: the triangle's corners' displacements,

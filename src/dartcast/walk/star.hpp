@@ -37,57 +37,74 @@ inline unsigned facets_holding(const Feature& feature, const CellView& cell, con
 
 namespace detail {
 
-// What was found so far, each once, in order. Stars have some tens: then all stays on the stack.
-template <class Item>
+// Codes found so far, each key once, in order. Stars have some tens: then all stays on the stack, and nothing is
+// written before it is needed.
+template <std::uint64_t key_mask>
 class Found {
  public:
-  void add(Item s) {
+  void add(std::uint64_t code) {
+    const std::uint64_t key = code & key_mask;
     if (count_ < near_.size()) {
-      std::size_t slot = (key(s) * 0x9e3779b97f4a7c15U) >> (64U - slot_bits);
+      std::size_t slot = (key * 0x9e3779b97f4a7c15U) >> (64U - slot_bits);
       for (; place_[slot] != 0; slot = (slot + 1) % place_.size()) {
-        if (near_[place_[slot] - 1U] == s) return;
+        if ((near_[place_[slot] - 1U] & key_mask) == key) return;
       }
-      near_[count_++] = s;
+      near_[count_++] = code;
       place_[slot] = static_cast<std::uint8_t>(count_);
       return;
     }
-    if (seen_.empty()) {
-      for (const Item known : near_) seen_.insert(key(known));
-    }
-    if (!seen_.insert(key(s)).second) return;
-    far_.push_back(s);
-    ++count_;
+    add_far(code, key);
   }
   [[nodiscard]] std::size_t size() const { return count_; }
-  [[nodiscard]] Item operator[](std::size_t i) const { return i < near_.size() ? near_[i] : far_[i - near_.size()]; }
+  [[nodiscard]] std::uint64_t operator[](std::size_t i) const {
+    return i < near_.size() ? near_[i] : far_->codes[i - near_.size()];
+  }
 
  private:
-  static std::uint64_t key(Item s) {
-    const auto [cell, number] = s;
-    return (std::uint64_t{cell.value} << 16U) | number;
+  struct Far {
+    std::vector<std::uint64_t> codes;
+    std::unordered_set<std::uint64_t> keys;  // of all
+  };
+
+  void add_far(std::uint64_t code, std::uint64_t key) {
+    if (!far_) {
+      far_.emplace();
+      for (const std::uint64_t known : near_) far_->keys.insert(known & key_mask);
+    }
+    if (!far_->keys.insert(key).second) return;
+    far_->codes.push_back(code);
+    ++count_;
   }
 
   static constexpr unsigned slot_bits = 7;
 
-  std::array<Item, 64> near_;
+  std::array<std::uint64_t, 64> near_;                 // the first count_
   std::array<std::uint8_t, 1U << slot_bits> place_{};  // hash table: one more than the place in near_, 0 where empty
   std::size_t count_ = 0;
-  std::vector<Item> far_;
-  std::unordered_set<std::uint64_t> seen_;  // of all, once they are many
+  std::optional<Far> far_;
 };
+
+// Cell, simplex and, of its shape, star: the simplex only says where the star was entered.
+constexpr std::uint64_t code_of(SimplexId s, std::uint16_t star) {
+  return (std::uint64_t{s.cell.value} << 32U) | (std::uint64_t{s.simplex} << 16U) | star;
+}
+constexpr SimplexId simplex_of(std::uint64_t code) {
+  return {Cell(static_cast<std::uint32_t>(code >> 32U)), static_cast<std::uint16_t>(code >> 16U)};
+}
+using FoundSimplices = Found<~std::uint64_t{0xffff}>;
+using FoundStars = Found<~(std::uint64_t{0xffff} << 16U)>;
 
 }  // namespace detail
 
 /// Goes through the simplices around `feature` that are reached from `start` (one of them) through facets that hold the
-/// feature and are no walls. Calls on_simplex(SimplexId, CellView, ImplicitSimplex) for each, start first, and
-/// on_wall(SimplexId, CellView, ImplicitSimplex, facet) for each wall facet that holds the feature; either ends the
+/// feature and are no walls. Calls on_simplex(SimplexId, CellView, ImplicitSimplex) for each, start first; it ends the
 /// search by returning false. Purely combinatorial: no coordinate is read. Cost: linear in the star.
-template <class OnSimplex, class OnWall>
-void search_star(const Map& map, SimplexId start, const Feature& feature, OnSimplex&& on_simplex, OnWall&& on_wall) {
-  detail::Found<SimplexId> found;
-  found.add(start);
+template <class OnSimplex>
+void search_star(const Map& map, SimplexId start, const Feature& feature, OnSimplex&& on_simplex) {
+  detail::FoundSimplices found;
+  found.add(detail::code_of(start, 0));
   for (std::size_t next = 0; next < found.size(); ++next) {
-    const SimplexId id = found[next];
+    const SimplexId id = detail::simplex_of(found[next]);
     const CellView cell = map.view(id.cell);
     const ImplicitSimplex& s = cell.shape().simplices()[id.simplex];
     if (!on_simplex(id, cell, s)) return;
@@ -95,11 +112,41 @@ void search_star(const Map& map, SimplexId start, const Feature& feature, OnSimp
     for (; facets != 0; facets &= facets - 1) {
       const auto facet = static_cast<std::uint16_t>(std::countr_zero(facets));
       const Across across = s.across[facet];
-      if (across.outer() && cell.is_wall(across.face())) {
-        if (!on_wall(id, cell, s, facet)) return;
+      if (across.outer() && cell.is_wall(across.face())) continue;
+      found.add(detail::code_of(pass(map, id, cell, across).simplex, 0));
+    }
+  }
+}
+
+/// The same search for walls alone, around one or two vertices: from cell to cell, by their stars (map/stars.hpp).
+/// Calls on_wall(SimplexId, CellView, ImplicitSimplex, facet) for each wall facet that holds the feature; it ends the
+/// search by returning false. Cost: linear in the number of cells around the feature.
+template <class OnWall>
+void search_walls(const Map& map, SimplexId start, const Feature& feature, OnWall&& on_wall) {
+  const auto star_at = [&](SimplexId id, const CellView& cell) {
+    const unsigned beside = facets_holding(feature, cell, cell.shape().simplices()[id.simplex]);
+    return detail::code_of(id, cell.shape().stars().star(id.simplex, 15U & ~beside));
+  };
+  detail::FoundStars found;
+  found.add(star_at(start, map.view(start.cell)));
+  for (std::size_t next = 0; next < found.size(); ++next) {
+    const Cell at = detail::simplex_of(found[next]).cell;
+    const CellView cell = map.view(at);
+    Cell behind;  // the face before, where one look is enough
+    for (const Stars::Facet& outer : cell.shape().stars().outer_facets(static_cast<std::uint16_t>(found[next]))) {
+      const ImplicitSimplex& s = cell.shape().simplices()[outer.simplex];
+      const Across across = s.across[outer.facet];
+      if (cell.is_wall(across.face())) {
+        if (!on_wall(SimplexId{at, outer.simplex}, cell, s, outer.facet)) return;
         continue;
       }
-      found.add(pass(map, id, cell, across).simplex);
+      const Cell neighbour = cell.neighbour(across.face());
+      if (neighbour == behind) continue;
+      const CellView beyond = map.view(neighbour);
+      const Stars& stars = beyond.shape().stars();
+      if (stars.empty()) continue;  // flat: no way through
+      found.add(star_at(pass(map, {at, outer.simplex}, cell, across).simplex, beyond));
+      behind = stars.one_each() ? neighbour : Cell{};
     }
   }
 }
@@ -111,8 +158,8 @@ struct SimplexFacet {
 };
 
 /// A wall facet that holds `feature`, spanned by the corners of a simplex that have no bit set in `zeros`; nothing
-/// where search_star() finds none from there. Cost: one look inside a face, else linear in the star. Precondition: 1 to
-/// 3 bits are set.
+/// where search_walls() finds none from there. Cost: one look inside a face, else linear in the star. Precondition: 1
+/// to 3 bits are set.
 inline std::optional<SimplexFacet> find_wall(const Map& map, SimplexId simplex, unsigned zeros,
                                              const Feature& feature) {
   if (feature.count == 3) {
@@ -126,12 +173,10 @@ inline std::optional<SimplexFacet> find_wall(const Map& map, SimplexId simplex, 
     if (!map.may_touch_wall(feature.vertex[i])) return {};
   }
   std::optional<SimplexFacet> found;
-  search_star(
-      map, simplex, feature, [](SimplexId, const CellView&, const ImplicitSimplex&) { return true; },
-      [&](SimplexId id, const CellView&, const ImplicitSimplex&, std::uint16_t facet) {
-        found = SimplexFacet{id, facet};
-        return false;
-      });
+  search_walls(map, simplex, feature, [&](SimplexId id, const CellView&, const ImplicitSimplex&, std::uint16_t facet) {
+    found = SimplexFacet{id, facet};
+    return false;
+  });
   return found;
 }
 

@@ -168,17 +168,14 @@ SimplexId simplex_towards(const Space<Positions>& space, SimplexId at, const Vec
   const ImplicitSimplex& s0 = first.shape().simplices()[at.simplex];
   const Feature around = feature_of(first, s0, zeros_of(space.corners(first, s0), p));
   SimplexId found;
-  search_star(
-      *space.map, at, around,
-      [&](SimplexId id, const CellView& cell, const ImplicitSimplex& s) {
-        const unsigned asked = facets_holding(around, cell, s);
-        for (unsigned left = asked; left != 0; left &= left - 1) ++counts.tests;
-        const Corners v = space.corners(cell, s);
-        if (signs_of(Determinants(v, q), v, q, asked, counts.exact).negative != 0) return true;
-        found = id;
-        return false;
-      },
-      [](SimplexId, const CellView&, const ImplicitSimplex&, unsigned) { return true; });
+  search_star(*space.map, at, around, [&](SimplexId id, const CellView& cell, const ImplicitSimplex& s) {
+    const unsigned asked = facets_holding(around, cell, s);
+    for (unsigned left = asked; left != 0; left &= left - 1) ++counts.tests;
+    const Corners v = space.corners(cell, s);
+    if (signs_of(Determinants(v, q), v, q, asked, counts.exact).negative != 0) return true;
+    found = id;
+    return false;
+  });
   return found;
 }
 
