@@ -144,36 +144,61 @@ DARTCAST_TARGET inline bool ride_along(const Trail& trail, const Rows& now, Vec3
 }
 
 // Whether a step relative to moving vertices surely needs no splitting (walk/step.hpp): |A| |r| <= 2 tolerance edge.
-// `after`: the moved corners relative to the target q; p: where the particle was.
 //
 // The corners' displacements d_i, less the particle's own q - p, have -r as a mean: |r| <= max |d_i|. With
 // u_i = d_i - d_0 and n_i the cross products of the old edges e_i from corner 0, A = sum of u_i n_i^T / V, so that
-// |A|^2 V^2 <= sum of |u_i|^2 times sum of |n_i|^2. Squares are compared. L is the largest old coordinate: floats
-// rounded the old corners by 2^-24 L, and the rule's own doubles round u_i by as much at most, as |q - p| and |d_i| are
-// below 2^28 L. So the coordinates of d_i, u_i, n_i and the edges are off by 2^-24 L, 3 2^-24 L, 2^-20 L^2 and 2^-23 L;
-// squares count that as (a + b)^2 <= 17/16 a^2 + 17 b^2. With L as bounded nothing overflows or underflows.
-DARTCAST_TARGET inline bool is_one_part(const Trail& trail, const Lanes& after, const Quad& p, const Quad& q,
-                                        double tolerance) {
-  const Lanes before = corners_before(trail);
-  const Lanes d = after - before;
-  const Lanes u = d - lanes<0, 0, 0, 0>(d);
-  const Lanes e = before - lanes<0, 0, 0, 0>(before);
-  const Lanes f = lanes<0, 2, 3, 1>(e);
-  const Lanes n = {e.y * f.z - e.z * f.y, e.z * f.x - e.x * f.z, e.x * f.y - e.y * f.x};
-  const Quad edges = smaller(square(before - lanes<1, 2, 3, 0>(before)), square(before - lanes<2, 3, 0, 1>(before)));
-  const double l = most(larger(larger(magnitude(before.x), magnitude(before.y)), magnitude(before.z)));
-  const double l2 = l * l;
-  const double farthest = most(square(d));
-  const double r2 = 0x1.1p+0 * farthest + 0x1p-42 * l2;
-  const double u2 = 0x1.1p+0 * sum(square(u)) + 0x1p-37 * l2;
-  const double n2 = 0x1.1p+0 * sum(square(n)) + 0x1p-32 * l2 * l2;
-  const double edge2 = 0.94 * (least(edges) - 0x1p-40 * l2);
-  const double volume = sum(load_four(trail.determinants));  // NaN: then nothing is less
-  const double limit = 1.98 * tolerance * volume;
-  const bool in_range =
-      l > 0x1p-100 && l < 0x1p+100 && farthest < 0x1p+56 * l2 && (lanes_set(magnitude(q - p) < 0x1p+28 * l) & 7U) == 7U;
-  return in_range && u2 * n2 * r2 <= limit * limit * edge2;
-}
+// |A|^2 V^2 <= sum of |u_i|^2 times sum of |n_i|^2. Squares are compared. L is the old distance of the farthest corner:
+// floats rounded the old corners by 2^-24 L, and the rule's own doubles round u_i by as much at most, as |q - p| and
+// |d_i| are below 2^28 L. So the coordinates of d_i, u_i, n_i and the edges are off by 2^-24 L, 3 2^-24 L, 2^-20 L^2
+// and 2^-23 L; squares count that as (a + b)^2 <= 17/16 a^2 + 17 b^2. With L as bounded nothing overflows or
+// underflows.
+class OnePart {
+ public:
+  // `after`: the moved corners relative to the target q; p: where the particle was.
+  DARTCAST_TARGET OnePart(const Trail& trail, const Lanes& after, const Quad& p, const Quad& q, double tolerance)
+      : before_(corners_before(trail)) {
+    const Lanes d = after - before_;
+    const Lanes u = d - lanes<0, 0, 0, 0>(d);
+    l2_ = most(square(before_));
+    const double farthest = most(square(d));
+    const double r2 = 0x1.1p+0 * farthest + 0x1p-42 * l2_;
+    const double u2 = 0x1.1p+0 * sum(square(u)) + 0x1p-37 * l2_;
+    const Quad own = q - p;
+    in_range_ = l2_ > 0x1p-200 && l2_ < 0x1p+200 && farthest < 0x1p+56 * l2_ &&
+                (lanes_set(own * own < 0x1p+56 * l2_) & 7U) == 7U;
+    u2_r2_ = u2 * r2;
+    volume_ = sum(load_four(trail.determinants));  // NaN: then nothing is less
+    limit_ = 1.98 * tolerance * volume_;
+  }
+
+  // By L alone: |e_i| <= 2 L, sum of |n_i|^2 <= 48 L^4, edge >= V / (4 L^2).
+  [[nodiscard]] DARTCAST_TARGET bool by_size() const {
+    const double limit = limit_ * volume_;
+    const double l4 = l2_ * l2_;
+    constexpr double rounding = 1.01;
+    return in_range_ && u2_r2_ * (rounding * 48.0 * 16.0) * (l4 * l4) <= limit * limit;
+  }
+
+  // By the simplex's own faces and edges.
+  [[nodiscard]] DARTCAST_TARGET bool by_shape() const {
+    const Lanes e = before_ - lanes<0, 0, 0, 0>(before_);
+    const Lanes f = lanes<0, 2, 3, 1>(e);
+    const Lanes n = {e.y * f.z - e.z * f.y, e.z * f.x - e.x * f.z, e.x * f.y - e.y * f.x};
+    const Quad edges =
+        smaller(square(before_ - lanes<1, 2, 3, 0>(before_)), square(before_ - lanes<2, 3, 0, 1>(before_)));
+    const double n2 = 0x1.1p+0 * sum(square(n)) + 0x1p-32 * l2_ * l2_;
+    const double edge2 = 0.94 * (least(edges) - 0x1p-40 * l2_);
+    return in_range_ && u2_r2_ * n2 <= limit_ * limit_ * edge2;
+  }
+
+ private:
+  Lanes before_;
+  double l2_;
+  double u2_r2_;
+  double volume_;
+  double limit_;
+  bool in_range_;
+};
 
 // A simplex that a walk has come to.
 struct Visit {
@@ -266,7 +291,7 @@ class Batch {
     determinants_[k] = FilteredDeterminants(now, target, relative_[k]);
     inside_[k] = determinants_[k].all_positive();
     if constexpr (moved)
-      one_part_[k] = is_one_part(trails_[i], relative_[k], load_row(states_[i].position), target, tolerance_);
+      one_part_[k] = OnePart(trails_[i], relative_[k], load_row(states_[i].position), target, tolerance_).by_size();
   }
 
   // Ends the steps whose targets lie strictly inside: wherever they come from in the same simplex, nothing is in the
@@ -278,7 +303,7 @@ class Batch {
     for (std::uint32_t k = 0; k < n; ++k) {
       const std::uint32_t i = first + k;
       State& s = states_[i];
-      if (s.held || (moved && !one_part_[k] && !is_one_part_after_all(i)) ||
+      if (s.held || (moved && !one_part_[k] && !is_one_part_after_all(i, k)) ||
           (s.touching_count != 0 && rests<moved>(i))) {
         leave(i);
         continue;
@@ -312,8 +337,10 @@ class Batch {
     return riding;
   }
 
-  // The rule itself, where the bound of it does not do.
-  DARTCAST_TARGET bool is_one_part_after_all(std::uint32_t i) const {
+  // By the finer bound, and the rule itself.
+  DARTCAST_TARGET bool is_one_part_after_all(std::uint32_t i, std::uint32_t k) const {
+    if (OnePart(trails_[i], relative_[k], load_row(states_[i].position), load_row(targets_[i]), tolerance_).by_shape())
+      return true;
     const Rows now(now_, vertices_[i]);
     Vec3 ridden;
     if (!ride_along(trails_[i], now, ridden)) return false;
