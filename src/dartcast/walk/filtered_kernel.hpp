@@ -424,7 +424,9 @@ class Batch {
       visit.exact = static_cast<std::uint16_t>(visit.exact + std::popcount(open));
     }
     if (behind == 0) {
-      if (const auto wall = find_touched_wall(visit, on)) return end_on_wall(visit, on, *wall);
+      if (on != 0) {
+        if (const auto wall = find_touched_wall(visit, on)) return end_on_wall(visit, on, *wall);
+      }
       arrive(visit, corners, k);
       return false;
     }

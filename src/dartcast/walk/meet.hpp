@@ -48,16 +48,16 @@ class Passing {
     return orient3d_exact(corner[(i + 1) % 3], corner[(i + 2) % 3], p_, q_) == Sign::zero;
   }
 
-  /// Where on the segment the wall is met: right to 2^-40. The sides' determinants sum to the difference of the heights
-  /// of p and q.
+  /// Where on the segment the wall is met: right to 2^-40 of itself. The sides' determinants sum to the difference of
+  /// the heights of p and q.
   [[nodiscard]] double fraction() const {
-    const double whole = sides_[0].value + sides_[1].value + sides_[2].value;
-    const double permanent = sides_[0].permanent + sides_[1].permanent + sides_[2].permanent + height_.permanent;
-    constexpr double enough = 0x1p+42 * Determinant::error;
-    if (filter_applies(0.0, permanent) && std::abs(whole) > enough * permanent)
-      return std::clamp(height_.value / whole, 0.0, 1.0);
-    const double before = orient3d_value(wall_.a, wall_.b, wall_.c, p_);
-    return std::clamp(before / (before - orient3d_value(wall_.a, wall_.b, wall_.c, q_)), 0.0, 1.0);
+    constexpr double enough = 0x1p+42;
+    const double before = height_.exceeds(enough) ? height_.value : orient3d_value(wall_.a, wall_.b, wall_.c, p_);
+    double whole = sides_[0].value + sides_[1].value + sides_[2].value;
+    const double permanent = sides_[0].permanent + sides_[1].permanent + sides_[2].permanent;
+    if (!filter_applies(0.0, permanent) || !(std::abs(whole) > enough * Determinant::error * permanent))
+      whole = before - orient3d_value(wall_.a, wall_.b, wall_.c, q_);
+    return std::clamp(before / whole, 0.0, 1.0);
   }
 
  private:

@@ -1,0 +1,138 @@
+// Walls around vertices and edges, found from cell to cell, against a search simplex by simplex.
+#include "dartcast/walk/star.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "dartcast/base/random.hpp"
+#include "dartcast/geometry/complex.hpp"
+#include "oracle/scenes.hpp"
+#include "tier.hpp"
+#include "walk/seeds.hpp"
+
+namespace dartcast::test {
+namespace {
+
+using Walls = std::set<std::pair<SimplexId, unsigned>>;
+
+// All walls that hold the feature, reached through facets that hold it.
+Walls simplex_by_simplex(const Map& map, SimplexId start, const Feature& feature) {
+  Walls walls;
+  std::vector<SimplexId> open = {start};
+  std::set<SimplexId> seen = {start};
+  while (!open.empty()) {
+    const SimplexId id = open.back();
+    open.pop_back();
+    const CellView cell = map.view(id.cell);
+    const ImplicitSimplex& s = cell.shape().simplices()[id.simplex];
+    for (unsigned facet = 0; facet < 4; ++facet) {
+      unsigned held = 0;
+      for (unsigned i = 0; i < 4; ++i) held += i != facet && feature.has(cell.vertex(s.vertex[i])) ? 1 : 0;
+      if (held != feature.count) continue;
+      const Across across = s.across[facet];
+      if (across.outer() && cell.is_wall(across.face())) {
+        walls.emplace(id, facet);
+      } else if (const SimplexId next = pass(map, id, cell, across).simplex; seen.insert(next).second) {
+        open.push_back(next);
+      }
+    }
+  }
+  return walls;
+}
+
+Walls cell_by_cell(const Map& map, SimplexId start, const Feature& feature) {
+  Walls walls;
+  search_walls(map, start, feature, [&](SimplexId id, const CellView&, const ImplicitSimplex&, unsigned facet) {
+    EXPECT_TRUE(walls.emplace(id, facet).second) << "found twice";
+    return true;
+  });
+  return walls;
+}
+
+// Every corner and edge of every simplex of free cells; what is wrong.
+std::string compare(const Map& map, std::size_t& with_walls, std::size_t& without) {
+  for (const Cell c : map.cells()) {
+    if (!map.is_free(c)) continue;
+    const CellView cell = map.view(c);
+    for (std::uint16_t n = 0; n < cell.shape().simplices().size(); ++n) {
+      const ImplicitSimplex& s = cell.shape().simplices()[n];
+      for (unsigned corners = 1; corners < 15; ++corners) {
+        if (std::popcount(corners) > 2) continue;
+        Feature feature;
+        for (unsigned i = 0; i < 4; ++i) {
+          if (((corners >> i) & 1U) != 0) feature.add(cell.vertex(s.vertex[i]));
+        }
+        const Walls expected = simplex_by_simplex(map, {c, n}, feature);
+        if (cell_by_cell(map, {c, n}, feature) != expected)
+          return fmt::format("cell {}, simplex {}, corners {}", c.value, n, corners);
+        const auto found = find_wall(map, {c, n}, 15U & ~corners, feature);
+        if (found.has_value() == expected.empty() || (found && !expected.contains({found->simplex, found->facet})))
+          return fmt::format("the wall at cell {}, simplex {}, corners {}", c.value, n, corners);
+        ++(expected.empty() ? without : with_walls);
+      }
+    }
+  }
+  return {};
+}
+
+class StarSearch : public ::testing::TestWithParam<int> {};
+
+TEST_P(StarSearch, FindsTheWallsThatTheSimplicesReach) {
+  const auto kind = static_cast<oracle::SceneKind>(GetParam());
+  std::size_t with_walls = 0;
+  std::size_t without = 0;
+  for (std::uint64_t seed = 0; seed < scaled<std::uint64_t>(4, 200); ++seed) {
+    Complex complex(seed % 2 == 0 ? oracle::lattice_scene(kind, seed) : oracle::random_scene(kind, seed, 0.5));
+    if (!complex.invalid_cells().empty()) continue;
+    ASSERT_EQ(compare(complex.map(), with_walls, without), "") << "seed " << seed;
+    // Marks that change: a vertex may be thought to touch a wall that it no longer does, never the other way round.
+    Random random(seed, 3);
+    const std::vector<Cell> cells = complex.map().cells();
+    for (int i = 0; i < 10; ++i) {
+      complex.map().set_free(cells[random.below(static_cast<std::uint32_t>(cells.size()))], random.below(2) == 0);
+    }
+    ASSERT_EQ(compare(complex.map(), with_walls, without), "") << "seed " << seed << ", marks changed";
+  }
+  EXPECT_GT(with_walls, 100U);
+  EXPECT_GT(without, 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, StarSearch, ::testing::Range(0, oracle::scene_kinds), [](const auto& scene) {
+  return oracle::name_of(static_cast<oracle::SceneKind>(scene.param));
+});
+
+TEST(StarSearch, GoesOnWhereAVertexHasMoreCellsThanFitOnTheStack) {
+  // 200 prisms around one edge.
+  constexpr std::uint32_t n = 200;
+  MeshData mesh;
+  mesh.points.resize(2 * (n + 1));
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t a = 1 + i;
+    const std::uint32_t b = 1 + (i + 1) % n;
+    mesh.add_cell(CellType::prism, {{0, a, b, n + 1, n + 1 + a, n + 1 + b}});
+  }
+  const Map map(mesh);
+  std::size_t with_walls = 0;
+  std::size_t without = 0;
+  EXPECT_EQ(compare(map, with_walls, without), "");
+}
+
+TEST(Stars, TellWhereAPointIsHeldTwice) {
+  const auto facet = [](std::uint16_t simplex, std::uint16_t place) { return Across{simplex, place}; };
+  const auto face = [](std::uint16_t f) { return Across{static_cast<std::uint16_t>(Across::outer_bit | f), 0}; };
+  // A chain of three; the first and the last both have point 0, and no facet between them.
+  const std::vector<ImplicitSimplex> chain = {{{0, 1, 2, 3}, {facet(1, 3), face(0), face(1), face(2)}},
+                                              {{1, 2, 3, 4}, {facet(2, 3), face(3), face(4), facet(0, 0)}},
+                                              {{2, 3, 4, 0}, {face(5), face(6), face(7), facet(1, 0)}}};
+  const Stars pinched(chain);
+  EXPECT_FALSE(pinched.one_each());
+  EXPECT_NE(pinched.star(0, 1), pinched.star(2, 8));
+  EXPECT_EQ(pinched.star(0, 2), pinched.star(1, 1));
+  EXPECT_EQ(pinched.outer_facets(pinched.star(0, 1)).size(), 3U);
+  EXPECT_TRUE(Stars(std::span(chain).first(0)).empty());
+}
+
+}  // namespace
+}  // namespace dartcast::test
