@@ -263,6 +263,9 @@ TEST(FollowUntil, LeavesAValidSceneCloseToTheFlattening) {
       ASSERT_TRUE(check_validity(scene.map, reached, {}, 1).valid());
       ASSERT_FALSE(first_flattening(scene.map, scene.positions, reached));
       if (!found) EXPECT_EQ(reached, after);
+      std::vector<Vec3> placed = reached;
+      scene.place(placed);
+      ASSERT_EQ(placed, reached);  // interior points are where their weights put them
       stopped += found ? 1 : 0;
       at_once += time == safe ? 1 : 0;
       EXPECT_GT(time, safe - 0x1p-20) << "mesh " << kind << ", step " << step;
