@@ -171,7 +171,7 @@ TEST(VolumeCubic, BoundOfCoefficientsHolds) {
     misled += !positive && detail::all_above(cubic.c, 0.0) ? 1 : 0;
   }
   // How often the coefficients without a bound would be wrong.
-  if (!test::sanitized()) EXPECT_GT(misled, test::scaled(5, 150));
+  if (!test::sanitized()) EXPECT_GT(misled, test::scaled(1, 50));
   EXPECT_GT(applied, test::scaled(7'000, 200'000));
 }
 
@@ -192,7 +192,7 @@ TEST(VolumeCubic, HalvingProvesWhatIsTrueAndMuchOfIt) {
       left += positive && !is_proved ? 1 : 0;
     }
   }
-  EXPECT_GT(proved, 5 * left) << left;
+  if (!test::sanitized()) EXPECT_GT(proved, 5 * left) << left;
 }
 
 // A motion of one corner of the unit simplex, or of two.

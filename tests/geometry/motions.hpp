@@ -51,12 +51,12 @@ class Motions {
   Motion made(MotionKind kind) {
     switch (kind) {
       case MotionKind::any: return {uniform(), uniform()};
-      case MotionKind::small: return moved_by(uniform(), std::ldexp(1.0, -static_cast<int>(random_.below(40))));
+      case MotionKind::small: return moved_by(uniform(), 40);
       case MotionKind::rotation: return rotation();
       case MotionKind::lattice: return {integers(3), integers(3)};
       case MotionKind::multiple_root: return multiple_root();
       case MotionKind::nearly_multiple_root: return nearly_multiple_root();
-      case MotionKind::sliver: return moved_by(sliver(), std::ldexp(1.0, -static_cast<int>(random_.below(60))));
+      case MotionKind::sliver: return moved_by(sliver(), 60);
       case MotionKind::far_from_origin: return far_from_origin();
       case MotionKind::translation: return translation();
       case MotionKind::rest: break;
@@ -81,13 +81,19 @@ class Motions {
 
   Corners sliver() {
     Corners v = uniform();
-    v[3] = v[0] + random_.uniform() * (v[1] - v[0]) + random_.uniform() * (v[2] - v[0]);
-    v[3] += vector(std::ldexp(1.0, -static_cast<int>(random_.below(60))));
+    const double i = random_.uniform();
+    const double j = random_.uniform();
+    v[3] = v[0] + i * (v[1] - v[0]) + j * (v[2] - v[0]);
+    v[3] += vector(small(60));
     return v;
   }
 
-  Motion moved_by(const Corners& v, double size) {
+  // A power of two: one of the `count` from 1 down.
+  double small(std::uint32_t count) { return std::ldexp(1.0, -static_cast<int>(random_.below(count))); }
+
+  Motion moved_by(const Corners& v, std::uint32_t sizes) {
     Motion m{v, v};
+    const double size = small(sizes);
     for (Vec3& p : m.after) p += vector(size);
     return m;
   }
@@ -149,7 +155,7 @@ class Motions {
   }
 
   Motion far_from_origin() {
-    Motion m = moved_by(random_.below(2) == 0 ? sliver() : uniform(), 1.0);
+    Motion m = moved_by(random_.below(2) == 0 ? sliver() : uniform(), 1);
     const Vec3 from = vector(std::ldexp(1.0, static_cast<int>(random_.below(50))));
     const Vec3 to = vector(std::ldexp(1.0, static_cast<int>(random_.below(50))));
     for (Vec3& p : m.before) p += from;
