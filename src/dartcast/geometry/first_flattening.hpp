@@ -24,7 +24,7 @@ struct CellFlattening {
 /// where all stay positive. First by safe_time, then in the order of cells. Blocked cells count: they must stay valid,
 /// too. A simplex that is not positive to begin with is flattened at the time 0. Interior points move on straight lines
 /// like other vertices: positions are those of all vertices of the map. Exact as find_flattening(). Cost: linear,
-/// parallel, about 20 ns a simplex on one thread, less than check_validity(); more where very many simplices are
+/// parallel, 20 to 40 ns a simplex on one thread, about as check_validity(); more where very many simplices are
 /// flattened within flattening_resolution of the first (4 us each). The result does not depend on the threads. Throws
 /// InvalidArgument where the positions are not as many as the map's vertices.
 std::optional<CellFlattening> first_flattening(const Map& map, std::span<const Vec3> before,
