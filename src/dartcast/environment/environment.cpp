@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "dartcast/base/error.hpp"
+#include "dartcast/geometry/interior.hpp"
 #include "dartcast/mesh/inspect.hpp"
 #include "dartcast/walk/nearby.hpp"
 
@@ -179,9 +180,39 @@ void Environment::move() {
   ++moves_;
 }
 
+void Environment::check_count(std::span<const Vec3> positions) const {
+  if (positions.size() == complex_.point_count()) return;
+  throw InvalidArgument(fmt::format("move: {} positions for {} points", positions.size(), complex_.point_count()));
+}
+
+std::vector<Vec3> Environment::with_interior(std::span<const Vec3> positions) const {
+  check_count(positions);
+  std::vector<Vec3> all(positions.begin(), positions.end());
+  all.resize(complex_.positions().size());
+  compute_interior(complex_.interior(), all);
+  return all;
+}
+
+std::optional<CellFlattening> Environment::first_flattening(std::span<const Vec3> positions) const {
+  return dartcast::first_flattening(map(), complex_.positions(), with_interior(positions), threads_);
+}
+
+double Environment::move_until_flattened(std::span<const Vec3> positions, double share) {
+  const std::vector<Vec3> after = with_interior(positions);
+  const auto flattening = dartcast::first_flattening(map(), complex_.positions(), after, threads_);
+  if (!flattening) {
+    move(positions);
+    return 1.0;
+  }
+  std::vector<Vec3> reached(after.size());
+  const double time = follow_until(map(), complex_.interior(), complex_.positions(), after,
+                                   share * flattening->how.safe_time, reached, threads_);
+  move(std::span<const Vec3>(reached).first(positions.size()));
+  return time;
+}
+
 void Environment::move(std::span<const Vec3> positions) {
-  if (positions.size() != complex_.point_count())
-    throw InvalidArgument(fmt::format("move: {} positions for {} points", positions.size(), complex_.point_count()));
+  check_count(positions);
   std::copy(positions.begin(), positions.end(), next_positions().begin());
   move();
 }

@@ -3,12 +3,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "dartcast/base/ids.hpp"
 #include "dartcast/base/parallel.hpp"
 #include "dartcast/geometry/complex.hpp"
+#include "dartcast/geometry/first_flattening.hpp"
 #include "dartcast/geometry/validity.hpp"
 #include "dartcast/mesh/mesh_data.hpp"
 #include "dartcast/walk/contact.hpp"
@@ -40,7 +42,7 @@ class Particles {
   std::vector<Weights> weights_;
   std::vector<detail::VertexNumbers> vertices_;
   std::vector<detail::Trail> trails_;  // of these states; empty where vertices have not moved
-  std::uint64_t moves_ = 0;  // of the environment, that these states have followed
+  std::uint64_t moves_ = 0;            // of the environment, that these states have followed
 };
 
 /// What came of a request to add one particle.
@@ -101,6 +103,14 @@ class Environment {
   /// Copies new positions of all the mesh's points, then move(). Throws InvalidArgument where the number does not
   /// match.
   void move(std::span<const Vec3> positions);
+  /// The first simplex that is flattened while the vertices go to `positions`, those of all the mesh's points, on
+  /// straight lines; nothing where all stay positive. It tells what of the environment meets itself, when and how.
+  /// Nothing is moved. Throws and costs as geometry/first_flattening.hpp.
+  [[nodiscard]] std::optional<CellFlattening> first_flattening(std::span<const Vec3> positions) const;
+  /// move() to `positions` where nothing is flattened on the straight way there; else as far as `share`, in [0, 1], of
+  /// the way to the first flattening, so that every simplex stays positive. Returns the fraction of the way made.
+  /// Precondition: the scene is valid as it stands, or nothing is moved (0). Throws as move().
+  double move_until_flattened(std::span<const Vec3> positions, double share = 1.0);
 
   /// Advances every particle towards its target; after a move(), along with the vertices (see docs/method.md). Without
   /// `respond` a particle stops at its first contact. Results are the same bits for any number of threads and order of
@@ -117,6 +127,8 @@ class Environment {
   [[nodiscard]] Threads threads() const { return threads_; }
 
  private:
+  void check_count(std::span<const Vec3> positions) const;
+  [[nodiscard]] std::vector<Vec3> with_interior(std::span<const Vec3> positions) const;
   void check_targets(const Particles& particles, std::span<const Vec3> targets) const;
   void add_to(Particles& particles, SimplexId simplex, const Vec3& position) const;
   struct Steps;

@@ -57,6 +57,7 @@ class Complex {
   [[nodiscard]] std::span<const Vec3> previous_positions() const {
     return back_.empty() ? positions() : std::span<const Vec3>(back_);
   }
+  [[nodiscard]] const InteriorWeights& interior() const { return interior_; }
   /// Number of the mesh's own points: the first entries of positions().
   [[nodiscard]] std::size_t point_count() const { return front_.size() - interior_.count(); }
 
