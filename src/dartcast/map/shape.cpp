@@ -1,6 +1,7 @@
 #include "dartcast/map/shape.hpp"
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -156,21 +157,6 @@ Shape::Feature Shape::feature(std::span<const std::uint16_t> points) const {
 std::size_t Shape::bytes() const {
   return sizeof(Shape) + dart_count() * 4U * sizeof(std::uint16_t) + simplices_.size() * sizeof(ImplicitSimplex) +
          entries_.size() * sizeof(Across);
-}
-
-std::uint32_t ShapeTable::intern(const ShapeKey& key) {
-  const auto found = numbers_.find(key);
-  if (found != numbers_.end()) return found->second;
-  shapes_.push_back(std::make_shared<const Shape>(key));
-  const auto number = static_cast<std::uint32_t>(shapes_.size() - 1);
-  numbers_.emplace(key, number);
-  return number;
-}
-
-std::size_t ShapeTable::bytes() const {
-  std::size_t sum = 0;
-  for (const auto& s : shapes_) sum += s->bytes();
-  return sum;
 }
 
 }  // namespace dartcast
