@@ -148,6 +148,10 @@ class Map {
   [[nodiscard]] std::size_t slot_count(std::uint32_t pool) const { return pools_[pool].count; }
   /// Numbers of vertices are below; after edits some may be in no cell.
   [[nodiscard]] std::size_t vertex_count() const { return vertex_count_; }
+  /// Whether the number is a vertex's: edits give numbers up and use them again.
+  [[nodiscard]] bool is_vertex(Vertex v) const {
+    return v.value < vertex_count_ && (cells_at_.empty() || cells_at_[v.value] != vacant_vertex);
+  }
   [[nodiscard]] const ShapeTable& shapes() const { return shapes_; }
   /// The cell's index in the mesh (or the file that it was read from); for one that an edit made, that of the cell
   /// which it was made from.
@@ -184,6 +188,7 @@ class Map {
   friend class Transaction;
 
   static constexpr std::uint32_t vacant_bit = 1U << 31U;
+  static constexpr std::uint32_t vacant_vertex = 0xffffffffU;  // instead of a number of cells
   static constexpr std::uint16_t straight_bit = 1;
   static constexpr std::uint16_t coplanar_bit = 2;
 

@@ -1,0 +1,100 @@
+// Random sequences of edits: integrity after each, vertices as counted, everything as before where a transaction is
+// taken back.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <set>
+
+#include "dartcast/base/error.hpp"
+#include "dartcast/map/integrity.hpp"
+#include "map/edit_meshes.hpp"
+#include "map/random_edits.hpp"
+#include "tier.hpp"
+
+namespace dartcast {
+namespace {
+
+using test::CellBag;
+using test::Edit;
+using test::EditKind;
+
+// Merging is tried more often than splitting, for it is refused more often; the number of cells stays about the same.
+EditKind draw_kind(const CellBag& bag, std::size_t usual, Random& random) {
+  using enum EditKind;
+  constexpr std::array<EditKind, 20> kinds = {split_edge,  split_edge,  split_face,  split_face,  split_cell,
+                                              split_cell,  merge_cells, merge_cells, merge_faces, merge_faces,
+                                              merge_faces, merge_edges, merge_edges, merge_edges, sew,
+                                              sew,         sew,         unsew,       mark,        remove};
+  const EditKind kind = kinds[random.below(kinds.size())];
+  if (kind == split_cell && bag.size() > usual * 3 / 2) return merge_cells;
+  if (kind == remove && (bag.size() < usual * 2 / 3 || random.below(4) != 0)) return split_cell;
+  return kind;
+}
+
+std::vector<Cell> with_neighbours(const Map& map, std::span<const Cell> cells) {
+  std::set<Cell> all;
+  for (const Cell c : cells) {
+    all.insert(c);
+    const CellView v = map.view(c);
+    for (std::uint16_t f = 0; f < v.shape().face_count(); ++f) {
+      if (v.neighbour(f).valid()) all.insert(v.neighbour(f));
+    }
+  }
+  return {all.begin(), all.end()};
+}
+
+std::set<std::uint32_t> vertices_of(const Map& map) {
+  std::set<std::uint32_t> all;
+  for (const Cell c : map.cells()) {
+    const auto vertices = map.view(c).vertices();
+    all.insert(vertices.begin(), vertices.end());
+  }
+  return all;
+}
+
+class RandomEdits : public testing::TestWithParam<test::EditMesh> {};
+INSTANTIATE_TEST_SUITE_P(Map, RandomEdits, testing::ValuesIn(test::edit_meshes()),
+                         [](const auto& i) { return std::string(i.param.name); });
+
+TEST_P(RandomEdits, LeaveAValidMap) {
+  Map map(GetParam().make());
+  CellBag bag(map);
+  const std::size_t usual = bag.size();
+  std::set<std::uint32_t> vertices = vertices_of(map);
+  std::array<int, test::edit_kinds> done{};
+  Random random(17);
+  Transaction t(map);
+  const int count = test::scaled(10000, 1000000) / static_cast<int>(test::edit_meshes().size());
+  for (int i = 0, edits = 0; edits < count; ++i) {
+    const EditKind kind = draw_kind(bag, usual, random);
+    const Edit edit = draw_edit(map, kind, bag.draw(map, random), bag, random);
+    try {
+      apply(t, edit);
+    } catch (const EditRefused& e) {
+      ASSERT_EQ(std::string(e.what()).rfind("cell ", 0), 0U) << e.what();
+      continue;
+    } catch (const InvalidArgument&) {
+      ASSERT_EQ(kind, EditKind::split_cell);  // a path of two darts
+      continue;
+    }
+    ++done[static_cast<std::size_t>(kind)];
+    const EditReport report = t.commit();
+    bag.update(report);
+    for (const BornVertex& v : report.born) ASSERT_TRUE(vertices.insert(v.vertex.value).second);
+    for (const Vertex v : report.died) ASSERT_EQ(vertices.erase(v.value), 1U);
+    for (const CellHandle& h : report.removed) ASSERT_FALSE(map.contains(h));
+    for (const Cell c : report.added) ASSERT_TRUE(map.contains(c));
+    const auto touched =
+        kind == EditKind::mark ? with_neighbours(map, report.marked) : with_neighbours(map, report.added);
+    const auto found = check_integrity(map, touched);
+    ASSERT_TRUE(found.empty()) << "edit " << edits << " of kind " << static_cast<int>(kind) << ": " << found[0].message;
+    if (++edits % 100 != 0 && edits != count) continue;
+    ASSERT_TRUE(check_integrity(map).empty());
+    ASSERT_EQ(map.cell_count(), bag.size());
+    ASSERT_EQ(vertices_of(map), vertices);
+  }
+  for (std::size_t k = 0; k < test::edit_kinds; ++k) EXPECT_GT(done[k], count / 500) << "kind " << k;
+}
+
+}  // namespace
+}  // namespace dartcast
