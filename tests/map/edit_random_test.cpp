@@ -18,19 +18,6 @@ using test::CellBag;
 using test::Edit;
 using test::EditKind;
 
-// Merging is tried more often than splitting, for it is refused more often; the number of cells stays about the same.
-EditKind draw_kind(const CellBag& bag, std::size_t usual, Random& random) {
-  using enum EditKind;
-  constexpr std::array<EditKind, 20> kinds = {split_edge,  split_edge,  split_face,  split_face,  split_cell,
-                                              split_cell,  merge_cells, merge_cells, merge_faces, merge_faces,
-                                              merge_faces, merge_edges, merge_edges, merge_edges, sew,
-                                              sew,         sew,         unsew,       mark,        remove};
-  const EditKind kind = kinds[random.below(kinds.size())];
-  if (kind == split_cell && bag.size() > usual * 3 / 2) return merge_cells;
-  if (kind == remove && (bag.size() < usual * 2 / 3 || random.below(4) != 0)) return split_cell;
-  return kind;
-}
-
 std::vector<Cell> with_neighbours(const Map& map, std::span<const Cell> cells) {
   std::set<Cell> all;
   for (const Cell c : cells) {

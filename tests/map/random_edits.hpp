@@ -1,6 +1,7 @@
 // Edits drawn at random, likely enough to be possible.
 #pragma once
 
+#include <array>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -71,6 +72,19 @@ class CellBag {
   std::unordered_map<std::uint32_t, std::size_t> place_;
   std::vector<std::vector<Cell>> recent_;
 };
+
+/// Merging is tried more often than splitting, for it is refused more often; the number of cells stays about the same.
+inline EditKind draw_kind(const CellBag& bag, std::size_t usual, Random& random) {
+  using enum EditKind;
+  constexpr std::array<EditKind, 20> kinds = {split_edge,  split_edge,  split_face,  split_face,  split_cell,
+                                              split_cell,  merge_cells, merge_cells, merge_faces, merge_faces,
+                                              merge_faces, merge_edges, merge_edges, merge_edges, sew,
+                                              sew,         sew,         unsew,       mark,        remove};
+  const EditKind kind = kinds[random.below(kinds.size())];
+  if (kind == split_cell && bag.size() > usual * 3 / 2) return merge_cells;
+  if (kind == remove && (bag.size() < usual * 2 / 3 || random.below(4) != 0)) return split_cell;
+  return kind;
+}
 
 /// An edit of the kind at the cell; it may turn out to be impossible.
 inline Edit draw_edit(const Map& map, EditKind kind, Cell c, const CellBag& bag, Random& random) {
