@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "dartcast/map/cell_form.hpp"
+#include "dartcast/map/key_table.hpp"
 #include "dartcast/mesh/cell_types.hpp"
 
 namespace dartcast {
@@ -36,7 +37,7 @@ constexpr std::size_t most_darts = 0x3fff;
 
 class Judge {
  public:
-  explicit Judge(const CellDraft& draft) : draft_(draft) {}
+  explicit Judge(const CellDraft& draft) : draft_(draft), local_(dart_count(draft)), edges_(dart_count(draft)) {}
 
   DraftForm form() {
     DraftForm form;
@@ -45,80 +46,91 @@ class Judge {
     form.face.resize(draft_.faces.size());
     if (!has_points() && standard(form)) return form;
     std::iota(form.face.begin(), form.face.end(), std::uint16_t{0});
-    corners_by_appearance(form.corners);
+    form.pool = Map::general_pool;
+    form.corners = std::move(corners_);
     return form;
   }
 
  private:
-  struct Edge {
-    std::uint64_t ends;  // origin in the upper half
-    std::uint16_t dart;
-    bool operator<(const Edge& other) const { return ends < other.ends; }
-  };
-  static constexpr std::uint16_t none = 0xffffU;
+  static constexpr std::uint32_t none = detail::KeyTable::none;
 
-  static std::uint64_t ends(std::uint32_t a, std::uint32_t b) { return (std::uint64_t{a} << 32U) | b; }
+  static std::size_t dart_count(const CellDraft& draft) {
+    std::size_t count = 0;
+    for (const DraftFace& face : draft.faces) count += face.corners.size();
+    return std::min(count, most_darts);
+  }
 
   std::string defect() {
     if (draft_.faces.size() < 4) return "would have fewer than four faces";
     if (std::string faces = flatten(); !faces.empty()) return faces;
-    for (std::uint16_t d = 0; d < origin_.size(); ++d) edges_.push_back({ends(origin_[d], origin_[next(d)]), d});
-    std::sort(edges_.begin(), edges_.end());
-    const auto twice =
-        std::adjacent_find(edges_.begin(), edges_.end(), [](const Edge& a, const Edge& b) { return a.ends == b.ends; });
-    if (twice != edges_.end())
-      return "would have two edges between vertices " + std::to_string(twice->ends >> 32U) + " and " +
-             std::to_string(twice->ends & 0xffffffffU);
-    for (const Edge& e : edges_) {
-      if (dart(static_cast<std::uint32_t>(e.ends & 0xffffffffU), static_cast<std::uint32_t>(e.ends >> 32U)) == none)
-        return "would not be closed at the edge between vertices " + std::to_string(e.ends >> 32U) + " and " +
-               std::to_string(e.ends & 0xffffffffU);
-    }
+    if (std::string edges = pair_edges(); !edges.empty()) return edges;
     if (!is_sphere()) return "would not be one solid without holes, joined by faces alone";
     return points_distinct() ? "" : "would have a point of its own that is a corner, or that serves twice";
   }
 
-  // All faces' darts, one face after another.
+  // All faces' darts, one face after another; corners are numbered as they appear.
   std::string flatten() {
+    first_.reserve(draft_.faces.size() + 1);
     first_.push_back(0);
-    std::vector<std::uint32_t> sorted;
+    std::vector<std::uint16_t> last;  // face that had the corner last
     for (const DraftFace& face : draft_.faces) {
-      sorted.clear();
-      for (const DraftCorner& c : face.corners) sorted.push_back(c.vertex.value);
-      if (origin_.size() + sorted.size() > most_darts) return "would have more than 16383 darts";
-      face_of_.resize(origin_.size() + sorted.size(), static_cast<std::uint16_t>(first_.size() - 1));
-      origin_.insert(origin_.end(), sorted.begin(), sorted.end());
+      if (origin_.size() + face.corners.size() > most_darts) return "would have more than 16383 darts";
+      const auto f = static_cast<std::uint16_t>(first_.size());
+      bool distinct = face.corners.size() >= 3;
+      for (const DraftCorner& c : face.corners) {
+        std::uint32_t& local = local_[c.vertex.value];
+        if (local == none) {
+          local = static_cast<std::uint32_t>(corners_.size());
+          corners_.push_back(c.vertex.value);
+          last.push_back(0);
+        }
+        distinct = distinct && last[local] != f;
+        last[local] = f;
+        origin_.push_back(static_cast<std::uint16_t>(local));
+        face_of_.push_back(static_cast<std::uint16_t>(f - 1U));
+      }
+      if (!distinct) return "would have a face with fewer than three corners, or with one corner twice";
       first_.push_back(static_cast<std::uint16_t>(origin_.size()));
-      std::sort(sorted.begin(), sorted.end());
-      if (sorted.size() < 3 || std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
-        return "would have a face with fewer than three corners, or with one corner twice";
     }
     return {};
   }
+
+  std::string pair_edges() {
+    const auto between = [&](std::uint16_t d) {
+      return " between vertices " + std::to_string(corners_[origin_[d]]) + " and " +
+             std::to_string(corners_[origin_[next(d)]]);
+    };
+    for (std::uint16_t d = 0; d < origin_.size(); ++d) {
+      std::uint32_t& dart = edges_[ends(origin_[d], origin_[next(d)])];
+      if (dart != none) return "would have two edges" + between(d);
+      dart = d;
+    }
+    phi2_.resize(origin_.size());
+    for (std::uint16_t d = 0; d < origin_.size(); ++d) {
+      const std::uint32_t other = edges_.find(ends(origin_[next(d)], origin_[d]));
+      if (other == none) return "would not be closed at the edge" + between(d);
+      phi2_[d] = static_cast<std::uint16_t>(other);
+    }
+    return {};
+  }
+
+  static std::uint64_t ends(std::uint32_t a, std::uint32_t b) { return (std::uint64_t{a} << 32U) | b; }
 
   [[nodiscard]] std::uint16_t next(std::uint16_t d) const {
     const std::uint16_t f = face_of_[d];
     return d + 1 == first_[f + 1U] ? first_[f] : static_cast<std::uint16_t>(d + 1);
   }
 
-  [[nodiscard]] std::uint16_t dart(std::uint32_t from, std::uint32_t to) const {
-    const auto found = std::lower_bound(edges_.begin(), edges_.end(), Edge{ends(from, to), 0});
-    return found != edges_.end() && found->ends == ends(from, to) ? found->dart : none;
-  }
-  [[nodiscard]] std::uint16_t phi2(std::uint16_t d) const { return dart(origin_[next(d)], origin_[d]); }
-
-  // Connected, and of Euler characteristic 2: a vertex that two fans of faces share would count once.
+  // Connected, and of Euler characteristic 2: a vertex that two fans of faces share counts once.
   [[nodiscard]] bool is_sphere() const {
-    std::size_t corners = 0;
-    for (std::size_t i = 0; i < edges_.size(); ++i)
-      corners += i == 0 || edges_[i].ends >> 32U != edges_[i - 1].ends >> 32U ? 1 : 0;
-    if (corners + draft_.faces.size() != origin_.size() / 2 + 2) return false;
+    if (corners_.size() + draft_.faces.size() != origin_.size() / 2 + 2) return false;
     std::vector<bool> seen(draft_.faces.size());
     std::vector<std::uint16_t> reached = {0};
+    reached.reserve(draft_.faces.size());
     seen[0] = true;
     for (std::size_t i = 0; i < reached.size(); ++i) {
       for (std::uint16_t d = first_[reached[i]]; d < first_[reached[i] + 1U]; ++d) {
-        const std::uint16_t f = face_of_[phi2(d)];
+        const std::uint16_t f = face_of_[phi2_[d]];
         if (!seen[f]) reached.push_back(f);
         seen[f] = true;
       }
@@ -139,24 +151,8 @@ class Judge {
     }
     if (draft_.point.valid()) points.push_back(draft_.point.value);
     std::sort(points.begin(), points.end());
-    const auto is_corner = [&](std::uint32_t v) {
-      const auto found = std::lower_bound(edges_.begin(), edges_.end(), Edge{ends(v, 0), 0});
-      return found != edges_.end() && found->ends >> 32U == v;
-    };
     return std::adjacent_find(points.begin(), points.end()) == points.end() &&
-           std::none_of(points.begin(), points.end(), is_corner);
-  }
-
-  // Vertices in the order in which the faces name them first.
-  void corners_by_appearance(std::vector<std::uint32_t>& corners) const {
-    std::vector<Edge> first;  // vertex, dart
-    for (std::uint16_t d = 0; d < origin_.size(); ++d) first.push_back({ends(origin_[d], d), d});
-    std::sort(first.begin(), first.end());
-    const auto last = std::unique(first.begin(), first.end(),
-                                  [](const Edge& a, const Edge& b) { return a.ends >> 32U == b.ends >> 32U; });
-    first.erase(last, first.end());
-    std::sort(first.begin(), first.end(), [](const Edge& a, const Edge& b) { return a.dart < b.dart; });
-    for (const Edge& e : first) corners.push_back(origin_[e.dart]);
+           std::none_of(points.begin(), points.end(), [&](std::uint32_t v) { return local_.find(v) != none; });
   }
 
   // The type with these numbers of faces and corners, if the faces are its faces.
@@ -181,10 +177,10 @@ class Judge {
     for (std::size_t i = 0; i < base_degree; ++i) {
       const auto d = static_cast<std::uint16_t>(first + i);
       const std::size_t place = (base_degree - i) % base_degree;
-      const std::uint16_t above = next(next(phi2(d)));
-      corners[place] = origin_[d];
+      const std::uint16_t above = next(next(phi2_[d]));
+      corners[place] = corners_[origin_[d]];
       const bool apex = type == CellType::tetrahedron || type == CellType::pyramid;
-      corners[apex ? base_degree : place + base_degree] = origin_[above];
+      corners[apex ? base_degree : place + base_degree] = corners_[origin_[above]];
     }
     const StandardCorners best = turned(type, std::span<const std::uint32_t>(corners.data(), count));
     if (!faces_match(form, type, best)) return false;
@@ -198,13 +194,14 @@ class Judge {
     std::uint16_t number = 0;
     unsigned matched = 0;
     for (const auto& face : standard_faces(type)) {
-      std::uint16_t d = dart(corners[face[0]], corners[face[1]]);
-      if (d == none || draft_.faces[face_of_[d]].corners.size() != face.size()) return false;
-      if ((matched >> face_of_[d] & 1U) != 0) return false;
+      std::uint32_t dart = edges_.find(ends(local_.find(corners[face[0]]), local_.find(corners[face[1]])));
+      if (dart == none) return false;
+      auto d = static_cast<std::uint16_t>(dart);
+      if (draft_.faces[face_of_[d]].corners.size() != face.size() || (matched >> face_of_[d] & 1U) != 0) return false;
       matched |= 1U << face_of_[d];
       form.face[face_of_[d]] = number++;
       for (const std::uint8_t k : face) {
-        if (origin_[d] != corners[k]) return false;
+        if (corners_[origin_[d]] != corners[k]) return false;
         d = next(d);
       }
     }
@@ -212,10 +209,13 @@ class Judge {
   }
 
   const CellDraft& draft_;
-  std::vector<std::uint32_t> origin_;  // by dart
+  detail::KeyTable local_;              // number of a vertex among the corners
+  detail::KeyTable edges_;              // dart by its ends
+  std::vector<std::uint32_t> corners_;  // vertices as they appear
+  std::vector<std::uint16_t> origin_;   // by dart, among the corners
   std::vector<std::uint16_t> face_of_;
+  std::vector<std::uint16_t> phi2_;
   std::vector<std::uint16_t> first_;  // dart of each face
-  std::vector<Edge> edges_;           // sorted
 };
 
 }  // namespace

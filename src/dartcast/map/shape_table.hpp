@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <unordered_map>
 #include <vector>
@@ -26,7 +25,7 @@ class ShapeTable {
   };
 
   /// The shape with this key, one use more. Throws as Shape does.
-  Interned intern(const ShapeKey& key);
+  Interned intern(ShapeKey key);
   /// The shape of a standard cell, told by its signature (see map/cell_form.hpp); it stays for good.
   /// `key()` is called where the shape is new.
   template <class Key>
@@ -48,17 +47,23 @@ class ShapeTable {
   bool operator==(const ShapeTable& other) const;
 
  private:
+  struct KeyHash {
+    std::size_t operator()(const ShapeKey* key) const;
+  };
+  struct KeyEqual {
+    bool operator()(const ShapeKey* a, const ShapeKey* b) const { return *a == *b; }
+  };
   static constexpr std::uint32_t forever = 0xffffffffU;  // uses of a standard shape
 
-  Interned add_standard(std::uint32_t signature, const ShapeKey& key);
+  Interned add_standard(std::uint32_t signature, ShapeKey key);
   Interned put(std::uint32_t number, std::shared_ptr<const Shape> shape, std::uint32_t uses);
   void drop(std::uint32_t number);
 
   std::vector<std::shared_ptr<const Shape>> shapes_;  // shared by copies of the table: they are immutable
   std::vector<std::uint32_t> uses_;
-  std::vector<std::uint32_t> vacant_;  // numbers given up
-  std::map<ShapeKey, std::uint32_t> numbers_;
-  std::unordered_map<std::uint32_t, std::uint32_t> standard_;  // by signature
+  std::vector<std::uint32_t> vacant_;                                              // numbers given up
+  std::unordered_map<const ShapeKey*, std::uint32_t, KeyHash, KeyEqual> numbers_;  // keys lie in the shapes
+  std::unordered_map<std::uint32_t, std::uint32_t> standard_;                      // by signature
   std::size_t count_ = 0;
 };
 
