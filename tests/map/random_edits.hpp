@@ -138,20 +138,25 @@ inline Edit draw_edit(const Map& map, EditKind kind, Cell c, const CellBag& bag,
   }
 }
 
-inline void apply(Transaction& t, const Edit& e) {
+/// Does it; returns the new cells.
+inline std::vector<Cell> apply(Transaction& t, const Edit& e) {
   const Map& map = t.map();
   switch (e.kind) {
-    case EditKind::split_edge: split_edge(t, e.darts[0]); break;
-    case EditKind::split_face: split_face(t, e.darts[0], e.darts[1]); break;
-    case EditKind::split_cell: split_cell(t, e.darts); break;
-    case EditKind::merge_cells: merge_cells(t, map.face(e.darts[0])); break;
-    case EditKind::merge_faces: merge_faces(t, e.darts[0]); break;
-    case EditKind::merge_edges: merge_edges(t, e.darts[0]); break;
-    case EditKind::sew: sew(t, e.darts[0], e.darts[1]); break;
-    case EditKind::unsew: unsew(t, map.face(e.darts[0])); break;
+    case EditKind::split_edge: return split_edge(t, e.darts[0]).cells;
+    case EditKind::split_face: return split_face(t, e.darts[0], e.darts[1]);
+    case EditKind::split_cell: {
+      const auto parts = split_cell(t, e.darts);
+      return {parts.begin(), parts.end()};
+    }
+    case EditKind::merge_cells: return {merge_cells(t, map.face(e.darts[0]))};
+    case EditKind::merge_faces: return merge_faces(t, e.darts[0]);
+    case EditKind::merge_edges: return merge_edges(t, e.darts[0]);
+    case EditKind::sew: return sew(t, e.darts[0], e.darts[1]);
+    case EditKind::unsew: return unsew(t, map.face(e.darts[0]));
     case EditKind::mark: t.set_free(e.darts[0].cell, !map.is_free(e.darts[0].cell)); break;
     case EditKind::remove: remove(t, e.darts[0].cell); break;
   }
+  return {};
 }
 
 }  // namespace dartcast::test

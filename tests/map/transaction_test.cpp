@@ -245,7 +245,7 @@ TEST(Transaction, ReplaceRefusesWhatWouldBeNoMap) {
   expect_parts(replaced({Cell(0, 99)}, {}), {"invalid", "not there"});
   expect_parts(replaced({cell[70], cell[70]}, {}), {"invalid", "twice"});
   expect_parts(replaced({}, {cube}), {"refused", "cell 70, which stays", "unsew"});
-  expect_parts(replaced({cell[70]}, {cube, cube}), {"refused", "two others"});
+  expect_parts(replaced({cell[70]}, {cube, cube}), {"refused", "another continues"});
   expect_parts(replaced({cell[70], cell[10]}, {cube}), {"refused", "cell 70", "no more"});
   expect_parts(altered(70, [](CellDraft& d) { d.faces.pop_back(); }), {"refused", "cell 70", "closed"});
   expect_parts(altered(70, [](CellDraft& d) { d.faces[0].corners[0].vertex = Vertex(99); }), {"refused", "cell 70"});

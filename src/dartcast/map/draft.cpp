@@ -25,8 +25,10 @@ CellDraft draft_of(const Map& map, Cell c) {
     face.patch = map.patch(CellFace{c, f});
     if (s.key().faces[f].has_point) face.point = v.vertex(point++);
     face.corners.reserve(s.degree(f) + std::size_t{1});
-    for (std::uint16_t d = s.first_dart(f); d < s.first_dart(static_cast<std::uint16_t>(f + 1)); ++d)
-      face.corners.push_back({v.vertex(s.origin(d)), map.may_be_straight({c, d}), map.may_be_coplanar({c, d})});
+    for (std::uint16_t d = s.first_dart(f); d < s.first_dart(static_cast<std::uint16_t>(f + 1)); ++d) {
+      const Map::Flat flat = map.flat({c, d});
+      face.corners.push_back({v.vertex(s.origin(d)), flat.straight, flat.coplanar});
+    }
   }
   return draft;
 }
@@ -48,6 +50,7 @@ class Judge {
     std::iota(form.face.begin(), form.face.end(), std::uint16_t{0});
     form.pool = Map::general_pool;
     form.corners = std::move(corners_);
+    form.local = std::move(origin_);
     return form;
   }
 

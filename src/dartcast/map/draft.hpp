@@ -49,6 +49,7 @@ CellDraft draft_of(const Map& map, Cell c);
 struct DraftForm {
   std::uint32_t pool = Map::general_pool;
   std::vector<std::uint32_t> corners;  ///< in the record's order
+  std::vector<std::uint16_t> local;    ///< general pool: place of each face's corners in these, one face after another
   std::vector<std::uint16_t> face;     ///< the record's number of each of the draft's faces
   std::string defect;                  ///< why it is no cell; empty: it is one
 };

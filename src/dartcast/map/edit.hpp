@@ -12,7 +12,7 @@
 // to do before it commits:
 //  - Interior points. A touched cell has none of its own any more, nor has a face whose corners changed; other faces
 //    keep theirs, from both sides. An edit makes corners in which a face is straight (may_be_straight(): a vertex put
-//    on an edge; the ends of an edge that was merged away) and neighbours in one plane (may_be_coplanar(): the parts of
+//    on an edge; the ends of an edge that was merged away) and neighbours in one plane (the parts of
 //    a split face; faces around a merged one). These marks follow the cells until what they mark is gone, and are on
 //    the safe side: a vertex may have moved since. A face that may be straight somewhere should be fanned from a point
 //    of its own, and a cell with such a face, or with two faces in one plane, be coned from one: replace it by its own

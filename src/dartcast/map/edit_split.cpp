@@ -131,9 +131,9 @@ class CutFace {
   // it is one face alone.
   [[nodiscard]] bool one_plane(std::uint16_t in, std::uint16_t out) const {
     std::uint16_t d = s_.phi1(in);
-    if (d == out) return map_.may_be_straight({cell_, d});
+    if (d == out) return map_.flat({cell_, d}).straight;
     for (; d != out; d = s_.phi1(s_.phi2(d))) {
-      if (!map_.may_be_coplanar({cell_, d})) return false;
+      if (!map_.flat({cell_, d}).coplanar) return false;
     }
     return true;
   }

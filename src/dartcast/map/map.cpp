@@ -25,6 +25,16 @@ CellFace Map::opposite(CellFace f) const {
   return other.valid() ? CellFace{other, c.neighbour_face(f.face)} : CellFace{};
 }
 
+Vertex Map::point(CellFace f) const {
+  const CellView v = view(f.cell);
+  const auto& key = v.shape().key();
+  if (!key.faces[f.face].has_point) return {};
+  std::uint16_t local = key.corner_count;
+  for (std::uint16_t g = 0; g < f.face; ++g)
+    local = static_cast<std::uint16_t>(local + (key.faces[g].has_point ? 1 : 0));
+  return v.vertex(local);
+}
+
 CellType Map::type(Cell c) const { return static_cast<CellType>(c.pool()); }
 
 std::size_t Map::cell_count() const {

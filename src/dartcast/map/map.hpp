@@ -5,12 +5,12 @@
 // shape; phi1 and phi2 look up in the shape, phi3 goes through the record of the cell.
 //
 // Records, in 32-bit words (a walk reads one record per cell it enters; a hexahedron's fills one cache line):
-//   standard types   [shape 16, version 16] [neighbours' face numbers 3 each, wall mask 6, free 1, wide 1, 0, vacant 1]
-//   [vertices] [neighbours]
-//   any other cell   [shape 32] [version 16, free 1, 0, vacant 1] [vertices] [neighbours] [neighbours' face numbers 16,
-//   wall 16 each]
+//   standard types   [shape 16, version 16] [neighbours' face numbers 3 each, wall mask 6, free 1, wide 1, 0 (4), flat
+//   1, vacant 1] [vertices] [neighbours] any other cell   [shape 32] [version 16, free 1, 0 (13), flat 1, vacant 1]
+//   [vertices] [neighbours] [neighbours' face numbers 16, wall 16 each]
 // Wide: a neighbour's face number does not fit in 3 bits; where these say 7, it is looked up in the neighbour.
-// Vacant: the cell was removed (map/transaction.hpp); its place waits for another, the version tells them apart.
+// Flat: darts of the cell have marks in a side table. Vacant: the cell was removed (map/transaction.hpp); its place
+// waits for another, the version tells them apart.
 #pragma once
 
 #include <array>
@@ -119,6 +119,8 @@ class Map {
   [[nodiscard]] CellFace face(Dart d) const { return {d.cell, shape(d.cell).face_of(d.number)}; }
   /// The same face from the other side; invalid on the boundary.
   [[nodiscard]] CellFace opposite(CellFace f) const;
+  /// The point of its own that a face is fanned from; invalid where it has none.
+  [[nodiscard]] Vertex point(CellFace f) const;
 
   // Cells.
   /// Where a cell's record starts: to ask memory for it ahead of time.
@@ -165,10 +167,17 @@ class Map {
   void set_free(Cell c, bool free);
 
   // What edits leave for whoever gives cells interior points (see map/edit.hpp).
-  /// Whether the face of d may be straight in the origin of d.
-  [[nodiscard]] bool may_be_straight(Dart d) const { return (flats_.find(d.cell, d.number) & straight_bit) != 0; }
-  /// Whether the two faces of the cell that meet in the edge of d may lie in one plane.
-  [[nodiscard]] bool may_be_coplanar(Dart d) const { return (flats_.find(d.cell, d.number) & coplanar_bit) != 0; }
+  struct Flat {
+    bool straight = false;  ///< the face of the dart may be straight in its origin
+    bool coplanar = false;  ///< the two faces of the cell that meet in its edge may lie in one plane
+  };
+  [[nodiscard]] Flat flat(Dart d) const {
+    if ((record(d.cell)[1] & flat_bit) == 0) return {};
+    const std::uint16_t bits = flats_.find(d.cell, d.number);
+    return {(bits & straight_bit) != 0, (bits & coplanar_bit) != 0};
+  }
+  /// Whether a dart of the cell has such a mark.
+  [[nodiscard]] bool has_flat(Cell c) const { return (record(c)[1] & flat_bit) != 0; }
 
   // Patches: named groups of faces.
   [[nodiscard]] Patch patch(CellFace f) const { return Patch{patches_.find(f.cell, f.face)}; }
@@ -188,6 +197,7 @@ class Map {
   friend class Transaction;
 
   static constexpr std::uint32_t vacant_bit = 1U << 31U;
+  static constexpr std::uint32_t flat_bit = 1U << 30U;
   static constexpr std::uint32_t vacant_vertex = 0xffffffffU;  // instead of a number of cells
   static constexpr std::uint16_t straight_bit = 1;
   static constexpr std::uint16_t coplanar_bit = 2;

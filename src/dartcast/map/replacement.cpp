@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "dartcast/base/error.hpp"
+#include "dartcast/map/key_table.hpp"
 
 namespace dartcast {
 
@@ -11,7 +12,7 @@ namespace {
 class Judgement {
  public:
   Judgement(const Map& map, std::span<const Cell> removed, std::span<const CellDraft> drafts)
-      : map_(map), drafts_(drafts) {
+      : map_(map), drafts_(drafts), continued_(face_count(drafts)) {
     plan_.removed.assign(removed.begin(), removed.end());
     std::sort(plan_.removed.begin(), plan_.removed.end());
   }
@@ -29,12 +30,13 @@ class Judgement {
   }
 
  private:
-  struct Continued {
-    CellFace from;
-    std::uint32_t draft;
-    std::uint16_t face;
-    bool operator<(const Continued& other) const { return from < other.from; }
-  };
+  static std::uint64_t key_of(CellFace f) { return (std::uint64_t{f.cell.value} << 16U) | f.face; }
+
+  static std::size_t face_count(std::span<const CellDraft> drafts) {
+    std::size_t count = 0;
+    for (const CellDraft& draft : drafts) count += draft.faces.size();
+    return count;
+  }
 
   [[noreturn]] void refuse(std::uint32_t draft, const std::string& reason) const {
     throw EditRefused("cell " + std::to_string(drafts_[draft].source) + " " + reason);
@@ -73,10 +75,14 @@ class Judgement {
   void list_continued() {
     for (std::uint32_t i = 0; i < drafts_.size(); ++i) {
       for (std::uint16_t f = 0; f < drafts_[i].faces.size(); ++f) {
-        if (drafts_[i].faces[f].from.valid()) continued_.push_back({drafts_[i].faces[f].from, i, f});
+        const CellFace from = drafts_[i].faces[f].from;
+        if (!from.valid()) continue;
+        std::uint32_t& number = continued_[key_of(from)];
+        if (number != detail::KeyTable::none) refuse(i, "would continue a face that another continues, too");
+        number = static_cast<std::uint32_t>(faces_.size());
+        faces_.emplace_back(i, f);
       }
     }
-    std::sort(continued_.begin(), continued_.end());
   }
 
   void add_link(std::uint32_t draft, std::uint16_t face) {
@@ -91,11 +97,14 @@ class Judgement {
       if (back.draft != draft || back.draft_face != face) refuse(draft, "would have a face sewn to two others");
       if (link.draft < draft) return;
       const DraftFace& there = drafts_[link.draft].faces[link.draft_face];
-      check_fit(draft, here, there.point, vertices_of(there));
+      check_fit(draft, here, there.point, there.corners.size(), [&](std::size_t i) { return there.corners[i].vertex; });
       plan_.links.push_back({draft, face, {}, link.draft, link.draft_face});
     } else if (link.face.valid()) {
       check_stays(link.face);
-      check_fit(draft, here, point_of(link.face), vertices_of(link.face));
+      const CellView v = map_.view(link.face.cell);
+      const auto corners = v.shape().corners(link.face.face);
+      check_fit(draft, here, map_.point(link.face), corners.size(),
+                [&](std::size_t i) { return v.vertex(corners[i]); });
       plan_.links.push_back({draft, face, link.face});
       outer_.push_back(link.face);
     }
@@ -105,11 +114,11 @@ class Judgement {
   [[nodiscard]] DraftLink resolved(std::uint32_t draft, std::uint16_t face) const {
     DraftLink link = drafts_[draft].faces[face].across;
     if (link.draft != DraftLink::no_draft || !is_removed(link.face.cell)) return link;
-    const auto found = std::lower_bound(continued_.begin(), continued_.end(), Continued{link.face, 0, 0});
-    if (found == continued_.end() || found->from != link.face)
+    const std::uint32_t number = continued_.find(key_of(link.face));
+    if (number == detail::KeyTable::none)
       refuse(draft, "would be sewn to a face that is no more: leave it open, or continue the face");
-    link.draft = found->draft;
-    link.draft_face = found->face;
+    link.draft = faces_[number].first;
+    link.draft_face = faces_[number].second;
     return link;
   }
 
@@ -122,37 +131,14 @@ class Judgement {
                         std::to_string(map_.source(across)) + ", which stays: unsew it first");
   }
 
-  static std::vector<std::uint32_t> vertices_of(const DraftFace& face) {
-    std::vector<std::uint32_t> vertices;
-    for (const DraftCorner& c : face.corners) vertices.push_back(c.vertex.value);
-    return vertices;
-  }
-
-  [[nodiscard]] std::vector<std::uint32_t> vertices_of(CellFace f) const {
-    const CellView v = map_.view(f.cell);
-    std::vector<std::uint32_t> vertices;
-    for (const std::uint16_t k : v.shape().corners(f.face)) vertices.push_back(v.vertex(k).value);
-    return vertices;
-  }
-
-  [[nodiscard]] Vertex point_of(CellFace f) const {
-    const CellView v = map_.view(f.cell);
-    const auto& key = v.shape().key();
-    if (!key.faces[f.face].has_point) return {};
-    std::uint16_t point = key.corner_count;
-    for (std::uint16_t g = 0; g < f.face; ++g)
-      point = static_cast<std::uint16_t>(point + (key.faces[g].has_point ? 1 : 0));
-    return v.vertex(point);
-  }
-
-  // The same corners the other way around, and the same point.
-  void check_fit(std::uint32_t draft, const DraftFace& face, Vertex point,
-                 const std::vector<std::uint32_t>& other) const {
+  // The same corners the other way around, and the same point. `vertex(i)`: of the other face's `count` corners.
+  template <class VertexAt>
+  void check_fit(std::uint32_t draft, const DraftFace& face, Vertex point, std::size_t count, VertexAt&& vertex) const {
     const std::size_t k = face.corners.size();
-    const auto start = std::find(other.begin(), other.end(), face.corners[0].vertex.value) - other.begin();
-    bool fits = other.size() == k && static_cast<std::size_t>(start) < k;
-    for (std::size_t i = 0; fits && i < k; ++i)
-      fits = face.corners[i].vertex.value == other[(static_cast<std::size_t>(start) + k - i) % k];
+    std::size_t start = 0;
+    while (start < count && vertex(start) != face.corners[0].vertex) ++start;
+    bool fits = count == k && start < k;
+    for (std::size_t i = 0; fits && i < k; ++i) fits = face.corners[i].vertex == vertex((start + k - i) % k);
     if (!fits) refuse(draft, "would be sewn to a face with other corners, or with them in another order");
     if (face.point != point) refuse(draft, "would be sewn to a face that is fanned from another point");
   }
@@ -177,8 +163,9 @@ class Judgement {
   const Map& map_;
   std::span<const CellDraft> drafts_;
   Replacement plan_;
-  std::vector<Continued> continued_;  // sorted
-  std::vector<CellFace> outer_;       // faces of cells that stay, to be sewn to drafts
+  detail::KeyTable continued_;                                  // faces of removed cells: number in the next
+  std::vector<std::pair<std::uint32_t, std::uint16_t>> faces_;  // of drafts, which continue them
+  std::vector<CellFace> outer_;                                 // faces of cells that stay, to be sewn to drafts
 };
 
 }  // namespace

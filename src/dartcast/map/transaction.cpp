@@ -11,24 +11,17 @@ namespace dartcast {
 namespace {
 
 // The key of a draft's shape in the general pool, and the record's vertices: corners, face points, the cell's point.
-ShapeKey general_key(const CellDraft& draft, std::vector<std::uint32_t>& vertices) {
+ShapeKey general_key(const CellDraft& draft, const DraftForm& form, std::vector<std::uint32_t>& vertices) {
   ShapeKey key;
   key.corner_count = static_cast<std::uint16_t>(vertices.size());
   key.apex = lowest_corner(vertices);
-  std::vector<std::pair<std::uint32_t, std::uint16_t>> local;
-  for (std::uint16_t i = 0; i < vertices.size(); ++i) local.emplace_back(vertices[i], i);
-  std::sort(local.begin(), local.end());
-  std::vector<std::uint16_t> corners;
+  key.faces.reserve(draft.faces.size());
+  std::span<const std::uint16_t> local = form.local;
   for (const DraftFace& face : draft.faces) {
-    corners.clear();
-    for (const DraftCorner& c : face.corners)
-      corners.push_back(
-          std::lower_bound(local.begin(), local.end(), std::pair{c.vertex.value, std::uint16_t{0}})->second);
-    key.faces.push_back(from_lowest(corners, vertices));
+    key.faces.push_back(from_lowest(local.first(face.corners.size()), form.corners));
     key.faces.back().has_point = face.point.valid();
-  }
-  for (const DraftFace& face : draft.faces) {
     if (face.point.valid()) vertices.push_back(face.point.value);
+    local = local.subspan(face.corners.size());
   }
   key.has_point = draft.point.valid();
   if (key.has_point) vertices.push_back(draft.point.value);
@@ -125,7 +118,7 @@ Cell Transaction::put(const CellDraft& draft, const DraftForm& form) {
   std::vector<std::uint32_t> vertices = form.corners;
   ShapeTable::Interned shape{};
   if (form.pool == Map::general_pool) {
-    shape = map_.shapes_.intern(general_key(draft, vertices));
+    shape = map_.shapes_.intern(general_key(draft, form, vertices));
   } else {
     const auto type = static_cast<CellType>(form.pool);
     shape =
@@ -177,8 +170,9 @@ void Transaction::write_sides(Cell c, const CellDraft& draft, const DraftForm& f
     for (std::size_t j = 0; j < k; ++j) {
       const DraftCorner& corner = face.corners[(first + j) % k];
       const auto bits = (corner.straight ? Map::straight_bit : 0) | (corner.coplanar ? Map::coplanar_bit : 0);
-      if (bits != 0)
-        map_.flats_.set(c, static_cast<std::uint16_t>(s.first_dart(f) + j), static_cast<std::uint16_t>(bits));
+      if (bits == 0) continue;
+      map_.record(c)[1] |= Map::flat_bit;
+      map_.flats_.set(c, static_cast<std::uint16_t>(s.first_dart(f) + j), static_cast<std::uint16_t>(bits));
     }
   }
 }
@@ -188,7 +182,7 @@ void Transaction::clear_sides(Cell c) {
   if (map_.patches_.size() > 0) {
     for (std::uint16_t f = 0; f < s.face_count(); ++f) map_.patches_.set(c, f, 0);
   }
-  if (map_.flats_.size() > 0) {
+  if (map_.has_flat(c)) {
     for (std::uint16_t d = 0; d < s.dart_count(); ++d) map_.flats_.set(c, d, 0);
   }
 }
