@@ -189,7 +189,7 @@ TEST_F(Handmade, WhatIsUnsewnCanBeSewn) {
   const Map before = map;
   unsew(t, face(1, 1, 2));
   expect_valid();
-  EXPECT_FALSE(map.opposite(face(3, 2, 1)).valid());
+  EXPECT_FALSE(map.opposite(face(1, 1, 2)).valid());
   const EditReport apart = t.commit();
   EXPECT_EQ(apart.born.size(), 3U);  // cell 3 hung on that face alone
   Vertices from;
