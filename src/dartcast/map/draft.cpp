@@ -39,32 +39,38 @@ constexpr std::size_t most_darts = 0x3fff;
 
 class Judge {
  public:
-  explicit Judge(const CellDraft& draft) : draft_(draft), local_(dart_count(draft)), edges_(dart_count(draft)) {}
-
-  DraftForm form() {
+  DraftForm form(const CellDraft& draft) {
+    reset(draft);
     DraftForm form;
     form.defect = defect();
     if (!form.defect.empty()) return form;
-    form.face.resize(draft_.faces.size());
+    form.face.resize(draft_->faces.size());
     if (!has_points() && standard(form)) return form;
     std::iota(form.face.begin(), form.face.end(), std::uint16_t{0});
     form.pool = Map::general_pool;
-    form.corners = std::move(corners_);
-    form.local = std::move(origin_);
+    form.corners = corners_;
+    form.local = origin_;
     return form;
   }
 
  private:
   static constexpr std::uint32_t none = detail::KeyTable::none;
 
-  static std::size_t dart_count(const CellDraft& draft) {
-    std::size_t count = 0;
-    for (const DraftFace& face : draft.faces) count += face.corners.size();
-    return std::min(count, most_darts);
+  void reset(const CellDraft& draft) {
+    draft_ = &draft;
+    std::size_t darts = 0;
+    for (const DraftFace& face : draft.faces) darts += face.corners.size();
+    local_.reset(std::min(darts, most_darts));
+    edges_.reset(std::min(darts, most_darts));
+    corners_.clear();
+    origin_.clear();
+    face_of_.clear();
+    phi2_.clear();
+    first_.clear();
   }
 
   std::string defect() {
-    if (draft_.faces.size() < 4) return "would have fewer than four faces";
+    if (draft_->faces.size() < 4) return "would have fewer than four faces";
     if (std::string faces = flatten(); !faces.empty()) return faces;
     if (std::string edges = pair_edges(); !edges.empty()) return edges;
     if (!is_sphere()) return "would not be one solid without holes, joined by faces alone";
@@ -73,10 +79,10 @@ class Judge {
 
   // All faces' darts, one face after another; corners are numbered as they appear.
   std::string flatten() {
-    first_.reserve(draft_.faces.size() + 1);
+    first_.reserve(draft_->faces.size() + 1);
     first_.push_back(0);
     std::vector<std::uint16_t> last;  // face that had the corner last
-    for (const DraftFace& face : draft_.faces) {
+    for (const DraftFace& face : draft_->faces) {
       if (origin_.size() + face.corners.size() > most_darts) return "would have more than 16383 darts";
       const auto f = static_cast<std::uint16_t>(first_.size());
       bool distinct = face.corners.size() >= 3;
@@ -126,10 +132,10 @@ class Judge {
 
   // Connected, and of Euler characteristic 2: a vertex that two fans of faces share counts once.
   [[nodiscard]] bool is_sphere() const {
-    if (corners_.size() + draft_.faces.size() != origin_.size() / 2 + 2) return false;
-    std::vector<bool> seen(draft_.faces.size());
+    if (corners_.size() + draft_->faces.size() != origin_.size() / 2 + 2) return false;
+    std::vector<bool> seen(draft_->faces.size());
     std::vector<std::uint16_t> reached = {0};
-    reached.reserve(draft_.faces.size());
+    reached.reserve(draft_->faces.size());
     seen[0] = true;
     for (std::size_t i = 0; i < reached.size(); ++i) {
       for (std::uint16_t d = first_[reached[i]]; d < first_[reached[i] + 1U]; ++d) {
@@ -138,21 +144,21 @@ class Judge {
         seen[f] = true;
       }
     }
-    return reached.size() == draft_.faces.size();
+    return reached.size() == draft_->faces.size();
   }
 
   [[nodiscard]] bool has_points() const {
-    return draft_.point.valid() ||
-           std::any_of(draft_.faces.begin(), draft_.faces.end(), [](const auto& f) { return f.point.valid(); });
+    return draft_->point.valid() ||
+           std::any_of(draft_->faces.begin(), draft_->faces.end(), [](const auto& f) { return f.point.valid(); });
   }
 
   [[nodiscard]] bool points_distinct() const {
     if (!has_points()) return true;
     std::vector<std::uint32_t> points;
-    for (const DraftFace& f : draft_.faces) {
+    for (const DraftFace& f : draft_->faces) {
       if (f.point.valid()) points.push_back(f.point.value);
     }
-    if (draft_.point.valid()) points.push_back(draft_.point.value);
+    if (draft_->point.valid()) points.push_back(draft_->point.value);
     std::sort(points.begin(), points.end());
     return std::adjacent_find(points.begin(), points.end()) == points.end() &&
            std::none_of(points.begin(), points.end(), [&](std::uint32_t v) { return local_.find(v) != none; });
@@ -160,7 +166,7 @@ class Judge {
 
   // The type with these numbers of faces and corners, if the faces are its faces.
   bool standard(DraftForm& form) const {
-    const std::size_t faces = draft_.faces.size();
+    const std::size_t faces = draft_->faces.size();
     const std::size_t darts = origin_.size();
     if (faces == 4 && darts == 12) return standard(form, CellType::tetrahedron, 3);
     if (faces == 6 && darts == 24) return standard(form, CellType::hexahedron, 4);
@@ -170,10 +176,10 @@ class Judge {
   }
 
   bool standard(DraftForm& form, CellType type, std::size_t base_degree) const {
-    const auto base = std::find_if(draft_.faces.begin(), draft_.faces.end(),
+    const auto base = std::find_if(draft_->faces.begin(), draft_->faces.end(),
                                    [&](const DraftFace& f) { return f.corners.size() == base_degree; });
-    if (base == draft_.faces.end()) return false;
-    const std::uint16_t first = first_[static_cast<std::size_t>(base - draft_.faces.begin())];
+    if (base == draft_->faces.end()) return false;
+    const std::uint16_t first = first_[static_cast<std::size_t>(base - draft_->faces.begin())];
     std::array<std::uint32_t, 8> corners{};
     const std::size_t count = corner_count(type);
     // The base is seen from the inside in the type's order; above each of its corners is the end of the third edge.
@@ -200,7 +206,7 @@ class Judge {
       std::uint32_t dart = edges_.find(ends(local_.find(corners[face[0]]), local_.find(corners[face[1]])));
       if (dart == none) return false;
       auto d = static_cast<std::uint16_t>(dart);
-      if (draft_.faces[face_of_[d]].corners.size() != face.size() || (matched >> face_of_[d] & 1U) != 0) return false;
+      if (draft_->faces[face_of_[d]].corners.size() != face.size() || (matched >> face_of_[d] & 1U) != 0) return false;
       matched |= 1U << face_of_[d];
       form.face[face_of_[d]] = number++;
       for (const std::uint8_t k : face) {
@@ -211,7 +217,7 @@ class Judge {
     return true;
   }
 
-  const CellDraft& draft_;
+  const CellDraft* draft_ = nullptr;
   detail::KeyTable local_;              // number of a vertex among the corners
   detail::KeyTable edges_;              // dart by its ends
   std::vector<std::uint32_t> corners_;  // vertices as they appear
@@ -223,6 +229,14 @@ class Judge {
 
 }  // namespace
 
-DraftForm form_of(const CellDraft& draft) { return Judge(draft).form(); }
+DraftForm form_of(const CellDraft& draft) { return Judge().form(draft); }
+
+std::vector<DraftForm> forms_of(std::span<const CellDraft> drafts) {
+  Judge judge;
+  std::vector<DraftForm> forms;
+  forms.reserve(drafts.size());
+  for (const CellDraft& draft : drafts) forms.push_back(judge.form(draft));
+  return forms;
+}
 
 }  // namespace dartcast

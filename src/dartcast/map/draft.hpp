@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -56,7 +57,9 @@ struct DraftForm {
 
 /// Judges a draft by itself: at least four faces of at least three distinct corners; every edge once in each direction;
 /// the surface a sphere; points distinct from corners; at most 16383 darts. What is combinatorially a tetrahedron,
-/// hexahedron, prism or pyramid, without points, takes that form. Cost: n log n in its darts.
+/// hexahedron, prism or pyramid, without points, takes that form. Cost: linear in its
+/// darts, on average.
 DraftForm form_of(const CellDraft& draft);
+std::vector<DraftForm> forms_of(std::span<const CellDraft> drafts);
 
 }  // namespace dartcast

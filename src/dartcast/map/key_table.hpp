@@ -13,8 +13,13 @@ class KeyTable {
  public:
   static constexpr std::uint32_t none = 0xffffffffU;
 
-  explicit KeyTable(std::size_t most)
-      : places_(std::bit_ceil(2 * most + 2)), shift_(64 - static_cast<unsigned>(std::countr_zero(places_.size()))) {}
+  explicit KeyTable(std::size_t most = 0) { reset(most); }
+
+  /// Forgets all keys.
+  void reset(std::size_t most) {
+    places_.assign(std::bit_ceil(2 * most + 2), {});
+    shift_ = 64 - static_cast<unsigned>(std::countr_zero(places_.size()));
+  }
 
   /// The number of a key, `none` where it has none yet; can be written to. Precondition: key < 2^64 - 1.
   std::uint32_t& operator[](std::uint64_t key) {
@@ -37,7 +42,7 @@ class KeyTable {
   }
 
   std::vector<Place> places_;
-  unsigned shift_;
+  unsigned shift_ = 0;
 };
 
 }  // namespace dartcast::detail

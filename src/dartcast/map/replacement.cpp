@@ -19,7 +19,8 @@ class Judgement {
 
   Replacement judge() {
     check_removed();
-    for (const CellDraft& draft : drafts_) add_form(draft);
+    plan_.forms = forms_of(drafts_);
+    for (std::uint32_t i = 0; i < drafts_.size(); ++i) check_draft(i);
     list_continued();
     for (std::uint32_t i = 0; i < drafts_.size(); ++i) {
       for (std::uint16_t f = 0; f < drafts_[i].faces.size(); ++f) add_link(i, f);
@@ -52,15 +53,14 @@ class Judgement {
       throw InvalidArgument("a cell is to be replaced twice: name it once");
   }
 
-  void add_form(const CellDraft& draft) {
-    plan_.forms.push_back(form_of(draft));
-    if (!plan_.forms.back().defect.empty())
-      refuse(static_cast<std::uint32_t>(plan_.forms.size() - 1), plan_.forms.back().defect);
-    for (const DraftFace& f : draft.faces) {
-      for (const DraftCorner& c : f.corners) check_vertex(c.vertex);
+  void check_draft(std::uint32_t number) const {
+    const DraftForm& form = plan_.forms[number];
+    if (!form.defect.empty()) refuse(number, form.defect);
+    for (const std::uint32_t v : form.corners) check_vertex(Vertex(v));
+    for (const DraftFace& f : drafts_[number].faces) {
       if (f.point.valid()) check_vertex(f.point);
     }
-    if (draft.point.valid()) check_vertex(draft.point);
+    if (drafts_[number].point.valid()) check_vertex(drafts_[number].point);
   }
 
   void check_vertex(Vertex v) const {
