@@ -130,6 +130,10 @@ TEST(Draft, WhatIsNoCellIsRefused) {
     }
   }
   expect_defect(draft_from(torus), "one solid");
+  // Beside it a tetrahedron: together they have the numbers of one sphere.
+  Loops both = torus;
+  for (const auto& loop : standard_loops(CellType::tetrahedron, {20, 21, 22, 23})) both.push_back(loop);
+  expect_defect(draft_from(both), "one solid");
 
   CellDraft points = draft_from(tetrahedron);
   points.point = Vertex(2);

@@ -44,9 +44,9 @@ struct EditReport {
 /// on it; whoever reads it sees the edits made so far. Numbers of cells and vertices that are gone are not used again
 /// before the commit.
 ///
-/// The first transaction on a map counts the cells of each vertex: linear in the map, once. After that the cost of each
-/// function is that of the cells that it names and their neighbours, whatever the size of the map; arrays grow by
-/// doubling.
+/// The first transaction on a map counts the cells of each vertex and lists the cells' sources: linear in the map,
+/// once, and four bytes for each vertex and cell from then on. After that the cost of each function is that of the
+/// cells that it names and their neighbours, whatever the size of the map; arrays grow by doubling.
 class Transaction {
  public:
   explicit Transaction(Map& map);
