@@ -8,9 +8,12 @@
 #include <algorithm>
 #include <functional>
 
+#include "dartcast/base/error.hpp"
+#include "dartcast/map/edit.hpp"
 #include "dartcast/mesh/generate_box.hpp"
 #include "dartcast/mesh/generate_octahedra.hpp"
 #include "map/mixed_mesh.hpp"
+#include "map/random_edits.hpp"
 
 namespace dartcast {
 namespace {
@@ -45,6 +48,15 @@ Cell cell_in_the_middle(const Map& map) {
     bool inside = true;
     for (std::uint16_t f = 0; f < v.shape().face_count(); ++f) inside = inside && v.neighbour(f).valid();
     if (inside) return c;
+  }
+  return {};
+}
+
+Cell vacant_cell(const Map& map) {
+  for (std::uint32_t pool = 0; pool <= Map::general_pool; ++pool) {
+    for (std::uint32_t i = 0; i < map.slot_count(pool); ++i) {
+      if (!map.contains(Cell(pool, i))) return Cell(pool, i);
+    }
   }
   return {};
 }
@@ -108,7 +120,7 @@ TEST_P(Planted, NeighbourThatIsNone) {
 
 TEST_P(Planted, NeighbourFaceThatIsNone) {
   expect_found(mesh(), "phi3 leads to a face with as many darts", [](const Map&, Record& r, Cell) {
-    for (unsigned f = 0; f < r.view.shape().face_count(); ++f) r.set_neighbour_face(f, r.general ? 99 : 7);
+    for (unsigned f = 0; f < r.view.shape().face_count(); ++f) r.set_neighbour_face(f, r.general ? 99 : 6);
   });
 }
 
@@ -128,6 +140,75 @@ TEST_P(Planted, SewnToItself) {
 
 TEST_P(Planted, WallMarkTurned) {
   expect_found(mesh(), "a wall is where exactly one side is free", [](const Map&, Record& r, Cell) { r.flip_wall(1); });
+}
+
+// Faults planted in maps that were edited: each is found in the cell itself, and only as long as it is there.
+TEST_P(Planted, AfterEdits) {
+  Map map(mesh());
+  Random random(41);
+  {
+    Transaction t(map);
+    test::CellBag bag(map);
+    for (int i = 0; i < 600; ++i) {
+      const auto edit = draw_edit(map, draw_kind(bag, 60, random), bag.draw(map, random), bag, random);
+      try {
+        apply(t, edit);
+        bag.update(t.commit());
+      } catch (const Error&) {
+        continue;
+      }
+    }
+  }
+  ASSERT_TRUE(check_integrity(map).empty());
+  const std::vector<Cell> cells = map.cells();
+  using Fault = std::function<void(Record&, unsigned face)>;
+  const std::vector<Fault> faults = {
+      [&](Record& r, unsigned) { r.vertex(1) = static_cast<std::uint32_t>(map.vertex_count()) + 5; },
+      [](Record& r, unsigned) { r.vertex(0) = r.vertex(1); },
+      [](Record& r, unsigned face) { r.neighbour(face) = Cell(6, 3).value; },
+      [&](Record& r, unsigned face) { r.neighbour(face) = vacant_cell(map).value; },
+      [](Record& r, unsigned face) {
+        r.set_neighbour_face(face, r.view.neighbour_face(static_cast<std::uint16_t>(face)) == 0 ? 1 : 0);
+      },
+      [](Record& r, unsigned face) { r.flip_wall(face); }};
+  for (int i = 0; i < 100; ++i) {
+    const Cell c = cells[random.below(static_cast<std::uint32_t>(cells.size()))];
+    Record record(map, c);
+    const std::uint16_t faces = record.view.shape().face_count();
+    unsigned face = 0;
+    while (face < faces && !record.view.neighbour(static_cast<std::uint16_t>(face)).valid()) ++face;
+    if (face == faces) continue;
+    const std::vector<std::uint32_t> words(
+        record.word, record.word + 2 + record.view.shape().point_count() + (record.general ? 2U : 1U) * faces);
+    for (std::size_t k = 0; k < faults.size(); ++k) {
+      faults[k](record, face);
+      EXPECT_FALSE(check_integrity(map, {&c, 1}).empty()) << "fault " << k;
+      std::copy(words.begin(), words.end(), record.word);
+    }
+  }
+  EXPECT_TRUE(check_integrity(map).empty());
+}
+
+TEST(Integrity, BothSidesOfAFaceHaveOnePoint) {
+  BoxOptions o;
+  o.cells = {2, 1, 1};
+  Map map(generate_box(o));
+  Transaction t(map);
+  std::vector<CellDraft> drafts;
+  const auto cells = map.cells();
+  const Vertex point = t.add_vertex({}, {});
+  for (const Cell c : cells) {
+    drafts.push_back(draft_of(map, c));
+    for (DraftFace& f : drafts.back().faces) f.point = f.across.face.valid() ? point : Vertex{};
+  }
+  const auto made = t.replace(cells, drafts);
+  t.commit();
+  ASSERT_TRUE(check_integrity(map).empty());
+  Record(map, made[0]).vertex(8) = 0xfU;
+  const auto found = check_integrity(map);
+  ASSERT_TRUE(std::any_of(found.begin(), found.end(), [](const Violation& v) {
+    return v.constraint == "both sides of a face are fanned from the same point";
+  }));
 }
 
 TEST(Integrity, NamesAtMostSoManyAndOnlyTheCellsGiven) {

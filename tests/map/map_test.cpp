@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 
@@ -279,6 +280,36 @@ TEST_P(EveryMesh, SetFreeMarksItsWallsAndThoseOfItsNeighbours) {
       }
     }
     EXPECT_TRUE(check_integrity(map).empty());
+  }
+}
+
+// A cube of twelve triangles with a tetrahedron on each: a tetrahedron's record has 3 bits for its neighbour's face.
+TEST(Map, StandardCellsFindTheirPlaceAmongManyFaces) {
+  MeshData mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+  std::vector<std::uint32_t> faces = {12};
+  for (const auto& quad : standard_faces(CellType::hexahedron)) {
+    for (const std::size_t k : {0, 2}) {
+      const std::array<std::uint32_t, 3> f = {quad[k], quad[k + 1], quad[(k + 2) % 4]};
+      faces.insert(faces.end(), {3, f[0], f[1], f[2]});
+    }
+  }
+  mesh.add_cell(CellType::polyhedron, faces);
+  for (std::size_t i = 1; i < faces.size(); i += 4) {
+    mesh.points.push_back((mesh.points[faces[i + 1]] + mesh.points[faces[i + 2]] + mesh.points[faces[i + 3]]) * 0.6);
+    test::add_tetrahedron(
+        mesh, {faces[i + 1], faces[i + 2], faces[i + 3], static_cast<std::uint32_t>(mesh.points.size() - 1)});
+  }
+  Random random(5);
+  for (int i = 0; i < 20; ++i) {
+    const Map map(test::renumbered(mesh, test::permutation(mesh.points.size(), random)));
+    EXPECT_TRUE(check_integrity(map).empty());
+    const Cell cube(Map::general_pool, 0);
+    for (std::uint16_t f = 0; f < 12; ++f) {
+      const CellFace other = map.opposite({cube, f});
+      ASSERT_TRUE(other.valid());
+      EXPECT_EQ(map.opposite(other), (CellFace{cube, f}));
+    }
   }
 }
 

@@ -27,6 +27,12 @@ class InvalidMesh : public Error {
   using Error::Error;
 };
 
+/// An edit that would leave no valid map. The text names the cells and says what to do; the map is as it was.
+class EditRefused : public Error {
+ public:
+  using Error::Error;
+};
+
 /// A broken invariant of dartcast itself: please report it, with the replay in the text.
 class InternalError : public Error {
  public:

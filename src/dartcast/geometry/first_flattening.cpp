@@ -118,12 +118,14 @@ std::optional<CellFlattening> first_flattening(const Map& map, std::span<const V
   check_count(map, after.size(), "after");
   std::optional<CellFlattening> first;
   for (std::uint32_t pool = 0; pool <= Map::general_pool; ++pool) {
-    const std::size_t count = map.cell_count(pool);
+    const std::size_t count = map.slot_count(pool);
     const double until = first ? first->how.safe_time : 1.0;
     std::vector<std::optional<CellFlattening>> parts(chunk_count(count, grain));
     parallel_for(count, grain, threads, [&](std::size_t begin, std::size_t end) {
       Search search(map, before, after, until);
-      for (std::size_t i = begin; i < end; ++i) search.look_at(Cell(pool, static_cast<std::uint32_t>(i)));
+      for (std::size_t i = begin; i < end; ++i) {
+        if (const Cell c(pool, static_cast<std::uint32_t>(i)); map.contains(c)) search.look_at(c);
+      }
       parts[begin / grain] = std::move(search.found());
     });
     for (auto& found : parts) {

@@ -32,18 +32,20 @@ Validity check_validity(const Map& map, std::span<const Vec3> positions, Threads
   constexpr std::size_t grain = 4096;
   Validity all;
   for (std::uint32_t pool = 0; pool <= Map::general_pool; ++pool) {
-    const std::size_t count = map.cell_count(pool);
+    const std::size_t count = map.slot_count(pool);
     std::vector<Validity> parts(chunk_count(count, grain));
     parallel_for(count, grain, threads, [&](std::size_t begin, std::size_t end) {
       Validity& part = parts[begin / grain];
       for (std::size_t i = begin; i < end; ++i) {
-        auto invalid = check_cell(map, positions, Cell(pool, static_cast<std::uint32_t>(i)));
+        const Cell c(pool, static_cast<std::uint32_t>(i));
+        if (!map.contains(c)) continue;
+        auto invalid = check_cell(map, positions, c);
         if (!invalid) continue;
         ++part.invalid_count;
         if (part.first.size() < most) part.first.push_back(std::move(*invalid));
       }
     });
-    all.cells_checked += count;
+    all.cells_checked += map.cell_count(pool);
     for (Validity& part : parts) {
       all.invalid_count += part.invalid_count;
       const auto keep = static_cast<std::ptrdiff_t>(std::min(most - all.first.size(), part.first.size()));

@@ -1,52 +1,17 @@
 // Building a map from mesh arrays: records, shapes, sewing, marks and patches.
 #include <algorithm>
-#include <array>
 #include <map>
 #include <string>
 #include <unordered_map>
 
 #include "dartcast/base/error.hpp"
+#include "dartcast/map/cell_form.hpp"
 #include "dartcast/map/map.hpp"
 #include "dartcast/mesh/cell_types.hpp"
 
 namespace dartcast {
 
 namespace {
-
-using Permutation = std::vector<std::uint8_t>;
-
-// All rotations of a standard type onto itself, from two that generate them.
-std::vector<Permutation> rotations(CellType type) {
-  std::vector<Permutation> generators;
-  switch (type) {
-    case CellType::tetrahedron: generators = {{1, 2, 0, 3}, {1, 0, 3, 2}}; break;
-    case CellType::hexahedron: generators = {{1, 2, 3, 0, 5, 6, 7, 4}, {4, 5, 1, 0, 7, 6, 2, 3}}; break;
-    case CellType::prism: generators = {{1, 2, 0, 4, 5, 3}, {3, 5, 4, 0, 2, 1}}; break;
-    case CellType::pyramid: generators = {{1, 2, 3, 0, 4}}; break;
-    case CellType::polyhedron: return {};
-  }
-  Permutation identity(corner_count(type));
-  for (std::size_t i = 0; i < identity.size(); ++i) identity[i] = static_cast<std::uint8_t>(i);
-  std::vector<Permutation> all = {identity};
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    for (const auto& g : generators) {
-      Permutation product(identity.size());
-      for (std::size_t k = 0; k < product.size(); ++k) product[k] = all[i][g[k]];
-      if (std::find(all.begin(), all.end(), product) == all.end()) all.push_back(product);
-    }
-  }
-  return all;
-}
-
-// Faces from their lowest vertex; `vertices` by local number.
-ShapeKey::Face from_lowest(std::span<const std::uint16_t> corners, std::span<const std::uint32_t> vertices) {
-  ShapeKey::Face face;
-  const auto lowest =
-      std::min_element(corners.begin(), corners.end(), [&](auto a, auto b) { return vertices[a] < vertices[b]; });
-  face.corners.assign(corners.begin(), corners.end());
-  std::rotate(face.corners.begin(), face.corners.begin() + (lowest - corners.begin()), face.corners.end());
-  return face;
-}
 
 struct FaceEntry {
   std::uint64_t ends;  // the lowest vertex's two neighbours in the face, smaller one first
@@ -62,7 +27,7 @@ class MapBuilder {
 
   void build() {
     map_.vertex_count_ = mesh_.points.size() + interior_vertices();
-    map_.wall_vertices_.assign(map_.vertex_count_ / 64 + 1, 0);
+    map_.wall_vertices_.resize(map_.vertex_count_);
     add_cells();
     sew();
     for (const Cell c : map_.cells()) map_.mark_walls(c);
@@ -95,7 +60,6 @@ class MapBuilder {
 
   // Which pool each cell goes to. Cells with interior points don't fit in their type's records.
   void place_cells() {
-    constexpr std::array<std::uint32_t, 4> strides = {10, 16, 13, 12};
     std::vector<bool> general(mesh_.cell_count());
     for (const auto& entry : interior_.of_cells) general[entry.first] = true;
     for (const auto& f : interior_.of_faces) general[f.cell] = true;
@@ -107,8 +71,7 @@ class MapBuilder {
       place_[c] = Cell(pool, static_cast<std::uint32_t>(index));
     }
     for (std::uint32_t p = 0; p < 4; ++p) {
-      map_.pools_[p].stride = strides[p];
-      map_.pools_[p].words.assign(map_.pools_[p].count * strides[p], 0);
+      map_.pools_[p].words.assign(map_.pools_[p].count * map_.pools_[p].stride, 0);
     }
     const bool identity =
         mesh_.source.empty() && std::any_of(map_.pools_.begin(), map_.pools_.end(),
@@ -122,42 +85,11 @@ class MapBuilder {
 
   void add_standard(std::uint32_t c) {
     const CellType type = mesh_.types[c];
-    const auto corners = mesh_.cell(c);
-    const auto& symmetries = rotations_[static_cast<std::size_t>(type)];
-    std::array<std::uint32_t, 8> best{};
-    std::array<std::uint32_t, 8> turned{};
-    for (std::size_t r = 0; r < symmetries.size(); ++r) {
-      for (std::size_t i = 0; i < corners.size(); ++i) turned[i] = corners[symmetries[r][i]];
-      if (r == 0 || turned < best) best = turned;
-    }
-    std::uint32_t* word = map_.record(place_[c]);
-    word[0] = standard_shape(type, std::span<const std::uint32_t>(best.data(), corners.size()));
-    word[1] = is_free(c) ? 1U << 24U : 0U;
-    std::copy_n(best.begin(), corners.size(), word + 2);
-    std::fill_n(word + 2 + corners.size(), standard_faces(type).size(), Cell::invalid_value);
-  }
-
-  // A standard shape is told by the type and, for each face, which corner is the lowest.
-  std::uint32_t standard_shape(CellType type, std::span<const std::uint32_t> vertices) {
-    std::uint32_t signature = static_cast<std::uint32_t>(type);
-    for (const auto& face : standard_faces(type)) {
-      std::uint32_t lowest = 0;
-      for (std::uint32_t k = 1; k < face.size(); ++k) {
-        if (vertices[face[k]] < vertices[face[lowest]]) lowest = k;
-      }
-      signature = signature * 4 + lowest;
-    }
-    const auto [found, fresh] = standard_shapes_.try_emplace(signature, 0);
-    if (fresh) {
-      ShapeKey key;
-      key.corner_count = static_cast<std::uint16_t>(vertices.size());
-      key.apex = static_cast<std::uint16_t>(std::min_element(vertices.begin(), vertices.end()) - vertices.begin());
-      for (const auto& face : standard_faces(type)) {
-        key.faces.push_back(from_lowest(std::vector<std::uint16_t>(face.begin(), face.end()), vertices));
-      }
-      found->second = map_.shapes_.intern(key);
-    }
-    return found->second;
+    const StandardCorners best = turned(type, mesh_.cell(c));
+    const std::span<const std::uint32_t> corners(best.data(), mesh_.cell(c).size());
+    const auto shape =
+        map_.shapes_.intern_standard(standard_signature(type, corners), [&] { return standard_key(type, corners); });
+    map_.write_cell(place_[c], shape.number, corners, is_free(c));
   }
 
   void add_general(std::uint32_t c) {
@@ -166,7 +98,7 @@ class MapBuilder {
     local_faces(c, vertices, faces);
     ShapeKey key;
     key.corner_count = static_cast<std::uint16_t>(vertices.size());
-    key.apex = static_cast<std::uint16_t>(std::min_element(vertices.begin(), vertices.end()) - vertices.begin());
+    key.apex = lowest_corner(vertices);
     for (std::uint16_t f = 0; f < faces.size(); ++f) {
       key.faces.push_back(from_lowest(faces[f], vertices));
       if (const Vertex point = face_point(c, f); point.valid()) {
@@ -178,13 +110,9 @@ class MapBuilder {
       key.has_point = true;
       vertices.push_back(point.value);
     }
-    auto& pool = map_.pools_[Map::general_pool];
-    pool.offsets.push_back(pool.words.size());
-    pool.words.push_back(map_.shapes_.intern(key));
-    pool.words.push_back(is_free(c) ? 1U << 16U : 0U);
-    pool.words.insert(pool.words.end(), vertices.begin(), vertices.end());
-    pool.words.insert(pool.words.end(), faces.size(), Cell::invalid_value);
-    pool.words.insert(pool.words.end(), faces.size(), 0U);
+    const std::uint32_t shape = map_.shapes_.intern(key).number;
+    map_.open_record(Map::general_pool, 2 + vertices.size() + 2 * faces.size());
+    map_.write_cell(place_[c], shape, vertices, is_free(c));
   }
 
   // Local numbers: standard types in the mesh's order, polyhedra by first appearance.
@@ -321,12 +249,6 @@ class MapBuilder {
                                                    mesh_.patch_offsets[i + 1] - mesh_.patch_offsets[i]);
       add_patch_face(corners, found->second);
     }
-    std::stable_sort(map_.patches_.begin(), map_.patches_.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
-    // A face named twice keeps its first name.
-    const auto last = std::unique(map_.patches_.begin(), map_.patches_.end(),
-                                  [](const auto& a, const auto& b) { return a.first == b.first; });
-    map_.patches_.erase(last, map_.patches_.end());
   }
 
   // The patch of a tag; tags of one name are one patch.
@@ -357,17 +279,15 @@ class MapBuilder {
     for (; entry != end && entry->ends == ends; ++entry) {
       auto candidate = face_vertices(entry->face);
       std::sort(candidate.begin(), candidate.end());
-      if (candidate == sorted) map_.patches_.emplace_back(entry->face, patch);
+      // A face named twice keeps its first name.
+      if (candidate == sorted && map_.patch(entry->face) == Patch{})
+        map_.patches_.set(entry->face.cell, entry->face.face, patch.value);
     }
   }
 
   Map& map_;
   const MeshData& mesh_;
   const InteriorPoints& interior_;
-  const std::array<std::vector<Permutation>, 4> rotations_ = {rotations(CellType::tetrahedron),
-                                                              rotations(CellType::hexahedron),
-                                                              rotations(CellType::prism), rotations(CellType::pyramid)};
-  std::unordered_map<std::uint32_t, std::uint32_t> standard_shapes_;
   std::vector<Cell> place_;
   std::vector<std::size_t> bucket_;
   std::vector<FaceEntry> entries_;

@@ -82,6 +82,9 @@ class Checker {
     const auto by_vertex = [&](auto a, auto b) { return v.vertex(a) < v.vertex(b); };
     expect(std::min_element(corners.begin(), corners.end(), by_vertex) == corners.begin(),
            "a face starts at its lowest-numbered vertex", first);
+    if (v.neighbour(f.face).valid() && sewn_well(f, v))
+      expect(map_.point(f) == map_.point(map_.opposite(f)), "both sides of a face are fanned from the same point",
+             first);
     const Cell other = v.neighbour(f.face);
     const bool wall = !map_.contains(other) || map_.is_free(other) != v.is_free();
     expect(v.is_wall(f.face) == wall, "a wall is where exactly one side is free", first);

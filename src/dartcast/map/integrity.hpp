@@ -16,9 +16,9 @@ struct Violation {
 
 /// Checks every dart of the cells given: phi1 is a permutation with inverse phi_1; phi2 is an involution without fixed
 /// points that turns the edge around; phi3 and phi1 o phi3 are involutions (where defined); sewn darts have the same
-/// vertices; a face starts at its lowest-numbered vertex; vertices are in range, and distinct in a cell; a face is
-/// marked as a wall where exactly one side is free, or there is no other side. Returns at most `most` violations. Cost:
-/// linear in the darts.
+/// vertices; both sides of a face are fanned from the same point, or from none of its own; a face starts at its
+/// lowest-numbered vertex; vertices are in range, and distinct in a cell; a face is marked as a wall where exactly one
+/// side is free, or there is no other side. Returns at most `most` violations. Cost: linear in the darts.
 std::vector<Violation> check_integrity(const Map& map, std::span<const Cell> cells, std::size_t most = 100);
 std::vector<Violation> check_integrity(const Map& map, std::size_t most = 100);
 

@@ -5,13 +5,17 @@
 // shape; phi1 and phi2 look up in the shape, phi3 goes through the record of the cell.
 //
 // Records, in 32-bit words (a walk reads one record per cell it enters; a hexahedron's fills one cache line):
-//   standard types   [shape 16, version 16] [neighbours' face numbers 3 each, wall mask 6, free 1] [vertices]
-//   [neighbours] any other cell   [shape 32] [version 16, free 1] [vertices] [neighbours] [neighbours' face numbers 16,
-//   wall 16 each]
+//   standard types   [shape 16, version 16] [neighbours' face numbers 3 each, wall mask 6, free 1, wide 1, 0 (4), flat
+//   1, vacant 1] [vertices] [neighbours] any other cell   [shape 32] [version 16, free 1, 0 (13), flat 1, vacant 1]
+//   [vertices] [neighbours] [neighbours' face numbers 16, wall 16 each]
+// Wide: a neighbour's face number does not fit in 3 bits; where these say 7, it is looked up in the neighbour.
+// Flat: darts of the cell have marks in a side table. Vacant: the cell was removed (map/transaction.hpp); its place
+// waits for another, the version tells them apart.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <utility>
@@ -19,17 +23,20 @@
 
 #include "dartcast/base/aligned.hpp"
 #include "dartcast/base/ids.hpp"
-#include "dartcast/map/shape.hpp"
+#include "dartcast/map/shape_table.hpp"
+#include "dartcast/map/side_table.hpp"
 #include "dartcast/mesh/mesh_data.hpp"
 
 namespace dartcast {
+
+class Map;
 
 /// What a walk reads of a cell. Valid until the map is edited.
 class CellView {
  public:
   CellView() = default;
-  CellView(const std::uint32_t* word, const Shape& shape, bool general)
-      : word_(word), shape_(&shape), general_(general) {}
+  CellView(const Map& map, const std::uint32_t* word, const Shape& shape, bool general)
+      : map_(&map), word_(word), shape_(&shape), general_(general) {}
 
   [[nodiscard]] const Shape& shape() const { return *shape_; }
   /// The record itself.
@@ -45,7 +52,8 @@ class CellView {
   /// The number that the neighbour gives to the face. Precondition: there is a neighbour.
   [[nodiscard]] std::uint16_t neighbour_face(std::uint16_t face) const {
     if (general_) return static_cast<std::uint16_t>(extra(face) & 0xffffU);
-    return static_cast<std::uint16_t>((word_[1] >> (3U * face)) & 7U);
+    const auto number = static_cast<std::uint16_t>((word_[1] >> (3U * face)) & 7U);
+    return number == 7 ? neighbour_face_from_7(face) : number;
   }
   /// Whether the face is on the boundary, or between a free and a blocked cell.
   [[nodiscard]] bool is_wall(std::uint16_t face) const {
@@ -57,10 +65,21 @@ class CellView {
   [[nodiscard]] std::uint32_t extra(std::uint16_t face) const {
     return word_[2U + shape_->point_count() + shape_->face_count() + face];
   }
+  [[nodiscard]] std::uint16_t neighbour_face_from_7(std::uint16_t face) const;
 
+  const Map* map_ = nullptr;
   const std::uint32_t* word_ = nullptr;
   const Shape* shape_ = nullptr;
   bool general_ = false;
+};
+
+/// A cell as it is now: after an edit that replaces it, the handle is stale, though another cell may have taken its
+/// place.
+struct CellHandle {
+  Cell cell;
+  std::uint16_t version = 0;
+
+  constexpr auto operator<=>(const CellHandle&) const = default;
 };
 
 /// Interior points that cells need where the plain pulling triangulation is not positive (see geometry/complex.hpp).
@@ -100,6 +119,8 @@ class Map {
   [[nodiscard]] CellFace face(Dart d) const { return {d.cell, shape(d.cell).face_of(d.number)}; }
   /// The same face from the other side; invalid on the boundary.
   [[nodiscard]] CellFace opposite(CellFace f) const;
+  /// The point of its own that a face is fanned from; invalid where it has none.
+  [[nodiscard]] Vertex point(CellFace f) const;
 
   // Cells.
   /// Where a cell's record starts: to ask memory for it ahead of time.
@@ -111,18 +132,31 @@ class Map {
   [[nodiscard]] CellView view(Cell c) const {
     const bool general = c.pool() == general_pool;
     const std::uint32_t* word = record(c);
-    return {word, shapes_[general ? word[0] : word[0] & 0xffffU], general};
+    return {*this, word, shapes_[general ? word[0] : word[0] & 0xffffU], general};
   }
   [[nodiscard]] const Shape& shape(Cell c) const { return view(c).shape(); }
   [[nodiscard]] bool contains(Cell c) const {
-    return c.valid() && c.pool() < pools_.size() && c.index() < pools_[c.pool()].count;
+    return c.valid() && c.pool() < pools_.size() && c.index() < pools_[c.pool()].count &&
+           (record(c)[1] & vacant_bit) == 0;
   }
+  [[nodiscard]] bool contains(CellHandle h) const { return contains(h.cell) && view(h.cell).version() == h.version; }
+  /// Precondition: contains(c).
+  [[nodiscard]] CellHandle handle(Cell c) const { return {c, view(c).version()}; }
   [[nodiscard]] CellType type(Cell c) const;
   [[nodiscard]] std::size_t cell_count() const;
-  [[nodiscard]] std::size_t cell_count(std::uint32_t pool) const { return pools_[pool].count; }
+  [[nodiscard]] std::size_t cell_count(std::uint32_t pool) const { return pools_[pool].count - pools_[pool].gone; }
+  /// Places for cells in a pool, vacant ones too: indices are below. As many as there are cells until the map is
+  /// edited.
+  [[nodiscard]] std::size_t slot_count(std::uint32_t pool) const { return pools_[pool].count; }
+  /// Numbers of vertices are below; after edits some may be in no cell.
   [[nodiscard]] std::size_t vertex_count() const { return vertex_count_; }
+  /// Whether the number is a vertex's: edits give numbers up and use them again.
+  [[nodiscard]] bool is_vertex(Vertex v) const {
+    return v.value < vertex_count_ && (cells_at_.empty() || cells_at_[v.value] != vacant_vertex);
+  }
   [[nodiscard]] const ShapeTable& shapes() const { return shapes_; }
-  /// The cell's index in the mesh (or the file that it was read from).
+  /// The cell's index in the mesh (or the file that it was read from); for one that an edit made, that of the cell
+  /// which it was made from.
   [[nodiscard]] std::uint32_t source(Cell c) const;
   /// All cells, pool by pool.
   [[nodiscard]] std::vector<Cell> cells() const;
@@ -133,11 +167,24 @@ class Map {
   void set_free(Cell c, bool free);
   /// False only where no wall has the vertex. True where one has, or has had.
   [[nodiscard]] bool may_touch_wall(Vertex v) const {
-    return ((wall_vertices_[v.value / 64U] >> (v.value % 64U)) & 1U) != 0;
+    return ((wall_vertices_.words[v.value / 64U] >> (v.value % 64U)) & 1U) != 0;
   }
 
+  // What edits leave for whoever gives cells interior points (see map/edit.hpp).
+  struct Flat {
+    bool straight = false;  ///< the face of the dart may be straight in its origin
+    bool coplanar = false;  ///< the two faces of the cell that meet in its edge may lie in one plane
+  };
+  [[nodiscard]] Flat flat(Dart d) const {
+    if ((record(d.cell)[1] & flat_bit) == 0) return {};
+    const std::uint16_t bits = flats_.find(d.cell, d.number);
+    return {(bits & straight_bit) != 0, (bits & coplanar_bit) != 0};
+  }
+  /// Whether a dart of the cell has such a mark.
+  [[nodiscard]] bool has_flat(Cell c) const { return (record(c)[1] & flat_bit) != 0; }
+
   // Patches: named groups of faces.
-  [[nodiscard]] Patch patch(CellFace f) const;
+  [[nodiscard]] Patch patch(CellFace f) const { return Patch{patches_.find(f.cell, f.face)}; }
   /// Index 0 is "" (the unnamed rest).
   [[nodiscard]] const std::vector<std::string>& patch_names() const { return patch_names_; }
   /// Throws InvalidArgument that lists the names there are.
@@ -146,30 +193,57 @@ class Map {
   [[nodiscard]] std::size_t wall_face_count() const;
 
   [[nodiscard]] std::size_t bytes() const;
+  /// The same records, numbers, vacant places, shapes, vertices and patches. Cost: linear.
+  bool operator==(const Map&) const = default;
 
  private:
   friend class MapBuilder;
+  friend class Transaction;
+
+  static constexpr std::uint32_t vacant_bit = 1U << 31U;
+  static constexpr std::uint32_t flat_bit = 1U << 30U;
+  static constexpr std::uint32_t vacant_vertex = 0xffffffffU;  // instead of a number of cells
+  static constexpr std::uint16_t straight_bit = 1;
+  static constexpr std::uint16_t coplanar_bit = 2;
 
   struct Pool {
-    std::uint32_t stride = 0;
-    std::size_t count = 0;
-    AlignedVector<std::uint32_t> words;
-    std::vector<std::size_t> offsets;   // general pool only: start of each record
-    std::vector<std::uint32_t> source;  // empty: the index in the pool is the index in the mesh
+    std::uint32_t stride = 0;  // words of a record; general pool: 0
+    std::size_t count = 0;     // places
+    std::size_t gone = 0;      // places without a cell
+    AlignedVector<std::uint32_t> words = {};
+    std::vector<std::size_t> offsets = {};   // general pool only: start of each record
+    std::vector<std::uint32_t> source = {};  // empty: the index in the pool is the index in the mesh
+    // Vacant places by the length of their records: of each length never more than were once in use together.
+    std::map<std::uint32_t, std::vector<std::uint32_t>> vacant = {};
+
+    bool operator==(const Pool&) const = default;
+  };
+
+  // A bit for each vertex that a wall has. What more it says, of walls that are gone, is of no account.
+  struct WallVertices {
+    std::vector<std::uint64_t> words;
+
+    void resize(std::size_t vertices) { words.resize(vertices / 64 + 1); }
+    void add(Vertex v) { words[v.value / 64U] |= std::uint64_t{1} << (v.value % 64U); }
+    bool operator==(const WallVertices&) const { return true; }
   };
 
   [[nodiscard]] std::uint32_t* record(Cell c) { return const_cast<std::uint32_t*>(std::as_const(*this).record(c)); }
+  void open_record(std::uint32_t pool, std::size_t words);
+  void write_cell(Cell c, std::uint32_t shape, std::span<const std::uint32_t> vertices, bool free);
   void set_neighbour(CellFace f, CellFace other);
   void set_wall(CellFace f, bool wall);
   void mark_walls(Cell c);
-  void mark_wall_vertices(const CellView& cell, std::uint16_t face);
 
-  std::array<Pool, 5> pools_;
+  std::array<Pool, 5> pools_ = {Pool{10}, Pool{16}, Pool{13}, Pool{12}, Pool{}};
   ShapeTable shapes_;
   std::size_t vertex_count_ = 0;
-  std::vector<std::uint64_t> wall_vertices_;  // a bit for each
+  WallVertices wall_vertices_;
+  std::vector<std::uint32_t> cells_at_;  // number of cells of each vertex; empty until the first transaction
+  std::vector<Vertex> vacant_vertices_;  // numbers to use again
   std::vector<std::string> patch_names_ = {""};
-  std::vector<std::pair<CellFace, Patch>> patches_;  // sorted
+  SideTable patches_;  // by face
+  SideTable flats_;    // by dart
 };
 
 }  // namespace dartcast

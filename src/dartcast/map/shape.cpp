@@ -1,10 +1,10 @@
 #include "dartcast/map/shape.hpp"
 
 #include <algorithm>
-#include <set>
 #include <utility>
 
 #include "dartcast/base/error.hpp"
+#include "dartcast/map/key_table.hpp"
 
 namespace dartcast {
 
@@ -13,13 +13,25 @@ namespace {
 // Throws where a face is not a cycle of distinct corners, or numbers would not fit in 15 bits.
 void check_key(const ShapeKey& key) {
   std::size_t darts = 0;
-  for (const auto& face : key.faces) {
-    const std::set<std::uint16_t> distinct(face.corners.begin(), face.corners.end());
-    if (face.corners.size() < 3 || distinct.size() != face.corners.size() || *distinct.rbegin() >= key.corner_count)
-      throw InvalidMesh("a face of the cell has fewer than three distinct corners");
-    darts += face.corners.size();
+  std::vector<std::size_t> last(key.corner_count, 0);  // face that had the corner last, from 1
+  for (std::size_t f = 0; f < key.faces.size(); ++f) {
+    bool distinct = key.faces[f].corners.size() >= 3;
+    for (const std::uint16_t corner : key.faces[f].corners) {
+      distinct = distinct && corner < key.corner_count && last[corner] != f + 1;
+      if (distinct) last[corner] = f + 1;
+    }
+    if (!distinct) throw InvalidMesh("a face of the cell has fewer than three distinct corners");
+    darts += key.faces[f].corners.size();
   }
   if (darts > 0x3fffU) throw InvalidMesh("the cell has more than 16383 darts: split it");
+}
+
+// One number for three, in any order.
+std::uint64_t facet_key(std::array<std::uint16_t, 3> t) {
+  if (t[0] > t[1]) std::swap(t[0], t[1]);
+  if (t[1] > t[2]) std::swap(t[1], t[2]);
+  if (t[0] > t[1]) std::swap(t[0], t[1]);
+  return (std::uint64_t{t[0]} << 32U) | (std::uint64_t{t[1]} << 16U) | t[2];
 }
 
 }  // namespace
@@ -40,6 +52,11 @@ Shape::Shape(ShapeKey key) : key_(std::move(key)) {
 }
 
 void Shape::number_darts() {
+  std::size_t darts = 0;
+  for (const auto& face : key_.faces) darts += face.corners.size();
+  origin_.reserve(darts);
+  face_of_.reserve(darts);
+  first_dart_.reserve(key_.faces.size() + 1);
   first_dart_.push_back(0);
   for (std::uint16_t f = 0; f < face_count(); ++f) {
     for (const std::uint16_t corner : key_.faces[f].corners) {
@@ -51,16 +68,19 @@ void Shape::number_darts() {
 }
 
 void Shape::sew_darts() {
-  std::map<std::pair<std::uint16_t, std::uint16_t>, std::uint16_t> by_ends;
+  const auto ends = [](std::uint16_t a, std::uint16_t b) { return (std::uint64_t{a} << 16U) | b; };
+  detail::KeyTable by_ends(dart_count());
   for (std::uint16_t d = 0; d < dart_count(); ++d) {
-    if (!by_ends.try_emplace({origin_[d], origin_[phi1(d)]}, d).second)
-      throw InvalidMesh("two faces of the cell run the same way along an edge");
+    std::uint32_t& dart = by_ends[ends(origin_[d], origin_[phi1(d)])];
+    if (dart != detail::KeyTable::none) throw InvalidMesh("two faces of the cell run the same way along an edge");
+    dart = d;
   }
   phi2_.resize(dart_count());
   for (std::uint16_t d = 0; d < dart_count(); ++d) {
-    const auto other = by_ends.find({origin_[phi1(d)], origin_[d]});
-    if (other == by_ends.end()) throw InvalidMesh("the faces of the cell do not close: an edge has only one face");
-    phi2_[d] = other->second;
+    const std::uint32_t other = by_ends.find(ends(origin_[phi1(d)], origin_[d]));
+    if (other == detail::KeyTable::none)
+      throw InvalidMesh("the faces of the cell do not close: an edge has only one face");
+    phi2_[d] = static_cast<std::uint16_t>(other);
   }
 }
 
@@ -92,36 +112,39 @@ void Shape::make_simplices() {
 }
 
 void Shape::connect_simplices() {
-  using Triple = std::array<std::uint16_t, 3>;
-  const auto sorted = [](Triple t) {
-    std::sort(t.begin(), t.end());
-    return t;
-  };
-  std::map<Triple, Across> open;  // facets that still wait for their other side
+  constexpr std::uint32_t none = detail::KeyTable::none;
+  detail::KeyTable open(4 * simplices_.size());  // facets that still wait for their other side: simplex 16, facet 16
+  std::size_t waiting = 0;
   for (std::uint16_t s = 0; s < simplices_.size(); ++s) {
     for (std::uint16_t i = 0; i < 4; ++i) {
-      Triple facet{};
-      std::copy_if(simplices_[s].vertex.begin(), simplices_[s].vertex.end(), facet.begin(),
-                   [&](std::uint16_t v) { return v != simplices_[s].vertex[i]; });
-      const auto [other, first] = open.try_emplace(sorted(facet), Across{s, i});
-      if (first) continue;
-      simplices_[s].across[i] = other->second;
-      simplices_[other->second.index].across[other->second.place] = {s, i};
-      open.erase(other);
+      const auto& v = simplices_[s].vertex;
+      std::uint32_t& other = open[facet_key({v[i == 0 ? 1 : 0], v[i < 2 ? 2 : 1], v[i < 3 ? 3 : 2]})];
+      if (other == none) {
+        other = (std::uint32_t{s} << 16U) | i;
+        ++waiting;
+        continue;
+      }
+      const Across across{static_cast<std::uint16_t>(other >> 16U), static_cast<std::uint16_t>(other & 0xffffU)};
+      simplices_[s].across[i] = across;
+      simplices_[across.index].across[across.place] = {s, i};
+      other = none;
+      --waiting;
     }
   }
+  first_entry_.reserve(face_count());
   for (std::uint16_t f = 0; f < face_count(); ++f) {
     first_entry_.push_back(static_cast<std::uint16_t>(entries_.size()));
     for (std::uint16_t t = 0; t < triangle_count(f); ++t) {
-      const auto behind = open.find(sorted(triangle(f, t)));
-      if (behind == open.end()) return make_flat();
-      entries_.push_back(behind->second);
-      simplices_[behind->second.index].across[behind->second.place] = {
-          static_cast<std::uint16_t>(Across::outer_bit | f), t};
-      open.erase(behind);
+      std::uint32_t& behind = open[facet_key(triangle(f, t))];
+      if (behind == none) return make_flat();
+      const Across across{static_cast<std::uint16_t>(behind >> 16U), static_cast<std::uint16_t>(behind & 0xffffU)};
+      entries_.push_back(across);
+      simplices_[across.index].across[across.place] = {static_cast<std::uint16_t>(Across::outer_bit | f), t};
+      behind = none;
+      --waiting;
     }
   }
-  if (!open.empty()) make_flat();
+  if (waiting > 0) make_flat();
 }
 
 // One simplex without extent, entered by every triangle: nothing can be in it, and no walk goes on from it.
@@ -158,21 +181,6 @@ Shape::Feature Shape::feature(std::span<const std::uint16_t> points) const {
 std::size_t Shape::bytes() const {
   return sizeof(Shape) + dart_count() * 4U * sizeof(std::uint16_t) + simplices_.size() * sizeof(ImplicitSimplex) +
          entries_.size() * sizeof(Across) + stars_.bytes();
-}
-
-std::uint32_t ShapeTable::intern(const ShapeKey& key) {
-  const auto found = numbers_.find(key);
-  if (found != numbers_.end()) return found->second;
-  shapes_.push_back(std::make_shared<const Shape>(key));
-  const auto number = static_cast<std::uint32_t>(shapes_.size() - 1);
-  numbers_.emplace(key, number);
-  return number;
-}
-
-std::size_t ShapeTable::bytes() const {
-  std::size_t sum = 0;
-  for (const auto& s : shapes_) sum += s->bytes();
-  return sum;
 }
 
 }  // namespace dartcast

@@ -9,8 +9,6 @@
 
 #include <array>
 #include <cstdint>
-#include <map>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -129,19 +127,6 @@ class Shape {
   Stars stars_;
   std::vector<std::uint16_t> first_entry_;
   std::vector<Across> entries_;
-};
-
-/// Shapes by number; equal keys share one.
-class ShapeTable {
- public:
-  std::uint32_t intern(const ShapeKey& key);
-  [[nodiscard]] const Shape& operator[](std::uint32_t number) const { return *shapes_[number]; }
-  [[nodiscard]] std::size_t size() const { return shapes_.size(); }
-  [[nodiscard]] std::size_t bytes() const;
-
- private:
-  std::vector<std::shared_ptr<const Shape>> shapes_;  // shared by copies of the table: they are immutable
-  std::map<ShapeKey, std::uint32_t> numbers_;
 };
 
 }  // namespace dartcast

@@ -1,0 +1,48 @@
+// A small hash table for work within one cell: built, asked and thrown away, in a time linear in its entries.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace dartcast::detail {
+
+/// Numbers by key, for at most so many keys as are told beforehand. Open addressing: half the places stay empty.
+class KeyTable {
+ public:
+  static constexpr std::uint32_t none = 0xffffffffU;
+
+  explicit KeyTable(std::size_t most = 0) { reset(most); }
+
+  /// Forgets all keys.
+  void reset(std::size_t most) {
+    places_.assign(std::bit_ceil(2 * most + 2), {});
+    shift_ = 64 - static_cast<unsigned>(std::countr_zero(places_.size()));
+  }
+
+  /// The number of a key, `none` where it has none yet; can be written to. Precondition: key < 2^64 - 1.
+  std::uint32_t& operator[](std::uint64_t key) {
+    Place* p = place(key);
+    p->key = key;
+    return p->number;
+  }
+  [[nodiscard]] std::uint32_t find(std::uint64_t key) const { return const_cast<KeyTable*>(this)->place(key)->number; }
+
+ private:
+  struct Place {
+    std::uint64_t key = ~std::uint64_t{0};
+    std::uint32_t number = none;
+  };
+
+  Place* place(std::uint64_t key) {
+    std::size_t at = static_cast<std::size_t>((key * 0x9e3779b97f4a7c15U) >> shift_);
+    while (places_[at].key != key && places_[at].key != ~std::uint64_t{0}) at = (at + 1) & (places_.size() - 1);
+    return &places_[at];
+  }
+
+  std::vector<Place> places_;
+  unsigned shift_ = 0;
+};
+
+}  // namespace dartcast::detail
