@@ -572,7 +572,7 @@ TEST(Edits, TouchAsManyCellsInAnyScene) {
     return counts;
   };
   for (const CellType type : {CellType::hexahedron, CellType::tetrahedron})
-    EXPECT_EQ(touched(type, 6), touched(type, test::scaled(20U, 60U)));
+    EXPECT_EQ(touched(type, 6), touched(type, 8 + test::scaled(12U, 52U)));
 }
 
 }  // namespace
