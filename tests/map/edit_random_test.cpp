@@ -90,6 +90,7 @@ TEST_P(RandomEdits, LeaveAValidMap) {
     ASSERT_EQ(vertices_of(map), vertices);
     ASSERT_LE(map.shapes().size(), shapes_used(map) + 45);
   }
+  if (test::sanitized()) return;  // too few edits for all kinds
   for (std::size_t k = 0; k < test::edit_kinds; ++k) EXPECT_GT(done[k], count / 500) << "kind " << k;
 }
 

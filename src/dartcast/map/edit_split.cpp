@@ -120,15 +120,15 @@ class CutFace {
     DraftFace face;
     for (std::size_t i = path.size(); i-- > 0;) {
       const std::uint16_t in = path[(i + path.size() - 1) % path.size()];
-      const bool straight = one_plane(in, path[i]) || one_plane(s_.phi2(path[i]), s_.phi2(in));
+      const bool straight = one_plane(in, path[i]);
       face.corners.push_back({map_.origin({cell_, path[i]}), straight, false});
     }
     return face;
   }
 
  private:
-  // Whether all faces from one dart to another around the latter's origin may lie in one plane, and not turn there if
-  // it is one face alone.
+  // Whether the faces on the left between two darts of the path may lie in one plane (and if it is one face, be
+  // straight there). Where the path runs straight on, they do, for the cell is convex; so do those on the right.
   [[nodiscard]] bool one_plane(std::uint16_t in, std::uint16_t out) const {
     std::uint16_t d = s_.phi1(in);
     if (d == out) return map_.flat({cell_, d}).straight;
