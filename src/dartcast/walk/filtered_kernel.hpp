@@ -150,8 +150,8 @@ DARTCAST_TARGET inline bool ride_along(const Trail& trail, const Rows& now, Vec3
 // |A|^2 V^2 <= sum of |u_i|^2 times sum of |n_i|^2. Squares are compared. L is the old distance of the farthest corner:
 // floats rounded the old corners by 2^-24 L, and the rule's own doubles round u_i by as much at most, as |q - p| and
 // |d_i| are below 2^28 L. So the coordinates of d_i, u_i, n_i and the edges are off by 2^-24 L, 3 2^-24 L, 2^-20 L^2
-// and 2^-23 L; squares count that as (a + b)^2 <= 17/16 a^2 + 17 b^2. With L as bounded nothing overflows or
-// underflows.
+// and 2^-23 L; squares count that as (a + b)^2 <= 17/16 a^2 + 17 b^2. Products reach L^12: with L in [2^-70, 2^70]
+// those on the left neither overflow nor underflow.
 class OnePart {
  public:
   // `after`: the moved corners relative to the target q; p: where the particle was.
@@ -164,7 +164,7 @@ class OnePart {
     const double r2 = 0x1.1p+0 * farthest + 0x1p-42 * l2_;
     const double u2 = 0x1.1p+0 * sum(square(u)) + 0x1p-37 * l2_;
     const Quad own = q - p;
-    in_range_ = l2_ > 0x1p-200 && l2_ < 0x1p+200 && farthest < 0x1p+56 * l2_ &&
+    in_range_ = l2_ > 0x1p-140 && l2_ < 0x1p+140 && farthest < 0x1p+56 * l2_ &&
                 (lanes_set(own * own < 0x1p+56 * l2_) & 7U) == 7U;
     u2_r2_ = u2 * r2;
     volume_ = sum(load_four(trail.determinants));  // NaN: then nothing is less
