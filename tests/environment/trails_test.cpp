@@ -34,7 +34,7 @@ class Trails : public ::testing::Test {
     std::span<Vec3> next = environment_.next_positions();
     for (std::size_t i = 0; i < rest_.size(); ++i) {
       const double phase = 0.4 * time_ + static_cast<double>(i);
-      next[i] = rest_[i] + Vec3{std::sin(phase), std::cos(1.3 * phase), std::sin(0.7 * phase)} * 0.1;
+      next[i] = rest_[i] + Vec3{std::sin(phase), std::cos(1.3 * phase), std::sin(0.7 * phase)} * 0.2;
     }
     environment_.move();
   }
