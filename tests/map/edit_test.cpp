@@ -13,27 +13,13 @@
 #include "dartcast/map/orbits.hpp"
 #include "dartcast/mesh/cell_types.hpp"
 #include "map/edit_meshes.hpp"
+#include "map/refusals.hpp"
 #include "tier.hpp"
 
 namespace dartcast {
 namespace {
 
 using Vertices = std::vector<std::uint32_t>;
-
-std::string refusal(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const EditRefused& e) {
-    return std::string("refused: ") + e.what();
-  } catch (const InvalidArgument& e) {
-    return std::string("invalid: ") + e.what();
-  }
-  return "done";
-}
-
-void expect_parts(const std::string& text, std::initializer_list<const char*> parts) {
-  for (const char* part : parts) EXPECT_NE(text.find(part), std::string::npos) << "no \"" << part << "\" in: " << text;
-}
 
 // The handmade mesh (map/mixed_mesh.hpp), with cells by their number in it.
 class Handmade : public testing::Test {
@@ -220,51 +206,52 @@ TEST_F(Handmade, WhatIsUnsewnCanBeSewn) {
 TEST_F(Handmade, ImpossibleEditsSayWhy) {
   const Map before = map;
   const auto said = [&](const std::function<void()>& act) {
-    const std::string text = refusal(act);
+    const std::string text = test::refusal(act);
     EXPECT_TRUE(map == before) << text;
     return text;
   };
   const Dart none{Cell(0, 77), 0};
   const Dart beyond{cell(0), 24};
   for (const Dart& d : {none, beyond, Dart{}}) {
-    expect_parts(said([&] { split_edge(t, d); }), {"invalid", "no such dart"});
-    expect_parts(said([&] { split_face(t, d, d); }), {"invalid", "no such dart"});
-    expect_parts(said([&] { merge_faces(t, d); }), {"invalid", "no such dart"});
-    expect_parts(said([&] { merge_edges(t, d); }), {"invalid", "no such dart"});
-    expect_parts(said([&] { sew(t, d, dart(0, 0, 1)); }), {"invalid", "no such dart"});
-    expect_parts(said([&] { split_cell(t, std::vector<Dart>{d, d, d}); }), {"invalid", "no such dart"});
-    expect_parts(said([&] { remove(t, Cell(0, 77)); }), {"invalid", "not there"});
-    expect_parts(said([&] { t.set_free(Cell(0, 77), true); }), {"invalid", "no such cell"});
+    test::expect_parts(said([&] { split_edge(t, d); }), {"invalid", "no such dart"});
+    test::expect_parts(said([&] { split_face(t, d, d); }), {"invalid", "no such dart"});
+    test::expect_parts(said([&] { merge_faces(t, d); }), {"invalid", "no such dart"});
+    test::expect_parts(said([&] { merge_edges(t, d); }), {"invalid", "no such dart"});
+    test::expect_parts(said([&] { sew(t, d, dart(0, 0, 1)); }), {"invalid", "no such dart"});
+    test::expect_parts(said([&] { split_cell(t, std::vector<Dart>{d, d, d}); }), {"invalid", "no such dart"});
+    test::expect_parts(said([&] { remove(t, Cell(0, 77)); }), {"invalid", "not there"});
+    test::expect_parts(said([&] { t.set_free(Cell(0, 77), true); }), {"invalid", "no such cell"});
   }
-  expect_parts(said([&] { unsew(t, {cell(0), 6}); }), {"invalid", "no such face"});
-  expect_parts(said([&] { merge_cells(t, {Cell(3, 9), 0}); }), {"invalid", "no such face"});
+  test::expect_parts(said([&] { unsew(t, {cell(0), 6}); }), {"invalid", "no such face"});
+  test::expect_parts(said([&] { merge_cells(t, {Cell(3, 9), 0}); }), {"invalid", "no such face"});
 
-  expect_parts(said([&] { split_face(t, dart(0, 1, 2), dart(0, 2, 6)); }), {"refused", "cell 0", "side by side"});
-  expect_parts(said([&] { split_face(t, dart(0, 1, 2), dart(0, 1, 2)); }), {"refused", "cell 0", "side by side"});
-  expect_parts(said([&] { split_face(t, dart(0, 1, 2), dart(0, 4, 5)); }), {"refused", "cell 0", "different faces"});
+  test::expect_parts(said([&] { split_face(t, dart(0, 1, 2), dart(0, 2, 6)); }), {"refused", "cell 0", "side by side"});
+  test::expect_parts(said([&] { split_face(t, dart(0, 1, 2), dart(0, 1, 2)); }), {"refused", "cell 0", "side by side"});
+  test::expect_parts(said([&] { split_face(t, dart(0, 1, 2), dart(0, 4, 5)); }),
+                     {"refused", "cell 0", "different faces"});
 
   const auto path = [&](std::initializer_list<std::uint32_t> v) {
     std::vector<Dart> darts;
     for (auto i = v.begin(); i + 1 != v.end(); ++i) darts.push_back(dart(0, *i, *(i + 1)));
     return darts;
   };
-  expect_parts(said([&] { split_cell(t, path({1, 2, 1})); }), {"invalid", "three darts"});
-  expect_parts(said([&] { split_cell(t, path({1, 2, 6, 5, 1})); }), {"refused", "cell 0", "three faces"});
-  expect_parts(said([&] { split_cell(t, path({1, 2, 6, 5})); }), {"refused", "cell 0", "gap"});
-  expect_parts(said([&] { split_cell(t, path({0, 1, 2, 6, 2, 3, 0})); }), {"refused", "cell 0", "twice"});
-  expect_parts(said([&] {
-                 split_cell(t, std::vector{dart(0, 1, 2), dart(1, 2, 8), dart(1, 8, 1)});
-               }),
-               {"invalid", "leaves the cell"});
+  test::expect_parts(said([&] { split_cell(t, path({1, 2, 1})); }), {"invalid", "three darts"});
+  test::expect_parts(said([&] { split_cell(t, path({1, 2, 6, 5, 1})); }), {"refused", "cell 0", "three faces"});
+  test::expect_parts(said([&] { split_cell(t, path({1, 2, 6, 5})); }), {"refused", "cell 0", "gap"});
+  test::expect_parts(said([&] { split_cell(t, path({0, 1, 2, 6, 2, 3, 0})); }), {"refused", "cell 0", "twice"});
+  test::expect_parts(said([&] {
+                       split_cell(t, std::vector{dart(0, 1, 2), dart(1, 2, 8), dart(1, 8, 1)});
+                     }),
+                     {"invalid", "leaves the cell"});
 
-  expect_parts(said([&] { merge_cells(t, face(0, 0, 4)); }), {"refused", "cell 0", "boundary"});
-  expect_parts(said([&] { unsew(t, face(0, 0, 4)); }), {"refused", "cell 0", "boundary"});
-  expect_parts(said([&] { merge_faces(t, dart(0, 1, 2)); }), {"refused", "cell 0", "more than two faces"});
-  expect_parts(said([&] { merge_faces(t, dart(7, 4, 18)); }), {"refused", "cell 7", "fewer than four faces"});
-  expect_parts(said([&] { merge_edges(t, dart(0, 1, 2)); }), {"refused", "more than two edges"});
-  expect_parts(said([&] { sew(t, dart(0, 1, 2), dart(0, 4, 5)); }), {"refused", "sewn already"});
-  expect_parts(said([&] { sew(t, dart(0, 4, 5), dart(0, 5, 4)); }), {"refused", "cell 0"});
-  expect_parts(said([&] { sew(t, dart(0, 4, 5), dart(7, 4, 18)); }), {"refused", "cell 0", "number of corners"});
+  test::expect_parts(said([&] { merge_cells(t, face(0, 0, 4)); }), {"refused", "cell 0", "boundary"});
+  test::expect_parts(said([&] { unsew(t, face(0, 0, 4)); }), {"refused", "cell 0", "boundary"});
+  test::expect_parts(said([&] { merge_faces(t, dart(0, 1, 2)); }), {"refused", "cell 0", "more than two faces"});
+  test::expect_parts(said([&] { merge_faces(t, dart(7, 4, 18)); }), {"refused", "cell 7", "fewer than four faces"});
+  test::expect_parts(said([&] { merge_edges(t, dart(0, 1, 2)); }), {"refused", "more than two edges"});
+  test::expect_parts(said([&] { sew(t, dart(0, 1, 2), dart(0, 4, 5)); }), {"refused", "sewn already"});
+  test::expect_parts(said([&] { sew(t, dart(0, 4, 5), dart(0, 5, 4)); }), {"refused", "cell 0"});
+  test::expect_parts(said([&] { sew(t, dart(0, 4, 5), dart(7, 4, 18)); }), {"refused", "cell 0", "number of corners"});
 }
 
 TEST_F(Handmade, RefusalsThatTakeSomeEditsToMeet) {
@@ -275,22 +262,23 @@ TEST_F(Handmade, RefusalsThatTakeSomeEditsToMeet) {
   // Cut the corner off again: the triangle (18, new, 19) hangs on two edges.
   split_face(t, map.phi_1(corner), map.phi1(corner));
   expect_valid();
-  expect_parts(refusal([&] { merge_edges(t, find_dart(map, cell(7), split.vertex, Vertex(19))); }),
-               {"refused", "cell 7", "triangle"});
+  test::expect_parts(test::refusal([&] { merge_edges(t, find_dart(map, cell(7), split.vertex, Vertex(19))); }),
+                     {"refused", "cell 7", "triangle"});
   t.roll_back();
 
   // A free cell and a blocked one.
   t.set_free(cell(1), false);
-  expect_parts(refusal([&] { merge_cells(t, face(0, 1, 2)); }), {"refused", "cell 0", "free"});
+  test::expect_parts(test::refusal([&] { merge_cells(t, face(0, 1, 2)); }), {"refused", "cell 0", "free"});
   t.roll_back();
 
   // Cells that share two faces.
   split_face(t, dart(0, 1, 2), dart(0, 6, 5));
-  expect_parts(refusal([&] { merge_cells(t, face(0, 1, 2)); }), {"refused", "cell 0", "more than one face"});
+  test::expect_parts(test::refusal([&] { merge_cells(t, face(0, 1, 2)); }),
+                     {"refused", "cell 0", "more than one face"});
   t.roll_back();
 
   // A cell with one vertex twice: two faces of neighbours, one vertex in common, sewn askew.
-  expect_parts(refusal([&] { sew(t, dart(3, 9, 8), dart(1, 2, 8)); }), {"refused"});
+  test::expect_parts(test::refusal([&] { sew(t, dart(3, 9, 8), dart(1, 2, 8)); }), {"refused"});
   EXPECT_EQ(t.commit().removed.size(), 0U);
 }
 
@@ -314,7 +302,7 @@ TEST(Edits, LimitsLeaveTheMapAsItIs) {
   };
   split();  // 16382 darts
   const Map before = map;
-  expect_parts(refusal(split), {"refused", "cell 0", "16383 darts"});
+  test::expect_parts(test::refusal(split), {"refused", "cell 0", "16383 darts"});
   EXPECT_TRUE(map == before);
 }
 

@@ -11,6 +11,7 @@
 #include "dartcast/map/integrity.hpp"
 #include "map/edit_meshes.hpp"
 #include "map/random_edits.hpp"
+#include "map/refusals.hpp"
 #include "tier.hpp"
 
 namespace dartcast {
@@ -208,21 +209,6 @@ TEST(Transaction, WhatIsFreedIsNotUsedAgainBeforeTheCommit) {
   }
 }
 
-std::string refusal(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const EditRefused& e) {
-    return std::string("refused: ") + e.what();
-  } catch (const InvalidArgument& e) {
-    return std::string("invalid: ") + e.what();
-  }
-  return "done";
-}
-
-void expect_parts(const std::string& text, std::initializer_list<const char*> parts) {
-  for (const char* part : parts) EXPECT_NE(text.find(part), std::string::npos) << "no \"" << part << "\" in: " << text;
-}
-
 TEST(Transaction, ReplaceRefusesWhatWouldBeNoMap) {
   MeshData mesh = test::mixed_mesh();
   mesh.source = {70, 10, 20, 30, 40, 50, 60, 80};
@@ -232,7 +218,7 @@ TEST(Transaction, ReplaceRefusesWhatWouldBeNoMap) {
   Transaction t(map);
   const Map before = map;
   const auto replaced = [&](std::vector<Cell> removed, std::vector<CellDraft> drafts) {
-    const std::string text = refusal([&] { t.replace(removed, drafts); });
+    const std::string text = test::refusal([&] { t.replace(removed, drafts); });
     EXPECT_TRUE(map == before);
     return text;
   };
@@ -242,32 +228,33 @@ TEST(Transaction, ReplaceRefusesWhatWouldBeNoMap) {
     return replaced({cell[source]}, {draft});
   };
   const CellDraft cube = draft_of(map, cell[70]);
-  expect_parts(replaced({Cell(0, 99)}, {}), {"invalid", "not there"});
-  expect_parts(replaced({cell[70], cell[70]}, {}), {"invalid", "twice"});
-  expect_parts(replaced({}, {cube}), {"refused", "cell 70, which stays", "unsew"});
-  expect_parts(replaced({cell[70]}, {cube, cube}), {"refused", "another continues"});
-  expect_parts(replaced({cell[70], cell[10]}, {cube}), {"refused", "cell 70", "no more"});
-  expect_parts(altered(70, [](CellDraft& d) { d.faces.pop_back(); }), {"refused", "cell 70", "closed"});
-  expect_parts(altered(70, [](CellDraft& d) { d.faces[0].corners[0].vertex = Vertex(99); }), {"refused", "cell 70"});
-  expect_parts(altered(80,
-                       [](CellDraft& d) {
-                         for (auto& f : d.faces) {
-                           for (auto& c : f.corners) c.vertex.value += 50;
-                         }
-                       }),
-               {"invalid", "no vertex"});
-  expect_parts(altered(70, [](CellDraft& d) { std::swap(d.faces[3].across, d.faces[4].across); }),
-               {"refused", "cell 70", "corners"});
-  expect_parts(altered(70,
-                       [&](CellDraft& d) {
-                         for (auto& f : d.faces) {
-                           if (f.across.face.valid()) f.point = Vertex(20);
-                         }
-                       }),
-               {"refused", "point"});
-  expect_parts(altered(70, [](CellDraft& d) { d.faces[0].across = {{}, 0, 1}; }), {"refused", "both sides"});
-  expect_parts(altered(70, [](CellDraft& d) { d.faces[0].across = {{}, 7, 1}; }), {"invalid"});
-  expect_parts(altered(70, [](CellDraft& d) { d.faces[0].across = {{Cell(0, 77), 0}}; }), {"invalid"});
+  test::expect_parts(replaced({Cell(0, 99)}, {}), {"invalid", "not there"});
+  test::expect_parts(replaced({cell[70], cell[70]}, {}), {"invalid", "twice"});
+  test::expect_parts(replaced({}, {cube}), {"refused", "cell 70, which stays", "unsew"});
+  test::expect_parts(replaced({cell[70]}, {cube, cube}), {"refused", "another continues"});
+  test::expect_parts(replaced({cell[70], cell[10]}, {cube}), {"refused", "cell 70", "no more"});
+  test::expect_parts(altered(70, [](CellDraft& d) { d.faces.pop_back(); }), {"refused", "cell 70", "closed"});
+  test::expect_parts(altered(70, [](CellDraft& d) { d.faces[0].corners[0].vertex = Vertex(99); }),
+                     {"refused", "cell 70"});
+  test::expect_parts(altered(80,
+                             [](CellDraft& d) {
+                               for (auto& f : d.faces) {
+                                 for (auto& c : f.corners) c.vertex.value += 50;
+                               }
+                             }),
+                     {"invalid", "no vertex"});
+  test::expect_parts(altered(70, [](CellDraft& d) { std::swap(d.faces[3].across, d.faces[4].across); }),
+                     {"refused", "cell 70", "corners"});
+  test::expect_parts(altered(70,
+                             [&](CellDraft& d) {
+                               for (auto& f : d.faces) {
+                                 if (f.across.face.valid()) f.point = Vertex(20);
+                               }
+                             }),
+                     {"refused", "point"});
+  test::expect_parts(altered(70, [](CellDraft& d) { d.faces[0].across = {{}, 0, 1}; }), {"refused", "both sides"});
+  test::expect_parts(altered(70, [](CellDraft& d) { d.faces[0].across = {{}, 7, 1}; }), {"invalid"});
+  test::expect_parts(altered(70, [](CellDraft& d) { d.faces[0].across = {{Cell(0, 77), 0}}; }), {"invalid"});
 }
 
 // A transaction can put in cells that never were, and take out all.

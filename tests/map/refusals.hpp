@@ -1,0 +1,29 @@
+// What an edit says when it is refused.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <initializer_list>
+#include <string>
+
+#include "dartcast/base/error.hpp"
+
+namespace dartcast::test {
+
+inline std::string refusal(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const EditRefused& e) {
+    return std::string("refused: ") + e.what();
+  } catch (const InvalidArgument& e) {
+    return std::string("invalid: ") + e.what();
+  }
+  return "done";
+}
+
+inline void expect_parts(const std::string& text, std::initializer_list<const char*> parts) {
+  for (const char* part : parts) EXPECT_NE(text.find(part), std::string::npos) << "no \"" << part << "\" in: " << text;
+}
+
+}  // namespace dartcast::test
