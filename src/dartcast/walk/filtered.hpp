@@ -2,8 +2,8 @@
 //
 // It decides nothing of its own: where a sign is not proved, or anything else is out of the ordinary, the step is left
 // as it was for Stepper (walk/step.hpp), which comes to the same result wherever both do. What follows at a wall is
-// left to it, too. (Only the counts may differ: where riding along rounds a particle out of its simplex, Stepper puts it
-// back and walks from there, though its target is inside.)
+// left to it, too. (Only the counts may differ: where riding along rounds a particle out of its simplex, Stepper puts
+// it back and walks from there, though its target is inside.)
 #pragma once
 
 #include <array>
