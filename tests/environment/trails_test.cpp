@@ -84,7 +84,7 @@ class Trails : public ::testing::Test {
 
 TEST_F(Trails, ChangeNothing) {
   std::uint64_t contacts = 0;
-  for (int step = 0; step < scaled(60, 2000); ++step) {
+  for (int step = 0; step < std::max(30, scaled(60, 2000)); ++step) {
     add(particles);
     disturb(random_.below(6));
     Particles without = bare();
