@@ -9,6 +9,8 @@
 #include <set>
 
 #include "dartcast/base/random.hpp"
+#include "dartcast/geometry/first_flattening.hpp"
+#include "dartcast/map/edit.hpp"
 #include "dartcast/mesh/generate_box.hpp"
 #include "dartcast/mesh/generate_octahedra.hpp"
 #include "mesh/generate_checks.hpp"
@@ -117,6 +119,29 @@ TEST(Validity, SameResultForAnyNumberOfThreadsAndAtMostSoMany) {
       EXPECT_EQ(many.first[i].message, one.first[i].message);
     }
   }
+}
+
+// Places of cells that edits have taken away hold nothing to check: in pools of standard types, and in the general one.
+TEST(Validity, PassesOverVacantPlaces) {
+  const MeshData mesh = box(1);
+  Map map(mesh);
+  Transaction t(map);
+  const Cell last(1, static_cast<std::uint32_t>(map.slot_count(1) - 1));
+  const auto split = split_face(t, {last, 0}, {last, 2});
+  t.commit();
+  ASSERT_GT(map.cell_count(Map::general_pool), 0U);
+  remove(t, split.front());
+  remove(t, Cell(1, 0));
+  t.commit();
+  ASSERT_LT(map.cell_count(Map::general_pool), map.slot_count(Map::general_pool));
+  ASSERT_LT(map.cell_count(1), map.slot_count(1));
+  std::vector<Vec3> points = mesh.points;
+  EXPECT_EQ(check_validity(map, points, Threads{1}, 10).cells_checked, map.cell_count());
+  // What vacant places hold is not looked at: the general cells are flat on purpose, by their split faces.
+  for (const InvalidCell& c : check_validity(map, points, Threads{1}, 10).first)
+    EXPECT_EQ(c.cell.pool(), Map::general_pool);
+  const auto flattening = first_flattening(map, points, points, Threads{1});
+  EXPECT_TRUE(!flattening || map.contains(flattening->simplex.cell));
 }
 
 }  // namespace

@@ -88,6 +88,12 @@ class Checker {
     const Cell other = v.neighbour(f.face);
     const bool wall = !map_.contains(other) || map_.is_free(other) != v.is_free();
     expect(v.is_wall(f.face) == wall, "a wall is where exactly one side is free", first);
+    if (!wall) return;
+    for (std::uint16_t t = 0; t < v.shape().triangle_count(f.face); ++t) {
+      for (const std::uint16_t k : v.shape().triangle(f.face, t))
+        expect(!map_.is_vertex(v.vertex(k)) || map_.may_touch_wall(v.vertex(k)), "the vertices of a wall are marked",
+               first);
+    }
   }
 
   const Map& map_;
