@@ -61,7 +61,7 @@ void expect_followed(const ComplexEditReport& edit, const FollowReport& report, 
     const auto found = stranded.find(i);
     if (found != stranded.end() && found->second.became == Stranded::absorb) continue;
     const State& now = after[j++];
-    if (found == stranded.end()) ASSERT_EQ(test::bits(now.position), test::bits(before[i].position));
+    if (found == stranded.end() && !before[i].held) ASSERT_EQ(test::bits(now.position), test::bits(before[i].position));
     if (touched.count(before[i].cell) != 0 || before[i].touching_count > 0) continue;
     ASSERT_TRUE(same_bits(now, before[i])) << "particle " << i << " was not touched";
   }
@@ -75,16 +75,17 @@ TEST_P(Edits, LoseNobody) {
     Environment environment(GetParam().make());
     Random random(static_cast<std::uint64_t>(stranded) + 1);
     Particles particles;
-    const auto points = test::random_points(400, {0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}, random);
+    const auto points = test::random_points(300, {0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}, random);
     environment.add(particles, points);
     std::vector<Vec3> rest(environment.positions().begin(), environment.positions().end());
     test::CellBag bag(environment.map());
     const std::size_t usual = bag.size();
-    const Respond slide = [](const Contact& c, auto, auto) {
-      return Continuation{c.unused - c.normal * dot(c.unused, c.normal), true};
+    const Respond slide = [](const Contact& c, std::span<const WallHit> walls, auto) {
+      const Vec3 n = walls[0].normal;
+      return Continuation{c.unused - n * dot(c.unused, n), true};
     };
     int edits = 0, located = 0, left = 0;
-    for (int step = 0; step < test::scaled(150, 5000); ++step) {
+    for (int step = 0; step < test::scaled(80, 4000); ++step) {
       try {
         const test::EditKind kind = test::draw_kind(bag, usual, random);
         const ComplexEditReport edit = environment.edit([&](ComplexEdit& e) {
@@ -113,9 +114,9 @@ TEST_P(Edits, LoseNobody) {
       environment.advance(particles, jittered(particles, random, 0.2), slide);
       expect_audited(environment, particles);
     }
-    EXPECT_GT(edits, test::scaled(20, 700));
+    EXPECT_GT(edits, test::scaled(10, 600));
     if (test::sanitized()) continue;
-    EXPECT_GT(located, 100);
+    EXPECT_GT(located, 30);
     EXPECT_GT(left, 0);
   }
 }
