@@ -20,7 +20,7 @@ class Sides {
   /// All cells whose edges are to count are to be taken before sides are asked for.
   void take(Cell c);
   /// Says that a new vertex lies on the plane.
-  void put_on(Vertex v) { known_[v.value] = {}; }
+  void put_on(Vertex v) { known_[v.value] = {.x = {}, .height = 0.0, .shortest = 0.0}; }
 
   /// -1 below, 1 above, 0 on the plane. Precondition: a vertex of a cell taken, or put on the plane.
   [[nodiscard]] int operator[](Vertex v) const;
