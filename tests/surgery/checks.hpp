@@ -21,6 +21,7 @@ namespace dartcast::test {
 inline Dyadic volume6(const Complex& complex, std::span<const Cell> cells) {
   Dyadic sum;
   for (const Cell c : cells) {
+    EXPECT_TRUE(complex.map().contains(c));
     for (std::uint16_t s = 0; s < complex.map().shape(c).simplices().size(); ++s) {
       const Corners v = complex.corners({c, s});
       sum = sum + determinant(v[0], v[1], v[2], v[3]);
@@ -29,6 +30,12 @@ inline Dyadic volume6(const Complex& complex, std::span<const Cell> cells) {
   return sum;
 }
 inline Dyadic volume6(const Complex& complex) { return volume6(complex, complex.map().cells()); }
+
+/// What some cells of an open edit are after its commit.
+inline std::vector<Cell> now(const ComplexEditReport& report, std::vector<Cell> cells) {
+  for (Cell& c : cells) c = report.now(c);
+  return cells;
+}
 
 /// Whether two exact numbers are nearer than this.
 inline bool near(const Dyadic& a, const Dyadic& b, double within) { return (a - b).abs() < Dyadic(within); }

@@ -88,8 +88,7 @@ class Carver {
 
 Carved carve(ComplexEdit& edit, std::span<const Cell> cells, std::span<const ConvexTool> tools, Carving what,
              const CarveOptions& options) {
-  if (!(options.snap >= 0.0 && options.snap <= 0.25))
-    throw InvalidArgument("snap is a share of an edge between 0 and 1/4");
+  detail::check_snap(options.snap);
   return detail::all_or_nothing(edit, [&] {
     Carver carver(edit, cells, what, options);
     for (const ConvexTool& tool : tools) carver.take(tool);

@@ -30,7 +30,7 @@ struct Carved {
 /// concerned, such as cells_near() finds; others are not split. The scene is watertight where tissue has become
 /// free: nothing is parted.
 ///
-/// Throws InvalidArgument where a cell is not there or is named twice, or snap is not in [0, 1/4]; and what
+/// Throws InvalidArgument where a cell is not there or is named twice, or snap is not in [2^-30, 1/4]; and what
 /// split_by_plane() throws; everything is then as it was. Cost: that of the cells named and those around them.
 Carved carve(ComplexEdit& edit, std::span<const Cell> cells, std::span<const ConvexTool> tools, Carving what,
              const CarveOptions& options = {});

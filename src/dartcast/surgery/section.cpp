@@ -18,8 +18,7 @@ Plane plane_through(const Vec3& point, const Vec3& normal) {
 
 Section split_by_plane(ComplexEdit& edit, std::span<const Cell> cells, const Plane& plane,
                        const SectionOptions& options) {
-  if (!(options.snap >= 0.0 && options.snap <= 0.25))
-    throw InvalidArgument("snap is a share of an edge between 0 and 1/4");
+  detail::check_snap(options.snap);
   return detail::all_or_nothing(edit, [&] {
     detail::Cutter cutter(edit, cells);
     std::vector<std::uint32_t> numbers(cells.size());

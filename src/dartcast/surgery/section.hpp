@@ -26,11 +26,14 @@ struct SectionOptions {
   /// this share of `finest`) counts as on it: so no edge comes out much shorter than that, and where the plane runs
   /// along faces nothing is split. The section bends by as much.
   double snap = 1.0 / 128.0;
+  /// Less would take the rounding of vertices that lie on the plane for a distance.
+  static constexpr double least_snap = 0x1p-30;
   /// What must not be lost to that: say, the width of a layer that two planes bound (m).
   double finest = std::numeric_limits<double>::infinity();
 };
 
-/// Cells on either side of a plane: parts of those that were split, and cells that it does not cross.
+/// Cells on either side of a plane: parts of those that were split, and cells that it does not cross. As in all of
+/// surgery they are those of the open edit: commit() may give them points, and its report tells what they are then.
 struct Section {
   std::vector<Cell> below, above;
   /// Among these, cells that the plane crosses in no simple loop, for their faces are strongly warped: they stay whole,
@@ -42,8 +45,8 @@ struct Section {
 /// the plane crosses it, rounded. Cells around that are not named take the new vertices and edges into their faces, and
 /// stay whole. Parts keep the cell's free mark, and a face's its patch; the new faces have none.
 ///
-/// Throws InvalidArgument where there is no such cell, or it is named twice, or snap is not in [0, 1/4]; and what the
-/// edits of map/edit.hpp throw; everything is then as it was. That parts are valid is for commit() to judge. Cost:
+/// Throws InvalidArgument where there is no such cell, or it is named twice, or snap is not in [2^-30, 1/4]; and what
+/// the edits of map/edit.hpp throw; everything is then as it was. That parts are valid is for commit() to judge. Cost:
 /// linear in the cells named and those around them.
 Section split_by_plane(ComplexEdit& edit, std::span<const Cell> cells, const Plane& plane,
                        const SectionOptions& options = {});

@@ -3,7 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dartcast/base/error.hpp"
+
 namespace dartcast::detail {
+
+void check_snap(double snap) {
+  if (!(snap >= SectionOptions::least_snap && snap <= 0.25))
+    throw InvalidArgument("snap is a share of an edge between 2^-30 and 1/4");
+}
 
 Vec3 middle(ComplexEdit& edit, Cell c) {
   const CellView v = edit.map().view(c);

@@ -8,6 +8,9 @@
 
 namespace dartcast::detail {
 
+/// Throws InvalidArgument where it is out of range.
+void check_snap(double snap);
+
 /// The mean of a cell's corners.
 Vec3 middle(ComplexEdit& edit, Cell c);
 
