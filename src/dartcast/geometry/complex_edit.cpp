@@ -82,11 +82,13 @@ ComplexEditReport ComplexEdit::commit() {
   try {
     take_born();
     const std::size_t born = born_;
-    const InteriorWeights points = give_interior_points(transaction_, complex_.front_);
+    GivenPoints given = give_interior_points(transaction_, complex_.front_);
     take_born();
-    points.compute(complex_.front_);
+    given.weights.compute(complex_.front_);
     check_added();
-    return make_final(points, born);
+    ComplexEditReport report = make_final(given.weights, born);
+    report.given_points = std::move(given.replaced);
+    return report;
   } catch (...) {
     roll_back({});
     throw;

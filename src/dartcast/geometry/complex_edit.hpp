@@ -4,9 +4,11 @@
 // continuous collision detection in deformable environments", SPM 2009, section 6.2.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "dartcast/geometry/complex.hpp"
@@ -28,11 +30,20 @@ struct ComplexEditReport {
   EditReport map;
   /// Vertices made, interior points apart, in order. Among them may be some that were given up again.
   std::vector<PlacedVertex> placed;
+  /// Cells that commit() replaced to give them points: what they were while the edit was open, and are now. Sorted.
+  std::vector<std::pair<Cell, Cell>> given_points;
   /// Cells that stay as they are, next to cells that were touched.
   std::vector<Cell> around;
   /// No point of a wall or of the boundary where an edit split, merged or fanned faces anew lies farther than this from
   /// where it lay (m): rounding where the faces are planar, their warp else. Faces that became walls are no part of it.
   double boundary_shift = 0.0;
+
+  /// What a cell is now that an edit returned before commit(). Cost: logarithmic.
+  [[nodiscard]] Cell now(Cell c) const {
+    const auto at = std::lower_bound(given_points.begin(), given_points.end(), std::pair{c, Cell{}},
+                                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    return at != given_points.end() && at->first == c ? at->second : c;
+  }
 };
 
 /// Values at the vertices after an edit: those of new vertices are interpolated. `values`: one per vertex before the
@@ -78,9 +89,9 @@ class ComplexEdit {
   /// Takes back everything after the mark. (Not by topology().roll_back(): places would stay.)
   void roll_back(const Transaction::Mark& to);
 
-  /// Gives touched cells the interior points that they need, and makes everything final. Throws EditRefused, everything
-  /// taken back, where a new cell has a simplex that is not positive and no interior point mends it: names the cell.
-  /// Cost: that of the cells touched and their neighbours.
+  /// Gives touched cells the interior points that they need (see ComplexEditReport::now()), and makes everything final.
+  /// Throws EditRefused, everything taken back, where a new cell has a simplex that is not positive and no interior
+  /// point mends it: names the cell. Cost: that of the cells touched and their neighbours.
   ComplexEditReport commit();
 
  private:
