@@ -242,7 +242,7 @@ struct Scene {
 
   void place(std::vector<Vec3>& points) const {
     points.resize(map.vertex_count());
-    compute_interior(weights, points);
+    weights.compute(points);
   }
 };
 

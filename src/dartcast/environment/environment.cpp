@@ -189,7 +189,7 @@ std::vector<Vec3> Environment::with_interior(std::span<const Vec3> positions) co
   check_count(positions);
   std::vector<Vec3> all(positions.begin(), positions.end());
   all.resize(complex_.positions().size());
-  compute_interior(complex_.interior(), all);
+  complex_.interior().compute(all);
   return all;
 }
 

@@ -7,7 +7,8 @@
 
 namespace dartcast {
 
-Complex::Complex(const MeshData& mesh, Threads threads) : map_(mesh), front_(mesh.points.begin(), mesh.points.end()) {
+Complex::Complex(const MeshData& mesh, Threads threads)
+    : map_(mesh), point_count_(mesh.points.size()), front_(mesh.points.begin(), mesh.points.end()) {
   constexpr std::size_t all = static_cast<std::size_t>(-1);
   invalid_ = check_validity(map_, front_, threads, all).first;
   if (!invalid_.empty()) {
@@ -17,7 +18,7 @@ Complex::Complex(const MeshData& mesh, Threads threads) : map_(mesh), front_(mes
     interior_ = std::move(solution.weights);
     map_ = Map(mesh, solution.points);
     front_.resize(mesh.points.size() + interior_.count());
-    compute_interior(interior_, front_);
+    interior_.compute(front_);
     invalid_ = check_validity(map_, front_, threads, all).first;
   }
   for (const Cell c : map_.cells()) simplex_count_ += map_.shape(c).simplices().size();
@@ -30,7 +31,7 @@ std::span<Vec3> Complex::next_positions() {
 
 void Complex::commit_positions() {
   if (back_.empty()) back_ = front_;
-  compute_interior(interior_, back_);
+  interior_.compute(back_);
   std::swap(front_, back_);
 }
 

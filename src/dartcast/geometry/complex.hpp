@@ -15,6 +15,7 @@
 #include "dartcast/base/aligned.hpp"
 #include "dartcast/base/parallel.hpp"
 #include "dartcast/exact/vec3.hpp"
+#include "dartcast/geometry/interior_weights.hpp"
 #include "dartcast/geometry/simplex.hpp"
 #include "dartcast/map/map.hpp"
 #include "dartcast/mesh/mesh_data.hpp"
@@ -28,18 +29,6 @@ struct InvalidCell {
   std::string message;
 };
 
-/// Vertices that are combinations of others.
-struct InteriorWeights {
-  std::vector<std::size_t> offsets = {0};  ///< one more than there are interior vertices
-  std::vector<std::uint32_t> corner;
-  std::vector<double> weight;  ///< of that corner; those of one interior vertex sum to 1
-
-  [[nodiscard]] std::size_t count() const { return offsets.size() - 1; }
-  [[nodiscard]] std::size_t bytes() const {
-    return offsets.size() * sizeof(std::size_t) + corner.size() * (sizeof(std::uint32_t) + sizeof(double));
-  }
-};
-
 class Complex {
  public:
   /// Builds the map, finds interior points where they are needed, and checks every simplex. Cells for which no interior
@@ -51,17 +40,20 @@ class Complex {
   [[nodiscard]] Map& map() { return map_; }
   [[nodiscard]] const std::vector<InvalidCell>& invalid_cells() const { return invalid_; }
 
-  /// Positions of the mesh's points (in the mesh's order), then of interior points.
+  /// Positions of all vertices: the mesh's points (in the mesh's order), then interior points, then what edits made
+  /// (their numbers, too, may be those of vertices that are gone).
   [[nodiscard]] std::span<const Vec3> positions() const { return front_; }
   /// Positions before the last commit_positions(); equal to positions() before the first.
   [[nodiscard]] std::span<const Vec3> previous_positions() const {
     return back_.empty() ? positions() : std::span<const Vec3>(back_);
   }
   [[nodiscard]] const InteriorWeights& interior() const { return interior_; }
-  /// Number of the mesh's own points: the first entries of positions().
-  [[nodiscard]] std::size_t point_count() const { return front_.size() - interior_.count(); }
+  /// Number of the first entries of positions() that a move gives: the mesh's own points, and once edits have made
+  /// vertices, everything up to the last of these. What lies between, interior points and numbers not in use, can be
+  /// given any value.
+  [[nodiscard]] std::size_t point_count() const { return point_count_; }
 
-  /// Where the next positions of the mesh's points are to be written, all of them; the content is what it was two moves
+  /// Where the next positions of these points are to be written, all of them; the content is what it was two moves
   /// ago. Ends the validity of previous_positions().
   [[nodiscard]] std::span<Vec3> next_positions();
   /// Makes the positions written current. Cost: a swap, and the interior points. No vertex is checked: one that is not
@@ -84,8 +76,11 @@ class Complex {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
+  friend class ComplexEdit;
+
   Map map_;
   InteriorWeights interior_;
+  std::size_t point_count_ = 0;
   AlignedVector<Vec3> front_;
   AlignedVector<Vec3> back_;  // empty until the first move
   std::vector<InvalidCell> invalid_;

@@ -45,8 +45,8 @@ void follow(const ComplexEditReport& report, std::size_t size, std::vector<T>& v
   }
 }
 
-/// A sequence of edits. What is not committed when it ends is taken back. While it is open, nobody else edits, copies or
-/// moves the complex; whoever reads it sees cells without their interior points.
+/// A sequence of edits. What is not committed when it ends is taken back. While it is open, nobody else edits, copies
+/// or moves the complex; whoever reads it sees cells without their interior points.
 class ComplexEdit {
  public:
   explicit ComplexEdit(Complex& complex);
@@ -78,16 +78,15 @@ class ComplexEdit {
 
  private:
   void take_born();
-  void give_points();
-  void check_cells() const;
-  void remove_interior(const std::vector<Vertex>& died);
+  void check_added() const;
+  [[nodiscard]] std::vector<PlacedVertex> placed(std::size_t born) const;
+  [[nodiscard]] std::vector<Cell> around() const;
+  ComplexEditReport make_final(const InteriorWeights& points, std::size_t born);
 
   Complex& complex_;
   std::size_t positions_before_;
-  std::size_t interior_before_;
   Transaction transaction_;
-  std::size_t born_ = 0;               // of the transaction's, whose positions are known
-  std::vector<std::uint32_t> points_;  // of these, interior points: by number among the born
+  std::size_t born_ = 0;  // so many of the transaction's new vertices have positions
 };
 
 }  // namespace dartcast

@@ -148,7 +148,7 @@ double follow_until(const Map& map, const InteriorWeights& interior, std::span<c
     parallel_for(positions.size(), grain, threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) positions[i] = on_line(before[i], after[i], time);
     });
-    compute_interior(interior, positions);
+    interior.compute(positions);
     if (!first_flattening(map, before, positions, threads)) return time;
     time = std::max(0.0, time - back);
   }

@@ -1,16 +1,21 @@
 #include "dartcast/geometry/interior.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <map>
 #include <set>
 #include <utility>
 
+#include "dartcast/geometry/cone_point.hpp"
 #include "dartcast/mesh/cell_types.hpp"
 
 namespace dartcast {
 
 namespace {
+
+using detail::all_positive;
+using detail::fan;
+using detail::mean;
+using detail::Triangle;
 
 using Faces = std::vector<std::vector<std::uint32_t>>;
 
@@ -24,84 +29,6 @@ Faces faces_of(const MeshData& mesh, std::uint32_t c) {
 std::vector<std::uint32_t> sorted(std::vector<std::uint32_t> v) {
   std::sort(v.begin(), v.end());
   return v;
-}
-
-Vec3 mean(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& corners) {
-  Vec3 sum;
-  for (const std::uint32_t v : corners) sum += points[v];
-  return sum * (1.0 / static_cast<double>(corners.size()));
-}
-
-struct Triangle {
-  Vec3 a, b, c;  // counterclockwise seen from the outside
-};
-
-// The fan of a face: from its point, or from its lowest-numbered vertex.
-std::vector<Triangle> fan(const std::vector<Vec3>& points, std::vector<std::uint32_t> face, bool has_point) {
-  std::vector<Triangle> triangles;
-  const std::size_t k = face.size();
-  if (has_point) {
-    const Vec3 m = mean(points, face);
-    for (std::size_t i = 0; i < k; ++i) triangles.push_back({m, points[face[i]], points[face[(i + 1) % k]]});
-    return triangles;
-  }
-  std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
-  for (std::size_t i = 1; i + 1 < k; ++i) triangles.push_back({points[face[0]], points[face[i]], points[face[i + 1]]});
-  return triangles;
-}
-
-bool all_positive(const Vec3& apex, const std::vector<Triangle>& triangles) {
-  return std::all_of(triangles.begin(), triangles.end(),
-                     [&](const Triangle& t) { return orient3d(apex, t.a, t.b, t.c) == Sign::positive; });
-}
-
-// A point strictly behind all triangles, found by moving away from the nearest one; `start` where there is none. What
-// it returns is only a proposal: the validity check decides.
-Vec3 kernel_point(const Vec3& start, const std::vector<Triangle>& triangles, double size) {
-  constexpr int steps = 400;
-  Vec3 x = start;
-  Vec3 best = start;
-  double best_distance = -size;
-  for (int k = 0; k < steps; ++k) {
-    double nearest = 2.0 * size;
-    Vec3 inward;
-    for (const Triangle& t : triangles) {
-      Vec3 n = cross((t.c - t.a) * (1.0 / size), (t.b - t.a) * (1.0 / size));  // of a magnitude that can be squared
-      const double length = norm(n);
-      if (!(length > 0.0)) continue;
-      n *= 1.0 / length;
-      const double distance = dot(n, x - t.a);
-      if (distance < nearest) {
-        nearest = distance;
-        inward = n;
-      }
-    }
-    if (nearest > best_distance) {
-      best_distance = nearest;
-      best = x;
-    }
-    x += inward * (0.25 * size / (k + 2.0));
-  }
-  return best;
-}
-
-// Weights over the corners, summing to 1, that give x: the equal weights and the least correction.
-std::vector<double> weights_for(const Vec3& x, const std::vector<Vec3>& points,
-                                const std::vector<std::uint32_t>& corners) {
-  const Vec3 m = mean(points, corners);
-  const auto n = static_cast<Eigen::Index>(corners.size());
-  Eigen::Matrix3Xd centred(3, n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const Vec3 d = points[corners[static_cast<std::size_t>(i)]] - m;
-    centred.col(i) << d.x, d.y, d.z;
-  }
-  const Eigen::Vector3d offset(x.x - m.x, x.y - m.y, x.z - m.z);
-  const Eigen::Matrix3d gram = centred * centred.transpose();
-  const Eigen::VectorXd correction = centred.transpose() * gram.ldlt().solve(offset);
-  std::vector<double> weights(corners.size());
-  for (Eigen::Index i = 0; i < n; ++i)
-    weights[static_cast<std::size_t>(i)] = 1.0 / static_cast<double>(n) + correction(i);
-  return weights;
 }
 
 class Solver {
@@ -178,11 +105,9 @@ class Solver {
   }
 
   Vertex add_vertex(const std::vector<std::uint32_t>& corners, const std::vector<double>& weights) {
-    auto& w = solution_.weights;
-    w.corner.insert(w.corner.end(), corners.begin(), corners.end());
-    w.weight.insert(w.weight.end(), weights.begin(), weights.end());
-    w.offsets.push_back(w.corner.size());
-    return Vertex(static_cast<std::uint32_t>(mesh_.points.size() + w.count() - 1));
+    const Vertex v(static_cast<std::uint32_t>(mesh_.points.size() + solution_.weights.count()));
+    solution_.weights.add(v, corners, weights);
+    return v;
   }
 
   void add_face_point(const std::vector<std::uint32_t>& corners, const std::vector<Side>& sides) {
@@ -199,15 +124,8 @@ class Solver {
       triangles.insert(triangles.end(), of_face.begin(), of_face.end());
     }
     const auto corners = corners_of(faces);
-    const Vec3 m = mean(mesh_.points, corners);
-    std::vector<double> weights(corners.size(), 1.0 / static_cast<double>(corners.size()));
-    if (!all_positive(m, triangles)) {
-      double size = 0.0;
-      for (const std::uint32_t v : corners) size = std::max(size, norm(mesh_.points[v] - m));
-      const Vec3 x = kernel_point(m, triangles, size);
-      if (all_positive(x, triangles)) weights = weights_for(x, mesh_.points, corners);
-    }
-    solution_.points.of_cells.emplace_back(c, add_vertex(corners, weights));
+    const Vertex point = add_vertex(corners, detail::cone_weights(mesh_.points, corners, triangles));
+    solution_.points.of_cells.emplace_back(c, point);
   }
 
   const MeshData& mesh_;
@@ -224,17 +142,6 @@ class Solver {
 
 InteriorSolution find_interior_points(const MeshData& mesh, const Map& plain, std::span<const Cell> cells) {
   return Solver(mesh, plain).solve(cells);
-}
-
-void compute_interior(const InteriorWeights& weights, std::span<Vec3> positions) {
-  const std::size_t first = positions.size() - weights.count();
-  for (std::size_t i = 0; i < weights.count(); ++i) {
-    Vec3 sum;
-    for (std::size_t k = weights.offsets[i]; k < weights.offsets[i + 1]; ++k) {
-      sum += positions[weights.corner[k]] * weights.weight[k];
-    }
-    positions[first + i] = sum;
-  }
 }
 
 }  // namespace dartcast

@@ -19,7 +19,4 @@ struct InteriorSolution {
 /// their neighbours.
 InteriorSolution find_interior_points(const MeshData& mesh, const Map& plain, std::span<const Cell> cells);
 
-/// Positions of the interior vertices, in a fixed order of operations; `positions` holds the mesh's points first.
-void compute_interior(const InteriorWeights& weights, std::span<Vec3> positions);
-
 }  // namespace dartcast

@@ -303,25 +303,47 @@ EditReport Transaction::commit() {
   return report;
 }
 
-// Cells that came and went within the transaction are not told.
-EditReport Transaction::report_cells() const {
-  std::vector<Cell> added;
-  for (const Added& a : added_) added.push_back(a.cell);
-  std::sort(added.begin(), added.end());
-  const auto is_new = [&](Cell c) { return std::binary_search(added.begin(), added.end(), c); };
-  EditReport report;
-  for (const Cell c : removed_) {
-    const auto version = static_cast<std::uint16_t>(map_.view(c).version() - 1U);
-    if (!is_new(c)) report.removed.push_back({c, version});
-  }
+std::vector<Cell> Transaction::added() const {
+  std::vector<Cell> cells;
   for (const Added& a : added_) {
-    if (map_.contains(a.cell)) report.added.push_back(a.cell);
+    if (map_.contains(a.cell)) cells.push_back(a.cell);
   }
+  return cells;
+}
+
+// Cells that came and went within the transaction are not told.
+std::vector<Cell> Transaction::removed() const {
+  const std::vector<Cell> news = all_added();
+  std::vector<Cell> cells;
+  for (const Cell c : removed_) {
+    if (!std::binary_search(news.begin(), news.end(), c)) cells.push_back(c);
+  }
+  return cells;
+}
+
+std::vector<Cell> Transaction::all_added() const {
+  std::vector<Cell> cells;
+  for (const Added& a : added_) cells.push_back(a.cell);
+  std::sort(cells.begin(), cells.end());
+  return cells;
+}
+
+std::vector<Cell> Transaction::marked() const {
+  const std::vector<Cell> news = all_added();
+  std::vector<Cell> cells;
   for (const Cell c : marked_) {
-    if (map_.contains(c) && !is_new(c)) report.marked.push_back(c);
+    if (map_.contains(c) && !std::binary_search(news.begin(), news.end(), c)) cells.push_back(c);
   }
-  std::sort(report.marked.begin(), report.marked.end());
-  report.marked.erase(std::unique(report.marked.begin(), report.marked.end()), report.marked.end());
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  return cells;
+}
+
+EditReport Transaction::report_cells() const {
+  EditReport report;
+  for (const Cell c : removed()) report.removed.push_back({c, static_cast<std::uint16_t>(map_.view(c).version() - 1U)});
+  report.added = added();
+  report.marked = marked();
   return report;
 }
 

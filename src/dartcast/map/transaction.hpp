@@ -72,6 +72,19 @@ class Transaction {
   /// Says in the report that one vertex stands for another.
   void note_identified(Vertex gone, Vertex survivor) { identified_.push_back({gone, survivor}); }
 
+  // What has been done since the last commit, so far.
+  [[nodiscard]] std::size_t born_count() const { return born_.size(); }
+  /// In order, those that no cell uses included.
+  [[nodiscard]] const BornVertex& born(std::size_t i) const { return born_[i].vertex; }
+  /// Cells put in the place of others and still there.
+  [[nodiscard]] std::vector<Cell> added() const;
+  /// Cells taken away, of those that there were at the last commit. Until the next one, map().view() shows them as they
+  /// were when they were taken away.
+  [[nodiscard]] std::vector<Cell> removed() const;
+  /// Cells freed or blocked, otherwise as they were; sorted.
+  [[nodiscard]] std::vector<Cell> marked() const;
+  [[nodiscard]] std::span<const Identified> identified() const { return identified_; }
+
   /// A place in the sequence, to go back to.
   struct Mark {
     std::size_t words = 0, added = 0, removed = 0, born = 0, identified = 0, marked = 0;
@@ -115,6 +128,7 @@ class Transaction {
   void vacate(Cell c);
   void write_sides(Cell c, const CellDraft& draft, const DraftForm& form);
   void clear_sides(Cell c);
+  [[nodiscard]] std::vector<Cell> all_added() const;
   [[nodiscard]] EditReport report_cells() const;
   void bury(EditReport& report);
 

@@ -1,0 +1,155 @@
+#include "dartcast/geometry/complex_edit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "dartcast/base/error.hpp"
+#include "dartcast/geometry/boundary_shift.hpp"
+#include "dartcast/geometry/give_points.hpp"
+#include "dartcast/geometry/validity.hpp"
+
+namespace dartcast {
+
+namespace {
+
+std::uint64_t simplices_of(const Map& map, std::span<const Cell> cells) {
+  std::uint64_t sum = 0;
+  for (const Cell c : cells) sum += map.view(c).shape().simplices().size();
+  return sum;
+}
+
+PlacedVertex described(const BornVertex& born, std::span<const Vec3> positions) {
+  const Vec3 x = positions[born.vertex.value];
+  const Vec3 a = positions[born.from.value];
+  const Vec3 edge = positions[born.other.value] - a;
+  const double length2 = dot(edge, edge);
+  const double share = length2 > 0.0 ? std::clamp(dot(x - a, edge) / length2, 0.0, 1.0) : 0.0;
+  return {born.vertex, born.from, born.other, share, x - (a + edge * share)};
+}
+
+}  // namespace
+
+ComplexEdit::ComplexEdit(Complex& complex)
+    : complex_(complex), positions_before_(complex.front_.size()), transaction_(complex.map_) {}
+
+ComplexEdit::~ComplexEdit() { complex_.front_.resize(positions_before_); }
+
+// New vertices take their first positions: numbers used again lie among the others.
+void ComplexEdit::take_born() {
+  born_ = std::min(born_, transaction_.born_count());
+  auto& positions = complex_.front_;
+  positions.resize(map().vertex_count());
+  for (; born_ < transaction_.born_count(); ++born_) {
+    const BornVertex& v = transaction_.born(born_);
+    const Vec3 a = positions[v.from.value];
+    positions[v.vertex.value] = v.from == v.other ? a : (a + positions[v.other.value]) * 0.5;
+  }
+}
+
+Vec3 ComplexEdit::position(Vertex v) {
+  take_born();
+  if (!map().is_vertex(v)) throw InvalidArgument(fmt::format("there is no vertex {}: an edit gave it up", v.value));
+  return complex_.front_[v.value];
+}
+
+void ComplexEdit::place(Vertex v, const Vec3& x) {
+  take_born();
+  std::size_t i = born_;
+  while (i > 0 && transaction_.born(i - 1).vertex != v) --i;
+  if (i == 0)
+    throw InvalidArgument(
+        fmt::format("place: vertex {} was not made by this edit; move the others by a move", v.value));
+  if (!in_exact_range(x))
+    throw InvalidArgument(
+        fmt::format("place: vertex {} would be at ({}, {}, {}): coordinates must be finite, and 0 or "
+                    "between 2^-300 and 2^300 in magnitude",
+                    v.value, x.x, x.y, x.z));
+  complex_.front_[v.value] = x;
+}
+
+void ComplexEdit::roll_back(const Transaction::Mark& to) {
+  transaction_.roll_back(to);
+  take_born();
+}
+
+ComplexEditReport ComplexEdit::commit() {
+  try {
+    take_born();
+    const std::size_t born = born_;
+    const InteriorWeights points = give_interior_points(transaction_, complex_.front_);
+    take_born();
+    points.compute(complex_.front_);
+    check_added();
+    return make_final(points, born);
+  } catch (...) {
+    roll_back({});
+    throw;
+  }
+}
+
+void ComplexEdit::check_added() const {
+  for (const Cell c : transaction_.added()) {
+    if (const auto invalid = check_cell(map(), complex_.front_, c)) {
+      throw EditRefused(
+          fmt::format("{}; no interior point mends it: place new vertices elsewhere, or split it into convex parts",
+                      invalid->message));
+    }
+  }
+}
+
+std::vector<PlacedVertex> ComplexEdit::placed(std::size_t born) const {
+  std::vector<PlacedVertex> placed;
+  for (std::size_t i = 0; i < born; ++i) placed.push_back(described(transaction_.born(i), complex_.front_));
+  return placed;
+}
+
+std::vector<Cell> ComplexEdit::around() const {
+  std::vector<Cell> added = transaction_.added();
+  std::sort(added.begin(), added.end());
+  std::vector<Cell> around;
+  const auto add_neighbours = [&](const std::vector<Cell>& cells) {
+    for (const Cell c : cells) {
+      const CellView v = map().view(c);
+      for (std::uint16_t f = 0; f < v.shape().face_count(); ++f) {
+        const Cell other = v.neighbour(f);
+        if (map().contains(other) && !std::binary_search(added.begin(), added.end(), other)) around.push_back(other);
+      }
+    }
+  };
+  add_neighbours(added);
+  add_neighbours(transaction_.removed());
+  add_neighbours(transaction_.marked());
+  std::sort(around.begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
+  return around;
+}
+
+// Nothing here is refused.
+ComplexEditReport ComplexEdit::make_final(const InteriorWeights& points, std::size_t born) {
+  ComplexEditReport report;
+  report.boundary_shift = boundary_shift(transaction_, complex_.front_);
+  report.placed = placed(born);
+  report.around = around();
+  const std::uint64_t gone = simplices_of(map(), transaction_.removed());
+  std::vector<Vertex> news;
+  for (std::size_t i = 0; i < transaction_.born_count(); ++i) news.push_back(transaction_.born(i).vertex);
+
+  report.map = transaction_.commit();
+  complex_.simplex_count_ = complex_.simplex_count_ - gone + simplices_of(map(), report.map.added);
+  for (const Vertex v : report.map.died) complex_.interior_.remove(v);
+  complex_.interior_.add(points);
+  for (const PlacedVertex& p : report.placed)
+    complex_.point_count_ = std::max<std::size_t>(complex_.point_count_, p.vertex.value + 1U);
+  if (!complex_.back_.empty()) {
+    complex_.back_.resize(complex_.front_.size());
+    for (const Vertex v : news) complex_.back_[v.value] = complex_.front_[v.value];
+  }
+  std::erase_if(complex_.invalid_, [&](const InvalidCell& c) { return !map().contains(c.cell); });
+  positions_before_ = complex_.front_.size();
+  born_ = 0;
+  return report;
+}
+
+}  // namespace dartcast

@@ -1,0 +1,139 @@
+#include "dartcast/geometry/give_points.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "dartcast/geometry/cone_point.hpp"
+#include "dartcast/geometry/validity.hpp"
+#include "dartcast/map/rework.hpp"
+
+namespace dartcast {
+
+namespace {
+
+using Numbers = std::vector<std::uint32_t>;
+
+Numbers corners_of(const DraftFace& face) {
+  Numbers corners;
+  for (const DraftCorner& c : face.corners) corners.push_back(c.vertex.value);
+  return corners;
+}
+
+Numbers corners_of(const CellDraft& draft) {
+  Numbers corners;
+  for (const DraftFace& face : draft.faces) {
+    for (const DraftCorner& c : face.corners) corners.push_back(c.vertex.value);
+  }
+  std::sort(corners.begin(), corners.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  return corners;
+}
+
+// Powers of two that sum to 1, about equal: in a plane of constant coordinates of few digits they put the point exactly
+// there.
+std::vector<double> face_weights(std::size_t corners) {
+  const std::size_t whole = std::bit_ceil(corners);
+  std::vector<double> weights(corners, 1.0 / static_cast<double>(whole));
+  std::fill_n(weights.begin(), whole - corners, 2.0 / static_cast<double>(whole));
+  return weights;
+}
+
+bool may_be_straight(const DraftFace& face) {
+  return std::any_of(face.corners.begin(), face.corners.end(), [](const DraftCorner& c) { return c.straight; });
+}
+
+class Giver {
+ public:
+  Giver(Transaction& t, std::span<const Vec3> positions) : transaction_(t), positions_(positions), rework_(t) {}
+
+  InteriorWeights give() {
+    for (const Cell c : transaction_.added()) {
+      if (needs_point(c)) take(c);
+    }
+    for (std::size_t i = 0; i < taken_.size(); ++i) choose_face_points(taken_[i]);
+    for (const CellFace f : faces_) add_face_point(f);
+    for (const Cell c : taken_) add_cell_point(rework_.draft(c));
+    if (!taken_.empty()) rework_.put();
+    return std::move(weights_);
+  }
+
+ private:
+  [[nodiscard]] const Map& map() const { return transaction_.map(); }
+
+  [[nodiscard]] bool needs_point(Cell c) const {
+    const auto& faces = map().shape(c).key().faces;
+    return map().has_flat(c) || std::any_of(faces.begin(), faces.end(), [](const auto& f) { return f.has_point; }) ||
+           check_cell(map(), positions_, c);
+  }
+
+  void take(Cell c) {
+    if (!cells_.insert(c).second) return;
+    taken_.push_back(c);
+    rework_.take(c);
+  }
+
+  // A face is named once, by the lower of its cells.
+  void choose_face_points(Cell c) {
+    const Vec3 mean = detail::mean(positions_, corners_of(rework_.draft(c)));
+    for (std::uint16_t f = 0; f < rework_.draft(c).faces.size(); ++f) {
+      const DraftFace& face = rework_.draft(c).faces[f];
+      if (face.point.valid() || face.corners.size() == 3) continue;
+      if (!may_be_straight(face) && !asks_for_point(face, mean)) continue;
+      const CellFace here{c, f};
+      const CellFace there = map().opposite(here);
+      faces_.insert(there.valid() ? std::min(here, there) : here);
+      if (there.valid()) take(there.cell);
+    }
+  }
+
+  [[nodiscard]] bool asks_for_point(const DraftFace& face, const Vec3& mean) const {
+    const Numbers corners = corners_of(face);
+    return !detail::all_positive(mean, detail::fan(positions_, corners, false)) &&
+           detail::all_positive(mean, detail::fan(positions_, corners, true));
+  }
+
+  void add_face_point(CellFace f) {
+    const Numbers corners = corners_of(rework_.draft(f.cell).faces[f.face]);
+    const Vertex point = add_vertex(corners, face_weights(corners.size()));
+    rework_.draft(f.cell).faces[f.face].point = point;
+    if (const CellFace other = map().opposite(f); other.valid())
+      rework_.draft(other.cell).faces[other.face].point = point;
+  }
+
+  void add_cell_point(CellDraft& draft) {
+    std::vector<detail::Triangle> triangles;
+    for (const DraftFace& face : draft.faces) {
+      const auto fan = detail::fan(positions_, corners_of(face), face.point.valid());
+      triangles.insert(triangles.end(), fan.begin(), fan.end());
+    }
+    const Numbers corners = corners_of(draft);
+    draft.point = add_vertex(corners, detail::cone_weights(positions_, corners, triangles));
+  }
+
+  Vertex add_vertex(const Numbers& corners, const std::vector<double>& weights) {
+    const Vertex corner(corners.front());
+    const Vertex v = transaction_.add_vertex(corner, corner);
+    weights_.add(v, corners, weights);
+    return v;
+  }
+
+  Transaction& transaction_;
+  std::span<const Vec3> positions_;
+  detail::Rework rework_;
+  std::set<Cell> cells_;
+  std::vector<Cell> taken_;  // the same, in the order found
+  std::set<CellFace> faces_;
+  InteriorWeights weights_;
+};
+
+}  // namespace
+
+InteriorWeights give_interior_points(Transaction& t, std::span<const Vec3> positions) {
+  return Giver(t, positions).give();
+}
+
+}  // namespace dartcast
