@@ -10,7 +10,7 @@
 #include "dartcast/geometry/complex.hpp"
 #include "dartcast/geometry/validity.hpp"
 #include "dartcast/map/integrity.hpp"
-#include "oracle/fraction.hpp"
+#include "exact/dyadic.hpp"
 
 namespace dartcast::test {
 
@@ -22,12 +22,12 @@ inline void expect_good(const Complex& complex) {
 }
 
 /// Six times the volume of all implicit simplices, exactly.
-inline oracle::Exact volume6(const Complex& complex) {
-  oracle::Exact sum(0.0);
+inline Dyadic volume6(const Complex& complex) {
+  Dyadic sum;
   for (const Cell c : complex.map().cells()) {
     for (std::uint16_t s = 0; s < complex.map().shape(c).simplices().size(); ++s) {
       const Corners v = complex.corners({c, s});
-      sum = sum + oracle::determinant(v[0], v[1], v[2], v[3]);
+      sum = sum + determinant(v[0], v[1], v[2], v[3]);
     }
   }
   return sum;

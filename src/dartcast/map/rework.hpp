@@ -19,7 +19,7 @@ class Rework {
 
   /// Number of the cell's draft; drafts it when it is first asked for.
   std::uint32_t take(Cell c) {
-    const auto [found, fresh] = number_.try_emplace(c.value, static_cast<std::uint32_t>(cells_.size()));
+    const auto [found, fresh] = number_.try_emplace(c.value, static_cast<std::uint32_t>(drafts_.size()));
     if (fresh) {
       cells_.push_back(c);
       drafts_.push_back(draft_of(map(), c));

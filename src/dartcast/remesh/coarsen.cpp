@@ -60,9 +60,9 @@ std::optional<std::vector<DraftCorner>> joined_around(const std::vector<DraftFac
     ring.insert(ring.end(), around[at].begin() + 1, around[at].end() - 1);
     ring[ring.size() - (around[at].size() - 2)].straight = true;
     const Vertex last = around[at].back().vertex;
-    at = static_cast<std::size_t>(std::find_if(around.begin(), around.end(), [&](const auto& corners) {
-           return corners[1].vertex == last;
-         }) - around.begin());
+    at = static_cast<std::size_t>(
+        std::find_if(around.begin(), around.end(), [&](const auto& corners) { return corners[1].vertex == last; }) -
+        around.begin());
     if (at == around.size() || (at == 0) != (n + 1 == around.size())) return {};
   }
   std::vector<Vertex> vertices;
@@ -170,7 +170,8 @@ class Coarsener {
     if (!ring) return;
     if (const Cell other = first.across.face.cell; other.valid()) {
       if (is_part(other)) return;
-      const std::vector<DraftFace> there = rework_.taken(other) ? rework_.draft(other).faces : draft_of(map_, other).faces;
+      const std::vector<DraftFace> there =
+          rework_.taken(other) ? rework_.draft(other).faces : draft_of(map_, other).faces;
       auto mirrored = joined_around(there, v);
       if (!mirrored || mirrored->size() != ring->size()) return;
       join(rework_.draft(other).faces, v, first.across.face, std::move(*mirrored));

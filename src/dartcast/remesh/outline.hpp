@@ -63,8 +63,8 @@ class Outline {
   std::vector<std::uint16_t> dart_at_;  // of each vertex: one that starts there
   std::vector<std::uint16_t> rims_at_;  // of each vertex: edges there between two sides
   std::vector<std::uint16_t> edge_of_;
-  std::vector<bool> cut_;               // darts of spokes
-  std::vector<std::uint16_t> number_;   // of the side, by class
+  std::vector<bool> cut_;              // darts of spokes
+  std::vector<std::uint16_t> number_;  // of the side, by class
   std::vector<Side> sides_;
 };
 

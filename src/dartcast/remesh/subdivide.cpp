@@ -240,7 +240,8 @@ class Subdivider {
     s.middle = middle_;
     for (const std::uint16_t v : corners_) s.corners.push_back(vertex(v));
     s.face_middles = side_middle_;
-    for (const auto& middles : edge_middle_) s.edge_middles.insert(s.edge_middles.end(), middles.begin(), middles.end());
+    for (const auto& middles : edge_middle_)
+      s.edge_middles.insert(s.edge_middles.end(), middles.begin(), middles.end());
     std::sort(s.edge_middles.begin(), s.edge_middles.end());
     s.edge_middles.erase(std::unique(s.edge_middles.begin(), s.edge_middles.end()), s.edge_middles.end());
     return s;
