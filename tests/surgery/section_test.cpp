@@ -111,7 +111,7 @@ TEST_P(Sections, PartAxisAlignedVolumesExactly) {
 TEST_P(Sections, PartRandomly) {
   const MeshData mesh = GetParam().make();
   Random random(5);
-  for (int i = 0; i < test::scaled(12, 400); ++i) {
+  for (int i = 0; i < test::scaled(4, 400); ++i) {
     SCOPED_TRACE(i);
     Complex complex(mesh);
     const Plane plane = random_plane(complex, random);
@@ -140,7 +140,7 @@ TEST_P(Sections, PartRandomly) {
 TEST_P(Sections, EndAtCellsThatAreNotNamed) {
   Complex complex(GetParam().make());
   Random random(6);
-  for (int i = 0; i < test::scaled(10, 200); ++i) {
+  for (int i = 0; i < test::scaled(4, 200); ++i) {
     SCOPED_TRACE(i);
     const std::vector<Cell> all = complex.map().cells();
     std::vector<Cell> some;
@@ -185,7 +185,7 @@ TEST(Section, SplitsWarpedCells) {
   o.jitter = 0.4;
   Random random(9);
   std::size_t refused = 0;
-  const int count = test::scaled(20, 500);
+  const int count = test::scaled(10, 500);
   for (int i = 0; i < count; ++i) {
     SCOPED_TRACE(i);
     o.seed = static_cast<std::uint64_t>(i);
