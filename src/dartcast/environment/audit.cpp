@@ -83,8 +83,8 @@ std::string check(const Complex& complex, const Particles& particles, std::size_
   const Map& map = complex.map();
   if (!map.contains(s.cell)) return "there is no such cell";
   if (s.simplex >= map.shape(s.cell).simplices().size()) return "the cell has no such simplex";
-  if (!map.is_free(s.cell)) return "the cell is blocked";
   if (s.held) return check_held(particles.held_weights(i));
+  if (!map.is_free(s.cell)) return "the cell is blocked";
   return check_inside(complex.corners({s.cell, s.simplex}), s.position);
 }
 

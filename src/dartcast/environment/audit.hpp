@@ -19,7 +19,7 @@ struct Audit {
 };
 
 /// Checks guarantee G3 for each particle, in integers of any length: its cell exists and is free; the simplex that its
-/// state names is positive and holds its position, border included. A held particle: its cell is free, its coordinates
+/// state names is positive and holds its position, border included. A held particle: its cell exists, its coordinates
 /// are finite and none is negative. Precondition: the particles have followed the environment's last move. Cost: about
 /// 5 us per particle, parallel.
 Audit audit(const Complex& complex, const Particles& particles, Threads threads = {});

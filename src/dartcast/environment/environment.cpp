@@ -18,6 +18,8 @@ namespace {
 
 constexpr std::size_t grain = detail::filtered_batch;
 constexpr const char* missed_move = "add: advance the particles first, they have not followed the last move";
+constexpr const char* missed_edit =
+    "the particles have not followed the last edit: every set must follow() each edit before the next";
 
 void check_point(const Vec3& x, const char* what, std::size_t index) {
   if (in_exact_range(x)) return;
@@ -35,13 +37,13 @@ MeshData inspected(MeshData mesh) {
   return mesh;
 }
 
-bool names_free_simplex(const Map& map, SimplexId s) {
-  return map.contains(s.cell) && map.is_free(s.cell) && s.simplex < map.shape(s.cell).simplices().size();
+bool names_simplex(const Map& map, SimplexId s) {
+  return map.contains(s.cell) && s.simplex < map.shape(s.cell).simplices().size();
 }
 
 // Whether x lies in a closed simplex that is positive and of a free cell.
 bool holds(const Complex& complex, SimplexId s, const Vec3& x) {
-  if (!names_free_simplex(complex.map(), s)) return false;
+  if (!names_simplex(complex.map(), s) || !complex.map().is_free(s.cell)) return false;
   const Corners v = complex.corners(s);
   return volume_sign(v) == Sign::positive && detail::in_closed_simplex(v, x);
 }
@@ -59,7 +61,7 @@ bool can_be(const Complex& complex, const State& s, const Weights& weights) {
   for (unsigned i = 0; i < s.touching_count; ++i) {
     if (!is_wall(complex.map(), s.touching[i])) return false;
   }
-  if (s.held) return names_free_simplex(complex.map(), s.at()) && are_weights(weights);
+  if (s.held) return names_simplex(complex.map(), s.at()) && are_weights(weights);
   return holds(complex, s.at(), s.position);
 }
 
@@ -79,6 +81,7 @@ void Particles::remove(std::span<const std::uint8_t> marks) {
   weights_.resize(kept);
   vertices_.resize(kept);
   if (!trails_.empty()) trails_.resize(kept);
+  residents_.reset();
 }
 
 void Particles::reorder(std::span<const std::uint32_t> order) {
@@ -101,6 +104,7 @@ void Particles::reorder(std::span<const std::uint32_t> order) {
   weights_ = std::move(weights);
   vertices_ = std::move(vertices);
   trails_ = std::move(trails);
+  residents_.reset();
 }
 
 Environment::Environment(MeshData mesh, Threads threads)
@@ -129,9 +133,17 @@ std::vector<Location> Environment::locate(std::span<const Vec3> points) {
   return locations;
 }
 
-std::vector<Added> Environment::add(Particles& particles, std::span<const Vec3> positions) {
-  if (particles.size() == 0) particles.moves_ = moves_;
+void Environment::check_current(Particles& particles) const {
+  if (particles.size() == 0) {
+    particles.moves_ = moves_;
+    particles.edits_ = edits_;
+  }
   if (particles.moves_ != moves_) throw InvalidArgument(missed_move);
+  if (particles.edits_ != edits_) throw InvalidArgument(fmt::format("add: {}", missed_edit));
+}
+
+std::vector<Added> Environment::add(Particles& particles, std::span<const Vec3> positions) {
+  check_current(particles);
   const std::vector<Location> locations = locate(positions);
   std::vector<Added> added(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -144,6 +156,7 @@ std::vector<Added> Environment::add(Particles& particles, std::span<const Vec3> 
 }
 
 void Environment::add_to(Particles& particles, SimplexId simplex, const Vec3& position) const {
+  particles.residents_.reset();
   particles.states_.emplace_back().put(simplex, position);
   particles.weights_.emplace_back();
   const auto& vertices = particles.vertices_.emplace_back(detail::vertex_numbers(complex_, simplex));
@@ -152,8 +165,7 @@ void Environment::add_to(Particles& particles, SimplexId simplex, const Vec3& po
 }
 
 bool Environment::add(Particles& particles, SimplexId simplex, const Vec3& position) {
-  if (particles.size() == 0) particles.moves_ = moves_;
-  if (particles.moves_ != moves_) throw InvalidArgument(missed_move);
+  check_current(particles);
   if (!in_exact_range(position) || !holds(complex_, simplex, position)) return false;
   add_to(particles, simplex, position);
   return true;
@@ -171,6 +183,7 @@ Particles Environment::restored(std::span<const State> states, std::span<const W
   particles.weights_.assign(weights.begin(), weights.end());
   for (const State& s : states) particles.vertices_.push_back(detail::vertex_numbers(complex_, s.at()));
   particles.moves_ = moves_;
+  particles.edits_ = edits_;
   return particles;
 }
 
@@ -217,11 +230,22 @@ void Environment::move(std::span<const Vec3> positions) {
   move();
 }
 
+ComplexEditReport Environment::edit(const std::function<void(ComplexEdit&)>& make) {
+  ComplexEdit edit(complex_);
+  make(edit);
+  last_edit_ = edit.commit();
+  ++edits_;
+  locator_.reset();
+  return last_edit_;
+}
+
 void Environment::check_targets(const Particles& particles, std::span<const Vec3> targets) const {
   if (targets.size() != particles.size())
     throw InvalidArgument(fmt::format("advance: {} targets for {} particles", targets.size(), particles.size()));
   if (particles.size() > 0 && particles.moves_ + 1 < moves_)
     throw InvalidArgument("advance: the particles missed a move: advance every set once after each move");
+  if (particles.size() > 0 && particles.edits_ != edits_)
+    throw InvalidArgument(fmt::format("advance: {}", missed_edit));
   if (detail::all_in_exact_range(targets)) return;
   for (std::size_t i = 0; i < targets.size(); ++i) check_point(targets[i], "the target of particle", i);
 }
@@ -276,6 +300,7 @@ StepReport Environment::advance(Particles& particles, std::span<const Vec3> targ
                     Stepper(complex_, moved, options, respond),
                     {&complex_, moved, trails_match, options.tolerance}};
   std::vector<StepReport> parts(chunk_count(particles.size(), grain));
+  particles.residents_.reset();
   const Particles before = respond ? particles : Particles{};  // a response is the caller's code: it may throw
   particles.trails_.resize(moved ? particles.size() : 0);
   if (respond) {
@@ -289,6 +314,7 @@ StepReport Environment::advance(Particles& particles, std::span<const Vec3> targ
     step_all(steps, parts);
   }
   particles.moves_ = moves_;
+  particles.edits_ = edits_;
   if (parts.size() == 1) return std::move(parts.front());
   StepReport report;
   for (const StepReport& part : parts) {

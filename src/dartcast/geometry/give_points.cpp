@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <map>
 #include <set>
 #include <utility>
 #include <vector>
@@ -101,12 +102,13 @@ class Giver {
   [[nodiscard]] bool asks_for_point(const DraftFace& face, const Vec3& mean) const {
     const Numbers corners = corners_of(face);
     return !detail::all_positive(mean, detail::fan(positions_, corners, false)) &&
-           detail::all_positive(mean, detail::fan(positions_, corners, true));
+           detail::all_positive(mean, fan_from(face_point(corners), corners));
   }
 
   void add_face_point(CellFace f) {
     const Numbers corners = corners_of(rework_.draft(f.cell).faces[f.face]);
     const Vertex point = add_vertex(corners, face_weights(corners.size()));
+    points_[point.value] = face_point(corners);
     rework_.draft(f.cell).faces[f.face].point = point;
     if (const CellFace other = map().opposite(f); other.valid())
       rework_.draft(other.cell).faces[other.face].point = point;
@@ -115,11 +117,32 @@ class Giver {
   void add_cell_point(CellDraft& draft) {
     std::vector<detail::Triangle> triangles;
     for (const DraftFace& face : draft.faces) {
-      const auto fan = detail::fan(positions_, corners_of(face), face.point.valid());
+      const Numbers corners = corners_of(face);
+      const auto fan =
+          face.point.valid() ? fan_from(position(face.point), corners) : detail::fan(positions_, corners, false);
       triangles.insert(triangles.end(), fan.begin(), fan.end());
     }
     const Numbers corners = corners_of(draft);
     draft.point = add_vertex(corners, detail::cone_weights(positions_, corners, triangles));
+  }
+
+  [[nodiscard]] Vec3 face_point(const Numbers& corners) const {
+    const std::vector<double> weights = face_weights(corners.size());
+    Vec3 sum;
+    for (std::size_t i = 0; i < corners.size(); ++i) sum += positions_[corners[i]] * weights[i];
+    return sum;
+  }
+
+  [[nodiscard]] std::vector<detail::Triangle> fan_from(const Vec3& point, const Numbers& corners) const {
+    std::vector<detail::Triangle> triangles;
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      triangles.push_back({point, positions_[corners[i]], positions_[corners[(i + 1) % corners.size()]]});
+    return triangles;
+  }
+
+  [[nodiscard]] Vec3 position(Vertex v) const {
+    const auto made = points_.find(v.value);
+    return made == points_.end() ? positions_[v.value] : made->second;
   }
 
   Vertex add_vertex(const Numbers& corners, const std::vector<double>& weights) {
@@ -135,6 +158,7 @@ class Giver {
   std::set<Cell> cells_;
   std::vector<Cell> taken_;  // the same, in the order found
   std::set<CellFace> faces_;
+  std::map<std::uint32_t, Vec3> points_;  // of faces, that were made here
   InteriorWeights weights_;
 };
 

@@ -19,13 +19,14 @@ class Rework {
 
   /// Number of the cell's draft; drafts it when it is first asked for.
   std::uint32_t take(Cell c) {
-    const auto [found, fresh] = number_.try_emplace(c.value, static_cast<std::uint32_t>(cells_.size()));
+    const auto [found, fresh] = number_.try_emplace(c.value, static_cast<std::uint32_t>(drafts_.size()));
     if (fresh) {
       cells_.push_back(c);
       drafts_.push_back(draft_of(map(), c));
     }
     return found->second;
   }
+  [[nodiscard]] bool taken(Cell c) const { return number_.contains(c.value); }
   CellDraft& draft(std::uint32_t number) { return drafts_[number]; }
   CellDraft& draft(Cell c) { return drafts_[take(c)]; }
   /// A further draft, for no cell of its own.
@@ -53,6 +54,11 @@ inline std::size_t corner_of(const Shape& s, std::uint16_t dart) {
 
 [[noreturn]] inline void refuse(const Map& map, Cell c, const std::string& reason) {
   throw EditRefused("cell " + std::to_string(map.source(c)) + " " + reason);
+}
+
+/// Throws InvalidArgument where there is no such cell.
+inline void expect_cell(const Map& map, Cell c) {
+  if (!map.contains(c)) throw InvalidArgument("there is no such cell: an earlier edit replaced it; look it up anew");
 }
 
 /// Throws InvalidArgument where there is no such dart.

@@ -47,7 +47,20 @@ Locator::Locator(const Complex& complex) {
   for (const Vec3& x : complex.positions()) {
     if (in_exact_range(x)) extend(bounds_.low, bounds_.high, x);
   }
-  const std::vector<Cell> cells = complex.map().cells();
+  make(complex, complex.map().cells());
+}
+
+Locator::Locator(const Complex& complex, const std::vector<Cell>& cells) {
+  bounds_ = {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+  for (const Cell c : cells) {
+    const Box box = box_of(complex, c);
+    extend(bounds_.low, bounds_.high, box.low);
+    extend(bounds_.low, bounds_.high, box.high);
+  }
+  make(complex, cells);
+}
+
+void Locator::make(const Complex& complex, const std::vector<Cell>& cells) {
   choose_bins(cells.size());
   // Cells much larger than a bin would fill the grid: then the bins grow.
   while (bins_ != std::array<std::uint32_t, 3>{1, 1, 1} && entry_count(complex, cells) > 32 * cells.size()) {

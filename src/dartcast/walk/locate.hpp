@@ -23,6 +23,8 @@ struct Location {
 class Locator {
  public:
   explicit Locator(const Complex& complex);
+  /// Over these cells alone: all others count as outside. Cost: linear in them.
+  Locator(const Complex& complex, const std::vector<Cell>& cells);
 
   /// Where x is in the complex that the grid was made for. A point on the border of a free cell is free; among equals
   /// the lowest cell and simplex are named. Cells with a simplex that is not positive are skipped. Precondition: x is
@@ -52,6 +54,7 @@ class Locator {
   void for_each_bin(const Box& box, Visit&& visit) const;
   void choose_bins(std::size_t cells);
   [[nodiscard]] std::size_t entry_count(const Complex& complex, const std::vector<Cell>& cells) const;
+  void make(const Complex& complex, const std::vector<Cell>& cells);
   void fill(const Complex& complex, const std::vector<Cell>& cells);
 
   Box bounds_;

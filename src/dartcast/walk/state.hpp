@@ -16,7 +16,7 @@ struct State {
   Cell cell;
   std::uint16_t simplex = 0;
   std::uint8_t touching_count = 0;
-  bool held = false;  ///< its simplex is not positive at present: it rides along and takes no step
+  bool held = false;  ///< its simplex is not positive at present, or its cell blocked: it rides along, takes no step
   std::array<CellFace, 3> touching{};
 
   [[nodiscard]] SimplexId at() const { return {cell, simplex}; }

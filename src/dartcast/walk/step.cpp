@@ -168,7 +168,7 @@ class MovingStep {
       if (!positive(before)) return hold(run, weights, detail::barycentric(before, run.state.position), run.state.cell);
       weights = detail::barycentric(before, run.state.position);
     }
-    if (!positive(after)) return hold(run, weights, weights, run.state.cell);
+    if (!positive(after) || !is_free(run)) return hold(run, weights, weights, run.state.cell);
     const unsigned parts = run.state.held ? 1 : part_count(before, after, weights, target);
     run.state.held = false;
     if (parts == 1) {
@@ -181,14 +181,17 @@ class MovingStep {
   }
 
  private:
-  // It takes no step. Where its simplex is not positive at the end of the move, it is held until it is; else (only the
-  // way there leads through an invalid cell) it rides along all the same.
+  // Only one that is held can be in a blocked cell.
+  [[nodiscard]] bool is_free(const Run& run) const { return !run.state.held || complex_.map().is_free(run.state.cell); }
+
+  // It takes no step. Where its simplex is not positive at the end of the move, or its cell blocked, it is held until
+  // they are; else (only the way there leads through an invalid cell) it rides along all the same.
   void hold(Run& run, Weights& kept, const Weights& weights, Cell cell) const {
     kept = weights;
     run.result.held = true;
     run.result.invalid_cell = cell;
     const Corners after = space_.corners(run.state.at());
-    if (positive(after)) return ride(space_, run, weights);
+    if (positive(after) && is_free(run)) return ride(space_, run, weights);
     run.state.held = true;
     const Vec3 ridden = detail::flushed(detail::combine(after, weights));
     if (in_exact_range(ridden)) run.state.position = ridden;  // else a corner is not finite: it stays where it was
@@ -255,7 +258,7 @@ StepResult Stepper::step(std::uint32_t particle, State& state, Weights& weights,
     MovingStep(complex_, options_, respond_).run(run, weights, target);
   } else {
     const Space<Stored> space = current_space(complex_);
-    if (state.held && !positive(space.corners(start))) {
+    if (state.held && (!positive(space.corners(start)) || !complex_.map().is_free(start.cell))) {
       run.result.held = true;
       run.result.invalid_cell = state.cell;
     } else {

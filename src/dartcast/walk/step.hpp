@@ -27,7 +27,7 @@ struct StepOptions {
 /// A particle that a cell kept from its step, and why.
 struct Held {
   std::uint32_t particle = 0;
-  Cell cell;  ///< the invalid cell: its own, or one on its way
+  Cell cell;  ///< the invalid cell: its own, or one on its way; or its own, which is blocked
 };
 
 struct StepResult {

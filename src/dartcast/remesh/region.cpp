@@ -1,0 +1,121 @@
+#include "dartcast/remesh/region.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace dartcast::detail {
+
+Star star_of(const Map& map, Cell first, Vertex v, std::size_t most) {
+  Star star{v, {first}, true, false};
+  const bool free = map.is_free(first);
+  for (std::size_t i = 0; i < star.cells.size(); ++i) {
+    const CellView view = map.view(star.cells[i]);
+    for (std::uint16_t f = 0; f < view.shape().face_count(); ++f) {
+      const auto corners = view.shape().corners(f);
+      if (std::none_of(corners.begin(), corners.end(), [&](std::uint16_t k) { return view.vertex(k) == v; })) continue;
+      const Cell other = view.neighbour(f);
+      if (!other.valid() || map.is_free(other) != free) {
+        star.closed = false;
+      } else if (std::find(star.cells.begin(), star.cells.end(), other) == star.cells.end()) {
+        if (star.cells.size() == most) {
+          star.too_large = true;
+          return star;
+        }
+        star.cells.push_back(other);
+      }
+    }
+  }
+  std::sort(star.cells.begin(), star.cells.end());
+  return star;
+}
+
+std::vector<Cell> grown(const Map& map, std::span<const Cell> cells) {
+  std::vector<Cell> all(cells.begin(), cells.end());
+  for (const Cell c : cells) {
+    for (std::uint16_t f = 0; f < map.shape(c).face_count(); ++f) {
+      const Cell other = map.view(c).neighbour(f);
+      if (other.valid() && map.is_free(other) == map.is_free(c)) all.push_back(other);
+    }
+  }
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+std::vector<DraftFace> surface_of(const Map& map, std::span<const Cell> cells) {
+  std::vector<DraftFace> surface;
+  for (const Cell c : cells) {
+    for (DraftFace& face : draft_of(map, c).faces) {
+      if (!std::binary_search(cells.begin(), cells.end(), face.across.face.cell)) surface.push_back(std::move(face));
+    }
+  }
+  return surface;
+}
+
+bool bounds_solid(const std::vector<DraftFace>& faces) {
+  CellDraft draft;
+  draft.faces = faces;
+  return form_of(draft).defect.empty();
+}
+
+std::vector<Vertex> corners_of(std::span<const DraftFace> faces) {
+  std::vector<Vertex> corners;
+  for (const DraftFace& face : faces) {
+    for (const DraftCorner& c : face.corners) corners.push_back(c.vertex);
+  }
+  std::sort(corners.begin(), corners.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  return corners;
+}
+
+std::vector<Triangle> fans_of(std::span<const DraftFace> faces, const Position& position) {
+  std::vector<Triangle> triangles;
+  for (const DraftFace& face : faces) {
+    const auto& corners = face.corners;
+    const std::size_t k = corners.size();
+    const auto lowest =
+        static_cast<std::size_t>(std::min_element(corners.begin(), corners.end(),
+                                                  [](const auto& a, const auto& b) { return a.vertex < b.vertex; }) -
+                                 corners.begin());
+    const auto at = [&](std::size_t i) { return position(corners[(lowest + i) % k].vertex); };
+    if (face.point.valid()) {
+      for (std::size_t i = 0; i < k; ++i) triangles.push_back({position(face.point), at(i), at(i + 1)});
+    } else {
+      for (std::size_t i = 1; i + 1 < k; ++i) triangles.push_back({at(0), at(i), at(i + 1)});
+    }
+  }
+  return triangles;
+}
+
+std::vector<CellDraft> pyramids_on(const Map& map, std::span<const DraftFace> faces, Vertex apex) {
+  std::vector<CellDraft> pyramids;
+  std::map<std::pair<Vertex, Vertex>, DraftLink> side;  // by the edge as the base has it
+  for (const DraftFace& base : faces) {
+    CellDraft& pyramid = pyramids.emplace_back();
+    pyramid.free = map.is_free(base.from.cell);
+    pyramid.source = map.source(base.from.cell);
+    pyramid.faces.push_back(base);
+    for (DraftCorner& c : pyramid.faces[0].corners) c.coplanar = false;
+    const std::size_t k = base.corners.size();
+    for (std::size_t i = 0; i < k; ++i) {
+      const DraftCorner& u = base.corners[i];
+      const DraftCorner& w = base.corners[(i + 1) % k];
+      side[{u.vertex, w.vertex}] = {
+          {}, static_cast<std::uint32_t>(pyramids.size() - 1), static_cast<std::uint16_t>(i + 1)};
+      // Where the base is straight, so is the path that the two sides meet in.
+      DraftFace triangle;
+      triangle.corners = {{w.vertex, false, false}, {u.vertex, false, u.straight}, {apex, false, w.straight}};
+      pyramid.faces.push_back(std::move(triangle));
+    }
+  }
+  for (CellDraft& pyramid : pyramids) {
+    for (std::size_t i = 1; i < pyramid.faces.size(); ++i) {
+      const auto& corners = pyramid.faces[i].corners;
+      pyramid.faces[i].across = side.at({corners[0].vertex, corners[1].vertex});
+    }
+  }
+  return pyramids;
+}
+
+}  // namespace dartcast::detail

@@ -1,0 +1,313 @@
+#include "dartcast/remesh/repair.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <iostream>
+#include <set>
+
+#include "dartcast/base/random.hpp"
+#include "dartcast/remesh/kernel.hpp"
+#include "dartcast/remesh/region.hpp"
+#include "dartcast/remesh/subdivide.hpp"
+#include "map/edit_meshes.hpp"
+#include "map/refusals.hpp"
+#include "remesh/remesh_checks.hpp"
+#include "tier.hpp"
+
+namespace dartcast {
+namespace {
+
+using test::volume6;
+
+// Moves some vertices; the others stay.
+void displace(Complex& complex, const std::vector<std::pair<Vertex, Vec3>>& moves) {
+  const auto next = complex.next_positions();
+  std::copy_n(complex.positions().begin(), next.size(), next.begin());
+  for (const auto& [v, by] : moves) next[v.value] += by;
+  complex.commit_positions();
+}
+
+std::vector<Cell> invalid_cells(const Complex& complex) {
+  std::vector<Cell> cells;
+  for (const InvalidCell& c : check_validity(complex, Threads{1}, 1000000).first) cells.push_back(c.cell);
+  return cells;
+}
+
+// Vertices of no wall (nor of the boundary).
+std::vector<Vertex> inner_vertices(const Map& map) {
+  std::vector<Vertex> inner;
+  for (std::uint32_t v = 0; v < map.vertex_count(); ++v) {
+    if (map.is_vertex(Vertex(v)) && !map.may_touch_wall(Vertex(v))) inner.emplace_back(v);
+  }
+  return inner;
+}
+
+// All that a wall is: seen from the free side, corners with their coordinates, patch.
+std::multiset<std::string> walls(const Complex& complex) {
+  std::multiset<std::string> walls;
+  const Map& map = complex.map();
+  for (const Cell c : map.cells()) {
+    const CellView v = map.view(c);
+    for (std::uint16_t f = 0; f < v.shape().face_count(); ++f) {
+      if (!v.is_wall(f)) continue;
+      std::string text = v.is_free() ? "free" : "blocked";
+      for (const std::uint16_t k : v.shape().corners(f)) {
+        const Vec3 x = complex.positions()[v.vertex(k).value];
+        text += " " + std::to_string(v.vertex(k).value) + " " + std::to_string(x.x) + " " + std::to_string(x.y) + " " +
+                std::to_string(x.z);
+      }
+      walls.insert(text + " " + std::to_string(map.patch(CellFace{c, f}).value));
+    }
+  }
+  return walls;
+}
+
+test::Dyadic free_volume6(const Complex& complex) {
+  test::Dyadic sum;
+  for (const Cell c : complex.map().cells()) {
+    if (!complex.map().is_free(c)) continue;
+    for (std::uint16_t s = 0; s < complex.map().shape(c).simplices().size(); ++s) {
+      const Corners v = complex.corners({c, s});
+      sum = sum + test::determinant(v[0], v[1], v[2], v[3]);
+    }
+  }
+  return sum;
+}
+
+Vec3 random_vector(Random& random, double size) {
+  const auto one = [&] { return (random.uniform() * 2.0 - 1.0) * size; };
+  const double x = one();
+  const double y = one();
+  return {x, y, one()};
+}
+
+// Whether a point is found from which the surface of the cells around some corner of the cell is seen from the inside:
+// by trying.
+bool seen_by_trying(const Complex& complex, Cell c, Random& random) {
+  const Map& map = complex.map();
+  const auto position = [&](Vertex v) { return complex.positions()[v.value]; };
+  const auto corners = map.view(c).vertices().first(map.shape(c).corner_count());
+  for (const std::uint32_t v : corners) {
+    const detail::Star star = detail::star_of(map, c, Vertex(v), 64);
+    const auto surface = detail::surface_of(map, star.cells);
+    if (star.too_large || !detail::bounds_solid(surface)) continue;
+    const auto triangles = detail::fans_of(surface, position);
+    for (int i = 0; i < 100; ++i) {
+      Vec3 x;
+      double sum = 0.0;
+      for (int k = 0; k < 4; ++k) {
+        const double weight = random.uniform();
+        x += triangles[random.below(static_cast<std::uint32_t>(triangles.size()))].a * weight;
+        sum += weight;
+      }
+      if (detail::all_positive(x * (1.0 / sum), triangles)) return true;
+    }
+  }
+  return false;
+}
+
+std::vector<test::EditMesh> box_meshes() {
+  return {{"tetrahedra", [] { return test::edit_box(CellType::tetrahedron); }},
+          {"hexahedra", [] { return test::edit_box(CellType::hexahedron); }},
+          {"prisms", [] { return test::edit_box(CellType::prism); }},
+          {"pyramids", [] { return test::edit_box(CellType::pyramid); }},
+          {"mixed", [] { return test::edit_box(CellType::hexahedron, true); }},
+          {"octahedra", [] {
+             OctahedraOptions o;
+             o.cells = {3, 2, 2};
+             return generate_octahedra(o);
+           }}};
+}
+
+class RepairOn : public testing::TestWithParam<test::EditMesh> {};
+
+// One vertex with cells of one kind around it: whatever happened to it, its place is among them.
+TEST_P(RepairOn, MendsOneVertexGoneAstray) {
+  Random random(3);
+  std::size_t repaired = 0;
+  for (int i = 0; i < test::scaled(10, 1000); ++i) {
+    Complex complex(GetParam().make());
+    const auto inner = inner_vertices(complex.map());
+    ASSERT_FALSE(inner.empty());
+    const auto walls_before = walls(complex);
+    const test::Dyadic free_before = free_volume6(complex);
+    const test::Dyadic before = volume6(complex);
+    const Vertex v = inner[random.below(static_cast<std::uint32_t>(inner.size()))];
+    displace(complex, {{v, random_vector(random, 1.5)}});
+    const auto bad = invalid_cells(complex);
+    ComplexEdit edit(complex);
+    const RepairReport report = repair(edit, bad);
+    EXPECT_TRUE(report.left.empty());
+    edit.commit();
+    test::expect_good(complex);
+    EXPECT_EQ(walls(complex), walls_before);
+    EXPECT_TRUE(free_volume6(complex) == free_before);
+    EXPECT_TRUE(volume6(complex) == before);
+    repaired += bad.size();
+  }
+  EXPECT_GT(repaired, 10U);
+}
+
+// Several, whose surroundings overlap: what is mended is right, what is not is named and as it was.
+TEST_P(RepairOn, MendsOrLeaves) {
+  Random random(4);
+  std::size_t mended = 0;
+  std::size_t left = 0;
+  for (int i = 0; i < test::scaled(10, 2000); ++i) {
+    Complex complex(GetParam().make());
+    { ComplexEdit counts(complex); }
+    const auto inner = inner_vertices(complex.map());
+    std::vector<std::pair<Vertex, Vec3>> moves;
+    for (std::uint32_t k = 1 + random.below(6); k > 0; --k) {
+      const bool any = random.below(4) == 0;
+      const auto all = static_cast<std::uint32_t>(complex.point_count());
+      const auto number = static_cast<std::uint32_t>(inner.size());
+      moves.emplace_back(any ? Vertex(random.below(all)) : inner[random.below(number)], random_vector(random, 1.0));
+    }
+    displace(complex, moves);
+    const auto walls_before = walls(complex);
+    const test::Dyadic free_before = free_volume6(complex);
+    const test::Dyadic before = volume6(complex);
+    const Map map_before = complex.map();
+    const auto bad = invalid_cells(complex);
+    ComplexEdit edit(complex);
+    const RepairReport report = repair(edit, bad);
+    if (report.mended.empty()) EXPECT_TRUE(complex.map() == map_before);
+    edit.commit();
+    EXPECT_TRUE(check_integrity(complex.map(), 1).empty());
+    EXPECT_EQ(walls(complex), walls_before);
+    EXPECT_TRUE(free_volume6(complex) == free_before);
+    EXPECT_TRUE(volume6(complex) == before);
+    std::vector<Cell> still = invalid_cells(complex);
+    std::vector<Cell> named;
+    for (const LeftCell& c : report.left) {
+      named.push_back(c.cell);
+      EXPECT_NE(c.reason.find(std::to_string(c.source)), std::string::npos);
+      EXPECT_TRUE(std::find(bad.begin(), bad.end(), c.cell) != bad.end());
+      EXPECT_FALSE(seen_by_trying(complex, c.cell, random));
+    }
+    std::sort(still.begin(), still.end());
+    std::sort(named.begin(), named.end());
+    EXPECT_EQ(still, named);
+    mended += report.mended.size();
+    left += report.left.size();
+  }
+  std::cout << GetParam().name << ": " << mended << " regions mended, " << left << " cells left\n";
+}
+
+// With cells that were subdivided among others that were not: faces that may be straight, points of faces and cells.
+TEST_P(RepairOn, MendsNextToSubdivided) {
+  Random random(5);
+  std::size_t mended = 0;
+  std::size_t left = 0;
+  for (int i = 0; i < test::scaled(10, 1000); ++i) {
+    Complex complex(GetParam().make());
+    for (int k = 0; k < 4; ++k) {
+      const auto cells = complex.map().cells();
+      ComplexEdit edit(complex);
+      subdivide(edit, cells[random.below(static_cast<std::uint32_t>(cells.size()))]);
+      edit.commit();
+    }
+    const auto inner = inner_vertices(complex.map());
+    std::vector<std::pair<Vertex, Vec3>> moves;
+    for (int k = 0; k < 4; ++k)
+      moves.emplace_back(inner[random.below(static_cast<std::uint32_t>(inner.size()))], random_vector(random, 0.7));
+    displace(complex, moves);
+    const auto walls_before = walls(complex);
+    ComplexEdit edit(complex);
+    const RepairReport report = repair(edit, invalid_cells(complex));
+    edit.commit();
+    EXPECT_TRUE(check_integrity(complex.map(), 1).empty());
+    EXPECT_EQ(walls(complex), walls_before);
+    EXPECT_EQ(invalid_cells(complex).size(), report.left.size());
+    mended += report.mended.size();
+    left += report.left.size();
+  }
+  EXPECT_GT(mended, 2 * left);
+  std::cout << GetParam().name << ": " << mended << " regions mended, " << left << " cells left\n";
+}
+
+INSTANTIATE_TEST_SUITE_P(Meshes, RepairOn, testing::ValuesIn(box_meshes()),
+                         [](const auto& mesh) { return std::string(mesh.param.name); });
+
+MeshData grid(std::uint32_t n) {
+  BoxOptions o;
+  o.cells = {n, n, n};
+  o.size = {1.0 * n, 1.0 * n, 1.0 * n};
+  return generate_box(o);
+}
+
+Vertex grid_vertex(std::uint32_t n, std::uint32_t i, std::uint32_t j, std::uint32_t k) {
+  return Vertex(i + (n + 1) * (j + (n + 1) * k));
+}
+
+TEST(Repair, PassesOverWhatIsValid) {
+  Complex complex(grid(3));
+  { ComplexEdit counts(complex); }
+  const Map before = complex.map();
+  ComplexEdit edit(complex);
+  const RepairReport report = repair(edit, complex.map().cells());
+  EXPECT_TRUE(report.mended.empty());
+  EXPECT_TRUE(report.left.empty());
+  EXPECT_TRUE(complex.map() == before);
+  EXPECT_TRUE(edit.commit().map.added.empty());
+}
+
+// A little beyond a face: the vertex goes back among its cells, which stay hexahedra.
+TEST(Repair, MovesAVertexBack) {
+  Complex complex(grid(4));
+  displace(complex, {{grid_vertex(4, 2, 2, 2), {1.5, 0.0, 0.0}}});
+  ComplexEdit edit(complex);
+  const RepairReport report = repair(edit, invalid_cells(complex));
+  ASSERT_EQ(report.mended.size(), 1U);
+  EXPECT_EQ(report.mended[0].how, Mending::moved);
+  EXPECT_EQ(report.mended[0].sources.size(), 8U);
+  const ComplexEditReport done = edit.commit();
+  ASSERT_EQ(done.placed.size(), 1U);
+  EXPECT_LT(norm(complex.positions()[done.placed[0].vertex.value] - Vec3{2.0, 2.0, 2.0}), 0.75);
+  EXPECT_EQ(complex.map().cell_count(static_cast<std::uint32_t>(CellType::hexahedron)), 64U);
+}
+
+// Two neighbours that swapped places: no single one can be moved back, nor is the surface around one good.
+TEST(Repair, CutsWhereTwoWentAstray) {
+  Complex complex(grid(5));
+  const test::Dyadic before = volume6(complex);
+  displace(complex, {{grid_vertex(5, 2, 2, 2), {1.75, 0.25, 0.0}}, {grid_vertex(5, 3, 2, 2), {-1.75, 0.0, 0.25}}});
+  ComplexEdit edit(complex);
+  const RepairReport report = repair(edit, invalid_cells(complex));
+  EXPECT_TRUE(report.left.empty());
+  ASSERT_FALSE(report.mended.empty());
+  EXPECT_TRUE(
+      std::any_of(report.mended.begin(), report.mended.end(), [](const auto& r) { return r.how == Mending::cut; }));
+  edit.commit();
+  test::expect_good(complex);
+  EXPECT_TRUE(volume6(complex) == before);
+}
+
+TEST(Repair, LeavesWhatHasNoInside) {
+  Complex complex(grid(3));
+  { ComplexEdit counts(complex); }
+  displace(complex, {{grid_vertex(3, 0, 0, 0), {1.5, 0.0, 0.0}}});  // the boundary itself is inverted there
+  const Map before = complex.map();
+  const auto bad = invalid_cells(complex);
+  ASSERT_FALSE(bad.empty());
+  ComplexEdit edit(complex);
+  const RepairReport report = repair(edit, bad);
+  EXPECT_TRUE(report.mended.empty());
+  ASSERT_EQ(report.left.size(), bad.size());
+  test::expect_parts(report.left[0].reason, {"cell 0 stays as it is", "at most 64 cells"});
+  EXPECT_TRUE(complex.map() == before);
+  EXPECT_TRUE(edit.commit().map.added.empty());
+  EXPECT_TRUE(complex.map() == before);
+}
+
+TEST(Repair, RefusesCellsThatAreNotThere) {
+  Complex complex(grid(3));
+  ComplexEdit edit(complex);
+  const Cell cells[] = {Cell(1, 77)};
+  EXPECT_THROW(repair(edit, cells), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace dartcast
