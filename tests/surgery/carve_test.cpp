@@ -137,7 +137,8 @@ TEST_P(Carvings, CutsThatCross) {
       EXPECT_TRUE(Dyadic() < volume6(complex, carved.opened));
       std::vector<Cell> cells = complex.map().cells();
       std::erase_if(cells, [&](Cell c) { return !complex.map().is_free(c); });
-      EXPECT_TRUE(test::near(volume6(complex, cells), free + volume6(complex, carved.opened), 1e-9));
+      // Walls of earlier cuts, bent by their snap, are split anew.
+      EXPECT_TRUE(test::near(volume6(complex, cells), free + volume6(complex, carved.opened), 6.0 * 40 * 0.05 / 128));
     }
   }
 }
@@ -310,14 +311,14 @@ TEST(Carving, CutsAVesselAtRandom) {
     if (i % 8 == 0) complex = Complex(mesh);
     const std::vector<Cell> cells = complex.map().cells();
     const Vec3 x = complex.corners({cells[random.below(static_cast<std::uint32_t>(cells.size()))], 0})[0];
-    const Vec3 n = direction();
+    const Vec3 n = plane_through({}, direction()).normal;
     std::vector<ConvexTool> tools;
     if (i % 4 == 0) tools = thicken(plane_through(x, n), 0.2e-3);
     if (i % 4 == 1) tools = thicken(Disc{x, n, 4e-3, 12}, 0.1e-3);
     if (i % 4 == 2) tools = {capsule_tool(x, x + n * 3e-3, 0.7e-3)};
     if (i % 4 == 3) {
       BladePath path;  // bends a little, and twists
-      const Vec3 blade = direction() * 3e-3;
+      const Vec3 blade = plane_through({}, cross(n, direction())).normal * 3e-3;
       for (int k = 0; k < 4; ++k)
         path.places.push_back({x + n * (k * 1e-3) + Vec3{0, 0, 0.1e-3 * k * k}, x + blade + n * (k * 1e-3)});
       tools = thicken(path, 0.1e-3);
