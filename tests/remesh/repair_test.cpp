@@ -280,6 +280,12 @@ TEST(Repair, CutsWhereTwoWentAstray) {
   ASSERT_FALSE(report.mended.empty());
   EXPECT_TRUE(
       std::any_of(report.mended.begin(), report.mended.end(), [](const auto& r) { return r.how == Mending::cut; }));
+  for (const MendedRegion& region : report.mended) {
+    std::set<std::uint32_t> sources;
+    for (const Cell c : region.cells) sources.insert(complex.map().source(c));
+    EXPECT_EQ(std::vector<std::uint32_t>(sources.begin(), sources.end()), region.sources);
+    EXPECT_LE(region.sources.size(), 12U);  // those around the two
+  }
   edit.commit();
   test::expect_good(complex);
   EXPECT_TRUE(volume6(complex) == before);

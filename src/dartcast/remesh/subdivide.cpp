@@ -97,12 +97,12 @@ class Subdivider {
     return static_cast<std::uint32_t>(std::lower_bound(corners_.begin(), corners_.end(), corner) - corners_.begin());
   }
 
-  // Divided, not multiplied: the mean of equal coordinates is that coordinate, so that faces across an axis stay plane.
+  // From the first corner: the mean of equal coordinates is that coordinate, so that faces across an axis stay plane.
   [[nodiscard]] Vec3 mean(std::span<const std::uint16_t> corners) const {
+    const Vec3 first = positions_[corners[0]];
     Vec3 sum;
-    for (const std::uint16_t v : corners) sum += positions_[v];
-    const auto n = static_cast<double>(corners.size());
-    return {sum.x / n, sum.y / n, sum.z / n};
+    for (const std::uint16_t v : corners) sum += positions_[v] - first;
+    return first + sum * (1.0 / static_cast<double>(corners.size()));
   }
 
   // A vertex in the middle of corners; data are interpolated between two others that lie on opposite sides of it.
