@@ -20,15 +20,6 @@ std::uint64_t simplices_of(const Map& map, std::span<const Cell> cells) {
   return sum;
 }
 
-PlacedVertex described(const BornVertex& born, std::span<const Vec3> positions) {
-  const Vec3 x = positions[born.vertex.value];
-  const Vec3 a = positions[born.from.value];
-  const Vec3 edge = positions[born.other.value] - a;
-  const double length2 = dot(edge, edge);
-  const double share = length2 > 0.0 ? std::clamp(dot(x - a, edge) / length2, 0.0, 1.0) : 0.0;
-  return {born.vertex, born.from, born.other, share, x - (a + edge * share)};
-}
-
 }  // namespace
 
 ComplexEdit::ComplexEdit(Complex& complex)
@@ -54,7 +45,8 @@ Vec3 ComplexEdit::position(Vertex v) {
   return complex_.front_[v.value];
 }
 
-void ComplexEdit::place(Vertex v, const Vec3& x) {
+// Returns its number among the new ones.
+std::size_t ComplexEdit::place_born(Vertex v, const Vec3& x) {
   take_born();
   std::size_t i = born_;
   while (i > 0 && transaction_.born(i - 1).vertex != v) --i;
@@ -67,10 +59,22 @@ void ComplexEdit::place(Vertex v, const Vec3& x) {
                     "between 2^-300 and 2^300 in magnitude",
                     v.value, x.x, x.y, x.z));
   complex_.front_[v.value] = x;
+  return i - 1;
+}
+
+void ComplexEdit::place(Vertex v, const Vec3& x) { means_.erase(place_born(v, x)); }
+
+void ComplexEdit::place(Vertex v, std::span<const Vertex> of, std::span<const double> weights) {
+  if (of.empty() || of.size() != weights.size())
+    throw InvalidArgument("place: give one weight per vertex, one at least");
+  Vec3 sum;
+  for (std::size_t i = 0; i < of.size(); ++i) sum += position(of[i]) * weights[i];
+  means_[place_born(v, sum)] = {{of.begin(), of.end()}, {weights.begin(), weights.end()}};
 }
 
 void ComplexEdit::roll_back(const Transaction::Mark& to) {
   transaction_.roll_back(to);
+  means_.erase(means_.lower_bound(transaction_.born_count()), means_.end());
   take_born();
 }
 
@@ -78,11 +82,13 @@ ComplexEditReport ComplexEdit::commit() {
   try {
     take_born();
     const std::size_t born = born_;
-    const InteriorWeights points = give_interior_points(transaction_, complex_.front_);
+    GivenPoints given = give_interior_points(transaction_, complex_.front_);
     take_born();
-    points.compute(complex_.front_);
+    given.weights.compute(complex_.front_);
     check_added();
-    return make_final(points, born);
+    ComplexEditReport report = make_final(given.weights, born);
+    report.given_points = std::move(given.replaced);
+    return report;
   } catch (...) {
     roll_back({});
     throw;
@@ -99,10 +105,17 @@ void ComplexEdit::check_added() const {
   }
 }
 
-std::vector<PlacedVertex> ComplexEdit::placed(std::size_t born) const {
-  std::vector<PlacedVertex> placed;
-  for (std::size_t i = 0; i < born; ++i) placed.push_back(described(transaction_.born(i), complex_.front_));
-  return placed;
+PlacedVertex ComplexEdit::placed(std::size_t born) const {
+  const BornVertex& v = transaction_.born(born);
+  const auto position = [&](Vertex w) { return complex_.front_[w.value]; };
+  const auto mean = means_.find(born);
+  if (mean != means_.end()) return {v.vertex, mean->second.of, mean->second.weights, {}};
+  if (v.from == v.other) return {v.vertex, {v.from}, {1.0}, position(v.vertex) - position(v.from)};
+  const Vec3 edge = position(v.other) - position(v.from);
+  const Vec3 way = position(v.vertex) - position(v.from);
+  const double length2 = dot(edge, edge);
+  const double share = length2 > 0.0 ? std::clamp(dot(way, edge) / length2, 0.0, 1.0) : 0.0;
+  return {v.vertex, {v.from, v.other}, {1.0 - share, share}, way - edge * share};
 }
 
 std::vector<Cell> ComplexEdit::around() const {
@@ -130,7 +143,7 @@ std::vector<Cell> ComplexEdit::around() const {
 ComplexEditReport ComplexEdit::make_final(const InteriorWeights& points, std::size_t born) {
   ComplexEditReport report;
   report.boundary_shift = boundary_shift(transaction_, complex_.front_);
-  report.placed = placed(born);
+  for (std::size_t i = 0; i < born; ++i) report.placed.push_back(placed(i));
   report.around = around();
   const std::uint64_t gone = simplices_of(map(), transaction_.removed());
   std::vector<Vertex> news;
@@ -149,6 +162,7 @@ ComplexEditReport ComplexEdit::make_final(const InteriorWeights& points, std::si
   std::erase_if(complex_.invalid_, [&](const InvalidCell& c) { return !map().contains(c.cell); });
   positions_before_ = complex_.front_.size();
   born_ = 0;
+  means_.clear();
   return report;
 }
 

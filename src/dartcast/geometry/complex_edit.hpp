@@ -4,7 +4,11 @@
 // continuous collision detection in deformable environments", SPM 2009, section 6.2.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <map>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "dartcast/geometry/complex.hpp"
@@ -12,26 +16,34 @@
 
 namespace dartcast {
 
-/// A vertex that an edit made, and how data given at the vertices follow: it lies at (1 - share) from + share other +
-/// offset. A vertex parted from another: share 0.
+/// A vertex that an edit made, and how data given at the vertices follow: it lies at the sum of `weights` times the
+/// positions of `of`, and `offset`. On an edge: of its ends. Parted from another: of that one.
 struct PlacedVertex {
   Vertex vertex;
-  Vertex from, other;
-  double share = 0.0;
+  std::vector<Vertex> of;  ///< older ones
+  std::vector<double> weights;
   Vec3 offset;  ///< in the positions when it was made
 };
 
 /// What an edit did.
 struct ComplexEditReport {
   EditReport map;
-  /// Vertices made, interior points apart, in order: `from` and `other` are older. Among them may be some that were
-  /// given up again.
+  /// Vertices made, interior points apart, in order. Among them may be some that were given up again.
   std::vector<PlacedVertex> placed;
+  /// Cells that commit() replaced to give them points: what they were while the edit was open, and are now. Sorted.
+  std::vector<std::pair<Cell, Cell>> given_points;
   /// Cells that stay as they are, next to cells that were touched.
   std::vector<Cell> around;
   /// No point of a wall or of the boundary where an edit split, merged or fanned faces anew lies farther than this from
   /// where it lay (m): rounding where the faces are planar, their warp else. Faces that became walls are no part of it.
   double boundary_shift = 0.0;
+
+  /// What a cell is now that an edit returned before commit(). Cost: logarithmic.
+  [[nodiscard]] Cell now(Cell c) const {
+    const auto at = std::lower_bound(given_points.begin(), given_points.end(), std::pair{c, Cell{}},
+                                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    return at != given_points.end() && at->first == c ? at->second : c;
+  }
 };
 
 /// Values at the vertices after an edit: those of new vertices are interpolated. `values`: one per vertex before the
@@ -41,7 +53,9 @@ void follow(const ComplexEditReport& report, std::size_t size, std::vector<T>& v
   values.resize(size);
   for (const PlacedVertex& p : report.placed) {
     if (p.vertex.value >= size) continue;
-    values[p.vertex.value] = values[p.from.value] * (1.0 - p.share) + values[p.other.value] * p.share;
+    T sum = values[p.of[0].value] * p.weights[0];
+    for (std::size_t i = 1; i < p.of.size(); ++i) sum += values[p.of[i].value] * p.weights[i];
+    values[p.vertex.value] = sum;
   }
 }
 
@@ -66,27 +80,38 @@ class ComplexEdit {
   /// Places a vertex that this edit made. Throws InvalidArgument where it made no such vertex, or x is not finite or
   /// outside the exact range.
   void place(Vertex v, const Vec3& x);
+  /// Places it at the weighted mean of older vertices, which is what data given at the vertices follow by: better for
+  /// one that is in the middle of a face or a cell. `weights`: one per vertex of `of`; they sum to 1. Throws as above,
+  /// and where the numbers do not match.
+  void place(Vertex v, std::span<const Vertex> of, std::span<const double> weights);
 
   [[nodiscard]] Transaction::Mark mark() const { return transaction_.mark(); }
   /// Takes back everything after the mark. (Not by topology().roll_back(): places would stay.)
   void roll_back(const Transaction::Mark& to);
 
-  /// Gives touched cells the interior points that they need, and makes everything final. Throws EditRefused, everything
-  /// taken back, where a new cell has a simplex that is not positive and no interior point mends it: names the cell.
-  /// Cost: that of the cells touched and their neighbours.
+  /// Gives touched cells the interior points that they need (see ComplexEditReport::now()), and makes everything final.
+  /// Throws EditRefused, everything taken back, where a new cell has a simplex that is not positive and no interior
+  /// point mends it: names the cell. Cost: that of the cells touched and their neighbours.
   ComplexEditReport commit();
 
  private:
+  struct Mean {
+    std::vector<Vertex> of;
+    std::vector<double> weights;
+  };
+
   void take_born();
+  std::size_t place_born(Vertex v, const Vec3& x);
   void check_added() const;
-  [[nodiscard]] std::vector<PlacedVertex> placed(std::size_t born) const;
+  [[nodiscard]] PlacedVertex placed(std::size_t born) const;
   [[nodiscard]] std::vector<Cell> around() const;
   ComplexEditReport make_final(const InteriorWeights& points, std::size_t born);
 
   Complex& complex_;
   std::size_t positions_before_;
   Transaction transaction_;
-  std::size_t born_ = 0;  // so many of the transaction's new vertices have positions
+  std::size_t born_ = 0;               // so many of the transaction's new vertices have positions
+  std::map<std::size_t, Mean> means_;  // of those placed so, by number among the new
 };
 
 }  // namespace dartcast

@@ -51,19 +51,27 @@ class Giver {
  public:
   Giver(Transaction& t, std::span<const Vec3> positions) : transaction_(t), positions_(positions), rework_(t) {}
 
-  InteriorWeights give() {
+  GivenPoints give() {
     for (const Cell c : transaction_.added()) {
       if (needs_point(c)) take(c);
     }
     for (std::size_t i = 0; i < taken_.size(); ++i) choose_face_points(taken_[i]);
     for (const CellFace f : faces_) add_face_point(f);
     for (const Cell c : taken_) add_cell_point(rework_.draft(c));
-    if (!taken_.empty()) rework_.put();
-    return std::move(weights_);
+    return {std::move(weights_), put()};
   }
 
  private:
   [[nodiscard]] const Map& map() const { return transaction_.map(); }
+
+  std::vector<std::pair<Cell, Cell>> put() {
+    std::vector<std::pair<Cell, Cell>> replaced;
+    if (taken_.empty()) return replaced;
+    const std::vector<Cell> now = rework_.put();
+    for (std::size_t i = 0; i < taken_.size(); ++i) replaced.emplace_back(taken_[i], now[i]);
+    std::sort(replaced.begin(), replaced.end());
+    return replaced;
+  }
 
   [[nodiscard]] bool needs_point(Cell c) const {
     const auto& faces = map().shape(c).key().faces;
@@ -156,8 +164,6 @@ class Giver {
 
 }  // namespace
 
-InteriorWeights give_interior_points(Transaction& t, std::span<const Vec3> positions) {
-  return Giver(t, positions).give();
-}
+GivenPoints give_interior_points(Transaction& t, std::span<const Vec3> positions) { return Giver(t, positions).give(); }
 
 }  // namespace dartcast

@@ -13,8 +13,6 @@
 namespace dartcast {
 namespace {
 
-using Kind = DeformationKind;
-
 constexpr double full_turn = 2 * std::numbers::pi;
 
 // Turns of t / period, less the whole ones: sine and cosine lose no digits however long a run is.
@@ -34,24 +32,26 @@ class Checker {
 
   void check() const {
     const DeformationStep& s = step_;
-    const bool bounded = s.kind == Kind::bend || s.kind == Kind::twist || s.kind == Kind::bump;
+    const bool bounded =
+        s.kind == DeformationKind::bend || s.kind == DeformationKind::twist || s.kind == DeformationKind::bump;
     require(std::isfinite(s.amplitude), "amplitude must be finite");
     require(s.period > 0 && std::isfinite(s.period), "period must be positive");
     require(is_finite(s.axis) && is_finite(s.centre) && is_finite(s.direction),
             "axis, centre and direction must be finite");
     require(!bounded || (s.length > 0 && std::isfinite(s.length)), "length must be positive");
     require(s.wavelength >= 0 && std::isfinite(s.wavelength), "wavelength must be 0 or positive");
-    require(s.kind != Kind::stretch || std::abs(s.amplitude) < 1, "amplitude must be between -1 and 1");
-    const bool may_lack_axis = s.kind == Kind::pulse || s.kind == Kind::frames;
+    require(s.kind != DeformationKind::stretch || std::abs(s.amplitude) < 1, "amplitude must be between -1 and 1");
+    const bool may_lack_axis = s.kind == DeformationKind::pulse || s.kind == DeformationKind::frames;
     require(may_lack_axis || norm(s.axis) > 0, "axis must not be 0");
-    require(s.kind != Kind::bend || norm(cross(s.axis, s.direction)) > 1e-6 * norm(s.axis) * norm(s.direction),
-            "direction must not be 0 or along the axis");
+    require(
+        s.kind != DeformationKind::bend || norm(cross(s.axis, s.direction)) > 1e-6 * norm(s.axis) * norm(s.direction),
+        "direction must not be 0 or along the axis");
     require(s.field.empty() || s.field.size() == vertices_, "field must have one entry per vertex");
     require(s.path.empty() || s.path.size() == vertices_, "path must have one entry per vertex");
     require(std::all_of(s.field.begin(), s.field.end(), is_finite), "field must be finite");
     require(std::all_of(s.path.begin(), s.path.end(), [](double p) { return std::isfinite(p); }),
             "path must be finite");
-    if (s.kind == Kind::frames) check_frames();
+    if (s.kind == DeformationKind::frames) check_frames();
   }
 
  private:
@@ -83,37 +83,37 @@ class Motion {
  public:
   Motion(const DeformationStep& step, double time) : s_(step), turns_(turns(time, step.period)) {
     amount_ = s_.amplitude * std::sin(full_turn * turns_);
-    if (s_.kind == Kind::rotate || s_.kind == Kind::swing) {
-      const double angle = s_.kind == Kind::rotate ? full_turn * turns_ : amount_;
+    if (s_.kind == DeformationKind::rotate || s_.kind == DeformationKind::swing) {
+      const double angle = s_.kind == DeformationKind::rotate ? full_turn * turns_ : amount_;
       sine_ = std::sin(angle);
       cosine_ = std::cos(angle);
     }
-    if (s_.kind == Kind::frames) find_frames(time);
+    if (s_.kind == DeformationKind::frames) find_frames(time);
   }
 
   [[nodiscard]] Vec3 operator()(const Vec3& x, std::size_t vertex) const {
-    if (s_.kind == Kind::frames)
+    if (s_.kind == DeformationKind::frames)
       return s_.frames[before_][vertex] * (1 - weight_) + s_.frames[after_][vertex] * weight_;
     const Vec3 r = x - s_.centre;
     const double height = dot(r, s_.axis);
     switch (s_.kind) {
-      case Kind::rotate:
-      case Kind::swing: return s_.centre + turn(r, s_.axis, sine_, cosine_);
-      case Kind::bend: return s_.centre + bent(r, height);
-      case Kind::twist: {
+      case DeformationKind::rotate:
+      case DeformationKind::swing: return s_.centre + turn(r, s_.axis, sine_, cosine_);
+      case DeformationKind::bend: return s_.centre + bent(r, height);
+      case DeformationKind::twist: {
         const double angle = amount_ * height / s_.length;
         return s_.centre + turn(r, s_.axis, std::sin(angle), std::cos(angle));
       }
-      case Kind::stretch: {
+      case DeformationKind::stretch: {
         const Vec3 along = s_.axis * height;
         return s_.centre + along * (1 + amount_) + (r - along) * (1 / std::sqrt(1 + amount_));
       }
-      case Kind::pulse: return x + pulsed(r, height, vertex);
-      case Kind::bump: {
+      case DeformationKind::pulse: return x + pulsed(r, height, vertex);
+      case DeformationKind::bump: {
         const double inside = 1 - dot(r, r) / (s_.length * s_.length);
         return inside > 0 ? x + s_.axis * (amount_ * inside * inside) : x;
       }
-      case Kind::frames: break;
+      case DeformationKind::frames: break;
     }
     return x;
   }
@@ -159,32 +159,71 @@ std::optional<DeformationKind> deformation_kind(std::string_view name) {
 }
 
 Deformation::Deformation(std::vector<DeformationStep> steps, std::span<const Vec3> rest)
-    : steps_(std::move(steps)), rest_(rest.begin(), rest.end()) {
+    : steps_(std::move(steps)), rest_(rest.begin(), rest.end()), size_(rest.size()) {
   for (std::size_t i = 0; i < steps_.size(); ++i) {
     DeformationStep& s = steps_[i];
     Checker(s, i, rest_.size()).check();
     if (norm(s.axis) > 0) s.axis *= 1 / norm(s.axis);
     s.direction -= s.axis * dot(s.axis, s.direction);
-    if (s.kind == Kind::bend) s.direction *= 1 / norm(s.direction);
+    if (s.kind == DeformationKind::bend) s.direction *= 1 / norm(s.direction);
   }
 }
 
 void Deformation::positions(double time, std::span<Vec3> out, Threads threads) const {
   if (!std::isfinite(time)) throw InvalidArgument("deformation: time must be finite");
-  if (out.size() != rest_.size()) {
+  if (out.size() != size_) {
     throw InvalidArgument(
-        fmt::format("deformation: room for {} positions is given; the mesh has {} vertices", out.size(), rest_.size()));
+        fmt::format("deformation: room for {} positions is given; the mesh has {} vertices", out.size(), size_));
   }
   std::vector<Motion> motions;
   motions.reserve(steps_.size());
   for (const DeformationStep& s : steps_) motions.emplace_back(s, time);
-  parallel_for(out.size(), 4096, threads, [&](std::size_t begin, std::size_t end) {
+  parallel_for(rest_.size(), 4096, threads, [&](std::size_t begin, std::size_t end) {
     std::copy(rest_.begin() + static_cast<std::ptrdiff_t>(begin), rest_.begin() + static_cast<std::ptrdiff_t>(end),
               out.begin() + static_cast<std::ptrdiff_t>(begin));
     for (const Motion& motion : motions) {
       for (std::size_t v = begin; v < end; ++v) out[v] = motion(out[v], v);
     }
   });
+  add_later(time, out);
+}
+
+void Deformation::follow(const ComplexEditReport& edit, std::size_t size) {
+  later_.insert(later_.end(), edit.placed.begin(), edit.placed.end());
+  size_ = size;
+}
+
+void Deformation::add_pull(std::span<const Vec3> displacement, double begin, double end) {
+  if (displacement.size() != size_)
+    throw InvalidArgument(fmt::format("deformation: {} displacements for {} vertices", displacement.size(), size_));
+  if (!std::isfinite(begin) || !std::isfinite(end) || !(end > begin))
+    throw InvalidArgument("deformation: a pull must end after it begins");
+  if (!std::all_of(displacement.begin(), displacement.end(), is_finite))
+    throw InvalidArgument("deformation: a displacement is not finite");
+  Pull pull{{}, {}, begin, end};
+  for (std::size_t v = 0; v < displacement.size(); ++v) {
+    if (displacement[v] == Vec3{}) continue;
+    pull.vertex.push_back(static_cast<std::uint32_t>(v));
+    pull.displacement.push_back(displacement[v]);
+  }
+  later_.emplace_back(std::move(pull));
+}
+
+// A vertex that was made after a pull goes with the pulled ones.
+void Deformation::add_later(double time, std::span<Vec3> out) const {
+  const auto smooth = [](double t) { return t * t * (3.0 - 2.0 * t); };
+  for (const Later& later : later_) {
+    if (const auto* pull = std::get_if<Pull>(&later)) {
+      const double share = smooth(std::clamp((time - pull->begin) / (pull->end - pull->begin), 0.0, 1.0));
+      for (std::size_t i = 0; i < pull->vertex.size(); ++i) out[pull->vertex[i]] += pull->displacement[i] * share;
+      continue;
+    }
+    const auto& placed = std::get<PlacedVertex>(later);
+    if (placed.vertex.value >= out.size()) continue;
+    Vec3 x = placed.offset;
+    for (std::size_t i = 0; i < placed.of.size(); ++i) x += out[placed.of[i].value] * placed.weights[i];
+    out[placed.vertex.value] = x;
+  }
 }
 
 }  // namespace dartcast

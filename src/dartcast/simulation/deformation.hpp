@@ -7,10 +7,12 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "dartcast/base/parallel.hpp"
 #include "dartcast/exact/vec3.hpp"
+#include "dartcast/geometry/complex_edit.hpp"
 
 namespace dartcast {
 
@@ -62,7 +64,15 @@ class Deformation {
   /// range above, not finite, or a list has not one entry per vertex.
   Deformation(std::vector<DeformationStep> steps, std::span<const Vec3> rest);
 
-  [[nodiscard]] std::size_t size() const { return rest_.size(); }
+  [[nodiscard]] std::size_t size() const { return size_; }
+
+  /// After an edit: vertices that it made go with those that they were made between, so that nothing jumps. `size`: of
+  /// the environment's positions now.
+  void follow(const ComplexEditReport& edit, std::size_t size);
+  /// Adds a displacement of some vertices that grows from 0 at the time `begin` to all of it at `end` (s), smoothly,
+  /// and stays; on top of everything else. `displacement`: one per vertex so far. Throws InvalidArgument where the
+  /// number does not match, one is not finite, or the end is not after the beginning.
+  void add_pull(std::span<const Vec3> displacement, double begin, double end);
 
   /// Writes the position of every vertex at `time` (s). The same bits for any number of threads. Throws
   /// InvalidArgument, and writes nothing, where time is not finite or out has not one place per vertex. Cost: 10 to 60
@@ -70,8 +80,20 @@ class Deformation {
   void positions(double time, std::span<Vec3> out, Threads threads = {}) const;
 
  private:
+  struct Pull {
+    std::vector<std::uint32_t> vertex;  // those that it displaces
+    std::vector<Vec3> displacement;
+    double begin, end;
+  };
+  // What edits and pulls did, in their order.
+  using Later = std::variant<PlacedVertex, Pull>;
+
+  void add_later(double time, std::span<Vec3> out) const;
+
   std::vector<DeformationStep> steps_;  // axis and direction made unit vectors
   std::vector<Vec3> rest_;
+  std::vector<Later> later_;
+  std::size_t size_;
 };
 
 }  // namespace dartcast

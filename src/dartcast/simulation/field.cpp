@@ -10,13 +10,12 @@ namespace dartcast {
 
 namespace {
 
-// Interior vertices take values as they take positions: a copy of the complex moves its points there.
+// Interior vertices take values as they take positions.
 std::vector<Vec3> at_all_vertices(const Complex& complex, std::span<const Vec3> values) {
-  if (complex.interior_point_count() == 0) return {values.begin(), values.end()};
-  Complex extended = complex;
-  std::copy(values.begin(), values.end(), extended.next_positions().begin());
-  extended.commit_positions();
-  return {extended.positions().begin(), extended.positions().end()};
+  std::vector<Vec3> all(values.begin(), values.end());
+  all.resize(complex.positions().size());
+  complex.interior().compute(all);
+  return all;
 }
 
 // The linear map that takes the edges of one simplex to those of another, applied to u.
@@ -43,6 +42,15 @@ VelocityField::VelocityField(const Complex& complex, std::span<const Vec3> value
     throw InvalidArgument(fmt::format("the velocity at point {} is not finite", bad - values.begin()));
   values_ = at_all_vertices(complex, values);
   if (frame == FieldFrame::mesh) rest_.assign(complex.positions().begin(), complex.positions().end());
+}
+
+void VelocityField::follow(const ComplexEditReport& edit, const Complex& complex) {
+  const auto take_over = [&](std::vector<Vec3>& values) {
+    dartcast::follow(edit, complex.positions().size(), values);
+    complex.interior().compute(values);
+  };
+  take_over(values_);
+  if (frame_ == FieldFrame::mesh) take_over(rest_);
 }
 
 Vec3 VelocityField::at(const Complex& complex, SimplexId simplex, const std::array<double, 4>& w,

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "dartcast/geometry/complex.hpp"
+#include "dartcast/geometry/complex_edit.hpp"
 
 namespace dartcast {
 
@@ -20,6 +20,9 @@ class VelocityField {
   VelocityField(const Complex& complex, std::span<const Vec3> values, FieldFrame frame = FieldFrame::space);
 
   [[nodiscard]] FieldFrame frame() const { return frame_; }
+
+  /// After an edit: new vertices take the values of those that they were made between. `complex`: as it is now.
+  void follow(const ComplexEditReport& edit, const Complex& complex);
 
   /// The velocity at the point of barycentric coordinates w in a simplex with these corners now. In the mesh's frame:
   /// relative to the mesh, taken from rest by the simplex's own linear map, so that a flow along a wall stays along it.

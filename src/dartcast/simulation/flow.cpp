@@ -69,7 +69,7 @@ void Flow::add_inlet(Patch patch, double rate, const Vec3& velocity) {
   if (!(rate >= 0.0) || !std::isfinite(rate))
     throw InvalidArgument("flow: an inlet's rate must be finite and not negative");
   if (!is_finite(velocity)) throw InvalidArgument("flow: an inlet's velocity must be finite");
-  inlets_.push_back({PatchSampler(environment_.complex(), patch), rate, velocity});
+  inlets_.push_back({patch, PatchSampler(environment_.complex(), patch), rate, velocity});
 }
 
 std::vector<Added> Flow::add(std::span<const Vec3> positions, const Vec3& velocity) {
@@ -126,11 +126,7 @@ FlowCheckpoint Flow::checkpoint() const {
 void Flow::restore(const FlowCheckpoint& saved) {
   if (saved.totals.contacts_by_patch.size() != totals_.contacts_by_patch.size())
     throw InvalidArgument("flow: the checkpoint is of an environment with other patches");
-  if (deformation_ && saved.steps > 0) {
-    deformation_->positions(static_cast<double>(saved.steps) * options_.dt, environment_.next_positions(),
-                            environment_.threads());
-    environment_.move();
-  }
+  move_vertices_to(saved.steps);
   std::vector<State> states;
   std::vector<Weights> weights;
   for (const FlowCheckpoint::Particle& p : saved.particles) {
@@ -155,6 +151,19 @@ void Flow::restore(const FlowCheckpoint& saved) {
   gone_ = saved.gone;
 }
 
+void Flow::move_vertices_to(std::uint64_t steps) {
+  if (!deformation_ || steps == 0) return;
+  deformation_->positions(static_cast<double>(steps) * options_.dt, environment_.next_positions(),
+                          environment_.threads());
+  environment_.move();
+}
+
+void Flow::go_to(std::uint64_t steps) {
+  if (particles_.size() > 0) throw InvalidArgument("flow: there are particles, which would be left behind");
+  move_vertices_to(steps);
+  steps_ = steps;
+}
+
 void Flow::add_random(std::size_t count, const Vec3& velocity) {
   if (!is_finite(velocity)) throw InvalidArgument("flow: a particle's velocity must be finite");
   if (count > 0) add_sampled(VolumeSampler(environment_.complex()), count, velocity);
@@ -164,6 +173,7 @@ void Flow::add_random(std::size_t count, const Vec3& velocity) {
 const FlowStep& Flow::step() {
   last_ = {};
   last_.duration = options_.dt;
+  last_.absorbed = std::exchange(absorbed_between_, 0);
   inject();
   move_vertices();
   for (unsigned segment = 0; segment < options_.substeps; ++segment) advance_segment(segment);
@@ -182,9 +192,9 @@ void Flow::inject() {
       return std::floor(inlet.rate * options_.dt * static_cast<double>(steps));
     };
     const auto count = static_cast<std::uint64_t>(up_to(steps_ + 1) - up_to(steps_));
-    if (count == 0) continue;
-    if (deformation_) inlet.sampler.update(environment_.complex());
-    add_sampled(inlet.sampler, count, inlet.velocity);
+    if (count == 0 || !inlet.sampler) continue;
+    if (deformation_) inlet.sampler->update(environment_.complex());
+    add_sampled(*inlet.sampler, count, inlet.velocity);
     last_.injected += count;
   }
   totals_.injected += last_.injected;
@@ -193,9 +203,7 @@ void Flow::inject() {
 void Flow::move_vertices() {
   if (!deformation_) return;
   const Timer timer(totals_.seconds_deform);
-  const double end = static_cast<double>(steps_ + 1) * options_.dt;
-  deformation_->positions(end, environment_.next_positions(), environment_.threads());
-  environment_.move();
+  move_vertices_to(steps_ + 1);
 }
 
 void Flow::advance_segment(unsigned segment) {
@@ -271,21 +279,78 @@ void Flow::count_contacts() {
 
 void Flow::remove_gone() {
   std::vector<std::uint8_t> gone(particles_.size(), 0);
+  std::uint64_t absorbed = 0;
   for (std::size_t i = 0; i < gone.size(); ++i) {
     const Fate fate = fates_[i];
     if (fate != Fate::absorbed && fate != Fate::escaped) continue;
     gone[i] = 1;
-    ++(fate == Fate::absorbed ? last_.absorbed : last_.escaped);
+    ++(fate == Fate::absorbed ? absorbed : last_.escaped);
     gone_.add(ids_[i], particles_[i], velocities_[i], static_cast<std::uint64_t>(fate));
   }
-  totals_.absorbed += last_.absorbed;
+  last_.absorbed += absorbed;
+  totals_.absorbed += absorbed;
   totals_.escaped += last_.escaped;
-  if (last_.absorbed + last_.escaped == 0) return;
+  if (absorbed + last_.escaped == 0) return;
   particles_.remove(gone);
-  keep_unmarked(ids_, gone);
-  keep_unmarked(velocities_, gone);
-  keep_unmarked(fates_, gone);
-  keep_unmarked(contact_counts_, gone);
+  remove_marked(gone);
+}
+
+// What is kept beside the particles themselves.
+void Flow::remove_marked(std::span<const std::uint8_t> marks) {
+  keep_unmarked(ids_, marks);
+  keep_unmarked(velocities_, marks);
+  keep_unmarked(fates_, marks);
+  keep_unmarked(contact_counts_, marks);
+}
+
+FlowEdit Flow::edit(const std::function<void(ComplexEdit&)>& make, Stranded stranded) {
+  const std::vector<State> before(particles_.states().begin(), particles_.states().end());
+  FlowEdit done;
+  done.edit = environment_.edit(make);
+  done.particles = environment_.follow(particles_, stranded);
+  remove_absorbed(done.particles, before);
+  if (deformation_) deformation_->follow(done.edit, environment_.positions().size());
+  if (field_) field_->follow(done.edit, environment_.complex());
+  reopen_inlets();
+  return done;
+}
+
+void Flow::remove_absorbed(const FollowReport& report, std::span<const State> before) {
+  std::vector<std::uint8_t> marks(ids_.size(), 0);
+  std::uint64_t absorbed = 0;
+  for (const StrandedParticle& p : report.stranded) {
+    if (p.became != Stranded::absorb) continue;
+    marks[p.particle] = 1;
+    ++absorbed;
+    gone_.add(ids_[p.particle], before[p.particle], velocities_[p.particle],
+              static_cast<std::uint64_t>(Fate::absorbed));
+  }
+  if (absorbed == 0) return;
+  totals_.absorbed += absorbed;
+  absorbed_between_ += absorbed;
+  remove_marked(marks);
+}
+
+void Flow::reopen_inlets() {
+  for (Inlet& inlet : inlets_) {
+    inlet.sampler.reset();
+    if (has_free_face(environment_.map(), inlet.patch)) inlet.sampler.emplace(environment_.complex(), inlet.patch);
+  }
+}
+
+RepairReport Flow::repair(const RepairOptions& options) {
+  std::vector<Cell> invalid;
+  for (const InvalidCell& c : environment_.validity(static_cast<std::size_t>(-1)).first) invalid.push_back(c.cell);
+  RepairReport report;
+  if (invalid.empty()) return report;
+  edit([&](ComplexEdit& e) { report = dartcast::repair(e, invalid, options); });
+  return report;
+}
+
+void Flow::pull(std::span<const Vec3> displacement, double duration) {
+  const auto positions = environment_.positions();
+  if (!deformation_) deformation_.emplace(std::vector<DeformationStep>{}, positions);
+  deformation_->add_pull(displacement, time(), time() + duration);
 }
 
 StateHash Flow::state_hash() const {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "dartcast/base/random.hpp"
 #include "dartcast/environment/environment.hpp"
 #include "dartcast/environment/state_hash.hpp"
+#include "dartcast/remesh/repair.hpp"
 #include "dartcast/response/respond.hpp"
 #include "dartcast/simulation/deformation.hpp"
 #include "dartcast/simulation/field.hpp"
@@ -37,7 +39,7 @@ struct FlowStep {
   StepReport report;
   std::vector<std::uint64_t> contact_ids;
   std::uint64_t injected = 0;
-  std::uint64_t absorbed = 0;
+  std::uint64_t absorbed = 0;  ///< by edits before this step, too
   std::uint64_t escaped = 0;
 };
 
@@ -72,6 +74,12 @@ struct FlowCheckpoint {
   StateHash gone;
 };
 
+/// What an edit between two steps did.
+struct FlowEdit {
+  ComplexEditReport edit;
+  FollowReport particles;
+};
+
 /// Carries particles through the steps of a simulation. Each step:
 ///  1. inlets inject; 2. vertices move; 3. velocities change: without a field, and with drag, dv/dt = gravity - drag (v
 ///  - u) is solved exactly for constant u (the field's velocity at the particle, or 0); with a field and no drag v = u,
@@ -80,7 +88,8 @@ struct FlowCheckpoint {
 /// Results are the same bits for any number of threads.
 class Flow {
  public:
-  /// `environment` outlives the flow, and is moved by it alone. Throws InvalidArgument where an option is out of range.
+  /// `environment` outlives the flow, and is moved and edited by it alone. Throws InvalidArgument where an option is
+  /// out of range.
   Flow(Environment& environment, const FlowOptions& options, Responses responses = Responses{});
 
   void set_field(VelocityField field) { field_ = std::move(field); }
@@ -98,11 +107,27 @@ class Flow {
 
   const FlowStep& step();
 
+  /// Edits the environment between two steps, as Environment::edit(), and takes along all that depends on it: particles
+  /// (by follow(); those absorbed count as such), the deformation, the field, and inlets: one whose patch has no face
+  /// at a free cell any more is closed until it has. Throws as these, nothing changed. Cost: as these; linear in the
+  /// cells where there are inlets.
+  FlowEdit edit(const std::function<void(ComplexEdit&)>& make, Stranded stranded = Stranded::move);
+  /// Remeshes cells that are not valid now (remesh/repair.hpp), by edit(). Nothing happens where all are. Cost: a check
+  /// of the scene, and the regions mended.
+  RepairReport repair(const RepairOptions& options = {});
+  /// Draws vertices along over the next `duration` seconds, on top of the deformation; they stay there. `displacement`:
+  /// one per position of the environment. Throws as Deformation::add_pull().
+  void pull(std::span<const Vec3> displacement, double duration);
+
   [[nodiscard]] FlowCheckpoint checkpoint() const;
-  /// Goes on from a checkpoint of a flow made with the same environment, options, deformation, field and inlets: every
-  /// later step is then the same to the last bit. Replaces all particles; vertices move to the checkpoint's time.
-  /// Throws InvalidArgument, the particles unchanged, where a state does not hold in this environment.
+  /// Goes on from a checkpoint of a flow made with the same environment, options, deformation, field, inlets, and edits
+  /// (see go_to()): every later step is then the same to the last bit. Replaces all particles; vertices move to the
+  /// checkpoint's time. Throws InvalidArgument, the particles unchanged, where a state does not hold in this
+  /// environment.
   void restore(const FlowCheckpoint& saved);
+  /// Brings the vertices to where they are after so many steps, to make edits there again before restore(). Throws
+  /// InvalidArgument where there are particles.
+  void go_to(std::uint64_t steps);
 
   [[nodiscard]] double time() const { return static_cast<double>(steps_) * options_.dt; }
   [[nodiscard]] std::uint64_t steps() const { return steps_; }
@@ -122,7 +147,8 @@ class Flow {
 
  private:
   struct Inlet {
-    PatchSampler sampler;
+    Patch patch;
+    std::optional<PatchSampler> sampler;  // none while it is closed
     double rate;
     Vec3 velocity;
   };
@@ -133,11 +159,15 @@ class Flow {
 
   void inject();
   void move_vertices();
+  void move_vertices_to(std::uint64_t steps);
   void advance_segment(unsigned segment);
   void aim(double dt, bool moving);
   [[nodiscard]] Aim aim_at(std::size_t i, double dt, bool moving) const;
   [[nodiscard]] Vec3 accelerated(const Vec3& v, const Vec3& flow, double dt) const;
   void count_contacts();
+  void remove_absorbed(const FollowReport& report, std::span<const State> before);
+  void remove_marked(std::span<const std::uint8_t> marks);
+  void reopen_inlets();
   void remove_gone();
   void complete(const Vec3& velocity);
   template <class Sampler>
@@ -159,6 +189,7 @@ class Flow {
   std::vector<Vec3> targets_;
   std::uint64_t next_id_ = 0;
   std::uint64_t steps_ = 0;
+  std::uint64_t absorbed_between_ = 0;  // by edits since the last step
   FlowStep last_;
   FlowTotals totals_;
   StateHash gone_;

@@ -56,20 +56,35 @@ Sample VolumeSampler::sample(const Complex& complex, Random& random) const {
   return {simplex, (v[0] * w[0] + v[1] * w[1]) + (v[2] * w[2] + v[3] * w[3])};
 }
 
-PatchSampler::PatchSampler(const Complex& complex, Patch patch) {
-  const Map& map = complex.map();
+namespace {
+
+// Calls visit(cell, its shape, face) for each wall of the patch at a free cell.
+template <class Visit>
+void for_each_face(const Map& map, Patch patch, Visit&& visit) {
   for (const Cell c : map.cells()) {
     const CellView view = map.view(c);
     if (!view.is_free()) continue;
-    const Shape& shape = view.shape();
-    for (std::uint16_t f = 0; f < shape.face_count(); ++f) {
-      if (!view.is_wall(f) || map.patch({c, f}) != patch) continue;
-      for (std::uint16_t t = 0; t < shape.triangle_count(f); ++t) {
-        const Across behind = shape.entry(f, t);
-        triangles_.push_back({{c, behind.index}, behind.place});
-      }
+    for (std::uint16_t f = 0; f < view.shape().face_count(); ++f) {
+      if (view.is_wall(f) && map.patch({c, f}) == patch) visit(c, view.shape(), f);
     }
   }
+}
+
+}  // namespace
+
+bool has_free_face(const Map& map, Patch patch) {
+  bool found = false;
+  for_each_face(map, patch, [&](Cell, const Shape&, std::uint16_t) { found = true; });
+  return found;
+}
+
+PatchSampler::PatchSampler(const Complex& complex, Patch patch) {
+  for_each_face(complex.map(), patch, [&](Cell c, const Shape& shape, std::uint16_t f) {
+    for (std::uint16_t t = 0; t < shape.triangle_count(f); ++t) {
+      const Across behind = shape.entry(f, t);
+      triangles_.push_back({{c, behind.index}, behind.place});
+    }
+  });
   if (triangles_.empty()) throw InvalidArgument("the patch has no wall face at a free cell");
   update(complex);
 }

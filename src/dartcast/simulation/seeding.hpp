@@ -29,6 +29,9 @@ class VolumeSampler {
   std::vector<double> volume_up_to_;
 };
 
+/// Whether a patch has a wall at a free cell. Cost: linear in the cells.
+bool has_free_face(const Map& map, Patch patch);
+
 /// Points of equal likelihood by area on a patch's faces, moved inwards by 1/64 of the way to the opposite corner of
 /// the simplex there.
 class PatchSampler {

@@ -1,0 +1,56 @@
+// Cells that are cut by one plane after another. Private to surgery.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "dartcast/surgery/sides.hpp"
+
+namespace dartcast::detail {
+
+/// Takes back what an action did to an edit where it throws.
+template <class Action>
+auto all_or_nothing(ComplexEdit& edit, Action&& action) {
+  const Transaction::Mark before = edit.mark();
+  try {
+    return action();
+  } catch (...) {
+    edit.roll_back(before);
+    throw;
+  }
+}
+
+/// Cells by numbers of their own, which stay while edits replace the cells.
+class Cutter {
+ public:
+  /// Numbers the cells from 0. Throws InvalidArgument where there is no such cell, or it is named twice.
+  Cutter(ComplexEdit& edit, std::span<const Cell> cells);
+
+  [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(cells_.size()); }
+  [[nodiscard]] Cell cell(std::uint32_t number) const { return cells_[number]; }
+  [[nodiscard]] std::vector<Cell> cells(std::span<const std::uint32_t> numbers) const;
+
+  struct Parts {
+    std::vector<std::uint32_t> below, above, whole;
+  };
+  /// As split_by_plane(): the part below keeps the number, the one above is given the next.
+  Parts split(std::span<const std::uint32_t> numbers, const Plane& plane, const SectionOptions& options);
+  /// Those cells that have a part below the plane.
+  [[nodiscard]] std::vector<std::uint32_t> reaching_below(std::span<const std::uint32_t> numbers, const Plane& plane,
+                                                          const SectionOptions& options);
+
+ private:
+  void split_edges(std::span<const std::uint32_t> numbers, Sides& sides);
+  void split_faces(std::uint32_t number, const Sides& sides);
+  bool split_face_of(Cell c, std::uint16_t face, const Sides& sides);
+  [[nodiscard]] std::vector<Dart> path_around(Cell c, const Sides& sides) const;
+  void replace(Cell old, Cell now);
+
+  ComplexEdit& edit_;
+  std::vector<Cell> cells_;
+  std::unordered_map<std::uint32_t, std::uint32_t> number_;
+};
+
+}  // namespace dartcast::detail
