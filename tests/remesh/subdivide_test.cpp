@@ -78,7 +78,9 @@ TEST(Subdivide, HexahedronGivesEightHexahedra) {
   Complex complex(unit_boxes(1, CellType::hexahedron));
   ComplexEdit edit(complex);
   const Subdivided s = subdivide(edit, complex.map().cells()[0]);
-  edit.commit();
+  const ComplexEditReport done = edit.commit();
+  EXPECT_EQ(done.placed.size(), 19U);
+  for (const PlacedVertex& p : done.placed) EXPECT_EQ(p.offset, Vec3{});  // all are means of others
   expect_good(complex);
   EXPECT_EQ(complex.map().cell_count(static_cast<std::uint32_t>(CellType::hexahedron)), 8U);
   EXPECT_EQ(complex.map().cell_count(), 8U);
