@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bench/chart.hpp"
+#include "bench/edits.hpp"
 #include "bench/plan.hpp"
 #include "bench/race.hpp"
 #include "bench/report.hpp"
@@ -24,12 +25,20 @@ struct Arguments {
   bench::PlanOptions plan;
   std::string folder = "bench-out";
   bool json = false;
+  bool edits = false;
 };
 
 void write(const std::filesystem::path& file, const std::string& text) {
   std::ofstream out(file);
   out << text;
   if (!out.flush()) throw Error(fmt::format("{}: cannot be written", file.string()));
+}
+
+int run_edits(bool json) {
+  std::vector<bench::EditRow> rows;
+  for (const std::uint32_t edge : {10U, 100U}) rows.push_back(bench::edit_box(edge, 100000, 20000));
+  fmt::print("{}", json ? bench::edits_json(rows) + "\n" : bench::edits_text(rows));
+  return done;
 }
 
 int run(const Arguments& a) {
@@ -65,7 +74,8 @@ void add_bench(CLI::App& app, int& status) {
       ->check(CLI::Range(1U, 1000000U));
   verb->add_option("-o,--output", a->folder, "folder for bench.json, bench.csv and bench.svg (bench-out)")->take_last();
   verb->add_flag("--json", a->json, "print one JSON object, and nothing else");
-  verb->callback([a, &status] { status = run(*a); });
+  verb->add_flag("--edits", a->edits, "edits per second at 10^3 and 10^6 cells, and nothing else");
+  verb->callback([a, &status] { status = a->edits ? run_edits(a->json) : run(*a); });
 }
 
 }  // namespace dartcast::app

@@ -146,6 +146,8 @@ class Environment {
   /// `make` throws, and EditRefused as ComplexEdit::commit(); then nothing is changed. Cost: that of the cells touched.
   ComplexEditReport edit(const std::function<void(ComplexEdit&)>& make);
   [[nodiscard]] std::uint64_t edit_count() const { return edits_; }
+  /// What the last edit did; empty where there was none.
+  [[nodiscard]] const ComplexEditReport& last_edit() const { return last_edit_; }
   /// Takes a set of particles along after an edit: those in cells that were replaced are located again, exactly, among
   /// the cells that took their place; those that have no place in a free cell become what `stranded` says; all others
   /// keep their state bit for bit. Where particles are absorbed, those after them move up, as by remove(). Throws

@@ -1,0 +1,179 @@
+#include "bench/edits.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "dartcast/base/error.hpp"
+#include "dartcast/base/random.hpp"
+#include "dartcast/environment/environment.hpp"
+#include "dartcast/map/edit.hpp"
+#include "dartcast/mesh/generate_box.hpp"
+#include "dartcast/simulation/seeding.hpp"
+
+namespace dartcast::bench {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+Environment box(std::uint32_t edge) {
+  BoxOptions o;
+  o.cells = {edge, edge, edge};
+  o.size = {double(edge), double(edge), double(edge)};
+  o.blocked_share = 0.1;
+  return Environment(generate_box(o), Threads{1});
+}
+
+// Edits in pairs, of which the second undoes the first.
+class Editor {
+ public:
+  Editor(Environment& environment, Particles& particles, EditRow& row)
+      : environment_(environment), particles_(particles), row_(row) {}
+
+  void edit_pair(unsigned kind) {
+    const Cell c = random_cell();
+    const Shape& s = map().shape(c);
+    const Dart d{c, static_cast<std::uint16_t>(random_.below(s.dart_count()))};
+    if (kind == 0) on_edge(d);
+    if (kind == 1) on_face(d);
+    if (kind == 2) on_cells(map().face(d));
+    if (kind == 3) mark(c);
+  }
+
+ private:
+  [[nodiscard]] const Map& map() const { return environment_.map(); }
+
+  // One that no edit has left a polyhedron.
+  Cell random_cell() {
+    while (true) {
+      const Cell c(static_cast<std::uint32_t>(CellType::hexahedron),
+                   random_.below(static_cast<std::uint32_t>(map().slot_count(1))));
+      if (map().contains(c)) return c;
+    }
+  }
+
+  void edit(const std::function<void(Transaction&)>& make) {
+    const ComplexEditReport done = environment_.edit([&](ComplexEdit& e) { make(e.topology()); });
+    row_.particles_touched += static_cast<double>(environment_.follow(particles_).touched);
+    row_.cells_touched += static_cast<double>(done.map.removed.size() + done.map.added.size() + done.map.marked.size());
+    ++row_.edits;
+  }
+
+  void on_edge(Dart d) {
+    const Vertex from = map().origin(d);
+    Vertex middle;
+    edit([&](Transaction& t) { middle = split_edge(t, d).vertex; });
+    find(middle, from, [&](Dart found) { edit([&](Transaction& t) { merge_edges(t, found); }); });
+  }
+
+  void on_face(Dart d) {
+    const Dart other = map().phi1(map().phi1(d));
+    const Vertex a = map().origin(d);
+    const Vertex b = map().origin(other);
+    edit([&](Transaction& t) { split_face(t, d, other); });
+    find(a, b, [&](Dart found) { edit([&](Transaction& t) { merge_faces(t, found); }); });
+  }
+
+  // The cube is made again by cutting along the face's edges.
+  void on_cells(CellFace f) {
+    const CellFace g = map().opposite(f);
+    if (!g.valid() || map().is_free(f.cell) != map().is_free(g.cell)) return;
+    std::vector<Vertex> rim;
+    for (const std::uint16_t k : map().shape(f.cell).corners(f.face)) rim.push_back(map().view(f.cell).vertex(k));
+    edit([&](Transaction& t) { merge_cells(t, f); });
+    const Cell now = last_added();
+    edit([&](Transaction& t) {
+      std::vector<Dart> path;
+      for (std::size_t i = 0; i < rim.size(); ++i)
+        path.push_back(find_dart(t.map(), now, rim[i], rim[(i + 1) % rim.size()]));
+      split_cell(t, path);
+    });
+  }
+
+  void mark(Cell c) {
+    const bool free = map().is_free(c);
+    edit([&](Transaction& t) { t.set_free(c, !free); });
+    edit([&](Transaction& t) { t.set_free(c, free); });
+  }
+
+  [[nodiscard]] Cell last_added() const { return environment_.last_edit().map.added.back(); }
+
+  // Calls use(dart) with a dart from one vertex to another, of a cell that the last edit added.
+  void find(Vertex from, Vertex to, const std::function<void(Dart)>& use) const {
+    for (const Cell c : environment_.last_edit().map.added) {
+      const Dart d = find_dart(map(), c, from, to);
+      if (d.valid()) return use(d);
+    }
+  }
+
+  Environment& environment_;
+  Particles& particles_;
+  EditRow& row_;
+  Random random_ = Random(1);
+};
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+}  // namespace
+
+EditRow edit_box(std::uint32_t edge, std::size_t particles, std::size_t edits) {
+  Environment environment = box(edge);
+  Random random(2);
+  const VolumeSampler sampler(environment.complex());
+  Particles set;
+  while (set.size() < particles) {
+    const Sample s = sampler.sample(environment.complex(), random);
+    environment.add(set, s.simplex, s.position);
+  }
+  EditRow warm;
+  Editor(environment, set, warm).edit_pair(0);
+  EditRow row;
+  row.cells = environment.map().cell_count();
+  row.particles = particles;
+  Editor editor(environment, set, row);
+  const auto start = Clock::now();
+  for (unsigned kind = 0; row.edits < edits; kind = (kind + 1) % 4) editor.edit_pair(kind);
+  row.edits_per_second = static_cast<double>(row.edits) / seconds_since(start);
+  row.cells_touched /= static_cast<double>(row.edits);
+  row.particles_touched /= static_cast<double>(row.edits);
+  double best = std::numeric_limits<double>::max();
+  for (int i = 0; i < 5; ++i) {
+    const auto begin = Clock::now();
+    if (!environment.validity().valid()) throw InternalError("bench: an edit left a cell that is not valid");
+    best = std::min(best, seconds_since(begin));
+  }
+  row.validity_ns_per_cell = best * 1e9 / static_cast<double>(row.cells);
+  return row;
+}
+
+std::string edits_text(std::span<const EditRow> rows) {
+  std::string out;
+  for (const EditRow& r : rows) {
+    out += fmt::format(
+        "{} cells, {} particles: {:.0f} edits a second, each touching {:.1f} cells and {:.1f} particles; "
+        "validity of the scene: {:.1f} ns a cell\n",
+        r.cells, r.particles, r.edits_per_second, r.cells_touched, r.particles_touched, r.validity_ns_per_cell);
+  }
+  return out;
+}
+
+std::string edits_json(std::span<const EditRow> rows) {
+  nlohmann::ordered_json json = {{"version", DARTCAST_VERSION}, {"edits", nlohmann::ordered_json::array()}};
+  for (const EditRow& r : rows) {
+    json["edits"].push_back({{"cells", r.cells},
+                             {"particles", r.particles},
+                             {"edits", r.edits},
+                             {"edits_per_second", r.edits_per_second},
+                             {"cells_touched", r.cells_touched},
+                             {"particles_touched", r.particles_touched},
+                             {"validity_ns_per_cell", r.validity_ns_per_cell}});
+  }
+  return json.dump(1);
+}
+
+}  // namespace dartcast::bench
