@@ -33,16 +33,20 @@ inline Dyadic volume6(const Complex& complex) {
   return sum;
 }
 
-/// A cell by its vertices: source, mark, and each face with its patch, its marks, and whether it is open.
-inline std::string written(const Map& map, Cell c) {
+/// A cell by the names of its vertices: source, mark, and each face with its patch, its marks, and what is beyond.
+template <class Name>
+std::string written(const Map& map, Cell c, Name&& name) {
   const Shape& s = map.shape(c);
   std::vector<std::string> faces;
   for (std::uint16_t f = 0; f < s.face_count(); ++f) {
-    std::string face;
+    std::vector<std::string> corners;
     for (std::uint16_t d = s.first_dart(f); d < s.first_dart(f) + s.degree(f); ++d) {
       const Map::Flat flat = map.flat({c, d});
-      face += std::to_string(map.origin({c, d}).value) + (flat.straight ? "s" : "") + (flat.coplanar ? "c" : "") + " ";
+      corners.push_back(name(map.origin({c, d})) + (flat.straight ? "s" : "") + (flat.coplanar ? "c" : "") + " ");
     }
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    std::string face;
+    for (const std::string& corner : corners) face += corner;
     const CellFace other = map.opposite({c, f});
     face += "| patch " + std::to_string(map.patch(CellFace{c, f}).value) +
             (other.valid() ? " to " + std::to_string(map.source(other.cell)) : " open");
@@ -54,11 +58,24 @@ inline std::string written(const Map& map, Cell c) {
   return text;
 }
 
-inline std::vector<std::string> written(const Map& map) {
+template <class Name>
+std::vector<std::string> written(const Map& map, Name&& name) {
   std::vector<std::string> cells;
-  for (const Cell c : map.cells()) cells.push_back(written(map, c));
+  for (const Cell c : map.cells()) cells.push_back(written(map, c, name));
   std::sort(cells.begin(), cells.end());
   return cells;
+}
+
+inline std::vector<std::string> written(const Map& map) {
+  return written(map, [](Vertex v) { return std::to_string(v.value); });
+}
+
+/// Vertices by where they are: what does not depend on the order of edits.
+inline std::vector<std::string> written_by_place(const Complex& complex) {
+  return written(complex.map(), [&](Vertex v) {
+    const Vec3 x = complex.positions()[v.value];
+    return std::to_string(x.x) + "," + std::to_string(x.y) + "," + std::to_string(x.z);
+  });
 }
 
 }  // namespace dartcast::test

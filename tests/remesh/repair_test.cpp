@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <iostream>
 #include <set>
 
 #include "dartcast/base/random.hpp"
@@ -193,7 +192,8 @@ TEST_P(RepairOn, MendsOrLeaves) {
     mended += report.mended.size();
     left += report.left.size();
   }
-  std::cout << GetParam().name << ": " << mended << " regions mended, " << left << " cells left\n";
+  RecordProperty("mended", static_cast<int>(mended));
+  RecordProperty("left", static_cast<int>(left));
 }
 
 // With cells that were subdivided among others that were not: faces that may be straight, points of faces and cells.
@@ -225,7 +225,8 @@ TEST_P(RepairOn, MendsNextToSubdivided) {
     left += report.left.size();
   }
   EXPECT_GT(mended, 2 * left);
-  std::cout << GetParam().name << ": " << mended << " regions mended, " << left << " cells left\n";
+  RecordProperty("mended", static_cast<int>(mended));
+  RecordProperty("left", static_cast<int>(left));
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, RepairOn, testing::ValuesIn(box_meshes()),
@@ -280,7 +281,17 @@ TEST(Repair, CutsWhereTwoWentAstray) {
   ASSERT_FALSE(report.mended.empty());
   EXPECT_TRUE(
       std::any_of(report.mended.begin(), report.mended.end(), [](const auto& r) { return r.how == Mending::cut; }));
-  edit.commit();
+  for (const MendedRegion& region : report.mended) {
+    std::set<std::uint32_t> sources;
+    for (const Cell c : region.cells) sources.insert(complex.map().source(c));
+    EXPECT_EQ(std::vector<std::uint32_t>(sources.begin(), sources.end()), region.sources);
+    EXPECT_LE(region.sources.size(), 12U);  // those around the two
+  }
+  const ComplexEditReport done = edit.commit();
+  for (const PlacedVertex& p : done.placed) {
+    EXPECT_GT(p.of.size(), 20U);  // goes along with all around it
+    EXPECT_EQ(p.offset, Vec3{});
+  }
   test::expect_good(complex);
   EXPECT_TRUE(volume6(complex) == before);
 }

@@ -145,6 +145,7 @@ class Environment {
   /// next edit. positions() may have become more: so must arrays given at the points (dartcast::follow()). Throws what
   /// `make` throws, and EditRefused as ComplexEdit::commit(); then nothing is changed. Cost: that of the cells touched.
   ComplexEditReport edit(const std::function<void(ComplexEdit&)>& make);
+  [[nodiscard]] std::uint64_t edit_count() const { return edits_; }
   /// Takes a set of particles along after an edit: those in cells that were replaced are located again, exactly, among
   /// the cells that took their place; those that have no place in a free cell become what `stranded` says; all others
   /// keep their state bit for bit. Where particles are absorbed, those after them move up, as by remove(). Throws

@@ -67,9 +67,11 @@ void ComplexEdit::place(Vertex v, const Vec3& x) { means_.erase(place_born(v, x)
 void ComplexEdit::place(Vertex v, std::span<const Vertex> of, std::span<const double> weights) {
   if (of.empty() || of.size() != weights.size())
     throw InvalidArgument("place: give one weight per vertex, one at least");
-  Vec3 sum;
-  for (std::size_t i = 0; i < of.size(); ++i) sum += position(of[i]) * weights[i];
-  means_[place_born(v, sum)] = {{of.begin(), of.end()}, {weights.begin(), weights.end()}};
+  // From the first one: the mean of equal coordinates is that coordinate, so that planes across an axis stay plane.
+  const Vec3 first = position(of[0]);
+  Vec3 x = first;
+  for (std::size_t i = 1; i < of.size(); ++i) x += (position(of[i]) - first) * weights[i];
+  means_[place_born(v, x)] = {{of.begin(), of.end()}, {weights.begin(), weights.end()}};
 }
 
 void ComplexEdit::roll_back(const Transaction::Mark& to) {

@@ -65,7 +65,8 @@ Vec3 kernel_point(const Vec3& start, std::span<const Triangle> triangles, double
   return best;
 }
 
-// Weights over the corners, summing to 1, that give x: the equal weights and the least correction.
+}  // namespace
+
 std::vector<double> weights_for(const Vec3& x, std::span<const Vec3> points, std::span<const std::uint32_t> corners) {
   const Vec3 m = mean(points, corners);
   const auto n = static_cast<Eigen::Index>(corners.size());
@@ -82,8 +83,6 @@ std::vector<double> weights_for(const Vec3& x, std::span<const Vec3> points, std
     weights[static_cast<std::size_t>(i)] = 1.0 / static_cast<double>(n) + correction(i);
   return weights;
 }
-
-}  // namespace
 
 std::vector<double> cone_weights(std::span<const Vec3> points, std::span<const std::uint32_t> corners,
                                  std::span<const Triangle> triangles) {

@@ -22,6 +22,9 @@ std::vector<Triangle> fan(std::span<const Vec3> points, std::span<const std::uin
 /// Whether the apex makes a positive simplex with every triangle; exact.
 bool all_positive(const Vec3& apex, std::span<const Triangle> triangles);
 
+/// Weights over the corners, summing to 1, that give x but for rounding: the equal weights and the least correction.
+std::vector<double> weights_for(const Vec3& x, std::span<const Vec3> points, std::span<const std::uint32_t> corners);
+
 /// Weights over the corners, summing to 1, of a point from which all triangles are positive: equal ones where their
 /// mean is such a point, or where none is found.
 std::vector<double> cone_weights(std::span<const Vec3> points, std::span<const std::uint32_t> corners,

@@ -16,7 +16,7 @@ namespace dartcast {
 
 namespace {
 
-constexpr std::uint64_t magic = 0x31706b6374726164U;  // "dartckp1" on a machine of this byte order
+constexpr std::uint64_t magic = 0x32706b6374726164U;  // "dartckp2" on a machine of this byte order
 
 // Mixes in 8 bytes at a time. It finds damage and changes, not forgery.
 std::uint64_t digest(std::string_view bytes, std::uint64_t start = 0) {
@@ -152,6 +152,21 @@ void fields(Archive& a, FlowTotals& t) {
 }
 
 template <class Archive>
+void fields(Archive& a, EventReport& e) {
+  values(a, e.kind, e.step, e.time, e.cells_removed, e.cells_added, e.cells_opened, e.cells_blocked,
+         e.particles_in_opened, e.particles_touched, e.particles_located, e.particles_moved, e.particles_held,
+         e.particles_absorbed, e.boundary_shift, e.seconds);
+  if (e.kind >= std::size(event_kind_names)) throw Error("an event has no such kind");
+}
+
+template <class Archive>
+void fields(Archive& a, SurgeryLog& log) {
+  a.list(log.changes, [&](SurgeryLog::Change& c) { values(a, c.step, c.event); });
+  a.list(log.events, [&](EventReport& e) { fields(a, e); });
+  values(a, log.mended, log.left, log.in_opened);
+}
+
+template <class Archive>
 void fields(Archive& a, Checkpoint& c) {
   fields(a, c.run);
   std::uint64_t random = c.flow.random.state();
@@ -163,6 +178,7 @@ void fields(Archive& a, Checkpoint& c) {
   fields(a, c.flow.totals);
   values(a, c.recording.stats_bytes, c.recording.contacts_bytes);
   a.list(c.recording.frames, [&](RecordingFrame& f) { values(a, f.step, f.time); });
+  fields(a, c.surgery);
   values(a, c.held, c.audited);
 }
 

@@ -10,6 +10,7 @@
 #include "dartcast/io/recording.hpp"
 #include "dartcast/mesh/mesh_data.hpp"
 #include "dartcast/simulation/flow.hpp"
+#include "dartcast/simulation/surgery.hpp"
 
 namespace dartcast {
 
@@ -26,6 +27,7 @@ struct Checkpoint {
   RunIdentity run;
   FlowCheckpoint flow;
   RecordingProgress recording;
+  SurgeryLog surgery;
   std::uint64_t held = 0;  ///< in the last step
   std::uint64_t audited = 0;
 };

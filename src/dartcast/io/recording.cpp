@@ -17,6 +17,7 @@
 #include <string_view>
 
 #include "dartcast/base/error.hpp"
+#include "dartcast/geometry/complex_mesh.hpp"
 #include "dartcast/io/vtk_errors.hpp"
 #include "dartcast/io/vtk_mesh.hpp"
 #include "dartcast/io/write_mesh.hpp"
@@ -53,7 +54,7 @@ bool is_ours(const std::string& name) {
 bool holds_a_run(const fs::path& folder) {
   std::ifstream file(folder / "stats.csv");
   std::string line;
-  return std::getline(file, line) && line == stats_header;
+  return std::getline(file, line) && line.starts_with(stats_header);
 }
 
 std::string particles_name(std::uint64_t step) { return fmt::format("particles_{:06}.vtp", step); }
@@ -144,11 +145,11 @@ Recording::Recording(Options options, const MeshData& mesh, const std::string& s
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.is_regular_file() && is_ours(entry.path().filename().string())) fs::remove(entry.path());
   }
-  stats_ = open_table(folder / "stats.csv", stats_header);
+  stats_ = open_table(folder / "stats.csv", std::string(stats_header) + (options_.surgery ? ",in_opened" : ""));
   if (options_.contacts) contacts_ = open_table(folder / "contacts.csv", contacts_header);
   if (!scene_text.empty()) write_bytes(folder / "scene.toml", scene_text);
   keep_cells(mesh);
-  if (!options_.deforms) write_environment(mesh.points, "environment.vtu");
+  if (!options_.changes) write_environment(mesh.points, "environment.vtu");
 }
 
 Recording::Recording(Options options, const MeshData& mesh, const RecordingProgress& progress)
@@ -179,16 +180,33 @@ void Recording::write_environment(std::span<const Vec3> points, const std::strin
   write_vtu(mesh_, options_.folder / name);
 }
 
+// Cells are others than in the file: they keep its regions.
+void Recording::write_edited(const Complex& complex, const std::string& name) const {
+  MeshData mesh = to_mesh(complex);
+  mesh.region_names = mesh_.region_names;
+  if (!mesh_.regions.empty()) {
+    for (const std::uint32_t source : mesh.source) mesh.regions.push_back(mesh_.regions[source]);
+  }
+  write_vtu(mesh, options_.folder / name);
+}
+
 void Recording::add_frame(const Flow& flow) {
   write_particles(flow, options_.folder / particles_name(flow.steps()));
-  if (options_.deforms) write_environment(flow.environment().positions(), environment_name(flow.steps()));
+  if (options_.changes) {
+    const std::string name = environment_name(flow.steps());
+    if (flow.environment().edit_count() > 0) {
+      write_edited(flow.environment().complex(), name);
+    } else {
+      write_environment(flow.environment().positions(), name);
+    }
+  }
   if (frames_.empty() || frames_.back().step != flow.steps()) frames_.push_back({flow.steps(), flow.time()});
   write_lists();
 }
 
 void Recording::write_lists() const {
   write_pvd(options_.folder / "particles.pvd", frames_, particles_name);
-  if (options_.deforms) {
+  if (options_.changes) {
     write_pvd(options_.folder / "environment.pvd", frames_, environment_name);
   } else {
     const RecordingFrame at_rest;
@@ -232,11 +250,13 @@ void Recording::write_particles(const Flow& flow, const fs::path& path) const {
   }
 }
 
-void Recording::add_step(const Flow& flow, const FlowStep& step) {
+void Recording::add_step(const Flow& flow, const FlowStep& step, std::uint64_t in_opened) {
   const Counters& c = step.report.counters;
-  fmt::print(stats_, "{},{},{},{},{},{},{},{},{},{},{},{}\n", flow.steps(), flow.time(), flow.particles().size(),
+  fmt::print(stats_, "{},{},{},{},{},{},{},{},{},{},{},{}", flow.steps(), flow.time(), flow.particles().size(),
              step.injected, step.absorbed, step.escaped, step.report.held.size(), step.report.contacts.contacts.size(),
              c.orientation.tests, c.orientation.exact, c.forecast_kept, c.updated_by_deformation);
+  if (options_.surgery) fmt::print(stats_, ",{}", in_opened);
+  fmt::print(stats_, "\n");
   if (options_.contacts) write_contacts(flow, step);
   if (!stats_)
     throw Error(fmt::format("{}: the table cannot be written; check the disk's space",

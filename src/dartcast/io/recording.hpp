@@ -24,13 +24,14 @@ struct RecordingProgress {
   std::vector<RecordingFrame> frames;
 };
 
-/// Writes particles.pvd with a .vtp per frame, environment.pvd with a .vtu per frame (one where nothing deforms),
+/// Writes particles.pvd with a .vtp per frame, environment.pvd with a .vtu per frame (one where nothing changes),
 /// stats.csv, contacts.csv on request, scene.toml and summary.json. Every write throws Error where it fails.
 class Recording {
  public:
   struct Options {
     std::filesystem::path folder;
-    bool deforms = false;
+    bool changes = false;  ///< the environment: a frame of it at each time
+    bool surgery = false;  ///< the table has a column for particles in opened cells
     bool contacts = false;
   };
 
@@ -44,8 +45,8 @@ class Recording {
 
   /// Adds the particles, and the environment where it deforms, as they are now.
   void add_frame(const Flow& flow);
-  /// Adds a step's row to stats.csv, and its contacts.
-  void add_step(const Flow& flow, const FlowStep& step);
+  /// Adds a step's row to stats.csv, and its contacts. `in_opened`: see SurgeryLog.
+  void add_step(const Flow& flow, const FlowStep& step, std::uint64_t in_opened = 0);
   /// Sends the tables to their files, and says how far they have come.
   RecordingProgress progress();
   /// Writes summary.json and ends the tables.
@@ -55,6 +56,7 @@ class Recording {
   void keep_cells(const MeshData& mesh);
   void write_particles(const Flow& flow, const std::filesystem::path& path) const;
   void write_environment(std::span<const Vec3> points, const std::string& name);
+  void write_edited(const Complex& complex, const std::string& name) const;
   void write_lists() const;
   void write_contacts(const Flow& flow, const FlowStep& step);
 

@@ -36,6 +36,16 @@ Responses make_responses(const ContactScene& scene, const Map& map) {
   return responses;
 }
 
+std::vector<Event> make_events(const Scene& scene, const Map& map) {
+  std::vector<Event> events;
+  for (const EventScene& e : scene.events) {
+    events.push_back(e.event);
+    auto* reconnect = std::get_if<Reconnect>(&events.back().what);
+    if (reconnect != nullptr && !e.patch.empty()) reconnect->options.side = map.patch(e.patch);
+  }
+  return events;
+}
+
 FlowOptions flow_options(const Scene& scene, const RunOptions& options) {
   FlowOptions flow;
   flow.dt = scene.motion.dt;
@@ -74,6 +84,7 @@ void describe(const Environment& environment, Summary& summary) {
   summary.threads = environment.threads().count;
   if (summary.threads == 0) summary.threads = std::max(1U, std::thread::hardware_concurrency());
   summary.cells = map.cell_count();
+  summary.free_cells = 0;
   for (const Cell c : map.cells()) summary.free_cells += map.is_free(c) ? 1 : 0;
   summary.vertices = environment.positions().size();
   summary.wall_faces = map.wall_face_count();
@@ -85,7 +96,8 @@ void describe(const Environment& environment, Summary& summary) {
 class Output {
  public:
   Output(const Scene& scene, const RunOptions& options, const MeshData& mesh, Summary& summary)
-      : recording_options_{options.folder, summary.deforms, scene.output.contacts},
+      : recording_options_{options.folder, summary.deforms || summary.surgery, summary.surgery.has_value(),
+                           scene.output.contacts},
         scene_text_(scene.text),
         every_(scene.output.every),
         resume_(options.resume),
@@ -115,18 +127,18 @@ class Output {
 
   [[nodiscard]] const std::optional<Checkpoint>& found() const { return found_; }
 
-  void add_step(const Flow& flow, const FlowStep& step) {
-    timed([&] { recording_->add_step(flow, step); });
+  void add_step(const Flow& flow, const FlowStep& step, const SurgeryLog& surgery) {
+    timed([&] { recording_->add_step(flow, step, surgery.in_opened); });
   }
 
   /// To be called before the first step and after each: a frame and a checkpoint where the scene wants one, and at the
   /// end.
-  void add_frame(const Flow& flow, bool last) {
+  void add_frame(const Flow& flow, const SurgeryLog& surgery, bool last) {
     if (!last && !on_schedule(flow.steps())) return;
     timed([&] {
       if (every_ > 0) recording_->add_frame(flow);
       const std::uint64_t audited = summary_.audit ? summary_.audit->checked : 0;
-      write_checkpoint(file(), {identity_, flow.checkpoint(), recording_->progress(), summary_.held, audited});
+      write_checkpoint(file(), {identity_, flow.checkpoint(), recording_->progress(), surgery, summary_.held, audited});
     });
   }
 
@@ -160,8 +172,8 @@ class Output {
 // The steps of a run, with their output and audit.
 class Run {
  public:
-  Run(Flow& flow, Output& output, std::uint64_t steps, bool audit, Summary& summary)
-      : flow_(flow), output_(output), steps_(steps), audit_(audit), summary_(summary) {
+  Run(Flow& flow, Surgery& surgery, Output& output, std::uint64_t steps, bool audit, Summary& summary)
+      : flow_(flow), surgery_(surgery), output_(output), steps_(steps), audit_(audit), summary_(summary) {
     if (audit_) summary_.audit.emplace();
     if (const auto& found = output.found()) {
       summary_.held = found->held;
@@ -170,13 +182,15 @@ class Run {
   }
 
   void run(const Progress& progress) {
-    if (flow_.steps() == 0) output_.add_frame(flow_, steps_ == 0);
+    if (flow_.steps() == 0) output_.add_frame(flow_, surgery_.log(), steps_ == 0);
     while (flow_.steps() < steps_) {
+      surgery_.before_step();
       const FlowStep& step = flow_.step();
+      surgery_.after_step();
       summary_.held = step.report.held.size();
       if (audit_) *summary_.audit += check();
-      output_.add_step(flow_, step);
-      output_.add_frame(flow_, flow_.steps() == steps_);
+      output_.add_step(flow_, step, surgery_.log());
+      output_.add_frame(flow_, surgery_.log(), flow_.steps() == steps_);
       if (progress) progress(flow_.steps(), steps_);
     }
     finish();
@@ -191,6 +205,10 @@ class Run {
     summary_.steps = steps_;
     summary_.totals = flow_.totals();
     summary_.alive = flow_.particles().size();
+    if (summary_.surgery) {
+      summary_.surgery = surgery_.log();
+      describe(flow_.environment(), summary_);
+    }
     const FlowTotals& t = summary_.totals;
     summary_.lost = t.start + t.injected - t.absorbed - t.escaped - summary_.alive;
     if (audit_) summary_.lost += check().failed;
@@ -198,6 +216,7 @@ class Run {
   }
 
   Flow& flow_;
+  Surgery& surgery_;
   Output& output_;
   std::uint64_t steps_;
   bool audit_;
@@ -205,9 +224,10 @@ class Run {
 };
 
 // Particles at the start, or as a checkpoint has them.
-void start(Flow& flow, const Scene& scene, const std::optional<Checkpoint>& checkpoint) {
+void start(Flow& flow, Surgery& surgery, const Scene& scene, const std::optional<Checkpoint>& checkpoint) {
   add_inlets(flow, scene);
   if (checkpoint) {
+    surgery.replay(checkpoint->surgery);
     flow.restore(checkpoint->flow);
   } else {
     add_particles(flow, scene);
@@ -230,14 +250,17 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
   }
   if (summary.deforms) flow.set_deformation(Deformation(load_deformation(scene.deformation, mesh), mesh.points));
   describe(environment, summary);
+  const std::vector<Event> events = make_events(scene, environment.map());
+  Surgery surgery(events, scene.remesh, scene.motion.dt, flow);
+  if (!events.empty() || scene.remesh.every > 0) summary.surgery.emplace();
   summary.seconds_load = load.seconds();
   const std::uint64_t steps = options.steps.value_or(scene.motion.steps);
   Output output(scene, options, mesh, summary);
   const Stopwatch locate;
-  start(flow, scene, output.read(steps));
+  start(flow, surgery, scene, output.read(steps));
   summary.seconds_locate = locate.seconds();
   output.open(mesh);
-  Run(flow, output, steps, options.audit, summary).run(progress);
+  Run(flow, surgery, output, steps, options.audit, summary).run(progress);
   output.finish();
   return summary;
 }

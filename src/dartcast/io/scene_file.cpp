@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <limits>
 #include <sstream>
 
 #include "dartcast/base/error.hpp"
+#include "dartcast/io/scene_events.hpp"
 #include "dartcast/io/scene_mesh_keys.hpp"
 #include "dartcast/io/toml_table.hpp"
 
@@ -33,6 +35,10 @@ class Reader {
     for (TomlTable& t : root.tables("particles")) scene.particles.push_back(particles(t));
     scene.motion = motion(root.table("motion"));
     scene.contact = contact(root.table("contact"));
+    for (TomlTable& t : root.tables("event")) scene.events.push_back(read_event(t));
+    std::stable_sort(scene.events.begin(), scene.events.end(),
+                     [](const EventScene& a, const EventScene& b) { return a.event.at < b.event.at; });
+    scene.remesh = remesh(root.table("remesh"));
     scene.output = output(root.table("output"));
     root.finish();
     return scene;
@@ -150,6 +156,16 @@ class Reader {
       response(patch, r);
       patch.finish();
     }
+    t.finish();
+    return scene;
+  }
+
+  static RemeshScene remesh(TomlTable t) {
+    RemeshScene scene;
+    t.get("every", scene.every, 0, std::uint64_t{1} << 53U);
+    std::uint64_t most = scene.options.most_cells;
+    t.get("most_cells", most, 1, 1U << 20U);
+    scene.options.most_cells = most;
     t.finish();
     return scene;
   }

@@ -46,6 +46,30 @@ Json seconds(const Summary& s) {
   return json;
 }
 
+Json events(const SurgeryLog& log) {
+  Json list = Json::array();
+  for (const EventReport& e : log.events) {
+    list.push_back({{"kind", event_kind_names[e.kind]},
+                    {"time", e.time},
+                    {"step", e.step},
+                    {"cells",
+                     {{"removed", e.cells_removed},
+                      {"added", e.cells_added},
+                      {"opened", e.cells_opened},
+                      {"blocked", e.cells_blocked}}},
+                    {"particles",
+                     {{"in_opened", e.particles_in_opened},
+                      {"touched", e.particles_touched},
+                      {"located", e.particles_located},
+                      {"moved", e.particles_moved},
+                      {"held", e.particles_held},
+                      {"absorbed", e.particles_absorbed}}},
+                    {"boundary_shift", e.boundary_shift},
+                    {"seconds", e.seconds}});
+  }
+  return list;
+}
+
 double ns_per_particle_step(const Summary& s) {
   return ratio(s.totals.seconds_detect * 1e9, static_cast<double>(s.totals.counters.particle_steps));
 }
@@ -75,6 +99,11 @@ std::string summary_json(const Summary& s) {
                  {"alive", s.alive},
                  {"held", s.held},
                  {"lost", s.lost}}}};
+  if (s.surgery) {
+    json["particles"]["in_opened"] = s.surgery->in_opened;
+    json["events"] = events(*s.surgery);
+    json["remeshing"] = {{"mended", s.surgery->mended}, {"left", s.surgery->left}};
+  }
   if (t.counters.particle_steps > 0) json["orientation_tests"] = orientation_tests(s);
   json["contacts"] = contacts(s);
   json["seconds"] = seconds(s);
@@ -83,6 +112,25 @@ std::string summary_json(const Summary& s) {
   json["state_hash"] = s.state_hash;
   return json.dump(1, ' ', false, Json::error_handler_t::replace);
 }
+
+namespace {
+
+std::string surgery_text(const SurgeryLog& log) {
+  std::string out;
+  for (const EventReport& e : log.events) {
+    out += fmt::format(
+        "{} at {:.6g} s: {} cells replaced by {}, {} opened, {} blocked; {} particles located again, {} moved, {} "
+        "held, {} "
+        "absorbed; {} in opened cells before\n",
+        event_kind_names[e.kind], e.time, e.cells_removed, e.cells_added, e.cells_opened, e.cells_blocked,
+        e.particles_located, e.particles_moved, e.particles_held, e.particles_absorbed, e.particles_in_opened);
+  }
+  if (log.mended + log.left > 0)
+    out += fmt::format("remeshing: {} regions mended, {} cells left as they were\n", log.mended, log.left);
+  return out + fmt::format("{} particles in opened cells at the end\n", log.in_opened);
+}
+
+}  // namespace
 
 std::string summary_text(const Summary& s) {
   const FlowTotals& t = s.totals;
@@ -102,6 +150,7 @@ std::string summary_text(const Summary& s) {
   out += fmt::format(
       "seconds: load {:.2f}, locate {:.2f}, detect {:.2f}, deform {:.2f}, respond {:.2f}, write {:.2f}\n",
       s.seconds_load, s.seconds_locate, t.seconds_detect, t.seconds_deform, t.seconds_respond, s.seconds_write);
+  if (s.surgery) out += surgery_text(*s.surgery);
   if (s.audit) out += fmt::format("audit: {} checked, {} failed\n", s.audit->checked, s.audit->failed);
   return out + fmt::format("state hash: {}\n", s.state_hash);
 }

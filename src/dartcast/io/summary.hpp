@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "dartcast/environment/audit.hpp"
-#include "dartcast/simulation/flow.hpp"
+#include "dartcast/simulation/surgery.hpp"
 
 namespace dartcast {
 
@@ -31,6 +31,7 @@ struct Summary {
   double seconds_load = 0.0;
   double seconds_locate = 0.0;
   double seconds_write = 0.0;
+  std::optional<SurgeryLog> surgery;  ///< where the scene has events or is remeshed
   std::optional<Audit> audit;
   std::string state_hash;
 };

@@ -122,10 +122,9 @@ class Coarsener {
         if (!is_part(other)) parts_.push_back(other);
       }
     }
-    bool complete = parts_.size() == subdivision_.corners.size();
-    for (const Vertex v : subdivision_.corners) {
-      complete = complete && std::count_if(parts_.begin(), parts_.end(), [&](Cell c) { return has_vertex(c, v); }) == 1;
-    }
+    const bool complete = std::all_of(subdivision_.corners.begin(), subdivision_.corners.end(), [&](Vertex v) {
+      return std::count_if(parts_.begin(), parts_.end(), [&](Cell c) { return has_vertex(c, v); }) == 1;
+    });
     if (!complete) refuse(map_, first, "is a part of a cell of which others were cut or merged: coarsen these first");
     for (const Cell c : parts_) {
       if (map_.is_free(c) != map_.is_free(first))

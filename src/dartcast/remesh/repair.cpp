@@ -107,8 +107,9 @@ class Repairer {
     });
     if (!done) return false;
     const auto& cells = report.mended.back().cells;
-    if (const auto x = detail::kernel_point(opposite(cells, moved))) {
-      edit_.place(moved, *x);
+    const auto facets = opposite(cells, moved);
+    if (const auto x = detail::kernel_point(facets)) {
+      place(moved, detail::corners_of(detail::surface_of(map_, sorted(cells))), *x, facets);
       for (const Cell c : cells) mended_.erase(c.value);
       if (std::all_of(cells.begin(), cells.end(), [&](Cell c) { return sound(c); })) {
         for (const Cell c : cells) mended_.insert(c.value);
@@ -134,6 +135,11 @@ class Repairer {
     return drafts;
   }
 
+  static std::vector<Cell> sorted(std::vector<Cell> cells) {
+    std::sort(cells.begin(), cells.end());
+    return cells;
+  }
+
   // The facets that the vertex has to be behind for the simplices that have it to be positive.
   std::vector<detail::Triangle> opposite(std::span<const Cell> cells, Vertex v) {
     std::vector<detail::Triangle> facets;
@@ -155,18 +161,28 @@ class Repairer {
     if (region.size() > options_.most_cells) return false;
     const std::vector<DraftFace> surface = detail::surface_of(map_, region);
     if (!detail::bounds_solid(surface)) return false;
-    const auto x = detail::kernel_point(detail::fans_of(surface, position()));
+    const auto triangles = detail::fans_of(surface, position());
+    const auto x = detail::kernel_point(triangles);
     if (!x) return false;
     return put(Mending::cut, region, [&] {
       const std::vector<Vertex> corners = detail::corners_of(surface);
-      const Vec3 first = edit_.position(corners[0]);
-      const auto distance = [&](Vertex v) { return norm(edit_.position(v) - first); };
-      const Vertex farthest = *std::max_element(corners.begin(), corners.end(),
-                                                [&](Vertex a, Vertex b) { return distance(a) < distance(b); });
-      const Vertex apex = edit_.topology().add_vertex(corners[0], farthest);
-      edit_.place(apex, *x);
+      const Vertex apex = edit_.topology().add_vertex(corners[0], corners[1]);
+      place(apex, corners, *x, triangles);
       return detail::pyramids_on(map_, surface, apex);
     });
+  }
+
+  // As a combination of the corners, so that it goes along with them; at x itself where rounding leads out of the
+  // kernel.
+  void place(Vertex v, std::span<const Vertex> corners, const Vec3& x, std::span<const detail::Triangle> triangles) {
+    std::vector<Vec3> points;
+    std::vector<std::uint32_t> numbers;
+    for (const Vertex c : corners) {
+      numbers.push_back(static_cast<std::uint32_t>(points.size()));
+      points.push_back(edit_.position(c));
+    }
+    edit_.place(v, corners, detail::weights_for(x, points, numbers));
+    if (!detail::all_positive(edit_.position(v), triangles)) edit_.place(v, x);
   }
 
   // Layer by layer.

@@ -97,19 +97,12 @@ class Subdivider {
     return static_cast<std::uint32_t>(std::lower_bound(corners_.begin(), corners_.end(), corner) - corners_.begin());
   }
 
-  // Divided, not multiplied: the mean of equal coordinates is that coordinate, so that faces across an axis stay plane.
-  [[nodiscard]] Vec3 mean(std::span<const std::uint16_t> corners) const {
-    Vec3 sum;
-    for (const std::uint16_t v : corners) sum += positions_[v];
-    const auto n = static_cast<double>(corners.size());
-    return {sum.x / n, sum.y / n, sum.z / n};
-  }
-
-  // A vertex in the middle of corners; data are interpolated between two others that lie on opposite sides of it.
-  Vertex add_middle(std::span<const std::uint16_t> corners, Vertex from, Vertex other) {
-    const Vertex v = edit_.topology().add_vertex(from, other);
-    edit_.place(v, mean(corners));
-    return v;
+  Vertex add_middle(std::span<const std::uint16_t> corners) {
+    std::vector<Vertex> of;
+    for (const std::uint16_t v : corners) of.push_back(vertex(v));
+    const Vertex middle = edit_.topology().add_vertex(of[0], of[1]);
+    edit_.place(middle, of, std::vector<double>(of.size(), 1.0 / static_cast<double>(of.size())));
+    return middle;
   }
 
   void make_vertices() {
@@ -117,11 +110,9 @@ class Subdivider {
     edge_middle_.resize(sides.size());
     for (std::size_t i = 0; i < sides.size(); ++i) {
       for (std::size_t j = 0; j < sides[i].edges.size(); ++j) edge_middle_[i].push_back(edge_middle(i, j));
-      const auto& ends = edge_middle_[i];
-      side_middle_.push_back(sides[i].spokes.empty() ? add_middle(sides[i].corners, ends[0], ends[ends.size() / 2])
-                                                     : vertex(sides[i].spokes[0][0]));
+      side_middle_.push_back(sides[i].spokes.empty() ? add_middle(sides[i].corners) : vertex(sides[i].spokes[0][0]));
     }
-    middle_ = add_middle(corners_, side_middle_.front(), side_middle_[side_middle_.size() / 2]);
+    middle_ = add_middle(corners_);
   }
 
   Vertex edge_middle(std::size_t i, std::size_t j) {

@@ -13,7 +13,7 @@ class Surgeon {
   Surgeon(Flow& flow, const Event& event) : flow_(flow), event_(event) {}
 
   EventReport operate() {
-    report_.kind = event_kind_names[event_.what.index()];
+    report_.kind = static_cast<std::uint32_t>(event_.what.index());
     report_.step = flow_.steps();
     report_.time = flow_.time();
     std::visit([&](const auto& what) { make(what); }, event_.what);
@@ -77,9 +77,8 @@ class Surgeon {
     report_.particles_touched = done.particles.touched;
     report_.particles_located = done.particles.located;
     const auto count = [&](Stranded became) {
-      return static_cast<std::uint64_t>(
-          std::count_if(done.particles.stranded.begin(), done.particles.stranded.end(),
-                        [&](const StrandedParticle& p) { return p.became == became; }));
+      return static_cast<std::uint64_t>(std::count_if(done.particles.stranded.begin(), done.particles.stranded.end(),
+                                                      [&](const StrandedParticle& p) { return p.became == became; }));
     };
     report_.particles_moved = count(Stranded::move);
     report_.particles_held = count(Stranded::stay);

@@ -50,13 +50,14 @@ inline constexpr std::string_view event_kind_names[] = {"cut", "carve", "ligatur
 
 /// What an event did.
 struct EventReport {
-  std::string_view kind;
+  std::uint32_t kind = 0;  ///< of event_kind_names
   std::uint64_t step = 0;  ///< steps done before it
   double time = 0.0;       ///< s
   std::uint64_t cells_removed = 0;
   std::uint64_t cells_added = 0;
-  std::uint64_t cells_opened = 0;   ///< freed
+  std::uint64_t cells_opened = 0;  ///< freed
   std::uint64_t cells_blocked = 0;
+  std::uint64_t particles_in_opened = 0;  ///< before it: see SurgeryLog::in_opened
   std::uint64_t particles_touched = 0;
   std::uint64_t particles_located = 0;
   std::uint64_t particles_moved = 0;  ///< of the stranded ones: moved, held or absorbed

@@ -126,11 +126,7 @@ FlowCheckpoint Flow::checkpoint() const {
 void Flow::restore(const FlowCheckpoint& saved) {
   if (saved.totals.contacts_by_patch.size() != totals_.contacts_by_patch.size())
     throw InvalidArgument("flow: the checkpoint is of an environment with other patches");
-  if (deformation_ && saved.steps > 0) {
-    deformation_->positions(static_cast<double>(saved.steps) * options_.dt, environment_.next_positions(),
-                            environment_.threads());
-    environment_.move();
-  }
+  move_vertices_to(saved.steps);
   std::vector<State> states;
   std::vector<Weights> weights;
   for (const FlowCheckpoint::Particle& p : saved.particles) {
@@ -153,6 +149,19 @@ void Flow::restore(const FlowCheckpoint& saved) {
   random_ = saved.random;
   totals_ = saved.totals;
   gone_ = saved.gone;
+}
+
+void Flow::move_vertices_to(std::uint64_t steps) {
+  if (!deformation_ || steps == 0) return;
+  deformation_->positions(static_cast<double>(steps) * options_.dt, environment_.next_positions(),
+                          environment_.threads());
+  environment_.move();
+}
+
+void Flow::go_to(std::uint64_t steps) {
+  if (particles_.size() > 0) throw InvalidArgument("flow: there are particles, which would be left behind");
+  move_vertices_to(steps);
+  steps_ = steps;
 }
 
 void Flow::add_random(std::size_t count, const Vec3& velocity) {
@@ -194,9 +203,7 @@ void Flow::inject() {
 void Flow::move_vertices() {
   if (!deformation_) return;
   const Timer timer(totals_.seconds_deform);
-  const double end = static_cast<double>(steps_ + 1) * options_.dt;
-  deformation_->positions(end, environment_.next_positions(), environment_.threads());
-  environment_.move();
+  move_vertices_to(steps_ + 1);
 }
 
 void Flow::advance_segment(unsigned segment) {
@@ -329,6 +336,15 @@ void Flow::reopen_inlets() {
     inlet.sampler.reset();
     if (has_free_face(environment_.map(), inlet.patch)) inlet.sampler.emplace(environment_.complex(), inlet.patch);
   }
+}
+
+RepairReport Flow::repair(const RepairOptions& options) {
+  std::vector<Cell> invalid;
+  for (const InvalidCell& c : environment_.validity(static_cast<std::size_t>(-1)).first) invalid.push_back(c.cell);
+  RepairReport report;
+  if (invalid.empty()) return report;
+  edit([&](ComplexEdit& e) { report = dartcast::repair(e, invalid, options); });
+  return report;
 }
 
 void Flow::pull(std::span<const Vec3> displacement, double duration) {

@@ -14,6 +14,7 @@
 #include "dartcast/base/random.hpp"
 #include "dartcast/environment/environment.hpp"
 #include "dartcast/environment/state_hash.hpp"
+#include "dartcast/remesh/repair.hpp"
 #include "dartcast/response/respond.hpp"
 #include "dartcast/simulation/deformation.hpp"
 #include "dartcast/simulation/field.hpp"
@@ -111,15 +112,22 @@ class Flow {
   /// at a free cell any more is closed until it has. Throws as these, nothing changed. Cost: as these; linear in the
   /// cells where there are inlets.
   FlowEdit edit(const std::function<void(ComplexEdit&)>& make, Stranded stranded = Stranded::move);
+  /// Remeshes cells that are not valid now (remesh/repair.hpp), by edit(). Nothing happens where all are. Cost: a check
+  /// of the scene, and the regions mended.
+  RepairReport repair(const RepairOptions& options = {});
   /// Draws vertices along over the next `duration` seconds, on top of the deformation; they stay there. `displacement`:
   /// one per position of the environment. Throws as Deformation::add_pull().
   void pull(std::span<const Vec3> displacement, double duration);
 
   [[nodiscard]] FlowCheckpoint checkpoint() const;
-  /// Goes on from a checkpoint of a flow made with the same environment, options, deformation, field and inlets: every
-  /// later step is then the same to the last bit. Replaces all particles; vertices move to the checkpoint's time.
-  /// Throws InvalidArgument, the particles unchanged, where a state does not hold in this environment.
+  /// Goes on from a checkpoint of a flow made with the same environment, options, deformation, field, inlets, and edits
+  /// (see go_to()): every later step is then the same to the last bit. Replaces all particles; vertices move to the
+  /// checkpoint's time. Throws InvalidArgument, the particles unchanged, where a state does not hold in this
+  /// environment.
   void restore(const FlowCheckpoint& saved);
+  /// Brings the vertices to where they are after so many steps, to make edits there again before restore(). Throws
+  /// InvalidArgument where there are particles.
+  void go_to(std::uint64_t steps);
 
   [[nodiscard]] double time() const { return static_cast<double>(steps_) * options_.dt; }
   [[nodiscard]] std::uint64_t steps() const { return steps_; }
@@ -151,6 +159,7 @@ class Flow {
 
   void inject();
   void move_vertices();
+  void move_vertices_to(std::uint64_t steps);
   void advance_segment(unsigned segment);
   void aim(double dt, bool moving);
   [[nodiscard]] Aim aim_at(std::size_t i, double dt, bool moving) const;

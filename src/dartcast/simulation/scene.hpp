@@ -14,6 +14,7 @@
 #include "dartcast/mesh/generate_vessel.hpp"
 #include "dartcast/response/respond.hpp"
 #include "dartcast/simulation/deformation.hpp"
+#include "dartcast/simulation/event.hpp"
 #include "dartcast/simulation/field.hpp"
 
 namespace dartcast {
@@ -74,6 +75,16 @@ struct ContactScene {
   std::map<std::string, Response> by_patch;
 };
 
+struct EventScene {
+  Event event;
+  std::string patch;  ///< reconnect: of the new faces on the side; empty: none
+};
+
+struct RemeshScene {
+  std::uint64_t every = 0;  ///< steps between two checks of all cells; 0: none
+  RepairOptions options;
+};
+
 struct OutputScene {
   std::uint64_t every = 10;  ///< steps between two frames; 0: none
   bool contacts = false;
@@ -89,6 +100,8 @@ struct Scene {
   std::vector<ParticlesScene> particles;
   MotionScene motion;
   ContactScene contact;
+  std::vector<EventScene> events;  ///< by time
+  RemeshScene remesh;
   OutputScene output;
 };
 

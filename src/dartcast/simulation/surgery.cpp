@@ -1,0 +1,83 @@
+#include "dartcast/simulation/surgery.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "dartcast/base/error.hpp"
+
+namespace dartcast {
+
+Surgery::Surgery(const std::vector<Event>& events, const RemeshScene& remesh, double dt, Flow& flow)
+    : events_(events), remesh_(remesh), dt_(dt), flow_(flow) {
+  const Map& map = flow.environment().map();
+  for (const Cell c : map.cells()) {
+    if (map.is_free(c)) continue;
+    blocked_.resize(std::max<std::size_t>(blocked_.size(), map.source(c) + 1U));
+    blocked_[map.source(c)] = true;
+  }
+}
+
+// Times that are whole numbers of steps but for rounding count as such.
+std::uint64_t Surgery::step_of(const Event& event) const {
+  constexpr double rounding = 1e-9;
+  const double steps = event.at / dt_;
+  return static_cast<std::uint64_t>(std::ceil(steps * (1.0 - rounding)));
+}
+
+void Surgery::before_step() {
+  for (; next_ < events_.size() && step_of(events_[next_]) <= flow_.steps(); ++next_) {
+    const std::uint64_t in_opened = count_in_opened();
+    log_.events.push_back(operate(next_));
+    log_.events.back().particles_in_opened = in_opened;
+    log_.changes.push_back({flow_.steps(), next_});
+  }
+}
+
+EventReport Surgery::operate(std::uint32_t event) {
+  try {
+    return apply(flow_, events_[event]);
+  } catch (const Error& e) {
+    throw Error(fmt::format("event {} ({} at {} s): {}", event + 1, event_kind_names[events_[event].what.index()],
+                            events_[event].at, e.what()));
+  }
+}
+
+void Surgery::after_step() {
+  if (remesh_.every > 0 && flow_.steps() % remesh_.every == 0) {
+    const RepairReport report = remesh();
+    log_.mended += report.mended.size();
+    log_.left = report.left.size();
+    if (!report.mended.empty()) log_.changes.push_back({flow_.steps(), SurgeryLog::Change::remeshing});
+  }
+  if (!log_.changes.empty()) log_.in_opened = count_in_opened();
+}
+
+RepairReport Surgery::remesh() { return flow_.repair(remesh_.options); }
+
+void Surgery::replay(const SurgeryLog& log) {
+  for (const SurgeryLog::Change& change : log.changes) {
+    flow_.go_to(change.step);
+    if (change.event == SurgeryLog::Change::remeshing) {
+      remesh();
+    } else if (change.event < events_.size()) {
+      operate(change.event);
+      next_ = change.event + 1;
+    } else {
+      throw InvalidArgument("surgery: the log names an event that the scene does not have");
+    }
+  }
+  log_ = log;
+}
+
+std::uint64_t Surgery::count_in_opened() const {
+  const Map& map = flow_.environment().map();
+  const auto states = flow_.particles().states();
+  return static_cast<std::uint64_t>(std::count_if(states.begin(), states.end(), [&](const State& s) {
+    const std::uint32_t source = map.source(s.cell);
+    return !s.held && source < blocked_.size() && blocked_[source];
+  }));
+}
+
+}  // namespace dartcast

@@ -1,0 +1,56 @@
+// The surgery of a run: events at their times, and remeshing in between.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "dartcast/simulation/scene.hpp"
+
+namespace dartcast {
+
+/// What has been done to the topology, in order: enough to do it again.
+struct SurgeryLog {
+  struct Change {
+    static constexpr std::uint32_t remeshing = 0xffffffffU;
+
+    std::uint64_t step = 0;           ///< steps done before it
+    std::uint32_t event = remeshing;  ///< its place in the scene's list
+  };
+
+  std::vector<Change> changes;
+  std::vector<EventReport> events;
+  std::uint64_t mended = 0;     ///< regions remeshed
+  std::uint64_t left = 0;       ///< cells not valid after the last check
+  std::uint64_t in_opened = 0;  ///< particles in cells that were blocked when the run began
+};
+
+class Surgery {
+ public:
+  /// All outlive it. `events`: by time.
+  Surgery(const std::vector<Event>& events, const RemeshScene& remesh, double dt, Flow& flow);
+
+  /// To be called before each step: events that are due. Throws as apply(), naming the event.
+  void before_step();
+  /// To be called after each step: checks and remeshes where that is due, and counts.
+  void after_step();
+  /// Does again what an earlier run has done, to a flow without particles.
+  void replay(const SurgeryLog& log);
+
+  [[nodiscard]] const SurgeryLog& log() const { return log_; }
+
+ private:
+  [[nodiscard]] std::uint64_t step_of(const Event& event) const;
+  EventReport operate(std::uint32_t event);
+  RepairReport remesh();
+  [[nodiscard]] std::uint64_t count_in_opened() const;
+
+  const std::vector<Event>& events_;
+  const RemeshScene& remesh_;
+  double dt_;
+  Flow& flow_;
+  std::vector<bool> blocked_;  // by source, when the run began
+  std::uint32_t next_ = 0;     // event
+  SurgeryLog log_;
+};
+
+}  // namespace dartcast
