@@ -158,9 +158,8 @@ bool Cutter::split_face_of(Cell c, std::uint16_t face, Sides& sides) {
   return true;
 }
 
-// Where to split a face: from the first corner on the plane after those above to the last one before them, if its rim
-// changes sides twice. If it does not, but several corners in a row are on the plane, and not on one line, the part of
-// the face that they span goes: it would be a flap without a thickness on one of the cell's parts.
+// Where to split a face whose rim changes sides twice: from the first corner on the plane after those above to the last
+// one before them. No answer for others.
 std::optional<std::array<Dart, 2>> Cutter::chord_of(Cell c, std::uint16_t face, Sides& sides) const {
   const Map& map = edit_.map();
   const Shape& s = map.shape(c);
@@ -168,20 +167,17 @@ std::optional<std::array<Dart, 2>> Cutter::chord_of(Cell c, std::uint16_t face, 
   const auto dart = [&](std::size_t k) { return Dart{c, static_cast<std::uint16_t>(s.first_dart(face) + k % degree)}; };
   const auto side = [&](std::size_t k) { return sides[map.origin(dart(k))]; };
   std::size_t changes = 0;
-  std::array<Dart, 2> across;
-  std::optional<std::array<Dart, 2>> flap;
+  std::array<Dart, 2> ends;
   for (std::size_t k = 0; k < degree; ++k) {
     if (side(k) == 0) continue;
     std::size_t next = k + 1;
-    bool bent = false;
-    for (; side(next) == 0; ++next) bent |= next > k + 1 && side(next + 1) == 0 && !map.flat(dart(next)).straight;
-    if (bent) flap = {dart(k + 1), dart(next - 1)};
+    while (side(next) == 0) ++next;
     if (side(next) == side(k)) continue;
-    if (changes < 2) across[changes] = side(k) > 0 ? dart(k + 1) : dart(next - 1);
+    if (changes < 2) ends[changes] = side(k) > 0 ? dart(k + 1) : dart(next - 1);
     ++changes;
   }
-  if (changes == 2) return across;
-  return changes == 0 ? flap : std::nullopt;
+  if (changes != 2) return {};
+  return ends;
 }
 
 // Which faces of a cell are to be above: those with a corner above; of those on the plane the ones that look down, for

@@ -93,7 +93,7 @@ class Filling {
     draft.faces.push_back(std::move(face));
   }
 
-  void add_side(std::vector<Vertex> corners, Patch patch) {
+  void add_side(const std::vector<Vertex>& corners, Patch patch) {
     DraftFace face;
     for (const Vertex v : corners) face.corners.push_back({v, false, false});
     face.patch = patch;
