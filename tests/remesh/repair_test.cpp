@@ -125,7 +125,7 @@ class RepairOn : public testing::TestWithParam<test::EditMesh> {};
 TEST_P(RepairOn, MendsOneVertexGoneAstray) {
   Random random(3);
   std::size_t repaired = 0;
-  for (int i = 0; i < test::scaled(10, 1000); ++i) {
+  for (int i = 0; i < test::scaled(6, 1000); ++i) {
     Complex complex(GetParam().make());
     const auto inner = inner_vertices(complex.map());
     ASSERT_FALSE(inner.empty());
@@ -153,7 +153,7 @@ TEST_P(RepairOn, MendsOrLeaves) {
   Random random(4);
   std::size_t mended = 0;
   std::size_t left = 0;
-  for (int i = 0; i < test::scaled(10, 2000); ++i) {
+  for (int i = 0; i < test::scaled(6, 2000); ++i) {
     Complex complex(GetParam().make());
     { ComplexEdit counts(complex); }
     const auto inner = inner_vertices(complex.map());
@@ -201,7 +201,7 @@ TEST_P(RepairOn, MendsNextToSubdivided) {
   Random random(5);
   std::size_t mended = 0;
   std::size_t left = 0;
-  for (int i = 0; i < test::scaled(10, 1000); ++i) {
+  for (int i = 0; i < test::scaled(6, 1000); ++i) {
     Complex complex(GetParam().make());
     for (int k = 0; k < 4; ++k) {
       const auto cells = complex.map().cells();
@@ -294,6 +294,39 @@ TEST(Repair, CutsWhereTwoWentAstray) {
   }
   test::expect_good(complex);
   EXPECT_TRUE(volume6(complex) == before);
+}
+
+std::vector<MendedRegion> repaired(Complex& complex) {
+  ComplexEdit edit(complex);
+  RepairReport report = repair(edit, invalid_cells(complex));
+  EXPECT_TRUE(report.left.empty());
+  edit.commit();
+  test::expect_good(complex);
+  return std::move(report.mended);
+}
+
+// The four corners of a face on the wrong side of each other: the cells around all four are enough.
+TEST(Repair, CutsTheCellsAroundSeveral) {
+  Complex complex(grid(7));
+  displace(complex, {{grid_vertex(7, 3, 3, 3), {2.5, 0.25, 0.25}},
+                     {grid_vertex(7, 4, 3, 3), {0.25, 2.5, -0.25}},
+                     {grid_vertex(7, 4, 4, 3), {-2.5, 0.25, 0.25}},
+                     {grid_vertex(7, 3, 4, 3), {0.25, -2.5, -0.25}}});
+  for (const MendedRegion& region : repaired(complex)) EXPECT_LE(region.sources.size(), 18U);
+}
+
+TEST(Repair, TakesNoLargerRegionsThanAllowed) {
+  Complex complex(grid(5));
+  { ComplexEdit counts(complex); }
+  displace(complex, {{grid_vertex(5, 2, 2, 2), {1.75, 0.25, 0.0}}, {grid_vertex(5, 3, 2, 2), {-1.75, 0.0, 0.25}}});
+  const Map before = complex.map();
+  const auto bad = invalid_cells(complex);
+  ComplexEdit edit(complex);
+  const RepairReport report = repair(edit, bad, {.most_cells = 3});
+  EXPECT_TRUE(report.mended.empty());
+  ASSERT_EQ(report.left.size(), bad.size());
+  test::expect_parts(report.left[0].reason, {"at most 3 cells"});
+  EXPECT_TRUE(complex.map() == before);
 }
 
 TEST(Repair, LeavesWhatHasNoInside) {
