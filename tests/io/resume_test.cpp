@@ -52,7 +52,67 @@ every = 10
 contacts = true
 )";
 
-struct Cut : std::exception {};
+// Every kind of event, and cells that turn over and are remeshed.
+const std::string surgery_text = R"(
+[environment]
+generator = "box"
+cells = [12, 6, 6]
+blocked_layer = true
+[[deformation]]
+kind = "bump"
+amplitude = 2.0
+period = 1.0
+axis = [0.0, 0.0, 1.0]
+centre = [3.0, 3.0, 3.0]
+length = 2.0
+[[particles]]
+count = 300
+velocity = [1.0, 0.25, -0.5]
+[motion]
+dt = 0.02
+steps = 47
+gravity = [0.0, 0.0, -5.0]
+[contact]
+restitution = 0.5
+[[event]]
+at = 0.1
+kind = "cut"
+surface = "disc"
+point = [6.0, 3.0, 0.5]
+normal = [1.0, 0.0, 0.0]
+radius = 1.5
+width = 0.5
+[[event]]
+at = 0.3
+kind = "carve"
+tool = "box"
+low = [9.0, -1.0, -1.0]
+high = [10.0, 7.0, 7.0]
+what = "remove"
+stranded = "absorb"
+[[event]]
+at = 0.3
+kind = "ligature"
+point = [7.5, 3.0, 3.0]
+normal = [1.0, 0.0, 0.0]
+draw = 0.5
+reach = 1.0
+duration = 0.2
+stranded = "stay"
+[[event]]
+at = 0.6
+kind = "reconnect"
+a = { point = [9.0, 0.0, 0.0], normal = [1.0, 0.0, 0.0] }
+b = { point = [10.0, 0.0, 0.0], normal = [1.0, 0.0, 0.0] }
+within = 0.01
+patch = "xmin"
+[remesh]
+every = 1
+[output]
+every = 10
+)";
+
+struct CutOff : std::exception {};
 
 class Resume : public testing::Test {
  protected:
@@ -65,7 +125,7 @@ class Resume : public testing::Test {
     options.steps = steps;
     options.audit = true;
     return run_scene(parse_scene(text, "test.toml"), options, [&](std::uint64_t done, std::uint64_t) {
-      if (done == cut) throw Cut();
+      if (done == cut) throw CutOff();
     });
   }
 
@@ -116,15 +176,36 @@ TEST_F(Resume, ARunCutOffAnywhereEndsAsIfItWereNot) {
   EXPECT_GT(whole.totals.absorbed, 0U);
   EXPECT_GT(whole.totals.escaped, 0U);
   for (const std::uint64_t cut : {1U, 9U, 10U, 23U, 46U}) {
-    EXPECT_THROW(run(two, false, 47, cut), Cut);
+    EXPECT_THROW(run(two, false, 47, cut), CutOff);
     expect_same(whole, run(two, true, 47));
   }
 }
 
 TEST_F(Resume, ARunCutOffAgainAndAgainComesToTheSameEnd) {
   const Summary whole = run(one, false, 47);
-  for (const std::uint64_t cut : {12U, 13U, 25U, 46U}) EXPECT_THROW(run(two, true, 47, cut), Cut);
+  for (const std::uint64_t cut : {12U, 13U, 25U, 46U}) EXPECT_THROW(run(two, true, 47, cut), CutOff);
   expect_same(whole, run(two, true, 47));
+}
+
+TEST_F(Resume, ARunWithSurgeryIsOperatedOnAgain) {
+  const Summary whole = run(one, false, 47, 0, surgery_text);
+  ASSERT_EQ(whole.surgery->events.size(), 4U);
+  EXPECT_GT(whole.surgery->in_opened, 0U);
+  EXPECT_GT(whole.surgery->mended, 0U);
+  EXPECT_GT(whole.totals.absorbed, 0U);
+  EXPECT_EQ(whole.lost, 0U);
+  for (const std::uint64_t cut : {4U, 11U, 16U, 46U}) {
+    EXPECT_THROW(run(two, false, 47, cut, surgery_text), CutOff);
+    const Summary resumed = run(two, true, 47, 0, surgery_text);
+    expect_same(whole, resumed);
+    EXPECT_EQ(resumed.surgery->in_opened, whole.surgery->in_opened);
+    EXPECT_EQ(resumed.surgery->mended, whole.surgery->mended);
+    ASSERT_EQ(resumed.surgery->events.size(), 4U);
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_EQ(resumed.surgery->events[i].particles_touched, whole.surgery->events[i].particles_touched);
+      EXPECT_EQ(resumed.surgery->events[i].cells_added, whole.surgery->events[i].cells_added);
+    }
+  }
 }
 
 TEST_F(Resume, AFinishedRunGoesOnToMoreSteps) {

@@ -52,6 +52,88 @@ TEST(SceneFile, DefaultsAreThoseOfTheDocumentation) {
   EXPECT_EQ(b.type, CellType::hexahedron);
 }
 
+TEST(SceneFile, EventsAreReadInOrderOfTime) {
+  const Scene s = parse_scene(box + R"(
+[remesh]
+every = 5
+most_cells = 12
+[[event]]
+at = 2.0
+kind = "ligature"
+point = [1.0, 2.0, 3.0]
+normal = [0.0, 0.0, 2.0]
+draw = 0.5
+reach = 3.0
+duration = 0.25
+stranded = "stay"
+[[event]]
+at = 1.0
+kind = "cut"
+surface = "blade"
+places = [{ a = [0.0, 0.0, 0.0], b = [0.0, 0.0, 1.0] }, { a = [1.0, 0.0, 0.0], b = [1.0, 0.0, 1.0] }]
+width = 0.125
+[[event]]
+at = 3.0
+kind = "carve"
+tool = "ball"
+point = [0.5, 0.5, 0.5]
+radius = 0.25
+what = "remove"
+whole_cells = true
+stranded = "absorb"
+[[event]]
+at = 4.0
+kind = "reconnect"
+a = { point = [0.0, 0.0, 0.0], normal = [1.0, 0.0, 0.0] }
+b = { point = [1.0, 0.0, 0.0], normal = [1.0, 0.0, 0.0] }
+within = 0.5
+tolerance = 0.25
+patch = "xmin"
+)",
+                              "folder/scene.toml");
+  EXPECT_EQ(s.remesh.every, 5U);
+  EXPECT_EQ(s.remesh.options.most_cells, 12U);
+  ASSERT_EQ(s.events.size(), 4U);
+  const auto& cut = std::get<Cut>(s.events[0].event.what);
+  EXPECT_EQ(s.events[0].event.at, 1.0);
+  EXPECT_EQ(cut.width, 0.125);
+  ASSERT_EQ(std::get<BladePath>(cut.surface).places.size(), 2U);
+  EXPECT_EQ(std::get<BladePath>(cut.surface).places[1][1], (Vec3{1.0, 0.0, 1.0}));
+  const auto& tie = std::get<Ligature>(s.events[1].event.what);
+  EXPECT_EQ(tie.plane.normal, (Vec3{0.0, 0.0, 1.0}));
+  EXPECT_EQ(tie.plane.offset, 3.0);
+  EXPECT_EQ(tie.place, (Vec3{1.0, 2.0, 3.0}));
+  EXPECT_EQ(tie.tying.share, 0.5);
+  EXPECT_EQ(tie.tying.reach, 3.0);
+  EXPECT_EQ(tie.duration, 0.25);
+  EXPECT_EQ(s.events[1].event.stranded, Stranded::stay);
+  const auto& carve = std::get<Carve>(s.events[2].event.what);
+  EXPECT_EQ(carve.what, Carving::remove);
+  EXPECT_TRUE(carve.whole_cells);
+  EXPECT_EQ(carve.tool.planes.size(), 26U);
+  EXPECT_EQ(s.events[2].event.stranded, Stranded::absorb);
+  const auto& reconnect = std::get<Reconnect>(s.events[3].event.what);
+  EXPECT_EQ(reconnect.b.offset, 1.0);
+  EXPECT_EQ(reconnect.within, 0.5);
+  EXPECT_EQ(reconnect.options.tolerance, 0.25);
+  EXPECT_EQ(s.events[3].patch, "xmin");
+}
+
+TEST(SceneFile, EventsThatCannotBeSayWhy) {
+  expect_error(box + "[[event]]\nat = 1.0\nkind = 'sew'\n", "5", "one of");
+  expect_error(box + "[[event]]\nkind = 'cut'\n", "3", "at");
+  expect_error(box +
+                   "[[event]]\nat = 1.0\nkind = 'cut'\nsurface = 'plane'\npoint = [0, 0, 0]\nnormal = [0, 0, 0]\n"
+                   "width = 1.0\n",
+               "8", "normal");
+  expect_error(box + "[[event]]\nat = 1.0\nkind = 'ligature'\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\ndraw = 0.5\n", "3",
+               "reach");
+  expect_error(box + "[[event]]\nat = 1.0\nkind = 'carve'\ntool = 'box'\nlow = [1, 1, 1]\nhigh = [0, 2, 2]\n", "8",
+               "box to cut");
+  expect_error(box + "[[event]]\nat = 1.0\nkind = 'ligature'\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\nwidth = 1\n", "8",
+               "width");
+}
+
 TEST(SceneFile, EveryKeyIsRead) {
   const Scene s = parse_scene(R"(
 seed = 5

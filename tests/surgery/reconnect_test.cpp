@@ -167,6 +167,18 @@ TEST(Reconnect, FillsBetweenEndsAtAnAngle) {
   EXPECT_EQ(count_parts(complex.map()), 1U);
 }
 
+// The edge that faces the other end is nearest to the wrong one there.
+TEST(Reconnect, MatchesTheWholeEndsNotTheirNearestEdges) {
+  for (const Vec3& shift : {Vec3{1.2, 0, 1.3}, Vec3{-1.2, 0, 1.3}, Vec3{0, 1.2, 1.3}, Vec3{0, -1.2, 1.3}}) {
+    Complex complex(both(free_box({1, 1, 1}), free_box({1, 1, 1}), shift));
+    ComplexEdit edit(complex);
+    EXPECT_EQ(reconnect(edit, faces_at(edit, 1.0), faces_at(edit, 1.3)).how, Reconnection::paired);
+    edit.commit();
+    test::expect_sound(complex);
+    EXPECT_TRUE(test::near(volume6(complex), Dyadic(6.0 * 2.3), 1e-12));
+  }
+}
+
 // A piece of a vessel is cut out across the tissue and the lumen.
 class Vessel {
  public:

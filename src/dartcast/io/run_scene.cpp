@@ -84,6 +84,7 @@ void describe(const Environment& environment, Summary& summary) {
   summary.threads = environment.threads().count;
   if (summary.threads == 0) summary.threads = std::max(1U, std::thread::hardware_concurrency());
   summary.cells = map.cell_count();
+  summary.free_cells = 0;
   for (const Cell c : map.cells()) summary.free_cells += map.is_free(c) ? 1 : 0;
   summary.vertices = environment.positions().size();
   summary.wall_faces = map.wall_face_count();

@@ -64,12 +64,13 @@ class Carver {
 
   // What is beyond one of the planes to come is not split by those before it.
   Numbers split_by(const ConvexTool& tool) {
-    const SectionOptions how = {options_.snap, tool.finest};
     Numbers inside = left(
         [&](Cell c) { return detail::near(edit_.map().view(c), tool, [&](Vertex v) { return edit_.position(v); }); });
+    const double within = cutter_.snap_distance(inside, {options_.snap, tool.finest});
     for (std::size_t i = 0; i < tool.planes.size(); ++i) {
-      for (std::size_t k = i; k < tool.planes.size(); ++k) inside = cutter_.reaching_below(inside, tool.planes[k], how);
-      const auto parts = cutter_.split(inside, tool.planes[i], how);
+      for (std::size_t k = i; k < tool.planes.size(); ++k)
+        inside = cutter_.reaching_below(inside, tool.planes[k], within);
+      const auto parts = cutter_.split(inside, tool.planes[i], within);
       whole_.insert(whole_.end(), parts.whole.begin(), parts.whole.end());
       inside = parts.below;
     }

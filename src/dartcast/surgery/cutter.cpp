@@ -35,9 +35,8 @@ void Cutter::replace(Cell old, Cell now) {
 }
 
 std::vector<std::uint32_t> Cutter::reaching_below(std::span<const std::uint32_t> numbers, const Plane& plane,
-                                                  const SectionOptions& options) {
-  Sides sides(edit_, plane, options);
-  for (const std::uint32_t n : numbers) sides.take(cells_[n]);
+                                                  double within) {
+  Sides sides(edit_, plane, within);
   std::vector<std::uint32_t> reaching;
   for (const std::uint32_t n : numbers) {
     if (sides.reach(cells_[n]).below || !sides.is_above(cells_[n])) reaching.push_back(n);
@@ -45,9 +44,21 @@ std::vector<std::uint32_t> Cutter::reaching_below(std::span<const std::uint32_t>
   return reaching;
 }
 
-Cutter::Parts Cutter::split(std::span<const std::uint32_t> numbers, const Plane& plane, const SectionOptions& options) {
-  Sides sides(edit_, plane, options);
-  for (const std::uint32_t n : numbers) sides.take(cells_[n]);
+double Cutter::snap_distance(std::span<const std::uint32_t> numbers, const SectionOptions& options) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const std::uint32_t n : numbers) {
+    const CellView v = edit_.map().view(cells_[n]);
+    const Shape& s = v.shape();
+    count += s.dart_count();
+    for (std::uint16_t d = 0; d < s.dart_count(); ++d)
+      sum += norm(edit_.position(v.vertex(s.origin(s.phi1(d)))) - edit_.position(v.vertex(s.origin(d))));
+  }
+  return options.snap * std::min(sum / static_cast<double>(std::max<std::size_t>(count, 1)), options.finest);
+}
+
+Cutter::Parts Cutter::split(std::span<const std::uint32_t> numbers, const Plane& plane, double within) {
+  Sides sides(edit_, plane, within);
   std::vector<std::uint32_t> crossed;
   Parts parts;
   const auto put = [&](std::uint32_t n) { (sides.is_above(cells_[n]) ? parts.above : parts.below).push_back(n); };
@@ -123,8 +134,8 @@ void Cutter::split_edges(std::span<const std::uint32_t> numbers, Sides& sides) {
   for (std::size_t i = 0; i < old.size(); ++i) replace(old[i], now[i]);
 }
 
-void Cutter::split_faces(std::uint32_t number, const Sides& sides) {
-  // Each face that is split leaves two that need not be; the others may come in another order.
+void Cutter::split_faces(std::uint32_t number, Sides& sides) {
+  // After a split the others may come in another order.
   for (std::uint16_t f = 0; f < edit_.map().shape(cells_[number]).face_count();) {
     if (split_face_of(cells_[number], f, sides))
       f = 0;
@@ -133,28 +144,12 @@ void Cutter::split_faces(std::uint32_t number, const Sides& sides) {
   }
 }
 
-// Splits a face with corners on both sides, where its rim changes sides only twice: from the first corner on the plane
-// after those above to the last one before them.
-bool Cutter::split_face_of(Cell c, std::uint16_t face, const Sides& sides) {
-  const Map& map = edit_.map();
-  const Shape& s = map.shape(c);
-  const std::uint16_t degree = s.degree(face);
-  const auto dart = [&](std::size_t k) { return Dart{c, static_cast<std::uint16_t>(s.first_dart(face) + k % degree)}; };
-  const auto side = [&](std::size_t k) { return sides[map.origin(dart(k))]; };
-  std::size_t changes = 0;
-  std::array<Dart, 2> ends;
-  for (std::size_t k = 0; k < degree; ++k) {
-    if (side(k) == 0) continue;
-    std::size_t next = k + 1;
-    while (side(next) == 0) ++next;
-    if (side(next) == side(k)) continue;
-    if (changes < 2) ends[changes] = side(k) > 0 ? dart(k + 1) : dart(next - 1);
-    ++changes;
-  }
-  if (changes != 2) return false;
-  const Cell beyond = map.view(c).neighbour(face);
+bool Cutter::split_face_of(Cell c, std::uint16_t face, Sides& sides) {
+  const auto chord = chord_of(c, face, sides);
+  if (!chord) return false;
+  const Cell beyond = edit_.map().view(c).neighbour(face);
   try {
-    const std::vector<Cell> now = split_face(edit_.topology(), ends[0], ends[1]);
+    const std::vector<Cell> now = split_face(edit_.topology(), (*chord)[0], (*chord)[1]);
     replace(c, now[0]);
     if (beyond.valid()) replace(beyond, now[1]);
   } catch (const EditRefused&) {
@@ -163,20 +158,55 @@ bool Cutter::split_face_of(Cell c, std::uint16_t face, const Sides& sides) {
   return true;
 }
 
-// The rim of the faces above: its darts are theirs. Empty where a face has corners on both sides, or the rim is no
-// simple loop.
-std::vector<Dart> Cutter::path_around(Cell c, const Sides& sides) const {
+// Where to split a face: from the first corner on the plane after those above to the last one before them, if its rim
+// changes sides twice. If it does not, but several corners in a row are on the plane, and not on one line, the part of
+// the face that they span goes: it would be a flap without a thickness on one of the cell's parts.
+std::optional<std::array<Dart, 2>> Cutter::chord_of(Cell c, std::uint16_t face, Sides& sides) const {
+  const Map& map = edit_.map();
+  const Shape& s = map.shape(c);
+  const std::uint16_t degree = s.degree(face);
+  const auto dart = [&](std::size_t k) { return Dart{c, static_cast<std::uint16_t>(s.first_dart(face) + k % degree)}; };
+  const auto side = [&](std::size_t k) { return sides[map.origin(dart(k))]; };
+  std::size_t changes = 0;
+  std::array<Dart, 2> across;
+  std::optional<std::array<Dart, 2>> flap;
+  for (std::size_t k = 0; k < degree; ++k) {
+    if (side(k) == 0) continue;
+    std::size_t next = k + 1;
+    bool bent = false;
+    for (; side(next) == 0; ++next) bent |= next > k + 1 && side(next + 1) == 0 && !map.flat(dart(next)).straight;
+    if (bent) flap = {dart(k + 1), dart(next - 1)};
+    if (side(next) == side(k)) continue;
+    if (changes < 2) across[changes] = side(k) > 0 ? dart(k + 1) : dart(next - 1);
+    ++changes;
+  }
+  if (changes == 2) return across;
+  return changes == 0 ? flap : std::nullopt;
+}
+
+// Which faces of a cell are to be above: those with a corner above; of those on the plane the ones that look down, for
+// the cell is above them. Nothing where one has corners on both sides.
+std::vector<bool> Cutter::faces_above(Cell c, Sides& sides) {
   const CellView v = edit_.map().view(c);
-  const Shape& s = v.shape();
-  std::vector<bool> above(s.face_count());
-  for (std::uint16_t f = 0; f < s.face_count(); ++f) {
+  std::vector<bool> all(v.shape().face_count());
+  for (std::uint16_t f = 0; f < v.shape().face_count(); ++f) {
+    bool above = false;
     bool below = false;
-    for (const std::uint16_t k : s.corners(f)) {
-      above[f] = above[f] || sides[v.vertex(k)] > 0;
+    for (const std::uint16_t k : v.shape().corners(f)) {
+      above |= sides[v.vertex(k)] > 0;
       below |= sides[v.vertex(k)] < 0;
     }
-    if (above[f] && below) return {};
+    if (above && below) return {};
+    all[f] = above || (!below && sides.looks_down({c, f}));
   }
+  return all;
+}
+
+// The rim of the faces above: its darts are theirs. Empty where there is none, or it is no simple loop.
+std::vector<Dart> Cutter::path_around(Cell c, Sides& sides) {
+  const Shape& s = edit_.map().shape(c);
+  const std::vector<bool> above = faces_above(c, sides);
+  if (above.empty()) return {};
   const auto on_rim = [&](std::uint16_t d) { return above[s.face_of(d)] && !above[s.face_of(s.phi2(d))]; };
   std::vector<std::uint16_t> rim;
   for (std::uint16_t d = 0; d < s.dart_count(); ++d) {

@@ -1,7 +1,9 @@
 // Cells that are cut by one plane after another. Private to surgery.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -35,17 +37,22 @@ class Cutter {
   struct Parts {
     std::vector<std::uint32_t> below, above, whole;
   };
-  /// As split_by_plane(): the part below keeps the number, the one above is given the next.
-  Parts split(std::span<const std::uint32_t> numbers, const Plane& plane, const SectionOptions& options);
+  /// As split_by_plane(); vertices at most `within` metres from the plane count as on it. The part below keeps the
+  /// number, the one above is given the next.
+  Parts split(std::span<const std::uint32_t> numbers, const Plane& plane, double within);
   /// Those cells that have a part below the plane.
   [[nodiscard]] std::vector<std::uint32_t> reaching_below(std::span<const std::uint32_t> numbers, const Plane& plane,
-                                                          const SectionOptions& options);
+                                                          double within);
+  /// How far vertices of these cells may be from a plane that they count as on.
+  [[nodiscard]] double snap_distance(std::span<const std::uint32_t> numbers, const SectionOptions& options);
 
  private:
   void split_edges(std::span<const std::uint32_t> numbers, Sides& sides);
-  void split_faces(std::uint32_t number, const Sides& sides);
-  bool split_face_of(Cell c, std::uint16_t face, const Sides& sides);
-  [[nodiscard]] std::vector<Dart> path_around(Cell c, const Sides& sides) const;
+  void split_faces(std::uint32_t number, Sides& sides);
+  bool split_face_of(Cell c, std::uint16_t face, Sides& sides);
+  [[nodiscard]] std::optional<std::array<Dart, 2>> chord_of(Cell c, std::uint16_t face, Sides& sides) const;
+  [[nodiscard]] std::vector<bool> faces_above(Cell c, Sides& sides);
+  [[nodiscard]] std::vector<Dart> path_around(Cell c, Sides& sides);
   void replace(Cell old, Cell now);
 
   ComplexEdit& edit_;

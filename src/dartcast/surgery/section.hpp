@@ -22,9 +22,10 @@ struct Plane {
 Plane plane_through(const Vec3& point, const Vec3& normal);
 
 struct SectionOptions {
-  /// A vertex nearer to the plane than this share of the shortest edge that it has in the cells to be split (or than
-  /// this share of `finest`) counts as on it: so no edge comes out much shorter than that, and where the plane runs
-  /// along faces nothing is split. The section bends by as much.
+  /// Vertices count as on the plane that are nearer to it than this share of the mean edge of the cells to be split (or
+  /// of `finest`, where that is less): so no part comes out much thinner than that, where the plane runs along faces
+  /// nothing is split, and the section bends by no more. It is one distance for all vertices: then no flat face can
+  /// change sides more than twice.
   double snap = 1.0 / 128.0;
   /// Less would take the rounding of vertices that lie on the plane for a distance.
   static constexpr double least_snap = 0x1p-30;

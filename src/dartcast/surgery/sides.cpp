@@ -1,6 +1,5 @@
 #include "dartcast/surgery/sides.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "dartcast/base/error.hpp"
@@ -19,43 +18,25 @@ Vec3 middle(ComplexEdit& edit, Cell c) {
   return sum * (1.0 / v.shape().corner_count());
 }
 
-Sides::Known& Sides::know(Vertex v) {
-  const auto [known, fresh] = known_.try_emplace(v.value);
-  if (fresh) {
-    known->second.x = edit_.position(v);
-    known->second.height = plane_.height(known->second.x);
-  }
+double Sides::height(Vertex v) {
+  const auto [known, fresh] = height_.try_emplace(v.value);
+  if (fresh) known->second = plane_.height(edit_.position(v));
   return known->second;
 }
 
-void Sides::take(Cell c) {
-  const CellView v = edit_.map().view(c);
-  const Shape& s = v.shape();
-  for (std::uint16_t d = 0; d < s.dart_count(); ++d) {
-    const Vertex from = v.vertex(s.origin(d));
-    const Vertex to = v.vertex(s.origin(s.phi1(d)));
-    if (to < from) continue;
-    Known& a = know(from);
-    Known& b = know(to);  // references into the table stay valid
-    const double length = norm(b.x - a.x);
-    a.shortest = std::min(a.shortest, length);
-    b.shortest = std::min(b.shortest, length);
-  }
+int Sides::operator[](Vertex v) {
+  const double h = height(v);
+  if (std::abs(h) <= within_) return 0;
+  return h < 0.0 ? -1 : 1;
 }
 
-int Sides::operator[](Vertex v) const {
-  const Known& k = known_.at(v.value);
-  if (std::abs(k.height) <= options_.snap * std::min(k.shortest, options_.finest)) return 0;
-  return k.height < 0.0 ? -1 : 1;
+Vec3 Sides::crossing(Vertex below, Vertex above) {
+  const Vec3 a = edit_.position(below);
+  const Vec3 b = edit_.position(above);
+  return a + (b - a) * (height(below) / (height(below) - height(above)));
 }
 
-Vec3 Sides::crossing(Vertex below, Vertex above) const {
-  const Known& a = known_.at(below.value);
-  const Known& b = known_.at(above.value);
-  return a.x + (b.x - a.x) * (a.height / (a.height - b.height));
-}
-
-Sides::Reach Sides::reach(Cell c) const {
+Sides::Reach Sides::reach(Cell c) {
   const CellView v = edit_.map().view(c);
   Reach reach;
   for (std::uint16_t k = 0; k < v.shape().corner_count(); ++k) {
@@ -66,9 +47,18 @@ Sides::Reach Sides::reach(Cell c) const {
   return reach;
 }
 
-bool Sides::is_above(Cell c) const {
+bool Sides::is_above(Cell c) {
   const Reach r = reach(c);
   return r.below == r.above ? plane_.height(middle(edit_, c)) > 0.0 : r.above;
+}
+
+bool Sides::looks_down(CellFace f) {
+  const CellView v = edit_.map().view(f.cell);
+  const auto corners = v.shape().corners(f.face);
+  const auto x = [&](std::size_t k) { return edit_.position(v.vertex(corners[k])); };
+  Vec3 area;
+  for (std::size_t k = 1; k + 1 < corners.size(); ++k) area += cross(x(k) - x(0), x(k + 1) - x(0));
+  return dot(area, plane_.normal) < 0.0;
 }
 
 }  // namespace dartcast::detail

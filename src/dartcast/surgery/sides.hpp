@@ -14,44 +14,38 @@ void check_snap(double snap);
 /// The mean of a cell's corners.
 Vec3 middle(ComplexEdit& edit, Cell c);
 
-/// Judges the vertices of some cells, each once.
+/// Judges vertices, each once.
 class Sides {
  public:
-  Sides(ComplexEdit& edit, const Plane& plane, const SectionOptions& options)
-      : edit_(edit), plane_(plane), options_(options) {}
+  /// `within`: vertices at most so far from the plane count as on it (m).
+  Sides(ComplexEdit& edit, const Plane& plane, double within) : edit_(edit), plane_(plane), within_(within) {}
 
-  /// All cells whose edges are to count are to be taken before sides are asked for.
-  void take(Cell c);
   /// Says that a new vertex lies on the plane.
-  void put_on(Vertex v) { known_[v.value] = {.x = {}, .height = 0.0, .shortest = 0.0}; }
+  void put_on(Vertex v) { height_[v.value] = 0.0; }
 
-  /// -1 below, 1 above, 0 on the plane. Precondition: a vertex of a cell taken, or put on the plane.
-  [[nodiscard]] int operator[](Vertex v) const;
+  /// -1 below, 1 above, 0 on the plane.
+  [[nodiscard]] int operator[](Vertex v);
   /// Where the plane crosses an edge from below to above. Precondition: it does.
-  [[nodiscard]] Vec3 crossing(Vertex below, Vertex above) const;
+  [[nodiscard]] Vec3 crossing(Vertex below, Vertex above);
 
   struct Reach {
     bool below = false, above = false;
     [[nodiscard]] bool crossed() const { return below && above; }
   };
   /// On which sides the cell has corners.
-  [[nodiscard]] Reach reach(Cell c) const;
+  [[nodiscard]] Reach reach(Cell c);
   /// Of a cell that is to be on one side: whether that is above.
-  [[nodiscard]] bool is_above(Cell c) const;
+  [[nodiscard]] bool is_above(Cell c);
+  /// Whether the outside of a cell's face is towards below.
+  [[nodiscard]] bool looks_down(CellFace f);
 
  private:
-  struct Known {
-    Vec3 x;
-    double height = 0.0;
-    double shortest = std::numeric_limits<double>::infinity();  // of its edges
-  };
-
-  Known& know(Vertex v);
+  double height(Vertex v);
 
   ComplexEdit& edit_;
   Plane plane_;
-  SectionOptions options_;
-  std::unordered_map<std::uint32_t, Known> known_;
+  double within_;
+  std::unordered_map<std::uint32_t, double> height_;
 };
 
 }  // namespace dartcast::detail

@@ -71,14 +71,15 @@ void add_facet(std::vector<Facet>& facets, std::vector<Vec3> corners, std::size_
   if (norm(n) > 0.0) facets.push_back({std::move(corners), exit, unit(n)});
 }
 
-std::vector<Facet> facets_of(const BladePath& path, double width) {
+std::vector<Facet> facets_of(const BladePath& path) {
   std::vector<Facet> facets;
   for (std::size_t i = 0; i + 1 < path.places.size(); ++i) {
     const auto& [a, b] = path.places[i];
     const auto& [c, d] = path.places[i + 1];
     const Vec3 n = cross(d - a, c - b);
-    const double twist = std::abs(dot(n, (b - a) - (d - c)));  // twice the diagonals' distance, times |n|
-    const bool flat = a != c && b != d && twist <= width / 32 * norm(n);
+    // Twice the diagonals' distance, times |n|: of no more than rounding.
+    const double twist = std::abs(dot(n, (b - a) - (d - c)));
+    const bool flat = a != c && b != d && twist <= 0x1p-40 * norm(n) * (norm(d - a) + norm(c - b));
     const bool convex = dot(n, cross(b - a, c - a)) > 0.0 && dot(n, cross(b - a, d - b)) > 0.0 &&
                         dot(n, cross(d - c, a - c)) < 0.0 && dot(n, cross(d - c, b - d)) < 0.0;
     if (flat && convex) {
@@ -107,17 +108,22 @@ std::vector<ConvexTool> thicken(const BladePath& path, double width) {
     if (!is_finite(a) || !is_finite(b) || a == b)
       throw InvalidArgument("a blade needs two finite ends apart from each other");
   }
-  const std::vector<Facet> facets = facets_of(path, width);
+  const std::vector<Facet> facets = facets_of(path);
   if (facets.empty()) throw InvalidArgument("the path of a blade needs two places between which it sweeps an area");
   std::vector<ConvexTool> tools;
   for (std::size_t i = 0; i < facets.size(); ++i) {
     const Facet& facet = facets[i];
     tools.push_back(slab(plane_through(facet.corners[0], facet.normal), width));
     for (std::size_t k = 0; k < facet.corners.size(); ++k) {
-      const Facet* next = k == 0 && i > 0                            ? &facets[i - 1]
-                          : k == facet.exit && i + 1 < facets.size() ? &facets[i + 1]
-                                                                     : nullptr;
+      const Facet* next = nullptr;
+      if (k == 0 && i > 0) next = &facets[i - 1];
+      if (k == facet.exit && i + 1 < facets.size()) next = &facets[i + 1];
       tools.back().planes.push_back(side_of(facet, k, next));
+      // Beyond a slight bend the sides of one part run on close to those of the next: the wedges between them are to be
+      // cut as they are, for they are too thin to be bent.
+      const double bend = next == nullptr ? 1.0 : norm(cross(facet.normal, next->normal));
+      if (next != nullptr && bend > 0x1p-30)
+        tools.back().finest = std::min(tools.back().finest, width * bend * 0x1p-10);
     }
   }
   return tools;

@@ -35,8 +35,8 @@ struct BladePath {
 std::vector<ConvexTool> thicken(const Plane& plane, double width);
 /// Throws where there are not 3 to 1000 sides.
 std::vector<ConvexTool> thicken(const Disc& disc, double width);
-/// One tool for what the blade sweeps between two places, or two where that is twisted by more than width / 64, joined
-/// along planes that halve the angles between them. Throws where there are not two places, the blade has no length or
+/// One tool for what the blade sweeps between two places, or two where that is not flat, joined along planes that
+/// halve the angles between them. Throws where there are not two places, the blade has no length or
 /// does not move, or turns back onto itself.
 std::vector<ConvexTool> thicken(const BladePath& path, double width);
 
