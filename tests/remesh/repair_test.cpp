@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <set>
 
-#include "dartcast/base/random.hpp"
 #include "dartcast/remesh/kernel.hpp"
 #include "dartcast/remesh/region.hpp"
 #include "dartcast/remesh/subdivide.hpp"
 #include "map/edit_meshes.hpp"
 #include "map/refusals.hpp"
+#include "remesh/astray.hpp"
 #include "remesh/remesh_checks.hpp"
 #include "tier.hpp"
 
@@ -19,67 +19,12 @@ namespace {
 
 using test::volume6;
 
-// Moves some vertices; the others stay.
-void displace(Complex& complex, const std::vector<std::pair<Vertex, Vec3>>& moves) {
-  const auto next = complex.next_positions();
-  std::copy_n(complex.positions().begin(), next.size(), next.begin());
-  for (const auto& [v, by] : moves) next[v.value] += by;
-  complex.commit_positions();
-}
-
-std::vector<Cell> invalid_cells(const Complex& complex) {
-  std::vector<Cell> cells;
-  for (const InvalidCell& c : check_validity(complex, Threads{1}, 1000000).first) cells.push_back(c.cell);
-  return cells;
-}
-
-// Vertices of no wall (nor of the boundary).
-std::vector<Vertex> inner_vertices(const Map& map) {
-  std::vector<Vertex> inner;
-  for (std::uint32_t v = 0; v < map.vertex_count(); ++v) {
-    if (map.is_vertex(Vertex(v)) && !map.may_touch_wall(Vertex(v))) inner.emplace_back(v);
-  }
-  return inner;
-}
-
-// All that a wall is: seen from the free side, corners with their coordinates, patch.
-std::multiset<std::string> walls(const Complex& complex) {
-  std::multiset<std::string> walls;
-  const Map& map = complex.map();
-  for (const Cell c : map.cells()) {
-    const CellView v = map.view(c);
-    for (std::uint16_t f = 0; f < v.shape().face_count(); ++f) {
-      if (!v.is_wall(f)) continue;
-      std::string text = v.is_free() ? "free" : "blocked";
-      for (const std::uint16_t k : v.shape().corners(f)) {
-        const Vec3 x = complex.positions()[v.vertex(k).value];
-        text += " " + std::to_string(v.vertex(k).value) + " " + std::to_string(x.x) + " " + std::to_string(x.y) + " " +
-                std::to_string(x.z);
-      }
-      walls.insert(text + " " + std::to_string(map.patch(CellFace{c, f}).value));
-    }
-  }
-  return walls;
-}
-
-test::Dyadic free_volume6(const Complex& complex) {
-  test::Dyadic sum;
-  for (const Cell c : complex.map().cells()) {
-    if (!complex.map().is_free(c)) continue;
-    for (std::uint16_t s = 0; s < complex.map().shape(c).simplices().size(); ++s) {
-      const Corners v = complex.corners({c, s});
-      sum = sum + test::determinant(v[0], v[1], v[2], v[3]);
-    }
-  }
-  return sum;
-}
-
-Vec3 random_vector(Random& random, double size) {
-  const auto one = [&] { return (random.uniform() * 2.0 - 1.0) * size; };
-  const double x = one();
-  const double y = one();
-  return {x, y, one()};
-}
+using test::displace;
+using test::free_volume6;
+using test::inner_vertices;
+using test::invalid_cells;
+using test::random_vector;
+using test::walls;
 
 // Whether a point is found from which the surface of the cells around some corner of the cell is seen from the inside:
 // by trying.
@@ -125,7 +70,7 @@ class RepairOn : public testing::TestWithParam<test::EditMesh> {};
 TEST_P(RepairOn, MendsOneVertexGoneAstray) {
   Random random(3);
   std::size_t repaired = 0;
-  for (int i = 0; i < test::scaled(10, 1000); ++i) {
+  for (int i = 0; i < test::scaled(6, 1000); ++i) {
     Complex complex(GetParam().make());
     const auto inner = inner_vertices(complex.map());
     ASSERT_FALSE(inner.empty());
@@ -153,7 +98,7 @@ TEST_P(RepairOn, MendsOrLeaves) {
   Random random(4);
   std::size_t mended = 0;
   std::size_t left = 0;
-  for (int i = 0; i < test::scaled(10, 2000); ++i) {
+  for (int i = 0; i < test::scaled(6, 2000); ++i) {
     Complex complex(GetParam().make());
     { ComplexEdit counts(complex); }
     const auto inner = inner_vertices(complex.map());
@@ -201,7 +146,7 @@ TEST_P(RepairOn, MendsNextToSubdivided) {
   Random random(5);
   std::size_t mended = 0;
   std::size_t left = 0;
-  for (int i = 0; i < test::scaled(10, 1000); ++i) {
+  for (int i = 0; i < test::scaled(6, 1000); ++i) {
     Complex complex(GetParam().make());
     for (int k = 0; k < 4; ++k) {
       const auto cells = complex.map().cells();
@@ -294,6 +239,39 @@ TEST(Repair, CutsWhereTwoWentAstray) {
   }
   test::expect_good(complex);
   EXPECT_TRUE(volume6(complex) == before);
+}
+
+std::vector<MendedRegion> repaired(Complex& complex) {
+  ComplexEdit edit(complex);
+  RepairReport report = repair(edit, invalid_cells(complex));
+  EXPECT_TRUE(report.left.empty());
+  edit.commit();
+  test::expect_good(complex);
+  return std::move(report.mended);
+}
+
+// The four corners of a face on the wrong side of each other: the cells around all four are enough.
+TEST(Repair, CutsTheCellsAroundSeveral) {
+  Complex complex(grid(7));
+  displace(complex, {{grid_vertex(7, 3, 3, 3), {2.5, 0.25, 0.25}},
+                     {grid_vertex(7, 4, 3, 3), {0.25, 2.5, -0.25}},
+                     {grid_vertex(7, 4, 4, 3), {-2.5, 0.25, 0.25}},
+                     {grid_vertex(7, 3, 4, 3), {0.25, -2.5, -0.25}}});
+  for (const MendedRegion& region : repaired(complex)) EXPECT_LE(region.sources.size(), 18U);
+}
+
+TEST(Repair, TakesNoLargerRegionsThanAllowed) {
+  Complex complex(grid(5));
+  { ComplexEdit counts(complex); }
+  displace(complex, {{grid_vertex(5, 2, 2, 2), {1.75, 0.25, 0.0}}, {grid_vertex(5, 3, 2, 2), {-1.75, 0.0, 0.25}}});
+  const Map before = complex.map();
+  const auto bad = invalid_cells(complex);
+  ComplexEdit edit(complex);
+  const RepairReport report = repair(edit, bad, {.most_cells = 3});
+  EXPECT_TRUE(report.mended.empty());
+  ASSERT_EQ(report.left.size(), bad.size());
+  test::expect_parts(report.left[0].reason, {"at most 3 cells"});
+  EXPECT_TRUE(complex.map() == before);
 }
 
 TEST(Repair, LeavesWhatHasNoInside) {

@@ -54,7 +54,7 @@ TEST(SubdivideMarks, SidesOfABoxStayPlane) {
   for (const CellType type : {CellType::tetrahedron, CellType::hexahedron, CellType::prism, CellType::pyramid}) {
     Complex complex(odd_box(type));
     Random random(1);
-    for (int i = 0; i < test::scaled(60, 300); ++i) {
+    for (int i = 0; i < test::scaled(30, 300); ++i) {
       const auto cells = complex.map().cells();
       ComplexEdit edit(complex);
       subdivide(edit, cells[random.below(static_cast<std::uint32_t>(cells.size()))]);
@@ -79,7 +79,7 @@ TEST(SubdivideMarks, SidesOfABoxStayPlane) {
 TEST(SubdivideMarks, CellsThatWereMergedAtRandom) {
   int done = 0;
   int refused = 0;
-  for (std::uint64_t seed = 0; seed < test::scaled<std::uint64_t>(40, 4000); ++seed) {
+  for (std::uint64_t seed = 0; seed < test::scaled<std::uint64_t>(20, 4000); ++seed) {
     Random random(seed);
     Complex complex(test::edit_box(seed % 2 == 0 ? CellType::tetrahedron : CellType::hexahedron, seed % 3 == 0, 2));
     ComplexEdit edit(complex);
