@@ -36,7 +36,7 @@ void write(const std::filesystem::path& file, const std::string& text) {
 
 int run_edits(bool json) {
   std::vector<bench::EditRow> rows;
-  for (const std::uint32_t edge : {10U, 100U}) rows.push_back(bench::edit_box(edge, 100000, 20000));
+  for (const std::uint32_t edge : {10U, 100U}) rows.push_back(bench::edit_box(edge, 100000, 10000));
   fmt::print("{}", json ? bench::edits_json(rows) + "\n" : bench::edits_text(rows));
   return done;
 }

@@ -1,14 +1,17 @@
-// A fixed small scene to count instructions in: `steps still`, `steps moving` or `steps lattice`. What counts is what
-// Environment::advance() executes (run.cmake); the number of particle-steps is printed.
+// Fixed small scenes to count instructions in: `steps still`, `steps moving` or `steps lattice`. What counts is what
+// Environment::advance() executes (run.cmake); the number of particle-steps is printed. And `steps edits EDGE COUNT`:
+// edits of a box of EDGE^3 cells, each followed by the particles.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <numbers>
 #include <vector>
 
 #include "dartcast/base/random.hpp"
 #include "dartcast/environment/environment.hpp"
+#include "dartcast/map/edit.hpp"
 #include "dartcast/mesh/generate_box.hpp"
 #include "dartcast/simulation/seeding.hpp"
 
@@ -49,9 +52,37 @@ std::vector<Vec3> random_velocities(Random& random, bool along_lattice) {
   return velocities;
 }
 
+// One cell and its neighbours at a time, far from one another.
+int edit(std::uint32_t box_edge, std::uint32_t count) {
+  BoxOptions box;
+  box.cells = {box_edge, box_edge, box_edge};
+  box.size = {double(box_edge), double(box_edge), double(box_edge)};
+  Environment environment(generate_box(box), Threads{1});
+  Random random(7);
+  const VolumeSampler sampler(environment.complex());
+  Particles set;
+  while (set.size() < particles) {
+    const Sample s = sampler.sample(environment.complex(), random);
+    environment.add(set, s.simplex, s.position);
+  }
+  const std::vector<Cell> cells = environment.map().cells();
+  const auto stride = static_cast<std::uint32_t>(cells.size() / count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    std::uint32_t at = i * stride;
+    while (!environment.map().contains(cells[at])) ++at;
+    const Cell c = cells[at];
+    environment.edit([&](ComplexEdit& e) { split_edge(e.topology(), {c, static_cast<std::uint16_t>(i % 24)}); });
+    environment.follow(set);
+  }
+  std::printf("%u edits\n", count);
+  return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc == 4 && std::strcmp(argv[1], "edits") == 0)
+    return edit(static_cast<std::uint32_t>(std::atoi(argv[2])), static_cast<std::uint32_t>(std::atoi(argv[3])));
   const char* kind = argc == 2 ? argv[1] : "";
   const bool moving = std::strcmp(kind, "moving") == 0;
   const bool lattice = std::strcmp(kind, "lattice") == 0;

@@ -71,9 +71,10 @@ class Following {
   void locate(std::uint32_t i) {
     if (!locator_) locator_.emplace(complex_, edit_.map.added);
     State& s = particles_.states_[i];
-    const Location at = locator_->locate(complex_, s.position);
-    if (at.place != Place::free) return strand(i, at.place, at.simplex);
-    s.put(at.simplex, s.position);
+    const SimplexId at = locator_->find(complex_, s.position);
+    if (!at.valid()) return strand(i, Place::outside, at);
+    if (!map().is_free(at.cell)) return strand(i, Place::blocked, at);
+    s.put(at, s.position);
     s.held = false;
     ++report_.located;
   }

@@ -25,19 +25,23 @@ std::uint32_t bin_along(double x, double low, double high, std::uint32_t bins) {
   return std::min(bins - 1, static_cast<std::uint32_t>(std::min(at, 4e9)));
 }
 
-// The closed simplex of the cell that holds x; nothing where the cell has one that is not positive.
-Location locate_in(const Complex& complex, Cell c, const Vec3& x) {
+// The first closed simplex of the cell that holds x; invalid where none does.
+SimplexId find_in(const Complex& complex, Cell c, const Vec3& x) {
   const CellView cell = complex.map().view(c);
   const Space<Stored> space = current_space(complex);
   const auto& simplices = cell.shape().simplices();
   for (std::uint16_t s = 0; s < simplices.size(); ++s) {
-    const Corners v = space.corners(cell, simplices[s]);
-    if (!detail::in_closed_simplex(v, x)) continue;
-    if (check_cell(complex.map(), complex.positions(), c)) return {};
-    const Placement p = placement(complex.map(), {c, s}, v, x);
-    return {cell.is_free() ? Place::free : Place::blocked, {c, s}, p.kind, p.dart};
+    if (detail::in_closed_simplex(space.corners(cell, simplices[s]), x)) return {c, s};
   }
   return {};
+}
+
+// Nothing where the cell has a simplex that is not positive.
+Location locate_in(const Complex& complex, Cell c, const Vec3& x) {
+  const SimplexId simplex = find_in(complex, c, x);
+  if (!simplex.valid() || check_cell(complex.map(), complex.positions(), c)) return {};
+  const Placement p = placement(complex.map(), simplex, complex.corners(simplex), x);
+  return {complex.map().is_free(c) ? Place::free : Place::blocked, simplex, p.kind, p.dart};
 }
 
 }  // namespace
@@ -136,6 +140,19 @@ Location Locator::locate(const Complex& complex, const Vec3& x) const {
     if (here.place == Place::blocked && best.place == Place::outside) best = here;
   }
   return best;
+}
+
+SimplexId Locator::find(const Complex& complex, const Vec3& x) const {
+  if (!bounds_.holds(x)) return {};
+  const std::size_t at = bin(x);
+  SimplexId blocked;
+  for (std::size_t e = first_[at]; e < first_[at + 1]; ++e) {
+    if (!box_of(complex, entries_[e]).holds(x)) continue;
+    const SimplexId here = find_in(complex, entries_[e], x);
+    if (here.valid() && complex.map().is_free(here.cell)) return here;
+    if (!blocked.valid()) blocked = here;
+  }
+  return blocked;
 }
 
 }  // namespace dartcast

@@ -31,6 +31,9 @@ class Locator {
   /// finite and in the exact range. Cost: the cells whose boxes share x's grid bin.
   [[nodiscard]] Location locate(const Complex& complex, const Vec3& x) const;
 
+  /// The simplex alone, where all cells of the grid are known to be valid; invalid outside.
+  [[nodiscard]] SimplexId find(const Complex& complex, const Vec3& x) const;
+
   /// The number of x's bin, or of one at the border. Points taken by bins find their cells in the cache: of many
   /// points, ten times faster than in random order.
   [[nodiscard]] std::size_t bin(const Vec3& x) const {
