@@ -81,7 +81,9 @@ class Walls {
   Walls(const Transaction& t, std::span<const Vec3> positions)
       : positions_(positions), old_(walls_of(t.map(), t.removed())), new_(walls_of(t.map(), t.added())) {
     for (std::size_t i = 0; i < t.born_count(); ++i) born_[t.born(i).vertex.value] = t.born(i);
-    for (const Wall& wall : new_) kept_.insert(wall.corners.begin(), wall.corners.end());
+    for (const Cell c : t.added()) {
+      for (const std::uint32_t v : t.map().view(c).vertices()) kept_.insert(v);
+    }
     for (std::size_t i = 0; i < old_.size(); ++i) {
       for (const std::uint32_t v : old_[i].corners) at_[v].push_back(i);
     }
@@ -128,7 +130,7 @@ class Walls {
     return extent_over(plane_of(part ? before.corners : after.corners, positions_), before, after, positions_);
   }
 
-  // Whether it has all corners of the old wall that there are still, an edge at least.
+  // Whether it has all corners of the old wall that its cells have kept, an edge at least.
   [[nodiscard]] bool is_whole_of(const Wall& after, const Wall& before) const {
     const auto kept = [&](std::uint32_t v) { return kept_.count(v) != 0; };
     return std::count_if(before.corners.begin(), before.corners.end(), kept) >= 2 &&
@@ -140,7 +142,7 @@ class Walls {
   std::vector<Wall> old_;
   std::vector<Wall> new_;
   std::unordered_map<std::uint32_t, BornVertex> born_;
-  std::unordered_set<std::uint32_t> kept_;                          // corners of new walls
+  std::unordered_set<std::uint32_t> kept_;                          // vertices of the new cells
   std::unordered_map<std::uint32_t, std::vector<std::size_t>> at_;  // old walls of a vertex
 };
 

@@ -26,7 +26,7 @@ struct SectionOptions {
   /// of `finest`, where that is less): so no part comes out much thinner than that, where the plane runs along faces
   /// nothing is split, and the section bends by no more. It is one distance for all vertices: then no flat face can
   /// change sides more than twice.
-  double snap = 1.0 / 128.0;
+  double snap = 1.0 / 32.0;
   /// Less would take the rounding of vertices that lie on the plane for a distance.
   static constexpr double least_snap = 0x1p-30;
   /// What must not be lost to that: say, the width of a layer that two planes bound (m).
