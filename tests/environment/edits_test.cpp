@@ -7,6 +7,7 @@
 #include "dartcast/base/error.hpp"
 #include "dartcast/environment/audit.hpp"
 #include "dartcast/environment/state_hash.hpp"
+#include "dartcast/map/integrity.hpp"
 #include "dartcast/response/respond.hpp"
 #include "environment/particle_checks.hpp"
 #include "map/edit_meshes.hpp"
@@ -70,54 +71,89 @@ void expect_followed(const ComplexEditReport& edit, const FollowReport& report, 
 
 class Edits : public testing::TestWithParam<test::EditMesh> {};
 
-TEST_P(Edits, LoseNobody) {
-  for (const Stranded stranded : {Stranded::stay, Stranded::move, Stranded::absorb}) {
-    Environment environment(GetParam().make());
-    Random random(static_cast<std::uint64_t>(stranded) + 1);
-    Particles particles;
-    const auto points = test::random_points(300, {0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}, random);
-    environment.add(particles, points);
-    std::vector<Vec3> rest(environment.positions().begin(), environment.positions().end());
-    test::CellBag bag(environment.map());
-    const std::size_t usual = bag.size();
+// A scene that turns, with particles that slide, and edits at random in between.
+class EditedScene {
+ public:
+  EditedScene(const MeshData& mesh, Stranded stranded)
+      : environment_(mesh),
+        random_(static_cast<std::uint64_t>(stranded) + 1),
+        stranded_(stranded),
+        rest_(environment_.positions().begin(), environment_.positions().end()),
+        bag_(environment_.map()),
+        usual_(bag_.size()) {
+    environment_.add(particles_, test::random_points(250, {0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}, random_));
+  }
+
+  void edit() {
+    ComplexEditReport done;
+    try {
+      const test::EditKind kind = test::draw_kind(bag_, usual_, random_);
+      done = environment_.edit([&](ComplexEdit& e) {
+        const Cell c = bag_.draw(e.map(), random_);
+        test::apply(e.topology(), test::draw_edit(e.map(), kind, c, bag_, random_));
+      });
+    } catch (const Error&) {
+      return;
+    }
+    ++edits;
+    bag_.update(done.map);
+    ASSERT_TRUE(check_integrity(environment_.map(), done.map.added, 1).empty());
+    const std::vector<State> before = test::copy_of(particles_);
+    const FollowReport report = environment_.follow(particles_, stranded_);
+    expect_followed(done, report, before, particles_);
+    follow(done, environment_.positions().size(), rest_);
+    for (const PlacedVertex& p : done.placed) rest_[p.vertex.value] = environment_.positions()[p.vertex.value];
+    located += report.located;
+    left += report.stranded.size();
+  }
+
+  void move(double turn) {
+    const auto next = environment_.next_positions();
+    for (std::size_t v = 0; v < next.size(); ++v) next[v] = rest_[v] + Vec3{turn * rest_[v].y, -turn * rest_[v].x, 0.0};
+    environment_.move();
+  }
+
+  void advance() {
     const Respond slide = [](const Contact& c, std::span<const WallHit> walls, auto) {
       const Vec3 n = walls[0].normal;
       return Continuation{c.unused - n * dot(c.unused, n), true};
     };
-    int edits = 0, located = 0, left = 0;
-    for (int step = 0; step < test::scaled(80, 4000); ++step) {
-      try {
-        const test::EditKind kind = test::draw_kind(bag, usual, random);
-        const ComplexEditReport edit = environment.edit([&](ComplexEdit& e) {
-          const Cell c = bag.draw(e.map(), random);
-          test::apply(e.topology(), test::draw_edit(e.map(), kind, c, bag, random));
-        });
-        ++edits;
-        bag.update(edit.map);
-        const std::vector<State> before = test::copy_of(particles);
-        const FollowReport report = environment.follow(particles, stranded);
-        expect_followed(edit, report, before, particles);
-        follow(edit, environment.positions().size(), rest);
-        for (const PlacedVertex& p : edit.placed) rest[p.vertex.value] = environment.positions()[p.vertex.value];
-        located += static_cast<int>(report.located);
-        left += static_cast<int>(report.stranded.size());
-      } catch (const Error&) {
-      }
-      expect_audited(environment, particles);
-      if (step % 3 == 0) {
-        const double turn = 0.02 * (step % 5);
-        const auto next = environment.next_positions();
-        for (std::size_t v = 0; v < next.size(); ++v)
-          next[v] = rest[v] + Vec3{turn * rest[v].y, -turn * rest[v].x, 0.0};
-        environment.move();
-      }
-      environment.advance(particles, jittered(particles, random, 0.2), slide);
-      expect_audited(environment, particles);
+    environment_.advance(particles_, jittered(particles_, random_, 0.2), slide);
+  }
+
+  void check() const { expect_audited(environment_, particles_); }
+  void check_all() const { ASSERT_TRUE(check_integrity(environment_.map(), 1).empty()); }
+
+  int edits = 0;
+  std::uint64_t located = 0;
+  std::size_t left = 0;
+
+ private:
+  Environment environment_;
+  Random random_;
+  Stranded stranded_;
+  Particles particles_;
+  std::vector<Vec3> rest_;
+  test::CellBag bag_;
+  std::size_t usual_;
+};
+
+// Ten edits are tried in each step: 10^4 in all, 10^6 in the full tier.
+TEST_P(Edits, LoseNobody) {
+  for (const Stranded stranded : {Stranded::stay, Stranded::move, Stranded::absorb}) {
+    EditedScene scene(GetParam().make(), stranded);
+    for (int step = 0; step < test::scaled(48, 4800); ++step) {
+      for (int i = 0; i < 10; ++i) ASSERT_NO_FATAL_FAILURE(scene.edit());
+      ASSERT_NO_FATAL_FAILURE(scene.check());
+      if (step % 3 == 0) scene.move(0.02 * (step % 5));
+      scene.advance();
+      ASSERT_NO_FATAL_FAILURE(scene.check());
+      if (step % 10 == 0) ASSERT_NO_FATAL_FAILURE(scene.check_all());
     }
-    EXPECT_GT(edits, test::scaled(10, 600));
+    EXPECT_GT(scene.edits, test::scaled(100, 8000));
     if (test::sanitized()) continue;
-    EXPECT_GT(located, 30);
-    EXPECT_GT(left, 0);
+    EXPECT_GT(scene.located, 100U);
+    EXPECT_GT(scene.left, 0U);
   }
 }
 
