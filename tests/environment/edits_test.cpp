@@ -1,6 +1,7 @@
 // Edits while particles move: who is touched is located again exactly, all others keep every bit, and nobody is lost.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -57,8 +58,14 @@ void expect_followed(const ComplexEditReport& edit, const FollowReport& report, 
   touched.insert(edit.map.marked.begin(), edit.map.marked.end());
   std::map<std::uint32_t, StrandedParticle> stranded;
   for (const StrandedParticle& p : report.stranded) stranded[p.particle] = p;
+  std::uint64_t at_touched = 0;
   std::size_t j = 0;  // absorbed particles leave gaps
   for (std::uint32_t i = 0; i < before.size(); ++i) {
+    const State& s = before[i];
+    at_touched += touched.count(s.cell) != 0 || std::any_of(s.touching.begin(), s.touching.begin() + s.touching_count,
+                                                            [&](CellFace f) { return touched.count(f.cell) != 0; })
+                      ? 1
+                      : 0;
     const auto found = stranded.find(i);
     if (found != stranded.end() && found->second.became == Stranded::absorb) continue;
     const State& now = after[j++];
@@ -67,6 +74,7 @@ void expect_followed(const ComplexEditReport& edit, const FollowReport& report, 
     ASSERT_TRUE(same_bits(now, before[i])) << "particle " << i << " was not touched";
   }
   ASSERT_EQ(j, after.size());
+  ASSERT_EQ(report.touched, at_touched);
 }
 
 class Edits : public testing::TestWithParam<test::EditMesh> {};

@@ -247,6 +247,20 @@ TEST(ComplexEdit, TakesEverythingBackWhereACellIsNotConvex) {
             before.map().vertex_count() + 2 + 2);  // the middle, the two faces', the cell's
 }
 
+// Between a move and the next one, new vertices count as not moved.
+TEST(ComplexEdit, GivesNewVerticesAPast) {
+  Complex complex = one_box();
+  const auto next = complex.next_positions();
+  for (std::size_t v = 0; v < next.size(); ++v) next[v] = complex.positions()[v] + Vec3{0.5, 0.0, 0.0};
+  complex.commit_positions();
+  ComplexEdit edit(complex);
+  const Vertex v = split_edge(edit.topology(), any_dart(edit.map())).vertex;
+  const ComplexEditReport report = edit.commit();
+  EXPECT_EQ(complex.previous_positions()[v.value], complex.positions()[v.value]);
+  EXPECT_EQ(complex.previous_positions()[0], complex.positions()[0] - (Vec3{0.5, 0.0, 0.0}));
+  EXPECT_FALSE(report.map.born.empty());
+}
+
 TEST(ComplexEdit, WithoutACommitIsNothing) {
   Complex complex = one_box();
   const Complex before = complex;
