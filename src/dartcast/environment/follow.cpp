@@ -52,12 +52,18 @@ class Following {
     State& s = particles_.states_[i];
     const bool gone = is_removed(s.cell);
     const bool marked = !gone && is_marked(s.cell);
+    if (!gone && !marked && !touches_any(s)) return;  // it has left since it was listed
     ++report_.touched;
     leave_walls(s);
     if (gone) locate(i);
     if (marked && !map().is_free(s.cell)) strand(i, Place::blocked, s.at());
     if (marked && map().is_free(s.cell) && s.held) release(i);
     if (gone || marked) keep_up(i);
+  }
+
+  [[nodiscard]] bool touches_any(const State& s) const {
+    return std::any_of(s.touching.begin(), s.touching.begin() + s.touching_count,
+                       [&](CellFace f) { return is_removed(f.cell) || is_marked(f.cell); });
   }
 
   // Forgets walls touched that are none any more.
