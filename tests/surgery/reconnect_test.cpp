@@ -57,11 +57,11 @@ class Reconnecting : public testing::TestWithParam<Kind> {
  protected:
   static MeshData box(std::array<std::uint32_t, 3> cells) { return free_box(cells, GetParam().type, GetParam().mixed); }
 };
-constexpr Kind alike[] = {{"hexahedra", CellType::hexahedron, false},
-                          {"tetrahedra", CellType::tetrahedron, false},
-                          {"prisms", CellType::prism, false},
-                          {"pyramids", CellType::pyramid, false}};
-INSTANTIATE_TEST_SUITE_P(Surgery, Reconnecting, testing::ValuesIn(alike),
+constexpr Kind matching[] = {{"hexahedra", CellType::hexahedron, false},
+                             {"tetrahedra", CellType::tetrahedron, false},
+                             {"prisms", CellType::prism, false},
+                             {"pyramids", CellType::pyramid, false}};
+INSTANTIATE_TEST_SUITE_P(Surgery, Reconnecting, testing::ValuesIn(matching),
                          [](const auto& i) { return std::string(i.param.name); });
 // Cut at random: the faces of two boxes do not match.
 INSTANTIATE_TEST_SUITE_P(Mixed, Reconnecting, testing::Values(Kind{"mixed", CellType::hexahedron, true}),
@@ -69,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(Mixed, Reconnecting, testing::Values(Kind{"mixed", Cell
 
 // Those whose boxes match.
 class ReconnectingAlike : public Reconnecting {};
-INSTANTIATE_TEST_SUITE_P(Surgery, ReconnectingAlike, testing::ValuesIn(alike),
+INSTANTIATE_TEST_SUITE_P(Surgery, ReconnectingAlike, testing::ValuesIn(matching),
                          [](const auto& i) { return std::string(i.param.name); });
 
 // Two boxes whose faces match, the second a little off: sewn, with the first one's corners kept.

@@ -111,7 +111,7 @@ TEST_P(Sections, PartAxisAlignedVolumesExactly) {
 TEST_P(Sections, PartRandomly) {
   const MeshData mesh = GetParam().make();
   Random random(5);
-  for (int i = 0; i < test::scaled(4, 400); ++i) {
+  for (int i = 0; i < std::max(1, test::scaled(4, 400)); ++i) {
     SCOPED_TRACE(i);
     Complex complex(mesh);
     const Plane plane = random_plane(complex, random);
@@ -140,7 +140,7 @@ TEST_P(Sections, PartRandomly) {
 TEST_P(Sections, EndAtCellsThatAreNotNamed) {
   Complex complex(GetParam().make());
   Random random(6);
-  for (int i = 0; i < test::scaled(4, 200); ++i) {
+  for (int i = 0; i < std::max(1, test::scaled(4, 200)); ++i) {
     SCOPED_TRACE(i);
     const std::vector<Cell> all = complex.map().cells();
     std::vector<Cell> some;
@@ -171,7 +171,7 @@ TEST_P(Sections, EndAtCellsThatAreNotNamed) {
 TEST_P(Sections, PartAlmostAlongFaces) {
   const MeshData mesh = GetParam().make();
   Random random(8);
-  for (int i = 0; i < test::scaled(12, 400); ++i) {
+  for (int i = 0; i < std::max(1, test::scaled(12, 400)); ++i) {
     SCOPED_TRACE(i);
     Complex complex(mesh);
     const Vec3 x = complex.positions()[random.below(static_cast<std::uint32_t>(complex.positions().size()))];

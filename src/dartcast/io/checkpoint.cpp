@@ -153,7 +153,7 @@ void fields(Archive& a, FlowTotals& t) {
 
 template <class Archive>
 void fields(Archive& a, EventReport& e) {
-  values(a, e.kind, e.step, e.time, e.cells_removed, e.cells_added, e.cells_opened, e.cells_blocked,
+  values(a, e.kind, e.step, e.time, e.cells_removed, e.cells_added, e.cells_opened, e.cells_blocked, e.cells_whole,
          e.particles_in_opened, e.particles_touched, e.particles_located, e.particles_moved, e.particles_held,
          e.particles_absorbed, e.boundary_shift, e.seconds);
   if (e.kind >= std::size(event_kind_names)) throw Error("an event has no such kind");

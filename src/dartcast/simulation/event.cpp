@@ -38,6 +38,7 @@ class Surgeon {
     Carved carved;
     note(flow_.edit([&](ComplexEdit& e) { carved = dartcast::carve(e, near, tools, what, options); }, event_.stranded));
     report_.cells_opened = carved.opened.size();
+    report_.cells_whole = carved.whole.size();
   }
 
   void make(const Ligature& tie) {

@@ -57,6 +57,7 @@ struct EventReport {
   std::uint64_t cells_added = 0;
   std::uint64_t cells_opened = 0;  ///< freed
   std::uint64_t cells_blocked = 0;
+  std::uint64_t cells_whole = 0;          ///< that a cut could not split: see Carved
   std::uint64_t particles_in_opened = 0;  ///< before it: see SurgeryLog::in_opened
   std::uint64_t particles_touched = 0;
   std::uint64_t particles_located = 0;
