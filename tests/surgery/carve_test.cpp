@@ -16,14 +16,8 @@ namespace {
 
 using test::Before;
 using test::Dyadic;
+using test::Kind;
 using test::volume6;
-
-struct Kind {
-  const char* name;
-  CellType type;
-  bool mixed;
-};
-void PrintTo(const Kind& k, std::ostream* out) { *out << k.name; }
 
 class Carvings : public testing::TestWithParam<Kind> {
  protected:

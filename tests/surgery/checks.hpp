@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <ostream>
 #include <set>
 #include <span>
 #include <unordered_set>
@@ -16,6 +17,14 @@
 #include "map/edit_meshes.hpp"
 
 namespace dartcast::test {
+
+/// Boxes of one type of cells, or mixed.
+struct Kind {
+  const char* name;
+  CellType type;
+  bool mixed;
+};
+inline void PrintTo(const Kind& k, std::ostream* out) { *out << k.name; }
 
 /// Six times the volume of some cells, exactly.
 inline Dyadic volume6(const Complex& complex, std::span<const Cell> cells) {

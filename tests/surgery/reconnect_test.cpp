@@ -15,6 +15,7 @@ namespace dartcast {
 namespace {
 
 using test::Dyadic;
+using test::Kind;
 using test::volume6;
 
 MeshData free_box(std::array<std::uint32_t, 3> cells, CellType type = CellType::hexahedron, bool mixed = false) {
@@ -45,13 +46,6 @@ std::size_t count_parts(Map map) {
   for (const Cell c : map.cells()) map.set_free(c, true);
   return test::count_rooms(map);
 }
-
-struct Kind {
-  const char* name;
-  CellType type;
-  bool mixed;
-};
-void PrintTo(const Kind& k, std::ostream* out) { *out << k.name; }
 
 class Reconnecting : public testing::TestWithParam<Kind> {
  protected:

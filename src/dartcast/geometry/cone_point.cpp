@@ -14,20 +14,6 @@ Vec3 mean(std::span<const Vec3> points, std::span<const std::uint32_t> corners) 
   return sum * (1.0 / static_cast<double>(corners.size()));
 }
 
-std::vector<Triangle> fan(std::span<const Vec3> points, std::span<const std::uint32_t> face, bool has_point) {
-  std::vector<Triangle> triangles;
-  const std::size_t k = face.size();
-  if (has_point) {
-    const Vec3 m = mean(points, face);
-    for (std::size_t i = 0; i < k; ++i) triangles.push_back({m, points[face[i]], points[face[(i + 1) % k]]});
-    return triangles;
-  }
-  const auto lowest = static_cast<std::size_t>(std::min_element(face.begin(), face.end()) - face.begin());
-  const auto corner = [&](std::size_t i) { return points[face[(lowest + i) % k]]; };
-  for (std::size_t i = 1; i + 1 < k; ++i) triangles.push_back({corner(0), corner(i), corner(i + 1)});
-  return triangles;
-}
-
 bool all_positive(const Vec3& apex, std::span<const Triangle> triangles) {
   return std::all_of(triangles.begin(), triangles.end(),
                      [&](const Triangle& t) { return orient3d(apex, t.a, t.b, t.c) == Sign::positive; });

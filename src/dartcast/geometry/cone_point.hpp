@@ -1,7 +1,9 @@
 // Where to put the point of its own that a cell is coned from.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,8 +18,28 @@ struct Triangle {
 /// The sum over the number, in the order given.
 Vec3 mean(std::span<const Vec3> points, std::span<const std::uint32_t> corners);
 
-/// The fan of a face: from its mean where it has a point of its own, else from its lowest-numbered vertex.
-std::vector<Triangle> fan(std::span<const Vec3> points, std::span<const std::uint32_t> face, bool has_point);
+/// Adds the fan of a face: from its own point where it has one, else from its lowest-numbered vertex. `at(v)`: where
+/// the vertex with that number is.
+template <class At>
+void add_fan(std::vector<Triangle>& triangles, std::span<const std::uint32_t> face, const std::optional<Vec3>& point,
+             At&& at) {
+  const std::size_t k = face.size();
+  const auto lowest = static_cast<std::size_t>(std::min_element(face.begin(), face.end()) - face.begin());
+  const auto corner = [&](std::size_t i) { return at(face[(lowest + i) % k]); };
+  if (point) {
+    for (std::size_t i = 0; i < k; ++i) triangles.push_back({*point, corner(i), corner(i + 1)});
+  } else {
+    for (std::size_t i = 1; i + 1 < k; ++i) triangles.push_back({corner(0), corner(i), corner(i + 1)});
+  }
+}
+
+/// The fan of one face.
+inline std::vector<Triangle> fan(std::span<const Vec3> points, std::span<const std::uint32_t> face,
+                                 const std::optional<Vec3>& point = {}) {
+  std::vector<Triangle> triangles;
+  add_fan(triangles, face, point, [&](std::uint32_t v) { return points[v]; });
+  return triangles;
+}
 
 /// Whether the apex makes a positive simplex with every triangle; exact.
 bool all_positive(const Vec3& apex, std::span<const Triangle> triangles);

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -101,8 +102,8 @@ class Giver {
 
   [[nodiscard]] bool asks_for_point(const DraftFace& face, const Vec3& mean) const {
     const Numbers corners = corners_of(face);
-    return !detail::all_positive(mean, detail::fan(positions_, corners, false)) &&
-           detail::all_positive(mean, fan_from(face_point(corners), corners));
+    return !detail::all_positive(mean, detail::fan(positions_, corners)) &&
+           detail::all_positive(mean, detail::fan(positions_, corners, face_point(corners)));
   }
 
   void add_face_point(CellFace f) {
@@ -118,9 +119,9 @@ class Giver {
     std::vector<detail::Triangle> triangles;
     for (const DraftFace& face : draft.faces) {
       const Numbers corners = corners_of(face);
-      const auto fan =
-          face.point.valid() ? fan_from(position(face.point), corners) : detail::fan(positions_, corners, false);
-      triangles.insert(triangles.end(), fan.begin(), fan.end());
+      std::optional<Vec3> point;
+      if (face.point.valid()) point = position(face.point);
+      detail::add_fan(triangles, corners, point, [&](std::uint32_t v) { return positions_[v]; });
     }
     const Numbers corners = corners_of(draft);
     draft.point = add_vertex(corners, detail::cone_weights(positions_, corners, triangles));
@@ -131,13 +132,6 @@ class Giver {
     Vec3 sum;
     for (std::size_t i = 0; i < corners.size(); ++i) sum += positions_[corners[i]] * weights[i];
     return sum;
-  }
-
-  [[nodiscard]] std::vector<detail::Triangle> fan_from(const Vec3& point, const Numbers& corners) const {
-    std::vector<detail::Triangle> triangles;
-    for (std::size_t i = 0; i < corners.size(); ++i)
-      triangles.push_back({point, positions_[corners[i]], positions_[corners[(i + 1) % corners.size()]]});
-    return triangles;
   }
 
   [[nodiscard]] Vec3 position(Vertex v) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -67,8 +68,8 @@ class Solver {
     const Faces faces = faces_of(mesh_, c);
     const Vec3 m = mean(mesh_.points, corners_of(faces));
     for (const auto& face : faces) {
-      if (face.size() == 3 || all_positive(m, fan(mesh_.points, face, false))) continue;
-      if (!all_positive(m, fan(mesh_.points, face, true))) continue;
+      if (face.size() == 3 || all_positive(m, fan(mesh_.points, face))) continue;
+      if (!all_positive(m, fan(mesh_.points, face, mean(mesh_.points, face)))) continue;
       auto& sides = face_points_[sorted(face)];
       sides = cells_at(c, face);
       for (const auto& side : sides) add_cell(side.first);
@@ -120,8 +121,9 @@ class Solver {
     const Faces faces = faces_of(mesh_, c);
     std::vector<Triangle> triangles;
     for (const auto& face : faces) {
-      const auto of_face = fan(mesh_.points, face, face_points_.count(sorted(face)) != 0);
-      triangles.insert(triangles.end(), of_face.begin(), of_face.end());
+      std::optional<Vec3> point;
+      if (face_points_.count(sorted(face)) != 0) point = mean(mesh_.points, face);
+      detail::add_fan(triangles, face, point, [&](std::uint32_t v) { return mesh_.points[v]; });
     }
     const auto corners = corners_of(faces);
     const Vertex point = add_vertex(corners, detail::cone_weights(mesh_.points, corners, triangles));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <utility>
 
 namespace dartcast::detail {
@@ -72,18 +73,11 @@ std::vector<Vertex> corners_of(std::span<const DraftFace> faces) {
 std::vector<Triangle> fans_of(std::span<const DraftFace> faces, const Position& position) {
   std::vector<Triangle> triangles;
   for (const DraftFace& face : faces) {
-    const auto& corners = face.corners;
-    const std::size_t k = corners.size();
-    const auto lowest =
-        static_cast<std::size_t>(std::min_element(corners.begin(), corners.end(),
-                                                  [](const auto& a, const auto& b) { return a.vertex < b.vertex; }) -
-                                 corners.begin());
-    const auto at = [&](std::size_t i) { return position(corners[(lowest + i) % k].vertex); };
-    if (face.point.valid()) {
-      for (std::size_t i = 0; i < k; ++i) triangles.push_back({position(face.point), at(i), at(i + 1)});
-    } else {
-      for (std::size_t i = 1; i + 1 < k; ++i) triangles.push_back({at(0), at(i), at(i + 1)});
-    }
+    std::vector<std::uint32_t> corners;
+    for (const DraftCorner& c : face.corners) corners.push_back(c.vertex.value);
+    std::optional<Vec3> point;
+    if (face.point.valid()) point = position(face.point);
+    add_fan(triangles, corners, point, [&](std::uint32_t v) { return position(Vertex(v)); });
   }
   return triangles;
 }

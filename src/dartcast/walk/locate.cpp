@@ -36,14 +36,6 @@ SimplexId find_in(const Complex& complex, Cell c, const Vec3& x) {
   return {};
 }
 
-// Nothing where the cell has a simplex that is not positive.
-Location locate_in(const Complex& complex, Cell c, const Vec3& x) {
-  const SimplexId simplex = find_in(complex, c, x);
-  if (!simplex.valid() || check_cell(complex.map(), complex.positions(), c)) return {};
-  const Placement p = placement(complex.map(), simplex, complex.corners(simplex), x);
-  return {complex.map().is_free(c) ? Place::free : Place::blocked, simplex, p.kind, p.dart};
-}
-
 }  // namespace
 
 Locator::Locator(const Complex& complex) {
@@ -129,30 +121,34 @@ void Locator::fill(const Complex& complex, const std::vector<Cell>& cells) {
   for (const Cell c : cells) for_each_bin(box_of(complex, c), [&](std::size_t bin) { entries_[next[bin]++] = c; });
 }
 
-Location Locator::locate(const Complex& complex, const Vec3& x) const {
-  if (!bounds_.holds(x)) return {};
-  const std::size_t at = bin(x);
-  Location best;
-  for (std::size_t e = first_[at]; e < first_[at + 1]; ++e) {
-    if (!box_of(complex, entries_[e]).holds(x)) continue;
-    const Location here = locate_in(complex, entries_[e], x);
-    if (here.place == Place::free) return here;
-    if (here.place == Place::blocked && best.place == Place::outside) best = here;
-  }
-  return best;
-}
-
-SimplexId Locator::find(const Complex& complex, const Vec3& x) const {
+// The first simplex in a free cell that look(cell) finds, else the first in a blocked one.
+template <class Look>
+SimplexId Locator::first_free(const Complex& complex, const Vec3& x, Look&& look) const {
   if (!bounds_.holds(x)) return {};
   const std::size_t at = bin(x);
   SimplexId blocked;
   for (std::size_t e = first_[at]; e < first_[at + 1]; ++e) {
     if (!box_of(complex, entries_[e]).holds(x)) continue;
-    const SimplexId here = find_in(complex, entries_[e], x);
+    const SimplexId here = look(entries_[e]);
     if (here.valid() && complex.map().is_free(here.cell)) return here;
     if (!blocked.valid()) blocked = here;
   }
   return blocked;
+}
+
+SimplexId Locator::find(const Complex& complex, const Vec3& x) const {
+  return first_free(complex, x, [&](Cell c) { return find_in(complex, c, x); });
+}
+
+// Cells with a simplex that is not positive hold nothing.
+Location Locator::locate(const Complex& complex, const Vec3& x) const {
+  const SimplexId found = first_free(complex, x, [&](Cell c) {
+    const SimplexId here = find_in(complex, c, x);
+    return here.valid() && check_cell(complex.map(), complex.positions(), c) ? SimplexId{} : here;
+  });
+  if (!found.valid()) return {};
+  const Placement p = placement(complex.map(), found, complex.corners(found), x);
+  return {complex.map().is_free(found.cell) ? Place::free : Place::blocked, found, p.kind, p.dart};
 }
 
 }  // namespace dartcast

@@ -57,6 +57,8 @@ class Locator {
   void for_each_bin(const Box& box, Visit&& visit) const;
   void choose_bins(std::size_t cells);
   [[nodiscard]] std::size_t entry_count(const Complex& complex, const std::vector<Cell>& cells) const;
+  template <class Look>
+  [[nodiscard]] SimplexId first_free(const Complex& complex, const Vec3& x, Look&& look) const;
   void make(const Complex& complex, const std::vector<Cell>& cells);
   void fill(const Complex& complex, const std::vector<Cell>& cells);
 
