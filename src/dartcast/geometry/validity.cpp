@@ -1,7 +1,12 @@
 #include "dartcast/geometry/validity.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <string>
+#include <utility>
+
+#include "dartcast/geometry/positive_cells.hpp"
 
 namespace dartcast {
 
@@ -13,6 +18,54 @@ std::string describe(const Map& map, Cell c, std::uint16_t simplex, Sign sign) {
                                               : " has a corner that is not finite or outside the exact range";
   return "cell " + std::to_string(map.source(c)) + ": simplex " + std::to_string(simplex) + what;
 }
+
+// Judges cells four of one shape at a time, and keeps those that the filter leaves open.
+class Sieve {
+ public:
+  explicit Sieve(std::span<const Vec3> positions) : positions_(positions) {}
+
+  void add(Cell c, const CellView& v) {
+    const Shape* shape = &v.shape();
+    // Shapes that meet in a group judge each other's cells early: it costs time, no more.
+    Group& group = groups_[reinterpret_cast<std::uintptr_t>(shape) / 64U % groups_.size()];
+    if (group.shape != shape) {
+      judge(group);
+      group.shape = shape;
+    }
+    group.cells[group.size] = c;
+    group.vertices[group.size] = v.vertices().data();
+    if (++group.size == group.cells.size()) judge(group);
+  }
+
+  /// In order. To be called at the end.
+  std::vector<Cell> open() {
+    for (Group& group : groups_) judge(group);
+    std::sort(open_.begin(), open_.end());
+    return std::move(open_);
+  }
+
+ private:
+  struct Group {
+    const Shape* shape = nullptr;
+    std::array<Cell, 4> cells;
+    std::array<const std::uint32_t*, 4> vertices;
+    std::size_t size = 0;
+  };
+
+  void judge(Group& group) {
+    if (group.size == 0) return;
+    for (std::size_t i = group.size; i < group.vertices.size(); ++i) group.vertices[i] = group.vertices[0];
+    const unsigned open = detail::not_proved_positive(*group.shape, group.vertices, positions_.data());
+    for (std::size_t i = 0; i < group.size; ++i) {
+      if (((open >> i) & 1U) != 0) open_.push_back(group.cells[i]);
+    }
+    group.size = 0;
+  }
+
+  std::span<const Vec3> positions_;
+  std::array<Group, 64> groups_;
+  std::vector<Cell> open_;
+};
 
 }  // namespace
 
@@ -35,10 +88,10 @@ Validity check_validity(const Map& map, std::span<const Vec3> positions, Threads
     const std::size_t count = map.slot_count(pool);
     std::vector<Validity> parts(chunk_count(count, grain));
     parallel_for(count, grain, threads, [&](std::size_t begin, std::size_t end) {
+      Sieve sieve(positions);
+      map.for_each_cell(pool, begin, end, [&](Cell c, const CellView& v) { sieve.add(c, v); });
       Validity& part = parts[begin / grain];
-      for (std::size_t i = begin; i < end; ++i) {
-        const Cell c(pool, static_cast<std::uint32_t>(i));
-        if (!map.contains(c)) continue;
+      for (const Cell c : sieve.open()) {
         auto invalid = check_cell(map, positions, c);
         if (!invalid) continue;
         ++part.invalid_count;

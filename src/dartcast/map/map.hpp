@@ -160,6 +160,18 @@ class Map {
   [[nodiscard]] std::uint32_t source(Cell c) const;
   /// All cells, pool by pool.
   [[nodiscard]] std::vector<Cell> cells() const;
+  /// Calls visit(cell, view) for those of a pool in the places [begin, end).
+  template <class Visit>
+  void for_each_cell(std::uint32_t pool, std::size_t begin, std::size_t end, Visit&& visit) const {
+    const bool general = pool == general_pool;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Pool& p = pools_[pool];
+      const std::uint32_t* word = p.words.data() + (general ? p.offsets[i] : i * p.stride);
+      if ((word[1] & vacant_bit) != 0) continue;
+      const std::uint32_t shape = general ? word[0] : word[0] & 0xffffU;
+      visit(Cell(pool, static_cast<std::uint32_t>(i)), CellView(*this, word, shapes_[shape], general));
+    }
+  }
 
   // Marks.
   [[nodiscard]] bool is_free(Cell c) const { return view(c).is_free(); }

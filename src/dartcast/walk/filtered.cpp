@@ -89,14 +89,6 @@ DARTCAST_TARGET void step(const FilteredScene& scene, const FilteredSteps& steps
 
 }  // namespace
 
-InstructionSet best_instruction_set() {
-#if defined(__x86_64__)
-  static const bool has_avx2 = __builtin_cpu_supports("avx2") != 0;
-  if (has_avx2) return InstructionSet::avx2;
-#endif
-  return InstructionSet::portable;
-}
-
 Trail trail_of(std::span<const Vec3> positions, const VertexNumbers& vertices, const Vec3& p) {
   portable::Lanes relative;
   const portable::FilteredDeterminants d(portable::Rows(positions.data(), vertices), portable::load_row(p), relative);

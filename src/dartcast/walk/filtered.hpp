@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "dartcast/base/instruction_set.hpp"
 #include "dartcast/geometry/complex.hpp"
 #include "dartcast/walk/counters.hpp"
 #include "dartcast/walk/state.hpp"
@@ -63,10 +64,6 @@ struct FilteredSteps {
   std::span<Taken> taken;     ///< out
   std::vector<Begun>& begun;  ///< out; empty before
 };
-
-enum class InstructionSet : std::uint8_t { portable, avx2 };
-/// The best that this machine has.
-InstructionSet best_instruction_set();
 
 /// Takes the steps that it can, and counts them. The same bits with every instruction set. Preconditions: as for
 /// Stepper::step(). Cost: about 20 ns a step; memory is asked for ahead of time, so that a large scene costs little
