@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 
+#include "dartcast/base/random.hpp"
 #include "exact/dyadic.hpp"
 #include "exact/quadruples.hpp"
 #include "tier.hpp"
@@ -275,6 +277,68 @@ TEST(Orient3dValue, IsNearTheTrueValueAndOfItsSign) {
       ASSERT_FALSE(Dyadic(0x1p-49) * truth.abs() < error) << "kind " << k << ": " << text(q);
     }
   }
+}
+
+using Triple = std::array<Vec3, 3>;
+
+Dyadic plane_determinant(const Triple& t) {
+  const auto x = [&](int i) { return Dyadic(t[static_cast<std::size_t>(i)].x) - Dyadic(t[2].x); };
+  const auto y = [&](int i) { return Dyadic(t[static_cast<std::size_t>(i)].y) - Dyadic(t[2].y); };
+  return x(0) * y(1) - y(0) * x(1);
+}
+
+// Plain ones, points of a lattice, points on a line or next to it, and all of these with one axis far longer than the
+// other.
+Triple make_triple(Random& random) {
+  Triple t;
+  for (Vec3& p : t) p = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-9, 9)};
+  const std::uint32_t kind = random.below(4);
+  const auto lattice = [&] { return static_cast<double>(random.below(9)) - 4.0; };
+  if (kind == 1) {
+    for (Vec3& p : t) p = {lattice(), lattice(), lattice()};
+  }
+  if (kind > 1) {
+    const double s = kind == 2 ? lattice() : random.uniform(-2, 2);
+    if (kind == 2) t[1] = {lattice(), lattice(), 0};
+    if (kind == 2) t[0] = {lattice(), lattice(), 0};
+    t[2] = t[0] + (t[1] - t[0]) * s;
+    if (random.below(2) == 0) t[2].x = std::nextafter(t[2].x, 100.0 * lattice());
+  }
+  const int k = static_cast<int>(random.below(40)) - 20;
+  for (Vec3& p : t) p.y = std::ldexp(p.y, k);
+  return t;
+}
+
+TEST(Orient2d, HasTheExactSign) {
+  Random random(17);
+  int zeros = 0;
+  const int n = cases(100'000);
+  for (int i = 0; i < n; ++i) {
+    Triple t = make_triple(random);
+    const double scale = std::ldexp(1.0, static_cast<int>(random.below(520)) - 260);
+    for (Vec3& p : t) p *= scale;
+    if (!std::all_of(t.begin(), t.end(), [](const Vec3& p) { return in_exact_range(p); })) continue;  // next to 0
+    const auto truth = static_cast<Sign>(plane_determinant(t).sign());
+    zeros += truth == Sign::zero ? 1 : 0;
+    std::uint64_t exact = 0;
+    ASSERT_EQ(orient2d(t[0], t[1], t[2], exact), truth) << i;
+    ASSERT_EQ(orient2d_exact(t[0], t[1], t[2]), truth) << i;
+    ASSERT_LE(exact, 1U);
+    const double value = orient2d_value(t[0], t[1], t[2]);
+    ASSERT_EQ(value > 0.0 ? Sign::positive : value < 0.0 ? Sign::negative : Sign::zero, truth) << i;
+  }
+  EXPECT_GT(zeros, n / 20);
+  EXPECT_LT(zeros, n / 2);
+}
+
+TEST(Orient2d, TurnsCounterclockwiseAndSaysWhatItCannotDecide) {
+  EXPECT_EQ(orient2d({0, 0, 5}, {1, 0, -3}, {0, 1, 8}), Sign::positive);
+  EXPECT_EQ(orient2d_value({0, 0, 5}, {1, 0, -3}, {0, 1, 8}), 1.0);
+  EXPECT_EQ(orient2d({0, 0, 0}, {1, nan, 0}, {0, 1, 0}), Sign::undecidable);
+  EXPECT_EQ(orient2d({0, 0, 0}, {infinity, 0, 0}, {0, 1, 0}), Sign::undecidable);
+  EXPECT_EQ(orient2d_exact({0, 0, 0}, {0x1p+301, 0, 0}, {0, 1, 0}), Sign::undecidable);
+  EXPECT_TRUE(std::isnan(orient2d_value({0, 0, 0}, {nan, 0, 0}, {0, 1, 0})));
+  EXPECT_EQ(orient2d({0, 0, nan}, {1, 0, 0}, {0, 1, infinity}), Sign::positive) << "z is not read";
 }
 
 }  // namespace

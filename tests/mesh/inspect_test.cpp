@@ -66,7 +66,11 @@ MeshData one_of(CellType type) {
         for (const std::uint8_t k : face) stream.push_back(h(k));
       }
       add(mesh, type, stream);
+      break;
     }
+    case CellType::triangle:
+    case CellType::quadrilateral:
+    case CellType::polygon: break;
   }
   return mesh;
 }

@@ -20,7 +20,10 @@ const std::vector<Face>& standard(CellType type) {
     case CellType::hexahedron: return hexahedron;
     case CellType::prism: return prism;
     case CellType::pyramid: return pyramid;
-    case CellType::polyhedron: break;
+    case CellType::polyhedron:
+    case CellType::triangle:
+    case CellType::quadrilateral:
+    case CellType::polygon: break;
   }
   throw std::logic_error("oracle: a polyhedron has no standard faces");
 }

@@ -123,6 +123,63 @@ double orient3d_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d
   return with_exact_determinant(a, b, c, d, [](const auto& value) { return value.estimate(); });
 }
 
+namespace {
+
+struct PlaneFiltered {
+  double value;
+  double bound;
+  bool applies;
+  double x, y;  // the largest differences
+
+  [[nodiscard]] bool decided() const { return applies && std::abs(value) > bound; }
+};
+
+PlaneFiltered plane_determinant(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double ux = a.x - c.x;
+  const double uy = a.y - c.y;
+  const double vx = b.x - c.x;
+  const double vy = b.y - c.y;
+  const double x = std::max(std::abs(ux), std::abs(vx));
+  const double y = std::max(std::abs(uy), std::abs(vy));
+  return {ux * vy - uy * vx, plane_error * (x * y), plane_filter_applies(x * y), x, y};
+}
+
+bool in_plane_range(const Vec3& p) { return in_exact_range(p.x) && in_exact_range(p.y); }
+
+// The exact determinant as an expansion of at most 16 components.
+auto exact_plane_determinant(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return difference(a.x, c.x) * difference(b.y, c.y) - difference(a.y, c.y) * difference(b.x, c.x);
+}
+
+}  // namespace
+
+Sign orient2d(const Vec3& a, const Vec3& b, const Vec3& c) {
+  std::uint64_t exact = 0;
+  return orient2d(a, b, c, exact);
+}
+
+Sign orient2d(const Vec3& a, const Vec3& b, const Vec3& c, std::uint64_t& exact) {
+  const PlaneFiltered f = plane_determinant(a, b, c);
+  if (f.decided()) return sign(f.value);
+  ++exact;
+  return orient2d_exact(a, b, c);
+}
+
+Sign orient2d_exact(const Vec3& a, const Vec3& b, const Vec3& c) {
+  if (!in_plane_range(a) || !in_plane_range(b) || !in_plane_range(c)) return Sign::undecidable;
+  const PlaneFiltered f = plane_determinant(a, b, c);
+  if (f.x == 0.0 || f.y == 0.0) return Sign::zero;  // on a line across an axis
+  return static_cast<Sign>(exact_plane_determinant(a, b, c).sign());
+}
+
+double orient2d_value(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const PlaneFiltered f = plane_determinant(a, b, c);
+  constexpr double enough = 0x1p+49;
+  if (f.decided() && std::abs(f.value) > enough * f.bound) return f.value;
+  if (!in_plane_range(a) || !in_plane_range(b) || !in_plane_range(c)) return std::numeric_limits<double>::quiet_NaN();
+  return exact_plane_determinant(a, b, c).estimate();
+}
+
 Shift::Shift(const Vec3& p, std::span<const Vec3> opposite) : p_(p), in_range_(in_exact_range(p)) {
   opposite_.fill(p);
   std::copy(opposite.begin(), opposite.end(), opposite_.begin());

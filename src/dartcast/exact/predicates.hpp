@@ -84,7 +84,28 @@ bool rounds_nothing(const Vec3& extent, const Points&... points) {
   return (((off(points.x, c.x) + off(points.y, c.y)) + off(points.z, c.z)) + ...) == 0.0;
 }
 
-/// The same determinant as a double: right to 2^-49 of itself, and of the exact sign (0 only where it is 0). Not a
+/// Sign of det[b - a, c - a] of x and y alone: positive where a, b, c turn counterclockwise; half of it is the area of
+/// the triangle. Exactness and cost as for orient3d().
+Sign orient2d(const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// The same, counting in `exact` the signs that the filter left open.
+Sign orient2d(const Vec3& a, const Vec3& b, const Vec3& c, std::uint64_t& exact);
+
+/// The same sign without the filter.
+Sign orient2d_exact(const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// orient2d's determinant as a double: right to 2^-49 of itself, and of the exact sign. Not a number where a coordinate
+/// is outside the range.
+double orient2d_value(const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// A determinant of two differences of stored doubles in the plane, a b' - a' b, is off by at most plane_error times
+/// the product m of the largest |x| and |y| among them, as long as plane_filter_applies(): Shewchuk's bound (3 + 16 e)
+/// e of the permanent, which is at most 2 m. The last factor pays for rounding m, and for products that underflow: at
+/// most 2 * 2^-1075, against e m >= 2^-753.
+inline constexpr double plane_error = 2.0 * (3.0 + 16.0 * 0x1p-53) * 0x1p-53 * (1.0 + 0x1p-10);
+constexpr bool plane_filter_applies(double m) { return m <= 0x1p+602 && m >= 0x1p-700; }
+
+/// orient3d's determinant as a double: right to 2^-49 of itself, and of the exact sign (0 only where it is 0). Not a
 /// number where a coordinate is outside the range.
 double orient3d_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 

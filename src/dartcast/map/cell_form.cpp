@@ -19,7 +19,10 @@ std::vector<Permutation> make_rotations(CellType type) {
     case CellType::hexahedron: generators = {{1, 2, 3, 0, 5, 6, 7, 4}, {4, 5, 1, 0, 7, 6, 2, 3}}; break;
     case CellType::prism: generators = {{1, 2, 0, 4, 5, 3}, {3, 5, 4, 0, 2, 1}}; break;
     case CellType::pyramid: generators = {{1, 2, 3, 0, 4}}; break;
-    case CellType::polyhedron: return {};
+    case CellType::triangle: generators = {{1, 2, 0}}; break;
+    case CellType::quadrilateral: generators = {{1, 2, 3, 0}}; break;
+    case CellType::polyhedron:
+    case CellType::polygon: return {};
   }
   Permutation identity(corner_count(type));
   for (std::size_t i = 0; i < identity.size(); ++i) identity[i] = static_cast<std::uint8_t>(i);
@@ -35,9 +38,10 @@ std::vector<Permutation> make_rotations(CellType type) {
 }
 
 std::span<const Permutation> rotations(CellType type) {
-  static const std::array<std::vector<Permutation>, 4> all = {
-      make_rotations(CellType::tetrahedron), make_rotations(CellType::hexahedron), make_rotations(CellType::prism),
-      make_rotations(CellType::pyramid)};
+  static const std::array<std::vector<Permutation>, 7> all = {
+      make_rotations(CellType::tetrahedron),  make_rotations(CellType::hexahedron), make_rotations(CellType::prism),
+      make_rotations(CellType::pyramid),      make_rotations(CellType::polyhedron), make_rotations(CellType::triangle),
+      make_rotations(CellType::quadrilateral)};
   return all[static_cast<std::size_t>(type)];
 }
 

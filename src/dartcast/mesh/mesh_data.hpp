@@ -14,9 +14,21 @@
 
 namespace dartcast {
 
-enum class CellType : std::uint8_t { tetrahedron, hexahedron, prism, pyramid, polyhedron };
-inline constexpr std::array<std::string_view, 5> cell_type_names = {"tetrahedron", "hexahedron", "prism", "pyramid",
-                                                                    "polyhedron"};
+enum class CellType : std::uint8_t {
+  tetrahedron,
+  hexahedron,
+  prism,
+  pyramid,
+  polyhedron,
+  triangle,
+  quadrilateral,
+  polygon
+};
+inline constexpr std::array<std::string_view, 8> cell_type_names = {
+    "tetrahedron", "hexahedron", "prism", "pyramid", "polyhedron", "triangle", "quadrilateral", "polygon"};
+
+/// 2 for cells of the plane, 3 for those of space.
+constexpr unsigned dimension(CellType type) { return type < CellType::triangle ? 3 : 2; }
 
 /// Values given at points or cells in the file, kept for fields and masks. Row-major: `components` doubles per item.
 struct DataArray {
@@ -34,7 +46,10 @@ struct DataArray {
 ///  mirror);
 ///  - pyramid: 0 1 2 3 the base, counterclockwise seen from the inside, 4 the apex (VTK and Gmsh agree);
 ///  - polyhedron: connectivity holds the number of faces, then for each face its number of corners and the corners,
-///    counterclockwise seen from the outside.
+///    counterclockwise seen from the outside;
+///  - triangle, quadrilateral, polygon: counterclockwise seen from above, where z = 0 for all points.
+///
+/// All cells are of one dimension. In the plane the faces of a cell, and those of patches, are edges of two corners.
 struct MeshData {
   std::vector<Vec3> points;
 
@@ -57,6 +72,8 @@ struct MeshData {
   std::vector<DataArray> cell_data;
 
   [[nodiscard]] std::size_t cell_count() const { return types.size(); }
+  /// That of the first cell; 3 where there is none.
+  [[nodiscard]] unsigned dimension() const { return types.empty() ? 3 : dartcast::dimension(types.front()); }
   [[nodiscard]] std::span<const std::uint32_t> cell(std::size_t c) const {
     return {connectivity.data() + offsets[c], offsets[c + 1] - offsets[c]};
   }

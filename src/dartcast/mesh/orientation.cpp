@@ -27,7 +27,10 @@ std::span<const Corner> corners_of(CellType type) {
     case CellType::hexahedron: return hexahedron;
     case CellType::prism: return prism;
     case CellType::pyramid: return pyramid;
-    case CellType::polyhedron: break;
+    case CellType::polyhedron:
+    case CellType::triangle:
+    case CellType::quadrilateral:
+    case CellType::polygon: break;
   }
   return {};
 }
@@ -90,7 +93,10 @@ void mirror(MeshData& mesh, std::size_t c) {
       std::swap(cell[1], cell[3]);
       std::swap(cell[5], cell[7]);
       return;
-    case CellType::polyhedron: break;
+    case CellType::polyhedron:
+    case CellType::triangle:
+    case CellType::quadrilateral:
+    case CellType::polygon: break;
   }
   std::size_t at = 1;
   for (std::uint32_t f = 0; f < cell[0]; ++f) {
