@@ -136,7 +136,7 @@ class Builder {
     }
   }
 
-  // Whether the free squares of a room and its doors are connected by their sides, and there is one in the room.
+  // Whether the free squares of a room and its doors are connected by their sides.
   bool is_connected(std::uint32_t column, std::uint32_t row) {
     const Square low = {column * pitch_ - (column > 0 ? 1 : 0), row * pitch_ - (row > 0 ? 1 : 0)};
     const Square high = {std::min(column * pitch_ + pitch_, nx_), std::min(row * pitch_ + pitch_, ny_)};
@@ -150,12 +150,10 @@ class Builder {
       if (s == 0) front.push_back({i, j});
       s = 1;
     };
-    bool in_room = false;
     for (std::uint32_t j = low.j; j < high.j; ++j) {
       for (std::uint32_t i = low.i; i < high.i; ++i) {
         if (mark({i, j}) != 0) continue;
         if (free++ == 0) visit(i, j);
-        in_room = in_room || !(is_wall(i) || is_wall(j));
       }
     }
     while (!front.empty()) {
@@ -167,7 +165,7 @@ class Builder {
       visit(s.i - 1, s.j);  // 0 - 1 is large: outside
       visit(s.i, s.j - 1);
     }
-    return in_room && reached == free;
+    return reached == free;
   }
 
   const MazeOptions& o_;
