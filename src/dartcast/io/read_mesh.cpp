@@ -110,12 +110,4 @@ MeshFile read_valid_mesh(const std::filesystem::path& path) {
   return out;
 }
 
-MeshFile read_volume_mesh(const std::filesystem::path& path) {
-  MeshFile out = read_valid_mesh(path);
-  if (out.report.dimension == 2) {
-    throw InvalidMesh(fmt::format("{}: a planar mesh: 2D is not supported yet", path.string()));
-  }
-  return out;
-}
-
 }  // namespace dartcast

@@ -21,7 +21,4 @@ MeshFile read_mesh(const std::filesystem::path& path);
 /// The same, but throws InvalidMesh, with the file's name and the first defect, where the mesh is refused.
 MeshFile read_valid_mesh(const std::filesystem::path& path);
 
-/// The same for who needs volume cells: throws InvalidMesh also where the mesh is planar.
-MeshFile read_volume_mesh(const std::filesystem::path& path);
-
 }  // namespace dartcast
