@@ -25,14 +25,14 @@ int check(const std::string& mesh, bool json) {
 
 int info(const std::string& path, bool json) {
   const bool is_scene = std::filesystem::path(path).extension() == ".toml";
-  const MeshData mesh = is_scene ? load_scene_mesh(read_scene(path).environment).mesh : read_volume_mesh(path).mesh;
+  const MeshData mesh = is_scene ? load_scene_mesh(read_scene(path).environment).mesh : read_valid_mesh(path).mesh;
   const MeshInfo result = mesh_info(mesh, path);
   fmt::print("{}{}", json ? info_json(result) : info_text(result), json ? "\n" : "");
   return done;
 }
 
 int convert(const std::string& in, const std::string& out) {
-  write_mesh(read_volume_mesh(in).mesh, out);
+  write_mesh(read_valid_mesh(in).mesh, out);
   return done;
 }
 

@@ -9,45 +9,11 @@
 #include "dartcast/io/read_mesh.hpp"
 #include "dartcast/io/report.hpp"
 #include "dartcast/io/write_mesh.hpp"
+#include "io/same_mesh.hpp"
 #include "io/sample_mesh.hpp"
 
 namespace dartcast::test {
 namespace {
-
-using Faces = std::vector<std::pair<std::int32_t, std::vector<std::uint32_t>>>;
-
-Faces faces_of(const MeshData& mesh) {
-  Faces faces;
-  for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) {
-    faces.push_back({mesh.patch_tags[f],
-                     {mesh.patch_faces.begin() + static_cast<std::ptrdiff_t>(mesh.patch_offsets[f]),
-                      mesh.patch_faces.begin() + static_cast<std::ptrdiff_t>(mesh.patch_offsets[f + 1])}});
-  }
-  return faces;
-}
-
-using Cells = std::vector<std::tuple<CellType, std::int32_t, std::vector<std::uint32_t>>>;
-
-/// Cells with their regions, sorted: formats keep no order between types.
-Cells cells_of(const MeshData& mesh) {
-  Cells cells;
-  for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
-    cells.emplace_back(mesh.types[c], mesh.regions.empty() ? 0 : mesh.regions[c],
-                       std::vector<std::uint32_t>(mesh.cell(c).begin(), mesh.cell(c).end()));
-  }
-  std::sort(cells.begin(), cells.end());
-  return cells;
-}
-
-void expect_same(const MeshData& a, const MeshData& b) {
-  EXPECT_EQ(a.points, b.points);
-  EXPECT_EQ(cells_of(a), cells_of(b));
-  auto x = faces_of(a);
-  auto y = faces_of(b);
-  std::sort(x.begin(), x.end());
-  std::sort(y.begin(), y.end());
-  EXPECT_EQ(x, y);
-}
 
 void expect_accepted(const MeshFile& file) {
   EXPECT_EQ(file.report.verdict(), Verdict::accept) << report_text(file.report);
@@ -303,23 +269,6 @@ TEST(Formats, SecondOrderCellsAreRefusedByName) {
     ASSERT_EQ(report.defects.size(), 1U) << path << report_text(report);
     EXPECT_EQ(report.defects[0].kind, "second_order");
     EXPECT_EQ(report.defects[0].count, 1U);
-  }
-}
-
-TEST(Formats, PlanarMeshesAreReadButHoldNoVolume) {
-  const Folder folder;
-  const std::string text =
-      "MeshVersionFormatted 2\nDimension 2\nVertices\n4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\nTriangles\n2\n1 2 3 5\n1 4 3 "
-      "6\nEnd\n";
-  const MeshFile file = read_mesh(folder.file("a.mesh", text));
-  EXPECT_EQ(file.report.dimension, 2);
-  EXPECT_EQ(file.report.verdict(), Verdict::repair);
-  EXPECT_EQ(file.report.cells, (std::map<std::string, std::size_t>{{"triangle", 2}}));
-  try {
-    (void)read_volume_mesh(folder / "a.mesh");
-    FAIL();
-  } catch (const InvalidMesh& error) {
-    EXPECT_NE(std::string(error.what()).find("planar"), std::string::npos);
   }
 }
 

@@ -62,7 +62,12 @@ std::vector<Sample> samples() {
           {"k.vtu", written(polyhedra(), "k.vtu")},
           {"l.vtu", written(mesh, "l.vtu")},
           {"m.vtu", binary_vtu("appended", false)},
-          {"n.vtu", binary_vtu("binary", true)}};
+          {"n.vtu", binary_vtu("binary", true)},
+          {"o.msh", written(planar_mesh(), "o.msh")},
+          {"p.msh", gmsh_4_binary(planar_mesh(), true, false)},
+          {"q.mesh", written(planar_mesh(), "q.mesh")},
+          {"r.vtk", written(planar_polygons(), "r.vtk")},
+          {"s.vtu", written(planar_polygons(), "s.vtu")}};
 }
 
 using test::full_tier;
@@ -107,7 +112,7 @@ TEST_F(Hostile, TruncatedAnywhere) {
     for (std::size_t n = 0; n < whole; ++n) {
       const bool accepted = expect_verdict(folder_, s.name, s.content.substr(0, n), "cut at " + std::to_string(n));
       // Only what follows the last array of .vtk, or "End" of .mesh, may be missed.
-      const bool open_end = s.name == "g.mesh" || s.name == "h.vtk" || s.name == "i.vtk";
+      const bool open_end = s.name.ends_with(".mesh") || s.name.ends_with(".vtk");
       EXPECT_FALSE(accepted && !open_end) << s.name << " cut at " << n;
     }
   }
@@ -160,7 +165,9 @@ TEST_F(Hostile, WordsOfBinaryFilesReplaced) {
   const std::vector<std::uint64_t> words = {
       0, 1, 0xffffffffU, 0x7fffffffU, 0x80000000U, 0x7fffffffffffffffU, 0xffffffffffffffffU};
   for (const Sample& s : samples()) {
-    if (s.name[0] != 'c' && s.name[0] != 'd' && s.name[0] != 'f' && s.name[0] != 'i') continue;
+    if (s.name[0] != 'c' && s.name[0] != 'd' && s.name[0] != 'f' && s.name[0] != 'i' && s.name[0] != 'p' &&
+        s.name[0] != 'r')
+      continue;
     for (std::size_t at = 20; at + 8 <= s.content.size(); at += test::sanitized() ? 7 : 1) {
       for (const std::uint64_t word : words) {
         std::string content = s.content;

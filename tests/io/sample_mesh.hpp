@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -51,6 +52,43 @@ inline MeshData polyhedra() {
   add(out, CellType::polyhedron,
       {6, 4, 0, 3, 2, 1, 4, 4, 5, 6, 7, 4, 0, 1, 5, 4, 4, 1, 2, 6, 5, 4, 2, 3, 7, 6, 4, 3, 0, 4, 7});
   add(out, CellType::polyhedron, {5, 4, 4, 7, 6, 5, 3, 4, 5, 8, 3, 5, 6, 8, 3, 6, 7, 8, 3, 7, 4, 8});
+  return out;
+}
+
+/// Squares and triangles of the plane: three regions, two patches, coordinates that need all their digits.
+inline MeshData planar_mesh() {
+  MeshData mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, .5, 0}, {1, 2, 0}, {0, 2, 0}, {-.5, 3, 0}};
+  for (Vec3& p : mesh.points) p = {p.x / 3.0 + 0.1, p.y * 0.7 - 0.2, 0.0};
+  add(mesh, CellType::quadrilateral, {0, 1, 2, 3});
+  add(mesh, CellType::triangle, {1, 4, 2});
+  add(mesh, CellType::quadrilateral, {3, 2, 5, 6});
+  add(mesh, CellType::triangle, {6, 5, 7});
+  mesh.regions = {1, 1, 2, 3};
+  mesh.region_names = {{1, "lumen"}, {2, "a wall, thick"}, {3, "rest"}};
+  add_face(mesh, {0, 1}, 10);
+  add_face(mesh, {4, 2}, 11);
+  add_face(mesh, {3, 0}, 10);
+  mesh.patch_names = {{10, "inlet"}, {11, "outlet"}};
+  return mesh;
+}
+
+/// The same with a pentagon of which one corner is straight.
+inline MeshData planar_polygons() {
+  MeshData mesh = planar_mesh();
+  mesh.points.push_back((mesh.points[0] + mesh.points[1]) * 0.5);
+  mesh.points.push_back({mesh.points[1].x, mesh.points[1].y - 1.0, 0.0});
+  mesh.points.push_back({mesh.points[0].x, mesh.points[0].y - 1.0, 0.0});
+  mesh.points.push_back({mesh.points[0].x - 1.0, mesh.points[0].y - 0.5, 0.0});
+  MeshData out = mesh;
+  out.types.clear();
+  out.connectivity.clear();
+  out.offsets = {0};
+  add(out, CellType::polygon, {0, 8, 1, 2, 3});
+  for (std::size_t c = 1; c < mesh.cell_count(); ++c) out.add_cell(mesh.types[c], mesh.cell(c));
+  add(out, CellType::polygon, {0, 11, 10, 9, 1, 8});
+  out.regions.push_back(2);
+  out.patch_faces = {0, 3, 2, 4, 9, 10};
   return out;
 }
 
@@ -108,9 +146,15 @@ class Bytes {
 };
 
 /// Gmsh's number of a cell type.
-inline int gmsh_type(CellType type) { return 4 + static_cast<int>(type); }
+inline int gmsh_type(CellType type) {
+  if (type == CellType::triangle) return 2;
+  return type == CellType::quadrilateral ? 3 : 4 + static_cast<int>(type);
+}
 
-/// The mixed mesh in Gmsh 2.2 binary, one block per element.
+/// Its number of a face or an edge.
+inline int gmsh_face_type(std::size_t corners) { return static_cast<int>(corners) - 1; }
+
+/// The mixed or planar mesh in Gmsh 2.2 binary, one block per element.
 inline std::string gmsh_22_binary(const MeshData& mesh, bool swapped) {
   Bytes b(swapped);
   b.text("$MeshFormat\n2.2 1 8\n").number<std::int32_t>(1).text("\n$EndMeshFormat\n$Nodes\n");
@@ -129,13 +173,13 @@ inline std::string gmsh_22_binary(const MeshData& mesh, bool swapped) {
   };
   for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) {
     const std::size_t n = mesh.patch_offsets[f + 1] - mesh.patch_offsets[f];
-    element(n == 3 ? 2 : 3, mesh.patch_tags[f], {mesh.patch_faces.data() + mesh.patch_offsets[f], n});
+    element(gmsh_face_type(n), mesh.patch_tags[f], {mesh.patch_faces.data() + mesh.patch_offsets[f], n});
   }
   for (std::size_t c = 0; c < mesh.cell_count(); ++c) element(gmsh_type(mesh.types[c]), mesh.regions[c], mesh.cell(c));
   return b.text("\n$EndElements\n").out;
 }
 
-/// The mixed mesh in Gmsh 4.0 or 4.1, binary. One entity for each tag.
+/// The mixed or planar mesh in Gmsh 4.0 or 4.1, binary. One entity for each tag.
 inline std::string gmsh_4_binary(const MeshData& mesh, bool v41, bool swapped) {
   Bytes b(swapped);
   const auto size = [&](std::size_t n) { b.number(static_cast<std::uint64_t>(n)); };
@@ -144,7 +188,9 @@ inline std::string gmsh_4_binary(const MeshData& mesh, bool v41, bool swapped) {
   b.text(v41 ? "$MeshFormat\n4.1 1 8\n" : "$MeshFormat\n4 1 8\n")
       .number<std::int32_t>(1)
       .text("\n$EndMeshFormat\n$Entities\n");
-  for (const std::size_t n : {1, 1, 2, 3}) size(n);
+  const bool planar = mesh.dimension() == 2;
+  for (const std::size_t n : planar ? std::array<std::size_t, 4>{1, 2, 3, 0} : std::array<std::size_t, 4>{1, 1, 2, 3})
+    size(n);
   integer(1);  // a point
   for (int k = 0; k < (v41 ? 3 : 6); ++k) b.number(0.5);
   size(0);
@@ -156,7 +202,7 @@ inline std::string gmsh_4_binary(const MeshData& mesh, bool v41, bool swapped) {
     size(boundary != 0 ? 1 : 0);
     if (boundary != 0) integer(boundary);
   };
-  entity(7, 0, 1);
+  if (!planar) entity(7, 0, 1);
   entity(1, 10, -7);
   entity(2, -11, 0);
   for (const int tag : {1, 2, 3}) entity(tag, tag, 1);
@@ -190,9 +236,10 @@ inline std::string gmsh_4_binary(const MeshData& mesh, bool v41, bool swapped) {
     size(mesh.cell_count() + mesh.patch_tags.size());
   }
   std::size_t number = 1;
-  const auto element = [&](int dimension, int tag, int type, std::span<const std::uint32_t> corners) {
-    integer(v41 ? dimension : tag);
-    integer(v41 ? tag : dimension);
+  const int dimension = static_cast<int>(mesh.dimension());
+  const auto element = [&](int of, int tag, int type, std::span<const std::uint32_t> corners) {
+    integer(v41 ? of : tag);
+    integer(v41 ? tag : of);
     integer(type);
     size(1);
     node(number++);
@@ -200,14 +247,15 @@ inline std::string gmsh_4_binary(const MeshData& mesh, bool v41, bool swapped) {
   };
   for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) {
     const std::size_t n = mesh.patch_offsets[f + 1] - mesh.patch_offsets[f];
-    element(2, mesh.patch_tags[f] - 9, n == 3 ? 2 : 3, {mesh.patch_faces.data() + mesh.patch_offsets[f], n});
+    element(dimension - 1, mesh.patch_tags[f] - 9, gmsh_face_type(n),
+            {mesh.patch_faces.data() + mesh.patch_offsets[f], n});
   }
   for (std::size_t c = 0; c < mesh.cell_count(); ++c)
-    element(3, mesh.regions[c], gmsh_type(mesh.types[c]), mesh.cell(c));
+    element(dimension, mesh.regions[c], gmsh_type(mesh.types[c]), mesh.cell(c));
   return b.text("\n$EndElements\n").out;
 }
 
-/// The mixed mesh in Gmsh 1, with node numbers far apart.
+/// The mixed or planar mesh in Gmsh 1, with node numbers far apart.
 inline std::string gmsh_1(const MeshData& mesh) {
   std::string out = "$NOD\n" + std::to_string(mesh.points.size()) + "\n";
   char line[200];
@@ -225,7 +273,7 @@ inline std::string gmsh_1(const MeshData& mesh) {
   };
   for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) {
     const std::size_t n = mesh.patch_offsets[f + 1] - mesh.patch_offsets[f];
-    element(n == 3 ? 2 : 3, mesh.patch_tags[f], {mesh.patch_faces.data() + mesh.patch_offsets[f], n});
+    element(gmsh_face_type(n), mesh.patch_tags[f], {mesh.patch_faces.data() + mesh.patch_offsets[f], n});
   }
   for (std::size_t c = 0; c < mesh.cell_count(); ++c) element(gmsh_type(mesh.types[c]), mesh.regions[c], mesh.cell(c));
   return out + "$ENDELM\n";

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "dartcast/base/error.hpp"
+#include "dartcast/io/scene_mesh.hpp"
 
 namespace dartcast {
 namespace {
@@ -245,12 +246,53 @@ TEST(SceneFile, GeneratorsTakeTheirParameters) {
   EXPECT_EQ(std::get<VesselOptions>(v.environment.mesh).branch_lengths[1], 0.04);
 }
 
+TEST(SceneFile, GeneratorsOfThePlaneTakeTheirParameters) {
+  const Scene r = parse_scene(
+      "[environment]\ngenerator = 'rectangle'\ncells = [5, 6]\nsize = [5.0, 3.0]\norigin = [1, 2]\ntype = 'polygon'\n"
+      "blocked_share = 0.1\nseed = 3\njitter = 0.2\n",
+      "s.toml");
+  const auto& o = std::get<RectangleOptions>(r.environment.mesh);
+  EXPECT_EQ(o.cells, (std::array<std::uint32_t, 2>{5, 6}));
+  EXPECT_EQ(o.size, (std::array{5.0, 3.0}));
+  EXPECT_EQ(o.origin, (std::array{1.0, 2.0}));
+  EXPECT_EQ(o.type, CellType::polygon);
+  EXPECT_FALSE(o.mixed);
+  EXPECT_EQ(o.blocked_share, 0.1);
+  EXPECT_EQ(o.seed, 3U);
+  EXPECT_EQ(o.jitter, 0.2);
+  const Scene s = parse_scene(
+      "[environment]\ngenerator = 'maze'\nrooms = [3, 2]\nroom_cells = 7\ndoor_cells = 3\nobstacles = 5\n"
+      "extra_doors = 0.5\ntype = 'mixed'\n",
+      "s.toml");
+  const auto& m = std::get<MazeOptions>(s.environment.mesh);
+  EXPECT_EQ(m.rooms, (std::array<std::uint32_t, 2>{3, 2}));
+  EXPECT_EQ(m.size, (std::array{23.0, 15.0}));
+  EXPECT_EQ(m.room_cells, 7U);
+  EXPECT_EQ(m.door_cells, 3U);
+  EXPECT_EQ(m.obstacles, 5U);
+  EXPECT_EQ(m.extra_doors, 0.5);
+  EXPECT_TRUE(m.mixed);
+  EXPECT_EQ(load_scene_mesh(s.environment).report.dimension, 2);
+
+  const std::string maze = "[environment]\ngenerator = 'maze'\n";
+  expect_error(maze + "rooms = [1, 2, 3]\n", "3:", "2 numbers");
+  expect_error(maze + "rooms = [1, 0]\n", "3:", "whole numbers");
+  expect_error(maze + "rooms = [1, 536870912]\n", "3:", "2^29 squares");
+  expect_error(maze + "room_cells = 4\ndoor_cells = 5\n", "4:", "door_cells");
+  expect_error(maze + "room_cells = 2\ndoor_cells = 1\nobstacles = 4\n", "5:", "obstacles");
+  expect_error(maze + "jitter = 0.46\n", "3:", "jitter");
+  expect_error(maze + "type = 'mixed'\njitter = 0.31\n", "4:", "jitter");
+  expect_error(maze + "type = 'prism'\n", "3:", "triangle, quadrilateral, polygon, mixed");
+  expect_error(maze + "size = [1, 0]\n", "3:", "more than 0");
+  expect_error(maze + "blocked_share = 0.5\n", "3:", "unknown");
+}
+
 TEST(SceneFile, MistakesAreNamedWithLineAndRemedy) {
   expect_error("x = [", "1:", "not TOML");
   expect_error("", "", "environment is missing");
   expect_error("[environment]\n", "1:", "mesh");
   expect_error("[environment]\nmesh = 'a.vtu'\ngenerator = 'box'\n", "2:", "either");
-  expect_error("[environment]\ngenerator = 'sphere'\n", "2:", "box, bar, octahedra, vessel");
+  expect_error("[environment]\ngenerator = 'sphere'\n", "2:", "box, bar, octahedra, vessel, rectangle, maze");
   expect_error(box + "cells = [1, 2]\n", "3:", "3 numbers");
   expect_error(box + "cells = [1, 2, 0]\n", "3:", "whole numbers");
   expect_error(box + "cells = [1, 2, 2.5]\n", "3:", "whole numbers");

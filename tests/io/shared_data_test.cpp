@@ -9,6 +9,8 @@
 
 #include "dartcast/io/read_mesh.hpp"
 #include "dartcast/io/report.hpp"
+#include "dartcast/mesh/faces.hpp"
+#include "io/same_mesh.hpp"
 #include "io/sample_mesh.hpp"
 
 namespace dartcast::test {
@@ -75,6 +77,74 @@ std::vector<Expected> volumes() {
           {"derived/aneurysm3d.box.msh", 4615, {{t, 26022}}},
           {"derived/aneurysm3d.lumen.msh", 3969, {{t, 13260}}},
           {"derived/femur.lumen.msh", 7037, {{t, 31542}}}};
+}
+
+struct ExpectedPlanar {
+  const char* file;
+  std::size_t points, triangles, quadrilaterals, boundary_edges;
+};
+
+/// As the list says, apart from Exodus files, which are not read.
+std::vector<ExpectedPlanar> planar_files() {
+  return {{"planar/petsc/hybrid_triquad.msh", 48, 39, 16, 23},
+          {"planar/petsc/square_quad.msh", 250, 0, 196, 106},
+          {"planar/mfem/star.vtk", 31, 0, 20, 20},
+          {"planar/mfem/square-disc.vtk", 101, 154, 0, 48},
+          {"planar/mfem/compass.msh", 13, 8, 4, 8},
+          {"planar/sfepy/square_triquad.mesh", 470, 458, 200, 80},
+          {"planar/sfepy/osteonT1_11.mesh", 1228, 2292, 0, 162},
+          {"planar/sfepy/channels_symm944t.mesh", 510, 944, 0, 74}};
+}
+
+TEST(SharedData, EveryPlanarMeshLoadsAndSurvivesARoundTrip) {
+  NEED_DATA();
+  const Folder folder;
+  for (const ExpectedPlanar& expected : planar_files()) {
+    SCOPED_TRACE(expected.file);
+    const MeshFile original = read_mesh(data_folder() / expected.file);
+    const MeshReport& report = original.report;
+    EXPECT_LE(static_cast<int>(report.verdict()), static_cast<int>(Verdict::repair)) << report_text(report);
+    for (const Finding& repair : report.repairs) EXPECT_EQ(repair.kind, "unused_points");
+    EXPECT_EQ(report.dimension, 2);
+    EXPECT_EQ(report.points, expected.points);
+    EXPECT_EQ(report.parts, 1U);
+    Counts cells;
+    if (expected.triangles > 0) cells["triangle"] = expected.triangles;
+    if (expected.quadrilaterals > 0) cells["quadrilateral"] = expected.quadrilaterals;
+    EXPECT_EQ(report.cells, cells);
+    EXPECT_EQ(match_faces(original.mesh).boundary.size(), expected.boundary_edges);
+    for (const char* name : {"a.vtu", "a.vtk", "a.msh", "a.msh4", "a.mesh"}) {
+      write_mesh(original.mesh, folder / name);
+      const MeshFile copy = read_mesh(folder / name);
+      EXPECT_EQ(copy.report.verdict(), Verdict::accept) << name << "\n" << report_text(copy.report);
+      expect_same(copy.mesh, original.mesh);
+    }
+  }
+}
+
+TEST(SharedData, NoPlanarMeshIsForgotten) {
+  NEED_DATA();
+  std::set<std::string> listed;
+  for (const ExpectedPlanar& expected : planar_files()) listed.insert(expected.file);
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(data_folder() / "planar")) {
+    if (!entry.is_regular_file()) continue;
+    if (entry.path().extension() == ".exo") {
+      EXPECT_EQ(read_mesh(entry.path()).report.verdict(), Verdict::refuse) << entry.path();
+      continue;
+    }
+    EXPECT_EQ(listed.count(std::filesystem::relative(entry.path(), data_folder()).generic_string()), 1U)
+        << entry.path();
+  }
+}
+
+TEST(SharedData, PatchesOfPlanarMeshesAreTheirNamedLines) {
+  NEED_DATA();
+  const MeshData square = read_mesh(data_folder() / "planar/petsc/square_quad.msh").mesh;
+  EXPECT_EQ(square.patch_names,
+            (std::map<std::int32_t, std::string>{{2, "bottom"}, {3, "rightside"}, {4, "top"}, {5, "leftside"}}));
+  std::map<std::int32_t, std::size_t> edges;
+  for (const std::int32_t tag : square.patch_tags) ++edges[tag];
+  EXPECT_EQ(edges, (std::map<std::int32_t, std::size_t>{{2, 49}, {3, 4}, {4, 49}, {5, 4}}));
 }
 
 TEST(SharedData, EveryVolumeLoadsWithoutAWarning) {
@@ -150,6 +220,7 @@ TEST(SharedData, DefectsAreCountedAsTheListSays) {
   EXPECT_EQ(kinds(report("sofa/Ossicles.vtu").warnings)["boundary_edges"], 18U);
   EXPECT_EQ(kinds(report("sofa/Armadillo_Tetra_4406.vtu").warnings), (Counts{{"boundary_points", 1}}));
   EXPECT_EQ(report("sfepy/hanging_nodes.mesh").dimension, 2);
+  EXPECT_EQ(kinds(report("sfepy/hanging_nodes.mesh").warnings).count("non_conforming"), 1U);
 }
 
 TEST(SharedData, EveryVolumeSurvivesARoundTrip) {

@@ -397,43 +397,6 @@ TEST(Inspect, RegionsAreCounted) {
   EXPECT_EQ(inspect(mesh).regions, (Kinds{{"lumen", 2}, {"8", 1}}));
 }
 
-TEST(InspectPlanar, EveryFinding) {
-  const auto square = [] {
-    MeshData mesh;
-    mesh.points = {{0, 0, 2}, {1, 0, 2}, {1, 1, 2}, {0, 1, 2}, {.5, .5, 2}, {2, .5, 2}};
-    mesh.add_patch_face(std::vector<std::uint32_t>{0, 1, 2, 3}, 1);
-    return mesh;
-  };
-  MeshData good = square();
-  good.points.resize(4);
-  const MeshReport report = inspect(good);
-  EXPECT_EQ(report.verdict(), Verdict::accept);
-  EXPECT_EQ(report.dimension, 2);
-  EXPECT_EQ(report.cells, (Kinds{{"quadrangle", 1}}));
-
-  MeshData clockwise = square();
-  std::reverse(clockwise.patch_faces.begin(), clockwise.patch_faces.end());
-  EXPECT_EQ(kinds(inspect(clockwise).repairs)["orientation"], 1U);
-  MeshData flat = square();
-  flat.add_patch_face(std::vector<std::uint32_t>{0, 4, 2}, 1);
-  EXPECT_EQ(kinds(inspect(flat).defects)["flat"], 1U);
-  MeshData bent = square();
-  std::swap(bent.patch_faces[1], bent.patch_faces[2]);
-  EXPECT_EQ(kinds(inspect(bent).defects)["inverted"], 1U);
-  MeshData crowded = square();
-  crowded.add_patch_face(std::vector<std::uint32_t>{1, 5, 2}, 1);
-  crowded.add_patch_face(std::vector<std::uint32_t>{1, 2, 4}, 1);
-  EXPECT_EQ(kinds(inspect(crowded).defects)["face_shared"], 1U);
-  MeshData hanging = square();
-  hanging.points[4] = {1, .5, 2};
-  hanging.add_patch_face(std::vector<std::uint32_t>{1, 5, 4}, 1);
-  EXPECT_EQ(kinds(inspect(hanging).warnings), (Kinds{{"non_conforming", 1}}));
-  MeshData surface = square();
-  surface.points[0].z = 0.0;
-  surface.points[1].x = 0.5;
-  EXPECT_EQ(kinds(inspect(surface).defects)["no_volume"], 1U);
-}
-
 /// An independent, slow count of the boundary: each face's set of corners in a map.
 TEST(MatchFaces, AgreesWithAMap) {
   std::mt19937 random(3);

@@ -49,6 +49,7 @@ void read_names(FileText& text, Model& model) {
     name = name.substr(open + 1, close - open - 1);
     if (dimension == 3) model.parsed.mesh.region_names[tag] = name;
     if (dimension == 2) model.parsed.mesh.patch_names[tag] = name;
+    if (dimension == 1) model.parsed.edge_names[tag] = name;
   }
 }
 
@@ -118,7 +119,7 @@ ParsedMesh parse_gmsh(std::string_view content) {
   }
   if (!elements) throw InvalidMesh("the file has no elements; it is truncated, or not a mesh");
   if (model.parsed.mesh.types.empty() && model.parsed.mesh.patch_tags.empty() && model.parsed.second_order.count == 0) {
-    throw InvalidMesh("the file has points or lines only; write its volume cells too");
+    throw InvalidMesh("the file has points or lines only; write its cells too");
   }
   finish(model.parsed);
   return std::move(model.parsed);

@@ -72,17 +72,22 @@ int node_count(int type) {
 
 void Model::add_element(int type, std::span<const std::uint64_t> numbers, std::int32_t physical_tag) {
   const std::size_t place = elements++;
-  const bool line_or_point = type == 1 || type == 8 || type == 15 || (type >= 26 && type <= 28);
-  if (line_or_point) return;
-  if (type < 2 || type > 7) {
+  const bool curve_or_point = type == 8 || type == 15 || (type >= 26 && type <= 28);
+  if (curve_or_point) return;
+  if (type < 1 || type > 7) {
     parsed.second_order.add(place);
     return;
   }
   std::array<std::uint32_t, 8> corners{};
   for (std::size_t k = 0; k < numbers.size(); ++k) corners[k] = nodes.find(numbers[k]);
   const std::span<const std::uint32_t> used(corners.data(), numbers.size());
+  if (type == 1) {
+    parsed.add_edge(corners[0], corners[1], physical_tag);
+    return;
+  }
   if (type == 2 || type == 3) {
     parsed.mesh.add_patch_face(used, physical_tag);
+    parsed.face_source.push_back(static_cast<std::uint32_t>(place));
     return;
   }
   static constexpr std::array<CellType, 4> types = {CellType::tetrahedron, CellType::hexahedron, CellType::prism,

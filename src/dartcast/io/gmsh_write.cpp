@@ -11,16 +11,17 @@
 namespace dartcast {
 namespace {
 
-int element_type(CellType type) {
-  if (type == CellType::polyhedron) throw InvalidArgument("Gmsh's format cannot hold polyhedra; write .vtu");
-  static constexpr std::array<int, 4> types = {4, 5, 6, 7};
-  return types[static_cast<std::size_t>(type)];
+/// Of an edge or a face.
+int face_type(std::size_t corners) {
+  if (corners > 4)
+    throw InvalidArgument("Gmsh's format cannot hold polygons or faces of more than four corners; write .vtu");
+  return static_cast<int>(corners) - 1;
 }
 
-int face_type(std::size_t corners) {
-  if (corners < 3 || corners > 4)
-    throw InvalidArgument("Gmsh's format cannot hold faces of more than four corners; write .vtu");
-  return corners == 3 ? 2 : 3;
+int element_type(CellType type, std::size_t corners) {
+  if (type == CellType::polyhedron) throw InvalidArgument("Gmsh's format cannot hold polyhedra; write .vtu");
+  static constexpr std::array<int, 4> types = {4, 5, 6, 7};
+  return dimension(type) == 2 ? face_type(corners) : types[static_cast<std::size_t>(type)];
 }
 
 std::int32_t region_of(const MeshData& mesh, std::size_t c) { return mesh.regions.empty() ? 0 : mesh.regions[c]; }
@@ -34,14 +35,15 @@ struct Element {
 };
 
 std::vector<Element> elements_of(const MeshData& mesh) {
+  const int dimension = static_cast<int>(mesh.dimension());
   std::vector<Element> elements;
   for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) {
     const std::size_t begin = mesh.patch_offsets[f];
     const std::size_t size = mesh.patch_offsets[f + 1] - begin;
-    elements.push_back({2, face_type(size), mesh.patch_tags[f], {mesh.patch_faces.data() + begin, size}});
+    elements.push_back({dimension - 1, face_type(size), mesh.patch_tags[f], {mesh.patch_faces.data() + begin, size}});
   }
   for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
-    elements.push_back({3, element_type(mesh.types[c]), region_of(mesh, c), mesh.cell(c)});
+    elements.push_back({dimension, element_type(mesh.types[c], mesh.cell(c).size()), region_of(mesh, c), mesh.cell(c)});
   }
   return elements;
 }
@@ -55,8 +57,12 @@ void append_names(std::string& out, const MeshData& mesh) {
   const std::size_t n = mesh.patch_names.size() + mesh.region_names.size();
   if (n == 0) return;
   fmt::format_to(std::back_inserter(out), "$PhysicalNames\n{}\n", n);
-  for (const auto& [tag, name] : mesh.patch_names) fmt::format_to(std::back_inserter(out), "2 {} \"{}\"\n", tag, name);
-  for (const auto& [tag, name] : mesh.region_names) fmt::format_to(std::back_inserter(out), "3 {} \"{}\"\n", tag, name);
+  const auto append = [&](unsigned dimension, const std::map<std::int32_t, std::string>& names) {
+    for (const auto& [tag, name] : names)
+      fmt::format_to(std::back_inserter(out), "{} {} \"{}\"\n", dimension, tag, name);
+  };
+  append(mesh.dimension() - 1, mesh.patch_names);
+  append(mesh.dimension(), mesh.region_names);
   out += "$EndPhysicalNames\n";
 }
 
@@ -88,12 +94,12 @@ std::string format_gmsh_4(const MeshData& mesh) {
   // One entity for each tag, numbered by it; all nodes belong to the first.
   std::set<std::pair<int, std::int32_t>> entities;
   for (const Element& e : elements) entities.emplace(e.dimension, e.tag);
-  std::size_t surfaces = 0;
-  for (const auto& entity : entities) surfaces += entity.first == 2 ? 1 : 0;
+  std::array<std::size_t, 4> counts = {};
+  for (const auto& entity : entities) ++counts[static_cast<std::size_t>(entity.first)];
   std::string out = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
   append_names(out, mesh);
   const auto append = std::back_inserter(out);
-  fmt::format_to(append, "$Entities\n0 0 {} {}\n", surfaces, entities.size() - surfaces);
+  fmt::format_to(append, "$Entities\n0 {} {} {}\n", counts[1], counts[2], counts[3]);
   for (const auto& [dimension, tag] : entities) {
     fmt::format_to(append, "{} 0 0 0 0 0 0 {} 0\n", tag, tag == 0 ? "0" : fmt::format("1 {}", tag));
   }

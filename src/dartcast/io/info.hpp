@@ -8,12 +8,14 @@
 
 namespace dartcast {
 
+/// Of a mesh of the plane, only what needs no map: dimension, points, cells, regions, patches, free cells and bounds.
 struct MeshInfo {
   std::string name;
+  unsigned dimension = 3;
   std::size_t points = 0;
   std::map<std::string, std::size_t> cells;    ///< by type
   std::map<std::string, std::size_t> regions;  ///< by name, or tag
-  std::map<std::string, std::size_t> patches;  ///< wall faces by patch, where there is one
+  std::map<std::string, std::size_t> patches;  ///< wall faces by patch, where there is one; in the plane all edges
   std::size_t free_cells = 0;
   std::size_t wall_faces = 0;
   std::size_t shapes = 0;  ///< kinds of cell that the map tells apart
@@ -25,7 +27,8 @@ struct MeshInfo {
   [[nodiscard]] std::size_t cell_count() const;
 };
 
-/// Builds the complex of a mesh that inspect() found valid. Throws InvalidMesh where that is not possible.
+/// Of a mesh that inspect() found valid. Of one of space builds the complex. Throws InvalidMesh where that is not
+/// possible.
 MeshInfo mesh_info(const MeshData& mesh, std::string name, Threads threads = {});
 
 std::string info_json(const MeshInfo& info);

@@ -15,16 +15,17 @@ namespace {
 struct Keyword {
   std::string_view name;
   std::size_t corners;
-  CellType type;  // for four corners and more, where the name is one of a cell's
-  bool face;
+  unsigned dimension;
+  CellType type;  // of a cell of space
 };
 
-constexpr std::array<Keyword, 6> keywords = {{{"Tetrahedra", 4, CellType::tetrahedron, false},
-                                              {"Hexahedra", 8, CellType::hexahedron, false},
-                                              {"Prisms", 6, CellType::prism, false},
-                                              {"Pyramids", 5, CellType::pyramid, false},
-                                              {"Triangles", 3, CellType::polyhedron, true},
-                                              {"Quadrilaterals", 4, CellType::polyhedron, true}}};
+constexpr std::array<Keyword, 7> keywords = {{{"Tetrahedra", 4, 3, CellType::tetrahedron},
+                                              {"Hexahedra", 8, 3, CellType::hexahedron},
+                                              {"Prisms", 6, 3, CellType::prism},
+                                              {"Pyramids", 5, 3, CellType::pyramid},
+                                              {"Triangles", 3, 2, {}},
+                                              {"Quadrilaterals", 4, 2, {}},
+                                              {"Edges", 2, 1, {}}}};
 
 constexpr std::array<std::string_view, 16> higher_order = {
     "TrianglesP2",  "TrianglesP3",  "TrianglesP4",  "QuadrilateralsQ2", "QuadrilateralsQ3", "QuadrilateralsQ4",
@@ -46,7 +47,8 @@ void read_vertices(FileText& text, MeshData& mesh, int dimension) {
   }
 }
 
-void read_elements(FileText& text, MeshData& mesh, const Keyword& keyword) {
+void read_elements(FileText& text, ParsedMesh& parsed, const Keyword& keyword) {
+  MeshData& mesh = parsed.mesh;
   const std::size_t n = text.count(keyword.name, 2 * (keyword.corners + 1));
   std::array<std::uint32_t, 8> corners{};
   for (std::size_t i = 0; i < n; ++i) {
@@ -56,7 +58,9 @@ void read_elements(FileText& text, MeshData& mesh, const Keyword& keyword) {
     }
     const auto tag = static_cast<std::int32_t>(text.integer("a reference", INT32_MIN, INT32_MAX));
     const std::span<const std::uint32_t> used(corners.data(), keyword.corners);
-    if (keyword.face) {
+    if (keyword.dimension == 1) {
+      parsed.add_edge(corners[0], corners[1], tag);
+    } else if (keyword.dimension == 2) {
       mesh.add_patch_face(used, tag);
     } else {
       mesh.add_cell(keyword.type, used);
@@ -95,7 +99,7 @@ ParsedMesh parse_medit(std::string_view content) {
     } else if (const auto* k =
                    std::find_if(keywords.begin(), keywords.end(), [&](const Keyword& x) { return x.name == name; });
                k != keywords.end()) {
-      read_elements(text, parsed.mesh, *k);
+      read_elements(text, parsed, *k);
     } else if (std::find(higher_order.begin(), higher_order.end(), name) != higher_order.end()) {
       const std::size_t n = text.count(name, 8);
       for (std::size_t i = 0; i < n; ++i) parsed.second_order.add(i);

@@ -1,6 +1,9 @@
 // What a reader of one file format hands on, before the mesh is inspected.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -9,10 +12,14 @@
 
 namespace dartcast {
 
-/// Ids that name no point are kept as 0xffffffff, for inspect() to find. Faces of groups and, in planar meshes, all
-/// faces are in the mesh's patch faces.
+/// Ids that name no point are kept as 0xffffffff, for inspect() to find. Readers put the cells of space into `mesh`,
+/// all faces into its patch faces and all edges beside it; finish() makes of them what they are in this file.
 struct ParsedMesh {
   MeshData mesh;
+  std::vector<std::uint32_t> face_source;  ///< per patch face: its index in the file; empty: its own index
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  std::vector<std::int32_t> edge_tags;
+  std::map<std::int32_t, std::string> edge_names;
   std::string format;
   Finding second_order{"second_order",
                        0,
@@ -20,27 +27,21 @@ struct ParsedMesh {
                        "cells of second or higher order, with curved sides; write the mesh with linear "
                        "cells (Gmsh: -order 1)"};
   Finding unsupported{"cell_type", 0, {}, "cells of a type that cannot be used"};
+
+  void add_edge(std::uint32_t a, std::uint32_t b, std::int32_t tag) {
+    edges.push_back({a, b});
+    edge_tags.push_back(tag);
+  }
 };
 
 inline constexpr std::uint32_t no_point = 0xffffffffU;
 
-/// Last step of each reader. In a mesh with cells only faces with a tag are kept; without names or tags regions stay
+/// In a file without cells of space its faces are the cells, with their tags and names as regions, and its edges the
+/// patch faces. Returns whether that is so.
+bool take_plane(ParsedMesh& parsed);
+
+/// Last step of each reader, take_plane() among it. Only patch faces with a tag are kept; without tags regions stay
 /// empty.
-inline void finish(ParsedMesh& parsed) {
-  MeshData& mesh = parsed.mesh;
-  bool tagged = false;
-  for (const std::int32_t tag : mesh.regions) tagged = tagged || tag != 0;
-  if (!tagged) mesh.regions.clear();
-  if (mesh.types.empty()) return;
-  MeshData kept;
-  for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) {
-    const std::size_t begin = mesh.patch_offsets[f];
-    if (mesh.patch_tags[f] == 0) continue;
-    kept.add_patch_face({mesh.patch_faces.data() + begin, mesh.patch_offsets[f + 1] - begin}, mesh.patch_tags[f]);
-  }
-  mesh.patch_faces = std::move(kept.patch_faces);
-  mesh.patch_offsets = std::move(kept.patch_offsets);
-  mesh.patch_tags = std::move(kept.patch_tags);
-}
+void finish(ParsedMesh& parsed);
 
 }  // namespace dartcast

@@ -83,8 +83,7 @@ MeshFile read_mesh(const std::filesystem::path& path) {
   try {
     ParsedMesh parsed = parse(path);
     out.mesh = std::move(parsed.mesh);
-    const bool nothing = out.mesh.types.empty() && out.mesh.patch_tags.empty();
-    if (!nothing) out.report = inspect(out.mesh);
+    if (!out.mesh.types.empty()) out.report = inspect(out.mesh);
     out.report.format = parsed.format;
     add_finding(out.report.defects, parsed.second_order);
     add_finding(out.report.defects, parsed.unsupported);
@@ -99,7 +98,7 @@ MeshFile read_mesh(const std::filesystem::path& path) {
   return out;
 }
 
-MeshFile read_volume_mesh(const std::filesystem::path& path) {
+MeshFile read_valid_mesh(const std::filesystem::path& path) {
   MeshFile out = read_mesh(path);
   if (!out.report.valid()) {
     const Finding& defect = out.report.defects.front();
@@ -107,9 +106,6 @@ MeshFile read_volume_mesh(const std::filesystem::path& path) {
     if (!defect.first.empty())
       places = fmt::format(" ({} in all, the first at {})", defect.count, defect.first.front());
     throw InvalidMesh(fmt::format("{}: {}{}", path.string(), defect.message, places));
-  }
-  if (out.report.dimension == 2) {
-    throw InvalidMesh(fmt::format("{}: a planar mesh: 2D is not supported yet", path.string()));
   }
   return out;
 }

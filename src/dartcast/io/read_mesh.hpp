@@ -18,8 +18,7 @@ struct MeshFile {
 /// with line or byte. Cost: a few times the file's size in memory.
 MeshFile read_mesh(const std::filesystem::path& path);
 
-/// The same for who needs volume cells: throws InvalidMesh, with the file's name and the first defect, where the mesh
-/// is refused or planar.
-MeshFile read_volume_mesh(const std::filesystem::path& path);
+/// The same, but throws InvalidMesh, with the file's name and the first defect, where the mesh is refused.
+MeshFile read_valid_mesh(const std::filesystem::path& path);
 
 }  // namespace dartcast

@@ -56,9 +56,8 @@ std::string report_text(const MeshReport& report) {
   std::string out = fmt::format("{}\n", report.file);
   if (!report.format.empty()) out += fmt::format("format: {}\n", report.format);
   if (!report.cells.empty()) {
-    out +=
-        fmt::format("{} points; {}{}\n", report.points, counts(report.cells),
-                    report.dimension == 2 ? "; a planar mesh (2D)" : fmt::format("; {} connected parts", report.parts));
+    out += fmt::format("{} points; {}; {} connected parts{}\n", report.points, counts(report.cells), report.parts,
+                       report.dimension == 2 ? "; a planar mesh (2D)" : "");
   }
   if (!report.regions.empty()) out += fmt::format("regions: {}\n", counts(report.regions));
   append_findings(out, "repaired", report.repairs);

@@ -18,13 +18,15 @@ namespace {
 
 SceneMesh load_source(const MeshSource& source) {
   if (const auto* path = std::get_if<std::filesystem::path>(&source)) {
-    MeshFile file = read_volume_mesh(*path);
+    MeshFile file = read_valid_mesh(*path);
     return {std::move(file.mesh), std::move(file.report)};
   }
   MeshData mesh;
   if (const auto* box = std::get_if<BoxOptions>(&source)) mesh = generate_box(*box);
   if (const auto* octahedra = std::get_if<OctahedraOptions>(&source)) mesh = generate_octahedra(*octahedra);
   if (const auto* vessel = std::get_if<VesselOptions>(&source)) mesh = generate_vessel(*vessel);
+  if (const auto* rectangle = std::get_if<RectangleOptions>(&source)) mesh = generate_rectangle(*rectangle);
+  if (const auto* maze = std::get_if<MazeOptions>(&source)) mesh = generate_maze(*maze);
   MeshReport report = inspect(mesh);
   report.format = "generated";
   if (!report.valid()) throw InvalidMesh(report.defects.front().message);
@@ -83,7 +85,7 @@ const DataArray& point_array(const MeshData& mesh, const std::string& name, std:
 }
 
 std::vector<Vec3> frame_positions(const std::filesystem::path& file, const MeshData& mesh) {
-  MeshData frame = read_volume_mesh(file).mesh;
+  MeshData frame = read_valid_mesh(file).mesh;
   if (frame.points.size() != mesh.points.size()) {
     throw InvalidMesh(fmt::format("{}: {} points; the scene's mesh has {}: frames must have the same points",
                                   file.string(), frame.points.size(), mesh.points.size()));

@@ -1,5 +1,7 @@
 #include "dartcast/io/scene_mesh_keys.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 
@@ -11,28 +13,31 @@ constexpr double unlimited = std::numeric_limits<double>::max();
 constexpr Range positive = {0.0, unlimited, true};
 constexpr Range share = {0.0, 1.0};
 
-void get_cells(TomlTable& t, std::array<std::uint32_t, 3>& cells) {
+template <std::size_t n>
+void get_counts(TomlTable& t, std::string_view key, std::array<std::uint32_t, n>& counts) {
   std::vector<double> list;
-  if (!t.get("cells", list, 3)) return;
-  for (std::size_t i = 0; i < 3; ++i) {
+  if (!t.get(key, list, n)) return;
+  for (std::size_t i = 0; i < n; ++i) {
     if (!(list[i] >= 1.0 && list[i] <= 0x1p29 && list[i] == std::floor(list[i]))) {
-      t.fail("cells", "cells must be three whole numbers from 1 to 2^29");
+      t.fail(key, fmt::format("{} must be {} whole numbers from 1 to 2^29", key, n));
     }
-    cells[i] = static_cast<std::uint32_t>(list[i]);
+    counts[i] = static_cast<std::uint32_t>(list[i]);
   }
 }
+
+void get_seed(TomlTable& t, std::uint64_t& seed) { t.get("seed", seed, 0, std::numeric_limits<std::int64_t>::max()); }
 
 // What the box and the octahedra have in common. Cells are of unit size unless `size` is given.
 template <class Options>
 void read_block(TomlTable& t, Options& o) {
-  get_cells(t, o.cells);
+  get_counts(t, "cells", o.cells);
   o.size = {static_cast<double>(o.cells[0]), static_cast<double>(o.cells[1]), static_cast<double>(o.cells[2])};
   t.get("origin", o.origin);
   t.get("size", o.size);
   if (!(o.size.x > 0.0 && o.size.y > 0.0 && o.size.z > 0.0)) t.fail("size", "size must be three numbers more than 0");
   t.get("blocked_layer", o.blocked_layer);
   t.get("blocked_share", o.blocked_share, share);
-  t.get("seed", o.seed, 0, std::numeric_limits<std::int64_t>::max());
+  get_seed(t, o.seed);
 }
 
 BoxOptions read_box(TomlTable& t) {
@@ -70,18 +75,65 @@ VesselOptions read_vessel(TomlTable& t) {
   return o;
 }
 
+// What the rectangle and the maze have in common. Squares are of unit size unless `size` is given.
+template <class Options>
+void read_squares(TomlTable& t, Options& o, const std::array<std::uint32_t, 2>& squares) {
+  const auto get_pair = [&](std::string_view key, std::array<double, 2>& pair) {
+    std::vector<double> list;
+    if (t.get(key, list, 2)) pair = {list[0], list[1]};
+  };
+  o.size = {static_cast<double>(squares[0]), static_cast<double>(squares[1])};
+  get_pair("origin", o.origin);
+  get_pair("size", o.size);
+  if (!(o.size[0] > 0.0 && o.size[1] > 0.0)) t.fail("size", "size must be two numbers more than 0");
+  std::size_t type = 1;
+  t.get("type", type, {"triangle", "quadrilateral", "polygon", "mixed"});
+  constexpr std::array types = {CellType::triangle, CellType::quadrilateral, CellType::polygon};
+  o.mixed = type == types.size();
+  if (!o.mixed) o.type = types[type];
+  t.get("jitter", o.jitter, {0.0, type > 1 ? largest_polygon_jitter : largest_square_jitter});
+  get_seed(t, o.seed);
+}
+
+RectangleOptions read_rectangle(TomlTable& t) {
+  RectangleOptions o;
+  get_counts(t, "cells", o.cells);
+  read_squares(t, o, o.cells);
+  t.get("blocked_share", o.blocked_share, share);
+  return o;
+}
+
+MazeOptions read_maze(TomlTable& t) {
+  MazeOptions o;
+  get_counts(t, "rooms", o.rooms);
+  t.get("room_cells", o.room_cells, 1U, 1U << 14U);
+  t.get("door_cells", o.door_cells, 1U, o.room_cells);
+  t.get("obstacles", o.obstacles, 0U, o.room_cells * o.room_cells - 1);
+  t.get("extra_doors", o.extra_doors, share);
+  const std::uint32_t pitch = o.room_cells + 1;
+  for (const std::uint32_t n : o.rooms) {
+    if (n > 0x1p29 / pitch) t.fail("rooms", "rooms and walls must be at most 2^29 squares along each axis");
+  }
+  read_squares(t, o, {o.rooms[0] * pitch - 1, o.rooms[1] * pitch - 1});
+  return o;
+}
+
 MeshSource read_source(TomlTable& t, const std::filesystem::path& folder) {
   std::string mesh;
   std::size_t generator = 0;
   const bool from_file = t.get("mesh", mesh);
-  const bool generated = t.get("generator", generator, {"box", "bar", "octahedra", "vessel"});
+  const bool generated = t.get("generator", generator, {"box", "bar", "octahedra", "vessel", "rectangle", "maze"});
   if (from_file == generated)
-    t.fail("mesh", "give either mesh = \"FILE\" or generator = \"box\", \"bar\", \"octahedra\" or \"vessel\"");
+    t.fail("mesh",
+           "give either mesh = \"FILE\" or generator = \"box\", \"bar\", \"octahedra\", \"vessel\", \"rectangle\" or "
+           "\"maze\"");
   if (from_file) return folder / mesh;
   if (generator == 0) return read_box(t);
   if (generator == 1) return bar_options();
   if (generator == 2) return read_octahedra(t);
-  return read_vessel(t);
+  if (generator == 3) return read_vessel(t);
+  if (generator == 4) return read_rectangle(t);
+  return read_maze(t);
 }
 
 void read_free(TomlTable t, EnvironmentScene& scene) {

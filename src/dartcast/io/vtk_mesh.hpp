@@ -11,7 +11,9 @@ namespace dartcast {
 /// Cells of three dimensions become cells: voxels as hexahedra, prisms from VTK's order of corners, which is the mirror
 /// of MeshData's. All their arrays are kept; `region`, `gmsh:physical` or `medit:ref` (the first there is, of whole
 /// numbers) gives the regions and, at triangles, quadrangles and polygons, the patches. Names come from the field
-/// arrays `region_names` and `patch_names` of write_vtk_mesh(). Lines and points are left out. `content` is what the
+/// arrays `region_names` and `patch_names` of write_vtk_mesh(). In a file without cells of three dimensions
+/// those of two are the cells, and lines of two points (poly-lines piece by piece) the faces that patches are made of;
+/// points, and otherwise lines, are left out. `content` is what the
 /// file holds: it is checked first, then VTK reads the file. Throws InvalidMesh.
 ParsedMesh parse_vtu(const std::filesystem::path& path, std::string_view content);
 ParsedMesh parse_legacy_vtk(const std::filesystem::path& path, std::string_view content);

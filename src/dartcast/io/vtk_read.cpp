@@ -67,10 +67,11 @@ std::uint32_t checked_id(std::int64_t id) {
   return id >= 0 && id < no_point ? static_cast<std::uint32_t>(id) : no_point;
 }
 
-/// What becomes of each cell of the file: the index of a cell here, or of a patch face.
+/// What becomes of the cells of the file.
 struct Places {
-  std::vector<std::uint32_t> cells;  // per cell here: its index in the file
+  std::vector<std::uint32_t> cells;  // per cell here: its index in the file; so for faces and edges
   std::vector<std::uint32_t> faces;
+  std::vector<std::uint32_t> edges;
 };
 
 void copy_points(vtkUnstructuredGrid& grid, MeshData& mesh) {
@@ -123,6 +124,13 @@ void add_cell(vtkUnstructuredGrid& grid, vtkIdType c, std::span<const vtkIdType>
   if (face) {
     mesh.add_patch_face(corners, 0);
     places.faces.push_back(static_cast<std::uint32_t>(c));
+    return;
+  }
+  if (vtk == VTK_LINE || vtk == VTK_POLY_LINE) {
+    for (std::size_t k = 1; k < corners.size(); ++k) {
+      parsed.add_edge(corners[k - 1], corners[k], 0);
+      places.edges.push_back(static_cast<std::uint32_t>(c));
+    }
     return;
   }
   if (standard != nullptr) {
@@ -224,7 +232,11 @@ ParsedMesh convert(vtkUnstructuredGrid& grid, std::string format) {
   parsed.format = std::move(format);
   MeshData& mesh = parsed.mesh;
   copy_points(grid, mesh);
-  const Places places = copy_cells(grid, parsed);
+  Places places = copy_cells(grid, parsed);
+  if (take_plane(parsed)) {
+    places.cells = std::move(places.faces);
+    places.faces = std::move(places.edges);
+  }
   for_each_array(*grid.GetPointData(), grid.GetNumberOfPoints(),
                  [&](vtkDataArray& a) { mesh.point_data.push_back(copy_array(a, nullptr)); });
   for_each_array(*grid.GetCellData(), grid.GetNumberOfCells(),
@@ -232,8 +244,7 @@ ParsedMesh convert(vtkUnstructuredGrid& grid, std::string format) {
   copy_tags(grid, places, mesh);
   copy_names(grid, "region_names", mesh.region_names);
   copy_names(grid, "patch_names", mesh.patch_names);
-  const bool anything =
-      !mesh.types.empty() || !mesh.patch_tags.empty() || parsed.second_order.count + parsed.unsupported.count > 0;
+  const bool anything = !mesh.types.empty() || parsed.second_order.count + parsed.unsupported.count > 0;
   if (!anything) throw InvalidMesh("the file has no cells");
   mesh.source = places.cells;
   finish(parsed);

@@ -26,7 +26,8 @@ namespace dartcast {
 namespace {
 
 int vtk_type(CellType type) {
-  static constexpr std::array<int, 5> types = {VTK_TETRA, VTK_HEXAHEDRON, VTK_WEDGE, VTK_PYRAMID, VTK_POLYHEDRON};
+  static constexpr std::array<int, 8> types = {VTK_TETRA,      VTK_HEXAHEDRON, VTK_WEDGE, VTK_PYRAMID,
+                                               VTK_POLYHEDRON, VTK_TRIANGLE,   VTK_QUAD,  VTK_POLYGON};
   return types[static_cast<std::size_t>(type)];
 }
 
@@ -47,8 +48,7 @@ void add_cells(const MeshData& mesh, vtkUnstructuredGrid& grid) {
       add_polyhedron(grid, corners);
       continue;
     }
-    std::array<vtkIdType, 8> ids{};
-    std::copy(corners.begin(), corners.end(), ids.begin());
+    std::vector<vtkIdType> ids(corners.begin(), corners.end());
     if (mesh.types[c] == CellType::prism) {
       std::swap(ids[1], ids[2]);
       std::swap(ids[4], ids[5]);
@@ -58,8 +58,9 @@ void add_cells(const MeshData& mesh, vtkUnstructuredGrid& grid) {
   for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) {
     const std::vector<vtkIdType> ids(mesh.patch_faces.begin() + static_cast<std::ptrdiff_t>(mesh.patch_offsets[f]),
                                      mesh.patch_faces.begin() + static_cast<std::ptrdiff_t>(mesh.patch_offsets[f + 1]));
-    const int type = ids.size() == 3 ? VTK_TRIANGLE : (ids.size() == 4 ? VTK_QUAD : VTK_POLYGON);
-    grid.InsertNextCell(type, static_cast<vtkIdType>(ids.size()), ids.data());
+    static constexpr std::array<int, 5> types = {0, 0, VTK_LINE, VTK_TRIANGLE, VTK_QUAD};
+    grid.InsertNextCell(ids.size() < types.size() ? types[ids.size()] : VTK_POLYGON, static_cast<vtkIdType>(ids.size()),
+                        ids.data());
   }
 }
 

@@ -11,13 +11,13 @@ namespace {
 
 constexpr std::uint32_t none = 0xffffffffU;
 
-/// A face by its four smallest corners, for sorting. `turn` tells the cyclic order of a triangle or quadrangle apart.
+/// A face by its four smallest corners, for sorting.
 struct FaceKey {
-  std::array<std::uint32_t, 4> corners;  // ascending; the last is `none` for a triangle
+  std::array<std::uint32_t, 4> corners;  // ascending; `none` where the face has fewer
   std::uint32_t cell;
   std::uint32_t place;  // from the cell's start in connectivity for a polyhedron; else the face's number
   std::uint32_t size : 16;
-  std::uint32_t forward : 1;   // the corner after the smallest is smaller than the one before it
+  std::uint32_t forward : 1;   // the corner after the smallest is smaller than the one before it; edges: the first is
   std::uint32_t opposite : 2;  // of a quadrangle: which of corners[1..3] lies opposite the smallest
 };
 
@@ -30,7 +30,7 @@ FaceKey make_key(std::span<const std::uint32_t> face, std::size_t cell, std::siz
   key.cell = static_cast<std::uint32_t>(cell);
   key.place = static_cast<std::uint32_t>(place);
   key.size = static_cast<std::uint16_t>(n);
-  key.forward = face[(at + 1) % n] < face[(at + n - 1) % n] ? 1 : 0;
+  key.forward = (n == 2 ? at == 0 : face[(at + 1) % n] < face[(at + n - 1) % n]) ? 1 : 0;
   for (std::uint32_t k = 1; n == 4 && k < 4; ++k) {
     if (face[(at + 2) % n] == key.corners[k]) key.opposite = k & 3U;
   }
@@ -57,6 +57,8 @@ std::vector<std::uint32_t> corners_of(const MeshData& mesh, const FaceKey& key) 
   if (mesh.types[key.cell] == CellType::polyhedron) {
     const auto face = cell.subspan(key.place + 1, cell[key.place]);
     out.assign(face.begin(), face.end());
+  } else if (mesh.types[key.cell] == CellType::polygon) {
+    out = {cell[key.place], cell[(key.place + 1) % cell.size()]};
   } else {
     for (const std::uint8_t k : standard_faces(mesh.types[key.cell])[key.place]) out.push_back(cell[k]);
   }

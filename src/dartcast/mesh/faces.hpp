@@ -12,7 +12,7 @@ namespace dartcast {
 
 /// The faces that one cell alone uses.
 struct BoundaryFaces {
-  std::vector<std::uint32_t> corners;  ///< counterclockwise seen from the outside
+  std::vector<std::uint32_t> corners;  ///< counterclockwise seen from the outside; of an edge, as its cell has it
   std::vector<std::size_t> offsets = {0};
   std::vector<std::uint32_t> cells;  ///< the cell of each face
 

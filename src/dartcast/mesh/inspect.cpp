@@ -26,15 +26,10 @@ void count_contents(const MeshData& mesh, MeshReport& report) {
     if (by_type[t] > 0) report.cells[std::string(cell_type_names[t])] = by_type[t];
   }
   std::map<std::int32_t, std::size_t> by_tag;
-  const bool planar = mesh.types.empty();
-  for (const std::int32_t tag : planar ? mesh.patch_tags : mesh.regions) ++by_tag[tag];
-  const auto& names = planar ? mesh.patch_names : mesh.region_names;
+  for (const std::int32_t tag : mesh.regions) ++by_tag[tag];
   for (const auto& [tag, count] : by_tag) {
-    const auto name = names.find(tag);
-    report.regions[name != names.end() ? name->second : std::to_string(tag)] += count;
-  }
-  for (std::size_t f = 0; planar && f < mesh.patch_tags.size(); ++f) {
-    ++report.cells[mesh.patch_offsets[f + 1] - mesh.patch_offsets[f] == 3 ? "triangle" : "quadrangle"];
+    const auto name = mesh.region_names.find(tag);
+    report.regions[name != mesh.region_names.end() ? name->second : std::to_string(tag)] += count;
   }
 }
 
@@ -104,13 +99,24 @@ void close_polyhedra(MeshData& mesh, MeshReport& report) {
 }
 
 void orient_cells(MeshData& mesh, MeshReport& report) {
-  Finding mirrored{"orientation", 0, {}, "cells were inside out; their corners have been reordered"};
-  Finding flat{"flat", 0, {}, "cells without volume; remove them from the mesh"};
+  const bool plane = mesh.dimension() == 2;
+  Finding mirrored{"orientation",
+                   0,
+                   {},
+                   plane ? "cells ran clockwise; their corners have been reordered"
+                         : "cells were inside out; their corners have been reordered"};
+  Finding flat{
+      "flat",
+      0,
+      {},
+      plane ? "cells without area; remove them from the mesh" : "cells without volume; remove them from the mesh"};
   Finding inverted{"inverted",
                    0,
                    {},
-                   "cells that stay inverted in whichever order: as many corners turn inwards as outwards; "
-                   "check the order of their corners, or remesh them"};
+                   plane ? "cells that are not convex, cross themselves, or have two corners in a row at one place; "
+                           "check the order of their corners, or remesh them"
+                         : "cells that stay inverted in whichever order: as many corners turn inwards as outwards; "
+                           "check the order of their corners, or remesh them"};
   for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
     switch (orient_cell(mesh, c)) {
       case Orientation::positive: break;
@@ -132,11 +138,15 @@ void add_cells(const MeshData& mesh, std::vector<std::uint32_t> cells, Finding f
 
 void check_faces(const MeshData& mesh, const FaceMatch& match, MeshReport& report) {
   report.parts = match.parts;
-  add_cells(mesh, match.crowded, {"face_shared", 0, {}, "faces used by three cells or more; one of the cells is named"},
+  add_cells(mesh, match.crowded,
+            {"face_shared", 0, {}, "faces (in the plane edges) used by three cells or more; one of the cells is named"},
             report.defects);
   add_cells(
       mesh, match.same_side,
-      {"same_side", 0, {}, "faces that two cells use from the same side: the cells overlap; one of them is named"},
+      {"same_side",
+       0,
+       {},
+       "faces (in the plane edges) that two cells use from the same side: the cells overlap; one of them is named"},
       report.defects);
   add_cells(mesh, match.twisted,
             {"face_order", 0, {}, "faces whose corners two cells give in different orders; one of the cells is named"},
@@ -146,16 +156,20 @@ void check_faces(const MeshData& mesh, const FaceMatch& match, MeshReport& repor
 void check_boundary(const MeshData& mesh, const FaceMatch& match, const std::vector<std::uint32_t>& point_source,
                     MeshReport& report) {
   const BoundaryFaces& boundary = match.boundary;
-  const Conformity conformity = find_unmatched_faces(mesh, boundary);
+  const bool plane = mesh.dimension() == 2;
+  const Conformity conformity = plane ? find_unmatched_edges(mesh, boundary) : find_unmatched_faces(mesh, boundary);
   std::vector<std::uint32_t> cells;
   for (const std::uint32_t f : conformity.faces) cells.push_back(boundary.cells[f]);
-  add_cells(mesh, std::move(cells),
-            {"non_conforming",
-             0,
-             {},
-             "faces that lie against other cells' faces without matching them: particles meet a wall "
-             "there; make the mesh conforming unless that is meant"},
-            report.warnings);
+  add_cells(
+      mesh, std::move(cells),
+      {"non_conforming",
+       0,
+       {},
+       plane ? "edges that lie against other cells' edges without matching them, or have a point inside: particles "
+               "meet a wall there; make the mesh conforming unless that is meant"
+             : "faces that lie against other cells' faces without matching them: particles meet a wall "
+               "there; make the mesh conforming unless that is meant"},
+      report.warnings);
   if (!conformity.complete) {
     report.warnings.push_back(
         {"unfinished", 1, {0}, "too many boundary faces overlap for all non-conforming ones to be found"});
@@ -169,7 +183,7 @@ void check_boundary(const MeshData& mesh, const FaceMatch& match, const std::vec
   add_finding(report.warnings, points);
 }
 
-void inspect_volume(MeshData& mesh, const std::vector<std::uint32_t>& point_source, MeshReport& report) {
+void inspect_cells(MeshData& mesh, const std::vector<std::uint32_t>& point_source, MeshReport& report) {
   close_polyhedra(mesh, report);
   if (!report.valid()) return;
   orient_cells(mesh, report);
@@ -190,14 +204,12 @@ MeshReport inspect(MeshData& mesh) {
     const std::vector<std::uint32_t> point_source = drop_unused_points(mesh, report);
     check_coordinates(mesh, point_source, report);
     if (report.valid()) {
+      if (mesh.dimension() == 2) put_in_plane(mesh, point_source, report);
       check_repeated_points(mesh, point_source, report);
-      if (mesh.types.empty()) {
-        inspect_planar(mesh, report);
-      } else {
-        inspect_volume(mesh, point_source, report);
-      }
+      if (report.valid()) inspect_cells(mesh, point_source, report);
     }
   }
+  report.dimension = static_cast<int>(mesh.dimension());
   count_contents(mesh, report);
   return report;
 }

@@ -22,6 +22,7 @@ std::vector<Side> sorted_sides(const BoundaryFaces& boundary) {
   for (std::size_t f = 0; f < boundary.size(); ++f) {
     const std::size_t begin = boundary.offsets[f];
     const std::size_t n = boundary.offsets[f + 1] - begin;
+    if (n == 2) continue;
     for (std::size_t k = 0; k < n; ++k) {
       std::size_t i = begin + k;
       std::size_t j = begin + (k + 1) % n;
@@ -59,10 +60,12 @@ Pinches find_pinches(const FaceMatch& match) {
     parent[root(sides[i].high_place)] = root(sides[i + 1].high_place);
   }
   std::sort(ends.begin(), ends.end());
-  // Around a point, each fan of faces has one root.
+  // Around a point, each fan of faces has one root; in the plane each fan of cells has one edge that starts there.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> fans;
   for (std::size_t f = 0; f < boundary.size(); ++f) {
-    for (std::size_t i = boundary.offsets[f]; i < boundary.offsets[f + 1]; ++i) {
+    const std::size_t begin = boundary.offsets[f];
+    const std::size_t end = boundary.offsets[f + 1] - begin == 2 ? begin + 1 : boundary.offsets[f + 1];
+    for (std::size_t i = begin; i < end; ++i) {
       if (parent[i] == i) fans.emplace_back(boundary.corners[i], match.part[boundary.cells[f]]);
     }
   }

@@ -80,6 +80,27 @@ Votes count_faces(const MeshData& mesh, std::size_t c) {
   return votes;
 }
 
+/// A closed polygon whose corners all turn left or go straight is weakly convex exactly where its edges turn from
+/// forward to backward, in the order of coordinates, once: then it is two chains between its first and its last corner,
+/// each bent one way only. More turns are more rounds, or edges that go back on themselves.
+Orientation judge_polygon(const MeshData& mesh, std::size_t c) {
+  const auto cell = mesh.cell(c);
+  const std::size_t n = cell.size();
+  const auto at = [&](std::size_t k) -> const Vec3& { return mesh.points[cell[k % n]]; };
+  const auto forward = [&](std::size_t k) { return std::tie(at(k).x, at(k).y) < std::tie(at(k + 1).x, at(k + 1).y); };
+  Votes votes;
+  std::size_t turns = 0;
+  bool all_long = true;
+  for (std::size_t k = 0; k < n; ++k) {
+    votes.add(orient2d(at(k), at(k + 1), at(k + 2)));
+    turns += forward(k) && !forward(k + 1) ? 1 : 0;
+    all_long = all_long && (at(k).x != at(k + 1).x || at(k).y != at(k + 1).y);
+  }
+  if (votes.positive == 0 && votes.negative == 0) return Orientation::flat;
+  if ((votes.positive > 0 && votes.negative > 0) || turns != 1 || !all_long) return Orientation::inverted;
+  return votes.positive > 0 ? Orientation::positive : Orientation::mirrored;
+}
+
 void mirror(MeshData& mesh, std::size_t c) {
   std::uint32_t* cell = mesh.connectivity.data() + mesh.offsets[c];
   switch (mesh.types[c]) {
@@ -93,10 +114,10 @@ void mirror(MeshData& mesh, std::size_t c) {
       std::swap(cell[1], cell[3]);
       std::swap(cell[5], cell[7]);
       return;
-    case CellType::polyhedron:
     case CellType::triangle:
     case CellType::quadrilateral:
-    case CellType::polygon: break;
+    case CellType::polygon: std::reverse(cell + 1, mesh.connectivity.data() + mesh.offsets[c + 1]); return;
+    case CellType::polyhedron: break;
   }
   std::size_t at = 1;
   for (std::uint32_t f = 0; f < cell[0]; ++f) {
@@ -108,6 +129,11 @@ void mirror(MeshData& mesh, std::size_t c) {
 }  // namespace
 
 Orientation orient_cell(MeshData& mesh, std::size_t c) {
+  if (dimension(mesh.types[c]) == 2) {
+    const Orientation found = judge_polygon(mesh, c);
+    if (found == Orientation::mirrored) mirror(mesh, c);
+    return found;
+  }
   const Votes votes = mesh.types[c] == CellType::polyhedron ? count_faces(mesh, c) : count_corners(mesh, c);
   if (votes.positive == 0 && votes.negative == 0) return Orientation::flat;
   if (votes.positive == votes.negative) return Orientation::inverted;

@@ -1,15 +1,24 @@
-// Planar meshes: triangles and quadrangles in a coordinate plane, kept as the patch faces of a mesh without cells.
+// Meshes of the plane: where they lie, and boundary edges that lie against each other without being the same edge.
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
+#include "dartcast/mesh/conformity.hpp"
+#include "dartcast/mesh/faces.hpp"
 #include "dartcast/mesh/mesh_data.hpp"
 #include "dartcast/mesh/report.hpp"
 
 namespace dartcast {
 
-/// Inspects a mesh that has patch faces and no cells, and repairs their orientation (counterclockwise) in place.
-/// Finds faces that are flat or not convex, sides that three faces use, points that hang on a side, and surfaces that
-/// do not lie in a plane x, y or z = constant. Preconditions: ids in range, no repeated corners, coordinates in the
-/// exact range.
-void inspect_planar(MeshData& mesh, MeshReport& report);
+/// Puts points that have one z in common to z = 0 (repair: plane). Refuses a mesh whose z differ (no_volume): a surface
+/// in space. `point_source`: per point, its index in the input. Precondition: a mesh of the plane, finite coordinates.
+void put_in_plane(MeshData& mesh, const std::vector<std::uint32_t>& point_source, MeshReport& report);
+
+/// find_unmatched_faces() in the plane. Two boundary edges lie against each other where they are on one line and have
+/// more than a point in common; an edge is also found where an end of another lies inside it: a hanging point. All
+/// signs are exact. Cost: n log n for a tree of boxes, then the pairs of boxes that overlap; it stops after 200 pairs
+/// an edge on average. Preconditions: coordinates in the exact range, edges of two ends at different places.
+Conformity find_unmatched_edges(const MeshData& mesh, const BoundaryFaces& boundary);
 
 }  // namespace dartcast

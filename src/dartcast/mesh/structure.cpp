@@ -26,7 +26,9 @@ template <class Visit>
 bool visit_corners(const MeshData& mesh, std::size_t c, Visit&& visit) {
   const auto cell = mesh.cell(c);
   if (mesh.types[c] != CellType::polyhedron) {
-    if (cell.size() != corner_count(mesh.types[c])) return false;
+    const bool polygon = mesh.types[c] == CellType::polygon;
+    if (polygon ? cell.size() < 3 || cell.size() > polyhedron_limit : cell.size() != corner_count(mesh.types[c]))
+      return false;
     for (const std::uint32_t v : cell) visit(v);
     return true;
   }
@@ -69,14 +71,19 @@ bool too_many_corners(const MeshData& mesh, std::size_t c, std::vector<std::uint
 }
 
 void check_patch_faces(const MeshData& mesh, MeshReport& report) {
-  Finding size{"structure", 0, {}, "patch faces with fewer than three corners or more than 1000"};
+  const bool plane = mesh.dimension() == 2;
+  Finding size{"structure",
+               0,
+               {},
+               plane ? "patch edges that do not have two corners"
+                     : "patch faces with fewer than three corners or more than 1000"};
   Finding range{"id_out_of_range", 0, {}, "patch faces that name points which do not exist"};
   Finding repeated{"repeated_corner", 0, {}, "patch faces that name a point twice"};
   std::vector<std::uint32_t> work;
   for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) {
     work.assign(mesh.patch_faces.begin() + static_cast<std::ptrdiff_t>(mesh.patch_offsets[f]),
                 mesh.patch_faces.begin() + static_cast<std::ptrdiff_t>(mesh.patch_offsets[f + 1]));
-    if (work.size() < 3 || work.size() > polyhedron_limit) {
+    if (plane ? work.size() != 2 : work.size() < 3 || work.size() > polyhedron_limit) {
       size.add(f);
     } else if (*std::max_element(work.begin(), work.end()) >= mesh.points.size()) {
       range.add(f);
@@ -122,7 +129,6 @@ std::vector<std::uint32_t> number_used_points(const MeshData& mesh) {
   std::vector<std::uint32_t> number(mesh.points.size(), unused);
   const auto use = [&](std::uint32_t v) { number[v] = 0; };
   for (std::size_t c = 0; c < mesh.cell_count(); ++c) visit_corners(mesh, c, use);
-  if (mesh.types.empty()) std::for_each(mesh.patch_faces.begin(), mesh.patch_faces.end(), use);
   std::uint32_t next = 0;
   for (std::uint32_t& n : number) {
     if (n != unused) n = next++;
@@ -134,7 +140,7 @@ void renumber_cells(MeshData& mesh, const std::vector<std::uint32_t>& number) {
   for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
     std::uint32_t* cell = mesh.connectivity.data() + mesh.offsets[c];
     if (mesh.types[c] != CellType::polyhedron) {
-      for (std::size_t k = 0; k < corner_count(mesh.types[c]); ++k) cell[k] = number[cell[k]];
+      for (std::size_t k = 0; k < mesh.cell(c).size(); ++k) cell[k] = number[cell[k]];
       continue;
     }
     std::size_t at = 1;
@@ -168,11 +174,12 @@ void check_arrays(const MeshData& mesh, MeshReport& report) {
   if (!one_each(mesh.regions.size()) || !one_each(mesh.free.size()) || !one_each(mesh.source.size())) {
     refuse("structure", "regions, free or source do not have one value per cell");
   }
-  if (cells == 0 && mesh.patch_tags.empty()) refuse("empty", "no cells");
-  for (const CellType type : mesh.types) {
-    if (static_cast<std::size_t>(type) < cell_type_names.size()) continue;
+  if (cells == 0) refuse("empty", "no cells");
+  const auto all = [&](auto&& holds) { return std::all_of(mesh.types.begin(), mesh.types.end(), holds); };
+  if (!all([](CellType type) { return static_cast<std::size_t>(type) < cell_type_names.size(); })) {
     refuse("structure", "a cell's type is not one of those known");
-    break;
+  } else if (!all([&](CellType type) { return dimension(type) == mesh.dimension(); })) {
+    refuse("structure", "cells of the plane and cells of space in one mesh; leave one kind out");
   }
   for (const DataArray& array : mesh.point_data) {
     if (!has_size(array, mesh.points.size()))
@@ -184,7 +191,11 @@ void check_arrays(const MeshData& mesh, MeshReport& report) {
 }
 
 void check_structure(const MeshData& mesh, MeshReport& report) {
-  Finding size{"structure", 0, {}, "cells with a number of corners that their type does not have"};
+  Finding size{
+      "structure",
+      0,
+      {},
+      "cells with a number of corners that their type does not have, or polygons with fewer than 3 or more than 1000"};
   Finding polyhedron{"polyhedron",
                      0,
                      {},

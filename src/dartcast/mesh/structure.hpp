@@ -9,17 +9,16 @@
 
 namespace dartcast {
 
-/// Sizes of arrays that must agree, offsets that must ascend, and limits of 2^29 cells and 2^32 - 2 points. Defects:
-/// structure, too_large, empty. What follows may be called only if there are none.
+/// Sizes of arrays that must agree, offsets that must ascend, cells of one dimension, and limits of 2^29 cells and 2^32
+/// - 2 points. Defects: structure, too_large, empty. What follows may be called only if there are none.
 void check_arrays(const MeshData& mesh, MeshReport& report);
 
 /// Numbers of corners, ids in range, corners that repeat, limits of polyhedra. Defects: structure, polyhedron,
 /// id_out_of_range, repeated_corner.
 void check_structure(const MeshData& mesh, MeshReport& report);
 
-/// Drops points that no cell (in a mesh without cells: no patch face) uses, with patch faces that name them and the
-/// values of point_data. Returns the index that each point that is left had before. Precondition: the two checks above
-/// found no defect.
+/// Drops points that no cell uses, with patch faces that name them and the values of point_data. Returns the index that
+/// each point that is left had before. Precondition: the two checks above found no defect.
 std::vector<std::uint32_t> drop_unused_points(MeshData& mesh, MeshReport& report);
 
 /// Drops patch faces that are no face of any cell.

@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "dartcast/mesh/generate_box.hpp"
+#include "dartcast/mesh/generate_maze.hpp"
 #include "dartcast/mesh/generate_octahedra.hpp"
+#include "dartcast/mesh/generate_rectangle.hpp"
 #include "dartcast/mesh/generate_vessel.hpp"
 #include "dartcast/response/respond.hpp"
 #include "dartcast/simulation/deformation.hpp"
@@ -20,7 +22,8 @@
 namespace dartcast {
 
 /// A mesh file, or a generator's options.
-using MeshSource = std::variant<std::filesystem::path, BoxOptions, OctahedraOptions, VesselOptions>;
+using MeshSource =
+    std::variant<std::filesystem::path, BoxOptions, OctahedraOptions, VesselOptions, RectangleOptions, MazeOptions>;
 
 struct FreeRegions {
   std::vector<std::string> regions;
