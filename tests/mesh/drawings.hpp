@@ -47,6 +47,38 @@ inline Ring monotone(Random& random, int n) {
   return ring;
 }
 
+/// Random points joined in a random order, then two edges that cross swapped until none do: edges short and long. In
+/// doubles: no three points are nearly on a line.
+inline Ring untangled(Random& random, std::size_t n) {
+  Ring ring;
+  for (std::size_t i = 0; i < n; ++i) ring.points.push_back({random.uniform(), random.uniform(), 0});
+  auto& p = ring.points;
+  const auto left = [](const Vec3& a, const Vec3& b, const Vec3& c) { return cross(b - a, c - a).z > 0; };
+  const auto cross_each_other = [&](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    return left(a, b, c) != left(a, b, d) && left(c, d, a) != left(c, d, b);
+  };
+  for (bool tangled = true; tangled;) {
+    tangled = false;
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = i + 2; j < n && j + 1 < n + i; ++j) {
+        if (!cross_each_other(p[i], p[i + 1], p[j], p[(j + 1) % n])) continue;
+        std::reverse(p.begin() + static_cast<std::ptrdiff_t>(i + 1), p.begin() + static_cast<std::ptrdiff_t>(j + 1));
+        tangled = true;
+      }
+    }
+  }
+  return ring;
+}
+
+/// The same drawing of integers, crushed to a line but for the last bits: what lay on a line still does, exactly.
+inline std::vector<Ring> flattened(std::vector<Ring> rings) {
+  constexpr double k = 0x1p+25;  // k k - (k + 1) (k - 1) = 1
+  for (Ring& ring : rings) {
+    for (Vec3& p : ring.points) p = {k * p.x + (k + 1) * p.y, (k - 1) * p.x + k * p.y, 0};
+  }
+  return rings;
+}
+
 /// Teeth of lattice points; with `all`, every lattice point along the ring is a corner.
 inline Ring comb(Random& random, int teeth, int length, bool all) {
   std::vector<Vec3> corners = {{0, -1, 0}, {2.0 * teeth - 1, -1, 0}};
@@ -107,6 +139,19 @@ inline std::vector<Ring> needle(Random& random, int n) {
       const Vec3 middle = {i + 0.5, std::round(i / 3.0) + j + random.uniform(0, 0.5), 0};
       if (std::abs(middle.y - middle.x / 3) < 0.35) continue;
       rings.push_back(star(random, middle, 5, 0.01, 0.2));
+    }
+  }
+  return rings;
+}
+
+/// The same on integers: rows of squares along a needle, with corners on one line.
+inline std::vector<Ring> needle_between_squares(int n) {
+  const double end = 4.0 * n;
+  std::vector<Ring> rings = {{{{-1, 0, 0}, {end, 0, 0}, {end, 1, 0}}, "needle"}};
+  for (int i = 0; i < n; ++i) {
+    for (const double y : {-3.0, 2.0}) {
+      const double x = 4.0 * i;
+      rings.push_back({{{x, y, 0}, {x + 2, y, 0}, {x + 2, y + 2, 0}, {x, y + 2, 0}}, ""});
     }
   }
   return rings;
