@@ -28,9 +28,10 @@ struct DecomposeOptions {
 ///
 /// Cells are strictly convex, decided exactly, so that every three corners of one are a positive triangle. They
 /// conform: each edge of a ring is an edge of the mesh, and every other edge, but for those of the rectangle, is shared
-/// by two cells. Each begins with its lowest point; they are ordered by it, those inside first. Those inside are free
-/// and of region 1, "inside"; the others blocked and of region 2, "outside". Edges of named rings are patch faces, in
-/// the ring's direction; rings of one name share a patch. The same rings scaled by a power of two give the same cells.
+/// by two cells. Each begins with its point of the lowest number; they are ordered by it, those inside first. Those
+/// inside are free and of region 1, "inside"; the others blocked and of region 2, "outside". Edges of named rings are
+/// patch faces, in the ring's direction; rings of one name share a patch. The same rings scaled by a power of two give
+/// the same cells.
 ///
 /// Throws InvalidMesh, naming ring and point: fewer than three points, one that is not finite, outside the exact range,
 /// off the plane z = 0, or given before in any ring; edges that cross, overlap, or run through another point: rings may
