@@ -291,9 +291,9 @@ TEST(Decompose, NestedSquaresAlternate) {
 TEST(Decompose, EdgesThroughManySpecks) {
   Random random(4);
   for (int i = 0; i < test::scaled(20, 60); ++i) {
-    expect_decomposed(test::needle(random, 4 + i % 20));
-    expect_decomposed(test::needle_between_squares(1 + i));
-    expect_decomposed(test::flattened(test::needle_between_squares(1 + i)));
+    expect_decomposed(test::needle(random, 3 + i % 9));
+    expect_decomposed(test::needle_between_squares(1 + i % 25));
+    expect_decomposed(test::flattened(test::needle_between_squares(1 + i % 25)));
     if (testing::Test::HasFailure()) FAIL() << "drawing " << i;
   }
 }
