@@ -26,6 +26,7 @@ class MapBuilder {
       : map_(map), mesh_(mesh), interior_(interior) {}
 
   void build() {
+    if (mesh_.dimension() == 2) enter_plane();
     map_.vertex_count_ = mesh_.points.size() + interior_vertices();
     map_.wall_vertices_.resize(map_.vertex_count_);
     add_cells();
@@ -35,6 +36,12 @@ class MapBuilder {
   }
 
  private:
+  void enter_plane() {
+    map_.dimension_ = 2;
+    map_.pools_[0].stride = 8;  // triangles
+    map_.pools_[1].stride = 10;
+  }
+
   [[nodiscard]] std::size_t interior_vertices() const {
     std::size_t next = mesh_.points.size();
     for (const auto& [cell, v] : interior_.of_cells) next = std::max<std::size_t>(next, v.value + 1U);
@@ -65,7 +72,9 @@ class MapBuilder {
     for (const auto& f : interior_.of_faces) general[f.cell] = true;
     place_.resize(mesh_.cell_count());
     for (std::uint32_t c = 0; c < mesh_.cell_count(); ++c) {
-      const auto pool = general[c] ? Map::general_pool : static_cast<std::uint32_t>(mesh_.types[c]);
+      if (dimension(mesh_.types[c]) != map_.dimension_)
+        throw InvalidMesh("cell " + std::to_string(source(c)) + " is of another dimension than the first one");
+      const auto pool = general[c] ? Map::general_pool : Map::pool_of(mesh_.types[c]);
       const std::size_t index = map_.pools_[pool].count++;
       if (index >= Cell::index_mask) throw InvalidMesh("more than 2^29 - 1 cells of one type: split the mesh");
       place_[c] = Cell(pool, static_cast<std::uint32_t>(index));
@@ -125,13 +134,22 @@ class MapBuilder {
       return found->second;
     };
     if (mesh_.types[c] != CellType::polyhedron) {
-      for (const std::uint32_t v : mesh_.cell(c)) number(v);
+      const auto corners = mesh_.cell(c);
+      // A polygon begins at its lowest vertex: so those of n corners are of one shape.
+      std::size_t first = 0;
+      if (map_.dimension_ == 2)
+        first = static_cast<std::size_t>(std::min_element(corners.begin(), corners.end()) - corners.begin());
+      for (std::size_t i = 0; i < corners.size(); ++i) number(corners[(first + i) % corners.size()]);
     }
     for_each_face(mesh_, c, [&](std::span<const std::uint32_t> corners) {
       auto& face = faces.emplace_back();
       for (const std::uint32_t v : corners) face.push_back(number(v));
       if (vertices.size() > 0x3fffU) throw InvalidMesh("more than 16383 corners: split the cell");
     });
+    if (map_.dimension_ == 2) {
+      const auto first_edge = std::find_if(faces.begin(), faces.end(), [](const auto& edge) { return edge[0] == 0; });
+      std::rotate(faces.begin(), first_edge, faces.end());
+    }
   }
 
   [[nodiscard]] Vertex cell_point(std::uint32_t c) const {
@@ -163,6 +181,13 @@ class MapBuilder {
         const CellView v = map_.view(c);
         for (std::uint16_t f = 0; f < v.shape().face_count(); ++f) {
           const auto corners = v.shape().corners(f);
+          if (corners.size() == 2) {
+            const std::uint32_t from = v.vertex(corners[0]).value;
+            const std::uint32_t to = v.vertex(corners[1]).value;
+            const auto [low, high] = std::minmax(from, to);
+            visit(low, high, high, CellFace{c, f});
+            continue;
+          }
           visit(v.vertex(corners[0]).value, v.vertex(corners[1]).value, v.vertex(corners.back()).value, CellFace{c, f});
         }
       }
@@ -185,6 +210,10 @@ class MapBuilder {
     const auto x = a.shape().corners(f.face);
     const auto y = b.shape().corners(g.face);
     if (x.size() != y.size()) return false;
+    if (x.size() == 2) {
+      const std::size_t first = opposite ? 1 : 0;
+      return a.vertex(x[0]) == b.vertex(y[first]) && a.vertex(x[1]) == b.vertex(y[1 - first]);
+    }
     for (std::size_t i = 0; i < x.size(); ++i) {
       const std::size_t j = opposite && i > 0 ? x.size() - i : i;
       if (a.vertex(x[i]) != b.vertex(y[j])) return false;

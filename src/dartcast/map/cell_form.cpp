@@ -60,6 +60,7 @@ StandardCorners turned(CellType type, std::span<const std::uint32_t> corners) {
 
 std::uint32_t standard_signature(CellType type, std::span<const std::uint32_t> corners) {
   std::uint32_t signature = static_cast<std::uint32_t>(type);
+  if (dimension(type) == 2) return signature;
   for (const auto& face : standard_faces(type)) {
     std::uint32_t lowest = 0;
     for (std::uint32_t k = 1; k < face.size(); ++k) {
@@ -84,6 +85,7 @@ ShapeKey::Face from_lowest(std::span<const std::uint16_t> corners, std::span<con
   const auto lowest =
       std::min_element(corners.begin(), corners.end(), [&](auto a, auto b) { return vertices[a] < vertices[b]; });
   face.corners.assign(corners.begin(), corners.end());
+  if (corners.size() == 2) return face;
   std::rotate(face.corners.begin(), face.corners.begin() + (lowest - corners.begin()), face.corners.end());
   return face;
 }

@@ -15,7 +15,7 @@ class Checker {
     check_vertices(c, v);
     for (std::uint16_t d = 0; d < v.shape().dart_count(); ++d) {
       check_in_cell({c, d});
-      check_phi3({c, d});
+      check_sewn({c, d});
     }
     for (std::uint16_t f = 0; f < v.shape().face_count(); ++f) check_face({c, f}, v);
   }
@@ -40,6 +40,7 @@ class Checker {
 
   void check_in_cell(Dart d) {
     expect(map_.phi_1(map_.phi1(d)) == d && map_.phi1(map_.phi_1(d)) == d, "phi1 is a permutation", d);
+    if (map_.dimension() == 2) return;
     const Dart other = map_.phi2(d);
     expect(other != d && map_.phi2(other) == d, "phi2 is an involution without fixed points", d);
     expect(map_.origin(other) == map_.origin(map_.phi1(d)) && map_.origin(map_.phi1(other)) == map_.origin(d),
@@ -53,25 +54,31 @@ class Checker {
            map_.shape(other).degree(v.neighbour_face(f.face)) == v.shape().degree(f.face);
   }
 
-  void check_phi3(Dart d) {
+  // phi3, or phi2 in the plane.
+  [[nodiscard]] Dart across(Dart d) const { return map_.dimension() == 2 ? map_.phi2(d) : map_.phi3(d); }
+
+  void check_sewn(Dart d) {
+    const bool plane = map_.dimension() == 2;
     const CellView v = map_.view(d.cell);
     const CellFace f = map_.face(d);
     if (!v.neighbour(f.face).valid()) return;
     if (!sewn_well(f, v)) {
-      expect(false, "phi3 leads to a face with as many darts", d);
+      expect(false, plane ? "phi2 leads to an edge" : "phi3 leads to a face with as many darts", d);
       return;
     }
-    const Dart other = map_.phi3(d);
+    const char* involution = plane ? "phi2 is an involution" : "phi3 is an involution";
+    const Dart other = across(d);
     const CellView w = map_.view(other.cell);
     const std::uint16_t back = w.shape().face_of(other.number);
     if (w.neighbour(back) != d.cell || w.neighbour_face(back) != f.face) {
-      expect(false, "phi3 is an involution", d);
+      expect(false, involution, d);
       return;
     }
-    expect(other != d && map_.phi3(other) == d, "phi3 is an involution", d);
-    const Dart once = map_.phi1(other);
-    const Dart twice = map_.phi3(once);
-    expect(twice.valid() && map_.phi1(twice) == d, "phi1 o phi3 is an involution", d);
+    expect(other != d && across(other) == d, involution, d);
+    if (!plane) {
+      const Dart twice = map_.phi3(map_.phi1(other));
+      expect(twice.valid() && map_.phi1(twice) == d, "phi1 o phi3 is an involution", d);
+    }
     expect(map_.origin(other) == map_.origin(map_.phi1(d)) && map_.origin(map_.phi1(other)) == map_.origin(d),
            "sewn darts have the same vertices", d);
   }
@@ -80,7 +87,7 @@ class Checker {
     const Dart first{f.cell, v.shape().first_dart(f.face)};
     const auto corners = v.shape().corners(f.face);
     const auto by_vertex = [&](auto a, auto b) { return v.vertex(a) < v.vertex(b); };
-    expect(std::min_element(corners.begin(), corners.end(), by_vertex) == corners.begin(),
+    expect(corners.size() == 2 || std::min_element(corners.begin(), corners.end(), by_vertex) == corners.begin(),
            "a face starts at its lowest-numbered vertex", first);
     if (v.neighbour(f.face).valid() && sewn_well(f, v))
       expect(map_.point(f) == map_.point(map_.opposite(f)), "both sides of a face are fanned from the same point",

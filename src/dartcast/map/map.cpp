@@ -1,6 +1,7 @@
 #include "dartcast/map/map.hpp"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <string_view>
 
@@ -8,7 +9,7 @@
 
 namespace dartcast {
 
-Dart Map::phi3(Dart d) const {
+Dart Map::across(Dart d) const {
   const CellView c = view(d.cell);
   const std::uint16_t f = c.shape().face_of(d.number);
   const Cell other = c.neighbour(f);
@@ -35,7 +36,12 @@ Vertex Map::point(CellFace f) const {
   return v.vertex(local);
 }
 
-CellType Map::type(Cell c) const { return static_cast<CellType>(c.pool()); }
+CellType Map::type(Cell c) const {
+  if (dimension_ == 3) return static_cast<CellType>(c.pool());
+  constexpr std::array<CellType, 5> planar = {CellType::triangle, CellType::quadrilateral, CellType::polygon,
+                                              CellType::polygon, CellType::polygon};
+  return planar[c.pool()];
+}
 
 std::size_t Map::cell_count() const {
   return std::accumulate(pools_.begin(), pools_.end(), std::size_t{0},

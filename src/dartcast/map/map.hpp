@@ -1,4 +1,4 @@
-// The 3D combinatorial map: darts with phi1, phi2, phi3 over convex cells, free or blocked. No coordinates.
+// The combinatorial map: darts with phi1, phi2, phi3 over convex cells, free or blocked. No coordinates.
 //
 // T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism for continuous collision detection in
 // deformable environments", SPM 2009, section 3.1. No dart is stored: a dart is a cell and a number in the cell's
@@ -8,6 +8,7 @@
 //   standard types   [shape 16, version 16] [neighbours' face numbers 3 each, wall mask 6, free 1, wide 1, 0 (4), flat
 //   1, vacant 1] [vertices] [neighbours] any other cell   [shape 32] [version 16, free 1, 0 (13), flat 1, vacant 1]
 //   [vertices] [neighbours] [neighbours' face numbers 16, wall 16 each]
+// In the plane the cells are polygons, the faces their edges, and phi2 leads to the neighbour; records are the same.
 // Wide: a neighbour's face number does not fit in 3 bits; where these say 7, it is looked up in the neighbour.
 // Flat: darts of the cell have marks in a side table. Vacant: the cell was removed (map/transaction.hpp); its place
 // waits for another, the version tells them apart.
@@ -96,7 +97,13 @@ struct InteriorPoints {
 
 class Map {
  public:
-  static constexpr std::uint32_t general_pool = 4;  ///< pools 0 to 3: tetrahedra, hexahedra, prisms, pyramids
+  /// Pools 0 to 3: tetrahedra, hexahedra, prisms, pyramids; in the plane 0 and 1: triangles, quadrilaterals.
+  static constexpr std::uint32_t general_pool = 4;
+  /// Of cells of a type, but those with points of their own, which are in the general pool.
+  static constexpr std::uint32_t pool_of(CellType type) {
+    if (dartcast::dimension(type) == 3) return static_cast<std::uint32_t>(type);
+    return type == CellType::polygon ? general_pool : type == CellType::quadrilateral ? 1 : 0;
+  }
 
   Map() = default;
   /// Builds cells, sews faces by their vertices, and takes over free marks and patches. Cost: linear but for sorting.
@@ -104,14 +111,23 @@ class Map {
   /// or a cell is not closed: names the cell by its number in the mesh.
   explicit Map(const MeshData& mesh, const InteriorPoints& interior = {});
 
+  /// 2: cells are polygons of the plane, faces their edges; 3.
+  [[nodiscard]] unsigned dimension() const { return dimension_; }
+
   // Darts. Preconditions: dart and cell of this map.
   [[nodiscard]] Dart phi1(Dart d) const { return {d.cell, shape(d.cell).phi1(d.number)}; }
   [[nodiscard]] Dart phi_1(Dart d) const { return {d.cell, shape(d.cell).phi_1(d.number)}; }
-  [[nodiscard]] Dart phi2(Dart d) const { return {d.cell, shape(d.cell).phi2(d.number)}; }
-  /// The same edge of the same face from the other side; invalid on the boundary.
-  [[nodiscard]] Dart phi3(Dart d) const;
-  /// The dart that follows in the vertex of d: phi1(phi2(d)).
-  [[nodiscard]] Dart alpha1(Dart d) const { return phi1(phi2(d)); }
+  /// The same edge of the next face of the cell; in the plane, of the next polygon: invalid on the boundary.
+  [[nodiscard]] Dart phi2(Dart d) const {
+    return dimension_ == 2 ? across(d) : Dart{d.cell, shape(d.cell).phi2(d.number)};
+  }
+  /// The same edge of the same face from the other side; invalid on the boundary, and in the plane.
+  [[nodiscard]] Dart phi3(Dart d) const { return dimension_ == 2 ? Dart{} : across(d); }
+  /// The dart that follows in the vertex of d: phi1(phi2(d)); invalid where phi2(d) is.
+  [[nodiscard]] Dart alpha1(Dart d) const {
+    const Dart other = phi2(d);
+    return other.valid() ? phi1(other) : other;
+  }
   [[nodiscard]] Vertex origin(Dart d) const {
     const CellView c = view(d.cell);
     return c.vertex(c.shape().origin(d.number));
@@ -240,6 +256,7 @@ class Map {
     bool operator==(const WallVertices&) const { return true; }
   };
 
+  [[nodiscard]] Dart across(Dart d) const;
   [[nodiscard]] std::uint32_t* record(Cell c) { return const_cast<std::uint32_t*>(std::as_const(*this).record(c)); }
   void open_record(std::uint32_t pool, std::size_t words);
   void write_cell(Cell c, std::uint32_t shape, std::span<const std::uint32_t> vertices, bool free);
@@ -247,6 +264,7 @@ class Map {
   void set_wall(CellFace f, bool wall);
   void mark_walls(Cell c);
 
+  unsigned dimension_ = 3;
   std::array<Pool, 5> pools_ = {Pool{10}, Pool{16}, Pool{13}, Pool{12}, Pool{}};
   ShapeTable shapes_;
   std::size_t vertex_count_ = 0;

@@ -23,7 +23,7 @@ std::vector<Dart> closure(Dart d, Relation... relation) {
 }  // namespace
 
 std::vector<Dart> vertex_orbit(const Map& map, Dart d) {
-  const auto phi21 = [&](Dart x) { return map.phi1(map.phi2(x)); };
+  const auto phi21 = [&](Dart x) { return map.alpha1(x); };
   const auto phi_12 = [&](Dart x) { return map.phi2(map.phi_1(x)); };
   const auto phi31 = [&](Dart x) {
     const Dart other = map.phi3(x);
@@ -44,6 +44,7 @@ std::vector<Dart> face_orbit(const Map& map, Dart d) {
 }
 
 std::vector<Dart> cell_orbit(const Map& map, Dart d) {
+  if (map.dimension() == 2) return face_orbit(map, d);
   return closure(
       d, [&](Dart x) { return map.phi1(x); }, [&](Dart x) { return map.phi2(x); });
 }

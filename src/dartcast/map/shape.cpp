@@ -10,12 +10,29 @@ namespace dartcast {
 
 namespace {
 
+bool is_polygon(const ShapeKey& key) { return !key.faces.empty() && key.faces.front().corners.size() == 2; }
+
+// Throws where the edges are not one cycle of distinct corners in their order.
+void check_polygon(const ShapeKey& key) {
+  std::vector<bool> seen(key.corner_count);
+  for (std::size_t f = 0; f < key.faces.size(); ++f) {
+    const auto& edge = key.faces[f].corners;
+    const auto& next = key.faces[(f + 1) % key.faces.size()].corners;
+    if (edge.size() != 2 || next.size() != 2 || edge[1] != next[0])
+      throw InvalidMesh("the edges of the cell do not close");
+    if (edge[0] >= key.corner_count || seen[edge[0]]) throw InvalidMesh("the cell has a corner twice");
+    seen[edge[0]] = true;
+  }
+  if (key.faces.size() < 3) throw InvalidMesh("the cell has fewer than three corners");
+}
+
 // Throws where a face is not a cycle of distinct corners, or numbers would not fit in 15 bits.
 void check_key(const ShapeKey& key) {
+  if (is_polygon(key)) check_polygon(key);
   std::size_t darts = 0;
   std::vector<std::size_t> last(key.corner_count, 0);  // face that had the corner last, from 1
   for (std::size_t f = 0; f < key.faces.size(); ++f) {
-    bool distinct = key.faces[f].corners.size() >= 3;
+    bool distinct = key.faces[f].corners.size() >= 3 || is_polygon(key);
     for (const std::uint16_t corner : key.faces[f].corners) {
       distinct = distinct && corner < key.corner_count && last[corner] != f + 1;
       if (distinct) last[corner] = f + 1;
@@ -38,12 +55,17 @@ std::uint64_t facet_key(std::array<std::uint16_t, 3> t) {
 
 Shape::Shape(ShapeKey key) : key_(std::move(key)) {
   check_key(key_);
+  dimension_ = is_polygon(key_) ? 2 : 3;
   face_count_ = static_cast<std::uint16_t>(key_.faces.size());
   point_count_ = key_.corner_count;
   for (const auto& face : key_.faces)
     point_count_ = static_cast<std::uint16_t>(point_count_ + (face.has_point ? 1 : 0));
   if (key_.has_point) ++point_count_;
   number_darts();
+  if (dimension_ == 2) {
+    make_triangles();
+    return;
+  }
   sew_darts();
   make_simplices();
   connect_simplices();
@@ -59,10 +81,10 @@ void Shape::number_darts() {
   first_dart_.reserve(key_.faces.size() + 1);
   first_dart_.push_back(0);
   for (std::uint16_t f = 0; f < face_count(); ++f) {
-    for (const std::uint16_t corner : key_.faces[f].corners) {
-      origin_.push_back(corner);
-      face_of_.push_back(f);
-    }
+    const auto& corners = key_.faces[f].corners;
+    const std::size_t darts_of_face = dimension_ == 2 ? 1 : corners.size();
+    origin_.insert(origin_.end(), corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(darts_of_face));
+    face_of_.insert(face_of_.end(), darts_of_face, f);
     first_dart_.push_back(static_cast<std::uint16_t>(origin_.size()));
   }
 }
@@ -94,6 +116,7 @@ std::uint16_t Shape::face_of_point(std::uint16_t point) const {
 
 std::array<std::uint16_t, 3> Shape::triangle(std::uint16_t face, std::uint16_t t) const {
   const auto& corners = key_.faces[face].corners;
+  if (dimension_ == 2) return {corners[0], corners[1], corners[1]};
   if (!key_.faces[face].has_point) return {corners[0], corners[t + 1U], corners[t + 2U]};
   std::uint16_t point = key_.corner_count;
   for (std::uint16_t f = 0; f < face; ++f)
@@ -109,6 +132,40 @@ void Shape::make_simplices() {
       if (a != apex && b != apex && c != apex) simplices_.push_back({{apex, a, b, c}, {}});
     }
   }
+}
+
+// The fan of a polygon: one triangle after another around the apex.
+void Shape::make_triangles() {
+  const std::uint16_t apex = key_.has_point ? static_cast<std::uint16_t>(point_count_ - 1) : key_.apex;
+  const std::uint16_t n = face_count();
+  entries_.resize(n);
+  std::uint16_t first = 0;  // the edge that follows the apex
+  if (!key_.has_point) {
+    while (origin_[first] != apex) ++first;
+  }
+  const auto edge = [&](unsigned k) { return static_cast<std::uint16_t>((first + k) % n); };
+  const unsigned skipped = key_.has_point ? 0 : 1;  // edges beside the apex, at each end
+  const unsigned count = n - 2 * skipped;
+  for (unsigned i = 0; i < count; ++i) {
+    const std::uint16_t f = edge(i + skipped);
+    const auto& ends = key_.faces[f].corners;
+    const auto number = static_cast<std::uint16_t>(i);
+    const auto neighbour = [&](unsigned j, std::uint16_t place) {
+      return Across{static_cast<std::uint16_t>(j % count), place};
+    };
+    const auto outer = [](std::uint16_t face) {
+      return Across{static_cast<std::uint16_t>(Across::outer_bit | face), 0};
+    };
+    ImplicitSimplex s{{apex, ends[0], ends[1], ends[1]}, {}};
+    s.across[0] = outer(f);
+    s.across[1] = skipped == 1 && i + 1 == count ? outer(edge(n - 1)) : neighbour(i + 1, 2);
+    s.across[2] = skipped == 1 && i == 0 ? outer(edge(0)) : neighbour(i + count - 1, 1);
+    for (std::uint16_t facet = 0; facet < 3; ++facet) {
+      if (s.across[facet].outer()) entries_[s.across[facet].face()] = {number, facet};
+    }
+    simplices_.push_back(s);
+  }
+  for (std::uint16_t f = 0; f < n; ++f) first_entry_.push_back(f);
 }
 
 void Shape::connect_simplices() {
@@ -159,7 +216,8 @@ void Shape::make_flat() {
 }
 
 Shape::Feature Shape::feature(std::span<const std::uint16_t> points) const {
-  if (points.size() == 4) return {Kind::volume, 0};
+  const Feature inside = {static_cast<Kind>(dimension_), 0};
+  if (points.size() == dimension_ + 1) return inside;
   for (std::uint16_t f = 0; f < face_count(); ++f) {
     const auto on_face = [&](std::uint16_t p) {
       const auto& corners = key_.faces[f].corners;
@@ -173,9 +231,9 @@ Shape::Feature Shape::feature(std::span<const std::uint16_t> points) const {
                                  (origin_[d] == points[1] && origin_[phi1(d)] == points[0])))
         return {Kind::edge, d};
     }
-    return {Kind::face, first_dart_[f]};
+    if (dimension_ == 3) return {Kind::face, first_dart_[f]};
   }
-  return {Kind::volume, 0};
+  return inside;
 }
 
 std::size_t Shape::bytes() const {

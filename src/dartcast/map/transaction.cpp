@@ -35,6 +35,7 @@ Transaction::Transaction(Map& map) : map_(map) { prepare(); }
 Transaction::~Transaction() { roll_back(); }
 
 void Transaction::prepare() {
+  if (map_.dimension() == 2) throw InvalidArgument("maps of the plane can't be edited yet");
   if (map_.cells_at_.size() == map_.vertex_count_) return;
   map_.cells_at_.assign(map_.vertex_count_, 0);
   for (const Cell c : map_.cells()) count_vertices(c, true);
