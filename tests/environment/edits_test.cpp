@@ -159,7 +159,7 @@ TEST_P(Edits, LoseNobody) {
       if (step % 10 == 0) ASSERT_NO_FATAL_FAILURE(scene.check_all());
     }
     if (test::sanitized()) continue;
-    EXPECT_GT(scene.edits, test::scaled(100, 3000));
+    EXPECT_GT(scene.edits, test::scaled(100, 2500));
     EXPECT_GT(scene.located, 100U);
     EXPECT_GT(scene.left, 0U);
   }
