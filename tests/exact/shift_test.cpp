@@ -108,5 +108,40 @@ TEST(Shift, RefusesWhatIsOutsideTheRange) {
   }
 }
 
+// In the plane: p + e w + (e^2, e^3), and c anywhere on the line through p and q.
+TEST(PlaneShift, OfALineIsTheSignWithASmallTrueShift) {
+  Quadruples quadruples(5);
+  int zero_along = 0;
+  for (int i = 0; i < 6 * cases; ++i) {
+    const Sizes s = all_sizes[i % 6];
+    const auto points = some_points(quadruples, 2, s.largest, s.scale);
+    const Vec3& p = points[0];
+    const Vec3& q = points[1];
+    const auto opposite = some_points(quadruples, quadruples.random().below(3), s.largest, s.scale);
+    const Vec3 c = p + (q - p) * (quadruples.random().below(5) - 2.0);
+    const Dyadic e = Dyadic::power_of_two(-shift_bits);
+    Dyadic x = e * e;
+    Dyadic y = e * e * e;
+    Dyadic along;
+    for (const Vec3& o : opposite) {
+      const Dyadic wx = Dyadic(o.x) - Dyadic(p.x);
+      const Dyadic wy = Dyadic(o.y) - Dyadic(p.y);
+      x = x + e * wx;
+      y = y + e * wy;
+      along = along + wx * (Dyadic(q.y) - Dyadic(p.y)) - wy * (Dyadic(q.x) - Dyadic(p.x));
+    }
+    const auto from_c = [&](const Vec3& v) {
+      return std::pair{Dyadic(v.x) + x - Dyadic(c.x), Dyadic(v.y) + y - Dyadic(c.y)};
+    };
+    const auto [px, py] = from_c(p);
+    const auto [qx, qy] = from_c(q);
+    ASSERT_EQ(PlaneShift(p, opposite).of_line(q), static_cast<Sign>((px * qy - py * qx).sign())) << i;
+    zero_along += along.sign() == 0 && q != p ? 1 : 0;
+  }
+  EXPECT_GT(zero_along, cases) << "the further terms decide";
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(PlaneShift({0, 0, 0}, {}).of_line({1, nan, 0}), Sign::undecidable);
+}
+
 }  // namespace
 }  // namespace dartcast::test

@@ -122,6 +122,28 @@ TEST_F(RecordingTest, FramesReadBackBitByBit) {
   EXPECT_TRUE(std::equal(free->values.begin(), free->values.end(), mesh.free.begin(), mesh.free.end()));
 }
 
+TEST_F(RecordingTest, RunsInThePlaneLeaveTheSameFiles) {
+  const std::string text =
+      "[environment]\ngenerator = 'maze'\nrooms = [3, 2]\nsize = [26.0, 17.0]\ntype = 'mixed'\njitter = 0.2\n"
+      "[[deformation]]\nkind = 'bend'\namplitude = 0.3\nlength = 20.0\naxis = [0.0, 1.0, 0.0]\n"
+      "[[particles]]\ncount = 200\nvelocity = [3.0, 1.0, 0.0]\n"
+      "[[particles]]\ninlet = 'border'\nrate = 50.0\nvelocity = [0.5, 0.25, 0.0]\n"
+      "[motion]\ndt = 0.05\nsteps = 40\n[output]\nevery = 20\ncontacts = true\n";
+  const Summary summary = run(text, folder, true);
+  EXPECT_EQ(summary.lost, 0U);
+  EXPECT_EQ(summary.audit->failed, 0U);
+  EXPECT_GT(summary.audit->checked, 8000U);
+  const MeshData frame = read_mesh(folder / "environment_000040.vtu").mesh;
+  EXPECT_EQ(frame.dimension(), 2U);
+  const auto count = [&](const char* kind) {
+    std::size_t n = 0;
+    for (const std::string& line : lines(folder / "contacts.csv")) n += line.find(kind) != std::string::npos ? 1 : 0;
+    return n;
+  };
+  EXPECT_GT(count(",edge,"), 100U);
+  EXPECT_EQ(count(",face,"), 0U);
+}
+
 TEST_F(RecordingTest, TheKindOfAParticleOnAWallIsSaid) {
   const MeshData mesh = generate_box({});
   Environment environment(mesh);

@@ -85,6 +85,7 @@ std::string check(const Complex& complex, const Particles& particles, std::size_
   if (s.simplex >= map.shape(s.cell).simplices().size()) return "the cell has no such simplex";
   if (s.held) return check_held(particles.held_weights(i));
   if (!map.is_free(s.cell)) return "the cell is blocked";
+  if (map.dimension() == 2 && s.position.z != 0.0) return "the position is not in the plane";
   return check_inside(complex.corners({s.cell, s.simplex}), s.position);
 }
 

@@ -21,7 +21,9 @@ constexpr const char* missed_move = "add: advance the particles first, they have
 constexpr const char* missed_edit =
     "the particles have not followed the last edit: every set must follow() each edit before the next";
 
-void check_point(const Vec3& x, const char* what, std::size_t index) {
+void check_point(const Vec3& x, const char* what, std::size_t index, unsigned dimension) {
+  if (dimension == 2 && x.z != 0.0)
+    throw InvalidArgument(fmt::format("{} {} is ({}, {}, {}): in the plane z must be 0", what, index, x.x, x.y, x.z));
   if (in_exact_range(x)) return;
   throw InvalidArgument(
       fmt::format("{} {} is ({}, {}, {}): coordinates must be finite, and 0 or between 2^-300 and 2^300 in magnitude",
@@ -57,7 +59,8 @@ bool are_weights(const Weights& w) {
 }
 
 bool can_be(const Complex& complex, const State& s, const Weights& weights) {
-  if (!in_exact_range(s.position) || s.touching_count > s.touching.size()) return false;
+  if (!in_exact_range(s.position) || (complex.map().dimension() == 2 && s.position.z != 0.0)) return false;
+  if (s.touching_count > s.touching.size()) return false;
   for (unsigned i = 0; i < s.touching_count; ++i) {
     if (!is_wall(complex.map(), s.touching[i])) return false;
   }
@@ -118,7 +121,7 @@ Environment::Environment(MeshData mesh, Threads threads)
 Location Environment::locate(const Vec3& x) { return locate(std::span<const Vec3>(&x, 1)).front(); }
 
 std::vector<Location> Environment::locate(std::span<const Vec3> points) {
-  for (std::size_t i = 0; i < points.size(); ++i) check_point(points[i], "point", i);
+  for (std::size_t i = 0; i < points.size(); ++i) check_point(points[i], "point", i, map().dimension());
   if (!locator_) locator_ = std::make_unique<Locator>(complex_);
   std::vector<std::pair<std::size_t, std::size_t>> order(points.size());  // by bin: bin, point
   for (std::size_t i = 0; i < points.size(); ++i) order[i] = {locator_->bin(points[i]), i};
@@ -166,7 +169,8 @@ void Environment::add_to(Particles& particles, SimplexId simplex, const Vec3& po
 
 bool Environment::add(Particles& particles, SimplexId simplex, const Vec3& position) {
   check_current(particles);
-  if (!in_exact_range(position) || !holds(complex_, simplex, position)) return false;
+  if (!in_exact_range(position) || (map().dimension() == 2 && position.z != 0.0)) return false;
+  if (!holds(complex_, simplex, position)) return false;
   add_to(particles, simplex, position);
   return true;
 }
@@ -246,8 +250,9 @@ void Environment::check_targets(const Particles& particles, std::span<const Vec3
     throw InvalidArgument("advance: the particles missed a move: advance every set once after each move");
   if (particles.size() > 0 && particles.edits_ != edits_)
     throw InvalidArgument(fmt::format("advance: {}", missed_edit));
-  if (detail::all_in_exact_range(targets)) return;
-  for (std::size_t i = 0; i < targets.size(); ++i) check_point(targets[i], "the target of particle", i);
+  if (map().dimension() == 3 && detail::all_in_exact_range(targets)) return;
+  for (std::size_t i = 0; i < targets.size(); ++i)
+    check_point(targets[i], "the target of particle", i, map().dimension());
 }
 
 // One call of advance().
@@ -268,8 +273,11 @@ void Environment::step_chunk(const Steps& steps, std::size_t begin, std::size_t 
   const std::span<detail::VertexNumbers> vertices = std::span(steps.particles.vertices_).subspan(begin, size);
   std::span<detail::Trail> trails = steps.particles.trails_;
   if (!trails.empty()) trails = trails.subspan(begin, size);
-  detail::step_filtered(steps.filtered, {states, vertices, trails, targets, std::span(taken).first(size), begun},
-                        part.counters);
+  if (map().dimension() == 2)
+    taken.fill(detail::taken_nothing);
+  else
+    detail::step_filtered(steps.filtered, {states, vertices, trails, targets, std::span(taken).first(size), begun},
+                          part.counters);
   for (std::size_t i = 0; i < size; ++i) {
     if (taken[i] == detail::taken_all) continue;
     const auto particle = static_cast<std::uint32_t>(begin + i);
@@ -302,7 +310,7 @@ StepReport Environment::advance(Particles& particles, std::span<const Vec3> targ
   std::vector<StepReport> parts(chunk_count(particles.size(), grain));
   particles.residents_.reset();
   const Particles before = respond ? particles : Particles{};  // a response is the caller's code: it may throw
-  particles.trails_.resize(moved ? particles.size() : 0);
+  particles.trails_.resize(moved && map().dimension() == 3 ? particles.size() : 0);
   if (respond) {
     try {
       step_all(steps, parts);

@@ -219,4 +219,19 @@ Sign Shift::of_line_exact(const Vec3& a, const Vec3& b, const Vec3& q) const {
   return Sign::zero;
 }
 
+PlaneShift::PlaneShift(const Vec3& p, std::span<const Vec3> opposite) : p_(p) {
+  opposite_.fill(p);
+  std::copy(opposite.begin(), opposite.end(), opposite_.begin());
+}
+
+// With d = q - p the terms are w x d, d.y and -d.x; (o - p) x (q - p) is that of o, q and p.
+Sign PlaneShift::of_line(const Vec3& q) const {
+  if (!in_plane_range(p_) || !in_plane_range(q) || !in_plane_range(opposite_[0]) || !in_plane_range(opposite_[1]))
+    return Sign::undecidable;
+  const auto along = exact_plane_determinant(opposite_[0], q, p_) + exact_plane_determinant(opposite_[1], q, p_);
+  if (along.sign() != 0) return static_cast<Sign>(along.sign());
+  if (q.y != p_.y) return sign(q.y > p_.y ? 1.0 : -1.0);
+  return q.x < p_.x ? Sign::positive : q.x > p_.x ? Sign::negative : Sign::zero;
+}
+
 }  // namespace dartcast

@@ -128,4 +128,18 @@ class Shift {
   bool in_range_;
 };
 
+/// The same in the plane: p + e w + (e^2, e^3).
+class PlaneShift {
+ public:
+  /// `opposite`: the vertices opposite to the facets on which p lies; at most 2.
+  PlaneShift(const Vec3& p, std::span<const Vec3> opposite);
+
+  /// Sign of orient2d(p + shift, q + shift, c) where orient2d(p, q, c) is zero, whatever c. Zero only where p is q.
+  [[nodiscard]] Sign of_line(const Vec3& q) const;
+
+ private:
+  Vec3 p_;
+  std::array<Vec3, 2> opposite_;
+};
+
 }  // namespace dartcast

@@ -60,15 +60,14 @@ class Complex {
   /// finite, or outside the exact range, is found by the walk that meets it, and by check_validity().
   void commit_positions();
 
+  /// In the plane the fourth is the third again, and the fourth corner is one above the first (raised()).
   [[nodiscard]] std::array<Vertex, 4> vertices(SimplexId s) const {
     const CellView c = map_.view(s.cell);
     const auto& local = c.shape().simplices()[s.simplex].vertex;
     return {c.vertex(local[0]), c.vertex(local[1]), c.vertex(local[2]), c.vertex(local[3])};
   }
-  [[nodiscard]] Corners corners(SimplexId s) const {
-    const auto v = vertices(s);
-    return {front_[v[0].value], front_[v[1].value], front_[v[2].value], front_[v[3].value]};
-  }
+  [[nodiscard]] Corners corners(SimplexId s) const { return corners(s, front_); }
+  [[nodiscard]] Corners previous_corners(SimplexId s) const { return corners(s, previous_positions()); }
 
   [[nodiscard]] std::uint64_t simplex_count() const { return simplex_count_; }
   [[nodiscard]] std::size_t interior_point_count() const { return interior_.count(); }
@@ -77,6 +76,13 @@ class Complex {
 
  private:
   friend class ComplexEdit;
+
+  [[nodiscard]] Corners corners(SimplexId s, std::span<const Vec3> positions) const {
+    const auto v = vertices(s);
+    const Corners corners = {positions[v[0].value], positions[v[1].value], positions[v[2].value],
+                             positions[v[3].value]};
+    return map_.dimension() == 2 ? raised(corners) : corners;
+  }
 
   Map map_;
   InteriorWeights interior_;

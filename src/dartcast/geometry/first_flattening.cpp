@@ -63,6 +63,10 @@ class Search {
       ends_[i] = detail::ends_of(before_[vertices[i]], after_[vertices[i]]);
     const auto& simplices = v.shape().simplices();
     for (std::uint16_t s = 0; s < simplices.size(); ++s) {
+      if (map_.dimension() == 2) {
+        look_at({c, s}, v);
+        continue;
+      }
       const auto& local = simplices[s].vertex;
       const detail::VolumeCubic cubic(ends_[local[0]], ends_[local[1]], ends_[local[2]], ends_[local[3]]);
       if (!cubic.proves_positive()) look_at({c, s}, v);
@@ -80,6 +84,10 @@ class Search {
       vertices[i] = v.vertex(v.shape().simplices()[id.simplex].vertex[i]);
       from[i] = before_[vertices[i].value];
       to[i] = after_[vertices[i].value];
+    }
+    if (map_.dimension() == 2) {
+      from = raised(from);
+      to = raised(to);
     }
     const auto flattening = find_flattening(from, to, until_);
     if (!flattening || (found_ && found_->how.safe_time <= flattening->safe_time)) return;

@@ -50,8 +50,7 @@ class Solver {
  private:
   // The plain map has a cell for each of the mesh, in the mesh's order within each type.
   void number_cells() {
-    for (std::uint32_t c = 0; c < mesh_.cell_count(); ++c)
-      number_[static_cast<std::size_t>(mesh_.types[c])].push_back(c);
+    for (std::uint32_t c = 0; c < mesh_.cell_count(); ++c) number_[Map::pool_of(mesh_.types[c])].push_back(c);
     cell_.resize(mesh_.cell_count());
     for (std::uint32_t p = 0; p < number_.size(); ++p) {
       for (std::uint32_t i = 0; i < number_[p].size(); ++i) cell_[number_[p][i]] = Cell(p, i);
@@ -65,6 +64,7 @@ class Solver {
 
   // A face whose triangles are not all positive seen from the mean of the cell's corners, but would be with a point.
   void choose_face_points(std::uint32_t c) {
+    if (plain_.dimension() == 2) return;
     const Faces faces = faces_of(mesh_, c);
     const Vec3 m = mean(mesh_.points, corners_of(faces));
     for (const auto& face : faces) {
@@ -119,6 +119,12 @@ class Solver {
 
   void add_cell_point(std::uint32_t c) {
     const Faces faces = faces_of(mesh_, c);
+    if (plain_.dimension() == 2) {  // the mean of a convex polygon's corners is inside
+      const auto all = corners_of(faces);
+      const std::vector<double> equal(all.size(), 1.0 / static_cast<double>(all.size()));
+      solution_.points.of_cells.emplace_back(c, add_vertex(all, equal));
+      return;
+    }
     std::vector<Triangle> triangles;
     for (const auto& face : faces) {
       std::optional<Vec3> point;

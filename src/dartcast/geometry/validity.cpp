@@ -26,6 +26,10 @@ class Sieve {
 
   void add(Cell c, const CellView& v) {
     const Shape* shape = &v.shape();
+    if (shape->dimension() == 2) {
+      open_.push_back(c);
+      return;
+    }
     // Shapes that meet in a group judge each other's cells early: it costs time, no more.
     Group& group = groups_[reinterpret_cast<std::uintptr_t>(shape) / 64U % groups_.size()];
     if (group.shape != shape) {
@@ -75,6 +79,7 @@ std::optional<InvalidCell> check_cell(const Map& map, std::span<const Vec3> posi
   for (std::uint16_t s = 0; s < simplices.size(); ++s) {
     Corners corners;
     for (unsigned i = 0; i < 4; ++i) corners[i] = positions[v.vertex(simplices[s].vertex[i]).value];
+    if (map.dimension() == 2) corners = raised(corners);
     if (const Sign sign = volume_sign(corners); sign != Sign::positive)
       return InvalidCell{c, s, describe(map, c, s, sign)};
   }

@@ -21,7 +21,7 @@ Finding indivisible_cells(const MeshData& mesh, Threads threads) {
 
 MeshFile check_mesh(const std::filesystem::path& path, Threads threads) {
   MeshFile file = read_mesh(path);
-  if (!file.report.valid() || file.report.dimension != 3) return file;
+  if (!file.report.valid()) return file;
   try {
     add_finding(file.report.defects, indivisible_cells(file.mesh, threads));
   } catch (const InvalidMesh& e) {

@@ -35,15 +35,6 @@ void count_walls(const Map& map, MeshInfo& info) {
   }
 }
 
-void count_plane(const MeshData& mesh, MeshInfo& info) {
-  const auto blocked = std::count(mesh.free.begin(), mesh.free.end(), std::uint8_t{0});
-  info.free_cells = mesh.cell_count() - static_cast<std::size_t>(blocked);
-  for (const std::int32_t tag : mesh.patch_tags) {
-    const auto name = mesh.patch_names.find(tag);
-    ++info.patches[name == mesh.patch_names.end() ? std::to_string(tag) : name->second];
-  }
-}
-
 void find_bounds(const std::vector<Vec3>& points, MeshInfo& info) {
   if (points.empty()) return;
   info.low = info.high = points.front();
@@ -74,10 +65,6 @@ MeshInfo mesh_info(const MeshData& mesh, std::string name, Threads threads) {
   info.points = mesh.points.size();
   count_cells(mesh, info);
   find_bounds(mesh.points, info);
-  if (info.dimension == 2) {
-    count_plane(mesh, info);
-    return info;
-  }
   const Complex complex(mesh, threads);
   count_walls(complex.map(), info);
   info.shapes = complex.map().shapes().size();
@@ -95,14 +82,12 @@ std::string info_json(const MeshInfo& i) {
                                  {"regions", i.regions},
                                  {"patches", i.patches},
                                  {"free_cells", i.free_cells},
-                                 {"bounds", {{i.low.x, i.low.y, i.low.z}, {i.high.x, i.high.y, i.high.z}}}};
-  if (i.dimension == 3) {
-    json.update({{"wall_faces", i.wall_faces},
-                 {"shapes", i.shapes},
-                 {"simplices", i.simplices},
-                 {"interior_points", i.interior_points},
-                 {"bytes", i.bytes}});
-  }
+                                 {"bounds", {{i.low.x, i.low.y, i.low.z}, {i.high.x, i.high.y, i.high.z}}},
+                                 {"wall_faces", i.wall_faces},
+                                 {"shapes", i.shapes},
+                                 {"simplices", i.simplices},
+                                 {"interior_points", i.interior_points},
+                                 {"bytes", i.bytes}};
   if (i.bytes > 0 && i.cell_count() > 0)
     json["bytes_per_cell"] = static_cast<double>(i.bytes) / static_cast<double>(i.cell_count());
   return json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace);
@@ -111,12 +96,12 @@ std::string info_json(const MeshInfo& i) {
 std::string info_text(const MeshInfo& i) {
   std::string out = fmt::format("{}\n{} points; {}; {} free\n", i.name, i.points, list(i.cells), i.free_cells);
   if (!i.regions.empty()) out += fmt::format("regions: {}\n", list(i.regions));
-  if (i.dimension == 2) {
-    if (!i.patches.empty()) out += fmt::format("patches, in edges: {}\n", list(i.patches));
-    return out + fmt::format("bounds: ({}, {}) to ({}, {}) in the plane z = 0\n", i.low.x, i.low.y, i.high.x, i.high.y);
-  }
-  out += fmt::format("wall faces: {}{}{}\n", i.wall_faces, i.patches.empty() ? "" : ", by patch: ", list(i.patches));
-  out += fmt::format("bounds: ({}, {}, {}) to ({}, {}, {})\n", i.low.x, i.low.y, i.low.z, i.high.x, i.high.y, i.high.z);
+  const bool plane = i.dimension == 2;
+  out += fmt::format("wall {}: {}{}{}\n", plane ? "edges" : "faces", i.wall_faces,
+                     i.patches.empty() ? "" : ", by patch: ", list(i.patches));
+  out += plane ? fmt::format("bounds: ({}, {}) to ({}, {}) in the plane z = 0\n", i.low.x, i.low.y, i.high.x, i.high.y)
+               : fmt::format("bounds: ({}, {}, {}) to ({}, {}, {})\n", i.low.x, i.low.y, i.low.z, i.high.x, i.high.y,
+                             i.high.z);
   out += fmt::format("{} shapes, {} simplices, {} interior points\n", i.shapes, i.simplices, i.interior_points);
   const double per_cell = static_cast<double>(i.bytes) / static_cast<double>(std::max<std::size_t>(1, i.cell_count()));
   return out + fmt::format("memory: {} bytes, {:.1f} per cell\n", i.bytes, per_cell);

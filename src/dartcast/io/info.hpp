@@ -8,7 +8,6 @@
 
 namespace dartcast {
 
-/// Of a mesh of the plane, only what needs no map: dimension, points, cells, regions, patches, free cells and bounds.
 struct MeshInfo {
   std::string name;
   unsigned dimension = 3;

@@ -243,7 +243,6 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
   summary.deforms = !scene.deformation.empty();
   const Stopwatch load;
   const MeshData mesh = load_scene_mesh(scene.environment).mesh;
-  if (mesh.dimension() == 2) throw InvalidMesh("the scene's mesh is planar: runs in the plane are not supported yet");
   Environment environment(mesh, options.threads);
   Flow flow(environment, flow_options(scene, options), make_responses(scene.contact, environment.map()));
   if (!scene.motion.field.empty()) {

@@ -31,7 +31,7 @@ void for_each_face(const MeshData& mesh, std::size_t c, Visit&& visit) {
     }
     return;
   }
-  std::uint32_t face[4];
+  std::uint32_t face[4] = {};
   if (mesh.types[c] == CellType::polygon) {
     for (std::size_t i = 0; i < corners.size(); ++i) {
       face[0] = corners[i];

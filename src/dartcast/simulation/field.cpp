@@ -59,7 +59,8 @@ Vec3 VelocityField::at(const Complex& complex, SimplexId simplex, const std::arr
   const Vec3 u = (values_[v[0].value] * w[0] + values_[v[1].value] * w[1]) +
                  (values_[v[2].value] * w[2] + values_[v[3].value] * w[3]);
   if (frame_ == FieldFrame::space) return u;
-  return mapped({rest_[v[0].value], rest_[v[1].value], rest_[v[2].value], rest_[v[3].value]}, now, u);
+  const Corners rest = {rest_[v[0].value], rest_[v[1].value], rest_[v[2].value], rest_[v[3].value]};
+  return mapped(complex.map().dimension() == 2 ? raised(rest) : rest, now, u);
 }
 
 }  // namespace dartcast

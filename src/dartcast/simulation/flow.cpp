@@ -35,10 +35,10 @@ void check(const FlowOptions& o) {
   if (o.substeps == 0) throw InvalidArgument("flow: substeps must be at least 1");
 }
 
-Corners previous_corners(const Complex& complex, SimplexId simplex) {
-  const auto v = complex.vertices(simplex);
-  const auto before = complex.previous_positions();
-  return {before[v[0].value], before[v[1].value], before[v[2].value], before[v[3].value]};
+// The particle with coordinates w, as riding along puts it.
+Vec3 ridden(const Complex& complex, SimplexId simplex, const Weights& w) {
+  if (complex.map().dimension() == 2) return detail::ridden(current_space<3>(complex), simplex, w).position;
+  return detail::ridden(current_space<4>(complex), simplex, w).position;
 }
 
 template <class T>
@@ -250,13 +250,13 @@ Flow::Aim Flow::aim_at(std::size_t i, double dt, bool moving) const {
   if (stuck && !moving) return {velocities_[i], s.position};
   const Complex& complex = environment_.complex();
   const Corners now = complex.corners(s.at());
-  const Corners before = deforms() ? previous_corners(complex, s.at()) : now;
+  const Corners before = deforms() ? complex.previous_corners(s.at()) : now;
   const Weights w = detail::barycentric(moving ? before : now, s.position);
   const Vec3 ridden = detail::combine(now, w);
   const Vec3 mesh = (ridden - detail::combine(before, w)) * (1.0 / options_.dt);
   if (stuck) {
     const bool positive = volume_sign(now) == Sign::positive;
-    return {mesh, positive ? detail::ridden(current_space(complex), s.at(), w).position : s.position};
+    return {mesh, positive ? dartcast::ridden(complex, s.at(), w) : s.position};
   }
   const Vec3 flow = field_->at(complex, s.at(), w, now);
   if (field_->frame() == FieldFrame::space) {

@@ -9,6 +9,7 @@ namespace dartcast {
 
 namespace {
 
+// In the plane twice the area: see Complex::corners().
 double volume6(const Corners& v) { return std::max(0.0, dot(v[1] - v[0], cross(v[2] - v[0], v[3] - v[0]))); }
 
 // N non-negative numbers that sum to 1, uniformly: the gaps between N - 1 random cuts of [0, 1].
@@ -52,6 +53,10 @@ Sample VolumeSampler::sample(const Complex& complex, Random& random) const {
   }
   const SimplexId simplex{cell, static_cast<std::uint16_t>(choose(up_to, random))};
   const Corners v = complex.corners(simplex);
+  if (complex.map().dimension() == 2) {
+    const auto w = random_weights<3>(random);
+    return {simplex, (v[0] * w[0] + v[1] * w[1]) + v[2] * w[2]};
+  }
   const auto w = random_weights<4>(random);
   return {simplex, (v[0] * w[0] + v[1] * w[1]) + (v[2] * w[2] + v[3] * w[3])};
 }
@@ -78,6 +83,27 @@ bool has_free_face(const Map& map, Patch patch) {
   return found;
 }
 
+namespace {
+
+// Twice the area of a triangle; in the plane the length of an edge.
+double facet_size(unsigned dimension, const Corners& v, unsigned facet) {
+  if (dimension == 2) return norm(v[plane_facet_corners[facet][1]] - v[plane_facet_corners[facet][0]]);
+  const auto& f = facet_corners[facet];
+  return norm(cross(v[f[1]] - v[f[0]], v[f[2]] - v[f[0]]));
+}
+
+Vec3 random_on_facet(unsigned dimension, const Corners& v, unsigned facet, Random& random) {
+  if (dimension == 2) {
+    const auto w = random_weights<2>(random);
+    return v[plane_facet_corners[facet][0]] * w[0] + v[plane_facet_corners[facet][1]] * w[1];
+  }
+  const auto& f = facet_corners[facet];
+  const auto w = random_weights<3>(random);
+  return v[f[0]] * w[0] + v[f[1]] * w[1] + v[f[2]] * w[2];
+}
+
+}  // namespace
+
 PatchSampler::PatchSampler(const Complex& complex, Patch patch) {
   for_each_face(complex.map(), patch, [&](Cell c, const Shape& shape, std::uint16_t f) {
     for (std::uint16_t t = 0; t < shape.triangle_count(f); ++t) {
@@ -94,17 +120,14 @@ void PatchSampler::update(const Complex& complex) {
   double sum = 0.0;
   for (const Triangle& t : triangles_) {
     const Corners v = complex.corners(t.simplex);
-    const auto& f = facet_corners[t.facet];
-    area_up_to_.push_back(sum += norm(cross(v[f[1]] - v[f[0]], v[f[2]] - v[f[0]])));
+    area_up_to_.push_back(sum += facet_size(complex.map().dimension(), v, t.facet));
   }
 }
 
 Sample PatchSampler::sample(const Complex& complex, Random& random) const {
   const Triangle& t = triangles_[choose(area_up_to_, random)];
   const Corners v = complex.corners(t.simplex);
-  const auto& f = facet_corners[t.facet];
-  const auto w = random_weights<3>(random);
-  const Vec3 on_face = v[f[0]] * w[0] + v[f[1]] * w[1] + v[f[2]] * w[2];
+  const Vec3 on_face = random_on_facet(complex.map().dimension(), v, t.facet, random);
   return {t.simplex, on_face + (v[t.facet] - on_face) * 0x1p-6};
 }
 

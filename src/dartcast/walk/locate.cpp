@@ -28,12 +28,14 @@ std::uint32_t bin_along(double x, double low, double high, std::uint32_t bins) {
 // The first closed simplex of the cell that holds x; invalid where none does.
 SimplexId find_in(const Complex& complex, Cell c, const Vec3& x) {
   const CellView cell = complex.map().view(c);
-  const Space<Stored> space = current_space(complex);
   const auto& simplices = cell.shape().simplices();
-  for (std::uint16_t s = 0; s < simplices.size(); ++s) {
-    if (detail::in_closed_simplex(space.corners(cell, simplices[s]), x)) return {c, s};
-  }
-  return {};
+  const auto find = [&](const auto& space) -> SimplexId {
+    for (std::uint16_t s = 0; s < simplices.size(); ++s) {
+      if (detail::in_closed_simplex(space.corners(cell, simplices[s]), x)) return {c, s};
+    }
+    return {};
+  };
+  return complex.map().dimension() == 2 ? find(current_space<3>(complex)) : find(current_space<4>(complex));
 }
 
 }  // namespace

@@ -30,8 +30,13 @@ struct Determinant {
   }
 };
 
-/// How a segment from p, before a wall's triangle, to q, beyond it, passes. All differences are to p.
-class Passing {
+/// How a segment from p, before a wall's facet, to q, beyond it, passes. N: as for Space.
+template <std::size_t N>
+class Passing;
+
+/// A triangle. All differences are to p.
+template <>
+class Passing<4> {
  public:
   Passing(const WallPlane& w, const Vec3& p, const Vec3& q)
       : wall_(w),
@@ -68,6 +73,27 @@ class Passing {
   std::array<Determinant, 3> sides_;
 };
 
+/// An edge: its sides are its ends.
+template <>
+class Passing<3> {
+ public:
+  Passing(const WallPlane& w, const Vec3& p, const Vec3& q) : wall_(w), p_(p), q_(q) {}
+
+  /// Whether the line meets the end opposite to corner i of the edge; exact.
+  [[nodiscard]] bool meets_side(unsigned i) const { return orient2d(p_, q_, i == 0 ? wall_.b : wall_.a) == Sign::zero; }
+
+  /// As above.
+  [[nodiscard]] double fraction() const {
+    const double before = orient2d_value(wall_.a, wall_.b, p_);
+    return std::clamp(before / (before - orient2d_value(wall_.a, wall_.b, q_)), 0.0, 1.0);
+  }
+
+ private:
+  const WallPlane& wall_;
+  const Vec3& p_;
+  const Vec3& q_;
+};
+
 /// The wall behind a facet.
 inline WallHit wall_hit(const Map& map, SimplexId id, const CellView& cell, unsigned facet, const Vec3& normal) {
   const Across across = cell.shape().simplices()[id.simplex].across[facet];
@@ -77,54 +103,66 @@ inline WallHit wall_hit(const Map& map, SimplexId id, const CellView& cell, unsi
 
 /// Adds the other wall triangles that meet at an edge or a vertex; a plane face's triangles count as one. Precondition:
 /// the one that was hit is the last of the list.
-template <class Positions>
-void add_other_walls(const Space<Positions>& space, const Walk& w, const Feature& feature, ContactList& list) {
+template <class Positions, std::size_t N>
+void add_other_walls(const Space<Positions, N>& space, const Walk& w, const Feature& feature, ContactList& list) {
   const auto first = static_cast<std::ptrdiff_t>(list.walls.size()) - 1;
-  search_walls(*space.map, w.wall_simplex, feature,
-               [&](SimplexId id, const CellView& cell, const ImplicitSimplex& s, unsigned facet) {
-                 const CellFace face = {id.cell, s.across[facet].face()};
-                 const Vec3 normal = facet_plane(space.corners(cell, s), facet).normal;
-                 const bool known = std::any_of(list.walls.begin() + first, list.walls.end(), [&](const WallHit& h) {
-                   constexpr double same_plane =
-                       1.0 - 1e-14;  // unit normals, rounded: only which triangles are listed depends on it
-                   return h.face == face && dot(h.normal, normal) > same_plane;
-                 });
-                 if (!known) list.walls.push_back(wall_hit(*space.map, id, cell, facet, normal));
-                 return true;
-               });
+  search_walls<N>(*space.map, w.wall_simplex, feature,
+                  [&](SimplexId id, const CellView& cell, const ImplicitSimplex& s, unsigned facet) {
+                    const CellFace face = {id.cell, s.across[facet].face()};
+                    const Vec3 normal = facet_plane(space.corners(cell, s), facet).normal;
+                    const bool known = std::any_of(list.walls.begin() + first, list.walls.end(), [&](const WallHit& h) {
+                      constexpr double same_plane =
+                          1.0 - 1e-14;  // unit normals, rounded: only which triangles are listed depends on it
+                      return h.face == face && dot(h.normal, normal) > same_plane;
+                    });
+                    if (!known) list.walls.push_back(wall_hit(*space.map, id, cell, facet, normal));
+                    return true;
+                  });
 }
 
-/// Displacement over the whole step of the wall's material point nearest to x: the triangle's corners' displacements,
-/// weighted by x's barycentric coordinates in it.
-inline Vec3 wall_displacement(const Complex& complex, SimplexId simplex, unsigned facet, const WallPlane& plane,
-                              const Vec3& x) {
-  const auto vertices = complex.vertices(simplex);
+/// The barycentric coordinates in a wall's facet of the point nearest to x, up to a factor; none is negative.
+inline std::array<double, 3> weights_in(const Corners&, const WallPlane& plane, const Vec3& x) {
   const std::array<Vec3, 3> corner = {plane.a, plane.b, plane.c};
   std::array<double, 3> weight{};
-  double sum = 0.0;
   for (unsigned i = 0; i < 3; ++i) {
     const Vec3& b = corner[(i + 1) % 3];
     const Vec3& c = corner[(i + 2) % 3];
     weight[i] = std::max(0.0, dot(plane.normal, cross(b - x, c - x)));
-    sum += weight[i];
   }
+  return weight;
+}
+inline std::array<double, 2> weights_in(const PlaneCorners&, const WallPlane& line, const Vec3& x) {
+  const Vec3 along = line.b - line.a;
+  return {std::max(0.0, dot(along, line.b - x)), std::max(0.0, dot(along, x - line.a))};
+}
+
+/// Displacement over the whole step of the wall's material point nearest to x: the facet's corners' displacements,
+/// weighted by x's barycentric coordinates in it. `v`: of the simplex.
+template <std::size_t N>
+Vec3 wall_displacement(const Complex& complex, SimplexId simplex, unsigned facet, const std::array<Vec3, N>& v,
+                       const WallPlane& plane, const Vec3& x) {
+  const auto vertices = complex.vertices(simplex);
+  const std::array<double, N - 1> weight = weights_in(v, plane, x);
+  double sum = 0.0;
+  for (const double w : weight) sum += w;
   Vec3 result;
-  for (unsigned i = 0; i < 3; ++i) {
-    const std::uint32_t v = vertices[facet_corners[facet][i]].value;
-    const Vec3 moved = complex.positions()[v] - complex.previous_positions()[v];
+  for (unsigned i = 0; i < N - 1; ++i) {
+    const std::uint32_t vertex = vertices[facet_corner<N>(facet, i)].value;
+    const Vec3 moved = complex.positions()[vertex] - complex.previous_positions()[vertex];
     if (!is_finite(moved)) continue;  // the move has mended a vertex that was not finite
-    result += moved * (sum > 0.0 ? weight[i] / sum : 1.0 / 3.0);
+    result += moved * (sum > 0.0 ? weight[i] / sum : 1.0 / (N - 1.0));
   }
   return result;
 }
 
 /// The cell of the map that holds the points of a simplex in whose interior a point with these zero facets lies.
-inline Shape::Feature map_feature(const Shape& shape, const ImplicitSimplex& s, unsigned wall_facet, unsigned zeros) {
-  if (zeros == 1U << wall_facet)  // inside the triangle
-    return {Kind::face, shape.first_dart(s.across[wall_facet].face())};
-  std::array<std::uint16_t, 4> points{};
+template <std::size_t N>
+Shape::Feature map_feature(const Shape& shape, const ImplicitSimplex& s, unsigned wall_facet, unsigned zeros) {
+  if (zeros == 1U << wall_facet)  // inside the facet
+    return {static_cast<Kind>(N - 2), shape.first_dart(s.across[wall_facet].face())};
+  std::array<std::uint16_t, N> points{};
   std::size_t count = 0;
-  for (unsigned i = 0; i < 4; ++i) {
+  for (unsigned i = 0; i < N; ++i) {
     if (((zeros >> i) & 1U) == 0) points[count++] = s.vertex[i];
   }
   return shape.feature(std::span<const std::uint16_t>(points.data(), count));
@@ -136,29 +174,30 @@ struct Meeting {
   double fraction;
   unsigned zeros;
 };
-inline Meeting meeting(const Corners& v, const WallPlane& wall, const Walk& w, const Vec3& p, const Vec3& q) {
+template <std::size_t N>
+Meeting meeting(const std::array<Vec3, N>& v, const WallPlane& wall, const Walk& w, const Vec3& p, const Vec3& q) {
   if (w.at_start) return {0.0, zeros_of(v, p)};
   if (w.at_end) return {1.0, zeros_of(v, q)};
-  const Passing passing(wall, p, q);
+  const Passing<N> passing(wall, p, q);
   unsigned zeros = 1U << w.wall_facet;
-  for (unsigned i = 0; i < 3; ++i) zeros |= passing.meets_side(i) ? 1U << facet_corners[w.wall_facet][i] : 0U;
+  for (unsigned i = 0; i < N - 1; ++i) zeros |= passing.meets_side(i) ? 1U << facet_corner<N>(w.wall_facet, i) : 0U;
   return {passing.fraction(), zeros};
 }
 
 /// Fills the parts of a contact that the geometry gives: kind, dart, walls, point. Returns the fraction of the segment.
 /// `v`, `wall`: the corners of the simplex at the wall, and the plane of the facet met.
-template <class Positions>
-double describe_contact(const Space<Positions>& space, const Walk& w, const Corners& v, const WallPlane& wall,
-                        const Vec3& p, const Vec3& q, Contact& contact, ContactList& list) {
+template <class Positions, std::size_t N>
+double describe_contact(const Space<Positions, N>& space, const Walk& w, const std::array<Vec3, N>& v,
+                        const WallPlane& wall, const Vec3& p, const Vec3& q, Contact& contact, ContactList& list) {
   const CellView cell = space.map->view(w.wall_simplex.cell);
   const ImplicitSimplex& s = cell.shape().simplices()[w.wall_simplex.simplex];
   const auto [t, zeros] = meeting(v, wall, w, p, q);
-  const Shape::Feature feature = map_feature(cell.shape(), s, w.wall_facet, zeros);
+  const Shape::Feature feature = map_feature<N>(cell.shape(), s, w.wall_facet, zeros);
   contact.kind = feature.kind;
   contact.dart = {w.wall_simplex.cell, feature.dart};
   contact.first_wall = static_cast<std::uint32_t>(list.walls.size());
   list.walls.push_back(wall_hit(*space.map, w.wall_simplex, cell, w.wall_facet, wall.normal));
-  if (zeros != 1U << w.wall_facet) add_other_walls(space, w, feature_of(cell, s, zeros), list);
+  if (zeros != 1U << w.wall_facet) add_other_walls(space, w, feature_of<N>(cell, s, zeros), list);
   contact.wall_count = static_cast<std::uint32_t>(list.walls.size()) - contact.first_wall;
   contact.point = w.at_start ? p : w.at_end ? q : flushed(p + (q - p) * t);
   return t;

@@ -20,10 +20,11 @@
 namespace dartcast::detail {
 
 /// Whether x lies in the closed simplex; exact. Precondition: the simplex is positive.
-inline bool in_closed_simplex(const Corners& v, const Vec3& x) {
+template <std::size_t N>
+bool in_closed_simplex(const std::array<Vec3, N>& v, const Vec3& x) {
   const Determinants d(v, x);
   std::uint64_t exact = 0;
-  for (unsigned i = 0; i < 4; ++i) {
+  for (unsigned i = 0; i < N; ++i) {
     const Sign s = sign_of(d, i, v, x, exact);
     if (s == Sign::negative || s == Sign::undecidable) return false;
   }
@@ -44,29 +45,29 @@ inline Vec3 flushed(Vec3 x) {
 
 /// Barycentric coordinates in a simplex as functions of the place. Exact values behind them: those of a sliver are
 /// small differences.
+template <std::size_t N>
 class Coordinates {
  public:
-  explicit Coordinates(const Corners& v) : v_(v), volume_(orient3d_value(v[0], v[1], v[2], v[3])) {
-    for (unsigned i = 0; i < 4; ++i) {
-      const auto& f = facet_corners[i];
-      gradient_[i] = cross(v[f[1]] - v[f[0]], v[f[2]] - v[f[0]]) * (1.0 / volume_);
+  using Weights = std::array<double, N>;
+
+  explicit Coordinates(const std::array<Vec3, N>& v) : v_(v), volume_(volume_value(v)) {
+    for (unsigned i = 0; i < N; ++i) {
+      gradient_[i] = facet_gradient(v, i) * (1.0 / volume_);
       steepness_[i] = norm(gradient_[i]);
     }
   }
 
   [[nodiscard]] Weights at(const Vec3& x) const {
     Weights w;
-    for (unsigned i = 0; i < 4; ++i) {
-      const auto& f = facet_corners[i];
-      w[i] = orient3d_value(v_[f[0]], v_[f[1]], v_[f[2]], x) / volume_;
-    }
+    for (unsigned i = 0; i < N; ++i) w[i] = orient_facet_value(v_, i, x) / volume_;
     return w;
   }
   [[nodiscard]] Vec3 place(const Weights& w) const {
-    return (v_[0] * w[0] + v_[1] * w[1]) + (v_[2] * w[2] + v_[3] * w[3]);
+    if constexpr (N == 4) return (v_[0] * w[0] + v_[1] * w[1]) + (v_[2] * w[2] + v_[3] * w[3]);
+    return (v_[0] * w[0] + v_[1] * w[1]) + v_[2] * w[2];
   }
   [[nodiscard]] Weights moved(Weights w, const Vec3& step) const {
-    for (unsigned i = 0; i < 4; ++i) w[i] += dot(gradient_[i], step);
+    for (unsigned i = 0; i < N; ++i) w[i] += dot(gradient_[i], step);
     return w;
   }
   [[nodiscard]] const Vec3& gradient(unsigned i) const { return gradient_[i]; }
@@ -75,7 +76,7 @@ class Coordinates {
 
   /// The coordinates of the point of the simplex next to the one that has coordinates w, up to rounding.
   [[nodiscard]] Weights inside(Weights w) const {
-    for (unsigned turn = 0; turn < 4; ++turn) {
+    for (unsigned turn = 0; turn < N; ++turn) {
       const auto i = static_cast<unsigned>(std::min_element(w.begin(), w.end()) - w.begin());
       if (!(w[i] < 0.0)) break;
       w = moved(w, normal(i) * -height(w, i));
@@ -89,55 +90,61 @@ class Coordinates {
 
   /// Moves the point from the facet that it is next to, into the middle between it and the nearest one that faces it.
   [[nodiscard]] Weights centred(const Weights& w) const {
-    std::array<double, 4> h;
-    for (unsigned i = 0; i < 4; ++i) h[i] = height(w, i);
+    std::array<double, N> h;
+    for (unsigned i = 0; i < N; ++i) h[i] = height(w, i);
     const auto next = static_cast<unsigned>(std::min_element(h.begin(), h.end()) - h.begin());
     unsigned facing = next;
-    for (unsigned i = 0; i < 4; ++i) {
+    for (unsigned i = 0; i < N; ++i) {
       const bool faces = i != next && dot(normal(i), normal(next)) < -0.5;
       if (faces && (facing == next || h[i] < h[facing])) facing = i;
     }
     if (facing == next) return w;
     const Vec3 across = normal(next) - normal(facing);
     const Weights middle = moved(w, across * ((h[facing] - h[next]) / dot(across, across)));
-    for (unsigned i = 0; i < 4; ++i) {
+    for (unsigned i = 0; i < N; ++i) {
       if (!(height(middle, i) > 0.5 * h[next])) return w;  // a third facet is in the way
     }
     return middle;
   }
 
  private:
-  Corners v_;
+  std::array<Vec3, N> v_;
   double volume_;
-  std::array<Vec3, 4> gradient_;
-  std::array<double, 4> steepness_;
+  std::array<Vec3, N> gradient_;
+  std::array<double, N> steepness_;
 };
 
-/// What a step does to the four coordinates, as shares of what may be lost of each, and to the place, as shares of the
+/// What a step does to the coordinates, as shares of what may be lost of each, and to the place, as shares of the
 /// distance allowed.
-using Effect = std::array<double, 7>;
+template <std::size_t N>
+using Effect = std::array<double, N + 3>;
 
-inline double dot(const Effect& a, const Effect& b) {
+template <std::size_t M>
+double dot(const std::array<double, M>& a, const std::array<double, M>& b) {
   double sum = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
   return sum;
 }
-inline void subtract(Effect& a, double n, const Effect& b) {
+template <std::size_t M>
+void subtract(std::array<double, M>& a, double n, const std::array<double, M>& b) {
   for (std::size_t i = 0; i < a.size(); ++i) a[i] -= n * b[i];
 }
 
 /// A basis of a lattice of steps, reduced in the norm of their effects.
+template <std::size_t N>
 class LatticeBasis {
  public:
+  using Effect = detail::Effect<N>;
+
   /// `unit`: the lattice's spacing along each axis; `effect_of`: linear in a step.
   template <class EffectOf>
-  LatticeBasis(const Vec3& unit, const EffectOf& effect_of)
-      : step_{Vec3{unit.x, 0.0, 0.0}, Vec3{0.0, unit.y, 0.0}, Vec3{0.0, 0.0, unit.z}} {
-    for (unsigned k = 0; k < 3; ++k) effect_[k] = effect_of(step_[k]);
+  LatticeBasis(const Vec3& unit, const EffectOf& effect_of) : step_{Vec3{unit.x, 0.0, 0.0}, Vec3{0.0, unit.y, 0.0}} {
+    if constexpr (axes == 3) step_[2] = {0.0, 0.0, unit.z};
+    for (unsigned k = 0; k < axes; ++k) effect_[k] = effect_of(step_[k]);
     orthogonalize();
     constexpr int most_rounds = 1000;  // rounding may keep it from ending
     unsigned k = 1;
-    for (int round = 0; k < 3 && round < most_rounds; ++round) {
+    for (int round = 0; k < axes && round < most_rounds; ++round) {
       if (shorten(k, effect_of)) continue;  // large factors are rounded: once more
       const double mu = share(effect_[k], k - 1);
       if (dot(own_[k], own_[k]) >= (0.75 - mu * mu) * dot(own_[k - 1], own_[k - 1])) {
@@ -154,7 +161,7 @@ class LatticeBasis {
   /// The step of the lattice whose effect is about the one wanted.
   [[nodiscard]] Vec3 nearest(Effect wanted) const {
     Vec3 sum;
-    for (unsigned k = 3; k-- > 0;) {
+    for (unsigned k = axes; k-- > 0;) {
       const double n = std::nearbyint(share(wanted, k));
       subtract(wanted, n, effect_[k]);
       sum += step_[k] * n;
@@ -182,19 +189,22 @@ class LatticeBasis {
 
   void orthogonalize() {
     own_ = effect_;
-    for (unsigned k = 1; k < 3; ++k) {
+    for (unsigned k = 1; k < axes; ++k) {
       for (unsigned j = 0; j < k; ++j) subtract(own_[k], share(own_[k], j), own_[j]);
     }
   }
 
-  std::array<Vec3, 3> step_;
-  std::array<Effect, 3> effect_;
-  std::array<Effect, 3> own_;  // what each adds to the effects of those before
+  static constexpr std::size_t axes = N - 1;
+
+  std::array<Vec3, axes> step_;
+  std::array<Effect, axes> effect_;
+  std::array<Effect, axes> own_;  // what each adds to the effects of those before
 };
 
 /// A double close to the point with coordinates `room`, at most about `distance` away; none of the coordinates is lost
 /// where one is found as close as the room allows.
-inline Vec3 double_near(const Coordinates& coordinates, const Weights& room, double distance) {
+template <std::size_t N>
+Vec3 double_near(const Coordinates<N>& coordinates, const std::array<double, N>& room, double distance) {
   const Vec3 middle = coordinates.place(room);
   const auto spacing = [&](double c) {
     const double large = std::max({std::abs(c), distance, smallest_magnitude});
@@ -205,19 +215,19 @@ inline Vec3 double_near(const Coordinates& coordinates, const Weights& room, dou
   Vec3 found = {std::nearbyint(middle.x / unit.x) * unit.x, std::nearbyint(middle.y / unit.y) * unit.y,
                 std::nearbyint(middle.z / unit.z) * unit.z};
   const auto effect_of = [&](const Vec3& step) {
-    Effect e{};
-    for (unsigned i = 0; i < 4; ++i) e[i] = dot(coordinates.gradient(i), step) / room[i];
-    e[4] = step.x / distance;
-    e[5] = step.y / distance;
-    e[6] = step.z / distance;
+    Effect<N> e{};
+    for (unsigned i = 0; i < N; ++i) e[i] = dot(coordinates.gradient(i), step) / room[i];
+    e[N] = step.x / distance;
+    e[N + 1] = step.y / distance;
+    e[N + 2] = step.z / distance;
     return e;
   };
-  const LatticeBasis basis(unit, effect_of);
+  const LatticeBasis<N> basis(unit, effect_of);
   constexpr int corrections = 4;  // the effects of long steps are rounded: each time a small part of the rest is left
   for (int turn = 0; turn < corrections; ++turn) {
-    const Weights here = coordinates.at(found);
-    Effect wanted = effect_of(middle - found);
-    for (unsigned i = 0; i < 4; ++i) wanted[i] = (room[i] - here[i]) / room[i];
+    const std::array<double, N> here = coordinates.at(found);
+    Effect<N> wanted = effect_of(middle - found);
+    for (unsigned i = 0; i < N; ++i) wanted[i] = (room[i] - here[i]) / room[i];
     found += basis.nearest(wanted);
   }
   return flushed(found);
@@ -227,15 +237,16 @@ inline Vec3 double_near(const Coordinates& coordinates, const Weights& room, dou
 /// is found, as may be in a simplex thinner than a unit in the last place. At an edge of a small angle a, the distance
 /// is of the order of a^(-1/3) units, which is the least that can be hoped for. Cost: some 10 us for each doubling of
 /// the distance. Precondition: the simplex is positive.
-inline std::optional<Vec3> double_inside(const Corners& v, const Vec3& x) {
-  const Coordinates coordinates(v);
-  const Weights next = coordinates.inside(coordinates.at(x));
+template <std::size_t N>
+std::optional<Vec3> double_inside(const std::array<Vec3, N>& v, const Vec3& x) {
+  const Coordinates<N> coordinates(v);
+  const std::array<double, N> next = coordinates.inside(coordinates.at(x));
   double size = 0.0;
   for (const Vec3& corner : v) size = std::max(size, norm(corner - x));
   for (int k = std::numeric_limits<double>::digits; k > 0; --k) {
     const double drawn = std::ldexp(1.0, -k);  // towards the simplex's mean, where there is more room
-    Weights room;
-    for (unsigned i = 0; i < 4; ++i) room[i] = (1.0 - drawn) * next[i] + drawn * 0.25;
+    std::array<double, N> room;
+    for (unsigned i = 0; i < N; ++i) room[i] = (1.0 - drawn) * next[i] + drawn * (1.0 / N);
     for (int turn = 0; turn < 3; ++turn) room = coordinates.centred(room);
     const Vec3 found = double_near(coordinates, room, drawn * size);
     if (in_closed_simplex(v, found)) return found;

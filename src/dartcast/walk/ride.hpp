@@ -11,22 +11,25 @@
 
 namespace dartcast::detail {
 
-/// x's barycentric coordinates in a simplex, negative ones counted as 0; they sum to 1 up to rounding.
-inline Weights barycentric(const Corners& v, const Vec3& x) {
+/// x's barycentric coordinates in a simplex, negative ones counted as 0; they sum to 1 up to rounding. In the plane
+/// the fourth is 0.
+template <std::size_t N>
+Weights barycentric(const std::array<Vec3, N>& v, const Vec3& x) {
   const Determinants d(v, x);
-  Weights w = d.value;
+  Weights w{};
+  std::copy(d.value.begin(), d.value.end(), w.begin());
   if (!d.proves_coordinates()) {  // a sliver: the filter's values are mostly rounding
-    for (unsigned i = 0; i < 4; ++i) {
-      const auto& f = facet_corners[i];
-      w[i] = orient3d_value(v[f[0]], v[f[1]], v[f[2]], x);
-    }
+    for (unsigned i = 0; i < N; ++i) w[i] = orient_facet_value(v, i, x);
   }
   double sum = 0.0;
   for (double& c : w) {
     c = std::max(c, 0.0);
     sum += c;
   }
-  if (!(sum > 0.0)) return {0.25, 0.25, 0.25, 0.25};  // flat: any point of it will do
+  if (!(sum > 0.0)) {  // flat: any point of it will do
+    std::fill_n(w.begin(), N, 1.0 / N);
+    return w;
+  }
   for (double& c : w) c /= sum;
   return w;
 }
@@ -34,13 +37,22 @@ inline Weights barycentric(const Corners& v, const Vec3& x) {
 inline Vec3 combine(const Corners& v, const Weights& w) {
   return (v[0] * w[0] + v[1] * w[1]) + (v[2] * w[2] + v[3] * w[3]);
 }
+inline Vec3 combine(const PlaneCorners& v, const Weights& w) { return (v[0] * w[0] + v[1] * w[1]) + v[2] * w[2]; }
 
 /// The particle with coordinates w, in the moved simplex; settled where rounding put it outside. Precondition: the
 /// moved simplex is positive.
-template <class Positions>
-Settled ridden(const Space<Positions>& space, SimplexId simplex, const Weights& w) {
-  const Corners v = space.corners(simplex);
+template <class Positions, std::size_t N>
+Settled ridden(const Space<Positions, N>& space, SimplexId simplex, const Weights& w) {
+  const std::array<Vec3, N> v = space.corners(simplex);
   return settle(space, simplex, v, combine(v, w));
+}
+
+/// The dual basis of the edges from a simplex's first corner, times its volume (in the plane its area).
+inline std::array<Vec3, 3> duals(const std::array<Vec3, 3>& e) {
+  return {cross(e[1], e[2]), cross(e[2], e[0]), cross(e[0], e[1])};
+}
+inline std::array<Vec3, 2> duals(const std::array<Vec3, 2>& e) {
+  return {Vec3{e[1].y, -e[1].x, 0.0}, Vec3{-e[0].y, e[0].x, 0.0}};
 }
 
 /// Frobenius norm of the gradient of the displacement that takes simplex v to simplex w, and v's shortest edge.
@@ -48,21 +60,27 @@ struct Deformation {
   double gradient;
   double edge;
 };
-inline Deformation deformation(const Corners& v, const Corners& w) {
-  const std::array<Vec3, 3> e = {v[1] - v[0], v[2] - v[0], v[3] - v[0]};
-  const Vec3 u0 = w[0] - v[0];
-  const std::array<Vec3, 3> u = {(w[1] - v[1]) - u0, (w[2] - v[2]) - u0, (w[3] - v[3]) - u0};
-  const std::array<Vec3, 3> dual = {cross(e[1], e[2]), cross(e[2], e[0]), cross(e[0], e[1])};
+template <std::size_t N>
+Deformation deformation(const std::array<Vec3, N>& v, const std::array<Vec3, N>& w) {
+  std::array<Vec3, N - 1> e;
+  std::array<Vec3, N - 1> u;
+  for (unsigned i = 0; i + 1 < N; ++i) {
+    e[i] = v[i + 1] - v[0];
+    u[i] = (w[i + 1] - v[i + 1]) - (w[0] - v[0]);
+  }
+  const auto dual = duals(e);
   const double volume = dot(e[0], dual[0]);
   double sum = 0.0;  // A = sum of u_i dual_i^T / volume
   for (unsigned row = 0; row < 3; ++row) {
     const auto at = [row](const Vec3& x) { return row == 0 ? x.x : row == 1 ? x.y : x.z; };
-    const Vec3 a = (dual[0] * at(u[0]) + dual[1] * at(u[1]) + dual[2] * at(u[2])) * (1.0 / volume);
+    Vec3 a = dual[0] * at(u[0]);
+    for (unsigned i = 1; i + 1 < N; ++i) a = a + dual[i] * at(u[i]);
+    a = a * (1.0 / volume);
     sum += dot(a, a);
   }
   double shortest = std::numeric_limits<double>::max();
-  for (unsigned i = 0; i < 4; ++i) {
-    for (unsigned j = i + 1; j < 4; ++j) shortest = std::min(shortest, dot(v[j] - v[i], v[j] - v[i]));
+  for (unsigned i = 0; i < N; ++i) {
+    for (unsigned j = i + 1; j < N; ++j) shortest = std::min(shortest, dot(v[j] - v[i], v[j] - v[i]));
   }
   return {std::sqrt(sum), std::sqrt(shortest)};
 }

@@ -14,7 +14,7 @@
 namespace dartcast {
 
 /// The plane of a wall's fan triangle: a, b, c counterclockwise seen from the free side, and the unit normal to that
-/// side.
+/// side. In the plane a line, with the free side on the left of ab; c is b.
 struct WallPlane {
   Vec3 a, b, c;
   Vec3 normal;
@@ -22,7 +22,8 @@ struct WallPlane {
 
 namespace detail {
 
-/// The planes that a point must not be behind.
+/// The planes that a point must not be behind. N: as for Space.
+template <std::size_t N>
 class WallPlanes {
  public:
   void add(const WallPlane& plane) {
@@ -33,16 +34,19 @@ class WallPlanes {
   void lift(Vec3& x, double distance) const {
     for (unsigned i = 0; i < count_; ++i) {
       const WallPlane& w = planes_[i];
-      if (orient3d(w.a, w.b, w.c, x) == Sign::negative) x += w.normal * distance;
+      if (is_behind(w, x)) x += w.normal * distance;
     }
   }
 
   [[nodiscard]] bool none_behind(const Vec3& x) const {
-    return std::none_of(planes_.begin(), planes_.begin() + count_,
-                        [&](const WallPlane& w) { return orient3d(w.a, w.b, w.c, x) == Sign::negative; });
+    return std::none_of(planes_.begin(), planes_.begin() + count_, [&](const WallPlane& w) { return is_behind(w, x); });
   }
 
  private:
+  static bool is_behind(const WallPlane& w, const Vec3& x) {
+    return (N == 4 ? orient3d(w.a, w.b, w.c, x) : orient2d(w.a, w.b, x)) == Sign::negative;
+  }
+
   std::array<WallPlane, 8> planes_;
   unsigned count_ = 0;
 };
@@ -56,7 +60,8 @@ inline double lift_distance(const Vec3& p, const Vec3& x, int k) {
 }
 
 /// Lifts x, computed from p, until it is behind none of the planes; after so many doublings it is left where it is.
-inline void lift_off(const WallPlanes& planes, const Vec3& p, Vec3& x, int doublings) {
+template <std::size_t N>
+void lift_off(const WallPlanes<N>& planes, const Vec3& p, Vec3& x, int doublings) {
   for (int k = 0; k < doublings && !planes.none_behind(x); ++k) planes.lift(x, lift_distance(p, x, k));
 }
 
@@ -76,6 +81,15 @@ inline WallPlane facet_plane(const Corners& v, unsigned facet) {
   return plane;
 }
 
+inline WallPlane facet_plane(const PlaneCorners& v, unsigned facet) {
+  const auto& f = plane_facet_corners[facet];
+  WallPlane line{v[f[0]], v[f[1]], v[f[1]], {}};
+  const Vec3 n = facet_gradient(v, facet);
+  const double length = std::hypot(n.x, n.y);
+  line.normal = length > 0.0 ? Vec3{n.x / length, n.y / length, 0.0} : Vec3{};
+  return line;
+}
+
 struct Settled {
   SimplexId simplex;
   Vec3 position;
@@ -85,28 +99,33 @@ namespace detail {
 
 constexpr int few_doublings = 6;
 
-/// Whether x lies on a plane across an axis, as three other points do.
-inline bool same_level(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x) {
-  return (a.x == x.x && b.x == x.x && c.x == x.x) || (a.y == x.y && b.y == x.y && c.y == x.y) ||
-         (a.z == x.z && b.z == x.z && c.z == x.z);
+/// Whether a facet lies across an axis, and x on its plane.
+inline bool on_level_facet(const Corners& v, unsigned facet, const Vec3& x) {
+  const auto& [a, b, c] = facet_corners[facet];
+  return (v[a].x == x.x && v[b].x == x.x && v[c].x == x.x) || (v[a].y == x.y && v[b].y == x.y && v[c].y == x.y) ||
+         (v[a].z == x.z && v[b].z == x.z && v[c].z == x.z);
+}
+inline bool on_level_facet(const PlaneCorners& v, unsigned facet, const Vec3& x) {
+  const auto& [a, b] = plane_facet_corners[facet];
+  return (v[a].x == x.x && v[b].x == x.x) || (v[a].y == x.y && v[b].y == x.y);
 }
 
 /// The usual contact point: x is on one facet, which lies across an axis, or next to one facet; then it is lifted off
 /// that by as little as the filter needs (some tens of units in the last place of the simplex' size). Nothing where the
 /// filter proves too little, or would need more than 256 units of the coordinates.
-inline std::optional<Vec3> proved_inside(const Corners& v, const Vec3& x) {
+template <std::size_t N>
+std::optional<Vec3> proved_inside(const std::array<Vec3, N>& v, const Vec3& x) {
   Determinants d(v, x);
   if (d.all_proved_positive()) return x;
   const auto facet = static_cast<unsigned>(std::min_element(d.value.begin(), d.value.end()) - d.value.begin());
-  const auto& f = facet_corners[facet];
   const double off = std::exchange(d.value[facet], std::numeric_limits<double>::infinity());
   if (!d.all_proved_positive()) return {};
-  if (same_level(v[f[0]], v[f[1]], v[f[2]], x)) return x;
-  const Vec3 n = cross(v[f[1]] - v[f[0]], v[f[2]] - v[f[0]]);
+  if (on_level_facet(v, facet, x)) return x;
+  const Vec3 n = facet_gradient(v, facet);
   const double largest = std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)});
   const Vec3 direction = n * (1.0 / largest);  // squares of n may be out of range
   const double length = norm(direction);
-  const double unit = lift_distance(v[f[0]], x, 0);
+  const double unit = lift_distance(v[facet_corner<N>(facet, 0)], x, 0);
   const double distance = (2.0 * d.bound - off) / (largest * length) + unit;
   constexpr double most_units = 256.0;
   if (!(distance < most_units * unit)) return {};
@@ -115,10 +134,14 @@ inline std::optional<Vec3> proved_inside(const Corners& v, const Vec3& x) {
   return lifted;
 }
 
+inline Vec3 mean_of(const Corners& v) { return ((v[0] + v[1]) + (v[2] + v[3])) * 0.25; }
+inline Vec3 mean_of(const PlaneCorners& v) { return (v[0] + v[1] + v[2]) * (1.0 / 3.0); }
+
 /// Lifts x off the facets of the simplex; nothing where it is not inside then. p tells how large the rounding is.
-inline std::optional<Vec3> lifted_inside(const Corners& v, const Vec3& p, Vec3 x) {
-  WallPlanes facets;
-  for (unsigned i = 0; i < 4; ++i) facets.add(facet_plane(v, i));
+template <std::size_t N>
+std::optional<Vec3> lifted_inside(const std::array<Vec3, N>& v, const Vec3& p, Vec3 x) {
+  WallPlanes<N> facets;
+  for (unsigned i = 0; i < N; ++i) facets.add(facet_plane(v, i));
   lift_off(facets, p, x, few_doublings);
   x = flushed(x);
   if (!in_closed_simplex(v, x)) return {};
@@ -126,8 +149,8 @@ inline std::optional<Vec3> lifted_inside(const Corners& v, const Vec3& p, Vec3 x
 }
 
 /// Walks from p to x; nothing where x is not reached.
-template <class Positions>
-std::optional<Settled> reached(const Space<Positions>& space, SimplexId start, const Vec3& p, const Vec3& x) {
+template <class Positions, std::size_t N>
+std::optional<Settled> reached(const Space<Positions, N>& space, SimplexId start, const Vec3& p, const Vec3& x) {
   if (x == p) return Settled{start, p};
   TestCounts uncounted;
   const Walk w = walk(space, start, p, x, uncounted);
@@ -137,9 +160,9 @@ std::optional<Settled> reached(const Space<Positions>& space, SimplexId start, c
 
 /// Lifts x off the walls in the way from p, one unit in the last place at first, doubling; nothing where that does not
 /// do.
-template <class Positions>
-std::optional<Settled> lifted(const Space<Positions>& space, SimplexId start, const Vec3& p, Vec3 x) {
-  WallPlanes planes;
+template <class Positions, std::size_t N>
+std::optional<Settled> lifted(const Space<Positions, N>& space, SimplexId start, const Vec3& p, Vec3 x) {
+  WallPlanes<N> planes;
   for (int k = 0; k < few_doublings; ++k) {
     TestCounts uncounted;
     const Walk w = walk(space, start, p, x, uncounted);
@@ -161,11 +184,11 @@ std::optional<Settled> lifted(const Space<Positions>& space, SimplexId start, co
 /// it is walked to from a point p of the simplex (its mean, where that is exactly inside; else its corner nearest to x)
 /// and lifted off the walls in the way; where these are too close together for that, a double between them is looked
 /// for (walk/nearby.hpp); in the end it is p. No wall is passed. Precondition: the simplex is positive, its cell free.
-template <class Positions>
-Settled settle(const Space<Positions>& space, SimplexId simplex, const Corners& v, const Vec3& rounded) {
+template <class Positions, std::size_t N>
+Settled settle(const Space<Positions, N>& space, SimplexId simplex, const std::array<Vec3, N>& v, const Vec3& rounded) {
   const Vec3 x = detail::flushed(rounded);
   if (detail::in_closed_simplex(v, x)) return {simplex, x};
-  Vec3 p = detail::flushed(((v[0] + v[1]) + (v[2] + v[3])) * 0.25);
+  Vec3 p = detail::flushed(detail::mean_of(v));
   if (const auto lifted = detail::lifted_inside(v, p, x)) return {simplex, *lifted};
   if (!detail::in_closed_simplex(v, p)) {
     p = *std::min_element(v.begin(), v.end(),

@@ -26,29 +26,34 @@ struct Between {
   }
 };
 
-template <class Positions>
+/// N: the number of a simplex's corners, 4 in space and 3 in the plane.
+template <class Positions, std::size_t N = 4>
 struct Space {
   const Map* map;
   Positions positions;
   std::uint64_t simplex_count;  ///< no walk meets more
 
-  [[nodiscard]] Corners corners(const CellView& cell, const ImplicitSimplex& s) const {
-    return {positions[cell.vertex(s.vertex[0])], positions[cell.vertex(s.vertex[1])],
-            positions[cell.vertex(s.vertex[2])], positions[cell.vertex(s.vertex[3])]};
+  [[nodiscard]] std::array<Vec3, N> corners(const CellView& cell, const ImplicitSimplex& s) const {
+    std::array<Vec3, N> v;
+    for (unsigned i = 0; i < N; ++i) v[i] = positions[cell.vertex(s.vertex[i])];
+    return v;
   }
-  [[nodiscard]] Corners corners(SimplexId id) const {
+  [[nodiscard]] std::array<Vec3, N> corners(SimplexId id) const {
     const CellView cell = map->view(id.cell);
     return corners(cell, cell.shape().simplices()[id.simplex]);
   }
 };
 
-inline Space<Stored> current_space(const Complex& complex) {
+template <std::size_t N = 4>
+Space<Stored, N> current_space(const Complex& complex) {
   return {&complex.map(), {complex.positions().data()}, complex.simplex_count()};
 }
-inline Space<Stored> previous_space(const Complex& complex) {
+template <std::size_t N = 4>
+Space<Stored, N> previous_space(const Complex& complex) {
   return {&complex.map(), {complex.previous_positions().data()}, complex.simplex_count()};
 }
-inline Space<Between> space_between(const Complex& complex, double s) {
+template <std::size_t N = 4>
+Space<Between, N> space_between(const Complex& complex, double s) {
   return {
       &complex.map(), {complex.previous_positions().data(), complex.positions().data(), s}, complex.simplex_count()};
 }

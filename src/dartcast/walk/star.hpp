@@ -29,9 +29,10 @@ struct Feature {
 };
 
 /// Bit i is set where the facet opposite to corner i holds the feature.
-inline unsigned facets_holding(const Feature& feature, const CellView& cell, const ImplicitSimplex& s) {
+template <std::size_t N = 4>
+unsigned facets_holding(const Feature& feature, const CellView& cell, const ImplicitSimplex& s) {
   unsigned facets = 0;
-  for (unsigned i = 0; i < 4; ++i) facets |= feature.has(cell.vertex(s.vertex[i])) ? 0U : 1U << i;
+  for (unsigned i = 0; i < N; ++i) facets |= feature.has(cell.vertex(s.vertex[i])) ? 0U : 1U << i;
   return facets;
 }
 
@@ -99,7 +100,7 @@ using FoundStars = Found<~(std::uint64_t{0xffff} << 16U)>;
 /// Goes through the simplices around `feature` that are reached from `start` (one of them) through facets that hold the
 /// feature and are no walls. Calls on_simplex(SimplexId, CellView, ImplicitSimplex) for each, start first; it ends the
 /// search by returning false. Purely combinatorial: no coordinate is read. Cost: linear in the star.
-template <class OnSimplex>
+template <std::size_t N = 4, class OnSimplex>
 void search_star(const Map& map, SimplexId start, const Feature& feature, OnSimplex&& on_simplex) {
   detail::FoundSimplices found;
   found.add(detail::code_of(start, 0));
@@ -108,7 +109,7 @@ void search_star(const Map& map, SimplexId start, const Feature& feature, OnSimp
     const CellView cell = map.view(id.cell);
     const ImplicitSimplex& s = cell.shape().simplices()[id.simplex];
     if (!on_simplex(id, cell, s)) return;
-    unsigned facets = facets_holding(feature, cell, s);
+    unsigned facets = facets_holding<N>(feature, cell, s);
     for (; facets != 0; facets &= facets - 1) {
       const auto facet = static_cast<std::uint16_t>(std::countr_zero(facets));
       const Across across = s.across[facet];
@@ -118,11 +119,29 @@ void search_star(const Map& map, SimplexId start, const Feature& feature, OnSimp
   }
 }
 
+namespace detail {
+
+/// search_walls() in the plane, around a vertex: from triangle to triangle.
+template <class OnWall>
+void search_plane_walls(const Map& map, SimplexId start, const Feature& feature, OnWall&& on_wall) {
+  search_star<3>(map, start, feature, [&](SimplexId id, const CellView& cell, const ImplicitSimplex& s) {
+    for (unsigned facets = facets_holding<3>(feature, cell, s); facets != 0; facets &= facets - 1) {
+      const auto facet = static_cast<std::uint16_t>(std::countr_zero(facets));
+      const Across across = s.across[facet];
+      if (across.outer() && cell.is_wall(across.face()) && !on_wall(id, cell, s, facet)) return false;
+    }
+    return true;
+  });
+}
+
+}  // namespace detail
+
 /// The same search for walls alone, around one or two vertices: from cell to cell, by their stars (map/stars.hpp).
 /// Calls on_wall(SimplexId, CellView, ImplicitSimplex, facet) for each wall facet that holds the feature; it ends the
 /// search by returning false. Cost: linear in the number of cells around the feature.
-template <class OnWall>
+template <std::size_t N = 4, class OnWall>
 void search_walls(const Map& map, SimplexId start, const Feature& feature, OnWall&& on_wall) {
+  if constexpr (N == 3) return detail::search_plane_walls(map, start, feature, on_wall);
   const auto star_at = [&](SimplexId id, const CellView& cell) {
     const unsigned beside = facets_holding(feature, cell, cell.shape().simplices()[id.simplex]);
     return detail::code_of(id, cell.shape().stars().star(id.simplex, 15U & ~beside));
@@ -159,10 +178,10 @@ struct SimplexFacet {
 
 /// A wall facet that holds `feature`, spanned by the corners of a simplex that have no bit set in `zeros`; nothing
 /// where search_walls() finds none from there. Cost: one look inside a face, else linear in the star. Precondition: 1
-/// to 3 bits are set.
-inline std::optional<SimplexFacet> find_wall(const Map& map, SimplexId simplex, unsigned zeros,
-                                             const Feature& feature) {
-  if (feature.count == 3) {
+/// to N - 1 bits are set.
+template <std::size_t N = 4>
+std::optional<SimplexFacet> find_wall(const Map& map, SimplexId simplex, unsigned zeros, const Feature& feature) {
+  if (feature.count == N - 1) {
     const auto facet = static_cast<std::uint16_t>(std::countr_zero(zeros));
     const CellView cell = map.view(simplex.cell);
     const Across across = cell.shape().simplices()[simplex.simplex].across[facet];
@@ -173,10 +192,11 @@ inline std::optional<SimplexFacet> find_wall(const Map& map, SimplexId simplex, 
     if (!map.may_touch_wall(feature.vertex[i])) return {};
   }
   std::optional<SimplexFacet> found;
-  search_walls(map, simplex, feature, [&](SimplexId id, const CellView&, const ImplicitSimplex&, std::uint16_t facet) {
-    found = SimplexFacet{id, facet};
-    return false;
-  });
+  search_walls<N>(map, simplex, feature,
+                  [&](SimplexId id, const CellView&, const ImplicitSimplex&, std::uint16_t facet) {
+                    found = SimplexFacet{id, facet};
+                    return false;
+                  });
   return found;
 }
 

@@ -29,7 +29,8 @@ struct State {
 
 /// The paper's k and i, derived from a state.
 struct Forecast {
-  Kind kind = Kind::volume;  ///< of the cell of the map that the particle is in, or touches after a contact
+  /// Of the cell of the map that the particle is in (volume; in the plane face), or touches after a contact.
+  Kind kind = Kind::volume;
   Dart dart;  ///< aimed at: the edge of the base of the particle's simplex; its face is the face aimed at
   CellFace face;
 };
@@ -38,7 +39,7 @@ struct Forecast {
 /// simplex. Cost: four exact signs.
 Forecast forecast(const Map& map, const State& state, const Corners& corners);
 
-/// Kind, and a dart of that face, edge or vertex (invalid for a volume), of the cell of the map that holds x in its
+/// Kind, and a dart of that face, edge or vertex (invalid inside of a cell), of the cell of the map that holds x in its
 /// interior.
 struct Placement {
   Kind kind = Kind::volume;

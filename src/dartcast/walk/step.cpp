@@ -40,10 +40,10 @@ void touch(State& state, std::span<const WallHit> walls) {
   }
 }
 
-template <class Positions>
+template <class Positions, std::size_t N>
 class Part {
  public:
-  Part(const Complex& complex, bool moved, const Space<Positions>& space, const StepOptions& options,
+  Part(const Complex& complex, bool moved, const Space<Positions, N>& space, const StepOptions& options,
        const Respond& respond)
       : complex_(complex), moved_(moved), space_(space), options_(options), respond_(respond) {}
 
@@ -79,7 +79,7 @@ class Part {
   Continuation meet(Run& run, const Walk& w, const Vec3& p, const Vec3& q, Stretch& stretch) const {
     Contact& contact = run.contacts.contacts.emplace_back();
     contact.particle = run.particle;
-    const Corners corners = space_.corners(w.wall_simplex);
+    const std::array<Vec3, N> corners = space_.corners(w.wall_simplex);
     const WallPlane wall = facet_plane(corners, w.wall_facet);
     const double t = detail::describe_contact(space_, w, corners, wall, p, q, contact, run.contacts);
     contact.earlier = contact.first_wall - run.first_wall;
@@ -89,7 +89,7 @@ class Part {
     place(run, w, corners, contact);
     if (moved_)
       contact.wall_displacement =
-          detail::wall_displacement(complex_, w.wall_simplex, w.wall_facet, wall, contact.point);
+          detail::wall_displacement(complex_, w.wall_simplex, w.wall_facet, corners, wall, contact.point);
     const Vec3 later = stretch.later - contact.wall_displacement * (1.0 - stretch.end);
     contact.displacement = (q - p) + later;
     contact.unused = (q - p) * (1.0 - t) + later;
@@ -109,7 +109,7 @@ class Part {
   }
 
   // The contact point is rounded: it is settled in the simplex at the wall.
-  void place(Run& run, const Walk& w, const Corners& corners, const Contact& contact) const {
+  void place(Run& run, const Walk& w, const std::array<Vec3, N>& corners, const Contact& contact) const {
     Settled settled{w.simplex, contact.point};
     if (!w.at_end) {
       const auto proved = detail::proved_inside(corners, contact.point);
@@ -126,7 +126,7 @@ class Part {
                             " returned a displacement that is not finite, or out of range");
     if (!next.along || q == run.state.position) return q;
     const Contact& contact = run.contacts.contacts.back();
-    detail::WallPlanes planes;
+    detail::WallPlanes<N> planes;
     const auto add = [&](std::span<const WallHit> walls) {
       for (const WallHit& wall : walls) {
         const CellView cell = space_.map->view(wall.face.cell);
@@ -142,28 +142,33 @@ class Part {
 
   const Complex& complex_;
   bool moved_;
-  const Space<Positions>& space_;
+  const Space<Positions, N>& space_;
   const StepOptions& options_;
   const Respond& respond_;
 };
 
-bool positive(const Corners& v) { return Determinants(v, v[0]).proves_positive() || volume_sign(v) == Sign::positive; }
+template <std::size_t N>
+bool positive(const std::array<Vec3, N>& v) {
+  return Determinants(v, v[0]).proves_positive() || volume_sign(v) == Sign::positive;
+}
 
 // Whether p, standing still, would have left the simplex by the vertices' motion alone. For the statistics only.
-bool left_behind(const Corners& moved, const Vec3& p) {
+template <std::size_t N>
+bool left_behind(const std::array<Vec3, N>& moved, const Vec3& p) {
   const Determinants d(moved, p);
   return std::any_of(d.value.begin(), d.value.end(), [&](double v) { return v < -d.bound; });
 }
 
 // One particle's step while the vertices move.
+template <std::size_t N>
 class MovingStep {
  public:
   MovingStep(const Complex& complex, const StepOptions& options, const Respond& respond)
       : complex_(complex), options_(options), respond_(respond) {}
 
   void run(Run& run, Weights& weights, const Vec3& target) const {
-    const Corners before = previous_space(complex_).corners(run.state.at());
-    const Corners after = current_space(complex_).corners(run.state.at());
+    const Simplex before = previous_space<N>(complex_).corners(run.state.at());
+    const Simplex after = current_space<N>(complex_).corners(run.state.at());
     if (!run.state.held) {
       if (!positive(before)) return hold(run, weights, detail::barycentric(before, run.state.position), run.state.cell);
       weights = detail::barycentric(before, run.state.position);
@@ -172,8 +177,8 @@ class MovingStep {
     const unsigned parts = run.state.held ? 1 : part_count(before, after, weights, target);
     run.state.held = false;
     if (parts == 1) {
-      ride(current_space(complex_), run, weights);
-      Part<Stored>(complex_, true, space_, options_, respond_).move(run, target, {0.0, 1.0, {}});
+      ride(current_space<N>(complex_), run, weights);
+      Part<Stored, N>(complex_, true, space_, options_, respond_).move(run, target, {0.0, 1.0, {}});
       return;
     }
     ++run.counters.steps_split;
@@ -181,6 +186,8 @@ class MovingStep {
   }
 
  private:
+  using Simplex = std::array<Vec3, N>;
+
   // Only one that is held can be in a blocked cell.
   [[nodiscard]] bool is_free(const Run& run) const { return !run.state.held || complex_.map().is_free(run.state.cell); }
 
@@ -190,7 +197,7 @@ class MovingStep {
     kept = weights;
     run.result.held = true;
     run.result.invalid_cell = cell;
-    const Corners after = space_.corners(run.state.at());
+    const Simplex after = space_.corners(run.state.at());
     if (positive(after) && is_free(run)) return ride(space_, run, weights);
     run.state.held = true;
     const Vec3 ridden = detail::flushed(detail::combine(after, weights));
@@ -198,12 +205,12 @@ class MovingStep {
   }
 
   template <class Positions>
-  void ride(const Space<Positions>& space, Run& run, const Weights& weights) const {
+  void ride(const Space<Positions, N>& space, Run& run, const Weights& weights) const {
     const Settled settled = detail::ridden(space, run.state.at(), weights);
     run.state.put(settled.simplex, settled.position);
   }
 
-  [[nodiscard]] unsigned part_count(const Corners& before, const Corners& after, const Weights& weights,
+  [[nodiscard]] unsigned part_count(const Simplex& before, const Simplex& after, const Weights& weights,
                                     const Vec3& target) const {
     const auto [gradient, edge] = detail::deformation(before, after);
     const double own = norm(target - detail::combine(after, weights));
@@ -218,9 +225,9 @@ class MovingStep {
     Vec3 planned = target - run.state.position;
     bool own_motion = true;
     for (unsigned j = 1; j <= parts; ++j) {
-      const Space<Between> from = space_between(complex_, static_cast<double>(j - 1) / parts);
-      const Space<Between> to = space_between(complex_, static_cast<double>(j) / parts);
-      const Corners before = from.corners(run.state.at());
+      const Space<Between, N> from = space_between<N>(complex_, static_cast<double>(j - 1) / parts);
+      const Space<Between, N> to = space_between<N>(complex_, static_cast<double>(j) / parts);
+      const Simplex before = from.corners(run.state.at());
       const Vec3 here = run.state.position;
       weights = detail::barycentric(before, here);
       if (!positive(to.corners(run.state.at()))) return hold(run, weights, weights, run.state.cell);
@@ -229,7 +236,7 @@ class MovingStep {
       const Vec3 share = planned * (1.0 / (parts - j + 1));
       const Vec3 q = j == parts && run.contact_count == 0 ? target : detail::flushed(here + share);
       planned =
-          Part<Between>(complex_, true, to, options_, respond_)
+          Part<Between, N>(complex_, true, to, options_, respond_)
               .move(run, q, {static_cast<double>(j - 1) / parts, static_cast<double>(j) / parts, planned - share});
       own_motion = !run.result.stopped && !run.result.held;
     }
@@ -238,13 +245,20 @@ class MovingStep {
   const Complex& complex_;
   const StepOptions& options_;
   const Respond& respond_;
-  Space<Stored> space_ = current_space(complex_);
+  Space<Stored, N> space_ = current_space<N>(complex_);
 };
 
 }  // namespace
 
 StepResult Stepper::step(std::uint32_t particle, State& state, Weights& weights, const Vec3& target,
                          ContactList& contacts, Counters& counters, const Begun* begun) const {
+  if (complex_.map().dimension() == 2) return step_in<3>(particle, state, weights, target, contacts, counters, begun);
+  return step_in<4>(particle, state, weights, target, contacts, counters, begun);
+}
+
+template <std::size_t N>
+StepResult Stepper::step_in(std::uint32_t particle, State& state, Weights& weights, const Vec3& target,
+                            ContactList& contacts, Counters& counters, const Begun* begun) const {
   Run run{particle, state, contacts, counters};
   run.first_wall = static_cast<std::uint32_t>(contacts.walls.size());
   const SimplexId start = state.at();
@@ -252,18 +266,18 @@ StepResult Stepper::step(std::uint32_t particle, State& state, Weights& weights,
   if (begun != nullptr) {
     run.tests = begun->tests;
     state.position = begun->from;
-    Part<Stored>(complex_, moved_, current_space(complex_), options_, respond_)
+    Part<Stored, N>(complex_, moved_, current_space<N>(complex_), options_, respond_)
         .move(run, target, {0.0, 1.0, {}}, begun);
   } else if (moved_) {
-    MovingStep(complex_, options_, respond_).run(run, weights, target);
+    MovingStep<N>(complex_, options_, respond_).run(run, weights, target);
   } else {
-    const Space<Stored> space = current_space(complex_);
+    const Space<Stored, N> space = current_space<N>(complex_);
     if (state.held && (!positive(space.corners(start)) || !complex_.map().is_free(start.cell))) {
       run.result.held = true;
       run.result.invalid_cell = state.cell;
     } else {
       state.held = false;
-      Part<Stored>(complex_, false, space, options_, respond_).move(run, target, {0.0, 1.0, {}});
+      Part<Stored, N>(complex_, false, space, options_, respond_).move(run, target, {0.0, 1.0, {}});
     }
   }
   ++counters.particle_steps;
@@ -272,7 +286,7 @@ StepResult Stepper::step(std::uint32_t particle, State& state, Weights& weights,
   ++counters.histogram[std::min<std::size_t>(run.tests.tests, Counters::histogram_size - 1)];
   const bool kept = state.at() == start && run.contact_count == 0 && !run.result.held;
   counters.forecast_kept += kept ? 1 : 0;
-  if (moved_ && state.at() != start && left_behind(current_space(complex_).corners(start), p))
+  if (moved_ && state.at() != start && left_behind(current_space<N>(complex_).corners(start), p))
     ++counters.updated_by_deformation;
   return run.result;
 }

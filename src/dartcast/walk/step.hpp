@@ -37,7 +37,7 @@ struct StepResult {
   Vec3 unused;           ///< displacement left when it stopped, relative to the wall
 };
 
-/// Barycentric coordinates that a held particle keeps.
+/// Barycentric coordinates that a held particle keeps; in the plane the fourth is 0.
 using Weights = std::array<double, 4>;
 
 /// A step that has been walked up to its first wall: see Stepper::step().
@@ -61,6 +61,10 @@ class Stepper {
                   Counters& counters, const Begun* begun = nullptr) const;
 
  private:
+  template <std::size_t N>
+  StepResult step_in(std::uint32_t particle, State& state, Weights& weights, const Vec3& target, ContactList& contacts,
+                     Counters& counters, const Begun* begun) const;
+
   const Complex& complex_;
   bool moved_;
   const StepOptions& options_;

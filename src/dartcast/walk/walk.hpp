@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <type_traits>
 
 #include "dartcast/base/error.hpp"
 #include "dartcast/walk/counters.hpp"
@@ -53,17 +54,18 @@ inline constexpr std::uint8_t side_edge[4][4][2] = {{{0, 0}, {2, 3}, {3, 1}, {1,
                                                     {{2, 1}, {0, 2}, {1, 0}, {0, 0}}};
 
 /// Bit i is set where x lies on the facet opposite to corner i.
-inline unsigned zeros_of(const Corners& v, const Vec3& x) {
-  constexpr unsigned all = 15;
+template <std::size_t N>
+unsigned zeros_of(const std::array<Vec3, N>& v, const Vec3& x) {
+  constexpr unsigned all = (1U << N) - 1U;
   std::uint64_t exact = 0;
   return signs_of(Determinants(v, x), v, x, all, exact).zero;
 }
 
 /// The shift that breaks a walk's ties, made at the first tie.
-template <class Positions>
+template <class Positions, std::size_t N>
 class Ties {
  public:
-  Ties(const Space<Positions>& space, SimplexId start, const Vec3& p, const Vec3& q)
+  Ties(const Space<Positions, N>& space, SimplexId start, const Vec3& p, const Vec3& q)
       : space_(space), start_(start), p_(p), q_(q) {}
 
   /// Sign of orient3d(a, b, p, q) of the shifted segment, where it is zero.
@@ -71,65 +73,86 @@ class Ties {
     if (!shift_) make_shift();
     return shift_->of_line(a, b, q_);
   }
+  /// Sign of orient2d(p, q, c) of the shifted segment, where it is zero.
+  [[nodiscard]] Sign line() {
+    if (!shift_) make_shift();
+    return shift_->of_line(q_);
+  }
 
  private:
   void make_shift() {
-    const Corners v = space_.corners(start_);
+    const std::array<Vec3, N> v = space_.corners(start_);
     const unsigned zeros = zeros_of(v, p_);
-    std::array<Vec3, 3> opposite;
+    std::array<Vec3, N - 1> opposite;
     unsigned count = 0;
-    for (unsigned i = 0; i < 4; ++i) {
-      if (count < 3 && ((zeros >> i) & 1U) != 0) opposite[count++] = v[i];
+    for (unsigned i = 0; i < N; ++i) {
+      if (count < N - 1 && ((zeros >> i) & 1U) != 0) opposite[count++] = v[i];
     }
     shift_.emplace(p_, std::span<const Vec3>(opposite.data(), count));
   }
 
-  const Space<Positions>& space_;
+  const Space<Positions, N>& space_;
   SimplexId start_;
   const Vec3& p_;
   const Vec3& q_;
-  std::optional<Shift> shift_;
+  std::optional<std::conditional_t<N == 4, Shift, PlaneShift>> shift_;
 };
 
 [[noreturn]] void throw_overrun(const Map& map, SimplexId start, const Vec3& p, const Vec3& q);
 
+/// Whether the shifted segment leaves by facet i before facet j, both of which q is strictly beyond.
+template <class Positions>
+bool leaves_before(const Corners& v, unsigned i, unsigned j, const Vec3& p, const Vec3& q, Ties<Positions, 4>& ties,
+                   std::uint64_t& exact) {
+  const Vec3& a = v[side_edge[i][j][0]];
+  const Vec3& b = v[side_edge[i][j][1]];
+  Sign s = orient3d(a, b, p, q, exact);
+  if (s == Sign::zero) s = ties.line(a, b);
+  return s == Sign::positive;
+}
+/// In the plane: by which side of the corner they share it passes.
+template <class Positions>
+bool leaves_before(const PlaneCorners& v, unsigned i, unsigned j, const Vec3& p, const Vec3& q,
+                   Ties<Positions, 3>& ties, std::uint64_t& exact) {
+  Sign s = orient2d(p, q, v[3 - i - j], exact);
+  if (s == Sign::zero) s = ties.line();
+  return s == ((j + 3 - i) % 3 == 1 ? Sign::positive : Sign::negative);
+}
+
 /// The facet by which the shifted segment leaves a simplex that it passes through: one of those that q is strictly
 /// beyond. Precondition: `behind`, their bits, is not 0.
-template <class Positions>
-unsigned exit_facet(const Corners& v, unsigned behind, const Vec3& p, const Vec3& q, Ties<Positions>& ties,
-                    TestCounts& counts) {
+template <class Positions, std::size_t N>
+unsigned exit_facet(const std::array<Vec3, N>& v, unsigned behind, const Vec3& p, const Vec3& q,
+                    Ties<Positions, N>& ties, TestCounts& counts) {
   auto best = static_cast<unsigned>(std::countr_zero(behind));
   while ((behind &= behind - 1) != 0) {
     const auto other = static_cast<unsigned>(std::countr_zero(behind));
-    const Vec3& a = v[side_edge[best][other][0]];
-    const Vec3& b = v[side_edge[best][other][1]];
     ++counts.tests;
-    Sign s = orient3d(a, b, p, q, counts.exact);
-    if (s == Sign::zero) s = ties.line(a, b);
-    if (s != Sign::positive) best = other;
+    if (!leaves_before(v, best, other, p, q, ties, counts.exact)) best = other;
   }
   return best;
 }
 
 /// The walk of the shifted segment: up to the closed simplex that holds q, or to the first wall facet that q is beyond.
-template <class Positions, class Visitor>
-Walk walk_to_wall(const Space<Positions>& space, SimplexId start, const Vec3& p, const Vec3& q, TestCounts& counts,
+template <class Positions, std::size_t N, class Visitor>
+Walk walk_to_wall(const Space<Positions, N>& space, SimplexId start, const Vec3& p, const Vec3& q, TestCounts& counts,
                   Visitor& visit) {
-  Ties<Positions> ties(space, start, p, q);
+  constexpr unsigned all = (1U << N) - 1U;
+  Ties<Positions, N> ties(space, start, p, q);
   Walk walk;
   walk.simplex = start;
-  unsigned asked = 15;  // all facets but that entered by: q is strictly on this side of it
+  unsigned asked = all;  // facets, but that entered by: q is strictly on this side of it
   for (std::uint64_t met = 0; met <= space.simplex_count; ++met) {
     const CellView cell = space.map->view(walk.simplex.cell);
     const ImplicitSimplex& s = cell.shape().simplices()[walk.simplex.simplex];
-    const Corners v = space.corners(cell, s);
+    const std::array<Vec3, N> v = space.corners(cell, s);
     const Determinants d(v, q);
     if (!d.proves_positive() && volume_sign(v) != Sign::positive) {
       walk.end = WalkEnd::invalid_cell;
       return walk;
     }
     const DeterminantSigns signs = signs_of(d, v, q, asked, counts.exact);
-    counts.tests += met == 0 ? 4 : 3;
+    counts.tests += met == 0 ? N : N - 1;
     if (signs.negative == 0) {
       walk.zeros = static_cast<std::uint8_t>(signs.zero);
       return walk;
@@ -145,15 +168,16 @@ Walk walk_to_wall(const Space<Positions>& space, SimplexId start, const Vec3& p,
     }
     const Passage next = pass(*space.map, walk.simplex, cell, across);
     walk.simplex = next.simplex;
-    asked = 15U & ~(1U << next.facet);
+    asked = all & ~(1U << next.facet);
   }
   throw_overrun(*space.map, start, p, q);
 }
 
 /// The corners that span the feature of a simplex in whose interior a point with these zero facets lies.
-inline Feature feature_of(const CellView& cell, const ImplicitSimplex& s, unsigned zeros) {
+template <std::size_t N = 4>
+Feature feature_of(const CellView& cell, const ImplicitSimplex& s, unsigned zeros) {
   Feature feature;
-  for (unsigned i = 0; i < 4; ++i) {
+  for (unsigned i = 0; i < N; ++i) {
     if (((zeros >> i) & 1U) == 0) feature.add(cell.vertex(s.vertex[i]));
   }
   return feature;
@@ -161,17 +185,17 @@ inline Feature feature_of(const CellView& cell, const ImplicitSimplex& s, unsign
 
 /// A free simplex around p from which the segment to q does not leave at once: no facet that holds p has q strictly
 /// beyond.
-template <class Positions>
-SimplexId simplex_towards(const Space<Positions>& space, SimplexId at, const Vec3& p, const Vec3& q,
+template <class Positions, std::size_t N>
+SimplexId simplex_towards(const Space<Positions, N>& space, SimplexId at, const Vec3& p, const Vec3& q,
                           TestCounts& counts) {
   const CellView first = space.map->view(at.cell);
   const ImplicitSimplex& s0 = first.shape().simplices()[at.simplex];
-  const Feature around = feature_of(first, s0, zeros_of(space.corners(first, s0), p));
+  const Feature around = feature_of<N>(first, s0, zeros_of(space.corners(first, s0), p));
   SimplexId found;
-  search_star(*space.map, at, around, [&](SimplexId id, const CellView& cell, const ImplicitSimplex& s) {
-    const unsigned asked = facets_holding(around, cell, s);
+  search_star<N>(*space.map, at, around, [&](SimplexId id, const CellView& cell, const ImplicitSimplex& s) {
+    const unsigned asked = facets_holding<N>(around, cell, s);
     for (unsigned left = asked; left != 0; left &= left - 1) ++counts.tests;
-    const Corners v = space.corners(cell, s);
+    const std::array<Vec3, N> v = space.corners(cell, s);
     if (signs_of(Determinants(v, q), v, q, asked, counts.exact).negative != 0) return true;
     found = id;
     return false;
@@ -180,10 +204,11 @@ SimplexId simplex_towards(const Space<Positions>& space, SimplexId at, const Vec
 }
 
 /// Walls are closed: where q lies exactly on one, the walk ends at it.
-inline void find_wall_at_end(const Map& map, Walk& walk) {
+template <std::size_t N>
+void find_wall_at_end(const Map& map, Walk& walk) {
   const CellView cell = map.view(walk.simplex.cell);
   const ImplicitSimplex& s = cell.shape().simplices()[walk.simplex.simplex];
-  const auto wall = find_wall(map, walk.simplex, walk.zeros, feature_of(cell, s, walk.zeros));
+  const auto wall = find_wall<N>(map, walk.simplex, walk.zeros, feature_of<N>(cell, s, walk.zeros));
   if (!wall) return;
   walk.end = WalkEnd::wall;
   walk.at_end = true;
@@ -192,8 +217,8 @@ inline void find_wall_at_end(const Map& map, Walk& walk) {
 }
 
 /// What remains of a walk that has come to its first wall, or to the closed simplex that holds q.
-template <class Positions, class Visitor = NoVisitor>
-Walk end_walk(const Space<Positions>& space, Walk walk, const Vec3& p, const Vec3& q, TestCounts& counts,
+template <class Positions, std::size_t N, class Visitor = NoVisitor>
+Walk end_walk(const Space<Positions, N>& space, Walk walk, const Vec3& p, const Vec3& q, TestCounts& counts,
               Visitor&& visit = {}) {
   if (walk.end == WalkEnd::wall && !walk.at_end) {
     ++counts.tests;
@@ -204,7 +229,7 @@ Walk end_walk(const Space<Positions>& space, Walk walk, const Vec3& p, const Vec
       if (restart.valid()) walk = walk_to_wall(space, restart, p, q, counts, visit);
     }
   }
-  if (walk.end == WalkEnd::arrived && walk.zeros != 0) find_wall_at_end(*space.map, walk);
+  if (walk.end == WalkEnd::arrived && walk.zeros != 0) find_wall_at_end<N>(*space.map, walk);
   return walk;
 }
 
@@ -212,9 +237,10 @@ Walk end_walk(const Space<Positions>& space, Walk walk, const Vec3& p, const Vec
 
 /// Walks from p to q. Preconditions: p lies in the closed simplex `start` of a free cell; p and q are finite and in the
 /// exact range; p differs from q. Cost: three or four orientation tests in each simplex met, whatever the size of the
-/// scene. Throws InternalError with a replay where a walk among valid cells does not end (guarantee G4: a bug).
-template <class Positions, class Visitor = NoVisitor>
-Walk walk(const Space<Positions>& space, SimplexId start, const Vec3& p, const Vec3& q, TestCounts& counts,
+/// scene; in the plane two or three. Throws InternalError with a replay where a walk among valid cells does not end
+/// (guarantee G4: a bug).
+template <class Positions, std::size_t N, class Visitor = NoVisitor>
+Walk walk(const Space<Positions, N>& space, SimplexId start, const Vec3& p, const Vec3& q, TestCounts& counts,
           Visitor&& visit = {}) {
   return detail::end_walk(space, detail::walk_to_wall(space, start, p, q, counts, visit), p, q, counts, visit);
 }

@@ -1,0 +1,241 @@
+// The environment in the plane: particles bounce, ride along and are swept as in space, and none is lost.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "dartcast/base/error.hpp"
+#include "dartcast/base/random.hpp"
+#include "dartcast/environment/audit.hpp"
+#include "dartcast/environment/environment.hpp"
+#include "dartcast/environment/state_hash.hpp"
+#include "dartcast/mesh/generate_rectangle.hpp"
+#include "dartcast/response/respond.hpp"
+#include "tier.hpp"
+
+namespace dartcast {
+namespace {
+
+// 0: triangles, 1: quadrilaterals, 2: with hexagons.
+MeshData rectangle(int kind, std::array<std::uint32_t, 2> cells, double jitter, double blocked,
+                   std::uint64_t seed = 1) {
+  RectangleOptions o;
+  o.cells = cells;
+  o.size = {static_cast<double>(cells[0]), static_cast<double>(cells[1])};
+  o.jitter = jitter;
+  o.blocked_share = blocked;
+  o.seed = seed;
+  if (kind == 0) o.type = CellType::triangle;
+  if (kind == 2) o.mixed = true;
+  return generate_rectangle(o);
+}
+
+// Particles with velocities, all of them bouncing.
+class Swarm {
+ public:
+  Swarm(Environment& environment, std::size_t count, double speed, std::uint64_t seed)
+      : environment_(environment), random_(seed) {
+    std::vector<Vec3> points;
+    double right = 0.0;
+    double top = 0.0;
+    for (const Vec3& p : environment.positions()) {
+      right = std::max(right, p.x);
+      top = std::max(top, p.y);
+    }
+    for (std::size_t i = 0; i < count; ++i) points.push_back({random_.uniform(0, right), random_.uniform(0, top), 0});
+    environment.add(set, points);
+    for (std::size_t i = 0; i < set.size(); ++i) {
+      const double angle = random_.uniform(0, 2 * std::numbers::pi);
+      velocities.push_back({speed * std::cos(angle), speed * std::sin(angle), 0});
+    }
+    fates.assign(set.size(), Fate::alive);
+  }
+
+  StepReport step(double dt) {
+    std::vector<Vec3> targets;
+    for (std::size_t i = 0; i < set.size(); ++i) targets.push_back(set[i].position + velocities[i] * dt);
+    return environment_.advance(set, targets, respond_with(responses_, velocities, fates, dt));
+  }
+
+  Particles set;
+  std::vector<Vec3> velocities;
+  std::vector<Fate> fates;
+
+ private:
+  Environment& environment_;
+  Random random_;
+  Responses responses_;
+};
+
+class InThePlane : public testing::TestWithParam<int> {};
+
+TEST_P(InThePlane, BouncingParticlesStayInFreeCells) {
+  for (std::uint64_t seed = 1; seed <= test::scaled<std::uint64_t>(3, 100); ++seed) {
+    Environment environment(rectangle(GetParam(), {20, 15}, 0.25, 0.2, seed));
+    Swarm swarm(environment, 400, 1.0, seed);
+    ASSERT_GT(swarm.set.size(), 200U);
+    Counters counters;
+    for (int i = 0; i < 60; ++i) {
+      const StepReport report = swarm.step(i % 7 == 0 ? 3.0 : 0.3);
+      ASSERT_TRUE(report.held.empty());
+      counters += report.counters;
+      const Audit a = audit(environment.complex(), swarm.set);
+      ASSERT_EQ(a.failed, 0U) << a.first;
+      for (const Contact& c : report.contacts.contacts) {
+        ASSERT_TRUE(c.kind == Kind::edge || c.kind == Kind::vertex);
+        for (const WallHit& w : report.contacts.walls_of(c)) {
+          ASSERT_NEAR(norm(w.normal), 1.0, 1e-14);
+          ASSERT_EQ(w.normal.z, 0.0);
+          ASSERT_TRUE(environment.map().view(w.face.cell).is_wall(w.face.face));
+        }
+      }
+      for (const Vec3& v : swarm.velocities) ASSERT_NEAR(norm(v), 1.0, 1e-12) << "a rebound loses nothing";
+    }
+    EXPECT_GT(counters.contacts[static_cast<std::size_t>(Kind::edge)], 1000U);
+    EXPECT_EQ(counters.contacts[static_cast<std::size_t>(Kind::face)], 0U);
+  }
+}
+
+// Every place and every step on the lattice: most of what is decided is degenerate.
+TEST_P(InThePlane, NobodyIsLostOnALattice) {
+  std::uint64_t steps = 0;
+  std::uint64_t at_vertices = 0;
+  for (std::uint64_t seed = 1; steps < test::scaled<std::uint64_t>(30'000, 3'000'000); ++seed) {
+    Environment environment(rectangle(GetParam(), {12, 12}, 0.0, 0.25, seed));
+    Random random(seed);
+    std::vector<Vec3> points;
+    for (int i = 0; i < 300; ++i) points.push_back({random.below(25) / 2.0, random.below(25) / 2.0, 0});
+    Particles set;
+    environment.add(set, points);
+    std::vector<Vec3> velocities(set.size());
+    std::vector<Fate> fates(set.size(), Fate::alive);
+    const Responses responses;
+    for (int i = 0; i < 40; ++i) {
+      std::vector<Vec3> targets;
+      for (std::size_t k = 0; k < set.size(); ++k) {
+        velocities[k] = {(random.below(9) - 4.0) / 2.0, (random.below(9) - 4.0) / 2.0, 0};
+        targets.push_back(set[k].position + velocities[k]);
+      }
+      const StepReport report = environment.advance(set, targets, respond_with(responses, velocities, fates, 1.0));
+      ASSERT_TRUE(report.held.empty());
+      steps += report.counters.particle_steps;
+      at_vertices += report.counters.contacts[static_cast<std::size_t>(Kind::vertex)];
+      const Audit a = audit(environment.complex(), set);
+      ASSERT_EQ(a.failed, 0U) << a.first;
+    }
+  }
+  EXPECT_GT(at_vertices, steps / 50);
+}
+
+TEST_P(InThePlane, ParticlesFollowAMovingScene) {
+  Environment environment(rectangle(GetParam(), {16, 16}, 0.2, 0.2, 7));
+  const std::vector<Vec3> rest(environment.positions().begin(), environment.positions().end());
+  Swarm swarm(environment, 400, 1.0, 3);
+  std::uint64_t swept = 0;
+  for (int i = 1; i <= test::scaled(100, 3000); ++i) {
+    const std::span<Vec3> next = environment.next_positions();
+    const double t = 0.05 * i;
+    for (std::size_t k = 0; k < rest.size(); ++k) {
+      const Vec3& r = rest[k];
+      next[k] = {r.x + 0.4 * std::sin(t + 0.7 * r.y), r.y + 0.4 * std::sin(1.3 * t + 0.5 * r.x), 0.0};
+    }
+    environment.move();
+    ASSERT_TRUE(environment.validity().valid());
+    // A third of the particles rests: what moves them is the scene.
+    for (std::size_t k = 0; k < swarm.set.size(); k += 3) swarm.velocities[k] = {};
+    const StepReport report = swarm.step(0.05);
+    ASSERT_TRUE(report.held.empty());
+    for (const Contact& c : report.contacts.contacts)
+      swept += c.particle % 3 == 0 && norm(c.wall_displacement) > 0.0 ? 1 : 0;
+    const Audit a = audit(environment.complex(), swarm.set);
+    ASSERT_EQ(a.failed, 0U) << a.first;
+  }
+  EXPECT_GT(swept, 20U) << "walls pass over particles at rest";
+}
+
+TEST_P(InThePlane, IsTheSameForAnyNumberOfThreads) {
+  std::vector<std::string> hashes;
+  for (const unsigned threads : {1U, 2U, 5U}) {
+    Environment environment(rectangle(GetParam(), {20, 20}, 0.2, 0.2, 5), Threads{threads});
+    Swarm swarm(environment, 5000, 1.0, 9);
+    StateHash hash;
+    for (int i = 0; i < 20; ++i) {
+      swarm.step(0.4);
+      for (std::size_t k = 0; k < swarm.set.size(); ++k) hash.add(k, swarm.set[k], swarm.velocities[k]);
+    }
+    hashes.push_back(hash.hex());
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
+  EXPECT_EQ(hashes[0], hashes[2]);
+}
+
+INSTANTIATE_TEST_SUITE_P(Meshes, InThePlane, testing::Values(0, 1, 2));
+
+// In a room without obstacles a path of rebounds is a straight one, folded.
+TEST(Plane, ReboundsFoldAStraightPath) {
+  for (int kind = 0; kind < 3; ++kind) {
+    Environment environment(rectangle(kind, {8, 4}, kind == 2 ? 0.25 : 0.4, 0.0));
+    Particles set;
+    const Vec3 start = {1.25, 2.75, 0};
+    const Vec3 velocity = {11.5, -7.125, 0};
+    environment.add(set, std::vector<Vec3>{start});
+    std::vector<Vec3> velocities = {velocity};
+    std::vector<Fate> fates = {Fate::alive};
+    const Responses responses;
+    for (int i = 1; i <= 50; ++i) {
+      const std::vector<Vec3> targets = {set[0].position + velocities[0]};
+      environment.advance(set, targets, respond_with(responses, velocities, fates, 1.0));
+      const auto folded = [](double x, double length) {
+        const double r = std::fmod(std::fmod(x, 2 * length) + 2 * length, 2 * length);
+        return r > length ? 2 * length - r : r;
+      };
+      EXPECT_NEAR(set[0].position.x, folded(start.x + i * velocity.x, 8), 1e-11);
+      EXPECT_NEAR(set[0].position.y, folded(start.y + i * velocity.y, 4), 1e-11);
+    }
+  }
+}
+
+TEST(Plane, LocatesInFacesOnEdgesAndAtVertices) {
+  Environment environment(rectangle(1, {4, 4}, 0.0, 0.0));
+  EXPECT_EQ(environment.locate({0.5, 0.25, 0}).kind, Kind::face);
+  EXPECT_EQ(environment.locate({1.0, 0.25, 0}).kind, Kind::edge);
+  EXPECT_EQ(environment.locate({1.0, 2.0, 0}).kind, Kind::vertex);
+  EXPECT_EQ(environment.locate({4.5, 2.0, 0}).place, Place::outside);
+  const Location edge = environment.locate({1.0, 0.25, 0});
+  const Map& map = environment.map();
+  EXPECT_EQ(environment.positions()[map.origin(edge.dart).value].x, 1.0);
+  EXPECT_EQ(environment.positions()[map.origin(map.phi1(edge.dart)).value].x, 1.0);
+  EXPECT_EQ(map.phi2(map.phi2(edge.dart)), edge.dart);
+  EXPECT_FALSE(map.phi3(edge.dart).valid());
+}
+
+TEST(Plane, SaysWhenATriangleIsFlattened) {
+  MeshData mesh;
+  mesh.points = {{0, 0, 0}, {4, 0, 0}, {1, 2, 0}};
+  mesh.add_cell(CellType::triangle, std::vector<std::uint32_t>{0, 1, 2});
+  Environment environment(mesh);
+  const std::vector<Vec3> after = {{0, 0, 0}, {4, 0, 0}, {1, -2, 0}};
+  const auto found = environment.first_flattening(after);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->how.safe_time, 0.5, 1e-9);
+  EXPECT_LE(found->how.safe_time, 0.5);
+  EXPECT_EQ(found->how.kind, FlatteningKind::vertex_edge);
+  const double share = environment.move_until_flattened(after, 0.9);
+  EXPECT_NEAR(share, 0.45, 1e-9);
+  EXPECT_TRUE(environment.validity().valid());
+}
+
+TEST(Plane, RefusesWhatIsNotInIt) {
+  Environment environment(rectangle(0, {4, 4}, 0.0, 0.0));
+  Particles set;
+  EXPECT_THROW(environment.add(set, std::vector<Vec3>{{1, 1, 0.5}}), InvalidArgument);
+  environment.add(set, std::vector<Vec3>{{1.5, 1.25, 0}});
+  EXPECT_THROW(environment.advance(set, std::vector<Vec3>{{1.5, 1.25, 1e-300}}), InvalidArgument);
+  EXPECT_THROW(environment.edit([](ComplexEdit&) {}), InvalidArgument);
+  EXPECT_EQ(audit(environment.complex(), set).failed, 0U);
+}
+
+}  // namespace
+}  // namespace dartcast
