@@ -54,20 +54,38 @@ class Swarm {
   }
 
   StepReport step(double dt) {
-    std::vector<Vec3> targets;
-    for (std::size_t i = 0; i < set.size(); ++i) targets.push_back(set[i].position + velocities[i] * dt);
-    return environment_.advance(set, targets, respond_with(responses_, velocities, fates, dt));
+    return environment_.advance(set, targets(dt), respond_with(responses_, velocities, fates, dt));
   }
+  // Without a response they stop at walls.
+  StepReport step_to_walls(double dt) { return environment_.advance(set, targets(dt)); }
 
   Particles set;
   std::vector<Vec3> velocities;
   std::vector<Fate> fates;
 
  private:
+  [[nodiscard]] std::vector<Vec3> targets(double dt) const {
+    std::vector<Vec3> all;
+    for (std::size_t i = 0; i < set.size(); ++i) all.push_back(set[i].position + velocities[i] * dt);
+    return all;
+  }
+
   Environment& environment_;
   Random random_;
   Responses responses_;
 };
+
+// Whether the contact's dart is where its point is: the vertex, or the edge; places are right to rounding.
+void expect_dart_at_point(const Environment& environment, const Contact& c) {
+  const Map& map = environment.map();
+  const Vec3 a = environment.positions()[map.origin(c.dart).value];
+  const Vec3 b = environment.positions()[map.origin(map.phi1(c.dart)).value];
+  if (c.kind == Kind::vertex) {
+    EXPECT_LT(norm(c.point - a), 1e-12);
+    return;
+  }
+  EXPECT_NEAR(norm(c.point - a) + norm(c.point - b), norm(b - a), 1e-12);
+}
 
 class InThePlane : public testing::TestWithParam<int> {};
 
@@ -78,7 +96,7 @@ TEST_P(InThePlane, BouncingParticlesStayInFreeCells) {
     ASSERT_GT(swarm.set.size(), 200U);
     Counters counters;
     for (int i = 0; i < 60; ++i) {
-      const StepReport report = swarm.step(i % 7 == 0 ? 3.0 : 0.3);
+      const StepReport report = i % 5 == 4 ? swarm.step_to_walls(1.0) : swarm.step(i % 7 == 0 ? 3.0 : 0.3);
       ASSERT_TRUE(report.held.empty());
       counters += report.counters;
       const Audit a = audit(environment.complex(), swarm.set);
@@ -122,6 +140,8 @@ TEST_P(InThePlane, NobodyIsLostOnALattice) {
       ASSERT_TRUE(report.held.empty());
       steps += report.counters.particle_steps;
       at_vertices += report.counters.contacts[static_cast<std::size_t>(Kind::vertex)];
+      for (const Contact& c : report.contacts.contacts) expect_dart_at_point(environment, c);
+      ASSERT_FALSE(HasFailure());
       const Audit a = audit(environment.complex(), set);
       ASSERT_EQ(a.failed, 0U) << a.first;
     }
@@ -134,6 +154,7 @@ TEST_P(InThePlane, ParticlesFollowAMovingScene) {
   const std::vector<Vec3> rest(environment.positions().begin(), environment.positions().end());
   Swarm swarm(environment, 400, 1.0, 3);
   std::uint64_t swept = 0;
+  std::uint64_t compared = 0;
   for (int i = 1; i <= test::scaled(100, 3000); ++i) {
     const std::span<Vec3> next = environment.next_positions();
     const double t = 0.05 * i;
@@ -147,12 +168,25 @@ TEST_P(InThePlane, ParticlesFollowAMovingScene) {
     for (std::size_t k = 0; k < swarm.set.size(); k += 3) swarm.velocities[k] = {};
     const StepReport report = swarm.step(0.05);
     ASSERT_TRUE(report.held.empty());
-    for (const Contact& c : report.contacts.contacts)
+    for (const Contact& c : report.contacts.contacts) {
       swept += c.particle % 3 == 0 && norm(c.wall_displacement) > 0.0 ? 1 : 0;
+      if (report.counters.steps_split > 0) continue;  // met in between
+      const CellView cell = environment.map().view(report.contacts.walls_of(c)[0].face.cell);
+      const auto ends = cell.shape().corners(report.contacts.walls_of(c)[0].face.face);
+      const std::uint32_t a = cell.vertex(ends[0]).value;
+      const std::uint32_t b = cell.vertex(ends[1]).value;
+      const auto now = environment.positions();
+      const auto before = environment.complex().previous_positions();
+      const double t = norm(c.point - now[a]) / norm(now[b] - now[a]);
+      const Vec3 moved = (now[a] - before[a]) * (1.0 - t) + (now[b] - before[b]) * t;
+      ASSERT_LT(norm(c.wall_displacement - moved), 1e-9) << "the wall moves at that point as its ends do";
+      ++compared;
+    }
     const Audit a = audit(environment.complex(), swarm.set);
     ASSERT_EQ(a.failed, 0U) << a.first;
   }
   EXPECT_GT(swept, 20U) << "walls pass over particles at rest";
+  EXPECT_GT(compared, 100U);
 }
 
 TEST_P(InThePlane, IsTheSameForAnyNumberOfThreads) {
@@ -195,6 +229,24 @@ TEST(Plane, ReboundsFoldAStraightPath) {
       EXPECT_NEAR(set[0].position.y, folded(start.y + i * velocity.y, 4), 1e-11);
     }
   }
+}
+
+// The scene moves by (1, 0) while a particle rests: the left wall meets it when it has gone as far.
+TEST(Plane, AWallThatPassesIsMetInTime) {
+  Environment environment(rectangle(1, {1, 1}, 0.0, 0.0));
+  Particles set;
+  environment.add(set, std::vector<Vec3>{{0.375, 0.75, 0}});
+  std::vector<Vec3> next(environment.positions().begin(), environment.positions().end());
+  for (Vec3& p : next) p.x += 1.0;
+  environment.move(next);
+  const StepReport report = environment.advance(set, std::vector<Vec3>{{0.375, 0.75, 0}});
+  ASSERT_EQ(report.contacts.contacts.size(), 1U);
+  const Contact& c = report.contacts.contacts[0];
+  EXPECT_NEAR(c.time_of_impact, 0.375, 1e-12);
+  EXPECT_LT(norm(c.point - Vec3{1.0, 0.75, 0}), 1e-12);
+  EXPECT_EQ(c.wall_displacement, (Vec3{1.0, 0.0, 0.0}));
+  EXPECT_EQ(report.contacts.walls_of(c)[0].normal, (Vec3{1.0, 0.0, 0.0}));
+  EXPECT_EQ(audit(environment.complex(), set).failed, 0U);
 }
 
 TEST(Plane, LocatesInFacesOnEdgesAndAtVertices) {

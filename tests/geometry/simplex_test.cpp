@@ -129,6 +129,38 @@ TEST(Determinants, NothingIsProvedWhereSomethingIsNotFinite) {
   }
 }
 
+// In the plane, with points next to the sides and on them.
+TEST(Determinants, SignsInThePlaneAreExact) {
+  Random random(23);
+  int zeros = 0;
+  int open = 0;
+  for (int i = 0; i < 20000; ++i) {
+    PlaneCorners v;
+    for (Vec3& p : v) p = {random.uniform(-1, 1), random.uniform(-1, 1), 0};
+    if (i % 3 == 0) {
+      for (Vec3& p : v) p = {std::round(4 * p.x), std::round(4 * p.y), 0};
+    }
+    const double t = i % 3 == 0 ? 0.5 * random.below(5) : random.uniform(-0.5, 1.5);
+    Vec3 x = v[0] + (v[1] - v[0]) * t;
+    if (i % 5 == 0) x.y += random.uniform(-1, 1);
+    const Determinants d(v, x);
+    std::uint64_t exact = 0;
+    const DeterminantSigns signs = signs_of(d, v, x, 7, exact);
+    open += exact > 0 ? 1 : 0;
+    for (unsigned f = 0; f < 3; ++f) {
+      const auto& [a, b] = plane_facet_corners[f];
+      const Sign truth = orient2d_exact(v[a], v[b], x);
+      ASSERT_EQ((signs.negative >> f) & 1U, truth == Sign::negative ? 1U : 0U) << i;
+      ASSERT_EQ((signs.zero >> f) & 1U, truth == Sign::zero ? 1U : 0U) << i;
+      zeros += truth == Sign::zero ? 1 : 0;
+    }
+    ASSERT_TRUE(!d.proves_positive() || volume_sign(v) == Sign::positive) << i;
+    ASSERT_EQ(volume_sign(v), volume_sign(raised({v[0], v[1], v[2], {}}))) << i;
+  }
+  EXPECT_GT(zeros, 1000);
+  EXPECT_GT(open, 5000);
+}
+
 TEST(Determinants, OrderOfFacetCorners) {
   const Corners v = {Vec3{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   for (unsigned i = 0; i < 4; ++i) {
