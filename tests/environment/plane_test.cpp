@@ -177,8 +177,8 @@ TEST_P(InThePlane, ParticlesFollowAMovingScene) {
       const std::uint32_t b = cell.vertex(ends[1]).value;
       const auto now = environment.positions();
       const auto before = environment.complex().previous_positions();
-      const double t = norm(c.point - now[a]) / norm(now[b] - now[a]);
-      const Vec3 moved = (now[a] - before[a]) * (1.0 - t) + (now[b] - before[b]) * t;
+      const double along = norm(c.point - now[a]) / norm(now[b] - now[a]);
+      const Vec3 moved = (now[a] - before[a]) * (1.0 - along) + (now[b] - before[b]) * along;
       ASSERT_LT(norm(c.wall_displacement - moved), 1e-9) << "the wall moves at that point as its ends do";
       ++compared;
     }
