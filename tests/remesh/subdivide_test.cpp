@@ -226,7 +226,7 @@ TEST_P(OnMeshes, RandomSequences) {
     const test::Dyadic change = volume6(complex) - volume;
     EXPECT_TRUE(exact ? change.sign() == 0 : change.abs() < test::Dyadic(1e-12) * volume);
   }
-  EXPECT_LE(refused, exact ? 0 : edits / 50);
+  EXPECT_LE(refused, exact ? 0 : edits / 10);
   while (refinement.size() > 0) refinement.coarsen(random.below(static_cast<std::uint32_t>(refinement.size())));
   expect_good(complex);
   EXPECT_EQ(written(complex.map()), before);

@@ -48,10 +48,9 @@ DARTCAST_INLINE Lanes larger(const Lanes& a, const Lanes& b) {
   return {larger(a.x, magnitude(b.x)), larger(a.y, magnitude(b.y)), larger(a.z, magnitude(b.z))};
 }
 
-// All simplices of a shape have the same first corner: the points relative to it are the differences that orient3d()
-// takes (exact/predicates.hpp). Its bound is the one of the whole cell's extent here, for a larger m bounds no less. A
-// determinant above that bound is at most 6 times its own simplex's m, which then is above 2^-51 times the cell's: with
-// that at least 2^-640, the simplex's own filter applies, and proves it, too.
+// All simplices of a shape have the same first corner: the points relative to it are differences as orient3d() takes
+// them (exact/predicates.hpp), and the bound is that of the whole cell's extent, for a larger m bounds no less. Where a
+// coordinate is just outside the exact range, this may prove, rightly, what orient3d() calls undecidable.
 DARTCAST_INLINE unsigned all_proved(const Shape& shape, const std::array<const std::uint32_t*, 4>& vertices,
                                     const Vec3* positions) {
   const auto& simplices = shape.simplices();
@@ -65,7 +64,7 @@ DARTCAST_INLINE unsigned all_proved(const Shape& shape, const std::array<const s
     extent = larger(extent, points[i]);
   }
   const Quad m = extent.x * extent.y * extent.z;
-  Mask proved = (larger(larger(extent.x, extent.y), extent.z) <= 0x1p+301) & (m >= 0x1p-640);
+  Mask proved = (larger(larger(extent.x, extent.y), extent.z) <= 0x1p+301) & (m >= 0x1p-700);  // filter_applies()
   const Quad bound = determinant_error * m;
   for (const ImplicitSimplex& s : simplices) {
     const Lanes& u = points[s.vertex[1]];
