@@ -12,7 +12,7 @@ namespace dartcast::bench {
 
 namespace {
 
-constexpr std::size_t width = 16;
+constexpr std::size_t packet = 16;
 
 float single(double x) { return static_cast<float>(x); }
 
@@ -99,15 +99,15 @@ class Packet : public Embree {
   using Embree::Embree;
 
   void cast(std::span<const Segment> segments, std::span<Hit> hits) override {
-    for (std::size_t first = 0; first < segments.size(); first += width) {
-      const std::size_t count = std::min(width, segments.size() - first);
+    for (std::size_t first = 0; first < segments.size(); first += packet) {
+      const std::size_t count = std::min(packet, segments.size() - first);
       cast_packet(segments.subspan(first, count), hits.subspan(first, count));
     }
   }
 
  private:
   void cast_packet(std::span<const Segment> segments, std::span<Hit> hits) {
-    alignas(64) std::array<int, width> valid{};
+    alignas(64) std::array<int, packet> valid{};
     RTCRayHit16 r{};
     for (std::size_t i = 0; i < segments.size(); ++i) {
       const Vec3& p = segments[i].from;

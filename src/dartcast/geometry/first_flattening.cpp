@@ -14,7 +14,7 @@ namespace dartcast {
 
 namespace {
 
-constexpr std::size_t grain = 4096;
+constexpr std::size_t chunk = 4096;
 
 // The vertices of a part of the corners: "vertex 5", "edge 5 7".
 std::string part(const std::array<Vertex, 4>& vertices, unsigned corners) {
@@ -128,13 +128,13 @@ std::optional<CellFlattening> first_flattening(const Map& map, std::span<const V
   for (std::uint32_t pool = 0; pool <= Map::general_pool; ++pool) {
     const std::size_t count = map.slot_count(pool);
     const double until = first ? first->how.safe_time : 1.0;
-    std::vector<std::optional<CellFlattening>> parts(chunk_count(count, grain));
-    parallel_for(count, grain, threads, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::optional<CellFlattening>> parts(chunk_count(count, chunk));
+    parallel_for(count, chunk, threads, [&](std::size_t begin, std::size_t end) {
       Search search(map, before, after, until);
       for (std::size_t i = begin; i < end; ++i) {
         if (const Cell c(pool, static_cast<std::uint32_t>(i)); map.contains(c)) search.look_at(c);
       }
-      parts[begin / grain] = std::move(search.found());
+      parts[begin / chunk] = std::move(search.found());
     });
     for (auto& found : parts) {
       if (found && (!first || found->how.safe_time < first->how.safe_time)) first = std::move(found);
@@ -153,7 +153,7 @@ double follow_until(const Map& map, const InteriorWeights& interior, std::span<c
   check_count(map, after.size(), "after");
   check_count(map, positions.size(), "along");
   for (double back = flattening_resolution; time > 0.0; back *= 4.0) {
-    parallel_for(positions.size(), grain, threads, [&](std::size_t begin, std::size_t end) {
+    parallel_for(positions.size(), chunk, threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) positions[i] = on_line(before[i], after[i], time);
     });
     interior.compute(positions);

@@ -35,7 +35,7 @@ std::string_view bytes_of(const std::vector<T>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
 }
 
-// A file is a sequence of plain values. Writer and Reader go through the same list of them, below.
+// A file is a sequence of plain values. Writer and CheckpointReader go through the same list of them, below.
 class Writer {
  public:
   template <class T>
@@ -60,9 +60,9 @@ class Writer {
   std::string text_;
 };
 
-class Reader {
+class CheckpointReader {
  public:
-  explicit Reader(std::string_view text) : text_(text) {}
+  explicit CheckpointReader(std::string_view text) : text_(text) {}
 
   template <class T>
   void value(T& v) {
@@ -195,17 +195,17 @@ void check_same(const RunIdentity& saved, const RunIdentity& run) {
 Checkpoint parse(const std::string& text, const RunIdentity& run) {
   std::uint64_t mark = 0;
   std::uint64_t sum = 0;
-  Reader head(text);
+  CheckpointReader head(text);
   values(head, mark, sum);
   if (mark != magic) throw Error("this is no checkpoint of this machine's kind");
   const std::string_view body = std::string_view(text).substr(16);
   if (digest(body) != sum) throw Error("it is damaged");
-  Reader reader(body);
+  CheckpointReader reader(body);
   RunIdentity saved;  // checked first: what follows may be of another version
   fields(reader, saved);
   check_same(saved, run);
   Checkpoint checkpoint;
-  Reader whole(body);
+  CheckpointReader whole(body);
   fields(whole, checkpoint);
   if (!whole.at_end()) throw Error("it is longer than it says");
   return checkpoint;

@@ -9,10 +9,6 @@ namespace dartcast {
 
 namespace {
 
-constexpr double unlimited = std::numeric_limits<double>::max();
-constexpr Range positive = {0.0, unlimited, true};
-constexpr Range not_negative = {0.0, unlimited};
-
 Vec3 vector(TomlTable& t, std::string_view key, std::string_view what) {
   Vec3 v;
   t.require(key, what);
@@ -23,7 +19,7 @@ Vec3 vector(TomlTable& t, std::string_view key, std::string_view what) {
 double length(TomlTable& t, std::string_view key, std::string_view what) {
   double value = 0.0;
   t.require(key, what);
-  t.get(key, value, positive);
+  t.get(key, value, Range::positive);
   return value;
 }
 
@@ -121,7 +117,7 @@ Reconnect reconnect(TomlTable& t) {
     table.finish();
   }
   r.within = length(t, "within", "the distance from these planes at which open faces belong to the ends");
-  t.get("tolerance", r.options.tolerance, not_negative);
+  t.get("tolerance", r.options.tolerance, Range::not_negative);
   return r;
 }
 
@@ -130,7 +126,7 @@ Reconnect reconnect(TomlTable& t) {
 EventScene read_event(TomlTable& t) {
   EventScene scene;
   t.require("at", "the time in seconds");
-  t.get("at", scene.event.at, not_negative);
+  t.get("at", scene.event.at, Range::not_negative);
   std::size_t kind = 0;
   t.require("kind", "cut, carve, ligature or reconnect");
   t.get("kind", kind, {"cut", "carve", "ligature", "reconnect"});

@@ -17,14 +17,11 @@ namespace dartcast {
 
 namespace {
 
-constexpr double unlimited = std::numeric_limits<double>::max();
-constexpr Range positive = {0.0, unlimited, true};
-constexpr Range not_negative = {0.0, unlimited};
-constexpr Range any_number = {-unlimited, unlimited};
+constexpr Range any_number = {-Range::unlimited, Range::unlimited};
 
-class Reader {
+class SceneReader {
  public:
-  explicit Reader(const std::filesystem::path& path) : folder_(path.parent_path()) {}
+  explicit SceneReader(const std::filesystem::path& path) : folder_(path.parent_path()) {}
 
   Scene read(TomlTable root) const {
     Scene scene;
@@ -59,7 +56,7 @@ class Reader {
     if (step.kind == DeformationKind::frames) {
       frames(t, scene);
     } else {
-      t.get("period", step.period, positive);
+      t.get("period", step.period, Range::positive);
       t.get("axis", step.axis);
       t.get("centre", step.centre);
       if (step.kind != DeformationKind::rotate) {
@@ -68,14 +65,14 @@ class Reader {
       }
       if (step.kind == DeformationKind::bend) t.get("direction", step.direction);
       if (step.kind == DeformationKind::pulse) {
-        t.get("wavelength", step.wavelength, not_negative);
+        t.get("wavelength", step.wavelength, Range::not_negative);
         t.get("field", scene.field);
         t.get("path", scene.path);
       }
       if (step.kind == DeformationKind::bend || step.kind == DeformationKind::twist ||
           step.kind == DeformationKind::bump) {
         t.require("length", "the length over which it acts");
-        t.get("length", step.length, positive);
+        t.get("length", step.length, Range::positive);
       }
     }
     t.finish();
@@ -107,7 +104,7 @@ class Reader {
     InletParticles inlet;
     const int sources = (t.get("count", count, 0, 0xfffffffeU) ? 1 : 0) + (t.get("positions", positions) ? 1 : 0) +
                         (t.get("inlet", inlet.patch) ? 1 : 0);
-    const bool has_rate = t.get("rate", inlet.rate, not_negative);
+    const bool has_rate = t.get("rate", inlet.rate, Range::not_negative);
     if (sources != 1) t.fail("", "give one of count, positions, or inlet with rate");
     if (has_rate == inlet.patch.empty()) t.fail("rate", "inlet and rate (particles per second) belong together");
     if (!positions.empty()) {
@@ -123,10 +120,10 @@ class Reader {
 
   static MotionScene motion(TomlTable t) {
     MotionScene scene;
-    t.get("dt", scene.dt, positive);
+    t.get("dt", scene.dt, Range::positive);
     t.get("steps", scene.steps, 0, std::uint64_t{1} << 53U);
     t.get("gravity", scene.gravity);
-    t.get("drag", scene.drag, not_negative);
+    t.get("drag", scene.drag, Range::not_negative);
     t.get("substeps", scene.substeps, 1U, 1000U);
     t.get("field", scene.field);
     std::size_t frame = 0;
@@ -143,7 +140,7 @@ class Reader {
     if (t.get("response", kind, {"reflect", "slide", "stick", "absorb", "escape"}))
       r.kind = static_cast<ResponseKind>(kind);
     t.get("restitution", r.restitution, {0.0, 1.0});
-    t.get("friction", r.friction, not_negative);
+    t.get("friction", r.friction, Range::not_negative);
   }
 
   static ContactScene contact(TomlTable t) {
@@ -190,7 +187,7 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& path) {
   } catch (const toml::parse_error& e) {
     throw Error(fmt::format("{}:{}: this is not TOML: {}", path.string(), e.source().begin.line, e.description()));
   }
-  Scene scene = Reader(path).read(TomlTable(root, path.string(), ""));
+  Scene scene = SceneReader(path).read(TomlTable(root, path.string(), ""));
   scene.name = path.stem().string();
   scene.file = path;
   scene.text = text;

@@ -9,8 +9,6 @@ namespace dartcast {
 
 namespace {
 
-constexpr double unlimited = std::numeric_limits<double>::max();
-constexpr Range positive = {0.0, unlimited, true};
 constexpr Range share = {0.0, 1.0};
 
 template <std::size_t n>
@@ -60,18 +58,18 @@ OctahedraOptions read_octahedra(TomlTable& t) {
 VesselOptions read_vessel(TomlTable& t) {
   VesselOptions o;
   std::vector<double> lengths;
-  t.get("radius", o.radius, positive);
-  t.get("trunk_length", o.trunk_length, positive);
+  t.get("radius", o.radius, Range::positive);
+  t.get("trunk_length", o.trunk_length, Range::positive);
   if (t.get("branch_lengths", lengths, 2)) o.branch_lengths = {lengths[0], lengths[1]};
-  t.get("branch_radius", o.branch_radius, positive);
-  t.get("branch_angle", o.branch_angle, positive);
-  t.get("out_of_plane", o.out_of_plane, {0.0, unlimited});
-  t.get("tissue_thickness", o.tissue_thickness, positive);
+  t.get("branch_radius", o.branch_radius, Range::positive);
+  t.get("branch_angle", o.branch_angle, Range::positive);
+  t.get("out_of_plane", o.out_of_plane, {0.0, Range::unlimited});
+  t.get("tissue_thickness", o.tissue_thickness, Range::positive);
   t.get("core", o.core, 2U, 64U);
   t.get("rings", o.rings, 1U, 32U);
   t.get("tissue_layers", o.tissue_layers, 1U, 32U);
-  t.get("step_length", o.step_length, positive);
-  t.get("peak_speed", o.peak_speed, {-unlimited, unlimited});
+  t.get("step_length", o.step_length, Range::positive);
+  t.get("peak_speed", o.peak_speed, {-Range::unlimited, Range::unlimited});
   return o;
 }
 

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <initializer_list>
+#include <limits>
 #include <set>
 #include <string>
 #include <string_view>
@@ -20,7 +21,14 @@ struct Range {
   double low;
   double high;
   bool low_open = false;
+
+  static constexpr double unlimited = std::numeric_limits<double>::max();
+  static const Range positive;
+  static const Range not_negative;
 };
+
+inline constexpr Range Range::positive = {0.0, Range::unlimited, true};
+inline constexpr Range Range::not_negative = {0.0, Range::unlimited};
 
 /// A table of a scene. Each getter leaves `value` as it is where the key is absent, and throws Error with file, line,
 /// key, what is expected and what stands there, where it is of the wrong type or out of range.

@@ -46,9 +46,9 @@ constexpr std::array<NumberType, 14> number_types = {{{"bit", 0, false, 0, 1},
                                                       {"float", 4, true, 0, 0},
                                                       {"double", 8, true, 0, 0}}};
 
-class Walk {
+class LegacyChecker {
  public:
-  explicit Walk(std::string_view content) : text_(content) {}
+  explicit LegacyChecker(std::string_view content) : text_(content) {}
 
   void run() {
     head();
@@ -284,6 +284,6 @@ class Walk {
 
 }  // namespace
 
-void check_legacy_vtk(std::string_view content) { Walk(content).run(); }
+void check_legacy_vtk(std::string_view content) { LegacyChecker(content).run(); }
 
 }  // namespace dartcast

@@ -26,25 +26,22 @@ struct Type {
   std::int64_t high;
 };
 
-constexpr std::array<Type, 11> types = {{{"Int8", 1, false, INT8_MIN, INT8_MAX},
-                                         {"UInt8", 1, false, 0, UINT8_MAX},
-                                         {"Int16", 2, false, INT16_MIN, INT16_MAX},
-                                         {"UInt16", 2, false, 0, UINT16_MAX},
-                                         {"Int32", 4, false, INT32_MIN, INT32_MAX},
-                                         {"UInt32", 4, false, 0, UINT32_MAX},
-                                         {"Int64", 8, false, INT64_MIN, INT64_MAX},
-                                         {"UInt64", 8, false, 0, INT64_MAX},
-                                         {"Float32", 4, true, 0, 0},
-                                         {"Float64", 8, true, 0, 0},
-                                         {"String", 1, false, INT8_MIN, UINT8_MAX}}};
+constexpr std::array<Type, 11> array_types = {{{"Int8", 1, false, INT8_MIN, INT8_MAX},
+                                               {"UInt8", 1, false, 0, UINT8_MAX},
+                                               {"Int16", 2, false, INT16_MIN, INT16_MAX},
+                                               {"UInt16", 2, false, 0, UINT16_MAX},
+                                               {"Int32", 4, false, INT32_MIN, INT32_MAX},
+                                               {"UInt32", 4, false, 0, UINT32_MAX},
+                                               {"Int64", 8, false, INT64_MIN, INT64_MAX},
+                                               {"UInt64", 8, false, 0, INT64_MAX},
+                                               {"Float32", 4, true, 0, 0},
+                                               {"Float64", 8, true, 0, 0},
+                                               {"String", 1, false, INT8_MIN, UINT8_MAX}}};
 
 const Type* find_type(std::string_view name) {
-  const auto* found = std::find_if(types.begin(), types.end(), [&](const Type& t) { return t.name == name; });
-  return found == types.end() ? nullptr : found;
-}
-
-[[noreturn]] void fail(const VtuArray& array, std::string_view message) {
-  throw InvalidMesh(fmt::format("array '{}': {}", array.name.substr(0, 60), message));
+  const auto* found =
+      std::find_if(array_types.begin(), array_types.end(), [&](const Type& t) { return t.name == name; });
+  return found == array_types.end() ? nullptr : found;
 }
 
 /// Bytes in base64, read from the start on; each call to take() decodes one run with a padding of its own.
@@ -97,7 +94,7 @@ class Source {
   Source(const VtuArray& array, const VtuEncoding& encoding)
       : raw_(array.format == "appended" && encoding.appended_raw), text_(array.text), base64_(std::string_view()) {
     if (array.format == "appended") {
-      if (array.offset >= encoding.appended.size()) fail(array, "its data lie behind the end of the file");
+      if (array.offset >= encoding.appended.size()) fail_array(array, "its data lie behind the end of the file");
       text_ = encoding.appended.substr(array.offset);
     } else {
       text_.remove_prefix(std::min(text_.find_first_not_of(" \t\r\n"), text_.size()));
@@ -148,24 +145,24 @@ Blocks read_blocks(const VtuArray& array, const VtuEncoding& encoding, Source& s
     return integer_at(bytes, i * h, h, encoding.big_endian);
   };
   std::string head = source.take(3 * h);
-  if (head.size() < 3 * h) fail(array, "its header is cut off; the file is truncated");
+  if (head.size() < 3 * h) fail_array(array, "its header is cut off; the file is truncated");
   Blocks blocks;
   const std::uint64_t n = get(head, 0);
   blocks.size = get(head, 1);
   blocks.last = get(head, 2);
-  if (n > available / h) fail(array, fmt::format("its header announces {} blocks, more than the file holds", n));
+  if (n > available / h) fail_array(array, fmt::format("its header announces {} blocks, more than the file holds", n));
   if (blocks.size > available * 1100 + 65536 || blocks.last > blocks.size)
-    fail(array, "its header announces blocks too large");
+    fail_array(array, "its header announces blocks too large");
   source = Source(array, encoding);
   head = source.take((3 + n) * h);
-  if (head.size() < (3 + n) * h) fail(array, "its header is cut off; the file is truncated");
+  if (head.size() < (3 + n) * h) fail_array(array, "its header is cut off; the file is truncated");
   std::uint64_t left = available;
   for (std::uint64_t b = 0; b < n; ++b) {
     blocks.compressed.push_back(get(head, 3 + b));
-    if (blocks.compressed.back() > left) fail(array, "its compressed data are cut off; the file is truncated");
+    if (blocks.compressed.back() > left) fail_array(array, "its compressed data are cut off; the file is truncated");
     left -= blocks.compressed.back();
     if (blocks.size_of(b) > 1100 * blocks.compressed.back() + 65536)
-      fail(array, "a block would grow too much when decompressed");
+      fail_array(array, "a block would grow too much when decompressed");
   }
   source.restart((3 + n) * h);
   return blocks;
@@ -187,7 +184,7 @@ vtkSmartPointer<vtkDataCompressor> make_compressor(const VtuArray& array, const 
   if (name == "vtkZLibDataCompressor") return vtkSmartPointer<vtkZLibDataCompressor>::New();
   if (name == "vtkLZ4DataCompressor") return vtkSmartPointer<vtkLZ4DataCompressor>::New();
   if (name == "vtkLZMADataCompressor") return vtkSmartPointer<vtkLZMADataCompressor>::New();
-  fail(array, fmt::format("the compressor '{}' is not known", name.substr(0, 40)));
+  fail_array(array, fmt::format("the compressor '{}' is not known", name.substr(0, 40)));
 }
 
 std::string decompress(const VtuArray& array, const VtuEncoding& encoding, Source& source) {
@@ -197,7 +194,7 @@ std::string decompress(const VtuArray& array, const VtuEncoding& encoding, Sourc
   std::uint64_t all = 0;
   for (const std::uint64_t c : blocks.compressed) all += c;
   const std::string packed = source.take(all);
-  if (packed.size() < all) fail(array, "its compressed data are cut off; the file is truncated");
+  if (packed.size() < all) fail_array(array, "its compressed data are cut off; the file is truncated");
   std::string out(total_bytes(blocks), '\0');
   std::size_t from = 0;
   std::size_t to = 0;
@@ -206,7 +203,7 @@ std::string decompress(const VtuArray& array, const VtuEncoding& encoding, Sourc
     const std::size_t done =
         compressor->Uncompress(reinterpret_cast<const unsigned char*>(packed.data()) + from, blocks.compressed[b],
                                reinterpret_cast<unsigned char*>(out.data()) + to, size);
-    if (done != size) fail(array, fmt::format("block {} cannot be decompressed; the file is damaged", b));
+    if (done != size) fail_array(array, fmt::format("block {} cannot be decompressed; the file is damaged", b));
     from += blocks.compressed[b];
     to += size;
   }
@@ -227,12 +224,16 @@ std::uint64_t read_ascii(const VtuArray& array, const Type& type, Take&& take) {
       }
     }
   } catch (const InvalidMesh& error) {
-    fail(array, error.what());
+    fail_array(array, error.what());
   }
   return n;
 }
 
 }  // namespace
+
+void fail_array(const VtuArray& array, std::string_view message) {
+  throw InvalidMesh(fmt::format("array '{}': {}", array.name.substr(0, 60), message));
+}
 
 std::size_t vtu_type_bytes(std::string_view type) {
   const Type* found = find_type(type);
@@ -247,22 +248,23 @@ std::uint64_t count_numbers(const VtuArray& array, const VtuEncoding& encoding) 
   std::uint64_t bytes = 0;
   if (encoding.compressor.empty()) {
     const std::string head = source.take(encoding.header_bytes);
-    if (head.size() < encoding.header_bytes) fail(array, "its header is cut off; the file is truncated");
+    if (head.size() < encoding.header_bytes) fail_array(array, "its header is cut off; the file is truncated");
     bytes = integer_at(head, 0, encoding.header_bytes, encoding.big_endian);
     const bool raw = array.format == "appended" && encoding.appended_raw;
     if (bytes > (raw ? available - encoding.header_bytes : available / 4 * 3)) {
-      fail(array, fmt::format("it announces {} bytes, more than the file holds; it is truncated or damaged", bytes));
+      fail_array(array,
+                 fmt::format("it announces {} bytes, more than the file holds; it is truncated or damaged", bytes));
     }
   } else {
     bytes = total_bytes(read_blocks(array, encoding, source, available));
   }
-  if (bytes % type.bytes != 0) fail(array, "its size is not a multiple of the size of its numbers");
+  if (bytes % type.bytes != 0) fail_array(array, "its size is not a multiple of the size of its numbers");
   return bytes / type.bytes;
 }
 
 std::vector<std::int64_t> decode_integers(const VtuArray& array, const VtuEncoding& encoding) {
   const Type& type = *find_type(array.type);
-  if (type.real) fail(array, "it must be of whole numbers");
+  if (type.real) fail_array(array, "it must be of whole numbers");
   std::vector<std::int64_t> out;
   if (array.format == "ascii") {
     read_ascii(array, type, [&](std::int64_t value) { out.push_back(value); });
@@ -277,7 +279,7 @@ std::vector<std::int64_t> decode_integers(const VtuArray& array, const VtuEncodi
   } else {
     bytes = decompress(array, encoding, source);
   }
-  if (bytes.size() != n * type.bytes) fail(array, "its data are cut off; the file is truncated");
+  if (bytes.size() != n * type.bytes) fail_array(array, "its data are cut off; the file is truncated");
   for (std::uint64_t i = 0; i < n; ++i) {
     const std::uint64_t bits = integer_at(bytes, i * type.bytes, type.bytes, encoding.big_endian);
     const unsigned shift = 64 - 8 * static_cast<unsigned>(type.bytes);

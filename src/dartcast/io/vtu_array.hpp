@@ -28,6 +28,9 @@ struct VtuArray {
   std::string_view text;     ///< inline
 };
 
+/// Throws InvalidMesh with the array's name.
+[[noreturn]] void fail_array(const VtuArray& array, std::string_view message);
+
 /// Bytes of one number of a type; 0 for a type that is not known, 1 for strings.
 std::size_t vtu_type_bytes(std::string_view type);
 

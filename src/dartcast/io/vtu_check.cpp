@@ -134,16 +134,12 @@ File read_tags(std::string_view content) {
   return file;
 }
 
-[[noreturn]] void fail(const VtuArray& array, std::string_view message) {
-  throw InvalidMesh(fmt::format("array '{}': {}", array.name.substr(0, 60), message));
-}
-
 /// The data must announce `items` times the array's components.
 void check_size(const VtuArray& array, const VtuEncoding& encoding, std::uint64_t items) {
   const std::uint64_t found = count_numbers(array, encoding);
   if (items > INT64_MAX / array.components || found != items * array.components) {
-    fail(array, fmt::format("it has {} numbers, where {} x {} should stand; the file is truncated or damaged", found,
-                            items, array.components));
+    fail_array(array, fmt::format("it has {} numbers, where {} x {} should stand; the file is truncated or damaged",
+                                  found, items, array.components));
   }
 }
 
@@ -152,7 +148,7 @@ const VtuArray* find_cell_array(const Piece& piece, std::string_view name) {
   const VtuArray* found = nullptr;
   for (auto at = begin; at != end; ++at) {
     if (at->second.name != name) continue;
-    if (found != nullptr) fail(at->second, "it occurs twice");
+    if (found != nullptr) fail_array(at->second, "it occurs twice");
     found = &at->second;
   }
   return found;
@@ -166,10 +162,10 @@ void check_faces(const VtuArray& faces, const VtuArray& offsets, const Piece& pi
   for (std::size_t c = 0; c < ends.size(); ++c) {
     if (ends[c] < 0) continue;
     if (ends[c] < begin || ends[c] > static_cast<std::int64_t>(stream.size())) {
-      fail(offsets, fmt::format("the faces of cell {} end at {}, out of range", c, ends[c]));
+      fail_array(offsets, fmt::format("the faces of cell {} end at {}, out of range", c, ends[c]));
     }
     if (!is_face_stream({stream.data() + begin, static_cast<std::size_t>(ends[c] - begin)})) {
-      fail(faces, fmt::format("the faces of cell {} do not fit its numbers", c));
+      fail_array(faces, fmt::format("the faces of cell {} do not fit its numbers", c));
     }
     begin = ends[c];
   }
@@ -183,12 +179,12 @@ void check_cells(const Piece& piece, const VtuEncoding& encoding) {
     throw InvalidMesh("<Cells> must have the arrays connectivity, offsets and types");
   }
   for (const VtuArray* a : {connectivity, offsets, types}) {
-    if (a->components != 1) fail(*a, "it must have one component");
+    if (a->components != 1) fail_array(*a, "it must have one component");
   }
   check_size(*offsets, encoding, piece.cells);
   check_size(*types, encoding, piece.cells);
   const std::vector<std::int64_t> ends = decode_integers(*offsets, encoding);
-  if (!std::is_sorted(ends.begin(), ends.end()) || ends.front() < 0) fail(*offsets, "it must ascend");
+  if (!std::is_sorted(ends.begin(), ends.end()) || ends.front() < 0) fail_array(*offsets, "it must ascend");
   check_size(*connectivity, encoding, static_cast<std::uint64_t>(ends.back()));
   const VtuArray* faces = find_cell_array(piece, "faces");
   const VtuArray* face_offsets = find_cell_array(piece, "faceoffsets");
@@ -198,7 +194,7 @@ void check_cells(const Piece& piece, const VtuEncoding& encoding) {
     throw InvalidMesh("polyhedra must have the arrays faces and faceoffsets");
   }
   if (faces == nullptr || face_offsets == nullptr) return;
-  if (faces->components != 1 || face_offsets->components != 1) fail(*faces, "it must have one component");
+  if (faces->components != 1 || face_offsets->components != 1) fail_array(*faces, "it must have one component");
   if (polyhedra || count_numbers(*face_offsets, encoding) != 0) check_faces(*faces, *face_offsets, piece, encoding);
 }
 
@@ -206,10 +202,10 @@ void check_piece(const Piece& piece, const VtuEncoding& encoding) {
   std::size_t coordinates = 0;
   for (const auto& [section, array] : piece.arrays) {
     if (section == "Cells") continue;
-    if (array.type == "String") fail(array, "text at points or cells is not supported");
+    if (array.type == "String") fail_array(array, "text at points or cells is not supported");
     if (section == "Points") {
       ++coordinates;
-      if (array.components != 3) fail(array, "points must have three components");
+      if (array.components != 3) fail_array(array, "points must have three components");
     }
     check_size(array, encoding, section == "CellData" ? piece.cells : piece.points);
   }
@@ -224,10 +220,10 @@ void check_field(const VtuArray& array, const VtuEncoding& encoding) {
     return;
   }
   const std::vector<std::int64_t> characters = decode_integers(array, encoding);
-  if (!characters.empty() && characters.back() != 0) fail(array, "its last text does not end");
+  if (!characters.empty() && characters.back() != 0) fail_array(array, "its last text does not end");
   const auto texts = static_cast<std::uint64_t>(std::count(characters.begin(), characters.end(), 0));
   if (array.components != 1 || texts != array.tuples) {
-    fail(array, fmt::format("it has {} texts, where {} should stand", texts, array.tuples));
+    fail_array(array, fmt::format("it has {} texts, where {} should stand", texts, array.tuples));
   }
 }
 

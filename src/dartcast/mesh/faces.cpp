@@ -9,11 +9,11 @@
 namespace dartcast {
 namespace {
 
-constexpr std::uint32_t none = 0xffffffffU;
+constexpr std::uint32_t no_corner = 0xffffffffU;
 
 /// A face by its four smallest corners, for sorting.
 struct FaceKey {
-  std::array<std::uint32_t, 4> corners;  // ascending; `none` where the face has fewer
+  std::array<std::uint32_t, 4> corners;  // ascending; `no_corner` where the face has fewer
   std::uint32_t cell;
   std::uint32_t place;  // from the cell's start in connectivity for a polyhedron; else the face's number
   std::uint32_t size : 16;
@@ -24,7 +24,7 @@ struct FaceKey {
 FaceKey make_key(std::span<const std::uint32_t> face, std::size_t cell, std::size_t place) {
   FaceKey key{};
   const std::size_t n = face.size();
-  key.corners.fill(none);
+  key.corners.fill(no_corner);
   std::partial_sort_copy(face.begin(), face.end(), key.corners.begin(), key.corners.end());
   const auto at = static_cast<std::size_t>(std::find(face.begin(), face.end(), key.corners[0]) - face.begin());
   key.cell = static_cast<std::uint32_t>(cell);

@@ -15,23 +15,23 @@ namespace dartcast {
 namespace {
 
 // Corners of a cube: 0 to 7 as in a hexahedron, 8 its middle.
-constexpr std::uint8_t middle = 8;
+constexpr std::uint8_t cube_middle = 8;
 constexpr std::array<std::array<std::uint32_t, 3>, 8> corner_steps = {
     {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}};
 
 // The sides xmin, xmax, ymin, ymax, zmin, zmax, counterclockwise seen from the outside. A side that is cut in two is
 // cut from its first to its third corner: from the lowest to the highest, so that neighbours agree.
-constexpr std::array<std::array<std::uint8_t, 4>, 6> sides = {
+constexpr std::array<std::array<std::uint8_t, 4>, 6> cube_sides = {
     {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}}};
 constexpr std::array<const char*, 6> side_names = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
 constexpr unsigned z_sides = 0b110000;
 constexpr unsigned all_sides = 0b111111;
 
-struct Piece {
+struct Part {
   CellType type;
   std::vector<std::uint8_t> corners;
 };
-using Pattern = std::vector<Piece>;
+using Pattern = std::vector<Part>;
 
 const Pattern whole = {{CellType::hexahedron, {0, 1, 2, 3, 4, 5, 6, 7}}};
 const Pattern two_prisms = {{CellType::prism, {0, 1, 2, 4, 5, 6}}, {CellType::prism, {0, 2, 3, 4, 6, 7}}};
@@ -44,12 +44,12 @@ const Pattern six_tetrahedra = {{CellType::tetrahedron, {0, 1, 2, 6}}, {CellType
 Pattern from_middle(unsigned cut) {
   Pattern pattern;
   for (unsigned s = 0; s < 6; ++s) {
-    const auto& q = sides[s];
+    const auto& q = cube_sides[s];
     if (((cut >> s) & 1U) == 0) {
-      pattern.push_back({CellType::pyramid, {q[0], q[3], q[2], q[1], middle}});
+      pattern.push_back({CellType::pyramid, {q[0], q[3], q[2], q[1], cube_middle}});
     } else {
-      pattern.push_back({CellType::tetrahedron, {q[0], q[2], q[1], middle}});
-      pattern.push_back({CellType::tetrahedron, {q[0], q[3], q[2], middle}});
+      pattern.push_back({CellType::tetrahedron, {q[0], q[2], q[1], cube_middle}});
+      pattern.push_back({CellType::tetrahedron, {q[0], q[3], q[2], cube_middle}});
     }
   }
   return pattern;
@@ -81,9 +81,9 @@ void check(const BoxOptions& o) {
 }
 
 // Lattice, patterns and marks of one box while it is built.
-class Builder {
+class BoxBuilder {
  public:
-  explicit Builder(const BoxOptions& options) : o_(options), n_(options.cells) {
+  explicit BoxBuilder(const BoxOptions& options) : o_(options), n_(options.cells) {
     cubes_ = std::size_t{n_[0]} * n_[1] * n_[2];
     for (unsigned cut = 0; cut <= all_sides; ++cut) middle_patterns_.push_back(from_middle(cut));
   }
@@ -199,14 +199,14 @@ class Builder {
       points[c] = point({p[0] + corner_steps[c][0], p[1] + corner_steps[c][1], p[2] + corner_steps[c][2]});
     }
     const Pattern& pieces = pattern(cube, p);
-    if (pieces[0].corners.back() == middle) {
+    if (pieces[0].corners.back() == cube_middle) {
       Vec3 sum;
       for (std::size_t c = 0; c < 8; ++c) sum += mesh_.points[points[c]];
-      points[middle] = static_cast<std::uint32_t>(mesh_.points.size());
+      points[cube_middle] = static_cast<std::uint32_t>(mesh_.points.size());
       mesh_.points.push_back(sum * 0.125);
     }
     std::array<std::uint32_t, 8> corners{};
-    for (const Piece& piece : pieces) {
+    for (const Part& piece : pieces) {
       for (std::size_t c = 0; c < piece.corners.size(); ++c) corners[c] = points[piece.corners[c]];
       mesh_.add_cell(piece.type, {corners.data(), piece.corners.size()});
     }
@@ -218,8 +218,8 @@ class Builder {
       const std::size_t axis = s / 2;
       const std::uint32_t step = s % 2;
       if (step == 0 ? p[axis] != 0 : p[axis] + 1 != n_[axis]) continue;
-      const auto on_side = [&](std::uint8_t c) { return c != middle && corner_steps[c][axis] == step; };
-      for (const Piece& piece : pieces) {
+      const auto on_side = [&](std::uint8_t c) { return c != cube_middle && corner_steps[c][axis] == step; };
+      for (const Part& piece : pieces) {
         for (const auto& numbers : standard_faces(piece.type)) {
           std::vector<std::uint32_t> face;
           for (const std::uint8_t f : numbers) {
@@ -243,7 +243,7 @@ class Builder {
 
 MeshData generate_box(const BoxOptions& options) {
   check(options);
-  return Builder(options).build();
+  return BoxBuilder(options).build();
 }
 
 BoxOptions bar_options() {

@@ -47,9 +47,9 @@ void shuffle(std::vector<T>& items, Random& random) {
 }
 
 // The marks of one maze's squares while it is built.
-class Builder {
+class MazeBuilder {
  public:
-  Builder(const MazeOptions& options, const std::array<std::uint32_t, 2>& squares)
+  MazeBuilder(const MazeOptions& options, const std::array<std::uint32_t, 2>& squares)
       : o_(options), nx_(squares[0]), ny_(squares[1]), pitch_(options.room_cells + 1) {}
 
   std::vector<std::uint8_t> build() {
@@ -179,7 +179,7 @@ MeshData generate_maze(const MazeOptions& options) {
   check(options);
   const RectangleOptions squares = squares_of(options);
   check_squares(squares, "maze");
-  MeshData mesh = generate_squares(squares, Builder(options, squares.cells).build());
+  MeshData mesh = generate_squares(squares, MazeBuilder(options, squares.cells).build());
   std::fill(mesh.patch_tags.begin(), mesh.patch_tags.end(), 1);
   mesh.patch_names = {{1, "border"}};
   return mesh;

@@ -94,9 +94,9 @@ void check(const OctahedraOptions& o) {
   }
 }
 
-class Builder {
+class OctahedraBuilder {
  public:
-  explicit Builder(const OctahedraOptions& options) : o_(options), faces_(make_faces()) {
+  explicit OctahedraBuilder(const OctahedraOptions& options) : o_(options), faces_(make_faces()) {
     for (std::size_t a = 0; a < 3; ++a) n_[a] = static_cast<int>(o_.cells[a]);
     numbers_.assign(std::size_t{4 * o_.cells[0] + 3} * (4 * o_.cells[1] + 3) * (4 * o_.cells[2] + 3), none);
   }
@@ -170,7 +170,7 @@ class Builder {
 
 MeshData generate_octahedra(const OctahedraOptions& options) {
   check(options);
-  return Builder(options).build();
+  return OctahedraBuilder(options).build();
 }
 
 }  // namespace dartcast

@@ -16,9 +16,9 @@ namespace {
 constexpr std::uint32_t merged = 0xffffffffU;
 
 // Lattice, cuts and marks of one rectangle while it is built.
-class Builder {
+class SquaresBuilder {
  public:
-  Builder(const RectangleOptions& options, std::span<const std::uint8_t> blocked)
+  SquaresBuilder(const RectangleOptions& options, std::span<const std::uint8_t> blocked)
       : o_(options), nx_(options.cells[0]), ny_(options.cells[1]), blocked_(blocked) {}
 
   MeshData build() {
@@ -132,7 +132,7 @@ class Builder {
 }  // namespace
 
 MeshData generate_squares(const RectangleOptions& options, std::span<const std::uint8_t> blocked) {
-  return Builder(options, blocked).build();
+  return SquaresBuilder(options, blocked).build();
 }
 
 void check_squares(const RectangleOptions& o, const char* generator) {

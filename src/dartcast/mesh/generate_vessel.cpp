@@ -222,9 +222,9 @@ class Half {
 
 using Ids = std::vector<std::uint32_t>;
 
-class Builder {
+class VesselBuilder {
  public:
-  explicit Builder(const VesselOptions& options)
+  explicit VesselBuilder(const VesselOptions& options)
       : o_(options),
         section_(options.core, options.rings, options.tissue_layers),
         halves_{Half(options, section_, 0), Half(options, section_, 1)} {}
@@ -420,7 +420,7 @@ class Builder {
 
 MeshData generate_vessel(const VesselOptions& options) {
   check(options);
-  return Builder(options).build();
+  return VesselBuilder(options).build();
 }
 
 }  // namespace dartcast

@@ -30,12 +30,12 @@ const WallHit* most_opposed(const Vec3& v, std::span<const WallHit> walls) {
 
 // Below this share of its length a projected vector counts as lying in a wall: it is what rounding leaves of zero. No
 // decision of a walk depends on it.
-constexpr double rounding = 1e-12;
+constexpr double opposed_share = 1e-12;
 
-// A wall that v points into by more than rounding.
+// A wall that v points into by more than that.
 const WallHit* opposed(const Vec3& v, std::span<const WallHit> walls) {
   const WallHit* wall = most_opposed(v, walls);
-  return wall != nullptr && dot(v, wall->normal) < -rounding * norm(v) ? wall : nullptr;
+  return wall != nullptr && dot(v, wall->normal) < -opposed_share * norm(v) ? wall : nullptr;
 }
 
 Vec3 on_plane(const Vec3& v, const Vec3& n) { return v - n * dot(v, n); }
@@ -73,7 +73,7 @@ Vec3 slid(const Vec3& v, std::span<const WallHit> walls, std::span<const WallHit
   if (second == nullptr) return plane;
   const Vec3 crease = cross(newest->normal, second->normal);
   const double length = dot(crease, crease);
-  if (length < rounding) return on_plane(plane, second->normal);
+  if (length < opposed_share) return on_plane(plane, second->normal);
   const Vec3 line = crease * (dot(v, crease) / length);
   const bool corner = opposed(line, walls) != nullptr || opposed(line, earlier) != nullptr;
   return corner ? Vec3{} : line;
