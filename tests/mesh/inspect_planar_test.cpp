@@ -12,25 +12,17 @@
 #include "dartcast/mesh/generate_rectangle.hpp"
 #include "dartcast/mesh/inspect.hpp"
 #include "dartcast/mesh/orientation.hpp"
+#include "mesh/findings.hpp"
 #include "planar_checks.hpp"
 #include "tier.hpp"
 
 namespace dartcast {
 namespace {
 
-using Kinds = std::map<std::string, std::size_t>;
+using test::add;
+using test::kinds;
+using test::Kinds;
 
-Kinds kinds(const std::vector<Finding>& findings) {
-  Kinds out;
-  for (const Finding& f : findings) {
-    EXPECT_FALSE(f.message.empty());
-    EXPECT_EQ(f.first.size(), std::min<std::size_t>(f.count, 10));
-    out[f.kind] += f.count;
-  }
-  return out;
-}
-
-void add(MeshData& mesh, CellType type, std::vector<std::uint32_t> corners) { mesh.add_cell(type, corners); }
 void add_edge(MeshData& mesh, std::uint32_t a, std::uint32_t b, std::int32_t tag) {
   mesh.add_patch_face(std::array{a, b}, tag);
 }

@@ -14,23 +14,14 @@
 
 #include "dartcast/mesh/cell_types.hpp"
 #include "dartcast/mesh/conformity.hpp"
+#include "mesh/findings.hpp"
 
 namespace dartcast {
 namespace {
 
-using Kinds = std::map<std::string, std::size_t>;
-
-Kinds kinds(const std::vector<Finding>& findings) {
-  Kinds out;
-  for (const Finding& f : findings) {
-    EXPECT_FALSE(f.message.empty());
-    EXPECT_EQ(f.first.size(), std::min<std::size_t>(f.count, 10));
-    out[f.kind] += f.count;
-  }
-  return out;
-}
-
-void add(MeshData& mesh, CellType type, std::vector<std::uint32_t> corners) { mesh.add_cell(type, corners); }
+using test::add;
+using test::kinds;
+using test::Kinds;
 
 /// A row of n unit cubes along x, as hexahedra.
 MeshData row(std::uint32_t n) {
