@@ -25,10 +25,12 @@ void expect_audited(const Environment& environment, const Particles& particles) 
   ASSERT_EQ(found.failed, 0U) << found.first;
 }
 
-std::vector<Vec3> jittered(const Particles& particles, Random& random, double by) {
+std::vector<Vec3> jittered(const Particles& particles, Random& random, double by, unsigned dimension = 3) {
   std::vector<Vec3> targets;
-  for (const State& s : particles.states())
-    targets.push_back(s.position + Vec3{random.uniform(-by, by), random.uniform(-by, by), random.uniform(-by, by)});
+  for (const State& s : particles.states()) {
+    const Vec3 by_random{random.uniform(-by, by), random.uniform(-by, by), random.uniform(-by, by)};
+    targets.push_back(s.position + Vec3{by_random.x, by_random.y, dimension == 2 ? 0.0 : by_random.z});
+  }
   return targets;
 }
 
@@ -89,13 +91,14 @@ class EditedScene {
         rest_(environment_.positions().begin(), environment_.positions().end()),
         bag_(environment_.map()),
         usual_(bag_.size()) {
-    environment_.add(particles_, test::random_points(250, {0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}, random_));
+    const bool flat = environment_.map().dimension() == 2;
+    environment_.add(particles_, test::random_points(250, {0.0, 0.0, 0.0}, {1.0, 1.0, flat ? 0.0 : 1.0}, random_));
   }
 
   void edit() {
     ComplexEditReport done;
     try {
-      const test::EditKind kind = test::draw_kind(bag_, usual_, random_);
+      const test::EditKind kind = test::draw_kind(bag_, usual_, random_, environment_.map().dimension());
       done = environment_.edit([&](ComplexEdit& e) {
         const Cell c = bag_.draw(e.map(), random_);
         test::apply(e.topology(), test::draw_edit(e.map(), kind, c, bag_, random_));
@@ -126,7 +129,7 @@ class EditedScene {
       const Vec3 n = walls[0].normal;
       return Continuation{c.unused - n * dot(c.unused, n), true};
     };
-    environment_.advance(particles_, jittered(particles_, random_, 0.2), slide);
+    environment_.advance(particles_, jittered(particles_, random_, 0.2, environment_.map().dimension()), slide);
   }
 
   void check() const { expect_audited(environment_, particles_); }
@@ -165,7 +168,7 @@ TEST_P(Edits, LoseNobody) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Meshes, Edits, testing::ValuesIn(test::edit_meshes()),
+INSTANTIATE_TEST_SUITE_P(Meshes, Edits, testing::ValuesIn(test::all_edit_meshes()),
                          [](const auto& mesh) { return std::string(mesh.param.name); });
 
 // The paper's first case: two cells are sewn, and a particle crosses where there was a wall.

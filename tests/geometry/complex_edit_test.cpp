@@ -97,12 +97,19 @@ bool in_one_plane(ComplexEdit& edit, std::span<const Dart> path) {
   return true;
 }
 
+// In the plane, where corners of the boundary may have two edges without being straight.
+bool goes_straight_on(ComplexEdit& edit, Dart d) {
+  const Map& map = edit.map();
+  const auto at = [&](Dart x) { return edit.position(map.origin(x)); };
+  return map.dimension() == 3 || orient2d(at(map.phi_1(d)), at(d), at(map.phi1(d))) == Sign::zero;
+}
+
 // Whether an edit leaves convex cells convex.
 bool is_planar(ComplexEdit& edit, const test::Edit& e) {
   if (e.darts.empty()) return true;
   switch (e.kind) {
-    case test::EditKind::merge_faces: return edit.map().flat(e.darts[0]).coplanar;
-    case test::EditKind::merge_edges: return edit.map().flat(e.darts[0]).straight;
+    case test::EditKind::merge_faces: return edit.map().dimension() == 3 && edit.map().flat(e.darts[0]).coplanar;
+    case test::EditKind::merge_edges: return edit.map().flat(e.darts[0]).straight && goes_straight_on(edit, e.darts[0]);
     case test::EditKind::split_cell: return in_one_plane(edit, e.darts);
     case test::EditKind::merge_cells:
     case test::EditKind::sew: return false;
@@ -119,7 +126,7 @@ class RandomEdits {
   /// Nothing where the edit was refused.
   std::optional<ComplexEditReport> make() {
     ComplexEdit edit(complex);
-    kind = test::draw_kind(bag_, usual_, random);
+    kind = test::draw_kind(bag_, usual_, random, complex.map().dimension());
     try {
       const test::Edit e = test::draw_edit(edit.map(), kind, bag_.draw(edit.map(), random), bag_, random);
       if (planar_ && !is_planar(edit, e)) return {};
@@ -175,7 +182,7 @@ TEST_P(ComplexEdits, LeaveAValidComplexOfTheSameVolume) {
   if (test::sanitized()) return;
   for (const auto kind : {test::EditKind::split_edge, test::EditKind::split_face, test::EditKind::split_cell,
                           test::EditKind::merge_cells, test::EditKind::mark})
-    EXPECT_GT(edits.done[kind], 0) << static_cast<int>(kind);
+    EXPECT_GT(edits.done[test::in_dimension(kind, edits.complex.map().dimension())], 0) << static_cast<int>(kind);
 }
 
 // Among planes, nothing moves but by what is said; and cells stay convex when the whole is sheared.
@@ -200,7 +207,7 @@ TEST_P(ComplexEdits, AmongPlanesMoveNothing) {
   EXPECT_TRUE(test::sanitized() || edits.done[test::EditKind::split_edge] > 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Meshes, ComplexEdits, testing::ValuesIn(test::edit_meshes()),
+INSTANTIATE_TEST_SUITE_P(Meshes, ComplexEdits, testing::ValuesIn(test::all_edit_meshes()),
                          [](const auto& mesh) { return std::string(mesh.param.name); });
 
 Complex one_box() {

@@ -6,6 +6,7 @@
 
 #include "dartcast/mesh/generate_box.hpp"
 #include "dartcast/mesh/generate_octahedra.hpp"
+#include "dartcast/mesh/generate_rectangle.hpp"
 #include "map/mixed_mesh.hpp"
 
 namespace dartcast::test {
@@ -39,6 +40,28 @@ inline std::vector<EditMesh> edit_meshes() {
              return generate_octahedra(o);
            }},
           {"handmade", [] { return mixed_mesh(); }}};
+}
+
+inline MeshData edit_rectangle(CellType type, bool mixed = false) {
+  RectangleOptions o;
+  o.cells = {8, 8};
+  o.type = type;
+  o.mixed = mixed;
+  o.blocked_share = 0.1;
+  return generate_rectangle(o);
+}
+
+/// Of the plane.
+inline std::vector<EditMesh> planar_edit_meshes() {
+  return {{"triangles", [] { return edit_rectangle(CellType::triangle); }},
+          {"quadrilaterals", [] { return edit_rectangle(CellType::quadrilateral); }},
+          {"polygons", [] { return edit_rectangle(CellType::quadrilateral, true); }}};
+}
+
+inline std::vector<EditMesh> all_edit_meshes() {
+  std::vector<EditMesh> all = edit_meshes();
+  for (const EditMesh& m : planar_edit_meshes()) all.push_back(m);
+  return all;
 }
 
 }  // namespace dartcast::test

@@ -1,13 +1,14 @@
 // Maps of the plane: polygons that are sewn along edges.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "dartcast/base/error.hpp"
+#include "dartcast/map/edit.hpp"
 #include "dartcast/map/integrity.hpp"
 #include "dartcast/map/map.hpp"
 #include "dartcast/map/orbits.hpp"
-#include "dartcast/map/transaction.hpp"
 #include "dartcast/mesh/cell_types.hpp"
 #include "dartcast/mesh/generate_rectangle.hpp"
 
@@ -127,8 +128,112 @@ TEST(PlaneMap, RefusesWhatIsNone) {
   mesh = rectangle(1);
   mesh.add_cell(CellType::tetrahedron, first);
   EXPECT_THROW(Map{mesh}, InvalidMesh) << "a cell of space";
-  Map map(rectangle(1));
-  EXPECT_THROW(Transaction{map}, InvalidArgument);
+}
+
+// Two squares side by side; the sides have patches.
+class TwoSquares : public testing::Test {
+ protected:
+  static MeshData mesh() {
+    RectangleOptions o;
+    o.cells = {2, 1};
+    return generate_rectangle(o);
+  }
+  void expect_valid() const {
+    for (const Violation& v : check_integrity(map)) ADD_FAILURE() << v.message;
+  }
+
+  Map map{mesh()};
+  Transaction t{map};
+  Cell left = map.cells()[0];
+  Cell right = map.cells()[1];
+};
+
+TEST_F(TwoSquares, AnEdgeIsSplitInBothAndMergedAgain) {
+  const Map before = map;
+  const Dart d = find_dart(map, left, Vertex(1), Vertex(4));
+  ASSERT_EQ(map.phi2(d).cell, right);
+  const SplitEdge split = split_edge(t, d);
+  expect_valid();
+  ASSERT_EQ(split.cells.size(), 2U);
+  for (const Cell c : split.cells) {
+    EXPECT_EQ(map.type(c), CellType::polygon);
+    EXPECT_EQ(map.shape(c).face_count(), 5U);
+    const bool first = map.source(c) == 0;
+    const Dart out = find_dart(map, c, split.vertex, Vertex(first ? 4 : 1));
+    ASSERT_TRUE(out.valid());
+    EXPECT_TRUE(map.flat(out).straight);
+    EXPECT_NE(map.phi2(out).cell, c);
+    EXPECT_EQ(map.phi2(map.phi2(out)), out);
+    EXPECT_FALSE(map.flat(map.phi1(out)).straight);
+  }
+  merge_edges(t, find_dart(map, split.cells[0], split.vertex, Vertex(4)));
+  expect_valid();
+  const EditReport report = t.commit();
+  ASSERT_EQ(report.added.size(), 2U);
+  for (const Cell c : report.added) {
+    EXPECT_EQ(map.type(c), CellType::quadrilateral);
+    EXPECT_FALSE(map.has_flat(c));
+    const Cell old = map.source(c) == 0 ? left : right;
+    EXPECT_TRUE(std::ranges::equal(map.view(c).vertices(), before.view(old).vertices()));
+    for (std::uint16_t f = 0; f < 4; ++f) EXPECT_EQ(map.patch(CellFace{c, f}), before.patch(CellFace{old, f}));
+  }
+  EXPECT_FALSE(map.is_vertex(split.vertex));
+}
+
+TEST_F(TwoSquares, PatchesFollowSplitsAndMerges) {
+  const Dart bottom = find_dart(map, left, Vertex(0), Vertex(1));
+  const Patch patch = map.patch(map.face(bottom));
+  EXPECT_NE(patch, Patch{});
+  const SplitEdge split = split_edge(t, bottom);
+  const Cell c = split.cells[0];
+  EXPECT_EQ(map.patch(map.face(find_dart(map, c, Vertex(0), split.vertex))), patch);
+  EXPECT_EQ(map.patch(map.face(find_dart(map, c, split.vertex, Vertex(1)))), patch);
+  const auto parts = split_face(t, find_dart(map, c, split.vertex, Vertex(1)), find_dart(map, c, Vertex(3), Vertex(0)));
+  expect_valid();
+  EXPECT_EQ(map.shape(parts[0]).face_count(), 4U) << "with the first dart";
+  EXPECT_EQ(map.type(parts[1]), CellType::triangle);
+  EXPECT_EQ(map.patch(map.face(find_dart(map, parts[0], Vertex(3), split.vertex))), Patch{});
+  EXPECT_FALSE(map.has_flat(parts[0]) || map.has_flat(parts[1])) << "the vertex is a corner of both now";
+  const Cell whole = merge_faces(t, find_dart(map, parts[0], Vertex(3), split.vertex))[0];
+  EXPECT_TRUE(map.flat(find_dart(map, whole, split.vertex, Vertex(1))).straight) << "for all that is known here";
+  EXPECT_EQ(map.patch(map.face(find_dart(map, merge_edges(t, find_dart(map, whole, split.vertex, Vertex(1)))[0],
+                                         Vertex(0), Vertex(1)))),
+            patch);
+  expect_valid();
+}
+
+TEST_F(TwoSquares, EdgesAreSewnTheOtherWayAroundOrNotAtAll) {
+  unsew(t, map.face(find_dart(map, left, Vertex(1), Vertex(4))));
+  expect_valid();
+  t.commit();
+  CellDraft draft = draft_of(map, map.cells()[0]);
+  const Cell other = map.cells()[1];
+  DraftFace& edge = draft.faces[0];
+  for (std::uint16_t f = 0; f < 4; ++f) {
+    const CellView v = map.view(other);
+    edge.corners[0].vertex = v.vertex(v.shape().corners(f)[0]);
+    edge.corners[1].vertex = v.vertex(v.shape().corners(f)[1]);
+    edge.across.face = {other, f};
+    draft.faces[3].corners[1] = edge.corners[0];
+    draft.faces[1].corners[0] = edge.corners[1];
+    const Cell cells[] = {map.cells()[0]};
+    EXPECT_THROW(t.replace(cells, {&draft, 1}), EditRefused) << "both run the same way";
+  }
+}
+
+TEST_F(TwoSquares, WhatWouldBeNoMapIsRefused) {
+  const Map before = map;
+  const Dart d = find_dart(map, left, Vertex(1), Vertex(4));
+  EXPECT_THROW(split_face(t, d, map.phi1(d)), EditRefused) << "side by side";
+  EXPECT_THROW(split_face(t, d, map.phi2(d)), EditRefused) << "of two polygons";
+  EXPECT_THROW(merge_edges(t, d), EditRefused) << "three edges at the vertex";
+  EXPECT_THROW(merge_faces(t, map.phi1(d)), EditRefused) << "on the boundary";
+  EXPECT_THROW(sew(t, d, map.phi1(d)), EditRefused) << "sewn already";
+  EXPECT_THROW(split_cell(t, std::vector<Dart>{d, d, d}), InvalidArgument);
+  t.set_free(right, false);
+  EXPECT_THROW(merge_faces(t, d), EditRefused) << "a free and a blocked one";
+  t.roll_back();
+  EXPECT_EQ(map, before);
 }
 
 }  // namespace

@@ -73,17 +73,23 @@ class CellBag {
   std::vector<std::vector<Cell>> recent_;
 };
 
+/// In the plane faces are split, never cells.
+inline EditKind in_dimension(EditKind kind, unsigned dimension) {
+  return dimension == 2 && kind == EditKind::split_cell ? EditKind::split_face : kind;
+}
+
 /// Merging is tried more often than splitting, for it is refused more often; the number of cells stays about the same.
-inline EditKind draw_kind(const CellBag& bag, std::size_t usual, Random& random) {
+inline EditKind draw_kind(const CellBag& bag, std::size_t usual, Random& random, unsigned dimension = 3) {
   using enum EditKind;
   constexpr std::array<EditKind, 20> kinds = {split_edge,  split_edge,  split_face,  split_face,  split_cell,
                                               split_cell,  merge_cells, merge_cells, merge_faces, merge_faces,
                                               merge_faces, merge_edges, merge_edges, merge_edges, sew,
                                               sew,         sew,         unsew,       mark,        remove};
   const EditKind kind = kinds[random.below(kinds.size())];
-  if (kind == split_cell && bag.size() > usual * 3 / 2) return merge_cells;
-  if (kind == remove && (bag.size() < usual * 2 / 3 || random.below(4) != 0)) return split_cell;
-  return kind;
+  const EditKind split = in_dimension(split_cell, dimension);
+  if ((kind == split_cell || kind == split) && bag.size() > usual * 3 / 2) return merge_cells;
+  if (kind == remove && (bag.size() < usual * 2 / 3 || random.below(4) != 0)) return split;
+  return in_dimension(kind, dimension);
 }
 
 /// An edit of the kind at the cell; it may turn out to be impossible.
@@ -95,6 +101,7 @@ inline Edit draw_edit(const Map& map, EditKind kind, Cell c, const CellBag& bag,
   const Dart d = any_dart(c);
   switch (kind) {
     case EditKind::split_face: {
+      if (s.dimension() == 2) return {kind, {d, any_dart(c)}};
       const std::uint16_t f = s.face_of(d.number);
       return {kind, {d, {c, static_cast<std::uint16_t>(s.first_dart(f) + random.below(s.degree(f)))}}};
     }
@@ -125,7 +132,7 @@ inline Edit draw_edit(const Map& map, EditKind kind, Cell c, const CellBag& bag,
       // Onto a face with the same vertices, as after unsew(), or onto any.
       for (int i = 0; i < 30; ++i) {
         const Dart e = any_dart(bag.draw(map, random));
-        if (map.phi3(e).valid() || e.cell == c) continue;
+        if (map.opposite(map.face(e)).valid() || e.cell == c) continue;
         if (random.below(8) == 0) return {kind, {d, e}};
         for (std::uint16_t x = 0; x < s.dart_count(); ++x) {
           if (map.origin({c, x}) == map.origin(map.phi1(e)) && map.origin(map.phi1({c, x})) == map.origin(e))

@@ -26,7 +26,8 @@ int edit_at_random(Transaction& t, int count, Random& random) {
   for (int done = 0; done < count && tried < 100 * count; ++tried) {
     const CellBag bag(t.map());
     if (bag.size() == 0) return tried;
-    const Edit edit = draw_edit(t.map(), draw_kind(bag, 60, random), bag.draw(t.map(), random), bag, random);
+    const Edit edit =
+        draw_edit(t.map(), draw_kind(bag, 60, random, t.map().dimension()), bag.draw(t.map(), random), bag, random);
     try {
       apply(t, edit);
       ++done;
@@ -38,7 +39,7 @@ int edit_at_random(Transaction& t, int count, Random& random) {
 }
 
 class Transactions : public testing::TestWithParam<test::EditMesh> {};
-INSTANTIATE_TEST_SUITE_P(Map, Transactions, testing::ValuesIn(test::edit_meshes()),
+INSTANTIATE_TEST_SUITE_P(Map, Transactions, testing::ValuesIn(test::all_edit_meshes()),
                          [](const auto& i) { return std::string(i.param.name); });
 
 TEST_P(Transactions, TakenBackLeaveTheMapAsItWas) {
@@ -88,7 +89,7 @@ TEST_P(Transactions, RefusedEditsChangeNothing) {
   int refused = 0;
   for (int i = 0; i < test::scaled(400, 20000); ++i) {
     const CellBag bag(map);
-    const Edit edit = draw_edit(map, draw_kind(bag, 60, random), bag.draw(map, random), bag, random);
+    const Edit edit = draw_edit(map, draw_kind(bag, 60, random, map.dimension()), bag.draw(map, random), bag, random);
     try {
       apply(t, edit);
       t.roll_back();

@@ -69,11 +69,12 @@ inline Dyadic free_volume6(const Complex& complex) {
   return sum;
 }
 
-inline Vec3 random_vector(Random& random, double size) {
+/// In the plane where that is the dimension.
+inline Vec3 random_vector(Random& random, double size, unsigned dimension = 3) {
   const auto one = [&] { return (random.uniform() * 2.0 - 1.0) * size; };
   const double x = one();
   const double y = one();
-  return {x, y, one()};
+  return {x, y, dimension == 2 ? 0.0 : one()};
 }
 
 }  // namespace dartcast::test

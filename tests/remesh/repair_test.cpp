@@ -64,7 +64,14 @@ std::vector<test::EditMesh> box_meshes() {
            }}};
 }
 
+std::vector<test::EditMesh> all_meshes() {
+  std::vector<test::EditMesh> all = box_meshes();
+  for (const test::EditMesh& m : test::planar_edit_meshes()) all.push_back(m);
+  return all;
+}
+
 class RepairOn : public testing::TestWithParam<test::EditMesh> {};
+class RepairAmong : public testing::TestWithParam<test::EditMesh> {};
 
 // One vertex with cells of one kind around it: whatever happened to it, its place is among them.
 TEST_P(RepairOn, MendsOneVertexGoneAstray) {
@@ -78,7 +85,7 @@ TEST_P(RepairOn, MendsOneVertexGoneAstray) {
     const test::Dyadic free_before = free_volume6(complex);
     const test::Dyadic before = volume6(complex);
     const Vertex v = inner[random.below(static_cast<std::uint32_t>(inner.size()))];
-    displace(complex, {{v, random_vector(random, 1.5)}});
+    displace(complex, {{v, random_vector(random, 1.5, complex.map().dimension())}});
     const auto bad = invalid_cells(complex);
     ComplexEdit edit(complex);
     const RepairReport report = repair(edit, bad);
@@ -107,7 +114,8 @@ TEST_P(RepairOn, MendsOrLeaves) {
       const bool any = random.below(4) == 0;
       const auto all = static_cast<std::uint32_t>(complex.point_count());
       const auto number = static_cast<std::uint32_t>(inner.size());
-      moves.emplace_back(any ? Vertex(random.below(all)) : inner[random.below(number)], random_vector(random, 1.0));
+      moves.emplace_back(any ? Vertex(random.below(all)) : inner[random.below(number)],
+                         random_vector(random, 1.0, complex.map().dimension()));
     }
     displace(complex, moves);
     const auto walls_before = walls(complex);
@@ -142,7 +150,7 @@ TEST_P(RepairOn, MendsOrLeaves) {
 }
 
 // With cells that were subdivided among others that were not: faces that may be straight, points of faces and cells.
-TEST_P(RepairOn, MendsNextToSubdivided) {
+TEST_P(RepairAmong, MendsNextToSubdivided) {
   Random random(5);
   std::size_t mended = 0;
   std::size_t left = 0;
@@ -174,8 +182,10 @@ TEST_P(RepairOn, MendsNextToSubdivided) {
   RecordProperty("left", static_cast<int>(left));
 }
 
-INSTANTIATE_TEST_SUITE_P(Meshes, RepairOn, testing::ValuesIn(box_meshes()),
-                         [](const auto& mesh) { return std::string(mesh.param.name); });
+std::string name_of(const testing::TestParamInfo<test::EditMesh>& info) { return info.param.name; }
+
+INSTANTIATE_TEST_SUITE_P(Meshes, RepairOn, testing::ValuesIn(all_meshes()), name_of);
+INSTANTIATE_TEST_SUITE_P(Meshes, RepairAmong, testing::ValuesIn(box_meshes()), name_of);
 
 MeshData grid(std::uint32_t n) {
   BoxOptions o;

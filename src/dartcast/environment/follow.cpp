@@ -129,7 +129,7 @@ class Following {
     State& s = particles_.states_[i];
     const Corners corners = complex_.corners(s.at());
     if (volume_sign(corners) != Sign::positive) return;
-    const Settled settled = settle(current_space(complex_), s.at(), corners, s.position);
+    const Settled settled = settle(complex_, s.at(), s.position);
     s.put(settled.simplex, settled.position);
     s.held = false;
   }

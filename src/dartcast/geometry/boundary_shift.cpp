@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dartcast/exact/predicates.hpp"
+#include "dartcast/geometry/cone_point.hpp"
 
 namespace dartcast {
 
@@ -41,10 +42,11 @@ struct Plane {
   Vec3 a, b, c;
 };
 
-// Through the widest triangle of a fan.
+// Through the widest triangle of a fan; upright through an edge of the plane.
 Plane plane_of(const Numbers& corners, std::span<const Vec3> positions) {
   const Vec3 a = positions[corners.front()];
   Plane plane{a, a, a};
+  if (corners.size() == 2) return {a, positions[corners[1]], detail::upright(a, positions[corners[1]]).c};
   double widest = 0.0;
   for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
     const Vec3 b = positions[corners[i]];
@@ -92,6 +94,7 @@ class Walls {
   [[nodiscard]] double largest_shift() const {
     double largest = 0.0;
     for (const Wall& wall : new_) {
+      if (was_there(wall)) continue;
       const Numbers origins = origins_of(wall);
       for (const std::uint32_t v : origins) {
         const auto found = at_.find(v);
@@ -103,6 +106,12 @@ class Walls {
   }
 
  private:
+  [[nodiscard]] bool was_there(const Wall& wall) const {
+    const auto found = at_.find(wall.corners.front());
+    return found != at_.end() &&
+           std::any_of(found->second.begin(), found->second.end(), [&](std::size_t i) { return old_[i] == wall; });
+  }
+
   // The vertices there were before from which the corners of a new wall came.
   [[nodiscard]] Numbers origins_of(const Wall& wall) const {
     Numbers origins;
@@ -123,17 +132,17 @@ class Walls {
 
   // Nothing where the new wall is neither a part of the old one nor holds it.
   [[nodiscard]] double between(const Wall& before, const Wall& after, const Numbers& origins) const {
-    if (before == after) return 0.0;
     const bool part =
         std::all_of(origins.begin(), origins.end(), [&](std::uint32_t v) { return holds(before.corners, v); });
     if (!part && !is_whole_of(after, before)) return 0.0;
     return extent_over(plane_of(part ? before.corners : after.corners, positions_), before, after, positions_);
   }
 
-  // Whether it has all corners of the old wall that its cells have kept, an edge at least.
+  // Whether it has all corners of the old wall that its cells have kept, an edge at least, in the plane a corner.
   [[nodiscard]] bool is_whole_of(const Wall& after, const Wall& before) const {
     const auto kept = [&](std::uint32_t v) { return kept_.count(v) != 0; };
-    return std::count_if(before.corners.begin(), before.corners.end(), kept) >= 2 &&
+    const std::ptrdiff_t least = before.corners.size() == 2 ? 1 : 2;
+    return std::count_if(before.corners.begin(), before.corners.end(), kept) >= least &&
            std::all_of(before.corners.begin(), before.corners.end(),
                        [&](std::uint32_t v) { return !kept(v) || holds(after.corners, v); });
   }

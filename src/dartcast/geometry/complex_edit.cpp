@@ -58,6 +58,9 @@ std::size_t ComplexEdit::place_born(Vertex v, const Vec3& x) {
         fmt::format("place: vertex {} would be at ({}, {}, {}): coordinates must be finite, and 0 or "
                     "between 2^-300 and 2^300 in magnitude",
                     v.value, x.x, x.y, x.z));
+  if (map().dimension() == 2 && x.z != 0.0)
+    throw InvalidArgument(
+        fmt::format("place: vertex {} would be at ({}, {}, {}): in the plane z must be 0", v.value, x.x, x.y, x.z));
   complex_.front_[v.value] = x;
   return i - 1;
 }

@@ -77,8 +77,8 @@ class ComplexEdit {
   /// Where a vertex is. One that this edit put on an edge lies in its middle until it is placed; one that was parted
   /// lies where the other does.
   [[nodiscard]] Vec3 position(Vertex v);
-  /// Places a vertex that this edit made. Throws InvalidArgument where it made no such vertex, or x is not finite or
-  /// outside the exact range.
+  /// Places a vertex that this edit made. Throws InvalidArgument where it made no such vertex, or x is not finite,
+  /// outside the exact range, or not in the plane where the map is.
   void place(Vertex v, const Vec3& x);
   /// Places it at the weighted mean of older vertices, which is what data given at the vertices follow by: better for
   /// one that is in the middle of a face or a cell. `weights`: one per vertex of `of`; they sum to 1. Throws as above,

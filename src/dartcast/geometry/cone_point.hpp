@@ -15,6 +15,9 @@ struct Triangle {
   Vec3 a, b, c;  ///< counterclockwise seen from the outside
 };
 
+/// Over an edge of a polygon in the plane: a point of the plane is behind it as it is on the left of the edge.
+inline Triangle upright(const Vec3& a, const Vec3& b) { return {a, b, {a.x, a.y, a.z + norm(b - a)}}; }
+
 /// The sum over the number, in the order given.
 Vec3 mean(std::span<const Vec3> points, std::span<const std::uint32_t> corners);
 

@@ -88,6 +88,7 @@ class Giver {
 
   // A face is named once, by the lower of its cells.
   void choose_face_points(Cell c) {
+    if (map().dimension() == 2) return;
     const Vec3 mean = detail::mean(positions_, corners_of(rework_.draft(c)));
     for (std::uint16_t f = 0; f < rework_.draft(c).faces.size(); ++f) {
       const DraftFace& face = rework_.draft(c).faces[f];
@@ -119,6 +120,10 @@ class Giver {
     std::vector<detail::Triangle> triangles;
     for (const DraftFace& face : draft.faces) {
       const Numbers corners = corners_of(face);
+      if (corners.size() == 2) {
+        triangles.push_back(detail::upright(positions_[corners[0]], positions_[corners[1]]));
+        continue;
+      }
       std::optional<Vec3> point;
       if (face.point.valid()) point = position(face.point);
       detail::add_fan(triangles, corners, point, [&](std::uint32_t v) { return positions_[v]; });

@@ -29,6 +29,7 @@ CellDraft draft_of(const Map& map, Cell c) {
       const Map::Flat flat = map.flat({c, d});
       face.corners.push_back({v.vertex(s.origin(d)), flat.straight, flat.coplanar});
     }
+    if (s.dimension() == 2) face.corners.push_back({v.vertex(s.corners(f)[1])});
   }
   return draft;
 }
@@ -227,15 +228,58 @@ class Judge {
   std::vector<std::uint16_t> first_;  // dart of each face
 };
 
+std::string polygon_defect(const CellDraft& draft) {
+  if (draft.faces.size() < 3) return "would have fewer than three edges";
+  if (draft.faces.size() > most_darts) return "would have more than 16383 darts";
+  std::vector<std::uint32_t> vertices;
+  for (std::size_t f = 0; f < draft.faces.size(); ++f) {
+    const auto& edge = draft.faces[f].corners;
+    const auto& next = draft.faces[(f + 1) % draft.faces.size()].corners;
+    if (edge.size() != 2 || next.empty() || edge[1].vertex != next[0].vertex)
+      return "would have edges that are not one cycle";
+    if (draft.faces[f].point.valid()) return "would have an edge with a point of its own";
+    vertices.push_back(edge[0].vertex.value);
+  }
+  if (draft.point.valid()) vertices.push_back(draft.point.value);
+  std::sort(vertices.begin(), vertices.end());
+  return std::adjacent_find(vertices.begin(), vertices.end()) == vertices.end() ? "" : "would have one corner twice";
+}
+
+DraftForm form_of_polygon(const CellDraft& draft) {
+  DraftForm form;
+  form.defect = polygon_defect(draft);
+  if (!form.defect.empty()) return form;
+  const std::size_t n = draft.faces.size();
+  const bool standard = n <= 4 && !draft.point.valid();
+  const CellType type = n == 3 ? CellType::triangle : n == 4 ? CellType::quadrilateral : CellType::polygon;
+  form.pool = standard ? Map::pool_of(type) : Map::general_pool;
+  for (const DraftFace& edge : draft.faces) form.corners.push_back(edge.corners[0].vertex.value);
+  std::size_t first = 0;  // the corner that the record begins with
+  if (standard) {
+    const StandardCorners best = turned(type, form.corners);
+    first =
+        static_cast<std::size_t>(std::find(form.corners.begin(), form.corners.end(), best[0]) - form.corners.begin());
+    std::rotate(form.corners.begin(), form.corners.begin() + static_cast<std::ptrdiff_t>(first), form.corners.end());
+  }
+  for (std::size_t f = 0; f < n; ++f) {
+    form.face.push_back(static_cast<std::uint16_t>((f + n - first) % n));
+    form.local.push_back(static_cast<std::uint16_t>(f));
+    form.local.push_back(static_cast<std::uint16_t>((f + 1) % n));
+  }
+  return form;
+}
+
 }  // namespace
 
-DraftForm form_of(const CellDraft& draft) { return Judge().form(draft); }
+DraftForm form_of(const CellDraft& draft, unsigned dimension) {
+  return dimension == 2 ? form_of_polygon(draft) : Judge().form(draft);
+}
 
-std::vector<DraftForm> forms_of(std::span<const CellDraft> drafts) {
+std::vector<DraftForm> forms_of(std::span<const CellDraft> drafts, unsigned dimension) {
   Judge judge;
   std::vector<DraftForm> forms;
   forms.reserve(drafts.size());
-  for (const CellDraft& draft : drafts) forms.push_back(judge.form(draft));
+  for (const CellDraft& draft : drafts) forms.push_back(dimension == 2 ? form_of_polygon(draft) : judge.form(draft));
   return forms;
 }
 

@@ -1,4 +1,7 @@
 // Cells yet to be made: what an edit puts in the place of others.
+//
+// In the plane the faces of a draft are its edges, each from its first corner to its second, one behind another
+// counterclockwise; marks count at the first corner.
 #pragma once
 
 #include <cstdint>
@@ -56,10 +59,10 @@ struct DraftForm {
 };
 
 /// Judges a draft by itself: at least four faces of at least three distinct corners; every edge once in each direction;
-/// the surface a sphere; points distinct from corners; at most 16383 darts. What is combinatorially a tetrahedron,
-/// hexahedron, prism or pyramid, without points, takes that form. Cost: linear in its
-/// darts, on average.
-DraftForm form_of(const CellDraft& draft);
-std::vector<DraftForm> forms_of(std::span<const CellDraft> drafts);
+/// the surface a sphere; points distinct from corners; at most 16383 darts. In the plane: at least three edges, one
+/// cycle of distinct corners. What is combinatorially a tetrahedron, hexahedron, prism, pyramid, triangle or
+/// quadrilateral, without points, takes that form. Cost: linear in its darts, on average.
+DraftForm form_of(const CellDraft& draft, unsigned dimension = 3);
+std::vector<DraftForm> forms_of(std::span<const CellDraft> drafts, unsigned dimension);
 
 }  // namespace dartcast

@@ -8,6 +8,9 @@
 // patch, and so do both parts of one that is split. Of two faces merged the patch of the first is kept, or that of the
 // second where the first has none. Costs are linear in the darts of the cells touched, times a logarithm.
 //
+// In the plane cells are polygons and their faces edges. split_face() makes two polygons of one there, merge_faces()
+// and merge_cells() one of two; sew() and unsew() are about edges; split_cell() is refused.
+//
 // There are no coordinates here. The report of the transaction tells which vertices are new. What the caller may have
 // to do before it commits:
 //  - Interior points. A touched cell has none of its own any more, nor has a face whose corners changed; other faces
@@ -41,20 +44,22 @@ struct SplitEdge {
 SplitEdge split_edge(Transaction& t, Dart d);
 
 /// Joins the origins of two darts of a face by an edge; from both sides of the face. Refused where they are neighbours
-/// in the face, or an edge of the cell joins them already. Returns the cell of a, then the one beyond the face.
+/// in the face, or an edge of the cell joins them already. Returns the cell of a, then the one beyond the face; in the
+/// plane the part with a, then the part with b.
 std::vector<Cell> split_face(Transaction& t, Dart a, Dart b);
 
 /// Cuts a cell in two along a closed path: each dart starts where the one before ends, the first where the last ends;
 /// no vertex comes twice. Returns the cell with the faces of the path's darts, then that with the faces beyond its
-/// edges. The new face between them has no patch. Refused where the path runs around a single face.
+/// edges. The new face between them has no patch. Refused where the path runs around a single face, and in the plane:
+/// split_face() does it there.
 std::array<Cell, 2> split_cell(Transaction& t, std::span<const Dart> path);
 
 /// Makes one cell of the two at a face. Refused on the boundary, between a free and a blocked cell, and where the cells
-/// touch beyond that face. The source is that of f.cell.
+/// touch beyond that face. The source is that of f.cell. In the plane, as merge_faces().
 Cell merge_cells(Transaction& t, CellFace f);
 
 /// Makes one face of the two at an edge; from both sides. Refused where there are more than two faces around the edge,
-/// or where these have more than the edge in common.
+/// or where these have more than the edge in common. In the plane, as merge_cells(): one polygon.
 std::vector<Cell> merge_faces(Transaction& t, Dart d);
 
 /// Makes one edge of the two at the origin of d. Refused where there are more than two edges, and where a face is a

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "dartcast/map/edit.hpp"
+#include "dartcast/map/edit_plane.hpp"
 #include "dartcast/map/rework.hpp"
 
 namespace dartcast {
@@ -47,6 +48,7 @@ Cell merge_cells(Transaction& t, CellFace f) {
     refuse(map, f.cell, "and the one beyond the face are not both free or both blocked: mark them alike first");
   if (share_more(map, f))
     refuse(map, f.cell, "shares more than one face with the cell beyond: merge these faces first");
+  if (map.dimension() == 2) return detail::merge_polygons(t, {f.cell, f.face});
   CellDraft whole;
   whole.free = map.is_free(f.cell);
   whole.source = map.source(f.cell);
@@ -83,6 +85,7 @@ void join_faces(CellDraft& draft, const Shape& s, std::uint16_t dart) {
 std::vector<Cell> merge_faces(Transaction& t, Dart d) {
   const Map& map = t.map();
   expect_dart(map, d);
+  if (map.dimension() == 2) return {merge_cells(t, map.face(d))};
   const Dart beyond = map.phi3(d);
   const Dart second = map.phi3(map.phi2(d));
   if (beyond.valid() != second.valid() || (beyond.valid() && map.phi2(beyond) != second))
@@ -110,6 +113,7 @@ void drop_corner(CellDraft& draft, const Shape& s, std::uint16_t dart) {
 std::vector<Cell> merge_edges(Transaction& t, Dart d) {
   const Map& map = t.map();
   expect_dart(map, d);
+  if (map.dimension() == 2) return detail::merge_edges_in_plane(t, d);
   Rework rework(t);
   for (const Dart x : around_edge(map, d)) {
     const Dart y = map.alpha1(x);

@@ -15,6 +15,11 @@ using detail::Rework;
 
 namespace {
 
+bool has_corner(const CellView& view, std::uint16_t face, Vertex v) {
+  const auto corners = view.shape().corners(face);
+  return std::any_of(corners.begin(), corners.end(), [&](std::uint16_t k) { return view.vertex(k) == v; });
+}
+
 // The cells around a vertex of a cell, reached over faces with that vertex but for one face.
 std::vector<Cell> around_vertex(const Map& map, Cell start, Vertex v, CellFace but = {}) {
   const CellFace from_beyond = but.valid() ? map.opposite(but) : CellFace{};
@@ -22,12 +27,10 @@ std::vector<Cell> around_vertex(const Map& map, Cell start, Vertex v, CellFace b
   std::unordered_set<std::uint32_t> seen = {start.value};
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const CellView view = map.view(cells[i]);
-    const Shape& s = view.shape();
-    for (std::uint16_t d = 0; d < s.dart_count(); ++d) {
-      if (view.vertex(s.origin(d)) != v) continue;
-      const CellFace f{cells[i], s.face_of(d)};
-      const Cell other = view.neighbour(f.face);
-      if (f == but || f == from_beyond || !other.valid()) continue;
+    for (std::uint16_t face = 0; face < view.shape().face_count(); ++face) {
+      const CellFace f{cells[i], face};
+      const Cell other = view.neighbour(face);
+      if (f == but || f == from_beyond || !other.valid() || !has_corner(view, face, v)) continue;
       if (seen.insert(other.value).second) cells.push_back(other);
     }
   }
@@ -38,20 +41,25 @@ std::vector<Cell> around_vertex(const Map& map, Cell start, Vertex v, CellFace b
 // has it needs another point: weights name corners.
 void rename(const Map& map, Cell c, CellDraft& draft, Vertex from, Vertex to) {
   const CellView v = map.view(c);
-  for (std::uint16_t d = 0; d < v.shape().dart_count(); ++d) {
-    if (v.vertex(v.shape().origin(d)) != from) continue;
-    DraftFace& face = draft.faces[v.shape().face_of(d)];
-    face.corners[detail::corner_of(v.shape(), d)].vertex = to;
-    face.point = {};
+  for (std::uint16_t f = 0; f < v.shape().face_count(); ++f) {
+    const auto corners = v.shape().corners(f);
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      if (v.vertex(corners[k]) != from) continue;
+      draft.faces[f].corners[k].vertex = to;
+      draft.faces[f].point = {};
+    }
   }
 }
 
-std::vector<Dart> darts_of(const Map& map, CellFace f) {
-  const Shape& s = map.shape(f.cell);
-  std::vector<Dart> darts;
-  for (std::uint16_t d = s.first_dart(f.face); d < s.first_dart(f.face) + s.degree(f.face); ++d)
-    darts.push_back({f.cell, d});
-  return darts;
+// The corners of the dart's face, from its origin on.
+std::vector<Vertex> corners_from(const Map& map, Dart d) {
+  const CellView view = map.view(d.cell);
+  const auto corners = view.shape().corners(view.shape().face_of(d.number));
+  const std::size_t first = detail::corner_of(view.shape(), d.number);
+  std::vector<Vertex> vertices;
+  for (std::size_t k = 0; k < corners.size(); ++k)
+    vertices.push_back(view.vertex(corners[(first + k) % corners.size()]));
+  return vertices;
 }
 
 }  // namespace
@@ -74,20 +82,17 @@ std::vector<Cell> sew(Transaction& t, Dart a, Dart b) {
   rework.draft(g.cell).faces[g.face].across.face = f;
   rework.draft(f.cell).faces[f.face].point = {};
   rework.draft(g.cell).faces[g.face].point = {};
-  Dart x = a;
-  Dart y = map.phi1(b);
-  do {
-    const Vertex u = map.origin(x);
-    const Vertex v = map.origin(y);
+  const std::vector<Vertex> here = corners_from(map, a);
+  const std::vector<Vertex> there = corners_from(map, b);
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    const Vertex u = here[i];
+    const Vertex v = there[(here.size() + 1 - i) % here.size()];
+    if (u == v) continue;
     const Vertex gone = std::max(u, v);
-    if (u != v) {
-      for (const Cell c : around_vertex(map, u > v ? x.cell : y.cell, gone))
-        rename(map, c, rework.draft(c), gone, std::min(u, v));
-      t.note_identified(gone, std::min(u, v));
-    }
-    x = map.phi1(x);
-    y = map.phi_1(y);
-  } while (x != a);
+    for (const Cell c : around_vertex(map, u > v ? a.cell : b.cell, gone))
+      rename(map, c, rework.draft(c), gone, std::min(u, v));
+    t.note_identified(gone, std::min(u, v));
+  }
   try {
     return rework.put();
   } catch (...) {
@@ -106,8 +111,7 @@ std::vector<Cell> unsew(Transaction& t, CellFace f) {
     Rework rework(t);
     rework.draft(f.cell).faces[f.face].across = {};
     rework.draft(g.cell).faces[g.face].across = {};
-    for (const Dart d : darts_of(map, f)) {
-      const Vertex v = map.origin(d);
+    for (const Vertex v : corners_from(map, {f.cell, map.shape(f.cell).first_dart(f.face)})) {
       const std::vector<Cell> beyond = around_vertex(map, g.cell, v, f);
       if (std::find(beyond.begin(), beyond.end(), f.cell) != beyond.end()) continue;
       const Vertex parted = t.add_vertex(v, v);

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "dartcast/map/edit.hpp"
+#include "dartcast/map/edit_plane.hpp"
 #include "dartcast/map/rework.hpp"
 
 namespace dartcast {
@@ -48,6 +49,7 @@ void cut_face(CellDraft& draft, std::uint16_t face, Vertex u, Vertex v) {
 SplitEdge split_edge(Transaction& t, Dart d) {
   const Map& map = t.map();
   expect_dart(map, d);
+  if (map.dimension() == 2) return detail::split_edge_in_plane(t, d);
   const Transaction::Mark before = t.mark();
   SplitEdge split;
   split.vertex = t.add_vertex(map.origin(d), map.origin(map.phi1(d)));
@@ -70,6 +72,7 @@ std::vector<Cell> split_face(Transaction& t, Dart a, Dart b) {
   const Map& map = t.map();
   expect_dart(map, a);
   expect_dart(map, b);
+  if (map.dimension() == 2) return detail::split_polygon(t, a, b);
   const CellFace f = map.face(a);
   if (map.face(b) != f) refuse(map, a.cell, "has the two corners in different faces: name two of one face");
   if (a == b || map.phi1(a) == b || map.phi1(b) == a)
@@ -173,6 +176,7 @@ void part_at(CellDraft& whole, const Shape& s, std::span<const std::uint16_t> pa
 
 std::array<Cell, 2> split_cell(Transaction& t, std::span<const Dart> path) {
   const Map& map = t.map();
+  if (map.dimension() == 2) throw InvalidArgument("a polygon is split between two of its corners: call split_face()");
   const std::vector<std::uint16_t> numbers = checked_path(map, path);
   const Cell c = path[0].cell;
   const std::vector<bool> left = left_of(map.shape(c), numbers);

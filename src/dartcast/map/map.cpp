@@ -36,11 +36,11 @@ Vertex Map::point(CellFace f) const {
   return v.vertex(local);
 }
 
-CellType Map::type(Cell c) const {
-  if (dimension_ == 3) return static_cast<CellType>(c.pool());
+CellType Map::type_of(std::uint32_t pool) const {
+  if (dimension_ == 3) return static_cast<CellType>(pool);
   constexpr std::array<CellType, 5> planar = {CellType::triangle, CellType::quadrilateral, CellType::polygon,
                                               CellType::polygon, CellType::polygon};
-  return planar[c.pool()];
+  return planar[pool];
 }
 
 std::size_t Map::cell_count() const {

@@ -158,7 +158,9 @@ class Map {
   [[nodiscard]] bool contains(CellHandle h) const { return contains(h.cell) && view(h.cell).version() == h.version; }
   /// Precondition: contains(c).
   [[nodiscard]] CellHandle handle(Cell c) const { return {c, view(c).version()}; }
-  [[nodiscard]] CellType type(Cell c) const;
+  [[nodiscard]] CellType type(Cell c) const { return type_of(c.pool()); }
+  /// Of the cells in a pool.
+  [[nodiscard]] CellType type_of(std::uint32_t pool) const;
   [[nodiscard]] std::size_t cell_count() const;
   [[nodiscard]] std::size_t cell_count(std::uint32_t pool) const { return pools_[pool].count - pools_[pool].gone; }
   /// Places for cells in a pool, vacant ones too: indices are below. As many as there are cells until the map is

@@ -19,7 +19,7 @@ class Judgement {
 
   Replacement judge() {
     check_removed();
-    plan_.forms = forms_of(drafts_);
+    plan_.forms = forms_of(drafts_, map_.dimension());
     for (std::uint32_t i = 0; i < drafts_.size(); ++i) check_draft(i);
     list_continued();
     for (std::uint32_t i = 0; i < drafts_.size(); ++i) {
@@ -139,6 +139,7 @@ class Judgement {
     while (start < count && vertex(start) != face.corners[0].vertex) ++start;
     bool fits = count == k && start < k;
     for (std::size_t i = 0; fits && i < k; ++i) fits = face.corners[i].vertex == vertex((start + k - i) % k);
+    if (map_.dimension() == 2) fits = fits && start == 1;  // an edge has a beginning and an end
     if (!fits) refuse(draft, "would be sewn to a face with other corners, or with them in another order");
     if (face.point != point) refuse(draft, "would be sewn to a face that is fanned from another point");
   }

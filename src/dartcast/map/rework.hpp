@@ -61,6 +61,12 @@ inline void expect_cell(const Map& map, Cell c) {
   if (!map.contains(c)) throw InvalidArgument("there is no such cell: an earlier edit replaced it; look it up anew");
 }
 
+/// Throws InvalidArgument where the map is one of the plane. `what`: "cuts", say.
+inline void expect_space(const Map& map, const char* what) {
+  if (map.dimension() == 2)
+    throw InvalidArgument(std::string(what) + " need cells of space: in the plane, edit the map (map/edit.hpp)");
+}
+
 /// Throws InvalidArgument where there is no such dart.
 inline void expect_dart(const Map& map, Dart d) {
   if (!map.contains(d.cell) || d.number >= map.shape(d.cell).dart_count())

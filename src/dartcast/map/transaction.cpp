@@ -35,7 +35,6 @@ Transaction::Transaction(Map& map) : map_(map) { prepare(); }
 Transaction::~Transaction() { roll_back(); }
 
 void Transaction::prepare() {
-  if (map_.dimension() == 2) throw InvalidArgument("maps of the plane can't be edited yet");
   if (map_.cells_at_.size() == map_.vertex_count_) return;
   map_.cells_at_.assign(map_.vertex_count_, 0);
   for (const Cell c : map_.cells()) count_vertices(c, true);
@@ -122,7 +121,7 @@ Cell Transaction::put(const CellDraft& draft, const DraftForm& form) {
   if (form.pool == Map::general_pool) {
     shape = map_.shapes_.intern(general_key(draft, form, vertices));
   } else {
-    const auto type = static_cast<CellType>(form.pool);
+    const CellType type = map_.type_of(form.pool);
     shape =
         map_.shapes_.intern_standard(standard_signature(type, vertices), [&] { return standard_key(type, vertices); });
   }
@@ -167,8 +166,8 @@ void Transaction::write_sides(Cell c, const CellDraft& draft, const DraftForm& f
     if (face.patch != Patch{}) map_.patches_.set(c, f, face.patch.value);
     const auto lowest = std::min_element(face.corners.begin(), face.corners.end(),
                                          [](const auto& a, const auto& b) { return a.vertex < b.vertex; });
-    const std::size_t k = face.corners.size();
-    const std::size_t first = static_cast<std::size_t>(lowest - face.corners.begin());
+    const std::size_t k = s.degree(f);
+    const std::size_t first = s.dimension() == 2 ? 0 : static_cast<std::size_t>(lowest - face.corners.begin());
     for (std::size_t j = 0; j < k; ++j) {
       const DraftCorner& corner = face.corners[(first + j) % k];
       const auto bits = (corner.straight ? Map::straight_bit : 0) | (corner.coplanar ? Map::coplanar_bit : 0);

@@ -49,7 +49,6 @@ struct EditReport {
 /// cells that it names and their neighbours, whatever the size of the map; arrays grow by doubling.
 class Transaction {
  public:
-  /// Throws InvalidArgument where the map is one of the plane.
   explicit Transaction(Map& map);
   Transaction(const Transaction&) = delete;
   Transaction& operator=(const Transaction&) = delete;

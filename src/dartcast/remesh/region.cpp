@@ -44,6 +44,21 @@ std::vector<Cell> grown(const Map& map, std::span<const Cell> cells) {
   return all;
 }
 
+namespace {
+
+// Puts edges one behind another, from the first one on; where they are no cycle, the rest stays behind.
+void chain(std::vector<DraftFace>& edges) {
+  for (std::size_t i = 1; i < edges.size(); ++i) {
+    const Vertex end = edges[i - 1].corners[1].vertex;
+    const auto next = std::find_if(edges.begin() + static_cast<std::ptrdiff_t>(i), edges.end(),
+                                   [&](const DraftFace& e) { return e.corners[0].vertex == end; });
+    if (next == edges.end()) return;
+    std::swap(edges[i], *next);
+  }
+}
+
+}  // namespace
+
 std::vector<DraftFace> surface_of(const Map& map, std::span<const Cell> cells) {
   std::vector<DraftFace> surface;
   for (const Cell c : cells) {
@@ -51,13 +66,14 @@ std::vector<DraftFace> surface_of(const Map& map, std::span<const Cell> cells) {
       if (!std::binary_search(cells.begin(), cells.end(), face.across.face.cell)) surface.push_back(std::move(face));
     }
   }
+  if (map.dimension() == 2) chain(surface);
   return surface;
 }
 
 bool bounds_solid(const std::vector<DraftFace>& faces) {
   CellDraft draft;
   draft.faces = faces;
-  return form_of(draft).defect.empty();
+  return form_of(draft, faces.front().corners.size() == 2 ? 2 : 3).defect.empty();
 }
 
 std::vector<Vertex> corners_of(std::span<const DraftFace> faces) {
@@ -75,6 +91,10 @@ std::vector<Triangle> fans_of(std::span<const DraftFace> faces, const Position& 
   for (const DraftFace& face : faces) {
     std::vector<std::uint32_t> corners;
     for (const DraftCorner& c : face.corners) corners.push_back(c.vertex.value);
+    if (corners.size() == 2) {
+      triangles.push_back(upright(position(Vertex(corners[0])), position(Vertex(corners[1]))));
+      continue;
+    }
     std::optional<Vec3> point;
     if (face.point.valid()) point = position(face.point);
     add_fan(triangles, corners, point, [&](std::uint32_t v) { return position(Vertex(v)); });
@@ -82,7 +102,29 @@ std::vector<Triangle> fans_of(std::span<const DraftFace> faces, const Position& 
   return triangles;
 }
 
+namespace {
+
+std::vector<CellDraft> triangles_on(const Map& map, std::span<const DraftFace> edges, Vertex apex) {
+  std::vector<CellDraft> triangles;
+  const auto n = static_cast<std::uint32_t>(edges.size());
+  for (std::uint32_t i = 0; i < n; ++i) {
+    CellDraft& triangle = triangles.emplace_back();
+    triangle.free = map.is_free(edges[i].from.cell);
+    triangle.source = map.source(edges[i].from.cell);
+    triangle.faces.push_back(edges[i]);
+    triangle.faces[0].corners[0].straight = false;
+    const Vertex u = edges[i].corners[0].vertex;
+    const Vertex w = edges[i].corners[1].vertex;
+    triangle.faces.push_back({{{w}, {apex}}, {{}, (i + 1) % n, 2}, {}, {}, {}});
+    triangle.faces.push_back({{{apex}, {u}}, {{}, (i + n - 1) % n, 1}, {}, {}, {}});
+  }
+  return triangles;
+}
+
+}  // namespace
+
 std::vector<CellDraft> pyramids_on(const Map& map, std::span<const DraftFace> faces, Vertex apex) {
+  if (map.dimension() == 2) return triangles_on(map, faces, apex);
   std::vector<CellDraft> pyramids;
   std::map<std::pair<Vertex, Vertex>, DraftLink> side;  // by the edge as the base has it
   for (const DraftFace& base : faces) {

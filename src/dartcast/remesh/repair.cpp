@@ -1,6 +1,7 @@
 #include "dartcast/remesh/repair.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <unordered_set>
 
 #include "dartcast/base/error.hpp"
@@ -43,6 +44,8 @@ class Repairer {
   RepairReport report;
 
  private:
+  [[nodiscard]] bool planar() const { return map_.dimension() == 2; }
+
   [[nodiscard]] bool sound(Cell c) {
     if (mended_.contains(c.value)) return true;
     const CellView v = map_.view(c);
@@ -50,7 +53,7 @@ class Repairer {
     return std::all_of(simplices.begin(), simplices.end(), [&](const ImplicitSimplex& s) {
       Corners corners;
       for (unsigned i = 0; i < 4; ++i) corners[i] = edit_.position(v.vertex(s.vertex[i]));
-      return volume_sign(corners) == Sign::positive;
+      return volume_sign(planar() ? raised(corners) : corners) == Sign::positive;
     });
   }
 
@@ -108,7 +111,7 @@ class Repairer {
     if (!done) return false;
     const auto& cells = report.mended.back().cells;
     const auto facets = opposite(cells, moved);
-    if (const auto x = detail::kernel_point(facets)) {
+    if (const auto x = kernel_point(facets)) {
       place(moved, detail::corners_of(detail::surface_of(map_, sorted(cells))), *x, facets);
       for (const Cell c : cells) mended_.erase(c.value);
       if (std::all_of(cells.begin(), cells.end(), [&](Cell c) { return sound(c); })) {
@@ -120,6 +123,13 @@ class Repairer {
     report.mended.pop_back();
     edit_.roll_back(before);
     return false;
+  }
+
+  // In the plane the triangles are upright, and see a point as they see what is above and below it.
+  [[nodiscard]] std::optional<Vec3> kernel_point(std::span<const detail::Triangle> triangles) const {
+    std::optional<Vec3> x = detail::kernel_point(triangles);
+    if (x && planar()) x->z = 0.0;
+    return x;
   }
 
   std::vector<CellDraft> with_vertex_replaced(const Star& star, Vertex by) {
@@ -146,11 +156,12 @@ class Repairer {
     for (const Cell c : cells) {
       const CellView view = map_.view(c);
       for (const ImplicitSimplex& s : view.shape().simplices()) {
-        for (unsigned i = 0; i < 4; ++i) {
+        const auto at = [&](unsigned k) { return edit_.position(view.vertex(s.vertex[k])); };
+        for (unsigned i = 0; i < map_.dimension() + 1; ++i) {
           if (view.vertex(s.vertex[i]) != v) continue;
           const auto& f = facet_corners[i];
-          const auto at = [&](unsigned k) { return edit_.position(view.vertex(s.vertex[f[k]])); };
-          facets.push_back({at(0), at(2), at(1)});
+          facets.push_back(planar() ? detail::upright(at((i + 1) % 3), at((i + 2) % 3))
+                                    : detail::Triangle{at(f[0]), at(f[2]), at(f[1])});
         }
       }
     }
@@ -162,7 +173,7 @@ class Repairer {
     const std::vector<DraftFace> surface = detail::surface_of(map_, region);
     if (!detail::bounds_solid(surface)) return false;
     const auto triangles = detail::fans_of(surface, position());
-    const auto x = detail::kernel_point(triangles);
+    const auto x = kernel_point(triangles);
     if (!x) return false;
     return put(Mending::cut, region, [&] {
       const std::vector<Vertex> corners = detail::corners_of(surface);

@@ -21,7 +21,7 @@ struct RepairOptions {
 enum class Mending : std::uint8_t {
   point,  ///< the cell is coned from a point of its own
   moved,  ///< a vertex around which there are only cells of the region lies elsewhere (it is a new vertex)
-  cut     ///< the region was merged, and cut into pyramids around a new vertex
+  cut     ///< the region was merged, and cut into pyramids, in the plane triangles, around a new vertex
 };
 
 struct MendedRegion {

@@ -256,6 +256,7 @@ class Subdivider {
 }  // namespace
 
 Subdivided subdivide(ComplexEdit& edit, Cell c) {
+  detail::expect_space(edit.map(), "subdivisions");
   expect_cell(edit.map(), c);
   const Transaction::Mark before = edit.mark();
   try {

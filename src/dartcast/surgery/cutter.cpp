@@ -11,6 +11,7 @@
 namespace dartcast::detail {
 
 Cutter::Cutter(ComplexEdit& edit, std::span<const Cell> cells) : edit_(edit), cells_(cells.begin(), cells.end()) {
+  expect_space(edit.map(), "cuts");
   for (std::uint32_t n = 0; n < cells_.size(); ++n) {
     if (!edit.map().contains(cells_[n]))
       throw InvalidArgument("there is no such cell: an earlier edit replaced it; look for cells anew");

@@ -189,6 +189,7 @@ void check(const Map& map, std::span<const CellFace> a, std::span<const CellFace
 
 Reconnected reconnect(ComplexEdit& edit, std::span<const CellFace> a, std::span<const CellFace> b,
                       const ReconnectOptions& options) {
+  detail::expect_space(edit.map(), "vessels to reconnect");
   check(edit.map(), a, b, options);
   return detail::all_or_nothing(edit, [&] {
     const FaceSet end_a(edit.map(), a);

@@ -84,7 +84,7 @@ class Search {
   [[nodiscard]] NearestFree placed_in(Cell c) const {
     const OnSurface on = nearest_on_surface(complex_, c, x_);
     const SimplexId simplex{c, complex_.map().shape(c).entry(on.face, on.triangle).index};
-    const Settled settled = settle(current_space(complex_), simplex, complex_.corners(simplex), on.point);
+    const Settled settled = settle(complex_, simplex, on.point);
     return {settled, norm(settled.position - x_)};
   }
 

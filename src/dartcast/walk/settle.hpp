@@ -199,4 +199,10 @@ Settled settle(const Space<Positions, N>& space, SimplexId simplex, const std::a
   return {simplex, detail::double_inside(v, x).value_or(p)};
 }
 
+/// The same in a complex as it is now, of space or of the plane.
+inline Settled settle(const Complex& complex, SimplexId simplex, const Vec3& rounded) {
+  const auto in = [&](const auto& space) { return settle(space, simplex, space.corners(simplex), rounded); };
+  return complex.map().dimension() == 2 ? in(current_space<3>(complex)) : in(current_space(complex));
+}
+
 }  // namespace dartcast
