@@ -46,22 +46,39 @@ struct Axes {
   }
 };
 
-std::vector<Point> points_of(std::span<const Row> rows, const char* workload, const char* name) {
+// What is drawn.
+struct Content {
+  const char* still;   // workloads
+  const char* moving;  // may have the same name
+  const char* title;
+  const char* unit;  // of the axis below
+  int x_high;
+};
+constexpr Content in_space = {"W1", "W2",
+                              "1,000 particles in a box of n hexahedra, a tenth of a cell a step, one thread",
+                              "cells of the scene", 7};
+constexpr Content in_plane = {"W6", "W6", "1,000 particles among n squares, a tenth of a square a step, one thread",
+                              "faces of the scene", 6};
+
+std::vector<Point> points_of(std::span<const Row> rows, const Content& content, bool deforms, const char* name) {
+  const char* workload = deforms ? content.moving : content.still;
   std::vector<Point> points;
   for (const Row& row : rows) {
     const Lane* lane = row.lane(name);
-    if (row.workload.name != workload || row.workload.particles != 1000 || lane == nullptr) continue;
+    if (row.workload.name != workload || row.workload.deforms != deforms) continue;
+    if (row.workload.particles != 1000 || lane == nullptr) continue;
     points.push_back({static_cast<double>(row.cells), lane->ns_per_particle_step(row.workload.particles)});
   }
   std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.cells < b.cells; });
   return points;
 }
 
-Axes axes_for(std::span<const Row> rows) {
+Axes axes_for(std::span<const Row> rows, const Content& content) {
   Axes axes;
+  axes.x_high = content.x_high;
   for (const Style& style : styles) {
-    for (const char* workload : {"W1", "W2"}) {
-      for (const Point& p : points_of(rows, workload, style.name)) {
+    for (const bool deforms : {false, true}) {
+      for (const Point& p : points_of(rows, content, deforms, style.name)) {
         axes.y_low = std::min(axes.y_low, static_cast<int>(std::floor(std::log10(p.ns))));
         axes.y_high = std::max(axes.y_high, static_cast<int>(std::ceil(std::log10(p.ns))));
       }
@@ -81,7 +98,7 @@ std::string text(double x, double y, const char* anchor, const std::string& cont
 
 std::string power(int exponent) { return fmt::format("10<tspan dy=\"-6\" font-size=\"10\">{}</tspan>", exponent); }
 
-std::string grid(const Axes& axes) {
+std::string grid(const Axes& axes, const char* unit) {
   std::string out;
   for (int e = axes.x_low; e <= axes.x_high; ++e) {
     const double x = axes.x(std::pow(10.0, e));
@@ -95,7 +112,7 @@ std::string grid(const Axes& axes) {
       out += line(left, minor, right, minor, "#f0f0f0");
     }
   }
-  out += text((left + right) / 2, bottom + 52, "middle", "cells of the scene");
+  out += text((left + right) / 2, bottom + 52, "middle", unit);
   out += fmt::format(
       "<text transform=\"translate(24 {:.1f}) rotate(-90)\" text-anchor=\"middle\">"
       "ns per particle-step</text>\n",
@@ -136,15 +153,13 @@ std::string legend(const std::vector<Style>& shown) {
   return out;
 }
 
-}  // namespace
-
-std::string chart_svg(std::span<const Row> rows) {
-  const Axes axes = axes_for(rows);
+std::string draw(std::span<const Row> rows, const Content& content) {
+  const Axes axes = axes_for(rows, content);
   std::string curves;
   std::vector<Style> shown;
   for (const Style& style : styles) {
-    const std::vector<Point> still = points_of(rows, "W1", style.name);
-    const std::vector<Point> moving = points_of(rows, "W2", style.name);
+    const std::vector<Point> still = points_of(rows, content, false, style.name);
+    const std::vector<Point> moving = points_of(rows, content, true, style.name);
     if (still.empty() && moving.empty()) continue;
     shown.push_back(style);
     curves += curve(axes, still, style, false) + curve(axes, moving, style, true);
@@ -153,8 +168,12 @@ std::string chart_svg(std::span<const Row> rows) {
              "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" font-family=\"sans-serif\" "
              "font-size=\"14\" fill=\"#222\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
              width, height) +
-         text(left, 32, "start", "1,000 particles in a box of n hexahedra, a tenth of a cell a step, one thread") +
-         grid(axes) + curves + legend(shown) + "</svg>\n";
+         text(left, 32, "start", content.title) + grid(axes, content.unit) + curves + legend(shown) + "</svg>\n";
 }
+
+}  // namespace
+
+std::string chart_svg(std::span<const Row> rows) { return draw(rows, in_space); }
+std::string plane_chart_svg(std::span<const Row> rows) { return draw(rows, in_plane); }
 
 }  // namespace dartcast::bench

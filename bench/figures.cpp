@@ -42,6 +42,24 @@ void add_growth(std::vector<Figure>& list, std::span<const Row> rows) {
   }
 }
 
+void add_plane_growth(std::vector<Figure>& list, std::span<const Row> rows) {
+  for (const bool deforms : {false, true}) {
+    const auto of_size = [&](std::uint32_t size) -> Which {
+      return [=](const WorkloadOptions& w) { return w.name == "W6" && w.deforms == deforms && w.size == size; };
+    };
+    const Row* small = find(rows, 1, of_size(32));
+    const Row* large = find(rows, 1, of_size(1000));
+    if (small == nullptr || large == nullptr) continue;
+    for (std::size_t k = 0; k < small->lanes.size(); ++k) {
+      const std::string& name = small->lanes[k].name;
+      list.push_back({fmt::format("growth_plane_{}_{}", deforms ? "moving" : "still", name),
+                      fmt::format("{} in the plane, {}: from 10^3 to 10^6 faces its time grows by the factor", name,
+                                  deforms ? "every vertex moving" : "standing still"),
+                      nanoseconds(*large, large->lanes[k]) / nanoseconds(*small, small->lanes[k])});
+    }
+  }
+}
+
 // The shortest step measured from which on a hierarchy takes less time than dartcast.
 void add_crossover(std::vector<Figure>& list, std::span<const Row> rows) {
   double crossover = std::numeric_limits<double>::infinity();
@@ -82,6 +100,7 @@ std::vector<Figure> figures(std::span<const Row> rows) {
   add_ratio(list, find(rows, 1, box("W4", 46)), still,
             {"degenerate", "on lattice lines, 10^5 cells: times the time at random places", 0.0});
   add_crossover(list, rows);
+  add_plane_growth(list, rows);
   for (const bool order : {false, true}) {
     const auto many = [&](const WorkloadOptions& w) { return w.name == "W3" && w.cell_order == order; };
     add_ratio(list, find(rows, 1, many), find(rows, 2, many),

@@ -1,15 +1,31 @@
-// The paper's own scheme among the competitors.
+// The paper's own schemes among the competitors.
+#include <type_traits>
+
 #include "bench/paper_scheme.hpp"
+#include "bench/paper_scheme_2d.hpp"
 #include "bench/peers.hpp"
 
 namespace dartcast::bench {
 
 namespace {
 
+// Whether x is in the closed cell of the plane.
+bool in_polygon(const Complex& complex, Cell cell, const Vec3& x) {
+  const Map& map = complex.map();
+  const auto at = [&](Dart d) { return complex.positions()[map.origin(d).value]; };
+  for (std::uint16_t n = 0; n < map.shape(cell).dart_count(); ++n) {
+    const Dart d = {cell, n};
+    if (orient2d(at(d), at(map.phi1(d)), x) == Sign::negative) return false;
+  }
+  return true;
+}
+
+// Scheme: PaperScheme, or PaperScheme2D in the plane.
+template <class Scheme>
 class Paper : public Peer {
  public:
   explicit Paper(const PeerScene& scene)
-      : walls_(scene.walls), scheme_(scene.complex), results_(scene.particles.size()) {
+      : complex_(scene.complex), walls_(scene.walls), scheme_(scene.complex), results_(scene.particles.size()) {
     scheme_.start(scene.particles);
     targets_.resize(scene.particles.size());
   }
@@ -38,21 +54,31 @@ class Paper : public Peer {
       if (r.end == PaperEnd::collision) hits[i] = {walls_.number({r.wall, 0}), r.time};
       if (r.end == PaperEnd::error) hits[i].triangle = Hit::failed;
       tests_ += r.tests;
+      if constexpr (std::is_same_v<Scheme, PaperScheme2D>) {
+        const bool astray = r.end == PaperEnd::arrived && !in_polygon(complex_, scheme_.cell(i), scheme_.position(i));
+        wrong_cells_ += astray ? 1 : 0;
+      }
     }
   }
 
   [[nodiscard]] std::uint64_t tests() const override { return tests_; }
+  [[nodiscard]] std::uint64_t wrong_cells() const override { return wrong_cells_; }
 
  private:
+  const Complex& complex_;
   const Walls& walls_;
-  PaperScheme scheme_;
+  Scheme scheme_;
   std::vector<PaperResult> results_;
   std::vector<Vec3> targets_;
   std::uint64_t tests_ = 0;
+  std::uint64_t wrong_cells_ = 0;
 };
 
 }  // namespace
 
-std::unique_ptr<Peer> make_paper(const PeerScene& scene) { return std::make_unique<Paper>(scene); }
+std::unique_ptr<Peer> make_paper(const PeerScene& scene) {
+  if (scene.complex.map().dimension() == 2) return std::make_unique<Paper<PaperScheme2D>>(scene);
+  return std::make_unique<Paper<PaperScheme>>(scene);
+}
 
 }  // namespace dartcast::bench

@@ -336,6 +336,8 @@ Vec3 PaperWalk::centre(const CellView& c) const {
   return sum * (1.0 / c.shape().corner_count());
 }
 
+}  // namespace
+
 double mean_edge(const Complex& complex) {
   const Map& map = complex.map();
   double sum = 0.0;
@@ -347,8 +349,6 @@ double mean_edge(const Complex& complex) {
   }
   return sum / static_cast<double>(count);
 }
-
-}  // namespace
 
 PaperScheme::PaperScheme(const Complex& complex)
     : complex_(complex), tolerance_(1e-12 * std::pow(mean_edge(complex), 3.0)) {}

@@ -36,6 +36,9 @@ struct PaperResult {
   std::uint32_t tests = 0;  ///< orientation tests
 };
 
+/// Of all cells' edges, each as often as it has darts. Cost: linear in the cells.
+double mean_edge(const Complex& complex);
+
 /// The paper's state S = (p, k, i), and the point of the face aimed at.
 struct PaperState {
   Vec3 p;

@@ -46,6 +46,9 @@ class Peer {
   virtual void translate(std::span<Hit> /*hits*/) {}
   /// Orientation tests so far; 0 for those who make none.
   [[nodiscard]] virtual std::uint64_t tests() const { return 0; }
+  /// Particles so far that arrived in a cell that does not hold their target, by exact signs; 0 for those who know no
+  /// cells, and for the paper's scheme in space, whose cells have other faces where these are warped.
+  [[nodiscard]] virtual std::uint64_t wrong_cells() const { return 0; }
 };
 
 }  // namespace dartcast::bench

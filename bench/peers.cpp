@@ -11,7 +11,7 @@ std::vector<PeerKind> peer_kinds() {
   kinds.push_back({"embree_single", make_embree_single});
   kinds.push_back({"embree_packet", make_embree_packet});
 #endif
-  kinds.push_back({"paper", make_paper});
+  kinds.push_back({"paper", make_paper, true});
   return kinds;
 }
 

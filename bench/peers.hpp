@@ -24,12 +24,13 @@ std::unique_ptr<Peer> make_bullet(const PeerScene& scene);
 /// One ray at a time (rtcIntersect1), and 16 at a time (rtcIntersect16).
 std::unique_ptr<Peer> make_embree_single(const PeerScene& scene);
 std::unique_ptr<Peer> make_embree_packet(const PeerScene& scene);
-/// The scheme of Jund, Cazier and Dufourd (2009), as published.
+/// The scheme of Jund, Cazier and Dufourd (2009), as published: in space, or in the plane.
 std::unique_ptr<Peer> make_paper(const PeerScene& scene);
 
 struct PeerKind {
   std::string name;  ///< as in reports: "bullet", "embree_single", "embree_packet", "paper"
   std::unique_ptr<Peer> (*make)(const PeerScene& scene);
+  bool in_plane = false;  ///< has an answer where the scene is of the plane, too
 };
 
 /// Those built in.

@@ -43,6 +43,16 @@ void add_deforming(std::vector<WorkloadOptions>& list) {
   list.back().particles = 100000;
 }
 
+// Squares along each axis: 10^3 ... 10^6 faces, about.
+void add_plane(std::vector<WorkloadOptions>& list) {
+  for (const bool deforms : {false, true}) {
+    for (const std::uint32_t size : {32U, 100U, 316U, 1000U}) {
+      list.push_back(workload("W6", Scene::squares, size, 1000));
+      list.back().deforms = deforms;
+    }
+  }
+}
+
 // First of all, since threads are capped for good once Embree has been used.
 void add_many_particles(std::vector<WorkloadOptions>& list) {
   for (const bool cell_order : {false, true}) {
@@ -70,6 +80,7 @@ std::vector<WorkloadOptions> everything() {
   add_deforming(list);
   list.push_back(workload("W4", Scene::lattice, 46, 1000));
   add_ranges(list);
+  add_plane(list);
   list.push_back(workload("bar", Scene::bar, 0, 1000));
   list.push_back(deforming(workload("bar_deforming", Scene::bar, 0, 1000)));
   list.push_back(deforming(workload("vessel", Scene::vessel, 0, 1000)));

@@ -22,6 +22,7 @@ struct PlanOptions {
 ///  - W3: 10^6 particles in 10^5 cells, at random and sorted by cell, one and two threads.
 ///  - W4: on lattice lines, where most determinants are zero.
 ///  - W5: steps of 0.01 to 100 cells; and cells of 6 to 60 faces.
+///  - W6: squares of the plane, 10^3 to 10^6, that stand still and that move.
 ///  - bar, bar_deforming, vessel: the scenes of the paper's figures.
 std::vector<WorkloadOptions> plan(const PlanOptions& options);
 

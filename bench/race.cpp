@@ -55,7 +55,10 @@ class Race {
     for (std::size_t done = 0; done < all; done += records_.size()) block(std::min(records_.size(), all - done));
     for (Row& row : rows_) {
       row.lanes[0].tests = row.counters.orientation.tests;
-      for (std::size_t k = 0; k < peers_.size(); ++k) row.lanes[k + 1].tests = peers_[k]->tests() - tests_before_[k];
+      for (std::size_t k = 0; k < peers_.size(); ++k) {
+        row.lanes[k + 1].tests = peers_[k]->tests() - tests_before_[k];
+        row.lanes[k + 1].wrong_cells = peers_[k]->wrong_cells() - wrong_before_[k];
+      }
     }
     return std::move(rows_);
   }
@@ -65,7 +68,9 @@ class Race {
     walls_ = walls_of(workload_.environment().complex());
     std::vector<Vec3> points;
     walls_.gather(workload_.environment().complex().positions(), points);
+    const bool plane = workload_.environment().map().dimension() == 2;
     for (const PeerKind& kind : kinds) {
+      if (plane && !kind.in_plane) continue;
       names_.push_back(kind.name);
       peers_.push_back(kind.make(
           {workload_.environment().complex(), walls_, points, workload_.particles().states(), options_.deforms}));
@@ -74,7 +79,11 @@ class Race {
 
   void clear() {
     tests_before_.clear();
-    for (const auto& peer : peers_) tests_before_.push_back(peer->tests());
+    wrong_before_.clear();
+    for (const auto& peer : peers_) {
+      tests_before_.push_back(peer->tests());
+      wrong_before_.push_back(peer->wrong_cells());
+    }
     for (Row& row : rows_) {
       row.counters = {};
       row.lanes.assign(1, {"dartcast", {}});
@@ -133,8 +142,13 @@ class Race {
 
   // Where the walk began: in the geometry after the move.
   static Vec3 ridden(const Complex& complex, const State& before) {
-    const Weights weights = detail::barycentric(previous_space(complex).corners(before.at()), before.position);
-    return detail::ridden(current_space(complex), before.at(), weights).position;
+    return complex.map().dimension() == 2 ? ridden_in<3>(complex, before) : ridden_in<4>(complex, before);
+  }
+
+  template <std::size_t N>
+  static Vec3 ridden_in(const Complex& complex, const State& before) {
+    const Weights weights = detail::barycentric(previous_space<N>(complex).corners(before.at()), before.position);
+    return detail::ridden(current_space<N>(complex), before.at(), weights).position;
   }
 
   void answer(std::size_t k, const Record& record) {
@@ -161,6 +175,8 @@ class Race {
     const bool met_at_start = theirs.triangle < Hit::failed && theirs.time * length <= tolerance;
     lane.at_start += s.blind > 0.0 || met_at_start ? 1 : 0;
     lane.failed += theirs.triangle == Hit::failed ? 1 : 0;
+    lane.through += theirs.triangle == Hit::none ? 1 : 0;
+    lane.stopped += ours.triangle == Hit::none && theirs.triangle < Hit::failed ? 1 : 0;
   }
 
   // Neither meets a wall, or both the same, or both at the same place: where triangles meet, any of them will do.
@@ -176,6 +192,7 @@ class Race {
   std::vector<std::string> names_;
   std::vector<std::unique_ptr<Peer>> peers_;
   std::vector<std::uint64_t> tests_before_;
+  std::vector<std::uint64_t> wrong_before_;
   std::vector<Record> records_;
   std::vector<Hit> answers_;
   std::vector<Row> rows_;

@@ -19,6 +19,9 @@ struct Lane {
   std::uint64_t disagreements = 0;  ///< segments where it answers otherwise than dartcast
   std::uint64_t at_start = 0;       ///< of these: the segment starts on a wall, just met or met by it alone
   std::uint64_t failed = 0;         ///< of these: it finds no answer
+  std::uint64_t through = 0;        ///< of these: it passes through a wall
+  std::uint64_t stopped = 0;        ///< of these: it stops where no wall is
+  std::uint64_t wrong_cells = 0;    ///< arrives, but in a cell that does not hold the target; where it knows cells
   std::uint64_t tests = 0;          ///< orientation tests; 0 where it makes none
 
   /// Median over up to 50 blocks of steps, per particle.
@@ -41,9 +44,10 @@ struct Row {
   [[nodiscard]] const Lane* lane(std::string_view name) const;
 };
 
-/// Runs a workload: a row for each number of threads. dartcast leads, in blocks of 100 steps (of one where the scene
-/// deforms); each competitor then answers the block's segments, every block another one first. The first block is not
-/// counted. Where the scene stands still each so works with its own data in the caches; what disturbs one disturbs all.
+/// Runs a workload: a row for each number of threads. In the plane only competitors that have an answer there take
+/// part. dartcast leads, in blocks of 100 steps (of one where the scene deforms); each competitor then answers the
+/// block's segments, every block another one first. The first block is not counted. Where the scene stands still each
+/// so works with its own data in the caches; what disturbs one disturbs all.
 ///
 /// A competitor disagrees on a segment where one of the two meets a wall and the other does not, or where both do and
 /// neither the triangle nor the time (within 1e-4 of a cell) is the same. What dartcast finds is what happens.

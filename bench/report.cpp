@@ -27,7 +27,8 @@ Json workload_json(const Row& row) {
   if (w.scene == Scene::tube) json["faces_of_a_cell"] = w.size + 2;
   json["particles"] = w.particles;
   if (w.name == "W3") json["order"] = w.cell_order ? "cell" : "random";
-  if (w.scene == Scene::box || w.scene == Scene::tube) json["step_length_in_cells"] = w.step_length;
+  if (w.scene == Scene::box || w.scene == Scene::squares || w.scene == Scene::tube)
+    json["step_length_in_cells"] = w.step_length;
   json["steps"] = row.lanes[0].step_ns.size();
   json["threads"] = row.threads;
   if (w.against_peers) json["wall_triangles"] = row.wall_triangles;
@@ -47,6 +48,9 @@ Json row_json(const Row& row) {
     json["ratio"][lane.name] = ratio_to_dartcast(row, lane);
     json["disagreements"][lane.name] = lane.disagreements;
     json["disagreements_at_start"][lane.name] = lane.at_start;
+    json["passed_through_wall"][lane.name] = lane.through;
+    json["stopped_at_no_wall"][lane.name] = lane.stopped;
+    if (row.workload.scene == Scene::squares) json["wrong_cell"][lane.name] = lane.wrong_cells;
     if (lane.failed > 0) json["failed"][lane.name] = lane.failed;
   }
   if (const Lane* best = best_of_embree(row)) json["ratio"]["embree_best"] = ratio_to_dartcast(row, *best);
@@ -70,16 +74,19 @@ std::string report_csv(std::span<const Row> rows) {
   std::string out =
       "workload,cells,deforms,faces_of_a_cell,particles,order,step_length_in_cells,steps,threads,competitor,"
       "ns_per_particle_step,mean_ns_per_particle_step,step_us_median,step_us_p99,step_us_longest,"
-      "orientation_tests_per_particle_step,disagreements,disagreements_at_start,failed\n";
+      "orientation_tests_per_particle_step,disagreements,disagreements_at_start,failed,passed_through_wall,stopped_at_"
+      "no_wall,wrong_cell\n";
   for (const Row& row : rows) {
     const WorkloadOptions& w = row.workload;
     for (const Lane& lane : row.lanes) {
-      out += fmt::format("{},{},{:d},{},{},{},{},{},{},{},{:.2f},{:.2f},{:.2f},{:.2f},{:.2f},{:.3f},{},{},{}\n", w.name,
-                         row.cells, w.deforms, w.scene == Scene::tube ? fmt::to_string(w.size + 2) : "", w.particles,
-                         w.cell_order ? "cell" : "random", w.step_length, lane.step_ns.size(), row.threads, lane.name,
-                         lane.ns_per_particle_step(w.particles), lane.mean_ns_per_particle_step(w.particles),
-                         lane.quantile_ns(0.5) / 1e3, lane.quantile_ns(0.99) / 1e3, lane.quantile_ns(1.0) / 1e3,
-                         per_step(row, lane.tests), lane.disagreements, lane.at_start, lane.failed);
+      out +=
+          fmt::format("{},{},{:d},{},{},{},{},{},{},{},{:.2f},{:.2f},{:.2f},{:.2f},{:.2f},{:.3f},{},{},{},{},{},{}\n",
+                      w.name, row.cells, w.deforms, w.scene == Scene::tube ? fmt::to_string(w.size + 2) : "",
+                      w.particles, w.cell_order ? "cell" : "random", w.step_length, lane.step_ns.size(), row.threads,
+                      lane.name, lane.ns_per_particle_step(w.particles), lane.mean_ns_per_particle_step(w.particles),
+                      lane.quantile_ns(0.5) / 1e3, lane.quantile_ns(0.99) / 1e3, lane.quantile_ns(1.0) / 1e3,
+                      per_step(row, lane.tests), lane.disagreements, lane.at_start, lane.failed, lane.through,
+                      lane.stopped, lane.wrong_cells);
     }
   }
   return out;

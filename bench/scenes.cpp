@@ -4,7 +4,9 @@
 #include <numbers>
 
 #include "bench/workload.hpp"
+#include "dartcast/mesh/generate_blocked.hpp"
 #include "dartcast/mesh/generate_box.hpp"
+#include "dartcast/mesh/generate_rectangle.hpp"
 #include "dartcast/mesh/generate_vessel.hpp"
 
 namespace dartcast::bench {
@@ -20,6 +22,21 @@ MeshData box(std::uint32_t size) {
   options.blocked_layer = true;
   options.blocked_share = 0.1;
   return generate_box(options);
+}
+
+MeshData squares(std::uint32_t size) {
+  RectangleOptions options;
+  options.cells = {size, size};
+  options.size = {double(size), double(size)};
+  MeshData mesh = generate_rectangle(options);
+  std::vector<std::uint8_t> blocked(mesh.cell_count(), 0);
+  for (std::uint32_t i = 0; i < size; ++i) {
+    for (const std::uint32_t cell : {i, size * (size - 1) + i, size * i, size * i + size - 1}) blocked[cell] = 1;
+  }
+  block_share(blocked, 0.1, options.seed);
+  mesh.free.assign(blocked.size(), 1);
+  for (std::size_t cell = 0; cell < blocked.size(); ++cell) mesh.free[cell] = blocked[cell] == 0 ? 1 : 0;
+  return mesh;
 }
 
 // One prism's faces: the two polygons, then the sides. Points of a layer follow one another.
@@ -75,6 +92,19 @@ std::vector<DeformationStep> box_deformation(double size) {
           about(DeformationKind::rotate, centre, 0.0, turn * farthest / fastest, size)};
 }
 
+// In the plane: bent about a line across it, and turned.
+std::vector<DeformationStep> square_deformation(double size) {
+  constexpr double fastest = 0.03;  // of a vertex in each of the two, cells a step
+  constexpr double amplitude = 0.5;
+  const Vec3 centre = Vec3{0.5, 0.5, 0.0} * size;
+  const double farthest = 0.5 * std::sqrt(2.0) * size;
+  const double swing = turn * 0.375 * amplitude * size / fastest;
+  std::vector<DeformationStep> steps = {about(DeformationKind::bend, centre, amplitude, swing, size),
+                                        about(DeformationKind::rotate, centre, 0.0, turn * farthest / fastest, size)};
+  steps[0].axis = {0.0, 1.0, 0.0};
+  return steps;
+}
+
 std::vector<DeformationStep> bar_deformation() {
   const Vec3 centre = {2.5, 2.5, 14.0};
   std::vector<DeformationStep> steps = {about(DeformationKind::twist, centre, 1.5, 4.0, 14.0),
@@ -114,6 +144,7 @@ MeshData mesh_of(const WorkloadOptions& options) {
     case Scene::tube: return tube(options.size);
     case Scene::bar: return generate_bar();
     case Scene::vessel: return generate_vessel();
+    case Scene::squares: return squares(options.size);
     default: return box(options.size);
   }
 }
@@ -122,6 +153,7 @@ std::vector<DeformationStep> deformation_of(const WorkloadOptions& options, cons
   if (!options.deforms) return {};
   if (options.scene == Scene::bar) return bar_deformation();
   if (options.scene == Scene::vessel) return vessel_deformation(mesh);
+  if (options.scene == Scene::squares) return square_deformation(options.size);
   return box_deformation(options.size);
 }
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "bench/figures.hpp"
 #include "bench/report.hpp"
@@ -70,6 +71,12 @@ std::string answers(const Row& row, const Lane& lane) {
   return fmt::format("{} ({})", lane.disagreements, lane.at_start);
 }
 
+std::string errors(const Row& row, const Lane& lane) {
+  if (&lane == row.lanes.data()) return fmt::format("of {}", row.counters.particle_steps);
+  return fmt::format("{} {} {} {} {}", lane.through, lane.stopped,
+                     lane.disagreements - lane.through - lane.stopped - lane.failed, lane.failed, lane.wrong_cells);
+}
+
 std::string tests(const Row& row, const Lane& lane) {
   if (lane.tests == 0) return "";
   const auto share = [](std::uint64_t a, std::uint64_t b) { return static_cast<double>(a) / static_cast<double>(b); };
@@ -86,6 +93,9 @@ std::string title(const WorkloadOptions& w) {
   if (w.scene == Scene::box || w.scene == Scene::lattice) {
     out += fmt::format(", {} cells", std::uint64_t{w.size} * w.size * w.size);
   }
+  if (w.scene == Scene::squares) {
+    out += fmt::format(", {} faces, {}", std::uint64_t{w.size} * w.size, w.deforms ? "moving" : "still");
+  }
   if (w.particles != 1000) out += fmt::format(", {} particles", w.particles);
   if (w.cell_order) out += ", in cell order";
   if (w.scene == Scene::tube) out += fmt::format(", cells of {} faces", w.size + 2);
@@ -94,10 +104,19 @@ std::string title(const WorkloadOptions& w) {
 }
 
 std::string report_text(std::span<const Row> rows) {
+  std::vector<Row> plane;
+  std::copy_if(rows.begin(), rows.end(), std::back_inserter(plane),
+               [](const Row& row) { return row.workload.scene == Scene::squares; });
   std::string out =
       table(rows, "ns per particle-step, contacts included (and how many times dartcast's it takes)", speed);
   out += table(rows, "one step of all particles, us: median, 99th percentile, longest", steps);
   out += table(rows, "segments answered otherwise than by dartcast (of these: those that start on a wall)", answers);
+  if (!plane.empty()) {
+    out += table(
+        plane,
+        "in the plane: through a wall, stopped at none, at another wall or place, in endless loops; in the wrong cell",
+        errors);
+  }
   out += table(rows, "orientation tests per particle-step", tests);
   out += '\n';
   for (const Figure& figure : figures(rows)) out += fmt::format("{}: {:.2f}\n", figure.text, figure.value);

@@ -19,7 +19,11 @@ namespace {
 constexpr std::uint64_t seed = 1;
 constexpr double lattice_step = 0.125;  // a power of two: all coordinates stay exact
 
-Vec3 random_direction(Random& random) {
+Vec3 random_direction(Random& random, unsigned dimension) {
+  if (dimension == 2) {
+    const double angle = random.uniform(0.0, 2.0 * std::numbers::pi);
+    return {std::cos(angle), std::sin(angle), 0.0};
+  }
   const double z = random.uniform(-1.0, 1.0);
   const double angle = random.uniform(0.0, 2.0 * std::numbers::pi);
   const double r = std::sqrt(1.0 - z * z);
@@ -59,7 +63,7 @@ Workload::Workload(const WorkloadOptions& options, MeshData mesh) : options_(opt
     field_.emplace(environment_.complex(), vectors(mesh, "velocity"), FieldFrame::mesh);
   } else if (options.scene != Scene::lattice) {
     speed_ = options.step_length;
-    gravity_ = {0.0, 0.0, -0.001 * speed_};
+    gravity_ = environment_.map().dimension() == 2 ? Vec3{0.0, -0.001 * speed_, 0.0} : Vec3{0.0, 0.0, -0.001 * speed_};
   }
   std::vector<DeformationStep> steps = deformation_of(options, mesh);
   if (!steps.empty()) deformation_.emplace(std::move(steps), environment_.positions());
@@ -107,7 +111,7 @@ void Workload::set_velocities(Random& random) {
       case Scene::lattice: v = lattice_direction(random) * lattice_step; break;
       case Scene::bar: v = {2.0, 3.0, 0.0}; break;
       case Scene::vessel: v = {1.0, 0.0, 0.0}; break;
-      default: v = random_direction(random) * speed_;
+      default: v = random_direction(random, environment_.map().dimension()) * speed_;
     }
   }
 }

@@ -18,6 +18,7 @@ namespace dartcast::bench {
 enum class Scene : std::uint8_t {
   box,      ///< size^3 unit cubes, the outer layer and a tenth of the others blocked; particles fly at random
   lattice,  ///< the same box; particles on its planes, lines and points, that move along its directions
+  squares,  ///< size^2 unit squares of the plane, the outer layer and a tenth of the others blocked, as the box
   tube,     ///< 1,000 prisms over a regular polygon of `size` corners, one upon another
   bar,      ///< the paper's 5 x 5 x 28 cubes, as scenes/bar_static.toml and scenes/bar_deforming.toml
   vessel    ///< the branching vessel; particles are carried by its flow, and back where they meet a wall or an end
@@ -39,7 +40,8 @@ struct WorkloadOptions {
 MeshData mesh_of(const WorkloadOptions& options);
 /// A point array of three components. Precondition: the mesh has it.
 std::vector<Vec3> vectors(const MeshData& mesh, std::string_view name);
-/// Empty where the scene stands still. In boxes no vertex moves by more than 0.06 cells a step, whatever the size.
+/// Empty where the scene stands still. In boxes and squares no vertex moves by more than 0.06 cells a step, whatever
+/// the size.
 std::vector<DeformationStep> deformation_of(const WorkloadOptions& options, const MeshData& mesh);
 
 /// Carries particles through one scene, a step after another: aim(), then environment().move() where the scene deforms,

@@ -55,6 +55,7 @@ int run(const Arguments& a) {
   write(folder / "bench.json", bench::report_json(rows) + "\n");
   write(folder / "bench.csv", bench::report_csv(rows));
   write(folder / "bench.svg", bench::chart_svg(rows));
+  write(folder / "bench_plane.svg", bench::plane_chart_svg(rows));
   if (a.json) {
     fmt::print("{}\n", bench::report_json(rows));
   } else {
@@ -72,7 +73,9 @@ void add_bench(CLI::App& app, int& status) {
   verb->add_option("--only", a->plan.only, "workloads to run, as in W1,W3 (all)")->delimiter(',');
   verb->add_option("--steps", a->plan.steps, "steps of a workload at most (15 to 1000)")
       ->check(CLI::Range(1U, 1000000U));
-  verb->add_option("-o,--output", a->folder, "folder for bench.json, bench.csv and bench.svg (bench-out)")->take_last();
+  verb->add_option("-o,--output", a->folder,
+                   "folder for bench.json, bench.csv, bench.svg and bench_plane.svg (bench-out)")
+      ->take_last();
   verb->add_flag("--json", a->json, "print one JSON object, and nothing else");
   verb->add_flag("--edits", a->edits, "edits per second at 10^3 and 10^6 cells, and nothing else");
   verb->callback([a, &status] { status = a->edits ? run_edits(a->json) : run(*a); });

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -123,7 +124,7 @@ std::vector<Vec3> flown(const WorkloadOptions& options) {
 }
 
 TEST(Workload, IsTheSameInEveryRun) {
-  for (const Scene scene : {Scene::box, Scene::lattice, Scene::tube, Scene::bar, Scene::vessel}) {
+  for (const Scene scene : {Scene::box, Scene::lattice, Scene::squares, Scene::tube, Scene::bar, Scene::vessel}) {
     for (const bool deforms : {false, true}) {
       if (deforms && (scene == Scene::lattice || scene == Scene::tube)) continue;
       const WorkloadOptions options = small(scene, deforms, 20);
@@ -166,6 +167,48 @@ TEST(Race, AllAgreeButForRounding) {
       EXPECT_LE(lane.quantile_ns(0.5), lane.quantile_ns(0.99)) << lane.name;
       if (lane.name != "paper") EXPECT_LE(lane.disagreements, 10U) << lane.name;
     }
+  }
+}
+
+// Says the same of every segment.
+class Constant : public Peer {
+ public:
+  explicit Constant(const Hit& hit) : hit_(hit) {}
+  void write(std::span<const Vec3> /*points*/) override {}
+  void refit() override {}
+  void cast(std::span<const Segment> /*segments*/, std::span<Hit> hits) override { std::ranges::fill(hits, hit_); }
+  [[nodiscard]] std::uint64_t wrong_cells() const override { return ++asked_; }
+
+ private:
+  Hit hit_;
+  mutable std::uint64_t asked_ = 6;
+};
+
+std::unique_ptr<Peer> make_blind(const PeerScene&) { return std::make_unique<Constant>(Hit{}); }
+std::unique_ptr<Peer> make_timid(const PeerScene&) { return std::make_unique<Constant>(Hit{0, 1.0}); }
+std::unique_ptr<Peer> make_lost(const PeerScene&) { return std::make_unique<Constant>(Hit{Hit::failed, 1.0}); }
+
+TEST(Race, TellsErrorsApart) {
+  const std::vector<PeerKind> kinds = {
+      {"blind", make_blind, true}, {"timid", make_timid, true}, {"lost", make_lost, true}, {"of space", make_lost}};
+  for (const Scene scene : {Scene::squares, Scene::box}) {
+    const Row row = race(small(scene, true, 100), kinds).front();
+    ASSERT_EQ(row.lanes.size(), scene == Scene::box ? 5U : 4U) << "only in space";
+    const std::uint64_t steps = row.counters.particle_steps;
+    const auto& c = row.counters.contacts;
+    const std::uint64_t contacts = c[0] + c[1] + c[2];
+    ASSERT_GT(contacts, 100U);
+    const Lane& blind = row.lanes[1];
+    EXPECT_EQ(blind.through, contacts);
+    EXPECT_EQ(blind.disagreements, contacts);
+    EXPECT_EQ(blind.stopped + blind.failed, 0U);
+    const Lane& timid = row.lanes[2];
+    EXPECT_EQ(timid.stopped, steps - contacts);
+    EXPECT_EQ(timid.through + timid.failed, 0U);
+    const Lane& lost = row.lanes[3];
+    EXPECT_EQ(lost.failed, steps);
+    EXPECT_EQ(lost.through + lost.stopped, 0U);
+    EXPECT_EQ(lost.wrong_cells, 1U) << "since the first block, which is not counted";
   }
 }
 
@@ -235,6 +278,36 @@ TEST(Report, SaysTheSameInAllForms) {
   EXPECT_TRUE(well_formed(svg)) << svg;
   EXPECT_NE(svg.find("dartcast"), std::string::npos);
   EXPECT_TRUE(well_formed(chart_svg({})));
+}
+
+TEST(Report, SaysWhatWentWrongInThePlane) {
+  std::vector<Row> rows;
+  for (const bool deforms : {false, true}) {
+    for (const std::uint32_t size : {32U, 1000U}) {
+      WorkloadOptions options = small(Scene::squares, deforms, 5);
+      options.name = "W6";
+      rows.push_back(race(options, peer_kinds()).front());
+      rows.back().workload.size = size;
+      rows.back().workload.particles = 1000;
+    }
+  }
+  rows[3].lanes[1].disagreements = 100;
+  rows[3].lanes[1].through = 10;
+  rows[3].lanes[1].stopped = 20;
+  rows[3].lanes[1].failed = 30;
+  rows[3].lanes[1].wrong_cells = 50;
+  const std::string text = report_text(rows);
+  EXPECT_NE(text.find("W6, 1000000 faces, moving"), std::string::npos);
+  EXPECT_NE(text.find("10 20 40 30 50"), std::string::npos) << text;
+  const auto json = nlohmann::json::parse(report_json(rows));
+  EXPECT_EQ(json["rows"][3]["passed_through_wall"]["paper"], 10);
+  EXPECT_EQ(json["rows"][3]["stopped_at_no_wall"]["paper"], 20);
+  EXPECT_EQ(json["rows"][3]["wrong_cell"]["paper"], 50);
+  for (const char* key : {"growth_plane_still_dartcast", "growth_plane_moving_paper"})
+    EXPECT_GT(json["figures"][key], 0.0) << key;
+  EXPECT_TRUE(well_formed(plane_chart_svg(rows)));
+  EXPECT_NE(plane_chart_svg(rows).find("faces of the scene"), std::string::npos);
+  EXPECT_EQ(plane_chart_svg(rows).find("Bullet"), std::string::npos);
 }
 
 TEST(Plan, QuickAndFull) {

@@ -1,6 +1,7 @@
-// Fixed small scenes to count instructions in: `steps still`, `steps moving` or `steps lattice`. What counts is what
-// Environment::advance() executes (run.cmake); the number of particle-steps is printed. And `steps edits EDGE COUNT`:
-// edits of a box of EDGE^3 cells, each followed by the particles.
+// Fixed small scenes to count instructions in: `steps still`, `steps moving` or `steps lattice`, and in the plane
+// `steps plane` or `steps plane_moving`. What counts is what Environment::advance() executes (run.cmake); the number of
+// particle-steps is printed. And `steps edits EDGE COUNT`: edits of a box of EDGE^3 cells, each followed by the
+// particles.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -13,6 +14,7 @@
 #include "dartcast/environment/environment.hpp"
 #include "dartcast/map/edit.hpp"
 #include "dartcast/mesh/generate_box.hpp"
+#include "dartcast/mesh/generate_rectangle.hpp"
 #include "dartcast/simulation/seeding.hpp"
 
 namespace {
@@ -20,8 +22,17 @@ namespace {
 using namespace dartcast;
 
 constexpr std::uint32_t edge = 10;
+constexpr std::uint32_t plane_edge = 32;
 constexpr std::size_t particles = 1000;
 constexpr std::size_t steps = 50;
+
+Environment make_plane() {
+  RectangleOptions squares;
+  squares.cells = {plane_edge, plane_edge};
+  squares.size = {plane_edge, plane_edge};
+  squares.blocked_share = 0.1;
+  return Environment(generate_rectangle(squares), Threads{1});
+}
 
 Environment make_environment() {
   BoxOptions box;
@@ -42,11 +53,18 @@ void twist(std::span<const Vec3> rest, double time, std::span<Vec3> out) {
   }
 }
 
-// A tenth of a cell a step: any way, or along the lattice's lines.
-std::vector<Vec3> random_velocities(Random& random, bool along_lattice) {
+// In the plane: squares lean over, by 0.06 cells a step at most.
+void shear(std::span<const Vec3> rest, double time, std::span<Vec3> out) {
+  for (std::size_t i = 0; i < rest.size(); ++i)
+    out[i] = rest[i] + Vec3{0.03 * std::sin(2e-2 * std::numbers::pi * time) * rest[i].y, 0, 0};
+}
+
+// A tenth of a cell a step: any way, or along the lattice's lines, or in the plane.
+std::vector<Vec3> random_velocities(Random& random, bool along_lattice, bool plane) {
   std::vector<Vec3> velocities;
   while (velocities.size() < particles) {
-    const Vec3 v{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+    Vec3 v{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+    if (plane) v.z = 0;
     velocities.push_back(along_lattice ? Vec3{v.x < 0 ? -0.125 : 0.125, 0, 0} : v * (0.1 / norm(v)));
   }
   return velocities;
@@ -84,9 +102,10 @@ int main(int argc, char** argv) {
   if (argc == 4 && std::strcmp(argv[1], "edits") == 0)
     return edit(static_cast<std::uint32_t>(std::atoi(argv[2])), static_cast<std::uint32_t>(std::atoi(argv[3])));
   const char* kind = argc == 2 ? argv[1] : "";
-  const bool moving = std::strcmp(kind, "moving") == 0;
+  const bool plane = std::strncmp(kind, "plane", 5) == 0;
+  const bool moving = std::strcmp(kind, plane ? "plane_moving" : "moving") == 0;
   const bool lattice = std::strcmp(kind, "lattice") == 0;
-  Environment environment = make_environment();
+  Environment environment = plane ? make_plane() : make_environment();
   const std::vector<Vec3> rest(environment.positions().begin(), environment.positions().end());
   Random random(5);
   const VolumeSampler sampler(environment.complex());
@@ -101,13 +120,13 @@ int main(int argc, char** argv) {
       environment.add(set, s.simplex, s.position);
     }
   }
-  std::vector<Vec3> velocities = random_velocities(random, lattice);
+  std::vector<Vec3> velocities = random_velocities(random, lattice, plane);
   std::vector<Vec3> targets(particles);
   std::uint64_t contacts = 0;
   for (std::size_t step = 1; step <= steps; ++step) {
     for (std::size_t i = 0; i < particles; ++i) targets[i] = set[i].position + velocities[i];
     if (moving) {
-      twist(rest, static_cast<double>(step), environment.next_positions());
+      (plane ? shear : twist)(rest, static_cast<double>(step), environment.next_positions());
       environment.move();
     }
     const StepReport report = environment.advance(set, targets);
