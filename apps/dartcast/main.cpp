@@ -33,12 +33,13 @@ int main(int argc, char** argv) {
   verbs::add_check(app, status);
   verbs::add_info(app, status);
   verbs::add_convert(app, status);
+  verbs::add_trace(app, status);
 #ifdef DARTCAST_BENCH
   verbs::add_bench(app, status);
 #endif
   try {
     app.parse(argc, argv);
-    if (app.get_subcommands().empty()) throw CLI::RequiredError("one of run, check, info, convert, bench");
+    if (app.get_subcommands().empty()) throw CLI::RequiredError("one of run, check, info, convert, trace, bench");
   } catch (const CLI::Success& e) {
     return app.exit(e);  // help, version
   } catch (const CLI::ParseError& e) {

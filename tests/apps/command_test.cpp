@@ -235,6 +235,44 @@ TEST_F(Command, InfoTellsOfMeshesAndScenes) {
   EXPECT_NE(run("info good.mesh").out.find("per cell"), std::string::npos);
 }
 
+TEST_F(Command, TraceListsAndDrawsTheCellsPassed) {
+  (void)write("plane.toml", "[environment]\ngenerator = 'rectangle'\ncells = [4, 4]\n[motion]\ndt = 0.1\nsteps = 1\n");
+  Result r = run("trace plane.toml --from 0.5,0.5 --to 1.5,1.5 --to 1.5,2.5");
+  ASSERT_EQ(r.status, 0) << r.error;
+  EXPECT_EQ(r.out,
+            "step,time,event,kind,x,y,z,cell,next\n"
+            "1,0,start,face,0.5,0.5,0,0,\n"
+            "1,0.5,crossing,vertex,1,1,0,0,5\n"
+            "1,1,target,face,1.5,1.5,0,5,\n"
+            "2,0.5,crossing,edge,1.5,2,0,5,9\n"
+            "2,1,end,face,1.5,2.5,0,9,\n");
+  const std::string table = r.out;
+  r = run("trace plane.toml --from 0.5,0.5,0 --to 1.5,1.5 --to 1.5,2.5 -o a.csv");
+  EXPECT_EQ(r.out, "a.csv: 2 crossings, arrived\n") << r.error;
+  EXPECT_EQ(content(folder / "a.csv"), table);
+  r = run("trace --to 1.5,-2.5 plane.toml -o a.svg --from 0.5,0.5");
+  EXPECT_EQ(r.out, "a.svg: 0 crossings, stopped at a wall\n") << r.error;
+  EXPECT_EQ(content(folder / "a.svg").rfind("<svg ", 0), 0U);
+}
+
+TEST_F(Command, TraceTellsWhatItCannotDo) {
+  (void)write("good.mesh", tetrahedron());
+  const Result r = run("trace good.mesh --from 0.1,0.1,0.1 --to 0.2,0.1,2e-1");
+  EXPECT_EQ(r.out,
+            "step,time,event,kind,x,y,z,cell,next\n1,0,start,volume,0.1,0.1,0.1,0,\n1,1,end,volume,0.2,0.1,0.2,0,\n")
+      << r.error;
+  const std::string ends = " --from 0.1,0.1,0.1 --to 0.2,0.1,0.2";
+  expect_failure("trace good.mesh" + ends + " -o a.svg", 1, ".csv");
+  expect_failure("trace good.mesh" + ends + " -o a.png", 2, "a.png");
+  expect_failure("trace good.mesh --from 0.1,0.1 --to 0.2,0.1,0.2", 1, "x,y,z");
+  expect_failure("trace good.mesh --from 1,1,1 --to 0.2,0.1,0.2", 1, "in no cell");
+  expect_failure("trace good.mesh --from 0.1,0.1,0.1 --to 0.2,0.1,nan", 1, "finite");
+  expect_failure("trace good.mesh --from 0.1,0.1,0.1", 2, "--to");
+  for (const std::string point : {"1", "1,", "1,2,3,4", "1;2", "1,2,x", "''"})
+    expect_failure("trace good.mesh --from '" + point + "' --to 0,0,0", 2, "--from");
+  expect_failure("trace no.vtu" + ends, 1, "no.vtu");
+}
+
 TEST_F(Command, ConvertGoesRoundThroughAllFormats) {
   (void)write("a.mesh", tetrahedron());
   std::string from = "a.mesh";

@@ -10,13 +10,14 @@
 #include "dartcast/base/error.hpp"
 #include "dartcast/geometry/interior.hpp"
 #include "dartcast/mesh/inspect.hpp"
+#include "dartcast/walk/filtered_plane.hpp"
 #include "dartcast/walk/nearby.hpp"
 
 namespace dartcast {
 
 namespace {
 
-constexpr std::size_t grain = detail::filtered_batch;
+constexpr std::size_t chunk = detail::filtered_batch;
 constexpr const char* missed_move = "add: advance the particles first, they have not followed the last move";
 constexpr const char* missed_edit =
     "the particles have not followed the last edit: every set must follow() each edit before the next";
@@ -127,7 +128,7 @@ std::vector<Location> Environment::locate(std::span<const Vec3> points) {
   for (std::size_t i = 0; i < points.size(); ++i) order[i] = {locator_->bin(points[i]), i};
   std::sort(order.begin(), order.end());
   std::vector<Location> locations(points.size());
-  parallel_for(points.size(), grain, threads_, [&](std::size_t begin, std::size_t end) {
+  parallel_for(points.size(), chunk, threads_, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t point = order[i].second;
       locations[point] = locator_->locate(complex_, points[point]);
@@ -246,13 +247,20 @@ ComplexEditReport Environment::edit(const std::function<void(ComplexEdit&)>& mak
 void Environment::check_targets(const Particles& particles, std::span<const Vec3> targets) const {
   if (targets.size() != particles.size())
     throw InvalidArgument(fmt::format("advance: {} targets for {} particles", targets.size(), particles.size()));
-  if (particles.size() > 0 && particles.moves_ + 1 < moves_)
-    throw InvalidArgument("advance: the particles missed a move: advance every set once after each move");
-  if (particles.size() > 0 && particles.edits_ != edits_)
-    throw InvalidArgument(fmt::format("advance: {}", missed_edit));
-  if (map().dimension() == 3 && detail::all_in_exact_range(targets)) return;
+  const bool dimension_fits =
+      map().dimension() == 3 || std::all_of(targets.begin(), targets.end(), [](const Vec3& q) { return q.z == 0.0; });
+  if (dimension_fits && detail::all_in_exact_range(targets)) return;
   for (std::size_t i = 0; i < targets.size(); ++i)
     check_point(targets[i], "the target of particle", i, map().dimension());
+}
+
+void Environment::check_followed(const Particles& particles, const StepOptions& options, const char* call) const {
+  if (particles.size() > 0 && particles.moves_ + 1 < moves_)
+    throw InvalidArgument(fmt::format("{}: the particles missed a move: advance every set once after each move", call));
+  if (particles.size() > 0 && particles.edits_ != edits_)
+    throw InvalidArgument(fmt::format("{}: {}", call, missed_edit));
+  if (!(options.tolerance > 0.0) || options.max_parts == 0)
+    throw InvalidArgument(fmt::format("{}: the tolerance and the number of parts must be positive", call));
 }
 
 // One call of advance().
@@ -267,17 +275,17 @@ void Environment::step_chunk(const Steps& steps, std::size_t begin, std::size_t 
   const std::size_t size = end - begin;
   const std::span<State> states = std::span(steps.particles.states_).subspan(begin, size);
   const std::span<const Vec3> targets = steps.targets.subspan(begin, size);
-  std::array<detail::Taken, grain> taken;
+  std::array<detail::Taken, chunk> taken;
   std::vector<Begun> begun;
   begun.reserve(size);
   const std::span<detail::VertexNumbers> vertices = std::span(steps.particles.vertices_).subspan(begin, size);
   std::span<detail::Trail> trails = steps.particles.trails_;
   if (!trails.empty()) trails = trails.subspan(begin, size);
+  const detail::FilteredSteps batch{states, vertices, trails, targets, std::span(taken).first(size), begun};
   if (map().dimension() == 2)
-    taken.fill(detail::taken_nothing);
+    detail::step_plane(steps.filtered, batch, part.counters);
   else
-    detail::step_filtered(steps.filtered, {states, vertices, trails, targets, std::span(taken).first(size), begun},
-                          part.counters);
+    detail::step_filtered(steps.filtered, batch, part.counters);
   for (std::size_t i = 0; i < size; ++i) {
     if (taken[i] == detail::taken_all) continue;
     const auto particle = static_cast<std::uint32_t>(begin + i);
@@ -292,22 +300,21 @@ void Environment::step_chunk(const Steps& steps, std::size_t begin, std::size_t 
 }
 
 void Environment::step_all(const Steps& steps, std::vector<StepReport>& parts) const {
-  parallel_for(steps.targets.size(), grain, threads_,
-               [&](std::size_t begin, std::size_t end) { step_chunk(steps, begin, end, parts[begin / grain]); });
+  parallel_for(steps.targets.size(), chunk, threads_,
+               [&](std::size_t begin, std::size_t end) { step_chunk(steps, begin, end, parts[begin / chunk]); });
 }
 
 StepReport Environment::advance(Particles& particles, std::span<const Vec3> targets, const Respond& respond,
                                 const StepOptions& options) {
   check_targets(particles, targets);
-  if (!(options.tolerance > 0.0) || options.max_parts == 0)
-    throw InvalidArgument("advance: the tolerance and the number of parts must be positive");
+  check_followed(particles, options, "advance");
   const bool moved = particles.moves_ != moves_;
   const bool trails_match = moved && particles.trails_.size() == particles.size();
   const Steps steps{particles,
                     targets,
                     Stepper(complex_, moved, options, respond),
                     {&complex_, moved, trails_match, options.tolerance}};
-  std::vector<StepReport> parts(chunk_count(particles.size(), grain));
+  std::vector<StepReport> parts(chunk_count(particles.size(), chunk));
   particles.residents_.reset();
   const Particles before = respond ? particles : Particles{};  // a response is the caller's code: it may throw
   particles.trails_.resize(moved && map().dimension() == 3 ? particles.size() : 0);
@@ -332,6 +339,31 @@ StepReport Environment::advance(Particles& particles, std::span<const Vec3> targ
     report.counters += part.counters;
   }
   return report;
+}
+
+std::vector<Trace> Environment::trace(const Particles& particles, std::size_t particle, std::span<const Vec3> targets,
+                                      const Respond& respond, const StepOptions& options) const {
+  if (particle >= particles.size())
+    throw InvalidArgument(fmt::format("trace: there is no particle {} among {}", particle, particles.size()));
+  check_followed(particles, options, "trace");
+  for (std::size_t i = 0; i < targets.size(); ++i) check_point(targets[i], "target", i, map().dimension());
+  bool moved = particles.moves_ != moves_;
+  State state = particles[particle];
+  Weights weights = particles.weights_[particle];
+  std::vector<Trace> traces;
+  for (const Vec3& target : targets) {
+    Trace& trace = traces.emplace_back();
+    trace.before = state;
+    trace.start = forecast(map(), state, moved ? complex_.previous_corners(state.at()) : complex_.corners(state.at()));
+    trace.result =
+        Stepper(complex_, moved, options, respond)
+            .trace(static_cast<std::uint32_t>(particle), state, weights, target, trace.contacts, trace.crossings);
+    trace.after = state;
+    trace.end = forecast(map(), state, complex_.corners(state.at()));
+    if (trace.result.stopped || trace.result.held) break;
+    moved = false;
+  }
+  return traces;
 }
 
 }  // namespace dartcast

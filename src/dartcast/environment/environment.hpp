@@ -11,6 +11,7 @@
 #include "dartcast/base/ids.hpp"
 #include "dartcast/base/parallel.hpp"
 #include "dartcast/environment/residents.hpp"
+#include "dartcast/environment/trace.hpp"
 #include "dartcast/geometry/complex.hpp"
 #include "dartcast/geometry/complex_edit.hpp"
 #include "dartcast/geometry/first_flattening.hpp"
@@ -164,6 +165,15 @@ class Environment {
   StepReport advance(Particles& particles, std::span<const Vec3> targets, const Respond& respond = {},
                      const StepOptions& options = {});
 
+  /// What one particle would do on its way to each of these targets in turn, its crossings from cell to cell too, while
+  /// the particle stays as it is: the states and contacts that advance() gives, to the same bits. It ends with the
+  /// first target before which the particle is stopped or held. After a move() the first step is along with the
+  /// vertices, as the next advance(); those that follow are not. Throws as advance(), and where there is no such
+  /// particle. Cost: as one step for each target, and some exact determinants for each crossing.
+  [[nodiscard]] std::vector<Trace> trace(const Particles& particles, std::size_t particle,
+                                         std::span<const Vec3> targets, const Respond& respond = {},
+                                         const StepOptions& options = {}) const;
+
   /// Checks every simplex of the scene; exact, parallel, streaming.
   [[nodiscard]] Validity validity(std::size_t most = 10) const { return check_validity(complex_, threads_, most); }
 
@@ -177,6 +187,7 @@ class Environment {
   [[nodiscard]] std::vector<Vec3> with_interior(std::span<const Vec3> positions) const;
   void check_current(Particles& particles) const;
   void check_targets(const Particles& particles, std::span<const Vec3> targets) const;
+  void check_followed(const Particles& particles, const StepOptions& options, const char* call) const;
   void add_to(Particles& particles, SimplexId simplex, const Vec3& position) const;
   struct Steps;
   void step_chunk(const Steps& steps, std::size_t begin, std::size_t end, StepReport& part) const;

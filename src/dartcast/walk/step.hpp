@@ -4,10 +4,12 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "dartcast/geometry/complex.hpp"
 #include "dartcast/walk/contact.hpp"
 #include "dartcast/walk/counters.hpp"
+#include "dartcast/walk/crossing.hpp"
 #include "dartcast/walk/state.hpp"
 #include "dartcast/walk/walk.hpp"
 
@@ -60,10 +62,15 @@ class Stepper {
   StepResult step(std::uint32_t particle, State& state, Weights& weights, const Vec3& target, ContactList& contacts,
                   Counters& counters, const Begun* begun = nullptr) const;
 
+  /// The same step to the same bits, for one particle to be looked at: adds its crossings, too. Cost: some exact values
+  /// for each of these.
+  StepResult trace(std::uint32_t particle, State& state, Weights& weights, const Vec3& target, ContactList& contacts,
+                   std::vector<Crossing>& crossings) const;
+
  private:
-  template <std::size_t N>
+  template <std::size_t N, class Recorder>
   StepResult step_in(std::uint32_t particle, State& state, Weights& weights, const Vec3& target, ContactList& contacts,
-                     Counters& counters, const Begun* begun) const;
+                     Counters& counters, const Begun* begun, const Recorder& recorder) const;
 
   const Complex& complex_;
   bool moved_;
