@@ -6,6 +6,7 @@
 #include "dartcast/base/error.hpp"
 #include "dartcast/environment/audit.hpp"
 #include "dartcast/mesh/generate_box.hpp"
+#include "dartcast/mesh/generate_rectangle.hpp"
 #include "dartcast/mesh/generate_vessel.hpp"
 #include "dartcast/simulation/surgery.hpp"
 #include "tier.hpp"
@@ -233,6 +234,35 @@ TEST(Events, SayWhichIsRefused) {
     EXPECT_NE(std::string(e.what()).find("event 1 (ligature at 0 s)"), std::string::npos) << e.what();
   }
   EXPECT_EQ(environment.edit_count(), 0U);
+}
+
+// A ligature across a strip in the plane stops who comes from the left; cuts are refused before anything is done.
+TEST(Events, InThePlaneALigatureSeals) {
+  RectangleOptions o;
+  o.cells = {12, 4};
+  o.size = {12.0, 4.0};
+  Environment environment(generate_rectangle(o));
+  FlowOptions drift;
+  drift.dt = 0.05;
+  drift.gravity = {1.0, 0.0, 0.0};
+  Flow flow(environment, drift, Responses(Response{ResponseKind::slide, 0.0, 0.0}));
+  std::vector<Vec3> places;
+  for (int i = 0; i < 20; ++i) places.push_back({1.0, 0.1 + 0.19 * i, 0.0});
+  flow.add(places, {});
+  const RemeshScene never;
+  const std::vector<Event> cut = {cut_below};
+  EXPECT_THROW(Surgery(cut, never, 0.05, flow), InvalidArgument);
+  const std::vector<Event> tie = {
+      {0.5, Ligature{plane_through({6.5, 2.0, 0.0}, {1.0, 0.0, 0.0}), {6.5, 2.0, 0.0}, {0.0, 1.0}, 0.0}}};
+  Surgery surgery(tie, never, 0.05, flow);
+  for (int i = 0; i < 200; ++i) {
+    surgery.before_step();
+    flow.step();
+    surgery.after_step();
+    ASSERT_NO_FATAL_FAILURE(expect_audited(flow));
+  }
+  EXPECT_EQ(surgery.log().events.at(0).cells_blocked, 4U);
+  EXPECT_EQ(count_if(flow, [](const Vec3& x) { return x.x == 6.0; }), 20U);
 }
 
 }  // namespace

@@ -12,6 +12,11 @@ namespace dartcast {
 Surgery::Surgery(const std::vector<Event>& events, const RemeshScene& remesh, double dt, Flow& flow)
     : events_(events), remesh_(remesh), dt_(dt), flow_(flow) {
   const Map& map = flow.environment().map();
+  for (std::size_t i = 0; map.dimension() == 2 && i < events_.size(); ++i) {
+    if (!std::holds_alternative<Ligature>(events_[i].what))
+      throw InvalidArgument(fmt::format("event {} ({}): in the plane a ligature can be tied, and nothing else be done",
+                                        i + 1, event_kind_names[events_[i].what.index()]));
+  }
   for (const Cell c : map.cells()) {
     if (map.is_free(c)) continue;
     blocked_.resize(std::max<std::size_t>(blocked_.size(), map.source(c) + 1U));

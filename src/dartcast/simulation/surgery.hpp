@@ -26,7 +26,8 @@ struct SurgeryLog {
 
 class Surgery {
  public:
-  /// All outlive it. `events`: by time.
+  /// All outlive it. `events`: by time. Throws InvalidArgument where the scene is of the plane and an event is no
+  /// ligature.
   Surgery(const std::vector<Event>& events, const RemeshScene& remesh, double dt, Flow& flow);
 
   /// To be called before each step: events that are due. Throws as apply(), naming the event.
