@@ -23,46 +23,18 @@ std::uint64_t simplices_of(const Map& map, std::span<const Cell> cells) {
 }  // namespace
 
 ComplexEdit::ComplexEdit(Complex& complex)
-    : complex_(complex), positions_before_(complex.front_.size()), transaction_(complex.map_) {}
+    : complex_(complex), transaction_(complex.map_), born_(transaction_, complex.front_) {}
 
-ComplexEdit::~ComplexEdit() { complex_.front_.resize(positions_before_); }
+ComplexEdit::~ComplexEdit() { born_.give_up(); }
 
-// New vertices take their first positions: numbers used again lie among the others.
-void ComplexEdit::take_born() {
-  born_ = std::min(born_, transaction_.born_count());
-  auto& positions = complex_.front_;
-  positions.resize(map().vertex_count());
-  for (; born_ < transaction_.born_count(); ++born_) {
-    const BornVertex& v = transaction_.born(born_);
-    const Vec3 a = positions[v.from.value];
-    positions[v.vertex.value] = v.from == v.other ? a : (a + positions[v.other.value]) * 0.5;
-  }
-}
-
-Vec3 ComplexEdit::position(Vertex v) {
-  take_born();
-  if (!map().is_vertex(v)) throw InvalidArgument(fmt::format("there is no vertex {}: an edit gave it up", v.value));
-  return complex_.front_[v.value];
-}
+Vec3 ComplexEdit::position(Vertex v) { return born_.at(v); }
 
 // Returns its number among the new ones.
 std::size_t ComplexEdit::place_born(Vertex v, const Vec3& x) {
-  take_born();
-  std::size_t i = born_;
-  while (i > 0 && transaction_.born(i - 1).vertex != v) --i;
-  if (i == 0)
-    throw InvalidArgument(
-        fmt::format("place: vertex {} was not made by this edit; move the others by a move", v.value));
-  if (!in_exact_range(x))
-    throw InvalidArgument(
-        fmt::format("place: vertex {} would be at ({}, {}, {}): coordinates must be finite, and 0 or "
-                    "between 2^-300 and 2^300 in magnitude",
-                    v.value, x.x, x.y, x.z));
   if (map().dimension() == 2 && x.z != 0.0)
     throw InvalidArgument(
         fmt::format("place: vertex {} would be at ({}, {}, {}): in the plane z must be 0", v.value, x.x, x.y, x.z));
-  complex_.front_[v.value] = x;
-  return i - 1;
+  return born_.place(v, x);
 }
 
 void ComplexEdit::place(Vertex v, const Vec3& x) { means_.erase(place_born(v, x)); }
@@ -80,15 +52,15 @@ void ComplexEdit::place(Vertex v, std::span<const Vertex> of, std::span<const do
 void ComplexEdit::roll_back(const Transaction::Mark& to) {
   transaction_.roll_back(to);
   means_.erase(means_.lower_bound(transaction_.born_count()), means_.end());
-  take_born();
+  born_.take();
 }
 
 ComplexEditReport ComplexEdit::commit() {
   try {
-    take_born();
-    const std::size_t born = born_;
+    born_.take();
+    const std::size_t born = born_.count();
     GivenPoints given = give_interior_points(transaction_, complex_.front_);
-    take_born();
+    born_.take();
     given.weights.compute(complex_.front_);
     check_added();
     ComplexEditReport report = make_final(given.weights, born);
@@ -165,8 +137,7 @@ ComplexEditReport ComplexEdit::make_final(const InteriorWeights& points, std::si
     for (const Vertex v : news) complex_.back_[v.value] = complex_.front_[v.value];
   }
   std::erase_if(complex_.invalid_, [&](const InvalidCell& c) { return !map().contains(c.cell); });
-  positions_before_ = complex_.front_.size();
-  born_ = 0;
+  born_.keep();
   means_.clear();
   return report;
 }

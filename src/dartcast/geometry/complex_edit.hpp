@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "dartcast/geometry/born_positions.hpp"
 #include "dartcast/geometry/complex.hpp"
 #include "dartcast/map/transaction.hpp"
 
@@ -100,7 +101,6 @@ class ComplexEdit {
     std::vector<double> weights;
   };
 
-  void take_born();
   std::size_t place_born(Vertex v, const Vec3& x);
   void check_added() const;
   [[nodiscard]] PlacedVertex placed(std::size_t born) const;
@@ -108,9 +108,8 @@ class ComplexEdit {
   ComplexEditReport make_final(const InteriorWeights& points, std::size_t born);
 
   Complex& complex_;
-  std::size_t positions_before_;
   Transaction transaction_;
-  std::size_t born_ = 0;               // so many of the transaction's new vertices have positions
+  detail::BornPositions<AlignedVector<Vec3>> born_;
   std::map<std::size_t, Mean> means_;  // of those placed so, by number among the new
 };
 

@@ -51,9 +51,10 @@ class Surface {
   /// Positions of all points of the mesh, in its order, then of those that edits made (surface/surface_edit.hpp).
   [[nodiscard]] std::span<const Vec3> positions() const { return positions_; }
 
-  /// New positions of all points (numbers that edits gave up can have any); particles ride along. Throws InvalidArgument, nothing changed, where their number
-  /// does not match or one is not finite or out of the exact range, and InvalidMesh, nothing changed, with the faces
-  /// (numbers in the mesh) that would have a triangle without area. Cost: linear.
+  /// New positions of all points (numbers that edits gave up can have any); particles ride along. Throws
+  /// InvalidArgument, nothing changed, where their number does not match or one is not finite or out of the exact
+  /// range, and InvalidMesh, nothing changed, with the faces (numbers in the mesh) that would have a triangle without
+  /// area. Cost: linear.
   void move(std::span<const Vec3> positions, Threads threads = {});
 
   /// Frees or blocks a face, at once: particles in a blocked one are held, its edges to free ones are walls. Throws

@@ -3,60 +3,29 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
 
 #include "dartcast/base/error.hpp"
-#include "dartcast/exact/predicates.hpp"
 #include "dartcast/surface/surface_locator.hpp"
 
 namespace dartcast {
 
 SurfaceEdit::SurfaceEdit(Surface& surface)
-    : surface_(surface), positions_before_(surface.positions_.size()), transaction_(surface.map_) {}
+    : surface_(surface), transaction_(surface.map_), born_(transaction_, surface.positions_) {}
 
-SurfaceEdit::~SurfaceEdit() { surface_.positions_.resize(positions_before_); }
+SurfaceEdit::~SurfaceEdit() { born_.give_up(); }
 
-// New vertices take their first positions: numbers used again lie among the others.
-void SurfaceEdit::take_born() {
-  born_ = std::min(born_, transaction_.born_count());
-  auto& positions = surface_.positions_;
-  positions.resize(map().vertex_count());
-  for (; born_ < transaction_.born_count(); ++born_) {
-    const BornVertex& v = transaction_.born(born_);
-    const Vec3 a = positions[v.from.value];
-    positions[v.vertex.value] = v.from == v.other ? a : (a + positions[v.other.value]) * 0.5;
-  }
-}
+Vec3 SurfaceEdit::position(Vertex v) { return born_.at(v); }
 
-Vec3 SurfaceEdit::position(Vertex v) {
-  take_born();
-  if (!map().is_vertex(v)) throw InvalidArgument(fmt::format("there is no vertex {}: an edit gave it up", v.value));
-  return surface_.positions_[v.value];
-}
-
-void SurfaceEdit::place(Vertex v, const Vec3& x) {
-  take_born();
-  std::size_t i = born_;
-  while (i > 0 && transaction_.born(i - 1).vertex != v) --i;
-  if (i == 0)
-    throw InvalidArgument(
-        fmt::format("place: vertex {} was not made by this edit; move the others by a move", v.value));
-  if (!in_exact_range(x))
-    throw InvalidArgument(
-        fmt::format("place: vertex {} would be at ({}, {}, {}): coordinates must be finite, and 0 or "
-                    "between 2^-300 and 2^300 in magnitude",
-                    v.value, x.x, x.y, x.z));
-  surface_.positions_[v.value] = x;
-}
+void SurfaceEdit::place(Vertex v, const Vec3& x) { born_.place(v, x); }
 
 SurfaceEditReport SurfaceEdit::commit() {
-  take_born();
+  born_.take();
   for (const Cell c : transaction_.added()) {
     if (!surface_.has_flat_triangle(c, surface_.positions_)) continue;
     const std::uint32_t source = map().source(c);
     transaction_.roll_back();
-    take_born();
+    born_.take();
     throw EditRefused(
         fmt::format("face {} would have a triangle without area: split it at the vertices on its edges", source));
   }
@@ -69,8 +38,7 @@ SurfaceEditReport SurfaceEdit::commit() {
   std::sort(report.gone.begin(), report.gone.end(),
             [](const auto& a, const auto& b) { return a.triangle < b.triangle; });
   report.map = transaction_.commit();
-  positions_before_ = surface_.positions_.size();
-  born_ = 0;
+  born_.keep();
   return report;
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "dartcast/geometry/born_positions.hpp"
 #include "dartcast/map/transaction.hpp"
 #include "dartcast/surface/surface.hpp"
 
@@ -52,12 +53,9 @@ class SurfaceEdit {
   SurfaceEditReport commit();
 
  private:
-  void take_born();
-
   Surface& surface_;
-  std::size_t positions_before_;
   Transaction transaction_;
-  std::size_t born_ = 0;  // so many of the transaction's new vertices have positions
+  detail::BornPositions<std::vector<Vec3>> born_;
 };
 
 /// A place after an edit: as it was where its face was not replaced; in a triangle with the same corners, if one of the
