@@ -1,8 +1,9 @@
 #include "bench/paper_scheme.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
+
+#include "bench/paper_steps.hpp"
 
 namespace dartcast::bench {
 
@@ -23,6 +24,8 @@ struct AroundVertex {
   static std::uint16_t d1(const Shape& s, std::uint16_t dart) { return s.origin(s.phi_1(dart)); }
   static std::uint16_t d2(const Shape& s, std::uint16_t dart) { return s.origin(s.phi1(dart)); }
 };
+
+}  // namespace
 
 // The step of one particle from p to q. Functions that return bool say whether the step goes on, in state k.
 class PaperWalk {
@@ -336,8 +339,6 @@ Vec3 PaperWalk::centre(const CellView& c) const {
   return sum * (1.0 / c.shape().corner_count());
 }
 
-}  // namespace
-
 double mean_edge(const Complex& complex) {
   const Map& map = complex.map();
   double sum = 0.0;
@@ -350,26 +351,6 @@ double mean_edge(const Complex& complex) {
   return sum / static_cast<double>(count);
 }
 
-PaperScheme::PaperScheme(const Complex& complex)
-    : complex_(complex), tolerance_(1e-12 * std::pow(mean_edge(complex), 3.0)) {}
-
-void PaperScheme::start(std::span<const State> states) {
-  states_.assign(states.size(), {});
-  for (std::size_t i = 0; i < states.size(); ++i) place(i, states[i].position, states[i].cell);
-}
-
-void PaperScheme::place(std::size_t particle, const Vec3& p, Cell cell) {
-  PaperState& s = states_[particle];
-  s.p = p;
-  PaperWalk(complex_.map(), complex_.positions(), tolerance_, s, p).aim_in_cell(cell);
-}
-
-void PaperScheme::advance(std::span<const Vec3> targets, std::span<PaperResult> results) {
-  for (std::size_t i = 0; i < states_.size(); ++i) {
-    PaperWalk walk(complex_.map(), complex_.positions(), tolerance_, states_[i], targets[i]);
-    results[i] = moved_ ? walk.step_after_move() : walk.step();
-  }
-  moved_ = false;
-}
+template class PaperSchemeOf<PaperState, PaperWalk>;
 
 }  // namespace dartcast::bench

@@ -47,12 +47,15 @@ struct PaperState {
   Kind k = Kind::volume;
 };
 
-class PaperScheme {
+/// The particles of a scheme. `StateOf`: the paper's state; `WalkOf`: one particle's step, known where the class is
+/// instantiated (bench/paper_steps.hpp).
+template <class StateOf, class WalkOf>
+class PaperSchemeOf {
  public:
   static constexpr std::uint32_t max_tests = 10000;
 
   /// `complex` outlives the scheme; its vertices may move between steps.
-  explicit PaperScheme(const Complex& complex);
+  explicit PaperSchemeOf(const Complex& complex);
 
   /// Takes particles as they are, each in its free cell, and makes their first forecasts.
   void start(std::span<const State> states);
@@ -66,12 +69,16 @@ class PaperScheme {
 
   [[nodiscard]] Cell cell(std::size_t particle) const { return states_[particle].i.cell; }
   [[nodiscard]] Vec3 position(std::size_t particle) const { return states_[particle].p; }
+  [[nodiscard]] Kind kind(std::size_t particle) const { return states_[particle].k; }
 
  private:
   const Complex& complex_;
   double tolerance_;
-  std::vector<PaperState> states_;
+  std::vector<StateOf> states_;
   bool moved_ = false;
 };
+
+class PaperWalk;
+using PaperScheme = PaperSchemeOf<PaperState, PaperWalk>;
 
 }  // namespace dartcast::bench

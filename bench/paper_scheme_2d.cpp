@@ -2,12 +2,16 @@
 
 #include <algorithm>
 
+#include "bench/paper_steps.hpp"
+
 namespace dartcast::bench {
 
 namespace {
 
 // Positive where b is to the left of a.
 double turn_from(const Vec3& a, const Vec3& b) { return a.x * b.y - a.y * b.x; }
+
+}  // namespace
 
 // The step of one particle from p to q. Functions that return bool say whether the step goes on, in state k.
 class PaperWalk2D {
@@ -208,30 +212,6 @@ void PaperWalk2D::aim_in_cell(Cell cell) {
   }
 }
 
-}  // namespace
-
-PaperScheme2D::PaperScheme2D(const Complex& complex) : complex_(complex) {
-  const double edge = mean_edge(complex);
-  tolerance_ = 1e-12 * edge * edge;
-}
-
-void PaperScheme2D::start(std::span<const State> states) {
-  states_.assign(states.size(), {});
-  for (std::size_t i = 0; i < states.size(); ++i) place(i, states[i].position, states[i].cell);
-}
-
-void PaperScheme2D::place(std::size_t particle, const Vec3& p, Cell cell) {
-  PaperState2D& s = states_[particle];
-  s.p = p;
-  PaperWalk2D(complex_.map(), complex_.positions(), tolerance_, s, p).aim_in_cell(cell);
-}
-
-void PaperScheme2D::advance(std::span<const Vec3> targets, std::span<PaperResult> results) {
-  for (std::size_t i = 0; i < states_.size(); ++i) {
-    PaperWalk2D walk(complex_.map(), complex_.positions(), tolerance_, states_[i], targets[i]);
-    results[i] = moved_ ? walk.step_after_move() : walk.step();
-  }
-  moved_ = false;
-}
+template class PaperSchemeOf<PaperState2D, PaperWalk2D>;
 
 }  // namespace dartcast::bench

@@ -17,10 +17,6 @@
 //  - A particle that takes more than max_tests tests in a step turns in an endless loop and is given up.
 #pragma once
 
-#include <cstdint>
-#include <span>
-#include <vector>
-
 #include "bench/paper_scheme.hpp"
 
 namespace dartcast::bench {
@@ -32,33 +28,7 @@ struct PaperState2D {
   Kind k = Kind::face;
 };
 
-/// As PaperScheme.
-class PaperScheme2D {
- public:
-  static constexpr std::uint32_t max_tests = PaperScheme::max_tests;
-
-  /// `complex` is of the plane and outlives the scheme; its vertices may move between steps.
-  explicit PaperScheme2D(const Complex& complex);
-
-  /// Takes particles as they are, each in its free cell, and makes their first forecasts.
-  void start(std::span<const State> states);
-  /// Puts a particle elsewhere. Its forecast is kept where the cell is the same and p not on the edge aimed at.
-  void place(std::size_t particle, const Vec3& p, Cell cell);
-  /// The complex has moved: the next step takes section 6.1 into account.
-  void moved() { moved_ = true; }
-  /// Moves every particle towards its target until it arrives or collides. A particle that collides stays at the point
-  /// of contact, one in error where it got to. `targets`, `results`: as many as particles. Allocates nothing.
-  void advance(std::span<const Vec3> targets, std::span<PaperResult> results);
-
-  [[nodiscard]] Cell cell(std::size_t particle) const { return states_[particle].i.cell; }
-  [[nodiscard]] Vec3 position(std::size_t particle) const { return states_[particle].p; }
-  [[nodiscard]] Kind kind(std::size_t particle) const { return states_[particle].k; }
-
- private:
-  const Complex& complex_;
-  double tolerance_;
-  std::vector<PaperState2D> states_;
-  bool moved_ = false;
-};
+class PaperWalk2D;
+using PaperScheme2D = PaperSchemeOf<PaperState2D, PaperWalk2D>;
 
 }  // namespace dartcast::bench
