@@ -213,11 +213,11 @@ TEST(SurfaceFiles, TheSameCubeFromEveryFormat) {
     EXPECT_FALSE(file.report.format.empty());
     EXPECT_EQ(file.report.parts, 1U);
     const bool triangles = file.mesh.types[0] == CellType::triangle;
-    EXPECT_EQ(triangles, s.triangles);
+    EXPECT_EQ(file.mesh.types[0], s.triangles ? CellType::triangle : CellType::quadrilateral);
     EXPECT_EQ(loops_of(file.mesh), loops_of(triangles ? cube_triangles() : cube_squares));
     ASSERT_EQ(file.mesh.points.size(), 8U);
     for (std::size_t i = 0; i < 8 && !s.name.ends_with(".stl") && !s.name.ends_with(".STL"); ++i)
-      EXPECT_EQ(file.mesh.points[i], Vec3(cube_points[i][0], cube_points[i][1], cube_points[i][2]));
+      EXPECT_EQ(file.mesh.points[i], (Vec3{cube_points[i][0], cube_points[i][1], cube_points[i][2]}));
     EXPECT_EQ(Surface(file.mesh).triangles().size(), 12U);
   }
 }
@@ -256,7 +256,7 @@ TEST(SurfaceFiles, CornersOfStlAreJoinedWhereTheyAreExactlyEqual) {
   EXPECT_EQ(corners_of(file.mesh), (Ids{0, 1, 2, 2, 1, 3, 4, 2, 5}));
   ASSERT_EQ(file.mesh.points.size(), 6U);
   EXPECT_FALSE(std::signbit(file.mesh.points[1].x) || std::signbit(file.mesh.points[1].y));
-  EXPECT_EQ(file.mesh.points[3], Vec3(-5, 0, 0));
+  EXPECT_EQ(file.mesh.points[3], (Vec3{-5, 0, 0}));
   EXPECT_TRUE(file.mesh.source.empty());
 }
 
@@ -300,7 +300,7 @@ TEST(SurfaceFiles, CornersOfStlAreNumberedByFirstAppearance) {
       continue;
     }
     ASSERT_EQ(file.mesh.points.size(), number.size());
-    for (const auto& [p, i] : number) EXPECT_EQ(file.mesh.points[i], Vec3(p[0], p[1], p[2]));
+    for (const auto& [p, i] : number) EXPECT_EQ(file.mesh.points[i], (Vec3{p[0], p[1], p[2]}));
     const bool turned = std::any_of(file.report.repairs.begin(), file.report.repairs.end(),
                                     [](const Finding& f) { return f.kind == "orientation"; });
     if (!turned) EXPECT_EQ(corners_of(file.mesh), expected);
@@ -321,13 +321,13 @@ TEST(SurfaceFiles, SolidsOfStlAreRegions) {
 TEST(SurfaceFiles, ObjCountsBackwardsToo) {
   const MeshData mesh = read("a.obj",
                              "v 0 0 0 1.0\nv 1 0 0 .5 .5 .5\nv 1 1 0\nf -3 -2//1 3/4\ng\tup per\nv 0 1 0 # here\n"
-                             "f 1/1/1 \\\n -2/1/1 \\\n\\\n -1/1/1 # and here\nusemtl red\no low\nl 1 2\np 1\n"
+                             "f 1/1/1 \\\n -2/1/1 \\\n\\\n -1/1/1 # and here\nusemtl red\ng empty\no low\nl 1 2\np 1\n"
                              "v 0 0 1\nv 2 0 0\nv 2 1 0\nv 2 2 0\nf 2 6 7 8 3\n")
                             .mesh;
   EXPECT_EQ(corners_of(mesh), (Ids{0, 1, 2, 0, 2, 3, 1, 5, 6, 7, 2}));
   EXPECT_EQ(mesh.types, (std::vector<CellType>{CellType::triangle, CellType::triangle, CellType::polygon}));
-  EXPECT_EQ(mesh.regions, (std::vector<std::int32_t>{0, 1, 2}));
-  EXPECT_EQ(mesh.region_names, (std::map<std::int32_t, std::string>{{1, "up per"}, {2, "low"}}));
+  EXPECT_EQ(mesh.regions, (std::vector<std::int32_t>{0, 1, 3}));
+  EXPECT_EQ(mesh.region_names, (std::map<std::int32_t, std::string>{{1, "up per"}, {3, "low"}}));
   EXPECT_EQ(mesh.points.size(), 8U);  // that of no face, too
 }
 
@@ -376,6 +376,36 @@ TEST(SurfaceFiles, PlyPassesOverWhatItDoesNotKnow) {
   }
 }
 
+template <class T>
+void expect_ply_type(const std::string& type, T least, T greatest) {
+  const Folder folder;
+  for (const bool big : {false, true}) {
+    std::string content = "ply\nformat binary_" + std::string(big ? "big" : "little") +
+                          "_endian 1.0\nelement vertex 3\nproperty " + type + " x\nproperty " + type + " y\nproperty " +
+                          type + " z\nelement face 1\nproperty list uchar uchar vertex_index\nend_header\n";
+    for (const T x : {least, T(1), T(0), greatest, T(0), T(1), T(1), greatest, least}) content += bytes_of(x, big);
+    const MeshData mesh = read_surface(folder.file("a.ply", content + std::string("\3\0\1\2", 4))).mesh;
+    EXPECT_EQ(mesh.points[0], (Vec3{static_cast<double>(least), 1, 0})) << type;
+    EXPECT_EQ(mesh.points[1], (Vec3{static_cast<double>(greatest), 0, 1})) << type;
+    EXPECT_EQ(mesh.points[2], (Vec3{1, static_cast<double>(greatest), static_cast<double>(least)})) << type;
+  }
+}
+
+TEST(SurfaceFiles, EveryTypeOfPlyIsReadToItsEnds) {
+  const auto whole = [](const std::string& type, auto zero) {
+    using Limits = std::numeric_limits<decltype(zero)>;
+    expect_ply_type(type, Limits::min(), Limits::max());
+  };
+  for (const char* type : {"char", "int8"}) whole(type, std::int8_t{});
+  for (const char* type : {"uchar", "uint8"}) whole(type, std::uint8_t{});
+  for (const char* type : {"short", "int16"}) whole(type, std::int16_t{});
+  for (const char* type : {"ushort", "uint16"}) whole(type, std::uint16_t{});
+  for (const char* type : {"int", "int32"}) whole(type, std::int32_t{});
+  for (const char* type : {"uint", "uint32"}) whole(type, std::uint32_t{});
+  for (const char* type : {"float", "float32"}) expect_ply_type(type, -0.1F, 3.4e38F);
+  for (const char* type : {"double", "float64"}) expect_ply_type(type, -0.1, 1e88 / 3.0);
+}
+
 // --- errors
 
 std::string error_of(const std::string& name, const std::string& content) {
@@ -407,6 +437,8 @@ std::vector<Wrong> wrong_files() {
   const std::string points = "0 0 0\n1 0 0\n0 1 0\n";
   const std::string ply3 = ply + "element vertex 3\n" + xyz + "element face 1\n" + list + "end_header\n" + points;
   std::string bad_binary = ply_binary<float, std::uint8_t, std::int32_t>(false, cube_squares, "float", "uchar int");
+  std::string round = "f";
+  for (int i = 1; i <= 1001; ++i) round += " " + std::to_string(i);
   const std::size_t data = bad_binary.find("end_header\n") + 11;
   std::string many_corners = bad_binary;
   many_corners[data + 96] = '\x02';
@@ -429,6 +461,7 @@ std::vector<Wrong> wrong_files() {
       {"a.obj", "\nv 0 1e999 0\n", "line 2: a coordinate is not a finite number"},
       {"a.obj", "v 0 zero 0\n", "line 1: 'zero' is not a number"},
       {"a.obj", three + "f 1 2 3\nf 1 2\n", "line 5: a face of 2 corners"},
+      {"a.obj", three + round + "\n", "line 4: a face of 1001 corners"},
       {"a.obj", three + "f 1 2 x\n", "line 4: a corner should be written as v, v/vt"},
       {"a.obj", three + "f 1 2 0\n", "line 4: a corner is 0"},
       {"a.obj", three + "f 1 2 -4\n", "line 4: corner -4 of a face, but only 3 vertices"},
@@ -470,6 +503,13 @@ std::vector<Wrong> wrong_files() {
       {"a.off", "OFF\n3 1 0\n" + points + "3 0 1\n2\n", "line 6: the line ends too early"},
       {"a.off", "OFF\n3 1 0\n" + points + "3 0 1 2\n3 0 1 2\n", "line 7: the file goes on behind its last face"},
       {"a.off", "OFF\n3 1 0\n" + points + "3 0 1 3\n", "name points which do not exist (1 in all, the first: 0)"},
+      {"a.off", "OFF\n3 1 0\n" + points + "3 0 1 4294967298\n", "do not exist (1 in all, the first: 0)"},
+      {"a.off", "OFF\n3 100000000000 0\n" + points + "3 0 1 2\n", "line 2: 100000000000 faces are announced, but"},
+      {"a.ply", ply3 + "3 0 1 4294967298\n", "do not exist (1 in all, the first: 0)"},
+      {"a.ply",
+       ply3.substr(0, ply3.find("end_header")) + "element x 1\nproperty list char char n\nend_header\n" + points +
+           "3 0 1 2\n-1\n",
+       "line 16: a list of -1 numbers"},
       {"a.off", "OFF\n3 1 0\n" + points + "2 0 1\n", "line 6: a face of 2 corners"},
       {"a.off", "OFF\n3 0 0\n" + points, "the file has no faces"},
       {"a.off", "OFF\n3 1 0\n0 0 0\n1 inf 0\n0 1 0\n3 0 1 2\n", "line 4: a coordinate is not a finite number"}};
