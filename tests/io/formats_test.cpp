@@ -172,6 +172,8 @@ TEST(Formats, OthersAreRefusedByName) {
     return file.report.defects.empty() ? std::string() : file.report.defects[0].message;
   };
   EXPECT_NE(message("a.obj", "v 0 0 0\n").find(".vtu"), std::string::npos);
+  EXPECT_NE(message("a.obj", "v 0 0 0\n").find("read_surface()"), std::string::npos);
+  EXPECT_EQ(message("a.xyz", "v 0 0 0\n").find("read_surface()"), std::string::npos);
   EXPECT_NE(message("a.mesh", "MFEM mesh v1.0\n\ndimension\n3\n").find("MFEM mesh v1.0"), std::string::npos);
   EXPECT_NE(message("b.mesh", "MFEM NC mesh v1.0\n\ndimension\n3\n").find("MFEM NC mesh"), std::string::npos);
   EXPECT_NE(message("a.msh", "(0 \"GAMBIT to Fluent File\")\n").find("Fluent"), std::string::npos);

@@ -65,7 +65,9 @@ ParsedMesh parse(const std::filesystem::path& path) {
   const bool vtk = ending == ".vtk";
   const bool msh = ending == ".msh" || ending == ".msh2" || ending == ".msh4";
   if (!vtu && !vtk && !msh && ending != ".mesh") {
-    throw InvalidMesh(fmt::format("files that end in '{}' are not supported; supported are {}", ending, supported));
+    const bool surface = ending == ".stl" || ending == ".obj" || ending == ".ply" || ending == ".off";
+    throw InvalidMesh(fmt::format("files that end in '{}' are not supported; supported are {}{}", ending, supported,
+                                  surface ? "; a surface in space is read by read_surface()" : ""));
   }
   const std::string content = read_bytes(path);
   if (content.empty()) throw InvalidMesh("the file is empty");
