@@ -378,8 +378,10 @@ TEST_P(TracesAsAdvanced, ComeToTheSameBits) {
   Compared still, moving;
   for (int seed = 1; seed <= std::max(1, test::scaled(4, 200)); ++seed)
     ASSERT_NO_FATAL_FAILURE(compare_scene(GetParam(), seed, still, moving));
-  EXPECT_GT(still.passages, still.steps / 2);
-  EXPECT_GT(moving.passages, moving.steps / 2);
+  if (!test::sanitized()) {  // in one scene of a few steps there are less
+    EXPECT_GT(still.passages, still.steps / 2);
+    EXPECT_GT(moving.passages, moving.steps / 2);
+  }
   EXPECT_GT(moving.contacts, 10U);
   EXPECT_LT(still.rounded + moving.rounded, (still.crossings + moving.crossings) / 50U);
 }
