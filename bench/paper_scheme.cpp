@@ -28,10 +28,9 @@ struct AroundVertex {
 }  // namespace
 
 // The step of one particle from p to q. Functions that return bool say whether the step goes on, in state k.
-class PaperWalk {
+class PaperWalk : public PaperPath<PaperState> {
  public:
-  PaperWalk(const Map& map, std::span<const Vec3> positions, double tolerance, PaperState& state, const Vec3& q)
-      : map_(map), x_(positions), tolerance_(tolerance), s_(state), q_(q) {}
+  using PaperPath::PaperPath;
 
   PaperResult step();
   PaperResult step_after_move();
@@ -56,42 +55,6 @@ class PaperWalk {
   [[nodiscard]] Vec3 centre(const CellView& c) const;
 
   [[nodiscard]] Vec3 at(const CellView& c, std::uint16_t local) const { return x_[c.vertex(local).value]; }
-  [[nodiscard]] Vec3 d1(Dart i) const { return x_[map_.origin(i).value]; }
-  [[nodiscard]] Vec3 d2(Dart i) const { return x_[map_.origin(map_.phi1(i)).value]; }
-  // An orientation test: counted; zero within the tolerance.
-  int test(double determinant) {
-    ++result_.tests;
-    return determinant > tolerance_ ? 1 : determinant < -tolerance_ ? -1 : 0;
-  }
-  [[nodiscard]] bool too_long() const { return result_.tests > PaperScheme::max_tests; }
-  bool end(PaperEnd how) {
-    result_.end = how;
-    return false;
-  }
-  bool arrive() {
-    s_.p = q_;
-    return end(PaperEnd::arrived);
-  }
-  bool collide(CellFace wall) {
-    result_.wall = wall;
-    result_.time = 1.0 - left_;
-    return end(PaperEnd::collision);
-  }
-  // Moves p by a share of what is left of the step.
-  void go(double share) {
-    s_.p += (q_ - s_.p) * share;
-    left_ *= 1.0 - share;
-  }
-  // The share at which the segment meets a plane, from the signed distances of p and q.
-  static double share_to(double p, double q) { return q <= 0.0 ? 1.0 : p >= 0.0 ? 0.0 : p / (p - q); }
-
-  const Map& map_;
-  std::span<const Vec3> x_;
-  double tolerance_;
-  PaperState& s_;
-  Vec3 q_;
-  double left_ = 1.0;  // share of the step
-  PaperResult result_;
 };
 
 PaperResult PaperWalk::step() {

@@ -13,7 +13,7 @@
 //  - Section 6.1 as its last paragraph says: after a deformation the step itself starts at the mean of the cell's
 //    corners (bringing the particle back first would take 17 tests a step in the bar, not the paper's 6.85). It touches
 //    where its own way meets the wall's plane; where the wall has swept over it, where the way from the mean does.
-//  - A particle that takes more than max_tests tests in a step is given up.
+//  - A particle that takes more than paper_max_tests tests in a step is given up.
 #pragma once
 
 #include <cstddef>
@@ -47,13 +47,14 @@ struct PaperState {
   Kind k = Kind::volume;
 };
 
+/// A particle that takes more in a step is given up.
+inline constexpr std::uint32_t paper_max_tests = 10000;
+
 /// The particles of a scheme. `StateOf`: the paper's state; `WalkOf`: one particle's step, known where the class is
 /// instantiated (bench/paper_steps.hpp).
 template <class StateOf, class WalkOf>
 class PaperSchemeOf {
  public:
-  static constexpr std::uint32_t max_tests = 10000;
-
   /// `complex` outlives the scheme; its vertices may move between steps.
   explicit PaperSchemeOf(const Complex& complex);
 

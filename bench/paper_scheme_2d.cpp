@@ -14,10 +14,9 @@ double turn_from(const Vec3& a, const Vec3& b) { return a.x * b.y - a.y * b.x; }
 }  // namespace
 
 // The step of one particle from p to q. Functions that return bool say whether the step goes on, in state k.
-class PaperWalk2D {
+class PaperWalk2D : public PaperPath<PaperState2D> {
  public:
-  PaperWalk2D(const Map& map, std::span<const Vec3> positions, double tolerance, PaperState2D& state, const Vec3& q)
-      : map_(map), x_(positions), tolerance_(tolerance), s_(state), q_(q) {}
+  using PaperPath::PaperPath;
 
   PaperResult step();
   PaperResult step_after_move();
@@ -34,50 +33,14 @@ class PaperWalk2D {
   [[nodiscard]] Vec3 at(const CellView& c, std::uint16_t dart) const {
     return x_[c.vertex(c.shape().origin(dart)).value];
   }
-  [[nodiscard]] Vec3 d1(Dart i) const { return x_[map_.origin(i).value]; }
-  [[nodiscard]] Vec3 d2(Dart i) const { return x_[map_.origin(map_.phi1(i)).value]; }
   [[nodiscard]] bool is_free(Dart i) const { return i.valid() && map_.is_free(i.cell); }
-  // An orientation test: counted; zero within the tolerance.
-  int test(double determinant) {
-    ++result_.tests;
-    return determinant > tolerance_ ? 1 : determinant < -tolerance_ ? -1 : 0;
-  }
   // Of q: 1 to the left of the half-line from p through x.
   int side_of(const Vec3& x) { return test(turn_from(x - s_.p, q_ - s_.p)); }
-  [[nodiscard]] bool too_long() const { return result_.tests > PaperScheme2D::max_tests; }
-  bool end(PaperEnd how) {
-    result_.end = how;
-    return false;
-  }
-  bool arrive() {
-    s_.p = q_;
-    return end(PaperEnd::arrived);
-  }
-  bool collide(CellFace wall) {
-    result_.wall = wall;
-    result_.time = 1.0 - left_;
-    return end(PaperEnd::collision);
-  }
   bool go_on(Kind k, Dart i) {
     s_.k = k;
     s_.i = i;
     return true;
   }
-  // Moves p by a share of what is left of the step.
-  void go(double share) {
-    s_.p += (q_ - s_.p) * share;
-    left_ *= 1.0 - share;
-  }
-  // The share at which the segment meets a line, from the signed distances of p and q to its outer side.
-  static double share_to(double p, double q) { return q <= 0.0 ? 1.0 : p >= 0.0 ? 0.0 : p / (p - q); }
-
-  const Map& map_;
-  std::span<const Vec3> x_;
-  double tolerance_;
-  PaperState2D& s_;
-  Vec3 q_;
-  double left_ = 1.0;  // share of the step
-  PaperResult result_;
 };
 
 PaperResult PaperWalk2D::step() {

@@ -14,7 +14,7 @@
 //    blocked.
 //  - Section 6.1 as its last paragraph says, as in space (bench/paper_scheme.hpp): after a deformation the step starts
 //    at the mean of the cell's corners.
-//  - A particle that takes more than max_tests tests in a step turns in an endless loop and is given up.
+//  - A particle that takes more than paper_max_tests tests in a step turns in an endless loop and is given up.
 #pragma once
 
 #include "bench/paper_scheme.hpp"
