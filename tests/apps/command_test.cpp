@@ -13,6 +13,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "shared_data.hpp"
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -290,10 +292,9 @@ TEST_F(Command, ConvertGoesRoundThroughAllFormats) {
 
 // Real meshes: all that are well formed are accepted, divided into simplices, and can be run.
 TEST_F(Command, SharedDataIsAccepted) {
-  const char* data = std::getenv("DARTCAST_DATA");
-  if (data == nullptr) GTEST_SKIP() << "left out without DARTCAST_DATA: dartcast check over real meshes";
+  NEED_DATA("dartcast check over real meshes");
   int count = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(fs::path(data) / "volumes")) {
+  for (const auto& entry : fs::recursive_directory_iterator(dartcast::test::data_folder() / "volumes")) {
     const std::string ending = entry.path().extension();
     const bool ours = ending == ".vtu" || ending == ".vtk" || ending == ".msh" ||
                       (ending == ".mesh" && entry.path().string().find("/mfem/") == std::string::npos);
@@ -304,7 +305,7 @@ TEST_F(Command, SharedDataIsAccepted) {
   }
   EXPECT_GE(count, 20);
   (void)write("liver.toml",
-              "[environment]\nmesh = '" + (fs::path(data) / "volumes/sofa/liver2.msh").string() +
+              "[environment]\nmesh = '" + (dartcast::test::data_folder() / "volumes/sofa/liver2.msh").string() +
                   "'\n[[particles]]\ncount = 500\nvelocity = [1, 2, 3]\n[motion]\ndt = 0.05\nsteps = 50\n");
   const Result r = run("run liver.toml --audit --json");
   ASSERT_EQ(r.status, 0) << r.error;

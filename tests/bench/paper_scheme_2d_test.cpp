@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bench/race.hpp"
+#include "bench/scheme_pair.hpp"
 #include "dartcast/base/random.hpp"
 #include "dartcast/environment/environment.hpp"
 #include "dartcast/mesh/generate_rectangle.hpp"
@@ -42,62 +43,9 @@ std::vector<Vec3> places(std::size_t count, Random& random) {
   return list;
 }
 
-// Both schemes over the same scene, and how they compare.
-struct PlanePair {
+struct PlanePair : test::SchemePair<PaperScheme2D> {
   explicit PlanePair(MeshData mesh)
-      : environment(std::move(mesh), Threads{1}), scheme(environment.complex()), random(7) {
-    environment.add(particles, places(test::scaled(1000, 10000), random));
-    scheme.start(particles.states());
-    results.resize(particles.size());
-    targets.resize(particles.size());
-  }
-
-  // Targets at random, up to `reach` along each axis.
-  void aim(double reach) {
-    const auto by = [&] { return random.uniform(-reach, reach); };
-    for (std::size_t i = 0; i < targets.size(); ++i) targets[i] = particles[i].position + Vec3{by(), by(), 0.0};
-  }
-
-  // One step of both, which then go on from where the library's particles are.
-  void step() {
-    scheme.advance(targets, results);
-    const StepReport report = environment.advance(particles, targets);
-    std::vector<const Contact*> met(particles.size(), nullptr);
-    for (const Contact& c : report.contacts.contacts) met[c.particle] = &c;
-    for (std::uint32_t i = 0; i < particles.size(); ++i) {
-      compare(i, met[i], report.contacts);
-      const State& s = particles[i];
-      if (met[i] != nullptr || scheme.position(i) != s.position || scheme.cell(i) != s.cell)
-        scheme.place(i, s.position, s.cell);
-    }
-  }
-
-  void compare(std::uint32_t i, const Contact* contact, const ContactList& list) {
-    const PaperResult& r = results[i];
-    ++steps;
-    tests += r.tests;
-    least = std::min(least, r.tests);
-    hits += contact != nullptr ? 1 : 0;
-    bool same = (r.end == PaperEnd::collision) == (contact != nullptr) && r.end != PaperEnd::error;
-    if (same && contact != nullptr) {
-      const auto walls = list.walls_of(*contact);
-      same = std::any_of(walls.begin(), walls.end(), [&](const WallHit& w) { return w.face == r.wall; });
-      if (same) worst_time = std::max(worst_time, std::abs(r.time - contact->time_of_impact));
-    } else if (same) {
-      same = scheme.cell(i) == particles[i].cell;
-    }
-    differ += same ? 0 : 1;
-  }
-
-  Environment environment;
-  Particles particles;
-  PaperScheme2D scheme;
-  Random random;
-  std::vector<PaperResult> results;
-  std::vector<Vec3> targets;
-  std::uint64_t steps = 0, tests = 0, hits = 0, differ = 0;
-  std::uint32_t least = 1000;
-  double worst_time = 0.0;
+      : SchemePair(std::move(mesh), [](Random& r) { return places(test::scaled(1000, 10000), r); }) {}
 };
 
 TEST(PaperScheme2D, FindsTheWallsThatTheLibraryFinds) {

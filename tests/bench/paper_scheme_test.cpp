@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "bench/scheme_pair.hpp"
 #include "dartcast/base/random.hpp"
 #include "dartcast/environment/environment.hpp"
 #include "dartcast/mesh/generate_box.hpp"
@@ -23,65 +24,9 @@ using bench::PaperEnd;
 using bench::PaperResult;
 using bench::PaperScheme;
 
-// Both schemes over the same scene, and how they compare.
-struct Pair {
+struct Pair : test::SchemePair<PaperScheme> {
   Pair(MeshData mesh, std::size_t count, const Vec3& size)
-      : environment(std::move(mesh)), scheme(environment.complex()), random(7) {
-    environment.add(particles, test::random_points(count, {}, size, random));
-    scheme.start(particles.states());
-    results.resize(particles.size());
-    targets.resize(particles.size());
-  }
-
-  // Targets at random, up to a tenth of a cell along each axis.
-  void aim() {
-    const auto by = [&] { return random.uniform(-0.1, 0.1); };
-    for (std::size_t i = 0; i < targets.size(); ++i) targets[i] = particles[i].position + Vec3{by(), by(), by()};
-  }
-
-  // One step of both, which then go on from where the library's particles are.
-  void step(const Respond& respond = {}) {
-    scheme.advance(targets, results);
-    const StepReport report = environment.advance(particles, targets, respond);
-    std::vector<const Contact*> first(particles.size(), nullptr);
-    for (const Contact& c : report.contacts.contacts) {
-      if (first[c.particle] == nullptr) first[c.particle] = &c;
-    }
-    for (std::uint32_t i = 0; i < particles.size(); ++i) {
-      compare(i, first[i], report.contacts);
-      const State& s = particles[i];
-      if (first[i] != nullptr || scheme.position(i) != s.position || scheme.cell(i) != s.cell)
-        scheme.place(i, s.position, s.cell);
-    }
-  }
-
-  // Counts what differs: hit or not, the wall, the cell of arrival, the time.
-  void compare(std::uint32_t i, const Contact* contact, const ContactList& list) {
-    const PaperResult& r = results[i];
-    ++steps;
-    tests += r.tests;
-    hits += contact != nullptr ? 1 : 0;
-    bool same = (r.end == PaperEnd::collision) == (contact != nullptr) && r.end != PaperEnd::error;
-    if (same && contact != nullptr) {
-      const auto walls = list.walls_of(*contact);
-      same = std::any_of(walls.begin(), walls.end(), [&](const WallHit& w) { return w.face == r.wall; });
-      if (same) worst_time = std::max(worst_time, std::abs(r.time - contact->time_of_impact));
-    } else if (same) {
-      same = scheme.cell(i) == particles[i].cell;
-    }
-    differ += same ? 0 : 1;
-  }
-
-  [[nodiscard]] double tests_per_step() const { return static_cast<double>(tests) / static_cast<double>(steps); }
-
-  Environment environment;
-  Particles particles;
-  PaperScheme scheme;
-  Random random;
-  std::vector<PaperResult> results;
-  std::vector<Vec3> targets;
-  std::uint64_t steps = 0, tests = 0, hits = 0, differ = 0;
-  double worst_time = 0.0;
+      : SchemePair(std::move(mesh), [&](Random& r) { return test::random_points(count, {}, size, r); }) {}
 };
 
 BoxOptions box(CellType type, double blocked, double jitter = 0.0) {
@@ -101,7 +46,7 @@ TEST(PaperScheme, FindsTheWallsThatTheLibraryFinds) {
     for (const double jitter : {0.0, 0.3}) {
       Pair pair(generate_box(box(type, 0.2, jitter)), test::scaled(1000, 10000), {6.0, 6.0, 6.0});
       for (int n = 0; n < 50; ++n) {
-        pair.aim();
+        pair.aim(0.1);
         pair.step();
       }
       EXPECT_GT(pair.hits, pair.steps / 20);
@@ -123,7 +68,7 @@ TEST(PaperScheme, FollowsADeformation) {
     }
     pair.environment.move();
     pair.scheme.moved();
-    pair.aim();
+    pair.aim(0.1);
     pair.step();
   }
   EXPECT_GT(pair.hits, pair.steps / 20);

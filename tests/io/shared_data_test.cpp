@@ -1,9 +1,9 @@
 // Meshes made by others: counts from the list that comes with them, verdicts from their table of what is right.
+#include "shared_data.hpp"
+
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <fstream>
-#include <iostream>
 #include <map>
 #include <sstream>
 
@@ -23,17 +23,6 @@ struct Expected {
   std::size_t points;  // those that cells use
   Counts cells;
 };
-
-std::filesystem::path data_folder() {
-  const char* folder = std::getenv("DARTCAST_DATA");
-  return folder == nullptr ? std::filesystem::path() : std::filesystem::path(folder);
-}
-
-#define NEED_DATA()                                                                             \
-  if (data_folder().empty()) {                                                                  \
-    std::cout << "left out: DARTCAST_DATA does not name the folder of meshes made by others\n"; \
-    GTEST_SKIP();                                                                               \
-  }
 
 std::vector<Expected> volumes() {
   const char* t = "tetrahedron";
@@ -97,7 +86,7 @@ std::vector<ExpectedPlanar> planar_files() {
 }
 
 TEST(SharedData, EveryPlanarMeshLoadsAndSurvivesARoundTrip) {
-  NEED_DATA();
+  NEED_DATA("meshes made by others");
   const Folder folder;
   for (const ExpectedPlanar& expected : planar_files()) {
     SCOPED_TRACE(expected.file);
@@ -123,7 +112,7 @@ TEST(SharedData, EveryPlanarMeshLoadsAndSurvivesARoundTrip) {
 }
 
 TEST(SharedData, NoPlanarMeshIsForgotten) {
-  NEED_DATA();
+  NEED_DATA("meshes made by others");
   std::set<std::string> listed;
   for (const ExpectedPlanar& expected : planar_files()) listed.insert(expected.file);
   for (const auto& entry : std::filesystem::recursive_directory_iterator(data_folder() / "planar")) {
@@ -138,7 +127,7 @@ TEST(SharedData, NoPlanarMeshIsForgotten) {
 }
 
 TEST(SharedData, PatchesOfPlanarMeshesAreTheirNamedLines) {
-  NEED_DATA();
+  NEED_DATA("meshes made by others");
   const MeshData square = read_mesh(data_folder() / "planar/petsc/square_quad.msh").mesh;
   EXPECT_EQ(square.patch_names,
             (std::map<std::int32_t, std::string>{{2, "bottom"}, {3, "rightside"}, {4, "top"}, {5, "leftside"}}));
@@ -148,7 +137,7 @@ TEST(SharedData, PatchesOfPlanarMeshesAreTheirNamedLines) {
 }
 
 TEST(SharedData, EveryVolumeLoadsWithoutAWarning) {
-  NEED_DATA();
+  NEED_DATA("meshes made by others");
   for (const Expected& expected : volumes()) {
     const MeshReport report = read_mesh(data_folder() / expected.file).report;
     EXPECT_LE(static_cast<int>(report.verdict()), static_cast<int>(Verdict::repair)) << report_text(report);
@@ -159,7 +148,7 @@ TEST(SharedData, EveryVolumeLoadsWithoutAWarning) {
 }
 
 TEST(SharedData, NoVolumeIsForgotten) {
-  NEED_DATA();
+  NEED_DATA("meshes made by others");
   std::set<std::string> listed;
   for (const Expected& expected : volumes()) listed.insert(expected.file);
   for (const char* folder : {"volumes", "derived"}) {
@@ -178,7 +167,7 @@ TEST(SharedData, NoVolumeIsForgotten) {
 }
 
 TEST(SharedData, DefectiveFilesGetTheRightVerdict) {
-  NEED_DATA();
+  NEED_DATA("meshes made by others");
   std::ifstream table(data_folder() / "EXPECTED.csv");
   std::string line;
   std::getline(table, line);
@@ -203,7 +192,7 @@ std::map<std::string, std::size_t> kinds(const std::vector<Finding>& findings) {
 }
 
 TEST(SharedData, DefectsAreCountedAsTheListSays) {
-  NEED_DATA();
+  NEED_DATA("meshes made by others");
   const auto report = [](const char* file) { return read_mesh(data_folder() / "defective" / file).report; };
   EXPECT_EQ(kinds(report("sfepy/elbow2.mesh").repairs), (Counts{{"orientation", 8161}}));
   EXPECT_EQ(kinds(report("sfepy/matrix_fiber_rand.vtk").repairs), (Counts{{"orientation", 97}}));
@@ -224,7 +213,7 @@ TEST(SharedData, DefectsAreCountedAsTheListSays) {
 }
 
 TEST(SharedData, EveryVolumeSurvivesARoundTrip) {
-  NEED_DATA();
+  NEED_DATA("meshes made by others");
   const Folder folder;
   for (const Expected& expected : volumes()) {
     const MeshFile original = read_mesh(data_folder() / expected.file);

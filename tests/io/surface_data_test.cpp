@@ -2,9 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
-#include <iostream>
 #include <map>
 #include <set>
 #include <string>
@@ -13,17 +11,10 @@
 
 #include "dartcast/io/read_surface.hpp"
 #include "dartcast/surface/surface.hpp"
+#include "shared_data.hpp"
 
 namespace dartcast::test {
 namespace {
-
-#define NEED_SURFACES()                                                                           \
-  const char* data = std::getenv("DARTCAST_DATA");                                                \
-  if (data == nullptr) {                                                                          \
-    std::cout << "left out: DARTCAST_DATA does not name the folder of surfaces made by others\n"; \
-    GTEST_SKIP();                                                                                 \
-  }                                                                                               \
-  const std::filesystem::path folder = data
 
 /// As the list that comes with them says; and the verdict.
 struct Known {
@@ -83,7 +74,8 @@ std::string found_in(const MeshReport& report) {
 }
 
 TEST(SurfaceData, SurfacesMadeByOthersAreReadAsTheirListSays) {
-  NEED_SURFACES();
+  NEED_DATA("surfaces made by others");
+  const std::filesystem::path folder = data_folder();
   for (const Known& known : known_surfaces()) {
     SCOPED_TRACE(known.file);
     const MeshFile file = check_surface(folder / known.file);
@@ -102,7 +94,8 @@ TEST(SurfaceData, SurfacesMadeByOthersAreReadAsTheirListSays) {
 }
 
 TEST(SurfaceData, NoSurfaceMadeByOthersIsForgotten) {
-  NEED_SURFACES();
+  NEED_DATA("surfaces made by others");
+  const std::filesystem::path folder = data_folder();
   std::set<std::string> listed;
   for (const Known& known : known_surfaces()) listed.insert(known.file);
   for (const char* part : {"surfaces", "motion"}) {
@@ -114,7 +107,8 @@ TEST(SurfaceData, NoSurfaceMadeByOthersIsForgotten) {
 }
 
 TEST(SurfaceData, AMotionInTwoFilesMovesTheSurface) {
-  NEED_SURFACES();
+  NEED_DATA("surfaces made by others");
+  const std::filesystem::path folder = data_folder();
   Surface surface(read_surface(folder / "motion/thick-cloth_t0.ply").mesh);
   const std::vector<Vec3> next = read_surface(folder / "motion/thick-cloth_t1.ply").mesh.points;
   surface.move(next);

@@ -263,6 +263,18 @@ long double angle_to(const MeshData& mesh, std::array<std::uint32_t, 3> first, c
   return found;
 }
 
+// The same from corner k of a triangle to a place near it.
+long double angle_at(const MeshData& mesh, const Surface& surface, SimplexId t, unsigned k, const SurfacePlace& place,
+                     long double& total) {
+  const auto v = surface.vertices(t);
+  const auto w = surface.vertices(place.triangle);
+  std::array<std::uint32_t, 3> in{};
+  for (unsigned i = 0; i < 3; ++i) {
+    if (w[i] == v[k]) in = {w[i].value, w[(i + 1) % 3].value, w[(i + 2) % 3].value};
+  }
+  return angle_to(mesh, {v[k].value, v[(k + 1) % 3].value, v[(k + 2) % 3].value}, surface.point(place), in, total);
+}
+
 TEST(SurfacePaths, PassAnyVertexWithEqualAngles) {
   Random random(8);
   for (int seed = 1; seed <= 5; ++seed) {
@@ -270,7 +282,6 @@ TEST(SurfacePaths, PassAnyVertexWithEqualAngles) {
     const Surface surface(mesh);
     for (const SimplexId t : surface.triangles()) {
       for (unsigned k = 0; k < 3; ++k) {
-        const auto v = surface.vertices(t);
         const auto x = surface.corners(t);
         const Vec3 one = x[(k + 1) % 3] - x[k];
         const Vec3 two = x[(k + 2) % 3] - x[k];
@@ -279,14 +290,8 @@ TEST(SurfacePaths, PassAnyVertexWithEqualAngles) {
         weights[k] = 1.0;
         SurfacePlace place = surface.place(t, weights);
         dartcast::step(surface, place, tangent(surface, t, k, back + pi, 1e-3));
-        const auto w = surface.vertices(place.triangle);
-        std::array<std::uint32_t, 3> in{};
-        for (unsigned i = 0; i < 3; ++i) {
-          if (w[i] == v[k]) in = {w[i].value, w[(i + 1) % 3].value, w[(i + 2) % 3].value};
-        }
         long double total = 0;
-        const long double out =
-            angle_to(mesh, {v[k].value, v[(k + 1) % 3].value, v[(k + 2) % 3].value}, surface.point(place), in, total);
+        const long double out = angle_at(mesh, surface, t, k, place, total);
         ASSERT_GE(out, 0.0L);
         const long double left = out > back ? out - back : out - back + total;
         ASSERT_NEAR(static_cast<double>(left), static_cast<double>(total / 2), 1e-11);
@@ -302,20 +307,13 @@ TEST(SurfacePaths, MayStartAtAVertexIntoAnyTriangle) {
   for (const SimplexId t : surface.triangles()) {
     for (unsigned k = 0; k < 3; ++k) {
       for (const double angle : {-0.9, -0.3, 0.4, 1.8, 2.4}) {
-        const auto v = surface.vertices(t);
         std::array<double, 3> weights = {};
         weights[k] = 1.0;
         SurfacePlace place = surface.place(t, weights);
         const SurfaceStep step = dartcast::step(surface, place, tangent(surface, t, k, angle, 1e-3));
         ASSERT_EQ(step.end, SurfaceEnd::arrived);
-        const auto w = surface.vertices(place.triangle);
-        std::array<std::uint32_t, 3> in{};
-        for (unsigned i = 0; i < 3; ++i) {
-          if (w[i] == v[k]) in = {w[i].value, w[(i + 1) % 3].value, w[(i + 2) % 3].value};
-        }
         long double total = 0;
-        const long double out =
-            angle_to(mesh, {v[k].value, v[(k + 1) % 3].value, v[(k + 2) % 3].value}, surface.point(place), in, total);
+        const long double out = angle_at(mesh, surface, t, k, place, total);
         const auto wanted = static_cast<double>(angle < 0.0 ? angle + total : angle);
         ASSERT_NEAR(static_cast<double>(out), wanted, 1e-11);
       }

@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <new>
-#include <stdexcept>
 #include <string>
 
 #include "dartcast/base/error.hpp"
 #include "dartcast/io/file_text.hpp"
 #include "dartcast/io/gmsh.hpp"
+#include "dartcast/io/judged_file.hpp"
 #include "dartcast/io/medit.hpp"
 #include "dartcast/io/parsed_mesh.hpp"
 #include "dartcast/io/vtk_mesh.hpp"
@@ -21,13 +20,6 @@ namespace {
 
 constexpr std::string_view supported =
     ".vtu, .vtk (legacy), .msh (Gmsh 1, 2 or 4; also .msh2, .msh4) and .mesh (Medit)";
-
-std::string ending_of(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
-}
 
 bool starts(std::string_view text, std::string_view with) { return text.substr(0, with.size()) == with; }
 
@@ -80,36 +72,16 @@ ParsedMesh parse(const std::filesystem::path& path) {
 }  // namespace
 
 MeshFile read_mesh(const std::filesystem::path& path) {
-  MeshFile out;
-  const auto refuse = [&](std::string message) { out.report.defects.push_back({"file", 1, {}, std::move(message)}); };
-  try {
+  return judged_file(path, "mesh", [&](MeshFile& out) {
     ParsedMesh parsed = parse(path);
     out.mesh = std::move(parsed.mesh);
     if (!out.mesh.types.empty()) out.report = inspect(out.mesh);
     out.report.format = parsed.format;
     add_finding(out.report.defects, parsed.second_order);
     add_finding(out.report.defects, parsed.unsupported);
-  } catch (const Error& error) {
-    refuse(error.what());
-  } catch (const std::bad_alloc&) {
-    refuse("the mesh is too large for this machine's memory");
-  } catch (const std::length_error&) {
-    refuse("an array is too large");
-  }
-  out.report.file = path.string();
-  return out;
+  });
 }
 
-MeshFile read_valid_mesh(const std::filesystem::path& path) {
-  MeshFile out = read_mesh(path);
-  if (!out.report.valid()) {
-    const Finding& defect = out.report.defects.front();
-    std::string places;
-    if (!defect.first.empty())
-      places = fmt::format(" ({} in all, the first at {})", defect.count, defect.first.front());
-    throw InvalidMesh(fmt::format("{}: {}{}", path.string(), defect.message, places));
-  }
-  return out;
-}
+MeshFile read_valid_mesh(const std::filesystem::path& path) { return valid_file(read_mesh(path)); }
 
 }  // namespace dartcast

@@ -1,17 +1,13 @@
 #include "dartcast/io/read_surface.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include <algorithm>
-#include <cctype>
-#include <new>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "dartcast/base/error.hpp"
 #include "dartcast/io/file_text.hpp"
+#include "dartcast/io/judged_file.hpp"
 #include "dartcast/io/obj.hpp"
 #include "dartcast/io/off.hpp"
 #include "dartcast/io/parsed_surface.hpp"
@@ -23,9 +19,7 @@ namespace dartcast {
 namespace {
 
 ParsedSurface parse_surface(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = ending_of(path);
   const bool stl = ending == ".stl";
   const bool obj = ending == ".obj";
   const bool ply = ending == ".ply";
@@ -43,35 +37,15 @@ ParsedSurface parse_surface(const std::filesystem::path& path) {
 }  // namespace
 
 MeshFile check_surface(const std::filesystem::path& path) {
-  MeshFile out;
-  const auto refuse = [&](std::string message) { out.report.defects.push_back({"file", 1, {}, std::move(message)}); };
-  try {
+  return judged_file(path, "surface", [&](MeshFile& out) {
     ParsedSurface parsed = parse_surface(path);
     out.mesh = std::move(parsed.mesh);
     out.report = inspect_surface(out.mesh);
     out.report.format = parsed.format;
     out.report.repairs.insert(out.report.repairs.begin(), parsed.repairs.begin(), parsed.repairs.end());
-  } catch (const Error& error) {
-    refuse(error.what());
-  } catch (const std::bad_alloc&) {
-    refuse("the surface is too large for this machine's memory");
-  } catch (const std::length_error&) {
-    refuse("an array is too large");
-  }
-  out.report.file = path.string();
-  return out;
+  });
 }
 
-MeshFile read_surface(const std::filesystem::path& path) {
-  MeshFile out = check_surface(path);
-  if (!out.report.valid()) {
-    const Finding& defect = out.report.defects.front();
-    std::string places;
-    if (!defect.first.empty())
-      places = fmt::format(" ({} in all, the first: {})", defect.count, fmt::join(defect.first, ", "));
-    throw InvalidMesh(fmt::format("{}: {}{}", path.string(), defect.message, places));
-  }
-  return out;
-}
+MeshFile read_surface(const std::filesystem::path& path) { return valid_file(check_surface(path)); }
 
 }  // namespace dartcast
