@@ -5,7 +5,7 @@ import re
 import sys
 
 LAYERS = ["base", "exact", "mesh", "map", "geometry", "remesh", "surgery", "walk", "environment", "surface",
-          "response", "simulation", "io"]
+          "spheres", "response", "bodies", "simulation", "io"]
 
 # Third-party headers, and the folders of src/dartcast that may include them: in .cpp files and in headers that are not
 # installed, for whoever uses the library needs only its own headers.
