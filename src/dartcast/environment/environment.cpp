@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <utility>
 
 #include "dartcast/base/error.hpp"
@@ -108,6 +109,34 @@ void Particles::reorder(std::span<const std::uint32_t> order) {
   weights_ = std::move(weights);
   vertices_ = std::move(vertices);
   trails_ = std::move(trails);
+  residents_.reset();
+}
+
+Particles Particles::selected(std::span<const std::uint32_t> which) const {
+  Particles some;
+  for (const std::uint32_t i : which) {
+    some.states_.push_back(states_[i]);
+    some.weights_.push_back(weights_[i]);
+    some.vertices_.push_back(vertices_[i]);
+    if (!trails_.empty()) some.trails_.push_back(trails_[i]);
+  }
+  some.moves_ = moves_;
+  some.edits_ = edits_;
+  return some;
+}
+
+void Particles::replace(std::span<const std::uint32_t> which, const Particles& by) {
+  if (which.size() != by.size()) throw InvalidArgument("replace: one index per particle is needed");
+  for (std::size_t k = 0; k < which.size(); ++k) {
+    const std::uint32_t i = which[k];
+    states_[i] = by.states_[k];
+    weights_[i] = by.weights_[k];
+    vertices_[i] = by.vertices_[k];
+    if (trails_.empty()) continue;
+    if (!by.trails_.empty()) trails_[i] = by.trails_[k];
+    // A trail that proves nothing: the next step reads the old positions instead.
+    if (by.trails_.empty()) trails_[i].determinants.fill(std::numeric_limits<double>::quiet_NaN());
+  }
   residents_.reset();
 }
 

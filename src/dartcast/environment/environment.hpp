@@ -38,6 +38,11 @@ class Particles {
   void remove(std::span<const std::uint8_t> marks);
   /// Reorders: particle i becomes what particle order[i] was. `order`: a permutation.
   void reorder(std::span<const std::uint32_t> order);
+  /// A set of these particles alone, in this order, as they are. `which`: indices.
+  [[nodiscard]] Particles selected(std::span<const std::uint32_t> which) const;
+  /// Puts particles that were selected() back in their places, as they are now. `which`: as it was then. Precondition:
+  /// both sets have followed the same moves and edits.
+  void replace(std::span<const std::uint32_t> which, const Particles& by);
 
  private:
   friend class Environment;
@@ -176,6 +181,9 @@ class Environment {
 
   /// Checks every simplex of the scene; exact, parallel, streaming.
   [[nodiscard]] Validity validity(std::size_t most = 10) const { return check_validity(complex_, threads_, most); }
+
+  /// Whether the next advance() of these particles is the one along with the vertices after a move().
+  [[nodiscard]] bool awaits_advance(const Particles& particles) const { return particles.moves_ != moves_; }
 
   void set_threads(Threads threads) { threads_ = threads; }
   [[nodiscard]] Threads threads() const { return threads_; }

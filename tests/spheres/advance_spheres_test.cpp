@@ -1,0 +1,689 @@
+// Spheres against walls: every step against all walls of the scene, and cases with known answers.
+#include "dartcast/spheres/advance_spheres.hpp"
+
+#include <gtest/gtest.h>
+
+#include "dartcast/base/error.hpp"
+#include "dartcast/mesh/generate_rectangle.hpp"
+#include "dartcast/mesh/generate_vessel.hpp"
+#include "dartcast/simulation/deformation.hpp"
+#include "spheres/sphere_checks.hpp"
+
+namespace dartcast {
+namespace {
+
+using test::all_walls;
+using test::clearance;
+using test::first_of_all;
+using test::scaled;
+using test::slack_of;
+using test::Swarm;
+
+const Responses& bouncing() {
+  static const Responses responses(Response{ResponseKind::reflect, 0.9, 0.1});
+  return responses;
+}
+const Responses& sliding() {
+  static const Responses responses(Response{ResponseKind::slide, 0.0, 0.0});
+  return responses;
+}
+
+MeshData box(std::uint32_t n, CellType type, double blocked_share, double jitter, std::uint64_t seed) {
+  BoxOptions options;
+  options.cells = {n, n, n};
+  options.size = {double(n), double(n), double(n)};
+  options.type = type;
+  options.blocked_share = blocked_share;
+  options.jitter = jitter;
+  options.seed = seed;
+  return generate_box(options);
+}
+
+MeshData cube(std::uint32_t n) { return box(n, CellType::hexahedron, 0.0, 0.0, 1); }
+
+struct Checked {
+  int contacts = 0;
+  int unfinished = 0;
+  double worst_overlap = 0.0;  // in slacks
+};
+
+// One step of all spheres; the first contact of each is the first of all walls, and after it none overlaps a wall.
+Checked checked_step(Swarm& swarm, const Responses& responses, bool moved = false, bool expect_room = true) {
+  const auto walls = all_walls(swarm.environment.complex(), moved);
+  std::vector<Vec3> before;
+  std::vector<Vec3> velocities = swarm.velocities;
+  for (std::size_t i = 0; i < swarm.radii.size(); ++i) before.push_back(swarm.particles[i].position);
+  const SphereReport report = swarm.step(responses);
+  Checked checked;
+  std::size_t c = 0;
+  const auto& contacts = report.step.contacts.contacts;
+  for (std::uint32_t i = 0; i < swarm.radii.size(); ++i) {
+    const auto truth = first_of_all(walls, {before[i], before[i] + velocities[i], swarm.radii[i]});
+    const bool overlapped = std::any_of(report.overlaps.begin(), report.overlaps.end(),
+                                        [&](const SphereOverlap& o) { return o.particle == i; });
+    while (c < contacts.size() && contacts[c].particle < i) ++c;
+    const bool has = c < contacts.size() && contacts[c].particle == i;
+    if (!overlapped) {
+      EXPECT_EQ(has, truth.has_value()) << i;
+      if (has && truth) EXPECT_NEAR(contacts[c].time_of_impact, *truth, sphere_time_bound) << i;
+    } else if (expect_room) {
+      ADD_FAILURE() << "sphere " << i << " overlaps by " << report.overlaps.front().depth;
+    }
+    const Vec3& x = swarm.particles[i].position;
+    if (expect_room)
+      checked.worst_overlap =
+          std::max(checked.worst_overlap, (swarm.radii[i] - clearance(walls, x)) / slack_of(x, swarm.radii[i]));
+  }
+  for (const Contact& contact : contacts) {
+    const auto hits = report.step.contacts.walls_of(contact);
+    EXPECT_GE(hits.size(), 1U);
+    for (const WallHit& hit : hits) EXPECT_NEAR(norm(hit.normal), 1.0, 1e-14);
+  }
+  checked.contacts = static_cast<int>(contacts.size());
+  checked.unfinished = static_cast<int>(report.step.counters.unfinished);
+  swarm.expect_valid();
+  return checked;
+}
+
+TEST(AdvanceSpheres, InBoxesOfEveryTypeAgainstAllWalls) {
+  const std::array<CellType, 4> types = {CellType::hexahedron, CellType::tetrahedron, CellType::prism,
+                                         CellType::pyramid};
+  int contacts = 0;
+  int unfinished = 0;
+  for (std::size_t k = 0; k < types.size(); ++k) {
+    for (const double radius : {0.01, 0.2, 0.6, 1.4}) {
+      Swarm swarm(box(6, types[k], radius > 1.0 ? 0.01 : 0.1, 0.3, k + 1), k + 5);
+      swarm.fill(static_cast<std::size_t>(std::max(2, scaled(6, 60))), radius, {0, 0, 0}, {6, 6, 6}, 0.8);
+      EXPECT_GE(swarm.radii.size(), 1U);
+      for (int step = 0; step < std::max(2, scaled(6, 40)); ++step) {
+        for (Vec3& v : swarm.velocities) v += swarm.vector(0.1);
+        const Checked checked = checked_step(swarm, k % 2 == 0 ? bouncing() : sliding());
+        EXPECT_LE(checked.worst_overlap, 1.0);
+        contacts += checked.contacts;
+        unfinished += checked.unfinished;
+      }
+    }
+  }
+  EXPECT_GT(contacts, scaled(100, 2000));
+  EXPECT_LE(unfinished, contacts / 50);
+}
+
+TEST(AdvanceSpheres, LargerThanManyCells) {
+  Swarm swarm(box(8, CellType::hexahedron, 0.004, 0.2, 3), 2);
+  swarm.fill(4, 2.6, {0, 0, 0}, {8, 8, 8}, 1.0);
+  swarm.fill(4, 1.9, {0, 0, 0}, {8, 8, 8}, 1.0);
+  ASSERT_GE(swarm.radii.size(), 4U);
+  int contacts = 0;
+  for (int step = 0; step < std::max(2, scaled(10, 60)); ++step) {
+    const Checked checked = checked_step(swarm, bouncing());
+    EXPECT_LE(checked.worst_overlap, 1.0);
+    contacts += checked.contacts;
+    for (Vec3& v : swarm.velocities) v += swarm.vector(0.2);
+  }
+  EXPECT_GT(contacts, scaled(5, 50));
+}
+
+TEST(AdvanceSpheres, InAVessel) {
+  VesselOptions options;
+  options.core = 3;
+  options.rings = 2;
+  options.tissue_layers = 1;
+  options.step_length = 1.4e-3;
+  Swarm swarm(generate_vessel(options), 4);
+  for (const double radius : {0.05e-3, 0.4e-3, 1.2e-3})
+    swarm.fill(4, radius, {-2e-3, -2e-3, -25e-3}, {2e-3, 2e-3, 5e-3}, 1e-3);
+  ASSERT_GE(swarm.radii.size(), 9U);
+  int contacts = 0;
+  for (int step = 0; step < std::max(2, scaled(12, 100)); ++step) {
+    const Checked checked = checked_step(swarm, sliding());
+    EXPECT_LE(checked.worst_overlap, 1.0);
+    contacts += checked.contacts;
+    for (Vec3& v : swarm.velocities) v += Vec3{0.2e-3, 0.0, 0.3e-3};
+  }
+  EXPECT_GT(contacts, scaled(10, 100));
+}
+
+// Walls that twist and bend: the first contact is that of the walls' true motion; overlaps are rounding, or what the
+// walls did after a contact.
+TEST(AdvanceSpheres, InADeformingBox) {
+  BoxOptions options;
+  options.cells = {5, 5, 10};
+  options.size = {5, 5, 10};
+  options.blocked_layer = true;
+  options.blocked_share = 0.05;
+  const MeshData mesh = generate_box(options);
+  DeformationStep twist;
+  twist.kind = DeformationKind::twist;
+  twist.amplitude = 0.6;
+  twist.period = 40.0;
+  twist.centre = {2.5, 2.5, 0.0};
+  twist.length = 10.0;
+  DeformationStep bend = twist;
+  bend.kind = DeformationKind::bend;
+  bend.direction = {1.0, 0.0, 0.0};
+  for (const auto& steps : {std::vector{twist}, std::vector{bend}}) {
+    const Deformation deformation(steps, mesh.points);
+    Swarm swarm(mesh, 6);
+    for (const double radius : {0.02, 0.2, 0.7}) swarm.fill(5, radius, {1, 1, 1}, {4, 4, 9}, 0.2);
+    int contacts = 0;
+    double left = 0.0;
+    for (int step = 1; step <= std::max(3, scaled(20, 80)); ++step) {
+      deformation.positions(step, swarm.environment.next_positions());
+      swarm.environment.move();
+      std::vector<Vec3> before;
+      for (std::size_t i = 0; i < swarm.radii.size(); ++i) before.push_back(swarm.particles[i].position);
+      const auto walls = all_walls(swarm.environment.complex(), true);
+      const std::vector<Vec3> velocities = swarm.velocities;
+      const SphereReport report = swarm.step(bouncing());
+      for (std::uint32_t i = 0; i < swarm.radii.size(); ++i) {
+        const auto& all = report.step.contacts.contacts;
+        const auto mine = std::find_if(all.begin(), all.end(), [&](const Contact& c) { return c.particle == i; });
+        const bool overlapped = std::any_of(report.overlaps.begin(), report.overlaps.end(),
+                                            [&](const SphereOverlap& o) { return o.particle == i; });
+        const auto truth = first_of_all(walls, {before[i], before[i] + velocities[i], swarm.radii[i]});
+        if (truth && !overlapped) {
+          ASSERT_NE(mine, all.end()) << i;
+          EXPECT_LE(mine->time_of_impact, *truth + sphere_time_bound);
+          EXPECT_GE(mine->time_of_impact, *truth - sphere_time_bound);
+        }
+        const Vec3& x = swarm.particles[i].position;
+        const double depth = swarm.radii[i] - clearance(walls, x);
+        left = std::max(left, depth / swarm.radii[i]);
+        EXPECT_LE(depth, 0.05 * swarm.radii[i]) << step << " " << i;
+      }
+      contacts += static_cast<int>(report.step.contacts.contacts.size());
+      swarm.expect_valid();
+    }
+    EXPECT_GT(contacts, scaled(20, 100));
+    RecordProperty("left", std::to_string(left));
+  }
+}
+
+// A wall goes over a sphere at rest: it is carried along in front of it.
+TEST(AdvanceSpheres, PushedByAWall) {
+  Swarm swarm(cube(4));
+  swarm.add({2.25, 2.125, 1.0}, 0.25);
+  swarm.add({2.25, 2.125, 3.5}, 0.25);
+  auto next = swarm.environment.next_positions();
+  for (std::size_t i = 0; i < next.size(); ++i) {
+    next[i] = swarm.environment.positions()[i];
+    next[i].z = 2.0 + 0.5 * next[i].z;  // the floor rises to 2
+  }
+  swarm.environment.move();
+  const SphereReport report = swarm.step(sliding());
+  ASSERT_EQ(report.step.contacts.contacts.size(), 1U);
+  const Contact& c = report.step.contacts.contacts[0];
+  EXPECT_EQ(c.particle, 0U);
+  EXPECT_NEAR(c.time_of_impact, 0.375, sphere_time_bound);
+  EXPECT_EQ(c.kind, Kind::face);
+  EXPECT_NEAR(c.wall_displacement.z, 2.0, 1e-14);
+  EXPECT_NEAR(norm(c.point - Vec3{2.25, 2.125, 2}), 0.0, 1e-14);
+  EXPECT_NEAR(swarm.particles[0].position.z, 2.25, 1e-12);
+  EXPECT_NEAR(swarm.particles[1].position.z, 3.5, 1e-12);
+  EXPECT_NEAR(swarm.velocities[0].z, 2.0, 1e-12);
+  EXPECT_TRUE(report.overlaps.empty());
+}
+
+// Without a response it stays where it touched the wall, and goes along with that for the rest of the step.
+TEST(AdvanceSpheres, CarriedByAWall) {
+  Swarm swarm(cube(4));
+  swarm.add({2.25, 2.125, 1.0}, 0.25);
+  auto next = swarm.environment.next_positions();
+  for (std::size_t i = 0; i < next.size(); ++i) {
+    const Vec3& x = swarm.environment.positions()[i];
+    next[i] = {x.x + 0.4, x.y, 2.0 + 0.5 * x.z};
+  }
+  swarm.environment.move();
+  const SphereReport report = swarm.stepper.advance(swarm.environment, swarm.particles, swarm.radii,
+                                                    std::vector<Vec3>{swarm.particles[0].position});
+  ASSERT_EQ(report.step.stopped.size(), 1U);
+  EXPECT_LE(norm(swarm.particles[0].position - Vec3{2.5, 2.125, 2.25}), 1e-9);
+  EXPECT_LE(norm(report.step.stopped[0].unused - Vec3{-0.25, 0.0, -1.25}), 1e-8);
+  EXPECT_LE(norm(report.step.contacts.contacts[0].displacement - Vec3{-0.4, 0.0, -2.0}), 1e-14);
+}
+
+// A floor that tilts as it rises: the sphere ends at the distance of its radius from where it is then.
+TEST(AdvanceSpheres, CarriedByAWallThatTurns) {
+  Swarm swarm(cube(4));
+  swarm.add({2.25, 2.125, 1.0}, 0.25);
+  auto next = swarm.environment.next_positions();
+  for (std::size_t i = 0; i < next.size(); ++i) {
+    const Vec3& x = swarm.environment.positions()[i];
+    next[i] = {x.x, x.y, x.z + 0.5 * x.x + 0.1 * x.y};
+  }
+  swarm.environment.move();
+  const SphereReport report = swarm.stepper.advance(swarm.environment, swarm.particles, swarm.radii,
+                                                    std::vector<Vec3>{swarm.particles[0].position});
+  const Vec3& x = swarm.particles[0].position;
+  EXPECT_NEAR(clearance(all_walls(swarm.environment.complex(), false), x), 0.25, slack_of(x, 0.25));
+  EXPECT_TRUE(report.overlaps.empty());
+}
+
+// Several contacts of one step: times grow, and the walls met before come with each.
+TEST(AdvanceSpheres, ContactsInTheirOrder) {
+  Swarm swarm(cube(4));
+  swarm.add({2.25, 2.125, 1.0}, 0.25, {4.0, 0.0, -3.0});
+  const Responses elastic(Response{ResponseKind::reflect, 1.0, 0.0});
+  const SphereReport report = swarm.step(elastic);
+  const auto& contacts = report.step.contacts.contacts;
+  ASSERT_EQ(contacts.size(), 2U);
+  EXPECT_NEAR(contacts[0].time_of_impact, 0.25, sphere_time_bound);
+  EXPECT_NEAR(contacts[1].time_of_impact, 0.375, 2 * sphere_time_bound);
+  EXPECT_EQ(report.step.contacts.earlier_walls_of(contacts[0]).size(), 0U);
+  ASSERT_EQ(report.step.contacts.earlier_walls_of(contacts[1]).size(), 1U);
+  EXPECT_LE(norm(report.step.contacts.earlier_walls_of(contacts[1])[0].normal - Vec3{0, 0, 1}), 1e-14);
+  EXPECT_LE(norm(report.step.contacts.walls_of(contacts[1])[0].normal - Vec3{-1, 0, 0}), 1e-14);
+  EXPECT_LE(norm(swarm.particles[0].position - Vec3{1.25, 2.125, 2.5}), 1e-8);
+  EXPECT_LE(norm(swarm.velocities[0] - Vec3{-4, 0, 3}), 1e-13);
+}
+
+// No more contacts than asked for, and then the sphere is reported as stopped.
+TEST(AdvanceSpheres, ContactsAreLimited) {
+  for (const bool sphere : {false, true}) {
+    Swarm swarm(cube(4));
+    swarm.add({2.25, 2.125, 1.0}, sphere ? 0.25 : 0.0);
+    StepOptions options;
+    options.max_contacts = 3;
+    std::size_t asked = 0;
+    const Respond into = [&](const Contact& c, std::span<const WallHit>, std::span<const WallHit>) -> Continuation {
+      EXPECT_EQ(c.last, ++asked >= 3);
+      return {Vec3{0, 0, -1}, false};
+    };
+    const SphereReport report = swarm.stepper.advance(swarm.environment, swarm.particles, swarm.radii,
+                                                      std::vector<Vec3>{{2.25, 2.125, -1.0}}, into, options);
+    EXPECT_EQ(asked, 3U);
+    EXPECT_EQ(report.step.contacts.contacts.size(), 4U);
+    ASSERT_EQ(report.step.stopped.size(), 1U);
+    EXPECT_EQ(report.step.counters.unfinished, 1U);
+    EXPECT_EQ(report.step.counters.contacts[2], 4U);
+  }
+}
+
+TEST(AdvanceSpheres, MeetsAFaceAnEdgeAndACorner) {
+  MeshData mesh = cube(4);
+  mesh.free.assign(mesh.cell_count(), 1);
+  mesh.free[1 + 4 * (1 + 4 * 1)] = 0;  // the cube [1, 2]^3
+  Swarm swarm(mesh);
+  swarm.add({1.5, 1.5, 3.0}, 0.5, {0, 0, -1});     // its top
+  swarm.add({2.5, 1.5, 2.5}, 0.5, {-1, 0, -1});    // the edge x = 2, z = 2
+  swarm.add({2.5, 2.5, 2.5}, 0.25, {-1, -1, -1});  // the corner (2, 2, 2)
+  const SphereReport report =
+      swarm.stepper.advance(swarm.environment, swarm.particles, swarm.radii,
+                            std::vector<Vec3>{{1.5, 1.5, 2.0}, {1.5, 1.5, 1.5}, {1.5, 1.5, 1.5}});
+  const auto& contacts = report.step.contacts.contacts;
+  ASSERT_EQ(contacts.size(), 3U);
+  EXPECT_EQ(contacts[0].kind, Kind::face);
+  EXPECT_NEAR(contacts[0].time_of_impact, 0.5, sphere_time_bound);
+  EXPECT_EQ(contacts[1].kind, Kind::edge);
+  EXPECT_NEAR(contacts[1].time_of_impact, 0.5 - std::sqrt(0.125), sphere_time_bound);
+  EXPECT_EQ(contacts[2].kind, Kind::vertex);
+  EXPECT_NEAR(contacts[2].time_of_impact, 0.5 - 0.25 / std::sqrt(3.0), sphere_time_bound);
+  for (const Contact& c : contacts) {
+    const double radius = swarm.radii[c.particle];
+    const Vec3& x = swarm.particles[c.particle].position;
+    EXPECT_NEAR(norm(x - c.point), radius, slack_of(x, radius));
+    const auto walls = report.step.contacts.walls_of(c);
+    ASSERT_EQ(walls.size(), 1U);
+    EXPECT_LE(norm(walls[0].normal * radius + c.point - x), 1e-14);
+    EXPECT_LE(norm(c.unused - c.displacement * (1.0 - c.time_of_impact)), 1e-8);
+  }
+  EXPECT_EQ(report.step.stopped.size(), 3U);
+  EXPECT_LE(norm(contacts[2].point - Vec3{2, 2, 2}), 1e-15);
+}
+
+TEST(AdvanceSpheres, ComesToRestInACorner) {
+  Swarm swarm(cube(3));
+  swarm.add({1.0, 1.25, 1.5}, 0.3, {-0.05, -0.05, -0.05});
+  std::size_t most = 0;
+  for (int step = 0; step < 300; ++step) {
+    for (Vec3& v : swarm.velocities) v += Vec3{-0.003, -0.003, -0.003};
+    const SphereReport report = swarm.step(sliding());
+    most = std::max(most, report.step.contacts.contacts.size());
+    EXPECT_TRUE(report.step.stopped.empty());
+    EXPECT_TRUE(report.overlaps.empty());
+    if (step > 150) {
+      ASSERT_GE(report.step.contacts.contacts.size(), 1U);
+      EXPECT_EQ(report.step.contacts.walls_of(report.step.contacts.contacts.back()).size(), 3U);
+    }
+  }
+  EXPECT_LE(most, 3U);
+  EXPECT_LE(norm(swarm.particles[0].position - Vec3{0.3, 0.3, 0.3}), 1e-13);
+  EXPECT_LE(norm(swarm.velocities[0]), 1e-15);
+}
+
+TEST(AdvanceSpheres, SlidesAndRollsForTenThousandSteps) {
+  MeshData mesh = cube(6);
+  mesh.free.assign(mesh.cell_count(), 1);
+  for (unsigned j = 0; j < 6; ++j) mesh.free[3 + 6 * j] = 0;  // a step of height 1 on the floor
+  Swarm swarm(mesh);
+  swarm.add({4.5, 3.0, 1.4}, 0.4);      // on the step's edge, and down
+  swarm.add({1.0, 3.0, 0.125}, 0.125);  // on the floor, to and fro
+  swarm.add({5.0, 1.0, 0.75}, 0.75);
+  const auto walls = all_walls(swarm.environment.complex(), false);
+  const int steps = scaled(3000, 10000);
+  std::size_t contacts = 0;
+  for (int step = 0; step < steps; ++step) {
+    for (std::size_t i = 0; i < swarm.radii.size(); ++i) {
+      swarm.velocities[i].z -= 1e-3;
+      swarm.velocities[i].x = 1e-2 * std::sin(0.01 * step + double(i));
+      swarm.velocities[i].y = 7e-3 * std::cos(0.013 * step);
+    }
+    const SphereReport report = swarm.step(sliding());
+    contacts += report.step.contacts.contacts.size();
+    ASSERT_TRUE(report.overlaps.empty()) << step;
+    ASSERT_TRUE(report.step.stopped.empty()) << step;
+    for (std::size_t i = 0; i < swarm.radii.size(); ++i) {
+      if (step % 8 != 0) break;
+      const Vec3& x = swarm.particles[i].position;
+      const double room = clearance(walls, x);
+      ASSERT_GE(room, swarm.radii[i] - 2 * slack_of(x, swarm.radii[i])) << step << " " << i;
+      ASSERT_LE(room, swarm.radii[i] + (step > 100 ? 1e-2 : 1.0)) << step << " " << i;
+    }
+  }
+  EXPECT_GE(contacts, 2U * static_cast<std::size_t>(steps));
+  EXPECT_LE(contacts, 8U * static_cast<std::size_t>(steps));
+}
+
+// In a box that is turned no wall's plane is free of rounding; into its edges and corners, too.
+TEST(AdvanceSpheres, SlidesInATurnedBox) {
+  MeshData mesh = cube(5);
+  const double c = std::cos(0.7);
+  const double s = std::sin(0.7);
+  const auto turned = [&](const Vec3& x) {
+    const Vec3 y = {c * x.x - s * x.y, s * x.x + c * x.y, x.z};
+    return Vec3{y.x, c * y.y - s * y.z, s * y.y + c * y.z};
+  };
+  for (Vec3& x : mesh.points) x = turned(x) + Vec3{100.0, 20.0, 3.0};
+  Swarm swarm(mesh);
+  for (const double radius : {0.1, 0.45, 1.3}) swarm.add(turned({2.5, 2.5, 1.5}) + Vec3{100.0, 20.0, 3.0}, radius);
+  const auto walls = all_walls(swarm.environment.complex(), false);
+  std::size_t contacts = 0;
+  const int steps = std::max(100, scaled(1000, 10000));
+  for (int step = 0; step < steps; ++step) {
+    for (std::size_t i = 0; i < swarm.radii.size(); ++i)
+      swarm.velocities[i] += turned({1e-3 * std::sin(0.01 * step + double(i)), 7e-4 * std::cos(0.013 * step), -1e-3});
+    const SphereReport report = swarm.step(sliding());
+    contacts += report.step.contacts.contacts.size();
+    ASSERT_TRUE(report.overlaps.empty()) << step;
+    ASSERT_TRUE(report.step.stopped.empty()) << step;
+    for (std::size_t i = 0; i < swarm.radii.size(); ++i) {
+      if (step % 8 != 0) break;
+      const Vec3& x = swarm.particles[i].position;
+      ASSERT_GE(clearance(walls, x), swarm.radii[i] - 2 * slack_of(x, swarm.radii[i])) << step << " " << i;
+    }
+  }
+  EXPECT_GE(contacts, 2U * static_cast<std::size_t>(steps));
+  EXPECT_LE(contacts, 10U * static_cast<std::size_t>(steps));
+}
+
+// What rounding leaves of a slide is lifted off the wall, as for points.
+TEST(AdvanceSpheres, SlidesAreLiftedOffTheWall) {
+  Swarm swarm(cube(4));
+  swarm.add({1.25, 2.125, 0.25}, 0.25);
+  const Respond nearly_along = [](const Contact&, std::span<const WallHit>, std::span<const WallHit>) -> Continuation {
+    return {Vec3{1.0, 0.0, -1e-12}, true};
+  };
+  const SphereReport report = swarm.stepper.advance(swarm.environment, swarm.particles, swarm.radii,
+                                                    std::vector<Vec3>{{2.25, 2.125, 0.0}}, nearly_along);
+  EXPECT_EQ(report.step.contacts.contacts.size(), 1U);
+  EXPECT_LE(norm(swarm.particles[0].position - Vec3{2.25, 2.125, 0.25}), 1e-12);
+}
+
+TEST(AdvanceSpheres, TouchingExactly) {
+  Swarm swarm(cube(4));
+  swarm.add({1.0, 2.0, 0.5}, 0.5);
+  const auto move = [&](const Vec3& to) {
+    return swarm.stepper.advance(swarm.environment, swarm.particles, swarm.radii, std::vector<Vec3>{to});
+  };
+  EXPECT_TRUE(move({1.0, 2.0, 0.5}).step.contacts.contacts.empty());  // no way
+  EXPECT_TRUE(move({2.0, 2.0, 0.5}).step.contacts.contacts.empty());  // along
+  EXPECT_EQ(swarm.particles[0].position, (Vec3{2.0, 2.0, 0.5}));
+  const SphereReport into = move({2.0, 2.0, 0.25});
+  ASSERT_EQ(into.step.contacts.contacts.size(), 1U);
+  EXPECT_EQ(into.step.contacts.contacts[0].time_of_impact, 0.0);
+  EXPECT_EQ(into.step.contacts.contacts[0].unused, (Vec3{0, 0, -0.25}));
+  EXPECT_EQ(swarm.particles[0].position, (Vec3{2.0, 2.0, 0.5}));
+  EXPECT_TRUE(move({2.0, 2.0, 1.0}).step.contacts.contacts.empty());  // off
+  EXPECT_TRUE(move({2.0, 2.0, 0.5}).step.contacts.contacts.size() <= 1);
+}
+
+TEST(AdvanceSpheres, OverlapsAreMovedOut) {
+  Swarm swarm(cube(4));
+  swarm.add({2.0, 2.0, 0.25}, 0.5);
+  swarm.add({0.25, 0.25, 0.125}, 0.5);
+  swarm.add({2.0, 2.0, 2.0}, 0.5);
+  const SphereReport report = swarm.step(sliding());
+  ASSERT_EQ(report.overlaps.size(), 4U);
+  EXPECT_EQ(report.overlaps[0].particle, 0U);
+  EXPECT_DOUBLE_EQ(report.overlaps[0].depth, 0.25);
+  EXPECT_EQ(report.overlaps[0].left, 0.0);
+  EXPECT_EQ(report.overlaps[0].normal, (Vec3{0, 0, 1}));
+  EXPECT_EQ(report.overlaps[0].point, (Vec3{2, 2, 0}));
+  EXPECT_EQ(report.overlaps[1].particle, 1U);
+  EXPECT_DOUBLE_EQ(report.overlaps[1].depth, 0.375);
+  EXPECT_LE(norm(swarm.particles[0].position - Vec3{2, 2, 0.5}), 1e-14);
+  EXPECT_LE(norm(swarm.particles[1].position - Vec3{0.5, 0.5, 0.5}), 1e-13);
+  EXPECT_EQ(swarm.particles[2].position, (Vec3{2, 2, 2}));
+  EXPECT_TRUE(swarm.step(sliding()).overlaps.empty());
+}
+
+TEST(AdvanceSpheres, WithoutRoomItStaysInTheMiddle) {
+  BoxOptions options;
+  options.cells = {8, 8, 1};
+  options.size = {8, 8, 1};
+  Swarm swarm(generate_box(options));
+  swarm.add({2.0, 2.0, 0.25}, 0.75, {0.25, 0, 0});
+  for (int step = 0; step < 10; ++step) {
+    const SphereReport report = swarm.step(sliding());
+    ASSERT_EQ(report.overlaps.size(), step == 0 ? 1U : 2U);
+    EXPECT_NEAR(report.overlaps[0].left, 0.25, 1e-6);
+    EXPECT_NEAR(swarm.particles[0].position.z, 0.5, 1e-6);
+    EXPECT_NEAR(swarm.particles[0].position.x, 2.25 + 0.25 * step, 1e-9);  // along it may go
+  }
+}
+
+// Walls that close in on a sphere: it is held in the middle, reported, and free again when they open.
+TEST(AdvanceSpheres, SqueezedBetweenWalls) {
+  Swarm swarm(cube(4));
+  swarm.add({2.0, 2.0, 1.0}, 0.75);
+  const std::vector<Vec3> rest(swarm.environment.positions().begin(), swarm.environment.positions().end());
+  const auto squeeze = [&](double height) {
+    auto next = swarm.environment.next_positions();
+    for (std::size_t i = 0; i < next.size(); ++i)
+      next[i] = {rest[i].x, rest[i].y, 2.0 + (rest[i].z - 2.0) * height / 4.0};
+    swarm.environment.move();
+    for (Vec3& v : swarm.velocities) v = {};
+    return swarm.step(sliding());
+  };
+  for (double height = 4.0; height > 1.0; height -= 0.25) {
+    const SphereReport report = squeeze(height);
+    const double z = swarm.particles[0].position.z;
+    if (height >= 1.5) EXPECT_GE(z, 2.0 - height / 2 + 0.75 - 1e-12) << height;
+    if (height < 1.5) {
+      EXPECT_FALSE(report.overlaps.empty()) << height;
+      EXPECT_NEAR(z, 2.0, 1e-5) << height;
+    }
+    swarm.expect_valid();
+  }
+  for (double height = 1.0; height <= 4.0; height += 0.25) squeeze(height);
+  const SphereReport report = squeeze(4.0);
+  EXPECT_TRUE(report.overlaps.empty());
+}
+
+TEST(AdvanceSpheres, OfRadiusZeroArePoints) {
+  const auto run = [](bool spheres) {
+    Swarm swarm(box(5, CellType::hexahedron, 0.1, 0.3, 2), 3);
+    swarm.fill(40, 1e-9, {0, 0, 0}, {5, 5, 5}, 0.5);
+    std::fill(swarm.radii.begin(), swarm.radii.end(), 0.0);
+    std::vector<Vec3> where;
+    for (int step = 0; step < 20; ++step) {
+      std::vector<Vec3> targets;
+      for (std::size_t i = 0; i < swarm.radii.size(); ++i)
+        targets.push_back(swarm.particles[i].position + swarm.velocities[i]);
+      const Respond respond = respond_with(bouncing(), swarm.velocities, swarm.fates, 1.0);
+      const StepReport report =
+          spheres ? swarm.stepper.advance(swarm.environment, swarm.particles, swarm.radii, targets, respond).step
+                  : swarm.environment.advance(swarm.particles, targets, respond);
+      for (const Contact& c : report.contacts.contacts) where.push_back(c.point);
+      for (const State& s : swarm.particles.states()) where.push_back(s.position);
+    }
+    return where;
+  };
+  EXPECT_EQ(run(true), run(false));
+}
+
+// So small that its centre comes to the wall: it is a point with other words, asked once.
+TEST(AdvanceSpheres, SmallerThanRounding) {
+  for (const bool response : {false, true}) {
+    Swarm swarm(cube(4));
+    swarm.add({1.25, 2.125, 0.25}, 1e-300);
+    swarm.add({1.25, 2.125, 0.25}, 0.0);
+    std::array<int, 2> asked{};
+    const Respond rebound = [&](const Contact& c, std::span<const WallHit> walls, std::span<const WallHit>) {
+      ++asked[c.particle];
+      EXPECT_NEAR(c.time_of_impact, 0.5, 1e-12);
+      return Continuation{reflected(c.unused, walls, 1.0, 0.0), true};
+    };
+    const SphereReport report = swarm.stepper.advance(swarm.environment, swarm.particles, swarm.radii,
+                                                      std::vector<Vec3>{{2.25, 2.125, -0.25}, {2.25, 2.125, -0.25}},
+                                                      response ? Respond(rebound) : Respond{});
+    EXPECT_EQ(report.step.contacts.contacts.size(), 2U);
+    EXPECT_EQ(asked[0], response ? 1 : 0);
+    EXPECT_EQ(asked[1], asked[0]);
+    EXPECT_LE(norm(swarm.particles[0].position - swarm.particles[1].position), 1e-14);
+    EXPECT_EQ(report.step.stopped.size(), response ? 0U : 2U);
+  }
+}
+
+// Points among spheres are what they are alone, to the last bit.
+TEST(AdvanceSpheres, PointsAmongSpheres) {
+  const auto run = [](bool spheres) {
+    Swarm swarm(box(5, CellType::hexahedron, 0.1, 0.3, 2), 3);
+    swarm.fill(40, 0.2, {0, 0, 0}, {5, 5, 5}, 0.5);
+    for (std::size_t i = 0; i < swarm.radii.size(); ++i)
+      if (!spheres || i % 2 == 0) swarm.radii[i] = 0.0;
+    std::vector<Vec3> where;
+    for (int step = 0; step < 20; ++step) {
+      const SphereReport report = swarm.step(bouncing());
+      for (const Contact& c : report.step.contacts.contacts) {
+        if (c.particle % 2 != 0) continue;
+        where.push_back(c.point);
+        for (const WallHit& w : report.step.contacts.walls_of(c)) where.push_back(w.normal);
+      }
+      for (std::size_t i = 0; i < swarm.radii.size(); i += 2) where.push_back(swarm.particles[i].position);
+    }
+    return where;
+  };
+  EXPECT_EQ(run(true), run(false));
+}
+
+TEST(AdvanceSpheres, TheSameBitsForAnyThreads) {
+  const auto run = [](unsigned threads) {
+    Swarm swarm(box(6, CellType::tetrahedron, 0.1, 0.2, 2), 3, Threads{threads});
+    swarm.fill(static_cast<std::size_t>(std::max(30, scaled(700, 2000))), 0.1, {0, 0, 0}, {6, 6, 6}, 0.7);
+    std::vector<Vec3> where;
+    for (int step = 0; step < 5; ++step) {
+      const SphereReport report = swarm.step(bouncing());
+      for (const Contact& c : report.step.contacts.contacts) where.push_back(c.point);
+      for (const WallHit& w : report.step.contacts.walls) where.push_back(w.normal);
+      for (const State& s : swarm.particles.states()) where.push_back(s.position);
+    }
+    return where;
+  };
+  const auto one = run(1);
+  EXPECT_EQ(one, run(2));
+  EXPECT_EQ(one, run(5));
+}
+
+TEST(AdvanceSpheres, TheSameBitsInAnyOrder) {
+  const auto run = [](bool reversed) {
+    Swarm swarm(box(5, CellType::prism, 0.1, 0.2, 2), 3);
+    swarm.fill(60, 0.15, {0, 0, 0}, {5, 5, 5}, 0.7);
+    std::vector<std::uint32_t> order(swarm.radii.size());
+    for (std::uint32_t i = 0; i < order.size(); ++i)
+      order[i] = reversed ? static_cast<std::uint32_t>(order.size()) - 1 - i : i;
+    swarm.particles.reorder(order);
+    if (reversed) std::reverse(swarm.velocities.begin(), swarm.velocities.end());
+    for (int step = 0; step < 10; ++step) swarm.step(bouncing());
+    std::vector<Vec3> where;
+    for (const State& s : swarm.particles.states()) where.push_back(s.position);
+    if (reversed) std::reverse(where.begin(), where.end());
+    return where;
+  };
+  EXPECT_EQ(run(false), run(true));
+}
+
+TEST(AdvanceSpheres, InThePlane) {
+  RectangleOptions options;
+  options.cells = {6, 6};
+  options.size = {6, 6};
+  options.blocked_share = 0.1;
+  Swarm swarm(generate_rectangle(options), 8);
+  const auto walls = all_walls(swarm.environment.complex(), false);
+  for (int k = 0; k < 400 && swarm.radii.size() < 20; ++k) {
+    const Vec3 x = {swarm.random.uniform(0, 6), swarm.random.uniform(0, 6), 0.0};
+    const double radius = k % 2 == 0 ? 0.3 : 0.9;
+    Vec3 v = swarm.vector(0.8);
+    v.z = 0.0;
+    if (clearance(walls, x) > radius) swarm.add(x, radius, v);
+  }
+  ASSERT_GE(swarm.radii.size(), 5U);
+  int contacts = 0;
+  for (int step = 0; step < 30; ++step) {
+    const Checked checked = checked_step(swarm, bouncing());
+    EXPECT_LE(checked.worst_overlap, 1.0);
+    contacts += checked.contacts;
+  }
+  EXPECT_GT(contacts, 20);
+}
+
+// Cells are cut, blocked and freed around spheres.
+TEST(AdvanceSpheres, AfterEdits) {
+  Swarm swarm(box(6, CellType::hexahedron, 0.05, 0.0, 2), 3);
+  swarm.fill(20, 0.3, {0, 0, 0}, {6, 6, 6}, 0.5);
+  int contacts = 0;
+  for (int step = 0; step < 12; ++step) {
+    const auto cells = swarm.environment.map().cells();
+    const Cell cell = cells[swarm.random.below(static_cast<std::uint32_t>(cells.size()))];
+    const bool free = swarm.environment.map().is_free(cell);
+    swarm.environment.edit([&](ComplexEdit& edit) { edit.topology().set_free(cell, !free); });
+    swarm.environment.follow(swarm.particles);
+    swarm.step(bouncing());  // moves out those that the edit left in a wall
+    const Checked checked = checked_step(swarm, bouncing(), false, false);
+    contacts += checked.contacts;
+  }
+  EXPECT_GT(contacts, 20);
+}
+
+TEST(AdvanceSpheres, RefusesWhatIsNoRadius) {
+  Swarm swarm(cube(3));
+  swarm.add({1.5, 1.5, 1.5}, 0.25);
+  const std::vector<Vec3> target = {{1.0, 1.0, 1.0}};
+  const auto with = [&](std::vector<double> radii) {
+    return swarm.stepper.advance(swarm.environment, swarm.particles, radii, target);
+  };
+  EXPECT_THROW(with({-1.0}), InvalidArgument);
+  EXPECT_THROW(with({std::numeric_limits<double>::quiet_NaN()}), InvalidArgument);
+  EXPECT_THROW(with({std::numeric_limits<double>::infinity()}), InvalidArgument);
+  EXPECT_THROW(with({0.25, 0.25}), InvalidArgument);
+  EXPECT_THROW(
+      swarm.stepper.advance(swarm.environment, swarm.particles, swarm.radii, std::vector<Vec3>{{std::nan(""), 0, 0}}),
+      InvalidArgument);
+  EXPECT_EQ(swarm.particles[0].position, (Vec3{1.5, 1.5, 1.5}));
+}
+
+TEST(AdvanceSpheres, AResponseThatThrowsChangesNothing) {
+  Swarm swarm(cube(3));
+  swarm.add({1.5, 1.5, 1.5}, 0.25);
+  swarm.add({0.5, 1.5, 1.5}, 0.25);
+  const Respond bad = [](const Contact&, std::span<const WallHit>, std::span<const WallHit>) -> Continuation {
+    return {Vec3{std::nan(""), 0, 0}, false};
+  };
+  const std::vector<Vec3> targets = {{2, 1, 1}, {-1, 1.5, 1.5}};
+  EXPECT_THROW(swarm.stepper.advance(swarm.environment, swarm.particles, swarm.radii, targets, bad), InvalidArgument);
+  EXPECT_EQ(swarm.particles[0].position, (Vec3{1.5, 1.5, 1.5}));
+  EXPECT_EQ(swarm.particles[1].position, (Vec3{0.5, 1.5, 1.5}));
+}
+
+}  // namespace
+}  // namespace dartcast
