@@ -14,6 +14,7 @@
 #include "bench/plan.hpp"
 #include "bench/race.hpp"
 #include "bench/report.hpp"
+#include "bench/spheres.hpp"
 #include "commands.hpp"
 #include "dartcast/base/error.hpp"
 
@@ -26,6 +27,8 @@ struct Arguments {
   std::string folder = "bench-out";
   bool json = false;
   bool edits = false;
+  bool spheres = false;
+  std::size_t most_spheres = 100000;
 };
 
 void write(const std::filesystem::path& file, const std::string& text) {
@@ -38,6 +41,15 @@ int run_edits(bool json) {
   std::vector<bench::EditRow> rows;
   for (const std::uint32_t edge : {10U, 100U}) rows.push_back(bench::edit_box(edge, 100000, 10000));
   fmt::print("{}", json ? bench::edits_json(rows) + "\n" : bench::edits_text(rows));
+  return done;
+}
+
+int run_spheres(const Arguments& a) {
+  std::vector<bench::SphereRow> rows;
+  for (const bool crowded : {false, true}) {
+    for (std::size_t count = 1000; count <= a.most_spheres; count *= 10) rows.push_back(bench::heap(count, crowded));
+  }
+  fmt::print("{}", a.json ? bench::spheres_json(rows) + "\n" : bench::spheres_text(rows));
   return done;
 }
 
@@ -78,7 +90,9 @@ void add_bench(CLI::App& app, int& status) {
       ->take_last();
   verb->add_flag("--json", a->json, "print one JSON object, and nothing else");
   verb->add_flag("--edits", a->edits, "edits per second at 10^3 and 10^6 cells, and nothing else");
-  verb->callback([a, &status] { status = a->edits ? run_edits(a->json) : run(*a); });
+  verb->add_flag("--spheres", a->spheres, "what colliding spheres cost, 10^3 and more, and nothing else");
+  verb->add_option("--most", a->most_spheres, "with --spheres: their largest number (100000)");
+  verb->callback([a, &status] { status = a->edits ? run_edits(a->json) : a->spheres ? run_spheres(*a) : run(*a); });
 }
 
 }  // namespace dartcast::app

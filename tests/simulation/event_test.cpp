@@ -205,7 +205,7 @@ TEST(Events, SurgeryKeepsToTheTimesAndDoesItAgain) {
   Environment environment(channel());
   Flow flow(environment, falling(0.02), Responses(Response{ResponseKind::slide, 0.0, 0.0}));
   flow.add_random(200, {});
-  Surgery surgery(events, never, 0.02, flow);
+  Surgery surgery(events, never, {}, 0.02, flow);
   for (int i = 0; i < 20; ++i) {
     surgery.before_step();
     EXPECT_EQ(surgery.log().events.size(), i < 5 ? 1U : 2U);
@@ -226,7 +226,7 @@ TEST(Events, SayWhichIsRefused) {
   Environment environment(channel());
   Flow flow(environment, falling(0.02));
   const RemeshScene never;
-  Surgery surgery(events, never, 0.02, flow);
+  Surgery surgery(events, never, {}, 0.02, flow);
   try {
     surgery.before_step();
     FAIL() << "there is nothing to tie";
@@ -251,10 +251,10 @@ TEST(Events, InThePlaneALigatureSeals) {
   flow.add(places, {});
   const RemeshScene never;
   const std::vector<Event> cut = {cut_below};
-  EXPECT_THROW(Surgery(cut, never, 0.05, flow), InvalidArgument);
+  EXPECT_THROW(Surgery(cut, never, {}, 0.05, flow), InvalidArgument);
   const std::vector<Event> tie = {
       {0.5, Ligature{plane_through({6.5, 2.0, 0.0}, {1.0, 0.0, 0.0}), {6.5, 2.0, 0.0}, {0.0, 1.0}, 0.0}}};
-  Surgery surgery(tie, never, 0.05, flow);
+  Surgery surgery(tie, never, {}, 0.05, flow);
   for (int i = 0; i < 200; ++i) {
     surgery.before_step();
     flow.step();

@@ -1,5 +1,7 @@
 #include "dartcast/simulation/flow.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -33,6 +35,21 @@ void check(const FlowOptions& o) {
   if (!(o.drag >= 0.0) || !std::isfinite(o.drag)) throw InvalidArgument("flow: drag must be finite and not negative");
   if (!is_finite(o.gravity)) throw InvalidArgument("flow: gravity must be finite");
   if (o.substeps == 0) throw InvalidArgument("flow: substeps must be at least 1");
+  if (!o.collisions) return;
+  const CollisionOptions& c = *o.collisions;
+  if (!(c.restitution >= 0.0 && c.restitution <= 1.0))
+    throw InvalidArgument("flow: the spheres' restitution must be between 0 and 1");
+  if (!(c.friction >= 0.0) || !std::isfinite(c.friction))
+    throw InvalidArgument("flow: the spheres' friction must be finite and not negative");
+  if (!(c.density > 0.0) || !std::isfinite(c.density))
+    throw InvalidArgument("flow: the spheres' density must be positive and finite");
+  if (c.iterations == 0) throw InvalidArgument("flow: collisions need an iteration at least");
+}
+
+void check_motion(const Vec3& velocity, double radius, const char* whose) {
+  if (!is_finite(velocity)) throw InvalidArgument(fmt::format("flow: {} velocity must be finite", whose));
+  if (!(radius >= 0.0) || !std::isfinite(radius))
+    throw InvalidArgument(fmt::format("flow: {} radius must be finite and not negative", whose));
 }
 
 // The particle with coordinates w, as riding along puts it.
@@ -65,34 +82,36 @@ void Flow::set_deformation(Deformation deformation) {
   deformation_ = std::move(deformation);
 }
 
-void Flow::add_inlet(Patch patch, double rate, const Vec3& velocity) {
+void Flow::add_inlet(Patch patch, double rate, const Vec3& velocity, double radius) {
   if (!(rate >= 0.0) || !std::isfinite(rate))
     throw InvalidArgument("flow: an inlet's rate must be finite and not negative");
-  if (!is_finite(velocity)) throw InvalidArgument("flow: an inlet's velocity must be finite");
-  inlets_.push_back({patch, PatchSampler(environment_.complex(), patch), rate, velocity});
+  check_motion(velocity, radius, "an inlet's");
+  inlets_.push_back({patch, PatchSampler(environment_.complex(), patch), rate, velocity, radius});
 }
 
-std::vector<Added> Flow::add(std::span<const Vec3> positions, const Vec3& velocity) {
-  if (!is_finite(velocity)) throw InvalidArgument("flow: a particle's velocity must be finite");
+std::vector<Added> Flow::add(std::span<const Vec3> positions, const Vec3& velocity, double radius) {
+  check_motion(velocity, radius, "a particle's");
   std::vector<Added> added = environment_.add(particles_, positions);
-  complete(velocity);
+  complete(velocity, radius);
   totals_.start = next_id_ - totals_.injected;
   return added;
 }
 
-// Gives ids and velocities to the particles added last.
-void Flow::complete(const Vec3& velocity) {
+// Gives ids, velocities and radii to the particles added last.
+void Flow::complete(const Vec3& velocity, double radius) {
   for (std::size_t i = ids_.size(); i < particles_.size(); ++i) {
     ids_.push_back(next_id_++);
     velocities_.push_back(velocity);
     fates_.push_back(Fate::alive);
     contact_counts_.push_back(0);
+    radii_.push_back(radius);
+    if (radius > 0.0) ++spheres_;
   }
 }
 
 // Sampled points are rounded: one that fell out of its simplex is drawn again.
 template <class Sampler>
-void Flow::add_sampled(const Sampler& sampler, std::size_t count, const Vec3& velocity) {
+void Flow::add_sampled(const Sampler& sampler, std::size_t count, const Vec3& velocity, double radius) {
   constexpr int most_tries = 1000;
   for (std::size_t i = 0; i < count; ++i) {
     int tries = 0;
@@ -100,55 +119,13 @@ void Flow::add_sampled(const Sampler& sampler, std::size_t count, const Vec3& ve
       const Sample s = sampler.sample(environment_.complex(), random_);
       if (environment_.add(particles_, s.simplex, detail::flushed(s.position))) break;
       if (++tries == most_tries) {
-        complete(velocity);
+        complete(velocity, radius);
         throw InvalidArgument(
             "flow: random points fall outside the free cells again and again: their cells are too thin or not valid");
       }
     }
   }
-  complete(velocity);
-}
-
-FlowCheckpoint Flow::checkpoint() const {
-  FlowCheckpoint saved;
-  saved.steps = steps_;
-  saved.next_id = next_id_;
-  saved.random = random_;
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    saved.particles.push_back(
-        {ids_[i], particles_[i], particles_.held_weights(i), velocities_[i], fates_[i], contact_counts_[i]});
-  }
-  saved.totals = totals_;
-  saved.gone = gone_;
-  return saved;
-}
-
-void Flow::restore(const FlowCheckpoint& saved) {
-  if (saved.totals.contacts_by_patch.size() != totals_.contacts_by_patch.size())
-    throw InvalidArgument("flow: the checkpoint is of an environment with other patches");
-  move_vertices_to(saved.steps);
-  std::vector<State> states;
-  std::vector<Weights> weights;
-  for (const FlowCheckpoint::Particle& p : saved.particles) {
-    states.push_back(p.state);
-    weights.push_back(p.held_weights);
-  }
-  particles_ = environment_.restored(states, weights);
-  ids_.clear();
-  velocities_.clear();
-  fates_.clear();
-  contact_counts_.clear();
-  for (const FlowCheckpoint::Particle& p : saved.particles) {
-    ids_.push_back(p.id);
-    velocities_.push_back(p.velocity);
-    fates_.push_back(p.fate);
-    contact_counts_.push_back(p.contacts);
-  }
-  steps_ = saved.steps;
-  next_id_ = saved.next_id;
-  random_ = saved.random;
-  totals_ = saved.totals;
-  gone_ = saved.gone;
+  complete(velocity, radius);
 }
 
 void Flow::move_vertices_to(std::uint64_t steps) {
@@ -158,15 +135,9 @@ void Flow::move_vertices_to(std::uint64_t steps) {
   environment_.move();
 }
 
-void Flow::go_to(std::uint64_t steps) {
-  if (particles_.size() > 0) throw InvalidArgument("flow: there are particles, which would be left behind");
-  move_vertices_to(steps);
-  steps_ = steps;
-}
-
-void Flow::add_random(std::size_t count, const Vec3& velocity) {
-  if (!is_finite(velocity)) throw InvalidArgument("flow: a particle's velocity must be finite");
-  if (count > 0) add_sampled(VolumeSampler(environment_.complex()), count, velocity);
+void Flow::add_random(std::size_t count, const Vec3& velocity, double radius) {
+  check_motion(velocity, radius, "a particle's");
+  if (count > 0) add_sampled(VolumeSampler(environment_.complex()), count, velocity, radius);
   totals_.start = next_id_ - totals_.injected;
 }
 
@@ -175,10 +146,11 @@ const FlowStep& Flow::step() {
   last_.duration = options_.dt;
   last_.absorbed = std::exchange(absorbed_between_, 0);
   inject();
-  move_vertices();
+  if (!collides()) move_vertices();
   for (unsigned segment = 0; segment < options_.substeps; ++segment) advance_segment(segment);
   const Timer timer(totals_.seconds_respond);
   totals_.counters += last_.report.counters;
+  totals_.collisions += last_.collisions;
   count_contacts();
   remove_gone();
   ++steps_;
@@ -194,7 +166,7 @@ void Flow::inject() {
     const auto count = static_cast<std::uint64_t>(up_to(steps_ + 1) - up_to(steps_));
     if (count == 0 || !inlet.sampler) continue;
     if (deformation_) inlet.sampler->update(environment_.complex());
-    add_sampled(*inlet.sampler, count, inlet.velocity);
+    add_sampled(*inlet.sampler, count, inlet.velocity, inlet.radius);
     last_.injected += count;
   }
   totals_.injected += last_.injected;
@@ -207,14 +179,33 @@ void Flow::move_vertices() {
 }
 
 void Flow::advance_segment(unsigned segment) {
-  {
+  const double dt = options_.dt / options_.substeps;
+  const bool moving = deformation_ && segment == 0;
+  if (collides()) {
+    {
+      const Timer timer(totals_.seconds_collide);
+      collide(dt, moving);
+    }
+    if (moving) {
+      move_vertices();
+      aim_stuck(dt);
+    }
+  } else {
     const Timer timer(totals_.seconds_respond);
-    aim(options_.dt / options_.substeps, deformation_ && segment == 0);
+    aim(dt, moving);
   }
   const Timer timer(totals_.seconds_detect);
   const Respond respond = respond_with(responses_, velocities_, fates_, options_.dt);
-  StepReport report = environment_.advance(particles_, targets_, respond, options_.step);
-  append_segment(last_.report, std::move(report), segment, options_.substeps);
+  if (spheres_ == 0) {
+    StepReport report = environment_.advance(particles_, targets_, respond, options_.step);
+    append_segment(last_.report, std::move(report), segment, options_.substeps);
+    return;
+  }
+  SphereReport report = stepper_.advance(environment_, particles_, radii_, targets_, respond, options_.step);
+  append_segment(last_.report, std::move(report.step), segment, options_.substeps);
+  for (const SphereOverlap& o : report.overlaps) totals_.deepest_in_wall = std::max(totals_.deepest_in_wall, o.depth);
+  totals_.wall_overlaps += report.overlaps.size();
+  last_.overlaps.insert(last_.overlaps.end(), report.overlaps.begin(), report.overlaps.end());
 }
 
 void Flow::aim(double dt, bool moving) {
@@ -301,64 +292,13 @@ void Flow::remove_marked(std::span<const std::uint8_t> marks) {
   keep_unmarked(velocities_, marks);
   keep_unmarked(fates_, marks);
   keep_unmarked(contact_counts_, marks);
+  keep_unmarked(radii_, marks);
+  clear_.clear();
+  count_spheres();
 }
 
-FlowEdit Flow::edit(const std::function<void(ComplexEdit&)>& make, Stranded stranded) {
-  const std::vector<State> before(particles_.states().begin(), particles_.states().end());
-  FlowEdit done;
-  done.edit = environment_.edit(make);
-  done.particles = environment_.follow(particles_, stranded);
-  remove_absorbed(done.particles, before);
-  if (deformation_) deformation_->follow(done.edit, environment_.positions().size());
-  if (field_) field_->follow(done.edit, environment_.complex());
-  reopen_inlets();
-  return done;
-}
-
-void Flow::remove_absorbed(const FollowReport& report, std::span<const State> before) {
-  std::vector<std::uint8_t> marks(ids_.size(), 0);
-  std::uint64_t absorbed = 0;
-  for (const StrandedParticle& p : report.stranded) {
-    if (p.became != Stranded::absorb) continue;
-    marks[p.particle] = 1;
-    ++absorbed;
-    gone_.add(ids_[p.particle], before[p.particle], velocities_[p.particle],
-              static_cast<std::uint64_t>(Fate::absorbed));
-  }
-  if (absorbed == 0) return;
-  totals_.absorbed += absorbed;
-  absorbed_between_ += absorbed;
-  remove_marked(marks);
-}
-
-void Flow::reopen_inlets() {
-  for (Inlet& inlet : inlets_) {
-    inlet.sampler.reset();
-    if (has_free_face(environment_.map(), inlet.patch)) inlet.sampler.emplace(environment_.complex(), inlet.patch);
-  }
-}
-
-RepairReport Flow::repair(const RepairOptions& options) {
-  std::vector<Cell> invalid;
-  for (const InvalidCell& c : environment_.validity(static_cast<std::size_t>(-1)).first) invalid.push_back(c.cell);
-  RepairReport report;
-  if (invalid.empty()) return report;
-  edit([&](ComplexEdit& e) { report = dartcast::repair(e, invalid, options); });
-  return report;
-}
-
-void Flow::pull(std::span<const Vec3> displacement, double duration) {
-  const auto positions = environment_.positions();
-  if (!deformation_) deformation_.emplace(std::vector<DeformationStep>{}, positions);
-  deformation_->add_pull(displacement, time(), time() + duration);
-}
-
-StateHash Flow::state_hash() const {
-  StateHash hash = gone_;
-  for (std::size_t i = 0; i < ids_.size(); ++i) {
-    hash.add(ids_[i], particles_[i], velocities_[i], static_cast<std::uint64_t>(fates_[i]));
-  }
-  return hash;
+void Flow::count_spheres() {
+  spheres_ = static_cast<std::size_t>(std::count_if(radii_.begin(), radii_.end(), [](double r) { return r > 0.0; }));
 }
 
 }  // namespace dartcast

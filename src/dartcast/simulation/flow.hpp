@@ -16,11 +16,23 @@
 #include "dartcast/environment/state_hash.hpp"
 #include "dartcast/remesh/repair.hpp"
 #include "dartcast/response/respond.hpp"
+#include "dartcast/simulation/crowding.hpp"
 #include "dartcast/simulation/deformation.hpp"
 #include "dartcast/simulation/field.hpp"
 #include "dartcast/simulation/seeding.hpp"
+#include "dartcast/spheres/advance_spheres.hpp"
+#include "dartcast/spheres/collide.hpp"
 
 namespace dartcast {
+
+/// Between spheres. With walls, restitution and friction are those of the walls' responses.
+struct CollisionOptions {
+  double restitution = 0.0;      ///< in [0, 1]
+  double friction = 0.0;         ///< Coulomb, >= 0
+  double density = 1000.0;       ///< kg / m^3, > 0; in the plane of a disc, kg / m^2
+  unsigned iterations = 10;      ///< > 0, of the solver (spheres/contact_solver.hpp)
+  unsigned push_iterations = 4;  ///< of what takes out overlaps
+};
 
 /// SI units: seconds, metres per square second, 1 / second.
 struct FlowOptions {
@@ -30,6 +42,8 @@ struct FlowOptions {
   unsigned substeps = 1;   ///< > 0: a step's way is a polyline of so many segments; vertices move with the first one
   std::uint64_t seed = 1;  ///< for all that is random
   StepOptions step = {};
+  /// With it spheres meet each other, and rest on each other and on walls; without they pass through each other.
+  std::optional<CollisionOptions> collisions = {};
 };
 
 /// What happened in one step. `report.contacts` name particles by their index during the step; contact_ids are their
@@ -41,6 +55,8 @@ struct FlowStep {
   std::uint64_t injected = 0;
   std::uint64_t absorbed = 0;  ///< by edits before this step, too
   std::uint64_t escaped = 0;
+  CollisionCounts collisions;           ///< of spheres with each other
+  std::vector<SphereOverlap> overlaps;  ///< of spheres with walls
 };
 
 /// Sums over all steps so far.
@@ -50,9 +66,13 @@ struct FlowTotals {
   std::uint64_t absorbed = 0;
   std::uint64_t escaped = 0;
   Counters counters;
+  CollisionCounts collisions;
+  std::uint64_t wall_overlaps = 0;
+  double deepest_in_wall = 0.0;                  ///< of these
   std::vector<std::uint64_t> contacts_by_patch;  ///< by the number of the patch met first
   double seconds_detect = 0.0;                   ///< advancing particles, responses included
   double seconds_deform = 0.0;                   ///< computing and setting the vertices' positions
+  double seconds_collide = 0.0;                  ///< pairs and impulses
   double seconds_respond = 0.0;                  ///< injecting, velocities and targets before, fates after
 };
 
@@ -65,6 +85,7 @@ struct FlowCheckpoint {
     Vec3 velocity;
     Fate fate = Fate::alive;
     std::uint32_t contacts = 0;
+    double radius = 0.0;
   };
   std::uint64_t steps = 0;
   std::uint64_t next_id = 0;
@@ -72,6 +93,7 @@ struct FlowCheckpoint {
   std::vector<Particle> particles;
   FlowTotals totals;
   StateHash gone;
+  std::vector<KeptImpulse> impulses;  ///< that the next step's collisions start from
 };
 
 /// What an edit between two steps did.
@@ -85,7 +107,10 @@ struct FlowEdit {
 ///  - u) is solved exactly for constant u (the field's velocity at the particle, or 0); with a field and no drag v = u,
 ///  and gravity is without effect; 4. particles advance by v dt, wall responses included; 5. those absorbed or escaped
 ///  leave.
-/// Results are the same bits for any number of threads.
+/// With collisions the vertices move after 3 (velocities are those at the places before), and spheres are given
+/// impulses before they move and advance: by each other, and by walls that reflect or let slide within a quarter of
+/// their radius (these walls go on as in the last step). Walls met otherwise respond as they do to points. Results are
+/// the same bits for any number of threads.
 class Flow {
  public:
   /// `environment` outlives the flow, and is moved and edited by it alone. Throws InvalidArgument where an option is
@@ -97,13 +122,14 @@ class Flow {
   void set_deformation(Deformation deformation);
   /// Injects `rate` particles a second at random places of a patch, from the first step on. Throws InvalidArgument
   /// where the patch has no face at a free cell, or the rate is negative or not finite.
-  void add_inlet(Patch patch, double rate, const Vec3& velocity);
+  void add_inlet(Patch patch, double rate, const Vec3& velocity, double radius = 0.0);
 
-  /// Adds particles at these positions, as Environment::add().
-  std::vector<Added> add(std::span<const Vec3> positions, const Vec3& velocity);
+  /// Adds particles at these positions, as Environment::add(). `radius`: >= 0; a sphere that does not fit is moved out
+  /// of walls by its first step, and out of other spheres little by little.
+  std::vector<Added> add(std::span<const Vec3> positions, const Vec3& velocity, double radius = 0.0);
   /// Adds particles at random places of the free cells, uniformly by volume. Throws InvalidArgument where no cell is
   /// free.
-  void add_random(std::size_t count, const Vec3& velocity);
+  void add_random(std::size_t count, const Vec3& velocity, double radius = 0.0);
 
   const FlowStep& step();
 
@@ -112,9 +138,15 @@ class Flow {
   /// at a free cell any more is closed until it has. Throws as these, nothing changed. Cost: as these; linear in the
   /// cells where there are inlets.
   FlowEdit edit(const std::function<void(ComplexEdit&)>& make, Stranded stranded = Stranded::move);
+  /// To be called at the end of each edit, with what becomes of particles that have no place: for other sets of
+  /// particles in the environment, which must follow it before the next.
+  void set_after_edit(std::function<void(Stranded)> after_edit) { after_edit_ = std::move(after_edit); }
   /// Remeshes cells that are not valid now (remesh/repair.hpp), by edit(). Nothing happens where all are. Cost: a check
   /// of the scene, and the regions mended.
   RepairReport repair(const RepairOptions& options = {});
+  /// Subdivides cells that hold many particles, and makes again those whose parts hold few, by edit(). `crowding` keeps
+  /// what it has subdivided; after other edits of the environment call its follow(). Cost: see Crowding::relieve().
+  CrowdingReport relieve(Crowding& crowding, Stranded stranded = Stranded::move);
   /// Draws vertices along over the next `duration` seconds, on top of the deformation; they stay there. `displacement`:
   /// one per position of the environment. Throws as Deformation::add_pull().
   void pull(std::span<const Vec3> displacement, double duration);
@@ -140,6 +172,9 @@ class Flow {
   [[nodiscard]] std::span<const Vec3> velocities() const { return velocities_; }
   [[nodiscard]] std::span<const Fate> fates() const { return fates_; }
   [[nodiscard]] std::span<const std::uint32_t> contact_counts() const { return contact_counts_; }
+  [[nodiscard]] std::span<const double> radii() const { return radii_; }
+
+  [[nodiscard]] const Collider& collider() const { return collider_; }
 
   [[nodiscard]] const FlowTotals& totals() const { return totals_; }
   /// Of every particle that there has been: those that left count with their last state.
@@ -151,6 +186,7 @@ class Flow {
     std::optional<PatchSampler> sampler;  // none while it is closed
     double rate;
     Vec3 velocity;
+    double radius;
   };
   struct Aim {
     Vec3 velocity;
@@ -167,11 +203,20 @@ class Flow {
   void count_contacts();
   void remove_absorbed(const FollowReport& report, std::span<const State> before);
   void remove_marked(std::span<const std::uint8_t> marks);
+  void complete(const Vec3& velocity, double radius);
+  void count_spheres();
+  // With collisions, in flow_collide.cpp.
+  [[nodiscard]] bool collides() const { return options_.collisions && spheres_ > 0; }
+  void collide(double dt, bool moving);
+  void weigh();
+  void find_walls(double dt, bool moving);
+  [[nodiscard]] double clearance(std::size_t i) const;
+  void walls_of(std::size_t i, double dt, bool moving, NearWalls& near, std::vector<WallContact>& found);
+  void aim_stuck(double dt);
   void reopen_inlets();
   void remove_gone();
-  void complete(const Vec3& velocity);
   template <class Sampler>
-  void add_sampled(const Sampler& sampler, std::size_t count, const Vec3& velocity);
+  void add_sampled(const Sampler& sampler, std::size_t count, const Vec3& velocity, double radius);
 
   Environment& environment_;
   FlowOptions options_;
@@ -179,6 +224,7 @@ class Flow {
   std::optional<VelocityField> field_;
   std::optional<Deformation> deformation_;
   std::vector<Inlet> inlets_;
+  std::function<void(Stranded)> after_edit_;
   Random random_;
 
   Particles particles_;
@@ -186,7 +232,23 @@ class Flow {
   std::vector<Vec3> velocities_;
   std::vector<Fate> fates_;
   std::vector<std::uint32_t> contact_counts_;
+  std::vector<double> radii_;
+  std::size_t spheres_ = 0;  // of a radius above 0
   std::vector<Vec3> targets_;
+  SphereStepper stepper_;
+  Collider collider_;
+  std::vector<double> met_radii_;  // in collisions: 0 for those that meet nobody
+  std::vector<double> inverse_masses_;
+  struct Clear {  // no wall is nearer to this place
+    Vec3 centre;
+    double distance = 0.0;
+  };
+  std::vector<Clear> clear_;  // by particle; until walls move or are edited
+  std::vector<double> clearances_;
+  std::vector<Vec3> displacements_;
+  std::vector<NearWalls> near_;  // by chunk
+  std::vector<std::vector<WallContact>> near_contacts_;
+  std::vector<WallContact> walls_;
   std::uint64_t next_id_ = 0;
   std::uint64_t steps_ = 0;
   std::uint64_t absorbed_between_ = 0;  // by edits since the last step

@@ -9,15 +9,21 @@
 #include <variant>
 #include <vector>
 
+#include "dartcast/bodies/bodies.hpp"
+#include "dartcast/bodies/catheter.hpp"
+#include "dartcast/bodies/sampling.hpp"
+#include "dartcast/mesh/generate_barrel.hpp"
 #include "dartcast/mesh/generate_box.hpp"
 #include "dartcast/mesh/generate_maze.hpp"
 #include "dartcast/mesh/generate_octahedra.hpp"
 #include "dartcast/mesh/generate_rectangle.hpp"
 #include "dartcast/mesh/generate_vessel.hpp"
 #include "dartcast/response/respond.hpp"
+#include "dartcast/simulation/crowding.hpp"
 #include "dartcast/simulation/deformation.hpp"
 #include "dartcast/simulation/event.hpp"
 #include "dartcast/simulation/field.hpp"
+#include "dartcast/simulation/flow.hpp"
 
 namespace dartcast {
 
@@ -61,6 +67,36 @@ struct InletParticles {
 struct ParticlesScene {
   std::variant<RandomParticles, PlacedParticles, InletParticles> source;
   Vec3 velocity;
+  double radius = 0.0;
+};
+
+enum class BodySamples : std::uint8_t { solid, surface, volume };
+
+/// A body: a surface, where it is put, how it is sampled, what it is made of.
+struct BodyScene {
+  std::string name;  ///< of its files; letters, digits, '-' and '_'
+  std::variant<std::filesystem::path, BarrelOptions> surface;
+  double scale = 1.0;  ///< first
+  Vec3 rotate;         ///< then: axis times angle, rad
+  Vec3 at;             ///< then: where the surface's origin goes
+  BodySamples samples = BodySamples::solid;
+  SamplingOptions sampling;
+  double cluster = 0.0;  ///< edge of the regions that are matched each by itself; 0: the body as a whole
+  BodyOptions body;
+};
+
+struct CatheterScene {
+  /// What its proximal end does from the end of the move before on.
+  struct Move {
+    double until = 0.0;  ///< s
+    double push = 0.0;   ///< m / s; negative: pulled
+    double turn = 0.0;   ///< rad / s
+  };
+
+  std::string name;
+  CatheterOptions options;
+  std::vector<Move> moves;  ///< by time; afterwards it is held
+  double camera = 0.0;      ///< spacing of the camera's places along it; 0: none
 };
 
 struct MotionScene {
@@ -88,6 +124,11 @@ struct RemeshScene {
   RepairOptions options;
 };
 
+struct CrowdingScene {
+  std::uint64_t every = 0;  ///< steps between two looks; 0: none
+  CrowdingOptions options;
+};
+
 struct OutputScene {
   std::uint64_t every = 10;  ///< steps between two frames; 0: none
   bool contacts = false;
@@ -101,10 +142,14 @@ struct Scene {
   EnvironmentScene environment;
   std::vector<DeformationScene> deformation;
   std::vector<ParticlesScene> particles;
+  std::optional<CollisionOptions> collisions;  ///< of spheres with each other; none: they do not meet
+  std::vector<BodyScene> bodies;
+  std::vector<CatheterScene> catheters;
   MotionScene motion;
   ContactScene contact;
   std::vector<EventScene> events;  ///< by time
   RemeshScene remesh;
+  CrowdingScene crowding;
   OutputScene output;
 };
 

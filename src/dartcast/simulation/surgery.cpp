@@ -9,9 +9,17 @@
 
 namespace dartcast {
 
-Surgery::Surgery(const std::vector<Event>& events, const RemeshScene& remesh, double dt, Flow& flow)
-    : events_(events), remesh_(remesh), dt_(dt), flow_(flow) {
+Surgery::Surgery(const std::vector<Event>& events, const RemeshScene& remesh, const CrowdingScene& crowding, double dt,
+                 Flow& flow)
+    : events_(events),
+      remesh_(remesh),
+      relieve_every_(crowding.every),
+      crowding_(crowding.options),
+      dt_(dt),
+      flow_(flow) {
   const Map& map = flow.environment().map();
+  if (map.dimension() == 2 && relieve_every_ > 0)
+    throw InvalidArgument("crowding: in the plane cells are not subdivided; leave [crowding] out");
   for (std::size_t i = 0; map.dimension() == 2 && i < events_.size(); ++i) {
     if (!std::holds_alternative<Ligature>(events_[i].what))
       throw InvalidArgument(fmt::format("event {} ({}): in the plane a ligature can be tied, and nothing else be done",
@@ -36,7 +44,7 @@ void Surgery::before_step() {
     const std::uint64_t in_opened = count_in_opened();
     log_.events.push_back(operate(next_));
     log_.events.back().particles_in_opened = in_opened;
-    log_.changes.push_back({flow_.steps(), next_});
+    log_.changes.push_back({flow_.steps(), next_, 0});
   }
 }
 
@@ -54,18 +62,37 @@ void Surgery::after_step() {
     const RepairReport report = remesh();
     log_.mended += report.mended.size();
     log_.left = report.left.size();
-    if (!report.mended.empty()) log_.changes.push_back({flow_.steps(), SurgeryLog::Change::remeshing});
+    if (!report.mended.empty()) log_.changes.push_back({flow_.steps(), SurgeryLog::Change::remeshing, 0});
   }
+  if (relieve_every_ > 0 && flow_.steps() % relieve_every_ == 0) relieve();
   if (!log_.changes.empty()) log_.in_opened = count_in_opened();
 }
 
 RepairReport Surgery::remesh() { return flow_.repair(remesh_.options); }
+
+void Surgery::relieve() {
+  const CrowdingReport report = flow_.relieve(crowding_);
+  log_.subdivided += report.subdivided;
+  log_.merged += report.merged;
+  log_.refused = report.refused.size();
+  for (const CrowdingChange& c : report.changes) {
+    const std::uint32_t event = c.merged ? SurgeryLog::Change::merging : SurgeryLog::Change::subdividing;
+    log_.changes.push_back({flow_.steps(), event, c.what});
+  }
+}
+
+void Surgery::repeat(const SurgeryLog::Change& change) {
+  const auto edit = [&](const std::function<void(ComplexEdit&)>& make) { return flow_.edit(make).edit; };
+  crowding_.repeat(flow_.environment().complex(), {change.event == SurgeryLog::Change::merging, change.what}, edit);
+}
 
 void Surgery::replay(const SurgeryLog& log) {
   for (const SurgeryLog::Change& change : log.changes) {
     flow_.go_to(change.step);
     if (change.event == SurgeryLog::Change::remeshing) {
       remesh();
+    } else if (change.event == SurgeryLog::Change::subdividing || change.event == SurgeryLog::Change::merging) {
+      repeat(change);
     } else if (change.event < events_.size()) {
       operate(change.event);
       next_ = change.event + 1;

@@ -1,0 +1,69 @@
+// What a flow goes on from.
+#include "dartcast/base/error.hpp"
+#include "dartcast/simulation/flow.hpp"
+
+namespace dartcast {
+
+FlowCheckpoint Flow::checkpoint() const {
+  FlowCheckpoint saved;
+  saved.steps = steps_;
+  saved.next_id = next_id_;
+  saved.random = random_;
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    saved.particles.push_back(
+        {ids_[i], particles_[i], particles_.held_weights(i), velocities_[i], fates_[i], contact_counts_[i], radii_[i]});
+  }
+  saved.totals = totals_;
+  saved.gone = gone_;
+  saved.impulses.assign(collider_.solver().kept().begin(), collider_.solver().kept().end());
+  return saved;
+}
+
+void Flow::restore(const FlowCheckpoint& saved) {
+  if (saved.totals.contacts_by_patch.size() != totals_.contacts_by_patch.size())
+    throw InvalidArgument("flow: the checkpoint is of an environment with other patches");
+  move_vertices_to(saved.steps);
+  std::vector<State> states;
+  std::vector<Weights> weights;
+  for (const FlowCheckpoint::Particle& p : saved.particles) {
+    states.push_back(p.state);
+    weights.push_back(p.held_weights);
+  }
+  particles_ = environment_.restored(states, weights);
+  ids_.clear();
+  velocities_.clear();
+  fates_.clear();
+  contact_counts_.clear();
+  radii_.clear();
+  for (const FlowCheckpoint::Particle& p : saved.particles) {
+    ids_.push_back(p.id);
+    velocities_.push_back(p.velocity);
+    fates_.push_back(p.fate);
+    contact_counts_.push_back(p.contacts);
+    radii_.push_back(p.radius);
+  }
+  clear_.clear();
+  count_spheres();
+  collider_.solver().set_kept(saved.impulses);
+  steps_ = saved.steps;
+  next_id_ = saved.next_id;
+  random_ = saved.random;
+  totals_ = saved.totals;
+  gone_ = saved.gone;
+}
+
+void Flow::go_to(std::uint64_t steps) {
+  if (particles_.size() > 0) throw InvalidArgument("flow: there are particles, which would be left behind");
+  move_vertices_to(steps);
+  steps_ = steps;
+}
+
+StateHash Flow::state_hash() const {
+  StateHash hash = gone_;
+  for (std::size_t i = 0; i < ids_.size(); ++i) {
+    hash.add(ids_[i], particles_[i], velocities_[i], static_cast<std::uint64_t>(fates_[i]));
+  }
+  return hash;
+}
+
+}  // namespace dartcast
