@@ -112,6 +112,103 @@ every = 1
 every = 10
 )";
 
+// Bodies and a catheter among the particles, in a scene that bends and is carved.
+const std::string solids_text = R"(
+[environment]
+generator = "box"
+cells = [6, 6, 6]
+size = [0.6, 0.6, 0.6]
+[[deformation]]
+kind = "twist"
+amplitude = 0.3
+length = 0.6
+period = 1.0
+[[particles]]
+count = 50
+[[body]]
+name = "barrel"
+generator = "barrel"
+radius = 0.05
+bulge = 0.01
+height = 0.12
+spacing = 0.025
+at = [0.2, 0.2, 0.15]
+velocity = [0.5, 0.4, -2.0]
+[[body]]
+generator = "barrel"
+radius = 0.04
+bulge = 0.0
+height = 0.1
+spacing = 0.03
+at = [0.45, 0.45, 0.4]
+rotate = [0.5, 0.0, 0.0]
+cluster = 0.06
+[[catheter]]
+entry = [0.05, 0.3, 0.3]
+direction = [1.0, 0.0, 0.0]
+length = 0.4
+spacing = 0.01
+tip_length = 0.05
+tip_curvature = 8.0
+camera = 0.01
+moves = [{ until = 0.3, push = 0.5 }, { until = 0.4, turn = 2.0 }, { until = 1.0, push = 0.2, turn = -1.0 }]
+[motion]
+dt = 0.01
+steps = 47
+gravity = [0.0, 0.0, -9.81]
+[contact]
+restitution = 0.4
+friction = 0.2
+[[event]]
+at = 0.22
+kind = "carve"
+tool = "box"
+low = [0.41, -0.1, 0.41]
+high = [0.7, 0.7, 0.7]
+what = "remove"
+[output]
+every = 10
+)";
+
+// Spheres that pile up; crowded cells are subdivided, and made again when they have left.
+const std::string spheres_text = R"(
+[environment]
+generator = "box"
+cells = [3, 3, 3]
+size = [0.3, 0.3, 0.3]
+[[deformation]]
+kind = "swing"
+amplitude = 1.2
+period = 1.0
+axis = [0.0, 1.0, 0.0]
+centre = [0.15, 0.15, 0.15]
+[[particles]]
+count = 200
+radius = 0.008
+[[particles]]
+inlet = "zmax"
+rate = 50.0
+radius = 0.004
+velocity = [0.0, 0.0, -0.5]
+[motion]
+dt = 0.01
+steps = 47
+gravity = [0.0, 0.0, -9.81]
+[contact]
+restitution = 0.2
+friction = 0.3
+[collisions]
+restitution = 0.2
+friction = 0.3
+[crowding]
+every = 5
+most = 15
+least = 6
+smallest = 0.02
+[output]
+every = 10
+)";
+
 struct CutOff : std::exception {};
 
 class Resume : public testing::Test {
@@ -205,6 +302,39 @@ TEST_F(Resume, ARunWithSurgeryIsOperatedOnAgain) {
       EXPECT_EQ(resumed.surgery->events[i].particles_touched, whole.surgery->events[i].particles_touched);
       EXPECT_EQ(resumed.surgery->events[i].cells_added, whole.surgery->events[i].cells_added);
     }
+  }
+}
+
+TEST_F(Resume, ARunWithSpheresAndCrowdedCellsGoesOn) {
+  const Summary whole = run(one, false, 47, 0, spheres_text);
+  EXPECT_GT(whole.totals.collisions.pairs_touching, 0U);
+  EXPECT_GT(whole.surgery->subdivided, 0U);
+  EXPECT_GT(whole.surgery->merged, 0U);
+  EXPECT_EQ(whole.lost, 0U);
+  for (const std::uint64_t cut : {4U, 16U, 31U, 46U}) {
+    EXPECT_THROW(run(two, false, 47, cut, spheres_text), CutOff);
+    const Summary resumed = run(two, true, 47, 0, spheres_text);
+    expect_same(whole, resumed);
+    EXPECT_EQ(resumed.totals.collisions.pairs_touching, whole.totals.collisions.pairs_touching);
+    EXPECT_EQ(resumed.surgery->subdivided, whole.surgery->subdivided);
+    EXPECT_EQ(resumed.surgery->merged, whole.surgery->merged);
+  }
+}
+
+TEST_F(Resume, ARunWithBodiesAndACatheterGoesOn) {
+  const Summary whole = run(one, false, 47, 0, solids_text);
+  EXPECT_EQ(whole.audit->failed, 0U);
+  EXPECT_EQ(whole.lost, 0U);
+  ASSERT_EQ(whole.bodies.size(), 2U);
+  ASSERT_EQ(whole.catheters.size(), 1U);
+  EXPECT_GT(whole.catheters[0].inserted, 0.1);
+  EXPECT_LE(whole.catheters[0].totals.worst_segment, 0.01);
+  for (const std::uint64_t cut : {4U, 11U, 26U, 46U}) {
+    EXPECT_THROW(run(two, false, 47, cut, solids_text), CutOff);
+    const Summary resumed = run(two, true, 47, 0, solids_text);
+    expect_same(whole, resumed);
+    EXPECT_EQ(resumed.bodies[0].energy.kinetic, whole.bodies[0].energy.kinetic);
+    EXPECT_EQ(resumed.catheters[0].totals.refused, whole.catheters[0].totals.refused);
   }
 }
 

@@ -53,6 +53,89 @@ TEST(SceneFile, DefaultsAreThoseOfTheDocumentation) {
   EXPECT_EQ(b.type, CellType::hexahedron);
 }
 
+TEST(SceneFile, SpheresAndTheirCollisionsAreRead) {
+  const Scene s = parse_scene(box + R"(
+[[particles]]
+count = 10
+radius = 0.01
+[collisions]
+restitution = 0.5
+friction = 0.25
+density = 2500.0
+iterations = 30
+push_iterations = 6
+[crowding]
+every = 10
+most = 40
+least = 4
+smallest = 0.1
+edits = 7
+)",
+                              "folder/scene.toml");
+  EXPECT_EQ(s.particles[0].radius, 0.01);
+  ASSERT_TRUE(s.collisions);
+  EXPECT_EQ(s.collisions->restitution, 0.5);
+  EXPECT_EQ(s.collisions->friction, 0.25);
+  EXPECT_EQ(s.collisions->density, 2500.0);
+  EXPECT_EQ(s.collisions->iterations, 30U);
+  EXPECT_EQ(s.collisions->push_iterations, 6U);
+  EXPECT_EQ(s.crowding.every, 10U);
+  EXPECT_EQ(s.crowding.options.most, 40U);
+  EXPECT_EQ(s.crowding.options.least, 4U);
+  EXPECT_EQ(s.crowding.options.smallest, 0.1);
+  EXPECT_EQ(s.crowding.options.edits, 7U);
+  EXPECT_FALSE(parse_scene(box, "folder/scene.toml").collisions);
+}
+
+TEST(SceneFile, BodiesAndCathetersAreRead) {
+  const Scene s = parse_scene("seed = 7\n" + box + R"(
+[[body]]
+surface = "a.stl"
+scale = 2.0
+rotate = [0.0, 1.0, 0.0]
+at = [1.0, 2.0, 3.0]
+spacing = 0.1
+sample = "volume"
+mass = 3.0
+cluster = 0.5
+[[body]]
+name = "second"
+generator = "barrel"
+height = 2.0
+spacing = 0.2
+particle_radius = 0.0
+[[catheter]]
+entry = [0.5, 0.5, 0.5]
+direction = [0.0, 0.0, 1.0]
+length = 0.3
+camera = 0.01
+moves = [{ until = 1.0, push = 0.1 }, { until = 2.0, push = -0.1, turn = 0.5 }]
+)",
+                              "folder/scene.toml");
+  ASSERT_EQ(s.bodies.size(), 2U);
+  EXPECT_EQ(s.bodies[0].name, "body1");
+  EXPECT_EQ(std::get<std::filesystem::path>(s.bodies[0].surface), "folder/a.stl");
+  EXPECT_EQ(s.bodies[0].scale, 2.0);
+  EXPECT_EQ(s.bodies[0].rotate, Vec3(0.0, 1.0, 0.0));
+  EXPECT_EQ(s.bodies[0].at, Vec3(1.0, 2.0, 3.0));
+  EXPECT_EQ(s.bodies[0].samples, BodySamples::volume);
+  EXPECT_EQ(s.bodies[0].sampling.spacing, 0.1);
+  EXPECT_EQ(s.bodies[0].sampling.seed, 7U);
+  EXPECT_EQ(s.bodies[0].body.mass, 3.0);
+  EXPECT_EQ(s.bodies[0].body.radius, 0.05);
+  EXPECT_EQ(s.bodies[0].cluster, 0.5);
+  EXPECT_EQ(s.bodies[1].name, "second");
+  EXPECT_EQ(std::get<BarrelOptions>(s.bodies[1].surface).height, 2.0);
+  EXPECT_EQ(s.bodies[1].body.radius, 0.0);
+  ASSERT_EQ(s.catheters.size(), 1U);
+  EXPECT_EQ(s.catheters[0].name, "catheter1");
+  EXPECT_EQ(s.catheters[0].options.length, 0.3);
+  EXPECT_EQ(s.catheters[0].camera, 0.01);
+  ASSERT_EQ(s.catheters[0].moves.size(), 2U);
+  EXPECT_EQ(s.catheters[0].moves[1].push, -0.1);
+  EXPECT_EQ(s.catheters[0].moves[1].turn, 0.5);
+}
+
 TEST(SceneFile, EventsAreReadInOrderOfTime) {
   const Scene s = parse_scene(box + R"(
 [remesh]
@@ -311,7 +394,10 @@ TEST(SceneFile, MistakesAreNamedWithLineAndRemedy) {
   expect_error(box + "[contact]\nresponse = 'bounce'\n", "4:", "reflect, slide, stick, absorb, escape");
   expect_error(box + "[contact]\nrestitution = 1.5\n", "4:", "at most 1");
   expect_error(box + "[contact.patch.a]\nrestitutions = 1\n", "4:", "unknown");
-  expect_error(box + "[[particles]]\nradius = 0.1\ncount = 1\n", "4:", "points so far");
+  expect_error(box + "[[particles]]\nradius = -0.1\ncount = 1\n", "4:", "at least 0");
+  expect_error(box + "[collisions]\ndensity = 0\n", "4:", "more than 0");
+  expect_error(box + "[collisions]\nbounce = 0\n", "4:", "unknown");
+  expect_error(box + "[crowding]\nmost = 5\nleast = 5\n", "5:", "less than most");
   expect_error(box + "[[particles]]\nvelocity = [1, 2, 3]\n", "3:", "one of count");
   expect_error(box + "[[particles]]\ncount = 1\npositions = 'a.csv'\n", "3:", "one of count");
   expect_error(box + "[[particles]]\ninlet = 'a'\n", "3:", "rate");
@@ -321,6 +407,21 @@ TEST(SceneFile, MistakesAreNamedWithLineAndRemedy) {
   expect_error(box + "[[deformation]]\nkind = 'rotate'\namplitude = 1\n", "5:", "unknown");
   expect_error(box + "[[deformation]]\nkind = 'frames'\nfiles = ['a.vtu']\ntimes = [0, 1]\n",
                "6:", "2 times for 1 files");
+  const std::string body = box + "[[body]]\ngenerator = 'barrel'\n";
+  expect_error(body, "3:", "spacing is missing");
+  expect_error(box + "[[body]]\nspacing = 0.1\n", "3:", "surface = ");
+  expect_error(body + "surface = 'a.stl'\nspacing = 0.1\n", "5:", "either");
+  expect_error(body + "spacing = 0\n", "5:", "more than 0");
+  expect_error(body + "spacing = 0.1\nname = 'a/b'\n", "6:", "names files");
+  expect_error(body + "spacing = 0.1\n[[body]]\nname = 'body1'\ngenerator = 'barrel'\nspacing = 0.1\n",
+               "7:", "another has this name");
+  expect_error(body + "spacing = 0.1\nlinear = 2\n", "6:", "at most 1");
+  const std::string catheter = box + "[[catheter]]\nentry = [0.5, 0.5, 0.5]\n";
+  expect_error(catheter, "3:", "direction is missing");
+  expect_error(catheter + "direction = [0, 0, 1]\nmoves = [{ push = 1 }]\n", "6:", "until is missing");
+  expect_error(catheter + "direction = [0, 0, 1]\nmoves = [{ until = 1 }, { until = 1 }]\n",
+               "6:", "must end after the one before");
+  expect_error(catheter + "direction = [0, 0, 1]\nlenght = 1\n", "6:", "unknown");
   expect_error(box + "[output]\nevery = true\n", "4:", "whole number");
   expect_error(box + "[outputs]\n", "3:", "unknown");
   expect_error("particles = 3\n" + box, "1:", "tables");

@@ -16,7 +16,7 @@ namespace dartcast {
 
 namespace {
 
-constexpr std::uint64_t magic = 0x32706b6374726164U;  // "dartckp2" on a machine of this byte order
+constexpr std::uint64_t magic = 0x33706b6374726164U;  // "dartckp3" on a machine of this byte order
 
 // Mixes in 8 bytes at a time. It finds damage and changes, not forgery.
 std::uint64_t digest(std::string_view bytes, std::uint64_t start = 0) {
@@ -121,16 +121,26 @@ void fields(Archive& a, Vec3& v) {
 }
 
 template <class Archive>
+void fields(Archive& a, State& s) {
+  fields(a, s.position);
+  values(a, s.cell.value, s.simplex, s.touching_count);
+  value_as<std::uint8_t>(a, s.held);
+  for (CellFace& f : s.touching) values(a, f.cell.value, f.face);
+}
+
+template <class Archive>
+void fields(Archive& a, Weights& weights) {
+  for (double& w : weights) a.value(w);
+}
+
+template <class Archive>
 void fields(Archive& a, FlowCheckpoint::Particle& p) {
   a.value(p.id);
-  fields(a, p.state.position);
-  values(a, p.state.cell.value, p.state.simplex, p.state.touching_count);
-  value_as<std::uint8_t>(a, p.state.held);
-  for (CellFace& f : p.state.touching) values(a, f.cell.value, f.face);
-  for (double& w : p.held_weights) a.value(w);
+  fields(a, p.state);
+  fields(a, p.held_weights);
   fields(a, p.velocity);
   value_as<std::uint8_t>(a, p.fate);
-  a.value(p.contacts);
+  values(a, p.contacts, p.radius);
   if (p.fate > Fate::escaped) throw Error("a particle has no such fate");
 }
 
@@ -144,11 +154,26 @@ void fields(Archive& a, Counters& c) {
 }
 
 template <class Archive>
+void fields(Archive& a, CollisionCounts& c) {
+  values(a, c.pairs_tested, c.pairs_near, c.pairs_touching, c.walls_touching, c.overlaps, c.deepest);
+}
+
+template <class Archive>
+void fields(Archive& a, KeptImpulse& k) {
+  values(a, k.a, k.b);
+  fields(a, k.normal);
+  a.value(k.along);
+  fields(a, k.across);
+}
+
+template <class Archive>
 void fields(Archive& a, FlowTotals& t) {
   values(a, t.start, t.injected, t.absorbed, t.escaped);
   fields(a, t.counters);
+  fields(a, t.collisions);
+  values(a, t.wall_overlaps, t.deepest_in_wall);
   a.list(t.contacts_by_patch, [&](std::uint64_t& n) { a.value(n); });
-  values(a, t.seconds_detect, t.seconds_deform, t.seconds_respond);
+  values(a, t.seconds_detect, t.seconds_deform, t.seconds_collide, t.seconds_respond);
 }
 
 template <class Archive>
@@ -161,9 +186,44 @@ void fields(Archive& a, EventReport& e) {
 
 template <class Archive>
 void fields(Archive& a, SurgeryLog& log) {
-  a.list(log.changes, [&](SurgeryLog::Change& c) { values(a, c.step, c.event); });
+  a.list(log.changes, [&](SurgeryLog::Change& c) { values(a, c.step, c.event, c.what); });
   a.list(log.events, [&](EventReport& e) { fields(a, e); });
-  values(a, log.mended, log.left, log.in_opened);
+  values(a, log.mended, log.left, log.subdivided, log.merged, log.refused, log.in_opened);
+}
+
+template <class Archive>
+void fields(Archive& a, Fit& f) {
+  a.value(f.rotation.w);
+  for (Vec3* v : {&f.rotation.v, &f.centre, &f.transform.x, &f.transform.y, &f.transform.z}) fields(a, *v);
+  a.value(f.strain);
+}
+
+template <class Archive>
+void fields(Archive& a, Bodies::Checkpoint::Particle& p) {
+  fields(a, p.state);
+  fields(a, p.held_weights);
+  fields(a, p.velocity);
+  value_as<std::uint8_t>(a, p.fate);
+  for (CellFace& f : p.on.face) values(a, f.cell.value, f.face);
+  a.value(p.on.count);
+  if (p.fate > Fate::escaped || p.on.count > p.on.face.size()) throw Error("a body's particle has no such state");
+}
+
+template <class Archive>
+void fields(Archive& a, SolidsCheckpoint& c) {
+  a.value(c.bodies.steps);
+  fields(a, c.bodies.counters);
+  a.list(c.bodies.ids, [&](std::uint32_t& id) { a.value(id); });
+  a.list(c.bodies.fits, [&](Fit& f) { fields(a, f); });
+  a.list(c.bodies.particles, [&](Bodies::Checkpoint::Particle& p) { fields(a, p); });
+  a.list(c.catheters, [&](CatheterCheckpoint& k) {
+    a.list(k.states, [&](State& s) { fields(a, s); });
+    a.list(k.held_weights, [&](Weights& w) { fields(a, w); });
+    values(a, k.inserted, k.turned);
+    fields(a, k.direction);
+    fields(a, k.reference);
+  });
+  a.list(c.catheter_totals, [&](CatheterTotals& t) { values(a, t.worst_segment, t.refused); });
 }
 
 template <class Archive>
@@ -176,10 +236,13 @@ void fields(Archive& a, Checkpoint& c) {
   c.flow.gone = StateHash(gone);
   a.list(c.flow.particles, [&](FlowCheckpoint::Particle& p) { fields(a, p); });
   fields(a, c.flow.totals);
+  a.list(c.flow.impulses, [&](KeptImpulse& k) { fields(a, k); });
   values(a, c.recording.stats_bytes, c.recording.contacts_bytes);
   a.list(c.recording.frames, [&](RecordingFrame& f) { values(a, f.step, f.time); });
   fields(a, c.surgery);
   values(a, c.held, c.audited);
+  fields(a, c.solids);
+  values(a, c.solids_recording.bodies_bytes, c.solids_recording.catheters_bytes);
 }
 
 void check_same(const RunIdentity& saved, const RunIdentity& run) {

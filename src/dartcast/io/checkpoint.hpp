@@ -8,6 +8,7 @@
 
 #include "dartcast/environment/audit.hpp"
 #include "dartcast/io/recording.hpp"
+#include "dartcast/io/solids_recording.hpp"
 #include "dartcast/mesh/mesh_data.hpp"
 #include "dartcast/simulation/flow.hpp"
 #include "dartcast/simulation/surgery.hpp"
@@ -30,6 +31,8 @@ struct Checkpoint {
   SurgeryLog surgery;
   std::uint64_t held = 0;  ///< in the last step
   std::uint64_t audited = 0;
+  SolidsCheckpoint solids;
+  SolidsProgress solids_recording;
 };
 
 /// Writes the file beside its place and then puts it there: whenever a run is cut off, a whole checkpoint is left.

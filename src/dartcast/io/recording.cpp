@@ -2,13 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>
-#include <vtkCellArray.h>
-#include <vtkDoubleArray.h>
-#include <vtkNew.h>
-#include <vtkPointData.h>
-#include <vtkPoints.h>
-#include <vtkPolyData.h>
-#include <vtkXMLPolyDataWriter.h>
 
 #include <algorithm>
 #include <set>
@@ -18,8 +11,9 @@
 
 #include "dartcast/base/error.hpp"
 #include "dartcast/geometry/complex_mesh.hpp"
-#include "dartcast/io/vtk_errors.hpp"
+#include "dartcast/io/run_files.hpp"
 #include "dartcast/io/vtk_mesh.hpp"
+#include "dartcast/io/vtp_write.hpp"
 #include "dartcast/io/write_mesh.hpp"
 #include "dartcast/walk/state.hpp"
 
@@ -35,21 +29,6 @@ constexpr std::string_view stats_header =
 constexpr std::string_view contacts_header =
     "step,time,id,kind,patch,cell,x,y,z,normal_x,normal_y,normal_z,wall_dx,wall_dy,wall_dz";
 
-// Whether a file is one that a run writes: by its name.
-bool is_ours(const std::string& name) {
-  static constexpr std::string_view fixed[] = {"summary.json",    "stats.csv",    "particles.pvd", "environment.pvd",
-                                               "environment.vtu", "contacts.csv", "scene.toml",    "checkpoint.bin"};
-  if (std::find(std::begin(fixed), std::end(fixed), name) != std::end(fixed)) return true;
-  for (const auto& [start, end] :
-       {std::pair<std::string_view, std::string_view>{"particles_", ".vtp"}, {"environment_", ".vtu"}}) {
-    if (name.size() < start.size() + 6 + end.size() || name.compare(0, start.size(), start) != 0) continue;
-    const std::size_t digits = name.size() - start.size() - end.size();
-    if (name.substr(start.size() + digits) != end) continue;
-    if (name.substr(start.size(), digits).find_first_not_of("0123456789") == std::string::npos) return true;
-  }
-  return false;
-}
-
 // An earlier run left a table of steps with our header.
 bool holds_a_run(const fs::path& folder) {
   std::ifstream file(folder / "stats.csv");
@@ -57,68 +36,8 @@ bool holds_a_run(const fs::path& folder) {
   return std::getline(file, line) && line.starts_with(stats_header);
 }
 
-std::string particles_name(std::uint64_t step) { return fmt::format("particles_{:06}.vtp", step); }
-std::string environment_name(std::uint64_t step) { return fmt::format("environment_{:06}.vtu", step); }
-
-// A collection for ParaView: a file per frame.
-template <class Name>
-void write_pvd(const fs::path& path, std::span<const RecordingFrame> frames, Name&& name) {
-  std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n <Collection>\n";
-  for (const RecordingFrame& frame : frames) {
-    text += fmt::format("  <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", frame.time, name(frame.step));
-  }
-  write_bytes(path, text + " </Collection>\n</VTKFile>\n");
-}
-
-std::ofstream open_table(const fs::path& path, std::string_view header) {
-  std::ofstream table(path, std::ios::binary);
-  fmt::print(table, "{}\n", header);
-  if (!table)
-    throw Error(fmt::format("{}: the file cannot be written; check the folder and its permissions", path.string()));
-  return table;
-}
-
-// Opens a table to write on behind its first `bytes` bytes.
-std::ofstream reopen_table(const fs::path& path, std::uint64_t bytes) {
-  std::error_code error;
-  if (fs::file_size(path, error) < bytes || error)
-    throw Error(
-        fmt::format("{}: the file is shorter than when the checkpoint was made; run without --resume", path.string()));
-  fs::resize_file(path, bytes, error);
-  std::ofstream table(path, std::ios::binary | std::ios::app);
-  if (error || !table)
-    throw Error(fmt::format("{}: the file cannot be written; check the folder and its permissions", path.string()));
-  return table;
-}
-
-// Sends a table to its file; its length then.
-std::uint64_t written(std::ofstream& table) {
-  return table.is_open() ? static_cast<std::uint64_t>(table.flush().tellp()) : 0;
-}
-
-void close_table(std::ofstream& table, const char* name, const fs::path& folder) {
-  if (!table.is_open()) return;
-  table.close();
-  if (!table)
-    throw Error(
-        fmt::format("{}: the file could not be written to the end; check the disk's space", (folder / name).string()));
-}
-
-// An array of doubles with `components` per particle, filled by value(i, k).
-template <class Value>
-void add_array(vtkPolyData& data, const char* name, int components, std::size_t count, Value&& value) {
-  vtkNew<vtkDoubleArray> array;
-  array->SetName(name);
-  array->SetNumberOfComponents(components);
-  array->SetNumberOfTuples(static_cast<vtkIdType>(count));
-  double* out = array->GetPointer(0);
-  for (std::size_t i = 0; i < count; ++i) {
-    for (int k = 0; k < components; ++k) *out++ = value(i, k);
-  }
-  data.GetPointData()->AddArray(array);
-}
-
-double component(const Vec3& v, int k) { return k == 0 ? v.x : k == 1 ? v.y : v.z; }
+std::string particles_name(std::uint64_t step) { return frame_name("particles", step, ".vtp"); }
+std::string environment_name(std::uint64_t step) { return frame_name("environment", step, ".vtu"); }
 
 Kind kind_of(const Complex& complex, const State& s) {
   return s.held ? Kind::volume : forecast(complex.map(), s, complex.corners(s.at())).kind;
@@ -143,10 +62,10 @@ Recording::Recording(Options options, const MeshData& mesh, const std::string& s
   fs::create_directories(folder, error);
   if (error) throw Error(fmt::format("{}: the folder cannot be made: {}", folder.string(), error.message()));
   for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.is_regular_file() && is_ours(entry.path().filename().string())) fs::remove(entry.path());
+    if (entry.is_regular_file() && is_run_file(entry.path().filename().string())) fs::remove(entry.path());
   }
-  stats_ = open_table(folder / "stats.csv", std::string(stats_header) + (options_.surgery ? ",in_opened" : ""));
-  if (options_.contacts) contacts_ = open_table(folder / "contacts.csv", contacts_header);
+  stats_ = RunTable(folder / "stats.csv", std::string(stats_header) + (options_.surgery ? ",in_opened" : ""));
+  if (options_.contacts) contacts_ = RunTable(folder / "contacts.csv", contacts_header);
   if (!scene_text.empty()) write_bytes(folder / "scene.toml", scene_text);
   keep_cells(mesh);
   if (!options_.changes) write_environment(mesh.points, "environment.vtu");
@@ -154,15 +73,15 @@ Recording::Recording(Options options, const MeshData& mesh, const std::string& s
 
 Recording::Recording(Options options, const MeshData& mesh, const RecordingProgress& progress)
     : options_(std::move(options)), frames_(progress.frames) {
-  stats_ = reopen_table(options_.folder / "stats.csv", progress.stats_bytes);
-  if (options_.contacts) contacts_ = reopen_table(options_.folder / "contacts.csv", progress.contacts_bytes);
+  stats_ = RunTable(options_.folder / "stats.csv", progress.stats_bytes);
+  if (options_.contacts) contacts_ = RunTable(options_.folder / "contacts.csv", progress.contacts_bytes);
   keep_cells(mesh);
   std::set<std::string> kept = {"environment.vtu"};
   for (const RecordingFrame& frame : frames_) kept.insert({particles_name(frame.step), environment_name(frame.step)});
   for (const auto& entry : fs::directory_iterator(options_.folder)) {
     const std::string name = entry.path().filename().string();
     const bool frame = entry.path().extension() == ".vtp" || entry.path().extension() == ".vtu";
-    if (frame && is_ours(name) && !kept.contains(name)) fs::remove(entry.path());
+    if (frame && is_run_file(name) && !kept.contains(name)) fs::remove(entry.path());
   }
 }
 
@@ -214,53 +133,31 @@ void Recording::write_lists() const {
   }
 }
 
-RecordingProgress Recording::progress() { return {written(stats_), written(contacts_), frames_}; }
+RecordingProgress Recording::progress() { return {stats_.written(), contacts_.written(), frames_}; }
 
 void Recording::write_particles(const Flow& flow, const fs::path& path) const {
   const Particles& particles = flow.particles();
   const Complex& complex = flow.environment().complex();
-  const std::size_t count = particles.size();
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(static_cast<vtkIdType>(count));
-  vtkNew<vtkCellArray> vertices;
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto id = static_cast<vtkIdType>(i);
-    points->SetPoint(id, particles[i].position.x, particles[i].position.y, particles[i].position.z);
-    vertices->InsertNextCell(1, &id);
-  }
-  vtkNew<vtkPolyData> data;
-  data->SetPoints(points);
-  data->SetVerts(vertices);
-  add_array(*data, "id", 1, count, [&](std::size_t i, int) { return static_cast<double>(flow.ids()[i]); });
-  add_array(*data, "velocity", 3, count, [&](std::size_t i, int k) { return component(flow.velocities()[i], k); });
-  add_array(*data, "cell", 1, count,
-            [&](std::size_t i, int) { return static_cast<double>(complex.map().source(particles[i].cell)); });
-  add_array(*data, "kind", 1, count,
-            [&](std::size_t i, int) { return static_cast<double>(kind_of(complex, particles[i])); });
-  add_array(*data, "contacts", 1, count,
-            [&](std::size_t i, int) { return static_cast<double>(flow.contact_counts()[i]); });
-  const VtkErrors errors;
-  vtkNew<vtkXMLPolyDataWriter> writer;
-  writer->SetFileName(path.c_str());
-  writer->SetInputData(data);
-  writer->EncodeAppendedDataOff();
-  if (writer->Write() != 1 || writer->GetErrorCode() != 0 || !errors.first().empty()) {
-    throw Error(fmt::format("{}: the file cannot be written; check the folder and the disk's space", path.string()));
-  }
+  PointFile file(particles.size(), [&](std::size_t i) { return particles[i].position; });
+  file.add_vertices();
+  file.add("id", [&](std::size_t i) { return static_cast<double>(flow.ids()[i]); });
+  file.add("radius", [&](std::size_t i) { return flow.radii()[i]; });
+  file.add_vectors("velocity", [&](std::size_t i) { return flow.velocities()[i]; });
+  file.add("cell", [&](std::size_t i) { return static_cast<double>(complex.map().source(particles[i].cell)); });
+  file.add("kind", [&](std::size_t i) { return static_cast<double>(kind_of(complex, particles[i])); });
+  file.add("contacts", [&](std::size_t i) { return static_cast<double>(flow.contact_counts()[i]); });
+  file.write(path);
 }
 
 void Recording::add_step(const Flow& flow, const FlowStep& step, std::uint64_t in_opened) {
   const Counters& c = step.report.counters;
-  fmt::print(stats_, "{},{},{},{},{},{},{},{},{},{},{},{}", flow.steps(), flow.time(), flow.particles().size(),
+  fmt::print(stats_.stream(), "{},{},{},{},{},{},{},{},{},{},{},{}", flow.steps(), flow.time(), flow.particles().size(),
              step.injected, step.absorbed, step.escaped, step.report.held.size(), step.report.contacts.contacts.size(),
              c.orientation.tests, c.orientation.exact, c.forecast_kept, c.updated_by_deformation);
-  if (options_.surgery) fmt::print(stats_, ",{}", in_opened);
-  fmt::print(stats_, "\n");
+  if (options_.surgery) fmt::print(stats_.stream(), ",{}", in_opened);
+  fmt::print(stats_.stream(), "\n");
   if (options_.contacts) write_contacts(flow, step);
-  if (!stats_)
-    throw Error(fmt::format("{}: the table cannot be written; check the disk's space",
-                            (options_.folder / "stats.csv").string()));
+  stats_.check();
 }
 
 void Recording::write_contacts(const Flow& flow, const FlowStep& step) {
@@ -270,7 +167,7 @@ void Recording::write_contacts(const Flow& flow, const FlowStep& step) {
   for (std::size_t i = 0; i < step.contact_ids.size(); ++i) {
     const Contact& c = step.report.contacts.contacts[i];
     const WallHit& wall = step.report.contacts.walls_of(c).front();
-    fmt::print(contacts_, "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", flow.steps(),
+    fmt::print(contacts_.stream(), "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", flow.steps(),
                flow.time() - dt * (1.0 - c.time_of_impact), step.contact_ids[i],
                kinds[static_cast<std::size_t>(c.kind)], map.patch_names()[wall.patch.value], map.source(wall.face.cell),
                c.point.x, c.point.y, c.point.z, wall.normal.x, wall.normal.y, wall.normal.z, c.wall_displacement.x,
@@ -279,8 +176,8 @@ void Recording::write_contacts(const Flow& flow, const FlowStep& step) {
 }
 
 void Recording::finish(const std::string& summary_json) {
-  close_table(stats_, "stats.csv", options_.folder);
-  close_table(contacts_, "contacts.csv", options_.folder);
+  stats_.close();
+  contacts_.close();
   write_bytes(options_.folder / "summary.json", summary_json + "\n");
 }
 

@@ -2,20 +2,15 @@
 #pragma once
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "dartcast/io/run_files.hpp"
 #include "dartcast/mesh/mesh_data.hpp"
 #include "dartcast/simulation/flow.hpp"
 
 namespace dartcast {
-
-struct RecordingFrame {
-  std::uint64_t step = 0;
-  double time = 0.0;  ///< s
-};
 
 /// How far a recording has come: enough to go on with its files.
 struct RecordingProgress {
@@ -47,6 +42,7 @@ class Recording {
   void add_frame(const Flow& flow);
   /// Adds a step's row to stats.csv, and its contacts. `in_opened`: see SurgeryLog.
   void add_step(const Flow& flow, const FlowStep& step, std::uint64_t in_opened = 0);
+  [[nodiscard]] std::span<const RecordingFrame> frames() const { return frames_; }
   /// Sends the tables to their files, and says how far they have come.
   RecordingProgress progress();
   /// Writes summary.json and ends the tables.
@@ -62,8 +58,8 @@ class Recording {
 
   Options options_;
   MeshData mesh_;  // cells, regions and free marks alone
-  std::ofstream stats_;
-  std::ofstream contacts_;
+  RunTable stats_;
+  RunTable contacts_;
   std::vector<RecordingFrame> frames_;
 };
 

@@ -15,6 +15,8 @@
 #include "dartcast/io/point_file.hpp"
 #include "dartcast/io/recording.hpp"
 #include "dartcast/io/scene_mesh.hpp"
+#include "dartcast/io/solids.hpp"
+#include "dartcast/io/solids_recording.hpp"
 
 namespace dartcast {
 
@@ -53,11 +55,12 @@ FlowOptions flow_options(const Scene& scene, const RunOptions& options) {
   flow.drag = scene.motion.drag;
   flow.substeps = scene.motion.substeps;
   flow.seed = options.seed.value_or(scene.seed);
+  flow.collisions = scene.collisions;
   return flow;
 }
 
-void add_placed(Flow& flow, const std::filesystem::path& file, const Vec3& velocity) {
-  const auto added = flow.add(read_points(file).points, velocity);
+void add_placed(Flow& flow, const std::filesystem::path& file, const ParticlesScene& scene) {
+  const auto added = flow.add(read_points(file).points, scene.velocity, scene.radius);
   for (std::size_t i = 0; i < added.size(); ++i) {
     if (added[i].location.place == Place::free) continue;
     throw Error(fmt::format("{}: position {} (counted from 0) is {}; move or remove it", file.string(), i,
@@ -68,14 +71,15 @@ void add_placed(Flow& flow, const std::filesystem::path& file, const Vec3& veloc
 void add_inlets(Flow& flow, const Scene& scene) {
   for (const ParticlesScene& p : scene.particles) {
     if (const auto* inlet = std::get_if<InletParticles>(&p.source))
-      flow.add_inlet(flow.environment().map().patch(inlet->patch), inlet->rate, p.velocity);
+      flow.add_inlet(flow.environment().map().patch(inlet->patch), inlet->rate, p.velocity, p.radius);
   }
 }
 
 void add_particles(Flow& flow, const Scene& scene) {
   for (const ParticlesScene& p : scene.particles) {
-    if (const auto* random = std::get_if<RandomParticles>(&p.source)) flow.add_random(random->count, p.velocity);
-    if (const auto* placed = std::get_if<PlacedParticles>(&p.source)) add_placed(flow, placed->positions, p.velocity);
+    if (const auto* random = std::get_if<RandomParticles>(&p.source))
+      flow.add_random(random->count, p.velocity, p.radius);
+    if (const auto* placed = std::get_if<PlacedParticles>(&p.source)) add_placed(flow, placed->positions, p);
   }
 }
 
@@ -96,9 +100,9 @@ void describe(const Environment& environment, Summary& summary) {
 class Output {
  public:
   Output(const Scene& scene, const RunOptions& options, const MeshData& mesh, Summary& summary)
-      : recording_options_{options.folder, summary.deforms || summary.surgery, summary.surgery.has_value(),
+      : scene_(scene),
+        recording_options_{options.folder, summary.deforms || summary.surgery, summary.surgery.has_value(),
                            scene.output.contacts},
-        scene_text_(scene.text),
         every_(scene.output.every),
         resume_(options.resume),
         summary_(summary) {
@@ -121,28 +125,38 @@ class Output {
   void open(const MeshData& mesh) {
     timed([&] {
       recording_ = found_ ? std::make_unique<Recording>(recording_options_, mesh, found_->recording)
-                          : std::make_unique<Recording>(recording_options_, mesh, scene_text_);
+                          : std::make_unique<Recording>(recording_options_, mesh, scene_.text);
+      solids_ = found_ ? std::make_unique<SolidsRecording>(folder(), scene_, found_->solids_recording)
+                       : std::make_unique<SolidsRecording>(folder(), scene_);
     });
   }
 
   [[nodiscard]] const std::optional<Checkpoint>& found() const { return found_; }
 
-  void add_step(const Flow& flow, const FlowStep& step, const SurgeryLog& surgery) {
-    timed([&] { recording_->add_step(flow, step, surgery.in_opened); });
+  void add_step(const Flow& flow, const FlowStep& step, const SurgeryLog& surgery, const Solids& solids) {
+    timed([&] {
+      recording_->add_step(flow, step, surgery.in_opened);
+      solids_->add_step(solids, flow.steps(), flow.time());
+    });
   }
 
   /// To be called before the first step and after each: a frame and a checkpoint where the scene wants one, and at the
   /// end.
-  void add_frame(const Flow& flow, const SurgeryLog& surgery, bool last) {
+  void add_frame(const Flow& flow, const SurgeryLog& surgery, const Solids& solids, bool last) {
     if (!last && !on_schedule(flow.steps())) return;
     timed([&] {
-      if (every_ > 0) recording_->add_frame(flow);
+      if (every_ > 0) {
+        recording_->add_frame(flow);
+        solids_->add_frame(solids, recording_->frames());
+      }
       const std::uint64_t audited = summary_.audit ? summary_.audit->checked : 0;
-      write_checkpoint(file(), {identity_, flow.checkpoint(), recording_->progress(), surgery, summary_.held, audited});
+      write_checkpoint(file(), {identity_, flow.checkpoint(), recording_->progress(), surgery, summary_.held, audited,
+                                solids.checkpoint(), solids_->progress()});
     });
   }
 
   void finish() {
+    if (solids_) solids_->finish();
     if (recording_) recording_->finish(summary_json(summary_));
   }
 
@@ -159,21 +173,28 @@ class Output {
     summary_.seconds_write += watch.seconds();
   }
 
+  const Scene& scene_;
   Recording::Options recording_options_;
-  const std::string& scene_text_;
   std::uint64_t every_;
   bool resume_;
   Summary& summary_;
   RunIdentity identity_;
   std::optional<Checkpoint> found_;
   std::unique_ptr<Recording> recording_;
+  std::unique_ptr<SolidsRecording> solids_;
 };
 
 // The steps of a run, with their output and audit.
 class Run {
  public:
-  Run(Flow& flow, Surgery& surgery, Output& output, std::uint64_t steps, bool audit, Summary& summary)
-      : flow_(flow), surgery_(surgery), output_(output), steps_(steps), audit_(audit), summary_(summary) {
+  Run(Flow& flow, Surgery& surgery, Solids& solids, Output& output, std::uint64_t steps, bool audit, Summary& summary)
+      : flow_(flow),
+        surgery_(surgery),
+        solids_(solids),
+        output_(output),
+        steps_(steps),
+        audit_(audit),
+        summary_(summary) {
     if (audit_) summary_.audit.emplace();
     if (const auto& found = output.found()) {
       summary_.held = found->held;
@@ -182,23 +203,32 @@ class Run {
   }
 
   void run(const Progress& progress) {
-    if (flow_.steps() == 0) output_.add_frame(flow_, surgery_.log(), steps_ == 0);
+    if (flow_.steps() == 0) output_.add_frame(flow_, surgery_.log(), solids_, steps_ == 0);
     while (flow_.steps() < steps_) {
       surgery_.before_step();
+      const double begin = flow_.time();
       const FlowStep& step = flow_.step();
+      step_solids(begin);
       surgery_.after_step();
       summary_.held = step.report.held.size();
       if (audit_) *summary_.audit += check();
-      output_.add_step(flow_, step, surgery_.log());
-      output_.add_frame(flow_, surgery_.log(), flow_.steps() == steps_);
+      output_.add_step(flow_, step, surgery_.log(), solids_);
+      output_.add_frame(flow_, surgery_.log(), solids_, flow_.steps() == steps_);
       if (progress) progress(flow_.steps(), steps_);
     }
     finish();
   }
 
  private:
+  void step_solids(double begin) {
+    const Stopwatch watch;
+    solids_.step(begin);
+    summary_.seconds_solids += watch.seconds();
+  }
+
   [[nodiscard]] Audit check() const {
-    return audit(flow_.environment().complex(), flow_.particles(), flow_.environment().threads());
+    Audit all = audit(flow_.environment().complex(), flow_.particles(), flow_.environment().threads());
+    return all += solids_.audit();
   }
 
   void finish() {
@@ -212,11 +242,15 @@ class Run {
     const FlowTotals& t = summary_.totals;
     summary_.lost = t.start + t.injected - t.absorbed - t.escaped - summary_.alive;
     if (audit_) summary_.lost += check().failed;
-    summary_.state_hash = flow_.state_hash().hex();
+    StateHash hash = flow_.state_hash();
+    summary_.state_hash = (hash += solids_.state_hash()).hex();
+    summary_.bodies = solids_.body_summaries();
+    summary_.catheters = solids_.catheter_summaries();
   }
 
   Flow& flow_;
   Surgery& surgery_;
+  Solids& solids_;
   Output& output_;
   std::uint64_t steps_;
   bool audit_;
@@ -224,14 +258,21 @@ class Run {
 };
 
 // Particles at the start, or as a checkpoint has them.
-void start(Flow& flow, Surgery& surgery, const Scene& scene, const std::optional<Checkpoint>& checkpoint) {
+void start(Flow& flow, Surgery& surgery, Solids& solids, const Scene& scene,
+           const std::optional<Checkpoint>& checkpoint) {
   add_inlets(flow, scene);
+  flow.set_after_edit([&surgery](Stranded) { surgery.after_edit(); });
   if (checkpoint) {
     surgery.replay(checkpoint->surgery);
     flow.restore(checkpoint->flow);
+    solids.restore(checkpoint->solids);
   } else {
     add_particles(flow, scene);
   }
+  flow.set_after_edit([&surgery, &solids](Stranded stranded) {
+    surgery.after_edit();
+    solids.follow(stranded);
+  });
 }
 
 }  // namespace
@@ -244,23 +285,25 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
   const Stopwatch load;
   const MeshData mesh = load_scene_mesh(scene.environment).mesh;
   Environment environment(mesh, options.threads);
-  Flow flow(environment, flow_options(scene, options), make_responses(scene.contact, environment.map()));
+  const Responses responses = make_responses(scene.contact, environment.map());
+  Flow flow(environment, flow_options(scene, options), responses);
   if (!scene.motion.field.empty()) {
     flow.set_field(VelocityField(environment.complex(), point_vectors(mesh, scene.motion.field), scene.motion.frame));
   }
   if (summary.deforms) flow.set_deformation(Deformation(load_deformation(scene.deformation, mesh), mesh.points));
   describe(environment, summary);
   const std::vector<Event> events = make_events(scene, environment.map());
-  Surgery surgery(events, scene.remesh, scene.motion.dt, flow);
-  if (!events.empty() || scene.remesh.every > 0) summary.surgery.emplace();
+  Surgery surgery(events, scene.remesh, scene.crowding, scene.motion.dt, flow);
+  if (!events.empty() || scene.remesh.every > 0 || scene.crowding.every > 0) summary.surgery.emplace();
+  Solids solids(scene, environment, responses);
   summary.seconds_load = load.seconds();
   const std::uint64_t steps = options.steps.value_or(scene.motion.steps);
   Output output(scene, options, mesh, summary);
   const Stopwatch locate;
-  start(flow, surgery, scene, output.read(steps));
+  start(flow, surgery, solids, scene, output.read(steps));
   summary.seconds_locate = locate.seconds();
   output.open(mesh);
-  Run(flow, surgery, output, steps, options.audit, summary).run(progress);
+  Run(flow, surgery, solids, output, steps, options.audit, summary).run(progress);
   output.finish();
   return summary;
 }

@@ -7,10 +7,12 @@
 #include <iterator>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 #include "dartcast/base/error.hpp"
 #include "dartcast/io/scene_events.hpp"
 #include "dartcast/io/scene_mesh_keys.hpp"
+#include "dartcast/io/scene_solids.hpp"
 #include "dartcast/io/toml_table.hpp"
 
 namespace dartcast {
@@ -30,12 +32,18 @@ class SceneReader {
     scene.environment = read_environment(root.table("environment"), folder_);
     for (TomlTable& t : root.tables("deformation")) scene.deformation.push_back(deformation(t));
     for (TomlTable& t : root.tables("particles")) scene.particles.push_back(particles(t));
+    for (TomlTable& t : root.tables("body"))
+      add_named(t, scene.bodies, read_body(t, folder_, scene.bodies.size() + 1, scene.seed));
+    for (TomlTable& t : root.tables("catheter"))
+      add_named(t, scene.catheters, read_catheter(t, scene.catheters.size() + 1));
     scene.motion = motion(root.table("motion"));
     scene.contact = contact(root.table("contact"));
+    if (root.has("collisions")) scene.collisions = collisions(root.table("collisions"));
     for (TomlTable& t : root.tables("event")) scene.events.push_back(read_event(t));
     std::stable_sort(scene.events.begin(), scene.events.end(),
                      [](const EventScene& a, const EventScene& b) { return a.event.at < b.event.at; });
     scene.remesh = remesh(root.table("remesh"));
+    scene.crowding = crowding(root.table("crowding"));
     scene.output = output(root.table("output"));
     root.finish();
     return scene;
@@ -93,11 +101,7 @@ class SceneReader {
 
   ParticlesScene particles(TomlTable& t) const {
     ParticlesScene scene;
-    double radius = 0.0;
-    if (t.get("radius", radius, any_number) && radius != 0.0) {
-      t.fail("radius",
-             fmt::format("radius = {}: particles are points so far; leave radius out or set it to 0", radius));
-    }
+    t.get("radius", scene.radius, Range::not_negative);
     t.get("velocity", scene.velocity);
     std::uint64_t count = 0;
     std::string positions;
@@ -116,6 +120,14 @@ class SceneReader {
     }
     t.finish();
     return scene;
+  }
+
+  // Names are those of files.
+  template <class Item>
+  static void add_named(TomlTable& t, std::vector<Item>& all, Item&& item) {
+    if (std::any_of(all.begin(), all.end(), [&](const Item& other) { return other.name == item.name; }))
+      t.fail("name", fmt::format("name = \"{}\": another has this name; give it one of its own", item.name));
+    all.push_back(std::forward<Item>(item));
   }
 
   static MotionScene motion(TomlTable t) {
@@ -153,6 +165,31 @@ class SceneReader {
       response(patch, r);
       patch.finish();
     }
+    t.finish();
+    return scene;
+  }
+
+  static CollisionOptions collisions(TomlTable t) {
+    CollisionOptions options;
+    t.get("restitution", options.restitution, {0.0, 1.0});
+    t.get("friction", options.friction, Range::not_negative);
+    t.get("density", options.density, Range::positive);
+    t.get("iterations", options.iterations, 1U, 100000U);
+    t.get("push_iterations", options.push_iterations, 0U, 100000U);
+    t.finish();
+    return options;
+  }
+
+  static CrowdingScene crowding(TomlTable t) {
+    CrowdingScene scene;
+    t.get("every", scene.every, 0, std::uint64_t{1} << 53U);
+    t.get("most", scene.options.most, 1U, 0xfffffffeU);
+    t.get("least", scene.options.least, 0U, 0xfffffffdU);
+    t.get("smallest", scene.options.smallest, Range::not_negative);
+    t.get("edits", scene.options.edits, 1U, 0xfffffffeU);
+    if (scene.options.least >= scene.options.most)
+      t.fail("least",
+             fmt::format("least = {}: it must be less than most, {}", scene.options.least, scene.options.most));
     t.finish();
     return scene;
   }

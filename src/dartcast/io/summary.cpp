@@ -41,7 +41,9 @@ Json contacts(const Summary& s) {
 Json seconds(const Summary& s) {
   Json json = {{"load", s.seconds_load}, {"locate", s.seconds_locate}, {"detect", s.totals.seconds_detect}};
   if (s.deforms) json["deform"] = s.totals.seconds_deform;
+  if (s.totals.seconds_collide > 0.0) json["collide"] = s.totals.seconds_collide;
   json["respond"] = s.totals.seconds_respond;
+  if (!s.bodies.empty() || !s.catheters.empty()) json["solids"] = s.seconds_solids;
   json["write"] = s.seconds_write;
   return json;
 }
@@ -67,6 +69,48 @@ Json events(const SurgeryLog& log) {
                       {"absorbed", e.particles_absorbed}}},
                     {"boundary_shift", e.boundary_shift},
                     {"seconds", e.seconds}});
+  }
+  return list;
+}
+
+Json collisions(const FlowTotals& t) {
+  const CollisionCounts& c = t.collisions;
+  return {{"pairs_tested", c.pairs_tested},
+          {"pairs_near", c.pairs_near},
+          {"pairs_touching", c.pairs_touching},
+          {"walls_touching", c.walls_touching},
+          {"overlaps", c.overlaps},
+          {"deepest", c.deepest},
+          {"wall_overlaps", t.wall_overlaps},
+          {"deepest_in_wall", t.deepest_in_wall}};
+}
+
+Json vector(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+Json bodies(const std::vector<BodySummary>& all) {
+  Json list = Json::array();
+  for (const BodySummary& b : all) {
+    Json json = {{"name", b.name}, {"gone", b.gone}};
+    if (!b.gone) {
+      json["particles"] = b.particles;
+      json["centre"] = vector(b.centre);
+      json["energy"] = {
+          {"kinetic", b.energy.kinetic}, {"potential", b.energy.potential}, {"matching", b.energy.matching}};
+    }
+    list.push_back(json);
+  }
+  return list;
+}
+
+Json catheters(const std::vector<CatheterSummary>& all) {
+  Json list = Json::array();
+  for (const CatheterSummary& c : all) {
+    list.push_back({{"name", c.name},
+                    {"inserted", c.inserted},
+                    {"measured_length", c.measured_length},
+                    {"worst_segment", c.totals.worst_segment},
+                    {"refused", c.totals.refused},
+                    {"tip", vector(c.tip)}});
   }
   return list;
 }
@@ -104,7 +148,12 @@ std::string summary_json(const Summary& s) {
     json["particles"]["in_opened"] = s.surgery->in_opened;
     json["events"] = events(*s.surgery);
     json["remeshing"] = {{"mended", s.surgery->mended}, {"left", s.surgery->left}};
+    json["crowding"] = {
+        {"subdivided", s.surgery->subdivided}, {"merged", s.surgery->merged}, {"refused", s.surgery->refused}};
   }
+  if (t.collisions.pairs_tested + t.wall_overlaps > 0) json["collisions"] = collisions(t);
+  if (!s.bodies.empty()) json["bodies"] = bodies(s.bodies);
+  if (!s.catheters.empty()) json["catheters"] = catheters(s.catheters);
   if (t.counters.particle_steps > 0) json["orientation_tests"] = orientation_tests(s);
   json["contacts"] = contacts(s);
   json["seconds"] = seconds(s);
@@ -115,6 +164,24 @@ std::string summary_json(const Summary& s) {
 }
 
 namespace {
+
+std::string solids_text(const Summary& s) {
+  std::string out;
+  for (const BodySummary& b : s.bodies) {
+    out += b.gone ? fmt::format("body {}: left at a wall\n", b.name)
+                  : fmt::format("body {}: {} particles, centre ({:.4g}, {:.4g}, {:.4g}), kinetic energy {:.3g} J\n",
+                                b.name, b.particles, b.centre.x, b.centre.y, b.centre.z, b.energy.kinetic);
+  }
+  for (const CatheterSummary& c : s.catheters) {
+    out += fmt::format(
+        "catheter {}: {:.4g} m inserted, its length {:.4g} m (worst segment off by {:.2f}%), {:.3g} m of pushes "
+        "refused, "
+        "tip ({:.4g}, {:.4g}, {:.4g})\n",
+        c.name, c.inserted, c.measured_length, 100.0 * c.totals.worst_segment, c.totals.refused, c.tip.x, c.tip.y,
+        c.tip.z);
+  }
+  return out;
+}
 
 std::string surgery_text(const SurgeryLog& log) {
   std::string out;
@@ -128,6 +195,9 @@ std::string surgery_text(const SurgeryLog& log) {
   }
   if (log.mended + log.left > 0)
     out += fmt::format("remeshing: {} regions mended, {} cells left as they were\n", log.mended, log.left);
+  if (log.subdivided + log.refused > 0)
+    out += fmt::format("crowding: {} cells subdivided, {} made again, {} left as they were\n", log.subdivided,
+                       log.merged, log.refused);
   return out + fmt::format("{} particles in opened cells at the end\n", log.in_opened);
 }
 
@@ -151,6 +221,10 @@ std::string summary_text(const Summary& s) {
   out += fmt::format(
       "seconds: load {:.2f}, locate {:.2f}, detect {:.2f}, deform {:.2f}, respond {:.2f}, write {:.2f}\n",
       s.seconds_load, s.seconds_locate, t.seconds_detect, t.seconds_deform, t.seconds_respond, s.seconds_write);
+  if (t.collisions.pairs_tested > 0)
+    out += fmt::format("collisions: {} touching pairs, {} overlaps, the deepest {:.3g} m\n",
+                       t.collisions.pairs_touching, t.collisions.overlaps, t.collisions.deepest);
+  out += solids_text(s);
   if (s.surgery) out += surgery_text(*s.surgery);
   if (s.audit) out += fmt::format("audit: {} checked, {} failed\n", s.audit->checked, s.audit->failed);
   return out + fmt::format("state hash: {}\n", s.state_hash);

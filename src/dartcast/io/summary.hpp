@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dartcast/environment/audit.hpp"
+#include "dartcast/io/solids.hpp"
 #include "dartcast/simulation/surgery.hpp"
 
 namespace dartcast {
@@ -30,8 +31,11 @@ struct Summary {
   std::vector<std::string> patch_names;
   double seconds_load = 0.0;
   double seconds_locate = 0.0;
+  double seconds_solids = 0.0;  ///< steps of bodies and catheters
   double seconds_write = 0.0;
   std::optional<SurgeryLog> surgery;  ///< where the scene has events or is remeshed
+  std::vector<BodySummary> bodies;
+  std::vector<CatheterSummary> catheters;
   std::optional<Audit> audit;
   std::string state_hash;
 };
