@@ -214,7 +214,7 @@ TEST(Events, SurgeryKeepsToTheTimesAndDoesItAgain) {
   }
   Environment other(channel());
   Flow again(other, falling(0.02));
-  Surgery replayed(events, never, 0.02, again);
+  Surgery replayed(events, never, {}, 0.02, again);
   replayed.replay(surgery.log());
   EXPECT_EQ(other.map(), environment.map());
   again.restore(flow.checkpoint());
