@@ -116,7 +116,7 @@ TEST(SolidsInScenes, TheirFilesAreThoseOfARun) {
 TEST(SolidsInScenes, BodiesFallAsTheyShould) {
   const Summary summary = run(box + barrel + motion);
   EXPECT_NEAR(summary.bodies[0].centre.z, 0.2 - 0.5 * 9.81 * 0.2 * 0.2, 0.13);  // it meets the floor
-  EXPECT_GT(summary.bodies[0].centre.z, 0.04);
+  EXPECT_GT(summary.bodies[0].centre.z, 0.05 - 2.0 * 0.01);  // squeezed by its speed over its frequency, 1 / dt
   const Summary free = run(box + barrel + "[motion]\ndt = 0.001\nsteps = 100\ngravity = [0.0, 0.0, -9.81]\n");
   EXPECT_NEAR(free.bodies[0].centre.z, 0.2 - 0.5 * 9.81 * 0.1 * 0.1, 1e-3);
 }

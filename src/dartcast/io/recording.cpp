@@ -76,12 +76,11 @@ Recording::Recording(Options options, const MeshData& mesh, const RecordingProgr
   stats_ = RunTable(options_.folder / "stats.csv", progress.stats_bytes);
   if (options_.contacts) contacts_ = RunTable(options_.folder / "contacts.csv", progress.contacts_bytes);
   keep_cells(mesh);
-  std::set<std::string> kept = {"environment.vtu"};
-  for (const RecordingFrame& frame : frames_) kept.insert({particles_name(frame.step), environment_name(frame.step)});
+  std::set<std::uint64_t> kept;
+  for (const RecordingFrame& frame : frames_) kept.insert(frame.step);
   for (const auto& entry : fs::directory_iterator(options_.folder)) {
-    const std::string name = entry.path().filename().string();
-    const bool frame = entry.path().extension() == ".vtp" || entry.path().extension() == ".vtu";
-    if (frame && is_run_file(name) && !kept.contains(name)) fs::remove(entry.path());
+    const auto step = frame_step(entry.path().filename().string());
+    if (step && !kept.contains(*step)) fs::remove(entry.path());
   }
 }
 

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <system_error>
 #include <utility>
 
 #include "dartcast/base/error.hpp"
@@ -33,13 +35,17 @@ bool is_step(std::string_view text) {
   return text.size() >= 6 && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-bool is_frame(std::string_view name, const Series& series) {
-  if (!name.starts_with(series.start) || !name.ends_with(series.end)) return false;
-  if (name.size() < series.start.size() + series.end.size()) return false;
-  std::string_view middle = name.substr(series.start.size(), name.size() - series.start.size() - series.end.size());
-  if (!series.named) return is_step(middle);
-  const std::size_t last = middle.rfind('_');
-  return last != std::string_view::npos && last > 0 && is_step(middle.substr(last + 1));
+// The digits of the step in the name of a frame's file of the series; empty where it is none.
+std::string_view step_digits(std::string_view name, const Series& series) {
+  if (!name.starts_with(series.start) || !name.ends_with(series.end)) return {};
+  if (name.size() < series.start.size() + series.end.size()) return {};
+  std::string_view digits = name.substr(series.start.size(), name.size() - series.start.size() - series.end.size());
+  if (series.named) {
+    const std::size_t last = digits.rfind('_');
+    if (last == std::string_view::npos || last == 0) return {};
+    digits = digits.substr(last + 1);
+  }
+  return is_step(digits) ? digits : std::string_view{};
 }
 
 // The list of a series with a name: body_NAME.pvd.
@@ -56,8 +62,17 @@ bool is_run_file(const std::string& name) {
       "summary.json", "stats.csv",  "particles.pvd",  "environment.pvd", "environment.vtu",
       "contacts.csv", "scene.toml", "checkpoint.bin", "bodies.csv",      "catheters.csv"};
   if (std::find(fixed.begin(), fixed.end(), name) != fixed.end()) return true;
-  return is_list(name) ||
-         std::any_of(all_series.begin(), all_series.end(), [&](const Series& s) { return is_frame(name, s); });
+  return is_list(name) || frame_step(name);
+}
+
+std::optional<std::uint64_t> frame_step(std::string_view name) {
+  for (const Series& series : all_series) {
+    const std::string_view digits = step_digits(name, series);
+    std::uint64_t step = 0;
+    if (!digits.empty() && std::from_chars(digits.data(), digits.data() + digits.size(), step).ec == std::errc())
+      return step;
+  }
+  return {};
 }
 
 std::string frame_name(std::string_view series, std::uint64_t step, std::string_view ending) {

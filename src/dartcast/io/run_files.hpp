@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -18,6 +19,9 @@ struct RecordingFrame {
 
 /// Whether a file is one that a run writes: by its name.
 bool is_run_file(const std::string& name);
+
+/// The step of a frame's file, by its name; none where it is no frame's.
+std::optional<std::uint64_t> frame_step(std::string_view name);
 
 /// "particles", step 10, ".vtp": particles_000010.vtp.
 std::string frame_name(std::string_view series, std::uint64_t step, std::string_view ending);

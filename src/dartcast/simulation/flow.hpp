@@ -195,6 +195,7 @@ class Flow {
 
   void inject();
   void move_vertices();
+  void stand_at(std::uint64_t steps);
   void move_vertices_to(std::uint64_t steps);
   void advance_segment(unsigned segment);
   void aim(double dt, bool moving);

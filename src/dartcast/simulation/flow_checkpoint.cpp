@@ -22,7 +22,7 @@ FlowCheckpoint Flow::checkpoint() const {
 void Flow::restore(const FlowCheckpoint& saved) {
   if (saved.totals.contacts_by_patch.size() != totals_.contacts_by_patch.size())
     throw InvalidArgument("flow: the checkpoint is of an environment with other patches");
-  move_vertices_to(saved.steps);
+  if (steps_ != saved.steps) stand_at(saved.steps);
   std::vector<State> states;
   std::vector<Weights> weights;
   for (const FlowCheckpoint::Particle& p : saved.particles) {
@@ -54,8 +54,14 @@ void Flow::restore(const FlowCheckpoint& saved) {
 
 void Flow::go_to(std::uint64_t steps) {
   if (particles_.size() > 0) throw InvalidArgument("flow: there are particles, which would be left behind");
-  move_vertices_to(steps);
+  if (steps_ != steps) stand_at(steps);
   steps_ = steps;
+}
+
+// As after the last of these steps: where vertices were before it counts, too.
+void Flow::stand_at(std::uint64_t steps) {
+  if (steps > 1) move_vertices_to(steps - 1);
+  move_vertices_to(steps);
 }
 
 StateHash Flow::state_hash() const {
