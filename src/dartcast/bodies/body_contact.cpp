@@ -117,7 +117,7 @@ Continuation integrate_on(Meeting& m, const Vec3& velocity) {
   const auto acceleration = [&](const Vec3& at, double share) {
     return m.acceleration(at, begin + (1.0 - begin) * share);
   };
-  const Motion free = runge_kutta_4({x, velocity}, m.left, acceleration);
+  const PointMotion free = runge_kutta_4({x, velocity}, m.left, acceleration);
   const Vec3 way = (free.position - x) - m.wall_velocity * m.left;
   Vec3 next = along_walls(m.pass, way, m.walls, m.earlier);
   const bool held_back = next != way;

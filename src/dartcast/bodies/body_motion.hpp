@@ -29,14 +29,14 @@ RigidMotion rigid_motion(std::span<const double> masses, std::span<const Vec3> p
 RigidMotion with_angular_momentum(std::span<const double> masses, std::span<const Vec3> positions, const Vec3& velocity,
                                   const Vec3& angular_momentum);
 
-struct Motion {
+struct PointMotion {
   Vec3 position;
   Vec3 velocity;
 };
 
 /// A step of duration `dt` for x'' = acceleration(x, s), s in [0, 1] the share of the step.
 template <class Acceleration>
-Motion runge_kutta_4(const Motion& m, double dt, const Acceleration& acceleration) {
+PointMotion runge_kutta_4(const PointMotion& m, double dt, const Acceleration& acceleration) {
   const double half = 0.5 * dt;
   const Vec3 a1 = acceleration(m.position, 0.0);
   const Vec3 middle = m.position + m.velocity * half;

@@ -10,7 +10,7 @@ namespace dartcast {
 void write_camera_path(const CameraPath& path, const std::filesystem::path& file) {
   if (path.cameras.empty()) throw InvalidArgument("camera path: there is no camera to write");
   if (file.extension() != ".vtp") throw InvalidArgument(fmt::format("{}: name the file .vtp", file.string()));
-  PointFile points(path.cameras.size(), [&](std::size_t i) { return path.cameras[i].position; });
+  VtpWriter points(path.cameras.size(), [&](std::size_t i) { return path.cameras[i].position; });
   points.add_line();
   points.add_vectors("direction", [&](std::size_t i) { return path.cameras[i].direction; });
   points.add_vectors("up", [&](std::size_t i) { return path.cameras[i].up; });

@@ -137,7 +137,7 @@ RecordingProgress Recording::progress() { return {stats_.written(), contacts_.wr
 void Recording::write_particles(const Flow& flow, const fs::path& path) const {
   const Particles& particles = flow.particles();
   const Complex& complex = flow.environment().complex();
-  PointFile file(particles.size(), [&](std::size_t i) { return particles[i].position; });
+  VtpWriter file(particles.size(), [&](std::size_t i) { return particles[i].position; });
   file.add_vertices();
   file.add("id", [&](std::size_t i) { return static_cast<double>(flow.ids()[i]); });
   file.add("radius", [&](std::size_t i) { return flow.radii()[i]; });

@@ -29,7 +29,7 @@ void write_series(const fs::path& folder, const std::string& series, std::span<c
 
 // Where nothing is inserted: the list names a file for each frame.
 void write_no_camera(const fs::path& path) {
-  PointFile none(0, [](std::size_t) { return Vec3(); });
+  VtpWriter none(0, [](std::size_t) { return Vec3(); });
   none.add_line();
   none.write(path);
 }
@@ -99,7 +99,7 @@ void SolidsRecording::write_body(const Solids& solids, std::size_t body, std::ui
   const Bodies& bodies = *solids.bodies();
   const std::size_t first = bodies.first_particle(body);
   const std::span<const Vec3> positions = bodies.positions().subspan(first, bodies.particle_count(body));
-  PointFile points(positions.size(), [&](std::size_t i) { return positions[i]; });
+  VtpWriter points(positions.size(), [&](std::size_t i) { return positions[i]; });
   points.add_vertices();
   points.add("id", [](std::size_t i) { return static_cast<double>(i); });
   points.add_vectors("velocity", [&](std::size_t i) { return bodies.velocities()[first + i]; });
@@ -112,7 +112,7 @@ void SolidsRecording::write_body(const Solids& solids, std::size_t body, std::ui
   const Solids::Skin& skin = solids.skin(body);
   std::vector<Vec3> vertices(skin.mesh.points.size());
   skin.carried.positions(positions, vertices, solids.environment().threads());
-  PointFile surface(vertices.size(), [&](std::size_t i) { return vertices[i]; });
+  VtpWriter surface(vertices.size(), [&](std::size_t i) { return vertices[i]; });
   surface.add_polygons(skin.mesh.offsets, skin.mesh.connectivity);
   surface.write(folder_ / frame_name(series("surface", solids.name(body)), step, ".vtp"));
 }
@@ -121,7 +121,7 @@ void SolidsRecording::write_catheter(const Solids& solids, std::size_t i, std::u
   const CatheterScene& scene = solids.scene().catheters[i];
   const std::vector<Vec3> points = solids.catheters()[i].points();
   const std::vector<CatheterFrame> frames = solids.catheters()[i].frames();
-  PointFile file(points.size(), [&](std::size_t k) { return points[k]; });
+  VtpWriter file(points.size(), [&](std::size_t k) { return points[k]; });
   file.add_line();
   file.add_vectors("tangent", [&](std::size_t k) { return frames[k].tangent; });
   file.add_vectors("normal", [&](std::size_t k) { return frames[k].normal; });

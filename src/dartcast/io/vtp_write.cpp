@@ -12,7 +12,7 @@
 
 namespace dartcast {
 
-PointFile::PointFile(std::size_t count, const std::function<Vec3(std::size_t)>& point) : count_(count) {
+VtpWriter::VtpWriter(std::size_t count, const std::function<Vec3(std::size_t)>& point) : count_(count) {
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
   points->SetNumberOfPoints(static_cast<vtkIdType>(count));
@@ -23,7 +23,7 @@ PointFile::PointFile(std::size_t count, const std::function<Vec3(std::size_t)>& 
   data_->SetPoints(points);
 }
 
-void PointFile::add_vertices() {
+void VtpWriter::add_vertices() {
   vtkNew<vtkCellArray> vertices;
   for (std::size_t i = 0; i < count_; ++i) {
     const auto id = static_cast<vtkIdType>(i);
@@ -32,14 +32,14 @@ void PointFile::add_vertices() {
   data_->SetVerts(vertices);
 }
 
-void PointFile::add_line() {
+void VtpWriter::add_line() {
   vtkNew<vtkCellArray> lines;
   if (count_ > 0) lines->InsertNextCell(static_cast<int>(count_));
   for (std::size_t i = 0; i < count_; ++i) lines->InsertCellPoint(static_cast<vtkIdType>(i));
   data_->SetLines(lines);
 }
 
-void PointFile::add_polygons(std::span<const std::size_t> offsets, std::span<const std::uint32_t> corners) {
+void VtpWriter::add_polygons(std::span<const std::size_t> offsets, std::span<const std::uint32_t> corners) {
   vtkNew<vtkCellArray> polygons;
   for (std::size_t i = 0; i + 1 < offsets.size(); ++i) {
     polygons->InsertNextCell(static_cast<int>(offsets[i + 1] - offsets[i]));
@@ -48,7 +48,7 @@ void PointFile::add_polygons(std::span<const std::size_t> offsets, std::span<con
   data_->SetPolys(polygons);
 }
 
-void PointFile::add(const std::string& name, const std::function<double(std::size_t)>& value) {
+void VtpWriter::add(const std::string& name, const std::function<double(std::size_t)>& value) {
   vtkNew<vtkDoubleArray> array;
   array->SetName(name.c_str());
   array->SetNumberOfTuples(static_cast<vtkIdType>(count_));
@@ -57,7 +57,7 @@ void PointFile::add(const std::string& name, const std::function<double(std::siz
   data_->GetPointData()->AddArray(array);
 }
 
-void PointFile::add_vectors(const std::string& name, const std::function<Vec3(std::size_t)>& value) {
+void VtpWriter::add_vectors(const std::string& name, const std::function<Vec3(std::size_t)>& value) {
   vtkNew<vtkDoubleArray> array;
   array->SetName(name.c_str());
   array->SetNumberOfComponents(3);
@@ -72,7 +72,7 @@ void PointFile::add_vectors(const std::string& name, const std::function<Vec3(st
   data_->GetPointData()->AddArray(array);
 }
 
-void PointFile::write(const std::filesystem::path& path) const {
+void VtpWriter::write(const std::filesystem::path& path) const {
   const VtkErrors errors;
   vtkNew<vtkXMLPolyDataWriter> writer;
   writer->SetFileName(path.c_str());

@@ -16,9 +16,9 @@
 namespace dartcast {
 
 /// A file while it is put together: points first, then what is made of them, then data. Float64.
-class PointFile {
+class VtpWriter {
  public:
-  PointFile(std::size_t count, const std::function<Vec3(std::size_t)>& point);
+  VtpWriter(std::size_t count, const std::function<Vec3(std::size_t)>& point);
 
   /// Every point is shown by itself.
   void add_vertices();
