@@ -15,7 +15,7 @@ namespace dartcast {
 
 namespace {
 
-constexpr std::size_t pieces = 64;  // of a span of the spline, to measure it
+constexpr std::size_t span_pieces = 64;  // of a span of the spline, to measure it
 
 // One span, as a polynomial in [0, 1].
 struct Span {
@@ -67,9 +67,9 @@ std::vector<Span> spans_of(const std::vector<Vec3>& p) {
 std::vector<double> lengths_of(const std::vector<Span>& spans) {
   std::vector<double> lengths = {0.0};
   for (const Span& s : spans) {
-    for (std::size_t k = 0; k < pieces; ++k) {
-      const double u = static_cast<double>(k) / pieces;
-      lengths.push_back(lengths.back() + norm(s.at(u + 1.0 / pieces) - s.at(u)));
+    for (std::size_t k = 0; k < span_pieces; ++k) {
+      const double u = static_cast<double>(k) / span_pieces;
+      lengths.push_back(lengths.back() + norm(s.at(u + 1.0 / span_pieces) - s.at(u)));
     }
   }
   return lengths;
@@ -86,7 +86,7 @@ Stop stop_at(const std::vector<double>& lengths, double length) {
   const auto piece = static_cast<std::size_t>(next - lengths.begin()) - 1;
   const double whole = lengths[piece + 1] - lengths[piece];
   const double share = whole > 0.0 ? std::clamp((length - lengths[piece]) / whole, 0.0, 1.0) : 0.0;
-  return {piece / pieces, (static_cast<double>(piece % pieces) + share) / pieces};
+  return {piece / span_pieces, (static_cast<double>(piece % span_pieces) + share) / span_pieces};
 }
 
 std::vector<Stop> stops_along(const std::vector<Span>& spans, const CameraOptions& o) {
