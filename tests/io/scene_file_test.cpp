@@ -116,8 +116,8 @@ moves = [{ until = 1.0, push = 0.1 }, { until = 2.0, push = -0.1, turn = 0.5 }]
   EXPECT_EQ(s.bodies[0].name, "body1");
   EXPECT_EQ(std::get<std::filesystem::path>(s.bodies[0].surface), "folder/a.stl");
   EXPECT_EQ(s.bodies[0].scale, 2.0);
-  EXPECT_EQ(s.bodies[0].rotate, Vec3(0.0, 1.0, 0.0));
-  EXPECT_EQ(s.bodies[0].at, Vec3(1.0, 2.0, 3.0));
+  EXPECT_EQ(s.bodies[0].rotate, (Vec3{0.0, 1.0, 0.0}));
+  EXPECT_EQ(s.bodies[0].at, (Vec3{1.0, 2.0, 3.0}));
   EXPECT_EQ(s.bodies[0].samples, BodySamples::volume);
   EXPECT_EQ(s.bodies[0].sampling.spacing, 0.1);
   EXPECT_EQ(s.bodies[0].sampling.seed, 7U);

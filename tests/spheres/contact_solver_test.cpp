@@ -136,13 +136,14 @@ TEST(ContactSolver, KeepsMomentum) {
     for (std::size_t i = 0; i < 1000; ++i) sum += norm(crowd.velocities[i]) / crowd.inverse_masses[i];
     double energy = crowd.energy();
     std::size_t contacts = 0;
-    for (int i = 0; i < std::max(2, test::scaled(20, 200)); ++i) {
+    const int steps = std::max(2, test::scaled(20, 200));
+    for (int i = 0; i < steps; ++i) {
       crowd.step();
       contacts += crowd.solver.loaded_pairs();
       EXPECT_LE(crowd.energy(), energy * (1.0 + 1e-12));
       energy = crowd.energy();
     }
-    EXPECT_GT(contacts, 1000U);
+    EXPECT_GT(contacts, 50U * static_cast<std::size_t>(steps));
     EXPECT_LT(norm(crowd.momentum() - before), 1e-14 * sum);
   }
 }

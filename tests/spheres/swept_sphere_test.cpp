@@ -130,8 +130,8 @@ TEST_P(Aimed, FirstTouchIsNeverLateAndWithinTheBound) {
     SCOPED_TRACE(i);
     check(aimed(random, corners, motion, graze), tally);
   }
-  EXPECT_GT(tally.touched[corners - 1], cases / 80);
-  EXPECT_GT(tally.apart, cases / 40);
+  EXPECT_GE(tally.touched[corners - 1], test::sanitized() ? 0 : cases / 80 + 1);
+  EXPECT_GE(tally.apart, test::sanitized() ? 0 : cases / 40 + 1);
   RecordProperty("grazed", tally.grazed);
 }
 
