@@ -10,6 +10,7 @@
 #include "dartcast/base/error.hpp"
 #include "dartcast/io/point_file.hpp"
 #include "dartcast/io/read_mesh.hpp"
+#include "dartcast/io/run_files.hpp"
 #include "dartcast/io/run_scene.hpp"
 #include "dartcast/io/scene_file.hpp"
 #include "io/sample_mesh.hpp"
@@ -278,6 +279,22 @@ TEST_F(RecordingTest, PatchesAndRegionsThatAreNotThereAreRefused) {
     EXPECT_THROW(run(text, folder), Error) << text;
     EXPECT_FALSE(fs::exists(folder)) << text;
   }
+}
+
+// A run that is cut off at its very begin leaves a folder that the next may take over.
+TEST(RunFiles, ATableIsKnownAtOnce) {
+  const test::Folder folder;
+  const RunTable table(folder / "table.csv", "step,time");
+  EXPECT_EQ(content(folder / "table.csv"), "step,time\n");
+}
+
+TEST(RunFiles, FramesAreKnownByTheirNames) {
+  EXPECT_EQ(frame_step("particles_000010.vtp"), 10U);
+  EXPECT_EQ(frame_step("environment_1000000.vtu"), 1000000U);
+  EXPECT_EQ(frame_step("surface_a_000002_000010.vtp"), 10U);
+  for (const char* other : {"particles_10.vtp", "particles_000010.vtu", "body_000010.vtp", "body__000010.vtp",
+                            "mine_000010.vtp", "particles_00001x.vtp", "environment.vtu"})
+    EXPECT_FALSE(frame_step(other)) << other;
 }
 
 }  // namespace

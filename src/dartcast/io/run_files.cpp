@@ -90,6 +90,7 @@ void write_pvd(const fs::path& path, std::span<const RecordingFrame> frames,
 
 RunTable::RunTable(fs::path path, std::string_view header) : path_(std::move(path)), file_(path_, std::ios::binary) {
   fmt::print(file_, "{}\n", header);
+  file_.flush();  // by it the folder is known as a run's, wherever that is cut off
   if (!file_)
     throw Error(fmt::format("{}: the file cannot be written; check the folder and its permissions", path_.string()));
 }
