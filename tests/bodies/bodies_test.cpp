@@ -8,6 +8,7 @@
 #include <limits>
 #include <string>
 
+#include "bodies/point_block.hpp"
 #include "dartcast/base/error.hpp"
 #include "dartcast/base/random.hpp"
 #include "dartcast/environment/audit.hpp"
@@ -28,15 +29,7 @@ Environment room(std::uint32_t cells = 6, double size = 1.0) {
 
 // A lattice of n x n x n points with this spacing, turned somehow, around a centre.
 std::vector<Vec3> block(int n, double spacing, const Vec3& centre, const Quaternion& turn = {1, {0.3, 0.2, 0.1}}) {
-  const Mat3 m = matrix(normalized(turn));
-  std::vector<Vec3> points;
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j) {
-      for (int k = 0; k < n; ++k)
-        points.push_back(centre + m * (Vec3{i - 0.5 * (n - 1), j - 0.5 * (n - 1), k - 0.5 * (n - 1)} * spacing));
-    }
-  }
-  return points;
+  return test::block(n, spacing, centre, turn);
 }
 
 BodiesOptions options(double dt, const Vec3& gravity = {}) {

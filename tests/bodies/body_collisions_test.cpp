@@ -8,6 +8,7 @@
 #include <limits>
 #include <string>
 
+#include "bodies/point_block.hpp"
 #include "dartcast/base/error.hpp"
 #include "dartcast/bodies/bodies.hpp"
 #include "dartcast/environment/audit.hpp"
@@ -38,15 +39,7 @@ BodiesOptions colliding(const Vec3& gravity, double friction) {
 }
 
 std::vector<Vec3> block(int n, const Vec3& centre, const Quaternion& turn = {}) {
-  const Mat3 m = matrix(normalized(turn));
-  std::vector<Vec3> points;
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j) {
-      for (int k = 0; k < n; ++k)
-        points.push_back(centre + m * (Vec3{i - 0.5 * (n - 1), j - 0.5 * (n - 1), k - 0.5 * (n - 1)} * spacing));
-    }
-  }
-  return points;
+  return test::block(n, spacing, centre, turn);
 }
 
 BodyOptions ball_set(const Vec3& velocity) {

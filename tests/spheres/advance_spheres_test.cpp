@@ -14,6 +14,7 @@ namespace {
 
 using test::all_walls;
 using test::clearance;
+using test::cubes;
 using test::first_of_all;
 using test::scaled;
 using test::slack_of;
@@ -27,19 +28,6 @@ const Responses& sliding() {
   static const Responses responses(Response{ResponseKind::slide, 0.0, 0.0});
   return responses;
 }
-
-MeshData box(std::uint32_t n, CellType type, double blocked_share, double jitter, std::uint64_t seed) {
-  BoxOptions options;
-  options.cells = {n, n, n};
-  options.size = {double(n), double(n), double(n)};
-  options.type = type;
-  options.blocked_share = blocked_share;
-  options.jitter = jitter;
-  options.seed = seed;
-  return generate_box(options);
-}
-
-MeshData cube(std::uint32_t n) { return box(n, CellType::hexahedron, 0.0, 0.0, 1); }
 
 struct Checked {
   int contacts = 0;
@@ -92,7 +80,7 @@ TEST(AdvanceSpheres, InBoxesOfEveryTypeAgainstAllWalls) {
   int unfinished = 0;
   for (std::size_t k = 0; k < types.size(); ++k) {
     for (const double radius : {0.01, 0.2, 0.6, 1.4}) {
-      Swarm swarm(box(6, types[k], radius > 1.0 ? 0.01 : 0.1, 0.3, k + 1), k + 5);
+      Swarm swarm(cubes(6, types[k], radius > 1.0 ? 0.01 : 0.1, 0.3, k + 1), k + 5);
       swarm.fill(static_cast<std::size_t>(std::max(2, scaled(6, 60))), radius, {0, 0, 0}, {6, 6, 6}, 0.8);
       EXPECT_GE(swarm.radii.size(), 1U);
       for (int step = 0; step < std::max(2, scaled(6, 40)); ++step) {
@@ -109,7 +97,7 @@ TEST(AdvanceSpheres, InBoxesOfEveryTypeAgainstAllWalls) {
 }
 
 TEST(AdvanceSpheres, LargerThanManyCells) {
-  Swarm swarm(box(8, CellType::hexahedron, 0.004, 0.2, 3), 2);
+  Swarm swarm(cubes(8, CellType::hexahedron, 0.004, 0.2, 3), 2);
   swarm.fill(4, 2.6, {0, 0, 0}, {8, 8, 8}, 1.0);
   swarm.fill(4, 1.9, {0, 0, 0}, {8, 8, 8}, 1.0);
   ASSERT_GE(swarm.radii.size(), 4U);
@@ -201,7 +189,7 @@ TEST(AdvanceSpheres, InADeformingBox) {
 
 // A wall goes over a sphere at rest: it is carried along in front of it.
 TEST(AdvanceSpheres, PushedByAWall) {
-  Swarm swarm(cube(4));
+  Swarm swarm(cubes(4));
   swarm.add({2.25, 2.125, 1.0}, 0.25);
   swarm.add({2.25, 2.125, 3.5}, 0.25);
   auto next = swarm.environment.next_positions();
@@ -226,7 +214,7 @@ TEST(AdvanceSpheres, PushedByAWall) {
 
 // Without a response it stays where it touched the wall, and goes along with that for the rest of the step.
 TEST(AdvanceSpheres, CarriedByAWall) {
-  Swarm swarm(cube(4));
+  Swarm swarm(cubes(4));
   swarm.add({2.25, 2.125, 1.0}, 0.25);
   auto next = swarm.environment.next_positions();
   for (std::size_t i = 0; i < next.size(); ++i) {
@@ -244,7 +232,7 @@ TEST(AdvanceSpheres, CarriedByAWall) {
 
 // A floor that tilts as it rises: the sphere ends at the distance of its radius from where it is then.
 TEST(AdvanceSpheres, CarriedByAWallThatTurns) {
-  Swarm swarm(cube(4));
+  Swarm swarm(cubes(4));
   swarm.add({2.25, 2.125, 1.0}, 0.25);
   auto next = swarm.environment.next_positions();
   for (std::size_t i = 0; i < next.size(); ++i) {
@@ -261,7 +249,7 @@ TEST(AdvanceSpheres, CarriedByAWallThatTurns) {
 
 // Several contacts of one step: times grow, and the walls met before come with each.
 TEST(AdvanceSpheres, ContactsInTheirOrder) {
-  Swarm swarm(cube(4));
+  Swarm swarm(cubes(4));
   swarm.add({2.25, 2.125, 1.0}, 0.25, {4.0, 0.0, -3.0});
   const Responses elastic(Response{ResponseKind::reflect, 1.0, 0.0});
   const SphereReport report = swarm.step(elastic);
@@ -280,7 +268,7 @@ TEST(AdvanceSpheres, ContactsInTheirOrder) {
 // No more contacts than asked for, and then the sphere is reported as stopped.
 TEST(AdvanceSpheres, ContactsAreLimited) {
   for (const bool sphere : {false, true}) {
-    Swarm swarm(cube(4));
+    Swarm swarm(cubes(4));
     swarm.add({2.25, 2.125, 1.0}, sphere ? 0.25 : 0.0);
     StepOptions options;
     options.max_contacts = 3;
@@ -300,7 +288,7 @@ TEST(AdvanceSpheres, ContactsAreLimited) {
 }
 
 TEST(AdvanceSpheres, MeetsAFaceAnEdgeAndACorner) {
-  MeshData mesh = cube(4);
+  MeshData mesh = cubes(4);
   mesh.free.assign(mesh.cell_count(), 1);
   mesh.free[1 + 4 * (1 + 4 * 1)] = 0;  // the cube [1, 2]^3
   Swarm swarm(mesh);
@@ -332,7 +320,7 @@ TEST(AdvanceSpheres, MeetsAFaceAnEdgeAndACorner) {
 }
 
 TEST(AdvanceSpheres, ComesToRestInACorner) {
-  Swarm swarm(cube(3));
+  Swarm swarm(cubes(3));
   swarm.add({1.0, 1.25, 1.5}, 0.3, {-0.05, -0.05, -0.05});
   std::size_t most = 0;
   for (int step = 0; step < 300; ++step) {
@@ -352,7 +340,7 @@ TEST(AdvanceSpheres, ComesToRestInACorner) {
 }
 
 TEST(AdvanceSpheres, SlidesAndRollsForTenThousandSteps) {
-  MeshData mesh = cube(6);
+  MeshData mesh = cubes(6);
   mesh.free.assign(mesh.cell_count(), 1);
   for (unsigned j = 0; j < 6; ++j) mesh.free[3 + 6 * j] = 0;  // a step of height 1 on the floor
   Swarm swarm(mesh);
@@ -386,7 +374,7 @@ TEST(AdvanceSpheres, SlidesAndRollsForTenThousandSteps) {
 
 // In a box that is turned no wall's plane is free of rounding; into its edges and corners, too.
 TEST(AdvanceSpheres, SlidesInATurnedBox) {
-  MeshData mesh = cube(5);
+  MeshData mesh = cubes(5);
   const double c = std::cos(0.7);
   const double s = std::sin(0.7);
   const auto turned = [&](const Vec3& x) {
@@ -412,13 +400,13 @@ TEST(AdvanceSpheres, SlidesInATurnedBox) {
       ASSERT_GE(clearance(walls, x), swarm.radii[i] - 2 * slack_of(x, swarm.radii[i])) << step << " " << i;
     }
   }
-  EXPECT_GE(contacts, static_cast<std::size_t>(steps));
+  EXPECT_GE(contacts, (test::sanitized() ? 1U : 2U) * static_cast<std::size_t>(steps));
   EXPECT_LE(contacts, 10U * static_cast<std::size_t>(steps));
 }
 
 // What rounding leaves of a slide is lifted off the wall, as for points.
 TEST(AdvanceSpheres, SlidesAreLiftedOffTheWall) {
-  Swarm swarm(cube(4));
+  Swarm swarm(cubes(4));
   swarm.add({1.25, 2.125, 0.25}, 0.25);
   const Respond nearly_along = [](const Contact&, std::span<const WallHit>, std::span<const WallHit>) -> Continuation {
     return {Vec3{1.0, 0.0, -1e-12}, true};
@@ -430,7 +418,7 @@ TEST(AdvanceSpheres, SlidesAreLiftedOffTheWall) {
 }
 
 TEST(AdvanceSpheres, TouchingExactly) {
-  Swarm swarm(cube(4));
+  Swarm swarm(cubes(4));
   swarm.add({1.0, 2.0, 0.5}, 0.5);
   const auto move = [&](const Vec3& to) {
     return swarm.stepper.advance(swarm.environment, swarm.particles, swarm.radii, std::vector<Vec3>{to});
@@ -448,7 +436,7 @@ TEST(AdvanceSpheres, TouchingExactly) {
 }
 
 TEST(AdvanceSpheres, OverlapsAreMovedOut) {
-  Swarm swarm(cube(4));
+  Swarm swarm(cubes(4));
   swarm.add({2.0, 2.0, 0.25}, 0.5);
   swarm.add({0.25, 0.25, 0.125}, 0.5);
   swarm.add({2.0, 2.0, 2.0}, 0.5);
@@ -484,7 +472,7 @@ TEST(AdvanceSpheres, WithoutRoomItStaysInTheMiddle) {
 
 // Walls that close in on a sphere: it is held in the middle, reported, and free again when they open.
 TEST(AdvanceSpheres, SqueezedBetweenWalls) {
-  Swarm swarm(cube(4));
+  Swarm swarm(cubes(4));
   swarm.add({2.0, 2.0, 1.0}, 0.75);
   const std::vector<Vec3> rest(swarm.environment.positions().begin(), swarm.environment.positions().end());
   const auto squeeze = [&](double height) {
@@ -512,7 +500,7 @@ TEST(AdvanceSpheres, SqueezedBetweenWalls) {
 
 TEST(AdvanceSpheres, OfRadiusZeroArePoints) {
   const auto run = [](bool spheres) {
-    Swarm swarm(box(5, CellType::hexahedron, 0.1, 0.3, 2), 3);
+    Swarm swarm(cubes(5, CellType::hexahedron, 0.1, 0.3, 2), 3);
     swarm.fill(40, 1e-9, {0, 0, 0}, {5, 5, 5}, 0.5);
     std::fill(swarm.radii.begin(), swarm.radii.end(), 0.0);
     std::vector<Vec3> where;
@@ -535,7 +523,7 @@ TEST(AdvanceSpheres, OfRadiusZeroArePoints) {
 // So small that its centre comes to the wall: it is a point with other words, asked once.
 TEST(AdvanceSpheres, SmallerThanRounding) {
   for (const bool response : {false, true}) {
-    Swarm swarm(cube(4));
+    Swarm swarm(cubes(4));
     swarm.add({1.25, 2.125, 0.25}, 1e-300);
     swarm.add({1.25, 2.125, 0.25}, 0.0);
     std::array<int, 2> asked{};
@@ -558,7 +546,7 @@ TEST(AdvanceSpheres, SmallerThanRounding) {
 // Points among spheres are what they are alone, to the last bit.
 TEST(AdvanceSpheres, PointsAmongSpheres) {
   const auto run = [](bool spheres) {
-    Swarm swarm(box(5, CellType::hexahedron, 0.1, 0.3, 2), 3);
+    Swarm swarm(cubes(5, CellType::hexahedron, 0.1, 0.3, 2), 3);
     swarm.fill(40, 0.2, {0, 0, 0}, {5, 5, 5}, 0.5);
     for (std::size_t i = 0; i < swarm.radii.size(); ++i)
       if (!spheres || i % 2 == 0) swarm.radii[i] = 0.0;
@@ -579,7 +567,7 @@ TEST(AdvanceSpheres, PointsAmongSpheres) {
 
 TEST(AdvanceSpheres, TheSameBitsForAnyThreads) {
   const auto run = [](unsigned threads) {
-    Swarm swarm(box(6, CellType::tetrahedron, 0.1, 0.2, 2), 3, Threads{threads});
+    Swarm swarm(cubes(6, CellType::tetrahedron, 0.1, 0.2, 2), 3, Threads{threads});
     swarm.fill(static_cast<std::size_t>(std::max(30, scaled(700, 2000))), 0.1, {0, 0, 0}, {6, 6, 6}, 0.7);
     std::vector<Vec3> where;
     for (int step = 0; step < 5; ++step) {
@@ -597,7 +585,7 @@ TEST(AdvanceSpheres, TheSameBitsForAnyThreads) {
 
 TEST(AdvanceSpheres, TheSameBitsInAnyOrder) {
   const auto run = [](bool reversed) {
-    Swarm swarm(box(5, CellType::prism, 0.1, 0.2, 2), 3);
+    Swarm swarm(cubes(5, CellType::prism, 0.1, 0.2, 2), 3);
     swarm.fill(60, 0.15, {0, 0, 0}, {5, 5, 5}, 0.7);
     std::vector<std::uint32_t> order(swarm.radii.size());
     for (std::uint32_t i = 0; i < order.size(); ++i)
@@ -639,7 +627,7 @@ TEST(AdvanceSpheres, InThePlane) {
 
 // Cells are cut, blocked and freed around spheres.
 TEST(AdvanceSpheres, AfterEdits) {
-  Swarm swarm(box(6, CellType::hexahedron, 0.05, 0.0, 2), 3);
+  Swarm swarm(cubes(6, CellType::hexahedron, 0.05, 0.0, 2), 3);
   swarm.fill(20, 0.3, {0, 0, 0}, {6, 6, 6}, 0.5);
   int contacts = 0;
   for (int step = 0; step < 12; ++step) {
@@ -656,7 +644,7 @@ TEST(AdvanceSpheres, AfterEdits) {
 }
 
 TEST(AdvanceSpheres, RefusesWhatIsNoRadius) {
-  Swarm swarm(cube(3));
+  Swarm swarm(cubes(3));
   swarm.add({1.5, 1.5, 1.5}, 0.25);
   const std::vector<Vec3> target = {{1.0, 1.0, 1.0}};
   const auto with = [&](std::vector<double> radii) {
@@ -673,7 +661,7 @@ TEST(AdvanceSpheres, RefusesWhatIsNoRadius) {
 }
 
 TEST(AdvanceSpheres, AResponseThatThrowsChangesNothing) {
-  Swarm swarm(cube(3));
+  Swarm swarm(cubes(3));
   swarm.add({1.5, 1.5, 1.5}, 0.25);
   swarm.add({0.5, 1.5, 1.5}, 0.25);
   const Respond bad = [](const Contact&, std::span<const WallHit>, std::span<const WallHit>) -> Continuation {

@@ -17,6 +17,19 @@
 
 namespace dartcast::test {
 
+/// n x n x n unit cubes, or cells cut from them.
+inline MeshData cubes(std::uint32_t n, CellType type = CellType::hexahedron, double blocked_share = 0.0,
+                      double jitter = 0.0, std::uint64_t seed = 1) {
+  BoxOptions options;
+  options.cells = {n, n, n};
+  options.size = {double(n), double(n), double(n)};
+  options.type = type;
+  options.blocked_share = blocked_share;
+  options.jitter = jitter;
+  options.seed = seed;
+  return generate_box(options);
+}
+
 /// All fan triangles of wall faces, seen from free cells.
 inline std::vector<MovingTriangle> all_walls(const Complex& complex, bool moving) {
   std::vector<MovingTriangle> walls;
