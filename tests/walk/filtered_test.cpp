@@ -27,6 +27,7 @@ struct Tally {
   std::atomic<std::uint64_t> taken{0};
   std::atomic<std::uint64_t> moved_on{0};     // taken into another simplex
   std::atomic<std::uint64_t> handed_over{0};  // taken up to a wall
+  std::atomic<std::uint64_t> remembered{0};   // taken, and coordinates are kept for the next
 };
 
 // A scene whose particles are stepped both ways.
@@ -55,15 +56,17 @@ class BothWays {
     if (moves_) move();
     std::vector<Vec3> targets;
     for (const State& s : states_) targets.push_back(target(s));
-    const Filtered portable = filtered(targets, detail::InstructionSet::portable, {});
-    const Filtered best = filtered(targets, detail::best_instruction_set(), trails_);
+    const Filtered portable = filtered(targets, detail::InstructionSet::portable, moves_, {});
+    const Filtered best = filtered(targets, detail::best_instruction_set(), true, memos_);
     if (portable.taken != best.taken) return "instruction sets leave different steps";
+    if (!moves_ && !same_memos(best, filtered(targets, detail::InstructionSet::portable, true, memos_)))
+      return "instruction sets keep different coordinates";
     const StepOptions options;
     const Respond none;
     const Stepper stepper(complex_, moves_, options, none);
     Counters counters;  // of the steps taken
     std::vector<State> next = states_;
-    std::vector<detail::Trail> next_trails;
+    std::vector<detail::Memo> next_memos;
     for (std::size_t i = 0; i < particles; ++i) {
       Weights weights{};
       ContactList contacts;
@@ -89,18 +92,20 @@ class BothWays {
       if (taken && (result.held || !contacts.contacts.empty())) return fmt::format("particle {}: held or stopped", i);
       if (best.vertices[i] != detail::vertex_numbers(complex_, expected.at()))
         return fmt::format("particle {}: other vertices", i);
-      const detail::Trail trail =
-          detail::trail_of(complex_.positions(), detail::vertex_numbers(complex_, next[i].at()), next[i].position);
-      if (moves_ && taken && (!equal(best.trails[i], trail) || !equal(portable.trails[i], trail)))
+      const detail::Memo memo =
+          detail::memo_of(moves_ ? detail::MemoKind::trail : detail::MemoKind::coordinates, complex_.positions(),
+                          detail::vertex_numbers(complex_, next[i].at()), next[i].position);
+      if (moves_ && taken && (!equal(best.memos[i], memo) || !equal(portable.memos[i], memo)))
         return fmt::format("particle {}: another trail", i);
-      if (moves_) next_trails.push_back(trail);
+      if (!moves_ && taken && !detail::is_unknown(best.memos[i])) tally.remembered += 1;
+      next_memos.push_back(taken ? best.memos[i] : memo);
       if (taken) counters += is_put_back(i) && next[i].at() == states_[i].at() ? counts_of_a_kept_forecast() : own;
       tally.steps += 1;
       tally.taken += taken ? 1 : 0;
       tally.moved_on += taken && next[i].at() != states_[i].at() ? 1 : 0;
     }
     states_ = next;
-    trails_ = next_trails;
+    memos_ = random_.below(8) == 0 ? std::vector<detail::Memo>{} : next_memos;
     return same(counters, best.counters) && same(counters, portable.counters) ? "" : "other counts";
   }
 
@@ -108,22 +113,24 @@ class BothWays {
   struct Filtered {
     std::vector<State> states;
     std::vector<detail::VertexNumbers> vertices;
-    std::vector<detail::Trail> trails;
+    std::vector<detail::Memo> memos;
     std::vector<detail::Taken> taken;
     std::vector<Begun> begun;
     Counters counters;
   };
 
-  // With the trails of the step before, or none.
-  Filtered filtered(std::span<const Vec3> targets, detail::InstructionSet set,
-                    const std::vector<detail::Trail>& trails) const {
-    Filtered f{states_, {}, trails, std::vector<detail::Taken>(particles), {}, {}};
-    f.trails.resize(moves_ ? particles : 0);
+  // With memos or without, those of the step before or new ones.
+  Filtered filtered(std::span<const Vec3> targets, detail::InstructionSet set, bool with_memos,
+                    const std::vector<detail::Memo>& memos) const {
+    Filtered f{states_, {}, memos, std::vector<detail::Taken>(particles), {}, {}};
+    f.memos.resize(with_memos ? particles : 0);
     for (const State& s : states_) f.vertices.push_back(detail::vertex_numbers(complex_, s.at()));
-    detail::step_filtered({&complex_, moves_, !trails.empty(), StepOptions{}.tolerance},
-                          {f.states, f.vertices, f.trails, targets, f.taken, f.begun}, f.counters, set);
+    detail::step_filtered({&complex_, moves_, !memos.empty(), StepOptions{}.tolerance},
+                          {f.states, f.vertices, f.memos, targets, f.taken, f.begun}, f.counters, set);
     return f;
   }
+
+  static bool same_memos(const Filtered& a, const Filtered& b) { return std::ranges::equal(a.memos, b.memos, equal); }
 
   // Whether riding along rounds the particle out of its simplex. The step of one particle then puts it back, maybe into
   // another simplex, and walks from there; the batch knows that nothing is in the way within the simplex.
@@ -154,7 +161,7 @@ class BothWays {
            std::ranges::equal(a.walls, b.walls, equal_walls);
   }
 
-  static bool equal(const detail::Trail& a, const detail::Trail& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+  static bool equal(const detail::Memo& a, const detail::Memo& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
   static bool same(const Counters& a, const Counters& b) {
     return a.particle_steps == b.particle_steps && a.orientation.tests == b.orientation.tests &&
@@ -218,7 +225,7 @@ class BothWays {
   Random random_;
   bool moves_;
   std::vector<State> states_;
-  std::vector<detail::Trail> trails_;  // of these, once vertices have moved
+  std::vector<detail::Memo> memos_;  // of these, once a step has been taken
 };
 
 class FilteredBatch : public ::testing::TestWithParam<std::tuple<int, bool>> {};
@@ -247,6 +254,7 @@ TEST_P(FilteredBatch, TakesStepsAsOneParticleDoes) {
   EXPECT_GT(tally.taken, tally.steps / (moves ? 8 : 4));
   EXPECT_GT(tally.moved_on, tally.steps / 50);
   EXPECT_GT(tally.handed_over, tally.steps / 100);
+  EXPECT_TRUE(moves || tally.remembered > tally.steps / 4);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, FilteredBatch,

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <utility>
 
 #include "dartcast/base/error.hpp"
@@ -79,13 +78,13 @@ void Particles::remove(std::span<const std::uint8_t> marks) {
     if (marks[i] != 0) continue;
     states_[kept] = states_[i];
     weights_[kept] = weights_[i];
-    if (!trails_.empty()) trails_[kept] = trails_[i];
+    if (!memos_.empty()) memos_[kept] = memos_[i];
     vertices_[kept++] = vertices_[i];
   }
   states_.resize(kept);
   weights_.resize(kept);
   vertices_.resize(kept);
-  if (!trails_.empty()) trails_.resize(kept);
+  if (!memos_.empty()) memos_.resize(kept);
   residents_.reset();
 }
 
@@ -98,17 +97,17 @@ void Particles::reorder(std::span<const std::uint32_t> order) {
   std::vector<State> states(size());
   std::vector<Weights> weights(size());
   std::vector<detail::VertexNumbers> vertices(size());
-  std::vector<detail::Trail> trails(trails_.size());
+  std::vector<detail::Memo> memos(memos_.size());
   for (std::size_t i = 0; i < size(); ++i) {
     states[i] = states_[order[i]];
     weights[i] = weights_[order[i]];
     vertices[i] = vertices_[order[i]];
-    if (!trails_.empty()) trails[i] = trails_[order[i]];
+    if (!memos_.empty()) memos[i] = memos_[order[i]];
   }
   states_ = std::move(states);
   weights_ = std::move(weights);
   vertices_ = std::move(vertices);
-  trails_ = std::move(trails);
+  memos_ = std::move(memos);
   residents_.reset();
 }
 
@@ -118,8 +117,9 @@ Particles Particles::selected(std::span<const std::uint32_t> which) const {
     some.states_.push_back(states_[i]);
     some.weights_.push_back(weights_[i]);
     some.vertices_.push_back(vertices_[i]);
-    if (!trails_.empty()) some.trails_.push_back(trails_[i]);
+    if (!memos_.empty()) some.memos_.push_back(memos_[i]);
   }
+  some.memo_kind_ = memo_kind_;
   some.moves_ = moves_;
   some.edits_ = edits_;
   return some;
@@ -132,10 +132,9 @@ void Particles::replace(std::span<const std::uint32_t> which, const Particles& b
     states_[i] = by.states_[k];
     weights_[i] = by.weights_[k];
     vertices_[i] = by.vertices_[k];
-    if (trails_.empty()) continue;
-    if (!by.trails_.empty()) trails_[i] = by.trails_[k];
-    // A trail that proves nothing: the next step reads the old positions instead.
-    if (by.trails_.empty()) trails_[i].determinants.fill(std::numeric_limits<double>::quiet_NaN());
+    if (memos_.empty()) continue;
+    if (memo_kind_ == by.memo_kind_) memos_[i] = by.memos_[k];
+    if (memo_kind_ != by.memo_kind_) memos_[i] = detail::unknown_memo();
   }
   residents_.reset();
 }
@@ -193,8 +192,8 @@ void Environment::add_to(Particles& particles, SimplexId simplex, const Vec3& po
   particles.states_.emplace_back().put(simplex, position);
   particles.weights_.emplace_back();
   const auto& vertices = particles.vertices_.emplace_back(detail::vertex_numbers(complex_, simplex));
-  if (!particles.trails_.empty())
-    particles.trails_.push_back(detail::trail_of(complex_.positions(), vertices, position));
+  if (particles.memo_kind_ != detail::MemoKind::none)
+    particles.memos_.push_back(detail::memo_of(particles.memo_kind_, complex_.positions(), vertices, position));
 }
 
 bool Environment::add(Particles& particles, SimplexId simplex, const Vec3& position) {
@@ -308,9 +307,9 @@ void Environment::step_chunk(const Steps& steps, std::size_t begin, std::size_t 
   std::vector<Begun> begun;
   begun.reserve(size);
   const std::span<detail::VertexNumbers> vertices = std::span(steps.particles.vertices_).subspan(begin, size);
-  std::span<detail::Trail> trails = steps.particles.trails_;
-  if (!trails.empty()) trails = trails.subspan(begin, size);
-  const detail::FilteredSteps batch{states, vertices, trails, targets, std::span(taken).first(size), begun};
+  std::span<detail::Memo> memos = steps.particles.memos_;
+  if (!memos.empty()) memos = memos.subspan(begin, size);
+  const detail::FilteredSteps batch{states, vertices, memos, targets, std::span(taken).first(size), begun};
   if (map().dimension() == 2)
     detail::step_plane(steps.filtered, batch, part.counters);
   else
@@ -322,7 +321,8 @@ void Environment::step_chunk(const Steps& steps, std::size_t begin, std::size_t 
         steps.stepper.step(particle, states[i], steps.particles.weights_[particle], targets[i], part.contacts,
                            part.counters, taken[i] == detail::taken_nothing ? nullptr : &begun[taken[i]]);
     vertices[i] = detail::vertex_numbers(complex_, states[i].at());
-    if (!trails.empty()) trails[i] = detail::trail_of(complex_.positions(), vertices[i], states[i].position);
+    if (!memos.empty())
+      memos[i] = detail::memo_of(steps.particles.memo_kind_, complex_.positions(), vertices[i], states[i].position);
     if (result.held) part.held.push_back({particle, result.invalid_cell});
     if (result.stopped) part.stopped.push_back({particle, result.unused});
   }
@@ -333,20 +333,30 @@ void Environment::step_all(const Steps& steps, std::vector<StepReport>& parts) c
                [&](std::size_t begin, std::size_t end) { step_chunk(steps, begin, end, parts[begin / chunk]); });
 }
 
+// Coordinates are made from the second step in a row in which nothing has moved.
+detail::MemoKind Environment::memo_kind(const Particles& particles, bool moved) const {
+  if (map().dimension() == 2) return detail::MemoKind::none;
+  if (moved) return detail::MemoKind::trail;
+  return particles.stood_still_ ? detail::MemoKind::coordinates : detail::MemoKind::none;
+}
+
 StepReport Environment::advance(Particles& particles, std::span<const Vec3> targets, const Respond& respond,
                                 const StepOptions& options) {
   check_targets(particles, targets);
   check_followed(particles, options, "advance");
   const bool moved = particles.moves_ != moves_;
-  const bool trails_match = moved && particles.trails_.size() == particles.size();
+  const detail::MemoKind kind = memo_kind(particles, moved);
+  const bool memos_match = kind == particles.memo_kind_;
   const Steps steps{particles,
                     targets,
                     Stepper(complex_, moved, options, respond),
-                    {&complex_, moved, trails_match, options.tolerance}};
+                    {&complex_, moved, memos_match, options.tolerance}};
   std::vector<StepReport> parts(chunk_count(particles.size(), chunk));
   particles.residents_.reset();
   const Particles before = respond ? particles : Particles{};  // a response is the caller's code: it may throw
-  particles.trails_.resize(moved && map().dimension() == 3 ? particles.size() : 0);
+  particles.memo_kind_ = kind;
+  particles.memos_.resize(kind == detail::MemoKind::none ? 0 : particles.size());
+  particles.stood_still_ = !moved;
   if (respond) {
     try {
       step_all(steps, parts);

@@ -51,8 +51,10 @@ class Particles {
   std::vector<State> states_;
   std::vector<Weights> weights_;
   std::vector<detail::VertexNumbers> vertices_;
-  std::vector<detail::Trail> trails_;  // of these states; empty where vertices have not moved
-  std::uint64_t moves_ = 0;            // of the environment, that these states have followed
+  detail::MemoKind memo_kind_ = detail::MemoKind::none;
+  std::vector<detail::Memo> memos_;  // of these states, where there is a kind
+  bool stood_still_ = false;         // the vertices, at the last step
+  std::uint64_t moves_ = 0;          // of the environment, that these states have followed
   std::uint64_t edits_ = 0;
   std::optional<detail::Residents> residents_;  // of these states; none where they have changed since
 };
@@ -198,6 +200,7 @@ class Environment {
   void check_followed(const Particles& particles, const StepOptions& options, const char* call) const;
   void add_to(Particles& particles, SimplexId simplex, const Vec3& position) const;
   struct Steps;
+  [[nodiscard]] detail::MemoKind memo_kind(const Particles& particles, bool moved) const;
   void step_chunk(const Steps& steps, std::size_t begin, std::size_t end, StepReport& part) const;
   void step_all(const Steps& steps, std::vector<StepReport>& parts) const;
 

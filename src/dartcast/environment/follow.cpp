@@ -140,8 +140,9 @@ class Following {
     if (is_removed(s.cell)) return;  // it is absorbed
     particles_.residents_->add(i, s);
     particles_.vertices_[i] = detail::vertex_numbers(complex_, s.at());
-    if (!particles_.trails_.empty())
-      particles_.trails_[i] = detail::trail_of(complex_.positions(), particles_.vertices_[i], s.position);
+    if (particles_.memo_kind_ != detail::MemoKind::none)
+      particles_.memos_[i] =
+          detail::memo_of(particles_.memo_kind_, complex_.positions(), particles_.vertices_[i], s.position);
   }
 
   void remove_absorbed() {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "dartcast/walk/coordinates.hpp"
 #include "dartcast/walk/ride.hpp"
 
 #if defined(__x86_64__)
@@ -51,12 +52,18 @@ inline void store_where(bool condition, const Quad& row, Vec3& x) {
   if (condition) x = {row[0], row[1], row[2]};
 }
 
+inline Quad widened(const Floats& x) { return __builtin_convertvector(x, Quad); }
+inline Floats narrowed(const Quad& x) { return __builtin_convertvector(x, Floats); }
+
 #define DARTCAST_TARGET
 #include "dartcast/walk/filtered_kernel.hpp"
 #undef DARTCAST_TARGET
 
 void step(const FilteredScene& scene, const FilteredSteps& steps, Counters& counters) {
-  Batch(scene, steps, counters).run(scene.complex->simplex_count());
+  const std::uint64_t most_rounds = scene.complex->simplex_count();
+  if (scene.moved) return Batch<MemoKind::trail>(scene, steps, counters).run(most_rounds);
+  if (steps.memos.empty()) return Batch<MemoKind::none>(scene, steps, counters).run(most_rounds);
+  Batch<MemoKind::coordinates>(scene, steps, counters).run(most_rounds);
 }
 
 }  // namespace portable
@@ -70,6 +77,10 @@ DARTCAST_TARGET inline unsigned lanes_set(const Mask& m) {
   return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(m)));
 }
 
+// The compiler makes two halves of __builtin_convertvector.
+DARTCAST_TARGET inline Quad widened(const Floats& x) { return _mm256_cvtps_pd(x); }
+DARTCAST_TARGET inline Floats narrowed(const Quad& x) { return _mm256_cvtpd_ps(x); }
+
 DARTCAST_TARGET inline Quad load_row(const Vec3& x) { return _mm256_maskload_pd(&x.x, __m256i{-1, -1, -1, 0}); }
 DARTCAST_TARGET inline void store_where(bool condition, const Quad& row, Vec3& x) {
   const long long all = condition ? -1 : 0;
@@ -79,7 +90,10 @@ DARTCAST_TARGET inline void store_where(bool condition, const Quad& row, Vec3& x
 #include "dartcast/walk/filtered_kernel.hpp"
 
 DARTCAST_TARGET void step(const FilteredScene& scene, const FilteredSteps& steps, Counters& counters) {
-  Batch(scene, steps, counters).run(scene.complex->simplex_count());
+  const std::uint64_t most_rounds = scene.complex->simplex_count();
+  if (scene.moved) return Batch<MemoKind::trail>(scene, steps, counters).run(most_rounds);
+  if (steps.memos.empty()) return Batch<MemoKind::none>(scene, steps, counters).run(most_rounds);
+  Batch<MemoKind::coordinates>(scene, steps, counters).run(most_rounds);
 }
 
 #undef DARTCAST_TARGET
@@ -89,12 +103,13 @@ DARTCAST_TARGET void step(const FilteredScene& scene, const FilteredSteps& steps
 
 }  // namespace
 
-Trail trail_of(std::span<const Vec3> positions, const VertexNumbers& vertices, const Vec3& p) {
+Memo memo_of(MemoKind kind, std::span<const Vec3> positions, const VertexNumbers& vertices, const Vec3& p) {
+  if (kind != MemoKind::trail) return unknown_memo();
   portable::Lanes relative;
   const portable::FilteredDeterminants d(portable::Rows(positions.data(), vertices), portable::load_row(p), relative);
-  Trail trail;
-  portable::leave_trail(relative, d, trail);
-  return trail;
+  Memo memo;
+  portable::leave_trail(relative, d, memo);
+  return memo;
 }
 
 void step_filtered(const FilteredScene& scene, const FilteredSteps& steps, Counters& counters,

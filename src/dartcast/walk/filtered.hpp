@@ -15,6 +15,7 @@
 #include "dartcast/base/instruction_set.hpp"
 #include "dartcast/geometry/complex.hpp"
 #include "dartcast/walk/counters.hpp"
+#include "dartcast/walk/memo.hpp"
 #include "dartcast/walk/state.hpp"
 #include "dartcast/walk/step.hpp"
 
@@ -25,9 +26,9 @@ inline constexpr std::size_t filtered_batch = 1024;
 
 struct FilteredScene {
   const Complex* complex = nullptr;
-  bool moved = false;         ///< as for Stepper
-  bool trails_match = false;  ///< moved: the trails are those of the states, before the move
-  double tolerance = 0.0;     ///< as in StepOptions
+  bool moved = false;        ///< as for Stepper
+  bool memos_match = false;  ///< they are of the states; trails: before the move
+  double tolerance = 0.0;    ///< as in StepOptions
 };
 
 /// The numbers of the vertices of the simplex that a particle is in: kept beside its state, so that a step that ends in
@@ -39,15 +40,8 @@ inline VertexNumbers vertex_numbers(const Complex& complex, SimplexId s) {
   return {v[0].value, v[1].value, v[2].value, v[3].value};
 }
 
-/// What the next step among moving vertices reads of a particle's simplex as it was. Kept beside the state: the old
-/// positions themselves, long since driven out of the caches, need not be read again.
-struct Trail {
-  std::array<float, 4> x, y, z;        ///< of the corners relative to the particle, rounded
-  std::array<double, 4> determinants;  ///< of the particle; NaN where they don't prove its coordinates
-};
-
-/// The trail of a particle at p. `positions`: of all vertices.
-Trail trail_of(std::span<const Vec3> positions, const VertexNumbers& vertices, const Vec3& p);
+/// What is kept of a particle at p: a trail; coordinates are left to the next step. `positions`: of all vertices.
+Memo memo_of(MemoKind kind, std::span<const Vec3> positions, const VertexNumbers& vertices, const Vec3& p);
 
 /// What was done of a step: all, nothing, or, where it has come to its first wall, the number of its Begun; its state
 /// is as it was, then.
@@ -59,7 +53,8 @@ inline constexpr Taken taken_nothing = 0xfffe;
 struct FilteredSteps {
   std::span<State> states;
   std::span<VertexNumbers> vertices;  ///< of each state
-  std::span<Trail> trails;            ///< moved: in where they match; out for each step taken
+  std::span<Memo> memos;  ///< moved: trails; else coordinates, or empty: none are kept. In where they match; out for
+                          ///< each step taken
   std::span<const Vec3> targets;
   std::span<Taken> taken;     ///< out
   std::vector<Begun>& begun;  ///< out; empty before

@@ -1,0 +1,151 @@
+// What particles keep of their simplices never changes where they go: whatever happens to a set, its next step is that
+// of a set which keeps nothing.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "dartcast/base/random.hpp"
+#include "dartcast/environment/environment.hpp"
+#include "dartcast/map/edit.hpp"
+#include "dartcast/mesh/generate_box.hpp"
+#include "environment/particle_checks.hpp"
+#include "tier.hpp"
+
+namespace dartcast::test {
+namespace {
+
+class Mixed {
+ public:
+  explicit Mixed(std::uint64_t seed) : environment_(mesh(), Threads{2}), random_(seed, 17) { add(60); }
+
+  // Something happens, then a step; whether it is that of particles that keep nothing.
+  ::testing::AssertionResult step() {
+    happen();
+    Particles fresh = environment_.restored(set_.states(), weights());
+    if (random_.below(4) == 0) move();
+    const std::vector<Vec3> targets = any_targets(set_);
+    const StepReport kept = environment_.advance(set_, targets);
+    const StepReport without = environment_.advance(fresh, targets);
+    contacts += kept.contacts.contacts.size();
+    if (!std::ranges::equal(kept.contacts.contacts, without.contacts.contacts, equal))
+      return ::testing::AssertionFailure() << "other contacts";
+    if (kept.counters.orientation.tests != without.counters.orientation.tests)
+      return ::testing::AssertionFailure() << "other tests";
+    for (std::size_t i = 0; i < set_.size(); ++i) {
+      if (!same_bits(set_[i], fresh[i])) return ::testing::AssertionFailure() << "particle " << i;
+    }
+    return ::testing::AssertionSuccess();
+  }
+
+  std::size_t contacts = 0;
+  std::size_t edits = 0;
+
+ private:
+  static MeshData mesh() {
+    BoxOptions box;
+    box.cells = {5, 5, 5};
+    box.size = {5, 5, 5};
+    box.blocked_share = 0.1;
+    return generate_box(box);
+  }
+
+  static bool equal(const Contact& a, const Contact& b) {
+    return a.particle == b.particle && a.kind == b.kind && a.dart == b.dart && a.point == b.point &&
+           a.time_of_impact == b.time_of_impact && a.wall_displacement == b.wall_displacement && a.unused == b.unused;
+  }
+
+  [[nodiscard]] std::vector<Weights> weights() const {
+    std::vector<Weights> weights;
+    for (std::size_t i = 0; i < set_.size(); ++i) weights.push_back(set_.held_weights(i));
+    return weights;
+  }
+
+  Vec3 any_vector(double length) {
+    return Vec3{random_.uniform(-1, 1), random_.uniform(-1, 1), random_.uniform(-1, 1)} * length;
+  }
+
+  std::vector<Vec3> any_targets(const Particles& set) {
+    std::vector<Vec3> targets;
+    for (const State& s : set.states()) targets.push_back(s.position + any_vector(0.2));
+    return targets;
+  }
+
+  void happen() {
+    const std::uint32_t kind = random_.below(12);
+    if (kind == 0) add(3);
+    if (kind == 1) remove();
+    if (kind == 2) reorder();
+    if (kind == 3 || kind == 4) step_some();
+    if (kind == 5) edit();
+  }
+
+  void add(std::size_t count) {
+    std::vector<Vec3> points;
+    while (points.size() < count) points.push_back(Vec3{2.5, 2.5, 2.5} + any_vector(2.4));
+    environment_.add(set_, points);
+  }
+
+  void remove() {
+    std::vector<std::uint8_t> marks(set_.size());
+    for (std::uint8_t& m : marks) m = random_.below(20) == 0 ? 1 : 0;
+    set_.remove(marks);
+  }
+
+  void reorder() {
+    std::vector<std::uint32_t> order(set_.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::rotate(order.begin(), order.begin() + 1, order.end());
+    set_.reorder(order);
+  }
+
+  // As what moves particles in rounds does.
+  void step_some() {
+    std::vector<std::uint32_t> which;
+    for (std::uint32_t i = 0; i < set_.size(); ++i) {
+      if (random_.below(3) == 0) which.push_back(i);
+    }
+    Particles some = set_.selected(which);
+    for (std::uint32_t round = 0; round < random_.below(3); ++round) environment_.advance(some, any_targets(some));
+    set_.replace(which, some);
+  }
+
+  void edit() {
+    const std::vector<Cell> cells = environment_.map().cells();
+    const Cell c = cells[random_.below(static_cast<std::uint32_t>(cells.size()))];
+    const std::size_t darts = environment_.map().shape(c).dart_count();
+    environment_.edit([&](ComplexEdit& e) {
+      split_edge(e.topology(), {c, static_cast<std::uint16_t>(random_.below(static_cast<std::uint32_t>(darts)))});
+    });
+    environment_.follow(set_);
+    ++edits;
+  }
+
+  void move() {
+    const std::span<Vec3> next = environment_.next_positions();
+    const Vec3 all = any_vector(0.1);
+    const double own = random_.below(2) == 0 ? 0.03 : 1e-6;
+    for (std::size_t i = 0; i < next.size(); ++i) next[i] = environment_.positions()[i] + all + any_vector(own);
+    environment_.move();
+  }
+
+  Environment environment_;
+  Random random_;
+  Particles set_;
+};
+
+TEST(Memos, NeverChangeAStep) {
+  std::size_t contacts = 0;
+  std::size_t edits = 0;
+  for (int seed = 0; seed < scaled(20, 1000); ++seed) {
+    Mixed mixed(static_cast<std::uint64_t>(seed));
+    for (int i = 0; i < 60; ++i) ASSERT_TRUE(mixed.step()) << "seed " << seed << ", step " << i;
+    contacts += mixed.contacts;
+    edits += mixed.edits;
+  }
+  EXPECT_GT(contacts, static_cast<std::size_t>(std::max(1, scaled(1000, 50000))));
+  EXPECT_GT(edits, static_cast<std::size_t>(std::max(1, scaled(40, 2000))));
+}
+
+}  // namespace
+}  // namespace dartcast::test
