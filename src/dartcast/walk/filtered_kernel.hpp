@@ -1,6 +1,7 @@
 // The loop of walk/filtered.cpp, compiled there once per instruction set: no include guard, and not to be included
 // elsewhere. Defined before: DARTCAST_TARGET, the attribute of every function, and lanes_set(Mask).
-// clang-format off: in this order
+// In this order:
+// clang-format off
 #include "dartcast/walk/filtered_simplex.hpp"
 #include "dartcast/walk/filtered_memo.hpp"
 // clang-format on
