@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <utility>
 
 #include "dartcast/base/error.hpp"
@@ -38,6 +39,17 @@ MeshData inspected(MeshData mesh) {
     throw InvalidMesh(fmt::format("{}: {}, the first: {}", f.message, f.count, fmt::join(f.first, ", ")));
   }
   return mesh;
+}
+
+// The next step, from i on, that was not taken as a whole. Most were: four are looked at together.
+std::size_t next_left(std::span<const detail::Taken> taken, std::size_t i) {
+  static_assert(sizeof(detail::Taken) == 2 && detail::taken_all == 0xffff);
+  for (std::uint64_t four = 0; i + 4 <= taken.size(); i += 4) {
+    std::memcpy(&four, &taken[i], sizeof four);
+    if (four != ~std::uint64_t{0}) break;
+  }
+  while (i < taken.size() && taken[i] == detail::taken_all) ++i;
+  return i;
 }
 
 bool names_simplex(const Map& map, SimplexId s) {
@@ -314,8 +326,9 @@ void Environment::step_chunk(const Steps& steps, std::size_t begin, std::size_t 
     detail::step_plane(steps.filtered, batch, part.counters);
   else
     detail::step_filtered(steps.filtered, batch, part.counters);
-  for (std::size_t i = 0; i < size; ++i) {
-    if (taken[i] == detail::taken_all) continue;
+  part.contacts.contacts.reserve(begun.size());
+  part.contacts.walls.reserve(begun.size());
+  for (std::size_t i = next_left(batch.taken, 0); i < size; i = next_left(batch.taken, i + 1)) {
     const auto particle = static_cast<std::uint32_t>(begin + i);
     const StepResult result =
         steps.stepper.step(particle, states[i], steps.particles.weights_[particle], targets[i], part.contacts,
