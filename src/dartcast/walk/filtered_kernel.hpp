@@ -155,14 +155,9 @@ class Batch {
       const Quad p = load_row(states_[i].position);
       Lanes relative;
       const FilteredDeterminants d(Rows(positions, vertices_[i]), p, relative);
-      leave_memo(relative, d, p, memos_[i]);
+      if constexpr (moved) leave_trail(relative, d, memos_[i]);
+      if constexpr (kind == MemoKind::coordinates) leave_coordinates(relative, d, p, memos_[i]);
     }
-  }
-
-  DARTCAST_TARGET static void leave_memo(const Lanes& relative, const FilteredDeterminants& d, const Quad& p,
-                                         Memo& memo) {
-    if constexpr (kind == MemoKind::trail) leave_trail(relative, d, memo);
-    if constexpr (kind == MemoKind::coordinates) leave_coordinates(relative, d, p, memo);
   }
 
   // Of all the block: who goes on, or is left, gets another one later.
@@ -406,10 +401,19 @@ class Batch {
     counters_.orientation.exact += visit.exact;
     ++counters_.histogram[std::min<std::size_t>(visit.tests, Counters::histogram_size - 1)];
     const bool kept = visit.place == no_facet;
-    if (moved || !kept || is_unknown(memos_[visit.particle]))
-      leave_memo(relative_[k], determinants_[k], load_row(s.position), memos_[visit.particle]);
+    if constexpr (moved) leave_trail(relative_[k], determinants_[k], memos_[visit.particle]);
+    if constexpr (kind == MemoKind::coordinates) keep_coordinates(visit, k, kept);
     counters_.forecast_kept += kept ? 1 : 0;
     if (moved && !kept) counters_.updated_by_deformation += left_behind_[visit.particle] ? 1 : 0;
+  }
+
+  // Of the simplex come to; but who passes many in a step is likely to leave that one in the next, too.
+  DARTCAST_TARGET void keep_coordinates(const Visit& visit, std::size_t k, bool kept) {
+    constexpr std::uint16_t few_tests = 13;  // three simplices
+    Memo& memo = memos_[visit.particle];
+    if (kept && !is_unknown(memo)) return;
+    if (visit.tests > few_tests) return store_four(four(unknown), memo.w);
+    leave_coordinates(relative_[k], determinants_[k], load_row(targets_[visit.particle]), memo);
   }
 
   const Map& map_;
