@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dartcast/bodies/incident_walls.hpp"
+
 namespace dartcast {
 
 namespace {
@@ -11,49 +13,29 @@ namespace {
 // bounce.
 constexpr double resting_steps = 2.0;
 
-struct Surface {
-  double restitution;
-  double friction;
-};
-
-const WallHit* wall_entered(const Vec3& v, std::span<const WallHit> walls) {
-  const WallHit* worst = nullptr;
-  double least = 0.0;
-  for (const WallHit& wall : walls) {
-    const double along = dot(v, wall.normal);
-    if (along >= least) continue;
-    least = along;
-    worst = &wall;
-  }
-  return worst;
+bool enters(const Vec3& v, std::span<const WallHit> walls) {
+  return std::any_of(walls.begin(), walls.end(), [&](const WallHit& w) { return dot(v, w.normal) < 0.0; });
 }
 
-// Every wall that v points into, the most opposed first, takes its impulse: the normal part turns round or ends, the
-// tangential part loses what Coulomb's law says. Where the walls will not be satisfied so, v runs along them.
+// Impacts on all walls at once, until v points into none: one may point it into another. Where they do not end, v runs
+// along the walls.
 template <class SurfaceOf>
 Vec3 answered(const Vec3& v, std::span<const WallHit> walls, const SurfaceOf& surface_of) {
   Vec3 result = v;
   for (std::size_t pass = 0; pass < 2 * walls.size(); ++pass) {
-    const WallHit* wall = wall_entered(result, walls);
-    if (wall == nullptr) return result;
-    const double into = -dot(result, wall->normal);
-    const Surface surface = surface_of(*wall, into);
-    const Vec3 tangential = result + wall->normal * into;
-    const double speed = norm(tangential);
-    const double lost = surface.friction * (1.0 + surface.restitution) * into;
-    const double kept = speed > lost ? 1.0 - lost / speed : 0.0;
-    result = tangential * kept + wall->normal * (surface.restitution * into);
+    if (!enters(result, walls)) return result;
+    result = after_impact(result, walls, surface_of);
   }
-  return wall_entered(result, walls) == nullptr ? result : slid(result, walls, {});
+  return held_back(result, walls).velocity;
 }
 
 // Along the walls, with friction, and not into those met earlier in the step.
 Vec3 along_walls(const Pass& pass, const Vec3& v, std::span<const WallHit> walls, std::span<const WallHit> earlier) {
   const Vec3 result = answered(v, walls, [&](const WallHit& wall, double) {
     const Response& r = pass.responses->of(wall.patch);
-    return Surface{0.0, r.kind == ResponseKind::slide ? 0.0 : r.friction};
+    return WallSurface{0.0, r.kind == ResponseKind::slide ? 0.0 : r.friction};
   });
-  return wall_entered(result, earlier) == nullptr ? result : slid(v, walls, earlier);
+  return enters(result, earlier) ? slid(v, walls, earlier) : result;
 }
 
 // Whether the particle ends here, by its patch's answer.
@@ -94,9 +76,9 @@ struct Meeting {
     const double resting = resting_steps * pass.dt * norm(acceleration(contact.point, contact.time_of_impact));
     return answered(relative, walls, [&](const WallHit& wall, double into) {
       const Response& r = pass.responses->of(wall.patch);
-      if (r.kind == ResponseKind::slide) return Surface{0.0, 0.0};
+      if (r.kind == ResponseKind::slide) return WallSurface{0.0, 0.0};
       const bool slides = into <= resting || pass.on[contact.particle].has(wall.face);
-      return Surface{slides ? 0.0 : r.restitution, r.friction};
+      return WallSurface{slides ? 0.0 : r.restitution, r.friction};
     });
   }
 

@@ -1,0 +1,192 @@
+// Walls that meet at edges and vertices, and what they make of a velocity.
+#include "dartcast/bodies/incident_walls.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "dartcast/base/random.hpp"
+#include "dartcast/bodies/body_contact.hpp"
+
+namespace dartcast {
+namespace {
+
+Vec3 direction(Random& random) {
+  while (true) {
+    const Vec3 v = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+    if (norm(v) > 0.1 && norm(v) < 1.0) return v * (1.0 / norm(v));
+  }
+}
+
+std::vector<WallHit> walls_of(const std::vector<Vec3>& normals) {
+  std::vector<WallHit> walls;
+  for (const Vec3& n : normals) {
+    walls.emplace_back();
+    walls.back().normal = n * (1.0 / norm(n));
+  }
+  return walls;
+}
+
+double deepest(const Vec3& v, const std::vector<WallHit>& walls) {
+  double most = 0.0;
+  for (const WallHit& w : walls) most = std::max(most, -dot(v, w.normal));
+  return most;
+}
+
+// Dykstra's projections, far more of them than it takes.
+Vec3 projected(const Vec3& v, const std::vector<WallHit>& walls) {
+  std::vector<Vec3> taken(walls.size());
+  Vec3 x = v;
+  for (int round = 0; round < 20000; ++round) {
+    for (std::size_t i = 0; i < walls.size(); ++i) {
+      const Vec3 y = x + taken[i];
+      x = y - walls[i].normal * std::min(0.0, dot(y, walls[i].normal));
+      taken[i] = y - x;
+    }
+  }
+  return x;
+}
+
+TEST(IncidentWalls, HoldBackToTheNearestVelocity) {
+  Random random(1);
+  std::array<int, 4> counts{};
+  for (int i = 0; i < 300; ++i) {
+    std::vector<Vec3> normals;
+    const Vec3 common = direction(random);  // so that something is free
+    for (int k = 0; k < 1 + i % 6; ++k) {
+      const Vec3 n = direction(random);
+      normals.push_back(dot(n, common) < 0.1 ? n - common * (2.0 * dot(n, common)) + common * 0.1 : n);
+    }
+    const auto walls = walls_of(normals);
+    const Vec3 v = direction(random);
+    const HeldBack held = held_back(v, walls);
+    ++counts[held.count];
+    ASSERT_LE(deepest(held.velocity, walls), 1e-13) << i;
+    ASSERT_LE(norm(held.velocity - projected(v, walls)), 1e-6) << i;
+    Vec3 sum = v;
+    for (unsigned k = 0; k < held.count; ++k) {
+      ASSERT_GE(held.impulse[k], 0.0);
+      sum += held.wall[k]->normal * held.impulse[k];
+    }
+    ASSERT_LE(norm(sum - held.velocity), 1e-12) << i;
+  }
+  EXPECT_GT(*std::min_element(counts.begin(), counts.end()), 5);
+}
+
+// Walls that are one plane up to rounding count once.
+TEST(IncidentWalls, FansOfOnePlaneAreOneWall) {
+  Random random(2);
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 n = direction(random);
+    std::vector<Vec3> normals = {n};
+    for (int k = 0; k < 5; ++k) normals.push_back(n + direction(random) * 1e-16);
+    const auto walls = walls_of(normals);
+    const Vec3 v = n * -1.0 + direction(random) * 0.5;
+    const Vec3 out = after_impact(v, walls, [](const WallHit&, double) { return WallSurface{0.5, 0.0}; });
+    const Vec3 expected = v - n * (1.5 * dot(v, n));
+    ASSERT_LE(norm(out - expected), 1e-14);
+  }
+}
+
+// What answer_motion() makes of a velocity, without forces.
+Vec3 bounced(const Vec3& v, const std::vector<WallHit>& walls, double restitution, double friction) {
+  Response r;
+  r.restitution = restitution;
+  r.friction = friction;
+  const Responses responses(r);
+  std::vector<Leg> legs(1);
+  legs[0].before = legs[0].after = v;
+  std::vector<PassBody> bodies(1);
+  std::vector<std::uint32_t> body_of(1);
+  std::vector<Vec3> none(1);
+  std::vector<TouchedFaces> on(1);
+  std::vector<TouchedFaces> next(1);
+  std::vector<Fate> fates(1, Fate::alive);
+  const Pass pass{&responses, {}, 1e-3, bodies, body_of, none, none, on, next, fates, legs};
+  Contact contact;
+  contact.time_of_impact = 0.5;
+  answer_motion(pass, contact, walls, {});
+  return legs[0].after;
+}
+
+// Wedges and corners, wide and narrow, met along a plane of their symmetry: the velocity stays in it. Whatever is met:
+// no velocity into a wall, no energy gained.
+TEST(IncidentWalls, SymmetricWedgesAnswerInTheirPlane) {
+  Random random(3);
+  for (int i = 0; i < 400; ++i) {
+    const double half = random.uniform(0.02, 1.55);  // between the plane of symmetry and the normals
+    const Vec3 axis = direction(random);
+    const Vec3 side = [&] {
+      const Vec3 d = cross(axis, direction(random));
+      return d * (1.0 / norm(d));
+    }();
+    const Vec3 edge = cross(axis, side);
+    std::vector<Vec3> normals = {axis * std::cos(half) + side * std::sin(half),
+                                 axis * std::cos(half) - side * std::sin(half)};
+    if (i % 3 == 1) normals.push_back(axis * std::cos(half) + edge * std::sin(half));  // a corner, still symmetric
+    if (i % 3 == 2) normals.push_back(axis);
+    const auto walls = walls_of(normals);
+    auto reversed = walls;
+    std::reverse(reversed.begin(), reversed.end());
+    const Vec3 v = axis * -1.0 + edge * random.uniform(-1.0, 1.0);
+    for (const double e : {1.0, 0.5, 0.0}) {
+      for (const double friction : {0.0, 0.3}) {
+        const Vec3 out = bounced(v, walls, e, friction);
+        EXPECT_LE(std::abs(dot(out, side)), 1e-13) << i << ' ' << half << ' ' << e;
+        EXPECT_LE(deepest(out, walls), 1e-13);
+        EXPECT_LE(norm(out), norm(v) * (1.0 + 1e-14));
+        EXPECT_LE(norm(out - bounced(v, reversed, e, friction)), 1e-13);
+      }
+    }
+  }
+}
+
+// A right angle, met head on: back the way it came; a wide one, where the sequence of two reflections would turn it.
+TEST(IncidentWalls, WedgesReboundAsTheyShould) {
+  for (const double half : {0.3, 0.25 * std::numbers::pi, 1.2}) {
+    const auto walls = walls_of({{std::sin(half), 0, std::cos(half)}, {-std::sin(half), 0, std::cos(half)}});
+    for (const double e : {1.0, 0.5, 0.0}) {
+      const Vec3 out = bounced({0.0, 0.7, -2.0}, walls, e, 0.0);
+      EXPECT_NEAR(out.x, 0.0, 1e-14);
+      EXPECT_NEAR(out.y, 0.7, 1e-14);
+      EXPECT_NEAR(out.z, 2.0 * e, 1e-14);
+    }
+  }
+}
+
+TEST(IncidentWalls, NothingGoesIntoAWallOrGainsEnergyWhateverIsMet) {
+  Random random(4);
+  for (int i = 0; i < 3000; ++i) {
+    std::vector<Vec3> normals;
+    for (std::size_t k = 0; k < 1 + random.below(7); ++k) normals.push_back(direction(random));
+    if (i % 2 == 0) normals.push_back(normals.front() + direction(random) * 1e-9);
+    if (i % 5 == 0) normals.push_back(normals.front() * -1.0);  // no way but along
+    const auto walls = walls_of(normals);
+    const Vec3 v = direction(random);
+    const Vec3 out = bounced(v, walls, i % 3 * 0.5, i % 7 == 0 ? 0.4 : 0.0);
+    ASSERT_LE(deepest(out, walls), 1e-12) << i;
+    ASSERT_LE(norm(out), 1.0 + 1e-13) << i;
+  }
+}
+
+// Walls of different answers that nearly face each other do not give more than they took.
+TEST(IncidentWalls, MixedAnswersAddNoEnergy) {
+  Random random(5);
+  for (int i = 0; i < 2000; ++i) {
+    std::vector<Vec3> normals = {direction(random), direction(random), direction(random)};
+    if (i % 2 == 0) normals[1] = normals[0] * -1.0 + normals[2] * random.uniform(0.0, 0.1);
+    const auto walls = walls_of(normals);
+    const Vec3 v = direction(random);
+    const Vec3 out = after_impact(v, walls, [&](const WallHit& w, double) {
+      return WallSurface{&w == &walls[0] ? 1.0 : 0.0, 0.0};
+    });
+    ASSERT_LE(norm(out), 1.0 + 1e-13) << i;
+  }
+}
+
+}  // namespace
+}  // namespace dartcast
