@@ -10,6 +10,7 @@
 
 #include "bodies/point_block.hpp"
 #include "dartcast/base/error.hpp"
+#include "dartcast/base/random.hpp"
 #include "dartcast/bodies/bodies.hpp"
 #include "dartcast/environment/audit.hpp"
 #include "dartcast/mesh/generate_box.hpp"
@@ -72,7 +73,7 @@ TEST(BodyCollisions, BodiesThatMeetBounceOffEachOther) {
     double pull;
     double lost;  // share of momentum that may go: where the law of energy cuts velocities of stiff bodies
   };
-  for (const auto& [stiffness, pull, lost] : {Case{0.05, 0.0, 1e-9}, Case{0.05, 0.1, 1e-9}, Case{1.0, 0.1, 0.02}}) {
+  for (const auto& [stiffness, pull, lost] : {Case{0.05, 0.0, 1e-9}, Case{0.05, 0.1, 1e-9}, Case{1.0, 0.1, 1e-9}}) {
     Environment environment = room();
     Bodies bodies(environment, colliding({}, 0.0));
     BodyOptions o = ball_set({2.0, 0.0, 0.0});
@@ -107,14 +108,84 @@ TEST(BodyCollisions, BodiesThatMeetBounceOffEachOther) {
   }
 }
 
+BodiesOptions rebounding(double restitution, double friction = 0.0, const Vec3& gravity = {}) {
+  BodiesOptions o = colliding(gravity, friction);
+  o.collisions->restitution = restitution;
+  return o;
+}
+
+// Face to face, whatever they weigh: as Newton's law for two masses says.
+TEST(BodyCollisions, RigidBodiesReboundAsTheFormulaSays) {
+  for (const double restitution : {0.0, 0.5, 1.0}) {
+    for (const double ratio : {1.0, 0.2, 30.0}) {
+      Environment environment = room();
+      Bodies bodies(environment, rebounding(restitution, 0.3));
+      BodyOptions o = ball_set({2.0, 0.0, 0.0});
+      bodies.add(block(3, {0.35, 0.5, 0.5}), o);
+      o.velocity.x = -1.0;
+      o.mass = ratio;
+      bodies.add(block(3, {0.6, 0.5, 0.5}), o);
+      const Sums before = sums(bodies);
+      std::uint64_t impacts = 0;
+      for (int i = 0; i < 100; ++i) impacts += bodies.step().collisions.impacts;
+      EXPECT_EQ(impacts, 9U);
+      const double common = (2.0 - ratio) / (1.0 + ratio);
+      const double approach = 3.0;
+      const double left = common - restitution * approach * ratio / (1.0 + ratio);
+      const double right = common + restitution * approach / (1.0 + ratio);
+      EXPECT_NEAR(bodies.rigid_motion_of(0).velocity.x, left, 1e-8);
+      EXPECT_NEAR(bodies.rigid_motion_of(1).velocity.x, right, 1e-8);
+      const Sums after = sums(bodies);
+      EXPECT_LE(norm(after.momentum - before.momentum), 1e-9);
+      EXPECT_LE(norm(after.angular_momentum - before.angular_momentum), 1e-9);
+      EXPECT_LE(norm(bodies.rigid_motion_of(0).spin), 1e-6);
+      const double lost = 0.5 * (1.0 - restitution * restitution) * ratio / (1.0 + ratio) * approach * approach;
+      EXPECT_NEAR(after.energy, before.energy - lost, 1e-6);
+    }
+  }
+}
+
+// Turned, beside each other's centres, three at once: momenta are kept, energy never grows.
+TEST(BodyCollisions, ReboundsKeepMomentaAndAddNoEnergy) {
+  Random random(9);
+  const auto u = [&] { return random.uniform(-1.0, 1.0); };
+  std::uint64_t impacts = 0;
+  for (int i = 0; i < std::max(2, scaled(12, 200)); ++i) {
+    Environment environment = room();
+    Bodies bodies(environment, rebounding(i % 4 * (1.0 / 3.0), i % 2 * 0.5));
+    const double x[] = {0.3, 0.5, 0.7};
+    for (int k = 0; k < 3; ++k) {
+      BodyOptions o = ball_set({3.0 * (1 - k), u(), u()});
+      o.spin = {10 * u(), 10 * u(), 10 * u()};
+      o.mass = random.uniform(0.2, 3.0);
+      bodies.add(block(3, {x[k], 0.5 + 0.05 * u(), 0.5 + 0.05 * u()}, {u(), {u(), u(), u()}}), o);
+    }
+    ASSERT_EQ(bodies.size(), 3U);
+    const Sums before = sums(bodies);
+    double energy = before.energy;
+    for (int step = 0; step < 60 && bodies.counters().contacts[2] == 0; ++step) {
+      const Sums last = sums(bodies);
+      const BodiesStep& done = bodies.step();
+      impacts += done.collisions.impacts;
+      if (bodies.counters().contacts[2] > 0) break;
+      const Sums now = sums(bodies);
+      ASSERT_LE(now.energy, energy * (1.0 + 4.0 * energy_slack)) << i << ' ' << step;
+      energy = now.energy;
+      ASSERT_LE(norm(now.momentum - last.momentum), 1e-9) << i << ' ' << step;
+    }
+  }
+  EXPECT_GT(impacts, 20U);
+}
+
 // One on top of the other: both come to rest.
-TEST(BodyCollisions, BodiesRestOnEachOther) {
-  if (test::sanitized()) GTEST_SKIP() << "takes its full number of steps";
+void expect_rest(const std::optional<double>& restitution) {
   Environment environment = room();
   Response floor;
   floor.restitution = 0.2;
   floor.friction = 0.6;
-  Bodies bodies(environment, colliding({0.0, 0.0, -9.81}, 0.6), Responses(floor));
+  BodiesOptions options = colliding({0.0, 0.0, -9.81}, 0.6);
+  options.collisions->restitution = restitution;
+  Bodies bodies(environment, options, Responses(floor));
   BodyOptions o = ball_set({});
   o.damping = 20.0;
   o.pull = 0.3;
@@ -139,6 +210,12 @@ TEST(BodyCollisions, BodiesRestOnEachOther) {
   EXPECT_GT(gap, 2.5 * spacing);
   EXPECT_LT(gap, 4.0 * spacing);
   EXPECT_EQ(audit(environment.complex(), bodies.particles()).failed, 0U);
+}
+
+TEST(BodyCollisions, BodiesRestOnEachOther) {
+  if (test::sanitized()) GTEST_SKIP() << "takes its full number of steps";
+  expect_rest({});
+  expect_rest(0.4);
 }
 
 TEST(BodyCollisions, WithoutRadiiOrThroughAWallNobodyMeets) {
@@ -197,6 +274,8 @@ TEST(BodyCollisions, RefuseOptionsOutOfRange) {
   };
   refused([](BodyCollisionOptions& o) { o.friction = -1.0; });
   refused([](BodyCollisionOptions& o) { o.friction = std::numeric_limits<double>::infinity(); });
+  refused([](BodyCollisionOptions& o) { o.restitution = 1.5; });
+  refused([](BodyCollisionOptions& o) { o.restitution = std::nan(""); });
   refused([](BodyCollisionOptions& o) { o.push = 2.0; });
   refused([](BodyCollisionOptions& o) { o.iterations = 0; });
 }

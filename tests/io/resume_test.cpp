@@ -338,6 +338,29 @@ TEST_F(Resume, ARunWithBodiesAndACatheterGoesOn) {
   }
 }
 
+TEST_F(Resume, ARunWithSpheresThatMeetBodiesGoesOn) {
+  const std::string text = solids_text + R"(
+[[particles]]
+count = 150
+radius = 0.02
+velocity = [0.0, 0.0, -1.0]
+[collisions]
+restitution = 0.3
+friction = 0.3
+body_restitution = 0.5
+)";
+  const Summary whole = run(one, false, 47, 0, text);
+  EXPECT_GT(whole.totals.collisions.pairs_touching, 0U);
+  EXPECT_EQ(whole.audit->failed, 0U);
+  for (const std::uint64_t cut : {4U, 26U, 46U}) {
+    EXPECT_THROW(run(two, false, 47, cut, text), CutOff);
+    const Summary resumed = run(two, true, 47, 0, text);
+    expect_same(whole, resumed);
+    EXPECT_EQ(resumed.bodies[0].energy.kinetic, whole.bodies[0].energy.kinetic);
+    EXPECT_EQ(resumed.totals.collisions.pairs_touching, whole.totals.collisions.pairs_touching);
+  }
+}
+
 TEST_F(Resume, AFinishedRunGoesOnToMoreSteps) {
   const Summary whole = run(one, false, 47);
   run(two, false, 25);

@@ -64,6 +64,8 @@ friction = 0.25
 density = 2500.0
 iterations = 30
 push_iterations = 6
+body_restitution = 0.0
+body_friction = 0.75
 [crowding]
 every = 10
 most = 40
@@ -79,6 +81,9 @@ edits = 7
   EXPECT_EQ(s.collisions->density, 2500.0);
   EXPECT_EQ(s.collisions->iterations, 30U);
   EXPECT_EQ(s.collisions->push_iterations, 6U);
+  EXPECT_EQ(s.body_collisions.restitution, 0.0);
+  EXPECT_EQ(s.body_collisions.friction, 0.75);
+  EXPECT_FALSE(parse_scene(box, "folder/scene.toml").body_collisions.restitution);
   EXPECT_EQ(s.crowding.every, 10U);
   EXPECT_EQ(s.crowding.options.most, 40U);
   EXPECT_EQ(s.crowding.options.least, 4U);

@@ -121,6 +121,28 @@ TEST(SolidsInScenes, BodiesFallAsTheyShould) {
   EXPECT_NEAR(free.bodies[0].centre.z, 0.2 - 0.5 * 9.81 * 0.1 * 0.1, 1e-3);
 }
 
+// With [collisions], spheres lie on a body, and bodies rebound from each other as the scene says.
+TEST(SolidsInScenes, SpheresAndBodiesMeet) {
+  const std::string text = box + barrel + R"(
+velocity = [0.0, 0.0, -2.0]
+mass = 0.01
+[[particles]]
+count = 60
+radius = 0.02
+[motion]
+dt = 0.002
+steps = 30
+[output]
+every = 0
+)";
+  const Summary apart = run(text);
+  const Summary together = run(text + "[collisions]\n");
+  EXPECT_NE(apart.bodies[0].centre, together.bodies[0].centre);
+  EXPECT_NEAR(apart.bodies[0].energy.kinetic, 0.02, 1e-3);
+  EXPECT_LT(together.bodies[0].energy.kinetic, 0.015);
+  EXPECT_EQ(together.audit->failed, 0U);
+}
+
 TEST(SolidsInScenes, ThreadsDoNotMatter) {
   const auto hash = [](unsigned threads) {
     RunOptions options;

@@ -27,6 +27,8 @@ void check_collisions(const BodyCollisionOptions& o) {
     throw InvalidArgument("bodies: the push of collisions must be between 0 and 1");
   if (!(o.friction >= 0.0) || !std::isfinite(o.friction))
     throw InvalidArgument("bodies: the friction of collisions must be finite and not negative");
+  if (o.restitution && !(*o.restitution >= 0.0 && *o.restitution <= 1.0))
+    throw InvalidArgument("bodies: the restitution of collisions must be between 0 and 1");
   if (o.iterations == 0) throw InvalidArgument("bodies: collisions need an iteration at least");
 }
 
@@ -121,6 +123,7 @@ void Bodies::resize_arrays(double radius) {
   inverse_masses_.resize(size);
   led_to_.resize(size);
   pushes_.resize(size);
+  outer_forces_.assign(size, Vec3{});
   contact_forces_.assign(size, Vec3{});
 }
 

@@ -15,6 +15,8 @@
 #include "dartcast/bodies/body_collisions.hpp"
 #include "dartcast/bodies/body_contact.hpp"
 #include "dartcast/bodies/body_motion.hpp"
+#include "dartcast/bodies/body_rebound.hpp"
+#include "dartcast/bodies/rigid_solver.hpp"
 #include "dartcast/bodies/shape_matching.hpp"
 #include "dartcast/environment/environment.hpp"
 #include "dartcast/environment/state_hash.hpp"
@@ -68,10 +70,11 @@ struct BodyEnergy {
 
 /// What happened in one step.
 struct BodiesStep {
-  StepReport motion;                ///< of the first pass; particles by their index during the step
-  StepReport pull;                  ///< of the second pass
-  BodyCollisionCounts collisions;   ///< between bodies
-  double input = 0.0;               ///< energy that moving walls gave, J; 0 where no wall that was met moved
+  StepReport motion;               ///< of the first pass; particles by their index during the step
+  StepReport pull;                 ///< of the second pass
+  BodyCollisionCounts collisions;  ///< between bodies
+  /// Energy that moving walls and act() gave, J; less than 0 where the latter took more. 0 where neither was there.
+  double input = 0.0;
   std::uint64_t fallbacks = 0;      ///< rotations left to Eigen's SVD
   std::uint64_t repeated = 0;       ///< bodies whose first pass was repeated with limited targets
   std::vector<std::uint32_t> gone;  ///< ids of bodies that left at an absorbing or escape wall
@@ -82,10 +85,10 @@ struct BodiesStep {
 /// A step, after the environment may have moved:
 ///  1. Velocities and places by Runge-Kutta's method of order 4 under gravity and the matching forces, the fits
 ///  computed anew at each stage. Particles then go there by Environment::advance(). At a contact the velocity is that
-///  of the moment; each incident wall that it points into, the most opposed first, reflects it with restitution
-///  (bouncing: the particle was not on that face at the end of the last step, and comes faster than the acceleration
-///  makes it in two steps) or without (sliding), and with friction; then the particle is integrated for the time left,
-///  which goes along the walls that it would enter, with friction.
+///  of the moment; all incident walls at once turn it round with restitution (bouncing: the particle was not on that
+///  face at the end of the last step, and comes faster than the acceleration makes it in two steps) or without
+///  (sliding), and with friction (bodies/incident_walls.hpp); then the particle is integrated for the time left, which
+///  goes along the walls that it would enter, with friction.
 ///  2. The fits are computed again, and particles are pulled towards their goals, by Environment::advance() again: by
 ///  places only, so that it takes out energy. To be exact they are pulled to where they would be at rest in the body:
 ///  where the matching force is in balance with the centrifugal one, or with gravity where the body has met a wall.
@@ -93,7 +96,7 @@ struct BodiesStep {
 /// The number of contacts in a pass is bounded by StepOptions::max_contacts.
 ///
 /// Energy law: the total energy of a body never grows in a step by more than energy_slack of itself, plus
-/// BodiesStep::input (docs/method.md says why); changes of velocities between steps apart. The total is the kinetic,
+/// BodiesStep::input (docs/method.md says why); changes of velocities() between steps apart. The total is the kinetic,
 /// the potential and the matching energy, none of them negative.
 ///
 /// Walls answer by their patch's Response: reflect, slide, stick (the particle stays on the wall). A body leaves as a
@@ -113,10 +116,18 @@ class Bodies {
   /// One step; once after each Environment::move(). Throws as Environment::advance(). Cost: about 0.5 us per particle.
   const BodiesStep& step();
 
+  /// A body as a rigid one, with its velocity at the end of the next step if it meets nothing; it cannot be pushed
+  /// where a wall holds one of its particles. Cost: about 20 ns per particle.
+  [[nodiscard]] RigidMover foreseen(std::size_t body) const;
+  /// What contacts with others than bodies made of foreseen(): forces in the next step lead to that change of momentum,
+  /// and the body goes as far as was answered. What this gives is BodiesStep::input.
+  void act(std::size_t body, const RigidMover& answered);
+
   /// Takes the bodies along after an edit of the environment. A body of which the edit absorbs a particle leaves.
   /// Throws as Environment::follow().
   FollowReport follow(Stranded stranded = Stranded::move);
 
+  [[nodiscard]] const BodiesOptions& options() const { return options_; }
   [[nodiscard]] std::uint64_t steps() const { return steps_; }
   [[nodiscard]] std::size_t size() const { return bodies_.size(); }
   [[nodiscard]] std::uint32_t id(std::size_t body) const { return bodies_[body].id; }
@@ -196,6 +207,7 @@ class Bodies {
     bool slides = false;    // in the second pass
     bool pushed = false;    // off other bodies, there
     bool collided = false;  // with another body
+    BodyAction action = {};
 
     [[nodiscard]] bool changes() const { return pull > 0.0 || kept < 1.0 || pushed; }  // in the second pass
   };
@@ -226,7 +238,11 @@ class Bodies {
     return {body.stiffness, goals_[particle], options_.gravity + contact_forces_[particle]};
   }
   [[nodiscard]] BodyParticles body_particles() const;
+  [[nodiscard]] RigidMover as_rigid(std::size_t body) const;
   void find_pairs();
+  std::uint64_t rebound();
+  void spread_action(const Body& body);
+  [[nodiscard]] double action_work(const Body& body) const;
   void collide();
   void integrate(Body& body);
   void set_legs(Body& body);
@@ -241,6 +257,9 @@ class Bodies {
   void afford(Body& body);
   void second_pass();
   void pool_energy();
+  [[nodiscard]] bool lacks_motion(const Body& body);
+  void afford_together();
+  void cut_together(std::span<const std::uint32_t> group);
   void aim_pull(Body& body);
   void damp(Body& body);
   void remove_gone();
@@ -280,11 +299,14 @@ class Bodies {
   std::vector<Leg> legs_;
   // Of collisions.
   BodyCollisions collisions_;
+  BodyRebounds rebounds_;
+  std::vector<RigidMover> movers_;
   std::vector<std::uint64_t> ids_;
   std::vector<double> inverse_masses_;
   std::vector<Vec3> led_to_;  // velocities that forces lead to
   std::vector<Vec3> pushes_;
-  std::vector<Vec3> contact_forces_;  // between bodies in this step, per mass
+  std::vector<Vec3> outer_forces_;    // of what acts on bodies from outside in this step, per mass
+  std::vector<Vec3> contact_forces_;  // with those between bodies
   std::vector<TouchedFaces> next_on_;
   std::vector<PassBody> pass_bodies_;
 };

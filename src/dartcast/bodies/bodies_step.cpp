@@ -12,9 +12,10 @@ const BodiesStep& Bodies::step() {
   last_ = {};
   first_pass();
   second_pass();
-  for (const Body& body : bodies_) {
+  for (Body& body : bodies_) {
     last_.fallbacks += body.fallbacks;
     last_.input += body.input;
+    body.action = {};
   }
   counters_ += last_.motion.counters;
   counters_ += last_.pull.counters;
@@ -29,8 +30,14 @@ const BodiesStep& Bodies::step() {
 // --- the first pass
 
 void Bodies::first_pass() {
-  for_each_body([&](Body& body) { begin(body); });
+  const std::uint64_t impacts = rebound();
+  for_each_body([&](Body& body) {
+    begin(body);
+    spread_action(body);
+  });
+  std::copy(outer_forces_.begin(), outer_forces_.end(), contact_forces_.begin());
   if (options_.collisions) collide();
+  last_.collisions.impacts = impacts;
   for_each_body([&](Body& body) {
     integrate(body);
     set_legs(body);
@@ -46,7 +53,7 @@ void Bodies::first_pass() {
     if (std::all_of(bodies_.begin(), bodies_.end(), [](const Body& b) { return b.pays; })) return;
     particles_ = before;
     fates_ = fates;
-    if (!collides) std::fill(contact_forces_.begin(), contact_forces_.end(), Vec3{});
+    if (!collides) std::copy(outer_forces_.begin(), outer_forces_.end(), contact_forces_.begin());
     for_each_body([&](Body& body) {
       body.limited = body.limited || !body.pays;
       if (!collides) integrate(body);
@@ -66,45 +73,12 @@ void Bodies::begin(Body& body) {
   body.fallbacks = 0;
   body.constant = body.shape.goals(body.fits, of(body, goals_));
   const auto positions = of(body, positions_);
-  body.pushed = false;
+  body.pushed = body.action.shift != Vec3{} || body.action.turn != Vec3{};
   body.collided = false;
   body.before = (kinetic(body) + potential(body, positions)) +
                 body.stiffness * matching_energy(body.shape, positions, of(body, goals_), body.constant);
   // At rest: forces alone move it, which is always paid for.
   body.limited = kinetic(body) <= energy_slack * body.before;
-}
-
-BodyParticles Bodies::body_particles() const { return {body_of_, ids_, positions_, radii_, inverse_masses_}; }
-
-// For the next step, while the states are of the environment as it stands.
-void Bodies::find_pairs() {
-  if (!options_.collisions || environment_.awaits_advance(particles_)) return;
-  for (std::size_t p = 0; p < ids_.size(); ++p) {
-    const Body& body = bodies_[body_of_[p]];
-    ids_[p] = (std::uint64_t{body.id} << 32U) | (p - body.first);
-    inverse_masses_[p] = fates_[p] == Fate::alive && !particles_[p].held ? 1.0 / masses_[p] : 0.0;
-    led_to_[p] = velocities_[p] + options_.gravity * options_.dt;
-  }
-  collisions_.find(environment_.complex(), particles_.states(), body_particles(), led_to_, options_.dt,
-                   environment_.threads());
-}
-
-// Forces between bodies in this step: they lead to the velocities that impulses ask for at its end.
-void Bodies::collide() {
-  const double dt = options_.dt;
-  std::fill(contact_forces_.begin(), contact_forces_.end(), Vec3{});
-  for (std::size_t p = 0; p < led_to_.size(); ++p) {
-    sums_[p].last = velocities_[p] + well_of(bodies_[body_of_[p]], p).acceleration(positions_[p]) * dt;
-    led_to_[p] = sums_[p].last;
-  }
-  last_.collisions = collisions_.solve(body_particles(), *options_.collisions, dt, velocities_, led_to_, pushes_);
-  for (std::size_t p = 0; p < led_to_.size(); ++p) {
-    Body& body = bodies_[body_of_[p]];
-    const Vec3 change = led_to_[p] - sums_[p].last;
-    contact_forces_[p] = change * (1.0 / dt);
-    if (change != Vec3{}) body.collided = true;
-    if (pushes_[p] != Vec3{}) body.pushed = true;
-  }
 }
 
 // Runge-Kutta's method of order 4. A stage's places depend on the accelerations of the stage before the last one alone.
@@ -230,6 +204,7 @@ void Bodies::second_pass() {
     body.moving = kinetic(body);
   });
   pool_energy();
+  afford_together();
   for_each_body([&](Body& body) {
     afford(body);
     if (body.changes()) body.rigid = rigid_motion(body.shape.masses(), of(body, reached_), of(body, velocities_));
@@ -245,6 +220,7 @@ void Bodies::second_pass() {
     body.moving = kinetic(body);
   });
   pool_energy();
+  afford_together();
   for_each_body([&](Body& body) { afford(body); });
 }
 
@@ -252,7 +228,7 @@ void Bodies::second_pass() {
 // body that spins as it is. The body's energy must pay for it even if walls stop any of the particles on the way. Else,
 // and where it has met a wall, they are pulled to the bottoms of their wells, which costs nothing. With
 // those that touch other bodies the forces of these are in balance, too, and overlaps are taken out, as far as that
-// costs nothing.
+// costs nothing. What act() asks for is input.
 void Bodies::aim_pull(Body& body) {
   const double softness = 1.0 / body.stiffness;
   double cost = 0.0;
@@ -264,6 +240,7 @@ void Bodies::aim_pull(Body& body) {
     cost += masses_[p] * std::max(0.0, well.rise(x, targets_[p] - x));
   }
   body.slides = body.met || cost > body.allowed;
+  double input = 0.0;
   for (std::size_t p = body.first; p < body.first + body.shape.size(); ++p) {
     const Vec3& x = reached_[p];
     if (!body.changes() || fates_[p] != Fate::alive || particles_[p].held) {
@@ -276,8 +253,15 @@ void Bodies::aim_pull(Body& body) {
       const Vec3 way = ((targets_[p] - x) + contact_forces_[p] * (softness * body.pull)) + pushes_[p];
       targets_[p] = x + way * well.payable_share(x, way, 0.0);
     }
+    if (const Vec3 shift = body.action.shift_at(x); body.pushed && shift != Vec3{}) {
+      const double paid = std::max(0.0, well.rise(x, targets_[p] - x));
+      targets_[p] += shift;
+      input += masses_[p] * std::max(0.0, well.rise(x, targets_[p] - x) - paid);
+    }
     targets_[p] = detail::flushed(targets_[p]);
   }
+  body.input += input;
+  body.budget += input;
 }
 
 // Velocities relative to the rigid motion fall; what the pull did to places changes neither momentum nor angular

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,8 +15,11 @@
 
 namespace dartcast {
 
-/// Particles do not rebound from each other: bodies do, by their matching forces.
+/// Particles do not rebound from each other.
 struct BodyCollisionOptions {
+  /// In [0, 1]: bodies that hit each other faster than 2 |gravity| dt part as rigid ones, at this share of the speed.
+  /// None: they part by their matching forces, as these happen to.
+  std::optional<double> restitution = {};
   double friction = 0.0;  ///< >= 0
   unsigned iterations = 10;
   double push = 0.2;  ///< share of an overlap taken out in one step, in [0, 1]
@@ -25,6 +29,7 @@ struct BodyCollisionOptions {
 struct BodyCollisionCounts {
   std::uint64_t pairs_near = 0;      ///< given to the solver
   std::uint64_t pairs_touching = 0;  ///< given an impulse
+  std::uint64_t impacts = 0;         ///< pairs that came together fast; 0 without restitution
   std::uint64_t overlaps = 0;
   double deepest = 0.0;  ///< of these, m
 };
@@ -53,6 +58,8 @@ class BodyCollisions {
   BodyCollisionCounts solve(const BodyParticles& particles, const BodyCollisionOptions& options, double dt,
                             std::span<const Vec3> velocities, std::span<Vec3> led_to, std::span<Vec3> pushes);
 
+  /// Those found; sorted.
+  [[nodiscard]] std::span<const SpherePair> pairs() const { return pairs_; }
   [[nodiscard]] ContactSolver& solver() { return solver_; }
   [[nodiscard]] const ContactSolver& solver() const { return solver_; }
 

@@ -29,6 +29,22 @@ RigidMotion rigid_motion(std::span<const double> masses, std::span<const Vec3> p
 RigidMotion with_angular_momentum(std::span<const double> masses, std::span<const Vec3> positions, const Vec3& velocity,
                                   const Vec3& angular_momentum);
 
+/// Of the moment of inertia about the centre, without parts about an axis that all mass lies on: for an angular
+/// momentum it gives the spin. Symmetric, no eigenvalue below 0.
+Mat3 inverse_inertia(std::span<const double> masses, std::span<const Vec3> positions, const Vec3& centre);
+
+/// What a body is given from outside over a step, spread over its particles as over those of a rigid body.
+struct BodyAction {
+  Vec3 centre;    ///< of mass
+  Vec3 velocity;  ///< change of its velocity, m / s
+  Vec3 spin;      ///< of the angular one, 1 / s
+  Vec3 shift;     ///< displacement on top, without a velocity, m
+  Vec3 turn;      ///< turn likewise, rad
+
+  [[nodiscard]] Vec3 velocity_at(const Vec3& x) const { return velocity + cross(spin, x - centre); }
+  [[nodiscard]] Vec3 shift_at(const Vec3& x) const { return shift + cross(turn, x - centre); }
+};
+
 struct PointMotion {
   Vec3 position;
   Vec3 velocity;

@@ -296,6 +296,7 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
   Surgery surgery(events, scene.remesh, scene.crowding, scene.motion.dt, flow);
   if (!events.empty() || scene.remesh.every > 0 || scene.crowding.every > 0) summary.surgery.emplace();
   Solids solids(scene, environment, responses);
+  if (scene.collisions && solids.bodies()) flow.set_bodies(*solids.bodies());
   summary.seconds_load = load.seconds();
   const std::uint64_t steps = options.steps.value_or(scene.motion.steps);
   Output output(scene, options, mesh, summary);

@@ -38,7 +38,7 @@ class SceneReader {
       add_named(t, scene.catheters, read_catheter(t, scene.catheters.size() + 1));
     scene.motion = motion(root.table("motion"));
     scene.contact = contact(root.table("contact"));
-    if (root.has("collisions")) scene.collisions = collisions(root.table("collisions"));
+    if (root.has("collisions")) collisions(root.table("collisions"), scene);
     for (TomlTable& t : root.tables("event")) scene.events.push_back(read_event(t));
     std::stable_sort(scene.events.begin(), scene.events.end(),
                      [](const EventScene& a, const EventScene& b) { return a.event.at < b.event.at; });
@@ -169,15 +169,17 @@ class SceneReader {
     return scene;
   }
 
-  static CollisionOptions collisions(TomlTable t) {
-    CollisionOptions options;
+  static void collisions(TomlTable t, Scene& scene) {
+    CollisionOptions& options = scene.collisions.emplace();
     t.get("restitution", options.restitution, {0.0, 1.0});
     t.get("friction", options.friction, Range::not_negative);
     t.get("density", options.density, Range::positive);
     t.get("iterations", options.iterations, 1U, 100000U);
     t.get("push_iterations", options.push_iterations, 0U, 100000U);
+    double between_bodies = 0.0;
+    if (t.get("body_restitution", between_bodies, {0.0, 1.0})) scene.body_collisions.restitution = between_bodies;
+    t.get("body_friction", scene.body_collisions.friction, Range::not_negative);
     t.finish();
-    return options;
   }
 
   static CrowdingScene crowding(TomlTable t) {

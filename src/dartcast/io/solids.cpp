@@ -42,6 +42,7 @@ BodiesOptions bodies_options(const Scene& scene) {
   options.dt = scene.motion.dt;
   options.gravity = scene.motion.gravity;
   options.drag = scene.motion.drag;
+  options.collisions = scene.body_collisions;
   return options;
 }
 

@@ -68,6 +68,8 @@ class Solids {
 
   /// None where the scene has none.
   [[nodiscard]] const std::optional<Bodies>& bodies() const { return bodies_; }
+  /// Likewise, for spheres that meet them.
+  [[nodiscard]] std::optional<Bodies>& bodies() { return bodies_; }
   /// What the last step was.
   [[nodiscard]] const BodiesStep& bodies_step() const { return bodies_step_; }
   [[nodiscard]] const std::string& name(std::size_t body) const { return scene_.bodies[bodies_->id(body)].name; }

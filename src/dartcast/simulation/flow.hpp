@@ -20,6 +20,7 @@
 #include "dartcast/simulation/deformation.hpp"
 #include "dartcast/simulation/field.hpp"
 #include "dartcast/simulation/seeding.hpp"
+#include "dartcast/simulation/sphere_bodies.hpp"
 #include "dartcast/spheres/advance_spheres.hpp"
 #include "dartcast/spheres/collide.hpp"
 
@@ -109,8 +110,8 @@ struct FlowEdit {
 ///  leave.
 /// With collisions the vertices move after 3 (velocities are those at the places before), and spheres are given
 /// impulses before they move and advance: by each other, and by walls that reflect or let slide within a quarter of
-/// their radius (these walls go on as in the last step). Walls met otherwise respond as they do to points. Results are
-/// the same bits for any number of threads.
+/// their radius (these walls go on as in the last step). Walls met otherwise respond as they do to points. Bodies that
+/// it is told of take part in these collisions. Results are the same bits for any number of threads.
 class Flow {
  public:
   /// `environment` outlives the flow, and is moved and edited by it alone. Throws InvalidArgument where an option is
@@ -120,6 +121,10 @@ class Flow {
   void set_field(VelocityField field) { field_ = std::move(field); }
   /// Throws InvalidArgument where it is not made for the environment's number of points.
   void set_deformation(Deformation deformation);
+  /// Bodies that the spheres meet, with the options of CollisionOptions, where it has collisions; they outlive the
+  /// flow. Their step() follows each of the flow's. Throws InvalidArgument where substeps are not 1, or the bodies'
+  /// steps are of another duration. Precondition: they are in the same environment.
+  void set_bodies(Bodies& bodies);
   /// Injects `rate` particles a second at random places of a patch, from the first step on. Throws InvalidArgument
   /// where the patch has no face at a free cell, or the rate is negative or not finite.
   void add_inlet(Patch patch, double rate, const Vec3& velocity, double radius = 0.0);
@@ -208,6 +213,7 @@ class Flow {
   void count_spheres();
   // With collisions, in flow_collide.cpp.
   [[nodiscard]] bool collides() const { return options_.collisions && spheres_ > 0; }
+  [[nodiscard]] bool meets_bodies() const { return bodies_ != nullptr && bodies_->size() > 0; }
   void collide(double dt, bool moving);
   void weigh();
   void find_walls(double dt, bool moving);
@@ -238,7 +244,9 @@ class Flow {
   std::vector<Vec3> targets_;
   SphereStepper stepper_;
   Collider collider_;
-  std::vector<double> met_radii_;  // in collisions: 0 for those that meet nobody
+  Bodies* bodies_ = nullptr;
+  SphereBodyCollider body_collider_;  // in place of the other one while there are bodies
+  std::vector<double> met_radii_;     // in collisions: 0 for those that meet nobody
   std::vector<double> inverse_masses_;
   struct Clear {  // no wall is nearer to this place
     Vec3 centre;

@@ -15,7 +15,8 @@ FlowCheckpoint Flow::checkpoint() const {
   }
   saved.totals = totals_;
   saved.gone = gone_;
-  saved.impulses.assign(collider_.solver().kept().begin(), collider_.solver().kept().end());
+  const auto kept = meets_bodies() ? body_collider_.solver().kept() : collider_.solver().kept();
+  saved.impulses.assign(kept.begin(), kept.end());
   return saved;
 }
 
@@ -44,6 +45,7 @@ void Flow::restore(const FlowCheckpoint& saved) {
   }
   clear_.clear();
   count_spheres();
+  body_collider_.solver().set_kept(saved.impulses);  // whichever goes on forgets the other's
   collider_.solver().set_kept(saved.impulses);
   steps_ = saved.steps;
   next_id_ = saved.next_id;

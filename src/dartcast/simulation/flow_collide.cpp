@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "dartcast/base/error.hpp"
 #include "dartcast/simulation/flow.hpp"
 #include "dartcast/walk/nearby.hpp"
 
@@ -18,6 +19,13 @@ constexpr std::size_t wall_grain = 256;
 constexpr double wall_share = 0.25;
 
 }  // namespace
+
+void Flow::set_bodies(Bodies& bodies) {
+  if (options_.substeps != 1) throw InvalidArgument("flow: spheres and bodies meet once in a step: substeps must be 1");
+  if (bodies.options().dt != options_.dt)
+    throw InvalidArgument("flow: the steps of bodies that its spheres meet must be as long as its own");
+  bodies_ = &bodies;
+}
 
 // Masses, and who takes part: those held or gone meet nobody, those that stick to a wall cannot be pushed.
 void Flow::weigh() {
@@ -102,10 +110,16 @@ void Flow::collide(double dt, bool moving) {
   solver.iterations = c.iterations;
   solver.push_iterations = c.push_iterations;
   solver.resting_speed = 2.0 * norm(options_.gravity) * dt;
-  last_.collisions += collider_.collide(
-      environment_.complex(),
-      {particles_.states(), ids_, met_radii_, inverse_masses_, clearances_, velocities_, displacements_}, walls_,
-      solver, environment_.threads());
+  const Complex& complex = environment_.complex();
+  const CollidingSpheres spheres = {particles_.states(), ids_,        met_radii_,    inverse_masses_,
+                                    clearances_,         velocities_, displacements_};
+  if (meets_bodies()) {
+    last_.collisions += body_collider_.collide(complex, spheres, walls_, *bodies_, solver, environment_.threads());
+    collider_.solver().set_kept({});
+  } else {
+    last_.collisions += collider_.collide(complex, spheres, walls_, solver, environment_.threads());
+    body_collider_.solver().set_kept({});
+  }
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     if (fates_[i] == Fate::alive && !particles_[i].held)
       targets_[i] = detail::flushed(particles_[i].position + displacements_[i]);

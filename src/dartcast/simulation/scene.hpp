@@ -142,7 +142,8 @@ struct Scene {
   EnvironmentScene environment;
   std::vector<DeformationScene> deformation;
   std::vector<ParticlesScene> particles;
-  std::optional<CollisionOptions> collisions;  ///< of spheres with each other; none: they do not meet
+  std::optional<CollisionOptions> collisions;  ///< of spheres with each other and bodies; none: they do not meet
+  BodyCollisionOptions body_collisions;        ///< of bodies with each other
   std::vector<BodyScene> bodies;
   std::vector<CatheterScene> catheters;
   MotionScene motion;

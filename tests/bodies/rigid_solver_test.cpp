@@ -1,0 +1,293 @@
+// Impulses between rigid bodies, spheres and walls.
+#include "dartcast/bodies/rigid_solver.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "dartcast/base/random.hpp"
+#include "dartcast/bodies/body_motion.hpp"
+
+namespace dartcast {
+namespace {
+
+constexpr double dt = 0.01;
+
+class Draw {
+ public:
+  explicit Draw(std::uint64_t seed) : random_(seed) {}
+  double in(double low, double high) { return random_.uniform(low, high); }
+  Vec3 vector(double most = 1.0) { return {in(-most, most), in(-most, most), in(-most, most)}; }
+  Vec3 direction() {
+    while (true) {
+      const Vec3 v = vector();
+      if (norm(v) > 0.2 && norm(v) < 1.0) return v * (1.0 / norm(v));
+    }
+  }
+  std::size_t below(std::size_t n) { return random_.below(n); }
+
+ private:
+  Random random_;
+};
+
+// A body of some points, with its tensor of inertia.
+struct Lump {
+  RigidMover mover;
+  double mass = 0.0;
+  std::vector<double> masses;
+  std::vector<Vec3> points;
+};
+
+Lump lump(Draw& draw) {
+  Lump l;
+  for (int i = 0; i < 6; ++i) {
+    l.masses.push_back(draw.in(0.1, 1.0));
+    l.points.push_back(draw.vector());
+  }
+  std::vector<Vec3> velocities;
+  const Vec3 common = draw.vector();
+  const Vec3 spin = draw.vector(3.0);
+  for (const Vec3& x : l.points) velocities.push_back(common + cross(spin, x));
+  const RigidMotion m = rigid_motion(l.masses, l.points, velocities);
+  l.mass = m.mass;
+  l.mover.inverse_mass = 1.0 / m.mass;
+  l.mover.turns = true;
+  l.mover.inverse_inertia = inverse_inertia(l.masses, l.points, m.centre);
+  l.mover.centre = m.centre;
+  l.mover.velocity = m.velocity;
+  l.mover.spin = m.spin;
+  return l;
+}
+
+double kinetic(const Lump& l, const RigidMover& m) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < l.points.size(); ++i) {
+    const Vec3 v = m.velocity_at(l.points[i]);
+    sum += 0.5 * l.masses[i] * dot(v, v);
+  }
+  return sum;
+}
+
+Vec3 angular(const Lump& l, const RigidMover& m) {
+  Vec3 sum;
+  for (std::size_t i = 0; i < l.points.size(); ++i) sum += cross(l.points[i], m.velocity_at(l.points[i]) * l.masses[i]);
+  return sum;
+}
+
+RigidContact touch(const Vec3& normal, const Vec3& at) {
+  RigidContact c;
+  c.a = 0;
+  c.a_id = 1;
+  c.b = 1;
+  c.b_id = 2;
+  c.normal = normal;
+  c.point_a = c.point_b = at;
+  return c;
+}
+
+SolverOptions options() {
+  SolverOptions o;
+  o.dt = dt;
+  return o;
+}
+
+// One contact without friction: the velocities part at -e times what they came at; momenta and energy as they must be.
+TEST(RigidSolver, OneContactIsAsNewtonsLaw) {
+  Draw draw(1);
+  int hit = 0;
+  for (int i = 0; i < 500; ++i) {
+    const Lump a = lump(draw);
+    const Lump b = lump(draw);
+    std::vector<RigidMover> movers = {a.mover, b.mover};
+    RigidContact c = touch(draw.direction(), draw.vector());
+    c.restitution = i % 3 * 0.5;
+    const auto speed = [&] {
+      return dot(movers[1].velocity_at(c.point_b) - movers[0].velocity_at(c.point_a), c.normal);
+    };
+    const double before = speed();
+    RigidSolver().solve(std::span(&c, 1), movers, options());
+    if (before >= 0.0) {
+      EXPECT_EQ(movers[0].velocity, a.mover.velocity);
+      EXPECT_EQ(movers[1].spin, b.mover.spin);
+      continue;
+    }
+    ++hit;
+    ASSERT_NEAR(speed(), -c.restitution * before, 1e-12);
+    const Vec3 momentum =
+        (movers[0].velocity - a.mover.velocity) * a.mass + (movers[1].velocity - b.mover.velocity) * b.mass;
+    ASSERT_LE(norm(momentum), 1e-13);
+    const Vec3 turning = angular(a, movers[0]) + angular(b, movers[1]) - angular(a, a.mover) - angular(b, b.mover);
+    ASSERT_LE(norm(turning), 1e-12);
+    // What the law takes: (1 - e^2) / 2 of the effective mass times the speed squared.
+    const Vec3 impulse = (movers[1].velocity - b.mover.velocity) * b.mass;
+    const double lost = 0.5 * (1.0 - c.restitution) * norm(impulse) * -before;
+    const double had = kinetic(a, a.mover) + kinetic(b, b.mover);
+    ASSERT_NEAR(kinetic(a, movers[0]) + kinetic(b, movers[1]), had - lost, 1e-12 * had);
+  }
+  EXPECT_GT(hit, 100);
+}
+
+// With friction the impulse is in the cone, and slip ends or goes on against it.
+TEST(RigidSolver, FrictionIsCoulombs) {
+  Draw draw(2);
+  int sticks = 0;
+  int slips = 0;
+  for (int i = 0; i < 500; ++i) {
+    const Lump a = lump(draw);
+    const Lump b = lump(draw);
+    std::vector<RigidMover> movers = {a.mover, b.mover};
+    RigidContact c = touch(draw.direction(), draw.vector());
+    c.friction = draw.in(0.1, 1.5);
+    SolverOptions o = options();
+    o.iterations = 2000;
+    RigidSolver().solve(std::span(&c, 1), movers, o);
+    const Vec3 impulse = (movers[1].velocity - b.mover.velocity) * b.mass;
+    const double along = dot(impulse, c.normal);
+    if (along < 1e-3) continue;
+    const Vec3 across = impulse - c.normal * along;
+    const Vec3 left = movers[1].velocity_at(c.point_b) - movers[0].velocity_at(c.point_a);
+    ASSERT_NEAR(dot(left, c.normal), 0.0, 1e-9);
+    ASSERT_LE(norm(across), c.friction * along * (1.0 + 1e-9));
+    if (norm(left) < 1e-6) {
+      ++sticks;
+      continue;
+    }
+    ++slips;
+    ASSERT_NEAR(norm(across), c.friction * along, 1e-6 * along);
+    ASSERT_NEAR(dot(across, left), -norm(across) * norm(left), 1e-6 * norm(across) * norm(left));
+  }
+  EXPECT_GT(sticks, 30);
+  EXPECT_GT(slips, 30);
+}
+
+// A random cluster of spheres with walls: what ContactSolver makes of it, step after step.
+TEST(RigidSolver, SpheresAreAsInTheContactSolver) {
+  Draw draw(3);
+  constexpr std::size_t count = 40;
+  std::vector<RigidMover> movers(count);
+  std::vector<std::uint64_t> ids(count);
+  std::vector<double> inverse(count);
+  std::vector<Vec3> velocities(count);
+  std::vector<Vec3> displacements(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    ids[i] = 7 * i % count;
+    inverse[i] = movers[i].inverse_mass = i == 5 ? 0.0 : draw.in(0.5, 2.0);
+    velocities[i] = movers[i].velocity = draw.vector();
+  }
+  std::vector<PairContact> pairs;
+  std::vector<WallContact> walls;
+  std::vector<RigidContact> contacts;
+  for (int i = 0; i < 120; ++i) {
+    auto a = static_cast<std::uint32_t>(draw.below(count));
+    auto b = static_cast<std::uint32_t>(draw.below(count));
+    if (a == b) continue;
+    if (ids[a] > ids[b]) std::swap(a, b);
+    if (std::any_of(pairs.begin(), pairs.end(), [&](const PairContact& p) { return p.a == a && p.b == b; })) continue;
+    pairs.push_back({a, b, draw.direction(), draw.in(-0.001, 0.002)});
+  }
+  for (std::uint32_t i = 0; i < 10; ++i)
+    walls.push_back({3 * i, draw.direction(), draw.in(-0.001, 0.001), draw.vector(0.1), 0.3, 0.2});
+  for (const PairContact& p : pairs) {
+    RigidContact c = touch(p.normal, {});
+    c.a = p.a;
+    c.b = p.b;
+    c.a_id = ids[p.a];
+    c.b_id = ids[p.b];
+    c.gap = p.gap;
+    c.restitution = 0.4;
+    c.friction = 0.5;
+    contacts.push_back(c);
+  }
+  for (const WallContact& w : walls) {
+    RigidContact c;
+    c.b = w.sphere;
+    c.b_id = ids[w.sphere];
+    c.normal = w.normal;
+    c.gap = w.gap;
+    c.restitution = w.restitution;
+    c.friction = w.friction;
+    c.wall_velocity = w.wall_velocity;
+    contacts.push_back(c);
+  }
+  SolverOptions o = options();
+  o.restitution = 0.4;
+  o.friction = 0.5;
+  o.resting_speed = 0.05;
+  ContactSolver expected;
+  RigidSolver solver;
+  for (int step = 0; step < 5; ++step) {
+    expected.solve(pairs, walls, {ids, inverse, velocities, displacements}, o);
+    solver.solve(contacts, movers, o);
+    EXPECT_EQ(solver.loaded_pairs(), expected.loaded_pairs());
+    EXPECT_EQ(solver.loaded_walls(), expected.loaded_walls());
+    ASSERT_EQ(solver.kept().size(), expected.kept().size());
+    for (std::size_t i = 0; i < count; ++i) {
+      ASSERT_LE(norm(movers[i].velocity - velocities[i]), 1e-12) << step;
+      ASSERT_LE(norm(movers[i].shift - displacements[i]), 1e-14) << step;
+      velocities[i] += Vec3{0.0, 0.0, -0.3};
+      movers[i].velocity = velocities[i];
+    }
+  }
+}
+
+// Many contacts of bodies: the result does not hang on the order, and goes on from what was kept.
+TEST(RigidSolver, OrderDoesNotMatterAndKeptImpulsesGoOn) {
+  Draw draw(4);
+  std::vector<RigidMover> movers;
+  for (int i = 0; i < 6; ++i) movers.push_back(lump(draw).mover);
+  std::vector<RigidContact> contacts;
+  for (std::uint32_t i = 0; i < 30; ++i) {
+    RigidContact c = touch(draw.direction(), draw.vector());
+    c.a = i % 6;
+    c.b = (i + 1 + i / 6) % 6;
+    c.a_id = i;
+    c.b_id = 100 + i;
+    if (i % 7 == 0) c.a = RigidContact::wall;
+    c.point_b = draw.vector();
+    c.gap = draw.in(-0.01, 0.01);
+    c.friction = 0.3;
+    if (c.a != c.b) contacts.push_back(c);
+  }
+  std::vector<RigidContact> reversed(contacts.rbegin(), contacts.rend());
+  RigidSolver one;
+  RigidSolver other;
+  std::vector<RigidMover> again = movers;
+  for (int step = 0; step < 3; ++step) {
+    one.solve(contacts, movers, options());
+    other.solve(reversed, again, options());
+    ASSERT_FALSE(one.kept().empty());
+    for (std::size_t i = 0; i < movers.size(); ++i) {
+      ASSERT_EQ(movers[i].velocity, again[i].velocity);
+      ASSERT_EQ(movers[i].spin, again[i].spin);
+      ASSERT_EQ(movers[i].shift, again[i].shift);
+      ASSERT_EQ(movers[i].turned, again[i].turned);
+      movers[i].velocity += Vec3{0.0, 0.0, -0.1};
+      again[i].velocity = movers[i].velocity;
+    }
+    const std::vector<KeptImpulse> kept(one.kept().begin(), one.kept().end());
+    other = RigidSolver();
+    other.set_kept(kept);
+  }
+}
+
+// What overlaps is taken apart without velocities.
+TEST(RigidSolver, PushesDoNotChangeVelocities) {
+  Draw draw(6);
+  for (int i = 0; i < 50; ++i) {
+    const Lump a = lump(draw);
+    const Lump b = lump(draw);
+    std::vector<RigidMover> movers = {a.mover, b.mover};
+    for (RigidMover& m : movers) m.velocity = m.spin = {};
+    RigidContact c = touch(draw.direction(), draw.vector());
+    c.gap = -0.1;
+    RigidSolver().solve(std::span(&c, 1), movers, options());
+    EXPECT_EQ(movers[0].velocity, Vec3{});
+    EXPECT_EQ(movers[1].spin, Vec3{});
+    const auto moved = [&](const RigidMover& m) { return m.shift + cross(m.turned, c.point_a - m.centre); };
+    EXPECT_NEAR(dot(moved(movers[1]) - moved(movers[0]), c.normal), 0.02, 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace dartcast
