@@ -186,8 +186,8 @@ TEST(RigidSolver, SpheresAreAsInTheContactSolver) {
     if (std::any_of(pairs.begin(), pairs.end(), [&](const PairContact& p) { return p.a == a && p.b == b; })) continue;
     pairs.push_back({a, b, draw.direction(), draw.in(-0.001, 0.002)});
   }
-  for (std::uint32_t i = 0; i < 10; ++i)
-    walls.push_back({3 * i, draw.direction(), draw.in(-0.001, 0.001), draw.vector(0.1), 0.3, 0.2});
+  for (std::uint32_t i = 0; i < 30; ++i)
+    walls.push_back({3 * (i / 3), draw.direction(), draw.in(-0.001, 0.001), draw.vector(0.1), 0.3, 0.2});
   for (const PairContact& p : pairs) {
     RigidContact c = touch(p.normal, {});
     c.a = p.a;

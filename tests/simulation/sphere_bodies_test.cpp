@@ -241,6 +241,7 @@ TEST(SphereBodies, ASphereStandsOnABody) {
     EXPECT_LE(norm(both.flow.particles()[0].position - ball), 1e-4 * r) << ratio;
     EXPECT_LE(norm(both.bodies.rigid_motion_of(0).centre - body), 1e-4 * r) << ratio;
     EXPECT_LE(norm(both.flow.velocities()[0]), 2.0 * 9.81 * dt) << ratio;
+    EXPECT_LE(norm(both.bodies.rigid_motion_of(0).velocity), 9.81 * dt / ratio) << ratio;
     EXPECT_LE(both.deepest(), 0.01 * r) << ratio;
     EXPECT_EQ(both.failed(), 0U);
   }
@@ -288,20 +289,45 @@ TEST(SphereBodies, ThroughAWallNobodyMeets) {
   box.size = {0.7, 0.3, 0.3};
   MeshData mesh = generate_box(box);
   mesh.free.assign(mesh.cell_count(), 1);
-  for (std::size_t c = 3; c < mesh.cell_count(); c += 7) mesh.free[c] = 0;  // a wall across
+  mesh.free[3 + 7 * (1 + 3)] = 0;  // a pillar in the middle
   Both both(Environment(std::move(mesh), Threads{1}), {}, CollisionOptions{}, Response{});
   BodyOptions o;
   o.radius = 0.12;
   both.bodies.add(std::vector<Vec3>{{0.25, 0.15, 0.15}}, o);
-  both.flow.add(std::vector<Vec3>{{0.45, 0.15, 0.15}}, {}, 0.02);
+  both.flow.add(std::vector<Vec3>{{0.45, 0.15, 0.15}}, {}, 0.1);
   both.flow.add(std::vector<Vec3>{{0.27, 0.15, 0.15}}, {});  // a point
   for (int i = 0; i < 3; ++i) both.step();
+  EXPECT_GT(both.flow.totals().collisions.pairs_tested, 0U);
   EXPECT_EQ(both.flow.totals().collisions.pairs_near, 0U);
   EXPECT_EQ(both.bodies.velocities()[0], Vec3{});
   o.radius = 0.02;
   both.bodies.add(std::vector<Vec3>{{0.48, 0.15, 0.15}}, o);  // on the other side
   both.step();
   EXPECT_EQ(both.flow.totals().collisions.pairs_near, 1U);
+}
+
+// What a body is given is for one step, and its energy is told.
+TEST(SphereBodies, ABodyIsGivenSomethingOnce) {
+  Both both(closed_box(), {}, CollisionOptions{}, Response{});
+  both.add_body(3, {0.4, 0.5, 0.5}, {}, 2.0);
+  RigidMover m = both.bodies.foreseen(0);
+  m.velocity.x = 1.5;
+  m.shift.x = 1.5 * dt;
+  both.bodies.act(0, m);
+  EXPECT_NEAR(both.bodies.step().input, 0.5 * 2.0 * 1.5 * 1.5, 1e-9);
+  EXPECT_NEAR(both.bodies.rigid_motion_of(0).centre.x, 0.4 + 1.5 * dt, 1e-12);
+  EXPECT_EQ(both.bodies.step().input, 0.0);
+  EXPECT_NEAR(both.bodies.rigid_motion_of(0).velocity.x, 1.5, 1e-9);
+}
+
+TEST(SphereBodies, ContactsBetweenBodiesAreTheirOwn) {
+  Both both(closed_box(), {}, CollisionOptions{}, Response{});
+  both.add_body(3, {0.4, 0.5, 0.5}, {1.0, 0.0, 0.0}, 1.0);
+  both.add_body(3, {0.56, 0.5, 0.5}, {-1.0, 0.0, 0.0}, 1.0);
+  both.flow.add(std::vector<Vec3>{{0.8, 0.8, 0.8}}, {}, 0.02);
+  both.step();
+  EXPECT_GT(both.flow.totals().collisions.pairs_tested, 0U);
+  EXPECT_EQ(both.flow.totals().collisions.pairs_near, 0U);
 }
 
 // A body that sticks to a wall by one of its particles gives no way.

@@ -147,6 +147,45 @@ TEST(SpherePairs, BothSidesOfAWall) {
   EXPECT_FALSE(separated(environment.complex(), particles[0], particles[2]));
 }
 
+// A wall far from one of them, and particles that are held.
+TEST(SpherePairs, SeparatedByAWallFarAway) {
+  Environment environment(box_mesh(6, 0.0), Threads{1});
+  environment.edit([](ComplexEdit& e) {
+    for (const Cell c : e.topology().map().cells()) {
+      if (e.topology().map().source(c) % 36 / 6 == 4) e.topology().set_free(c, false);
+    }
+  });
+  Particles particles;
+  environment.add(particles, std::vector<Vec3>{{3.5, 0.3, 3.5}, {3.5, 5.7, 3.5}, {3.5, 3.5, 3.5}});
+  ASSERT_EQ(particles.size(), 3U);
+  EXPECT_TRUE(separated(environment.complex(), particles[0], particles[1]));
+  EXPECT_TRUE(separated(environment.complex(), particles[1], particles[0]));
+  EXPECT_FALSE(separated(environment.complex(), particles[0], particles[2]));
+  State held = particles[0];
+  held.held = true;
+  EXPECT_FALSE(separated(environment.complex(), held, particles[1]));
+  EXPECT_FALSE(separated(environment.complex(), particles[1], held));
+}
+
+// None reaches further than the other; and as far as they can, over several cells.
+TEST(SpherePairs, EqualSpheresByLists) {
+  Crowd crowd(4, 0.0);
+  crowd.fill(std::max<std::size_t>(60, test::scaled<std::size_t>(300, 1000)), {0, 0, 0}, {4, 4, 4}, 9, [](Random&) {
+    return SphereMotion{{}, {}, 0.15};
+  });
+  const auto meeting = all_that_meet(crowd.spheres);
+  EXPECT_FALSE(meeting.empty());
+  expect_complete(crowd.find(PairSearch::lists), meeting, crowd.spheres);
+  Crowd two(8, 0.0);
+  const auto add = [&](double x) {
+    two.fill(1, {x, 4.4, 4.4}, {x, 4.4, 4.4}, 1, [](Random&) { return SphereMotion{{}, {}, 3.0}; });
+  };
+  add(0.5);
+  add(6.45);
+  ASSERT_EQ(two.spheres.size(), 2U);
+  EXPECT_EQ(two.find(PairSearch::lists).size(), 1U);
+}
+
 TEST(SpherePairs, ThousandsInOneCellAndOneHugeSphere) {
   Crowd crowd(3, 0.0);
   const auto count = std::max<std::size_t>(200, test::scaled<std::size_t>(3000, 10000));

@@ -208,6 +208,7 @@ class Bodies {
     bool pushed = false;    // off other bodies, there
     bool collided = false;  // with another body
     BodyAction action = {};
+    double lift = 0.0;  // of the displacement in it: what the wells would take for it, at most
 
     [[nodiscard]] bool changes() const { return pull > 0.0 || kept < 1.0 || pushed; }  // in the second pass
   };
@@ -261,6 +262,7 @@ class Bodies {
   void afford_together();
   void cut_together(std::span<const std::uint32_t> group);
   void aim_pull(Body& body);
+  static void charge_lift(Body& body);
   void damp(Body& body);
   void remove_gone();
   void remove_bodies(std::span<const std::uint8_t> leaving);

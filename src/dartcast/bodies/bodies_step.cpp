@@ -218,6 +218,7 @@ void Bodies::second_pass() {
     accept(body);
     damp(body);
     body.moving = kinetic(body);
+    charge_lift(body);
   });
   pool_energy();
   afford_together();
@@ -240,7 +241,7 @@ void Bodies::aim_pull(Body& body) {
     cost += masses_[p] * std::max(0.0, well.rise(x, targets_[p] - x));
   }
   body.slides = body.met || cost > body.allowed;
-  double input = 0.0;
+  body.lift = 0.0;
   for (std::size_t p = body.first; p < body.first + body.shape.size(); ++p) {
     const Vec3& x = reached_[p];
     if (!body.changes() || fates_[p] != Fate::alive || particles_[p].held) {
@@ -256,12 +257,20 @@ void Bodies::aim_pull(Body& body) {
     if (const Vec3 shift = body.action.shift_at(x); body.pushed && shift != Vec3{}) {
       const double paid = std::max(0.0, well.rise(x, targets_[p] - x));
       targets_[p] += shift;
-      input += masses_[p] * std::max(0.0, well.rise(x, targets_[p] - x) - paid);
+      body.lift += masses_[p] * std::max(0.0, well.rise(x, targets_[p] - x) - paid);
     }
     targets_[p] = detail::flushed(targets_[p]);
   }
-  body.input += input;
-  body.budget += input;
+}
+
+// What of a displacement nothing else pays for. A shape that is moved as a whole costs its weight alone: its wells go
+// along.
+void Bodies::charge_lift(Body& body) {
+  const double cost = std::min(body.lift, body.moving - body.allowed);
+  if (!(cost > 0.0)) return;
+  body.input += cost;
+  body.budget += cost;
+  body.allowed += cost;
 }
 
 // Velocities relative to the rigid motion fall; what the pull did to places changes neither momentum nor angular

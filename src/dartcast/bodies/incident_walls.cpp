@@ -56,9 +56,8 @@ bool leads_there(const Vec3& v, HeldBack& held) {
   return norm(reached - held.velocity) <= rounding_share * sum;
 }
 
-// Along the crease of two: of those that the others let pass the nearest to v, which is the longest.
+// Along the crease of two that push it there, where the others let it.
 bool hold_by_two(const Vec3& v, std::span<const WallHit> walls, double most, HeldBack& held) {
-  double longest = -1.0;
   for (std::size_t i = 0; i < walls.size(); ++i) {
     const Vec3& n = walls[i].normal;
     const Vec3 plane = into_plane(v, n);
@@ -66,16 +65,13 @@ bool hold_by_two(const Vec3& v, std::span<const WallHit> walls, double most, Hel
       const Vec3 m = beside(n, walls[j].normal);
       const double sine = dot(m, walls[j].normal);
       if (!(sine > 0.0)) continue;
-      const Vec3 line = into_plane(plane, m);
       const double second = -dot(plane, m) / sine;
       const double first = -dot(v, n) - second * dot(n, walls[j].normal);
-      HeldBack found = {line, {&walls[i], &walls[j]}, {first, second}, 2};
-      if (dot(line, line) <= longest || !points_into_none(line, walls, most) || !leads_there(v, found)) continue;
-      longest = dot(line, line);
-      held = found;
+      held = {into_plane(plane, m), {&walls[i], &walls[j]}, {first, second}, 2};
+      if (points_into_none(held.velocity, walls, most) && leads_there(v, held)) return true;
     }
   }
-  return longest >= 0.0;
+  return false;
 }
 
 // Three walls take all of v. Where rounding finds none that do, it ends without.

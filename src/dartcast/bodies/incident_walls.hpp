@@ -23,8 +23,9 @@ struct HeldBack {
 };
 
 /// The velocity nearest to v that points into none of the walls, up to rounding: v's projection onto the cone of such
-/// velocities. It is one, whatever the order of the walls. Precondition: normals are of length 1. Cost: some ns per
-/// wall where one of them is enough; the cube of their number at edges and vertices.
+/// velocities. It is one, whatever the order of the walls (those whose normals differ by less than some 2^-23 may count
+/// as one wall). Precondition: normals are of length 1. Cost: some ns per wall where one of them is enough; the cube of
+/// their number at edges and vertices.
 HeldBack held_back(const Vec3& v, std::span<const WallHit> walls);
 
 /// How a wall answers.
