@@ -145,6 +145,17 @@ TEST(BodyCollisions, RigidBodiesReboundAsTheFormulaSays) {
   }
 }
 
+// Of one particle each, they are balls.
+TEST(BodyCollisions, BodiesOfOneParticleMeet) {
+  Environment environment = room();
+  Bodies bodies(environment, rebounding(0.5));
+  bodies.add(std::vector<Vec3>{{0.4, 0.5, 0.5}}, ball_set({1.0, 0.0, 0.0}));
+  bodies.add(std::vector<Vec3>{{0.6, 0.5, 0.5}}, ball_set({-1.0, 0.0, 0.0}));
+  for (int i = 0; i < 120; ++i) bodies.step();
+  EXPECT_NEAR(bodies.velocities()[0].x, -0.5, 1e-9);
+  EXPECT_NEAR(bodies.velocities()[1].x, 0.5, 1e-9);
+}
+
 // Turned, beside each other's centres, three at once: momenta are kept, energy never grows.
 TEST(BodyCollisions, ReboundsKeepMomentaAndAddNoEnergy) {
   Random random(9);
