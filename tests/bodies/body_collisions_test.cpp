@@ -14,6 +14,7 @@
 #include "dartcast/bodies/bodies.hpp"
 #include "dartcast/environment/audit.hpp"
 #include "dartcast/mesh/generate_box.hpp"
+#include "dartcast/spheres/collide.hpp"
 #include "tier.hpp"
 
 namespace dartcast {
@@ -142,6 +143,32 @@ TEST(BodyCollisions, RigidBodiesReboundAsTheFormulaSays) {
       const double lost = 0.5 * (1.0 - restitution * restitution) * ratio / (1.0 + ratio) * approach * approach;
       EXPECT_NEAR(after.energy, before.energy - lost, 1e-6);
     }
+  }
+}
+
+// Two balls may come as near as leaves them the gap of rest, from where a motion apart would take them first.
+TEST(BodyCollisions, GapsAreUsedUp) {
+  Environment environment = room();
+  const double r = 0.03;
+  const double room_left = 0.02 * r;
+  const std::vector<Vec3> places = {{0.4, 0.5, 0.5}, {0.4 + 2.0 * r + room_left, 0.5, 0.5}};
+  Particles particles;
+  environment.add(particles, places);
+  ASSERT_EQ(particles.size(), 2U);
+  const std::vector<std::uint32_t> body_of = {0, 1};
+  const std::vector<std::uint64_t> ids = {0, 1};
+  const std::vector<double> radii(2, r);
+  const std::vector<double> inverse_masses(2, 1.0);
+  for (const double parting : {0.0, 0.1}) {
+    const std::vector<Vec3> velocities = {{-0.5 * parting, 0, 0}, {0.5 * parting, 0, 0}};
+    std::vector<Vec3> led_to = {{9.0, 0, 0}, {-9.0, 0, 0}};
+    std::vector<Vec3> pushes(2);
+    BodyCollisions collisions;
+    const BodyParticles balls{body_of, ids, places, radii, inverse_masses};
+    collisions.find(environment.complex(), particles.states(), balls, led_to, dt, Threads{1});
+    collisions.solve(balls, BodyCollisionOptions{}, dt, velocities, led_to, pushes);
+    EXPECT_NEAR((led_to[0].x - led_to[1].x) * dt, (room_left - resting_gap * r) + parting * dt, 1e-15);
+    EXPECT_EQ(pushes[0], Vec3{});
   }
 }
 
