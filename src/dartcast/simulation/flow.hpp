@@ -122,8 +122,8 @@ class Flow {
   /// Throws InvalidArgument where it is not made for the environment's number of points.
   void set_deformation(Deformation deformation);
   /// Bodies that the spheres meet, with the options of CollisionOptions, where it has collisions; they outlive its
-  /// last step. Their step() follows each of the flow's. Throws InvalidArgument where substeps are not 1, or the bodies'
-  /// steps are of another duration. Precondition: they are in the same environment.
+  /// last step. Their step() follows each of the flow's. Throws InvalidArgument where substeps are not 1, or the
+  /// bodies' steps are of another duration. Precondition: they are in the same environment.
   void set_bodies(Bodies& bodies);
   /// Injects `rate` particles a second at random places of a patch, from the first step on. Throws InvalidArgument
   /// where the patch has no face at a free cell, or the rate is negative or not finite.
