@@ -125,10 +125,10 @@ class Batch {
 
   // The facet that a target lies behind, and no other, where its coordinates prove it.
   DARTCAST_TARGET static std::uint8_t exit_by(const Quad& coordinates) {
-    const unsigned beyond = lanes_set(coordinates < -coordinate_margin);
-    const unsigned proved = beyond | lanes_set(coordinates > coordinate_margin);
-    const bool near = lanes_set(magnitude(coordinates) <= most_for_sign) == 15U;
-    if (!near || proved != 15U || !std::has_single_bit(beyond)) return no_facet;
+    const Quad m = magnitude(coordinates);
+    const Mask signs_known = (m > coordinate_margin) & (m <= most_for_sign);
+    const unsigned beyond = lanes_set(coordinates < 0.0);
+    if (lanes_set(signs_known) != 15U || !std::has_single_bit(beyond)) return no_facet;
     return static_cast<std::uint8_t>(std::countr_zero(beyond));
   }
 

@@ -36,9 +36,9 @@ DARTCAST_TARGET inline void leave_coordinates(const Lanes& relative, const Filte
   store_floats(g.y, memo.y);
   store_floats(g.z, memo.z);
   const Lanes stored = {load_floats(memo.x), load_floats(memo.y), load_floats(memo.z)};
-  const double extent = most(larger(larger(magnitude(relative.x), magnitude(relative.y)), magnitude(relative.z)));
-  const Quad m = magnitude(p);
-  const double reach = std::max(extent, std::max(std::max(m[0], m[1]), m[2]) * (1.0 / extents_from_origin));
+  const double extent = std::max(std::max(d.extent[0], d.extent[1]), d.extent[2]);
+  const Quad m = larger(d.extent, magnitude(p) * (1.0 / extents_from_origin));
+  const double reach = std::max(std::max(m[0], m[1]), m[2]);
   const Quad steepness = (magnitude(stored.x) + magnitude(stored.y) + magnitude(stored.z)) * four(reach);
   const bool proved = d.proves_coordinates() && volume >= least_volume * (extent * extent * extent) &&
                       extent <= largest_extent && lanes_set(steepness <= steepest_gradient) == 15U;

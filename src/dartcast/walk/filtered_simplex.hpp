@@ -39,6 +39,7 @@ DARTCAST_TARGET inline double least(const Quad& v) { return std::min(std::min(v[
 // The determinants of geometry/simplex.hpp, by the same operations, one in each lane; and their bound.
 struct FilteredDeterminants {
   Quad value;
+  Quad extent;  // largest magnitudes of x, y and z relative to the point
   double bound;
   bool applies;
 
@@ -53,7 +54,7 @@ struct FilteredDeterminants {
     const Quad r1 = v.corner[1] - point;
     const Quad r2 = v.corner[2] - point;
     const Quad r3 = v.corner[3] - point;
-    const Quad extent = larger(larger(magnitude(r0), magnitude(r1)), larger(magnitude(r2), magnitude(r3)));
+    extent = larger(larger(magnitude(r0), magnitude(r1)), larger(magnitude(r2), magnitude(r3)));
     const double m = extent[0] * extent[1] * extent[2];
     bound = determinant_error * m;
     applies = (lanes_set(extent > 0x1p+301) & 7U) == 0 && m >= 0x1p-700;
