@@ -654,10 +654,45 @@ TEST(AdvanceSpheres, RefusesWhatIsNoRadius) {
   EXPECT_THROW(with({std::numeric_limits<double>::quiet_NaN()}), InvalidArgument);
   EXPECT_THROW(with({std::numeric_limits<double>::infinity()}), InvalidArgument);
   EXPECT_THROW(with({0.25, 0.25}), InvalidArgument);
+  EXPECT_THROW(swarm.stepper.advance(swarm.environment, swarm.particles, swarm.radii, target, {}, {},
+                                     std::vector<double>{1.0, 1.0}),
+               InvalidArgument);
   EXPECT_THROW(
       swarm.stepper.advance(swarm.environment, swarm.particles, swarm.radii, std::vector<Vec3>{{std::nan(""), 0, 0}}),
       InvalidArgument);
   EXPECT_EQ(swarm.particles[0].position, (Vec3{1.5, 1.5, 1.5}));
+}
+
+// Where clearances hold the way no walls are looked for, and nothing else changes; they are believed.
+TEST(AdvanceSpheres, ClearancesSaveTheSearch) {
+  const auto run = [](double share, std::size_t& contacts) {
+    Swarm swarm(cubes(4, CellType::hexahedron, 0.1), 7);
+    swarm.fill(scaled<std::size_t>(60, 400), 0.2, {0.2, 0.2, 0.2}, {3.8, 3.8, 3.8}, 0.3);
+    const auto walls = all_walls(swarm.environment.complex(), false);
+    for (int step = 0; step < 10; ++step) {
+      std::vector<Vec3> targets;
+      std::vector<double> clearances;
+      for (std::size_t i = 0; i < swarm.radii.size(); ++i) {
+        targets.push_back(swarm.particles[i].position + swarm.velocities[i]);
+        clearances.push_back(share * clearance(walls, swarm.particles[i].position));
+      }
+      const Respond respond = respond_with(bouncing(), swarm.velocities, swarm.fates, 1.0);
+      const SphereReport report =
+          swarm.stepper.advance(swarm.environment, swarm.particles, swarm.radii, targets, respond, {}, clearances);
+      contacts += report.step.contacts.contacts.size();
+    }
+    std::vector<Vec3> places;
+    for (std::size_t i = 0; i < swarm.radii.size(); ++i) places.push_back(swarm.particles[i].position);
+    return places;
+  };
+  std::size_t without = 0;
+  std::size_t with = 0;
+  std::size_t wrong = 0;
+  const std::vector<Vec3> places = run(0.0, without);
+  EXPECT_EQ(run(1.0, with), places);
+  EXPECT_EQ(with, without);
+  run(1e9, wrong);
+  EXPECT_LT(wrong, without);
 }
 
 TEST(AdvanceSpheres, AResponseThatThrowsChangesNothing) {

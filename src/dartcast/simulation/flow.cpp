@@ -201,7 +201,9 @@ void Flow::advance_segment(unsigned segment) {
     append_segment(last_.report, std::move(report), segment, options_.substeps);
     return;
   }
-  SphereReport report = stepper_.advance(environment_, particles_, radii_, targets_, respond, options_.step);
+  const std::span<const double> clearances = collides() ? clearances_ : std::span<const double>();
+  SphereReport report =
+      stepper_.advance(environment_, particles_, radii_, targets_, respond, options_.step, clearances);
   append_segment(last_.report, std::move(report.step), segment, options_.substeps);
   for (const SphereOverlap& o : report.overlaps) totals_.deepest_in_wall = std::max(totals_.deepest_in_wall, o.depth);
   totals_.wall_overlaps += report.overlaps.size();

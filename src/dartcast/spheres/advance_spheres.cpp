@@ -21,10 +21,13 @@ using detail::WayEnd;
 
 constexpr std::size_t spheres_in_chunk = 256;
 
-void check_radii(const Particles& particles, std::span<const double> radii, std::span<const Vec3> targets) {
+void check_radii(const Particles& particles, std::span<const double> radii, std::span<const Vec3> targets,
+                 std::span<const double> clearances) {
   if (radii.size() != particles.size() || targets.size() != particles.size())
     throw InvalidArgument(fmt::format("advance: {} radii and {} targets for {} particles", radii.size(), targets.size(),
                                       particles.size()));
+  if (!clearances.empty() && clearances.size() != particles.size())
+    throw InvalidArgument(fmt::format("advance: {} clearances for {} particles", clearances.size(), particles.size()));
   for (std::size_t i = 0; i < radii.size(); ++i) {
     if (!(radii[i] >= 0.0) || !std::isfinite(radii[i]))
       throw InvalidArgument(
@@ -96,12 +99,14 @@ class SphereCall {
 
  public:
   SphereCall(Buffers& b, Environment& environment, Particles& particles, std::span<const double> radii,
-             std::span<const Vec3> targets, const Respond& respond, const StepOptions& options)
+             std::span<const Vec3> targets, const Respond& respond, const StepOptions& options,
+             std::span<const double> clearances)
       : b_(b),
         environment_(environment),
         particles_(particles),
         radii_(radii),
         targets_(targets),
+        clearances_(clearances),
         respond_(respond),
         options_(options),
         scene_{&environment.complex(), environment.awaits_advance(particles), &respond_, &options_} {}
@@ -134,11 +139,18 @@ class SphereCall {
     });
   }
 
+  // Whether no wall is within reach of any place on the way. Clearances are distances that were rounded: a share of
+  // them is given up.
+  [[nodiscard]] bool is_clear(std::size_t i, const Vec3& from) const {
+    if (clearances_.empty() || scene_.moved) return false;
+    return radii_[i] + norm(targets_[i] - from) <= clearances_[i] * (1.0 - 0x1p-20);
+  }
+
   // What the environment refuses is left to it.
   void plan_first(std::size_t i, Chunk& chunk) {
     const State& state = particles_[i];
     if (radii_[i] == 0.0 || state.held || !is_finite(targets_[i])) return;
-    if (!scene_.complex->map().contains(state.cell)) return;
+    if (!scene_.complex->map().contains(state.cell) || is_clear(i, state.position)) return;
     const auto particle = static_cast<std::uint32_t>(i);
     const SphereWay way = detail::way_of(
         *scene_.complex, {state.cell, {state.position, targets_[i], radii_[i]}, scene_.moved, true}, chunk.near);
@@ -278,6 +290,7 @@ class SphereCall {
   Particles& particles_;
   std::span<const double> radii_;
   std::span<const Vec3> targets_;
+  std::span<const double> clearances_;
   const Respond& respond_;
   const StepOptions& options_;
   SphereScene scene_;
@@ -291,11 +304,12 @@ SphereStepper::SphereStepper(SphereStepper&&) noexcept = default;
 SphereStepper& SphereStepper::operator=(SphereStepper&&) noexcept = default;
 
 SphereReport SphereStepper::advance(Environment& environment, Particles& particles, std::span<const double> radii,
-                                    std::span<const Vec3> targets, const Respond& respond, const StepOptions& options) {
-  check_radii(particles, radii, targets);
+                                    std::span<const Vec3> targets, const Respond& respond, const StepOptions& options,
+                                    std::span<const double> clearances) {
+  check_radii(particles, radii, targets, clearances);
   const bool points_only = std::all_of(radii.begin(), radii.end(), [](double r) { return r == 0.0; });
   if (points_only) return {environment.advance(particles, targets, respond, options), {}};
-  SphereCall call(*buffers_, environment, particles, radii, targets, respond, options);
+  SphereCall call(*buffers_, environment, particles, radii, targets, respond, options, clearances);
   if (!respond) return call.run();
   const Particles before = particles;  // a response is the caller's code: it may throw
   try {

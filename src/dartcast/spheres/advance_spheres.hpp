@@ -57,12 +57,16 @@ class SphereStepper {
   ///   sphere of the radius that there is room for: so that it may go along and out, but not deeper.
   /// - Contacts in a step are limited by options.max_contacts, as for points.
   ///
+  /// `clearances`: no wall is nearer to a particle's centre, as walls and particles stand; none, or one each. Where
+  /// they hold a sphere's way no walls are looked for. After a move() they count for nothing.
+  ///
   /// Throws as Environment::advance(), and InvalidArgument where a radius is negative or not finite or their number
-  /// does not match; then nothing is changed. Cost: that of a point, 0.1 to 0.3 us for each
-  /// cell that the sphere reaches (three of them at a radius of 0.2 cell sizes), 0.1 to 0.4 us for each wall triangle
-  /// there, and some us for each contact.
+  /// does not match; then nothing is changed. Cost: that of a point; where clearances do not tell, 0.1 to 0.3 us for
+  /// each cell that the sphere reaches (three of them at a radius of 0.2 cell sizes), 0.1 to 0.4 us for each wall
+  /// triangle there, and some us for each contact.
   SphereReport advance(Environment& environment, Particles& particles, std::span<const double> radii,
-                       std::span<const Vec3> targets, const Respond& respond = {}, const StepOptions& options = {});
+                       std::span<const Vec3> targets, const Respond& respond = {}, const StepOptions& options = {},
+                       std::span<const double> clearances = {});
 
   struct Buffers;  ///< of its own
 
