@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <vector>
@@ -139,6 +140,44 @@ TEST(Collider, FindsAndSolvesWhatAllPairsSay) {
       EXPECT_EQ(again.pairs_near, counts.pairs_near);
       EXPECT_EQ(found, velocities);
     }
+  }
+}
+
+// All pairs that come near each other by the rule are given to the solver, no others.
+TEST(Collider, NearPairsAgainstAll) {
+  for (const double speed : {0.0, 0.01, 0.3, 3.0}) {
+    test::Swarm swarm(test::cubes(3), 5);
+    const int count = std::max(30, test::scaled(400, 1500));
+    for (int i = 0; i < count; ++i) {
+      const Vec3 x = {swarm.random.uniform(0.1, 2.9), swarm.random.uniform(0.1, 2.9), swarm.random.uniform(0.1, 2.9)};
+      swarm.add(x, swarm.random.uniform(0.1, 0.5) * 2.8 / std::cbrt(count), swarm.vector(speed));
+    }
+    const std::size_t size = swarm.radii.size();
+    std::vector<std::uint64_t> ids(size);
+    std::vector<SphereMotion> spheres;
+    std::vector<double> rooms;
+    for (std::size_t i = 0; i < size; ++i) {
+      ids[i] = i;
+      spheres.push_back({swarm.particles[i].position, swarm.velocities[i] * 0.1, swarm.radii[i]});
+      rooms.push_back(near_share * swarm.radii[i] + std::min(norm(spheres[i].displacement), swarm.radii[i]));
+    }
+    std::uint64_t near = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+      for (std::size_t j = i + 1; j < size; ++j)
+        near += approach(spheres[i], spheres[j]).distance <= std::max(rooms[i], rooms[j]) ? 1U : 0U;
+    }
+    const std::vector<double> inverse_masses(size, 1.0);
+    std::vector<Vec3> displacements(size);
+    SolverOptions slow = options();
+    slow.dt = 0.1;
+    Collider collider;
+    const CollisionCounts counts = collider.collide(
+        swarm.environment.complex(),
+        {swarm.particles.states(), ids, swarm.radii, inverse_masses, {}, swarm.velocities, displacements}, {}, slow,
+        Threads{1});
+    EXPECT_EQ(counts.pairs_near, near);
+    EXPECT_GE(counts.pairs_tested, near);
+    EXPECT_GT(near, size / 4);
   }
 }
 

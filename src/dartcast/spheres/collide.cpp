@@ -44,16 +44,27 @@ CollisionCounts& CollisionCounts::operator+=(const CollisionCounts& other) {
   return *this;
 }
 
+// Whether they do not come near each other however they move as far as they do: most of the pairs whose boxes meet. The
+// margin is more than rounding, so that approach() says no less.
+bool Collider::surely_apart(std::uint32_t a, std::uint32_t b) const {
+  const Reach& first = reaches_[a];
+  const Reach& second = reaches_[b];
+  const Vec3 way = second.centre - first.centre;
+  const double most = first.most + second.most + std::max(first.room, second.room);
+  return dot(way, way) > most * most * (1.0 + 0x1p-30);
+}
+
 // A chunk of candidates: those that are near become contacts.
 void Collider::judge(const Complex& complex, const CollidingSpheres& spheres, std::span<const SpherePair> candidates,
                      Part& part) const {
   for (const SpherePair& p : candidates) {
+    if (surely_apart(p.a, p.b)) continue;
     const bool swapped = spheres.ids[p.a] > spheres.ids[p.b];
     const std::uint32_t first = swapped ? p.b : p.a;
     const std::uint32_t second = swapped ? p.a : p.b;
     const Approach near = approach(moving_[first], moving_[second]);
     const double smaller = std::min(spheres.radii[first], spheres.radii[second]);
-    if (near.distance > std::max(room_of(moving_[first]), room_of(moving_[second]))) continue;
+    if (near.distance > std::max(reaches_[first].room, reaches_[second].room)) continue;
     if (!in_clear(spheres, first, second) && separated(complex, spheres.states[first], spheres.states[second]))
       continue;
     part.contacts.push_back({first, second, near.normal, near.gap - resting_gap * smaller});
@@ -66,10 +77,13 @@ void Collider::judge(const Complex& complex, const CollidingSpheres& spheres, st
 void Collider::sweep(const CollidingSpheres& spheres, double dt) {
   moving_.resize(spheres.states.size());
   swept_.resize(spheres.states.size());
+  reaches_.resize(spheres.states.size());
   for (std::size_t i = 0; i < moving_.size(); ++i) {
     moving_[i] = {spheres.states[i].position, spheres.velocities[i] * dt, spheres.radii[i]};
     swept_[i] = moving_[i];
-    swept_[i].radius += room_of(moving_[i]);
+    const double room = room_of(moving_[i]);
+    swept_[i].radius += room;
+    reaches_[i] = {moving_[i].centre, moving_[i].radius + norm(moving_[i].displacement), room};
   }
 }
 

@@ -75,7 +75,15 @@ class Collider {
     double deepest = 0.0;
   };
 
+  // How far a sphere comes from where its centre is, and the room around it in which another is near.
+  struct Reach {
+    Vec3 centre;
+    double most = 0.0;
+    double room = 0.0;
+  };
+
   void sweep(const CollidingSpheres& spheres, double dt);
+  [[nodiscard]] bool surely_apart(std::uint32_t a, std::uint32_t b) const;
   void find_contacts(const Complex& complex, const CollidingSpheres& spheres, std::span<const SpherePair> candidates,
                      Threads threads, CollisionCounts& counts);
   void judge(const Complex& complex, const CollidingSpheres& spheres, std::span<const SpherePair> candidates,
@@ -86,7 +94,8 @@ class Collider {
   ContactSolver solver_;
   std::vector<SphereMotion> moving_;
   std::vector<SphereMotion> swept_;  // radii with the room in which they count as near
-  std::vector<Part> parts_;          // by chunk of candidates
+  std::vector<Reach> reaches_;
+  std::vector<Part> parts_;  // by chunk of candidates
   std::vector<PairContact> pairs_;
   std::vector<WallContact> walls_;
   CollisionSeconds seconds_;

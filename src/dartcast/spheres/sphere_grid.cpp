@@ -46,8 +46,10 @@ std::size_t SphereGrid::slot(std::int32_t level, const Place& place) const {
   h = (h ^ h >> 29U ^ (word(place[2]) | word(level) << 32U)) * 0xbf58476d1ce4e5b9U;
   const std::size_t mask = table_.size() - 1;
   std::size_t at = (h ^ h >> 32U) & mask;
-  while (table_[at] != nothing && (cells_[table_[at]].level != level || cells_[table_[at]].place != place))
-    at = (at + 1) & mask;
+  const auto is_here = [&](const GridCell& c) {
+    return c.place[0] == place[0] && c.place[1] == place[1] && c.place[2] == place[2] && c.level == level;
+  };
+  while (table_[at] != nothing && !is_here(cells_[table_[at]])) at = (at + 1) & mask;
   return at;
 }
 
