@@ -695,6 +695,22 @@ TEST(AdvanceSpheres, ClearancesSaveTheSearch) {
   EXPECT_LT(wrong, without);
 }
 
+TEST(AdvanceSpheres, ClearancesCountForNothingAfterAMove) {
+  Swarm swarm(cubes(4));
+  swarm.add({2.25, 2.125, 1.0}, 0.25);
+  auto next = swarm.environment.next_positions();
+  for (std::size_t i = 0; i < next.size(); ++i) {
+    next[i] = swarm.environment.positions()[i];
+    next[i].z = 2.0 + 0.5 * next[i].z;  // the floor rises to 2
+  }
+  swarm.environment.move();
+  const std::vector<Vec3> stay = {swarm.particles[0].position};
+  const SphereReport report =
+      swarm.stepper.advance(swarm.environment, swarm.particles, swarm.radii, stay, {}, {}, std::vector<double>{1.0});
+  ASSERT_EQ(report.step.contacts.contacts.size(), 1U);
+  EXPECT_NEAR(report.step.contacts.contacts[0].time_of_impact, 0.375, sphere_time_bound);  // the centre's is 0.5
+}
+
 TEST(AdvanceSpheres, AResponseThatThrowsChangesNothing) {
   Swarm swarm(cubes(3));
   swarm.add({1.5, 1.5, 1.5}, 0.25);
