@@ -23,7 +23,7 @@ using PacketNumbers = std::array<double, packet_lanes>;
 using PacketVectors = std::array<PacketNumbers, 3>;  // x, y, z
 
 /// What contacts act on: a sphere, or a wall, whose inverse mass is 0.
-struct ContactBody {
+struct alignas(32) ContactBody {
   Vec3 velocity;
   double inverse_mass = 0.0;
 };
