@@ -25,7 +25,7 @@ class Draw {
       if (norm(v) > 0.2 && norm(v) < 1.0) return v * (1.0 / norm(v));
     }
   }
-  std::size_t below(std::size_t n) { return random_.below(n); }
+  std::size_t below(std::size_t n) { return random_.below(static_cast<std::uint32_t>(n)); }
 
  private:
   Random random_;
