@@ -1,7 +1,8 @@
 // Impulses at the contacts of bodies that answer as rigid ones, and of spheres, with each other and with walls.
 //
 // As spheres/contact_solver.hpp (E. Catto, "Iterative dynamics with temporal coherence", 2005), where a body also
-// turns.
+// turns. As friction then changes what comes along the normal, it is found first, from the impulse of the iteration
+// before.
 #pragma once
 
 #include <cstdint>
