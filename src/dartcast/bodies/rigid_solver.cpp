@@ -9,7 +9,7 @@ namespace dartcast {
 namespace {
 
 // Normals of one wall in two steps: closer than some 25 degrees.
-constexpr double same_wall = 0.9;
+constexpr double same_wall_as_before = 0.9;
 
 // What a unit impulse in this direction changes of the velocity along it, where it acts.
 double mobility(const RigidMover& m, const Vec3& lever, const Vec3& direction) {
@@ -127,7 +127,7 @@ void RigidSolver::take_kept() {
     const auto ids = ids_of(c);
     while (k < kept_.size() && ids_of(kept_[k]) < ids) ++k;
     const KeptImpulse* best = nullptr;
-    double most = same_wall;
+    double most = same_wall_as_before;
     for (std::size_t m = k; m < kept_.size() && ids_of(kept_[m]) == ids; ++m) {
       const double alike = c.a == RigidContact::wall ? dot(kept_[m].normal, c.normal) : 1.0;
       if (alike <= most) continue;

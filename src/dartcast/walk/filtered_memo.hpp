@@ -5,7 +5,8 @@ DARTCAST_TARGET inline void store_floats(const Quad& four, std::array<float, 4>&
   *reinterpret_cast<UnalignedFloats*>(out.data()) = narrowed(four);
 }
 DARTCAST_TARGET inline Quad load_floats(const std::array<float, 4>& in) {
-  return widened(*reinterpret_cast<const UnalignedFloats*>(in.data()));
+  const Floats four = *reinterpret_cast<const UnalignedFloats*>(in.data());
+  return widened(four);
 }
 DARTCAST_TARGET inline Quad load_four(const std::array<double, 4>& numbers) {
   return *reinterpret_cast<const UnalignedQuad*>(numbers.data());
