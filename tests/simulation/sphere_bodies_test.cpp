@@ -248,7 +248,7 @@ TEST(SphereBodies, ASphereStandsOnABody) {
 }
 
 TEST(SphereBodies, AreTheSameBitsForAnyNumberOfThreadsAndFromACheckpoint) {
-  const int half = std::max(30, scaled(80, 400));
+  const int half = std::max(80, scaled(80, 400));
   const auto prepared = [](unsigned threads) {
     CollisionOptions c;
     c.restitution = 0.3;

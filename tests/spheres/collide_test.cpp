@@ -102,7 +102,7 @@ std::vector<double> clearances(const Cloud& cloud) {
 
 TEST(Collider, FindsAndSolvesWhatAllPairsSay) {
   for (const std::uint64_t seed : {1U, 2U}) {
-    Cloud cloud(std::max<std::size_t>(60, test::scaled<std::size_t>(600, 2000)), seed);
+    Cloud cloud(std::max<std::size_t>(600, test::scaled<std::size_t>(600, 2000)), seed);
     CollisionCounts expected;
     const std::vector<PairContact> pairs = cloud.all_contacts(expected);
     std::vector<WallContact> walls = cloud.walls;
