@@ -22,12 +22,12 @@ struct Memo {
   std::array<double, 4> w;
 };
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();  // w
+inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();  // w
 inline bool is_unknown(const Memo& m) { return std::isnan(m.w[0]); }
 inline Memo unknown_memo() { return {{}, {}, {}, {unknown, unknown, unknown, unknown}}; }
 
 /// w of a simplex that has no coordinates that are good enough. Not even one facet that the target is behind is proved.
-constexpr double proves_nothing = -std::numeric_limits<double>::infinity();
+inline constexpr double proves_nothing = -std::numeric_limits<double>::infinity();
 
 enum class MemoKind : std::uint8_t { none, trail, coordinates };
 
