@@ -153,7 +153,9 @@ TEST(ShapeMatching, ForceIsTheDerivativeOfTheEnergy) {
 // Forces between the particles of a body are internal ones.
 TEST(ShapeMatching, ForcesHaveNoSumAndNoTorque) {
   Random random(4);
-  for (int i = 0; i < scaled(200, 5'000); ++i) {
+  int rounded = 0;  // regions that are nearly flat: inverses
+  const int cases = scaled(200, 5'000);
+  for (int i = 0; i < cases; ++i) {
     const auto points = random_points(20, random);
     const auto masses = random_masses(20, random);
     MatchOptions options;
@@ -170,8 +172,10 @@ TEST(ShapeMatching, ForcesHaveNoSumAndNoTorque) {
       torque += cross(x[p], (m.goals[p] - x[p]) * masses[p]);
     }
     ASSERT_LE(norm(sum), options.linear == 0.0 ? 1e-14 : 1e-13);
-    ASSERT_LE(norm(torque), options.linear == 0.0 ? 1e-13 : 1e-10);  // regions that are nearly flat: inverses
+    ASSERT_LE(norm(torque), options.linear == 0.0 ? 1e-13 : 1e-8);
+    rounded += norm(torque) > 1e-11 ? 1 : 0;
   }
+  EXPECT_LE(rounded, cases / 500);
 }
 
 TEST(ShapeMatching, GoalOfAPointIsTheMeanOverItsRegions) {
