@@ -15,8 +15,8 @@ namespace {
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 // Four doubles, and two. Where the instruction set has no such register, the compiler takes two of half the size.
-typedef double Quad __attribute__((vector_size(32), may_alias));  // NOLINT(modernize-use-using)
-typedef double Pair __attribute__((vector_size(16), may_alias));  // NOLINT(modernize-use-using)
+using Quad = double __attribute__((vector_size(32), may_alias));
+using Pair = double __attribute__((vector_size(16), may_alias));
 using Mask = long long __attribute__((vector_size(32)));
 
 static_assert(sizeof(ContactBody) == 32);
