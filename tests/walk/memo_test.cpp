@@ -50,14 +50,14 @@ detail::Memo memo_at(const Complex& complex, SimplexId at, const Vec3& p) {
   std::vector<State> states(1);
   states[0].put(at, p);
   std::vector<detail::VertexNumbers> vertices = {detail::vertex_numbers(complex, at)};
-  std::vector<detail::Memo> memos(1);
+  std::vector<detail::MemosOfFour> memos(1);
   const std::vector<Vec3> targets = {p};
   std::vector<detail::Taken> taken(1);
   std::vector<Begun> begun;
   Counters counters;
   detail::step_filtered({&complex, false, false, StepOptions{}.tolerance},
                         {states, vertices, memos, targets, taken, begun}, counters);
-  return memos[0];
+  return memos[0].of(0);
 }
 
 // As the batch computes them.

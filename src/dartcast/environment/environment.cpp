@@ -90,7 +90,7 @@ void Particles::remove(std::span<const std::uint8_t> marks) {
     if (marks[i] != 0) continue;
     states_[kept] = states_[i];
     weights_[kept] = weights_[i];
-    if (!memos_.empty()) memos_[kept] = memos_[i];
+    if (!memos_.empty()) memos_.put(kept, memos_[i]);
     vertices_[kept++] = vertices_[i];
   }
   states_.resize(kept);
@@ -109,12 +109,13 @@ void Particles::reorder(std::span<const std::uint32_t> order) {
   std::vector<State> states(size());
   std::vector<Weights> weights(size());
   std::vector<detail::VertexNumbers> vertices(size());
-  std::vector<detail::Memo> memos(memos_.size());
+  detail::Memos memos;
+  memos.resize(memos_.size());
   for (std::size_t i = 0; i < size(); ++i) {
     states[i] = states_[order[i]];
     weights[i] = weights_[order[i]];
     vertices[i] = vertices_[order[i]];
-    if (!memos_.empty()) memos[i] = memos_[order[i]];
+    if (!memos_.empty()) memos.put(i, memos_[order[i]]);
   }
   states_ = std::move(states);
   weights_ = std::move(weights);
@@ -145,8 +146,7 @@ void Particles::replace(std::span<const std::uint32_t> which, const Particles& b
     weights_[i] = by.weights_[k];
     vertices_[i] = by.vertices_[k];
     if (memos_.empty()) continue;
-    if (memo_kind_ == by.memo_kind_) memos_[i] = by.memos_[k];
-    if (memo_kind_ != by.memo_kind_) memos_[i] = detail::unknown_memo();
+    memos_.put(i, memo_kind_ == by.memo_kind_ ? by.memos_[k] : detail::unknown_memo());
   }
   residents_.reset();
 }
@@ -319,9 +319,13 @@ void Environment::step_chunk(const Steps& steps, std::size_t begin, std::size_t 
   std::vector<Begun> begun;
   begun.reserve(size);
   const std::span<detail::VertexNumbers> vertices = std::span(steps.particles.vertices_).subspan(begin, size);
-  std::span<detail::Memo> memos = steps.particles.memos_;
-  if (!memos.empty()) memos = memos.subspan(begin, size);
-  const detail::FilteredSteps batch{states, vertices, memos, targets, std::span(taken).first(size), begun};
+  detail::Memos& memos = steps.particles.memos_;
+  const detail::FilteredSteps batch{states,
+                                    vertices,
+                                    memos.empty() ? std::span<detail::MemosOfFour>{} : memos.from(begin),
+                                    targets,
+                                    std::span(taken).first(size),
+                                    begun};
   if (map().dimension() == 2)
     detail::step_plane(steps.filtered, batch, part.counters);
   else
@@ -335,7 +339,8 @@ void Environment::step_chunk(const Steps& steps, std::size_t begin, std::size_t 
                            part.counters, taken[i] == detail::taken_nothing ? nullptr : &begun[taken[i]]);
     vertices[i] = detail::vertex_numbers(complex_, states[i].at());
     if (!memos.empty())
-      memos[i] = detail::memo_of(steps.particles.memo_kind_, complex_.positions(), vertices[i], states[i].position);
+      memos.put(begin + i,
+                detail::memo_of(steps.particles.memo_kind_, complex_.positions(), vertices[i], states[i].position));
     if (result.held) part.held.push_back({particle, result.invalid_cell});
     if (result.stopped) part.stopped.push_back({particle, result.unused});
   }

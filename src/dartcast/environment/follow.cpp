@@ -141,8 +141,8 @@ class Following {
     particles_.residents_->add(i, s);
     particles_.vertices_[i] = detail::vertex_numbers(complex_, s.at());
     if (particles_.memo_kind_ != detail::MemoKind::none)
-      particles_.memos_[i] =
-          detail::memo_of(particles_.memo_kind_, complex_.positions(), particles_.vertices_[i], s.position);
+      particles_.memos_.put(
+          i, detail::memo_of(particles_.memo_kind_, complex_.positions(), particles_.vertices_[i], s.position));
   }
 
   void remove_absorbed() {

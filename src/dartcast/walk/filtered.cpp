@@ -17,16 +17,16 @@ namespace dartcast::detail {
 
 namespace {
 
-// How vectors are passed does not matter: no function here is called from elsewhere.
-#pragma GCC diagnostic ignored "-Wpsabi"
-
 // Four doubles. Where the instruction set has no such register, the compiler takes two of half the size.
 using Quad = double __attribute__((vector_size(32)));
 // clang++ takes no notice of the alignment in an alias.
 typedef double UnalignedQuad __attribute__((vector_size(32), aligned(8), may_alias));  // NOLINT(modernize-use-using)
+using Pair = double __attribute__((vector_size(16)));
+typedef double UnalignedPair __attribute__((vector_size(16), aligned(8), may_alias));  // NOLINT(modernize-use-using)
 using Floats = float __attribute__((vector_size(16)));
 typedef float UnalignedFloats __attribute__((vector_size(16), aligned(4), may_alias));  // NOLINT(modernize-use-using)
 using Mask = long long __attribute__((vector_size(32)));
+typedef long long UnalignedMask __attribute__((vector_size(32), aligned(8), may_alias));  // NOLINT(modernize-use-using)
 
 // Sign of u . (v x w), evaluated as in exact/predicates.cpp; 0 where the filter leaves it open.
 inline int filtered_sign(const Vec3& u, const Vec3& v, const Vec3& w) {
@@ -45,11 +45,6 @@ namespace portable {
 inline unsigned lanes_set(const Mask& m) {
   const Mask bits = m & Mask{1, 2, 4, 8};
   return static_cast<unsigned>((bits[0] | bits[1]) | (bits[2] | bits[3]));
-}
-
-inline Quad load_row(const Vec3& x) { return Quad{x.x, x.y, x.z, x.z}; }
-inline void store_where(bool condition, const Quad& row, Vec3& x) {
-  if (condition) x = {row[0], row[1], row[2]};
 }
 
 inline Quad widened(const Floats& x) { return __builtin_convertvector(x, Quad); }
@@ -81,12 +76,6 @@ DARTCAST_TARGET inline unsigned lanes_set(const Mask& m) {
 DARTCAST_TARGET inline Quad widened(const Floats& x) { return _mm256_cvtps_pd(x); }
 DARTCAST_TARGET inline Floats narrowed(const Quad& x) { return _mm256_cvtpd_ps(x); }
 
-DARTCAST_TARGET inline Quad load_row(const Vec3& x) { return _mm256_maskload_pd(&x.x, __m256i{-1, -1, -1, 0}); }
-DARTCAST_TARGET inline void store_where(bool condition, const Quad& row, Vec3& x) {
-  const long long all = condition ? -1 : 0;
-  _mm256_maskstore_pd(&x.x, __m256i{all, all, all, 0}, row);
-}
-
 #include "dartcast/walk/filtered_kernel.hpp"
 
 DARTCAST_TARGET void step(const FilteredScene& scene, const FilteredSteps& steps, Counters& counters) {
@@ -104,11 +93,17 @@ DARTCAST_TARGET void step(const FilteredScene& scene, const FilteredSteps& steps
 }  // namespace
 
 Memo memo_of(MemoKind kind, std::span<const Vec3> positions, const VertexNumbers& vertices, const Vec3& p) {
-  if (kind != MemoKind::trail) return unknown_memo();
-  portable::Lanes relative;
-  const portable::FilteredDeterminants d(portable::Rows(positions.data(), vertices), portable::load_row(p), relative);
-  Memo memo;
-  portable::leave_trail(relative, d, memo);
+  Memo memo = unknown_memo();
+  if (kind != MemoKind::trail) return memo;
+  const Corners v = {positions[vertices[0]], positions[vertices[1]], positions[vertices[2]], positions[vertices[3]]};
+  const Determinants d(v, p);
+  for (unsigned i = 0; i < 4; ++i) {
+    const Vec3 relative = v[i] - p;
+    memo.x[i] = static_cast<float>(relative.x);
+    memo.y[i] = static_cast<float>(relative.y);
+    memo.z[i] = static_cast<float>(relative.z);
+  }
+  if (d.proves_coordinates()) memo.w = d.value;
   return memo;
 }
 

@@ -53,8 +53,8 @@ inline constexpr Taken taken_nothing = 0xfffe;
 struct FilteredSteps {
   std::span<State> states;
   std::span<VertexNumbers> vertices;  ///< of each state
-  std::span<Memo> memos;  ///< moved: trails; else coordinates, or empty: none are kept. In where they match; out for
-                          ///< each step taken
+  std::span<MemosOfFour> memos;  ///< moved: trails; else coordinates, or empty: none are kept. In where they match; out
+                                 ///< for each step taken
   std::span<const Vec3> targets;
   std::span<Taken> taken;     ///< out
   std::vector<Begun>& begun;  ///< out; empty before

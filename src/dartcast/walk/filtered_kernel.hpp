@@ -18,8 +18,8 @@ struct Visit {
 };
 
 // Simplices are taken block by block, in passes without branches as far as possible: all are found, so that their
-// corners are on the way from memory before the first is used; all are tested; then those that are left go on.
-// A class for each kind of memo: what is called once is inlined.
+// corners are on the way from memory before the first is used; all are tested, four in a vector; then those that are
+// left go on. A class for each kind of memo: what is called once is inlined.
 template <MemoKind kind>
 class Batch {
  public:
@@ -59,17 +59,16 @@ class Batch {
     for (std::uint32_t i = 0; i < std::min(size_, block); ++i) ask_for(now_, vertices_[i]);
     for (std::uint32_t first = 0; first < size_; first += block) {
       const std::uint32_t n = std::min(block, size_ - first);
-      for (std::uint32_t k = 0; k < n; ++k) {
-        if (first + k + block < size_) ask_for(now_, vertices_[first + k + block]);
-        test(first + k, k);
-      }
+      test_block(first, n);
       const std::uint32_t leaving = ride_all(first, end_inside(first, n));
       for (std::uint32_t l = 0; l < leaving; ++l) {
         const std::uint32_t i = first + leaving_[l];
         visits_[count] = {i, states_[i].cell.value, states_[i].simplex, no_facet, 4, 0, false};
         if (leave_simplex(visits_[count], vertices_[i], leaving_[l])) ++count;
       }
-      if constexpr (moved) leave_trails(first, n);
+      if constexpr (moved) {  // who goes on, or is left, gets another one later
+        for (std::uint32_t k = 0; k < n; k += 4) leave_trails(determinants_[k / 4], memos_[(first + k) / 4]);
+      }
     }
     return count;
   }
@@ -78,12 +77,14 @@ class Batch {
   DARTCAST_TARGET std::size_t begin_by_coordinates() {
     std::size_t count = 0;
     for (std::uint32_t first = 0; first < size_; first += block) {
-      const std::uint32_t leaving = end_inside_by_coordinates(first, std::min(block, size_ - first));
+      const std::uint32_t n = std::min(block, size_ - first);
+      test_coordinates(first, n);
+      const std::uint32_t leaving = end_inside(first, n);
       for (std::uint32_t l = 0; l < leaving; ++l) {
         const std::uint32_t i = first + leaving_[l];
         const State& s = states_[i];
         __builtin_prefetch(map_.record(s.cell));
-        exits_[count] = exit_by(coordinates_[l]);
+        exits_[count] = exit_by(signs_[leaving_[l]]);
         if (exits_[count] == no_facet) ask_for(now_, vertices_[i]);
         visits_[count++] = {i, s.cell.value, s.simplex, no_facet, 4, 0, false};
       }
@@ -91,28 +92,130 @@ class Batch {
     return go_on_from_first(count);
   }
 
-  // As end_inside(), and leaves the coordinates of the others in coordinates_.
-  DARTCAST_TARGET std::uint32_t end_inside_by_coordinates(std::uint32_t first, std::uint32_t n) {
-    std::uint32_t leaving = 0;
-    std::uint32_t left = 0;
-    for (std::uint32_t k = 0; k < n; ++k) {
-      const std::uint32_t i = first + k;
-      State& s = states_[i];
-      if (s.held || (s.touching_count != 0 && rests(i))) [[unlikely]] {
-        leave(i);
-        ++left;
-        continue;
+  // Four particles in a row; at the end of the batch the last one again in the lanes that are left.
+  struct Four {
+    std::uint32_t at[4];
+  };
+  DARTCAST_TARGET Four four_from(std::uint32_t i) const {
+    const std::uint32_t last = size_ - 1;
+    return {{i, std::min(i + 1, last), std::min(i + 2, last), std::min(i + 3, last)}};
+  }
+  DARTCAST_TARGET Points targets_of(const Four& i) const {
+    return load_points(targets_[i.at[0]], targets_[i.at[1]], targets_[i.at[2]], targets_[i.at[3]]);
+  }
+  DARTCAST_TARGET Points places_of(const Four& i) const {
+    return load_points(states_[i.at[0]].position, states_[i.at[1]].position, states_[i.at[2]].position,
+                       states_[i.at[3]].position);
+  }
+  DARTCAST_TARGET Tetrahedra simplices_of(const Vec3* positions, const Four& i) const {
+    return Tetrahedra(positions, vertices_[i.at[0]], vertices_[i.at[1]], vertices_[i.at[2]], vertices_[i.at[3]]);
+  }
+
+  DARTCAST_TARGET void test_block(std::uint32_t first, std::uint32_t n) {
+    inside_ = 0;
+    one_part_ = 0;
+    arrivals_ = 0;
+    for (std::uint32_t k = 0; k < n; k += 4) {
+      // Memory takes a dozen requests at a time: they are spread over the work.
+      ask_ahead(first + k);
+      const Four i = four_from(first + k);
+      const Tetrahedra now = simplices_of(now_, i);
+      const Points q = targets_of(i);
+      ask_ahead(first + k + 1);
+      const FilteredDeterminants& d = *new (&determinants_[k / 4]) FilteredDeterminants(now, q);
+      ask_ahead(first + k + 2);
+      const Mask signs = d.signs(now, q);
+      store_signs(signs, k);
+      inside_ |= lanes_set(signs == splat_bits(Signs::valid)) << k;
+      ask_ahead(first + k + 3);
+      if constexpr (moved) {
+        const OnePart one(memos_[i.at[0] / 4], d.relative, places_of(i), q, tolerance_);
+        Mask proved = one.by_size();
+        if (lanes_set(proved) != 15U) proved |= one.by_shape();
+        one_part_ |= lanes_set(proved) << k;
       }
-      const Quad c = coordinates_of(memos_[i], targets_[i]);
-      const bool inside = lanes_set(c > coordinate_margin) == 15U;
-      coordinates_[leaving] = c;
-      leaving_[leaving] = k;
-      leaving += inside ? 0 : 1;
-      store_where(inside, load_row(targets_[i]), s.position);
-      if (s.touching_count != 0 && inside) [[unlikely]]
-        s.touching_count = 0;
     }
-    count_ended(n - leaving - left);
+  }
+
+  [[gnu::always_inline]] DARTCAST_TARGET void ask_ahead(std::uint32_t i) const { ask_for(now_, vertices_[std::min(i + block, size_ - 1)]); }
+
+  DARTCAST_TARGET void store_signs(const Mask& signs, std::size_t k) {
+    *reinterpret_cast<UnalignedMask*>(&signs_[k]) = signs;
+  }
+
+  // Signs of coordinates that are proved: a bit for each facet that a target is behind; none where any is left open.
+  DARTCAST_TARGET void test_coordinates(std::uint32_t first, std::uint32_t n) {
+    inside_ = 0;
+    for (std::uint32_t k = 0; k < n; k += 4) {
+      const Four i = four_from(first + k);
+      const Points q = targets_of(i);
+      const MemosOfFour& memos = memos_[i.at[0] / 4];
+      const Quad c[4] = {coordinate_of(memos, 0, q), coordinate_of(memos, 1, q), coordinate_of(memos, 2, q),
+                         coordinate_of(memos, 3, q)};
+      const Quad m[4] = {magnitude(c[0]), magnitude(c[1]), magnitude(c[2]), magnitude(c[3])};
+      const Quad least = smaller(smaller(c[0], c[1]), smaller(c[2], c[3]));
+      inside_ |= lanes_set(least > coordinate_margin) << k;
+      const Mask known = (smaller(smaller(m[0], m[1]), smaller(m[2], m[3])) > coordinate_margin) &
+                         (larger(larger(m[0], m[1]), larger(m[2], m[3])) <= most_for_sign);
+      store_signs(known & facet_bits(c[0] < 0.0, c[1] < 0.0, c[2] < 0.0, c[3] < 0.0), k);
+    }
+  }
+
+  // The facet that a target lies behind, and no other, where its coordinates prove it.
+  DARTCAST_TARGET static std::uint8_t exit_by(long long signs) {
+    const auto beyond = static_cast<unsigned>(signs);
+    return std::has_single_bit(beyond) ? static_cast<std::uint8_t>(std::countr_zero(beyond)) : no_facet;
+  }
+
+  // Walks whose exits are not known are to be tested where they are.
+  DARTCAST_TARGET std::size_t go_on_from_first(std::size_t count) {
+    std::size_t next = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      Visit& v = visits_[next] = visits_[k];
+      if (exits_[k] == no_facet) v.tests = 1;  // three more there
+      if (exits_[k] == no_facet || pass_on(v, exits_[k])) ++next;
+    }
+    return next;
+  }
+
+  // For particles that have none of this kind: trails, of where they were before the move, or coordinates.
+  DARTCAST_TARGET void make_memos() {
+    const Vec3* positions = moved ? before_ : now_;
+    for (std::uint32_t first = 0; first < size_; first += 4) {
+      for (std::uint32_t i = first + block; i < std::min(first + block + 4, size_); ++i)
+        ask_for(positions, vertices_[i]);
+      const Four i = four_from(first);
+      const Points p = places_of(i);
+      const FilteredDeterminants d(simplices_of(positions, i), p);
+      if constexpr (moved) leave_trails(d, memos_[first / 4]);
+      if constexpr (kind == MemoKind::coordinates) leave_coordinates(d, p, memos_[first / 4]);
+    }
+  }
+
+  // Ends the steps whose targets lie strictly inside: wherever they come from in the same simplex, nothing is in the
+  // way. Lists the others in leaving_.
+  DARTCAST_TARGET std::uint32_t end_inside(std::uint32_t first, std::uint32_t n) {
+    const std::uint32_t all = n == block ? ~std::uint32_t{0} : (std::uint32_t{1} << n) - 1;
+    std::uint32_t unusual = moved ? all & ~one_part_ : 0;
+    for (std::uint32_t k = 0; k < n; ++k) {
+      const State& s = states_[first + k];
+      unusual |= static_cast<std::uint32_t>(s.held || s.touching_count != 0) << k;
+    }
+    std::uint32_t left = 0;
+    for (; unusual != 0; unusual &= unusual - 1) {
+      const auto k = static_cast<std::uint32_t>(std::countr_zero(unusual));
+      if (is_left(first + k, k)) left |= std::uint32_t{1} << k;
+    }
+    inside_ &= all & ~left;
+    for (std::uint32_t ended = inside_; ended != 0; ended &= ended - 1) {
+      const std::uint32_t i = first + static_cast<std::uint32_t>(std::countr_zero(ended));
+      states_[i].position = targets_[i];
+      states_[i].touching_count = 0;
+    }
+    count_ended(static_cast<std::uint32_t>(std::popcount(inside_)));
+    std::uint32_t leaving = 0;
+    for (std::uint32_t on = all & ~left & ~inside_; on != 0; on &= on - 1)
+      leaving_[leaving++] = static_cast<std::uint32_t>(std::countr_zero(on));
     return leaving;
   }
 
@@ -123,80 +226,45 @@ class Batch {
     counters_.forecast_kept += ended;
   }
 
-  // The facet that a target lies behind, and no other, where its coordinates prove it.
-  DARTCAST_TARGET static std::uint8_t exit_by(const Quad& coordinates) {
-    const Quad m = magnitude(coordinates);
-    const Mask signs_known = (m > coordinate_margin) & (m <= most_for_sign);
-    const unsigned beyond = lanes_set(coordinates < 0.0);
-    if (lanes_set(signs_known) != 15U || !std::has_single_bit(beyond)) return no_facet;
-    return static_cast<std::uint8_t>(std::countr_zero(beyond));
+  // Leaves a step that is held, or is to be split, or stays where it touches a wall.
+  DARTCAST_TARGET bool is_left(std::uint32_t i, std::uint32_t k) {
+    const State& s = states_[i];
+    const bool one_part = !moved || ((one_part_ >> k) & 1U) != 0;
+    if (!s.held && (one_part || is_one_part_by_rule(i)) && (s.touching_count == 0 || !rests(i))) return false;
+    leave(i);
+    return true;
   }
 
-  DARTCAST_TARGET std::size_t go_on_from_first(std::size_t count) {
-    std::size_t next = 0;
-    for (std::size_t k = 0; k < count; ++k) {
-      Visit& v = visits_[next] = visits_[k];
-      if (exits_[k] != no_facet ? pass_on(v, exits_[k]) : test_first(v)) ++next;
-    }
-    return next;
+  [[nodiscard]] DARTCAST_TARGET Corners corners_of(const Vec3* positions, const VertexNumbers& v) const {
+    return {positions[v[0]], positions[v[1]], positions[v[2]], positions[v[3]]};
   }
 
-  DARTCAST_TARGET bool test_first(Visit& visit) {
-    const VertexNumbers& corners = vertices_[visit.particle];
-    determinants_[0] = FilteredDeterminants(Rows(now_, corners), load_row(targets_[visit.particle]), relative_[0]);
-    return leave_simplex(visit, corners, 0);
+  // Where a particle has ridden to; none where the filter does not prove that this lies inside of the moved simplex.
+  [[nodiscard]] DARTCAST_TARGET std::optional<Vec3> ridden_alone(std::uint32_t i) const {
+    const Memo trail = memos_[i / 4].of(i % 4);
+    if (is_unknown(trail)) return std::nullopt;
+    Weights w{};
+    for (unsigned c = 0; c < 4; ++c) w[c] = std::max(trail.w[c], 0.0);
+    const double sum = ((w[0] + w[1]) + w[2]) + w[3];
+    for (double& share : w) share /= sum;
+    const Corners now = corners_of(now_, vertices_[i]);
+    const Vec3 x = flushed(combine(now, w));
+    return Determinants(now, x).all_proved_positive() ? std::optional(x) : std::nullopt;
   }
 
-  // For particles that have none of this kind: trails, of where they were before the move, or coordinates.
-  DARTCAST_TARGET void make_memos() {
-    const Vec3* positions = moved ? before_ : now_;
-    for (std::uint32_t i = 0; i < size_; ++i) {
-      if (i + block < size_) ask_for(positions, vertices_[i + block]);
-      const Quad p = load_row(states_[i].position);
-      Lanes relative;
-      const FilteredDeterminants d(Rows(positions, vertices_[i]), p, relative);
-      if constexpr (moved) leave_trail(relative, d, memos_[i]);
-      if constexpr (kind == MemoKind::coordinates) leave_coordinates(relative, d, p, memos_[i]);
-    }
+  // By the rule itself.
+  [[nodiscard]] DARTCAST_TARGET bool is_one_part_by_rule(std::uint32_t i) const {
+    const auto ridden = ridden_alone(i);
+    if (!ridden) return false;
+    const auto [gradient, edge] = deformation(corners_of(before_, vertices_[i]), corners_of(now_, vertices_[i]));
+    return gradient * norm(targets_[i] - *ridden) <= 2.0 * tolerance_ * edge;
   }
 
-  // Of all the block: who goes on, or is left, gets another one later.
-  DARTCAST_TARGET void leave_trails(std::uint32_t first, std::uint32_t n) {
-    for (std::uint32_t k = 0; k < n; ++k) {
-      leave_trail(relative_[k], determinants_[k], memos_[first + k]);
-    }
-  }
-
-  [[gnu::always_inline]] DARTCAST_TARGET void test(std::uint32_t i, std::uint32_t k) {
-    const Rows now(now_, vertices_[i]);
-    const Quad target = load_row(targets_[i]);
-    determinants_[k] = FilteredDeterminants(now, target, relative_[k]);
-    inside_[k] = determinants_[k].all_positive();
-    if constexpr (moved)
-      one_part_[k] = OnePart(memos_[i], relative_[k], load_row(states_[i].position), target, tolerance_).by_size();
-  }
-
-  // Ends the steps whose targets lie strictly inside: wherever they come from in the same simplex, nothing is in the
-  // way. Lists the others in leaving_.
-  DARTCAST_TARGET std::uint32_t end_inside(std::uint32_t first, std::uint32_t n) {
-    std::uint32_t leaving = 0;
-    std::uint32_t ended = 0;
-    for (std::uint32_t k = 0; k < n; ++k) {
-      const std::uint32_t i = first + k;
-      State& s = states_[i];
-      if (s.held || (moved && !one_part_[k] && !is_one_part_after_all(i, k)) || (s.touching_count != 0 && rests(i))) {
-        leave(i);
-        continue;
-      }
-      const bool inside = inside_[k];
-      leaving_[leaving] = k;
-      leaving += inside ? 0 : 1;
-      ended += inside ? 1 : 0;
-      store_where(inside, load_row(targets_[i]), s.position);
-      s.touching_count = inside ? 0 : s.touching_count;
-    }
-    count_ended(ended);
-    return leaving;
+  // Whether a particle that touches a wall is to stay at its place: it goes on touching it.
+  [[nodiscard]] DARTCAST_TARGET bool rests(std::uint32_t i) const {
+    if constexpr (!moved) return states_[i].position == targets_[i];
+    const auto ridden = ridden_alone(i);
+    return !ridden || *ridden == targets_[i];
   }
 
   // Of those in leaving_, who goes on. Meanwhile their cells are on the way from memory.
@@ -206,40 +274,41 @@ class Batch {
     }
     if constexpr (!moved) return leaving;
     std::uint32_t riding = 0;
-    for (std::uint32_t l = 0; l < leaving; ++l) {
-      const std::uint32_t k = leaving_[riding] = leaving_[l];
-      riding += ride(first + k) ? 1 : 0;
+    for (std::uint32_t l = 0; l < leaving; l += 4) {
+      const std::uint32_t last = leaving - 1;
+      const Four i = {{first + leaving_[l], first + leaving_[std::min(l + 1, last)],
+                       first + leaving_[std::min(l + 2, last)], first + leaving_[std::min(l + 3, last)]}};
+      riding = ride(i, std::min(leaving - l, 4U), riding, first);
     }
     return riding;
   }
 
-  // By the finer bound, and the rule itself.
-  DARTCAST_TARGET bool is_one_part_after_all(std::uint32_t i, std::uint32_t k) const {
-    if (OnePart(memos_[i], relative_[k], load_row(states_[i].position), load_row(targets_[i]), tolerance_).by_shape())
-      return true;
-    const Rows now(now_, vertices_[i]);
-    Vec3 ridden;
-    if (!ride_along(memos_[i], now, ridden)) return false;
-    const auto [gradient, edge] = deformation(corners_of(Rows(before_, vertices_[i])), corners_of(now));
-    return gradient * norm(targets_[i] - ridden) <= 2.0 * tolerance_ * edge;
+  // Moves the starts of four walks along with the vertices; lists those that go on from `riding` on. The others are
+  // left.
+  DARTCAST_TARGET std::uint32_t ride(const Four& i, std::uint32_t count, std::uint32_t riding, std::uint32_t first) {
+    const Tetrahedra now = simplices_of(now_, i);
+    const unsigned behind = lanes_set(FilteredDeterminants(now, places_of(i)).any_negative());
+    const Quad w[4] = {old_determinant(i, 0), old_determinant(i, 1), old_determinant(i, 2), old_determinant(i, 3)};
+    const Points x = ride_along(w, now);
+    const Points q = targets_of(i);
+    const Mask proved = (w[0] == w[0]) & FilteredDeterminants(now, x).all_positive();
+    const unsigned on = lanes_set(proved & ((x.x != q.x) | (x.y != q.y) | (x.z != q.z)));
+    for (std::uint32_t l = 0; l < count; ++l) {
+      const std::uint32_t particle = i.at[l];
+      if (((on >> l) & 1U) == 0) {
+        leave(particle);
+        continue;
+      }
+      left_behind_[particle] = ((behind >> l) & 1U) != 0;
+      ridden_[particle] = {x.x[l], x.y[l], x.z[l]};
+      leaving_[riding++] = particle - first;
+    }
+    return riding;
   }
 
-  // Whether a particle that touches a wall is to stay at its place: it goes on touching it.
-  DARTCAST_TARGET bool rests(std::uint32_t i) const {
-    if constexpr (!moved) return states_[i].position == targets_[i];
-    Vec3 ridden;
-    return !ride_along(memos_[i], Rows(now_, vertices_[i]), ridden) || ridden == targets_[i];
-  }
-
-  // Moves the start of a walk along with the vertices; false where the step is left.
-  [[gnu::always_inline]] DARTCAST_TARGET bool ride(std::uint32_t i) {
-    const Rows now(now_, vertices_[i]);
-    const Vec3 p = states_[i].position;
-    left_behind_[i] = FilteredDeterminants(now, load_row(p)).negative() != 0;
-    Vec3 ridden;
-    if (!ride_along(memos_[i], now, ridden) || ridden == targets_[i]) return leave(i);
-    ridden_[i] = load_row(ridden);
-    return true;
+  DARTCAST_TARGET Quad old_determinant(const Four& i, unsigned corner) const {
+    const auto of = [&](std::uint32_t particle) { return memos_[particle / 4].w[corner][particle % 4]; };
+    return Quad{of(i.at[0]), of(i.at[1]), of(i.at[2]), of(i.at[3])};
   }
 
   // The next simplex of every walk. Returns the number of walks that go on.
@@ -248,21 +317,31 @@ class Batch {
     for (std::size_t first = 0; first < count; first += block) {
       const std::size_t n = std::min<std::size_t>(block, count - first);
       for (std::size_t k = 0; k < n; ++k) enter(visits_[first + k], corners_[k]);
-      for (std::size_t k = 0; k < n; ++k) {
-        determinants_[k] = FilteredDeterminants(Rows(now_, corners_[k]),
-                                                load_row(targets_[visits_[first + k].particle]), relative_[k]);
-      }
+      for (std::size_t k = 0; k < n; k += 4) test_visits(&visits_[first], k, n - 1);
+      arrivals_ = 0;
       for (std::size_t k = 0; k < n; ++k) {
         Visit& v = visits_[next] = visits_[first + k];
         v.tests = static_cast<std::uint16_t>(v.tests + 3);
-        if (determinants_[k].all_positive()) {
+        if (Signs(signs_[k]).is_inside()) {
           arrive(v, corners_[k], k);
         } else if (leave_simplex(v, corners_[k], k)) {
           ++next;
         }
       }
+      if constexpr (kind != MemoKind::none) remember_arrivals();
     }
     return next;
+  }
+
+  DARTCAST_TARGET void test_visits(const Visit* visits, std::size_t k, std::size_t last) {
+    const std::size_t k1 = std::min(k + 1, last);
+    const std::size_t k2 = std::min(k + 2, last);
+    const std::size_t k3 = std::min(k + 3, last);
+    const Tetrahedra v(now_, corners_[k], corners_[k1], corners_[k2], corners_[k3]);
+    const Points q = targets_of({{visits[k].particle, visits[k1].particle, visits[k2].particle, visits[k3].particle}});
+    const FilteredDeterminants& d = *new (&determinants_[k / 4]) FilteredDeterminants(v, q);
+    store_signs(d.signs(v, q), k);
+    if constexpr (kind == MemoKind::coordinates) ends_[k / 4] = q;
   }
 
   // Finds the simplex behind the face that was entered through, and its corners.
@@ -278,27 +357,25 @@ class Batch {
     ask_for(now_, corners);
   }
 
-  DARTCAST_TARGET static void ask_for(const Vec3* positions, const VertexNumbers& v) {
+  // Inlined: a call that does nothing but ask would be left out.
+  [[gnu::always_inline]] DARTCAST_TARGET static void ask_for(const Vec3* positions, const VertexNumbers& v) {
     for (unsigned i = 0; i < 4; ++i) {
       __builtin_prefetch(positions + v[i]);
       __builtin_prefetch(&(positions + v[i])->z);
     }
   }
 
-  // Goes on into the next simplex, if the filter says which; else leaves the step.
+  // Goes on into the next simplex, if the filter says which; else leaves the step. k: its place in the block.
   DARTCAST_TARGET bool leave_simplex(Visit& visit, const VertexNumbers& corners, std::size_t k) {
-    const FilteredDeterminants& d = determinants_[k];
-    if (!d.proves_positive()) return leave(visit.particle);
+    const Signs signs(signs_[k]);
+    if (!signs.is_valid()) return leave(visit.particle);
     const unsigned asked = 15U & ~(1U << visit.place);
-    unsigned behind = d.negative() & asked;
-    unsigned on = 0;
-    if (const unsigned open = asked & ~(d.positive() | behind); open != 0) {
-      if (!is_exact(Rows(now_, corners), load_row(targets_[visit.particle]))) return leave(visit.particle);
-      behind = lanes_set(d.value < 0.0) & asked;
-      on = lanes_set(d.value == 0.0) & asked;
-      visit.exact = static_cast<std::uint16_t>(visit.exact + std::popcount(open));
-    }
+    const unsigned open = signs.open() & asked;
+    if (open != 0 && !signs.is_exact()) return leave(visit.particle);
+    visit.exact = static_cast<std::uint16_t>(visit.exact + std::popcount(open));
+    const unsigned behind = signs.negative() & asked;
     if (behind == 0) {
+      const unsigned on = signs.zero() & asked;
       if (on != 0) {
         if (const auto wall = find_touched_wall(visit, on)) return end_on_wall(visit, on, *wall);
       }
@@ -321,20 +398,24 @@ class Batch {
   // Of several facets that the target lies behind, the one by which the segment leaves; 4 where the filter does not
   // say.
   DARTCAST_TARGET unsigned first_exit(Visit& visit, const VertexNumbers& corners, unsigned behind) const {
-    const Rows now(now_, corners);
     const std::uint32_t i = visit.particle;
-    const Vec3 p = !moved ? states_[i].position : vec_of(ridden_[i]);
+    const Vec3 p = start_of(i);
     const Vec3& q = targets_[i];
     unsigned facet = static_cast<unsigned>(std::countr_zero(behind));
     while ((behind &= behind - 1) != 0) {
       const unsigned other = static_cast<unsigned>(std::countr_zero(behind));
       const auto& edge = side_edge[facet][other];
-      const int first = filtered_sign(vec_of(now.corner[edge[0]]) - q, p - q, vec_of(now.corner[edge[1]]) - q);
+      const int first = filtered_sign(now_[corners[edge[0]]] - q, p - q, now_[corners[edge[1]]] - q);
       ++visit.tests;
       if (first == 0) return 4;
       if (first < 0) facet = other;
     }
     return facet;
+  }
+
+  [[nodiscard]] DARTCAST_TARGET Vec3 start_of(std::uint32_t i) const {
+    if constexpr (!moved) return states_[i].position;
+    return {ridden_[i].x, ridden_[i].y, ridden_[i].z};
   }
 
   DARTCAST_TARGET bool pass_on(Visit& visit, unsigned facet) {
@@ -384,7 +465,7 @@ class Batch {
   DARTCAST_TARGET bool hand_over(const Visit& visit, const Walk& walk) {
     const std::uint32_t i = visit.particle;
     taken_[i] = static_cast<Taken>(begun_.size());
-    begun_.push_back({!moved ? states_[i].position : vec_of(ridden_[i]), walk, {visit.tests, visit.exact}});
+    begun_.push_back({start_of(i), walk, {visit.tests, visit.exact}});
     return false;
   }
   DARTCAST_TARGET void leave_all(std::size_t count) {
@@ -401,19 +482,35 @@ class Batch {
     counters_.orientation.exact += visit.exact;
     ++counters_.histogram[std::min<std::size_t>(visit.tests, Counters::histogram_size - 1)];
     const bool kept = visit.place == no_facet;
-    if constexpr (moved) leave_trail(relative_[k], determinants_[k], memos_[visit.particle]);
-    if constexpr (kind == MemoKind::coordinates) keep_coordinates(visit, k, kept);
     counters_.forecast_kept += kept ? 1 : 0;
     if (moved && !kept) counters_.updated_by_deformation += left_behind_[visit.particle] ? 1 : 0;
+    arrival_[arrivals_] = {visit.particle, static_cast<std::uint32_t>(k)};
+    arrivals_ += kind != MemoKind::coordinates || needs_coordinates(visit) ? 1 : 0;
   }
 
-  // Of the simplex come to; but who passes many in a step is likely to leave that one in the next, too.
-  DARTCAST_TARGET void keep_coordinates(const Visit& visit, std::size_t k, bool kept) {
+  // Who passes many simplices in a step is likely to leave the last one in the next, too: it gets none.
+  DARTCAST_TARGET bool needs_coordinates(const Visit& visit) {
     constexpr std::uint16_t few_tests = 13;  // three simplices
-    Memo& memo = memos_[visit.particle];
-    if (kept && !is_unknown(memo)) return;
-    if (visit.tests > few_tests) return store_four(four(unknown), memo.w);
-    leave_coordinates(relative_[k], determinants_[k], load_row(targets_[visit.particle]), memo);
+    auto& w = memos_[visit.particle / 4].w;
+    const std::uint32_t lane = visit.particle % 4;
+    if (visit.place == no_facet && !std::isnan(w[0][lane])) return false;
+    if (visit.tests <= few_tests) return true;
+    for (auto& of_corner : w) of_corner[lane] = unknown;
+    return false;
+  }
+
+  // Keeps memos of the simplices that walks of the block have ended in.
+  DARTCAST_TARGET void remember_arrivals() {
+    MemosOfFour four;
+    for (std::uint32_t a = 0; a < arrivals_;) {
+      const std::uint32_t k = arrival_[a].place / 4;
+      if constexpr (moved) leave_trails(determinants_[k], four);
+      if constexpr (kind == MemoKind::coordinates) leave_coordinates(determinants_[k], ends_[k], four);
+      for (; a < arrivals_ && arrival_[a].place / 4 == k; ++a) {
+        const std::uint32_t i = arrival_[a].particle;
+        memos_[i / 4].put(i % 4, four.of(arrival_[a].place % 4));
+      }
+    }
   }
 
   const Map& map_;
@@ -424,25 +521,36 @@ class Batch {
   std::uint32_t size_;
   State* states_;
   VertexNumbers* vertices_;
-  Memo* memos_;
+  MemosOfFour* memos_;
   const Vec3* targets_;
   Taken* taken_;
   std::vector<Begun>& begun_;
   Counters& counters_;
 
-  // Of the block.
+  // As Vec3, but left as it is when the batch is made.
+  struct Place {
+    double x, y, z;
+  };
+  struct Arrival {
+    std::uint32_t particle;
+    std::uint32_t place;  // in the block
+  };
+
+  // Of the block. Bits: one per particle.
   std::array<VertexNumbers, block> corners_;
-  std::array<FilteredDeterminants, block> determinants_;
-  std::array<Lanes, block> relative_;
-  std::array<Quad, block> coordinates_;
-  std::array<bool, block> inside_;
-  std::array<bool, block> one_part_;
+  std::array<FilteredDeterminants, block / 4> determinants_;
+  std::array<Points, block / 4> ends_;  // of walks
+  std::array<long long, block> signs_;
+  std::uint32_t inside_;
+  std::uint32_t one_part_;
   std::array<std::uint32_t, block> leaving_;
+  std::array<Arrival, block> arrival_;
+  std::uint32_t arrivals_;
 
   // Of the batch.
   std::array<Visit, filtered_batch> visits_;        // walks that go on
   std::array<std::uint8_t, filtered_batch> exits_;  // of these, the facet that they leave the first simplex by
-  std::array<Quad, filtered_batch> ridden_;         // where particles have ridden to
+  std::array<Place, filtered_batch> ridden_;        // where particles have ridden to
   std::array<bool, filtered_batch> left_behind_;
 };
 

@@ -1,107 +1,141 @@
-// Simplices in vectors. Part of walk/filtered_kernel.hpp: no include guard, no includes.
+// Simplices of four particles in vectors, one particle in each lane: what a step asks of a particle is asked of four
+// by the same operations. Part of walk/filtered_kernel.hpp: no include guard, no includes.
 
-// The corners of a simplex: x, y, z and one double that means nothing.
-struct Rows {
-  Quad corner[4];
-
-  DARTCAST_TARGET Rows(const Vec3* positions, const VertexNumbers& v)
-      : corner{at(positions + v[0]), at(positions + v[1]), at(positions + v[2]), at(positions + v[3])} {}
-
- private:
-  DARTCAST_TARGET static Quad at(const Vec3* row) { return *reinterpret_cast<const UnalignedQuad*>(row); }
-};
-
-DARTCAST_TARGET inline Vec3 vec_of(const Quad& row) { return {row[0], row[1], row[2]}; }
+DARTCAST_TARGET inline Quad splat(double x) { return Quad{x, x, x, x}; }
+DARTCAST_TARGET inline Mask splat_bits(long long x) { return Mask{x, x, x, x}; }
 DARTCAST_TARGET inline Quad magnitude(const Quad& v) {
-  constexpr long long all_but_sign = 0x7fffffffffffffff;
-  return reinterpret_cast<Quad>(reinterpret_cast<Mask>(v) &
-                                Mask{all_but_sign, all_but_sign, all_but_sign, all_but_sign});
+  return reinterpret_cast<Quad>(reinterpret_cast<Mask>(v) & splat_bits(0x7fffffffffffffff));
 }
 DARTCAST_TARGET inline Quad larger(const Quad& a, const Quad& b) { return a > b ? a : b; }
 DARTCAST_TARGET inline Quad smaller(const Quad& a, const Quad& b) { return a < b ? a : b; }
 
-// The corners of a simplex relative to a point, one in each lane.
-struct Lanes {
+// A point of each particle.
+struct Points {
   Quad x, y, z;
 };
-DARTCAST_TARGET inline Quad square(const Lanes& v) { return v.x * v.x + v.y * v.y + v.z * v.z; }
-DARTCAST_TARGET inline Lanes operator-(const Lanes& u, const Lanes& v) { return {u.x - v.x, u.y - v.y, u.z - v.z}; }
-// Each lane from the lane named.
-template <int a, int b, int c, int d>
-DARTCAST_TARGET inline Lanes lanes(const Lanes& v) {
-  return {__builtin_shufflevector(v.x, v.x, a, b, c, d), __builtin_shufflevector(v.y, v.y, a, b, c, d),
-          __builtin_shufflevector(v.z, v.z, a, b, c, d)};
+DARTCAST_TARGET inline Points operator+(const Points& a, const Points& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+DARTCAST_TARGET inline Points operator-(const Points& a, const Points& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+DARTCAST_TARGET inline Points operator*(const Points& a, const Quad& s) { return {a.x * s, a.y * s, a.z * s}; }
+DARTCAST_TARGET inline Quad dot(const Points& a, const Points& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+DARTCAST_TARGET inline Points cross(const Points& a, const Points& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-DARTCAST_TARGET inline double sum(const Quad& v) { return (v[0] + v[1]) + (v[2] + v[3]); }
-DARTCAST_TARGET inline double most(const Quad& v) { return std::max(std::max(v[0], v[1]), std::max(v[2], v[3])); }
-DARTCAST_TARGET inline double least(const Quad& v) { return std::min(std::min(v[0], v[1]), std::min(v[2], v[3])); }
+DARTCAST_TARGET inline Quad square(const Points& a) { return dot(a, a); }
+DARTCAST_TARGET inline Points magnitude(const Points& a) { return {magnitude(a.x), magnitude(a.y), magnitude(a.z)}; }
+DARTCAST_TARGET inline Points larger(const Points& a, const Points& b) {
+  return {larger(a.x, b.x), larger(a.y, b.y), larger(a.z, b.z)};
+}
+DARTCAST_TARGET inline Quad largest(const Points& a) { return larger(larger(a.x, a.y), a.z); }
 
-// The determinants of geometry/simplex.hpp, by the same operations, one in each lane; and their bound.
-struct FilteredDeterminants {
-  Quad value;
-  Quad extent;  // largest magnitudes of x, y and z relative to the point
-  double bound;
-  bool applies;
+// Two doubles from each of two places.
+DARTCAST_TARGET inline Quad load_pairs(const double* a, const double* b) {
+  const Pair low = *reinterpret_cast<const UnalignedPair*>(a);
+  const Pair high = *reinterpret_cast<const UnalignedPair*>(b);
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3);
+}
+DARTCAST_TARGET inline Points load_points(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const Quad xy02 = load_pairs(&a.x, &c.x);
+  const Quad xy13 = load_pairs(&b.x, &d.x);
+  const Quad yz02 = load_pairs(&a.y, &c.y);
+  const Quad yz13 = load_pairs(&b.y, &d.y);
+  return {__builtin_shufflevector(xy02, xy13, 0, 4, 2, 6), __builtin_shufflevector(xy02, xy13, 1, 5, 3, 7),
+          __builtin_shufflevector(yz02, yz13, 1, 5, 3, 7)};
+}
 
-  FilteredDeterminants() = default;
-  DARTCAST_TARGET FilteredDeterminants(const Rows& v, const Quad& point) {
-    Lanes ignored;
-    *this = FilteredDeterminants(v, point, ignored);
+struct Tetrahedra {
+  Points corner[4];
+
+  DARTCAST_TARGET Tetrahedra(const Vec3* positions, const VertexNumbers& a, const VertexNumbers& b,
+                             const VertexNumbers& c, const VertexNumbers& d) {
+    for (unsigned i = 0; i < 4; ++i)
+      corner[i] = load_points(positions[a[i]], positions[b[i]], positions[c[i]], positions[d[i]]);
   }
-  // Leaves the corners relative to the point in `relative`.
-  DARTCAST_TARGET FilteredDeterminants(const Rows& v, const Quad& point, Lanes& relative) {
-    const Quad r0 = v.corner[0] - point;
-    const Quad r1 = v.corner[1] - point;
-    const Quad r2 = v.corner[2] - point;
-    const Quad r3 = v.corner[3] - point;
-    extent = larger(larger(magnitude(r0), magnitude(r1)), larger(magnitude(r2), magnitude(r3)));
-    const double m = extent[0] * extent[1] * extent[2];
-    bound = determinant_error * m;
-    applies = (lanes_set(extent > 0x1p+301) & 7U) == 0 && m >= 0x1p-700;
-    // Corners in lanes, as they are and with neighbours exchanged: (r1, r0, r3, r2).
-    const Quad xz01 = __builtin_shufflevector(r0, r1, 0, 4, 2, 6);
-    const Quad xz23 = __builtin_shufflevector(r2, r3, 0, 4, 2, 6);
-    const Quad y01 = __builtin_shufflevector(r0, r1, 1, 5, 3, 7);
-    const Quad y23 = __builtin_shufflevector(r2, r3, 1, 5, 3, 7);
-    relative = {__builtin_shufflevector(xz01, xz23, 0, 1, 4, 5), __builtin_shufflevector(y01, y23, 0, 1, 4, 5),
-                __builtin_shufflevector(xz01, xz23, 2, 3, 6, 7)};
-    const auto& [x, y, z] = relative;
-    const auto [xs, ys, zs] = lanes<1, 0, 3, 2>(relative);
-    // (n, -n, n', -n') with n = r0 x r1, n' = r2 x r3; then its halves exchanged.
-    const Quad nx = y * zs - z * ys;
-    const Quad ny = z * xs - x * zs;
-    const Quad nz = x * ys - y * xs;
-    const Quad mx = __builtin_shufflevector(nx, nx, 2, 3, 0, 1);
-    const Quad my = __builtin_shufflevector(ny, ny, 2, 3, 0, 1);
-    const Quad mz = __builtin_shufflevector(nz, nz, 2, 3, 0, 1);
-    value = xs * mx + ys * my + zs * mz;
-  }
-
-  [[nodiscard]] DARTCAST_TARGET double volume6() const { return sum(value); }
-  // Surely no more than six times the volume.
-  [[nodiscard]] DARTCAST_TARGET double least_volume6() const { return volume6() - 8.0 * bound; }
-  [[nodiscard]] DARTCAST_TARGET bool proves_positive() const { return applies && least_volume6() > 0.0; }
-  [[nodiscard]] DARTCAST_TARGET bool proves_coordinates() const { return applies && volume6() > 0x1p+30 * bound; }
-  // Bit i: value i is proved positive, or negative.
-  [[nodiscard]] DARTCAST_TARGET unsigned positive() const { return lanes_set(value > bound); }
-  [[nodiscard]] DARTCAST_TARGET unsigned negative() const { return lanes_set(value < -bound); }
-  [[nodiscard]] DARTCAST_TARGET bool all_positive() const { return applies && positive() == 15U; }
 };
 
-DARTCAST_TARGET inline Corners corners_of(const Rows& v) {
-  return {vec_of(v.corner[0]), vec_of(v.corner[1]), vec_of(v.corner[2]), vec_of(v.corner[3])};
+// A bit for each facet, in each lane.
+DARTCAST_TARGET inline Mask facet_bits(const Mask& m0, const Mask& m1, const Mask& m2, const Mask& m3) {
+  return ((m0 & splat_bits(1)) | (m1 & splat_bits(2))) | ((m2 & splat_bits(4)) | (m3 & splat_bits(8)));
 }
 
-// Whether the determinants' values are exact (rounds_nothing() in exact/predicates.hpp), where the filter applies.
-DARTCAST_TARGET inline bool is_exact(const Rows& v, const Quad& point) {
-  Quad extent = magnitude(v.corner[0] - point);
-  for (unsigned i = 1; i < 4; ++i) extent = larger(extent, magnitude(v.corner[i] - point));
-  const Quad unit = extent * 0x1p+37;
-  const Quad m = magnitude(point);
-  Mask rounded = ((m + unit) - unit) != m;
-  for (const Quad& corner : v.corner) {
-    const Quad c = magnitude(corner);
-    rounded |= ((c + unit) - unit) != c;
+// What determinants say of one point, in the bits of its lane.
+class Signs {
+ public:
+  static constexpr long long valid = 1LL << 12;
+  static constexpr long long exact = 1LL << 13;
+
+  explicit Signs(long long bits) : bits_(static_cast<unsigned>(bits)) {}
+  [[nodiscard]] unsigned negative() const { return bits_ & 15U; }
+  [[nodiscard]] unsigned zero() const { return (bits_ >> 4U) & 15U; }
+  [[nodiscard]] unsigned open() const { return (bits_ >> 8U) & 15U; }             // left open by the filter
+  [[nodiscard]] bool is_valid() const { return (bits_ & valid) != 0; }            // the simplex is proved positive
+  [[nodiscard]] bool is_exact() const { return (bits_ & exact) != 0; }            // else open signs are unknown
+  [[nodiscard]] bool is_inside() const { return bits_ == unsigned{1} << 12U; }
+
+ private:
+  unsigned bits_;
+};
+
+// The determinants of geometry/simplex.hpp, by the same operations, of four points; and their bounds.
+struct FilteredDeterminants {
+  Points relative[4];  // corners, to the points
+  Points extent;       // largest magnitudes of these
+  Quad value[4];
+  Quad bound;
+  Mask applies;
+
+  FilteredDeterminants() = default;
+  DARTCAST_TARGET FilteredDeterminants(const Tetrahedra& v, const Points& x)
+      : relative{v.corner[0] - x, v.corner[1] - x, v.corner[2] - x, v.corner[3] - x},
+        extent(larger(larger(magnitude(relative[0]), magnitude(relative[1])),
+                      larger(magnitude(relative[2]), magnitude(relative[3])))) {
+    const Points n01 = cross(relative[0], relative[1]);
+    const Points n23 = cross(relative[2], relative[3]);
+    value[0] = dot(relative[1], n23);
+    value[1] = -dot(relative[0], n23);
+    value[2] = dot(relative[3], n01);
+    value[3] = -dot(relative[2], n01);
+    const Quad m = extent.x * extent.y * extent.z;
+    bound = determinant_error * m;
+    applies = (largest(extent) <= 0x1p+301) & (m >= 0x1p-700);
   }
-  return (lanes_set(rounded) & 7U) == 0;
-}
+
+  [[nodiscard]] DARTCAST_TARGET Quad volume6() const { return (value[0] + value[1]) + (value[2] + value[3]); }
+  [[nodiscard]] DARTCAST_TARGET Mask proves_coordinates() const { return applies & (volume6() > 0x1p+30 * bound); }
+  [[nodiscard]] DARTCAST_TARGET Mask all_positive() const {
+    return applies & (smaller(smaller(value[0], value[1]), smaller(value[2], value[3])) > bound);
+  }
+  [[nodiscard]] DARTCAST_TARGET Mask any_negative() const {
+    return smaller(smaller(value[0], value[1]), smaller(value[2], value[3])) < -bound;
+  }
+
+  // The Signs of each lane. `v`, `x`: those that the determinants are of.
+  [[nodiscard]] DARTCAST_TARGET Mask signs(const Tetrahedra& v, const Points& x) const {
+    Mask negative = facet_bits(value[0] < -bound, value[1] < -bound, value[2] < -bound, value[3] < -bound);
+    const Mask positive = facet_bits(value[0] > bound, value[1] > bound, value[2] > bound, value[3] > bound);
+    const Mask open = (negative | positive) ^ splat_bits(15);
+    const Mask is_valid = applies & ((positive == splat_bits(15)) | (volume6() - 8.0 * bound > 0.0));
+    Mask bits = (open << 8) | (is_valid & splat_bits(Signs::valid));
+    if (lanes_set(open != 0) != 0) {
+      const Mask exact = are_exact(v, x);
+      const Mask known = open & exact;
+      negative |= known & facet_bits(value[0] < 0.0, value[1] < 0.0, value[2] < 0.0, value[3] < 0.0);
+      const Mask zero = known & facet_bits(value[0] == 0.0, value[1] == 0.0, value[2] == 0.0, value[3] == 0.0);
+      bits |= (zero << 4) | (exact & splat_bits(Signs::exact));
+    }
+    return bits | negative;
+  }
+
+ private:
+  // Whether the values are exact (rounds_nothing() in exact/predicates.hpp), where the filter applies.
+  [[nodiscard]] DARTCAST_TARGET Mask are_exact(const Tetrahedra& v, const Points& x) const {
+    const Points unit = extent * splat(0x1p+37);
+    const Points m = magnitude(x);
+    Mask rounded = is_rounded(m.x, unit.x) | is_rounded(m.y, unit.y) | is_rounded(m.z, unit.z);
+    for (const Points& corner : v.corner) {
+      const Points c = magnitude(corner);
+      rounded |= is_rounded(c.x, unit.x) | is_rounded(c.y, unit.y) | is_rounded(c.z, unit.z);
+    }
+    return ~rounded;
+  }
+  DARTCAST_TARGET static Mask is_rounded(const Quad& m, const Quad& unit) { return ((m + unit) - unit) != m; }
+};

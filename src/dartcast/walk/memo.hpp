@@ -3,8 +3,11 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
+#include <vector>
 
 namespace dartcast::detail {
 
@@ -30,5 +33,55 @@ inline Memo unknown_memo() { return {{}, {}, {}, {unknown, unknown, unknown, unk
 inline constexpr double proves_nothing = -std::numeric_limits<double>::infinity();
 
 enum class MemoKind : std::uint8_t { none, trail, coordinates };
+
+/// The memos of four particles in a row, as vectors take them: [corner][particle].
+struct alignas(64) MemosOfFour {
+  template <class T>
+  using Table = std::array<std::array<T, 4>, 4>;
+  Table<float> x, y, z;
+  Table<double> w;
+
+  [[nodiscard]] Memo of(std::size_t particle) const {
+    Memo m;
+    for (std::size_t i = 0; i < 4; ++i) {
+      m.x[i] = x[i][particle];
+      m.y[i] = y[i][particle];
+      m.z[i] = z[i][particle];
+      m.w[i] = w[i][particle];
+    }
+    return m;
+  }
+  void put(std::size_t particle, const Memo& m) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      x[i][particle] = m.x[i];
+      y[i][particle] = m.y[i];
+      z[i][particle] = m.z[i];
+      w[i][particle] = m.w[i];
+    }
+  }
+};
+
+/// One memo per particle.
+class Memos {
+ public:
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] bool empty() const { return size_ == 0; }
+  void resize(std::size_t size) {
+    size_ = size;
+    fours_.resize((size + 3) / 4);
+  }
+  [[nodiscard]] Memo operator[](std::size_t i) const { return fours_[i / 4].of(i % 4); }
+  void put(std::size_t i, const Memo& m) { fours_[i / 4].put(i % 4, m); }
+  void push_back(const Memo& m) {
+    resize(size_ + 1);
+    put(size_ - 1, m);
+  }
+  /// Of the particles from `begin` on. Precondition: begin is a multiple of four.
+  [[nodiscard]] std::span<MemosOfFour> from(std::size_t begin) { return std::span(fours_).subspan(begin / 4); }
+
+ private:
+  std::size_t size_ = 0;
+  std::vector<MemosOfFour> fours_;
+};
 
 }  // namespace dartcast::detail
