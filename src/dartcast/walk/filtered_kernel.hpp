@@ -116,18 +116,14 @@ class Batch {
     one_part_ = 0;
     arrivals_ = 0;
     for (std::uint32_t k = 0; k < n; k += 4) {
-      // Memory takes a dozen requests at a time: they are spread over the work.
-      ask_ahead(first + k);
+      for (std::uint32_t j = 0; j < 4; ++j) ask_ahead(first + k + j);
       const Four i = four_from(first + k);
       const Tetrahedra now = simplices_of(now_, i);
       const Points q = targets_of(i);
-      ask_ahead(first + k + 1);
       const FilteredDeterminants& d = *new (&determinants_[k / 4]) FilteredDeterminants(now, q);
-      ask_ahead(first + k + 2);
       const Mask signs = d.signs(now, q);
       store_signs(signs, k);
       inside_ |= lanes_set(signs == splat_bits(Signs::valid)) << k;
-      ask_ahead(first + k + 3);
       if constexpr (moved) {
         const OnePart one(memos_[i.at[0] / 4], d.relative, places_of(i), q, tolerance_);
         Mask proved = one.by_size();
@@ -199,7 +195,7 @@ class Batch {
     std::uint32_t unusual = moved ? all & ~one_part_ : 0;
     for (std::uint32_t k = 0; k < n; ++k) {
       const State& s = states_[first + k];
-      unusual |= static_cast<std::uint32_t>(s.held || s.touching_count != 0) << k;
+      unusual |= ((std::uint32_t{s.held} | s.touching_count) != 0 ? std::uint32_t{1} : 0) << k;
     }
     std::uint32_t left = 0;
     for (; unusual != 0; unusual &= unusual - 1) {
