@@ -82,14 +82,13 @@ class Batch {
       const std::uint32_t leaving = end_inside(first, n);
       for (std::uint32_t l = 0; l < leaving; ++l) {
         const std::uint32_t i = first + leaving_[l];
-        const State& s = states_[i];
-        __builtin_prefetch(map_.record(s.cell));
-        exits_[count] = exit_by(signs_[leaving_[l]]);
-        if (exits_[count] == no_facet) ask_for(now_, vertices_[i]);
-        visits_[count++] = {i, s.cell.value, s.simplex, no_facet, 4, 0, false};
+        __builtin_prefetch(map_.record(states_[i].cell));
+        const std::uint8_t exit = exit_by(signs_[leaving_[l]]);
+        if (exit == no_facet) ask_for(now_, vertices_[i]);
+        departures_[count++] = {i, exit};
       }
     }
-    return go_on_from_first(count);
+    return depart(count);
   }
 
   // Four particles in a row; at the end of the batch the last one again in the lanes that are left.
@@ -99,6 +98,10 @@ class Batch {
   DARTCAST_TARGET Four four_from(std::uint32_t i) const {
     const std::uint32_t last = size_ - 1;
     return {{i, std::min(i + 1, last), std::min(i + 2, last), std::min(i + 3, last)}};
+  }
+  // Of particles in a row.
+  DARTCAST_TARGET Points targets_from(std::uint32_t i) const {
+    return i + 4 <= size_ ? load_points(targets_ + i) : targets_of(four_from(i));
   }
   DARTCAST_TARGET Points targets_of(const Four& i) const {
     return load_points(targets_[i.at[0]], targets_[i.at[1]], targets_[i.at[2]], targets_[i.at[3]]);
@@ -119,7 +122,7 @@ class Batch {
       for (std::uint32_t j = 0; j < 4; ++j) ask_ahead(first + k + j);
       const Four i = four_from(first + k);
       const Tetrahedra now = simplices_of(now_, i);
-      const Points q = targets_of(i);
+      const Points q = targets_from(first + k);
       const FilteredDeterminants& d = *new (&determinants_[k / 4]) FilteredDeterminants(now, q);
       const Mask signs = d.signs(now, q);
       store_signs(signs, k);
@@ -133,7 +136,9 @@ class Batch {
     }
   }
 
-  [[gnu::always_inline]] DARTCAST_TARGET void ask_ahead(std::uint32_t i) const { ask_for(now_, vertices_[std::min(i + block, size_ - 1)]); }
+  [[gnu::always_inline]] DARTCAST_TARGET void ask_ahead(std::uint32_t i) const {
+    ask_for(now_, vertices_[std::min(i + block, size_ - 1)]);
+  }
 
   DARTCAST_TARGET void store_signs(const Mask& signs, std::size_t k) {
     *reinterpret_cast<UnalignedMask*>(&signs_[k]) = signs;
@@ -143,9 +148,8 @@ class Batch {
   DARTCAST_TARGET void test_coordinates(std::uint32_t first, std::uint32_t n) {
     inside_ = 0;
     for (std::uint32_t k = 0; k < n; k += 4) {
-      const Four i = four_from(first + k);
-      const Points q = targets_of(i);
-      const MemosOfFour& memos = memos_[i.at[0] / 4];
+      const Points q = targets_from(first + k);
+      const MemosOfFour& memos = memos_[(first + k) / 4];
       const Quad c[4] = {coordinate_of(memos, 0, q), coordinate_of(memos, 1, q), coordinate_of(memos, 2, q),
                          coordinate_of(memos, 3, q)};
       const Quad m[4] = {magnitude(c[0]), magnitude(c[1]), magnitude(c[2]), magnitude(c[3])};
@@ -164,12 +168,14 @@ class Batch {
   }
 
   // Walks whose exits are not known are to be tested where they are.
-  DARTCAST_TARGET std::size_t go_on_from_first(std::size_t count) {
+  DARTCAST_TARGET std::size_t depart(std::size_t count) {
     std::size_t next = 0;
     for (std::size_t k = 0; k < count; ++k) {
-      Visit& v = visits_[next] = visits_[k];
-      if (exits_[k] == no_facet) v.tests = 1;  // three more there
-      if (exits_[k] == no_facet || pass_on(v, exits_[k])) ++next;
+      const auto [i, exit] = departures_[k];
+      const bool known = exit != no_facet;
+      const std::uint16_t tests = known ? 4 : 1;  // three more there
+      visits_[next] = {i, states_[i].cell.value, states_[i].simplex, no_facet, tests, 0, false};
+      if (!known || pass_on(visits_[next], exit)) ++next;
     }
     return next;
   }
@@ -192,13 +198,9 @@ class Batch {
   // way. Lists the others in leaving_.
   DARTCAST_TARGET std::uint32_t end_inside(std::uint32_t first, std::uint32_t n) {
     const std::uint32_t all = n == block ? ~std::uint32_t{0} : (std::uint32_t{1} << n) - 1;
-    std::uint32_t unusual = moved ? all & ~one_part_ : 0;
-    for (std::uint32_t k = 0; k < n; ++k) {
-      const State& s = states_[first + k];
-      unusual |= ((std::uint32_t{s.held} | s.touching_count) != 0 ? std::uint32_t{1} : 0) << k;
-    }
     std::uint32_t left = 0;
-    for (; unusual != 0; unusual &= unusual - 1) {
+    for (std::uint32_t unusual = held_or_touching(first, n) | (moved ? all & ~one_part_ : 0); unusual != 0;
+         unusual &= unusual - 1) {
       const auto k = static_cast<std::uint32_t>(std::countr_zero(unusual));
       if (is_left(first + k, k)) left |= std::uint32_t{1} << k;
     }
@@ -213,6 +215,21 @@ class Batch {
     for (std::uint32_t on = all & ~left & ~inside_; on != 0; on &= on - 1)
       leaving_[leaving++] = static_cast<std::uint32_t>(std::countr_zero(on));
     return leaving;
+  }
+
+  // Few are, so that four are looked at together.
+  [[nodiscard]] DARTCAST_TARGET std::uint32_t held_or_touching(std::uint32_t first, std::uint32_t n) const {
+    const auto is = [&](std::uint32_t i) { return std::uint32_t{states_[i].held} | states_[i].touching_count; };
+    std::uint32_t bits = 0;
+    for (std::uint32_t k = 0; k < n; ++k) {
+      const std::uint32_t i = first + k;
+      if (i + 4 <= size_ && (is(i) | is(i + 1) | is(i + 2) | is(i + 3)) == 0) {
+        k += 3;
+      } else if (is(i) != 0) {
+        bits |= std::uint32_t{1} << k;
+      }
+    }
+    return bits;
   }
 
   DARTCAST_TARGET void count_ended(std::uint32_t ended) {
@@ -527,6 +544,11 @@ class Batch {
   struct Place {
     double x, y, z;
   };
+  // A walk that leaves its first simplex, by this facet where it is known.
+  struct Departure {
+    std::uint32_t particle;
+    std::uint32_t exit;
+  };
   struct Arrival {
     std::uint32_t particle;
     std::uint32_t place;  // in the block
@@ -544,9 +566,9 @@ class Batch {
   std::uint32_t arrivals_;
 
   // Of the batch.
-  std::array<Visit, filtered_batch> visits_;        // walks that go on
-  std::array<std::uint8_t, filtered_batch> exits_;  // of these, the facet that they leave the first simplex by
-  std::array<Place, filtered_batch> ridden_;        // where particles have ridden to
+  std::array<Visit, filtered_batch> visits_;  // walks that go on
+  std::array<Departure, filtered_batch> departures_;
+  std::array<Place, filtered_batch> ridden_;  // where particles have ridden to
   std::array<bool, filtered_batch> left_behind_;
 };
 

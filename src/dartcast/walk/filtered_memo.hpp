@@ -38,8 +38,8 @@ DARTCAST_TARGET inline void leave_coordinates(const FilteredDeterminants& d, con
   const Quad share = 1.0 / volume;
   const Quad extent = largest(d.extent);
   const Quad reach = largest(larger(d.extent, magnitude(p) * splat(1.0 / extents_from_origin)));
-  Mask proved = d.proves_coordinates() & (volume >= least_volume * (extent * extent * extent)) &
-                (extent <= largest_extent);
+  Mask proved =
+      d.proves_coordinates() & (volume >= least_volume * (extent * extent * extent)) & (extent <= largest_extent);
   Quad at_origin[4];
   for (unsigned i = 0; i < 4; ++i) {
     const Points& a = d.relative[i ^ 1U];
@@ -65,8 +65,8 @@ DARTCAST_TARGET inline Points ride_along(const Quad (&w)[4], const Tetrahedra& n
   for (unsigned i = 0; i < 4; ++i) share[i] = larger(w[i], Quad{});
   const Quad sum = ((share[0] + share[1]) + share[2]) + share[3];
   for (Quad& s : share) s = s / sum;
-  const Points x = (now.corner[0] * share[0] + now.corner[1] * share[1]) +
-                   (now.corner[2] * share[2] + now.corner[3] * share[3]);
+  const Points x =
+      (now.corner[0] * share[0] + now.corner[1] * share[1]) + (now.corner[2] * share[2] + now.corner[3] * share[3]);
   return {without_tiny(x.x), without_tiny(x.y), without_tiny(x.z)};
 }
 

@@ -41,6 +41,14 @@ DARTCAST_TARGET inline Points load_points(const Vec3& a, const Vec3& b, const Ve
   return {__builtin_shufflevector(xy02, xy13, 0, 4, 2, 6), __builtin_shufflevector(xy02, xy13, 1, 5, 3, 7),
           __builtin_shufflevector(yz02, yz13, 1, 5, 3, 7)};
 }
+// Of points in a row.
+DARTCAST_TARGET inline Points load_points(const Vec3* p) {
+  const Quad xy02 = load_pairs(&p[0].x, &p[2].x);
+  const Quad zx02 = load_pairs(&p[0].z, &p[2].z);  // z and the next one's x
+  const Quad yz13 = load_pairs(&p[1].y, &p[3].y);
+  return {__builtin_shufflevector(xy02, zx02, 0, 5, 2, 7), __builtin_shufflevector(xy02, yz13, 1, 4, 3, 6),
+          __builtin_shufflevector(zx02, yz13, 0, 5, 2, 7)};
+}
 
 struct Tetrahedra {
   Points corner[4];
@@ -66,9 +74,9 @@ class Signs {
   explicit Signs(long long bits) : bits_(static_cast<unsigned>(bits)) {}
   [[nodiscard]] unsigned negative() const { return bits_ & 15U; }
   [[nodiscard]] unsigned zero() const { return (bits_ >> 4U) & 15U; }
-  [[nodiscard]] unsigned open() const { return (bits_ >> 8U) & 15U; }             // left open by the filter
-  [[nodiscard]] bool is_valid() const { return (bits_ & valid) != 0; }            // the simplex is proved positive
-  [[nodiscard]] bool is_exact() const { return (bits_ & exact) != 0; }            // else open signs are unknown
+  [[nodiscard]] unsigned open() const { return (bits_ >> 8U) & 15U; }   // left open by the filter
+  [[nodiscard]] bool is_valid() const { return (bits_ & valid) != 0; }  // the simplex is proved positive
+  [[nodiscard]] bool is_exact() const { return (bits_ & exact) != 0; }  // else open signs are unknown
   [[nodiscard]] bool is_inside() const { return bits_ == unsigned{1} << 12U; }
 
  private:
