@@ -279,6 +279,8 @@ TEST(FilteredBatch, SeedsThatWentWrong) {
   EXPECT_EQ(run_scene(oracle::SceneKind::hexahedra, false, 855, tally), "");
   // A particle at a corner that is rounded out of its simplex when it rides along.
   EXPECT_EQ(run_scene(oracle::SceneKind::flat_corners, true, 197, tally), "");
+  // A walk through all simplices of a small scene, of which the first is tested in a round of its own.
+  EXPECT_EQ(run_scene(oracle::SceneKind::prisms, false, 1949, tally), "");
 }
 
 TEST(FilteredBatch, RangesAreCheckedToTheLastNumber) {

@@ -43,7 +43,7 @@ class Batch {
     std::fill_n(taken_, size_, taken_all);
     std::size_t count = kind == MemoKind::coordinates ? begin_by_coordinates() : begin();
     for (std::uint64_t round = 1; count > 0; ++round) {
-      if (round == most_rounds) return leave_all(count);
+      if (round > most_rounds) return leave_all(count);
       count = walk_on(count);
     }
   }
