@@ -74,9 +74,9 @@ class Signs {
   explicit Signs(long long bits) : bits_(static_cast<unsigned>(bits)) {}
   [[nodiscard]] unsigned negative() const { return bits_ & 15U; }
   [[nodiscard]] unsigned zero() const { return (bits_ >> 4U) & 15U; }
-  [[nodiscard]] unsigned open() const { return (bits_ >> 8U) & 15U; }   // left open by the filter
+  [[nodiscard]] unsigned open() const { return (bits_ >> 8U) & 15U; }   // by the filter
   [[nodiscard]] bool is_valid() const { return (bits_ & valid) != 0; }  // the simplex is proved positive
-  [[nodiscard]] bool is_exact() const { return (bits_ & exact) != 0; }  // else open signs are unknown
+  [[nodiscard]] bool is_exact() const { return (bits_ & exact) != 0; }  // else open ones are unknown
   [[nodiscard]] bool is_inside() const { return bits_ == unsigned{1} << 12U; }
 
  private:
@@ -124,11 +124,9 @@ struct FilteredDeterminants {
     const Mask is_valid = applies & ((positive == splat_bits(15)) | (volume6() - 8.0 * bound > 0.0));
     Mask bits = (open << 8) | (is_valid & splat_bits(Signs::valid));
     if (lanes_set(open != 0) != 0) {
-      const Mask exact = are_exact(v, x);
-      const Mask known = open & exact;
-      negative |= known & facet_bits(value[0] < 0.0, value[1] < 0.0, value[2] < 0.0, value[3] < 0.0);
-      const Mask zero = known & facet_bits(value[0] == 0.0, value[1] == 0.0, value[2] == 0.0, value[3] == 0.0);
-      bits |= (zero << 4) | (exact & splat_bits(Signs::exact));
+      negative |= open & facet_bits(value[0] < 0.0, value[1] < 0.0, value[2] < 0.0, value[3] < 0.0);
+      const Mask zero = open & facet_bits(value[0] == 0.0, value[1] == 0.0, value[2] == 0.0, value[3] == 0.0);
+      bits |= (zero << 4) | (are_exact(v, x) & (open != 0) & splat_bits(Signs::exact));
     }
     return bits | negative;
   }
