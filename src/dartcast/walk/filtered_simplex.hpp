@@ -110,10 +110,10 @@ struct FilteredDeterminants {
   [[nodiscard]] DARTCAST_TARGET Quad volume6() const { return (value[0] + value[1]) + (value[2] + value[3]); }
   [[nodiscard]] DARTCAST_TARGET Mask proves_coordinates() const { return applies & (volume6() > 0x1p+30 * bound); }
   [[nodiscard]] DARTCAST_TARGET Mask all_positive() const {
-    return applies & (smaller(smaller(value[0], value[1]), smaller(value[2], value[3])) > bound);
+    return applies & (((value[0] > bound) & (value[1] > bound)) & ((value[2] > bound) & (value[3] > bound)));
   }
   [[nodiscard]] DARTCAST_TARGET Mask any_negative() const {
-    return smaller(smaller(value[0], value[1]), smaller(value[2], value[3])) < -bound;
+    return ((value[0] < -bound) | (value[1] < -bound)) | ((value[2] < -bound) | (value[3] < -bound));
   }
 
   // The Signs of each lane. `v`, `x`: those that the determinants are of.
