@@ -7,8 +7,7 @@
 #include <fstream>
 #include <numeric>
 
-namespace dartcast::test {
-namespace {
+namespace dartcast::test::aligned_test {
 
 constexpr std::size_t huge_page = std::size_t{1} << 21U;
 
@@ -54,5 +53,4 @@ TEST(AlignedVector, GivesItsMemoryBack) {
 
 #endif
 
-}  // namespace
-}  // namespace dartcast::test
+}  // namespace dartcast::test::aligned_test

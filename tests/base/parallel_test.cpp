@@ -9,8 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace dartcast {
-namespace {
+namespace dartcast::parallel_test {
 
 class ParallelFor : public ::testing::TestWithParam<unsigned> {};
 
@@ -86,5 +85,4 @@ TEST_P(ParallelFor, MayBeNested) {
 
 INSTANTIATE_TEST_SUITE_P(Threads, ParallelFor, ::testing::Values(0U, 1U, 2U, 7U));
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::parallel_test

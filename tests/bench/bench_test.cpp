@@ -17,8 +17,7 @@
 #include "dartcast/environment/audit.hpp"
 #include "dartcast/mesh/generate_box.hpp"
 
-namespace dartcast::bench {
-namespace {
+namespace dartcast::bench::bench_test {
 
 WorkloadOptions small(Scene scene, bool deforms, std::size_t steps = 40) {
   WorkloadOptions options;
@@ -319,5 +318,4 @@ TEST(Plan, QuickAndFull) {
   EXPECT_THROW(plan({.quick = false, .only = {"W9"}, .steps = {}}), InvalidArgument);
 }
 
-}  // namespace
-}  // namespace dartcast::bench
+}  // namespace dartcast::bench::bench_test

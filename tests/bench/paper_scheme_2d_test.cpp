@@ -16,8 +16,7 @@
 #include "dartcast/mesh/generate_rectangle.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::paper_scheme_2d_test {
 
 using bench::PaperEnd;
 using bench::PaperResult;
@@ -177,5 +176,4 @@ TEST(PaperScheme2D, RacesInThePlane) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::paper_scheme_2d_test

@@ -17,8 +17,7 @@
 #include "environment/particle_checks.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::paper_scheme_test {
 
 using bench::PaperEnd;
 using bench::PaperResult;
@@ -141,5 +140,4 @@ TEST(PaperScheme, FollowsFacesEdgesAndVertices) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::paper_scheme_test

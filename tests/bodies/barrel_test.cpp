@@ -11,8 +11,7 @@
 #include "dartcast/mesh/generate_box.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::barrel_test {
 
 constexpr double dt = 2e-3;
 constexpr int deforming_steps = 500;  // one second: longer than the fall
@@ -120,5 +119,4 @@ TEST(Barrel, FallsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(fall(oak(), steps, 5).hash, one.hash);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::barrel_test

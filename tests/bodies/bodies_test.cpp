@@ -15,8 +15,7 @@
 #include "dartcast/mesh/generate_box.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::bodies_test {
 
 using test::scaled;
 
@@ -454,5 +453,4 @@ TEST(Bodies, RefuseWhatIsOutOfRange) {
   EXPECT_EQ(bodies.steps(), 1U);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::bodies_test

@@ -17,8 +17,7 @@
 #include "dartcast/spheres/collide.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::body_collisions_test {
 
 using test::scaled;
 
@@ -326,5 +325,4 @@ TEST(BodyCollisions, RefuseOptionsOutOfRange) {
   refused([](BodyCollisionOptions& o) { o.iterations = 0; });
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::body_collisions_test

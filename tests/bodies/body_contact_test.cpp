@@ -4,8 +4,7 @@
 
 #include "dartcast/base/random.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::body_contact_test {
 
 // As far as the kinetic energy pays for it, and no less; on the way it pays for every place.
 TEST(Well, PayableShareIsAsFarAsTheEnergyReaches) {
@@ -29,5 +28,4 @@ TEST(Well, PayableShareIsAsFarAsTheEnergyReaches) {
   EXPECT_GT(limited, 100);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::body_contact_test

@@ -8,8 +8,7 @@
 
 #include "dartcast/base/random.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::body_rebound_test {
 
 constexpr double dt = 1e-3;
 
@@ -142,5 +141,4 @@ TEST(BodyRebounds, AddNoEnergyHoweverFarTheSolverCame) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::body_rebound_test

@@ -9,8 +9,7 @@
 #include "bodies/catheter_scenes.hpp"
 #include "dartcast/base/error.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::camera_path_test {
 
 TEST(CameraPath, GoesThroughItsPointsEvenly) {
   Environment environment(test::pipe(28));
@@ -75,5 +74,4 @@ TEST(CameraPath, RefusesWhatIsNoPath) {
   EXPECT_THROW(camera_path(environment, line, {0.1, {nan, 0.0, 0.0}}), InvalidArgument);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::camera_path_test

@@ -14,8 +14,7 @@
 #include "shared_data.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::carried_surface_test {
 
 struct AffineMap {
   std::array<Vec3, 3> rows;
@@ -124,5 +123,4 @@ TEST(CarriedSurface, OfALiver) {
   expect_follows(mesh.points, sample_solid(mesh, {size / 10}).points, size, 1e-12);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::carried_surface_test

@@ -13,8 +13,7 @@
 #include "dartcast/mesh/generate_rectangle.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::catheter_test {
 
 constexpr double pi = std::numbers::pi;
 
@@ -311,5 +310,4 @@ TEST(Catheter, FollowsEdits) {
   expect_in_lumen(environment, c);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::catheter_test

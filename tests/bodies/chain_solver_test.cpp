@@ -10,8 +10,7 @@
 #include "dartcast/base/random.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::chain_solver_test {
 
 struct Case {
   std::vector<Vec3> points, wanted, start, bends;
@@ -183,5 +182,4 @@ TEST(ChainSolver, FrictionHoldsBack) {
   EXPECT_LE(slip(1.0, 0.3), 2e-3);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::chain_solver_test

@@ -12,8 +12,7 @@
 #include "dartcast/base/random.hpp"
 #include "dartcast/bodies/body_contact.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::incident_walls_test {
 
 Vec3 direction(Random& random) {
   while (true) {
@@ -211,5 +210,4 @@ TEST(IncidentWalls, MixedAnswersAddNoEnergy) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::incident_walls_test

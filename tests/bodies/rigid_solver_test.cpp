@@ -9,8 +9,7 @@
 #include "dartcast/base/random.hpp"
 #include "dartcast/bodies/body_motion.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::rigid_solver_test {
 
 constexpr double dt = 0.01;
 
@@ -287,5 +286,4 @@ TEST(RigidSolver, PushesDoNotChangeVelocities) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::rigid_solver_test

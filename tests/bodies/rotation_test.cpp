@@ -10,8 +10,7 @@
 #include "dartcast/base/random.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::rotation_test {
 
 using test::scaled;
 
@@ -161,5 +160,4 @@ TEST(Rotation, QuaternionsMultiplyAsTheirMatrices) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::rotation_test

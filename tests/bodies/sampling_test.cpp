@@ -15,8 +15,7 @@
 #include "shared_data.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::sampling_test {
 
 using Rational = boost::multiprecision::cpp_rational;
 using Exact3 = std::array<Rational, 3>;
@@ -301,5 +300,4 @@ TEST(Sampling, OfRealSurfaces) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::sampling_test

@@ -11,8 +11,7 @@
 #include "dartcast/base/random.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::shape_matching_test {
 
 using test::scaled;
 
@@ -265,5 +264,4 @@ TEST(ShapeMatching, RefusesWhatIsNoShape) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::shape_matching_test

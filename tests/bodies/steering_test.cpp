@@ -11,8 +11,7 @@
 #include "dartcast/environment/audit.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::steering_test {
 
 constexpr double pi = std::numbers::pi;
 constexpr double dt = 3e-4;    // s, of scenes/vessel.toml
@@ -199,5 +198,4 @@ TEST(Steering, ACameraGoesAlong) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::steering_test

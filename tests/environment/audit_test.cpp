@@ -9,8 +9,7 @@
 #include "dartcast/mesh/generate_box.hpp"
 #include "oracle/oracle.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::audit_test {
 
 constexpr double tiniest = std::numeric_limits<double>::denorm_min();
 
@@ -109,5 +108,4 @@ TEST(Audit, AgreesWithTheOracleOnALattice) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::audit_test

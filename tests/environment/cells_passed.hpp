@@ -56,7 +56,7 @@ struct WeightedPoint {
 
 class CellsPassed {
  public:
-  explicit CellsPassed(const MeshData& mesh) : mesh_(mesh), cells_(mesh.cell_count()) {
+  explicit CellsPassed(const MeshData& mesh) : cells_(mesh.cell_count()) {
     plane_ = dimension(mesh.types[0]) == 2;
     for (std::size_t c = 0; c < cells_.size(); ++c) {
       for_each_face(mesh, c, [&](std::span<const std::uint32_t> f) {
@@ -144,7 +144,6 @@ class CellsPassed {
     return sum;
   }
 
-  const MeshData& mesh_;
   bool plane_ = false;
   std::vector<std::vector<Side>> cells_;
 };

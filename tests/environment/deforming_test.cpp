@@ -11,8 +11,7 @@
 #include "dartcast/response/respond.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::deforming_test {
 
 using test::scaled;
 
@@ -330,5 +329,4 @@ TEST(Deforming, ReboundFromPiston) {
   EXPECT_NEAR(velocity[0].y, 0.2, 1e-12);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::deforming_test

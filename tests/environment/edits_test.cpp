@@ -15,8 +15,7 @@
 #include "map/random_edits.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::edits_test {
 
 using test::same_bits;
 
@@ -460,5 +459,4 @@ TEST(FollowEdit, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(hashes[0], hashes[2]);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::edits_test

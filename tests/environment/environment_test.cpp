@@ -17,8 +17,7 @@
 #include "environment/particle_checks.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::environment_test {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 const std::vector<double> bad_numbers = {std::nan(""), infinity, -infinity, 0x1p+301, -0x1p+301, 0x1p-301};
@@ -573,5 +572,4 @@ TEST(Environment, ValidityOfTheScene) {
   EXPECT_EQ(environment.locate({1.5, 0.5, 0.5}).place, Place::free);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::environment_test

@@ -13,8 +13,7 @@
 #include "oracle/scenes.hpp"
 #include "tier.hpp"
 
-namespace dartcast::test {
-namespace {
+namespace dartcast::test::flattening_test {
 
 std::vector<Vec3> copy(std::span<const Vec3> positions) { return {positions.begin(), positions.end()}; }
 
@@ -138,5 +137,4 @@ INSTANTIATE_TEST_SUITE_P(Scenes, FlatteningOf, ::testing::Range(0, oracle::scene
   return oracle::name_of(static_cast<oracle::SceneKind>(scene.param));
 });
 
-}  // namespace
-}  // namespace dartcast::test
+}  // namespace dartcast::test::flattening_test

@@ -12,8 +12,7 @@
 #include "environment/particle_checks.hpp"
 #include "tier.hpp"
 
-namespace dartcast::test {
-namespace {
+namespace dartcast::test::memos_test {
 
 class Mixed {
  public:
@@ -147,5 +146,4 @@ TEST(Memos, NeverChangeAStep) {
   EXPECT_GT(edits, static_cast<std::size_t>(std::max(1, scaled(40, 2000))));
 }
 
-}  // namespace
-}  // namespace dartcast::test
+}  // namespace dartcast::test::memos_test

@@ -17,8 +17,7 @@
 #include "dartcast/response/respond.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::plane_test {
 
 // 0: triangles, 1: quadrilaterals, 2: with hexagons.
 MeshData rectangle(int kind, std::array<std::uint32_t, 2> cells, double jitter, double blocked,
@@ -377,5 +376,4 @@ TEST(Plane, RefusesWhatIsNotInIt) {
   EXPECT_EQ(audit(environment.complex(), set).failed, 0U);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::plane_test

@@ -10,8 +10,7 @@
 #include "dartcast/response/respond.hpp"
 #include "environment/particle_checks.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::scaling_test {
 
 MeshData scene(double scale, const Vec3& shift) {
   BoxOptions o;
@@ -152,5 +151,4 @@ TEST(Scaling, RefusedOutsideTheRange) {
                InvalidArgument);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::scaling_test

@@ -12,8 +12,7 @@
 #include "dartcast/environment/environment.hpp"
 #include "dartcast/mesh/generate_box.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::state_hash_test {
 
 State some_state() {
   State s;
@@ -129,5 +128,4 @@ TEST(StateHash, IsTheSameForAnyThreadsAndAnyOrderOfParticles) {
   EXPECT_EQ(walked(order, 2), expected);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::state_hash_test

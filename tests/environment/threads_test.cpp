@@ -14,8 +14,7 @@
 #include "map/mixed_mesh.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::threads_test {
 
 using test::full_tier;
 
@@ -134,5 +133,4 @@ TEST(Threads, SameBitsForAnyNumberAndOrder) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::threads_test

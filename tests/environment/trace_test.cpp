@@ -17,8 +17,7 @@
 #include "particle_checks.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::trace_test {
 
 using test::CellsPassed;
 using test::Ratio;
@@ -509,5 +508,4 @@ TEST(Trace, RefusesWhatAdvanceRefuses) {
   EXPECT_THROW((void)environment.trace(set, 0, {&target, 1}), InvalidArgument);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::trace_test

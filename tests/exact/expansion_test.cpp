@@ -9,8 +9,7 @@
 #include "exact/quadruples.hpp"
 #include "tier.hpp"
 
-namespace dartcast::test {
-namespace {
+namespace dartcast::test::expansion_test {
 
 template <std::size_t N>
 Dyadic exact(const Expansion<N>& e) {
@@ -83,5 +82,4 @@ TEST(Expansion, OfZeroHasNoComponents) {
   EXPECT_EQ((difference(1.0, 1.0) * difference(2.0, 1.0)).size, 0U);
 }
 
-}  // namespace
-}  // namespace dartcast::test
+}  // namespace dartcast::test::expansion_test

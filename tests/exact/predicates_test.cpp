@@ -12,8 +12,7 @@
 #include "exact/quadruples.hpp"
 #include "tier.hpp"
 
-namespace dartcast::test {
-namespace {
+namespace dartcast::test::predicates_test {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -341,5 +340,4 @@ TEST(Orient2d, TurnsCounterclockwiseAndSaysWhatItCannotDecide) {
   EXPECT_EQ(orient2d({0, 0, nan}, {1, 0, 0}, {0, 1, infinity}), Sign::positive) << "z is not read";
 }
 
-}  // namespace
-}  // namespace dartcast::test
+}  // namespace dartcast::test::predicates_test

@@ -10,8 +10,7 @@
 #include "exact/dyadic.hpp"
 #include "exact/quadruples.hpp"
 
-namespace dartcast::test {
-namespace {
+namespace dartcast::test::shift_test {
 
 constexpr int shift_bits = 400;
 constexpr int cases = 3000;
@@ -143,5 +142,4 @@ TEST(PlaneShift, OfALineIsTheSignWithASmallTrueShift) {
   EXPECT_EQ(PlaneShift({0, 0, 0}, {}).of_line({1, nan, 0}), Sign::undecidable);
 }
 
-}  // namespace
-}  // namespace dartcast::test
+}  // namespace dartcast::test::shift_test

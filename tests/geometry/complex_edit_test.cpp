@@ -15,8 +15,7 @@
 #include "oracle/fraction.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::complex_edit_test {
 
 using oracle::Exact;
 
@@ -344,5 +343,4 @@ TEST(ComplexEdit, ValuesFollow) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::complex_edit_test

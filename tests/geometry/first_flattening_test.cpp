@@ -16,8 +16,7 @@
 #include "dartcast/mesh/generate_octahedra.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::first_flattening_test {
 
 constexpr int mesh_kinds = 7;
 
@@ -299,5 +298,4 @@ TEST(FollowUntil, GoesBackWhereRoundingFlattens) {
   EXPECT_EQ(reached, scene.positions);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::first_flattening_test

@@ -15,8 +15,7 @@
 #include "geometry/moving_simplex.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::flattening_test {
 
 using test::DyadicTime;
 using test::Motion;
@@ -259,5 +258,4 @@ TEST(Flattening, OfWhatIsOutOfRangeIsUndecidable) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::flattening_test

@@ -17,8 +17,7 @@
 #include "mesh/generate_checks.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::interior_test {
 
 // Every fan triangle of a sewn face has the same vertices from both sides; and the map is whole.
 void expect_conforming(const Complex& complex) {
@@ -356,5 +355,4 @@ TEST(InteriorPoints, ScaleWithTheMesh) {
   EXPECT_GT(with_points, 50);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::interior_test

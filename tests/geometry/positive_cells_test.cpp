@@ -13,8 +13,7 @@
 #include "dartcast/mesh/generate_octahedra.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::positive_cells_test {
 
 using detail::InstructionSet;
 using detail::not_proved_positive;
@@ -105,5 +104,4 @@ TEST(PositiveCells, LeavesNoPlainCellOpen) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::positive_cells_test

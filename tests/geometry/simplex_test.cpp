@@ -10,8 +10,7 @@
 
 #include "dartcast/base/random.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::simplex_test {
 
 using Rational = boost::multiprecision::cpp_rational;
 
@@ -169,5 +168,4 @@ TEST(Determinants, OrderOfFacetCorners) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::simplex_test

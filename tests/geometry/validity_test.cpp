@@ -15,8 +15,7 @@
 #include "dartcast/mesh/generate_octahedra.hpp"
 #include "mesh/generate_checks.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::validity_test {
 
 MeshData box(int which) {
   BoxOptions o;
@@ -144,5 +143,4 @@ TEST(Validity, PassesOverVacantPlaces) {
   EXPECT_TRUE(!flattening || map.contains(flattening->simplex.cell));
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::validity_test

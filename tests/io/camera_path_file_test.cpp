@@ -10,8 +10,7 @@
 #include "dartcast/io/point_file.hpp"
 #include "dartcast/mesh/generate_box.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::camera_path_file_test {
 
 namespace fs = std::filesystem;
 
@@ -54,5 +53,4 @@ TEST(CameraPathFile, SaysWhatItCannotWrite) {
   EXPECT_THROW(write_camera_path(path, "/nowhere/at/all/x.vtp"), Error);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::camera_path_file_test

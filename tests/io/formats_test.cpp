@@ -11,8 +11,7 @@
 #include "dartcast/io/write_mesh.hpp"
 #include "io/round_trip.hpp"
 
-namespace dartcast::test {
-namespace {
+namespace dartcast::test::formats_test {
 
 TEST(Formats, GmshOfEveryVersion) {
   const MeshData mesh = mixed_mesh();
@@ -250,5 +249,4 @@ TEST(Report, JsonHasTheFieldsOfTheInterface) {
   EXPECT_NE(text.find("verdict: accept"), std::string::npos);
 }
 
-}  // namespace
-}  // namespace dartcast::test
+}  // namespace dartcast::test::formats_test

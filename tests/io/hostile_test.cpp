@@ -12,8 +12,7 @@
 #include "io/sample_mesh.hpp"
 #include "tier.hpp"
 
-namespace dartcast::test {
-namespace {
+namespace dartcast::test::hostile_test {
 
 struct Sample {
   std::string name;
@@ -209,5 +208,4 @@ TEST_F(Hostile, MemoryBombs) {
   refused("a.vtu", packed);
 }
 
-}  // namespace
-}  // namespace dartcast::test
+}  // namespace dartcast::test::hostile_test

@@ -14,8 +14,7 @@
 #include "dartcast/mesh/generate_rectangle.hpp"
 #include "io/round_trip.hpp"
 
-namespace dartcast::test {
-namespace {
+namespace dartcast::test::planar_formats_test {
 
 using Names = std::map<std::int32_t, std::string>;
 
@@ -252,5 +251,4 @@ TEST(PlanarInfo, CountsAsInSpace) {
   EXPECT_EQ(mesh_info(mesh, "m").free_cells, 3U);
 }
 
-}  // namespace
-}  // namespace dartcast::test
+}  // namespace dartcast::test::planar_formats_test

@@ -15,8 +15,7 @@
 #include "dartcast/io/scene_file.hpp"
 #include "io/sample_mesh.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::recording_test {
 
 namespace fs = std::filesystem;
 
@@ -297,5 +296,4 @@ TEST(RunFiles, FramesAreKnownByTheirNames) {
     EXPECT_FALSE(frame_step(other)) << other;
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::recording_test

@@ -12,8 +12,7 @@
 #include "dartcast/io/write_mesh.hpp"
 #include "io/sample_mesh.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::resume_test {
 
 namespace fs = std::filesystem;
 
@@ -405,5 +404,4 @@ TEST_F(Resume, ADamagedCheckpointIsRefused) {
   EXPECT_NE(failure().find("stats.csv: the file is shorter"), std::string::npos);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::resume_test

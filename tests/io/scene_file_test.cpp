@@ -12,8 +12,7 @@
 #include "dartcast/base/error.hpp"
 #include "dartcast/io/scene_mesh.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::scene_file_test {
 
 const std::string box = "[environment]\ngenerator = 'box'\n";
 
@@ -465,5 +464,4 @@ TEST(SceneFile, ScenesOfTheProjectAreRead) {
   EXPECT_GE(blocks, 6);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::scene_file_test

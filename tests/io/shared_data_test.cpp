@@ -13,8 +13,7 @@
 #include "io/same_mesh.hpp"
 #include "io/sample_mesh.hpp"
 
-namespace dartcast::test {
-namespace {
+namespace dartcast::test::shared_data_test {
 
 using Counts = std::map<std::string, std::size_t>;
 
@@ -229,5 +228,4 @@ TEST(SharedData, EveryVolumeSurvivesARoundTrip) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast::test
+}  // namespace dartcast::test::shared_data_test

@@ -13,8 +13,7 @@
 #include "dartcast/io/scene_file.hpp"
 #include "io/sample_mesh.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::solids_test {
 
 namespace fs = std::filesystem;
 
@@ -165,5 +164,4 @@ TEST(SolidsInScenes, WhatHasNoPlaceIsRefusedByName) {
   EXPECT_NE(entry.find("catheter \"catheter1\""), std::string::npos) << entry;
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::solids_test

@@ -13,8 +13,7 @@
 #include "dartcast/surface/surface.hpp"
 #include "shared_data.hpp"
 
-namespace dartcast::test {
-namespace {
+namespace dartcast::test::surface_data_test {
 
 /// As the list that comes with them says; and the verdict.
 struct Known {
@@ -115,5 +114,4 @@ TEST(SurfaceData, AMotionInTwoFilesMovesTheSurface) {
   EXPECT_TRUE(std::equal(next.begin(), next.end(), surface.positions().begin(), surface.positions().end()));
 }
 
-}  // namespace
-}  // namespace dartcast::test
+}  // namespace dartcast::test::surface_data_test

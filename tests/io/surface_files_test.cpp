@@ -20,8 +20,7 @@
 #include "io/sample_mesh.hpp"
 #include "tier.hpp"
 
-namespace dartcast::test {
-namespace {
+namespace dartcast::test::surface_files_test {
 
 using Xyz = std::array<double, 3>;
 using Loop = std::vector<Xyz>;
@@ -613,5 +612,4 @@ TEST(SurfaceFiles, HugeCountsTakeNoMemory) {
   if (!test::sanitized()) EXPECT_LT(usage.ru_maxrss, 600 * 1024) << "kilobytes";
 }
 
-}  // namespace
-}  // namespace dartcast::test
+}  // namespace dartcast::test::surface_files_test

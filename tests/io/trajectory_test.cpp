@@ -20,8 +20,7 @@
 #include "dartcast/mesh/generate_rectangle.hpp"
 #include "dartcast/response/respond.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::trajectory_test {
 
 Environment squares(std::uint32_t edge, bool mixed = false, double blocked = 0.0) {
   RectangleOptions o;
@@ -236,5 +235,4 @@ TEST(TrajectoryCsv, HasARowForEachEventAndEveryBit) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::trajectory_test

@@ -7,8 +7,7 @@
 #include "dartcast/map/map.hpp"
 #include "map/mixed_mesh.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::build_test {
 
 std::string refusal(const MeshData& mesh) {
   try {
@@ -68,5 +67,4 @@ TEST(MapBuild, CellsAndVerticesAreCounted) {
   EXPECT_EQ(map.vertex_count(), 21U);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::build_test

@@ -11,8 +11,7 @@
 #include "dartcast/mesh/cell_types.hpp"
 #include "map/mixed_mesh.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::draft_test {
 
 using Loops = std::vector<std::vector<std::uint32_t>>;
 
@@ -167,5 +166,4 @@ TEST(Draft, OfACellIsTheCell) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::draft_test

@@ -14,8 +14,7 @@
 #include "map/random_edits.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::edit_cgal_test {
 
 using test::CellBag;
 using test::Edit;
@@ -296,5 +295,4 @@ INSTANTIATE_TEST_SUITE_P(Map, PlanarEditsAndCgal, testing::ValuesIn(test::planar
 
 TEST_P(PlanarEditsAndCgal, StayIsomorphic) { stay_isomorphic<2>(GetParam().make(), test::scaled(3400, 340000)); }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::edit_cgal_test

@@ -10,8 +10,7 @@
 #include "map/random_edits.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::edit_flat_test {
 
 using test::CellBag;
 using test::Edit;
@@ -248,5 +247,4 @@ TEST_P(Flats, SplittingMarksNothingElse) {
   EXPECT_GT(m.straight, 10U);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::edit_flat_test

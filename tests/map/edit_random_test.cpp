@@ -11,8 +11,7 @@
 #include "map/random_edits.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::edit_random_test {
 
 using test::CellBag;
 using test::Edit;
@@ -97,5 +96,4 @@ TEST_P(RandomEdits, LeaveAValidMap) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::edit_random_test

@@ -16,8 +16,7 @@
 #include "map/refusals.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::edit_test {
 
 using Vertices = std::vector<std::uint32_t>;
 
@@ -563,5 +562,4 @@ TEST(Edits, TouchAsManyCellsInAnyScene) {
     EXPECT_EQ(touched(type, 6), touched(type, 8 + test::scaled(12U, 52U)));
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::edit_test

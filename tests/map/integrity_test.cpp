@@ -15,8 +15,7 @@
 #include "map/mixed_mesh.hpp"
 #include "map/random_edits.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::integrity_test {
 
 // A record's words, as described at the head of map.hpp.
 struct Record {
@@ -227,5 +226,4 @@ TEST(Integrity, NamesAtMostSoManyAndOnlyTheCellsGiven) {
   EXPECT_TRUE(check_integrity(map, others).empty());
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::integrity_test

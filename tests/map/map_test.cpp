@@ -18,8 +18,7 @@
 #include "dartcast/mesh/generate_vessel.hpp"
 #include "map/mixed_mesh.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::map_test {
 
 using FaceKey = std::vector<std::uint32_t>;  // sorted corners
 
@@ -394,5 +393,4 @@ TEST(Map, AnUnknownPatchListsTheKnownOnes) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::map_test

@@ -12,8 +12,7 @@
 #include "dartcast/mesh/cell_types.hpp"
 #include "dartcast/mesh/generate_rectangle.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::plane_map_test {
 
 MeshData rectangle(int kind) {
   RectangleOptions o;
@@ -236,5 +235,4 @@ TEST_F(TwoSquares, WhatWouldBeNoMapIsRefused) {
   EXPECT_EQ(map, before);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::plane_map_test

@@ -10,8 +10,7 @@
 #include "dartcast/map/cell_form.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::shape_table_test {
 
 // A pyramid over a polygon: a shape for every number of its corners.
 ShapeKey cone(std::uint16_t corners) {
@@ -102,5 +101,4 @@ TEST(ShapeTable, StandardShapesHaveSmallNumbers) {
   EXPECT_EQ(table.size(), count + standard.size());
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::shape_table_test

@@ -15,8 +15,7 @@
 #include "dartcast/mesh/generate_octahedra.hpp"
 #include "map/mixed_mesh.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::shape_test {
 
 using Rational = boost::multiprecision::cpp_rational;
 
@@ -251,5 +250,4 @@ TEST(Shape, PointsOfFacesAndOfTheCell) {
   EXPECT_EQ(s.feature(std::vector<std::uint16_t>{8, 9}).kind, Kind::volume);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::shape_test

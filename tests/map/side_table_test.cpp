@@ -8,8 +8,7 @@
 #include "dartcast/base/random.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::side_table_test {
 
 TEST(SideTable, HoldsWhatWasSetLast) {
   for (const std::uint32_t cells : {3U, 40U, 1000U}) {
@@ -50,5 +49,4 @@ TEST(SideTable, IsEmptyWhereNothingWasSet) {
   EXPECT_EQ(table.bytes(), 0U);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::side_table_test

@@ -14,8 +14,7 @@
 #include "map/refusals.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::transaction_test {
 
 using test::CellBag;
 using test::Edit;
@@ -278,5 +277,4 @@ TEST(Transaction, CellsCanComeFromNothingAndGo) {
   EXPECT_EQ(map.cell_count(1), 2U);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::transaction_test

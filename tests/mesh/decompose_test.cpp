@@ -19,8 +19,7 @@
 #include "exact/dyadic.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::decompose_test {
 
 using test::Dyadic;
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
@@ -451,5 +450,4 @@ TEST(Decompose, ManyPoints) {
   for (const auto& rings : drawings) expect_decomposed(rings);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::decompose_test

@@ -9,8 +9,7 @@
 #include "dartcast/base/error.hpp"
 #include "dartcast/surface/inspect_surface.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::generate_barrel_test {
 
 // Of the solid that a closed surface of triangles and quadrilaterals bounds, if its faces look outwards.
 double enclosed_volume(const MeshData& mesh) {
@@ -65,5 +64,4 @@ TEST(GenerateBarrel, RefusesWhatIsNoBarrel) {
   refused([](BarrelOptions& o) { o.rings = 100'000; });
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::generate_barrel_test

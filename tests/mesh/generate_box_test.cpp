@@ -6,8 +6,7 @@
 #include "dartcast/base/error.hpp"
 #include "generate_checks.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::generate_box_test {
 
 using test::count_not_positive;
 using test::expect_conforming;
@@ -214,5 +213,4 @@ TEST(GenerateBox, RefusesWhatItCannotBuild) {
   refuses([](BoxOptions& o) { o.type = CellType::polyhedron; }, "polyhedra");
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::generate_box_test

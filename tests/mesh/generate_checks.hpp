@@ -17,23 +17,23 @@
 
 namespace dartcast::test {
 
-using Corners = std::vector<std::uint32_t>;
+using CornerNumbers = std::vector<std::uint32_t>;
 
 /// A face's corners from its lowest on, in the order given.
-inline Corners from_lowest(std::span<const std::uint32_t> face) {
-  Corners f(face.begin(), face.end());
+inline CornerNumbers from_lowest(std::span<const std::uint32_t> face) {
+  CornerNumbers f(face.begin(), face.end());
   std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());
   return f;
 }
 
-inline Corners reversed(Corners f) {
+inline CornerNumbers reversed(CornerNumbers f) {
   std::reverse(f.begin() + 1, f.end());
   return f;
 }
 
 /// Every face of every cell, from its lowest corner on, with the cells that have it in this orientation.
-inline std::map<Corners, std::vector<std::size_t>> all_faces(const MeshData& mesh) {
-  std::map<Corners, std::vector<std::size_t>> faces;
+inline std::map<CornerNumbers, std::vector<std::size_t>> all_faces(const MeshData& mesh) {
+  std::map<CornerNumbers, std::vector<std::size_t>> faces;
   for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
     for_each_face(mesh, c, [&](std::span<const std::uint32_t> face) { faces[from_lowest(face)].push_back(c); });
   }
@@ -72,7 +72,7 @@ void for_each_simplex(const MeshData& mesh, std::size_t cell, Visit&& visit) {
   });
   for_each_face(mesh, cell, [&](std::span<const std::uint32_t> f) {
     if (std::find(f.begin(), f.end(), apex) != f.end()) return;
-    const Corners fan = from_lowest(f);
+    const CornerNumbers fan = from_lowest(f);
     // Counterclockwise from the outside is clockwise from the apex: swapped, the simplex is positive.
     for (std::size_t i = 1; i + 1 < fan.size(); ++i) visit(fan[0], fan[i + 1], fan[i], apex);
   });
@@ -126,7 +126,7 @@ inline std::size_t expect_conforming(const MeshData& mesh) {
   EXPECT_TRUE(std::all_of(boundary_edges.begin(), boundary_edges.end(), [](const auto& e) { return e.second == 0; }));
   EXPECT_EQ(std::count(used.begin(), used.end(), 0), 0);
   for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) {
-    const Corners corners(mesh.patch_faces.begin() + static_cast<std::ptrdiff_t>(mesh.patch_offsets[f]),
+    const CornerNumbers corners(mesh.patch_faces.begin() + static_cast<std::ptrdiff_t>(mesh.patch_offsets[f]),
                           mesh.patch_faces.begin() + static_cast<std::ptrdiff_t>(mesh.patch_offsets[f + 1]));
     EXPECT_TRUE(faces.contains(from_lowest(corners)) || faces.contains(reversed(from_lowest(corners))))
         << "patch face " << f;

@@ -8,8 +8,7 @@
 #include "planar_checks.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::generate_maze_test {
 
 using test::expect_conforming_in_plane;
 
@@ -181,5 +180,4 @@ TEST(GenerateMaze, RefusesWhatItCannotBuild) {
   refuses([](MazeOptions& o) { o.type = CellType::prism; }, "space");
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::generate_maze_test

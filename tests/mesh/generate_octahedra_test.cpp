@@ -5,8 +5,7 @@
 #include "dartcast/base/error.hpp"
 #include "generate_checks.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::generate_octahedra_test {
 
 OctahedraOptions block(std::uint32_t nx, std::uint32_t ny, std::uint32_t nz) {
   OctahedraOptions o;
@@ -89,5 +88,4 @@ TEST(GenerateOctahedra, RefusesWhatItCannotBuild) {
   refuses([](OctahedraOptions& o) { o.blocked_share = -0.1; }, "blocked_share");
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::generate_octahedra_test

@@ -9,8 +9,7 @@
 #include "planar_checks.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::generate_rectangle_test {
 
 using test::count_not_convex;
 using test::expect_conforming_in_plane;
@@ -229,5 +228,4 @@ TEST(GenerateRectangle, RefusesWhatItCannotBuild) {
   refuses([](RectangleOptions& o) { o.type = CellType::hexahedron; }, "space");
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::generate_rectangle_test

@@ -10,11 +10,10 @@
 #include "generate_checks.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::generate_vessel_test {
 
 using test::all_faces;
-using test::Corners;
+using test::CornerNumbers;
 using test::from_lowest;
 using test::reversed;
 
@@ -23,7 +22,7 @@ const MeshData& vessel() {
   return mesh;
 }
 
-Corners patch_face(const MeshData& mesh, std::size_t f) {
+CornerNumbers patch_face(const MeshData& mesh, std::size_t f) {
   return from_lowest(
       {mesh.patch_faces.data() + mesh.patch_offsets[f], mesh.patch_offsets[f + 1] - mesh.patch_offsets[f]});
 }
@@ -125,7 +124,7 @@ TEST(GenerateVessel, OneInletAndTwoOutletsJoinedThroughTheLumen) {
 TEST(GenerateVessel, PatchesCoverWallsAndBoundaryExactly) {
   const MeshData& mesh = vessel();
   const auto faces = all_faces(mesh);
-  std::map<std::string, std::set<Corners>> expected, named;
+  std::map<std::string, std::set<CornerNumbers>> expected, named;
   for (const auto& [face, cells] : faces) {
     const auto other = faces.find(reversed(face));
     const bool lumen = mesh.free[cells[0]] == 1;
@@ -160,7 +159,7 @@ TEST(GenerateVessel, TheFlowKeepsToTheLumenAndSplits) {
 
   std::map<std::string, double> through;
   for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) {
-    const Corners face = patch_face(mesh, f);
+    const CornerNumbers face = patch_face(mesh, f);
     const std::string& name = mesh.patch_names.at(mesh.patch_tags[f]);
     through[name] += flux(mesh, velocity, face);
     if (name != "wall") continue;
@@ -251,5 +250,4 @@ TEST(GenerateVessel, RefusesWhatItCannotBuild) {
   refuses([](VesselOptions& o) { o.peak_speed = nan; }, "peak_speed");
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::generate_vessel_test

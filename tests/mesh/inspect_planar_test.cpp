@@ -16,8 +16,7 @@
 #include "planar_checks.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::inspect_planar_test {
 
 using test::add;
 using test::kinds;
@@ -387,5 +386,4 @@ TEST(MatchFacesPlanar, AgreesWithAMap) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::inspect_planar_test

@@ -16,8 +16,7 @@
 #include "dartcast/mesh/conformity.hpp"
 #include "mesh/findings.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::inspect_test {
 
 using test::add;
 using test::kinds;
@@ -428,5 +427,4 @@ TEST(MatchFaces, AgreesWithAMap) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::inspect_test

@@ -7,8 +7,7 @@
 
 #include "dartcast/base/error.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::regions_test {
 
 MeshData three_cells() {
   MeshData mesh;
@@ -62,5 +61,4 @@ TEST(SelectFree, ByValuesOfAnArray) {
   EXPECT_EQ(mesh.free, (Free{0, 1, 1}));
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::regions_test

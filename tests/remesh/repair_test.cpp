@@ -14,8 +14,7 @@
 #include "remesh/remesh_checks.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::repair_test {
 
 using test::volume6;
 
@@ -308,5 +307,4 @@ TEST(Repair, RefusesCellsThatAreNotThere) {
   EXPECT_THROW(repair(edit, cells), InvalidArgument);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::repair_test

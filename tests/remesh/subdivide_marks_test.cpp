@@ -10,8 +10,7 @@
 #include "remesh/remesh_checks.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::subdivide_marks_test {
 
 using test::refusal;
 
@@ -133,5 +132,4 @@ TEST(SubdivideMarks, Refusals) {
   EXPECT_EQ(complex.map().cell_count(), 27U);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::subdivide_marks_test

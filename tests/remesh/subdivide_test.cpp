@@ -11,8 +11,7 @@
 #include "remesh/remesh_checks.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::subdivide_test {
 
 using test::expect_good;
 using test::volume6;
@@ -268,5 +267,4 @@ TEST_P(OnMeshes, NoTraceOfOthers) {
 INSTANTIATE_TEST_SUITE_P(Meshes, OnMeshes, testing::ValuesIn(test::edit_meshes()),
                          [](const auto& mesh) { return std::string(mesh.param.name); });
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::subdivide_test

@@ -11,8 +11,7 @@
 #include "dartcast/environment/environment.hpp"
 #include "dartcast/mesh/generate_box.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::respond_test {
 
 WallHit wall(const Vec3& normal) {
   WallHit hit;
@@ -276,5 +275,4 @@ TEST(RespondWith, ABilliardKeepsItsEnergyAndAnInelasticOneLosesIt) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::respond_test

@@ -13,8 +13,7 @@
 #include "dartcast/simulation/flow.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::collisions_test {
 
 MeshData box_of(std::array<std::uint32_t, 3> cells, const Vec3& size) {
   BoxOptions o;
@@ -254,5 +253,4 @@ TEST(Collisions, RefuseWhatIsOutOfRange) {
   EXPECT_EQ(flow.particles().size(), 0U);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::collisions_test

@@ -12,8 +12,7 @@
 #include "dartcast/simulation/flow.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::crowding_test {
 
 MeshData crowding_box() {
   BoxOptions o;
@@ -143,5 +142,4 @@ TEST(Crowding, SpheresDoNotNotice) {
   for (std::size_t i = 0; i < without.size(); ++i) EXPECT_LT(norm(without[i] - with[i]), 1e-3);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::crowding_test

@@ -13,8 +13,7 @@
 #include "dartcast/mesh/generate_vessel.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::deformation_test {
 
 using Kind = DeformationKind;
 constexpr double pi = std::numbers::pi;
@@ -279,5 +278,4 @@ TEST(Deformation, TheVesselStaysValidWhileItPulsesAndBends) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::deformation_test

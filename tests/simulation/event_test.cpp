@@ -11,8 +11,7 @@
 #include "dartcast/simulation/surgery.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::event_test {
 
 // A channel along x, 1 <= y, z <= 5, in a layer of blocked cells.
 MeshData channel() {
@@ -265,5 +264,4 @@ TEST(Events, InThePlaneALigatureSeals) {
   EXPECT_EQ(count_if(flow, [](const Vec3& x) { return x.x == 6.0; }), 20U);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::event_test

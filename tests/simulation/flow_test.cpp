@@ -12,8 +12,7 @@
 #include "dartcast/mesh/generate_box.hpp"
 #include "dartcast/mesh/generate_vessel.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::flow_test {
 
 MeshData box_mesh(std::uint32_t n, double size = 10.0) {
   BoxOptions box;
@@ -361,5 +360,4 @@ TEST(Flow, RefusesWhatHasNoMeaning) {
   EXPECT_THROW(flow.set_deformation(Deformation({}, std::vector<Vec3>(3))), InvalidArgument);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::flow_test

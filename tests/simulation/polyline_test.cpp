@@ -7,8 +7,7 @@
 #include "dartcast/base/error.hpp"
 #include "dartcast/mesh/generate_box.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::polyline_test {
 
 Environment box(Vec3 size = {4, 4, 4}) {
   BoxOptions o;
@@ -80,5 +79,4 @@ TEST(Polyline, RefusesWrongSizesAndNumbersAndChangesNothing) {
   EXPECT_EQ(particles[0].position, (Vec3{1, 1, 1}));
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::polyline_test

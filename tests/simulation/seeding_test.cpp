@@ -9,8 +9,7 @@
 #include "dartcast/mesh/generate_box.hpp"
 #include "dartcast/simulation/flow.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::seeding_test {
 
 constexpr int count = 20000;
 
@@ -100,5 +99,4 @@ TEST(Samplers, NeedSomewhereToPutParticles) {
   EXPECT_THROW(PatchSampler(complex, complex.map().patch("base")), InvalidArgument);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::seeding_test

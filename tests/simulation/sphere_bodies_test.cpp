@@ -15,8 +15,7 @@
 #include "dartcast/simulation/flow.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::sphere_bodies_test {
 
 using test::scaled;
 
@@ -356,5 +355,4 @@ TEST(SphereBodies, RefuseWhatIsOutOfRange) {
   EXPECT_THROW(Flow(environment, o).set_bodies(bodies), InvalidArgument);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::sphere_bodies_test

@@ -9,8 +9,7 @@
 #include "dartcast/simulation/deformation.hpp"
 #include "spheres/sphere_checks.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::advance_spheres_test {
 
 using test::all_walls;
 using test::clearance;
@@ -676,5 +675,4 @@ TEST(AdvanceSpheres, AResponseThatThrowsChangesNothing) {
   EXPECT_EQ(swarm.particles[1].position, (Vec3{0.5, 1.5, 1.5}));
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::advance_spheres_test

@@ -5,8 +5,7 @@
 #include "spheres/sphere_checks.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::clearances_test {
 
 using test::clearance;
 using test::cubes;
@@ -61,5 +60,4 @@ TEST(Clearances, CountForNothingAfterAMove) {
   EXPECT_NEAR(report.step.contacts.contacts[0].time_of_impact, 0.375, sphere_time_bound);  // the centre's is 0.5
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::clearances_test

@@ -13,8 +13,7 @@
 #include "dartcast/environment/environment.hpp"
 #include "spheres/sphere_checks.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::collide_test {
 
 constexpr double dt = 0.05;
 
@@ -243,5 +242,4 @@ TEST(Collider, RefusesSpansThatDiffer) {
   EXPECT_THROW(collide(cloud.radii, few), InvalidArgument);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::collide_test

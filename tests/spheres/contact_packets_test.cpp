@@ -8,8 +8,7 @@
 #include "dartcast/base/random.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::contact_packets_test {
 
 using detail::ContactBody;
 using detail::ContactEnds;
@@ -169,5 +168,4 @@ TEST(ContactPackets, FourAtATime) {
   EXPECT_EQ(packets_of(1.0), 20U);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::contact_packets_test

@@ -13,8 +13,7 @@
 #include "dartcast/spheres/sphere_touch.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::contact_solver_test {
 
 // Spheres in free space, or above planes.
 struct Crowd {
@@ -325,5 +324,4 @@ TEST(ContactSolver, RefusesWhatIsOutOfRange) {
   refuses([](Crowd& c, auto&) { c.walls.push_back({1, {0, 0, 1}, 0.0, {}, 2.0, 0.0}); });
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::contact_solver_test

@@ -5,8 +5,7 @@
 
 #include "spheres/sphere_checks.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::near_walls_test {
 
 using test::cubes;
 using test::scaled;
@@ -153,5 +152,4 @@ TEST(NearWalls, CellsReachedDoNotGrowWithTheScene) {
   EXPECT_LE(near.cells_reached(), cells * 30U);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::near_walls_test

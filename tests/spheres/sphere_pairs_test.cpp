@@ -12,8 +12,7 @@
 #include "dartcast/mesh/generate_box.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::sphere_pairs_test {
 
 MeshData box_mesh(std::uint32_t n, double blocked_share) {
   BoxOptions o;
@@ -279,5 +278,4 @@ TEST(CellLists, FollowMotionEditsAndRemovals) {
   EXPECT_EQ(crowd.lists.crowded(), 0U);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::sphere_pairs_test

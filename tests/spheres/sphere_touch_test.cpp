@@ -11,8 +11,7 @@
 #include "dartcast/base/random.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::sphere_touch_test {
 
 using Fraction = boost::multiprecision::cpp_rational;
 using Decimal = boost::multiprecision::cpp_bin_float_100;
@@ -184,5 +183,4 @@ TEST(SphereTouch, ApproachHoldsFreeMotionsAndNoOthers) {
   EXPECT_GT(free, cases / 4);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::sphere_touch_test

@@ -9,8 +9,7 @@
 #include "oracle/first_touch.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::swept_sphere_test {
 
 using oracle::Digits;
 using oracle::TouchOracle;
@@ -276,5 +275,4 @@ TEST(NearestOnTriangle, AgainstDigits) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::swept_sphere_test

@@ -10,8 +10,7 @@
 #include "surface/meshes.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::geodesic_test {
 
 struct Sample {
   std::string name;
@@ -78,5 +77,4 @@ TEST_P(Geodesics, AgreeWithFiftyDigits) {
 
 INSTANTIATE_TEST_SUITE_P(On, Geodesics, testing::ValuesIn(samples), [](const auto& i) { return i.param.name; });
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::geodesic_test

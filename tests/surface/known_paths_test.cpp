@@ -12,8 +12,7 @@
 #include "surface/meshes.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::known_paths_test {
 
 constexpr double pi = std::numbers::pi;
 
@@ -321,5 +320,4 @@ TEST(SurfacePaths, MayStartAtAVertexIntoAnyTriangle) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::known_paths_test

@@ -15,8 +15,7 @@
 #include "surface/meshes.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::surface_edit_test {
 
 // Splits an edge and both faces beside it, so that triangles stay triangles.
 Vertex refine(SurfaceEdit& edit, Dart d) {
@@ -238,5 +237,4 @@ TEST(SurfaceEdits, AtRandomLoseNobody) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::surface_edit_test

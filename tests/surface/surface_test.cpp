@@ -16,8 +16,7 @@
 #include "surface/meshes.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::surface_test {
 
 double gap(const Vec3& a, const Vec3& b) { return norm(a - b); }
 
@@ -372,5 +371,4 @@ TEST(Surfaces, HaveOnePointForAPlaceFromBothSides) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::surface_test

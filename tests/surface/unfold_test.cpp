@@ -10,8 +10,7 @@
 #include "surface/meshes.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::unfold_test {
 
 using detail::Exit;
 using detail::Frame;
@@ -159,5 +158,4 @@ TEST(Unfolding, WaysFromCornersAndAlongEdgesAreExact) {
   EXPECT_GT(exit.weights[2], 0.0);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::unfold_test

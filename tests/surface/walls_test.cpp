@@ -17,8 +17,7 @@
 #include "surface/meshes.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::walls_test {
 
 double gap(const Vec3& a, const Vec3& b) { return norm(a - b); }
 
@@ -467,5 +466,4 @@ TEST(SurfaceWalls, BadAnswersChangeNothing) {
   EXPECT_EQ(places, before);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::walls_test

@@ -11,8 +11,7 @@
 #include "surgery/checks.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::carve_test {
 
 using test::Before;
 using test::Dyadic;
@@ -298,5 +297,4 @@ TEST(Carving, RefusesWithoutAChange) {
   before.expect_unchanged();
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::carve_test

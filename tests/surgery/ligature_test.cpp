@@ -12,8 +12,7 @@
 #include "surgery/checks.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::ligature_test {
 
 // A straight trunk, two branches.
 VesselOptions small_vessel() {
@@ -158,5 +157,4 @@ TEST(Ligature, RefusesWithoutAChange) {
   before.expect_unchanged();
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::ligature_test

@@ -11,8 +11,7 @@
 #include "surgery/checks.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::reconnect_test {
 
 using test::Dyadic;
 using test::Kind;
@@ -308,5 +307,4 @@ TEST(Reconnect, RefusesWithoutAChange) {
   before.expect_unchanged();
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::reconnect_test

@@ -10,8 +10,7 @@
 #include "surgery/checks.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::section_test {
 
 using test::Before;
 using test::Dyadic;
@@ -247,5 +246,4 @@ TEST(Section, RefusesWithoutAChange) {
   before.expect_unchanged();
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::section_test

@@ -7,8 +7,7 @@
 #include "surgery/checks.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::vessel_test {
 
 using test::Dyadic;
 using test::volume6;
@@ -80,5 +79,4 @@ TEST(VesselCuts, AtRandom) {
   EXPECT_LE(with_whole, test::scaled(0, 2));
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::vessel_test

@@ -17,8 +17,7 @@
 #include "tier.hpp"
 #include "walk/seeds.hpp"
 
-namespace dartcast::test {
-namespace {
+namespace dartcast::test::filtered_plane_test {
 
 constexpr std::size_t particle_count = 70;  // no multiple of a block
 constexpr std::size_t steps_per_scene = 30;
@@ -178,5 +177,4 @@ TEST(FilteredPlane, TakesTheSameStepsToTheBit) {
   EXPECT_GT(tally.exact, 0U);
 }
 
-}  // namespace
-}  // namespace dartcast::test
+}  // namespace dartcast::test::filtered_plane_test

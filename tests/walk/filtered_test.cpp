@@ -16,8 +16,7 @@
 #include "tier.hpp"
 #include "walk/seeds.hpp"
 
-namespace dartcast::test {
-namespace {
+namespace dartcast::test::filtered_test {
 
 constexpr std::size_t particles = 41;  // one alone in its vector
 constexpr std::size_t steps_per_scene = 30;
@@ -311,5 +310,4 @@ TEST(FilteredBatch, RangesAreCheckedToTheLastNumber) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast::test
+}  // namespace dartcast::test::filtered_test

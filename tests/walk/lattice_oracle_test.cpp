@@ -12,8 +12,7 @@
 #include "walk/checked_scene.hpp"
 #include "walk/seeds.hpp"
 
-namespace dartcast::test {
-namespace {
+namespace dartcast::test::lattice_oracle_test {
 
 constexpr std::uint64_t steps_per_scene = 1000;
 constexpr int lattice_kinds = 7;  // all but slivers
@@ -153,5 +152,4 @@ TEST_P(LatticeOracle, AgreesOnDegenerateSteps) {
 INSTANTIATE_TEST_SUITE_P(Scenes, LatticeOracle, ::testing::Range(0, lattice_kinds),
                          [](const auto& kind) { return oracle::name_of(static_cast<oracle::SceneKind>(kind.param)); });
 
-}  // namespace
-}  // namespace dartcast::test
+}  // namespace dartcast::test::lattice_oracle_test

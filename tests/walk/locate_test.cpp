@@ -13,8 +13,7 @@
 #include "mesh/generate_checks.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::locate_test {
 
 struct Box {
   Vec3 low, high;
@@ -167,5 +166,4 @@ TEST(Locate, VerticesThatAreNotFiniteSpoilTheirCellsOnly) {
   EXPECT_EQ(found, 27 - 1 - 8);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::locate_test

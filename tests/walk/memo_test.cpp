@@ -14,8 +14,7 @@
 #include "dartcast/walk/ride.hpp"
 #include "tier.hpp"
 
-namespace dartcast::test {
-namespace {
+namespace dartcast::test::memo_test {
 
 Vec3 any_vector(Random& random) { return {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)}; }
 
@@ -144,5 +143,4 @@ TEST(Memo, CoordinatesAreNotMadeOutOfTheirRange) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast::test
+}  // namespace dartcast::test::memo_test

@@ -5,8 +5,7 @@
 
 #include "oracle/scenes.hpp"
 
-namespace dartcast::oracle {
-namespace {
+namespace dartcast::oracle::oracle_test {
 
 constexpr std::uint32_t two_cubes[2][8] = {{0, 1, 4, 3, 6, 7, 10, 9}, {1, 2, 5, 4, 7, 8, 11, 10}};
 
@@ -121,5 +120,4 @@ TEST(Oracle, MakesScenesOfEveryKindThatAreValidWithoutAWarp) {
   }
 }
 
-}  // namespace
-}  // namespace dartcast::oracle
+}  // namespace dartcast::oracle::oracle_test

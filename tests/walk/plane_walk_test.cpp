@@ -17,8 +17,7 @@
 #include "dartcast/walk/walk.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::plane_walk_test {
 
 using Integer = std::int64_t;
 
@@ -271,5 +270,4 @@ TEST_P(PlaneWalks, AreRightOnLattices) {
 
 INSTANTIATE_TEST_SUITE_P(Meshes, PlaneWalks, testing::Values(0, 1, 2));
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::plane_walk_test

@@ -7,8 +7,7 @@
 #include "dartcast/base/random.hpp"
 #include "tier.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::ride_test {
 
 // Coordinates of points in simplices down to the thinnest, against exact determinants.
 TEST(Barycentric, IsRightInSlivers) {
@@ -41,5 +40,4 @@ TEST(Barycentric, IsRightInSlivers) {
   EXPECT_GT(thin, cases / 20);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::ride_test

@@ -15,8 +15,7 @@
 #include "walk/checked_scene.hpp"
 #include "walk/seeds.hpp"
 
-namespace dartcast::test {
-namespace {
+namespace dartcast::test::slide_test {
 
 constexpr double side = 6.0;
 constexpr std::uint64_t steps_per_scene = 200;
@@ -125,5 +124,4 @@ TEST_P(SlideInBox, EndsWhereTheBoxClampsIt) {
 
 INSTANTIATE_TEST_SUITE_P(Boxes, SlideInBox, ::testing::Combine(::testing::Range(0, 5), ::testing::Range(0, 3)));
 
-}  // namespace
-}  // namespace dartcast::test
+}  // namespace dartcast::test::slide_test

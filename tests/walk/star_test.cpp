@@ -13,8 +13,7 @@
 #include "tier.hpp"
 #include "walk/seeds.hpp"
 
-namespace dartcast::test {
-namespace {
+namespace dartcast::test::star_test {
 
 using Walls = std::set<std::pair<SimplexId, unsigned>>;
 
@@ -135,5 +134,4 @@ TEST(Stars, TellWhereAPointIsHeldTwice) {
   EXPECT_TRUE(Stars(std::span(chain).first(0)).empty());
 }
 
-}  // namespace
-}  // namespace dartcast::test
+}  // namespace dartcast::test::star_test

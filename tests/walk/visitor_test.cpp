@@ -8,8 +8,7 @@
 #include "dartcast/walk/locate.hpp"
 #include "dartcast/walk/walk.hpp"
 
-namespace dartcast {
-namespace {
+namespace dartcast::visitor_test {
 
 struct Left {
   SimplexId simplex;
@@ -92,5 +91,4 @@ TEST(Visitor, SeesNothingWhereTheSimplexIsNotLeft) {
   EXPECT_EQ(counts.tests, 4U);
 }
 
-}  // namespace
-}  // namespace dartcast
+}  // namespace dartcast::visitor_test

@@ -11,8 +11,7 @@
 #include "walk/checked_scene.hpp"
 #include "walk/seeds.hpp"
 
-namespace dartcast::test {
-namespace {
+namespace dartcast::test::walk_oracle_test {
 
 constexpr std::uint64_t steps_per_scene = 1000;
 
@@ -184,5 +183,4 @@ TEST(WalkOracleSeeds, FlatCornersDoNotJoinWallsThatAreApart) {
 INSTANTIATE_TEST_SUITE_P(Scenes, WalkOracle, ::testing::Range(0, oracle::scene_kinds),
                          [](const auto& kind) { return oracle::name_of(static_cast<oracle::SceneKind>(kind.param)); });
 
-}  // namespace
-}  // namespace dartcast::test
+}  // namespace dartcast::test::walk_oracle_test
