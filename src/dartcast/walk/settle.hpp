@@ -67,17 +67,24 @@ void lift_off(const WallPlanes<N>& planes, const Vec3& p, Vec3& x, int doublings
 
 }  // namespace detail
 
-/// The plane of a facet, with its normal (scaled before it is normalised, so that slivers do not underflow).
+/// The plane of a facet, with its normal (scaled before it is normalised where its square might under- or overflow, by
+/// powers of two, so that the bits are the same).
 inline WallPlane facet_plane(const Corners& v, unsigned facet) {
   const auto& f = facet_corners[facet];
   WallPlane plane{v[f[0]], v[f[1]], v[f[2]], {}};
-  const auto scaled = [](Vec3 e) {
-    const double largest = std::max({std::abs(e.x), std::abs(e.y), std::abs(e.z)});
-    return largest > 0.0 ? e * (1.0 / largest) : e;
-  };
-  const Vec3 n = scaled(cross(scaled(plane.b - plane.a), scaled(plane.c - plane.a)));
-  const double length = norm(n);
-  plane.normal = length > 0.0 ? n * (1.0 / length) : Vec3{};
+  const Vec3 e = plane.b - plane.a;
+  const Vec3 g = plane.c - plane.a;
+  Vec3 n = cross(e, g);
+  double square = dot(n, n);
+  if (!(square > 0x1p-600 && square < 0x1p+600)) {
+    const auto scaled = [](Vec3 x) {
+      const double largest = std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)});
+      return largest > 0.0 ? x * std::ldexp(1.0, -std::ilogb(largest)) : x;
+    };
+    n = scaled(cross(scaled(e), scaled(g)));
+    square = dot(n, n);
+  }
+  plane.normal = square > 0.0 ? n * (1.0 / std::sqrt(square)) : Vec3{};
   return plane;
 }
 
