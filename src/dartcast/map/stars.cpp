@@ -57,7 +57,7 @@ void Stars::add_star(std::span<const ImplicitSimplex> simplices, std::uint16_t s
       if (((held >> facet) & 1U) != 0) continue;
       const Across across = s.across[facet];
       if (across.outer()) {
-        facets_.push_back({at, facet});
+        facets_.push_back({at, facet, across.face(), across.place});
         continue;
       }
       std::uint16_t& next =
@@ -66,9 +66,8 @@ void Stars::add_star(std::span<const ImplicitSimplex> simplices, std::uint16_t s
       next = number;
     }
   }
-  const auto face = [&](const Facet& f) { return simplices[f.simplex].across[f.facet].face(); };
-  std::sort(facets_.begin() + begin, facets_.end(), [&](const Facet& a, const Facet& b) {
-    return std::pair{face(a), a.simplex} < std::pair{face(b), b.simplex};
+  std::sort(facets_.begin() + begin, facets_.end(), [](const Facet& a, const Facet& b) {
+    return std::pair{a.face, a.simplex} < std::pair{b.face, b.simplex};
   });
   first_.push_back(static_cast<std::uint32_t>(facets_.size()));
 }

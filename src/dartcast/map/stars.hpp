@@ -20,6 +20,8 @@ class Stars {
   struct Facet {
     std::uint16_t simplex;
     std::uint16_t facet;
+    std::uint16_t face;
+    std::uint16_t triangle;  ///< of the face's fan
   };
 
   Stars() = default;

@@ -359,6 +359,10 @@ class Batch {
 
   // Finds the simplex behind the face that was entered through, and its corners.
   DARTCAST_TARGET void enter(Visit& v, VertexNumbers& corners) const {
+    if (kind == MemoKind::coordinates && !v.through_face && v.place == no_facet) {  // where the step began: asked for
+      corners = vertices_[v.particle];
+      return;
+    }
     const CellView cell = map_.view(Cell(v.cell));
     if (v.through_face) {
       const Across at = cell.shape().entry(v.index, v.place);

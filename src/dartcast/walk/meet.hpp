@@ -108,6 +108,7 @@ void add_other_walls(const Space<Positions, N>& space, const Walk& w, const Feat
   const auto first = static_cast<std::ptrdiff_t>(list.walls.size()) - 1;
   search_walls<N>(*space.map, w.wall_simplex, feature,
                   [&](SimplexId id, const CellView& cell, const ImplicitSimplex& s, unsigned facet) {
+                    if (id == w.wall_simplex && facet == w.wall_facet) return true;
                     const CellFace face = {id.cell, s.across[facet].face()};
                     const Vec3 normal = facet_plane(space.corners(cell, s), facet).normal;
                     const bool known = std::any_of(list.walls.begin() + first, list.walls.end(), [&](const WallHit& h) {

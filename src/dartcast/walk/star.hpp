@@ -92,6 +92,22 @@ constexpr std::uint64_t code_of(SimplexId s, std::uint16_t star) {
 constexpr SimplexId simplex_of(std::uint64_t code) {
   return {Cell(static_cast<std::uint32_t>(code >> 32U)), static_cast<std::uint16_t>(code >> 16U)};
 }
+
+// Cells of which nothing more can be found: the first few of them, to be passed by at once.
+class FewCells {
+ public:
+  void add(Cell c) {
+    if (count_ < cells_.size()) cells_[count_++] = c;
+  }
+  [[nodiscard]] bool has(Cell c) const {
+    return std::find(cells_.begin(), cells_.begin() + count_, c) != cells_.begin() + count_;
+  }
+
+ private:
+  std::array<Cell, 16> cells_;
+  std::size_t count_ = 0;
+};
+
 using FoundSimplices = Found<~std::uint64_t{0xffff}>;
 using FoundStars = Found<~(std::uint64_t{0xffff} << 16U)>;
 
@@ -142,30 +158,34 @@ void search_plane_walls(const Map& map, SimplexId start, const Feature& feature,
 template <std::size_t N = 4, class OnWall>
 void search_walls(const Map& map, SimplexId start, const Feature& feature, OnWall&& on_wall) {
   if constexpr (N == 3) return detail::search_plane_walls(map, start, feature, on_wall);
-  const auto star_at = [&](SimplexId id, const CellView& cell) {
-    const unsigned beside = facets_holding(feature, cell, cell.shape().simplices()[id.simplex]);
-    return detail::code_of(id, cell.shape().stars().star(id.simplex, 15U & ~beside));
-  };
   detail::FoundStars found;
-  found.add(star_at(start, map.view(start.cell)));
+  detail::FewCells whole;
+  const auto add = [&](SimplexId id, const CellView& cell) {
+    const Stars& stars = cell.shape().stars();
+    const unsigned beside = facets_holding(feature, cell, cell.shape().simplices()[id.simplex]);
+    found.add(detail::code_of(id, stars.star(id.simplex, 15U & ~beside)));
+    if (stars.one_each()) whole.add(id.cell);
+  };
+  add(start, map.view(start.cell));
   for (std::size_t next = 0; next < found.size(); ++next) {
     const Cell at = detail::simplex_of(found[next]).cell;
     const CellView cell = map.view(at);
-    Cell behind;  // the face before, where one look is enough
-    for (const Stars::Facet& outer : cell.shape().stars().outer_facets(static_cast<std::uint16_t>(found[next]))) {
-      const ImplicitSimplex& s = cell.shape().simplices()[outer.simplex];
-      const Across across = s.across[outer.facet];
-      if (cell.is_wall(across.face())) {
-        if (!on_wall(SimplexId{at, outer.simplex}, cell, s, outer.facet)) return;
+    const Shape& shape = cell.shape();
+    std::uint16_t passed = shape.face_count();  // the face before, where one look is enough
+    for (const Stars::Facet& outer : shape.stars().outer_facets(static_cast<std::uint16_t>(found[next]))) {
+      if (outer.face == passed) continue;
+      if (cell.is_wall(outer.face)) {
+        if (!on_wall(SimplexId{at, outer.simplex}, cell, shape.simplices()[outer.simplex], outer.facet)) return;
         continue;
       }
-      const Cell neighbour = cell.neighbour(across.face());
-      if (neighbour == behind) continue;
-      const CellView beyond = map.view(neighbour);
-      const Stars& stars = beyond.shape().stars();
-      if (stars.empty()) continue;  // flat: no way through
-      found.add(star_at(pass(map, {at, outer.simplex}, cell, across).simplex, beyond));
-      behind = stars.one_each() ? neighbour : Cell{};
+      const Cell neighbour = cell.neighbour(outer.face);
+      if (!whole.has(neighbour)) {
+        const CellView beyond = map.view(neighbour);
+        if (beyond.shape().stars().empty()) continue;  // flat: no way through
+        add(pass_face(cell, outer.face, outer.triangle, neighbour, beyond).simplex, beyond);
+        if (!beyond.shape().stars().one_each()) continue;
+      }
+      passed = outer.face;
     }
   }
 }
@@ -188,9 +208,9 @@ std::optional<SimplexFacet> find_wall(const Map& map, SimplexId simplex, unsigne
     if (!across.outer() || !cell.is_wall(across.face())) return {};
     return SimplexFacet{simplex, facet};
   }
-  for (unsigned i = 0; i < feature.count; ++i) {
-    if (!map.may_touch_wall(feature.vertex[i])) return {};
-  }
+  bool may_touch = true;
+  for (unsigned i = 0; i < feature.count; ++i) may_touch &= map.may_touch_wall(feature.vertex[i]);
+  if (!may_touch) return {};
   std::optional<SimplexFacet> found;
   search_walls<N>(map, simplex, feature,
                   [&](SimplexId id, const CellView&, const ImplicitSimplex&, std::uint16_t facet) {
