@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "dartcast/walk/ride.hpp"
@@ -14,6 +15,7 @@ namespace dartcast::bench {
 namespace {
 
 constexpr std::size_t block_size = 100;
+constexpr std::size_t deforming_block_size = 10;
 constexpr double same_place = 1e-4;  // cells
 
 template <class Work>
@@ -25,18 +27,34 @@ double nanoseconds(Work&& work) {
 
 // One step as dartcast took it, and what the others are asked.
 struct Record {
+  std::uint64_t step = 0;
   std::vector<State> before;
   std::vector<Vec3> targets;
   ContactList contacts;
   std::vector<Segment> segments;
   std::vector<Hit> hits;
-  std::vector<Vec3> points;  // of the walls, where the scene deforms
+};
+
+// Where a scene deforms: once more, without particles, so that each of the others can go through a block's steps.
+class Stage {
+ public:
+  explicit Stage(const Workload& workload) : workload_(workload), complex_(workload.environment().complex()) {}
+
+  [[nodiscard]] const Complex& complex() const { return complex_; }
+  void set(std::uint64_t step) {
+    workload_.positions_after(step, complex_.next_positions());
+    complex_.commit_positions();
+  }
+
+ private:
+  const Workload& workload_;
+  Complex complex_;
 };
 
 class Race {
  public:
   Race(const WorkloadOptions& options, std::span<const PeerKind> kinds)
-      : options_(options), workload_(options), records_(options.deforms || !options.against_peers ? 1 : block_size) {
+      : options_(options), workload_(options), records_(size_of_block(options)) {
     if (options.against_peers) make_peers(kinds);
     for (const unsigned threads : options.threads) {
       Row& row = rows_.emplace_back();
@@ -64,16 +82,24 @@ class Race {
   }
 
  private:
+  static std::size_t size_of_block(const WorkloadOptions& options) {
+    if (!options.against_peers) return 1;
+    return options.deforms ? deforming_block_size : block_size;
+  }
+
+  [[nodiscard]] const Complex& complex() const {
+    return stage_ ? stage_->complex() : workload_.environment().complex();
+  }
+
   void make_peers(std::span<const PeerKind> kinds) {
-    walls_ = walls_of(workload_.environment().complex());
-    std::vector<Vec3> points;
-    walls_.gather(workload_.environment().complex().positions(), points);
+    if (options_.deforms) stage_.emplace(workload_);
+    walls_ = walls_of(complex());
+    walls_.gather(complex().positions(), points_);
     const bool plane = workload_.environment().map().dimension() == 2;
     for (const PeerKind& kind : kinds) {
       if (plane && !kind.in_plane) continue;
       names_.push_back(kind.name);
-      peers_.push_back(kind.make(
-          {workload_.environment().complex(), walls_, points, workload_.particles().states(), options_.deforms}));
+      peers_.push_back(kind.make({complex(), walls_, points_, workload_.particles().states(), options_.deforms}));
     }
   }
 
@@ -94,12 +120,21 @@ class Race {
   void block(std::size_t size) {
     const std::span<Record> records = std::span(records_).first(size);
     for (Record& record : records) lead(record);
-    for (Record& record : records) ask(record);
-    for (std::size_t k = 0; k < peers_.size(); ++k) {
-      const std::size_t peer = (k + blocks_) % peers_.size();
-      for (const Record& record : records) answer(peer, record);
-    }
+    if (peers_.empty()) return;
+    for_each_step(records, [&](Record& record) { ask(record); });
+    for (std::size_t k = 0; k < peers_.size(); ++k)
+      for_each_step(records, [&](const Record& record) { answer((k + blocks_) % peers_.size(), record); });
     ++blocks_;
+  }
+
+  // Each of the others comes from computing the new positions, as dartcast does.
+  template <class Do>
+  void for_each_step(std::span<Record> records, Do&& work) {
+    if (stage_) stage_->set(records[0].step - 1);
+    for (Record& record : records) {
+      if (stage_) stage_->set(record.step);
+      work(record);
+    }
   }
 
   void lead(Record& record) {
@@ -119,17 +154,16 @@ class Race {
     if (peers_.empty()) return;
     record.targets.assign(workload_.targets().begin(), workload_.targets().end());
     record.contacts = std::move(report.contacts);
+    record.step = workload_.step();
   }
 
   // Not while dartcast leads: it would drive its data out of the caches.
   void ask(Record& record) const {
-    if (peers_.empty()) return;
-    const Complex& complex = workload_.environment().complex();
     record.segments.resize(record.before.size());
     for (std::size_t i = 0; i < record.before.size(); ++i) {
       const State& before = record.before[i];
       Segment& s = record.segments[i];
-      s = {options_.deforms ? ridden(complex, before) : before.position, record.targets[i]};
+      s = {options_.deforms ? ridden(complex(), before) : before.position, record.targets[i]};
       if (before.touching_count > 0) s.blind = std::min(1.0, same_place * workload_.cell_size() / norm(s.to - s.from));
     }
     record.hits.assign(record.before.size(), {});
@@ -137,7 +171,6 @@ class Race {
       const WallHit& wall = record.contacts.walls_of(c).front();
       record.hits[c.particle] = {walls_.number({wall.face, wall.triangle}), c.time_of_impact};
     }
-    if (options_.deforms) walls_.gather(complex.positions(), record.points);
   }
 
   // Where the walk began: in the geometry after the move.
@@ -153,7 +186,10 @@ class Race {
 
   void answer(std::size_t k, const Record& record) {
     Peer& peer = *peers_[k];
-    if (options_.deforms) peer.write(record.points);
+    if (options_.deforms) {
+      walls_.gather(complex().positions(), points_);
+      peer.write(points_);
+    }
     peer.place(record.before);
     answers_.resize(record.segments.size());
     Lane& lane = rows_[0].lanes[k + 1];
@@ -194,6 +230,8 @@ class Race {
   std::vector<std::uint64_t> tests_before_;
   std::vector<std::uint64_t> wrong_before_;
   std::vector<Record> records_;
+  std::optional<Stage> stage_;
+  std::vector<Vec3> points_;  // of the walls
   std::vector<Hit> answers_;
   std::vector<Row> rows_;
   std::size_t steps_ = 0;

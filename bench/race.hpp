@@ -45,9 +45,10 @@ struct Row {
 };
 
 /// Runs a workload: a row for each number of threads. In the plane only competitors that have an answer there take
-/// part. dartcast leads, in blocks of 100 steps (of one where the scene deforms); each competitor then answers the
-/// block's segments, every block another one first. The first block is not counted. Where the scene stands still each
-/// so works with its own data in the caches; what disturbs one disturbs all.
+/// part. dartcast leads, in blocks of 100 steps (of ten where the scene deforms); each competitor then answers the
+/// block's segments, every block another one first. The first block is not counted. So each works with its own data in
+/// the caches, but for what computing the new positions has driven out, where the scene deforms; what disturbs one
+/// disturbs all.
 ///
 /// A competitor disagrees on a segment where one of the two meets a wall and the other does not, or where both do and
 /// neither the triangle nor the time (within 1e-4 of a cell) is the same. What dartcast finds is what happens.

@@ -116,12 +116,16 @@ void Workload::set_velocities(Random& random) {
   }
 }
 
+void Workload::positions_after(std::uint64_t step, std::span<Vec3> out) const {
+  deformation_->positions(static_cast<double>(step) * dt_, out, Threads{1});
+}
+
 void Workload::aim() {
   ++step_;
   std::span<const Vec3> next = environment_.complex().positions();
   if (deformation_) {
     const std::span<Vec3> positions = environment_.next_positions();
-    deformation_->positions(static_cast<double>(step_) * dt_, positions, Threads{1});
+    positions_after(step_, positions);
     next = positions;
   }
   for (std::size_t i = 0; i < targets_.size(); ++i) {

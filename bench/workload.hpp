@@ -56,6 +56,11 @@ class Workload {
   [[nodiscard]] std::span<const Vec3> targets() const { return targets_; }
   [[nodiscard]] double cell_size() const { return cell_size_; }
 
+  /// Steps aimed at so far.
+  [[nodiscard]] std::uint64_t step() const { return step_; }
+  /// Where all vertices are after so many steps. Precondition: the scene deforms.
+  void positions_after(std::uint64_t step, std::span<Vec3> out) const;
+
   /// Computes the next step's targets and, where the scene deforms, the next positions of all vertices.
   void aim();
   /// Turns back the particles that have met walls.
