@@ -338,9 +338,11 @@ void Environment::step_chunk(const Steps& steps, std::size_t begin, std::size_t 
         steps.stepper.step(particle, states[i], steps.particles.weights_[particle], targets[i], part.contacts,
                            part.counters, taken[i] == detail::taken_nothing ? nullptr : &begun[taken[i]]);
     vertices[i] = detail::vertex_numbers(complex_, states[i].at());
-    if (!memos.empty())
+    if (steps.particles.memo_kind_ == detail::MemoKind::trail)
       memos.put(begin + i,
-                detail::memo_of(steps.particles.memo_kind_, complex_.positions(), vertices[i], states[i].position));
+                detail::memo_of(detail::MemoKind::trail, complex_.positions(), vertices[i], states[i].position));
+    else if (!memos.empty())
+      memos.forget(begin + i);
     if (result.held) part.held.push_back({particle, result.invalid_cell});
     if (result.stopped) part.stopped.push_back({particle, result.unused});
   }

@@ -219,7 +219,12 @@ class Batch {
 
   // Few are, so that four are looked at together.
   [[nodiscard]] DARTCAST_TARGET std::uint32_t held_or_touching(std::uint32_t first, std::uint32_t n) const {
-    const auto is = [&](std::uint32_t i) { return std::uint32_t{states_[i].held} | states_[i].touching_count; };
+    const auto is = [&](std::uint32_t i) {  // both at once
+      static_assert(offsetof(State, held) == offsetof(State, touching_count) + 1);
+      std::uint16_t both;
+      std::memcpy(&both, reinterpret_cast<const char*>(states_ + i) + offsetof(State, touching_count), sizeof both);
+      return both;
+    };
     std::uint32_t bits = 0;
     for (std::uint32_t k = 0; k < n; ++k) {
       const std::uint32_t i = first + k;
@@ -481,6 +486,11 @@ class Batch {
   // What follows is not done here. Returns false, too.
   DARTCAST_TARGET bool hand_over(const Visit& visit, const Walk& walk) {
     const std::uint32_t i = visit.particle;
+    if constexpr (moved) {  // what follows asks how the wall has moved
+      const CellView cell = map_.view(walk.wall_simplex.cell);
+      for (const std::uint16_t local : cell.shape().simplices()[walk.wall_simplex.simplex].vertex)
+        __builtin_prefetch(before_ + cell.vertex(local).value);
+    }
     taken_[i] = static_cast<Taken>(begun_.size());
     begun_.push_back({start_of(i), walk, {visit.tests, visit.exact}});
     return false;

@@ -72,6 +72,10 @@ class Memos {
   }
   [[nodiscard]] Memo operator[](std::size_t i) const { return fours_[i / 4].of(i % 4); }
   void put(std::size_t i, const Memo& m) { fours_[i / 4].put(i % 4, m); }
+  /// As put() of an unknown one.
+  void forget(std::size_t i) {
+    for (auto& of_corner : fours_[i / 4].w) of_corner[i % 4] = unknown;
+  }
   void push_back(const Memo& m) {
     resize(size_ + 1);
     put(size_ - 1, m);
