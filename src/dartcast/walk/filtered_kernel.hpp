@@ -399,26 +399,27 @@ class Batch {
     if (behind == 0) {
       const unsigned on = signs.zero() & asked;
       if (on != 0) {
-        if (const auto wall = find_touched_wall(visit, on)) return end_on_wall(visit, on, *wall);
+        if (const auto wall = find_touched_wall(visit, corners, on)) return end_on_wall(visit, on, *wall);
       }
       arrive(visit, corners, k);
       return false;
     }
     unsigned facet = static_cast<unsigned>(std::countr_zero(behind));
     if ((behind & (behind - 1)) != 0) facet = first_exit(visit, corners, behind);
-    return facet < 4 ? pass_on(visit, facet) : leave(visit.particle);
+    return pass_on(visit, facet);
   }
 
   // The wall that a target lies on that lies on facets of its simplex.
-  DARTCAST_TARGET std::optional<SimplexFacet> find_touched_wall(const Visit& visit, unsigned on) const {
-    const SimplexId id{Cell(visit.cell), visit.index};
-    const CellView cell = map_.view(id.cell);
-    const ImplicitSimplex& s = cell.shape().simplices()[id.simplex];
-    return find_wall(map_, id, on, feature_of(cell, s, on));
+  DARTCAST_TARGET std::optional<SimplexFacet> find_touched_wall(const Visit& visit, const VertexNumbers& corners,
+                                                                unsigned on) const {
+    Feature feature;
+    for (unsigned i = 0; i < 4; ++i) {
+      if (((on >> i) & 1U) == 0) feature.add(Vertex{corners[i]});
+    }
+    return find_wall(map_, {Cell(visit.cell), visit.index}, on, feature);
   }
 
-  // Of several facets that the target lies behind, the one by which the segment leaves; 4 where the filter does not
-  // say.
+  // Of several facets that the target lies behind, the one by which the segment leaves.
   DARTCAST_TARGET unsigned first_exit(Visit& visit, const VertexNumbers& corners, unsigned behind) const {
     const std::uint32_t i = visit.particle;
     const Vec3 p = start_of(i);
@@ -427,12 +428,25 @@ class Batch {
     while ((behind &= behind - 1) != 0) {
       const unsigned other = static_cast<unsigned>(std::countr_zero(behind));
       const auto& edge = side_edge[facet][other];
-      const int first = filtered_sign(now_[corners[edge[0]]] - q, p - q, now_[corners[edge[1]]] - q);
+      const Vec3& a = now_[corners[edge[0]]];
+      const Vec3& b = now_[corners[edge[1]]];
+      const int first = filtered_sign(a - q, p - q, b - q);
       ++visit.tests;
-      if (first == 0) return 4;
-      if (first < 0) facet = other;
+      visit.exact = static_cast<std::uint16_t>(visit.exact + (first == 0 ? 1 : 0));
+      if (first < 0 || (first == 0 && !passes_before(i, a, b, p, q))) facet = other;
     }
     return facet;
+  }
+
+  // As leaves_before() in walk/walk.hpp, where the filter does not say.
+  [[gnu::noinline]] DARTCAST_TARGET bool passes_before(std::uint32_t i, const Vec3& a, const Vec3& b, const Vec3& p,
+                                                       const Vec3& q) const {
+    Sign s = orient3d_exact(a, b, p, q);
+    if (s == Sign::zero) {
+      const Space<Stored, 4> space{&map_, {now_}, 0};
+      s = Ties<Stored, 4>(space, states_[i].at(), p, q).line(a, b);
+    }
+    return s == Sign::positive;
   }
 
   [[nodiscard]] DARTCAST_TARGET Vec3 start_of(std::uint32_t i) const {
