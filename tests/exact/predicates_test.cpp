@@ -278,6 +278,29 @@ TEST(Orient3dValue, IsNearTheTrueValueAndOfItsSign) {
   }
 }
 
+// Of the differences to the last point, that of one other alone is rounded: b and c are next to d, a is far from them
+// and close to their plane.
+TEST(Orient3dValue, IsNearTheTrueValueWhereOneDifferenceIsRounded) {
+  Random random(310);
+  const auto any = [&](double low, double high) {
+    return Vec3{random.uniform(low, high), random.uniform(low, high), random.uniform(low, high)};
+  };
+  for (int i = 0; i < cases(3'000); ++i) {
+    const Vec3 d = any(0x1p-20, 0x1.8p-20);
+    const std::array<Vec3, 2> near = {any(0x1p-20, 0x1.8p-20), any(0x1p-20, 0x1.8p-20)};
+    const Vec3 far = d + (near[0] - d) * random.uniform(0x1p+18, 0x1p+19) +
+                     (near[1] - d) * random.uniform(0x1p+18, 0x1p+19) + any(-1, 1) * std::exp2(random.uniform(-30, -8));
+    for (std::size_t place = 0; place < 3; ++place) {
+      Quadruple q = {near[0], near[0], near[1], d};
+      if (place == 2) q[1] = near[1];
+      q[place] = far;
+      const Dyadic truth = determinant(q[0], q[1], q[2], q[3]);
+      const Dyadic error = (Dyadic(value(q)) - truth).abs();
+      ASSERT_FALSE(Dyadic(0x1p-49) * truth.abs() < error) << text(q);
+    }
+  }
+}
+
 using Triple = std::array<Vec3, 3>;
 
 Dyadic plane_determinant(const Triple& t) {

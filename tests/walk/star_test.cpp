@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <set>
+#include <span>
 
 #include "dartcast/base/random.hpp"
 #include "dartcast/geometry/complex.hpp"
@@ -29,7 +30,9 @@ Walls simplex_by_simplex(const Map& map, SimplexId start, const Feature& feature
     const ImplicitSimplex& s = cell.shape().simplices()[id.simplex];
     for (unsigned facet = 0; facet < 4; ++facet) {
       unsigned held = 0;
-      for (unsigned i = 0; i < 4; ++i) held += i != facet && feature.has(cell.vertex(s.vertex[i])) ? 1 : 0;
+      const std::span<const Vertex> around(feature.vertex.data(), feature.count);
+      for (unsigned i = 0; i < 4; ++i)
+        held += i != facet && std::find(around.begin(), around.end(), cell.vertex(s.vertex[i])) != around.end() ? 1 : 0;
       if (held != feature.count) continue;
       const Across across = s.across[facet];
       if (across.outer() && cell.is_wall(across.face())) {

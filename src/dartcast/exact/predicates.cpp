@@ -107,8 +107,7 @@ TwoTerms paired_product(double a, const TwoTerms& b) {
 // The determinant in pairs of doubles, where differences round nothing: off by less than 2^-97 m, m being the product
 // of the extents. A minor of v and w is off by 3 2^-106 of the sum of its products' magnitudes, each of the three
 // products with u by 3 2^-106 of itself more, their sum by 24 2^-106 of all: in all less than 2^-101 of the permanent,
-// which is at most 6 m. Underflow adds a few 2^-1074 to a minor, which is nothing where the extents' products are above
-// 2^-800, and to a product with u, where m is above 2^-700.
+// which is at most 6 m. Within the exact range nothing under- or overflows.
 double paired_determinant(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Vec3 u = a - d;
   const Vec3 v = c - d;
@@ -119,12 +118,6 @@ double paired_determinant(const Vec3& a, const Vec3& b, const Vec3& c, const Vec
   const TwoTerms xy = detail::two_sum(x.high, y.high);
   const TwoTerms xyz = detail::two_sum(xy.high, z.high);
   return xyz.high + (xyz.low + (xy.low + ((x.low + y.low) + z.low)));
-}
-
-bool pairs_apply(const Filtered& f, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  const auto& [x, y, z] = f.extent;
-  return f.applies && std::min({x * y, y * z, z * x}) >= 0x1p-800 && !rounds_difference(a, d) &&
-         !rounds_difference(b, d) && !rounds_difference(c, d);
 }
 
 }  // namespace
@@ -158,7 +151,7 @@ double orient3d_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d
   if (f.decided() && std::abs(f.value) > enough * f.bound) return f.value;
   if (!all_in_range(a, b, c, d)) return std::numeric_limits<double>::quiet_NaN();
   if (f.applies && rounds_nothing(f.extent, a, b, c, d)) return f.value;
-  if (pairs_apply(f, a, b, c, d)) {
+  if (f.applies && !rounds_difference(a, d) && !rounds_difference(b, d) && !rounds_difference(c, d)) {
     const double value = paired_determinant(a, b, c, d);
     const double m = f.extent.x * f.extent.y * f.extent.z;
     if (std::abs(value) >= 0x1p-47 * m) return value;  // right to 2^-50 of itself, and once rounded

@@ -441,7 +441,7 @@ class Batch {
   // As leaves_before() in walk/walk.hpp, where the filter does not say.
   [[gnu::noinline]] DARTCAST_TARGET bool passes_before(std::uint32_t i, const Vec3& a, const Vec3& b, const Vec3& p,
                                                        const Vec3& q) const {
-    Sign s = orient3d_exact(a, b, p, q);
+    Sign s = p == a || p == b ? Sign::zero : orient3d_exact(a, b, p, q);
     if (s == Sign::zero) {
       const Space<Stored, 4> space{&map_, {now_}, 0};
       s = Ties<Stored, 4>(space, states_[i].at(), p, q).line(a, b);

@@ -21,19 +21,18 @@ struct Feature {
   unsigned count = 0;
 
   void add(Vertex v) { vertex[count++] = v; }
-  /// No branch: which of them it is can't be foretold.
-  [[nodiscard]] bool has(Vertex v) const {
-    return static_cast<bool>(static_cast<int>(vertex[0] == v) | static_cast<int>(vertex[1] == v) |
-                             static_cast<int>(vertex[2] == v) | static_cast<int>(vertex[3] == v));
-  }
 };
 
 /// Bit i is set where the facet opposite to corner i holds the feature.
 template <std::size_t N = 4>
 unsigned facets_holding(const Feature& feature, const CellView& cell, const ImplicitSimplex& s) {
-  unsigned facets = 0;
-  for (unsigned i = 0; i < N; ++i) facets |= feature.has(cell.vertex(s.vertex[i])) ? 0U : 1U << i;
-  return facets;
+  std::array<Vertex, N> corner;
+  for (unsigned i = 0; i < N; ++i) corner[i] = cell.vertex(s.vertex[i]);
+  unsigned beside = (1U << N) - 1U;
+  for (unsigned k = 0; k < feature.count; ++k) {
+    for (unsigned i = 0; i < N; ++i) beside &= ~(static_cast<unsigned>(corner[i] == feature.vertex[k]) << i);
+  }
+  return beside;
 }
 
 namespace detail {
@@ -43,6 +42,11 @@ namespace detail {
 template <std::uint64_t key_mask>
 class Found {
  public:
+  /// One that was not found before, nor will be again.
+  void push(std::uint64_t code) {
+    if (count_ == near_.size()) return add(code);
+    near_[count_++] = code;
+  }
   void add(std::uint64_t code) {
     const std::uint64_t key = code & key_mask;
     if (count_ < near_.size()) {
@@ -96,8 +100,11 @@ constexpr SimplexId simplex_of(std::uint64_t code) {
 // Cells of which nothing more can be found: the first few of them, to be passed by at once.
 class FewCells {
  public:
-  void add(Cell c) {
-    if (count_ < cells_.size()) cells_[count_++] = c;
+  /// Returns false: there is no room.
+  bool add(Cell c) {
+    if (count_ == cells_.size()) return false;
+    cells_[count_++] = c;
+    return true;
   }
   [[nodiscard]] bool has(Cell c) const {
     return std::find(cells_.begin(), cells_.begin() + count_, c) != cells_.begin() + count_;
@@ -163,8 +170,9 @@ void search_walls(const Map& map, SimplexId start, const Feature& feature, OnWal
   const auto add = [&](SimplexId id, const CellView& cell) {
     const Stars& stars = cell.shape().stars();
     const unsigned beside = facets_holding(feature, cell, cell.shape().simplices()[id.simplex]);
-    found.add(detail::code_of(id, stars.star(id.simplex, 15U & ~beside)));
-    if (stars.one_each()) whole.add(id.cell);
+    const std::uint64_t code = detail::code_of(id, stars.star(id.simplex, 15U & ~beside));
+    if (stars.one_each() && whole.add(id.cell)) return found.push(code);
+    found.add(code);
   };
   add(start, map.view(start.cell));
   for (std::size_t next = 0; next < found.size(); ++next) {
