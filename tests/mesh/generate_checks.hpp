@@ -127,7 +127,7 @@ inline std::size_t expect_conforming(const MeshData& mesh) {
   EXPECT_EQ(std::count(used.begin(), used.end(), 0), 0);
   for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) {
     const CornerNumbers corners(mesh.patch_faces.begin() + static_cast<std::ptrdiff_t>(mesh.patch_offsets[f]),
-                          mesh.patch_faces.begin() + static_cast<std::ptrdiff_t>(mesh.patch_offsets[f + 1]));
+                                mesh.patch_faces.begin() + static_cast<std::ptrdiff_t>(mesh.patch_offsets[f + 1]));
     EXPECT_TRUE(faces.contains(from_lowest(corners)) || faces.contains(reversed(from_lowest(corners))))
         << "patch face " << f;
     EXPECT_TRUE(mesh.patch_names.contains(mesh.patch_tags[f]));

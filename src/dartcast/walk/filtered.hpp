@@ -1,9 +1,10 @@
 // The steps of many particles at once, as far as the filter alone decides them: the usual case, made fast.
 //
 // It decides nothing of its own: where a sign is not proved, or anything else is out of the ordinary, the step is left
-// as it was for Stepper (walk/step.hpp), which comes to the same result wherever both do. What follows at a wall is
-// left to it, too. (Only the counts may differ: where riding along rounds a particle out of its simplex, Stepper puts
-// it back and walks from there, though its target is inside.)
+// as it was for Stepper (walk/step.hpp), which comes to the same result wherever both do; ties between facets are
+// broken by the walk's own functions. What follows at a wall is left to Stepper, too. (Only the counts may differ:
+// where riding along rounds a particle out of its simplex, Stepper puts it back and walks from there, though its target
+// is inside.)
 #pragma once
 
 #include <array>
