@@ -401,7 +401,7 @@ class Batch {
       if (on != 0) {
         if (const auto wall = find_touched_wall(visit, corners, on)) return end_on_wall(visit, on, *wall);
       }
-      arrive(visit, corners, k);
+      arrive(visit, corners, k, on != 0);
       return false;
     }
     unsigned facet = static_cast<unsigned>(std::countr_zero(behind));
@@ -513,7 +513,8 @@ class Batch {
     for (std::size_t k = 0; k < count; ++k) leave(visits_[k].particle);
   }
 
-  DARTCAST_TARGET void arrive(const Visit& visit, const VertexNumbers& corners, std::size_t k) {
+  // on_facet: the target lies on one of the simplex.
+  DARTCAST_TARGET void arrive(const Visit& visit, const VertexNumbers& corners, std::size_t k, bool on_facet = false) {
     State& s = states_[visit.particle];
     s.put({Cell(visit.cell), visit.index}, targets_[visit.particle]);
     s.touching_count = 0;
@@ -526,16 +527,17 @@ class Batch {
     counters_.forecast_kept += kept ? 1 : 0;
     if (moved && !kept) counters_.updated_by_deformation += left_behind_[visit.particle] ? 1 : 0;
     arrival_[arrivals_] = {visit.particle, static_cast<std::uint32_t>(k)};
-    arrivals_ += kind != MemoKind::coordinates || needs_coordinates(visit) ? 1 : 0;
+    arrivals_ += kind != MemoKind::coordinates || needs_coordinates(visit, on_facet) ? 1 : 0;
   }
 
-  // Who passes many simplices in a step is likely to leave the last one in the next, too: it gets none.
-  DARTCAST_TARGET bool needs_coordinates(const Visit& visit) {
+  // Who passes many simplices in a step is likely to leave the last one in the next, too, and who ends on a facet to end
+  // on one, of which coordinates prove nothing: they get none.
+  DARTCAST_TARGET bool needs_coordinates(const Visit& visit, bool on_facet) {
     constexpr std::uint16_t few_tests = 13;  // three simplices
     auto& w = memos_[visit.particle / 4].w;
     const std::uint32_t lane = visit.particle % 4;
     if (visit.place == no_facet && !std::isnan(w[0][lane])) return false;
-    if (visit.tests <= few_tests) return true;
+    if (!on_facet && visit.tests <= few_tests) return true;
     for (auto& of_corner : w) of_corner[lane] = unknown;
     return false;
   }
