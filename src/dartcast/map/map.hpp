@@ -145,7 +145,8 @@ class Map {
     return pool.words.data() +
            (c.pool() == general_pool ? pool.offsets[c.index()] : std::size_t{c.index()} * pool.stride);
   }
-  [[nodiscard]] CellView view(Cell c) const {
+  // Inlined: every walk does this for each cell that it enters, and a call is as dear.
+  [[nodiscard]] [[gnu::always_inline]] CellView view(Cell c) const {
     const bool general = c.pool() == general_pool;
     const std::uint32_t* word = record(c);
     return {*this, word, shapes_[general ? word[0] : word[0] & 0xffffU], general};
