@@ -530,8 +530,8 @@ class Batch {
     arrivals_ += kind != MemoKind::coordinates || needs_coordinates(visit, on_facet) ? 1 : 0;
   }
 
-  // Who passes many simplices in a step is likely to leave the last one in the next, too, and who ends on a facet to end
-  // on one, of which coordinates prove nothing: they get none.
+  // Who passes many simplices in a step is likely to leave the last one in the next, too, and who ends on a facet to
+  // end on one, of which coordinates prove nothing: they get none.
   DARTCAST_TARGET bool needs_coordinates(const Visit& visit, bool on_facet) {
     constexpr std::uint16_t few_tests = 13;  // three simplices
     auto& w = memos_[visit.particle / 4].w;
