@@ -287,9 +287,14 @@ ComplexEditReport Environment::edit(const std::function<void(ComplexEdit&)>& mak
 void Environment::check_targets(const Particles& particles, std::span<const Vec3> targets) const {
   if (targets.size() != particles.size())
     throw InvalidArgument(fmt::format("advance: {} targets for {} particles", targets.size(), particles.size()));
-  const bool dimension_fits =
-      map().dimension() == 3 || std::all_of(targets.begin(), targets.end(), [](const Vec3& q) { return q.z == 0.0; });
-  if (dimension_fits && detail::all_in_exact_range(targets)) return;
+  const bool plane = map().dimension() == 2;
+  std::vector<std::uint8_t> good(chunk_count(targets.size(), chunk));
+  parallel_for(targets.size(), chunk, threads_, [&](std::size_t begin, std::size_t end) {
+    const std::span<const Vec3> some = targets.subspan(begin, end - begin);
+    good[begin / chunk] = detail::all_in_exact_range(some) &&
+                          (!plane || std::all_of(some.begin(), some.end(), [](const Vec3& q) { return q.z == 0.0; }));
+  });
+  if (std::all_of(good.begin(), good.end(), [](std::uint8_t g) { return g != 0; })) return;
   for (std::size_t i = 0; i < targets.size(); ++i)
     check_point(targets[i], "the target of particle", i, map().dimension());
 }
@@ -302,6 +307,31 @@ void Environment::check_followed(const Particles& particles, const StepOptions& 
   if (!(options.tolerance > 0.0) || options.max_parts == 0)
     throw InvalidArgument(fmt::format("{}: the tolerance and the number of parts must be positive", call));
 }
+
+namespace {
+
+// Those of consecutive particles.
+StepReport joined(std::vector<StepReport> parts) {
+  if (parts.size() == 1) return std::move(parts.front());
+  std::size_t contacts = 0;
+  std::size_t walls = 0;
+  for (const StepReport& part : parts) {
+    contacts += part.contacts.contacts.size();
+    walls += part.contacts.walls.size();
+  }
+  StepReport report;
+  report.contacts.contacts.reserve(contacts);
+  report.contacts.walls.reserve(walls);
+  for (const StepReport& part : parts) {
+    report.contacts.append(part.contacts);
+    report.held.insert(report.held.end(), part.held.begin(), part.held.end());
+    report.stopped.insert(report.stopped.end(), part.stopped.begin(), part.stopped.end());
+    report.counters += part.counters;
+  }
+  return report;
+}
+
+}  // namespace
 
 // One call of advance().
 struct Environment::Steps {
@@ -389,15 +419,7 @@ StepReport Environment::advance(Particles& particles, std::span<const Vec3> targ
   }
   particles.moves_ = moves_;
   particles.edits_ = edits_;
-  if (parts.size() == 1) return std::move(parts.front());
-  StepReport report;
-  for (const StepReport& part : parts) {
-    report.contacts.append(part.contacts);
-    report.held.insert(report.held.end(), part.held.begin(), part.held.end());
-    report.stopped.insert(report.stopped.end(), part.stopped.begin(), part.stopped.end());
-    report.counters += part.counters;
-  }
-  return report;
+  return joined(std::move(parts));
 }
 
 std::vector<Trace> Environment::trace(const Particles& particles, std::size_t particle, std::span<const Vec3> targets,
