@@ -27,13 +27,14 @@ struct Tally {
   std::atomic<std::uint64_t> moved_on{0};     // taken into another simplex
   std::atomic<std::uint64_t> handed_over{0};  // taken up to a wall
   std::atomic<std::uint64_t> remembered{0};   // taken, and coordinates are kept for the next
+  std::atomic<std::uint64_t> exact{0};        // of these, exact ones
 };
 
 // A scene whose particles are stepped both ways.
 class BothWays {
  public:
-  BothWays(MeshData mesh, std::uint64_t seed, bool moves)
-      : mesh_(std::move(mesh)), complex_(mesh_), random_(seed, 9), moves_(moves) {
+  BothWays(MeshData mesh, std::uint64_t seed, bool moves, bool on_lattice)
+      : mesh_(std::move(mesh)), complex_(mesh_), random_(seed, 9), moves_(moves), on_lattice_(on_lattice) {
     std::vector<SimplexId> free;
     for (const Cell c : complex_.map().cells()) {
       for (std::uint16_t s = 0; s < complex_.map().shape(c).simplices().size(); ++s) {
@@ -97,7 +98,15 @@ class BothWays {
       if (moves_ && taken && (!equal(best.memos[i], memo) || !equal(portable.memos[i], memo)))
         return fmt::format("particle {}: another trail", i);
       if (!moves_ && taken && !detail::is_unknown(best.memos[i])) tally.remembered += 1;
-      next_memos.push_back(taken ? best.memos[i] : memo);
+      if (taken && !moves_ && best.memos.mark(i) != 0) {
+        const unsigned zeros = detail::zeros_of(complex_.corners(next[i].at()), next[i].position);
+        if (best.memos.mark(i) != (detail::exact_mark | zeros)) return fmt::format("particle {}: another mark", i);
+        tally.exact += 1;
+      }
+      if (taken)
+        next_memos.push_back(best.memos[i], best.memos.mark(i));
+      else
+        next_memos.push_back(memo);
       if (taken) counters += is_put_back(i) && next[i].at() == states_[i].at() ? counts_of_a_kept_forecast() : own;
       tally.steps += 1;
       tally.taken += taken ? 1 : 0;
@@ -136,7 +145,8 @@ class BothWays {
   }
   static bool same_memos(const Filtered& a, const Filtered& b) {
     bool same = a.memos.size() == b.memos.size();
-    for (std::size_t i = 0; same && i < a.memos.size(); ++i) same = equal(a.memos[i], b.memos[i]);
+    for (std::size_t i = 0; same && i < a.memos.size(); ++i)
+      same = equal(a.memos[i], b.memos[i]) && a.memos.mark(i) == b.memos.mark(i);
     return same;
   }
 
@@ -211,8 +221,29 @@ class BothWays {
     const std::uint32_t kind = random_.below(16);
     if (kind == 0) return s.position;
     if (kind == 1) return v[random_.below(4)];
+    if (on_lattice_ && kind > 2) return kind < 12 ? lattice_target(s) : beside_facet(v);
     const double length = edge * std::exp2(random_.uniform(-6.0, kind == 2 ? 4.0 : 1.0));
     return s.position + Vec3{random_.uniform(-1, 1), random_.uniform(-1, 1), random_.uniform(-1, 1)} * length;
+  }
+
+  // One of eighths, along axes and diagonals.
+  Vec3 lattice_target(const State& s) {
+    const double length = 0.125 * (1 + random_.below(4));
+    const auto next = [&](double x) { return std::round(8.0 * x) / 8.0 + length * (random_.below(3) - 1.0); };
+    return {next(s.position.x), next(s.position.y), next(s.position.z)};
+  }
+
+  // On a facet, but for rounding.
+  Vec3 beside_facet(const dartcast::Corners& v) {
+    const std::uint32_t facet = random_.below(4);
+    Vec3 sum;
+    double weights = 0.0;
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      const double w = i == facet ? 0.0 : random_.uniform();
+      sum += v[i] * w;
+      weights += w;
+    }
+    return sum * (1.0 / weights);
   }
 
   // Every vertex moves: all alike, each its own way, seldom far enough to turn cells.
@@ -232,6 +263,7 @@ class BothWays {
   Complex complex_;
   Random random_;
   bool moves_;
+  bool on_lattice_;
   std::vector<State> states_;
   detail::Memos memos_;  // of these, once a step has been taken
 };
@@ -245,17 +277,21 @@ MeshData flattened(MeshData mesh, double thickness) {
   return mesh;
 }
 
-// What goes wrong in the scene of a seed.
-std::string run_scene(oracle::SceneKind kind, bool moves, std::uint64_t seed, Tally& tally) {
-  MeshData mesh = seed % 4 == 0 ? oracle::lattice_scene(kind, seed) : oracle::random_scene(kind, seed, 0.5);
-  if (seed % 4 == 1) mesh = flattened(std::move(mesh), std::exp2(-2.0 * static_cast<double>(seed % 17)));
-  BothWays scene(std::move(mesh), seed, moves);
+// What goes wrong in a scene.
+std::string run(BothWays scene, const std::string& name, Tally& tally) {
   if (!scene.usable()) return {};
   for (std::size_t i = 0; i < steps_per_scene; ++i) {
     const std::string wrong = scene.step(tally);
-    if (!wrong.empty()) return fmt::format("{}, seed {}, step {}: {}", oracle::name_of(kind), seed, i, wrong);
+    if (!wrong.empty()) return fmt::format("{}, step {}: {}", name, i, wrong);
   }
   return {};
+}
+
+std::string run_scene(oracle::SceneKind kind, bool moves, std::uint64_t seed, Tally& tally) {
+  MeshData mesh = seed % 4 == 0 ? oracle::lattice_scene(kind, seed) : oracle::random_scene(kind, seed, 0.5);
+  if (seed % 4 == 1) mesh = flattened(std::move(mesh), std::exp2(-2.0 * static_cast<double>(seed % 17)));
+  return run(BothWays(std::move(mesh), seed, moves, false), fmt::format("{}, seed {}", oracle::name_of(kind), seed),
+             tally);
 }
 
 TEST_P(FilteredBatch, TakesStepsAsOneParticleDoes) {
@@ -272,6 +308,24 @@ TEST_P(FilteredBatch, TakesStepsAsOneParticleDoes) {
   EXPECT_GT(tally.handed_over, tally.steps / 100);
   EXPECT_TRUE(moves || tally.remembered > tally.steps / 4);
 }
+
+class LatticeBatch : public ::testing::TestWithParam<int> {};
+
+TEST_P(LatticeBatch, TakesStepsAsOneParticleDoes) {
+  const auto kind = static_cast<oracle::SceneKind>(GetParam());
+  Tally tally;
+  const auto complaints = run_seeds(scaled(20, 2000), [&](std::uint64_t seed) {
+    return run(BothWays(oracle::lattice_scene(kind, seed), seed, false, true),
+               fmt::format("{} on integers, seed {}", oracle::name_of(kind), seed), tally);
+  });
+  for (const std::string& wrong : complaints) ADD_FAILURE() << wrong;
+  EXPECT_GT(tally.taken, tally.steps / 4);
+  EXPECT_GT(tally.exact, tally.steps / 40);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, LatticeBatch, ::testing::Range(0, oracle::scene_kinds), [](const auto& scene) {
+  return oracle::name_of(static_cast<oracle::SceneKind>(scene.param));
+});
 
 INSTANTIATE_TEST_SUITE_P(Scenes, FilteredBatch,
                          ::testing::Combine(::testing::Range(0, oracle::scene_kinds), ::testing::Bool()),

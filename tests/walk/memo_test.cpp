@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "dartcast/base/random.hpp"
+#include "dartcast/environment/environment.hpp"
 #include "dartcast/walk/coordinates.hpp"
 #include "dartcast/walk/filtered.hpp"
 #include "dartcast/walk/ride.hpp"
@@ -49,14 +50,15 @@ detail::Memo memo_at(const Complex& complex, SimplexId at, const Vec3& p) {
   std::vector<State> states(1);
   states[0].put(at, p);
   std::vector<detail::VertexNumbers> vertices = {detail::vertex_numbers(complex, at)};
-  std::vector<detail::MemosOfFour> memos(1);
+  detail::Memos memos;
+  memos.resize(1);
   const std::vector<Vec3> targets = {p};
   std::vector<detail::Taken> taken(1);
   std::vector<Begun> begun;
   Counters counters;
   detail::step_filtered({&complex, false, false, StepOptions{}.tolerance},
-                        {states, vertices, memos, targets, taken, begun}, counters);
-  return memos[0].of(0);
+                        {states, vertices, memos.from(0), targets, taken, begun}, counters);
+  return memos[0];
 }
 
 // As the batch computes them.
@@ -140,6 +142,33 @@ TEST(Memo, CoordinatesAreNotMadeOutOfTheirRange) {
     const detail::Memo memo = memo_at(complex, {complex.map().cells().front(), 0}, p);
     EXPECT_EQ(memo.w[0], detail::proves_nothing) << size;
     for (const double c : coordinates(memo, p)) EXPECT_FALSE(c > detail::coordinate_margin) << size;
+  }
+}
+
+// Two tetrahedra share a face x + y + z = 2. Particles on it, known to be, go beside it, to points of few bits each
+// whose sum rounds to 2.
+TEST(Memo, ZerosAreProvedOnlyWhereNothingIsRounded) {
+  for (const bool in_x : {false, true}) {
+    const Vec3 shift = in_x ? Vec3{0, 0, 2} : Vec3{2, 0, 0};
+    MeshData mesh;
+    for (const Vec3& p : {Vec3{4, 0, -4}, Vec3{-4, 0, 4}, Vec3{0, 4, -4}, Vec3{-4, 0, 0}, Vec3{4, 0, 0}})
+      mesh.points.push_back(p + shift);
+    mesh.add_cell(CellType::tetrahedron, std::array<std::uint32_t, 4>{0, 1, 2, 3});
+    mesh.add_cell(CellType::tetrahedron, std::array<std::uint32_t, 4>{0, 2, 1, 4});
+    for (const Vec3& from : {Vec3{-1, 1, -1}, Vec3{1, 1, -1}}) {
+      for (const double off : {0x1p-52, -0x1p-53, 0x1p-60, -0x1p-60, 0x1p-100}) {
+        const Vec3 beside = in_x ? Vec3{off, 1, 1} : Vec3{1, 1, off};
+        Environment environment(mesh, Threads{1});
+        Particles particles;
+        environment.add(particles, std::vector<Vec3>{from + shift});
+        ASSERT_EQ(particles.size(), 1U);
+        for (const Vec3& q : {Vec3{0, 2, -2} + shift, Vec3{-1, 1, 0} + shift, Vec3{-0.5, 1.5, -1} + shift, beside}) {
+          environment.advance(particles, std::vector<Vec3>{q});
+          EXPECT_TRUE(detail::in_closed_simplex(environment.complex().corners(particles[0].at()), q)) << q.x;
+          EXPECT_EQ(particles[0].position, q);
+        }
+      }
+    }
   }
 }
 

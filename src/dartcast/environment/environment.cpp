@@ -90,7 +90,7 @@ void Particles::remove(std::span<const std::uint8_t> marks) {
     if (marks[i] != 0) continue;
     states_[kept] = states_[i];
     weights_[kept] = weights_[i];
-    if (!memos_.empty()) memos_.put(kept, memos_[i]);
+    if (!memos_.empty()) memos_.put(kept, memos_[i], memos_.mark(i));
     vertices_[kept++] = vertices_[i];
   }
   states_.resize(kept);
@@ -115,7 +115,7 @@ void Particles::reorder(std::span<const std::uint32_t> order) {
     states[i] = states_[order[i]];
     weights[i] = weights_[order[i]];
     vertices[i] = vertices_[order[i]];
-    if (!memos_.empty()) memos.put(i, memos_[order[i]]);
+    if (!memos_.empty()) memos.put(i, memos_[order[i]], memos_.mark(order[i]));
   }
   states_ = std::move(states);
   weights_ = std::move(weights);
@@ -130,9 +130,10 @@ Particles Particles::selected(std::span<const std::uint32_t> which) const {
     some.states_.push_back(states_[i]);
     some.weights_.push_back(weights_[i]);
     some.vertices_.push_back(vertices_[i]);
-    if (!memos_.empty()) some.memos_.push_back(memos_[i]);
+    if (!memos_.empty()) some.memos_.push_back(memos_[i], memos_.mark(i));
   }
   some.memo_kind_ = memo_kind_;
+  some.walls_changed_ = walls_changed_;
   some.moves_ = moves_;
   some.edits_ = edits_;
   return some;
@@ -146,8 +147,12 @@ void Particles::replace(std::span<const std::uint32_t> which, const Particles& b
     weights_[i] = by.weights_[k];
     vertices_[i] = by.vertices_[k];
     if (memos_.empty()) continue;
-    memos_.put(i, memo_kind_ == by.memo_kind_ ? by.memos_[k] : detail::unknown_memo());
+    if (memo_kind_ == by.memo_kind_)
+      memos_.put(i, by.memos_[k], by.memos_.mark(k));
+    else
+      memos_.forget(i);
   }
+  walls_changed_ = walls_changed_ || by.walls_changed_;
   residents_.reset();
 }
 
@@ -350,12 +355,7 @@ void Environment::step_chunk(const Steps& steps, std::size_t begin, std::size_t 
   begun.reserve(size);
   const std::span<detail::VertexNumbers> vertices = std::span(steps.particles.vertices_).subspan(begin, size);
   detail::Memos& memos = steps.particles.memos_;
-  const detail::FilteredSteps batch{states,
-                                    vertices,
-                                    memos.empty() ? std::span<detail::MemosOfFour>{} : memos.from(begin),
-                                    targets,
-                                    std::span(taken).first(size),
-                                    begun};
+  const detail::FilteredSteps batch{states, vertices, memos.from(begin), targets, std::span(taken).first(size), begun};
   if (map().dimension() == 2)
     detail::step_plane(steps.filtered, batch, part.counters);
   else
@@ -400,13 +400,14 @@ StepReport Environment::advance(Particles& particles, std::span<const Vec3> targ
   const Steps steps{particles,
                     targets,
                     Stepper(complex_, moved, options, respond),
-                    {&complex_, moved, memos_match, options.tolerance}};
+                    {&complex_, moved, memos_match, options.tolerance, !particles.walls_changed_}};
   std::vector<StepReport> parts(chunk_count(particles.size(), chunk));
   particles.residents_.reset();
   const Particles before = respond ? particles : Particles{};  // a response is the caller's code: it may throw
   particles.memo_kind_ = kind;
   particles.memos_.resize(kind == detail::MemoKind::none ? 0 : particles.size());
   particles.stood_still_ = !moved;
+  particles.walls_changed_ = false;
   if (respond) {
     try {
       step_all(steps, parts);

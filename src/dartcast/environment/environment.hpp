@@ -52,9 +52,10 @@ class Particles {
   std::vector<Weights> weights_;
   std::vector<detail::VertexNumbers> vertices_;
   detail::MemoKind memo_kind_ = detail::MemoKind::none;
-  detail::Memos memos_;       // of these states, where there is a kind
-  bool stood_still_ = false;  // the vertices, at the last step
-  std::uint64_t moves_ = 0;   // of the environment, that these states have followed
+  detail::Memos memos_;         // of these states, where there is a kind
+  bool stood_still_ = false;    // the vertices, at the last step
+  bool walls_changed_ = false;  // since then
+  std::uint64_t moves_ = 0;     // of the environment, that these states have followed
   std::uint64_t edits_ = 0;
   std::optional<detail::Residents> residents_;  // of these states; none where they have changed since
 };

@@ -175,6 +175,7 @@ FollowReport Environment::follow(Particles& particles, Stranded stranded) const 
     throw InvalidArgument("follow: the particles missed an edit: every set must follow each edit before the next");
   FollowReport report = Following(*this, particles, stranded).follow();
   particles.edits_ = edits_;
+  particles.walls_changed_ = true;
   return report;
 }
 

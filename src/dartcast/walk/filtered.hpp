@@ -30,6 +30,7 @@ struct FilteredScene {
   bool moved = false;        ///< as for Stepper
   bool memos_match = false;  ///< they are of the states; trails: before the move
   double tolerance = 0.0;    ///< as in StepOptions
+  bool walls_match = true;   ///< no wall is new since the marks were made
 };
 
 /// The numbers of the vertices of the simplex that a particle is in: kept beside its state, so that a step that ends in
@@ -54,8 +55,8 @@ inline constexpr Taken taken_nothing = 0xfffe;
 struct FilteredSteps {
   std::span<State> states;
   std::span<VertexNumbers> vertices;  ///< of each state
-  std::span<MemosOfFour> memos;  ///< moved: trails; else coordinates, or empty: none are kept. In where they match; out
-                                 ///< for each step taken
+  MemoSpan memos;  ///< moved: trails; else coordinates, or empty: none are kept. In where they match; out for each step
+                   ///< taken
   std::span<const Vec3> targets;
   std::span<Taken> taken;     ///< out
   std::vector<Begun>& begun;  ///< out; empty before

@@ -28,11 +28,13 @@ class Batch {
         now_(scene.complex->positions().data()),
         before_(scene.moved ? scene.complex->previous_positions().data() : nullptr),
         memos_match_(scene.memos_match),
+        walls_match_(scene.walls_match),
         tolerance_(scene.tolerance),
         size_(static_cast<std::uint32_t>(steps.states.size())),
         states_(steps.states.data()),
         vertices_(steps.vertices.data()),
-        memos_(steps.memos.data()),
+        memos_(steps.memos.fours.data()),
+        marks_(steps.memos.marks.data()),
         targets_(steps.targets.data()),
         taken_(steps.taken.data()),
         begun_(steps.begun),
@@ -40,6 +42,7 @@ class Batch {
 
   DARTCAST_TARGET void run(std::uint64_t most_rounds) {
     if (kind != MemoKind::none && !memos_match_) make_memos();
+    if (kind == MemoKind::coordinates && !walls_match_) std::fill_n(marks_, size_, Mark{0});
     std::fill_n(taken_, size_, taken_all);
     std::size_t count = kind == MemoKind::coordinates ? begin_by_coordinates() : begin();
     for (std::uint64_t round = 1; count > 0; ++round) {
@@ -80,12 +83,13 @@ class Batch {
       const std::uint32_t n = std::min(block, size_ - first);
       test_coordinates(first, n);
       const std::uint32_t leaving = end_inside(first, n);
+      if (on_facets_ != 0) end_on_facets(first);
       for (std::uint32_t l = 0; l < leaving; ++l) {
         const std::uint32_t i = first + leaving_[l];
         __builtin_prefetch(map_.record(states_[i].cell));
-        const std::uint8_t exit = exit_by(signs_[leaving_[l]]);
-        if (exit == no_facet) ask_for(now_, vertices_[i]);
-        departures_[count++] = {i, exit};
+        const Signs signs(signs_[leaving_[l]]);
+        if (!std::has_single_bit(signs.negative())) ask_for(now_, vertices_[i]);
+        departures_[count++] = {i, signs};
       }
     }
     return depart(count);
@@ -144,9 +148,12 @@ class Batch {
     *reinterpret_cast<UnalignedMask*>(&signs_[k]) = signs;
   }
 
-  // Signs of coordinates that are proved: a bit for each facet that a target is behind; none where any is left open.
+  // Signs of coordinates that are proved: bits for each facet that a target is behind, or on; none where any is left
+  // open.
   DARTCAST_TARGET void test_coordinates(std::uint32_t first, std::uint32_t n) {
     inside_ = 0;
+    on_facets_ = 0;
+    still_free_ = 0;
     for (std::uint32_t k = 0; k < n; k += 4) {
       const Points q = targets_from(first + k);
       const MemosOfFour& memos = memos_[(first + k) / 4];
@@ -155,27 +162,55 @@ class Batch {
       const Quad m[4] = {magnitude(c[0]), magnitude(c[1]), magnitude(c[2]), magnitude(c[3])};
       const Quad least = smaller(smaller(c[0], c[1]), smaller(c[2], c[3]));
       inside_ |= lanes_set(least > coordinate_margin) << k;
-      const Mask known = (smaller(smaller(m[0], m[1]), smaller(m[2], m[3])) > coordinate_margin) &
-                         (larger(larger(m[0], m[1]), larger(m[2], m[3])) <= most_for_sign);
-      store_signs(known & facet_bits(c[0] < 0.0, c[1] < 0.0, c[2] < 0.0, c[3] < 0.0), k);
+      const Mask in_range = larger(larger(m[0], m[1]), larger(m[2], m[3])) <= most_for_sign;
+      const Mask known = (smaller(smaller(m[0], m[1]), smaller(m[2], m[3])) > coordinate_margin) & in_range;
+      const Mask negative = facet_bits(c[0] < 0.0, c[1] < 0.0, c[2] < 0.0, c[3] < 0.0);
+      store_signs(known & negative, k);
+      if (are_marked(first + k)) {
+        const Mask proved = facet_bits(m[0] > coordinate_margin, m[1] > coordinate_margin, m[2] > coordinate_margin,
+                                       m[3] > coordinate_margin);
+        test_zeros(first, k, q, in_range, proved, negative);
+      }
     }
   }
 
-  // The facet that a target lies behind, and no other, where its coordinates prove it.
-  DARTCAST_TARGET static std::uint8_t exit_by(long long signs) {
-    const auto beyond = static_cast<unsigned>(signs);
-    return std::has_single_bit(beyond) ? static_cast<std::uint8_t>(std::countr_zero(beyond)) : no_facet;
+  [[nodiscard]] DARTCAST_TARGET bool are_marked(std::uint32_t i) const {
+    std::uint32_t four;
+    std::memcpy(&four, marks_ + i, sizeof four);
+    return four != 0;
   }
 
-  // Walks whose exits are not known are to be tested where they are.
+  // The same where coordinates are exact. A target that lies on facets that its particle lies on, and on no other, is
+  // on no wall either: that would reach to the particle.
+  [[gnu::noinline]] DARTCAST_TARGET void test_zeros(std::uint32_t first, std::uint32_t k, const Points& q,
+                                                    const Mask& in_range, const Mask& proved, const Mask& negative) {
+    const Mark* of_four = marks_ + first + k;
+    const Mask marks = {of_four[0], of_four[1], of_four[2], of_four[3]};
+    const Mask zeros = proved_zeros(memos_[(first + k) / 4], q) & ((marks & splat_bits(exact_mark)) != 0);
+    const Mask known = in_range & ((proved | zeros) == splat_bits(15));
+    store_signs(known & (negative | (zeros << 4)), k);
+    const Mask on_facets = known & (negative == 0) & (zeros != 0);
+    const Mask still_free = on_facets & ((zeros & ~marks) == 0);
+    on_facets_ |= lanes_set(on_facets & ~still_free) << k;
+    still_free_ |= lanes_set(still_free) << k;
+    inside_ |= lanes_set(still_free) << k;
+    for (std::uint32_t in = (inside_ >> k) & 15U; in != 0; in &= in - 1) {
+      const auto j = static_cast<std::uint32_t>(std::countr_zero(in));
+      Mark& mark = marks_[first + k + j];
+      mark = static_cast<Mark>((mark & exact_mark) | static_cast<Mark>(zeros[j]));
+    }
+  }
+
+  // Walks of whose targets nothing is proved are to be tested where they are.
   DARTCAST_TARGET std::size_t depart(std::size_t count) {
     std::size_t next = 0;
     for (std::size_t k = 0; k < count; ++k) {
-      const auto [i, exit] = departures_[k];
-      const bool known = exit != no_facet;
-      const std::uint16_t tests = known ? 4 : 1;  // three more there
-      visits_[next] = {i, states_[i].cell.value, states_[i].simplex, no_facet, tests, 0, false};
-      if (!known || pass_on(visits_[next], exit)) ++next;
+      const auto [i, signs] = departures_[k];
+      const unsigned behind = signs.negative();
+      const std::uint16_t tests = behind != 0 ? 4 : 1;  // three more there
+      const auto exact = static_cast<std::uint16_t>(std::popcount(signs.zero()));
+      visits_[next] = {i, states_[i].cell.value, states_[i].simplex, no_facet, tests, exact, false};
+      if (behind == 0 || pass_on(visits_[next], exit_facet(visits_[next], vertices_[i], behind))) ++next;
     }
     return next;
   }
@@ -190,8 +225,9 @@ class Batch {
       const Points p = places_of(i);
       const FilteredDeterminants d(simplices_of(positions, i), p);
       if constexpr (moved) leave_trails(d, memos_[first / 4]);
-      if constexpr (kind == MemoKind::coordinates) leave_coordinates(d, p, memos_[first / 4]);
+      if constexpr (kind == MemoKind::coordinates) leave_coordinates<false>(d, p, memos_[first / 4]);
     }
+    if constexpr (kind == MemoKind::coordinates) std::fill_n(marks_, size_, Mark{0});
   }
 
   // Ends the steps whose targets lie strictly inside: wherever they come from in the same simplex, nothing is in the
@@ -205,6 +241,12 @@ class Batch {
       if (is_left(first + k, k)) left |= std::uint32_t{1} << k;
     }
     inside_ &= all & ~left;
+    on_facets_ &= all & ~left;
+    if constexpr (kind == MemoKind::coordinates) {
+      for (std::uint32_t on = inside_ & still_free_; on != 0; on &= on - 1)
+        counters_.orientation.exact +=
+            static_cast<unsigned>(std::popcount(Signs(signs_[static_cast<std::size_t>(std::countr_zero(on))]).zero()));
+    }
     for (std::uint32_t ended = inside_; ended != 0; ended &= ended - 1) {
       const std::uint32_t i = first + static_cast<std::uint32_t>(std::countr_zero(ended));
       states_[i].position = targets_[i];
@@ -212,7 +254,7 @@ class Batch {
     }
     count_ended(static_cast<std::uint32_t>(std::popcount(inside_)));
     std::uint32_t leaving = 0;
-    for (std::uint32_t on = all & ~left & ~inside_; on != 0; on &= on - 1)
+    for (std::uint32_t on = all & ~left & ~inside_ & ~on_facets_; on != 0; on &= on - 1)
       leaving_[leaving++] = static_cast<std::uint32_t>(std::countr_zero(on));
     return leaving;
   }
@@ -235,6 +277,24 @@ class Batch {
       }
     }
     return bits;
+  }
+
+  // Ends the steps whose targets lie on facets of the simplex that the particle is in.
+  [[gnu::noinline]] DARTCAST_TARGET void end_on_facets(std::uint32_t first) {
+    for (std::uint32_t bits = on_facets_; bits != 0; bits &= bits - 1) {
+      const auto k = static_cast<std::uint32_t>(std::countr_zero(bits));
+      const std::uint32_t i = first + k;
+      const unsigned on = Signs(signs_[k]).zero();
+      const Visit visit = {
+          i,    states_[i].cell.value, states_[i].simplex, no_facet, 4, static_cast<std::uint16_t>(std::popcount(on)),
+          false};
+      if (const auto wall = find_touched_wall(visit, vertices_[i], on)) {
+        end_on_wall(visit, on, *wall);
+      } else {
+        end(visit);
+        marks_[i] = static_cast<Mark>(exact_mark | on);
+      }
+    }
   }
 
   DARTCAST_TARGET void count_ended(std::uint32_t ended) {
@@ -351,7 +411,7 @@ class Batch {
     return next;
   }
 
-  DARTCAST_TARGET void test_visits(const Visit* visits, std::size_t k, std::size_t last) {
+  [[gnu::always_inline]] DARTCAST_TARGET void test_visits(const Visit* visits, std::size_t k, std::size_t last) {
     const std::size_t k1 = std::min(k + 1, last);
     const std::size_t k2 = std::min(k + 2, last);
     const std::size_t k3 = std::min(k + 3, last);
@@ -401,12 +461,15 @@ class Batch {
       if (on != 0) {
         if (const auto wall = find_touched_wall(visit, corners, on)) return end_on_wall(visit, on, *wall);
       }
-      arrive(visit, corners, k, on != 0);
+      on == 0 ? arrive(visit, corners, k) : arrive_on_facets(visit, corners, k, on);
       return false;
     }
-    unsigned facet = static_cast<unsigned>(std::countr_zero(behind));
-    if ((behind & (behind - 1)) != 0) facet = first_exit(visit, corners, behind);
-    return pass_on(visit, facet);
+    return pass_on(visit, exit_facet(visit, corners, behind));
+  }
+
+  DARTCAST_TARGET unsigned exit_facet(Visit& visit, const VertexNumbers& corners, unsigned behind) const {
+    return std::has_single_bit(behind) ? static_cast<unsigned>(std::countr_zero(behind))
+                                       : first_exit(visit, corners, behind);
   }
 
   // The wall that a target lies on that lies on facets of its simplex.
@@ -444,7 +507,9 @@ class Batch {
     Sign s = p == a || p == b ? Sign::zero : orient3d_exact(a, b, p, q);
     if (s == Sign::zero) {
       const Space<Stored, 4> space{&map_, {now_}, 0};
-      s = Ties<Stored, 4>(space, states_[i].at(), p, q).line(a, b);
+      std::optional<unsigned> zeros;
+      if (kind == MemoKind::coordinates && (marks_[i] & exact_mark) != 0) zeros = marks_[i] & 15U;
+      s = Ties<Stored, 4>(space, states_[i].at(), p, q, zeros).line(a, b);
     }
     return s == Sign::positive;
   }
@@ -513,12 +578,17 @@ class Batch {
     for (std::size_t k = 0; k < count; ++k) leave(visits_[k].particle);
   }
 
-  // on_facet: the target lies on one of the simplex.
-  DARTCAST_TARGET void arrive(const Visit& visit, const VertexNumbers& corners, std::size_t k, bool on_facet = false) {
+  DARTCAST_TARGET void arrive(const Visit& visit, const VertexNumbers& corners, std::size_t k) {
+    end(visit);
+    vertices_[visit.particle] = corners;
+    arrival_[arrivals_] = {visit.particle, static_cast<std::uint32_t>(k)};
+    arrivals_ += kind != MemoKind::coordinates || needs_coordinates(visit) ? 1 : 0;
+  }
+
+  DARTCAST_TARGET void end(const Visit& visit) {
     State& s = states_[visit.particle];
     s.put({Cell(visit.cell), visit.index}, targets_[visit.particle]);
     s.touching_count = 0;
-    vertices_[visit.particle] = corners;
     ++counters_.particle_steps;
     counters_.orientation.tests += visit.tests;
     counters_.orientation.exact += visit.exact;
@@ -526,20 +596,43 @@ class Batch {
     const bool kept = visit.place == no_facet;
     counters_.forecast_kept += kept ? 1 : 0;
     if (moved && !kept) counters_.updated_by_deformation += left_behind_[visit.particle] ? 1 : 0;
-    arrival_[arrivals_] = {visit.particle, static_cast<std::uint32_t>(k)};
-    arrivals_ += kind != MemoKind::coordinates || needs_coordinates(visit, on_facet) ? 1 : 0;
   }
 
-  // Who passes many simplices in a step is likely to leave the last one in the next, too, and who ends on a facet to
-  // end on one, of which coordinates prove nothing: they get none.
-  DARTCAST_TARGET bool needs_coordinates(const Visit& visit, bool on_facet) {
-    constexpr std::uint16_t few_tests = 13;  // three simplices
-    auto& w = memos_[visit.particle / 4].w;
-    const std::uint32_t lane = visit.particle % 4;
-    if (visit.place == no_facet && !std::isnan(w[0][lane])) return false;
-    if (!on_facet && visit.tests <= few_tests) return true;
-    for (auto& of_corner : w) of_corner[lane] = unknown;
+  static constexpr std::uint16_t few_tests = 13;  // three simplices
+
+  [[nodiscard]] DARTCAST_TARGET bool has_coordinates(std::uint32_t i) const {
+    return !std::isnan(memos_[i / 4].w[0][i % 4]);
+  }
+  DARTCAST_TARGET void forget(std::uint32_t i) {
+    for (auto& of_corner : memos_[i / 4].w) of_corner[i % 4] = unknown;
+    marks_[i] = 0;
+  }
+
+  // Who passes many simplices in a step is likely to leave the last one in the next, too: it gets none.
+  DARTCAST_TARGET bool needs_coordinates(const Visit& visit) {
+    const std::uint32_t i = visit.particle;
+    if (visit.place == no_facet && has_coordinates(i)) {
+      marks_[i] &= exact_mark;
+      return false;
+    }
+    marks_[i] = 0;
+    if (visit.tests <= few_tests) return true;
+    forget(i);
     return false;
+  }
+
+  // At a target on facets of the simplex. The next is likely to be on some, too: of coordinates, exact ones are kept.
+  [[gnu::noinline]] DARTCAST_TARGET void arrive_on_facets(const Visit& visit, const VertexNumbers& corners,
+                                                          std::size_t k, unsigned on) {
+    if constexpr (kind != MemoKind::coordinates) return arrive(visit, corners, k);
+    const std::uint32_t i = visit.particle;
+    end(visit);
+    vertices_[i] = corners;
+    if (visit.place != no_facet || !has_coordinates(i)) forget(i);
+    if ((marks_[i] & exact_mark) != 0)
+      marks_[i] = static_cast<Mark>(exact_mark | on);
+    else if (visit.tests <= few_tests)
+      facet_arrival_[facet_arrivals_++] = {i, static_cast<std::uint16_t>(k), static_cast<Mark>(on)};
   }
 
   // Keeps memos of the simplices that walks of the block have ended in.
@@ -548,23 +641,41 @@ class Batch {
     for (std::uint32_t a = 0; a < arrivals_;) {
       const std::uint32_t k = arrival_[a].place / 4;
       if constexpr (moved) leave_trails(determinants_[k], four);
-      if constexpr (kind == MemoKind::coordinates) leave_coordinates(determinants_[k], ends_[k], four);
+      if constexpr (kind == MemoKind::coordinates) leave_coordinates<false>(determinants_[k], ends_[k], four);
       for (; a < arrivals_ && arrival_[a].place / 4 == k; ++a) {
         const std::uint32_t i = arrival_[a].particle;
         memos_[i / 4].put(i % 4, four.of(arrival_[a].place % 4));
       }
     }
+    if (kind == MemoKind::coordinates && facet_arrivals_ != 0) remember_exact();
+  }
+
+  [[gnu::noinline]] DARTCAST_TARGET void remember_exact() {
+    MemosOfFour four;
+    for (std::uint32_t a = 0; a < facet_arrivals_;) {
+      const std::uint32_t k = facet_arrival_[a].place / 4U;
+      const unsigned exact = leave_coordinates<true>(determinants_[k], ends_[k], four);
+      for (; a < facet_arrivals_ && facet_arrival_[a].place / 4U == k; ++a) {
+        const auto [i, place, on] = facet_arrival_[a];
+        if (((exact >> (place % 4U)) & 1U) == 0) continue;
+        memos_[i / 4].put(i % 4, four.of(place % 4U));
+        marks_[i] = exact_mark | on;
+      }
+    }
+    facet_arrivals_ = 0;
   }
 
   const Map& map_;
   const Vec3* now_;
   const Vec3* before_;  // null where the scene stands still
   bool memos_match_;
+  bool walls_match_;
   double tolerance_;
   std::uint32_t size_;
   State* states_;
   VertexNumbers* vertices_;
   MemosOfFour* memos_;
+  Mark* marks_;
   const Vec3* targets_;
   Taken* taken_;
   std::vector<Begun>& begun_;
@@ -574,14 +685,19 @@ class Batch {
   struct Place {
     double x, y, z;
   };
-  // A walk that leaves its first simplex, by this facet where it is known.
+  // A walk that may leave its first simplex, and what is proved of its target.
   struct Departure {
     std::uint32_t particle;
-    std::uint32_t exit;
+    Signs signs;
   };
   struct Arrival {
     std::uint32_t particle;
     std::uint32_t place;  // in the block
+  };
+  struct FacetArrival {
+    std::uint32_t particle;
+    std::uint16_t place;
+    Mark on;
   };
 
   // Of the block. Bits: one per particle.
@@ -590,10 +706,14 @@ class Batch {
   std::array<Points, block / 4> ends_;  // of walks
   std::array<long long, block> signs_;
   std::uint32_t inside_;
+  std::uint32_t on_facets_ = 0;
+  std::uint32_t still_free_;
   std::uint32_t one_part_;
   std::array<std::uint32_t, block> leaving_;
   std::array<Arrival, block> arrival_;
   std::uint32_t arrivals_;
+  std::array<FacetArrival, block> facet_arrival_;
+  std::uint32_t facet_arrivals_ = 0;
 
   // Of the batch.
   std::array<Visit, filtered_batch> visits_;  // walks that go on

@@ -31,29 +31,75 @@ DARTCAST_TARGET inline void leave_trails(const FilteredDeterminants& d, MemosOfF
   }
 }
 
-// The coordinates of the simplices, from particles p that d's corners are relative to: their gradients are the normals
-// of the facets, inwards, over the volume.
-DARTCAST_TARGET inline void leave_coordinates(const FilteredDeterminants& d, const Points& p, MemosOfFour& memos) {
+// Whether a number has no more than 29 bits: times a float it then makes a double. x + 2^24 x is rounded to a multiple
+// of the last place of 2^24 x, the 29th place of x.
+DARTCAST_TARGET inline Mask has_few_bits(const Quad& x) {
+  const Quad far = x * splat(0x1p+24);
+  return (far + x) - far == x;
+}
+
+// Whether s, the rounded sum of a and b, is exact: the difference to the larger one is.
+DARTCAST_TARGET inline Mask is_sum(const Quad& s, const Quad& a, const Quad& b) { return (s - a == b) & (s - b == a); }
+
+// Whether g.q + w comes out as zero though nothing is rounded: g are floats, q has few bits.
+DARTCAST_TARGET inline Mask is_zero(const Points& g, const Quad& w, const Points& q) {
+  const Quad x = g.x * q.x;
+  const Quad y = g.y * q.y;
+  const Quad z = g.z * q.z;
+  const Quad xy = x + y;
+  const Quad xyz = xy + z;
+  return (xyz + w == 0.0) & is_sum(xy, x, y) & is_sum(xyz, xy, z);
+}
+
+// Leaves the coordinates of the simplices, from particles p that d's corners are relative to: their gradients are the
+// normals of the facets, inwards, over the volume. If asked, returns a bit for each lane in which they are exact; for
+// lanes in which p is in the closed simplex, and arithmetic on the differences of p and the corners rounds nothing
+// (rounds_nothing() in exact/predicates.hpp).
+//
+// Then normals and the volume, a sum of determinants none of which is negative, are exact; so is a function of the
+// place that has the right gradient and is zero at a corner of the facet. Differences are below 2^16 units: where p is
+// within 2^12 of the largest one, corners are below 2^29 units, and have few bits.
+template <bool ask_exact>
+DARTCAST_TARGET inline unsigned leave_coordinates(const FilteredDeterminants& d, const Points& p, MemosOfFour& memos) {
   const Quad volume = d.volume6();
   const Quad share = 1.0 / volume;
   const Quad extent = largest(d.extent);
-  const Quad reach = largest(larger(d.extent, magnitude(p) * splat(1.0 / extents_from_origin)));
+  const Points m = magnitude(p);
+  const Quad reach = largest(larger(d.extent, m * splat(1.0 / extents_from_origin)));
   Mask proved =
       d.proves_coordinates() & (volume >= least_volume * (extent * extent * extent)) & (extent <= largest_extent);
+  Mask exact{};
+  if constexpr (ask_exact) {
+    constexpr double close = 0x1p+12;
+    exact =
+        has_few_bits(volume) & (m.x <= close * d.extent.x) & (m.y <= close * d.extent.y) & (m.z <= close * d.extent.z);
+  }
   Quad at_origin[4];
   for (unsigned i = 0; i < 4; ++i) {
     const Points& a = d.relative[i ^ 1U];
-    store_vectors(cross(d.relative[3 - i] - a, d.relative[i ^ 2U] - a) * share, memos, i);
+    const Points normal = cross(d.relative[3 - i] - a, d.relative[i ^ 2U] - a);
+    store_vectors(normal * share, memos, i);
     const Points g = load_vectors(memos, i);
     proved &= (magnitude(g.x) + magnitude(g.y) + magnitude(g.z)) * reach <= steepest_gradient;
     at_origin[i] = d.value[i] * share - dot(g, p);
+    if constexpr (ask_exact)
+      exact &= (g.x * volume == normal.x) & (g.y * volume == normal.y) & (g.z * volume == normal.z) &
+               is_zero(g, at_origin[i], p + a);
   }
   for (unsigned i = 0; i < 4; ++i) store_doubles(proved ? at_origin[i] : splat(proves_nothing), memos.w[i].data());
+  return ask_exact ? lanes_set(proved & exact) : 0;
 }
 
 // Coordinate i of q.
 DARTCAST_TARGET inline Quad coordinate_of(const MemosOfFour& memos, unsigned i, const Points& q) {
   return dot(load_vectors(memos, i), q) + load_doubles(memos.w[i].data());
+}
+
+// Bits of the facets that q is proved to lie on, where coordinates are exact.
+DARTCAST_TARGET inline Mask proved_zeros(const MemosOfFour& memos, const Points& q) {
+  Mask zero[4];
+  for (unsigned i = 0; i < 4; ++i) zero[i] = is_zero(load_vectors(memos, i), load_doubles(memos.w[i].data()), q);
+  return has_few_bits(q.x) & has_few_bits(q.y) & has_few_bits(q.z) & facet_bits(zero[0], zero[1], zero[2], zero[3]);
 }
 
 // As flushed() in walk/nearby.hpp.

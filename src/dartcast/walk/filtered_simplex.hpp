@@ -71,6 +71,7 @@ class Signs {
   static constexpr long long valid = 1LL << 12;
   static constexpr long long exact = 1LL << 13;
 
+  Signs() = default;  // left as it is
   explicit Signs(long long bits) : bits_(static_cast<unsigned>(bits)) {}
   [[nodiscard]] unsigned negative() const { return bits_ & 15U; }
   [[nodiscard]] unsigned zero() const { return (bits_ >> 4U) & 15U; }

@@ -19,7 +19,7 @@ namespace dartcast::detail {
 ///
 /// Coordinates, where vertices stand still: the barycentric coordinates of any point q, x q.x + y q.y + z q.z + w, to
 /// within the margin of walk/coordinates.hpp. A step that ends in the same simplex reads nothing of the scene.
-/// Unknown until a step has ended in the simplex.
+/// Unknown until a step has ended in the simplex. On lattices they may be exact: see Mark.
 struct Memo {
   std::array<float, 4> x, y, z;
   std::array<double, 4> w;
@@ -61,6 +61,19 @@ struct alignas(64) MemosOfFour {
   }
 };
 
+/// What else is known of a particle that has coordinates. Bit 4: they are exact, so that a target's zeros are proved,
+/// too. Then bits 0 to 3: the facets of its simplex that it lies on; and it lies on no wall.
+using Mark = std::uint8_t;
+inline constexpr Mark exact_mark = 16;
+
+/// Memos and marks of particles in a row. Marks come in fours, too.
+struct MemoSpan {
+  std::span<MemosOfFour> fours;
+  std::span<Mark> marks;
+
+  [[nodiscard]] bool empty() const { return fours.empty(); }
+};
+
 /// One memo per particle.
 class Memos {
  public:
@@ -69,23 +82,33 @@ class Memos {
   void resize(std::size_t size) {
     size_ = size;
     fours_.resize((size + 3) / 4);
+    marks_.resize(4 * fours_.size());
   }
   [[nodiscard]] Memo operator[](std::size_t i) const { return fours_[i / 4].of(i % 4); }
-  void put(std::size_t i, const Memo& m) { fours_[i / 4].put(i % 4, m); }
+  [[nodiscard]] Mark mark(std::size_t i) const { return marks_[i]; }
+  void put(std::size_t i, const Memo& m, Mark mark = 0) {
+    fours_[i / 4].put(i % 4, m);
+    marks_[i] = mark;
+  }
   /// As put() of an unknown one.
   void forget(std::size_t i) {
     for (auto& of_corner : fours_[i / 4].w) of_corner[i % 4] = unknown;
+    marks_[i] = 0;
   }
-  void push_back(const Memo& m) {
+  void push_back(const Memo& m, Mark mark = 0) {
     resize(size_ + 1);
-    put(size_ - 1, m);
+    put(size_ - 1, m, mark);
   }
-  /// Of the particles from `begin` on. Precondition: begin is a multiple of four.
-  [[nodiscard]] std::span<MemosOfFour> from(std::size_t begin) { return std::span(fours_).subspan(begin / 4); }
+  /// Of the particles from `begin` on; empty where none are kept. Precondition: begin is a multiple of four.
+  [[nodiscard]] MemoSpan from(std::size_t begin) {
+    if (empty()) return {};
+    return {std::span(fours_).subspan(begin / 4), std::span(marks_).subspan(begin)};
+  }
 
  private:
   std::size_t size_ = 0;
   std::vector<MemosOfFour> fours_;
+  std::vector<Mark> marks_;
 };
 
 }  // namespace dartcast::detail

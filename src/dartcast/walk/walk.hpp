@@ -65,8 +65,10 @@ unsigned zeros_of(const std::array<Vec3, N>& v, const Vec3& x) {
 template <class Positions, std::size_t N>
 class Ties {
  public:
-  Ties(const Space<Positions, N>& space, SimplexId start, const Vec3& p, const Vec3& q)
-      : space_(space), start_(start), p_(p), q_(q) {}
+  /// `zeros`: the facets of `start` that p lies on, where they are known.
+  Ties(const Space<Positions, N>& space, SimplexId start, const Vec3& p, const Vec3& q,
+       std::optional<unsigned> zeros = {})
+      : space_(space), start_(start), p_(p), q_(q), zeros_(zeros) {}
 
   /// Sign of orient3d(a, b, p, q) of the shifted segment, where it is zero.
   [[nodiscard]] Sign line(const Vec3& a, const Vec3& b) {
@@ -82,7 +84,7 @@ class Ties {
  private:
   void make_shift() {
     const std::array<Vec3, N> v = space_.corners(start_);
-    const unsigned zeros = zeros_of(v, p_);
+    const unsigned zeros = zeros_ ? *zeros_ : zeros_of(v, p_);
     std::array<Vec3, N - 1> opposite;
     unsigned count = 0;
     for (unsigned i = 0; i < N; ++i) {
@@ -95,6 +97,7 @@ class Ties {
   SimplexId start_;
   const Vec3& p_;
   const Vec3& q_;
+  std::optional<unsigned> zeros_;
   std::optional<std::conditional_t<N == 4, Shift, PlaneShift>> shift_;
 };
 
