@@ -15,7 +15,8 @@ namespace dartcast::bench {
 namespace {
 
 constexpr std::size_t block_size = 100;
-constexpr std::size_t deforming_block_size = 10;
+constexpr std::size_t most_records = 1000000;  // particles times steps of a block
+constexpr std::size_t warming_steps = 10;
 constexpr double same_place = 1e-4;  // cells
 
 template <class Work>
@@ -67,7 +68,7 @@ class Race {
   }
 
   std::vector<Row> run() {
-    block(records_.size());  // for the caches
+    block(std::min(records_.size(), warming_steps));
     clear();
     const std::size_t all = options_.steps * rows_.size();
     for (std::size_t done = 0; done < all; done += records_.size()) block(std::min(records_.size(), all - done));
@@ -84,7 +85,7 @@ class Race {
  private:
   static std::size_t size_of_block(const WorkloadOptions& options) {
     if (!options.against_peers) return 1;
-    return options.deforms ? deforming_block_size : block_size;
+    return std::clamp<std::size_t>(most_records / options.particles, 1, std::min(block_size, options.steps));
   }
 
   [[nodiscard]] const Complex& complex() const {
