@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -314,13 +315,13 @@ class LatticeBatch : public ::testing::TestWithParam<int> {};
 TEST_P(LatticeBatch, TakesStepsAsOneParticleDoes) {
   const auto kind = static_cast<oracle::SceneKind>(GetParam());
   Tally tally;
-  const auto complaints = run_seeds(scaled(20, 2000), [&](std::uint64_t seed) {
+  const auto complaints = run_seeds(std::max(5, scaled(20, 2000)), [&](std::uint64_t seed) {
     return run(BothWays(oracle::lattice_scene(kind, seed), seed, false, true),
                fmt::format("{} on integers, seed {}", oracle::name_of(kind), seed), tally);
   });
   for (const std::string& wrong : complaints) ADD_FAILURE() << wrong;
   EXPECT_GT(tally.taken, tally.steps / 4);
-  EXPECT_GT(tally.exact, tally.steps / 40);
+  EXPECT_GT(tally.exact, tally.steps / 50);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, LatticeBatch, ::testing::Range(0, oracle::scene_kinds), [](const auto& scene) {
