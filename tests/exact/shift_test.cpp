@@ -9,6 +9,7 @@
 #include "dartcast/exact/predicates.hpp"
 #include "exact/dyadic.hpp"
 #include "exact/quadruples.hpp"
+#include "tier.hpp"
 
 namespace dartcast::test::shift_test {
 
