@@ -4,18 +4,8 @@
 // clang-format off
 #include "dartcast/walk/filtered_simplex.hpp"
 #include "dartcast/walk/filtered_memo.hpp"
+#include "dartcast/walk/filtered_records.hpp"
 // clang-format on
-
-// A simplex that a walk has come to.
-struct Visit {
-  std::uint32_t particle;
-  std::uint32_t cell;   // its value
-  std::uint16_t index;  // of the simplex, or of the face that was entered through
-  std::uint16_t place;  // facet that was entered by (no_facet: none), or triangle of that face
-  std::uint16_t tests;  // so far
-  std::uint16_t exact;  // of these, those that the filter left open
-  bool through_face;
-};
 
 // Simplices are taken block by block, in passes without branches as far as possible: all are found, so that their
 // corners are on the way from memory before the first is used; all are tested, four in a vector; then those that are
@@ -681,25 +671,6 @@ class Batch {
   std::vector<Begun>& begun_;
   Counters& counters_;
 
-  // As Vec3, but left as it is when the batch is made.
-  struct Place {
-    double x, y, z;
-  };
-  // A walk that may leave its first simplex, and what is proved of its target.
-  struct Departure {
-    std::uint32_t particle;
-    Signs signs;
-  };
-  struct Arrival {
-    std::uint32_t particle;
-    std::uint32_t place;  // in the block
-  };
-  struct FacetArrival {
-    std::uint32_t particle;
-    std::uint16_t place;
-    Mark on;
-  };
-
   // Of the block. Bits: one per particle.
   std::array<VertexNumbers, block> corners_;
   std::array<FilteredDeterminants, block / 4> determinants_;
@@ -718,20 +689,6 @@ class Batch {
   // Of the batch.
   std::array<Visit, filtered_batch> visits_;  // walks that go on
   std::array<Departure, filtered_batch> departures_;
-  std::array<Place, filtered_batch> ridden_;  // where particles have ridden to
+  std::array<Ridden, filtered_batch> ridden_;
   std::array<bool, filtered_batch> left_behind_;
 };
-
-// Whether every number is 0 or between the two magnitudes.
-DARTCAST_TARGET inline bool all_between(const double* x, std::size_t count, double low, double high) {
-  Mask outside{};
-  std::size_t i = 0;
-  for (; i + 4 <= count; i += 4) {
-    const Quad numbers = *reinterpret_cast<const UnalignedQuad*>(x + i);
-    const Quad m = magnitude(numbers);
-    outside |= ~(((m >= low) & (m <= high)) | (m == 0.0));
-  }
-  bool rest = true;
-  for (; i < count; ++i) rest = rest && (x[i] == 0.0 || (std::abs(x[i]) >= low && std::abs(x[i]) <= high));
-  return rest && lanes_set(outside) == 0;
-}

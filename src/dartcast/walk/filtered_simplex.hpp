@@ -146,3 +146,17 @@ struct FilteredDeterminants {
   }
   DARTCAST_TARGET static Mask is_rounded(const Quad& m, const Quad& unit) { return ((m + unit) - unit) != m; }
 };
+
+// Whether every number is 0 or between the two magnitudes.
+DARTCAST_TARGET inline bool all_between(const double* x, std::size_t count, double low, double high) {
+  Mask outside{};
+  std::size_t i = 0;
+  for (; i + 4 <= count; i += 4) {
+    const Quad numbers = *reinterpret_cast<const UnalignedQuad*>(x + i);
+    const Quad m = magnitude(numbers);
+    outside |= ~(((m >= low) & (m <= high)) | (m == 0.0));
+  }
+  bool rest = true;
+  for (; i < count; ++i) rest = rest && (x[i] == 0.0 || (std::abs(x[i]) >= low && std::abs(x[i]) <= high));
+  return rest && lanes_set(outside) == 0;
+}
