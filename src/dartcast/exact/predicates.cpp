@@ -216,15 +216,13 @@ double orient2d_value(const Vec3& a, const Vec3& b, const Vec3& c) {
   return exact_plane_determinant(a, b, c).estimate();
 }
 
-Shift::Shift(const Vec3& p, std::span<const Vec3> opposite) : p_(p), in_range_(in_exact_range(p)) {
+Shift::Shift(const Vec3& p, std::span<const Vec3> opposite) : p_(p) {
   opposite_.fill(p);
   std::copy(opposite.begin(), opposite.end(), opposite_.begin());
-  for (const Vec3& o : opposite_) in_range_ = in_range_ && in_exact_range(o);
 }
 
 // With n = (q - p) x (b - a), the terms are n.w, n.x, n.y and n.z.
 Sign Shift::of_line(const Vec3& a, const Vec3& b, const Vec3& q) const {
-  if (!in_range_ || !all_in_range(a, b, q)) return Sign::undecidable;
   const auto& [o0, o1, o2] = opposite_;
   const Vec3 extent = extent_of(q - p_, b - a, o0 - p_, o1 - p_, o2 - p_);
   const Vec3 n = cross(q - p_, b - a);
@@ -234,8 +232,8 @@ Sign Shift::of_line(const Vec3& a, const Vec3& b, const Vec3& q) const {
   constexpr double error = 180.0 * 0x1p-53 * (1.0 + 0x1p-10);
   const double m = extent.x * extent.y * extent.z;
   if (filter_applies(std::max({extent.x, extent.y, extent.z}), m) && std::abs(along) > error * m) return sign(along);
-  const auto large_enough = [](double e) { return e == 0.0 || e >= 0x1p-250; };
-  if (!large_enough(extent.x) || !large_enough(extent.y) || !large_enough(extent.z) ||
+  const auto in_range = [](double e) { return e == 0.0 || (e >= 0x1p-250 && e <= 0x1p+301); };
+  if (!in_range(extent.x) || !in_range(extent.y) || !in_range(extent.z) ||
       !rounds_nothing(extent, p_, q, a, b, o0, o1, o2))
     return of_line_exact(a, b, q);
   for (const double term : {along, n.x, n.y, n.z}) {
@@ -245,6 +243,7 @@ Sign Shift::of_line(const Vec3& a, const Vec3& b, const Vec3& q) const {
 }
 
 Sign Shift::of_line_exact(const Vec3& a, const Vec3& b, const Vec3& q) const {
+  if (!all_in_range(p_, opposite_[0], opposite_[1], opposite_[2], a, b, q)) return Sign::undecidable;
   const auto n = exact_cross(exact_difference<2>(q, p_), exact_difference<2>(b, a));
   const auto along = exact_dot(n, exact_difference<2>(opposite_[0], p_)) +
                      exact_dot(n, exact_difference<2>(opposite_[1], p_)) +

@@ -125,7 +125,6 @@ class Shift {
 
   Vec3 p_;
   std::array<Vec3, 3> opposite_;  // p itself where there are fewer: it adds nothing
-  bool in_range_;
 };
 
 /// The same in the plane: p + e w + (e^2, e^3).

@@ -110,7 +110,7 @@ void add_other_walls(const Space<Positions, N>& space, const Walk& w, const Feat
                   [&](SimplexId id, const CellView& cell, const ImplicitSimplex& s, unsigned facet) {
                     if (id == w.wall_simplex && facet == w.wall_facet) return true;
                     const CellFace face = {id.cell, s.across[facet].face()};
-                    const Vec3 normal = facet_plane(space.corners(cell, s), facet).normal;
+                    const Vec3 normal = facet_normal(space.corners(cell, s), facet);
                     const bool known = std::any_of(list.walls.begin() + first, list.walls.end(), [&](const WallHit& h) {
                       constexpr double same_plane =
                           1.0 - 1e-14;  // unit normals, rounded: only which triangles are listed depends on it
@@ -169,6 +169,17 @@ Shape::Feature map_feature(const Shape& shape, const ImplicitSimplex& s, unsigne
   return shape.feature(std::span<const std::uint16_t>(points.data(), count));
 }
 
+/// For a walk that ends on a wall the facets of the wall's simplex that q lies on: those that hold what it lies on in
+/// the walk's last simplex. No coordinate is read.
+template <std::size_t N>
+unsigned zeros_at_end(const Map& map, const Walk& w) {
+  if (w.simplex == w.wall_simplex) return w.zeros;
+  const CellView last = map.view(w.simplex.cell);
+  const CellView cell = map.view(w.wall_simplex.cell);
+  const Feature feature = feature_of<N>(last, last.shape().simplices()[w.simplex.simplex], w.zeros);
+  return facets_holding<N>(feature, cell, cell.shape().simplices()[w.wall_simplex.simplex]);
+}
+
 /// Where a walk met a wall: the fraction of the segment, and bit i is set where the point lies on the facet opposite to
 /// corner i of the wall's simplex.
 struct Meeting {
@@ -176,9 +187,10 @@ struct Meeting {
   unsigned zeros;
 };
 template <std::size_t N>
-Meeting meeting(const std::array<Vec3, N>& v, const WallPlane& wall, const Walk& w, const Vec3& p, const Vec3& q) {
+Meeting meeting(const Map& map, const std::array<Vec3, N>& v, const WallPlane& wall, const Walk& w, const Vec3& p,
+                const Vec3& q) {
   if (w.at_start) return {0.0, zeros_of(v, p)};
-  if (w.at_end) return {1.0, zeros_of(v, q)};
+  if (w.at_end) return {1.0, zeros_at_end<N>(map, w)};
   const Passing<N> passing(wall, p, q);
   unsigned zeros = 1U << w.wall_facet;
   for (unsigned i = 0; i < N - 1; ++i) zeros |= passing.meets_side(i) ? 1U << facet_corner<N>(w.wall_facet, i) : 0U;
@@ -192,7 +204,7 @@ double describe_contact(const Space<Positions, N>& space, const Walk& w, const s
                         const WallPlane& wall, const Vec3& p, const Vec3& q, Contact& contact, ContactList& list) {
   const CellView cell = space.map->view(w.wall_simplex.cell);
   const ImplicitSimplex& s = cell.shape().simplices()[w.wall_simplex.simplex];
-  const auto [t, zeros] = meeting(v, wall, w, p, q);
+  const auto [t, zeros] = meeting(*space.map, v, wall, w, p, q);
   const Shape::Feature feature = map_feature<N>(cell.shape(), s, w.wall_facet, zeros);
   contact.kind = feature.kind;
   contact.dart = {w.wall_simplex.cell, feature.dart};

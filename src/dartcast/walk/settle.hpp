@@ -67,34 +67,36 @@ void lift_off(const WallPlanes<N>& planes, const Vec3& p, Vec3& x, int doublings
 
 }  // namespace detail
 
-/// The plane of a facet, with its normal (scaled before it is normalised where its square might under- or overflow, by
+/// A facet's unit normal to the inside (scaled before it is normalised where its square might under- or overflow, by
 /// powers of two, so that the bits are the same).
-inline WallPlane facet_plane(const Corners& v, unsigned facet) {
-  const auto& f = facet_corners[facet];
-  WallPlane plane{v[f[0]], v[f[1]], v[f[2]], {}};
-  const Vec3 e = plane.b - plane.a;
-  const Vec3 g = plane.c - plane.a;
-  Vec3 n = cross(e, g);
+inline Vec3 facet_normal(const Corners& v, unsigned facet) {
+  Vec3 n = facet_gradient(v, facet);
   double square = dot(n, n);
   if (!(square > 0x1p-600 && square < 0x1p+600)) {
     const auto scaled = [](Vec3 x) {
       const double largest = std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)});
       return largest > 0.0 ? x * std::ldexp(1.0, -std::ilogb(largest)) : x;
     };
-    n = scaled(cross(scaled(e), scaled(g)));
+    const auto& f = facet_corners[facet];
+    n = scaled(cross(scaled(v[f[1]] - v[f[0]]), scaled(v[f[2]] - v[f[0]])));
     square = dot(n, n);
   }
-  plane.normal = square > 0.0 ? n * (1.0 / std::sqrt(square)) : Vec3{};
-  return plane;
+  return square > 0.0 ? n * (1.0 / std::sqrt(square)) : Vec3{};
 }
-
-inline WallPlane facet_plane(const PlaneCorners& v, unsigned facet) {
-  const auto& f = plane_facet_corners[facet];
-  WallPlane line{v[f[0]], v[f[1]], v[f[1]], {}};
+inline Vec3 facet_normal(const PlaneCorners& v, unsigned facet) {
   const Vec3 n = facet_gradient(v, facet);
   const double length = std::hypot(n.x, n.y);
-  line.normal = length > 0.0 ? Vec3{n.x / length, n.y / length, 0.0} : Vec3{};
-  return line;
+  return length > 0.0 ? Vec3{n.x / length, n.y / length, 0.0} : Vec3{};
+}
+
+/// The plane of a facet, with its normal.
+inline WallPlane facet_plane(const Corners& v, unsigned facet) {
+  const auto& f = facet_corners[facet];
+  return {v[f[0]], v[f[1]], v[f[2]], facet_normal(v, facet)};
+}
+inline WallPlane facet_plane(const PlaneCorners& v, unsigned facet) {
+  const auto& f = plane_facet_corners[facet];
+  return {v[f[0]], v[f[1]], v[f[1]], facet_normal(v, facet)};
 }
 
 struct Settled {
