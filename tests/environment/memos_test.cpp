@@ -98,6 +98,7 @@ class Mixed {
     if (kind == 2) reorder();
     if (kind == 3 || kind == 4) step_some();
     if (kind == 5) edit();
+    if (kind == 5 && random_.below(2) == 0) step_some();
   }
 
   void add(std::size_t count) {
@@ -127,6 +128,7 @@ class Mixed {
       if (random_.below(3) == 0) which.push_back(i);
     }
     Particles some = set_.selected(which);
+    if (random_.below(2) == 0) environment_.advance(set_, any_targets(set_));  // some are put back to where they were
     for (std::uint32_t round = 0; round < random_.below(3); ++round) environment_.advance(some, any_targets(some));
     set_.replace(which, some);
   }

@@ -192,14 +192,14 @@ std::vector<std::vector<std::uint32_t>> overlapping_clusters(std::span<const Vec
   if (points.empty()) return {};
   Vec3 low = points.front();
   for (const Vec3& p : points) low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-  using Place = std::array<std::int32_t, 3>;
-  std::vector<std::pair<Place, std::uint32_t>> entries;
+  using Cube = std::array<std::int32_t, 3>;
+  std::vector<std::pair<Cube, std::uint32_t>> entries;
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const Vec3 at = (points[i] - low) * (2.0 / size);
     if (!(std::max({at.x, at.y, at.z}) < most))
       throw InvalidArgument("clusters: the points are not finite, or the size is too small for their extent");
-    const Place first = {static_cast<std::int32_t>(at.x), static_cast<std::int32_t>(at.y),
-                         static_cast<std::int32_t>(at.z)};
+    const Cube first = {static_cast<std::int32_t>(at.x), static_cast<std::int32_t>(at.y),
+                        static_cast<std::int32_t>(at.z)};
     for (int k = 0; k < 8; ++k)  // cube p covers lattice intervals p and p + 1
       entries.push_back({{first[0] - (k & 1), first[1] - (k >> 1 & 1), first[2] - (k >> 2)}, i});
   }

@@ -11,15 +11,6 @@
 
 namespace dartcast {
 
-namespace {
-
-struct FaceEntry {
-  std::uint64_t ends;  // the lowest vertex's two neighbours in the face, smaller one first
-  CellFace face;
-};
-
-}  // namespace
-
 class MapBuilder {
  public:
   MapBuilder(Map& map, const MeshData& mesh, const InteriorPoints& interior)
@@ -36,6 +27,11 @@ class MapBuilder {
   }
 
  private:
+  struct FaceEntry {
+    std::uint64_t ends;  // the lowest vertex's two neighbours in the face, smaller one first
+    CellFace face;
+  };
+
   void enter_plane() {
     map_.dimension_ = 2;
     map_.pools_[0].stride = 8;  // triangles
