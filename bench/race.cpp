@@ -17,6 +17,9 @@ namespace {
 constexpr std::size_t block_size = 100;
 constexpr std::size_t most_records = 1000000;  // particles times steps of a block
 constexpr std::size_t warming_steps = 10;
+// Lattice lines are crossed by all particles in the same step of eight. Blocks of 20 steps would hold two or three of
+// these, and the median would be that of the dearer half.
+constexpr std::size_t lattice_period = 8;
 constexpr double same_place = 1e-4;  // cells
 
 template <class Work>
@@ -26,15 +29,19 @@ double nanoseconds(Work&& work) {
   return std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count();
 }
 
-// One step as dartcast took it, and what the others are asked.
+// One step: what the others are asked, and what dartcast answers.
 struct Record {
   std::uint64_t step = 0;
   std::vector<State> before;
-  std::vector<Vec3> targets;
-  ContactList contacts;
   std::vector<Segment> segments;
   std::vector<Hit> hits;
 };
+
+StepReport advance(Workload& workload) {
+  Environment& environment = workload.environment();
+  if (workload.deforms()) environment.move();
+  return environment.advance(workload.particles(), workload.targets());
+}
 
 // Where a scene deforms: once more, without particles, so that each of the others can go through a block's steps.
 class Stage {
@@ -56,7 +63,11 @@ class Race {
  public:
   Race(const WorkloadOptions& options, std::span<const PeerKind> kinds)
       : options_(options), workload_(options), records_(size_of_block(options)) {
-    if (options.against_peers) make_peers(kinds);
+    if (options.against_peers) {
+      twin_.emplace(options);
+      twin_->environment().set_threads(Threads{1});
+      make_peers(kinds);
+    }
     for (const unsigned threads : options.threads) {
       Row& row = rows_.emplace_back();
       row.workload = options;
@@ -88,19 +99,17 @@ class Race {
     return std::clamp<std::size_t>(most_records / options.particles, 1, std::min(block_size, options.steps));
   }
 
-  [[nodiscard]] const Complex& complex() const {
-    return stage_ ? stage_->complex() : workload_.environment().complex();
-  }
+  [[nodiscard]] const Complex& complex() const { return stage_ ? stage_->complex() : twin_->environment().complex(); }
 
   void make_peers(std::span<const PeerKind> kinds) {
-    if (options_.deforms) stage_.emplace(workload_);
+    if (options_.deforms) stage_.emplace(*twin_);
     walls_ = walls_of(complex());
     walls_.gather(complex().positions(), points_);
-    const bool plane = workload_.environment().map().dimension() == 2;
+    const bool plane = complex().map().dimension() == 2;
     for (const PeerKind& kind : kinds) {
       if (plane && !kind.in_plane) continue;
       names_.push_back(kind.name);
-      peers_.push_back(kind.make({complex(), walls_, points_, workload_.particles().states(), options_.deforms}));
+      peers_.push_back(kind.make({complex(), walls_, points_, twin_->particles().states(), options_.deforms}));
     }
   }
 
@@ -120,58 +129,44 @@ class Race {
 
   void block(std::size_t size) {
     const std::span<Record> records = std::span(records_).first(size);
-    for (Record& record : records) lead(record);
+    for (std::size_t i = 0; i < size; ++i) lead();
     if (peers_.empty()) return;
-    for_each_step(records, [&](Record& record) { ask(record); });
-    for (std::size_t k = 0; k < peers_.size(); ++k)
-      for_each_step(records, [&](const Record& record) { answer((k + blocks_) % peers_.size(), record); });
+    for (Record& record : records) write_down(record);
+    for (std::size_t k = 0; k < peers_.size(); ++k) answer((k + blocks_) % peers_.size(), records);
     ++blocks_;
   }
 
-  // Each of the others comes from computing the new positions, as dartcast does.
-  template <class Do>
-  void for_each_step(std::span<Record> records, Do&& work) {
-    if (stage_) stage_->set(records[0].step - 1);
-    for (Record& record : records) {
-      if (stage_) stage_->set(record.step);
-      work(record);
-    }
-  }
-
-  void lead(Record& record) {
+  void lead() {
     Row& row = rows_[steps_++ % rows_.size()];
-    Environment& environment = workload_.environment();
-    environment.set_threads(Threads{row.threads});
+    workload_.environment().set_threads(Threads{row.threads});
     workload_.aim();
-    const auto states = workload_.particles().states();
-    if (!peers_.empty()) record.before.assign(states.begin(), states.end());
     StepReport report;
-    row.lanes[0].step_ns.push_back(nanoseconds([&] {
-      if (options_.deforms) environment.move();
-      report = environment.advance(workload_.particles(), workload_.targets());
-    }));
+    row.lanes[0].step_ns.push_back(nanoseconds([&] { report = advance(workload_); }));
     row.counters += report.counters;
     workload_.follow(report);
-    if (peers_.empty()) return;
-    record.targets.assign(workload_.targets().begin(), workload_.targets().end());
-    record.contacts = std::move(report.contacts);
-    record.step = workload_.step();
   }
 
-  // Not while dartcast leads: it would drive its data out of the caches.
-  void ask(Record& record) const {
+  // The twin takes the same step, to the last bit. Were it written down while dartcast leads, that would drive
+  // dartcast's data out of the caches.
+  void write_down(Record& record) {
+    twin_->aim();
+    const auto states = twin_->particles().states();
+    record.before.assign(states.begin(), states.end());
+    const StepReport report = advance(*twin_);
+    record.step = twin_->step();
     record.segments.resize(record.before.size());
     for (std::size_t i = 0; i < record.before.size(); ++i) {
       const State& before = record.before[i];
       Segment& s = record.segments[i];
-      s = {options_.deforms ? ridden(complex(), before) : before.position, record.targets[i]};
-      if (before.touching_count > 0) s.blind = std::min(1.0, same_place * workload_.cell_size() / norm(s.to - s.from));
+      s = {options_.deforms ? ridden(twin_->environment().complex(), before) : before.position, twin_->targets()[i]};
+      if (before.touching_count > 0) s.blind = std::min(1.0, same_place * twin_->cell_size() / norm(s.to - s.from));
     }
     record.hits.assign(record.before.size(), {});
-    for (const Contact& c : record.contacts.contacts) {
-      const WallHit& wall = record.contacts.walls_of(c).front();
+    for (const Contact& c : report.contacts.contacts) {
+      const WallHit& wall = report.contacts.walls_of(c).front();
       record.hits[c.particle] = {walls_.number({wall.face, wall.triangle}), c.time_of_impact};
     }
+    twin_->follow(report);
   }
 
   // Where the walk began: in the geometry after the move.
@@ -185,23 +180,30 @@ class Race {
     return detail::ridden(current_space<N>(complex), before.at(), weights).position;
   }
 
-  void answer(std::size_t k, const Record& record) {
-    Peer& peer = *peers_[k];
+  // Comes to each step from computing the new positions where the scene deforms, as dartcast does.
+  void answer(std::size_t k, std::span<const Record> records) {
+    if (stage_) stage_->set(records[0].step - 1);
+    for (const Record& record : records) {
+      if (stage_) stage_->set(record.step);
+      answer(*peers_[k], rows_[0].lanes[k + 1], record);
+    }
+  }
+
+  void answer(Peer& peer, Lane& lane, const Record& record) {
     if (options_.deforms) {
       walls_.gather(complex().positions(), points_);
       peer.write(points_);
     }
     peer.place(record.before);
-    answers_.resize(record.segments.size());
-    Lane& lane = rows_[0].lanes[k + 1];
+    // Copied, so that they are in the caches, as the targets that dartcast is given.
+    asked_.assign(record.segments.begin(), record.segments.end());
+    answers_.resize(asked_.size());
     lane.step_ns.push_back(nanoseconds([&] {
       if (options_.deforms) peer.refit();
-      peer.cast(record.segments, answers_);
+      peer.cast(asked_, answers_);
     }));
     peer.translate(answers_);
-    for (std::size_t i = 0; i < answers_.size(); ++i) {
-      compare(lane, record.hits[i], answers_[i], record.segments[i]);
-    }
+    for (std::size_t i = 0; i < answers_.size(); ++i) compare(lane, record.hits[i], answers_[i], asked_[i]);
   }
 
   void compare(Lane& lane, const Hit& ours, const Hit& theirs, const Segment& s) const {
@@ -225,6 +227,7 @@ class Race {
 
   WorkloadOptions options_;
   Workload workload_;
+  std::optional<Workload> twin_;  // for the others
   Walls walls_;
   std::vector<std::string> names_;
   std::vector<std::unique_ptr<Peer>> peers_;
@@ -233,6 +236,7 @@ class Race {
   std::vector<Record> records_;
   std::optional<Stage> stage_;
   std::vector<Vec3> points_;  // of the walls
+  std::vector<Segment> asked_;
   std::vector<Hit> answers_;
   std::vector<Row> rows_;
   std::size_t steps_ = 0;
@@ -243,7 +247,8 @@ class Race {
 
 double Lane::ns_per_particle_step(std::size_t particles) const {
   constexpr std::size_t most_blocks = 50;
-  const std::size_t size = (step_ns.size() + most_blocks - 1) / most_blocks;
+  std::size_t size = (step_ns.size() + most_blocks - 1) / most_blocks;
+  if (size > lattice_period) size = (size + lattice_period - 1) / lattice_period * lattice_period;
   std::vector<double> means;
   for (std::size_t first = 0; first < step_ns.size(); first += size) {
     const std::size_t count = std::min(size, step_ns.size() - first);

@@ -24,7 +24,8 @@ struct Lane {
   std::uint64_t wrong_cells = 0;    ///< arrives, but in a cell that does not hold the target; where it knows cells
   std::uint64_t tests = 0;          ///< orientation tests; 0 where it makes none
 
-  /// Median over up to 50 blocks of steps, per particle.
+  /// Median over up to 50 blocks of steps, per particle. Blocks of more than eight steps are multiples of eight, in
+  /// which the steps of W4 repeat.
   [[nodiscard]] double ns_per_particle_step(std::size_t particles) const;
   /// All steps, per particle.
   [[nodiscard]] double mean_ns_per_particle_step(std::size_t particles) const;
@@ -45,10 +46,10 @@ struct Row {
 };
 
 /// Runs a workload: a row for each number of threads. In the plane only competitors that have an answer there take
-/// part. dartcast leads, in blocks of 100 steps (of ten where the scene deforms); each competitor then answers the
-/// block's segments, every block another one first. The first block is not counted. So each works with its own data in
-/// the caches, but for what computing the new positions has driven out, where the scene deforms; what disturbs one
-/// disturbs all.
+/// part. dartcast leads, in blocks of up to 100 steps; a twin then takes the same steps and writes them down, and each
+/// competitor answers the block's segments, every block another one first. The first block is not counted. So each
+/// works with its own data in the caches, but for what computing the new positions has driven out, where the scene
+/// deforms; what disturbs one disturbs all.
 ///
 /// A competitor disagrees on a segment where one of the two meets a wall and the other does not, or where both do and
 /// neither the triangle nor the time (within 1e-4 of a cell) is the same. What dartcast finds is what happens.

@@ -54,6 +54,7 @@ class Workload {
   [[nodiscard]] const Environment& environment() const { return environment_; }
   [[nodiscard]] Particles& particles() { return particles_; }
   [[nodiscard]] std::span<const Vec3> targets() const { return targets_; }
+  [[nodiscard]] bool deforms() const { return options_.deforms; }
   [[nodiscard]] double cell_size() const { return cell_size_; }
 
   /// Steps aimed at so far.

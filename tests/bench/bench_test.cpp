@@ -233,6 +233,13 @@ TEST(Lane, MediansAndQuantiles) {
   EXPECT_DOUBLE_EQ(lane.quantile_ns(1.0), 100.0);
 }
 
+// Blocks of 20 steps would have means of 145 and 190, and 190 for their median.
+TEST(Lane, BlocksAreWholePeriodsOfTheLattice) {
+  Lane lane;
+  for (int i = 0; i < 1000; ++i) lane.step_ns.push_back(i % 8 < 2 ? 480.0 : 30.0);
+  EXPECT_DOUBLE_EQ(lane.ns_per_particle_step(1), 142.5);
+}
+
 // Every tag is closed by its own, in turn.
 bool well_formed(const std::string& xml) {
   std::vector<std::string> open;
