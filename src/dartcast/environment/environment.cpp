@@ -352,7 +352,7 @@ void Environment::step_chunk(const Steps& steps, std::size_t begin, std::size_t 
   const std::span<const Vec3> targets = steps.targets.subspan(begin, size);
   std::array<detail::Taken, chunk> taken;
   std::vector<Begun> begun;
-  begun.reserve(size);
+  begun.reserve(size / 8);  // more than most steps need
   const std::span<detail::VertexNumbers> vertices = std::span(steps.particles.vertices_).subspan(begin, size);
   detail::Memos& memos = steps.particles.memos_;
   const detail::FilteredSteps batch{states, vertices, memos.from(begin), targets, std::span(taken).first(size), begun};
@@ -364,17 +364,18 @@ void Environment::step_chunk(const Steps& steps, std::size_t begin, std::size_t 
   part.contacts.walls.reserve(begun.size());
   for (std::size_t i = next_left(batch.taken, 0); i < size; i = next_left(batch.taken, i + 1)) {
     const auto particle = static_cast<std::uint32_t>(begin + i);
-    const StepResult result =
-        steps.stepper.step(particle, states[i], steps.particles.weights_[particle], targets[i], part.contacts,
-                           part.counters, taken[i] == detail::taken_nothing ? nullptr : &begun[taken[i]]);
+    const Begun* const first = taken[i] == detail::taken_nothing ? nullptr : &begun[taken[i]];
+    const StepResult result = steps.stepper.step(particle, states[i], steps.particles.weights_[particle], targets[i],
+                                                 part.contacts, part.counters, first);
+    if (result.held) part.held.push_back({particle, result.invalid_cell});
+    if (result.stopped) part.stopped.push_back({particle, result.unused});
+    if (first != nullptr && first->stays(states[i])) continue;
     vertices[i] = detail::vertex_numbers(complex_, states[i].at());
     if (steps.particles.memo_kind_ == detail::MemoKind::trail)
       memos.put(begin + i,
                 detail::memo_of(detail::MemoKind::trail, complex_.positions(), vertices[i], states[i].position));
     else if (!memos.empty())
       memos.forget(begin + i);
-    if (result.held) part.held.push_back({particle, result.invalid_cell});
-    if (result.stopped) part.stopped.push_back({particle, result.unused});
   }
 }
 

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "dartcast/walk/coordinates.hpp"
+#include "dartcast/walk/meet.hpp"
 #include "dartcast/walk/ride.hpp"
 
 #if defined(__x86_64__)
@@ -42,6 +43,10 @@ inline int filtered_sign(const Vec3& u, const Vec3& v, const Vec3& w) {
   return value > determinant_error * m ? 1 : value < -determinant_error * m ? -1 : 0;
 }
 
+inline Corners corners_of(const Vec3* positions, const VertexNumbers& v) {
+  return {positions[v[0]], positions[v[1]], positions[v[2]], positions[v[3]]};
+}
+
 namespace portable {
 
 inline unsigned lanes_set(const Mask& m) {
@@ -51,6 +56,7 @@ inline unsigned lanes_set(const Mask& m) {
 
 inline Quad widened(const Floats& x) { return __builtin_convertvector(x, Quad); }
 inline Floats narrowed(const Quad& x) { return __builtin_convertvector(x, Floats); }
+inline Quad root(const Quad& x) { return Quad{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])}; }
 
 #define DARTCAST_TARGET
 #include "dartcast/walk/filtered_kernel.hpp"
@@ -77,6 +83,7 @@ DARTCAST_TARGET inline unsigned lanes_set(const Mask& m) {
 // The compiler makes two halves of __builtin_convertvector.
 DARTCAST_TARGET inline Quad widened(const Floats& x) { return _mm256_cvtps_pd(x); }
 DARTCAST_TARGET inline Floats narrowed(const Quad& x) { return _mm256_cvtpd_ps(x); }
+DARTCAST_TARGET inline Quad root(const Quad& x) { return _mm256_sqrt_pd(x); }
 
 #include "dartcast/walk/filtered_kernel.hpp"
 
@@ -97,7 +104,7 @@ DARTCAST_TARGET void step(const FilteredScene& scene, const FilteredSteps& steps
 Memo memo_of(MemoKind kind, std::span<const Vec3> positions, const VertexNumbers& vertices, const Vec3& p) {
   Memo memo = unknown_memo();
   if (kind != MemoKind::trail) return memo;
-  const Corners v = {positions[vertices[0]], positions[vertices[1]], positions[vertices[2]], positions[vertices[3]]};
+  const Corners v = corners_of(positions.data(), vertices);
   const Determinants d(v, p);
   for (unsigned i = 0; i < 4; ++i) {
     const Vec3 relative = v[i] - p;

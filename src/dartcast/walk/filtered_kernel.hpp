@@ -4,6 +4,7 @@
 // clang-format off
 #include "dartcast/walk/filtered_simplex.hpp"
 #include "dartcast/walk/filtered_memo.hpp"
+#include "dartcast/walk/filtered_landing.hpp"
 #include "dartcast/walk/filtered_records.hpp"
 // clang-format on
 
@@ -36,9 +37,13 @@ class Batch {
     std::fill_n(taken_, size_, taken_all);
     std::size_t count = kind == MemoKind::coordinates ? begin_by_coordinates() : begin();
     for (std::uint64_t round = 1; count > 0; ++round) {
-      if (round > most_rounds) return leave_all(count);
+      if (round > most_rounds) {
+        leave_all(count);
+        break;
+      }
       count = walk_on(count);
     }
+    land_all();
   }
 
  private:
@@ -86,9 +91,6 @@ class Batch {
   }
 
   // Four particles in a row; at the end of the batch the last one again in the lanes that are left.
-  struct Four {
-    std::uint32_t at[4];
-  };
   DARTCAST_TARGET Four four_from(std::uint32_t i) const {
     const std::uint32_t last = size_ - 1;
     return {{i, std::min(i + 1, last), std::min(i + 2, last), std::min(i + 3, last)}};
@@ -156,18 +158,12 @@ class Batch {
       const Mask known = (smaller(smaller(m[0], m[1]), smaller(m[2], m[3])) > coordinate_margin) & in_range;
       const Mask negative = facet_bits(c[0] < 0.0, c[1] < 0.0, c[2] < 0.0, c[3] < 0.0);
       store_signs(known & negative, k);
-      if (are_marked(first + k)) {
+      if (any_marked(marks_ + first + k)) {
         const Mask proved = facet_bits(m[0] > coordinate_margin, m[1] > coordinate_margin, m[2] > coordinate_margin,
                                        m[3] > coordinate_margin);
         test_zeros(first, k, q, in_range, proved, negative);
       }
     }
-  }
-
-  [[nodiscard]] DARTCAST_TARGET bool are_marked(std::uint32_t i) const {
-    std::uint32_t four;
-    std::memcpy(&four, marks_ + i, sizeof four);
-    return four != 0;
   }
 
   // The same where coordinates are exact. A target that lies on facets that its particle lies on, and on no other, is
@@ -200,7 +196,7 @@ class Batch {
       const std::uint16_t tests = behind != 0 ? 4 : 1;  // three more there
       const auto exact = static_cast<std::uint16_t>(std::popcount(signs.zero()));
       visits_[next] = {i, states_[i].cell.value, states_[i].simplex, no_facet, tests, exact, false};
-      if (behind == 0 || pass_on(visits_[next], exit_facet(visits_[next], vertices_[i], behind))) ++next;
+      if (behind == 0 || pass_on(visits_[next], vertices_[i], exit_facet(visits_[next], vertices_[i], behind))) ++next;
     }
     return next;
   }
@@ -225,8 +221,8 @@ class Batch {
   DARTCAST_TARGET std::uint32_t end_inside(std::uint32_t first, std::uint32_t n) {
     const std::uint32_t all = n == block ? ~std::uint32_t{0} : (std::uint32_t{1} << n) - 1;
     std::uint32_t left = 0;
-    for (std::uint32_t unusual = held_or_touching(first, n) | (moved ? all & ~one_part_ : 0); unusual != 0;
-         unusual &= unusual - 1) {
+    for (std::uint32_t unusual = held_or_touching(states_, size_, first, n) | (moved ? all & ~one_part_ : 0);
+         unusual != 0; unusual &= unusual - 1) {
       const auto k = static_cast<std::uint32_t>(std::countr_zero(unusual));
       if (is_left(first + k, k)) left |= std::uint32_t{1} << k;
     }
@@ -247,26 +243,6 @@ class Batch {
     for (std::uint32_t on = all & ~left & ~inside_ & ~on_facets_; on != 0; on &= on - 1)
       leaving_[leaving++] = static_cast<std::uint32_t>(std::countr_zero(on));
     return leaving;
-  }
-
-  // Few are, so that four are looked at together.
-  [[nodiscard]] DARTCAST_TARGET std::uint32_t held_or_touching(std::uint32_t first, std::uint32_t n) const {
-    const auto is = [&](std::uint32_t i) {  // both at once
-      static_assert(offsetof(State, held) == offsetof(State, touching_count) + 1);
-      std::uint16_t both;
-      std::memcpy(&both, reinterpret_cast<const char*>(states_ + i) + offsetof(State, touching_count), sizeof both);
-      return both;
-    };
-    std::uint32_t bits = 0;
-    for (std::uint32_t k = 0; k < n; ++k) {
-      const std::uint32_t i = first + k;
-      if (i + 4 <= size_ && (is(i) | is(i + 1) | is(i + 2) | is(i + 3)) == 0) {
-        k += 3;
-      } else if (is(i) != 0) {
-        bits |= std::uint32_t{1} << k;
-      }
-    }
-    return bits;
   }
 
   // Ends the steps whose targets lie on facets of the simplex that the particle is in.
@@ -301,10 +277,6 @@ class Batch {
     if (!s.held && (one_part || is_one_part_by_rule(i)) && (s.touching_count == 0 || !rests(i))) return false;
     leave(i);
     return true;
-  }
-
-  [[nodiscard]] DARTCAST_TARGET Corners corners_of(const Vec3* positions, const VertexNumbers& v) const {
-    return {positions[v[0]], positions[v[1]], positions[v[2]], positions[v[3]]};
   }
 
   // Where a particle has ridden to; none where the filter does not prove that this lies inside of the moved simplex.
@@ -356,7 +328,8 @@ class Batch {
   DARTCAST_TARGET std::uint32_t ride(const Four& i, std::uint32_t count, std::uint32_t riding, std::uint32_t first) {
     const Tetrahedra now = simplices_of(now_, i);
     const unsigned behind = lanes_set(FilteredDeterminants(now, places_of(i)).any_negative());
-    const Quad w[4] = {old_determinant(i, 0), old_determinant(i, 1), old_determinant(i, 2), old_determinant(i, 3)};
+    const Quad w[4] = {determinants_of(memos_, i, 0), determinants_of(memos_, i, 1), determinants_of(memos_, i, 2),
+                       determinants_of(memos_, i, 3)};
     const Points x = ride_along(w, now);
     const Points q = targets_of(i);
     const Mask proved = (w[0] == w[0]) & FilteredDeterminants(now, x).all_positive();
@@ -372,11 +345,6 @@ class Batch {
       leaving_[riding++] = particle - first;
     }
     return riding;
-  }
-
-  DARTCAST_TARGET Quad old_determinant(const Four& i, unsigned corner) const {
-    const auto of = [&](std::uint32_t particle) { return memos_[particle / 4].w[corner][particle % 4]; };
-    return Quad{of(i.at[0]), of(i.at[1]), of(i.at[2]), of(i.at[3])};
   }
 
   // The next simplex of every walk. Returns the number of walks that go on.
@@ -429,14 +397,6 @@ class Batch {
     ask_for(now_, corners);
   }
 
-  // Inlined: a call that does nothing but ask would be left out.
-  [[gnu::always_inline]] DARTCAST_TARGET static void ask_for(const Vec3* positions, const VertexNumbers& v) {
-    for (unsigned i = 0; i < 4; ++i) {
-      __builtin_prefetch(positions + v[i]);
-      __builtin_prefetch(&(positions + v[i])->z);
-    }
-  }
-
   // Goes on into the next simplex, if the filter says which; else leaves the step. k: its place in the block.
   DARTCAST_TARGET bool leave_simplex(Visit& visit, const VertexNumbers& corners, std::size_t k) {
     const Signs signs(signs_[k]);
@@ -454,7 +414,7 @@ class Batch {
       on == 0 ? arrive(visit, corners, k) : arrive_on_facets(visit, corners, k, on);
       return false;
     }
-    return pass_on(visit, exit_facet(visit, corners, behind));
+    return pass_on(visit, corners, exit_facet(visit, corners, behind));
   }
 
   DARTCAST_TARGET unsigned exit_facet(Visit& visit, const VertexNumbers& corners, unsigned behind) const {
@@ -509,7 +469,7 @@ class Batch {
     return {ridden_[i].x, ridden_[i].y, ridden_[i].z};
   }
 
-  DARTCAST_TARGET bool pass_on(Visit& visit, unsigned facet) {
+  DARTCAST_TARGET bool pass_on(Visit& visit, const VertexNumbers& corners, unsigned facet) {
     const CellView cell = map_.view(Cell(visit.cell));
     const Across across = cell.shape().simplices()[visit.index].across[facet];
     visit.through_face = across.outer();
@@ -519,7 +479,7 @@ class Batch {
       return true;
     }
     const std::uint16_t face = across.face();
-    if (cell.is_wall(face)) return end_at_wall(visit, facet);
+    if (cell.is_wall(face)) return end_at_wall(visit, corners, facet);
     visit.cell = cell.neighbour(face).value;
     visit.index = cell.neighbour_face(face);
     visit.place = cell.shape().triangle_from_other_side(face, across.place);
@@ -533,11 +493,13 @@ class Batch {
     return false;
   }
   // The target is beyond a wall.
-  [[gnu::cold, gnu::noinline]] DARTCAST_TARGET bool end_at_wall(const Visit& visit, unsigned facet) {
+  [[gnu::cold, gnu::noinline]] DARTCAST_TARGET bool end_at_wall(const Visit& visit, const VertexNumbers& corners,
+                                                                unsigned facet) {
     Walk walk;
     walk.end = WalkEnd::wall;
     walk.simplex = walk.wall_simplex = {Cell(visit.cell), visit.index};
     walk.wall_facet = static_cast<std::uint8_t>(facet);
+    at_walls_[at_wall_count_++] = {visit.particle, static_cast<Taken>(begun_.size()), walk.wall_facet, corners};
     return hand_over(visit, walk);
   }
   // The target is on a wall.
@@ -561,8 +523,41 @@ class Batch {
         __builtin_prefetch(before_ + cell.vertex(local).value);
     }
     taken_[i] = static_cast<Taken>(begun_.size());
-    begun_.push_back({start_of(i), walk, {visit.tests, visit.exact}});
+    begun_.emplace_back(start_of(i), walk, TestCounts{visit.tests, visit.exact});
     return false;
+  }
+
+  // What follows at walls, where doubles prove it.
+  DARTCAST_TARGET void land_all() {
+    for (std::uint32_t k = 0; k < at_wall_count_; k += 4) land(k);
+  }
+
+  DARTCAST_TARGET void land(std::uint32_t k) {
+    const std::uint32_t last = at_wall_count_ - 1;
+    const AtWalls at = {&at_walls_[k], &at_walls_[std::min(k + 1, last)], &at_walls_[std::min(k + 2, last)],
+                        &at_walls_[std::min(k + 3, last)]};
+    FourLandings landings(at, begun_, now_, targets_);
+    if (lanes_set(landings.known) == 0) return;
+    landings.put(Tetrahedra(now_, at[0]->corners, at[1]->corners, at[2]->corners, at[3]->corners));
+    if constexpr (moved) landings.move_walls(at, before_);
+    MemosOfFour memos;
+    if constexpr (moved) leave_trails(landings.there, memos);
+    if constexpr (kind == MemoKind::coordinates) leave_coordinates<false>(landings.there, landings.position, memos);
+    for (std::uint32_t l = 0; l < 4 && k + l < at_wall_count_; ++l) {
+      if (landings.known[l] == 0) continue;
+      const std::uint32_t i = at[l]->particle;
+      Begun& begun = begun_[at[l]->begun];
+      begun.landing = landings.of(l);
+      ++begun.tests.tests;  // on which side p is
+      vertices_[i] = at[l]->corners;
+      if constexpr (kind == MemoKind::none) continue;
+      if (moved || begun.tests.tests <= few_tests) {
+        memos_[i / 4].put(i % 4, memos.of(l));
+        if (!moved) marks_[i] = 0;
+      } else {
+        forget(i);
+      }
+    }
   }
   DARTCAST_TARGET void leave_all(std::size_t count) {
     for (std::size_t k = 0; k < count; ++k) leave(visits_[k].particle);
@@ -687,6 +682,8 @@ class Batch {
   std::uint32_t facet_arrivals_ = 0;
 
   // Of the batch.
+  std::array<AtWall, filtered_batch> at_walls_;
+  std::uint32_t at_wall_count_ = 0;
   std::array<Visit, filtered_batch> visits_;  // walks that go on
   std::array<Departure, filtered_batch> departures_;
   std::array<Ridden, filtered_batch> ridden_;

@@ -237,7 +237,7 @@ class PlaneBatch {
   // What follows at a wall is not done here. Returns false: the walk does not go on.
   bool hand_over(const PlaneVisit& visit, const Walk& walk) {
     steps_.taken[visit.particle] = static_cast<Taken>(steps_.begun.size());
-    steps_.begun.push_back({start_of(visit.particle), walk, {visit.tests, visit.exact}});
+    steps_.begun.emplace_back(start_of(visit.particle), walk, TestCounts{visit.tests, visit.exact});
     return false;
   }
   // The step is not taken here. Returns false, too.

@@ -7,6 +7,7 @@
 
 #include "dartcast/walk/contact.hpp"
 #include "dartcast/walk/ride.hpp"
+#include "dartcast/walk/step.hpp"
 
 namespace dartcast::detail {
 
@@ -23,6 +24,7 @@ struct Determinant {
                   std::abs(u.z) * (std::abs(v.x * w.y) + std::abs(v.y * w.x))) {}
 
   static constexpr double error = determinant_error / 6.0;
+  static constexpr double for_fraction = 0x1p+42;  // errors: what a time of impact asks for
 
   /// Whether the value exceeds `times` its error.
   [[nodiscard]] bool exceeds(double times) const {
@@ -56,7 +58,7 @@ class Passing<4> {
   /// Where on the segment the wall is met: right to 2^-40 of itself. The sides' determinants sum to the difference of
   /// the heights of p and q.
   [[nodiscard]] double fraction() const {
-    constexpr double enough = 0x1p+42;
+    constexpr double enough = Determinant::for_fraction;
     const double before = height_.exceeds(enough) ? height_.value : orient3d_value(wall_.a, wall_.b, wall_.c, p_);
     double whole = sides_[0].value + sides_[1].value + sides_[2].value;
     const double permanent = sides_[0].permanent + sides_[1].permanent + sides_[2].permanent;
@@ -214,6 +216,20 @@ double describe_contact(const Space<Positions, N>& space, const Walk& w, const s
   contact.wall_count = static_cast<std::uint32_t>(list.walls.size()) - contact.first_wall;
   contact.point = w.at_start ? p : w.at_end ? q : flushed(p + (q - p) * t);
   return t;
+}
+
+/// The same of a wall that is known.
+inline void describe_landing(const Map& map, const Walk& w, const Landing& landing, Contact& contact,
+                             ContactList& list) {
+  const CellView cell = map.view(w.wall_simplex.cell);
+  contact.first_wall = static_cast<std::uint32_t>(list.walls.size());
+  contact.wall_count = 1;
+  list.walls.push_back(wall_hit(map, w.wall_simplex, cell, w.wall_facet, landing.normal));
+  const CellFace face = list.walls.back().face;
+  contact.kind = static_cast<Kind>(map.dimension() - 1);
+  contact.dart = {face.cell, cell.shape().first_dart(face.face)};
+  contact.point = landing.point;
+  contact.wall_displacement = landing.wall_displacement;
 }
 
 }  // namespace dartcast::detail

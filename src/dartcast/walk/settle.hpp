@@ -107,6 +107,7 @@ struct Settled {
 namespace detail {
 
 constexpr int few_doublings = 6;
+constexpr double most_units = 256.0;  // of the coordinates
 
 /// Whether a facet lies across an axis, and x on its plane.
 inline bool on_level_facet(const Corners& v, unsigned facet, const Vec3& x) {
@@ -136,7 +137,6 @@ std::optional<Vec3> proved_inside(const std::array<Vec3, N>& v, const Vec3& x) {
   const double length = norm(direction);
   const double unit = lift_distance(v[facet_corner<N>(facet, 0)], x, 0);
   const double distance = (2.0 * d.bound - off) / (largest * length) + unit;
-  constexpr double most_units = 256.0;
   if (!(distance < most_units * unit)) return {};
   const Vec3 lifted = flushed(x + direction * (distance / length));
   if (!Determinants(v, lifted).all_proved_positive()) return {};

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,11 +43,28 @@ struct StepResult {
 /// Barycentric coordinates that a held particle keeps; in the plane the fourth is 0.
 using Weights = std::array<double, 4>;
 
+/// What is known of a wall's face that a walk has come to, inside of it.
+struct Landing {
+  Vec3 normal;
+  double fraction = 0.0;  ///< of the segment
+  Vec3 point;
+  Vec3 position;  ///< of the particle, in the simplex at the wall
+  Vec3 wall_displacement;
+};
+
 /// A step that has been walked up to its first wall: see Stepper::step().
 struct Begun {
   Vec3 from;         ///< where the walk began: the particle's place, after riding along with the vertices
   Walk walk;         ///< ends at a wall: one that q is beyond, or one that q is on
   TestCounts tests;  ///< made so far
+  std::optional<Landing> landing;
+
+  Begun(const Vec3& start, const Walk& first, const TestCounts& counts) : from(start), walk(first), tests(counts) {}
+
+  /// Whether the step has put the particle where it landed, and it has stayed there.
+  [[nodiscard]] bool stays(const State& after) const {
+    return landing && after.at() == walk.wall_simplex && after.position == landing->position;
+  }
 };
 
 /// Carries particles through one step of a complex. A plain reader of the complex: any number may run at once.

@@ -58,8 +58,13 @@ class Part {
   Vec3 move(Run& run, Vec3 q, Stretch stretch, const Begun* begun = nullptr) const {
     while (q != run.state.position) {
       const Vec3 p = run.state.position;
-      const Walk w = begun != nullptr ? end_walk(space_, begun->walk, p, q, run.tests, run.recorder.visitor())
-                                      : walk(space_, run.state.at(), p, q, run.tests, run.recorder.visitor());
+      const Landing* const landing = begun != nullptr && begun->landing ? &*begun->landing : nullptr;
+      Walk walked;
+      if (begun == nullptr)
+        walked = walk(space_, run.state.at(), p, q, run.tests, run.recorder.visitor());
+      else if (landing == nullptr)
+        walked = end_walk(space_, begun->walk, p, q, run.tests, run.recorder.visitor());
+      const Walk& w = landing != nullptr ? begun->walk : walked;
       begun = nullptr;
       if (w.end == WalkEnd::invalid_cell) {
         run.result.held = true;
@@ -72,7 +77,7 @@ class Part {
         run.state.touching_count = 0;
         return stretch.later;
       }
-      const Continuation next = meet(run, w, p, q, stretch);
+      const Continuation next = meet(run, w, p, q, stretch, landing);
       if (run.result.stopped) return {};
       const double share = stretch.end < 1.0 ? (stretch.end - stretch.begin) / (1.0 - stretch.begin) : 1.0;
       stretch.later =
@@ -84,26 +89,40 @@ class Part {
 
  private:
   // Records the contact, puts the particle there, and asks what follows.
-  Continuation meet(Run& run, const Walk& w, const Vec3& p, const Vec3& q, Stretch& stretch) const {
+  Continuation meet(Run& run, const Walk& w, const Vec3& p, const Vec3& q, Stretch& stretch,
+                    const Landing* landing) const {
     Contact& contact = run.contacts.contacts.emplace_back();
     contact.particle = run.particle;
-    const std::array<Vec3, N> corners = space_.corners(w.wall_simplex);
-    const WallPlane wall = facet_plane(corners, w.wall_facet);
-    const double t = describe_contact(space_, w, corners, wall, p, q, contact, run.contacts);
+    const double t = landing != nullptr ? land(run, w, *landing, contact) : hit(run, w, p, q, contact);
     contact.earlier = contact.first_wall - run.first_wall;
     contact.last = ++run.contact_count >= options_.max_contacts;
     stretch.begin += t * (stretch.end - stretch.begin);
     contact.time_of_impact = stretch.begin;
-    place(run, w, corners, contact);
-    if (moved_)
-      contact.wall_displacement =
-          wall_displacement(complex_, w.wall_simplex, w.wall_facet, corners, wall, contact.point);
+    run.recorder.put(run.state, contact.time_of_impact);
     const Vec3 later = stretch.later - contact.wall_displacement * (1.0 - stretch.end);
     contact.displacement = (q - p) + later;
     contact.unused = (q - p) * (1.0 - t) + later;
     ++run.counters.contacts[static_cast<std::size_t>(contact.kind)];
     touch(run.state, run.contacts.walls_of(contact));
     return follow(run, contact);
+  }
+
+  // What the contact is, and where it puts the particle. Returns the fraction of the segment.
+  double hit(Run& run, const Walk& w, const Vec3& p, const Vec3& q, Contact& contact) const {
+    const std::array<Vec3, N> corners = space_.corners(w.wall_simplex);
+    const WallPlane wall = facet_plane(corners, w.wall_facet);
+    const double t = describe_contact(space_, w, corners, wall, p, q, contact, run.contacts);
+    place(run, w, corners, contact);
+    if (moved_)
+      contact.wall_displacement =
+          wall_displacement(complex_, w.wall_simplex, w.wall_facet, corners, wall, contact.point);
+    return t;
+  }
+
+  double land(Run& run, const Walk& w, const Landing& landing, Contact& contact) const {
+    describe_landing(*space_.map, w, landing, contact, run.contacts);
+    run.state.put(w.wall_simplex, landing.position);
+    return landing.fraction;
   }
 
   Continuation follow(Run& run, const Contact& contact) const {
@@ -124,7 +143,6 @@ class Part {
       settled = proved ? Settled{w.wall_simplex, *proved} : settle(space_, w.wall_simplex, corners, contact.point);
     }
     run.state.put(settled.simplex, settled.position);
-    run.recorder.put(run.state, contact.time_of_impact);
   }
 
   // Where to go after a contact; along a wall, the target is lifted off the planes that rounding put it behind.
