@@ -84,10 +84,11 @@ class BothWaysInThePlane {
     for (const State& s : states) vertices.push_back(detail::vertex_numbers(complex_, s.at()));
     std::vector<detail::Taken> taken(particle_count);
     std::vector<Begun> begun;
+    std::vector<Landing> landings;
     Counters counters;
     const StepOptions options;
-    detail::step_plane({&complex_, moves_, false, options.tolerance}, {states, vertices, {}, targets, taken, begun},
-                       counters);
+    detail::step_plane({&complex_, moves_, false, options.tolerance},
+                       {states, vertices, {}, targets, taken, begun, landings}, counters);
     const Respond none;
     const Stepper stepper(complex_, moves_, options, none);
     Counters expected;

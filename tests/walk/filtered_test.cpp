@@ -88,7 +88,7 @@ class BothWays {
           if (!same_bits(state, next[i])) return fmt::format("particle {}: another state, handed over", i);
           if (!same(handed_over, contacts)) return fmt::format("particle {}: other contacts, handed over", i);
           if (!same(counts, own)) return fmt::format("particle {}: other counts, handed over", i);
-          landed = begun.landing.has_value();
+          landed = begun.landing != nullptr;
           if (landed && !begun.stays(state)) return fmt::format("particle {}: not where it landed", i);
         }
         tally.handed_over += 1;
@@ -134,17 +134,19 @@ class BothWays {
     detail::Memos memos;
     std::vector<detail::Taken> taken;
     std::vector<Begun> begun;
+    std::vector<Landing> landings;
     Counters counters;
   };
 
   // With memos or without, those of the step before or new ones.
   Filtered filtered(std::span<const Vec3> targets, detail::InstructionSet set, bool with_memos,
                     const detail::Memos& memos) const {
-    Filtered f{states_, {}, memos, std::vector<detail::Taken>(particles), {}, {}};
+    Filtered f{states_, {}, memos, std::vector<detail::Taken>(particles), {}, {}, {}};
     f.memos.resize(with_memos ? particles : 0);
     for (const State& s : states_) f.vertices.push_back(detail::vertex_numbers(complex_, s.at()));
     detail::step_filtered({&complex_, moves_, !memos.empty(), StepOptions{}.tolerance},
-                          {f.states, f.vertices, f.memos.from(0), targets, f.taken, f.begun}, f.counters, set);
+                          {f.states, f.vertices, f.memos.from(0), targets, f.taken, f.begun, f.landings}, f.counters,
+                          set);
     return f;
   }
 

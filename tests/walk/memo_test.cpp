@@ -55,9 +55,10 @@ detail::Memo memo_at(const Complex& complex, SimplexId at, const Vec3& p) {
   const std::vector<Vec3> targets = {p};
   std::vector<detail::Taken> taken(1);
   std::vector<Begun> begun;
+  std::vector<Landing> landings;
   Counters counters;
   detail::step_filtered({&complex, false, false, StepOptions{}.tolerance},
-                        {states, vertices, memos.from(0), targets, taken, begun}, counters);
+                        {states, vertices, memos.from(0), targets, taken, begun, landings}, counters);
   return memos[0];
 }
 

@@ -352,10 +352,12 @@ void Environment::step_chunk(const Steps& steps, std::size_t begin, std::size_t 
   const std::span<const Vec3> targets = steps.targets.subspan(begin, size);
   std::array<detail::Taken, chunk> taken;
   std::vector<Begun> begun;
-  begun.reserve(size / 8);  // more than most steps need
+  begun.reserve(size);
+  std::vector<Landing> landings;
   const std::span<detail::VertexNumbers> vertices = std::span(steps.particles.vertices_).subspan(begin, size);
   detail::Memos& memos = steps.particles.memos_;
-  const detail::FilteredSteps batch{states, vertices, memos.from(begin), targets, std::span(taken).first(size), begun};
+  const detail::FilteredSteps batch{states, vertices, memos.from(begin), targets, std::span(taken).first(size),
+                                    begun,  landings};
   if (map().dimension() == 2)
     detail::step_plane(steps.filtered, batch, part.counters);
   else

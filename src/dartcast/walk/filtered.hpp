@@ -58,8 +58,9 @@ struct FilteredSteps {
   MemoSpan memos;  ///< moved: trails; else coordinates, or empty: none are kept. In where they match; out for each step
                    ///< taken
   std::span<const Vec3> targets;
-  std::span<Taken> taken;     ///< out
-  std::vector<Begun>& begun;  ///< out; empty before
+  std::span<Taken> taken;          ///< out
+  std::vector<Begun>& begun;       ///< out; empty before
+  std::vector<Landing>& landings;  ///< of these; out; empty before
 };
 
 /// Takes the steps that it can, and counts them. The same bits with every instruction set. Preconditions: as for

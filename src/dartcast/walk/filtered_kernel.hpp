@@ -29,6 +29,7 @@ class Batch {
         targets_(steps.targets.data()),
         taken_(steps.taken.data()),
         begun_(steps.begun),
+        landings_(steps.landings),
         counters_(counters) {}
 
   DARTCAST_TARGET void run(std::uint64_t most_rounds) {
@@ -529,6 +530,7 @@ class Batch {
 
   // What follows at walls, where doubles prove it.
   DARTCAST_TARGET void land_all() {
+    landings_.reserve(at_wall_count_);
     for (std::uint32_t k = 0; k < at_wall_count_; k += 4) land(k);
   }
 
@@ -547,7 +549,8 @@ class Batch {
       if (landings.known[l] == 0) continue;
       const std::uint32_t i = at[l]->particle;
       Begun& begun = begun_[at[l]->begun];
-      begun.landing = landings.of(l);
+      landings_.push_back(landings.of(l));
+      begun.landing = &landings_.back();
       ++begun.tests.tests;  // on which side p is
       vertices_[i] = at[l]->corners;
       if constexpr (kind == MemoKind::none) continue;
@@ -664,6 +667,7 @@ class Batch {
   const Vec3* targets_;
   Taken* taken_;
   std::vector<Begun>& begun_;
+  std::vector<Landing>& landings_;
   Counters& counters_;
 
   // Of the block. Bits: one per particle.

@@ -7,12 +7,12 @@ struct BoundedProducts {
   Quad permanent;
 
   DARTCAST_TARGET BoundedProducts(const Points& u, const Points& v, const Points& w) : value(dot(u, cross(v, w))) {
-    const auto sum = [](const Quad& a, const Quad& b) { return magnitude(a) + magnitude(b); };
     permanent = magnitude(u.x) * sum(v.y * w.z, v.z * w.y) + magnitude(u.y) * sum(v.z * w.x, v.x * w.z) +
                 magnitude(u.z) * sum(v.x * w.y, v.y * w.x);
   }
 
   [[nodiscard]] DARTCAST_TARGET Mask exceed(double times) const { return exceed(value, permanent, times); }
+  DARTCAST_TARGET static Quad sum(const Quad& a, const Quad& b) { return magnitude(a) + magnitude(b); }
   DARTCAST_TARGET static Mask exceed(const Quad& value, const Quad& permanent, double times) {
     return (permanent >= 0x1p-700) & (magnitude(value) > (times * Determinant::error) * permanent);
   }
@@ -131,10 +131,11 @@ class FourLandings {
   // As on_level_facet().
   [[nodiscard]] DARTCAST_TARGET Mask level() const {
     const auto& [a, b, c] = corner_;
-    const auto same = [](const Quad& u, const Quad& v, const Quad& w, const Quad& x) -> Mask {
-      return (u == x) & (v == x) & (w == x);
-    };
     return same(a.x, b.x, c.x, point_.x) | same(a.y, b.y, c.y, point_.y) | same(a.z, b.z, c.z, point_.z);
+  }
+
+  DARTCAST_TARGET static Mask same(const Quad& u, const Quad& v, const Quad& w, const Quad& x) {
+    return (u == x) & (v == x) & (w == x);
   }
 
   Points corner_[3];  // of the walls' facets

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -57,13 +56,13 @@ struct Begun {
   Vec3 from;         ///< where the walk began: the particle's place, after riding along with the vertices
   Walk walk;         ///< ends at a wall: one that q is beyond, or one that q is on
   TestCounts tests;  ///< made so far
-  std::optional<Landing> landing;
+  const Landing* landing = nullptr;
 
   Begun(const Vec3& start, const Walk& first, const TestCounts& counts) : from(start), walk(first), tests(counts) {}
 
   /// Whether the step has put the particle where it landed, and it has stayed there.
   [[nodiscard]] bool stays(const State& after) const {
-    return landing && after.at() == walk.wall_simplex && after.position == landing->position;
+    return landing != nullptr && after.at() == walk.wall_simplex && after.position == landing->position;
   }
 };
 

@@ -58,7 +58,7 @@ class Part {
   Vec3 move(Run& run, Vec3 q, Stretch stretch, const Begun* begun = nullptr) const {
     while (q != run.state.position) {
       const Vec3 p = run.state.position;
-      const Landing* const landing = begun != nullptr && begun->landing ? &*begun->landing : nullptr;
+      const Landing* const landing = begun != nullptr ? begun->landing : nullptr;
       Walk walked;
       if (begun == nullptr)
         walked = walk(space_, run.state.at(), p, q, run.tests, run.recorder.visitor());
