@@ -363,7 +363,8 @@ void Environment::step_chunk(const Steps& steps, std::size_t begin, std::size_t 
   else
     detail::step_filtered(steps.filtered, batch, part.counters);
   part.contacts.contacts.reserve(begun.size());
-  part.contacts.walls.reserve(begun.size());
+  part.contacts.walls.reserve(3 * begun.size());  // at a corner there are several
+  part.stopped.reserve(begun.size());
   for (std::size_t i = next_left(batch.taken, 0); i < size; i = next_left(batch.taken, i + 1)) {
     const auto particle = static_cast<std::uint32_t>(begin + i);
     const Begun* const first = taken[i] == detail::taken_nothing ? nullptr : &begun[taken[i]];
