@@ -305,8 +305,7 @@ class MapBuilder {
       auto candidate = face_vertices(entry->face);
       std::sort(candidate.begin(), candidate.end());
       // A face named twice keeps its first name.
-      if (candidate == sorted && map_.patch(entry->face) == Patch{})
-        map_.patches_.set(entry->face.cell, entry->face.face, patch.value);
+      if (candidate == sorted && map_.patch(entry->face) == Patch{}) map_.set_patch(entry->face, patch);
     }
   }
 

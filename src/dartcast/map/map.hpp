@@ -215,7 +215,9 @@ class Map {
   [[nodiscard]] bool has_flat(Cell c) const { return (record(c)[1] & flat_bit) != 0; }
 
   // Patches: named groups of faces.
-  [[nodiscard]] Patch patch(CellFace f) const { return Patch{patches_.find(f.cell, f.face)}; }
+  [[nodiscard]] Patch patch(CellFace f) const {
+    return has_patch(f.cell) ? Patch{patches_.find(f.cell, f.face)} : Patch{};
+  }
   /// Index 0 is "" (the unnamed rest).
   [[nodiscard]] const std::vector<std::string>& patch_names() const { return patch_names_; }
   /// Throws InvalidArgument that lists the names there are.
@@ -233,6 +235,7 @@ class Map {
 
   static constexpr std::uint32_t vacant_bit = 1U << 31U;
   static constexpr std::uint32_t flat_bit = 1U << 30U;
+  static constexpr std::uint32_t patch_bit = 1U << 29U;
   static constexpr std::uint32_t vacant_vertex = 0xffffffffU;  // instead of a number of cells
   static constexpr std::uint16_t straight_bit = 1;
   static constexpr std::uint16_t coplanar_bit = 2;
@@ -261,6 +264,12 @@ class Map {
 
   [[nodiscard]] Dart across(Dart d) const;
   [[nodiscard]] std::uint32_t* record(Cell c) { return const_cast<std::uint32_t*>(std::as_const(*this).record(c)); }
+  // Whether a face of the cell is in a patch. Few are; the table is cold memory.
+  [[nodiscard]] bool has_patch(Cell c) const { return (record(c)[1] & patch_bit) != 0; }
+  void set_patch(CellFace f, Patch patch) {
+    patches_.set(f.cell, f.face, patch.value);
+    record(f.cell)[1] |= patch_bit;
+  }
   void open_record(std::uint32_t pool, std::size_t words);
   void write_cell(Cell c, std::uint32_t shape, std::span<const std::uint32_t> vertices, bool free);
   void set_neighbour(CellFace f, CellFace other);

@@ -163,7 +163,7 @@ void Transaction::write_sides(Cell c, const CellDraft& draft, const DraftForm& f
   for (std::size_t i = 0; i < draft.faces.size(); ++i) {
     const DraftFace& face = draft.faces[i];
     const std::uint16_t f = form.face[i];
-    if (face.patch != Patch{}) map_.patches_.set(c, f, face.patch.value);
+    if (face.patch != Patch{}) map_.set_patch({c, f}, face.patch);
     const auto lowest = std::min_element(face.corners.begin(), face.corners.end(),
                                          [](const auto& a, const auto& b) { return a.vertex < b.vertex; });
     const std::size_t k = s.degree(f);
@@ -180,7 +180,7 @@ void Transaction::write_sides(Cell c, const CellDraft& draft, const DraftForm& f
 
 void Transaction::clear_sides(Cell c) {
   const Shape& s = map_.shape(c);
-  if (map_.patches_.size() > 0) {
+  if (map_.has_patch(c)) {
     for (std::uint16_t f = 0; f < s.face_count(); ++f) map_.patches_.set(c, f, 0);
   }
   if (map_.has_flat(c)) {
