@@ -68,7 +68,7 @@ class BothWaysInThePlane {
       const SimplexId at = free[random_.below(static_cast<std::uint32_t>(free.size()))];
       const PlaneCorners v = current_space<3>(complex_).corners(at);
       Vec3 x = detail::combine(v, Weights{0.25, 0.25, 0.5, 0.0});
-      if (lattice_) x = v[random_.below(3)];
+      if (lattice_ || random_.below(4) == 0) x = v[random_.below(3)];
       if (!detail::in_closed_simplex(v, x)) continue;
       states_.emplace_back().put(at, x);
     }
@@ -133,7 +133,11 @@ class BothWaysInThePlane {
     o.jitter = lattice_ ? 0.0 : 0.25;
     o.blocked_share = 0.2;
     o.seed = seed;
-    return generate_rectangle(o);
+    MeshData mesh = generate_rectangle(o);
+    if (moves_ && seed % 2 == 1) {  // far off, who rides along is often rounded out of the triangle
+      for (Vec3& p : mesh.points) p += Vec3{0x1p+30, -0x1p+31, 0.0};
+    }
+    return mesh;
   }
 
   // Every vertex, a little at most steps, and much at some.

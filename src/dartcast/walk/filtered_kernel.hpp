@@ -114,6 +114,7 @@ class Batch {
   DARTCAST_TARGET void test_block(std::uint32_t first, std::uint32_t n) {
     inside_ = 0;
     one_part_ = 0;
+    rides_inside_ = 0;
     arrivals_ = 0;
     for (std::uint32_t k = 0; k < n; k += 4) {
       for (std::uint32_t j = 0; j < 4; ++j) ask_ahead(first + k + j);
@@ -129,6 +130,8 @@ class Batch {
         Mask proved = one.by_size();
         if (lanes_set(proved) != 15U) proved |= one.by_shape();
         one_part_ |= lanes_set(proved) << k;
+        rides_inside_ |= lanes_set(surely_rides_inside(memos_[i.at[0] / 4], d, q)) << k;
+        began_with_[i.at[0] / 4] = memos_[i.at[0] / 4].w;
       }
     }
   }
@@ -280,17 +283,16 @@ class Batch {
     return true;
   }
 
-  // Where a particle has ridden to; none where the filter does not prove that this lies inside of the moved simplex.
+  // Where a particle with these determinants has ridden to, in the simplex that its step begins in.
+  [[nodiscard]] DARTCAST_TARGET Vec3 ridden(std::uint32_t i, const Weights& w) const {
+    return flushed(combine(corners_of(now_, vertices_[i]), shares_of(w)));
+  }
+  // None where the filter does not prove that this lies inside of the moved simplex.
   [[nodiscard]] DARTCAST_TARGET std::optional<Vec3> ridden_alone(std::uint32_t i) const {
     const Memo trail = memos_[i / 4].of(i % 4);
     if (is_unknown(trail)) return std::nullopt;
-    Weights w{};
-    for (unsigned c = 0; c < 4; ++c) w[c] = std::max(trail.w[c], 0.0);
-    const double sum = ((w[0] + w[1]) + w[2]) + w[3];
-    for (double& share : w) share /= sum;
-    const Corners now = corners_of(now_, vertices_[i]);
-    const Vec3 x = flushed(combine(now, w));
-    return Determinants(now, x).all_proved_positive() ? std::optional(x) : std::nullopt;
+    const Vec3 x = ridden(i, trail.w);
+    return Determinants(corners_of(now_, vertices_[i]), x).all_proved_positive() ? std::optional(x) : std::nullopt;
   }
 
   // By the rule itself.
@@ -324,17 +326,14 @@ class Batch {
     return riding;
   }
 
-  // Moves the starts of four walks along with the vertices; lists those that go on from `riding` on. The others are
-  // left.
+  // Of four walks, lists those that go on from `riding` on: their starts, moved along with the vertices, are proved to
+  // lie inside. The others are left.
   DARTCAST_TARGET std::uint32_t ride(const Four& i, std::uint32_t count, std::uint32_t riding, std::uint32_t first) {
     const Tetrahedra now = simplices_of(now_, i);
     const unsigned behind = lanes_set(FilteredDeterminants(now, places_of(i)).any_negative());
-    const Quad w[4] = {determinants_of(memos_, i, 0), determinants_of(memos_, i, 1), determinants_of(memos_, i, 2),
-                       determinants_of(memos_, i, 3)};
-    const Points x = ride_along(w, now);
-    const Points q = targets_of(i);
-    const Mask proved = (w[0] == w[0]) & FilteredDeterminants(now, x).all_positive();
-    const unsigned on = lanes_set(proved & ((x.x != q.x) | (x.y != q.y) | (x.z != q.z)));
+    unsigned on = 0;
+    for (std::uint32_t l = 0; l < 4; ++l) on |= ((rides_inside_ >> (i.at[l] - first)) & 1U) << l;
+    if (on != 15U) on |= rides_inside(memos_, i, now, targets_of(i));
     for (std::uint32_t l = 0; l < count; ++l) {
       const std::uint32_t particle = i.at[l];
       if (((on >> l) & 1U) == 0) {
@@ -342,7 +341,6 @@ class Batch {
         continue;
       }
       left_behind_[particle] = ((behind >> l) & 1U) != 0;
-      ridden_[particle] = {x.x[l], x.y[l], x.z[l]};
       leaving_[riding++] = particle - first;
     }
     return riding;
@@ -465,9 +463,12 @@ class Batch {
     return s == Sign::positive;
   }
 
+  // Few walks ask where they began: those that come to a wall, or to several facets that the target is behind.
   [[nodiscard]] DARTCAST_TARGET Vec3 start_of(std::uint32_t i) const {
     if constexpr (!moved) return states_[i].position;
-    return {ridden_[i].x, ridden_[i].y, ridden_[i].z};
+    Weights w;
+    for (unsigned c = 0; c < 4; ++c) w[c] = began_with_[i / 4][c][i % 4];
+    return ridden(i, w);
   }
 
   DARTCAST_TARGET bool pass_on(Visit& visit, const VertexNumbers& corners, unsigned facet) {
@@ -679,6 +680,7 @@ class Batch {
   std::uint32_t on_facets_ = 0;
   std::uint32_t still_free_;
   std::uint32_t one_part_;
+  std::uint32_t rides_inside_;
   std::array<std::uint32_t, block> leaving_;
   std::array<Arrival, block> arrival_;
   std::uint32_t arrivals_;
@@ -690,6 +692,6 @@ class Batch {
   std::uint32_t at_wall_count_ = 0;
   std::array<Visit, filtered_batch> visits_;  // walks that go on
   std::array<Departure, filtered_batch> departures_;
-  std::array<Ridden, filtered_batch> ridden_;
+  std::array<MemosOfFour::Table<double>, filtered_batch / 4> began_with_;  // determinants before the move
   std::array<bool, filtered_batch> left_behind_;
 };

@@ -116,6 +116,36 @@ DARTCAST_TARGET inline Points ride_along(const Quad (&w)[4], const Tetrahedra& n
   return {without_tiny(x.x), without_tiny(x.y), without_tiny(x.z)};
 }
 
+// Coordinates that determinants are in proportion to.
+DARTCAST_TARGET inline Weights shares_of(Weights w) {
+  for (double& share : w) share = std::max(share, 0.0);
+  const double sum = ((w[0] + w[1]) + w[2]) + w[3];
+  for (double& share : w) share /= sum;
+  return w;
+}
+
+// Whether what ride_along() comes to surely lies strictly inside of the moved simplices, for targets q that were not
+// proved to; d: of the targets.
+//
+// Let E be the largest |r_i| of the corners relative to q, V the volume, M the largest |c_i| of the corners. The place
+// is a sum of c_i s_i, rounded, with s_i >= 2^-12 that sum to 1 up to 4u: in each component it is 9uM at most off the
+// point that has the coordinates s_i / sum. (What is counted as zero is below 2^-300, which is 2^-67 E where the filter
+// applies.) The cross products of a facet's edges have components of 8 E^2 at most. So the place's determinants are
+// s_i V, off by 24 E^2 9uM < 2^-33 E^3, as M <= (2^12 + 1) E; and s_i V >= 2^-32 (1 - 2^-25) E^3. It is not q: one of
+// q's is below 2^-46 E^3.
+DARTCAST_TARGET inline Mask surely_rides_inside(const MemosOfFour& trails, const FilteredDeterminants& d,
+                                                const Points& q) {
+  constexpr double least_share = 0x1p-12;
+  constexpr double farthest = 0x1p+12;
+  const Quad w[4] = {load_doubles(trails.w[0].data()), load_doubles(trails.w[1].data()),
+                     load_doubles(trails.w[2].data()), load_doubles(trails.w[3].data())};
+  const Quad sum = (w[0] + w[1]) + (w[2] + w[3]);
+  const Quad extent = largest(d.extent);
+  return d.applies & (d.volume6() >= least_volume * (extent * extent * extent)) &
+         (largest(magnitude(q)) <= farthest * extent) &
+         (smaller(smaller(w[0], w[1]), smaller(w[2], w[3])) >= least_share * sum);
+}
+
 // Whether steps relative to moving vertices surely need no splitting (walk/step.hpp): |A| |r| <= 2 tolerance edge.
 //
 // The corners' displacements d_i, less the particle's own q - p, have -r as a mean: |r| <= max |d_i|. With
@@ -123,8 +153,9 @@ DARTCAST_TARGET inline Points ride_along(const Quad (&w)[4], const Tetrahedra& n
 // |A|^2 V^2 <= sum of |u_i|^2 times sum of |n_i|^2. Squares are compared. L is the old distance of the farthest corner:
 // floats rounded the old corners by 2^-24 L, and the rule's own doubles round u_i by as much at most, as |q - p| and
 // |d_i| are below 2^28 L. So the coordinates of d_i, u_i, n_i and the edges are off by 2^-24 L, 3 2^-24 L, 2^-20 L^2
-// and 2^-23 L; squares count that as (a + b)^2 <= 17/16 a^2 + 17 b^2. Products reach L^12: with L in [2^-70, 2^70]
-// those on the left neither overflow nor underflow.
+// and 2^-23 L; squares count that as (a + b)^2 <= 17/16 a^2 + 17 b^2. The rule's r is off by 2^-49 |q| as well, less
+// than an eighth of 2^-24 L, and by as much of the d_i. Products reach L^12: with L in [2^-70, 2^70] those on the left
+// neither overflow nor underflow.
 class OnePart {
  public:
   // `after`: the moved corners relative to the targets q; p: where the particles were.
@@ -145,7 +176,8 @@ class OnePart {
     u2_r2_ = (0x1.1p+0 * u2 + 0x1p-37 * l2_) * r2;
     const Points own = q - p;
     const Quad far = 0x1p+56 * l2_;
-    in_range_ = (l2_ > 0x1p-140) & (l2_ < 0x1p+140) & (farthest < far) & (square(own) < far);
+    in_range_ =
+        (l2_ > 0x1p-140) & (l2_ < 0x1p+140) & (farthest < far) & (square(own) < far) & (square(q) < 0x1p+44 * l2_);
     // Not a number where the trail is unknown: then nothing is less.
     volume_ = (load_doubles(trails.w[0].data()) + load_doubles(trails.w[1].data())) +
               (load_doubles(trails.w[2].data()) + load_doubles(trails.w[3].data()));

@@ -12,10 +12,6 @@ struct Visit {
   bool through_face;
 };
 
-// Where a particle has ridden to.
-struct Ridden {
-  double x, y, z;
-};
 // A walk that may leave its first simplex, and what is proved of its target.
 struct Departure {
   std::uint32_t particle;
@@ -47,6 +43,16 @@ struct Four {
 DARTCAST_TARGET inline Quad determinants_of(const MemosOfFour* memos, const Four& i, unsigned corner) {
   const auto of = [&](std::uint32_t particle) { return memos[particle / 4].w[corner][particle % 4]; };
   return Quad{of(i.at[0]), of(i.at[1]), of(i.at[2]), of(i.at[3])};
+}
+
+// Bits of the lanes where it is proved that ride_along() comes to a place strictly inside, other than q; as computed.
+DARTCAST_TARGET inline unsigned rides_inside(const MemosOfFour* trails, const Four& i, const Tetrahedra& now,
+                                             const Points& q) {
+  const Quad w[4] = {determinants_of(trails, i, 0), determinants_of(trails, i, 1), determinants_of(trails, i, 2),
+                     determinants_of(trails, i, 3)};
+  const Points x = ride_along(w, now);
+  const Mask proved = (w[0] == w[0]) & FilteredDeterminants(now, x).all_positive();
+  return lanes_set(proved & ((x.x != q.x) | (x.y != q.y) | (x.z != q.z)));
 }
 
 DARTCAST_TARGET inline bool any_marked(const Mark* of_four) {

@@ -93,7 +93,7 @@ struct FilteredDeterminants {
   Mask applies;
 
   FilteredDeterminants() = default;
-  DARTCAST_TARGET FilteredDeterminants(const Tetrahedra& v, const Points& x)
+  [[gnu::always_inline]] DARTCAST_TARGET FilteredDeterminants(const Tetrahedra& v, const Points& x)
       : relative{v.corner[0] - x, v.corner[1] - x, v.corner[2] - x, v.corner[3] - x},
         extent(larger(larger(magnitude(relative[0]), magnitude(relative[1])),
                       larger(magnitude(relative[2]), magnitude(relative[3])))) {

@@ -206,7 +206,10 @@ class MovingStep {
     const unsigned parts = run.state.held ? 1 : part_count(before, after, weights, target);
     run.state.held = false;
     if (parts == 1) {
+      const SimplexId start = run.state.at();
       ride(current_space<N>(complex_), run, weights, 0.0);
+      // Nothing is in the way within the simplex, wherever rounding has put the particle.
+      if (Determinants(after, target).all_proved_positive()) run.state.put(start, run.state.position);
       Part<Stored, N, Recorder>(complex_, true, space_, options_, respond_).move(run, target, {0.0, 1.0, {}});
       return;
     }
