@@ -149,12 +149,18 @@ class BothWaysInThePlane {
   }
 
   Vec3 target(const State& s) {
+    if (moves_ && s.touching_count > 0 && random_.below(4) == 0) return ridden(s);  // it goes on touching
     if (lattice_) {
       const auto by = [&] { return 0.25 * (static_cast<double>(random_.below(9)) - 4.0); };
       return s.position + Vec3{by(), by(), 0.0};
     }
     const double reach = random_.below(8) == 0 ? 2.0 : 0.1;
     return s.position + Vec3{random_.uniform(-reach, reach), random_.uniform(-reach, reach), 0.0};
+  }
+
+  [[nodiscard]] Vec3 ridden(const State& s) const {
+    const Weights weights = detail::barycentric(previous_space<3>(complex_).corners(s.at()), s.position);
+    return detail::ridden(current_space<3>(complex_), s.at(), weights).position;
   }
 
   Random random_;
