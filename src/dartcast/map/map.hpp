@@ -146,10 +146,11 @@ class Map {
            (c.pool() == general_pool ? pool.offsets[c.index()] : std::size_t{c.index()} * pool.stride);
   }
   // Inlined: every walk does this for each cell that it enters, and a call is as dear.
-  [[nodiscard]] [[gnu::always_inline]] CellView view(Cell c) const {
+  [[nodiscard]] [[gnu::always_inline]] CellView view(Cell c) const { return view(c, record(c)); }
+  /// Where its record is known.
+  [[nodiscard]] [[gnu::always_inline]] CellView view(Cell c, const std::uint32_t* record) const {
     const bool general = c.pool() == general_pool;
-    const std::uint32_t* word = record(c);
-    return {*this, word, shapes_[general ? word[0] : word[0] & 0xffffU], general};
+    return {*this, record, shapes_[general ? record[0] : record[0] & 0xffffU], general};
   }
   [[nodiscard]] const Shape& shape(Cell c) const { return view(c).shape(); }
   [[nodiscard]] bool contains(Cell c) const {

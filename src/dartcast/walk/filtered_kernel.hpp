@@ -49,7 +49,6 @@ class Batch {
 
  private:
   static constexpr std::uint32_t block = 32;
-  static constexpr std::uint8_t no_facet = 4;
   static constexpr bool moved = kind == MemoKind::trail;
 
   // The first simplex of each step: most end there. Returns the number of walks that go on.
@@ -62,7 +61,7 @@ class Batch {
       const std::uint32_t leaving = ride_all(first, end_inside(first, n));
       for (std::uint32_t l = 0; l < leaving; ++l) {
         const std::uint32_t i = first + leaving_[l];
-        visits_[count] = {i, states_[i].cell.value, states_[i].simplex, no_facet, 4, 0, false};
+        visits_[count] = first_visit(i, states_[i], map_.record(states_[i].cell), 4, 0);
         if (leave_simplex(visits_[count], vertices_[i], leaving_[l])) ++count;
       }
       if constexpr (moved) {  // who goes on, or is left, gets another one later
@@ -82,10 +81,11 @@ class Batch {
       if (on_facets_ != 0) end_on_facets(first);
       for (std::uint32_t l = 0; l < leaving; ++l) {
         const std::uint32_t i = first + leaving_[l];
-        __builtin_prefetch(map_.record(states_[i].cell));
+        const std::uint32_t* record = map_.record(states_[i].cell);
+        __builtin_prefetch(record);
         const Signs signs(signs_[leaving_[l]]);
         if (!std::has_single_bit(signs.negative())) ask_for(now_, vertices_[i]);
-        departures_[count++] = {i, signs};
+        departures_[count++] = {i, signs, record};
       }
     }
     return depart(count);
@@ -195,11 +195,10 @@ class Batch {
   DARTCAST_TARGET std::size_t depart(std::size_t count) {
     std::size_t next = 0;
     for (std::size_t k = 0; k < count; ++k) {
-      const auto [i, signs] = departures_[k];
+      const auto [i, signs, record] = departures_[k];
       const unsigned behind = signs.negative();
       const std::uint16_t tests = behind != 0 ? 4 : 1;  // three more there
-      const auto exact = static_cast<std::uint16_t>(std::popcount(signs.zero()));
-      visits_[next] = {i, states_[i].cell.value, states_[i].simplex, no_facet, tests, exact, false};
+      visits_[next] = first_visit(i, states_[i], record, tests, std::popcount(signs.zero()));
       if (behind == 0 || pass_on(visits_[next], vertices_[i], exit_facet(visits_[next], vertices_[i], behind))) ++next;
     }
     return next;
@@ -255,9 +254,7 @@ class Batch {
       const auto k = static_cast<std::uint32_t>(std::countr_zero(bits));
       const std::uint32_t i = first + k;
       const unsigned on = Signs(signs_[k]).zero();
-      const Visit visit = {
-          i,    states_[i].cell.value, states_[i].simplex, no_facet, 4, static_cast<std::uint16_t>(std::popcount(on)),
-          false};
+      const Visit visit = first_visit(i, states_[i], map_.record(states_[i].cell), 4, std::popcount(on));
       if (const auto wall = find_touched_wall(visit, vertices_[i], on)) {
         end_on_wall(visit, on, *wall);
       } else {
@@ -385,7 +382,7 @@ class Batch {
       corners = vertices_[v.particle];
       return;
     }
-    const CellView cell = map_.view(Cell(v.cell));
+    const CellView cell = map_.view(Cell(v.cell), v.record);
     if (v.through_face) {
       const Across at = cell.shape().entry(v.index, v.place);
       v.index = at.index;
@@ -472,7 +469,7 @@ class Batch {
   }
 
   DARTCAST_TARGET bool pass_on(Visit& visit, const VertexNumbers& corners, unsigned facet) {
-    const CellView cell = map_.view(Cell(visit.cell));
+    const CellView cell = map_.view(Cell(visit.cell), visit.record);
     const Across across = cell.shape().simplices()[visit.index].across[facet];
     visit.through_face = across.outer();
     if (!across.outer()) {
@@ -485,7 +482,8 @@ class Batch {
     visit.cell = cell.neighbour(face).value;
     visit.index = cell.neighbour_face(face);
     visit.place = cell.shape().triangle_from_other_side(face, across.place);
-    __builtin_prefetch(map_.record(Cell(visit.cell)));
+    visit.record = map_.record(Cell(visit.cell));
+    __builtin_prefetch(visit.record);
     return true;
   }
 

@@ -10,12 +10,22 @@ struct Visit {
   std::uint16_t tests;  // so far
   std::uint16_t exact;  // of these, those that the filter left open
   bool through_face;
+  const std::uint32_t* record;  // of the cell
 };
+
+constexpr std::uint8_t no_facet = 4;
+
+// Of the simplex that a step begins in.
+DARTCAST_TARGET inline Visit first_visit(std::uint32_t particle, const State& s, const std::uint32_t* record,
+                                         std::uint16_t tests, int exact) {
+  return {particle, s.cell.value, s.simplex, no_facet, tests, static_cast<std::uint16_t>(exact), false, record};
+}
 
 // A walk that may leave its first simplex, and what is proved of its target.
 struct Departure {
   std::uint32_t particle;
   Signs signs;
+  const std::uint32_t* record;  // of its cell
 };
 struct Arrival {
   std::uint32_t particle;
