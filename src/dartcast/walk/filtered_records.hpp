@@ -13,7 +13,7 @@ struct Visit {
   const std::uint32_t* record;  // of the cell
 };
 
-constexpr std::uint8_t no_facet = 4;
+inline constexpr std::uint8_t no_facet = 4;
 
 // Of the simplex that a step begins in.
 DARTCAST_TARGET inline Visit first_visit(std::uint32_t particle, const State& s, const std::uint32_t* record,
