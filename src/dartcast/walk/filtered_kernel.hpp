@@ -39,7 +39,7 @@ class Batch {
     std::size_t count = kind == MemoKind::coordinates ? begin_by_coordinates() : begin();
     for (std::uint64_t round = 1; count > 0; ++round) {
       if (round > most_rounds) {
-        leave_all(count);
+        for (std::size_t k = 0; k < count; ++k) leave(visits_[k].particle);
         break;
       }
       count = walk_on(count);
@@ -61,14 +61,20 @@ class Batch {
       const std::uint32_t leaving = ride_all(first, end_inside(first, n));
       for (std::uint32_t l = 0; l < leaving; ++l) {
         const std::uint32_t i = first + leaving_[l];
-        visits_[count] = first_visit(i, states_[i], map_.record(states_[i].cell), 4, 0);
-        if (leave_simplex(visits_[count], vertices_[i], leaving_[l])) ++count;
+        const std::uint32_t* record = map_.record(states_[i].cell);
+        const Signs signs(signs_[leaving_[l]]);
+        if (signs.negative() != 0 && signs.is_known()) {
+          departures_[count++] = departure(i, signs.negative(), signs.open(), record);
+        } else {
+          Visit visit = first_visit(i, states_[i], record, 4, 0);
+          leave_simplex(visit, vertices_[i], leaving_[l]);
+        }
       }
       if constexpr (moved) {  // who goes on, or is left, gets another one later
         for (std::uint32_t k = 0; k < n; k += 4) leave_trails(determinants_[k / 4], memos_[(first + k) / 4]);
       }
     }
-    return count;
+    return depart(count);
   }
 
   // The first simplex of each step where vertices stand still: the scene is read by those alone that leave it.
@@ -85,20 +91,15 @@ class Batch {
         __builtin_prefetch(record);
         const Signs signs(signs_[leaving_[l]]);
         if (!std::has_single_bit(signs.negative())) ask_for(now_, vertices_[i]);
-        departures_[count++] = {i, signs, record};
+        departures_[count++] = departure(i, signs.negative(), signs.zero(), record);
       }
     }
     return depart(count);
   }
 
-  // Four particles in a row; at the end of the batch the last one again in the lanes that are left.
-  DARTCAST_TARGET Four four_from(std::uint32_t i) const {
-    const std::uint32_t last = size_ - 1;
-    return {{i, std::min(i + 1, last), std::min(i + 2, last), std::min(i + 3, last)}};
-  }
   // Of particles in a row.
   DARTCAST_TARGET Points targets_from(std::uint32_t i) const {
-    return i + 4 <= size_ ? load_points(targets_ + i) : targets_of(four_from(i));
+    return i + 4 <= size_ ? load_points(targets_ + i) : targets_of(four_from(i, size_));
   }
   DARTCAST_TARGET Points targets_of(const Four& i) const {
     return load_points(targets_[i.at[0]], targets_[i.at[1]], targets_[i.at[2]], targets_[i.at[3]]);
@@ -118,7 +119,7 @@ class Batch {
     arrivals_ = 0;
     for (std::uint32_t k = 0; k < n; k += 4) {
       for (std::uint32_t j = 0; j < 4; ++j) ask_ahead(first + k + j);
-      const Four i = four_from(first + k);
+      const Four i = four_from(first + k, size_);
       const Tetrahedra now = simplices_of(now_, i);
       const Points q = targets_from(first + k);
       const FilteredDeterminants& d = *new (&determinants_[k / 4]) FilteredDeterminants(now, q);
@@ -191,15 +192,38 @@ class Batch {
     }
   }
 
+  // The first way out of each walk. Which of them lead out of their cell cannot be foretold: those come last, in a row.
   // Walks of whose targets nothing is proved are to be tested where they are.
   DARTCAST_TARGET std::size_t depart(std::size_t count) {
     std::size_t next = 0;
+    std::size_t outward = 0;
     for (std::size_t k = 0; k < count; ++k) {
-      const auto [i, signs, record] = departures_[k];
-      const unsigned behind = signs.negative();
-      const std::uint16_t tests = behind != 0 ? 4 : 1;  // three more there
-      visits_[next] = first_visit(i, states_[i], record, tests, std::popcount(signs.zero()));
-      if (behind == 0 || pass_on(visits_[next], vertices_[i], exit_facet(visits_[next], vertices_[i], behind))) ++next;
+      auto [i, behind, exact, record] = departures_[k];
+      const State& s = states_[i];
+      if (behind == 0) {
+        visits_[next++] = first_visit(i, s, record, 1, exact);  // three more tests there
+        continue;
+      }
+      std::uint16_t tests = 4;
+      auto facet = static_cast<unsigned>(std::countr_zero(behind));
+      if (!std::has_single_bit(behind)) {
+        Visit visit = first_visit(i, s, record, tests, exact);
+        facet = first_exit(visit, vertices_[i], behind);
+        tests = visit.tests;
+        exact = visit.exact;
+      }
+      // Numbers, not records that were just written: these could not be read as a whole yet.
+      const Across across = map_.view(s.cell, record).shape().simplices()[s.simplex].across[facet];
+      visits_[next] = {i, s.cell.value, across.index, across.place, tests, exact, false, record};
+      outward_[outward] = {i, across, static_cast<std::uint16_t>(facet), tests, exact, record};
+      const std::size_t leaves = across.index / Across::outer_bit;
+      next += 1 - leaves;
+      outward += leaves;
+    }
+    for (std::size_t k = 0; k < outward; ++k) {
+      const auto& [i, across, facet, tests, exact, record] = outward_[k];
+      visits_[next] = first_visit(i, states_[i], record, tests, exact);
+      if (pass_face(visits_[next], vertices_[i], facet, across)) ++next;
     }
     return next;
   }
@@ -210,7 +234,7 @@ class Batch {
     for (std::uint32_t first = 0; first < size_; first += 4) {
       for (std::uint32_t i = first + block; i < std::min(first + block + 4, size_); ++i)
         ask_for(positions, vertices_[i]);
-      const Four i = four_from(first);
+      const Four i = four_from(first, size_);
       const Points p = places_of(i);
       const FilteredDeterminants d(simplices_of(positions, i), p);
       if constexpr (moved) leave_trails(d, memos_[first / 4]);
@@ -224,7 +248,7 @@ class Batch {
   DARTCAST_TARGET std::uint32_t end_inside(std::uint32_t first, std::uint32_t n) {
     const std::uint32_t all = n == block ? ~std::uint32_t{0} : (std::uint32_t{1} << n) - 1;
     std::uint32_t left = 0;
-    for (std::uint32_t unusual = held_or_touching(states_, size_, first, n) | (moved ? all & ~one_part_ : 0);
+    for (std::uint32_t unusual = all & (held_or_touching(states_, size_, first, n) | (moved ? ~one_part_ : 0));
          unusual != 0; unusual &= unusual - 1) {
       const auto k = static_cast<std::uint32_t>(std::countr_zero(unusual));
       if (is_left(first + k, k)) left |= std::uint32_t{1} << k;
@@ -236,12 +260,16 @@ class Batch {
         counters_.orientation.exact +=
             static_cast<unsigned>(std::popcount(Signs(signs_[static_cast<std::size_t>(std::countr_zero(on))]).zero()));
     }
-    for (std::uint32_t ended = inside_; ended != 0; ended &= ended - 1) {
-      const std::uint32_t i = first + static_cast<std::uint32_t>(std::countr_zero(ended));
+    for (std::uint32_t in = inside_; in != 0; in &= in - 1) {
+      const std::uint32_t i = first + static_cast<std::uint32_t>(std::countr_zero(in));
       states_[i].position = targets_[i];
       states_[i].touching_count = 0;
     }
-    count_ended(static_cast<std::uint32_t>(std::popcount(inside_)));
+    const auto ended = static_cast<std::uint64_t>(std::popcount(inside_));
+    counters_.particle_steps += ended;
+    counters_.orientation.tests += 4 * ended;
+    counters_.histogram[4] += ended;
+    counters_.forecast_kept += ended;
     std::uint32_t leaving = 0;
     for (std::uint32_t on = all & ~left & ~inside_ & ~on_facets_; on != 0; on &= on - 1)
       leaving_[leaving++] = static_cast<std::uint32_t>(std::countr_zero(on));
@@ -255,20 +283,13 @@ class Batch {
       const std::uint32_t i = first + k;
       const unsigned on = Signs(signs_[k]).zero();
       const Visit visit = first_visit(i, states_[i], map_.record(states_[i].cell), 4, std::popcount(on));
-      if (const auto wall = find_touched_wall(visit, vertices_[i], on)) {
+      if (const auto wall = find_touched_wall(map_, visit, vertices_[i], on)) {
         end_on_wall(visit, on, *wall);
       } else {
         end(visit);
         marks_[i] = static_cast<Mark>(exact_mark | on);
       }
     }
-  }
-
-  DARTCAST_TARGET void count_ended(std::uint32_t ended) {
-    counters_.particle_steps += ended;
-    counters_.orientation.tests += std::uint64_t{4} * ended;
-    counters_.histogram[4] += ended;
-    counters_.forecast_kept += ended;
   }
 
   // Leaves a step that is held, or is to be split, or stays where it touches a wall.
@@ -396,36 +417,22 @@ class Batch {
   // Goes on into the next simplex, if the filter says which; else leaves the step. k: its place in the block.
   DARTCAST_TARGET bool leave_simplex(Visit& visit, const VertexNumbers& corners, std::size_t k) {
     const Signs signs(signs_[k]);
-    if (!signs.is_valid()) return leave(visit.particle);
     const unsigned asked = 15U & ~(1U << visit.place);
+    if (!signs.is_known(asked)) return leave(visit.particle);
     const unsigned open = signs.open() & asked;
-    if (open != 0 && !signs.is_exact()) return leave(visit.particle);
     visit.exact = static_cast<std::uint16_t>(visit.exact + std::popcount(open));
     const unsigned behind = signs.negative() & asked;
     if (behind == 0) {
       const unsigned on = signs.zero() & asked;
       if (on != 0) {
-        if (const auto wall = find_touched_wall(visit, corners, on)) return end_on_wall(visit, on, *wall);
+        if (const auto wall = find_touched_wall(map_, visit, corners, on)) return end_on_wall(visit, on, *wall);
       }
       on == 0 ? arrive(visit, corners, k) : arrive_on_facets(visit, corners, k, on);
       return false;
     }
-    return pass_on(visit, corners, exit_facet(visit, corners, behind));
-  }
-
-  DARTCAST_TARGET unsigned exit_facet(Visit& visit, const VertexNumbers& corners, unsigned behind) const {
-    return std::has_single_bit(behind) ? static_cast<unsigned>(std::countr_zero(behind))
-                                       : first_exit(visit, corners, behind);
-  }
-
-  // The wall that a target lies on that lies on facets of its simplex.
-  DARTCAST_TARGET std::optional<SimplexFacet> find_touched_wall(const Visit& visit, const VertexNumbers& corners,
-                                                                unsigned on) const {
-    Feature feature;
-    for (unsigned i = 0; i < 4; ++i) {
-      if (((on >> i) & 1U) == 0) feature.add(Vertex{corners[i]});
-    }
-    return find_wall(map_, {Cell(visit.cell), visit.index}, on, feature);
+    const bool single = std::has_single_bit(behind);
+    return pass_on(visit, corners,
+                   single ? static_cast<unsigned>(std::countr_zero(behind)) : first_exit(visit, corners, behind));
   }
 
   // Of several facets that the target lies behind, the one by which the segment leaves.
@@ -469,16 +476,24 @@ class Batch {
   }
 
   DARTCAST_TARGET bool pass_on(Visit& visit, const VertexNumbers& corners, unsigned facet) {
+    const Across across = across_of(visit, facet);
+    if (across.outer()) return pass_face(visit, corners, facet, across);
+    visit.through_face = false;
+    visit.index = across.index;
+    visit.place = across.place;
+    return true;
+  }
+
+  [[nodiscard]] DARTCAST_TARGET Across across_of(const Visit& visit, unsigned facet) const {
+    return map_.view(Cell(visit.cell), visit.record).shape().simplices()[visit.index].across[facet];
+  }
+
+  // Into the cell beyond.
+  DARTCAST_TARGET bool pass_face(Visit& visit, const VertexNumbers& corners, unsigned facet, Across across) {
     const CellView cell = map_.view(Cell(visit.cell), visit.record);
-    const Across across = cell.shape().simplices()[visit.index].across[facet];
-    visit.through_face = across.outer();
-    if (!across.outer()) {
-      visit.index = across.index;
-      visit.place = across.place;
-      return true;
-    }
     const std::uint16_t face = across.face();
     if (cell.is_wall(face)) return end_at_wall(visit, corners, facet);
+    visit.through_face = true;
     visit.cell = cell.neighbour(face).value;
     visit.index = cell.neighbour_face(face);
     visit.place = cell.shape().triangle_from_other_side(face, across.place);
@@ -557,14 +572,10 @@ class Batch {
         memos_[i / 4].put(i % 4, memos.of(l));
         if (!moved) marks_[i] = 0;
       } else {
-        forget(i);
+        forget(memos_, marks_, i);
       }
     }
   }
-  DARTCAST_TARGET void leave_all(std::size_t count) {
-    for (std::size_t k = 0; k < count; ++k) leave(visits_[k].particle);
-  }
-
   DARTCAST_TARGET void arrive(const Visit& visit, const VertexNumbers& corners, std::size_t k) {
     end(visit);
     vertices_[visit.particle] = corners;
@@ -587,24 +598,16 @@ class Batch {
 
   static constexpr std::uint16_t few_tests = 13;  // three simplices
 
-  [[nodiscard]] DARTCAST_TARGET bool has_coordinates(std::uint32_t i) const {
-    return !std::isnan(memos_[i / 4].w[0][i % 4]);
-  }
-  DARTCAST_TARGET void forget(std::uint32_t i) {
-    for (auto& of_corner : memos_[i / 4].w) of_corner[i % 4] = unknown;
-    marks_[i] = 0;
-  }
-
   // Who passes many simplices in a step is likely to leave the last one in the next, too: it gets none.
   DARTCAST_TARGET bool needs_coordinates(const Visit& visit) {
     const std::uint32_t i = visit.particle;
-    if (visit.place == no_facet && has_coordinates(i)) {
+    if (visit.place == no_facet && has_coordinates(memos_, i)) {
       marks_[i] &= exact_mark;
       return false;
     }
     marks_[i] = 0;
     if (visit.tests <= few_tests) return true;
-    forget(i);
+    forget(memos_, marks_, i);
     return false;
   }
 
@@ -615,7 +618,7 @@ class Batch {
     const std::uint32_t i = visit.particle;
     end(visit);
     vertices_[i] = corners;
-    if (visit.place != no_facet || !has_coordinates(i)) forget(i);
+    if (visit.place != no_facet || !has_coordinates(memos_, i)) forget(memos_, marks_, i);
     if ((marks_[i] & exact_mark) != 0)
       marks_[i] = static_cast<Mark>(exact_mark | on);
     else if (visit.tests <= few_tests)
@@ -690,6 +693,7 @@ class Batch {
   std::uint32_t at_wall_count_ = 0;
   std::array<Visit, filtered_batch> visits_;  // walks that go on
   std::array<Departure, filtered_batch> departures_;
+  std::array<Outward, filtered_batch> outward_;
   std::array<MemosOfFour::Table<double>, filtered_batch / 4> began_with_;  // determinants before the move
   std::array<bool, filtered_batch> left_behind_;
 };

@@ -102,6 +102,14 @@ DARTCAST_TARGET inline Mask proved_zeros(const MemosOfFour& memos, const Points&
   return has_few_bits(q.x) & has_few_bits(q.y) & has_few_bits(q.z) & facet_bits(zero[0], zero[1], zero[2], zero[3]);
 }
 
+DARTCAST_TARGET inline bool has_coordinates(const MemosOfFour* memos, std::uint32_t i) {
+  return !std::isnan(memos[i / 4].w[0][i % 4]);
+}
+DARTCAST_TARGET inline void forget(MemosOfFour* memos, Mark* marks, std::uint32_t i) {
+  for (auto& of_corner : memos[i / 4].w) of_corner[i % 4] = unknown;
+  marks[i] = 0;
+}
+
 // As flushed() in walk/nearby.hpp.
 DARTCAST_TARGET inline Quad without_tiny(const Quad& x) { return magnitude(x) < smallest_magnitude ? Quad{} : x; }
 

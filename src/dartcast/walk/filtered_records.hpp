@@ -21,11 +21,35 @@ DARTCAST_TARGET inline Visit first_visit(std::uint32_t particle, const State& s,
   return {particle, s.cell.value, s.simplex, no_facet, tests, static_cast<std::uint16_t>(exact), false, record};
 }
 
+// The wall that a target lies on that lies on these facets of its simplex.
+DARTCAST_TARGET inline std::optional<SimplexFacet> find_touched_wall(const Map& map, const Visit& visit,
+                                                                     const VertexNumbers& corners, unsigned on) {
+  Feature feature;
+  for (unsigned i = 0; i < 4; ++i) {
+    if (((on >> i) & 1U) == 0) feature.add(Vertex{corners[i]});
+  }
+  return find_wall(map, {Cell(visit.cell), visit.index}, on, feature);
+}
+
 // A walk that may leave its first simplex, and what is proved of its target.
 struct Departure {
   std::uint32_t particle;
-  Signs signs;
+  std::uint16_t behind;         // bits of facets that its target is proved to be behind
+  std::uint16_t exact;          // of the four tests
   const std::uint32_t* record;  // of its cell
+};
+DARTCAST_TARGET inline Departure departure(std::uint32_t particle, unsigned behind, unsigned exact,
+                                           const std::uint32_t* record) {
+  return {particle, static_cast<std::uint16_t>(behind), static_cast<std::uint16_t>(std::popcount(exact)), record};
+}
+// One that leaves its cell, too.
+struct Outward {
+  std::uint32_t particle;
+  Across across;
+  std::uint16_t facet;
+  std::uint16_t tests;
+  std::uint16_t exact;
+  const std::uint32_t* record;
 };
 struct Arrival {
   std::uint32_t particle;
@@ -49,6 +73,12 @@ struct Four {
   std::uint32_t at[4];
 };
 
+// Four particles in a row of `size`; at its end the last one again in the lanes that are left.
+DARTCAST_TARGET inline Four four_from(std::uint32_t i, std::uint32_t size) {
+  const std::uint32_t last = size - 1;
+  return {{i, std::min(i + 1, last), std::min(i + 2, last), std::min(i + 3, last)}};
+}
+
 // What trails keep of a corner.
 DARTCAST_TARGET inline Quad determinants_of(const MemosOfFour* memos, const Four& i, unsigned corner) {
   const auto of = [&](std::uint32_t particle) { return memos[particle / 4].w[corner][particle % 4]; };
@@ -71,23 +101,23 @@ DARTCAST_TARGET inline bool any_marked(const Mark* of_four) {
   return four != 0;
 }
 
-// Which particles are held, or touch a wall: a bit for each. Few are, so that four are looked at together.
+// Which particles are held, or touch a wall: a bit for each. What says so are two bytes of the word that begins with
+// the cell.
 DARTCAST_TARGET inline std::uint32_t held_or_touching(const State* states, std::uint32_t size, std::uint32_t first,
                                                       std::uint32_t n) {
-  const auto is = [&](std::uint32_t i) {  // both at once
-    static_assert(offsetof(State, held) == offsetof(State, touching_count) + 1);
-    std::uint16_t both;
-    std::memcpy(&both, reinterpret_cast<const char*>(states + i) + offsetof(State, touching_count), sizeof both);
-    return both;
+  constexpr std::size_t begin = offsetof(State, cell);
+  static_assert(offsetof(State, touching_count) == begin + 6 && offsetof(State, held) == begin + 7);
+  constexpr auto last_two = std::bit_cast<long long>(std::array<std::uint8_t, 8>{0, 0, 0, 0, 0, 0, 255, 255});
+  const auto word = [&](std::uint32_t i) {
+    long long bits;
+    std::memcpy(&bits, reinterpret_cast<const char*>(states + i) + begin, sizeof bits);
+    return bits;
   };
   std::uint32_t bits = 0;
-  for (std::uint32_t k = 0; k < n; ++k) {
-    const std::uint32_t i = first + k;
-    if (i + 4 <= size && (is(i) | is(i + 1) | is(i + 2) | is(i + 3)) == 0) {
-      k += 3;
-    } else if (is(i) != 0) {
-      bits |= std::uint32_t{1} << k;
-    }
+  for (std::uint32_t k = 0; k < n; k += 4) {
+    const Four i = four_from(first + k, size);
+    const Mask words = {word(i.at[0]), word(i.at[1]), word(i.at[2]), word(i.at[3])};
+    bits |= lanes_set((words & splat_bits(last_two)) != 0) << k;
   }
   return bits;
 }

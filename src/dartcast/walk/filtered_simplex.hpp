@@ -75,9 +75,11 @@ class Signs {
   explicit Signs(long long bits) : bits_(static_cast<unsigned>(bits)) {}
   [[nodiscard]] unsigned negative() const { return bits_ & 15U; }
   [[nodiscard]] unsigned zero() const { return (bits_ >> 4U) & 15U; }
-  [[nodiscard]] unsigned open() const { return (bits_ >> 8U) & 15U; }   // by the filter
-  [[nodiscard]] bool is_valid() const { return (bits_ & valid) != 0; }  // the simplex is proved positive
-  [[nodiscard]] bool is_exact() const { return (bits_ & exact) != 0; }  // else open ones are unknown
+  [[nodiscard]] unsigned open() const { return (bits_ >> 8U) & 15U; }  // by the filter
+  // The simplex is proved positive, and on which sides of these facets the point is.
+  [[nodiscard]] bool is_known(unsigned facets = 15) const {
+    return (bits_ & valid) != 0 && ((open() & facets) == 0 || (bits_ & exact) != 0);
+  }
   [[nodiscard]] bool is_inside() const { return bits_ == unsigned{1} << 12U; }
 
  private:
