@@ -129,12 +129,14 @@ TEST(Stars, TellWhereAPointIsHeldTwice) {
   const std::vector<ImplicitSimplex> chain = {{{0, 1, 2, 3}, {facet(1, 3), face(0), face(1), face(2)}},
                                               {{1, 2, 3, 4}, {facet(2, 3), face(3), face(4), facet(0, 0)}},
                                               {{2, 3, 4, 0}, {face(5), face(6), face(7), facet(1, 0)}}};
-  const Stars pinched(chain);
+  const std::vector<Stars::Fan> fans = {{{0, 2, 3}}, {{0, 1, 3}}, {{0, 1, 2}}, {{1, 3, 4}},
+                                        {{1, 2, 4}}, {{3, 4, 0}}, {{2, 4, 0}}, {{2, 3, 0}}};
+  const Stars pinched(chain, fans);
   EXPECT_FALSE(pinched.one_each());
   EXPECT_NE(pinched.star(0, 1), pinched.star(2, 8));
   EXPECT_EQ(pinched.star(0, 2), pinched.star(1, 1));
   EXPECT_EQ(pinched.outer_facets(pinched.star(0, 1)).size(), 3U);
-  EXPECT_TRUE(Stars(std::span(chain).first(0)).empty());
+  EXPECT_TRUE(Stars(std::span(chain).first(0), {}).empty());
 }
 
 }  // namespace dartcast::test::star_test

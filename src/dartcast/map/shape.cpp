@@ -70,7 +70,7 @@ Shape::Shape(ShapeKey key) : key_(std::move(key)) {
   make_simplices();
   connect_simplices();
   const bool flat = simplices_[0].vertex[0] == simplices_[0].vertex[1];
-  if (!flat) stars_ = Stars(simplices_);
+  if (!flat) make_stars();
 }
 
 void Shape::number_darts() {
@@ -236,9 +236,31 @@ Shape::Feature Shape::feature(std::span<const std::uint16_t> points) const {
   return inside;
 }
 
+void Shape::make_stars() {
+  std::vector<Stars::Fan> fans(face_count());
+  for (std::uint16_t f = 0; f < face_count(); ++f) {
+    for (std::uint16_t t = 0; t < triangle_count(f); ++t) fans[f].push_back(triangle(f, t));
+  }
+  stars_ = Stars(simplices_, fans);
+  features_.resize(stars_.size());
+  std::vector<bool> known(stars_.size());
+  for (std::uint16_t s = 0; s < simplices_.size(); ++s) {
+    for (unsigned corners = 1; corners < 16; ++corners) {
+      if (std::popcount(corners) > 2) continue;
+      const std::uint16_t star = stars_.star(s, corners);
+      if (known[star]) continue;
+      known[star] = true;
+      const std::array<std::uint16_t, 2> points = {
+          simplices_[s].vertex[static_cast<std::size_t>(std::countr_zero(corners))],
+          simplices_[s].vertex[static_cast<std::size_t>(std::bit_width(corners)) - 1U]};
+      features_[star] = feature(std::span(points).first(static_cast<std::size_t>(std::popcount(corners))));
+    }
+  }
+}
+
 std::size_t Shape::bytes() const {
   return sizeof(Shape) + dart_count() * 4U * sizeof(std::uint16_t) + simplices_.size() * sizeof(ImplicitSimplex) +
-         entries_.size() * sizeof(Across) + stars_.bytes();
+         entries_.size() * sizeof(Across) + stars_.bytes() + features_.size() * sizeof(Feature);
 }
 
 }  // namespace dartcast

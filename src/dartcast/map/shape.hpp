@@ -125,6 +125,11 @@ class Shape {
   /// The cell of the map whose interior holds the relative interior of the given points' hull. `points`: local numbers,
   /// 1 to 4 corners of one simplex.
   [[nodiscard]] Feature feature(std::span<const std::uint16_t> points) const;
+  /// The same of one or two corners of a simplex, in the mask `corners`; by looking it up. Precondition: stars() is not
+  /// empty.
+  [[nodiscard]] Feature feature(std::uint16_t simplex, unsigned corners) const {
+    return features_[stars_.star(simplex, corners)];
+  }
 
   [[nodiscard]] std::size_t bytes() const;
 
@@ -135,6 +140,7 @@ class Shape {
   void make_triangles();
   void connect_simplices();
   void make_flat();
+  void make_stars();
 
   ShapeKey key_;
   unsigned dimension_ = 3;
@@ -143,6 +149,7 @@ class Shape {
   std::vector<std::uint16_t> origin_, face_of_, first_dart_, phi2_;
   std::vector<ImplicitSimplex> simplices_;
   Stars stars_;
+  std::vector<Feature> features_;  // of each star
   std::vector<std::uint16_t> first_entry_;
   std::vector<Across> entries_;
 };

@@ -21,17 +21,29 @@ class Stars {
     std::uint16_t simplex;
     std::uint16_t facet;
     std::uint16_t face;
-    std::uint16_t triangle;  ///< of the face's fan
+    std::uint16_t rest;      ///< so many more of this face follow
+    std::uint16_t triangle;  ///< of the face's fan, by the number that the neighbour gives to it
+    std::uint16_t
+        held;  ///< bits of the triangle's corners that are the point's or the edge's, as the neighbour has them
   };
 
+  /// The triangles of a face's fan, by the points that are their corners.
+  using Fan = std::vector<std::array<std::uint16_t, 3>>;
+
   Stars() = default;
-  /// `simplices`: connected; none of them flat. Cost: linear but for sorting.
-  explicit Stars(std::span<const ImplicitSimplex> simplices);
+  /// `simplices`: connected, none of them flat. `fans`: of all faces that these reach. Cost: linear but for sorting.
+  Stars(std::span<const ImplicitSimplex> simplices, std::span<const Fan> fans);
 
   /// The star of a simplex around its corners in the mask `corners`, one or two of them.
   [[nodiscard]] std::uint16_t star(std::uint16_t simplex, unsigned corners) const {
     return star_[simplex * features + feature_of_mask[corners]];
   }
+  /// The star around corners of a triangle of a face, in the mask `held`, one or two of them: of the simplex behind it.
+  [[nodiscard]] std::uint16_t star_behind(std::uint16_t face, std::uint16_t triangle, unsigned held) const {
+    return behind_[(first_triangle_[face] + triangle) * masks + held];
+  }
+  /// Stars are numbered from 0 on.
+  [[nodiscard]] std::size_t size() const { return first_.size() - 1; }
   /// The star's triangles of faces that hold the point or the edge; those of one face come one after another.
   [[nodiscard]] std::span<const Facet> outer_facets(std::uint16_t star) const {
     return {facets_.data() + first_[star], facets_.data() + first_[star + 1U]};
@@ -43,13 +55,18 @@ class Stars {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
+  static constexpr std::size_t masks = 8;      // of a triangle's corners
   static constexpr std::size_t features = 10;  // of a simplex: four corners, six edges
   static constexpr std::array<std::uint8_t, 16> feature_of_mask = {0, 0, 1, 4, 2, 5, 6, 0, 3, 7, 8, 0, 9, 0, 0, 0};
 
-  void add_star(std::span<const ImplicitSimplex> simplices, std::uint16_t simplex, unsigned corners);
+  void add_star(std::span<const ImplicitSimplex> simplices, std::span<const Fan> fans, std::uint16_t simplex,
+                unsigned corners);
+  void add_triangles(std::span<const ImplicitSimplex> simplices, std::span<const Fan> fans);
 
-  std::vector<std::uint16_t> star_;  // of each feature of each simplex
-  std::vector<std::uint32_t> first_;
+  std::vector<std::uint16_t> star_;            // of each feature of each simplex
+  std::vector<std::uint16_t> behind_;          // of each mask of corners of each triangle
+  std::vector<std::uint32_t> first_triangle_;  // of each face
+  std::vector<std::uint32_t> first_ = {0};
   std::vector<Facet> facets_;
   bool one_each_ = true;
 };

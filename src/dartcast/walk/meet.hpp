@@ -160,15 +160,13 @@ Vec3 wall_displacement(const Complex& complex, SimplexId simplex, unsigned facet
 
 /// The cell of the map that holds the points of a simplex in whose interior a point with these zero facets lies.
 template <std::size_t N>
-Shape::Feature map_feature(const Shape& shape, const ImplicitSimplex& s, unsigned wall_facet, unsigned zeros) {
+Shape::Feature map_feature(const Shape& shape, std::uint16_t simplex, unsigned wall_facet, unsigned zeros) {
+  const ImplicitSimplex& s = shape.simplices()[simplex];
   if (zeros == 1U << wall_facet)  // inside the facet
     return {static_cast<Kind>(N - 2), shape.first_dart(s.across[wall_facet].face())};
-  std::array<std::uint16_t, N> points{};
-  std::size_t count = 0;
-  for (unsigned i = 0; i < N; ++i) {
-    if (((zeros >> i) & 1U) == 0) points[count++] = s.vertex[i];
-  }
-  return shape.feature(std::span<const std::uint16_t>(points.data(), count));
+  if (N == 4) return shape.feature(simplex, 15U & ~zeros);
+  const std::uint16_t corner = s.vertex[static_cast<std::size_t>(std::countr_zero(7U & ~zeros))];
+  return shape.feature(std::span<const std::uint16_t>(&corner, 1));
 }
 
 /// For a walk that ends on a wall the facets of the wall's simplex that q lies on: those that hold what it lies on in
@@ -207,7 +205,7 @@ double describe_contact(const Space<Positions, N>& space, const Walk& w, const s
   const CellView cell = space.map->view(w.wall_simplex.cell);
   const ImplicitSimplex& s = cell.shape().simplices()[w.wall_simplex.simplex];
   const auto [t, zeros] = meeting(*space.map, v, wall, w, p, q);
-  const Shape::Feature feature = map_feature<N>(cell.shape(), s, w.wall_facet, zeros);
+  const Shape::Feature feature = map_feature<N>(cell.shape(), w.wall_simplex.simplex, w.wall_facet, zeros);
   contact.kind = feature.kind;
   contact.dart = {w.wall_simplex.cell, feature.dart};
   contact.first_wall = static_cast<std::uint32_t>(list.walls.size());

@@ -63,17 +63,13 @@ struct Passage {
   SimplexId simplex;
   std::uint16_t facet;
 };
-/// Through a triangle of a face, to the neighbour.
-inline Passage pass_face(const CellView& cell, std::uint16_t face, std::uint16_t triangle, Cell next,
-                         const CellView& beyond) {
-  const Across entry =
-      beyond.shape().entry(cell.neighbour_face(face), cell.shape().triangle_from_other_side(face, triangle));
-  return {{next, entry.index}, entry.place};
-}
 inline Passage pass(const Map& map, SimplexId from, const CellView& cell, Across across) {
   if (!across.outer()) return {{from.cell, across.index}, across.place};
-  const Cell next = cell.neighbour(across.face());
-  return pass_face(cell, across.face(), across.place, next, map.view(next));
+  const std::uint16_t face = across.face();
+  const Cell next = cell.neighbour(face);
+  const Across entry =
+      map.shape(next).entry(cell.neighbour_face(face), cell.shape().triangle_from_other_side(face, across.place));
+  return {{next, entry.index}, entry.place};
 }
 
 }  // namespace dartcast

@@ -17,10 +17,15 @@ namespace dartcast {
 
 /// 1 to 3 vertices: the simplex of the complex in whose interior a point lies.
 struct Feature {
-  std::array<Vertex, 4> vertex;
+  std::array<Vertex, 4> vertex;  // the first `count`
   unsigned count = 0;
 
   void add(Vertex v) { vertex[count++] = v; }
+  /// Where `held`, which cannot be foretold: without a branch.
+  void add_if(bool held, Vertex v) {
+    vertex[count] = v;
+    count += held ? 1U : 0U;
+  }
 };
 
 /// Bit i is set where the facet opposite to corner i holds the feature.
@@ -37,9 +42,8 @@ unsigned facets_holding(const Feature& feature, const CellView& cell, const Impl
 
 namespace detail {
 
-// Codes found so far, each key once, in order. Stars have some tens: then all stays on the stack, and nothing is
+// Codes found so far, each once, in order. Stars have some tens: then all stays on the stack, and nothing is
 // written before it is needed.
-template <std::uint64_t key_mask>
 class Found {
  public:
   /// One that was not found before, nor will be again.
@@ -48,17 +52,20 @@ class Found {
     near_[count_++] = code;
   }
   void add(std::uint64_t code) {
-    const std::uint64_t key = code & key_mask;
+    if (!hashes_) {
+      hashes_ = true;
+      place_.fill(0);
+    }
     if (count_ < near_.size()) {
-      std::size_t slot = (key * 0x9e3779b97f4a7c15U) >> (64U - slot_bits);
+      std::size_t slot = (code * 0x9e3779b97f4a7c15U) >> (64U - slot_bits);
       for (; place_[slot] != 0; slot = (slot + 1) % place_.size()) {
-        if ((near_[place_[slot] - 1U] & key_mask) == key) return;
+        if (near_[place_[slot] - 1U] == code) return;
       }
       near_[count_++] = code;
       place_[slot] = static_cast<std::uint8_t>(count_);
       return;
     }
-    add_far(code, key);
+    add_far(code);
   }
   [[nodiscard]] std::size_t size() const { return count_; }
   [[nodiscard]] std::uint64_t operator[](std::size_t i) const {
@@ -68,55 +75,60 @@ class Found {
  private:
   struct Far {
     std::vector<std::uint64_t> codes;
-    std::unordered_set<std::uint64_t> keys;  // of all
+    std::unordered_set<std::uint64_t> known;  // all
   };
 
-  void add_far(std::uint64_t code, std::uint64_t key) {
-    if (!far_) {
-      far_.emplace();
-      for (const std::uint64_t known : near_) far_->keys.insert(known & key_mask);
-    }
-    if (!far_->keys.insert(key).second) return;
+  void add_far(std::uint64_t code) {
+    if (!far_) far_.emplace().known.insert(near_.begin(), near_.end());
+    if (!far_->known.insert(code).second) return;
     far_->codes.push_back(code);
     ++count_;
   }
 
   static constexpr unsigned slot_bits = 7;
 
-  std::array<std::uint64_t, 64> near_;                 // the first count_
-  std::array<std::uint8_t, 1U << slot_bits> place_{};  // hash table: one more than the place in near_, 0 where empty
+  std::array<std::uint64_t, 64> near_;               // the first count_
+  std::array<std::uint8_t, 1U << slot_bits> place_;  // hash table: one more than the place in near_, 0 where empty
   std::size_t count_ = 0;
+  bool hashes_ = false;  // most often nothing need be looked for
   std::optional<Far> far_;
 };
 
-// Cell, simplex and, of its shape, star: the simplex only says where the star was entered.
-constexpr std::uint64_t code_of(SimplexId s, std::uint16_t star) {
-  return (std::uint64_t{s.cell.value} << 32U) | (std::uint64_t{s.simplex} << 16U) | star;
-}
-constexpr SimplexId simplex_of(std::uint64_t code) {
-  return {Cell(static_cast<std::uint32_t>(code >> 32U)), static_cast<std::uint16_t>(code >> 16U)};
-}
+// A cell, and a simplex or a star of its shape.
+constexpr std::uint64_t code_of(Cell c, std::uint16_t number) { return (std::uint64_t{c.value} << 16U) | number; }
+constexpr Cell cell_of(std::uint64_t code) { return Cell(static_cast<std::uint32_t>(code >> 16U)); }
+constexpr std::uint16_t number_of(std::uint64_t code) { return static_cast<std::uint16_t>(code); }
 
-// Cells of which nothing more can be found: the first few of them, to be passed by at once.
+// Cells of which nothing more can be found: the first few of them, to be passed by at once. Which of them it is that is
+// met again cannot be foretold: four are compared at once.
 class FewCells {
  public:
   /// Returns false: there is no room.
   bool add(Cell c) {
-    if (count_ == cells_.size()) return false;
-    cells_[count_++] = c;
+    if (count_ == most) return false;
+    // As a whole: a part just written could not be read along with the others yet.
+    Four& four = cells_[count_ / 4];
+    const std::uint32_t lane = count_ % 4;
+    four = lane == 0 ? all(c.value) : (Four{0, 1, 2, 3} == all(lane)) ? all(c.value) : four;
+    ++count_;
     return true;
   }
   [[nodiscard]] bool has(Cell c) const {
-    return std::find(cells_.begin(), cells_.begin() + count_, c) != cells_.begin() + count_;
+    Bits found{};
+    for (std::uint32_t i = 0; 4 * i < count_; ++i) found |= reinterpret_cast<Bits>(cells_[i] == all(c.value));
+    return (found[0] | found[1]) != 0;
   }
 
  private:
-  std::array<Cell, 16> cells_;
-  std::size_t count_ = 0;
-};
+  using Four = std::uint32_t __attribute__((vector_size(16)));
+  using Bits = std::uint64_t __attribute__((vector_size(16)));
+  static Four all(std::uint32_t x) { return Four{x, x, x, x}; }
 
-using FoundSimplices = Found<~std::uint64_t{0xffff}>;
-using FoundStars = Found<~(std::uint64_t{0xffff} << 16U)>;
+  static constexpr std::uint32_t most = 16;
+
+  std::array<Four, most / 4> cells_;  // in the last four the first one again where there are not as many
+  std::uint32_t count_ = 0;
+};
 
 }  // namespace detail
 
@@ -125,10 +137,10 @@ using FoundStars = Found<~(std::uint64_t{0xffff} << 16U)>;
 /// search by returning false. Purely combinatorial: no coordinate is read. Cost: linear in the star.
 template <std::size_t N = 4, class OnSimplex>
 void search_star(const Map& map, SimplexId start, const Feature& feature, OnSimplex&& on_simplex) {
-  detail::FoundSimplices found;
-  found.add(detail::code_of(start, 0));
+  detail::Found found;
+  found.add(detail::code_of(start.cell, start.simplex));
   for (std::size_t next = 0; next < found.size(); ++next) {
-    const SimplexId id = detail::simplex_of(found[next]);
+    const SimplexId id = {detail::cell_of(found[next]), detail::number_of(found[next])};
     const CellView cell = map.view(id.cell);
     const ImplicitSimplex& s = cell.shape().simplices()[id.simplex];
     if (!on_simplex(id, cell, s)) return;
@@ -137,7 +149,8 @@ void search_star(const Map& map, SimplexId start, const Feature& feature, OnSimp
       const auto facet = static_cast<std::uint16_t>(std::countr_zero(facets));
       const Across across = s.across[facet];
       if (across.outer() && cell.is_wall(across.face())) continue;
-      found.add(detail::code_of(pass(map, id, cell, across).simplex, 0));
+      const SimplexId beyond = pass(map, id, cell, across).simplex;
+      found.add(detail::code_of(beyond.cell, beyond.simplex));
     }
   }
 }
@@ -165,35 +178,37 @@ void search_plane_walls(const Map& map, SimplexId start, const Feature& feature,
 template <std::size_t N = 4, class OnWall>
 void search_walls(const Map& map, SimplexId start, const Feature& feature, OnWall&& on_wall) {
   if constexpr (N == 3) return detail::search_plane_walls(map, start, feature, on_wall);
-  detail::FoundStars found;
+  detail::Found found;
   detail::FewCells whole;
-  const auto add = [&](SimplexId id, const CellView& cell) {
-    const Stars& stars = cell.shape().stars();
-    const unsigned beside = facets_holding(feature, cell, cell.shape().simplices()[id.simplex]);
-    const std::uint64_t code = detail::code_of(id, stars.star(id.simplex, 15U & ~beside));
-    if (stars.one_each() && whole.add(id.cell)) return found.push(code);
+  const auto add = [&](Cell c, const Stars& stars, std::uint16_t star) {
+    const std::uint64_t code = detail::code_of(c, star);
+    if (stars.one_each() && whole.add(c)) return found.push(code);
     found.add(code);
   };
-  add(start, map.view(start.cell));
+  const CellView first = map.view(start.cell);
+  const unsigned beside = facets_holding(feature, first, first.shape().simplices()[start.simplex]);
+  add(start.cell, first.shape().stars(), first.shape().stars().star(start.simplex, 15U & ~beside));
   for (std::size_t next = 0; next < found.size(); ++next) {
-    const Cell at = detail::simplex_of(found[next]).cell;
+    const Cell at = detail::cell_of(found[next]);
     const CellView cell = map.view(at);
     const Shape& shape = cell.shape();
-    std::uint16_t passed = shape.face_count();  // the face before, where one look is enough
-    for (const Stars::Facet& outer : shape.stars().outer_facets(static_cast<std::uint16_t>(found[next]))) {
-      if (outer.face == passed) continue;
-      if (cell.is_wall(outer.face)) {
-        if (!on_wall(SimplexId{at, outer.simplex}, cell, shape.simplices()[outer.simplex], outer.facet)) return;
+    const auto outer = shape.stars().outer_facets(detail::number_of(found[next]));
+    for (std::size_t i = 0; i < outer.size(); i += outer[i].rest + std::size_t{1}) {  // face by face
+      const auto of_face = outer.subspan(i, outer[i].rest + std::size_t{1});
+      const std::uint16_t face = outer[i].face;
+      if (cell.is_wall(face)) {
+        for (const Stars::Facet& f : of_face) {
+          if (!on_wall(SimplexId{at, f.simplex}, cell, shape.simplices()[f.simplex], f.facet)) return;
+        }
         continue;
       }
-      const Cell neighbour = cell.neighbour(outer.face);
-      if (!whole.has(neighbour)) {
-        const CellView beyond = map.view(neighbour);
-        if (beyond.shape().stars().empty()) continue;  // flat: no way through
-        add(pass_face(cell, outer.face, outer.triangle, neighbour, beyond).simplex, beyond);
-        if (!beyond.shape().stars().one_each()) continue;
-      }
-      passed = outer.face;
+      const Cell neighbour = cell.neighbour(face);
+      if (whole.has(neighbour)) continue;
+      const Stars& stars = map.shape(neighbour).stars();
+      if (stars.empty()) continue;  // flat: no way through
+      const std::uint16_t from_there = cell.neighbour_face(face);
+      for (const Stars::Facet& f : of_face.first(stars.one_each() ? 1 : of_face.size()))
+        add(neighbour, stars, stars.star_behind(from_there, f.triangle, f.held));
     }
   }
 }

@@ -180,9 +180,7 @@ Walk walk_to_wall(const Space<Positions, N>& space, SimplexId start, const Vec3&
 template <std::size_t N = 4>
 Feature feature_of(const CellView& cell, const ImplicitSimplex& s, unsigned zeros) {
   Feature feature;
-  for (unsigned i = 0; i < N; ++i) {
-    if (((zeros >> i) & 1U) == 0) feature.add(cell.vertex(s.vertex[i]));
-  }
+  for (unsigned i = 0; i < N; ++i) feature.add_if(((zeros >> i) & 1U) == 0, cell.vertex(s.vertex[i]));
   return feature;
 }
 
