@@ -45,6 +45,7 @@ class Batch {
       count = walk_on(count);
     }
     land_all();
+    if (facet_arrivals_ != 0) remember_exact();
   }
 
  private:
@@ -90,8 +91,13 @@ class Batch {
         const std::uint32_t* record = map_.record(states_[i].cell);
         __builtin_prefetch(record);
         const Signs signs(signs_[leaving_[l]]);
-        if (!std::has_single_bit(signs.negative())) ask_for(now_, vertices_[i]);
-        departures_[count++] = departure(i, signs.negative(), signs.zero(), record);
+        const unsigned behind = signs.negative();
+        departures_[count] = departure(i, behind, signs.zero(), record);
+        unproved_[unproved_count_] = {i, record};
+        if ((behind & (behind - 1)) != 0) ask_for(now_, vertices_[i]);
+        const std::size_t proved = behind != 0 ? 1 : 0;
+        count += proved;
+        unproved_count_ += 1 - proved;
       }
     }
     return depart(count);
@@ -185,25 +191,21 @@ class Batch {
     on_facets_ |= lanes_set(on_facets & ~still_free) << k;
     still_free_ |= lanes_set(still_free) << k;
     inside_ |= lanes_set(still_free) << k;
-    for (std::uint32_t in = (inside_ >> k) & 15U; in != 0; in &= in - 1) {
-      const auto j = static_cast<std::uint32_t>(std::countr_zero(in));
-      Mark& mark = marks_[first + k + j];
-      mark = static_cast<Mark>((mark & exact_mark) | static_cast<Mark>(zeros[j]));
-    }
+    mark_zeros(zeros, inside_ >> k, marks_ + first + k);
   }
 
   // The first way out of each walk. Which of them lead out of their cell cannot be foretold: those come last, in a row.
-  // Walks of whose targets nothing is proved are to be tested where they are.
+  // Walks of whose targets nothing is proved come first: they are to be tested where they are.
   DARTCAST_TARGET std::size_t depart(std::size_t count) {
     std::size_t next = 0;
+    for (; next < unproved_count_; ++next) {
+      const auto [i, record] = unproved_[next];
+      visits_[next] = first_visit(i, states_[i], record, 1, 0);  // three more tests there
+    }
     std::size_t outward = 0;
     for (std::size_t k = 0; k < count; ++k) {
       auto [i, behind, exact, record] = departures_[k];
       const State& s = states_[i];
-      if (behind == 0) {
-        visits_[next++] = first_visit(i, s, record, 1, exact);  // three more tests there
-        continue;
-      }
       std::uint16_t tests = 4;
       auto facet = static_cast<unsigned>(std::countr_zero(behind));
       if (!std::has_single_bit(behind)) {
@@ -399,8 +401,9 @@ class Batch {
 
   // Finds the simplex behind the face that was entered through, and its corners.
   DARTCAST_TARGET void enter(Visit& v, VertexNumbers& corners) const {
-    if (kind == MemoKind::coordinates && !v.through_face && v.place == no_facet) {  // where the step began: asked for
+    if (kind == MemoKind::coordinates && !v.through_face && v.place == no_facet) {  // where the step began
       corners = vertices_[v.particle];
+      ask_for(now_, corners);
       return;
     }
     const CellView cell = map_.view(Cell(v.cell), v.record);
@@ -587,13 +590,8 @@ class Batch {
     State& s = states_[visit.particle];
     s.put({Cell(visit.cell), visit.index}, targets_[visit.particle]);
     s.touching_count = 0;
-    ++counters_.particle_steps;
-    counters_.orientation.tests += visit.tests;
-    counters_.orientation.exact += visit.exact;
-    ++counters_.histogram[std::min<std::size_t>(visit.tests, Counters::histogram_size - 1)];
-    const bool kept = visit.place == no_facet;
-    counters_.forecast_kept += kept ? 1 : 0;
-    if (moved && !kept) counters_.updated_by_deformation += left_behind_[visit.particle] ? 1 : 0;
+    count_step(visit, counters_);
+    if (moved && visit.place != no_facet) counters_.updated_by_deformation += left_behind_[visit.particle] ? 1 : 0;
   }
 
   static constexpr std::uint16_t few_tests = 13;  // three simplices
@@ -622,7 +620,7 @@ class Batch {
     if ((marks_[i] & exact_mark) != 0)
       marks_[i] = static_cast<Mark>(exact_mark | on);
     else if (visit.tests <= few_tests)
-      facet_arrival_[facet_arrivals_++] = {i, static_cast<std::uint16_t>(k), static_cast<Mark>(on)};
+      facet_arrival_[facet_arrivals_++] = {i, static_cast<Mark>(on)};
   }
 
   // Keeps memos of the simplices that walks of the block have ended in.
@@ -637,22 +635,22 @@ class Batch {
         memos_[i / 4].put(i % 4, four.of(arrival_[a].place % 4));
       }
     }
-    if (kind == MemoKind::coordinates && facet_arrivals_ != 0) remember_exact();
   }
 
+  // Of the batch, where targets lie on facets. Few of a block's walks do: four of them are taken together.
   [[gnu::noinline]] DARTCAST_TARGET void remember_exact() {
     MemosOfFour four;
-    for (std::uint32_t a = 0; a < facet_arrivals_;) {
-      const std::uint32_t k = facet_arrival_[a].place / 4U;
-      const unsigned exact = leave_coordinates<true>(determinants_[k], ends_[k], four);
-      for (; a < facet_arrivals_ && facet_arrival_[a].place / 4U == k; ++a) {
-        const auto [i, place, on] = facet_arrival_[a];
-        if (((exact >> (place % 4U)) & 1U) == 0) continue;
-        memos_[i / 4].put(i % 4, four.of(place % 4U));
-        marks_[i] = exact_mark | on;
+    for (std::uint32_t a = 0; a < facet_arrivals_; a += 4) {
+      const Four at = four_from(a, facet_arrivals_);
+      const Four i = particles_of(facet_arrival_.data(), at);
+      const Points q = targets_of(i);
+      const unsigned exact = leave_coordinates<true>(FilteredDeterminants(simplices_of(now_, i), q), q, four);
+      for (std::uint32_t l = 0; l < 4; ++l) {
+        if (((exact >> l) & 1U) == 0) continue;
+        memos_[i.at[l] / 4].put(i.at[l] % 4, four.of(l));
+        marks_[i.at[l]] = exact_mark | facet_arrival_[at.at[l]].on;
       }
     }
-    facet_arrivals_ = 0;
   }
 
   const Map& map_;
@@ -685,15 +683,17 @@ class Batch {
   std::array<std::uint32_t, block> leaving_;
   std::array<Arrival, block> arrival_;
   std::uint32_t arrivals_;
-  std::array<FacetArrival, block> facet_arrival_;
-  std::uint32_t facet_arrivals_ = 0;
 
   // Of the batch.
   std::array<AtWall, filtered_batch> at_walls_;
   std::uint32_t at_wall_count_ = 0;
   std::array<Visit, filtered_batch> visits_;  // walks that go on
   std::array<Departure, filtered_batch> departures_;
+  std::array<Unproved, filtered_batch> unproved_;
+  std::size_t unproved_count_ = 0;
   std::array<Outward, filtered_batch> outward_;
   std::array<MemosOfFour::Table<double>, filtered_batch / 4> began_with_;  // determinants before the move
   std::array<bool, filtered_batch> left_behind_;
+  std::array<FacetArrival, filtered_batch> facet_arrival_;
+  std::uint32_t facet_arrivals_ = 0;
 };

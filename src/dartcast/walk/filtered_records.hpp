@@ -25,13 +25,11 @@ DARTCAST_TARGET inline Visit first_visit(std::uint32_t particle, const State& s,
 DARTCAST_TARGET inline std::optional<SimplexFacet> find_touched_wall(const Map& map, const Visit& visit,
                                                                      const VertexNumbers& corners, unsigned on) {
   Feature feature;
-  for (unsigned i = 0; i < 4; ++i) {
-    if (((on >> i) & 1U) == 0) feature.add(Vertex{corners[i]});
-  }
+  for (unsigned i = 0; i < 4; ++i) feature.add_if(((on >> i) & 1U) == 0, Vertex{corners[i]});
   return find_wall(map, {Cell(visit.cell), visit.index}, on, feature);
 }
 
-// A walk that may leave its first simplex, and what is proved of its target.
+// A walk that leaves its first simplex, and what is proved of its target.
 struct Departure {
   std::uint32_t particle;
   std::uint16_t behind;         // bits of facets that its target is proved to be behind
@@ -42,6 +40,11 @@ DARTCAST_TARGET inline Departure departure(std::uint32_t particle, unsigned behi
                                            const std::uint32_t* record) {
   return {particle, static_cast<std::uint16_t>(behind), static_cast<std::uint16_t>(std::popcount(exact)), record};
 }
+// A walk that may leave its first simplex, of whose target nothing is proved.
+struct Unproved {
+  std::uint32_t particle;
+  const std::uint32_t* record;  // of its cell
+};
 // One that leaves its cell, too.
 struct Outward {
   std::uint32_t particle;
@@ -57,9 +60,16 @@ struct Arrival {
 };
 struct FacetArrival {
   std::uint32_t particle;
-  std::uint16_t place;
   Mark on;
 };
+
+DARTCAST_TARGET inline void count_step(const Visit& visit, Counters& counters) {
+  ++counters.particle_steps;
+  counters.orientation.tests += visit.tests;
+  counters.orientation.exact += visit.exact;
+  ++counters.histogram[std::min<std::size_t>(visit.tests, Counters::histogram_size - 1)];
+  counters.forecast_kept += visit.place == no_facet ? 1 : 0;
+}
 
 // Inlined: a call that does nothing but ask would be left out.
 [[gnu::always_inline]] DARTCAST_TARGET inline void ask_for(const Vec3* positions, const VertexNumbers& v) {
@@ -77,6 +87,11 @@ struct Four {
 DARTCAST_TARGET inline Four four_from(std::uint32_t i, std::uint32_t size) {
   const std::uint32_t last = size - 1;
   return {{i, std::min(i + 1, last), std::min(i + 2, last), std::min(i + 3, last)}};
+}
+
+DARTCAST_TARGET inline Four particles_of(const FacetArrival* arrivals, const Four& i) {
+  return {
+      {arrivals[i.at[0]].particle, arrivals[i.at[1]].particle, arrivals[i.at[2]].particle, arrivals[i.at[3]].particle}};
 }
 
 // What trails keep of a corner.
@@ -99,6 +114,15 @@ DARTCAST_TARGET inline bool any_marked(const Mark* of_four) {
   std::uint32_t four;
   std::memcpy(&four, of_four, sizeof four);
   return four != 0;
+}
+
+// Of four particles those in the mask `which` lie on these facets now. No branch: who does cannot be foretold.
+DARTCAST_TARGET inline void mark_zeros(const Mask& zeros, std::uint32_t which, Mark* of_four) {
+  for (std::uint32_t j = 0; j < 4; ++j) {
+    const auto mark = static_cast<std::uint32_t>(of_four[j]);
+    const std::uint32_t next = (mark & exact_mark) | static_cast<std::uint32_t>(zeros[j]);
+    of_four[j] = static_cast<Mark>(mark ^ ((mark ^ next) & (0U - ((which >> j) & 1U))));
+  }
 }
 
 // Which particles are held, or touch a wall: a bit for each. What says so are two bytes of the word that begins with

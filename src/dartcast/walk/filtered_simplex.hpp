@@ -78,7 +78,8 @@ class Signs {
   [[nodiscard]] unsigned open() const { return (bits_ >> 8U) & 15U; }  // by the filter
   // The simplex is proved positive, and on which sides of these facets the point is.
   [[nodiscard]] bool is_known(unsigned facets = 15) const {
-    return (bits_ & valid) != 0 && ((open() & facets) == 0 || (bits_ & exact) != 0);
+    const bool proved = (open() & facets) == 0;
+    return ((bits_ & valid) != 0) & (proved | ((bits_ & exact) != 0));  // no branches: on lattices, none is likely
   }
   [[nodiscard]] bool is_inside() const { return bits_ == unsigned{1} << 12U; }
 
