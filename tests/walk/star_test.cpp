@@ -64,9 +64,16 @@ std::string compare(const Map& map, std::size_t& with_walls, std::size_t& withou
       for (unsigned corners = 1; corners < 15; ++corners) {
         if (std::popcount(corners) > 2) continue;
         Feature feature;
+        std::vector<std::uint16_t> points;
         for (unsigned i = 0; i < 4; ++i) {
-          if (((corners >> i) & 1U) != 0) feature.add(cell.vertex(s.vertex[i]));
+          if (((corners >> i) & 1U) == 0) continue;
+          feature.add(cell.vertex(s.vertex[i]));
+          points.push_back(s.vertex[i]);
         }
+        const Shape::Feature by_table = cell.shape().feature(n, corners);
+        const Shape::Feature by_search = cell.shape().feature(points);
+        if (by_table.kind != by_search.kind || by_table.dart != by_search.dart)
+          return fmt::format("the feature of cell {}, simplex {}, corners {}", c.value, n, corners);
         const Walls expected = simplex_by_simplex(map, {c, n}, feature);
         if (cell_by_cell(map, {c, n}, feature) != expected)
           return fmt::format("cell {}, simplex {}, corners {}", c.value, n, corners);
