@@ -1,6 +1,7 @@
 #include "dartcast/map/shape.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "dartcast/base/error.hpp"
@@ -87,6 +88,11 @@ void Shape::number_darts() {
     face_of_.insert(face_of_.end(), darts_of_face, f);
     first_dart_.push_back(static_cast<std::uint16_t>(origin_.size()));
   }
+  first_dart_at_.assign(key_.corner_count + 2U, 0);
+  for (const std::uint16_t corner : origin_) ++first_dart_at_[corner + 2U];
+  std::partial_sum(first_dart_at_.begin(), first_dart_at_.end(), first_dart_at_.begin());
+  darts_at_.resize(origin_.size());
+  for (std::uint16_t d = 0; d < origin_.size(); ++d) darts_at_[first_dart_at_[origin_[d] + 1U]++] = d;
 }
 
 void Shape::sew_darts() {
@@ -215,52 +221,46 @@ void Shape::make_flat() {
   }
 }
 
+bool Shape::is_on_face(std::uint16_t point, std::uint16_t face) const {
+  if (point >= key_.corner_count) return face_of_point(point) == face;
+  const auto darts = darts_at(point);
+  return std::any_of(darts.begin(), darts.end(), [&](std::uint16_t d) { return face_of_[d] == face; });
+}
+
 Shape::Feature Shape::feature(std::span<const std::uint16_t> points) const {
   const Feature inside = {static_cast<Kind>(dimension_), 0};
   if (points.size() == dimension_ + 1) return inside;
-  for (std::uint16_t f = 0; f < face_count(); ++f) {
-    const auto on_face = [&](std::uint16_t p) {
-      const auto& corners = key_.faces[f].corners;
-      return p < key_.corner_count ? std::find(corners.begin(), corners.end(), p) != corners.end()
-                                   : face_of_point(p) == f;
-    };
-    if (!std::all_of(points.begin(), points.end(), on_face)) continue;
-    for (std::uint16_t d = first_dart_[f]; d < first_dart_[f + 1]; ++d) {
-      if (points.size() == 1 && origin_[d] == points[0]) return {Kind::vertex, d};
-      if (points.size() == 2 && ((origin_[d] == points[0] && origin_[phi1(d)] == points[1]) ||
-                                 (origin_[d] == points[1] && origin_[phi1(d)] == points[0])))
-        return {Kind::edge, d};
-    }
-    if (dimension_ == 3) return {Kind::face, first_dart_[f]};
+  if (points.size() == 1 && points[0] < key_.corner_count) return {Kind::vertex, darts_at(points[0]).front()};
+  const auto corner = std::find_if(points.begin(), points.end(), [&](auto p) { return p < key_.corner_count; });
+  if (corner == points.end()) {
+    const std::uint16_t f = face_of_point(points[0]);
+    return points.size() == 1 && f < face_count() ? Feature{Kind::face, first_dart_[f]} : inside;
+  }
+  const std::uint16_t other = points[*corner == points[0] ? points.size() - 1 : 0];
+  for (const std::uint16_t d : darts_at(*corner)) {  // in the order of faces
+    if (points.size() == 2 && origin_[phi1(d)] == other) return {Kind::edge, d};
+    if (points.size() == 2 && origin_[phi_1(d)] == other) return {Kind::edge, phi_1(d)};
+    const auto on_face = [&](std::uint16_t p) { return p == *corner || is_on_face(p, face_of_[d]); };
+    if (dimension_ == 3 && std::all_of(points.begin(), points.end(), on_face))
+      return {Kind::face, first_dart_[face_of_[d]]};
   }
   return inside;
 }
 
 void Shape::make_stars() {
-  std::vector<Stars::Fan> fans(face_count());
+  Stars::Fans fans;
+  fans.triangles.reserve(entries_.size());
+  fans.first.assign(first_entry_.begin(), first_entry_.end());
+  fans.first.push_back(static_cast<std::uint32_t>(entries_.size()));
   for (std::uint16_t f = 0; f < face_count(); ++f) {
-    for (std::uint16_t t = 0; t < triangle_count(f); ++t) fans[f].push_back(triangle(f, t));
+    for (std::uint16_t t = 0; t < triangle_count(f); ++t) fans.triangles.push_back(triangle(f, t));
   }
   stars_ = Stars(simplices_, fans);
-  features_.resize(stars_.size());
-  std::vector<bool> known(stars_.size());
-  for (std::uint16_t s = 0; s < simplices_.size(); ++s) {
-    for (unsigned corners = 1; corners < 16; ++corners) {
-      if (std::popcount(corners) > 2) continue;
-      const std::uint16_t star = stars_.star(s, corners);
-      if (known[star]) continue;
-      known[star] = true;
-      const std::array<std::uint16_t, 2> points = {
-          simplices_[s].vertex[static_cast<std::size_t>(std::countr_zero(corners))],
-          simplices_[s].vertex[static_cast<std::size_t>(std::bit_width(corners)) - 1U]};
-      features_[star] = feature(std::span(points).first(static_cast<std::size_t>(std::popcount(corners))));
-    }
-  }
 }
 
 std::size_t Shape::bytes() const {
-  return sizeof(Shape) + dart_count() * 4U * sizeof(std::uint16_t) + simplices_.size() * sizeof(ImplicitSimplex) +
-         entries_.size() * sizeof(Across) + stars_.bytes() + features_.size() * sizeof(Feature);
+  return sizeof(Shape) + (dart_count() * 5U + key_.corner_count) * sizeof(std::uint16_t) +
+         simplices_.size() * sizeof(ImplicitSimplex) + entries_.size() * sizeof(Across) + stars_.bytes();
 }
 
 }  // namespace dartcast

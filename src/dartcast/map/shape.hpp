@@ -123,13 +123,8 @@ class Shape {
     std::uint16_t dart;  ///< of that face, edge or vertex (its origin); of no meaning for a volume
   };
   /// The cell of the map whose interior holds the relative interior of the given points' hull. `points`: local numbers,
-  /// 1 to 4 corners of one simplex.
+  /// 1 to 4 corners of one simplex. Cost: linear in the faces at the first of them.
   [[nodiscard]] Feature feature(std::span<const std::uint16_t> points) const;
-  /// The same of one or two corners of a simplex, in the mask `corners`; by looking it up. Precondition: stars() is not
-  /// empty.
-  [[nodiscard]] Feature feature(std::uint16_t simplex, unsigned corners) const {
-    return features_[stars_.star(simplex, corners)];
-  }
 
   [[nodiscard]] std::size_t bytes() const;
 
@@ -141,15 +136,19 @@ class Shape {
   void connect_simplices();
   void make_flat();
   void make_stars();
+  [[nodiscard]] bool is_on_face(std::uint16_t point, std::uint16_t face) const;
+  [[nodiscard]] std::span<const std::uint16_t> darts_at(std::uint16_t corner) const {
+    return {darts_at_.data() + first_dart_at_[corner], darts_at_.data() + first_dart_at_[corner + 1U]};
+  }
 
   ShapeKey key_;
   unsigned dimension_ = 3;
   std::uint16_t face_count_ = 0;
   std::uint16_t point_count_ = 0;
   std::vector<std::uint16_t> origin_, face_of_, first_dart_, phi2_;
+  std::vector<std::uint16_t> darts_at_, first_dart_at_;  // by corner: those with this origin
   std::vector<ImplicitSimplex> simplices_;
   Stars stars_;
-  std::vector<Feature> features_;  // of each star
   std::vector<std::uint16_t> first_entry_;
   std::vector<Across> entries_;
 };

@@ -36,13 +36,16 @@ std::uint16_t from_other_side(unsigned corners) {
 
 }  // namespace
 
-Stars::Stars(std::span<const ImplicitSimplex> simplices, std::span<const Fan> fans)
-    : star_(simplices.size() * features, none) {
+Stars::Stars(std::span<const ImplicitSimplex> simplices, const Fans& fans)
+    : star_(simplices.size() * features, none), first_triangle_(fans.first) {
+  constexpr std::array<std::uint8_t, features> one_or_two = {1, 2, 3, 4, 5, 6, 8, 9, 10, 12};  // masks
+  facets_.reserve(6 * fans.triangles.size());
+  std::vector<std::uint16_t> open;
   std::vector<std::pair<std::uint16_t, std::uint16_t>> known;  // points, star by star
   for (std::uint16_t s = 0; s < simplices.size(); ++s) {
-    for (unsigned corners = 1; corners < 16; ++corners) {
-      if (std::popcount(corners) > 2 || star(s, corners) != none) continue;
-      add_star(simplices, fans, s, corners);
+    for (const std::uint8_t corners : one_or_two) {
+      if (star(s, corners) != none) continue;
+      add_star(simplices, fans, s, corners, open);
       known.push_back(points_of(simplices[s].vertex, corners));
     }
   }
@@ -51,11 +54,11 @@ Stars::Stars(std::span<const ImplicitSimplex> simplices, std::span<const Fan> fa
   add_triangles(simplices, fans);
 }
 
-void Stars::add_star(std::span<const ImplicitSimplex> simplices, std::span<const Fan> fans, std::uint16_t simplex,
-                     unsigned corners) {
+void Stars::add_star(std::span<const ImplicitSimplex> simplices, const Fans& fans, std::uint16_t simplex,
+                     unsigned corners, std::vector<std::uint16_t>& open) {
   const auto number = static_cast<std::uint16_t>(first_.size() - 1);
   const auto points = points_of(simplices[simplex].vertex, corners);
-  std::vector<std::uint16_t> open = {simplex};
+  open.assign(1, simplex);
   star_[simplex * features + feature_of_mask[corners]] = number;
   const auto begin = static_cast<std::ptrdiff_t>(facets_.size());
   while (!open.empty()) {
@@ -67,9 +70,10 @@ void Stars::add_star(std::span<const ImplicitSimplex> simplices, std::span<const
       if (((held >> facet) & 1U) != 0) continue;
       const Across across = s.across[facet];
       if (across.outer()) {
-        const Fan& fan = fans[across.face()];
-        facets_.push_back({at, facet, across.face(), 0, static_cast<std::uint16_t>(fan.size() - 1 - across.place),
-                           from_other_side(corners_at(fan[across.place], points))});
+        const std::uint32_t first = fans.first[across.face()];
+        const auto mirrored = static_cast<std::uint16_t>(fans.first[across.face() + 1U] - first - 1U - across.place);
+        const unsigned of_triangle = corners_at(fans.triangles[first + across.place], points);
+        facets_.push_back({at, facet, across.face(), 0, mirrored, from_other_side(of_triangle)});
         continue;
       }
       std::uint16_t& next =
@@ -88,20 +92,15 @@ void Stars::add_star(std::span<const ImplicitSimplex> simplices, std::span<const
   first_.push_back(static_cast<std::uint32_t>(facets_.size()));
 }
 
-void Stars::add_triangles(std::span<const ImplicitSimplex> simplices, std::span<const Fan> fans) {
-  std::uint32_t triangles = 0;
-  for (const Fan& fan : fans) {
-    first_triangle_.push_back(triangles);
-    triangles += static_cast<std::uint32_t>(fan.size());
-  }
-  behind_.assign(triangles * masks, none);
+void Stars::add_triangles(std::span<const ImplicitSimplex> simplices, const Fans& fans) {
+  behind_.assign(fans.triangles.size() * masks, none);
   for (std::uint16_t s = 0; s < simplices.size(); ++s) {
     for (const Across& across : simplices[s].across) {
       if (!across.outer()) continue;
-      const auto& corner = fans[across.face()][across.place];
+      const std::size_t triangle = fans.first[across.face()] + across.place;
       for (unsigned held = 1; held < 7; ++held) {
-        behind_[(first_triangle_[across.face()] + across.place) * masks + held] =
-            star(s, corners_at(simplices[s].vertex, points_of(corner, held)));
+        behind_[triangle * masks + held] =
+            star(s, corners_at(simplices[s].vertex, points_of(fans.triangles[triangle], held)));
       }
     }
   }

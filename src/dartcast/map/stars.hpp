@@ -27,12 +27,15 @@ class Stars {
         held;  ///< bits of the triangle's corners that are the point's or the edge's, as the neighbour has them
   };
 
-  /// The triangles of a face's fan, by the points that are their corners.
-  using Fan = std::vector<std::array<std::uint16_t, 3>>;
+  /// The triangles of the faces' fans, by the points that are their corners.
+  struct Fans {
+    std::vector<std::array<std::uint16_t, 3>> triangles;
+    std::vector<std::uint32_t> first;  ///< of each face; and how many there are
+  };
 
   Stars() = default;
   /// `simplices`: connected, none of them flat. `fans`: of all faces that these reach. Cost: linear but for sorting.
-  Stars(std::span<const ImplicitSimplex> simplices, std::span<const Fan> fans);
+  Stars(std::span<const ImplicitSimplex> simplices, const Fans& fans);
 
   /// The star of a simplex around its corners in the mask `corners`, one or two of them.
   [[nodiscard]] std::uint16_t star(std::uint16_t simplex, unsigned corners) const {
@@ -59,9 +62,9 @@ class Stars {
   static constexpr std::size_t features = 10;  // of a simplex: four corners, six edges
   static constexpr std::array<std::uint8_t, 16> feature_of_mask = {0, 0, 1, 4, 2, 5, 6, 0, 3, 7, 8, 0, 9, 0, 0, 0};
 
-  void add_star(std::span<const ImplicitSimplex> simplices, std::span<const Fan> fans, std::uint16_t simplex,
-                unsigned corners);
-  void add_triangles(std::span<const ImplicitSimplex> simplices, std::span<const Fan> fans);
+  void add_star(std::span<const ImplicitSimplex> simplices, const Fans& fans, std::uint16_t simplex, unsigned corners,
+                std::vector<std::uint16_t>& open);
+  void add_triangles(std::span<const ImplicitSimplex> simplices, const Fans& fans);
 
   std::vector<std::uint16_t> star_;            // of each feature of each simplex
   std::vector<std::uint16_t> behind_;          // of each mask of corners of each triangle

@@ -164,9 +164,13 @@ Shape::Feature map_feature(const Shape& shape, std::uint16_t simplex, unsigned w
   const ImplicitSimplex& s = shape.simplices()[simplex];
   if (zeros == 1U << wall_facet)  // inside the facet
     return {static_cast<Kind>(N - 2), shape.first_dart(s.across[wall_facet].face())};
-  if (N == 4) return shape.feature(simplex, 15U & ~zeros);
-  const std::uint16_t corner = s.vertex[static_cast<std::size_t>(std::countr_zero(7U & ~zeros))];
-  return shape.feature(std::span<const std::uint16_t>(&corner, 1));
+  std::array<std::uint16_t, N> points{};
+  std::size_t count = 0;
+  for (unsigned i = 0; i < N; ++i) {  // no branches: which they are cannot be foretold
+    points[count] = s.vertex[i];
+    count += ((zeros >> i) & 1U) == 0 ? 1U : 0U;
+  }
+  return shape.feature(std::span<const std::uint16_t>(points.data(), count));
 }
 
 /// For a walk that ends on a wall the facets of the wall's simplex that q lies on: those that hold what it lies on in
