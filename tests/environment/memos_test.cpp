@@ -177,4 +177,28 @@ TEST(Memos, NeverChangeAStep) { expect_steps_of_particles_that_keep_nothing(Plac
 // Cells are blocked and freed beside particles that know that they are on no wall.
 TEST(Memos, NeverChangeAStepOnALattice) { expect_steps_of_particles_that_keep_nothing(Places::lattice); }
 
+// The inner facet lies in x + 3y = 0, and its gradient is (1/3, 1, 0), of which a float keeps (g, 1, 0): g x + y is
+// zero, and nothing rounded, where x + 3y is 2^-26.
+TEST(Memos, CoordinatesThatAreRoundedProveNoZeros) {
+  MeshData mesh;
+  mesh.points = {{0, 0, 0}, {3, -1, 0}, {0, 0, 1}, {0, 1, 0}, {1, -2, 0}};
+  mesh.add_cell(CellType::tetrahedron, {{1, 0, 2, 3}});
+  mesh.add_cell(CellType::tetrahedron, {{0, 1, 2, 4}});
+  Environment environment(mesh);
+  const double third = 1.0F / 3.0F;
+  const Vec3 on_facet = {1.5, -0.5, 0.25};
+  for (const Vec3& off : {Vec3{0.5, -0.5 * third, 0}, Vec3{-0.5, 0.5 * third, 0}}) {
+    Particles set;
+    for (const Vec3& start : {Vec3{0.75, 0, 0.25}, Vec3{1, -0.75, 0.25}}) environment.add(set, std::span(&start, 1));
+    ASSERT_EQ(set.size(), 2U);
+    const std::vector<Vec3> starts = {set[0].position, set[1].position};
+    for (int i = 0; i < 3; ++i) environment.advance(set, starts);
+    environment.advance(set, std::vector<Vec3>(2, on_facet));
+    ASSERT_EQ(check_states(environment, set), "");
+    environment.advance(set, std::vector<Vec3>(2, on_facet + off));
+    EXPECT_EQ(set[0].position, on_facet + off);
+    EXPECT_EQ(check_states(environment, set), "");
+  }
+}
+
 }  // namespace dartcast::test::memos_test
