@@ -56,6 +56,12 @@ inline unsigned lanes_set(const Mask& m) {
 
 inline Quad widened(const Floats& x) { return __builtin_convertvector(x, Quad); }
 inline Floats narrowed(const Quad& x) { return __builtin_convertvector(x, Floats); }
+// Two doubles from each of two places.
+inline Quad load_pairs(const double* a, const double* b) {
+  const Pair low = *reinterpret_cast<const UnalignedPair*>(a);
+  const Pair high = *reinterpret_cast<const UnalignedPair*>(b);
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3);
+}
 inline Quad root(const Quad& x) { return Quad{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])}; }
 
 #define DARTCAST_TARGET
@@ -83,6 +89,10 @@ DARTCAST_TARGET inline unsigned lanes_set(const Mask& m) {
 // The compiler makes two halves of __builtin_convertvector.
 DARTCAST_TARGET inline Quad widened(const Floats& x) { return _mm256_cvtps_pd(x); }
 DARTCAST_TARGET inline Floats narrowed(const Quad& x) { return _mm256_cvtpd_ps(x); }
+// The compiler moves a half from register to register.
+DARTCAST_TARGET inline Quad load_pairs(const double* a, const double* b) {
+  return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(a)), _mm_loadu_pd(b), 1);
+}
 DARTCAST_TARGET inline Quad root(const Quad& x) { return _mm256_sqrt_pd(x); }
 
 #include "dartcast/walk/filtered_kernel.hpp"

@@ -71,9 +71,6 @@ class Batch {
           leave_simplex(visit, vertices_[i], leaving_[l]);
         }
       }
-      if constexpr (moved) {  // who goes on, or is left, gets another one later
-        for (std::uint32_t k = 0; k < n; k += 4) leave_trails(determinants_[k / 4], memos_[(first + k) / 4]);
-      }
     }
     return depart(count);
   }
@@ -124,27 +121,31 @@ class Batch {
     rides_inside_ = 0;
     arrivals_ = 0;
     for (std::uint32_t k = 0; k < n; k += 4) {
-      for (std::uint32_t j = 0; j < 4; ++j) ask_ahead(first + k + j);
+      ask_ahead(first + k);
       const Four i = four_from(first + k, size_);
       const Tetrahedra now = simplices_of(now_, i);
       const Points q = targets_from(first + k);
-      const FilteredDeterminants& d = *new (&determinants_[k / 4]) FilteredDeterminants(now, q);
+      const FilteredDeterminants d(now, q);
       const Mask signs = d.signs(now, q);
       store_signs(signs, k);
       inside_ |= lanes_set(signs == splat_bits(Signs::valid)) << k;
       if constexpr (moved) {
-        const OnePart one(memos_[i.at[0] / 4], d.relative, places_of(i), q, tolerance_);
+        MemosOfFour& trails = memos_[i.at[0] / 4];
+        const OnePart one(trails, d.relative, places_of(i), q, tolerance_);
         Mask proved = one.by_size();
         if (lanes_set(proved) != 15U) proved |= one.by_shape();
         one_part_ |= lanes_set(proved) << k;
-        rides_inside_ |= lanes_set(surely_rides_inside(memos_[i.at[0] / 4], d, q)) << k;
-        began_with_[i.at[0] / 4] = memos_[i.at[0] / 4].w;
+        rides_inside_ |= lanes_set(surely_rides_inside(trails, d, q)) << k;
+        began_with_[i.at[0] / 4] = trails.w;
+        leave_trails(d, trails);  // who goes on, or is left, gets another one later
       }
     }
   }
 
+  // For four particles from i on, a block before they are tested.
   [[gnu::always_inline]] DARTCAST_TARGET void ask_ahead(std::uint32_t i) const {
-    ask_for(now_, vertices_[std::min(i + block, size_ - 1)]);
+    const std::uint32_t end = std::min(i + block + 4, size_);
+    for (i += block; i < end; ++i) ask_for(now_, vertices_[i]);
   }
 
   DARTCAST_TARGET void store_signs(const Mask& signs, std::size_t k) {
@@ -309,9 +310,9 @@ class Batch {
   }
   // None where the filter does not prove that this lies inside of the moved simplex.
   [[nodiscard]] DARTCAST_TARGET std::optional<Vec3> ridden_alone(std::uint32_t i) const {
-    const Memo trail = memos_[i / 4].of(i % 4);
-    if (is_unknown(trail)) return std::nullopt;
-    const Vec3 x = ridden(i, trail.w);
+    const Weights w = determinants_of(began_with_.data(), i);
+    if (is_unknown(w)) return std::nullopt;
+    const Vec3 x = ridden(i, w);
     return Determinants(corners_of(now_, vertices_[i]), x).all_proved_positive() ? std::optional(x) : std::nullopt;
   }
 
@@ -353,7 +354,7 @@ class Batch {
     const unsigned behind = lanes_set(FilteredDeterminants(now, places_of(i)).any_negative());
     unsigned on = 0;
     for (std::uint32_t l = 0; l < 4; ++l) on |= ((rides_inside_ >> (i.at[l] - first)) & 1U) << l;
-    if (on != 15U) on |= rides_inside(memos_, i, now, targets_of(i));
+    if (on != 15U) on |= rides_inside(began_with_.data(), i, now, targets_of(i));
     for (std::uint32_t l = 0; l < count; ++l) {
       const std::uint32_t particle = i.at[l];
       if (((on >> l) & 1U) == 0) {
@@ -473,9 +474,7 @@ class Batch {
   // Few walks ask where they began: those that come to a wall, or to several facets that the target is behind.
   [[nodiscard]] DARTCAST_TARGET Vec3 start_of(std::uint32_t i) const {
     if constexpr (!moved) return states_[i].position;
-    Weights w;
-    for (unsigned c = 0; c < 4; ++c) w[c] = began_with_[i / 4][c][i % 4];
-    return ridden(i, w);
+    return ridden(i, determinants_of(began_with_.data(), i));
   }
 
   DARTCAST_TARGET bool pass_on(Visit& visit, const VertexNumbers& corners, unsigned facet) {

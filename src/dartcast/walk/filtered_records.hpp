@@ -94,15 +94,20 @@ DARTCAST_TARGET inline Four particles_of(const FacetArrival* arrivals, const Fou
       {arrivals[i.at[0]].particle, arrivals[i.at[1]].particle, arrivals[i.at[2]].particle, arrivals[i.at[3]].particle}};
 }
 
-// What trails keep of a corner.
-DARTCAST_TARGET inline Quad determinants_of(const MemosOfFour* memos, const Four& i, unsigned corner) {
-  const auto of = [&](std::uint32_t particle) { return memos[particle / 4].w[corner][particle % 4]; };
+// What a trail keeps, of all corners of one particle, and of one corner of four.
+DARTCAST_TARGET inline Weights determinants_of(const MemosOfFour::Table<double>* w, std::uint32_t i) {
+  Weights of_corner;
+  for (unsigned c = 0; c < 4; ++c) of_corner[c] = w[i / 4][c][i % 4];
+  return of_corner;
+}
+DARTCAST_TARGET inline Quad determinants_of(const MemosOfFour::Table<double>* w, const Four& i, unsigned corner) {
+  const auto of = [&](std::uint32_t particle) { return w[particle / 4][corner][particle % 4]; };
   return Quad{of(i.at[0]), of(i.at[1]), of(i.at[2]), of(i.at[3])};
 }
 
 // Bits of the lanes where it is proved that ride_along() comes to a place strictly inside, other than q; as computed.
-DARTCAST_TARGET inline unsigned rides_inside(const MemosOfFour* trails, const Four& i, const Tetrahedra& now,
-                                             const Points& q) {
+DARTCAST_TARGET inline unsigned rides_inside(const MemosOfFour::Table<double>* trails, const Four& i,
+                                             const Tetrahedra& now, const Points& q) {
   const Quad w[4] = {determinants_of(trails, i, 0), determinants_of(trails, i, 1), determinants_of(trails, i, 2),
                      determinants_of(trails, i, 3)};
   const Points x = ride_along(w, now);

@@ -27,12 +27,6 @@ DARTCAST_TARGET inline Points larger(const Points& a, const Points& b) {
 }
 DARTCAST_TARGET inline Quad largest(const Points& a) { return larger(larger(a.x, a.y), a.z); }
 
-// Two doubles from each of two places.
-DARTCAST_TARGET inline Quad load_pairs(const double* a, const double* b) {
-  const Pair low = *reinterpret_cast<const UnalignedPair*>(a);
-  const Pair high = *reinterpret_cast<const UnalignedPair*>(b);
-  return __builtin_shufflevector(low, high, 0, 1, 2, 3);
-}
 DARTCAST_TARGET inline Points load_points(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Quad xy02 = load_pairs(&a.x, &c.x);
   const Quad xy13 = load_pairs(&b.x, &d.x);
@@ -152,14 +146,15 @@ struct FilteredDeterminants {
 
 // Whether every number is 0 or between the two magnitudes.
 DARTCAST_TARGET inline bool all_between(const double* x, std::size_t count, double low, double high) {
-  Mask outside{};
+  Mask between = splat_bits(-1);
   std::size_t i = 0;
+#pragma GCC unroll 4
   for (; i + 4 <= count; i += 4) {
     const Quad numbers = *reinterpret_cast<const UnalignedQuad*>(x + i);
     const Quad m = magnitude(numbers);
-    outside |= ~(((m >= low) & (m <= high)) | (m == 0.0));
+    between &= ((m >= low) & (m <= high)) | (m == 0.0);
   }
   bool rest = true;
   for (; i < count; ++i) rest = rest && (x[i] == 0.0 || (std::abs(x[i]) >= low && std::abs(x[i]) <= high));
-  return rest && lanes_set(outside) == 0;
+  return rest && lanes_set(between) == 15U;
 }

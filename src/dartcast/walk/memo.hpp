@@ -26,7 +26,7 @@ struct Memo {
 };
 
 inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();  // w
-inline bool is_unknown(const Memo& m) { return std::isnan(m.w[0]); }
+inline bool is_unknown(const std::array<double, 4>& w) { return std::isnan(w[0]); }
 inline Memo unknown_memo() { return {{}, {}, {}, {unknown, unknown, unknown, unknown}}; }
 
 /// w of a simplex that has no coordinates that are good enough. Not even one facet that the target is behind is proved.
