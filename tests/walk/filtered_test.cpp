@@ -115,7 +115,7 @@ class BothWays {
                           detail::vertex_numbers(complex_, next[i].at()), next[i].position);
       if (moves_ && described && (!equal(best.memos[i], memo) || !equal(portable.memos[i], memo)))
         return fmt::format("particle {}: another trail", i);
-      if (!moves_ && described && !detail::is_unknown(best.memos[i].w)) tally.remembered += 1;
+      if (!moves_ && described && !std::isnan(best.memos[i].w[0])) tally.remembered += 1;
       if (landed && !moves_ && best.memos.mark(i) != 0) return fmt::format("particle {}: marked on a wall", i);
       if (taken && !moves_ && best.memos.mark(i) != 0) {
         const unsigned zeros = detail::zeros_of(complex_.corners(next[i].at()), next[i].position);

@@ -308,11 +308,9 @@ class Batch {
   [[nodiscard]] DARTCAST_TARGET Vec3 ridden(std::uint32_t i, const Weights& w) const {
     return flushed(combine(corners_of(now_, vertices_[i]), shares_of(w)));
   }
-  // None where the filter does not prove that this lies inside of the moved simplex.
+  // None where the filter does not prove that this lies inside of the moved simplex, as of nothing that is unknown.
   [[nodiscard]] DARTCAST_TARGET std::optional<Vec3> ridden_alone(std::uint32_t i) const {
-    const Weights w = determinants_of(began_with_.data(), i);
-    if (is_unknown(w)) return std::nullopt;
-    const Vec3 x = ridden(i, w);
+    const Vec3 x = ridden(i, determinants_of(began_with_.data(), i));
     return Determinants(corners_of(now_, vertices_[i]), x).all_proved_positive() ? std::optional(x) : std::nullopt;
   }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -26,7 +25,6 @@ struct Memo {
 };
 
 inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();  // w
-inline bool is_unknown(const std::array<double, 4>& w) { return std::isnan(w[0]); }
 inline Memo unknown_memo() { return {{}, {}, {}, {unknown, unknown, unknown, unknown}}; }
 
 /// w of a simplex that has no coordinates that are good enough. Not even one facet that the target is behind is proved.
