@@ -130,10 +130,10 @@ void Workload::aim() {
   }
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     if (field_) {
-      targets_[i] = detail::flushed(carried(i, next));
+      targets_[i] = flushed(carried(i, next));
     } else {
       velocities_[i] += gravity_ * dt_;
-      targets_[i] = detail::flushed(particles_[i].position + velocities_[i] * dt_);
+      targets_[i] = flushed(particles_[i].position + velocities_[i] * dt_);
     }
   }
 }

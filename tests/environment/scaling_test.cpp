@@ -142,12 +142,12 @@ TEST(Scaling, ShiftedScenesLoseNobody) {
 
 TEST(Scaling, RefusedOutsideTheRange) {
   EXPECT_THROW(Environment(scene(0x1p+299, {})), InvalidMesh);  // 4 * 2^299
-  EXPECT_THROW(Environment(scene(0x1p-305, {})), InvalidMesh);
+  EXPECT_THROW(Environment(scene(0x1p-305, {})), InvalidMesh);  // all counts as 0: the cells are flat
   Environment environment(scene(1.0, {}));
   Particles particles;
-  EXPECT_THROW(environment.add(particles, std::vector<Vec3>{{0x1p-301, 1, 1}}), InvalidArgument);
+  EXPECT_THROW(environment.add(particles, std::vector<Vec3>{{0x1p+301, 1, 1}}), InvalidArgument);
   environment.add(particles, std::vector<Vec3>{{0.5, 0.5, 0.5}, {0x1p-300, 0, 0}});
-  EXPECT_THROW(environment.advance(particles, std::vector<Vec3>(particles.size(), Vec3{0, 0x1p-301, 0})),
+  EXPECT_THROW(environment.advance(particles, std::vector<Vec3>(particles.size(), Vec3{0, -0x1p+301, 0})),
                InvalidArgument);
 }
 

@@ -417,7 +417,7 @@ TEST(Decompose, RefusalsNameRingAndPoint) {
   expect_refused<InvalidMesh>(changed(1, {nan, 1, 0}), {"point 1", "ring 1 (\"hole\")", "not finite"});
   expect_refused<InvalidMesh>(changed(1, {2, 1, 0.5}), {"point 1 (2, 1) of ring 1", "z = 0.5"});
   expect_refused<InvalidMesh>(changed(1, {2, 1, nan}), {"point 1", "not finite"});
-  expect_refused<InvalidMesh>(changed(2, {0x1p-301, 2, 0}), {"point 2", "ring 1", "2^-300"});
+  expect_refused<InvalidMesh>(changed(2, {0x1p-301, 2, 0}), {"point 2 (0, 2) of ring 1", "of ring 0"});  // counts as 0
   expect_refused<InvalidMesh>(changed(2, {1, 0x1p301, 0}), {"point 2", "ring 1", "2^300"});
   expect_refused<InvalidMesh>(changed(2, {4, 4, 0}), {"point 2 (4, 4) of ring 1", "repeats point 2 (4, 4) of ring 0"});
   expect_refused<InvalidMesh>(changed(2, {1, 1, 0}),

@@ -400,13 +400,13 @@ TEST(FilteredBatch, RangesAreCheckedToTheLastNumber) {
                         largest_magnitude * 1.0000000000000002, -smallest_magnitude * 0.9999999999999999, 5e-324};
   for (std::size_t count = 0; count < 9; ++count) {
     std::vector<Vec3> points(count, Vec3{good[count % 5], good[(count + 1) % 5], good[(count + 2) % 5]});
-    EXPECT_TRUE(detail::all_in_exact_range(points));
+    EXPECT_TRUE(detail::all_as_decided(points));
     for (Vec3& p : points) {
       for (double* c : {&p.x, &p.y, &p.z}) {
         const double kept = *c;
         for (const double b : bad) {
           *c = b;
-          EXPECT_FALSE(detail::all_in_exact_range(points)) << b;
+          EXPECT_FALSE(detail::all_as_decided(points)) << b;
         }
         *c = kept;
       }

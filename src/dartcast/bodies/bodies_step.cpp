@@ -113,7 +113,7 @@ void Bodies::integrate(Body& body) {
   }
   for (std::size_t i = 0; i < sums.size(); ++i) {
     const std::size_t p = body.first + i;
-    places[i] = detail::flushed((positions_[p] + velocities_[p] * dt) + sums[i].way * (dt * dt / 6.0));
+    places[i] = flushed((positions_[p] + velocities_[p] * dt) + sums[i].way * (dt * dt / 6.0));
   }
 }
 
@@ -139,7 +139,7 @@ void Bodies::limit_targets(const Body& body) {
     const std::size_t p = body.first + i;
     const Vec3 way = targets_[p] - positions_[p];
     const double share = well_of(body, p).payable_share(positions_[p], way, legs_[p].kinetic);
-    if (share < 1.0) targets_[p] = detail::flushed(positions_[p] + way * share);
+    if (share < 1.0) targets_[p] = flushed(positions_[p] + way * share);
   }
 }
 
@@ -259,7 +259,7 @@ void Bodies::aim_pull(Body& body) {
       targets_[p] += shift;
       body.lift += masses_[p] * std::max(0.0, well.rise(x, targets_[p] - x) - paid);
     }
-    targets_[p] = detail::flushed(targets_[p]);
+    targets_[p] = flushed(targets_[p]);
   }
 }
 

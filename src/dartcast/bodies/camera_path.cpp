@@ -115,7 +115,7 @@ CameraPath walked(Environment& environment, const Knots& knots, const std::vecto
   for (const Stop& s : stops) {
     if (!environment.add(particles, places[s.span].simplex, knots.points[s.span]))
       throw InternalError("camera path: a point that was located is not where it was");
-    targets.push_back(detail::flushed(spans[s.span].at(s.u)));
+    targets.push_back(flushed(spans[s.span].at(s.u)));
   }
   const StepReport report = environment.advance(
       particles, targets, [](const Contact& c, std::span<const WallHit> walls, std::span<const WallHit> earlier) {

@@ -161,7 +161,7 @@ void Catheter::relax(const Vec3& load, CatheterStep& result) {
 
 // All points keep their weights in their simplices, which may have moved.
 void Catheter::ride(CatheterStep& result) {
-  for (std::size_t i = 0; i <= count_; ++i) targets_[i] = detail::flushed(ridden(i));
+  for (std::size_t i = 0; i <= count_; ++i) targets_[i] = flushed(ridden(i));
   const Corners corners = environment_.complex().corners(particles_[count_].at());
   std::vector<ChainWall> moved = walls_;  // walls move as the points on them do
   for (ChainWall& w : moved) w.point += targets_[w.index] - particles_[w.index].position;

@@ -80,7 +80,7 @@ void Catheter::bend_tip(std::size_t free) {
 // To where the solver wants the points. The largest displacement of a free one.
 double Catheter::walk(std::size_t free, Outcome& outcome) {
   const std::size_t inserted = inserted_points();
-  for (std::size_t i = 0; i <= count_; ++i) targets_[i] = i < inserted ? detail::flushed(targets_[i]) : entry();
+  for (std::size_t i = 0; i <= count_; ++i) targets_[i] = i < inserted ? flushed(targets_[i]) : entry();
   double moved = 0.0;
   for (std::size_t i = 0; i < free; ++i) before_[i] = particles_[i].position;
   const StepReport report = environment_.advance(particles_, targets_, slide_at_walls);

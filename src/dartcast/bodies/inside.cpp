@@ -62,18 +62,25 @@ bool in_box(const std::array<Vec3, 3>& t, const Vec3& x) {
          between(t[0].z, t[1].z, t[2].z, x.z);
 }
 
+std::vector<Vec3> flushed_points(std::vector<Vec3> points) {
+  std::transform(points.begin(), points.end(), points.begin(), flushed);
+  return points;
+}
+
 }  // namespace
 
 InsideTest::InsideTest(const MeshData& surface)
-    : points_(surface.points), triangles_(surface_triangles(surface)), tree_(boxes_of(points_, triangles_)) {
+    : points_(flushed_points(surface.points)),
+      triangles_(surface_triangles(surface)),
+      tree_(boxes_of(points_, triangles_)) {
   check_closed(triangles_);
   top_ = points_.front().z;
   for (const Vec3& p : points_) top_ = std::max(top_, p.z);
 }
 
-Side InsideTest::side(const Vec3& x) const {
-  if (!in_exact_range(x))
-    throw InvalidArgument("inside: a coordinate is not finite, or outside the range of 2^-300 to 2^300");
+Side InsideTest::side(const Vec3& point) const {
+  if (!in_exact_range(point)) throw InvalidArgument("inside: a coordinate is not finite, or above 2^300 in magnitude");
+  const Vec3 x = flushed(point);
   std::size_t layers = 0;
   bool on = false;
   tree_.query({x, {x.x, x.y, std::max(x.z, top_)}}, [&](std::size_t k) {

@@ -115,7 +115,7 @@ Vec3 random_point(const Piece& t, Random& random) {
     u = 1.0 - u;
     v = 1.0 - v;
   }
-  return detail::flushed(t[0] + (t[1] - t[0]) * u + (t[2] - t[0]) * v);
+  return flushed(t[0] + (t[1] - t[0]) * u + (t[2] - t[0]) * v);
 }
 
 // A piece whose longest edge is 1 has at most this area.
@@ -178,7 +178,7 @@ std::vector<Vec3> volume_candidates(const MeshData& surface, const InsideTest& i
     for (double j = 0.0; j < cubes[1]; ++j) {
       for (double i = 0.0; i < cubes[0]; ++i) {
         const Vec3 place = {i + random.uniform(), j + random.uniform(), k + random.uniform()};
-        candidates.push_back(detail::flushed(box.low + place * edge));
+        candidates.push_back(flushed(box.low + place * edge));
       }
     }
   }

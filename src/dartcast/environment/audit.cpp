@@ -62,9 +62,22 @@ Integer volume6(const Point& a, const Point& b, const Point& c, const Point& d) 
   return u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) + u[2] * (v[0] * w[1] - v[1] * w[0]);
 }
 
+// The rule for coordinates (exact/predicates.hpp), in words of its own: no point is above 2^300; no particle is between
+// 0 and 2^-300, and a corner that is there counts as 0.
+bool is_below(const Vec3& p, double most) {
+  return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) < most && p == p;
+}
+Vec3 counted(const Vec3& p) {
+  const auto number = [](double x) { return std::abs(x) < 0x1p-300 ? 0.0 : x; };
+  return {number(p.x), number(p.y), number(p.z)};
+}
+
 std::string check_inside(const std::array<Vec3, 4>& corners, const Vec3& x) {
-  if (!is_finite(x) || !std::all_of(corners.begin(), corners.end(), is_finite)) return "a coordinate is not finite";
-  const auto p = to_integers({corners[0], corners[1], corners[2], corners[3], x});
+  if (!is_below(x, 0x1.0000000000001p+300) || counted(x) != x) return "the position is outside the exact range";
+  for (const Vec3& corner : corners) {
+    if (!is_below(corner, 0x1.0000000000001p+300)) return "a corner is not finite or outside the exact range";
+  }
+  const auto p = to_integers({counted(corners[0]), counted(corners[1]), counted(corners[2]), counted(corners[3]), x});
   const std::array<Integer, 4> parts = {volume6(p[4], p[1], p[2], p[3]), volume6(p[0], p[4], p[2], p[3]),
                                         volume6(p[0], p[1], p[4], p[3]), volume6(p[0], p[1], p[2], p[4])};
   if (Integer(parts[0] + parts[1] + parts[2] + parts[3]) <= 0) return "the simplex is not positive";

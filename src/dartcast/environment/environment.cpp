@@ -23,13 +23,20 @@ constexpr const char* missed_move = "add: advance the particles first, they have
 constexpr const char* missed_edit =
     "the particles have not followed the last edit: every set must follow() each edit before the next";
 
-void check_point(const Vec3& x, const char* what, std::size_t index, unsigned dimension) {
-  if (dimension == 2 && x.z != 0.0)
+// Returns the point as decisions see it.
+Vec3 checked_point(const Vec3& x, const char* what, std::size_t index, unsigned dimension) {
+  if (!in_exact_range(x))
+    throw InvalidArgument(
+        fmt::format("{} {} is ({}, {}, {}): coordinates must be finite, and at most 2^300 in magnitude", what, index,
+                    x.x, x.y, x.z));
+  const Vec3 point = flushed(x);
+  if (dimension == 2 && point.z != 0.0)
     throw InvalidArgument(fmt::format("{} {} is ({}, {}, {}): in the plane z must be 0", what, index, x.x, x.y, x.z));
-  if (in_exact_range(x)) return;
-  throw InvalidArgument(
-      fmt::format("{} {} is ({}, {}, {}): coordinates must be finite, and 0 or between 2^-300 and 2^300 in magnitude",
-                  what, index, x.x, x.y, x.z));
+  return point;
+}
+
+bool is_particle_position(const Map& map, const Vec3& x) {
+  return in_exact_range(x) && flushed(x) == x && (map.dimension() == 3 || x.z == 0.0);
 }
 
 MeshData inspected(MeshData mesh) {
@@ -72,7 +79,7 @@ bool are_weights(const Weights& w) {
 }
 
 bool can_be(const Complex& complex, const State& s, const Weights& weights) {
-  if (!in_exact_range(s.position) || (complex.map().dimension() == 2 && s.position.z != 0.0)) return false;
+  if (!is_particle_position(complex.map(), s.position)) return false;
   if (s.touching_count > s.touching.size()) return false;
   for (unsigned i = 0; i < s.touching_count; ++i) {
     if (!is_wall(complex.map(), s.touching[i])) return false;
@@ -166,8 +173,9 @@ Environment::Environment(MeshData mesh, Threads threads)
 
 Location Environment::locate(const Vec3& x) { return locate(std::span<const Vec3>(&x, 1)).front(); }
 
-std::vector<Location> Environment::locate(std::span<const Vec3> points) {
-  for (std::size_t i = 0; i < points.size(); ++i) check_point(points[i], "point", i, map().dimension());
+std::vector<Location> Environment::locate(std::span<const Vec3> asked) {
+  std::vector<Vec3> points(asked.size());
+  for (std::size_t i = 0; i < asked.size(); ++i) points[i] = checked_point(asked[i], "point", i, map().dimension());
   if (!locator_) locator_ = std::make_unique<Locator>(complex_);
   std::vector<std::pair<std::size_t, std::size_t>> order(points.size());  // by bin: bin, point
   for (std::size_t i = 0; i < points.size(); ++i) order[i] = {locator_->bin(points[i]), i};
@@ -199,7 +207,7 @@ std::vector<Added> Environment::add(Particles& particles, std::span<const Vec3> 
     added[i].location = locations[i];
     if (locations[i].place != Place::free) continue;
     added[i].particle = static_cast<std::uint32_t>(particles.size());
-    add_to(particles, locations[i].simplex, positions[i]);
+    add_to(particles, locations[i].simplex, flushed(positions[i]));
   }
   return added;
 }
@@ -213,10 +221,10 @@ void Environment::add_to(Particles& particles, SimplexId simplex, const Vec3& po
     particles.memos_.push_back(detail::memo_of(particles.memo_kind_, complex_.positions(), vertices, position));
 }
 
-bool Environment::add(Particles& particles, SimplexId simplex, const Vec3& position) {
+bool Environment::add(Particles& particles, SimplexId simplex, const Vec3& place) {
   check_current(particles);
-  if (!in_exact_range(position) || (map().dimension() == 2 && position.z != 0.0)) return false;
-  if (!holds(complex_, simplex, position)) return false;
+  const Vec3 position = flushed(place);
+  if (!is_particle_position(map(), position) || !holds(complex_, simplex, position)) return false;
   add_to(particles, simplex, position);
   return true;
 }
@@ -289,19 +297,21 @@ ComplexEditReport Environment::edit(const std::function<void(ComplexEdit&)>& mak
   return last_edit_;
 }
 
-void Environment::check_targets(const Particles& particles, std::span<const Vec3> targets) const {
+std::vector<Vec3> Environment::check_targets(const Particles& particles, std::span<const Vec3> targets) const {
   if (targets.size() != particles.size())
     throw InvalidArgument(fmt::format("advance: {} targets for {} particles", targets.size(), particles.size()));
   const bool plane = map().dimension() == 2;
   std::vector<std::uint8_t> good(chunk_count(targets.size(), chunk));
   parallel_for(targets.size(), chunk, threads_, [&](std::size_t begin, std::size_t end) {
     const std::span<const Vec3> some = targets.subspan(begin, end - begin);
-    good[begin / chunk] = detail::all_in_exact_range(some) &&
+    good[begin / chunk] = detail::all_as_decided(some) &&
                           (!plane || std::all_of(some.begin(), some.end(), [](const Vec3& q) { return q.z == 0.0; }));
   });
-  if (std::all_of(good.begin(), good.end(), [](std::uint8_t g) { return g != 0; })) return;
+  if (std::all_of(good.begin(), good.end(), [](std::uint8_t g) { return g != 0; })) return {};
+  std::vector<Vec3> decided(targets.size());
   for (std::size_t i = 0; i < targets.size(); ++i)
-    check_point(targets[i], "the target of particle", i, map().dimension());
+    decided[i] = checked_point(targets[i], "the target of particle", i, map().dimension());
+  return decided;
 }
 
 void Environment::check_followed(const Particles& particles, const StepOptions& options, const char* call) const {
@@ -394,9 +404,10 @@ detail::MemoKind Environment::memo_kind(const Particles& particles, bool moved) 
   return particles.stood_still_ ? detail::MemoKind::coordinates : detail::MemoKind::none;
 }
 
-StepReport Environment::advance(Particles& particles, std::span<const Vec3> targets, const Respond& respond,
+StepReport Environment::advance(Particles& particles, std::span<const Vec3> asked, const Respond& respond,
                                 const StepOptions& options) {
-  check_targets(particles, targets);
+  const std::vector<Vec3> decided = check_targets(particles, asked);
+  const std::span<const Vec3> targets = decided.empty() ? asked : std::span<const Vec3>(decided);
   check_followed(particles, options, "advance");
   const bool moved = particles.moves_ != moves_;
   const detail::MemoKind kind = memo_kind(particles, moved);
@@ -429,15 +440,17 @@ StepReport Environment::advance(Particles& particles, std::span<const Vec3> targ
 
 std::vector<Trace> Environment::trace(const Particles& particles, std::size_t particle, std::span<const Vec3> targets,
                                       const Respond& respond, const StepOptions& options) const {
+  std::vector<Vec3> decided;
+  for (std::size_t i = 0; i < targets.size(); ++i)
+    decided.push_back(checked_point(targets[i], "target", i, map().dimension()));
   if (particle >= particles.size())
     throw InvalidArgument(fmt::format("trace: there is no particle {} among {}", particle, particles.size()));
   check_followed(particles, options, "trace");
-  for (std::size_t i = 0; i < targets.size(); ++i) check_point(targets[i], "target", i, map().dimension());
   bool moved = particles.moves_ != moves_;
   State state = particles[particle];
   Weights weights = particles.weights_[particle];
   std::vector<Trace> traces;
-  for (const Vec3& target : targets) {
+  for (const Vec3& target : decided) {
     Trace& trace = traces.emplace_back();
     trace.before = state;
     trace.start = forecast(map(), state, moved ? complex_.previous_corners(state.at()) : complex_.corners(state.at()));

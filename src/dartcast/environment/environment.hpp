@@ -197,7 +197,8 @@ class Environment {
   void check_count(std::span<const Vec3> positions) const;
   [[nodiscard]] std::vector<Vec3> with_interior(std::span<const Vec3> positions) const;
   void check_current(Particles& particles) const;
-  void check_targets(const Particles& particles, std::span<const Vec3> targets) const;
+  // Returns the targets as decisions see them; nothing where that is what they are.
+  [[nodiscard]] std::vector<Vec3> check_targets(const Particles& particles, std::span<const Vec3> targets) const;
   void check_followed(const Particles& particles, const StepOptions& options, const char* call) const;
   void add_to(Particles& particles, SimplexId simplex, const Vec3& position) const;
   struct Steps;

@@ -9,11 +9,6 @@ namespace dartcast {
 
 namespace {
 
-bool in_exact_range(double x) {
-  const double m = std::abs(x);
-  return m <= largest_magnitude && (m >= smallest_magnitude || m == 0.0);  // false for NaN
-}
-
 template <class... Points>
 bool all_in_range(const Points&... points) {
   return (in_exact_range(points) && ...);
@@ -63,7 +58,11 @@ auto exact_determinant(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& 
 
 // use(determinant), an expansion no longer than it must be.
 template <class Use>
-auto with_exact_determinant(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, Use&& use) {
+auto with_exact_determinant(const Vec3& a0, const Vec3& b0, const Vec3& c0, const Vec3& d0, Use&& use) {
+  const Vec3 a = flushed(a0);
+  const Vec3 b = flushed(b0);
+  const Vec3 c = flushed(c0);
+  const Vec3 d = flushed(d0);
   if (rounds_difference(a, d) || rounds_difference(b, d) || rounds_difference(c, d))
     return use(exact_determinant<2>(a, b, c, d));
   return use(exact_determinant<1>(a, b, c, d));
@@ -72,11 +71,11 @@ auto with_exact_determinant(const Vec3& a, const Vec3& b, const Vec3& c, const V
 // The determinant in doubles and a bound of its error.
 struct Filtered {
   double value;
-  double bound;
-  bool applies;
+  double m;
   Vec3 extent;
 
-  [[nodiscard]] bool decided() const { return applies && std::abs(value) > bound; }
+  /// Whether the value is beyond so many times its bound.
+  [[nodiscard]] bool exceeds(double times) const { return std::abs(value) > times * (determinant_error * m); }
 };
 
 Filtered filtered_determinant(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
@@ -84,9 +83,7 @@ Filtered filtered_determinant(const Vec3& a, const Vec3& b, const Vec3& c, const
   const Vec3 v = c - d;
   const Vec3 w = b - d;
   const Vec3 extent = extent_of(u, v, w);
-  const double m = extent.x * extent.y * extent.z;
-  return {dot(u, cross(v, w)), determinant_error * m, filter_applies(std::max({extent.x, extent.y, extent.z}), m),
-          extent};
+  return {dot(u, cross(v, w)), extent.x * extent.y * extent.z, extent};
 }
 
 // Sums and products of pairs of doubles, each off by a few 2^-106 of the magnitudes of its terms.
@@ -122,8 +119,6 @@ double paired_determinant(const Vec3& a, const Vec3& b, const Vec3& c, const Vec
 
 }  // namespace
 
-bool in_exact_range(const Vec3& p) { return in_exact_range(p.x) && in_exact_range(p.y) && in_exact_range(p.z); }
-
 Sign orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   std::uint64_t exact = 0;
   return orient3d(a, b, c, d, exact);
@@ -131,7 +126,7 @@ Sign orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
 
 Sign orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, std::uint64_t& exact) {
   const Filtered f = filtered_determinant(a, b, c, d);
-  if (f.decided()) return sign(f.value);
+  if (f.exceeds(1.0) && filter_applies(f.extent)) return sign(f.value);
   ++exact;
   return orient3d_exact(a, b, c, d);
 }
@@ -141,20 +136,20 @@ Sign orient3d_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) 
   const Filtered f = filtered_determinant(a, b, c, d);
   // Points of a plane across an axis: a difference is 0 only where it is 0 exactly.
   if (f.extent.x == 0.0 || f.extent.y == 0.0 || f.extent.z == 0.0) return Sign::zero;
-  if (f.applies && rounds_nothing(f.extent, a, b, c, d)) return sign(f.value);
+  if (bound_holds(f.extent) && rounds_nothing(f.extent, a, b, c, d)) return sign(f.value);
   return with_exact_determinant(a, b, c, d, [](const auto& value) { return static_cast<Sign>(value.sign()); });
 }
 
 double orient3d_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Filtered f = filtered_determinant(a, b, c, d);
   constexpr double enough = 0x1p+49;
-  if (f.decided() && std::abs(f.value) > enough * f.bound) return f.value;
+  const bool bounded = bound_holds(f.extent);
+  if (f.exceeds(enough) && filter_applies(f.extent)) return f.value;
   if (!all_in_range(a, b, c, d)) return std::numeric_limits<double>::quiet_NaN();
-  if (f.applies && rounds_nothing(f.extent, a, b, c, d)) return f.value;
-  if (f.applies && !rounds_difference(a, d) && !rounds_difference(b, d) && !rounds_difference(c, d)) {
-    const double value = paired_determinant(a, b, c, d);
-    const double m = f.extent.x * f.extent.y * f.extent.z;
-    if (std::abs(value) >= 0x1p-47 * m) return value;  // right to 2^-50 of itself, and once rounded
+  if (bounded && (f.exceeds(enough) || rounds_nothing(f.extent, a, b, c, d))) return f.value;
+  if (bounded && !rounds_difference(a, d) && !rounds_difference(b, d) && !rounds_difference(c, d)) {
+    const double value = paired_determinant(flushed(a), flushed(b), flushed(c), flushed(d));
+    if (std::abs(value) >= 0x1p-47 * f.m) return value;  // right to 2^-50 of itself, and once rounded
   }
   return with_exact_determinant(a, b, c, d, [](const auto& value) { return value.estimate(); });
 }
@@ -163,11 +158,9 @@ namespace {
 
 struct PlaneFiltered {
   double value;
-  double bound;
-  bool applies;
   double x, y;  // the largest differences
 
-  [[nodiscard]] bool decided() const { return applies && std::abs(value) > bound; }
+  [[nodiscard]] bool exceeds(double times) const { return std::abs(value) > times * (plane_error * (x * y)); }
 };
 
 PlaneFiltered plane_determinant(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -177,13 +170,19 @@ PlaneFiltered plane_determinant(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double vy = b.y - c.y;
   const double x = std::max(std::abs(ux), std::abs(vx));
   const double y = std::max(std::abs(uy), std::abs(vy));
-  return {ux * vy - uy * vx, plane_error * (x * y), plane_filter_applies(x * y), x, y};
+  return {ux * vy - uy * vx, x, y};
 }
 
-bool in_plane_range(const Vec3& p) { return in_exact_range(p.x) && in_exact_range(p.y); }
+template <class... Points>
+bool all_in_plane_range(const Points&... points) {
+  return (in_exact_range({points.x, points.y, 0.0}) && ...);
+}
 
 // The exact determinant as an expansion of at most 16 components.
-auto exact_plane_determinant(const Vec3& a, const Vec3& b, const Vec3& c) {
+auto exact_plane_determinant(const Vec3& a0, const Vec3& b0, const Vec3& c0) {
+  const Vec3 a = flushed(a0);
+  const Vec3 b = flushed(b0);
+  const Vec3 c = flushed(c0);
   return difference(a.x, c.x) * difference(b.y, c.y) - difference(a.y, c.y) * difference(b.x, c.x);
 }
 
@@ -196,13 +195,13 @@ Sign orient2d(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 Sign orient2d(const Vec3& a, const Vec3& b, const Vec3& c, std::uint64_t& exact) {
   const PlaneFiltered f = plane_determinant(a, b, c);
-  if (f.decided()) return sign(f.value);
+  if (f.exceeds(1.0) && plane_filter_applies(f.x, f.y)) return sign(f.value);
   ++exact;
   return orient2d_exact(a, b, c);
 }
 
 Sign orient2d_exact(const Vec3& a, const Vec3& b, const Vec3& c) {
-  if (!in_plane_range(a) || !in_plane_range(b) || !in_plane_range(c)) return Sign::undecidable;
+  if (!all_in_plane_range(a, b, c)) return Sign::undecidable;
   const PlaneFiltered f = plane_determinant(a, b, c);
   if (f.x == 0.0 || f.y == 0.0) return Sign::zero;  // on a line across an axis
   return static_cast<Sign>(exact_plane_determinant(a, b, c).sign());
@@ -211,8 +210,9 @@ Sign orient2d_exact(const Vec3& a, const Vec3& b, const Vec3& c) {
 double orient2d_value(const Vec3& a, const Vec3& b, const Vec3& c) {
   const PlaneFiltered f = plane_determinant(a, b, c);
   constexpr double enough = 0x1p+49;
-  if (f.decided() && std::abs(f.value) > enough * f.bound) return f.value;
-  if (!in_plane_range(a) || !in_plane_range(b) || !in_plane_range(c)) return std::numeric_limits<double>::quiet_NaN();
+  if (f.exceeds(enough) && plane_filter_applies(f.x, f.y)) return f.value;
+  if (!all_in_plane_range(a, b, c)) return std::numeric_limits<double>::quiet_NaN();
+  if (f.exceeds(enough) && plane_bound_holds(f.x, f.y)) return f.value;
   return exact_plane_determinant(a, b, c).estimate();
 }
 
@@ -231,7 +231,7 @@ Sign Shift::of_line(const Vec3& a, const Vec3& b, const Vec3& q) const {
   // products that are at most m each. The last factor is that of determinant_error.
   constexpr double error = 180.0 * 0x1p-53 * (1.0 + 0x1p-10);
   const double m = extent.x * extent.y * extent.z;
-  if (filter_applies(std::max({extent.x, extent.y, extent.z}), m) && std::abs(along) > error * m) return sign(along);
+  if (filter_applies(extent) && std::abs(along) > error * m) return sign(along);
   const auto in_range = [](double e) { return e == 0.0 || (e >= 0x1p-250 && e <= 0x1p+301); };
   if (!in_range(extent.x) || !in_range(extent.y) || !in_range(extent.z) ||
       !rounds_nothing(extent, p_, q, a, b, o0, o1, o2))
@@ -244,25 +244,25 @@ Sign Shift::of_line(const Vec3& a, const Vec3& b, const Vec3& q) const {
 
 Sign Shift::of_line_exact(const Vec3& a, const Vec3& b, const Vec3& q) const {
   if (!all_in_range(p_, opposite_[0], opposite_[1], opposite_[2], a, b, q)) return Sign::undecidable;
-  const auto n = exact_cross(exact_difference<2>(q, p_), exact_difference<2>(b, a));
-  const auto along = exact_dot(n, exact_difference<2>(opposite_[0], p_)) +
-                     exact_dot(n, exact_difference<2>(opposite_[1], p_)) +
-                     exact_dot(n, exact_difference<2>(opposite_[2], p_));
+  const auto difference_of = [](const Vec3& u, const Vec3& v) { return exact_difference<2>(flushed(u), flushed(v)); };
+  const auto n = exact_cross(difference_of(q, p_), difference_of(b, a));
+  const auto along = exact_dot(n, difference_of(opposite_[0], p_)) + exact_dot(n, difference_of(opposite_[1], p_)) +
+                     exact_dot(n, difference_of(opposite_[2], p_));
   for (const int term : {along.sign(), n.x.sign(), n.y.sign(), n.z.sign()}) {
     if (term != 0) return static_cast<Sign>(term);
   }
   return Sign::zero;
 }
 
-PlaneShift::PlaneShift(const Vec3& p, std::span<const Vec3> opposite) : p_(p) {
-  opposite_.fill(p);
+PlaneShift::PlaneShift(const Vec3& p, std::span<const Vec3> opposite) : p_(flushed(p)) {
+  opposite_.fill(p_);
   std::copy(opposite.begin(), opposite.end(), opposite_.begin());
 }
 
 // With d = q - p the terms are w x d, d.y and -d.x; (o - p) x (q - p) is that of o, q and p.
-Sign PlaneShift::of_line(const Vec3& q) const {
-  if (!in_plane_range(p_) || !in_plane_range(q) || !in_plane_range(opposite_[0]) || !in_plane_range(opposite_[1]))
-    return Sign::undecidable;
+Sign PlaneShift::of_line(const Vec3& target) const {
+  const Vec3 q = flushed(target);
+  if (!all_in_plane_range(p_, q, opposite_[0], opposite_[1])) return Sign::undecidable;
   const auto along = exact_plane_determinant(opposite_[0], q, p_) + exact_plane_determinant(opposite_[1], q, p_);
   if (along.sign() != 0) return static_cast<Sign>(along.sign());
   if (q.y != p_.y) return sign(q.y > p_.y ? 1.0 : -1.0);

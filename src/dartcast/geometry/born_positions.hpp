@@ -49,7 +49,7 @@ class BornPositions {
     if (!in_exact_range(x))
       throw InvalidArgument("place: vertex " + std::to_string(v.value) + " would be at (" + std::to_string(x.x) + ", " +
                             std::to_string(x.y) + ", " + std::to_string(x.z) +
-                            "): coordinates must be finite, and 0 or between 2^-300 and 2^300 in magnitude");
+                            "): coordinates must be finite, and at most 2^300 in magnitude");
     positions_[v.value] = x;
     return i - 1;
   }

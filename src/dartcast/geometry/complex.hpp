@@ -57,7 +57,7 @@ class Complex {
   /// ago. Ends the validity of previous_positions().
   [[nodiscard]] std::span<Vec3> next_positions();
   /// Makes the positions written current. Cost: a swap, and the interior points. No vertex is checked: one that is not
-  /// finite, or outside the exact range, is found by the walk that meets it, and by check_validity().
+  /// finite, or above 2^300 in magnitude, is found by the walk that meets it, and by check_validity().
   void commit_positions();
 
   /// In the plane the fourth is the third again, and the fourth corner is one above the first (raised()).

@@ -44,13 +44,13 @@ DARTCAST_INLINE Quad magnitude(const Quad& a) {
   return reinterpret_cast<Quad>(reinterpret_cast<Mask>(a) & (Mask{} + 0x7fffffffffffffffLL));
 }
 DARTCAST_INLINE Quad larger(const Quad& a, const Quad& b) { return a < b ? b : a; }
+DARTCAST_INLINE Quad smaller(const Quad& a, const Quad& b) { return a < b ? a : b; }
 DARTCAST_INLINE Lanes larger(const Lanes& a, const Lanes& b) {
   return {larger(a.x, magnitude(b.x)), larger(a.y, magnitude(b.y)), larger(a.z, magnitude(b.z))};
 }
 
 // All simplices of a shape have the same first corner: the points relative to it are differences as orient3d() takes
-// them (exact/predicates.hpp), and the bound is that of the whole cell's extent, for a larger m bounds no less. Where a
-// coordinate is just outside the exact range, this may prove, rightly, what orient3d() calls undecidable.
+// them (exact/predicates.hpp), and the bound is that of the whole cell's extent, for a larger m bounds no less.
 DARTCAST_INLINE unsigned all_proved(const Shape& shape, const std::array<const std::uint32_t*, 4>& vertices,
                                     const Vec3* positions) {
   const auto& simplices = shape.simplices();
@@ -64,7 +64,8 @@ DARTCAST_INLINE unsigned all_proved(const Shape& shape, const std::array<const s
     extent = larger(extent, points[i]);
   }
   const Quad m = extent.x * extent.y * extent.z;
-  Mask proved = (larger(larger(extent.x, extent.y), extent.z) <= 0x1p+301) & (m >= 0x1p-700);  // filter_applies()
+  Mask proved = (larger(larger(extent.x, extent.y), extent.z) <= largest_decided_extent) &
+                (smaller(smaller(extent.x, extent.y), extent.z) >= smallest_extent);  // filter_applies()
   const Quad bound = determinant_error * m;
   for (const ImplicitSimplex& s : simplices) {
     const Lanes& u = points[s.vertex[1]];

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "dartcast/base/ids.hpp"
 #include "dartcast/exact/predicates.hpp"
@@ -89,8 +90,7 @@ inline Vec3 facet_gradient(const PlaneCorners& v, unsigned facet) {
 template <std::size_t N>
 struct Determinants {
   std::array<double, N> value;
-  double bound;  ///< largest error of each value
-  bool applies;  ///< whether the bound holds (everything finite and in range)
+  double bound;  ///< largest error of each value; infinite where the filter does not apply
   Vec3 extent;   ///< of the differences
 
   Determinants(const std::array<Vec3, N>& v, const Vec3& x) {
@@ -103,9 +103,7 @@ struct Determinants {
       const Vec3 n23 = cross(r2, r3);
       value = {dot(r1, n23), -dot(r0, n23), dot(r3, n01), -dot(r2, n01)};
       extent = extent_of(r0, r1, r2, r3);
-      const double m = extent.x * extent.y * extent.z;
-      bound = determinant_error * m;
-      applies = filter_applies(std::max(std::max(extent.x, extent.y), extent.z), m);
+      bound = filter_applies(extent) ? error() : std::numeric_limits<double>::infinity();
     } else {
       const Vec3 r0 = v[0] - x;
       const Vec3 r1 = v[1] - x;
@@ -113,9 +111,7 @@ struct Determinants {
       const auto turn = [](const Vec3& a, const Vec3& b) { return a.x * b.y - a.y * b.x; };
       value = {turn(r1, r2), turn(r2, r0), turn(r0, r1)};
       extent = extent_of(r0, r1, r2);
-      const double m = extent.x * extent.y;
-      bound = plane_error * m;
-      applies = plane_filter_applies(m);
+      bound = plane_filter_applies(extent.x, extent.y) ? error() : std::numeric_limits<double>::infinity();
     }
   }
 
@@ -125,19 +121,36 @@ struct Determinants {
   }
   /// The errors, and the rounding of three sums of values that are at most 6 m each (m = bound /
   /// determinant_error).
-  [[nodiscard]] bool proves_positive() const { return applies && volume6() > 8.0 * bound; }
+  [[nodiscard]] bool proves_positive() const { return volume6() > 8.0 * bound; }
   /// The values over their sum are the coordinates of a point of the simplex right to 2^-26: each value is off by at
   /// most the bound, the sum by eight times that.
-  [[nodiscard]] bool proves_coordinates() const { return applies && volume6() > 0x1p+30 * bound; }
-  /// x is strictly inside, and the simplex positive.
-  [[nodiscard]] bool all_proved_positive() const {
-    return applies && *std::min_element(value.begin(), value.end()) > bound;
+  [[nodiscard]] bool proves_coordinates() const {
+    return volume6() > 0x1p+30 * bound || (holds_in_range() && volume6() > 0x1p+30 * error());
   }
-  [[nodiscard]] bool decides(unsigned i) const { return applies && std::abs(value[i]) > bound; }
+  /// x is strictly inside, and the simplex positive.
+  [[nodiscard]] bool all_proved_positive() const { return least() > bound; }
+  /// The same where all is known to be in the exact range.
+  [[nodiscard]] bool all_positive_in_range() const {
+    return least() > bound || (holds_in_range() && least() > error());
+  }
+  [[nodiscard]] bool decides(unsigned i) const { return std::abs(value[i]) > bound; }
+  /// What the bound is where the filter applies.
+  [[nodiscard]] double error() const {
+    if constexpr (N == 4) return determinant_error * (extent.x * extent.y * extent.z);
+    return plane_error * (extent.x * extent.y);
+  }
   /// Whether the values are exact. `v`, `x`: those that the determinants are of.
   [[nodiscard]] bool exact(const std::array<Vec3, N>& v, const Vec3& x) const {
-    if constexpr (N == 4) return applies && rounds_nothing(extent, v[0], v[1], v[2], v[3], x);
-    return applies && rounds_nothing(extent, v[0], v[1], v[2], x);
+    if (!(bound <= std::numeric_limits<double>::max())) return false;
+    if constexpr (N == 4) return rounds_nothing(extent, v[0], v[1], v[2], v[3], x);
+    return rounds_nothing(extent, v[0], v[1], v[2], x);
+  }
+
+ private:
+  [[nodiscard]] double least() const { return *std::min_element(value.begin(), value.end()); }
+  [[nodiscard]] bool holds_in_range() const {
+    if constexpr (N == 4) return bound_holds(extent);
+    return plane_bound_holds(extent.x, extent.y);
   }
 };
 template <std::size_t N>

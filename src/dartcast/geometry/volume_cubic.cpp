@@ -68,7 +68,10 @@ class ExactCubic {
     std::array<IntegerVec3, 3> p;
     std::array<IntegerVec3, 3> q;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto at = [axis](const Vec3& v) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; };
+      const auto at = [axis](const Vec3& v) {
+        const Vec3 x = flushed(v);
+        return axis == 0 ? x.x : axis == 1 ? x.y : x.z;
+      };
       const auto x = to_integers({at(before[0]), at(before[1]), at(before[2]), at(before[3]), at(after[0]),
                                   at(after[1]), at(after[2]), at(after[3])});
       for (std::size_t i = 0; i < 3; ++i) {
@@ -111,9 +114,7 @@ class ExactCubic {
   bool has_three_roots_;  // counted with multiplicity
 };
 
-bool all_in_exact_range(const Corners& v) {
-  return std::all_of(v.begin(), v.end(), [](const Vec3& p) { return in_exact_range(p); });
-}
+bool all_in_exact_range(const Corners& v) { return std::all_of(v.begin(), v.end(), in_exact_range); }
 
 }  // namespace
 

@@ -67,7 +67,7 @@ struct VolumeCubic {
     const double y = largest_of(e1.y, e2.y, e3.y);
     const double z = largest_of(e1.z, e2.z, e3.z);
     m = x * y * z;
-    applies = filter_applies(std::max({x, y, z}), m);
+    applies = filter_applies({x, y, z});
   }
 
   VolumeCubic(const Corners& before, const Corners& after)

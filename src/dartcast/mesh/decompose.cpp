@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <tuple>
@@ -37,7 +38,7 @@ class Drawing {
  public:
   explicit Drawing(std::span<const Ring> rings) : rings_(rings) {
     for (const Ring& ring : rings) {
-      points_.insert(points_.end(), ring.points.begin(), ring.points.end());
+      std::transform(ring.points.begin(), ring.points.end(), std::back_inserter(points_), flushed);
       ends_.push_back(points_.size());
       if (points_.size() >= std::size_t{1} << 28U) throw InvalidArgument("decompose: 2^28 points or more");
     }
@@ -102,8 +103,8 @@ void check_points(const Drawing& drawing, std::size_t rings) {
       throw InvalidMesh(fmt::format("decompose: {} has z = {}; it must be 0", drawing.point_name(i), p.z));
     }
     if (in_exact_range(p)) continue;
-    throw InvalidMesh(fmt::format("decompose: {} has a coordinate below 2^-300 or above 2^300: scale the drawing",
-                                  drawing.point_name(i)));
+    throw InvalidMesh(
+        fmt::format("decompose: {} has a coordinate above 2^300: scale the drawing", drawing.point_name(i)));
   }
 }
 
@@ -142,7 +143,7 @@ std::vector<Vec3> frame(const Drawing& drawing, double margin) {
   if (!in_exact_range(a) || !in_exact_range(b)) {
     throw InvalidArgument(
         fmt::format("decompose: with margin {}, the rectangle around the drawing has a coordinate "
-                    "below 2^-300 or above 2^300: change it, or scale the drawing",
+                    "above 2^300: change it, or scale the drawing",
                     margin));
   }
   points.insert(points.end(), {a, {b.x, a.y, 0.0}, b, {a.x, b.y, 0.0}});

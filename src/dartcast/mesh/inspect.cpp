@@ -35,8 +35,7 @@ void count_contents(const MeshData& mesh, MeshReport& report) {
 
 void check_coordinates(const MeshData& mesh, const std::vector<std::uint32_t>& point_source, MeshReport& report) {
   Finding not_finite{"not_finite", 0, {}, "points with a coordinate that is not a finite number"};
-  Finding out{
-      "out_of_range", 0, {}, "points with a coordinate too large or too small for exact signs (1e-90 to 1e+90)"};
+  Finding out{"out_of_range", 0, {}, "points with a coordinate too large for exact signs (above 2^300, 2e+90)"};
   for (std::size_t p = 0; p < mesh.points.size(); ++p) {
     if (in_exact_range(mesh.points[p])) continue;
     (is_finite(mesh.points[p]) ? out : not_finite).add(point_source[p]);

@@ -117,7 +117,7 @@ void Flow::add_sampled(const Sampler& sampler, std::size_t count, const Vec3& ve
     int tries = 0;
     while (true) {
       const Sample s = sampler.sample(environment_.complex(), random_);
-      if (environment_.add(particles_, s.simplex, detail::flushed(s.position))) break;
+      if (environment_.add(particles_, s.simplex, flushed(s.position))) break;
       if (++tries == most_tries) {
         complete(velocity, radius);
         throw InvalidArgument(
@@ -218,7 +218,7 @@ void Flow::aim(double dt, bool moving) {
                         ? Aim{velocities_[i], particles_[i].position}
                         : aim_at(i, dt, moving);
       velocities_[i] = a.velocity;
-      targets_[i] = detail::flushed(a.target);
+      targets_[i] = flushed(a.target);
     }
   });
 }

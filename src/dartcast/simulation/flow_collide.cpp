@@ -94,7 +94,7 @@ void Flow::find_walls(double dt, bool moving) {
 // Where those that stick to a wall go is known once it has moved.
 void Flow::aim_stuck(double dt) {
   for (std::size_t i = 0; i < fates_.size(); ++i) {
-    if (fates_[i] == Fate::stuck) targets_[i] = detail::flushed(aim_at(i, dt, true).target);
+    if (fates_[i] == Fate::stuck) targets_[i] = flushed(aim_at(i, dt, true).target);
   }
 }
 
@@ -122,7 +122,7 @@ void Flow::collide(double dt, bool moving) {
   }
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     if (fates_[i] == Fate::alive && !particles_[i].held)
-      targets_[i] = detail::flushed(particles_[i].position + displacements_[i]);
+      targets_[i] = flushed(particles_[i].position + displacements_[i]);
   }
 }
 

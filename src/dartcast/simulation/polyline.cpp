@@ -22,7 +22,7 @@ void check(const Particles& particles, std::span<const Vec3> targets, std::size_
   if (bad == targets.end()) return;
   const auto at = static_cast<std::size_t>(bad - targets.begin());
   throw InvalidArgument(
-      fmt::format("advance_polyline: target {} of particle {} is not finite or outside the exact range", at % segments,
+      fmt::format("advance_polyline: target {} of particle {} is not finite or above 2^300 in magnitude", at % segments,
                   at / segments));
 }
 

@@ -157,7 +157,7 @@ class SphereCall {
     if (way.end == WayEnd::target) return;
     if (way.end == WayEnd::overlap && !scene_.moved)
       detail::list_overlaps(*scene_.complex, state, particle, radii_[i], chunk.near, chunk.overlaps);
-    b_.targets[i] = detail::flushed(way.target);
+    b_.targets[i] = flushed(way.target);
     chunk.planned.push_back({particle, state.position, way});
   }
 

@@ -117,8 +117,7 @@ void agree_on_orientation(MeshData& mesh, MeshReport& report) {
 
 void check_surface_points(const MeshData& mesh, MeshReport& report) {
   Finding not_finite{"not_finite", 0, {}, "points with a coordinate that is not a finite number"};
-  Finding out{
-      "out_of_range", 0, {}, "points with a coordinate too large or too small for exact signs (1e-90 to 1e+90)"};
+  Finding out{"out_of_range", 0, {}, "points with a coordinate too large for exact signs (above 2^300, 2e+90)"};
   for (std::size_t p = 0; p < mesh.points.size(); ++p) {
     if (!in_exact_range(mesh.points[p])) (is_finite(mesh.points[p]) ? out : not_finite).add(p);
   }

@@ -33,8 +33,7 @@ void check_positions(std::span<const Vec3> positions, std::size_t count) {
   for (std::size_t i = 0; i < positions.size(); ++i) {
     if (!in_exact_range(positions[i]))
       throw InvalidArgument(
-          fmt::format("move: position {} is ({}, {}, {}): coordinates must be finite, and 0 or "
-                      "between 2^-300 and 2^300 in magnitude",
+          fmt::format("move: position {} is ({}, {}, {}): coordinates must be finite, and at most 2^300 in magnitude",
                       i, positions[i].x, positions[i].y, positions[i].z));
   }
 }
@@ -45,6 +44,7 @@ Surface::Surface(MeshData mesh) {
   mesh = inspected_surface(std::move(mesh));
   map_ = Map(mesh);
   positions_ = std::move(mesh.points);
+  std::transform(positions_.begin(), positions_.end(), positions_.begin(), flushed);
 }
 
 void Surface::move(std::span<const Vec3> positions, Threads threads) {
@@ -66,7 +66,7 @@ void Surface::move(std::span<const Vec3> positions, Threads threads) {
                     "corners less",
                     count, fmt::join(faces, ", ")));
   }
-  std::copy(positions.begin(), positions.end(), positions_.begin());
+  std::transform(positions.begin(), positions.end(), positions_.begin(), flushed);
 }
 
 bool Surface::has_flat_triangle(Cell c, std::span<const Vec3> positions) const {

@@ -101,7 +101,7 @@ SurfaceLocator::SurfaceLocator(const Surface& surface)
 // of these is the best of all if it is no farther.
 SurfaceLocation SurfaceLocator::nearest(const Surface& surface, const Vec3& x) const {
   if (!in_exact_range(x))
-    throw InvalidArgument("nearest: a point must be finite, and 0 or between 2^-300 and 2^300 in magnitude");
+    throw InvalidArgument("nearest: a point's coordinates must be finite, and at most 2^300 in magnitude");
   const auto padded = [](double r) { return r * (1.0 + 0x1p-40); };
   double r = padded(distance_to(bounds_, x)) + start_;
   while (true) {

@@ -17,7 +17,9 @@ struct WallHit {
   CellFace face;               ///< of the free cell
   std::uint16_t triangle = 0;  ///< in the face's fan
   Patch patch;
-  Vec3 normal;  ///< unit, into the free side
+  /// Unit, into the free side. A wall without area, or with a corner outside the exact range, has none of its own: it
+  /// has that of the contact's first wall with one; where there is none, it is opposite to the particle's motion.
+  Vec3 normal;
 };
 
 struct Contact {
@@ -30,8 +32,10 @@ struct Contact {
   std::uint32_t earlier = 0;    ///< number of walls before those that this particle met earlier in the same step
   bool last = false;            ///< no further contact is allowed in this step
   double time_of_impact = 0.0;  ///< fraction of the step, in [0, 1]
-  Vec3 point;                   ///< on the wall, rounded; the particle is put into the free closed cell there
-  Vec3 wall_displacement;       ///< of the wall at that point, over the whole step; zero where the scene stands still
+  /// On the wall, rounded. The particle is put into the free closed cell there: at most 256 units in the last place of
+  /// the point's largest coordinate away; where that cannot be, no farther than where its motion to the wall began.
+  Vec3 point;
+  Vec3 wall_displacement;  ///< of the wall at that point, over the whole step; zero where the scene stands still
   Vec3 displacement;  ///< of the particle relative to the wall, over the whole of the motion that led to the contact
   Vec3 unused;        ///< displacement not used, relative to the wall
 };
@@ -56,10 +60,16 @@ struct ContactList {
   void append(const ContactList& other);
 };
 
+/// Of a displacement's largest component: what points into a wall by less than this along its normal is meant to run
+/// along it, and rounding is to blame.
+inline constexpr double along_share = 4e-12;
+
 /// What a particle does after a contact, in the rest of the step.
 struct Continuation {
-  Vec3 displacement;   ///< relative to the wall
-  bool along = false;  ///< meant to run along the walls touched: rounding must not turn it into them
+  Vec3 displacement;  ///< relative to the wall
+  /// Rounding must not turn it into the walls touched in this step that it runs along, or off (along_share). A wall
+  /// that it points into is met again.
+  bool along = false;
 };
 
 /// Decides what follows a contact: given the contact, its walls, and those met earlier in the same step. Called from

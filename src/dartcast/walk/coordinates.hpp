@@ -23,7 +23,7 @@ namespace dartcast::detail {
 inline constexpr double coordinate_margin = 0x1p-12;
 inline constexpr double most_for_sign = 2.0;
 inline constexpr double least_volume = 0x1p-20;         ///< V over E^3
-inline constexpr double largest_extent = 0x1p+100;      ///< E
+inline constexpr double farthest_corner = 0x1p+100;     ///< E
 inline constexpr double steepest_gradient = 64.0;       ///< |g|_1 E
 inline constexpr double extents_from_origin = 0x1p+28;  ///< |p| over E that counts as much as E
 

@@ -38,7 +38,7 @@ inline int filtered_sign(const Vec3& u, const Vec3& v, const Vec3& w) {
   const double y = largest(u.y, v.y, w.y);
   const double z = largest(u.z, v.z, w.z);
   const double m = x * y * z;
-  if (!filter_applies(std::max({x, y, z}), m)) return 0;
+  if (!filter_applies({x, y, z})) return 0;
   const double value = dot(u, cross(v, w));
   return value > determinant_error * m ? 1 : value < -determinant_error * m ? -1 : 0;
 }
@@ -134,7 +134,7 @@ void step_filtered(const FilteredScene& scene, const FilteredSteps& steps, Count
   portable::step(scene, steps, counters);
 }
 
-bool all_in_exact_range(std::span<const Vec3> points) {
+bool all_as_decided(std::span<const Vec3> points) {
   if (points.empty()) return true;
   const double* x = &points[0].x;
 #if defined(__x86_64__)

@@ -69,7 +69,7 @@ struct FilteredSteps {
 void step_filtered(const FilteredScene& scene, const FilteredSteps& steps, Counters& counters,
                    InstructionSet set = best_instruction_set());
 
-/// Whether all points are in the exact range (exact/predicates.hpp).
-bool all_in_exact_range(std::span<const Vec3> points);
+/// Whether all points are in the exact range, and flushed() (exact/predicates.hpp).
+bool all_as_decided(std::span<const Vec3> points);
 
 }  // namespace dartcast::detail

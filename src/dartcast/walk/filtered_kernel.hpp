@@ -111,7 +111,7 @@ class Batch {
     return load_points(states_[i.at[0]].position, states_[i.at[1]].position, states_[i.at[2]].position,
                        states_[i.at[3]].position);
   }
-  DARTCAST_TARGET Tetrahedra simplices_of(const Vec3* positions, const Four& i) const {
+  [[gnu::always_inline]] DARTCAST_TARGET Tetrahedra simplices_of(const Vec3* positions, const Four& i) const {
     return Tetrahedra(positions, vertices_[i.at[0]], vertices_[i.at[1]], vertices_[i.at[2]], vertices_[i.at[3]]);
   }
 

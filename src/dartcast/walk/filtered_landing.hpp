@@ -14,7 +14,8 @@ struct BoundedProducts {
   [[nodiscard]] DARTCAST_TARGET Mask exceed(double times) const { return exceed(value, permanent, times); }
   DARTCAST_TARGET static Quad sum(const Quad& a, const Quad& b) { return magnitude(a) + magnitude(b); }
   DARTCAST_TARGET static Mask exceed(const Quad& value, const Quad& permanent, double times) {
-    return (permanent >= 0x1p-700) & (magnitude(value) > (times * Determinant::error) * permanent);
+    return (permanent >= Determinant::smallest_permanent) &
+           (magnitude(value) > (times * Determinant::error) * permanent);
   }
 };
 
@@ -50,7 +51,8 @@ class FourLandings {
 
   DARTCAST_TARGET FourLandings(const AtWalls& at, const std::vector<Begun>& begun, const Vec3* positions,
                                const Vec3* targets)
-      : corner_{load_corners(positions, at, 0), load_corners(positions, at, 1), load_corners(positions, at, 2)},
+      : corner_{without_tiny(load_corners(positions, at, 0)), without_tiny(load_corners(positions, at, 1)),
+                without_tiny(load_corners(positions, at, 2))},
         facet_{at[0]->facet, at[1]->facet, at[2]->facet, at[3]->facet} {
     const auto& [a, b, c] = corner_;
     gradient_ = cross(b - a, c - a);
@@ -66,7 +68,7 @@ class FourLandings {
   DARTCAST_TARGET void put(const Tetrahedra& simplex) {
     const FilteredDeterminants d(simplex, point_);
     const Mask inside = d.all_positive();
-    Mask others = d.applies;
+    Mask others = splat_bits(-1);
     Quad off{};
     for (unsigned i = 0; i < 4; ++i) {
       const Mask is_wall = facet_ == splat_bits(i);
@@ -95,10 +97,10 @@ class FourLandings {
     const Quad sum = weight[0] + weight[1] + weight[2];
     known &= sum > 0.0;
     for (unsigned i = 0; i < 3; ++i) {
-      const Points moved = corner_[i] - load_corners(before, at, i);
-      constexpr double most = std::numeric_limits<double>::max();
-      const Points m = magnitude(moved);
-      known &= (m.x <= most) & (m.y <= most) & (m.z <= most);
+      const Points was = load_corners(before, at, i);
+      const Points m = magnitude(was);
+      known &= (m.x <= largest_magnitude) & (m.y <= largest_magnitude) & (m.z <= largest_magnitude);
+      const Points moved = corner_[i] - was;
       wall_displacement_ = wall_displacement_ + moved * (weight[i] / sum);
     }
   }

@@ -67,7 +67,7 @@ DARTCAST_TARGET inline unsigned leave_coordinates(const FilteredDeterminants& d,
   const Points m = magnitude(p);
   const Quad reach = largest(larger(d.extent, m * splat(1.0 / extents_from_origin)));
   Mask proved =
-      d.proves_coordinates() & (volume >= least_volume * (extent * extent * extent)) & (extent <= largest_extent);
+      d.proves_coordinates() & (volume >= least_volume * (extent * extent * extent)) & (extent <= farthest_corner);
   Mask exact{};
   if constexpr (ask_exact) {
     constexpr double close = 0x1p+12;
@@ -137,10 +137,10 @@ DARTCAST_TARGET inline Weights shares_of(Weights w) {
 //
 // Let E be the largest |r_i| of the corners relative to q, V the volume, M the largest |c_i| of the corners. The place
 // is a sum of c_i s_i, rounded, with s_i >= 2^-12 that sum to 1 up to 4u: in each component it is 9uM at most off the
-// point that has the coordinates s_i / sum. (What is counted as zero is below 2^-300, which is 2^-67 E where the filter
-// applies.) The cross products of a facet's edges have components of 8 E^2 at most. So the place's determinants are
-// s_i V, off by 24 E^2 9uM < 2^-33 E^3, as M <= (2^12 + 1) E; and s_i V >= 2^-32 (1 - 2^-25) E^3. It is not q: one of
-// q's is below 2^-46 E^3.
+// point that has the coordinates s_i / sum. (What is counted as zero is below 2^-300, which is 2^-66 E where the filter
+// applies, in the corners, too.) The cross products of a facet's edges have components of 8 E^2 at most. So the place's
+// determinants are s_i V, off by 24 E^2 9uM < 2^-33 E^3, as M <= (2^12 + 1) E; and s_i V >= 2^-32 (1 - 2^-25) E^3. It
+// is not q: one of q's is below 2^-46 E^3.
 DARTCAST_TARGET inline Mask surely_rides_inside(const MemosOfFour& trails, const FilteredDeterminants& d,
                                                 const Points& q) {
   constexpr double least_share = 0x1p-12;
@@ -149,7 +149,7 @@ DARTCAST_TARGET inline Mask surely_rides_inside(const MemosOfFour& trails, const
                      load_doubles(trails.w[2].data()), load_doubles(trails.w[3].data())};
   const Quad sum = (w[0] + w[1]) + (w[2] + w[3]);
   const Quad extent = largest(d.extent);
-  return d.applies & (d.volume6() >= least_volume * (extent * extent * extent)) &
+  return (d.volume6() > d.bound) & (d.volume6() >= least_volume * (extent * extent * extent)) &
          (largest(magnitude(q)) <= farthest * extent) &
          (smaller(smaller(w[0], w[1]), smaller(w[2], w[3])) >= least_share * sum);
 }

@@ -26,6 +26,7 @@ DARTCAST_TARGET inline Points larger(const Points& a, const Points& b) {
   return {larger(a.x, b.x), larger(a.y, b.y), larger(a.z, b.z)};
 }
 DARTCAST_TARGET inline Quad largest(const Points& a) { return larger(larger(a.x, a.y), a.z); }
+DARTCAST_TARGET inline Quad smallest(const Points& a) { return smaller(smaller(a.x, a.y), a.z); }
 
 DARTCAST_TARGET inline Points load_points(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Quad xy02 = load_pairs(&a.x, &c.x);
@@ -47,8 +48,9 @@ DARTCAST_TARGET inline Points load_points(const Vec3* p) {
 struct Tetrahedra {
   Points corner[4];
 
-  DARTCAST_TARGET Tetrahedra(const Vec3* positions, const VertexNumbers& a, const VertexNumbers& b,
-                             const VertexNumbers& c, const VertexNumbers& d) {
+  [[gnu::always_inline]] DARTCAST_TARGET Tetrahedra(const Vec3* positions, const VertexNumbers& a,
+                                                    const VertexNumbers& b, const VertexNumbers& c,
+                                                    const VertexNumbers& d) {
     for (unsigned i = 0; i < 4; ++i)
       corner[i] = load_points(positions[a[i]], positions[b[i]], positions[c[i]], positions[d[i]]);
   }
@@ -86,8 +88,7 @@ struct FilteredDeterminants {
   Points relative[4];  // corners, to the points
   Points extent;       // largest magnitudes of these
   Quad value[4];
-  Quad bound;
-  Mask applies;
+  Quad bound;  // infinite where the filter does not apply
 
   FilteredDeterminants() = default;
   [[gnu::always_inline]] DARTCAST_TARGET FilteredDeterminants(const Tetrahedra& v, const Points& x)
@@ -100,15 +101,15 @@ struct FilteredDeterminants {
     value[1] = -dot(relative[0], n23);
     value[2] = dot(relative[3], n01);
     value[3] = -dot(relative[2], n01);
-    const Quad m = extent.x * extent.y * extent.z;
-    bound = determinant_error * m;
-    applies = (largest(extent) <= 0x1p+301) & (m >= 0x1p-700);
+    const Mask applies = (largest(extent) <= largest_decided_extent) & (smallest(extent) >= smallest_extent);
+    bound =
+        applies ? determinant_error * (extent.x * extent.y * extent.z) : splat(std::numeric_limits<double>::infinity());
   }
 
   [[nodiscard]] DARTCAST_TARGET Quad volume6() const { return (value[0] + value[1]) + (value[2] + value[3]); }
-  [[nodiscard]] DARTCAST_TARGET Mask proves_coordinates() const { return applies & (volume6() > 0x1p+30 * bound); }
+  [[nodiscard]] DARTCAST_TARGET Mask proves_coordinates() const { return volume6() > 0x1p+30 * bound; }
   [[nodiscard]] DARTCAST_TARGET Mask all_positive() const {
-    return applies & (((value[0] > bound) & (value[1] > bound)) & ((value[2] > bound) & (value[3] > bound)));
+    return ((value[0] > bound) & (value[1] > bound)) & ((value[2] > bound) & (value[3] > bound));
   }
   [[nodiscard]] DARTCAST_TARGET Mask any_negative() const {
     return ((value[0] < -bound) | (value[1] < -bound)) | ((value[2] < -bound) | (value[3] < -bound));
@@ -119,7 +120,7 @@ struct FilteredDeterminants {
     Mask negative = facet_bits(value[0] < -bound, value[1] < -bound, value[2] < -bound, value[3] < -bound);
     const Mask positive = facet_bits(value[0] > bound, value[1] > bound, value[2] > bound, value[3] > bound);
     const Mask open = (negative | positive) ^ splat_bits(15);
-    const Mask is_valid = applies & ((positive == splat_bits(15)) | (volume6() - 8.0 * bound > 0.0));
+    const Mask is_valid = (positive == splat_bits(15)) | (volume6() - 8.0 * bound > 0.0);
     Mask bits = (open << 8) | (is_valid & splat_bits(Signs::valid));
     if (lanes_set(open != 0) != 0) {
       negative |= open & facet_bits(value[0] < 0.0, value[1] < 0.0, value[2] < 0.0, value[3] < 0.0);

@@ -43,7 +43,7 @@ SimplexId find_in(const Complex& complex, Cell c, const Vec3& x) {
 Locator::Locator(const Complex& complex) {
   bounds_ = {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
   for (const Vec3& x : complex.positions()) {
-    if (in_exact_range(x)) extend(bounds_.low, bounds_.high, x);
+    if (in_exact_range(x)) extend(bounds_.low, bounds_.high, flushed(x));
   }
   make(complex, complex.map().cells());
 }
@@ -70,7 +70,7 @@ void Locator::make(const Complex& complex, const std::vector<Cell>& cells) {
 Locator::Box Locator::box_of(const Complex& complex, Cell c) {
   Box box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
   const auto positions = complex.positions();
-  for (const std::uint32_t v : complex.map().view(c).vertices()) extend(box.low, box.high, positions[v]);
+  for (const std::uint32_t v : complex.map().view(c).vertices()) extend(box.low, box.high, flushed(positions[v]));
   return box;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "dartcast/walk/contact.hpp"
 #include "dartcast/walk/ride.hpp"
@@ -24,11 +25,13 @@ struct Determinant {
                   std::abs(u.z) * (std::abs(v.x * w.y) + std::abs(v.y * w.x))) {}
 
   static constexpr double error = determinant_error / 6.0;
+  static constexpr double smallest_permanent =
+      0x1p-700;                                    // products that underflow are paid for, as in filter_applies()
   static constexpr double for_fraction = 0x1p+42;  // errors: what a time of impact asks for
 
   /// Whether the value exceeds `times` its error.
   [[nodiscard]] bool exceeds(double times) const {
-    return filter_applies(0.0, permanent) && std::abs(value) > times * error * permanent;
+    return permanent >= smallest_permanent && std::abs(value) > times * error * permanent;
   }
 };
 
@@ -62,7 +65,7 @@ class Passing<4> {
     const double before = height_.exceeds(enough) ? height_.value : orient3d_value(wall_.a, wall_.b, wall_.c, p_);
     double whole = sides_[0].value + sides_[1].value + sides_[2].value;
     const double permanent = sides_[0].permanent + sides_[1].permanent + sides_[2].permanent;
-    if (!filter_applies(0.0, permanent) || !(std::abs(whole) > enough * Determinant::error * permanent))
+    if (!(permanent >= Determinant::smallest_permanent && std::abs(whole) > enough * Determinant::error * permanent))
       whole = before - orient3d_value(wall_.a, wall_.b, wall_.c, q_);
     return std::clamp(before / whole, 0.0, 1.0);
   }
@@ -103,16 +106,18 @@ inline WallHit wall_hit(const Map& map, SimplexId id, const CellView& cell, unsi
   return {face, across.place, map.patch(face), normal};
 }
 
-/// Adds the other wall triangles that meet at an edge or a vertex; a plane face's triangles count as one. Precondition:
-/// the one that was hit is the last of the list.
+/// Adds the other wall triangles that meet at an edge or a vertex; a plane face's triangles count as one. Returns
+/// whether all of them have normals. Precondition: the one that was hit is the last of the list.
 template <class Positions, std::size_t N>
-void add_other_walls(const Space<Positions, N>& space, const Walk& w, const Feature& feature, ContactList& list) {
+bool add_other_walls(const Space<Positions, N>& space, const Walk& w, const Feature& feature, ContactList& list) {
   const auto first = static_cast<std::ptrdiff_t>(list.walls.size()) - 1;
+  bool all_have_normals = true;
   search_walls<N>(*space.map, w.wall_simplex, feature,
                   [&](SimplexId id, const CellView& cell, const ImplicitSimplex& s, unsigned facet) {
                     if (id == w.wall_simplex && facet == w.wall_facet) return true;
                     const CellFace face = {id.cell, s.across[facet].face()};
                     const Vec3 normal = facet_normal(space.corners(cell, s), facet);
+                    all_have_normals &= normal != Vec3{};
                     const bool known = std::any_of(list.walls.begin() + first, list.walls.end(), [&](const WallHit& h) {
                       constexpr double same_plane =
                           1.0 - 1e-14;  // unit normals, rounded: only which triangles are listed depends on it
@@ -121,6 +126,17 @@ void add_other_walls(const Space<Positions, N>& space, const Walk& w, const Feat
                     if (!known) list.walls.push_back(wall_hit(*space.map, id, cell, facet, normal));
                     return true;
                   });
+  return all_have_normals;
+}
+
+/// Gives the walls of a contact that have no normal of their own another one (walk/contact.hpp). `motion`: not 0.
+[[gnu::cold]] inline void complete_normals(std::span<WallHit> walls, const Vec3& motion) {
+  const auto has_normal = [](const WallHit& wall) { return wall.normal != Vec3{}; };
+  const auto known = std::find_if(walls.begin(), walls.end(), has_normal);
+  const Vec3 normal = known != walls.end() ? known->normal : unit_of(motion) * -1.0;
+  for (WallHit& wall : walls) {
+    if (!has_normal(wall)) wall.normal = normal;
+  }
 }
 
 /// The barycentric coordinates in a wall's facet of the point nearest to x, up to a factor; none is negative.
@@ -151,8 +167,9 @@ Vec3 wall_displacement(const Complex& complex, SimplexId simplex, unsigned facet
   Vec3 result;
   for (unsigned i = 0; i < N - 1; ++i) {
     const std::uint32_t vertex = vertices[facet_corner<N>(facet, i)].value;
-    const Vec3 moved = complex.positions()[vertex] - complex.previous_positions()[vertex];
-    if (!is_finite(moved)) continue;  // the move has mended a vertex that was not finite
+    const Vec3& before = complex.previous_positions()[vertex];
+    if (!in_exact_range(before)) continue;  // the move has brought the vertex back: that was no motion of the wall
+    const Vec3 moved = complex.positions()[vertex] - before;
     result += moved * (sum > 0.0 ? weight[i] / sum : 1.0 / (N - 1.0));
   }
   return result;
@@ -214,7 +231,9 @@ double describe_contact(const Space<Positions, N>& space, const Walk& w, const s
   contact.dart = {w.wall_simplex.cell, feature.dart};
   contact.first_wall = static_cast<std::uint32_t>(list.walls.size());
   list.walls.push_back(wall_hit(*space.map, w.wall_simplex, cell, w.wall_facet, wall.normal));
-  if (zeros != 1U << w.wall_facet) add_other_walls(space, w, feature_of<N>(cell, s, zeros), list);
+  bool all_have_normals = wall.normal != Vec3{};
+  if (zeros != 1U << w.wall_facet) all_have_normals &= add_other_walls(space, w, feature_of<N>(cell, s, zeros), list);
+  if (!all_have_normals) complete_normals(std::span(list.walls).subspan(contact.first_wall), q - p);
   contact.wall_count = static_cast<std::uint32_t>(list.walls.size()) - contact.first_wall;
   contact.point = w.at_start ? p : w.at_end ? q : flushed(p + (q - p) * t);
   return t;

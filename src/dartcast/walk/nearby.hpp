@@ -31,18 +31,6 @@ bool in_closed_simplex(const std::array<Vec3, N>& v, const Vec3& x) {
   return true;
 }
 
-/// A component that is not zero but below the exact range counts as zero; results of arithmetic are passed through
-/// this.
-inline Vec3 flushed(Vec3 x) {
-  const auto flush = [](double& c) {
-    if (std::abs(c) < smallest_magnitude) c = 0.0;
-  };
-  flush(x.x);
-  flush(x.y);
-  flush(x.z);
-  return x;
-}
-
 /// Barycentric coordinates in a simplex as functions of the place. Exact values behind them: those of a sliver are
 /// small differences.
 template <std::size_t N>

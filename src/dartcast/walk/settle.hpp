@@ -67,26 +67,57 @@ void lift_off(const WallPlanes<N>& planes, const Vec3& p, Vec3& x, int doublings
 
 }  // namespace detail
 
-/// A facet's unit normal to the inside (scaled before it is normalised where its square might under- or overflow, by
-/// powers of two, so that the bits are the same).
+/// A vector over a power of two, so that its square neither under- nor overflows.
+inline Vec3 scaled_to_one(const Vec3& x) {
+  const double largest = std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)});
+  return largest > 0.0 && largest <= std::numeric_limits<double>::max() ? x * std::ldexp(1.0, -std::ilogb(largest)) : x;
+}
+
+/// 0 where the vector is, or is not finite.
+inline Vec3 unit_of(const Vec3& x) {
+  const Vec3 scaled = scaled_to_one(x);
+  const double square = dot(scaled, scaled);
+  return square > 0.0 && square < 16.0 ? scaled * (1.0 / std::sqrt(square)) : Vec3{};
+}
+
+namespace detail {
+
+/// The normal of a facet that is very small or large, or has no area in doubles. Vectors are scaled by powers of two,
+/// so that the bits are the same; what cancels in a thin triangle is then taken exactly.
+inline Vec3 unusual_normal(const Corners& v, unsigned facet) {
+  const auto& f = facet_corners[facet];
+  const Vec3 a = flushed(v[f[0]]);
+  const Vec3 b = flushed(v[f[1]]);
+  const Vec3 c = flushed(v[f[2]]);
+  const Vec3 n = unit_of(cross(scaled_to_one(b - a), scaled_to_one(c - a)));
+  if (n != Vec3{} || !in_exact_range(a) || !in_exact_range(b) || !in_exact_range(c)) return n;
+  const auto twice_area = [&](double Vec3::*x, double Vec3::*y) {
+    const auto flat = [&](const Vec3& p) { return Vec3{p.*x, p.*y, 0.0}; };
+    return orient2d_value(flat(a), flat(b), flat(c));
+  };
+  return unit_of({twice_area(&Vec3::y, &Vec3::z), twice_area(&Vec3::z, &Vec3::x), twice_area(&Vec3::x, &Vec3::y)});
+}
+
+}  // namespace detail
+
+/// A facet's unit normal to the inside; 0 where it has no area, or a corner outside the exact range.
 inline Vec3 facet_normal(const Corners& v, unsigned facet) {
-  Vec3 n = facet_gradient(v, facet);
-  double square = dot(n, n);
-  if (!(square > 0x1p-600 && square < 0x1p+600)) {
-    const auto scaled = [](Vec3 x) {
-      const double largest = std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)});
-      return largest > 0.0 ? x * std::ldexp(1.0, -std::ilogb(largest)) : x;
-    };
-    const auto& f = facet_corners[facet];
-    n = scaled(cross(scaled(v[f[1]] - v[f[0]]), scaled(v[f[2]] - v[f[0]])));
-    square = dot(n, n);
-  }
-  return square > 0.0 ? n * (1.0 / std::sqrt(square)) : Vec3{};
+  const auto& f = facet_corners[facet];
+  const Vec3 b = v[f[1]] - v[f[0]];
+  const Vec3 c = v[f[2]] - v[f[0]];
+  const Vec3 n = cross(b, c);
+  const double square = dot(n, n);
+  // Then coordinates that count as 0 change n by less than 2^-299 2^74, which is 2^-75 of it.
+  const bool usual = square > 0x1p-300 && dot(b, b) < 0x1p+140 && dot(c, c) < 0x1p+140;
+  return usual ? n * (1.0 / std::sqrt(square)) : detail::unusual_normal(v, facet);
 }
 inline Vec3 facet_normal(const PlaneCorners& v, unsigned facet) {
-  const Vec3 n = facet_gradient(v, facet);
+  const auto& f = plane_facet_corners[facet];
+  const Vec3 along = flushed(v[f[1]]) - flushed(v[f[0]]);
+  const Vec3 n = {-along.y, along.x, 0.0};
   const double length = std::hypot(n.x, n.y);
-  return length > 0.0 ? Vec3{n.x / length, n.y / length, 0.0} : Vec3{};
+  const bool has_length = length > 0.0 && length <= std::numeric_limits<double>::max();
+  return has_length ? Vec3{n.x / length, n.y / length, 0.0} : Vec3{};
 }
 
 /// The plane of a facet, with its normal.
@@ -97,6 +128,12 @@ inline WallPlane facet_plane(const Corners& v, unsigned facet) {
 inline WallPlane facet_plane(const PlaneCorners& v, unsigned facet) {
   const auto& f = plane_facet_corners[facet];
   return {v[f[0]], v[f[1]], v[f[1]], facet_normal(v, facet)};
+}
+
+/// The plane as decisions see its corners.
+inline WallPlane flushed_plane(WallPlane plane) {
+  for (Vec3* corner : {&plane.a, &plane.b, &plane.c}) *corner = flushed(*corner);
+  return plane;
 }
 
 struct Settled {
@@ -126,21 +163,31 @@ inline bool on_level_facet(const PlaneCorners& v, unsigned facet, const Vec3& x)
 template <std::size_t N>
 std::optional<Vec3> proved_inside(const std::array<Vec3, N>& v, const Vec3& x) {
   Determinants d(v, x);
-  if (d.all_proved_positive()) return x;
+  if (d.all_positive_in_range()) return x;
   const auto facet = static_cast<unsigned>(std::min_element(d.value.begin(), d.value.end()) - d.value.begin());
   const double off = std::exchange(d.value[facet], std::numeric_limits<double>::infinity());
-  if (!d.all_proved_positive()) return {};
+  if (!d.all_positive_in_range()) return {};
   if (on_level_facet(v, facet, x)) return x;
   const Vec3 n = facet_gradient(v, facet);
   const double largest = std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)});
   const Vec3 direction = n * (1.0 / largest);  // squares of n may be out of range
   const double length = norm(direction);
   const double unit = lift_distance(v[facet_corner<N>(facet, 0)], x, 0);
-  const double distance = (2.0 * d.bound - off) / (largest * length) + unit;
+  const double distance = (2.0 * d.error() - off) / (largest * length) + unit;
   if (!(distance < most_units * unit)) return {};
   const Vec3 lifted = flushed(x + direction * (distance / length));
-  if (!Determinants(v, lifted).all_proved_positive()) return {};
+  if (!Determinants(v, lifted).all_positive_in_range() || !in_exact_range(lifted)) return {};
   return lifted;
+}
+
+/// Nearest to x of the corners and of p, a point of the simplex.
+template <std::size_t N>
+Vec3 nearest_known(const std::array<Vec3, N>& v, const Vec3& p, const Vec3& x) {
+  Vec3 nearest = p;
+  for (const Vec3& corner : v) {
+    if (norm(corner - x) < norm(nearest - x)) nearest = flushed(corner);
+  }
+  return nearest;
 }
 
 inline Vec3 mean_of(const Corners& v) { return ((v[0] + v[1]) + (v[2] + v[3])) * 0.25; }
@@ -192,20 +239,20 @@ std::optional<Settled> lifted(const Space<Positions, N>& space, SimplexId start,
 /// is lifted off the facets that it is behind, one unit in the last place at first, doubling. Where that does not do,
 /// it is walked to from a point p of the simplex (its mean, where that is exactly inside; else its corner nearest to x)
 /// and lifted off the walls in the way; where these are too close together for that, a double between them is looked
-/// for (walk/nearby.hpp); in the end it is p. No wall is passed. Precondition: the simplex is positive, its cell free.
+/// for (walk/nearby.hpp); in the end it is p or the corner nearest to x. No wall is passed. Precondition: the simplex
+/// is positive, its cell free.
 template <class Positions, std::size_t N>
 Settled settle(const Space<Positions, N>& space, SimplexId simplex, const std::array<Vec3, N>& v, const Vec3& rounded) {
-  const Vec3 x = detail::flushed(rounded);
+  const Vec3 x = flushed(rounded);
   if (detail::in_closed_simplex(v, x)) return {simplex, x};
-  Vec3 p = detail::flushed(detail::mean_of(v));
+  Vec3 p = flushed(detail::mean_of(v));
   if (const auto lifted = detail::lifted_inside(v, p, x)) return {simplex, *lifted};
-  if (!detail::in_closed_simplex(v, p)) {
-    p = *std::min_element(v.begin(), v.end(),
-                          [&](const Vec3& a, const Vec3& b) { return dot(a - x, a - x) < dot(b - x, b - x); });
-  }
+  if (!detail::in_closed_simplex(v, p)) p = detail::nearest_known(v, flushed(v[0]), x);
+  if (!in_exact_range(x)) return {simplex, detail::nearest_known(v, p, x)};
   if (const auto settled = detail::reached(space, simplex, p, x)) return *settled;
   if (const auto settled = detail::lifted(space, simplex, p, x)) return *settled;
-  return {simplex, detail::double_inside(v, x).value_or(p)};
+  if (const auto found = detail::double_inside(v, x)) return {simplex, *found};
+  return {simplex, detail::nearest_known(v, p, x)};
 }
 
 /// The same in a complex as it is now, of space or of the plane.

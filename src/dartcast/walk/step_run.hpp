@@ -110,9 +110,9 @@ class Part {
   // What the contact is, and where it puts the particle. Returns the fraction of the segment.
   double hit(Run& run, const Walk& w, const Vec3& p, const Vec3& q, Contact& contact) const {
     const std::array<Vec3, N> corners = space_.corners(w.wall_simplex);
-    const WallPlane wall = facet_plane(corners, w.wall_facet);
+    const WallPlane wall = flushed_plane(facet_plane(corners, w.wall_facet));
     const double t = describe_contact(space_, w, corners, wall, p, q, contact, run.contacts);
-    place(run, w, corners, contact);
+    place(run, w, corners, p, contact);
     if (moved_)
       contact.wall_displacement =
           wall_displacement(complex_, w.wall_simplex, w.wall_facet, corners, wall, contact.point);
@@ -135,17 +135,22 @@ class Part {
     return respond_(contact, run.contacts.walls_of(contact), run.contacts.earlier_walls_of(contact));
   }
 
-  // The contact point is rounded: it is settled in the simplex at the wall.
-  void place(Run& run, const Walk& w, const std::array<Vec3, N>& corners, const Contact& contact) const {
-    Settled settled{w.simplex, contact.point};
-    if (!w.at_end) {
-      const auto proved = proved_inside(corners, contact.point);
-      settled = proved ? Settled{w.wall_simplex, *proved} : settle(space_, w.wall_simplex, corners, contact.point);
-    }
+  // The contact point is rounded: it is settled in the simplex at the wall. Where that would put the particle farther
+  // from the point than it was at p, it stays there, in the simplex that the segment began in.
+  void place(Run& run, const Walk& w, const std::array<Vec3, N>& corners, const Vec3& p, const Contact& contact) const {
+    if (w.at_end) return run.state.put(w.simplex, contact.point);
+    if (const auto proved = proved_inside(corners, contact.point)) return run.state.put(w.wall_simplex, *proved);
+    const Settled settled = settle(space_, w.wall_simplex, corners, contact.point);
+    const auto distance = [&](const Vec3& x) {
+      return std::hypot(x.x - contact.point.x, x.y - contact.point.y, x.z - contact.point.z);
+    };
+    const double unit = lift_distance(contact.point, contact.point, 0);
+    if (distance(settled.position) > std::max(distance(p), most_units * unit)) return;
     run.state.put(settled.simplex, settled.position);
   }
 
-  // Where to go after a contact; along a wall, the target is lifted off the planes that rounding put it behind.
+  // Where to go after a contact; along a wall, the target is lifted off the planes that rounding put it behind, but not
+  // off those that it is meant to be behind: they are met again.
   [[nodiscard]] Vec3 aim(const Run& run, const Continuation& next, double share) const {
     Vec3 q = flushed(run.state.position + next.displacement * share);
     if (!in_exact_range(q))
@@ -153,12 +158,15 @@ class Part {
                             " returned a displacement that is not finite, or out of range");
     if (!next.along || q == run.state.position) return q;
     const Contact& contact = run.contacts.contacts.back();
+    const Vec3& d = next.displacement;
+    const double slack = along_share * std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
     WallPlanes<N> planes;
     const auto add = [&](std::span<const WallHit> walls) {
       for (const WallHit& wall : walls) {
         const CellView cell = space_.map->view(wall.face.cell);
         const Across behind = cell.shape().entry(wall.face.face, wall.triangle);
-        planes.add(facet_plane(space_.corners(cell, cell.shape().simplices()[behind.index]), behind.place));
+        const WallPlane plane = facet_plane(space_.corners(cell, cell.shape().simplices()[behind.index]), behind.place);
+        if (dot(d, plane.normal) >= -slack) planes.add(plane);
       }
     };
     add(run.contacts.walls_of(contact));
