@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "dartcast/base/error.hpp"
@@ -30,6 +31,15 @@ class Timer {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+bool leaves_plane(const Environment& environment, const Vec3& v) {
+  return environment.map().dimension() == 2 && v.z != 0.0;
+}
+
+void check_plane(const Environment& environment, const Vec3& v, std::string_view what) {
+  if (leaves_plane(environment, v))
+    throw InvalidArgument(fmt::format("flow: {} is ({}, {}, {}): in the plane its z must be 0", what, v.x, v.y, v.z));
+}
+
 void check(const FlowOptions& o) {
   if (!(o.dt > 0.0) || !std::isfinite(o.dt)) throw InvalidArgument("flow: dt must be positive and finite");
   if (!(o.drag >= 0.0) || !std::isfinite(o.drag)) throw InvalidArgument("flow: drag must be finite and not negative");
@@ -44,12 +54,6 @@ void check(const FlowOptions& o) {
   if (!(c.density > 0.0) || !std::isfinite(c.density))
     throw InvalidArgument("flow: the spheres' density must be positive and finite");
   if (c.iterations == 0) throw InvalidArgument("flow: collisions need an iteration at least");
-}
-
-void check_motion(const Vec3& velocity, double radius, const char* whose) {
-  if (!is_finite(velocity)) throw InvalidArgument(fmt::format("flow: {} velocity must be finite", whose));
-  if (!(radius >= 0.0) || !std::isfinite(radius))
-    throw InvalidArgument(fmt::format("flow: {} radius must be finite and not negative", whose));
 }
 
 // The particle with coordinates w, as riding along puts it.
@@ -72,6 +76,7 @@ void keep_unmarked(std::vector<T>& values, std::span<const std::uint8_t> marks) 
 Flow::Flow(Environment& environment, const FlowOptions& options, Responses responses)
     : environment_(environment), options_(options), responses_(std::move(responses)), random_(options.seed) {
   check(options);
+  check_plane(environment, options.gravity, "gravity");
   totals_.contacts_by_patch.resize(environment.map().patch_names().size());
 }
 
@@ -79,7 +84,15 @@ void Flow::set_deformation(Deformation deformation) {
   if (deformation.size() != environment_.positions().size()) {
     throw InvalidArgument("flow: the deformation is made for another number of points than the environment has");
   }
+  if (environment_.map().dimension() == 2) deformation.check_plane();
   deformation_ = std::move(deformation);
+}
+
+void Flow::check_motion(const Vec3& velocity, double radius, std::string_view whose) const {
+  if (!is_finite(velocity)) throw InvalidArgument(fmt::format("flow: {} velocity must be finite", whose));
+  check_plane(environment_, velocity, fmt::format("{} velocity", whose));
+  if (!(radius >= 0.0) || !std::isfinite(radius))
+    throw InvalidArgument(fmt::format("flow: {} radius must be finite and not negative", whose));
 }
 
 void Flow::add_inlet(Patch patch, double rate, const Vec3& velocity, double radius) {

@@ -9,6 +9,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "dartcast/base/random.hpp"
@@ -115,11 +116,12 @@ struct FlowEdit {
 class Flow {
  public:
   /// `environment` outlives the flow, and is moved and edited by it alone. Throws InvalidArgument where an option is
-  /// out of range.
+  /// out of range. In the plane every vector given to a flow must have z = 0: gravity, velocities, fields, motions.
   Flow(Environment& environment, const FlowOptions& options, Responses responses = Responses{});
 
   void set_field(VelocityField field) { field_ = std::move(field); }
-  /// Throws InvalidArgument where it is not made for the environment's number of points.
+  /// Throws InvalidArgument where it is not made for the environment's number of points, and in the plane as
+  /// Deformation::check_plane().
   void set_deformation(Deformation deformation);
   /// Bodies that the spheres meet, with the options of CollisionOptions, where it has collisions; they outlive its
   /// last step. Their step() follows each of the flow's. Throws InvalidArgument where substeps are not 1, or the
@@ -153,7 +155,7 @@ class Flow {
   /// what it has subdivided; after other edits of the environment call its follow(). Cost: see Crowding::relieve().
   CrowdingReport relieve(Crowding& crowding, Stranded stranded = Stranded::move);
   /// Draws vertices along over the next `duration` seconds, on top of the deformation; they stay there. `displacement`:
-  /// one per position of the environment. Throws as Deformation::add_pull().
+  /// one per position of the environment. Throws as Deformation::add_pull(), and in the plane where one leaves it.
   void pull(std::span<const Vec3> displacement, double duration);
 
   [[nodiscard]] FlowCheckpoint checkpoint() const;
@@ -199,6 +201,7 @@ class Flow {
   };
 
   void inject();
+  void check_motion(const Vec3& velocity, double radius, std::string_view whose) const;
   void move_vertices();
   void stand_at(std::uint64_t steps);
   void move_vertices_to(std::uint64_t steps);

@@ -151,8 +151,9 @@ Vec3 wall_displacement(const Complex& complex, SimplexId simplex, unsigned facet
   Vec3 result;
   for (unsigned i = 0; i < N - 1; ++i) {
     const std::uint32_t vertex = vertices[facet_corner<N>(facet, i)].value;
-    const Vec3 moved = complex.positions()[vertex] - complex.previous_positions()[vertex];
-    if (!is_finite(moved)) continue;  // the move has mended a vertex that was not finite
+    Vec3 moved = complex.positions()[vertex] - complex.previous_positions()[vertex];
+    if constexpr (N == 3) moved.z = 0.0;  // as Space::corners()
+    if (!is_finite(moved)) continue;      // the move has mended a vertex that was not finite
     result += moved * (sum > 0.0 ? weight[i] / sum : 1.0 / (N - 1.0));
   }
   return result;
