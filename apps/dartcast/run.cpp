@@ -9,10 +9,13 @@
 #include "commands.hpp"
 #include "dartcast/io/run_scene.hpp"
 #include "dartcast/io/scene_file.hpp"
+#include "limits.hpp"
 
 namespace dartcast::app {
 
 namespace {
+
+constexpr std::uint64_t most_threads = 1024;
 
 struct Arguments {
   std::string scene;
@@ -85,9 +88,12 @@ void add_run(CLI::App& app, int& status) {
   CLI::App* verb = app.add_subcommand("run", "Run a scene; writes a folder that ParaView opens.");
   verb->add_option("SCENE", a->scene, "a scene in TOML")->required();
   verb->add_option("-o,--output", a->folder, "folder for the output (the scene's name with -out)");
-  verb->add_option("-j,--threads", a->threads, "threads (all the machine has)")->check(CLI::Range(1U, 1024U));
-  verb->add_option("--steps", a->steps, "number of steps, instead of the scene's");
-  verb->add_option("--seed", a->seed, "seed for all that is random, instead of the scene's");
+  verb->add_option("-j,--threads", a->threads, "threads (all the machine has)")
+      ->transform(whole_number(1, most_threads));
+  verb->add_option("--steps", a->steps, "number of steps, instead of the scene's")
+      ->transform(whole_number(0, most_steps));
+  verb->add_option("--seed", a->seed, "seed for all that is random, instead of the scene's")
+      ->transform(whole_number(0, most_seed));
   verb->add_flag("--audit", a->audit, "check each particle after each step in exact arithmetic (slow)");
   verb->add_flag("--resume", a->resume, "go on where an earlier run in the folder was cut off, or to more --steps");
   auto* quiet = verb->add_flag("-q,--quiet", a->quiet, "print nothing but errors");

@@ -279,6 +279,8 @@ void start(Flow& flow, Surgery& surgery, Solids& solids, const Scene& scene,
 
 Summary run_scene(const Scene& scene, const RunOptions& options, const Progress& progress) {
   if (!options.folder.empty()) check_output_folder(options.folder);
+  if (options.steps.value_or(0) > most_steps)
+    throw InvalidArgument(fmt::format("run: {} steps; give at most {}", *options.steps, most_steps));
   Summary summary;
   summary.scene = scene.name;
   summary.deforms = !scene.deformation.empty();

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 
 namespace dartcast {
 
@@ -23,7 +22,7 @@ void get_counts(TomlTable& t, std::string_view key, std::array<std::uint32_t, n>
   }
 }
 
-void get_seed(TomlTable& t, std::uint64_t& seed) { t.get("seed", seed, 0, std::numeric_limits<std::int64_t>::max()); }
+void get_seed(TomlTable& t, std::uint64_t& seed) { t.get("seed", seed, 0, most_seed); }
 
 // What the box and the octahedra have in common. Cells are of unit size unless `size` is given.
 template <class Options>

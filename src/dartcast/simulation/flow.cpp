@@ -17,6 +17,7 @@ namespace dartcast {
 namespace {
 
 constexpr std::size_t grain = 512;
+constexpr double most_injected = 0xfffffffe;  // by an inlet in a step: the most indices that particles can have
 
 // Adds the time that it lives to a sum of seconds.
 class Timer {
@@ -98,6 +99,9 @@ void Flow::check_motion(const Vec3& velocity, double radius, std::string_view wh
 void Flow::add_inlet(Patch patch, double rate, const Vec3& velocity, double radius) {
   if (!(rate >= 0.0) || !std::isfinite(rate))
     throw InvalidArgument("flow: an inlet's rate must be finite and not negative");
+  if (rate * options_.dt > most_injected)
+    throw InvalidArgument(
+        fmt::format("flow: an inlet's rate of {} a second gives more than 2^32 - 2 particles a step", rate));
   check_motion(velocity, radius, "an inlet's");
   inlets_.push_back({patch, PatchSampler(environment_.complex(), patch), rate, velocity, radius});
 }

@@ -128,7 +128,7 @@ class Flow {
   /// bodies' steps are of another duration. Precondition: they are in the same environment.
   void set_bodies(Bodies& bodies);
   /// Injects `rate` particles a second at random places of a patch, from the first step on. Throws InvalidArgument
-  /// where the patch has no face at a free cell, or the rate is negative or not finite.
+  /// where the patch has no face at a free cell, or the rate is negative, not finite, or more than 2^32 - 2 a step.
   void add_inlet(Patch patch, double rate, const Vec3& velocity, double radius = 0.0);
 
   /// Adds particles at these positions, as Environment::add(). `radius`: >= 0; a sphere that does not fit is moved out

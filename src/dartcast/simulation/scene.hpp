@@ -27,6 +27,10 @@
 
 namespace dartcast {
 
+/// Limits of a scene's numbers: what TOML can hold, and what a double counts without a gap.
+inline constexpr std::uint64_t most_seed = 0x7fffffffffffffffU;
+inline constexpr std::uint64_t most_steps = std::uint64_t{1} << 53U;
+
 /// A mesh file, or a generator's options.
 using MeshSource =
     std::variant<std::filesystem::path, BoxOptions, OctahedraOptions, VesselOptions, RectangleOptions, MazeOptions>;
