@@ -25,6 +25,7 @@ struct Arguments {
   std::optional<std::uint64_t> seed;
   bool audit = false;
   bool resume = false;
+  bool skip_bad_cells = false;
   bool quiet = false;
   bool verbose = false;
   bool json = false;
@@ -67,6 +68,7 @@ int run(const Arguments& a) {
   options.seed = a.seed;
   options.audit = a.audit;
   options.resume = a.resume;
+  options.skip_bad_cells = a.skip_bad_cells;
   ProgressBar bar;
   Progress progress;
   if (!a.quiet && !a.json && isatty(STDERR_FILENO) != 0)
@@ -96,6 +98,8 @@ void add_run(CLI::App& app, int& status) {
       ->transform(whole_number(0, most_seed));
   verb->add_flag("--audit", a->audit, "check each particle after each step in exact arithmetic (slow)");
   verb->add_flag("--resume", a->resume, "go on where an earlier run in the folder was cut off, or to more --steps");
+  verb->add_flag("--skip-bad-cells", a->skip_bad_cells,
+                 "block flat, inverted and indivisible cells: they are left out, and their faces are walls");
   auto* quiet = verb->add_flag("-q,--quiet", a->quiet, "print nothing but errors");
   verb->add_flag("-v,--verbose", a->verbose, "print more")->excludes(quiet);
   verb->add_flag("--json", a->json, "print the summary as one JSON object, and nothing else");

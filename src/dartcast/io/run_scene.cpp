@@ -83,6 +83,16 @@ void add_particles(Flow& flow, const Scene& scene) {
   }
 }
 
+// What it refuses is told with the file's name.
+Environment made_of(const MeshData& mesh, const MeshSource& source, Threads threads) {
+  try {
+    return Environment(mesh, threads);
+  } catch (const InvalidMesh& e) {
+    const auto* file = std::get_if<std::filesystem::path>(&source);
+    throw InvalidMesh(fmt::format("{}: {}", file != nullptr ? file->string() : "the generated mesh", e.what()));
+  }
+}
+
 void describe(const Environment& environment, Summary& summary) {
   const Map& map = environment.map();
   summary.threads = environment.threads().count;
@@ -285,14 +295,19 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
   summary.scene = scene.name;
   summary.deforms = !scene.deformation.empty();
   const Stopwatch load;
-  const MeshData mesh = load_scene_mesh(scene.environment).mesh;
-  Environment environment(mesh, options.threads);
+  EnvironmentScene wanted = scene.environment;
+  wanted.skip_bad_cells = wanted.skip_bad_cells || options.skip_bad_cells;
+  SceneMesh loaded = load_scene_mesh(wanted, options.threads);
+  MeshData& mesh = loaded.mesh;
+  summary.skipped = loaded.skipped;
+  Environment environment = made_of(mesh, wanted.mesh, options.threads);
   const Responses responses = make_responses(scene.contact, environment.map());
   Flow flow(environment, flow_options(scene, options), responses);
   if (!scene.motion.field.empty()) {
     flow.set_field(VelocityField(environment.complex(), point_vectors(mesh, scene.motion.field), scene.motion.frame));
   }
-  if (summary.deforms) flow.set_deformation(Deformation(load_deformation(scene.deformation, mesh), mesh.points));
+  if (summary.deforms)
+    flow.set_deformation(Deformation(load_deformation(scene.deformation, mesh, wanted), mesh.points));
   describe(environment, summary);
   const std::vector<Event> events = make_events(scene, environment.map());
   Surgery surgery(events, scene.remesh, scene.crowding, scene.motion.dt, flow);

@@ -155,6 +155,8 @@ void read_free(TomlTable t, EnvironmentScene& scene) {
 EnvironmentScene read_environment(TomlTable table, const std::filesystem::path& folder) {
   EnvironmentScene scene;
   scene.mesh = read_source(table, folder);
+  table.get("scale", scene.scale, Range::positive);
+  table.get("skip_bad_cells", scene.skip_bad_cells);
   if (table.has("free")) read_free(table.table("free"), scene);
   std::vector<std::string> patches;
   if (table.get("patches", patches)) scene.patches = patches;
