@@ -114,16 +114,37 @@ std::vector<Added> Flow::add(std::span<const Vec3> positions, const Vec3& veloci
   return added;
 }
 
+std::vector<Added> Flow::add(std::span<const Vec3> positions, std::span<const Vec3> velocities,
+                             std::span<const double> radii) {
+  if (velocities.size() != positions.size() || radii.size() != positions.size())
+    throw InvalidArgument(fmt::format("flow: {} velocities and {} radii for {} positions", velocities.size(),
+                                      radii.size(), positions.size()));
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const bool good = is_finite(velocities[i]) && !leaves_plane(environment_, velocities[i]) && radii[i] >= 0.0 &&
+                      std::isfinite(radii[i]);
+    if (!good) check_motion(velocities[i], radii[i], fmt::format("particle {}'s", i));
+  }
+  std::vector<Added> added = environment_.add(particles_, positions);
+  for (std::size_t i = 0; i < added.size(); ++i) {
+    if (added[i].location.place == Place::free) complete_next(velocities[i], radii[i]);
+  }
+  totals_.start = next_id_ - totals_.injected;
+  return added;
+}
+
 // Gives ids, velocities and radii to the particles added last.
 void Flow::complete(const Vec3& velocity, double radius) {
-  for (std::size_t i = ids_.size(); i < particles_.size(); ++i) {
-    ids_.push_back(next_id_++);
-    velocities_.push_back(velocity);
-    fates_.push_back(Fate::alive);
-    contact_counts_.push_back(0);
-    radii_.push_back(radius);
-    if (radius > 0.0) ++spheres_;
-  }
+  while (ids_.size() < particles_.size()) complete_next(velocity, radius);
+}
+
+void Flow::complete_next(const Vec3& velocity, double radius) {
+  ids_.push_back(next_id_++);
+  velocities_.push_back(velocity);
+  fates_.push_back(Fate::alive);
+  contact_counts_.push_back(0);
+  radii_.push_back(radius);
+  held_.push_back(0);
+  if (radius > 0.0) ++spheres_;
 }
 
 // Sampled points are rounded: one that fell out of its simplex is drawn again.
@@ -169,6 +190,7 @@ const FlowStep& Flow::step() {
   totals_.counters += last_.report.counters;
   totals_.collisions += last_.collisions;
   count_contacts();
+  mark_held();
   remove_gone();
   ++steps_;
   return last_;
@@ -287,6 +309,11 @@ void Flow::count_contacts() {
   }
 }
 
+void Flow::mark_held() {
+  std::fill(held_.begin(), held_.end(), std::uint8_t{0});
+  for (const Held& h : last_.report.held) held_[h.particle] = 1;
+}
+
 void Flow::remove_gone() {
   std::vector<std::uint8_t> gone(particles_.size(), 0);
   std::uint64_t absorbed = 0;
@@ -312,6 +339,7 @@ void Flow::remove_marked(std::span<const std::uint8_t> marks) {
   keep_unmarked(fates_, marks);
   keep_unmarked(contact_counts_, marks);
   keep_unmarked(radii_, marks);
+  keep_unmarked(held_, marks);
   clear_.clear();
   count_spheres();
 }
