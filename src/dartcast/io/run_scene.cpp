@@ -15,6 +15,7 @@
 #include "dartcast/io/point_file.hpp"
 #include "dartcast/io/recording.hpp"
 #include "dartcast/io/scene_mesh.hpp"
+#include "dartcast/io/seed_file.hpp"
 #include "dartcast/io/solids.hpp"
 #include "dartcast/io/solids_recording.hpp"
 
@@ -60,7 +61,10 @@ FlowOptions flow_options(const Scene& scene, const RunOptions& options) {
 }
 
 void add_placed(Flow& flow, const std::filesystem::path& file, const ParticlesScene& scene) {
-  const auto added = flow.add(read_points(file).points, scene.velocity, scene.radius);
+  Seeds seeds = read_seeds(file);
+  if (seeds.velocities.empty()) seeds.velocities.assign(seeds.points.size(), scene.velocity);
+  if (seeds.radii.empty()) seeds.radii.assign(seeds.points.size(), scene.radius);
+  const auto added = flow.add(seeds.points, seeds.velocities, seeds.radii);
   for (std::size_t i = 0; i < added.size(); ++i) {
     if (added[i].location.place == Place::free) continue;
     throw Error(fmt::format("{}: position {} (counted from 0) is {}; move or remove it", file.string(), i,
