@@ -17,6 +17,7 @@
 #include "bench/spheres.hpp"
 #include "commands.hpp"
 #include "dartcast/base/error.hpp"
+#include "limits.hpp"
 
 namespace dartcast::app {
 
@@ -84,14 +85,15 @@ void add_bench(CLI::App& app, int& status) {
   verb->add_flag("--quick", a->plan.quick, "the main figures only, in under two minutes");
   verb->add_option("--only", a->plan.only, "workloads to run, as in W1,W3 (all)")->delimiter(',');
   verb->add_option("--steps", a->plan.steps, "steps of a workload at most (15 to 1000)")
-      ->check(CLI::Range(1U, 1000000U));
+      ->transform(whole_number(1, 1000000));
   verb->add_option("-o,--output", a->folder,
                    "folder for bench.json, bench.csv, bench.svg and bench_plane.svg (bench-out)")
       ->take_last();
   verb->add_flag("--json", a->json, "print one JSON object, and nothing else");
   verb->add_flag("--edits", a->edits, "edits per second at 10^3 and 10^6 cells, and nothing else");
   verb->add_flag("--spheres", a->spheres, "what colliding spheres cost, 10^3 and more, and nothing else");
-  verb->add_option("--most", a->most_spheres, "with --spheres: their largest number (100000)");
+  verb->add_option("--most", a->most_spheres, "with --spheres: their largest number (1000 to 10^8; 100000)")
+      ->transform(whole_number(1000, 100000000));
   verb->callback([a, &status] { status = a->edits ? run_edits(a->json) : a->spheres ? run_spheres(*a) : run(*a); });
 }
 

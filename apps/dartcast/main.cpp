@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <exception>
+#include <iostream>
 #include <string>
 
 #include "commands.hpp"
@@ -16,14 +18,12 @@ std::string one_line(std::string text) {
   return text;
 }
 
-int complain(int status, const std::string& text) {
-  fmt::print(stderr, "dartcast: {}\n", one_line(text));
-  return status;
-}
+struct Outcome {
+  int status = dartcast::app::done;
+  std::string error;  // empty: none, or said already
+};
 
-}  // namespace
-
-int main(int argc, char** argv) {
+Outcome run(int argc, char** argv) {
   namespace verbs = dartcast::app;
   CLI::App app("Carries particles through deforming meshes, exactly.", "dartcast");
   app.set_version_flag("--version", dartcast::version());
@@ -41,13 +41,26 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
     if (app.get_subcommands().empty()) throw CLI::RequiredError("one of run, check, info, convert, trace, bench");
   } catch (const CLI::Success& e) {
-    return app.exit(e);  // help, version
+    return {app.exit(e), ""};  // help, version
   } catch (const CLI::ParseError& e) {
-    return complain(verbs::wrong_usage, fmt::format("{}; see dartcast --help", e.what()));
+    return {verbs::wrong_usage, fmt::format("{}; see dartcast --help", e.what())};
   } catch (const std::bad_alloc&) {
-    return complain(verbs::failed, "there is not enough memory for this");
+    return {verbs::failed, "there is not enough memory for this"};
   } catch (const std::exception& e) {
-    return complain(verbs::failed, e.what());
+    return {verbs::failed, e.what()};
   }
-  return status;
+  return {status, ""};
+}
+
+// What was printed may still wait in a buffer: a full disk, or a closed pipe, shows when it is sent.
+bool send_output() { return std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.flush().good(); }
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Outcome outcome = run(argc, argv);
+  if (!send_output() && outcome.error.empty())
+    outcome = {dartcast::app::failed, "the output cannot be written to stdout; check the disk's space"};
+  if (!outcome.error.empty()) fmt::print(stderr, "dartcast: {}\n", one_line(outcome.error));
+  return outcome.status;
 }

@@ -17,8 +17,8 @@ namespace dartcast::app {
 
 namespace {
 
-int check(const std::string& mesh, bool json) {
-  const MeshReport report = check_mesh(mesh).report;
+int check(const std::string& mesh, bool skip_bad_cells, bool json) {
+  const MeshReport report = check_mesh(mesh, {}, skip_bad_cells).report;
   fmt::print("{}{}", json ? report_json(report) : report_text(report), json ? "\n" : "");
   return report.valid() ? done : failed;
 }
@@ -43,8 +43,10 @@ void add_check(CLI::App& app, int& status) {
   const auto json = std::make_shared<bool>(false);
   CLI::App* verb = app.add_subcommand("check", "Say what is in a mesh file, and whether it is valid.");
   verb->add_option("MESH", *mesh, "a mesh: .vtu .vtk .msh .msh2 .msh4 .mesh")->required();
+  const auto skip = std::make_shared<bool>(false);
+  verb->add_flag("--skip-bad-cells", *skip, "with this option of dartcast run: bad cells are left out, and a warning");
   verb->add_flag("--json", *json, "print one JSON object, and nothing else");
-  verb->callback([mesh, json, &status] { status = check(*mesh, *json); });
+  verb->callback([mesh, skip, json, &status] { status = check(*mesh, *skip, *json); });
 }
 
 void add_info(CLI::App& app, int& status) {

@@ -9,10 +9,13 @@
 #include "commands.hpp"
 #include "dartcast/io/run_scene.hpp"
 #include "dartcast/io/scene_file.hpp"
+#include "limits.hpp"
 
 namespace dartcast::app {
 
 namespace {
+
+constexpr std::uint64_t most_threads = 1024;
 
 struct Arguments {
   std::string scene;
@@ -22,6 +25,7 @@ struct Arguments {
   std::optional<std::uint64_t> seed;
   bool audit = false;
   bool resume = false;
+  bool skip_bad_cells = false;
   bool quiet = false;
   bool verbose = false;
   bool json = false;
@@ -64,6 +68,7 @@ int run(const Arguments& a) {
   options.seed = a.seed;
   options.audit = a.audit;
   options.resume = a.resume;
+  options.skip_bad_cells = a.skip_bad_cells;
   ProgressBar bar;
   Progress progress;
   if (!a.quiet && !a.json && isatty(STDERR_FILENO) != 0)
@@ -85,11 +90,16 @@ void add_run(CLI::App& app, int& status) {
   CLI::App* verb = app.add_subcommand("run", "Run a scene; writes a folder that ParaView opens.");
   verb->add_option("SCENE", a->scene, "a scene in TOML")->required();
   verb->add_option("-o,--output", a->folder, "folder for the output (the scene's name with -out)");
-  verb->add_option("-j,--threads", a->threads, "threads (all the machine has)")->check(CLI::Range(1U, 1024U));
-  verb->add_option("--steps", a->steps, "number of steps, instead of the scene's");
-  verb->add_option("--seed", a->seed, "seed for all that is random, instead of the scene's");
+  verb->add_option("-j,--threads", a->threads, "threads (all the machine has)")
+      ->transform(whole_number(1, most_threads));
+  verb->add_option("--steps", a->steps, "number of steps, instead of the scene's")
+      ->transform(whole_number(0, most_steps));
+  verb->add_option("--seed", a->seed, "seed for all that is random, instead of the scene's")
+      ->transform(whole_number(0, most_seed));
   verb->add_flag("--audit", a->audit, "check each particle after each step in exact arithmetic (slow)");
   verb->add_flag("--resume", a->resume, "go on where an earlier run in the folder was cut off, or to more --steps");
+  verb->add_flag("--skip-bad-cells", a->skip_bad_cells,
+                 "block flat, inverted and indivisible cells: they are left out, and their faces are walls");
   auto* quiet = verb->add_flag("-q,--quiet", a->quiet, "print nothing but errors");
   verb->add_flag("-v,--verbose", a->verbose, "print more")->excludes(quiet);
   verb->add_flag("--json", a->json, "print the summary as one JSON object, and nothing else");

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <memory>
@@ -9,6 +10,7 @@
 #include "commands.hpp"
 #include "dartcast/base/error.hpp"
 #include "dartcast/environment/environment.hpp"
+#include "dartcast/exact/predicates.hpp"
 #include "dartcast/io/read_mesh.hpp"
 #include "dartcast/io/scene_file.hpp"
 #include "dartcast/io/scene_mesh.hpp"
@@ -27,6 +29,10 @@ struct TraceArguments {
   std::string output;
 };
 
+bool all_in_range(const std::vector<double>& numbers) {
+  return std::all_of(numbers.begin(), numbers.end(), [](double x) { return in_exact_range(Vec3{x, 0.0, 0.0}); });
+}
+
 // x,y or x,y,z.
 std::vector<double> numbers_of(const std::string& text, const char* option) {
   std::vector<double> numbers;
@@ -36,11 +42,14 @@ std::vector<double> numbers_of(const std::string& text, const char* option) {
     const auto [next, error] = std::from_chars(at, end, numbers.emplace_back());
     const bool more = error == std::errc() && next != end && *next == ',';
     if (error != std::errc() || (next != end && !more)) break;
-    if (!more && numbers.size() >= 2 && numbers.size() <= 3) return numbers;
+    if (!more && numbers.size() >= 2 && numbers.size() <= 3 && all_in_range(numbers)) return numbers;
     if (!more) break;
     at = next + 1;
   }
-  throw CLI::ValidationError(option, fmt::format("'{}' is no point: give x,y in the plane, x,y,z in space", text));
+  throw CLI::ValidationError(option,
+                             fmt::format("'{}' is no point: give x,y in the plane, x,y,z in space; each finite, "
+                                         "and 0 or between 2^-300 and 2^300 in magnitude",
+                                         text));
 }
 
 Vec3 point_of(const std::string& text, const char* option, unsigned dimension) {

@@ -167,6 +167,110 @@ TEST_F(Command, WrongUsageIsTwo) {
   EXPECT_EQ(run("--version").out.find_first_not_of("0123456789.\n"), std::string::npos);
 }
 
+// An option has the limits of its scene key, or those that its help gives.
+TEST_F(Command, NumbersHaveLimits) {
+  const std::string start = "run " + scene("box.toml") + " -q ";
+  const std::string many = "99999999999999999999999999";
+  for (const std::string value :
+       {"-1", "-0", "9007199254740993", "99999999999999999", "1e3", "3.5", "0x3", "+3", "' 3'", "nan"})
+    expect_failure(start + "--steps " + value, 2, "is no whole number from 0 to 9007199254740992");
+  for (const std::string& value : {std::string("-1"), std::string("9223372036854775808"), many})
+    expect_failure(start + "--seed " + value, 2,
+                   "--seed: '" + value + "' is no whole number from 0 to 9223372036854775807");
+  for (const std::string& value :
+       {std::string("-1"), std::string("0"), std::string("1025"), std::string("4294967297"), many})
+    expect_failure(start + "-j " + value, 2, "--threads: '" + value + "' is no whole number from 1 to 1024");
+  EXPECT_FALSE(fs::exists(folder / "box-out"));
+  const Result r = run(start + "--steps 010 --seed 9223372036854775807 -j 1");  // ten, not eight
+  EXPECT_EQ(r.status, 0) << r.error;
+  EXPECT_EQ(nlohmann::json::parse(content(folder / "box-out/summary.json"))["steps"], 10);
+  if (run("bench --help").out.find("--quick") == std::string::npos) return;  // built without
+  expect_failure("bench --steps 0", 2, "--steps: '0' is no whole number from 1 to 1000000");
+  expect_failure("bench --spheres --most 18446744073709551615", 2, "from 1000 to 100000000");
+  expect_failure("bench --spheres --most -1", 2, "from 1000 to 100000000");
+}
+
+TEST_F(Command, WhatCannotBePrintedIsAnError) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  (void)write("good.mesh", tetrahedron());
+  for (const std::string& arguments :
+       {"run " + scene("box.toml") + " --steps 2 --json", "run " + scene("box.toml") + " --steps 2",
+        std::string("check good.mesh --json"), std::string("info good.mesh --json"), std::string("info good.mesh"),
+        std::string("trace good.mesh --from 0.1,0.1,0.1 --to 0.2,0.1,0.1"), std::string("--help"),
+        std::string("--version")})
+    expect_failure(arguments + " > /dev/full", 1, "stdout");
+  expect_failure("info no.mesh --json > /dev/full", 1, "no.mesh");
+}
+
+TEST_F(Command, ARunningRunKeepsItsFolderToItself) {
+  const std::string box = "'" + binary + "' run " + scene("box.toml");
+  // The first one runs until it is killed: what it leaves does not stand in the way of the next.
+  const Result r = run("--version > version.txt; " + box + " --steps 1000000000 -q -o out & first=$!; " +
+                       "for i in $(seq 400); do test -s out/checkpoint.bin && break; sleep 0.05; done; " + box +
+                       " --steps 5 -q -o out 2> second.txt; echo $?; " + box +
+                       " --steps 5 -q --resume -o out 2> third.txt; echo $?; kill -9 $first; wait $first; " + box +
+                       " --steps 5 -q -o out; echo $?; echo $first");
+  EXPECT_EQ(r.out.rfind("1\n1\n0\n", 0), 0U) << r.out << r.error;
+  const std::string first = r.out.substr(6);
+  for (const char* refused : {"second.txt", "third.txt"})
+    EXPECT_NE(content(folder / refused).find("(process " + first.substr(0, first.size() - 1) + ")"), std::string::npos)
+        << content(folder / refused);
+  EXPECT_TRUE(fs::exists(folder / "out/summary.json"));
+  EXPECT_FALSE(fs::exists(folder / "out/run.lock"));
+}
+
+TEST_F(Command, AnEmptySceneSaysWhatIsMissing) {
+  (void)write("empty.toml", "");
+  expect_failure("run empty.toml", 1, "empty.toml:1: environment is missing: say [environment] with mesh");
+  (void)write("motion.toml", "[motion]\nsteps = 3\n");
+  expect_failure("run motion.toml", 1, "motion.toml:1: environment is missing: say [environment] with mesh");
+  (void)write("nothing.toml", "[environment]\n");
+  expect_failure("run nothing.toml", 1, "nothing.toml:1: [environment] give either mesh = \"FILE\" or generator");
+  expect_failure("info empty.toml", 1, "environment is missing");
+  expect_failure("run .", 1, "the scene cannot be read");
+}
+
+TEST_F(Command, AMotionOutOfThePlaneIsNamed) {
+  (void)write("flat.toml",
+              "[environment]\ngenerator = 'rectangle'\ncells = [10, 4]\n[[deformation]]\nkind = 'twist'\n"
+              "axis = [1.0, 0.0, 0.0]\namplitude = 1.0\nlength = 5.0\n[[particles]]\ncount = 3\n[motion]\nsteps = 5\n");
+  expect_failure("run flat.toml", 1, "deformation 1 (twist) moves points out of the plane");
+  EXPECT_FALSE(fs::exists(folder / "flat-out"));
+}
+
+// The last of four tetrahedra lies on the same side of a face as the first.
+TEST_F(Command, BadCellsAreSkippedOnRequest) {
+  std::string text = "MeshVersionFormatted 2\nDimension 3\nVertices\n8\n";
+  for (const char* point : {"0 0 0", "4 0 0", "0 4 0", "0 0 4", "1 1 5", "4 4 4", "1 1 -1", "5 5 5"})
+    text += std::string(point) + " 0\n";
+  text += "Tetrahedra\n4\n1 2 3 4 5\n2 3 4 6 5\n1 3 2 7 5\n1 2 4 5 6\nEnd\n";
+  (void)write("bad.mesh", text);
+  ASSERT_EQ(run("check bad.mesh").status, 1);
+  Result r = run("check bad.mesh --skip-bad-cells --json");
+  EXPECT_EQ(r.status, 0) << r.out << r.error;
+  const auto report = nlohmann::json::parse(r.out);
+  EXPECT_EQ(report["warnings"][0]["kind"], "bad_cells");
+  EXPECT_EQ(report["warnings"][0]["count"], 1);
+  EXPECT_EQ(report["warnings"][0]["first"], nlohmann::json::array({3}));
+  const std::string body = "[[particles]]\ncount = 50\nvelocity = [1, 2, 3]\n[motion]\ndt = 0.1\nsteps = 20\n";
+  (void)write("bad.toml", "[environment]\nmesh = 'bad.mesh'\n" + body);
+  (void)write("key.toml", "[environment]\nmesh = 'bad.mesh'\nskip_bad_cells = true\n" + body);
+  expect_failure("run bad.toml", 1, "bad.mesh: ");
+  r = run("run bad.toml --skip-bad-cells --audit");
+  EXPECT_EQ(r.status, 0) << r.error;
+  EXPECT_NE(r.out.find("1 bad cells"), std::string::npos) << r.out;
+  EXPECT_NE(r.out.find("the first: 3"), std::string::npos) << r.out;
+  r = run("run key.toml --audit --json");
+  ASSERT_EQ(r.status, 0) << r.error;
+  const auto json = nlohmann::json::parse(r.out);
+  EXPECT_EQ(json["environment"]["cells"], 3);
+  EXPECT_EQ(json["environment"]["bad_cells"]["count"], 1);
+  EXPECT_EQ(json["environment"]["bad_cells"]["first"], nlohmann::json::array({3}));
+  EXPECT_EQ(json["audit"]["checked"], 1000);
+  EXPECT_EQ(json["audit"]["failed"], 0);
+  EXPECT_EQ(json["state_hash"], nlohmann::json::parse(content(folder / "bad-out/summary.json"))["state_hash"]);
+}
+
 TEST_F(Command, FailuresAreOneWithOneLine) {
   expect_failure("run missing.toml", 1, "missing.toml");
   (void)write("a.toml", "[environment]\ngenerator = 'box'\nradius = 1\n");
@@ -237,6 +341,27 @@ TEST_F(Command, InfoTellsOfMeshesAndScenes) {
   EXPECT_NE(run("info good.mesh").out.find("per cell"), std::string::npos);
 }
 
+TEST_F(Command, InfoListsArraysWithTheirRanges) {
+  (void)write("a.vtk",
+              "# vtk DataFile Version 3.0\na\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n"
+              "0 0 0  1 0 0  0 1 0  0 0 1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n"
+              "POINT_DATA 4\nVECTORS u double\n1 2 3  -4 5 6  7 -8 9  0 0 0.5\n"
+              "SCALARS p double 1\nLOOKUP_TABLE default\n2.5 3 0.25 1\n"
+              "CELL_DATA 1\nSCALARS material int 1\nLOOKUP_TABLE default\n7\n");
+  Result r = run("info a.vtk --json");
+  ASSERT_EQ(r.status, 0) << r.error;
+  const auto json = nlohmann::json::parse(r.out);
+  EXPECT_EQ(json["point_arrays"], nlohmann::json::parse(R"([
+    {"name": "u", "components": 3, "ranges": [[-4.0, 7.0], [-8.0, 5.0], [0.5, 9.0]]},
+    {"name": "p", "components": 1, "ranges": [[0.25, 3.0]]}])"));
+  EXPECT_EQ(json["cell_arrays"],
+            nlohmann::json::parse(R"([{"name": "material", "components": 1, "ranges": [[7.0, 7.0]]}])"));
+  r = run("info a.vtk");
+  EXPECT_NE(r.out.find("point array u: 3 components, -4 to 7, -8 to 5, 0.5 to 9\n"), std::string::npos) << r.out;
+  EXPECT_NE(r.out.find("point array p: 1 component, 0.25 to 3\n"), std::string::npos) << r.out;
+  EXPECT_NE(r.out.find("cell array material: 1 component, 7 to 7\n"), std::string::npos) << r.out;
+}
+
 TEST_F(Command, TraceListsAndDrawsTheCellsPassed) {
   (void)write("plane.toml", "[environment]\ngenerator = 'rectangle'\ncells = [4, 4]\n[motion]\ndt = 0.1\nsteps = 1\n");
   Result r = run("trace plane.toml --from 0.5,0.5 --to 1.5,1.5 --to 1.5,2.5");
@@ -268,7 +393,9 @@ TEST_F(Command, TraceTellsWhatItCannotDo) {
   expect_failure("trace good.mesh" + ends + " -o a.png", 2, "a.png");
   expect_failure("trace good.mesh --from 0.1,0.1 --to 0.2,0.1,0.2", 1, "x,y,z");
   expect_failure("trace good.mesh --from 1,1,1 --to 0.2,0.1,0.2", 1, "in no cell");
-  expect_failure("trace good.mesh --from 0.1,0.1,0.1 --to 0.2,0.1,nan", 1, "finite");
+  for (const std::string x : {"nan", "inf", "-inf", "1e400", "1e-400", "1e120"})
+    expect_failure("trace good.mesh --from 0.1,0.1,0.1 --to 0.2,0.1," + x, 2, "--to: '0.2,0.1," + x + "' is no point");
+  expect_failure("trace good.mesh --from 0.1,0.1,nan --to 0,0,0", 2, "finite, and 0 or between 2^-300 and 2^300");
   expect_failure("trace good.mesh --from 0.1,0.1,0.1", 2, "--to");
   for (const std::string point : {"1", "1,", "1,2,3,4", "1;2", "1,2,x", "''"})
     expect_failure("trace good.mesh --from '" + point + "' --to 0,0,0", 2, "--from");

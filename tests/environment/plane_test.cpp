@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "dartcast/base/error.hpp"
@@ -374,6 +375,59 @@ TEST(Plane, RefusesWhatIsNotInIt) {
   environment.add(set, std::vector<Vec3>{{1.5, 1.25, 0}});
   EXPECT_THROW(environment.advance(set, std::vector<Vec3>{{1.5, 1.25, 1e-90}}), InvalidArgument);
   EXPECT_EQ(audit(environment.complex(), set).failed, 0U);
+}
+
+// Whoever writes positions in the plane may leave anything in z: it is not read.
+TEST_P(InThePlane, TheHeightOfVerticesIsNotRead) {
+  Environment flat(rectangle(GetParam(), {10, 8}, 0.25, 0.2));
+  Environment high(rectangle(GetParam(), {10, 8}, 0.25, 0.2));
+  const std::vector<Vec3> rest(flat.positions().begin(), flat.positions().end());
+  Swarm in_flat(flat, 200, 1.0, 3);
+  Swarm in_high(high, 200, 1.0, 3);
+  Random random(9);
+  for (int step = 1; step <= 40; ++step) {
+    for (std::size_t v = 0; v < rest.size(); ++v) {
+      const double lean = 0.6 * std::sin(0.3 * step);
+      const Vec3 x = {rest[v].x + lean * std::sin(rest[v].y), rest[v].y + lean * std::cos(rest[v].x), 0.0};
+      flat.next_positions()[v] = x;
+      high.next_positions()[v] = {x.x, x.y, random.uniform(-3.0, 3.0)};
+    }
+    flat.move();
+    high.move();
+    ASSERT_EQ(flat.validity().invalid_count, high.validity().invalid_count);
+    const StepReport a = step % 3 == 0 ? in_flat.step_to_walls(0.3) : in_flat.step(0.3);
+    const StepReport b = step % 3 == 0 ? in_high.step_to_walls(0.3) : in_high.step(0.3);
+    ASSERT_EQ(a.contacts.contacts.size(), b.contacts.contacts.size());
+    for (std::size_t i = 0; i < a.contacts.contacts.size(); ++i) {
+      ASSERT_EQ(a.contacts.contacts[i].point, b.contacts.contacts[i].point);
+      ASSERT_EQ(a.contacts.contacts[i].wall_displacement, b.contacts.contacts[i].wall_displacement);
+    }
+    for (std::size_t i = 0; i < in_flat.set.size(); ++i) {
+      ASSERT_EQ(in_flat.set[i].position, in_high.set[i].position) << "particle " << i << " in step " << step;
+      ASSERT_EQ(in_flat.set[i].cell, in_high.set[i].cell);
+      ASSERT_EQ(in_flat.velocities[i], in_high.velocities[i]);
+    }
+    const Audit audited = audit(high.complex(), in_high.set);
+    ASSERT_EQ(audited.failed, 0U) << audited.first;
+  }
+}
+
+TEST(Plane, MovesOutOfItAreRefused) {
+  Environment environment(rectangle(0, {4, 4}, 0.0, 0.0));
+  const std::vector<Vec3> before(environment.positions().begin(), environment.positions().end());
+  std::vector<Vec3> after = before;
+  for (Vec3& x : after) x.x += 0.25;
+  after[7].z = 1e-18;
+  try {
+    environment.move(after);
+    ADD_FAILURE();
+  } catch (const InvalidArgument& e) {
+    EXPECT_NE(std::string(e.what()).find("point 7"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("plane"), std::string::npos) << e.what();
+  }
+  EXPECT_EQ(std::vector<Vec3>(environment.positions().begin(), environment.positions().end()), before);
+  EXPECT_THROW((void)environment.first_flattening(after), InvalidArgument);
+  EXPECT_THROW(environment.move_until_flattened(after), InvalidArgument);
 }
 
 }  // namespace dartcast::plane_test

@@ -98,7 +98,7 @@ TEST_F(RecordingTest, FramesReadBackBitByBit) {
   options.dt = 0.1;
   Flow flow(environment, options);
   flow.add_random(50, {1.0, -2.0, 0.1});
-  Recording recording({folder, false, false}, mesh, "");
+  Recording recording({folder, false, false}, EnvironmentRecord(mesh), "");
   for (int i = 0; i < 5; ++i) recording.add_step(flow, flow.step());
   recording.add_frame(flow);
   recording.finish("{}");
@@ -153,7 +153,7 @@ TEST_F(RecordingTest, TheKindOfAParticleOnAWallIsSaid) {
   flow.add(std::vector<Vec3>{{0.5, 0.25, 0.75}}, {0.7, 0, 0});
   flow.add(std::vector<Vec3>{{0.5, 0.25, 0.75}}, {0.0, 0, 0});
   flow.step();
-  Recording recording({folder, false, false}, mesh, "");
+  Recording recording({folder, false, false}, EnvironmentRecord(mesh), "");
   recording.add_frame(flow);
   const PointFile file = read_points(folder / "particles_000001.vtp");
   EXPECT_EQ(array(file, "kind").values[0], 2.0);

@@ -6,6 +6,9 @@
 #include <cstring>
 #include <limits>
 #include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "../mesh/generate_checks.hpp"
 #include "dartcast/base/error.hpp"
@@ -241,6 +244,105 @@ TEST(Deformation, RefusesWhatItCannotDo) {
   EXPECT_EQ(out, (Vec3{1, 2, 3}));
   still.positions(0.0, {&out, 1});
   EXPECT_EQ(out, x);
+}
+
+// Points of the plane, and whether a list of steps ever takes one out of it: by the positions themselves.
+std::vector<Vec3> plane_points() {
+  std::vector<Vec3> points;
+  for (int i = 0; i < 5; ++i) {
+    for (int j = 0; j < 5; ++j) points.push_back({1.3 * i - 2.1, 0.7 * j - 0.9, 0.0});
+  }
+  return points;
+}
+
+bool leaves_the_plane(const std::vector<DeformationStep>& steps) {
+  const std::vector<Vec3> points = plane_points();
+  const Deformation deformation(steps, points);
+  std::vector<Vec3> out(points.size());
+  for (int i = 0; i < 200; ++i) {
+    deformation.positions(0.0371 * i, out);
+    if (std::any_of(out.begin(), out.end(), [](const Vec3& x) { return x.z != 0.0; })) return true;
+  }
+  return false;
+}
+
+std::string refusal(const std::vector<DeformationStep>& steps) {
+  try {
+    Deformation(steps, plane_points()).check_plane();
+  } catch (const InvalidArgument& e) {
+    return e.what();
+  }
+  return {};
+}
+
+DeformationStep step_about(Kind kind, const Vec3& axis, const Vec3& direction = {1, 0, 0}) {
+  DeformationStep s = step(kind, kind == Kind::rotate ? 0.0 : 0.7, 3.1);
+  s.axis = axis;
+  s.direction = direction;
+  s.length = 4.0;
+  s.centre = {0.3, -0.2, 0.0};
+  return s;
+}
+
+DeformationStep step_of_frames(double z) {
+  DeformationStep s;
+  s.kind = Kind::frames;
+  s.times = {0.0, 1.0};
+  s.frames = {plane_points(), plane_points()};
+  s.frames[1][7].z = z;
+  return s;
+}
+
+TEST(Deformation, MotionsInThePlaneAreTaken) {
+  const Vec3 across = {0, 0, -2.5};
+  const Vec3 within = {0.6, 0.7, 0.0};
+  DeformationStep field = step_about(Kind::pulse, across);
+  field.field.assign(plane_points().size(), Vec3{0.3, -0.1, 0.0});
+  std::vector<DeformationStep> good = {
+      step_about(Kind::rotate, across),  step_about(Kind::swing, across), step_about(Kind::twist, across),
+      step_about(Kind::bend, within),    step_about(Kind::bend, across),  step_about(Kind::stretch, within),
+      step_about(Kind::stretch, across), step_about(Kind::pulse, within), step_about(Kind::pulse, across),
+      step_about(Kind::pulse, {}),       step_about(Kind::bump, within),  field};
+  for (const DeformationStep& s : good) {
+    EXPECT_FALSE(leaves_the_plane({s})) << deformation_kind_names[static_cast<std::size_t>(s.kind)];
+    EXPECT_EQ(refusal({s}), "");
+  }
+  good.insert(good.begin(), step_of_frames(0.0));
+  EXPECT_FALSE(leaves_the_plane(good));
+  EXPECT_EQ(refusal(good), "");
+}
+
+TEST(Deformation, MotionsOutOfThePlaneAreNamed) {
+  const Vec3 across = {0, 0, 1};
+  const Vec3 within = {1, 0, 0};
+  const Vec3 skew = {1, 0.5, 0.25};
+  DeformationStep field = step_about(Kind::pulse, across);
+  field.field.assign(plane_points().size(), Vec3{0.3, -0.1, 0.0});
+  field.field[3].z = 1e-12;
+  DeformationStep high = step_about(Kind::rotate, {0.0, 0.0, 1.0});
+  high.centre.z = 0.1;  // a rounding away from it
+  const std::vector<std::pair<DeformationStep, std::string>> bad = {
+      {step_about(Kind::rotate, within), "axis"},
+      {step_about(Kind::swing, skew), "axis"},
+      {step_about(Kind::twist, within), "axis"},
+      {step_about(Kind::bend, skew, {0, 1, 0}), "axis"},
+      {step_about(Kind::bend, within, {0, 0, 1}), "direction"},
+      {step_about(Kind::stretch, skew), "axis"},
+      {step_about(Kind::pulse, skew), "axis"},
+      {step_about(Kind::bump, across), "axis"},
+      {step_about(Kind::bump, skew), "axis"},
+      {field, "field must have z = 0 everywhere, and its vector 3"},
+      {high, "centre"},
+      {step_of_frames(-0.5), "frame 1 must have z = 0 everywhere, and its position 7 has z = -0.5"}};
+  for (const auto& [s, member] : bad) {
+    const std::string kind(deformation_kind_names[static_cast<std::size_t>(s.kind)]);
+    EXPECT_TRUE(leaves_the_plane({s})) << kind;
+    EXPECT_NE(refusal({s}).find("deformation 1 (" + kind + ")"), std::string::npos) << refusal({s});
+    EXPECT_NE(refusal({s}).find(member), std::string::npos) << refusal({s});
+    if (s.kind == Kind::frames) continue;
+    const std::string second = refusal({step_about(Kind::rotate, across), s});
+    EXPECT_NE(second.find("deformation 2 (" + kind + ")"), std::string::npos) << second;
+  }
 }
 
 std::vector<Vec3> vectors(const DataArray& array) {

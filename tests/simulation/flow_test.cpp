@@ -10,6 +10,7 @@
 #include "dartcast/base/error.hpp"
 #include "dartcast/environment/audit.hpp"
 #include "dartcast/mesh/generate_box.hpp"
+#include "dartcast/mesh/generate_rectangle.hpp"
 #include "dartcast/mesh/generate_vessel.hpp"
 
 namespace dartcast::flow_test {
@@ -358,6 +359,77 @@ TEST(Flow, RefusesWhatHasNoMeaning) {
   EXPECT_THROW(VelocityField(environment.complex(), std::vector<Vec3>(3)), InvalidArgument);
   EXPECT_THROW(VelocityField(environment.complex(), std::vector<Vec3>(8, {nan, 0, 0})), InvalidArgument);
   EXPECT_THROW(flow.set_deformation(Deformation({}, std::vector<Vec3>(3))), InvalidArgument);
+}
+
+// Sums of many terms: the same bits for any number of threads.
+TEST(Flow, EnergyDoesNotDependOnThreads) {
+  Environment environment(box_mesh(4));
+  FlowOptions o = options(0.1);
+  o.gravity = {0.3, -0.7, -9.81};
+  Flow flow(environment, o);
+  flow.add_random(20000, {1.0, 2.0, -0.3});
+  flow.step();
+  environment.set_threads(Threads{1});
+  const FlowEnergy one = flow.energy();
+  EXPECT_GT(one.kinetic, 0.0);
+  for (const unsigned threads : {2U, 3U, 7U}) {
+    environment.set_threads(Threads{threads});
+    EXPECT_EQ(flow.energy().kinetic, one.kinetic);
+    EXPECT_EQ(flow.energy().potential, one.potential);
+  }
+}
+
+TEST(Flow, ParticlesAreAddedWithVelocitiesAndRadiiOfTheirOwn) {
+  Environment environment(box_mesh(4));
+  Flow flow(environment, options(1.0));
+  const std::vector<Vec3> points = {{1, 1, 1}, {19, 9, 9}, {2, 2, 2}};
+  const std::vector<Vec3> velocities = {{0.5, 0, 0}, {7, 7, 7}, {0, 0.25, 0}};
+  const std::vector<double> radii = {0.1, 0.2, 0.0};
+  const auto added = flow.add(points, velocities, radii);
+  ASSERT_EQ(flow.particles().size(), 2U);
+  EXPECT_EQ(added[1].location.place, Place::outside);
+  EXPECT_EQ(flow.velocities()[1], velocities[2]);
+  EXPECT_EQ(flow.radii()[0], 0.1);
+  EXPECT_EQ(flow.radii()[1], 0.0);
+  EXPECT_EQ(flow.totals().start, 2U);
+  EXPECT_THROW(flow.add(points, std::span<const Vec3>(velocities).first(2), radii), InvalidArgument);
+  EXPECT_THROW(flow.add(points, velocities, std::vector<double>{0.1, -1.0, 0.0}), InvalidArgument);
+  EXPECT_EQ(flow.particles().size(), 2U);
+  flow.step();
+  EXPECT_EQ(flow.particles()[0].position, (Vec3{1.5, 1, 1}));
+  EXPECT_EQ(flow.particles()[1].position, (Vec3{2, 2.25, 2}));
+}
+
+TEST(Flow, RefusesWhatLeavesThePlane) {
+  RectangleOptions o;
+  o.cells = {2, 2};
+  o.size = {2.0, 2.0};
+  const MeshData mesh = generate_rectangle(o);
+  Environment environment(mesh);
+  FlowOptions up = options(1.0);
+  up.gravity = {0, 0, -9.81};
+  EXPECT_THROW(Flow(environment, up), InvalidArgument);
+  Flow flow(environment, options(1.0));
+  EXPECT_THROW(flow.add(std::vector<Vec3>{{1, 1, 0}}, {0, 0, 1}), InvalidArgument);
+  EXPECT_THROW(flow.add_random(1, {0, 0, 1}), InvalidArgument);
+  EXPECT_THROW(flow.add_inlet(environment.map().patch("xmin"), 1.0, {0, 0, 1}), InvalidArgument);
+  std::vector<Vec3> field(mesh.points.size());
+  field[2].z = 1.0;
+  EXPECT_THROW(VelocityField(environment.complex(), field), InvalidArgument);
+  EXPECT_THROW(flow.pull(field, 1.0), InvalidArgument);
+  DeformationStep step;
+  step.kind = DeformationKind::twist;
+  step.amplitude = 1.0;
+  step.axis = {1, 0, 0};
+  EXPECT_THROW(flow.set_deformation(Deformation({step}, mesh.points)), InvalidArgument);
+  Deformation pulled({}, mesh.points);
+  pulled.add_pull(field, 0.0, 1.0);
+  EXPECT_THROW(flow.set_deformation(pulled), InvalidArgument);
+  EXPECT_EQ(flow.particles().size(), 0U);
+  EXPECT_FALSE(flow.deforms());
+  flow.add(std::vector<Vec3>{{1, 1, 0}}, {0.5, 0.25, 0});
+  flow.step();
+  EXPECT_EQ(flow.particles()[0].position, (Vec3{1.5, 1.25, 0}));
 }
 
 }  // namespace dartcast::flow_test

@@ -251,13 +251,18 @@ void Environment::move() {
   ++moves_;
 }
 
-void Environment::check_count(std::span<const Vec3> positions) const {
-  if (positions.size() == complex_.point_count()) return;
-  throw InvalidArgument(fmt::format("move: {} positions for {} points", positions.size(), complex_.point_count()));
+void Environment::check_positions(std::span<const Vec3> positions) const {
+  if (positions.size() != complex_.point_count())
+    throw InvalidArgument(fmt::format("move: {} positions for {} points", positions.size(), complex_.point_count()));
+  if (map().dimension() != 2) return;
+  const auto out = std::find_if(positions.begin(), positions.end(), [](const Vec3& x) { return flushed(x).z != 0.0; });
+  if (out != positions.end())
+    throw InvalidArgument(fmt::format("move: point {} goes to ({}, {}, {}): in the plane z must be 0",
+                                      out - positions.begin(), out->x, out->y, out->z));
 }
 
 std::vector<Vec3> Environment::with_interior(std::span<const Vec3> positions) const {
-  check_count(positions);
+  check_positions(positions);
   std::vector<Vec3> all(positions.begin(), positions.end());
   all.resize(complex_.positions().size());
   complex_.interior().compute(all);
@@ -283,7 +288,7 @@ double Environment::move_until_flattened(std::span<const Vec3> positions, double
 }
 
 void Environment::move(std::span<const Vec3> positions) {
-  check_count(positions);
+  check_positions(positions);
   std::copy(positions.begin(), positions.end(), next_positions().begin());
   move();
 }

@@ -131,14 +131,14 @@ class Environment {
   [[nodiscard]] Particles restored(std::span<const State> states, std::span<const Weights> weights) const;
 
   /// Where to write the next positions of all the mesh's points before move(). The content is what it was two moves
-  /// ago.
+  /// ago. In the plane z is not read.
   [[nodiscard]] std::span<Vec3> next_positions() { return complex_.next_positions(); }
   /// Makes the positions written current, at no cost per cell: every set of particles must then be advanced once before
   /// the next move. Between the two calls the environment's particles may be stepped to targets relative to positions
   /// before the move.
   void move();
-  /// Copies new positions of all the mesh's points, then move(). Throws InvalidArgument where the number does not
-  /// match.
+  /// Copies new positions of all the mesh's points, then move(). Throws InvalidArgument, nothing moved, where the
+  /// number does not match, or in the plane a z is not 0.
   void move(std::span<const Vec3> positions);
   /// The first simplex that is flattened while the vertices go to `positions`, those of all the mesh's points, on
   /// straight lines; nothing where all stay positive. It tells what of the environment meets itself, when and how.
@@ -194,7 +194,7 @@ class Environment {
  private:
   friend class Following;
 
-  void check_count(std::span<const Vec3> positions) const;
+  void check_positions(std::span<const Vec3> positions) const;
   [[nodiscard]] std::vector<Vec3> with_interior(std::span<const Vec3> positions) const;
   void check_current(Particles& particles) const;
   // Returns the targets as decisions see them; nothing where that is what they are.

@@ -1,5 +1,6 @@
 #include "dartcast/geometry/complex_mesh.hpp"
 
+#include <utility>
 #include <vector>
 
 namespace dartcast {
@@ -10,7 +11,8 @@ class Writer {
  public:
   explicit Writer(const Complex& complex) : complex_(complex), number_(complex.map().vertex_count(), none) {}
 
-  MeshData write() {
+  // `vertices`: takes that of each point.
+  MeshData write(std::vector<Vertex>& vertices) {
     const Map& map = complex_.map();
     for (const Cell c : map.cells()) {
       const CellView v = map.view(c);
@@ -24,6 +26,7 @@ class Writer {
       mesh_.source.push_back(map.source(c));
       mesh_.free.push_back(v.is_free() ? 1 : 0);
     }
+    vertices = std::move(vertices_);
     return std::move(mesh_);
   }
 
@@ -43,18 +46,23 @@ class Writer {
     if (n == none) {
       n = static_cast<std::uint32_t>(mesh_.points.size());
       mesh_.points.push_back(complex_.positions()[v.value]);
+      vertices_.push_back(v);
     }
     return n;
   }
 
   const Complex& complex_;
   MeshData mesh_;
+  std::vector<Vertex> vertices_;
   std::vector<std::uint32_t> number_;  // of a vertex among the points
   std::vector<std::uint32_t> corners_;
 };
 
 }  // namespace
 
-MeshData to_mesh(const Complex& complex) { return Writer(complex).write(); }
+MeshData to_mesh(const Complex& complex, std::vector<Vertex>* vertices) {
+  std::vector<Vertex> unasked;
+  return Writer(complex).write(vertices != nullptr ? *vertices : unasked);
+}
 
 }  // namespace dartcast

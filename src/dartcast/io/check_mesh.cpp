@@ -4,6 +4,7 @@
 
 #include "dartcast/base/error.hpp"
 #include "dartcast/geometry/complex.hpp"
+#include "dartcast/io/skip_in_file.hpp"
 
 namespace dartcast {
 
@@ -19,8 +20,9 @@ Finding indivisible_cells(const MeshData& mesh, Threads threads) {
 
 }  // namespace
 
-MeshFile check_mesh(const std::filesystem::path& path, Threads threads) {
+MeshFile check_mesh(const std::filesystem::path& path, Threads threads, bool without_bad_cells) {
   MeshFile file = read_mesh(path);
+  if (without_bad_cells) skip_bad_cells(file, threads);
   if (!file.report.valid()) return file;
   try {
     add_finding(file.report.defects, indivisible_cells(file.mesh, threads));

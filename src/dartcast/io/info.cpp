@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "dartcast/geometry/complex.hpp"
 
@@ -44,6 +47,52 @@ void find_bounds(const std::vector<Vec3>& points, MeshInfo& info) {
   }
 }
 
+ArrayInfo array_info(const DataArray& array) {
+  ArrayInfo info{array.name, array.components, {}, 0};
+  constexpr double most = std::numeric_limits<double>::max();
+  std::vector<std::array<double, 2>> ranges(array.components, {most, -most});
+  for (std::size_t i = 0; i < array.values.size(); ++i) {
+    const double x = array.values[i];
+    if (!std::isfinite(x)) {
+      ++info.not_finite;
+      continue;
+    }
+    auto& [low, high] = ranges[i % array.components];
+    low = std::min(low, x);
+    high = std::max(high, x);
+  }
+  const bool all_known = std::all_of(ranges.begin(), ranges.end(), [](const auto& r) { return r[0] <= r[1]; });
+  if (all_known) info.ranges = std::move(ranges);
+  return info;
+}
+
+std::vector<ArrayInfo> array_infos(const std::vector<DataArray>& arrays) {
+  std::vector<ArrayInfo> infos;
+  infos.reserve(arrays.size());
+  for (const DataArray& array : arrays) infos.push_back(array_info(array));
+  return infos;
+}
+
+nlohmann::ordered_json arrays_json(const std::vector<ArrayInfo>& arrays) {
+  auto list = nlohmann::ordered_json::array();
+  for (const ArrayInfo& a : arrays) {
+    list.push_back({{"name", a.name}, {"components", a.components}, {"ranges", a.ranges}});
+    if (a.not_finite > 0) list.back()["not_finite"] = a.not_finite;
+  }
+  return list;
+}
+
+std::string arrays_text(const char* where, const std::vector<ArrayInfo>& arrays) {
+  std::string text;
+  for (const ArrayInfo& a : arrays) {
+    text += fmt::format("{} array {}: {} component{}", where, a.name, a.components, a.components == 1 ? "" : "s");
+    for (const auto& [low, high] : a.ranges) text += fmt::format(", {} to {}", low, high);
+    if (a.not_finite > 0) text += fmt::format(", {} values not finite", a.not_finite);
+    text += '\n';
+  }
+  return text;
+}
+
 std::string list(const Counts& counts) {
   std::string text;
   for (const auto& [name, count] : counts) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, name);
@@ -71,6 +120,8 @@ MeshInfo mesh_info(const MeshData& mesh, std::string name, Threads threads) {
   info.simplices = complex.simplex_count();
   info.interior_points = complex.interior_point_count();
   info.bytes = complex.bytes();
+  info.point_arrays = array_infos(mesh.point_data);
+  info.cell_arrays = array_infos(mesh.cell_data);
   return info;
 }
 
@@ -87,7 +138,9 @@ std::string info_json(const MeshInfo& i) {
                                  {"shapes", i.shapes},
                                  {"simplices", i.simplices},
                                  {"interior_points", i.interior_points},
-                                 {"bytes", i.bytes}};
+                                 {"bytes", i.bytes},
+                                 {"point_arrays", arrays_json(i.point_arrays)},
+                                 {"cell_arrays", arrays_json(i.cell_arrays)}};
   if (i.bytes > 0 && i.cell_count() > 0)
     json["bytes_per_cell"] = static_cast<double>(i.bytes) / static_cast<double>(i.cell_count());
   return json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace);
@@ -103,6 +156,7 @@ std::string info_text(const MeshInfo& i) {
                : fmt::format("bounds: ({}, {}, {}) to ({}, {}, {})\n", i.low.x, i.low.y, i.low.z, i.high.x, i.high.y,
                              i.high.z);
   out += fmt::format("{} shapes, {} simplices, {} interior points\n", i.shapes, i.simplices, i.interior_points);
+  out += arrays_text("point", i.point_arrays) + arrays_text("cell", i.cell_arrays);
   const double per_cell = static_cast<double>(i.bytes) / static_cast<double>(std::max<std::size_t>(1, i.cell_count()));
   return out + fmt::format("memory: {} bytes, {:.1f} per cell\n", i.bytes, per_cell);
 }

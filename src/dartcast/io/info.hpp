@@ -1,12 +1,25 @@
 // Counts, bounds, shapes and memory of a mesh in use: `dartcast info`.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
 #include <string>
+#include <vector>
 
 #include "dartcast/base/parallel.hpp"
 #include "dartcast/mesh/mesh_data.hpp"
 
 namespace dartcast {
+
+/// A point or cell array of a mesh. Ranges are of its finite values, per component; empty where there is none.
+struct ArrayInfo {
+  std::string name;
+  std::size_t components = 1;
+  std::vector<std::array<double, 2>> ranges;
+  std::size_t not_finite = 0;  ///< values that are no finite numbers
+};
 
 struct MeshInfo {
   std::string name;
@@ -22,6 +35,8 @@ struct MeshInfo {
   std::size_t interior_points = 0;  ///< added where a cell needs one
   Vec3 low, high;                   ///< of the points
   std::size_t bytes = 0;            ///< of the map, its positions and tables
+  std::vector<ArrayInfo> point_arrays;
+  std::vector<ArrayInfo> cell_arrays;
 
   [[nodiscard]] std::size_t cell_count() const;
 };

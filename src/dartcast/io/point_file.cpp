@@ -8,15 +8,11 @@
 #include <vtkPolyData.h>
 #include <vtkXMLPolyDataReader.h>
 
-#include <algorithm>
 #include <array>
-#include <charconv>
-#include <fstream>
-#include <string>
 #include <string_view>
-#include <system_error>
 
 #include "dartcast/base/error.hpp"
+#include "dartcast/io/csv_table.hpp"
 #include "dartcast/io/vtk_errors.hpp"
 
 namespace dartcast {
@@ -54,55 +50,14 @@ PointFile read_vtp(const std::filesystem::path& path) {
   return file;
 }
 
-// The fields of a line between commas, without the blanks and quotes around them.
-std::vector<std::string_view> fields(std::string_view line) {
-  std::vector<std::string_view> result;
-  constexpr std::string_view around = " \t\r\"";
-  while (true) {
-    const std::size_t end = line.find(',');
-    std::string_view field = line.substr(0, end);
-    field.remove_prefix(std::min(field.find_first_not_of(around), field.size()));
-    field = field.substr(0, field.find_last_not_of(around) + 1);
-    result.push_back(field);
-    if (end == std::string_view::npos) return result;
-    line.remove_prefix(end + 1);
-  }
-}
-
-std::array<std::size_t, 3> find_columns(const std::filesystem::path& path, const std::string& header) {
-  std::array<std::size_t, 3> columns{};
-  const auto names = fields(header);
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::string_view name = std::string_view("xyz").substr(k, 1);
-    while (columns[k] < names.size() && names[columns[k]] != name) ++columns[k];
-    if (columns[k] == names.size()) {
-      throw Error(fmt::format("{}:1: there is no column '{}'; the first line must name the columns x, y and z",
-                              path.string(), name));
-    }
-  }
-  return columns;
-}
-
 std::vector<Vec3> read_csv(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  std::string line;
-  if (!std::getline(file, line)) throw Error(fmt::format("{}: the file cannot be read, or is empty", path.string()));
-  const auto columns = find_columns(path, line);
-  std::vector<Vec3> result;
-  for (std::size_t number = 2; std::getline(file, line); ++number) {
-    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    const auto values = fields(line);
-    std::array<double, 3> p{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::string_view text = columns[k] < values.size() ? values[columns[k]] : std::string_view();
-      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), p[k]);
-      if (error != std::errc() || end != text.data() + text.size() || text.empty()) {
-        throw Error(fmt::format("{}:{}: '{}' is not a number", path.string(), number, text));
-      }
-    }
-    result.push_back({p[0], p[1], p[2]});
-  }
-  return result;
+  CsvTable table(path);
+  std::array<std::size_t, 3> columns{};
+  for (std::size_t k = 0; k < 3; ++k) columns[k] = table.column(std::string_view("xyz").substr(k, 1), "x, y and z");
+  const std::vector<double> values = table.rows(columns);
+  std::vector<Vec3> points;
+  for (std::size_t at = 0; at < values.size(); at += 3) points.push_back({values[at], values[at + 1], values[at + 2]});
+  return points;
 }
 
 }  // namespace

@@ -10,9 +10,8 @@
 #include <string_view>
 
 #include "dartcast/base/error.hpp"
-#include "dartcast/geometry/complex_mesh.hpp"
 #include "dartcast/io/run_files.hpp"
-#include "dartcast/io/vtk_mesh.hpp"
+#include "dartcast/io/run_lock.hpp"
 #include "dartcast/io/vtp_write.hpp"
 #include "dartcast/io/write_mesh.hpp"
 #include "dartcast/walk/state.hpp"
@@ -26,6 +25,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view stats_header =
     "step,time,alive,injected,absorbed,escaped,held,contacts,orientation_tests,exact_tests,forecast_kept,updated_by_"
     "deformation";
+constexpr std::string_view energy_header = ",kinetic_energy,potential_energy";
 constexpr std::string_view contacts_header =
     "step,time,id,kind,patch,cell,x,y,z,normal_x,normal_y,normal_z,wall_dx,wall_dy,wall_dz";
 
@@ -50,32 +50,39 @@ void check_output_folder(const fs::path& folder) {
   if (!fs::is_directory(folder)) {
     throw Error(fmt::format("{}: this is a file; name a folder for the output with -o", folder.string()));
   }
-  if (fs::is_empty(folder) || holds_a_run(folder)) return;
+  const bool vacant = std::all_of(fs::directory_iterator(folder), fs::directory_iterator(),
+                                  [](const auto& entry) { return entry.path().filename() == run_lock_name; });
+  if (vacant || holds_a_run(folder)) return;
   throw Error(fmt::format("{}: the folder holds other files than a run's; name another with -o", folder.string()));
 }
 
-Recording::Recording(Options options, const MeshData& mesh, const std::string& scene_text)
-    : options_(std::move(options)) {
-  const fs::path& folder = options_.folder;
-  check_output_folder(folder);
+void make_output_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw Error(fmt::format("{}: the folder cannot be made: {}", folder.string(), error.message()));
+}
+
+Recording::Recording(Options options, EnvironmentRecord record, const std::string& scene_text)
+    : options_(std::move(options)) {
+  const fs::path& folder = options_.folder;
+  check_output_folder(folder);
+  make_output_folder(folder);
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.is_regular_file() && is_run_file(entry.path().filename().string())) fs::remove(entry.path());
   }
-  stats_ = RunTable(folder / "stats.csv", std::string(stats_header) + (options_.surgery ? ",in_opened" : ""));
+  stats_ = RunTable(folder / "stats.csv",
+                    fmt::format("{}{}{}", stats_header, options_.surgery ? ",in_opened" : "", energy_header));
   if (options_.contacts) contacts_ = RunTable(folder / "contacts.csv", contacts_header);
   if (!scene_text.empty()) write_bytes(folder / "scene.toml", scene_text);
-  keep_cells(mesh);
-  if (!options_.changes) write_environment(mesh.points, "environment.vtu");
+  if (!options_.changes) record.write_at_rest(folder / "environment.vtu");
+  if (options_.changes) environment_ = std::move(record);
 }
 
-Recording::Recording(Options options, const MeshData& mesh, const RecordingProgress& progress)
+Recording::Recording(Options options, EnvironmentRecord record, const RecordingProgress& progress)
     : options_(std::move(options)), frames_(progress.frames) {
   stats_ = RunTable(options_.folder / "stats.csv", progress.stats_bytes);
   if (options_.contacts) contacts_ = RunTable(options_.folder / "contacts.csv", progress.contacts_bytes);
-  keep_cells(mesh);
+  if (options_.changes) environment_ = std::move(record);
   std::set<std::uint64_t> kept;
   for (const RecordingFrame& frame : frames_) kept.insert(frame.step);
   for (const auto& entry : fs::directory_iterator(options_.folder)) {
@@ -84,40 +91,13 @@ Recording::Recording(Options options, const MeshData& mesh, const RecordingProgr
   }
 }
 
-void Recording::keep_cells(const MeshData& mesh) {
-  mesh_.types = mesh.types;
-  mesh_.offsets = mesh.offsets;
-  mesh_.connectivity = mesh.connectivity;
-  mesh_.regions = mesh.regions;
-  mesh_.region_names = mesh.region_names;
-  mesh_.free = mesh.free;
-}
-
-void Recording::write_environment(std::span<const Vec3> points, const std::string& name) {
-  mesh_.points.assign(points.begin(), points.end());
-  write_vtu(mesh_, options_.folder / name);
-}
-
-// Cells are others than in the file: they keep its regions.
-void Recording::write_edited(const Complex& complex, const std::string& name) const {
-  MeshData mesh = to_mesh(complex);
-  mesh.region_names = mesh_.region_names;
-  if (!mesh_.regions.empty()) {
-    for (const std::uint32_t source : mesh.source) mesh.regions.push_back(mesh_.regions[source]);
-  }
-  write_vtu(mesh, options_.folder / name);
+void Recording::follow(const Environment& environment) {
+  if (environment_) environment_->follow(environment);
 }
 
 void Recording::add_frame(const Flow& flow) {
   write_particles(flow, options_.folder / particles_name(flow.steps()));
-  if (options_.changes) {
-    const std::string name = environment_name(flow.steps());
-    if (flow.environment().edit_count() > 0) {
-      write_edited(flow.environment().complex(), name);
-    } else {
-      write_environment(flow.environment().positions(), name);
-    }
-  }
+  if (environment_) environment_->write(flow.environment(), options_.folder / environment_name(flow.steps()));
   if (frames_.empty() || frames_.back().step != flow.steps()) frames_.push_back({flow.steps(), flow.time()});
   write_lists();
 }
@@ -144,6 +124,7 @@ void Recording::write_particles(const Flow& flow, const fs::path& path) const {
   file.add_vectors("velocity", [&](std::size_t i) { return flow.velocities()[i]; });
   file.add("cell", [&](std::size_t i) { return static_cast<double>(complex.map().source(particles[i].cell)); });
   file.add("kind", [&](std::size_t i) { return static_cast<double>(kind_of(complex, particles[i])); });
+  file.add_flags("held", [&](std::size_t i) { return flow.held()[i] != 0; });
   file.add("contacts", [&](std::size_t i) { return static_cast<double>(flow.contact_counts()[i]); });
   file.write(path);
 }
@@ -154,7 +135,8 @@ void Recording::add_step(const Flow& flow, const FlowStep& step, std::uint64_t i
              step.injected, step.absorbed, step.escaped, step.report.held.size(), step.report.contacts.contacts.size(),
              c.orientation.tests, c.orientation.exact, c.forecast_kept, c.updated_by_deformation);
   if (options_.surgery) fmt::print(stats_.stream(), ",{}", in_opened);
-  fmt::print(stats_.stream(), "\n");
+  const FlowEnergy energy = flow.energy();
+  fmt::print(stats_.stream(), ",{},{}\n", energy.kinetic, energy.potential);
   if (options_.contacts) write_contacts(flow, step);
   stats_.check();
 }

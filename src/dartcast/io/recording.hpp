@@ -2,12 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "dartcast/io/environment_record.hpp"
 #include "dartcast/io/run_files.hpp"
-#include "dartcast/mesh/mesh_data.hpp"
 #include "dartcast/simulation/flow.hpp"
 
 namespace dartcast {
@@ -31,15 +32,17 @@ class Recording {
   };
 
   /// Makes the folder, or takes over one that is empty or holds an earlier run, whose files are removed. Throws Error,
-  /// nothing changed, where the folder holds anything else. `mesh`: the environment's, points at rest.
-  Recording(Options options, const MeshData& mesh, const std::string& scene_text);
+  /// nothing changed, where the folder holds anything else. `record`: of the environment at rest.
+  Recording(Options options, EnvironmentRecord record, const std::string& scene_text);
 
   /// Goes on with the files of an earlier run: what was written to them after `progress` is taken back. Throws Error
-  /// where a file is shorter than that.
-  Recording(Options options, const MeshData& mesh, const RecordingProgress& progress);
+  /// where a file is shorter than that. `record`: has followed the edits so far.
+  Recording(Options options, EnvironmentRecord record, const RecordingProgress& progress);
 
   /// Adds the particles, and the environment where it deforms, as they are now.
   void add_frame(const Flow& flow);
+  /// To be called after each edit of the environment.
+  void follow(const Environment& environment);
   /// Adds a step's row to stats.csv, and its contacts. `in_opened`: see SurgeryLog.
   void add_step(const Flow& flow, const FlowStep& step, std::uint64_t in_opened = 0);
   [[nodiscard]] std::span<const RecordingFrame> frames() const { return frames_; }
@@ -49,15 +52,12 @@ class Recording {
   void finish(const std::string& summary_json);
 
  private:
-  void keep_cells(const MeshData& mesh);
   void write_particles(const Flow& flow, const std::filesystem::path& path) const;
-  void write_environment(std::span<const Vec3> points, const std::string& name);
-  void write_edited(const Complex& complex, const std::string& name) const;
   void write_lists() const;
   void write_contacts(const Flow& flow, const FlowStep& step);
 
   Options options_;
-  MeshData mesh_;  // cells, regions and free marks alone
+  std::optional<EnvironmentRecord> environment_;  // where it changes
   RunTable stats_;
   RunTable contacts_;
   std::vector<RecordingFrame> frames_;
@@ -66,5 +66,8 @@ class Recording {
 /// Whether a run may write to this folder: it does not exist, is empty, or holds an earlier run. Throws Error that says
 /// why not.
 void check_output_folder(const std::filesystem::path& folder);
+
+/// Makes it where it does not exist. Throws Error where that fails.
+void make_output_folder(const std::filesystem::path& folder);
 
 }  // namespace dartcast

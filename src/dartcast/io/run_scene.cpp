@@ -12,9 +12,11 @@
 
 #include "dartcast/base/error.hpp"
 #include "dartcast/io/checkpoint.hpp"
-#include "dartcast/io/point_file.hpp"
+#include "dartcast/io/environment_record.hpp"
 #include "dartcast/io/recording.hpp"
+#include "dartcast/io/run_lock.hpp"
 #include "dartcast/io/scene_mesh.hpp"
+#include "dartcast/io/seed_file.hpp"
 #include "dartcast/io/solids.hpp"
 #include "dartcast/io/solids_recording.hpp"
 
@@ -60,7 +62,10 @@ FlowOptions flow_options(const Scene& scene, const RunOptions& options) {
 }
 
 void add_placed(Flow& flow, const std::filesystem::path& file, const ParticlesScene& scene) {
-  const auto added = flow.add(read_points(file).points, scene.velocity, scene.radius);
+  Seeds seeds = read_seeds(file);
+  if (seeds.velocities.empty()) seeds.velocities.assign(seeds.points.size(), scene.velocity);
+  if (seeds.radii.empty()) seeds.radii.assign(seeds.points.size(), scene.radius);
+  const auto added = flow.add(seeds.points, seeds.velocities, seeds.radii);
   for (std::size_t i = 0; i < added.size(); ++i) {
     if (added[i].location.place == Place::free) continue;
     throw Error(fmt::format("{}: position {} (counted from 0) is {}; move or remove it", file.string(), i,
@@ -83,6 +88,16 @@ void add_particles(Flow& flow, const Scene& scene) {
   }
 }
 
+// What it refuses is told with the file's name.
+Environment made_of(const MeshData& mesh, const MeshSource& source, Threads threads) {
+  try {
+    return Environment(mesh, threads);
+  } catch (const InvalidMesh& e) {
+    const auto* file = std::get_if<std::filesystem::path>(&source);
+    throw InvalidMesh(fmt::format("{}: {}", file != nullptr ? file->string() : "the generated mesh", e.what()));
+  }
+}
+
 void describe(const Environment& environment, Summary& summary) {
   const Map& map = environment.map();
   summary.threads = environment.threads().count;
@@ -99,14 +114,18 @@ void describe(const Environment& environment, Summary& summary) {
 // The output folder of a run: its recording, and checkpoints beside it. Without a folder it does nothing.
 class Output {
  public:
-  Output(const Scene& scene, const RunOptions& options, const MeshData& mesh, Summary& summary)
+  /// `mesh`: the environment's. Takes the folder, if it exists, before anything is read from it.
+  Output(const Scene& scene, const RunOptions& options, MeshData mesh, Summary& summary)
       : scene_(scene),
         recording_options_{options.folder, summary.deforms || summary.surgery, summary.surgery.has_value(),
                            scene.output.contacts},
         every_(scene.output.every),
         resume_(options.resume),
         summary_(summary) {
-    if (!folder().empty()) identity_ = run_identity(scene.text, mesh, options.seed.value_or(scene.seed));
+    if (folder().empty()) return;
+    if (std::filesystem::exists(folder())) lock_.take(folder());
+    identity_ = run_identity(scene.text, mesh, options.seed.value_or(scene.seed));
+    record_.emplace(std::move(mesh));
   }
 
   /// The checkpoint to go on from to so many steps; none: start.
@@ -122,10 +141,18 @@ class Output {
     return found_;
   }
 
-  void open(const MeshData& mesh) {
+  /// To be called after each edit of the environment.
+  void follow(const Environment& environment) {
+    if (recording_) return recording_->follow(environment);
+    if (record_) record_->follow(environment);
+  }
+
+  void open() {
     timed([&] {
-      recording_ = found_ ? std::make_unique<Recording>(recording_options_, mesh, found_->recording)
-                          : std::make_unique<Recording>(recording_options_, mesh, scene_.text);
+      make_output_folder(folder());
+      lock_.take(folder());
+      recording_ = found_ ? std::make_unique<Recording>(recording_options_, std::move(*record_), found_->recording)
+                          : std::make_unique<Recording>(recording_options_, std::move(*record_), scene_.text);
       solids_ = found_ ? std::make_unique<SolidsRecording>(folder(), scene_, found_->solids_recording)
                        : std::make_unique<SolidsRecording>(folder(), scene_);
     });
@@ -179,6 +206,8 @@ class Output {
   bool resume_;
   Summary& summary_;
   RunIdentity identity_;
+  RunLock lock_;
+  std::optional<EnvironmentRecord> record_;  // until the recording has it
   std::optional<Checkpoint> found_;
   std::unique_ptr<Recording> recording_;
   std::unique_ptr<SolidsRecording> solids_;
@@ -258,10 +287,13 @@ class Run {
 };
 
 // Particles at the start, or as a checkpoint has them.
-void start(Flow& flow, Surgery& surgery, Solids& solids, const Scene& scene,
+void start(Flow& flow, Surgery& surgery, Solids& solids, Output& output, const Scene& scene,
            const std::optional<Checkpoint>& checkpoint) {
   add_inlets(flow, scene);
-  flow.set_after_edit([&surgery](Stranded) { surgery.after_edit(); });
+  flow.set_after_edit([&](Stranded) {
+    surgery.after_edit();
+    output.follow(flow.environment());
+  });
   if (checkpoint) {
     surgery.replay(checkpoint->surgery);
     flow.restore(checkpoint->flow);
@@ -269,9 +301,10 @@ void start(Flow& flow, Surgery& surgery, Solids& solids, const Scene& scene,
   } else {
     add_particles(flow, scene);
   }
-  flow.set_after_edit([&surgery, &solids](Stranded stranded) {
+  flow.set_after_edit([&](Stranded stranded) {
     surgery.after_edit();
     solids.follow(stranded);
+    output.follow(flow.environment());
   });
 }
 
@@ -279,18 +312,25 @@ void start(Flow& flow, Surgery& surgery, Solids& solids, const Scene& scene,
 
 Summary run_scene(const Scene& scene, const RunOptions& options, const Progress& progress) {
   if (!options.folder.empty()) check_output_folder(options.folder);
+  if (options.steps.value_or(0) > most_steps)
+    throw InvalidArgument(fmt::format("run: {} steps; give at most {}", *options.steps, most_steps));
   Summary summary;
   summary.scene = scene.name;
   summary.deforms = !scene.deformation.empty();
   const Stopwatch load;
-  const MeshData mesh = load_scene_mesh(scene.environment).mesh;
-  Environment environment(mesh, options.threads);
+  EnvironmentScene wanted = scene.environment;
+  wanted.skip_bad_cells = wanted.skip_bad_cells || options.skip_bad_cells;
+  SceneMesh loaded = load_scene_mesh(wanted, options.threads);
+  MeshData& mesh = loaded.mesh;
+  summary.skipped = loaded.skipped;
+  Environment environment = made_of(mesh, wanted.mesh, options.threads);
   const Responses responses = make_responses(scene.contact, environment.map());
   Flow flow(environment, flow_options(scene, options), responses);
   if (!scene.motion.field.empty()) {
     flow.set_field(VelocityField(environment.complex(), point_vectors(mesh, scene.motion.field), scene.motion.frame));
   }
-  if (summary.deforms) flow.set_deformation(Deformation(load_deformation(scene.deformation, mesh), mesh.points));
+  if (summary.deforms)
+    flow.set_deformation(Deformation(load_deformation(scene.deformation, mesh, wanted), mesh.points));
   describe(environment, summary);
   const std::vector<Event> events = make_events(scene, environment.map());
   Surgery surgery(events, scene.remesh, scene.crowding, scene.motion.dt, flow);
@@ -299,11 +339,11 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
   if (scene.collisions && solids.bodies()) flow.set_bodies(*solids.bodies());
   summary.seconds_load = load.seconds();
   const std::uint64_t steps = options.steps.value_or(scene.motion.steps);
-  Output output(scene, options, mesh, summary);
+  Output output(scene, options, std::move(mesh), summary);
   const Stopwatch locate;
-  start(flow, surgery, solids, scene, output.read(steps));
+  start(flow, surgery, solids, output, scene, output.read(steps));
   summary.seconds_locate = locate.seconds();
-  output.open(mesh);
+  output.open();
   Run(flow, surgery, solids, output, steps, options.audit, summary).run(progress);
   output.finish();
   return summary;

@@ -18,6 +18,7 @@ struct RunOptions {
   std::optional<std::uint64_t> steps;  ///< instead of the scene's
   std::optional<std::uint64_t> seed;   ///< instead of the scene's
   bool audit = false;                  ///< check each particle after each step
+  bool skip_bad_cells = false;         ///< as EnvironmentScene::skip_bad_cells, which may be set as well
   /// Go on from the last checkpoint in the folder; from the start where there is none. The outcome is that of a run
   /// that was never cut off.
   bool resume = false;

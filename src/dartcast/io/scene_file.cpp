@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
-#include <limits>
 #include <sstream>
 #include <utility>
 
@@ -27,7 +26,7 @@ class SceneReader {
 
   Scene read(TomlTable root) const {
     Scene scene;
-    root.get("seed", scene.seed, 0, std::numeric_limits<std::int64_t>::max());
+    root.get("seed", scene.seed, 0, most_seed);
     root.require("environment", "say [environment] with mesh = \"FILE\" or generator = \"box\"");
     scene.environment = read_environment(root.table("environment"), folder_);
     for (TomlTable& t : root.tables("deformation")) scene.deformation.push_back(deformation(t));
@@ -133,7 +132,7 @@ class SceneReader {
   static MotionScene motion(TomlTable t) {
     MotionScene scene;
     t.get("dt", scene.dt, Range::positive);
-    t.get("steps", scene.steps, 0, std::uint64_t{1} << 53U);
+    t.get("steps", scene.steps, 0, most_steps);
     t.get("gravity", scene.gravity);
     t.get("drag", scene.drag, Range::not_negative);
     t.get("substeps", scene.substeps, 1U, 1000U);
@@ -184,7 +183,7 @@ class SceneReader {
 
   static CrowdingScene crowding(TomlTable t) {
     CrowdingScene scene;
-    t.get("every", scene.every, 0, std::uint64_t{1} << 53U);
+    t.get("every", scene.every, 0, most_steps);
     t.get("most", scene.options.most, 1U, 0xfffffffeU);
     t.get("least", scene.options.least, 0U, 0xfffffffdU);
     t.get("smallest", scene.options.smallest, Range::not_negative);
@@ -198,7 +197,7 @@ class SceneReader {
 
   static RemeshScene remesh(TomlTable t) {
     RemeshScene scene;
-    t.get("every", scene.every, 0, std::uint64_t{1} << 53U);
+    t.get("every", scene.every, 0, most_steps);
     std::uint64_t most = scene.options.most_cells;
     t.get("most_cells", most, 1, 1U << 20U);
     scene.options.most_cells = most;
@@ -208,7 +207,7 @@ class SceneReader {
 
   static OutputScene output(TomlTable t) {
     OutputScene scene;
-    t.get("every", scene.every, 0, std::uint64_t{1} << 53U);
+    t.get("every", scene.every, 0, most_steps);
     t.get("contacts", scene.contacts);
     t.finish();
     return scene;
@@ -236,9 +235,10 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& path) {
 Scene read_scene(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
-  if (std::filesystem::is_directory(path) || !file || !(text << file.rdbuf())) {
+  const bool readable = file && !std::filesystem::is_directory(path);
+  const bool empty = readable && file.peek() == std::ifstream::traits_type::eof();  // nothing: << would fail
+  if (!readable || (!empty && !(text << file.rdbuf())))
     throw Error(fmt::format("{}: the scene cannot be read; check the path", path.string()));
-  }
   return parse_scene(text.str(), path);
 }
 

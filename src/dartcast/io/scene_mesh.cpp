@@ -8,7 +8,9 @@
 #include <set>
 
 #include "dartcast/base/error.hpp"
+#include "dartcast/io/judged_file.hpp"
 #include "dartcast/io/read_mesh.hpp"
+#include "dartcast/io/skip_in_file.hpp"
 #include "dartcast/mesh/inspect.hpp"
 #include "dartcast/mesh/regions.hpp"
 
@@ -16,21 +18,28 @@ namespace dartcast {
 
 namespace {
 
-SceneMesh load_source(const MeshSource& source) {
-  if (const auto* path = std::get_if<std::filesystem::path>(&source)) {
-    MeshFile file = read_valid_mesh(*path);
-    return {std::move(file.mesh), std::move(file.report)};
-  }
-  MeshData mesh;
-  if (const auto* box = std::get_if<BoxOptions>(&source)) mesh = generate_box(*box);
-  if (const auto* octahedra = std::get_if<OctahedraOptions>(&source)) mesh = generate_octahedra(*octahedra);
-  if (const auto* vessel = std::get_if<VesselOptions>(&source)) mesh = generate_vessel(*vessel);
-  if (const auto* rectangle = std::get_if<RectangleOptions>(&source)) mesh = generate_rectangle(*rectangle);
-  if (const auto* maze = std::get_if<MazeOptions>(&source)) mesh = generate_maze(*maze);
-  MeshReport report = inspect(mesh);
-  report.format = "generated";
-  if (!report.valid()) throw InvalidMesh(report.defects.front().message);
-  return {std::move(mesh), std::move(report)};
+MeshData generated(const MeshSource& source) {
+  if (const auto* octahedra = std::get_if<OctahedraOptions>(&source)) return generate_octahedra(*octahedra);
+  if (const auto* vessel = std::get_if<VesselOptions>(&source)) return generate_vessel(*vessel);
+  if (const auto* rectangle = std::get_if<RectangleOptions>(&source)) return generate_rectangle(*rectangle);
+  if (const auto* maze = std::get_if<MazeOptions>(&source)) return generate_maze(*maze);
+  return generate_box(std::get<BoxOptions>(source));
+}
+
+MeshFile load_source(const MeshSource& source) {
+  if (const auto* path = std::get_if<std::filesystem::path>(&source)) return read_mesh(*path);
+  MeshFile file{generated(source), {}};
+  file.report = inspect(file.mesh);
+  file.report.file = "the generated mesh";
+  file.report.format = "generated";
+  return file;
+}
+
+// Points are rounded: what was positive may be flat then.
+void scale_points(MeshFile& file, double scale) {
+  if (scale == 1.0 || file.mesh.types.empty()) return;
+  for (Vec3& x : file.mesh.points) x *= scale;
+  if (file.report.valid()) file.report.defects = inspect(file.mesh).defects;
 }
 
 void select_free(MeshData& mesh, const EnvironmentScene& scene) {
@@ -84,19 +93,46 @@ const DataArray& point_array(const MeshData& mesh, const std::string& name, std:
                   components, known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))));
 }
 
-std::vector<Vec3> frame_positions(const std::filesystem::path& file, const MeshData& mesh) {
-  MeshData frame = read_valid_mesh(file).mesh;
-  if (frame.points.size() != mesh.points.size()) {
-    throw InvalidMesh(fmt::format("{}: {} points; the scene's mesh has {}: frames must have the same points",
-                                  file.string(), frame.points.size(), mesh.points.size()));
+// Of the cells that `mesh` has, by their places in the input file.
+void keep_cells_of(const MeshData& mesh, MeshData& frame) {
+  const std::set<std::uint32_t> wanted(mesh.source.begin(), mesh.source.end());
+  MeshData kept;
+  for (std::size_t c = 0; c < frame.cell_count(); ++c) {
+    const auto source = frame.source.empty() ? static_cast<std::uint32_t>(c) : frame.source[c];
+    if (wanted.count(source) > 0) kept.add_cell(frame.types[c], frame.cell(c));
   }
-  return std::move(frame.points);
+  kept.points = std::move(frame.points);
+  frame = std::move(kept);
+  inspect(frame);  // drops the points of the other cells
+}
+
+std::vector<Vec3> frame_positions(const std::filesystem::path& file, const MeshData& mesh,
+                                  const EnvironmentScene& environment) {
+  MeshFile read = read_mesh(file);
+  if (environment.skip_bad_cells && !read.mesh.types.empty()) {
+    keep_cells_of(mesh, read.mesh);
+  } else {
+    read = valid_file(std::move(read));
+  }
+  std::vector<Vec3> points = std::move(read.mesh.points);
+  if (points.size() != mesh.points.size()) {
+    throw InvalidMesh(fmt::format("{}: {} points; the scene's mesh has {}: frames must have the same points",
+                                  file.string(), points.size(), mesh.points.size()));
+  }
+  for (Vec3& x : points) x *= environment.scale;
+  return points;
 }
 
 }  // namespace
 
-SceneMesh load_scene_mesh(const EnvironmentScene& scene) {
-  SceneMesh result = load_source(scene.mesh);
+SceneMesh load_scene_mesh(const EnvironmentScene& scene, Threads threads) {
+  MeshFile file = load_source(scene.mesh);
+  scale_points(file, scene.scale);
+  if (scene.skip_bad_cells) skip_bad_cells(file, threads);
+  file = valid_file(std::move(file));
+  SceneMesh result{std::move(file.mesh), std::move(file.report), {}};
+  const std::vector<Finding>& warnings = result.report.warnings;
+  if (!warnings.empty() && warnings.front().kind == "bad_cells") result.skipped = warnings.front();
   select_free(result.mesh, scene);
   if (scene.patches) select_patches(result.mesh, *scene.patches);
   return result;
@@ -111,13 +147,14 @@ std::vector<Vec3> point_vectors(const MeshData& mesh, const std::string& array) 
   return result;
 }
 
-std::vector<DeformationStep> load_deformation(std::span<const DeformationScene> scene, const MeshData& mesh) {
+std::vector<DeformationStep> load_deformation(std::span<const DeformationScene> scene, const MeshData& mesh,
+                                              const EnvironmentScene& environment) {
   std::vector<DeformationStep> steps;
   for (const DeformationScene& s : scene) {
     DeformationStep& step = steps.emplace_back(s.step);
     if (!s.field.empty()) step.field = point_vectors(mesh, s.field);
     if (!s.path.empty()) step.path = point_array(mesh, s.path, 1).values;
-    for (const auto& file : s.frames) step.frames.push_back(frame_positions(file, mesh));
+    for (const auto& file : s.frames) step.frames.push_back(frame_positions(file, mesh, environment));
   }
   return steps;
 }

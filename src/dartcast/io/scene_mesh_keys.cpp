@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 
 namespace dartcast {
 
@@ -23,7 +22,7 @@ void get_counts(TomlTable& t, std::string_view key, std::array<std::uint32_t, n>
   }
 }
 
-void get_seed(TomlTable& t, std::uint64_t& seed) { t.get("seed", seed, 0, std::numeric_limits<std::int64_t>::max()); }
+void get_seed(TomlTable& t, std::uint64_t& seed) { t.get("seed", seed, 0, most_seed); }
 
 // What the box and the octahedra have in common. Cells are of unit size unless `size` is given.
 template <class Options>
@@ -156,6 +155,8 @@ void read_free(TomlTable t, EnvironmentScene& scene) {
 EnvironmentScene read_environment(TomlTable table, const std::filesystem::path& folder) {
   EnvironmentScene scene;
   scene.mesh = read_source(table, folder);
+  table.get("scale", scene.scale, Range::positive);
+  table.get("skip_bad_cells", scene.skip_bad_cells);
   if (table.has("free")) read_free(table.table("free"), scene);
   std::vector<std::string> patches;
   if (table.get("patches", patches)) scene.patches = patches;

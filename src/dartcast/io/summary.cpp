@@ -1,6 +1,7 @@
 #include "dartcast/io/summary.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
 
@@ -144,6 +145,7 @@ std::string summary_json(const Summary& s) {
                  {"alive", s.alive},
                  {"held", s.held},
                  {"lost", s.lost}}}};
+  if (s.skipped.count > 0) json["environment"]["bad_cells"] = {{"count", s.skipped.count}, {"first", s.skipped.first}};
   if (s.surgery) {
     json["particles"]["in_opened"] = s.surgery->in_opened;
     json["events"] = events(*s.surgery);
@@ -208,6 +210,8 @@ std::string summary_text(const Summary& s) {
   const Counters& c = t.counters;
   std::string out = fmt::format("{}: {} steps, {} cells ({} free), {} wall faces, {:.1f} MB\n", s.scene, s.steps,
                                 s.cells, s.free_cells, s.wall_faces, static_cast<double>(s.bytes) / 1e6);
+  if (s.skipped.count > 0)
+    out += fmt::format("{} {}; the first: {}\n", s.skipped.count, s.skipped.message, fmt::join(s.skipped.first, ", "));
   out += fmt::format("particles: {} at the start, {} injected, {} absorbed, {} escaped, {} alive, {} held, {} lost\n",
                      t.start, t.injected, t.absorbed, t.escaped, s.alive, s.held, s.lost);
   out += fmt::format("contacts: {} ({} with faces, {} with edges, {} with vertices)\n",

@@ -8,6 +8,7 @@
 
 #include "dartcast/environment/audit.hpp"
 #include "dartcast/io/solids.hpp"
+#include "dartcast/mesh/report.hpp"
 #include "dartcast/simulation/surgery.hpp"
 
 namespace dartcast {
@@ -23,6 +24,7 @@ struct Summary {
   std::size_t vertices = 0;
   std::size_t wall_faces = 0;
   std::size_t bytes = 0;
+  Finding skipped;  ///< bad cells that were left out
 
   FlowTotals totals;
   std::uint64_t alive = 0;

@@ -75,8 +75,15 @@ void add_array(vtkFieldData& to, const DataArray& from, vtkIdType items) {
   to.AddArray(array);
 }
 
+bool has_tags(const MeshData& mesh) { return !mesh.regions.empty() || !mesh.patch_tags.empty(); }
+
+// By what the mesh itself says of its cells.
+bool is_replaced(const MeshData& mesh, const std::string& cell_array) {
+  return (cell_array == "region" && has_tags(mesh)) || (cell_array == "free" && !mesh.free.empty());
+}
+
 void add_tags(const MeshData& mesh, vtkUnstructuredGrid& grid) {
-  if (mesh.regions.empty() && mesh.patch_tags.empty()) return;
+  if (!has_tags(mesh)) return;
   vtkNew<vtkIntArray> array;
   array->SetName("region");
   for (std::size_t c = 0; c < mesh.cell_count(); ++c)
@@ -106,7 +113,7 @@ vtkSmartPointer<vtkUnstructuredGrid> make_grid(const MeshData& mesh) {
   add_cells(mesh, *grid);
   for (const DataArray& a : mesh.point_data) add_array(*grid->GetPointData(), a, grid->GetNumberOfPoints());
   for (const DataArray& a : mesh.cell_data) {
-    if (a.name != "region" && a.name != "free") add_array(*grid->GetCellData(), a, grid->GetNumberOfCells());
+    if (!is_replaced(mesh, a.name)) add_array(*grid->GetCellData(), a, grid->GetNumberOfCells());
   }
   if (!mesh.free.empty()) {
     add_array(*grid->GetCellData(), DataArray{"free", 1, {mesh.free.begin(), mesh.free.end()}},

@@ -5,6 +5,7 @@
 #include <vtkDoubleArray.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkXMLPolyDataWriter.h>
 
 #include "dartcast/base/error.hpp"
@@ -54,6 +55,15 @@ void VtpWriter::add(const std::string& name, const std::function<double(std::siz
   array->SetNumberOfTuples(static_cast<vtkIdType>(count_));
   double* out = array->GetPointer(0);
   for (std::size_t i = 0; i < count_; ++i) out[i] = value(i);
+  data_->GetPointData()->AddArray(array);
+}
+
+void VtpWriter::add_flags(const std::string& name, const std::function<bool(std::size_t)>& flag) {
+  vtkNew<vtkUnsignedCharArray> array;
+  array->SetName(name.c_str());
+  array->SetNumberOfTuples(static_cast<vtkIdType>(count_));
+  unsigned char* out = array->GetPointer(0);
+  for (std::size_t i = 0; i < count_; ++i) out[i] = flag(i) ? 1 : 0;
   data_->GetPointData()->AddArray(array);
 }
 

@@ -15,7 +15,7 @@
 
 namespace dartcast {
 
-/// A file while it is put together: points first, then what is made of them, then data. Float64.
+/// A file while it is put together: points first, then what is made of them, then data. Float64, flags UInt8.
 class VtpWriter {
  public:
   VtpWriter(std::size_t count, const std::function<Vec3(std::size_t)>& point);
@@ -28,6 +28,8 @@ class VtpWriter {
   void add_polygons(std::span<const std::size_t> offsets, std::span<const std::uint32_t> corners);
 
   void add(const std::string& name, const std::function<double(std::size_t)>& value);
+  /// 0 or 1.
+  void add_flags(const std::string& name, const std::function<bool(std::size_t)>& flag);
   void add_vectors(const std::string& name, const std::function<Vec3(std::size_t)>& value);
 
   /// Throws Error where the file cannot be written.

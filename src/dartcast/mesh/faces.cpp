@@ -136,6 +136,13 @@ FaceMatch match_faces(const MeshData& mesh) {
   std::iota(parent.begin(), parent.end(), 0U);
   out.parts = parent.size();
 
+  const auto unite = [&](std::uint32_t x, std::uint32_t y) {
+    const auto a = find_root(parent, x);
+    const auto b = find_root(parent, y);
+    if (a == b) return;
+    parent[b] = a;
+    --out.parts;
+  };
   const auto take_group = [&](std::span<const FaceKey> group) {
     if (group.size() == 1) {
       const auto corners = corners_of(mesh, group[0]);
@@ -146,16 +153,13 @@ FaceMatch match_faces(const MeshData& mesh) {
       out.crowded.push_back(group[0].cell);
     } else {
       const Meeting how = meeting(mesh, group[0], group[1]);
-      if (how == Meeting::same_side) out.same_side.push_back(group[0].cell);
+      if (how == Meeting::same_side) {
+        out.same_side.push_back({group[0].cell, group[1].cell});
+        return;
+      }
       if (how == Meeting::twisted) out.twisted.push_back(group[0].cell);
     }
-    for (const FaceKey& key : group) {
-      const auto a = find_root(parent, group[0].cell);
-      const auto b = find_root(parent, key.cell);
-      if (a == b) continue;
-      parent[b] = a;
-      --out.parts;
-    }
+    for (const FaceKey& key : group) unite(group[0].cell, key.cell);
   };
 
   for (std::size_t v = 0; v + 1 < buckets.start.size(); ++v) {

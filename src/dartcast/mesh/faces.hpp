@@ -1,6 +1,7 @@
 // Which faces of the cells are the same, and which lie on the boundary.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -25,11 +26,11 @@ struct BoundaryFaces {
 /// How the cells of a mesh meet.
 struct FaceMatch {
   BoundaryFaces boundary;
-  std::vector<std::uint32_t> crowded;    ///< a cell for each face that three or more cells use
-  std::vector<std::uint32_t> same_side;  ///< a cell for each face that two cells use from the same side
-  std::vector<std::uint32_t> twisted;    ///< a cell for each face that two cells use with corners in another order
-  std::size_t parts = 0;                 ///< groups of cells connected by faces
-  std::vector<std::uint32_t> part;       ///< per cell: one cell of its group, the same for all of them
+  std::vector<std::uint32_t> crowded;                   ///< a cell for each face that three or more cells use
+  std::vector<std::array<std::uint32_t, 2>> same_side;  ///< for each face that two cells use from the same side: they
+  std::vector<std::uint32_t> twisted;  ///< a cell for each face that two cells use with corners in another order
+  std::size_t parts = 0;               ///< groups of cells connected by faces, other than those of same_side
+  std::vector<std::uint32_t> part;     ///< per cell: one cell of its group, the same for all of them
 };
 
 /// Matches all faces by their corners. Precondition: connectivity is well formed and no face repeats a corner.

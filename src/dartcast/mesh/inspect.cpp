@@ -140,8 +140,10 @@ void check_faces(const MeshData& mesh, const FaceMatch& match, MeshReport& repor
   add_cells(mesh, match.crowded,
             {"face_shared", 0, {}, "faces (in the plane edges) used by three cells or more; one of the cells is named"},
             report.defects);
+  std::vector<std::uint32_t> same_side;
+  for (const auto& cells : match.same_side) same_side.push_back(cells[0]);
   add_cells(
-      mesh, match.same_side,
+      mesh, std::move(same_side),
       {"same_side",
        0,
        {},

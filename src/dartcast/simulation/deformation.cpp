@@ -18,6 +18,8 @@ constexpr double full_turn = 2 * std::numbers::pi;
 // Turns of t / period, less the whole ones: sine and cosine lose no digits however long a run is.
 double turns(double time, double period) { return std::fmod(time / period, 1.0); }
 
+bool is_off_plane(const Vec3& v) { return v.z != 0.0; }
+
 double sinc(double x) { return x == 0.0 ? 1.0 : std::sin(x) / x; }
 
 // The vector r turned about the unit vector a (O. Rodrigues, 1840).
@@ -76,6 +78,60 @@ class Checker {
 
   const DeformationStep& step_;
   std::size_t index_, vertices_;
+};
+
+// What the members of a step must be so that it leaves each point of the plane z = 0 in it, to the last bit.
+class PlaneChecker {
+ public:
+  PlaneChecker(const DeformationStep& step, std::size_t index) : step_(step), index_(index) {}
+
+  void check() const {
+    if (step_.kind == DeformationKind::frames) return check_frames();
+    require(step_.centre.z == 0.0, "centre", "must have z = 0");
+    switch (step_.kind) {
+      case DeformationKind::rotate:
+      case DeformationKind::swing: return require(across(), "axis", "must be [0, 0, 1]");
+      case DeformationKind::twist: return require(across(), "axis", "must be [0, 0, 1]; to move points, swing or bend");
+      case DeformationKind::bend:
+        require(along() || across(), "axis", "must have z = 0");
+        return require(step_.direction.z == 0.0, "direction", "must have z = 0");
+      case DeformationKind::stretch: return require(along() || across(), "axis", "must have z = 0 or be [0, 0, 1]");
+      case DeformationKind::bump: return require(along(), "axis", "must have z = 0");
+      case DeformationKind::pulse: return check_pulse();
+      case DeformationKind::frames: return;
+    }
+  }
+
+ private:
+  [[nodiscard]] bool along() const { return step_.axis.z == 0.0; }
+  [[nodiscard]] bool across() const { return step_.axis.x == 0.0 && step_.axis.y == 0.0; }
+
+  void check_pulse() const {
+    if (step_.field.empty()) return require(along() || across(), "axis", "must have z = 0 or be [0, 0, 1]");
+    check_list(step_.field, "field", "vector");
+  }
+
+  void check_frames() const {
+    for (std::size_t i = 0; i < step_.frames.size(); ++i)
+      check_list(step_.frames[i], fmt::format("frame {}", i), "position");
+  }
+
+  void check_list(std::span<const Vec3> list, const std::string& name, const char* what) const {
+    const auto out = std::find_if(list.begin(), list.end(), is_off_plane);
+    if (out == list.end()) return;
+    require(false, name,
+            fmt::format("must have z = 0 everywhere, and its {} {} has z = {}", what, out - list.begin(), out->z));
+  }
+
+  void require(bool holds, const std::string& member, const std::string& must) const {
+    if (holds) return;
+    throw InvalidArgument(fmt::format(
+        "deformation {} ({}) moves points out of the plane z = 0, which a planar mesh must not leave: {} {}",
+        index_ + 1, deformation_kind_names[static_cast<std::size_t>(step_.kind)], member, must));
+  }
+
+  const DeformationStep& step_;
+  std::size_t index_;
 };
 
 // One step at one time: what is the same for all vertices is computed once.
@@ -166,6 +222,16 @@ Deformation::Deformation(std::vector<DeformationStep> steps, std::span<const Vec
     if (norm(s.axis) > 0) s.axis *= 1 / norm(s.axis);
     s.direction -= s.axis * dot(s.axis, s.direction);
     if (s.kind == DeformationKind::bend) s.direction *= 1 / norm(s.direction);
+  }
+}
+
+void Deformation::check_plane() const {
+  for (std::size_t i = 0; i < steps_.size(); ++i) PlaneChecker(steps_[i], i).check();
+  for (const Later& later : later_) {
+    const auto* pull = std::get_if<Pull>(&later);
+    if (pull != nullptr && std::any_of(pull->displacement.begin(), pull->displacement.end(), is_off_plane))
+      throw InvalidArgument(
+          "deformation: a pull moves points out of the plane z = 0, which a planar mesh must not leave");
   }
 }
 

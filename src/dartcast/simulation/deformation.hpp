@@ -66,6 +66,12 @@ class Deformation {
 
   [[nodiscard]] std::size_t size() const { return size_; }
 
+  /// For a mesh of the plane. Throws InvalidArgument, naming the step and the member, unless every point with z = 0
+  /// keeps z = 0 exactly at all times: rotate, swing and twist about [0, 0, 1]; bend and bump with vectors of the
+  /// plane; stretch and pulse with an axis in the plane or across it; fields and frames with z = 0; every centre in the
+  /// plane. Cost: linear where there are fields, frames or pulls.
+  void check_plane() const;
+
   /// After an edit: vertices that it made go with those that they were made between, so that nothing jumps. `size`: of
   /// the environment's positions now.
   void follow(const ComplexEditReport& edit, std::size_t size);

@@ -40,6 +40,10 @@ VelocityField::VelocityField(const Complex& complex, std::span<const Vec3> value
   const auto bad = std::find_if_not(values.begin(), values.end(), is_finite);
   if (bad != values.end())
     throw InvalidArgument(fmt::format("the velocity at point {} is not finite", bad - values.begin()));
+  const auto out = std::find_if(values.begin(), values.end(), [](const Vec3& v) { return v.z != 0.0; });
+  if (complex.map().dimension() == 2 && out != values.end())
+    throw InvalidArgument(fmt::format("the velocity at point {} is ({}, {}, {}): in the plane its z must be 0",
+                                      out - values.begin(), out->x, out->y, out->z));
   values_ = at_all_vertices(complex, values);
   if (frame == FieldFrame::mesh) rest_.assign(complex.positions().begin(), complex.positions().end());
 }

@@ -16,7 +16,8 @@ enum class FieldFrame {
 class VelocityField {
  public:
   /// `values`: one velocity per point of the mesh; interior points take theirs by their weights. The complex's
-  /// positions are those at rest. Throws InvalidArgument where the number does not match or a value is not finite.
+  /// positions are those at rest. Throws InvalidArgument where the number does not match, a value is not
+  /// finite, or in the plane its z is not 0.
   VelocityField(const Complex& complex, std::span<const Vec3> values, FieldFrame frame = FieldFrame::space);
 
   [[nodiscard]] FieldFrame frame() const { return frame_; }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "dartcast/base/error.hpp"
@@ -16,6 +17,7 @@ namespace dartcast {
 namespace {
 
 constexpr std::size_t grain = 512;
+constexpr double most_injected = 0xfffffffe;  // by an inlet in a step: the most indices that particles can have
 
 // Adds the time that it lives to a sum of seconds.
 class Timer {
@@ -29,6 +31,15 @@ class Timer {
   double& seconds_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
+
+bool leaves_plane(const Environment& environment, const Vec3& v) {
+  return environment.map().dimension() == 2 && v.z != 0.0;
+}
+
+void check_plane(const Environment& environment, const Vec3& v, std::string_view what) {
+  if (leaves_plane(environment, v))
+    throw InvalidArgument(fmt::format("flow: {} is ({}, {}, {}): in the plane its z must be 0", what, v.x, v.y, v.z));
+}
 
 void check(const FlowOptions& o) {
   if (!(o.dt > 0.0) || !std::isfinite(o.dt)) throw InvalidArgument("flow: dt must be positive and finite");
@@ -44,12 +55,6 @@ void check(const FlowOptions& o) {
   if (!(c.density > 0.0) || !std::isfinite(c.density))
     throw InvalidArgument("flow: the spheres' density must be positive and finite");
   if (c.iterations == 0) throw InvalidArgument("flow: collisions need an iteration at least");
-}
-
-void check_motion(const Vec3& velocity, double radius, const char* whose) {
-  if (!is_finite(velocity)) throw InvalidArgument(fmt::format("flow: {} velocity must be finite", whose));
-  if (!(radius >= 0.0) || !std::isfinite(radius))
-    throw InvalidArgument(fmt::format("flow: {} radius must be finite and not negative", whose));
 }
 
 // The particle with coordinates w, as riding along puts it.
@@ -72,6 +77,7 @@ void keep_unmarked(std::vector<T>& values, std::span<const std::uint8_t> marks) 
 Flow::Flow(Environment& environment, const FlowOptions& options, Responses responses)
     : environment_(environment), options_(options), responses_(std::move(responses)), random_(options.seed) {
   check(options);
+  check_plane(environment, options.gravity, "gravity");
   totals_.contacts_by_patch.resize(environment.map().patch_names().size());
 }
 
@@ -79,12 +85,23 @@ void Flow::set_deformation(Deformation deformation) {
   if (deformation.size() != environment_.positions().size()) {
     throw InvalidArgument("flow: the deformation is made for another number of points than the environment has");
   }
+  if (environment_.map().dimension() == 2) deformation.check_plane();
   deformation_ = std::move(deformation);
+}
+
+void Flow::check_motion(const Vec3& velocity, double radius, std::string_view whose) const {
+  if (!is_finite(velocity)) throw InvalidArgument(fmt::format("flow: {} velocity must be finite", whose));
+  check_plane(environment_, velocity, fmt::format("{} velocity", whose));
+  if (!(radius >= 0.0) || !std::isfinite(radius))
+    throw InvalidArgument(fmt::format("flow: {} radius must be finite and not negative", whose));
 }
 
 void Flow::add_inlet(Patch patch, double rate, const Vec3& velocity, double radius) {
   if (!(rate >= 0.0) || !std::isfinite(rate))
     throw InvalidArgument("flow: an inlet's rate must be finite and not negative");
+  if (rate * options_.dt > most_injected)
+    throw InvalidArgument(
+        fmt::format("flow: an inlet's rate of {} a second gives more than 2^32 - 2 particles a step", rate));
   check_motion(velocity, radius, "an inlet's");
   inlets_.push_back({patch, PatchSampler(environment_.complex(), patch), rate, velocity, radius});
 }
@@ -97,16 +114,37 @@ std::vector<Added> Flow::add(std::span<const Vec3> positions, const Vec3& veloci
   return added;
 }
 
+std::vector<Added> Flow::add(std::span<const Vec3> positions, std::span<const Vec3> velocities,
+                             std::span<const double> radii) {
+  if (velocities.size() != positions.size() || radii.size() != positions.size())
+    throw InvalidArgument(fmt::format("flow: {} velocities and {} radii for {} positions", velocities.size(),
+                                      radii.size(), positions.size()));
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const bool good = is_finite(velocities[i]) && !leaves_plane(environment_, velocities[i]) && radii[i] >= 0.0 &&
+                      std::isfinite(radii[i]);
+    if (!good) check_motion(velocities[i], radii[i], fmt::format("particle {}'s", i));
+  }
+  std::vector<Added> added = environment_.add(particles_, positions);
+  for (std::size_t i = 0; i < added.size(); ++i) {
+    if (added[i].location.place == Place::free) complete_next(velocities[i], radii[i]);
+  }
+  totals_.start = next_id_ - totals_.injected;
+  return added;
+}
+
 // Gives ids, velocities and radii to the particles added last.
 void Flow::complete(const Vec3& velocity, double radius) {
-  for (std::size_t i = ids_.size(); i < particles_.size(); ++i) {
-    ids_.push_back(next_id_++);
-    velocities_.push_back(velocity);
-    fates_.push_back(Fate::alive);
-    contact_counts_.push_back(0);
-    radii_.push_back(radius);
-    if (radius > 0.0) ++spheres_;
-  }
+  while (ids_.size() < particles_.size()) complete_next(velocity, radius);
+}
+
+void Flow::complete_next(const Vec3& velocity, double radius) {
+  ids_.push_back(next_id_++);
+  velocities_.push_back(velocity);
+  fates_.push_back(Fate::alive);
+  contact_counts_.push_back(0);
+  radii_.push_back(radius);
+  held_.push_back(0);
+  if (radius > 0.0) ++spheres_;
 }
 
 // Sampled points are rounded: one that fell out of its simplex is drawn again.
@@ -152,6 +190,7 @@ const FlowStep& Flow::step() {
   totals_.counters += last_.report.counters;
   totals_.collisions += last_.collisions;
   count_contacts();
+  mark_held();
   remove_gone();
   ++steps_;
   return last_;
@@ -270,6 +309,11 @@ void Flow::count_contacts() {
   }
 }
 
+void Flow::mark_held() {
+  std::fill(held_.begin(), held_.end(), std::uint8_t{0});
+  for (const Held& h : last_.report.held) held_[h.particle] = 1;
+}
+
 void Flow::remove_gone() {
   std::vector<std::uint8_t> gone(particles_.size(), 0);
   std::uint64_t absorbed = 0;
@@ -295,6 +339,7 @@ void Flow::remove_marked(std::span<const std::uint8_t> marks) {
   keep_unmarked(fates_, marks);
   keep_unmarked(contact_counts_, marks);
   keep_unmarked(radii_, marks);
+  keep_unmarked(held_, marks);
   clear_.clear();
   count_spheres();
 }

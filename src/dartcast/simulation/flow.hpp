@@ -9,6 +9,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "dartcast/base/random.hpp"
@@ -97,6 +98,13 @@ struct FlowCheckpoint {
   std::vector<KeptImpulse> impulses;  ///< that the next step's collisions start from
 };
 
+/// Of all particles. Without collisions particles have no mass: each counts as 1 kg. With them a sphere counts by its
+/// mass, and a point, which has none, not at all.
+struct FlowEnergy {
+  double kinetic = 0.0;    ///< J: the sum of m v^2 / 2
+  double potential = 0.0;  ///< J: the sum of -m g.x, which is 0 at the origin
+};
+
 /// What an edit between two steps did.
 struct FlowEdit {
   ComplexEditReport edit;
@@ -115,23 +123,28 @@ struct FlowEdit {
 class Flow {
  public:
   /// `environment` outlives the flow, and is moved and edited by it alone. Throws InvalidArgument where an option is
-  /// out of range.
+  /// out of range. In the plane every vector given to a flow must have z = 0: gravity, velocities, fields, motions.
   Flow(Environment& environment, const FlowOptions& options, Responses responses = Responses{});
 
   void set_field(VelocityField field) { field_ = std::move(field); }
-  /// Throws InvalidArgument where it is not made for the environment's number of points.
+  /// Throws InvalidArgument where it is not made for the environment's number of points, and in the plane as
+  /// Deformation::check_plane().
   void set_deformation(Deformation deformation);
   /// Bodies that the spheres meet, with the options of CollisionOptions, where it has collisions; they outlive its
   /// last step. Their step() follows each of the flow's. Throws InvalidArgument where substeps are not 1, or the
   /// bodies' steps are of another duration. Precondition: they are in the same environment.
   void set_bodies(Bodies& bodies);
   /// Injects `rate` particles a second at random places of a patch, from the first step on. Throws InvalidArgument
-  /// where the patch has no face at a free cell, or the rate is negative or not finite.
+  /// where the patch has no face at a free cell, or the rate is negative, not finite, or more than 2^32 - 2 a step.
   void add_inlet(Patch patch, double rate, const Vec3& velocity, double radius = 0.0);
 
   /// Adds particles at these positions, as Environment::add(). `radius`: >= 0; a sphere that does not fit is moved out
   /// of walls by its first step, and out of other spheres little by little.
   std::vector<Added> add(std::span<const Vec3> positions, const Vec3& velocity, double radius = 0.0);
+  /// Likewise, each with a velocity and a radius of its own. Throws InvalidArgument, nothing added, where the numbers
+  /// do not match, too.
+  std::vector<Added> add(std::span<const Vec3> positions, std::span<const Vec3> velocities,
+                         std::span<const double> radii);
   /// Adds particles at random places of the free cells, uniformly by volume. Throws InvalidArgument where no cell is
   /// free.
   void add_random(std::size_t count, const Vec3& velocity, double radius = 0.0);
@@ -153,7 +166,7 @@ class Flow {
   /// what it has subdivided; after other edits of the environment call its follow(). Cost: see Crowding::relieve().
   CrowdingReport relieve(Crowding& crowding, Stranded stranded = Stranded::move);
   /// Draws vertices along over the next `duration` seconds, on top of the deformation; they stay there. `displacement`:
-  /// one per position of the environment. Throws as Deformation::add_pull().
+  /// one per position of the environment. Throws as Deformation::add_pull(), and in the plane where one leaves it.
   void pull(std::span<const Vec3> displacement, double duration);
 
   [[nodiscard]] FlowCheckpoint checkpoint() const;
@@ -178,10 +191,14 @@ class Flow {
   [[nodiscard]] std::span<const Fate> fates() const { return fates_; }
   [[nodiscard]] std::span<const std::uint32_t> contact_counts() const { return contact_counts_; }
   [[nodiscard]] std::span<const double> radii() const { return radii_; }
+  /// 1 for those that were held in the last step: they rode along with their cell instead of moving on their own.
+  [[nodiscard]] std::span<const std::uint8_t> held() const { return held_; }
 
   [[nodiscard]] const Collider& collider() const { return collider_; }
 
   [[nodiscard]] const FlowTotals& totals() const { return totals_; }
+  /// At the particles' places and velocities now. The same bits for any number of threads. Cost: linear, parallel.
+  [[nodiscard]] FlowEnergy energy() const;
   /// Of every particle that there has been: those that left count with their last state.
   [[nodiscard]] StateHash state_hash() const;
 
@@ -199,6 +216,7 @@ class Flow {
   };
 
   void inject();
+  void check_motion(const Vec3& velocity, double radius, std::string_view whose) const;
   void move_vertices();
   void stand_at(std::uint64_t steps);
   void move_vertices_to(std::uint64_t steps);
@@ -207,12 +225,15 @@ class Flow {
   [[nodiscard]] Aim aim_at(std::size_t i, double dt, bool moving) const;
   [[nodiscard]] Vec3 accelerated(const Vec3& v, const Vec3& flow, double dt) const;
   void count_contacts();
+  void mark_held();
   void remove_absorbed(const FollowReport& report, std::span<const State> before);
   void remove_marked(std::span<const std::uint8_t> marks);
   void complete(const Vec3& velocity, double radius);
+  void complete_next(const Vec3& velocity, double radius);
   void count_spheres();
   // With collisions, in flow_collide.cpp.
   [[nodiscard]] bool collides() const { return options_.collisions && spheres_ > 0; }
+  [[nodiscard]] double mass(std::size_t i) const;
   [[nodiscard]] bool meets_bodies() const { return bodies_ != nullptr && bodies_->size() > 0; }
   void collide(double dt, bool moving);
   void weigh();
@@ -240,6 +261,7 @@ class Flow {
   std::vector<Fate> fates_;
   std::vector<std::uint32_t> contact_counts_;
   std::vector<double> radii_;
+  std::vector<std::uint8_t> held_;
   std::size_t spheres_ = 0;  // of a radius above 0
   std::vector<Vec3> targets_;
   SphereStepper stepper_;

@@ -36,12 +36,14 @@ void Flow::restore(const FlowCheckpoint& saved) {
   fates_.clear();
   contact_counts_.clear();
   radii_.clear();
+  held_.clear();
   for (const FlowCheckpoint::Particle& p : saved.particles) {
     ids_.push_back(p.id);
     velocities_.push_back(p.velocity);
     fates_.push_back(p.fate);
     contact_counts_.push_back(p.contacts);
     radii_.push_back(p.radius);
+    held_.push_back(p.state.held ? 1 : 0);
   }
   clear_.clear();
   count_spheres();

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numbers>
 
 #include "dartcast/base/error.hpp"
 #include "dartcast/simulation/flow.hpp"
@@ -32,14 +31,12 @@ void Flow::weigh() {
   met_radii_.resize(radii_.size());
   inverse_masses_.resize(radii_.size());
   displacements_.resize(radii_.size());
-  const double density = options_.collisions->density;
-  const bool plane = environment_.map().dimension() == 2;
   for (std::size_t i = 0; i < radii_.size(); ++i) {
     const double r = radii_[i];
     const bool meets = !particles_[i].held && (fates_[i] == Fate::alive || fates_[i] == Fate::stuck);
     met_radii_[i] = meets ? r : 0.0;
-    const double size = plane ? std::numbers::pi * r * r : 4.0 / 3.0 * std::numbers::pi * r * r * r;
-    inverse_masses_[i] = fates_[i] == Fate::alive && size > 0.0 ? 1.0 / (density * size) : 0.0;
+    const double m = mass(i);
+    inverse_masses_[i] = fates_[i] == Fate::alive && m > 0.0 ? 1.0 / m : 0.0;
   }
 }
 

@@ -1,4 +1,7 @@
 // Edits of the environment between the steps of a flow, and what goes along with them.
+#include <algorithm>
+
+#include "dartcast/base/error.hpp"
 #include "dartcast/simulation/flow.hpp"
 
 namespace dartcast {
@@ -51,6 +54,9 @@ RepairReport Flow::repair(const RepairOptions& options) {
 
 void Flow::pull(std::span<const Vec3> displacement, double duration) {
   const auto positions = environment_.positions();
+  const bool plane = environment_.map().dimension() == 2;
+  if (plane && std::any_of(displacement.begin(), displacement.end(), [](const Vec3& d) { return d.z != 0.0; }))
+    throw InvalidArgument("flow: a pull moves points out of the plane: in the plane every z must be 0");
   if (!deformation_) deformation_.emplace(std::vector<DeformationStep>{}, positions);
   deformation_->add_pull(displacement, time(), time() + duration);
 }

@@ -27,6 +27,10 @@
 
 namespace dartcast {
 
+/// Limits of a scene's numbers: what TOML can hold, and what a double counts without a gap.
+inline constexpr std::uint64_t most_seed = 0x7fffffffffffffffU;
+inline constexpr std::uint64_t most_steps = std::uint64_t{1} << 53U;
+
 /// A mesh file, or a generator's options.
 using MeshSource =
     std::variant<std::filesystem::path, BoxOptions, OctahedraOptions, VesselOptions, RectangleOptions, MazeOptions>;
@@ -41,6 +45,8 @@ struct FreeValues {
 
 struct EnvironmentScene {
   MeshSource mesh;
+  double scale = 1.0;           ///< > 0: the mesh's points are multiplied by it, and those of frames
+  bool skip_bad_cells = false;  ///< flat, inverted and indivisible cells are left out: their faces are walls
   std::variant<std::monostate, FreeRegions, FreeValues> free;  ///< none: as the mesh says, else all
   std::optional<std::vector<std::string>> patches;  ///< the wall groups to tell apart; none: all that the mesh has
 };

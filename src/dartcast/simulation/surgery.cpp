@@ -35,8 +35,9 @@ Surgery::Surgery(const std::vector<Event>& events, const RemeshScene& remesh, co
 // Times that are whole numbers of steps but for rounding count as such.
 std::uint64_t Surgery::step_of(const Event& event) const {
   constexpr double rounding = 1e-9;
+  constexpr double never = 0x1p+63;  // more steps than any run has, and still a number of steps
   const double steps = event.at / dt_;
-  return static_cast<std::uint64_t>(std::ceil(steps * (1.0 - rounding)));
+  return static_cast<std::uint64_t>(std::min(never, std::ceil(steps * (1.0 - rounding))));
 }
 
 void Surgery::before_step() {

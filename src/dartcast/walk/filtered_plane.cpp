@@ -262,7 +262,8 @@ class PlaneBatch {
   }
   [[nodiscard]] PlaneCorners corners(const Vec3* positions, std::uint32_t i) const {
     const VertexNumbers& v = steps_.vertices[i];
-    return {positions[v[0]], positions[v[1]], positions[v[2]]};
+    const auto flat = [&](unsigned k) { return Vec3{positions[v[k]].x, positions[v[k]].y, 0.0}; };
+    return {flat(0), flat(1), flat(2)};
   }
   template <bool moved>
   void ask_for(std::uint32_t i) const {

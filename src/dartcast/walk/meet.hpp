@@ -169,7 +169,8 @@ Vec3 wall_displacement(const Complex& complex, SimplexId simplex, unsigned facet
     const std::uint32_t vertex = vertices[facet_corner<N>(facet, i)].value;
     const Vec3& before = complex.previous_positions()[vertex];
     if (!in_exact_range(before)) continue;  // the move has brought the vertex back: that was no motion of the wall
-    const Vec3 moved = complex.positions()[vertex] - before;
+    Vec3 moved = complex.positions()[vertex] - before;
+    if constexpr (N == 3) moved.z = 0.0;  // as Space::corners()
     result += moved * (sum > 0.0 ? weight[i] / sum : 1.0 / (N - 1.0));
   }
   return result;

@@ -35,7 +35,10 @@ struct Space {
 
   [[nodiscard]] std::array<Vec3, N> corners(const CellView& cell, const ImplicitSimplex& s) const {
     std::array<Vec3, N> v;
-    for (unsigned i = 0; i < N; ++i) v[i] = positions[cell.vertex(s.vertex[i])];
+    for (unsigned i = 0; i < N; ++i) {
+      v[i] = positions[cell.vertex(s.vertex[i])];
+      if constexpr (N == 3) v[i].z = 0.0;  // whatever it is: the plane has none
+    }
     return v;
   }
   [[nodiscard]] std::array<Vec3, N> corners(SimplexId id) const {

@@ -1,0 +1,37 @@
+// Tables of numbers in .csv files. Not installed.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dartcast {
+
+/// A file whose first line names its columns. Fields are separated by commas; blanks and quotes around them do not
+/// count.
+class CsvTable {
+ public:
+  /// Reads the first line. Throws Error where the file cannot be read, is empty, or names a column twice.
+  explicit CsvTable(std::filesystem::path path);
+
+  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
+  [[nodiscard]] bool has(std::string_view name) const;
+  /// Where a column is. Throws Error, with the columns that `needed` names, where it is not there.
+  [[nodiscard]] std::size_t column(std::string_view name, std::string_view needed) const;
+  /// Reads the other lines: the numbers in these columns, one line after another. Throws Error, with the line, where
+  /// one is no finite number.
+  [[nodiscard]] std::vector<double> rows(std::span<const std::size_t> columns);
+  /// Throws Error about the first line.
+  [[noreturn]] void fail(std::string_view message) const;
+
+ private:
+  std::filesystem::path path_;
+  std::ifstream file_;
+  std::vector<std::string> names_;
+};
+
+}  // namespace dartcast
