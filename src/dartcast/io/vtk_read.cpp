@@ -272,7 +272,7 @@ ParsedMesh read_with(Reader& reader, const std::string& format) {
 }  // namespace
 
 ParsedMesh parse_vtu(const std::filesystem::path& path, std::string_view content) {
-  check_vtu(content);
+  check_vtu(content, "UnstructuredGrid");
   vtkNew<vtkXMLUnstructuredGridReader> reader;
   reader->SetFileName(path.c_str());
   return read_with(*reader, "VTK XML (.vtu)");
