@@ -60,7 +60,9 @@ bool is_point_or_line(int vtk) {
 }
 
 bool is_higher_order(int vtk) {
-  return (vtk >= VTK_QUADRATIC_EDGE && vtk <= VTK_TRIQUADRATIC_PYRAMID) || (vtk >= VTK_HIGHER_ORDER_EDGE && vtk <= 81);
+  return (vtk >= VTK_QUADRATIC_EDGE && vtk <= VTK_TRIQUADRATIC_PYRAMID) ||
+         (vtk >= VTK_PARAMETRIC_CURVE && vtk <= VTK_PARAMETRIC_HEX_REGION) ||
+         (vtk >= VTK_HIGHER_ORDER_EDGE && vtk <= VTK_BEZIER_PYRAMID);
 }
 
 std::uint32_t checked_id(std::int64_t id) {
