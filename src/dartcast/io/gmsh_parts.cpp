@@ -112,11 +112,12 @@ void Model::add_element(int type, std::span<const std::uint64_t> numbers, std::i
   const std::span<const std::uint32_t> used(corners.data(), numbers.size());
   if (type == 1) {
     parsed.add_edge(corners[0], corners[1], physical_tag);
+    parsed.edge_source.push_back(static_cast<std::uint32_t>(place));
     return;
   }
   if (type == 2 || type == 3) {
     parsed.mesh.add_patch_face(used, physical_tag);
-    parsed.face_source.push_back(static_cast<std::uint32_t>(place));
+    parsed.mesh.patch_source.push_back(static_cast<std::uint32_t>(place));
     return;
   }
   static constexpr std::array<CellType, 4> types = {CellType::tetrahedron, CellType::hexahedron, CellType::prism,

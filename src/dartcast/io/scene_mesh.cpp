@@ -4,21 +4,20 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <iterator>
-#include <set>
 
 #include "dartcast/base/error.hpp"
 #include "dartcast/io/read_mesh.hpp"
 #include "dartcast/mesh/inspect.hpp"
+#include "dartcast/mesh/patches.hpp"
 #include "dartcast/mesh/regions.hpp"
 
 namespace dartcast {
 
 namespace {
 
-SceneMesh load_source(const MeshSource& source) {
+SceneMesh load_source(const MeshSource& source, const ReadOptions& options) {
   if (const auto* path = std::get_if<std::filesystem::path>(&source)) {
-    MeshFile file = read_valid_mesh(*path);
+    MeshFile file = read_valid_mesh(*path, options);
     return {std::move(file.mesh), std::move(file.report)};
   }
   MeshData mesh;
@@ -48,31 +47,6 @@ void select_free(MeshData& mesh, const EnvironmentScene& scene) {
   select_free_regions(mesh, tags);
 }
 
-// Keeps the groups of faces that are named, and drops the others.
-void select_patches(MeshData& mesh, const std::vector<std::string>& names) {
-  std::set<std::int32_t> kept;
-  for (const std::string& name : names) {
-    const auto found = std::find_if(mesh.patch_names.begin(), mesh.patch_names.end(),
-                                    [&](const auto& entry) { return entry.second == name; });
-    if (found == mesh.patch_names.end()) {
-      std::vector<std::string> known;
-      for (const auto& entry : mesh.patch_names) known.push_back(entry.second);
-      throw InvalidMesh(fmt::format("the mesh has no patch '{}'; its patches are: {}", name,
-                                    known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))));
-    }
-    kept.insert(found->first);
-  }
-  MeshData all;
-  std::swap(all.patch_faces, mesh.patch_faces);
-  std::swap(all.patch_offsets, mesh.patch_offsets);
-  std::swap(all.patch_tags, mesh.patch_tags);
-  for (std::size_t f = 0; f < all.patch_tags.size(); ++f) {
-    if (kept.count(all.patch_tags[f]) == 0) continue;
-    const std::size_t begin = all.patch_offsets[f];
-    mesh.add_patch_face({all.patch_faces.data() + begin, all.patch_offsets[f + 1] - begin}, all.patch_tags[f]);
-  }
-}
-
 const DataArray& point_array(const MeshData& mesh, const std::string& name, std::size_t components) {
   std::vector<std::string> known;
   for (const DataArray& a : mesh.point_data) {
@@ -96,9 +70,12 @@ std::vector<Vec3> frame_positions(const std::filesystem::path& file, const MeshD
 }  // namespace
 
 SceneMesh load_scene_mesh(const EnvironmentScene& scene) {
-  SceneMesh result = load_source(scene.mesh);
+  ReadOptions options;
+  if (const auto* patches = std::get_if<PatchArray>(&scene.patches)) options.patch_array = patches->name;
+  SceneMesh result = load_source(scene.mesh, options);
   select_free(result.mesh, scene);
-  if (scene.patches) select_patches(result.mesh, *scene.patches);
+  if (const auto* names = std::get_if<std::vector<std::string>>(&scene.patches)) select_patches(result.mesh, *names);
+  if (const auto* angle = std::get_if<PatchAngle>(&scene.patches)) divide_walls(result.mesh, angle->degrees);
   return result;
 }
 

@@ -178,8 +178,38 @@ class LegacyChecker {
       take_name(name);
       const auto components = static_cast<std::uint64_t>(text_.integer("a number of components", 0, INT32_MAX));
       const auto items = static_cast<std::uint64_t>(text_.integer("a number of items", 0, INT64_MAX));
-      data(name, items, components, type());
+      if (lower(text_.peek()) == "string") {
+        text_.word("a type");
+        texts(items, components);
+      } else {
+        data(name, items, components, type());
+      }
     }
+  }
+
+  /// Texts: in ASCII one on a line; in binary each behind its length.
+  void texts(std::uint64_t items, std::uint64_t components) {
+    text_.check_count("texts", items, 1);
+    if (components != 1) text_.fail("an array of texts must have one component");
+    text_.line();
+    for (std::uint64_t i = 0; i < items; ++i) {
+      if (!binary_) {
+        if (text_.left() == 0) text_.fail("the file ends within an array of texts; it is truncated");
+        text_.line();
+        continue;
+      }
+      text_.raw(text_length(), "an array of texts");
+    }
+  }
+
+  /// The two highest bits of the first byte say how many bytes hold the length: 3 one, 2 two, 1 four, 0 eight.
+  std::size_t text_length() {
+    const auto first = static_cast<unsigned char>(text_.raw(1, "a text's length")[0]);
+    std::size_t length = first & 0x3fU;
+    for (std::size_t more = (std::size_t{1} << (3U - (first >> 6U))) - 1; more > 0; --more) {
+      length = (length << 8U) | static_cast<unsigned char>(text_.raw(1, "a text's length")[0]);
+    }
+    return length;
   }
 
   void lookup_table() {

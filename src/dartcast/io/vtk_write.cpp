@@ -75,14 +75,20 @@ void add_array(vtkFieldData& to, const DataArray& from, vtkIdType items) {
   to.AddArray(array);
 }
 
+/// Regions at the cells; tags of patches at the cells behind them that are patch faces.
 void add_tags(const MeshData& mesh, vtkUnstructuredGrid& grid) {
-  if (mesh.regions.empty() && mesh.patch_tags.empty()) return;
-  vtkNew<vtkIntArray> array;
-  array->SetName("region");
-  for (std::size_t c = 0; c < mesh.cell_count(); ++c)
-    array->InsertNextValue(mesh.regions.empty() ? 0 : mesh.regions[c]);
-  for (const std::int32_t tag : mesh.patch_tags) array->InsertNextValue(tag);
-  grid.GetCellData()->AddArray(array);
+  const auto add = [&](const char* name, auto&& cell_tag, auto&& face_tag) {
+    vtkNew<vtkIntArray> array;
+    array->SetName(name);
+    for (std::size_t c = 0; c < mesh.cell_count(); ++c) array->InsertNextValue(cell_tag(c));
+    for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) array->InsertNextValue(face_tag(f));
+    grid.GetCellData()->AddArray(array);
+  };
+  const auto none = [](std::size_t) { return 0; };
+  if (!mesh.regions.empty())
+    add(
+        "region", [&](std::size_t c) { return mesh.regions[c]; }, none);
+  if (!mesh.patch_tags.empty()) add("patch", none, [&](std::size_t f) { return mesh.patch_tags[f]; });
 }
 
 void add_names(vtkUnstructuredGrid& grid, const char* array_name, const std::map<std::int32_t, std::string>& names) {
@@ -106,7 +112,8 @@ vtkSmartPointer<vtkUnstructuredGrid> make_grid(const MeshData& mesh) {
   add_cells(mesh, *grid);
   for (const DataArray& a : mesh.point_data) add_array(*grid->GetPointData(), a, grid->GetNumberOfPoints());
   for (const DataArray& a : mesh.cell_data) {
-    if (a.name != "region" && a.name != "free") add_array(*grid->GetCellData(), a, grid->GetNumberOfCells());
+    if (a.name != "region" && a.name != "free" && (a.name != "patch" || mesh.patch_tags.empty()))
+      add_array(*grid->GetCellData(), a, grid->GetNumberOfCells());
   }
   if (!mesh.free.empty()) {
     add_array(*grid->GetCellData(), DataArray{"free", 1, {mesh.free.begin(), mesh.free.end()}},

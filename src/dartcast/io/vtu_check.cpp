@@ -79,19 +79,35 @@ void check_cells(const std::vector<VtuArray>& arrays, std::uint64_t cells, const
   if (polyhedra || count_numbers(*face_offsets, encoding) != 0) check_faces(*faces, *face_offsets, cells, encoding);
 }
 
+/// An array of texts, each ended by a 0.
+void check_texts(const VtuArray& array, const VtuEncoding& encoding, std::uint64_t items) {
+  const std::vector<std::int64_t> characters = decode_integers(array, encoding);
+  if (!characters.empty() && characters.back() != 0) fail_array(array, "its last text does not end");
+  const auto texts = static_cast<std::uint64_t>(std::count(characters.begin(), characters.end(), 0));
+  if (array.components != 1 || texts != items) {
+    fail_array(array, fmt::format("it has {} texts, where {} should stand", texts, items));
+  }
+}
+
 /// The arrays at points or cells. Where VTK fails to read one at cells, it looks for the section of points.
 void check_data(const VtkXmlPiece& piece, std::string_view section, const VtuEncoding& encoding) {
+  const bool at_cells = section == "CellData";
+  const std::uint64_t items = at_cells ? piece.cells() : piece.points();
   for (const VtuArray& array : piece.arrays(section)) {
-    if (array.type == "String") fail_array(array, "text at points or cells is not supported");
-    check_size(array, encoding, section == "CellData" ? piece.cells() : piece.points());
-    if (section == "CellData" && !piece.sections.contains("PointData")) check_bytes(array, encoding);
+    if (array.type == "String") {
+      if (!at_cells) fail_array(array, "text at points is not supported");
+      check_texts(array, encoding, items);
+      continue;
+    }
+    check_size(array, encoding, items);
+    if (at_cells && !piece.sections.contains("PointData")) check_bytes(array, encoding);
   }
 }
 
 void check_piece(const VtkXmlPiece& piece, const VtuEncoding& encoding) {
   const std::vector<VtuArray>& points = piece.arrays("Points");
   if (points.size() != 1) throw InvalidMesh("<Points> must have one array");
-  if (points[0].type == "String") fail_array(points[0], "text at points or cells is not supported");
+  if (points[0].type == "String") fail_array(points[0], "points are numbers, not text");
   if (points[0].components != 3) fail_array(points[0], "points must have three components");
   check_size(points[0], encoding, piece.points());
   check_data(piece, "PointData", encoding);
@@ -105,15 +121,10 @@ void check_piece(const VtkXmlPiece& piece, const VtuEncoding& encoding) {
 
 /// VTK makes room for the values that the tag announces, and trusts it.
 void check_field(const VtuArray& array, const VtuEncoding& encoding) {
-  if (array.type != "String") {
-    if (array.tuples > 0) check_size(array, encoding, array.tuples);
-    return;
-  }
-  const std::vector<std::int64_t> characters = decode_integers(array, encoding);
-  if (!characters.empty() && characters.back() != 0) fail_array(array, "its last text does not end");
-  const auto texts = static_cast<std::uint64_t>(std::count(characters.begin(), characters.end(), 0));
-  if (array.components != 1 || texts != array.tuples) {
-    fail_array(array, fmt::format("it has {} texts, where {} should stand", texts, array.tuples));
+  if (array.type == "String") {
+    check_texts(array, encoding, array.tuples);
+  } else if (array.tuples > 0) {
+    check_size(array, encoding, array.tuples);
   }
 }
 
