@@ -4,6 +4,7 @@
 
 #include "dartcast/base/error.hpp"
 #include "dartcast/geometry/complex.hpp"
+#include "dartcast/io/read_surface.hpp"
 
 namespace dartcast {
 
@@ -20,6 +21,7 @@ Finding indivisible_cells(const MeshData& mesh, Threads threads) {
 }  // namespace
 
 MeshFile check_mesh(const std::filesystem::path& path, Threads threads) {
+  if (is_surface_file(path)) return check_surface(path);
   MeshFile file = read_mesh(path);
   if (!file.report.valid()) return file;
   try {

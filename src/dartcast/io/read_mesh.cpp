@@ -12,6 +12,7 @@
 #include "dartcast/io/judged_file.hpp"
 #include "dartcast/io/medit.hpp"
 #include "dartcast/io/parsed_mesh.hpp"
+#include "dartcast/io/read_surface.hpp"
 #include "dartcast/io/vtk_mesh.hpp"
 #include "dartcast/mesh/inspect.hpp"
 
@@ -57,7 +58,7 @@ ParsedMesh parse(const std::filesystem::path& path, const ReadOptions& options) 
   const bool vtk = ending == ".vtk";
   const bool msh = ending == ".msh" || ending == ".msh2" || ending == ".msh4";
   if (!vtu && !vtk && !msh && ending != ".mesh") {
-    const bool surface = ending == ".stl" || ending == ".obj" || ending == ".ply" || ending == ".off";
+    const bool surface = is_surface_file(path);
     throw InvalidMesh(fmt::format("files that end in '{}' are not supported; supported are {}{}", ending, supported,
                                   surface ? "; a surface in space is read by read_surface()" : ""));
   }
