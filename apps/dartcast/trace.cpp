@@ -9,7 +9,6 @@
 #include "commands.hpp"
 #include "dartcast/base/error.hpp"
 #include "dartcast/environment/environment.hpp"
-#include "dartcast/io/read_mesh.hpp"
 #include "dartcast/io/scene_file.hpp"
 #include "dartcast/io/scene_mesh.hpp"
 #include "dartcast/io/trajectory_csv.hpp"
@@ -51,8 +50,10 @@ Vec3 point_of(const std::string& text, const char* option, unsigned dimension) {
 }
 
 Environment load_environment(const std::string& path) {
-  const bool is_scene = std::filesystem::path(path).extension() == ".toml";
-  return Environment(is_scene ? load_scene_mesh(read_scene(path).environment).mesh : read_valid_mesh(path).mesh);
+  EnvironmentScene scene;
+  scene.mesh = std::filesystem::path(path);
+  if (std::filesystem::path(path).extension() == ".toml") scene = read_scene(path).environment;
+  return with_mesh_name(scene.mesh, [&] { return Environment(load_scene_mesh(scene).mesh); });
 }
 
 void add_particle(Environment& environment, Particles& particles, const Vec3& x) {

@@ -284,7 +284,7 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
   summary.deforms = !scene.deformation.empty();
   const Stopwatch load;
   const MeshData mesh = load_scene_mesh(scene.environment).mesh;
-  Environment environment(mesh, options.threads);
+  Environment environment = with_mesh_name(scene.environment.mesh, [&] { return Environment(mesh, options.threads); });
   const Responses responses = make_responses(scene.contact, environment.map());
   Flow flow(environment, flow_options(scene, options), responses);
   if (!scene.motion.field.empty()) {

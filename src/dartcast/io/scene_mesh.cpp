@@ -73,9 +73,11 @@ SceneMesh load_scene_mesh(const EnvironmentScene& scene) {
   ReadOptions options;
   if (const auto* patches = std::get_if<PatchArray>(&scene.patches)) options.patch_array = patches->name;
   SceneMesh result = load_source(scene.mesh, options);
-  select_free(result.mesh, scene);
-  if (const auto* names = std::get_if<std::vector<std::string>>(&scene.patches)) select_patches(result.mesh, *names);
-  if (const auto* angle = std::get_if<PatchAngle>(&scene.patches)) divide_walls(result.mesh, angle->degrees);
+  with_mesh_name(scene.mesh, [&] {
+    select_free(result.mesh, scene);
+    if (const auto* names = std::get_if<std::vector<std::string>>(&scene.patches)) select_patches(result.mesh, *names);
+    if (const auto* angle = std::get_if<PatchAngle>(&scene.patches)) divide_walls(result.mesh, angle->degrees);
+  });
   return result;
 }
 

@@ -1,10 +1,14 @@
 // What a scene names, read or generated: its mesh, its fields and frames.
 #pragma once
 
+#include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
+#include <variant>
 #include <vector>
 
+#include "dartcast/base/error.hpp"
 #include "dartcast/mesh/mesh_data.hpp"
 #include "dartcast/mesh/report.hpp"
 #include "dartcast/simulation/scene.hpp"
@@ -16,7 +20,19 @@ struct SceneMesh {
   MeshReport report;  ///< of a file: repairs and warnings; of a generator: counts alone
 };
 
-/// Throws InvalidMesh where the mesh is refused, or a region, array or patch that the scene names is not in it.
+/// Calls make(); puts the mesh file's name before what InvalidMesh says that it throws.
+template <class Make>
+auto with_mesh_name(const MeshSource& mesh, Make&& make) {
+  try {
+    return make();
+  } catch (const InvalidMesh& e) {
+    const auto* path = std::get_if<std::filesystem::path>(&mesh);
+    if (path == nullptr || std::string_view(e.what()).starts_with(path->string())) throw;
+    throw InvalidMesh(path->string() + ": " + e.what());
+  }
+}
+
+/// Throws InvalidMesh with the mesh file's name where the mesh is refused, or a region, array or patch that the scene names is not in it.
 SceneMesh load_scene_mesh(const EnvironmentScene& scene);
 
 /// A point array of three components as vectors. Throws InvalidMesh that names the arrays there are.
