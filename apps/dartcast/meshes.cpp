@@ -24,9 +24,10 @@ int check(const std::string& mesh, bool skip_bad_cells, bool json) {
 }
 
 int info(const std::string& path, bool json) {
-  const bool is_scene = std::filesystem::path(path).extension() == ".toml";
-  const MeshData mesh = is_scene ? load_scene_mesh(read_scene(path).environment).mesh : read_valid_mesh(path).mesh;
-  const MeshInfo result = mesh_info(mesh, path);
+  EnvironmentScene scene;
+  scene.mesh = std::filesystem::path(path);
+  if (std::filesystem::path(path).extension() == ".toml") scene = read_scene(path).environment;
+  const MeshInfo result = with_mesh_name(scene.mesh, [&] { return mesh_info(load_scene_mesh(scene).mesh, path); });
   fmt::print("{}{}", json ? info_json(result) : info_text(result), json ? "\n" : "");
   return done;
 }
@@ -42,7 +43,8 @@ void add_check(CLI::App& app, int& status) {
   const auto mesh = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
   CLI::App* verb = app.add_subcommand("check", "Say what is in a mesh file, and whether it is valid.");
-  verb->add_option("MESH", *mesh, "a mesh: .vtu .vtk .msh .msh2 .msh4 .mesh")->required();
+  verb->add_option("MESH", *mesh, "a mesh: .vtu .vtk .msh .msh2 .msh4 .mesh; or a surface: .stl .obj .ply .off")
+      ->required();
   const auto skip = std::make_shared<bool>(false);
   verb->add_flag("--skip-bad-cells", *skip, "with this option of dartcast run: bad cells are left out, and a warning");
   verb->add_flag("--json", *json, "print one JSON object, and nothing else");

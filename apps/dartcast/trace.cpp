@@ -11,7 +11,6 @@
 #include "dartcast/base/error.hpp"
 #include "dartcast/environment/environment.hpp"
 #include "dartcast/exact/predicates.hpp"
-#include "dartcast/io/read_mesh.hpp"
 #include "dartcast/io/scene_file.hpp"
 #include "dartcast/io/scene_mesh.hpp"
 #include "dartcast/io/trajectory_csv.hpp"
@@ -48,7 +47,7 @@ std::vector<double> numbers_of(const std::string& text, const char* option) {
   }
   throw CLI::ValidationError(option,
                              fmt::format("'{}' is no point: give x,y in the plane, x,y,z in space; each finite, "
-                                         "and 0 or between 2^-300 and 2^300 in magnitude",
+                                         "and at most 2^300 in magnitude",
                                          text));
 }
 
@@ -60,8 +59,10 @@ Vec3 point_of(const std::string& text, const char* option, unsigned dimension) {
 }
 
 Environment load_environment(const std::string& path) {
-  const bool is_scene = std::filesystem::path(path).extension() == ".toml";
-  return Environment(is_scene ? load_scene_mesh(read_scene(path).environment).mesh : read_valid_mesh(path).mesh);
+  EnvironmentScene scene;
+  scene.mesh = std::filesystem::path(path);
+  if (std::filesystem::path(path).extension() == ".toml") scene = read_scene(path).environment;
+  return with_mesh_name(scene.mesh, [&] { return Environment(load_scene_mesh(scene).mesh); });
 }
 
 void add_particle(Environment& environment, Particles& particles, const Vec3& x) {

@@ -395,7 +395,7 @@ TEST_F(Command, TraceTellsWhatItCannotDo) {
   expect_failure("trace good.mesh --from 1,1,1 --to 0.2,0.1,0.2", 1, "in no cell");
   for (const std::string x : {"nan", "inf", "-inf", "1e400", "1e-400", "1e120"})
     expect_failure("trace good.mesh --from 0.1,0.1,0.1 --to 0.2,0.1," + x, 2, "--to: '0.2,0.1," + x + "' is no point");
-  expect_failure("trace good.mesh --from 0.1,0.1,nan --to 0,0,0", 2, "finite, and 0 or between 2^-300 and 2^300");
+  expect_failure("trace good.mesh --from 0.1,0.1,nan --to 0,0,0", 2, "finite, and at most 2^300");
   expect_failure("trace good.mesh --from 0.1,0.1,0.1", 2, "--to");
   for (const std::string point : {"1", "1,", "1,2,3,4", "1;2", "1,2,x", "''"})
     expect_failure("trace good.mesh --from '" + point + "' --to 0,0,0", 2, "--from");
@@ -415,6 +415,60 @@ TEST_F(Command, ConvertGoesRoundThroughAllFormats) {
     EXPECT_TRUE(json["repairs"].empty()) << to;
     from = to;
   }
+}
+
+// A disk that is full at 1 KiB: what stood at the target stays, and nothing is left beside it.
+TEST_F(Command, ConvertLeavesTheTargetWhereItFails) {
+  (void)write("box.toml", "[environment]\ngenerator = 'box'\ncells = [6, 6, 6]\njitter = 0.5\n[motion]\nsteps = 0\n");
+  ASSERT_EQ(run("run box.toml -q -o box").status, 0);
+  const std::string limited =
+      "sh -c 'trap \"\" XFSZ; ulimit -f 1; exec \"" + binary + "\" convert box/environment.vtu ";
+  for (const std::string name : {"a.vtu", "a.vtk", "a.msh", "a.msh4", "a.mesh"}) {
+    const fs::path target = write(name, "years of work");
+    fs::permissions(target, fs::perms::owner_read | fs::perms::owner_write);
+    const std::string line = "cd '" + folder.string() + "' && " + limited + name + "' 2> error.txt";
+    const int status = std::system(line.c_str());
+    EXPECT_EQ(WIFEXITED(status) ? WEXITSTATUS(status) : -1, 1) << name;
+    EXPECT_NE(content(folder / "error.txt").find(name + ":"), std::string::npos) << content(folder / "error.txt");
+    EXPECT_EQ(content(target), "years of work") << name;
+    EXPECT_EQ(run("convert box/environment.vtu " + name).status, 0);
+    EXPECT_NE(content(target), "years of work") << name;
+    EXPECT_EQ(fs::status(target).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+  }
+  for (const auto& entry : fs::directory_iterator(folder))
+    EXPECT_EQ(entry.path().string().find(".part"), std::string::npos) << entry.path();
+  // A link stays one.
+  fs::create_symlink("a.mesh", folder / "link.mesh");
+  EXPECT_EQ(run("convert a.vtu link.mesh").status, 0);
+  EXPECT_TRUE(fs::is_symlink(folder / "link.mesh"));
+  fs::create_directories(folder / "folder.mesh");
+  expect_failure("convert a.vtu folder.mesh", 1, "folder.mesh");
+}
+
+// A mesh of which a cell cannot be divided, and names that are not in it.
+TEST_F(Command, RefusalsNameTheMeshFile) {
+  (void)write("twisted.mesh",
+              "MeshVersionFormatted 2\nDimension 3\nVertices\n8\n0 0 0 0\n1 0 0 0\n1 1 0 0\n0 1 0 0\n"
+              "1.3 0.1 1 0\n1.2 1.2 1 0\n0.2 1.1 1 0\n0.1 -0.2 1 0\nHexahedra\n1\n1 2 3 4 6 7 8 5 1\nEnd\n");
+  (void)write("a.toml", "[environment]\nmesh = 'twisted.mesh'\n[motion]\nsteps = 1\n");
+  expect_failure("run a.toml", 1, "twisted.mesh: ");
+  expect_failure("trace twisted.mesh --from 0.5,0.5,0.5 --to 0.6,0.5,0.5", 1, "twisted.mesh: ");
+  (void)write("good.mesh", tetrahedron());
+  (void)write("b.toml", "[environment]\nmesh = 'good.mesh'\nfree = { region = 'lumen' }\n[motion]\nsteps = 1\n");
+  expect_failure("run b.toml", 1, "good.mesh: the mesh has no region");
+  (void)write("c.toml", "[environment]\nmesh = 'good.mesh'\npatches = ['inlet']\n[motion]\nsteps = 1\n");
+  expect_failure("info c.toml", 1, "good.mesh: the mesh has no patch");
+}
+
+TEST_F(Command, CheckTakesSurfaces) {
+  (void)write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2\n");
+  const Result r = run("check a.obj --json");
+  EXPECT_EQ(r.status, 0) << r.out;
+  const auto json = nlohmann::json::parse(r.out);
+  EXPECT_EQ(json["verdict"], "warn");
+  EXPECT_EQ(json["warnings"][0]["kind"], "short_faces");
+  EXPECT_EQ(json["warnings"][1]["kind"], "open_border");
+  EXPECT_NE(run("check a.obj").out.find("a surface in space"), std::string::npos);
 }
 
 // Real meshes: all that are well formed are accepted, divided into simplices, and can be run.

@@ -230,6 +230,110 @@ TEST(Formats, SecondOrderCellsAreRefusedByName) {
   }
 }
 
+std::string repeated(const std::string& word, int n) {
+  std::string out;
+  for (int i = 0; i < n; ++i) out += word;
+  return out;
+}
+
+/// Gmsh's element types that have curved sides, with their numbers of nodes, from its list of types.
+std::vector<std::pair<int, int>> gmsh_higher_order() {
+  std::vector<std::pair<int, int>> types = {{9, 6},   {10, 9},  {11, 10},  {12, 27}, {13, 18}, {14, 14}, {16, 8},
+                                            {17, 20}, {18, 15}, {19, 13},  {20, 9},  {21, 10}, {22, 12}, {23, 15},
+                                            {24, 15}, {25, 21}, {29, 20},  {30, 35}, {31, 56}, {32, 22}, {33, 28},
+                                            {90, 40}, {91, 75}, {137, 16}, {138, 4}, {139, 5}};
+  const auto add = [&](int first, const std::vector<int>& nodes) {
+    for (const int n : nodes) types.emplace_back(first++, n);
+  };
+  add(36, {16, 25, 36, 12, 16, 20, 28, 36, 45, 55, 66, 49, 64, 81, 100, 121, 18, 21, 24, 27, 30, 24, 28, 32, 36, 40});
+  add(71, {84, 120, 165, 220, 286});
+  add(79, {34, 40, 46, 52, 58});
+  for (int order = 3; order <= 9; ++order) types.emplace_back(89 + order, (order + 1) * (order + 1) * (order + 1));
+  for (int order = 3; order <= 9; ++order) types.emplace_back(96 + order, 8 + 12 * (order - 1));
+  for (int order = 5; order <= 9; ++order) types.emplace_back(101 + order, (order + 1) * (order + 1) * (order + 2) / 2);
+  for (int order = 3; order <= 9; ++order) types.emplace_back(108 + order, 6 + 9 * (order - 1));
+  for (int order = 3; order <= 9; ++order)
+    types.emplace_back(115 + order, (order + 1) * (order + 2) * (2 * order + 3) / 6);
+  for (int order = 3; order <= 9; ++order) types.emplace_back(122 + order, 5 + 8 * (order - 1));
+  return types;
+}
+
+// In version 2, and in 4.1 in binary: the nodes are skipped right where the next element is read.
+TEST(Formats, EveryGmshElementOfHigherOrderIsNamedAsSuch) {
+  const Folder folder;
+  EXPECT_EQ(gmsh_higher_order().size(), 26U + 26 + 5 + 5 + 7 + 7 + 5 + 7 + 7 + 7);
+  for (const auto& [type, nodes] : gmsh_higher_order()) {
+    const std::string ones = repeated(" 1", nodes);
+    const std::string number = std::to_string(type);
+    const std::string v2 = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n2\n1 " +
+                           number + " 0" + ones + "\n2 " + number + " 0" + ones + "\n$EndElements\n";
+    const std::string v4 = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 1 1 1\n3 1 0 1\n1\n0 0 0\n$EndNodes\n" +
+                           ("$Elements\n1 2 1 2\n3 1 " + number) + " 2\n1" + ones + "\n2" + ones + "\n$EndElements\n";
+    for (const std::string& content : {v2, v4}) {
+      const MeshReport report = read_mesh(folder.file("a.msh", content)).report;
+      ASSERT_EQ(report.defects.size(), 1U) << type;
+      EXPECT_EQ(report.defects[0].kind, "second_order") << type << report_text(report);
+      EXPECT_EQ(report.defects[0].count, 2U) << type;
+    }
+  }
+}
+
+TEST(Formats, OtherElementsOfGmshAreRefusedByNumber) {
+  const Folder folder;
+  for (const int type : {34, 35, 67, 70, 76, 133, 141, 1000, -1}) {
+    const auto path =
+        folder.file("a.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 " +
+                                 std::to_string(type) + " 0 1 1 1 1\n$EndElements\n");
+    const std::string message = read_mesh(path).report.defects.at(0).message;
+    EXPECT_NE(message.find("line 10: element type " + std::to_string(type)), std::string::npos) << message;
+  }
+  // Curves are left out, whatever their order.
+  const std::string curves = "1 26 0 1 1 1 1\n2 62 0" + repeated(" 1", 7) + "\n3 66 0" + repeated(" 1", 11) + "\n";
+  const ParsedMesh parsed = parse_gmsh(
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n$Elements\n4\n" +
+      curves + "4 4 0 1 2 3 4\n$EndElements\n");
+  EXPECT_EQ(parsed.second_order.count, 0U);
+  EXPECT_EQ(parsed.mesh.source, std::vector<std::uint32_t>{3});
+}
+
+TEST(Formats, GmshSizesOfFourBytesBelongToVersion41) {
+  const Folder folder;
+  for (const std::string head : {"2.2 0 4", "4 0 4", "4.1 0 5", "4.1 1 2"}) {
+    const auto path = folder.file("a.msh", "$MeshFormat\n" + head + "\n$EndMeshFormat\n");
+    const std::string message = read_mesh(path).report.defects.at(0).message;
+    EXPECT_NE(message.find("line 2"), std::string::npos) << message;
+  }
+}
+
+/// VTK's types of one cell that has any number of corners, in both of its formats.
+TEST(Formats, EveryCellTypeOfVtkGetsAVerdict) {
+  const Folder folder;
+  for (int type = 0; type < 90; ++type) {
+    const bool curve = type == 21 || type == 35 || type == 51 || type == 60 || type == 68 || type == 75;
+    const bool higher = (type >= 21 && type <= 37) || (type >= 51 && type <= 56) || (type >= 60 && type <= 81);
+    for (const int corners : {1, 4, 8, 10, 15, 27, 64}) {
+      const std::string ids = repeated(" 0", corners);
+      const std::string vtk =
+          "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 1 float\n0 0 0\nCELLS 1 " +
+          std::to_string(corners + 1) + "\n" + std::to_string(corners) + ids + "\nCELL_TYPES 1\n" +
+          std::to_string(type) + "\n";
+      const std::string vtu =
+          "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\"><UnstructuredGrid><Piece NumberOfPoints=\"1\" "
+          "NumberOfCells=\"1\"><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\">0 0 "
+          "0</DataArray></Points><Cells><DataArray type=\"Int64\" Name=\"connectivity\">" +
+          ids + "</DataArray><DataArray type=\"Int64\" Name=\"offsets\">" + std::to_string(corners) +
+          "</DataArray><DataArray type=\"UInt8\" Name=\"types\">" + std::to_string(type) +
+          "</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>";
+      for (const auto& path : {folder.file("a.vtk", vtk), folder.file("a.vtu", vtu)}) {
+        const MeshReport report = read_mesh(path).report;
+        ASSERT_FALSE(report.valid()) << path << " type " << type;
+        const bool fits = report.defects[0].message.find("VTK cannot read") == std::string::npos;
+        if (higher && !curve && fits) EXPECT_EQ(report.defects[0].kind, "second_order") << type << " " << corners;
+      }
+    }
+  }
+}
+
 TEST(Report, JsonHasTheFieldsOfTheInterface) {
   const Folder folder;
   write_mesh(mixed_mesh(), folder / "a.msh");

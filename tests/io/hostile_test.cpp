@@ -66,7 +66,8 @@ std::vector<Sample> samples() {
           {"p.msh", gmsh_4_binary(planar_mesh(), true, false)},
           {"q.mesh", written(planar_mesh(), "q.mesh")},
           {"r.vtk", written(planar_polygons(), "r.vtk")},
-          {"s.vtu", written(planar_polygons(), "s.vtu")}};
+          {"s.vtu", written(planar_polygons(), "s.vtu")},
+          {"t.msh", gmsh_4_binary(mesh, true, false, true)}};
 }
 
 using test::full_tier;
@@ -168,7 +169,7 @@ TEST_F(Hostile, WordsOfBinaryFilesReplaced) {
       0, 1, 0xffffffffU, 0x7fffffffU, 0x80000000U, 0x7fffffffffffffffU, 0xffffffffffffffffU};
   for (const Sample& s : samples()) {
     if (s.name[0] != 'c' && s.name[0] != 'd' && s.name[0] != 'f' && s.name[0] != 'i' && s.name[0] != 'p' &&
-        s.name[0] != 'r')
+        s.name[0] != 'r' && s.name[0] != 't')
       continue;
     for (std::size_t at = 20; at + 8 <= s.content.size(); at += stride(7)) {
       for (const std::uint64_t word : words) {

@@ -240,7 +240,7 @@ TEST_F(RunFilesTest, MeshesAreScaled) {
     return "[[deformation]]\nkind = 'frames'\nfiles = ['" + (temporary / file).string() + "']\ntimes = [0.0]\n";
   };
   EXPECT_EQ(run(in_mm + frames("mm.vtu") + rest).state_hash, run(in_m + frames("m.vtu") + rest).state_hash);
-  EXPECT_NE(failure(in_m + "scale = 1e-300\n" + rest).find("m.vtu: points with a coordinate too large or too small"),
+  EXPECT_NE(failure(in_m + "scale = 1e300\n" + rest).find("m.vtu: points with a coordinate too large"),
             std::string::npos);
 }
 

@@ -179,13 +179,15 @@ inline std::string gmsh_22_binary(const MeshData& mesh, bool swapped) {
   return b.text("\n$EndElements\n").out;
 }
 
-/// The mixed or planar mesh in Gmsh 4.0 or 4.1, binary. One entity for each tag.
-inline std::string gmsh_4_binary(const MeshData& mesh, bool v41, bool swapped) {
+/// The mixed or planar mesh in Gmsh 4.0 or 4.1, binary. One entity for each tag. `short_sizes`: of 4 bytes (4.1).
+inline std::string gmsh_4_binary(const MeshData& mesh, bool v41, bool swapped, bool short_sizes = false) {
   Bytes b(swapped);
-  const auto size = [&](std::size_t n) { b.number(static_cast<std::uint64_t>(n)); };
+  const auto size = [&](std::size_t n) {
+    short_sizes ? b.number(static_cast<std::uint32_t>(n)) : b.number(static_cast<std::uint64_t>(n));
+  };
   const auto integer = [&](std::int64_t n) { b.number(static_cast<std::int32_t>(n)); };
   const auto node = [&](std::size_t n) { v41 ? size(n) : integer(static_cast<std::int64_t>(n)); };
-  b.text(v41 ? "$MeshFormat\n4.1 1 8\n" : "$MeshFormat\n4 1 8\n")
+  b.text(v41 ? (short_sizes ? "$MeshFormat\n4.1 1 4\n" : "$MeshFormat\n4.1 1 8\n") : "$MeshFormat\n4 1 8\n")
       .number<std::int32_t>(1)
       .text("\n$EndMeshFormat\n$Entities\n");
   const bool planar = mesh.dimension() == 2;

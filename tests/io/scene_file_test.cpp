@@ -275,7 +275,7 @@ contacts = true
                               "folder/scene.toml");
   EXPECT_EQ(std::get<std::filesystem::path>(s.environment.mesh), "folder/a/vessel.vtu");
   EXPECT_EQ(std::get<FreeRegions>(s.environment.free).regions, (std::vector<std::string>{"lumen", "2"}));
-  EXPECT_EQ(s.environment.patches, (std::vector<std::string>{"inlet", "wall"}));
+  EXPECT_EQ(std::get<std::vector<std::string>>(s.environment.patches), (std::vector<std::string>{"inlet", "wall"}));
   ASSERT_EQ(s.deformation.size(), 2U);
   const DeformationStep& bend = s.deformation[0].step;
   EXPECT_EQ(bend.kind, DeformationKind::bend);

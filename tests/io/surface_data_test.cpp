@@ -86,6 +86,10 @@ TEST(SurfaceData, SurfacesMadeByOthersAreReadAsTheirListSays) {
     EXPECT_EQ(count(CellType::quadrilateral), known.squares);
     EXPECT_EQ(count(CellType::polygon), known.polygons);
     EXPECT_EQ(open_edges(file.mesh), known.open_edges);
+    const auto& warnings = file.report.warnings;
+    const auto open =
+        std::find_if(warnings.begin(), warnings.end(), [](const Finding& f) { return f.kind == "open_border"; });
+    if (file.report.valid()) EXPECT_EQ(open == warnings.end() ? 0 : open->count, known.open_edges);
     EXPECT_EQ(found_in(file.report), known.found);
     EXPECT_EQ(file.report.parts, known.parts);
     if (file.report.valid()) EXPECT_EQ(Surface(file.mesh).positions().size(), known.points);

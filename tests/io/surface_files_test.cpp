@@ -268,7 +268,7 @@ TEST(SurfaceFiles, CollapsedTrianglesOfStlAreLeftOutAndCounted) {
   EXPECT_EQ(file.report.repairs[0].kind, "collapsed");
   EXPECT_EQ(file.report.repairs[0].count, 2U);
   EXPECT_EQ(file.report.repairs[0].first, (std::vector<std::size_t>{0, 2}));
-  EXPECT_EQ(file.report.verdict(), Verdict::repair);
+  EXPECT_EQ(file.report.verdict(), Verdict::warn);  // its borders are open
 }
 
 /// Against a table filled corner by corner.
@@ -437,8 +437,8 @@ std::vector<Wrong> wrong_files() {
   std::string round = "f";
   for (int i = 1; i <= 1001; ++i) round += " " + std::to_string(i);
   const std::size_t data = bad_binary.find("end_header\n") + 11;
-  std::string many_corners = bad_binary;
-  many_corners[data + 96] = '\x02';
+  std::string no_corners = bad_binary;
+  no_corners[data + 96] = '\0';
   bad_binary.replace(data + 4, 4, bytes_of(std::numeric_limits<float>::infinity()));
   return {
       {"a.txt", "x", "end in '.txt' are not supported; supported are .stl, .obj, .ply and .off"},
@@ -457,7 +457,8 @@ std::vector<Wrong> wrong_files() {
       {"a.obj", "v 0 0 # 0\n", "line 1: the line ends where a coordinate should stand"},
       {"a.obj", "\nv 0 1e999 0\n", "line 2: a coordinate is not a finite number"},
       {"a.obj", "v 0 zero 0\n", "line 1: 'zero' is not a number"},
-      {"a.obj", three + "f 1 2 3\nf 1 2\n", "line 5: a face of 2 corners"},
+      {"a.obj", three + "f 1 2 3\nf\n", "line 5: a face of 0 corners"},
+      {"a.obj", three + "f 1 2\n", "the file has no faces"},
       {"a.obj", three + round + "\n", "line 4: a face of 1001 corners"},
       {"a.obj", three + "f 1 2 x\n", "line 4: a corner should be written as v, v/vt"},
       {"a.obj", three + "f 1 2 0\n", "line 4: a corner is 0"},
@@ -489,9 +490,9 @@ std::vector<Wrong> wrong_files() {
       {"a.ply", ply3 + "3 0 1 -1\n", "name points which do not exist (1 in all, the first: 0)"},
       {"a.ply", ply3 + "-3 0 1 2\n", "line 13: a face of -3 corners"},
       {"a.ply", ply3 + "1001 0 1 2\n", "line 13: a face of 1001 corners"},
-      {"a.ply", ply3 + "2 0 1\n", "line 13: a face of 2 corners"},
+      {"a.ply", ply3 + "2 0 1\n", "the file has no faces"},
       {"a.ply", bad_binary, at_byte(data + 12) + "a coordinate is not a finite number"},
-      {"a.ply", many_corners, at_byte(data + 105) + "a face of 2 corners"},
+      {"a.ply", no_corners, at_byte(data + 97) + "a face of 0 corners"},
       {"a.ply", bad_binary.substr(0, bad_binary.size() - 90), "a coordinate is not a finite number"},
       {"a.off", "4OFF\n", "line 1: only OFF with vertices of three coordinates"},
       {"a.off", "OFF BINARY\n", "line 1: binary OFF is not supported"},
@@ -507,9 +508,59 @@ std::vector<Wrong> wrong_files() {
        ply3.substr(0, ply3.find("end_header")) + "element x 1\nproperty list char char n\nend_header\n" + points +
            "3 0 1 2\n-1\n",
        "line 16: a list of -1 numbers"},
-      {"a.off", "OFF\n3 1 0\n" + points + "2 0 1\n", "line 6: a face of 2 corners"},
+      {"a.off", "OFF\n3 1 0\n" + points + "2 0 1\n", "the file has no faces"},
       {"a.off", "OFF\n3 0 0\n" + points, "the file has no faces"},
       {"a.off", "OFF\n3 1 0\n0 0 0\n1 inf 0\n0 1 0\n3 0 1 2\n", "line 4: a coordinate is not a finite number"}};
+}
+
+// Edges and vertices are written as faces of two corners and one.
+TEST(SurfaceFiles, FacesOfTwoCornersAreLeftOutWithAWarning) {
+  const std::string points = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+  const std::string v = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+  for (const auto& [name, content] : std::vector<std::pair<std::string, std::string>>{
+           {"a.obj", v + "f 1 2\nf 1 3 2\nf 3//1 4//1\nf 4\nf 1 2 4\n"},
+           {"a.off", "OFF\n4 5 0\n" + points + "2 0 1\n3 0 2 1\n2 2 3\n1 3\n3 0 1 3\n"},
+           {"a.ply",
+            "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "
+            "z\nelement face 5\nproperty list uchar int vertex_indices\nend_header\n" +
+                points + "2 0 1\n3 0 2 1\n2 2 3\n1 3\n3 0 1 3\n"}}) {
+    const MeshFile file = read(name, content);
+    ASSERT_FALSE(file.report.warnings.empty()) << name;
+    EXPECT_EQ(file.report.warnings[0].kind, "short_faces");
+    EXPECT_EQ(file.report.warnings[0].count, 3U);
+    EXPECT_EQ(file.report.warnings[0].first, (std::vector<std::size_t>{0, 2, 3}));
+    EXPECT_EQ(file.mesh.source, (Ids{1, 4}));
+    EXPECT_EQ(corners_of(file.mesh), (Ids{0, 2, 1, 0, 1, 3}));
+  }
+}
+
+/// Kinds, numbers and places of the warnings.
+std::string warnings_of(const std::string& content) {
+  std::string out;
+  for (const Finding& f : read("a.off", content).report.warnings) {
+    out += f.kind + " " + std::to_string(f.count) + ":";
+    for (const std::size_t place : f.first) out += " " + std::to_string(place);
+    out += "; ";
+  }
+  return out;
+}
+
+TEST(SurfaceFiles, SurfacesGetTheWarningsOfVolumes) {
+  const std::string closed = "OFF\n5 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n9 9 9\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
+  EXPECT_EQ(warnings_of(closed), "");  // the fifth point is no corner of a face
+  const std::string sheet = "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
+  EXPECT_EQ(warnings_of(sheet), "open_border 4: 0 0 1 2; ");
+  const std::string seam = "OFF\n6 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n-0 0 0\n1 1 0\n3 0 1 2\n3 4 5 3\n";
+  EXPECT_EQ(warnings_of(seam), "repeated_points 2: 4 5; open_border 6: 0 0 1 3 3 4; ");
+  const std::string touch = "OFF\n5 2 0\n0 0 0\n1 0 0\n0 1 0\n-1 0 0\n0 -1 0\n3 0 1 2\n3 0 3 4\n";
+  EXPECT_EQ(warnings_of(touch), "open_border 6: 0 0 0 0 1 3; pinched_points 1: 0; ");
+  // Two closed surfaces that share a point, and three of them.
+  std::string twins = "OFF\n10 12 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n-1 0 0\n0 -1 0\n0 0 -1\n1 1 9\n2 1 9\n1 2 9\n";
+  for (const auto& [a, b, c] : {std::array{1, 2, 3}, std::array{4, 6, 5}, std::array{7, 8, 9}}) {
+    for (const auto& [x, y, z] : {std::array{0, b, a}, std::array{0, a, c}, std::array{a, b, c}, std::array{b, 0, c}})
+      twins += "3 " + std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z) + "\n";
+  }
+  EXPECT_EQ(warnings_of(twins), "pinched_points 1: 0; ");
 }
 
 TEST(SurfaceFiles, ErrorsSayWhereAndWhat) {

@@ -4,6 +4,7 @@
 
 #include "dartcast/base/error.hpp"
 #include "dartcast/geometry/complex.hpp"
+#include "dartcast/io/read_surface.hpp"
 #include "dartcast/io/skip_in_file.hpp"
 
 namespace dartcast {
@@ -21,6 +22,7 @@ Finding indivisible_cells(const MeshData& mesh, Threads threads) {
 }  // namespace
 
 MeshFile check_mesh(const std::filesystem::path& path, Threads threads, bool without_bad_cells) {
+  if (is_surface_file(path)) return check_surface(path);
   MeshFile file = read_mesh(path);
   if (without_bad_cells) skip_bad_cells(file, threads);
   if (!file.report.valid()) return file;

@@ -21,7 +21,10 @@ Version read_format(Numbers& in, Model& model) {
   FileText& text = in.text;
   const std::string number(text.word("the version"));
   const std::int64_t binary = text.integer("the file type", 0, 1);
-  text.integer("the size of a number", 8, 8);
+  const bool v41 = number == "4.1";
+  const std::int64_t size = text.integer("the size of a number", 4, 8);
+  if (size != 8 && (size != 4 || !v41)) text.fail(fmt::format("numbers of {} bytes are not supported", size));
+  in.short_sizes = size == 4;
   in.binary = binary == 1;
   if (in.binary) {
     text.line();
@@ -33,7 +36,7 @@ Version read_format(Numbers& in, Model& model) {
   model.parsed.format = fmt::format("Gmsh {} {}", number.substr(0, 8), in.binary ? "binary" : "ASCII");
   if (number == "2" || number == "2.0" || number == "2.1" || number == "2.2") return Version::v2;
   if (number == "4" || number == "4.0") return Version::v40;
-  if (number == "4.1") return Version::v41;
+  if (v41) return Version::v41;
   text.fail(fmt::format("Gmsh version {} is not supported; use 1, 2.0 to 2.2, 4.0 or 4.1", number.substr(0, 8)));
 }
 
@@ -118,7 +121,8 @@ ParsedMesh parse_gmsh(std::string_view content) {
     elements = elements || name == "Elements" || name == "ELM";
   }
   if (!elements) throw InvalidMesh("the file has no elements; it is truncated, or not a mesh");
-  if (model.parsed.mesh.types.empty() && model.parsed.mesh.patch_tags.empty() && model.parsed.second_order.count == 0) {
+  if (model.parsed.mesh.types.empty() && model.parsed.mesh.patch_tags.empty() &&
+      model.parsed.second_order.count + model.parsed.unsupported.count == 0) {
     throw InvalidMesh("the file has points or lines only; write its cells too");
   }
   finish(model.parsed);

@@ -1,4 +1,4 @@
-// Gmsh's .msh: versions 1, 2.0 to 2.2, 4.0 and 4.1, ASCII and binary of either byte order.
+// Gmsh's .msh: versions 1, 2.0 to 2.2, 4.0 and 4.1 (with sizes of 8 or 4 bytes), ASCII and binary of either byte order.
 #pragma once
 
 #include <string>

@@ -6,12 +6,6 @@
 namespace dartcast::gmsh {
 namespace {
 
-int known_nodes(Numbers& in, int type) {
-  const int n = node_count(type);
-  if (n == 0) in.text.fail(fmt::format("element type {} is unknown", type));
-  return n;
-}
-
 /// Node numbers are signed in the file; a negative one names no node.
 std::uint64_t node_number(Numbers& in) { return static_cast<std::uint64_t>(in.int32("a node number")); }
 
@@ -39,7 +33,7 @@ void read_elements_1(Numbers& in, Model& model) {
     const std::int32_t physical = in.int32("a physical group");
     in.int32("an elementary group");
     const int count = in.int32("a number of nodes");
-    if (count != known_nodes(in, type))
+    if (count != known_node_count(in, type))
       in.text.fail(fmt::format("element type {} does not have {} nodes", type, count));
     nodes.clear();
     for (int k = 0; k < count; ++k) nodes.push_back(node_number(in));
@@ -56,7 +50,7 @@ void read_elements_2(Numbers& in, Model& model) {
     const int type = in.int32("an element type");
     const std::int32_t in_block = in.binary ? in.int32("a number of elements") : 1;
     const std::int32_t tags = in.int32("a number of tags");
-    const int count = known_nodes(in, type);
+    const int count = known_node_count(in, type);
     if (in_block < 1 || static_cast<std::size_t>(in_block) > n - done) in.text.fail("a block of elements is too long");
     if (tags < 0) in.text.fail("a number of tags is negative");
     in.text.check_count("tags", static_cast<std::uint64_t>(tags), in.binary ? 4 : 2);

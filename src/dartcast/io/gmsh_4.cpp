@@ -33,7 +33,7 @@ Block read_block(Numbers& in, bool v41, std::string_view what, std::size_t text_
 }
 
 std::size_t read_block_count(Numbers& in, bool v41) {
-  const std::size_t blocks = in.count("blocks", 8, 20);
+  const std::size_t blocks = in.count("blocks", 8, 16);
   in.size("a total");
   if (v41) {
     in.size("a smallest number");
@@ -46,7 +46,7 @@ std::size_t read_block_count(Numbers& in, bool v41) {
 
 void read_entities_4(Numbers& in, Model& model, bool v41) {
   std::size_t counts[4];
-  for (std::size_t& n : counts) n = in.count("entities", 8, 36);
+  for (std::size_t& n : counts) n = in.count("entities", 8, 32);
   for (int dimension = 0; dimension < 4; ++dimension) {
     for (std::size_t i = 0; i < counts[dimension]; ++i) {
       const std::int32_t tag = in.int32("an entity");
@@ -93,8 +93,7 @@ void read_elements_4(Numbers& in, Model& model, bool v41) {
   std::vector<std::uint64_t> nodes;
   for (std::size_t b = 0; b < blocks; ++b) {
     const Block block = read_block(in, v41, "elements", 4, 8);
-    const int count = node_count(block.extra);
-    if (count == 0) in.text.fail(fmt::format("element type {} is unknown", block.extra));
+    const int count = known_node_count(in, block.extra);
     const auto group = model.physical.find({block.dimension, block.entity});
     const std::int32_t physical = group == model.physical.end() ? 0 : group->second;
     const auto read_number = [&] {

@@ -21,12 +21,13 @@ class Numbers {
   FileText& text;
   bool binary = false;
   bool swapped = false;
+  bool short_sizes = false;  ///< version 4.1 with a data size of 4: sizes have 32 bits instead of 64
 
   std::int32_t int32(std::string_view what);
-  /// An unsigned 64-bit number.
+  /// An unsigned number of the size of the file's size_t.
   std::uint64_t size(std::string_view what);
   double real(std::string_view what);
-  /// A 64-bit number of items that take at least the bytes given each.
+  /// Such a number, of items that take at least the bytes given each.
   std::size_t count(std::string_view what, std::size_t text_bytes, std::size_t binary_bytes);
 
  private:
@@ -50,8 +51,11 @@ class NodeTable {
   bool closed_ = false;
 };
 
-/// Number of nodes of an element type; 0 for an unknown type.
+/// Number of nodes of an element type, those of every order included; 0 for an unknown type and for one without a fixed
+/// number.
 int node_count(int type);
+/// The same. Throws InvalidMesh with the line where it is 0.
+int known_node_count(const Numbers& in, int type);
 
 /// What the sections fill.
 struct Model {

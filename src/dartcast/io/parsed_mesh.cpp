@@ -22,7 +22,7 @@ bool take_plane(ParsedMesh& parsed) {
   mesh.connectivity = std::exchange(mesh.patch_faces, {});
   mesh.offsets = std::exchange(mesh.patch_offsets, {0});
   mesh.regions = std::exchange(mesh.patch_tags, {});
-  mesh.source = std::exchange(parsed.face_source, {});
+  mesh.source = std::exchange(mesh.patch_source, std::exchange(parsed.edge_source, {}));
   mesh.region_names = std::exchange(mesh.patch_names, std::exchange(parsed.edge_names, {}));
   for (std::size_t e = 0; e < parsed.edges.size(); ++e) mesh.add_patch_face(parsed.edges[e], parsed.edge_tags[e]);
   return true;
@@ -35,13 +35,14 @@ void finish(ParsedMesh& parsed) {
     mesh.regions.clear();
   MeshData kept;
   for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) {
-    const std::size_t begin = mesh.patch_offsets[f];
     if (mesh.patch_tags[f] == 0) continue;
-    kept.add_patch_face({mesh.patch_faces.data() + begin, mesh.patch_offsets[f + 1] - begin}, mesh.patch_tags[f]);
+    kept.add_patch_face(mesh.patch_face(f), mesh.patch_tags[f]);
+    kept.patch_source.push_back(mesh.patch_source.empty() ? static_cast<std::uint32_t>(f) : mesh.patch_source[f]);
   }
   mesh.patch_faces = std::move(kept.patch_faces);
   mesh.patch_offsets = std::move(kept.patch_offsets);
   mesh.patch_tags = std::move(kept.patch_tags);
+  mesh.patch_source = std::move(kept.patch_source);
 }
 
 }  // namespace dartcast

@@ -16,9 +16,9 @@ namespace dartcast {
 /// all faces into its patch faces and all edges beside it; finish() makes of them what they are in this file.
 struct ParsedMesh {
   MeshData mesh;
-  std::vector<std::uint32_t> face_source;  ///< per patch face: its index in the file; empty: its own index
   std::vector<std::array<std::uint32_t, 2>> edges;
   std::vector<std::int32_t> edge_tags;
+  std::vector<std::uint32_t> edge_source;  ///< per edge: its index in the file; empty: its own index
   std::map<std::int32_t, std::string> edge_names;
   std::string format;
   Finding second_order{"second_order",

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "dartcast/base/error.hpp"
 #include "dartcast/io/parsed_mesh.hpp"
@@ -25,14 +26,24 @@ CellType surface_face_type(std::size_t corners) {
 }  // namespace
 
 void ParsedSurface::add_face(std::span<const std::uint32_t> corners, const FileText& text, bool binary) {
-  if (corners.size() < 3 || corners.size() > polyhedron_limit) {
+  const std::size_t number = mesh.types.size() + short_faces.count;
+  if (corners.size() == 1 || corners.size() == 2) {
+    if (short_faces.count == 0) {
+      mesh.source.resize(mesh.types.size());
+      std::iota(mesh.source.begin(), mesh.source.end(), 0U);
+    }
+    short_faces.add(number);
+    return;
+  }
+  if (corners.empty() || corners.size() > polyhedron_limit) {
     fail_in_surface(text, binary,
                     fmt::format("a face of {} corners; remove it or divide it: a face has 3 to {}", corners.size(),
                                 polyhedron_limit));
   }
-  if (mesh.types.size() >= surface_face_limit) fail_in_surface(text, binary, "more than 2^29 faces");
+  if (number >= surface_face_limit) fail_in_surface(text, binary, "more than 2^29 faces");
   mesh.add_cell(surface_face_type(corners.size()), corners);
   mesh.regions.push_back(region_);
+  if (short_faces.count > 0) mesh.source.push_back(static_cast<std::uint32_t>(number));
 }
 
 void ParsedSurface::add_point(const Vec3& point, const FileText& text, bool binary) {

@@ -21,9 +21,10 @@ struct ParsedSurface {
   MeshData mesh;
   std::string format;
   std::vector<Finding> repairs;
+  Finding short_faces{"short_faces", 0, {}, "faces of one or two corners; they have been left out"};
 
-  /// Of the face's 3 to 1000 corners. Throws InvalidMesh with the line, or with the byte in binary parts, where it has
-  /// fewer or more, or where there are too many faces.
+  /// Of the face's 3 to 1000 corners; a face of one or two is left out. Throws InvalidMesh with the line, or with the
+  /// byte in binary parts, where it has none or more, or where there are too many faces.
   void add_face(std::span<const std::uint32_t> corners, const FileText& text, bool binary = false);
   /// Throws InvalidMesh where a coordinate is not finite or there are too many points, likewise.
   void add_point(const Vec3& point, const FileText& text, bool binary = false);

@@ -13,7 +13,9 @@
 
 #include "dartcast/base/error.hpp"
 #include "dartcast/io/csv_table.hpp"
+#include "dartcast/io/file_text.hpp"
 #include "dartcast/io/vtk_errors.hpp"
+#include "dartcast/io/vtu_check.hpp"
 
 namespace dartcast {
 
@@ -29,6 +31,11 @@ DataArray to_array(vtkDataArray& from) {
 }
 
 PointFile read_vtp(const std::filesystem::path& path) {
+  try {
+    check_vtu(read_bytes(path), "PolyData");
+  } catch (const InvalidMesh& e) {
+    throw Error(fmt::format("{}: the points cannot be read: {}", path.string(), e.what()));
+  }
   const VtkErrors errors;
   vtkNew<vtkXMLPolyDataReader> reader;
   reader->SetFileName(path.c_str());

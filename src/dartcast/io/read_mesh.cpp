@@ -12,6 +12,7 @@
 #include "dartcast/io/judged_file.hpp"
 #include "dartcast/io/medit.hpp"
 #include "dartcast/io/parsed_mesh.hpp"
+#include "dartcast/io/read_surface.hpp"
 #include "dartcast/io/vtk_mesh.hpp"
 #include "dartcast/mesh/inspect.hpp"
 
@@ -51,29 +52,34 @@ ParsedMesh parse_mesh(std::string_view content) {
   return parse_medit(content);
 }
 
-ParsedMesh parse(const std::filesystem::path& path) {
+ParsedMesh parse(const std::filesystem::path& path, const ReadOptions& options) {
   const std::string ending = ending_of(path);
   const bool vtu = ending == ".vtu";
   const bool vtk = ending == ".vtk";
   const bool msh = ending == ".msh" || ending == ".msh2" || ending == ".msh4";
   if (!vtu && !vtk && !msh && ending != ".mesh") {
-    const bool surface = ending == ".stl" || ending == ".obj" || ending == ".ply" || ending == ".off";
+    const bool surface = is_surface_file(path);
     throw InvalidMesh(fmt::format("files that end in '{}' are not supported; supported are {}{}", ending, supported,
                                   surface ? "; a surface in space is read by read_surface()" : ""));
   }
+  if (!vtu && !vtk && !options.patch_array.empty())
+    throw InvalidMesh(
+        fmt::format("patches from the cell array '{}': arrays are in .vtu and .vtk files; in this one groups of faces "
+                    "are the patches",
+                    options.patch_array));
   const std::string content = read_bytes(path);
   if (content.empty()) throw InvalidMesh("the file is empty");
-  if (vtu) return parse_vtu(path, content);
+  if (vtu) return parse_vtu(path, content, options.patch_array);
   if (vtk && starts(body(content), "<")) throw InvalidMesh("this .vtk is one of VTK's XML files; rename it to .vtu");
-  if (vtk) return parse_legacy_vtk(path, content);
+  if (vtk) return parse_legacy_vtk(path, content, options.patch_array);
   return msh ? parse_msh(content) : parse_mesh(content);
 }
 
 }  // namespace
 
-MeshFile read_mesh(const std::filesystem::path& path) {
+MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
   return judged_file(path, "mesh", [&](MeshFile& out) {
-    ParsedMesh parsed = parse(path);
+    ParsedMesh parsed = parse(path, options);
     out.mesh = std::move(parsed.mesh);
     if (!out.mesh.types.empty()) out.report = inspect(out.mesh);
     out.report.format = parsed.format;
@@ -82,6 +88,8 @@ MeshFile read_mesh(const std::filesystem::path& path) {
   });
 }
 
-MeshFile read_valid_mesh(const std::filesystem::path& path) { return valid_file(read_mesh(path)); }
+MeshFile read_valid_mesh(const std::filesystem::path& path, const ReadOptions& options) {
+  return valid_file(read_mesh(path, options));
+}
 
 }  // namespace dartcast

@@ -2,11 +2,19 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "dartcast/mesh/mesh_data.hpp"
 #include "dartcast/mesh/report.hpp"
 
 namespace dartcast {
+
+struct ReadOptions {
+  /// Of .vtu and .vtk: the cell array that gives the boundary cells (triangles, quadrilaterals, polygons; in the plane
+  /// lines) their patches: whole numbers, where 0 is none, or texts, where an empty one is none. Empty: the array
+  /// `patch`, else the one that gives the regions. Other formats have groups of their own, and refuse a name here.
+  std::string patch_array;
+};
 
 struct MeshFile {
   MeshData mesh;  ///< to be used only where report.valid()
@@ -16,9 +24,9 @@ struct MeshFile {
 /// Reads .vtu, .vtk (legacy), .msh, .msh2, .msh4 (Gmsh 1, 2 and 4) or .mesh (Medit), by ending and content, and
 /// inspects it. Nothing in the file makes this throw: what cannot be read is a defect of kind "file" in the report,
 /// with line or byte. Cost: a few times the file's size in memory.
-MeshFile read_mesh(const std::filesystem::path& path);
+MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// The same, but throws InvalidMesh, with the file's name and the first defect, where the mesh is refused.
-MeshFile read_valid_mesh(const std::filesystem::path& path);
+MeshFile read_valid_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace dartcast

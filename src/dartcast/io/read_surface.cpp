@@ -23,7 +23,7 @@ ParsedSurface parse_surface(const std::filesystem::path& path) {
   const bool stl = ending == ".stl";
   const bool obj = ending == ".obj";
   const bool ply = ending == ".ply";
-  if (!stl && !obj && !ply && ending != ".off") {
+  if (!is_surface_file(path)) {
     throw InvalidMesh(fmt::format(
         "surfaces in files that end in '{}' are not supported; supported are .stl, .obj, .ply and .off", ending));
   }
@@ -36,12 +36,19 @@ ParsedSurface parse_surface(const std::filesystem::path& path) {
 
 }  // namespace
 
+bool is_surface_file(const std::filesystem::path& path) {
+  const std::string ending = ending_of(path);
+  return ending == ".stl" || ending == ".obj" || ending == ".ply" || ending == ".off";
+}
+
 MeshFile check_surface(const std::filesystem::path& path) {
   return judged_file(path, "surface", [&](MeshFile& out) {
     ParsedSurface parsed = parse_surface(path);
     out.mesh = std::move(parsed.mesh);
     out.report = inspect_surface(out.mesh);
     out.report.format = parsed.format;
+    if (parsed.short_faces.count > 0)
+      out.report.warnings.insert(out.report.warnings.begin(), std::move(parsed.short_faces));
     out.report.repairs.insert(out.report.repairs.begin(), parsed.repairs.begin(), parsed.repairs.end());
   });
 }

@@ -7,6 +7,9 @@
 
 namespace dartcast {
 
+/// Whether the ending is one of those that check_surface() reads.
+bool is_surface_file(const std::filesystem::path& path);
+
 /// Reads .stl (ASCII, binary), .obj, .ply (ASCII, binary) or .off, by ending and content, and inspects it as
 /// inspect_surface() does. Nothing in the file makes this throw: what cannot be read is a defect of kind "file" in the
 /// report, with line or byte. Points keep their order and those that no face uses are kept, so that the positions of

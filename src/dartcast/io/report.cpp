@@ -57,7 +57,7 @@ std::string report_text(const MeshReport& report) {
   if (!report.format.empty()) out += fmt::format("format: {}\n", report.format);
   if (!report.cells.empty()) {
     out += fmt::format("{} points; {}; {} connected parts{}\n", report.points, counts(report.cells), report.parts,
-                       report.dimension == 2 ? "; a planar mesh (2D)" : "");
+                       report.surface ? "; a surface in space" : (report.dimension == 2 ? "; a planar mesh (2D)" : ""));
   }
   if (!report.regions.empty()) out += fmt::format("regions: {}\n", counts(report.regions));
   append_findings(out, "repaired", report.repairs);

@@ -88,16 +88,6 @@ void add_particles(Flow& flow, const Scene& scene) {
   }
 }
 
-// What it refuses is told with the file's name.
-Environment made_of(const MeshData& mesh, const MeshSource& source, Threads threads) {
-  try {
-    return Environment(mesh, threads);
-  } catch (const InvalidMesh& e) {
-    const auto* file = std::get_if<std::filesystem::path>(&source);
-    throw InvalidMesh(fmt::format("{}: {}", file != nullptr ? file->string() : "the generated mesh", e.what()));
-  }
-}
-
 void describe(const Environment& environment, Summary& summary) {
   const Map& map = environment.map();
   summary.threads = environment.threads().count;
@@ -323,7 +313,7 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
   SceneMesh loaded = load_scene_mesh(wanted, options.threads);
   MeshData& mesh = loaded.mesh;
   summary.skipped = loaded.skipped;
-  Environment environment = made_of(mesh, wanted.mesh, options.threads);
+  Environment environment = with_mesh_name(wanted.mesh, [&] { return Environment(mesh, options.threads); });
   const Responses responses = make_responses(scene.contact, environment.map());
   Flow flow(environment, flow_options(scene, options), responses);
   if (!scene.motion.field.empty()) {

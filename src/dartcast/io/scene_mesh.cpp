@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <iterator>
 #include <set>
 
 #include "dartcast/base/error.hpp"
@@ -12,6 +11,7 @@
 #include "dartcast/io/read_mesh.hpp"
 #include "dartcast/io/skip_in_file.hpp"
 #include "dartcast/mesh/inspect.hpp"
+#include "dartcast/mesh/patches.hpp"
 #include "dartcast/mesh/regions.hpp"
 
 namespace dartcast {
@@ -26,8 +26,8 @@ MeshData generated(const MeshSource& source) {
   return generate_box(std::get<BoxOptions>(source));
 }
 
-MeshFile load_source(const MeshSource& source) {
-  if (const auto* path = std::get_if<std::filesystem::path>(&source)) return read_mesh(*path);
+MeshFile load_source(const MeshSource& source, const ReadOptions& options) {
+  if (const auto* path = std::get_if<std::filesystem::path>(&source)) return read_mesh(*path, options);
   MeshFile file{generated(source), {}};
   file.report = inspect(file.mesh);
   file.report.file = "the generated mesh";
@@ -55,31 +55,6 @@ void select_free(MeshData& mesh, const EnvironmentScene& scene) {
   std::vector<std::string> tags;  // formats without arrays have their groups as regions
   for (const double value : by_value->values) tags.push_back(fmt::format("{}", value));
   select_free_regions(mesh, tags);
-}
-
-// Keeps the groups of faces that are named, and drops the others.
-void select_patches(MeshData& mesh, const std::vector<std::string>& names) {
-  std::set<std::int32_t> kept;
-  for (const std::string& name : names) {
-    const auto found = std::find_if(mesh.patch_names.begin(), mesh.patch_names.end(),
-                                    [&](const auto& entry) { return entry.second == name; });
-    if (found == mesh.patch_names.end()) {
-      std::vector<std::string> known;
-      for (const auto& entry : mesh.patch_names) known.push_back(entry.second);
-      throw InvalidMesh(fmt::format("the mesh has no patch '{}'; its patches are: {}", name,
-                                    known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))));
-    }
-    kept.insert(found->first);
-  }
-  MeshData all;
-  std::swap(all.patch_faces, mesh.patch_faces);
-  std::swap(all.patch_offsets, mesh.patch_offsets);
-  std::swap(all.patch_tags, mesh.patch_tags);
-  for (std::size_t f = 0; f < all.patch_tags.size(); ++f) {
-    if (kept.count(all.patch_tags[f]) == 0) continue;
-    const std::size_t begin = all.patch_offsets[f];
-    mesh.add_patch_face({all.patch_faces.data() + begin, all.patch_offsets[f + 1] - begin}, all.patch_tags[f]);
-  }
 }
 
 const DataArray& point_array(const MeshData& mesh, const std::string& name, std::size_t components) {
@@ -126,15 +101,20 @@ std::vector<Vec3> frame_positions(const std::filesystem::path& file, const MeshD
 }  // namespace
 
 SceneMesh load_scene_mesh(const EnvironmentScene& scene, Threads threads) {
-  MeshFile file = load_source(scene.mesh);
+  ReadOptions options;
+  if (const auto* patches = std::get_if<PatchArray>(&scene.patches)) options.patch_array = patches->name;
+  MeshFile file = load_source(scene.mesh, options);
   scale_points(file, scene.scale);
   if (scene.skip_bad_cells) skip_bad_cells(file, threads);
   file = valid_file(std::move(file));
   SceneMesh result{std::move(file.mesh), std::move(file.report), {}};
   const std::vector<Finding>& warnings = result.report.warnings;
   if (!warnings.empty() && warnings.front().kind == "bad_cells") result.skipped = warnings.front();
-  select_free(result.mesh, scene);
-  if (scene.patches) select_patches(result.mesh, *scene.patches);
+  with_mesh_name(scene.mesh, [&] {
+    select_free(result.mesh, scene);
+    if (const auto* names = std::get_if<std::vector<std::string>>(&scene.patches)) select_patches(result.mesh, *names);
+    if (const auto* angle = std::get_if<PatchAngle>(&scene.patches)) divide_walls(result.mesh, angle->degrees);
+  });
   return result;
 }
 

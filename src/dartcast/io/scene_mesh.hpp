@@ -1,10 +1,14 @@
 // What a scene names, read or generated: its mesh, its fields and frames.
 #pragma once
 
+#include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
+#include <variant>
 #include <vector>
 
+#include "dartcast/base/error.hpp"
 #include "dartcast/base/parallel.hpp"
 #include "dartcast/mesh/mesh_data.hpp"
 #include "dartcast/mesh/report.hpp"
@@ -18,7 +22,21 @@ struct SceneMesh {
   Finding skipped;    ///< bad cells that were left out, where the scene wants that
 };
 
-/// Throws InvalidMesh where the mesh is refused, or a region, array or patch that the scene names is not in it.
+/// Calls make(); puts the mesh file's name before what an InvalidMesh says that it throws.
+template <class Make>
+auto with_mesh_name(const MeshSource& mesh, Make&& make) {
+  try {
+    return make();
+  } catch (const InvalidMesh& e) {
+    const auto* path = std::get_if<std::filesystem::path>(&mesh);
+    const std::string name = path != nullptr ? path->string() : "the generated mesh";
+    if (std::string_view(e.what()).starts_with(name)) throw;
+    throw InvalidMesh(name + ": " + e.what());
+  }
+}
+
+/// Throws InvalidMesh with the mesh file's name where the mesh is refused, or a region, array or patch that the scene
+/// names is not in it.
 SceneMesh load_scene_mesh(const EnvironmentScene& scene, Threads threads = {});
 
 /// A point array of three components as vectors. Throws InvalidMesh that names the arrays there are.

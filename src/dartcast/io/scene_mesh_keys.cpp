@@ -150,6 +150,22 @@ void read_free(TomlTable t, EnvironmentScene& scene) {
   }
 }
 
+void read_patches(TomlTable t, EnvironmentScene& scene) {
+  PatchArray array;
+  PatchAngle angle;
+  const bool by_array = t.get("array", array.name);
+  const bool by_angle = t.get("angle", angle.degrees, {0.0, 180.0});
+  if (by_array == by_angle) t.fail("", "give either array = \"NAME\", or angle = 30 (degrees)");
+  t.finish();
+  if (by_array && !std::holds_alternative<std::filesystem::path>(scene.mesh))
+    t.fail("array", "patches from an array need mesh = \"FILE\"; a generator's patches have names");
+  if (by_array) {
+    scene.patches = array;
+  } else {
+    scene.patches = angle;
+  }
+}
+
 }  // namespace
 
 EnvironmentScene read_environment(TomlTable table, const std::filesystem::path& folder) {
@@ -158,8 +174,11 @@ EnvironmentScene read_environment(TomlTable table, const std::filesystem::path& 
   table.get("scale", scene.scale, Range::positive);
   table.get("skip_bad_cells", scene.skip_bad_cells);
   if (table.has("free")) read_free(table.table("free"), scene);
-  std::vector<std::string> patches;
-  if (table.get("patches", patches)) scene.patches = patches;
+  if (table.is_table("patches")) {
+    read_patches(table.table("patches"), scene);
+  } else if (std::vector<std::string> names; table.get("patches", names)) {
+    scene.patches = names;
+  }
   table.finish();
   return scene;
 }

@@ -38,6 +38,11 @@ void TomlTable::fail(std::string_view key, const std::string& message) const {
 
 bool TomlTable::has(std::string_view key) { return find(key) != nullptr; }
 
+bool TomlTable::is_table(std::string_view key) {
+  const toml::node* node = find(key);
+  return node != nullptr && node->is_table();
+}
+
 double TomlTable::number(std::string_view key, const toml::node& node) const {
   const auto value = node.value<double>();
   if (!value || node.is_boolean()) fail(key, fmt::format("{} must be a number; here is a {}", key, type_name(node)));

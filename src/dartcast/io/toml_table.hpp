@@ -39,6 +39,7 @@ class TomlTable {
       : table_(&table), file_(std::move(file)), name_(std::move(name)) {}
 
   bool has(std::string_view key);
+  bool is_table(std::string_view key);
   bool get(std::string_view key, double& value, Range range);
   bool get(std::string_view key, bool& value);
   bool get(std::string_view key, std::string& value);

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -20,6 +22,22 @@ std::string lower(std::string_view word) {
   std::string out(word);
   std::transform(out.begin(), out.end(), out.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return out;
+}
+
+/// A name as VTK reads it: %41 is A.
+std::string decoded(std::string_view name) {
+  std::string out;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    unsigned c = 0;
+    const auto* const digits = name.data() + i + 1;
+    if (name[i] == '%' && i + 2 < name.size() && std::from_chars(digits, digits + 2, c, 16).ptr == digits + 2) {
+      out += static_cast<char>(c);
+      i += 2;
+    } else {
+      out += name[i];
+    }
+  }
   return out;
 }
 
@@ -97,6 +115,7 @@ class LegacyChecker {
       read_types();
     } else if (name == "point_data" || name == "cell_data") {
       const auto owners = name == "point_data" ? points_ : cell_count();
+      owner_ = name == "point_data" ? Owner::points : Owner::cells;
       items_ = static_cast<std::uint64_t>(text_.integer("a number of items", 0, INT64_MAX));
       if (!owners.has_value() || *owners != items_)
         text_.fail("the number of data items is not that of the points or cells");
@@ -110,7 +129,7 @@ class LegacyChecker {
   void attribute(const std::string& name) {
     if (name == "field") return field();
     if (name == "lookup_table") return lookup_table();
-    text_.word("the name of an array");
+    take_name(text_.word("the name of an array"));
     if (name == "color_scalars") {
       const auto components = static_cast<std::uint64_t>(text_.integer("a number of components", 1, 4));
       return binary_ ? data(name, items_, components, find_type("unsigned_char"))
@@ -135,6 +154,17 @@ class LegacyChecker {
     text_.fail(fmt::format("'{}' is not a section of a legacy VTK file", name.substr(0, 40)));
   }
 
+  /// VTK keeps one table of arrays for the points, one for the cells and one for the file, and of two arrays of one
+  /// name the last.
+  void take_name(std::string_view word) {
+    static constexpr std::array<std::string_view, 3> places = {"of the file", "at the points", "at the cells"};
+    const auto owner = static_cast<std::size_t>(owner_);
+    if (!names_[owner].insert(decoded(word)).second) {
+      text_.fail(fmt::format("a second array '{}' {}: each needs a name of its own", decoded(word).substr(0, 60),
+                             places[owner]));
+    }
+  }
+
   void field() {
     text_.word("the name of a field");
     const std::size_t arrays = text_.count("arrays", 1);
@@ -145,10 +175,41 @@ class LegacyChecker {
       }
       const std::string_view name = text_.word("the name of an array");
       if (name == "NULL_ARRAY") continue;
+      take_name(name);
       const auto components = static_cast<std::uint64_t>(text_.integer("a number of components", 0, INT32_MAX));
       const auto items = static_cast<std::uint64_t>(text_.integer("a number of items", 0, INT64_MAX));
-      data(name, items, components, type());
+      if (lower(text_.peek()) == "string") {
+        text_.word("a type");
+        texts(items, components);
+      } else {
+        data(name, items, components, type());
+      }
     }
+  }
+
+  /// Texts: in ASCII one on a line; in binary each behind its length.
+  void texts(std::uint64_t items, std::uint64_t components) {
+    text_.check_count("texts", items, 1);
+    if (components != 1) text_.fail("an array of texts must have one component");
+    text_.line();
+    for (std::uint64_t i = 0; i < items; ++i) {
+      if (!binary_) {
+        if (text_.left() == 0) text_.fail("the file ends within an array of texts; it is truncated");
+        text_.line();
+        continue;
+      }
+      text_.raw(text_length(), "an array of texts");
+    }
+  }
+
+  /// The two highest bits of the first byte say how many bytes hold the length: 3 one, 2 two, 1 four, 0 eight.
+  std::size_t text_length() {
+    const auto first = static_cast<unsigned char>(text_.raw(1, "a text's length")[0]);
+    std::size_t length = first & 0x3fU;
+    for (std::size_t more = (std::size_t{1} << (3U - (first >> 6U))) - 1; more > 0; --more) {
+      length = (length << 8U) | static_cast<unsigned char>(text_.raw(1, "a text's length")[0]);
+    }
+    return length;
   }
 
   void lookup_table() {
@@ -258,6 +319,7 @@ class LegacyChecker {
   }
 
   void read_types() {
+    if (typed_) text_.fail("a second section of cell types");
     const std::size_t n = text_.count("cell types", binary_ ? 4 : 2);
     if (!cells_.has_value() || cells_->offsets.size() != n + 1)
       text_.fail("the number of cell types is not that of the cells");
@@ -280,6 +342,8 @@ class LegacyChecker {
   std::optional<std::size_t> points_;
   std::optional<Cells> cells_;
   std::uint64_t items_ = 0;
+  enum class Owner : std::uint8_t { file, points, cells } owner_ = Owner::file;
+  std::array<std::set<std::string>, 3> names_;  // by owner
 };
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include <vtkIdTypeArray.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
-#include <vtkStringArray.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkUnstructuredGridReader.h>
@@ -24,6 +23,7 @@
 #include "dartcast/io/vtk_errors.hpp"
 #include "dartcast/io/vtk_legacy_check.hpp"
 #include "dartcast/io/vtk_mesh.hpp"
+#include "dartcast/io/vtk_tags.hpp"
 #include "dartcast/io/vtu_check.hpp"
 
 namespace dartcast {
@@ -60,19 +60,14 @@ bool is_point_or_line(int vtk) {
 }
 
 bool is_higher_order(int vtk) {
-  return (vtk >= VTK_QUADRATIC_EDGE && vtk <= VTK_TRIQUADRATIC_PYRAMID) || (vtk >= VTK_HIGHER_ORDER_EDGE && vtk <= 81);
+  return (vtk >= VTK_QUADRATIC_EDGE && vtk <= VTK_TRIQUADRATIC_PYRAMID) ||
+         (vtk >= VTK_PARAMETRIC_CURVE && vtk <= VTK_PARAMETRIC_HEX_REGION) ||
+         (vtk >= VTK_HIGHER_ORDER_EDGE && vtk <= VTK_BEZIER_PYRAMID);
 }
 
 std::uint32_t checked_id(std::int64_t id) {
   return id >= 0 && id < no_point ? static_cast<std::uint32_t>(id) : no_point;
 }
-
-/// What becomes of the cells of the file.
-struct Places {
-  std::vector<std::uint32_t> cells;  // per cell here: its index in the file; so for faces and edges
-  std::vector<std::uint32_t> faces;
-  std::vector<std::uint32_t> edges;
-};
 
 void copy_points(vtkUnstructuredGrid& grid, MeshData& mesh) {
   const vtkIdType n = grid.GetNumberOfPoints();
@@ -191,43 +186,7 @@ void for_each_array(vtkFieldData& data, vtkIdType n, Take&& take) {
   }
 }
 
-/// The array's values as tags; empty where they are not whole numbers.
-std::vector<std::int32_t> as_tags(vtkDataArray& array, const std::vector<std::uint32_t>& rows) {
-  std::vector<std::int32_t> tags;
-  for (const std::uint32_t row : rows) {
-    const double x = array.GetComponent(row, 0);
-    if (!(std::abs(x) <= INT32_MAX) || x != std::floor(x)) return {};
-    tags.push_back(static_cast<std::int32_t>(x));
-  }
-  return tags;
-}
-
-void copy_tags(vtkUnstructuredGrid& grid, const Places& places, MeshData& mesh) {
-  for (const char* name : {"region", "gmsh:physical", "medit:ref"}) {
-    vtkDataArray* array = grid.GetCellData()->GetArray(name);
-    if (array == nullptr || array->GetNumberOfComponents() != 1) continue;
-    auto regions = as_tags(*array, places.cells);
-    auto patches = as_tags(*array, places.faces);
-    if (regions.size() != places.cells.size() || patches.size() != places.faces.size()) continue;
-    mesh.regions = std::move(regions);
-    mesh.patch_tags = std::move(patches);
-    return;
-  }
-}
-
-/// Names written as "tag name".
-void copy_names(vtkUnstructuredGrid& grid, const char* array_name, std::map<std::int32_t, std::string>& names) {
-  auto* array = vtkStringArray::SafeDownCast(grid.GetFieldData()->GetAbstractArray(array_name));
-  for (vtkIdType i = 0; array != nullptr && i < array->GetNumberOfValues(); ++i) {
-    const std::string text = array->GetValue(i);
-    const std::size_t space = text.find(' ');
-    if (space == std::string::npos || space == 0 || space > 11) continue;
-    const long tag = std::strtol(text.c_str(), nullptr, 10);
-    if (std::abs(tag) <= INT32_MAX) names[static_cast<std::int32_t>(tag)] = text.substr(space + 1);
-  }
-}
-
-ParsedMesh convert(vtkUnstructuredGrid& grid, std::string format) {
+ParsedMesh convert(vtkUnstructuredGrid& grid, std::string format, const std::string& patch_array) {
   ParsedMesh parsed;
   parsed.format = std::move(format);
   MeshData& mesh = parsed.mesh;
@@ -241,19 +200,19 @@ ParsedMesh convert(vtkUnstructuredGrid& grid, std::string format) {
                  [&](vtkDataArray& a) { mesh.point_data.push_back(copy_array(a, nullptr)); });
   for_each_array(*grid.GetCellData(), grid.GetNumberOfCells(),
                  [&](vtkDataArray& a) { mesh.cell_data.push_back(copy_array(a, &places.cells)); });
-  copy_tags(grid, places, mesh);
-  copy_names(grid, "region_names", mesh.region_names);
-  copy_names(grid, "patch_names", mesh.patch_names);
+  if (copy_tags(grid, places, patch_array, mesh))
+    std::erase_if(mesh.cell_data, [](const DataArray& a) { return a.name == "patch"; });
   const bool anything = !mesh.types.empty() || parsed.second_order.count + parsed.unsupported.count > 0;
   if (!anything) throw InvalidMesh("the file has no cells");
   mesh.source = places.cells;
+  mesh.patch_source = places.faces;
   finish(parsed);
   return parsed;
 }
 
 /// Runs a VTK reader; whatever it complains about refuses the file.
 template <class Reader>
-ParsedMesh read_with(Reader& reader, const std::string& format) {
+ParsedMesh read_with(Reader& reader, const std::string& format, const std::string& patch_array) {
   const VtkErrors errors;
   const auto refuse = [&](const std::string& text) {
     throw InvalidMesh(fmt::format("VTK cannot read the file: {}", text));
@@ -266,19 +225,20 @@ ParsedMesh read_with(Reader& reader, const std::string& format) {
   if (!errors.first().empty()) refuse(errors.first());
   if (reader.GetErrorCode() != 0) refuse(fmt::format("error {}", reader.GetErrorCode()));
   if (reader.GetOutput() == nullptr) refuse("no output");
-  return convert(*reader.GetOutput(), format);
+  return convert(*reader.GetOutput(), format, patch_array);
 }
 
 }  // namespace
 
-ParsedMesh parse_vtu(const std::filesystem::path& path, std::string_view content) {
-  check_vtu(content);
+ParsedMesh parse_vtu(const std::filesystem::path& path, std::string_view content, const std::string& patch_array) {
+  check_vtu(content, "UnstructuredGrid");
   vtkNew<vtkXMLUnstructuredGridReader> reader;
   reader->SetFileName(path.c_str());
-  return read_with(*reader, "VTK XML (.vtu)");
+  return read_with(*reader, "VTK XML (.vtu)", patch_array);
 }
 
-ParsedMesh parse_legacy_vtk(const std::filesystem::path& path, std::string_view content) {
+ParsedMesh parse_legacy_vtk(const std::filesystem::path& path, std::string_view content,
+                            const std::string& patch_array) {
   check_legacy_vtk(content);
   vtkNew<vtkUnstructuredGridReader> reader;
   reader->SetFileName(path.c_str());
@@ -289,7 +249,7 @@ ParsedMesh parse_legacy_vtk(const std::filesystem::path& path, std::string_view 
   reader->ReadAllColorScalarsOn();
   reader->ReadAllTCoordsOn();
   reader->ReadAllFieldsOn();
-  return read_with(*reader, "VTK legacy (.vtk)");
+  return read_with(*reader, "VTK legacy (.vtk)", patch_array);
 }
 
 }  // namespace dartcast

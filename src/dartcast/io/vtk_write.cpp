@@ -75,21 +75,26 @@ void add_array(vtkFieldData& to, const DataArray& from, vtkIdType items) {
   to.AddArray(array);
 }
 
-bool has_tags(const MeshData& mesh) { return !mesh.regions.empty() || !mesh.patch_tags.empty(); }
-
 // By what the mesh itself says of its cells.
 bool is_replaced(const MeshData& mesh, const std::string& cell_array) {
-  return (cell_array == "region" && has_tags(mesh)) || (cell_array == "free" && !mesh.free.empty());
+  return (cell_array == "region" && !mesh.regions.empty()) || (cell_array == "free" && !mesh.free.empty()) ||
+         (cell_array == "patch" && !mesh.patch_tags.empty());
 }
 
+/// Regions at the cells; tags of patches at the cells behind them that are patch faces.
 void add_tags(const MeshData& mesh, vtkUnstructuredGrid& grid) {
-  if (!has_tags(mesh)) return;
-  vtkNew<vtkIntArray> array;
-  array->SetName("region");
-  for (std::size_t c = 0; c < mesh.cell_count(); ++c)
-    array->InsertNextValue(mesh.regions.empty() ? 0 : mesh.regions[c]);
-  for (const std::int32_t tag : mesh.patch_tags) array->InsertNextValue(tag);
-  grid.GetCellData()->AddArray(array);
+  const auto add = [&](const char* name, auto&& cell_tag, auto&& face_tag) {
+    vtkNew<vtkIntArray> array;
+    array->SetName(name);
+    for (std::size_t c = 0; c < mesh.cell_count(); ++c) array->InsertNextValue(cell_tag(c));
+    for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) array->InsertNextValue(face_tag(f));
+    grid.GetCellData()->AddArray(array);
+  };
+  const auto none = [](std::size_t) { return 0; };
+  if (!mesh.regions.empty())
+    add(
+        "region", [&](std::size_t c) { return mesh.regions[c]; }, none);
+  if (!mesh.patch_tags.empty()) add("patch", none, [&](std::size_t f) { return mesh.patch_tags[f]; });
 }
 
 void add_names(vtkUnstructuredGrid& grid, const char* array_name, const std::map<std::int32_t, std::string>& names) {

@@ -210,6 +210,18 @@ std::string decompress(const VtuArray& array, const VtuEncoding& encoding, Sourc
   return out;
 }
 
+/// The bytes of data that are not ASCII.
+std::string decode_bytes(const VtuArray& array, const VtuEncoding& encoding) {
+  const std::uint64_t size = count_numbers(array, encoding) * vtu_type_bytes(array.type);
+  Source source(array, encoding);
+  // VTK encodes the header and the data in one run where they are not compressed.
+  std::string bytes = encoding.compressor.empty()
+                          ? source.take(encoding.header_bytes + size).substr(encoding.header_bytes)
+                          : decompress(array, encoding, source);
+  if (bytes.size() != size) fail_array(array, "its data are cut off; the file is truncated");
+  return bytes;
+}
+
 /// Calls take(value) for every number of ASCII data; returns how many there are.
 template <class Take>
 std::uint64_t read_ascii(const VtuArray& array, const Type& type, Take&& take) {
@@ -262,6 +274,10 @@ std::uint64_t count_numbers(const VtuArray& array, const VtuEncoding& encoding) 
   return bytes / type.bytes;
 }
 
+void check_bytes(const VtuArray& array, const VtuEncoding& encoding) {
+  if (array.format != "ascii") decode_bytes(array, encoding);
+}
+
 std::vector<std::int64_t> decode_integers(const VtuArray& array, const VtuEncoding& encoding) {
   const Type& type = *find_type(array.type);
   if (type.real) fail_array(array, "it must be of whole numbers");
@@ -270,18 +286,9 @@ std::vector<std::int64_t> decode_integers(const VtuArray& array, const VtuEncodi
     read_ascii(array, type, [&](std::int64_t value) { out.push_back(value); });
     return out;
   }
-  const std::uint64_t n = count_numbers(array, encoding);
-  Source source(array, encoding);
-  std::string bytes;
-  if (encoding.compressor.empty()) {
-    // VTK encodes the header and the data in one run.
-    bytes = source.take(encoding.header_bytes + n * type.bytes).substr(encoding.header_bytes);
-  } else {
-    bytes = decompress(array, encoding, source);
-  }
-  if (bytes.size() != n * type.bytes) fail_array(array, "its data are cut off; the file is truncated");
-  for (std::uint64_t i = 0; i < n; ++i) {
-    const std::uint64_t bits = integer_at(bytes, i * type.bytes, type.bytes, encoding.big_endian);
+  const std::string bytes = decode_bytes(array, encoding);
+  for (std::uint64_t at = 0; at < bytes.size(); at += type.bytes) {
+    const std::uint64_t bits = integer_at(bytes, at, type.bytes, encoding.big_endian);
     const unsigned shift = 64 - 8 * static_cast<unsigned>(type.bytes);
     out.push_back(type.low < 0 ? static_cast<std::int64_t>(bits << shift) >> shift : static_cast<std::int64_t>(bits));
   }

@@ -38,6 +38,10 @@ std::size_t vtu_type_bytes(std::string_view type);
 /// data the compressed ones. For ASCII every number is read. Throws InvalidMesh.
 std::uint64_t count_numbers(const VtuArray& array, const VtuEncoding& encoding);
 
+/// Decodes the data and leaves them: what count_numbers() takes on trust is seen to be there. ASCII data have nothing
+/// more to check. Throws InvalidMesh.
+void check_bytes(const VtuArray& array, const VtuEncoding& encoding);
+
 /// All numbers of an array of whole numbers. Throws InvalidMesh.
 std::vector<std::int64_t> decode_integers(const VtuArray& array, const VtuEncoding& encoding);
 

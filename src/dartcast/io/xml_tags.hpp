@@ -11,10 +11,10 @@ namespace dartcast {
 
 struct XmlTag {
   std::string name;
-  std::map<std::string, std::string> attributes;
-  bool opens = false;   ///< <name ...>; with `closes`: <name .../>
-  bool closes = false;  ///< </name>
-  std::size_t end = 0;  ///< the byte behind it
+  std::map<std::string, std::string> attributes;  ///< values as XML means them: entities decoded, white space as blanks
+  bool opens = false;                             ///< <name ...>; with `closes`: <name .../>
+  bool closes = false;                            ///< </name>
+  std::size_t end = 0;                            ///< the byte behind it
 };
 
 /// Reads tags and checks that they are nested. Errors are InvalidMesh with the line.
@@ -22,8 +22,9 @@ class XmlTags {
  public:
   explicit XmlTags(std::string_view content) : content_(content) {}
 
-  /// The next tag, comments and declarations left out; false at the end of the file. Throws where a tag is damaged,
-  /// closes another one than the last opened, or is open at the end.
+  /// The next tag, comments and processing instructions left out; false at the end of the file. Throws where a tag is
+  /// damaged, closes another one than the last opened, or is open at the end, and at declarations: they may define
+  /// entities, so that one file would read in two ways.
   bool next(XmlTag& tag);
 
   /// Moves to a byte, over content that is not XML.
@@ -33,6 +34,8 @@ class XmlTags {
 
  private:
   void read_attributes(std::string_view inside, XmlTag& tag) const;
+  [[nodiscard]] std::string decoded(std::string_view value) const;
+  bool skip_comment();
   void nest(const XmlTag& tag);
 
   std::string_view content_;

@@ -1,7 +1,6 @@
 #include "dartcast/mesh/inspect.hpp"
 
 #include <algorithm>
-#include <cstring>
 
 #include "dartcast/exact/predicates.hpp"
 #include "dartcast/mesh/cell_types.hpp"
@@ -11,6 +10,7 @@
 #include "dartcast/mesh/orientation.hpp"
 #include "dartcast/mesh/planar.hpp"
 #include "dartcast/mesh/polyhedron.hpp"
+#include "dartcast/mesh/repeated_points.hpp"
 #include "dartcast/mesh/structure.hpp"
 
 namespace dartcast {
@@ -45,42 +45,13 @@ void check_coordinates(const MeshData& mesh, const std::vector<std::uint32_t>& p
 }
 
 void check_repeated_points(const MeshData& mesh, const std::vector<std::uint32_t>& point_source, MeshReport& report) {
-  struct Key {
-    std::uint64_t hash;
-    std::uint32_t point;
-  };
-  const auto mix = [](std::uint64_t h, double x) {
-    const double positive_zero = x + 0.0;
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &positive_zero, sizeof bits);
-    h = (h ^ bits) * 0x9e3779b97f4a7c15ULL;
-    return h ^ (h >> 29U);
-  };
-  std::vector<Key> keys(mesh.points.size());
-  for (std::uint32_t p = 0; p < keys.size(); ++p) {
-    const Vec3& x = mesh.points[p];
-    keys[p] = {mix(mix(mix(0x1234567, x.x), x.y), x.z), p};
-  }
-  std::sort(keys.begin(), keys.end(), [&](const Key& a, const Key& b) {
-    if (a.hash != b.hash) return a.hash < b.hash;
-    const Vec3& x = mesh.points[a.point];
-    const Vec3& y = mesh.points[b.point];
-    if (x.x != y.x) return x.x < y.x;
-    if (x.y != y.y) return x.y < y.y;
-    return x.z != y.z ? x.z < y.z : a.point < b.point;
-  });
-  std::vector<std::uint32_t> repeated;
-  for (std::size_t i = 1; i < keys.size(); ++i) {
-    if (mesh.points[keys[i].point] == mesh.points[keys[i - 1].point]) repeated.push_back(keys[i].point);
-  }
-  std::sort(repeated.begin(), repeated.end());
   Finding finding{
       "repeated_points",
       0,
       {},
       "points at the place of another one: the cells on both sides are not connected, and particles meet a wall "
       "there; merge the points unless that is meant"};
-  for (const std::uint32_t p : repeated) finding.add(point_source[p]);
+  for (const std::uint32_t p : find_repeated_points(mesh.points)) finding.add(point_source[p]);
   add_finding(report.warnings, finding);
 }
 

@@ -17,7 +17,8 @@ namespace dartcast {
 ///   three corners), id_out_of_range, repeated_corner, not_finite, out_of_range (coordinates), flat, inverted,
 ///   face_shared (by three cells or more), same_side (two cells on one side of a face), face_order (one set of corners
 ///   in two orders), no_volume (a surface in space), too_large.
-/// Places are indices in the input: of cells (MeshData::source), or of points for findings about points.
+/// Places are indices in the input: of cells (MeshData::source), of patch faces (MeshData::patch_source), or of points
+/// for findings about points.
 ///
 /// Of a mesh of the plane (report.dimension = 2) faces are edges, and cells that are not weakly convex are inverted;
 /// non_conforming are edges with a point of another inside, or that lie against others; boundary_edges there are none.

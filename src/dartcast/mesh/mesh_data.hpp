@@ -64,6 +64,7 @@ struct MeshData {
   std::vector<std::uint32_t> patch_faces;        ///< faces in named groups: corners, one face after another
   std::vector<std::size_t> patch_offsets = {0};  ///< patch faces + 1, into patch_faces
   std::vector<std::int32_t> patch_tags;          ///< tag per patch face
+  std::vector<std::uint32_t> patch_source;       ///< the face's index in the input file; empty: its own index
   std::map<std::int32_t, std::string> patch_names;
 
   std::vector<std::uint8_t> free;  ///< 1 free, 0 blocked, per cell; empty: all free
@@ -86,6 +87,9 @@ struct MeshData {
     patch_faces.insert(patch_faces.end(), corners.begin(), corners.end());
     patch_offsets.push_back(patch_faces.size());
     patch_tags.push_back(tag);
+  }
+  [[nodiscard]] std::span<const std::uint32_t> patch_face(std::size_t f) const {
+    return {patch_faces.data() + patch_offsets[f], patch_offsets[f + 1] - patch_offsets[f]};
   }
 };
 

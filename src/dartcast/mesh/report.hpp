@@ -31,6 +31,7 @@ struct MeshReport {
   std::string file;
   std::string format;
   int dimension = 3;                           ///< 2: a planar mesh, whose cells are polygons and whose faces are edges
+  bool surface = false;                        ///< cells of two dimensions in space
   std::size_t points = 0;                      ///< after repairs
   std::map<std::string, std::size_t> cells;    ///< cells by type
   std::map<std::string, std::size_t> regions;  ///< cells by region; a region without a name goes by its tag

@@ -70,6 +70,10 @@ bool too_many_corners(const MeshData& mesh, std::size_t c, std::vector<std::uint
   return std::unique(work.begin(), work.end()) - work.begin() > static_cast<std::ptrdiff_t>(polyhedron_limit);
 }
 
+std::uint32_t patch_source_of(const MeshData& mesh, std::size_t f) {
+  return mesh.patch_source.empty() ? static_cast<std::uint32_t>(f) : mesh.patch_source[f];
+}
+
 void check_patch_faces(const MeshData& mesh, MeshReport& report) {
   const bool plane = mesh.dimension() == 2;
   Finding size{"structure",
@@ -81,14 +85,14 @@ void check_patch_faces(const MeshData& mesh, MeshReport& report) {
   Finding repeated{"repeated_corner", 0, {}, "patch faces that name a point twice"};
   std::vector<std::uint32_t> work;
   for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) {
-    work.assign(mesh.patch_faces.begin() + static_cast<std::ptrdiff_t>(mesh.patch_offsets[f]),
-                mesh.patch_faces.begin() + static_cast<std::ptrdiff_t>(mesh.patch_offsets[f + 1]));
+    work.assign(mesh.patch_face(f).begin(), mesh.patch_face(f).end());
+    const std::uint32_t place = patch_source_of(mesh, f);
     if (plane ? work.size() != 2 : work.size() < 3 || work.size() > polyhedron_limit) {
-      size.add(f);
+      size.add(place);
     } else if (*std::max_element(work.begin(), work.end()) >= mesh.points.size()) {
-      range.add(f);
+      range.add(place);
     } else if (repeats(work)) {
-      repeated.add(f);
+      repeated.add(place);
     }
   }
   add_finding(report.defects, size);
@@ -101,8 +105,10 @@ void filter_patch_faces(MeshData& mesh, const std::vector<bool>& keep) {
   std::vector<std::uint32_t> faces;
   std::vector<std::size_t> offsets = {0};
   std::vector<std::int32_t> tags;
+  std::vector<std::uint32_t> source;
   for (std::size_t f = 0; f < keep.size(); ++f) {
     if (!keep[f]) continue;
+    source.push_back(patch_source_of(mesh, f));
     faces.insert(faces.end(), mesh.patch_faces.begin() + static_cast<std::ptrdiff_t>(mesh.patch_offsets[f]),
                  mesh.patch_faces.begin() + static_cast<std::ptrdiff_t>(mesh.patch_offsets[f + 1]));
     offsets.push_back(faces.size());
@@ -111,13 +117,14 @@ void filter_patch_faces(MeshData& mesh, const std::vector<bool>& keep) {
   mesh.patch_faces = std::move(faces);
   mesh.patch_offsets = std::move(offsets);
   mesh.patch_tags = std::move(tags);
+  mesh.patch_source = std::move(source);
 }
 
 /// Drops patch faces and says so; `stray` is added to the report's warnings.
 void drop_patch_faces(MeshData& mesh, const std::vector<bool>& keep, MeshReport& report) {
   Finding stray{"patch_faces", 0, {}, "faces of named groups that are no face of any cell; they have been dropped"};
   for (std::size_t f = 0; f < keep.size(); ++f) {
-    if (!keep[f]) stray.add(f);
+    if (!keep[f]) stray.add(patch_source_of(mesh, f));
   }
   if (stray.count == 0) return;
   filter_patch_faces(mesh, keep);
@@ -171,6 +178,8 @@ void check_arrays(const MeshData& mesh, MeshReport& report) {
     refuse("structure", "patch_offsets do not ascend from 0 to the size of patch_faces, one per face and one more");
   }
   const auto one_each = [&](std::size_t size) { return size == 0 || size == cells; };
+  if (!mesh.patch_source.empty() && mesh.patch_source.size() != mesh.patch_tags.size())
+    refuse("structure", "patch_source does not have one value per patch face");
   if (!one_each(mesh.regions.size()) || !one_each(mesh.free.size()) || !one_each(mesh.source.size())) {
     refuse("structure", "regions, free or source do not have one value per cell");
   }

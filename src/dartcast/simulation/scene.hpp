@@ -43,12 +43,22 @@ struct FreeValues {
   std::vector<double> values;
 };
 
+/// Patches from a cell array of the mesh file.
+struct PatchArray {
+  std::string name;
+};
+/// Patches by where the walls are sharp.
+struct PatchAngle {
+  double degrees = 30.0;
+};
+
 struct EnvironmentScene {
   MeshSource mesh;
   double scale = 1.0;           ///< > 0: the mesh's points are multiplied by it, and those of frames
   bool skip_bad_cells = false;  ///< flat, inverted and indivisible cells are left out: their faces are walls
   std::variant<std::monostate, FreeRegions, FreeValues> free;  ///< none: as the mesh says, else all
-  std::optional<std::vector<std::string>> patches;  ///< the wall groups to tell apart; none: all that the mesh has
+  /// The wall groups to tell apart; none: all that the mesh has. Names: of those of the mesh these alone.
+  std::variant<std::monostate, std::vector<std::string>, PatchArray, PatchAngle> patches;
 };
 
 /// One step of a deformation; what stands in arrays or files of the mesh is named here and read when the mesh is.

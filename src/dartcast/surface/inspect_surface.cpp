@@ -10,6 +10,7 @@
 #include "dartcast/exact/predicates.hpp"
 #include "dartcast/mesh/cell_types.hpp"
 #include "dartcast/mesh/structure.hpp"
+#include "dartcast/surface/surface_warnings.hpp"
 #include "dartcast/surface/unfold.hpp"
 
 namespace dartcast {
@@ -144,6 +145,7 @@ void check_areas(const MeshData& mesh, MeshReport& report) {
 MeshReport inspect_surface(MeshData& mesh) {
   MeshReport report;
   report.dimension = 2;
+  report.surface = true;
   report.points = mesh.points.size();
   check_arrays(mesh, report);
   if (!report.valid()) return report;
@@ -158,6 +160,7 @@ MeshReport inspect_surface(MeshData& mesh) {
   if (!report.valid()) return report;
   agree_on_orientation(mesh, report);
   check_areas(mesh, report);
+  if (report.valid()) add_surface_warnings(mesh, report);
   return report;
 }
 
