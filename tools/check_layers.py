@@ -24,7 +24,7 @@ COMPETITORS = re.compile(r"^(Bullet|LinearMath/|bt[A-Z]|embree)")
 INDEPENDENT = re.compile(r"(^tests/oracle/|/audit[a-z_]*\.[ch]pp$)")
 PREDICATES = re.compile(r"^dartcast/exact/(?!vec3\.hpp)")
 
-STANDARD = re.compile(r"^([a-z_]+|sys/[a-z]+\.h|immintrin\.h)$")
+STANDARD = re.compile(r"^([a-z_]+|sys/[a-z]+\.h|(fcntl|unistd|immintrin)\.h)$")
 
 # Headers that are not installed, by the list in CMakeLists.txt.
 PRIVATE = set(re.search(r"set\(private_headers ([^)]*)\)", pathlib.Path("CMakeLists.txt").read_text()).group(1).split())

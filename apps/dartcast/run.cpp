@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "dartcast/io/run_scene.hpp"
 #include "dartcast/io/scene_file.hpp"
+#include "max_memory.hpp"
 
 namespace dartcast::app {
 
@@ -25,6 +26,7 @@ struct Arguments {
   bool quiet = false;
   bool verbose = false;
   bool json = false;
+  std::uint64_t max_memory = 0;
 };
 
 // A line on the terminal that is written over, a few times a second.
@@ -64,6 +66,7 @@ int run(const Arguments& a) {
   options.seed = a.seed;
   options.audit = a.audit;
   options.resume = a.resume;
+  options.max_memory = a.max_memory;
   ProgressBar bar;
   Progress progress;
   if (!a.quiet && !a.json && isatty(STDERR_FILENO) != 0)
@@ -90,6 +93,7 @@ void add_run(CLI::App& app, int& status) {
   verb->add_option("--seed", a->seed, "seed for all that is random, instead of the scene's");
   verb->add_flag("--audit", a->audit, "check each particle after each step in exact arithmetic (slow)");
   verb->add_flag("--resume", a->resume, "go on where an earlier run in the folder was cut off, or to more --steps");
+  add_max_memory(*verb, a->max_memory);
   auto* quiet = verb->add_flag("-q,--quiet", a->quiet, "print nothing but errors");
   verb->add_flag("-v,--verbose", a->verbose, "print more")->excludes(quiet);
   verb->add_flag("--json", a->json, "print the summary as one JSON object, and nothing else");

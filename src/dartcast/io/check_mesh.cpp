@@ -20,9 +20,9 @@ Finding indivisible_cells(const MeshData& mesh, Threads threads) {
 
 }  // namespace
 
-MeshFile check_mesh(const std::filesystem::path& path, Threads threads) {
-  if (is_surface_file(path)) return check_surface(path);
-  MeshFile file = read_mesh(path);
+MeshFile check_mesh(const std::filesystem::path& path, Threads threads, const ReadOptions& options) {
+  if (is_surface_file(path)) return check_surface(path, options);
+  MeshFile file = read_mesh(path, options);
   if (!file.report.valid()) return file;
   try {
     add_finding(file.report.defects, indivisible_cells(file.mesh, threads));

@@ -8,9 +8,9 @@
 
 namespace dartcast {
 
-/// Reads and inspects a file; one of a surface in space as check_surface() does. Of a mesh without a defect also divides
-/// every cell into simplices: a cell that has no division into positive ones, not even around a point of its own, is a
-/// defect of kind "not_star_shaped". Throws nothing for a file's content.
-MeshFile check_mesh(const std::filesystem::path& path, Threads threads = {});
+/// Reads and inspects a file; one of a surface in space as check_surface() does. Of a mesh without a defect also
+/// divides every cell into simplices: a cell that has no division into positive ones, not even around a point of its
+/// own, is a defect of kind "not_star_shaped". Throws nothing for a file's content.
+MeshFile check_mesh(const std::filesystem::path& path, Threads threads = {}, const ReadOptions& options = {});
 
 }  // namespace dartcast

@@ -59,8 +59,8 @@ FlowOptions flow_options(const Scene& scene, const RunOptions& options) {
   return flow;
 }
 
-void add_placed(Flow& flow, const std::filesystem::path& file, const ParticlesScene& scene) {
-  const auto added = flow.add(read_points(file).points, scene.velocity, scene.radius);
+void add_placed(Flow& flow, const std::filesystem::path& file, const ParticlesScene& scene, const ReadOptions& read) {
+  const auto added = flow.add(read_points(file, read).points, scene.velocity, scene.radius);
   for (std::size_t i = 0; i < added.size(); ++i) {
     if (added[i].location.place == Place::free) continue;
     throw Error(fmt::format("{}: position {} (counted from 0) is {}; move or remove it", file.string(), i,
@@ -75,11 +75,11 @@ void add_inlets(Flow& flow, const Scene& scene) {
   }
 }
 
-void add_particles(Flow& flow, const Scene& scene) {
+void add_particles(Flow& flow, const Scene& scene, const ReadOptions& read) {
   for (const ParticlesScene& p : scene.particles) {
     if (const auto* random = std::get_if<RandomParticles>(&p.source))
       flow.add_random(random->count, p.velocity, p.radius);
-    if (const auto* placed = std::get_if<PlacedParticles>(&p.source)) add_placed(flow, placed->positions, p);
+    if (const auto* placed = std::get_if<PlacedParticles>(&p.source)) add_placed(flow, placed->positions, p, read);
   }
 }
 
@@ -259,7 +259,7 @@ class Run {
 
 // Particles at the start, or as a checkpoint has them.
 void start(Flow& flow, Surgery& surgery, Solids& solids, const Scene& scene,
-           const std::optional<Checkpoint>& checkpoint) {
+           const std::optional<Checkpoint>& checkpoint, const ReadOptions& read) {
   add_inlets(flow, scene);
   flow.set_after_edit([&surgery](Stranded) { surgery.after_edit(); });
   if (checkpoint) {
@@ -267,7 +267,7 @@ void start(Flow& flow, Surgery& surgery, Solids& solids, const Scene& scene,
     flow.restore(checkpoint->flow);
     solids.restore(checkpoint->solids);
   } else {
-    add_particles(flow, scene);
+    add_particles(flow, scene, read);
   }
   flow.set_after_edit([&surgery, &solids](Stranded stranded) {
     surgery.after_edit();
@@ -283,25 +283,26 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
   summary.scene = scene.name;
   summary.deforms = !scene.deformation.empty();
   const Stopwatch load;
-  const MeshData mesh = load_scene_mesh(scene.environment).mesh;
+  const ReadOptions read = {{}, options.max_memory};
+  const MeshData mesh = load_scene_mesh(scene.environment, read).mesh;
   Environment environment = with_mesh_name(scene.environment.mesh, [&] { return Environment(mesh, options.threads); });
   const Responses responses = make_responses(scene.contact, environment.map());
   Flow flow(environment, flow_options(scene, options), responses);
   if (!scene.motion.field.empty()) {
     flow.set_field(VelocityField(environment.complex(), point_vectors(mesh, scene.motion.field), scene.motion.frame));
   }
-  if (summary.deforms) flow.set_deformation(Deformation(load_deformation(scene.deformation, mesh), mesh.points));
+  if (summary.deforms) flow.set_deformation(Deformation(load_deformation(scene.deformation, mesh, read), mesh.points));
   describe(environment, summary);
   const std::vector<Event> events = make_events(scene, environment.map());
   Surgery surgery(events, scene.remesh, scene.crowding, scene.motion.dt, flow);
   if (!events.empty() || scene.remesh.every > 0 || scene.crowding.every > 0) summary.surgery.emplace();
-  Solids solids(scene, environment, responses);
+  Solids solids(scene, environment, responses, read);
   if (scene.collisions && solids.bodies()) flow.set_bodies(*solids.bodies());
   summary.seconds_load = load.seconds();
   const std::uint64_t steps = options.steps.value_or(scene.motion.steps);
   Output output(scene, options, mesh, summary);
   const Stopwatch locate;
-  start(flow, surgery, solids, scene, output.read(steps));
+  start(flow, surgery, solids, scene, output.read(steps), read);
   summary.seconds_locate = locate.seconds();
   output.open(mesh);
   Run(flow, surgery, solids, output, steps, options.audit, summary).run(progress);

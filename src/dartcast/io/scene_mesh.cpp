@@ -58,8 +58,8 @@ const DataArray& point_array(const MeshData& mesh, const std::string& name, std:
                   components, known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))));
 }
 
-std::vector<Vec3> frame_positions(const std::filesystem::path& file, const MeshData& mesh) {
-  MeshData frame = read_valid_mesh(file).mesh;
+std::vector<Vec3> frame_positions(const std::filesystem::path& file, const MeshData& mesh, const ReadOptions& options) {
+  MeshData frame = read_valid_mesh(file, options).mesh;
   if (frame.points.size() != mesh.points.size()) {
     throw InvalidMesh(fmt::format("{}: {} points; the scene's mesh has {}: frames must have the same points",
                                   file.string(), frame.points.size(), mesh.points.size()));
@@ -69,8 +69,8 @@ std::vector<Vec3> frame_positions(const std::filesystem::path& file, const MeshD
 
 }  // namespace
 
-SceneMesh load_scene_mesh(const EnvironmentScene& scene) {
-  ReadOptions options;
+SceneMesh load_scene_mesh(const EnvironmentScene& scene, const ReadOptions& read) {
+  ReadOptions options = read;
   if (const auto* patches = std::get_if<PatchArray>(&scene.patches)) options.patch_array = patches->name;
   SceneMesh result = load_source(scene.mesh, options);
   with_mesh_name(scene.mesh, [&] {
@@ -90,13 +90,14 @@ std::vector<Vec3> point_vectors(const MeshData& mesh, const std::string& array) 
   return result;
 }
 
-std::vector<DeformationStep> load_deformation(std::span<const DeformationScene> scene, const MeshData& mesh) {
+std::vector<DeformationStep> load_deformation(std::span<const DeformationScene> scene, const MeshData& mesh,
+                                              const ReadOptions& options) {
   std::vector<DeformationStep> steps;
   for (const DeformationScene& s : scene) {
     DeformationStep& step = steps.emplace_back(s.step);
     if (!s.field.empty()) step.field = point_vectors(mesh, s.field);
     if (!s.path.empty()) step.path = point_array(mesh, s.path, 1).values;
-    for (const auto& file : s.frames) step.frames.push_back(frame_positions(file, mesh));
+    for (const auto& file : s.frames) step.frames.push_back(frame_positions(file, mesh, options));
   }
   return steps;
 }
