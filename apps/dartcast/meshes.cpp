@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -12,28 +13,31 @@
 #include "dartcast/io/scene_file.hpp"
 #include "dartcast/io/scene_mesh.hpp"
 #include "dartcast/io/write_mesh.hpp"
+#include "max_memory.hpp"
 
 namespace dartcast::app {
 
 namespace {
 
-int check(const std::string& mesh, bool skip_bad_cells, bool json) {
-  const MeshReport report = check_mesh(mesh, {}, skip_bad_cells).report;
+int check(const std::string& mesh, bool skip_bad_cells, bool json, std::uint64_t max_memory) {
+  const MeshReport report = check_mesh(mesh, {}, {{}, max_memory}, skip_bad_cells).report;
   fmt::print("{}{}", json ? report_json(report) : report_text(report), json ? "\n" : "");
   return report.valid() ? done : failed;
 }
 
-int info(const std::string& path, bool json) {
+int info(const std::string& path, bool json, std::uint64_t max_memory) {
   EnvironmentScene scene;
   scene.mesh = std::filesystem::path(path);
   if (std::filesystem::path(path).extension() == ".toml") scene = read_scene(path).environment;
-  const MeshInfo result = with_mesh_name(scene.mesh, [&] { return mesh_info(load_scene_mesh(scene).mesh, path); });
+  const MeshInfo result = with_mesh_name(scene.mesh, [&] {
+    return mesh_info(load_scene_mesh(scene, {{}, max_memory}).mesh, path);
+  });
   fmt::print("{}{}", json ? info_json(result) : info_text(result), json ? "\n" : "");
   return done;
 }
 
-int convert(const std::string& in, const std::string& out) {
-  write_mesh(read_valid_mesh(in).mesh, out);
+int convert(const std::string& in, const std::string& out, std::uint64_t max_memory) {
+  write_mesh(read_valid_mesh(in, {{}, max_memory}).mesh, out);
   return done;
 }
 
@@ -48,7 +52,9 @@ void add_check(CLI::App& app, int& status) {
   const auto skip = std::make_shared<bool>(false);
   verb->add_flag("--skip-bad-cells", *skip, "with this option of dartcast run: bad cells are left out, and a warning");
   verb->add_flag("--json", *json, "print one JSON object, and nothing else");
-  verb->callback([mesh, skip, json, &status] { status = check(*mesh, *skip, *json); });
+  const auto memory = std::make_shared<std::uint64_t>(0);
+  add_max_memory(*verb, *memory);
+  verb->callback([mesh, skip, json, memory, &status] { status = check(*mesh, *skip, *json, *memory); });
 }
 
 void add_info(CLI::App& app, int& status) {
@@ -57,7 +63,9 @@ void add_info(CLI::App& app, int& status) {
   CLI::App* verb = app.add_subcommand("info", "Print counts, bounds, shapes and memory.");
   verb->add_option("MESH_OR_SCENE", *path, "a mesh file, or a scene (.toml)")->required();
   verb->add_flag("--json", *json, "print one JSON object, and nothing else");
-  verb->callback([path, json, &status] { status = info(*path, *json); });
+  const auto memory = std::make_shared<std::uint64_t>(0);
+  add_max_memory(*verb, *memory);
+  verb->callback([path, json, memory, &status] { status = info(*path, *json, *memory); });
 }
 
 void add_convert(CLI::App& app, int& status) {
@@ -66,7 +74,9 @@ void add_convert(CLI::App& app, int& status) {
   CLI::App* verb = app.add_subcommand("convert", "Write a mesh in another format, given by the ending.");
   verb->add_option("IN", *in, "the mesh to read")->required();
   verb->add_option("OUT", *out, "the file to write: .vtu .vtk .msh .msh2 .msh4 .mesh")->required();
-  verb->callback([in, out, &status] { status = convert(*in, *out); });
+  const auto memory = std::make_shared<std::uint64_t>(0);
+  add_max_memory(*verb, *memory);
+  verb->callback([in, out, memory, &status] { status = convert(*in, *out, *memory); });
 }
 
 }  // namespace dartcast::app

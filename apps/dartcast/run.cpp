@@ -10,6 +10,7 @@
 #include "dartcast/io/run_scene.hpp"
 #include "dartcast/io/scene_file.hpp"
 #include "limits.hpp"
+#include "max_memory.hpp"
 
 namespace dartcast::app {
 
@@ -29,6 +30,7 @@ struct Arguments {
   bool quiet = false;
   bool verbose = false;
   bool json = false;
+  std::uint64_t max_memory = 0;
 };
 
 // A line on the terminal that is written over, a few times a second.
@@ -69,6 +71,7 @@ int run(const Arguments& a) {
   options.audit = a.audit;
   options.resume = a.resume;
   options.skip_bad_cells = a.skip_bad_cells;
+  options.max_memory = a.max_memory;
   ProgressBar bar;
   Progress progress;
   if (!a.quiet && !a.json && isatty(STDERR_FILENO) != 0)
@@ -100,6 +103,7 @@ void add_run(CLI::App& app, int& status) {
   verb->add_flag("--resume", a->resume, "go on where an earlier run in the folder was cut off, or to more --steps");
   verb->add_flag("--skip-bad-cells", a->skip_bad_cells,
                  "block flat, inverted and indivisible cells: they are left out, and their faces are walls");
+  add_max_memory(*verb, a->max_memory);
   auto* quiet = verb->add_flag("-q,--quiet", a->quiet, "print nothing but errors");
   verb->add_flag("-v,--verbose", a->verbose, "print more")->excludes(quiet);
   verb->add_flag("--json", a->json, "print the summary as one JSON object, and nothing else");

@@ -16,6 +16,7 @@
 #include "dartcast/io/trajectory_csv.hpp"
 #include "dartcast/io/trajectory_svg.hpp"
 #include "dartcast/io/write_mesh.hpp"
+#include "max_memory.hpp"
 
 namespace dartcast::app {
 
@@ -26,6 +27,7 @@ struct TraceArguments {
   std::string from;
   std::vector<std::string> to;
   std::string output;
+  std::uint64_t max_memory = 0;
 };
 
 bool all_in_range(const std::vector<double>& numbers) {
@@ -58,11 +60,11 @@ Vec3 point_of(const std::string& text, const char* option, unsigned dimension) {
   return {x[0], x[1], x.size() == 3 ? x[2] : 0.0};
 }
 
-Environment load_environment(const std::string& path) {
+Environment load_environment(const std::string& path, std::uint64_t max_memory) {
   EnvironmentScene scene;
   scene.mesh = std::filesystem::path(path);
   if (std::filesystem::path(path).extension() == ".toml") scene = read_scene(path).environment;
-  return with_mesh_name(scene.mesh, [&] { return Environment(load_scene_mesh(scene).mesh); });
+  return with_mesh_name(scene.mesh, [&] { return Environment(load_scene_mesh(scene, {{}, max_memory}).mesh); });
 }
 
 void add_particle(Environment& environment, Particles& particles, const Vec3& x) {
@@ -78,7 +80,7 @@ int trace(const TraceArguments& arguments) {
   const std::string ending = std::filesystem::path(arguments.output).extension().string();
   if (!arguments.output.empty() && ending != ".svg" && ending != ".csv")
     throw CLI::ValidationError("-o", fmt::format("'{}' ends in neither .svg nor .csv", arguments.output));
-  Environment environment = load_environment(arguments.input);
+  Environment environment = load_environment(arguments.input, arguments.max_memory);
   const unsigned dimension = environment.map().dimension();
   Particles particles;
   add_particle(environment, particles, point_of(arguments.from, "--from", dimension));
@@ -112,6 +114,7 @@ void add_trace(CLI::App& app, int& status) {
       ->allow_extra_args(false);
   verb->add_option("-o", arguments->output,
                    "a drawing (.svg, in the plane), or a table (.csv); else a table is printed");
+  add_max_memory(*verb, arguments->max_memory);
   verb->callback([arguments, &status] { status = trace(*arguments); });
 }
 

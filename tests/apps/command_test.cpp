@@ -460,6 +460,22 @@ TEST_F(Command, RefusalsNameTheMeshFile) {
   expect_failure("info c.toml", 1, "good.mesh: the mesh has no patch");
 }
 
+TEST_F(Command, ReadingKeepsToItsMemory) {
+  (void)write("good.mesh", tetrahedron());
+  (void)write("a.toml", "[environment]\nmesh = 'good.mesh'\n[motion]\nsteps = 1\n");
+  for (const std::string verb : {"check good.mesh", "info good.mesh", "convert good.mesh b.vtu", "run a.toml -q",
+                                 "trace good.mesh --from 0.1,0.1,0.1 --to 0.2,0.1,0.1"}) {
+    for (const std::string size : {"100M", "0.5G", "1t", "64MiB", "100000000", "1000000KB"})
+      EXPECT_EQ(run(verb + " --max-memory " + size).status, 0) << verb << " " << size;
+    const Result r = run(verb + " --max-memory 40M");
+    EXPECT_EQ(r.status, 1) << verb;
+    EXPECT_NE((r.out + r.error).find("--max-memory"), std::string::npos) << verb << r.out << r.error;
+    for (const std::string size : {"many", "''", "-1", "0", "1X", "1GG", "nan", "inf", "1e30G", "99999999T", "G"})
+      EXPECT_EQ(run(verb + " --max-memory=" + size).status, 2) << verb << " " << size;
+  }
+  EXPECT_FALSE(fs::exists(folder / "b.msh"));
+}
+
 TEST_F(Command, CheckTakesSurfaces) {
   (void)write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2\n");
   const Result r = run("check a.obj --json");

@@ -21,9 +21,10 @@ Finding indivisible_cells(const MeshData& mesh, Threads threads) {
 
 }  // namespace
 
-MeshFile check_mesh(const std::filesystem::path& path, Threads threads, bool without_bad_cells) {
-  if (is_surface_file(path)) return check_surface(path);
-  MeshFile file = read_mesh(path);
+MeshFile check_mesh(const std::filesystem::path& path, Threads threads, const ReadOptions& options,
+                    bool without_bad_cells) {
+  if (is_surface_file(path)) return check_surface(path, options);
+  MeshFile file = read_mesh(path, options);
   if (without_bad_cells) skip_bad_cells(file, threads);
   if (!file.report.valid()) return file;
   try {

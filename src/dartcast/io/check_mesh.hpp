@@ -12,6 +12,7 @@ namespace dartcast {
 /// divides every cell into simplices: a cell that has no division into positive ones, not even around a point of its
 /// own, is a defect of kind "not_star_shaped". With `without_bad_cells` these, and cells that are flat or inverted, are
 /// left out, and are a warning (see geometry/skip_bad_cells.hpp). Throws nothing for a file's content.
-MeshFile check_mesh(const std::filesystem::path& path, Threads threads = {}, bool without_bad_cells = false);
+MeshFile check_mesh(const std::filesystem::path& path, Threads threads = {}, const ReadOptions& options = {},
+                    bool without_bad_cells = false);
 
 }  // namespace dartcast

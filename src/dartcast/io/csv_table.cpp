@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "dartcast/base/error.hpp"
+#include "dartcast/io/file_text.hpp"
+#include "dartcast/io/read_memory.hpp"
 
 namespace dartcast {
 
@@ -30,9 +32,14 @@ std::vector<std::string_view> fields(std::string_view line) {
 
 }  // namespace
 
-CsvTable::CsvTable(std::filesystem::path path) : path_(std::move(path)), file_(path_) {
+CsvTable::CsvTable(std::filesystem::path path, std::uint64_t max_memory) : path_(std::move(path)), file_(path_) {
   std::string line;
   if (!std::getline(file_, line)) throw Error(fmt::format("{}: the file cannot be read, or is empty", path_.string()));
+  try {
+    check_memory(memory_of_text(file_bytes(path_)), max_memory);
+  } catch (const InvalidMesh& e) {
+    throw Error(fmt::format("{}: the file cannot be read: {}", path_.string(), e.what()));
+  }
   for (const std::string_view name : fields(line)) {
     if (has(name)) fail(fmt::format("there are two columns '{}'; name each once", name));
     names_.emplace_back(name);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <span>
@@ -15,8 +16,9 @@ namespace dartcast {
 /// count.
 class CsvTable {
  public:
-  /// Reads the first line. Throws Error where the file cannot be read, is empty, or names a column twice.
-  explicit CsvTable(std::filesystem::path path);
+  /// Reads the first line. Throws Error where the file cannot be read, is empty, names a column twice, or may need more
+  /// memory than `max_memory` (as in ReadOptions).
+  explicit CsvTable(std::filesystem::path path, std::uint64_t max_memory = 0);
 
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
   [[nodiscard]] bool has(std::string_view name) const;

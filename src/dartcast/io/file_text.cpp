@@ -29,6 +29,13 @@ std::string_view without_plus(std::string_view word) {
 
 }  // namespace
 
+std::uint64_t file_bytes(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::uintmax_t size =
+      std::filesystem::is_regular_file(path, error) ? std::filesystem::file_size(path, error) : 0;
+  return error ? 0 : size;
+}
+
 std::string read_bytes(const std::filesystem::path& path) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) throw InvalidMesh("no such file");

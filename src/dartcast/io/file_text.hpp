@@ -9,6 +9,9 @@
 
 namespace dartcast {
 
+/// The size of a regular file; 0 where there is none.
+std::uint64_t file_bytes(const std::filesystem::path& path);
+
 /// All bytes of a regular file. Throws InvalidMesh where it cannot be read.
 std::string read_bytes(const std::filesystem::path& path);
 

@@ -14,6 +14,7 @@
 #include "dartcast/base/error.hpp"
 #include "dartcast/io/csv_table.hpp"
 #include "dartcast/io/file_text.hpp"
+#include "dartcast/io/read_memory.hpp"
 #include "dartcast/io/vtk_errors.hpp"
 #include "dartcast/io/vtu_check.hpp"
 
@@ -30,12 +31,21 @@ DataArray to_array(vtkDataArray& from) {
   return array;
 }
 
-PointFile read_vtp(const std::filesystem::path& path) {
+// Calls check(); refusals get the file's name.
+template <class Check>
+void with_file_name(const std::filesystem::path& path, Check&& check) {
   try {
-    check_vtu(read_bytes(path), "PolyData");
+    check();
   } catch (const InvalidMesh& e) {
     throw Error(fmt::format("{}: the points cannot be read: {}", path.string(), e.what()));
   }
+}
+
+PointFile read_vtp(const std::filesystem::path& path, const ReadOptions& options) {
+  with_file_name(path, [&] {
+    check_memory(memory_of_vtk({.file = 2 * file_bytes(path)}), options.max_memory);
+    check_vtu(read_bytes(path), "PolyData", options.max_memory);
+  });
   const VtkErrors errors;
   vtkNew<vtkXMLPolyDataReader> reader;
   reader->SetFileName(path.c_str());
@@ -57,8 +67,8 @@ PointFile read_vtp(const std::filesystem::path& path) {
   return file;
 }
 
-std::vector<Vec3> read_csv(const std::filesystem::path& path) {
-  CsvTable table(path);
+std::vector<Vec3> read_csv(const std::filesystem::path& path, const ReadOptions& options) {
+  CsvTable table(path, options.max_memory);
   std::array<std::size_t, 3> columns{};
   for (std::size_t k = 0; k < 3; ++k) columns[k] = table.column(std::string_view("xyz").substr(k, 1), "x, y and z");
   const std::vector<double> values = table.rows(columns);
@@ -69,10 +79,10 @@ std::vector<Vec3> read_csv(const std::filesystem::path& path) {
 
 }  // namespace
 
-PointFile read_points(const std::filesystem::path& path) {
+PointFile read_points(const std::filesystem::path& path, const ReadOptions& options) {
   if (!std::filesystem::is_regular_file(path)) throw Error(fmt::format("{}: there is no such file", path.string()));
-  if (path.extension() == ".vtp") return read_vtp(path);
-  if (path.extension() == ".csv") return {read_csv(path), {}};
+  if (path.extension() == ".vtp") return read_vtp(path, options);
+  if (path.extension() == ".csv") return {read_csv(path, options), {}};
   throw Error(fmt::format("{}: points are read from .vtp and .csv files", path.string()));
 }
 

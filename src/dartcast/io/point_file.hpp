@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "dartcast/io/read_mesh.hpp"
 #include "dartcast/mesh/mesh_data.hpp"
 
 namespace dartcast {
@@ -14,7 +15,7 @@ struct PointFile {
 };
 
 /// Reads .vtp (its points and their arrays) or .csv (columns x, y, z by name in the first line; others are ignored).
-/// Throws Error with file and, for .csv, line.
-PointFile read_points(const std::filesystem::path& path);
+/// Of the options `max_memory` counts. Throws Error with file and, for .csv, line.
+PointFile read_points(const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace dartcast

@@ -12,6 +12,7 @@
 #include "dartcast/io/judged_file.hpp"
 #include "dartcast/io/medit.hpp"
 #include "dartcast/io/parsed_mesh.hpp"
+#include "dartcast/io/read_memory.hpp"
 #include "dartcast/io/read_surface.hpp"
 #include "dartcast/io/vtk_mesh.hpp"
 #include "dartcast/mesh/inspect.hpp"
@@ -67,11 +68,13 @@ ParsedMesh parse(const std::filesystem::path& path, const ReadOptions& options) 
         fmt::format("patches from the cell array '{}': arrays are in .vtu and .vtk files; in this one groups of faces "
                     "are the patches",
                     options.patch_array));
+  check_memory(vtu ? memory_of_vtk({.file = 2 * file_bytes(path)}) : memory_of_text(file_bytes(path)),
+               options.max_memory);
   const std::string content = read_bytes(path);
   if (content.empty()) throw InvalidMesh("the file is empty");
-  if (vtu) return parse_vtu(path, content, options.patch_array);
+  if (vtu) return parse_vtu(path, content, options);
   if (vtk && starts(body(content), "<")) throw InvalidMesh("this .vtk is one of VTK's XML files; rename it to .vtu");
-  if (vtk) return parse_legacy_vtk(path, content, options.patch_array);
+  if (vtk) return parse_legacy_vtk(path, content, options);
   return msh ? parse_msh(content) : parse_mesh(content);
 }
 
@@ -80,6 +83,7 @@ ParsedMesh parse(const std::filesystem::path& path, const ReadOptions& options) 
 MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
   return judged_file(path, "mesh", [&](MeshFile& out) {
     ParsedMesh parsed = parse(path, options);
+    check_memory(memory_of_mesh(parsed.mesh), options.max_memory);
     out.mesh = std::move(parsed.mesh);
     if (!out.mesh.types.empty()) out.report = inspect(out.mesh);
     out.report.format = parsed.format;

@@ -1,6 +1,7 @@
 // Any mesh file: read, repaired and judged.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -14,6 +15,10 @@ struct ReadOptions {
   /// lines) their patches: whole numbers, where 0 is none, or texts, where an empty one is none. Empty: the array
   /// `patch`, else the one that gives the regions. Other formats have groups of their own, and refuse a name here.
   std::string patch_array;
+  /// Bytes that this process may take while it reads one file and builds the map from it; 0: half of the machine's
+  /// memory. What a file needs is counted from above, from the sizes that it announces, before the memory is taken
+  /// (io/read_memory.hpp); a file that may need more is refused with kind "file".
+  std::uint64_t max_memory = 0;
 };
 
 struct MeshFile {

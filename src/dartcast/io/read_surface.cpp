@@ -12,13 +12,14 @@
 #include "dartcast/io/off.hpp"
 #include "dartcast/io/parsed_surface.hpp"
 #include "dartcast/io/ply.hpp"
+#include "dartcast/io/read_memory.hpp"
 #include "dartcast/io/stl.hpp"
 #include "dartcast/surface/inspect_surface.hpp"
 
 namespace dartcast {
 namespace {
 
-ParsedSurface parse_surface(const std::filesystem::path& path) {
+ParsedSurface parse_surface(const std::filesystem::path& path, const ReadOptions& options) {
   const std::string ending = ending_of(path);
   const bool stl = ending == ".stl";
   const bool obj = ending == ".obj";
@@ -27,6 +28,7 @@ ParsedSurface parse_surface(const std::filesystem::path& path) {
     throw InvalidMesh(fmt::format(
         "surfaces in files that end in '{}' are not supported; supported are .stl, .obj, .ply and .off", ending));
   }
+  check_memory(memory_of_text(file_bytes(path)), options.max_memory);
   const std::string content = read_bytes(path);
   if (content.empty()) throw InvalidMesh("the file is empty");
   if (stl) return parse_stl(content);
@@ -41,9 +43,10 @@ bool is_surface_file(const std::filesystem::path& path) {
   return ending == ".stl" || ending == ".obj" || ending == ".ply" || ending == ".off";
 }
 
-MeshFile check_surface(const std::filesystem::path& path) {
+MeshFile check_surface(const std::filesystem::path& path, const ReadOptions& options) {
   return judged_file(path, "surface", [&](MeshFile& out) {
-    ParsedSurface parsed = parse_surface(path);
+    ParsedSurface parsed = parse_surface(path, options);
+    check_memory(memory_of_mesh(parsed.mesh), options.max_memory);
     out.mesh = std::move(parsed.mesh);
     out.report = inspect_surface(out.mesh);
     out.report.format = parsed.format;
@@ -53,6 +56,8 @@ MeshFile check_surface(const std::filesystem::path& path) {
   });
 }
 
-MeshFile read_surface(const std::filesystem::path& path) { return valid_file(check_surface(path)); }
+MeshFile read_surface(const std::filesystem::path& path, const ReadOptions& options) {
+  return valid_file(check_surface(path, options));
+}
 
 }  // namespace dartcast

@@ -61,8 +61,8 @@ FlowOptions flow_options(const Scene& scene, const RunOptions& options) {
   return flow;
 }
 
-void add_placed(Flow& flow, const std::filesystem::path& file, const ParticlesScene& scene) {
-  Seeds seeds = read_seeds(file);
+void add_placed(Flow& flow, const std::filesystem::path& file, const ParticlesScene& scene, const ReadOptions& read) {
+  Seeds seeds = read_seeds(file, read);
   if (seeds.velocities.empty()) seeds.velocities.assign(seeds.points.size(), scene.velocity);
   if (seeds.radii.empty()) seeds.radii.assign(seeds.points.size(), scene.radius);
   const auto added = flow.add(seeds.points, seeds.velocities, seeds.radii);
@@ -80,11 +80,11 @@ void add_inlets(Flow& flow, const Scene& scene) {
   }
 }
 
-void add_particles(Flow& flow, const Scene& scene) {
+void add_particles(Flow& flow, const Scene& scene, const ReadOptions& read) {
   for (const ParticlesScene& p : scene.particles) {
     if (const auto* random = std::get_if<RandomParticles>(&p.source))
       flow.add_random(random->count, p.velocity, p.radius);
-    if (const auto* placed = std::get_if<PlacedParticles>(&p.source)) add_placed(flow, placed->positions, p);
+    if (const auto* placed = std::get_if<PlacedParticles>(&p.source)) add_placed(flow, placed->positions, p, read);
   }
 }
 
@@ -278,7 +278,7 @@ class Run {
 
 // Particles at the start, or as a checkpoint has them.
 void start(Flow& flow, Surgery& surgery, Solids& solids, Output& output, const Scene& scene,
-           const std::optional<Checkpoint>& checkpoint) {
+           const std::optional<Checkpoint>& checkpoint, const ReadOptions& read) {
   add_inlets(flow, scene);
   flow.set_after_edit([&](Stranded) {
     surgery.after_edit();
@@ -289,7 +289,7 @@ void start(Flow& flow, Surgery& surgery, Solids& solids, Output& output, const S
     flow.restore(checkpoint->flow);
     solids.restore(checkpoint->solids);
   } else {
-    add_particles(flow, scene);
+    add_particles(flow, scene, read);
   }
   flow.set_after_edit([&](Stranded stranded) {
     surgery.after_edit();
@@ -308,9 +308,10 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
   summary.scene = scene.name;
   summary.deforms = !scene.deformation.empty();
   const Stopwatch load;
+  const ReadOptions read = {{}, options.max_memory};
   EnvironmentScene wanted = scene.environment;
   wanted.skip_bad_cells = wanted.skip_bad_cells || options.skip_bad_cells;
-  SceneMesh loaded = load_scene_mesh(wanted, options.threads);
+  SceneMesh loaded = load_scene_mesh(wanted, read, options.threads);
   MeshData& mesh = loaded.mesh;
   summary.skipped = loaded.skipped;
   Environment environment = with_mesh_name(wanted.mesh, [&] { return Environment(mesh, options.threads); });
@@ -320,18 +321,18 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
     flow.set_field(VelocityField(environment.complex(), point_vectors(mesh, scene.motion.field), scene.motion.frame));
   }
   if (summary.deforms)
-    flow.set_deformation(Deformation(load_deformation(scene.deformation, mesh, wanted), mesh.points));
+    flow.set_deformation(Deformation(load_deformation(scene.deformation, mesh, wanted, read), mesh.points));
   describe(environment, summary);
   const std::vector<Event> events = make_events(scene, environment.map());
   Surgery surgery(events, scene.remesh, scene.crowding, scene.motion.dt, flow);
   if (!events.empty() || scene.remesh.every > 0 || scene.crowding.every > 0) summary.surgery.emplace();
-  Solids solids(scene, environment, responses);
+  Solids solids(scene, environment, responses, read);
   if (scene.collisions && solids.bodies()) flow.set_bodies(*solids.bodies());
   summary.seconds_load = load.seconds();
   const std::uint64_t steps = options.steps.value_or(scene.motion.steps);
   Output output(scene, options, std::move(mesh), summary);
   const Stopwatch locate;
-  start(flow, surgery, solids, output, scene, output.read(steps));
+  start(flow, surgery, solids, output, scene, output.read(steps), read);
   summary.seconds_locate = locate.seconds();
   output.open();
   Run(flow, surgery, solids, output, steps, options.audit, summary).run(progress);

@@ -22,6 +22,7 @@ struct RunOptions {
   /// Go on from the last checkpoint in the folder; from the start where there is none. The outcome is that of a run
   /// that was never cut off.
   bool resume = false;
+  std::uint64_t max_memory = 0;  ///< as of ReadOptions, for each file that is read
 };
 
 /// Called after each step with the number of steps done and of all.

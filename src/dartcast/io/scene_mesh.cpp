@@ -82,8 +82,8 @@ void keep_cells_of(const MeshData& mesh, MeshData& frame) {
 }
 
 std::vector<Vec3> frame_positions(const std::filesystem::path& file, const MeshData& mesh,
-                                  const EnvironmentScene& environment) {
-  MeshFile read = read_mesh(file);
+                                  const EnvironmentScene& environment, const ReadOptions& options) {
+  MeshFile read = read_mesh(file, options);
   if (environment.skip_bad_cells && !read.mesh.types.empty()) {
     keep_cells_of(mesh, read.mesh);
   } else {
@@ -100,8 +100,8 @@ std::vector<Vec3> frame_positions(const std::filesystem::path& file, const MeshD
 
 }  // namespace
 
-SceneMesh load_scene_mesh(const EnvironmentScene& scene, Threads threads) {
-  ReadOptions options;
+SceneMesh load_scene_mesh(const EnvironmentScene& scene, const ReadOptions& read, Threads threads) {
+  ReadOptions options = read;
   if (const auto* patches = std::get_if<PatchArray>(&scene.patches)) options.patch_array = patches->name;
   MeshFile file = load_source(scene.mesh, options);
   scale_points(file, scene.scale);
@@ -128,13 +128,13 @@ std::vector<Vec3> point_vectors(const MeshData& mesh, const std::string& array) 
 }
 
 std::vector<DeformationStep> load_deformation(std::span<const DeformationScene> scene, const MeshData& mesh,
-                                              const EnvironmentScene& environment) {
+                                              const EnvironmentScene& environment, const ReadOptions& options) {
   std::vector<DeformationStep> steps;
   for (const DeformationScene& s : scene) {
     DeformationStep& step = steps.emplace_back(s.step);
     if (!s.field.empty()) step.field = point_vectors(mesh, s.field);
     if (!s.path.empty()) step.path = point_array(mesh, s.path, 1).values;
-    for (const auto& file : s.frames) step.frames.push_back(frame_positions(file, mesh, environment));
+    for (const auto& file : s.frames) step.frames.push_back(frame_positions(file, mesh, environment, options));
   }
   return steps;
 }

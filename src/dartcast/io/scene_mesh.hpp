@@ -10,6 +10,7 @@
 
 #include "dartcast/base/error.hpp"
 #include "dartcast/base/parallel.hpp"
+#include "dartcast/io/read_mesh.hpp"
 #include "dartcast/mesh/mesh_data.hpp"
 #include "dartcast/mesh/report.hpp"
 #include "dartcast/simulation/scene.hpp"
@@ -35,16 +36,17 @@ auto with_mesh_name(const MeshSource& mesh, Make&& make) {
   }
 }
 
-/// Throws InvalidMesh with the mesh file's name where the mesh is refused, or a region, array or patch that the scene
-/// names is not in it.
-SceneMesh load_scene_mesh(const EnvironmentScene& scene, Threads threads = {});
+/// Of the options `max_memory` counts. Throws InvalidMesh with the mesh file's name where the mesh is refused, or a
+/// region, array or patch that the scene names is not in it.
+SceneMesh load_scene_mesh(const EnvironmentScene& scene, const ReadOptions& options = {}, Threads threads = {});
 
 /// A point array of three components as vectors. Throws InvalidMesh that names the arrays there are.
 std::vector<Vec3> point_vectors(const MeshData& mesh, const std::string& array);
 
 /// The deformation's steps, with arrays taken from the mesh and frames read from their files, these scaled and without
-/// bad cells as the mesh is. Throws InvalidMesh.
+/// bad cells as the mesh is. Of the options `max_memory` counts. Throws InvalidMesh.
 std::vector<DeformationStep> load_deformation(std::span<const DeformationScene> scene, const MeshData& mesh,
-                                              const EnvironmentScene& environment = {});
+                                              const EnvironmentScene& environment = {},
+                                              const ReadOptions& options = {});
 
 }  // namespace dartcast

@@ -26,8 +26,8 @@ bool is_one_of(const std::array<std::string_view, n>& names, std::string_view na
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-Seeds read_csv_seeds(const std::filesystem::path& path) {
-  CsvTable table(path);
+Seeds read_csv_seeds(const std::filesystem::path& path, const ReadOptions& options) {
+  CsvTable table(path, options.max_memory);
   std::vector<std::size_t> columns;
   for (const char* name : {"x", "y", "z"}) columns.push_back(table.column(name, "x, y and z"));
   for (const std::string& name : table.names()) {
@@ -57,8 +57,8 @@ void check_components(const std::filesystem::path& path, const DataArray& array,
                             array.components, components));
 }
 
-Seeds read_vtp_seeds(const std::filesystem::path& path) {
-  PointFile file = read_points(path);
+Seeds read_vtp_seeds(const std::filesystem::path& path, const ReadOptions& options) {
+  PointFile file = read_points(path, options);
   Seeds seeds;
   seeds.points = std::move(file.points);
   for (DataArray& array : file.arrays) {
@@ -93,9 +93,9 @@ void check_values(const std::filesystem::path& path, const Seeds& seeds) {
 
 }  // namespace
 
-Seeds read_seeds(const std::filesystem::path& path) {
+Seeds read_seeds(const std::filesystem::path& path, const ReadOptions& options) {
   const bool csv = path.extension() == ".csv" && std::filesystem::is_regular_file(path);
-  Seeds seeds = csv ? read_csv_seeds(path) : read_vtp_seeds(path);
+  Seeds seeds = csv ? read_csv_seeds(path, options) : read_vtp_seeds(path, options);
   check_values(path, seeds);
   return seeds;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "dartcast/exact/vec3.hpp"
+#include "dartcast/io/read_mesh.hpp"
 
 namespace dartcast {
 
@@ -16,7 +17,8 @@ struct Seeds {
 
 /// Reads .csv, with the columns x, y, z and, where the file gives them, vx, vy, vz and radius; or .vtp, with the
 /// points' arrays velocity (of 3 components) and radius. What else a run's frames have is passed over: id, cell, kind,
-/// contacts, held. Throws Error, with the file, where another column or array is in it, or a value is out of range.
-Seeds read_seeds(const std::filesystem::path& path);
+/// contacts, held. Of the options `max_memory` counts. Throws Error, with the file, where another column or array is in
+/// it, or a value is out of range.
+Seeds read_seeds(const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace dartcast

@@ -21,9 +21,10 @@ Vec3 turned_about(const Vec3& x, const Vec3& turn) {
   return x * std::cos(angle) + cross(axis, x) * std::sin(angle) + axis * (dot(axis, x) * (1.0 - std::cos(angle)));
 }
 
-MeshData placed_surface(const BodyScene& scene) {
+MeshData placed_surface(const BodyScene& scene, const ReadOptions& options) {
   const auto* file = std::get_if<std::filesystem::path>(&scene.surface);
-  MeshData mesh = file != nullptr ? read_surface(*file).mesh : generate_barrel(std::get<BarrelOptions>(scene.surface));
+  MeshData mesh =
+      file != nullptr ? read_surface(*file, options).mesh : generate_barrel(std::get<BarrelOptions>(scene.surface));
   for (Vec3& x : mesh.points) x = turned_about(x * scene.scale, scene.rotate) + scene.at;
   return mesh;
 }
@@ -67,10 +68,10 @@ auto with_name(const char* kind, const std::string& name, Make&& make) {
 
 }  // namespace
 
-Solids::Solids(const Scene& scene, Environment& environment, const Responses& responses)
+Solids::Solids(const Scene& scene, Environment& environment, const Responses& responses, const ReadOptions& options)
     : scene_(scene), environment_(environment) {
   if (!scene.bodies.empty()) bodies_.emplace(environment, bodies_options(scene), responses);
-  for (const BodyScene& body : scene.bodies) with_name("body", body.name, [&] { add(body); });
+  for (const BodyScene& body : scene.bodies) with_name("body", body.name, [&] { add(body, options); });
   for (const CatheterScene& c : scene.catheters) {
     with_name("catheter", c.name, [&] { catheters_.emplace_back(environment, c.options); });
   }
@@ -78,8 +79,8 @@ Solids::Solids(const Scene& scene, Environment& environment, const Responses& re
   catheter_totals_.resize(catheters_.size());
 }
 
-void Solids::add(const BodyScene& scene) {
-  MeshData mesh = placed_surface(scene);
+void Solids::add(const BodyScene& scene, const ReadOptions& read) {
+  MeshData mesh = placed_surface(scene, read);
   const std::vector<Vec3> points = sampled(scene, mesh);
   if (points.empty()) throw Error("no particle fits into it; make its spacing smaller");
   BodyOptions options = scene.body;

@@ -11,6 +11,7 @@
 #include "dartcast/bodies/carried_surface.hpp"
 #include "dartcast/bodies/catheter.hpp"
 #include "dartcast/environment/audit.hpp"
+#include "dartcast/io/read_mesh.hpp"
 #include "dartcast/mesh/mesh_data.hpp"
 #include "dartcast/simulation/scene.hpp"
 
@@ -56,8 +57,9 @@ class Solids {
   };
 
   /// Makes them where the scene puts them. All outlive it. Throws Error that names the body or catheter: its surface
-  /// cannot be read or sampled, a particle is in no free cell (how many, and the first), the entry is not in the lumen.
-  Solids(const Scene& scene, Environment& environment, const Responses& responses);
+  /// cannot be read (of the options `max_memory` counts) or sampled, a particle is in no free cell (how many, and the
+  /// first), the entry is not in the lumen.
+  Solids(const Scene& scene, Environment& environment, const Responses& responses, const ReadOptions& options = {});
 
   [[nodiscard]] bool empty() const { return scene_.bodies.empty() && scene_.catheters.empty(); }
 
@@ -90,7 +92,7 @@ class Solids {
   void restore(const SolidsCheckpoint& saved);
 
  private:
-  void add(const BodyScene& scene);
+  void add(const BodyScene& scene, const ReadOptions& read);
 
   const Scene& scene_;
   Environment& environment_;

@@ -14,6 +14,7 @@
 
 #include "dartcast/io/face_stream.hpp"
 #include "dartcast/io/file_text.hpp"
+#include "dartcast/io/read_memory.hpp"
 
 namespace dartcast {
 namespace {
@@ -66,13 +67,17 @@ constexpr std::array<NumberType, 14> number_types = {{{"bit", 0, false, 0, 1},
 
 class LegacyChecker {
  public:
-  explicit LegacyChecker(std::string_view content) : text_(content) {}
+  explicit LegacyChecker(std::string_view content) : text_(content) { sizes_.file = content.size(); }
 
-  void run() {
+  ReadSizes run() {
     head();
     while (!text_.at_end()) section();
     if (!cells_.has_value()) text_.fail("the file ends before its CELLS; it is truncated");
     if (!typed_) text_.fail("the file ends before its CELL_TYPES; it is truncated");
+    sizes_.points = points_.value_or(0);
+    sizes_.cells = *cell_count();
+    sizes_.corners = cells_->points.size();
+    return sizes_;
   }
 
  private:
@@ -191,6 +196,7 @@ class LegacyChecker {
   void texts(std::uint64_t items, std::uint64_t components) {
     text_.check_count("texts", items, 1);
     if (components != 1) text_.fail("an array of texts must have one component");
+    sizes_.vtk += 64 * items;
     text_.line();
     for (std::uint64_t i = 0; i < items; ++i) {
       if (!binary_) {
@@ -241,6 +247,8 @@ class LegacyChecker {
     text_.check_count(what, components, 1);
     if (components != 0 && items > UINT64_MAX / components) text_.fail("an array is too large");
     const std::uint64_t n = items * components;
+    sizes_.values += n;
+    sizes_.vtk += n * std::max<std::size_t>(kind.bytes, 1);
     if (binary_) {
       text_.line();
       const std::uint64_t bytes = kind.bytes == 0 ? n / 8 + (n % 8 != 0 ? 1 : 0) : n;
@@ -302,6 +310,8 @@ class LegacyChecker {
       }
     } else {
       const auto stream = integers("corners", second, find_type("int"));
+      cells.offsets.reserve(first + 1);
+      cells.points.reserve(second);
       cells.offsets.push_back(0);
       for (std::size_t at = 0; at < stream.size();) {
         const std::int64_t n = stream[at++];
@@ -344,10 +354,13 @@ class LegacyChecker {
   std::uint64_t items_ = 0;
   enum class Owner : std::uint8_t { file, points, cells } owner_ = Owner::file;
   std::array<std::set<std::string>, 3> names_;  // by owner
+  ReadSizes sizes_;
 };
 
 }  // namespace
 
-void check_legacy_vtk(std::string_view content) { LegacyChecker(content).run(); }
+void check_legacy_vtk(std::string_view content, std::uint64_t max_memory) {
+  check_memory(memory_of_vtk(LegacyChecker(content).run()), max_memory);
+}
 
 }  // namespace dartcast

@@ -1,6 +1,7 @@
 // A look at a legacy .vtk file before VTK reads it.
 #pragma once
 
+#include <cstdint>
 #include <string_view>
 
 namespace dartcast {
@@ -10,6 +11,7 @@ namespace dartcast {
 /// the cells, in the file. Throws InvalidMesh with the line (or byte) where something is wrong, or where the data set
 /// is not an unstructured grid. VTK may then read the file without reaching beyond its arrays. Point numbers are not
 /// checked.
-void check_legacy_vtk(std::string_view content);
+/// `max_memory`: as of ReadOptions, for what VTK and the mesh need.
+void check_legacy_vtk(std::string_view content, std::uint64_t max_memory = 0);
 
 }  // namespace dartcast

@@ -230,16 +230,15 @@ ParsedMesh read_with(Reader& reader, const std::string& format, const std::strin
 
 }  // namespace
 
-ParsedMesh parse_vtu(const std::filesystem::path& path, std::string_view content, const std::string& patch_array) {
-  check_vtu(content, "UnstructuredGrid");
+ParsedMesh parse_vtu(const std::filesystem::path& path, std::string_view content, const ReadOptions& options) {
+  check_vtu(content, "UnstructuredGrid", options.max_memory);
   vtkNew<vtkXMLUnstructuredGridReader> reader;
   reader->SetFileName(path.c_str());
-  return read_with(*reader, "VTK XML (.vtu)", patch_array);
+  return read_with(*reader, "VTK XML (.vtu)", options.patch_array);
 }
 
-ParsedMesh parse_legacy_vtk(const std::filesystem::path& path, std::string_view content,
-                            const std::string& patch_array) {
-  check_legacy_vtk(content);
+ParsedMesh parse_legacy_vtk(const std::filesystem::path& path, std::string_view content, const ReadOptions& options) {
+  check_legacy_vtk(content, options.max_memory);
   vtkNew<vtkUnstructuredGridReader> reader;
   reader->SetFileName(path.c_str());
   reader->ReadAllScalarsOn();
@@ -249,7 +248,7 @@ ParsedMesh parse_legacy_vtk(const std::filesystem::path& path, std::string_view 
   reader->ReadAllColorScalarsOn();
   reader->ReadAllTCoordsOn();
   reader->ReadAllFieldsOn();
-  return read_with(*reader, "VTK legacy (.vtk)", patch_array);
+  return read_with(*reader, "VTK legacy (.vtk)", options.patch_array);
 }
 
 }  // namespace dartcast

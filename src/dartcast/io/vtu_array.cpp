@@ -274,6 +274,10 @@ std::uint64_t count_numbers(const VtuArray& array, const VtuEncoding& encoding) 
   return bytes / type.bytes;
 }
 
+std::uint64_t most_numbers(const VtuArray& array, const VtuEncoding& encoding) {
+  return array.format == "ascii" ? (array.text.size() + 1) / 2 : count_numbers(array, encoding);
+}
+
 void check_bytes(const VtuArray& array, const VtuEncoding& encoding) {
   if (array.format != "ascii") decode_bytes(array, encoding);
 }

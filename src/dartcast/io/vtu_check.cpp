@@ -8,6 +8,7 @@
 
 #include "dartcast/base/error.hpp"
 #include "dartcast/io/face_stream.hpp"
+#include "dartcast/io/read_memory.hpp"
 #include "dartcast/io/vtk_xml.hpp"
 #include "dartcast/io/vtu_array.hpp"
 
@@ -128,10 +129,37 @@ void check_field(const VtuArray& array, const VtuEncoding& encoding) {
   }
 }
 
+/// Of arrays as they announce themselves, not as the pieces do: these are compared later.
+ReadSizes sizes_of(const VtkXmlFile& file, std::uint64_t file_size) {
+  ReadSizes sizes;
+  sizes.file = 2 * file_size;
+  const auto numbers_of = [&](const VtuArray& array) { return most_numbers(array, file.encoding); };
+  for (const VtkXmlPiece& piece : file.pieces) {
+    for (const auto& [section, arrays] : piece.sections) {
+      for (const VtuArray& array : arrays) {
+        const std::uint64_t n = numbers_of(array);
+        const std::uint64_t bytes = n * vtu_type_bytes(array.type);
+        if (section == "Points") sizes.points += n / 3;
+        if (section == "Points" || section == "PointData" || section == "CellData") {
+          sizes.vtk += array.type == "String" ? 32 * n : bytes;
+          sizes.values += section == "Points" || array.type == "String" ? 0 : n;
+        } else {
+          (array.name == "offsets" ? sizes.cells : sizes.corners) += array.name == "types" ? 0 : n;
+        }
+      }
+    }
+  }
+  for (const VtuArray& array : file.field) {
+    sizes.vtk += numbers_of(array) * (array.type == "String" ? 32 : vtu_type_bytes(array.type));
+  }
+  return sizes;
+}
+
 }  // namespace
 
-void check_vtu(std::string_view content, std::string_view kind) {
+void check_vtu(std::string_view content, std::string_view kind, std::uint64_t max_memory) {
   const VtkXmlFile file = read_vtk_xml(content, kind);
+  check_memory(memory_of_vtk(sizes_of(file, content.size())), max_memory);
   for (const VtkXmlPiece& piece : file.pieces) check_piece(piece, file.encoding);
   for (const VtuArray& array : file.field) check_field(array, file.encoding);
 }

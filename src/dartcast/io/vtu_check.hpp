@@ -1,6 +1,7 @@
 // A look at a .vtu or .vtp file before VTK reads it.
 #pragma once
 
+#include <cstdint>
 #include <string_view>
 
 namespace dartcast {
@@ -10,6 +11,7 @@ namespace dartcast {
 /// base64 or raw, inline or appended, compressed or not. A compressed block may not grow more than 1100 times.
 /// `kind`: "UnstructuredGrid" or "PolyData". Throws InvalidMesh with the line or array where something is wrong, or
 /// where the file is of another kind. Point numbers are not checked.
-void check_vtu(std::string_view content, std::string_view kind);
+/// `max_memory`: as of ReadOptions; what the announced sizes need is counted before any data are decoded.
+void check_vtu(std::string_view content, std::string_view kind, std::uint64_t max_memory = 0);
 
 }  // namespace dartcast
