@@ -143,6 +143,20 @@ std::optional<Vec3> proved_inside(const std::array<Vec3, N>& v, const Vec3& x) {
   return lifted;
 }
 
+template <std::size_t N>
+const Vec3& nearest_corner(const std::array<Vec3, N>& v, const Vec3& x) {
+  return *std::min_element(v.begin(), v.end(),
+                           [&](const Vec3& a, const Vec3& b) { return dot(a - x, a - x) < dot(b - x, b - x); });
+}
+
+/// Whether x is as near to a corner as lifting may move it. At the corner its signs are simple, and all walls of the
+/// vertex are met at once.
+inline bool is_rounded_off(const Vec3& corner, const Vec3& x) {
+  const Vec3 d = corner - x;
+  const double off = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+  return off <= lift_distance(corner, x, few_doublings - 1);
+}
+
 inline Vec3 mean_of(const Corners& v) { return ((v[0] + v[1]) + (v[2] + v[3])) * 0.25; }
 inline Vec3 mean_of(const PlaneCorners& v) { return (v[0] + v[1] + v[2]) * (1.0 / 3.0); }
 
@@ -192,17 +206,15 @@ std::optional<Settled> lifted(const Space<Positions, N>& space, SimplexId start,
 /// is lifted off the facets that it is behind, one unit in the last place at first, doubling. Where that does not do,
 /// it is walked to from a point p of the simplex (its mean, where that is exactly inside; else its corner nearest to x)
 /// and lifted off the walls in the way; where these are too close together for that, a double between them is looked
-/// for (walk/nearby.hpp); in the end it is p. No wall is passed. Precondition: the simplex is positive, its cell free.
+/// for (walk/nearby.hpp); in the end it is p. No wall is passed. Precondition: the simplex is positive, its
+/// cell free.
 template <class Positions, std::size_t N>
 Settled settle(const Space<Positions, N>& space, SimplexId simplex, const std::array<Vec3, N>& v, const Vec3& rounded) {
   const Vec3 x = detail::flushed(rounded);
   if (detail::in_closed_simplex(v, x)) return {simplex, x};
   Vec3 p = detail::flushed(detail::mean_of(v));
   if (const auto lifted = detail::lifted_inside(v, p, x)) return {simplex, *lifted};
-  if (!detail::in_closed_simplex(v, p)) {
-    p = *std::min_element(v.begin(), v.end(),
-                          [&](const Vec3& a, const Vec3& b) { return dot(a - x, a - x) < dot(b - x, b - x); });
-  }
+  if (!detail::in_closed_simplex(v, p)) p = detail::nearest_corner(v, x);
   if (const auto settled = detail::reached(space, simplex, p, x)) return *settled;
   if (const auto settled = detail::lifted(space, simplex, p, x)) return *settled;
   return {simplex, detail::double_inside(v, x).value_or(p)};
