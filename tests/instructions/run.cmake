@@ -1,5 +1,5 @@
 # Counts the instructions of Environment::advance() per particle-step, exactly, and holds them under a bound.
-foreach(kind_and_bound still=300 moving=830 lattice=1760 plane=360 plane_moving=800)
+foreach(kind_and_bound still=300 moving=830 lattice=1760 plane=360 plane_moving=800 corner=12170)
   string(REGEX MATCH "(.*)=(.*)" ignored ${kind_and_bound})
   set(kind ${CMAKE_MATCH_1})
   set(bound ${CMAKE_MATCH_2})

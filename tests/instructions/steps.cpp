@@ -1,7 +1,7 @@
 // Fixed small scenes to count instructions in: `steps still`, `steps moving` or `steps lattice`, and in the plane
-// `steps plane` or `steps plane_moving`. What counts is what Environment::advance() executes (run.cmake); the number of
-// particle-steps is printed. And `steps edits EDGE COUNT`: edits of a box of EDGE^3 cells, each followed by the
-// particles.
+// `steps plane` or `steps plane_moving`; `steps corner` for particles that rest in a vertex. What counts is what
+// Environment::advance() executes (run.cmake); the number of particle-steps is printed. And `steps edits EDGE COUNT`:
+// edits of a box of EDGE^3 cells, each followed by the particles.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -15,6 +15,7 @@
 #include "dartcast/map/edit.hpp"
 #include "dartcast/mesh/generate_box.hpp"
 #include "dartcast/mesh/generate_rectangle.hpp"
+#include "dartcast/response/respond.hpp"
 #include "dartcast/simulation/seeding.hpp"
 
 namespace {
@@ -96,12 +97,40 @@ int edit(std::uint32_t box_edge, std::uint32_t count) {
   return 0;
 }
 
+// Under gravity in the vertex of a sharp tetrahedron, off it by rounding at first.
+int rest_in_corner() {
+  MeshData mesh;
+  mesh.points = {{0, 0, -1}, {-0.2, -0.1, 0}, {0.2, -0.1, 0}, {0, 0.25, 0}};
+  mesh.add_cell(CellType::tetrahedron, std::vector<std::uint32_t>{0, 1, 2, 3});
+  Environment environment(mesh, Threads{1});
+  Particles set;
+  const Vec3 at{0, 0, -1 + 1e-12};
+  for (std::size_t i = 0; i < particles; ++i) environment.add(set, std::span<const Vec3>(&at, 1));
+  const Acceleration gravity{{0, 0, -3}, 0.01};
+  const Responses responses({ResponseKind::reflect, 0.5, 0.0});
+  std::vector<Vec3> velocities(particles);
+  std::vector<Fate> fates(particles, Fate::alive);
+  std::vector<Vec3> targets(particles);
+  const Respond respond = respond_with(responses, velocities, fates, gravity.duration, gravity);
+  std::uint64_t contacts = 0;
+  for (std::size_t step = 0; step < steps; ++step) {
+    for (std::size_t i = 0; i < particles; ++i) {
+      velocities[i] += gravity.value * gravity.duration;
+      targets[i] = set[i].position + velocities[i] * gravity.duration;
+    }
+    contacts += environment.advance(set, targets, respond).contacts.contacts.size();
+  }
+  std::printf("%zu particle-steps, %llu contacts\n", particles * steps, static_cast<unsigned long long>(contacts));
+  return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc == 4 && std::strcmp(argv[1], "edits") == 0)
     return edit(static_cast<std::uint32_t>(std::atoi(argv[2])), static_cast<std::uint32_t>(std::atoi(argv[3])));
   const char* kind = argc == 2 ? argv[1] : "";
+  if (std::strcmp(kind, "corner") == 0) return rest_in_corner();
   const bool plane = std::strncmp(kind, "plane", 5) == 0;
   const bool moving = std::strcmp(kind, plane ? "plane_moving" : "moving") == 0;
   const bool lattice = std::strcmp(kind, "lattice") == 0;

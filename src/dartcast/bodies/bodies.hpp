@@ -87,8 +87,8 @@ struct BodiesStep {
 ///  computed anew at each stage. Particles then go there by Environment::advance(). At a contact the velocity is that
 ///  of the moment; all incident walls at once turn it round with restitution (bouncing: the particle was not on that
 ///  face at the end of the last step, and comes faster than the acceleration makes it in two steps) or without
-///  (sliding), and with friction (bodies/incident_walls.hpp); then the particle is integrated for the time left, which
-///  goes along the walls that it would enter, with friction.
+///  (sliding), and with friction (response/incident_walls.hpp); then the particle is integrated for the time left,
+///  which goes along the walls that it would enter, with friction.
 ///  2. The fits are computed again, and particles are pulled towards their goals, by Environment::advance() again: by
 ///  places only, so that it takes out energy. To be exact they are pulled to where they would be at rest in the body:
 ///  where the matching force is in balance with the centrifugal one, or with gravity where the body has met a wall.

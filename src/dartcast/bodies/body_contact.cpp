@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dartcast/bodies/incident_walls.hpp"
+#include "dartcast/response/incident_walls.hpp"
 
 namespace dartcast {
 
@@ -17,21 +17,9 @@ bool enters(const Vec3& v, std::span<const WallHit> walls) {
   return std::any_of(walls.begin(), walls.end(), [&](const WallHit& w) { return dot(v, w.normal) < 0.0; });
 }
 
-// Impacts on all walls at once, until v points into none: one may point it into another. Where they do not end, v runs
-// along the walls.
-template <class SurfaceOf>
-Vec3 answered(const Vec3& v, std::span<const WallHit> walls, const SurfaceOf& surface_of) {
-  Vec3 result = v;
-  for (std::size_t pass = 0; pass < 2 * walls.size(); ++pass) {
-    if (!enters(result, walls)) return result;
-    result = after_impact(result, walls, surface_of);
-  }
-  return held_back(result, walls).velocity;
-}
-
 // Along the walls, with friction, and not into those met earlier in the step.
 Vec3 along_walls(const Pass& pass, const Vec3& v, std::span<const WallHit> walls, std::span<const WallHit> earlier) {
-  const Vec3 result = answered(v, walls, [&](const WallHit& wall, double) {
+  const Vec3 result = rebounded(v, walls, [&](const WallHit& wall, double) {
     const Response& r = pass.responses->of(wall.patch);
     return WallSurface{0.0, r.kind == ResponseKind::slide ? 0.0 : r.friction};
   });
@@ -74,7 +62,7 @@ struct Meeting {
   // Bouncing on walls that the particle was not on, sliding on the others.
   [[nodiscard]] Vec3 bounced(const Vec3& relative) const {
     const double resting = resting_steps * pass.dt * norm(acceleration(contact.point, contact.time_of_impact));
-    return answered(relative, walls, [&](const WallHit& wall, double into) {
+    return rebounded(relative, walls, [&](const WallHit& wall, double into) {
       const Response& r = pass.responses->of(wall.patch);
       if (r.kind == ResponseKind::slide) return WallSurface{0.0, 0.0};
       const bool slides = into <= resting || pass.on[contact.particle].has(wall.face);

@@ -56,6 +56,11 @@ auto exact_determinant(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& 
   return exact_dot(exact_difference<N>(a, d), exact_cross(exact_difference<N>(c, d), exact_difference<N>(b, d)));
 }
 
+// Two equal points: the determinant is 0. At a vertex that is most of what the filter leaves open.
+bool has_equal(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  return a == d || b == d || c == d || a == b || a == c || b == c;
+}
+
 // use(determinant), an expansion no longer than it must be.
 template <class Use>
 auto with_exact_determinant(const Vec3& a0, const Vec3& b0, const Vec3& c0, const Vec3& d0, Use&& use) {
@@ -135,7 +140,7 @@ Sign orient3d_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) 
   if (!all_in_range(a, b, c, d)) return Sign::undecidable;
   const Filtered f = filtered_determinant(a, b, c, d);
   // Points of a plane across an axis: a difference is 0 only where it is 0 exactly.
-  if (f.extent.x == 0.0 || f.extent.y == 0.0 || f.extent.z == 0.0) return Sign::zero;
+  if (f.extent.x == 0.0 || f.extent.y == 0.0 || f.extent.z == 0.0 || has_equal(a, b, c, d)) return Sign::zero;
   if (bound_holds(f.extent) && rounds_nothing(f.extent, a, b, c, d)) return sign(f.value);
   return with_exact_determinant(a, b, c, d, [](const auto& value) { return static_cast<Sign>(value.sign()); });
 }
@@ -146,6 +151,7 @@ double orient3d_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d
   const bool bounded = bound_holds(f.extent);
   if (f.exceeds(enough) && filter_applies(f.extent)) return f.value;
   if (!all_in_range(a, b, c, d)) return std::numeric_limits<double>::quiet_NaN();
+  if (has_equal(a, b, c, d)) return 0.0;
   if (bounded && (f.exceeds(enough) || rounds_nothing(f.extent, a, b, c, d))) return f.value;
   if (bounded && !rounds_difference(a, d) && !rounds_difference(b, d) && !rounds_difference(c, d)) {
     const double value = paired_determinant(flushed(a), flushed(b), flushed(c), flushed(d));

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "dartcast/base/error.hpp"
+#include "dartcast/response/incident_walls.hpp"
 
 namespace dartcast {
 
@@ -50,18 +52,8 @@ void Responses::set(Patch patch, const Response& response) {
   by_patch_[patch.value] = {response, true};
 }
 
-Vec3 reflected(Vec3 v, std::span<const WallHit> walls, double restitution, double friction) {
-  for (std::size_t pass = 0; pass < 2 * walls.size(); ++pass) {
-    const WallHit* wall = most_opposed(v, walls);
-    if (wall == nullptr) break;
-    const double into = -dot(v, wall->normal);
-    const Vec3 tangential = v + wall->normal * into;
-    const double speed = norm(tangential);
-    const double lost = friction * (1.0 + restitution) * into;
-    const double kept = speed > lost ? 1.0 - lost / speed : 0.0;
-    v = tangential * kept + wall->normal * (restitution * into);
-  }
-  return v;
+Vec3 reflected(const Vec3& v, std::span<const WallHit> walls, double restitution, double friction) {
+  return rebounded(v, walls, [&](const WallHit&, double) { return WallSurface{restitution, friction}; });
 }
 
 Vec3 slid(const Vec3& v, std::span<const WallHit> walls, std::span<const WallHit> earlier) {
@@ -79,25 +71,58 @@ Vec3 slid(const Vec3& v, std::span<const WallHit> walls, std::span<const WallHit
   return corner ? Vec3{} : line;
 }
 
-Respond respond_with(const Responses& responses, std::span<Vec3> velocities, std::span<Fate> fates, double dt) {
-  if (!(dt > 0.0)) throw InvalidArgument("the duration of a step must be positive");
-  if (velocities.size() != fates.size()) throw InvalidArgument("one velocity and one fate per particle are needed");
-  return [&responses, velocities, fates, dt](const Contact& contact, std::span<const WallHit> walls,
-                                             std::span<const WallHit> earlier) -> Continuation {
-    Fate& fate = fates[contact.particle];
-    if (fate != Fate::alive) return {};
-    const Response& response = responses.of(walls.front().patch);
+namespace {
+
+// What respond_with() was given.
+struct Answers {
+  const Responses& responses;
+  std::span<Vec3> velocities;
+  std::span<Fate> fates;
+  double dt;
+  Acceleration acceleration;
+
+  [[nodiscard]] Vec3 rebound(const Vec3& v, const JointWalls& walls, const Vec3& lead) const {
+    const auto surface_of = [&](const WallHit& wall, double) {
+      const Response& r = responses.of(wall.patch);
+      return r.kind == ResponseKind::slide ? WallSurface{} : WallSurface{r.restitution, r.friction};
+    };
+    return rebounded(v, walls, surface_of, lead);
+  }
+
+  // Where accelerated, the way left is that of the velocity; else it may be of another making, and is reflected itself.
+  [[nodiscard]] Continuation reflect(const Contact& contact, std::span<const WallHit> walls,
+                                     std::span<const WallHit> earlier) const {
+    const JointWalls met(walls, contact.last ? earlier : earlier.last(contact.together));
     const Vec3 wall_velocity = contact.wall_displacement * (1.0 / dt);
     Vec3& velocity = velocities[contact.particle];
-    const Vec3 relative = velocity - wall_velocity;
-    switch (response.kind) {
-      case ResponseKind::reflect:
-        velocity = wall_velocity + reflected(relative, walls, response.restitution, response.friction);
-        return {contact.last ? slid(contact.unused, walls, earlier)
-                             : reflected(contact.unused, walls, response.restitution, response.friction),
-                true};
+    const double time = contact.time_of_impact;
+    const Vec3 lead = acceleration.value * (acceleration.duration * (time - 0.5));
+    const Vec3 relative = rebound(velocity - wall_velocity, met, lead);
+    velocity = wall_velocity + relative;
+    if (acceleration.value != Vec3{}) return {relative * ((1.0 - time) * acceleration.duration), true};
+    return {rebound(contact.unused, met, {}), true};
+  }
+};
+
+}  // namespace
+
+Respond respond_with(const Responses& responses, std::span<Vec3> velocities, std::span<Fate> fates, double dt,
+                     const Acceleration& acceleration) {
+  if (!(dt > 0.0)) throw InvalidArgument("the duration of a step must be positive");
+  if (velocities.size() != fates.size()) throw InvalidArgument("one velocity and one fate per particle are needed");
+  if (acceleration.value != Vec3{} && !(acceleration.duration > 0.0))
+    throw InvalidArgument("the duration of an acceleration must be positive");
+  const Answers answers{responses, velocities, fates, dt, acceleration};
+  return [answers](const Contact& contact, std::span<const WallHit> walls,
+                   std::span<const WallHit> earlier) -> Continuation {
+    Fate& fate = answers.fates[contact.particle];
+    if (fate != Fate::alive) return {};
+    const Vec3 wall_velocity = contact.wall_displacement * (1.0 / answers.dt);
+    Vec3& velocity = answers.velocities[contact.particle];
+    switch (answers.responses.of(walls.front().patch).kind) {
+      case ResponseKind::reflect: return answers.reflect(contact, walls, earlier);
       case ResponseKind::slide:
-        velocity = wall_velocity + slid(relative, walls, earlier);
+        velocity = wall_velocity + slid(velocity - wall_velocity, walls, earlier);
         return {slid(contact.unused, walls, earlier), true};
       case ResponseKind::stick:
         velocity = wall_velocity;
@@ -108,6 +133,27 @@ Respond respond_with(const Responses& responses, std::span<Vec3> velocities, std
     }
     return {};
   };
+}
+
+void hold_stopped(const StepReport& report, const Responses& responses, std::span<Vec3> velocities,
+                  std::span<const Fate> fates, double dt, const Acceleration& acceleration) {
+  const std::vector<Contact>& contacts = report.contacts.contacts;
+  auto next = contacts.begin();
+  for (const Stopped& stopped : report.stopped) {
+    next = std::find_if(next, contacts.end(), [&](const Contact& c) { return c.particle > stopped.particle; });
+    if (next == contacts.begin() || std::prev(next)->particle != stopped.particle) continue;
+    const Contact& contact = *std::prev(next);
+    const std::span<const WallHit> walls = report.contacts.walls_of(contact);
+    if (fates[contact.particle] != Fate::alive || responses.of(walls.front().patch).kind != ResponseKind::reflect)
+      continue;
+    const Vec3 wall_velocity = contact.wall_displacement * (1.0 / dt);
+    Vec3& velocity = velocities[contact.particle];
+    const Vec3 relative = velocity - wall_velocity;
+    const Vec3 gained = acceleration.value * acceleration.duration;
+    const double energy = dot(relative, relative) + 2.0 * (contact.time_of_impact - 0.5) * dot(gained, relative);
+    const HeldBack held = held_back(relative, {walls, report.contacts.earlier_walls_of(contact)});
+    velocity = wall_velocity + shortened(held.velocity, energy, gained * 0.5);
+  }
 }
 
 }  // namespace dartcast

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "dartcast/environment/environment.hpp"
 #include "dartcast/exact/vec3.hpp"
 #include "dartcast/walk/contact.hpp"
 
@@ -46,16 +47,40 @@ class Responses {
 /// What has become of a particle.
 enum class Fate : std::uint8_t { alive, stuck, absorbed, escaped };
 
-/// A callable for Environment::advance() that answers contacts by `responses` (the patch of the wall met first decides)
-/// and writes each particle's new velocity and fate. `velocities` in length per time, `dt` the step's duration > 0. The
-/// spans, one entry per particle, and `responses` must outlive it. A particle already absorbed, escaped or
-/// stuck goes no further at a contact: give it its own position as the target.
-Respond respond_with(const Responses& responses, std::span<Vec3> velocities, std::span<Fate> fates, double dt);
+/// A constant acceleration of all particles, where nothing else changes their velocities between contacts: each target
+/// is position + velocity * duration, with the velocity after the acceleration (the symplectic rule of Euler).
+struct Acceleration {
+  Vec3 value;
+  double duration = 0.0;  ///< of one advance(), > 0
+};
+
+/// A callable for Environment::advance() that answers contacts by `responses` and writes each particle's new velocity
+/// and fate. The patch of the wall met first decides which response it is; where that is a reflection, each wall gives
+/// its own restitution and friction. `velocities` in length per time, `dt` the duration > 0 in which the vertices move.
+/// The spans, one entry per particle, and `responses` must outlive it. A particle already absorbed, escaped or stuck
+/// goes no further at a contact: give it its own position as the target.
+///
+/// Reflection acts on all walls at once: those of the contact, and those met at the same place (Contact::together); at
+/// the last contact those met before in the step, too, so that the velocity points into none of them, nor does what it
+/// does from step to step while the particle is wedged. At no contact does the kinetic energy relative to the wall
+/// grow, as it is computed. With an `acceleration` that is the energy at the moment of the contact, and so the sum of
+/// kinetic and potential energy is bounded for any number of steps (docs/method.md, "Reflection"); without one it
+/// changes at each contact by up to the work of a step.
+Respond respond_with(const Responses& responses, std::span<Vec3> velocities, std::span<Fate> fates, double dt,
+                     const Acceleration& acceleration = {});
+
+/// Gives particles that a step has stopped, at a wall beyond their last contact (StepReport::stopped), a velocity that
+/// all walls met in the step permit, with no more energy than they had at that wall: they stand still for the rest of
+/// the step, and what they do not fall they do not gain. To be called after an advance() with respond_with(), with the
+/// same arguments. Cost: linear in the contacts of the step; nothing where none is stopped.
+void hold_stopped(const StepReport& report, const Responses& responses, std::span<Vec3> velocities,
+                  std::span<const Fate> fates, double dt, const Acceleration& acceleration = {});
 
 // The operators, for a caller's own responses. Vectors are relative to the wall; walls in the order of a contact's.
 
-/// Rebound from every wall that v points into, the one most opposed first.
-Vec3 reflected(Vec3 v, std::span<const WallHit> walls, double restitution, double friction);
+/// Rebound from all walls at once (response/incident_walls.hpp), whatever their order: it points into none of them, and
+/// is not longer than v.
+Vec3 reflected(const Vec3& v, std::span<const WallHit> walls, double restitution, double friction);
 
 /// Projection on the newest walls; an earlier wall joins (a crease, a corner) only if the projected vector points into
 /// it: joined at once, two nearly coplanar fan triangles would make a false crease.

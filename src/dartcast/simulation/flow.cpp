@@ -234,15 +234,17 @@ void Flow::advance_segment(unsigned segment) {
     aim(dt, moving);
   }
   const Timer timer(totals_.seconds_detect);
-  const Respond respond = respond_with(responses_, velocities_, fates_, options_.dt);
+  const Respond respond = respond_with(responses_, velocities_, fates_, options_.dt, acceleration(dt));
   if (spheres_ == 0) {
     StepReport report = environment_.advance(particles_, targets_, respond, options_.step);
+    hold_stopped(report, responses_, velocities_, fates_, options_.dt, acceleration(dt));
     append_segment(last_.report, std::move(report), segment, options_.substeps);
     return;
   }
   const std::span<const double> clearances = collides() ? clearances_ : std::span<const double>();
   SphereReport report =
       stepper_.advance(environment_, particles_, radii_, targets_, respond, options_.step, clearances);
+  hold_stopped(report.step, responses_, velocities_, fates_, options_.dt, acceleration(dt));
   append_segment(last_.report, std::move(report.step), segment, options_.substeps);
   for (const SphereOverlap& o : report.overlaps) totals_.deepest_in_wall = std::max(totals_.deepest_in_wall, o.depth);
   totals_.wall_overlaps += report.overlaps.size();
@@ -266,6 +268,13 @@ Vec3 Flow::accelerated(const Vec3& v, const Vec3& flow, double dt) const {
   if (options_.drag == 0.0) return field_ ? flow : v + options_.gravity * dt;
   const double lost = -std::expm1(-options_.drag * dt);
   return v + (flow + options_.gravity * (1.0 / options_.drag) - v) * lost;
+}
+
+// What contacts know of the forces: nothing where a field or other spheres make velocities, too. Drag takes its part.
+Acceleration Flow::acceleration(double dt) const {
+  if (field_ || collides()) return {};
+  if (options_.drag == 0.0) return {options_.gravity, dt};
+  return {options_.gravity * (-std::expm1(-options_.drag * dt) / (options_.drag * dt)), dt};
 }
 
 // A particle's velocity after the acceleration, and where it then wants to go: relative to positions before a move. One

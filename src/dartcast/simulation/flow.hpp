@@ -224,6 +224,7 @@ class Flow {
   void aim(double dt, bool moving);
   [[nodiscard]] Aim aim_at(std::size_t i, double dt, bool moving) const;
   [[nodiscard]] Vec3 accelerated(const Vec3& v, const Vec3& flow, double dt) const;
+  [[nodiscard]] Acceleration acceleration(double dt) const;
   void count_contacts();
   void mark_held();
   void remove_absorbed(const FollowReport& report, std::span<const State> before);

@@ -130,6 +130,8 @@ bool SphereRun::touched_by_centre(const SphereScene& scene, const State& state, 
 bool SphereRun::follow(const SphereScene& scene, const State& state, Contact& contact) {
   const auto count = static_cast<unsigned>(contacts_.size());
   contact.last = count >= scene.options->max_contacts;
+  if (count == 1 || contact.time_of_impact - time_ >= share_together) first_here_ = contact.first_wall;
+  contact.together = contact.first_wall - first_here_;
   time_ = contact.time_of_impact;
   const bool asked = static_cast<bool>(*scene.respond);
   if (!asked || count > scene.options->max_contacts) {

@@ -55,7 +55,8 @@ class SphereRun {
   double radius_ = 0.0;
   Vec3 begin_;  // of the stretch
   Vec3 aim_;
-  double time_ = 0.0;  // when it began
+  double time_ = 0.0;             // when it began
+  std::uint32_t first_here_ = 0;  // of the walls met at the place of the last contact
   bool moving_ = false;
   unsigned pushes_ = 0;
   SphereWay way_;

@@ -22,6 +22,10 @@ struct WallHit {
   Vec3 normal;
 };
 
+/// Contacts of a particle less than this share of the step apart count as one place: it has hardly moved. Which walls a
+/// response joins depends on it, no decision of a walk.
+inline constexpr double share_together = 0x1p-20;
+
 struct Contact {
   std::uint32_t particle = 0;
   Kind kind = Kind::face;  ///< of the place on the wall: face, edge or vertex
@@ -30,6 +34,7 @@ struct Contact {
       0;  ///< its walls are walls[first_wall .. first_wall + wall_count) of the list; the one met first
   std::uint32_t wall_count = 0;
   std::uint32_t earlier = 0;    ///< number of walls before those that this particle met earlier in the same step
+  std::uint32_t together = 0;   ///< so many of these, the last ones, were met at this place (share_together)
   bool last = false;            ///< no further contact is allowed in this step
   double time_of_impact = 0.0;  ///< fraction of the step, in [0, 1]
   /// On the wall, rounded. The particle is put into the free closed cell there: at most 256 units in the last place of

@@ -190,6 +190,19 @@ Vec3 nearest_known(const std::array<Vec3, N>& v, const Vec3& p, const Vec3& x) {
   return nearest;
 }
 
+template <std::size_t N>
+Vec3 nearest_corner(const std::array<Vec3, N>& v, const Vec3& x) {
+  return nearest_known(v, flushed(v[0]), x);
+}
+
+/// Whether x is as near to a corner as lifting may move it. At the corner its signs are simple, and all walls of the
+/// vertex are met at once.
+inline bool is_rounded_off(const Vec3& corner, const Vec3& x) {
+  const Vec3 d = corner - x;
+  const double off = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+  return off <= lift_distance(corner, x, few_doublings - 1);
+}
+
 inline Vec3 mean_of(const Corners& v) { return ((v[0] + v[1]) + (v[2] + v[3])) * 0.25; }
 inline Vec3 mean_of(const PlaneCorners& v) { return (v[0] + v[1] + v[2]) * (1.0 / 3.0); }
 
@@ -247,7 +260,7 @@ Settled settle(const Space<Positions, N>& space, SimplexId simplex, const std::a
   if (detail::in_closed_simplex(v, x)) return {simplex, x};
   Vec3 p = flushed(detail::mean_of(v));
   if (const auto lifted = detail::lifted_inside(v, p, x)) return {simplex, *lifted};
-  if (!detail::in_closed_simplex(v, p)) p = detail::nearest_known(v, flushed(v[0]), x);
+  if (!detail::in_closed_simplex(v, p)) p = detail::nearest_corner(v, x);
   if (!in_exact_range(x)) return {simplex, detail::nearest_known(v, p, x)};
   if (const auto settled = detail::reached(space, simplex, p, x)) return *settled;
   if (const auto settled = detail::lifted(space, simplex, p, x)) return *settled;

@@ -23,6 +23,8 @@ struct RunOf {
   StepResult result{};
   unsigned contact_count = 0;
   std::uint32_t first_wall = 0;  // of this particle in this step
+  std::uint32_t first_here = 0;  // of those met at the place of the last contact
+  double last_time = -1.0;       // of the last contact
   TestCounts tests{};
   [[no_unique_address]] Recorder recorder{};
 };
@@ -98,6 +100,9 @@ class Part {
     contact.last = ++run.contact_count >= options_.max_contacts;
     stretch.begin += t * (stretch.end - stretch.begin);
     contact.time_of_impact = stretch.begin;
+    if (stretch.begin - run.last_time >= share_together) run.first_here = contact.first_wall;
+    contact.together = contact.first_wall - run.first_here;
+    run.last_time = stretch.begin;
     run.recorder.put(run.state, contact.time_of_impact);
     const Vec3 later = stretch.later - contact.wall_displacement * (1.0 - stretch.end);
     contact.displacement = (q - p) + later;
@@ -135,18 +140,27 @@ class Part {
     return respond_(contact, run.contacts.walls_of(contact), run.contacts.earlier_walls_of(contact));
   }
 
-  // The contact point is rounded: it is settled in the simplex at the wall. Where that would put the particle farther
-  // from the point than it was at p, it stays there, in the simplex that the segment began in.
+  // The contact point is rounded: it is put next to where it is, in the simplex at the wall. Where that would put the
+  // particle farther from the point than it was at p, it stays there, in the simplex that the segment began in.
   void place(Run& run, const Walk& w, const std::array<Vec3, N>& corners, const Vec3& p, const Contact& contact) const {
     if (w.at_end) return run.state.put(w.simplex, contact.point);
     if (const auto proved = proved_inside(corners, contact.point)) return run.state.put(w.wall_simplex, *proved);
-    const Settled settled = settle(space_, w.wall_simplex, corners, contact.point);
+    const Settled settled = next_to(w.wall_simplex, corners, contact.point);
     const auto distance = [&](const Vec3& x) {
       return std::hypot(x.x - contact.point.x, x.y - contact.point.y, x.z - contact.point.z);
     };
     const double unit = lift_distance(contact.point, contact.point, 0);
     if (distance(settled.position) > std::max(distance(p), most_units * unit)) return;
     run.state.put(settled.simplex, settled.position);
+  }
+
+  // Where the filter proves nothing: at a corner that is as near as rounding; else where x settles, or at a corner that
+  // is nearer.
+  [[nodiscard]] Settled next_to(SimplexId simplex, const std::array<Vec3, N>& v, const Vec3& x) const {
+    const Settled corner = {simplex, nearest_corner(v, x)};
+    if (is_rounded_off(corner.position, x)) return corner;
+    const Settled settled = settle(space_, simplex, v, x);
+    return norm(corner.position - x) < norm(settled.position - x) ? corner : settled;
   }
 
   // Where to go after a contact; along a wall, the target is lifted off the planes that rounding put it behind, but not
@@ -295,7 +309,7 @@ template <std::size_t N, class Recorder>
 StepResult Stepper::step_in(std::uint32_t particle, State& state, Weights& weights, const Vec3& target,
                             ContactList& contacts, Counters& counters, const Begun* begun,
                             const Recorder& recorder) const {
-  detail::RunOf<Recorder> run{particle, state, contacts, counters, {}, 0, 0, {}, recorder};
+  detail::RunOf<Recorder> run{particle, state, contacts, counters, {}, 0, 0, 0, -1.0, {}, recorder};
   run.first_wall = static_cast<std::uint32_t>(contacts.walls.size());
   const SimplexId start = state.at();
   const Vec3 p = state.position;

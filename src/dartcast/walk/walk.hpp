@@ -57,8 +57,12 @@ inline constexpr std::uint8_t side_edge[4][4][2] = {{{0, 0}, {2, 3}, {3, 1}, {1,
 template <std::size_t N>
 unsigned zeros_of(const std::array<Vec3, N>& v, const Vec3& x) {
   constexpr unsigned all = (1U << N) - 1U;
+  const Determinants d(v, x);
+  for (unsigned i = 0; i < N; ++i) {  // a corner: on all facets but the one opposite to it
+    if (v[i] == x && d.decides(i) && in_exact_range(x)) return all & ~(1U << i);
+  }
   std::uint64_t exact = 0;
-  return signs_of(Determinants(v, x), v, x, all, exact).zero;
+  return signs_of(d, v, x, all, exact).zero;
 }
 
 /// The shift that breaks a walk's ties, made at the first tie.
