@@ -85,7 +85,7 @@ void add_run(CLI::App& app, int& status) {
   CLI::App* verb = app.add_subcommand("run", "Run a scene; writes a folder that ParaView opens.");
   verb->add_option("SCENE", a->scene, "a scene in TOML")->required();
   verb->add_option("-o,--output", a->folder, "folder for the output (the scene's name with -out)");
-  verb->add_option("-j,--threads", a->threads, "threads (all the machine has)")->check(CLI::Range(1U, 1024U));
+  verb->add_option("-j,--threads", a->threads, "threads (all the machine has)")->check(CLI::Range(1U, max_threads()));
   verb->add_option("--steps", a->steps, "number of steps, instead of the scene's");
   verb->add_option("--seed", a->seed, "seed for all that is random, instead of the scene's");
   verb->add_flag("--audit", a->audit, "check each particle after each step in exact arithmetic (slow)");
