@@ -18,12 +18,15 @@ constexpr std::size_t wall_grain = 256;
 // place of a wall that is far away says little about what is touched.
 constexpr double wall_share = 0.25;
 
+constexpr double smallest_weighed = 0x1p-100;  // a smaller sphere gets the mass of this one: its own could be 0
+
 }  // namespace
 
 void Flow::set_bodies(Bodies& bodies) {
   if (options_.substeps != 1) throw InvalidArgument("flow: spheres and bodies meet once in a step: substeps must be 1");
   if (bodies.options().dt != options_.dt)
     throw InvalidArgument("flow: the steps of bodies that its spheres meet must be as long as its own");
+  if (&bodies.environment() != &environment_) throw InvalidArgument("flow: the bodies are in another environment");
   bodies_ = &bodies;
 }
 
@@ -38,8 +41,10 @@ void Flow::weigh() {
     const double r = radii_[i];
     const bool meets = !particles_[i].held && (fates_[i] == Fate::alive || fates_[i] == Fate::stuck);
     met_radii_[i] = meets ? r : 0.0;
-    const double size = plane ? std::numbers::pi * r * r : 4.0 / 3.0 * std::numbers::pi * r * r * r;
-    inverse_masses_[i] = fates_[i] == Fate::alive && size > 0.0 ? 1.0 / (density * size) : 0.0;
+    const double weighed = std::max(r, smallest_weighed);
+    const double size =
+        plane ? std::numbers::pi * weighed * weighed : 4.0 / 3.0 * std::numbers::pi * weighed * weighed * weighed;
+    inverse_masses_[i] = fates_[i] == Fate::alive && r > 0.0 ? 1.0 / (density * size) : 0.0;
   }
 }
 

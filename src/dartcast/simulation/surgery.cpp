@@ -9,6 +9,12 @@
 
 namespace dartcast {
 
+namespace {
+
+constexpr double most_steps = 0x1p+53;
+
+}  // namespace
+
 Surgery::Surgery(const std::vector<Event>& events, const RemeshScene& remesh, const CrowdingScene& crowding, double dt,
                  Flow& flow)
     : events_(events),
@@ -17,6 +23,12 @@ Surgery::Surgery(const std::vector<Event>& events, const RemeshScene& remesh, co
       crowding_(crowding.options),
       dt_(dt),
       flow_(flow) {
+  for (std::size_t i = 0; i < events_.size(); ++i) {
+    const double at = events_[i].at;
+    if (!(at >= 0.0 && at <= most_steps * dt))
+      throw InvalidArgument(fmt::format("event {} ({}): its time is {} s: it must be between 0 and {} s", i + 1,
+                                        event_kind_names[events_[i].what.index()], at, most_steps * dt));
+  }
   const Map& map = flow.environment().map();
   if (map.dimension() == 2 && relieve_every_ > 0)
     throw InvalidArgument("crowding: in the plane cells are not subdivided; leave [crowding] out");

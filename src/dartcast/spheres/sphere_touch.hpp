@@ -7,8 +7,8 @@
 
 namespace dartcast {
 
-/// The largest radius of a sphere, in the unit of the positions: what is made of it then stays in range. That of a
-/// point is 0.
+/// The largest radius of a sphere, in the unit of the positions. Volumes and masses then do not overflow. A point has
+/// the radius 0.
 inline constexpr double largest_radius = 0x1p+100;
 inline bool is_radius(double r) { return r >= 0.0 && r <= largest_radius; }
 
