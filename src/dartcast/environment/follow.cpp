@@ -142,10 +142,25 @@ class Following {
     s.touching_count = static_cast<std::uint8_t>(kept - s.touching.begin());
   }
 
+  // Among the cells that took the place of the particle's own. One on a wall stays on its side: the way from there to
+  // the middle of its old simplex begins in the new one.
+  template <std::size_t N>
+  [[nodiscard]] SimplexId place_of(std::uint32_t i) const {
+    const State& s = particles_.states_[i];
+    std::array<Vec3, N> old;
+    for (std::size_t k = 0; k < N; ++k) old[k] = complex_.positions()[particles_.vertices_[i][k]];
+    const Vec3 middle = detail::flushed(detail::mean_of(old));
+    if (!s.held && detail::in_closed_simplex(old, middle)) {
+      const SimplexId at = locator_->find(complex_, s.position, middle);
+      if (at.valid()) return at;
+    }
+    return locator_->find(complex_, s.position);
+  }
+
   void locate(std::uint32_t i) {
     if (!locator_) locator_.emplace(complex_, edit_.map.added);
     State& s = particles_.states_[i];
-    const SimplexId at = locator_->find(complex_, s.position);
+    const SimplexId at = map().dimension() == 2 ? place_of<3>(i) : place_of<4>(i);
     if (!at.valid()) return strand(i, Place::outside, at);
     if (!map().is_free(at.cell)) return strand(i, Place::blocked, at);
     s.put(at, s.position);
