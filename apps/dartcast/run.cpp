@@ -16,8 +16,6 @@ namespace dartcast::app {
 
 namespace {
 
-constexpr std::uint64_t most_threads = 1024;
-
 struct Arguments {
   std::string scene;
   std::string folder;
@@ -94,7 +92,7 @@ void add_run(CLI::App& app, int& status) {
   verb->add_option("SCENE", a->scene, "a scene in TOML")->required();
   verb->add_option("-o,--output", a->folder, "folder for the output (the scene's name with -out)");
   verb->add_option("-j,--threads", a->threads, "threads (all the machine has)")
-      ->transform(whole_number(1, most_threads));
+      ->transform(whole_number(1, max_threads()));
   verb->add_option("--steps", a->steps, "number of steps, instead of the scene's")
       ->transform(whole_number(0, most_steps));
   verb->add_option("--seed", a->seed, "seed for all that is random, instead of the scene's")

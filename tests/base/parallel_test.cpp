@@ -1,13 +1,21 @@
 #include "dartcast/base/parallel.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
 #include <mutex>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "dartcast/base/error.hpp"
+#include "tier.hpp"
 
 namespace dartcast::parallel_test {
 
@@ -82,6 +90,73 @@ TEST_P(ParallelFor, MayBeNested) {
   });
   EXPECT_EQ(done, std::vector<int>(64, 1));
 }
+
+// --- more threads than there can be
+
+std::string refusal(Threads threads) {
+  try {
+    check_threads(threads);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return {};
+}
+
+TEST(ParallelForRefuses, MoreThreadsThanCanBeAskedFor) {
+  EXPECT_GE(max_threads(), 256U);
+  for (const unsigned count : {max_threads() + 1, 100'000U, 0x7fffffffU, 0x80000000U, 0xffffffffU}) {
+    const std::string why = refusal({count});
+    EXPECT_NE(why.find(std::to_string(count) + " threads"), std::string::npos) << why;
+    EXPECT_NE(why.find("at most " + std::to_string(max_threads())), std::string::npos) << why;
+    for (const std::size_t items : {0U, 1U, 100U})
+      EXPECT_THROW(parallel_for(items, 1, {count}, [](std::size_t, std::size_t) { FAIL(); }), InvalidArgument);
+  }
+}
+
+// In a process of its own: lets it take so much more memory, where the stack of each thread takes some megabytes.
+void limit_memory(std::size_t bytes) {
+  std::size_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  const rlim_t most = pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) + bytes;
+  const rlimit limit = {most, most};
+  setrlimit(RLIMIT_AS, &limit);
+}
+
+class ParallelForUnderALimit : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (test::sanitized()) GTEST_SKIP() << "sanitizers take more memory than any limit";
+    testing::GTEST_FLAG(death_test_style) = "threadsafe";
+  }
+};
+
+[[noreturn]] void ask_for_too_many() {
+  limit_memory(std::size_t{100} << 20U);
+  const std::string why = refusal({200});
+  int done = 0;
+  parallel_for(2, 1, {2}, [&](std::size_t, std::size_t) { __atomic_add_fetch(&done, 1, __ATOMIC_RELAXED); });
+  try {
+    parallel_for(1000, 1, {200}, [](std::size_t, std::size_t) { std::abort(); });
+  } catch (const Error& e) {
+    std::fprintf(stderr, "%d done; %s\n", done, e.what());
+    std::exit(why.find("200 threads: the system gives ") == 0 ? 0 : 2);
+  }
+  std::exit(3);
+}
+
+TEST_F(ParallelForUnderALimit, SaysHowManyThreadsThereAre) {
+  EXPECT_EXIT(ask_for_too_many(), testing::ExitedWithCode(0),
+              "^2 done; 200 threads: the system gives [0-9]+ now; ask for fewer");
+}
+
+[[noreturn]] void ask_for_all() {
+  limit_memory(std::size_t{4} << 20U);
+  int done = 0;
+  parallel_for(100, 1, {}, [&](std::size_t, std::size_t) { __atomic_add_fetch(&done, 1, __ATOMIC_RELAXED); });
+  std::exit(done == 100 ? 0 : 1);
+}
+
+TEST_F(ParallelForUnderALimit, TakesThoseThatThereAre) { EXPECT_EXIT(ask_for_all(), testing::ExitedWithCode(0), ""); }
 
 INSTANTIATE_TEST_SUITE_P(Threads, ParallelFor, ::testing::Values(0U, 1U, 2U, 7U));
 

@@ -99,9 +99,9 @@ TEST(EnvironmentRefuses, SizesThatDoNotMatch) {
   expect_refused([&] { environment.advance(particles, std::vector<Vec3>(4)); }, "4 targets for 5 particles");
   expect_refused([&] { environment.move(std::vector<Vec3>(26)); }, "26 positions for 27 points");
   expect_refused([&] { particles.remove(std::vector<std::uint8_t>(6)); }, "one mark per particle");
-  expect_refused([&] { particles.reorder(std::vector<std::uint32_t>{0, 1, 2, 3}); }, "no permutation");
+  expect_refused([&] { particles.reorder(std::vector<std::uint32_t>{0, 1, 2, 3}); }, "4 indices for 5 particles");
   expect_refused([&] { particles.reorder(std::vector<std::uint32_t>{0, 1, 2, 3, 3}); }, "no permutation");
-  expect_refused([&] { particles.reorder(std::vector<std::uint32_t>{0, 1, 2, 3, 5}); }, "no permutation");
+  expect_refused([&] { particles.reorder(std::vector<std::uint32_t>{0, 1, 2, 3, 5}); }, "names none of the 5");
   EXPECT_TRUE(test::same_bits(before, particles));
 }
 
@@ -118,7 +118,7 @@ TEST(EnvironmentRefuses, OptionsThatMakeNoSense) {
   }
   StepOptions options;
   options.max_parts = 0;
-  expect_refused([&] { environment.advance(particles, targets, {}, options); }, "parts");
+  expect_refused([&] { environment.advance(particles, targets, {}, options); }, "max_parts is 0");
   EXPECT_TRUE(test::same_bits(before, particles));
 }
 

@@ -22,11 +22,11 @@ using test::scaled;
 constexpr double dt = 1e-3;
 constexpr double spacing = 0.05;
 
-Environment closed_box(unsigned threads = 1, double size = 1.0) {
+MeshData closed_box(double size = 1.0) {
   BoxOptions box;
   box.cells = {6, 6, 6};
   box.size = {size, size, size};
-  return Environment(generate_box(box), Threads{threads});
+  return generate_box(box);
 }
 
 double mass_of(double radius, double density) { return density * 4.0 / 3.0 * std::numbers::pi * std::pow(radius, 3); }
@@ -38,8 +38,9 @@ struct Both {
   Bodies bodies;
   double density;
 
-  Both(Environment place, const Vec3& gravity, const CollisionOptions& collisions, const Response& walls)
-      : environment(std::move(place)),
+  Both(MeshData mesh, const Vec3& gravity, const CollisionOptions& collisions, const Response& walls,
+       Threads threads = {1})
+      : environment(std::move(mesh), threads),
         flow(environment, flow_options(gravity, collisions), Responses(walls)),
         bodies(environment, bodies_options(gravity), Responses(walls)),
         density(collisions.density) {
@@ -197,7 +198,7 @@ TEST(SphereBodies, BodyComesToRestOnSpheres) {
   c.restitution = 0.2;
   c.friction = 0.5;
   c.iterations = 20;
-  Both both(closed_box(1, 0.6), {0.0, 0.0, -9.81}, c, Response{ResponseKind::reflect, 0.2, 0.5});
+  Both both(closed_box(0.6), {0.0, 0.0, -9.81}, c, Response{ResponseKind::reflect, 0.2, 0.5});
   const double r = 0.04;
   for (int i = 0; i < 49; ++i) {
     const Vec3 x = {0.042 + 0.085 * (i % 7) + 0.0003 * (i % 5), 0.042 + 0.085 * (i / 7), 0.041};
@@ -228,7 +229,7 @@ TEST(SphereBodies, ASphereStandsOnABody) {
     CollisionOptions c;
     c.restitution = 0.2;
     c.friction = 0.5;
-    Both both(closed_box(1, 0.6), {0.0, 0.0, -9.81}, c, Response{ResponseKind::reflect, 0.2, 0.5});
+    Both both(closed_box(0.6), {0.0, 0.0, -9.81}, c, Response{ResponseKind::reflect, 0.2, 0.5});
     const double r = 0.04;
     both.add_body(4, {0.3, 0.3, 0.08}, {}, ratio * mass_of(r, c.density), 20.0);
     const Vec3 x = {0.3, 0.3, 0.3};
@@ -252,8 +253,8 @@ TEST(SphereBodies, AreTheSameBitsForAnyNumberOfThreadsAndFromACheckpoint) {
     CollisionOptions c;
     c.restitution = 0.3;
     c.friction = 0.4;
-    auto both = std::make_unique<Both>(closed_box(threads), Vec3{0.0, 0.0, -9.81}, c,
-                                       Response{ResponseKind::reflect, 0.3, 0.4});
+    auto both = std::make_unique<Both>(closed_box(), Vec3{0.0, 0.0, -9.81}, c,
+                                       Response{ResponseKind::reflect, 0.3, 0.4}, Threads{threads});
     both->add_body(4, {0.3, 0.4, 0.2}, {2.0, 0.5, 0.0}, 2.0);
     both->add_body(3, {0.6, 0.6, 0.3}, {-2.0, 0.0, 1.0}, 0.2);
     return both;
@@ -289,7 +290,7 @@ TEST(SphereBodies, ThroughAWallNobodyMeets) {
   MeshData mesh = generate_box(box);
   mesh.free.assign(mesh.cell_count(), 1);
   mesh.free[3 + 7 * (1 + 3)] = 0;  // a pillar in the middle
-  Both both(Environment(std::move(mesh), Threads{1}), {}, CollisionOptions{}, Response{});
+  Both both(std::move(mesh), {}, CollisionOptions{}, Response{});
   BodyOptions o;
   o.radius = 0.12;
   both.bodies.add(std::vector<Vec3>{{0.25, 0.15, 0.15}}, o);
@@ -344,7 +345,7 @@ TEST(SphereBodies, ABodyThatAWallHoldsGivesNoWay) {
 }
 
 TEST(SphereBodies, RefuseWhatIsOutOfRange) {
-  Environment environment = closed_box();
+  Environment environment(closed_box(), Threads{1});
   FlowOptions o = Both::flow_options({}, CollisionOptions{});
   BodiesOptions b = Both::bodies_options({});
   b.dt = 2e-3;

@@ -156,6 +156,16 @@ TEST(Surfaces, CarryParticlesWhenTheyBend) {
   }
 }
 
+TEST(Surfaces, RefuseAStepWithoutAContact) {
+  const Surface surface(test::cube());
+  SurfacePlace place = surface.place(surface.triangles().front(), {1.0, 1.0, 1.0});
+  const SurfacePlace before = place;
+  SurfaceOptions options;
+  options.max_contacts = 0;
+  EXPECT_THROW(step(surface, place, {0.1, 0.0, 0.0}, {}, options), InvalidArgument);
+  EXPECT_EQ(place, before);
+}
+
 TEST(Surfaces, RefuseMovesThatCannotBe) {
   const MeshData mesh = test::cube();
   Surface surface(mesh);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "dartcast/base/error.hpp"
+#include "dartcast/spheres/sphere_touch.hpp"
 
 namespace dartcast {
 
@@ -41,21 +42,22 @@ Bodies::Bodies(Environment& environment, const BodiesOptions& options, Responses
       options_(options),
       responses_(std::move(responses)),
       lowest_(lowest_corner(environment.positions(), options.gravity)) {
-  if (!(options.dt > 0.0) || !std::isfinite(options.dt))
-    throw InvalidArgument("bodies: dt must be positive and finite");
+  if (!(options.dt >= 0x1p-100 && options.dt <= 0x1p+100))
+    throw InvalidArgument(fmt::format("bodies: dt is {}: it must be between 2^-100 and 2^100 s", options.dt));
   if (!is_finite(options.gravity)) throw InvalidArgument("bodies: gravity must be finite");
   if (!(options.drag >= 0.0) || !std::isfinite(options.drag))
     throw InvalidArgument("bodies: the drag must be finite and not negative");
+  dartcast::check(options.step, "bodies");
   if (options.collisions) check_collisions(*options.collisions);
   if (environment.map().dimension() != 3) throw InvalidArgument("bodies: the environment must be of space");
 }
 
 void Bodies::check(const BodyOptions& o) const {
   const auto share = [](double x) { return x >= 0.0 && x <= 1.0; };
-  if (!(o.mass > 0.0) || !std::isfinite(o.mass))
-    throw InvalidArgument("bodies: a body's mass must be positive and finite");
-  if (!(o.radius >= 0.0) || !std::isfinite(o.radius))
-    throw InvalidArgument("bodies: a radius must be finite and not negative");
+  if (!is_mass(o.mass))
+    throw InvalidArgument(fmt::format("bodies: a body's mass is {}: it must be between 2^-300 and 2^300", o.mass));
+  if (!is_radius(o.radius))
+    throw InvalidArgument(fmt::format("bodies: a radius is {}: it must be between 0 and 2^100", o.radius));
   if (!share(o.pull)) throw InvalidArgument("bodies: the pull must be between 0 and 1");
   if (!(o.damping >= 0.0) || !std::isfinite(o.damping))
     throw InvalidArgument("bodies: the damping must be finite and not negative");

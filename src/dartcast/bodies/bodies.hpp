@@ -30,7 +30,7 @@ inline constexpr double energy_slack = 0x1p-30;
 
 /// SI units.
 struct BodiesOptions {
-  double dt = 1e-3;  ///< of a step, > 0
+  double dt = 1e-3;  ///< of a step, between 2^-100 and 2^100
   Vec3 gravity = {0.0, 0.0, 0.0};
   double drag = 0.0;  ///< 1 / s, >= 0: all velocities fall as exp(-drag t), as in a resting medium
   std::optional<BodyCollisionOptions> collisions =
@@ -40,9 +40,10 @@ struct BodiesOptions {
 
 /// What a body is made of. SI units.
 struct BodyOptions {
-  double mass = 1.0;                ///< > 0, in equal parts on the particles
+  double mass = 1.0;                ///< as is_mass(), in equal parts on the particles
   std::vector<double> masses = {};  ///< or of each particle; empty: `mass`
-  double radius = 0.0;              ///< of each particle, for contacts with other bodies; walls are met by the centres
+  /// Of each particle (is_radius()), for contacts with other bodies; walls are met by the centres.
+  double radius = 0.0;
   /// Acceleration towards the goal per distance from it, 1 / s^2: at most 1 / dt^2; 0: just that.
   double stiffness = 0.0;
   double pull = 0.1;     ///< share of the way to its goal that the second pass pulls a particle, in [0, 1]
@@ -101,7 +102,7 @@ struct BodiesStep {
 ///
 /// Walls answer by their patch's Response: reflect, slide, stick (the particle stays on the wall). A body leaves as a
 /// whole when a wall absorbs one of its particles or lets it escape. Whatever else acts on bodies may change
-/// velocities() between steps. Results are the same bits for any number of threads.
+/// velocities() between steps. Results are the same bits for any number of threads. A moved-from object has no bodies.
 class Bodies {
  public:
   /// `environment` outlives the bodies; it may hold other sets of particles, and is moved and edited by its owner.
@@ -127,6 +128,7 @@ class Bodies {
   /// Throws as Environment::follow().
   FollowReport follow(Stranded stranded = Stranded::move);
 
+  [[nodiscard]] const Environment& environment() const { return environment_; }
   [[nodiscard]] const BodiesOptions& options() const { return options_; }
   [[nodiscard]] std::uint64_t steps() const { return steps_; }
   [[nodiscard]] std::size_t size() const { return bodies_.size(); }

@@ -197,13 +197,16 @@ void Catheter::turn_with_vessel(const Corners& now) {
   reference_ = transported(reference_, old, direction_);
 }
 
-// Where the points are in their simplices, to ride along from there.
+// Stores where the points are in their simplices, so that they can ride along. The points are still in the previous
+// positions where they await a move.
 void Catheter::hold() {
+  const bool before_move = environment_.awaits_advance(particles_);
+  const Complex& complex = environment_.complex();
   const std::size_t inserted = inserted_points();
   holds_.resize(inserted + 1);
   for (std::size_t i = 0; i <= inserted; ++i) {
     const State& s = particles_[i < inserted ? i : count_];
-    const Corners corners = environment_.complex().corners(s.at());
+    const Corners corners = before_move ? complex.previous_corners(s.at()) : complex.corners(s.at());
     holds_[i] = {corners, detail::barycentric(corners, s.position)};
   }
   edits_ = environment_.edit_count();

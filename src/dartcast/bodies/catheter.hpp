@@ -89,6 +89,8 @@ class Catheter {
   /// InvalidArgument, naming it, where an option is out of range, the entry is in no free cell, or the way from there
   /// by the spacing is not free, or the environment is not of space.
   Catheter(Environment& environment, const CatheterOptions& options);
+  Catheter(const Catheter&) = delete;
+  Catheter& operator=(const Catheter&) = delete;
 
   /// Once after each move of the environment, and as often as wanted between. Throws InvalidArgument, nothing changed,
   /// where an input is not finite or too large, or the catheter missed a move or an edit. Where the vessel itself
@@ -96,7 +98,9 @@ class Catheter {
   CatheterStep step(const CatheterInput& input);
 
   /// To be called after each edit of the environment, as Environment::follow(): points without a place are moved to the
-  /// nearest free one. Throws InvalidArgument, nothing changed, where there is none.
+  /// nearest free one; where there is none they are held in their blocked cells until these are free again. Throws
+  /// InvalidArgument, nothing changed, where a point's cell was removed and no free cell is left; the catheter
+  /// cannot be used after that.
   FollowReport follow();
 
   /// The points in the lumen, from the tip on; then the entry, unless nothing is inserted.

@@ -86,10 +86,19 @@ void Catheter::restore(const CatheterCheckpoint& saved) {
 }
 
 FollowReport Catheter::follow() {
-  Particles moved = particles_;
-  FollowReport report = environment_.follow(moved, Stranded::move);
+  Particles moved;
+  FollowReport report;
+  for (const Stranded stranded : {Stranded::move, Stranded::stay}) {
+    moved = particles_;
+    report = environment_.follow(moved, stranded);
+    if (moved.size() == particles_.size()) break;
+  }
   if (moved.size() != particles_.size())
-    throw InvalidArgument("catheter: the edit left no free cell to move a point to; free some and edit again");
+    throw InvalidArgument(
+        "catheter: the edit removed the cell of a point and left no free one: put a new catheter into the environment");
+  const State entry = particles_[count_];
+  const bool rode = environment_.awaits_advance(particles_) && !environment_.awaits_advance(moved);
+  if (rode && environment_.map().contains(entry.cell)) turn_with_vessel(environment_.complex().corners(entry.at()));
   particles_ = std::move(moved);
   walls_.clear();
   hold();

@@ -52,8 +52,9 @@ void check_shape(std::span<const Vec3> points, std::span<const double> masses, c
     throw InvalidArgument(fmt::format("rest shape: {} masses for {} points", masses.size(), points.size()));
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!is_finite(points[i])) throw InvalidArgument(fmt::format("rest shape: point {} is not finite", i));
-    if (!(masses[i] > 0.0) || !std::isfinite(masses[i]))
-      throw InvalidArgument(fmt::format("rest shape: the mass of point {} must be positive and finite", i));
+    if (!is_mass(masses[i]))
+      throw InvalidArgument(
+          fmt::format("rest shape: the mass of point {} is {}: it must be between 2^-300 and 2^300", i, masses[i]));
   }
   if (!(options.linear >= 0.0 && options.linear <= 1.0))
     throw InvalidArgument("rest shape: the linear share must be between 0 and 1");
@@ -189,6 +190,8 @@ double matching_energy(const RestShape& shape, std::span<const Vec3> positions, 
 std::vector<std::vector<std::uint32_t>> overlapping_clusters(std::span<const Vec3> points, double size) {
   constexpr double most = 0x1p+20;
   if (!(size > 0.0)) throw InvalidArgument("clusters: the size must be positive");
+  const auto bad = std::find_if_not(points.begin(), points.end(), is_finite);
+  if (bad != points.end()) throw InvalidArgument(fmt::format("clusters: point {} is not finite", bad - points.begin()));
   if (points.empty()) return {};
   Vec3 low = points.front();
   for (const Vec3& p : points) low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
@@ -197,7 +200,7 @@ std::vector<std::vector<std::uint32_t>> overlapping_clusters(std::span<const Vec
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const Vec3 at = (points[i] - low) * (2.0 / size);
     if (!(std::max({at.x, at.y, at.z}) < most))
-      throw InvalidArgument("clusters: the points are not finite, or the size is too small for their extent");
+      throw InvalidArgument("clusters: the size is too small for the extent of the points");
     const Cube first = {static_cast<std::int32_t>(at.x), static_cast<std::int32_t>(at.y),
                         static_cast<std::int32_t>(at.z)};
     for (int k = 0; k < 8; ++k)  // cube p covers lattice intervals p and p + 1

@@ -31,6 +31,11 @@ struct Fit {
   double strain = 0.0;  ///< part of the matching energy that the particles' places do not change, per stiffness
 };
 
+/// The limits of a mass. Its inverse, and sums and products with it, then neither overflow nor vanish.
+inline constexpr double smallest_mass = 0x1p-300;
+inline constexpr double largest_mass = 0x1p+300;
+inline bool is_mass(double m) { return m >= smallest_mass && m <= largest_mass; }
+
 /// A rest shape with masses. Flat and linear ones, and single points, are shapes like others.
 ///
 /// The matching energy per stiffness, for particles at x and goals g of fixed fits, is constant + sum m |x - g|^2 / 2,
@@ -39,8 +44,9 @@ struct Fit {
 /// force's potential.
 class RestShape {
  public:
-  /// `masses`: one per point. Throws InvalidArgument where there is no point, a mass is not positive, something is not
-  /// finite, linear is outside [0, 1], a cluster is empty, names no point or one twice, or a point is in none.
+  /// `masses`: one per point. Throws InvalidArgument where there is no point, a mass is out of range (is_mass()), a
+  /// point is not finite, linear is outside [0, 1], a cluster is empty, names no point or one twice, or a point is in
+  /// none.
   RestShape(std::span<const Vec3> points, std::span<const double> masses, const MatchOptions& options = {});
 
   [[nodiscard]] std::size_t size() const { return masses_.size(); }

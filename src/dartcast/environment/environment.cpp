@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstring>
 #include <utility>
 
@@ -19,9 +20,6 @@ namespace dartcast {
 namespace {
 
 constexpr std::size_t chunk = detail::filtered_batch;
-constexpr const char* missed_move = "add: advance the particles first, they have not followed the last move";
-constexpr const char* missed_edit =
-    "the particles have not followed the last edit: every set must follow() each edit before the next";
 
 // Returns the point as decisions see it.
 Vec3 checked_point(const Vec3& x, const char* what, std::size_t index, unsigned dimension) {
@@ -37,6 +35,11 @@ Vec3 checked_point(const Vec3& x, const char* what, std::size_t index, unsigned 
 
 bool is_particle_position(const Map& map, const Vec3& x) {
   return in_exact_range(x) && flushed(x) == x && (map.dimension() == 3 || x.z == 0.0);
+}
+
+Threads checked(Threads threads) {
+  check_threads(threads);
+  return threads;
 }
 
 MeshData inspected(MeshData mesh) {
@@ -90,81 +93,14 @@ bool can_be(const Complex& complex, const State& s, const Weights& weights) {
 
 }  // namespace
 
-void Particles::remove(std::span<const std::uint8_t> marks) {
-  if (marks.size() != size()) throw InvalidArgument("remove: one mark per particle is needed");
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < size(); ++i) {
-    if (marks[i] != 0) continue;
-    states_[kept] = states_[i];
-    weights_[kept] = weights_[i];
-    if (!memos_.empty()) memos_.put(kept, memos_[i], memos_.mark(i));
-    vertices_[kept++] = vertices_[i];
-  }
-  states_.resize(kept);
-  weights_.resize(kept);
-  vertices_.resize(kept);
-  if (!memos_.empty()) memos_.resize(kept);
-  residents_.reset();
-}
-
-void Particles::reorder(std::span<const std::uint32_t> order) {
-  std::vector<std::uint8_t> seen(size(), 0);
-  const bool permutation = order.size() == size() && std::all_of(order.begin(), order.end(), [&](std::uint32_t i) {
-                             return i < seen.size() && seen[i]++ == 0;
-                           });
-  if (!permutation) throw InvalidArgument("reorder: the order is no permutation of the particles");
-  std::vector<State> states(size());
-  std::vector<Weights> weights(size());
-  std::vector<detail::VertexNumbers> vertices(size());
-  detail::Memos memos;
-  memos.resize(memos_.size());
-  for (std::size_t i = 0; i < size(); ++i) {
-    states[i] = states_[order[i]];
-    weights[i] = weights_[order[i]];
-    vertices[i] = vertices_[order[i]];
-    if (!memos_.empty()) memos.put(i, memos_[order[i]], memos_.mark(order[i]));
-  }
-  states_ = std::move(states);
-  weights_ = std::move(weights);
-  vertices_ = std::move(vertices);
-  memos_ = std::move(memos);
-  residents_.reset();
-}
-
-Particles Particles::selected(std::span<const std::uint32_t> which) const {
-  Particles some;
-  for (const std::uint32_t i : which) {
-    some.states_.push_back(states_[i]);
-    some.weights_.push_back(weights_[i]);
-    some.vertices_.push_back(vertices_[i]);
-    if (!memos_.empty()) some.memos_.push_back(memos_[i], memos_.mark(i));
-  }
-  some.memo_kind_ = memo_kind_;
-  some.walls_changed_ = walls_changed_;
-  some.moves_ = moves_;
-  some.edits_ = edits_;
-  return some;
-}
-
-void Particles::replace(std::span<const std::uint32_t> which, const Particles& by) {
-  if (which.size() != by.size()) throw InvalidArgument("replace: one index per particle is needed");
-  for (std::size_t k = 0; k < which.size(); ++k) {
-    const std::uint32_t i = which[k];
-    states_[i] = by.states_[k];
-    weights_[i] = by.weights_[k];
-    vertices_[i] = by.vertices_[k];
-    if (memos_.empty()) continue;
-    if (memo_kind_ == by.memo_kind_)
-      memos_.put(i, by.memos_[k], by.memos_.mark(k));
-    else
-      memos_.forget(i);
-  }
-  walls_changed_ = walls_changed_ || by.walls_changed_;
-  residents_.reset();
+// 0 is nobody's: sets that no environment has touched have it.
+std::uint64_t Environment::next_id() {
+  static std::atomic<std::uint64_t> last{0};
+  return ++last;
 }
 
 Environment::Environment(MeshData mesh, Threads threads)
-    : complex_(inspected(std::move(mesh)), threads), threads_(threads) {
+    : complex_(inspected(std::move(mesh)), checked(threads)), threads_(threads) {
   const auto& invalid = complex_.invalid_cells();
   if (invalid.empty()) return;
   throw InvalidMesh(fmt::format("{} cells can't be divided into positive simplices; the first: {}; mend or remesh them",
@@ -190,13 +126,40 @@ std::vector<Location> Environment::locate(std::span<const Vec3> asked) {
   return locations;
 }
 
+// An empty set fits any environment, at any time. What it kept beside earlier particles must not be read.
+void Environment::take_in(Particles& particles) const {
+  if (particles.size() > 0) return;
+  particles = {};
+  particles.environment_ = id_;
+  particles.moves_ = moves_;
+  particles.edits_ = edits_;
+}
+
+void Environment::check_known(const Particles& particles, const char* call) const {
+  if (particles.size() == 0) return;
+  if (particles.environment_ != id_)
+    throw InvalidArgument(fmt::format(
+        "{}: the particles are of another environment: add() their positions to a new set in this one", call));
+  const bool missed_move = particles.moves_ + 1 < moves_;
+  if (!missed_move && particles.edits_ + 1 >= edits_) return;
+  throw InvalidArgument(
+      fmt::format("{}: the particles missed {} and cannot catch up: add() their positions to a new set; {}", call,
+                  missed_move ? "a move" : "an edit",
+                  missed_move ? "after each move advance every set, or follow() a later edit, before the next move"
+                              : "follow() each edit with every set before the next edit"));
+}
+
+void Environment::check_edit_followed(const Particles& particles, const char* call) const {
+  check_known(particles, call);
+  if (particles.size() > 0 && particles.edits_ != edits_)
+    throw InvalidArgument(fmt::format("{}: follow() the last edit with these particles first", call));
+}
+
 void Environment::check_current(Particles& particles) const {
-  if (particles.size() == 0) {
-    particles.moves_ = moves_;
-    particles.edits_ = edits_;
-  }
-  if (particles.moves_ != moves_) throw InvalidArgument(missed_move);
-  if (particles.edits_ != edits_) throw InvalidArgument(fmt::format("add: {}", missed_edit));
+  take_in(particles);
+  check_edit_followed(particles, "add");
+  if (particles.moves_ != moves_)
+    throw InvalidArgument("add: advance the particles first, they have not followed the last move");
 }
 
 std::vector<Added> Environment::add(Particles& particles, std::span<const Vec3> positions) {
@@ -237,13 +200,14 @@ Particles Environment::restored(std::span<const State> states, std::span<const W
           fmt::format("restored: the state of particle {} is not one of this environment as it stands", i));
   }
   Particles particles;
+  take_in(particles);
   particles.states_.assign(states.begin(), states.end());
   particles.weights_.assign(weights.begin(), weights.end());
   for (const State& s : states) particles.vertices_.push_back(detail::vertex_numbers(complex_, s.at()));
-  particles.moves_ = moves_;
-  particles.edits_ = edits_;
   return particles;
 }
+
+void Environment::set_threads(Threads threads) { threads_ = checked(threads); }
 
 void Environment::move() {
   complex_.commit_positions();
@@ -298,6 +262,7 @@ ComplexEditReport Environment::edit(const std::function<void(ComplexEdit&)>& mak
   make(edit);
   last_edit_ = edit.commit();
   ++edits_;
+  moves_at_edit_ = moves_;
   locator_.reset();
   return last_edit_;
 }
@@ -319,13 +284,9 @@ std::vector<Vec3> Environment::check_targets(const Particles& particles, std::sp
   return decided;
 }
 
-void Environment::check_followed(const Particles& particles, const StepOptions& options, const char* call) const {
-  if (particles.size() > 0 && particles.moves_ + 1 < moves_)
-    throw InvalidArgument(fmt::format("{}: the particles missed a move: advance every set once after each move", call));
-  if (particles.size() > 0 && particles.edits_ != edits_)
-    throw InvalidArgument(fmt::format("{}: {}", call, missed_edit));
-  if (!(options.tolerance > 0.0) || options.max_parts == 0)
-    throw InvalidArgument(fmt::format("{}: the tolerance and the number of parts must be positive", call));
+void Environment::check_advance(const Particles& particles, const StepOptions& options, const char* caller) const {
+  check_edit_followed(particles, caller);
+  check(options, caller);
 }
 
 namespace {
@@ -413,7 +374,7 @@ StepReport Environment::advance(Particles& particles, std::span<const Vec3> aske
                                 const StepOptions& options) {
   const std::vector<Vec3> decided = check_targets(particles, asked);
   const std::span<const Vec3> targets = decided.empty() ? asked : std::span<const Vec3>(decided);
-  check_followed(particles, options, "advance");
+  check_advance(particles, options, "advance");
   const bool moved = particles.moves_ != moves_;
   const detail::MemoKind kind = memo_kind(particles, moved);
   const bool memos_match = kind == particles.memo_kind_;
@@ -423,6 +384,7 @@ StepReport Environment::advance(Particles& particles, std::span<const Vec3> aske
                     {&complex_, moved, memos_match, options.tolerance, !particles.walls_changed_}};
   std::vector<StepReport> parts(chunk_count(particles.size(), chunk));
   particles.residents_.reset();
+  take_in(particles);
   const Particles before = respond ? particles : Particles{};  // a response is the caller's code: it may throw
   particles.memo_kind_ = kind;
   particles.memos_.resize(kind == detail::MemoKind::none ? 0 : particles.size());
@@ -439,7 +401,6 @@ StepReport Environment::advance(Particles& particles, std::span<const Vec3> aske
     step_all(steps, parts);
   }
   particles.moves_ = moves_;
-  particles.edits_ = edits_;
   return joined(std::move(parts));
 }
 
@@ -450,7 +411,7 @@ std::vector<Trace> Environment::trace(const Particles& particles, std::size_t pa
     decided.push_back(checked_point(targets[i], "target", i, map().dimension()));
   if (particle >= particles.size())
     throw InvalidArgument(fmt::format("trace: there is no particle {} among {}", particle, particles.size()));
-  check_followed(particles, options, "trace");
+  check_advance(particles, options, "trace");
   bool moved = particles.moves_ != moves_;
   State state = particles[particle];
   Weights weights = particles.weights_[particle];

@@ -25,7 +25,8 @@
 
 namespace dartcast {
 
-/// A set of particles: plain states, made and advanced by an Environment.
+/// A set of particles: plain states, made and advanced by an Environment. Another environment refuses it. An empty set
+/// fits any environment, at any time. A copy is a set of its own: it must be advanced and follow edits by itself.
 class Particles {
  public:
   [[nodiscard]] std::size_t size() const { return states_.size(); }
@@ -34,14 +35,16 @@ class Particles {
   /// Barycentric coordinates of a held particle in its simplex.
   [[nodiscard]] const Weights& held_weights(std::size_t i) const { return weights_[i]; }
 
+  // All four throw InvalidArgument, nothing changed, where a size does not match or an index names no particle.
+
   /// Removes the particles marked with 1; the others keep their order. `marks`: one per particle.
   void remove(std::span<const std::uint8_t> marks);
   /// Reorders: particle i becomes what particle order[i] was. `order`: a permutation.
   void reorder(std::span<const std::uint32_t> order);
   /// A set of these particles alone, in this order, as they are. `which`: indices.
   [[nodiscard]] Particles selected(std::span<const std::uint32_t> which) const;
-  /// Puts particles that were selected() back in their places, as they are now. `which`: as it was then. Precondition:
-  /// both sets have followed the same moves and edits.
+  /// Puts particles that were selected() back in their places, as they are now. `which`: as it was then. It also throws
+  /// where the sets are of different environments, or have not followed the same moves and edits.
   void replace(std::span<const std::uint32_t> which, const Particles& by);
 
  private:
@@ -52,10 +55,11 @@ class Particles {
   std::vector<Weights> weights_;
   std::vector<detail::VertexNumbers> vertices_;
   detail::MemoKind memo_kind_ = detail::MemoKind::none;
-  detail::Memos memos_;         // of these states, where there is a kind
-  bool stood_still_ = false;    // the vertices, at the last step
-  bool walls_changed_ = false;  // since then
-  std::uint64_t moves_ = 0;     // of the environment, that these states have followed
+  detail::Memos memos_;            // of these states, where there is a kind
+  bool stood_still_ = false;       // the vertices, at the last step
+  bool walls_changed_ = false;     // since then
+  std::uint64_t environment_ = 0;  // its number; 0: of none yet
+  std::uint64_t moves_ = 0;        // of the environment, that these states have followed
   std::uint64_t edits_ = 0;
   std::optional<detail::Residents> residents_;  // of these states; none where they have changed since
 };
@@ -101,11 +105,20 @@ struct FollowReport {
   std::vector<StrandedParticle> stranded;  ///< by particle
 };
 
+/// It can be neither copied nor moved: flows, bodies and catheters keep a reference to it.
+///
+/// Two rules hold for every set of particles that is not empty. Before the next move() it takes part in the last one:
+/// by advance(), or by follow() where an edit was made after that move. Before the next edit() it follows the last one,
+/// by follow(). Any order of calls that keeps these rules is allowed. A set that has missed a move or an edit is
+/// refused by advance(), follow() and add(); its positions can be added to a new set.
 class Environment {
  public:
   /// Builds the complex. Throws InvalidMesh where inspect() finds a defect, or where a cell has a simplex that is not
   /// positive (with the first of them); `mesh` is not changed by repairs: call inspect() first to see and keep them.
+  /// Throws as set_threads().
   explicit Environment(MeshData mesh, Threads threads = {});
+  Environment(const Environment&) = delete;
+  Environment& operator=(const Environment&) = delete;
 
   [[nodiscard]] const Complex& complex() const { return complex_; }
   [[nodiscard]] const Map& map() const { return complex_.map(); }
@@ -118,11 +131,12 @@ class Environment {
   [[nodiscard]] std::vector<Location> locate(std::span<const Vec3> points);
 
   /// Adds a particle for every position in a free cell, in their order, and reports on every position: one in a blocked
-  /// cell or outside is not added, and says so. Throws as locate(), nothing added.
+  /// cell or outside is not added, and says so. Throws as locate(), and InvalidArgument where the particles are of
+  /// another environment or have missed a move or an edit; nothing is added then.
   std::vector<Added> add(Particles& particles, std::span<const Vec3> positions);
   /// Adds a particle where the caller knows the simplex, without a search: false, and nothing added, unless the
   /// position lies exactly in that closed simplex, which is positive and of a free cell. Throws InvalidArgument where
-  /// the particles have missed a move or an edit. Cost: five exact signs.
+  /// the particles are of another environment or have missed a move or an edit. Cost: five exact signs.
   bool add(Particles& particles, SimplexId simplex, const Vec3& position);
 
   /// Particles with these states, as if they had been here since the last move: for those saved from an equal
@@ -131,11 +145,12 @@ class Environment {
   [[nodiscard]] Particles restored(std::span<const State> states, std::span<const Weights> weights) const;
 
   /// Where to write the next positions of all the mesh's points before move(). The content is what it was two moves
-  /// ago. In the plane z is not read.
+  /// ago. In the plane z is not read. Write there only when every set of particles has taken part in the last move:
+  /// until then they need the old content. An edit ends the validity of the result.
   [[nodiscard]] std::span<Vec3> next_positions() { return complex_.next_positions(); }
-  /// Makes the positions written current, at no cost per cell: every set of particles must then be advanced once before
-  /// the next move. Between the two calls the environment's particles may be stepped to targets relative to positions
-  /// before the move.
+  /// Makes the positions written current, at no cost per cell: every set of particles must then be advanced once, or
+  /// follow() an edit made after this move, before the next move. advance() takes targets relative to positions before
+  /// the move.
   void move();
   /// Copies new positions of all the mesh's points, then move(). Throws InvalidArgument, nothing moved, where the
   /// number does not match, or in the plane a z is not 0.
@@ -159,19 +174,31 @@ class Environment {
   [[nodiscard]] const ComplexEditReport& last_edit() const { return last_edit_; }
   /// Takes a set of particles along after an edit: those in cells that were replaced are located again, exactly, among
   /// the cells that took their place; those that have no place in a free cell become what `stranded` says; all others
-  /// keep their state bit for bit. Where particles are absorbed, those after them move up, as by remove(). Throws
-  /// InvalidArgument, nothing changed, where the particles missed a move or an earlier edit. Cost: the particles
-  /// touched and the cells added; the first time after the particles have changed, linear in the particles (20 ns
-  /// each).
+  /// keep their state bit for bit. Where particles are absorbed, those after them move up, as by remove().
+  ///
+  /// Where the edit was made after a move, and the particles have not been advanced since, they first ride along with
+  /// the vertices, as by advance() without a motion of their own. They have then taken part in the move: the next
+  /// advance() takes walls as at rest, and targets relative to positions() as they are now. Where the edit was made
+  /// before the last move, particles follow it in the positions before that move. They then await advance(), as after
+  /// any move.
+  ///
+  /// Throws InvalidArgument, nothing changed, where the particles are of another environment, or missed a move or an
+  /// earlier edit. Cost: the particles touched and the cells added; the first time after the particles have changed,
+  /// linear in the particles (20 ns each). After a move that the particles have not followed: that of advance(), or,
+  /// where the move came last, a copy of the complex.
   FollowReport follow(Particles& particles, Stranded stranded = Stranded::move) const;
 
   /// Advances every particle towards its target; after a move(), along with the vertices (see docs/method.md). Without
   /// `respond` a particle stops at its first contact. Results are the same bits for any number of threads and order of
   /// particles. Throws InvalidArgument, nothing changed, where a target is not finite or outside the exact range, the
-  /// sizes do not match, an option is not positive, the particles missed a move or an edit, or a response throws or
-  /// returns such a displacement. Cost: a few orientation tests per particle, whatever the size of the scene.
+  /// sizes do not match, an option is not positive, the particles are of another environment or missed a move or an
+  /// edit, or a response throws or returns such a displacement. Cost: a few orientation tests per particle, whatever
+  /// the size of the scene.
   StepReport advance(Particles& particles, std::span<const Vec3> targets, const Respond& respond = {},
                      const StepOptions& options = {});
+
+  /// Throws as advance() would for these particles and options, whatever the targets.
+  void check_advance(const Particles& particles, const StepOptions& options, const char* caller = "advance") const;
 
   /// What one particle would do on its way to each of these targets in turn, its crossings from cell to cell too, while
   /// the particle stays as it is: the states and contacts that advance() gives, to the same bits. It ends with the
@@ -188,18 +215,20 @@ class Environment {
   /// Whether the next advance() of these particles is the one along with the vertices after a move().
   [[nodiscard]] bool awaits_advance(const Particles& particles) const { return particles.moves_ != moves_; }
 
-  void set_threads(Threads threads) { threads_ = threads; }
+  /// Throws Error, nothing changed, as check_threads().
+  void set_threads(Threads threads);
   [[nodiscard]] Threads threads() const { return threads_; }
 
  private:
-  friend class Following;
-
   void check_positions(std::span<const Vec3> positions) const;
   [[nodiscard]] std::vector<Vec3> with_interior(std::span<const Vec3> positions) const;
+  static std::uint64_t next_id();
+  void take_in(Particles& particles) const;
+  void check_known(const Particles& particles, const char* call) const;
+  void check_edit_followed(const Particles& particles, const char* call) const;
   void check_current(Particles& particles) const;
   // Returns the targets as decisions see them; nothing where that is what they are.
   [[nodiscard]] std::vector<Vec3> check_targets(const Particles& particles, std::span<const Vec3> targets) const;
-  void check_followed(const Particles& particles, const StepOptions& options, const char* call) const;
   void add_to(Particles& particles, SimplexId simplex, const Vec3& position) const;
   struct Steps;
   [[nodiscard]] detail::MemoKind memo_kind(const Particles& particles, bool moved) const;
@@ -208,8 +237,10 @@ class Environment {
 
   Complex complex_;
   Threads threads_;
+  std::uint64_t id_ = next_id();
   std::uint64_t moves_ = 0;
   std::uint64_t edits_ = 0;
+  std::uint64_t moves_at_edit_ = 0;  // when the last edit was made
   ComplexEditReport last_edit_;
   std::unique_ptr<Locator> locator_;  // of the current positions, when it was asked for
 };

@@ -1,5 +1,6 @@
 // How particles follow an edit.
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "dartcast/base/error.hpp"
@@ -9,13 +10,49 @@
 
 namespace dartcast {
 
+namespace {
+
+// x, rounded out of a positive simplex, put back into it.
+template <std::size_t N>
+Vec3 settled_inside(const std::array<Vec3, N>& v, const Vec3& x) {
+  if (detail::in_closed_simplex(v, x)) return x;
+  const Vec3 middle = flushed(detail::mean_of(v));
+  if (const auto lifted = detail::lifted_inside(v, middle, x)) return *lifted;
+  return detail::double_inside(v, x).value_or(detail::in_closed_simplex(v, middle) ? middle : v[0]);
+}
+
+}  // namespace
+
 /// One call of Environment::follow().
 class Following {
  public:
-  Following(const Environment& environment, Particles& particles, Stranded stranded)
-      : complex_(environment.complex_), edit_(environment.last_edit_), particles_(particles), stranded_(stranded) {
+  // `complex`: the one that was edited, with the positions that the particles have gone along to.
+  Following(const Complex& complex, const ComplexEditReport& edit, Particles& particles, Stranded stranded)
+      : complex_(complex), edit_(edit), particles_(particles), stranded_(stranded) {
     for (const CellHandle& h : edit_.map.removed) removed_.push_back(h.cell);
     std::sort(removed_.begin(), removed_.end());
+  }
+
+  // For particles that were not advanced between a move and the edit: they ride along with the vertices, as in a step
+  // without a motion of their own. Those in removed cells get their new positions, and keep the names of these cells
+  // for follow().
+  void ride(Threads threads) {
+    constexpr std::size_t grain = 256;
+    const StepOptions options;
+    const Respond stop;
+    const Stepper stepper(complex_, true, options, stop);
+    parallel_for(particles_.size(), grain, threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (is_removed(particles_.states_[i].cell))
+          particles_.states_[i].position = map().dimension() == 2 ? ridden<3>(i) : ridden<4>(i);
+        else
+          step(stepper, i);
+      }
+    });
+    particles_.residents_.reset();
+    particles_.memo_kind_ = detail::MemoKind::none;
+    particles_.memos_.resize(0);
+    particles_.stood_still_ = false;
   }
 
   FollowReport follow() {
@@ -29,6 +66,37 @@ class Following {
   }
 
  private:
+  void step(const Stepper& stepper, std::size_t i) const {
+    State& s = particles_.states_[i];
+    Weights& weights = particles_.weights_[i];
+    const Corners before = complex_.previous_corners(s.at());
+    const Weights kept = s.held ? weights : detail::barycentric(before, s.position);
+    const bool positive = volume_sign(complex_.corners(s.at())) == Sign::positive;
+    const Vec3 target = positive ? detail::ridden(complex_, s.at(), kept).position : s.position;
+    ContactList contacts;
+    Counters counters;
+    stepper.step(static_cast<std::uint32_t>(i), s, weights, target, contacts, counters);
+    particles_.vertices_[i] = detail::vertex_numbers(complex_, s.at());
+  }
+
+  // The new position of a particle whose simplex was removed. The vertices of the simplex still have their positions:
+  // their numbers are used again by the next edit at the earliest. The result lies exactly in the moved simplex where
+  // that is positive.
+  template <std::size_t N>
+  [[nodiscard]] Vec3 ridden(std::size_t i) const {
+    const State& s = particles_.states_[i];
+    std::array<Vec3, N> before;
+    std::array<Vec3, N> after;
+    for (std::size_t k = 0; k < N; ++k) {
+      before[k] = complex_.previous_positions()[particles_.vertices_[i][k]];
+      after[k] = complex_.positions()[particles_.vertices_[i][k]];
+    }
+    const Vec3 x = flushed(
+        detail::combine(after, s.held ? particles_.weights_[i] : detail::barycentric(before, s.position)));
+    if (volume_sign(after) == Sign::positive) return settled_inside(after, x);
+    return in_exact_range(x) ? x : s.position;
+  }
+
   [[nodiscard]] const Map& map() const { return complex_.map(); }
 
   // In the order of their numbers.
@@ -74,10 +142,25 @@ class Following {
     s.touching_count = static_cast<std::uint8_t>(kept - s.touching.begin());
   }
 
+  // Among the cells that took the place of the particle's own. One on a wall stays on its side: the way from there to
+  // the middle of its old simplex begins in the new one.
+  template <std::size_t N>
+  [[nodiscard]] SimplexId place_of(std::uint32_t i) const {
+    const State& s = particles_.states_[i];
+    std::array<Vec3, N> old;
+    for (std::size_t k = 0; k < N; ++k) old[k] = complex_.positions()[particles_.vertices_[i][k]];
+    const Vec3 middle = flushed(detail::mean_of(old));
+    if (!s.held && detail::in_closed_simplex(old, middle)) {
+      const SimplexId at = locator_->find(complex_, s.position, middle);
+      if (at.valid()) return at;
+    }
+    return locator_->find(complex_, s.position);
+  }
+
   void locate(std::uint32_t i) {
     if (!locator_) locator_.emplace(complex_, edit_.map.added);
     State& s = particles_.states_[i];
-    const SimplexId at = locator_->find(complex_, s.position);
+    const SimplexId at = map().dimension() == 2 ? place_of<3>(i) : place_of<4>(i);
     if (!at.valid()) return strand(i, Place::outside, at);
     if (!map().is_free(at.cell)) return strand(i, Place::blocked, at);
     s.put(at, s.position);
@@ -164,16 +247,19 @@ class Following {
 };
 
 FollowReport Environment::follow(Particles& particles, Stranded stranded) const {
-  if (particles.size() == 0) {
-    particles.moves_ = moves_;
-    particles.edits_ = edits_;
-  }
+  take_in(particles);
+  check_known(particles, "follow");
   if (particles.edits_ == edits_) return {};
-  if (particles.moves_ != moves_)
-    throw InvalidArgument("follow: advance the particles first, they have not followed the last move");
-  if (particles.edits_ + 1 != edits_)
-    throw InvalidArgument("follow: the particles missed an edit: every set must follow each edit before the next");
-  FollowReport report = Following(*this, particles, stranded).follow();
+  FollowReport report;
+  if (particles.moves_ == moves_at_edit_ && moves_ != moves_at_edit_) {
+    const Complex before = complex_.before_move();
+    report = Following(before, last_edit_, particles, stranded).follow();
+  } else {
+    Following following(complex_, last_edit_, particles, stranded);
+    if (particles.moves_ != moves_) following.ride(threads_);
+    particles.moves_ = moves_;
+    report = following.follow();
+  }
   particles.edits_ = edits_;
   particles.walls_changed_ = true;
   return report;

@@ -35,6 +35,12 @@ void Complex::commit_positions() {
   std::swap(front_, back_);
 }
 
+Complex Complex::before_move() const {
+  Complex before = *this;
+  if (!back_.empty()) before.front_ = back_;
+  return before;
+}
+
 std::size_t Complex::bytes() const { return map_.bytes() + interior_.bytes() + front_.size() * sizeof(Vec3); }
 
 }  // namespace dartcast

@@ -59,6 +59,9 @@ class Complex {
   /// Makes the positions written current. Cost: a swap, and the interior points. No vertex is checked: one that is not
   /// finite, or above 2^300 in magnitude, is found by the walk that meets it, and by check_validity().
   void commit_positions();
+  /// A copy with previous_positions() as its positions: with edits made since, but as if it had not moved. Cost:
+  /// linear.
+  [[nodiscard]] Complex before_move() const;
 
   /// In the plane the fourth is the third again, and the fourth corner is one above the first (raised()).
   [[nodiscard]] std::array<Vertex, 4> vertices(SimplexId s) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <span>
 #include <string>
@@ -77,7 +78,7 @@ class Solids {
   [[nodiscard]] const std::string& name(std::size_t body) const { return scene_.bodies[bodies_->id(body)].name; }
   [[nodiscard]] const Skin& skin(std::size_t body) const { return skins_[bodies_->id(body)]; }
 
-  [[nodiscard]] std::span<const Catheter> catheters() const { return catheters_; }
+  [[nodiscard]] const std::deque<Catheter>& catheters() const { return catheters_; }
   [[nodiscard]] std::span<const CatheterStep> catheter_steps() const { return catheter_steps_; }
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] Environment& environment() const { return environment_; }
@@ -97,8 +98,8 @@ class Solids {
   const Scene& scene_;
   Environment& environment_;
   std::optional<Bodies> bodies_;
-  std::vector<Skin> skins_;  // by id
-  std::vector<Catheter> catheters_;
+  std::vector<Skin> skins_;         // by id
+  std::deque<Catheter> catheters_;  // they stay where they are
   BodiesStep bodies_step_;
   std::vector<CatheterStep> catheter_steps_;
   std::vector<CatheterTotals> catheter_totals_;

@@ -17,7 +17,7 @@ namespace dartcast {
 namespace {
 
 constexpr std::size_t grain = 512;
-constexpr double most_injected = 0xfffffffe;  // by an inlet in a step: the most indices that particles can have
+constexpr double most_injected = 0x1p+31;  // by an inlet in a step
 
 // Adds the time that it lives to a sum of seconds.
 class Timer {
@@ -42,25 +42,22 @@ void check_plane(const Environment& environment, const Vec3& v, std::string_view
 }
 
 void check(const FlowOptions& o) {
-  if (!(o.dt > 0.0) || !std::isfinite(o.dt)) throw InvalidArgument("flow: dt must be positive and finite");
+  if (!(o.dt >= smallest_dt && o.dt <= largest_dt))
+    throw InvalidArgument(fmt::format("flow: dt is {}: it must be between 2^-100 and 2^100 s", o.dt));
   if (!(o.drag >= 0.0) || !std::isfinite(o.drag)) throw InvalidArgument("flow: drag must be finite and not negative");
   if (!is_finite(o.gravity)) throw InvalidArgument("flow: gravity must be finite");
   if (o.substeps == 0) throw InvalidArgument("flow: substeps must be at least 1");
+  check(o.step, "flow");
   if (!o.collisions) return;
   const CollisionOptions& c = *o.collisions;
   if (!(c.restitution >= 0.0 && c.restitution <= 1.0))
     throw InvalidArgument("flow: the spheres' restitution must be between 0 and 1");
   if (!(c.friction >= 0.0) || !std::isfinite(c.friction))
     throw InvalidArgument("flow: the spheres' friction must be finite and not negative");
-  if (!(c.density > 0.0) || !std::isfinite(c.density))
-    throw InvalidArgument("flow: the spheres' density must be positive and finite");
+  if (!(c.density >= smallest_density && c.density <= largest_density))
+    throw InvalidArgument(
+        fmt::format("flow: the spheres' density is {}: it must be between 2^-100 and 2^100", c.density));
   if (c.iterations == 0) throw InvalidArgument("flow: collisions need an iteration at least");
-}
-
-// The particle with coordinates w, as riding along puts it.
-Vec3 ridden(const Complex& complex, SimplexId simplex, const Weights& w) {
-  if (complex.map().dimension() == 2) return detail::ridden(current_space<3>(complex), simplex, w).position;
-  return detail::ridden(current_space<4>(complex), simplex, w).position;
 }
 
 template <class T>
@@ -92,16 +89,16 @@ void Flow::set_deformation(Deformation deformation) {
 void Flow::check_motion(const Vec3& velocity, double radius, std::string_view whose) const {
   if (!is_finite(velocity)) throw InvalidArgument(fmt::format("flow: {} velocity must be finite", whose));
   check_plane(environment_, velocity, fmt::format("{} velocity", whose));
-  if (!(radius >= 0.0) || !std::isfinite(radius))
-    throw InvalidArgument(fmt::format("flow: {} radius must be finite and not negative", whose));
+  if (!is_radius(radius))
+    throw InvalidArgument(fmt::format("flow: {} radius is {}: it must be between 0 and 2^100", whose, radius));
 }
 
 void Flow::add_inlet(Patch patch, double rate, const Vec3& velocity, double radius) {
-  if (!(rate >= 0.0) || !std::isfinite(rate))
-    throw InvalidArgument("flow: an inlet's rate must be finite and not negative");
-  if (rate * options_.dt > most_injected)
+  if (!(rate >= 0.0 && rate * options_.dt <= most_injected))
     throw InvalidArgument(
-        fmt::format("flow: an inlet's rate of {} a second gives more than 2^32 - 2 particles a step", rate));
+        fmt::format("flow: an inlet's rate is {}: it must not be negative, and at most {} a second with steps of {} s "
+                    "(2^31 particles a step)",
+                    rate, most_injected / options_.dt, options_.dt));
   check_motion(velocity, radius, "an inlet's");
   inlets_.push_back({patch, PatchSampler(environment_.complex(), patch), rate, velocity, radius});
 }
@@ -297,7 +294,7 @@ Flow::Aim Flow::aim_at(std::size_t i, double dt, bool moving) const {
   const Vec3 mesh = (ridden - detail::combine(before, w)) * (1.0 / options_.dt);
   if (stuck) {
     const bool positive = volume_sign(now) == Sign::positive;
-    return {mesh, positive ? dartcast::ridden(complex, s.at(), w) : s.position};
+    return {mesh, positive ? detail::ridden(complex, s.at(), w).position : s.position};
   }
   const Vec3 flow = field_->at(complex, s.at(), w, now);
   if (field_->frame() == FieldFrame::space) {

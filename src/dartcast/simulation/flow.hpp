@@ -27,18 +27,25 @@
 
 namespace dartcast {
 
+/// The limits of a step's duration in seconds. Speeds and displacements then neither overflow nor vanish.
+inline constexpr double smallest_dt = 0x1p-100;
+inline constexpr double largest_dt = 0x1p+100;
+/// The limits of the spheres' density.
+inline constexpr double smallest_density = 0x1p-100;
+inline constexpr double largest_density = 0x1p+100;
+
 /// Between spheres. With walls, restitution and friction are those of the walls' responses.
 struct CollisionOptions {
   double restitution = 0.0;      ///< in [0, 1]
   double friction = 0.0;         ///< Coulomb, >= 0
-  double density = 1000.0;       ///< kg / m^3, > 0; in the plane of a disc, kg / m^2
+  double density = 1000.0;       ///< kg / m^3; in the plane of a disc, kg / m^2
   unsigned iterations = 10;      ///< > 0, of the solver (spheres/contact_solver.hpp)
   unsigned push_iterations = 4;  ///< of what takes out overlaps
 };
 
 /// SI units: seconds, metres per square second, 1 / second.
 struct FlowOptions {
-  double dt = 1e-3;  ///< of a step, > 0
+  double dt = 1e-3;  ///< of a step
   Vec3 gravity = {0.0, 0.0, 0.0};
   double drag = 0.0;       ///< >= 0: the velocity relaxes to the field's (to 0 without a field) as exp(-drag t)
   unsigned substeps = 1;   ///< > 0: a step's way is a polyline of so many segments; vertices move with the first one
@@ -125,21 +132,24 @@ class Flow {
   /// `environment` outlives the flow, and is moved and edited by it alone. Throws InvalidArgument where an option is
   /// out of range. In the plane every vector given to a flow must have z = 0: gravity, velocities, fields, motions.
   Flow(Environment& environment, const FlowOptions& options, Responses responses = Responses{});
+  Flow(const Flow&) = delete;  // nor moved: others keep references to it
+  Flow& operator=(const Flow&) = delete;
 
   void set_field(VelocityField field) { field_ = std::move(field); }
   /// Throws InvalidArgument where it is not made for the environment's number of points, and in the plane as
   /// Deformation::check_plane().
   void set_deformation(Deformation deformation);
   /// Bodies that the spheres meet, with the options of CollisionOptions, where it has collisions; they outlive its
-  /// last step. Their step() follows each of the flow's. Throws InvalidArgument where substeps are not 1, or the
-  /// bodies' steps are of another duration. Precondition: they are in the same environment.
+  /// last step. Their step() follows each of the flow's. Throws InvalidArgument where substeps are not 1, the
+  /// bodies' steps are of another duration, or they are in another environment.
   void set_bodies(Bodies& bodies);
   /// Injects `rate` particles a second at random places of a patch, from the first step on. Throws InvalidArgument
-  /// where the patch has no face at a free cell, or the rate is negative, not finite, or more than 2^32 - 2 a step.
+  /// where the patch has no face at a free cell, the rate is negative or more than 2^31 particles a step, or the radius
+  /// is out of range.
   void add_inlet(Patch patch, double rate, const Vec3& velocity, double radius = 0.0);
 
-  /// Adds particles at these positions, as Environment::add(). `radius`: >= 0; a sphere that does not fit is moved out
-  /// of walls by its first step, and out of other spheres little by little.
+  /// Adds particles at these positions, as Environment::add(). `radius`: as is_radius(); a sphere that does not fit is
+  /// moved out of walls by its first step, and out of other spheres little by little.
   std::vector<Added> add(std::span<const Vec3> positions, const Vec3& velocity, double radius = 0.0);
   /// Likewise, each with a velocity and a radius of its own. Throws InvalidArgument, nothing added, where the numbers
   /// do not match, too.

@@ -23,6 +23,7 @@ void Flow::set_bodies(Bodies& bodies) {
   if (options_.substeps != 1) throw InvalidArgument("flow: spheres and bodies meet once in a step: substeps must be 1");
   if (bodies.options().dt != options_.dt)
     throw InvalidArgument("flow: the steps of bodies that its spheres meet must be as long as its own");
+  if (&bodies.environment() != &environment_) throw InvalidArgument("flow: the bodies are in another environment");
   bodies_ = &bodies;
 }
 

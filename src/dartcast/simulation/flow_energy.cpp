@@ -15,7 +15,9 @@ constexpr std::size_t energy_grain = 4096;  // sums of so many are added up in o
 
 // Precondition: there are collisions.
 double Flow::mass(std::size_t i) const {
-  const double r = radii_[i];
+  if (radii_[i] == 0.0) return 0.0;
+  constexpr double smallest_weighed = 0x1p-100;  // a smaller sphere gets the mass of this one: its own could be 0
+  const double r = std::max(radii_[i], smallest_weighed);
   const bool plane = environment_.map().dimension() == 2;
   return options_.collisions->density * (plane ? std::numbers::pi * r * r : 4.0 / 3.0 * std::numbers::pi * r * r * r);
 }

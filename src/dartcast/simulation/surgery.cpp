@@ -9,6 +9,11 @@
 
 namespace dartcast {
 
+namespace {
+
+
+}  // namespace
+
 Surgery::Surgery(const std::vector<Event>& events, const RemeshScene& remesh, const CrowdingScene& crowding, double dt,
                  Flow& flow)
     : events_(events),
@@ -17,6 +22,13 @@ Surgery::Surgery(const std::vector<Event>& events, const RemeshScene& remesh, co
       crowding_(crowding.options),
       dt_(dt),
       flow_(flow) {
+  const double latest = static_cast<double>(most_steps) * dt;
+  for (std::size_t i = 0; i < events_.size(); ++i) {
+    const double at = events_[i].at;
+    if (!(at >= 0.0 && at <= latest))
+      throw InvalidArgument(fmt::format("event {} ({}): its time is {} s: it must be between 0 and {} s", i + 1,
+                                        event_kind_names[events_[i].what.index()], at, latest));
+  }
   const Map& map = flow.environment().map();
   if (map.dimension() == 2 && relieve_every_ > 0)
     throw InvalidArgument("crowding: in the plane cells are not subdivided; leave [crowding] out");

@@ -32,8 +32,8 @@ struct SurgeryLog {
 
 class Surgery {
  public:
-  /// All outlive it. `events`: by time. Throws InvalidArgument where the scene is of the plane and an event is no
-  /// ligature, or crowded cells are to be subdivided; and as Crowding.
+  /// All outlive it. `events`: by time. Throws InvalidArgument where an event's time is negative or beyond 2^53 steps,
+  /// the scene is of the plane and an event is no ligature, or crowded cells are to be subdivided; and as Crowding.
   Surgery(const std::vector<Event>& events, const RemeshScene& remesh, const CrowdingScene& crowding, double dt,
           Flow& flow);
 

@@ -29,9 +29,9 @@ void check_radii(const Particles& particles, std::span<const double> radii, std:
   if (!clearances.empty() && clearances.size() != particles.size())
     throw InvalidArgument(fmt::format("advance: {} clearances for {} particles", clearances.size(), particles.size()));
   for (std::size_t i = 0; i < radii.size(); ++i) {
-    if (!(radii[i] >= 0.0) || !std::isfinite(radii[i]))
+    if (!is_radius(radii[i]))
       throw InvalidArgument(
-          fmt::format("advance: the radius of particle {} is {}: it must be finite and not negative", i, radii[i]));
+          fmt::format("advance: the radius of particle {} is {}: it must be between 0 and 2^100", i, radii[i]));
   }
 }
 
@@ -298,7 +298,7 @@ class SphereCall {
 
 }  // namespace
 
-SphereStepper::SphereStepper() : buffers_(std::make_unique<Buffers>()) {}
+SphereStepper::SphereStepper() = default;
 SphereStepper::~SphereStepper() = default;
 SphereStepper::SphereStepper(SphereStepper&&) noexcept = default;
 SphereStepper& SphereStepper::operator=(SphereStepper&&) noexcept = default;
@@ -307,8 +307,10 @@ SphereReport SphereStepper::advance(Environment& environment, Particles& particl
                                     std::span<const Vec3> targets, const Respond& respond, const StepOptions& options,
                                     std::span<const double> clearances) {
   check_radii(particles, radii, targets, clearances);
+  environment.check_advance(particles, options);
   const bool points_only = std::all_of(radii.begin(), radii.end(), [](double r) { return r == 0.0; });
   if (points_only) return {environment.advance(particles, targets, respond, options), {}};
+  if (!buffers_) buffers_ = std::make_unique<Buffers>();
   SphereCall call(*buffers_, environment, particles, radii, targets, respond, options, clearances);
   if (!respond) return call.run();
   const Particles before = particles;  // a response is the caller's code: it may throw

@@ -10,6 +10,7 @@
 
 #include "dartcast/environment/environment.hpp"
 #include "dartcast/spheres/near_walls.hpp"
+#include "dartcast/spheres/sphere_touch.hpp"
 
 namespace dartcast {
 
@@ -32,7 +33,7 @@ struct SphereReport {
 };
 
 /// Advances spheres. It keeps what it needs from call to call, so that steps do not allocate: one for each set of
-/// particles pays. Results depend on the arguments alone.
+/// particles pays. Results depend on the arguments alone; one that was moved from is as a new one.
 class SphereStepper {
  public:
   SphereStepper();
@@ -40,7 +41,7 @@ class SphereStepper {
   SphereStepper(SphereStepper&&) noexcept;
   SphereStepper& operator=(SphereStepper&&) noexcept;
 
-  /// Advances every particle towards its target, as Environment::advance(), each with its radius (>= 0, one per
+  /// Advances every particle towards its target, as Environment::advance(), each with its radius (is_radius(), one per
   /// particle). With a radius of 0 it is a point: the same to the last bit, at no further cost.
   ///
   /// - A contact is where the swept sphere first touches a wall: no later than in truth, and within sphere_time_bound
@@ -60,7 +61,7 @@ class SphereStepper {
   /// `clearances`: no wall is nearer to a particle's centre, as walls and particles stand; none, or one each. Where
   /// they hold a sphere's way no walls are looked for. After a move() they count for nothing.
   ///
-  /// Throws as Environment::advance(), and InvalidArgument where a radius is negative or not finite or their number
+  /// Throws as Environment::advance(), and InvalidArgument where a radius is out of range or their number
   /// does not match; then nothing is changed. Cost: that of a point; where clearances do not tell, 0.1 to 0.3 us for
   /// each cell that the sphere reaches (three of them at a radius of 0.2 cell sizes), 0.1 to 0.4 us for each wall
   /// triangle there, and some us for each contact.

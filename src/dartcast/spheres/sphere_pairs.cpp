@@ -1,5 +1,7 @@
 #include "dartcast/spheres/sphere_pairs.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -17,6 +19,21 @@ constexpr std::size_t pair_grain = 256;
 // Lists are quicker than the grid where edges of cells are longer than this many reaches, so that few spheres meet
 // other cells than their own: measured between 16 and 32, for 0.1 to 3 particles a cell.
 constexpr double short_reach = 16.0;
+
+constexpr double most_coordinate = 0x1p+1000;  // of a box: differences and levels of the grid stay in range
+
+// False where one is NaN.
+bool in_range(const Vec3& v) {
+  return std::abs(v.x) <= most_coordinate && std::abs(v.y) <= most_coordinate && std::abs(v.z) <= most_coordinate;
+}
+
+[[noreturn]] void refuse_motion(std::size_t i, const SphereMotion& s) {
+  throw InvalidArgument(fmt::format(
+      "pairs: sphere {} at ({}, {}, {}) with a motion of ({}, {}, {}) and a radius of {} reaches beyond 2^1000, or is "
+      "not "
+      "finite: its radius or velocity is out of range",
+      i, s.centre.x, s.centre.y, s.centre.z, s.displacement.x, s.displacement.y, s.displacement.z, s.radius));
+}
 
 // Particles are looked for in cells of this set: each is visited once.
 class VisitedCells {
@@ -102,6 +119,7 @@ void PairFinder::make_boxes(std::span<const SphereMotion> spheres, Threads threa
       boxes_[i].low = {std::min(s.centre.x, to.x) - r, std::min(s.centre.y, to.y) - r, std::min(s.centre.z, to.z) - r};
       boxes_[i].high = {std::max(s.centre.x, to.x) + r, std::max(s.centre.y, to.y) + r, std::max(s.centre.z, to.z) + r};
       reaches_[i] = r + std::max({std::abs(s.displacement.x), std::abs(s.displacement.y), std::abs(s.displacement.z)});
+      if (r > 0.0 && !(in_range(boxes_[i].low) && in_range(boxes_[i].high) && in_range(to))) refuse_motion(i, s);
     }
   });
 }

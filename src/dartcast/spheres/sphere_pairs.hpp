@@ -34,7 +34,8 @@ class PairFinder {
   /// The search through cells goes through free ones alone, from the cells that centres are in: pairs are left out
   /// that no way within the box of both connects, as on two sides of a blocked layer; whether walls are between those
   /// that are found is for separated() to say. `states`, `spheres`: by particle; `lists` up to date with the states.
-  /// The result holds until the next call. The same for any number of threads.
+  /// The result holds until the next call. The same for any number of threads. Throws InvalidArgument where a sphere's
+  /// box is not finite or reaches beyond 2^1000.
   std::span<const SpherePair> find(const Complex& complex, const CellLists& lists, std::span<const State> states,
                                    std::span<const SphereMotion> spheres, Threads threads = {},
                                    PairSearch search = PairSearch::automatic);

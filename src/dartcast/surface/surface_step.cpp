@@ -361,6 +361,7 @@ SurfacePlace in_free_face(const Surface& surface, const SurfacePlace& place) {
 SurfaceStep step(const Surface& surface, SurfacePlace& place, const Vec3& displacement, const SurfaceRespond& respond,
                  const SurfaceOptions& options, const SurfaceTrace& trace, std::uint32_t particle) {
   if (!surface.contains(place)) throw InvalidArgument("step: the place is none of this surface");
+  if (options.max_contacts == 0) throw InvalidArgument("step: max_contacts is 0: it must be at least 1");
   Stepping::check_displacement(displacement);
   SurfacePlace moved = in_free_face(surface, place);
   if (!surface.map().is_free(moved.triangle.cell)) {

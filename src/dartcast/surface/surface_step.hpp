@@ -13,7 +13,7 @@
 namespace dartcast {
 
 struct SurfaceOptions {
-  /// Contacts allowed to a particle in one step; at the last one it stops.
+  /// Contacts allowed to a particle in one step, at least 1; at the last one it stops.
   unsigned max_contacts = 16;
   /// Edges and vertices passed in one step, at most. A straight path passes an edge once in a while: around a vertex it
   /// turns by less than pi, so that only the number of triangles along it counts. This bounds the time of a step
@@ -62,8 +62,8 @@ struct SurfaceTrace {
 ///
 /// The place ends on the surface in a free face whatever happens: a ray leaves a triangle by one of its edges or
 /// corners, by construction (surface/unfold.hpp). A step of zero length meets nothing; one that ends exactly on a wall
-/// meets it at time 1. Throws InvalidArgument, the place unchanged, where the place is none of this surface or the
-/// displacement (or a response's) is not finite or above 2^300.
+/// meets it at time 1. Throws InvalidArgument, the place unchanged, where the place is none of this surface,
+/// max_contacts is 0, or the displacement (or a response's) is not finite or above 2^300.
 SurfaceStep step(const Surface& surface, SurfacePlace& place, const Vec3& displacement,
                  const SurfaceRespond& respond = {}, const SurfaceOptions& options = {}, const SurfaceTrace& trace = {},
                  std::uint32_t particle = 0);

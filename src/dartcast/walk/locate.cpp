@@ -25,17 +25,35 @@ std::uint32_t bin_along(double x, double low, double high, std::uint32_t bins) {
   return std::min(bins - 1, static_cast<std::uint32_t>(std::min(at, 4e9)));
 }
 
-// The first closed simplex of the cell that holds x; invalid where none does.
-SimplexId find_in(const Complex& complex, Cell c, const Vec3& x) {
+// The first simplex of the cell whose corners are such that holds(corners); invalid where none is.
+template <class Holds>
+SimplexId find_in(const Complex& complex, Cell c, Holds&& holds) {
   const CellView cell = complex.map().view(c);
   const auto& simplices = cell.shape().simplices();
   const auto find = [&](const auto& space) -> SimplexId {
     for (std::uint16_t s = 0; s < simplices.size(); ++s) {
-      if (detail::in_closed_simplex(space.corners(cell, simplices[s]), x)) return {c, s};
+      if (holds(space.corners(cell, simplices[s]))) return {c, s};
     }
     return {};
   };
   return complex.map().dimension() == 2 ? find(current_space<3>(complex)) : find(current_space<4>(complex));
+}
+
+// The first closed simplex of the cell that holds x.
+SimplexId find_in(const Complex& complex, Cell c, const Vec3& x) {
+  return find_in(complex, c, [&](const auto& corners) { return detail::in_closed_simplex(corners, x); });
+}
+
+// Whether the closed simplex holds x and the beginning of the way from there to `inner`: no facet that x lies on has
+// `inner` behind it.
+template <std::size_t N>
+bool holds_way(const std::array<Vec3, N>& corners, const Vec3& x, const Vec3& inner) {
+  for (unsigned facet = 0; facet < N; ++facet) {
+    const Sign at = orient_facet(corners, facet, x);
+    if (at == Sign::negative || (at == Sign::zero && orient_facet(corners, facet, inner) == Sign::negative))
+      return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -140,6 +158,12 @@ SimplexId Locator::first_free(const Complex& complex, const Vec3& x, Look&& look
 
 SimplexId Locator::find(const Complex& complex, const Vec3& x) const {
   return first_free(complex, x, [&](Cell c) { return find_in(complex, c, x); });
+}
+
+SimplexId Locator::find(const Complex& complex, const Vec3& x, const Vec3& inner) const {
+  return first_free(complex, x, [&](Cell c) {
+    return find_in(complex, c, [&](const auto& corners) { return holds_way(corners, x, inner); });
+  });
 }
 
 // Cells with a simplex that is not positive hold nothing.

@@ -33,6 +33,9 @@ class Locator {
 
   /// The simplex alone, where all cells of the grid are known to be valid; invalid outside.
   [[nodiscard]] SimplexId find(const Complex& complex, const Vec3& x) const;
+  /// The same, for one that holds the beginning of the way from x to `inner`, too: of the simplices on two sides of a
+  /// wall that x lies on, the one on the side of `inner`.
+  [[nodiscard]] SimplexId find(const Complex& complex, const Vec3& x, const Vec3& inner) const;
 
   /// The number of x's bin, or of one at the border. Points taken by bins find their cells in the cache: of many
   /// points, ten times faster than in random order.

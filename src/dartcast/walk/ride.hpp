@@ -47,6 +47,12 @@ Settled ridden(const Space<Positions, N>& space, SimplexId simplex, const Weight
   return settle(space, simplex, v, combine(v, w));
 }
 
+/// The same in a complex as it is now, of space or of the plane.
+inline Settled ridden(const Complex& complex, SimplexId simplex, const Weights& w) {
+  return complex.map().dimension() == 2 ? ridden(current_space<3>(complex), simplex, w)
+                                        : ridden(current_space<4>(complex), simplex, w);
+}
+
 /// The dual basis of the edges from a simplex's first corner, times its volume (in the plane its area).
 inline std::array<Vec3, 3> duals(const std::array<Vec3, 3>& e) {
   return {cross(e[1], e[2]), cross(e[2], e[0]), cross(e[0], e[1])};

@@ -1,5 +1,7 @@
 #include "dartcast/walk/step.hpp"
 
+#include <fmt/format.h>
+
 #include "dartcast/walk/step_run.hpp"
 
 namespace dartcast {
@@ -15,6 +17,14 @@ struct NoRecorder {
 };
 
 }  // namespace
+
+void check(const StepOptions& options, const char* caller) {
+  if (!(options.tolerance > 0.0))
+    throw InvalidArgument(fmt::format("{}: the tolerance is {}: it must be positive", caller, options.tolerance));
+  if (options.max_parts == 0) throw InvalidArgument(fmt::format("{}: max_parts is 0: it must be at least 1", caller));
+  if (options.max_contacts == 0)
+    throw InvalidArgument(fmt::format("{}: max_contacts is 0: it must be at least 1", caller));
+}
 
 StepResult Stepper::step(std::uint32_t particle, State& state, Weights& weights, const Vec3& target,
                          ContactList& contacts, Counters& counters, const Begun* begun) const {

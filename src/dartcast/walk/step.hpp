@@ -16,15 +16,18 @@
 namespace dartcast {
 
 struct StepOptions {
-  /// Contacts allowed to a particle in one step; at the last one it is asked to slide.
+  /// Contacts allowed to a particle in one step, at least 1; at the last one it is asked to slide.
   unsigned max_contacts = 16;
-  /// How far the chord may be off the true motion relative to the vertices, as a share of the local edge: a step is
-  /// split into ceil(sqrt(|A| |r| / (2 tolerance edge))) parts, A the displacement gradient of the vertices, r the
+  /// How far the chord may be off the true motion relative to the vertices, as a share (> 0) of the local edge: a step
+  /// is split into ceil(sqrt(|A| |r| / (2 tolerance edge))) parts, A the displacement gradient of the vertices, r the
   /// particle's own motion.
   double tolerance = 0.05;
-  /// Parts at most; a step that would need more is taken in this many.
+  /// Parts at most, at least 1; a step that would need more is taken in this many.
   unsigned max_parts = 256;
 };
+
+/// Throws InvalidArgument, which names the caller and the option, where one is out of range.
+void check(const StepOptions& options, const char* caller);
 
 /// A particle that a cell kept from its step, and why.
 struct Held {

@@ -1,0 +1,188 @@
+// Numbers at the ends of what doubles can hold: refused in words where they are given, or taken without a NaN.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "dartcast/base/error.hpp"
+#include "dartcast/mesh/generate_box.hpp"
+#include "dartcast/mesh/generate_rectangle.hpp"
+#include "dartcast/simulation/flow.hpp"
+#include "dartcast/simulation/polyline.hpp"
+#include "dartcast/simulation/surgery.hpp"
+
+namespace dartcast::ranges_test {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+MeshData cubes(std::uint32_t n) {
+  BoxOptions o;
+  o.cells = {n, n, n};
+  o.size = {double(n), double(n), double(n)};
+  return generate_box(o);
+}
+
+void expect_refused(const std::function<void()>& call, const std::string& words) {
+  try {
+    call();
+    ADD_FAILURE() << "not refused: " << words;
+  } catch (const InvalidArgument& e) {
+    EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << e.what();
+  }
+}
+
+FlowOptions colliding(double density = 1000.0) {
+  FlowOptions o;
+  o.dt = 0.1;
+  o.collisions = CollisionOptions{};
+  o.collisions->density = density;
+  return o;
+}
+
+TEST(FlowRanges, RadiiThatOverflow) {
+  Environment environment(cubes(3));
+  Flow flow(environment, colliding());
+  for (const double radius : {1e308, 1e307, 1e300, 1e90, 0x1.1p+100, infinity, std::nan(""), -1.0}) {
+    const std::string words = " is " + fmt::format("{}", radius) + ": it must be between 0 and 2^100";
+    expect_refused([&] { flow.add_random(2, {1, 0, 0}, radius); }, words);
+    expect_refused([&] { flow.add(std::vector<Vec3>{{1.5, 1.5, 1.5}}, {1, 0, 0}, radius); }, words);
+    expect_refused([&] { flow.add_inlet(Patch{1}, 10.0, {1, 0, 0}, radius); }, words);
+    SphereStepper stepper;
+    Particles particles;
+    environment.add(particles, std::vector<Vec3>{{1.5, 1.5, 1.5}});
+    expect_refused([&] { stepper.advance(environment, particles, std::vector<double>{radius}, std::vector<Vec3>(1)); },
+                   words);
+  }
+  EXPECT_EQ(flow.particles().size(), 0U);
+}
+
+TEST(FlowRanges, RadiiAndDensitiesAtTheEnds) {
+  for (const double radius : {1e-310, 1e-105, 0x1p-100, 0x1p+100}) {
+    for (const double density : {0x1p-100, 1000.0, 0x1p+100}) {
+      Environment environment(cubes(3));
+      Flow flow(environment, colliding(density));
+      flow.add_random(3, {1, 0, 0}, radius);
+      for (int i = 0; i < 3; ++i) flow.step();
+      for (const State& s : flow.particles().states()) EXPECT_TRUE(is_finite(s.position));
+      for (const Vec3& v : flow.velocities()) EXPECT_TRUE(is_finite(v)) << radius << ", " << density;
+    }
+  }
+}
+
+TEST(FlowRanges, Options) {
+  Environment environment(cubes(2));
+  const auto refused = [&](const std::function<void(FlowOptions&)>& spoil, const std::string& words) {
+    FlowOptions o = colliding();
+    spoil(o);
+    expect_refused([&] { const Flow flow(environment, o); }, words);
+  };
+  for (const double bad : {0.0, -1.0, 1e-320, 1e-200, 1e40, infinity, std::nan("")}) {
+    refused([&](FlowOptions& o) { o.dt = bad; }, "dt is " + fmt::format("{}", bad));
+    refused([&](FlowOptions& o) { o.collisions->density = bad; }, "density is " + fmt::format("{}", bad));
+  }
+  refused([](FlowOptions& o) { o.step.max_contacts = 0; }, "max_contacts");
+  refused([](FlowOptions& o) { o.step.max_parts = 0; }, "max_parts");
+  refused([](FlowOptions& o) { o.step.tolerance = std::nan(""); }, "tolerance");
+}
+
+TEST(FlowRanges, RatesOfInlets) {
+  Environment environment(cubes(2));
+  Flow flow(environment, colliding());
+  for (const double rate : {1e300, 1e30, 0x1p+40, infinity, std::nan(""), -1.0})
+    expect_refused([&] { flow.add_inlet(Patch{1}, rate, {1, 0, 0}); }, "rate is " + fmt::format("{}", rate));
+  flow.step();
+  EXPECT_EQ(flow.particles().size(), 0U);
+}
+
+TEST(FlowRanges, SpeedsThatOverflow) {
+  for (const double speed : {1e308, 1e300}) {
+    Environment environment(cubes(2));
+    Flow flow(environment, colliding());
+    flow.add_random(2, {speed, 0, 0}, 0.1);
+    EXPECT_THROW(flow.step(), InvalidArgument);
+  }
+}
+
+TEST(FlowRanges, BodiesOfAnotherEnvironment) {
+  Environment environment(cubes(2));
+  Environment other(cubes(2));
+  FlowOptions o = colliding();
+  Flow flow(environment, o);
+  BodiesOptions of_bodies;
+  of_bodies.dt = o.dt;
+  Bodies strangers(other, of_bodies);
+  Bodies own(environment, of_bodies);
+  expect_refused([&] { flow.set_bodies(strangers); }, "another environment");
+  EXPECT_NO_THROW(flow.set_bodies(own));
+}
+
+TEST(PairRanges, SpheresThatReachTooFar) {
+  PairFinder finder;
+  for (const double far : {1e308, 1e305, infinity, std::nan("")}) {
+    for (int which = 0; which < 3; ++which) {
+      std::vector<SphereMotion> spheres(3, SphereMotion{{1, 1, 1}, {0, 0, 0}, 0.5});
+      if (which == 0) spheres[1].radius = far;
+      if (which == 1) spheres[1].displacement.y = far;
+      if (which == 2) spheres[1].centre.z = -far;
+      if (which == 0 && std::isnan(far)) continue;  // meets nobody, as one without a radius
+      expect_refused([&] { finder.find(spheres); }, "sphere 1 ");
+    }
+  }
+  std::vector<SphereMotion> large(2, SphereMotion{{0x1p+300, 1, 1}, {0x1p+300, 0, 0}, 0x1p+300});
+  EXPECT_EQ(finder.find(large).size(), 1U);
+}
+
+TEST(PolylineRanges, SegmentsWhoseNumberWraps) {
+  Environment environment(cubes(2));
+  Particles particles;
+  environment.add(particles, std::vector<Vec3>{{0.5, 0.5, 0.5}, {1.5, 0.5, 0.5}});
+  const std::vector<Vec3> targets(2, Vec3{0.5, 0.5, 0.5});
+  for (const std::size_t segments : {std::size_t{1} << 63U, (std::size_t{1} << 63U) + 1})
+    expect_refused(
+        [&] {
+          advance_polyline(environment, particles, {targets.data(), 2 * (segments & 1)}, segments);
+        },
+        "targets for 2 particles");
+  Particles nobody;
+  EXPECT_EQ(advance_polyline(environment, nobody, {}, ~std::size_t{0}).counters.particle_steps, 0U);
+}
+
+// Refused before anything is changed: in the plane, too.
+TEST(PolylineRanges, TargetsOutOfThePlane) {
+  Environment environment(generate_rectangle(RectangleOptions{}));
+  Particles particles;
+  environment.add(particles, std::vector<Vec3>{{0.5, 0.5, 0.0}});
+  const std::vector<Vec3> targets = {{0.75, 0.5, 0.0}, {0.75, 0.75, 0.5}};
+  expect_refused([&] { advance_polyline(environment, particles, targets, 2); }, "target 1 of particle 0");
+  EXPECT_EQ(particles[0].position, (Vec3{0.5, 0.5, 0.0}));
+}
+
+TEST(PolylineRanges, AResponseThatThrowsInALaterSegment) {
+  Environment environment(cubes(2));
+  Particles particles;
+  environment.add(particles, std::vector<Vec3>{{0.5, 0.5, 0.5}});
+  const std::vector<Vec3> targets = {{1.5, 0.5, 0.5}, {2.5, 0.5, 0.5}};
+  const Respond thrower = [](const Contact&, auto, auto) -> Continuation { throw Error("mine"); };
+  EXPECT_THROW(advance_polyline(environment, particles, targets, 2, thrower), Error);
+  EXPECT_EQ(particles[0].position, (Vec3{0.5, 0.5, 0.5}));
+}
+
+TEST(SurgeryRanges, TimesOfEvents) {
+  Environment environment(cubes(2));
+  FlowOptions o;
+  o.dt = 1e-3;
+  Flow flow(environment, o);
+  const RemeshScene remesh;
+  const CrowdingScene crowding;
+  for (const double at : {-1.0, 1e300, 1e17, infinity, std::nan("")}) {
+    const std::vector<Event> events = {{0.0, Ligature{}}, {at, Ligature{}}};
+    expect_refused([&] { const Surgery surgery(events, remesh, crowding, o.dt, flow); },
+                   "event 2 (ligature): its time is " + fmt::format("{}", at));
+  }
+}
+
+}  // namespace dartcast::ranges_test
