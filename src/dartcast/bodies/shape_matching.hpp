@@ -44,8 +44,9 @@ inline bool is_mass(double m) { return m >= smallest_mass && m <= largest_mass; 
 /// force's potential.
 class RestShape {
  public:
-  /// `masses`: one per point. Throws InvalidArgument where there is no point, a mass is out of range (is_mass()), a point is
-  /// not finite, linear is outside [0, 1], a cluster is empty, names no point or one twice, or a point is in none.
+  /// `masses`: one per point. Throws InvalidArgument where there is no point, a mass is out of range (is_mass()), a
+  /// point is not finite, linear is outside [0, 1], a cluster is empty, names no point or one twice, or a point is in
+  /// none.
   RestShape(std::span<const Vec3> points, std::span<const double> masses, const MatchOptions& options = {});
 
   [[nodiscard]] std::size_t size() const { return masses_.size(); }
