@@ -58,8 +58,9 @@ struct World {
   Responses responses{Response{ResponseKind::reflect, 0.5, 0.1}};
   std::vector<Vec3> rest;
 
-  World(unsigned dimension, bool simplices) : environment(mesh_of(dimension, simplices)) {
-    const std::vector<Vec3> points = places(dimension);
+  World(unsigned dimension, bool simplices) : World(mesh_of(dimension, simplices), places(dimension), dimension) {}
+
+  World(const MeshData& mesh, const std::vector<Vec3>& points, unsigned dimension) : environment(mesh) {
     environment.add(particles, points);
     EXPECT_EQ(particles.size(), points.size());
     Random random(5);
@@ -199,10 +200,6 @@ TEST(Range, AFloorWithAGaussianDent) {
     o.cells = {60, 2, 2};
     o.size = {60, 2, 2};
     o.type = scene % 2 != 0 ? CellType::tetrahedron : CellType::hexahedron;
-    World world(3, false);
-    world.environment = Environment(generate_box(o));
-    world.rest.assign(world.environment.positions().begin(), world.environment.positions().end());
-    world.particles = {};
     std::vector<Vec3> at;
     for (int i = 0; i < 300; ++i) {
       at.push_back({random.uniform(0, 60), random.uniform(0, 2), random.uniform(-2, 2)});
@@ -210,10 +207,8 @@ TEST(Range, AFloorWithAGaussianDent) {
       if (i % 3 == 0) at.back().x = std::floor(at.back().x);
       if (i % 5 == 0) at.back().y = i % 2 == 0 ? 0.0 : 1.0;
     }
-    world.environment.add(world.particles, at);
+    World world(generate_box(o), at, 3);
     ASSERT_EQ(world.particles.size(), at.size());
-    world.velocities.assign(at.size(), Vec3{});
-    world.fates.assign(at.size(), Fate::alive);
     if (scene % 3 == 1) world.responses = Responses(Response{ResponseKind::slide, 1.0, 0.0});
     for (Vec3& v : world.velocities)
       v = {random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-0.5, 0)};

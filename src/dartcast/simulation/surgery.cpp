@@ -9,11 +9,6 @@
 
 namespace dartcast {
 
-namespace {
-
-
-}  // namespace
-
 Surgery::Surgery(const std::vector<Event>& events, const RemeshScene& remesh, const CrowdingScene& crowding, double dt,
                  Flow& flow)
     : events_(events),
