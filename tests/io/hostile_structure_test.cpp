@@ -202,7 +202,11 @@ TEST_F(HostileStructure, LegacyOfEitherData) {
     }
     const std::string whole = joined(sections);
     for (const std::string name : {"region", "flow", "free", "heat", "speed", "TimeValue", "default", "FieldData"}) {
-      for (const std::string other : {"heat", "h%65at", "free", "default", "NULL_ARRAY", "METADATA", "\xff"}) {
+      for (const std::string& other :
+           {std::string("heat"), std::string("h%65at"), std::string("heat%"), std::string("free"),
+            std::string("default"), std::string("NULL_ARRAY"), std::string("METADATA"), std::string("metadata1"),
+            std::string("\xff"), std::string("%"), std::string("%4"), std::string("%zz"), std::string("a%00b"),
+            std::string(300, 'x')}) {
         for (std::size_t at = whole.find(name); at != std::string::npos; at = whole.find(name, at + 1))
           read_as_mesh("a.vtk", replaced(whole, at, at + name.size(), other), name + " as " + other);
       }
@@ -219,6 +223,37 @@ std::string with_copy(const std::string& xml, const std::string& section, const 
   const std::size_t closing = xml.find("</DataArray>", begin);
   if (xml.find('>', begin) + 1 != end) end = closing + 12;
   return replaced(xml, end, end, xml.substr(begin, end - begin));
+}
+
+// Names and values that stand behind an array: VTK reads so many as it has components, and over empty lines.
+TEST_F(HostileStructure, LegacyMetadata) {
+  const std::string metadata =
+      "METADATA\nCOMPONENT_NAMES\nx%20axis\ny\nz\nINFORMATION 2\nNAME L2_NORM_RANGE LOCATION vtkDataArray\nDATA 2 0 "
+      "1.5\nNAME UNITS_LABEL LOCATION vtkDataArray\nDATA mm%2fs\n\n";
+  for (const bool binary : {false, true}) {
+    auto sections = cubes_vtk_sections(binary);
+    sections.insert(sections.begin() + 8, metadata);
+    EXPECT_EQ(refusal("a.vtk", joined(sections)), "accepted");
+    const auto changed = [&](const std::string& from, const std::string& to) {
+      auto other = sections;
+      other[8] = replaced(metadata, metadata.find(from), metadata.find(from) + from.size(), to);
+      return refusal("a.vtk", joined(other));
+    };
+    for (const char* name : {"%", "%4", "%zz", "%00"}) EXPECT_NE(changed("y", name).find("'%'"), std::string::npos);
+    for (const char* data : {"DATA 3 0 1.5", "DATA 2147483647 0", "DATA -1 0", "DATA 2 0", "DATA", "DATA 2 0 1.5 7"})
+      EXPECT_NE(changed("DATA 2 0 1.5", data), "accepted") << data;
+    for (const char* keys : {"INFORMATION 3", "INFORMATION 1", "INFORMATION 1000000000", "INFORMATION x", "INFO 2"})
+      EXPECT_NE(changed("INFORMATION 2", keys), "accepted") << keys;
+    EXPECT_NE(changed("L2_NORM_RANGE", "CONSUMER").find("is not known in METADATA"), std::string::npos);
+    EXPECT_NE(changed("z\nINFO", "INFO"), "accepted");
+    for (std::size_t at = 0; at < metadata.size(); ++at) {
+      for (const std::string& by : {std::string("\n"), std::string("%"), std::string("9"), std::string(300, 'x')}) {
+        auto other = sections;
+        other[8] = replaced(metadata, at, at + 1, by);
+        read_as_mesh("a.vtk", joined(other), "metadata at " + std::to_string(at));
+      }
+    }
+  }
 }
 
 TEST_F(HostileStructure, RepeatedNamesAreRefusedInWords) {
