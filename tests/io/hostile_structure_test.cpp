@@ -1,5 +1,6 @@
 // VTK files whose structure is damaged: sections and arrays that occur twice, nowhere, elsewhere, or under other names.
 // VTK's readers find them by name and by order.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,7 +50,7 @@ std::vector<Element> elements_of(const std::string& xml) {
 
 /// The text with [begin, end) replaced.
 std::string replaced(const std::string& text, std::size_t begin, std::size_t end, const std::string& by) {
-  return text.substr(0, begin) + by + text.substr(end);
+  return std::string(text).replace(begin, end - begin, by);
 }
 
 template <class Take>
@@ -79,7 +80,7 @@ void for_each_value(const std::string& xml, const std::string& key, const std::v
     const std::size_t begin = at + mark.size();
     const std::size_t end = xml.find('"', begin);
     take(replaced(xml, at, end + 1, ""), "without: " + key);
-    for (const std::string& value : values) take(replaced(xml, begin, end, value), key + "=" + value);
+    for (const std::string& value : values) take(replaced(xml, begin, end, value), fmt::format("{}={}", key, value));
   }
 }
 
@@ -208,7 +209,7 @@ TEST_F(HostileStructure, LegacyOfEitherData) {
             std::string("\xff"), std::string("%"), std::string("%4"), std::string("%zz"), std::string("a%00b"),
             std::string(300, 'x')}) {
         for (std::size_t at = whole.find(name); at != std::string::npos; at = whole.find(name, at + 1))
-          read_as_mesh("a.vtk", replaced(whole, at, at + name.size(), other), name + " as " + other);
+          read_as_mesh("a.vtk", replaced(whole, at, at + name.size(), other), fmt::format("{} as {}", name, other));
       }
     }
   }
@@ -267,7 +268,7 @@ TEST_F(HostileStructure, RepeatedNamesAreRefusedInWords) {
                                                                                          {"Cells", "types"},
                                                                                          {"Cells", "offsets"}}) {
       const std::string message = refusal("a.vtu", with_copy(xml, section, array));
-      EXPECT_NE(message.find("a second array '" + array + "' in <" + section + ">"), std::string::npos) << message;
+      EXPECT_NE(message.find(fmt::format("a second array '{}' in <{}>", array, section)), std::string::npos) << message;
     }
     // The same name in two sections is none of a name twice.
     std::string both = xml;

@@ -126,8 +126,8 @@ std::string info_text(const MeshInfo& i) {
   out += fmt::format("wall {}: {}{}{}\n", plane ? "edges" : "faces", i.wall_faces,
                      i.patches.empty() ? "" : ", by patch: ", list(i.patches));
   for (const auto& [name, p] : i.patch_places) {
-    out += fmt::format("patch {}: {} {:.6g}, centre ({:.6g}, {:.6g}, {:.6g})\n", name, plane ? "length" : "area", p.size, p.centre.x,
-                       p.centre.y, p.centre.z);
+    out += fmt::format("patch {}: {} {:.6g}, centre ({:.6g}, {:.6g}, {:.6g})\n", name, plane ? "length" : "area",
+                       p.size, p.centre.x, p.centre.y, p.centre.z);
   }
   out += plane ? fmt::format("bounds: ({}, {}) to ({}, {}) in the plane z = 0\n", i.low.x, i.low.y, i.high.x, i.high.y)
                : fmt::format("bounds: ({}, {}, {}) to ({}, {}, {})\n", i.low.x, i.low.y, i.low.z, i.high.x, i.high.y,
