@@ -20,10 +20,10 @@ struct ReadSizes {
 
 /// Bytes that the process takes at most while it reads a file of VTK with these sizes and builds the map from the mesh.
 /// Counted are, in bytes: 48 * 2^20 for the program and for what the allocator keeps of small blocks that are free; the
-/// file; and the largest of three stages. VTK: its arrays, 18 a corner and 20 a cell for its cells and their copies, and
-/// the mesh. Inspection: the mesh, 32 a corner for faces, 48 a point, 8 a cell. The map: the mesh, 32 a corner, 24 a
-/// point and a cell. The mesh takes 32 a point, 10 a corner, 32 a cell and 8 a value. Sums stop at 2^63. Cells that need
-/// points of their own inside are not foreseen.
+/// file; and the largest of three stages. VTK: its arrays, 18 a corner and 20 a cell for its cells and their copies,
+/// and the mesh. Inspection: the mesh, 32 a corner for faces, 48 a point, 8 a cell. The map: the mesh, 32 a corner, 24
+/// a point and a cell. The mesh takes 32 a point, 10 a corner, 32 a cell and 8 a value. Sums stop at 2^63. Cells that
+/// need points of their own inside are not foreseen.
 std::uint64_t memory_of_vtk(const ReadSizes& sizes);
 
 /// The same of a file whose numbers are read one by one, up to its mesh: no format takes more than ten times the file.
