@@ -476,6 +476,27 @@ TEST_F(Command, ReadingKeepsToItsMemory) {
   EXPECT_FALSE(fs::exists(folder / "b.msh"));
 }
 
+// So one sees which patch is the inlet.
+TEST_F(Command, InfoSaysWherePatchesLie) {
+  (void)write("a.toml",
+              "[environment]\ngenerator = 'box'\ncells = [2, 2, 3]\nsize = [2, 4, 6]\npatches = { angle = 30 }\n");
+  const Result r = run("info a.toml --json");
+  ASSERT_EQ(r.status, 0) << r.error;
+  const auto json = nlohmann::json::parse(r.out);
+  ASSERT_EQ(json["patch_places"].size(), 6U);
+  bool found = false;
+  for (const auto& [name, place] : json["patch_places"].items()) {
+    if (place["centre"][2] != 6.0) continue;
+    found = true;
+    EXPECT_NEAR(place["centre"][0], 1.0, 1e-12);
+    EXPECT_NEAR(place["centre"][1], 2.0, 1e-12);
+    EXPECT_EQ(place["size"], 8.0);
+    EXPECT_EQ(json["patches"][name], 4);
+  }
+  EXPECT_TRUE(found) << r.out;
+  EXPECT_NE(run("info a.toml").out.find("area 8, centre (1, 2, 6)"), std::string::npos);
+}
+
 TEST_F(Command, CheckTakesSurfaces) {
   (void)write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2\n");
   const Result r = run("check a.obj --json");

@@ -1,5 +1,6 @@
 // VTK files whose structure is damaged: sections and arrays that occur twice, nowhere, elsewhere, or under other names.
 // VTK's readers find them by name and by order.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,7 +50,7 @@ std::vector<Element> elements_of(const std::string& xml) {
 
 /// The text with [begin, end) replaced.
 std::string replaced(const std::string& text, std::size_t begin, std::size_t end, const std::string& by) {
-  return text.substr(0, begin) + by + text.substr(end);
+  return std::string(text).replace(begin, end - begin, by);
 }
 
 template <class Take>
@@ -79,7 +80,7 @@ void for_each_value(const std::string& xml, const std::string& key, const std::v
     const std::size_t begin = at + mark.size();
     const std::size_t end = xml.find('"', begin);
     take(replaced(xml, at, end + 1, ""), "without: " + key);
-    for (const std::string& value : values) take(replaced(xml, begin, end, value), key + "=" + value);
+    for (const std::string& value : values) take(replaced(xml, begin, end, value), fmt::format("{}={}", key, value));
   }
 }
 
@@ -202,9 +203,13 @@ TEST_F(HostileStructure, LegacyOfEitherData) {
     }
     const std::string whole = joined(sections);
     for (const std::string name : {"region", "flow", "free", "heat", "speed", "TimeValue", "default", "FieldData"}) {
-      for (const std::string other : {"heat", "h%65at", "free", "default", "NULL_ARRAY", "METADATA", "\xff"}) {
+      for (const std::string& other :
+           {std::string("heat"), std::string("h%65at"), std::string("heat%"), std::string("free"),
+            std::string("default"), std::string("NULL_ARRAY"), std::string("METADATA"), std::string("metadata1"),
+            std::string("\xff"), std::string("%"), std::string("%4"), std::string("%zz"), std::string("a%00b"),
+            std::string(300, 'x')}) {
         for (std::size_t at = whole.find(name); at != std::string::npos; at = whole.find(name, at + 1))
-          read_as_mesh("a.vtk", replaced(whole, at, at + name.size(), other), name + " as " + other);
+          read_as_mesh("a.vtk", replaced(whole, at, at + name.size(), other), fmt::format("{} as {}", name, other));
       }
     }
   }
@@ -221,6 +226,37 @@ std::string with_copy(const std::string& xml, const std::string& section, const 
   return replaced(xml, end, end, xml.substr(begin, end - begin));
 }
 
+// Names and values that stand behind an array: VTK reads so many as it has components, and over empty lines.
+TEST_F(HostileStructure, LegacyMetadata) {
+  const std::string metadata =
+      "METADATA\nCOMPONENT_NAMES\nx%20axis\ny\nz\nINFORMATION 2\nNAME L2_NORM_RANGE LOCATION vtkDataArray\nDATA 2 0 "
+      "1.5\nNAME UNITS_LABEL LOCATION vtkDataArray\nDATA mm%2fs\n\n";
+  for (const bool binary : {false, true}) {
+    auto sections = cubes_vtk_sections(binary);
+    sections.insert(sections.begin() + 8, metadata);
+    EXPECT_EQ(refusal("a.vtk", joined(sections)), "accepted");
+    const auto changed = [&](const std::string& from, const std::string& to) {
+      auto other = sections;
+      other[8] = replaced(metadata, metadata.find(from), metadata.find(from) + from.size(), to);
+      return refusal("a.vtk", joined(other));
+    };
+    for (const char* name : {"%", "%4", "%zz", "%00"}) EXPECT_NE(changed("y", name).find("'%'"), std::string::npos);
+    for (const char* data : {"DATA 3 0 1.5", "DATA 2147483647 0", "DATA -1 0", "DATA 2 0", "DATA", "DATA 2 0 1.5 7"})
+      EXPECT_NE(changed("DATA 2 0 1.5", data), "accepted") << data;
+    for (const char* keys : {"INFORMATION 3", "INFORMATION 1", "INFORMATION 1000000000", "INFORMATION x", "INFO 2"})
+      EXPECT_NE(changed("INFORMATION 2", keys), "accepted") << keys;
+    EXPECT_NE(changed("L2_NORM_RANGE", "CONSUMER").find("is not known in METADATA"), std::string::npos);
+    EXPECT_NE(changed("z\nINFO", "INFO"), "accepted");
+    for (std::size_t at = 0; at < metadata.size(); ++at) {
+      for (const std::string& by : {std::string("\n"), std::string("%"), std::string("9"), std::string(300, 'x')}) {
+        auto other = sections;
+        other[8] = replaced(metadata, at, at + 1, by);
+        read_as_mesh("a.vtk", joined(other), "metadata at " + std::to_string(at));
+      }
+    }
+  }
+}
+
 TEST_F(HostileStructure, RepeatedNamesAreRefusedInWords) {
   for (const XmlData how : xml_data_kinds()) {
     const std::string xml = cubes_vtu(how);
@@ -232,7 +268,7 @@ TEST_F(HostileStructure, RepeatedNamesAreRefusedInWords) {
                                                                                          {"Cells", "types"},
                                                                                          {"Cells", "offsets"}}) {
       const std::string message = refusal("a.vtu", with_copy(xml, section, array));
-      EXPECT_NE(message.find("a second array '" + array + "' in <" + section + ">"), std::string::npos) << message;
+      EXPECT_NE(message.find(fmt::format("a second array '{}' in <{}>", array, section)), std::string::npos) << message;
     }
     // The same name in two sections is none of a name twice.
     std::string both = xml;

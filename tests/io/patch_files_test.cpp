@@ -31,7 +31,8 @@ struct BoundaryFile {
     XmlArrays arrays(how);
     std::vector<double> points;
     for (int x = 0; x <= 2; ++x) {
-      for (int k = 0; k < 4; ++k) points.insert(points.end(), {static_cast<double>(x), k / 2 * 1.0, k % 2 * 1.0});
+      for (int k = 0; k < 4; ++k)
+        points.insert(points.end(), {static_cast<double>(x), k > 1 ? 1.0 : 0.0, k % 2 == 1 ? 1.0 : 0.0});
     }
     std::vector<double> corners = {0, 4, 6, 2, 1, 5, 7, 3, 4, 8, 10, 6, 5, 9, 11, 7};
     std::vector<double> ends = {8, 16};

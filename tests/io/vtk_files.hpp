@@ -84,7 +84,8 @@ inline std::string cubes_vtu(XmlData how, int pieces = 1, bool point_data = true
     std::vector<double> points;
     std::vector<double> corners;
     for (int x = 0; x <= cells; ++x) {
-      for (int k = 0; k < 4; ++k) points.insert(points.end(), {static_cast<double>(x + p), k / 2 * 1.0, k % 2 * 1.0});
+      for (int k = 0; k < 4; ++k)
+        points.insert(points.end(), {static_cast<double>(x + p), k > 1 ? 1.0 : 0.0, k % 2 == 1 ? 1.0 : 0.0});
     }
     for (int c = 0; c < cells; ++c) {
       for (const int k : {0, 4, 6, 2, 1, 5, 7, 3}) corners.push_back(4 * c + k);
@@ -137,7 +138,8 @@ inline std::vector<std::string> cubes_vtk_sections(bool binary) {
   };
   std::vector<double> points;
   for (int x = 0; x <= 2; ++x) {
-    for (int k = 0; k < 4; ++k) points.insert(points.end(), {static_cast<double>(x), k / 2 * 1.0, k % 2 * 1.0});
+    for (int k = 0; k < 4; ++k)
+      points.insert(points.end(), {static_cast<double>(x), k > 1 ? 1.0 : 0.0, k % 2 == 1 ? 1.0 : 0.0});
   }
   return {
       fmt::format("# vtk DataFile Version 3.0\ntwo cubes\n{}\nDATASET UNSTRUCTURED_GRID\n",

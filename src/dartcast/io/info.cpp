@@ -24,7 +24,23 @@ void count_cells(const MeshData& mesh, MeshInfo& info) {
   }
 }
 
-void count_walls(const Map& map, MeshInfo& info) {
+/// Adds a face as triangles around its first corner; an edge of the plane as it is.
+void add_place(const Complex& complex, const CellView& view, std::uint16_t face, PatchPlace& sum) {
+  const auto corners = view.shape().corners(face);
+  const auto at = [&](std::size_t k) { return complex.positions()[view.vertex(corners[k]).value]; };
+  const auto add = [&](double size, const Vec3& middle) {
+    sum.size += size;
+    sum.centre += middle * size;
+  };
+  if (corners.size() == 2) return add(norm(at(1) - at(0)), (at(0) + at(1)) * 0.5);
+  for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
+    const Vec3 a = at(0), b = at(k), c = at(k + 1);
+    add(0.5 * norm(cross(b - a, c - a)), (a + b + c) * (1.0 / 3.0));
+  }
+}
+
+void count_walls(const Complex& complex, MeshInfo& info) {
+  const Map& map = complex.map();
   info.wall_faces = map.wall_face_count();
   for (const Cell c : map.cells()) {
     const CellView view = map.view(c);
@@ -33,8 +49,14 @@ void count_walls(const Map& map, MeshInfo& info) {
     for (std::uint16_t f = 0; f < view.shape().face_count(); ++f) {
       if (!view.is_wall(f)) continue;
       const Patch patch = map.patch({c, f});
-      if (patch.value != 0) ++info.patches[map.patch_names()[patch.value]];
+      if (patch.value == 0) continue;
+      const std::string& name = map.patch_names()[patch.value];
+      ++info.patches[name];
+      add_place(complex, view, f, info.patch_places[name]);
     }
+  }
+  for (auto& [name, place] : info.patch_places) {
+    if (place.size > 0.0) place.centre = place.centre * (1.0 / place.size);
   }
 }
 
@@ -115,7 +137,7 @@ MeshInfo mesh_info(const MeshData& mesh, std::string name, Threads threads) {
   count_cells(mesh, info);
   find_bounds(mesh.points, info);
   const Complex complex(mesh, threads);
-  count_walls(complex.map(), info);
+  count_walls(complex, info);
   info.shapes = complex.map().shapes().size();
   info.simplices = complex.simplex_count();
   info.interior_points = complex.interior_point_count();
@@ -126,12 +148,16 @@ MeshInfo mesh_info(const MeshData& mesh, std::string name, Threads threads) {
 }
 
 std::string info_json(const MeshInfo& i) {
+  auto places = nlohmann::ordered_json::object();
+  for (const auto& [name, p] : i.patch_places)
+    places[name] = {{"size", p.size}, {"centre", {p.centre.x, p.centre.y, p.centre.z}}};
   nlohmann::ordered_json json = {{"name", i.name},
                                  {"dimension", i.dimension},
                                  {"points", i.points},
                                  {"cells", i.cells},
                                  {"regions", i.regions},
                                  {"patches", i.patches},
+                                 {"patch_places", places},
                                  {"free_cells", i.free_cells},
                                  {"bounds", {{i.low.x, i.low.y, i.low.z}, {i.high.x, i.high.y, i.high.z}}},
                                  {"wall_faces", i.wall_faces},
@@ -152,6 +178,10 @@ std::string info_text(const MeshInfo& i) {
   const bool plane = i.dimension == 2;
   out += fmt::format("wall {}: {}{}{}\n", plane ? "edges" : "faces", i.wall_faces,
                      i.patches.empty() ? "" : ", by patch: ", list(i.patches));
+  for (const auto& [name, p] : i.patch_places) {
+    out += fmt::format("patch {}: {} {:.6g}, centre ({:.6g}, {:.6g}, {:.6g})\n", name, plane ? "length" : "area",
+                       p.size, p.centre.x, p.centre.y, p.centre.z);
+  }
   out += plane ? fmt::format("bounds: ({}, {}) to ({}, {}) in the plane z = 0\n", i.low.x, i.low.y, i.high.x, i.high.y)
                : fmt::format("bounds: ({}, {}, {}) to ({}, {}, {})\n", i.low.x, i.low.y, i.low.z, i.high.x, i.high.y,
                              i.high.z);

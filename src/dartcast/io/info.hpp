@@ -21,6 +21,12 @@ struct ArrayInfo {
   std::size_t not_finite = 0;  ///< values that are no finite numbers
 };
 
+/// Where a patch lies.
+struct PatchPlace {
+  double size = 0.0;  ///< area of its wall faces; in the plane their length
+  Vec3 centre;        ///< of that area
+};
+
 struct MeshInfo {
   std::string name;
   unsigned dimension = 3;
@@ -28,6 +34,7 @@ struct MeshInfo {
   std::map<std::string, std::size_t> cells;    ///< by type
   std::map<std::string, std::size_t> regions;  ///< by name, or tag
   std::map<std::string, std::size_t> patches;  ///< wall faces by patch, where there is one; in the plane all edges
+  std::map<std::string, PatchPlace> patch_places;
   std::size_t free_cells = 0;
   std::size_t wall_faces = 0;
   std::size_t shapes = 0;  ///< kinds of cell that the map tells apart

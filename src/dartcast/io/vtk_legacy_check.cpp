@@ -26,18 +26,22 @@ std::string lower(std::string_view word) {
   return out;
 }
 
-/// A name as VTK reads it: %41 is A.
-std::string decoded(std::string_view name) {
+/// A name as VTK reads it: %41 is A, and a '%' among the last two characters is nothing. None where VTK would read
+/// beyond the name's end, would take what was in memory for a character, or would cut the name.
+std::optional<std::string> decoded(std::string_view name) {
   std::string out;
   for (std::size_t i = 0; i < name.size(); ++i) {
-    unsigned c = 0;
-    const auto* const digits = name.data() + i + 1;
-    if (name[i] == '%' && i + 2 < name.size() && std::from_chars(digits, digits + 2, c, 16).ptr == digits + 2) {
-      out += static_cast<char>(c);
-      i += 2;
-    } else {
+    if (name[i] != '%') {
       out += name[i];
+      continue;
     }
+    if (name.size() < 3) return std::nullopt;
+    if (i + 3 > name.size()) continue;
+    unsigned c = 0;
+    const char* const digits = name.data() + i + 1;
+    if (std::from_chars(digits, digits + 2, c, 16).ptr != digits + 2 || c == 0) return std::nullopt;
+    out += static_cast<char>(c);
+    i += 2;
   }
   return out;
 }
@@ -134,7 +138,7 @@ class LegacyChecker {
   void attribute(const std::string& name) {
     if (name == "field") return field();
     if (name == "lookup_table") return lookup_table();
-    take_name(text_.word("the name of an array"));
+    take_name(short_word("the name of an array"));
     if (name == "color_scalars") {
       const auto components = static_cast<std::uint64_t>(text_.integer("a number of components", 1, 4));
       return binary_ ? data(name, items_, components, find_type("unsigned_char"))
@@ -149,7 +153,7 @@ class LegacyChecker {
       std::uint64_t components = 1;
       if (!text_.line_ends()) components = static_cast<std::uint64_t>(text_.integer("a number of components", 1, 4));
       if (lower(text_.word("LOOKUP_TABLE")) != "lookup_table") text_.fail("LOOKUP_TABLE should stand here");
-      text_.word("the name of a table");
+      short_word("the name of a table");
       return data(name, items_, components, kind);
     }
     if (name == "vectors" || name == "normals") return data(name, items_, 3, kind);
@@ -164,21 +168,32 @@ class LegacyChecker {
   void take_name(std::string_view word) {
     static constexpr std::array<std::string_view, 3> places = {"of the file", "at the points", "at the cells"};
     const auto owner = static_cast<std::size_t>(owner_);
-    if (!names_[owner].insert(decoded(word)).second) {
-      text_.fail(fmt::format("a second array '{}' {}: each needs a name of its own", decoded(word).substr(0, 60),
-                             places[owner]));
+    const std::string name = checked_text(word);
+    if (!names_[owner].insert(name).second) {
+      text_.fail(
+          fmt::format("a second array '{}' {}: each needs a name of its own", name.substr(0, 60), places[owner]));
     }
   }
 
+  /// VTK reads 255 characters of a word, and the rest as the next one.
+  std::string_view short_word(std::string_view what) {
+    const std::string_view word = text_.word(what);
+    if (word.size() > 255) text_.fail(fmt::format("{} has more than 255 characters", what));
+    return word;
+  }
+
+  [[nodiscard]] std::string checked_text(std::string_view word) const {
+    const std::optional<std::string> text = decoded(word);
+    if (!text.has_value()) text_.fail("a '%' in a name or text is not followed by the two digits of a character");
+    return *text;
+  }
+
   void field() {
-    text_.word("the name of a field");
+    short_word("the name of a field");
     const std::size_t arrays = text_.count("arrays", 1);
     for (std::size_t i = 0; i < arrays; ++i) {
-      if (lower(text_.peek()) == "metadata") {
-        text_.word("METADATA");
-        metadata();
-      }
-      const std::string_view name = text_.word("the name of an array");
+      if (lower(text_.peek()).starts_with("metadata")) metadata();  // VTK looks at eight letters
+      const std::string_view name = short_word("the name of an array");
       if (name == "NULL_ARRAY") continue;
       take_name(name);
       const auto components = static_cast<std::uint64_t>(text_.integer("a number of components", 0, INT32_MAX));
@@ -194,6 +209,7 @@ class LegacyChecker {
 
   /// Texts: in ASCII one on a line; in binary each behind its length.
   void texts(std::uint64_t items, std::uint64_t components) {
+    components_ = 1;
     text_.check_count("texts", items, 1);
     if (components != 1) text_.fail("an array of texts must have one component");
     sizes_.vtk += 64 * items;
@@ -201,7 +217,7 @@ class LegacyChecker {
     for (std::uint64_t i = 0; i < items; ++i) {
       if (!binary_) {
         if (text_.left() == 0) text_.fail("the file ends within an array of texts; it is truncated");
-        text_.line();
+        (void)checked_text(text_.line());
         continue;
       }
       text_.raw(text_length(), "an array of texts");
@@ -219,16 +235,51 @@ class LegacyChecker {
   }
 
   void lookup_table() {
-    text_.word("the name of a table");
+    short_word("the name of a table");
     const std::size_t size = text_.count("colours", binary_ ? 4 : 8);
     data("colours", size, 4, find_type(binary_ ? "unsigned_char" : "float"));
   }
 
-  /// Lines up to an empty one.
+  /// Behind an array: lines up to an empty one. VTK goes by the number of components and by the keys it knows, over
+  /// empty lines as well: so only what it surely reads in the same way is taken.
   void metadata() {
     text_.line();
-    while (text_.left() > 0 && !text_.line().empty()) {
+    while (text_.left() > 0) {
+      const std::string line = lower(text_.line());
+      if (line.empty()) return;
+      if (line.starts_with("component_names")) {
+        for (std::uint64_t k = 0; k < components_; ++k) {
+          if (text_.left() == 0) text_.fail("the file ends within the names of components; it is truncated");
+          (void)checked_text(text_.line());
+        }
+      } else if (line.starts_with("information ")) {
+        FileText count(std::string_view(line).substr(12));
+        const std::int64_t keys = count.integer("a number of keys", 0, INT32_MAX);
+        for (std::int64_t k = 0; k < keys; ++k) information();
+      } else {
+        text_.fail(fmt::format("'{}' is not known in METADATA", line.substr(0, 40)));
+      }
     }
+  }
+
+  /// One key of an array, with its value.
+  void information() {
+    if (text_.word("NAME") != "NAME") text_.fail("NAME should stand here");
+    const std::string_view key = short_word("a key");
+    if (text_.word("LOCATION") != "LOCATION") text_.fail("LOCATION should stand here");
+    const bool known = short_word("a class") == "vtkDataArray" && text_.line().empty();
+    const bool range = key == "L2_NORM_RANGE" || key == "L2_NORM_FINITE_RANGE";
+    if (!known || (!range && key != "UNITS_LABEL"))
+      text_.fail(fmt::format("the key '{}' is not known in METADATA", key.substr(0, 40)));
+    if (text_.word("DATA") != "DATA") text_.fail("DATA should stand here");
+    if (range) {
+      text_.integer("the number of a range's ends", 2, 2);
+      for (int end = 0; end < 2; ++end) text_.number("a range's end");
+    } else {
+      if (text_.line_ends()) text_.fail("a unit should stand here");
+      (void)checked_text(short_word("a unit"));
+    }
+    if (!text_.line().empty()) text_.fail("the line should end behind a key's value");
   }
 
   const NumberType& find_type(std::string_view name) {
@@ -247,6 +298,7 @@ class LegacyChecker {
     text_.check_count(what, components, 1);
     if (components != 0 && items > UINT64_MAX / components) text_.fail("an array is too large");
     const std::uint64_t n = items * components;
+    components_ = components;
     sizes_.values += n;
     sizes_.vtk += n * std::max<std::size_t>(kind.bytes, 1);
     if (binary_) {
@@ -269,6 +321,7 @@ class LegacyChecker {
   std::vector<std::int64_t> integers(std::string_view what, std::size_t n, const NumberType& kind) {
     if (kind.real || kind.bytes < 4) text_.fail("a type of whole numbers of 4 or 8 bytes should stand here");
     text_.check_count(what, n, binary_ ? kind.bytes : 2);
+    components_ = 1;
     std::vector<std::int64_t> out;
     out.reserve(n);
     if (!binary_) {
@@ -352,6 +405,7 @@ class LegacyChecker {
   std::optional<std::size_t> points_;
   std::optional<Cells> cells_;
   std::uint64_t items_ = 0;
+  std::uint64_t components_ = 1;  // of the last array
   enum class Owner : std::uint8_t { file, points, cells } owner_ = Owner::file;
   std::array<std::set<std::string>, 3> names_;  // by owner
   ReadSizes sizes_;
