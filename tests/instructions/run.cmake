@@ -1,5 +1,6 @@
-# Counts the instructions of Environment::advance() per particle-step, exactly, and holds them under a bound.
-foreach(kind_and_bound still=300 moving=830 lattice=1760 plane=360 plane_moving=800 corner=12170)
+# Counts the instructions of Environment::advance() per particle-step, exactly, and holds them under a bound: 2% above what is
+# measured, so that a loss shows.
+foreach(kind_and_bound still=286 moving=810 lattice=1750 plane=301 plane_moving=702 corner=12231)
   string(REGEX MATCH "(.*)=(.*)" ignored ${kind_and_bound})
   set(kind ${CMAKE_MATCH_1})
   set(bound ${CMAKE_MATCH_2})
@@ -38,7 +39,7 @@ foreach(edge 10 24)
   message(STATUS "edits: ${each_${edge}} instructions each among ${cells} cells")
 endforeach()
 math(EXPR allowed "${each_10} * 13 / 10")
-if(each_24 GREATER allowed OR each_10 GREATER 620000 OR each_10 LESS 1000)
+if(each_24 GREATER allowed OR each_10 GREATER 581000 OR each_10 LESS 1000)
   set(wrong "${wrong} edits")
 endif()
 if(wrong)

@@ -320,7 +320,7 @@ TEST_F(RunFilesTest, CountsThatOverflowAreRefused) {
   EXPECT_NE(rate.find("1e+300"), std::string::npos) << rate;
   EXPECT_NE(rate.find("rate"), std::string::npos) << rate;
   const std::string late = "[[event]]\nkind = 'carve'\nat = 1e300\ntool = 'ball'\npoint = [0, 0, 0]\nradius = 1.0\n";
-  EXPECT_EQ(failure(start + late + "[motion]\nsteps = 2\n"), "");
+  EXPECT_NE(failure(start + late + "[motion]\nsteps = 2\n").find("its time is 1e+300 s"), std::string::npos);
   RunOptions options;
   options.steps = ~std::uint64_t{0};
   EXPECT_THROW(run_scene(parse_scene(start, "test.toml"), options), InvalidArgument);
