@@ -117,8 +117,7 @@ std::vector<Added> Flow::add(std::span<const Vec3> positions, std::span<const Ve
     throw InvalidArgument(fmt::format("flow: {} velocities and {} radii for {} positions", velocities.size(),
                                       radii.size(), positions.size()));
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    const bool good = is_finite(velocities[i]) && !leaves_plane(environment_, velocities[i]) && radii[i] >= 0.0 &&
-                      std::isfinite(radii[i]);
+    const bool good = is_finite(velocities[i]) && !leaves_plane(environment_, velocities[i]) && is_radius(radii[i]);
     if (!good) check_motion(velocities[i], radii[i], fmt::format("particle {}'s", i));
   }
   std::vector<Added> added = environment_.add(particles_, positions);

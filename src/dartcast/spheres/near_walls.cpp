@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "dartcast/exact/predicates.hpp"
 #include "dartcast/geometry/simplex.hpp"
 
 namespace dartcast {
@@ -162,13 +163,13 @@ void NearWalls::add_walls(const Complex& complex, const Reach& reach, CellFace f
   for (std::uint16_t t = 0; t < cell.shape().triangle_count(face.face); ++t) {
     const NearWall wall = wall_at(cell, face, t, before, after);
     Reach::Bounds bounds{wall.corners.to[0], wall.corners.to[0]};
-    bool finite = true;
+    bool in_range = true;  // else the wall belongs to a cell that is invalid, or was before the move
     for (unsigned i = 0; i < 3; ++i) {
       bounds.include(wall.corners.from[i]);
       bounds.include(wall.corners.to[i]);
-      finite = finite && is_finite(wall.corners.from[i]) && is_finite(wall.corners.to[i]);
+      in_range = in_range && in_exact_range(wall.corners.from[i]) && in_exact_range(wall.corners.to[i]);
     }
-    if (finite && reach.meets(bounds)) walls_.push_back(wall);
+    if (in_range && reach.meets(bounds)) walls_.push_back(wall);
   }
 }
 
@@ -239,8 +240,8 @@ void NearWalls::describe(const Complex& complex, const NearWall& wall, const Nea
     if (((nearest.corners >> i) & 1U) == 0) continue;
     points[count++] = wall.local[i];
     const std::size_t v = wall.vertex[i].value;
-    const Vec3 by = complex.positions()[v] - complex.previous_positions()[v];
-    if (moved && is_finite(by)) feature.displacement += by * nearest.weights[i];
+    const Vec3& before = complex.previous_positions()[v];
+    if (moved && in_exact_range(before)) feature.displacement += (complex.positions()[v] - before) * nearest.weights[i];
   }
   const Shape::Feature place =
       complex.map().shape(wall.face.cell).feature(std::span<const std::uint16_t>(points).first(count));
