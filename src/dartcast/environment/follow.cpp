@@ -37,11 +37,11 @@ class Following {
   // without a motion of their own. Those in removed cells get their new positions, and keep the names of these cells
   // for follow().
   void ride(Threads threads) {
-    constexpr std::size_t grain = 256;
+    constexpr std::size_t edit_grain = 256;
     const StepOptions options;
     const Respond stop;
     const Stepper stepper(complex_, true, options, stop);
-    parallel_for(particles_.size(), grain, threads, [&](std::size_t begin, std::size_t end) {
+    parallel_for(particles_.size(), edit_grain, threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         if (is_removed(particles_.states_[i].cell))
           particles_.states_[i].position = map().dimension() == 2 ? ridden<3>(i) : ridden<4>(i);
