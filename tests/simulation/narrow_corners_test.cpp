@@ -2,7 +2,6 @@
 // potential energy stays below what it was, and what comes to rest stays at rest.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -178,9 +177,10 @@ TEST(NarrowCorners, AnElasticParticleKeepsItsEnergy) {
   flow.add(std::vector<Vec3>{{0.01, 0.5, 0.6}}, {0, 0, 0});
   const double start = energy(flow, 0, o, 0.5);
   const double rest = 0.0;  // at the edge
-  for (std::uint64_t step = 0; step < steps(); ++step) flow.step();
+  const std::uint64_t count = std::max<std::uint64_t>(steps(), 1000);
+  for (std::uint64_t step = 0; step < count; ++step) flow.step();
   EXPECT_NEAR(energy(flow, 0, o, 0.5), start, 0.02 * (start - rest));
-  EXPECT_GT(flow.contact_counts()[0], steps() / 100);
+  EXPECT_GT(flow.contact_counts()[0], count / 100);
 }
 
 TEST(NarrowCorners, WhatHasComeToRestInAVertexStaysThereAtOneContactAStep) {

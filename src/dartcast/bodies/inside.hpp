@@ -22,9 +22,9 @@ class InsideTest {
   /// Throws InvalidMesh as surface_triangles() and check_closed(). Cost: n log n.
   explicit InsideTest(const MeshData& surface);
 
-  /// Throws InvalidArgument where x is not finite or outside the exact range. Cost: the triangles whose boxes the ray
-  /// meets, times a logarithm.
-  [[nodiscard]] Side side(const Vec3& x) const;
+  /// Throws InvalidArgument where the point is not finite or outside the exact range. Cost: the triangles whose boxes
+  /// the ray meets, times a logarithm.
+  [[nodiscard]] Side side(const Vec3& point) const;
 
   [[nodiscard]] const std::vector<SurfaceTriangle>& triangles() const { return triangles_; }
 

@@ -109,18 +109,18 @@ Environment::Environment(MeshData mesh, Threads threads)
 
 Location Environment::locate(const Vec3& x) { return locate(std::span<const Vec3>(&x, 1)).front(); }
 
-std::vector<Location> Environment::locate(std::span<const Vec3> asked) {
-  std::vector<Vec3> points(asked.size());
-  for (std::size_t i = 0; i < asked.size(); ++i) points[i] = checked_point(asked[i], "point", i, map().dimension());
+std::vector<Location> Environment::locate(std::span<const Vec3> points) {
+  std::vector<Vec3> places(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) places[i] = checked_point(points[i], "point", i, map().dimension());
   if (!locator_) locator_ = std::make_unique<Locator>(complex_);
   std::vector<std::pair<std::size_t, std::size_t>> order(points.size());  // by bin: bin, point
-  for (std::size_t i = 0; i < points.size(); ++i) order[i] = {locator_->bin(points[i]), i};
+  for (std::size_t i = 0; i < points.size(); ++i) order[i] = {locator_->bin(places[i]), i};
   std::sort(order.begin(), order.end());
   std::vector<Location> locations(points.size());
   parallel_for(points.size(), chunk, threads_, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t point = order[i].second;
-      locations[point] = locator_->locate(complex_, points[point]);
+      locations[point] = locator_->locate(complex_, places[point]);
     }
   });
   return locations;
@@ -184,11 +184,11 @@ void Environment::add_to(Particles& particles, SimplexId simplex, const Vec3& po
     particles.memos_.push_back(detail::memo_of(particles.memo_kind_, complex_.positions(), vertices, position));
 }
 
-bool Environment::add(Particles& particles, SimplexId simplex, const Vec3& place) {
+bool Environment::add(Particles& particles, SimplexId simplex, const Vec3& position) {
   check_current(particles);
-  const Vec3 position = flushed(place);
-  if (!is_particle_position(map(), position) || !holds(complex_, simplex, position)) return false;
-  add_to(particles, simplex, position);
+  const Vec3 place = flushed(position);
+  if (!is_particle_position(map(), place) || !holds(complex_, simplex, place)) return false;
+  add_to(particles, simplex, place);
   return true;
 }
 
@@ -370,16 +370,15 @@ detail::MemoKind Environment::memo_kind(const Particles& particles, bool moved) 
   return particles.stood_still_ ? detail::MemoKind::coordinates : detail::MemoKind::none;
 }
 
-StepReport Environment::advance(Particles& particles, std::span<const Vec3> asked, const Respond& respond,
+StepReport Environment::advance(Particles& particles, std::span<const Vec3> targets, const Respond& respond,
                                 const StepOptions& options) {
-  const std::vector<Vec3> decided = check_targets(particles, asked);
-  const std::span<const Vec3> targets = decided.empty() ? asked : std::span<const Vec3>(decided);
+  const std::vector<Vec3> decided = check_targets(particles, targets);
   check_advance(particles, options, "advance");
   const bool moved = particles.moves_ != moves_;
   const detail::MemoKind kind = memo_kind(particles, moved);
   const bool memos_match = kind == particles.memo_kind_;
   const Steps steps{particles,
-                    targets,
+                    decided.empty() ? targets : std::span<const Vec3>(decided),
                     Stepper(complex_, moved, options, respond),
                     {&complex_, moved, memos_match, options.tolerance, !particles.walls_changed_}};
   std::vector<StepReport> parts(chunk_count(particles.size(), chunk));

@@ -91,8 +91,8 @@ class Following {
       before[k] = complex_.previous_positions()[particles_.vertices_[i][k]];
       after[k] = complex_.positions()[particles_.vertices_[i][k]];
     }
-    const Vec3 x = flushed(
-        detail::combine(after, s.held ? particles_.weights_[i] : detail::barycentric(before, s.position)));
+    const Vec3 x =
+        flushed(detail::combine(after, s.held ? particles_.weights_[i] : detail::barycentric(before, s.position)));
     if (volume_sign(after) == Sign::positive) return settled_inside(after, x);
     return in_exact_range(x) ? x : s.position;
   }

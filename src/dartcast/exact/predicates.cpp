@@ -266,8 +266,8 @@ PlaneShift::PlaneShift(const Vec3& p, std::span<const Vec3> opposite) : p_(flush
 }
 
 // With d = q - p the terms are w x d, d.y and -d.x; (o - p) x (q - p) is that of o, q and p.
-Sign PlaneShift::of_line(const Vec3& target) const {
-  const Vec3 q = flushed(target);
+Sign PlaneShift::of_line(const Vec3& q0) const {
+  const Vec3 q = flushed(q0);
   if (!all_in_plane_range(p_, q, opposite_[0], opposite_[1])) return Sign::undecidable;
   const auto along = exact_plane_determinant(opposite_[0], q, p_) + exact_plane_determinant(opposite_[1], q, p_);
   if (along.sign() != 0) return static_cast<Sign>(along.sign());

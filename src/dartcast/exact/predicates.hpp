@@ -164,8 +164,8 @@ class PlaneShift {
   /// `opposite`: the vertices opposite to the facets on which p lies; at most 2.
   PlaneShift(const Vec3& p, std::span<const Vec3> opposite);
 
-  /// Sign of orient2d(p + shift, q + shift, c) where orient2d(p, q, c) is zero, whatever c. Zero only where p is q.
-  [[nodiscard]] Sign of_line(const Vec3& q) const;
+  /// Sign of orient2d(p + shift, q0 + shift, c) where orient2d(p, q0, c) is zero, whatever c. Zero only where p is q0.
+  [[nodiscard]] Sign of_line(const Vec3& q0) const;
 
  private:
   Vec3 p_;

@@ -100,10 +100,10 @@ std::vector<Vec3> frame_positions(const std::filesystem::path& file, const MeshD
 
 }  // namespace
 
-SceneMesh load_scene_mesh(const EnvironmentScene& scene, const ReadOptions& read, Threads threads) {
-  ReadOptions options = read;
-  if (const auto* patches = std::get_if<PatchArray>(&scene.patches)) options.patch_array = patches->name;
-  MeshFile file = load_source(scene.mesh, options);
+SceneMesh load_scene_mesh(const EnvironmentScene& scene, const ReadOptions& options, Threads threads) {
+  ReadOptions read = options;
+  if (const auto* patches = std::get_if<PatchArray>(&scene.patches)) read.patch_array = patches->name;
+  MeshFile file = load_source(scene.mesh, read);
   scale_points(file, scene.scale);
   if (scene.skip_bad_cells) skip_bad_cells(file, threads);
   file = valid_file(std::move(file));

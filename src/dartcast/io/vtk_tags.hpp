@@ -1,13 +1,13 @@
 // Regions and patches of a VTK grid, from its arrays at cells.
 #pragma once
 
+#include <vtkUnstructuredGrid.h>
+
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "dartcast/mesh/mesh_data.hpp"
-
-class vtkUnstructuredGrid;
 
 namespace dartcast {
 

@@ -21,8 +21,10 @@ namespace dartcast {
 /// their order, and how often one is listed, change no bit.
 class JointWalls {
  public:
+  // A list of walls is what it stands for: NOLINTBEGIN(google-explicit-constructor)
   JointWalls(std::span<const WallHit> walls, std::span<const WallHit> joined = {}) : walls_(walls), joined_(joined) {}
   JointWalls(const std::vector<WallHit>& walls) : walls_(walls) {}
+  // NOLINTEND(google-explicit-constructor)
 
   [[nodiscard]] std::size_t size() const { return walls_.size() + joined_.size(); }
   const WallHit& operator[](std::size_t i) const { return i < walls_.size() ? walls_[i] : joined_[i - walls_.size()]; }

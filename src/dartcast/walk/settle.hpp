@@ -147,14 +147,17 @@ constexpr int few_doublings = 6;
 constexpr double most_units = 256.0;  // of the coordinates
 
 /// Whether a facet lies across an axis, and x on its plane.
-inline bool on_level_facet(const Corners& v, unsigned facet, const Vec3& x) {
-  const auto& [a, b, c] = facet_corners[facet];
-  return (v[a].x == x.x && v[b].x == x.x && v[c].x == x.x) || (v[a].y == x.y && v[b].y == x.y && v[c].y == x.y) ||
-         (v[a].z == x.z && v[b].z == x.z && v[c].z == x.z);
-}
-inline bool on_level_facet(const PlaneCorners& v, unsigned facet, const Vec3& x) {
-  const auto& [a, b] = plane_facet_corners[facet];
-  return (v[a].x == x.x && v[b].x == x.x) || (v[a].y == x.y && v[b].y == x.y);
+template <std::size_t N>
+bool on_level_facet(const std::array<Vec3, N>& v, unsigned facet, const Vec3& x) {
+  const auto is_level = [&](double Vec3::*axis) {
+    for (unsigned i = 0; i + 1 < N; ++i) {
+      const double corner = v[facet_corner<N>(facet, i)].*axis;
+      const bool same = corner == x.*axis || (x.*axis == 0.0 && std::abs(corner) < smallest_magnitude);
+      if (!same) return false;
+    }
+    return true;
+  };
+  return is_level(&Vec3::x) || is_level(&Vec3::y) || (N == 4 && is_level(&Vec3::z));
 }
 
 /// The usual contact point: x is on one facet, which lies across an axis, or next to one facet; then it is lifted off
