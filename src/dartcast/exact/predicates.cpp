@@ -148,10 +148,10 @@ Sign orient3d_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) 
 double orient3d_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Filtered f = filtered_determinant(a, b, c, d);
   constexpr double enough = 0x1p+49;
-  const bool bounded = bound_holds(f.extent);
   if (f.exceeds(enough) && filter_applies(f.extent)) return f.value;
   if (!all_in_range(a, b, c, d)) return std::numeric_limits<double>::quiet_NaN();
   if (has_equal(a, b, c, d)) return 0.0;
+  const bool bounded = bound_holds(f.extent);
   if (bounded && (f.exceeds(enough) || rounds_nothing(f.extent, a, b, c, d))) return f.value;
   if (bounded && !rounds_difference(a, d) && !rounds_difference(b, d) && !rounds_difference(c, d)) {
     const double value = paired_determinant(flushed(a), flushed(b), flushed(c), flushed(d));

@@ -124,15 +124,11 @@ struct Determinants {
   [[nodiscard]] bool proves_positive() const { return volume6() > 8.0 * bound; }
   /// The values over their sum are the coordinates of a point of the simplex right to 2^-26: each value is off by at
   /// most the bound, the sum by eight times that.
-  [[nodiscard]] bool proves_coordinates() const {
-    return volume6() > 0x1p+30 * bound || (holds_in_range() && volume6() > 0x1p+30 * error());
-  }
+  [[nodiscard]] bool proves_coordinates() const { return volume6() > 0x1p+30 * bound_in_range(); }
   /// x is strictly inside, and the simplex positive.
   [[nodiscard]] bool all_proved_positive() const { return least() > bound; }
   /// The same where all is known to be in the exact range.
-  [[nodiscard]] bool all_positive_in_range() const {
-    return least() > bound || (holds_in_range() && least() > error());
-  }
+  [[nodiscard]] bool all_positive_in_range() const { return least() > bound_in_range(); }
   [[nodiscard]] bool decides(unsigned i) const { return std::abs(value[i]) > bound; }
   /// What the bound is where the filter applies.
   [[nodiscard]] double error() const {
@@ -148,9 +144,11 @@ struct Determinants {
 
  private:
   [[nodiscard]] double least() const { return *std::min_element(value.begin(), value.end()); }
-  [[nodiscard]] bool holds_in_range() const {
-    if constexpr (N == 4) return bound_holds(extent);
-    return plane_bound_holds(extent.x, extent.y);
+  // Where all is in the exact range, the bound holds farther than the filter applies.
+  [[nodiscard]] double bound_in_range() const {
+    if (bound <= std::numeric_limits<double>::max()) return bound;
+    const bool holds = N == 4 ? bound_holds(extent) : plane_bound_holds(extent.x, extent.y);
+    return holds ? error() : bound;
   }
 };
 template <std::size_t N>

@@ -146,18 +146,21 @@ namespace detail {
 constexpr int few_doublings = 6;
 constexpr double most_units = 256.0;  // of the coordinates
 
+/// Whether a corner's coordinate is x's, as decisions see it.
+inline bool is_level(double corner, double x) {
+  return corner == x || (x == 0.0 && std::abs(corner) < smallest_magnitude);
+}
+
 /// Whether a facet lies across an axis, and x on its plane.
-template <std::size_t N>
-bool on_level_facet(const std::array<Vec3, N>& v, unsigned facet, const Vec3& x) {
-  const auto is_level = [&](double Vec3::*axis) {
-    for (unsigned i = 0; i + 1 < N; ++i) {
-      const double corner = v[facet_corner<N>(facet, i)].*axis;
-      const bool same = corner == x.*axis || (x.*axis == 0.0 && std::abs(corner) < smallest_magnitude);
-      if (!same) return false;
-    }
-    return true;
-  };
-  return is_level(&Vec3::x) || is_level(&Vec3::y) || (N == 4 && is_level(&Vec3::z));
+inline bool on_level_facet(const Corners& v, unsigned facet, const Vec3& x) {
+  const auto& [a, b, c] = facet_corners[facet];
+  return (is_level(v[a].x, x.x) && is_level(v[b].x, x.x) && is_level(v[c].x, x.x)) ||
+         (is_level(v[a].y, x.y) && is_level(v[b].y, x.y) && is_level(v[c].y, x.y)) ||
+         (is_level(v[a].z, x.z) && is_level(v[b].z, x.z) && is_level(v[c].z, x.z));
+}
+inline bool on_level_facet(const PlaneCorners& v, unsigned facet, const Vec3& x) {
+  const auto& [a, b] = plane_facet_corners[facet];
+  return (is_level(v[a].x, x.x) && is_level(v[b].x, x.x)) || (is_level(v[a].y, x.y) && is_level(v[b].y, x.y));
 }
 
 /// The usual contact point: x is on one facet, which lies across an axis, or next to one facet; then it is lifted off
@@ -179,8 +182,9 @@ std::optional<Vec3> proved_inside(const std::array<Vec3, N>& v, const Vec3& x) {
   const double distance = (2.0 * d.error() - off) / (largest * length) + unit;
   if (!(distance < most_units * unit)) return {};
   const Vec3 lifted = flushed(x + direction * (distance / length));
-  if (!Determinants(v, lifted).all_positive_in_range() || !in_exact_range(lifted)) return {};
-  return lifted;
+  const Determinants there(v, lifted);
+  if (there.all_proved_positive() || (in_exact_range(lifted) && there.all_positive_in_range())) return lifted;
+  return {};
 }
 
 /// Nearest to x of the corners and of p, a point of the simplex.
