@@ -14,31 +14,19 @@
 #include "dartcast/bodies/bodies.hpp"
 #include "dartcast/bodies/catheter.hpp"
 #include "dartcast/mesh/generate_box.hpp"
+#include "refused.hpp"
 
 namespace dartcast::body_ranges_test {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+using test::cubes;
+using test::expect_refused;
 
-MeshData cubes(std::uint32_t n) {
-  BoxOptions o;
-  o.cells = {n, n, n};
-  o.size = {double(n), double(n), double(n)};
-  return generate_box(o);
-}
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 std::vector<Vec3> corners(const Vec3& low) {
   std::vector<Vec3> points;
   for (int k = 0; k < 8; ++k) points.push_back(low + Vec3{0.5 * (k & 1), 0.5 * (k >> 1 & 1), 0.5 * (k >> 2)});
   return points;
-}
-
-void expect_refused(const std::function<void()>& call, const std::string& words) {
-  try {
-    call();
-    ADD_FAILURE() << "not refused: " << words;
-  } catch (const InvalidArgument& e) {
-    EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << e.what();
-  }
 }
 
 TEST(BodyRanges, MassesAndRadiiThatOverflow) {

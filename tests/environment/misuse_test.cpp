@@ -16,15 +16,12 @@
 #include "dartcast/mesh/generate_rectangle.hpp"
 #include "dartcast/spheres/advance_spheres.hpp"
 #include "environment/particle_checks.hpp"
+#include "refused.hpp"
 
 namespace dartcast::misuse_test {
 
-MeshData cubes(std::uint32_t n) {
-  BoxOptions o;
-  o.cells = {n, n, n};
-  o.size = {double(n), double(n), double(n)};
-  return generate_box(o);
-}
+using test::cubes;
+using test::expect_refused;
 
 const std::vector<Vec3> places = {{0.25, 0.5, 0.5}, {1.25, 0.5, 0.5}, {1.25, 1.5, 1.5}, {0.5, 1.5, 0.25}};
 
@@ -32,15 +29,6 @@ Particles added_to(Environment& environment) {
   Particles particles;
   environment.add(particles, places);
   return particles;
-}
-
-void expect_refused(const std::function<void()>& call, const std::string& words) {
-  try {
-    call();
-    ADD_FAILURE() << "not refused: " << words;
-  } catch (const InvalidArgument& e) {
-    EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << e.what();
-  }
 }
 
 // --- of another environment

@@ -14,26 +14,14 @@
 #include "dartcast/simulation/flow.hpp"
 #include "dartcast/simulation/polyline.hpp"
 #include "dartcast/simulation/surgery.hpp"
+#include "refused.hpp"
 
 namespace dartcast::ranges_test {
 
+using test::cubes;
+using test::expect_refused;
+
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-MeshData cubes(std::uint32_t n) {
-  BoxOptions o;
-  o.cells = {n, n, n};
-  o.size = {double(n), double(n), double(n)};
-  return generate_box(o);
-}
-
-void expect_refused(const std::function<void()>& call, const std::string& words) {
-  try {
-    call();
-    ADD_FAILURE() << "not refused: " << words;
-  } catch (const InvalidArgument& e) {
-    EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << e.what();
-  }
-}
 
 FlowOptions colliding(double density = 1000.0) {
   FlowOptions o;
