@@ -8,12 +8,12 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/base/random.hpp"
-#include "dartcast/environment/environment.hpp"
-#include "dartcast/map/edit.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/simulation/seeding.hpp"
+#include "dartcast/error.hpp"
+#include "base/random.hpp"
+#include "dartcast/environment.hpp"
+#include "dartcast/map_edits.hpp"
+#include "dartcast/generators.hpp"
+#include "simulation/seeding.hpp"
 
 namespace dartcast::bench {
 

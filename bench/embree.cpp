@@ -6,7 +6,7 @@
 #include <string>
 
 #include "bench/peers.hpp"
-#include "dartcast/base/error.hpp"
+#include "dartcast/error.hpp"
 
 namespace dartcast::bench {
 

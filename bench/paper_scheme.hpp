@@ -21,8 +21,8 @@
 #include <span>
 #include <vector>
 
-#include "dartcast/geometry/complex.hpp"
-#include "dartcast/walk/state.hpp"
+#include "dartcast/cell_complex.hpp"
+#include "dartcast/particle_state.hpp"
 
 namespace dartcast::bench {
 

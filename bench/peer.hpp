@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
-#include "dartcast/exact/vec3.hpp"
-#include "dartcast/walk/state.hpp"
+#include "dartcast/vec3.hpp"
+#include "dartcast/particle_state.hpp"
 
 namespace dartcast::bench {
 

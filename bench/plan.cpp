@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "dartcast/base/error.hpp"
+#include "dartcast/error.hpp"
 
 namespace dartcast::bench {
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "dartcast/walk/ride.hpp"
+#include "tracking/carry.hpp"
 
 namespace dartcast::bench {
 

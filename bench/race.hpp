@@ -8,7 +8,7 @@
 
 #include "bench/peers.hpp"
 #include "bench/workload.hpp"
-#include "dartcast/walk/counters.hpp"
+#include "tracking/counters.hpp"
 
 namespace dartcast::bench {
 

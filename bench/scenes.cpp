@@ -4,10 +4,10 @@
 #include <numbers>
 
 #include "bench/workload.hpp"
-#include "dartcast/mesh/generate_blocked.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/mesh/generate_rectangle.hpp"
-#include "dartcast/mesh/generate_vessel.hpp"
+#include "generators/generate_blocked.hpp"
+#include "dartcast/generators.hpp"
+#include "generators/generate_rectangle.hpp"
+#include "generators/generate_vessel.hpp"
 
 namespace dartcast::bench {
 

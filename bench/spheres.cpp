@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/simulation/flow.hpp"
+#include "base/random.hpp"
+#include "dartcast/generators.hpp"
+#include "dartcast/simulation.hpp"
 
 namespace dartcast::bench {
 

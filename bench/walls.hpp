@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "dartcast/geometry/complex.hpp"
+#include "dartcast/cell_complex.hpp"
 
 namespace dartcast::bench {
 

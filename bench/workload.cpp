@@ -7,10 +7,10 @@
 #include <numeric>
 #include <utility>
 
-#include "dartcast/mesh/generate_vessel.hpp"
-#include "dartcast/response/respond.hpp"
-#include "dartcast/simulation/seeding.hpp"
-#include "dartcast/walk/ride.hpp"
+#include "generators/generate_vessel.hpp"
+#include "dartcast/response.hpp"
+#include "simulation/seeding.hpp"
+#include "tracking/carry.hpp"
 
 namespace dartcast::bench {
 

@@ -8,10 +8,10 @@
 #include <string_view>
 #include <vector>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/environment/environment.hpp"
-#include "dartcast/simulation/deformation.hpp"
-#include "dartcast/simulation/field.hpp"
+#include "base/random.hpp"
+#include "dartcast/environment.hpp"
+#include "dartcast/deformation.hpp"
+#include "dartcast/velocity_field.hpp"
 
 namespace dartcast::bench {
 

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "dartcast/environment/environment.hpp"
+#include "dartcast/environment.hpp"
 
 int main() {
   using namespace dartcast;

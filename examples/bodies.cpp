@@ -1,15 +1,15 @@
 // Spheres that meet each other, and a body without a mesh, in one scene: grains on a floor, and a barrel that falls on
 // it.
-#include "dartcast/bodies/bodies.hpp"
+#include "dartcast/bodies.hpp"
 
 #include <cstdio>
 #include <vector>
 
-#include "dartcast/bodies/sampling.hpp"
-#include "dartcast/environment/environment.hpp"
-#include "dartcast/mesh/generate_barrel.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/simulation/flow.hpp"
+#include "dartcast/sampling.hpp"
+#include "dartcast/environment.hpp"
+#include "generators/generate_barrel.hpp"
+#include "dartcast/generators.hpp"
+#include "dartcast/simulation.hpp"
 
 int main() {
   using namespace dartcast;

@@ -2,9 +2,9 @@
 #include <cstdio>
 #include <vector>
 
-#include "dartcast/environment/environment.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/walk/state.hpp"
+#include "dartcast/environment.hpp"
+#include "dartcast/generators.hpp"
+#include "dartcast/particle_state.hpp"
 
 int main() {
   using namespace dartcast;

@@ -2,9 +2,9 @@
 #include <cstdio>
 #include <vector>
 
-#include "dartcast/environment/environment.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/response/respond.hpp"
+#include "dartcast/environment.hpp"
+#include "dartcast/generators.hpp"
+#include "dartcast/response.hpp"
 
 int main() {
   using namespace dartcast;

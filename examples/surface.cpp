@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "dartcast/io/write_mesh.hpp"
-#include "dartcast/surface/surface_advance.hpp"
-#include "dartcast/surface/surface_locator.hpp"
+#include "formats/write_mesh.hpp"
+#include "surface/surface_advance.hpp"
+#include "surface/surface_locator.hpp"
 
 namespace {
 

@@ -2,10 +2,10 @@
 #include <cstdio>
 #include <vector>
 
-#include "dartcast/environment/environment.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/surgery/carve.hpp"
-#include "dartcast/surgery/ligature.hpp"
+#include "dartcast/environment.hpp"
+#include "dartcast/generators.hpp"
+#include "dartcast/cutting.hpp"
+#include "editing/ligature.hpp"
 
 int main() {
   using namespace dartcast;

@@ -7,8 +7,8 @@
 #include <functional>
 #include <string>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/mesh/generate_box.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/generators.hpp"
 
 namespace dartcast::test {
 

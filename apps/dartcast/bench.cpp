@@ -16,7 +16,7 @@
 #include "bench/report.hpp"
 #include "bench/spheres.hpp"
 #include "commands.hpp"
-#include "dartcast/base/error.hpp"
+#include "dartcast/error.hpp"
 #include "limits.hpp"
 
 namespace dartcast::app {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "commands.hpp"
-#include "dartcast/io/summary.hpp"
+#include "output/summary.hpp"
 
 namespace {
 

@@ -6,13 +6,13 @@
 #include <string>
 
 #include "commands.hpp"
-#include "dartcast/io/check_mesh.hpp"
-#include "dartcast/io/info.hpp"
-#include "dartcast/io/read_mesh.hpp"
-#include "dartcast/io/report.hpp"
-#include "dartcast/io/scene_file.hpp"
-#include "dartcast/io/scene_mesh.hpp"
-#include "dartcast/io/write_mesh.hpp"
+#include "formats/check_mesh.hpp"
+#include "output/info.hpp"
+#include "dartcast/mesh_files.hpp"
+#include "output/mesh_report_text.hpp"
+#include "dartcast/scene_file.hpp"
+#include "scene/scene_mesh.hpp"
+#include "formats/write_mesh.hpp"
 #include "max_memory.hpp"
 
 namespace dartcast::app {

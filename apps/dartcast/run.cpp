@@ -7,8 +7,8 @@
 #include <string>
 
 #include "commands.hpp"
-#include "dartcast/io/run_scene.hpp"
-#include "dartcast/io/scene_file.hpp"
+#include "dartcast/run.hpp"
+#include "dartcast/scene_file.hpp"
 #include "limits.hpp"
 #include "max_memory.hpp"
 

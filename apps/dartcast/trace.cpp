@@ -8,14 +8,14 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "dartcast/base/error.hpp"
-#include "dartcast/environment/environment.hpp"
-#include "dartcast/exact/predicates.hpp"
-#include "dartcast/io/scene_file.hpp"
-#include "dartcast/io/scene_mesh.hpp"
-#include "dartcast/io/trajectory_csv.hpp"
-#include "dartcast/io/trajectory_svg.hpp"
-#include "dartcast/io/write_mesh.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/environment.hpp"
+#include "dartcast/predicates.hpp"
+#include "dartcast/scene_file.hpp"
+#include "scene/scene_mesh.hpp"
+#include "output/trajectory_csv.hpp"
+#include "output/trajectory_svg.hpp"
+#include "formats/write_mesh.hpp"
 #include "max_memory.hpp"
 
 namespace dartcast::app {

@@ -1,5 +1,5 @@
 // Large arrays: where they start, what they keep as they grow, and that their memory is given back.
-#include "dartcast/base/aligned.hpp"
+#include "base/aligned.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "dartcast/base/parallel.hpp"
+#include "base/parallel.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "dartcast/base/error.hpp"
+#include "dartcast/error.hpp"
 #include "tier.hpp"
 
 namespace dartcast::parallel_test {

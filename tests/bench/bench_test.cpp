@@ -13,9 +13,9 @@
 #include "bench/plan.hpp"
 #include "bench/race.hpp"
 #include "bench/report.hpp"
-#include "dartcast/base/error.hpp"
-#include "dartcast/environment/audit.hpp"
-#include "dartcast/mesh/generate_box.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/audit.hpp"
+#include "dartcast/generators.hpp"
 
 namespace dartcast::bench::bench_test {
 

@@ -11,9 +11,9 @@
 
 #include "bench/race.hpp"
 #include "bench/scheme_pair.hpp"
-#include "dartcast/base/random.hpp"
-#include "dartcast/environment/environment.hpp"
-#include "dartcast/mesh/generate_rectangle.hpp"
+#include "base/random.hpp"
+#include "dartcast/environment.hpp"
+#include "generators/generate_rectangle.hpp"
 #include "tier.hpp"
 
 namespace dartcast::paper_scheme_2d_test {

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "bench/scheme_pair.hpp"
-#include "dartcast/base/random.hpp"
-#include "dartcast/environment/environment.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/response/respond.hpp"
+#include "base/random.hpp"
+#include "dartcast/environment.hpp"
+#include "dartcast/generators.hpp"
+#include "dartcast/response.hpp"
 #include "environment/particle_checks.hpp"
 #include "tier.hpp"
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "bench/paper_scheme.hpp"
-#include "dartcast/base/random.hpp"
-#include "dartcast/environment/environment.hpp"
+#include "base/random.hpp"
+#include "dartcast/environment.hpp"
 
 namespace dartcast::test {
 

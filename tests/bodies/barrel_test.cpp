@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "dartcast/bodies/bodies.hpp"
-#include "dartcast/environment/audit.hpp"
-#include "dartcast/mesh/generate_barrel.hpp"
-#include "dartcast/mesh/generate_box.hpp"
+#include "dartcast/bodies.hpp"
+#include "dartcast/audit.hpp"
+#include "generators/generate_barrel.hpp"
+#include "dartcast/generators.hpp"
 #include "tier.hpp"
 
 namespace dartcast::barrel_test {

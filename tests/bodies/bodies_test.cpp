@@ -1,4 +1,4 @@
-#include "dartcast/bodies/bodies.hpp"
+#include "dartcast/bodies.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,10 @@
 #include <string>
 
 #include "bodies/point_block.hpp"
-#include "dartcast/base/error.hpp"
-#include "dartcast/base/random.hpp"
-#include "dartcast/environment/audit.hpp"
-#include "dartcast/mesh/generate_box.hpp"
+#include "dartcast/error.hpp"
+#include "base/random.hpp"
+#include "dartcast/audit.hpp"
+#include "dartcast/generators.hpp"
 #include "tier.hpp"
 
 namespace dartcast::bodies_test {

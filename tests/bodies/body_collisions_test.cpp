@@ -1,5 +1,5 @@
 // Bodies against each other.
-#include "dartcast/bodies/body_collisions.hpp"
+#include "bodies/body_collisions.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,12 +9,12 @@
 #include <string>
 
 #include "bodies/point_block.hpp"
-#include "dartcast/base/error.hpp"
-#include "dartcast/base/random.hpp"
-#include "dartcast/bodies/bodies.hpp"
-#include "dartcast/environment/audit.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/spheres/collide.hpp"
+#include "dartcast/error.hpp"
+#include "base/random.hpp"
+#include "dartcast/bodies.hpp"
+#include "dartcast/audit.hpp"
+#include "dartcast/generators.hpp"
+#include "dynamics/collider.hpp"
 #include "tier.hpp"
 
 namespace dartcast::body_collisions_test {

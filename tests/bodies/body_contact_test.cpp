@@ -1,8 +1,8 @@
-#include "dartcast/bodies/body_contact.hpp"
+#include "bodies/body_contact.hpp"
 
 #include <gtest/gtest.h>
 
-#include "dartcast/base/random.hpp"
+#include "base/random.hpp"
 
 namespace dartcast::body_contact_test {
 

@@ -1,12 +1,12 @@
 // Impacts of bodies, as given to them.
-#include "dartcast/bodies/body_rebound.hpp"
+#include "bodies/body_rebound.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "dartcast/base/random.hpp"
+#include "base/random.hpp"
 
 namespace dartcast::body_rebound_test {
 

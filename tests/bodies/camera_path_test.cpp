@@ -1,5 +1,5 @@
 // Camera paths in a straight bar: places on the spline, in the lumen, without twist.
-#include "dartcast/bodies/camera_path.hpp"
+#include "catheter/camera_path.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "bodies/catheter_scenes.hpp"
-#include "dartcast/base/error.hpp"
+#include "dartcast/error.hpp"
 
 namespace dartcast::camera_path_test {
 

@@ -1,5 +1,5 @@
 // A surface that follows its samples: affine maps are followed, and what is not affine is near it.
-#include "dartcast/bodies/carried_surface.hpp"
+#include "bodies/carried_surface.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <limits>
 
 #include "bodies/solids.hpp"
-#include "dartcast/base/error.hpp"
-#include "dartcast/base/random.hpp"
-#include "dartcast/bodies/sampling.hpp"
-#include "dartcast/io/read_surface.hpp"
+#include "dartcast/error.hpp"
+#include "base/random.hpp"
+#include "dartcast/sampling.hpp"
+#include "formats/read_surface.hpp"
 #include "shared_data.hpp"
 #include "tier.hpp"
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <vector>
 
-#include "dartcast/bodies/catheter.hpp"
-#include "dartcast/environment/audit.hpp"
-#include "dartcast/map/edit.hpp"
-#include "dartcast/mesh/generate_box.hpp"
+#include "dartcast/catheter.hpp"
+#include "dartcast/audit.hpp"
+#include "dartcast/map_edits.hpp"
+#include "dartcast/generators.hpp"
 
 namespace dartcast::catheter_order_test {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <vector>
 
-#include "dartcast/bodies/catheter.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/mesh/generate_vessel.hpp"
-#include "dartcast/simulation/deformation.hpp"
+#include "dartcast/catheter.hpp"
+#include "dartcast/generators.hpp"
+#include "generators/generate_vessel.hpp"
+#include "dartcast/deformation.hpp"
 
 namespace dartcast::test {
 

@@ -1,5 +1,5 @@
 // The catheter in pipes: pushed, pulled, turned, bent, refused. (In the vessel: steering_test.cpp.)
-#include "dartcast/bodies/catheter.hpp"
+#include "dartcast/catheter.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <numbers>
 
 #include "bodies/catheter_scenes.hpp"
-#include "dartcast/base/error.hpp"
-#include "dartcast/environment/audit.hpp"
-#include "dartcast/mesh/generate_rectangle.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/audit.hpp"
+#include "generators/generate_rectangle.hpp"
 #include "tier.hpp"
 
 namespace dartcast::catheter_test {

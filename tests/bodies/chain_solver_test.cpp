@@ -1,5 +1,5 @@
 // The banded solver against a dense one that is put together from the energy's definition.
-#include "dartcast/bodies/chain_solver.hpp"
+#include "catheter/chain_solver.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "dartcast/base/random.hpp"
+#include "base/random.hpp"
 #include "tier.hpp"
 
 namespace dartcast::chain_solver_test {

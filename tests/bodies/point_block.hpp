@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "dartcast/bodies/mat3.hpp"
+#include "base/mat3.hpp"
 
 namespace dartcast::test {
 

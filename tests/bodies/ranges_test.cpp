@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/bodies/bodies.hpp"
-#include "dartcast/bodies/catheter.hpp"
-#include "dartcast/mesh/generate_box.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/bodies.hpp"
+#include "dartcast/catheter.hpp"
+#include "dartcast/generators.hpp"
 #include "refused.hpp"
 
 namespace dartcast::body_ranges_test {

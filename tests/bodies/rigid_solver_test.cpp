@@ -1,13 +1,13 @@
 // Impulses between rigid bodies, spheres and walls.
-#include "dartcast/bodies/rigid_solver.hpp"
+#include "dynamics/rigid_solver.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/bodies/body_motion.hpp"
+#include "base/random.hpp"
+#include "bodies/body_motion.hpp"
 
 namespace dartcast::rigid_solver_test {
 

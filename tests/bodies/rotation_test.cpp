@@ -1,4 +1,4 @@
-#include "dartcast/bodies/rotation.hpp"
+#include "bodies/rotation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "dartcast/base/random.hpp"
+#include "base/random.hpp"
 #include "tier.hpp"
 
 namespace dartcast::rotation_test {

@@ -1,5 +1,5 @@
 // Points sampled on and in surfaces: exact decisions against rational arithmetic, spacing and cover against all pairs.
-#include "dartcast/bodies/sampling.hpp"
+#include "dartcast/sampling.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include <limits>
 
 #include "bodies/solids.hpp"
-#include "dartcast/base/error.hpp"
-#include "dartcast/base/random.hpp"
-#include "dartcast/bodies/inside.hpp"
-#include "dartcast/io/read_surface.hpp"
+#include "dartcast/error.hpp"
+#include "base/random.hpp"
+#include "bodies/inside.hpp"
+#include "formats/read_surface.hpp"
 #include "shared_data.hpp"
 #include "tier.hpp"
 

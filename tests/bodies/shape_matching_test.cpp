@@ -1,4 +1,4 @@
-#include "dartcast/bodies/shape_matching.hpp"
+#include "bodies/shape_matching.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <functional>
 #include <limits>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/base/random.hpp"
+#include "dartcast/error.hpp"
+#include "base/random.hpp"
 #include "tier.hpp"
 
 namespace dartcast::shape_matching_test {

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "dartcast/mesh/mesh_data.hpp"
+#include "dartcast/mesh_data.hpp"
 
 namespace dartcast::test {
 

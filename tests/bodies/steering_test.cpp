@@ -5,10 +5,10 @@
 #include <numbers>
 
 #include "bodies/catheter_scenes.hpp"
-#include "dartcast/base/error.hpp"
-#include "dartcast/base/random.hpp"
-#include "dartcast/bodies/camera_path.hpp"
-#include "dartcast/environment/audit.hpp"
+#include "dartcast/error.hpp"
+#include "base/random.hpp"
+#include "catheter/camera_path.hpp"
+#include "dartcast/audit.hpp"
 #include "tier.hpp"
 
 namespace dartcast::steering_test {

@@ -1,12 +1,12 @@
-#include "dartcast/environment/audit.hpp"
+#include "dartcast/audit.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/mesh/generate_box.hpp"
+#include "base/random.hpp"
+#include "dartcast/generators.hpp"
 #include "oracle/oracle.hpp"
 
 namespace dartcast::audit_test {

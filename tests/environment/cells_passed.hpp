@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "dartcast/exact/vec3.hpp"
-#include "dartcast/map/shape.hpp"
-#include "dartcast/mesh/cell_types.hpp"
-#include "dartcast/mesh/mesh_data.hpp"
+#include "dartcast/vec3.hpp"
+#include "dartcast/cell_shape.hpp"
+#include "mesh/cell_types.hpp"
+#include "dartcast/mesh_data.hpp"
 
 namespace dartcast::test {
 

@@ -5,10 +5,10 @@
 #include <numbers>
 #include <random>
 
-#include "dartcast/environment/environment.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/mesh/generate_octahedra.hpp"
-#include "dartcast/response/respond.hpp"
+#include "dartcast/environment.hpp"
+#include "dartcast/generators.hpp"
+#include "generators/generate_octahedra.hpp"
+#include "dartcast/response.hpp"
 #include "tier.hpp"
 
 namespace dartcast::deforming_test {

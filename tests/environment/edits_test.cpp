@@ -5,11 +5,11 @@
 #include <map>
 #include <set>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/environment/audit.hpp"
-#include "dartcast/environment/state_hash.hpp"
-#include "dartcast/map/integrity.hpp"
-#include "dartcast/response/respond.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/audit.hpp"
+#include "environment/state_hash.hpp"
+#include "topology/integrity.hpp"
+#include "dartcast/response.hpp"
 #include "environment/particle_checks.hpp"
 #include "map/edit_meshes.hpp"
 #include "map/random_edits.hpp"

@@ -1,5 +1,5 @@
 // The environment as a program uses it: what it refuses, what it reports, and that nothing is lost.
-#include "dartcast/environment/environment.hpp"
+#include "dartcast/environment.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,10 +10,10 @@
 #include <optional>
 #include <set>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/base/random.hpp"
-#include "dartcast/mesh/cell_types.hpp"
-#include "dartcast/mesh/generate_box.hpp"
+#include "dartcast/error.hpp"
+#include "base/random.hpp"
+#include "mesh/cell_types.hpp"
+#include "dartcast/generators.hpp"
 #include "environment/particle_checks.hpp"
 #include "tier.hpp"
 

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/base/random.hpp"
-#include "dartcast/environment/audit.hpp"
-#include "dartcast/environment/environment.hpp"
-#include "dartcast/mesh/generate_box.hpp"
+#include "dartcast/error.hpp"
+#include "base/random.hpp"
+#include "dartcast/audit.hpp"
+#include "dartcast/environment.hpp"
+#include "dartcast/generators.hpp"
 #include "geometry/moving_simplex.hpp"
 #include "oracle/scenes.hpp"
 #include "tier.hpp"

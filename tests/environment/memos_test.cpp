@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <numeric>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/environment/environment.hpp"
-#include "dartcast/map/edit.hpp"
-#include "dartcast/mesh/generate_box.hpp"
+#include "base/random.hpp"
+#include "dartcast/environment.hpp"
+#include "dartcast/map_edits.hpp"
+#include "dartcast/generators.hpp"
 #include "environment/particle_checks.hpp"
 #include "tier.hpp"
 

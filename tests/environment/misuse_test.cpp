@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/environment/environment.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/mesh/generate_rectangle.hpp"
-#include "dartcast/spheres/advance_spheres.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/environment.hpp"
+#include "dartcast/generators.hpp"
+#include "generators/generate_rectangle.hpp"
+#include "dartcast/spheres.hpp"
 #include "environment/particle_checks.hpp"
 #include "refused.hpp"
 

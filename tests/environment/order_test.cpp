@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/environment/audit.hpp"
-#include "dartcast/walk/ride.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/audit.hpp"
+#include "tracking/carry.hpp"
 #include "environment/particle_checks.hpp"
 #include "map/edit_meshes.hpp"
 #include "map/random_edits.hpp"

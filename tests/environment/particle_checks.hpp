@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "dartcast/environment/environment.hpp"
+#include "dartcast/environment.hpp"
 #include "mesh/generate_checks.hpp"
 
 namespace dartcast::test {

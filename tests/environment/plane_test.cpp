@@ -7,15 +7,15 @@
 #include <string>
 #include <vector>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/base/random.hpp"
-#include "dartcast/environment/audit.hpp"
-#include "dartcast/environment/environment.hpp"
-#include "dartcast/environment/state_hash.hpp"
-#include "dartcast/geometry/validity.hpp"
-#include "dartcast/map/edit.hpp"
-#include "dartcast/mesh/generate_rectangle.hpp"
-#include "dartcast/response/respond.hpp"
+#include "dartcast/error.hpp"
+#include "base/random.hpp"
+#include "dartcast/audit.hpp"
+#include "dartcast/environment.hpp"
+#include "environment/state_hash.hpp"
+#include "dartcast/validity.hpp"
+#include "dartcast/map_edits.hpp"
+#include "generators/generate_rectangle.hpp"
+#include "dartcast/response.hpp"
 #include "tier.hpp"
 
 namespace dartcast::plane_test {

@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/base/random.hpp"
-#include "dartcast/environment/environment.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/response/respond.hpp"
+#include "dartcast/error.hpp"
+#include "base/random.hpp"
+#include "dartcast/environment.hpp"
+#include "dartcast/generators.hpp"
+#include "dartcast/response.hpp"
 #include "environment/particle_checks.hpp"
 
 namespace dartcast::scaling_test {

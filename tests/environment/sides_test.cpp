@@ -5,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/environment/audit.hpp"
-#include "dartcast/map/edit.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/audit.hpp"
+#include "dartcast/map_edits.hpp"
 #include "environment/particle_checks.hpp"
 #include "map/edit_meshes.hpp"
 #include "map/random_edits.hpp"

@@ -1,4 +1,4 @@
-#include "dartcast/environment/state_hash.hpp"
+#include "environment/state_hash.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <set>
 #include <vector>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/environment/environment.hpp"
-#include "dartcast/mesh/generate_box.hpp"
+#include "base/random.hpp"
+#include "dartcast/environment.hpp"
+#include "dartcast/generators.hpp"
 
 namespace dartcast::state_hash_test {
 

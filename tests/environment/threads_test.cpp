@@ -6,10 +6,10 @@
 #include <cstdlib>
 #include <map>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/environment/environment.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/response/respond.hpp"
+#include "base/random.hpp"
+#include "dartcast/environment.hpp"
+#include "dartcast/generators.hpp"
+#include "dartcast/response.hpp"
 #include "environment/particle_checks.hpp"
 #include "map/mixed_mesh.hpp"
 #include "tier.hpp"

@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "cells_passed.hpp"
-#include "dartcast/base/error.hpp"
-#include "dartcast/base/random.hpp"
-#include "dartcast/environment/environment.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/mesh/generate_rectangle.hpp"
-#include "dartcast/response/respond.hpp"
+#include "dartcast/error.hpp"
+#include "base/random.hpp"
+#include "dartcast/environment.hpp"
+#include "dartcast/generators.hpp"
+#include "generators/generate_rectangle.hpp"
+#include "dartcast/response.hpp"
 #include "oracle/scenes.hpp"
 #include "particle_checks.hpp"
 #include "tier.hpp"

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "dartcast/exact/vec3.hpp"
+#include "dartcast/vec3.hpp"
 
 namespace dartcast::test {
 

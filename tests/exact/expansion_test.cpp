@@ -1,4 +1,4 @@
-#include "dartcast/exact/expansion.hpp"
+#include "predicates/expansion.hpp"
 
 #include <gtest/gtest.h>
 

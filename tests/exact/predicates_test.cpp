@@ -1,4 +1,4 @@
-#include "dartcast/exact/predicates.hpp"
+#include "dartcast/predicates.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <limits>
 
-#include "dartcast/base/random.hpp"
+#include "base/random.hpp"
 #include "exact/dyadic.hpp"
 #include "exact/quadruples.hpp"
 #include "tier.hpp"

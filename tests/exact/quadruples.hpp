@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/exact/vec3.hpp"
+#include "base/random.hpp"
+#include "dartcast/vec3.hpp"
 
 namespace dartcast::test {
 

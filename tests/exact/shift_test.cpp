@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "dartcast/exact/predicates.hpp"
+#include "dartcast/predicates.hpp"
 #include "exact/dyadic.hpp"
 #include "exact/quadruples.hpp"
 #include "tier.hpp"

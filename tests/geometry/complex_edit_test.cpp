@@ -1,5 +1,5 @@
 // Edits with positions, against exact volumes and against the complex built anew.
-#include "dartcast/geometry/complex_edit.hpp"
+#include "dartcast/complex_edit.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <map>
 #include <optional>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/geometry/validity.hpp"
-#include "dartcast/map/integrity.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/validity.hpp"
+#include "topology/integrity.hpp"
 #include "map/edit_meshes.hpp"
 #include "map/random_edits.hpp"
 #include "oracle/fraction.hpp"

@@ -1,5 +1,5 @@
 // The first flattening of a scene is that of its simplices taken one by one; a motion followed until then stays valid.
-#include "dartcast/geometry/first_flattening.hpp"
+#include "complex/first_inversion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,12 +8,12 @@
 #include <functional>
 #include <limits>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/base/random.hpp"
-#include "dartcast/geometry/interior.hpp"
-#include "dartcast/geometry/validity.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/mesh/generate_octahedra.hpp"
+#include "dartcast/error.hpp"
+#include "base/random.hpp"
+#include "complex/steiner_points.hpp"
+#include "dartcast/validity.hpp"
+#include "dartcast/generators.hpp"
+#include "generators/generate_octahedra.hpp"
 #include "tier.hpp"
 
 namespace dartcast::first_flattening_test {

@@ -1,5 +1,5 @@
 // The first flattening of a moving simplex, against Sturm's theorem over the integers.
-#include "dartcast/geometry/flattening.hpp"
+#include "complex/simplex_inversion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-#include "dartcast/geometry/volume_cubic.hpp"
+#include "complex/volume_cubic.hpp"
 #include "exact/dyadic.hpp"
 #include "geometry/motions.hpp"
 #include "geometry/moving_simplex.hpp"

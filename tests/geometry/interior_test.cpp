@@ -1,5 +1,5 @@
 // Interior points: cells that the plain triangulation does not divide get some, keep them through moves, and conform.
-#include "dartcast/geometry/interior.hpp"
+#include "complex/steiner_points.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,11 +8,11 @@
 #include <map>
 #include <set>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/geometry/validity.hpp"
-#include "dartcast/map/integrity.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/mesh/inspect.hpp"
+#include "base/random.hpp"
+#include "dartcast/validity.hpp"
+#include "topology/integrity.hpp"
+#include "dartcast/generators.hpp"
+#include "dartcast/mesh_check.hpp"
 #include "map/mixed_mesh.hpp"
 #include "mesh/generate_checks.hpp"
 #include "tier.hpp"

@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/geometry/simplex.hpp"
+#include "base/random.hpp"
+#include "complex/simplex.hpp"
 
 namespace dartcast::test {
 

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "dartcast/geometry/simplex.hpp"
+#include "complex/simplex.hpp"
 
 namespace dartcast::test {
 

@@ -1,16 +1,16 @@
 // The vectors' filter never calls a simplex positive that is not, and leaves few cells open.
-#include "dartcast/geometry/positive_cells.hpp"
+#include "complex/positive_cells.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/geometry/complex.hpp"
-#include "dartcast/geometry/validity.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/mesh/generate_octahedra.hpp"
+#include "base/random.hpp"
+#include "dartcast/cell_complex.hpp"
+#include "dartcast/validity.hpp"
+#include "dartcast/generators.hpp"
+#include "generators/generate_octahedra.hpp"
 #include "tier.hpp"
 
 namespace dartcast::positive_cells_test {

@@ -1,5 +1,5 @@
 // The four determinants of a simplex, against rational numbers.
-#include "dartcast/geometry/simplex.hpp"
+#include "complex/simplex.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-#include "dartcast/base/random.hpp"
+#include "base/random.hpp"
 
 namespace dartcast::simplex_test {
 

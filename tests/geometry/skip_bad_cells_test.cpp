@@ -1,5 +1,5 @@
 // Meshes that are good but for some cells: these are found, and left out.
-#include "dartcast/geometry/skip_bad_cells.hpp"
+#include "complex/skip_bad_cells.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,11 +8,11 @@
 #include <set>
 #include <vector>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/environment/audit.hpp"
-#include "dartcast/environment/environment.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/mesh/generate_rectangle.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/audit.hpp"
+#include "dartcast/environment.hpp"
+#include "dartcast/generators.hpp"
+#include "generators/generate_rectangle.hpp"
 #include "mesh/generate_checks.hpp"
 
 namespace dartcast::skip_bad_cells_test {

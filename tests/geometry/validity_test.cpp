@@ -1,5 +1,5 @@
 // The whole-scene check finds exactly the cells that have been spoilt.
-#include "dartcast/geometry/validity.hpp"
+#include "dartcast/validity.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,11 +8,11 @@
 #include <limits>
 #include <set>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/geometry/first_flattening.hpp"
-#include "dartcast/map/edit.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/mesh/generate_octahedra.hpp"
+#include "base/random.hpp"
+#include "complex/first_inversion.hpp"
+#include "dartcast/map_edits.hpp"
+#include "dartcast/generators.hpp"
+#include "generators/generate_octahedra.hpp"
 #include "mesh/generate_checks.hpp"
 
 namespace dartcast::validity_test {

@@ -10,13 +10,13 @@
 #include <numbers>
 #include <vector>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/environment/environment.hpp"
-#include "dartcast/map/edit.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/mesh/generate_rectangle.hpp"
-#include "dartcast/response/respond.hpp"
-#include "dartcast/simulation/seeding.hpp"
+#include "base/random.hpp"
+#include "dartcast/environment.hpp"
+#include "dartcast/map_edits.hpp"
+#include "dartcast/generators.hpp"
+#include "generators/generate_rectangle.hpp"
+#include "dartcast/response.hpp"
+#include "simulation/seeding.hpp"
 
 namespace {
 

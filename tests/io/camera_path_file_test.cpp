@@ -1,14 +1,14 @@
 // A camera's path as a file.
-#include "dartcast/io/camera_path_file.hpp"
+#include "output/camera_path_file.hpp"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 #include <sstream>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/io/point_file.hpp"
-#include "dartcast/mesh/generate_box.hpp"
+#include "dartcast/error.hpp"
+#include "formats/point_file.hpp"
+#include "dartcast/generators.hpp"
 
 namespace dartcast::camera_path_file_test {
 

@@ -1,5 +1,5 @@
 // What ParaView gets to see of the environment: the input's arrays, and where each cell came from.
-#include "dartcast/io/environment_record.hpp"
+#include "output/environment_record.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,14 +9,14 @@
 #include <string>
 #include <vector>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/io/file_text.hpp"
-#include "dartcast/io/point_file.hpp"
-#include "dartcast/io/read_mesh.hpp"
-#include "dartcast/io/recording.hpp"
-#include "dartcast/io/run_scene.hpp"
-#include "dartcast/io/scene_file.hpp"
-#include "dartcast/mesh/generate_box.hpp"
+#include "dartcast/error.hpp"
+#include "formats/file_text.hpp"
+#include "formats/point_file.hpp"
+#include "dartcast/mesh_files.hpp"
+#include "output/recording.hpp"
+#include "dartcast/run.hpp"
+#include "dartcast/scene_file.hpp"
+#include "dartcast/generators.hpp"
 #include "io/sample_mesh.hpp"
 
 namespace dartcast::environment_record_test {

@@ -3,12 +3,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/io/gmsh.hpp"
-#include "dartcast/io/medit.hpp"
-#include "dartcast/io/read_mesh.hpp"
-#include "dartcast/io/report.hpp"
-#include "dartcast/io/write_mesh.hpp"
+#include "dartcast/error.hpp"
+#include "formats/gmsh.hpp"
+#include "formats/medit.hpp"
+#include "dartcast/mesh_files.hpp"
+#include "output/mesh_report_text.hpp"
+#include "formats/write_mesh.hpp"
 #include "io/round_trip.hpp"
 
 namespace dartcast::test::formats_test {

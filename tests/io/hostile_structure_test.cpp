@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <set>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/io/point_file.hpp"
-#include "dartcast/io/read_mesh.hpp"
-#include "dartcast/io/report.hpp"
-#include "dartcast/mesh/inspect.hpp"
+#include "dartcast/error.hpp"
+#include "formats/point_file.hpp"
+#include "dartcast/mesh_files.hpp"
+#include "output/mesh_report_text.hpp"
+#include "dartcast/mesh_check.hpp"
 #include "io/vtk_files.hpp"
 #include "shared_data.hpp"
 

@@ -6,9 +6,9 @@
 #include <ctime>
 #include <random>
 
-#include "dartcast/io/read_mesh.hpp"
-#include "dartcast/io/report.hpp"
-#include "dartcast/mesh/inspect.hpp"
+#include "dartcast/mesh_files.hpp"
+#include "output/mesh_report_text.hpp"
+#include "dartcast/mesh_check.hpp"
 #include "io/sample_mesh.hpp"
 #include "tier.hpp"
 

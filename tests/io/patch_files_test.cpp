@@ -5,13 +5,13 @@
 #include <map>
 #include <set>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/io/read_mesh.hpp"
-#include "dartcast/io/report.hpp"
-#include "dartcast/io/run_scene.hpp"
-#include "dartcast/io/scene_file.hpp"
-#include "dartcast/io/scene_mesh.hpp"
-#include "dartcast/mesh/generate_box.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/mesh_files.hpp"
+#include "output/mesh_report_text.hpp"
+#include "dartcast/run.hpp"
+#include "dartcast/scene_file.hpp"
+#include "scene/scene_mesh.hpp"
+#include "dartcast/generators.hpp"
 #include "io/same_mesh.hpp"
 #include "io/vtk_files.hpp"
 

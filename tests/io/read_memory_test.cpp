@@ -1,5 +1,5 @@
 // Files that announce more than may be taken are refused before it is taken, and the bound holds.
-#include "dartcast/io/read_memory.hpp"
+#include "formats/read_memory.hpp"
 
 #include <gtest/gtest.h>
 #include <malloc.h>
@@ -10,14 +10,14 @@
 #include <cstdio>
 #include <functional>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/geometry/complex.hpp"
-#include "dartcast/io/point_file.hpp"
-#include "dartcast/io/read_surface.hpp"
-#include "dartcast/io/report.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/mesh/generate_octahedra.hpp"
-#include "dartcast/mesh/inspect.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/cell_complex.hpp"
+#include "formats/point_file.hpp"
+#include "formats/read_surface.hpp"
+#include "output/mesh_report_text.hpp"
+#include "dartcast/generators.hpp"
+#include "generators/generate_octahedra.hpp"
+#include "dartcast/mesh_check.hpp"
 #include "io/vtk_files.hpp"
 #include "tier.hpp"
 

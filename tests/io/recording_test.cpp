@@ -1,4 +1,4 @@
-#include "dartcast/io/recording.hpp"
+#include "output/recording.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,12 +7,12 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/io/point_file.hpp"
-#include "dartcast/io/read_mesh.hpp"
-#include "dartcast/io/run_files.hpp"
-#include "dartcast/io/run_scene.hpp"
-#include "dartcast/io/scene_file.hpp"
+#include "dartcast/error.hpp"
+#include "formats/point_file.hpp"
+#include "dartcast/mesh_files.hpp"
+#include "output/run_files.hpp"
+#include "dartcast/run.hpp"
+#include "dartcast/scene_file.hpp"
 #include "io/sample_mesh.hpp"
 
 namespace dartcast::recording_test {

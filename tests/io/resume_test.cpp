@@ -5,11 +5,11 @@
 #include <map>
 #include <string>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/io/file_text.hpp"
-#include "dartcast/io/run_scene.hpp"
-#include "dartcast/io/scene_file.hpp"
-#include "dartcast/io/write_mesh.hpp"
+#include "dartcast/error.hpp"
+#include "formats/file_text.hpp"
+#include "dartcast/run.hpp"
+#include "dartcast/scene_file.hpp"
+#include "formats/write_mesh.hpp"
 #include "io/sample_mesh.hpp"
 
 namespace dartcast::resume_test {

@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "dartcast/io/gmsh.hpp"
-#include "dartcast/io/read_mesh.hpp"
-#include "dartcast/io/report.hpp"
-#include "dartcast/io/write_mesh.hpp"
+#include "formats/gmsh.hpp"
+#include "dartcast/mesh_files.hpp"
+#include "output/mesh_report_text.hpp"
+#include "formats/write_mesh.hpp"
 #include "io/same_mesh.hpp"
 #include "io/sample_mesh.hpp"
 

@@ -1,5 +1,5 @@
 // What goes into a run besides the scene, and comes out of it besides frames: seeds, scales, energies, the lock.
-#include "dartcast/io/run_files.hpp"
+#include "output/run_files.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -15,15 +15,15 @@
 #include <string>
 #include <vector>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/io/file_text.hpp"
-#include "dartcast/io/info.hpp"
-#include "dartcast/io/point_file.hpp"
-#include "dartcast/io/read_mesh.hpp"
-#include "dartcast/io/run_scene.hpp"
-#include "dartcast/io/scene_file.hpp"
-#include "dartcast/io/seed_file.hpp"
-#include "dartcast/mesh/generate_box.hpp"
+#include "dartcast/error.hpp"
+#include "formats/file_text.hpp"
+#include "output/info.hpp"
+#include "formats/point_file.hpp"
+#include "dartcast/mesh_files.hpp"
+#include "dartcast/run.hpp"
+#include "dartcast/scene_file.hpp"
+#include "scene/seed_file.hpp"
+#include "dartcast/generators.hpp"
 #include "io/sample_mesh.hpp"
 
 namespace dartcast::run_files_test {

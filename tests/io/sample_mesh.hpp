@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "dartcast/io/write_mesh.hpp"
-#include "dartcast/mesh/mesh_data.hpp"
+#include "formats/write_mesh.hpp"
+#include "dartcast/mesh_data.hpp"
 
 namespace dartcast::test {
 

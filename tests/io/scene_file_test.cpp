@@ -1,4 +1,4 @@
-#include "dartcast/io/scene_file.hpp"
+#include "dartcast/scene_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <sstream>
 #include <string>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/io/scene_mesh.hpp"
+#include "dartcast/error.hpp"
+#include "scene/scene_mesh.hpp"
 
 namespace dartcast::scene_file_test {
 

@@ -7,9 +7,9 @@
 #include <map>
 #include <sstream>
 
-#include "dartcast/io/read_mesh.hpp"
-#include "dartcast/io/report.hpp"
-#include "dartcast/mesh/faces.hpp"
+#include "dartcast/mesh_files.hpp"
+#include "output/mesh_report_text.hpp"
+#include "mesh/faces.hpp"
 #include "io/same_mesh.hpp"
 #include "io/sample_mesh.hpp"
 

@@ -1,5 +1,5 @@
 // Bodies and catheters in scenes: their files, their place in the summary, what is refused.
-#include "dartcast/io/solids.hpp"
+#include "simulation/solids.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/io/point_file.hpp"
-#include "dartcast/io/run_scene.hpp"
-#include "dartcast/io/scene_file.hpp"
+#include "dartcast/error.hpp"
+#include "formats/point_file.hpp"
+#include "dartcast/run.hpp"
+#include "dartcast/scene_file.hpp"
 #include "io/sample_mesh.hpp"
 
 namespace dartcast::solids_test {

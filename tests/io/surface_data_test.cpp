@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "dartcast/io/read_surface.hpp"
-#include "dartcast/surface/surface.hpp"
+#include "formats/read_surface.hpp"
+#include "dartcast/surface.hpp"
 #include "shared_data.hpp"
 
 namespace dartcast::test::surface_data_test {

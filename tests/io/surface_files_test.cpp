@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/io/read_surface.hpp"
-#include "dartcast/io/report.hpp"
-#include "dartcast/surface/inspect_surface.hpp"
-#include "dartcast/surface/surface.hpp"
+#include "dartcast/error.hpp"
+#include "formats/read_surface.hpp"
+#include "output/mesh_report_text.hpp"
+#include "surface/check_surface.hpp"
+#include "dartcast/surface.hpp"
 #include "io/sample_mesh.hpp"
 #include "tier.hpp"
 

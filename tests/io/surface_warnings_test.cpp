@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "dartcast/io/read_surface.hpp"
+#include "formats/read_surface.hpp"
 #include "io/sample_mesh.hpp"
 
 namespace dartcast::test::surface_warnings_test {

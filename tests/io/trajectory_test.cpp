@@ -1,6 +1,6 @@
 // A trajectory as a drawing and as a table: as many pieces as there are, in order, well formed, the same bytes
 // anywhere.
-#include "dartcast/io/trajectory.hpp"
+#include "dartcast/trajectory.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,14 +11,14 @@
 #include <string_view>
 #include <vector>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/base/random.hpp"
-#include "dartcast/environment/environment.hpp"
-#include "dartcast/io/trajectory_csv.hpp"
-#include "dartcast/io/trajectory_svg.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/mesh/generate_rectangle.hpp"
-#include "dartcast/response/respond.hpp"
+#include "dartcast/error.hpp"
+#include "base/random.hpp"
+#include "dartcast/environment.hpp"
+#include "output/trajectory_csv.hpp"
+#include "output/trajectory_svg.hpp"
+#include "dartcast/generators.hpp"
+#include "generators/generate_rectangle.hpp"
+#include "dartcast/response.hpp"
 
 namespace dartcast::trajectory_test {
 

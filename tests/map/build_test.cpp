@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/map/map.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/combinatorial_map.hpp"
 #include "map/mixed_mesh.hpp"
 
 namespace dartcast::build_test {

@@ -1,14 +1,14 @@
 // What a draft is taken for, and which are refused.
-#include "dartcast/map/draft.hpp"
+#include "topology/draft.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <set>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/map/cell_form.hpp"
-#include "dartcast/mesh/cell_types.hpp"
+#include "base/random.hpp"
+#include "topology/cell_form.hpp"
+#include "mesh/cell_types.hpp"
 #include "map/mixed_mesh.hpp"
 
 namespace dartcast::draft_test {

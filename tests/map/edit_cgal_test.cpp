@@ -9,7 +9,7 @@
 #include <set>
 #include <unordered_map>
 
-#include "dartcast/base/error.hpp"
+#include "dartcast/error.hpp"
 #include "map/edit_meshes.hpp"
 #include "map/random_edits.hpp"
 #include "tier.hpp"

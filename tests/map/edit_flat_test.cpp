@@ -5,7 +5,7 @@
 #include <array>
 #include <optional>
 
-#include "dartcast/base/error.hpp"
+#include "dartcast/error.hpp"
 #include "map/edit_meshes.hpp"
 #include "map/random_edits.hpp"
 #include "tier.hpp"

@@ -4,9 +4,9 @@
 #include <ostream>
 #include <vector>
 
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/mesh/generate_octahedra.hpp"
-#include "dartcast/mesh/generate_rectangle.hpp"
+#include "dartcast/generators.hpp"
+#include "generators/generate_octahedra.hpp"
+#include "generators/generate_rectangle.hpp"
 #include "map/mixed_mesh.hpp"
 
 namespace dartcast::test {

@@ -5,8 +5,8 @@
 #include <array>
 #include <set>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/map/integrity.hpp"
+#include "dartcast/error.hpp"
+#include "topology/integrity.hpp"
 #include "map/edit_meshes.hpp"
 #include "map/random_edits.hpp"
 #include "tier.hpp"

@@ -1,5 +1,5 @@
 // What each edit does to cells that can be checked by hand, and what it refuses.
-#include "dartcast/map/edit.hpp"
+#include "dartcast/map_edits.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include <numeric>
 #include <set>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/map/integrity.hpp"
-#include "dartcast/map/orbits.hpp"
-#include "dartcast/mesh/cell_types.hpp"
+#include "dartcast/error.hpp"
+#include "topology/integrity.hpp"
+#include "dartcast/map_queries.hpp"
+#include "mesh/cell_types.hpp"
 #include "map/edit_meshes.hpp"
 #include "map/refusals.hpp"
 #include "tier.hpp"

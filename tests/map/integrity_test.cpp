@@ -1,17 +1,17 @@
 // Faults planted in a map's records are found and named. (phi1 and phi2 are tables of an immutable shape, whose
 // constructor refuses what does not close; phi1 o phi3 follows from phi3 in these records: those constraints can't be
 // broken from outside.)
-#include "dartcast/map/integrity.hpp"
+#include "topology/integrity.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <functional>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/map/edit.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/mesh/generate_octahedra.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/map_edits.hpp"
+#include "dartcast/generators.hpp"
+#include "generators/generate_octahedra.hpp"
 #include "map/mixed_mesh.hpp"
 #include "map/random_edits.hpp"
 

@@ -1,5 +1,5 @@
 // The relations of the map on every dart of meshes of every type, against the meshes' own lists of faces.
-#include "dartcast/map/map.hpp"
+#include "dartcast/combinatorial_map.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,14 +8,14 @@
 #include <map>
 #include <set>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/base/random.hpp"
-#include "dartcast/map/integrity.hpp"
-#include "dartcast/map/orbits.hpp"
-#include "dartcast/mesh/cell_types.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/mesh/generate_octahedra.hpp"
-#include "dartcast/mesh/generate_vessel.hpp"
+#include "dartcast/error.hpp"
+#include "base/random.hpp"
+#include "topology/integrity.hpp"
+#include "dartcast/map_queries.hpp"
+#include "mesh/cell_types.hpp"
+#include "dartcast/generators.hpp"
+#include "generators/generate_octahedra.hpp"
+#include "generators/generate_vessel.hpp"
 #include "map/mixed_mesh.hpp"
 
 namespace dartcast::map_test {

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <set>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/map/edit.hpp"
-#include "dartcast/map/integrity.hpp"
-#include "dartcast/map/map.hpp"
-#include "dartcast/map/orbits.hpp"
-#include "dartcast/mesh/cell_types.hpp"
-#include "dartcast/mesh/generate_rectangle.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/map_edits.hpp"
+#include "topology/integrity.hpp"
+#include "dartcast/combinatorial_map.hpp"
+#include "dartcast/map_queries.hpp"
+#include "mesh/cell_types.hpp"
+#include "generators/generate_rectangle.hpp"
 
 namespace dartcast::plane_map_test {
 

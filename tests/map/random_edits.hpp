@@ -6,8 +6,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/map/edit.hpp"
+#include "base/random.hpp"
+#include "dartcast/map_edits.hpp"
 
 namespace dartcast::test {
 

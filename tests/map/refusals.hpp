@@ -7,7 +7,7 @@
 #include <initializer_list>
 #include <string>
 
-#include "dartcast/base/error.hpp"
+#include "dartcast/error.hpp"
 
 namespace dartcast::test {
 

@@ -1,13 +1,13 @@
 // Which shapes a table keeps, and under which numbers.
-#include "dartcast/map/shape_table.hpp"
+#include "topology/shape_table.hpp"
 
 #include <gtest/gtest.h>
 
 #include <map>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/base/random.hpp"
-#include "dartcast/map/cell_form.hpp"
+#include "dartcast/error.hpp"
+#include "base/random.hpp"
+#include "topology/cell_form.hpp"
 #include "tier.hpp"
 
 namespace dartcast::shape_table_test {

@@ -1,5 +1,5 @@
 // Shapes: how few there are, and that their simplices tile the cell and fit those of the neighbours.
-#include "dartcast/map/shape.hpp"
+#include "dartcast/cell_shape.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,11 +8,11 @@
 #include <numeric>
 #include <set>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/base/random.hpp"
-#include "dartcast/map/map.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/mesh/generate_octahedra.hpp"
+#include "dartcast/error.hpp"
+#include "base/random.hpp"
+#include "dartcast/combinatorial_map.hpp"
+#include "dartcast/generators.hpp"
+#include "generators/generate_octahedra.hpp"
 #include "map/mixed_mesh.hpp"
 
 namespace dartcast::shape_test {

@@ -1,11 +1,11 @@
 // Side tables against std::map.
-#include "dartcast/map/side_table.hpp"
+#include "topology/side_table.hpp"
 
 #include <gtest/gtest.h>
 
 #include <map>
 
-#include "dartcast/base/random.hpp"
+#include "base/random.hpp"
 #include "tier.hpp"
 
 namespace dartcast::side_table_test {

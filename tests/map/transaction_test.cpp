@@ -1,14 +1,14 @@
 // What transactions give back, and that they leave nothing behind when they are taken back.
-#include "dartcast/map/transaction.hpp"
+#include "dartcast/transaction.hpp"
 
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <set>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/map/edit.hpp"
-#include "dartcast/map/integrity.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/map_edits.hpp"
+#include "topology/integrity.hpp"
 #include "map/edit_meshes.hpp"
 #include "map/random_edits.hpp"
 #include "map/refusals.hpp"

@@ -1,6 +1,6 @@
 // Decompositions against exact areas, exact turns and a ray test that share no code with the library; refusals against
 // a look at all pairs of edges.
-#include "dartcast/mesh/decompose.hpp"
+#include "dartcast/decompose.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "dartcast/base/error.hpp"
+#include "dartcast/error.hpp"
 #include "drawings.hpp"
 #include "exact/dyadic.hpp"
 #include "tier.hpp"

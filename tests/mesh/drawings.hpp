@@ -7,8 +7,8 @@
 #include <numbers>
 #include <vector>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/mesh/decompose.hpp"
+#include "base/random.hpp"
+#include "dartcast/decompose.hpp"
 
 namespace dartcast::test {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "dartcast/mesh/inspect.hpp"
+#include "dartcast/mesh_check.hpp"
 
 namespace dartcast::test {
 

@@ -1,4 +1,4 @@
-#include "dartcast/mesh/generate_barrel.hpp"
+#include "generators/generate_barrel.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <limits>
 #include <numbers>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/surface/inspect_surface.hpp"
+#include "dartcast/error.hpp"
+#include "surface/check_surface.hpp"
 
 namespace dartcast::generate_barrel_test {
 

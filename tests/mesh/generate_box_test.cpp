@@ -1,9 +1,9 @@
-#include "dartcast/mesh/generate_box.hpp"
+#include "dartcast/generators.hpp"
 
 #include <limits>
 #include <numeric>
 
-#include "dartcast/base/error.hpp"
+#include "dartcast/error.hpp"
 #include "generate_checks.hpp"
 
 namespace dartcast::generate_box_test {

@@ -12,8 +12,8 @@
 #include <span>
 #include <vector>
 
-#include "dartcast/mesh/cell_types.hpp"
-#include "dartcast/mesh/mesh_data.hpp"
+#include "mesh/cell_types.hpp"
+#include "dartcast/mesh_data.hpp"
 
 namespace dartcast::test {
 

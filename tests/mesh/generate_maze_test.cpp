@@ -1,10 +1,10 @@
-#include "dartcast/mesh/generate_maze.hpp"
+#include "generators/generate_maze.hpp"
 
 #include <cmath>
 #include <limits>
 #include <numeric>
 
-#include "dartcast/base/error.hpp"
+#include "dartcast/error.hpp"
 #include "planar_checks.hpp"
 #include "tier.hpp"
 

@@ -1,8 +1,8 @@
-#include "dartcast/mesh/generate_octahedra.hpp"
+#include "generators/generate_octahedra.hpp"
 
 #include <limits>
 
-#include "dartcast/base/error.hpp"
+#include "dartcast/error.hpp"
 #include "generate_checks.hpp"
 
 namespace dartcast::generate_octahedra_test {

@@ -1,11 +1,11 @@
-#include "dartcast/mesh/generate_rectangle.hpp"
+#include "generators/generate_rectangle.hpp"
 
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
-#include "dartcast/base/error.hpp"
+#include "dartcast/error.hpp"
 #include "planar_checks.hpp"
 #include "tier.hpp"
 

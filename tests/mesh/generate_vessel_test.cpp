@@ -1,12 +1,12 @@
-#include "dartcast/mesh/generate_vessel.hpp"
+#include "generators/generate_vessel.hpp"
 
 #include <cstdlib>
 #include <limits>
 #include <numeric>
 #include <set>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/base/random.hpp"
+#include "dartcast/error.hpp"
+#include "base/random.hpp"
 #include "generate_checks.hpp"
 #include "tier.hpp"
 

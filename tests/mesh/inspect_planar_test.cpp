@@ -7,11 +7,11 @@
 #include <map>
 #include <numeric>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/mesh/faces.hpp"
-#include "dartcast/mesh/generate_rectangle.hpp"
-#include "dartcast/mesh/inspect.hpp"
-#include "dartcast/mesh/orientation.hpp"
+#include "base/random.hpp"
+#include "mesh/faces.hpp"
+#include "generators/generate_rectangle.hpp"
+#include "dartcast/mesh_check.hpp"
+#include "mesh/orientation.hpp"
 #include "mesh/findings.hpp"
 #include "planar_checks.hpp"
 #include "tier.hpp"

@@ -1,5 +1,5 @@
 // Every kind of finding, made on purpose, one at a time.
-#include "dartcast/mesh/inspect.hpp"
+#include "dartcast/mesh_check.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,8 +12,8 @@
 #include <random>
 #include <set>
 
-#include "dartcast/mesh/cell_types.hpp"
-#include "dartcast/mesh/conformity.hpp"
+#include "mesh/cell_types.hpp"
+#include "mesh/conformity.hpp"
 #include "mesh/findings.hpp"
 
 namespace dartcast::inspect_test {

@@ -1,4 +1,4 @@
-#include "dartcast/mesh/patches.hpp"
+#include "mesh/patches.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/mesh/generate_rectangle.hpp"
-#include "dartcast/mesh/generate_vessel.hpp"
-#include "dartcast/mesh/inspect.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/generators.hpp"
+#include "generators/generate_rectangle.hpp"
+#include "generators/generate_vessel.hpp"
+#include "dartcast/mesh_check.hpp"
 
 namespace dartcast::test::patches_test {
 

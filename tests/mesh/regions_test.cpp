@@ -1,11 +1,11 @@
 // Free cells by region and by array.
-#include "dartcast/mesh/regions.hpp"
+#include "dartcast/mesh_selection.hpp"
 
 #include <gtest/gtest.h>
 
 #include <functional>
 
-#include "dartcast/base/error.hpp"
+#include "dartcast/error.hpp"
 
 namespace dartcast::regions_test {
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "dartcast/exact/vec3.hpp"
+#include "dartcast/vec3.hpp"
 
 namespace dartcast::oracle {
 

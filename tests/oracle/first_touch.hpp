@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "dartcast/exact/vec3.hpp"
+#include "dartcast/vec3.hpp"
 
 namespace dartcast::oracle {
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <utility>
 
-#include "dartcast/exact/vec3.hpp"
+#include "dartcast/vec3.hpp"
 
 namespace dartcast::oracle {
 

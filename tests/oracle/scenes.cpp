@@ -9,9 +9,9 @@
 #include <numeric>
 #include <utility>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/mesh/generate_octahedra.hpp"
+#include "base/random.hpp"
+#include "dartcast/generators.hpp"
+#include "generators/generate_octahedra.hpp"
 #include "oracle/triangulation.hpp"
 
 namespace dartcast::oracle {

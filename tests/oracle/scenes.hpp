@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "dartcast/mesh/mesh_data.hpp"
+#include "dartcast/mesh_data.hpp"
 
 namespace dartcast::oracle {
 

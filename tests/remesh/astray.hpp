@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/geometry/complex.hpp"
-#include "dartcast/geometry/validity.hpp"
+#include "base/random.hpp"
+#include "dartcast/cell_complex.hpp"
+#include "dartcast/validity.hpp"
 #include "exact/dyadic.hpp"
 
 namespace dartcast::test {

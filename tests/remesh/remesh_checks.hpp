@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "dartcast/geometry/complex.hpp"
-#include "dartcast/geometry/validity.hpp"
-#include "dartcast/map/integrity.hpp"
+#include "dartcast/cell_complex.hpp"
+#include "dartcast/validity.hpp"
+#include "topology/integrity.hpp"
 #include "exact/dyadic.hpp"
 
 namespace dartcast::test {

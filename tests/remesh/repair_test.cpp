@@ -1,13 +1,13 @@
-#include "dartcast/remesh/repair.hpp"
+#include "dartcast/remeshing.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <set>
 
-#include "dartcast/remesh/kernel.hpp"
-#include "dartcast/remesh/region.hpp"
-#include "dartcast/remesh/subdivide.hpp"
+#include "editing/kernel_point.hpp"
+#include "editing/region.hpp"
+#include "editing/subdivide.hpp"
 #include "map/edit_meshes.hpp"
 #include "map/refusals.hpp"
 #include "remesh/astray.hpp"

@@ -1,10 +1,10 @@
 // What subdivide() leaves in the cells around, and what it makes of cells that other edits made.
 #include <gtest/gtest.h>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/map/edit.hpp"
-#include "dartcast/remesh/outline.hpp"
-#include "dartcast/remesh/subdivide.hpp"
+#include "base/random.hpp"
+#include "dartcast/map_edits.hpp"
+#include "editing/outline.hpp"
+#include "editing/subdivide.hpp"
 #include "map/edit_meshes.hpp"
 #include "map/refusals.hpp"
 #include "remesh/remesh_checks.hpp"

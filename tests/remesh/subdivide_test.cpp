@@ -1,11 +1,11 @@
-#include "dartcast/remesh/subdivide.hpp"
+#include "editing/subdivide.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <set>
 
-#include "dartcast/base/random.hpp"
+#include "base/random.hpp"
 #include "map/edit_meshes.hpp"
 #include "map/refusals.hpp"
 #include "remesh/remesh_checks.hpp"

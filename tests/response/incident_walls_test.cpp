@@ -1,5 +1,5 @@
 // Walls that meet at edges and vertices, and what they make of a velocity: for particles and bodies alike.
-#include "dartcast/response/incident_walls.hpp"
+#include "response/incident_walls.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <numbers>
 #include <vector>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/bodies/body_contact.hpp"
+#include "base/random.hpp"
+#include "bodies/body_contact.hpp"
 #include "tier.hpp"
 
 namespace dartcast::incident_walls_test {

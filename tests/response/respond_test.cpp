@@ -1,5 +1,5 @@
 // What particles do at walls: the operators alone, and in whole steps.
-#include "dartcast/response/respond.hpp"
+#include "dartcast/response.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include <limits>
 #include <utility>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/base/random.hpp"
-#include "dartcast/environment/environment.hpp"
-#include "dartcast/mesh/generate_box.hpp"
+#include "dartcast/error.hpp"
+#include "base/random.hpp"
+#include "dartcast/environment.hpp"
+#include "dartcast/generators.hpp"
 
 namespace dartcast::respond_test {
 

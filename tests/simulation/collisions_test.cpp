@@ -6,11 +6,11 @@
 #include <map>
 #include <numbers>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/environment/audit.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/mesh/generate_rectangle.hpp"
-#include "dartcast/simulation/flow.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/audit.hpp"
+#include "dartcast/generators.hpp"
+#include "generators/generate_rectangle.hpp"
+#include "dartcast/simulation.hpp"
 #include "tier.hpp"
 
 namespace dartcast::collisions_test {

@@ -1,15 +1,15 @@
-#include "dartcast/simulation/crowding.hpp"
+#include "dartcast/adaptive_subdivision.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <map>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/base/random.hpp"
-#include "dartcast/environment/audit.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/simulation/flow.hpp"
+#include "dartcast/error.hpp"
+#include "base/random.hpp"
+#include "dartcast/audit.hpp"
+#include "dartcast/generators.hpp"
+#include "dartcast/simulation.hpp"
 #include "tier.hpp"
 
 namespace dartcast::crowding_test {

@@ -1,4 +1,4 @@
-#include "dartcast/simulation/deformation.hpp"
+#include "dartcast/deformation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "../mesh/generate_checks.hpp"
-#include "dartcast/base/error.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/mesh/generate_vessel.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/generators.hpp"
+#include "generators/generate_vessel.hpp"
 #include "tier.hpp"
 
 namespace dartcast::deformation_test {

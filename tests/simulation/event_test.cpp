@@ -1,14 +1,14 @@
 // Surgery while a flow runs: what leaks, what is stopped, and that nobody is lost.
-#include "dartcast/simulation/event.hpp"
+#include "dartcast/events.hpp"
 
 #include <gtest/gtest.h>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/environment/audit.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/mesh/generate_rectangle.hpp"
-#include "dartcast/mesh/generate_vessel.hpp"
-#include "dartcast/simulation/surgery.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/audit.hpp"
+#include "dartcast/generators.hpp"
+#include "generators/generate_rectangle.hpp"
+#include "generators/generate_vessel.hpp"
+#include "simulation/event_scheduler.hpp"
 #include "tier.hpp"
 
 namespace dartcast::event_test {

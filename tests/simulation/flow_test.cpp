@@ -1,4 +1,4 @@
-#include "dartcast/simulation/flow.hpp"
+#include "dartcast/simulation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,11 +7,11 @@
 #include <limits>
 #include <numbers>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/environment/audit.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/mesh/generate_rectangle.hpp"
-#include "dartcast/mesh/generate_vessel.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/audit.hpp"
+#include "dartcast/generators.hpp"
+#include "generators/generate_rectangle.hpp"
+#include "generators/generate_vessel.hpp"
 
 namespace dartcast::flow_test {
 

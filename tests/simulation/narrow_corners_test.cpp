@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "dartcast/simulation/flow.hpp"
+#include "dartcast/simulation.hpp"
 #include "tier.hpp"
 
 namespace dartcast::test::narrow_corners_test {

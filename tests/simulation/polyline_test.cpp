@@ -1,11 +1,11 @@
-#include "dartcast/simulation/polyline.hpp"
+#include "simulation/polyline.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/mesh/generate_box.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/generators.hpp"
 
 namespace dartcast::polyline_test {
 

@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/mesh/generate_rectangle.hpp"
-#include "dartcast/simulation/flow.hpp"
-#include "dartcast/simulation/polyline.hpp"
-#include "dartcast/simulation/surgery.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/generators.hpp"
+#include "generators/generate_rectangle.hpp"
+#include "dartcast/simulation.hpp"
+#include "simulation/polyline.hpp"
+#include "simulation/event_scheduler.hpp"
 #include "refused.hpp"
 
 namespace dartcast::ranges_test {

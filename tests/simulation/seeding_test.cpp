@@ -1,13 +1,13 @@
-#include "dartcast/simulation/seeding.hpp"
+#include "simulation/seeding.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/simulation/flow.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/generators.hpp"
+#include "dartcast/simulation.hpp"
 
 namespace dartcast::seeding_test {
 

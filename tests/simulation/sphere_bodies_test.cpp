@@ -1,5 +1,5 @@
 // Spheres of a flow that meet bodies.
-#include "dartcast/simulation/sphere_bodies.hpp"
+#include "simulation/sphere_bodies.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,10 @@
 #include <string>
 
 #include "bodies/point_block.hpp"
-#include "dartcast/base/error.hpp"
-#include "dartcast/environment/audit.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/simulation/flow.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/audit.hpp"
+#include "dartcast/generators.hpp"
+#include "dartcast/simulation.hpp"
 #include "tier.hpp"
 
 namespace dartcast::sphere_bodies_test {

@@ -1,12 +1,12 @@
 // Spheres against walls: every step against all walls of the scene, and cases with known answers.
-#include "dartcast/spheres/advance_spheres.hpp"
+#include "dartcast/spheres.hpp"
 
 #include <gtest/gtest.h>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/mesh/generate_rectangle.hpp"
-#include "dartcast/mesh/generate_vessel.hpp"
-#include "dartcast/simulation/deformation.hpp"
+#include "dartcast/error.hpp"
+#include "generators/generate_rectangle.hpp"
+#include "generators/generate_vessel.hpp"
+#include "dartcast/deformation.hpp"
 #include "spheres/sphere_checks.hpp"
 
 namespace dartcast::advance_spheres_test {

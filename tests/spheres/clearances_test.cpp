@@ -1,7 +1,7 @@
 // Spheres whose clearances are known.
 #include <gtest/gtest.h>
 
-#include "dartcast/spheres/advance_spheres.hpp"
+#include "dartcast/spheres.hpp"
 #include "spheres/sphere_checks.hpp"
 #include "tier.hpp"
 

@@ -1,5 +1,5 @@
 // A step's collisions against all pairs, one by one.
-#include "dartcast/spheres/collide.hpp"
+#include "dynamics/collider.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <numeric>
 #include <vector>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/environment/environment.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/environment.hpp"
 #include "spheres/sphere_checks.hpp"
 
 namespace dartcast::collide_test {

@@ -1,11 +1,11 @@
-#include "dartcast/spheres/contact_packets.hpp"
+#include "dynamics/contact_packets.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "dartcast/base/random.hpp"
+#include "base/random.hpp"
 #include "tier.hpp"
 
 namespace dartcast::contact_packets_test {

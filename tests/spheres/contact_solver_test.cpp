@@ -1,4 +1,4 @@
-#include "dartcast/spheres/contact_solver.hpp"
+#include "dynamics/contact_solver.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <numbers>
 #include <numeric>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/base/random.hpp"
-#include "dartcast/spheres/sphere_pairs.hpp"
-#include "dartcast/spheres/sphere_touch.hpp"
+#include "dartcast/error.hpp"
+#include "base/random.hpp"
+#include "dynamics/sphere_pairs.hpp"
+#include "dynamics/sphere_touch.hpp"
 #include "tier.hpp"
 
 namespace dartcast::contact_solver_test {

@@ -1,5 +1,5 @@
 // The walls near a sphere, against all walls of the scene.
-#include "dartcast/spheres/near_walls.hpp"
+#include "dynamics/near_walls.hpp"
 
 #include <set>
 

@@ -8,11 +8,11 @@
 #include <limits>
 #include <vector>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/environment/audit.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/response/respond.hpp"
-#include "dartcast/spheres/advance_spheres.hpp"
+#include "base/random.hpp"
+#include "dartcast/audit.hpp"
+#include "dartcast/generators.hpp"
+#include "dartcast/response.hpp"
+#include "dartcast/spheres.hpp"
 #include "tier.hpp"
 
 namespace dartcast::test {

@@ -1,4 +1,4 @@
-#include "dartcast/spheres/sphere_pairs.hpp"
+#include "dynamics/sphere_pairs.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,10 +6,10 @@
 #include <cmath>
 #include <set>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/environment/environment.hpp"
-#include "dartcast/map/edit.hpp"
-#include "dartcast/mesh/generate_box.hpp"
+#include "base/random.hpp"
+#include "dartcast/environment.hpp"
+#include "dartcast/map_edits.hpp"
+#include "dartcast/generators.hpp"
 #include "tier.hpp"
 
 namespace dartcast::sphere_pairs_test {

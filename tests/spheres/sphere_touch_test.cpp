@@ -1,4 +1,4 @@
-#include "dartcast/spheres/sphere_touch.hpp"
+#include "dynamics/sphere_touch.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <optional>
 
-#include "dartcast/base/random.hpp"
+#include "base/random.hpp"
 #include "tier.hpp"
 
 namespace dartcast::sphere_touch_test {

@@ -1,11 +1,11 @@
 // First touches of moving spheres and triangles, against 40 digits.
-#include "dartcast/spheres/swept_sphere.hpp"
+#include "dynamics/swept_sphere.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "dartcast/base/random.hpp"
+#include "base/random.hpp"
 #include "oracle/first_touch.hpp"
 #include "tier.hpp"
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "dartcast/mesh/mesh_data.hpp"
+#include "dartcast/mesh_data.hpp"
 
 namespace dartcast::test {
 

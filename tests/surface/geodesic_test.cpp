@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "dartcast/surface/surface_step.hpp"
+#include "surface/surface_step.hpp"
 #include "surface/geodesic_oracle.hpp"
 #include "surface/meshes.hpp"
 #include "tier.hpp"

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "dartcast/surface/surface_step.hpp"
+#include "surface/surface_step.hpp"
 #include "surface/meshes.hpp"
 #include "tier.hpp"
 

@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/exact/predicates.hpp"
-#include "dartcast/mesh/generate_rectangle.hpp"
-#include "dartcast/mesh/mesh_data.hpp"
-#include "dartcast/surface/surface.hpp"
+#include "base/random.hpp"
+#include "dartcast/predicates.hpp"
+#include "generators/generate_rectangle.hpp"
+#include "dartcast/mesh_data.hpp"
+#include "dartcast/surface.hpp"
 
 namespace dartcast::test {
 

@@ -1,16 +1,16 @@
 // Surfaces that are cut, sewn and refined under particles: who is not touched keeps every bit, nobody leaves the
 // surface, and what is opened is a wall.
-#include "dartcast/surface/surface_edit.hpp"
+#include "surface/surface_edit.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <set>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/map/edit.hpp"
-#include "dartcast/map/integrity.hpp"
-#include "dartcast/surface/surface_step.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/map_edits.hpp"
+#include "topology/integrity.hpp"
+#include "surface/surface_step.hpp"
 #include "map/random_edits.hpp"
 #include "surface/meshes.hpp"
 #include "tier.hpp"

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/surface/inspect_surface.hpp"
-#include "dartcast/surface/surface_advance.hpp"
-#include "dartcast/surface/surface_locator.hpp"
+#include "dartcast/error.hpp"
+#include "surface/check_surface.hpp"
+#include "surface/surface_advance.hpp"
+#include "surface/surface_locator.hpp"
 #include "surface/meshes.hpp"
 #include "tier.hpp"
 

@@ -1,5 +1,5 @@
 // Triangles laid out in the plane, and the ways out of them, against 50 digits: fat ones, and as thin as there are.
-#include "dartcast/surface/unfold.hpp"
+#include "surface/unfold.hpp"
 
 #include <gtest/gtest.h>
 

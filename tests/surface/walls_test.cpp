@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/mesh/cell_types.hpp"
-#include "dartcast/surface/surface_advance.hpp"
+#include "dartcast/error.hpp"
+#include "mesh/cell_types.hpp"
+#include "surface/surface_advance.hpp"
 #include "surface/meshes.hpp"
 #include "tier.hpp"
 

@@ -1,12 +1,12 @@
 // Cuts and carving: exact volumes of dyadic tools, tools that end inside cells, and who can enter.
-#include "dartcast/surgery/carve.hpp"
+#include "dartcast/cutting.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/base/random.hpp"
+#include "dartcast/error.hpp"
+#include "base/random.hpp"
 #include "map/refusals.hpp"
 #include "surgery/checks.hpp"
 #include "tier.hpp"

@@ -9,10 +9,10 @@
 #include <unordered_set>
 #include <vector>
 
-#include "dartcast/geometry/complex_edit.hpp"
-#include "dartcast/geometry/validity.hpp"
-#include "dartcast/map/integrity.hpp"
-#include "dartcast/mesh/mesh_data.hpp"
+#include "dartcast/complex_edit.hpp"
+#include "dartcast/validity.hpp"
+#include "topology/integrity.hpp"
+#include "dartcast/mesh_data.hpp"
 #include "exact/dyadic.hpp"
 #include "map/edit_meshes.hpp"
 

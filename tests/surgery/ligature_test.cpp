@@ -1,13 +1,13 @@
 // Ligatures: flooding tells that they seal, a motion that they can be drawn together.
-#include "dartcast/surgery/ligature.hpp"
+#include "editing/ligature.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/base/random.hpp"
-#include "dartcast/environment/environment.hpp"
-#include "dartcast/mesh/generate_vessel.hpp"
+#include "dartcast/error.hpp"
+#include "base/random.hpp"
+#include "dartcast/environment.hpp"
+#include "generators/generate_vessel.hpp"
 #include "map/refusals.hpp"
 #include "surgery/checks.hpp"
 #include "tier.hpp"

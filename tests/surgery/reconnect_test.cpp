@@ -1,12 +1,12 @@
 // Ends that are sewn, and gaps that are filled: exact volumes, and who is connected again.
-#include "dartcast/surgery/reconnect.hpp"
+#include "editing/reconnect.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/mesh/generate_vessel.hpp"
-#include "dartcast/surgery/carve.hpp"
+#include "dartcast/error.hpp"
+#include "generators/generate_vessel.hpp"
+#include "dartcast/cutting.hpp"
 #include "map/refusals.hpp"
 #include "surgery/checks.hpp"
 #include "tier.hpp"

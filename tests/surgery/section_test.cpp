@@ -1,11 +1,11 @@
 // Sections of meshes of every cell type: exact volumes along dyadic planes, and random planes.
-#include "dartcast/surgery/section.hpp"
+#include "editing/section.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "dartcast/base/error.hpp"
-#include "dartcast/base/random.hpp"
+#include "dartcast/error.hpp"
+#include "base/random.hpp"
 #include "map/refusals.hpp"
 #include "surgery/checks.hpp"
 #include "tier.hpp"

@@ -1,9 +1,9 @@
 // Cuts of a vessel: who can enter, and cuts anywhere.
 #include <algorithm>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/mesh/generate_vessel.hpp"
-#include "dartcast/surgery/carve.hpp"
+#include "base/random.hpp"
+#include "generators/generate_vessel.hpp"
+#include "dartcast/cutting.hpp"
 #include "surgery/checks.hpp"
 #include "tier.hpp"
 

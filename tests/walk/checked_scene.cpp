@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dartcast/walk/step.hpp"
+#include "tracking/step.hpp"
 
 namespace dartcast::test {
 namespace {

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "dartcast/geometry/complex.hpp"
-#include "dartcast/walk/contact.hpp"
-#include "dartcast/walk/state.hpp"
-#include "dartcast/walk/walk.hpp"
+#include "dartcast/cell_complex.hpp"
+#include "dartcast/contact.hpp"
+#include "dartcast/particle_state.hpp"
+#include "tracking/walk.hpp"
 #include "oracle/oracle.hpp"
 #include "oracle/scenes.hpp"
 

@@ -1,5 +1,5 @@
 // The batch of the plane against the step of one particle: the same bits wherever the batch takes a step.
-#include "dartcast/walk/filtered_plane.hpp"
+#include "tracking/batch/batch_plane.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/mesh/generate_rectangle.hpp"
-#include "dartcast/walk/ride.hpp"
-#include "dartcast/walk/step.hpp"
+#include "base/random.hpp"
+#include "generators/generate_rectangle.hpp"
+#include "tracking/carry.hpp"
+#include "tracking/step.hpp"
 #include "environment/particle_checks.hpp"
 #include "tier.hpp"
 #include "walk/seeds.hpp"

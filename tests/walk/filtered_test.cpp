@@ -1,5 +1,5 @@
 // The batch that the filter decides against the step of one particle: the same bits wherever the batch takes a step.
-#include "dartcast/walk/filtered.hpp"
+#include "tracking/batch/batch.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -9,9 +9,9 @@
 #include <cstring>
 #include <limits>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/walk/ride.hpp"
-#include "dartcast/walk/step.hpp"
+#include "base/random.hpp"
+#include "tracking/carry.hpp"
+#include "tracking/step.hpp"
 #include "environment/particle_checks.hpp"
 #include "oracle/scenes.hpp"
 #include "tier.hpp"

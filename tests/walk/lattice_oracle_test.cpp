@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "dartcast/base/random.hpp"
+#include "base/random.hpp"
 #include "walk/checked_scene.hpp"
 #include "walk/seeds.hpp"
 

@@ -1,5 +1,5 @@
 // Locating random points, against a search through all cells with another predicate.
-#include "dartcast/walk/locate.hpp"
+#include "tracking/locate.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <limits>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/mesh/generate_octahedra.hpp"
+#include "base/random.hpp"
+#include "dartcast/generators.hpp"
+#include "generators/generate_octahedra.hpp"
 #include "mesh/generate_checks.hpp"
 #include "tier.hpp"
 

@@ -1,5 +1,5 @@
 // What coordinates kept of a simplex claim, against exact signs.
-#include "dartcast/walk/memo.hpp"
+#include "tracking/batch/simplex_cache.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -8,11 +8,11 @@
 #include <cmath>
 #include <optional>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/environment/environment.hpp"
-#include "dartcast/walk/coordinates.hpp"
-#include "dartcast/walk/filtered.hpp"
-#include "dartcast/walk/ride.hpp"
+#include "base/random.hpp"
+#include "dartcast/environment.hpp"
+#include "tracking/batch/coordinate_bounds.hpp"
+#include "tracking/batch/batch.hpp"
+#include "tracking/carry.hpp"
 #include "tier.hpp"
 
 namespace dartcast::test::memo_test {

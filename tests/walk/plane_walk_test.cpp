@@ -9,12 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/geometry/complex.hpp"
-#include "dartcast/mesh/cell_types.hpp"
-#include "dartcast/mesh/generate_rectangle.hpp"
-#include "dartcast/walk/locate.hpp"
-#include "dartcast/walk/walk.hpp"
+#include "base/random.hpp"
+#include "dartcast/cell_complex.hpp"
+#include "mesh/cell_types.hpp"
+#include "generators/generate_rectangle.hpp"
+#include "tracking/locate.hpp"
+#include "tracking/walk.hpp"
 #include "tier.hpp"
 
 namespace dartcast::plane_walk_test {

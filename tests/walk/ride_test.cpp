@@ -1,10 +1,10 @@
-#include "dartcast/walk/ride.hpp"
+#include "tracking/carry.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "dartcast/base/random.hpp"
+#include "base/random.hpp"
 #include "tier.hpp"
 
 namespace dartcast::ride_test {

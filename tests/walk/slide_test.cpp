@@ -8,10 +8,10 @@
 #include <atomic>
 #include <cmath>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/response/respond.hpp"
-#include "dartcast/walk/step.hpp"
+#include "base/random.hpp"
+#include "dartcast/generators.hpp"
+#include "dartcast/response.hpp"
+#include "tracking/step.hpp"
 #include "walk/checked_scene.hpp"
 #include "walk/seeds.hpp"
 

@@ -1,5 +1,5 @@
 // Walls around vertices and edges, found from cell to cell, against a search simplex by simplex.
-#include "dartcast/walk/star.hpp"
+#include "tracking/star.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <set>
 #include <span>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/geometry/complex.hpp"
+#include "base/random.hpp"
+#include "dartcast/cell_complex.hpp"
 #include "oracle/scenes.hpp"
 #include "tier.hpp"
 #include "walk/seeds.hpp"

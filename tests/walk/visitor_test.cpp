@@ -3,10 +3,10 @@
 
 #include <set>
 
-#include "dartcast/base/random.hpp"
-#include "dartcast/mesh/generate_box.hpp"
-#include "dartcast/walk/locate.hpp"
-#include "dartcast/walk/walk.hpp"
+#include "base/random.hpp"
+#include "dartcast/generators.hpp"
+#include "tracking/locate.hpp"
+#include "tracking/walk.hpp"
 
 namespace dartcast::visitor_test {
 

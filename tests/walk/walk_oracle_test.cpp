@@ -7,7 +7,7 @@
 #include <atomic>
 #include <cmath>
 
-#include "dartcast/base/random.hpp"
+#include "base/random.hpp"
 #include "walk/checked_scene.hpp"
 #include "walk/seeds.hpp"
 

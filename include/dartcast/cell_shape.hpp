@@ -1,0 +1,156 @@
+// The combinatorial type of a cell: its darts, faces, fans and implicit simplices, shared by all cells alike.
+//
+// The darts are those of a combinatorial map: T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism for
+// continuous collision detection in deformable environments", SPM 2009, section 3.1. The simplices are a pulling
+// triangulation: each face is fanned from its lowest-numbered vertex (or from an interior point of its own), and the
+// cell is coned from its lowest-numbered vertex over the fan triangles that do not contain it (or from an interior
+// point).
+//
+// A cell of the plane is a polygon: its faces are its edges, of two corners and one dart each, in the direction that
+// they are run around in, and a simplex is a triangle, of which the fourth corner and facet mean nothing. phi2 is then
+// no matter of the shape: it leads to the next polygon (dartcast/combinatorial_map.hpp).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "topology/stars.hpp"
+
+namespace dartcast {
+
+/// The kind of cell of the map in whose interior a point lies; the value is its dimension.
+enum class Kind : std::uint8_t { vertex = 0, edge = 1, face = 2, volume = 3 };
+
+/// What a shape is made from. Points of the cell have local numbers: corners, then face points, then the cell's point.
+struct ShapeKey {
+  struct Face {
+    /// From the lowest-numbered vertex, counterclockwise seen from the outside; in the plane, the edge's two corners in
+    /// its direction.
+    std::vector<std::uint16_t> corners;
+    bool has_point = false;  ///< fanned from a point of its own
+    auto operator<=>(const Face&) const = default;
+  };
+  std::uint16_t corner_count = 0;
+  std::uint16_t apex = 0;  ///< local number of the lowest-numbered corner, where the cell has no point of its own
+  bool has_point = false;  ///< coned from a point of its own
+  std::vector<Face> faces;
+  auto operator<=>(const ShapeKey&) const = default;
+};
+
+/// What lies beyond a facet of a simplex: another simplex of the cell, or a triangle of a face's fan.
+struct Across {
+  static constexpr std::uint16_t outer_bit = 0x8000U;
+
+  std::uint16_t index = 0;  ///< simplex, or outer_bit + face
+  std::uint16_t place = 0;  ///< facet of that simplex, or triangle of the fan
+
+  [[nodiscard]] constexpr bool outer() const { return (index & outer_bit) != 0; }
+  [[nodiscard]] constexpr std::uint16_t face() const { return index & static_cast<std::uint16_t>(~outer_bit); }
+  constexpr bool operator==(const Across&) const = default;
+};
+
+/// A tetrahedron with points of the cell as corners, positive: det[v1 - v0, v2 - v0, v3 - v0] > 0 in a valid cell; in
+/// the plane a triangle, positive where its corners turn counterclockwise.
+struct ImplicitSimplex {
+  std::array<std::uint16_t, 4> vertex;  ///< local numbers
+  std::array<Across, 4> across;         ///< beyond the facet opposite to vertex i
+};
+
+/// Immutable. Darts are numbered face by face, from the face's lowest-numbered vertex.
+class Shape {
+ public:
+  /// Throws InvalidMesh where the faces do not close: an edge not used once in each direction; in the plane, where the
+  /// edges are not one cycle in the order given. Where two fans hold the
+  /// same triangle (faces that meet in an edge with a corner on it), the fans bound no solid: the shape then has one
+  /// simplex, flat at any positions, so that the cell is invalid until such faces take points of their own.
+  explicit Shape(ShapeKey key);
+
+  /// 2: a polygon; 3: a polyhedron.
+  [[nodiscard]] unsigned dimension() const { return dimension_; }
+  [[nodiscard]] std::uint16_t corner_count() const { return key_.corner_count; }
+  /// Corners and interior points.
+  [[nodiscard]] std::uint16_t point_count() const { return point_count_; }
+  [[nodiscard]] std::uint16_t face_count() const { return face_count_; }
+  [[nodiscard]] std::uint16_t dart_count() const { return static_cast<std::uint16_t>(origin_.size()); }
+  [[nodiscard]] const ShapeKey& key() const { return key_; }
+
+  [[nodiscard]] std::uint16_t origin(std::uint16_t dart) const { return origin_[dart]; }
+  [[nodiscard]] std::uint16_t face_of(std::uint16_t dart) const { return face_of_[dart]; }
+  [[nodiscard]] std::uint16_t first_dart(std::uint16_t face) const { return first_dart_[face]; }
+  [[nodiscard]] std::uint16_t degree(std::uint16_t face) const {
+    return static_cast<std::uint16_t>(first_dart_[face + 1] - first_dart_[face]);
+  }
+  [[nodiscard]] std::uint16_t phi1(std::uint16_t dart) const {
+    if (dimension_ == 2) return static_cast<std::uint16_t>(dart + 1U == dart_count() ? 0U : dart + 1U);
+    const std::uint16_t f = face_of_[dart];
+    return dart + 1 == first_dart_[f + 1] ? first_dart_[f] : static_cast<std::uint16_t>(dart + 1);
+  }
+  [[nodiscard]] std::uint16_t phi_1(std::uint16_t dart) const {
+    if (dimension_ == 2) return static_cast<std::uint16_t>((dart == 0 ? dart_count() : dart) - 1);
+    const std::uint16_t f = face_of_[dart];
+    return static_cast<std::uint16_t>((dart == first_dart_[f] ? first_dart_[f + 1] : dart) - 1);
+  }
+  /// Precondition: no polygon.
+  [[nodiscard]] std::uint16_t phi2(std::uint16_t dart) const { return phi2_[dart]; }
+  [[nodiscard]] std::span<const std::uint16_t> corners(std::uint16_t face) const { return key_.faces[face].corners; }
+
+  [[nodiscard]] const std::vector<ImplicitSimplex>& simplices() const { return simplices_; }
+  /// Empty where the shape is flat, or a polygon.
+  [[nodiscard]] const Stars& stars() const { return stars_; }
+  /// Number of triangles in a face's fan: degree - 2, or degree where the face has a point of its own. In the plane a
+  /// face is one facet of a simplex, as a triangle is.
+  [[nodiscard]] std::uint16_t triangle_count(std::uint16_t face) const {
+    if (dimension_ == 2) return 1;
+    return static_cast<std::uint16_t>(degree(face) - (key_.faces[face].has_point ? 0 : 2));
+  }
+  /// Local numbers of the corners of a fan triangle, counterclockwise seen from the outside; in the plane the edge's
+  /// corners, the second one twice.
+  [[nodiscard]] std::array<std::uint16_t, 3> triangle(std::uint16_t face, std::uint16_t t) const;
+  /// The number that the cell on the other side gives to a triangle of this face.
+  [[nodiscard]] std::uint16_t triangle_from_other_side(std::uint16_t face, std::uint16_t t) const {
+    return static_cast<std::uint16_t>(triangle_count(face) - 1 - t);
+  }
+  /// The simplex behind a fan triangle, and its facet: `index` and `place`.
+  [[nodiscard]] Across entry(std::uint16_t face, std::uint16_t t) const { return entries_[first_entry_[face] + t]; }
+
+  /// The face that a point of its own fans; face_count() where `point` is a corner or the cell's point.
+  [[nodiscard]] std::uint16_t face_of_point(std::uint16_t point) const;
+
+  struct Feature {
+    Kind kind;
+    std::uint16_t dart;  ///< of that face, edge or vertex (its origin); of no meaning for a volume
+  };
+  /// The cell of the map whose interior holds the relative interior of the given points' hull. `points`: local numbers,
+  /// 1 to 4 corners of one simplex. Cost: linear in the faces at the first of them.
+  [[nodiscard]] Feature feature(std::span<const std::uint16_t> points) const;
+
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  void number_darts();
+  void sew_darts();
+  void make_simplices();
+  void make_triangles();
+  void connect_simplices();
+  void make_flat();
+  void make_stars();
+  [[nodiscard]] bool is_on_face(std::uint16_t point, std::uint16_t face) const;
+  [[nodiscard]] std::span<const std::uint16_t> darts_at(std::uint16_t corner) const {
+    return {darts_at_.data() + first_dart_at_[corner], darts_at_.data() + first_dart_at_[corner + 1U]};
+  }
+
+  ShapeKey key_;
+  unsigned dimension_ = 3;
+  std::uint16_t face_count_ = 0;
+  std::uint16_t point_count_ = 0;
+  std::vector<std::uint16_t> origin_, face_of_, first_dart_, phi2_;
+  std::vector<std::uint16_t> darts_at_, first_dart_at_;  // by corner: those with this origin
+  std::vector<ImplicitSimplex> simplices_;
+  Stars stars_;
+  std::vector<std::uint16_t> first_entry_;
+  std::vector<Across> entries_;
+};
+
+}  // namespace dartcast

@@ -1,0 +1,105 @@
+// Prescribed motion: where every vertex is at a time, computed from where it rests. Nothing accumulates, so nothing
+// drifts.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "base/parallel.hpp"
+#include "dartcast/vec3.hpp"
+#include "dartcast/complex_edit.hpp"
+
+namespace dartcast {
+
+/// What a step does to a point x. Below: a the axis and d the direction as unit vectors, d made perpendicular to a; r =
+/// x - centre, s = r.a the height of x along the axis, h = r.d; A the amplitude; w(t) = sin(2 pi t / period), so that
+/// at t = 0 all is at rest.
+enum class DeformationKind : std::uint8_t {
+  rotate,  ///< steady turns about the axis through the centre, one a period: by the angle 2 pi t / period. No
+           ///< amplitude.
+  swing,   ///< to and fro about that axis: by the angle A w(t)
+  bend,   ///< the axis becomes a circle's arc towards d: with k = A w(t) / length, a point at height s on the axis goes
+          ///< to centre + a sin(ks) / k + d (1 - cos(ks)) / k, its cross-section turning with it. Valid where k h < 1.
+  twist,  ///< cross-sections turn about the axis by A w(t) s / length
+  stretch,  ///< along the axis by f = 1 + A w(t), across it by 1 / sqrt(f): volumes stay. |A| < 1.
+  pulse,    ///< x + A sin(2 pi (t / period - p / wavelength)) e, a wave that travels with p. e is the vertex's `field`;
+            ///< without one r - a s (away from the axis), or r (away from the centre) where the axis is 0. p is the
+            ///< vertex's `path`; without one s. No wave travels where wavelength is 0; where
+            ///< one does, points are off their rest at t = 0 too.
+  bump,     ///< x + a A w(t) (1 - |r|^2 / length^2)^2 within `length` of the centre: a smooth bulge along the axis
+  frames,   ///< positions given at `times`, linear between them, the first before and the last after them. First in a
+            ///< list only.
+};
+inline constexpr std::string_view deformation_kind_names[] = {"rotate",  "swing", "bend", "twist",
+                                                              "stretch", "pulse", "bump", "frames"};
+
+/// The kind of that name; none if there is no such kind.
+std::optional<DeformationKind> deformation_kind(std::string_view name);
+
+/// SI units: metres, seconds, radians.
+struct DeformationStep {
+  DeformationKind kind = DeformationKind::rotate;
+  double amplitude = 0.0;       ///< an angle (swing, bend, twist), a length (bump) or a share (stretch, pulse)
+  double period = 1.0;          ///< > 0
+  Vec3 axis = {0.0, 0.0, 1.0};  ///< of any length but 0 (pulse: may be 0)
+  Vec3 centre = {0.0, 0.0, 0.0};
+  Vec3 direction = {1.0, 0.0, 0.0};            ///< bend only: not along the axis
+  double length = 1.0;                         ///< bend, twist, bump: > 0
+  double wavelength = 0.0;                     ///< pulse: >= 0
+  std::vector<Vec3> field = {};                ///< pulse: one per vertex, or empty
+  std::vector<double> path = {};               ///< pulse: one per vertex, or empty
+  std::vector<double> times = {};              ///< frames: increasing
+  std::vector<std::vector<Vec3>> frames = {};  ///< frames: all positions, one list per time
+};
+
+/// A list of steps, each applied to the result of those before it.
+class Deformation {
+ public:
+  /// Copies the positions at rest. Throws InvalidArgument, naming the step and the member, where one is out of the
+  /// range above, not finite, or a list has not one entry per vertex.
+  Deformation(std::vector<DeformationStep> steps, std::span<const Vec3> rest);
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+
+  /// For a mesh of the plane. Throws InvalidArgument, naming the step and the member, unless every point with z = 0
+  /// keeps z = 0 exactly at all times: rotate, swing and twist about [0, 0, 1]; bend and bump with vectors of the
+  /// plane; stretch and pulse with an axis in the plane or across it; fields and frames with z = 0; every centre in the
+  /// plane. Cost: linear where there are fields, frames or pulls.
+  void check_plane() const;
+
+  /// After an edit: vertices that it made go with those that they were made between, so that nothing jumps. `size`: of
+  /// the environment's positions now.
+  void follow(const ComplexEditReport& edit, std::size_t size);
+  /// Adds a displacement of some vertices that grows from 0 at the time `begin` to all of it at `end` (s), smoothly,
+  /// and stays; on top of everything else. `displacement`: one per vertex so far. Throws InvalidArgument where the
+  /// number does not match, one is not finite, or the end is not after the beginning.
+  void add_pull(std::span<const Vec3> displacement, double begin, double end);
+
+  /// Writes the position of every vertex at `time` (s). The same bits for any number of threads. Throws
+  /// InvalidArgument, and writes nothing, where time is not finite or out has not one place per vertex. Cost: 10 to 60
+  /// ns per vertex and step.
+  void positions(double time, std::span<Vec3> out, Threads threads = {}) const;
+
+ private:
+  struct Pull {
+    std::vector<std::uint32_t> vertex;  // those that it displaces
+    std::vector<Vec3> displacement;
+    double begin, end;
+  };
+  // What edits and pulls did, in their order.
+  using Later = std::variant<PlacedVertex, Pull>;
+
+  void add_later(double time, std::span<Vec3> out) const;
+
+  std::vector<DeformationStep> steps_;  // axis and direction made unit vectors
+  std::vector<Vec3> rest_;
+  std::vector<Later> later_;
+  std::size_t size_;
+};
+
+}  // namespace dartcast

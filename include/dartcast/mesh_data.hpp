@@ -1,0 +1,96 @@
+// A mesh as plain arrays: what files are read into, generators fill, and the map is built from.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dartcast/vec3.hpp"
+
+namespace dartcast {
+
+enum class CellType : std::uint8_t {
+  tetrahedron,
+  hexahedron,
+  prism,
+  pyramid,
+  polyhedron,
+  triangle,
+  quadrilateral,
+  polygon
+};
+inline constexpr std::array<std::string_view, 8> cell_type_names = {
+    "tetrahedron", "hexahedron", "prism", "pyramid", "polyhedron", "triangle", "quadrilateral", "polygon"};
+
+/// 2 for cells of the plane, 3 for those of space.
+constexpr unsigned dimension(CellType type) { return type < CellType::triangle ? 3 : 2; }
+
+/// Values given at points or cells in the file, kept for fields and masks. Row-major: `components` doubles per item.
+struct DataArray {
+  std::string name;
+  std::size_t components = 1;
+  std::vector<double> values;
+};
+
+/// Points and cells. SI units by convention (metres); nothing in the library depends on it.
+///
+/// Corners of a positive cell:
+///  - tetrahedron 0 1 2 3: det[p1 - p0, p2 - p0, p3 - p0] > 0;
+///  - hexahedron: 0 1 2 3 the base, counterclockwise seen from the inside, 4 5 6 7 above them (VTK and Gmsh agree);
+///  - prism: 0 1 2 the base, counterclockwise seen from the inside, 3 4 5 above them (Gmsh; VTK's own order is the
+///  mirror);
+///  - pyramid: 0 1 2 3 the base, counterclockwise seen from the inside, 4 the apex (VTK and Gmsh agree);
+///  - polyhedron: connectivity holds the number of faces, then for each face its number of corners and the corners,
+///    counterclockwise seen from the outside;
+///  - triangle, quadrilateral, polygon: counterclockwise seen from above, where z = 0 for all points.
+///
+/// All cells are of one dimension. In the plane the faces of a cell, and those of patches, are edges of two corners.
+struct MeshData {
+  std::vector<Vec3> points;
+
+  std::vector<CellType> types;              ///< one per cell
+  std::vector<std::size_t> offsets = {0};   ///< cells + 1; cell c owns connectivity[offsets[c] .. offsets[c + 1])
+  std::vector<std::uint32_t> connectivity;  ///< point indices in the order above
+  std::vector<std::uint32_t> source;        ///< the cell's index in the input file; empty: the cell's own index
+
+  std::vector<std::int32_t> regions;  ///< tag per cell; empty: all 0
+  std::map<std::int32_t, std::string> region_names;
+
+  std::vector<std::uint32_t> patch_faces;        ///< faces in named groups: corners, one face after another
+  std::vector<std::size_t> patch_offsets = {0};  ///< patch faces + 1, into patch_faces
+  std::vector<std::int32_t> patch_tags;          ///< tag per patch face
+  std::vector<std::uint32_t> patch_source;       ///< the face's index in the input file; empty: its own index
+  std::map<std::int32_t, std::string> patch_names;
+
+  std::vector<std::uint8_t> free;  ///< 1 free, 0 blocked, per cell; empty: all free
+
+  std::vector<DataArray> point_data;
+  std::vector<DataArray> cell_data;
+
+  [[nodiscard]] std::size_t cell_count() const { return types.size(); }
+  /// That of the first cell; 3 where there is none.
+  [[nodiscard]] unsigned dimension() const { return types.empty() ? 3 : dartcast::dimension(types.front()); }
+  [[nodiscard]] std::span<const std::uint32_t> cell(std::size_t c) const {
+    return {connectivity.data() + offsets[c], offsets[c + 1] - offsets[c]};
+  }
+  void add_cell(CellType type, std::span<const std::uint32_t> corners) {
+    types.push_back(type);
+    connectivity.insert(connectivity.end(), corners.begin(), corners.end());
+    offsets.push_back(connectivity.size());
+  }
+  void add_patch_face(std::span<const std::uint32_t> corners, std::int32_t tag) {
+    patch_faces.insert(patch_faces.end(), corners.begin(), corners.end());
+    patch_offsets.push_back(patch_faces.size());
+    patch_tags.push_back(tag);
+  }
+  [[nodiscard]] std::span<const std::uint32_t> patch_face(std::size_t f) const {
+    return {patch_faces.data() + patch_offsets[f], patch_offsets[f + 1] - patch_offsets[f]};
+  }
+};
+
+}  // namespace dartcast

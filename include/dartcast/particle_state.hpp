@@ -1,0 +1,50 @@
+// Where a particle is: the paper's S = (p, k, i), with the simplex in place of the dart.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "complex/simplex.hpp"
+#include "dartcast/combinatorial_map.hpp"
+
+namespace dartcast {
+
+/// A plain record. It says: `position` lies in the closed simplex named, and the cell is free (guarantee G3). The walls
+/// are those of the last contact, until the particle leaves them.
+struct State {
+  Vec3 position;
+  Cell cell;
+  std::uint16_t simplex = 0;
+  std::uint8_t touching_count = 0;
+  bool held = false;  ///< its simplex is not positive at present, or its cell blocked: it rides along, takes no step
+  std::array<CellFace, 3> touching{};
+
+  [[nodiscard]] SimplexId at() const { return {cell, simplex}; }
+  void put(SimplexId s, const Vec3& p) {
+    position = p;
+    cell = s.cell;
+    simplex = s.simplex;
+  }
+};
+
+/// The paper's k and i, derived from a state.
+struct Forecast {
+  /// Of the cell of the map that the particle is in (volume; in the plane face), or touches after a contact.
+  Kind kind = Kind::volume;
+  Dart dart;  ///< aimed at: the edge of the base of the particle's simplex; its face is the face aimed at
+  CellFace face;
+};
+
+/// Kind from exact zeros, or from the walls touched; the dart of the simplex's base. `corners` are those of the state's
+/// simplex. Cost: four exact signs.
+Forecast forecast(const Map& map, const State& state, const Corners& corners);
+
+/// Kind, and a dart of that face, edge or vertex (invalid inside of a cell), of the cell of the map that holds x in its
+/// interior.
+struct Placement {
+  Kind kind = Kind::volume;
+  Dart dart;
+};
+Placement placement(const Map& map, SimplexId simplex, const Corners& corners, const Vec3& x);
+
+}  // namespace dartcast

@@ -1,0 +1,89 @@
+// What particles do at walls: reflect, slide, stick, absorb, escape; per patch.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "dartcast/environment.hpp"
+#include "dartcast/vec3.hpp"
+#include "dartcast/contact.hpp"
+
+namespace dartcast {
+
+enum class ResponseKind : std::uint8_t {
+  reflect,  ///< rebounds, relative to the moving wall, with restitution and friction
+  slide,    ///< loses the normal part of its motion
+  stick,    ///< stays on the wall from then on, and moves with it
+  absorb,   ///< ends at the wall
+  escape    ///< leaves the scene through it
+};
+
+struct Response {
+  ResponseKind kind = ResponseKind::reflect;
+  double restitution = 1.0;  ///< share of the normal velocity kept by a reflection, in [0, 1]
+  double friction = 0.0;     ///< Coulomb: tangential velocity lost per normal velocity changed, >= 0
+};
+
+/// A response for every patch. Wall faces without a patch, and patches without a response, get the general one.
+class Responses {
+ public:
+  /// Throws InvalidArgument where restitution or friction is out of range.
+  explicit Responses(const Response& general = {});
+  void set(Patch patch, const Response& response);
+  [[nodiscard]] const Response& of(Patch patch) const {
+    return patch.value < by_patch_.size() && by_patch_[patch.value].set ? by_patch_[patch.value].response : general_;
+  }
+
+ private:
+  struct Entry {
+    Response response;
+    bool set = false;
+  };
+  Response general_;
+  std::vector<Entry> by_patch_;
+};
+
+/// What has become of a particle.
+enum class Fate : std::uint8_t { alive, stuck, absorbed, escaped };
+
+/// A constant acceleration of all particles, where nothing else changes their velocities between contacts: each target
+/// is position + velocity * duration, with the velocity after the acceleration (the symplectic rule of Euler).
+struct Acceleration {
+  Vec3 value;
+  double duration = 0.0;  ///< of one advance(), > 0
+};
+
+/// A callable for Environment::advance() that answers contacts by `responses` and writes each particle's new velocity
+/// and fate. The patch of the wall met first decides which response it is; where that is a reflection, each wall gives
+/// its own restitution and friction. `velocities` in length per time, `dt` the duration > 0 in which the vertices move.
+/// The spans, one entry per particle, and `responses` must outlive it. A particle already absorbed, escaped or stuck
+/// goes no further at a contact: give it its own position as the target.
+///
+/// Reflection acts on all walls at once: those of the contact, and those met at the same place (Contact::together); at
+/// the last contact those met before in the step, too, so that the velocity points into none of them, nor does what it
+/// does from step to step while the particle is wedged. At no contact does the kinetic energy relative to the wall
+/// grow, as it is computed. With an `acceleration` that is the energy at the moment of the contact, and so the sum of
+/// kinetic and potential energy is bounded for any number of steps (docs/method.md, "Reflection"); without one it
+/// changes at each contact by up to the work of a step.
+Respond respond_with(const Responses& responses, std::span<Vec3> velocities, std::span<Fate> fates, double dt,
+                     const Acceleration& acceleration = {});
+
+/// Gives particles that a step has stopped, at a wall beyond their last contact (StepReport::stopped), a velocity that
+/// all walls met in the step permit, with no more energy than they had at that wall: they stand still for the rest of
+/// the step, and what they do not fall they do not gain. To be called after an advance() with respond_with(), with the
+/// same arguments. Cost: linear in the contacts of the step; nothing where none is stopped.
+void hold_stopped(const StepReport& report, const Responses& responses, std::span<Vec3> velocities,
+                  std::span<const Fate> fates, double dt, const Acceleration& acceleration = {});
+
+// The operators, for a caller's own responses. Vectors are relative to the wall; walls in the order of a contact's.
+
+/// Rebound from all walls at once (response/incident_walls.hpp), whatever their order: it points into none of them, and
+/// is not longer than v.
+Vec3 reflected(const Vec3& v, std::span<const WallHit> walls, double restitution, double friction);
+
+/// Projection on the newest walls; an earlier wall joins (a crease, a corner) only if the projected vector points into
+/// it: joined at once, two nearly coplanar fan triangles would make a false crease.
+Vec3 slid(const Vec3& v, std::span<const WallHit> walls, std::span<const WallHit> earlier);
+
+}  // namespace dartcast

@@ -1,0 +1,173 @@
+// A scene: all that a run needs, as plain data. Files of scenes: dartcast/scene_file.hpp; their keys: docs/scene.md.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "dartcast/bodies.hpp"
+#include "dartcast/catheter.hpp"
+#include "dartcast/sampling.hpp"
+#include "generators/generate_barrel.hpp"
+#include "dartcast/generators.hpp"
+#include "generators/generate_maze.hpp"
+#include "generators/generate_octahedra.hpp"
+#include "generators/generate_rectangle.hpp"
+#include "generators/generate_vessel.hpp"
+#include "dartcast/response.hpp"
+#include "dartcast/adaptive_subdivision.hpp"
+#include "dartcast/deformation.hpp"
+#include "dartcast/events.hpp"
+#include "dartcast/velocity_field.hpp"
+#include "dartcast/simulation.hpp"
+
+namespace dartcast {
+
+/// Limits of a scene's numbers: what TOML can hold, and what a double counts without a gap.
+inline constexpr std::uint64_t most_seed = 0x7fffffffffffffffU;
+inline constexpr std::uint64_t most_steps = std::uint64_t{1} << 53U;
+
+/// A mesh file, or a generator's options.
+using MeshSource =
+    std::variant<std::filesystem::path, BoxOptions, OctahedraOptions, VesselOptions, RectangleOptions, MazeOptions>;
+
+struct FreeRegions {
+  std::vector<std::string> regions;
+};
+struct FreeValues {
+  std::string array;
+  std::vector<double> values;
+};
+
+/// Patches from a cell array of the mesh file.
+struct PatchArray {
+  std::string name;
+};
+/// Patches by where the walls are sharp.
+struct PatchAngle {
+  double degrees = 30.0;
+};
+
+struct EnvironmentScene {
+  MeshSource mesh;
+  double scale = 1.0;           ///< > 0: the mesh's points are multiplied by it, and those of frames
+  bool skip_bad_cells = false;  ///< flat, inverted and indivisible cells are left out: their faces are walls
+  std::variant<std::monostate, FreeRegions, FreeValues> free;  ///< none: as the mesh says, else all
+  /// The wall groups to tell apart; none: all that the mesh has. Names: of those of the mesh these alone.
+  std::variant<std::monostate, std::vector<std::string>, PatchArray, PatchAngle> patches;
+};
+
+/// One step of a deformation; what stands in arrays or files of the mesh is named here and read when the mesh is.
+struct DeformationScene {
+  DeformationStep step;
+  std::string field;                          ///< pulse: a point array of three components; empty: none
+  std::string path;                           ///< pulse: a point array of one component; empty: none
+  std::vector<std::filesystem::path> frames;  ///< frames: mesh files with the same points
+};
+
+struct RandomParticles {
+  std::size_t count = 0;
+};
+struct PlacedParticles {
+  std::filesystem::path positions;  ///< .vtp or .csv
+};
+struct InletParticles {
+  std::string patch;
+  double rate = 0.0;  ///< particles per second
+};
+
+struct ParticlesScene {
+  std::variant<RandomParticles, PlacedParticles, InletParticles> source;
+  Vec3 velocity;
+  double radius = 0.0;
+};
+
+enum class BodySamples : std::uint8_t { solid, surface, volume };
+
+/// A body: a surface, where it is put, how it is sampled, what it is made of.
+struct BodyScene {
+  std::string name;  ///< of its files; letters, digits, '-' and '_'
+  std::variant<std::filesystem::path, BarrelOptions> surface;
+  double scale = 1.0;  ///< first
+  Vec3 rotate;         ///< then: axis times angle, rad
+  Vec3 at;             ///< then: where the surface's origin goes
+  BodySamples samples = BodySamples::solid;
+  SamplingOptions sampling;
+  double cluster = 0.0;  ///< edge of the regions that are matched each by itself; 0: the body as a whole
+  BodyOptions body;
+};
+
+struct CatheterScene {
+  /// What its proximal end does from the end of the move before on.
+  struct Move {
+    double until = 0.0;  ///< s
+    double push = 0.0;   ///< m / s; negative: pulled
+    double turn = 0.0;   ///< rad / s
+  };
+
+  std::string name;
+  CatheterOptions options;
+  std::vector<Move> moves;  ///< by time; afterwards it is held
+  double camera = 0.0;      ///< spacing of the camera's places along it; 0: none
+};
+
+struct MotionScene {
+  double dt = 1e-3;
+  std::uint64_t steps = 1000;
+  Vec3 gravity;
+  std::string field;  ///< a point array of three components; empty: none
+  FieldFrame frame = FieldFrame::space;
+  double drag = 0.0;
+  unsigned substeps = 1;
+};
+
+struct ContactScene {
+  Response general = {ResponseKind::reflect, 1.0, 0.0};
+  std::map<std::string, Response> by_patch;
+};
+
+struct EventScene {
+  Event event;
+  std::string patch;  ///< reconnect: of the new faces on the side; empty: none
+};
+
+struct RemeshScene {
+  std::uint64_t every = 0;  ///< steps between two checks of all cells; 0: none
+  RepairOptions options;
+};
+
+struct CrowdingScene {
+  std::uint64_t every = 0;  ///< steps between two looks; 0: none
+  CrowdingOptions options;
+};
+
+struct OutputScene {
+  std::uint64_t every = 10;  ///< steps between two frames; 0: none
+  bool contacts = false;
+};
+
+struct Scene {
+  std::string name;            ///< the file's, without its ending
+  std::filesystem::path file;  ///< empty where the scene comes from none
+  std::string text;            ///< of the file
+  std::uint64_t seed = 1;
+  EnvironmentScene environment;
+  std::vector<DeformationScene> deformation;
+  std::vector<ParticlesScene> particles;
+  std::optional<CollisionOptions> collisions;  ///< of spheres with each other and bodies; none: they do not meet
+  BodyCollisionOptions body_collisions;        ///< of bodies with each other
+  std::vector<BodyScene> bodies;
+  std::vector<CatheterScene> catheters;
+  MotionScene motion;
+  ContactScene contact;
+  std::vector<EventScene> events;  ///< by time
+  RemeshScene remesh;
+  CrowdingScene crowding;
+  OutputScene output;
+};
+
+}  // namespace dartcast

@@ -1,0 +1,159 @@
+// Chunks of a loop, on TBB's threads or on std::thread's, and how many of these the system gives.
+#include "base/parallel.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <thread>
+#include <vector>
+
+#include "dartcast/error.hpp"
+
+#ifndef DARTCAST_THREADS_STD
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <optional>
+#endif
+
+namespace dartcast {
+
+namespace {
+
+constexpr unsigned usual_limit = 256;  // TBB can always be asked for so many
+
+unsigned machine_threads() {
+#ifdef DARTCAST_THREADS_STD
+  return std::max(1U, std::thread::hardware_concurrency());
+#else
+  return static_cast<unsigned>(tbb::info::default_concurrency());
+#endif
+}
+
+// How many threads there can be at once, with the one that asks; no more than `wanted`. TBB ends the program where it
+// cannot start one, so they are started and ended here first.
+unsigned given_by_system(unsigned wanted) {
+  std::vector<std::thread> started;
+  std::atomic<bool> end = false;
+  try {
+    while (started.size() + 1 < wanted) started.emplace_back([&end] { end.wait(false); });
+  } catch (const std::exception&) {  // the number or the memory of threads is limited
+  }
+  end = true;
+  end.notify_all();
+  for (std::thread& t : started) t.join();
+  return static_cast<unsigned>(started.size()) + 1;
+}
+
+}  // namespace
+
+unsigned max_threads() { return std::max(usual_limit, machine_threads()); }
+
+void check_threads(Threads threads) {
+  static std::atomic<unsigned> given = 1;  // the most that the system has given: it is asked once
+  if (threads.count <= given) return;
+  if (threads.count > max_threads())
+    throw InvalidArgument(fmt::format("{} threads: at most {} can be asked for, 0 stands for all that the machine has",
+                                      threads.count, max_threads()));
+  const unsigned most = given_by_system(threads.count);
+  if (most < threads.count)
+    throw Error(fmt::format(
+        "{} threads: the system gives {} now; ask for fewer, or raise its limits (ulimit -u, ulimit -v, or those of "
+        "the container)",
+        threads.count, most));
+  given = most;
+}
+
+}  // namespace dartcast
+
+namespace dartcast::detail {
+
+namespace {
+
+// Keeps the first exception by chunk order, so that what is thrown does not depend on threads either.
+class Chunks {
+ public:
+  Chunks(std::size_t count, std::size_t grain, ChunkBody body, void* context)
+      : count_(count), grain_(grain), body_(body), context_(context), errors_(chunk_count(count, grain)) {}
+
+  [[nodiscard]] std::size_t size() const { return errors_.size(); }
+
+  void run(std::size_t chunk) noexcept {
+    try {
+      body_(context_, chunk * grain_, std::min(count_, (chunk + 1) * grain_));
+    } catch (...) {
+      errors_[chunk] = std::current_exception();
+    }
+  }
+
+  void rethrow() const {
+    for (const auto& e : errors_) {
+      if (e) std::rethrow_exception(e);
+    }
+  }
+
+ private:
+  std::size_t count_;
+  std::size_t grain_;
+  ChunkBody body_;
+  void* context_;
+  std::vector<std::exception_ptr> errors_;
+};
+
+unsigned all_threads() {
+  static const unsigned all = given_by_system(machine_threads());
+  return all;
+}
+
+#ifdef DARTCAST_THREADS_STD
+void run_parallel(Chunks& chunks, unsigned threads) {
+  threads = static_cast<unsigned>(std::min<std::size_t>(threads, chunks.size()));
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t c = next++; c < chunks.size(); c = next++) chunks.run(c);
+  };
+  std::vector<std::thread> pool;
+  try {
+    for (unsigned i = 1; i < threads; ++i) pool.emplace_back(work);
+  } catch (const std::exception&) {  // the system gave them before: fewer do now
+  }
+  work();
+  for (auto& t : pool) t.join();
+}
+#else
+void run_parallel(Chunks& chunks, unsigned threads) {
+  // Asked for more threads than there are cores, TBB would start fewer and complain on stderr.
+  std::optional<tbb::global_control> more;
+  if (threads > machine_threads()) more.emplace(tbb::global_control::max_allowed_parallelism, threads);
+  tbb::task_arena arena(static_cast<int>(threads));
+  arena.execute([&] {
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, chunks.size(), 1),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+          for (std::size_t c = range.begin(); c < range.end(); ++c) chunks.run(c);
+        },
+        tbb::simple_partitioner{});
+  });
+}
+#endif
+
+}  // namespace
+
+void parallel_chunks(std::size_t count, std::size_t grain, Threads threads, ChunkBody body, void* context) {
+  check_threads(threads);
+  if (count == 0) return;
+  Chunks chunks(count, std::max<std::size_t>(grain, 1), body, context);
+  const unsigned wanted = chunks.size() == 1 ? 1 : threads.count == 0 ? all_threads() : threads.count;
+  if (wanted == 1) {
+    for (std::size_t c = 0; c < chunks.size(); ++c) chunks.run(c);
+  } else {
+    run_parallel(chunks, wanted);
+  }
+  chunks.rethrow();
+}
+
+}  // namespace dartcast::detail

@@ -1,0 +1,104 @@
+// What bodies are to each other, and to what acts on them from outside.
+#include <algorithm>
+
+#include "dartcast/bodies.hpp"
+
+namespace dartcast {
+
+RigidMover Bodies::as_rigid(std::size_t body) const {
+  const Body& b = bodies_[body];
+  const std::span<const Vec3> positions(positions_.data() + b.first, b.shape.size());
+  const RigidMotion rigid = rigid_motion_of(body);
+  RigidMover mover;
+  mover.centre = rigid.centre;
+  mover.velocity = rigid.velocity;
+  mover.spin = rigid.spin;
+  mover.turns = true;
+  for (std::size_t p = b.first; p < b.first + b.shape.size(); ++p) {
+    if (fates_[p] != Fate::alive || particles_[p].held) return mover;
+  }
+  mover.inverse_mass = 1.0 / rigid.mass;
+  mover.inverse_inertia = inverse_inertia(b.shape.masses(), positions, rigid.centre);
+  return mover;
+}
+
+RigidMover Bodies::foreseen(std::size_t body) const {
+  RigidMover mover = as_rigid(body);
+  mover.velocity += options_.gravity * options_.dt;
+  return mover;
+}
+
+// Contacts reckon with velocities that change at the begin of a step. Forces over the step lead half as far: the other
+// half is a displacement, less what they only took from gravity, which leads half as far, too.
+void Bodies::act(std::size_t body, const RigidMover& answered) {
+  const RigidMover before = foreseen(body);
+  const double dt = options_.dt;
+  const Vec3 fall = options_.gravity * dt;
+  BodyAction action;
+  action.centre = before.centre;
+  action.velocity = answered.velocity - before.velocity;
+  action.spin = answered.spin - before.spin;
+  const double square = dot(fall, fall);
+  const double carried = square > 0.0 ? std::clamp(-dot(action.velocity, fall) / square, 0.0, 1.0) : 0.0;
+  action.shift = (answered.shift - before.velocity * dt) + (fall * carried - action.velocity) * (0.5 * dt);
+  action.turn = (answered.turned - before.spin * dt) - action.spin * (0.5 * dt);
+  bodies_[body].action = action;
+}
+
+void Bodies::spread_action(const Body& body) {
+  const double rate = 1.0 / options_.dt;
+  for (std::size_t p = body.first; p < body.first + body.shape.size(); ++p)
+    outer_forces_[p] = body.action.velocity_at(positions_[p]) * rate;
+}
+
+BodyParticles Bodies::body_particles() const { return {body_of_, ids_, positions_, radii_, inverse_masses_}; }
+
+// For the next step, while the states are of the environment as it stands.
+void Bodies::find_pairs() {
+  if (!options_.collisions || environment_.awaits_advance(particles_)) return;
+  for (std::size_t p = 0; p < ids_.size(); ++p) {
+    const Body& body = bodies_[body_of_[p]];
+    ids_[p] = (std::uint64_t{body.id} << 32U) | (p - body.first);
+    inverse_masses_[p] = fates_[p] == Fate::alive && !particles_[p].held ? 1.0 / masses_[p] : 0.0;
+    led_to_[p] = velocities_[p] + options_.gravity * options_.dt;
+  }
+  collisions_.find(environment_.complex(), particles_.states(), body_particles(), led_to_, options_.dt,
+                   environment_.threads());
+}
+
+// Bodies that are about to hit each other go on with the velocities that they have after it.
+std::uint64_t Bodies::rebound() {
+  if (!options_.collisions || !options_.collisions->restitution || collisions_.pairs().empty()) return 0;
+  movers_.clear();
+  for (std::size_t b = 0; b < bodies_.size(); ++b) movers_.push_back(as_rigid(b));
+  const std::vector<RigidMover> before = movers_;
+  const double resting = 2.0 * norm(options_.gravity) * options_.dt;
+  const std::uint64_t impacts =
+      rebounds_.solve(body_particles(), collisions_.pairs(), *options_.collisions, options_.dt, resting, movers_);
+  if (impacts == 0) return 0;
+  for (std::size_t p = 0; p < velocities_.size(); ++p) {
+    const RigidMover& was = before[body_of_[p]];
+    const RigidMover& is = movers_[body_of_[p]];
+    velocities_[p] += (is.velocity - was.velocity) + cross(is.spin - was.spin, positions_[p] - was.centre);
+  }
+  return impacts;
+}
+
+// Forces between bodies in this step: they lead to the velocities that impulses ask for at its end.
+void Bodies::collide() {
+  const double dt = options_.dt;
+  for (std::size_t p = 0; p < led_to_.size(); ++p) {
+    sums_[p].last = velocities_[p] + well_of(bodies_[body_of_[p]], p).acceleration(positions_[p]) * dt;
+    led_to_[p] = sums_[p].last;
+  }
+  last_.collisions = collisions_.solve(body_particles(), *options_.collisions, dt, velocities_, led_to_, pushes_);
+  for (std::size_t p = 0; p < led_to_.size(); ++p) {
+    Body& body = bodies_[body_of_[p]];
+    const Vec3 change = led_to_[p] - sums_[p].last;
+    contact_forces_[p] += change * (1.0 / dt);
+    if (change != Vec3{}) body.collided = true;
+    if (pushes_[p] != Vec3{}) body.pushed = true;
+  }
+}
+
+}  // namespace dartcast

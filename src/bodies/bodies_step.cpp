@@ -1,0 +1,293 @@
+// A step of the bodies. Why energy never grows: docs/method.md, "Bodies".
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "dartcast/bodies.hpp"
+#include "tracking/carry.hpp"
+
+namespace dartcast {
+
+const BodiesStep& Bodies::step() {
+  last_ = {};
+  first_pass();
+  second_pass();
+  for (Body& body : bodies_) {
+    last_.fallbacks += body.fallbacks;
+    last_.input += body.input;
+    body.action = {};
+  }
+  counters_ += last_.motion.counters;
+  counters_ += last_.pull.counters;
+  on_.swap(next_on_);
+  positions_.swap(reached_);
+  ++steps_;
+  remove_gone();
+  find_pairs();
+  return last_;
+}
+
+// --- the first pass
+
+void Bodies::first_pass() {
+  const std::uint64_t impacts = rebound();
+  for_each_body([&](Body& body) {
+    begin(body);
+    spread_action(body);
+  });
+  std::copy(outer_forces_.begin(), outer_forces_.end(), contact_forces_.begin());
+  if (options_.collisions) collide();
+  last_.collisions.impacts = impacts;
+  for_each_body([&](Body& body) {
+    integrate(body);
+    set_legs(body);
+    if (body.limited) limit_targets(body);
+  });
+  hold_stuck();
+  const Particles before = particles_;
+  const std::vector<Fate> fates = fates_;
+  last_.motion = advance(false);
+  measure();
+  // Limited targets are paid for; where bodies that collide still lack energy, without the collision.
+  for (const bool collides : {true, false}) {
+    if (std::all_of(bodies_.begin(), bodies_.end(), [](const Body& b) { return b.pays; })) return;
+    particles_ = before;
+    fates_ = fates;
+    if (!collides) std::copy(outer_forces_.begin(), outer_forces_.end(), contact_forces_.begin());
+    for_each_body([&](Body& body) {
+      body.limited = body.limited || !body.pays;
+      if (!collides) integrate(body);
+      set_legs(body);
+      if (body.limited) limit_targets(body);
+      if (collides && body.collided && !body.pays) stay(body);
+    });
+    for (const Body& body : bodies_) last_.repeated += body.pays ? 0 : 1;
+    hold_stuck();
+    last_.motion = advance(false);
+    measure();
+  }
+}
+
+void Bodies::begin(Body& body) {
+  body.trial = body.fits;
+  body.fallbacks = 0;
+  body.constant = body.shape.goals(body.fits, of(body, goals_));
+  const auto positions = of(body, positions_);
+  body.pushed = body.action.shift != Vec3{} || body.action.turn != Vec3{};
+  body.collided = false;
+  body.before = (kinetic(body) + potential(body, positions)) +
+                body.stiffness * matching_energy(body.shape, positions, of(body, goals_), body.constant);
+  // At rest: forces alone move it, which is always paid for.
+  body.limited = kinetic(body) <= energy_slack * body.before;
+}
+
+// Runge-Kutta's method of order 4. A stage's places depend on the accelerations of the stage before the last one alone.
+void Bodies::integrate(Body& body) {
+  struct Stage {
+    double time;  // share of the step
+    double way;   // weights of its accelerations, for the places and for the velocities
+    double speed;
+  };
+  constexpr std::array<Stage, 4> stages = {{{0.0, 1.0, 1.0}, {0.5, 1.0, 2.0}, {0.5, 1.0, 2.0}, {1.0, 0.0, 1.0}}};
+  const double dt = options_.dt;
+  const auto sums = of(body, sums_);
+  const auto places = of(body, targets_);
+  std::fill(sums.begin(), sums.end(), Sums{});
+  for (const Stage& stage : stages) {
+    const bool first = stage.time == 0.0;
+    const double t = stage.time * dt;
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      const std::size_t p = body.first + i;
+      places[i] = (positions_[p] + velocities_[p] * t) + sums[i].earlier * (0.5 * dt * t);
+    }
+    if (!first) {
+      body.fallbacks += body.shape.match(places, body.trial);
+      body.shape.goals(body.trial, of(body, trial_goals_));
+    }
+    const auto goals = of(body, first ? goals_ : trial_goals_);
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      const Vec3 a =
+          Well{body.stiffness, goals[i], options_.gravity + contact_forces_[body.first + i]}.acceleration(places[i]);
+      sums[i] = {sums[i].last, a, sums[i].way + a * stage.way, sums[i].speed + a * stage.speed};
+    }
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const std::size_t p = body.first + i;
+    places[i] = flushed((positions_[p] + velocities_[p] * dt) + sums[i].way * (dt * dt / 6.0));
+  }
+}
+
+void Bodies::set_legs(Body& body) {
+  body.met = false;
+  for (std::size_t i = 0; i < body.shape.size(); ++i) {
+    const std::size_t p = body.first + i;
+    const Vec3& v = velocities_[p];
+    Leg& leg = legs_[p];
+    leg = {};
+    leg.from = positions_[p];
+    leg.before = v;
+    leg.after = v + sums_[p].speed * (options_.dt / 6.0);
+    leg.early = well_of(body, p).acceleration(positions_[p]);
+    leg.late = sums_[p].last;
+    leg.kinetic = 0.5 * dot(v, v);
+    next_on_[p] = {};
+  }
+}
+
+void Bodies::limit_targets(const Body& body) {
+  for (std::size_t i = 0; i < body.shape.size(); ++i) {
+    const std::size_t p = body.first + i;
+    const Vec3 way = targets_[p] - positions_[p];
+    const double share = well_of(body, p).payable_share(positions_[p], way, legs_[p].kinetic);
+    if (share < 1.0) targets_[p] = flushed(positions_[p] + way * share);
+  }
+}
+
+// Where it is, without any energy but that of its place.
+void Bodies::stay(const Body& body) {
+  for (std::size_t p = body.first; p < body.first + body.shape.size(); ++p) {
+    targets_[p] = positions_[p];
+    legs_[p].after = {};
+  }
+}
+
+// One that sticks to a wall goes along with it, to the last bit, so that no contact follows.
+void Bodies::hold_stuck() {
+  const bool moving = environment_.awaits_advance(particles_);
+  const Complex& complex = environment_.complex();
+  for (std::size_t p = 0; p < fates_.size(); ++p) {
+    if (fates_[p] != Fate::stuck) continue;
+    const State& s = particles_[p];
+    targets_[p] = s.position;
+    legs_[p].after = {};
+    if (!moving || s.held || volume_sign(complex.corners(s.at())) != Sign::positive) continue;
+    const Weights w = detail::barycentric(complex.previous_corners(s.at()), s.position);
+    targets_[p] = detail::ridden(current_space<4>(complex), s.at(), w).position;
+    legs_[p].after = (targets_[p] - s.position) * (1.0 / options_.dt);
+    legs_[p].pushed = true;
+  }
+}
+
+// Advances all particles to their targets, and reads where they are then.
+StepReport Bodies::advance(bool pulls) {
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    pass_bodies_[b] = {bodies_[b].stiffness, bodies_[b].limited, bodies_[b].slides};
+  const Pass pass{&responses_, options_.gravity, options_.dt, pass_bodies_, body_of_, goals_, contact_forces_,
+                  on_,         next_on_,         fates_,      legs_};
+  const auto answer = pulls ? answer_pull : answer_motion;
+  StepReport report = environment_.advance(
+      particles_, targets_,
+      [&](const Contact& contact, std::span<const WallHit> walls, std::span<const WallHit> earlier) {
+        return answer(pass, contact, walls, earlier);
+      },
+      options_.step);
+  for (const Contact& c : report.contacts.contacts) bodies_[body_of_[c.particle]].met = true;
+  for (const Stopped& s : report.stopped) legs_[s.particle].after = {};
+  for (const Held& h : report.held) {
+    legs_[h.particle].after = legs_[h.particle].before;
+    legs_[h.particle].pushed = true;
+  }
+  for (std::size_t p = 0; p < reached_.size(); ++p) reached_[p] = particles_[p].position;
+  return report;
+}
+
+// --- the second pass
+
+void Bodies::second_pass() {
+  const double kept = std::exp(-options_.drag * options_.dt);
+  for_each_body([&](Body& body) {
+    accept(body);
+    for (std::size_t p = body.first; p < body.first + body.shape.size(); ++p) {
+      velocities_[p] = legs_[p].after * kept;
+      legs_[p].from = reached_[p];
+    }
+    body.moving = kinetic(body);
+  });
+  pool_energy();
+  afford_together();
+  for_each_body([&](Body& body) {
+    afford(body);
+    if (body.changes()) body.rigid = rigid_motion(body.shape.masses(), of(body, reached_), of(body, velocities_));
+    aim_pull(body);
+  });
+  if (std::none_of(bodies_.begin(), bodies_.end(), [](const Body& b) { return b.changes(); })) return;
+  last_.pull = advance(true);
+  for_each_body([&](Body& body) {
+    if (!body.changes()) return;
+    fit(body);
+    accept(body);
+    damp(body);
+    body.moving = kinetic(body);
+    charge_lift(body);
+  });
+  pool_energy();
+  afford_together();
+  for_each_body([&](Body& body) { afford(body); });
+}
+
+// Free of walls, to where goal and centrifugal force are in balance: that leaves the centre of mass where it is, and a
+// body that spins as it is. The body's energy must pay for it even if walls stop any of the particles on the way. Else,
+// and where it has met a wall, they are pulled to the bottoms of their wells, which costs nothing. With
+// those that touch other bodies the forces of these are in balance, too, and overlaps are taken out, as far as that
+// costs nothing. What act() asks for is input.
+void Bodies::aim_pull(Body& body) {
+  const double softness = 1.0 / body.stiffness;
+  double cost = 0.0;
+  for (std::size_t p = body.first; p < body.first + body.shape.size(); ++p) {
+    const Vec3& x = reached_[p];
+    const Vec3 centrifugal = cross(cross(body.rigid.spin, x - body.rigid.centre), body.rigid.spin);
+    targets_[p] = x + ((goals_[p] + centrifugal * softness) - x) * body.pull;
+    const Well well{body.stiffness, goals_[p], options_.gravity};
+    cost += masses_[p] * std::max(0.0, well.rise(x, targets_[p] - x));
+  }
+  body.slides = body.met || cost > body.allowed;
+  body.lift = 0.0;
+  for (std::size_t p = body.first; p < body.first + body.shape.size(); ++p) {
+    const Vec3& x = reached_[p];
+    if (!body.changes() || fates_[p] != Fate::alive || particles_[p].held) {
+      targets_[p] = x;
+      continue;
+    }
+    const Well well{body.stiffness, goals_[p], options_.gravity};
+    if (body.slides) targets_[p] = x + ((goals_[p] + options_.gravity * softness) - x) * body.pull;
+    if (contact_forces_[p] != Vec3{} || (body.pushed && pushes_[p] != Vec3{})) {
+      const Vec3 way = ((targets_[p] - x) + contact_forces_[p] * (softness * body.pull)) + pushes_[p];
+      targets_[p] = x + way * well.payable_share(x, way, 0.0);
+    }
+    if (const Vec3 shift = body.action.shift_at(x); body.pushed && shift != Vec3{}) {
+      const double paid = std::max(0.0, well.rise(x, targets_[p] - x));
+      targets_[p] += shift;
+      body.lift += masses_[p] * std::max(0.0, well.rise(x, targets_[p] - x) - paid);
+    }
+    targets_[p] = flushed(targets_[p]);
+  }
+}
+
+// What of a displacement nothing else pays for. A shape that is moved as a whole costs its weight alone: its wells go
+// along.
+void Bodies::charge_lift(Body& body) {
+  const double cost = std::min(body.lift, body.moving - body.allowed);
+  if (!(cost > 0.0)) return;
+  body.input += cost;
+  body.budget += cost;
+  body.allowed += cost;
+}
+
+// Velocities relative to the rigid motion fall; what the pull did to places changes neither momentum nor angular
+// momentum.
+void Bodies::damp(Body& body) {
+  const auto velocities = of(body, velocities_);
+  const auto places = of(body, reached_);
+  const auto masses = body.shape.masses();
+  for (std::size_t i = 0; i < velocities.size(); ++i)
+    velocities[i] = (velocities[i] - body.rigid.velocity_at(legs_[body.first + i].from)) * body.kept;
+  const RigidMotion left = rigid_motion(masses, places, velocities);
+  const RigidMotion rigid = with_angular_momentum(masses, places, body.rigid.velocity, body.rigid.angular_momentum);
+  for (std::size_t i = 0; i < velocities.size(); ++i) {
+    const std::size_t p = body.first + i;
+    velocities[i] = rigid.velocity_at(places[i]) + (velocities[i] - left.velocity_at(places[i]));
+    if (fates_[p] != Fate::alive) velocities[i] = legs_[p].after;
+  }
+}
+
+}  // namespace dartcast

@@ -1,0 +1,38 @@
+// Whether a point is inside of a closed surface, decided exactly.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "bodies/triangles.hpp"
+#include "dartcast/vec3.hpp"
+
+namespace dartcast {
+
+enum class Side : std::uint8_t { inside, outside, on };
+
+/// Answers for one closed surface, by the parity of the triangles above the point: what an odd number of layers
+/// encloses is inside, so that a shell within another is a cavity, whichever way it is oriented.
+///
+/// Every answer comes from exact signs. The upward ray starts at x + (e, e^2, 0) with e infinitesimal: it meets no edge
+/// and no corner, and where it starts on a triangle x is on that triangle. (H. Edelsbrunner, E. P. Muecke, "Simulation
+/// of simplicity", 1990.)
+class InsideTest {
+ public:
+  /// Throws InvalidMesh as surface_triangles() and check_closed(). Cost: n log n.
+  explicit InsideTest(const MeshData& surface);
+
+  /// Throws InvalidArgument where the point is not finite or outside the exact range. Cost: the triangles whose boxes
+  /// the ray meets, times a logarithm.
+  [[nodiscard]] Side side(const Vec3& point) const;
+
+  [[nodiscard]] const std::vector<SurfaceTriangle>& triangles() const { return triangles_; }
+
+ private:
+  std::vector<Vec3> points_;
+  std::vector<SurfaceTriangle> triangles_;
+  BoxTree tree_;
+  double top_ = 0.0;  // the largest z of a point
+};
+
+}  // namespace dartcast

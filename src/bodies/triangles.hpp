@@ -1,0 +1,27 @@
+// The triangles of a surface that bodies are made of, judged before they are used.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "mesh/box_tree.hpp"
+#include "dartcast/mesh_data.hpp"
+
+namespace dartcast {
+
+using SurfaceTriangle = std::array<std::uint32_t, 3>;
+
+/// The triangles that a surface's faces consist of, oriented alike across edges: those of the fans from each face's
+/// lowest-numbered corner, face after face. Throws InvalidMesh, with the kind of the first defect and its first face,
+/// where inspect_surface() refuses the surface. Cost: n log n.
+std::vector<SurfaceTriangle> surface_triangles(const MeshData& surface);
+
+/// Throws InvalidMesh, naming an edge, where a triangle has no neighbour across one of its edges: the surface is open
+/// and has no inside. Precondition: no edge has more than two triangles. Cost: n log n.
+void check_closed(const std::vector<SurfaceTriangle>& triangles);
+
+/// The smallest box that holds some corners of points.
+Box box_of(const std::vector<Vec3>& points, const SurfaceTriangle& triangle);
+
+}  // namespace dartcast

@@ -1,0 +1,108 @@
+// What a catheter looks like, how it is saved, and how it follows edits.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "dartcast/error.hpp"
+#include "dartcast/catheter.hpp"
+#include "catheter/transport.hpp"
+
+namespace dartcast {
+
+Vec3 Catheter::base_normal() const {
+  return reference_ * std::cos(turned_) + cross(direction_, reference_) * std::sin(turned_);
+}
+
+std::vector<Vec3> Catheter::points() const {
+  std::vector<Vec3> all;
+  const std::size_t inserted = inserted_points();
+  for (std::size_t i = 0; i < inserted; ++i) all.push_back(particles_[i].position);
+  if (inserted > 0) all.push_back(entry());
+  return all;
+}
+
+std::vector<CatheterFrame> Catheter::frames() const {
+  const std::vector<Vec3> all = points();
+  std::vector<CatheterFrame> frames(all.size());
+  Vec3 tangent = direction_;
+  Vec3 normal = base_normal();
+  for (std::size_t i = all.size(); i-- > 0;) {
+    // At a point the mean of the segments beside it.
+    const Vec3 in = i + 1 < all.size() ? unit_or(all[i] - all[i + 1], direction_) : direction_;
+    const Vec3 out = i > 0 ? unit_or(all[i - 1] - all[i], in) : in;
+    const Vec3 mean = unit_or(in + out, in);
+    normal = transported(normal, tangent, mean);
+    tangent = mean;
+    frames[i] = {tangent, normal, cross(tangent, normal)};
+  }
+  return frames;
+}
+
+double Catheter::measured_length() const {
+  const std::vector<Vec3> all = points();
+  double length = 0.0;
+  for (std::size_t i = 0; i + 1 < all.size(); ++i) length += norm(all[i] - all[i + 1]);
+  return length;
+}
+
+StateHash Catheter::state_hash() const {
+  StateHash hash;
+  for (std::size_t i = 0; i <= count_; ++i) hash.add(i, particles_[i], {});
+  State frame;
+  frame.position = reference_;
+  hash.add(count_ + 1, frame, direction_);
+  hash.add(count_ + 2, State{}, {inserted_, turned_, 0.0});
+  return hash;
+}
+
+CatheterCheckpoint Catheter::checkpoint() const {
+  CatheterCheckpoint saved;
+  saved.states.assign(particles_.states().begin(), particles_.states().end());
+  for (std::size_t i = 0; i <= count_; ++i) saved.held_weights.push_back(particles_.held_weights(i));
+  saved.walls = walls_;
+  saved.inserted = inserted_;
+  saved.turned = turned_;
+  saved.direction = direction_;
+  saved.reference = reference_;
+  return saved;
+}
+
+void Catheter::restore(const CatheterCheckpoint& saved) {
+  const bool fits = saved.states.size() == count_ + 1 && saved.inserted >= 0.0 && saved.inserted <= total_length() &&
+                    std::isfinite(saved.turned) && is_finite(saved.direction) && is_finite(saved.reference);
+  const std::size_t count = count_;
+  const bool walls_fit = std::all_of(saved.walls.begin(), saved.walls.end(), [count](const ChainWall& w) {
+    return w.index < count && is_finite(w.normal) && is_finite(w.point) && std::isfinite(w.pressure);
+  });
+  if (!fits || !walls_fit)
+    throw InvalidArgument("catheter: the checkpoint is of a catheter with other options, or damaged");
+  particles_ = environment_.restored(saved.states, saved.held_weights);
+  walls_ = saved.walls;
+  inserted_ = saved.inserted;
+  turned_ = saved.turned;
+  direction_ = saved.direction;
+  reference_ = saved.reference;
+  hold();
+}
+
+FollowReport Catheter::follow() {
+  Particles moved;
+  FollowReport report;
+  for (const Stranded stranded : {Stranded::move, Stranded::stay}) {
+    moved = particles_;
+    report = environment_.follow(moved, stranded);
+    if (moved.size() == particles_.size()) break;
+  }
+  if (moved.size() != particles_.size())
+    throw InvalidArgument(
+        "catheter: the edit removed the cell of a point and left no free one: put a new catheter into the environment");
+  const State entry = particles_[count_];
+  const bool rode = environment_.awaits_advance(particles_) && !environment_.awaits_advance(moved);
+  if (rode && environment_.map().contains(entry.cell)) turn_with_vessel(environment_.complex().corners(entry.at()));
+  particles_ = std::move(moved);
+  walls_.clear();
+  hold();
+  return report;
+}
+
+}  // namespace dartcast

@@ -1,0 +1,145 @@
+// One substep of a catheter: points follow its own path, then rounds of solving and walking.
+#include <algorithm>
+#include <cmath>
+
+#include "dartcast/catheter.hpp"
+#include "catheter/transport.hpp"
+#include "dartcast/response.hpp"
+#include "tracking/representable_point.hpp"
+
+namespace dartcast {
+
+namespace {
+
+// Shares of the spacing.
+constexpr double reach = 0.5;           // of a point in one solve, and of what is known of a wall
+constexpr double settled_share = 0.03;  // points that move less have arrived
+// Of the tolerance: lengths that are right to that are right.
+constexpr double length_share = 0.05;
+
+constexpr double same_wall = 0.9999;    // cosine between normals of what counts as one wall: nothing is decided by it
+constexpr std::uint32_t most_idle = 3;  // walks after which a wall that is not met is forgotten
+
+}  // namespace
+
+Continuation Catheter::slide_at_walls(const Contact& contact, std::span<const WallHit> walls,
+                                      std::span<const WallHit> earlier) {
+  return {slid(contact.unused, walls, earlier), true};
+}
+
+Catheter::Outcome Catheter::substep(const CatheterInput& piece, double share, Bending bending) {
+  const double h = options_.spacing;
+  inserted_ = std::clamp(inserted_ + piece.push, 0.0, total_length());
+  turned_ += piece.turn;
+  const std::size_t free = free_points();
+  for (std::size_t i = 0; i < count_; ++i) start_[i] = particles_[i].position;
+  follow_path(piece.push, free);
+  for (std::size_t i = 0; i < free; ++i) wanted_[i] = targets_[i] + piece.load;
+  const double stiffness = bending == Bending::stiff ? options_.stiffness * share / (h * h * h * h) : 0.0;
+  const ChainWeights weights = {h, stiffness, options_.friction, reach * h};
+  Outcome outcome;
+  while (outcome.rounds < options_.rounds) {
+    ++outcome.rounds;
+    bend_tip(free);
+    solver_.solve({{targets_.data(), count_}, free, wanted_, start_, bends_}, weights, walls_);
+    const double moved = walk(free, outcome);
+    outcome.worst = worst_segment();
+    if (outcome.worst <= length_share * options_.tolerance && moved <= settled_share * h) break;
+  }
+  return outcome;
+}
+
+// Each point goes where the one before it (after it, where the catheter is pulled) was, as far as the push goes.
+void Catheter::follow_path(double push, std::size_t free) {
+  const double share = std::abs(push) / options_.spacing;
+  for (std::size_t i = 0; i < free; ++i) {
+    const Vec3 ahead =
+        i == 0 ? unit_or(start_[0] - start_[1], direction_) * options_.spacing : start_[i - 1] - start_[i];
+    targets_[i] = start_[i] + (push > 0.0 ? ahead : start_[i + 1] - start_[i]) * share;
+  }
+  for (std::size_t i = free; i < count_; ++i) targets_[i] = base(i);
+}
+
+// The second differences that the tip has at rest: along its frame's normal at each point.
+void Catheter::bend_tip(std::size_t free) {
+  const double h = options_.spacing;
+  const double bend = 2.0 * h * std::sin(0.5 * options_.tip_curvature * h);
+  std::fill_n(bends_.begin(), std::min(free + 2, bends_.size()), Vec3{});
+  Vec3 tangent = direction_;
+  Vec3 normal = base_normal();
+  for (std::size_t i = free; i > 0; --i) {  // point i, between the segments from i + 1 and to i - 1
+    const Vec3 next = unit_or(targets_[i - 1] - targets_[i], tangent);
+    const Vec3 turned = transported(normal, tangent, next);
+    const bool in_tip = static_cast<double>(i) * h <= options_.tip_length;
+    if (in_tip) bends_[i] = unit_or(normal + turned, normal) * bend;
+    tangent = next;
+    normal = turned;
+  }
+}
+
+// To where the solver wants the points. The largest displacement of a free one.
+double Catheter::walk(std::size_t free, Outcome& outcome) {
+  const std::size_t inserted = inserted_points();
+  for (std::size_t i = 0; i <= count_; ++i) targets_[i] = i < inserted ? flushed(targets_[i]) : entry();
+  double moved = 0.0;
+  for (std::size_t i = 0; i < free; ++i) before_[i] = particles_[i].position;
+  const StepReport report = environment_.advance(particles_, targets_, slide_at_walls);
+  for (std::size_t i = 0; i < free; ++i) {
+    moved = std::max(moved, norm(particles_[i].position - before_[i]));
+    targets_[i] = particles_[i].position;
+  }
+  for (std::size_t i = free; i < count_; ++i) targets_[i] = base(i);
+  outcome.contacts += report.contacts.contacts.size();
+  outcome.held = static_cast<std::uint32_t>(report.held.size());
+  keep_walls(report.contacts);
+  return moved;
+}
+
+// Walls that points have met, as planes: as long as the points are near where they met them, and meet them again.
+void Catheter::keep_walls(const ContactList& contacts) {
+  const std::size_t free = free_points();
+  const double far = reach * options_.spacing;
+  for (ChainWall& w : walls_) ++w.idle;
+  for (const Contact& c : contacts.contacts) {
+    if (c.particle >= free) continue;
+    for (const WallHit& hit : contacts.walls_of(c)) {
+      const auto same = std::find_if(walls_.begin(), walls_.end(), [&](const ChainWall& w) {
+        return w.index == c.particle && dot(w.normal, hit.normal) > same_wall;
+      });
+      const double pressure = same == walls_.end() ? 0.0 : same->pressure;
+      const ChainWall met = {c.particle, hit.normal, c.point, pressure, 0};
+      if (same == walls_.end())
+        walls_.push_back(met);
+      else
+        *same = met;
+    }
+  }
+  std::erase_if(walls_, [&](const ChainWall& w) {
+    return w.index >= free || w.idle > most_idle || norm(particles_[w.index].position - w.point) > far;
+  });
+}
+
+double Catheter::worst_segment() const {
+  const std::size_t inserted = inserted_points();
+  const double h = options_.spacing;
+  double worst = 0.0;
+  for (std::size_t i = 0; i < inserted; ++i) {
+    const bool last = i + 1 == inserted;
+    const Vec3 next = last ? entry() : particles_[i + 1].position;
+    const double wanted = last ? inserted_ - static_cast<double>(i) * h : h;
+    worst = std::max(worst, std::abs(norm(particles_[i].position - next) - wanted) / h);
+  }
+  return worst;
+}
+
+std::uint32_t Catheter::points_at_walls() const {
+  std::uint32_t count = 0;
+  for (std::size_t k = 0; k < walls_.size(); ++k) {
+    const bool first = std::none_of(walls_.begin(), walls_.begin() + static_cast<std::ptrdiff_t>(k),
+                                    [&](const ChainWall& w) { return w.index == walls_[k].index && w.pressure > 0.0; });
+    if (first && walls_[k].pressure > 0.0) ++count;
+  }
+  return count;
+}
+
+}  // namespace dartcast

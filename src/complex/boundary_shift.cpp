@@ -1,0 +1,167 @@
+#include "complex/boundary_shift.hpp"
+
+#include <algorithm>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+#include "dartcast/predicates.hpp"
+#include "complex/cone_point.hpp"
+
+namespace dartcast {
+
+namespace {
+
+using Numbers = std::vector<std::uint32_t>;
+
+struct Wall {
+  Numbers corners;  // from the lowest-numbered
+  Vertex point;     // of its own
+
+  bool operator==(const Wall&) const = default;
+};
+
+std::vector<Wall> walls_of(const Map& map, std::span<const Cell> cells) {
+  std::vector<Wall> walls;
+  for (const Cell c : cells) {
+    const CellView v = map.view(c);
+    for (std::uint16_t f = 0; f < v.shape().face_count(); ++f) {
+      if (!v.is_wall(f)) continue;
+      Wall& wall = walls.emplace_back(Wall{{}, map.point(CellFace{c, f})});
+      for (const std::uint16_t k : v.shape().corners(f)) wall.corners.push_back(v.vertex(k).value);
+    }
+  }
+  return walls;
+}
+
+bool holds(const Numbers& numbers, std::uint32_t v) {
+  return std::find(numbers.begin(), numbers.end(), v) != numbers.end();
+}
+
+struct Plane {
+  Vec3 a, b, c;
+};
+
+// Through the widest triangle of a fan; upright through an edge of the plane.
+Plane plane_of(const Numbers& corners, std::span<const Vec3> positions) {
+  const Vec3 a = positions[corners.front()];
+  Plane plane{a, a, a};
+  if (corners.size() == 2) return {a, positions[corners[1]], detail::upright(a, positions[corners[1]]).c};
+  double widest = 0.0;
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+    const Vec3 b = positions[corners[i]];
+    const Vec3 c = positions[corners[i + 1]];
+    const double width = norm(cross(b - a, c - a));
+    if (!(width > widest)) continue;
+    widest = width;
+    plane = {a, b, c};
+  }
+  return plane;
+}
+
+// Exactly 0 where all lie in the plane.
+double extent_over(const Plane& plane, const Wall& before, const Wall& after, std::span<const Vec3> positions) {
+  const Vec3 normal = cross(plane.b - plane.a, plane.c - plane.a);
+  const double length = norm(normal);
+  double low = 0.0;
+  double high = 0.0;
+  const auto add = [&](std::uint32_t v) {
+    if (orient3d(plane.a, plane.b, plane.c, positions[v]) == Sign::zero) return;
+    const double height = dot(normal, positions[v] - plane.a) / length;
+    low = std::min(low, height);
+    high = std::max(high, height);
+  };
+  for (const Wall* wall : {&before, &after}) {
+    for (const std::uint32_t v : wall->corners) add(v);
+    if (wall->point.valid()) add(wall->point.value);
+  }
+  return high - low;
+}
+
+class Walls {
+ public:
+  Walls(const Transaction& t, std::span<const Vec3> positions)
+      : positions_(positions), old_(walls_of(t.map(), t.removed())), new_(walls_of(t.map(), t.added())) {
+    for (std::size_t i = 0; i < t.born_count(); ++i) born_[t.born(i).vertex.value] = t.born(i);
+    for (const Cell c : t.added()) {
+      for (const std::uint32_t v : t.map().view(c).vertices()) kept_.insert(v);
+    }
+    for (std::size_t i = 0; i < old_.size(); ++i) {
+      for (const std::uint32_t v : old_[i].corners) at_[v].push_back(i);
+    }
+  }
+
+  [[nodiscard]] double largest_shift() const {
+    double largest = 0.0;
+    for (const Wall& wall : new_) {
+      if (was_there(wall)) continue;
+      const Numbers origins = origins_of(wall);
+      for (const std::uint32_t v : origins) {
+        const auto found = at_.find(v);
+        if (found == at_.end()) continue;
+        for (const std::size_t i : found->second) largest = std::max(largest, between(old_[i], wall, origins));
+      }
+    }
+    return largest;
+  }
+
+ private:
+  [[nodiscard]] bool was_there(const Wall& wall) const {
+    const auto found = at_.find(wall.corners.front());
+    return found != at_.end() &&
+           std::any_of(found->second.begin(), found->second.end(), [&](std::size_t i) { return old_[i] == wall; });
+  }
+
+  // The vertices there were before from which the corners of a new wall came.
+  [[nodiscard]] Numbers origins_of(const Wall& wall) const {
+    Numbers origins;
+    Numbers open = wall.corners;
+    while (!open.empty()) {
+      const std::uint32_t v = open.back();
+      open.pop_back();
+      const auto found = born_.find(v);
+      if (found != born_.end()) {
+        open.push_back(found->second.from.value);
+        if (found->second.other != found->second.from) open.push_back(found->second.other.value);
+      } else if (!holds(origins, v)) {
+        origins.push_back(v);
+      }
+    }
+    return origins;
+  }
+
+  // Nothing where the new wall is neither a part of the old one nor holds it.
+  [[nodiscard]] double between(const Wall& before, const Wall& after, const Numbers& origins) const {
+    const bool part =
+        std::all_of(origins.begin(), origins.end(), [&](std::uint32_t v) { return holds(before.corners, v); });
+    if (!part && !is_whole_of(after, before)) return 0.0;
+    return extent_over(plane_of(part ? before.corners : after.corners, positions_), before, after, positions_);
+  }
+
+  // Whether it has all corners of the old wall that its cells have kept, an edge at least, in the plane a corner.
+  [[nodiscard]] bool is_whole_of(const Wall& after, const Wall& before) const {
+    const auto kept = [&](std::uint32_t v) { return kept_.count(v) != 0; };
+    const std::ptrdiff_t least = before.corners.size() == 2 ? 1 : 2;
+    return std::count_if(before.corners.begin(), before.corners.end(), kept) >= least &&
+           std::all_of(before.corners.begin(), before.corners.end(),
+                       [&](std::uint32_t v) { return !kept(v) || holds(after.corners, v); });
+  }
+
+  std::span<const Vec3> positions_;
+  std::vector<Wall> old_;
+  std::vector<Wall> new_;
+  std::unordered_map<std::uint32_t, BornVertex> born_;
+  std::unordered_set<std::uint32_t> kept_;                          // vertices of the new cells
+  std::unordered_map<std::uint32_t, std::vector<std::size_t>> at_;  // old walls of a vertex
+};
+
+}  // namespace
+
+double boundary_shift(const Transaction& t, std::span<const Vec3> positions) {
+  double largest = Walls(t, positions).largest_shift();
+  for (const Identified& i : t.identified())
+    largest = std::max(largest, norm(positions[i.gone.value] - positions[i.survivor.value]));
+  return largest;
+}
+
+}  // namespace dartcast

@@ -1,0 +1,21 @@
+// Which of four cells of one shape have positive simplices, as far as a filter proves it: a cell in each lane of a
+// vector.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "base/instruction_set.hpp"
+#include "dartcast/vec3.hpp"
+#include "dartcast/cell_shape.hpp"
+
+namespace dartcast::detail {
+
+/// Bit i is set where the bound of orient3d(), taken of the cell's extent, does not prove all simplices of cell i
+/// positive. Cells of very many points are always left open. The same with every instruction set. `vertices`: of each
+/// cell, in the order of the shape's local numbers; may be those of one cell again. Cost: about 2 ns a simplex and cell
+/// where four differ.
+unsigned not_proved_positive(const Shape& shape, const std::array<const std::uint32_t*, 4>& vertices,
+                             const Vec3* positions, InstructionSet set = best_instruction_set());
+
+}  // namespace dartcast::detail

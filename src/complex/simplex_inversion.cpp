@@ -1,0 +1,102 @@
+#include "complex/simplex_inversion.hpp"
+
+#include <bit>
+#include <cmath>
+
+#include "complex/volume_cubic.hpp"
+
+namespace dartcast {
+
+namespace {
+
+static_assert(flattening_resolution == detail::time_unit);
+
+using Edges = std::array<Vec3, 3>;
+
+Edges edges_of(const Corners& v) { return {v[1] - v[0], v[2] - v[0], v[3] - v[0]}; }
+
+// The edges from corner 0 at the time t, each axis measured in its largest difference: no coordinate is above 1 by more
+// than rounding. They are off by at most 2^-39 (1 + 2^-10) from what they are at any time until t + 2^-40: an edge
+// moves by 2 in a step, and four operations are rounded.
+Edges scaled_edges(const Corners& before, const Corners& after, double t) {
+  const Edges p = edges_of(before);
+  const Edges q = edges_of(after);
+  const Vec3 extent = extent_of(p[0], p[1], p[2], q[0], q[1], q[2]);
+  Edges edges;
+  for (unsigned i = 0; i < 3; ++i) {
+    const Vec3 e = (1.0 - t) * p[i] + t * q[i];
+    edges[i] = {e.x / extent.x, e.y / extent.y, e.z / extent.z};
+  }
+  return edges;
+}
+
+struct Parts {
+  unsigned positive = 0;
+  unsigned negative = 0;
+};
+
+// The sign of the corners' coordinates in their affine dependence: at the root, the facets' area vectors are multiples
+// of one vector, by just these. Along an axis each is a sum of at most three differences of two products: off by
+// at most 3 (4 2^-39 (1 + 2^-9)), and rounding, in all less than 2^-35.
+Parts dependence(const Edges& e) {
+  const Vec3 w1 = cross(e[1], e[2]);
+  const Vec3 w2 = cross(e[2], e[0]);
+  const Vec3 w3 = cross(e[0], e[1]);
+  const Vec3 w0 = -(w1 + w2 + w3);
+  const std::array<std::array<double, 4>, 3> along = {
+      {{w0.x, w1.x, w2.x, w3.x}, {w0.y, w1.y, w2.y, w3.y}, {w0.z, w1.z, w2.z, w3.z}}};
+  const auto sum = [](const std::array<double, 4>& w) {
+    return std::abs(w[0]) + std::abs(w[1]) + std::abs(w[2]) + std::abs(w[3]);
+  };
+  std::size_t axis = 0;
+  for (std::size_t k = 1; k < 3; ++k) {
+    if (sum(along[k]) > sum(along[axis])) axis = k;
+  }
+  constexpr double error = 0x1p-35;
+  Parts parts;
+  for (unsigned i = 0; i < 4; ++i) {
+    parts.positive |= along[axis][i] > error ? 1U << i : 0U;
+    parts.negative |= along[axis][i] < -error ? 1U << i : 0U;
+  }
+  return parts;
+}
+
+FlatteningKind kind_of(int fewer, int more) {
+  if (fewer == 1 && more == 3) return FlatteningKind::vertex_face;
+  if (fewer == 2 && more == 2) return FlatteningKind::edge_edge;
+  if (fewer == 1 && more == 2) return FlatteningKind::vertex_edge;
+  if (fewer == 1 && more == 1) return FlatteningKind::vertex_vertex;
+  return FlatteningKind::line;
+}
+
+Flattening flattening_at(const Corners& before, const Corners& after, double time) {
+  const auto [positive, negative] = dependence(scaled_edges(before, after, time));
+  const int above = std::popcount(positive);
+  const int below = std::popcount(negative);
+  // Of equal parts, the one with the lowest corner is the first.
+  const bool positive_first = above != below ? above < below : std::countr_zero(positive) < std::countr_zero(negative);
+  const FlatteningKind kind = positive_first ? kind_of(above, below) : kind_of(below, above);
+  if (kind == FlatteningKind::line) return {time, kind};
+  const auto [one, other] = positive_first ? Parts{positive, negative} : Parts{negative, positive};
+  return {time, kind, static_cast<std::uint8_t>(one), static_cast<std::uint8_t>(other)};
+}
+
+}  // namespace
+
+std::optional<Flattening> find_flattening(const Corners& before, const Corners& after, double until) {
+  const detail::VolumeCubic cubic(before, after);
+  if (cubic.proves_positive()) return {};
+  until = std::floor(until / flattening_resolution) * flattening_resolution;
+  if (cubic.proves_positive_until(until)) return {};
+  const detail::VolumeRoot root = detail::first_root(before, after, until);
+  using Fate = detail::VolumeRoot::Fate;
+  switch (root.fate) {
+    case Fate::stays_positive: return {};
+    case Fate::never_positive: return Flattening{0.0, FlatteningKind::from_the_start};
+    case Fate::undecidable: return Flattening{0.0, FlatteningKind::undecidable};
+    case Fate::reaches_zero: break;
+  }
+  return flattening_at(before, after, root.safe_time);
+}
+
+}  // namespace dartcast

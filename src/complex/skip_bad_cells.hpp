@@ -1,0 +1,25 @@
+// Using a mesh some of whose cells are bad: these are left out, and what is left has walls around them.
+#pragma once
+
+#include <string_view>
+
+#include "base/parallel.hpp"
+#include "dartcast/mesh_data.hpp"
+#include "mesh/mesh_report.hpp"
+
+namespace dartcast {
+
+/// Whether a defect that inspect() finds is one of single cells, which skip_bad_cells() can leave out: flat, inverted,
+/// same_side.
+bool is_of_bad_cells(std::string_view defect);
+
+/// Leaves out the cells that are not positive: flat ones, ones that no order of their corners makes positive, ones that
+/// lie inverted among their neighbours (where cells use a face from the same side, the fewer of them), and ones that
+/// cannot be divided into positive simplices. Their faces at other cells become walls without a patch, so that every
+/// guarantee holds for what is left. Regions, arrays, patches and `source` go along; the mesh is then as inspect()
+/// leaves it. Returns a finding of kind "bad_cells" with their number and the first, as indices in the input; of none
+/// where the mesh is good. Throws InvalidMesh where the mesh has other defects, or no cell is left. Cost: that of
+/// inspect() and of building a complex, once more for each kind of bad cell.
+Finding skip_bad_cells(MeshData& mesh, Threads threads = {});
+
+}  // namespace dartcast

@@ -1,0 +1,104 @@
+// One step's collisions of the spheres in an environment: lists, pairs, contacts, impulses.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/parallel.hpp"
+#include "dartcast/cell_complex.hpp"
+#include "dynamics/cell_lists.hpp"
+#include "dynamics/contact_solver.hpp"
+#include "dynamics/sphere_pairs.hpp"
+#include "dynamics/sphere_touch.hpp"
+#include "dartcast/particle_state.hpp"
+
+namespace dartcast {
+
+/// Spheres at rest keep this share of the smaller radius between them, and from walls: what rounding and unfinished
+/// iterations leave is then no contact.
+inline constexpr double resting_gap = 0x1p-10;
+/// Pairs count as near within this share of a radius and the motion of one of them, at most its radius: an impulse
+/// elsewhere may bring them together within the step. Walls count within this share. What is further and still meets
+/// overlaps, and is parted in the steps that follow.
+inline constexpr double near_share = 0x1p-4;
+
+struct CollisionCounts {
+  std::uint64_t pairs_tested = 0;    ///< whose swept boxes met
+  std::uint64_t pairs_near = 0;      ///< given to the solver
+  std::uint64_t pairs_touching = 0;  ///< given an impulse
+  std::uint64_t walls_touching = 0;  ///< likewise
+  std::uint64_t overlaps = 0;        ///< pairs closer than the sum of their radii at the start of the step
+  double deepest = 0.0;              ///< of these
+
+  CollisionCounts& operator+=(const CollisionCounts& other);
+};
+
+/// Time spent in all calls so far.
+struct CollisionSeconds {
+  double lists = 0.0;     ///< keeping up each cell's particles
+  double pairs = 0.0;     ///< finding those whose swept boxes meet
+  double contacts = 0.0;  ///< when and where they touch, walls in between
+  double impulses = 0.0;
+};
+
+/// Spheres of an environment: entry i of each belongs to particle i.
+struct CollidingSpheres {
+  std::span<const State> states;
+  std::span<const std::uint64_t> ids;      ///< distinct
+  std::span<const double> radii;           ///< 0: meets nobody
+  std::span<const double> inverse_masses;  ///< 0: it cannot be pushed
+  std::span<const double> clearances;      ///< no wall is nearer to the centre; may be empty: nothing is known
+  std::span<Vec3> velocities;              ///< in: after all other forces; out: after the collisions
+  std::span<Vec3> displacements;           ///< out: of this step
+};
+
+/// Keeps lists, impulses and memory from step to step.
+class Collider {
+ public:
+  /// Finds the pairs and solves them together with `walls`, whose gaps are those of the geometry: resting gaps are
+  /// taken off here. Pairs with a wall between their centres do not meet. Precondition: the states are of the complex
+  /// as it stands. Throws as ContactSolver::solve(). The same for any number of threads and any order of particles.
+  CollisionCounts collide(const Complex& complex, const CollidingSpheres& spheres, std::span<const WallContact> walls,
+                          const SolverOptions& options, Threads threads);
+
+  [[nodiscard]] const CellLists& lists() const { return lists_; }
+  [[nodiscard]] ContactSolver& solver() { return solver_; }
+  [[nodiscard]] const ContactSolver& solver() const { return solver_; }
+  [[nodiscard]] const PairFinder& finder() const { return finder_; }
+  [[nodiscard]] const CollisionSeconds& seconds() const { return seconds_; }
+
+ private:
+  struct Part {
+    std::vector<PairContact> contacts;
+    std::uint64_t overlaps = 0;
+    double deepest = 0.0;
+  };
+
+  // How far a sphere comes from where its centre is, and the room around it in which another is near.
+  struct Reach {
+    Vec3 centre;
+    double most = 0.0;
+    double room = 0.0;
+  };
+
+  void sweep(const CollidingSpheres& spheres, double dt);
+  [[nodiscard]] bool surely_apart(std::uint32_t a, std::uint32_t b) const;
+  void find_contacts(const Complex& complex, const CollidingSpheres& spheres, std::span<const SpherePair> candidates,
+                     Threads threads, CollisionCounts& counts);
+  void judge(const Complex& complex, const CollidingSpheres& spheres, std::span<const SpherePair> candidates,
+             Part& part) const;
+
+  CellLists lists_;
+  PairFinder finder_;
+  ContactSolver solver_;
+  std::vector<SphereMotion> moving_;
+  std::vector<SphereMotion> swept_;  // radii with the room in which they count as near
+  std::vector<Reach> reaches_;
+  std::vector<Part> parts_;  // by chunk of candidates
+  std::vector<PairContact> pairs_;
+  std::vector<WallContact> walls_;
+  CollisionSeconds seconds_;
+};
+
+}  // namespace dartcast

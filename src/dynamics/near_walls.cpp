@@ -1,0 +1,292 @@
+#include "dynamics/near_walls.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "dartcast/predicates.hpp"
+#include "complex/simplex.hpp"
+
+namespace dartcast {
+
+namespace {
+
+// Boxes are widened by more than rounding can take off them.
+constexpr double box_margin = 0x1p-50;
+
+Vec3 normal_of_wall(const std::array<Vec3, 3>& v, bool plane) {  // to the free side
+  const Vec3 e = v[1] - v[0];
+  const Vec3 n = plane ? Vec3{-e.y, e.x, 0.0} : cross(v[2] - v[0], e);
+  const double length = norm(n);
+  return length > 0.0 ? n * (1.0 / length) : Vec3{};
+}
+
+// Vertices of the place where a wall is nearest, sorted; those that there are not count as invalid.
+std::array<Vertex, 3> key_of(const NearWall& w, const NearestOnTriangle& nearest) {
+  std::array<Vertex, 3> key;
+  for (unsigned i = 0; i < 3; ++i) {
+    if (((nearest.corners >> i) & 1U) != 0) key[i] = w.vertex[i];
+  }
+  std::sort(key.begin(), key.end());
+  return key;
+}
+
+// Its corners as they are before and after the last move; or, where `before` is `after`, as they are.
+NearWall wall_at(const CellView& cell, CellFace face, std::uint16_t triangle, std::span<const Vec3> before,
+                 std::span<const Vec3> after) {
+  NearWall wall;
+  wall.face = face;
+  wall.triangle = triangle;
+  wall.local = cell.shape().triangle(face.face, triangle);
+  for (unsigned i = 0; i < 3; ++i) {
+    wall.vertex[i] = cell.vertex(wall.local[i]);
+    wall.corners.from[i] = before[wall.vertex[i].value];
+    wall.corners.to[i] = after[wall.vertex[i].value];
+  }
+  return wall;
+}
+
+// Whether the way from `point`, a place of these vertices, to another corner of a wall that has them all leads nearer
+// to the centre, by more than rounding: next to a place where it does not by itself, there is the same place of another
+// wall, no farther away than `same_place`.
+bool goes_nearer(const NearWall& w, const std::array<Vertex, 3>& key, const Vec3& point, const Vec3& centre,
+                 double same_place) {
+  const auto is_in = [](Vertex v, const std::array<Vertex, 3>& list) {
+    return std::find(list.begin(), list.end(), v) != list.end();
+  };
+  if (!std::all_of(key.begin(), key.end(), [&](Vertex v) { return !v.valid() || is_in(v, w.vertex); })) return false;
+  for (unsigned i = 0; i < 3; ++i) {
+    const Vec3 way = w.corners.to[i] - point;
+    if (!is_in(w.vertex[i], key) && dot(way, centre - point) > norm(way) * same_place) return true;
+  }
+  return false;
+}
+
+// The points of the cell that span a face.
+template <class Visit>
+void for_each_point(const Shape& shape, std::uint16_t face, Visit&& visit) {
+  const std::uint16_t first = shape.first_dart(face);
+  if (shape.dimension() == 2 || shape.triangle_count(face) == shape.degree(face)) {  // or has a point of its own
+    for (std::uint16_t t = 0; t < shape.triangle_count(face); ++t) {
+      for (const std::uint16_t p : shape.triangle(face, t)) visit(p);
+    }
+    return;
+  }
+  for (std::uint16_t d = 0; d < shape.degree(face); ++d) visit(shape.origin(static_cast<std::uint16_t>(first + d)));
+}
+
+}  // namespace
+
+double touching_slack(const Vec3& centre, double radius) {
+  return touching_bound * (radius + std::max({std::abs(centre.x), std::abs(centre.y), std::abs(centre.z)}));
+}
+
+// The sphere on its way: a box, and where the way is long the ball around a box is asked for, too.
+struct NearWalls::Reach {
+  struct Bounds {
+    Vec3 low;
+    Vec3 high;
+
+    void include(const Vec3& p) {
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    [[nodiscard]] bool meets(const Bounds& b) const {
+      return low.x <= b.high.x && b.low.x <= high.x && low.y <= b.high.y && b.low.y <= high.y && low.z <= b.high.z &&
+             b.low.z <= high.z;
+    }
+  };
+
+  Bounds box;
+  MovingSphere sphere;
+  bool is_long;
+
+  Reach(const MovingSphere& s, double margin) : box{s.from, s.from}, sphere(s) {
+    box.include(s.to);
+    const double r = s.radius + margin;
+    box = {box.low - Vec3{r, r, r}, box.high + Vec3{r, r, r}};
+    sphere.radius = r;
+    is_long = norm(s.to - s.from) > 2.0 * r;
+  }
+  static constexpr unsigned all_sides = 63;
+  // The sides of the box that p lies beyond, a bit for each.
+  [[nodiscard]] unsigned sides(const Vec3& p) const {
+    const auto bit = [](bool beyond, unsigned n) { return static_cast<unsigned>(beyond) << n; };
+    return bit(p.x < box.low.x, 0) | bit(p.x > box.high.x, 1) | bit(p.y < box.low.y, 2) | bit(p.y > box.high.y, 3) |
+           bit(p.z < box.low.z, 4) | bit(p.z > box.high.z, 5);
+  }
+  static Bounds nothing() {
+    constexpr double far = std::numeric_limits<double>::infinity();
+    return {{far, far, far}, {-far, -far, -far}};
+  }
+  [[nodiscard]] bool meets(const Bounds& b) const {
+    if (!box.meets(b)) return false;
+    if (!is_long) return true;
+    const Vec3 middle = (b.low + b.high) * 0.5;
+    const Vec3 way = sphere.to - sphere.from;
+    const double share = std::clamp(dot(middle - sphere.from, way) / dot(way, way), 0.0, 1.0);
+    const double apart = norm(middle - (sphere.from + way * share));
+    return !(apart > (sphere.radius + 0.5 * norm(b.high - b.low)) * (1.0 + 0x1p-20));
+  }
+};
+
+void NearWalls::grow() {
+  table_.assign(std::max<std::size_t>(64, table_.size() * 2), 0);
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    slots_[i] = slot(cells_[i]);
+    table_[slots_[i]] = static_cast<std::uint32_t>(i + 1);
+  }
+}
+
+// Where a cell is in the table, or would be.
+std::size_t NearWalls::slot(Cell c) const {
+  std::size_t at = (c.value * 0x9e3779b97f4a7c15U) >> 32U;
+  for (;; ++at) {
+    at &= table_.size() - 1;
+    if (table_[at] == 0 || cells_[table_[at] - 1] == c) return at;
+  }
+}
+
+void NearWalls::add(Cell c) {
+  if (2 * (cells_.size() + 1) > table_.size()) grow();
+  const std::size_t at = slot(c);
+  if (table_[at] != 0) return;
+  cells_.push_back(c);
+  slots_.push_back(at);
+  table_[at] = static_cast<std::uint32_t>(cells_.size());
+}
+
+void NearWalls::add_walls(const Complex& complex, const Reach& reach, CellFace face, bool moving) {
+  const CellView cell = complex.map().view(face.cell);
+  const auto after = complex.positions();
+  const auto before = moving ? complex.previous_positions() : after;
+  for (std::uint16_t t = 0; t < cell.shape().triangle_count(face.face); ++t) {
+    const NearWall wall = wall_at(cell, face, t, before, after);
+    Reach::Bounds bounds{wall.corners.to[0], wall.corners.to[0]};
+    bool in_range = true;  // else the wall belongs to a cell that is invalid, or was before the move
+    for (unsigned i = 0; i < 3; ++i) {
+      bounds.include(wall.corners.from[i]);
+      bounds.include(wall.corners.to[i]);
+      in_range = in_range && in_exact_range(wall.corners.from[i]) && in_exact_range(wall.corners.to[i]);
+    }
+    if (in_range && reach.meets(bounds)) walls_.push_back(wall);
+  }
+}
+
+// A face bounds all that passes from one cell to the other: only where the sphere meets it does the search go on. Its
+// box misses the sphere's where all its points lie on the same side.
+void NearWalls::visit(const Complex& complex, const Reach& reach, Cell c, bool moving) {
+  const CellView cell = complex.map().view(c);
+  const Shape& shape = cell.shape();
+  const Vec3* after = complex.positions().data();
+  const Vec3* before = complex.previous_positions().data();
+  sides_.clear();
+  for (const std::uint32_t v : cell.vertices()) {
+    const unsigned sides = reach.sides(after[v]);
+    sides_.push_back(static_cast<std::uint8_t>(moving ? sides & reach.sides(before[v]) : sides));
+  }
+  for (std::uint16_t f = 0; f < shape.face_count(); ++f) {
+    unsigned sides = Reach::all_sides;
+    for_each_point(shape, f, [&](std::uint16_t p) { sides &= sides_[p]; });
+    if (sides != 0) continue;
+    if (reach.is_long) {
+      Reach::Bounds bounds = Reach::nothing();
+      for_each_point(shape, f, [&](std::uint16_t p) {
+        bounds.include(after[cell.vertex(p).value]);
+        if (moving) bounds.include(before[cell.vertex(p).value]);
+      });
+      if (!reach.meets(bounds)) continue;
+    }
+    if (cell.is_wall(f))
+      add_walls(complex, reach, {c, f}, moving);
+    else
+      add(cell.neighbour(f));
+  }
+}
+
+std::span<const NearWall> NearWalls::search(const Complex& complex, Cell cell, const MovingSphere& sphere,
+                                            bool moving) {
+  for (const std::size_t at : slots_) table_[at] = 0;
+  slots_.clear();
+  cells_.clear();
+  walls_.clear();
+  const Vec3 largest = extent_of(sphere.from, sphere.to);
+  const double margin = box_margin * (sphere.radius + std::max({largest.x, largest.y, largest.z}));
+  const Reach reach(sphere, margin);
+  add(cell);
+  for (std::size_t i = 0; i < cells_.size(); ++i) visit(complex, reach, cells_[i], moving);
+  return walls_;
+}
+
+std::span<const NearestOnTriangle> NearWalls::nearest(const Vec3& centre) {
+  nearest_.clear();
+  for (const NearWall& w : walls_) nearest_.push_back(nearest_on_triangle(w.corners.from, centre));
+  return nearest_;
+}
+
+void NearWalls::describe(const Complex& complex, const NearWall& wall, const NearestOnTriangle& nearest, bool moved,
+                         WallFeature& feature) {
+  feature.point = nearest.point;
+  feature.normal =
+      nearest.distance > 0.0 ? nearest.normal : normal_of_wall(wall.corners.to, complex.map().dimension() == 2);
+  feature.distance = nearest.distance;
+  feature.face = wall.face;
+  feature.triangle = wall.triangle;
+  feature.patch = complex.map().patch(wall.face);
+  feature.displacement = {};
+  std::array<std::uint16_t, 3> points{};
+  std::size_t count = 0;
+  for (unsigned i = 0; i < 3; ++i) {
+    if (((nearest.corners >> i) & 1U) == 0) continue;
+    points[count++] = wall.local[i];
+    const std::size_t v = wall.vertex[i].value;
+    const Vec3& before = complex.previous_positions()[v];
+    if (moved && in_exact_range(before)) feature.displacement += (complex.positions()[v] - before) * nearest.weights[i];
+  }
+  const Shape::Feature place =
+      complex.map().shape(wall.face.cell).feature(std::span<const std::uint16_t>(points).first(count));
+  feature.kind = place.kind;
+  feature.dart = {wall.face.cell, place.dart};
+}
+
+WallFeature NearWalls::place_on(const Complex& complex, CellFace face, std::uint16_t triangle, const Vec3& centre,
+                                bool moved) {
+  const auto positions = complex.positions();
+  const NearWall wall = wall_at(complex.map().view(face.cell), face, triangle, positions, positions);
+  WallFeature feature;
+  describe(complex, wall, nearest_on_triangle(wall.corners.to, centre), moved, feature);
+  return feature;
+}
+
+std::span<const WallFeature> NearWalls::within(const Complex& complex, Cell cell, const Vec3& centre, double reach,
+                                               bool moved) {
+  search(complex, cell, {centre, centre, reach}, false);
+  nearest(centre);
+  features_.clear();
+  keys_.clear();
+  const double same_place = touching_slack(centre, reach);
+  for (std::size_t i = 0; i < walls_.size(); ++i) {
+    if (!(nearest_[i].distance <= reach)) continue;
+    const auto key = key_of(walls_[i], nearest_[i]);
+    if (std::find(keys_.begin(), keys_.end(), key) != keys_.end()) continue;
+    bool nearest_around = true;
+    for (std::size_t k = 0; k < walls_.size() && nearest_around; ++k) {
+      nearest_around =
+          key_of(walls_[k], nearest_[k]) == key || !goes_nearer(walls_[k], key, nearest_[i].point, centre, same_place);
+    }
+    if (!nearest_around) continue;
+    const bool known = std::any_of(features_.begin(), features_.end(), [&](const WallFeature& f) {
+      return norm(f.point - nearest_[i].point) <= same_place;
+    });
+    if (known) continue;
+    keys_.push_back(key);
+    describe(complex, walls_[i], nearest_[i], moved, features_.emplace_back());
+    const auto farther =
+        std::upper_bound(features_.begin(), features_.end() - 1, features_.back(),
+                         [](const WallFeature& a, const WallFeature& b) { return a.distance < b.distance; });
+    std::rotate(farther, features_.end() - 1, features_.end());
+  }
+  return features_;
+}
+
+}  // namespace dartcast

@@ -1,0 +1,223 @@
+#include "dynamics/rigid_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace dartcast {
+
+namespace {
+
+// Normals of one wall in two steps: closer than some 25 degrees.
+constexpr double same_wall_as_before = 0.9;
+
+// What a unit impulse in this direction changes of the velocity along it, where it acts.
+double mobility(const RigidMover& m, const Vec3& lever, const Vec3& direction) {
+  if (!m.turns) return m.inverse_mass;
+  const Vec3 moment = cross(lever, direction);
+  return m.inverse_mass + dot(moment, m.inverse_inertia * moment);
+}
+
+// At least the mobility in any direction: the turning part has no negative eigenvalue, and no greater one than its
+// trace.
+double most_mobility(const RigidMover& m, const Vec3& lever) {
+  if (!m.turns) return m.inverse_mass;
+  double trace = 0.0;
+  for (const Vec3& axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
+    const Vec3 moment = cross(lever, axis);
+    trace += dot(moment, m.inverse_inertia * moment);
+  }
+  return m.inverse_mass + trace;
+}
+
+void push(const RigidMover& m, const Vec3& lever, const Vec3& impulse, Vec3& velocity, Vec3& spin) {
+  velocity += impulse * m.inverse_mass;
+  if (m.turns) spin += m.inverse_inertia * cross(lever, impulse);
+}
+
+Vec3 across_normal(const Vec3& v, const Vec3& normal) { return v - normal * dot(v, normal); }
+
+// Forwards and backwards in turn; the last time forwards, so that walls, which are last, have the last word.
+template <class Each>
+void back_and_forth(std::size_t rows, unsigned iterations, Each&& each) {
+  for (unsigned k = 0; k < iterations; ++k) {
+    for (std::size_t i = 0; i < rows; ++i) each((iterations - k) % 2 == 1 ? i : rows - 1 - i);
+  }
+}
+
+// As a kept impulse has them.
+std::tuple<bool, std::uint64_t, std::uint64_t> ids_of(const RigidContact& c) {
+  const bool wall = c.a == RigidContact::wall;
+  return {wall, wall ? c.b_id : c.a_id, wall ? KeptImpulse::wall : c.b_id};
+}
+std::tuple<bool, std::uint64_t, std::uint64_t> ids_of(const KeptImpulse& k) {
+  return {k.b == KeptImpulse::wall, k.a, k.b};
+}
+
+// Pairs by ids, then walls by ids and normals.
+auto key_of(const RigidContact& c) {
+  return std::tuple_cat(ids_of(c), std::tuple(c.normal.x, c.normal.y, c.normal.z, c.gap));
+}
+
+// Sides of a contact: velocities (or displacements) of both, and impulses on them.
+struct BothSides {
+  const RigidContact& contact;
+  const Vec3& lever_a;
+  const Vec3& lever_b;
+  std::span<RigidMover> movers;
+  Vec3 RigidMover::*linear;
+  Vec3 RigidMover::*angular;
+
+  [[nodiscard]] Vec3 at(std::uint32_t mover, const Vec3& lever) const {
+    const RigidMover& m = movers[mover];
+    return m.turns ? m.*linear + cross(m.*angular, lever) : m.*linear;
+  }
+  [[nodiscard]] Vec3 relative() const {
+    const bool wall = contact.a == RigidContact::wall;
+    return at(contact.b, lever_b) - (wall ? contact.wall_velocity : at(contact.a, lever_a));
+  }
+  void apply(const Vec3& impulse) const {
+    RigidMover& b = movers[contact.b];
+    push(b, lever_b, impulse, b.*linear, b.*angular);
+    if (contact.a == RigidContact::wall) return;
+    RigidMover& a = movers[contact.a];
+    push(a, lever_a, -impulse, a.*linear, a.*angular);
+  }
+};
+
+}  // namespace
+
+void RigidSolver::make_rows(std::span<const RigidContact> contacts, std::span<const RigidMover> movers,
+                            const SolverOptions& options) {
+  rows_.clear();
+  for (const RigidContact& c : contacts) {
+    const bool wall = c.a == RigidContact::wall;
+    const RigidMover& b = movers[c.b];
+    Row row;
+    row.contact = &c;
+    row.lever_b = c.point_b - b.centre;
+    double along = mobility(b, row.lever_b, c.normal);
+    double across = most_mobility(b, row.lever_b);
+    Vec3 other = c.wall_velocity;
+    if (!wall) {
+      const RigidMover& a = movers[c.a];
+      row.lever_a = c.point_a - a.centre;
+      along += mobility(a, row.lever_a, c.normal);
+      across += most_mobility(a, row.lever_a);
+      other = a.velocity_at(c.point_a);
+    }
+    if (!(along > 0.0)) continue;
+    row.mass = 1.0 / along;
+    row.mass_across = 1.0 / across;
+    row.bound = c.gap > 0.0 ? -c.gap / options.dt : 0.0;
+    row.push_bound = c.gap > 0.0 ? row.bound : -options.push * c.gap / options.dt;
+    const double nearing = -dot(b.velocity_at(c.point_b) - other, c.normal);
+    if (nearing > options.resting_speed) row.rebound = c.restitution * nearing;
+    rows_.push_back(row);
+  }
+  std::sort(rows_.begin(), rows_.end(),
+            [](const Row& x, const Row& y) { return key_of(*x.contact) < key_of(*y.contact); });
+}
+
+// Both are sorted alike: one pass. Of a sphere's walls the one with the nearest normal is taken.
+void RigidSolver::take_kept() {
+  std::size_t k = 0;
+  for (Row& row : rows_) {
+    const RigidContact& c = *row.contact;
+    const auto ids = ids_of(c);
+    while (k < kept_.size() && ids_of(kept_[k]) < ids) ++k;
+    const KeptImpulse* best = nullptr;
+    double most = same_wall_as_before;
+    for (std::size_t m = k; m < kept_.size() && ids_of(kept_[m]) == ids; ++m) {
+      const double alike = c.a == RigidContact::wall ? dot(kept_[m].normal, c.normal) : 1.0;
+      if (alike <= most) continue;
+      most = alike;
+      best = &kept_[m];
+    }
+    if (best == nullptr) continue;
+    row.along = best->along;
+    row.across = across_normal(best->across, c.normal);
+  }
+}
+
+// Friction first: what keeps things apart has the last word.
+void RigidSolver::solve_row(Row& row, double bound, std::span<RigidMover> movers) {
+  const RigidContact& c = *row.contact;
+  const BothSides sides{c, row.lever_a, row.lever_b, movers, &RigidMover::velocity, &RigidMover::spin};
+  if (c.friction > 0.0) {
+    Vec3 across = row.across - across_normal(sides.relative(), c.normal) * row.mass_across;
+    const double most = c.friction * row.along;
+    const double square = dot(across, across);
+    if (square > most * most) across *= most / std::sqrt(square);
+    sides.apply(across - row.across);
+    row.across = across;
+  }
+  const double along = std::max(0.0, row.along - row.mass * (dot(sides.relative(), c.normal) - bound));
+  if (along != row.along) sides.apply(c.normal * (along - row.along));
+  row.along = along;
+}
+
+// As in ContactSolver: displacements are those of the velocities, and what penetrates is pushed apart by some of its
+// depth, with impulses that are forgotten afterwards.
+void RigidSolver::solve_pushes(std::span<RigidMover> movers, const SolverOptions& options) {
+  for (RigidMover& m : movers) {
+    m.shift = m.velocity;
+    m.turned = m.spin;
+  }
+  back_and_forth(rows_.size(), options.push_iterations, [&](std::size_t i) {
+    Row& row = rows_[i];
+    const RigidContact& c = *row.contact;
+    const BothSides sides{c, row.lever_a, row.lever_b, movers, &RigidMover::shift, &RigidMover::turned};
+    const double more = std::max(0.0, row.push - row.mass * (dot(sides.relative(), c.normal) - row.push_bound));
+    if (more == row.push) return;
+    sides.apply(c.normal * (more - row.push));
+    row.push = more;
+  });
+  for (RigidMover& m : movers) {
+    m.shift *= options.dt;
+    m.turned *= options.dt;
+  }
+}
+
+void RigidSolver::rebound(std::span<RigidMover> movers, unsigned iterations) {
+  bool any = false;
+  for (Row& row : rows_) {
+    if (!(row.along > 0.0)) row.rebound = 0.0;
+    any = any || row.rebound > 0.0;
+  }
+  if (!any) return;
+  back_and_forth(rows_.size(), iterations, [&](std::size_t i) {
+    solve_row(rows_[i], rows_[i].rebound > 0.0 ? rows_[i].rebound : rows_[i].bound, movers);
+  });
+}
+
+// What rebounds needs no impulse in the next step.
+void RigidSolver::keep() {
+  kept_.clear();
+  loaded_pairs_ = loaded_walls_ = 0;
+  for (const Row& row : rows_) {
+    if (!(row.along > 0.0)) continue;
+    const RigidContact& c = *row.contact;
+    const auto [wall, a, b] = ids_of(c);
+    ++(wall ? loaded_walls_ : loaded_pairs_);
+    if (row.rebound > 0.0) continue;
+    kept_.push_back({a, b, c.normal, row.along, row.across});
+  }
+}
+
+void RigidSolver::solve(std::span<const RigidContact> contacts, std::span<RigidMover> movers,
+                        const SolverOptions& options) {
+  make_rows(contacts, movers, options);
+  take_kept();
+  for (const Row& row : rows_) {
+    if (row.along == 0.0) continue;
+    const BothSides sides{*row.contact, row.lever_a, row.lever_b, movers, &RigidMover::velocity, &RigidMover::spin};
+    sides.apply(row.contact->normal * row.along + row.across);
+  }
+  back_and_forth(rows_.size(), options.iterations, [&](std::size_t i) { solve_row(rows_[i], rows_[i].bound, movers); });
+  solve_pushes(movers, options);
+  rebound(movers, options.rebound_iterations);
+  keep();
+}
+
+}  // namespace dartcast

@@ -1,0 +1,94 @@
+// Impulses at the contacts of bodies that answer as rigid ones, and of spheres, with each other and with walls.
+//
+// As dynamics/contact_solver.hpp (E. Catto, "Iterative dynamics with temporal coherence", 2005), where a body also
+// turns. As friction then changes what comes along the normal, it is found first, from the impulse of the iteration
+// before.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/mat3.hpp"
+#include "dynamics/contact_solver.hpp"
+
+namespace dartcast {
+
+/// A body, or a sphere: a body that does not turn.
+struct RigidMover {
+  double inverse_mass = 0.0;  ///< 0: it cannot be pushed, and does not turn
+  bool turns = false;
+  Mat3 inverse_inertia = zero_matrix();  ///< about the centre; symmetric, no eigenvalue below 0
+  Vec3 centre;
+  Vec3 velocity;  ///< of the centre; in: after all other forces; out: after the impulses, with rebounds
+  Vec3 spin;
+  Vec3 shift;  ///< out: displacement in the step, without rebounds, with what takes out penetration; turned likewise
+  Vec3 turned;
+
+  [[nodiscard]] Vec3 velocity_at(const Vec3& x) const { return turns ? velocity + cross(spin, x - centre) : velocity; }
+};
+
+/// Two movers near each other, or one and a wall: their motion relative to each other along the normal must not be
+/// below -gap.
+struct RigidContact {
+  static constexpr std::uint32_t wall = 0xffffffffU;
+
+  std::uint32_t a = wall;
+  std::uint32_t b = 0;
+  std::uint64_t a_id = KeptImpulse::wall;  ///< of what touches: a sphere, a particle of a body; of a pair a_id < b_id
+  std::uint64_t b_id = 0;
+  Vec3 normal;   ///< unit, from a to b
+  Vec3 point_a;  ///< where impulses act on each
+  Vec3 point_b;
+  double gap = 0.0;  ///< negative: they overlap
+  double restitution = 0.0;
+  double friction = 0.0;
+  Vec3 wall_velocity;
+};
+
+class RigidSolver {
+ public:
+  /// Each impulse acts on both sides, equal and opposite: momentum changes by rounding alone. Options as those of
+  /// ContactSolver::solve(), restitution and friction apart, which each contact has. Contacts are taken in the order of
+  /// ids; the result does not depend on the order of contacts or movers. Preconditions: options in range, contacts name
+  /// movers. Serial.
+  void solve(std::span<const RigidContact> contacts, std::span<RigidMover> movers, const SolverOptions& options);
+
+  /// Impulses of the last step, in the order of ids; set_kept() goes on from them.
+  [[nodiscard]] std::span<const KeptImpulse> kept() const { return kept_; }
+  void set_kept(std::span<const KeptImpulse> kept) { kept_.assign(kept.begin(), kept.end()); }
+
+  /// Numbers of contacts that the last step gave an impulse.
+  [[nodiscard]] std::size_t loaded_pairs() const { return loaded_pairs_; }
+  [[nodiscard]] std::size_t loaded_walls() const { return loaded_walls_; }
+
+ private:
+  struct Row {
+    const RigidContact* contact = nullptr;
+    Vec3 lever_a;  // from the centres to the points
+    Vec3 lever_b;
+    double bound = 0.0;        // velocity along the normal that it must not fall below
+    double push_bound = 0.0;   // likewise, of displacements
+    double mass = 0.0;         // effective, along the normal
+    double mass_across = 0.0;  // at most the effective one in any direction
+    double rebound = 0.0;      // velocity along the normal that it ends with, if it was given an impulse; 0: does not
+    double along = 0.0;        // impulses so far
+    Vec3 across;
+    double push = 0.0;
+  };
+
+  void make_rows(std::span<const RigidContact> contacts, std::span<const RigidMover> movers,
+                 const SolverOptions& options);
+  void take_kept();
+  void solve_row(Row& row, double bound, std::span<RigidMover> movers);
+  void solve_pushes(std::span<RigidMover> movers, const SolverOptions& options);
+  void rebound(std::span<RigidMover> movers, unsigned iterations);
+  void keep();
+
+  std::vector<Row> rows_;
+  std::vector<KeptImpulse> kept_;
+  std::size_t loaded_pairs_ = 0;
+  std::size_t loaded_walls_ = 0;
+};
+
+}  // namespace dartcast

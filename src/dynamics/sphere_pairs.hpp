@@ -1,0 +1,69 @@
+// Which spheres may meet in a step: each pair once, sorted.
+//
+// Where cells hold few particles and these are small, their lists are followed through neighbouring free cells as far
+// as a sphere and its motion reach; where they hold many, or spheres are larger, a grid of several levels, one for each
+// power of two of the spheres' extents, takes their place: its cost per sphere depends neither on the crowd in a
+// cell nor on how different the radii are. Apart from pairs with walls in between both give the same.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/parallel.hpp"
+#include "dartcast/cell_complex.hpp"
+#include "dynamics/cell_lists.hpp"
+#include "dynamics/sphere_grid.hpp"
+#include "dynamics/sphere_touch.hpp"
+#include "dartcast/particle_state.hpp"
+
+namespace dartcast {
+
+/// How pairs are looked for.
+enum class PairSearch : std::uint8_t {
+  automatic,  ///< by lists where no cell is crowded and spheres reach a small part of a cell, else by the grid
+  lists,
+  grid
+};
+
+/// Finds pairs of spheres, and keeps its memory from step to step.
+class PairFinder {
+ public:
+  /// The pairs whose swept boxes (centre, motion and radius) overlap or touch, sorted. Spheres of radius 0 meet nobody.
+  /// The search through cells goes through free ones alone, from the cells that centres are in: pairs are left out
+  /// that no way within the box of both connects, as on two sides of a blocked layer; whether walls are between those
+  /// that are found is for separated() to say. `states`, `spheres`: by particle; `lists` up to date with the states.
+  /// The result holds until the next call. The same for any number of threads. Throws InvalidArgument where a sphere's
+  /// box is not finite or reaches beyond 2^1000.
+  std::span<const SpherePair> find(const Complex& complex, const CellLists& lists, std::span<const State> states,
+                                   std::span<const SphereMotion> spheres, Threads threads = {},
+                                   PairSearch search = PairSearch::automatic);
+  /// By the grid, without an environment.
+  std::span<const SpherePair> find(std::span<const SphereMotion> spheres, Threads threads = {});
+
+  /// Whether the last search went by lists.
+  [[nodiscard]] bool by_lists() const { return by_lists_; }
+
+ private:
+  void make_boxes(std::span<const SphereMotion> spheres, Threads threads);
+  [[nodiscard]] bool lists_do(const Complex& complex, const CellLists& lists, std::span<const State> states) const;
+  [[nodiscard]] detail::SweptBox room_of(std::uint32_t sphere) const;
+  void search_lists(const Complex& complex, const CellLists& lists, std::span<const State> states, Threads threads);
+  void search_grid(Threads threads);
+  void merge();
+
+  std::vector<detail::SweptBox> boxes_;
+  std::vector<double> reaches_;                 // by sphere: how far the box reaches from the centre
+  std::vector<std::vector<SpherePair>> parts_;  // by chunk
+  std::vector<std::uint32_t> starts_;           // of each sphere's pairs
+  std::vector<SpherePair> pairs_;
+  detail::SphereGrid grid_;
+  bool by_lists_ = false;
+};
+
+/// Whether a wall is between the centres, on the straight way. Exact. Precondition: both states are of the complex as
+/// it stands; held ones are not separated from anyone. Cost: a walk; a comparison where both are in one cell.
+bool separated(const Complex& complex, const State& a, const State& b);
+
+}  // namespace dartcast

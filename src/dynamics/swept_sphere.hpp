@@ -1,0 +1,77 @@
+// When a moving sphere first touches a moving triangle.
+//
+// Nothing is solved for. Between two instants a and b the triangle stays clear of the sphere where a direction that
+// turns from m to n (of lengths at most 1) has all three corners d_i, seen from the centre, at more than the radius:
+// the corners are linear in time, so that this is a quadratic for each, with Bernstein's coefficients m.d_i(a),
+// (m.d_i(b) + n.d_i(a)) / 2 and n.d_i(b). m and n are the directions to the nearest points: rounding in them makes the
+// proof weaker, never wrong, whatever the triangle looks like. Where it fails the interval is divided, the earlier part
+// first. What doubles leave open is asked again in twice their digits.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "dartcast/vec3.hpp"
+
+namespace dartcast {
+
+/// Its corners move on straight lines, t in [0, 1]. It may be flat, a segment or a point (equal corners).
+struct MovingTriangle {
+  std::array<Vec3, 3> from;
+  std::array<Vec3, 3> to;
+};
+
+/// Its centre moves on a straight line, t in [0, 1].
+struct MovingSphere {
+  Vec3 from;
+  Vec3 to;
+  double radius = 0.0;
+};
+
+/// The point of a triangle that is nearest to a centre.
+struct NearestOnTriangle {
+  Vec3 point;
+  Vec3 normal;  ///< unit, from the point to the centre; zero where the two are equal
+  double distance = 0.0;
+  std::array<double, 3> weights{};  ///< of the corners; not negative, they sum to 1
+  std::uint8_t corners = 0;  ///< bit i: corner i has a weight. One is a corner of the triangle, two an edge, three its
+                             ///< inside
+};
+
+/// Rounded to a few units in the last place of the largest distance between the centre and a corner; in a triangle that
+/// is nearly flat the point may be off along it. Cost: about 0.1 us.
+NearestOnTriangle nearest_on_triangle(const std::array<Vec3, 3>& corners, const Vec3& centre);
+
+struct SphereTouch {
+  double time = 0.0;      ///< never after the sphere first touches the triangle; before by at most sphere_time_bound
+  double contact = 0.0;   ///< at or after `time`, by no more than that bound: where the distance is next to the radius
+  bool at_start = false;  ///< they touch or overlap at the time 0 already, and the distance then gets smaller
+};
+
+/// Share of the motion.
+inline constexpr double sphere_time_bound = 0x1p-30;
+
+/// A grazing sphere may be found to touch where it passes at more than its radius, but by no more than this share of M,
+/// the largest of the radius and the distances between the centre and a corner, before and after; never the other way
+/// round.
+inline constexpr double grazing_bound = 0x1p-60;
+
+/// The first touch within [0, until]: the first time at which the distance is at most the radius; nothing where there
+/// is none.
+///
+/// `slack`: what counts as rounding. A sphere that comes no nearer than radius - slack does not touch. Where the
+/// distance is at most radius + slack (at least 2^-94 M) at the time 0 already, a touch is where it is below that
+/// distance less slack: so that a sphere that rests on the triangle, or is held off it, may slide and leave. It is
+/// reported as at 0 (at_start) unless the sphere was farther than radius + slack in between.
+///
+/// Errors: `time` as in SphereTouch. Intervals are divided at most 4096 times; where that were not enough (never seen)
+/// the touch is reported where the proof ended: early, never late.
+///
+/// Preconditions: radius > 0, slack >= 0, until in [0, 1], all finite and below 2^300 in magnitude. Cost: 0.25 us where
+/// one direction keeps them apart, 2 to 3 us for a touch, tens of us where it is grazing, or where the sphere starts on
+/// the triangle with a slack below 2^-47 M.
+std::optional<SphereTouch> first_touch(const MovingSphere& sphere, const MovingTriangle& triangle, double slack = 0.0,
+                                       double until = 1.0);
+
+}  // namespace dartcast

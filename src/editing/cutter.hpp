@@ -1,0 +1,63 @@
+// Cells that are cut by one plane after another. Private to surgery.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "editing/sides.hpp"
+
+namespace dartcast::detail {
+
+/// Takes back what an action did to an edit where it throws.
+template <class Action>
+auto all_or_nothing(ComplexEdit& edit, Action&& action) {
+  const Transaction::Mark before = edit.mark();
+  try {
+    return action();
+  } catch (...) {
+    edit.roll_back(before);
+    throw;
+  }
+}
+
+/// Cells by numbers of their own, which stay while edits replace the cells.
+class Cutter {
+ public:
+  /// Numbers the cells from 0. Throws InvalidArgument where there is no such cell, or it is named twice.
+  Cutter(ComplexEdit& edit, std::span<const Cell> cells);
+
+  [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(cells_.size()); }
+  [[nodiscard]] Cell cell(std::uint32_t number) const { return cells_[number]; }
+  [[nodiscard]] std::vector<Cell> cells(std::span<const std::uint32_t> numbers) const;
+
+  struct Parts {
+    std::vector<std::uint32_t> below, above, whole;
+  };
+  /// As split_by_plane(); vertices at most `within` metres from the plane count as on it. The part below keeps the
+  /// number, the one above is given the next.
+  Parts split(std::span<const std::uint32_t> numbers, const Plane& plane, double within);
+  /// Those cells that have a part below the plane.
+  [[nodiscard]] std::vector<std::uint32_t> reaching_below(std::span<const std::uint32_t> numbers, const Plane& plane,
+                                                          double within);
+  /// How far vertices of these cells may be from a plane that they count as on.
+  [[nodiscard]] double snap_distance(std::span<const std::uint32_t> numbers, const SectionOptions& options);
+
+ private:
+  void split_edges(std::span<const std::uint32_t> numbers, Sides& sides);
+  void split_faces(std::uint32_t number, Sides& sides);
+  bool split_face_of(Cell c, std::uint16_t face, Sides& sides);
+  [[nodiscard]] std::optional<std::array<Dart, 2>> chord_of(Cell c, std::uint16_t face, Sides& sides) const;
+  [[nodiscard]] std::vector<bool> faces_above(Cell c, Sides& sides);
+  [[nodiscard]] std::vector<Dart> path_around(Cell c, Sides& sides);
+  void replace(Cell old, Cell now);
+
+  ComplexEdit& edit_;
+  std::vector<Cell> cells_;
+  std::unordered_map<std::uint32_t, std::uint32_t> number_;
+};
+
+}  // namespace dartcast::detail

@@ -1,0 +1,31 @@
+#include "editing/section.hpp"
+
+#include <cmath>
+#include <numeric>
+
+#include "dartcast/error.hpp"
+#include "editing/cutter.hpp"
+
+namespace dartcast {
+
+Plane plane_through(const Vec3& point, const Vec3& normal) {
+  const double length = std::hypot(normal.x, normal.y, normal.z);
+  if (!is_finite(point) || !std::isfinite(length) || !(length > 0.0))
+    throw InvalidArgument("a plane needs a finite point and a finite normal that is not zero");
+  const Vec3 unit = {normal.x / length, normal.y / length, normal.z / length};
+  return {unit, dot(unit, point)};
+}
+
+Section split_by_plane(ComplexEdit& edit, std::span<const Cell> cells, const Plane& plane,
+                       const SectionOptions& options) {
+  detail::check_snap(options.snap);
+  return detail::all_or_nothing(edit, [&] {
+    detail::Cutter cutter(edit, cells);
+    std::vector<std::uint32_t> numbers(cells.size());
+    std::iota(numbers.begin(), numbers.end(), 0U);
+    const auto parts = cutter.split(numbers, plane, cutter.snap_distance(numbers, options));
+    return Section{cutter.cells(parts.below), cutter.cells(parts.above), cutter.cells(parts.whole)};
+  });
+}
+
+}  // namespace dartcast

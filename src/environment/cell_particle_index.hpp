@@ -1,0 +1,59 @@
+// Which particles are in a cell, or touch a wall of it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "dartcast/particle_state.hpp"
+
+namespace dartcast::detail {
+
+/// Lists of particles by cell. An entry may be out of date, where a particle has left since: whoever reads it asks the
+/// state.
+class Residents {
+ public:
+  /// Cost: linear in the particles.
+  explicit Residents(std::span<const State> states) {
+    first_.reserve(states.size());
+    entries_.reserve(states.size());
+    for (std::uint32_t i = 0; i < states.size(); ++i) add(i, states[i]);
+  }
+
+  void add(std::uint32_t particle, const State& state) {
+    add(particle, state.cell);
+    for (unsigned k = 0; k < state.touching_count; ++k) {
+      if (state.touching[k].cell != state.cell) add(particle, state.touching[k].cell);
+    }
+  }
+
+  /// Forgets a cell's list.
+  void clear(Cell c) { first_.erase(c.value); }
+
+  template <class Visit>
+  void for_each(Cell c, Visit&& visit) const {
+    const auto found = first_.find(c.value);
+    if (found == first_.end()) return;
+    for (std::uint32_t e = found->second; e != none; e = entries_[e].next) visit(entries_[e].particle);
+  }
+
+ private:
+  static constexpr std::uint32_t none = 0xffffffffU;
+
+  struct Entry {
+    std::uint32_t particle;
+    std::uint32_t next;
+  };
+
+  void add(std::uint32_t particle, Cell c) {
+    const auto [found, fresh] = first_.try_emplace(c.value, none);
+    entries_.push_back({particle, found->second});
+    found->second = static_cast<std::uint32_t>(entries_.size() - 1);
+  }
+
+  std::unordered_map<std::uint32_t, std::uint32_t> first_;  // entry of a cell
+  std::vector<Entry> entries_;
+};
+
+}  // namespace dartcast::detail

@@ -1,0 +1,111 @@
+// Sets of particles: some of them taken out, put back, removed, or all put in another order.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "dartcast/error.hpp"
+#include "dartcast/environment.hpp"
+
+namespace dartcast {
+
+namespace {
+
+void check_indices(std::span<const std::uint32_t> which, std::size_t size, const char* call) {
+  const auto bad = std::find_if(which.begin(), which.end(), [size](std::uint32_t i) { return i >= size; });
+  if (bad == which.end()) return;
+  throw InvalidArgument(fmt::format("{}: index {} (number {} of {}) names none of the {} particles", call, *bad,
+                                    bad - which.begin(), which.size(), size));
+}
+
+}  // namespace
+
+void Particles::remove(std::span<const std::uint8_t> marks) {
+  if (marks.size() != size())
+    throw InvalidArgument(
+        fmt::format("remove: {} marks for {} particles: one mark per particle is needed", marks.size(), size()));
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (marks[i] != 0) continue;
+    states_[kept] = states_[i];
+    weights_[kept] = weights_[i];
+    if (!memos_.empty()) memos_.put(kept, memos_[i], memos_.mark(i));
+    vertices_[kept++] = vertices_[i];
+  }
+  states_.resize(kept);
+  weights_.resize(kept);
+  vertices_.resize(kept);
+  if (!memos_.empty()) memos_.resize(kept);
+  residents_.reset();
+}
+
+void Particles::reorder(std::span<const std::uint32_t> order) {
+  if (order.size() != size())
+    throw InvalidArgument(fmt::format("reorder: {} indices for {} particles", order.size(), size()));
+  check_indices(order, size(), "reorder");
+  std::vector<std::uint8_t> seen(size(), 0);
+  const auto again = std::find_if(order.begin(), order.end(), [&](std::uint32_t i) { return seen[i]++ != 0; });
+  if (again != order.end())
+    throw InvalidArgument(fmt::format("reorder: the order is no permutation, it names particle {} twice", *again));
+  std::vector<State> states(size());
+  std::vector<Weights> weights(size());
+  std::vector<detail::VertexNumbers> vertices(size());
+  detail::Memos memos;
+  memos.resize(memos_.size());
+  for (std::size_t i = 0; i < size(); ++i) {
+    states[i] = states_[order[i]];
+    weights[i] = weights_[order[i]];
+    vertices[i] = vertices_[order[i]];
+    if (!memos_.empty()) memos.put(i, memos_[order[i]], memos_.mark(order[i]));
+  }
+  states_ = std::move(states);
+  weights_ = std::move(weights);
+  vertices_ = std::move(vertices);
+  memos_ = std::move(memos);
+  residents_.reset();
+}
+
+Particles Particles::selected(std::span<const std::uint32_t> which) const {
+  check_indices(which, size(), "selected");
+  Particles some;
+  for (const std::uint32_t i : which) {
+    some.states_.push_back(states_[i]);
+    some.weights_.push_back(weights_[i]);
+    some.vertices_.push_back(vertices_[i]);
+    if (!memos_.empty()) some.memos_.push_back(memos_[i], memos_.mark(i));
+  }
+  some.memo_kind_ = memo_kind_;
+  some.walls_changed_ = walls_changed_;
+  some.environment_ = environment_;
+  some.moves_ = moves_;
+  some.edits_ = edits_;
+  return some;
+}
+
+void Particles::replace(std::span<const std::uint32_t> which, const Particles& by) {
+  if (which.size() != by.size())
+    throw InvalidArgument(
+        fmt::format("replace: {} indices for {} particles: one index per particle is needed", which.size(), by.size()));
+  check_indices(which, size(), "replace");
+  if (which.empty()) return;
+  if (by.environment_ != environment_) throw InvalidArgument("replace: the particles are of another environment");
+  if (by.moves_ != moves_ || by.edits_ != edits_)
+    throw InvalidArgument(
+        "replace: one set has gone along with a move or an edit that the other has not: advance both after each move, "
+        "and follow() each edit with both");
+  for (std::size_t k = 0; k < which.size(); ++k) {
+    const std::uint32_t i = which[k];
+    states_[i] = by.states_[k];
+    weights_[i] = by.weights_[k];
+    vertices_[i] = by.vertices_[k];
+    if (memos_.empty()) continue;
+    if (memo_kind_ == by.memo_kind_)
+      memos_.put(i, by.memos_[k], by.memos_.mark(k));
+    else
+      memos_.forget(i);
+  }
+  walls_changed_ = walls_changed_ || by.walls_changed_;
+  residents_.reset();
+}
+
+}  // namespace dartcast

@@ -1,0 +1,57 @@
+// What meshes and surfaces in files have in common: nothing in a file throws, and who asks for a valid one is told why
+// not. Not installed.
+#pragma once
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "dartcast/error.hpp"
+#include "dartcast/mesh_files.hpp"
+
+namespace dartcast {
+
+/// With its dot, in lower case.
+inline std::string ending_of(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+/// Calls read(file); what it throws becomes a defect of kind "file". `what`: "mesh", "surface".
+template <class Read>
+MeshFile judged_file(const std::filesystem::path& path, const char* what, Read&& read) {
+  MeshFile out;
+  const auto refuse = [&](std::string message) { out.report.defects.push_back({"file", 1, {}, std::move(message)}); };
+  try {
+    read(out);
+  } catch (const Error& error) {
+    refuse(error.what());
+  } catch (const std::bad_alloc&) {
+    refuse(fmt::format("the {} is too large for this machine's memory", what));
+  } catch (const std::length_error&) {
+    refuse("an array is too large");
+  }
+  out.report.file = path.string();
+  return out;
+}
+
+/// The file, if it is valid. Throws InvalidMesh with its name, the first defect and the first places of it.
+inline MeshFile valid_file(MeshFile file) {
+  if (file.report.valid()) return file;
+  const Finding& defect = file.report.defects.front();
+  std::string places;
+  if (!defect.first.empty())
+    places = fmt::format(" ({} in all, the first: {})", defect.count, fmt::join(defect.first, ", "));
+  throw InvalidMesh(fmt::format("{}: {}{}", file.report.file, defect.message, places));
+}
+
+}  // namespace dartcast

@@ -1,0 +1,81 @@
+// The parts that all versions of Gmsh's format have in common.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "formats/file_text.hpp"
+#include "formats/parsed_mesh.hpp"
+
+namespace dartcast::gmsh {
+
+/// Numbers in text or in binary of either byte order.
+class Numbers {
+ public:
+  explicit Numbers(FileText& source) : text(source) {}
+
+  FileText& text;
+  bool binary = false;
+  bool swapped = false;
+  bool short_sizes = false;  ///< version 4.1 with a data size of 4: sizes have 32 bits instead of 64
+
+  std::int32_t int32(std::string_view what);
+  /// An unsigned number of the size of the file's size_t.
+  std::uint64_t size(std::string_view what);
+  double real(std::string_view what);
+  /// Such a number, of items that take at least the bytes given each.
+  std::size_t count(std::string_view what, std::size_t text_bytes, std::size_t binary_bytes);
+
+ private:
+  template <class T>
+  T raw(std::string_view what);
+};
+
+/// From node numbers in the file to points.
+class NodeTable {
+ public:
+  void add(std::uint64_t number, const Vec3& point, MeshData& mesh);
+  /// To be called once after all nodes. Throws InvalidMesh where a number occurs twice.
+  void close();
+  [[nodiscard]] bool closed() const { return closed_; }
+  /// The point's index, or no_point.
+  [[nodiscard]] std::uint32_t find(std::uint64_t number) const;
+
+ private:
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> numbers_;
+  std::vector<std::uint32_t> dense_;
+  bool closed_ = false;
+};
+
+/// Number of nodes of an element type, those of every order included; 0 for an unknown type and for one without a fixed
+/// number.
+int node_count(int type);
+/// The same. Throws InvalidMesh with the line where it is 0.
+int known_node_count(const Numbers& in, int type);
+
+/// What the sections fill.
+struct Model {
+  ParsedMesh parsed;
+  NodeTable nodes;
+  std::size_t elements = 0;
+  std::map<std::pair<int, std::int32_t>, std::int32_t> physical;  ///< version 4: (dimension, entity) to physical group
+
+  /// Adds an element of a known type whose nodes are given by number.
+  void add_element(int type, std::span<const std::uint64_t> numbers, std::int32_t physical_tag);
+};
+
+/// The sections of version 4.0 and 4.1; each leaves the reader before its end mark.
+void read_entities_4(Numbers& in, Model& model, bool v41);
+void read_nodes_4(Numbers& in, Model& model, bool v41);
+void read_elements_4(Numbers& in, Model& model, bool v41);
+
+/// The sections of version 1 and 2.
+void read_nodes_2(Numbers& in, Model& model);
+void read_elements_1(Numbers& in, Model& model);
+void read_elements_2(Numbers& in, Model& model);
+
+}  // namespace dartcast::gmsh

@@ -1,0 +1,41 @@
+// What a reader of one format of surface files hands on, before the surface is inspected.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/file_text.hpp"
+#include "dartcast/mesh_data.hpp"
+#include "mesh/mesh_report.hpp"
+
+namespace dartcast {
+
+/// Cells are triangles, quadrilaterals and polygons. Ids that name no point are kept as 0xffffffff, for
+/// inspect_surface() to find.
+struct ParsedSurface {
+  MeshData mesh;
+  std::string format;
+  std::vector<Finding> repairs;
+  Finding short_faces{"short_faces", 0, {}, "faces of one or two corners; they have been left out"};
+
+  /// Of the face's 3 to 1000 corners; a face of one or two is left out. Throws InvalidMesh with the line, or with the
+  /// byte in binary parts, where it has none or more, or where there are too many faces.
+  void add_face(std::span<const std::uint32_t> corners, const FileText& text, bool binary = false);
+  /// Throws InvalidMesh where a coordinate is not finite or there are too many points, likewise.
+  void add_point(const Vec3& point, const FileText& text, bool binary = false);
+  /// Faces that follow are in the region of this name (without the white space around it); with an empty one in none.
+  void enter_region(std::string_view name);
+  /// To be called at the end: without a region regions stay empty. Throws InvalidMesh where there is no face.
+  void finish();
+
+ private:
+  std::int32_t region_ = 0;
+  std::map<std::string, std::int32_t, std::less<>> tags_;
+};
+
+}  // namespace dartcast

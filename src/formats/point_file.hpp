@@ -1,0 +1,21 @@
+// Points from files: particles' first positions, and recorded frames.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "dartcast/mesh_files.hpp"
+#include "dartcast/mesh_data.hpp"
+
+namespace dartcast {
+
+struct PointFile {
+  std::vector<Vec3> points;
+  std::vector<DataArray> arrays;  ///< the points' numeric arrays; none from .csv
+};
+
+/// Reads .vtp (its points and their arrays) or .csv (columns x, y, z by name in the first line; others are ignored).
+/// Of the options `max_memory` counts. Throws Error with file and, for .csv, line.
+PointFile read_points(const std::filesystem::path& path, const ReadOptions& options = {});
+
+}  // namespace dartcast

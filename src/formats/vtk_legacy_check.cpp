@@ -1,0 +1,420 @@
+#include "formats/vtk_legacy_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "formats/face_stream.hpp"
+#include "formats/file_text.hpp"
+#include "formats/read_memory.hpp"
+
+namespace dartcast {
+namespace {
+
+std::string lower(std::string_view word) {
+  std::string out(word);
+  std::transform(out.begin(), out.end(), out.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return out;
+}
+
+/// A name as VTK reads it: %41 is A, and a '%' among the last two characters is nothing. None where VTK would read
+/// beyond the name's end, would take what was in memory for a character, or would cut the name.
+std::optional<std::string> decoded(std::string_view name) {
+  std::string out;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    if (name[i] != '%') {
+      out += name[i];
+      continue;
+    }
+    if (name.size() < 3) return std::nullopt;
+    if (i + 3 > name.size()) continue;
+    unsigned c = 0;
+    const char* const digits = name.data() + i + 1;
+    if (std::from_chars(digits, digits + 2, c, 16).ptr != digits + 2 || c == 0) return std::nullopt;
+    out += static_cast<char>(c);
+    i += 2;
+  }
+  return out;
+}
+
+struct NumberType {
+  std::string_view name;
+  std::size_t bytes;  // in binary; 0: eight to a byte
+  bool real;
+  std::int64_t low;
+  std::int64_t high;
+};
+
+constexpr std::array<NumberType, 14> number_types = {{{"bit", 0, false, 0, 1},
+                                                      {"char", 1, false, INT8_MIN, INT8_MAX},
+                                                      {"signed_char", 1, false, INT8_MIN, INT8_MAX},
+                                                      {"unsigned_char", 1, false, 0, UINT8_MAX},
+                                                      {"short", 2, false, INT16_MIN, INT16_MAX},
+                                                      {"unsigned_short", 2, false, 0, UINT16_MAX},
+                                                      {"int", 4, false, INT32_MIN, INT32_MAX},
+                                                      {"unsigned_int", 4, false, 0, UINT32_MAX},
+                                                      {"vtkidtype", 4, false, INT32_MIN, INT32_MAX},
+                                                      {"long", 8, false, INT64_MIN, INT64_MAX},
+                                                      {"unsigned_long", 8, false, 0, INT64_MAX},
+                                                      {"vtktypeint64", 8, false, INT64_MIN, INT64_MAX},
+                                                      {"float", 4, true, 0, 0},
+                                                      {"double", 8, true, 0, 0}}};
+
+class LegacyChecker {
+ public:
+  explicit LegacyChecker(std::string_view content) : text_(content) { sizes_.file = content.size(); }
+
+  ReadSizes run() {
+    head();
+    while (!text_.at_end()) section();
+    if (!cells_.has_value()) text_.fail("the file ends before its CELLS; it is truncated");
+    if (!typed_) text_.fail("the file ends before its CELL_TYPES; it is truncated");
+    sizes_.points = points_.value_or(0);
+    sizes_.cells = *cell_count();
+    sizes_.corners = cells_->points.size();
+    return sizes_;
+  }
+
+ private:
+  struct Cells {
+    std::vector<std::int64_t> offsets;
+    std::vector<std::int64_t> points;
+  };
+
+  void head() {
+    const std::string_view first = text_.line();
+    if (first.substr(0, 23) != "# vtk DataFile Version ") text_.fail("'# vtk DataFile Version' should stand here");
+    // From version 5 on VTK looks for offsets, before for a stream of corners, whatever stands there.
+    const std::string_view version = first.substr(23, first.find_last_not_of(' ') - 22);
+    if (version.size() != 3 || version[0] < '1' || version[0] > '5' || version[1] != '.' || version[2] < '0' ||
+        version[2] > '9') {
+      text_.fail("the version is not one of 1.0 to 5.9");
+    }
+    with_offsets_ = version[0] == '5';
+    text_.line();  // the title
+    const std::string kind = lower(text_.word("ASCII or BINARY"));
+    if (kind != "ascii" && kind != "binary") text_.fail("ASCII or BINARY should stand here");
+    binary_ = kind == "binary";
+    if (lower(text_.word("DATASET")) != "dataset") text_.fail("DATASET should stand here");
+    const std::string data_set(text_.word("the kind of data set"));
+    if (lower(data_set) != "unstructured_grid") {
+      text_.fail(fmt::format("the data set is {}, not UNSTRUCTURED_GRID: it has no volume cells to use",
+                             data_set.substr(0, 40)));
+    }
+  }
+
+  void section() {
+    const std::string name = lower(text_.word("a section"));
+    if (name == "points") {
+      if (points_.has_value()) text_.fail("a second section of points");
+      points_ = text_.count("points", binary_ ? 3 : 6);
+      data("points", *points_, 3, type());
+    } else if (name == "cells") {
+      read_cells();
+    } else if (name == "cell_types") {
+      read_types();
+    } else if (name == "point_data" || name == "cell_data") {
+      const auto owners = name == "point_data" ? points_ : cell_count();
+      owner_ = name == "point_data" ? Owner::points : Owner::cells;
+      items_ = static_cast<std::uint64_t>(text_.integer("a number of items", 0, INT64_MAX));
+      if (!owners.has_value() || *owners != items_)
+        text_.fail("the number of data items is not that of the points or cells");
+    } else if (name == "metadata") {
+      metadata();
+    } else {
+      attribute(name);
+    }
+  }
+
+  void attribute(const std::string& name) {
+    if (name == "field") return field();
+    if (name == "lookup_table") return lookup_table();
+    take_name(short_word("the name of an array"));
+    if (name == "color_scalars") {
+      const auto components = static_cast<std::uint64_t>(text_.integer("a number of components", 1, 4));
+      return binary_ ? data(name, items_, components, find_type("unsigned_char"))
+                     : data(name, items_, components, find_type("float"));
+    }
+    if (name == "texture_coordinates") {
+      const auto dimension = static_cast<std::uint64_t>(text_.integer("a dimension", 1, 3));
+      return data(name, items_, dimension, type());
+    }
+    const NumberType& kind = type();
+    if (name == "scalars") {
+      std::uint64_t components = 1;
+      if (!text_.line_ends()) components = static_cast<std::uint64_t>(text_.integer("a number of components", 1, 4));
+      if (lower(text_.word("LOOKUP_TABLE")) != "lookup_table") text_.fail("LOOKUP_TABLE should stand here");
+      short_word("the name of a table");
+      return data(name, items_, components, kind);
+    }
+    if (name == "vectors" || name == "normals") return data(name, items_, 3, kind);
+    if (name == "tensors") return data(name, items_, 9, kind);
+    if (name == "tensors6") return data(name, items_, 6, kind);
+    if (name == "global_ids" || name == "pedigree_ids" || name == "edge_flags") return data(name, items_, 1, kind);
+    text_.fail(fmt::format("'{}' is not a section of a legacy VTK file", name.substr(0, 40)));
+  }
+
+  /// VTK keeps one table of arrays for the points, one for the cells and one for the file, and of two arrays of one
+  /// name the last.
+  void take_name(std::string_view word) {
+    static constexpr std::array<std::string_view, 3> places = {"of the file", "at the points", "at the cells"};
+    const auto owner = static_cast<std::size_t>(owner_);
+    const std::string name = checked_text(word);
+    if (!names_[owner].insert(name).second) {
+      text_.fail(
+          fmt::format("a second array '{}' {}: each needs a name of its own", name.substr(0, 60), places[owner]));
+    }
+  }
+
+  /// VTK reads 255 characters of a word, and the rest as the next one.
+  std::string_view short_word(std::string_view what) {
+    const std::string_view word = text_.word(what);
+    if (word.size() > 255) text_.fail(fmt::format("{} has more than 255 characters", what));
+    return word;
+  }
+
+  [[nodiscard]] std::string checked_text(std::string_view word) const {
+    const std::optional<std::string> text = decoded(word);
+    if (!text.has_value()) text_.fail("a '%' in a name or text is not followed by the two digits of a character");
+    return *text;
+  }
+
+  void field() {
+    short_word("the name of a field");
+    const std::size_t arrays = text_.count("arrays", 1);
+    for (std::size_t i = 0; i < arrays; ++i) {
+      if (lower(text_.peek()).starts_with("metadata")) metadata();  // VTK looks at eight letters
+      const std::string_view name = short_word("the name of an array");
+      if (name == "NULL_ARRAY") continue;
+      take_name(name);
+      const auto components = static_cast<std::uint64_t>(text_.integer("a number of components", 0, INT32_MAX));
+      const auto items = static_cast<std::uint64_t>(text_.integer("a number of items", 0, INT64_MAX));
+      if (lower(text_.peek()) == "string") {
+        text_.word("a type");
+        texts(items, components);
+      } else {
+        data(name, items, components, type());
+      }
+    }
+  }
+
+  /// Texts: in ASCII one on a line; in binary each behind its length.
+  void texts(std::uint64_t items, std::uint64_t components) {
+    components_ = 1;
+    text_.check_count("texts", items, 1);
+    if (components != 1) text_.fail("an array of texts must have one component");
+    sizes_.vtk += 64 * items;
+    text_.line();
+    for (std::uint64_t i = 0; i < items; ++i) {
+      if (!binary_) {
+        if (text_.left() == 0) text_.fail("the file ends within an array of texts; it is truncated");
+        (void)checked_text(text_.line());
+        continue;
+      }
+      text_.raw(text_length(), "an array of texts");
+    }
+  }
+
+  /// The two highest bits of the first byte say how many bytes hold the length: 3 one, 2 two, 1 four, 0 eight.
+  std::size_t text_length() {
+    const auto first = static_cast<unsigned char>(text_.raw(1, "a text's length")[0]);
+    std::size_t length = first & 0x3fU;
+    for (std::size_t more = (std::size_t{1} << (3U - (first >> 6U))) - 1; more > 0; --more) {
+      length = (length << 8U) | static_cast<unsigned char>(text_.raw(1, "a text's length")[0]);
+    }
+    return length;
+  }
+
+  void lookup_table() {
+    short_word("the name of a table");
+    const std::size_t size = text_.count("colours", binary_ ? 4 : 8);
+    data("colours", size, 4, find_type(binary_ ? "unsigned_char" : "float"));
+  }
+
+  /// Behind an array: lines up to an empty one. VTK goes by the number of components and by the keys it knows, over
+  /// empty lines as well: so only what it surely reads in the same way is taken.
+  void metadata() {
+    text_.line();
+    while (text_.left() > 0) {
+      const std::string line = lower(text_.line());
+      if (line.empty()) return;
+      if (line.starts_with("component_names")) {
+        for (std::uint64_t k = 0; k < components_; ++k) {
+          if (text_.left() == 0) text_.fail("the file ends within the names of components; it is truncated");
+          (void)checked_text(text_.line());
+        }
+      } else if (line.starts_with("information ")) {
+        FileText count(std::string_view(line).substr(12));
+        const std::int64_t keys = count.integer("a number of keys", 0, INT32_MAX);
+        for (std::int64_t k = 0; k < keys; ++k) information();
+      } else {
+        text_.fail(fmt::format("'{}' is not known in METADATA", line.substr(0, 40)));
+      }
+    }
+  }
+
+  /// One key of an array, with its value.
+  void information() {
+    if (text_.word("NAME") != "NAME") text_.fail("NAME should stand here");
+    const std::string_view key = short_word("a key");
+    if (text_.word("LOCATION") != "LOCATION") text_.fail("LOCATION should stand here");
+    const bool known = short_word("a class") == "vtkDataArray" && text_.line().empty();
+    const bool range = key == "L2_NORM_RANGE" || key == "L2_NORM_FINITE_RANGE";
+    if (!known || (!range && key != "UNITS_LABEL"))
+      text_.fail(fmt::format("the key '{}' is not known in METADATA", key.substr(0, 40)));
+    if (text_.word("DATA") != "DATA") text_.fail("DATA should stand here");
+    if (range) {
+      text_.integer("the number of a range's ends", 2, 2);
+      for (int end = 0; end < 2; ++end) text_.number("a range's end");
+    } else {
+      if (text_.line_ends()) text_.fail("a unit should stand here");
+      (void)checked_text(short_word("a unit"));
+    }
+    if (!text_.line().empty()) text_.fail("the line should end behind a key's value");
+  }
+
+  const NumberType& find_type(std::string_view name) {
+    const std::string wanted = lower(name);
+    const auto* found =
+        std::find_if(number_types.begin(), number_types.end(), [&](const NumberType& t) { return t.name == wanted; });
+    if (found == number_types.end())
+      text_.fail(fmt::format("'{}' is not a type of numbers that can be read", wanted.substr(0, 40)));
+    return *found;
+  }
+  const NumberType& type() { return find_type(text_.word("a type of numbers")); }
+
+  /// Walks over items x components numbers.
+  void data(std::string_view what, std::uint64_t items, std::uint64_t components, const NumberType& kind) {
+    text_.check_count(what, items, 1);
+    text_.check_count(what, components, 1);
+    if (components != 0 && items > UINT64_MAX / components) text_.fail("an array is too large");
+    const std::uint64_t n = items * components;
+    components_ = components;
+    sizes_.values += n;
+    sizes_.vtk += n * std::max<std::size_t>(kind.bytes, 1);
+    if (binary_) {
+      text_.line();
+      const std::uint64_t bytes = kind.bytes == 0 ? n / 8 + (n % 8 != 0 ? 1 : 0) : n;
+      text_.check_count(what, bytes, std::max<std::size_t>(kind.bytes, 1));
+      text_.raw(bytes * std::max<std::size_t>(kind.bytes, 1), what);
+      return;
+    }
+    text_.check_count(what, n, 1);
+    for (std::uint64_t i = 0; i < n; ++i) {
+      if (!kind.real) {
+        text_.integer(what, kind.low, kind.high);
+      } else if (const double x = text_.number(what); !(x - x == 0.0)) {
+        text_.fail(fmt::format("a number of {} is not finite", what));
+      }
+    }
+  }
+
+  std::vector<std::int64_t> integers(std::string_view what, std::size_t n, const NumberType& kind) {
+    if (kind.real || kind.bytes < 4) text_.fail("a type of whole numbers of 4 or 8 bytes should stand here");
+    text_.check_count(what, n, binary_ ? kind.bytes : 2);
+    components_ = 1;
+    std::vector<std::int64_t> out;
+    out.reserve(n);
+    if (!binary_) {
+      for (std::size_t i = 0; i < n; ++i) out.push_back(text_.integer(what, kind.low, kind.high));
+      return out;
+    }
+    text_.line();
+    const std::string_view raw = text_.raw(n * kind.bytes, what);
+    for (std::size_t i = 0; i < n; ++i) {
+      std::uint64_t value = 0;
+      for (std::size_t b = 0; b < kind.bytes; ++b) {
+        value = (value << 8U) | static_cast<unsigned char>(raw[i * kind.bytes + b]);
+      }
+      out.push_back(kind.bytes == 8
+                        ? static_cast<std::int64_t>(value)
+                        : static_cast<std::int64_t>(static_cast<std::int32_t>(static_cast<std::uint32_t>(value))));
+    }
+    return out;
+  }
+
+  [[nodiscard]] std::optional<std::size_t> cell_count() const {
+    return cells_.has_value() ? std::optional(cells_->offsets.size() - 1) : std::nullopt;
+  }
+
+  void read_cells() {
+    if (cells_.has_value()) text_.fail("a second section of cells");
+    const std::size_t first = text_.count("cells", 1);
+    const std::size_t second = text_.count("corners", 1);
+    Cells cells;
+    if (with_offsets_) {
+      if (lower(text_.word("OFFSETS")) != "offsets") text_.fail("OFFSETS should stand here");
+      cells.offsets = integers("offsets", first, type());
+      if (lower(text_.word("CONNECTIVITY")) != "connectivity") text_.fail("CONNECTIVITY should stand here");
+      cells.points = integers("corners", second, type());
+      if (cells.offsets.empty() || cells.offsets.front() != 0 ||
+          !std::is_sorted(cells.offsets.begin(), cells.offsets.end()) ||
+          cells.offsets.back() != static_cast<std::int64_t>(second)) {
+        text_.fail("the cells' offsets do not ascend from 0 to the number of corners");
+      }
+    } else {
+      const auto stream = integers("corners", second, find_type("int"));
+      cells.offsets.reserve(first + 1);
+      cells.points.reserve(second);
+      cells.offsets.push_back(0);
+      for (std::size_t at = 0; at < stream.size();) {
+        const std::int64_t n = stream[at++];
+        if (n < 0 || n > static_cast<std::int64_t>(stream.size() - at)) {
+          text_.fail(fmt::format("cell {} has {} corners, more than the section holds", cells.offsets.size() - 1, n));
+        }
+        cells.points.insert(cells.points.end(), stream.begin() + static_cast<std::ptrdiff_t>(at),
+                            stream.begin() + static_cast<std::ptrdiff_t>(at) + n);
+        cells.offsets.push_back(static_cast<std::int64_t>(cells.points.size()));
+        at += static_cast<std::size_t>(n);
+      }
+      if (cells.offsets.size() != first + 1) text_.fail("the number of cells is not the one announced");
+    }
+    cells_ = std::move(cells);
+  }
+
+  void read_types() {
+    if (typed_) text_.fail("a second section of cell types");
+    const std::size_t n = text_.count("cell types", binary_ ? 4 : 2);
+    if (!cells_.has_value() || cells_->offsets.size() != n + 1)
+      text_.fail("the number of cell types is not that of the cells");
+    const auto types = integers("cell types", n, find_type("int"));
+    for (std::size_t c = 0; c < n; ++c) {
+      if (types[c] < 0 || types[c] > 255) text_.fail(fmt::format("cell {} has the unknown type {}", c, types[c]));
+      const auto begin = static_cast<std::size_t>(cells_->offsets[c]);
+      const auto size = static_cast<std::size_t>(cells_->offsets[c + 1]) - begin;
+      if (types[c] == 42 && !is_face_stream({cells_->points.data() + begin, size})) {
+        text_.fail(fmt::format("the faces of polyhedron {} do not fit its numbers", c));
+      }
+    }
+    typed_ = true;
+  }
+
+  FileText text_;
+  bool binary_ = false;
+  bool with_offsets_ = false;
+  bool typed_ = false;
+  std::optional<std::size_t> points_;
+  std::optional<Cells> cells_;
+  std::uint64_t items_ = 0;
+  std::uint64_t components_ = 1;  // of the last array
+  enum class Owner : std::uint8_t { file, points, cells } owner_ = Owner::file;
+  std::array<std::set<std::string>, 3> names_;  // by owner
+  ReadSizes sizes_;
+};
+
+}  // namespace
+
+void check_legacy_vtk(std::string_view content, std::uint64_t max_memory) {
+  check_memory(memory_of_vtk(LegacyChecker(content).run()), max_memory);
+}
+
+}  // namespace dartcast

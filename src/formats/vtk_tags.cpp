@@ -1,0 +1,126 @@
+#include "formats/vtk_tags.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkFieldData.h>
+#include <vtkStringArray.h>
+#include <vtkUnstructuredGrid.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <utility>
+
+#include "dartcast/error.hpp"
+
+namespace dartcast {
+namespace {
+
+/// Tags of the rows of an array, and the names of those that are texts.
+struct Tags {
+  std::vector<std::int32_t> values;
+  std::map<std::int32_t, std::string> names;
+};
+
+/// Whether the array's values can be tags: whole numbers of 32 bits, or texts, one each.
+bool are_tags(vtkAbstractArray* array, const std::vector<std::uint32_t>& rows) {
+  if (array == nullptr || array->GetNumberOfComponents() != 1) return false;
+  if (vtkStringArray::SafeDownCast(array) != nullptr) return true;
+  auto* numbers = vtkDataArray::SafeDownCast(array);
+  return numbers != nullptr && std::all_of(rows.begin(), rows.end(), [&](std::uint32_t row) {
+           const double x = numbers->GetComponent(row, 0);
+           return std::abs(x) <= INT32_MAX && x == std::floor(x);
+         });
+}
+
+/// Texts get tags from 1 on, by their first row; an empty one 0. Precondition: are_tags().
+Tags tags_of(vtkAbstractArray& array, const std::vector<std::uint32_t>& rows) {
+  Tags tags;
+  auto* texts = vtkStringArray::SafeDownCast(&array);
+  std::map<std::string, std::int32_t> known = {{"", 0}};
+  for (const std::uint32_t row : rows) {
+    if (texts == nullptr) {
+      tags.values.push_back(static_cast<std::int32_t>(vtkDataArray::SafeDownCast(&array)->GetComponent(row, 0)));
+      continue;
+    }
+    const auto [found, fresh] = known.try_emplace(texts->GetValue(row), static_cast<std::int32_t>(known.size()));
+    if (fresh) tags.names[found->second] = found->first;
+    tags.values.push_back(found->second);
+  }
+  return tags;
+}
+
+/// Names written as "tag name".
+std::map<std::int32_t, std::string> written_names(vtkUnstructuredGrid& grid, const char* array_name) {
+  std::map<std::int32_t, std::string> names;
+  auto* array = vtkStringArray::SafeDownCast(grid.GetFieldData()->GetAbstractArray(array_name));
+  for (vtkIdType i = 0; array != nullptr && i < array->GetNumberOfValues(); ++i) {
+    const std::string text = array->GetValue(i);
+    const std::size_t space = text.find(' ');
+    if (space == std::string::npos || space == 0 || space > 11) continue;
+    const long tag = std::strtol(text.c_str(), nullptr, 10);
+    if (std::abs(tag) <= INT32_MAX) names[static_cast<std::int32_t>(tag)] = text.substr(space + 1);
+  }
+  return names;
+}
+
+/// Regions, and by the same array patches.
+void copy_regions(vtkUnstructuredGrid& grid, const Places& places, MeshData& mesh) {
+  for (const char* name : {"region", "gmsh:physical", "medit:ref"}) {
+    vtkDataArray* array = grid.GetCellData()->GetArray(name);
+    if (!are_tags(array, places.cells) || !are_tags(array, places.faces)) continue;
+    mesh.regions = tags_of(*array, places.cells).values;
+    mesh.patch_tags = tags_of(*array, places.faces).values;
+    break;
+  }
+  mesh.region_names = written_names(grid, "region_names");
+  mesh.patch_names = written_names(grid, "patch_names");
+}
+
+[[noreturn]] void refuse_patches(vtkUnstructuredGrid& grid, const std::string& name, const std::string& why) {
+  std::vector<std::string> known;
+  for (int a = 0; a < grid.GetCellData()->GetNumberOfArrays(); ++a) {
+    const char* other = grid.GetCellData()->GetAbstractArray(a)->GetName();
+    known.emplace_back(other == nullptr ? "" : other);
+  }
+  throw InvalidMesh(fmt::format("patches from the cell array '{}': {}; the cell arrays are: {}", name, why,
+                                known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))));
+}
+
+vtkAbstractArray& array_of_patches(vtkUnstructuredGrid& grid, const Places& places, const std::string& name) {
+  vtkAbstractArray* array = grid.GetCellData()->GetAbstractArray(name.c_str());
+  if (array == nullptr) refuse_patches(grid, name, "there is no such array");
+  if (places.faces.empty())
+    refuse_patches(grid, name,
+                   "the file has no boundary cells (triangles, quadrilaterals or polygons; in the plane lines): write "
+                   "them too, or divide the walls with patches = { angle = 30 }");
+  if (!are_tags(array, places.faces))
+    refuse_patches(grid, name, "its values at boundary cells must be whole numbers of 32 bits, or texts, one each");
+  return *array;
+}
+
+}  // namespace
+
+bool copy_tags(vtkUnstructuredGrid& grid, const Places& places, const std::string& patch_array, MeshData& mesh) {
+  copy_regions(grid, places, mesh);
+  if (!patch_array.empty()) {
+    Tags tags = tags_of(array_of_patches(grid, places, patch_array), places.faces);
+    mesh.patch_tags = std::move(tags.values);
+    if (patch_array != "patch" || !tags.names.empty()) mesh.patch_names = std::move(tags.names);
+  }
+  vtkAbstractArray* array = grid.GetCellData()->GetAbstractArray("patch");
+  if (places.faces.empty() || !are_tags(array, places.faces)) return false;
+  if (patch_array.empty()) {
+    Tags tags = tags_of(*array, places.faces);
+    mesh.patch_tags = std::move(tags.values);
+    if (!tags.names.empty()) mesh.patch_names = std::move(tags.names);
+  }
+  auto* numbers = vtkDataArray::SafeDownCast(array);
+  return numbers != nullptr && std::all_of(places.cells.begin(), places.cells.end(),
+                                           [&](std::uint32_t row) { return numbers->GetComponent(row, 0) == 0.0; });
+}
+
+}  // namespace dartcast

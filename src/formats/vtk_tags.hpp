@@ -1,0 +1,26 @@
+// Regions and patches of a VTK grid, from its arrays at cells.
+#pragma once
+
+#include <vtkUnstructuredGrid.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "dartcast/mesh_data.hpp"
+
+namespace dartcast {
+
+/// What becomes of the cells of the file.
+struct Places {
+  std::vector<std::uint32_t> cells;  ///< per cell here: its index in the file; so for faces and edges
+  std::vector<std::uint32_t> faces;
+  std::vector<std::uint32_t> edges;
+};
+
+/// Sets the regions of the cells and the tags of the patch faces, with their names. `patch_array`: see
+/// ReadOptions::patch_array. Returns whether the cell array `patch` is one that write_vtu() adds: it says nothing of
+/// the cells. Throws InvalidMesh where the array that is asked for cannot be used, naming those that there are.
+bool copy_tags(vtkUnstructuredGrid& grid, const Places& places, const std::string& patch_array, MeshData& mesh);
+
+}  // namespace dartcast

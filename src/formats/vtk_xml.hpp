@@ -1,0 +1,39 @@
+// The pieces, sections and arrays of one of VTK's XML files, read without trust before VTK reads them.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/vtu_array.hpp"
+
+namespace dartcast {
+
+/// Sections are Points, PointData and CellData, and those of cells: Cells of an UnstructuredGrid; Verts, Lines, Strips
+/// and Polys of PolyData.
+struct VtkXmlPiece {
+  std::map<std::string, std::uint64_t, std::less<>> items;             ///< points or cells by section, as announced
+  std::map<std::string, std::vector<VtuArray>, std::less<>> sections;  ///< the arrays of each section there is
+
+  [[nodiscard]] std::uint64_t points() const { return items.at("Points"); }
+  [[nodiscard]] std::uint64_t cells() const;
+  /// The arrays of a section; none where it is missing.
+  [[nodiscard]] const std::vector<VtuArray>& arrays(std::string_view section) const;
+};
+
+struct VtkXmlFile {
+  VtuEncoding encoding;
+  std::vector<VtkXmlPiece> pieces;
+  std::vector<VtuArray> field;
+};
+
+/// Reads all tags of a file of this kind, "UnstructuredGrid" or "PolyData". VTK finds sections and arrays by their
+/// names and by their order, and reads on where none is found: so a section must stand where it belongs, once, and hold
+/// nothing but arrays; each array must have a name of its own in its section; all pieces must have the same arrays at
+/// points and cells. Throws InvalidMesh, with the line or the array, where that does not hold, where a tag is damaged,
+/// or where the file is of another kind. Sizes and data are not looked at.
+VtkXmlFile read_vtk_xml(std::string_view content, std::string_view kind);
+
+}  // namespace dartcast

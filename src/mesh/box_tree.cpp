@@ -1,0 +1,47 @@
+#include "mesh/box_tree.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace dartcast {
+
+Box join(const Box& a, const Box& b) {
+  return {{std::min(a.low.x, b.low.x), std::min(a.low.y, b.low.y), std::min(a.low.z, b.low.z)},
+          {std::max(a.high.x, b.high.x), std::max(a.high.y, b.high.y), std::max(a.high.z, b.high.z)}};
+}
+
+bool overlap(const Box& a, const Box& b) {
+  return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y &&
+         a.low.z <= b.high.z && b.low.z <= a.high.z;
+}
+
+BoxTree::BoxTree(std::vector<Box> boxes) : boxes_(std::move(boxes)), order_(boxes_.size()) {
+  constexpr std::uint32_t leaf_size = 4;
+  if (boxes_.empty()) return;
+  std::iota(order_.begin(), order_.end(), 0U);
+  nodes_.push_back({{}, 0, static_cast<std::uint32_t>(order_.size())});
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    Node node = nodes_[n];
+    node.box = boxes_[order_[node.begin]];
+    for (std::uint32_t i = node.begin + 1; i < node.end; ++i) node.box = join(node.box, boxes_[order_[i]]);
+    if (node.end - node.begin > leaf_size) {
+      const Vec3 size = node.box.high - node.box.low;
+      double Vec3::*axis =
+          size.x >= size.y ? (size.x >= size.z ? &Vec3::x : &Vec3::z) : (size.y >= size.z ? &Vec3::y : &Vec3::z);
+      const std::uint32_t middle = node.begin + (node.end - node.begin) / 2;
+      std::nth_element(order_.begin() + node.begin, order_.begin() + middle, order_.begin() + node.end,
+                       [&](std::uint32_t a, std::uint32_t b) {
+                         const double x = boxes_[a].low.*axis + boxes_[a].high.*axis;
+                         const double y = boxes_[b].low.*axis + boxes_[b].high.*axis;
+                         return x != y ? x < y : a < b;
+                       });
+      node.child = static_cast<std::uint32_t>(nodes_.size());
+      nodes_.push_back({{}, node.begin, middle});
+      nodes_.push_back({{}, middle, node.end});
+    }
+    nodes_[n] = node;
+  }
+}
+
+}  // namespace dartcast

@@ -1,0 +1,66 @@
+#include "dartcast/mesh_selection.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <set>
+#include <string_view>
+
+#include "dartcast/error.hpp"
+
+namespace dartcast {
+namespace {
+
+std::int32_t tag_at(const MeshData& mesh, std::size_t c) { return mesh.regions.empty() ? 0 : mesh.regions[c]; }
+
+std::string name_of(const MeshData& mesh, std::int32_t tag) {
+  const auto name = mesh.region_names.find(tag);
+  return name == mesh.region_names.end() ? std::to_string(tag) : fmt::format("{} ({})", name->second, tag);
+}
+
+}  // namespace
+
+void select_free_regions(MeshData& mesh, std::span<const std::string> regions) {
+  std::set<std::int32_t> present;
+  for (std::size_t c = 0; c < mesh.cell_count(); ++c) present.insert(tag_at(mesh, c));
+  std::set<std::int32_t> wanted;
+  for (const std::string& region : regions) {
+    const std::size_t before = wanted.size();
+    for (const std::int32_t tag : present) {
+      const auto name = mesh.region_names.find(tag);
+      const bool named = name != mesh.region_names.end() && name->second == region;
+      if (named || std::to_string(tag) == region) wanted.insert(tag);
+    }
+    if (wanted.size() == before) {
+      std::vector<std::string> names;
+      for (const std::int32_t tag : present) names.push_back(name_of(mesh, tag));
+      throw InvalidMesh(
+          fmt::format("the mesh has no region '{}'; its regions are: {}", region, fmt::join(names, ", ")));
+    }
+  }
+  std::vector<std::uint8_t> free(mesh.cell_count());
+  for (std::size_t c = 0; c < free.size(); ++c) free[c] = wanted.count(tag_at(mesh, c)) > 0 ? 1 : 0;
+  mesh.free = std::move(free);
+}
+
+void select_free_values(MeshData& mesh, const std::string& array, std::span<const double> values) {
+  const auto found = std::find_if(mesh.cell_data.begin(), mesh.cell_data.end(),
+                                  [&](const DataArray& a) { return a.name == array && a.components == 1; });
+  if (found == mesh.cell_data.end()) {
+    std::vector<std::string> names;
+    for (const DataArray& a : mesh.cell_data) names.push_back(a.name);
+    throw InvalidMesh(fmt::format("the mesh has no cell array '{}' of one component; its cell arrays are: {}", array,
+                                  names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+  }
+  std::vector<std::uint8_t> free(mesh.cell_count());
+  for (std::size_t c = 0; c < free.size(); ++c) {
+    free[c] = std::find(values.begin(), values.end(), found->values[c]) != values.end() ? 1 : 0;
+  }
+  if (std::find(free.begin(), free.end(), 1) == free.end()) {
+    throw InvalidMesh(fmt::format("no cell has one of the values {} in array '{}'", fmt::join(values, ", "), array));
+  }
+  mesh.free = std::move(free);
+}
+
+}  // namespace dartcast

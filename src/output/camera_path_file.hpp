@@ -1,0 +1,15 @@
+// A camera's path as a file for ParaView.
+#pragma once
+
+#include <filesystem>
+
+#include "catheter/camera_path.hpp"
+
+namespace dartcast {
+
+/// Writes a .vtp: one polyline through the cameras with the point arrays "direction" (3), "up" (3) and "arc_length"
+/// (1), doubles. Throws InvalidArgument where the path has no camera or the name does not end in .vtp; Error where the
+/// file cannot be written.
+void write_camera_path(const CameraPath& path, const std::filesystem::path& file);
+
+}  // namespace dartcast

@@ -1,0 +1,310 @@
+#include "output/checkpoint.hpp"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <span>
+#include <string_view>
+#include <type_traits>
+
+#include "dartcast/error.hpp"
+#include "formats/file_text.hpp"
+#include "output/summary.hpp"
+#include "formats/write_mesh.hpp"
+
+namespace dartcast {
+
+namespace {
+
+constexpr std::uint64_t magic = 0x33706b6374726164U;  // "dartckp3" on a machine of this byte order
+
+// Mixes in 8 bytes at a time. It finds damage and changes, not forgery.
+std::uint64_t digest(std::string_view bytes, std::uint64_t start = 0) {
+  std::uint64_t h = start ^ (bytes.size() * 0x9e3779b97f4a7c15U);
+  for (std::size_t i = 0; i < bytes.size(); i += 8) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes.data() + i, std::min<std::size_t>(8, bytes.size() - i));
+    h = (h ^ word) * 0xbf58476d1ce4e5b9U;
+    h ^= h >> 29U;
+  }
+  return h;
+}
+
+template <class T>
+std::string_view bytes_of(const std::vector<T>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+}
+
+// A file is a sequence of plain values. Writer and CheckpointReader go through the same list of them, below.
+class Writer {
+ public:
+  template <class T>
+  void value(T& v) {
+    static_assert(std::is_arithmetic_v<T> && !std::is_same_v<T, bool>);
+    text_.append(reinterpret_cast<const char*>(&v), sizeof v);
+  }
+  template <class T, class Each>
+  void list(std::vector<T>& values, Each&& each) {
+    std::uint64_t count = values.size();
+    value(count);
+    for (T& v : values) each(v);
+  }
+  void characters(std::string& s) {
+    std::uint64_t count = s.size();
+    value(count);
+    text_ += s;
+  }
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+class CheckpointReader {
+ public:
+  explicit CheckpointReader(std::string_view text) : text_(text) {}
+
+  template <class T>
+  void value(T& v) {
+    static_assert(std::is_arithmetic_v<T> && !std::is_same_v<T, bool>);
+    need(sizeof v);
+    std::memcpy(&v, text_.data(), sizeof v);
+    text_.remove_prefix(sizeof v);
+  }
+  template <class T, class Each>
+  void list(std::vector<T>& values, Each&& each) {
+    std::uint64_t count = 0;
+    value(count);
+    need(count);  // every entry takes a byte at least
+    values.assign(count, T{});
+    for (T& v : values) each(v);
+  }
+  void characters(std::string& s) {
+    std::uint64_t count = 0;
+    value(count);
+    need(count);
+    s = text_.substr(0, count);
+    text_.remove_prefix(count);
+  }
+  [[nodiscard]] bool at_end() const { return text_.empty(); }
+
+ private:
+  void need(std::uint64_t bytes) const {
+    if (bytes > text_.size()) throw Error("it ends too early");
+  }
+
+  std::string_view text_;
+};
+
+template <class Archive, class... Values>
+void values(Archive& a, Values&... v) {
+  (a.value(v), ...);
+}
+
+// A value that is kept as another type.
+template <class As, class Archive, class T>
+void value_as(Archive& a, T& v) {
+  As as = static_cast<As>(v);
+  a.value(as);
+  v = static_cast<T>(as);
+}
+
+template <class Archive>
+void fields(Archive& a, RunIdentity& r) {
+  a.characters(r.version);
+  values(a, r.scene, r.mesh, r.seed);
+}
+
+template <class Archive>
+void fields(Archive& a, Vec3& v) {
+  values(a, v.x, v.y, v.z);
+}
+
+template <class Archive>
+void fields(Archive& a, State& s) {
+  fields(a, s.position);
+  values(a, s.cell.value, s.simplex, s.touching_count);
+  value_as<std::uint8_t>(a, s.held);
+  for (CellFace& f : s.touching) values(a, f.cell.value, f.face);
+}
+
+template <class Archive>
+void fields(Archive& a, Weights& weights) {
+  for (double& w : weights) a.value(w);
+}
+
+template <class Archive>
+void fields(Archive& a, FlowCheckpoint::Particle& p) {
+  a.value(p.id);
+  fields(a, p.state);
+  fields(a, p.held_weights);
+  fields(a, p.velocity);
+  value_as<std::uint8_t>(a, p.fate);
+  values(a, p.contacts, p.radius);
+  if (p.fate > Fate::escaped) throw Error("a particle has no such fate");
+}
+
+template <class Archive>
+void fields(Archive& a, Counters& c) {
+  values(a, c.particle_steps, c.orientation.tests, c.orientation.exact);
+  for (std::uint64_t& n : c.histogram) a.value(n);
+  values(a, c.forecast_kept, c.updated_by_deformation, c.steps_split);
+  for (std::uint64_t& n : c.contacts) a.value(n);
+  a.value(c.unfinished);
+}
+
+template <class Archive>
+void fields(Archive& a, CollisionCounts& c) {
+  values(a, c.pairs_tested, c.pairs_near, c.pairs_touching, c.walls_touching, c.overlaps, c.deepest);
+}
+
+template <class Archive>
+void fields(Archive& a, KeptImpulse& k) {
+  values(a, k.a, k.b);
+  fields(a, k.normal);
+  a.value(k.along);
+  fields(a, k.across);
+}
+
+template <class Archive>
+void fields(Archive& a, FlowTotals& t) {
+  values(a, t.start, t.injected, t.absorbed, t.escaped);
+  fields(a, t.counters);
+  fields(a, t.collisions);
+  values(a, t.wall_overlaps, t.deepest_in_wall);
+  a.list(t.contacts_by_patch, [&](std::uint64_t& n) { a.value(n); });
+  values(a, t.seconds_detect, t.seconds_deform, t.seconds_collide, t.seconds_respond);
+}
+
+template <class Archive>
+void fields(Archive& a, EventReport& e) {
+  values(a, e.kind, e.step, e.time, e.cells_removed, e.cells_added, e.cells_opened, e.cells_blocked, e.cells_whole,
+         e.particles_in_opened, e.particles_touched, e.particles_located, e.particles_moved, e.particles_held,
+         e.particles_absorbed, e.boundary_shift, e.seconds);
+  if (e.kind >= std::size(event_kind_names)) throw Error("an event has no such kind");
+}
+
+template <class Archive>
+void fields(Archive& a, SurgeryLog& log) {
+  a.list(log.changes, [&](SurgeryLog::Change& c) { values(a, c.step, c.event, c.what); });
+  a.list(log.events, [&](EventReport& e) { fields(a, e); });
+  values(a, log.mended, log.left, log.subdivided, log.merged, log.refused, log.in_opened);
+}
+
+template <class Archive>
+void fields(Archive& a, Fit& f) {
+  a.value(f.rotation.w);
+  for (Vec3* v : {&f.rotation.v, &f.centre, &f.transform.x, &f.transform.y, &f.transform.z}) fields(a, *v);
+  a.value(f.strain);
+}
+
+template <class Archive>
+void fields(Archive& a, Bodies::Checkpoint::Particle& p) {
+  fields(a, p.state);
+  fields(a, p.held_weights);
+  fields(a, p.velocity);
+  value_as<std::uint8_t>(a, p.fate);
+  for (CellFace& f : p.on.face) values(a, f.cell.value, f.face);
+  a.value(p.on.count);
+  if (p.fate > Fate::escaped || p.on.count > p.on.face.size()) throw Error("a body's particle has no such state");
+}
+
+template <class Archive>
+void fields(Archive& a, SolidsCheckpoint& c) {
+  a.value(c.bodies.steps);
+  fields(a, c.bodies.counters);
+  a.list(c.bodies.ids, [&](std::uint32_t& id) { a.value(id); });
+  a.list(c.bodies.fits, [&](Fit& f) { fields(a, f); });
+  a.list(c.bodies.particles, [&](Bodies::Checkpoint::Particle& p) { fields(a, p); });
+  a.list(c.catheters, [&](CatheterCheckpoint& k) {
+    a.list(k.states, [&](State& s) { fields(a, s); });
+    a.list(k.held_weights, [&](Weights& w) { fields(a, w); });
+    values(a, k.inserted, k.turned);
+    fields(a, k.direction);
+    fields(a, k.reference);
+  });
+  a.list(c.catheter_totals, [&](CatheterTotals& t) { values(a, t.worst_segment, t.refused); });
+}
+
+template <class Archive>
+void fields(Archive& a, Checkpoint& c) {
+  fields(a, c.run);
+  std::uint64_t random = c.flow.random.state();
+  StateHash::Words gone = c.flow.gone.words();
+  values(a, c.flow.steps, c.flow.next_id, random, gone[0], gone[1]);
+  c.flow.random = Random::from_state(random);
+  c.flow.gone = StateHash(gone);
+  a.list(c.flow.particles, [&](FlowCheckpoint::Particle& p) { fields(a, p); });
+  fields(a, c.flow.totals);
+  a.list(c.flow.impulses, [&](KeptImpulse& k) { fields(a, k); });
+  values(a, c.recording.stats_bytes, c.recording.contacts_bytes);
+  a.list(c.recording.frames, [&](RecordingFrame& f) { values(a, f.step, f.time); });
+  fields(a, c.surgery);
+  values(a, c.held, c.audited);
+  fields(a, c.solids);
+  values(a, c.solids_recording.bodies_bytes, c.solids_recording.catheters_bytes);
+}
+
+void check_same(const RunIdentity& saved, const RunIdentity& run) {
+  const auto differs = [](const std::string& what) {
+    throw Error(what + "; undo the change, or run without --resume");
+  };
+  if (saved.version != run.version) differs(fmt::format("it is of version {}, this is {}", saved.version, run.version));
+  if (saved.scene != run.scene) differs("the scene has changed since (for more steps use --steps)");
+  if (saved.mesh != run.mesh) differs("the mesh has changed since");
+  if (saved.seed != run.seed) differs(fmt::format("it was run with seed {}, not {}", saved.seed, run.seed));
+}
+
+Checkpoint parse(const std::string& text, const RunIdentity& run) {
+  std::uint64_t mark = 0;
+  std::uint64_t sum = 0;
+  CheckpointReader head(text);
+  values(head, mark, sum);
+  if (mark != magic) throw Error("this is no checkpoint of this machine's kind");
+  const std::string_view body = std::string_view(text).substr(16);
+  if (digest(body) != sum) throw Error("it is damaged");
+  CheckpointReader reader(body);
+  RunIdentity saved;  // checked first: what follows may be of another version
+  fields(reader, saved);
+  check_same(saved, run);
+  Checkpoint checkpoint;
+  CheckpointReader whole(body);
+  fields(whole, checkpoint);
+  if (!whole.at_end()) throw Error("it is longer than it says");
+  return checkpoint;
+}
+
+}  // namespace
+
+RunIdentity run_identity(const std::string& scene_text, const MeshData& mesh, std::uint64_t seed) {
+  std::uint64_t cells = digest(bytes_of(mesh.points));
+  for (const std::string_view bytes : {bytes_of(mesh.types), bytes_of(mesh.connectivity), bytes_of(mesh.free)})
+    cells = digest(bytes, cells);
+  return {version(), digest(scene_text), cells, seed};
+}
+
+void write_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint) {
+  Writer body;
+  Checkpoint copy = checkpoint;  // the list of fields is one for reading and writing
+  fields(body, copy);
+  Writer head;
+  std::uint64_t mark = magic;
+  std::uint64_t sum = digest(body.text());
+  values(head, mark, sum);
+  const std::filesystem::path beside = path.string() + ".new";
+  write_bytes(beside, head.text() + body.text());
+  std::error_code error;
+  std::filesystem::rename(beside, path, error);
+  if (error) throw Error(fmt::format("{}: the file cannot be written: {}", path.string(), error.message()));
+}
+
+std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& path, const RunIdentity& run) {
+  if (!std::filesystem::exists(path)) return std::nullopt;
+  try {
+    return parse(read_bytes(path), run);
+  } catch (const Error& e) {
+    throw Error(fmt::format("{}: the run cannot be resumed: {}", path.string(), e.what()));
+  }
+}
+
+}  // namespace dartcast

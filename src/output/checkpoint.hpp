@@ -1,0 +1,46 @@
+// Where a run can go on from: checkpoint.bin in its output folder.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "dartcast/audit.hpp"
+#include "output/recording.hpp"
+#include "output/solids_recording.hpp"
+#include "dartcast/mesh_data.hpp"
+#include "dartcast/simulation.hpp"
+#include "simulation/event_scheduler.hpp"
+
+namespace dartcast {
+
+/// What the state of a run belongs to: it can go on only where all of this is the same.
+struct RunIdentity {
+  std::string version;      ///< of the library: other versions may round elsewhere
+  std::uint64_t scene = 0;  ///< digest of the scene's text
+  std::uint64_t mesh = 0;   ///< digest of points, cells and free marks
+  std::uint64_t seed = 0;
+};
+RunIdentity run_identity(const std::string& scene_text, const MeshData& mesh, std::uint64_t seed);
+
+struct Checkpoint {
+  RunIdentity run;
+  FlowCheckpoint flow;
+  RecordingProgress recording;
+  SurgeryLog surgery;
+  std::uint64_t held = 0;  ///< in the last step
+  std::uint64_t audited = 0;
+  SolidsCheckpoint solids;
+  SolidsProgress solids_recording;
+};
+
+/// Writes the file beside its place and then puts it there: whenever a run is cut off, a whole checkpoint is left.
+/// Throws Error where it cannot be written.
+void write_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint);
+
+/// None where there is no such file. Throws Error where it is damaged, or of a run that differs from `run`: says in
+/// what.
+std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& path, const RunIdentity& run);
+
+}  // namespace dartcast

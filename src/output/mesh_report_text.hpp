@@ -1,0 +1,17 @@
+// The answer of `dartcast check`, as JSON and as text.
+#pragma once
+
+#include <string>
+
+#include "mesh/mesh_report.hpp"
+
+namespace dartcast {
+
+/// One JSON object, as the interface says, with `dimension`, `parts` and `verdict` besides; UTF-8, invalid bytes
+/// replaced.
+std::string report_json(const MeshReport& report);
+
+/// The same for people, in a few lines that end with the verdict.
+std::string report_text(const MeshReport& report);
+
+}  // namespace dartcast

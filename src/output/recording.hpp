@@ -1,0 +1,73 @@
+// The output folder of a run: frames for ParaView, tables, the scene as run.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "output/environment_record.hpp"
+#include "output/run_files.hpp"
+#include "dartcast/simulation.hpp"
+
+namespace dartcast {
+
+/// How far a recording has come: enough to go on with its files.
+struct RecordingProgress {
+  std::uint64_t stats_bytes = 0;
+  std::uint64_t contacts_bytes = 0;
+  std::vector<RecordingFrame> frames;
+};
+
+/// Writes particles.pvd with a .vtp per frame, environment.pvd with a .vtu per frame (one where nothing changes),
+/// stats.csv, contacts.csv on request, scene.toml and summary.json. Every write throws Error where it fails.
+class Recording {
+ public:
+  struct Options {
+    std::filesystem::path folder;
+    bool changes = false;  ///< the environment: a frame of it at each time
+    bool surgery = false;  ///< the table has a column for particles in opened cells
+    bool contacts = false;
+  };
+
+  /// Makes the folder, or takes over one that is empty or holds an earlier run, whose files are removed. Throws Error,
+  /// nothing changed, where the folder holds anything else. `record`: of the environment at rest.
+  Recording(Options options, EnvironmentRecord record, const std::string& scene_text);
+
+  /// Goes on with the files of an earlier run: what was written to them after `progress` is taken back. Throws Error
+  /// where a file is shorter than that. `record`: has followed the edits so far.
+  Recording(Options options, EnvironmentRecord record, const RecordingProgress& progress);
+
+  /// Adds the particles, and the environment where it deforms, as they are now.
+  void add_frame(const Flow& flow);
+  /// To be called after each edit of the environment.
+  void follow(const Environment& environment);
+  /// Adds a step's row to stats.csv, and its contacts. `in_opened`: see SurgeryLog.
+  void add_step(const Flow& flow, const FlowStep& step, std::uint64_t in_opened = 0);
+  [[nodiscard]] std::span<const RecordingFrame> frames() const { return frames_; }
+  /// Sends the tables to their files, and says how far they have come.
+  RecordingProgress progress();
+  /// Writes summary.json and ends the tables.
+  void finish(const std::string& summary_json);
+
+ private:
+  void write_particles(const Flow& flow, const std::filesystem::path& path) const;
+  void write_lists() const;
+  void write_contacts(const Flow& flow, const FlowStep& step);
+
+  Options options_;
+  std::optional<EnvironmentRecord> environment_;  // where it changes
+  RunTable stats_;
+  RunTable contacts_;
+  std::vector<RecordingFrame> frames_;
+};
+
+/// Whether a run may write to this folder: it does not exist, is empty, or holds an earlier run. Throws Error that says
+/// why not.
+void check_output_folder(const std::filesystem::path& folder);
+
+/// Makes it where it does not exist. Throws Error where that fails.
+void make_output_folder(const std::filesystem::path& folder);
+
+}  // namespace dartcast

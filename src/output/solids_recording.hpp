@@ -1,0 +1,47 @@
+// What a run writes of its bodies and catheters.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+
+#include "output/run_files.hpp"
+#include "simulation/solids.hpp"
+
+namespace dartcast {
+
+/// How far it has come: enough to go on with its files.
+struct SolidsProgress {
+  std::uint64_t bodies_bytes = 0;
+  std::uint64_t catheters_bytes = 0;
+};
+
+/// For each body a series of its particles (body_NAME_000010.vtp, body_NAME.pvd) and of the surface that follows them
+/// (surface_NAME_...); for each catheter its points (catheter_NAME_...) and, where the scene wants them, a camera's
+/// places along it (camera_NAME_...). bodies.csv and catheters.csv: a row per step and body or catheter. Every write
+/// throws Error where it fails.
+class SolidsRecording {
+ public:
+  /// The folder is there, and belongs to the run.
+  SolidsRecording(std::filesystem::path folder, const Scene& scene);
+  /// Goes on with the files of an earlier run. Throws Error where a table is shorter than it was.
+  SolidsRecording(std::filesystem::path folder, const Scene& scene, const SolidsProgress& progress);
+
+  void add_step(const Solids& solids, std::uint64_t step, double time);
+  /// `frames`: of the run, this one the last of them.
+  void add_frame(const Solids& solids, std::span<const RecordingFrame> frames);
+  SolidsProgress progress() { return {bodies_.written(), catheters_.written()}; }
+  void finish();
+
+ private:
+  void add_bodies(const Solids& solids, std::uint64_t step, double time);
+  void add_catheters(const Solids& solids, std::uint64_t step, double time);
+  void write_body(const Solids& solids, std::size_t body, std::uint64_t step) const;
+  void write_catheter(const Solids& solids, std::size_t i, std::uint64_t step) const;
+
+  std::filesystem::path folder_;
+  RunTable bodies_;
+  RunTable catheters_;
+};
+
+}  // namespace dartcast

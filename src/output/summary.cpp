@@ -1,0 +1,246 @@
+#include "output/summary.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <nlohmann/json.hpp>
+
+namespace dartcast {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double ratio(double a, double b) { return a / b; }
+double ratio(std::uint64_t a, std::uint64_t b) { return static_cast<double>(a) / static_cast<double>(b); }
+
+Json orientation_tests(const Summary& s) {
+  const Counters& c = s.totals.counters;
+  std::size_t size = c.histogram.size();
+  while (size > 1 && c.histogram[size - 1] == 0) --size;
+  Json json = {{"mean", ratio(c.orientation.tests, c.particle_steps)},
+               {"histogram", std::vector<std::uint64_t>(c.histogram.begin(),
+                                                        c.histogram.begin() + static_cast<std::ptrdiff_t>(size))}};
+  if (c.orientation.tests > 0) json["exact_share"] = ratio(c.orientation.exact, c.orientation.tests);
+  json["forecast_kept_share"] = ratio(c.forecast_kept, c.particle_steps);
+  if (s.deforms) json["updated_by_deformation_share"] = ratio(c.updated_by_deformation, c.particle_steps);
+  return json;
+}
+
+Json contacts(const Summary& s) {
+  const auto& by_kind = s.totals.counters.contacts;
+  Json by_patch = Json::object();
+  for (std::size_t i = 1; i < s.patch_names.size(); ++i) by_patch[s.patch_names[i]] = s.totals.contacts_by_patch[i];
+  if (s.totals.contacts_by_patch[0] > 0) by_patch[""] = s.totals.contacts_by_patch[0];
+  return {{"total", by_kind[0] + by_kind[1] + by_kind[2]},
+          {"face", by_kind[2]},
+          {"edge", by_kind[1]},
+          {"vertex", by_kind[0]},
+          {"by_patch", by_patch}};
+}
+
+Json seconds(const Summary& s) {
+  Json json = {{"load", s.seconds_load}, {"locate", s.seconds_locate}, {"detect", s.totals.seconds_detect}};
+  if (s.deforms) json["deform"] = s.totals.seconds_deform;
+  if (s.totals.seconds_collide > 0.0) json["collide"] = s.totals.seconds_collide;
+  json["respond"] = s.totals.seconds_respond;
+  if (!s.bodies.empty() || !s.catheters.empty()) json["solids"] = s.seconds_solids;
+  json["write"] = s.seconds_write;
+  return json;
+}
+
+Json events(const SurgeryLog& log) {
+  Json list = Json::array();
+  for (const EventReport& e : log.events) {
+    list.push_back({{"kind", event_kind_names[e.kind]},
+                    {"time", e.time},
+                    {"step", e.step},
+                    {"cells",
+                     {{"removed", e.cells_removed},
+                      {"added", e.cells_added},
+                      {"opened", e.cells_opened},
+                      {"blocked", e.cells_blocked},
+                      {"whole", e.cells_whole}}},
+                    {"particles",
+                     {{"in_opened", e.particles_in_opened},
+                      {"touched", e.particles_touched},
+                      {"located", e.particles_located},
+                      {"moved", e.particles_moved},
+                      {"held", e.particles_held},
+                      {"absorbed", e.particles_absorbed}}},
+                    {"boundary_shift", e.boundary_shift},
+                    {"seconds", e.seconds}});
+  }
+  return list;
+}
+
+Json collisions(const FlowTotals& t) {
+  const CollisionCounts& c = t.collisions;
+  return {{"pairs_tested", c.pairs_tested},
+          {"pairs_near", c.pairs_near},
+          {"pairs_touching", c.pairs_touching},
+          {"walls_touching", c.walls_touching},
+          {"overlaps", c.overlaps},
+          {"deepest", c.deepest},
+          {"wall_overlaps", t.wall_overlaps},
+          {"deepest_in_wall", t.deepest_in_wall}};
+}
+
+Json vector(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+Json bodies(const std::vector<BodySummary>& all) {
+  Json list = Json::array();
+  for (const BodySummary& b : all) {
+    Json json = {{"name", b.name}, {"gone", b.gone}};
+    if (!b.gone) {
+      json["particles"] = b.particles;
+      json["centre"] = vector(b.centre);
+      json["energy"] = {
+          {"kinetic", b.energy.kinetic}, {"potential", b.energy.potential}, {"matching", b.energy.matching}};
+    }
+    list.push_back(json);
+  }
+  return list;
+}
+
+Json catheters(const std::vector<CatheterSummary>& all) {
+  Json list = Json::array();
+  for (const CatheterSummary& c : all) {
+    list.push_back({{"name", c.name},
+                    {"inserted", c.inserted},
+                    {"measured_length", c.measured_length},
+                    {"worst_segment", c.totals.worst_segment},
+                    {"refused", c.totals.refused},
+                    {"tip", vector(c.tip)}});
+  }
+  return list;
+}
+
+double ns_per_particle_step(const Summary& s) {
+  return ratio(s.totals.seconds_detect * 1e9, static_cast<double>(s.totals.counters.particle_steps));
+}
+
+}  // namespace
+
+std::string version() { return DARTCAST_VERSION; }
+
+std::string summary_json(const Summary& s) {
+  const FlowTotals& t = s.totals;
+  Json json = {{"version", version()},
+               {"scene", s.scene},
+               {"threads", s.threads},
+               {"steps", s.steps},
+               {"particle_steps", t.counters.particle_steps},
+               {"environment",
+                {{"cells", s.cells},
+                 {"free_cells", s.free_cells},
+                 {"vertices", s.vertices},
+                 {"wall_faces", s.wall_faces},
+                 {"bytes", s.bytes}}},
+               {"particles",
+                {{"start", t.start},
+                 {"injected", t.injected},
+                 {"absorbed", t.absorbed},
+                 {"escaped", t.escaped},
+                 {"alive", s.alive},
+                 {"held", s.held},
+                 {"lost", s.lost}}}};
+  if (s.skipped.count > 0) json["environment"]["bad_cells"] = {{"count", s.skipped.count}, {"first", s.skipped.first}};
+  if (s.surgery) {
+    json["particles"]["in_opened"] = s.surgery->in_opened;
+    json["events"] = events(*s.surgery);
+    json["remeshing"] = {{"mended", s.surgery->mended}, {"left", s.surgery->left}};
+    json["crowding"] = {
+        {"subdivided", s.surgery->subdivided}, {"merged", s.surgery->merged}, {"refused", s.surgery->refused}};
+  }
+  if (t.collisions.pairs_tested + t.wall_overlaps > 0) json["collisions"] = collisions(t);
+  if (!s.bodies.empty()) json["bodies"] = bodies(s.bodies);
+  if (!s.catheters.empty()) json["catheters"] = catheters(s.catheters);
+  if (t.counters.particle_steps > 0) json["orientation_tests"] = orientation_tests(s);
+  json["contacts"] = contacts(s);
+  json["seconds"] = seconds(s);
+  if (t.counters.particle_steps > 0) json["ns_per_particle_step"] = ns_per_particle_step(s);
+  if (s.audit) json["audit"] = {{"checked", s.audit->checked}, {"failed", s.audit->failed}};
+  json["state_hash"] = s.state_hash;
+  return json.dump(1, ' ', false, Json::error_handler_t::replace);
+}
+
+namespace {
+
+std::string solids_text(const Summary& s) {
+  std::string out;
+  for (const BodySummary& b : s.bodies) {
+    out += b.gone ? fmt::format("body {}: left at a wall\n", b.name)
+                  : fmt::format("body {}: {} particles, centre ({:.4g}, {:.4g}, {:.4g}), kinetic energy {:.3g} J\n",
+                                b.name, b.particles, b.centre.x, b.centre.y, b.centre.z, b.energy.kinetic);
+  }
+  for (const CatheterSummary& c : s.catheters) {
+    out += fmt::format(
+        "catheter {}: {:.4g} m inserted, its length {:.4g} m (worst segment off by {:.2f}%), {:.3g} m of pushes "
+        "refused, "
+        "tip ({:.4g}, {:.4g}, {:.4g})\n",
+        c.name, c.inserted, c.measured_length, 100.0 * c.totals.worst_segment, c.totals.refused, c.tip.x, c.tip.y,
+        c.tip.z);
+  }
+  return out;
+}
+
+std::string surgery_text(const SurgeryLog& log) {
+  std::string out;
+  for (const EventReport& e : log.events) {
+    out += fmt::format(
+        "{} at {:.6g} s: {} cells replaced by {}, {} opened, {} blocked; {} particles located again, {} moved, {} "
+        "held, {} "
+        "absorbed; {} in opened cells before\n",
+        event_kind_names[e.kind], e.time, e.cells_removed, e.cells_added, e.cells_opened, e.cells_blocked,
+        e.particles_located, e.particles_moved, e.particles_held, e.particles_absorbed, e.particles_in_opened);
+  }
+  if (log.mended + log.left > 0)
+    out += fmt::format("remeshing: {} regions mended, {} cells left as they were\n", log.mended, log.left);
+  if (log.subdivided + log.refused > 0)
+    out += fmt::format("crowding: {} cells subdivided, {} made again, {} left as they were\n", log.subdivided,
+                       log.merged, log.refused);
+  return out + fmt::format("{} particles in opened cells at the end\n", log.in_opened);
+}
+
+}  // namespace
+
+std::string summary_text(const Summary& s) {
+  const FlowTotals& t = s.totals;
+  const Counters& c = t.counters;
+  std::string out = fmt::format("{}: {} steps, {} cells ({} free), {} wall faces, {:.1f} MB\n", s.scene, s.steps,
+                                s.cells, s.free_cells, s.wall_faces, static_cast<double>(s.bytes) / 1e6);
+  if (s.skipped.count > 0)
+    out += fmt::format("{} {}; the first: {}\n", s.skipped.count, s.skipped.message, fmt::join(s.skipped.first, ", "));
+  out += fmt::format("particles: {} at the start, {} injected, {} absorbed, {} escaped, {} alive, {} held, {} lost\n",
+                     t.start, t.injected, t.absorbed, t.escaped, s.alive, s.held, s.lost);
+  out += fmt::format("contacts: {} ({} with faces, {} with edges, {} with vertices)\n",
+                     c.contacts[0] + c.contacts[1] + c.contacts[2], c.contacts[2], c.contacts[1], c.contacts[0]);
+  if (c.particle_steps > 0) {
+    out += fmt::format(
+        "per particle-step: {:.2f} orientation tests, {:.0f} ns with {} threads; forecast kept in {:.1f}%\n",
+        ratio(c.orientation.tests, c.particle_steps), ns_per_particle_step(s), s.threads,
+        100.0 * ratio(c.forecast_kept, c.particle_steps));
+  }
+  out += fmt::format(
+      "seconds: load {:.2f}, locate {:.2f}, detect {:.2f}, deform {:.2f}, respond {:.2f}, write {:.2f}\n",
+      s.seconds_load, s.seconds_locate, t.seconds_detect, t.seconds_deform, t.seconds_respond, s.seconds_write);
+  if (t.collisions.pairs_tested > 0)
+    out += fmt::format("collisions: {} touching pairs, {} overlaps, the deepest {:.3g} m\n",
+                       t.collisions.pairs_touching, t.collisions.overlaps, t.collisions.deepest);
+  out += solids_text(s);
+  if (s.surgery) out += surgery_text(*s.surgery);
+  if (s.audit) out += fmt::format("audit: {} checked, {} failed\n", s.audit->checked, s.audit->failed);
+  return out + fmt::format("state hash: {}\n", s.state_hash);
+}
+
+std::string histogram_text(const Summary& s) {
+  const Counters& c = s.totals.counters;
+  std::string out = "orientation tests: share of particle-steps\n";
+  for (std::size_t i = 0; i < c.histogram.size(); ++i) {
+    if (c.histogram[i] > 0) out += fmt::format("{:4}: {:.4f}%\n", i, 100.0 * ratio(c.histogram[i], c.particle_steps));
+  }
+  return out;
+}
+
+}  // namespace dartcast

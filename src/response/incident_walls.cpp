@@ -1,0 +1,186 @@
+// Projection onto the cone of the velocities that walls permit, and shortening a velocity to an energy.
+#include "response/incident_walls.hpp"
+
+#include <tuple>
+
+namespace dartcast {
+
+namespace {
+
+// An order of walls by what they are, not by where they are listed.
+bool comes_before(const WallHit& a, const WallHit& b) {
+  const auto key = [](const WallHit& w) {
+    return std::tuple(w.normal.x, w.normal.y, w.normal.z, w.patch.value, w.face.cell.value, w.face.face, w.triangle);
+  };
+  return key(a) < key(b);
+}
+
+// The wall that v points into most, and by more than `most`.
+const WallHit* most_opposed(const Vec3& v, const JointWalls& walls, double most) {
+  const WallHit* worst = nullptr;
+  double least = -most;
+  for (std::size_t i = 0; i < walls.size(); ++i) {
+    const WallHit& wall = walls[i];
+    const double along = dot(v, wall.normal);
+    if (!(along <= least)) continue;
+    if (along < least || (worst != nullptr && comes_before(wall, *worst))) {
+      least = along;
+      worst = &wall;
+    }
+  }
+  return worst;
+}
+
+// Walls that may hold v back: at most four, in their order.
+class FewWalls {
+ public:
+  void add(const WallHit* wall) {
+    std::size_t at = count_++;
+    for (; at > 0 && comes_before(*wall, *wall_[at - 1]); --at) wall_[at] = wall_[at - 1];
+    wall_[at] = wall;
+  }
+  [[nodiscard]] std::size_t size() const { return count_; }
+  const WallHit& operator[](std::size_t i) const { return *wall_[i]; }
+  [[nodiscard]] bool permit(const Vec3& v, double most) const {
+    return std::all_of(wall_.begin(), wall_.begin() + static_cast<std::ptrdiff_t>(count_),
+                       [&](const WallHit* w) { return dot(v, w->normal) >= -most; });
+  }
+
+ private:
+  std::array<const WallHit*, 4> wall_{};
+  std::size_t count_ = 0;
+};
+
+Vec3 into_plane(const Vec3& v, const Vec3& n) { return v - n * dot(v, n); }
+
+// The unit vector of the plane of both normals that is perpendicular to the first; zero where they are the same.
+Vec3 beside(const Vec3& first, const Vec3& second) {
+  const Vec3 raw = into_plane(second, first);
+  const double length = norm(raw);
+  if (length == 0.0) return {};
+  const Vec3 again = into_plane(raw * (1.0 / length), first);
+  const double left = norm(again);
+  return left > 0.0 ? again * (1.0 / left) : Vec3{};
+}
+
+HeldBack held_by(const Vec3& v, const WallHit& wall, double into) {
+  HeldBack held;
+  held.velocity = v + wall.normal * into;
+  held.wall[0] = &wall;
+  held.impulse[0] = into;
+  held.count = 1;
+  return held;
+}
+
+// One wall alone holds v back, where the others let it.
+bool hold_by_one(const Vec3& v, const FewWalls& walls, double most, HeldBack& held) {
+  for (std::size_t i = 0; i < walls.size(); ++i) {
+    const double into = -dot(v, walls[i].normal);
+    if (!(into > 0.0)) continue;
+    held = held_by(v, walls[i], into);
+    if (walls.permit(held.velocity, most)) return true;
+  }
+  return false;
+}
+
+// Whether these impulses, none below 0, lead from v to where it is held, up to rounding.
+bool leads_there(const Vec3& v, HeldBack& held) {
+  Vec3 reached = v;
+  double sum = norm(v);
+  for (unsigned i = 0; i < held.count; ++i) {
+    held.impulse[i] = std::max(0.0, held.impulse[i]);
+    reached += held.wall[i]->normal * held.impulse[i];
+    sum += held.impulse[i];
+  }
+  return std::isfinite(sum) && norm(reached - held.velocity) <= rounding_share * sum;
+}
+
+// Along the crease of two that push it there, where the others let it.
+bool hold_by_two(const Vec3& v, const FewWalls& walls, double most, HeldBack& held) {
+  for (std::size_t i = 0; i < walls.size(); ++i) {
+    const Vec3& n = walls[i].normal;
+    const Vec3 plane = into_plane(v, n);
+    for (std::size_t j = i + 1; j < walls.size(); ++j) {
+      const Vec3 m = beside(n, walls[j].normal);
+      const double sine = dot(m, walls[j].normal);
+      if (!(sine > 0.0)) continue;
+      const double second = -dot(plane, m) / sine;
+      const double first = -dot(v, n) - second * dot(n, walls[j].normal);
+      held = {into_plane(plane, m), {&walls[i], &walls[j]}, {first, second}, 2};
+      if (walls.permit(held.velocity, most) && leads_there(v, held)) return true;
+    }
+  }
+  return false;
+}
+
+// Three walls take all of v. Where rounding finds none that do, it ends without.
+void hold_by_three(const Vec3& v, const FewWalls& walls, HeldBack& held) {
+  for (std::size_t i = 0; i < walls.size(); ++i) {
+    for (std::size_t j = i + 1; j < walls.size(); ++j) {
+      const Vec3 crease = cross(walls[i].normal, walls[j].normal);
+      for (std::size_t k = j + 1; k < walls.size(); ++k) {
+        const double volume = dot(crease, walls[k].normal);
+        if (volume == 0.0) continue;
+        const Vec3 back = v * (-1.0 / volume);
+        held = {{},
+                {&walls[i], &walls[j], &walls[k]},
+                {dot(back, cross(walls[j].normal, walls[k].normal)), dot(back, cross(walls[k].normal, walls[i].normal)),
+                 dot(back, crease)},
+                3};
+        if (leads_there(v, held)) return;
+      }
+    }
+  }
+  held = {};
+}
+
+}  // namespace
+
+bool points_into(const Vec3& v, const JointWalls& walls, double most) {
+  for (std::size_t i = 0; i < walls.size(); ++i) {
+    if (dot(v, walls[i].normal) < -most) return true;
+  }
+  return false;
+}
+
+// The projection onto all walls is that onto three of them at most. They are found as a linear programme's basis is:
+// those that hold the last result back, and the wall that it points into most, hold it back anew. Each time it is
+// farther from v, so that no set of walls comes twice; rounding may end that, and then all of v is given up.
+HeldBack held_back(const Vec3& v, const JointWalls& walls) {
+  constexpr unsigned most_rounds = 32;
+  HeldBack held;
+  held.velocity = v;
+  const WallHit* next = most_opposed(v, walls, 0.0);
+  if (next == nullptr) return held;
+  const double most = rounding_share * norm(v);
+  held = held_by(v, *next, -dot(v, next->normal));
+  for (unsigned round = 0; round < most_rounds; ++round) {
+    next = most_opposed(held.velocity, walls, most);
+    if (next == nullptr) return held;
+    FewWalls few;
+    few.add(next);
+    for (unsigned i = 0; i < held.count; ++i) few.add(held.wall[i]);
+    if (!hold_by_one(v, few, most, held) && !hold_by_two(v, few, most, held)) hold_by_three(v, few, held);
+    if (held.count == 0) break;
+  }
+  return {};
+}
+
+Vec3 shortened(const Vec3& velocity, double most, const Vec3& lead) {
+  const double square = dot(velocity, velocity);
+  const double along = dot(lead, velocity);
+  if (!(square + 2.0 * along > most) || square == 0.0) return velocity;
+  if (lead != Vec3{}) {
+    // The larger root s of s^2 square + 2 s along = most.
+    const double root = along * along + square * most;
+    const double share = ((root > 0.0 ? std::sqrt(root) : 0.0) - along) / square;
+    return velocity * std::clamp(share, 0.0, 1.0);
+  }
+  // By the quotient, and a few units in the last place more: each makes components smaller that are not subnormal, and
+  // others do not count in the square.
+  Vec3 result = velocity * std::sqrt(most / square);
+  while (dot(result, result) > most) result *= 1.0 - 0x1p-52;
+  return result;
+}
+
+}  // namespace dartcast

@@ -1,0 +1,159 @@
+#include "dartcast/response.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "dartcast/error.hpp"
+#include "response/incident_walls.hpp"
+
+namespace dartcast {
+
+namespace {
+
+void check(const Response& r) {
+  if (!(r.restitution >= 0.0 && r.restitution <= 1.0)) throw InvalidArgument("a restitution must be between 0 and 1");
+  if (!(r.friction >= 0.0) || !std::isfinite(r.friction))
+    throw InvalidArgument("a friction must be finite and not negative");
+}
+
+const WallHit* most_opposed(const Vec3& v, std::span<const WallHit> walls) {
+  const WallHit* worst = nullptr;
+  double least = 0.0;
+  for (const WallHit& wall : walls) {
+    const double along = dot(v, wall.normal);
+    if (along < least) {
+      least = along;
+      worst = &wall;
+    }
+  }
+  return worst;
+}
+
+// Below this share of its length a projected vector counts as lying in a wall: it is what rounding leaves of zero. No
+// decision of a walk depends on it.
+constexpr double opposed_share = 1e-12;
+
+// A wall that v points into by more than that.
+const WallHit* opposed(const Vec3& v, std::span<const WallHit> walls) {
+  const WallHit* wall = most_opposed(v, walls);
+  return wall != nullptr && dot(v, wall->normal) < -opposed_share * norm(v) ? wall : nullptr;
+}
+
+Vec3 on_plane(const Vec3& v, const Vec3& n) { return v - n * dot(v, n); }
+
+}  // namespace
+
+Responses::Responses(const Response& general) : general_(general) { check(general); }
+
+void Responses::set(Patch patch, const Response& response) {
+  check(response);
+  if (by_patch_.size() <= patch.value) by_patch_.resize(patch.value + 1U);
+  by_patch_[patch.value] = {response, true};
+}
+
+Vec3 reflected(const Vec3& v, std::span<const WallHit> walls, double restitution, double friction) {
+  return rebounded(v, walls, [&](const WallHit&, double) { return WallSurface{restitution, friction}; });
+}
+
+Vec3 slid(const Vec3& v, std::span<const WallHit> walls, std::span<const WallHit> earlier) {
+  const WallHit* newest = most_opposed(v, walls);
+  if (newest == nullptr) return v;
+  const Vec3 plane = on_plane(v, newest->normal);
+  const WallHit* second = opposed(plane, walls);
+  if (second == nullptr) second = opposed(plane, earlier);
+  if (second == nullptr) return plane;
+  const Vec3 crease = cross(newest->normal, second->normal);
+  const double length = dot(crease, crease);
+  if (length < opposed_share) return on_plane(plane, second->normal);
+  const Vec3 line = crease * (dot(v, crease) / length);
+  const bool corner = opposed(line, walls) != nullptr || opposed(line, earlier) != nullptr;
+  return corner ? Vec3{} : line;
+}
+
+namespace {
+
+// What respond_with() was given.
+struct Answers {
+  const Responses& responses;
+  std::span<Vec3> velocities;
+  std::span<Fate> fates;
+  double dt;
+  Acceleration acceleration;
+
+  [[nodiscard]] Vec3 rebound(const Vec3& v, const JointWalls& walls, const Vec3& lead) const {
+    const auto surface_of = [&](const WallHit& wall, double) {
+      const Response& r = responses.of(wall.patch);
+      return r.kind == ResponseKind::slide ? WallSurface{} : WallSurface{r.restitution, r.friction};
+    };
+    return rebounded(v, walls, surface_of, lead);
+  }
+
+  // Where accelerated, the way left is that of the velocity; else it may be of another making, and is reflected itself.
+  [[nodiscard]] Continuation reflect(const Contact& contact, std::span<const WallHit> walls,
+                                     std::span<const WallHit> earlier) const {
+    const JointWalls met(walls, contact.last ? earlier : earlier.last(contact.together));
+    const Vec3 wall_velocity = contact.wall_displacement * (1.0 / dt);
+    Vec3& velocity = velocities[contact.particle];
+    const double time = contact.time_of_impact;
+    const Vec3 lead = acceleration.value * (acceleration.duration * (time - 0.5));
+    const Vec3 relative = rebound(velocity - wall_velocity, met, lead);
+    velocity = wall_velocity + relative;
+    if (acceleration.value != Vec3{}) return {relative * ((1.0 - time) * acceleration.duration), true};
+    return {rebound(contact.unused, met, {}), true};
+  }
+};
+
+}  // namespace
+
+Respond respond_with(const Responses& responses, std::span<Vec3> velocities, std::span<Fate> fates, double dt,
+                     const Acceleration& acceleration) {
+  if (!(dt > 0.0)) throw InvalidArgument("the duration of a step must be positive");
+  if (velocities.size() != fates.size()) throw InvalidArgument("one velocity and one fate per particle are needed");
+  if (acceleration.value != Vec3{} && !(acceleration.duration > 0.0))
+    throw InvalidArgument("the duration of an acceleration must be positive");
+  const Answers answers{responses, velocities, fates, dt, acceleration};
+  return [answers](const Contact& contact, std::span<const WallHit> walls,
+                   std::span<const WallHit> earlier) -> Continuation {
+    Fate& fate = answers.fates[contact.particle];
+    if (fate != Fate::alive) return {};
+    const Vec3 wall_velocity = contact.wall_displacement * (1.0 / answers.dt);
+    Vec3& velocity = answers.velocities[contact.particle];
+    switch (answers.responses.of(walls.front().patch).kind) {
+      case ResponseKind::reflect: return answers.reflect(contact, walls, earlier);
+      case ResponseKind::slide:
+        velocity = wall_velocity + slid(velocity - wall_velocity, walls, earlier);
+        return {slid(contact.unused, walls, earlier), true};
+      case ResponseKind::stick:
+        velocity = wall_velocity;
+        fate = Fate::stuck;
+        return {};
+      case ResponseKind::absorb: fate = Fate::absorbed; return {};
+      case ResponseKind::escape: fate = Fate::escaped; return {};
+    }
+    return {};
+  };
+}
+
+void hold_stopped(const StepReport& report, const Responses& responses, std::span<Vec3> velocities,
+                  std::span<const Fate> fates, double dt, const Acceleration& acceleration) {
+  const std::vector<Contact>& contacts = report.contacts.contacts;
+  auto next = contacts.begin();
+  for (const Stopped& stopped : report.stopped) {
+    next = std::find_if(next, contacts.end(), [&](const Contact& c) { return c.particle > stopped.particle; });
+    if (next == contacts.begin() || std::prev(next)->particle != stopped.particle) continue;
+    const Contact& contact = *std::prev(next);
+    const std::span<const WallHit> walls = report.contacts.walls_of(contact);
+    if (fates[contact.particle] != Fate::alive || responses.of(walls.front().patch).kind != ResponseKind::reflect)
+      continue;
+    const Vec3 wall_velocity = contact.wall_displacement * (1.0 / dt);
+    Vec3& velocity = velocities[contact.particle];
+    const Vec3 relative = velocity - wall_velocity;
+    const Vec3 gained = acceleration.value * acceleration.duration;
+    const double energy = dot(relative, relative) + 2.0 * (contact.time_of_impact - 0.5) * dot(gained, relative);
+    const HeldBack held = held_back(relative, {walls, report.contacts.earlier_walls_of(contact)});
+    velocity = wall_velocity + shortened(held.velocity, energy, gained * 0.5);
+  }
+}
+
+}  // namespace dartcast

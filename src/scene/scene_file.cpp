@@ -1,0 +1,245 @@
+#include "dartcast/scene_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <utility>
+
+#include "dartcast/error.hpp"
+#include "scene/scene_events.hpp"
+#include "scene/scene_mesh_keys.hpp"
+#include "scene/scene_solids.hpp"
+#include "scene/toml_table.hpp"
+
+namespace dartcast {
+
+namespace {
+
+constexpr Range any_number = {-Range::unlimited, Range::unlimited};
+
+class SceneReader {
+ public:
+  explicit SceneReader(const std::filesystem::path& path) : folder_(path.parent_path()) {}
+
+  Scene read(TomlTable root) const {
+    Scene scene;
+    root.get("seed", scene.seed, 0, most_seed);
+    root.require("environment", "say [environment] with mesh = \"FILE\" or generator = \"box\"");
+    scene.environment = read_environment(root.table("environment"), folder_);
+    for (TomlTable& t : root.tables("deformation")) scene.deformation.push_back(deformation(t));
+    for (TomlTable& t : root.tables("particles")) scene.particles.push_back(particles(t));
+    for (TomlTable& t : root.tables("body"))
+      add_named(t, scene.bodies, read_body(t, folder_, scene.bodies.size() + 1, scene.seed));
+    for (TomlTable& t : root.tables("catheter"))
+      add_named(t, scene.catheters, read_catheter(t, scene.catheters.size() + 1));
+    scene.motion = motion(root.table("motion"));
+    scene.contact = contact(root.table("contact"));
+    if (root.has("collisions")) collisions(root.table("collisions"), scene);
+    for (TomlTable& t : root.tables("event")) scene.events.push_back(read_event(t));
+    std::stable_sort(scene.events.begin(), scene.events.end(),
+                     [](const EventScene& a, const EventScene& b) { return a.event.at < b.event.at; });
+    scene.remesh = remesh(root.table("remesh"));
+    scene.crowding = crowding(root.table("crowding"));
+    scene.output = output(root.table("output"));
+    root.finish();
+    return scene;
+  }
+
+ private:
+  DeformationScene deformation(TomlTable& t) const {
+    DeformationScene scene;
+    DeformationStep& step = scene.step;
+    std::string kind;
+    t.require("kind", "rotate, swing, bend, twist, stretch, pulse, bump or frames");
+    t.get("kind", kind);
+    const auto found = deformation_kind(kind);
+    if (!found)
+      t.fail("kind", fmt::format("kind = \"{}\": it must be one of {}", kind,
+                                 "rotate, swing, bend, twist, stretch, pulse, bump, frames"));
+    step.kind = *found;
+    if (step.kind == DeformationKind::frames) {
+      frames(t, scene);
+    } else {
+      t.get("period", step.period, Range::positive);
+      t.get("axis", step.axis);
+      t.get("centre", step.centre);
+      if (step.kind != DeformationKind::rotate) {
+        t.require("amplitude", "how much: an angle (swing, bend, twist), a length (bump) or a share (stretch, pulse)");
+        t.get("amplitude", step.amplitude, any_number);
+      }
+      if (step.kind == DeformationKind::bend) t.get("direction", step.direction);
+      if (step.kind == DeformationKind::pulse) {
+        t.get("wavelength", step.wavelength, Range::not_negative);
+        t.get("field", scene.field);
+        t.get("path", scene.path);
+      }
+      if (step.kind == DeformationKind::bend || step.kind == DeformationKind::twist ||
+          step.kind == DeformationKind::bump) {
+        t.require("length", "the length over which it acts");
+        t.get("length", step.length, Range::positive);
+      }
+    }
+    t.finish();
+    return scene;
+  }
+
+  void frames(TomlTable& t, DeformationScene& scene) const {
+    std::vector<std::string> files;
+    t.require("files", "mesh files with the same points, one per time");
+    t.require("times", "in seconds, increasing, one per file");
+    t.get("files", files);
+    t.get("times", scene.step.times);
+    if (files.size() != scene.step.times.size()) {
+      t.fail("times", fmt::format("there are {} times for {} files", scene.step.times.size(), files.size()));
+    }
+    for (const std::string& file : files) scene.frames.push_back(folder_ / file);
+  }
+
+  ParticlesScene particles(TomlTable& t) const {
+    ParticlesScene scene;
+    t.get("radius", scene.radius, Range::not_negative);
+    t.get("velocity", scene.velocity);
+    std::uint64_t count = 0;
+    std::string positions;
+    InletParticles inlet;
+    const int sources = (t.get("count", count, 0, 0xfffffffeU) ? 1 : 0) + (t.get("positions", positions) ? 1 : 0) +
+                        (t.get("inlet", inlet.patch) ? 1 : 0);
+    const bool has_rate = t.get("rate", inlet.rate, Range::not_negative);
+    if (sources != 1) t.fail("", "give one of count, positions, or inlet with rate");
+    if (has_rate == inlet.patch.empty()) t.fail("rate", "inlet and rate (particles per second) belong together");
+    if (!positions.empty()) {
+      scene.source = PlacedParticles{folder_ / positions};
+    } else if (!inlet.patch.empty()) {
+      scene.source = inlet;
+    } else {
+      scene.source = RandomParticles{count};
+    }
+    t.finish();
+    return scene;
+  }
+
+  // Names are those of files.
+  template <class Item>
+  static void add_named(TomlTable& t, std::vector<Item>& all, Item&& item) {
+    if (std::any_of(all.begin(), all.end(), [&](const Item& other) { return other.name == item.name; }))
+      t.fail("name", fmt::format("name = \"{}\": another has this name; give it one of its own", item.name));
+    all.push_back(std::forward<Item>(item));
+  }
+
+  static MotionScene motion(TomlTable t) {
+    MotionScene scene;
+    t.get("dt", scene.dt, Range::positive);
+    t.get("steps", scene.steps, 0, most_steps);
+    t.get("gravity", scene.gravity);
+    t.get("drag", scene.drag, Range::not_negative);
+    t.get("substeps", scene.substeps, 1U, 1000U);
+    t.get("field", scene.field);
+    std::size_t frame = 0;
+    if (t.get("field_frame", frame, {"space", "mesh"}) && scene.field.empty()) {
+      t.fail("field_frame", "field_frame needs a field");
+    }
+    scene.frame = static_cast<FieldFrame>(frame);
+    t.finish();
+    return scene;
+  }
+
+  static void response(TomlTable& t, Response& r) {
+    std::size_t kind = 0;
+    if (t.get("response", kind, {"reflect", "slide", "stick", "absorb", "escape"}))
+      r.kind = static_cast<ResponseKind>(kind);
+    t.get("restitution", r.restitution, {0.0, 1.0});
+    t.get("friction", r.friction, Range::not_negative);
+  }
+
+  static ContactScene contact(TomlTable t) {
+    ContactScene scene;
+    response(t, scene.general);
+    TomlTable patches = t.table("patch");
+    for (const std::string& name : patches.keys()) {
+      TomlTable patch = patches.table(name);
+      Response& r = scene.by_patch[name] = scene.general;
+      response(patch, r);
+      patch.finish();
+    }
+    t.finish();
+    return scene;
+  }
+
+  static void collisions(TomlTable t, Scene& scene) {
+    CollisionOptions& options = scene.collisions.emplace();
+    t.get("restitution", options.restitution, {0.0, 1.0});
+    t.get("friction", options.friction, Range::not_negative);
+    t.get("density", options.density, Range::positive);
+    t.get("iterations", options.iterations, 1U, 100000U);
+    t.get("push_iterations", options.push_iterations, 0U, 100000U);
+    double between_bodies = 0.0;
+    if (t.get("body_restitution", between_bodies, {0.0, 1.0})) scene.body_collisions.restitution = between_bodies;
+    t.get("body_friction", scene.body_collisions.friction, Range::not_negative);
+    t.finish();
+  }
+
+  static CrowdingScene crowding(TomlTable t) {
+    CrowdingScene scene;
+    t.get("every", scene.every, 0, most_steps);
+    t.get("most", scene.options.most, 1U, 0xfffffffeU);
+    t.get("least", scene.options.least, 0U, 0xfffffffdU);
+    t.get("smallest", scene.options.smallest, Range::not_negative);
+    t.get("edits", scene.options.edits, 1U, 0xfffffffeU);
+    if (scene.options.least >= scene.options.most)
+      t.fail("least",
+             fmt::format("least = {}: it must be less than most, {}", scene.options.least, scene.options.most));
+    t.finish();
+    return scene;
+  }
+
+  static RemeshScene remesh(TomlTable t) {
+    RemeshScene scene;
+    t.get("every", scene.every, 0, most_steps);
+    std::uint64_t most = scene.options.most_cells;
+    t.get("most_cells", most, 1, 1U << 20U);
+    scene.options.most_cells = most;
+    t.finish();
+    return scene;
+  }
+
+  static OutputScene output(TomlTable t) {
+    OutputScene scene;
+    t.get("every", scene.every, 0, most_steps);
+    t.get("contacts", scene.contacts);
+    t.finish();
+    return scene;
+  }
+
+  std::filesystem::path folder_;
+};
+
+}  // namespace
+
+Scene parse_scene(const std::string& text, const std::filesystem::path& path) {
+  toml::table root;
+  try {
+    root = toml::parse(text, path.string());
+  } catch (const toml::parse_error& e) {
+    throw Error(fmt::format("{}:{}: this is not TOML: {}", path.string(), e.source().begin.line, e.description()));
+  }
+  Scene scene = SceneReader(path).read(TomlTable(root, path.string(), ""));
+  scene.name = path.stem().string();
+  scene.file = path;
+  scene.text = text;
+  return scene;
+}
+
+Scene read_scene(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  const bool readable = file && !std::filesystem::is_directory(path);
+  const bool empty = readable && file.peek() == std::ifstream::traits_type::eof();  // nothing: << would fail
+  if (!readable || (!empty && !(text << file.rdbuf())))
+    throw Error(fmt::format("{}: the scene cannot be read; check the path", path.string()));
+  return parse_scene(text.str(), path);
+}
+
+}  // namespace dartcast

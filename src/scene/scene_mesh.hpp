@@ -1,0 +1,52 @@
+// What a scene names, read or generated: its mesh, its fields and frames.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "dartcast/error.hpp"
+#include "base/parallel.hpp"
+#include "dartcast/mesh_files.hpp"
+#include "dartcast/mesh_data.hpp"
+#include "mesh/mesh_report.hpp"
+#include "dartcast/scene.hpp"
+
+namespace dartcast {
+
+struct SceneMesh {
+  MeshData mesh;      ///< inspected, with `free` and patches as the scene says
+  MeshReport report;  ///< of a file: repairs and warnings; of a generator: counts alone
+  Finding skipped;    ///< bad cells that were left out, where the scene wants that
+};
+
+/// Calls make(); puts the mesh file's name before what an InvalidMesh says that it throws.
+template <class Make>
+auto with_mesh_name(const MeshSource& mesh, Make&& make) {
+  try {
+    return make();
+  } catch (const InvalidMesh& e) {
+    const auto* path = std::get_if<std::filesystem::path>(&mesh);
+    const std::string name = path != nullptr ? path->string() : "the generated mesh";
+    if (std::string_view(e.what()).starts_with(name)) throw;
+    throw InvalidMesh(name + ": " + e.what());
+  }
+}
+
+/// Of the options `max_memory` counts. Throws InvalidMesh with the mesh file's name where the mesh is refused, or a
+/// region, array or patch that the scene names is not in it.
+SceneMesh load_scene_mesh(const EnvironmentScene& scene, const ReadOptions& options = {}, Threads threads = {});
+
+/// A point array of three components as vectors. Throws InvalidMesh that names the arrays there are.
+std::vector<Vec3> point_vectors(const MeshData& mesh, const std::string& array);
+
+/// The deformation's steps, with arrays taken from the mesh and frames read from their files, these scaled and without
+/// bad cells as the mesh is. Of the options `max_memory` counts. Throws InvalidMesh.
+std::vector<DeformationStep> load_deformation(std::span<const DeformationScene> scene, const MeshData& mesh,
+                                              const EnvironmentScene& environment = {},
+                                              const ReadOptions& options = {});
+
+}  // namespace dartcast

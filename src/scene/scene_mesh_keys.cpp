@@ -1,0 +1,186 @@
+#include "scene/scene_mesh_keys.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace dartcast {
+
+namespace {
+
+constexpr Range share = {0.0, 1.0};
+
+template <std::size_t n>
+void get_counts(TomlTable& t, std::string_view key, std::array<std::uint32_t, n>& counts) {
+  std::vector<double> list;
+  if (!t.get(key, list, n)) return;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!(list[i] >= 1.0 && list[i] <= 0x1p29 && list[i] == std::floor(list[i]))) {
+      t.fail(key, fmt::format("{} must be {} whole numbers from 1 to 2^29", key, n));
+    }
+    counts[i] = static_cast<std::uint32_t>(list[i]);
+  }
+}
+
+void get_seed(TomlTable& t, std::uint64_t& seed) { t.get("seed", seed, 0, most_seed); }
+
+// What the box and the octahedra have in common. Cells are of unit size unless `size` is given.
+template <class Options>
+void read_block(TomlTable& t, Options& o) {
+  get_counts(t, "cells", o.cells);
+  o.size = {static_cast<double>(o.cells[0]), static_cast<double>(o.cells[1]), static_cast<double>(o.cells[2])};
+  t.get("origin", o.origin);
+  t.get("size", o.size);
+  if (!(o.size.x > 0.0 && o.size.y > 0.0 && o.size.z > 0.0)) t.fail("size", "size must be three numbers more than 0");
+  t.get("blocked_layer", o.blocked_layer);
+  t.get("blocked_share", o.blocked_share, share);
+  get_seed(t, o.seed);
+}
+
+BoxOptions read_box(TomlTable& t) {
+  BoxOptions o;
+  read_block(t, o);
+  std::size_t type = 1;
+  t.get("type", type, {"tetrahedron", "hexahedron", "prism", "pyramid", "mixed"});
+  o.mixed = type == 4;
+  if (!o.mixed) o.type = static_cast<CellType>(type);
+  t.get("jitter", o.jitter, share);
+  return o;
+}
+
+OctahedraOptions read_octahedra(TomlTable& t) {
+  OctahedraOptions o;
+  read_block(t, o);
+  return o;
+}
+
+VesselOptions read_vessel(TomlTable& t) {
+  VesselOptions o;
+  std::vector<double> lengths;
+  t.get("radius", o.radius, Range::positive);
+  t.get("trunk_length", o.trunk_length, Range::positive);
+  if (t.get("branch_lengths", lengths, 2)) o.branch_lengths = {lengths[0], lengths[1]};
+  t.get("branch_radius", o.branch_radius, Range::positive);
+  t.get("branch_angle", o.branch_angle, Range::positive);
+  t.get("out_of_plane", o.out_of_plane, {0.0, Range::unlimited});
+  t.get("tissue_thickness", o.tissue_thickness, Range::positive);
+  t.get("core", o.core, 2U, 64U);
+  t.get("rings", o.rings, 1U, 32U);
+  t.get("tissue_layers", o.tissue_layers, 1U, 32U);
+  t.get("step_length", o.step_length, Range::positive);
+  t.get("peak_speed", o.peak_speed, {-Range::unlimited, Range::unlimited});
+  return o;
+}
+
+// What the rectangle and the maze have in common. Squares are of unit size unless `size` is given.
+template <class Options>
+void read_squares(TomlTable& t, Options& o, const std::array<std::uint32_t, 2>& squares) {
+  const auto get_pair = [&](std::string_view key, std::array<double, 2>& pair) {
+    std::vector<double> list;
+    if (t.get(key, list, 2)) pair = {list[0], list[1]};
+  };
+  o.size = {static_cast<double>(squares[0]), static_cast<double>(squares[1])};
+  get_pair("origin", o.origin);
+  get_pair("size", o.size);
+  if (!(o.size[0] > 0.0 && o.size[1] > 0.0)) t.fail("size", "size must be two numbers more than 0");
+  std::size_t type = 1;
+  t.get("type", type, {"triangle", "quadrilateral", "polygon", "mixed"});
+  constexpr std::array types = {CellType::triangle, CellType::quadrilateral, CellType::polygon};
+  o.mixed = type == types.size();
+  if (!o.mixed) o.type = types[type];
+  t.get("jitter", o.jitter, {0.0, type > 1 ? largest_polygon_jitter : largest_square_jitter});
+  get_seed(t, o.seed);
+}
+
+RectangleOptions read_rectangle(TomlTable& t) {
+  RectangleOptions o;
+  get_counts(t, "cells", o.cells);
+  read_squares(t, o, o.cells);
+  t.get("blocked_share", o.blocked_share, share);
+  return o;
+}
+
+MazeOptions read_maze(TomlTable& t) {
+  MazeOptions o;
+  get_counts(t, "rooms", o.rooms);
+  t.get("room_cells", o.room_cells, 1U, 1U << 14U);
+  t.get("door_cells", o.door_cells, 1U, o.room_cells);
+  t.get("obstacles", o.obstacles, 0U, o.room_cells * o.room_cells - 1);
+  t.get("extra_doors", o.extra_doors, share);
+  const std::uint32_t pitch = o.room_cells + 1;
+  for (const std::uint32_t n : o.rooms) {
+    if (n > 0x1p29 / pitch) t.fail("rooms", "rooms and walls must be at most 2^29 squares along each axis");
+  }
+  read_squares(t, o, {o.rooms[0] * pitch - 1, o.rooms[1] * pitch - 1});
+  return o;
+}
+
+MeshSource read_source(TomlTable& t, const std::filesystem::path& folder) {
+  std::string mesh;
+  std::size_t generator = 0;
+  const bool from_file = t.get("mesh", mesh);
+  const bool generated = t.get("generator", generator, {"box", "bar", "octahedra", "vessel", "rectangle", "maze"});
+  if (from_file == generated)
+    t.fail("mesh",
+           "give either mesh = \"FILE\" or generator = \"box\", \"bar\", \"octahedra\", \"vessel\", \"rectangle\" or "
+           "\"maze\"");
+  if (from_file) return folder / mesh;
+  if (generator == 0) return read_box(t);
+  if (generator == 1) return bar_options();
+  if (generator == 2) return read_octahedra(t);
+  if (generator == 3) return read_vessel(t);
+  if (generator == 4) return read_rectangle(t);
+  return read_maze(t);
+}
+
+void read_free(TomlTable t, EnvironmentScene& scene) {
+  FreeRegions regions;
+  FreeValues values;
+  const bool by_region = t.get("region", regions.regions);
+  const bool by_array = t.get("array", values.array);
+  const bool has_values = t.get("values", values.values);
+  if (by_region == by_array || by_array != has_values) {
+    t.fail("", "give either region = [\"NAME\"], or array = \"NAME\" with values = [1]");
+  }
+  t.finish();
+  if (by_region) {
+    scene.free = regions;
+  } else {
+    scene.free = values;
+  }
+}
+
+void read_patches(TomlTable t, EnvironmentScene& scene) {
+  PatchArray array;
+  PatchAngle angle;
+  const bool by_array = t.get("array", array.name);
+  const bool by_angle = t.get("angle", angle.degrees, {0.0, 180.0});
+  if (by_array == by_angle) t.fail("", "give either array = \"NAME\", or angle = 30 (degrees)");
+  t.finish();
+  if (by_array && !std::holds_alternative<std::filesystem::path>(scene.mesh))
+    t.fail("array", "patches from an array need mesh = \"FILE\"; a generator's patches have names");
+  if (by_array) {
+    scene.patches = array;
+  } else {
+    scene.patches = angle;
+  }
+}
+
+}  // namespace
+
+EnvironmentScene read_environment(TomlTable table, const std::filesystem::path& folder) {
+  EnvironmentScene scene;
+  scene.mesh = read_source(table, folder);
+  table.get("scale", scene.scale, Range::positive);
+  table.get("skip_bad_cells", scene.skip_bad_cells);
+  if (table.has("free")) read_free(table.table("free"), scene);
+  if (table.is_table("patches")) {
+    read_patches(table.table("patches"), scene);
+  } else if (std::vector<std::string> names; table.get("patches", names)) {
+    scene.patches = names;
+  }
+  table.finish();
+  return scene;
+}
+
+}  // namespace dartcast

@@ -1,0 +1,103 @@
+#include "scene/seed_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "dartcast/error.hpp"
+#include "formats/csv_table.hpp"
+#include "formats/point_file.hpp"
+
+namespace dartcast {
+
+namespace {
+
+constexpr std::array<std::string_view, 7> csv_columns = {"x", "y", "z", "vx", "vy", "vz", "radius"};
+// A run gives these anew.
+constexpr std::array<std::string_view, 5> passed_over = {"id", "cell", "kind", "contacts", "held"};
+
+template <std::size_t n>
+bool is_one_of(const std::array<std::string_view, n>& names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+Seeds read_csv_seeds(const std::filesystem::path& path, const ReadOptions& options) {
+  CsvTable table(path, options.max_memory);
+  std::vector<std::size_t> columns;
+  for (const char* name : {"x", "y", "z"}) columns.push_back(table.column(name, "x, y and z"));
+  for (const std::string& name : table.names()) {
+    if (!is_one_of(csv_columns, name) && !is_one_of(passed_over, name))
+      table.fail(fmt::format("the column '{}' is unknown; there are x, y, z, vx, vy, vz and radius", name));
+  }
+  const bool moving = table.has("vx") || table.has("vy") || table.has("vz");
+  const bool wide = table.has("radius");
+  for (const char* name : {"vx", "vy", "vz"}) {
+    if (moving) columns.push_back(table.column(name, "vx, vy and vz, or none of them"));
+  }
+  if (wide) columns.push_back(table.column("radius", "radius"));
+  const std::vector<double> values = table.rows(columns);
+  Seeds seeds;
+  for (std::size_t at = 0; at < values.size(); at += columns.size()) {
+    const double* row = &values[at];
+    seeds.points.push_back({row[0], row[1], row[2]});
+    if (moving) seeds.velocities.push_back({row[3], row[4], row[5]});
+    if (wide) seeds.radii.push_back(row[columns.size() - 1]);
+  }
+  return seeds;
+}
+
+void check_components(const std::filesystem::path& path, const DataArray& array, std::size_t components) {
+  if (array.components != components)
+    throw Error(fmt::format("{}: the array '{}' has {} components; it must have {}", path.string(), array.name,
+                            array.components, components));
+}
+
+Seeds read_vtp_seeds(const std::filesystem::path& path, const ReadOptions& options) {
+  PointFile file = read_points(path, options);
+  Seeds seeds;
+  seeds.points = std::move(file.points);
+  for (DataArray& array : file.arrays) {
+    if (array.name == "velocity") {
+      check_components(path, array, 3);
+      for (std::size_t i = 0; i < array.values.size(); i += 3)
+        seeds.velocities.push_back({array.values[i], array.values[i + 1], array.values[i + 2]});
+    } else if (array.name == "radius") {
+      check_components(path, array, 1);
+      seeds.radii = std::move(array.values);
+    } else if (!is_one_of(passed_over, array.name)) {
+      throw Error(
+          fmt::format("{}: the point array '{}' is unknown; there are velocity and radius", path.string(), array.name));
+    }
+  }
+  return seeds;
+}
+
+void check_values(const std::filesystem::path& path, const Seeds& seeds) {
+  for (std::size_t i = 0; i < seeds.velocities.size(); ++i) {
+    const Vec3& v = seeds.velocities[i];
+    if (!is_finite(v))
+      throw Error(fmt::format("{}: the velocity of position {} (counted from 0) is ({}, {}, {}): it must be finite",
+                              path.string(), i, v.x, v.y, v.z));
+  }
+  for (std::size_t i = 0; i < seeds.radii.size(); ++i) {
+    if (!(seeds.radii[i] >= 0.0) || !std::isfinite(seeds.radii[i]))
+      throw Error(fmt::format("{}: the radius of position {} (counted from 0) is {}: it must be 0 or more, and finite",
+                              path.string(), i, seeds.radii[i]));
+  }
+}
+
+}  // namespace
+
+Seeds read_seeds(const std::filesystem::path& path, const ReadOptions& options) {
+  const bool csv = path.extension() == ".csv" && std::filesystem::is_regular_file(path);
+  Seeds seeds = csv ? read_csv_seeds(path, options) : read_vtp_seeds(path, options);
+  check_values(path, seeds);
+  return seeds;
+}
+
+}  // namespace dartcast

@@ -1,0 +1,180 @@
+#include "dartcast/adaptive_subdivision.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "dartcast/error.hpp"
+
+namespace dartcast {
+
+namespace {
+
+bool has_vertex(const Map& map, Cell c, Vertex v) {
+  const auto vertices = map.view(c).vertices();
+  return std::find(vertices.begin(), vertices.end(), v.value) != vertices.end();
+}
+
+// The cells around the vertex, from one of them on, through faces.
+std::vector<Cell> cells_around(const Map& map, Cell start, Vertex v) {
+  std::vector<Cell> cells = {start};
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const CellView cell = map.view(cells[i]);
+    for (std::uint16_t f = 0; f < cell.shape().face_count(); ++f) {
+      const Cell other = cell.neighbour(f);
+      if (!other.valid() || !has_vertex(map, other, v)) continue;
+      if (std::find(cells.begin(), cells.end(), other) == cells.end()) cells.push_back(other);
+    }
+  }
+  return cells;
+}
+
+// The shortest extent along an axis; edges do not tell: neighbours that were subdivided have halved some.
+double extent_of(const Complex& complex, Cell c) {
+  const CellView cell = complex.map().view(c);
+  Vec3 low = complex.positions()[cell.vertex(0).value];
+  Vec3 high = low;
+  for (const std::uint32_t v : cell.vertices()) {
+    const Vec3& p = complex.positions()[v];
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  const Vec3 extent = high - low;
+  return std::min({extent.x, extent.y, extent.z});
+}
+
+}  // namespace
+
+Crowding::Crowding(const CrowdingOptions& options) : options_(options) {
+  if (options.least >= options.most)
+    throw InvalidArgument("crowding: cells must be made again at fewer particles than they are subdivided at");
+  if (!(options.smallest >= 0.0) || !std::isfinite(options.smallest))
+    throw InvalidArgument("crowding: the smallest size must be finite and not negative");
+}
+
+void Crowding::follow(const Map& map, std::span<const Cell> added) {
+  for (Subdivision& s : subdivisions_) dartcast::follow(map, added, s);
+}
+
+// Of equal ones the first by number.
+Crowding::Fullest Crowding::fullest(const Particles& particles) const {
+  std::vector<Cell> full;
+  for (const State& s : particles.states()) {
+    if (lists_.count(s.cell) > options_.most) full.push_back(s.cell);
+  }
+  std::sort(full.begin(), full.end());
+  full.erase(std::unique(full.begin(), full.end()), full.end());
+  Fullest result;
+  for (const Cell c : full) {
+    if (std::find(passed_over_.begin(), passed_over_.end(), c) != passed_over_.end()) continue;
+    ++result.others;
+    if (lists_.count(c) > result.particles) {
+      result.cell = c;
+      result.particles = lists_.count(c);
+    }
+  }
+  if (result.others > 0) --result.others;
+  return result;
+}
+
+// Throws EditRefused, nothing changed.
+void Crowding::make(const Complex& complex, const CrowdingChange& change, const Edit& edit) {
+  std::optional<Subdivision> made;
+  const ComplexEditReport done = edit([&](ComplexEdit& e) {
+    if (change.merged)
+      coarsen(e, subdivisions_[change.what]);
+    else
+      made = subdivide(e, Cell(change.what)).subdivision;
+  });
+  if (made)
+    subdivisions_.push_back(*std::move(made));
+  else
+    subdivisions_.erase(subdivisions_.begin() + static_cast<std::ptrdiff_t>(change.what));
+  follow(complex.map(), done.map.added);
+}
+
+void Crowding::repeat(const Complex& complex, const CrowdingChange& change, const Edit& edit) {
+  if (change.merged ? change.what >= subdivisions_.size() : !complex.map().contains(Cell(change.what)))
+    throw InvalidArgument(
+        fmt::format("crowding: there is no {} {} to edit again", change.merged ? "subdivision" : "cell", change.what));
+  make(complex, change, edit);
+}
+
+// Whether it was made; a refusal is told.
+bool Crowding::try_edit(const Complex& complex, const CrowdingChange& change, const Edit& edit, CrowdingRefusal refusal,
+                        CrowdingReport& report) {
+  try {
+    make(complex, change, edit);
+    report.changes.push_back(change);
+    return true;
+  } catch (const EditRefused& e) {
+    refusal.reason = e.what();
+    report.refused.push_back(std::move(refusal));
+    return false;
+  }
+}
+
+void Crowding::subdivide_fullest(const Complex& complex, const Particles& particles, const Edit& edit,
+                                 CrowdingReport& report) {
+  passed_over_.clear();
+  while (true) {
+    lists_.update(complex.map(), particles.states());
+    const Fullest full = fullest(particles);
+    if (!full.cell.valid()) return;
+    const CrowdingRefusal refusal = {full.cell, full.particles, {}};
+    if (report.subdivided == options_.edits) {
+      report.waiting = full.others + 1;
+      return;
+    }
+    const double extent = extent_of(complex, full.cell);
+    if (0.5 * extent < options_.smallest) {
+      report.refused.push_back(refusal);
+      report.refused.back().reason = fmt::format(
+          "it is {} m across: its parts would be smaller than the smallest allowed, {} m", extent, options_.smallest);
+      passed_over_.push_back(full.cell);
+      continue;
+    }
+    if (!try_edit(complex, {false, full.cell.value}, edit, refusal, report)) {
+      passed_over_.push_back(full.cell);
+      continue;
+    }
+    ++report.subdivided;
+  }
+}
+
+// Whether no part is subdivided itself: what is in a part has the middle of what is around among its ancestors only.
+bool Crowding::is_whole(const Map& map, std::size_t subdivision) const {
+  const Subdivision& s = subdivisions_[subdivision];
+  return map.contains(s.part) && cells_around(map, s.part.cell, s.middle).size() == s.corners.size() &&
+         std::none_of(subdivisions_.begin() + static_cast<std::ptrdiff_t>(subdivision) + 1, subdivisions_.end(),
+                      [&](const Subdivision& later) {
+                        return std::find(later.corners.begin(), later.corners.end(), s.middle) != later.corners.end();
+                      });
+}
+
+void Crowding::merge_emptiest(const Complex& complex, const Particles& particles, const Edit& edit,
+                              CrowdingReport& report) {
+  const Map& map = complex.map();
+  for (std::size_t i = subdivisions_.size(); i-- > 0 && report.merged < options_.edits;) {
+    if (!is_whole(map, i)) continue;
+    const Subdivision& s = subdivisions_[i];
+    lists_.update(map, particles.states());
+    std::uint32_t held = 0;
+    for (const Cell c : cells_around(map, s.part.cell, s.middle)) held += lists_.count(c);
+    if (held >= options_.least) continue;
+    const CrowdingRefusal refusal = {s.part.cell, held, {}};
+    if (try_edit(complex, {true, static_cast<std::uint32_t>(i)}, edit, refusal, report)) ++report.merged;
+  }
+}
+
+CrowdingReport Crowding::relieve(const Complex& complex, const Particles& particles, const Edit& edit) {
+  CrowdingReport report;
+  subdivide_fullest(complex, particles, edit, report);
+  merge_emptiest(complex, particles, edit, report);
+  return report;
+}
+
+}  // namespace dartcast

@@ -1,0 +1,295 @@
+#include "dartcast/deformation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <utility>
+
+#include "dartcast/error.hpp"
+
+namespace dartcast {
+namespace {
+
+constexpr double full_turn = 2 * std::numbers::pi;
+
+// Turns of t / period, less the whole ones: sine and cosine lose no digits however long a run is.
+double turns(double time, double period) { return std::fmod(time / period, 1.0); }
+
+bool is_off_plane(const Vec3& v) { return v.z != 0.0; }
+
+double sinc(double x) { return x == 0.0 ? 1.0 : std::sin(x) / x; }
+
+// The vector r turned about the unit vector a (O. Rodrigues, 1840).
+Vec3 turn(const Vec3& r, const Vec3& a, double sine, double cosine) {
+  return r * cosine + cross(a, r) * sine + a * (dot(a, r) * (1 - cosine));
+}
+
+class Checker {
+ public:
+  Checker(const DeformationStep& step, std::size_t index, std::size_t vertices)
+      : step_(step), index_(index), vertices_(vertices) {}
+
+  void check() const {
+    const DeformationStep& s = step_;
+    const bool bounded =
+        s.kind == DeformationKind::bend || s.kind == DeformationKind::twist || s.kind == DeformationKind::bump;
+    require(std::isfinite(s.amplitude), "amplitude must be finite");
+    require(s.period > 0 && std::isfinite(s.period), "period must be positive");
+    require(is_finite(s.axis) && is_finite(s.centre) && is_finite(s.direction),
+            "axis, centre and direction must be finite");
+    require(!bounded || (s.length > 0 && std::isfinite(s.length)), "length must be positive");
+    require(s.wavelength >= 0 && std::isfinite(s.wavelength), "wavelength must be 0 or positive");
+    require(s.kind != DeformationKind::stretch || std::abs(s.amplitude) < 1, "amplitude must be between -1 and 1");
+    const bool may_lack_axis = s.kind == DeformationKind::pulse || s.kind == DeformationKind::frames;
+    require(may_lack_axis || norm(s.axis) > 0, "axis must not be 0");
+    require(
+        s.kind != DeformationKind::bend || norm(cross(s.axis, s.direction)) > 1e-6 * norm(s.axis) * norm(s.direction),
+        "direction must not be 0 or along the axis");
+    require(s.field.empty() || s.field.size() == vertices_, "field must have one entry per vertex");
+    require(s.path.empty() || s.path.size() == vertices_, "path must have one entry per vertex");
+    require(std::all_of(s.field.begin(), s.field.end(), is_finite), "field must be finite");
+    require(std::all_of(s.path.begin(), s.path.end(), [](double p) { return std::isfinite(p); }),
+            "path must be finite");
+    if (s.kind == DeformationKind::frames) check_frames();
+  }
+
+ private:
+  void check_frames() const {
+    const DeformationStep& s = step_;
+    require(index_ == 0, "frames must come first in the list: they give positions, not changes");
+    require(!s.times.empty() && s.times.size() == s.frames.size(), "give one time per frame, and at least one frame");
+    for (std::size_t i = 0; i < s.times.size(); ++i) {
+      require(std::isfinite(s.times[i]) && (i == 0 || s.times[i] > s.times[i - 1]),
+              "times must be finite and increasing");
+      require(s.frames[i].size() == vertices_, fmt::format("frame {} must have one position per vertex", i));
+      require(std::all_of(s.frames[i].begin(), s.frames[i].end(), is_finite),
+              fmt::format("frame {} must be finite", i));
+    }
+  }
+
+  void require(bool holds, std::string_view text) const {
+    if (holds) return;
+    throw InvalidArgument(fmt::format("deformation {} ({}): {}", index_ + 1,
+                                      deformation_kind_names[static_cast<std::size_t>(step_.kind)], text));
+  }
+
+  const DeformationStep& step_;
+  std::size_t index_, vertices_;
+};
+
+// What the members of a step must be so that it leaves each point of the plane z = 0 in it, to the last bit.
+class PlaneChecker {
+ public:
+  PlaneChecker(const DeformationStep& step, std::size_t index) : step_(step), index_(index) {}
+
+  void check() const {
+    if (step_.kind == DeformationKind::frames) return check_frames();
+    require(step_.centre.z == 0.0, "centre", "must have z = 0");
+    switch (step_.kind) {
+      case DeformationKind::rotate:
+      case DeformationKind::swing: return require(across(), "axis", "must be [0, 0, 1]");
+      case DeformationKind::twist: return require(across(), "axis", "must be [0, 0, 1]; to move points, swing or bend");
+      case DeformationKind::bend:
+        require(along() || across(), "axis", "must have z = 0");
+        return require(step_.direction.z == 0.0, "direction", "must have z = 0");
+      case DeformationKind::stretch: return require(along() || across(), "axis", "must have z = 0 or be [0, 0, 1]");
+      case DeformationKind::bump: return require(along(), "axis", "must have z = 0");
+      case DeformationKind::pulse: return check_pulse();
+      case DeformationKind::frames: return;
+    }
+  }
+
+ private:
+  [[nodiscard]] bool along() const { return step_.axis.z == 0.0; }
+  [[nodiscard]] bool across() const { return step_.axis.x == 0.0 && step_.axis.y == 0.0; }
+
+  void check_pulse() const {
+    if (step_.field.empty()) return require(along() || across(), "axis", "must have z = 0 or be [0, 0, 1]");
+    check_list(step_.field, "field", "vector");
+  }
+
+  void check_frames() const {
+    for (std::size_t i = 0; i < step_.frames.size(); ++i)
+      check_list(step_.frames[i], fmt::format("frame {}", i), "position");
+  }
+
+  void check_list(std::span<const Vec3> list, const std::string& name, const char* what) const {
+    const auto out = std::find_if(list.begin(), list.end(), is_off_plane);
+    if (out == list.end()) return;
+    require(false, name,
+            fmt::format("must have z = 0 everywhere, and its {} {} has z = {}", what, out - list.begin(), out->z));
+  }
+
+  void require(bool holds, const std::string& member, const std::string& must) const {
+    if (holds) return;
+    throw InvalidArgument(fmt::format(
+        "deformation {} ({}) moves points out of the plane z = 0, which a planar mesh must not leave: {} {}",
+        index_ + 1, deformation_kind_names[static_cast<std::size_t>(step_.kind)], member, must));
+  }
+
+  const DeformationStep& step_;
+  std::size_t index_;
+};
+
+// One step at one time: what is the same for all vertices is computed once.
+class Motion {
+ public:
+  Motion(const DeformationStep& step, double time) : s_(step), turns_(turns(time, step.period)) {
+    amount_ = s_.amplitude * std::sin(full_turn * turns_);
+    if (s_.kind == DeformationKind::rotate || s_.kind == DeformationKind::swing) {
+      const double angle = s_.kind == DeformationKind::rotate ? full_turn * turns_ : amount_;
+      sine_ = std::sin(angle);
+      cosine_ = std::cos(angle);
+    }
+    if (s_.kind == DeformationKind::frames) find_frames(time);
+  }
+
+  [[nodiscard]] Vec3 operator()(const Vec3& x, std::size_t vertex) const {
+    if (s_.kind == DeformationKind::frames)
+      return s_.frames[before_][vertex] * (1 - weight_) + s_.frames[after_][vertex] * weight_;
+    const Vec3 r = x - s_.centre;
+    const double height = dot(r, s_.axis);
+    switch (s_.kind) {
+      case DeformationKind::rotate:
+      case DeformationKind::swing: return s_.centre + turn(r, s_.axis, sine_, cosine_);
+      case DeformationKind::bend: return s_.centre + bent(r, height);
+      case DeformationKind::twist: {
+        const double angle = amount_ * height / s_.length;
+        return s_.centre + turn(r, s_.axis, std::sin(angle), std::cos(angle));
+      }
+      case DeformationKind::stretch: {
+        const Vec3 along = s_.axis * height;
+        return s_.centre + along * (1 + amount_) + (r - along) * (1 / std::sqrt(1 + amount_));
+      }
+      case DeformationKind::pulse: return x + pulsed(r, height, vertex);
+      case DeformationKind::bump: {
+        const double inside = 1 - dot(r, r) / (s_.length * s_.length);
+        return inside > 0 ? x + s_.axis * (amount_ * inside * inside) : x;
+      }
+      case DeformationKind::frames: break;
+    }
+    return x;
+  }
+
+ private:
+  void find_frames(double time) {
+    const auto next = std::upper_bound(s_.times.begin(), s_.times.end(), time);
+    after_ = static_cast<std::size_t>(next - s_.times.begin());
+    before_ = after_ == 0 ? 0 : after_ - 1;
+    after_ = std::min(after_, s_.times.size() - 1);
+    if (before_ != after_) weight_ = (time - s_.times[before_]) / (s_.times[after_] - s_.times[before_]);
+  }
+
+  // (1 - cos(ks)) / k as s sin(ks / 2) sinc(ks / 2): right for small k too.
+  [[nodiscard]] Vec3 bent(const Vec3& r, double height) const {
+    const double angle = amount_ * height / s_.length, depth = dot(r, s_.direction);
+    const Vec3 aside = r - s_.axis * height - s_.direction * depth;
+    const double along = height * sinc(angle) - depth * std::sin(angle);
+    const double across = height * std::sin(0.5 * angle) * sinc(0.5 * angle) + depth * std::cos(angle);
+    return s_.axis * along + s_.direction * across + aside;
+  }
+
+  [[nodiscard]] Vec3 pulsed(const Vec3& r, double height, std::size_t vertex) const {
+    double phase = turns_;
+    if (s_.wavelength > 0) phase -= (s_.path.empty() ? height : s_.path[vertex]) / s_.wavelength;
+    const Vec3 way = s_.field.empty() ? r - s_.axis * height : s_.field[vertex];
+    return way * (s_.amplitude * std::sin(full_turn * phase));
+  }
+
+  const DeformationStep& s_;
+  double turns_;
+  double amount_ = 0.0, sine_ = 0.0, cosine_ = 1.0;
+  std::size_t before_ = 0, after_ = 0;
+  double weight_ = 0.0;
+};
+
+}  // namespace
+
+std::optional<DeformationKind> deformation_kind(std::string_view name) {
+  const auto* found = std::find(std::begin(deformation_kind_names), std::end(deformation_kind_names), name);
+  if (found == std::end(deformation_kind_names)) return std::nullopt;
+  return static_cast<DeformationKind>(found - std::begin(deformation_kind_names));
+}
+
+Deformation::Deformation(std::vector<DeformationStep> steps, std::span<const Vec3> rest)
+    : steps_(std::move(steps)), rest_(rest.begin(), rest.end()), size_(rest.size()) {
+  for (std::size_t i = 0; i < steps_.size(); ++i) {
+    DeformationStep& s = steps_[i];
+    Checker(s, i, rest_.size()).check();
+    if (norm(s.axis) > 0) s.axis *= 1 / norm(s.axis);
+    s.direction -= s.axis * dot(s.axis, s.direction);
+    if (s.kind == DeformationKind::bend) s.direction *= 1 / norm(s.direction);
+  }
+}
+
+void Deformation::check_plane() const {
+  for (std::size_t i = 0; i < steps_.size(); ++i) PlaneChecker(steps_[i], i).check();
+  for (const Later& later : later_) {
+    const auto* pull = std::get_if<Pull>(&later);
+    if (pull != nullptr && std::any_of(pull->displacement.begin(), pull->displacement.end(), is_off_plane))
+      throw InvalidArgument(
+          "deformation: a pull moves points out of the plane z = 0, which a planar mesh must not leave");
+  }
+}
+
+void Deformation::positions(double time, std::span<Vec3> out, Threads threads) const {
+  if (!std::isfinite(time)) throw InvalidArgument("deformation: time must be finite");
+  if (out.size() != size_) {
+    throw InvalidArgument(
+        fmt::format("deformation: room for {} positions is given; the mesh has {} vertices", out.size(), size_));
+  }
+  std::vector<Motion> motions;
+  motions.reserve(steps_.size());
+  for (const DeformationStep& s : steps_) motions.emplace_back(s, time);
+  parallel_for(rest_.size(), 4096, threads, [&](std::size_t begin, std::size_t end) {
+    std::copy(rest_.begin() + static_cast<std::ptrdiff_t>(begin), rest_.begin() + static_cast<std::ptrdiff_t>(end),
+              out.begin() + static_cast<std::ptrdiff_t>(begin));
+    for (const Motion& motion : motions) {
+      for (std::size_t v = begin; v < end; ++v) out[v] = motion(out[v], v);
+    }
+  });
+  add_later(time, out);
+}
+
+void Deformation::follow(const ComplexEditReport& edit, std::size_t size) {
+  later_.insert(later_.end(), edit.placed.begin(), edit.placed.end());
+  size_ = size;
+}
+
+void Deformation::add_pull(std::span<const Vec3> displacement, double begin, double end) {
+  if (displacement.size() != size_)
+    throw InvalidArgument(fmt::format("deformation: {} displacements for {} vertices", displacement.size(), size_));
+  if (!std::isfinite(begin) || !std::isfinite(end) || !(end > begin))
+    throw InvalidArgument("deformation: a pull must end after it begins");
+  if (!std::all_of(displacement.begin(), displacement.end(), is_finite))
+    throw InvalidArgument("deformation: a displacement is not finite");
+  Pull pull{{}, {}, begin, end};
+  for (std::size_t v = 0; v < displacement.size(); ++v) {
+    if (displacement[v] == Vec3{}) continue;
+    pull.vertex.push_back(static_cast<std::uint32_t>(v));
+    pull.displacement.push_back(displacement[v]);
+  }
+  later_.emplace_back(std::move(pull));
+}
+
+// A vertex that was made after a pull goes with the pulled ones.
+void Deformation::add_later(double time, std::span<Vec3> out) const {
+  const auto smooth = [](double t) { return t * t * (3.0 - 2.0 * t); };
+  for (const Later& later : later_) {
+    if (const auto* pull = std::get_if<Pull>(&later)) {
+      const double share = smooth(std::clamp((time - pull->begin) / (pull->end - pull->begin), 0.0, 1.0));
+      for (std::size_t i = 0; i < pull->vertex.size(); ++i) out[pull->vertex[i]] += pull->displacement[i] * share;
+      continue;
+    }
+    const auto& placed = std::get<PlacedVertex>(later);
+    if (placed.vertex.value >= out.size()) continue;
+    Vec3 x = placed.offset;
+    for (std::size_t i = 0; i < placed.of.size(); ++i) x += out[placed.of[i].value] * placed.weights[i];
+    out[placed.vertex.value] = x;
+  }
+}
+
+}  // namespace dartcast

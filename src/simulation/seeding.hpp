@@ -1,0 +1,54 @@
+// Where new particles are put: at random in the free cells, or just inside a patch of walls.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/random.hpp"
+#include "dartcast/cell_complex.hpp"
+
+namespace dartcast {
+
+/// A point, and the simplex that it lies in up to rounding: to be added exactly, and drawn again where that fails.
+struct Sample {
+  SimplexId simplex;
+  Vec3 position;
+};
+
+/// Points of equal likelihood by volume in the free cells, at the complex's positions when it was made. Cost to make:
+/// linear.
+class VolumeSampler {
+ public:
+  /// Throws InvalidArgument where no cell is free.
+  explicit VolumeSampler(const Complex& complex);
+  /// In a free cell. Cost: the logarithm of the cells.
+  [[nodiscard]] Sample sample(const Complex& complex, Random& random) const;
+
+ private:
+  std::vector<Cell> cells_;
+  std::vector<double> volume_up_to_;
+};
+
+/// Whether a patch has a wall at a free cell. Cost: linear in the cells.
+bool has_free_face(const Map& map, Patch patch);
+
+/// Points of equal likelihood by area on a patch's faces, moved inwards by 1/64 of the way to the opposite corner of
+/// the simplex there.
+class PatchSampler {
+ public:
+  /// Throws InvalidArgument where the patch has no face at a free cell.
+  PatchSampler(const Complex& complex, Patch patch);
+  /// Takes the areas at the complex's current positions. Cost: the patch's faces.
+  void update(const Complex& complex);
+  [[nodiscard]] Sample sample(const Complex& complex, Random& random) const;
+
+ private:
+  struct Triangle {
+    SimplexId simplex;
+    std::uint16_t facet;
+  };
+  std::vector<Triangle> triangles_;
+  std::vector<double> area_up_to_;
+};
+
+}  // namespace dartcast

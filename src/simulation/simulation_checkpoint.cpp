@@ -1,0 +1,79 @@
+// What a flow goes on from.
+#include "dartcast/error.hpp"
+#include "dartcast/simulation.hpp"
+
+namespace dartcast {
+
+FlowCheckpoint Flow::checkpoint() const {
+  FlowCheckpoint saved;
+  saved.steps = steps_;
+  saved.next_id = next_id_;
+  saved.random = random_;
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    saved.particles.push_back(
+        {ids_[i], particles_[i], particles_.held_weights(i), velocities_[i], fates_[i], contact_counts_[i], radii_[i]});
+  }
+  saved.totals = totals_;
+  saved.gone = gone_;
+  const auto kept = meets_bodies() ? body_collider_.solver().kept() : collider_.solver().kept();
+  saved.impulses.assign(kept.begin(), kept.end());
+  return saved;
+}
+
+void Flow::restore(const FlowCheckpoint& saved) {
+  if (saved.totals.contacts_by_patch.size() != totals_.contacts_by_patch.size())
+    throw InvalidArgument("flow: the checkpoint is of an environment with other patches");
+  if (steps_ != saved.steps) stand_at(saved.steps);
+  std::vector<State> states;
+  std::vector<Weights> weights;
+  for (const FlowCheckpoint::Particle& p : saved.particles) {
+    states.push_back(p.state);
+    weights.push_back(p.held_weights);
+  }
+  particles_ = environment_.restored(states, weights);
+  ids_.clear();
+  velocities_.clear();
+  fates_.clear();
+  contact_counts_.clear();
+  radii_.clear();
+  held_.clear();
+  for (const FlowCheckpoint::Particle& p : saved.particles) {
+    ids_.push_back(p.id);
+    velocities_.push_back(p.velocity);
+    fates_.push_back(p.fate);
+    contact_counts_.push_back(p.contacts);
+    radii_.push_back(p.radius);
+    held_.push_back(p.state.held ? 1 : 0);
+  }
+  clear_.clear();
+  count_spheres();
+  body_collider_.solver().set_kept(saved.impulses);  // whichever goes on forgets the other's
+  collider_.solver().set_kept(saved.impulses);
+  steps_ = saved.steps;
+  next_id_ = saved.next_id;
+  random_ = saved.random;
+  totals_ = saved.totals;
+  gone_ = saved.gone;
+}
+
+void Flow::go_to(std::uint64_t steps) {
+  if (particles_.size() > 0) throw InvalidArgument("flow: there are particles, which would be left behind");
+  if (steps_ != steps) stand_at(steps);
+  steps_ = steps;
+}
+
+// As after the last of these steps: where vertices were before it counts, too.
+void Flow::stand_at(std::uint64_t steps) {
+  if (steps > 1) move_vertices_to(steps - 1);
+  move_vertices_to(steps);
+}
+
+StateHash Flow::state_hash() const {
+  StateHash hash = gone_;
+  for (std::size_t i = 0; i < ids_.size(); ++i) {
+    hash.add(ids_[i], particles_[i], velocities_[i], static_cast<std::uint64_t>(fates_[i]));
+  }
+  return hash;
+}
+
+}  // namespace dartcast

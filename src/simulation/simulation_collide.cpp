@@ -1,0 +1,132 @@
+// The collisions of a flow's spheres.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "dartcast/error.hpp"
+#include "dartcast/simulation.hpp"
+#include "tracking/representable_point.hpp"
+
+namespace dartcast {
+
+namespace {
+
+constexpr std::size_t wall_grain = 256;
+
+// A wall farther than this share of the radius is met by the sphere's own step, with its true contact: the nearest
+// place of a wall that is far away says little about what is touched.
+constexpr double wall_share = 0.25;
+
+}  // namespace
+
+void Flow::set_bodies(Bodies& bodies) {
+  if (options_.substeps != 1) throw InvalidArgument("flow: spheres and bodies meet once in a step: substeps must be 1");
+  if (bodies.options().dt != options_.dt)
+    throw InvalidArgument("flow: the steps of bodies that its spheres meet must be as long as its own");
+  if (&bodies.environment() != &environment_) throw InvalidArgument("flow: the bodies are in another environment");
+  bodies_ = &bodies;
+}
+
+// Masses, and who takes part: those held or gone meet nobody, those that stick to a wall cannot be pushed.
+void Flow::weigh() {
+  met_radii_.resize(radii_.size());
+  inverse_masses_.resize(radii_.size());
+  displacements_.resize(radii_.size());
+  for (std::size_t i = 0; i < radii_.size(); ++i) {
+    const double r = radii_[i];
+    const bool meets = !particles_[i].held && (fates_[i] == Fate::alive || fates_[i] == Fate::stuck);
+    met_radii_[i] = meets ? r : 0.0;
+    const double m = mass(i);
+    inverse_masses_[i] = fates_[i] == Fate::alive && m > 0.0 ? 1.0 / m : 0.0;
+  }
+}
+
+// What is known of the room around a sphere from where it was measured. Distances were rounded: a share is given up.
+double Flow::clearance(std::size_t i) const {
+  const double room = clear_[i].distance * (1.0 - 0x1p-20) - norm(particles_[i].position - clear_[i].centre);
+  return std::max(0.0, room);
+}
+
+void Flow::walls_of(std::size_t i, double dt, bool moving, NearWalls& near, std::vector<WallContact>& found) {
+  const double r = met_radii_[i];
+  clearances_[i] = clearance(i);
+  if (clearances_[i] >= r * (1.0 + wall_share)) return;
+  // Where walls stand still and are not next to it, more room is looked into at once, and then serves until the sphere
+  // has used it up. What is found within the share that counts does not depend on it.
+  const bool next_to_wall = deforms() || (clear_[i].distance > 0.0 && clear_[i].distance < 1.5 * r);
+  const double reach = next_to_wall ? wall_share * r : r;
+  const auto walls = walls_within(environment_.complex(), particles_[i], r + reach, near, moving);
+  clear_[i] = {particles_[i].position, walls.empty() ? r + reach : walls.front().distance};
+  clearances_[i] = clearance(i);
+  for (const WallFeature& w : walls) {
+    const Response& response = responses_.of(w.patch);
+    if (response.kind != ResponseKind::reflect && response.kind != ResponseKind::slide) continue;
+    const bool slides = response.kind == ResponseKind::slide;
+    const Vec3 velocity = moving ? w.displacement * (1.0 / dt) : Vec3{};
+    const double gap = w.distance - r;
+    const bool meets = gap <= wall_share * r && dot(velocities_[i] - velocity, w.normal) * dt <= -gap;
+    if (gap > near_share * r && !meets) continue;
+    found.push_back({static_cast<std::uint32_t>(i), w.normal, gap, velocity, slides ? 0.0 : response.restitution,
+                     slides ? 0.0 : response.friction});
+  }
+}
+
+void Flow::find_walls(double dt, bool moving) {
+  const std::size_t chunks = chunk_count(radii_.size(), wall_grain);
+  if (near_.size() < chunks) near_.resize(chunks);
+  near_contacts_.resize(chunks);
+  clearances_.assign(radii_.size(), 0.0);
+  clear_.resize(radii_.size());
+  if (deforms()) clear_.assign(radii_.size(), {});
+  parallel_for(radii_.size(), wall_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
+    const std::size_t chunk = begin / wall_grain;
+    near_contacts_[chunk].clear();
+    for (std::size_t i = begin; i < end; ++i) {
+      if (met_radii_[i] > 0.0 && inverse_masses_[i] > 0.0) walls_of(i, dt, moving, near_[chunk], near_contacts_[chunk]);
+    }
+  });
+  walls_.clear();
+  for (const auto& part : near_contacts_) walls_.insert(walls_.end(), part.begin(), part.end());
+}
+
+// Where those that stick to a wall go is known once it has moved.
+void Flow::aim_stuck(double dt) {
+  for (std::size_t i = 0; i < fates_.size(); ++i) {
+    if (fates_[i] == Fate::stuck) targets_[i] = flushed(aim_at(i, dt, true).target);
+  }
+}
+
+void Flow::collide(double dt, bool moving) {
+  aim(dt, false);
+  weigh();
+  find_walls(dt, moving);
+  const CollisionOptions& c = *options_.collisions;
+  SolverOptions solver;
+  solver.dt = dt;
+  solver.restitution = c.restitution;
+  solver.friction = c.friction;
+  solver.iterations = c.iterations;
+  solver.push_iterations = c.push_iterations;
+  solver.resting_speed = 2.0 * norm(options_.gravity) * dt;
+  const Complex& complex = environment_.complex();
+  const CollidingSpheres spheres = {particles_.states(), ids_,        met_radii_,    inverse_masses_,
+                                    clearances_,         velocities_, displacements_};
+  if (meets_bodies()) {
+    last_.collisions += body_collider_.collide(complex, spheres, walls_, *bodies_, solver, environment_.threads());
+    collider_.solver().set_kept({});
+  } else {
+    last_.collisions += collider_.collide(complex, spheres, walls_, solver, environment_.threads());
+    body_collider_.solver().set_kept({});
+  }
+  for (std::size_t i = 0; i < targets_.size(); ++i) {
+    if (fates_[i] == Fate::alive && !particles_[i].held)
+      targets_[i] = flushed(particles_[i].position + displacements_[i]);
+  }
+}
+
+CrowdingReport Flow::relieve(Crowding& crowding, Stranded stranded) {
+  return crowding.relieve(environment_.complex(), particles_,
+                          [&](const std::function<void(ComplexEdit&)>& make) { return edit(make, stranded).edit; });
+}
+
+}  // namespace dartcast

@@ -1,0 +1,75 @@
+// One sphere's step: stretch after stretch, each ended by a contact, an overlap or the target.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "dartcast/spheres.hpp"
+#include "spheres/sphere_way.hpp"
+
+namespace dartcast::detail {
+
+/// What all spheres of a call have in common.
+struct SphereScene {
+  const Complex* complex = nullptr;
+  bool moved = false;  ///< the vertices, in this step
+  const Respond* respond = nullptr;
+  const StepOptions* options = nullptr;
+};
+
+/// Where the centre came to a wall: from the environment's report.
+struct CentreContact {
+  const Contact* contact = nullptr;  ///< null: it did not
+  const ContactList* list = nullptr;
+};
+
+/// A sphere that its first stretch did not bring to its target. Kept from step to step for the memory it holds.
+class SphereRun {
+ public:
+  /// Begins with a stretch that has been planned, as `sphere`.
+  /// `moving`: among moving walls.
+  void start(std::uint32_t particle, const MovingSphere& sphere, const SphereWay& way, bool moving);
+
+  /// Plans the stretch that comes next; the centre's target.
+  const Vec3& plan(const SphereScene& scene, const State& state, NearWalls& near);
+  /// After the centre has been advanced to the target planned: records what was touched, asks what follows. False where
+  /// the step is at its end.
+  bool land(const SphereScene& scene, const State& state, CentreContact centre, NearWalls& near);
+  void hold(Cell invalid) { held_ = Held{particle_, invalid}; }
+
+  [[nodiscard]] std::uint32_t particle() const { return particle_; }
+  [[nodiscard]] const Vec3& target() const { return way_.target; }
+  [[nodiscard]] std::vector<SphereOverlap>& overlaps() { return overlaps_; }
+  /// Adds what happened.
+  void report(SphereReport& report) const;
+
+ private:
+  bool touched(const SphereScene& scene, const State& state, NearWalls& near);
+  bool touched_by_centre(const SphereScene& scene, const State& state, CentreContact centre);
+  bool follow(const SphereScene& scene, const State& state, Contact& contact);
+  bool moved_out(const SphereScene& scene, const State& state, NearWalls& near);
+  void lift(const Vec3& position, Vec3& q) const;
+  [[nodiscard]] double slack(const Vec3& centre) const { return touching_slack(centre, radius_); }
+
+  std::uint32_t particle_ = 0;
+  double radius_ = 0.0;
+  Vec3 begin_;  // of the stretch
+  Vec3 aim_;
+  double time_ = 0.0;             // when it began
+  std::uint32_t first_here_ = 0;  // of the walls met at the place of the last contact
+  bool moving_ = false;
+  unsigned pushes_ = 0;
+  SphereWay way_;
+  std::vector<Contact> contacts_;
+  std::vector<WallHit> walls_;
+  std::vector<SphereOverlap> overlaps_;
+  std::optional<Stopped> stopped_;
+  std::optional<Held> held_;
+  bool unfinished_ = false;
+};
+
+/// Adds the walls that overlap a sphere, deepest first.
+void list_overlaps(const Complex& complex, const State& state, std::uint32_t particle, double radius, NearWalls& near,
+                   std::vector<SphereOverlap>& overlaps);
+
+}  // namespace dartcast::detail

@@ -1,0 +1,38 @@
+// One stretch of a sphere's way: where its centre is to be moved to, and what it touches there.
+#pragma once
+
+#include <cstdint>
+
+#include "dynamics/near_walls.hpp"
+
+namespace dartcast::detail {
+
+/// What ends a stretch.
+enum class WayEnd : std::uint8_t {
+  target,   ///< nothing is touched
+  contact,  ///< a wall is touched
+  overlap   ///< a wall overlaps the sphere where it begins: it is moved out, or along with the wall, and makes no way
+};
+
+struct SphereWay {
+  WayEnd end = WayEnd::target;
+  Vec3 target;                 ///< of the centre, in the geometry of now
+  double time = 0.0;           ///< of the contact, never late: share of the stretch
+  double used = 0.0;           ///< share of the motion that was made
+  Vec3 wall_displacement;      ///< contact, or overlap, after a move
+  CellFace face;               ///< contact: of the wall touched
+  std::uint16_t triangle = 0;  ///< in the face's fan
+};
+
+/// A sphere at the beginning of a stretch. Positions before the last move where `moving`, else as they are now.
+struct SphereStretch {
+  Cell cell;
+  MovingSphere sphere;
+  bool moving = false;   ///< the walls move meanwhile
+  bool push_out = true;  ///< of walls that overlap it; else it goes on as if it were as large as there is room for
+};
+
+/// Where it comes to. Cost: that of the search, and some 0.1 us for each wall found.
+SphereWay way_of(const Complex& complex, const SphereStretch& stretch, NearWalls& near);
+
+}  // namespace dartcast::detail

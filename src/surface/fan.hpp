@@ -1,0 +1,39 @@
+// The triangles around a vertex of a surface, as far as no wall parts them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "dartcast/surface.hpp"
+
+namespace dartcast::detail {
+
+/// A corner of a triangle, at the vertex, and the angle there.
+struct FanCorner {
+  SimplexId triangle;
+  unsigned corner = 0;
+  double angle = 0.0;
+};
+
+/// Counterclockwise. Where walls meet the vertex (`closed` is false), from the wall on the right to that on the left.
+struct Fan {
+  std::vector<FanCorner> corners;
+  bool closed = true;
+  double total = 0.0;   ///< sum of the angles
+  std::size_t own = 0;  ///< which is that of the triangle asked for; 0 where closed
+  double before = 0.0;  ///< sum of those before it
+
+  /// The corner that an angle from the fan's first edge falls in, and what is left of the angle there, in [0, its
+  /// angle].
+  [[nodiscard]] std::pair<FanCorner, double> at(double angle) const;
+};
+
+/// Whether walls end a fan, or only open borders.
+enum class FanWalls : std::uint8_t { end, passed };
+
+/// Starting with the corner's own triangle where the fan is closed. Cost: linear in the triangles around the vertex.
+Fan fan_of(const Surface& surface, SimplexId triangle, unsigned corner, FanWalls walls = FanWalls::end);
+
+}  // namespace dartcast::detail

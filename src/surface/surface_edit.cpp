@@ -1,0 +1,90 @@
+#include "surface/surface_edit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "dartcast/error.hpp"
+#include "surface/surface_locator.hpp"
+
+namespace dartcast {
+
+SurfaceEdit::SurfaceEdit(Surface& surface)
+    : surface_(surface), transaction_(surface.map_), born_(transaction_, surface.positions_) {}
+
+SurfaceEdit::~SurfaceEdit() { born_.give_up(); }
+
+Vec3 SurfaceEdit::position(Vertex v) { return born_.at(v); }
+
+void SurfaceEdit::place(Vertex v, const Vec3& x) { born_.place(v, x); }
+
+SurfaceEditReport SurfaceEdit::commit() {
+  born_.take();
+  for (const Cell c : transaction_.added()) {
+    if (!surface_.has_flat_triangle(c, surface_.positions_)) continue;
+    const std::uint32_t source = map().source(c);
+    transaction_.roll_back();
+    born_.take();
+    throw EditRefused(
+        fmt::format("face {} would have a triangle without area: split it at the vertices on its edges", source));
+  }
+  SurfaceEditReport report;
+  for (const Cell c : transaction_.removed()) {
+    const auto triangles = map().view(c).shape().simplices().size();
+    for (std::uint16_t s = 0; s < triangles; ++s)
+      report.gone.push_back({{c, s}, map().source(c), surface_.corners({c, s})});
+  }
+  std::sort(report.gone.begin(), report.gone.end(),
+            [](const auto& a, const auto& b) { return a.triangle < b.triangle; });
+  report.map = transaction_.commit();
+  born_.keep();
+  return report;
+}
+
+namespace {
+
+// The same corners, from whichever on: the place keeps its weights.
+std::optional<SurfacePlace> in_same_corners(const Surface& surface, const GoneTriangle& was, SimplexId now,
+                                            const std::array<double, 3>& weights) {
+  const auto corners = surface.corners(now);
+  for (unsigned turn = 0; turn < 3; ++turn) {
+    const auto at = [&](unsigned i) { return (i + turn) % 3; };
+    if (corners[0] == was.corners[at(0)] && corners[1] == was.corners[at(1)] && corners[2] == was.corners[at(2)])
+      return SurfacePlace{now, {weights[at(0)], weights[at(1)], weights[at(2)]}};
+  }
+  return {};
+}
+
+Vec3 point_in(const GoneTriangle& t, const std::array<double, 3>& w) {
+  return t.corners[0] + ((t.corners[1] - t.corners[0]) * w[1] + (t.corners[2] - t.corners[0]) * w[2]);
+}
+
+}  // namespace
+
+std::optional<SurfacePlace> followed(const Surface& surface, const SurfaceEditReport& report,
+                                     const SurfacePlace& place) {
+  const auto was = std::lower_bound(report.gone.begin(), report.gone.end(), place.triangle,
+                                    [](const GoneTriangle& a, SimplexId b) { return a.triangle < b; });
+  if (was == report.gone.end() || was->triangle != place.triangle) return place;
+  const Map& map = surface.map();
+  const Vec3 x = point_in(*was, place.weights);
+  std::optional<SurfacePlace> nearest;
+  std::pair<double, bool> least;  // distance, and whether of another face's origin
+  for (const Cell c : report.map.added) {
+    const bool other = map.source(c) != was->source;
+    for (std::uint16_t s = 0; s < map.shape(c).simplices().size(); ++s) {
+      if (!other) {
+        if (const auto same = in_same_corners(surface, *was, {c, s}, place.weights)) return same;
+      }
+      const SurfaceLocation at = nearest_in_triangle(surface, {c, s}, x);
+      const std::pair<double, bool> rank = {at.distance, other};
+      if (nearest && !(rank < least)) continue;
+      nearest = at.place;
+      least = rank;
+    }
+  }
+  return nearest;
+}
+
+}  // namespace dartcast

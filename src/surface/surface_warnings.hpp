@@ -1,0 +1,13 @@
+// What a surface can be used with, but its maker may not have meant.
+#pragma once
+
+#include "dartcast/mesh_data.hpp"
+#include "mesh/mesh_report.hpp"
+
+namespace dartcast {
+
+/// Adds the warnings of inspect_surface() to the report. Precondition: the surface has no defect of its arrays,
+/// corners, coordinates and edges. Cost: n log n.
+void add_surface_warnings(const MeshData& mesh, MeshReport& report);
+
+}  // namespace dartcast

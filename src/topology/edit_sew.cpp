@@ -1,0 +1,127 @@
+// Edits that sew faces and open them.
+#include <algorithm>
+#include <unordered_set>
+#include <utility>
+
+#include "dartcast/map_edits.hpp"
+#include "topology/rework.hpp"
+
+namespace dartcast {
+
+using detail::expect_dart;
+using detail::expect_face;
+using detail::refuse;
+using detail::Rework;
+
+namespace {
+
+bool has_corner(const CellView& view, std::uint16_t face, Vertex v) {
+  const auto corners = view.shape().corners(face);
+  return std::any_of(corners.begin(), corners.end(), [&](std::uint16_t k) { return view.vertex(k) == v; });
+}
+
+// The cells around a vertex of a cell, reached over faces with that vertex but for one face.
+std::vector<Cell> around_vertex(const Map& map, Cell start, Vertex v, CellFace but = {}) {
+  const CellFace from_beyond = but.valid() ? map.opposite(but) : CellFace{};
+  std::vector<Cell> cells = {start};
+  std::unordered_set<std::uint32_t> seen = {start.value};
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const CellView view = map.view(cells[i]);
+    for (std::uint16_t face = 0; face < view.shape().face_count(); ++face) {
+      const CellFace f{cells[i], face};
+      const Cell other = view.neighbour(face);
+      if (f == but || f == from_beyond || !other.valid() || !has_corner(view, face, v)) continue;
+      if (seen.insert(other.value).second) cells.push_back(other);
+    }
+  }
+  return cells;
+}
+
+// Gives a vertex of a cell another number, all renamings at once: the map says which vertex a corner was. A face that
+// has it needs another point: weights name corners.
+void rename(const Map& map, Cell c, CellDraft& draft, Vertex from, Vertex to) {
+  const CellView v = map.view(c);
+  for (std::uint16_t f = 0; f < v.shape().face_count(); ++f) {
+    const auto corners = v.shape().corners(f);
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      if (v.vertex(corners[k]) != from) continue;
+      draft.faces[f].corners[k].vertex = to;
+      draft.faces[f].point = {};
+    }
+  }
+}
+
+// The corners of the dart's face, from its origin on.
+std::vector<Vertex> corners_from(const Map& map, Dart d) {
+  const CellView view = map.view(d.cell);
+  const auto corners = view.shape().corners(view.shape().face_of(d.number));
+  const std::size_t first = detail::corner_of(view.shape(), d.number);
+  std::vector<Vertex> vertices;
+  for (std::size_t k = 0; k < corners.size(); ++k)
+    vertices.push_back(view.vertex(corners[(first + k) % corners.size()]));
+  return vertices;
+}
+
+}  // namespace
+
+std::vector<Cell> sew(Transaction& t, Dart a, Dart b) {
+  const Map& map = t.map();
+  expect_dart(map, a);
+  expect_dart(map, b);
+  const CellFace f = map.face(a);
+  const CellFace g = map.face(b);
+  for (const CellFace& face : {f, g}) {
+    if (map.opposite(face).valid()) refuse(map, face.cell, "has its face sewn already: unsew it first");
+  }
+  if (a.cell == b.cell) refuse(map, a.cell, "is to be sewn to itself: split it first");
+  if (map.shape(f.cell).degree(f.face) != map.shape(g.cell).degree(g.face))
+    refuse(map, a.cell, "has a face with another number of corners than the one to sew it to: split an edge first");
+  const Transaction::Mark before = t.mark();
+  Rework rework(t);
+  rework.draft(f.cell).faces[f.face].across.face = g;
+  rework.draft(g.cell).faces[g.face].across.face = f;
+  rework.draft(f.cell).faces[f.face].point = {};
+  rework.draft(g.cell).faces[g.face].point = {};
+  const std::vector<Vertex> here = corners_from(map, a);
+  const std::vector<Vertex> there = corners_from(map, b);
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    const Vertex u = here[i];
+    const Vertex v = there[(here.size() + 1 - i) % here.size()];
+    if (u == v) continue;
+    const Vertex gone = std::max(u, v);
+    for (const Cell c : around_vertex(map, u > v ? a.cell : b.cell, gone))
+      rename(map, c, rework.draft(c), gone, std::min(u, v));
+    t.note_identified(gone, std::min(u, v));
+  }
+  try {
+    return rework.put();
+  } catch (...) {
+    t.roll_back(before);
+    throw;
+  }
+}
+
+std::vector<Cell> unsew(Transaction& t, CellFace f) {
+  const Map& map = t.map();
+  expect_face(map, f);
+  const CellFace g = map.opposite(f);
+  if (!g.valid()) refuse(map, f.cell, "has nothing beyond the face to unsew: it is on the boundary");
+  const Transaction::Mark before = t.mark();
+  try {
+    Rework rework(t);
+    rework.draft(f.cell).faces[f.face].across = {};
+    rework.draft(g.cell).faces[g.face].across = {};
+    for (const Vertex v : corners_from(map, {f.cell, map.shape(f.cell).first_dart(f.face)})) {
+      const std::vector<Cell> beyond = around_vertex(map, g.cell, v, f);
+      if (std::find(beyond.begin(), beyond.end(), f.cell) != beyond.end()) continue;
+      const Vertex parted = t.add_vertex(v, v);
+      for (const Cell c : beyond) rename(map, c, rework.draft(c), v, parted);
+    }
+    return rework.put();
+  } catch (...) {
+    t.roll_back(before);
+    throw;
+  }
+}
+
+}  // namespace dartcast

@@ -1,0 +1,224 @@
+// What is kept of simplices (tracking/batch/simplex_cache.hpp), of four particles in vectors. Part of tracking/batch/batch_kernel.inl: no include
+// guard, no includes.
+
+DARTCAST_TARGET inline Quad load_floats(const float* in) {
+  const Floats four = *reinterpret_cast<const UnalignedFloats*>(in);
+  return widened(four);
+}
+DARTCAST_TARGET inline void store_floats(const Quad& four, float* out) {
+  *reinterpret_cast<UnalignedFloats*>(out) = narrowed(four);
+}
+DARTCAST_TARGET inline Quad load_doubles(const double* in) { return *reinterpret_cast<const UnalignedQuad*>(in); }
+DARTCAST_TARGET inline void store_doubles(const Quad& four, double* out) {
+  *reinterpret_cast<UnalignedQuad*>(out) = four;
+}
+// Of corner i.
+DARTCAST_TARGET inline Points load_vectors(const MemosOfFour& memos, unsigned i) {
+  return {load_floats(memos.x[i].data()), load_floats(memos.y[i].data()), load_floats(memos.z[i].data())};
+}
+DARTCAST_TARGET inline void store_vectors(const Points& four, MemosOfFour& memos, unsigned i) {
+  store_floats(four.x, memos.x[i].data());
+  store_floats(four.y, memos.y[i].data());
+  store_floats(four.z, memos.z[i].data());
+}
+
+// The trails of the particles that d's corners are relative to.
+DARTCAST_TARGET inline void leave_trails(const FilteredDeterminants& d, MemosOfFour& memos) {
+  const Mask known = d.proves_coordinates();
+  for (unsigned i = 0; i < 4; ++i) {
+    store_vectors(d.relative[i], memos, i);
+    store_doubles(known ? d.value[i] : splat(unknown), memos.w[i].data());
+  }
+}
+
+// Whether a number has no more than 29 bits: times a float it then makes a double. x + 2^24 x is rounded to a multiple
+// of the last place of 2^24 x, the 29th place of x.
+DARTCAST_TARGET inline Mask has_few_bits(const Quad& x) {
+  const Quad far = x * splat(0x1p+24);
+  return (far + x) - far == x;
+}
+
+// Whether s, the rounded sum of a and b, is exact: the difference to the larger one is.
+DARTCAST_TARGET inline Mask is_sum(const Quad& s, const Quad& a, const Quad& b) { return (s - a == b) & (s - b == a); }
+
+// Whether g.q + w comes out as zero though nothing is rounded: g are floats, q has few bits.
+DARTCAST_TARGET inline Mask is_zero(const Points& g, const Quad& w, const Points& q) {
+  const Quad x = g.x * q.x;
+  const Quad y = g.y * q.y;
+  const Quad z = g.z * q.z;
+  const Quad xy = x + y;
+  const Quad xyz = xy + z;
+  return (xyz + w == 0.0) & is_sum(xy, x, y) & is_sum(xyz, xy, z);
+}
+
+// Leaves the coordinates of the simplices, from particles p that d's corners are relative to: their gradients are the
+// normals of the facets, inwards, over the volume. If asked, returns a bit for each lane in which they are exact; for
+// lanes in which p is in the closed simplex, and arithmetic on the differences of p and the corners rounds nothing
+// (rounds_nothing() in dartcast/predicates.hpp).
+//
+// Then normals and the volume, a sum of determinants none of which is negative, are exact; so is a function of the
+// place that has the right gradient and is zero at a corner of the facet. Differences are below 2^16 units: where p is
+// within 2^12 of the largest one, corners are below 2^29 units, and have few bits.
+template <bool ask_exact>
+DARTCAST_TARGET inline unsigned leave_coordinates(const FilteredDeterminants& d, const Points& p, MemosOfFour& memos) {
+  const Quad volume = d.volume6();
+  const Quad share = 1.0 / volume;
+  const Quad extent = largest(d.extent);
+  const Points m = magnitude(p);
+  const Quad reach = largest(larger(d.extent, m * splat(1.0 / extents_from_origin)));
+  Mask proved =
+      d.proves_coordinates() & (volume >= least_volume * (extent * extent * extent)) & (extent <= farthest_corner);
+  Mask exact{};
+  if constexpr (ask_exact) {
+    constexpr double close = 0x1p+12;
+    exact =
+        has_few_bits(volume) & (m.x <= close * d.extent.x) & (m.y <= close * d.extent.y) & (m.z <= close * d.extent.z);
+  }
+  Quad at_origin[4];
+  for (unsigned i = 0; i < 4; ++i) {
+    const Points& a = d.relative[i ^ 1U];
+    const Points normal = cross(d.relative[3 - i] - a, d.relative[i ^ 2U] - a);
+    store_vectors(normal * share, memos, i);
+    const Points g = load_vectors(memos, i);
+    proved &= (magnitude(g.x) + magnitude(g.y) + magnitude(g.z)) * reach <= steepest_gradient;
+    at_origin[i] = d.value[i] * share - dot(g, p);
+    if constexpr (ask_exact)
+      exact &= (g.x * volume == normal.x) & (g.y * volume == normal.y) & (g.z * volume == normal.z) &
+               is_zero(g, at_origin[i], p + a);
+  }
+  for (unsigned i = 0; i < 4; ++i) store_doubles(proved ? at_origin[i] : splat(proves_nothing), memos.w[i].data());
+  return ask_exact ? lanes_set(proved & exact) : 0;
+}
+
+// Coordinate i of q.
+DARTCAST_TARGET inline Quad coordinate_of(const MemosOfFour& memos, unsigned i, const Points& q) {
+  return dot(load_vectors(memos, i), q) + load_doubles(memos.w[i].data());
+}
+
+// Bits of the facets that q is proved to lie on, where coordinates are exact.
+DARTCAST_TARGET inline Mask proved_zeros(const MemosOfFour& memos, const Points& q) {
+  Mask zero[4];
+  for (unsigned i = 0; i < 4; ++i) zero[i] = is_zero(load_vectors(memos, i), load_doubles(memos.w[i].data()), q);
+  return has_few_bits(q.x) & has_few_bits(q.y) & has_few_bits(q.z) & facet_bits(zero[0], zero[1], zero[2], zero[3]);
+}
+
+DARTCAST_TARGET inline bool has_coordinates(const MemosOfFour* memos, std::uint32_t i) {
+  return !std::isnan(memos[i / 4].w[0][i % 4]);
+}
+DARTCAST_TARGET inline void forget(MemosOfFour* memos, Mark* marks, std::uint32_t i) {
+  for (auto& of_corner : memos[i / 4].w) of_corner[i % 4] = unknown;
+  marks[i] = 0;
+}
+
+// As flushed() in tracking/representable_point.hpp.
+DARTCAST_TARGET inline Quad without_tiny(const Quad& x) { return magnitude(x) < smallest_magnitude ? Quad{} : x; }
+
+// The points of tracking/carry.hpp that have, in the moved simplices, the coordinates that w are in proportion to.
+DARTCAST_TARGET inline Points ride_along(const Quad (&w)[4], const Tetrahedra& now) {
+  Quad share[4];
+  for (unsigned i = 0; i < 4; ++i) share[i] = larger(w[i], Quad{});
+  const Quad sum = ((share[0] + share[1]) + share[2]) + share[3];
+  for (Quad& s : share) s = s / sum;
+  const Points x =
+      (now.corner[0] * share[0] + now.corner[1] * share[1]) + (now.corner[2] * share[2] + now.corner[3] * share[3]);
+  return {without_tiny(x.x), without_tiny(x.y), without_tiny(x.z)};
+}
+
+// Coordinates that determinants are in proportion to.
+DARTCAST_TARGET inline Weights shares_of(Weights w) {
+  for (double& share : w) share = std::max(share, 0.0);
+  const double sum = ((w[0] + w[1]) + w[2]) + w[3];
+  for (double& share : w) share /= sum;
+  return w;
+}
+
+// Whether what ride_along() comes to surely lies strictly inside of the moved simplices, for targets q that were not
+// proved to; d: of the targets.
+//
+// Let E be the largest |r_i| of the corners relative to q, V the volume, M the largest |c_i| of the corners. The place
+// is a sum of c_i s_i, rounded, with s_i >= 2^-12 that sum to 1 up to 4u: in each component it is 9uM at most off the
+// point that has the coordinates s_i / sum. (What is counted as zero is below 2^-300, which is 2^-66 E where the filter
+// applies, in the corners, too.) The cross products of a facet's edges have components of 8 E^2 at most. So the place's
+// determinants are s_i V, off by 24 E^2 9uM < 2^-33 E^3, as M <= (2^12 + 1) E; and s_i V >= 2^-32 (1 - 2^-25) E^3. It
+// is not q: one of q's is below 2^-46 E^3.
+DARTCAST_TARGET inline Mask surely_rides_inside(const MemosOfFour& trails, const FilteredDeterminants& d,
+                                                const Points& q) {
+  constexpr double least_share = 0x1p-12;
+  constexpr double farthest = 0x1p+12;
+  const Quad w[4] = {load_doubles(trails.w[0].data()), load_doubles(trails.w[1].data()),
+                     load_doubles(trails.w[2].data()), load_doubles(trails.w[3].data())};
+  const Quad sum = (w[0] + w[1]) + (w[2] + w[3]);
+  const Quad extent = largest(d.extent);
+  return (d.volume6() > d.bound) & (d.volume6() >= least_volume * (extent * extent * extent)) &
+         (largest(magnitude(q)) <= farthest * extent) &
+         (smaller(smaller(w[0], w[1]), smaller(w[2], w[3])) >= least_share * sum);
+}
+
+// Whether steps relative to moving vertices surely need no splitting (tracking/step.hpp): |A| |r| <= 2 tolerance edge.
+//
+// The corners' displacements d_i, less the particle's own q - p, have -r as a mean: |r| <= max |d_i|. With
+// u_i = d_i - d_0 and n_i the cross products of the old edges e_i from corner 0, A = sum of u_i n_i^T / V, so that
+// |A|^2 V^2 <= sum of |u_i|^2 times sum of |n_i|^2. Squares are compared. L is the old distance of the farthest corner:
+// floats rounded the old corners by 2^-24 L, and the rule's own doubles round u_i by as much at most, as |q - p| and
+// |d_i| are below 2^28 L. So the coordinates of d_i, u_i, n_i and the edges are off by 2^-24 L, 3 2^-24 L, 2^-20 L^2
+// and 2^-23 L; squares count that as (a + b)^2 <= 17/16 a^2 + 17 b^2. The rule's r is off by 2^-49 |q| as well, less
+// than an eighth of 2^-24 L, and by as much of the d_i. Products reach L^12: with L in [2^-70, 2^70] those on the left
+// neither overflow nor underflow.
+class OnePart {
+ public:
+  // `after`: the moved corners relative to the targets q; p: where the particles were.
+  DARTCAST_TARGET OnePart(const MemosOfFour& trails, const Points (&after)[4], const Points& p, const Points& q,
+                          double tolerance)
+      : before_{load_vectors(trails, 0), load_vectors(trails, 1), load_vectors(trails, 2), load_vectors(trails, 3)} {
+    const Points d0 = after[0] - before_[0];
+    l2_ = square(before_[0]);
+    Quad farthest = square(d0);
+    Quad u2{};
+    for (unsigned i = 1; i < 4; ++i) {
+      const Points d = after[i] - before_[i];
+      l2_ = larger(l2_, square(before_[i]));
+      farthest = larger(farthest, square(d));
+      u2 += square(d - d0);
+    }
+    const Quad r2 = 0x1.1p+0 * farthest + 0x1p-42 * l2_;
+    u2_r2_ = (0x1.1p+0 * u2 + 0x1p-37 * l2_) * r2;
+    const Points own = q - p;
+    const Quad far = 0x1p+56 * l2_;
+    in_range_ =
+        (l2_ > 0x1p-140) & (l2_ < 0x1p+140) & (farthest < far) & (square(own) < far) & (square(q) < 0x1p+44 * l2_);
+    // Not a number where the trail is unknown: then nothing is less.
+    volume_ = (load_doubles(trails.w[0].data()) + load_doubles(trails.w[1].data())) +
+              (load_doubles(trails.w[2].data()) + load_doubles(trails.w[3].data()));
+    limit_ = 1.98 * tolerance * volume_;
+  }
+
+  // By L alone: |e_i| <= 2 L, sum of |n_i|^2 <= 48 L^4, edge >= V / (4 L^2).
+  [[nodiscard]] DARTCAST_TARGET Mask by_size() const {
+    const Quad limit = limit_ * volume_;
+    const Quad l4 = l2_ * l2_;
+    constexpr double rounding = 1.01;
+    return in_range_ & (u2_r2_ * (rounding * 48.0 * 16.0) * (l4 * l4) <= limit * limit);
+  }
+
+  // By the simplex's own faces and edges.
+  [[nodiscard]] DARTCAST_TARGET Mask by_shape() const {
+    const Points e1 = before_[1] - before_[0];
+    const Points e2 = before_[2] - before_[0];
+    const Points e3 = before_[3] - before_[0];
+    const Quad faces = square(cross(e1, e2)) + square(cross(e2, e3)) + square(cross(e3, e1));
+    const Quad at_first = smaller(smaller(square(e1), square(e2)), square(e3));
+    const Quad others = smaller(smaller(square(before_[1] - before_[2]), square(before_[2] - before_[3])),
+                                square(before_[3] - before_[1]));
+    const Quad n2 = 0x1.1p+0 * faces + 0x1p-32 * l2_ * l2_;
+    const Quad edge2 = 0.94 * (smaller(at_first, others) - 0x1p-40 * l2_);
+    return in_range_ & (u2_r2_ * n2 <= limit_ * limit_ * edge2);
+  }
+
+ private:
+  Points before_[4];
+  Quad l2_;
+  Quad u2_r2_;
+  Quad volume_;
+  Quad limit_;
+  Mask in_range_;
+};

@@ -1,0 +1,37 @@
+#include "tracking/step.hpp"
+
+#include <fmt/format.h>
+
+#include "tracking/step_run.hpp"
+
+namespace dartcast {
+
+namespace {
+
+// The usual step records nothing, at no cost.
+struct NoRecorder {
+  static NoVisitor visitor() { return {}; }
+  template <class... Arguments>
+  static void walked(const Arguments&...) {}
+  static void put(const State&, double) {}
+};
+
+}  // namespace
+
+void check(const StepOptions& options, const char* caller) {
+  if (!(options.tolerance > 0.0))
+    throw InvalidArgument(fmt::format("{}: the tolerance is {}: it must be positive", caller, options.tolerance));
+  if (options.max_parts == 0) throw InvalidArgument(fmt::format("{}: max_parts is 0: it must be at least 1", caller));
+  if (options.max_contacts == 0)
+    throw InvalidArgument(fmt::format("{}: max_contacts is 0: it must be at least 1", caller));
+}
+
+StepResult Stepper::step(std::uint32_t particle, State& state, Weights& weights, const Vec3& target,
+                         ContactList& contacts, Counters& counters, const Begun* begun) const {
+  constexpr NoRecorder none;
+  if (complex_.map().dimension() == 2)
+    return step_in<3>(particle, state, weights, target, contacts, counters, begun, none);
+  return step_in<4>(particle, state, weights, target, contacts, counters, begun, none);
+}
+
+}  // namespace dartcast

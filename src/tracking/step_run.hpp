@@ -1,0 +1,344 @@
+// The step of one particle: part of step.cpp, and with a recorder of trace.cpp. Two files, so that the step without one
+// is compiled as if there were no other: what is called once is inlined.
+#pragma once
+
+#include <cmath>
+#include <string>
+
+#include "dartcast/error.hpp"
+#include "tracking/contact_geometry.hpp"
+#include "tracking/step.hpp"
+
+namespace dartcast {
+
+namespace detail {
+
+// The state of one particle's step.
+template <class Recorder>
+struct RunOf {
+  std::uint32_t particle;
+  State& state;
+  ContactList& contacts;
+  Counters& counters;
+  StepResult result{};
+  unsigned contact_count = 0;
+  std::uint32_t first_wall = 0;  // of this particle in this step
+  std::uint32_t first_here = 0;  // of those met at the place of the last contact
+  double last_time = -1.0;       // of the last contact
+  TestCounts tests{};
+  [[no_unique_address]] Recorder recorder{};
+};
+
+inline constexpr int lift_doublings = 16;  // for targets along walls
+
+// The stretch of the step that is walked in one geometry: the particle's motion from time `begin` to time `end`.
+struct Stretch {
+  double begin;
+  double end;
+  Vec3 later;  // displacement planned after `end`, not relative to anything
+};
+
+inline void touch(State& state, std::span<const WallHit> walls) {
+  state.touching_count = 0;
+  for (const WallHit& wall : walls) {
+    if (state.touching_count == state.touching.size()) break;
+    const auto end = state.touching.begin() + state.touching_count;
+    if (std::find(state.touching.begin(), end, wall.face) == end) state.touching[state.touching_count++] = wall.face;
+  }
+}
+
+template <class Positions, std::size_t N, class Recorder>
+class Part {
+  using Run = RunOf<Recorder>;
+
+ public:
+  Part(const Complex& complex, bool moved, const Space<Positions, N>& space, const StepOptions& options,
+       const Respond& respond)
+      : complex_(complex), moved_(moved), space_(space), options_(options), respond_(respond) {}
+
+  // Walks to q, with the contacts on the way. Returns the displacement still planned after this stretch.
+  Vec3 move(Run& run, Vec3 q, Stretch stretch, const Begun* begun = nullptr) const {
+    while (q != run.state.position) {
+      const Vec3 p = run.state.position;
+      const Landing* const landing = begun != nullptr ? begun->landing : nullptr;
+      Walk walked;
+      if (begun == nullptr)
+        walked = walk(space_, run.state.at(), p, q, run.tests, run.recorder.visitor());
+      else if (landing == nullptr)
+        walked = end_walk(space_, begun->walk, p, q, run.tests, run.recorder.visitor());
+      const Walk& w = landing != nullptr ? begun->walk : walked;
+      begun = nullptr;
+      if (w.end == WalkEnd::invalid_cell) {
+        run.result.held = true;
+        run.result.invalid_cell = w.simplex.cell;
+        return {};
+      }
+      run.recorder.walked(space_, w, p, q, stretch.begin, stretch.end);
+      if (w.end == WalkEnd::arrived) {
+        run.state.put(w.simplex, q);
+        run.state.touching_count = 0;
+        return stretch.later;
+      }
+      const Continuation next = meet(run, w, p, q, stretch, landing);
+      if (run.result.stopped) return {};
+      const double share = stretch.end < 1.0 ? (stretch.end - stretch.begin) / (1.0 - stretch.begin) : 1.0;
+      stretch.later =
+          next.displacement * (1.0 - share) + run.contacts.contacts.back().wall_displacement * (1.0 - stretch.end);
+      q = aim(run, next, share);
+    }
+    return stretch.later;
+  }
+
+ private:
+  // Records the contact, puts the particle there, and asks what follows.
+  Continuation meet(Run& run, const Walk& w, const Vec3& p, const Vec3& q, Stretch& stretch,
+                    const Landing* landing) const {
+    Contact& contact = run.contacts.contacts.emplace_back();
+    contact.particle = run.particle;
+    const double t = landing != nullptr ? land(run, w, *landing, contact) : hit(run, w, p, q, contact);
+    contact.earlier = contact.first_wall - run.first_wall;
+    contact.last = ++run.contact_count >= options_.max_contacts;
+    stretch.begin += t * (stretch.end - stretch.begin);
+    contact.time_of_impact = stretch.begin;
+    if (stretch.begin - run.last_time >= share_together) run.first_here = contact.first_wall;
+    contact.together = contact.first_wall - run.first_here;
+    run.last_time = stretch.begin;
+    run.recorder.put(run.state, contact.time_of_impact);
+    const Vec3 later = stretch.later - contact.wall_displacement * (1.0 - stretch.end);
+    contact.displacement = (q - p) + later;
+    contact.unused = (q - p) * (1.0 - t) + later;
+    ++run.counters.contacts[static_cast<std::size_t>(contact.kind)];
+    touch(run.state, run.contacts.walls_of(contact));
+    return follow(run, contact);
+  }
+
+  // What the contact is, and where it puts the particle. Returns the fraction of the segment.
+  double hit(Run& run, const Walk& w, const Vec3& p, const Vec3& q, Contact& contact) const {
+    const std::array<Vec3, N> corners = space_.corners(w.wall_simplex);
+    const WallPlane wall = flushed_plane(facet_plane(corners, w.wall_facet));
+    const double t = describe_contact(space_, w, corners, wall, p, q, contact, run.contacts);
+    place(run, w, corners, p, contact);
+    if (moved_)
+      contact.wall_displacement =
+          wall_displacement(complex_, w.wall_simplex, w.wall_facet, corners, wall, contact.point);
+    return t;
+  }
+
+  double land(Run& run, const Walk& w, const Landing& landing, Contact& contact) const {
+    describe_landing(*space_.map, w, landing, contact, run.contacts);
+    run.state.put(w.wall_simplex, landing.position);
+    return landing.fraction;
+  }
+
+  Continuation follow(Run& run, const Contact& contact) const {
+    if (!respond_ || run.contact_count > options_.max_contacts) {
+      run.counters.unfinished += respond_ ? 1 : 0;
+      run.result.stopped = true;
+      run.result.unused = contact.unused;
+      return {};
+    }
+    return respond_(contact, run.contacts.walls_of(contact), run.contacts.earlier_walls_of(contact));
+  }
+
+  // The contact point is rounded: it is put next to where it is, in the simplex at the wall. Where that would put the
+  // particle farther from the point than it was at p, it stays there, in the simplex that the segment began in.
+  void place(Run& run, const Walk& w, const std::array<Vec3, N>& corners, const Vec3& p, const Contact& contact) const {
+    if (w.at_end) return run.state.put(w.simplex, contact.point);
+    if (const auto proved = proved_inside(corners, contact.point)) return run.state.put(w.wall_simplex, *proved);
+    const Settled settled = next_to(w.wall_simplex, corners, contact.point);
+    const auto distance = [&](const Vec3& x) {
+      return std::hypot(x.x - contact.point.x, x.y - contact.point.y, x.z - contact.point.z);
+    };
+    const double unit = lift_distance(contact.point, contact.point, 0);
+    if (distance(settled.position) > std::max(distance(p), most_units * unit)) return;
+    run.state.put(settled.simplex, settled.position);
+  }
+
+  // Where the filter proves nothing: at a corner that is as near as rounding; else where x settles, or at a corner that
+  // is nearer.
+  [[nodiscard]] Settled next_to(SimplexId simplex, const std::array<Vec3, N>& v, const Vec3& x) const {
+    const Settled corner = {simplex, nearest_corner(v, x)};
+    if (is_rounded_off(corner.position, x)) return corner;
+    const Settled settled = settle(space_, simplex, v, x);
+    return norm(corner.position - x) < norm(settled.position - x) ? corner : settled;
+  }
+
+  // Where to go after a contact; along a wall, the target is lifted off the planes that rounding put it behind, but not
+  // off those that it is meant to be behind: they are met again.
+  [[nodiscard]] Vec3 aim(const Run& run, const Continuation& next, double share) const {
+    Vec3 q = flushed(run.state.position + next.displacement * share);
+    if (!in_exact_range(q))
+      throw InvalidArgument("the response for particle " + std::to_string(run.particle) +
+                            " returned a displacement that is not finite, or out of range");
+    if (!next.along || q == run.state.position) return q;
+    const Contact& contact = run.contacts.contacts.back();
+    const Vec3& d = next.displacement;
+    const double slack = along_share * std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+    WallPlanes<N> planes;
+    const auto add = [&](std::span<const WallHit> walls) {
+      for (const WallHit& wall : walls) {
+        const CellView cell = space_.map->view(wall.face.cell);
+        const Across behind = cell.shape().entry(wall.face.face, wall.triangle);
+        const WallPlane plane = facet_plane(space_.corners(cell, cell.shape().simplices()[behind.index]), behind.place);
+        if (dot(d, plane.normal) >= -slack) planes.add(plane);
+      }
+    };
+    add(run.contacts.walls_of(contact));
+    add(run.contacts.earlier_walls_of(contact));
+    lift_off(planes, run.state.position, q, lift_doublings);
+    return flushed(q);
+  }
+
+  const Complex& complex_;
+  bool moved_;
+  const Space<Positions, N>& space_;
+  const StepOptions& options_;
+  const Respond& respond_;
+};
+
+template <std::size_t N>
+bool positive(const std::array<Vec3, N>& v) {
+  return Determinants(v, v[0]).proves_positive() || volume_sign(v) == Sign::positive;
+}
+
+// Whether p, standing still, would have left the simplex by the vertices' motion alone. For the statistics only.
+template <std::size_t N>
+bool left_behind(const std::array<Vec3, N>& moved, const Vec3& p) {
+  const Determinants d(moved, p);
+  return std::any_of(d.value.begin(), d.value.end(), [&](double v) { return v < -d.bound; });
+}
+
+// One particle's step while the vertices move.
+template <std::size_t N, class Recorder>
+class MovingStep {
+  using Run = RunOf<Recorder>;
+
+ public:
+  MovingStep(const Complex& complex, const StepOptions& options, const Respond& respond)
+      : complex_(complex), options_(options), respond_(respond) {}
+
+  void run(Run& run, Weights& weights, const Vec3& target) const {
+    const Simplex before = previous_space<N>(complex_).corners(run.state.at());
+    const Simplex after = current_space<N>(complex_).corners(run.state.at());
+    if (!run.state.held) {
+      if (!positive(before)) return hold(run, weights, barycentric(before, run.state.position), run.state.cell);
+      weights = barycentric(before, run.state.position);
+    }
+    if (!positive(after) || !is_free(run)) return hold(run, weights, weights, run.state.cell);
+    const unsigned parts = run.state.held ? 1 : part_count(before, after, weights, target);
+    run.state.held = false;
+    if (parts == 1) {
+      const SimplexId start = run.state.at();
+      ride(current_space<N>(complex_), run, weights, 0.0);
+      // Nothing is in the way within the simplex, wherever rounding has put the particle.
+      if (Determinants(after, target).all_proved_positive()) run.state.put(start, run.state.position);
+      Part<Stored, N, Recorder>(complex_, true, space_, options_, respond_).move(run, target, {0.0, 1.0, {}});
+      return;
+    }
+    ++run.counters.steps_split;
+    in_parts(run, weights, target, parts);
+  }
+
+ private:
+  using Simplex = std::array<Vec3, N>;
+
+  // Only one that is held can be in a blocked cell.
+  [[nodiscard]] bool is_free(const Run& run) const { return !run.state.held || complex_.map().is_free(run.state.cell); }
+
+  // It takes no step. Where its simplex is not positive at the end of the move, or its cell blocked, it is held until
+  // they are; else (only the way there leads through an invalid cell) it rides along all the same.
+  void hold(Run& run, Weights& kept, const Weights& weights, Cell cell) const {
+    kept = weights;
+    run.result.held = true;
+    run.result.invalid_cell = cell;
+    const Simplex after = space_.corners(run.state.at());
+    if (positive(after) && is_free(run)) return ride(space_, run, weights, 1.0);
+    run.state.held = true;
+    const Vec3 ridden = flushed(combine(after, weights));
+    if (in_exact_range(ridden)) run.state.position = ridden;  // else a corner is not finite: it stays where it was
+  }
+
+  template <class Positions>
+  void ride(const Space<Positions, N>& space, Run& run, const Weights& weights, double time) const {
+    const Settled settled = ridden(space, run.state.at(), weights);
+    run.state.put(settled.simplex, settled.position);
+    run.recorder.put(run.state, time);
+  }
+
+  [[nodiscard]] unsigned part_count(const Simplex& before, const Simplex& after, const Weights& weights,
+                                    const Vec3& target) const {
+    const auto [gradient, edge] = deformation(before, after);
+    const double own = norm(target - combine(after, weights));
+    const double parts = std::ceil(std::sqrt(gradient * own / (2.0 * options_.tolerance * edge)));
+    if (!(parts > 1.0)) return 1;
+    return parts < options_.max_parts ? static_cast<unsigned>(parts) : options_.max_parts;
+  }
+
+  // Each part rides and walks in the geometry at its end; the parts' targets lie on the line to what is left of the
+  // motion.
+  void in_parts(Run& run, Weights& weights, const Vec3& target, unsigned parts) const {
+    Vec3 planned = target - run.state.position;
+    bool own_motion = true;
+    for (unsigned j = 1; j <= parts; ++j) {
+      const Space<Between, N> from = space_between<N>(complex_, static_cast<double>(j - 1) / parts);
+      const Space<Between, N> to = space_between<N>(complex_, static_cast<double>(j) / parts);
+      const Simplex before = from.corners(run.state.at());
+      const Vec3 here = run.state.position;
+      weights = barycentric(before, here);
+      if (!positive(to.corners(run.state.at()))) return hold(run, weights, weights, run.state.cell);
+      ride(to, run, weights, static_cast<double>(j - 1) / parts);
+      if (!own_motion) continue;
+      const Vec3 share = planned * (1.0 / (parts - j + 1));
+      const Vec3 q = j == parts && run.contact_count == 0 ? target : flushed(here + share);
+      planned =
+          Part<Between, N, Recorder>(complex_, true, to, options_, respond_)
+              .move(run, q, {static_cast<double>(j - 1) / parts, static_cast<double>(j) / parts, planned - share});
+      own_motion = !run.result.stopped && !run.result.held;
+    }
+  }
+
+  const Complex& complex_;
+  const StepOptions& options_;
+  const Respond& respond_;
+  Space<Stored, N> space_ = current_space<N>(complex_);
+};
+
+}  // namespace detail
+
+template <std::size_t N, class Recorder>
+StepResult Stepper::step_in(std::uint32_t particle, State& state, Weights& weights, const Vec3& target,
+                            ContactList& contacts, Counters& counters, const Begun* begun,
+                            const Recorder& recorder) const {
+  detail::RunOf<Recorder> run{particle, state, contacts, counters, {}, 0, 0, 0, -1.0, {}, recorder};
+  run.first_wall = static_cast<std::uint32_t>(contacts.walls.size());
+  const SimplexId start = state.at();
+  const Vec3 p = state.position;
+  if (begun != nullptr) {
+    run.tests = begun->tests;
+    state.position = begun->from;
+    detail::Part<Stored, N, Recorder>(complex_, moved_, current_space<N>(complex_), options_, respond_)
+        .move(run, target, {0.0, 1.0, {}}, begun);
+  } else if (moved_) {
+    detail::MovingStep<N, Recorder>(complex_, options_, respond_).run(run, weights, target);
+  } else {
+    const Space<Stored, N> space = current_space<N>(complex_);
+    if (state.held && (!detail::positive(space.corners(start)) || !complex_.map().is_free(start.cell))) {
+      run.result.held = true;
+      run.result.invalid_cell = state.cell;
+    } else {
+      state.held = false;
+      detail::Part<Stored, N, Recorder>(complex_, false, space, options_, respond_).move(run, target, {0.0, 1.0, {}});
+    }
+  }
+  ++counters.particle_steps;
+  counters.orientation.tests += run.tests.tests;
+  counters.orientation.exact += run.tests.exact;
+  ++counters.histogram[std::min<std::size_t>(run.tests.tests, Counters::histogram_size - 1)];
+  const bool kept = state.at() == start && run.contact_count == 0 && !run.result.held;
+  counters.forecast_kept += kept ? 1 : 0;
+  if (moved_ && state.at() != start && detail::left_behind(current_space<N>(complex_).corners(start), p))
+    ++counters.updated_by_deformation;
+  return run.result;
+}
+
+}  // namespace dartcast
