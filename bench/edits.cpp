@@ -8,11 +8,11 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "dartcast/error.hpp"
 #include "base/random.hpp"
 #include "dartcast/environment.hpp"
-#include "dartcast/map_edits.hpp"
+#include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
+#include "dartcast/map_edits.hpp"
 #include "simulation/seeding.hpp"
 
 namespace dartcast::bench {

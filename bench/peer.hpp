@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
-#include "dartcast/vec3.hpp"
 #include "dartcast/particle_state.hpp"
+#include "dartcast/vec3.hpp"
 
 namespace dartcast::bench {
 

@@ -4,8 +4,8 @@
 #include <numbers>
 
 #include "bench/workload.hpp"
-#include "generators/generate_blocked.hpp"
 #include "dartcast/generators.hpp"
+#include "generators/generate_blocked.hpp"
 #include "generators/generate_rectangle.hpp"
 #include "generators/generate_vessel.hpp"
 

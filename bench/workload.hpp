@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/random.hpp"
-#include "dartcast/environment.hpp"
 #include "dartcast/deformation.hpp"
+#include "dartcast/environment.hpp"
 #include "dartcast/velocity_field.hpp"
 
 namespace dartcast::bench {

@@ -5,11 +5,11 @@
 #include <cstdio>
 #include <vector>
 
-#include "dartcast/sampling.hpp"
 #include "dartcast/environment.hpp"
-#include "generators/generate_barrel.hpp"
 #include "dartcast/generators.hpp"
+#include "dartcast/sampling.hpp"
 #include "dartcast/simulation.hpp"
+#include "generators/generate_barrel.hpp"
 
 int main() {
   using namespace dartcast;

@@ -2,9 +2,9 @@
 #include <cstdio>
 #include <vector>
 
+#include "dartcast/cutting.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/generators.hpp"
-#include "dartcast/cutting.hpp"
 #include "editing/ligature.hpp"
 
 int main() {

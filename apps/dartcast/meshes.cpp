@@ -6,14 +6,14 @@
 #include <string>
 
 #include "commands.hpp"
-#include "formats/check_mesh.hpp"
-#include "output/info.hpp"
 #include "dartcast/mesh_files.hpp"
-#include "output/mesh_report_text.hpp"
 #include "dartcast/scene_file.hpp"
-#include "scene/scene_mesh.hpp"
+#include "formats/check_mesh.hpp"
 #include "formats/write_mesh.hpp"
 #include "max_memory.hpp"
+#include "output/info.hpp"
+#include "output/mesh_report_text.hpp"
+#include "scene/scene_mesh.hpp"
 
 namespace dartcast::app {
 

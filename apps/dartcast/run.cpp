@@ -1,3 +1,5 @@
+#include "dartcast/run.hpp"
+
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -7,7 +9,6 @@
 #include <string>
 
 #include "commands.hpp"
-#include "dartcast/run.hpp"
 #include "dartcast/scene_file.hpp"
 #include "limits.hpp"
 #include "max_memory.hpp"

@@ -8,15 +8,15 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "dartcast/error.hpp"
 #include "dartcast/environment.hpp"
+#include "dartcast/error.hpp"
 #include "dartcast/predicates.hpp"
 #include "dartcast/scene_file.hpp"
-#include "scene/scene_mesh.hpp"
-#include "output/trajectory_csv.hpp"
-#include "output/trajectory_svg.hpp"
 #include "formats/write_mesh.hpp"
 #include "max_memory.hpp"
+#include "output/trajectory_csv.hpp"
+#include "output/trajectory_svg.hpp"
+#include "scene/scene_mesh.hpp"
 
 namespace dartcast::app {
 

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "dartcast/environment.hpp"
 #include "dartcast/complex_edit.hpp"
-#include "editing/subdivide.hpp"
+#include "dartcast/environment.hpp"
 #include "dynamics/cell_lists.hpp"
+#include "editing/subdivide.hpp"
 
 namespace dartcast {
 

@@ -16,11 +16,11 @@
 #include "bodies/body_contact.hpp"
 #include "bodies/body_motion.hpp"
 #include "bodies/body_rebound.hpp"
-#include "dynamics/rigid_solver.hpp"
 #include "bodies/shape_matching.hpp"
 #include "dartcast/environment.hpp"
-#include "environment/state_hash.hpp"
 #include "dartcast/response.hpp"
+#include "dynamics/rigid_solver.hpp"
+#include "environment/state_hash.hpp"
 
 namespace dartcast {
 

@@ -77,12 +77,11 @@ struct CatheterCheckpoint {
 /// A step, after the environment's move if there is one: all points ride along with the vessel; then the push and the
 /// turn are made in substeps of at most a quarter of the spacing and a fifth of a radian. In each, points follow the
 /// chain's own path, and rounds of solving for bending, lengths, walls met so far and friction
-/// (catheter/chain_solver.hpp) alternate with walks, in which points slide at walls. A substep that leaves a segment off
-/// by more than the tolerance is taken back and tried again as half of it, four times; then the rest of the
-/// push is refused. The first spacing beyond the entry is straight; a push is refused, too, where that has no room.
-/// Where the vessel's motion leaves no such solution, bends are given up before lengths.
-/// Twist passes at once to the tip: the chain is as stiff against it as it can be.
-/// Results are the same bits for any number of threads.
+/// (catheter/chain_solver.hpp) alternate with walks, in which points slide at walls. A substep that leaves a segment
+/// off by more than the tolerance is taken back and tried again as half of it, four times; then the rest of the push is
+/// refused. The first spacing beyond the entry is straight; a push is refused, too, where that has no room. Where the
+/// vessel's motion leaves no such solution, bends are given up before lengths. Twist passes at once to the tip: the
+/// chain is as stiff against it as it can be. Results are the same bits for any number of threads.
 class Catheter {
  public:
   /// Nothing is inserted yet. `environment` outlives the catheter, and is moved and edited by others. Throws

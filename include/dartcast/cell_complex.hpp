@@ -1,7 +1,7 @@
 // The cell complex: a map with positions. It is all that a walk reads.
 //
-// Every cell is a union of implicit simplices with vertices as corners (dartcast/cell_shape.hpp), so that the complex is
-// watertight for any positions (guarantee G2). A cell whose pulling triangulation is not positive takes interior
+// Every cell is a union of implicit simplices with vertices as corners (dartcast/cell_shape.hpp), so that the complex
+// is watertight for any positions (guarantee G2). A cell whose pulling triangulation is not positive takes interior
 // points: extra vertices, affine combinations of its corners with stored weights, computed again at each move.
 #pragma once
 
@@ -14,11 +14,11 @@
 
 #include "base/aligned.hpp"
 #include "base/parallel.hpp"
-#include "dartcast/vec3.hpp"
-#include "complex/steiner_weights.hpp"
 #include "complex/simplex.hpp"
+#include "complex/steiner_weights.hpp"
 #include "dartcast/combinatorial_map.hpp"
 #include "dartcast/mesh_data.hpp"
+#include "dartcast/vec3.hpp"
 
 namespace dartcast {
 

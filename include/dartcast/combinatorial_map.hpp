@@ -10,8 +10,8 @@
 //   [vertices] [neighbours] [neighbours' face numbers 16, wall 16 each]
 // In the plane the cells are polygons, the faces their edges, and phi2 leads to the neighbour; records are the same.
 // Wide: a neighbour's face number does not fit in 3 bits; where these say 7, it is looked up in the neighbour.
-// Flat: darts of the cell have marks in a side table. Vacant: the cell was removed (dartcast/transaction.hpp); its place
-// waits for another, the version tells them apart.
+// Flat: darts of the cell have marks in a side table. Vacant: the cell was removed (dartcast/transaction.hpp); its
+// place waits for another, the version tells them apart.
 #pragma once
 
 #include <array>
@@ -24,9 +24,9 @@
 
 #include "base/aligned.hpp"
 #include "dartcast/ids.hpp"
+#include "dartcast/mesh_data.hpp"
 #include "topology/shape_table.hpp"
 #include "topology/side_table.hpp"
-#include "dartcast/mesh_data.hpp"
 
 namespace dartcast {
 
@@ -83,8 +83,8 @@ struct CellHandle {
   constexpr auto operator<=>(const CellHandle&) const = default;
 };
 
-/// Interior points that cells need where the plain pulling triangulation is not positive (see dartcast/cell_complex.hpp).
-/// Numbers are vertices beyond the mesh's own points.
+/// Interior points that cells need where the plain pulling triangulation is not positive (see
+/// dartcast/cell_complex.hpp). Numbers are vertices beyond the mesh's own points.
 struct InteriorPoints {
   std::vector<std::pair<std::uint32_t, Vertex>> of_cells;  ///< mesh cell, its point; sorted
   struct FacePoint {

@@ -71,7 +71,8 @@ class ComplexEdit {
   ComplexEdit& operator=(ComplexEdit&&) = delete;
   ~ComplexEdit();
 
-  /// For the functions of dartcast/map_edits.hpp. Drafts given to its replace() name no points of cells: commit() finds these.
+  /// For the functions of dartcast/map_edits.hpp. Drafts given to its replace() name no points of cells: commit() finds
+  /// these.
   [[nodiscard]] Transaction& topology() { return transaction_; }
   [[nodiscard]] const Map& map() const { return transaction_.map(); }
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "base/parallel.hpp"
-#include "dartcast/vec3.hpp"
 #include "dartcast/complex_edit.hpp"
+#include "dartcast/vec3.hpp"
 
 namespace dartcast {
 

@@ -8,18 +8,18 @@
 #include <span>
 #include <vector>
 
-#include "dartcast/ids.hpp"
 #include "base/parallel.hpp"
-#include "environment/cell_particle_index.hpp"
-#include "dartcast/trace.hpp"
+#include "complex/first_inversion.hpp"
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/complex_edit.hpp"
-#include "complex/first_inversion.hpp"
-#include "dartcast/validity.hpp"
-#include "dartcast/mesh_data.hpp"
 #include "dartcast/contact.hpp"
-#include "tracking/counters.hpp"
+#include "dartcast/ids.hpp"
+#include "dartcast/mesh_data.hpp"
+#include "dartcast/trace.hpp"
+#include "dartcast/validity.hpp"
+#include "environment/cell_particle_index.hpp"
 #include "tracking/batch/batch.hpp"
+#include "tracking/counters.hpp"
 #include "tracking/locate.hpp"
 #include "tracking/step.hpp"
 
@@ -164,10 +164,11 @@ class Environment {
   /// Precondition: the scene is valid as it stands, or nothing is moved (0). Throws as move().
   double move_until_flattened(std::span<const Vec3> positions, double share = 1.0);
 
-  /// Edits the topology: `make` is given an edit of the complex (dartcast/complex_edit.hpp; dartcast/map_edits.hpp has the
-  /// edits), which is then committed. Every set of particles must then follow() before it is advanced, and before the
-  /// next edit. positions() may have become more: so must arrays given at the points (dartcast::follow()). Throws what
-  /// `make` throws, and EditRefused as ComplexEdit::commit(); then nothing is changed. Cost: that of the cells touched.
+  /// Edits the topology: `make` is given an edit of the complex (dartcast/complex_edit.hpp; dartcast/map_edits.hpp has
+  /// the edits), which is then committed. Every set of particles must then follow() before it is advanced, and before
+  /// the next edit. positions() may have become more: so must arrays given at the points (dartcast::follow()). Throws
+  /// what `make` throws, and EditRefused as ComplexEdit::commit(); then nothing is changed. Cost: that of the cells
+  /// touched.
   ComplexEditReport edit(const std::function<void(ComplexEdit&)>& make);
   [[nodiscard]] std::uint64_t edit_count() const { return edits_; }
   /// What the last edit did; empty where there was none.

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <variant>
 
-#include "dartcast/simulation.hpp"
 #include "dartcast/cutting.hpp"
+#include "dartcast/simulation.hpp"
 #include "editing/ligature.hpp"
 #include "editing/reconnect.hpp"
 

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "dartcast/contact.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/vec3.hpp"
-#include "dartcast/contact.hpp"
 
 namespace dartcast {
 

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "base/parallel.hpp"
-#include "output/summary.hpp"
 #include "dartcast/scene.hpp"
+#include "output/summary.hpp"
 
 namespace dartcast {
 

@@ -9,21 +9,21 @@
 #include <variant>
 #include <vector>
 
+#include "dartcast/adaptive_subdivision.hpp"
 #include "dartcast/bodies.hpp"
 #include "dartcast/catheter.hpp"
-#include "dartcast/sampling.hpp"
-#include "generators/generate_barrel.hpp"
+#include "dartcast/deformation.hpp"
+#include "dartcast/events.hpp"
 #include "dartcast/generators.hpp"
+#include "dartcast/response.hpp"
+#include "dartcast/sampling.hpp"
+#include "dartcast/simulation.hpp"
+#include "dartcast/velocity_field.hpp"
+#include "generators/generate_barrel.hpp"
 #include "generators/generate_maze.hpp"
 #include "generators/generate_octahedra.hpp"
 #include "generators/generate_rectangle.hpp"
 #include "generators/generate_vessel.hpp"
-#include "dartcast/response.hpp"
-#include "dartcast/adaptive_subdivision.hpp"
-#include "dartcast/deformation.hpp"
-#include "dartcast/events.hpp"
-#include "dartcast/velocity_field.hpp"
-#include "dartcast/simulation.hpp"
 
 namespace dartcast {
 

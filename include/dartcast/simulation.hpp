@@ -13,17 +13,17 @@
 #include <vector>
 
 #include "base/random.hpp"
-#include "dartcast/environment.hpp"
-#include "environment/state_hash.hpp"
-#include "dartcast/remeshing.hpp"
-#include "dartcast/response.hpp"
 #include "dartcast/adaptive_subdivision.hpp"
 #include "dartcast/deformation.hpp"
+#include "dartcast/environment.hpp"
+#include "dartcast/remeshing.hpp"
+#include "dartcast/response.hpp"
+#include "dartcast/spheres.hpp"
 #include "dartcast/velocity_field.hpp"
+#include "dynamics/collider.hpp"
+#include "environment/state_hash.hpp"
 #include "simulation/seeding.hpp"
 #include "simulation/sphere_bodies.hpp"
-#include "dartcast/spheres.hpp"
-#include "dynamics/collider.hpp"
 
 namespace dartcast {
 
@@ -169,8 +169,8 @@ class Flow {
   /// To be called at the end of each edit, with what becomes of particles that have no place: for other sets of
   /// particles in the environment, which must follow it before the next.
   void set_after_edit(std::function<void(Stranded)> after_edit) { after_edit_ = std::move(after_edit); }
-  /// Remeshes cells that are not valid now (dartcast/remeshing.hpp), by edit(). Nothing happens where all are. Cost: a check
-  /// of the scene, and the regions mended.
+  /// Remeshes cells that are not valid now (dartcast/remeshing.hpp), by edit(). Nothing happens where all are. Cost: a
+  /// check of the scene, and the regions mended.
   RepairReport repair(const RepairOptions& options = {});
   /// Subdivides cells that hold many particles, and makes again those whose parts hold few, by edit(). `crowding` keeps
   /// what it has subdivided; after other edits of the environment call its follow(). Cost: see Crowding::relieve().

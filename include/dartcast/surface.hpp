@@ -1,8 +1,8 @@
 // A surface in space: a map of polygons with positions. Particles move within it.
 //
-// A polygon is fanned from its lowest-numbered corner (dartcast/cell_shape.hpp); the triangles of the fans are the surface, so
-// that it has no gaps however it is bent. Where a particle is is told within a triangle, by weights: there is no point
-// beside the surface to fall off it.
+// A polygon is fanned from its lowest-numbered corner (dartcast/cell_shape.hpp); the triangles of the fans are the
+// surface, so that it has no gaps however it is bent. Where a particle is is told within a triangle, by weights: there
+// is no point beside the surface to fall off it.
 #pragma once
 
 #include <array>
@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "base/parallel.hpp"
-#include "dartcast/vec3.hpp"
 #include "complex/simplex.hpp"
 #include "dartcast/combinatorial_map.hpp"
 #include "dartcast/mesh_data.hpp"
+#include "dartcast/vec3.hpp"
 
 namespace dartcast {
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "dartcast/contact.hpp"
-#include "tracking/crossing.hpp"
 #include "dartcast/particle_state.hpp"
+#include "tracking/crossing.hpp"
 #include "tracking/step.hpp"
 
 namespace dartcast {

@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
-#include "topology/draft.hpp"
 #include "dartcast/combinatorial_map.hpp"
+#include "topology/draft.hpp"
 #include "topology/replacement.hpp"
 
 namespace dartcast {

@@ -8,10 +8,10 @@
 
 #include "base/parallel.hpp"
 #include "dartcast/cell_complex.hpp"
+#include "dartcast/particle_state.hpp"
 #include "dynamics/cell_lists.hpp"
 #include "dynamics/contact_solver.hpp"
 #include "dynamics/sphere_pairs.hpp"
-#include "dartcast/particle_state.hpp"
 
 namespace dartcast {
 

@@ -8,10 +8,10 @@
 #include <unordered_map>
 #include <utility>
 
-#include "dartcast/error.hpp"
 #include "base/random.hpp"
 #include "bodies/inside.hpp"
 #include "bodies/triangles.hpp"
+#include "dartcast/error.hpp"
 #include "tracking/representable_point.hpp"
 
 namespace dartcast {

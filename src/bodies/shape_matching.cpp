@@ -7,8 +7,8 @@
 #include <array>
 #include <cmath>
 
-#include "dartcast/error.hpp"
 #include "bodies/rotation.hpp"
+#include "dartcast/error.hpp"
 
 namespace dartcast {
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh/box_tree.hpp"
 #include "dartcast/mesh_data.hpp"
+#include "mesh/box_tree.hpp"
 
 namespace dartcast {
 

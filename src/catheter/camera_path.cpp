@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "dartcast/error.hpp"
 #include "catheter/transport.hpp"
+#include "dartcast/error.hpp"
 #include "dartcast/response.hpp"
 #include "tracking/representable_point.hpp"
 

@@ -7,10 +7,10 @@
 #include <numbers>
 #include <utility>
 
-#include "dartcast/error.hpp"
 #include "catheter/transport.hpp"
-#include "tracking/representable_point.hpp"
+#include "dartcast/error.hpp"
 #include "tracking/carry.hpp"
+#include "tracking/representable_point.hpp"
 
 namespace dartcast {
 

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <utility>
 
-#include "dartcast/error.hpp"
-#include "dartcast/catheter.hpp"
 #include "catheter/transport.hpp"
+#include "dartcast/catheter.hpp"
+#include "dartcast/error.hpp"
 
 namespace dartcast {
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dartcast/catheter.hpp"
 #include "catheter/transport.hpp"
+#include "dartcast/catheter.hpp"
 #include "dartcast/response.hpp"
 #include "tracking/representable_point.hpp"
 

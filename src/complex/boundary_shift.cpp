@@ -5,8 +5,8 @@
 #include <unordered_set>
 #include <vector>
 
-#include "dartcast/predicates.hpp"
 #include "complex/cone_point.hpp"
+#include "dartcast/predicates.hpp"
 
 namespace dartcast {
 

@@ -3,8 +3,8 @@
 
 #include <span>
 
-#include "dartcast/vec3.hpp"
 #include "dartcast/transaction.hpp"
+#include "dartcast/vec3.hpp"
 
 namespace dartcast {
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "dartcast/error.hpp"
 #include "complex/boundary_shift.hpp"
 #include "complex/place_steiner_points.hpp"
+#include "dartcast/error.hpp"
 #include "dartcast/validity.hpp"
 
 namespace dartcast {

@@ -6,9 +6,9 @@
 #include <bit>
 #include <vector>
 
-#include "dartcast/error.hpp"
 #include "complex/steiner_points.hpp"
 #include "complex/volume_cubic.hpp"
+#include "dartcast/error.hpp"
 
 namespace dartcast {
 

@@ -7,8 +7,8 @@
 #include <span>
 #include <string>
 
-#include "dartcast/cell_complex.hpp"
 #include "complex/simplex_inversion.hpp"
+#include "dartcast/cell_complex.hpp"
 
 namespace dartcast {
 

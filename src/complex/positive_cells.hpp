@@ -6,8 +6,8 @@
 #include <cstdint>
 
 #include "base/instruction_set.hpp"
-#include "dartcast/vec3.hpp"
 #include "dartcast/cell_shape.hpp"
+#include "dartcast/vec3.hpp"
 
 namespace dartcast::detail {
 

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "dartcast/error.hpp"
 #include "dartcast/cell_complex.hpp"
-#include "mesh/faces.hpp"
+#include "dartcast/error.hpp"
 #include "dartcast/mesh_check.hpp"
+#include "mesh/faces.hpp"
 #include "mesh/orientation.hpp"
 
 namespace dartcast {

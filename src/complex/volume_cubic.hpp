@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "dartcast/predicates.hpp"
 #include "complex/simplex.hpp"
+#include "dartcast/predicates.hpp"
 
 namespace dartcast::detail {
 

@@ -7,11 +7,11 @@
 
 #include "base/parallel.hpp"
 #include "dartcast/cell_complex.hpp"
+#include "dartcast/particle_state.hpp"
 #include "dynamics/cell_lists.hpp"
 #include "dynamics/contact_solver.hpp"
 #include "dynamics/sphere_pairs.hpp"
 #include "dynamics/sphere_touch.hpp"
-#include "dartcast/particle_state.hpp"
 
 namespace dartcast {
 

@@ -1,6 +1,6 @@
-// The iterations of src/dynamics/contact_sweeps.cpp, compiled there once per instruction set: no include guard, no includes,
-// and not to be included elsewhere. Defined before: DARTCAST_TARGET, the attribute of every function; any(Mask),
-// root(Quad), join(Pair, Pair) and split(Quad, Pair&, Pair&).
+// The iterations of src/dynamics/contact_sweeps.cpp, compiled there once per instruction set: no include guard, no
+// includes, and not to be included elsewhere. Defined before: DARTCAST_TARGET, the attribute of every function;
+// any(Mask), root(Quad), join(Pair, Pair) and split(Quad, Pair&, Pair&).
 
 // Vectors of four contacts, one in each lane.
 struct Lanes {

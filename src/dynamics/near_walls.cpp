@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "dartcast/predicates.hpp"
 #include "complex/simplex.hpp"
+#include "dartcast/predicates.hpp"
 
 namespace dartcast {
 

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "dartcast/cell_complex.hpp"
-#include "dynamics/swept_sphere.hpp"
 #include "dartcast/contact.hpp"
 #include "dartcast/particle_state.hpp"
+#include "dynamics/swept_sphere.hpp"
 
 namespace dartcast {
 

@@ -13,10 +13,10 @@
 
 #include "base/parallel.hpp"
 #include "dartcast/cell_complex.hpp"
+#include "dartcast/particle_state.hpp"
 #include "dynamics/cell_lists.hpp"
 #include "dynamics/sphere_grid.hpp"
 #include "dynamics/sphere_touch.hpp"
-#include "dartcast/particle_state.hpp"
 
 namespace dartcast {
 

@@ -1,8 +1,7 @@
-#include "dartcast/cutting.hpp"
-
 #include <algorithm>
 #include <cmath>
 
+#include "dartcast/cutting.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/map_edits.hpp"
 #include "editing/cutter.hpp"

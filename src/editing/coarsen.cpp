@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "dartcast/map_edits.hpp"
-#include "topology/rework.hpp"
 #include "editing/subdivide.hpp"
+#include "topology/rework.hpp"
 
 namespace dartcast {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "dartcast/vec3.hpp"
 #include "dartcast/combinatorial_map.hpp"
+#include "dartcast/vec3.hpp"
 
 namespace dartcast::detail {
 

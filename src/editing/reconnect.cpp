@@ -6,9 +6,9 @@
 
 #include "dartcast/error.hpp"
 #include "dartcast/map_queries.hpp"
-#include "topology/rework.hpp"
 #include "editing/cutter.hpp"
 #include "editing/face_set.hpp"
+#include "topology/rework.hpp"
 
 namespace dartcast {
 

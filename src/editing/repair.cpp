@@ -1,13 +1,12 @@
-#include "dartcast/remeshing.hpp"
-
 #include <algorithm>
 #include <optional>
 #include <unordered_set>
 
 #include "dartcast/error.hpp"
-#include "topology/rework.hpp"
+#include "dartcast/remeshing.hpp"
 #include "editing/kernel_point.hpp"
 #include "editing/region.hpp"
+#include "topology/rework.hpp"
 
 namespace dartcast {
 

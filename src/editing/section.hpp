@@ -47,8 +47,8 @@ struct Section {
 /// stay whole. Parts keep the cell's free mark, and a face's its patch; the new faces have none.
 ///
 /// Throws InvalidArgument where there is no such cell, or it is named twice, or snap is not in [2^-30, 1/4]; and what
-/// the edits of dartcast/map_edits.hpp throw; everything is then as it was. That parts are valid is for commit() to judge. Cost:
-/// linear in the cells named and those around them.
+/// the edits of dartcast/map_edits.hpp throw; everything is then as it was. That parts are valid is for commit() to
+/// judge. Cost: linear in the cells named and those around them.
 Section split_by_plane(ComplexEdit& edit, std::span<const Cell> cells, const Plane& plane,
                        const SectionOptions& options = {});
 

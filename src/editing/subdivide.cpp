@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "topology/rework.hpp"
 #include "editing/outline.hpp"
+#include "topology/rework.hpp"
 
 namespace dartcast {
 

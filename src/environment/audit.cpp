@@ -62,8 +62,8 @@ Integer volume6(const Point& a, const Point& b, const Point& c, const Point& d) 
   return u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) + u[2] * (v[0] * w[1] - v[1] * w[0]);
 }
 
-// The rule for coordinates (dartcast/predicates.hpp), in words of its own: no point is above 2^300; no particle is between
-// 0 and 2^-300, and a corner that is there counts as 0.
+// The rule for coordinates (dartcast/predicates.hpp), in words of its own: no point is above 2^300; no particle is
+// between 0 and 2^-300, and a corner that is there counts as 0.
 bool is_below(const Vec3& p, double most) {
   return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) < most && p == p;
 }

@@ -9,8 +9,8 @@
 #include <cstring>
 #include <utility>
 
-#include "dartcast/error.hpp"
 #include "complex/steiner_points.hpp"
+#include "dartcast/error.hpp"
 #include "dartcast/mesh_check.hpp"
 #include "tracking/batch/batch_plane.hpp"
 #include "tracking/representable_point.hpp"

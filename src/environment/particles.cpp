@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "dartcast/error.hpp"
 #include "dartcast/environment.hpp"
+#include "dartcast/error.hpp"
 
 namespace dartcast {
 

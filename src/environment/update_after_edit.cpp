@@ -3,10 +3,10 @@
 #include <array>
 #include <utility>
 
-#include "dartcast/error.hpp"
 #include "dartcast/environment.hpp"
-#include "tracking/nearest_free.hpp"
+#include "dartcast/error.hpp"
 #include "tracking/carry.hpp"
+#include "tracking/nearest_free.hpp"
 
 namespace dartcast {
 

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "dartcast/error.hpp"
 #include "dartcast/cell_complex.hpp"
+#include "dartcast/error.hpp"
 #include "formats/read_surface.hpp"
 #include "formats/skip_in_file.hpp"
 

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "formats/file_text.hpp"
 #include "dartcast/mesh_data.hpp"
+#include "formats/file_text.hpp"
 #include "mesh/mesh_report.hpp"
 
 namespace dartcast {

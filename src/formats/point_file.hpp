@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "dartcast/mesh_files.hpp"
 #include "dartcast/mesh_data.hpp"
+#include "dartcast/mesh_files.hpp"
 
 namespace dartcast {
 

@@ -1,5 +1,3 @@
-#include "dartcast/mesh_files.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,15 +5,16 @@
 #include <string>
 
 #include "dartcast/error.hpp"
+#include "dartcast/mesh_check.hpp"
+#include "dartcast/mesh_files.hpp"
+#include "formats/checked_file.hpp"
 #include "formats/file_text.hpp"
 #include "formats/gmsh.hpp"
-#include "formats/checked_file.hpp"
 #include "formats/medit.hpp"
 #include "formats/parsed_mesh.hpp"
 #include "formats/read_memory.hpp"
 #include "formats/read_surface.hpp"
 #include "formats/vtk_mesh.hpp"
-#include "dartcast/mesh_check.hpp"
 
 namespace dartcast {
 namespace {

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "dartcast/error.hpp"
-#include "formats/file_text.hpp"
 #include "formats/checked_file.hpp"
+#include "formats/file_text.hpp"
 #include "formats/obj.hpp"
 #include "formats/off.hpp"
 #include "formats/parsed_surface.hpp"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "dartcast/error.hpp"
 #include "complex/skip_bad_cells.hpp"
+#include "dartcast/error.hpp"
 #include "dartcast/mesh_check.hpp"
 
 namespace dartcast {

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <string_view>
 
-#include "formats/parsed_mesh.hpp"
 #include "dartcast/mesh_files.hpp"
+#include "formats/parsed_mesh.hpp"
 
 namespace dartcast {
 

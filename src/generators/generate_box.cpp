@@ -1,15 +1,14 @@
-#include "dartcast/generators.hpp"
-
 #include <fmt/format.h>
 
 #include <utility>
 #include <vector>
 
-#include "dartcast/error.hpp"
-#include "dartcast/ids.hpp"
 #include "base/random.hpp"
-#include "mesh/cell_types.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/generators.hpp"
+#include "dartcast/ids.hpp"
 #include "generators/generate_blocked.hpp"
+#include "mesh/cell_types.hpp"
 
 namespace dartcast {
 namespace {

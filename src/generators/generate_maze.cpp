@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/random.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/ids.hpp"
-#include "base/random.hpp"
 #include "generators/generate_squares.hpp"
 
 namespace dartcast {

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/random.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/ids.hpp"
-#include "base/random.hpp"
 
 namespace dartcast {
 namespace {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "dartcast/error.hpp"
-#include "mesh/faces.hpp"
 #include "generators/vessel_section.hpp"
+#include "mesh/faces.hpp"
 
 namespace dartcast {
 namespace {

@@ -1,7 +1,6 @@
-#include "dartcast/mesh_check.hpp"
-
 #include <algorithm>
 
+#include "dartcast/mesh_check.hpp"
 #include "dartcast/predicates.hpp"
 #include "mesh/cell_types.hpp"
 #include "mesh/conformity.hpp"

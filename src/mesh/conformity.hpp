@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh/faces.hpp"
 #include "dartcast/mesh_data.hpp"
+#include "mesh/faces.hpp"
 
 namespace dartcast {
 

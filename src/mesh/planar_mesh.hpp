@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "dartcast/mesh_data.hpp"
 #include "mesh/conformity.hpp"
 #include "mesh/faces.hpp"
-#include "dartcast/mesh_data.hpp"
 #include "mesh/mesh_report.hpp"
 
 namespace dartcast {

@@ -1,5 +1,3 @@
-#include "dartcast/mesh_selection.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -8,6 +6,7 @@
 #include <string_view>
 
 #include "dartcast/error.hpp"
+#include "dartcast/mesh_selection.hpp"
 
 namespace dartcast {
 namespace {

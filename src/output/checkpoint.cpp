@@ -9,8 +9,8 @@
 
 #include "dartcast/error.hpp"
 #include "formats/file_text.hpp"
-#include "output/summary.hpp"
 #include "formats/write_mesh.hpp"
+#include "output/summary.hpp"
 
 namespace dartcast {
 

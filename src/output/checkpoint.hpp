@@ -7,10 +7,10 @@
 #include <string>
 
 #include "dartcast/audit.hpp"
-#include "output/recording.hpp"
-#include "output/solids_recording.hpp"
 #include "dartcast/mesh_data.hpp"
 #include "dartcast/simulation.hpp"
+#include "output/recording.hpp"
+#include "output/solids_recording.hpp"
 #include "simulation/event_scheduler.hpp"
 
 namespace dartcast {

@@ -10,11 +10,11 @@
 #include <string_view>
 
 #include "dartcast/error.hpp"
-#include "output/run_files.hpp"
-#include "output/run_lock.hpp"
+#include "dartcast/particle_state.hpp"
 #include "formats/vtp_write.hpp"
 #include "formats/write_mesh.hpp"
-#include "dartcast/particle_state.hpp"
+#include "output/run_files.hpp"
+#include "output/run_lock.hpp"
 
 namespace dartcast {
 

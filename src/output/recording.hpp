@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "dartcast/simulation.hpp"
 #include "output/environment_record.hpp"
 #include "output/run_files.hpp"
-#include "dartcast/simulation.hpp"
 
 namespace dartcast {
 

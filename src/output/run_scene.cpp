@@ -1,5 +1,3 @@
-#include "dartcast/run.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,14 +9,15 @@
 #include <utility>
 
 #include "dartcast/error.hpp"
+#include "dartcast/run.hpp"
 #include "output/checkpoint.hpp"
 #include "output/environment_record.hpp"
 #include "output/recording.hpp"
 #include "output/run_lock.hpp"
+#include "output/solids_recording.hpp"
 #include "scene/scene_mesh.hpp"
 #include "scene/seed_file.hpp"
 #include "simulation/solids.hpp"
-#include "output/solids_recording.hpp"
 
 namespace dartcast {
 

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "catheter/camera_path.hpp"
-#include "output/camera_path_file.hpp"
 #include "formats/vtp_write.hpp"
+#include "output/camera_path_file.hpp"
 
 namespace dartcast {
 

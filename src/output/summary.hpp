@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "dartcast/audit.hpp"
-#include "simulation/solids.hpp"
 #include "mesh/mesh_report.hpp"
 #include "simulation/event_scheduler.hpp"
+#include "simulation/solids.hpp"
 
 namespace dartcast {
 

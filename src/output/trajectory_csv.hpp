@@ -4,8 +4,8 @@
 #include <span>
 #include <string>
 
-#include "dartcast/trace.hpp"
 #include "dartcast/combinatorial_map.hpp"
+#include "dartcast/trace.hpp"
 
 namespace dartcast {
 

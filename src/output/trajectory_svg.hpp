@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
-#include "dartcast/trace.hpp"
 #include "dartcast/cell_complex.hpp"
+#include "dartcast/trace.hpp"
 
 namespace dartcast {
 

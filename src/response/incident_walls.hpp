@@ -12,8 +12,8 @@
 #include <span>
 #include <vector>
 
-#include "dartcast/vec3.hpp"
 #include "dartcast/contact.hpp"
+#include "dartcast/vec3.hpp"
 
 namespace dartcast {
 

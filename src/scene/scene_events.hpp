@@ -1,8 +1,8 @@
 // The [[event]] tables of a scene.
 #pragma once
 
-#include "scene/toml_table.hpp"
 #include "dartcast/scene.hpp"
+#include "scene/toml_table.hpp"
 
 namespace dartcast {
 

@@ -7,12 +7,12 @@
 #include <set>
 
 #include "dartcast/error.hpp"
-#include "formats/checked_file.hpp"
-#include "dartcast/mesh_files.hpp"
-#include "formats/skip_in_file.hpp"
 #include "dartcast/mesh_check.hpp"
-#include "mesh/patches.hpp"
+#include "dartcast/mesh_files.hpp"
 #include "dartcast/mesh_selection.hpp"
+#include "formats/checked_file.hpp"
+#include "formats/skip_in_file.hpp"
+#include "mesh/patches.hpp"
 
 namespace dartcast {
 

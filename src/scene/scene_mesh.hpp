@@ -8,12 +8,12 @@
 #include <variant>
 #include <vector>
 
-#include "dartcast/error.hpp"
 #include "base/parallel.hpp"
-#include "dartcast/mesh_files.hpp"
+#include "dartcast/error.hpp"
 #include "dartcast/mesh_data.hpp"
-#include "mesh/mesh_report.hpp"
+#include "dartcast/mesh_files.hpp"
 #include "dartcast/scene.hpp"
+#include "mesh/mesh_report.hpp"
 
 namespace dartcast {
 

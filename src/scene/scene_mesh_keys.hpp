@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
-#include "scene/toml_table.hpp"
 #include "dartcast/scene.hpp"
+#include "scene/toml_table.hpp"
 
 namespace dartcast {
 

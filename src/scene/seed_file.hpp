@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "dartcast/vec3.hpp"
 #include "dartcast/mesh_files.hpp"
+#include "dartcast/vec3.hpp"
 
 namespace dartcast {
 

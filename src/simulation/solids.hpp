@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "dartcast/bodies.hpp"
 #include "bodies/carried_surface.hpp"
-#include "dartcast/catheter.hpp"
 #include "dartcast/audit.hpp"
-#include "dartcast/mesh_files.hpp"
+#include "dartcast/bodies.hpp"
+#include "dartcast/catheter.hpp"
 #include "dartcast/mesh_data.hpp"
+#include "dartcast/mesh_files.hpp"
 #include "dartcast/scene.hpp"
 
 namespace dartcast {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "dartcast/bodies.hpp"
-#include "dynamics/rigid_solver.hpp"
 #include "dynamics/collider.hpp"
+#include "dynamics/rigid_solver.hpp"
 
 namespace dartcast {
 

@@ -1,11 +1,10 @@
-#include "dartcast/spheres.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "dartcast/error.hpp"
+#include "dartcast/spheres.hpp"
 #include "spheres/sphere_run.hpp"
 #include "tracking/representable_point.hpp"
 

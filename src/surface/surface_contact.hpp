@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <functional>
 
-#include "dartcast/ids.hpp"
-#include "dartcast/vec3.hpp"
 #include "dartcast/cell_shape.hpp"
+#include "dartcast/ids.hpp"
 #include "dartcast/surface.hpp"
+#include "dartcast/vec3.hpp"
 
 namespace dartcast {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "complex/created_positions.hpp"
-#include "dartcast/transaction.hpp"
 #include "dartcast/surface.hpp"
+#include "dartcast/transaction.hpp"
 
 namespace dartcast {
 

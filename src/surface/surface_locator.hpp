@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "mesh/box_tree.hpp"
 #include "dartcast/surface.hpp"
+#include "mesh/box_tree.hpp"
 
 namespace dartcast {
 

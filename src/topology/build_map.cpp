@@ -4,10 +4,10 @@
 #include <string>
 #include <unordered_map>
 
-#include "dartcast/error.hpp"
-#include "topology/cell_form.hpp"
 #include "dartcast/combinatorial_map.hpp"
+#include "dartcast/error.hpp"
 #include "mesh/cell_types.hpp"
+#include "topology/cell_form.hpp"
 
 namespace dartcast {
 

@@ -4,9 +4,9 @@
 #include <array>
 #include <numeric>
 
+#include "mesh/cell_types.hpp"
 #include "topology/cell_form.hpp"
 #include "topology/key_table.hpp"
-#include "mesh/cell_types.hpp"
 
 namespace dartcast {
 

@@ -1,4 +1,5 @@
-// The edits of dartcast/map_edits.hpp where cells are polygons; called by these, which say what they do and check the darts.
+// The edits of dartcast/map_edits.hpp where cells are polygons; called by these, which say what they do and check the
+// darts.
 #pragma once
 
 #include <vector>

@@ -1,7 +1,7 @@
-#include "dartcast/map_queries.hpp"
-
 #include <initializer_list>
 #include <set>
+
+#include "dartcast/map_queries.hpp"
 
 namespace dartcast {
 

@@ -64,7 +64,8 @@ inline void expect_cell(const Map& map, Cell c) {
 /// Throws InvalidArgument where the map is one of the plane. `what`: "cuts", say.
 inline void expect_space(const Map& map, const char* what) {
   if (map.dimension() == 2)
-    throw InvalidArgument(std::string(what) + " need cells of space: in the plane, edit the map (dartcast/map_edits.hpp)");
+    throw InvalidArgument(std::string(what) +
+                          " need cells of space: in the plane, edit the map (dartcast/map_edits.hpp)");
 }
 
 /// Throws InvalidArgument where there is no such dart.

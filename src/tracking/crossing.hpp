@@ -6,9 +6,9 @@
 
 #include <cstdint>
 
+#include "dartcast/cell_shape.hpp"
 #include "dartcast/ids.hpp"
 #include "dartcast/vec3.hpp"
-#include "dartcast/cell_shape.hpp"
 
 namespace dartcast {
 

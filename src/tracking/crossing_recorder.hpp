@@ -10,8 +10,8 @@
 
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/contact.hpp"
-#include "tracking/crossing.hpp"
 #include "dartcast/particle_state.hpp"
+#include "tracking/crossing.hpp"
 #include "tracking/walk.hpp"
 
 namespace dartcast::detail {

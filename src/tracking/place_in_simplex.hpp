@@ -259,8 +259,8 @@ std::optional<Settled> lifted(const Space<Positions, N>& space, SimplexId start,
 /// is lifted off the facets that it is behind, one unit in the last place at first, doubling. Where that does not do,
 /// it is walked to from a point p of the simplex (its mean, where that is exactly inside; else its corner nearest to x)
 /// and lifted off the walls in the way; where these are too close together for that, a double between them is looked
-/// for (tracking/representable_point.hpp); in the end it is p or the corner nearest to x. No wall is passed. Precondition: the simplex
-/// is positive, its cell free.
+/// for (tracking/representable_point.hpp); in the end it is p or the corner nearest to x. No wall is passed.
+/// Precondition: the simplex is positive, its cell free.
 template <class Positions, std::size_t N>
 Settled settle(const Space<Positions, N>& space, SimplexId simplex, const std::array<Vec3, N>& v, const Vec3& rounded) {
   const Vec3 x = flushed(rounded);

@@ -8,9 +8,9 @@
 
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/contact.hpp"
+#include "dartcast/particle_state.hpp"
 #include "tracking/counters.hpp"
 #include "tracking/crossing.hpp"
-#include "dartcast/particle_state.hpp"
 #include "tracking/walk.hpp"
 
 namespace dartcast {

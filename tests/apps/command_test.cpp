@@ -13,7 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "shared_data.hpp"
+#include "support/shared_data.hpp"
 
 namespace {
 

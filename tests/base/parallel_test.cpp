@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "dartcast/error.hpp"
-#include "tier.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::parallel_test {
 

@@ -13,8 +13,8 @@
 #include "bench/plan.hpp"
 #include "bench/race.hpp"
 #include "bench/report.hpp"
-#include "dartcast/error.hpp"
 #include "dartcast/audit.hpp"
+#include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 
 namespace dartcast::bench::bench_test {

@@ -9,12 +9,12 @@
 #include <span>
 #include <vector>
 
-#include "bench/race.hpp"
-#include "bench/scheme_pair.hpp"
 #include "base/random.hpp"
+#include "bench/race.hpp"
 #include "dartcast/environment.hpp"
 #include "generators/generate_rectangle.hpp"
-#include "tier.hpp"
+#include "support/scheme_pair.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::paper_scheme_2d_test {
 

@@ -9,13 +9,13 @@
 #include <span>
 #include <vector>
 
-#include "bench/scheme_pair.hpp"
 #include "base/random.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/response.hpp"
-#include "environment/particle_checks.hpp"
-#include "tier.hpp"
+#include "support/particle_checks.hpp"
+#include "support/scheme_pair.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::paper_scheme_test {
 

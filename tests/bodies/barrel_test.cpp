@@ -5,11 +5,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "dartcast/bodies.hpp"
 #include "dartcast/audit.hpp"
-#include "generators/generate_barrel.hpp"
+#include "dartcast/bodies.hpp"
 #include "dartcast/generators.hpp"
-#include "tier.hpp"
+#include "generators/generate_barrel.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::barrel_test {
 

@@ -8,12 +8,12 @@
 #include <limits>
 #include <string>
 
-#include "bodies/point_block.hpp"
-#include "dartcast/error.hpp"
 #include "base/random.hpp"
 #include "dartcast/audit.hpp"
+#include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
-#include "tier.hpp"
+#include "support/point_block.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::bodies_test {
 

@@ -8,14 +8,14 @@
 #include <limits>
 #include <string>
 
-#include "bodies/point_block.hpp"
-#include "dartcast/error.hpp"
 #include "base/random.hpp"
-#include "dartcast/bodies.hpp"
 #include "dartcast/audit.hpp"
+#include "dartcast/bodies.hpp"
+#include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dynamics/collider.hpp"
-#include "tier.hpp"
+#include "support/point_block.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::body_collisions_test {
 

@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <limits>
 
-#include "bodies/solids.hpp"
-#include "dartcast/error.hpp"
 #include "base/random.hpp"
+#include "dartcast/error.hpp"
 #include "dartcast/sampling.hpp"
 #include "formats/read_surface.hpp"
-#include "shared_data.hpp"
-#include "tier.hpp"
+#include "support/closed_surfaces.hpp"
+#include "support/shared_data.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::carried_surface_test {
 

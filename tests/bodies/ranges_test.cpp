@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "dartcast/error.hpp"
 #include "dartcast/bodies.hpp"
 #include "dartcast/catheter.hpp"
+#include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
-#include "refused.hpp"
+#include "support/refused.hpp"
 
 namespace dartcast::body_ranges_test {
 

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "base/random.hpp"
-#include "tier.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::rotation_test {
 

@@ -7,13 +7,13 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <limits>
 
-#include "bodies/solids.hpp"
-#include "dartcast/error.hpp"
 #include "base/random.hpp"
 #include "bodies/inside.hpp"
+#include "dartcast/error.hpp"
 #include "formats/read_surface.hpp"
-#include "shared_data.hpp"
-#include "tier.hpp"
+#include "support/closed_surfaces.hpp"
+#include "support/shared_data.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::sampling_test {
 

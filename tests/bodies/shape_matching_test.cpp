@@ -7,9 +7,9 @@
 #include <functional>
 #include <limits>
 
-#include "dartcast/error.hpp"
 #include "base/random.hpp"
-#include "tier.hpp"
+#include "dartcast/error.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::shape_matching_test {
 

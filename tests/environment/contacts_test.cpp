@@ -12,8 +12,8 @@
 #include "dartcast/environment.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/response.hpp"
-#include "environment/particle_checks.hpp"
-#include "tier.hpp"
+#include "support/particle_checks.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::contacts_test {
 

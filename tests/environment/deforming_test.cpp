@@ -7,9 +7,9 @@
 
 #include "dartcast/environment.hpp"
 #include "dartcast/generators.hpp"
-#include "generators/generate_octahedra.hpp"
 #include "dartcast/response.hpp"
-#include "tier.hpp"
+#include "generators/generate_octahedra.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::deforming_test {
 

@@ -5,15 +5,15 @@
 #include <map>
 #include <set>
 
-#include "dartcast/error.hpp"
 #include "dartcast/audit.hpp"
-#include "environment/state_hash.hpp"
-#include "topology/integrity.hpp"
+#include "dartcast/error.hpp"
 #include "dartcast/response.hpp"
-#include "environment/particle_checks.hpp"
-#include "map/edit_meshes.hpp"
-#include "map/random_edits.hpp"
-#include "tier.hpp"
+#include "environment/state_hash.hpp"
+#include "support/edit_meshes.hpp"
+#include "support/particle_checks.hpp"
+#include "support/random_edits.hpp"
+#include "support/tier.hpp"
+#include "topology/integrity.hpp"
 
 namespace dartcast::edits_test {
 

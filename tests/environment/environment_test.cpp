@@ -10,12 +10,12 @@
 #include <optional>
 #include <set>
 
-#include "dartcast/error.hpp"
 #include "base/random.hpp"
-#include "mesh/cell_types.hpp"
+#include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
-#include "environment/particle_checks.hpp"
-#include "tier.hpp"
+#include "mesh/cell_types.hpp"
+#include "support/particle_checks.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::environment_test {
 

@@ -10,13 +10,13 @@
 #include <utility>
 #include <vector>
 
-#include "dartcast/error.hpp"
 #include "dartcast/environment.hpp"
+#include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
-#include "generators/generate_rectangle.hpp"
 #include "dartcast/spheres.hpp"
-#include "environment/particle_checks.hpp"
-#include "refused.hpp"
+#include "generators/generate_rectangle.hpp"
+#include "support/particle_checks.hpp"
+#include "support/refused.hpp"
 
 namespace dartcast::misuse_test {
 

@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "dartcast/error.hpp"
 #include "dartcast/audit.hpp"
+#include "dartcast/error.hpp"
+#include "support/edit_meshes.hpp"
+#include "support/particle_checks.hpp"
+#include "support/random_edits.hpp"
+#include "support/tier.hpp"
 #include "tracking/carry.hpp"
-#include "environment/particle_checks.hpp"
-#include "map/edit_meshes.hpp"
-#include "map/random_edits.hpp"
-#include "tier.hpp"
 
 namespace dartcast::order_test {
 

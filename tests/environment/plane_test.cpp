@@ -7,16 +7,16 @@
 #include <string>
 #include <vector>
 
-#include "dartcast/error.hpp"
 #include "base/random.hpp"
 #include "dartcast/audit.hpp"
 #include "dartcast/environment.hpp"
-#include "environment/state_hash.hpp"
-#include "dartcast/validity.hpp"
+#include "dartcast/error.hpp"
 #include "dartcast/map_edits.hpp"
-#include "generators/generate_rectangle.hpp"
 #include "dartcast/response.hpp"
-#include "tier.hpp"
+#include "dartcast/validity.hpp"
+#include "environment/state_hash.hpp"
+#include "generators/generate_rectangle.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::plane_test {
 

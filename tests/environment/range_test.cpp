@@ -12,10 +12,10 @@
 #include "dartcast/audit.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/generators.hpp"
-#include "generators/generate_rectangle.hpp"
 #include "dartcast/response.hpp"
-#include "environment/particle_checks.hpp"
-#include "tier.hpp"
+#include "generators/generate_rectangle.hpp"
+#include "support/particle_checks.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::range_test {
 

@@ -3,12 +3,12 @@
 
 #include <cmath>
 
-#include "dartcast/error.hpp"
 #include "base/random.hpp"
 #include "dartcast/environment.hpp"
+#include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/response.hpp"
-#include "environment/particle_checks.hpp"
+#include "support/particle_checks.hpp"
 
 namespace dartcast::scaling_test {
 

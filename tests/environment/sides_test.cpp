@@ -5,13 +5,13 @@
 #include <cmath>
 #include <vector>
 
-#include "dartcast/error.hpp"
 #include "dartcast/audit.hpp"
+#include "dartcast/error.hpp"
 #include "dartcast/map_edits.hpp"
-#include "environment/particle_checks.hpp"
-#include "map/edit_meshes.hpp"
-#include "map/random_edits.hpp"
-#include "tier.hpp"
+#include "support/edit_meshes.hpp"
+#include "support/particle_checks.hpp"
+#include "support/random_edits.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::sides_test {
 

@@ -10,9 +10,9 @@
 #include "dartcast/environment.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/response.hpp"
-#include "environment/particle_checks.hpp"
-#include "map/mixed_mesh.hpp"
-#include "tier.hpp"
+#include "support/mixed_mesh.hpp"
+#include "support/particle_checks.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::threads_test {
 

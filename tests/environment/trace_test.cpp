@@ -6,16 +6,16 @@
 #include <memory>
 #include <vector>
 
-#include "cells_passed.hpp"
-#include "dartcast/error.hpp"
 #include "base/random.hpp"
 #include "dartcast/environment.hpp"
+#include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
-#include "generators/generate_rectangle.hpp"
 #include "dartcast/response.hpp"
+#include "generators/generate_rectangle.hpp"
 #include "oracle/scenes.hpp"
-#include "particle_checks.hpp"
-#include "tier.hpp"
+#include "support/cells_passed.hpp"
+#include "support/particle_checks.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::trace_test {
 

@@ -1,8 +1,8 @@
 // Uses the installed package: makes a mesh and takes an exact sign that plain doubles get wrong.
 #include <cstdio>
 
-#include "dartcast/predicates.hpp"
 #include "dartcast/generators.hpp"
+#include "dartcast/predicates.hpp"
 
 int main() {
   const dartcast::MeshData bar = dartcast::generate_bar();

@@ -12,10 +12,10 @@
 
 #include "base/random.hpp"
 #include "dartcast/environment.hpp"
-#include "dartcast/map_edits.hpp"
 #include "dartcast/generators.hpp"
-#include "generators/generate_rectangle.hpp"
+#include "dartcast/map_edits.hpp"
 #include "dartcast/response.hpp"
+#include "generators/generate_rectangle.hpp"
 #include "simulation/seeding.hpp"
 
 namespace {

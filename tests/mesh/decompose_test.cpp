@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "dartcast/error.hpp"
-#include "drawings.hpp"
-#include "exact/dyadic.hpp"
-#include "tier.hpp"
+#include "support/drawings.hpp"
+#include "support/dyadic.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::decompose_test {
 

@@ -11,9 +11,9 @@
 
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
+#include "dartcast/mesh_check.hpp"
 #include "generators/generate_rectangle.hpp"
 #include "generators/generate_vessel.hpp"
-#include "dartcast/mesh_check.hpp"
 
 namespace dartcast::test::patches_test {
 

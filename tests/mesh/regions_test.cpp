@@ -1,11 +1,10 @@
 // Free cells by region and by array.
-#include "dartcast/mesh_selection.hpp"
-
 #include <gtest/gtest.h>
 
 #include <functional>
 
 #include "dartcast/error.hpp"
+#include "dartcast/mesh_selection.hpp"
 
 namespace dartcast::regions_test {
 

@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "dartcast/vec3.hpp"
 #include "dartcast/mesh_data.hpp"
+#include "dartcast/vec3.hpp"
 #include "oracle/box_grid.hpp"
 #include "oracle/triangulation.hpp"
 

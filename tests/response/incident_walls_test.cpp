@@ -11,7 +11,7 @@
 
 #include "base/random.hpp"
 #include "bodies/body_contact.hpp"
-#include "tier.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::incident_walls_test {
 

@@ -6,12 +6,12 @@
 #include <map>
 #include <numbers>
 
-#include "dartcast/error.hpp"
 #include "dartcast/audit.hpp"
+#include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
-#include "generators/generate_rectangle.hpp"
 #include "dartcast/simulation.hpp"
-#include "tier.hpp"
+#include "generators/generate_rectangle.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::collisions_test {
 

@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "../mesh/generate_checks.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "generators/generate_vessel.hpp"
-#include "tier.hpp"
+#include "support/generate_checks.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::deformation_test {
 

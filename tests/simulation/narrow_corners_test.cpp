@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "dartcast/simulation.hpp"
-#include "tier.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::test::narrow_corners_test {
 

@@ -10,11 +10,11 @@
 
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
-#include "generators/generate_rectangle.hpp"
 #include "dartcast/simulation.hpp"
-#include "simulation/polyline.hpp"
+#include "generators/generate_rectangle.hpp"
 #include "simulation/event_scheduler.hpp"
-#include "refused.hpp"
+#include "simulation/polyline.hpp"
+#include "support/refused.hpp"
 
 namespace dartcast::ranges_test {
 

@@ -8,12 +8,12 @@
 #include <numbers>
 #include <string>
 
-#include "bodies/point_block.hpp"
-#include "dartcast/error.hpp"
 #include "dartcast/audit.hpp"
+#include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/simulation.hpp"
-#include "tier.hpp"
+#include "support/point_block.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::sphere_bodies_test {
 

@@ -1,13 +1,12 @@
 // Spheres against walls: every step against all walls of the scene, and cases with known answers.
-#include "dartcast/spheres.hpp"
-
 #include <gtest/gtest.h>
 
+#include "dartcast/deformation.hpp"
 #include "dartcast/error.hpp"
+#include "dartcast/spheres.hpp"
 #include "generators/generate_rectangle.hpp"
 #include "generators/generate_vessel.hpp"
-#include "dartcast/deformation.hpp"
-#include "spheres/sphere_checks.hpp"
+#include "support/sphere_checks.hpp"
 
 namespace dartcast::advance_spheres_test {
 

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "dartcast/spheres.hpp"
-#include "spheres/sphere_checks.hpp"
-#include "tier.hpp"
+#include "support/sphere_checks.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::clearances_test {
 

@@ -12,7 +12,7 @@
 #include "dartcast/generators.hpp"
 #include "dartcast/response.hpp"
 #include "dartcast/spheres.hpp"
-#include "tier.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::far_vertices_test {
 

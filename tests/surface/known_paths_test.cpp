@@ -8,9 +8,9 @@
 #include <numbers>
 #include <vector>
 
+#include "support/surface_meshes.hpp"
+#include "support/tier.hpp"
 #include "surface/surface_step.hpp"
-#include "surface/meshes.hpp"
-#include "tier.hpp"
 
 namespace dartcast::known_paths_test {
 

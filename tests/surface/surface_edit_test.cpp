@@ -9,11 +9,11 @@
 
 #include "dartcast/error.hpp"
 #include "dartcast/map_edits.hpp"
-#include "topology/integrity.hpp"
+#include "support/random_edits.hpp"
+#include "support/surface_meshes.hpp"
+#include "support/tier.hpp"
 #include "surface/surface_step.hpp"
-#include "map/random_edits.hpp"
-#include "surface/meshes.hpp"
-#include "tier.hpp"
+#include "topology/integrity.hpp"
 
 namespace dartcast::surface_edit_test {
 

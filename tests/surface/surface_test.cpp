@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "dartcast/error.hpp"
+#include "support/surface_meshes.hpp"
+#include "support/tier.hpp"
 #include "surface/check_surface.hpp"
 #include "surface/surface_advance.hpp"
 #include "surface/surface_locator.hpp"
-#include "surface/meshes.hpp"
-#include "tier.hpp"
 
 namespace dartcast::surface_test {
 

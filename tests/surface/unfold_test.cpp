@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "surface/geodesic_oracle.hpp"
-#include "surface/meshes.hpp"
-#include "tier.hpp"
+#include "support/geodesic_oracle.hpp"
+#include "support/surface_meshes.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::unfold_test {
 

@@ -13,9 +13,9 @@
 
 #include "dartcast/error.hpp"
 #include "mesh/cell_types.hpp"
+#include "support/surface_meshes.hpp"
+#include "support/tier.hpp"
 #include "surface/surface_advance.hpp"
-#include "surface/meshes.hpp"
-#include "tier.hpp"
 
 namespace dartcast::walls_test {
 

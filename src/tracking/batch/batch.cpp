@@ -9,8 +9,8 @@
 #include <limits>
 
 #include "tracking/batch/coordinate_bounds.hpp"
-#include "tracking/contact_geometry.hpp"
 #include "tracking/carry.hpp"
+#include "tracking/contact_geometry.hpp"
 
 #if defined(__x86_64__)
 #include <immintrin.h>

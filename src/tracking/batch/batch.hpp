@@ -15,9 +15,9 @@
 
 #include "base/instruction_set.hpp"
 #include "dartcast/cell_complex.hpp"
-#include "tracking/counters.hpp"
-#include "tracking/batch/simplex_cache.hpp"
 #include "dartcast/particle_state.hpp"
+#include "tracking/batch/simplex_cache.hpp"
+#include "tracking/counters.hpp"
 #include "tracking/step.hpp"
 
 namespace dartcast::detail {

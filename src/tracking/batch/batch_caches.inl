@@ -1,5 +1,5 @@
-// What is kept of simplices (tracking/batch/simplex_cache.hpp), of four particles in vectors. Part of tracking/batch/batch_kernel.inl: no include
-// guard, no includes.
+// What is kept of simplices (tracking/batch/simplex_cache.hpp), of four particles in vectors. Part of
+// tracking/batch/batch_kernel.inl: no include guard, no includes.
 
 DARTCAST_TARGET inline Quad load_floats(const float* in) {
   const Floats four = *reinterpret_cast<const UnalignedFloats*>(in);

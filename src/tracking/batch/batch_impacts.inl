@@ -1,5 +1,6 @@
-// Where steps meet walls, of four particles in vectors: by the operations of tracking/contact_geometry.hpp and tracking/place_in_simplex.hpp, to the
-// same bits, as far as doubles prove what they ask. Part of tracking/batch/batch_kernel.inl: no include guard, no includes.
+// Where steps meet walls, of four particles in vectors: by the operations of tracking/contact_geometry.hpp and
+// tracking/place_in_simplex.hpp, to the same bits, as far as doubles prove what they ask. Part of
+// tracking/batch/batch_kernel.inl: no include guard, no includes.
 
 // As Determinant in tracking/contact_geometry.hpp.
 struct BoundedProducts {

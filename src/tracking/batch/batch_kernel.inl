@@ -1,6 +1,6 @@
-// The loop of src/tracking/batch/batch.cpp, compiled there once per instruction set: no include guard, and not to be included
-// elsewhere. Defined before: DARTCAST_TARGET, the attribute of every function, and lanes_set(Mask).
-// In this order:
+// The loop of src/tracking/batch/batch.cpp, compiled there once per instruction set: no include guard, and not to be
+// included elsewhere. Defined before: DARTCAST_TARGET, the attribute of every function, and lanes_set(Mask). In this
+// order:
 // clang-format off
 #include "tracking/batch/batch_simplex.inl"
 #include "tracking/batch/batch_caches.inl"

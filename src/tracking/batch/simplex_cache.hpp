@@ -17,8 +17,8 @@ namespace dartcast::detail {
 /// they don't prove its coordinates.
 ///
 /// Coordinates, where vertices stand still: the barycentric coordinates of any point q, x q.x + y q.y + z q.z + w, to
-/// within the margin of tracking/batch/coordinate_bounds.hpp. A step that ends in the same simplex reads nothing of the scene.
-/// Unknown until a step has ended in the simplex. On lattices they may be exact: see Mark.
+/// within the margin of tracking/batch/coordinate_bounds.hpp. A step that ends in the same simplex reads nothing of the
+/// scene. Unknown until a step has ended in the simplex. On lattices they may be exact: see Mark.
 struct Memo {
   std::array<float, 4> x, y, z;
   std::array<double, 4> w;

@@ -1,0 +1,171 @@
+#include "dynamics/contact_packets.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/random.hpp"
+#include "support/tier.hpp"
+
+namespace dartcast::contact_packets_test {
+
+using detail::ContactBody;
+using detail::ContactEnds;
+using detail::ContactPackets;
+using detail::ContactTerms;
+using detail::InstructionSet;
+
+Vec3 random_part(Random& random, double size) {
+  return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
+}
+
+// Contacts solved one after the other, in the order given.
+struct OneByOne {
+  std::vector<ContactEnds> ends;
+  std::vector<ContactTerms> terms;
+  std::vector<double> pushes;
+  std::vector<ContactBody> bodies;
+
+  void apply(std::size_t i, const Vec3& impulse, std::vector<ContactBody>& to) const {
+    ContactBody& a = to[ends[i].a];
+    ContactBody& b = to[ends[i].b];
+    a.velocity -= impulse * a.inverse_mass;
+    b.velocity += impulse * b.inverse_mass;
+  }
+  void start() {
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      if (terms[i].along > 0.0) apply(i, terms[i].normal * terms[i].along + terms[i].across, bodies);
+    }
+  }
+  void solve(std::size_t i) {
+    ContactTerms& t = terms[i];
+    const Vec3 relative = bodies[ends[i].b].velocity - bodies[ends[i].a].velocity;
+    const double nearing = dot(relative, t.normal);
+    const double along = std::max(0.0, t.along - t.mass * (nearing - t.bound));
+    if (along == 0.0 && t.along == 0.0) return;
+    Vec3 across = t.across - (relative - t.normal * nearing) * t.mass;
+    const double most = t.friction * along;
+    const double square = dot(across, across);
+    if (square > most * most) across *= most / std::sqrt(square);
+    apply(i, (across - t.across) + t.normal * (along - t.along), bodies);
+    t.along = along;
+    t.across = across;
+  }
+  void push(std::size_t i, std::vector<ContactBody>& to) {
+    const double nearing = dot(to[ends[i].b].velocity - to[ends[i].a].velocity, terms[i].normal);
+    const double after = std::max(0.0, pushes[i] - terms[i].mass * (nearing - terms[i].push_bound));
+    apply(i, terms[i].normal * (after - pushes[i]), to);
+    pushes[i] = after;
+  }
+  template <class Each>
+  void sweep(unsigned iterations, Each&& each) const {
+    for (unsigned left = iterations; left > 0; --left) {
+      for (std::size_t i = 0; i < ends.size(); ++i) each(left % 2 == 1 ? i : ends.size() - 1 - i);
+    }
+  }
+  void rebound() {
+    for (ContactTerms& t : terms) {
+      if (t.rebound > 0.0 && t.along > 0.0) t.bound = t.rebound;
+    }
+  }
+};
+
+// Contacts among a few bodies, so that most share one with others. Some bodies cannot be pushed; some contacts begin
+// with impulses, some rebound, some have no friction.
+OneByOne random_contacts(Random& random, std::uint32_t body_count, std::size_t count) {
+  OneByOne all;
+  for (std::size_t i = 0; i < body_count; ++i)
+    all.bodies.push_back({random_part(random, 1.0), random.below(8) == 0 ? 0.0 : random.uniform(0.1, 3.0)});
+  all.bodies[0].inverse_mass = 1.0;
+  all.bodies.emplace_back();
+  while (all.ends.size() < count) {
+    const auto a = static_cast<std::uint32_t>(random.below(body_count));
+    const auto b = static_cast<std::uint32_t>(random.below(body_count));
+    const double inverse = all.bodies[a].inverse_mass + all.bodies[b].inverse_mass;
+    if (a == b || !(inverse > 0.0)) continue;
+    ContactTerms t;
+    t.normal = random_part(random, 1.0);
+    t.normal *= 1.0 / norm(t.normal);
+    t.mass = 1.0 / inverse;
+    t.friction = random.below(3) == 0 ? 0.0 : random.uniform(0.0, 1.0);
+    t.bound = random.below(2) == 0 ? 0.0 : random.uniform(-0.5, 0.0);
+    t.push_bound = random.uniform(-0.5, 0.5);
+    t.rebound = random.below(3) == 0 ? random.uniform(0.1, 1.0) : 0.0;
+    const bool loaded = random.below(2) == 0;
+    if (loaded) {
+      t.along = random.uniform(0.0, 0.2);
+      t.across = cross(t.normal, random_part(random, 1.0)) * (t.friction * t.along / 2.0);
+    }
+    all.ends.push_back({a, b, loaded});
+    all.terms.push_back(t);
+  }
+  all.pushes.assign(count, 0.0);
+  return all;
+}
+
+void expect_same(const ContactPackets& packets, const OneByOne& truth, const std::vector<ContactBody>& bodies,
+                 const char* when) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) ASSERT_EQ(bodies[i].velocity, truth.bodies[i].velocity) << when << i;
+  for (std::size_t i = 0; i < truth.ends.size(); ++i) {
+    ASSERT_EQ(packets.along(i), truth.terms[i].along) << when << i;
+    ASSERT_EQ(packets.across(i), truth.terms[i].across) << when << i;
+  }
+}
+
+void compare(OneByOne truth, InstructionSet set, unsigned iterations) {
+  std::vector<ContactBody> bodies = truth.bodies;
+  ContactPackets packets;
+  packets.assign(truth.ends, truth.terms, bodies);
+  packets.start(bodies, set);
+  truth.start();
+  expect_same(packets, truth, bodies, "start ");
+  packets.solve(bodies, iterations, set);
+  truth.sweep(iterations, [&](std::size_t i) { truth.solve(i); });
+  expect_same(packets, truth, bodies, "solve ");
+  std::vector<ContactBody> pushed = bodies;
+  std::vector<ContactBody> truly_pushed = bodies;
+  packets.push(pushed, iterations, set);
+  truth.sweep(iterations, [&](std::size_t i) { truth.push(i, truly_pushed); });
+  for (std::size_t i = 0; i < bodies.size(); ++i) ASSERT_EQ(pushed[i].velocity, truly_pushed[i].velocity) << i;
+  const bool any = std::any_of(truth.terms.begin(), truth.terms.end(),
+                               [](const ContactTerms& t) { return t.rebound > 0.0 && t.along > 0.0; });
+  EXPECT_EQ(packets.rebound(), any);
+  truth.rebound();
+  for (std::size_t i = 0; i < truth.ends.size(); ++i)
+    ASSERT_EQ(packets.rebounds(i), truth.terms[i].rebound > 0.0 && truth.terms[i].along > 0.0);
+  packets.solve(bodies, iterations, set);
+  truth.sweep(iterations, [&](std::size_t i) { truth.solve(i); });
+  expect_same(packets, truth, bodies, "rebound ");
+}
+
+// To the last bit, by any instructions, however many contacts a body is in.
+TEST(ContactPackets, SameAsOneByOne) {
+  Random random(1);
+  for (int k = 0; k < std::max(4, test::scaled(60, 2000)); ++k) {
+    const std::uint32_t bodies = 2 + static_cast<std::uint32_t>(random.below(k % 2 == 0 ? 8 : 200));
+    const OneByOne contacts = random_contacts(random, bodies, random.below(300));
+    const auto iterations = static_cast<unsigned>(random.below(5));
+    compare(contacts, InstructionSet::portable, iterations);
+    compare(contacts, detail::best_instruction_set(), iterations);
+  }
+}
+
+// Contacts that share nothing that moves fill packets; those of one body wait for each other.
+TEST(ContactPackets, FourAtATime) {
+  const auto packets_of = [](double shared_inverse_mass) {
+    std::vector<ContactBody> bodies(22);
+    std::vector<ContactEnds> star;
+    for (ContactBody& b : bodies) b.inverse_mass = 1.0;
+    bodies[0].inverse_mass = shared_inverse_mass;
+    for (std::uint32_t i = 1; i < 21; ++i) star.push_back({0, i, i % 3 == 0});
+    bodies.back() = {};
+    ContactPackets packets;
+    packets.assign(star, std::vector<ContactTerms>(star.size()), bodies);
+    return packets.packet_count();
+  };
+  EXPECT_EQ(packets_of(0.0), 5U);
+  EXPECT_EQ(packets_of(1.0), 20U);
+}
+
+}  // namespace dartcast::contact_packets_test

@@ -1,0 +1,140 @@
+// Moves that would flatten cells: found before they are made, and followed as far as all stays valid.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/random.hpp"
+#include "dartcast/audit.hpp"
+#include "dartcast/environment.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/generators.hpp"
+#include "oracle/scenes.hpp"
+#include "support/moving_simplex.hpp"
+#include "support/tier.hpp"
+
+namespace dartcast::test::flattening_test {
+
+std::vector<Vec3> copy(std::span<const Vec3> positions) { return {positions.begin(), positions.end()}; }
+
+Environment box_of(std::uint32_t edge) {
+  BoxOptions box;
+  box.cells = {edge, edge, edge};
+  box.size = {1.0 * edge, 1.0 * edge, 1.0 * edge};
+  return Environment(generate_box(box), Threads{1});
+}
+
+// Every vertex in a direction of its own, by up to `size`.
+std::vector<Vec3> shaken(std::span<const Vec3> positions, double size, Random& random) {
+  std::vector<Vec3> all = copy(positions);
+  for (Vec3& p : all) p += Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)} * size;
+  return all;
+}
+
+// The volume of no simplex reaches zero on the way: exact, by another method.
+bool stays_positive(const Complex& complex) {
+  for (const Cell c : complex.map().cells()) {
+    const CellView cell = complex.map().view(c);
+    for (const ImplicitSimplex& s : cell.shape().simplices()) {
+      Corners before;
+      Corners after;
+      for (unsigned i = 0; i < 4; ++i) {
+        before[i] = complex.previous_positions()[cell.vertex(s.vertex[i]).value];
+        after[i] = complex.positions()[cell.vertex(s.vertex[i]).value];
+      }
+      const MovingSimplex moving(before, after);
+      if (moving.sign_of_volume({0, 0}) <= 0 || moving.has_root_by({1, 0})) return false;
+    }
+  }
+  return true;
+}
+
+TEST(Flattening, AVertexPushedThroughItsCellIsStoppedWhereTheCellIsFlat) {
+  Environment e = box_of(2);
+  std::vector<Vec3> next = copy(e.positions());
+  std::size_t middle = 0;
+  while (next[middle] != Vec3{1, 1, 1}) ++middle;
+  next[middle] = {1, 1, 3};  // the upper cells' ceiling is at 2
+  const auto flattening = e.first_flattening(next);
+  ASSERT_TRUE(flattening);
+  EXPECT_GT(flattening->how.safe_time, 0.2);
+  EXPECT_LE(flattening->how.safe_time, 0.5);
+  EXPECT_NE(flattening->message.find("vertex " + std::to_string(middle)), std::string::npos) << flattening->message;
+  const double time = e.move_until_flattened(next);
+  EXPECT_LE(time, flattening->how.safe_time);
+  EXPECT_GT(time, flattening->how.safe_time - 1e-9);
+  EXPECT_TRUE(e.validity().valid());
+  EXPECT_NEAR(e.positions()[middle].z, 1.0 + 2.0 * time, 1e-9);
+}
+
+TEST(Flattening, AShareOfTheWayCanBeLeft) {
+  Environment e = box_of(2);
+  std::vector<Vec3> next = copy(e.positions());
+  for (Vec3& p : next) p.z = 2.0 - p.z;  // turned inside out: flat in the middle
+  EXPECT_NEAR(e.first_flattening(next)->how.safe_time, 0.5, 1e-9);
+  EXPECT_NEAR(e.move_until_flattened(next, 0.5), 0.25, 1e-9);
+  EXPECT_NEAR(e.positions().back().z, 1.5, 1e-9);
+}
+
+TEST(Flattening, WhatHarmsNothingIsMadeWhole) {
+  Environment e = box_of(2);
+  Random random(1);
+  const std::vector<Vec3> next = shaken(e.positions(), 0.05, random);
+  EXPECT_FALSE(e.first_flattening(next));
+  EXPECT_EQ(e.move_until_flattened(next), 1.0);
+  EXPECT_TRUE(std::ranges::equal(e.positions(), next));
+}
+
+TEST(Flattening, APositionTooFewIsRefused) {
+  Environment e = box_of(2);
+  std::vector<Vec3> next = copy(e.positions());
+  next.pop_back();
+  EXPECT_THROW((void)e.first_flattening(next), InvalidArgument);
+  EXPECT_THROW(e.move_until_flattened(next), InvalidArgument);
+}
+
+class FlatteningOf : public ::testing::TestWithParam<int> {};
+
+// Wild motions, followed as far as they can be, again and again: the scene stays valid, and its particles in their
+// cells.
+TEST_P(FlatteningOf, WildMotionsLeaveAllCellsValidAndParticlesInTheirs) {
+  const auto kind = static_cast<oracle::SceneKind>(GetParam());
+  std::size_t stopped = 0;
+  std::size_t whole = 0;
+  for (std::uint64_t seed = 0; seed < std::max<std::uint64_t>(2, scaled(6, 300)); ++seed) {
+    const MeshData mesh = oracle::random_scene(kind, seed, 0.2);
+    if (!Complex(mesh).invalid_cells().empty()) continue;
+    Environment e(mesh, Threads{1});
+    Random random(seed, 5);
+    Particles particles;
+    std::vector<Vec3> inside;
+    for (const Cell c : e.map().cells()) {
+      const auto v = e.complex().corners({c, 0});
+      inside.push_back((v[0] + v[1] + v[2] + v[3]) * 0.25);
+    }
+    e.add(particles, inside);
+    for (int step = 0; step < 5; ++step) {
+      const double edge = norm(e.positions()[1] - e.positions()[0]);
+      const std::vector<Vec3> next = shaken(e.positions(), edge * std::exp2(random.uniform(-8.0, 1.0)), random);
+      const bool flattens = e.first_flattening(next).has_value();
+      const double time = e.move_until_flattened(next, random.uniform());
+      EXPECT_EQ(time == 1.0, !flattens);
+      EXPECT_TRUE(e.validity().valid()) << "seed " << seed << ", step " << step;
+      EXPECT_TRUE(stays_positive(e.complex())) << "seed " << seed << ", step " << step;
+      std::vector<Vec3> targets;
+      for (const State& s : particles.states()) targets.push_back(s.position);
+      const StepReport report = e.advance(particles, targets);
+      EXPECT_TRUE(report.held.empty());
+      (flattens ? stopped : whole) += 1;
+    }
+    EXPECT_EQ(audit(e.complex(), particles).failed, 0U) << "seed " << seed;
+  }
+  EXPECT_GT(stopped, 0U);
+  EXPECT_GT(whole, 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, FlatteningOf, ::testing::Range(0, oracle::scene_kinds), [](const auto& scene) {
+  return oracle::name_of(static_cast<oracle::SceneKind>(scene.param));
+});
+
+}  // namespace dartcast::test::flattening_test

@@ -1,0 +1,407 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+
+#include "dartcast/error.hpp"
+#include "dartcast/run.hpp"
+#include "dartcast/scene_file.hpp"
+#include "formats/file_text.hpp"
+#include "formats/write_mesh.hpp"
+#include "support/sample_mesh.hpp"
+
+namespace dartcast::resume_test {
+
+namespace fs = std::filesystem;
+
+// All that a state can hold: particles injected, stuck, absorbed and gone, moving vertices, polylines.
+const std::string scene_text = R"(
+seed = 5
+[environment]
+generator = "box"
+cells = [5, 5, 5]
+blocked_share = 0.1
+[[deformation]]
+kind = "twist"
+amplitude = 0.4
+length = 5.0
+period = 0.7
+[[particles]]
+count = 200
+velocity = [3.0, 1.0, 0.5]
+[[particles]]
+inlet = "xmin"
+rate = 170.0
+velocity = [4.0, 0.5, 0.0]
+[motion]
+dt = 0.02
+steps = 47
+substeps = 2
+gravity = [0.0, 0.0, -5.0]
+[contact.patch.xmax]
+response = "escape"
+[contact.patch.zmin]
+response = "stick"
+[contact.patch.ymax]
+response = "absorb"
+[output]
+every = 10
+contacts = true
+)";
+
+// Every kind of event, and cells that turn over and are remeshed.
+const std::string surgery_text = R"(
+[environment]
+generator = "box"
+cells = [12, 6, 6]
+blocked_layer = true
+[[deformation]]
+kind = "bump"
+amplitude = 2.0
+period = 1.0
+axis = [0.0, 0.0, 1.0]
+centre = [3.0, 3.0, 3.0]
+length = 2.0
+[[particles]]
+count = 300
+velocity = [1.0, 0.25, -0.5]
+[motion]
+dt = 0.02
+steps = 47
+gravity = [0.0, 0.0, -5.0]
+[contact]
+restitution = 0.5
+[[event]]
+at = 0.1
+kind = "cut"
+surface = "disc"
+point = [6.0, 3.0, 0.5]
+normal = [1.0, 0.0, 0.0]
+radius = 1.5
+width = 0.5
+[[event]]
+at = 0.3
+kind = "carve"
+tool = "box"
+low = [9.0, -1.0, -1.0]
+high = [10.0, 7.0, 7.0]
+what = "remove"
+stranded = "absorb"
+[[event]]
+at = 0.3
+kind = "ligature"
+point = [7.5, 3.0, 3.0]
+normal = [1.0, 0.0, 0.0]
+draw = 0.5
+reach = 1.0
+duration = 0.2
+stranded = "stay"
+[[event]]
+at = 0.6
+kind = "reconnect"
+a = { point = [9.0, 0.0, 0.0], normal = [1.0, 0.0, 0.0] }
+b = { point = [10.0, 0.0, 0.0], normal = [1.0, 0.0, 0.0] }
+within = 0.01
+patch = "xmin"
+[remesh]
+every = 1
+[output]
+every = 10
+)";
+
+// Bodies and a catheter among the particles, in a scene that bends and is carved.
+const std::string solids_text = R"(
+[environment]
+generator = "box"
+cells = [6, 6, 6]
+size = [0.6, 0.6, 0.6]
+[[deformation]]
+kind = "twist"
+amplitude = 0.3
+length = 0.6
+period = 1.0
+[[particles]]
+count = 50
+[[body]]
+name = "barrel"
+generator = "barrel"
+radius = 0.05
+bulge = 0.01
+height = 0.12
+spacing = 0.025
+at = [0.2, 0.2, 0.15]
+velocity = [0.5, 0.4, -2.0]
+[[body]]
+generator = "barrel"
+radius = 0.04
+bulge = 0.0
+height = 0.1
+spacing = 0.03
+at = [0.45, 0.45, 0.4]
+rotate = [0.5, 0.0, 0.0]
+cluster = 0.06
+[[catheter]]
+entry = [0.05, 0.3, 0.3]
+direction = [1.0, 0.0, 0.0]
+length = 0.4
+spacing = 0.01
+tip_length = 0.05
+tip_curvature = 8.0
+camera = 0.01
+moves = [{ until = 0.3, push = 0.5 }, { until = 0.4, turn = 2.0 }, { until = 1.0, push = 0.2, turn = -1.0 }]
+[motion]
+dt = 0.01
+steps = 47
+gravity = [0.0, 0.0, -9.81]
+[contact]
+restitution = 0.4
+friction = 0.2
+[[event]]
+at = 0.22
+kind = "carve"
+tool = "box"
+low = [0.41, -0.1, 0.41]
+high = [0.7, 0.7, 0.7]
+what = "remove"
+[output]
+every = 10
+)";
+
+// Spheres that pile up; crowded cells are subdivided, and made again when they have left.
+const std::string spheres_text = R"(
+[environment]
+generator = "box"
+cells = [3, 3, 3]
+size = [0.3, 0.3, 0.3]
+[[deformation]]
+kind = "swing"
+amplitude = 1.2
+period = 1.0
+axis = [0.0, 1.0, 0.0]
+centre = [0.15, 0.15, 0.15]
+[[particles]]
+count = 200
+radius = 0.008
+[[particles]]
+inlet = "zmax"
+rate = 50.0
+radius = 0.004
+velocity = [0.0, 0.0, -0.5]
+[motion]
+dt = 0.01
+steps = 47
+gravity = [0.0, 0.0, -9.81]
+[contact]
+restitution = 0.2
+friction = 0.3
+[collisions]
+restitution = 0.2
+friction = 0.3
+[crowding]
+every = 5
+most = 15
+least = 6
+smallest = 0.02
+[output]
+every = 10
+)";
+
+struct CutOff : std::exception {};
+
+class Resume : public testing::Test {
+ protected:
+  // Runs the scene; cut off after `cut` steps where that is not 0.
+  static Summary run(const fs::path& to, bool resume, std::uint64_t steps, std::uint64_t cut = 0,
+                     const std::string& text = scene_text) {
+    RunOptions options;
+    options.folder = to;
+    options.resume = resume;
+    options.steps = steps;
+    options.audit = true;
+    return run_scene(parse_scene(text, "test.toml"), options, [&](std::uint64_t done, std::uint64_t) {
+      if (done == cut) throw CutOff();
+    });
+  }
+
+  // All files but those with times in them: timings, and the checkpoint that repeats them.
+  static std::map<std::string, std::string> files(const fs::path& of) {
+    std::map<std::string, std::string> result;
+    for (const auto& entry : fs::directory_iterator(of)) {
+      const std::string name = entry.path().filename();
+      if (name != "summary.json" && name != "checkpoint.bin") result[name] = read_bytes(entry.path());
+    }
+    return result;
+  }
+
+  void expect_same(const Summary& whole, const Summary& resumed) const {
+    EXPECT_EQ(resumed.state_hash, whole.state_hash);
+    EXPECT_EQ(resumed.steps, whole.steps);
+    EXPECT_EQ(resumed.held, whole.held);
+    EXPECT_EQ(resumed.audit->checked, whole.audit->checked);
+    EXPECT_EQ(resumed.audit->failed, 0U);
+    EXPECT_EQ(resumed.totals.injected, whole.totals.injected);
+    EXPECT_EQ(resumed.totals.contacts_by_patch, whole.totals.contacts_by_patch);
+    EXPECT_EQ(resumed.totals.counters.histogram, whole.totals.counters.histogram);
+    const auto expected = files(one);
+    const auto found = files(two);
+    for (const auto& [name, content] : expected) {
+      ASSERT_TRUE(found.contains(name)) << name;
+      EXPECT_TRUE(found.at(name) == content) << name;
+    }
+    EXPECT_EQ(found.size(), expected.size());
+  }
+
+  std::string failure(const std::string& text = scene_text) const {
+    try {
+      run(two, true, 47, 0, text);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return {};
+  }
+
+  test::Folder temporary;
+  fs::path one = temporary / "one";
+  fs::path two = temporary / "two";
+};
+
+TEST_F(Resume, ARunCutOffAnywhereEndsAsIfItWereNot) {
+  const Summary whole = run(one, false, 47);
+  EXPECT_GT(whole.totals.absorbed, 0U);
+  EXPECT_GT(whole.totals.escaped, 0U);
+  for (const std::uint64_t cut : {1U, 9U, 10U, 23U, 46U}) {
+    EXPECT_THROW(run(two, false, 47, cut), CutOff);
+    expect_same(whole, run(two, true, 47));
+  }
+}
+
+TEST_F(Resume, ARunCutOffAgainAndAgainComesToTheSameEnd) {
+  const Summary whole = run(one, false, 47);
+  for (const std::uint64_t cut : {12U, 13U, 25U, 46U}) EXPECT_THROW(run(two, true, 47, cut), CutOff);
+  expect_same(whole, run(two, true, 47));
+}
+
+TEST_F(Resume, ARunWithSurgeryIsOperatedOnAgain) {
+  const Summary whole = run(one, false, 47, 0, surgery_text);
+  ASSERT_EQ(whole.surgery->events.size(), 4U);
+  EXPECT_GT(whole.surgery->in_opened, 0U);
+  EXPECT_GT(whole.surgery->mended, 0U);
+  EXPECT_GT(whole.totals.absorbed, 0U);
+  EXPECT_EQ(whole.lost, 0U);
+  for (const std::uint64_t cut : {4U, 11U, 16U, 46U}) {
+    EXPECT_THROW(run(two, false, 47, cut, surgery_text), CutOff);
+    const Summary resumed = run(two, true, 47, 0, surgery_text);
+    expect_same(whole, resumed);
+    EXPECT_EQ(resumed.surgery->in_opened, whole.surgery->in_opened);
+    EXPECT_EQ(resumed.surgery->mended, whole.surgery->mended);
+    ASSERT_EQ(resumed.surgery->events.size(), 4U);
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_EQ(resumed.surgery->events[i].particles_touched, whole.surgery->events[i].particles_touched);
+      EXPECT_EQ(resumed.surgery->events[i].cells_added, whole.surgery->events[i].cells_added);
+    }
+  }
+}
+
+TEST_F(Resume, ARunWithSpheresAndCrowdedCellsGoesOn) {
+  const Summary whole = run(one, false, 47, 0, spheres_text);
+  EXPECT_GT(whole.totals.collisions.pairs_touching, 0U);
+  EXPECT_GT(whole.surgery->subdivided, 0U);
+  EXPECT_GT(whole.surgery->merged, 0U);
+  EXPECT_EQ(whole.lost, 0U);
+  for (const std::uint64_t cut : {4U, 16U, 31U, 46U}) {
+    EXPECT_THROW(run(two, false, 47, cut, spheres_text), CutOff);
+    const Summary resumed = run(two, true, 47, 0, spheres_text);
+    expect_same(whole, resumed);
+    EXPECT_EQ(resumed.totals.collisions.pairs_touching, whole.totals.collisions.pairs_touching);
+    EXPECT_EQ(resumed.surgery->subdivided, whole.surgery->subdivided);
+    EXPECT_EQ(resumed.surgery->merged, whole.surgery->merged);
+  }
+}
+
+TEST_F(Resume, ARunWithBodiesAndACatheterGoesOn) {
+  const Summary whole = run(one, false, 47, 0, solids_text);
+  EXPECT_EQ(whole.audit->failed, 0U);
+  EXPECT_EQ(whole.lost, 0U);
+  ASSERT_EQ(whole.bodies.size(), 2U);
+  ASSERT_EQ(whole.catheters.size(), 1U);
+  EXPECT_GT(whole.catheters[0].inserted, 0.1);
+  EXPECT_LE(whole.catheters[0].totals.worst_segment, 0.01);
+  for (const std::uint64_t cut : {4U, 11U, 26U, 46U}) {
+    EXPECT_THROW(run(two, false, 47, cut, solids_text), CutOff);
+    const Summary resumed = run(two, true, 47, 0, solids_text);
+    expect_same(whole, resumed);
+    EXPECT_EQ(resumed.bodies[0].energy.kinetic, whole.bodies[0].energy.kinetic);
+    EXPECT_EQ(resumed.catheters[0].totals.refused, whole.catheters[0].totals.refused);
+  }
+}
+
+TEST_F(Resume, ARunWithSpheresThatMeetBodiesGoesOn) {
+  const std::string text = solids_text + R"(
+[[particles]]
+count = 150
+radius = 0.02
+velocity = [0.0, 0.0, -1.0]
+[collisions]
+restitution = 0.3
+friction = 0.3
+body_restitution = 0.5
+)";
+  const Summary whole = run(one, false, 47, 0, text);
+  EXPECT_GT(whole.totals.collisions.pairs_touching, 0U);
+  EXPECT_EQ(whole.audit->failed, 0U);
+  for (const std::uint64_t cut : {4U, 26U, 46U}) {
+    EXPECT_THROW(run(two, false, 47, cut, text), CutOff);
+    const Summary resumed = run(two, true, 47, 0, text);
+    expect_same(whole, resumed);
+    EXPECT_EQ(resumed.bodies[0].energy.kinetic, whole.bodies[0].energy.kinetic);
+    EXPECT_EQ(resumed.totals.collisions.pairs_touching, whole.totals.collisions.pairs_touching);
+  }
+}
+
+TEST_F(Resume, AFinishedRunGoesOnToMoreSteps) {
+  const Summary whole = run(one, false, 47);
+  run(two, false, 25);
+  expect_same(whole, run(two, true, 47));
+  expect_same(whole, run(two, true, 47));  // nothing left to do
+  EXPECT_THROW(run(two, true, 46), Error);
+}
+
+TEST_F(Resume, WithoutACheckpointItStarts) { expect_same(run(one, false, 47), run(two, true, 47)); }
+
+TEST_F(Resume, AnotherSceneMeshOrSeedIsRefused) {
+  run(two, false, 10);
+  const auto before = files(two);
+  EXPECT_NE(failure(scene_text + "\n").find("the scene has changed"), std::string::npos);
+  RunOptions options;
+  options.folder = two;
+  options.resume = true;
+  options.seed = 6;
+  EXPECT_THROW(run_scene(parse_scene(scene_text, "test.toml"), options), Error);
+  EXPECT_EQ(files(two), before);
+}
+
+// Whatever byte of a checkpoint is damaged, or wherever it ends: an error, and nothing else.
+TEST_F(Resume, ADamagedCheckpointIsRefused) {
+  run(two, false, 10);
+  const std::string good = read_bytes(two / "checkpoint.bin");
+  const auto before = files(two);
+  const auto expect_refused = [&](const std::string& bytes) {
+    write_bytes(two / "checkpoint.bin", bytes);
+    EXPECT_NE(failure().find("checkpoint.bin: the run cannot be resumed"), std::string::npos);
+  };
+  for (std::size_t i = 0; i < good.size(); i += good.size() / 50 + 1) {
+    std::string bad = good;
+    bad[i] = static_cast<char>(bad[i] ^ 0x10);
+    expect_refused(bad);
+    expect_refused(good.substr(0, i));
+  }
+  expect_refused(good + "x");
+  EXPECT_EQ(files(two), before);
+  write_bytes(two / "checkpoint.bin", good);
+  fs::resize_file(two / "stats.csv", fs::file_size(two / "stats.csv") - 1);
+  EXPECT_NE(failure().find("stats.csv: the file is shorter"), std::string::npos);
+}
+
+}  // namespace dartcast::resume_test

@@ -1,0 +1,267 @@
+// Surgery while a flow runs: what leaks, what is stopped, and that nobody is lost.
+#include "dartcast/events.hpp"
+
+#include <gtest/gtest.h>
+
+#include "dartcast/audit.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/generators.hpp"
+#include "generators/generate_rectangle.hpp"
+#include "generators/generate_vessel.hpp"
+#include "simulation/event_scheduler.hpp"
+#include "support/tier.hpp"
+
+namespace dartcast::event_test {
+
+// A channel along x, 1 <= y, z <= 5, in a layer of blocked cells.
+MeshData channel() {
+  BoxOptions o;
+  o.cells = {12, 6, 6};
+  o.size = {12.0, 6.0, 6.0};
+  o.blocked_layer = true;
+  return generate_box(o);
+}
+
+FlowOptions falling(double dt) {
+  FlowOptions o;
+  o.dt = dt;
+  o.gravity = {0.0, 0.0, -1.0};
+  return o;
+}
+
+void expect_audited(const Flow& flow) {
+  const Audit found = audit(flow.environment().complex(), flow.particles());
+  ASSERT_EQ(found.failed, 0U) << found.first;
+}
+
+std::size_t count_if(const Flow& flow, const std::function<bool(const Vec3&)>& where) {
+  std::size_t count = 0;
+  for (const State& s : flow.particles().states()) count += where(s.position) ? 1 : 0;
+  return count;
+}
+
+Deformation sway(const Environment& environment) {
+  DeformationStep twist;
+  twist.kind = DeformationKind::twist;
+  twist.axis = {1.0, 0.0, 0.0};
+  twist.centre = {6.0, 3.0, 3.0};
+  twist.amplitude = 0.4;
+  twist.length = 12.0;
+  return Deformation({twist}, environment.positions());
+}
+
+const Event cut_below = {0.0, Cut{Disc{{6.0, 3.0, 0.5}, {1.0, 0.0, 0.0}, 1.0}, 0.5}, Stranded::move};
+
+// Particles that fall reach the bottom of the gap, and nothing else below the channel.
+TEST(Events, ParticlesLeakIntoACut) {
+  Environment environment(channel());
+  Flow flow(environment, falling(0.02), Responses(Response{ResponseKind::slide, 0.0, 0.0}));
+  std::vector<Vec3> places;
+  for (int i = 0; i < 100; ++i) places.push_back({5.76 + 0.005 * i, 3.0, 2.0});
+  flow.add(places, {});
+  const EventReport report = apply(flow, cut_below);
+  EXPECT_EQ(event_kind_names[report.kind], "cut");
+  EXPECT_GT(report.cells_opened, 0U);
+  EXPECT_EQ(report.boundary_shift, 0.0);
+  for (int i = 0; i < 200; ++i) {
+    flow.step();
+    ASSERT_NO_FATAL_FAILURE(expect_audited(flow));
+  }
+  EXPECT_EQ(count_if(flow, [](const Vec3& x) { return x.z < 0.9; }), 99U);  // all but the first, beside the gap
+  EXPECT_EQ(count_if(flow, [](const Vec3& x) { return x.z < 0.9 && std::abs(x.x - 6.0) > 0.25; }), 0U);
+}
+
+TEST(Events, ALigatureSealsAndItsWallsAreDrawnTogether) {
+  Environment environment(channel());
+  Flow flow(environment, FlowOptions{.dt = 0.02}, Responses(Response{ResponseKind::reflect, 1.0, 0.0}));
+  std::vector<Vec3> places;
+  for (int i = 0; i < 300; ++i) places.push_back({1.5 + 0.008 * i, 1.5 + 0.01 * i, 3.0 + 0.003 * (i % 7)});
+  flow.add(places, {2.0, 0.3, 0.7});
+  Ligature tie{plane_through({6.5, 3.0, 3.0}, {1.0, 0.0, 0.0}), {6.5, 3.0, 3.0}, {0.8, 2.0}, 0.5};
+  const EventReport report = apply(flow, {0.0, tie, Stranded::move});
+  EXPECT_EQ(report.cells_blocked, 16U);
+  const Vec3 corner = environment.positions()[7 + 13 * (1 + 7 * 1)];  // (7, 1, 1)
+  for (int i = 0; i < 400; ++i) {
+    flow.step();
+    if (i % 20 == 0) ASSERT_NO_FATAL_FAILURE(expect_audited(flow));
+    ASSERT_EQ(count_if(flow, [](const Vec3& x) { return x.x > 6.5; }), 0U);
+  }
+  EXPECT_TRUE(environment.validity().valid());
+  const Vec3 drawn = environment.positions()[7 + 13 * (1 + 7 * 1)];
+  EXPECT_EQ(corner, (Vec3{7.0, 1.0, 1.0}));
+  EXPECT_GT(drawn.y, 1.3);
+  EXPECT_GT(drawn.z, 1.3);
+  EXPECT_EQ(flow.particles().size(), 300U);
+}
+
+// While the whole twists: vertices of cuts go with the others, and cells stay valid.
+TEST(Events, SurgeryOnWhatDeforms) {
+  std::vector<std::string> hashes;
+  for (const unsigned threads : {1U, 3U}) {
+    Environment environment(channel(), {threads});
+    Flow flow(environment, falling(0.02), Responses(Response{ResponseKind::reflect, 0.5, 0.0}));
+    flow.set_deformation(sway(environment));
+    flow.set_field(
+        VelocityField(environment.complex(), std::vector<Vec3>(environment.positions().size(), Vec3{0.5, 0.0, -1.0})));
+    flow.add_random(300, {});
+    for (int i = 0; i < 200; ++i) {
+      if (i == 20) apply(flow, cut_below);
+      if (i == 60) apply(flow, {0.0, Carve{capsule_tool({9.0, 3.0, 0.3}, {9.0, 3.0, 1.5}, 0.4)}, Stranded::move});
+      if (i == 100)
+        apply(flow, {0.0, Ligature{plane_through({3.5, 3.0, 3.0}, {1.0, 0.0, 0.0}), {3.5, 3.0, 3.0}, {0.5, 1.5}, 0.4},
+                     Stranded::stay});
+      flow.step();
+      if (i % 10 == 0) ASSERT_NO_FATAL_FAILURE(expect_audited(flow));
+      const Validity validity = environment.validity();
+      ASSERT_TRUE(validity.valid()) << "step " << i << ": " << validity.first.front().message;
+    }
+    EXPECT_GT(count_if(flow, [](const Vec3& x) { return x.z < 0.9; }), 0U);
+    EXPECT_EQ(flow.particles().size(), 300U);
+    hashes.push_back(flow.state_hash().hex());
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
+}
+
+TEST(Events, ASliceIsTakenOutAndFilledAgain) {
+  Environment environment(channel());
+  Flow flow(environment, falling(0.02), Responses(Response{ResponseKind::reflect, 0.5, 0.0}));
+  flow.add_random(500, {1.0, 0.0, 0.0});
+  const std::size_t in_slice = count_if(flow, [](const Vec3& x) { return x.x > 5.5 && x.x < 7.5; });
+  Event remove{0.0, Carve{box_tool({5.5, -1.0, -1.0}, {7.5, 7.0, 7.0}), Carving::remove}, Stranded::absorb};
+  const EventReport removed = apply(flow, remove);
+  EXPECT_EQ(removed.particles_absorbed, in_slice);
+  EXPECT_EQ(flow.totals().absorbed, in_slice);
+  EXPECT_EQ(flow.particles().size(), 500 - in_slice);
+  const std::size_t left = count_if(flow, [](const Vec3& x) { return x.x < 5.5; });
+  for (int i = 0; i < 100; ++i) flow.step();
+  EXPECT_EQ(count_if(flow, [](const Vec3& x) { return x.x <= 5.5; }), left);
+  expect_audited(flow);
+  const auto at = [](double x) { return plane_through({x, 0.0, 0.0}, {1.0, 0.0, 0.0}); };
+  const EventReport filled = apply(flow, {0.0, Reconnect{at(5.5), at(7.5), 0.01, {}}, Stranded::move});
+  EXPECT_GT(filled.cells_added, 0U);
+  std::size_t crossed = 0;
+  for (int i = 0; i < 300; ++i) {
+    flow.step();
+    crossed = std::max(crossed, count_if(flow, [](const Vec3& x) { return x.x > 5.5 && x.x < 7.5; }));
+  }
+  EXPECT_GT(crossed, 0U);
+  expect_audited(flow);
+}
+
+TEST(Events, AnInletIsClosedWithItsLastFace) {
+  BoxOptions o;
+  o.cells = {4, 1, 1};
+  o.size = {4.0, 1.0, 1.0};
+  Environment environment(generate_box(o));
+  Flow flow(environment, FlowOptions{.dt = 0.1});
+  flow.add_inlet(environment.map().patch("xmin"), 50.0, {0.1, 0.0, 0.0});
+  flow.step();
+  EXPECT_EQ(flow.totals().injected, 5U);
+  const Cell first = flow.particles()[0].cell;
+  flow.edit([&](ComplexEdit& e) { e.topology().set_free(first, false); }, Stranded::move);
+  flow.step();
+  EXPECT_EQ(flow.totals().injected, 5U);
+  flow.edit([&](ComplexEdit& e) { e.topology().set_free(first, true); });
+  flow.step();
+  EXPECT_EQ(flow.totals().injected, 10U);
+  expect_audited(flow);
+}
+
+// A bump turns cells over; they are remeshed, and particles go on.
+TEST(Events, RemeshesWhereADeformationTurnsCellsOver) {
+  BoxOptions o;
+  o.cells = {6, 6, 6};
+  o.size = {6.0, 6.0, 6.0};
+  std::size_t invalid[2] = {0, 0};  // cells, over all steps
+  for (const bool remeshed : {false, true}) {
+    Environment environment(generate_box(o));
+    Flow flow(environment, FlowOptions{.dt = 0.02}, Responses(Response{ResponseKind::reflect, 1.0, 0.0}));
+    DeformationStep bump;
+    bump.kind = DeformationKind::bump;
+    bump.amplitude = 2.5;
+    bump.length = 2.5;
+    bump.centre = {3.0, 3.0, 3.0};
+    flow.set_deformation(Deformation({bump}, environment.positions()));
+    flow.add_random(300, {1.0, 0.5, 0.25});
+    std::size_t mended = 0;
+    for (int i = 0; i < 25; ++i) {
+      flow.step();
+      if (remeshed) mended += flow.repair().mended.size();
+      invalid[remeshed ? 1 : 0] += environment.validity().invalid_count;
+      expect_audited(flow);
+    }
+    if (remeshed) EXPECT_GT(mended, 0U);
+    EXPECT_EQ(flow.particles().size(), 300U);
+  }
+  EXPECT_GT(invalid[0], 0U);
+  EXPECT_LT(invalid[1], invalid[0]);  // most of what is left has a boundary that is turned over itself
+}
+
+TEST(Events, SurgeryKeepsToTheTimesAndDoesItAgain) {
+  const std::vector<Event> events = {
+      cut_below, {0.1, Ligature{plane_through({3.5, 3.0, 3.0}, {1.0, 0.0, 0.0}), {3.5, 3.0, 3.0}, {0.0, 1.0}, 0.0}}};
+  const RemeshScene never;
+  Environment environment(channel());
+  Flow flow(environment, falling(0.02), Responses(Response{ResponseKind::slide, 0.0, 0.0}));
+  flow.add_random(200, {});
+  Surgery surgery(events, never, {}, 0.02, flow);
+  for (int i = 0; i < 20; ++i) {
+    surgery.before_step();
+    EXPECT_EQ(surgery.log().events.size(), i < 5 ? 1U : 2U);
+    flow.step();
+    surgery.after_step();
+  }
+  Environment other(channel());
+  Flow again(other, falling(0.02));
+  Surgery replayed(events, never, {}, 0.02, again);
+  replayed.replay(surgery.log());
+  EXPECT_EQ(other.map(), environment.map());
+  again.restore(flow.checkpoint());
+  expect_audited(again);
+}
+
+TEST(Events, SayWhichIsRefused) {
+  const std::vector<Event> events = {{0.0, Ligature{plane_through({60.0, 3.0, 3.0}, {1.0, 0.0, 0.0}), {}, {}, 0.0}}};
+  Environment environment(channel());
+  Flow flow(environment, falling(0.02));
+  const RemeshScene never;
+  Surgery surgery(events, never, {}, 0.02, flow);
+  try {
+    surgery.before_step();
+    FAIL() << "there is nothing to tie";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("event 1 (ligature at 0 s)"), std::string::npos) << e.what();
+  }
+  EXPECT_EQ(environment.edit_count(), 0U);
+}
+
+// A ligature across a strip in the plane stops who comes from the left; cuts are refused before anything is done.
+TEST(Events, InThePlaneALigatureSeals) {
+  RectangleOptions o;
+  o.cells = {12, 4};
+  o.size = {12.0, 4.0};
+  Environment environment(generate_rectangle(o));
+  FlowOptions drift;
+  drift.dt = 0.05;
+  drift.gravity = {1.0, 0.0, 0.0};
+  Flow flow(environment, drift, Responses(Response{ResponseKind::slide, 0.0, 0.0}));
+  std::vector<Vec3> places;
+  for (int i = 0; i < 20; ++i) places.push_back({1.0, 0.1 + 0.19 * i, 0.0});
+  flow.add(places, {});
+  const RemeshScene never;
+  const std::vector<Event> cut = {cut_below};
+  EXPECT_THROW(Surgery(cut, never, {}, 0.05, flow), InvalidArgument);
+  const std::vector<Event> tie = {
+      {0.5, Ligature{plane_through({6.5, 2.0, 0.0}, {1.0, 0.0, 0.0}), {6.5, 2.0, 0.0}, {0.0, 1.0}, 0.0}}};
+  Surgery surgery(tie, never, {}, 0.05, flow);
+  for (int i = 0; i < 200; ++i) {
+    surgery.before_step();
+    flow.step();
+    surgery.after_step();
+    ASSERT_NO_FATAL_FAILURE(expect_audited(flow));
+  }
+  EXPECT_EQ(surgery.log().events.at(0).cells_blocked, 4U);
+  EXPECT_EQ(count_if(flow, [](const Vec3& x) { return x.x == 6.0; }), 20U);
+}
+
+}  // namespace dartcast::event_test

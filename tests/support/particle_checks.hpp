@@ -1,0 +1,67 @@
+// What must hold of every particle after every call, checked without the library's predicates; and comparison to the
+// bit.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "dartcast/environment.hpp"
+#include "support/generate_checks.hpp"
+
+namespace dartcast::test {
+
+/// What is wrong with the particles that are not held: empty if each lies in the closed simplex named, of a free cell.
+inline std::string check_states(const Environment& environment, const Particles& particles) {
+  const Map& map = environment.map();
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    const State& s = particles[i];
+    if (s.held) continue;
+    const std::string who = "particle " + std::to_string(i);
+    if (!map.contains(s.cell) || s.simplex >= map.shape(s.cell).simplices().size()) return who + " is in no simplex";
+    if (!map.is_free(s.cell)) return who + " is in blocked cell " + std::to_string(map.source(s.cell));
+    const auto v = environment.complex().corners(s.at());
+    for (unsigned k = 0; k < 4; ++k) {
+      auto replaced = v;
+      replaced[k] = s.position;
+      if (!is_finite(s.position) || exact_sign(replaced[0], replaced[1], replaced[2], replaced[3]) < 0) {
+        return who + " lies outside its simplex, in cell " + std::to_string(map.source(s.cell));
+      }
+    }
+  }
+  return {};
+}
+
+inline std::array<std::uint64_t, 3> bits(const Vec3& p) {
+  return {std::bit_cast<std::uint64_t>(p.x), std::bit_cast<std::uint64_t>(p.y), std::bit_cast<std::uint64_t>(p.z)};
+}
+
+inline bool same_bits(const State& a, const State& b) {
+  return bits(a.position) == bits(b.position) && a.cell == b.cell && a.simplex == b.simplex &&
+         a.touching_count == b.touching_count && a.held == b.held && a.touching == b.touching;
+}
+
+inline std::vector<State> copy_of(const Particles& p) { return {p.states().begin(), p.states().end()}; }
+
+inline bool same_bits(const std::vector<State>& a, const Particles& b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (!same_bits(a[i], b[i])) return false;
+  }
+  return true;
+}
+
+/// Uniform points in a box.
+template <class Random>
+std::vector<Vec3> random_points(std::size_t n, const Vec3& low, const Vec3& high, Random& random) {
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = random.uniform(low.x, high.x);
+    const double y = random.uniform(low.y, high.y);
+    points.push_back({x, y, random.uniform(low.z, high.z)});
+  }
+  return points;
+}
+
+}  // namespace dartcast::test

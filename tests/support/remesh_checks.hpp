@@ -1,0 +1,69 @@
+// What must hold of a complex whatever was done to it, and what tells two complexes apart but for cells' numbers.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "dartcast/cell_complex.hpp"
+#include "dartcast/validity.hpp"
+#include "support/volume.hpp"
+#include "topology/integrity.hpp"
+
+namespace dartcast::test {
+
+inline void expect_good(const Complex& complex) {
+  const auto violations = check_integrity(complex.map(), 3);
+  for (const Violation& v : violations) ADD_FAILURE() << v.constraint << ": " << v.message;
+  const Validity validity = check_validity(complex, Threads{1}, 3);
+  for (const InvalidCell& c : validity.first) ADD_FAILURE() << c.message;
+}
+
+/// A cell by the names of its vertices: source, mark, and each face with its patch, its marks, and what is beyond.
+template <class Name>
+std::string written(const Map& map, Cell c, Name&& name) {
+  const Shape& s = map.shape(c);
+  std::vector<std::string> faces;
+  for (std::uint16_t f = 0; f < s.face_count(); ++f) {
+    std::vector<std::string> corners;
+    for (std::uint16_t d = s.first_dart(f); d < s.first_dart(f) + s.degree(f); ++d) {
+      const Map::Flat flat = map.flat({c, d});
+      corners.push_back(name(map.origin({c, d})) + (flat.straight ? "s" : "") + (flat.coplanar ? "c" : "") + " ");
+    }
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    std::string face;
+    for (const std::string& corner : corners) face += corner;
+    const CellFace other = map.opposite({c, f});
+    face += "| patch " + std::to_string(map.patch(CellFace{c, f}).value) +
+            (other.valid() ? " to " + std::to_string(map.source(other.cell)) : " open");
+    faces.push_back(face);
+  }
+  std::sort(faces.begin(), faces.end());
+  std::string text = std::to_string(map.source(c)) + (map.is_free(c) ? " free" : " blocked");
+  for (const std::string& face : faces) text += "; " + face;
+  return text;
+}
+
+template <class Name>
+std::vector<std::string> written(const Map& map, Name&& name) {
+  std::vector<std::string> cells;
+  for (const Cell c : map.cells()) cells.push_back(written(map, c, name));
+  std::sort(cells.begin(), cells.end());
+  return cells;
+}
+
+inline std::vector<std::string> written(const Map& map) {
+  return written(map, [](Vertex v) { return std::to_string(v.value); });
+}
+
+/// Vertices by where they are: what does not depend on the order of edits.
+inline std::vector<std::string> written_by_place(const Complex& complex) {
+  return written(complex.map(), [&](Vertex v) {
+    const Vec3 x = complex.positions()[v.value];
+    return std::to_string(x.x) + "," + std::to_string(x.y) + "," + std::to_string(x.z);
+  });
+}
+
+}  // namespace dartcast::test

@@ -1,0 +1,132 @@
+#!/usr/bin/env python3
+"""Checks who includes whom: each room of src/ uses only rooms before it, and each dependency stays in its place.
+
+Also holds the public surface: which headers are installed, their number, and their length.
+"""
+import pathlib
+import re
+import sys
+
+# The rooms in order: one may include those before it. CMakeLists.txt makes one library of each line.
+LIBRARIES = {
+    "core": ["base", "predicates", "mesh", "generators", "topology", "complex", "editing", "surface", "tracking",
+             "tracking/batch", "response", "environment"],
+    "simulation": ["dynamics", "spheres", "bodies", "catheter", "simulation"],
+    "io": ["formats", "scene", "output"],
+}
+ROOMS = [room for rooms in LIBRARIES.values() for room in rooms]
+# Rooms side by side.
+DENIED = {("tracking", "surface"), ("tracking/batch", "surface"), ("spheres", "surface")}
+
+# Public headers by the room that implements them.
+PUBLIC = {
+    "base": "error ids threads vec3",
+    "predicates": "predicates",
+    "mesh": "mesh_data mesh_check mesh_selection decompose",
+    "generators": "generators",
+    "topology": "combinatorial_map cell_shape transaction map_edits map_queries",
+    "complex": "cell_complex complex_edit validity",
+    "editing": "remeshing cutting",
+    "surface": "surface",
+    "tracking": "particle_state contact trace",
+    "response": "response",
+    "environment": "particles environment audit",
+    "spheres": "spheres",
+    "bodies": "bodies sampling",
+    "catheter": "catheter",
+    "simulation": "simulation deformation events velocity_field adaptive_subdivision scene",
+    "formats": "mesh_files",
+    "scene": "scene_file",
+    "output": "run trajectory",
+}
+ROOM_OF = {f"dartcast/{name}.hpp": room for room, names in PUBLIC.items() for name in names.split()}
+EVERYTHING = "dartcast/dartcast.hpp"  # includes all others
+MOST_HEADERS = 40
+MOST_LINES = 400
+
+# Third-party headers, and the rooms that may include them; never in public headers, for users need only our own.
+THIRD_PARTY = [
+    (re.compile(r"^vtk"), {"formats"}),
+    (re.compile(r"^(tbb|oneapi)/"), {"base"}),
+    (re.compile(r"^(Eigen|boost|fmt)/"), set(ROOMS)),
+    (re.compile(r"^nlohmann/"), {"output"}),
+    (re.compile(r"^toml\+\+/"), {"scene"}),
+]
+# Competitors' headers, and the one folder that may include them.
+COMPETITORS = re.compile(r"^(Bullet|LinearMath/|bt[A-Z]|embree)")
+# Code that must stay independent of the predicates of tracking, so that it can check them.
+INDEPENDENT = re.compile(r"(^tests/oracle/|/audit[a-z_]*\.[ch]pp$)")
+PREDICATES = re.compile(r"^(dartcast/predicates\.hpp|predicates/)")
+
+STANDARD = re.compile(r"^([a-z_]+|sys/[a-z]+\.h|(fcntl|unistd|immintrin)\.h)$")
+INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
+SUFFIXES = {".cpp", ".hpp", ".inl"}
+
+
+def room_of(header: str) -> str | None:
+    """The room of one of our headers, as it is included; none where there is no such file."""
+    if header in ROOM_OF:
+        return ROOM_OF[header] if pathlib.Path("include", header).is_file() else None
+    return pathlib.Path(header).parent.as_posix() if pathlib.Path("src", header).is_file() else None
+
+
+def allowed(header: str, room: str, public: bool) -> bool:
+    """Whether a file of a room may include a header."""
+    if header.endswith((".hpp", ".inl")) and "/" in header and not any(p.match(header) for p, _ in THIRD_PARTY):
+        target = room_of(header)
+        if target is None or (public and not header.startswith("dartcast/")):
+            return False
+        return ROOMS.index(target) <= ROOMS.index(room) and (room, target) not in DENIED
+    for pattern, rooms in THIRD_PARTY:
+        if pattern.match(header):
+            return room in rooms and not public
+    return STANDARD.match(header) is not None
+
+
+def problems_of(path: pathlib.Path) -> list[str]:
+    """What is wrong with the includes of one file."""
+    name = path.as_posix()
+    includes = INCLUDE.findall(path.read_text(encoding="utf-8"))
+    found = [f"{name}: includes {h}, which it is there to check"
+             for h in includes if INDEPENDENT.search(name) and PREDICATES.match(h)]
+    if not name.startswith("bench/"):
+        found += [f"{name}: includes {h}, which only bench/ may" for h in includes if COMPETITORS.match(h)]
+    if name.startswith("examples/"):
+        found += [f"{name}: includes {h}, which is not public" for h in includes if "/" in h and h not in ROOM_OF and h != EVERYTHING]
+    if name == f"include/{EVERYTHING}":
+        return found + [f"{name}: does not include {h}" for h in sorted(set(ROOM_OF) - set(includes))]
+    public = name.startswith("include/")
+    if not public and not name.startswith("src/"):
+        return found
+    room = ROOM_OF.get(name[len("include/"):]) if public else path.parent.relative_to("src").as_posix()
+    if room not in ROOMS:
+        return found + [f"{name}: is in no room; tools/check_includes.py lists them"]
+    return found + [f"{name}: must not include {h}" for h in includes if not allowed(h, room, public)]
+
+
+def problems_of_surface() -> list[str]:
+    """Whether the public headers are those listed, few and short, each with something of its own."""
+    headers = sorted(pathlib.Path("include/dartcast").glob("*.hpp"))
+    found = [] if len(headers) <= MOST_HEADERS else [f"include/dartcast: {len(headers)} headers; at most {MOST_HEADERS}"]
+    for path in headers:
+        text = path.read_text(encoding="utf-8")
+        lines = text.splitlines()
+        if len(lines) > MOST_LINES:
+            found.append(f"{path}: {len(lines)} lines; at most {MOST_LINES}")
+        code = [line for line in lines if not re.match(r"\s*(//|#|$)", line)]
+        if not code and path.as_posix() != f"include/{EVERYTHING}":
+            found.append(f"{path}: only includes other headers")
+    missing = {f"include/{h}" for h in ROOM_OF} - {p.as_posix() for p in headers}
+    return found + [f"{h}: is listed in tools/check_includes.py but does not exist" for h in sorted(missing)]
+
+
+def main() -> int:
+    roots = ("include", "src", "apps", "bench", "examples", "tests")
+    files = [p for root in roots for p in sorted(pathlib.Path(root).rglob("*")) if p.suffix in SUFFIXES]
+    found = [line for path in files for line in problems_of(path)] + problems_of_surface()
+    print("\n".join(found + [f"{len(files)} files, {len(found)} mistakes"]))
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
