@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "bench/peers.hpp"
+#include "bench/competitors.hpp"
 
 namespace dartcast::bench {
 
@@ -21,11 +21,11 @@ btVector3 vector_of(const Vec3& p) {
 
 class Nearest : public btTriangleRaycastCallback {
  public:
-  Nearest(const btVector3& from, const btVector3& to, btScalar blind)
-      : btTriangleRaycastCallback(from, to), blind_(blind) {}
+  Nearest(const btVector3& from, const btVector3& to, btScalar self_hit_epsilon)
+      : btTriangleRaycastCallback(from, to), self_hit_epsilon_(self_hit_epsilon) {}
 
   btScalar reportHit(const btVector3& /*normal*/, btScalar fraction, int part, int triangle) override {
-    if (fraction < blind_) return m_hitFraction;
+    if (fraction < self_hit_epsilon_) return m_hitFraction;
     hit = {static_cast<std::uint32_t>(static_cast<std::size_t>(part) * part_size + static_cast<std::size_t>(triangle)),
            static_cast<double>(fraction)};
     return fraction;
@@ -34,10 +34,10 @@ class Nearest : public btTriangleRaycastCallback {
   Hit hit;
 
  private:
-  btScalar blind_;
+  btScalar self_hit_epsilon_;
 };
 
-class Bullet : public Peer {
+class Bullet : public Competitor {
  public:
   explicit Bullet(const PeerScene& scene) : triangles_(scene.walls.triangles), points_(scene.points.size()) {
     write(scene.points);
@@ -60,7 +60,7 @@ class Bullet : public Peer {
     for (std::size_t i = 0; i < segments.size(); ++i) {
       const btVector3 from = vector_of(segments[i].from);
       const btVector3 to = vector_of(segments[i].to);
-      Nearest nearest(from, to, static_cast<btScalar>(segments[i].blind));
+      Nearest nearest(from, to, static_cast<btScalar>(segments[i].self_hit_epsilon));
       shape_->performRaycast(&nearest, from, to);
       hits[i] = nearest.hit;
     }
@@ -87,6 +87,6 @@ class Bullet : public Peer {
 
 }  // namespace
 
-std::unique_ptr<Peer> make_bullet(const PeerScene& scene) { return std::make_unique<Bullet>(scene); }
+std::unique_ptr<Competitor> make_bullet(const PeerScene& scene) { return std::make_unique<Bullet>(scene); }
 
 }  // namespace dartcast::bench

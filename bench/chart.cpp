@@ -64,10 +64,10 @@ std::vector<Point> points_of(std::span<const Row> rows, const Content& content, 
   const char* workload = deforms ? content.moving : content.still;
   std::vector<Point> points;
   for (const Row& row : rows) {
-    const Lane* lane = row.lane(name);
+    const Series* series = row.series(name);
     if (row.workload.name != workload || row.workload.deforms != deforms) continue;
-    if (row.workload.particles != 1000 || lane == nullptr) continue;
-    points.push_back({static_cast<double>(row.cells), lane->ns_per_particle_step(row.workload.particles)});
+    if (row.workload.particles != 1000 || series == nullptr) continue;
+    points.push_back({static_cast<double>(row.cells), series->ns_per_particle_step(row.workload.particles)});
   }
   std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.cells < b.cells; });
   return points;

@@ -46,7 +46,7 @@ class Editor {
   }
 
  private:
-  [[nodiscard]] const Map& map() const { return environment_.map(); }
+  [[nodiscard]] const CombinatorialMap& map() const { return environment_.map(); }
 
   // One that no edit has left a polyhedron.
   Cell random_cell() {
@@ -59,7 +59,7 @@ class Editor {
 
   void edit(const std::function<void(Transaction&)>& make) {
     const ComplexEditReport done = environment_.edit([&](ComplexEdit& e) { make(e.topology()); });
-    row_.particles_touched += static_cast<double>(environment_.follow(particles_).touched);
+    row_.particles_touched += static_cast<double>(environment_.update_after_edit(particles_).touched);
     row_.cells_touched += static_cast<double>(done.map.removed.size() + done.map.added.size() + done.map.marked.size());
     ++row_.edits;
   }

@@ -5,7 +5,7 @@
 #include <array>
 #include <string>
 
-#include "bench/peers.hpp"
+#include "bench/competitors.hpp"
 #include "dartcast/error.hpp"
 
 namespace dartcast::bench {
@@ -23,7 +23,7 @@ RTCDevice device() {
   return one;
 }
 
-class Embree : public Peer {
+class Embree : public Competitor {
  public:
   explicit Embree(const PeerScene& scene)
       : scene_(rtcNewScene(device())), geometry_(rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE)) {
@@ -82,7 +82,7 @@ class Single : public Embree {
       const Vec3& p = segments[i].from;
       const Vec3 d = segments[i].to - p;
       RTCRayHit r{};
-      r.ray = {single(p.x), single(p.y), single(p.z), single(segments[i].blind),
+      r.ray = {single(p.x), single(p.y), single(p.z), single(segments[i].self_hit_epsilon),
                single(d.x), single(d.y), single(d.z), 0.0F,
                1.0F,        ~0U,         0,           0};
       r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -119,7 +119,7 @@ class Packet : public Embree {
       r.ray.dir_x[i] = single(d.x);
       r.ray.dir_y[i] = single(d.y);
       r.ray.dir_z[i] = single(d.z);
-      r.ray.tnear[i] = single(segments[i].blind);
+      r.ray.tnear[i] = single(segments[i].self_hit_epsilon);
       r.ray.tfar[i] = 1.0F;
       r.ray.mask[i] = ~0U;
       r.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
@@ -136,8 +136,8 @@ class Packet : public Embree {
 
 }  // namespace
 
-std::unique_ptr<Peer> make_embree_single(const PeerScene& scene) { return std::make_unique<Single>(scene); }
+std::unique_ptr<Competitor> make_embree_single(const PeerScene& scene) { return std::make_unique<Single>(scene); }
 
-std::unique_ptr<Peer> make_embree_packet(const PeerScene& scene) { return std::make_unique<Packet>(scene); }
+std::unique_ptr<Competitor> make_embree_packet(const PeerScene& scene) { return std::make_unique<Packet>(scene); }
 
 }  // namespace dartcast::bench

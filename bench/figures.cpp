@@ -10,7 +10,7 @@ namespace dartcast::bench {
 
 namespace {
 
-double nanoseconds(const Row& row, const Lane& lane) { return lane.ns_per_particle_step(row.workload.particles); }
+double nanoseconds(const Row& row, const Series& series) { return series.ns_per_particle_step(row.workload.particles); }
 
 using Which = std::function<bool(const WorkloadOptions&)>;
 
@@ -27,7 +27,7 @@ Which box(const char* name, std::uint32_t size, std::size_t particles = 1000) {
 // Adds how many times longer dartcast takes in `a` than in `b`, where both have been run.
 void add_ratio(std::vector<Figure>& list, const Row* a, const Row* b, Figure figure) {
   if (a == nullptr || b == nullptr) return;
-  figure.value = nanoseconds(*a, a->lanes[0]) / nanoseconds(*b, b->lanes[0]);
+  figure.value = nanoseconds(*a, a->all_series[0]) / nanoseconds(*b, b->all_series[0]);
   list.push_back(std::move(figure));
 }
 
@@ -35,10 +35,10 @@ void add_growth(std::vector<Figure>& list, std::span<const Row> rows) {
   const Row* small = find(rows, 1, box("W1", 10));
   const Row* large = find(rows, 1, box("W1", 100));
   if (small == nullptr || large == nullptr) return;
-  for (std::size_t k = 0; k < small->lanes.size(); ++k) {
-    const std::string& name = small->lanes[k].name;
+  for (std::size_t k = 0; k < small->all_series.size(); ++k) {
+    const std::string& name = small->all_series[k].name;
     list.push_back({"growth_" + name, fmt::format("{}: from 10^3 to 10^6 cells its time grows by the factor", name),
-                    nanoseconds(*large, large->lanes[k]) / nanoseconds(*small, small->lanes[k])});
+                    nanoseconds(*large, large->all_series[k]) / nanoseconds(*small, small->all_series[k])});
   }
 }
 
@@ -50,12 +50,12 @@ void add_plane_growth(std::vector<Figure>& list, std::span<const Row> rows) {
     const Row* small = find(rows, 1, of_size(32));
     const Row* large = find(rows, 1, of_size(1000));
     if (small == nullptr || large == nullptr) continue;
-    for (std::size_t k = 0; k < small->lanes.size(); ++k) {
-      const std::string& name = small->lanes[k].name;
+    for (std::size_t k = 0; k < small->all_series.size(); ++k) {
+      const std::string& name = small->all_series[k].name;
       list.push_back({fmt::format("growth_plane_{}_{}", deforms ? "moving" : "still", name),
                       fmt::format("{} in the plane, {}: from 10^3 to 10^6 faces its time grows by the factor", name,
                                   deforms ? "every vertex moving" : "standing still"),
-                      nanoseconds(*large, large->lanes[k]) / nanoseconds(*small, small->lanes[k])});
+                      nanoseconds(*large, large->all_series[k]) / nanoseconds(*small, small->all_series[k])});
     }
   }
 }
@@ -67,8 +67,8 @@ void add_crossover(std::vector<Figure>& list, std::span<const Row> rows) {
   for (const Row& row : rows) {  // the steps grow from row to row
     if (row.workload.name != "W5" || row.workload.scene != Scene::box) continue;
     ++measured;
-    const bool beaten = std::any_of(row.lanes.begin(), row.lanes.end(), [&](const Lane& lane) {
-      return lane.name != "dartcast" && lane.name != "paper" && ratio_to_dartcast(row, lane) < 1.0;
+    const bool beaten = std::any_of(row.all_series.begin(), row.all_series.end(), [&](const Series& series) {
+      return series.name != "dartcast" && series.name != "paper" && ratio_to_dartcast(row, series) < 1.0;
     });
     crossover = beaten ? std::min(crossover, row.workload.step_length) : std::numeric_limits<double>::infinity();
   }
@@ -80,15 +80,15 @@ void add_crossover(std::vector<Figure>& list, std::span<const Row> rows) {
 
 }  // namespace
 
-const Lane* best_of_embree(const Row& row) {
-  const Lane* one = row.lane("embree_single");
-  const Lane* many = row.lane("embree_packet");
+const Series* best_of_embree(const Row& row) {
+  const Series* one = row.series("embree_single");
+  const Series* many = row.series("embree_packet");
   if (one == nullptr || many == nullptr) return nullptr;
   return nanoseconds(row, *one) < nanoseconds(row, *many) ? one : many;
 }
 
-double ratio_to_dartcast(const Row& row, const Lane& lane) {
-  return nanoseconds(row, lane) / nanoseconds(row, row.lanes[0]);
+double ratio_to_dartcast(const Row& row, const Series& series) {
+  return nanoseconds(row, series) / nanoseconds(row, row.all_series[0]);
 }
 
 std::vector<Figure> figures(std::span<const Row> rows) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/race.hpp"
+#include "bench/comparison.hpp"
 
 namespace dartcast::bench {
 
@@ -16,10 +16,10 @@ struct Figure {
 };
 
 /// The faster of Embree's two ways; nothing where it has not been run.
-const Lane* best_of_embree(const Row& row);
+const Series* best_of_embree(const Row& row);
 
 /// How many times dartcast's time each competitor takes, in one row.
-double ratio_to_dartcast(const Row& row, const Lane& lane);
+double ratio_to_dartcast(const Row& row, const Series& series);
 
 /// Those that the rows allow.
 std::vector<Figure> figures(std::span<const Row> rows);

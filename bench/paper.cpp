@@ -1,17 +1,17 @@
 // The paper's own schemes among the competitors.
 #include <type_traits>
 
+#include "bench/competitors.hpp"
 #include "bench/paper_scheme.hpp"
 #include "bench/paper_scheme_2d.hpp"
-#include "bench/peers.hpp"
 
 namespace dartcast::bench {
 
 namespace {
 
 // Whether x is in the closed cell of the plane.
-bool in_polygon(const Complex& complex, Cell cell, const Vec3& x) {
-  const Map& map = complex.map();
+bool in_polygon(const CellComplex& complex, Cell cell, const Vec3& x) {
+  const CombinatorialMap& map = complex.map();
   const auto at = [&](Dart d) { return complex.positions()[map.origin(d).value]; };
   for (std::uint16_t n = 0; n < map.shape(cell).dart_count(); ++n) {
     const Dart d = {cell, n};
@@ -22,7 +22,7 @@ bool in_polygon(const Complex& complex, Cell cell, const Vec3& x) {
 
 // Scheme: PaperScheme, or PaperScheme2D in the plane.
 template <class Scheme>
-class Paper : public Peer {
+class Paper : public Competitor {
  public:
   explicit Paper(const PeerScene& scene)
       : complex_(scene.complex), walls_(scene.walls), scheme_(scene.complex), results_(scene.particles.size()) {
@@ -34,9 +34,9 @@ class Paper : public Peer {
   void refit() override { scheme_.moved(); }
 
   // What it did otherwise than dartcast, and what followed at walls, it takes over.
-  void place(std::span<const State> states) override {
+  void place(std::span<const ParticleState> states) override {
     for (std::size_t i = 0; i < states.size(); ++i) {
-      const State& s = states[i];
+      const ParticleState& s = states[i];
       if (scheme_.position(i) != s.position || scheme_.cell(i) != s.cell) scheme_.place(i, s.position, s.cell);
     }
   }
@@ -55,8 +55,8 @@ class Paper : public Peer {
       if (r.end == PaperEnd::error) hits[i].triangle = Hit::failed;
       tests_ += r.tests;
       if constexpr (std::is_same_v<Scheme, PaperScheme2D>) {
-        const bool astray = r.end == PaperEnd::arrived && !in_polygon(complex_, scheme_.cell(i), scheme_.position(i));
-        wrong_cells_ += astray ? 1 : 0;
+        const bool orphaned = r.end == PaperEnd::arrived && !in_polygon(complex_, scheme_.cell(i), scheme_.position(i));
+        wrong_cells_ += orphaned ? 1 : 0;
       }
     }
   }
@@ -65,7 +65,7 @@ class Paper : public Peer {
   [[nodiscard]] std::uint64_t wrong_cells() const override { return wrong_cells_; }
 
  private:
-  const Complex& complex_;
+  const CellComplex& complex_;
   const Walls& walls_;
   Scheme scheme_;
   std::vector<PaperResult> results_;
@@ -76,7 +76,7 @@ class Paper : public Peer {
 
 }  // namespace
 
-std::unique_ptr<Peer> make_paper(const PeerScene& scene) {
+std::unique_ptr<Competitor> make_paper(const PeerScene& scene) {
   if (scene.complex.map().dimension() == 2) return std::make_unique<Paper<PaperScheme2D>>(scene);
   return std::make_unique<Paper<PaperScheme>>(scene);
 }

@@ -302,8 +302,8 @@ Vec3 PaperWalk::centre(const CellView& c) const {
   return sum * (1.0 / c.shape().corner_count());
 }
 
-double mean_edge(const Complex& complex) {
-  const Map& map = complex.map();
+double mean_edge(const CellComplex& complex) {
+  const CombinatorialMap& map = complex.map();
   double sum = 0.0;
   std::size_t count = 0;
   for (const Cell cell : map.cells()) {

@@ -37,7 +37,7 @@ struct PaperResult {
 };
 
 /// Of all cells' edges, each as often as it has darts. Cost: linear in the cells.
-double mean_edge(const Complex& complex);
+double mean_edge(const CellComplex& complex);
 
 /// The paper's state S = (p, k, i), and the point of the face aimed at.
 struct PaperState {
@@ -56,10 +56,10 @@ template <class StateOf, class WalkOf>
 class PaperSchemeOf {
  public:
   /// `complex` outlives the scheme; its vertices may move between steps.
-  explicit PaperSchemeOf(const Complex& complex);
+  explicit PaperSchemeOf(const CellComplex& complex);
 
   /// Takes particles as they are, each in its free cell, and makes their first forecasts.
-  void start(std::span<const State> states);
+  void start(std::span<const ParticleState> states);
   /// Puts a particle elsewhere. Its forecast is kept where the cell is the same and the forecast not flat.
   void place(std::size_t particle, const Vec3& p, Cell cell);
   /// The complex has moved: the next step takes section 6.1 into account.
@@ -73,7 +73,7 @@ class PaperSchemeOf {
   [[nodiscard]] Kind kind(std::size_t particle) const { return states_[particle].k; }
 
  private:
-  const Complex& complex_;
+  const CellComplex& complex_;
   double tolerance_;
   std::vector<StateOf> states_;
   bool moved_ = false;

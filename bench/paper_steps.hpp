@@ -13,7 +13,8 @@ namespace dartcast::bench {
 template <class StateOf>
 class PaperPath {
  public:
-  PaperPath(const Map& map, std::span<const Vec3> positions, double tolerance, StateOf& state, const Vec3& q)
+  PaperPath(const CombinatorialMap& map, std::span<const Vec3> positions, double tolerance, StateOf& state,
+            const Vec3& q)
       : map_(map), x_(positions), tolerance_(tolerance), s_(state), q_(q) {}
 
  protected:
@@ -46,7 +47,7 @@ class PaperPath {
   // The share at which the segment meets a plane or a line, from the signed distances of p and q to its outer side.
   static double share_to(double p, double q) { return q <= 0.0 ? 1.0 : p >= 0.0 ? 0.0 : p / (p - q); }
 
-  const Map& map_;
+  const CombinatorialMap& map_;
   std::span<const Vec3> x_;
   double tolerance_;
   StateOf& s_;
@@ -56,11 +57,11 @@ class PaperPath {
 };
 
 template <class StateOf, class WalkOf>
-PaperSchemeOf<StateOf, WalkOf>::PaperSchemeOf(const Complex& complex)
+PaperSchemeOf<StateOf, WalkOf>::PaperSchemeOf(const CellComplex& complex)
     : complex_(complex), tolerance_(1e-12 * std::pow(mean_edge(complex), complex.map().dimension())) {}
 
 template <class StateOf, class WalkOf>
-void PaperSchemeOf<StateOf, WalkOf>::start(std::span<const State> states) {
+void PaperSchemeOf<StateOf, WalkOf>::start(std::span<const ParticleState> states) {
   states_.assign(states.size(), {});
   for (std::size_t i = 0; i < states.size(); ++i) place(i, states[i].position, states[i].cell);
 }

@@ -60,7 +60,7 @@ void add_many_particles(std::vector<WorkloadOptions>& list) {
     options.particles = 1000000;
     options.cell_order = cell_order;
     options.threads = {1, 2};
-    options.against_peers = false;
+    options.against_competitors = false;
     list.push_back(options);
   }
 }

@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bench/competitors.hpp"
 #include "bench/figures.hpp"
-#include "bench/peers.hpp"
 
 namespace dartcast::bench {
 
@@ -29,31 +29,31 @@ Json workload_json(const Row& row) {
   if (w.name == "W3") json["order"] = w.cell_order ? "cell" : "random";
   if (w.scene == Scene::box || w.scene == Scene::squares || w.scene == Scene::tube)
     json["step_length_in_cells"] = w.step_length;
-  json["steps"] = row.lanes[0].step_ns.size();
+  json["steps"] = row.all_series[0].step_ns.size();
   json["threads"] = row.threads;
-  if (w.against_peers) json["wall_triangles"] = row.wall_triangles;
+  if (w.against_competitors) json["wall_triangles"] = row.wall_triangles;
   return json;
 }
 
 Json row_json(const Row& row) {
   Json json = workload_json(row);
-  for (const Lane& lane : row.lanes) {
-    json["ns_per_particle_step"][lane.name] = lane.ns_per_particle_step(row.workload.particles);
-    json["mean_ns_per_particle_step"][lane.name] = lane.mean_ns_per_particle_step(row.workload.particles);
-    json["step_us"][lane.name] = {{"median", lane.quantile_ns(0.5) / 1e3},
-                                  {"p99", lane.quantile_ns(0.99) / 1e3},
-                                  {"longest", lane.quantile_ns(1.0) / 1e3}};
-    if (lane.tests > 0) json["orientation_tests_per_particle_step"][lane.name] = per_step(row, lane.tests);
-    if (&lane == row.lanes.data()) continue;
-    json["ratio"][lane.name] = ratio_to_dartcast(row, lane);
-    json["disagreements"][lane.name] = lane.disagreements;
-    json["disagreements_at_start"][lane.name] = lane.at_start;
-    json["passed_through_wall"][lane.name] = lane.through;
-    json["stopped_at_no_wall"][lane.name] = lane.stopped;
-    if (row.workload.scene == Scene::squares) json["wrong_cell"][lane.name] = lane.wrong_cells;
-    if (lane.failed > 0) json["failed"][lane.name] = lane.failed;
+  for (const Series& series : row.all_series) {
+    json["ns_per_particle_step"][series.name] = series.ns_per_particle_step(row.workload.particles);
+    json["mean_ns_per_particle_step"][series.name] = series.mean_ns_per_particle_step(row.workload.particles);
+    json["step_us"][series.name] = {{"median", series.quantile_ns(0.5) / 1e3},
+                                    {"p99", series.quantile_ns(0.99) / 1e3},
+                                    {"longest", series.quantile_ns(1.0) / 1e3}};
+    if (series.tests > 0) json["orientation_tests_per_particle_step"][series.name] = per_step(row, series.tests);
+    if (&series == row.all_series.data()) continue;
+    json["ratio"][series.name] = ratio_to_dartcast(row, series);
+    json["disagreements"][series.name] = series.disagreements;
+    json["disagreements_at_start"][series.name] = series.at_start;
+    json["passed_through_wall"][series.name] = series.through;
+    json["stopped_at_no_wall"][series.name] = series.stopped;
+    if (row.workload.scene == Scene::squares) json["wrong_cell"][series.name] = series.wrong_cells;
+    if (series.failed > 0) json["failed"][series.name] = series.failed;
   }
-  if (const Lane* best = best_of_embree(row)) json["ratio"]["embree_best"] = ratio_to_dartcast(row, *best);
+  if (const Series* best = best_of_embree(row)) json["ratio"]["embree_best"] = ratio_to_dartcast(row, *best);
   const TestCounts& tests = row.counters.orientation;
   if (tests.tests > 0) json["exact_share"] = static_cast<double>(tests.exact) / static_cast<double>(tests.tests);
   json["contacts_per_particle_step"] = per_step(row, contacts(row));
@@ -78,15 +78,15 @@ std::string report_csv(std::span<const Row> rows) {
       "no_wall,wrong_cell\n";
   for (const Row& row : rows) {
     const WorkloadOptions& w = row.workload;
-    for (const Lane& lane : row.lanes) {
-      out +=
-          fmt::format("{},{},{:d},{},{},{},{},{},{},{},{:.2f},{:.2f},{:.2f},{:.2f},{:.2f},{:.3f},{},{},{},{},{},{}\n",
-                      w.name, row.cells, w.deforms, w.scene == Scene::tube ? fmt::to_string(w.size + 2) : "",
-                      w.particles, w.cell_order ? "cell" : "random", w.step_length, lane.step_ns.size(), row.threads,
-                      lane.name, lane.ns_per_particle_step(w.particles), lane.mean_ns_per_particle_step(w.particles),
-                      lane.quantile_ns(0.5) / 1e3, lane.quantile_ns(0.99) / 1e3, lane.quantile_ns(1.0) / 1e3,
-                      per_step(row, lane.tests), lane.disagreements, lane.at_start, lane.failed, lane.through,
-                      lane.stopped, lane.wrong_cells);
+    for (const Series& series : row.all_series) {
+      out += fmt::format(
+          "{},{},{:d},{},{},{},{},{},{},{},{:.2f},{:.2f},{:.2f},{:.2f},{:.2f},{:.3f},{},{},{},{},{},{}\n", w.name,
+          row.cells, w.deforms, w.scene == Scene::tube ? fmt::to_string(w.size + 2) : "", w.particles,
+          w.cell_order ? "cell" : "random", w.step_length, series.step_ns.size(), row.threads, series.name,
+          series.ns_per_particle_step(w.particles), series.mean_ns_per_particle_step(w.particles),
+          series.quantile_ns(0.5) / 1e3, series.quantile_ns(0.99) / 1e3, series.quantile_ns(1.0) / 1e3,
+          per_step(row, series.tests), series.disagreements, series.at_start, series.failed, series.through,
+          series.stopped, series.wrong_cells);
     }
   }
   return out;

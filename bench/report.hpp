@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "bench/race.hpp"
+#include "bench/comparison.hpp"
 
 namespace dartcast::bench {
 

@@ -44,11 +44,11 @@ std::vector<Vec3> places_in_heap(std::size_t count, std::uint32_t across) {
 
 // Sums at one time, to be subtracted.
 struct Sums {
-  FlowTotals totals;
+  SimulationTotals totals;
   CollisionSeconds collisions;
 };
 
-void time_both_searches(const Flow& flow, double dt, SphereRow& row) {
+void time_both_searches(const Simulation& flow, double dt, SphereRow& row) {
   std::vector<SphereMotion> spheres;
   for (std::size_t i = 0; i < row.spheres; ++i) {
     spheres.push_back({flow.particles()[i].position, flow.velocities()[i] * dt, radius * (1.0 + near_share)});
@@ -74,12 +74,12 @@ void time_both_searches(const Flow& flow, double dt, SphereRow& row) {
 SphereRow heap(std::size_t count, bool crowded) {
   const auto across = static_cast<std::uint32_t>(std::ceil(std::cbrt(static_cast<double>(count))));
   Environment environment = box_for(across, crowded);
-  FlowOptions o;
+  SimulationOptions o;
   o.dt = 2e-3;
   o.gravity = {0.0, 0.0, -9.81};
   o.collisions = CollisionOptions{};
   o.collisions->restitution = o.collisions->friction = 0.3;
-  Flow flow(environment, o, Responses(Response{ResponseKind::reflect, 0.3, 0.3}));
+  Simulation flow(environment, o, WallResponses(WallResponse{WallResponseKind::reflect, 0.3, 0.3}));
   flow.add(places_in_heap(count, across), {}, radius);
 
   SphereRow row;

@@ -11,11 +11,11 @@ namespace dartcast::bench {
 
 namespace {
 
-std::vector<std::string> lane_names(std::span<const Row> rows) {
+std::vector<std::string> series_names(std::span<const Row> rows) {
   std::vector<std::string> names;
   for (const Row& row : rows) {
-    for (const Lane& lane : row.lanes) {
-      if (std::find(names.begin(), names.end(), lane.name) == names.end()) names.push_back(lane.name);
+    for (const Series& series : row.all_series) {
+      if (std::find(names.begin(), names.end(), series.name) == names.end()) names.push_back(series.name);
     }
   }
   return names;
@@ -41,47 +41,48 @@ std::string aligned(const std::vector<Line>& lines) {
 // A line per row, a column per competitor: what `entry` says of it.
 template <class Entry>
 std::string table(std::span<const Row> rows, const std::string& heading, Entry&& entry) {
-  const std::vector<std::string> names = lane_names(rows);
+  const std::vector<std::string> names = series_names(rows);
   std::vector<Line> lines = {{""}};
   lines[0].insert(lines[0].end(), names.begin(), names.end());
   for (const Row& row : rows) {
     const std::string threads = row.workload.threads.size() > 1 ? fmt::format(", threads: {}", row.threads) : "";
     Line& line = lines.emplace_back(1, title(row.workload) + threads);
     for (const std::string& name : names) {
-      const Lane* lane = row.lane(name);
-      line.push_back(lane == nullptr ? "" : entry(row, *lane));
+      const Series* series = row.series(name);
+      line.push_back(series == nullptr ? "" : entry(row, *series));
     }
   }
   return fmt::format("\n{}\n{}", heading, aligned(lines));
 }
 
-std::string speed(const Row& row, const Lane& lane) {
-  const double ns = lane.ns_per_particle_step(row.workload.particles);
-  if (&lane == row.lanes.data()) return fmt::format("{:.1f}", ns);
-  return fmt::format("{:.1f} ({:.2f}x)", ns, ratio_to_dartcast(row, lane));
+std::string speed(const Row& row, const Series& series) {
+  const double ns = series.ns_per_particle_step(row.workload.particles);
+  if (&series == row.all_series.data()) return fmt::format("{:.1f}", ns);
+  return fmt::format("{:.1f} ({:.2f}x)", ns, ratio_to_dartcast(row, series));
 }
 
-std::string steps(const Row& /*row*/, const Lane& lane) {
-  return fmt::format("{:.0f} {:.0f} {:.0f}", lane.quantile_ns(0.5) / 1e3, lane.quantile_ns(0.99) / 1e3,
-                     lane.quantile_ns(1.0) / 1e3);
+std::string steps(const Row& /*row*/, const Series& series) {
+  return fmt::format("{:.0f} {:.0f} {:.0f}", series.quantile_ns(0.5) / 1e3, series.quantile_ns(0.99) / 1e3,
+                     series.quantile_ns(1.0) / 1e3);
 }
 
-std::string answers(const Row& row, const Lane& lane) {
-  if (&lane == row.lanes.data()) return fmt::format("of {}", row.counters.particle_steps);
-  return fmt::format("{} ({})", lane.disagreements, lane.at_start);
+std::string answers(const Row& row, const Series& series) {
+  if (&series == row.all_series.data()) return fmt::format("of {}", row.counters.particle_steps);
+  return fmt::format("{} ({})", series.disagreements, series.at_start);
 }
 
-std::string errors(const Row& row, const Lane& lane) {
-  if (&lane == row.lanes.data()) return fmt::format("of {}", row.counters.particle_steps);
-  return fmt::format("{} {} {} {} {}", lane.through, lane.stopped,
-                     lane.disagreements - lane.through - lane.stopped - lane.failed, lane.failed, lane.wrong_cells);
+std::string errors(const Row& row, const Series& series) {
+  if (&series == row.all_series.data()) return fmt::format("of {}", row.counters.particle_steps);
+  return fmt::format("{} {} {} {} {}", series.through, series.stopped,
+                     series.disagreements - series.through - series.stopped - series.failed, series.failed,
+                     series.wrong_cells);
 }
 
-std::string tests(const Row& row, const Lane& lane) {
-  if (lane.tests == 0) return "";
+std::string tests(const Row& row, const Series& series) {
+  if (series.tests == 0) return "";
   const auto share = [](std::uint64_t a, std::uint64_t b) { return static_cast<double>(a) / static_cast<double>(b); };
-  std::string out = fmt::format("{:.2f}", share(lane.tests, row.counters.particle_steps));
-  if (&lane != row.lanes.data()) return out;
+  std::string out = fmt::format("{:.2f}", share(series.tests, row.counters.particle_steps));
+  if (&series != row.all_series.data()) return out;
   return out +
          fmt::format(" ({:.2g}% exact)", 100.0 * share(row.counters.orientation.exact, row.counters.orientation.tests));
 }

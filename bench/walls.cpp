@@ -34,7 +34,7 @@ void Walls::gather(std::span<const Vec3> positions, std::vector<Vec3>& out) cons
   for (std::size_t i = 0; i < points.size(); ++i) out[i] = positions[points[i]];
 }
 
-Walls walls_of(const Complex& complex) {
+Walls walls_of(const CellComplex& complex) {
   Walls walls;
   for (const Cell c : complex.map().cells()) {
     const CellView cell = complex.map().view(c);

@@ -30,6 +30,6 @@ struct Walls {
 };
 
 /// Cost: linear in the cells.
-Walls walls_of(const Complex& complex);
+Walls walls_of(const CellComplex& complex);
 
 }  // namespace dartcast::bench

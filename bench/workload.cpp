@@ -140,8 +140,8 @@ void Workload::aim() {
 
 // Along with the mesh, and by the flow in it.
 Vec3 Workload::carried(std::size_t particle, std::span<const Vec3> next) const {
-  const Complex& complex = environment_.complex();
-  const State& state = particles_[particle];
+  const CellComplex& complex = environment_.complex();
+  const ParticleState& state = particles_[particle];
   const Weights weights = detail::barycentric(complex.corners(state.at()), state.position);
   const auto v = complex.vertices(state.at());
   const Corners corners = {next[v[0].value], next[v[1].value], next[v[2].value], next[v[3].value]};
@@ -149,7 +149,7 @@ Vec3 Workload::carried(std::size_t particle, std::span<const Vec3> next) const {
   return detail::combine(corners, weights) + flow * (velocities_[particle].x * dt_);
 }
 
-void Workload::follow(const StepReport& report) {
+void Workload::update_after_edit(const StepReport& report) {
   for (const Contact& contact : report.contacts.contacts) {
     Vec3& v = velocities_[contact.particle];
     v = field_ ? -v : rebound(v, contact, report.contacts.walls_of(contact));

@@ -34,7 +34,7 @@ struct WorkloadOptions {
   std::size_t steps = 1000;
   double step_length = 0.1;             ///< of a particle, in cells
   std::vector<unsigned> threads = {1};  ///< of dartcast; several take turns, a step each
-  bool against_peers = true;
+  bool against_competitors = true;
 };
 
 MeshData mesh_of(const WorkloadOptions& options);
@@ -45,7 +45,7 @@ std::vector<Vec3> vectors(const MeshData& mesh, std::string_view name);
 std::vector<DeformationStep> deformation_of(const WorkloadOptions& options, const MeshData& mesh);
 
 /// Carries particles through one scene, a step after another: aim(), then environment().move() where the scene deforms,
-/// environment().advance(particles(), targets()), and follow() with its report. The same bits in every run.
+/// environment().advance(particles(), targets()), and update_after_edit() with its report. The same bits in every run.
 class Workload {
  public:
   explicit Workload(const WorkloadOptions& options);
@@ -65,7 +65,7 @@ class Workload {
   /// Computes the next step's targets and, where the scene deforms, the next positions of all vertices.
   void aim();
   /// Turns back the particles that have met walls.
-  void follow(const StepReport& report);
+  void update_after_edit(const StepReport& report);
 
  private:
   Workload(const WorkloadOptions& options, MeshData mesh);

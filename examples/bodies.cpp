@@ -19,10 +19,10 @@ int main() {
   box.cells = {8, 8, 8};
   box.size = {1.0, 1.0, 1.0};
   Environment environment(generate_box(box));
-  const Responses walls(Response{ResponseKind::reflect, 0.3, 0.4});
+  const WallResponses walls(WallResponse{WallResponseKind::reflect, 0.3, 0.4});
 
   // Grains: particles with a radius. With collisions they meet each other.
-  Flow grains(environment, {.dt = dt, .gravity = gravity, .collisions = CollisionOptions{.friction = 0.4}}, walls);
+  Simulation grains(environment, {.dt = dt, .gravity = gravity, .collisions = CollisionOptions{.friction = 0.4}}, walls);
   std::vector<Vec3> places;
   for (int i = 0; i < 100; ++i) places.push_back({0.05 + 0.1 * (i % 10), 0.05 + 0.1 * (i / 10), 0.3});
   grains.add(places, {0.0, 0.0, 0.0}, 0.02);

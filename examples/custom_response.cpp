@@ -20,10 +20,10 @@ int main() {
       Vec3& h = heading[c.particle];
       h = Vec3{h.y, -h.x, h.z};
       if (dot(h, walls.front().normal) < 0.0) h = -h;
-      return Continuation{};  // the rest of this step is lost
+      return AfterContact{};  // the rest of this step is lost
     });
   }
-  for (const State& mouse : mice.states()) {
+  for (const ParticleState& mouse : mice.states()) {
     const Forecast f = forecast(environment.map(), mouse, environment.complex().corners(mouse.at()));
     std::printf("%.3f %.3f %.3f in cell %u, heading for its face %u\n", mouse.position.x, mouse.position.y,
                 mouse.position.z, environment.map().source(mouse.cell), f.face.face);

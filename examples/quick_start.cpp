@@ -14,8 +14,8 @@ int main() {
 
   const double dt = 0.1;
   std::vector<Vec3> velocity = {{30.0, 0.0, 1.0}, {0.0, 0.5, -1.0}};
-  std::vector<Fate> fate(particles.size());
-  const Responses walls(Response{ResponseKind::reflect, 0.5, 0.0});
+  std::vector<ParticleStatus> fate(particles.size());
+  const WallResponses walls(WallResponse{WallResponseKind::reflect, 0.5, 0.0});
   std::vector<Vec3> target;
   for (std::size_t i = 0; i < particles.size(); ++i) target.push_back(particles[i].position + velocity[i] * dt);
   const StepReport report = environment.advance(particles, target, respond_with(walls, velocity, fate, dt));

@@ -87,7 +87,7 @@ int main(int argc, char** argv) {
     std::vector<Vec3> displacements;
     for (const Vec3& d : directions) displacements.push_back(d * step_length);
     const SurfaceReport report = advance(surface, places, displacements, [](const SurfaceContact& c) {
-      return SurfaceContinuation{reflected(c, c.unused), true};
+      return AfterSurfaceContact{reflected(c, c.unused), true};
     });
     for (std::size_t i = 0; i < places.size(); ++i) directions[i] = report.steps[i].direction;
     contacts += report.contacts.size();

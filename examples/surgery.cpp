@@ -17,7 +17,7 @@ int main() {
   const Disc disc{{2.5, 0.5, 14.5}, {0.0, 0.0, 1.0}, 1.0};
   const std::vector<Cell> near = cells_near(environment.complex(), thicken(disc, 0.25));
   environment.edit([&](ComplexEdit& edit) { cut(edit, near, disc, 0.25); });
-  environment.follow(particles);
+  environment.update_after_edit(particles);
 
   // Down into the gap, through what was a wall at y = 1.
   environment.advance(particles, std::vector<Vec3>{{2.5, 0.25, 14.5}, {2.5, 2.5, 20.25}});
@@ -26,7 +26,7 @@ int main() {
   // The channel is tied where particle 1 is: it has to make room.
   const Plane plane = plane_through({2.5, 2.5, 20.5}, {0.0, 0.0, 1.0});
   environment.edit([&](ComplexEdit& edit) { ligature(edit, plane, {2.5, 2.5, 20.5}); });
-  const FollowReport followed = environment.follow(particles, Stranded::move);
-  for (const StrandedParticle& p : followed.stranded)
+  const UpdateReport followed = environment.update_after_edit(particles, OrphanPolicy::relocate);
+  for (const OrphanedParticle& p : followed.orphaned)
     std::printf("particle %u moved by %.2f to z = %.2f\n", p.particle, p.distance, particles[p.particle].position.z);
 }

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "bench/chart.hpp"
+#include "bench/comparison.hpp"
 #include "bench/edits.hpp"
 #include "bench/plan.hpp"
-#include "bench/race.hpp"
 #include "bench/report.hpp"
 #include "bench/spheres.hpp"
 #include "commands.hpp"
@@ -29,7 +29,7 @@ struct Arguments {
   bool json = false;
   bool edits = false;
   bool spheres = false;
-  std::size_t most_spheres = 100000;
+  std::size_t max_spheres = 100000;
 };
 
 void write(const std::filesystem::path& file, const std::string& text) {
@@ -48,7 +48,7 @@ int run_edits(bool json) {
 int run_spheres(const Arguments& a) {
   std::vector<bench::SphereRow> rows;
   for (const bool crowded : {false, true}) {
-    for (std::size_t count = 1000; count <= a.most_spheres; count *= 10) rows.push_back(bench::heap(count, crowded));
+    for (std::size_t count = 1000; count <= a.max_spheres; count *= 10) rows.push_back(bench::heap(count, crowded));
   }
   fmt::print("{}", a.json ? bench::spheres_json(rows) + "\n" : bench::spheres_text(rows));
   return done;
@@ -57,12 +57,12 @@ int run_spheres(const Arguments& a) {
 int run(const Arguments& a) {
   const std::vector<bench::WorkloadOptions> plan = bench::plan(a.plan);
   std::filesystem::create_directories(a.folder);
-  const std::vector<bench::PeerKind> kinds = bench::peer_kinds();
+  const std::vector<bench::PeerKind> kinds = bench::competitor_kinds();
   for (const std::string& name : bench::left_out()) fmt::print(stderr, "left out: {}\n", name);
   std::vector<bench::Row> rows;
   for (std::size_t i = 0; i < plan.size(); ++i) {
     fmt::print(stderr, "[{}/{}] {}\n", i + 1, plan.size(), bench::title(plan[i]));
-    for (bench::Row& row : bench::race(plan[i], kinds)) rows.push_back(std::move(row));
+    for (bench::Row& row : bench::compare(plan[i], kinds)) rows.push_back(std::move(row));
   }
   const std::filesystem::path folder = a.folder;
   write(folder / "bench.json", bench::report_json(rows) + "\n");
@@ -92,7 +92,7 @@ void add_bench(CLI::App& app, int& status) {
   verb->add_flag("--json", a->json, "print one JSON object, and nothing else");
   verb->add_flag("--edits", a->edits, "edits per second at 10^3 and 10^6 cells, and nothing else");
   verb->add_flag("--spheres", a->spheres, "what colliding spheres cost, 10^3 and more, and nothing else");
-  verb->add_option("--most", a->most_spheres, "with --spheres: their largest number (1000 to 10^8; 100000)")
+  verb->add_option("--most", a->max_spheres, "with --spheres: their largest number (1000 to 10^8; 100000)")
       ->transform(whole_number(1000, 100000000));
   verb->callback([a, &status] { status = a->edits ? run_edits(a->json) : a->spheres ? run_spheres(*a) : run(*a); });
 }

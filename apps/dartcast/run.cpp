@@ -95,9 +95,9 @@ void add_run(CLI::App& app, int& status) {
   verb->add_option("-j,--threads", a->threads, "threads (all the machine has)")
       ->transform(whole_number(1, max_threads()));
   verb->add_option("--steps", a->steps, "number of steps, instead of the scene's")
-      ->transform(whole_number(0, most_steps));
+      ->transform(whole_number(0, max_steps));
   verb->add_option("--seed", a->seed, "seed for all that is random, instead of the scene's")
-      ->transform(whole_number(0, most_seed));
+      ->transform(whole_number(0, max_seed));
   verb->add_flag("--audit", a->audit, "check each particle after each step in exact arithmetic (slow)");
   verb->add_flag("--resume", a->resume, "go on where an earlier run in the folder was cut off, or to more --steps");
   verb->add_flag("--skip-bad-cells", a->skip_bad_cells,

@@ -68,7 +68,7 @@ Environment load_environment(const std::string& path, std::uint64_t max_memory) 
 }
 
 void add_particle(Environment& environment, Particles& particles, const Vec3& x) {
-  const Added added = environment.add(particles, {&x, 1}).front();
+  const AddResult added = environment.add(particles, {&x, 1}).front();
   if (added.location.place == Place::free) return;
   throw InvalidArgument(fmt::format("--from ({}, {}, {}) is {}: give a point in a free cell", x.x, x.y, x.z,
                                     added.location.place == Place::blocked ? "in a blocked cell" : "in no cell"));

@@ -17,56 +17,57 @@
 
 namespace dartcast {
 
-struct CrowdingOptions {
-  std::uint32_t most = 32;   ///< particles in a cell, above which it is subdivided
-  std::uint32_t least = 8;   ///< particles in all parts of a cell, below which it is made again; < most
+struct AdaptiveSubdivisionOptions {
+  std::uint32_t max_particles = 32;  ///< particles in a cell, above which it is subdivided
+  std::uint32_t min_particles = 8;   ///< particles in all parts of a cell, below which it is made again; < most
   double smallest = 0.0;     ///< m: a cell is not subdivided if it is less than twice this across, along an axis
   std::uint32_t edits = 64;  ///< of either kind in one call at most, the fullest cells first
 };
 
 /// A cell that was left as it is, and why.
-struct CrowdingRefusal {
+struct SubdivisionRefusal {
   Cell cell;  ///< to be subdivided; of one to be made again a part
   std::uint32_t particles = 0;
   std::string reason;
 };
 
 /// An edit that was made, to make it again.
-struct CrowdingChange {
+struct SubdivisionChange {
   bool merged = false;
   std::uint32_t what = 0;  ///< the number of the cell that was subdivided, or the subdivision's place in the list
 };
 
-struct CrowdingReport {
+struct AdaptiveSubdivisionReport {
   std::uint64_t subdivided = 0;
   std::uint64_t merged = 0;
   std::uint64_t waiting =
       0;  ///< cells above the threshold still that were not refused: the number of edits was reached
-  std::vector<CrowdingRefusal> refused;
-  std::vector<CrowdingChange> changes;  ///< in order
+  std::vector<SubdivisionRefusal> refused;
+  std::vector<SubdivisionChange> changes;  ///< in order
 };
 
 /// Keeps the subdivisions that it has made.
-class Crowding {
+class AdaptiveSubdivision {
  public:
   /// Throws InvalidArgument where least >= most, or smallest is negative or not finite.
-  explicit Crowding(const CrowdingOptions& options);
+  explicit AdaptiveSubdivision(const AdaptiveSubdivisionOptions& options);
 
-  /// Makes an edit of the environment and takes its particles along: Flow::edit(), or Environment::edit() and follow().
-  /// Returns what Environment::edit() returned.
+  /// Makes an edit of the environment and takes its particles along: Simulation::edit(), or Environment::edit() and
+  /// update_after_edit(). Returns what Environment::edit() returned.
   using Edit = std::function<ComplexEditReport(const std::function<void(ComplexEdit&)>& make)>;
 
   /// Subdivides where a cell holds too many, then makes cells again whose parts hold few enough: each by an edit of its
   /// own. What cannot be done is left as it is, and told. `particles`: those that `edit` takes along. Throws what
   /// `edit` throws but EditRefused. Cost: for each edit linear in the particles and subdivisions, and that of the edit.
-  CrowdingReport relieve(const Complex& complex, const Particles& particles, const Edit& edit);
+  AdaptiveSubdivisionReport adapt(const CellComplex& complex, const Particles& particles, const Edit& edit);
 
   /// Makes an edit again, where all before it have been made again. Throws EditRefused, or InvalidArgument where there
   /// is no such cell or subdivision.
-  void repeat(const Complex& complex, const CrowdingChange& change, const Edit& edit);
+  void repeat(const CellComplex& complex, const SubdivisionChange& change, const Edit& edit);
 
-  /// To be called after other edits of the environment. Cost: that of dartcast::follow() for each subdivision there is.
-  void follow(const Map& map, std::span<const Cell> added);
+  /// To be called after other edits of the environment. Cost: that of dartcast::update_after_edit() for each
+  /// subdivision there is.
+  void update_after_edit(const CombinatorialMap& map, std::span<const Cell> added);
 
   /// What is subdivided now, parents before what is in their parts.
   [[nodiscard]] std::span<const Subdivision> subdivisions() const { return subdivisions_; }
@@ -79,14 +80,16 @@ class Crowding {
   };
 
   [[nodiscard]] Fullest fullest(const Particles& particles) const;
-  void subdivide_fullest(const Complex& complex, const Particles& particles, const Edit& edit, CrowdingReport& report);
-  void merge_emptiest(const Complex& complex, const Particles& particles, const Edit& edit, CrowdingReport& report);
-  [[nodiscard]] bool is_whole(const Map& map, std::size_t subdivision) const;
-  void make(const Complex& complex, const CrowdingChange& change, const Edit& edit);
-  bool try_edit(const Complex& complex, const CrowdingChange& change, const Edit& edit, CrowdingRefusal refusal,
-                CrowdingReport& report);
+  void subdivide_fullest(const CellComplex& complex, const Particles& particles, const Edit& edit,
+                         AdaptiveSubdivisionReport& report);
+  void merge_emptiest(const CellComplex& complex, const Particles& particles, const Edit& edit,
+                      AdaptiveSubdivisionReport& report);
+  [[nodiscard]] bool is_whole(const CombinatorialMap& map, std::size_t subdivision) const;
+  void make(const CellComplex& complex, const SubdivisionChange& change, const Edit& edit);
+  bool try_edit(const CellComplex& complex, const SubdivisionChange& change, const Edit& edit,
+                SubdivisionRefusal refusal, AdaptiveSubdivisionReport& report);
 
-  CrowdingOptions options_;
+  AdaptiveSubdivisionOptions options_;
   CellLists lists_;
   std::vector<Subdivision> subdivisions_;
   std::vector<Cell> passed_over_;  // in this call

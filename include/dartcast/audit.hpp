@@ -22,6 +22,6 @@ struct Audit {
 /// state names is positive and holds its position, border included. A held particle: its cell exists, its coordinates
 /// are finite and none is negative. Precondition: the particles have followed the environment's last move. Cost: about
 /// 5 us per particle, parallel.
-Audit audit(const Complex& complex, const Particles& particles, Threads threads = {});
+Audit audit(const CellComplex& complex, const Particles& particles, Threads threads = {});
 
 }  // namespace dartcast

@@ -46,15 +46,15 @@ struct BodyOptions {
   double radius = 0.0;
   /// Acceleration towards the goal per distance from it, 1 / s^2: at most 1 / dt^2; 0: just that.
   double stiffness = 0.0;
-  double pull = 0.1;     ///< share of the way to its goal that the second pass pulls a particle, in [0, 1]
-  double damping = 0.0;  ///< 1 / s: velocities relative to the rigid part of the motion fall as exp(-damping t)
-  Vec3 velocity = {};    ///< of the centre of mass
-  Vec3 spin = {};        ///< angular velocity, 1 / s
+  double pull = 0.1;           ///< share of the way to its goal that the second pass pulls a particle, in [0, 1]
+  double damping = 0.0;        ///< 1 / s: velocities relative to the rigid part of the motion fall as exp(-damping t)
+  Vec3 velocity = {};          ///< of the centre of mass
+  Vec3 angular_velocity = {};  ///< angular velocity, 1 / s
   MatchOptions match = {};
 };
 
 /// What came of a request to add a body.
-struct AddedBody {
+struct AddBodyResult {
   std::uint32_t body = 0xffffffffU;    ///< its id; none (0xffffffff) where a point is in no free cell
   std::vector<std::uint32_t> refused;  ///< those points
 };
@@ -74,7 +74,8 @@ struct BodiesStep {
   StepReport motion;               ///< of the first pass; particles by their index during the step
   StepReport pull;                 ///< of the second pass
   BodyCollisionCounts collisions;  ///< between bodies
-  /// Energy that moving walls and act() gave, J; less than 0 where the latter took more. 0 where neither was there.
+  /// Energy that moving walls and apply_impulse() gave, J; less than 0 where the latter took more. 0 where neither was
+  /// there.
   double input = 0.0;
   std::uint64_t fallbacks = 0;      ///< rotations left to Eigen's SVD
   std::uint64_t repeated = 0;       ///< bodies whose first pass was repeated with limited targets
@@ -107,26 +108,26 @@ class Bodies {
  public:
   /// `environment` outlives the bodies; it may hold other sets of particles, and is moved and edited by its owner.
   /// Throws InvalidArgument where an option is out of range, or the environment is of the plane.
-  Bodies(Environment& environment, const BodiesOptions& options, Responses responses = Responses{});
+  Bodies(Environment& environment, const BodiesOptions& options, WallResponses responses = WallResponses{});
 
   /// Adds a body in its rest shape at these points; where one of them is in no free cell, nothing. Throws
   /// InvalidArgument where an option is out of range (a stiffness above 1 / dt^2 is: with the largest dt for it), or as
   /// RestShape and Environment::add().
-  AddedBody add(std::span<const Vec3> points, const BodyOptions& options);
+  AddBodyResult add(std::span<const Vec3> points, const BodyOptions& options);
 
   /// One step; once after each Environment::move(). Throws as Environment::advance(). Cost: about 0.5 us per particle.
   const BodiesStep& step();
 
   /// A body as a rigid one, with its velocity at the end of the next step if it meets nothing; it cannot be pushed
   /// where a wall holds one of its particles. Cost: about 20 ns per particle.
-  [[nodiscard]] RigidMover foreseen(std::size_t body) const;
-  /// What contacts with others than bodies made of foreseen(): forces in the next step lead to that change of momentum,
-  /// and the body goes as far as was answered. What this gives is BodiesStep::input.
-  void act(std::size_t body, const RigidMover& answered);
+  [[nodiscard]] RigidMover predicted_state(std::size_t body) const;
+  /// What contacts with others than bodies made of predicted_state(): forces in the next step lead to that change of
+  /// momentum, and the body goes as far as was answered. What this gives is BodiesStep::input.
+  void apply_impulse(std::size_t body, const RigidMover& solved);
 
   /// Takes the bodies along after an edit of the environment. A body of which the edit absorbs a particle leaves.
-  /// Throws as Environment::follow().
-  FollowReport follow(Stranded stranded = Stranded::move);
+  /// Throws as Environment::update_after_edit().
+  UpdateReport update_after_edit(OrphanPolicy orphaned = OrphanPolicy::relocate);
 
   [[nodiscard]] const Environment& environment() const { return environment_; }
   [[nodiscard]] const BodiesOptions& options() const { return options_; }
@@ -151,7 +152,7 @@ class Bodies {
   [[nodiscard]] std::span<const double> radii() const { return radii_; }
   /// Index of the body of each particle.
   [[nodiscard]] std::span<const std::uint32_t> body_of() const { return body_of_; }
-  [[nodiscard]] std::span<const Fate> fates() const { return fates_; }
+  [[nodiscard]] std::span<const ParticleStatus> fates() const { return fates_; }
 
   /// Sums over all steps, both passes; `steps` times particles are counted once for each pass.
   [[nodiscard]] const Counters& counters() const { return counters_; }
@@ -161,17 +162,17 @@ class Bodies {
   /// All that the bodies go on from after a step; what they were made with is not in it.
   struct Checkpoint {
     struct Particle {
-      State state;
+      ParticleState state;
       Weights held_weights{};
       Vec3 velocity;
-      Fate fate = Fate::alive;
+      ParticleStatus fate = ParticleStatus::alive;
       TouchedFaces on;
     };
     std::uint64_t steps = 0;
     Counters counters;
     std::vector<std::uint32_t> ids;  ///< of the bodies still there
     std::vector<Fit> fits;           ///< body by body
-    std::vector<KeptImpulse> impulses;
+    std::vector<CachedImpulse> impulses;
     std::vector<Particle> particles;
   };
   [[nodiscard]] Checkpoint checkpoint() const;
@@ -237,7 +238,7 @@ class Bodies {
   void first_pass();
   void begin(Body& body);
   // What a particle moves in during the first pass.
-  [[nodiscard]] Well well_of(const Body& body, std::size_t particle) const {
+  [[nodiscard]] PotentialEnergy potential_of(const Body& body, std::size_t particle) const {
     return {body.stiffness, goals_[particle], options_.gravity + contact_forces_[particle]};
   }
   [[nodiscard]] BodyParticles body_particles() const;
@@ -257,11 +258,11 @@ class Bodies {
   [[nodiscard]] double given(const Body& body) const;
   void fit(Body& body);
   void accept(Body& body);
-  void afford(Body& body);
+  void limit_energy(Body& body);
   void second_pass();
-  void pool_energy();
+  void share_energy();
   [[nodiscard]] bool lacks_motion(const Body& body);
-  void afford_together();
+  void limit_energy_together();
   void cut_together(std::span<const std::uint32_t> group);
   void aim_pull(Body& body);
   static void charge_lift(Body& body);
@@ -271,7 +272,7 @@ class Bodies {
 
   Environment& environment_;
   BodiesOptions options_;
-  Responses responses_;
+  WallResponses responses_;
   Vec3 lowest_;
   std::uint64_t steps_ = 0;
   std::uint32_t next_id_ = 0;
@@ -286,7 +287,7 @@ class Bodies {
   std::vector<double> masses_;
   std::vector<double> radii_;
   std::vector<std::uint32_t> body_of_;
-  std::vector<Fate> fates_;
+  std::vector<ParticleStatus> fates_;
   std::vector<TouchedFaces> on_;  // faces met in the last step
   // Of one step.
   struct Sums {
@@ -308,7 +309,7 @@ class Bodies {
   std::vector<std::uint64_t> ids_;
   std::vector<double> inverse_masses_;
   std::vector<Vec3> led_to_;  // velocities that forces lead to
-  std::vector<Vec3> pushes_;
+  std::vector<Vec3> corrections_;
   std::vector<Vec3> outer_forces_;    // of what acts on bodies from outside in this step, per mass
   std::vector<Vec3> contact_forces_;  // with those between bodies
   std::vector<TouchedFaces> next_on_;

@@ -62,7 +62,7 @@ struct CatheterFrame {
 
 /// All that a catheter goes on from; environment and options are not in it.
 struct CatheterCheckpoint {
-  std::vector<State> states;
+  std::vector<ParticleState> states;
   std::vector<Weights> held_weights;
   std::vector<ChainWall> walls;  ///< that points have met
   double inserted = 0.0;
@@ -96,11 +96,11 @@ class Catheter {
   /// leaves no room, a segment may be off without any push: see `worst_segment`. Cost: some 1 us per point and round.
   CatheterStep step(const CatheterInput& input);
 
-  /// To be called after each edit of the environment, as Environment::follow(): points without a place are moved to the
-  /// nearest free one; where there is none they are held in their blocked cells until these are free again. Throws
-  /// InvalidArgument, nothing changed, where a point's cell was removed and no free cell is left; the catheter
-  /// cannot be used after that.
-  FollowReport follow();
+  /// To be called after each edit of the environment, as Environment::update_after_edit(): points without a place are
+  /// moved to the nearest free one; where there is none they are held in their blocked cells until these are free
+  /// again. Throws InvalidArgument, nothing changed, where a point's cell was removed and no free cell is left; the
+  /// catheter cannot be used after that.
+  UpdateReport update_after_edit();
 
   /// The points in the lumen, from the tip on; then the entry, unless nothing is inserted.
   [[nodiscard]] std::vector<Vec3> points() const;
@@ -156,13 +156,13 @@ class Catheter {
   void make_less(const CatheterInput& piece, double share, CatheterStep& result);
   void relax(const Vec3& load, CatheterStep& result);
   void ride(CatheterStep& result);
-  [[nodiscard]] Vec3 ridden(std::size_t i) const;
+  [[nodiscard]] Vec3 carried(std::size_t i) const;
   void turn_with_vessel(const Corners& now);
   void hold();
   void save();
   void take_back();
   // catheter_substep.cpp: a part of it.
-  static Continuation slide_at_walls(const Contact& contact, std::span<const WallHit> walls,
+  static AfterContact slide_at_walls(const Contact& contact, std::span<const WallHit> walls,
                                      std::span<const WallHit> earlier);
   Outcome substep(const CatheterInput& piece, double share, Bending bending);
   void follow_path(double push, std::size_t free);

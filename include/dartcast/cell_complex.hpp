@@ -29,15 +29,15 @@ struct InvalidCell {
   std::string message;
 };
 
-class Complex {
+class CellComplex {
  public:
   /// Builds the map, finds interior points where they are needed, and checks every simplex. Cells for which no interior
   /// point makes all simplices positive are listed in invalid_cells(); the complex can be used, particles there are
   /// held. Preconditions and errors as for Map. Cost: linear.
-  explicit Complex(const MeshData& mesh, Threads threads = {});
+  explicit CellComplex(const MeshData& mesh, Threads threads = {});
 
-  [[nodiscard]] const Map& map() const { return map_; }
-  [[nodiscard]] Map& map() { return map_; }
+  [[nodiscard]] const CombinatorialMap& map() const { return map_; }
+  [[nodiscard]] CombinatorialMap& map() { return map_; }
   [[nodiscard]] const std::vector<InvalidCell>& invalid_cells() const { return invalid_; }
 
   /// Positions of all vertices: the mesh's points (in the mesh's order), then interior points, then what edits made
@@ -47,7 +47,7 @@ class Complex {
   [[nodiscard]] std::span<const Vec3> previous_positions() const {
     return back_.empty() ? positions() : std::span<const Vec3>(back_);
   }
-  [[nodiscard]] const InteriorWeights& interior() const { return interior_; }
+  [[nodiscard]] const SteinerWeights& steiner_weights() const { return steiner_; }
   /// Number of the first entries of positions() that a move gives: the mesh's own points, and once edits have made
   /// vertices, everything up to the last of these. What lies between, interior points and numbers not in use, can be
   /// given any value.
@@ -61,7 +61,7 @@ class Complex {
   void commit_positions();
   /// A copy with previous_positions() as its positions: with edits made since, but as if it had not moved. Cost:
   /// linear.
-  [[nodiscard]] Complex before_move() const;
+  [[nodiscard]] CellComplex before_move() const;
 
   /// In the plane the fourth is the third again, and the fourth corner is one above the first (raised()).
   [[nodiscard]] std::array<Vertex, 4> vertices(SimplexId s) const {
@@ -73,7 +73,7 @@ class Complex {
   [[nodiscard]] Corners previous_corners(SimplexId s) const { return corners(s, previous_positions()); }
 
   [[nodiscard]] std::uint64_t simplex_count() const { return simplex_count_; }
-  [[nodiscard]] std::size_t interior_point_count() const { return interior_.count(); }
+  [[nodiscard]] std::size_t steiner_point_count() const { return steiner_.count(); }
   /// All arrays, positions counted once.
   [[nodiscard]] std::size_t bytes() const;
 
@@ -87,8 +87,8 @@ class Complex {
     return map_.dimension() == 2 ? raised(corners) : corners;
   }
 
-  Map map_;
-  InteriorWeights interior_;
+  CombinatorialMap map_;
+  SteinerWeights steiner_;
   std::size_t point_count_ = 0;
   AlignedVector<Vec3> front_;
   AlignedVector<Vec3> back_;  // empty until the first move

@@ -30,13 +30,13 @@
 
 namespace dartcast {
 
-class Map;
+class CombinatorialMap;
 
 /// What a walk reads of a cell. Valid until the map is edited.
 class CellView {
  public:
   CellView() = default;
-  CellView(const Map& map, const std::uint32_t* word, const Shape& shape, bool general)
+  CellView(const CombinatorialMap& map, const std::uint32_t* word, const Shape& shape, bool general)
       : map_(&map), word_(word), shape_(&shape), general_(general) {}
 
   [[nodiscard]] const Shape& shape() const { return *shape_; }
@@ -68,7 +68,7 @@ class CellView {
   }
   [[nodiscard]] std::uint16_t neighbour_face_from_7(std::uint16_t face) const;
 
-  const Map* map_ = nullptr;
+  const CombinatorialMap* map_ = nullptr;
   const std::uint32_t* word_ = nullptr;
   const Shape* shape_ = nullptr;
   bool general_ = false;
@@ -85,7 +85,7 @@ struct CellHandle {
 
 /// Interior points that cells need where the plain pulling triangulation is not positive (see
 /// dartcast/cell_complex.hpp). Numbers are vertices beyond the mesh's own points.
-struct InteriorPoints {
+struct SteinerPoints {
   std::vector<std::pair<std::uint32_t, Vertex>> of_cells;  ///< mesh cell, its point; sorted
   struct FacePoint {
     std::uint32_t cell;  ///< mesh cell
@@ -95,7 +95,7 @@ struct InteriorPoints {
   std::vector<FacePoint> of_faces;  ///< sorted by cell and face
 };
 
-class Map {
+class CombinatorialMap {
  public:
   /// Pools 0 to 3: tetrahedra, hexahedra, prisms, pyramids; in the plane 0 and 1: triangles, quadrilaterals.
   static constexpr std::uint32_t general_pool = 4;
@@ -105,11 +105,11 @@ class Map {
     return type == CellType::polygon ? general_pool : type == CellType::quadrilateral ? 1 : 0;
   }
 
-  Map() = default;
+  CombinatorialMap() = default;
   /// Builds cells, sews faces by their vertices, and takes over free marks and patches. Cost: linear but for sorting.
-  /// Preconditions: inspect() found no defect. Throws InvalidMesh where a face has three cells or two on the same side,
-  /// or a cell is not closed: names the cell by its number in the mesh.
-  explicit Map(const MeshData& mesh, const InteriorPoints& interior = {});
+  /// Preconditions: check_and_repair() found no defect. Throws InvalidMesh where a face has three cells or two on the
+  /// same side, or a cell is not closed: names the cell by its number in the mesh.
+  explicit CombinatorialMap(const MeshData& mesh, const SteinerPoints& steiner = {});
 
   /// 2: cells are polygons of the plane, faces their edges; 3.
   [[nodiscard]] unsigned dimension() const { return dimension_; }
@@ -228,7 +228,7 @@ class Map {
 
   [[nodiscard]] std::size_t bytes() const;
   /// The same records, numbers, vacant places, shapes, vertices and patches. Cost: linear.
-  bool operator==(const Map&) const = default;
+  bool operator==(const CombinatorialMap&) const = default;
 
  private:
   friend class MapBuilder;

@@ -50,7 +50,7 @@ struct ComplexEditReport {
 /// Values at the vertices after an edit: those of new vertices are interpolated. `values`: one per vertex before the
 /// edit; takes as many as `size` afterwards. Cost: the vertices made.
 template <class T>
-void follow(const ComplexEditReport& report, std::size_t size, std::vector<T>& values) {
+void update_after_edit(const ComplexEditReport& report, std::size_t size, std::vector<T>& values) {
   values.resize(size);
   for (const PlacedVertex& p : report.placed) {
     if (p.vertex.value >= size) continue;
@@ -64,7 +64,7 @@ void follow(const ComplexEditReport& report, std::size_t size, std::vector<T>& v
 /// or moves the complex; whoever reads it sees cells without their interior points.
 class ComplexEdit {
  public:
-  explicit ComplexEdit(Complex& complex);
+  explicit ComplexEdit(CellComplex& complex);
   ComplexEdit(const ComplexEdit&) = delete;
   ComplexEdit& operator=(const ComplexEdit&) = delete;
   ComplexEdit(ComplexEdit&&) = delete;
@@ -74,7 +74,7 @@ class ComplexEdit {
   /// For the functions of dartcast/map_edits.hpp. Drafts given to its replace() name no points of cells: commit() finds
   /// these.
   [[nodiscard]] Transaction& topology() { return transaction_; }
-  [[nodiscard]] const Map& map() const { return transaction_.map(); }
+  [[nodiscard]] const CombinatorialMap& map() const { return transaction_.map(); }
 
   /// Where a vertex is. One that this edit put on an edge lies in its middle until it is placed; one that was parted
   /// lies where the other does.
@@ -87,9 +87,9 @@ class ComplexEdit {
   /// and where the numbers do not match.
   void place(Vertex v, std::span<const Vertex> of, std::span<const double> weights);
 
-  [[nodiscard]] Transaction::Mark mark() const { return transaction_.mark(); }
+  [[nodiscard]] Transaction::Savepoint savepoint() const { return transaction_.savepoint(); }
   /// Takes back everything after the mark. (Not by topology().roll_back(): places would stay.)
-  void roll_back(const Transaction::Mark& to);
+  void roll_back(const Transaction::Savepoint& to);
 
   /// Gives touched cells the interior points that they need (see ComplexEditReport::now()), and makes everything final.
   /// Throws EditRefused, everything taken back, where a new cell has a simplex that is not positive and no interior
@@ -102,15 +102,15 @@ class ComplexEdit {
     std::vector<double> weights;
   };
 
-  std::size_t place_born(Vertex v, const Vec3& x);
+  std::size_t place_created(Vertex v, const Vec3& x);
   void check_added() const;
-  [[nodiscard]] PlacedVertex placed(std::size_t born) const;
+  [[nodiscard]] PlacedVertex placed(std::size_t created) const;
   [[nodiscard]] std::vector<Cell> around() const;
-  ComplexEditReport make_final(const InteriorWeights& points, std::size_t born);
+  ComplexEditReport make_final(const SteinerWeights& points, std::size_t created);
 
-  Complex& complex_;
+  CellComplex& complex_;
   Transaction transaction_;
-  detail::BornPositions<AlignedVector<Vec3>> born_;
+  detail::CreatedPositions<AlignedVector<Vec3>> created_;
   std::map<std::size_t, Mean> means_;  // of those placed so, by number among the new
 };
 

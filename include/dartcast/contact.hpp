@@ -70,7 +70,7 @@ struct ContactList {
 inline constexpr double along_share = 4e-12;
 
 /// What a particle does after a contact, in the rest of the step.
-struct Continuation {
+struct AfterContact {
   Vec3 displacement;  ///< relative to the wall
   /// Rounding must not turn it into the walls touched in this step that it runs along, or off (along_share). A wall
   /// that it points into is met again.
@@ -80,7 +80,7 @@ struct Continuation {
 /// Decides what follows a contact: given the contact, its walls, and those met earlier in the same step. Called from
 /// several threads at once for different particles; an empty function stops the particle at the wall until the end of
 /// the step.
-using Respond =
-    std::function<Continuation(const Contact&, std::span<const WallHit> walls, std::span<const WallHit> earlier)>;
+using ContactCallback =
+    std::function<AfterContact(const Contact&, std::span<const WallHit> walls, std::span<const WallHit> earlier)>;
 
 }  // namespace dartcast

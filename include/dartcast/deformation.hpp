@@ -74,7 +74,7 @@ class Deformation {
 
   /// After an edit: vertices that it made go with those that they were made between, so that nothing jumps. `size`: of
   /// the environment's positions now.
-  void follow(const ComplexEditReport& edit, std::size_t size);
+  void update_after_edit(const ComplexEditReport& edit, std::size_t size);
   /// Adds a displacement of some vertices that grows from 0 at the time `begin` to all of it at `end` (s), smoothly,
   /// and stays; on top of everything else. `displacement`: one per vertex so far. Throws InvalidArgument where the
   /// number does not match, one is not finite, or the end is not after the beginning.

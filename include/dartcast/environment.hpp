@@ -30,8 +30,8 @@ namespace dartcast {
 class Particles {
  public:
   [[nodiscard]] std::size_t size() const { return states_.size(); }
-  [[nodiscard]] std::span<const State> states() const { return states_; }
-  [[nodiscard]] const State& operator[](std::size_t i) const { return states_[i]; }
+  [[nodiscard]] std::span<const ParticleState> states() const { return states_; }
+  [[nodiscard]] const ParticleState& operator[](std::size_t i) const { return states_[i]; }
   /// Barycentric coordinates of a held particle in its simplex.
   [[nodiscard]] const Weights& held_weights(std::size_t i) const { return weights_[i]; }
 
@@ -49,79 +49,79 @@ class Particles {
 
  private:
   friend class Environment;
-  friend class Following;
+  friend class EditFollower;
 
-  std::vector<State> states_;
+  std::vector<ParticleState> states_;
   std::vector<Weights> weights_;
   std::vector<detail::VertexNumbers> vertices_;
-  detail::MemoKind memo_kind_ = detail::MemoKind::none;
-  detail::Memos memos_;            // of these states, where there is a kind
+  detail::CacheKind cache_kind_ = detail::CacheKind::none;
+  detail::SimplexCache caches_;    // of these states, where there is a kind
   bool stood_still_ = false;       // the vertices, at the last step
   bool walls_changed_ = false;     // since then
   std::uint64_t environment_ = 0;  // its number; 0: of none yet
   std::uint64_t moves_ = 0;        // of the environment, that these states have followed
   std::uint64_t edits_ = 0;
-  std::optional<detail::Residents> residents_;  // of these states; none where they have changed since
+  std::optional<detail::CellParticleIndex> index_;  // of these states; none where they have changed since
 };
 
 /// What came of a request to add one particle.
-struct Added {
+struct AddResult {
   Location location;
   std::uint32_t particle = 0xffffffffU;  ///< its index in the set; none (0xffffffff) unless the place is free
 };
 
 /// A particle stopped at a contact before its target.
-struct Stopped {
+struct StoppedParticle {
   std::uint32_t particle = 0;
   Vec3 unused;  ///< displacement left, relative to the wall
 };
 
 struct StepReport {
-  ContactList contacts;          ///< by particle, then by time
-  std::vector<Held> held;        ///< by particle
-  std::vector<Stopped> stopped;  ///< by particle
+  ContactList contacts;                  ///< by particle, then by time
+  std::vector<HeldParticle> held;        ///< by particle
+  std::vector<StoppedParticle> stopped;  ///< by particle
   Counters counters;
 };
 
 /// What becomes of a particle that an edit leaves in a blocked cell, or outside.
-enum class Stranded : std::uint8_t {
-  stay,   ///< held in the blocked cell, along with which it rides, until that is free again; outside: as move
-  move,   ///< to the nearest point of the free cells (tracking/nearest_free.hpp); absorbed where there is none
-  absorb  ///< removed from the set
+enum class OrphanPolicy : std::uint8_t {
+  hold,      ///< held in the blocked cell, along with which it rides, until that is free again; outside: as relocate
+  relocate,  ///< to the nearest point of the free cells (tracking/nearest_free.hpp); absorbed where there is none
+  absorb     ///< removed from the set
 };
 
-struct StrandedParticle {
+struct OrphanedParticle {
   std::uint32_t particle = 0;    ///< its index before any was removed
   Place place = Place::outside;  ///< blocked or outside
   Vec3 position;                 ///< where it was left
-  Stranded became = Stranded::stay;
+  OrphanPolicy outcome = OrphanPolicy::hold;
   double distance = 0.0;  ///< that it was moved by
 };
 
 /// What an edit did to a set of particles.
-struct FollowReport {
+struct UpdateReport {
   std::uint64_t touched = 0;               ///< in cells removed or marked, or at walls of these
   std::uint64_t located = 0;               ///< of these, located again in the cells that took the place of theirs
-  std::vector<StrandedParticle> stranded;  ///< by particle
+  std::vector<OrphanedParticle> orphaned;  ///< by particle
 };
 
 /// It can be neither copied nor moved: flows, bodies and catheters keep a reference to it.
 ///
 /// Two rules hold for every set of particles that is not empty. Before the next move() it takes part in the last one:
-/// by advance(), or by follow() where an edit was made after that move. Before the next edit() it follows the last one,
-/// by follow(). Any order of calls that keeps these rules is allowed. A set that has missed a move or an edit is
-/// refused by advance(), follow() and add(); its positions can be added to a new set.
+/// by advance(), or by update_after_edit() where an edit was made after that move. Before the next edit() it follows
+/// the last one, by update_after_edit(). Any order of calls that keeps these rules is allowed. A set that has missed a
+/// move or an edit is refused by advance(), update_after_edit() and add(); its positions can be added to a new set.
 class Environment {
  public:
-  /// Builds the complex. Throws InvalidMesh where inspect() finds a defect, or where a cell has a simplex that is not
-  /// positive (with the first of them); `mesh` is not changed by repairs: call inspect() first to see and keep them.
-  /// Throws as set_threads().
+  /// Builds the complex. Throws InvalidMesh where check_and_repair() finds a defect, or where a cell has a simplex that
+  /// is not positive (with the first of them); `mesh` is not changed by repairs: call check_and_repair() first to see
+  /// and keep them. Throws as set_threads().
   explicit Environment(MeshData mesh, Threads threads = {});
   Environment(const Environment&) = delete;
   Environment& operator=(const Environment&) = delete;
 
-  [[nodiscard]] const Complex& complex() const { return complex_; }
-  [[nodiscard]] const Map& map() const { return complex_.map(); }
+  [[nodiscard]] const CellComplex& complex() const { return complex_; }
+  [[nodiscard]] const CombinatorialMap& map() const { return complex_.map(); }
   [[nodiscard]] std::span<const Vec3> positions() const { return complex_.positions().first(complex_.point_count()); }
 
   /// Where a point is. Throws InvalidArgument where it is not finite or outside the exact range. The first call after a
@@ -133,7 +133,7 @@ class Environment {
   /// Adds a particle for every position in a free cell, in their order, and reports on every position: one in a blocked
   /// cell or outside is not added, and says so. Throws as locate(), and InvalidArgument where the particles are of
   /// another environment or have missed a move or an edit; nothing is added then.
-  std::vector<Added> add(Particles& particles, std::span<const Vec3> positions);
+  std::vector<AddResult> add(Particles& particles, std::span<const Vec3> positions);
   /// Adds a particle where the caller knows the simplex, without a search: false, and nothing added, unless the
   /// position lies exactly in that closed simplex, which is positive and of a free cell. Throws InvalidArgument where
   /// the particles are of another environment or have missed a move or an edit. Cost: five exact signs.
@@ -142,15 +142,15 @@ class Environment {
   /// Particles with these states, as if they had been here since the last move: for those saved from an equal
   /// environment. `weights`: one per state, read where it is held. Throws InvalidArgument, naming the first state that
   /// does not hold here: guarantee G3, or a wall touched that is none.
-  [[nodiscard]] Particles restored(std::span<const State> states, std::span<const Weights> weights) const;
+  [[nodiscard]] Particles restored(std::span<const ParticleState> states, std::span<const Weights> weights) const;
 
   /// Where to write the next positions of all the mesh's points before move(). The content is what it was two moves
   /// ago. In the plane z is not read. Write there only when every set of particles has taken part in the last move:
   /// until then they need the old content. An edit ends the validity of the result.
   [[nodiscard]] std::span<Vec3> next_positions() { return complex_.next_positions(); }
   /// Makes the positions written current, at no cost per cell: every set of particles must then be advanced once, or
-  /// follow() an edit made after this move, before the next move. advance() takes targets relative to positions before
-  /// the move.
+  /// update_after_edit() an edit made after this move, before the next move. advance() takes targets relative to
+  /// positions before the move.
   void move();
   /// Copies new positions of all the mesh's points, then move(). Throws InvalidArgument, nothing moved, where the
   /// number does not match, or in the plane a z is not 0.
@@ -158,23 +158,23 @@ class Environment {
   /// The first simplex that is flattened while the vertices go to `positions`, those of all the mesh's points, on
   /// straight lines; nothing where all stay positive. It tells what of the environment meets itself, when and how.
   /// Nothing is moved. Throws and costs as complex/first_inversion.hpp.
-  [[nodiscard]] std::optional<CellFlattening> first_flattening(std::span<const Vec3> positions) const;
+  [[nodiscard]] std::optional<CellInversion> first_inversion(std::span<const Vec3> positions) const;
   /// move() to `positions` where nothing is flattened on the straight way there; else as far as `share`, in [0, 1], of
   /// the way to the first flattening, so that every simplex stays positive. Returns the fraction of the way made.
   /// Precondition: the scene is valid as it stands, or nothing is moved (0). Throws as move().
-  double move_until_flattened(std::span<const Vec3> positions, double share = 1.0);
+  double move_until_inverted(std::span<const Vec3> positions, double share = 1.0);
 
   /// Edits the topology: `make` is given an edit of the complex (dartcast/complex_edit.hpp; dartcast/map_edits.hpp has
-  /// the edits), which is then committed. Every set of particles must then follow() before it is advanced, and before
-  /// the next edit. positions() may have become more: so must arrays given at the points (dartcast::follow()). Throws
-  /// what `make` throws, and EditRefused as ComplexEdit::commit(); then nothing is changed. Cost: that of the cells
-  /// touched.
+  /// the edits), which is then committed. Every set of particles must then update_after_edit() before it is advanced,
+  /// and before the next edit. positions() may have become more: so must arrays given at the points
+  /// (dartcast::update_after_edit()). Throws what `make` throws, and EditRefused as ComplexEdit::commit(); then nothing
+  /// is changed. Cost: that of the cells touched.
   ComplexEditReport edit(const std::function<void(ComplexEdit&)>& make);
   [[nodiscard]] std::uint64_t edit_count() const { return edits_; }
   /// What the last edit did; empty where there was none.
   [[nodiscard]] const ComplexEditReport& last_edit() const { return last_edit_; }
   /// Takes a set of particles along after an edit: those in cells that were replaced are located again, exactly, among
-  /// the cells that took their place; those that have no place in a free cell become what `stranded` says; all others
+  /// the cells that took their place; those that have no place in a free cell become what `orphaned` says; all others
   /// keep their state bit for bit. Where particles are absorbed, those after them move up, as by remove().
   ///
   /// Where the edit was made after a move, and the particles have not been advanced since, they first ride along with
@@ -187,7 +187,7 @@ class Environment {
   /// earlier edit. Cost: the particles touched and the cells added; the first time after the particles have changed,
   /// linear in the particles (20 ns each). After a move that the particles have not followed: that of advance(), or,
   /// where the move came last, a copy of the complex.
-  FollowReport follow(Particles& particles, Stranded stranded = Stranded::move) const;
+  UpdateReport update_after_edit(Particles& particles, OrphanPolicy orphaned = OrphanPolicy::relocate) const;
 
   /// Advances every particle towards its target; after a move(), along with the vertices (see docs/method.md). Without
   /// `respond` a particle stops at its first contact. Results are the same bits for any number of threads and order of
@@ -195,7 +195,7 @@ class Environment {
   /// sizes do not match, an option is not positive, the particles are of another environment or missed a move or an
   /// edit, or a response throws or returns such a displacement. Cost: a few orientation tests per particle, whatever
   /// the size of the scene.
-  StepReport advance(Particles& particles, std::span<const Vec3> targets, const Respond& respond = {},
+  StepReport advance(Particles& particles, std::span<const Vec3> targets, const ContactCallback& respond = {},
                      const StepOptions& options = {});
 
   /// Throws as advance() would for these particles and options, whatever the targets.
@@ -207,11 +207,13 @@ class Environment {
   /// vertices, as the next advance(); those that follow are not. Throws as advance(), and where there is no such
   /// particle. Cost: as one step for each target, and some exact determinants for each crossing.
   [[nodiscard]] std::vector<Trace> trace(const Particles& particles, std::size_t particle,
-                                         std::span<const Vec3> targets, const Respond& respond = {},
+                                         std::span<const Vec3> targets, const ContactCallback& respond = {},
                                          const StepOptions& options = {}) const;
 
   /// Checks every simplex of the scene; exact, parallel, streaming.
-  [[nodiscard]] Validity validity(std::size_t most = 10) const { return check_validity(complex_, threads_, most); }
+  [[nodiscard]] Validity validity(std::size_t max_count = 10) const {
+    return check_validity(complex_, threads_, max_count);
+  }
 
   /// Whether the next advance() of these particles is the one along with the vertices after a move().
   [[nodiscard]] bool awaits_advance(const Particles& particles) const { return particles.moves_ != moves_; }
@@ -222,7 +224,7 @@ class Environment {
 
  private:
   void check_positions(std::span<const Vec3> positions) const;
-  [[nodiscard]] std::vector<Vec3> with_interior(std::span<const Vec3> positions) const;
+  [[nodiscard]] std::vector<Vec3> with_steiner_points(std::span<const Vec3> positions) const;
   static std::uint64_t next_id();
   void take_in(Particles& particles) const;
   void check_known(const Particles& particles, const char* call) const;
@@ -232,11 +234,11 @@ class Environment {
   [[nodiscard]] std::vector<Vec3> check_targets(const Particles& particles, std::span<const Vec3> targets) const;
   void add_to(Particles& particles, SimplexId simplex, const Vec3& position) const;
   struct Steps;
-  [[nodiscard]] detail::MemoKind memo_kind(const Particles& particles, bool moved) const;
+  [[nodiscard]] detail::CacheKind cache_kind(const Particles& particles, bool moved) const;
   void step_chunk(const Steps& steps, std::size_t begin, std::size_t end, StepReport& part) const;
   void step_all(const Steps& steps, std::vector<StepReport>& parts) const;
 
-  Complex complex_;
+  CellComplex complex_;
   Threads threads_;
   std::uint64_t id_ = next_id();
   std::uint64_t moves_ = 0;

@@ -44,7 +44,7 @@ struct Reconnect {
 struct Event {
   double at = 0.0;  ///< s: before the first step that begins at this time or later
   std::variant<Cut, Carve, Ligature, Reconnect> what;
-  Stranded stranded = Stranded::move;
+  OrphanPolicy orphaned = OrphanPolicy::relocate;
 };
 inline constexpr std::string_view event_kind_names[] = {"cut", "carve", "ligature", "reconnect"};
 
@@ -58,7 +58,7 @@ struct EventReport {
   std::uint64_t cells_opened = 0;  ///< freed
   std::uint64_t cells_blocked = 0;
   std::uint64_t cells_whole = 0;          ///< that a cut could not split: see Carved
-  std::uint64_t particles_in_opened = 0;  ///< before it: see SurgeryLog::in_opened
+  std::uint64_t particles_in_opened = 0;  ///< before it: see EventLog::in_opened
   std::uint64_t particles_touched = 0;
   std::uint64_t particles_located = 0;
   std::uint64_t particles_moved = 0;  ///< of the stranded ones: moved, held or absorbed
@@ -68,8 +68,9 @@ struct EventReport {
   double seconds = 0.0;
 };
 
-/// Does it now, wherever the vertices are. Throws as the functions of surgery/ and Flow::edit(); nothing is changed
-/// then. Walls that are drawn together go so far that every simplex stays positive, if they cannot go all the way.
-EventReport apply(Flow& flow, const Event& event);
+/// Does it now, wherever the vertices are. Throws as the functions of surgery/ and Simulation::edit(); nothing is
+/// changed then. Walls that are drawn together go so far that every simplex stays positive, if they cannot go all the
+/// way.
+EventReport apply(Simulation& flow, const Event& event);
 
 }  // namespace dartcast

@@ -79,6 +79,6 @@ std::vector<Cell> unsew(Transaction& t, CellFace f);
 void remove(Transaction& t, Cell c);
 
 /// The dart of the cell from one vertex to another; invalid where there is none. Cost: the cell's darts.
-Dart find_dart(const Map& map, Cell c, Vertex from, Vertex to);
+Dart find_dart(const CombinatorialMap& map, Cell c, Vertex from, Vertex to);
 
 }  // namespace dartcast

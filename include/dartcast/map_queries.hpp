@@ -12,12 +12,12 @@ namespace dartcast {
 // its log.
 
 /// All darts that start at the vertex of d.
-std::vector<Dart> vertex_orbit(const Map& map, Dart d);
+std::vector<Dart> vertex_orbit(const CombinatorialMap& map, Dart d);
 /// All darts along the edge of d, in either direction.
-std::vector<Dart> edge_orbit(const Map& map, Dart d);
+std::vector<Dart> edge_orbit(const CombinatorialMap& map, Dart d);
 /// All darts of the face of d, from both its sides.
-std::vector<Dart> face_orbit(const Map& map, Dart d);
+std::vector<Dart> face_orbit(const CombinatorialMap& map, Dart d);
 /// All darts of the cell of d.
-std::vector<Dart> cell_orbit(const Map& map, Dart d);
+std::vector<Dart> cell_orbit(const CombinatorialMap& map, Dart d);
 
 }  // namespace dartcast

@@ -23,6 +23,6 @@ namespace dartcast {
 /// Of a mesh of the plane (report.dimension = 2) faces are edges, and cells that are not weakly convex are inverted;
 /// non_conforming are edges with a point of another inside, or that lie against others; boundary_edges there are none.
 /// Never throws for any content of the arrays. Cost: n log n, about 2 us a hexahedron; 40 bytes a face.
-MeshReport inspect(MeshData& mesh);
+MeshReport check_and_repair(MeshData& mesh);
 
 }  // namespace dartcast

@@ -11,7 +11,7 @@ namespace dartcast {
 
 /// A plain record. It says: `position` lies in the closed simplex named, and the cell is free (guarantee G3). The walls
 /// are those of the last contact, until the particle leaves them.
-struct State {
+struct ParticleState {
   Vec3 position;
   Cell cell;
   std::uint16_t simplex = 0;
@@ -37,7 +37,7 @@ struct Forecast {
 
 /// Kind from exact zeros, or from the walls touched; the dart of the simplex's base. `corners` are those of the state's
 /// simplex. Cost: four exact signs.
-Forecast forecast(const Map& map, const State& state, const Corners& corners);
+Forecast forecast(const CombinatorialMap& map, const ParticleState& state, const Corners& corners);
 
 /// Kind, and a dart of that face, edge or vertex (invalid inside of a cell), of the cell of the map that holds x in its
 /// interior.
@@ -45,6 +45,6 @@ struct Placement {
   Kind kind = Kind::volume;
   Dart dart;
 };
-Placement placement(const Map& map, SimplexId simplex, const Corners& corners, const Vec3& x);
+Placement placement(const CombinatorialMap& map, SimplexId simplex, const Corners& corners, const Vec3& x);
 
 }  // namespace dartcast

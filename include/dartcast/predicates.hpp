@@ -142,10 +142,10 @@ double orient3d_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d
 
 /// A point infinitesimally beside p, for ties: p + e w + (e^2, e^3, e^4), with w the sum of (opposite vertex - p) over
 /// the facets on which p lies (none: w = 0). It is the first non-vanishing term that decides, so no tie is left.
-class Shift {
+class SymbolicPerturbation {
  public:
   /// `opposite`: the vertices opposite to the facets on which p lies; at most 3.
-  Shift(const Vec3& p, std::span<const Vec3> opposite);
+  SymbolicPerturbation(const Vec3& p, std::span<const Vec3> opposite);
 
   /// Sign of orient3d(a, b, p + shift, q + shift) where orient3d(a, b, p, q) is zero. Zero only where pq is parallel to
   /// ab.
@@ -159,10 +159,10 @@ class Shift {
 };
 
 /// The same in the plane: p + e w + (e^2, e^3).
-class PlaneShift {
+class PlanarSymbolicPerturbation {
  public:
   /// `opposite`: the vertices opposite to the facets on which p lies; at most 2.
-  PlaneShift(const Vec3& p, std::span<const Vec3> opposite);
+  PlanarSymbolicPerturbation(const Vec3& p, std::span<const Vec3> opposite);
 
   /// Sign of orient2d(p + shift, q0 + shift, c) where orient2d(p, q0, c) is zero, whatever c. Zero only where p is q0.
   [[nodiscard]] Sign of_line(const Vec3& q0) const;

@@ -15,7 +15,7 @@
 namespace dartcast {
 
 struct RepairOptions {
-  std::size_t most_cells = 64;  ///< the largest region that is merged
+  std::size_t max_cells = 64;  ///< the largest region that is merged
 };
 
 enum class Mending : std::uint8_t {

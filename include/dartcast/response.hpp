@@ -11,7 +11,7 @@
 
 namespace dartcast {
 
-enum class ResponseKind : std::uint8_t {
+enum class WallResponseKind : std::uint8_t {
   reflect,  ///< rebounds, relative to the moving wall, with restitution and friction
   slide,    ///< loses the normal part of its motion
   stick,    ///< stays on the wall from then on, and moves with it
@@ -19,33 +19,33 @@ enum class ResponseKind : std::uint8_t {
   escape    ///< leaves the scene through it
 };
 
-struct Response {
-  ResponseKind kind = ResponseKind::reflect;
+struct WallResponse {
+  WallResponseKind kind = WallResponseKind::reflect;
   double restitution = 1.0;  ///< share of the normal velocity kept by a reflection, in [0, 1]
   double friction = 0.0;     ///< Coulomb: tangential velocity lost per normal velocity changed, >= 0
 };
 
 /// A response for every patch. Wall faces without a patch, and patches without a response, get the general one.
-class Responses {
+class WallResponses {
  public:
   /// Throws InvalidArgument where restitution or friction is out of range.
-  explicit Responses(const Response& general = {});
-  void set(Patch patch, const Response& response);
-  [[nodiscard]] const Response& of(Patch patch) const {
+  explicit WallResponses(const WallResponse& general = {});
+  void set(Patch patch, const WallResponse& response);
+  [[nodiscard]] const WallResponse& of(Patch patch) const {
     return patch.value < by_patch_.size() && by_patch_[patch.value].set ? by_patch_[patch.value].response : general_;
   }
 
  private:
   struct Entry {
-    Response response;
+    WallResponse response;
     bool set = false;
   };
-  Response general_;
+  WallResponse general_;
   std::vector<Entry> by_patch_;
 };
 
 /// What has become of a particle.
-enum class Fate : std::uint8_t { alive, stuck, absorbed, escaped };
+enum class ParticleStatus : std::uint8_t { alive, stuck, absorbed, escaped };
 
 /// A constant acceleration of all particles, where nothing else changes their velocities between contacts: each target
 /// is position + velocity * duration, with the velocity after the acceleration (the symplectic rule of Euler).
@@ -66,15 +66,15 @@ struct Acceleration {
 /// grow, as it is computed. With an `acceleration` that is the energy at the moment of the contact, and so the sum of
 /// kinetic and potential energy is bounded for any number of steps (docs/method.md, "Reflection"); without one it
 /// changes at each contact by up to the work of a step.
-Respond respond_with(const Responses& responses, std::span<Vec3> velocities, std::span<Fate> fates, double dt,
-                     const Acceleration& acceleration = {});
+ContactCallback respond_with(const WallResponses& responses, std::span<Vec3> velocities,
+                             std::span<ParticleStatus> fates, double dt, const Acceleration& acceleration = {});
 
 /// Gives particles that a step has stopped, at a wall beyond their last contact (StepReport::stopped), a velocity that
 /// all walls met in the step permit, with no more energy than they had at that wall: they stand still for the rest of
 /// the step, and what they do not fall they do not gain. To be called after an advance() with respond_with(), with the
 /// same arguments. Cost: linear in the contacts of the step; nothing where none is stopped.
-void hold_stopped(const StepReport& report, const Responses& responses, std::span<Vec3> velocities,
-                  std::span<const Fate> fates, double dt, const Acceleration& acceleration = {});
+void hold_stopped(const StepReport& report, const WallResponses& responses, std::span<Vec3> velocities,
+                  std::span<const ParticleStatus> fates, double dt, const Acceleration& acceleration = {});
 
 // The operators, for a caller's own responses. Vectors are relative to the wall; walls in the order of a contact's.
 

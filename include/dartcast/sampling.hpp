@@ -16,9 +16,9 @@ namespace dartcast {
 
 /// Lengths in the surface's unit.
 struct SamplingOptions {
-  double spacing = 0.0;       ///< > 0: no two samples are nearer to each other
-  std::uint64_t seed = 1;     ///< the same samples for the same seed, surface and spacing
-  std::size_t most = 100000;  ///< samples that the caller is ready for
+  double spacing = 0.0;            ///< > 0: no two samples are nearer to each other
+  std::uint64_t seed = 1;          ///< the same samples for the same seed, surface and spacing
+  std::size_t max_count = 100000;  ///< samples that the caller is ready for
 };
 
 /// How far a point may be from the nearest sample, in spacings: a point of the surface; a point inside that is deeper
@@ -31,7 +31,7 @@ inline constexpr double solid_cover = 2.1261;
 
 /// Samples on a surface, closed or open; at least one. Throws InvalidArgument where the spacing is not positive and
 /// finite, or below 2^-30 of the largest coordinate (samples would be rounding), or where it would take more than
-/// `most` samples (or 200 candidates for each of these), saying what spacing may do; InvalidMesh as
+/// `max_count` samples (or 200 candidates for each of these), saying what spacing may do; InvalidMesh as
 /// surface_triangles(). Cost: 64 to 128 candidates per spacing^2 of area, one per triangle at least.
 std::vector<Vec3> sample_surface(const MeshData& surface, const SamplingOptions& options);
 

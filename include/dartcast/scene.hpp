@@ -28,8 +28,8 @@
 namespace dartcast {
 
 /// Limits of a scene's numbers: what TOML can hold, and what a double counts without a gap.
-inline constexpr std::uint64_t most_seed = 0x7fffffffffffffffU;
-inline constexpr std::uint64_t most_steps = std::uint64_t{1} << 53U;
+inline constexpr std::uint64_t max_seed = 0x7fffffffffffffffU;
+inline constexpr std::uint64_t max_steps = std::uint64_t{1} << 53U;
 
 /// A mesh file, or a generator's options.
 using MeshSource =
@@ -126,8 +126,8 @@ struct MotionScene {
 };
 
 struct ContactScene {
-  Response general = {ResponseKind::reflect, 1.0, 0.0};
-  std::map<std::string, Response> by_patch;
+  WallResponse general = {WallResponseKind::reflect, 1.0, 0.0};
+  std::map<std::string, WallResponse> by_patch;
 };
 
 struct EventScene {
@@ -140,9 +140,9 @@ struct RemeshScene {
   RepairOptions options;
 };
 
-struct CrowdingScene {
+struct AdaptiveSubdivisionScene {
   std::uint64_t every = 0;  ///< steps between two looks; 0: none
-  CrowdingOptions options;
+  AdaptiveSubdivisionOptions options;
 };
 
 struct OutputScene {
@@ -166,7 +166,7 @@ struct Scene {
   ContactScene contact;
   std::vector<EventScene> events;  ///< by time
   RemeshScene remesh;
-  CrowdingScene crowding;
+  AdaptiveSubdivisionScene adaptive_subdivision;
   OutputScene output;
 };
 

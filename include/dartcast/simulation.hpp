@@ -36,15 +36,15 @@ inline constexpr double largest_density = 0x1p+100;
 
 /// Between spheres. With walls, restitution and friction are those of the walls' responses.
 struct CollisionOptions {
-  double restitution = 0.0;      ///< in [0, 1]
-  double friction = 0.0;         ///< Coulomb, >= 0
-  double density = 1000.0;       ///< kg / m^3; in the plane of a disc, kg / m^2
-  unsigned iterations = 10;      ///< > 0, of the solver (dynamics/contact_solver.hpp)
-  unsigned push_iterations = 4;  ///< of what takes out overlaps
+  double restitution = 0.0;          ///< in [0, 1]
+  double friction = 0.0;             ///< Coulomb, >= 0
+  double density = 1000.0;           ///< kg / m^3; in the plane of a disc, kg / m^2
+  unsigned iterations = 10;          ///< > 0, of the solver (dynamics/contact_solver.hpp)
+  unsigned position_iterations = 4;  ///< of what takes out overlaps
 };
 
 /// SI units: seconds, metres per square second, 1 / second.
-struct FlowOptions {
+struct SimulationOptions {
   double dt = 1e-3;  ///< of a step
   Vec3 gravity = {0.0, 0.0, 0.0};
   double drag = 0.0;       ///< >= 0: the velocity relaxes to the field's (to 0 without a field) as exp(-drag t)
@@ -57,7 +57,7 @@ struct FlowOptions {
 
 /// What happened in one step. `report.contacts` name particles by their index during the step; contact_ids are their
 /// ids.
-struct FlowStep {
+struct SimulationStep {
   double duration = 0.0;  ///< s
   StepReport report;
   std::vector<std::uint64_t> contact_ids;
@@ -69,7 +69,7 @@ struct FlowStep {
 };
 
 /// Sums over all steps so far.
-struct FlowTotals {
+struct SimulationTotals {
   std::uint64_t start = 0;  ///< particles added by add() and add_random()
   std::uint64_t injected = 0;
   std::uint64_t absorbed = 0;
@@ -86,13 +86,13 @@ struct FlowTotals {
 };
 
 /// All that a flow goes on from after a step; what it was made with (mesh, options, field, inlets, ...) is not in it.
-struct FlowCheckpoint {
+struct SimulationCheckpoint {
   struct Particle {
     std::uint64_t id = 0;
-    State state;
+    ParticleState state;
     Weights held_weights{};
     Vec3 velocity;
-    Fate fate = Fate::alive;
+    ParticleStatus fate = ParticleStatus::alive;
     std::uint32_t contacts = 0;
     double radius = 0.0;
   };
@@ -100,22 +100,22 @@ struct FlowCheckpoint {
   std::uint64_t next_id = 0;
   Random random = Random(0);
   std::vector<Particle> particles;
-  FlowTotals totals;
+  SimulationTotals totals;
   StateHash gone;
-  std::vector<KeptImpulse> impulses;  ///< that the next step's collisions start from
+  std::vector<CachedImpulse> impulses;  ///< that the next step's collisions start from
 };
 
 /// Of all particles. Without collisions particles have no mass: each counts as 1 kg. With them a sphere counts by its
 /// mass, and a point, which has none, not at all.
-struct FlowEnergy {
+struct SimulationEnergy {
   double kinetic = 0.0;    ///< J: the sum of m v^2 / 2
   double potential = 0.0;  ///< J: the sum of -m g.x, which is 0 at the origin
 };
 
 /// What an edit between two steps did.
-struct FlowEdit {
+struct SimulationEdit {
   ComplexEditReport edit;
-  FollowReport particles;
+  UpdateReport particles;
 };
 
 /// Carries particles through the steps of a simulation. Each step:
@@ -127,13 +127,13 @@ struct FlowEdit {
 /// impulses before they move and advance: by each other, and by walls that reflect or let slide within a quarter of
 /// their radius (these walls go on as in the last step). Walls met otherwise respond as they do to points. Bodies that
 /// it is told of take part in these collisions. Results are the same bits for any number of threads.
-class Flow {
+class Simulation {
  public:
   /// `environment` outlives the flow, and is moved and edited by it alone. Throws InvalidArgument where an option is
   /// out of range. In the plane every vector given to a flow must have z = 0: gravity, velocities, fields, motions.
-  Flow(Environment& environment, const FlowOptions& options, Responses responses = Responses{});
-  Flow(const Flow&) = delete;  // nor moved: others keep references to it
-  Flow& operator=(const Flow&) = delete;
+  Simulation(Environment& environment, const SimulationOptions& options, WallResponses responses = WallResponses{});
+  Simulation(const Simulation&) = delete;  // nor moved: others keep references to it
+  Simulation& operator=(const Simulation&) = delete;
 
   void set_field(VelocityField field) { field_ = std::move(field); }
   /// Throws InvalidArgument where it is not made for the environment's number of points, and in the plane as
@@ -150,41 +150,43 @@ class Flow {
 
   /// Adds particles at these positions, as Environment::add(). `radius`: as is_radius(); a sphere that does not fit is
   /// moved out of walls by its first step, and out of other spheres little by little.
-  std::vector<Added> add(std::span<const Vec3> positions, const Vec3& velocity, double radius = 0.0);
+  std::vector<AddResult> add(std::span<const Vec3> positions, const Vec3& velocity, double radius = 0.0);
   /// Likewise, each with a velocity and a radius of its own. Throws InvalidArgument, nothing added, where the numbers
   /// do not match, too.
-  std::vector<Added> add(std::span<const Vec3> positions, std::span<const Vec3> velocities,
-                         std::span<const double> radii);
+  std::vector<AddResult> add(std::span<const Vec3> positions, std::span<const Vec3> velocities,
+                             std::span<const double> radii);
   /// Adds particles at random places of the free cells, uniformly by volume. Throws InvalidArgument where no cell is
   /// free.
   void add_random(std::size_t count, const Vec3& velocity, double radius = 0.0);
 
-  const FlowStep& step();
+  const SimulationStep& step();
 
   /// Edits the environment between two steps, as Environment::edit(), and takes along all that depends on it: particles
-  /// (by follow(); those absorbed count as such), the deformation, the field, and inlets: one whose patch has no face
-  /// at a free cell any more is closed until it has. Throws as these, nothing changed. Cost: as these; linear in the
-  /// cells where there are inlets.
-  FlowEdit edit(const std::function<void(ComplexEdit&)>& make, Stranded stranded = Stranded::move);
+  /// (by update_after_edit(); those absorbed count as such), the deformation, the field, and inlets: one whose patch
+  /// has no face at a free cell any more is closed until it has. Throws as these, nothing changed. Cost: as these;
+  /// linear in the cells where there are inlets.
+  SimulationEdit edit(const std::function<void(ComplexEdit&)>& make, OrphanPolicy orphaned = OrphanPolicy::relocate);
   /// To be called at the end of each edit, with what becomes of particles that have no place: for other sets of
   /// particles in the environment, which must follow it before the next.
-  void set_after_edit(std::function<void(Stranded)> after_edit) { after_edit_ = std::move(after_edit); }
+  void set_after_edit(std::function<void(OrphanPolicy)> after_edit) { after_edit_ = std::move(after_edit); }
   /// Remeshes cells that are not valid now (dartcast/remeshing.hpp), by edit(). Nothing happens where all are. Cost: a
   /// check of the scene, and the regions mended.
   RepairReport repair(const RepairOptions& options = {});
-  /// Subdivides cells that hold many particles, and makes again those whose parts hold few, by edit(). `crowding` keeps
-  /// what it has subdivided; after other edits of the environment call its follow(). Cost: see Crowding::relieve().
-  CrowdingReport relieve(Crowding& crowding, Stranded stranded = Stranded::move);
+  /// Subdivides cells that hold many particles, and makes again those whose parts hold few, by edit().
+  /// `adaptive_subdivision` keeps what it has subdivided; after other edits of the environment call its
+  /// update_after_edit(). Cost: see AdaptiveSubdivision::adapt().
+  AdaptiveSubdivisionReport adapt(AdaptiveSubdivision& adaptive_subdivision,
+                                  OrphanPolicy orphaned = OrphanPolicy::relocate);
   /// Draws vertices along over the next `duration` seconds, on top of the deformation; they stay there. `displacement`:
   /// one per position of the environment. Throws as Deformation::add_pull(), and in the plane where one leaves it.
   void pull(std::span<const Vec3> displacement, double duration);
 
-  [[nodiscard]] FlowCheckpoint checkpoint() const;
+  [[nodiscard]] SimulationCheckpoint checkpoint() const;
   /// Goes on from a checkpoint of a flow made with the same environment, options, deformation, field, inlets, and edits
   /// (see go_to()): every later step is then the same to the last bit. Replaces all particles; vertices move to the
   /// checkpoint's time. Throws InvalidArgument, the particles unchanged, where a state does not hold in this
   /// environment.
-  void restore(const FlowCheckpoint& saved);
+  void restore(const SimulationCheckpoint& saved);
   /// Brings the vertices to where they are after so many steps, to make edits there again before restore(). Throws
   /// InvalidArgument where there are particles.
   void go_to(std::uint64_t steps);
@@ -198,7 +200,7 @@ class Flow {
   [[nodiscard]] const Particles& particles() const { return particles_; }
   [[nodiscard]] std::span<const std::uint64_t> ids() const { return ids_; }
   [[nodiscard]] std::span<const Vec3> velocities() const { return velocities_; }
-  [[nodiscard]] std::span<const Fate> fates() const { return fates_; }
+  [[nodiscard]] std::span<const ParticleStatus> fates() const { return fates_; }
   [[nodiscard]] std::span<const std::uint32_t> contact_counts() const { return contact_counts_; }
   [[nodiscard]] std::span<const double> radii() const { return radii_; }
   /// 1 for those that were held in the last step: they rode along with their cell instead of moving on their own.
@@ -206,9 +208,9 @@ class Flow {
 
   [[nodiscard]] const Collider& collider() const { return collider_; }
 
-  [[nodiscard]] const FlowTotals& totals() const { return totals_; }
+  [[nodiscard]] const SimulationTotals& totals() const { return totals_; }
   /// At the particles' places and velocities now. The same bits for any number of threads. Cost: linear, parallel.
-  [[nodiscard]] FlowEnergy energy() const;
+  [[nodiscard]] SimulationEnergy energy() const;
   /// Of every particle that there has been: those that left count with their last state.
   [[nodiscard]] StateHash state_hash() const;
 
@@ -237,7 +239,7 @@ class Flow {
   [[nodiscard]] Acceleration acceleration(double dt) const;
   void count_contacts();
   void mark_held();
-  void remove_absorbed(const FollowReport& report, std::span<const State> before);
+  void remove_absorbed(const UpdateReport& report, std::span<const ParticleState> before);
   void remove_marked(std::span<const std::uint8_t> marks);
   void complete(const Vec3& velocity, double radius);
   void complete_next(const Vec3& velocity, double radius);
@@ -258,18 +260,18 @@ class Flow {
   void add_sampled(const Sampler& sampler, std::size_t count, const Vec3& velocity, double radius);
 
   Environment& environment_;
-  FlowOptions options_;
-  Responses responses_;
+  SimulationOptions options_;
+  WallResponses responses_;
   std::optional<VelocityField> field_;
   std::optional<Deformation> deformation_;
   std::vector<Inlet> inlets_;
-  std::function<void(Stranded)> after_edit_;
+  std::function<void(OrphanPolicy)> after_edit_;
   Random random_;
 
   Particles particles_;
   std::vector<std::uint64_t> ids_;
   std::vector<Vec3> velocities_;
-  std::vector<Fate> fates_;
+  std::vector<ParticleStatus> fates_;
   std::vector<std::uint32_t> contact_counts_;
   std::vector<double> radii_;
   std::vector<std::uint8_t> held_;
@@ -294,8 +296,8 @@ class Flow {
   std::uint64_t next_id_ = 0;
   std::uint64_t steps_ = 0;
   std::uint64_t absorbed_between_ = 0;  // by edits since the last step
-  FlowStep last_;
-  FlowTotals totals_;
+  SimulationStep last_;
+  SimulationTotals totals_;
   StateHash gone_;
 };
 

@@ -66,8 +66,8 @@ class SphereStepper {
   /// each cell that the sphere reaches (three of them at a radius of 0.2 cell sizes), 0.1 to 0.4 us for each wall
   /// triangle there, and some us for each contact.
   SphereReport advance(Environment& environment, Particles& particles, std::span<const double> radii,
-                       std::span<const Vec3> targets, const Respond& respond = {}, const StepOptions& options = {},
-                       std::span<const double> clearances = {});
+                       std::span<const Vec3> targets, const ContactCallback& respond = {},
+                       const StepOptions& options = {}, std::span<const double> clearances = {});
 
   struct Buffers;  ///< of its own
 
@@ -77,7 +77,7 @@ class SphereStepper {
 
 /// The same, for once.
 SphereReport advance_spheres(Environment& environment, Particles& particles, std::span<const double> radii,
-                             std::span<const Vec3> targets, const Respond& respond = {},
+                             std::span<const Vec3> targets, const ContactCallback& respond = {},
                              const StepOptions& options = {});
 
 }  // namespace dartcast

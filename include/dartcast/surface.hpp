@@ -43,11 +43,11 @@ struct AcrossEdge {
 
 class Surface {
  public:
-  /// Takes the mesh as inspect_surface() repairs it. Throws InvalidMesh where that finds a defect, with the first
-  /// faces. Cost: n log n.
+  /// Takes the mesh as check_and_repair_surface() repairs it. Throws InvalidMesh where that finds a defect, with the
+  /// first faces. Cost: n log n.
   explicit Surface(MeshData mesh);
 
-  [[nodiscard]] const Map& map() const { return map_; }
+  [[nodiscard]] const CombinatorialMap& map() const { return map_; }
   /// Positions of all points of the mesh, in its order, then of those that edits made (surface/surface_edit.hpp).
   [[nodiscard]] std::span<const Vec3> positions() const { return positions_; }
 
@@ -83,7 +83,7 @@ class Surface {
 
   [[nodiscard]] bool has_flat_triangle(Cell c, std::span<const Vec3> positions) const;
 
-  Map map_;
+  CombinatorialMap map_;
   std::vector<Vec3> positions_;
 };
 

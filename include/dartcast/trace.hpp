@@ -12,11 +12,11 @@ namespace dartcast {
 
 /// What a particle does on its way to one target. Its cell goes from `before` through each crossing to `after`.
 struct Trace {
-  State before;
+  ParticleState before;
   Forecast start;  ///< of `before`: the paper's kind and dart; of no meaning where it is held
   std::vector<Crossing> crossings;
   ContactList contacts;  ///< by time
-  State after;           ///< the bits that Environment::advance() gives
+  ParticleState after;   ///< the bits that Environment::advance() gives
   Forecast end;          ///< of `after`, as `start`
   StepResult result;     ///< whether it was held, or stopped at its last contact
 };

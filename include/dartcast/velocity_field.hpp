@@ -18,16 +18,16 @@ class VelocityField {
   /// `values`: one velocity per point of the mesh; interior points take theirs by their weights. The complex's
   /// positions are those at rest. Throws InvalidArgument where the number does not match, a value is not
   /// finite, or in the plane its z is not 0.
-  VelocityField(const Complex& complex, std::span<const Vec3> values, FieldFrame frame = FieldFrame::space);
+  VelocityField(const CellComplex& complex, std::span<const Vec3> values, FieldFrame frame = FieldFrame::space);
 
   [[nodiscard]] FieldFrame frame() const { return frame_; }
 
   /// After an edit: new vertices take the values of those that they were made between. `complex`: as it is now.
-  void follow(const ComplexEditReport& edit, const Complex& complex);
+  void update_after_edit(const ComplexEditReport& edit, const CellComplex& complex);
 
   /// The velocity at the point of barycentric coordinates w in a simplex with these corners now. In the mesh's frame:
   /// relative to the mesh, taken from rest by the simplex's own linear map, so that a flow along a wall stays along it.
-  [[nodiscard]] Vec3 at(const Complex& complex, SimplexId simplex, const std::array<double, 4>& w,
+  [[nodiscard]] Vec3 at(const CellComplex& complex, SimplexId simplex, const std::array<double, 4>& w,
                         const Corners& now) const;
 
  private:

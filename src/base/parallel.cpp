@@ -59,13 +59,13 @@ void check_threads(Threads threads) {
   if (threads.count > max_threads())
     throw InvalidArgument(fmt::format("{} threads: at most {} can be asked for, 0 stands for all that the machine has",
                                       threads.count, max_threads()));
-  const unsigned most = given_by_system(threads.count);
-  if (most < threads.count)
+  const unsigned limit = given_by_system(threads.count);
+  if (limit < threads.count)
     throw Error(fmt::format(
         "{} threads: the system gives {} now; ask for fewer, or raise its limits (ulimit -u, ulimit -v, or those of "
         "the container)",
-        threads.count, most));
-  given = most;
+        threads.count, limit));
+  given = limit;
 }
 
 }  // namespace dartcast

@@ -24,7 +24,7 @@ Vec3 lowest_corner(std::span<const Vec3> points, const Vec3& gravity) {
 }
 
 void check_collisions(const BodyCollisionOptions& o) {
-  if (!(o.push >= 0.0 && o.push <= 1.0))
+  if (!(o.position_correction >= 0.0 && o.position_correction <= 1.0))
     throw InvalidArgument("bodies: the push of collisions must be between 0 and 1");
   if (!(o.friction >= 0.0) || !std::isfinite(o.friction))
     throw InvalidArgument("bodies: the friction of collisions must be finite and not negative");
@@ -33,11 +33,11 @@ void check_collisions(const BodyCollisionOptions& o) {
   if (o.iterations == 0) throw InvalidArgument("bodies: collisions need an iteration at least");
 }
 
-bool leaves(Fate fate) { return fate == Fate::absorbed || fate == Fate::escaped; }
+bool leaves(ParticleStatus fate) { return fate == ParticleStatus::absorbed || fate == ParticleStatus::escaped; }
 
 }  // namespace
 
-Bodies::Bodies(Environment& environment, const BodiesOptions& options, Responses responses)
+Bodies::Bodies(Environment& environment, const BodiesOptions& options, WallResponses responses)
     : environment_(environment),
       options_(options),
       responses_(std::move(responses)),
@@ -61,7 +61,7 @@ void Bodies::check(const BodyOptions& o) const {
   if (!share(o.pull)) throw InvalidArgument("bodies: the pull must be between 0 and 1");
   if (!(o.damping >= 0.0) || !std::isfinite(o.damping))
     throw InvalidArgument("bodies: the damping must be finite and not negative");
-  if (!is_finite(o.velocity) || !is_finite(o.spin))
+  if (!is_finite(o.velocity) || !is_finite(o.angular_velocity))
     throw InvalidArgument("bodies: a body's velocity and spin must be finite");
   if (!(o.stiffness >= 0.0) || !std::isfinite(o.stiffness))
     throw InvalidArgument("bodies: a stiffness must be finite and not negative");
@@ -72,13 +72,13 @@ void Bodies::check(const BodyOptions& o) const {
         o.stiffness, 1.0 / std::sqrt(o.stiffness), options_.dt, 1.0 / (options_.dt * options_.dt)));
 }
 
-AddedBody Bodies::add(std::span<const Vec3> points, const BodyOptions& options) {
+AddBodyResult Bodies::add(std::span<const Vec3> points, const BodyOptions& options) {
   check(options);
   const std::size_t size = points.size();
   std::vector<double> masses = options.masses;
   if (masses.empty()) masses.assign(size, options.mass / static_cast<double>(std::max<std::size_t>(size, 1)));
   RestShape shape(points, masses, options.match);
-  AddedBody added;
+  AddBodyResult added;
   const std::vector<Location> locations = environment_.locate(points);
   for (std::uint32_t i = 0; i < size; ++i) {
     if (locations[i].place != Place::free) added.refused.push_back(i);
@@ -97,7 +97,7 @@ AddedBody Bodies::add(std::span<const Vec3> points, const BodyOptions& options) 
   resize_arrays(options.radius);
   const Vec3 centre = rigid_motion(masses, points, of(body, velocities_)).centre;
   for (std::size_t i = 0; i < size; ++i)
-    velocities_[body.first + i] = options.velocity + cross(options.spin, points[i] - centre);
+    velocities_[body.first + i] = options.velocity + cross(options.angular_velocity, points[i] - centre);
   std::fill_n(body_of_.begin() + static_cast<std::ptrdiff_t>(body.first), size,
               static_cast<std::uint32_t>(bodies_.size()));
   bodies_.push_back(std::move(body));
@@ -112,7 +112,7 @@ void Bodies::resize_arrays(double radius) {
   velocities_.resize(size);
   radii_.resize(size, radius);
   body_of_.resize(size);
-  fates_.resize(size, Fate::alive);
+  fates_.resize(size, ParticleStatus::alive);
   on_.resize(size);
   next_on_.resize(size);
   sums_.resize(size);
@@ -124,7 +124,7 @@ void Bodies::resize_arrays(double radius) {
   ids_.resize(size);
   inverse_masses_.resize(size);
   led_to_.resize(size);
-  pushes_.resize(size);
+  corrections_.resize(size);
   outer_forces_.assign(size, Vec3{});
   contact_forces_.assign(size, Vec3{});
 }
@@ -169,12 +169,12 @@ StateHash Bodies::state_hash() const {
   return hash;
 }
 
-FollowReport Bodies::follow(Stranded stranded) {
-  FollowReport report = environment_.follow(particles_, stranded);
+UpdateReport Bodies::update_after_edit(OrphanPolicy orphaned) {
+  UpdateReport report = environment_.update_after_edit(particles_, orphaned);
   std::vector<std::uint8_t> absorbed(positions_.size(), 0);
   std::vector<std::uint8_t> leaving(bodies_.size(), 0);
-  for (const StrandedParticle& s : report.stranded) {
-    if (s.became != Stranded::absorb) continue;
+  for (const OrphanedParticle& s : report.orphaned) {
+    if (s.outcome != OrphanPolicy::absorb) continue;
     absorbed[s.particle] = 1;
     leaving[body_of_[s.particle]] = 1;
   }
@@ -238,7 +238,7 @@ Bodies::Checkpoint Bodies::checkpoint() const {
   Checkpoint saved;
   saved.steps = steps_;
   saved.counters = counters_;
-  saved.impulses.assign(collisions_.solver().kept().begin(), collisions_.solver().kept().end());
+  saved.impulses.assign(collisions_.solver().cached_impulses().begin(), collisions_.solver().cached_impulses().end());
   for (const Body& body : bodies_) {
     saved.ids.push_back(body.id);
     saved.fits.insert(saved.fits.end(), body.fits.begin(), body.fits.end());
@@ -262,7 +262,7 @@ void Bodies::restore(const Checkpoint& saved) {
   }
   if (next != saved.ids.size() || particles != saved.particles.size() || fits != saved.fits.size())
     throw InvalidArgument("bodies: the checkpoint is of other bodies than have been added");
-  std::vector<State> states;
+  std::vector<ParticleState> states;
   std::vector<Weights> weights;
   for (const Checkpoint::Particle& p : saved.particles) {
     states.push_back(p.state);
@@ -283,7 +283,7 @@ void Bodies::restore(const Checkpoint& saved) {
   }
   steps_ = saved.steps;
   counters_ = saved.counters;
-  collisions_.solver().set_kept(saved.impulses);
+  collisions_.solver().set_cached_impulses(saved.impulses);
   find_pairs();
 }
 

@@ -12,17 +12,17 @@ RigidMover Bodies::as_rigid(std::size_t body) const {
   RigidMover mover;
   mover.centre = rigid.centre;
   mover.velocity = rigid.velocity;
-  mover.spin = rigid.spin;
+  mover.angular_velocity = rigid.angular_velocity;
   mover.turns = true;
   for (std::size_t p = b.first; p < b.first + b.shape.size(); ++p) {
-    if (fates_[p] != Fate::alive || particles_[p].held) return mover;
+    if (fates_[p] != ParticleStatus::alive || particles_[p].held) return mover;
   }
   mover.inverse_mass = 1.0 / rigid.mass;
   mover.inverse_inertia = inverse_inertia(b.shape.masses(), positions, rigid.centre);
   return mover;
 }
 
-RigidMover Bodies::foreseen(std::size_t body) const {
+RigidMover Bodies::predicted_state(std::size_t body) const {
   RigidMover mover = as_rigid(body);
   mover.velocity += options_.gravity * options_.dt;
   return mover;
@@ -30,18 +30,19 @@ RigidMover Bodies::foreseen(std::size_t body) const {
 
 // Contacts reckon with velocities that change at the begin of a step. Forces over the step lead half as far: the other
 // half is a displacement, less what they only took from gravity, which leads half as far, too.
-void Bodies::act(std::size_t body, const RigidMover& answered) {
-  const RigidMover before = foreseen(body);
+void Bodies::apply_impulse(std::size_t body, const RigidMover& solved) {
+  const RigidMover before = predicted_state(body);
   const double dt = options_.dt;
   const Vec3 fall = options_.gravity * dt;
   BodyAction action;
   action.centre = before.centre;
-  action.velocity = answered.velocity - before.velocity;
-  action.spin = answered.spin - before.spin;
+  action.velocity = solved.velocity - before.velocity;
+  action.angular_velocity = solved.angular_velocity - before.angular_velocity;
   const double square = dot(fall, fall);
   const double carried = square > 0.0 ? std::clamp(-dot(action.velocity, fall) / square, 0.0, 1.0) : 0.0;
-  action.shift = (answered.shift - before.velocity * dt) + (fall * carried - action.velocity) * (0.5 * dt);
-  action.turn = (answered.turned - before.spin * dt) - action.spin * (0.5 * dt);
+  action.position_delta =
+      (solved.position_delta - before.velocity * dt) + (fall * carried - action.velocity) * (0.5 * dt);
+  action.turn = (solved.rotation_delta - before.angular_velocity * dt) - action.angular_velocity * (0.5 * dt);
   bodies_[body].action = action;
 }
 
@@ -59,7 +60,7 @@ void Bodies::find_pairs() {
   for (std::size_t p = 0; p < ids_.size(); ++p) {
     const Body& body = bodies_[body_of_[p]];
     ids_[p] = (std::uint64_t{body.id} << 32U) | (p - body.first);
-    inverse_masses_[p] = fates_[p] == Fate::alive && !particles_[p].held ? 1.0 / masses_[p] : 0.0;
+    inverse_masses_[p] = fates_[p] == ParticleStatus::alive && !particles_[p].held ? 1.0 / masses_[p] : 0.0;
     led_to_[p] = velocities_[p] + options_.gravity * options_.dt;
   }
   collisions_.find(environment_.complex(), particles_.states(), body_particles(), led_to_, options_.dt,
@@ -79,7 +80,8 @@ std::uint64_t Bodies::rebound() {
   for (std::size_t p = 0; p < velocities_.size(); ++p) {
     const RigidMover& was = before[body_of_[p]];
     const RigidMover& is = movers_[body_of_[p]];
-    velocities_[p] += (is.velocity - was.velocity) + cross(is.spin - was.spin, positions_[p] - was.centre);
+    velocities_[p] +=
+        (is.velocity - was.velocity) + cross(is.angular_velocity - was.angular_velocity, positions_[p] - was.centre);
   }
   return impacts;
 }
@@ -88,16 +90,16 @@ std::uint64_t Bodies::rebound() {
 void Bodies::collide() {
   const double dt = options_.dt;
   for (std::size_t p = 0; p < led_to_.size(); ++p) {
-    sums_[p].last = velocities_[p] + well_of(bodies_[body_of_[p]], p).acceleration(positions_[p]) * dt;
+    sums_[p].last = velocities_[p] + potential_of(bodies_[body_of_[p]], p).acceleration(positions_[p]) * dt;
     led_to_[p] = sums_[p].last;
   }
-  last_.collisions = collisions_.solve(body_particles(), *options_.collisions, dt, velocities_, led_to_, pushes_);
+  last_.collisions = collisions_.solve(body_particles(), *options_.collisions, dt, velocities_, led_to_, corrections_);
   for (std::size_t p = 0; p < led_to_.size(); ++p) {
     Body& body = bodies_[body_of_[p]];
     const Vec3 change = led_to_[p] - sums_[p].last;
     contact_forces_[p] += change * (1.0 / dt);
     if (change != Vec3{}) body.collided = true;
-    if (pushes_[p] != Vec3{}) body.pushed = true;
+    if (corrections_[p] != Vec3{}) body.pushed = true;
   }
 }
 

@@ -26,7 +26,7 @@ void Bodies::measure() {
     fit(body);
     body.moving = 0.0;
   });
-  pool_energy();
+  share_energy();
   for (Body& body : bodies_)
     body.pays = body.allowed >= -energy_slack * body.budget || (body.limited && !body.collided);
 }
@@ -46,7 +46,7 @@ double Bodies::given(const Body& body) const {
     const std::size_t p = body.first + i;
     const Leg& leg = legs_[p];
     if (!leg.pushed) continue;
-    const double gain = well_of(body, p).rise(positions_[p], reached_[p] - positions_[p]) +
+    const double gain = potential_of(body, p).rise(positions_[p], reached_[p] - positions_[p]) +
                         0.5 * (dot(leg.after, leg.after) - dot(velocities_[p], velocities_[p]));
     sum += masses_[p] * std::max(0.0, gain);
   }
@@ -78,7 +78,7 @@ void Bodies::accept(Body& body) {
 
 // Takes from the velocities what the body's energy does not pay for. While it has met no wall, from those relative to
 // the rigid motion alone, if that is enough but for the slack: momentum and angular momentum stay.
-void Bodies::afford(Body& body) {
+void Bodies::limit_energy(Body& body) {
   const double has = kinetic(body);
   const double allowed = std::max(0.0, body.allowed);
   if (has <= allowed) return;
@@ -86,9 +86,9 @@ void Bodies::afford(Body& body) {
   if (!body.met) {
     const auto places = of(body, reached_);
     const RigidMotion rigid = rigid_motion(body.shape.masses(), places, velocities);
-    const double least = rigid.kinetic_energy();
-    if (least <= allowed + energy_slack * body.budget) {
-      const double kept = least < allowed ? std::sqrt((allowed - least) / (has - least)) : 0.0;
+    const double lowest = rigid.kinetic_energy();
+    if (lowest <= allowed + energy_slack * body.budget) {
+      const double kept = lowest < allowed ? std::sqrt((allowed - lowest) / (has - lowest)) : 0.0;
       for (std::size_t i = 0; i < velocities.size(); ++i) {
         const Vec3 common = rigid.velocity_at(places[i]);
         velocities[i] = common + (velocities[i] - common) * kept;
@@ -99,7 +99,7 @@ void Bodies::afford(Body& body) {
   for (Vec3& v : velocities) v *= std::sqrt(allowed / has);
 }
 
-// Whether afford() would cut the rigid motion, too.
+// Whether limit_energy() would cut the rigid motion, too.
 bool Bodies::lacks_motion(const Body& body) {
   const double allowed = std::max(0.0, body.allowed);
   if (kinetic(body) <= allowed) return false;
@@ -109,7 +109,7 @@ bool Bodies::lacks_motion(const Body& body) {
 
 // Bodies that touch, and meet no wall, are cut as one where one of them lacks energy for its rigid motion: velocities
 // relative to the rigid motion of all together fall, so that momentum and angular momentum stay.
-void Bodies::afford_together() {
+void Bodies::limit_energy_together() {
   if (std::none_of(bodies_.begin(), bodies_.end(), [](const Body& b) { return b.collided; })) return;
   std::vector<std::uint32_t> joined(bodies_.size());
   std::iota(joined.begin(), joined.end(), 0U);
@@ -149,9 +149,9 @@ void Bodies::cut_together(std::span<const std::uint32_t> group) {
     allowed += bodies_[b].allowed;
   }
   const RigidMotion common = rigid_motion(masses, places, velocities);
-  const double least = common.kinetic_energy();
-  if (!(least < allowed)) return;
-  const double kept = has > allowed ? std::sqrt((allowed - least) / (has - least)) : 1.0;
+  const double lowest = common.kinetic_energy();
+  if (!(lowest < allowed)) return;
+  const double kept = has > allowed ? std::sqrt((allowed - lowest) / (has - lowest)) : 1.0;
   for (const std::uint32_t b : group) {
     Body& body = bodies_[b];
     for (std::size_t p = body.first; p < body.first + body.shape.size(); ++p) {
@@ -166,7 +166,7 @@ void Bodies::cut_together(std::span<const std::uint32_t> group) {
 
 // What one of the bodies that collide does not need, another may: what impulses take from one and give to the other is
 // known only as far as the step is foreseen.
-void Bodies::pool_energy() {
+void Bodies::share_energy() {
   double spare = 0.0;
   double wanted = 0.0;
   for (Body& body : bodies_) {

@@ -45,7 +45,7 @@ void Bodies::first_pass() {
   });
   hold_stuck();
   const Particles before = particles_;
-  const std::vector<Fate> fates = fates_;
+  const std::vector<ParticleStatus> fates = fates_;
   last_.motion = advance(false);
   measure();
   // Limited targets are paid for; where bodies that collide still lack energy, without the collision.
@@ -73,7 +73,7 @@ void Bodies::begin(Body& body) {
   body.fallbacks = 0;
   body.constant = body.shape.goals(body.fits, of(body, goals_));
   const auto positions = of(body, positions_);
-  body.pushed = body.action.shift != Vec3{} || body.action.turn != Vec3{};
+  body.pushed = body.action.position_delta != Vec3{} || body.action.turn != Vec3{};
   body.collided = false;
   body.before = (kinetic(body) + potential(body, positions)) +
                 body.stiffness * matching_energy(body.shape, positions, of(body, goals_), body.constant);
@@ -107,7 +107,8 @@ void Bodies::integrate(Body& body) {
     const auto goals = of(body, first ? goals_ : trial_goals_);
     for (std::size_t i = 0; i < sums.size(); ++i) {
       const Vec3 a =
-          Well{body.stiffness, goals[i], options_.gravity + contact_forces_[body.first + i]}.acceleration(places[i]);
+          PotentialEnergy{body.stiffness, goals[i], options_.gravity + contact_forces_[body.first + i]}.acceleration(
+              places[i]);
       sums[i] = {sums[i].last, a, sums[i].way + a * stage.way, sums[i].speed + a * stage.speed};
     }
   }
@@ -127,7 +128,7 @@ void Bodies::set_legs(Body& body) {
     leg.from = positions_[p];
     leg.before = v;
     leg.after = v + sums_[p].speed * (options_.dt / 6.0);
-    leg.early = well_of(body, p).acceleration(positions_[p]);
+    leg.early = potential_of(body, p).acceleration(positions_[p]);
     leg.late = sums_[p].last;
     leg.kinetic = 0.5 * dot(v, v);
     next_on_[p] = {};
@@ -138,7 +139,7 @@ void Bodies::limit_targets(const Body& body) {
   for (std::size_t i = 0; i < body.shape.size(); ++i) {
     const std::size_t p = body.first + i;
     const Vec3 way = targets_[p] - positions_[p];
-    const double share = well_of(body, p).payable_share(positions_[p], way, legs_[p].kinetic);
+    const double share = potential_of(body, p).affordable_share(positions_[p], way, legs_[p].kinetic);
     if (share < 1.0) targets_[p] = flushed(positions_[p] + way * share);
   }
 }
@@ -154,15 +155,15 @@ void Bodies::stay(const Body& body) {
 // One that sticks to a wall goes along with it, to the last bit, so that no contact follows.
 void Bodies::hold_stuck() {
   const bool moving = environment_.awaits_advance(particles_);
-  const Complex& complex = environment_.complex();
+  const CellComplex& complex = environment_.complex();
   for (std::size_t p = 0; p < fates_.size(); ++p) {
-    if (fates_[p] != Fate::stuck) continue;
-    const State& s = particles_[p];
+    if (fates_[p] != ParticleStatus::stuck) continue;
+    const ParticleState& s = particles_[p];
     targets_[p] = s.position;
     legs_[p].after = {};
     if (!moving || s.held || volume_sign(complex.corners(s.at())) != Sign::positive) continue;
     const Weights w = detail::barycentric(complex.previous_corners(s.at()), s.position);
-    targets_[p] = detail::ridden(current_space<4>(complex), s.at(), w).position;
+    targets_[p] = detail::carried(current_space<4>(complex), s.at(), w).position;
     legs_[p].after = (targets_[p] - s.position) * (1.0 / options_.dt);
     legs_[p].pushed = true;
   }
@@ -182,8 +183,8 @@ StepReport Bodies::advance(bool pulls) {
       },
       options_.step);
   for (const Contact& c : report.contacts.contacts) bodies_[body_of_[c.particle]].met = true;
-  for (const Stopped& s : report.stopped) legs_[s.particle].after = {};
-  for (const Held& h : report.held) {
+  for (const StoppedParticle& s : report.stopped) legs_[s.particle].after = {};
+  for (const HeldParticle& h : report.held) {
     legs_[h.particle].after = legs_[h.particle].before;
     legs_[h.particle].pushed = true;
   }
@@ -203,10 +204,10 @@ void Bodies::second_pass() {
     }
     body.moving = kinetic(body);
   });
-  pool_energy();
-  afford_together();
+  share_energy();
+  limit_energy_together();
   for_each_body([&](Body& body) {
-    afford(body);
+    limit_energy(body);
     if (body.changes()) body.rigid = rigid_motion(body.shape.masses(), of(body, reached_), of(body, velocities_));
     aim_pull(body);
   });
@@ -220,44 +221,45 @@ void Bodies::second_pass() {
     body.moving = kinetic(body);
     charge_lift(body);
   });
-  pool_energy();
-  afford_together();
-  for_each_body([&](Body& body) { afford(body); });
+  share_energy();
+  limit_energy_together();
+  for_each_body([&](Body& body) { limit_energy(body); });
 }
 
 // Free of walls, to where goal and centrifugal force are in balance: that leaves the centre of mass where it is, and a
 // body that spins as it is. The body's energy must pay for it even if walls stop any of the particles on the way. Else,
 // and where it has met a wall, they are pulled to the bottoms of their wells, which costs nothing. With
 // those that touch other bodies the forces of these are in balance, too, and overlaps are taken out, as far as that
-// costs nothing. What act() asks for is input.
+// costs nothing. What apply_impulse() asks for is input.
 void Bodies::aim_pull(Body& body) {
   const double softness = 1.0 / body.stiffness;
   double cost = 0.0;
   for (std::size_t p = body.first; p < body.first + body.shape.size(); ++p) {
     const Vec3& x = reached_[p];
-    const Vec3 centrifugal = cross(cross(body.rigid.spin, x - body.rigid.centre), body.rigid.spin);
+    const Vec3 centrifugal =
+        cross(cross(body.rigid.angular_velocity, x - body.rigid.centre), body.rigid.angular_velocity);
     targets_[p] = x + ((goals_[p] + centrifugal * softness) - x) * body.pull;
-    const Well well{body.stiffness, goals_[p], options_.gravity};
-    cost += masses_[p] * std::max(0.0, well.rise(x, targets_[p] - x));
+    const PotentialEnergy potential{body.stiffness, goals_[p], options_.gravity};
+    cost += masses_[p] * std::max(0.0, potential.rise(x, targets_[p] - x));
   }
   body.slides = body.met || cost > body.allowed;
   body.lift = 0.0;
   for (std::size_t p = body.first; p < body.first + body.shape.size(); ++p) {
     const Vec3& x = reached_[p];
-    if (!body.changes() || fates_[p] != Fate::alive || particles_[p].held) {
+    if (!body.changes() || fates_[p] != ParticleStatus::alive || particles_[p].held) {
       targets_[p] = x;
       continue;
     }
-    const Well well{body.stiffness, goals_[p], options_.gravity};
+    const PotentialEnergy potential{body.stiffness, goals_[p], options_.gravity};
     if (body.slides) targets_[p] = x + ((goals_[p] + options_.gravity * softness) - x) * body.pull;
-    if (contact_forces_[p] != Vec3{} || (body.pushed && pushes_[p] != Vec3{})) {
-      const Vec3 way = ((targets_[p] - x) + contact_forces_[p] * (softness * body.pull)) + pushes_[p];
-      targets_[p] = x + way * well.payable_share(x, way, 0.0);
+    if (contact_forces_[p] != Vec3{} || (body.pushed && corrections_[p] != Vec3{})) {
+      const Vec3 way = ((targets_[p] - x) + contact_forces_[p] * (softness * body.pull)) + corrections_[p];
+      targets_[p] = x + way * potential.affordable_share(x, way, 0.0);
     }
-    if (const Vec3 shift = body.action.shift_at(x); body.pushed && shift != Vec3{}) {
-      const double paid = std::max(0.0, well.rise(x, targets_[p] - x));
-      targets_[p] += shift;
-      body.lift += masses_[p] * std::max(0.0, well.rise(x, targets_[p] - x) - paid);
+    if (const Vec3 position_delta = body.action.position_delta_at(x); body.pushed && position_delta != Vec3{}) {
+      const double paid = std::max(0.0, potential.rise(x, targets_[p] - x));
+      targets_[p] += position_delta;
+      body.lift += masses_[p] * std::max(0.0, potential.rise(x, targets_[p] - x) - paid);
     }
     targets_[p] = flushed(targets_[p]);
   }
@@ -286,7 +288,7 @@ void Bodies::damp(Body& body) {
   for (std::size_t i = 0; i < velocities.size(); ++i) {
     const std::size_t p = body.first + i;
     velocities[i] = rigid.velocity_at(places[i]) + (velocities[i] - left.velocity_at(places[i]));
-    if (fates_[p] != Fate::alive) velocities[i] = legs_[p].after;
+    if (fates_[p] != ParticleStatus::alive) velocities[i] = legs_[p].after;
   }
 }
 

@@ -34,8 +34,9 @@ void BodyCollisions::leave_out_lonely(const BodyParticles& particles, Threads th
   }
 }
 
-void BodyCollisions::find(const Complex& complex, std::span<const State> states, const BodyParticles& particles,
-                          std::span<const Vec3> velocities, double dt, Threads threads) {
+void BodyCollisions::find(const CellComplex& complex, std::span<const ParticleState> states,
+                          const BodyParticles& particles, std::span<const Vec3> velocities, double dt,
+                          Threads threads) {
   pairs_.clear();
   sweep(particles, velocities, dt);
   leave_out_lonely(particles, threads);
@@ -49,9 +50,9 @@ void BodyCollisions::find(const Complex& complex, std::span<const State> states,
 
 BodyCollisionCounts BodyCollisions::solve(const BodyParticles& particles, const BodyCollisionOptions& options,
                                           double dt, std::span<const Vec3> velocities, std::span<Vec3> led_to,
-                                          std::span<Vec3> pushes) {
+                                          std::span<Vec3> corrections) {
   BodyCollisionCounts counts;
-  std::fill(pushes.begin(), pushes.end(), Vec3{});
+  std::fill(corrections.begin(), corrections.end(), Vec3{});
   contacts_.clear();
   for (const SpherePair& p : pairs_) {
     const double r = std::min(particles.radii[p.a], particles.radii[p.b]);
@@ -67,16 +68,16 @@ BodyCollisionCounts BodyCollisions::solve(const BodyParticles& particles, const 
     counts.deepest = std::max(counts.deepest, -near.distance);
     const double mobility = particles.inverse_masses[p.a] + particles.inverse_masses[p.b];
     if (!(mobility > 0.0)) continue;
-    const Vec3 apart = near.normal * (-near.distance * options.push / mobility);
-    pushes[p.a] -= apart * particles.inverse_masses[p.a];
-    pushes[p.b] += apart * particles.inverse_masses[p.b];
+    const Vec3 apart = near.normal * (-near.distance * options.position_correction / mobility);
+    corrections[p.a] -= apart * particles.inverse_masses[p.a];
+    corrections[p.b] += apart * particles.inverse_masses[p.b];
   }
   displacements_.resize(led_to.size());
   SolverOptions solver;
   solver.dt = dt;
   solver.friction = options.friction;
   solver.iterations = options.iterations;
-  solver.push_iterations = 0;  // overlaps are taken out by `pushes`
+  solver.position_iterations = 0;  // overlaps are taken out by `corrections`
   solver_.solve(contacts_, {}, {particles.ids, particles.inverse_masses, led_to, displacements_}, solver);
   counts.pairs_near = contacts_.size();
   counts.pairs_touching = solver_.loaded_pairs();

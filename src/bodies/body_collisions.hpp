@@ -22,7 +22,7 @@ struct BodyCollisionOptions {
   std::optional<double> restitution = {};
   double friction = 0.0;  ///< >= 0
   unsigned iterations = 10;
-  double push = 0.2;  ///< share of an overlap taken out in one step, in [0, 1]
+  double position_correction = 0.2;  ///< share of an overlap taken out in one step, in [0, 1]
 };
 
 /// What happened in one step.
@@ -49,14 +49,14 @@ class BodyCollisions {
   /// Finds the pairs that may meet in the next step: particles of different bodies, no wall in between, whose spheres'
   /// swept boxes meet. Precondition: the states are of the complex as it stands. Cost: about 1 us per particle of
   /// bodies whose bounding spheres meet, little for the others.
-  void find(const Complex& complex, std::span<const State> states, const BodyParticles& particles,
+  void find(const CellComplex& complex, std::span<const ParticleState> states, const BodyParticles& particles,
             std::span<const Vec3> velocities, double dt, Threads threads);
 
   /// Impulses for the pairs found. `velocities`: at the begin of the step; `led_to`: those that its forces would lead
-  /// to; out with the impulses. Pairs that stay apart on the way, at the mean of both, get none. `pushes`: out, by how
-  /// much the overlaps are to be taken out. Throws as ContactSolver::solve().
+  /// to; out with the impulses. Pairs that stay apart on the way, at the mean of both, get none. `corrections`: out, by
+  /// how much the overlaps are to be taken out. Throws as ContactSolver::solve().
   BodyCollisionCounts solve(const BodyParticles& particles, const BodyCollisionOptions& options, double dt,
-                            std::span<const Vec3> velocities, std::span<Vec3> led_to, std::span<Vec3> pushes);
+                            std::span<const Vec3> velocities, std::span<Vec3> led_to, std::span<Vec3> corrections);
 
   /// Those found; sorted.
   [[nodiscard]] std::span<const SpherePair> pairs() const { return pairs_; }

@@ -20,28 +20,28 @@ bool enters(const Vec3& v, std::span<const WallHit> walls) {
 // Along the walls, with friction, and not into those met earlier in the step.
 Vec3 along_walls(const Pass& pass, const Vec3& v, std::span<const WallHit> walls, std::span<const WallHit> earlier) {
   const Vec3 result = rebounded(v, walls, [&](const WallHit& wall, double) {
-    const Response& r = pass.responses->of(wall.patch);
-    return WallSurface{0.0, r.kind == ResponseKind::slide ? 0.0 : r.friction};
+    const WallResponse& r = pass.responses->of(wall.patch);
+    return WallSurface{0.0, r.kind == WallResponseKind::slide ? 0.0 : r.friction};
   });
   return enters(result, earlier) ? slid(v, walls, earlier) : result;
 }
 
 // Whether the particle ends here, by its patch's answer.
 bool ends_here(const Pass& pass, const Contact& contact, std::span<const WallHit> walls) {
-  Fate& fate = pass.fates[contact.particle];
-  if (fate != Fate::alive) return true;
+  ParticleStatus& fate = pass.fates[contact.particle];
+  if (fate != ParticleStatus::alive) return true;
   switch (pass.responses->of(walls.front().patch).kind) {
-    case ResponseKind::stick: fate = Fate::stuck; break;
-    case ResponseKind::absorb: fate = Fate::absorbed; break;
-    case ResponseKind::escape: fate = Fate::escaped; break;
-    case ResponseKind::reflect:
-    case ResponseKind::slide: return false;
+    case WallResponseKind::stick: fate = ParticleStatus::stuck; break;
+    case WallResponseKind::absorb: fate = ParticleStatus::absorbed; break;
+    case WallResponseKind::escape: fate = ParticleStatus::escaped; break;
+    case WallResponseKind::reflect:
+    case WallResponseKind::slide: return false;
   }
   return true;
 }
 
 // One contact of the first pass.
-struct Meeting {
+struct BodyImpact {
   const Pass& pass;
   const Contact& contact;
   std::span<const WallHit> walls;
@@ -51,20 +51,20 @@ struct Meeting {
   Vec3 wall_velocity;
   double left;  // time
 
-  [[nodiscard]] Well well() const {
+  [[nodiscard]] PotentialEnergy potential() const {
     return {body.stiffness, pass.goals[contact.particle], pass.gravity + pass.forces[contact.particle]};
   }
   // Foreseen for the particle where nothing was met: what the contact changes acts from the next step on.
   [[nodiscard]] Vec3 acceleration(const Vec3& at, double time) const {
-    return body.limited ? well().acceleration(at) : leg.early + (leg.late - leg.early) * time;
+    return body.limited ? potential().acceleration(at) : leg.early + (leg.late - leg.early) * time;
   }
 
   // Bouncing on walls that the particle was not on, sliding on the others.
   [[nodiscard]] Vec3 bounced(const Vec3& relative) const {
     const double resting = resting_steps * pass.dt * norm(acceleration(contact.point, contact.time_of_impact));
     return rebounded(relative, walls, [&](const WallHit& wall, double into) {
-      const Response& r = pass.responses->of(wall.patch);
-      if (r.kind == ResponseKind::slide) return WallSurface{0.0, 0.0};
+      const WallResponse& r = pass.responses->of(wall.patch);
+      if (r.kind == WallResponseKind::slide) return WallSurface{0.0, 0.0};
       const bool slides = into <= resting || pass.on[contact.particle].has(wall.face);
       return WallSurface{slides ? 0.0 : r.restitution, r.friction};
     });
@@ -74,14 +74,14 @@ struct Meeting {
   [[nodiscard]] double spent(Vec3& velocity) const {
     const double wanted = 0.5 * dot(velocity, velocity);
     if (leg.pushed) return wanted;
-    const double has = std::max(0.0, leg.kinetic - well().rise(leg.from, contact.point - leg.from));
+    const double has = std::max(0.0, leg.kinetic - potential().rise(leg.from, contact.point - leg.from));
     if (has >= wanted) return wanted;
     velocity *= std::sqrt(has / wanted);
     return has;
   }
 };
 
-Continuation integrate_on(Meeting& m, const Vec3& velocity) {
+AfterContact integrate_on(BodyImpact& m, const Vec3& velocity) {
   const Vec3 x = m.contact.point;
   const double begin = m.contact.time_of_impact;
   const auto acceleration = [&](const Vec3& at, double share) {
@@ -93,7 +93,7 @@ Continuation integrate_on(Meeting& m, const Vec3& velocity) {
   const bool held_back = next != way;
   const Vec3 relative = free.velocity - m.wall_velocity;
   const Vec3 after = held_back ? along_walls(m.pass, relative, m.walls, m.earlier) : relative;
-  if (m.body.limited && !m.leg.pushed) next *= m.well().payable_share(x, next, m.leg.kinetic);
+  if (m.body.limited && !m.leg.pushed) next *= m.potential().affordable_share(x, next, m.leg.kinetic);
   m.leg.from = x;
   m.leg.before = velocity;
   m.leg.after = after + m.wall_velocity;
@@ -115,7 +115,7 @@ void TouchedFaces::set(std::span<const WallHit> walls) {
   }
 }
 
-double Well::payable_share(const Vec3& x, const Vec3& d, double kinetic) const {
+double PotentialEnergy::affordable_share(const Vec3& x, const Vec3& d, double kinetic) const {
   const double a = 0.5 * stiffness * dot(d, d);
   const double b = -dot(acceleration(x), d);
   if (a + b <= kinetic) return 1.0;
@@ -124,7 +124,7 @@ double Well::payable_share(const Vec3& x, const Vec3& d, double kinetic) const {
   return b > 0.0 ? 2.0 * kinetic / (b + root) : (root - b) / (2.0 * a);
 }
 
-Continuation answer_motion(const Pass& pass, const Contact& contact, std::span<const WallHit> walls,
+AfterContact answer_motion(const Pass& pass, const Contact& contact, std::span<const WallHit> walls,
                            std::span<const WallHit> earlier) {
   const std::uint32_t i = contact.particle;
   Leg& leg = pass.legs[i];
@@ -137,7 +137,7 @@ Continuation answer_motion(const Pass& pass, const Contact& contact, std::span<c
   }
   const double time = contact.time_of_impact;
   const double share = leg.begin < 1.0 ? std::clamp((time - leg.begin) / (1.0 - leg.begin), 0.0, 1.0) : 1.0;
-  Meeting meeting{
+  BodyImpact meeting{
       pass, contact, walls, earlier, pass.bodies[pass.body_of[i]], leg, wall_velocity, (1.0 - time) * pass.dt};
   const Vec3 arriving = leg.before + (leg.after - leg.before) * share;
   Vec3 leaving = meeting.bounced(arriving - wall_velocity) + wall_velocity;
@@ -145,7 +145,7 @@ Continuation answer_motion(const Pass& pass, const Contact& contact, std::span<c
   return integrate_on(meeting, leaving);
 }
 
-Continuation answer_pull(const Pass& pass, const Contact& contact, std::span<const WallHit> walls,
+AfterContact answer_pull(const Pass& pass, const Contact& contact, std::span<const WallHit> walls,
                          std::span<const WallHit> earlier) {
   const std::uint32_t i = contact.particle;
   pass.next_on[i].set(walls);
@@ -156,7 +156,8 @@ Continuation answer_pull(const Pass& pass, const Contact& contact, std::span<con
   }
   if (!body.slides) return {};
   const Vec3 way = along_walls(pass, contact.unused, walls, earlier);
-  return {way * Well{body.stiffness, pass.goals[i], pass.gravity}.payable_share(contact.point, way, 0.0), true};
+  return {way * PotentialEnergy{body.stiffness, pass.goals[i], pass.gravity}.affordable_share(contact.point, way, 0.0),
+          true};
 }
 
 }  // namespace dartcast

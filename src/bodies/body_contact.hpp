@@ -37,7 +37,7 @@ struct Leg {
 
 /// The well that a particle moves in while the fits are fixed: per mass its energy is stiffness |x - goal|^2 / 2 -
 /// gravity . x, convex.
-struct Well {
+struct PotentialEnergy {
   double stiffness = 0.0;
   Vec3 goal;
   Vec3 gravity;
@@ -49,7 +49,7 @@ struct Well {
   }
   /// The largest share of the way d from x, in [0, 1], at whose end (and so, the well being convex, before which) the
   /// energy has not risen by more than `kinetic`.
-  [[nodiscard]] double payable_share(const Vec3& x, const Vec3& d, double kinetic) const;
+  [[nodiscard]] double affordable_share(const Vec3& x, const Vec3& d, double kinetic) const;
 };
 
 /// What a body's contacts need of it.
@@ -61,7 +61,7 @@ struct PassBody {
 
 /// Data of one pass; the spans have an entry per particle, `bodies` one per body.
 struct Pass {
-  const Responses* responses = nullptr;
+  const WallResponses* responses = nullptr;
   Vec3 gravity;
   double dt = 0.0;
   std::span<const PassBody> bodies;
@@ -70,15 +70,15 @@ struct Pass {
   std::span<const Vec3> forces;      ///< per mass, of other bodies: in the first pass
   std::span<const TouchedFaces> on;  ///< at the end of the last step
   std::span<TouchedFaces> next_on;
-  std::span<Fate> fates;
+  std::span<ParticleStatus> fates;
   std::span<Leg> legs;
 };
 
 /// The answer to a contact in the first pass; the leg becomes that after the contact.
-Continuation answer_motion(const Pass& pass, const Contact& contact, std::span<const WallHit> walls,
+AfterContact answer_motion(const Pass& pass, const Contact& contact, std::span<const WallHit> walls,
                            std::span<const WallHit> earlier);
 /// The answer to a contact in the second pass.
-Continuation answer_pull(const Pass& pass, const Contact& contact, std::span<const WallHit> walls,
+AfterContact answer_pull(const Pass& pass, const Contact& contact, std::span<const WallHit> walls,
                          std::span<const WallHit> earlier);
 
 }  // namespace dartcast

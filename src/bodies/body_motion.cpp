@@ -32,13 +32,13 @@ Mat3 inertia_of(std::span<const double> masses, std::span<const Vec3> positions,
 Vec3 spin_of(const Mat3& inertia, const Vec3& momentum) {
   const PrincipalAxes solver = principal_axes(inertia);
   const Eigen::Vector3d& values = solver.eigenvalues();
-  Eigen::Vector3d spin = Eigen::Vector3d::Zero();
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();
   const Eigen::Vector3d l(momentum.x, momentum.y, momentum.z);
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3d e = solver.eigenvectors().col(i);
-    if (values[i] > no_inertia_share * values[2]) spin += e * (e.dot(l) / values[i]);
+    if (values[i] > no_inertia_share * values[2]) angular_velocity += e * (e.dot(l) / values[i]);
   }
-  return {spin.x(), spin.y(), spin.z()};
+  return {angular_velocity.x(), angular_velocity.y(), angular_velocity.z()};
 }
 
 Vec3 centre_of(std::span<const double> masses, std::span<const Vec3> positions) {
@@ -75,7 +75,7 @@ RigidMotion with_angular_momentum(std::span<const double> masses, std::span<cons
   r.velocity = velocity;
   r.angular_momentum = angular_momentum;
   for (const double m : masses) r.mass += m;
-  r.spin = spin_of(inertia_of(masses, positions, r.centre), angular_momentum);
+  r.angular_velocity = spin_of(inertia_of(masses, positions, r.centre), angular_momentum);
   return r;
 }
 

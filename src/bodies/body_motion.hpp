@@ -13,12 +13,12 @@ struct RigidMotion {
   Vec3 centre;            ///< of mass
   Vec3 velocity;          ///< of the centre
   Vec3 angular_momentum;  ///< about the centre
-  Vec3 spin;              ///< angular velocity; no part about an axis that all mass lies on
+  Vec3 angular_velocity;  ///< angular velocity; no part about an axis that all mass lies on
 
-  [[nodiscard]] Vec3 velocity_at(const Vec3& x) const { return velocity + cross(spin, x - centre); }
+  [[nodiscard]] Vec3 velocity_at(const Vec3& x) const { return velocity + cross(angular_velocity, x - centre); }
   /// Never more than that of the particles; what they have beyond it is that of their velocities relative to it.
   [[nodiscard]] double kinetic_energy() const {
-    return 0.5 * (mass * dot(velocity, velocity) + dot(spin, angular_momentum));
+    return 0.5 * (mass * dot(velocity, velocity) + dot(angular_velocity, angular_momentum));
   }
 };
 
@@ -35,14 +35,14 @@ Mat3 inverse_inertia(std::span<const double> masses, std::span<const Vec3> posit
 
 /// What a body is given from outside over a step, spread over its particles as over those of a rigid body.
 struct BodyAction {
-  Vec3 centre;    ///< of mass
-  Vec3 velocity;  ///< change of its velocity, m / s
-  Vec3 spin;      ///< of the angular one, 1 / s
-  Vec3 shift;     ///< displacement on top, without a velocity, m
-  Vec3 turn;      ///< turn likewise, rad
+  Vec3 centre;            ///< of mass
+  Vec3 velocity;          ///< change of its velocity, m / s
+  Vec3 angular_velocity;  ///< of the angular one, 1 / s
+  Vec3 position_delta;    ///< displacement on top, without a velocity, m
+  Vec3 turn;              ///< turn likewise, rad
 
-  [[nodiscard]] Vec3 velocity_at(const Vec3& x) const { return velocity + cross(spin, x - centre); }
-  [[nodiscard]] Vec3 shift_at(const Vec3& x) const { return shift + cross(turn, x - centre); }
+  [[nodiscard]] Vec3 velocity_at(const Vec3& x) const { return velocity + cross(angular_velocity, x - centre); }
+  [[nodiscard]] Vec3 position_delta_at(const Vec3& x) const { return position_delta + cross(turn, x - centre); }
 };
 
 struct PointMotion {

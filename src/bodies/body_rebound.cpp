@@ -11,7 +11,7 @@ namespace {
 
 // The solver is started anew from what it has come to, so many times at most, until all that approach are held back but
 // for this share of the fastest approach. Faces that meet flat need hundreds of iterations.
-constexpr unsigned most_rounds = 100;
+constexpr unsigned max_rounds = 100;
 constexpr double left_share = 0x1p-32;
 
 Vec3 relative_velocity(const RigidContact& c, std::span<const RigidMover> movers) {
@@ -77,15 +77,17 @@ std::uint64_t BodyRebounds::join(double resting_speed) {
 
 // With impulses P at contacts whose velocities are u before and u' after: slope P u, bend P (u' - u).
 void BodyRebounds::measure(std::span<const RigidMover> after) {
-  auto kept = solver_.kept().begin();
+  auto cached_impulses = solver_.cached_impulses().begin();
   for (const RigidContact& c : contacts_) {
-    if (kept == solver_.kept().end() || kept->a != c.a_id || kept->b != c.b_id) continue;
-    const Vec3 impulse = kept->normal * kept->along + kept->across;
+    if (cached_impulses == solver_.cached_impulses().end() || cached_impulses->a != c.a_id ||
+        cached_impulses->b != c.b_id)
+      continue;
+    const Vec3 impulse = cached_impulses->normal * cached_impulses->normal_impulse + cached_impulses->tangent_impulse;
     const Vec3 u = relative_velocity(c, before_);
     Island& island = island_of(c);
     island.slope += dot(impulse, u);
     island.bend += dot(impulse, relative_velocity(c, after) - u);
-    ++kept;
+    ++cached_impulses;
   }
 }
 
@@ -94,18 +96,18 @@ void BodyRebounds::hold_back(const BodyCollisionOptions& options, double dt, std
   SolverOptions solver;
   solver.dt = dt;
   solver.iterations = options.iterations;
-  solver.push_iterations = 0;
-  solver_.set_kept({});
+  solver.position_iterations = 0;
+  solver_.set_cached_impulses({});
   const auto fastest = [&](std::span<const RigidMover> now) {
     double speed = 0.0;
     for (const RigidContact& c : contacts_) speed = std::max(speed, -dot(relative_velocity(c, now), c.normal));
     return speed;
   };
-  const double most = left_share * fastest(before_);
-  for (unsigned round = 0; round < most_rounds; ++round) {
+  const double limit = left_share * fastest(before_);
+  for (unsigned round = 0; round < max_rounds; ++round) {
     std::copy(before_.begin(), before_.end(), movers.begin());
     solver_.solve(contacts_, movers, solver);
-    if (fastest(movers) <= most) return;
+    if (fastest(movers) <= limit) return;
   }
 }
 
@@ -122,10 +124,11 @@ std::uint64_t BodyRebounds::solve(const BodyParticles& particles, std::span<cons
   for (std::uint32_t i = 0; i < movers.size(); ++i) {
     const Island& island = islands_[root_of(i)];
     const bool given = island.impact && island.slope < 0.0 && island.bend > 0.0;
-    const double least = given ? std::min(1.0, -island.slope / island.bend) : 0.0;
-    const double share = (1.0 + *options.restitution) * least;
+    const double lowest = given ? std::min(1.0, -island.slope / island.bend) : 0.0;
+    const double share = (1.0 + *options.restitution) * lowest;
     movers[i].velocity = before_[i].velocity + (movers[i].velocity - before_[i].velocity) * share;
-    movers[i].spin = before_[i].spin + (movers[i].spin - before_[i].spin) * share;
+    movers[i].angular_velocity =
+        before_[i].angular_velocity + (movers[i].angular_velocity - before_[i].angular_velocity) * share;
   }
   return impacts;
 }

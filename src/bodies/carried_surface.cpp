@@ -16,7 +16,7 @@ namespace dartcast {
 
 namespace {
 
-constexpr double most_amplification = 8.0;
+constexpr double max_amplification = 8.0;
 constexpr double flatness = 0x1p-20;  // of the extent of samples: what is thinner counts as flat
 constexpr std::size_t grain = 256;    // vertices
 
@@ -142,7 +142,7 @@ CarriedSurface::CarriedSurface(std::span<const Vec3> vertices, std::span<const V
     while (true) {
       near = nearest.of(x, count);
       w = affine_weights(x, samples, near);
-      if ((!w.empty() && magnitudes(w) <= most_amplification) || count == samples.size()) break;
+      if ((!w.empty() && magnitudes(w) <= max_amplification) || count == samples.size()) break;
       count = std::min(2 * count, samples.size());
     }
     if (w.empty())

@@ -78,7 +78,7 @@ InsideTest::InsideTest(const MeshData& surface)
   for (const Vec3& p : points_) top_ = std::max(top_, p.z);
 }
 
-Side InsideTest::side(const Vec3& point) const {
+PointSide InsideTest::side(const Vec3& point) const {
   if (!in_exact_range(point)) throw InvalidArgument("inside: a coordinate is not finite, or above 2^300 in magnitude");
   const Vec3 x = flushed(point);
   std::size_t layers = 0;
@@ -96,7 +96,7 @@ Side InsideTest::side(const Vec3& point) const {
     if (crossed && above == -turn) ++layers;
     return !on;
   });
-  return on ? Side::on : layers % 2 == 1 ? Side::inside : Side::outside;
+  return on ? PointSide::on : layers % 2 == 1 ? PointSide::inside : PointSide::outside;
 }
 
 }  // namespace dartcast

@@ -9,7 +9,7 @@
 
 namespace dartcast {
 
-enum class Side : std::uint8_t { inside, outside, on };
+enum class PointSide : std::uint8_t { inside, outside, on };
 
 /// Answers for one closed surface, by the parity of the triangles above the point: what an odd number of layers
 /// encloses is inside, so that a shell within another is a cavity, whichever way it is oriented.
@@ -24,7 +24,7 @@ class InsideTest {
 
   /// Throws InvalidArgument where the point is not finite or outside the exact range. Cost: the triangles whose boxes
   /// the ray meets, times a logarithm.
-  [[nodiscard]] Side side(const Vec3& point) const;
+  [[nodiscard]] PointSide side(const Vec3& point) const;
 
   [[nodiscard]] const std::vector<SurfaceTriangle>& triangles() const { return triangles_; }
 

@@ -27,16 +27,16 @@ struct Symmetric {
 constexpr double minor_share = 0x1p-20;
 
 // Solves H w = t by Cholesky's method; nothing where H is not positive definite.
-std::optional<Vec3> solve_positive(const Symmetric& h, const Vec3& t, double least) {
-  if (!(h.xx > least)) return std::nullopt;
+std::optional<Vec3> solve_positive(const Symmetric& h, const Vec3& t, double lowest) {
+  if (!(h.xx > lowest)) return std::nullopt;
   const double lyx = h.xy / h.xx;
   const double lzx = h.xz / h.xx;
   const double dy = h.yy - lyx * h.xy;
-  if (!(dy > least)) return std::nullopt;
+  if (!(dy > lowest)) return std::nullopt;
   const double r = h.yz - lyx * h.xz;
   const double lzy = r / dy;
   const double dz = (h.zz - lzx * h.xz) - lzy * r;
-  if (!(dz > least)) return std::nullopt;
+  if (!(dz > lowest)) return std::nullopt;
   const double y = t.y - lyx * t.x;
   const double z = ((t.z - lzx * t.x) - lzy * y) / dz;
   const double wy = y / dy - lzy * z;
@@ -58,8 +58,8 @@ struct Adjugate {
         yz(h.xy * h.xz - h.xx * h.yz),
         zz(h.xx * h.yy - h.xy * h.xy),
         determinant((h.xx * xx + h.xy * xy) + h.xz * xz) {
-    const double least = minor_share * norm;
-    proves_positive = h.xx > least && zz > least * norm && determinant > least * norm * norm;
+    const double lowest = minor_share * norm;
+    proves_positive = h.xx > lowest && zz > lowest * norm && determinant > lowest * norm * norm;
   }
 
   // The determinant times the w that solves H w = t.

@@ -18,10 +18,10 @@ namespace dartcast {
 
 namespace {
 
-constexpr double piece_share = 0.25;          // of the spacing: the longest edge of a piece of the surface
-constexpr double cube_share = 0.5;            // of the spacing: the edge of a cube of candidates
-constexpr double smallest_share = 0x1p-30;    // of the largest coordinate: a smaller spacing would be lost in rounding
-constexpr std::size_t most_candidates = 200;  // for each sample that the caller is ready for
+constexpr double piece_share = 0.25;         // of the spacing: the longest edge of a piece of the surface
+constexpr double cube_share = 0.5;           // of the spacing: the edge of a cube of candidates
+constexpr double smallest_share = 0x1p-30;   // of the largest coordinate: a smaller spacing would be lost in rounding
+constexpr std::size_t max_candidates = 200;  // for each sample that the caller is ready for
 
 enum Stream : std::uint64_t { surface_stream = 1, volume_stream = 2, order_stream = 3 };
 
@@ -29,7 +29,7 @@ enum Stream : std::uint64_t { surface_stream = 1, volume_stream = 2, order_strea
   throw InvalidArgument(fmt::format(
       "sampling: a spacing of {} would take more than the {} samples allowed: give a larger spacing, or allow "
       "more",
-      o.spacing, o.most));
+      o.spacing, o.max_count));
 }
 
 void check_sampling(const MeshData& surface, const SamplingOptions& o) {
@@ -99,16 +99,16 @@ class Samples {
   std::unordered_map<std::uint64_t, std::uint32_t> last_;
 };
 
-using Piece = std::array<Vec3, 3>;
+using TrianglePiece = std::array<Vec3, 3>;
 
 // Which edge is the longest: from corner i to the next.
-std::size_t longest_edge(const Piece& t) {
+std::size_t longest_edge(const TrianglePiece& t) {
   std::array<double, 3> length{};
   for (std::size_t i = 0; i < 3; ++i) length[i] = norm(t[(i + 1) % 3] - t[i]);
   return static_cast<std::size_t>(std::max_element(length.begin(), length.end()) - length.begin());
 }
 
-Vec3 random_point(const Piece& t, Random& random) {
+Vec3 random_point(const TrianglePiece& t, Random& random) {
   double u = random.uniform();
   double v = random.uniform();
   if (u + v > 1.0) {
@@ -122,31 +122,31 @@ Vec3 random_point(const Piece& t, Random& random) {
 constexpr double largest_piece = 0.4331;  // sqrt(3) / 4, rounded up
 
 // Refuses at once what would take too many pieces by area alone.
-void check_area(const std::vector<Piece>& triangles, const SamplingOptions& o, double most) {
+void check_area(const std::vector<TrianglePiece>& triangles, const SamplingOptions& o, double max_count) {
   double area = 0.0;
-  for (const Piece& t : triangles) area += 0.5 * norm(cross(t[1] - t[0], t[2] - t[0]));
+  for (const TrianglePiece& t : triangles) area += 0.5 * norm(cross(t[1] - t[0], t[2] - t[0]));
   const double edge = piece_share * o.spacing;
-  if (area / edge / edge > largest_piece * most) refuse_number(o);
+  if (area / edge / edge > largest_piece * max_count) refuse_number(o);
 }
 
 // One random point in each piece: triangles are halved across their longest edge (M.-C. Rivara, 1984), so that needles
 // do not make more of them than their area and length ask for.
 std::vector<Vec3> surface_candidates(const MeshData& surface, const SamplingOptions& o) {
-  std::vector<Piece> open;
+  std::vector<TrianglePiece> open;
   for (const SurfaceTriangle& t : surface_triangles(surface))
     open.push_back({surface.points[t[0]], surface.points[t[1]], surface.points[t[2]]});
-  const double most = static_cast<double>(o.most) * most_candidates + static_cast<double>(open.size());
-  check_area(open, o, most);
+  const double max_count = static_cast<double>(o.max_count) * max_candidates + static_cast<double>(open.size());
+  check_area(open, o, max_count);
   Random random(o.seed, surface_stream);
   std::vector<Vec3> candidates;
   while (!open.empty()) {
-    const Piece piece = open.back();
+    const TrianglePiece piece = open.back();
     open.pop_back();
     const std::size_t i = longest_edge(piece);
     const Vec3 &a = piece[i], &b = piece[(i + 1) % 3], &c = piece[(i + 2) % 3];
     if (norm(b - a) <= piece_share * o.spacing) {
       candidates.push_back(random_point(piece, random));
-      if (static_cast<double>(candidates.size()) > most) refuse_number(o);
+      if (static_cast<double>(candidates.size()) > max_count) refuse_number(o);
       continue;
     }
     const Vec3 middle = a * 0.5 + b * 0.5;
@@ -159,7 +159,7 @@ std::vector<Vec3> surface_candidates(const MeshData& surface, const SamplingOpti
 void sample_surface_into(Samples& samples, const MeshData& surface, const SamplingOptions& o) {
   for (const Vec3& x : shuffled(surface_candidates(surface, o), o.seed)) {
     if (samples.too_near(x)) continue;
-    if (samples.size() == o.most) refuse_number(o);
+    if (samples.size() == o.max_count) refuse_number(o);
     samples.add(x);
   }
 }
@@ -171,7 +171,7 @@ std::vector<Vec3> volume_candidates(const MeshData& surface, const InsideTest& i
   const double edge = cube_share * o.spacing;
   const Vec3 size = (box.high - box.low) * (1.0 / edge);
   const std::array<double, 3> cubes = {std::floor(size.x) + 1.0, std::floor(size.y) + 1.0, std::floor(size.z) + 1.0};
-  if (cubes[0] * cubes[1] * cubes[2] > static_cast<double>(o.most) * most_candidates) refuse_number(o);
+  if (cubes[0] * cubes[1] * cubes[2] > static_cast<double>(o.max_count) * max_candidates) refuse_number(o);
   Random random(o.seed, volume_stream);
   std::vector<Vec3> candidates;
   for (double k = 0.0; k < cubes[2]; ++k) {
@@ -188,8 +188,8 @@ std::vector<Vec3> volume_candidates(const MeshData& surface, const InsideTest& i
 void sample_volume_into(Samples& samples, const MeshData& surface, const SamplingOptions& o) {
   const InsideTest inside(surface);
   for (const Vec3& x : shuffled(volume_candidates(surface, inside, o), o.seed)) {
-    if (samples.too_near(x) || inside.side(x) != Side::inside) continue;
-    if (samples.size() == o.most) refuse_number(o);
+    if (samples.too_near(x) || inside.side(x) != PointSide::inside) continue;
+    if (samples.size() == o.max_count) refuse_number(o);
     samples.add(x);
   }
 }

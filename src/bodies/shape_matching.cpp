@@ -18,7 +18,7 @@ namespace {
 // points (relative to its size by 2^-20 at most).
 constexpr double flat_share = 0x1p-40;
 
-constexpr double least_volume = 0.125;  // share of the volume at rest that keep_volume takes for a squeezed body's
+constexpr double min_volume = 0.125;  // share of the volume at rest that keep_volume takes for a squeezed body's
 
 Mat3 from_eigen(const Eigen::Matrix3d& m) {
   return {{m(0, 0), m(1, 0), m(2, 0)}, {m(0, 1), m(1, 1), m(2, 1)}, {m(0, 2), m(1, 2), m(2, 2)}};
@@ -145,7 +145,7 @@ void RestShape::fit(const Region& region, const Mat3& covariance, Fit& fit) cons
   fit.strain = 0.0;
   if (linear_ == 0.0) return;
   Mat3 best = covariance * region.inverse + rotation * region.not_spanned;
-  if (keep_volume_) best = best * (1.0 / std::cbrt(std::max(determinant(best), least_volume)));
+  if (keep_volume_) best = best * (1.0 / std::cbrt(std::max(determinant(best), min_volume)));
   const Mat3 beyond = best - rotation;
   fit.transform = rotation + beyond * linear_;
   fit.strain = 0.5 * linear_ * (1.0 - linear_) * dot(beyond * region.moments, beyond);
@@ -188,7 +188,7 @@ double matching_energy(const RestShape& shape, std::span<const Vec3> positions, 
 }
 
 std::vector<std::vector<std::uint32_t>> overlapping_clusters(std::span<const Vec3> points, double size) {
-  constexpr double most = 0x1p+20;
+  constexpr double limit = 0x1p+20;
   if (!(size > 0.0)) throw InvalidArgument("clusters: the size must be positive");
   const auto bad = std::find_if_not(points.begin(), points.end(), is_finite);
   if (bad != points.end()) throw InvalidArgument(fmt::format("clusters: point {} is not finite", bad - points.begin()));
@@ -199,7 +199,7 @@ std::vector<std::vector<std::uint32_t>> overlapping_clusters(std::span<const Vec
   std::vector<std::pair<Cube, std::uint32_t>> entries;
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const Vec3 at = (points[i] - low) * (2.0 / size);
-    if (!(std::max({at.x, at.y, at.z}) < most))
+    if (!(std::max({at.x, at.y, at.z}) < limit))
       throw InvalidArgument("clusters: the size is too small for the extent of the points");
     const Cube first = {static_cast<std::int32_t>(at.x), static_cast<std::int32_t>(at.y),
                         static_cast<std::int32_t>(at.z)};

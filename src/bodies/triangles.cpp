@@ -20,7 +20,7 @@ namespace {
 
 std::vector<SurfaceTriangle> surface_triangles(const MeshData& surface) {
   MeshData oriented = surface;
-  const MeshReport report = inspect_surface(oriented);
+  const MeshReport report = check_and_repair_surface(oriented);
   if (!report.valid()) refuse(report.defects.front());
   std::vector<SurfaceTriangle> triangles;
   for (std::size_t c = 0; c < oriented.cell_count(); ++c) {

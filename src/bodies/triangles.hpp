@@ -14,7 +14,7 @@ using SurfaceTriangle = std::array<std::uint32_t, 3>;
 
 /// The triangles that a surface's faces consist of, oriented alike across edges: those of the fans from each face's
 /// lowest-numbered corner, face after face. Throws InvalidMesh, with the kind of the first defect and its first face,
-/// where inspect_surface() refuses the surface. Cost: n log n.
+/// where check_and_repair_surface() refuses the surface. Cost: n log n.
 std::vector<SurfaceTriangle> surface_triangles(const MeshData& surface);
 
 /// Throws InvalidMesh, naming an edge, where a triangle has no neighbour across one of its edges: the surface is open

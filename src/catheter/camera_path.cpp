@@ -92,10 +92,10 @@ Stop stop_at(const std::vector<double>& lengths, double length) {
 std::vector<Stop> stops_along(const std::vector<Span>& spans, const CameraOptions& o) {
   const std::vector<double> lengths = lengths_of(spans);
   const double number = lengths.back() / o.spacing;
-  if (!(number < static_cast<double>(o.most)))
+  if (!(number < static_cast<double>(o.max_count)))
     throw InvalidArgument(fmt::format(
         "camera path: a spacing of {} over a length of {} would take more than {} cameras: give a larger spacing",
-        o.spacing, lengths.back(), o.most));
+        o.spacing, lengths.back(), o.max_count));
   std::vector<Stop> stops;
   for (double i = 0.0; i < number; ++i) stops.push_back(stop_at(lengths, i * o.spacing));
   stops.push_back({spans.size() - 1, 1.0});
@@ -119,10 +119,10 @@ CameraPath walked(Environment& environment, const Knots& knots, const std::vecto
   }
   const StepReport report = environment.advance(
       particles, targets, [](const Contact& c, std::span<const WallHit> walls, std::span<const WallHit> earlier) {
-        return Continuation{slid(c.unused, walls, earlier), true};
+        return AfterContact{slid(c.unused, walls, earlier), true};
       });
   CameraPath path;
-  for (const State& s : particles.states()) path.cameras.push_back({s.position, {}, {}, 0.0});
+  for (const ParticleState& s : particles.states()) path.cameras.push_back({s.position, {}, {}, 0.0});
   for (std::size_t i = 0; i < stops.size(); ++i) path.at_walls += particles[i].position != targets[i] ? 1 : 0;
   return path;
 }

@@ -11,9 +11,9 @@
 namespace dartcast {
 
 struct CameraOptions {
-  double spacing = 1e-3;      ///< of the cameras along the spline, > 0
-  Vec3 up = {0.0, 1.0, 0.0};  ///< at the first camera, made perpendicular to its direction
-  std::size_t most = 100000;  ///< cameras at most
+  double spacing = 1e-3;           ///< of the cameras along the spline, > 0
+  Vec3 up = {0.0, 1.0, 0.0};       ///< at the first camera, made perpendicular to its direction
+  std::size_t max_count = 100000;  ///< cameras at most
 };
 
 struct Camera {
@@ -32,7 +32,7 @@ struct CameraPath {
 /// 1974; C. Yuksel, S. Schaefer, J. Keyser, "Parameterization and applications of Catmull-Rom curves", 2011), evenly
 /// spaced along it (but where a wall keeps one off), the last at its end. A camera is a particle that walks from the
 /// point before it to the spline, so that no wall is between. Points that repeat count once. Throws InvalidArgument
-/// where there are not two points, one (named) is in no free cell, or there would be more than `most` cameras; the
+/// where there are not two points, one (named) is in no free cell, or there would be more than `max_count` cameras; the
 /// environment must be of space. Cost: 4 us per camera, and once after a move a grid over the cells
 /// (Environment::locate()).
 CameraPath camera_path(Environment& environment, std::span<const Vec3> points, const CameraOptions& options = {});

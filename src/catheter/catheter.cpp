@@ -16,11 +16,11 @@ namespace dartcast {
 
 namespace {
 
-constexpr double most_push = 0.25;    // of the spacing, in a substep
-constexpr double most_turn = 0.2;     // rad, in a substep
-constexpr int most_halvings = 4;      // of a push that does not go
-constexpr double most_bending = 1e8;  // see src/catheter/chain_solver.cpp
-constexpr double most_points = 1e6;
+constexpr double max_push = 0.25;    // of the spacing, in a substep
+constexpr double max_turn = 0.2;     // rad, in a substep
+constexpr int max_halvings = 4;      // of a push that does not go
+constexpr double max_bending = 1e8;  // see src/catheter/chain_solver.cpp
+constexpr double max_points = 1e6;
 
 void check_option(const char* name, double value, double low, double high) {
   if (value >= low && value <= high) return;
@@ -29,9 +29,9 @@ void check_option(const char* name, double value, double low, double high) {
 
 void check_options(const CatheterOptions& o) {
   check_option("spacing", o.spacing, 1e-9, 1e9);
-  check_option("length", o.length, o.spacing, most_points * o.spacing);
+  check_option("length", o.length, o.spacing, max_points * o.spacing);
   const double h2 = o.spacing * o.spacing;
-  check_option("stiffness", o.stiffness, 0.0, most_bending * h2 * h2);
+  check_option("stiffness", o.stiffness, 0.0, max_bending * h2 * h2);
   check_option("tip_length", o.tip_length, 0.0, o.length);
   check_option("tip_curvature", o.tip_curvature, 0.0, 1.0 / o.spacing);
   check_option("friction", o.friction, 0.0, 10.0);
@@ -101,7 +101,7 @@ CatheterStep Catheter::step(const CatheterInput& input) {
   CatheterStep result;
   ride(result);
   const double push = std::clamp(input.push, -inserted_, total_length() - inserted_);
-  const double asked = std::max(std::abs(push) / (most_push * options_.spacing), std::abs(input.turn) / most_turn);
+  const double asked = std::max(std::abs(push) / (max_push * options_.spacing), std::abs(input.turn) / max_turn);
   const auto pieces = static_cast<std::uint32_t>(std::max(1.0, std::ceil(asked)));
   const double share = 1.0 / pieces;
   bool pushing = true;
@@ -145,7 +145,7 @@ bool Catheter::make(const CatheterInput& piece, double share, CatheterStep& resu
 // The half of the substep, or of that: what is left of it is refused.
 void Catheter::make_less(const CatheterInput& piece, double share, CatheterStep& result) {
   double part = 1.0;
-  for (int i = 0; i < most_halvings; ++i) {
+  for (int i = 0; i < max_halvings; ++i) {
     part *= 0.5;
     if (make({piece.push * part, piece.turn * part, piece.load * part}, share * part, result)) return;
   }
@@ -161,7 +161,7 @@ void Catheter::relax(const Vec3& load, CatheterStep& result) {
 
 // All points keep their weights in their simplices, which may have moved.
 void Catheter::ride(CatheterStep& result) {
-  for (std::size_t i = 0; i <= count_; ++i) targets_[i] = flushed(ridden(i));
+  for (std::size_t i = 0; i <= count_; ++i) targets_[i] = flushed(carried(i));
   const Corners corners = environment_.complex().corners(particles_[count_].at());
   std::vector<ChainWall> moved = walls_;  // walls move as the points on them do
   for (ChainWall& w : moved) w.point += targets_[w.index] - particles_[w.index].position;
@@ -172,10 +172,10 @@ void Catheter::ride(CatheterStep& result) {
   keep_walls(report.contacts);
 }
 
-Vec3 Catheter::ridden(std::size_t i) const {
+Vec3 Catheter::carried(std::size_t i) const {
   const bool waits = i + 1 >= holds_.size();
   const Hold& h = waits ? holds_.back() : holds_[i];
-  const State& s = particles_[waits ? count_ : i];
+  const ParticleState& s = particles_[waits ? count_ : i];
   const Corners now = environment_.complex().corners(s.at());
   Vec3 x = s.position;
   for (std::size_t k = 0; k < 4; ++k) x += (now[k] - h.corners[k]) * h.weights[k];
@@ -201,11 +201,11 @@ void Catheter::turn_with_vessel(const Corners& now) {
 // positions where they await a move.
 void Catheter::hold() {
   const bool before_move = environment_.awaits_advance(particles_);
-  const Complex& complex = environment_.complex();
+  const CellComplex& complex = environment_.complex();
   const std::size_t inserted = inserted_points();
   holds_.resize(inserted + 1);
   for (std::size_t i = 0; i <= inserted; ++i) {
-    const State& s = particles_[i < inserted ? i : count_];
+    const ParticleState& s = particles_[i < inserted ? i : count_];
     const Corners corners = before_move ? complex.previous_corners(s.at()) : complex.corners(s.at());
     holds_[i] = {corners, detail::barycentric(corners, s.position)};
   }

@@ -48,10 +48,10 @@ double Catheter::measured_length() const {
 StateHash Catheter::state_hash() const {
   StateHash hash;
   for (std::size_t i = 0; i <= count_; ++i) hash.add(i, particles_[i], {});
-  State frame;
+  ParticleState frame;
   frame.position = reference_;
   hash.add(count_ + 1, frame, direction_);
-  hash.add(count_ + 2, State{}, {inserted_, turned_, 0.0});
+  hash.add(count_ + 2, ParticleState{}, {inserted_, turned_, 0.0});
   return hash;
 }
 
@@ -85,18 +85,18 @@ void Catheter::restore(const CatheterCheckpoint& saved) {
   hold();
 }
 
-FollowReport Catheter::follow() {
+UpdateReport Catheter::update_after_edit() {
   Particles moved;
-  FollowReport report;
-  for (const Stranded stranded : {Stranded::move, Stranded::stay}) {
+  UpdateReport report;
+  for (const OrphanPolicy orphaned : {OrphanPolicy::relocate, OrphanPolicy::hold}) {
     moved = particles_;
-    report = environment_.follow(moved, stranded);
+    report = environment_.update_after_edit(moved, orphaned);
     if (moved.size() == particles_.size()) break;
   }
   if (moved.size() != particles_.size())
     throw InvalidArgument(
         "catheter: the edit removed the cell of a point and left no free one: put a new catheter into the environment");
-  const State entry = particles_[count_];
+  const ParticleState entry = particles_[count_];
   const bool rode = environment_.awaits_advance(particles_) && !environment_.awaits_advance(moved);
   if (rode && environment_.map().contains(entry.cell)) turn_with_vessel(environment_.complex().corners(entry.at()));
   particles_ = std::move(moved);

@@ -17,12 +17,12 @@ constexpr double settled_share = 0.03;  // points that move less have arrived
 // Of the tolerance: lengths that are right to that are right.
 constexpr double length_share = 0.05;
 
-constexpr double same_wall = 0.9999;    // cosine between normals of what counts as one wall: nothing is decided by it
-constexpr std::uint32_t most_idle = 3;  // walks after which a wall that is not met is forgotten
+constexpr double same_wall = 0.9999;   // cosine between normals of what counts as one wall: nothing is decided by it
+constexpr std::uint32_t max_idle = 3;  // walks after which a wall that is not met is forgotten
 
 }  // namespace
 
-Continuation Catheter::slide_at_walls(const Contact& contact, std::span<const WallHit> walls,
+AfterContact Catheter::slide_at_walls(const Contact& contact, std::span<const WallHit> walls,
                                       std::span<const WallHit> earlier) {
   return {slid(contact.unused, walls, earlier), true};
 }
@@ -115,7 +115,7 @@ void Catheter::keep_walls(const ContactList& contacts) {
     }
   }
   std::erase_if(walls_, [&](const ChainWall& w) {
-    return w.index >= free || w.idle > most_idle || norm(particles_[w.index].position - w.point) > far;
+    return w.index >= free || w.idle > max_idle || norm(particles_[w.index].position - w.point) > far;
   });
 }
 

@@ -18,7 +18,7 @@ double hardness(const ChainWeights& weights) { return 1e3 * (1.0 + 16.0 * weight
 constexpr double creep = 1e-3;
 constexpr double gap_share = 1e-9;
 
-constexpr int most_solves = 4;
+constexpr int max_solves = 4;
 
 double component(const Vec3& v, std::size_t i) { return i == 0 ? v.x : i == 1 ? v.y : v.z; }
 
@@ -142,7 +142,7 @@ void ChainSolver::solve(const Chain& chain, const ChainWeights& weights, std::sp
   }
   springs_ = matrix_;
   springs_right_ = right_;
-  for (int i = 0; i < most_solves; ++i) {
+  for (int i = 0; i < max_solves; ++i) {
     if (i > 0) {
       matrix_ = springs_;
       right_ = springs_right_;

@@ -12,40 +12,40 @@ namespace dartcast {
 
 namespace {
 
-using Numbers = std::vector<std::uint32_t>;
+using VertexNumbering = std::vector<std::uint32_t>;
 
-struct Wall {
-  Numbers corners;  // from the lowest-numbered
-  Vertex point;     // of its own
+struct BoundaryWall {
+  VertexNumbering corners;  // from the lowest-numbered
+  Vertex point;             // of its own
 
-  bool operator==(const Wall&) const = default;
+  bool operator==(const BoundaryWall&) const = default;
 };
 
-std::vector<Wall> walls_of(const Map& map, std::span<const Cell> cells) {
-  std::vector<Wall> walls;
+std::vector<BoundaryWall> walls_of(const CombinatorialMap& map, std::span<const Cell> cells) {
+  std::vector<BoundaryWall> walls;
   for (const Cell c : cells) {
     const CellView v = map.view(c);
     for (std::uint16_t f = 0; f < v.shape().face_count(); ++f) {
       if (!v.is_wall(f)) continue;
-      Wall& wall = walls.emplace_back(Wall{{}, map.point(CellFace{c, f})});
+      BoundaryWall& wall = walls.emplace_back(BoundaryWall{{}, map.point(CellFace{c, f})});
       for (const std::uint16_t k : v.shape().corners(f)) wall.corners.push_back(v.vertex(k).value);
     }
   }
   return walls;
 }
 
-bool holds(const Numbers& numbers, std::uint32_t v) {
+bool holds(const VertexNumbering& numbers, std::uint32_t v) {
   return std::find(numbers.begin(), numbers.end(), v) != numbers.end();
 }
 
-struct Plane {
+struct BoundaryPlane {
   Vec3 a, b, c;
 };
 
 // Through the widest triangle of a fan; upright through an edge of the plane.
-Plane plane_of(const Numbers& corners, std::span<const Vec3> positions) {
+BoundaryPlane plane_of(const VertexNumbering& corners, std::span<const Vec3> positions) {
   const Vec3 a = positions[corners.front()];
-  Plane plane{a, a, a};
+  BoundaryPlane plane{a, a, a};
   if (corners.size() == 2) return {a, positions[corners[1]], detail::upright(a, positions[corners[1]]).c};
   double widest = 0.0;
   for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
@@ -60,7 +60,8 @@ Plane plane_of(const Numbers& corners, std::span<const Vec3> positions) {
 }
 
 // Exactly 0 where all lie in the plane.
-double extent_over(const Plane& plane, const Wall& before, const Wall& after, std::span<const Vec3> positions) {
+double extent_over(const BoundaryPlane& plane, const BoundaryWall& before, const BoundaryWall& after,
+                   std::span<const Vec3> positions) {
   const Vec3 normal = cross(plane.b - plane.a, plane.c - plane.a);
   const double length = norm(normal);
   double low = 0.0;
@@ -71,18 +72,18 @@ double extent_over(const Plane& plane, const Wall& before, const Wall& after, st
     low = std::min(low, height);
     high = std::max(high, height);
   };
-  for (const Wall* wall : {&before, &after}) {
+  for (const BoundaryWall* wall : {&before, &after}) {
     for (const std::uint32_t v : wall->corners) add(v);
     if (wall->point.valid()) add(wall->point.value);
   }
   return high - low;
 }
 
-class Walls {
+class BoundaryWalls {
  public:
-  Walls(const Transaction& t, std::span<const Vec3> positions)
+  BoundaryWalls(const Transaction& t, std::span<const Vec3> positions)
       : positions_(positions), old_(walls_of(t.map(), t.removed())), new_(walls_of(t.map(), t.added())) {
-    for (std::size_t i = 0; i < t.born_count(); ++i) born_[t.born(i).vertex.value] = t.born(i);
+    for (std::size_t i = 0; i < t.created_count(); ++i) created_[t.created(i).vertex.value] = t.created(i);
     for (const Cell c : t.added()) {
       for (const std::uint32_t v : t.map().view(c).vertices()) kept_.insert(v);
     }
@@ -93,9 +94,9 @@ class Walls {
 
   [[nodiscard]] double largest_shift() const {
     double largest = 0.0;
-    for (const Wall& wall : new_) {
+    for (const BoundaryWall& wall : new_) {
       if (was_there(wall)) continue;
-      const Numbers origins = origins_of(wall);
+      const VertexNumbering origins = origins_of(wall);
       for (const std::uint32_t v : origins) {
         const auto found = at_.find(v);
         if (found == at_.end()) continue;
@@ -106,21 +107,21 @@ class Walls {
   }
 
  private:
-  [[nodiscard]] bool was_there(const Wall& wall) const {
+  [[nodiscard]] bool was_there(const BoundaryWall& wall) const {
     const auto found = at_.find(wall.corners.front());
     return found != at_.end() &&
            std::any_of(found->second.begin(), found->second.end(), [&](std::size_t i) { return old_[i] == wall; });
   }
 
   // The vertices there were before from which the corners of a new wall came.
-  [[nodiscard]] Numbers origins_of(const Wall& wall) const {
-    Numbers origins;
-    Numbers open = wall.corners;
+  [[nodiscard]] VertexNumbering origins_of(const BoundaryWall& wall) const {
+    VertexNumbering origins;
+    VertexNumbering open = wall.corners;
     while (!open.empty()) {
       const std::uint32_t v = open.back();
       open.pop_back();
-      const auto found = born_.find(v);
-      if (found != born_.end()) {
+      const auto found = created_.find(v);
+      if (found != created_.end()) {
         open.push_back(found->second.from.value);
         if (found->second.other != found->second.from) open.push_back(found->second.other.value);
       } else if (!holds(origins, v)) {
@@ -131,7 +132,8 @@ class Walls {
   }
 
   // Nothing where the new wall is neither a part of the old one nor holds it.
-  [[nodiscard]] double between(const Wall& before, const Wall& after, const Numbers& origins) const {
+  [[nodiscard]] double between(const BoundaryWall& before, const BoundaryWall& after,
+                               const VertexNumbering& origins) const {
     const bool part =
         std::all_of(origins.begin(), origins.end(), [&](std::uint32_t v) { return holds(before.corners, v); });
     if (!part && !is_whole_of(after, before)) return 0.0;
@@ -139,18 +141,18 @@ class Walls {
   }
 
   // Whether it has all corners of the old wall that its cells have kept, an edge at least, in the plane a corner.
-  [[nodiscard]] bool is_whole_of(const Wall& after, const Wall& before) const {
+  [[nodiscard]] bool is_whole_of(const BoundaryWall& after, const BoundaryWall& before) const {
     const auto kept = [&](std::uint32_t v) { return kept_.count(v) != 0; };
-    const std::ptrdiff_t least = before.corners.size() == 2 ? 1 : 2;
-    return std::count_if(before.corners.begin(), before.corners.end(), kept) >= least &&
+    const std::ptrdiff_t lowest = before.corners.size() == 2 ? 1 : 2;
+    return std::count_if(before.corners.begin(), before.corners.end(), kept) >= lowest &&
            std::all_of(before.corners.begin(), before.corners.end(),
                        [&](std::uint32_t v) { return !kept(v) || holds(after.corners, v); });
   }
 
   std::span<const Vec3> positions_;
-  std::vector<Wall> old_;
-  std::vector<Wall> new_;
-  std::unordered_map<std::uint32_t, BornVertex> born_;
+  std::vector<BoundaryWall> old_;
+  std::vector<BoundaryWall> new_;
+  std::unordered_map<std::uint32_t, CreatedVertex> created_;
   std::unordered_set<std::uint32_t> kept_;                          // vertices of the new cells
   std::unordered_map<std::uint32_t, std::vector<std::size_t>> at_;  // old walls of a vertex
 };
@@ -158,9 +160,9 @@ class Walls {
 }  // namespace
 
 double boundary_shift(const Transaction& t, std::span<const Vec3> positions) {
-  double largest = Walls(t, positions).largest_shift();
-  for (const Identified& i : t.identified())
-    largest = std::max(largest, norm(positions[i.gone.value] - positions[i.survivor.value]));
+  double largest = BoundaryWalls(t, positions).largest_shift();
+  for (const MergedVertex& i : t.merged())
+    largest = std::max(largest, norm(positions[i.gone.value] - positions[i.merged_into.value]));
   return largest;
 }
 

@@ -7,40 +7,40 @@
 
 namespace dartcast {
 
-Complex::Complex(const MeshData& mesh, Threads threads)
+CellComplex::CellComplex(const MeshData& mesh, Threads threads)
     : map_(mesh), point_count_(mesh.points.size()), front_(mesh.points.begin(), mesh.points.end()) {
   constexpr std::size_t all = static_cast<std::size_t>(-1);
   invalid_ = check_validity(map_, front_, threads, all).first;
   if (!invalid_.empty()) {
     std::vector<Cell> bad;
     for (const InvalidCell& cell : invalid_) bad.push_back(cell.cell);
-    InteriorSolution solution = find_interior_points(mesh, map_, bad);
-    interior_ = std::move(solution.weights);
-    map_ = Map(mesh, solution.points);
-    front_.resize(mesh.points.size() + interior_.count());
-    interior_.compute(front_);
+    SteinerSolution solution = find_steiner_points(mesh, map_, bad);
+    steiner_ = std::move(solution.weights);
+    map_ = CombinatorialMap(mesh, solution.points);
+    front_.resize(mesh.points.size() + steiner_.count());
+    steiner_.compute(front_);
     invalid_ = check_validity(map_, front_, threads, all).first;
   }
   for (const Cell c : map_.cells()) simplex_count_ += map_.shape(c).simplices().size();
 }
 
-std::span<Vec3> Complex::next_positions() {
+std::span<Vec3> CellComplex::next_positions() {
   if (back_.empty()) back_ = front_;
   return std::span<Vec3>(back_).first(point_count());
 }
 
-void Complex::commit_positions() {
+void CellComplex::commit_positions() {
   if (back_.empty()) back_ = front_;
-  interior_.compute(back_);
+  steiner_.compute(back_);
   std::swap(front_, back_);
 }
 
-Complex Complex::before_move() const {
-  Complex before = *this;
+CellComplex CellComplex::before_move() const {
+  CellComplex before = *this;
   if (!back_.empty()) before.front_ = back_;
   return before;
 }
 
-std::size_t Complex::bytes() const { return map_.bytes() + interior_.bytes() + front_.size() * sizeof(Vec3); }
+std::size_t CellComplex::bytes() const { return map_.bytes() + steiner_.bytes() + front_.size() * sizeof(Vec3); }
 
 }  // namespace dartcast

@@ -14,7 +14,7 @@ namespace dartcast {
 
 namespace {
 
-std::uint64_t simplices_of(const Map& map, std::span<const Cell> cells) {
+std::uint64_t simplices_of(const CombinatorialMap& map, std::span<const Cell> cells) {
   std::uint64_t sum = 0;
   for (const Cell c : cells) sum += map.view(c).shape().simplices().size();
   return sum;
@@ -22,22 +22,22 @@ std::uint64_t simplices_of(const Map& map, std::span<const Cell> cells) {
 
 }  // namespace
 
-ComplexEdit::ComplexEdit(Complex& complex)
-    : complex_(complex), transaction_(complex.map_), born_(transaction_, complex.front_) {}
+ComplexEdit::ComplexEdit(CellComplex& complex)
+    : complex_(complex), transaction_(complex.map_), created_(transaction_, complex.front_) {}
 
-ComplexEdit::~ComplexEdit() { born_.give_up(); }
+ComplexEdit::~ComplexEdit() { created_.give_up(); }
 
-Vec3 ComplexEdit::position(Vertex v) { return born_.at(v); }
+Vec3 ComplexEdit::position(Vertex v) { return created_.at(v); }
 
 // Returns its number among the new ones.
-std::size_t ComplexEdit::place_born(Vertex v, const Vec3& x) {
+std::size_t ComplexEdit::place_created(Vertex v, const Vec3& x) {
   if (map().dimension() == 2 && x.z != 0.0)
     throw InvalidArgument(
         fmt::format("place: vertex {} would be at ({}, {}, {}): in the plane z must be 0", v.value, x.x, x.y, x.z));
-  return born_.place(v, x);
+  return created_.place(v, x);
 }
 
-void ComplexEdit::place(Vertex v, const Vec3& x) { means_.erase(place_born(v, x)); }
+void ComplexEdit::place(Vertex v, const Vec3& x) { means_.erase(place_created(v, x)); }
 
 void ComplexEdit::place(Vertex v, std::span<const Vertex> of, std::span<const double> weights) {
   if (of.empty() || of.size() != weights.size())
@@ -46,24 +46,24 @@ void ComplexEdit::place(Vertex v, std::span<const Vertex> of, std::span<const do
   const Vec3 first = position(of[0]);
   Vec3 x = first;
   for (std::size_t i = 1; i < of.size(); ++i) x += (position(of[i]) - first) * weights[i];
-  means_[place_born(v, x)] = {{of.begin(), of.end()}, {weights.begin(), weights.end()}};
+  means_[place_created(v, x)] = {{of.begin(), of.end()}, {weights.begin(), weights.end()}};
 }
 
-void ComplexEdit::roll_back(const Transaction::Mark& to) {
+void ComplexEdit::roll_back(const Transaction::Savepoint& to) {
   transaction_.roll_back(to);
-  means_.erase(means_.lower_bound(transaction_.born_count()), means_.end());
-  born_.take();
+  means_.erase(means_.lower_bound(transaction_.created_count()), means_.end());
+  created_.take();
 }
 
 ComplexEditReport ComplexEdit::commit() {
   try {
-    born_.take();
-    const std::size_t born = born_.count();
-    GivenPoints given = give_interior_points(transaction_, complex_.front_);
-    born_.take();
+    created_.take();
+    const std::size_t created = created_.count();
+    PlacedSteinerPoints given = place_steiner_points(transaction_, complex_.front_);
+    created_.take();
     given.weights.compute(complex_.front_);
     check_added();
-    ComplexEditReport report = make_final(given.weights, born);
+    ComplexEditReport report = make_final(given.weights, created);
     report.given_points = std::move(given.replaced);
     return report;
   } catch (...) {
@@ -82,10 +82,10 @@ void ComplexEdit::check_added() const {
   }
 }
 
-PlacedVertex ComplexEdit::placed(std::size_t born) const {
-  const BornVertex& v = transaction_.born(born);
+PlacedVertex ComplexEdit::placed(std::size_t created) const {
+  const CreatedVertex& v = transaction_.created(created);
   const auto position = [&](Vertex w) { return complex_.front_[w.value]; };
-  const auto mean = means_.find(born);
+  const auto mean = means_.find(created);
   if (mean != means_.end()) return {v.vertex, mean->second.of, mean->second.weights, {}};
   if (v.from == v.other) return {v.vertex, {v.from}, {1.0}, position(v.vertex) - position(v.from)};
   const Vec3 edge = position(v.other) - position(v.from);
@@ -117,19 +117,19 @@ std::vector<Cell> ComplexEdit::around() const {
 }
 
 // Nothing here is refused.
-ComplexEditReport ComplexEdit::make_final(const InteriorWeights& points, std::size_t born) {
+ComplexEditReport ComplexEdit::make_final(const SteinerWeights& points, std::size_t created) {
   ComplexEditReport report;
   report.boundary_shift = boundary_shift(transaction_, complex_.front_);
-  for (std::size_t i = 0; i < born; ++i) report.placed.push_back(placed(i));
+  for (std::size_t i = 0; i < created; ++i) report.placed.push_back(placed(i));
   report.around = around();
   const std::uint64_t gone = simplices_of(map(), transaction_.removed());
   std::vector<Vertex> news;
-  for (std::size_t i = 0; i < transaction_.born_count(); ++i) news.push_back(transaction_.born(i).vertex);
+  for (std::size_t i = 0; i < transaction_.created_count(); ++i) news.push_back(transaction_.created(i).vertex);
 
   report.map = transaction_.commit();
   complex_.simplex_count_ = complex_.simplex_count_ - gone + simplices_of(map(), report.map.added);
-  for (const Vertex v : report.map.died) complex_.interior_.remove(v);
-  complex_.interior_.add(points);
+  for (const Vertex v : report.map.deleted) complex_.steiner_.remove(v);
+  complex_.steiner_.add(points);
   for (const PlacedVertex& p : report.placed)
     complex_.point_count_ = std::max<std::size_t>(complex_.point_count_, p.vertex.value + 1U);
   if (!complex_.back_.empty()) {
@@ -137,7 +137,7 @@ ComplexEditReport ComplexEdit::make_final(const InteriorWeights& points, std::si
     for (const Vertex v : news) complex_.back_[v.value] = complex_.front_[v.value];
   }
   std::erase_if(complex_.invalid_, [&](const InvalidCell& c) { return !map().contains(c.cell); });
-  born_.keep();
+  created_.keep();
   means_.clear();
   return report;
 }

@@ -7,13 +7,14 @@ namespace dartcast {
 
 namespace {
 
-class Writer {
+class ComplexMeshBuilder {
  public:
-  explicit Writer(const Complex& complex) : complex_(complex), number_(complex.map().vertex_count(), none) {}
+  explicit ComplexMeshBuilder(const CellComplex& complex)
+      : complex_(complex), number_(complex.map().vertex_count(), none) {}
 
   // `vertices`: takes that of each point.
   MeshData write(std::vector<Vertex>& vertices) {
-    const Map& map = complex_.map();
+    const CombinatorialMap& map = complex_.map();
     for (const Cell c : map.cells()) {
       const CellView v = map.view(c);
       corners_.clear();
@@ -51,7 +52,7 @@ class Writer {
     return n;
   }
 
-  const Complex& complex_;
+  const CellComplex& complex_;
   MeshData mesh_;
   std::vector<Vertex> vertices_;
   std::vector<std::uint32_t> number_;  // of a vertex among the points
@@ -60,9 +61,9 @@ class Writer {
 
 }  // namespace
 
-MeshData to_mesh(const Complex& complex, std::vector<Vertex>* vertices) {
+MeshData to_mesh(const CellComplex& complex, std::vector<Vertex>* vertices) {
   std::vector<Vertex> unasked;
-  return Writer(complex).write(vertices != nullptr ? *vertices : unasked);
+  return ComplexMeshBuilder(complex).write(vertices != nullptr ? *vertices : unasked);
 }
 
 }  // namespace dartcast

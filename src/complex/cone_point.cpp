@@ -14,16 +14,16 @@ Vec3 mean(std::span<const Vec3> points, std::span<const std::uint32_t> corners) 
   return sum * (1.0 / static_cast<double>(corners.size()));
 }
 
-bool all_positive(const Vec3& apex, std::span<const Triangle> triangles) {
+bool all_positive(const Vec3& apex, std::span<const ConeTriangle> triangles) {
   return std::all_of(triangles.begin(), triangles.end(),
-                     [&](const Triangle& t) { return orient3d(apex, t.a, t.b, t.c) == Sign::positive; });
+                     [&](const ConeTriangle& t) { return orient3d(apex, t.a, t.b, t.c) == Sign::positive; });
 }
 
 namespace {
 
 // A point strictly behind all triangles, found by moving away from the nearest one; `start` where there is none. What
 // it returns is only a proposal: the validity check decides.
-Vec3 kernel_point(const Vec3& start, std::span<const Triangle> triangles, double size) {
+Vec3 kernel_point(const Vec3& start, std::span<const ConeTriangle> triangles, double size) {
   constexpr int steps = 400;
   Vec3 x = start;
   Vec3 best = start;
@@ -31,7 +31,7 @@ Vec3 kernel_point(const Vec3& start, std::span<const Triangle> triangles, double
   for (int k = 0; k < steps; ++k) {
     double nearest = 2.0 * size;
     Vec3 inward;
-    for (const Triangle& t : triangles) {
+    for (const ConeTriangle& t : triangles) {
       Vec3 n = cross((t.c - t.a) * (1.0 / size), (t.b - t.a) * (1.0 / size));  // of a magnitude that can be squared
       const double length = norm(n);
       if (!(length > 0.0)) continue;
@@ -71,7 +71,7 @@ std::vector<double> weights_for(const Vec3& x, std::span<const Vec3> points, std
 }
 
 std::vector<double> cone_weights(std::span<const Vec3> points, std::span<const std::uint32_t> corners,
-                                 std::span<const Triangle> triangles) {
+                                 std::span<const ConeTriangle> triangles) {
   const Vec3 m = mean(points, corners);
   std::vector<double> equal(corners.size(), 1.0 / static_cast<double>(corners.size()));
   if (all_positive(m, triangles)) return equal;

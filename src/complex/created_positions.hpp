@@ -13,17 +13,17 @@ namespace dartcast::detail {
 
 /// `Positions`: a vector of Vec3, one per vertex, which grows with the map.
 template <class Positions>
-class BornPositions {
+class CreatedPositions {
  public:
-  BornPositions(const Transaction& transaction, Positions& positions)
+  CreatedPositions(const Transaction& transaction, Positions& positions)
       : transaction_(transaction), positions_(positions), before_(positions.size()) {}
 
   /// Gives new vertices their first positions: numbers used again lie among the others.
   void take() {
-    count_ = std::min(count_, transaction_.born_count());
+    count_ = std::min(count_, transaction_.created_count());
     positions_.resize(transaction_.map().vertex_count());
-    for (; count_ < transaction_.born_count(); ++count_) {
-      const BornVertex& v = transaction_.born(count_);
+    for (; count_ < transaction_.created_count(); ++count_) {
+      const CreatedVertex& v = transaction_.created(count_);
       const Vec3 a = positions_[v.from.value];
       positions_[v.vertex.value] = v.from == v.other ? a : (a + positions_[v.other.value]) * 0.5;
     }
@@ -42,7 +42,7 @@ class BornPositions {
   std::size_t place(Vertex v, const Vec3& x) {
     take();
     std::size_t i = count_;
-    while (i > 0 && transaction_.born(i - 1).vertex != v) --i;
+    while (i > 0 && transaction_.created(i - 1).vertex != v) --i;
     if (i == 0)
       throw InvalidArgument("place: vertex " + std::to_string(v.value) +
                             " was not made by this edit; move the others by a move");

@@ -26,13 +26,13 @@ std::string part(const std::array<Vertex, 4>& vertices, unsigned corners) {
   return text;
 }
 
-std::string describe(const Map& map, const CellFlattening& f) {
+std::string describe(const CombinatorialMap& map, const CellInversion& f) {
   const std::string place = fmt::format("cell {}: simplex {} ", map.source(f.simplex.cell), f.simplex.simplex);
   switch (f.how.kind) {
-    case FlatteningKind::from_the_start: return place + "is flat or inverted before the motion";
-    case FlatteningKind::undecidable:
+    case InversionKind::from_the_start: return place + "is flat or inverted before the motion";
+    case InversionKind::undecidable:
       return place + "has a corner that is not finite or outside the exact range, before or after the motion";
-    case FlatteningKind::line:
+    case InversionKind::line:
       return place + fmt::format("is flattened at {}: its vertices {} {} {} {} come to lie on a line", f.how.safe_time,
                                  f.vertices[0].value, f.vertices[1].value, f.vertices[2].value, f.vertices[3].value);
     default:
@@ -41,16 +41,16 @@ std::string describe(const Map& map, const CellFlattening& f) {
   }
 }
 
-void check_count(const Map& map, std::size_t count, const char* what) {
+void check_count(const CombinatorialMap& map, std::size_t count, const char* what) {
   if (count != map.vertex_count())
     throw InvalidArgument(fmt::format("flattening: {} positions {} the motion for {} vertices (interior points count)",
                                       count, what, map.vertex_count()));
 }
 
 // Keeps the first flattening of the cells it is shown, in their order.
-class Search {
+class InversionSearch {
  public:
-  Search(const Map& map, std::span<const Vec3> before, std::span<const Vec3> after, double until)
+  InversionSearch(const CombinatorialMap& map, std::span<const Vec3> before, std::span<const Vec3> after, double until)
       : map_(map), before_(before), after_(after), until_(until) {}
 
   // Later cells of the same safe_time are of no interest: the first is kept.
@@ -73,7 +73,7 @@ class Search {
     }
   }
 
-  [[nodiscard]] std::optional<CellFlattening>& found() { return found_; }
+  [[nodiscard]] std::optional<CellInversion>& found() { return found_; }
 
  private:
   void look_at(SimplexId id, const CellView& v) {
@@ -89,21 +89,21 @@ class Search {
       from = raised(from);
       to = raised(to);
     }
-    const auto flattening = find_flattening(from, to, until_);
-    if (!flattening || (found_ && found_->how.safe_time <= flattening->safe_time)) return;
-    found_ = {id, vertices, *flattening, {}};
-    until_ = flattening->safe_time;
+    const auto inversion = find_inversion(from, to, until_);
+    if (!inversion || (found_ && found_->how.safe_time <= inversion->safe_time)) return;
+    found_ = {id, vertices, *inversion, {}};
+    until_ = inversion->safe_time;
   }
 
-  const Map& map_;
+  const CombinatorialMap& map_;
   std::span<const Vec3> before_;
   std::span<const Vec3> after_;
   double until_;
   std::vector<detail::EndsVec3> ends_;  // of the vertices of a cell
-  std::optional<CellFlattening> found_;
+  std::optional<CellInversion> found_;
 };
 
-std::optional<CellFlattening> described(const Map& map, std::optional<CellFlattening> found) {
+std::optional<CellInversion> described(const CombinatorialMap& map, std::optional<CellInversion> found) {
   if (found) found->message = describe(map, *found);
   return found;
 }
@@ -113,24 +113,24 @@ Vec3 on_line(const Vec3& before, const Vec3& after, double t) { return (1.0 - t)
 
 }  // namespace
 
-std::optional<CellFlattening> first_flattening(const Map& map, std::span<const Vec3> before,
-                                               std::span<const Vec3> after, Cell c, double until) {
-  Search search(map, before, after, until);
+std::optional<CellInversion> first_inversion(const CombinatorialMap& map, std::span<const Vec3> before,
+                                             std::span<const Vec3> after, Cell c, double until) {
+  InversionSearch search(map, before, after, until);
   search.look_at(c);
   return described(map, std::move(search.found()));
 }
 
-std::optional<CellFlattening> first_flattening(const Map& map, std::span<const Vec3> before,
-                                               std::span<const Vec3> after, Threads threads) {
+std::optional<CellInversion> first_inversion(const CombinatorialMap& map, std::span<const Vec3> before,
+                                             std::span<const Vec3> after, Threads threads) {
   check_count(map, before.size(), "before");
   check_count(map, after.size(), "after");
-  std::optional<CellFlattening> first;
-  for (std::uint32_t pool = 0; pool <= Map::general_pool; ++pool) {
+  std::optional<CellInversion> first;
+  for (std::uint32_t pool = 0; pool <= CombinatorialMap::general_pool; ++pool) {
     const std::size_t count = map.slot_count(pool);
     const double until = first ? first->how.safe_time : 1.0;
-    std::vector<std::optional<CellFlattening>> parts(chunk_count(count, chunk));
+    std::vector<std::optional<CellInversion>> parts(chunk_count(count, chunk));
     parallel_for(count, chunk, threads, [&](std::size_t begin, std::size_t end) {
-      Search search(map, before, after, until);
+      InversionSearch search(map, before, after, until);
       for (std::size_t i = begin; i < end; ++i) {
         if (const Cell c(pool, static_cast<std::uint32_t>(i)); map.contains(c)) search.look_at(c);
       }
@@ -143,21 +143,21 @@ std::optional<CellFlattening> first_flattening(const Map& map, std::span<const V
   return described(map, std::move(first));
 }
 
-std::optional<CellFlattening> first_flattening(const Complex& complex, Threads threads) {
-  return first_flattening(complex.map(), complex.previous_positions(), complex.positions(), threads);
+std::optional<CellInversion> first_inversion(const CellComplex& complex, Threads threads) {
+  return first_inversion(complex.map(), complex.previous_positions(), complex.positions(), threads);
 }
 
-double follow_until(const Map& map, const InteriorWeights& interior, std::span<const Vec3> before,
+double move_towards(const CombinatorialMap& map, const SteinerWeights& steiner_weights, std::span<const Vec3> before,
                     std::span<const Vec3> after, double time, std::span<Vec3> positions, Threads threads) {
   check_count(map, before.size(), "before");
   check_count(map, after.size(), "after");
   check_count(map, positions.size(), "along");
-  for (double back = flattening_resolution; time > 0.0; back *= 4.0) {
+  for (double back = inversion_resolution; time > 0.0; back *= 4.0) {
     parallel_for(positions.size(), chunk, threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) positions[i] = on_line(before[i], after[i], time);
     });
-    interior.compute(positions);
-    if (!first_flattening(map, before, positions, threads)) return time;
+    steiner_weights.compute(positions);
+    if (!first_inversion(map, before, positions, threads)) return time;
     time = std::max(0.0, time - back);
   }
   std::copy(before.begin(), before.end(), positions.begin());

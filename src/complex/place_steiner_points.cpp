@@ -17,16 +17,16 @@ namespace dartcast {
 
 namespace {
 
-using Numbers = std::vector<std::uint32_t>;
+using CornerNumbers = std::vector<std::uint32_t>;
 
-Numbers corners_of(const DraftFace& face) {
-  Numbers corners;
+CornerNumbers corners_of(const DraftFace& face) {
+  CornerNumbers corners;
   for (const DraftCorner& c : face.corners) corners.push_back(c.vertex.value);
   return corners;
 }
 
-Numbers corners_of(const CellDraft& draft) {
-  Numbers corners;
+CornerNumbers corners_of(const CellDraft& draft) {
+  CornerNumbers corners;
   for (const DraftFace& face : draft.faces) {
     for (const DraftCorner& c : face.corners) corners.push_back(c.vertex.value);
   }
@@ -48,11 +48,11 @@ bool may_be_straight(const DraftFace& face) {
   return std::any_of(face.corners.begin(), face.corners.end(), [](const DraftCorner& c) { return c.straight; });
 }
 
-class Giver {
+class SteinerPlacer {
  public:
-  Giver(Transaction& t, std::span<const Vec3> positions) : transaction_(t), positions_(positions), rework_(t) {}
+  SteinerPlacer(Transaction& t, std::span<const Vec3> positions) : transaction_(t), positions_(positions), rework_(t) {}
 
-  GivenPoints give() {
+  PlacedSteinerPoints give() {
     for (const Cell c : transaction_.added()) {
       if (needs_point(c)) take(c);
     }
@@ -63,7 +63,7 @@ class Giver {
   }
 
  private:
-  [[nodiscard]] const Map& map() const { return transaction_.map(); }
+  [[nodiscard]] const CombinatorialMap& map() const { return transaction_.map(); }
 
   std::vector<std::pair<Cell, Cell>> put() {
     std::vector<std::pair<Cell, Cell>> replaced;
@@ -102,13 +102,13 @@ class Giver {
   }
 
   [[nodiscard]] bool asks_for_point(const DraftFace& face, const Vec3& mean) const {
-    const Numbers corners = corners_of(face);
+    const CornerNumbers corners = corners_of(face);
     return !detail::all_positive(mean, detail::fan(positions_, corners)) &&
            detail::all_positive(mean, detail::fan(positions_, corners, face_point(corners)));
   }
 
   void add_face_point(CellFace f) {
-    const Numbers corners = corners_of(rework_.draft(f.cell).faces[f.face]);
+    const CornerNumbers corners = corners_of(rework_.draft(f.cell).faces[f.face]);
     const Vertex point = add_vertex(corners, face_weights(corners.size()));
     points_[point.value] = face_point(corners);
     rework_.draft(f.cell).faces[f.face].point = point;
@@ -117,9 +117,9 @@ class Giver {
   }
 
   void add_cell_point(CellDraft& draft) {
-    std::vector<detail::Triangle> triangles;
+    std::vector<detail::ConeTriangle> triangles;
     for (const DraftFace& face : draft.faces) {
-      const Numbers corners = corners_of(face);
+      const CornerNumbers corners = corners_of(face);
       if (corners.size() == 2) {
         triangles.push_back(detail::upright(positions_[corners[0]], positions_[corners[1]]));
         continue;
@@ -128,11 +128,11 @@ class Giver {
       if (face.point.valid()) point = position(face.point);
       detail::add_fan(triangles, corners, point, [&](std::uint32_t v) { return positions_[v]; });
     }
-    const Numbers corners = corners_of(draft);
+    const CornerNumbers corners = corners_of(draft);
     draft.point = add_vertex(corners, detail::cone_weights(positions_, corners, triangles));
   }
 
-  [[nodiscard]] Vec3 face_point(const Numbers& corners) const {
+  [[nodiscard]] Vec3 face_point(const CornerNumbers& corners) const {
     const std::vector<double> weights = face_weights(corners.size());
     Vec3 sum;
     for (std::size_t i = 0; i < corners.size(); ++i) sum += positions_[corners[i]] * weights[i];
@@ -144,7 +144,7 @@ class Giver {
     return made == points_.end() ? positions_[v.value] : made->second;
   }
 
-  Vertex add_vertex(const Numbers& corners, const std::vector<double>& weights) {
+  Vertex add_vertex(const CornerNumbers& corners, const std::vector<double>& weights) {
     const Vertex corner(corners.front());
     const Vertex v = transaction_.add_vertex(corner, corner);
     weights_.add(v, corners, weights);
@@ -158,11 +158,13 @@ class Giver {
   std::vector<Cell> taken_;  // the same, in the order found
   std::set<CellFace> faces_;
   std::map<std::uint32_t, Vec3> points_;  // of faces, that were made here
-  InteriorWeights weights_;
+  SteinerWeights weights_;
 };
 
 }  // namespace
 
-GivenPoints give_interior_points(Transaction& t, std::span<const Vec3> positions) { return Giver(t, positions).give(); }
+PlacedSteinerPoints place_steiner_points(Transaction& t, std::span<const Vec3> positions) {
+  return SteinerPlacer(t, positions).give();
+}
 
 }  // namespace dartcast

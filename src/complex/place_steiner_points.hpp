@@ -10,8 +10,8 @@
 
 namespace dartcast {
 
-struct GivenPoints {
-  InteriorWeights weights;                      ///< of the new vertices
+struct PlacedSteinerPoints {
+  SteinerWeights weights;                       ///< of the new vertices
   std::vector<std::pair<Cell, Cell>> replaced;  ///< cells that were given points, and what they are now; sorted
 };
 
@@ -20,6 +20,6 @@ struct GivenPoints {
 /// share; cells with such a face, with faces that may lie in one plane, or with a simplex that is not positive, one of
 /// their own. Replaces these cells. Whether all simplices are positive now is for the caller to check. `positions`: of
 /// all vertices so far. Cost: linear in these cells, on average.
-GivenPoints give_interior_points(Transaction& t, std::span<const Vec3> positions);
+PlacedSteinerPoints place_steiner_points(Transaction& t, std::span<const Vec3> positions);
 
 }  // namespace dartcast

@@ -126,9 +126,9 @@ struct Determinants {
   /// most the bound, the sum by eight times that.
   [[nodiscard]] bool proves_coordinates() const { return volume6() > 0x1p+30 * bound_in_range(); }
   /// x is strictly inside, and the simplex positive.
-  [[nodiscard]] bool all_proved_positive() const { return least() > bound; }
+  [[nodiscard]] bool all_proved_positive() const { return smallest() > bound; }
   /// The same where all is known to be in the exact range.
-  [[nodiscard]] bool all_positive_in_range() const { return least() > bound_in_range(); }
+  [[nodiscard]] bool all_positive_in_range() const { return smallest() > bound_in_range(); }
   [[nodiscard]] bool decides(unsigned i) const { return std::abs(value[i]) > bound; }
   /// What the bound is where the filter applies.
   [[nodiscard]] double error() const {
@@ -143,7 +143,7 @@ struct Determinants {
   }
 
  private:
-  [[nodiscard]] double least() const { return *std::min_element(value.begin(), value.end()); }
+  [[nodiscard]] double smallest() const { return *std::min_element(value.begin(), value.end()); }
   // Where all is in the exact range, the bound holds farther than the filter applies.
   [[nodiscard]] double bound_in_range() const {
     if (bound <= std::numeric_limits<double>::max()) return bound;

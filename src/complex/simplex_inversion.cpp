@@ -9,20 +9,20 @@ namespace dartcast {
 
 namespace {
 
-static_assert(flattening_resolution == detail::time_unit);
+static_assert(inversion_resolution == detail::time_unit);
 
-using Edges = std::array<Vec3, 3>;
+using SimplexEdges = std::array<Vec3, 3>;
 
-Edges edges_of(const Corners& v) { return {v[1] - v[0], v[2] - v[0], v[3] - v[0]}; }
+SimplexEdges edges_of(const Corners& v) { return {v[1] - v[0], v[2] - v[0], v[3] - v[0]}; }
 
 // The edges from corner 0 at the time t, each axis measured in its largest difference: no coordinate is above 1 by more
 // than rounding. They are off by at most 2^-39 (1 + 2^-10) from what they are at any time until t + 2^-40: an edge
 // moves by 2 in a step, and four operations are rounded.
-Edges scaled_edges(const Corners& before, const Corners& after, double t) {
-  const Edges p = edges_of(before);
-  const Edges q = edges_of(after);
+SimplexEdges scaled_edges(const Corners& before, const Corners& after, double t) {
+  const SimplexEdges p = edges_of(before);
+  const SimplexEdges q = edges_of(after);
   const Vec3 extent = extent_of(p[0], p[1], p[2], q[0], q[1], q[2]);
-  Edges edges;
+  SimplexEdges edges;
   for (unsigned i = 0; i < 3; ++i) {
     const Vec3 e = (1.0 - t) * p[i] + t * q[i];
     edges[i] = {e.x / extent.x, e.y / extent.y, e.z / extent.z};
@@ -30,7 +30,7 @@ Edges scaled_edges(const Corners& before, const Corners& after, double t) {
   return edges;
 }
 
-struct Parts {
+struct DependenceParts {
   unsigned positive = 0;
   unsigned negative = 0;
 };
@@ -38,7 +38,7 @@ struct Parts {
 // The sign of the corners' coordinates in their affine dependence: at the root, the facets' area vectors are multiples
 // of one vector, by just these. Along an axis each is a sum of at most three differences of two products: off by
 // at most 3 (4 2^-39 (1 + 2^-9)), and rounding, in all less than 2^-35.
-Parts dependence(const Edges& e) {
+DependenceParts dependence(const SimplexEdges& e) {
   const Vec3 w1 = cross(e[1], e[2]);
   const Vec3 w2 = cross(e[2], e[0]);
   const Vec3 w3 = cross(e[0], e[1]);
@@ -53,7 +53,7 @@ Parts dependence(const Edges& e) {
     if (sum(along[k]) > sum(along[axis])) axis = k;
   }
   constexpr double error = 0x1p-35;
-  Parts parts;
+  DependenceParts parts;
   for (unsigned i = 0; i < 4; ++i) {
     parts.positive |= along[axis][i] > error ? 1U << i : 0U;
     parts.negative |= along[axis][i] < -error ? 1U << i : 0U;
@@ -61,42 +61,42 @@ Parts dependence(const Edges& e) {
   return parts;
 }
 
-FlatteningKind kind_of(int fewer, int more) {
-  if (fewer == 1 && more == 3) return FlatteningKind::vertex_face;
-  if (fewer == 2 && more == 2) return FlatteningKind::edge_edge;
-  if (fewer == 1 && more == 2) return FlatteningKind::vertex_edge;
-  if (fewer == 1 && more == 1) return FlatteningKind::vertex_vertex;
-  return FlatteningKind::line;
+InversionKind kind_of(int fewer, int more) {
+  if (fewer == 1 && more == 3) return InversionKind::vertex_face;
+  if (fewer == 2 && more == 2) return InversionKind::edge_edge;
+  if (fewer == 1 && more == 2) return InversionKind::vertex_edge;
+  if (fewer == 1 && more == 1) return InversionKind::vertex_vertex;
+  return InversionKind::line;
 }
 
-Flattening flattening_at(const Corners& before, const Corners& after, double time) {
+SimplexInversion inversion_at(const Corners& before, const Corners& after, double time) {
   const auto [positive, negative] = dependence(scaled_edges(before, after, time));
   const int above = std::popcount(positive);
   const int below = std::popcount(negative);
   // Of equal parts, the one with the lowest corner is the first.
   const bool positive_first = above != below ? above < below : std::countr_zero(positive) < std::countr_zero(negative);
-  const FlatteningKind kind = positive_first ? kind_of(above, below) : kind_of(below, above);
-  if (kind == FlatteningKind::line) return {time, kind};
-  const auto [one, other] = positive_first ? Parts{positive, negative} : Parts{negative, positive};
+  const InversionKind kind = positive_first ? kind_of(above, below) : kind_of(below, above);
+  if (kind == InversionKind::line) return {time, kind};
+  const auto [one, other] = positive_first ? DependenceParts{positive, negative} : DependenceParts{negative, positive};
   return {time, kind, static_cast<std::uint8_t>(one), static_cast<std::uint8_t>(other)};
 }
 
 }  // namespace
 
-std::optional<Flattening> find_flattening(const Corners& before, const Corners& after, double until) {
+std::optional<SimplexInversion> find_inversion(const Corners& before, const Corners& after, double until) {
   const detail::VolumeCubic cubic(before, after);
   if (cubic.proves_positive()) return {};
-  until = std::floor(until / flattening_resolution) * flattening_resolution;
+  until = std::floor(until / inversion_resolution) * inversion_resolution;
   if (cubic.proves_positive_until(until)) return {};
   const detail::VolumeRoot root = detail::first_root(before, after, until);
-  using Fate = detail::VolumeRoot::Fate;
+  using Outcome = detail::VolumeRoot::Outcome;
   switch (root.fate) {
-    case Fate::stays_positive: return {};
-    case Fate::never_positive: return Flattening{0.0, FlatteningKind::from_the_start};
-    case Fate::undecidable: return Flattening{0.0, FlatteningKind::undecidable};
-    case Fate::reaches_zero: break;
+    case Outcome::stays_positive: return {};
+    case Outcome::never_positive: return SimplexInversion{0.0, InversionKind::from_the_start};
+    case Outcome::undecidable: return SimplexInversion{0.0, InversionKind::undecidable};
+    case Outcome::reaches_zero: break;
   }
-  return flattening_at(before, after, root.safe_time);
+  return inversion_at(before, after, root.safe_time);
 }
 
 }  // namespace dartcast

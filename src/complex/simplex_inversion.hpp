@@ -11,10 +11,10 @@ namespace dartcast {
 
 /// Times of flattening are multiples of this. Steps of time that are much finer would be lost when positions are
 /// rounded.
-inline constexpr double flattening_resolution = 0x1p-40;
+inline constexpr double inversion_resolution = 0x1p-40;
 
 /// What meets when a simplex becomes flat: the parts of its corners whose convex hulls then have a point in common.
-enum class FlatteningKind : std::uint8_t {
+enum class InversionKind : std::uint8_t {
   vertex_face,     ///< a corner and the inside of the opposite facet
   edge_edge,       ///< the insides of two opposite edges
   vertex_edge,     ///< a corner and the inside of an edge
@@ -25,21 +25,21 @@ enum class FlatteningKind : std::uint8_t {
 };
 
 /// A simplex's first flattening in a step.
-struct Flattening {
-  /// The volume is positive in [0, safe_time], and first zero in (safe_time, safe_time + flattening_resolution]. It is
+struct SimplexInversion {
+  /// The volume is positive in [0, safe_time], and first zero in (safe_time, safe_time + inversion_resolution]. It is
   /// 0, and not safe, for the kinds from_the_start and undecidable.
   double safe_time = 0.0;
-  FlatteningKind kind = FlatteningKind::line;
+  InversionKind kind = InversionKind::line;
   std::uint8_t one = 0;    ///< corners that meet the others, bit i for corner i; 0 where all lie on a line
   std::uint8_t other = 0;  ///< not fewer than in `one`
 
-  bool operator==(const Flattening&) const = default;
+  bool operator==(const SimplexInversion&) const = default;
 };
 
 /// The first time in [0, until] at which the volume of the simplex is not positive, its corners going from `before` to
 /// `after` on straight lines, a + t (b - a) without rounding; nothing where it stays positive. A volume that touches
 /// zero and is positive again counts. Exact: no flattening is missed, none is invented. Precondition: `until` is in
-/// [0, 1]; it is rounded down to a multiple of flattening_resolution.
+/// [0, 1]; it is rounded down to a multiple of inversion_resolution.
 ///
 /// The kind: a corner is counted to one of the parts where its facet's area, projected along an axis, is proved to keep
 /// its sign until the root, that is where it is above 2^-35 of the simplex's extents before and after; else to none. So
@@ -51,6 +51,6 @@ struct Flattening {
 ///
 /// The cubic is that of X. Provot, "Collision and self-collision handling in cloth model dedicated to design garments",
 /// 1997; its first root is enclosed by exact signs, of its values, its discriminant and Bernstein's coefficients.
-std::optional<Flattening> find_flattening(const Corners& before, const Corners& after, double until = 1.0);
+std::optional<SimplexInversion> find_inversion(const Corners& before, const Corners& after, double until = 1.0);
 
 }  // namespace dartcast

@@ -102,7 +102,7 @@ class OverlappingGroups {
 };
 
 CellMarks indivisible_cells(const MeshData& mesh, Threads threads) {
-  const Complex complex(mesh, threads);
+  const CellComplex complex(mesh, threads);
   CellMarks bad(mesh.cell_count(), 0);
   std::vector<std::uint32_t> sources;
   for (const InvalidCell& invalid : complex.invalid_cells()) sources.push_back(complex.map().source(invalid.cell));
@@ -138,7 +138,7 @@ bool is_of_bad_cells(std::string_view defect) {
 Finding skip_bad_cells(MeshData& mesh, Threads threads) {
   std::vector<std::uint32_t> skipped;
   while (true) {
-    const MeshReport report = inspect(mesh);
+    const MeshReport report = check_and_repair(mesh);
     if (mesh.source.empty()) {
       mesh.source.resize(mesh.cell_count());
       std::iota(mesh.source.begin(), mesh.source.end(), 0U);

@@ -9,17 +9,17 @@
 
 namespace dartcast {
 
-/// Whether a defect that inspect() finds is one of single cells, which skip_bad_cells() can leave out: flat, inverted,
-/// same_side.
+/// Whether a defect that check_and_repair() finds is one of single cells, which skip_bad_cells() can leave out: flat,
+/// inverted, same_side.
 bool is_of_bad_cells(std::string_view defect);
 
 /// Leaves out the cells that are not positive: flat ones, ones that no order of their corners makes positive, ones that
 /// lie inverted among their neighbours (where cells use a face from the same side, the fewer of them), and ones that
 /// cannot be divided into positive simplices. Their faces at other cells become walls without a patch, so that every
-/// guarantee holds for what is left. Regions, arrays, patches and `source` go along; the mesh is then as inspect()
-/// leaves it. Returns a finding of kind "bad_cells" with their number and the first, as indices in the input; of none
-/// where the mesh is good. Throws InvalidMesh where the mesh has other defects, or no cell is left. Cost: that of
-/// inspect() and of building a complex, once more for each kind of bad cell.
+/// guarantee holds for what is left. Regions, arrays, patches and `source` go along; the mesh is then as
+/// check_and_repair() leaves it. Returns a finding of kind "bad_cells" with their number and the first, as indices in
+/// the input; of none where the mesh is good. Throws InvalidMesh where the mesh has other defects, or no cell is left.
+/// Cost: that of check_and_repair() and of building a complex, once more for each kind of bad cell.
 Finding skip_bad_cells(MeshData& mesh, Threads threads = {});
 
 }  // namespace dartcast

@@ -14,14 +14,14 @@ namespace dartcast {
 namespace {
 
 using detail::all_positive;
+using detail::ConeTriangle;
 using detail::fan;
 using detail::mean;
-using detail::Triangle;
 
-using Faces = std::vector<std::vector<std::uint32_t>>;
+using CornerLists = std::vector<std::vector<std::uint32_t>>;
 
-Faces faces_of(const MeshData& mesh, std::uint32_t c) {
-  Faces faces;
+CornerLists faces_of(const MeshData& mesh, std::uint32_t c) {
+  CornerLists faces;
   for_each_face(mesh, c,
                 [&](std::span<const std::uint32_t> corners) { faces.emplace_back(corners.begin(), corners.end()); });
   return faces;
@@ -32,11 +32,11 @@ std::vector<std::uint32_t> sorted(std::vector<std::uint32_t> v) {
   return v;
 }
 
-class Solver {
+class SteinerSolver {
  public:
-  Solver(const MeshData& mesh, const Map& plain) : mesh_(mesh), plain_(plain) { number_cells(); }
+  SteinerSolver(const MeshData& mesh, const CombinatorialMap& plain) : mesh_(mesh), plain_(plain) { number_cells(); }
 
-  InteriorSolution solve(std::span<const Cell> cells) {
+  SteinerSolution solve(std::span<const Cell> cells) {
     for (const Cell c : cells) add_cell(number_[c.pool()][c.index()]);
     for (std::size_t i = 0; i < chosen_.size(); ++i) choose_face_points(chosen_[i]);
     for (const auto& [corners, sides] : face_points_) add_face_point(corners, sides);
@@ -50,7 +50,8 @@ class Solver {
  private:
   // The plain map has a cell for each of the mesh, in the mesh's order within each type.
   void number_cells() {
-    for (std::uint32_t c = 0; c < mesh_.cell_count(); ++c) number_[Map::pool_of(mesh_.types[c])].push_back(c);
+    for (std::uint32_t c = 0; c < mesh_.cell_count(); ++c)
+      number_[CombinatorialMap::pool_of(mesh_.types[c])].push_back(c);
     cell_.resize(mesh_.cell_count());
     for (std::uint32_t p = 0; p < number_.size(); ++p) {
       for (std::uint32_t i = 0; i < number_[p].size(); ++i) cell_[number_[p][i]] = Cell(p, i);
@@ -65,7 +66,7 @@ class Solver {
   // A face whose triangles are not all positive seen from the mean of the cell's corners, but would be with a point.
   void choose_face_points(std::uint32_t c) {
     if (plain_.dimension() == 2) return;
-    const Faces faces = faces_of(mesh_, c);
+    const CornerLists faces = faces_of(mesh_, c);
     const Vec3 m = mean(mesh_.points, corners_of(faces));
     for (const auto& face : faces) {
       if (face.size() == 3 || all_positive(m, fan(mesh_.points, face))) continue;
@@ -76,7 +77,7 @@ class Solver {
     }
   }
 
-  static std::vector<std::uint32_t> corners_of(const Faces& faces) {
+  static std::vector<std::uint32_t> corners_of(const CornerLists& faces) {
     std::set<std::uint32_t> corners;
     for (const auto& face : faces) corners.insert(face.begin(), face.end());
     return {corners.begin(), corners.end()};
@@ -100,7 +101,7 @@ class Solver {
   }
 
   [[nodiscard]] std::uint16_t index_of(std::uint32_t c, const std::vector<std::uint32_t>& key) const {
-    const Faces faces = faces_of(mesh_, c);
+    const CornerLists faces = faces_of(mesh_, c);
     const auto found = std::find_if(faces.begin(), faces.end(), [&](const auto& f) { return sorted(f) == key; });
     return static_cast<std::uint16_t>(found - faces.begin());
   }
@@ -118,14 +119,14 @@ class Solver {
   }
 
   void add_cell_point(std::uint32_t c) {
-    const Faces faces = faces_of(mesh_, c);
+    const CornerLists faces = faces_of(mesh_, c);
     if (plain_.dimension() == 2) {  // the mean of a convex polygon's corners is inside
       const auto all = corners_of(faces);
       const std::vector<double> equal(all.size(), 1.0 / static_cast<double>(all.size()));
       solution_.points.of_cells.emplace_back(c, add_vertex(all, equal));
       return;
     }
-    std::vector<Triangle> triangles;
+    std::vector<ConeTriangle> triangles;
     for (const auto& face : faces) {
       std::optional<Vec3> point;
       if (face_points_.count(sorted(face)) != 0) point = mean(mesh_.points, face);
@@ -137,19 +138,19 @@ class Solver {
   }
 
   const MeshData& mesh_;
-  const Map& plain_;
+  const CombinatorialMap& plain_;
   std::array<std::vector<std::uint32_t>, 5> number_;  // by pool and index: the cell's number in the mesh
   std::vector<Cell> cell_;                            // and back
   std::set<std::uint32_t> with_point_;
   std::vector<std::uint32_t> chosen_;  // the same, in the order found
   std::map<std::vector<std::uint32_t>, std::vector<Side>> face_points_;
-  InteriorSolution solution_;
+  SteinerSolution solution_;
 };
 
 }  // namespace
 
-InteriorSolution find_interior_points(const MeshData& mesh, const Map& plain, std::span<const Cell> cells) {
-  return Solver(mesh, plain).solve(cells);
+SteinerSolution find_steiner_points(const MeshData& mesh, const CombinatorialMap& plain, std::span<const Cell> cells) {
+  return SteinerSolver(mesh, plain).solve(cells);
 }
 
 }  // namespace dartcast

@@ -4,12 +4,12 @@
 
 namespace dartcast {
 
-std::size_t InteriorWeights::bytes() const {
+std::size_t SteinerWeights::bytes() const {
   return vertex_.size() * sizeof(Vertex) + offsets_.size() * sizeof(std::size_t) +
          corner_.size() * (sizeof(std::uint32_t) + sizeof(double));
 }
 
-void InteriorWeights::add(Vertex v, std::span<const std::uint32_t> corners, std::span<const double> weights) {
+void SteinerWeights::add(Vertex v, std::span<const std::uint32_t> corners, std::span<const double> weights) {
   if (!place_.empty()) place_[v.value] = vertex_.size();
   vertex_.push_back(v);
   corner_.insert(corner_.end(), corners.begin(), corners.end());
@@ -17,7 +17,7 @@ void InteriorWeights::add(Vertex v, std::span<const std::uint32_t> corners, std:
   offsets_.push_back(corner_.size());
 }
 
-void InteriorWeights::add(const InteriorWeights& other) {
+void SteinerWeights::add(const SteinerWeights& other) {
   for (std::size_t i = 0; i < other.vertex_.size(); ++i) {
     const std::size_t first = other.offsets_[i];
     const std::size_t size = other.offsets_[i + 1] - first;
@@ -26,7 +26,7 @@ void InteriorWeights::add(const InteriorWeights& other) {
   }
 }
 
-void InteriorWeights::remove(Vertex v) {
+void SteinerWeights::remove(Vertex v) {
   if (vertex_.empty()) return;
   if (place_.empty()) {
     for (std::size_t i = 0; i < vertex_.size(); ++i) place_[vertex_[i].value] = i;
@@ -39,13 +39,13 @@ void InteriorWeights::remove(Vertex v) {
   if (2 * removed_ > vertex_.size()) close_gaps();
 }
 
-void InteriorWeights::close_gaps() {
-  InteriorWeights dense;
+void SteinerWeights::close_gaps() {
+  SteinerWeights dense;
   dense.add(*this);
   *this = std::move(dense);
 }
 
-void InteriorWeights::compute(std::span<Vec3> positions) const {
+void SteinerWeights::compute(std::span<Vec3> positions) const {
   for (std::size_t i = 0; i < vertex_.size(); ++i) {
     if (!vertex_[i].valid()) continue;
     Vec3 sum;

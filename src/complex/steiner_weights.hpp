@@ -11,7 +11,7 @@
 
 namespace dartcast {
 
-class InteriorWeights {
+class SteinerWeights {
  public:
   [[nodiscard]] std::size_t count() const { return vertex_.size() - removed_; }
   [[nodiscard]] std::size_t bytes() const;
@@ -19,7 +19,7 @@ class InteriorWeights {
   /// A further vertex. `weights`: one per corner; they sum to 1. Corners are no interior points.
   void add(Vertex v, std::span<const std::uint32_t> corners, std::span<const double> weights);
   /// Adds all of another's.
-  void add(const InteriorWeights& other);
+  void add(const SteinerWeights& other);
   /// Forgets a vertex; nothing happens where it is no interior point. The first call lists the vertices, once; after
   /// that the cost is constant on average.
   void remove(Vertex v);

@@ -12,7 +12,7 @@ namespace dartcast {
 
 namespace {
 
-std::string describe(const Map& map, Cell c, std::uint16_t simplex, Sign sign) {
+std::string describe(const CombinatorialMap& map, Cell c, std::uint16_t simplex, Sign sign) {
   const char* what = sign == Sign::zero       ? " is flat"
                      : sign == Sign::negative ? " is inverted"
                                               : " has a corner that is not finite or outside the exact range";
@@ -33,17 +33,17 @@ class Sieve {
     // Shapes that meet in a group judge each other's cells early: it costs time, no more.
     Group& group = groups_[reinterpret_cast<std::uintptr_t>(shape) / 64U % groups_.size()];
     if (group.shape != shape) {
-      judge(group);
+      check(group);
       group.shape = shape;
     }
     group.cells[group.size] = c;
     group.vertices[group.size] = v.vertices().data();
-    if (++group.size == group.cells.size()) judge(group);
+    if (++group.size == group.cells.size()) check(group);
   }
 
   /// In order. To be called at the end.
   std::vector<Cell> open() {
-    for (Group& group : groups_) judge(group);
+    for (Group& group : groups_) check(group);
     std::sort(open_.begin(), open_.end());
     return std::move(open_);
   }
@@ -56,7 +56,7 @@ class Sieve {
     std::size_t size = 0;
   };
 
-  void judge(Group& group) {
+  void check(Group& group) {
     if (group.size == 0) return;
     for (std::size_t i = group.size; i < group.vertices.size(); ++i) group.vertices[i] = group.vertices[0];
     const unsigned open = detail::not_proved_positive(*group.shape, group.vertices, positions_.data());
@@ -73,7 +73,7 @@ class Sieve {
 
 }  // namespace
 
-std::optional<InvalidCell> check_cell(const Map& map, std::span<const Vec3> positions, Cell c) {
+std::optional<InvalidCell> check_cell(const CombinatorialMap& map, std::span<const Vec3> positions, Cell c) {
   const CellView v = map.view(c);
   const auto& simplices = v.shape().simplices();
   for (std::uint16_t s = 0; s < simplices.size(); ++s) {
@@ -86,10 +86,11 @@ std::optional<InvalidCell> check_cell(const Map& map, std::span<const Vec3> posi
   return {};
 }
 
-Validity check_validity(const Map& map, std::span<const Vec3> positions, Threads threads, std::size_t most) {
+Validity check_validity(const CombinatorialMap& map, std::span<const Vec3> positions, Threads threads,
+                        std::size_t max_count) {
   constexpr std::size_t grain = 4096;
   Validity all;
-  for (std::uint32_t pool = 0; pool <= Map::general_pool; ++pool) {
+  for (std::uint32_t pool = 0; pool <= CombinatorialMap::general_pool; ++pool) {
     const std::size_t count = map.slot_count(pool);
     std::vector<Validity> parts(chunk_count(count, grain));
     parallel_for(count, grain, threads, [&](std::size_t begin, std::size_t end) {
@@ -100,21 +101,21 @@ Validity check_validity(const Map& map, std::span<const Vec3> positions, Threads
         auto invalid = check_cell(map, positions, c);
         if (!invalid) continue;
         ++part.invalid_count;
-        if (part.first.size() < most) part.first.push_back(std::move(*invalid));
+        if (part.first.size() < max_count) part.first.push_back(std::move(*invalid));
       }
     });
     all.cells_checked += map.cell_count(pool);
     for (Validity& part : parts) {
       all.invalid_count += part.invalid_count;
-      const auto keep = static_cast<std::ptrdiff_t>(std::min(most - all.first.size(), part.first.size()));
+      const auto keep = static_cast<std::ptrdiff_t>(std::min(max_count - all.first.size(), part.first.size()));
       all.first.insert(all.first.end(), part.first.begin(), part.first.begin() + keep);
     }
   }
   return all;
 }
 
-Validity check_validity(const Complex& complex, Threads threads, std::size_t most) {
-  return check_validity(complex.map(), complex.positions(), threads, most);
+Validity check_validity(const CellComplex& complex, Threads threads, std::size_t max_count) {
+  return check_validity(complex.map(), complex.positions(), threads, max_count);
 }
 
 }  // namespace dartcast

@@ -10,13 +10,13 @@ namespace {
 using Bernstein = std::array<double, 4>;
 
 // The cubic on [0, t] and on [t, 1], by de Casteljau's algorithm.
-struct Parts {
+struct BernsteinHalves {
   Bernstein left;
   Bernstein right;
 };
 
 template <class Mix>
-Parts split(const Bernstein& b, Mix&& mix) {
+BernsteinHalves split(const Bernstein& b, Mix&& mix) {
   const std::array<double, 3> u = {mix(b[0], b[1]), mix(b[1], b[2]), mix(b[2], b[3])};
   const std::array<double, 2> v = {mix(u[0], u[1]), mix(u[1], u[2])};
   const double middle = mix(v[0], v[1]);
@@ -26,19 +26,19 @@ Parts split(const Bernstein& b, Mix&& mix) {
 bool proves_positive(const Bernstein& b, double bound, int halvings) {
   if (all_above(b, bound)) return true;
   if (halvings == 0 || !(b[0] > bound) || !(b[3] > bound)) return false;
-  const Parts parts = split(b, [](double x, double y) { return 0.5 * (x + y); });
+  const BernsteinHalves parts = split(b, [](double x, double y) { return 0.5 * (x + y); });
   return proves_positive(parts.left, bound, halvings - 1) && proves_positive(parts.right, bound, halvings - 1);
 }
 
 // Integers of any size; these many bits are kept in place, enough for most.
-using Integer =
+using CubicInteger =
     boost::multiprecision::number<boost::multiprecision::cpp_int_backend<512>, boost::multiprecision::et_off>;
-using IntegerVec3 = std::array<Integer, 3>;
+using IntegerVec3 = std::array<CubicInteger, 3>;
 
 // Coordinates of one axis, before and after, as integers over one power of two: it scales the volume, no more.
 using AxisNumbers = std::array<double, 8>;
 
-std::array<Integer, 8> to_integers(const AxisNumbers& numbers) {
+std::array<CubicInteger, 8> to_integers(const AxisNumbers& numbers) {
   std::array<std::int64_t, 8> digits;
   std::array<int, 8> exponent;
   int lowest = std::numeric_limits<int>::max();
@@ -46,9 +46,9 @@ std::array<Integer, 8> to_integers(const AxisNumbers& numbers) {
     digits[i] = static_cast<std::int64_t>(std::ldexp(std::frexp(numbers[i], &exponent[i]), 53));
     if (digits[i] != 0) lowest = std::min(lowest, exponent[i]);
   }
-  std::array<Integer, 8> integers;
+  std::array<CubicInteger, 8> integers;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    if (digits[i] != 0) integers[i] = Integer(digits[i]) << static_cast<unsigned>(exponent[i] - lowest);
+    if (digits[i] != 0) integers[i] = CubicInteger(digits[i]) << static_cast<unsigned>(exponent[i] - lowest);
   }
   return integers;
 }
@@ -57,7 +57,7 @@ IntegerVec3 cross(const IntegerVec3& a, const IntegerVec3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-Integer dot(const IntegerVec3& a, const IntegerVec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+CubicInteger dot(const IntegerVec3& a, const IntegerVec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 IntegerVec3 operator+(const IntegerVec3& a, const IntegerVec3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 
@@ -97,10 +97,10 @@ class ExactCubic {
   // negative, since the product of all is -d0 / d3. Else all are real, and as many are positive as there are changes of
   // sign (Descartes): two where d1 or d2 is negative, else none. The discriminant is that of the c times t^6.
   [[nodiscard]] bool reaches_zero_by(std::int64_t units) const {
-    const Integer t = units;
-    const Integer s = whole - units;
+    const CubicInteger t = units;
+    const CubicInteger s = whole - units;
     const auto& [c0, c1, c2, c3] = c_;
-    const Integer two = s * (s * c0 + t * c1) + t * t * c2;  // c0 s^2 + c1 s t + c2 t^2
+    const CubicInteger two = s * (s * c0 + t * c1) + t * t * c2;  // c0 s^2 + c1 s t + c2 t^2
     if (s * two + t * t * t * c3 <= 0) return true;
     if (!has_three_roots_) return false;
     return 3 * s * c0 + t * c1 < 0 || two + s * (2 * s * c0 + t * c1) < 0;
@@ -110,7 +110,7 @@ class ExactCubic {
   static_assert(static_cast<double>(whole) * time_unit == 1.0);
 
  private:
-  std::array<Integer, 4> c_;
+  std::array<CubicInteger, 4> c_;
   bool has_three_roots_;  // counted with multiplicity
 };
 
@@ -125,23 +125,23 @@ bool VolumeCubic::proves_positive_until(double t) const {
   constexpr double error = (66.0 + 36.0 + 18.0 * halvings) * 0x1p-53 * (1.0 + 0x1p-10);
   const double s = 1.0 - t;
   const Bernstein b = {c[0], c[1] / 3.0, c[2] / 3.0, c[3]};
-  const Parts parts = split(b, [s, t](double x, double y) { return s * x + t * y; });
+  const BernsteinHalves parts = split(b, [s, t](double x, double y) { return s * x + t * y; });
   return applies && detail::proves_positive(parts.left, error * m, halvings);
 }
 
 VolumeRoot first_root(const Corners& before, const Corners& after, double until) {
-  using Fate = VolumeRoot::Fate;
-  if (!all_in_exact_range(before) || !all_in_exact_range(after)) return {Fate::undecidable};
+  using Outcome = VolumeRoot::Outcome;
+  if (!all_in_exact_range(before) || !all_in_exact_range(after)) return {Outcome::undecidable};
   const ExactCubic cubic(before, after);
-  if (!cubic.starts_positive()) return {Fate::never_positive};
+  if (!cubic.starts_positive()) return {Outcome::never_positive};
   std::int64_t zero_by = static_cast<std::int64_t>(until / time_unit);
-  if (!cubic.reaches_zero_by(zero_by)) return {Fate::stays_positive};
+  if (!cubic.reaches_zero_by(zero_by)) return {Outcome::stays_positive};
   std::int64_t positive_until = 0;
   while (zero_by - positive_until > 1) {
     const std::int64_t middle = positive_until + (zero_by - positive_until) / 2;
     (cubic.reaches_zero_by(middle) ? zero_by : positive_until) = middle;
   }
-  return {Fate::reaches_zero, static_cast<double>(positive_until) * time_unit};
+  return {Outcome::reaches_zero, static_cast<double>(positive_until) * time_unit};
 }
 
 }  // namespace dartcast::detail

@@ -88,13 +88,13 @@ struct VolumeCubic {
 inline constexpr double time_unit = 0x1p-40;
 
 struct VolumeRoot {
-  enum class Fate : std::uint8_t {
+  enum class Outcome : std::uint8_t {
     stays_positive,
     reaches_zero,
     never_positive,  ///< at the time 0
     undecidable      ///< a coordinate is not finite or outside the exact range
   };
-  Fate fate = Fate::stays_positive;
+  Outcome fate = Outcome::stays_positive;
   double safe_time = 0.0;  ///< where it reaches zero: the last multiple of time_unit before it first does
 };
 

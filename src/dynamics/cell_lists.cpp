@@ -2,7 +2,7 @@
 
 namespace dartcast {
 
-void CellLists::fit(const Map& map) {
+void CellLists::fit(const CombinatorialMap& map) {
   for (std::uint32_t p = 0; p < pools_.size(); ++p) {
     if (pools_[p].size() < map.slot_count(p)) pools_[p].resize(map.slot_count(p));
   }
@@ -13,7 +13,7 @@ void CellLists::insert(std::uint32_t particle, Cell c) {
   links_[particle] = {l.first, none};
   if (l.first != none) links_[l.first].previous = particle;
   l.first = particle;
-  if (++l.count == few + 1) ++crowded_;
+  if (++l.count == short_list + 1) ++crowded_;
   cell_of_[particle] = c;
 }
 
@@ -25,10 +25,10 @@ void CellLists::remove(std::uint32_t particle) {
   else
     l.first = link.next;
   if (link.next != none) links_[link.next].previous = link.previous;
-  if (l.count-- == few + 1) --crowded_;
+  if (l.count-- == short_list + 1) --crowded_;
 }
 
-void CellLists::update(const Map& map, std::span<const State> states) {
+void CellLists::update(const CombinatorialMap& map, std::span<const ParticleState> states) {
   fit(map);
   crossed_ = 0;
   const std::size_t old = cell_of_.size();

@@ -18,12 +18,12 @@ namespace dartcast {
 class CellLists {
  public:
   /// Cells with more particles than this are crowded: a list is not the way to find pairs there (sphere_pairs.hpp).
-  static constexpr std::uint32_t few = 8;
+  static constexpr std::uint32_t short_list = 8;
 
   /// Brings the lists up to date with the cells that the states name, whatever has happened since: motion, edits,
   /// particles added or removed. Cost: a look at each particle, and a constant for each that is in another cell than it
   /// was; no allocation unless there are more particles or cells than ever before.
-  void update(const Map& map, std::span<const State> states);
+  void update(const CombinatorialMap& map, std::span<const ParticleState> states);
 
   [[nodiscard]] std::size_t size() const { return cell_of_.size(); }
   /// Number of particles in a cell.
@@ -31,7 +31,7 @@ class CellLists {
     const auto& pool = pools_[c.pool()];
     return c.index() < pool.size() ? pool[c.index()].count : 0;
   }
-  /// Number of cells that hold more than `few`.
+  /// Number of cells that hold more than `short_list`.
   [[nodiscard]] std::size_t crowded() const { return crowded_; }
   /// Number of particles that the last update() moved to another list.
   [[nodiscard]] std::size_t crossed() const { return crossed_; }
@@ -60,7 +60,7 @@ class CellLists {
     std::uint32_t previous = none;
   };
 
-  void fit(const Map& map);
+  void fit(const CombinatorialMap& map);
   void insert(std::uint32_t particle, Cell c);
   void remove(std::uint32_t particle);
   [[nodiscard]] List& list(Cell c) { return pools_[c.pool()][c.index()]; }

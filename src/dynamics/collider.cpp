@@ -50,13 +50,13 @@ bool Collider::surely_apart(std::uint32_t a, std::uint32_t b) const {
   const Reach& first = reaches_[a];
   const Reach& second = reaches_[b];
   const Vec3 way = second.centre - first.centre;
-  const double most = first.most + second.most + std::max(first.room, second.room);
-  return dot(way, way) > most * most * (1.0 + 0x1p-30);
+  const double limit = first.limit + second.limit + std::max(first.room, second.room);
+  return dot(way, way) > limit * limit * (1.0 + 0x1p-30);
 }
 
 // A chunk of candidates: those that are near become contacts.
-void Collider::judge(const Complex& complex, const CollidingSpheres& spheres, std::span<const SpherePair> candidates,
-                     Part& part) const {
+void Collider::find_contacts(const CellComplex& complex, const CollidingSpheres& spheres,
+                             std::span<const SpherePair> candidates, Part& part) const {
   for (const SpherePair& p : candidates) {
     if (surely_apart(p.a, p.b)) continue;
     const bool swapped = spheres.ids[p.a] > spheres.ids[p.b];
@@ -87,7 +87,7 @@ void Collider::sweep(const CollidingSpheres& spheres, double dt) {
   }
 }
 
-void Collider::find_contacts(const Complex& complex, const CollidingSpheres& spheres,
+void Collider::find_contacts(const CellComplex& complex, const CollidingSpheres& spheres,
                              std::span<const SpherePair> candidates, Threads threads, CollisionCounts& counts) {
   parts_.resize(chunk_count(candidates.size(), collide_grain));
   parallel_for(candidates.size(), collide_grain, threads, [&](std::size_t begin, std::size_t end) {
@@ -95,7 +95,7 @@ void Collider::find_contacts(const Complex& complex, const CollidingSpheres& sph
     part.contacts.clear();
     part.overlaps = 0;
     part.deepest = 0.0;
-    judge(complex, spheres, candidates.subspan(begin, end - begin), part);
+    find_contacts(complex, spheres, candidates.subspan(begin, end - begin), part);
   });
   pairs_.clear();
   for (const Part& part : parts_) {
@@ -107,7 +107,7 @@ void Collider::find_contacts(const Complex& complex, const CollidingSpheres& sph
   counts.pairs_near = pairs_.size();
 }
 
-CollisionCounts Collider::collide(const Complex& complex, const CollidingSpheres& spheres,
+CollisionCounts Collider::collide(const CellComplex& complex, const CollidingSpheres& spheres,
                                   std::span<const WallContact> walls, const SolverOptions& options, Threads threads) {
   check_spheres(spheres);
   CollisionCounts counts;

@@ -44,7 +44,7 @@ struct CollisionSeconds {
 
 /// Spheres of an environment: entry i of each belongs to particle i.
 struct CollidingSpheres {
-  std::span<const State> states;
+  std::span<const ParticleState> states;
   std::span<const std::uint64_t> ids;      ///< distinct
   std::span<const double> radii;           ///< 0: meets nobody
   std::span<const double> inverse_masses;  ///< 0: it cannot be pushed
@@ -59,8 +59,8 @@ class Collider {
   /// Finds the pairs and solves them together with `walls`, whose gaps are those of the geometry: resting gaps are
   /// taken off here. Pairs with a wall between their centres do not meet. Precondition: the states are of the complex
   /// as it stands. Throws as ContactSolver::solve(). The same for any number of threads and any order of particles.
-  CollisionCounts collide(const Complex& complex, const CollidingSpheres& spheres, std::span<const WallContact> walls,
-                          const SolverOptions& options, Threads threads);
+  CollisionCounts collide(const CellComplex& complex, const CollidingSpheres& spheres,
+                          std::span<const WallContact> walls, const SolverOptions& options, Threads threads);
 
   [[nodiscard]] const CellLists& lists() const { return lists_; }
   [[nodiscard]] ContactSolver& solver() { return solver_; }
@@ -78,16 +78,16 @@ class Collider {
   // How far a sphere comes from where its centre is, and the room around it in which another is near.
   struct Reach {
     Vec3 centre;
-    double most = 0.0;
+    double limit = 0.0;
     double room = 0.0;
   };
 
   void sweep(const CollidingSpheres& spheres, double dt);
   [[nodiscard]] bool surely_apart(std::uint32_t a, std::uint32_t b) const;
-  void find_contacts(const Complex& complex, const CollidingSpheres& spheres, std::span<const SpherePair> candidates,
-                     Threads threads, CollisionCounts& counts);
-  void judge(const Complex& complex, const CollidingSpheres& spheres, std::span<const SpherePair> candidates,
-             Part& part) const;
+  void find_contacts(const CellComplex& complex, const CollidingSpheres& spheres,
+                     std::span<const SpherePair> candidates, Threads threads, CollisionCounts& counts);
+  void find_contacts(const CellComplex& complex, const CollidingSpheres& spheres,
+                     std::span<const SpherePair> candidates, Part& part) const;
 
   CellLists lists_;
   PairFinder finder_;

@@ -34,7 +34,7 @@ void ContactPackets::sort(std::span<const ContactEnds> contacts, std::span<const
   packets_.resize(packets);
   impulses_.resize(packets);
   surfaces_.resize(packets);
-  pushes_.resize(packets);
+  corrections_.resize(packets);
   order_.assign(packet_lanes * std::size_t{packets}, nothing);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     places_[i] = starts_[places_[i]]++;
@@ -48,7 +48,7 @@ void ContactPackets::clear(std::size_t p, std::uint32_t nobody) {
   packets_[p].b.fill(nobody);
   impulses_[p] = {};
   surfaces_[p] = {};
-  pushes_[p] = {};
+  corrections_[p] = {};
 }
 
 void ContactPackets::set(std::size_t p, std::size_t l, const ContactEnds& ends, const ContactTerms& terms) {
@@ -63,11 +63,11 @@ void ContactPackets::set(std::size_t p, std::size_t l, const ContactEnds& ends, 
   put(packet_now.normal, terms.normal);
   packet_now.mass[l] = terms.mass;
   packet_now.bound[l] = terms.bound;
-  impulses_[p].along[l] = terms.along;
-  put(impulses_[p].across, terms.across);
+  impulses_[p].normal_impulse[l] = terms.normal_impulse;
+  put(impulses_[p].tangent_impulse, terms.tangent_impulse);
   surfaces_[p].friction[l] = terms.friction;
   surfaces_[p].rebound[l] = terms.rebound;
-  pushes_[p].bound[l] = terms.push_bound;
+  corrections_[p].bound[l] = terms.position_bound;
 }
 
 // Terms are read in an order of their own, from all over memory: so they are asked for in time.
@@ -81,7 +81,7 @@ void ContactPackets::assign(std::span<const ContactEnds> contacts, std::span<con
       const std::size_t place = packet_lanes * p + l;
       if (place + ahead < order_.size() && order_[place + ahead] != nothing) {
         __builtin_prefetch(&terms[order_[place + ahead]]);
-        __builtin_prefetch(&terms[order_[place + ahead]].along);
+        __builtin_prefetch(&terms[order_[place + ahead]].normal_impulse);
       }
       const std::uint32_t i = order_[place];
       if (i != nothing) set(p, l, contacts[i], terms[i]);
@@ -95,7 +95,7 @@ bool ContactPackets::rebound() {
     for (std::size_t l = 0; l < packet_lanes; ++l) {
       double& rebound = surfaces_[p].rebound[l];
       if (!(rebound > 0.0)) continue;
-      if (!(impulses_[p].along[l] > 0.0)) {
+      if (!(impulses_[p].normal_impulse[l] > 0.0)) {
         rebound = 0.0;
         continue;
       }

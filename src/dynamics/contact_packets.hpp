@@ -43,10 +43,10 @@ struct alignas(64) ContactTerms {
   double mass = 0.0;  ///< 1 / (sum of the inverse masses)
   double friction = 0.0;
   double bound = 0.0;
-  double push_bound = 0.0;  ///< the same, for displacements
-  double rebound = 0.0;     ///< bound that takes its place after rebound(), if the contact has an impulse; 0: none does
-  double along = 0.0;       ///< impulse on b that it begins with: along the normal, and across it
-  Vec3 across;
+  double position_bound = 0.0;  ///< the same, for displacements
+  double rebound = 0.0;  ///< bound that takes its place after rebound(), if the contact has an impulse; 0: none does
+  double normal_impulse = 0.0;  ///< impulse on b that it begins with: along the normal, and across it
+  Vec3 tangent_impulse;
 };
 
 /// Four contacts: whom they act on, and how. All of this is read in every iteration.
@@ -59,8 +59,8 @@ struct alignas(64) ContactPacket {
 };
 /// Their impulses so far.
 struct alignas(64) PacketImpulses {
-  PacketNumbers along{};
-  PacketVectors across{};
+  PacketNumbers normal_impulse{};
+  PacketVectors tangent_impulse{};
 };
 /// What is needed for those that have impulses, and at the end.
 struct alignas(64) PacketSurfaces {
@@ -68,9 +68,9 @@ struct alignas(64) PacketSurfaces {
   PacketNumbers rebound{};
 };
 /// Impulses of displacements.
-struct alignas(64) PacketPushes {
+struct alignas(64) PacketCorrections {
   PacketNumbers bound{};
-  PacketNumbers push{};
+  PacketNumbers position_correction{};
 };
 
 class ContactPackets {
@@ -82,9 +82,9 @@ class ContactPackets {
               std::span<const ContactBody> bodies);
 
   [[nodiscard]] std::size_t packet_count() const { return packets_.size(); }
-  [[nodiscard]] double along(std::size_t i) const { return impulses_[packet(i)].along[lane(i)]; }
-  [[nodiscard]] Vec3 across(std::size_t i) const {
-    const PacketVectors& v = impulses_[packet(i)].across;
+  [[nodiscard]] double normal_impulse(std::size_t i) const { return impulses_[packet(i)].normal_impulse[lane(i)]; }
+  [[nodiscard]] Vec3 tangent_impulse(std::size_t i) const {
+    const PacketVectors& v = impulses_[packet(i)].tangent_impulse;
     return {v[0][lane(i)], v[1][lane(i)], v[2][lane(i)]};
   }
   /// Whether it was given an impulse, and rebounds.
@@ -96,7 +96,8 @@ class ContactPackets {
   /// last time is forwards. Cost: some 6 ns a contact and iteration.
   void solve(std::span<ContactBody> bodies, unsigned iterations, InstructionSet set = best_instruction_set());
   /// The same for displacements over a unit of time, by impulses along normals that are forgotten.
-  void push(std::span<ContactBody> bodies, unsigned iterations, InstructionSet set = best_instruction_set());
+  void position_correction(std::span<ContactBody> bodies, unsigned iterations,
+                           InstructionSet set = best_instruction_set());
   /// From now on those that have an impulse and rebound are bound to do so. Whether there are any.
   bool rebound();
 
@@ -113,7 +114,7 @@ class ContactPackets {
   AlignedVector<ContactPacket> packets_;
   AlignedVector<PacketImpulses> impulses_;
   AlignedVector<PacketSurfaces> surfaces_;
-  AlignedVector<PacketPushes> pushes_;
+  AlignedVector<PacketCorrections> corrections_;
   std::vector<std::uint32_t> places_;  // by contact: its part of a level, then packet_lanes * packet + lane
   std::vector<std::uint32_t> order_;   // contacts by place
   std::vector<std::uint32_t> behind_;  // by body: the first level behind its contacts

@@ -20,7 +20,7 @@ bool is_amount(double x) { return x >= 0.0 && std::isfinite(x); }
 
 void check_solver(const SolverOptions& o) {
   if (!(o.dt > 0.0) || !std::isfinite(o.dt)) throw InvalidArgument("contacts: dt must be positive and finite");
-  if (!is_share(o.restitution) || !is_share(o.push))
+  if (!is_share(o.restitution) || !is_share(o.position_correction))
     throw InvalidArgument("contacts: restitution and push must be between 0 and 1");
   if (!is_amount(o.friction) || !is_amount(o.resting_speed))
     throw InvalidArgument("contacts: friction and resting speed must be finite and not negative");
@@ -57,59 +57,59 @@ void ContactSolver::make_bodies(std::span<const WallContact> walls, const Solver
 }
 
 // Reads the impulses of the last step side by side with the rows, which are sorted alike.
-class ContactSolver::KeptReader {
+class ContactSolver::ImpulseCacheReader {
  public:
-  explicit KeptReader(const ContactSolver& solver)
-      : kept_(solver.kept_), pairs_(solver.kept_pairs_), next_wall_(solver.kept_pairs_) {}
+  explicit ImpulseCacheReader(const ContactSolver& solver)
+      : cached_(solver.cached_), pairs_(solver.cached_pairs_), next_wall_(solver.cached_pairs_) {}
 
-  const KeptImpulse* of_pair(std::uint64_t a, std::uint64_t b) {
+  const CachedImpulse* of_pair(std::uint64_t a, std::uint64_t b) {
     const std::pair key(a, b);
-    while (next_pair_ < pairs_ && std::pair(kept_[next_pair_].a, kept_[next_pair_].b) < key) ++next_pair_;
-    const bool found = next_pair_ < pairs_ && std::pair(kept_[next_pair_].a, kept_[next_pair_].b) == key;
-    return found ? &kept_[next_pair_] : nullptr;
+    while (next_pair_ < pairs_ && std::pair(cached_[next_pair_].a, cached_[next_pair_].b) < key) ++next_pair_;
+    const bool found = next_pair_ < pairs_ && std::pair(cached_[next_pair_].a, cached_[next_pair_].b) == key;
+    return found ? &cached_[next_pair_] : nullptr;
   }
 
   // Of a sphere's walls the one with the nearest normal.
-  const KeptImpulse* of_wall(std::uint64_t sphere, const Vec3& normal) {
-    while (next_wall_ < kept_.size() && kept_[next_wall_].a < sphere) ++next_wall_;
-    const KeptImpulse* best = nullptr;
-    double most = same_normal;
-    for (std::size_t k = next_wall_; k < kept_.size() && kept_[k].a == sphere; ++k) {
-      const double alike = dot(kept_[k].normal, normal);
-      if (alike <= most) continue;
-      most = alike;
-      best = &kept_[k];
+  const CachedImpulse* of_wall(std::uint64_t sphere, const Vec3& normal) {
+    while (next_wall_ < cached_.size() && cached_[next_wall_].a < sphere) ++next_wall_;
+    const CachedImpulse* best = nullptr;
+    double limit = same_normal;
+    for (std::size_t k = next_wall_; k < cached_.size() && cached_[k].a == sphere; ++k) {
+      const double alike = dot(cached_[k].normal, normal);
+      if (alike <= limit) continue;
+      limit = alike;
+      best = &cached_[k];
     }
     return best;
   }
 
  private:
-  std::span<const KeptImpulse> kept_;
+  std::span<const CachedImpulse> cached_;
   std::size_t pairs_;
   std::size_t next_pair_ = 0;
   std::size_t next_wall_;
 };
 
 // Of two spheres that cannot be pushed there is nothing to solve.
-void ContactSolver::add_row(detail::ContactEnds ends, const Surface& surface, const KeptImpulse* kept,
+void ContactSolver::add_row(detail::ContactEnds ends, const Surface& surface, const CachedImpulse* cached_impulses,
                             const SolverOptions& options) {
   const detail::ContactBody& a = bodies_[ends.a];
   const detail::ContactBody& b = bodies_[ends.b];
   const double inverse = a.inverse_mass + b.inverse_mass;
   if (!(inverse > 0.0)) return;
-  ends.loaded = kept != nullptr;
+  ends.loaded = cached_impulses != nullptr;
   ends_.push_back(ends);
   detail::ContactTerms& terms = terms_.emplace_back();
   terms.normal = surface.normal;
   terms.mass = 1.0 / inverse;
   terms.friction = surface.friction;
   terms.bound = surface.gap > 0.0 ? -surface.gap / options.dt : 0.0;
-  terms.push_bound = surface.gap > 0.0 ? terms.bound : -options.push * surface.gap / options.dt;
+  terms.position_bound = surface.gap > 0.0 ? terms.bound : -options.position_correction * surface.gap / options.dt;
   const double nearing = -dot(b.velocity - a.velocity, surface.normal);
   if (nearing > options.resting_speed) terms.rebound = surface.restitution * nearing;
-  if (kept == nullptr) return;
-  terms.along = kept->along;
-  terms.across = on_tangent(kept->across, surface.normal);
+  if (cached_impulses == nullptr) return;
+  terms.normal_impulse = cached_impulses->normal_impulse;
+  terms.tangent_impulse = on_tangent(cached_impulses->tangent_impulse, surface.normal);
 }
 
 void ContactSolver::list_pairs(std::span<const PairContact> pairs, std::span<const std::uint64_t> ids,
@@ -122,13 +122,14 @@ void ContactSolver::list_pairs(std::span<const PairContact> pairs, std::span<con
     sorted = sorted && (i == 0 || pair_order_[i - 1] < pair_order_[i]);
   }
   if (!sorted) std::sort(pair_order_.begin(), pair_order_.end());
-  KeptReader kept(*this);
+  ImpulseCacheReader cached_impulses(*this);
   for (const PairKey& key : pair_order_) {
     const PairContact& p = pairs[key.pair];
     const bool swapped = ids[p.a] != key.low;
     const detail::ContactEnds ends = {swapped ? p.b : p.a, swapped ? p.a : p.b};
     const Vec3 normal = swapped ? -p.normal : p.normal;
-    add_row(ends, {normal, p.gap, options.restitution, options.friction}, kept.of_pair(key.low, key.high), options);
+    add_row(ends, {normal, p.gap, options.restitution, options.friction}, cached_impulses.of_pair(key.low, key.high),
+            options);
   }
   pair_rows_ = ends_.size();
 }
@@ -147,42 +148,43 @@ void ContactSolver::list_walls(std::span<const WallContact> walls, std::span<con
   if (!std::is_sorted(wall_order_.begin(), wall_order_.end(), before))
     std::sort(wall_order_.begin(), wall_order_.end(), before);
   const auto first = static_cast<std::uint32_t>(ids.size());
-  KeptReader kept(*this);
+  ImpulseCacheReader cached_impulses(*this);
   for (const std::uint32_t i : wall_order_) {
     const WallContact& w = walls[i];
-    const KeptImpulse* last = kept.of_wall(ids[w.sphere], w.normal);
+    const CachedImpulse* last = cached_impulses.of_wall(ids[w.sphere], w.normal);
     add_row({first + i, w.sphere}, {w.normal, w.gap, w.restitution, w.friction}, last, options);
   }
 }
 
-void ContactSolver::set_kept(std::span<const KeptImpulse> kept) {
-  kept_.assign(kept.begin(), kept.end());
-  kept_pairs_ = static_cast<std::size_t>(
-      std::count_if(kept.begin(), kept.end(), [](const KeptImpulse& k) { return k.b != KeptImpulse::wall; }));
+void ContactSolver::set_cached_impulses(std::span<const CachedImpulse> cached_impulses) {
+  cached_.assign(cached_impulses.begin(), cached_impulses.end());
+  cached_pairs_ =
+      static_cast<std::size_t>(std::count_if(cached_impulses.begin(), cached_impulses.end(),
+                                             [](const CachedImpulse& k) { return k.b != CachedImpulse::wall; }));
 }
 
 // Displacements are those of the velocities, and what penetrates is pushed apart by some of its depth, with impulses
 // of their own that are forgotten afterwards.
-void ContactSolver::push(const SolverSpheres& spheres, const SolverOptions& options) {
+void ContactSolver::position_correction(const SolverSpheres& spheres, const SolverOptions& options) {
   pushed_ = bodies_;
-  packets_.push(pushed_, options.push_iterations);
+  packets_.position_correction(pushed_, options.position_iterations);
   for (std::size_t i = 0; i < spheres.ids.size(); ++i) spheres.displacements[i] = pushed_[i].velocity * options.dt;
 }
 
 // What rebounds needs no impulse in the next step.
 void ContactSolver::keep(std::span<const std::uint64_t> ids) {
-  kept_.clear();
-  kept_pairs_ = loaded_pairs_ = loaded_walls_ = 0;
+  cached_.clear();
+  cached_pairs_ = loaded_pairs_ = loaded_walls_ = 0;
   for (std::size_t i = 0; i < ends_.size(); ++i) {
-    const double along = packets_.along(i);
-    if (!(along > 0.0)) continue;
+    const double normal_impulse = packets_.normal_impulse(i);
+    if (!(normal_impulse > 0.0)) continue;
     const bool pair = i < pair_rows_;
     ++(pair ? loaded_pairs_ : loaded_walls_);
     if (packets_.rebounds(i)) continue;
     const std::uint64_t b = ids[ends_[i].b];
-    kept_.push_back(
-        {pair ? ids[ends_[i].a] : b, pair ? b : KeptImpulse::wall, terms_[i].normal, along, packets_.across(i)});
-    if (pair) ++kept_pairs_;
+    cached_.push_back({pair ? ids[ends_[i].a] : b, pair ? b : CachedImpulse::wall, terms_[i].normal, normal_impulse,
+                       packets_.tangent_impulse(i)});
+    if (pair) ++cached_pairs_;
   }
 }
 
@@ -198,7 +200,7 @@ void ContactSolver::solve(std::span<const PairContact> pairs, std::span<const Wa
   packets_.assign(ends_, terms_, bodies_);
   packets_.start(bodies_);
   packets_.solve(bodies_, options.iterations);
-  push(spheres, options);
+  position_correction(spheres, options);
   if (packets_.rebound()) packets_.solve(bodies_, options.rebound_iterations);
   for (std::size_t i = 0; i < spheres.ids.size(); ++i) spheres.velocities[i] = bodies_[i].velocity;
   keep(spheres.ids);

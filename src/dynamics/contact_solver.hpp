@@ -35,28 +35,28 @@ struct WallContact {
 };
 
 struct SolverOptions {
-  double dt = 1e-3;                 ///< duration of the step, > 0
-  double restitution = 0.0;         ///< between spheres, in [0, 1]
-  double friction = 0.0;            ///< between spheres, >= 0
-  unsigned iterations = 10;         ///< over all contacts, for velocities
-  unsigned push_iterations = 4;     ///< for displacements: what takes out penetration
-  unsigned rebound_iterations = 4;  ///< for velocities after rebounds
+  double dt = 1e-3;                  ///< duration of the step, > 0
+  double restitution = 0.0;          ///< between spheres, in [0, 1]
+  double friction = 0.0;             ///< between spheres, >= 0
+  unsigned iterations = 10;          ///< over all contacts, for velocities
+  unsigned position_iterations = 4;  ///< for displacements: what takes out penetration
+  unsigned rebound_iterations = 4;   ///< for velocities after rebounds
   /// Contacts that approach slower than this do not rebound. Gravity alone makes g dt in a step at rest: 2 g dt is a
   /// good choice.
   double resting_speed = 0.0;
-  double push = 0.2;  ///< share of a penetration taken out in one step, in [0, 1]
+  double position_correction = 0.2;  ///< share of a penetration taken out in one step, in [0, 1]
 };
 
 /// An impulse that the next step starts from.
-struct KeptImpulse {
+struct CachedImpulse {
   std::uint64_t a = 0;  ///< ids of the spheres; of a wall's: that of the sphere, and none
   std::uint64_t b = 0;
   Vec3 normal;
-  double along = 0.0;  ///< the normal
-  Vec3 across;
+  double normal_impulse = 0.0;  ///< the normal
+  Vec3 tangent_impulse;
 
   static constexpr std::uint64_t wall = ~std::uint64_t{0};
-  bool operator==(const KeptImpulse&) const = default;
+  bool operator==(const CachedImpulse&) const = default;
 };
 
 /// What acts on the spheres: entry i of each belongs to sphere i.
@@ -80,9 +80,10 @@ class ContactSolver {
   void solve(std::span<const PairContact> pairs, std::span<const WallContact> walls, const SolverSpheres& spheres,
              const SolverOptions& options);
 
-  /// Impulses of the last step: pairs by ids, then walls; set_kept() goes on from them as if there had been no break.
-  [[nodiscard]] std::span<const KeptImpulse> kept() const { return kept_; }
-  void set_kept(std::span<const KeptImpulse> kept);
+  /// Impulses of the last step: pairs by ids, then walls; set_cached_impulses() goes on from them as if there had been
+  /// no break.
+  [[nodiscard]] std::span<const CachedImpulse> cached_impulses() const { return cached_; }
+  void set_cached_impulses(std::span<const CachedImpulse> cached_impulses);
 
   /// Numbers of contacts that the last step gave an impulse.
   [[nodiscard]] std::size_t loaded_pairs() const { return loaded_pairs_; }
@@ -102,13 +103,14 @@ class ContactSolver {
     double restitution = 0.0;
     double friction = 0.0;
   };
-  class KeptReader;
+  class ImpulseCacheReader;
 
   void make_bodies(std::span<const WallContact> walls, const SolverSpheres& spheres);
   void list_pairs(std::span<const PairContact> pairs, std::span<const std::uint64_t> ids, const SolverOptions& options);
   void list_walls(std::span<const WallContact> walls, std::span<const std::uint64_t> ids, const SolverOptions& options);
-  void add_row(detail::ContactEnds ends, const Surface& surface, const KeptImpulse* kept, const SolverOptions& options);
-  void push(const SolverSpheres& spheres, const SolverOptions& options);
+  void add_row(detail::ContactEnds ends, const Surface& surface, const CachedImpulse* cached_impulses,
+               const SolverOptions& options);
+  void position_correction(const SolverSpheres& spheres, const SolverOptions& options);
   void keep(std::span<const std::uint64_t> ids);
 
   // Rows are contacts in the order in which they are solved: pairs by ids, then walls by ids and normals. Of a wall the
@@ -121,8 +123,8 @@ class ContactSolver {
   AlignedVector<detail::ContactBody> pushed_;  // the same, for displacements
   std::vector<PairKey> pair_order_;
   std::vector<std::uint32_t> wall_order_;
-  std::vector<KeptImpulse> kept_;  // in the order of rows
-  std::size_t kept_pairs_ = 0;
+  std::vector<CachedImpulse> cached_;  // in the order of rows
+  std::size_t cached_pairs_ = 0;
   std::size_t loaded_pairs_ = 0;
   std::size_t loaded_walls_ = 0;
 };

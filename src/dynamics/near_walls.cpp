@@ -156,7 +156,7 @@ void NearWalls::add(Cell c) {
   table_[at] = static_cast<std::uint32_t>(cells_.size());
 }
 
-void NearWalls::add_walls(const Complex& complex, const Reach& reach, CellFace face, bool moving) {
+void NearWalls::add_walls(const CellComplex& complex, const Reach& reach, CellFace face, bool moving) {
   const CellView cell = complex.map().view(face.cell);
   const auto after = complex.positions();
   const auto before = moving ? complex.previous_positions() : after;
@@ -175,7 +175,7 @@ void NearWalls::add_walls(const Complex& complex, const Reach& reach, CellFace f
 
 // A face bounds all that passes from one cell to the other: only where the sphere meets it does the search go on. Its
 // box misses the sphere's where all its points lie on the same side.
-void NearWalls::visit(const Complex& complex, const Reach& reach, Cell c, bool moving) {
+void NearWalls::visit(const CellComplex& complex, const Reach& reach, Cell c, bool moving) {
   const CellView cell = complex.map().view(c);
   const Shape& shape = cell.shape();
   const Vec3* after = complex.positions().data();
@@ -204,7 +204,7 @@ void NearWalls::visit(const Complex& complex, const Reach& reach, Cell c, bool m
   }
 }
 
-std::span<const NearWall> NearWalls::search(const Complex& complex, Cell cell, const MovingSphere& sphere,
+std::span<const NearWall> NearWalls::search(const CellComplex& complex, Cell cell, const MovingSphere& sphere,
                                             bool moving) {
   for (const std::size_t at : slots_) table_[at] = 0;
   slots_.clear();
@@ -224,7 +224,7 @@ std::span<const NearestOnTriangle> NearWalls::nearest(const Vec3& centre) {
   return nearest_;
 }
 
-void NearWalls::describe(const Complex& complex, const NearWall& wall, const NearestOnTriangle& nearest, bool moved,
+void NearWalls::describe(const CellComplex& complex, const NearWall& wall, const NearestOnTriangle& nearest, bool moved,
                          WallFeature& feature) {
   feature.point = nearest.point;
   feature.normal =
@@ -249,7 +249,7 @@ void NearWalls::describe(const Complex& complex, const NearWall& wall, const Nea
   feature.dart = {wall.face.cell, place.dart};
 }
 
-WallFeature NearWalls::place_on(const Complex& complex, CellFace face, std::uint16_t triangle, const Vec3& centre,
+WallFeature NearWalls::place_on(const CellComplex& complex, CellFace face, std::uint16_t triangle, const Vec3& centre,
                                 bool moved) {
   const auto positions = complex.positions();
   const NearWall wall = wall_at(complex.map().view(face.cell), face, triangle, positions, positions);
@@ -258,7 +258,7 @@ WallFeature NearWalls::place_on(const Complex& complex, CellFace face, std::uint
   return feature;
 }
 
-std::span<const WallFeature> NearWalls::within(const Complex& complex, Cell cell, const Vec3& centre, double reach,
+std::span<const WallFeature> NearWalls::within(const CellComplex& complex, Cell cell, const Vec3& centre, double reach,
                                                bool moved) {
   search(complex, cell, {centre, centre, reach}, false);
   nearest(centre);

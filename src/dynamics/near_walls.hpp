@@ -59,7 +59,7 @@ class NearWalls {
   /// In the order in which they were reached, which only depends on the scene. Walls with a corner that is not finite
   /// are left out. Valid until the next search. Cost: 0.1 to 0.3 us for each cell reached (those which the sphere meets
   /// while it moves, and few more); each is looked at once.
-  std::span<const NearWall> search(const Complex& complex, Cell cell, const MovingSphere& sphere, bool moving);
+  std::span<const NearWall> search(const CellComplex& complex, Cell cell, const MovingSphere& sphere, bool moving);
 
   /// Of each wall found by the last search, as it was before the move, what is nearest to `centre`. Valid until the
   /// next search or call of this.
@@ -70,10 +70,11 @@ class NearWalls {
   /// however many triangles share it. By distance; equal ones in the order in which they were reached. `displacement`
   /// is that of the last move where `moved` is set, else 0. Valid until the next search. Cost: that of the search, and
   /// 0.1 us a triangle.
-  std::span<const WallFeature> within(const Complex& complex, Cell cell, const Vec3& centre, double reach, bool moved);
+  std::span<const WallFeature> within(const CellComplex& complex, Cell cell, const Vec3& centre, double reach,
+                                      bool moved);
 
   /// The place of one wall's triangle that is nearest to `centre`. `moved`: as above.
-  [[nodiscard]] static WallFeature place_on(const Complex& complex, CellFace face, std::uint16_t triangle,
+  [[nodiscard]] static WallFeature place_on(const CellComplex& complex, CellFace face, std::uint16_t triangle,
                                             const Vec3& centre, bool moved);
 
   /// Cells that the last search looked at.
@@ -85,10 +86,10 @@ class NearWalls {
   [[nodiscard]] std::size_t slot(Cell c) const;
   void grow();
   void add(Cell c);
-  void visit(const Complex& complex, const Reach& reach, Cell c, bool moving);
-  static void describe(const Complex& complex, const NearWall& wall, const NearestOnTriangle& nearest, bool moved,
+  void visit(const CellComplex& complex, const Reach& reach, Cell c, bool moving);
+  static void describe(const CellComplex& complex, const NearWall& wall, const NearestOnTriangle& nearest, bool moved,
                        WallFeature& feature);
-  void add_walls(const Complex& complex, const Reach& reach, CellFace face, bool moving);
+  void add_walls(const CellComplex& complex, const Reach& reach, CellFace face, bool moving);
 
   std::vector<Cell> cells_;           // in the order in which they were reached
   std::vector<std::uint32_t> table_;  // of cells reached: one more than the place in cells_, 0 where empty
@@ -101,7 +102,7 @@ class NearWalls {
 };
 
 /// NearWalls::within() for a particle of radius `reach`, or the like, at its state.
-inline std::span<const WallFeature> walls_within(const Complex& complex, const State& state, double reach,
+inline std::span<const WallFeature> walls_within(const CellComplex& complex, const ParticleState& state, double reach,
                                                  NearWalls& scratch, bool moved = false) {
   return scratch.within(complex, state.cell, state.position, reach, moved);
 }

@@ -20,7 +20,7 @@ double mobility(const RigidMover& m, const Vec3& lever, const Vec3& direction) {
 
 // At least the mobility in any direction: the turning part has no negative eigenvalue, and no greater one than its
 // trace.
-double most_mobility(const RigidMover& m, const Vec3& lever) {
+double max_mobility(const RigidMover& m, const Vec3& lever) {
   if (!m.turns) return m.inverse_mass;
   double trace = 0.0;
   for (const Vec3& axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
@@ -30,9 +30,10 @@ double most_mobility(const RigidMover& m, const Vec3& lever) {
   return m.inverse_mass + trace;
 }
 
-void push(const RigidMover& m, const Vec3& lever, const Vec3& impulse, Vec3& velocity, Vec3& spin) {
+void position_correction(const RigidMover& m, const Vec3& lever, const Vec3& impulse, Vec3& velocity,
+                         Vec3& angular_velocity) {
   velocity += impulse * m.inverse_mass;
-  if (m.turns) spin += m.inverse_inertia * cross(lever, impulse);
+  if (m.turns) angular_velocity += m.inverse_inertia * cross(lever, impulse);
 }
 
 Vec3 across_normal(const Vec3& v, const Vec3& normal) { return v - normal * dot(v, normal); }
@@ -48,10 +49,10 @@ void back_and_forth(std::size_t rows, unsigned iterations, Each&& each) {
 // As a kept impulse has them.
 std::tuple<bool, std::uint64_t, std::uint64_t> ids_of(const RigidContact& c) {
   const bool wall = c.a == RigidContact::wall;
-  return {wall, wall ? c.b_id : c.a_id, wall ? KeptImpulse::wall : c.b_id};
+  return {wall, wall ? c.b_id : c.a_id, wall ? CachedImpulse::wall : c.b_id};
 }
-std::tuple<bool, std::uint64_t, std::uint64_t> ids_of(const KeptImpulse& k) {
-  return {k.b == KeptImpulse::wall, k.a, k.b};
+std::tuple<bool, std::uint64_t, std::uint64_t> ids_of(const CachedImpulse& k) {
+  return {k.b == CachedImpulse::wall, k.a, k.b};
 }
 
 // Pairs by ids, then walls by ids and normals.
@@ -78,10 +79,10 @@ struct BothSides {
   }
   void apply(const Vec3& impulse) const {
     RigidMover& b = movers[contact.b];
-    push(b, lever_b, impulse, b.*linear, b.*angular);
+    position_correction(b, lever_b, impulse, b.*linear, b.*angular);
     if (contact.a == RigidContact::wall) return;
     RigidMover& a = movers[contact.a];
-    push(a, lever_a, -impulse, a.*linear, a.*angular);
+    position_correction(a, lever_a, -impulse, a.*linear, a.*angular);
   }
 };
 
@@ -96,21 +97,21 @@ void RigidSolver::make_rows(std::span<const RigidContact> contacts, std::span<co
     Row row;
     row.contact = &c;
     row.lever_b = c.point_b - b.centre;
-    double along = mobility(b, row.lever_b, c.normal);
-    double across = most_mobility(b, row.lever_b);
+    double normal_impulse = mobility(b, row.lever_b, c.normal);
+    double tangent_impulse = max_mobility(b, row.lever_b);
     Vec3 other = c.wall_velocity;
     if (!wall) {
       const RigidMover& a = movers[c.a];
       row.lever_a = c.point_a - a.centre;
-      along += mobility(a, row.lever_a, c.normal);
-      across += most_mobility(a, row.lever_a);
+      normal_impulse += mobility(a, row.lever_a, c.normal);
+      tangent_impulse += max_mobility(a, row.lever_a);
       other = a.velocity_at(c.point_a);
     }
-    if (!(along > 0.0)) continue;
-    row.mass = 1.0 / along;
-    row.mass_across = 1.0 / across;
+    if (!(normal_impulse > 0.0)) continue;
+    row.mass = 1.0 / normal_impulse;
+    row.mass_across = 1.0 / tangent_impulse;
     row.bound = c.gap > 0.0 ? -c.gap / options.dt : 0.0;
-    row.push_bound = c.gap > 0.0 ? row.bound : -options.push * c.gap / options.dt;
+    row.position_bound = c.gap > 0.0 ? row.bound : -options.position_correction * c.gap / options.dt;
     const double nearing = -dot(b.velocity_at(c.point_b) - other, c.normal);
     if (nearing > options.resting_speed) row.rebound = c.restitution * nearing;
     rows_.push_back(row);
@@ -120,69 +121,72 @@ void RigidSolver::make_rows(std::span<const RigidContact> contacts, std::span<co
 }
 
 // Both are sorted alike: one pass. Of a sphere's walls the one with the nearest normal is taken.
-void RigidSolver::take_kept() {
+void RigidSolver::load_cached_impulses() {
   std::size_t k = 0;
   for (Row& row : rows_) {
     const RigidContact& c = *row.contact;
     const auto ids = ids_of(c);
-    while (k < kept_.size() && ids_of(kept_[k]) < ids) ++k;
-    const KeptImpulse* best = nullptr;
-    double most = same_wall_as_before;
-    for (std::size_t m = k; m < kept_.size() && ids_of(kept_[m]) == ids; ++m) {
-      const double alike = c.a == RigidContact::wall ? dot(kept_[m].normal, c.normal) : 1.0;
-      if (alike <= most) continue;
-      most = alike;
-      best = &kept_[m];
+    while (k < cached_.size() && ids_of(cached_[k]) < ids) ++k;
+    const CachedImpulse* best = nullptr;
+    double limit = same_wall_as_before;
+    for (std::size_t m = k; m < cached_.size() && ids_of(cached_[m]) == ids; ++m) {
+      const double alike = c.a == RigidContact::wall ? dot(cached_[m].normal, c.normal) : 1.0;
+      if (alike <= limit) continue;
+      limit = alike;
+      best = &cached_[m];
     }
     if (best == nullptr) continue;
-    row.along = best->along;
-    row.across = across_normal(best->across, c.normal);
+    row.normal_impulse = best->normal_impulse;
+    row.tangent_impulse = across_normal(best->tangent_impulse, c.normal);
   }
 }
 
 // Friction first: what keeps things apart has the last word.
 void RigidSolver::solve_row(Row& row, double bound, std::span<RigidMover> movers) {
   const RigidContact& c = *row.contact;
-  const BothSides sides{c, row.lever_a, row.lever_b, movers, &RigidMover::velocity, &RigidMover::spin};
+  const BothSides sides{c, row.lever_a, row.lever_b, movers, &RigidMover::velocity, &RigidMover::angular_velocity};
   if (c.friction > 0.0) {
-    Vec3 across = row.across - across_normal(sides.relative(), c.normal) * row.mass_across;
-    const double most = c.friction * row.along;
-    const double square = dot(across, across);
-    if (square > most * most) across *= most / std::sqrt(square);
-    sides.apply(across - row.across);
-    row.across = across;
+    Vec3 tangent_impulse = row.tangent_impulse - across_normal(sides.relative(), c.normal) * row.mass_across;
+    const double limit = c.friction * row.normal_impulse;
+    const double square = dot(tangent_impulse, tangent_impulse);
+    if (square > limit * limit) tangent_impulse *= limit / std::sqrt(square);
+    sides.apply(tangent_impulse - row.tangent_impulse);
+    row.tangent_impulse = tangent_impulse;
   }
-  const double along = std::max(0.0, row.along - row.mass * (dot(sides.relative(), c.normal) - bound));
-  if (along != row.along) sides.apply(c.normal * (along - row.along));
-  row.along = along;
+  const double normal_impulse =
+      std::max(0.0, row.normal_impulse - row.mass * (dot(sides.relative(), c.normal) - bound));
+  if (normal_impulse != row.normal_impulse) sides.apply(c.normal * (normal_impulse - row.normal_impulse));
+  row.normal_impulse = normal_impulse;
 }
 
 // As in ContactSolver: displacements are those of the velocities, and what penetrates is pushed apart by some of its
 // depth, with impulses that are forgotten afterwards.
-void RigidSolver::solve_pushes(std::span<RigidMover> movers, const SolverOptions& options) {
+void RigidSolver::correct_positions(std::span<RigidMover> movers, const SolverOptions& options) {
   for (RigidMover& m : movers) {
-    m.shift = m.velocity;
-    m.turned = m.spin;
+    m.position_delta = m.velocity;
+    m.rotation_delta = m.angular_velocity;
   }
-  back_and_forth(rows_.size(), options.push_iterations, [&](std::size_t i) {
+  back_and_forth(rows_.size(), options.position_iterations, [&](std::size_t i) {
     Row& row = rows_[i];
     const RigidContact& c = *row.contact;
-    const BothSides sides{c, row.lever_a, row.lever_b, movers, &RigidMover::shift, &RigidMover::turned};
-    const double more = std::max(0.0, row.push - row.mass * (dot(sides.relative(), c.normal) - row.push_bound));
-    if (more == row.push) return;
-    sides.apply(c.normal * (more - row.push));
-    row.push = more;
+    const BothSides sides{
+        c, row.lever_a, row.lever_b, movers, &RigidMover::position_delta, &RigidMover::rotation_delta};
+    const double more =
+        std::max(0.0, row.position_correction - row.mass * (dot(sides.relative(), c.normal) - row.position_bound));
+    if (more == row.position_correction) return;
+    sides.apply(c.normal * (more - row.position_correction));
+    row.position_correction = more;
   });
   for (RigidMover& m : movers) {
-    m.shift *= options.dt;
-    m.turned *= options.dt;
+    m.position_delta *= options.dt;
+    m.rotation_delta *= options.dt;
   }
 }
 
 void RigidSolver::rebound(std::span<RigidMover> movers, unsigned iterations) {
   bool any = false;
   for (Row& row : rows_) {
-    if (!(row.along > 0.0)) row.rebound = 0.0;
+    if (!(row.normal_impulse > 0.0)) row.rebound = 0.0;
     any = any || row.rebound > 0.0;
   }
   if (!any) return;
@@ -193,29 +197,30 @@ void RigidSolver::rebound(std::span<RigidMover> movers, unsigned iterations) {
 
 // What rebounds needs no impulse in the next step.
 void RigidSolver::keep() {
-  kept_.clear();
+  cached_.clear();
   loaded_pairs_ = loaded_walls_ = 0;
   for (const Row& row : rows_) {
-    if (!(row.along > 0.0)) continue;
+    if (!(row.normal_impulse > 0.0)) continue;
     const RigidContact& c = *row.contact;
     const auto [wall, a, b] = ids_of(c);
     ++(wall ? loaded_walls_ : loaded_pairs_);
     if (row.rebound > 0.0) continue;
-    kept_.push_back({a, b, c.normal, row.along, row.across});
+    cached_.push_back({a, b, c.normal, row.normal_impulse, row.tangent_impulse});
   }
 }
 
 void RigidSolver::solve(std::span<const RigidContact> contacts, std::span<RigidMover> movers,
                         const SolverOptions& options) {
   make_rows(contacts, movers, options);
-  take_kept();
+  load_cached_impulses();
   for (const Row& row : rows_) {
-    if (row.along == 0.0) continue;
-    const BothSides sides{*row.contact, row.lever_a, row.lever_b, movers, &RigidMover::velocity, &RigidMover::spin};
-    sides.apply(row.contact->normal * row.along + row.across);
+    if (row.normal_impulse == 0.0) continue;
+    const BothSides sides{*row.contact, row.lever_a,           row.lever_b,
+                          movers,       &RigidMover::velocity, &RigidMover::angular_velocity};
+    sides.apply(row.contact->normal * row.normal_impulse + row.tangent_impulse);
   }
   back_and_forth(rows_.size(), options.iterations, [&](std::size_t i) { solve_row(rows_[i], rows_[i].bound, movers); });
-  solve_pushes(movers, options);
+  correct_positions(movers, options);
   rebound(movers, options.rebound_iterations);
   keep();
 }

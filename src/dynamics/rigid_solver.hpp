@@ -21,11 +21,14 @@ struct RigidMover {
   Mat3 inverse_inertia = zero_matrix();  ///< about the centre; symmetric, no eigenvalue below 0
   Vec3 centre;
   Vec3 velocity;  ///< of the centre; in: after all other forces; out: after the impulses, with rebounds
-  Vec3 spin;
-  Vec3 shift;  ///< out: displacement in the step, without rebounds, with what takes out penetration; turned likewise
-  Vec3 turned;
+  Vec3 angular_velocity;
+  Vec3 position_delta;  ///< out: displacement in the step, without rebounds, with what takes out penetration; turned
+                        ///< likewise
+  Vec3 rotation_delta;
 
-  [[nodiscard]] Vec3 velocity_at(const Vec3& x) const { return turns ? velocity + cross(spin, x - centre) : velocity; }
+  [[nodiscard]] Vec3 velocity_at(const Vec3& x) const {
+    return turns ? velocity + cross(angular_velocity, x - centre) : velocity;
+  }
 };
 
 /// Two movers near each other, or one and a wall: their motion relative to each other along the normal must not be
@@ -35,7 +38,7 @@ struct RigidContact {
 
   std::uint32_t a = wall;
   std::uint32_t b = 0;
-  std::uint64_t a_id = KeptImpulse::wall;  ///< of what touches: a sphere, a particle of a body; of a pair a_id < b_id
+  std::uint64_t a_id = CachedImpulse::wall;  ///< of what touches: a sphere, a particle of a body; of a pair a_id < b_id
   std::uint64_t b_id = 0;
   Vec3 normal;   ///< unit, from a to b
   Vec3 point_a;  ///< where impulses act on each
@@ -54,9 +57,11 @@ class RigidSolver {
   /// movers. Serial.
   void solve(std::span<const RigidContact> contacts, std::span<RigidMover> movers, const SolverOptions& options);
 
-  /// Impulses of the last step, in the order of ids; set_kept() goes on from them.
-  [[nodiscard]] std::span<const KeptImpulse> kept() const { return kept_; }
-  void set_kept(std::span<const KeptImpulse> kept) { kept_.assign(kept.begin(), kept.end()); }
+  /// Impulses of the last step, in the order of ids; set_cached_impulses() goes on from them.
+  [[nodiscard]] std::span<const CachedImpulse> cached_impulses() const { return cached_; }
+  void set_cached_impulses(std::span<const CachedImpulse> cached_impulses) {
+    cached_.assign(cached_impulses.begin(), cached_impulses.end());
+  }
 
   /// Numbers of contacts that the last step gave an impulse.
   [[nodiscard]] std::size_t loaded_pairs() const { return loaded_pairs_; }
@@ -67,26 +72,26 @@ class RigidSolver {
     const RigidContact* contact = nullptr;
     Vec3 lever_a;  // from the centres to the points
     Vec3 lever_b;
-    double bound = 0.0;        // velocity along the normal that it must not fall below
-    double push_bound = 0.0;   // likewise, of displacements
-    double mass = 0.0;         // effective, along the normal
-    double mass_across = 0.0;  // at most the effective one in any direction
-    double rebound = 0.0;      // velocity along the normal that it ends with, if it was given an impulse; 0: does not
-    double along = 0.0;        // impulses so far
-    Vec3 across;
-    double push = 0.0;
+    double bound = 0.0;           // velocity along the normal that it must not fall below
+    double position_bound = 0.0;  // likewise, of displacements
+    double mass = 0.0;            // effective, along the normal
+    double mass_across = 0.0;     // at most the effective one in any direction
+    double rebound = 0.0;  // velocity along the normal that it ends with, if it was given an impulse; 0: does not
+    double normal_impulse = 0.0;  // impulses so far
+    Vec3 tangent_impulse;
+    double position_correction = 0.0;
   };
 
   void make_rows(std::span<const RigidContact> contacts, std::span<const RigidMover> movers,
                  const SolverOptions& options);
-  void take_kept();
+  void load_cached_impulses();
   void solve_row(Row& row, double bound, std::span<RigidMover> movers);
-  void solve_pushes(std::span<RigidMover> movers, const SolverOptions& options);
+  void correct_positions(std::span<RigidMover> movers, const SolverOptions& options);
   void rebound(std::span<RigidMover> movers, unsigned iterations);
   void keep();
 
   std::vector<Row> rows_;
-  std::vector<KeptImpulse> kept_;
+  std::vector<CachedImpulse> cached_;
   std::size_t loaded_pairs_ = 0;
   std::size_t loaded_walls_ = 0;
 };

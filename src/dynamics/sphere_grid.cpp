@@ -14,7 +14,7 @@ constexpr std::uint32_t nothing = 0xffffffffU;
 Vec3 middle_of(const SweptBox& b) { return (b.low + b.high) * 0.5; }
 
 // Cells are longer than the boxes in them by this share of themselves at least: more than all rounding below, as
-// coordinates are at most 2^30 cells (least_level()).
+// coordinates are at most 2^30 cells (min_level()).
 constexpr double spare = 0x1p-16;
 
 int level_of(const SweptBox& b) {
@@ -24,7 +24,7 @@ int level_of(const SweptBox& b) {
 }
 
 // The level whose cells are 2^-30 to 2^-29 of the largest coordinate: places fit into 32 bits.
-int least_level(std::span<const SweptBox> boxes) {
+int min_level(std::span<const SweptBox> boxes) {
   double largest = 0x1p-980;
   for (const SweptBox& b : boxes) {
     if (b.empty()) continue;
@@ -53,8 +53,8 @@ std::size_t SphereGrid::slot(std::int32_t level, const Place& place) const {
   return at;
 }
 
-void SphereGrid::enter(std::uint32_t sphere, const SweptBox& box, int least) {
-  const std::int32_t level = std::max(least, level_of(box));
+void SphereGrid::enter(std::uint32_t sphere, const SweptBox& box, int lowest) {
+  const std::int32_t level = std::max(lowest, level_of(box));
   const double scale = std::ldexp(1.0, -level);
   const Vec3 m = middle_of(box);
   const Place place = {place_of(m.x, scale), place_of(m.y, scale), place_of(m.z, scale)};
@@ -68,12 +68,12 @@ void SphereGrid::enter(std::uint32_t sphere, const SweptBox& box, int least) {
 }
 
 void SphereGrid::build(std::span<const SweptBox> boxes) {
-  const int least = least_level(boxes);
+  const int lowest = min_level(boxes);
   cells_.clear();
   table_.assign(std::bit_ceil(2 * boxes.size() + 2), nothing);
   cell_of_.assign(boxes.size(), nothing);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
-    if (!boxes[i].empty()) enter(static_cast<std::uint32_t>(i), boxes[i], least);
+    if (!boxes[i].empty()) enter(static_cast<std::uint32_t>(i), boxes[i], lowest);
   }
   scatter(boxes);
 }

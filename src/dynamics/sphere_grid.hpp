@@ -66,7 +66,7 @@ class SphereGrid {
     std::uint32_t cell = 0;
   };
 
-  void enter(std::uint32_t sphere, const SweptBox& box, int least);
+  void enter(std::uint32_t sphere, const SweptBox& box, int lowest);
   void scatter(std::span<const SweptBox> boxes);
   [[nodiscard]] std::size_t slot(std::int32_t level, const Place& place) const;
   void find_in(const GridCell& cell, std::size_t end, const Entry& e, std::vector<SpherePair>& found) const;

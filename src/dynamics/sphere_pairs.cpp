@@ -20,11 +20,11 @@ constexpr std::size_t pair_grain = 256;
 // other cells than their own: measured between 16 and 32, for 0.1 to 3 particles a cell.
 constexpr double short_reach = 16.0;
 
-constexpr double most_coordinate = 0x1p+1000;  // of a box: differences and levels of the grid stay in range
+constexpr double max_coordinate = 0x1p+1000;  // of a box: differences and levels of the grid stay in range
 
 // False where one is NaN.
 bool in_range(const Vec3& v) {
-  return std::abs(v.x) <= most_coordinate && std::abs(v.y) <= most_coordinate && std::abs(v.z) <= most_coordinate;
+  return std::abs(v.x) <= max_coordinate && std::abs(v.y) <= max_coordinate && std::abs(v.z) <= max_coordinate;
 }
 
 [[noreturn]] void refuse_motion(std::size_t i, const SphereMotion& s) {
@@ -83,7 +83,7 @@ class VisitedCells {
   std::vector<Cell> table_ = std::vector<Cell>(256);
 };
 
-detail::SweptBox bounds_of(const Complex& complex, const CellView& cell) {
+detail::SweptBox bounds_of(const CellComplex& complex, const CellView& cell) {
   const auto positions = complex.positions();
   detail::SweptBox box = {positions[cell.vertex(0).value], positions[cell.vertex(0).value]};
   for (const std::uint32_t v : cell.vertices()) box = box.joined({positions[v], positions[v]});
@@ -91,8 +91,8 @@ detail::SweptBox bounds_of(const Complex& complex, const CellView& cell) {
 }
 
 // Cells whose bounds meet the box, reached from the first one through free ones.
-void visit_cells(const Complex& complex, Cell start, const detail::SweptBox& box, VisitedCells& cells) {
-  const Map& map = complex.map();
+void visit_cells(const CellComplex& complex, Cell start, const detail::SweptBox& box, VisitedCells& cells) {
+  const CombinatorialMap& map = complex.map();
   cells.clear();
   cells.add(start);
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -125,7 +125,8 @@ void PairFinder::make_boxes(std::span<const SphereMotion> spheres, Threads threa
 }
 
 // The farthest reaching sphere stands for all: only the cost hangs on it.
-bool PairFinder::lists_do(const Complex& complex, const CellLists& lists, std::span<const State> states) const {
+bool PairFinder::lists_do(const CellComplex& complex, const CellLists& lists,
+                          std::span<const ParticleState> states) const {
   if (lists.crowded() > 0 || states.empty()) return lists.crowded() == 0;
   const auto farthest = std::max_element(reaches_.begin(), reaches_.end());
   const detail::SweptBox cell =
@@ -147,7 +148,7 @@ detail::SweptBox PairFinder::room_of(std::uint32_t sphere) const {
 
 // A pair is found from the cell of the sphere that reaches further: the other's centre is in its room. All spheres of a
 // cell go out together.
-void PairFinder::search_lists(const Complex& complex, const CellLists& lists, std::span<const State> states,
+void PairFinder::search_lists(const CellComplex& complex, const CellLists& lists, std::span<const ParticleState> states,
                               Threads threads) {
   parts_.resize(chunk_count(states.size(), pair_grain));
   parallel_for(states.size(), pair_grain, threads, [&](std::size_t begin, std::size_t end) {
@@ -206,9 +207,10 @@ void PairFinder::merge() {
   }
 }
 
-std::span<const SpherePair> PairFinder::find(const Complex& complex, const CellLists& lists,
-                                             std::span<const State> states, std::span<const SphereMotion> spheres,
-                                             Threads threads, PairSearch search) {
+std::span<const SpherePair> PairFinder::find(const CellComplex& complex, const CellLists& lists,
+                                             std::span<const ParticleState> states,
+                                             std::span<const SphereMotion> spheres, Threads threads,
+                                             PairSearch search) {
   if (states.size() != spheres.size() || lists.size() != states.size())
     throw InvalidArgument("pairs: one state and one sphere per listed particle are needed");
   make_boxes(spheres, threads);
@@ -229,11 +231,11 @@ std::span<const SpherePair> PairFinder::find(std::span<const SphereMotion> spher
   return pairs_;
 }
 
-bool separated(const Complex& complex, const State& a, const State& b) {
+bool separated(const CellComplex& complex, const ParticleState& a, const ParticleState& b) {
   if (a.cell == b.cell || a.held || b.held) return false;
   const StepOptions options;
-  const Respond stop;
-  State state = a;
+  const ContactCallback stop;
+  ParticleState state = a;
   Weights weights{};
   ContactList contacts;
   Counters counters;

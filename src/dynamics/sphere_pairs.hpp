@@ -36,9 +36,9 @@ class PairFinder {
   /// that are found is for separated() to say. `states`, `spheres`: by particle; `lists` up to date with the states.
   /// The result holds until the next call. The same for any number of threads. Throws InvalidArgument where a sphere's
   /// box is not finite or reaches beyond 2^1000.
-  std::span<const SpherePair> find(const Complex& complex, const CellLists& lists, std::span<const State> states,
-                                   std::span<const SphereMotion> spheres, Threads threads = {},
-                                   PairSearch search = PairSearch::automatic);
+  std::span<const SpherePair> find(const CellComplex& complex, const CellLists& lists,
+                                   std::span<const ParticleState> states, std::span<const SphereMotion> spheres,
+                                   Threads threads = {}, PairSearch search = PairSearch::automatic);
   /// By the grid, without an environment.
   std::span<const SpherePair> find(std::span<const SphereMotion> spheres, Threads threads = {});
 
@@ -47,9 +47,11 @@ class PairFinder {
 
  private:
   void make_boxes(std::span<const SphereMotion> spheres, Threads threads);
-  [[nodiscard]] bool lists_do(const Complex& complex, const CellLists& lists, std::span<const State> states) const;
+  [[nodiscard]] bool lists_do(const CellComplex& complex, const CellLists& lists,
+                              std::span<const ParticleState> states) const;
   [[nodiscard]] detail::SweptBox room_of(std::uint32_t sphere) const;
-  void search_lists(const Complex& complex, const CellLists& lists, std::span<const State> states, Threads threads);
+  void search_lists(const CellComplex& complex, const CellLists& lists, std::span<const ParticleState> states,
+                    Threads threads);
   void search_grid(Threads threads);
   void merge();
 
@@ -64,6 +66,6 @@ class PairFinder {
 
 /// Whether a wall is between the centres, on the straight way. Exact. Precondition: both states are of the complex as
 /// it stands; held ones are not separated from anyone. Cost: a walk; a comparison where both are in one cell.
-bool separated(const Complex& complex, const State& a, const State& b);
+bool separated(const CellComplex& complex, const ParticleState& a, const ParticleState& b);
 
 }  // namespace dartcast

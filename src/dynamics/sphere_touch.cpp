@@ -84,12 +84,12 @@ cpp_int units(double x, int exponent) {
 }
 
 // The largest exponent, of 2, that all are multiples of: of the last place of the smallest, or below it.
-int common_exponent(const SphereMotion& s, int least) {
+int common_exponent(const SphereMotion& s, int lowest) {
   for (const double x :
        {s.centre.x, s.centre.y, s.centre.z, s.displacement.x, s.displacement.y, s.displacement.z, s.radius}) {
-    if (x != 0.0) least = std::min(least, std::ilogb(x) - 52);
+    if (x != 0.0) lowest = std::min(lowest, std::ilogb(x) - 52);
   }
-  return least;
+  return lowest;
 }
 
 Quadratic exact_quadratic(const SphereMotion& first, const SphereMotion& second) {

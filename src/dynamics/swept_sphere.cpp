@@ -10,26 +10,26 @@ namespace dartcast {
 
 namespace {
 
+using detail::DoubleDouble;
 using detail::NearestTo;
 using detail::TriangleOf;
-using detail::Twofold;
 using detail::Vector;
 
 constexpr double finest = 0x1p-40;     // intervals are not divided further
 constexpr double time_grid = 0x1p-45;  // times are multiples of this: 1 - t is exact
-constexpr unsigned most_divisions = 4096;
-constexpr std::size_t most_open = 64;  // intervals that wait
+constexpr unsigned max_divisions = 4096;
+constexpr std::size_t max_open = 64;  // intervals that wait
 
 // What is computed is off by no more than this share of M, the largest length there is. A difference to the centre is
 // off by e = 2^-53 of itself, a corner at a time t by 4 e M along each axis and so by 7 e M in a product with a unit
 // vector; the product's own rounding adds 3 e M, the mean of two e M, the vector's length 4 e r: less than 16 e M for a
 // coefficient. A distance: 7 e M from the corners, 9 e M from their weights and the sum, 3 e M from its length. (With
-// twice the digits, the same with Twofold::rounding.) The rest pays for M's own rounding, and for coordinates that
+// twice the digits, the same with DoubleDouble::rounding.) The rest pays for M's own rounding, and for coordinates that
 // scaling takes below the smallest double.
 template <class Real>
 constexpr double rounding_share = 32.0 * 0x1p-53;
 template <>
-constexpr double rounding_share<Twofold> = 32.0 * Twofold::rounding;
+constexpr double rounding_share<DoubleDouble> = 32.0 * DoubleDouble::rounding;
 
 // Scaled by a power of two, so that no product leaves the range: M is in [1, 4).
 struct Scaled {
@@ -78,7 +78,7 @@ Vector<Real> seen_from(const Vec3& centre, const Vec3& x) {
 }
 
 // How a search ended.
-struct Found {
+struct TouchCandidate {
   enum class End : std::uint8_t { apart, touch, open } end = End::apart;
   double time = 0.0;   // the distance is proved to be above the level until then
   double until = 0.0;  // touch: it is proved to be below, or at, the level then
@@ -86,9 +86,9 @@ struct Found {
 };
 
 template <class Real>
-class Search {
+class TouchSearch {
  public:
-  Search(const MovingSphere& s, const MovingTriangle& t, double largest) : error_(rounding_share<Real> * largest) {
+  TouchSearch(const MovingSphere& s, const MovingTriangle& t, double largest) : error_(rounding_share<Real> * largest) {
     for (unsigned i = 0; i < 3; ++i) {
       from_[i] = seen_from<Real>(s.from, t.from[i]);
       to_[i] = seen_from<Real>(s.to, t.to[i]);
@@ -105,30 +105,30 @@ class Search {
   [[nodiscard]] double error() const { return error_; }
 
   // The first time in [first, last] at which the distance is not proved to be above `level`.
-  [[nodiscard]] Found run(Instant first, double last, const Real& level, double resolution) const {
+  [[nodiscard]] TouchCandidate run(Instant first, double last, const Real& level, double resolution) const {
     const TriangleOf<Real> end = corners_at(last);
     if (all_beyond(first.nearest.direction, first.corners, level) && all_beyond(first.nearest.direction, end, level))
-      return {Found::End::apart, last, last, last};
-    std::array<Instant, most_open> open;  // the ends of intervals, the first one last
+      return {TouchCandidate::End::apart, last, last, last};
+    std::array<Instant, max_open> open;  // the ends of intervals, the first one last
     std::size_t count = 0;
     open[count++] = instant(last, end);
     bool guided = false;
-    for (unsigned divisions = 0; divisions < most_divisions && count < most_open; ++divisions) {
+    for (unsigned divisions = 0; divisions < max_divisions && count < max_open; ++divisions) {
       while (stay_apart(first, open[count - 1], level)) {
         first = open[--count];
-        if (count == 0) return {Found::End::apart, last, last, last};
+        if (count == 0) return {TouchCandidate::End::apart, last, last, last};
       }
       const Instant& next = open[count - 1];
       const double width = next.time - first.time;
       const bool inside = next.nearest.distance + Real(error_) <= level;
       if (inside && width <= sphere_time_bound / 2) return touch(first, next, level);
       if (is_settled(first, next, level, width, resolution))
-        return {Found::End::open, first.time, next.time, first.time};
+        return {TouchCandidate::End::open, first.time, next.time, first.time};
       guided = (inside || count == 1) && !guided;
       open[count] = at(guided ? guess(first, next, level) : middle(first, next));
       ++count;
     }
-    return {Found::End::open, first.time, open[count - 1].time, first.time};
+    return {TouchCandidate::End::open, first.time, open[count - 1].time, first.time};
   }
 
  private:
@@ -195,11 +195,11 @@ class Search {
   }
 
   // Between the two the distance changes all but evenly.
-  [[nodiscard]] static Found touch(const Instant& a, const Instant& b, const Real& level) {
+  [[nodiscard]] static TouchCandidate touch(const Instant& a, const Instant& b, const Real& level) {
     const double before = double(a.nearest.distance - level);
     const double after = double(b.nearest.distance - level);
     const double share = before > after ? std::clamp(before / (before - after), 0.0, 1.0) : 0.0;
-    return {Found::End::touch, a.time, b.time, a.time + share * (b.time - a.time)};
+    return {TouchCandidate::End::touch, a.time, b.time, a.time + share * (b.time - a.time)};
   }
 
   TriangleOf<Real> from_;
@@ -209,40 +209,40 @@ class Search {
 
 // From `begin` on, in doubles; in twice their digits from where these prove no more.
 template <class Real>
-Found first_at_level(const Scaled& s, const Search<Real>& search, const typename Search<Real>::Instant& begin,
-                     double until, const Real& level) {
-  if constexpr (std::is_same_v<Real, Twofold>) {
+TouchCandidate first_at_level(const Scaled& s, const TouchSearch<Real>& search,
+                              const typename TouchSearch<Real>::Instant& begin, double until, const Real& level) {
+  if constexpr (std::is_same_v<Real, DoubleDouble>) {
     return search.run(begin, until, level, finest);
   } else {
-    const Found found = search.run(begin, until, level, sphere_time_bound / 2);
-    if (found.end != Found::End::open) return found;
-    const Search<Twofold> fine(s.sphere, s.triangle, s.largest);
-    return fine.run(fine.at(found.time), until, Twofold(level), finest);
+    const TouchCandidate found = search.run(begin, until, level, sphere_time_bound / 2);
+    if (found.end != TouchCandidate::End::open) return found;
+    const TouchSearch<DoubleDouble> fine(s.sphere, s.triangle, s.largest);
+    return fine.run(fine.at(found.time), until, DoubleDouble(level), finest);
   }
 }
 
-std::optional<SphereTouch> touch_of(const Found& found) {
-  if (found.end == Found::End::apart) return {};
+std::optional<SphereTouch> touch_of(const TouchCandidate& found) {
+  if (found.end == TouchCandidate::End::apart) return {};
   return SphereTouch{found.time, found.contact, false};
 }
 
 template <class Real>
-std::optional<SphereTouch> touch_from(const Scaled& s, const Search<Real>& search,
-                                      const typename Search<Real>::Instant& start, double slack, double until) {
+std::optional<SphereTouch> touch_from(const Scaled& s, const TouchSearch<Real>& search,
+                                      const typename TouchSearch<Real>::Instant& start, double slack, double until) {
   const Real radius(s.sphere.radius);
   const Real touching = radius + Real(slack);
   if (start.nearest.distance > touching) {
     if (s.slack > 0.0) {  // what only grazes is the usual case: a sphere on a floor, and the floor's next triangle
-      const Found deep = first_at_level(s, search, start, until, radius - Real(s.slack));
-      if (deep.end == Found::End::apart) return {};
-      if (deep.end == Found::End::touch) until = deep.until;
+      const TouchCandidate deep = first_at_level(s, search, start, until, radius - Real(s.slack));
+      if (deep.end == TouchCandidate::End::apart) return {};
+      if (deep.end == TouchCandidate::End::touch) until = deep.until;
     }
     return touch_of(first_at_level(s, search, start, until, radius));
   }
   const Real level = start.nearest.distance - Real(slack);
   if (!(level > Real(0.0))) return {};
-  const Found nearer = first_at_level(s, search, start, until, level);
-  if (nearer.end == Found::End::apart) return {};
+  const TouchCandidate nearer = first_at_level(s, search, start, until, level);
+  if (nearer.end == TouchCandidate::End::apart) return {};
   const auto halfway = search.at(std::floor(0.5 * nearer.time / time_grid) * time_grid);
   if (nearer.time > sphere_time_bound && halfway.nearest.distance > touching)
     return touch_of(first_at_level(s, search, halfway, until, radius));
@@ -269,12 +269,12 @@ std::optional<SphereTouch> first_touch(const MovingSphere& sphere, const MovingT
                                        double until) {
   const Scaled s = scaled_to_one(sphere, triangle, slack);
   until = std::min(std::ceil(until / time_grid) * time_grid, 1.0);
-  const Search<double> search(s.sphere, s.triangle, s.largest);
+  const TouchSearch<double> search(s.sphere, s.triangle, s.largest);
   const auto start = search.at(0.0);
   const double held = 2.0 * search.error();
   if (s.slack >= held || start.nearest.distance > s.sphere.radius + held)
     return touch_from(s, search, start, s.slack, until);
-  const Search<Twofold> fine(s.sphere, s.triangle, s.largest);
+  const TouchSearch<DoubleDouble> fine(s.sphere, s.triangle, s.largest);
   return touch_from(s, fine, fine.at(0.0), std::max(s.slack, 2.0 * fine.error()), until);
 }
 

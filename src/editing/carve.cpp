@@ -11,7 +11,7 @@ namespace dartcast {
 
 namespace {
 
-using Numbers = std::vector<std::uint32_t>;
+using CellNumbers = std::vector<std::uint32_t>;
 
 class Carver {
  public:
@@ -22,7 +22,7 @@ class Carver {
   }
 
   void take(const ConvexTool& tool) {
-    const Numbers inside = options_.whole_cells ? middles_in(tool) : split_by(tool);
+    const CellNumbers inside = options_.whole_cells ? middles_in(tool) : split_by(tool);
     done_.resize(cutter_.size());
     for (const std::uint32_t n : inside) done_[n] = true;
     taken_.insert(taken_.end(), inside.begin(), inside.end());
@@ -46,15 +46,15 @@ class Carver {
  private:
   // Cells that are not taken yet, nor out of question.
   template <class Condition>
-  [[nodiscard]] Numbers left(Condition&& condition) {
-    Numbers numbers;
+  [[nodiscard]] CellNumbers left(Condition&& condition) {
+    CellNumbers numbers;
     for (std::uint32_t n = 0; n < cutter_.size(); ++n) {
       if (!done_[n] && condition(cutter_.cell(n))) numbers.push_back(n);
     }
     return numbers;
   }
 
-  [[nodiscard]] Numbers middles_in(const ConvexTool& tool) {
+  [[nodiscard]] CellNumbers middles_in(const ConvexTool& tool) {
     return left([&](Cell c) {
       const Vec3 x = detail::middle(edit_, c);
       return std::all_of(tool.planes.begin(), tool.planes.end(), [&](const Plane& p) { return p.height(x) < 0.0; });
@@ -62,8 +62,8 @@ class Carver {
   }
 
   // What is beyond one of the planes to come is not split by those before it.
-  Numbers split_by(const ConvexTool& tool) {
-    Numbers inside = left(
+  CellNumbers split_by(const ConvexTool& tool) {
+    CellNumbers inside = left(
         [&](Cell c) { return detail::near(edit_.map().view(c), tool, [&](Vertex v) { return edit_.position(v); }); });
     const double within = cutter_.snap_distance(inside, {options_.snap, tool.finest});
     for (std::size_t i = 0; i < tool.planes.size(); ++i) {
@@ -81,7 +81,7 @@ class Carver {
   Carving what_;
   CarveOptions options_;
   std::vector<bool> done_;  // by number
-  Numbers taken_, whole_;
+  CellNumbers taken_, whole_;
 };
 
 }  // namespace

@@ -205,7 +205,7 @@ class Coarsener {
   }
 
   const Subdivision& subdivision_;
-  const Map& map_;
+  const CombinatorialMap& map_;
   Rework rework_;
   std::uint32_t whole_;  // number of the draft
   std::vector<Cell> parts_;

@@ -105,7 +105,7 @@ std::uint64_t key(std::uint32_t high, std::uint32_t low) { return (std::uint64_t
 // All edges at once, as split_edge() does one: each cell is replaced only once, and it is known by what.
 void Cutter::split_edges(std::span<const std::uint32_t> numbers, Sides& sides) {
   Rework rework(edit_.topology());
-  const Map& map = edit_.map();
+  const CombinatorialMap& map = edit_.map();
   std::unordered_map<std::uint64_t, Vertex> middle;  // by the edge's ends: parts that touch in an edge alone agree
   std::unordered_set<std::uint64_t> done;            // darts from below to above
   std::vector<Cell> old;
@@ -162,7 +162,7 @@ bool Cutter::split_face_of(Cell c, std::uint16_t face, Sides& sides) {
 // Where to split a face whose rim changes sides twice: from the first corner on the plane after those above to the last
 // one before them. No answer for others.
 std::optional<std::array<Dart, 2>> Cutter::chord_of(Cell c, std::uint16_t face, Sides& sides) const {
-  const Map& map = edit_.map();
+  const CombinatorialMap& map = edit_.map();
   const Shape& s = map.shape(c);
   const std::uint16_t degree = s.degree(face);
   const auto dart = [&](std::size_t k) { return Dart{c, static_cast<std::uint16_t>(s.first_dart(face) + k % degree)}; };

@@ -15,7 +15,7 @@ namespace dartcast::detail {
 /// Takes back what an action did to an edit where it throws.
 template <class Action>
 auto all_or_nothing(ComplexEdit& edit, Action&& action) {
-  const Transaction::Mark before = edit.mark();
+  const Transaction::Savepoint before = edit.savepoint();
   try {
     return action();
   } catch (...) {

@@ -15,7 +15,8 @@ std::uint64_t key(Vertex from, Vertex to) { return (std::uint64_t{from.value} <<
 
 }  // namespace
 
-FaceSet::FaceSet(const Map& map, std::span<const CellFace> faces) : map_(map), faces_(faces.begin(), faces.end()) {
+FaceSet::FaceSet(const CombinatorialMap& map, std::span<const CellFace> faces)
+    : map_(map), faces_(faces.begin(), faces.end()) {
   if (faces.empty()) throw InvalidArgument("an end to reconnect has no faces");
   std::set<CellFace> seen;
   for (const CellFace& f : faces) {
@@ -121,7 +122,7 @@ class Matcher {
 
   // Matches the faces of two darts, and notes what is to match across their edges.
   bool match_faces(Part& part, Dart x, Dart y, std::vector<std::pair<Dart, Dart>>& open) {
-    const Map& map = edit_.map();
+    const CombinatorialMap& map = edit_.map();
     const CellFace f = map.face(x);
     const CellFace g = map.face(y);
     const std::uint16_t degree = map.shape(f.cell).degree(f.face);

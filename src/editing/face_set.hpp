@@ -17,9 +17,9 @@ class FaceSet {
  public:
   /// Throws InvalidArgument where a face is not there or is named twice, or there is none; EditRefused where one is not
   /// open, or two share an edge in the same direction.
-  FaceSet(const Map& map, std::span<const CellFace> faces);
+  FaceSet(const CombinatorialMap& map, std::span<const CellFace> faces);
 
-  [[nodiscard]] const Map& map() const { return map_; }
+  [[nodiscard]] const CombinatorialMap& map() const { return map_; }
   [[nodiscard]] std::span<const CellFace> faces() const { return faces_; }
   [[nodiscard]] std::span<const Dart> darts() const { return darts_; }
   [[nodiscard]] Vertex from(Dart d) const { return map_.origin(d); }
@@ -33,7 +33,7 @@ class FaceSet {
   [[nodiscard]] Dart find(Vertex from, Vertex to) const;
   [[noreturn]] void refuse_rim() const;
 
-  const Map& map_;
+  const CombinatorialMap& map_;
   std::vector<CellFace> faces_;
   std::vector<Dart> darts_;
   std::unordered_map<std::uint64_t, Dart> by_ends_;

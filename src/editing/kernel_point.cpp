@@ -12,7 +12,7 @@ namespace {
 using Row = Eigen::Vector4d;
 
 // A row (n, 1) with limit h: n x + r <= h, that is, the ball of radius r around x is behind the plane; (n, 0): x is.
-struct Plane {
+struct HalfSpace {
   Row row;
   double limit;
 };
@@ -20,16 +20,16 @@ struct Plane {
 // The surface is scaled to the unit ball around `middle`, so that the kernel is inside the cube of planes put first.
 class BallProgram {
  public:
-  explicit BallProgram(std::span<const Triangle> triangles) {
-    for (const Triangle& t : triangles) middle_ += (t.a + t.b + t.c) * (1.0 / 3.0);
+  explicit BallProgram(std::span<const ConeTriangle> triangles) {
+    for (const ConeTriangle& t : triangles) middle_ += (t.a + t.b + t.c) * (1.0 / 3.0);
     middle_ *= 1.0 / static_cast<double>(triangles.size());
-    for (const Triangle& t : triangles) {
+    for (const ConeTriangle& t : triangles) {
       for (const Vec3& x : {t.a, t.b, t.c}) size_ = std::max(size_, norm(x - middle_));
     }
     for (int axis = 0; axis < 3; ++axis) {
       for (const double sign : {1.0, -1.0}) planes_.push_back({sign * Row::Unit(axis), 1.0});
     }
-    for (const Triangle& t : triangles) add(t);
+    for (const ConeTriangle& t : triangles) add(t);
   }
 
   // Nothing where a triangle has no plane.
@@ -37,9 +37,9 @@ class BallProgram {
     if (flat_ || planes_.size() <= cube) return {};
     start();
     // Far more than are ever needed, unless rounding leads in circles.
-    constexpr int most_exchanges = 300;
-    for (int i = 0; i < most_exchanges; ++i) {
-      if (!exchange(i < most_exchanges / 2)) break;
+    constexpr int max_exchanges = 300;
+    for (int i = 0; i < max_exchanges; ++i) {
+      if (!exchange(i < max_exchanges / 2)) break;
     }
     return middle_ + Vec3{x_[0], x_[1], x_[2]} * size_;
   }
@@ -49,7 +49,7 @@ class BallProgram {
   // Planes are unit vectors, distances are in units of the surface: a few thousand roundings.
   static constexpr double tolerance = 1e-12;
 
-  void add(const Triangle& t) {
+  void add(const ConeTriangle& t) {
     const double scale = 1.0 / size_;
     const Vec3 a = (t.a - middle_) * scale;
     Vec3 n = cross((t.b - t.a) * scale, (t.c - t.a) * scale);
@@ -81,24 +81,24 @@ class BallProgram {
     const Eigen::PartialPivLU<Eigen::Matrix4d> dual(rows.transpose());
     x_ = equations.solve(limits);
     std::size_t entering = planes_.size();
-    double most = tolerance;
+    double limit = tolerance;
     for (std::size_t i = 0; i < planes_.size() && (farthest || entering == planes_.size()); ++i) {
       const double beyond = planes_[i].row.dot(x_) - planes_[i].limit;
-      if (!(beyond > most)) continue;
-      most = beyond;
+      if (!(beyond > limit)) continue;
+      limit = beyond;
       entering = i;
     }
     if (entering == planes_.size()) return false;
     const Row weights = dual.solve(Row::Unit(3));
     const Row change = dual.solve(planes_[entering].row);
     std::size_t leaving = 4;
-    double least = 0.0;
+    double lowest = 0.0;
     for (std::size_t k = 0; k < 4; ++k) {
       const auto e = static_cast<Eigen::Index>(k);
       if (!(change[e] > tolerance)) continue;
       const double ratio = weights[e] / change[e];
-      if (leaving != 4 && !(ratio < least)) continue;
-      least = ratio;
+      if (leaving != 4 && !(ratio < lowest)) continue;
+      lowest = ratio;
       leaving = k;
     }
     if (leaving == 4) return false;
@@ -109,14 +109,14 @@ class BallProgram {
   Vec3 middle_;
   double size_ = 0.0;
   bool flat_ = false;
-  std::vector<Plane> planes_;
+  std::vector<HalfSpace> planes_;
   std::array<std::size_t, 4> basis_{};
   Row x_ = Row::Zero();
 };
 
 }  // namespace
 
-std::optional<Vec3> kernel_point(std::span<const Triangle> triangles) {
+std::optional<Vec3> kernel_point(std::span<const ConeTriangle> triangles) {
   const std::optional<Vec3> x = BallProgram(triangles).solve();
   return x && all_positive(*x, triangles) ? x : std::nullopt;
 }

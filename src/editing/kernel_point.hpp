@@ -12,6 +12,6 @@ namespace dartcast::detail {
 /// ball. Nothing where none is found. What is returned is so by exact signs; that there is none is told by floating
 /// point, so that a kernel thinner than about 10^-12 of the surface may be missed. Cost: linear in the triangles, some
 /// ten to twenty times.
-std::optional<Vec3> kernel_point(std::span<const Triangle> triangles);
+std::optional<Vec3> kernel_point(std::span<const ConeTriangle> triangles);
 
 }  // namespace dartcast::detail

@@ -28,7 +28,7 @@ bool is_crossed(ComplexEdit& edit, const Plane& plane, Cell c) {
 }  // namespace
 
 std::vector<Cell> ligature(ComplexEdit& edit, const Plane& plane, Cell start) {
-  const Map& map = edit.map();
+  const CombinatorialMap& map = edit.map();
   if (!map.contains(start) || !map.is_free(start) || !is_crossed(edit, plane, start))
     throw InvalidArgument("a ligature starts from a free cell that its plane crosses");
   std::vector<Cell> cells = {start};
@@ -47,12 +47,12 @@ std::vector<Cell> ligature(ComplexEdit& edit, const Plane& plane, Cell start) {
 
 std::vector<Cell> ligature(ComplexEdit& edit, const Plane& plane, const Vec3& place) {
   Cell nearest;
-  double least = std::numeric_limits<double>::infinity();
+  double lowest = std::numeric_limits<double>::infinity();
   for (const Cell c : edit.map().cells()) {
     if (!edit.map().is_free(c) || !is_crossed(edit, plane, c)) continue;
     const double distance = norm(detail::middle(edit, c) - place);
-    if (!(distance < least)) continue;
-    least = distance;
+    if (!(distance < lowest)) continue;
+    lowest = distance;
     nearest = c;
   }
   if (!nearest.valid())
@@ -62,13 +62,13 @@ std::vector<Cell> ligature(ComplexEdit& edit, const Plane& plane, const Vec3& pl
 
 namespace {
 
-struct Ring {
+struct FaceRing {
   Vec3 centre;
   double radius = 0.0;
 };
 
 // The section's middle, and how far its corners are from it, in parallel to the plane.
-Ring ring_of(const Complex& complex, std::span<const Cell> section, const Plane& plane) {
+FaceRing ring_of(const CellComplex& complex, std::span<const Cell> section, const Plane& plane) {
   std::unordered_set<std::uint32_t> corners;
   for (const Cell c : section) {
     if (!complex.map().contains(c)) throw InvalidArgument("there is no such cell in the section: an edit replaced it");
@@ -81,7 +81,7 @@ Ring ring_of(const Complex& complex, std::span<const Cell> section, const Plane&
     const Vec3 x = complex.positions()[v];
     flat.push_back(x - plane.normal * plane.height(x));
   }
-  Ring ring;
+  FaceRing ring;
   for (const Vec3& x : flat) ring.centre += x * (1.0 / static_cast<double>(flat.size()));
   for (const Vec3& x : flat) ring.radius = std::max(ring.radius, norm(x - ring.centre));
   return ring;
@@ -95,11 +95,11 @@ double fading(double q) {
 
 }  // namespace
 
-void draw_together(const Complex& complex, std::span<const Cell> section, const Plane& plane,
+void draw_together(const CellComplex& complex, std::span<const Cell> section, const Plane& plane,
                    const TyingOptions& options, std::span<Vec3> positions) {
   if (!(options.share >= 0.0 && options.share < 1.0) || !(options.reach > 0.0) || !std::isfinite(options.reach))
     throw InvalidArgument("walls are drawn together by a share in [0, 1), with a positive reach");
-  const Ring ring = ring_of(complex, section, plane);
+  const FaceRing ring = ring_of(complex, section, plane);
   for (Vec3& x : positions) {
     const double height = plane.height(x);
     const Vec3 out = x - plane.normal * height - ring.centre;

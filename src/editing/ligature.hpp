@@ -26,10 +26,10 @@ struct TyingOptions {
 
 /// Where vertices go when a ligature draws the walls of the vessel together: towards the middle of the section in
 /// parallel to the plane, those of the section by `share` of the way, others less, fading out smoothly. For
-/// Environment::move_until_flattened(). `section`: cells of the complex, such as ligature() returned; `positions`: some
+/// Environment::move_until_inverted(). `section`: cells of the complex, such as ligature() returned; `positions`: some
 /// or all of the complex's, changed in place. Throws InvalidArgument where a cell is not there, none is named, or an
 /// option is out of range. Cost: linear in the positions.
-void draw_together(const Complex& complex, std::span<const Cell> section, const Plane& plane,
+void draw_together(const CellComplex& complex, std::span<const Cell> section, const Plane& plane,
                    const TyingOptions& options, std::span<Vec3> positions);
 
 }  // namespace dartcast

@@ -6,7 +6,7 @@
 
 namespace dartcast::detail {
 
-Outline::Outline(const Map& map, Cell c, std::span<const Vec3> positions)
+Outline::Outline(const CombinatorialMap& map, Cell c, std::span<const Vec3> positions)
     : shape_(map.shape(c)), positions_(positions), dart_at_(shape_.corner_count()) {
   for (std::uint16_t d = 0; d < shape_.dart_count(); ++d) dart_at_[shape_.origin(d)] = d;
   join_coplanar(map, c);
@@ -14,7 +14,7 @@ Outline::Outline(const Map& map, Cell c, std::span<const Vec3> positions)
 }
 
 // Each face takes the lowest number that it is joined to.
-void Outline::join_coplanar(const Map& map, Cell c) {
+void Outline::join_coplanar(const CombinatorialMap& map, Cell c) {
   class_.assign(shape_.face_count(), none);
   for (std::uint16_t first = 0; first < shape_.face_count(); ++first) {
     if (class_[first] != none) continue;
@@ -35,7 +35,7 @@ void Outline::join_coplanar(const Map& map, Cell c) {
 
 // Lists the sides. False where some turned out to be none: their faces stand for themselves from now on, which may make
 // corners of other sides.
-bool Outline::trace(const Map& map, Cell c) {
+bool Outline::trace(const CombinatorialMap& map, Cell c) {
   rims_at_.assign(shape_.corner_count(), 0);
   for (std::uint16_t d = 0; d < shape_.dart_count(); ++d) {
     if (on_rim(d)) ++rims_at_[shape_.origin(d)];

@@ -31,7 +31,7 @@ class Outline {
 
   /// `positions`: of the cell's corners; of several vertices that could be a middle the nearest to it is taken. Throws
   /// EditRefused where a side would have fewer than three corners. Cost: linear in the darts, on average.
-  Outline(const Map& map, Cell c, std::span<const Vec3> positions);
+  Outline(const CombinatorialMap& map, Cell c, std::span<const Vec3> positions);
 
   [[nodiscard]] const std::vector<Side>& sides() const { return sides_; }
   [[nodiscard]] std::uint16_t side_of(std::uint16_t dart) const { return number_[class_[shape_.face_of(dart)]]; }
@@ -43,8 +43,8 @@ class Outline {
   [[nodiscard]] std::vector<std::uint16_t> corners() const;
 
  private:
-  void join_coplanar(const Map& map, Cell c);
-  bool trace(const Map& map, Cell c);
+  void join_coplanar(const CombinatorialMap& map, Cell c);
+  bool trace(const CombinatorialMap& map, Cell c);
   std::optional<Side> side_with(std::vector<std::uint16_t> faces);
   bool trace_rim(Side& side);
   bool find_spokes(Side& side);

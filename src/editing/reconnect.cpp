@@ -43,7 +43,7 @@ Gap gap_of(ComplexEdit& edit, const FaceSet& a, const FaceSet& b, const Matching
 
 // All faces at once: one after another, some would be refused for what the next mends.
 std::vector<Cell> sew_all(ComplexEdit& edit, const FaceSet& a, const Matching& matching) {
-  const Map& map = edit.map();
+  const CombinatorialMap& map = edit.map();
   detail::Rework rework(edit.topology());
   const auto link = [&](CellFace f, CellFace g) {
     DraftFace& face = rework.draft(f.cell).faces[f.face];
@@ -55,16 +55,16 @@ std::vector<Cell> sew_all(ComplexEdit& edit, const FaceSet& a, const Matching& m
     link(map.face(x), map.face(y));
     link(map.face(y), map.face(x));
     const Dart corner = map.phi1(y);
-    const Vertex survivor = a.from(x);
+    const Vertex merged_into = a.from(x);
     const Vertex gone = map.origin(corner);
-    if (gone == survivor || renamed.contains(corner)) continue;
+    if (gone == merged_into || renamed.contains(corner)) continue;
     for (const Dart d : vertex_orbit(map, corner)) {
       renamed.insert(d);
       DraftFace& face = rework.draft(d.cell).faces[map.face(d).face];
-      face.corners[detail::corner_of(map.shape(d.cell), d.number)].vertex = survivor;
+      face.corners[detail::corner_of(map.shape(d.cell), d.number)].vertex = merged_into;
       face.point = {};
     }
-    edit.topology().note_identified(gone, survivor);
+    edit.topology().note_merged(gone, merged_into);
   }
   return rework.put();
 }
@@ -72,7 +72,7 @@ std::vector<Cell> sew_all(ComplexEdit& edit, const FaceSet& a, const Matching& m
 // A cell that fills a gap against some open faces.
 class Filling {
  public:
-  Filling(const Map& map, bool free, std::uint32_t source) : map_(map) {
+  Filling(const CombinatorialMap& map, bool free, std::uint32_t source) : map_(map) {
     draft.free = free;
     draft.source = source;
   }
@@ -103,13 +103,13 @@ class Filling {
   CellDraft draft;
 
  private:
-  const Map& map_;
+  const CombinatorialMap& map_;
 };
 
 // A cell between each two faces; its sides against those of the next.
 std::vector<Cell> fill_pairs(ComplexEdit& edit, const FaceSet& a, const FaceSet& b, const Matching& matching,
                              Patch side) {
-  const Map& map = edit.map();
+  const CombinatorialMap& map = edit.map();
   std::vector<CellDraft> drafts;
   std::map<Dart, DraftLink> side_of;  // by the dart of a
   for (const CellFace& f : a.faces()) {
@@ -159,7 +159,7 @@ void add_strip(ComplexEdit& edit, const FaceSet& a, const FaceSet& b, Patch patc
 }
 
 std::vector<Cell> bridge(ComplexEdit& edit, const FaceSet& a, const FaceSet& b, Patch side) {
-  const Map& map = edit.map();
+  const CombinatorialMap& map = edit.map();
   const Cell first = a.faces()[0].cell;
   Filling filling(map, map.is_free(first), map.source(first));
   for (const FaceSet* end : {&a, &b}) {
@@ -176,7 +176,8 @@ std::vector<Cell> bridge(ComplexEdit& edit, const FaceSet& a, const FaceSet& b, 
   return edit.topology().replace({}, drafts);
 }
 
-void check(const Map& map, std::span<const CellFace> a, std::span<const CellFace> b, const ReconnectOptions& options) {
+void check(const CombinatorialMap& map, std::span<const CellFace> a, std::span<const CellFace> b,
+           const ReconnectOptions& options) {
   if (!(options.tolerance >= 0.0))
     throw InvalidArgument("the tolerance of reconnecting is a share that is not negative");
   if (options.side.value >= map.patch_names().size()) throw InvalidArgument("there is no such patch for the sides");

@@ -7,7 +7,7 @@
 
 namespace dartcast::detail {
 
-Star star_of(const Map& map, Cell first, Vertex v, std::size_t most) {
+Star star_of(const CombinatorialMap& map, Cell first, Vertex v, std::size_t limit) {
   Star star{v, {first}, true, false};
   const bool free = map.is_free(first);
   for (std::size_t i = 0; i < star.cells.size(); ++i) {
@@ -19,7 +19,7 @@ Star star_of(const Map& map, Cell first, Vertex v, std::size_t most) {
       if (!other.valid() || map.is_free(other) != free) {
         star.closed = false;
       } else if (std::find(star.cells.begin(), star.cells.end(), other) == star.cells.end()) {
-        if (star.cells.size() == most) {
+        if (star.cells.size() == limit) {
           star.too_large = true;
           return star;
         }
@@ -31,7 +31,7 @@ Star star_of(const Map& map, Cell first, Vertex v, std::size_t most) {
   return star;
 }
 
-std::vector<Cell> grown(const Map& map, std::span<const Cell> cells) {
+std::vector<Cell> grown(const CombinatorialMap& map, std::span<const Cell> cells) {
   std::vector<Cell> all(cells.begin(), cells.end());
   for (const Cell c : cells) {
     for (std::uint16_t f = 0; f < map.shape(c).face_count(); ++f) {
@@ -59,7 +59,7 @@ void chain(std::vector<DraftFace>& edges) {
 
 }  // namespace
 
-std::vector<DraftFace> surface_of(const Map& map, std::span<const Cell> cells) {
+std::vector<DraftFace> surface_of(const CombinatorialMap& map, std::span<const Cell> cells) {
   std::vector<DraftFace> surface;
   for (const Cell c : cells) {
     for (DraftFace& face : draft_of(map, c).faces) {
@@ -86,8 +86,8 @@ std::vector<Vertex> corners_of(std::span<const DraftFace> faces) {
   return corners;
 }
 
-std::vector<Triangle> fans_of(std::span<const DraftFace> faces, const Position& position) {
-  std::vector<Triangle> triangles;
+std::vector<ConeTriangle> fans_of(std::span<const DraftFace> faces, const Position& position) {
+  std::vector<ConeTriangle> triangles;
   for (const DraftFace& face : faces) {
     std::vector<std::uint32_t> corners;
     for (const DraftCorner& c : face.corners) corners.push_back(c.vertex.value);
@@ -104,7 +104,7 @@ std::vector<Triangle> fans_of(std::span<const DraftFace> faces, const Position& 
 
 namespace {
 
-std::vector<CellDraft> triangles_on(const Map& map, std::span<const DraftFace> edges, Vertex apex) {
+std::vector<CellDraft> triangles_on(const CombinatorialMap& map, std::span<const DraftFace> edges, Vertex apex) {
   std::vector<CellDraft> triangles;
   const auto n = static_cast<std::uint32_t>(edges.size());
   for (std::uint32_t i = 0; i < n; ++i) {
@@ -123,7 +123,7 @@ std::vector<CellDraft> triangles_on(const Map& map, std::span<const DraftFace> e
 
 }  // namespace
 
-std::vector<CellDraft> pyramids_on(const Map& map, std::span<const DraftFace> faces, Vertex apex) {
+std::vector<CellDraft> pyramids_on(const CombinatorialMap& map, std::span<const DraftFace> faces, Vertex apex) {
   if (map.dimension() == 2) return triangles_on(map, faces, apex);
   std::vector<CellDraft> pyramids;
   std::map<std::pair<Vertex, Vertex>, DraftLink> side;  // by the edge as the base has it

@@ -18,16 +18,16 @@ struct Star {
   Vertex vertex;
   std::vector<Cell> cells;
   bool closed = true;      ///< no face at the vertex is on the boundary or has a cell of the other kind beyond
-  bool too_large = false;  ///< there are more than `most`; some are missing
+  bool too_large = false;  ///< there are more than `limit`; some are missing
 };
-Star star_of(const Map& map, Cell first, Vertex v, std::size_t most);
+Star star_of(const CombinatorialMap& map, Cell first, Vertex v, std::size_t limit);
 
 /// The cells and their neighbours of the same kind; sorted.
-std::vector<Cell> grown(const Map& map, std::span<const Cell> cells);
+std::vector<Cell> grown(const CombinatorialMap& map, std::span<const Cell> cells);
 
 /// Faces of the cells with none of the others beyond; `from` tells whose. In the plane one behind another, as far as
 /// they are one cycle. `cells`: sorted.
-std::vector<DraftFace> surface_of(const Map& map, std::span<const Cell> cells);
+std::vector<DraftFace> surface_of(const CombinatorialMap& map, std::span<const Cell> cells);
 
 /// Whether the faces bound one solid, in the plane one polygon, without holes.
 bool bounds_solid(const std::vector<DraftFace>& faces);
@@ -35,10 +35,10 @@ bool bounds_solid(const std::vector<DraftFace>& faces);
 std::vector<Vertex> corners_of(std::span<const DraftFace> faces);
 
 /// All triangles of the faces' fans; in the plane the upright ones over the edges.
-std::vector<Triangle> fans_of(std::span<const DraftFace> faces, const Position& position);
+std::vector<ConeTriangle> fans_of(std::span<const DraftFace> faces, const Position& position);
 
 /// A pyramid on each of the faces, with the apex in common; of the source of the cell that had the face. In the plane a
 /// triangle on each of the edges. Precondition: bounds_solid().
-std::vector<CellDraft> pyramids_on(const Map& map, std::span<const DraftFace> faces, Vertex apex);
+std::vector<CellDraft> pyramids_on(const CombinatorialMap& map, std::span<const DraftFace> faces, Vertex apex);
 
 }  // namespace dartcast::detail

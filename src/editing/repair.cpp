@@ -34,7 +34,7 @@ class Repairer {
       region.insert(region.end(), star.cells.begin(), star.cells.end());
       std::sort(region.begin(), region.end());
       region.erase(std::unique(region.begin(), region.end()), region.end());
-      if (region.size() > options_.most_cells) break;
+      if (region.size() > options_.max_cells) break;
       if (&star != stars.data() && cut(region)) return;
     }
     grow(c);
@@ -68,7 +68,7 @@ class Repairer {
     };
     std::vector<Ranked> ranked;
     for (const Vertex v : detail::corners_of(draft_of(map_, c).faces)) {
-      Star star = detail::star_of(map_, c, v, options_.most_cells);
+      Star star = detail::star_of(map_, c, v, options_.max_cells);
       if (star.too_large) continue;
       const auto bad = std::count_if(star.cells.begin(), star.cells.end(), [&](Cell x) { return !sound(x); });
       ranked.push_back({static_cast<std::size_t>(bad), std::move(star)});
@@ -101,7 +101,7 @@ class Repairer {
       if (map_.has_flat(c) || std::any_of(faces.begin(), faces.end(), [](const auto& f) { return f.has_point; }))
         return false;
     }
-    const Transaction::Mark before = edit_.mark();
+    const Transaction::Savepoint before = edit_.savepoint();
     Vertex moved;
     const bool done = put(Mending::moved, star.cells, [&] {
       moved = edit_.topology().add_vertex(star.vertex, star.vertex);
@@ -125,7 +125,7 @@ class Repairer {
   }
 
   // In the plane the triangles are upright, and see a point as they see what is above and below it.
-  [[nodiscard]] std::optional<Vec3> kernel_point(std::span<const detail::Triangle> triangles) const {
+  [[nodiscard]] std::optional<Vec3> kernel_point(std::span<const detail::ConeTriangle> triangles) const {
     std::optional<Vec3> x = detail::kernel_point(triangles);
     if (x && planar()) x->z = 0.0;
     return x;
@@ -150,8 +150,8 @@ class Repairer {
   }
 
   // The facets that the vertex has to be behind for the simplices that have it to be positive.
-  std::vector<detail::Triangle> opposite(std::span<const Cell> cells, Vertex v) {
-    std::vector<detail::Triangle> facets;
+  std::vector<detail::ConeTriangle> opposite(std::span<const Cell> cells, Vertex v) {
+    std::vector<detail::ConeTriangle> facets;
     for (const Cell c : cells) {
       const CellView view = map_.view(c);
       for (const ImplicitSimplex& s : view.shape().simplices()) {
@@ -160,7 +160,7 @@ class Repairer {
           if (view.vertex(s.vertex[i]) != v) continue;
           const auto& f = facet_corners[i];
           facets.push_back(planar() ? detail::upright(at((i + 1) % 3), at((i + 2) % 3))
-                                    : detail::Triangle{at(f[0]), at(f[2]), at(f[1])});
+                                    : detail::ConeTriangle{at(f[0]), at(f[2]), at(f[1])});
         }
       }
     }
@@ -168,7 +168,7 @@ class Repairer {
   }
 
   bool cut(const std::vector<Cell>& region) {
-    if (region.size() > options_.most_cells) return false;
+    if (region.size() > options_.max_cells) return false;
     const std::vector<DraftFace> surface = detail::surface_of(map_, region);
     if (!detail::bounds_solid(surface)) return false;
     const auto triangles = detail::fans_of(surface, position());
@@ -184,7 +184,8 @@ class Repairer {
 
   // As a combination of the corners, so that it goes along with them; at x itself where rounding leads out of the
   // kernel.
-  void place(Vertex v, std::span<const Vertex> corners, const Vec3& x, std::span<const detail::Triangle> triangles) {
+  void place(Vertex v, std::span<const Vertex> corners, const Vec3& x,
+             std::span<const detail::ConeTriangle> triangles) {
     std::vector<Vec3> points;
     std::vector<std::uint32_t> numbers;
     for (const Vertex c : corners) {
@@ -200,20 +201,20 @@ class Repairer {
     std::vector<Cell> region = {c};
     for (;;) {
       std::vector<Cell> larger = detail::grown(map_, region);
-      if (larger.size() == region.size() || larger.size() > options_.most_cells) break;
+      if (larger.size() == region.size() || larger.size() > options_.max_cells) break;
       region = std::move(larger);
       if (cut(region)) return;
     }
     report.left.push_back(
         {c, map_.source(c),
          "cell " + std::to_string(map_.source(c)) + " stays as it is: none of the regions around it of " + "at most " +
-             std::to_string(options_.most_cells) + " cells of its kind has a surface that can be seen from one point"});
+             std::to_string(options_.max_cells) + " cells of its kind has a surface that can be seen from one point"});
   }
 
   // Drafts in the place of the cells. False, nothing changed, where that would be no map.
   template <class Drafts>
   bool put(Mending how, const std::vector<Cell>& cells, Drafts&& drafts) {
-    const Transaction::Mark before = edit_.mark();
+    const Transaction::Savepoint before = edit_.savepoint();
     MendedRegion region{how, {}, {}};
     for (const Cell c : cells) region.sources.push_back(map_.source(c));
     std::sort(region.sources.begin(), region.sources.end());
@@ -230,7 +231,7 @@ class Repairer {
   }
 
   ComplexEdit& edit_;
-  const Map& map_;
+  const CombinatorialMap& map_;
   RepairOptions options_;
   std::unordered_set<std::uint32_t> mended_;  // cells whose simplices will be positive after the commit
 };

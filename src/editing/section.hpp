@@ -28,7 +28,7 @@ struct SectionOptions {
   /// change sides more than twice.
   double snap = 1.0 / 32.0;
   /// Less would take the rounding of vertices that lie on the plane for a distance.
-  static constexpr double least_snap = 0x1p-30;
+  static constexpr double min_snap = 0x1p-30;
   /// What must not be lost to that: say, the width of a layer that two planes bound (m).
   double finest = std::numeric_limits<double>::infinity();
 };

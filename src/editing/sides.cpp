@@ -7,7 +7,7 @@
 namespace dartcast::detail {
 
 void check_snap(double snap) {
-  if (!(snap >= SectionOptions::least_snap && snap <= 0.25))
+  if (!(snap >= SectionOptions::min_snap && snap <= 0.25))
     throw InvalidArgument("snap is a share of an edge between 2^-30 and 1/4");
 }
 

@@ -239,7 +239,7 @@ class Subdivider {
   }
 
   ComplexEdit& edit_;
-  const Map& map_;
+  const CombinatorialMap& map_;
   Cell cell_;
   const Shape& shape_;
   std::vector<Vec3> positions_;
@@ -258,7 +258,7 @@ class Subdivider {
 Subdivided subdivide(ComplexEdit& edit, Cell c) {
   detail::expect_space(edit.map(), "subdivisions");
   expect_cell(edit.map(), c);
-  const Transaction::Mark before = edit.mark();
+  const Transaction::Savepoint before = edit.savepoint();
   try {
     return Subdivider(edit, c).subdivide();
   } catch (...) {
@@ -267,7 +267,7 @@ Subdivided subdivide(ComplexEdit& edit, Cell c) {
   }
 }
 
-void follow(const Map& map, std::span<const Cell> added, Subdivision& subdivision) {
+void update_after_edit(const CombinatorialMap& map, std::span<const Cell> added, Subdivision& subdivision) {
   if (map.contains(subdivision.part)) return;
   for (const Cell c : added) {
     if (!map.contains(c)) continue;

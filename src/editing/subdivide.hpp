@@ -14,7 +14,7 @@ namespace dartcast {
 /// A cell that was subdivided: what is needed to make it again. It names vertices, which stay while others edit.
 struct Subdivision {
   Vertex middle;                     ///< of the cell: a corner of every part
-  CellHandle part;                   ///< one of the parts: see follow()
+  CellHandle part;                   ///< one of the parts: see update_after_edit()
   std::vector<Vertex> corners;       ///< of the cell, one part for each
   std::vector<Vertex> edge_middles;  ///< also those that were there before
   std::vector<Vertex> face_middles;
@@ -32,9 +32,9 @@ struct Subdivided {
 /// faces their patch.
 ///
 /// What neighbours have left of this kind is used, so that neighbours that are subdivided one after the other, any
-/// number of times, conform: where faces may lie in one plane (Map::flat()) and have a vertex among them that is joined
-/// to one on each edge, they are one face with its middle; of several vertices those next to the middle are
-/// taken. Other faces that may lie in one plane are subdivided each by itself.
+/// number of times, conform: where faces may lie in one plane (CombinatorialMap::flat()) and have a vertex among them
+/// that is joined to one on each edge, they are one face with its middle; of several vertices those next to the middle
+/// are taken. Other faces that may lie in one plane are subdivided each by itself.
 ///
 /// Throws InvalidArgument where there is no such cell; EditRefused, nothing changed, where a face would have fewer than
 /// three corners, or the result would be no map. Cost: that of the cells around the cell's edges.
@@ -44,13 +44,13 @@ Subdivided subdivide(ComplexEdit& edit, Cell c);
 /// cell needs them: a face or edge that is needed by a neighbour goes when that is made again. Right after subdivide()
 /// it leaves what was before, to the last face and mark, but for the numbers of the cells.
 ///
-/// Throws InvalidArgument where the part named is not there any more (follow() was not called); EditRefused, nothing
-/// changed, where the parts are not all there (they were subdivided themselves, merged or removed) or not all free or
-/// all blocked. Cost: that of the cells around the cell's edges.
+/// Throws InvalidArgument where the part named is not there any more (update_after_edit() was not called); EditRefused,
+/// nothing changed, where the parts are not all there (they were subdivided themselves, merged or removed) or not all
+/// free or all blocked. Cost: that of the cells around the cell's edges.
 std::vector<Cell> coarsen(ComplexEdit& edit, const Subdivision& subdivision);
 
 /// To be called for a subdivision after later edits next to it, and after the commit, which replace its parts. `added`:
 /// cells that the edit made (EditReport::added). Cost: their corners, where the part named is gone.
-void follow(const Map& map, std::span<const Cell> added, Subdivision& subdivision);
+void update_after_edit(const CombinatorialMap& map, std::span<const Cell> added, Subdivision& subdivision);
 
 }  // namespace dartcast

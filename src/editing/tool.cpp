@@ -162,7 +162,7 @@ ConvexTool capsule_tool(const Vec3& a, const Vec3& b, double radius) {
 
 namespace {
 
-bool near(const Complex& complex, Cell c, std::span<const ConvexTool> tools) {
+bool near(const CellComplex& complex, Cell c, std::span<const ConvexTool> tools) {
   const auto position = [&](Vertex v) { return complex.positions()[v.value]; };
   return std::any_of(tools.begin(), tools.end(),
                      [&](const ConvexTool& tool) { return detail::near(complex.map().view(c), tool, position); });
@@ -170,13 +170,13 @@ bool near(const Complex& complex, Cell c, std::span<const ConvexTool> tools) {
 
 }  // namespace
 
-std::vector<Cell> cells_near(const Complex& complex, std::span<const ConvexTool> tools) {
+std::vector<Cell> cells_near(const CellComplex& complex, std::span<const ConvexTool> tools) {
   std::vector<Cell> cells = complex.map().cells();
   std::erase_if(cells, [&](Cell c) { return !near(complex, c, tools); });
   return cells;
 }
 
-std::vector<Cell> cells_near(const Complex& complex, std::span<const ConvexTool> tools, Cell start) {
+std::vector<Cell> cells_near(const CellComplex& complex, std::span<const ConvexTool> tools, Cell start) {
   if (!complex.map().contains(start)) throw InvalidArgument("there is no such cell to look for others from");
   if (!near(complex, start, tools)) return {};
   std::vector<Cell> cells = {start};

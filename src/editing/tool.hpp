@@ -47,10 +47,10 @@ ConvexTool box_tool(const Vec3& low, const Vec3& high);
 ConvexTool capsule_tool(const Vec3& a, const Vec3& b, double radius);
 
 /// The cells of the complex that no plane of a tool has on its outside: all that the tools meet, and perhaps some near
-/// their edges. In the order of Map::cells(). Cost: one pass over the scene.
-std::vector<Cell> cells_near(const Complex& complex, std::span<const ConvexTool> tools);
+/// their edges. In the order of CombinatorialMap::cells(). Cost: one pass over the scene.
+std::vector<Cell> cells_near(const CellComplex& complex, std::span<const ConvexTool> tools);
 /// The same, of the cells that are reached from `start` through such cells. Throws InvalidArgument where there is no
 /// such cell; empty where it is none of them. Cost: that of the cells returned and their neighbours.
-std::vector<Cell> cells_near(const Complex& complex, std::span<const ConvexTool> tools, Cell start);
+std::vector<Cell> cells_near(const CellComplex& complex, std::span<const ConvexTool> tools, Cell start);
 
 }  // namespace dartcast

@@ -13,8 +13,8 @@ namespace dartcast {
 
 namespace {
 
-using Integer = boost::multiprecision::cpp_int;
-using Point = std::array<Integer, 3>;
+using AuditInteger = boost::multiprecision::cpp_int;
+using Point = std::array<AuditInteger, 3>;
 
 constexpr std::size_t grain = 256;
 
@@ -45,16 +45,16 @@ std::array<Point, 5> to_integers(const std::array<Vec3, 5>& points) {
     for (std::size_t k = 0; k < 3; ++k) {
       if (x[k] == 0.0) continue;
       const Digits d(x[k]);
-      result[i][k] = Integer(d.digits) << static_cast<unsigned>(d.exponent - lowest);
+      result[i][k] = AuditInteger(d.digits) << static_cast<unsigned>(d.exponent - lowest);
     }
   }
   return result;
 }
 
 // Six times the volume of a tetrahedron.
-Integer volume6(const Point& a, const Point& b, const Point& c, const Point& d) {
+AuditInteger volume6(const Point& a, const Point& b, const Point& c, const Point& d) {
   const auto minus = [&](const Point& p) {
-    return Point{Integer(p[0] - a[0]), Integer(p[1] - a[1]), Integer(p[2] - a[2])};
+    return Point{AuditInteger(p[0] - a[0]), AuditInteger(p[1] - a[1]), AuditInteger(p[2] - a[2])};
   };
   const Point u = minus(b);
   const Point v = minus(c);
@@ -64,8 +64,8 @@ Integer volume6(const Point& a, const Point& b, const Point& c, const Point& d) 
 
 // The rule for coordinates (dartcast/predicates.hpp), in words of its own: no point is above 2^300; no particle is
 // between 0 and 2^-300, and a corner that is there counts as 0.
-bool is_below(const Vec3& p, double most) {
-  return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) < most && p == p;
+bool is_below(const Vec3& p, double limit) {
+  return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) < limit && p == p;
 }
 Vec3 counted(const Vec3& p) {
   const auto number = [](double x) { return std::abs(x) < 0x1p-300 ? 0.0 : x; };
@@ -78,10 +78,10 @@ std::string check_inside(const std::array<Vec3, 4>& corners, const Vec3& x) {
     if (!is_below(corner, 0x1.0000000000001p+300)) return "a corner is not finite or outside the exact range";
   }
   const auto p = to_integers({counted(corners[0]), counted(corners[1]), counted(corners[2]), counted(corners[3]), x});
-  const std::array<Integer, 4> parts = {volume6(p[4], p[1], p[2], p[3]), volume6(p[0], p[4], p[2], p[3]),
-                                        volume6(p[0], p[1], p[4], p[3]), volume6(p[0], p[1], p[2], p[4])};
-  if (Integer(parts[0] + parts[1] + parts[2] + parts[3]) <= 0) return "the simplex is not positive";
-  const bool inside = std::all_of(parts.begin(), parts.end(), [](const Integer& part) { return part >= 0; });
+  const std::array<AuditInteger, 4> parts = {volume6(p[4], p[1], p[2], p[3]), volume6(p[0], p[4], p[2], p[3]),
+                                             volume6(p[0], p[1], p[4], p[3]), volume6(p[0], p[1], p[2], p[4])};
+  if (AuditInteger(parts[0] + parts[1] + parts[2] + parts[3]) <= 0) return "the simplex is not positive";
+  const bool inside = std::all_of(parts.begin(), parts.end(), [](const AuditInteger& part) { return part >= 0; });
   return inside ? "" : "the position is outside its simplex";
 }
 
@@ -91,9 +91,9 @@ std::string check_held(const Weights& weights) {
 }
 
 // What is wrong with a particle; empty: nothing.
-std::string check(const Complex& complex, const Particles& particles, std::size_t i) {
-  const State& s = particles[i];
-  const Map& map = complex.map();
+std::string check(const CellComplex& complex, const Particles& particles, std::size_t i) {
+  const ParticleState& s = particles[i];
+  const CombinatorialMap& map = complex.map();
   if (!map.contains(s.cell)) return "there is no such cell";
   if (s.simplex >= map.shape(s.cell).simplices().size()) return "the cell has no such simplex";
   if (s.held) return check_held(particles.held_weights(i));
@@ -102,7 +102,7 @@ std::string check(const Complex& complex, const Particles& particles, std::size_
   return check_inside(complex.corners({s.cell, s.simplex}), s.position);
 }
 
-std::string describe(const Complex& complex, const State& s, std::size_t i, const std::string& what) {
+std::string describe(const CellComplex& complex, const ParticleState& s, std::size_t i, const std::string& what) {
   const std::string cell = complex.map().contains(s.cell) ? fmt::format("{}", complex.map().source(s.cell)) : "none";
   return fmt::format("particle {} at ({}, {}, {}), cell {}, simplex {}: {}", i, s.position.x, s.position.y,
                      s.position.z, cell, s.simplex, what);
@@ -117,7 +117,7 @@ Audit& Audit::operator+=(const Audit& other) {
   return *this;
 }
 
-Audit audit(const Complex& complex, const Particles& particles, Threads threads) {
+Audit audit(const CellComplex& complex, const Particles& particles, Threads threads) {
   std::vector<Audit> parts(chunk_count(particles.size(), grain));
   parallel_for(particles.size(), grain, threads, [&](std::size_t begin, std::size_t end) {
     Audit& part = parts[begin / grain];

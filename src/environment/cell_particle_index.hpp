@@ -12,16 +12,16 @@ namespace dartcast::detail {
 
 /// Lists of particles by cell. An entry may be out of date, where a particle has left since: whoever reads it asks the
 /// state.
-class Residents {
+class CellParticleIndex {
  public:
   /// Cost: linear in the particles.
-  explicit Residents(std::span<const State> states) {
+  explicit CellParticleIndex(std::span<const ParticleState> states) {
     first_.reserve(states.size());
     entries_.reserve(states.size());
     for (std::uint32_t i = 0; i < states.size(); ++i) add(i, states[i]);
   }
 
-  void add(std::uint32_t particle, const State& state) {
+  void add(std::uint32_t particle, const ParticleState& state) {
     add(particle, state.cell);
     for (unsigned k = 0; k < state.touching_count; ++k) {
       if (state.touching[k].cell != state.cell) add(particle, state.touching[k].cell);

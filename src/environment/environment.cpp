@@ -19,7 +19,7 @@ namespace dartcast {
 
 namespace {
 
-constexpr std::size_t chunk = detail::filtered_batch;
+constexpr std::size_t chunk = detail::max_batch;
 
 // Returns the point as decisions see it.
 Vec3 checked_point(const Vec3& x, const char* what, std::size_t index, unsigned dimension) {
@@ -33,7 +33,7 @@ Vec3 checked_point(const Vec3& x, const char* what, std::size_t index, unsigned 
   return point;
 }
 
-bool is_particle_position(const Map& map, const Vec3& x) {
+bool is_particle_position(const CombinatorialMap& map, const Vec3& x) {
   return in_exact_range(x) && flushed(x) == x && (map.dimension() == 3 || x.z == 0.0);
 }
 
@@ -42,8 +42,8 @@ Threads checked(Threads threads) {
   return threads;
 }
 
-MeshData inspected(MeshData mesh) {
-  const MeshReport report = inspect(mesh);
+MeshData checked_mesh(MeshData mesh) {
+  const MeshReport report = check_and_repair(mesh);
   if (!report.defects.empty()) {
     const Finding& f = report.defects.front();
     throw InvalidMesh(fmt::format("{}: {}, the first: {}", f.message, f.count, fmt::join(f.first, ", ")));
@@ -52,28 +52,28 @@ MeshData inspected(MeshData mesh) {
 }
 
 // The next step, from i on, that was not taken as a whole. Most were: four are looked at together.
-std::size_t next_left(std::span<const detail::Taken> taken, std::size_t i) {
-  static_assert(sizeof(detail::Taken) == 2 && detail::taken_all == 0xffff);
+std::size_t next_deferred(std::span<const detail::StepStatus> taken, std::size_t i) {
+  static_assert(sizeof(detail::StepStatus) == 2 && detail::step_complete == 0xffff);
   for (std::uint64_t four = 0; i + 4 <= taken.size(); i += 4) {
     std::memcpy(&four, &taken[i], sizeof four);
     if (four != ~std::uint64_t{0}) break;
   }
-  while (i < taken.size() && taken[i] == detail::taken_all) ++i;
+  while (i < taken.size() && taken[i] == detail::step_complete) ++i;
   return i;
 }
 
-bool names_simplex(const Map& map, SimplexId s) {
+bool names_simplex(const CombinatorialMap& map, SimplexId s) {
   return map.contains(s.cell) && s.simplex < map.shape(s.cell).simplices().size();
 }
 
 // Whether x lies in a closed simplex that is positive and of a free cell.
-bool holds(const Complex& complex, SimplexId s, const Vec3& x) {
+bool holds(const CellComplex& complex, SimplexId s, const Vec3& x) {
   if (!names_simplex(complex.map(), s) || !complex.map().is_free(s.cell)) return false;
   const Corners v = complex.corners(s);
   return volume_sign(v) == Sign::positive && detail::in_closed_simplex(v, x);
 }
 
-bool is_wall(const Map& map, CellFace f) {
+bool is_wall(const CombinatorialMap& map, CellFace f) {
   return map.contains(f.cell) && f.face < map.shape(f.cell).face_count() && map.view(f.cell).is_wall(f.face);
 }
 
@@ -81,7 +81,7 @@ bool are_weights(const Weights& w) {
   return std::all_of(w.begin(), w.end(), [](double c) { return c >= 0.0 && c <= 1.0; });
 }
 
-bool can_be(const Complex& complex, const State& s, const Weights& weights) {
+bool can_be(const CellComplex& complex, const ParticleState& s, const Weights& weights) {
   if (!is_particle_position(complex.map(), s.position)) return false;
   if (s.touching_count > s.touching.size()) return false;
   for (unsigned i = 0; i < s.touching_count; ++i) {
@@ -100,7 +100,7 @@ std::uint64_t Environment::next_id() {
 }
 
 Environment::Environment(MeshData mesh, Threads threads)
-    : complex_(inspected(std::move(mesh)), checked(threads)), threads_(threads) {
+    : complex_(checked_mesh(std::move(mesh)), checked(threads)), threads_(threads) {
   const auto& invalid = complex_.invalid_cells();
   if (invalid.empty()) return;
   throw InvalidMesh(fmt::format("{} cells can't be divided into positive simplices; the first: {}; mend or remesh them",
@@ -162,10 +162,10 @@ void Environment::check_current(Particles& particles) const {
     throw InvalidArgument("add: advance the particles first, they have not followed the last move");
 }
 
-std::vector<Added> Environment::add(Particles& particles, std::span<const Vec3> positions) {
+std::vector<AddResult> Environment::add(Particles& particles, std::span<const Vec3> positions) {
   check_current(particles);
   const std::vector<Location> locations = locate(positions);
-  std::vector<Added> added(positions.size());
+  std::vector<AddResult> added(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
     added[i].location = locations[i];
     if (locations[i].place != Place::free) continue;
@@ -176,12 +176,13 @@ std::vector<Added> Environment::add(Particles& particles, std::span<const Vec3> 
 }
 
 void Environment::add_to(Particles& particles, SimplexId simplex, const Vec3& position) const {
-  particles.residents_.reset();
+  particles.index_.reset();
   particles.states_.emplace_back().put(simplex, position);
   particles.weights_.emplace_back();
   const auto& vertices = particles.vertices_.emplace_back(detail::vertex_numbers(complex_, simplex));
-  if (particles.memo_kind_ != detail::MemoKind::none)
-    particles.memos_.push_back(detail::memo_of(particles.memo_kind_, complex_.positions(), vertices, position));
+  if (particles.cache_kind_ != detail::CacheKind::none)
+    particles.caches_.push_back(
+        detail::cache_entry_of(particles.cache_kind_, complex_.positions(), vertices, position));
 }
 
 bool Environment::add(Particles& particles, SimplexId simplex, const Vec3& position) {
@@ -192,7 +193,7 @@ bool Environment::add(Particles& particles, SimplexId simplex, const Vec3& posit
   return true;
 }
 
-Particles Environment::restored(std::span<const State> states, std::span<const Weights> weights) const {
+Particles Environment::restored(std::span<const ParticleState> states, std::span<const Weights> weights) const {
   if (weights.size() != states.size()) throw InvalidArgument("restored: one set of weights per state is needed");
   for (std::size_t i = 0; i < states.size(); ++i) {
     if (!can_be(complex_, states[i], weights[i]))
@@ -203,7 +204,7 @@ Particles Environment::restored(std::span<const State> states, std::span<const W
   take_in(particles);
   particles.states_.assign(states.begin(), states.end());
   particles.weights_.assign(weights.begin(), weights.end());
-  for (const State& s : states) particles.vertices_.push_back(detail::vertex_numbers(complex_, s.at()));
+  for (const ParticleState& s : states) particles.vertices_.push_back(detail::vertex_numbers(complex_, s.at()));
   return particles;
 }
 
@@ -225,28 +226,28 @@ void Environment::check_positions(std::span<const Vec3> positions) const {
                                       out - positions.begin(), out->x, out->y, out->z));
 }
 
-std::vector<Vec3> Environment::with_interior(std::span<const Vec3> positions) const {
+std::vector<Vec3> Environment::with_steiner_points(std::span<const Vec3> positions) const {
   check_positions(positions);
   std::vector<Vec3> all(positions.begin(), positions.end());
   all.resize(complex_.positions().size());
-  complex_.interior().compute(all);
+  complex_.steiner_weights().compute(all);
   return all;
 }
 
-std::optional<CellFlattening> Environment::first_flattening(std::span<const Vec3> positions) const {
-  return dartcast::first_flattening(map(), complex_.positions(), with_interior(positions), threads_);
+std::optional<CellInversion> Environment::first_inversion(std::span<const Vec3> positions) const {
+  return dartcast::first_inversion(map(), complex_.positions(), with_steiner_points(positions), threads_);
 }
 
-double Environment::move_until_flattened(std::span<const Vec3> positions, double share) {
-  const std::vector<Vec3> after = with_interior(positions);
-  const auto flattening = dartcast::first_flattening(map(), complex_.positions(), after, threads_);
-  if (!flattening) {
+double Environment::move_until_inverted(std::span<const Vec3> positions, double share) {
+  const std::vector<Vec3> after = with_steiner_points(positions);
+  const auto inversion = dartcast::first_inversion(map(), complex_.positions(), after, threads_);
+  if (!inversion) {
     move(positions);
     return 1.0;
   }
   std::vector<Vec3> reached(after.size());
-  const double time = follow_until(map(), complex_.interior(), complex_.positions(), after,
-                                   share * flattening->how.safe_time, reached, threads_);
+  const double time = move_towards(map(), complex_.steiner_weights(), complex_.positions(), after,
+                                   share * inversion->how.safe_time, reached, threads_);
   move(std::span<const Vec3>(reached).first(positions.size()));
   return time;
 }
@@ -319,42 +320,42 @@ struct Environment::Steps {
   Particles& particles;
   std::span<const Vec3> targets;
   Stepper stepper;
-  detail::FilteredScene filtered;
+  detail::BatchScene filtered;
 };
 
 void Environment::step_chunk(const Steps& steps, std::size_t begin, std::size_t end, StepReport& part) const {
   const std::size_t size = end - begin;
-  const std::span<State> states = std::span(steps.particles.states_).subspan(begin, size);
+  const std::span<ParticleState> states = std::span(steps.particles.states_).subspan(begin, size);
   const std::span<const Vec3> targets = steps.targets.subspan(begin, size);
-  std::array<detail::Taken, chunk> taken;
-  std::vector<Begun> begun;
-  begun.reserve(size);
-  std::vector<Landing> landings;
+  std::array<detail::StepStatus, chunk> taken;
+  std::vector<PartialStep> partial;
+  partial.reserve(size);
+  std::vector<WallImpact> impacts;
   const std::span<detail::VertexNumbers> vertices = std::span(steps.particles.vertices_).subspan(begin, size);
-  detail::Memos& memos = steps.particles.memos_;
-  const detail::FilteredSteps batch{states, vertices, memos.from(begin), targets, std::span(taken).first(size),
-                                    begun,  landings};
+  detail::SimplexCache& caches = steps.particles.caches_;
+  const detail::BatchSteps batch{states,  vertices, caches.from(begin), targets, std::span(taken).first(size),
+                                 partial, impacts};
   if (map().dimension() == 2)
     detail::step_plane(steps.filtered, batch, part.counters);
   else
-    detail::step_filtered(steps.filtered, batch, part.counters);
-  part.contacts.contacts.reserve(begun.size());
-  part.contacts.walls.reserve(3 * begun.size());  // at a corner there are several
-  part.stopped.reserve(begun.size());
-  for (std::size_t i = next_left(batch.taken, 0); i < size; i = next_left(batch.taken, i + 1)) {
+    detail::step_batch(steps.filtered, batch, part.counters);
+  part.contacts.contacts.reserve(partial.size());
+  part.contacts.walls.reserve(3 * partial.size());  // at a corner there are several
+  part.stopped.reserve(partial.size());
+  for (std::size_t i = next_deferred(batch.taken, 0); i < size; i = next_deferred(batch.taken, i + 1)) {
     const auto particle = static_cast<std::uint32_t>(begin + i);
-    const Begun* const first = taken[i] == detail::taken_nothing ? nullptr : &begun[taken[i]];
+    const PartialStep* const first = taken[i] == detail::step_untouched ? nullptr : &partial[taken[i]];
     const StepResult result = steps.stepper.step(particle, states[i], steps.particles.weights_[particle], targets[i],
                                                  part.contacts, part.counters, first);
     if (result.held) part.held.push_back({particle, result.invalid_cell});
     if (result.stopped) part.stopped.push_back({particle, result.unused});
     if (first != nullptr && first->stays(states[i])) continue;
     vertices[i] = detail::vertex_numbers(complex_, states[i].at());
-    if (steps.particles.memo_kind_ == detail::MemoKind::trail)
-      memos.put(begin + i,
-                detail::memo_of(detail::MemoKind::trail, complex_.positions(), vertices[i], states[i].position));
-    else if (!memos.empty())
-      memos.forget(begin + i);
+    if (steps.particles.cache_kind_ == detail::CacheKind::previous_geometry)
+      caches.put(begin + i, detail::cache_entry_of(detail::CacheKind::previous_geometry, complex_.positions(),
+                                                   vertices[i], states[i].position));
+    else if (!caches.empty())
+      caches.forget(begin + i);
   }
 }
 
@@ -364,29 +365,29 @@ void Environment::step_all(const Steps& steps, std::vector<StepReport>& parts) c
 }
 
 // Coordinates are made from the second step in a row in which nothing has moved.
-detail::MemoKind Environment::memo_kind(const Particles& particles, bool moved) const {
-  if (map().dimension() == 2) return detail::MemoKind::none;
-  if (moved) return detail::MemoKind::trail;
-  return particles.stood_still_ ? detail::MemoKind::coordinates : detail::MemoKind::none;
+detail::CacheKind Environment::cache_kind(const Particles& particles, bool moved) const {
+  if (map().dimension() == 2) return detail::CacheKind::none;
+  if (moved) return detail::CacheKind::previous_geometry;
+  return particles.stood_still_ ? detail::CacheKind::barycentric : detail::CacheKind::none;
 }
 
-StepReport Environment::advance(Particles& particles, std::span<const Vec3> targets, const Respond& respond,
+StepReport Environment::advance(Particles& particles, std::span<const Vec3> targets, const ContactCallback& respond,
                                 const StepOptions& options) {
   const std::vector<Vec3> decided = check_targets(particles, targets);
   check_advance(particles, options, "advance");
   const bool moved = particles.moves_ != moves_;
-  const detail::MemoKind kind = memo_kind(particles, moved);
-  const bool memos_match = kind == particles.memo_kind_;
+  const detail::CacheKind kind = cache_kind(particles, moved);
+  const bool caches_match = kind == particles.cache_kind_;
   const Steps steps{particles,
                     decided.empty() ? targets : std::span<const Vec3>(decided),
                     Stepper(complex_, moved, options, respond),
-                    {&complex_, moved, memos_match, options.tolerance, !particles.walls_changed_}};
+                    {&complex_, moved, caches_match, options.tolerance, !particles.walls_changed_}};
   std::vector<StepReport> parts(chunk_count(particles.size(), chunk));
-  particles.residents_.reset();
+  particles.index_.reset();
   take_in(particles);
   const Particles before = respond ? particles : Particles{};  // a response is the caller's code: it may throw
-  particles.memo_kind_ = kind;
-  particles.memos_.resize(kind == detail::MemoKind::none ? 0 : particles.size());
+  particles.cache_kind_ = kind;
+  particles.caches_.resize(kind == detail::CacheKind::none ? 0 : particles.size());
   particles.stood_still_ = !moved;
   particles.walls_changed_ = false;
   if (respond) {
@@ -404,7 +405,7 @@ StepReport Environment::advance(Particles& particles, std::span<const Vec3> targ
 }
 
 std::vector<Trace> Environment::trace(const Particles& particles, std::size_t particle, std::span<const Vec3> targets,
-                                      const Respond& respond, const StepOptions& options) const {
+                                      const ContactCallback& respond, const StepOptions& options) const {
   std::vector<Vec3> decided;
   for (std::size_t i = 0; i < targets.size(); ++i)
     decided.push_back(checked_point(targets[i], "target", i, map().dimension()));
@@ -412,7 +413,7 @@ std::vector<Trace> Environment::trace(const Particles& particles, std::size_t pa
     throw InvalidArgument(fmt::format("trace: there is no particle {} among {}", particle, particles.size()));
   check_advance(particles, options, "trace");
   bool moved = particles.moves_ != moves_;
-  State state = particles[particle];
+  ParticleState state = particles[particle];
   Weights weights = particles.weights_[particle];
   std::vector<Trace> traces;
   for (const Vec3& target : decided) {

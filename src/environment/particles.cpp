@@ -29,14 +29,14 @@ void Particles::remove(std::span<const std::uint8_t> marks) {
     if (marks[i] != 0) continue;
     states_[kept] = states_[i];
     weights_[kept] = weights_[i];
-    if (!memos_.empty()) memos_.put(kept, memos_[i], memos_.mark(i));
+    if (!caches_.empty()) caches_.put(kept, caches_[i], caches_.mark(i));
     vertices_[kept++] = vertices_[i];
   }
   states_.resize(kept);
   weights_.resize(kept);
   vertices_.resize(kept);
-  if (!memos_.empty()) memos_.resize(kept);
-  residents_.reset();
+  if (!caches_.empty()) caches_.resize(kept);
+  index_.reset();
 }
 
 void Particles::reorder(std::span<const std::uint32_t> order) {
@@ -47,22 +47,22 @@ void Particles::reorder(std::span<const std::uint32_t> order) {
   const auto again = std::find_if(order.begin(), order.end(), [&](std::uint32_t i) { return seen[i]++ != 0; });
   if (again != order.end())
     throw InvalidArgument(fmt::format("reorder: the order is no permutation, it names particle {} twice", *again));
-  std::vector<State> states(size());
+  std::vector<ParticleState> states(size());
   std::vector<Weights> weights(size());
   std::vector<detail::VertexNumbers> vertices(size());
-  detail::Memos memos;
-  memos.resize(memos_.size());
+  detail::SimplexCache caches;
+  caches.resize(caches_.size());
   for (std::size_t i = 0; i < size(); ++i) {
     states[i] = states_[order[i]];
     weights[i] = weights_[order[i]];
     vertices[i] = vertices_[order[i]];
-    if (!memos_.empty()) memos.put(i, memos_[order[i]], memos_.mark(order[i]));
+    if (!caches_.empty()) caches.put(i, caches_[order[i]], caches_.mark(order[i]));
   }
   states_ = std::move(states);
   weights_ = std::move(weights);
   vertices_ = std::move(vertices);
-  memos_ = std::move(memos);
-  residents_.reset();
+  caches_ = std::move(caches);
+  index_.reset();
 }
 
 Particles Particles::selected(std::span<const std::uint32_t> which) const {
@@ -72,9 +72,9 @@ Particles Particles::selected(std::span<const std::uint32_t> which) const {
     some.states_.push_back(states_[i]);
     some.weights_.push_back(weights_[i]);
     some.vertices_.push_back(vertices_[i]);
-    if (!memos_.empty()) some.memos_.push_back(memos_[i], memos_.mark(i));
+    if (!caches_.empty()) some.caches_.push_back(caches_[i], caches_.mark(i));
   }
-  some.memo_kind_ = memo_kind_;
+  some.cache_kind_ = cache_kind_;
   some.walls_changed_ = walls_changed_;
   some.environment_ = environment_;
   some.moves_ = moves_;
@@ -98,14 +98,14 @@ void Particles::replace(std::span<const std::uint32_t> which, const Particles& b
     states_[i] = by.states_[k];
     weights_[i] = by.weights_[k];
     vertices_[i] = by.vertices_[k];
-    if (memos_.empty()) continue;
-    if (memo_kind_ == by.memo_kind_)
-      memos_.put(i, by.memos_[k], by.memos_.mark(k));
+    if (caches_.empty()) continue;
+    if (cache_kind_ == by.cache_kind_)
+      caches_.put(i, by.caches_[k], by.caches_.mark(k));
     else
-      memos_.forget(i);
+      caches_.forget(i);
   }
   walls_changed_ = walls_changed_ || by.walls_changed_;
-  residents_.reset();
+  index_.reset();
 }
 
 }  // namespace dartcast

@@ -18,9 +18,9 @@ constexpr std::uint64_t mixed(std::uint64_t z) {
 }
 
 // One half of a particle's hash: words are mixed in one after another.
-class Half {
+class HashLane {
  public:
-  explicit constexpr Half(std::uint64_t key) : value_(key) {}
+  explicit constexpr HashLane(std::uint64_t key) : value_(key) {}
   void take(std::uint64_t word) { value_ = mixed(value_ * 0x9e3779b97f4a7c15U + word); }
   void take(const Vec3& v) {
     for (const double x : {v.x, v.y, v.z}) take(std::bit_cast<std::uint64_t>(x));
@@ -31,8 +31,9 @@ class Half {
   std::uint64_t value_;
 };
 
-std::uint64_t half(std::uint64_t key, std::uint64_t id, const State& s, const Vec3& velocity, std::uint64_t fate) {
-  Half h(key);
+std::uint64_t half(std::uint64_t key, std::uint64_t id, const ParticleState& s, const Vec3& velocity,
+                   std::uint64_t fate) {
+  HashLane h(key);
   h.take(id);
   h.take(s.position);
   h.take(velocity);
@@ -47,7 +48,7 @@ std::uint64_t half(std::uint64_t key, std::uint64_t id, const State& s, const Ve
 
 }  // namespace
 
-void StateHash::add(std::uint64_t id, const State& state, const Vec3& velocity, std::uint64_t fate) {
+void StateHash::add(std::uint64_t id, const ParticleState& state, const Vec3& velocity, std::uint64_t fate) {
   low_ += half(0x6a09e667f3bcc908U, id, state, velocity, fate);
   high_ += half(0xbb67ae8584caa73bU, id, state, velocity, fate);
 }

@@ -21,7 +21,7 @@ class StateHash {
   [[nodiscard]] Words words() const { return {low_, high_}; }
 
   /// Adds a particle. `fate`: what has become of it, as a number that the caller chooses.
-  void add(std::uint64_t id, const State& state, const Vec3& velocity, std::uint64_t fate = 0);
+  void add(std::uint64_t id, const ParticleState& state, const Vec3& velocity, std::uint64_t fate = 0);
   StateHash& operator+=(const StateHash& other);
   bool operator==(const StateHash&) const = default;
 

@@ -14,65 +14,65 @@ namespace {
 
 // x, rounded out of a positive simplex, put back into it.
 template <std::size_t N>
-Vec3 settled_inside(const std::array<Vec3, N>& v, const Vec3& x) {
+Vec3 placed_inside(const std::array<Vec3, N>& v, const Vec3& x) {
   if (detail::in_closed_simplex(v, x)) return x;
   const Vec3 middle = flushed(detail::mean_of(v));
   if (const auto lifted = detail::lifted_inside(v, middle, x)) return *lifted;
-  return detail::double_inside(v, x).value_or(detail::in_closed_simplex(v, middle) ? middle : v[0]);
+  return detail::representable_inside(v, x).value_or(detail::in_closed_simplex(v, middle) ? middle : v[0]);
 }
 
 }  // namespace
 
-/// One call of Environment::follow().
-class Following {
+/// One call of Environment::update_after_edit().
+class EditFollower {
  public:
   // `complex`: the one that was edited, with the positions that the particles have gone along to.
-  Following(const Complex& complex, const ComplexEditReport& edit, Particles& particles, Stranded stranded)
-      : complex_(complex), edit_(edit), particles_(particles), stranded_(stranded) {
+  EditFollower(const CellComplex& complex, const ComplexEditReport& edit, Particles& particles, OrphanPolicy orphaned)
+      : complex_(complex), edit_(edit), particles_(particles), orphaned_(orphaned) {
     for (const CellHandle& h : edit_.map.removed) removed_.push_back(h.cell);
     std::sort(removed_.begin(), removed_.end());
   }
 
   // For particles that were not advanced between a move and the edit: they ride along with the vertices, as in a step
   // without a motion of their own. Those in removed cells get their new positions, and keep the names of these cells
-  // for follow().
+  // for update_after_edit().
   void ride(Threads threads) {
     constexpr std::size_t edit_grain = 256;
     const StepOptions options;
-    const Respond stop;
+    const ContactCallback stop;
     const Stepper stepper(complex_, true, options, stop);
     parallel_for(particles_.size(), edit_grain, threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         if (is_removed(particles_.states_[i].cell))
-          particles_.states_[i].position = map().dimension() == 2 ? ridden<3>(i) : ridden<4>(i);
+          particles_.states_[i].position = map().dimension() == 2 ? carried<3>(i) : carried<4>(i);
         else
           step(stepper, i);
       }
     });
-    particles_.residents_.reset();
-    particles_.memo_kind_ = detail::MemoKind::none;
-    particles_.memos_.resize(0);
+    particles_.index_.reset();
+    particles_.cache_kind_ = detail::CacheKind::none;
+    particles_.caches_.resize(0);
     particles_.stood_still_ = false;
   }
 
-  FollowReport follow() {
-    if (!particles_.residents_) particles_.residents_.emplace(particles_.states_);
-    const std::vector<std::uint32_t> touched = residents(removed_, edit_.map.marked);
-    for (const Cell c : removed_) particles_.residents_->clear(c);  // another cell may take its number
+  UpdateReport update_after_edit() {
+    if (!particles_.index_) particles_.index_.emplace(particles_.states_);
+    const std::vector<std::uint32_t> touched = particles_near(removed_, edit_.map.marked);
+    for (const Cell c : removed_) particles_.index_->clear(c);  // another cell may take its number
     for (const std::uint32_t i : touched) take_along(i);
-    for (const std::uint32_t i : residents(edit_.around, edit_.map.added)) leave_walls(particles_.states_[i]);
+    for (const std::uint32_t i : particles_near(edit_.around, edit_.map.added)) leave_walls(particles_.states_[i]);
     remove_absorbed();
     return std::move(report_);
   }
 
  private:
   void step(const Stepper& stepper, std::size_t i) const {
-    State& s = particles_.states_[i];
+    ParticleState& s = particles_.states_[i];
     Weights& weights = particles_.weights_[i];
     const Corners before = complex_.previous_corners(s.at());
     const Weights kept = s.held ? weights : detail::barycentric(before, s.position);
     const bool positive = volume_sign(complex_.corners(s.at())) == Sign::positive;
-    const Vec3 target = positive ? detail::ridden(complex_, s.at(), kept).position : s.position;
+    const Vec3 target = positive ? detail::carried(complex_, s.at(), kept).position : s.position;
     ContactList contacts;
     Counters counters;
     stepper.step(static_cast<std::uint32_t>(i), s, weights, target, contacts, counters);
@@ -83,8 +83,8 @@ class Following {
   // their numbers are used again by the next edit at the earliest. The result lies exactly in the moved simplex where
   // that is positive.
   template <std::size_t N>
-  [[nodiscard]] Vec3 ridden(std::size_t i) const {
-    const State& s = particles_.states_[i];
+  [[nodiscard]] Vec3 carried(std::size_t i) const {
+    const ParticleState& s = particles_.states_[i];
     std::array<Vec3, N> before;
     std::array<Vec3, N> after;
     for (std::size_t k = 0; k < N; ++k) {
@@ -93,17 +93,18 @@ class Following {
     }
     const Vec3 x =
         flushed(detail::combine(after, s.held ? particles_.weights_[i] : detail::barycentric(before, s.position)));
-    if (volume_sign(after) == Sign::positive) return settled_inside(after, x);
+    if (volume_sign(after) == Sign::positive) return placed_inside(after, x);
     return in_exact_range(x) ? x : s.position;
   }
 
-  [[nodiscard]] const Map& map() const { return complex_.map(); }
+  [[nodiscard]] const CombinatorialMap& map() const { return complex_.map(); }
 
   // In the order of their numbers.
-  [[nodiscard]] std::vector<std::uint32_t> residents(std::span<const Cell> some, std::span<const Cell> others) const {
+  [[nodiscard]] std::vector<std::uint32_t> particles_near(std::span<const Cell> some,
+                                                          std::span<const Cell> others) const {
     std::vector<std::uint32_t> found;
     for (const std::span<const Cell> cells : {some, others}) {
-      for (const Cell c : cells) particles_.residents_->for_each(c, [&](std::uint32_t i) { found.push_back(i); });
+      for (const Cell c : cells) particles_.index_->for_each(c, [&](std::uint32_t i) { found.push_back(i); });
     }
     std::sort(found.begin(), found.end());
     found.erase(std::unique(found.begin(), found.end()), found.end());
@@ -117,25 +118,25 @@ class Following {
   }
 
   void take_along(std::uint32_t i) {
-    State& s = particles_.states_[i];
+    ParticleState& s = particles_.states_[i];
     const bool gone = is_removed(s.cell);
     const bool marked = !gone && is_marked(s.cell);
     if (!gone && !marked && !touches_any(s)) return;  // it has left since it was listed
     ++report_.touched;
     leave_walls(s);
     if (gone) locate(i);
-    if (marked && !map().is_free(s.cell)) strand(i, Place::blocked, s.at());
+    if (marked && !map().is_free(s.cell)) orphan(i, Place::blocked, s.at());
     if (marked && map().is_free(s.cell) && s.held) release(i);
     if (gone || marked) keep_up(i);
   }
 
-  [[nodiscard]] bool touches_any(const State& s) const {
+  [[nodiscard]] bool touches_any(const ParticleState& s) const {
     return std::any_of(s.touching.begin(), s.touching.begin() + s.touching_count,
                        [&](CellFace f) { return is_removed(f.cell) || is_marked(f.cell); });
   }
 
   // Forgets walls touched that are none any more.
-  void leave_walls(State& s) const {
+  void leave_walls(ParticleState& s) const {
     const auto end = s.touching.begin() + s.touching_count;
     const auto kept = std::remove_if(
         s.touching.begin(), end, [&](CellFace f) { return is_removed(f.cell) || !map().view(f.cell).is_wall(f.face); });
@@ -146,7 +147,7 @@ class Following {
   // the middle of its old simplex begins in the new one.
   template <std::size_t N>
   [[nodiscard]] SimplexId place_of(std::uint32_t i) const {
-    const State& s = particles_.states_[i];
+    const ParticleState& s = particles_.states_[i];
     std::array<Vec3, N> old;
     for (std::size_t k = 0; k < N; ++k) old[k] = complex_.positions()[particles_.vertices_[i][k]];
     const Vec3 middle = flushed(detail::mean_of(old));
@@ -159,39 +160,39 @@ class Following {
 
   void locate(std::uint32_t i) {
     if (!locator_) locator_.emplace(complex_, edit_.map.added);
-    State& s = particles_.states_[i];
+    ParticleState& s = particles_.states_[i];
     const SimplexId at = map().dimension() == 2 ? place_of<3>(i) : place_of<4>(i);
-    if (!at.valid()) return strand(i, Place::outside, at);
-    if (!map().is_free(at.cell)) return strand(i, Place::blocked, at);
+    if (!at.valid()) return orphan(i, Place::outside, at);
+    if (!map().is_free(at.cell)) return orphan(i, Place::blocked, at);
     s.put(at, s.position);
     s.held = false;
     ++report_.located;
   }
 
   // `at`: the simplex of the blocked cell, invalid outside.
-  void strand(std::uint32_t i, Place place, SimplexId at) {
-    State& s = particles_.states_[i];
-    StrandedParticle& p = report_.stranded.emplace_back();
+  void orphan(std::uint32_t i, Place place, SimplexId at) {
+    ParticleState& s = particles_.states_[i];
+    OrphanedParticle& p = report_.orphaned.emplace_back();
     p.particle = i;
     p.place = place;
     p.position = s.position;
-    p.became = stranded_;
-    if (stranded_ == Stranded::stay && at.valid()) return hold(i, at);
-    if (stranded_ != Stranded::absorb && move_to_free(s, at, p.distance)) {
-      p.became = Stranded::move;
+    p.outcome = orphaned_;
+    if (orphaned_ == OrphanPolicy::hold && at.valid()) return hold(i, at);
+    if (orphaned_ != OrphanPolicy::absorb && move_to_free(s, at, p.distance)) {
+      p.outcome = OrphanPolicy::relocate;
       return;
     }
-    p.became = Stranded::absorb;
+    p.outcome = OrphanPolicy::absorb;
   }
 
   void hold(std::uint32_t i, SimplexId at) {
-    State& s = particles_.states_[i];
+    ParticleState& s = particles_.states_[i];
     if (!s.held || s.at() != at) particles_.weights_[i] = detail::barycentric(complex_.corners(at), s.position);
     s.put(at, s.position);
     s.held = true;
   }
 
-  bool move_to_free(State& s, SimplexId at, double& distance) const {
+  bool move_to_free(ParticleState& s, SimplexId at, double& distance) const {
     std::vector<Cell> start;
     if (at.valid()) {
       start = {at.cell};
@@ -209,56 +210,56 @@ class Following {
 
   // Where rounding put a held particle beside its simplex, it is put back.
   void release(std::uint32_t i) {
-    State& s = particles_.states_[i];
+    ParticleState& s = particles_.states_[i];
     const Corners corners = complex_.corners(s.at());
     if (volume_sign(corners) != Sign::positive) return;
-    const Settled settled = settle(complex_, s.at(), s.position);
-    s.put(settled.simplex, settled.position);
+    const SimplexPlacement placed = place_in_simplex(complex_, s.at(), s.position);
+    s.put(placed.simplex, placed.position);
     s.held = false;
   }
 
   // What is kept beside a state.
   void keep_up(std::uint32_t i) {
-    const State& s = particles_.states_[i];
+    const ParticleState& s = particles_.states_[i];
     if (is_removed(s.cell)) return;  // it is absorbed
-    particles_.residents_->add(i, s);
+    particles_.index_->add(i, s);
     particles_.vertices_[i] = detail::vertex_numbers(complex_, s.at());
-    if (particles_.memo_kind_ != detail::MemoKind::none)
-      particles_.memos_.put(
-          i, detail::memo_of(particles_.memo_kind_, complex_.positions(), particles_.vertices_[i], s.position));
+    if (particles_.cache_kind_ != detail::CacheKind::none)
+      particles_.caches_.put(
+          i, detail::cache_entry_of(particles_.cache_kind_, complex_.positions(), particles_.vertices_[i], s.position));
   }
 
   void remove_absorbed() {
-    const auto absorbed = [](const StrandedParticle& p) { return p.became == Stranded::absorb; };
-    if (std::any_of(report_.stranded.begin(), report_.stranded.end(), absorbed)) {
+    const auto absorbed = [](const OrphanedParticle& p) { return p.outcome == OrphanPolicy::absorb; };
+    if (std::any_of(report_.orphaned.begin(), report_.orphaned.end(), absorbed)) {
       std::vector<std::uint8_t> marks(particles_.size(), 0);
-      for (const StrandedParticle& p : report_.stranded) marks[p.particle] = absorbed(p) ? 1 : 0;
+      for (const OrphanedParticle& p : report_.orphaned) marks[p.particle] = absorbed(p) ? 1 : 0;
       particles_.remove(marks);
     }
   }
 
-  const Complex& complex_;
+  const CellComplex& complex_;
   const ComplexEditReport& edit_;
   Particles& particles_;
-  Stranded stranded_;
+  OrphanPolicy orphaned_;
   std::vector<Cell> removed_;  // sorted
   std::optional<Locator> locator_;
-  FollowReport report_;
+  UpdateReport report_;
 };
 
-FollowReport Environment::follow(Particles& particles, Stranded stranded) const {
+UpdateReport Environment::update_after_edit(Particles& particles, OrphanPolicy orphaned) const {
   take_in(particles);
   check_known(particles, "follow");
   if (particles.edits_ == edits_) return {};
-  FollowReport report;
+  UpdateReport report;
   if (particles.moves_ == moves_at_edit_ && moves_ != moves_at_edit_) {
-    const Complex before = complex_.before_move();
-    report = Following(before, last_edit_, particles, stranded).follow();
+    const CellComplex before = complex_.before_move();
+    report = EditFollower(before, last_edit_, particles, orphaned).update_after_edit();
   } else {
-    Following following(complex_, last_edit_, particles, stranded);
+    EditFollower following(complex_, last_edit_, particles, orphaned);
     if (particles.moves_ != moves_) following.ride(threads_);
     particles.moves_ = moves_;
-    report = following.follow();
+    report = following.update_after_edit();
   }
   particles.edits_ = edits_;
   particles.walls_changed_ = true;

@@ -12,7 +12,7 @@ namespace dartcast {
 namespace {
 
 Finding indivisible_cells(const MeshData& mesh, Threads threads) {
-  const Complex complex(mesh, threads);
+  const CellComplex complex(mesh, threads);
   Finding finding{
       "not_star_shaped", 0, {}, "cells that cannot be divided into positive simplices; mend or remesh them"};
   for (const InvalidCell& invalid : complex.invalid_cells()) finding.add(complex.map().source(invalid.cell));

@@ -28,7 +28,7 @@ inline std::string ending_of(const std::filesystem::path& path) {
 
 /// Calls read(file); what it throws becomes a defect of kind "file". `what`: "mesh", "surface".
 template <class Read>
-MeshFile judged_file(const std::filesystem::path& path, const char* what, Read&& read) {
+MeshFile checked_file(const std::filesystem::path& path, const char* what, Read&& read) {
   MeshFile out;
   const auto refuse = [&](std::string message) { out.report.defects.push_back({"file", 1, {}, std::move(message)}); };
   try {

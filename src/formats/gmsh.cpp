@@ -12,12 +12,12 @@ namespace dartcast {
 namespace {
 
 using gmsh::Model;
-using gmsh::Numbers;
+using gmsh::NumberReader;
 
 enum class Version { v1, v2, v40, v41 };
 
 /// The head of versions 2 and 4.
-Version read_format(Numbers& in, Model& model) {
+Version read_format(NumberReader& in, Model& model) {
   FileText& text = in.text;
   const std::string number(text.word("the version"));
   const std::int64_t binary = text.integer("the file type", 0, 1);
@@ -56,7 +56,7 @@ void read_names(FileText& text, Model& model) {
   }
 }
 
-void read_nodes(Numbers& in, Model& model, Version version) {
+void read_nodes(NumberReader& in, Model& model, Version version) {
   if (model.nodes.closed()) in.text.fail("a second section of nodes");
   if (version == Version::v1 || version == Version::v2) {
     read_nodes_2(in, model);
@@ -66,7 +66,7 @@ void read_nodes(Numbers& in, Model& model, Version version) {
   model.nodes.close();
 }
 
-void read_elements(Numbers& in, Model& model, Version version) {
+void read_elements(NumberReader& in, Model& model, Version version) {
   if (!model.nodes.closed()) in.text.fail("elements stand before the nodes");
   if (version == Version::v1) {
     read_elements_1(in, model);
@@ -78,7 +78,7 @@ void read_elements(Numbers& in, Model& model, Version version) {
 }
 
 /// Reads the section `name`; false where its content is of no use here and remains to be skipped.
-bool read_section(std::string_view name, Numbers& in, Model& model, Version& version) {
+bool read_section(std::string_view name, NumberReader& in, Model& model, Version& version) {
   if (name == "NOD" || name == "ELM") {
     version = Version::v1;
     model.parsed.format = "Gmsh 1 ASCII";
@@ -103,7 +103,7 @@ bool read_section(std::string_view name, Numbers& in, Model& model, Version& ver
 
 ParsedMesh parse_gmsh(std::string_view content) {
   FileText text(content);
-  Numbers in(text);
+  NumberReader in(text);
   Model model;
   Version version = Version::v2;
   bool elements = false;

@@ -7,11 +7,11 @@ namespace dartcast::gmsh {
 namespace {
 
 /// Node numbers are signed in the file; a negative one names no node.
-std::uint64_t node_number(Numbers& in) { return static_cast<std::uint64_t>(in.int32("a node number")); }
+std::uint64_t node_number(NumberReader& in) { return static_cast<std::uint64_t>(in.int32("a node number")); }
 
 }  // namespace
 
-void read_nodes_2(Numbers& in, Model& model) {
+void read_nodes_2(NumberReader& in, Model& model) {
   const std::size_t n = in.text.count("nodes", in.binary ? 28 : 8);
   if (in.binary) in.text.line();
   for (std::size_t i = 0; i < n; ++i) {
@@ -24,7 +24,7 @@ void read_nodes_2(Numbers& in, Model& model) {
   }
 }
 
-void read_elements_1(Numbers& in, Model& model) {
+void read_elements_1(NumberReader& in, Model& model) {
   const std::size_t n = in.text.count("elements", 10);
   std::vector<std::uint64_t> nodes;
   for (std::size_t i = 0; i < n; ++i) {
@@ -41,7 +41,7 @@ void read_elements_1(Numbers& in, Model& model) {
   }
 }
 
-void read_elements_2(Numbers& in, Model& model) {
+void read_elements_2(NumberReader& in, Model& model) {
   const std::size_t n = in.text.count("elements", in.binary ? 8 : 6);
   if (in.binary) in.text.line();
   std::vector<std::uint64_t> nodes;

@@ -8,7 +8,7 @@
 namespace dartcast::gmsh {
 namespace {
 
-int checked_dimension(Numbers& in, std::int32_t dimension) {
+int checked_dimension(NumberReader& in, std::int32_t dimension) {
   if (dimension < 0 || dimension > 3) in.text.fail(fmt::format("{} is not the dimension of an entity", dimension));
   return dimension;
 }
@@ -21,7 +21,7 @@ struct Block {
   std::size_t size = 0;
 };
 
-Block read_block(Numbers& in, bool v41, std::string_view what, std::size_t text_bytes, std::size_t binary_bytes) {
+Block read_block(NumberReader& in, bool v41, std::string_view what, std::size_t text_bytes, std::size_t binary_bytes) {
   Block block;
   const std::int32_t first = in.int32("an entity");
   const std::int32_t second = in.int32("an entity");
@@ -32,7 +32,7 @@ Block read_block(Numbers& in, bool v41, std::string_view what, std::size_t text_
   return block;
 }
 
-std::size_t read_block_count(Numbers& in, bool v41) {
+std::size_t read_block_count(NumberReader& in, bool v41) {
   const std::size_t blocks = in.count("blocks", 8, 16);
   in.size("a total");
   if (v41) {
@@ -44,7 +44,7 @@ std::size_t read_block_count(Numbers& in, bool v41) {
 
 }  // namespace
 
-void read_entities_4(Numbers& in, Model& model, bool v41) {
+void read_entities_4(NumberReader& in, Model& model, bool v41) {
   std::size_t counts[4];
   for (std::size_t& n : counts) n = in.count("entities", 8, 32);
   for (int dimension = 0; dimension < 4; ++dimension) {
@@ -65,7 +65,7 @@ void read_entities_4(Numbers& in, Model& model, bool v41) {
   }
 }
 
-void read_nodes_4(Numbers& in, Model& model, bool v41) {
+void read_nodes_4(NumberReader& in, Model& model, bool v41) {
   const std::size_t blocks = read_block_count(in, v41);
   std::vector<std::uint64_t> numbers;
   for (std::size_t b = 0; b < blocks; ++b) {
@@ -88,7 +88,7 @@ void read_nodes_4(Numbers& in, Model& model, bool v41) {
   }
 }
 
-void read_elements_4(Numbers& in, Model& model, bool v41) {
+void read_elements_4(NumberReader& in, Model& model, bool v41) {
   const std::size_t blocks = read_block_count(in, v41);
   std::vector<std::uint64_t> nodes;
   for (std::size_t b = 0; b < blocks; ++b) {

@@ -11,7 +11,7 @@
 namespace dartcast::gmsh {
 
 template <class T>
-T Numbers::raw(std::string_view what) {
+T NumberReader::raw(std::string_view what) {
   const std::string_view bytes = text.raw(sizeof(T), what);
   std::array<char, sizeof(T)> copy{};
   std::copy(bytes.begin(), bytes.end(), copy.begin());
@@ -21,18 +21,18 @@ T Numbers::raw(std::string_view what) {
   return value;
 }
 
-std::int32_t Numbers::int32(std::string_view what) {
+std::int32_t NumberReader::int32(std::string_view what) {
   return binary ? raw<std::int32_t>(what) : static_cast<std::int32_t>(text.integer(what, INT32_MIN, INT32_MAX));
 }
 
-std::uint64_t Numbers::size(std::string_view what) {
+std::uint64_t NumberReader::size(std::string_view what) {
   if (binary) return short_sizes ? raw<std::uint32_t>(what) : raw<std::uint64_t>(what);
   return static_cast<std::uint64_t>(text.integer(what, 0, short_sizes ? UINT32_MAX : INT64_MAX));
 }
 
-double Numbers::real(std::string_view what) { return binary ? raw<double>(what) : text.number(what); }
+double NumberReader::real(std::string_view what) { return binary ? raw<double>(what) : text.number(what); }
 
-std::size_t Numbers::count(std::string_view what, std::size_t text_bytes, std::size_t binary_bytes) {
+std::size_t NumberReader::count(std::string_view what, std::size_t text_bytes, std::size_t binary_bytes) {
   const std::uint64_t n = size(what);
   text.check_count(what, n, binary ? binary_bytes : text_bytes);
   return n;
@@ -92,7 +92,7 @@ int node_count(int type) {
   return type > 0 && type < static_cast<int>(node_counts.size()) ? node_counts[static_cast<std::size_t>(type)] : 0;
 }
 
-int known_node_count(const Numbers& in, int type) {
+int known_node_count(const NumberReader& in, int type) {
   const int n = node_count(type);
   if (n != 0) return n;
   if (type == 34 || type == 35)

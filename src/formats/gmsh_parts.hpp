@@ -14,9 +14,9 @@
 namespace dartcast::gmsh {
 
 /// Numbers in text or in binary of either byte order.
-class Numbers {
+class NumberReader {
  public:
-  explicit Numbers(FileText& source) : text(source) {}
+  explicit NumberReader(FileText& source) : text(source) {}
 
   FileText& text;
   bool binary = false;
@@ -55,7 +55,7 @@ class NodeTable {
 /// number.
 int node_count(int type);
 /// The same. Throws InvalidMesh with the line where it is 0.
-int known_node_count(const Numbers& in, int type);
+int known_node_count(const NumberReader& in, int type);
 
 /// What the sections fill.
 struct Model {
@@ -69,13 +69,13 @@ struct Model {
 };
 
 /// The sections of version 4.0 and 4.1; each leaves the reader before its end mark.
-void read_entities_4(Numbers& in, Model& model, bool v41);
-void read_nodes_4(Numbers& in, Model& model, bool v41);
-void read_elements_4(Numbers& in, Model& model, bool v41);
+void read_entities_4(NumberReader& in, Model& model, bool v41);
+void read_nodes_4(NumberReader& in, Model& model, bool v41);
+void read_elements_4(NumberReader& in, Model& model, bool v41);
 
 /// The sections of version 1 and 2.
-void read_nodes_2(Numbers& in, Model& model);
-void read_elements_1(Numbers& in, Model& model);
-void read_elements_2(Numbers& in, Model& model);
+void read_nodes_2(NumberReader& in, Model& model);
+void read_elements_1(NumberReader& in, Model& model);
+void read_elements_2(NumberReader& in, Model& model);
 
 }  // namespace dartcast::gmsh

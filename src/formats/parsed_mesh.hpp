@@ -12,8 +12,8 @@
 
 namespace dartcast {
 
-/// Ids that name no point are kept as 0xffffffff, for inspect() to find. Readers put the cells of space into `mesh`,
-/// all faces into its patch faces and all edges beside it; finish() makes of them what they are in this file.
+/// Ids that name no point are kept as 0xffffffff, for check_and_repair() to find. Readers put the cells of space into
+/// `mesh`, all faces into its patch faces and all edges beside it; finish() makes of them what they are in this file.
 struct ParsedMesh {
   MeshData mesh;
   std::vector<std::array<std::uint32_t, 2>> edges;

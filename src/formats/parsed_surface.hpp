@@ -16,7 +16,7 @@
 namespace dartcast {
 
 /// Cells are triangles, quadrilaterals and polygons. Ids that name no point are kept as 0xffffffff, for
-/// inspect_surface() to find.
+/// check_and_repair_surface() to find.
 struct ParsedSurface {
   MeshData mesh;
   std::string format;

@@ -179,7 +179,7 @@ class PlyData {
                     : text_.integer(what, INT64_MIN, INT64_MAX);
   }
   /// At least as many bytes as an element takes: the last one of a text may end without white space.
-  [[nodiscard]] std::size_t least_bytes(const PlyElement& element) const {
+  [[nodiscard]] std::size_t min_bytes(const PlyElement& element) const {
     if (!binary()) return 2 * element.properties.size() - 1;
     std::size_t sum = 0;
     for (const PlyProperty& p : element.properties) sum += p.count != nullptr ? p.count->size : p.type->size;
@@ -234,7 +234,7 @@ void read_ply_face(PlyData& data, const PlyElement& element, ParsedSurface& surf
 void read_ply_elements(PlyData& data, const PlyElement& element, ParsedSurface& surface) {
   if (element.properties.empty()) return;  // no bytes, however many there are
   constexpr std::array<std::string_view, 3> names = {"elements", "vertices", "faces"};
-  data.text().check_count(names[static_cast<std::size_t>(element.kind)], element.count, data.least_bytes(element));
+  data.text().check_count(names[static_cast<std::size_t>(element.kind)], element.count, data.min_bytes(element));
   std::vector<std::uint32_t> corners;
   for (std::uint64_t i = 0; i < element.count; ++i) {
     if (element.kind == PlyKind::vertex) {

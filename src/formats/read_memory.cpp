@@ -11,14 +11,14 @@ namespace dartcast {
 namespace {
 
 constexpr std::uint64_t program_bytes = std::uint64_t{48} << 20U;
-constexpr std::uint64_t most_bytes = std::uint64_t{1} << 63U;
+constexpr std::uint64_t max_bytes = std::uint64_t{1} << 63U;
 
 /// A sum of products that stops at 2^63.
 class ByteSum {
  public:
   ByteSum& add(std::uint64_t count, std::uint64_t each = 1) {
-    const std::uint64_t left = most_bytes - sum_;
-    sum_ = count > left / each ? most_bytes : sum_ + count * each;
+    const std::uint64_t left = max_bytes - sum_;
+    sum_ = count > left / each ? max_bytes : sum_ + count * each;
     return *this;
   }
   [[nodiscard]] std::uint64_t bytes() const { return sum_; }
@@ -38,7 +38,7 @@ std::uint64_t use_bytes(const ReadSizes& s) {
 }
 
 std::string shown_bytes(std::uint64_t bytes) {
-  if (bytes >= most_bytes) return "more than any machine has";
+  if (bytes >= max_bytes) return "more than any machine has";
   if (bytes >= 1000000000) return fmt::format("{:.2f} GB", static_cast<double>(bytes) * 1e-9);
   return fmt::format("{:.1f} MB", static_cast<double>(bytes) * 1e-6);
 }
@@ -46,7 +46,7 @@ std::string shown_bytes(std::uint64_t bytes) {
 std::uint64_t machine_bytes() {
   const long pages = ::sysconf(_SC_PHYS_PAGES);
   const long size = ::sysconf(_SC_PAGE_SIZE);
-  if (pages <= 0 || size <= 0) return most_bytes;
+  if (pages <= 0 || size <= 0) return max_bytes;
   return static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(size);
 }
 
@@ -71,12 +71,12 @@ std::uint64_t memory_of_mesh(const MeshData& mesh) {
 }
 
 void check_memory(std::uint64_t bytes, std::uint64_t limit) {
-  const std::uint64_t most = limit > 0 ? limit : machine_bytes() / 2;
-  if (bytes <= most) return;
+  const std::uint64_t allowed = limit > 0 ? limit : machine_bytes() / 2;
+  if (bytes <= allowed) return;
   throw InvalidMesh(
       fmt::format("reading it may take {} of memory, but {} are allowed{}; check the sizes that the file announces, or "
                   "allow more with --max-memory (ReadOptions::max_memory)",
-                  shown_bytes(bytes), shown_bytes(most), limit > 0 ? "" : ", half of this machine's memory"));
+                  shown_bytes(bytes), shown_bytes(allowed), limit > 0 ? "" : ", half of this machine's memory"));
 }
 
 }  // namespace dartcast

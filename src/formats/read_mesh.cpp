@@ -80,11 +80,11 @@ ParsedMesh parse(const std::filesystem::path& path, const ReadOptions& options) 
 }  // namespace
 
 MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
-  return judged_file(path, "mesh", [&](MeshFile& out) {
+  return checked_file(path, "mesh", [&](MeshFile& out) {
     ParsedMesh parsed = parse(path, options);
     check_memory(memory_of_mesh(parsed.mesh), options.max_memory);
     out.mesh = std::move(parsed.mesh);
-    if (!out.mesh.types.empty()) out.report = inspect(out.mesh);
+    if (!out.mesh.types.empty()) out.report = check_and_repair(out.mesh);
     out.report.format = parsed.format;
     add_finding(out.report.defects, parsed.second_order);
     add_finding(out.report.defects, parsed.unsupported);

@@ -44,11 +44,11 @@ bool is_surface_file(const std::filesystem::path& path) {
 }
 
 MeshFile check_surface(const std::filesystem::path& path, const ReadOptions& options) {
-  return judged_file(path, "surface", [&](MeshFile& out) {
+  return checked_file(path, "surface", [&](MeshFile& out) {
     ParsedSurface parsed = parse_surface(path, options);
     check_memory(memory_of_mesh(parsed.mesh), options.max_memory);
     out.mesh = std::move(parsed.mesh);
-    out.report = inspect_surface(out.mesh);
+    out.report = check_and_repair_surface(out.mesh);
     out.report.format = parsed.format;
     if (parsed.short_faces.count > 0)
       out.report.warnings.insert(out.report.warnings.begin(), std::move(parsed.short_faces));

@@ -17,7 +17,7 @@ void skip_bad_cells(MeshFile& file, Threads threads) {
   try {
     Finding skipped = skip_bad_cells(file.mesh, threads);
     if (skipped.count == 0) return;
-    MeshReport after = inspect(file.mesh);
+    MeshReport after = check_and_repair(file.mesh);
     after.file = std::move(report.file);
     after.format = std::move(report.format);
     after.repairs.insert(after.repairs.begin(), report.repairs.begin(), report.repairs.end());

@@ -274,7 +274,7 @@ std::uint64_t count_numbers(const VtuArray& array, const VtuEncoding& encoding) 
   return bytes / type.bytes;
 }
 
-std::uint64_t most_numbers(const VtuArray& array, const VtuEncoding& encoding) {
+std::uint64_t max_numbers(const VtuArray& array, const VtuEncoding& encoding) {
   return array.format == "ascii" ? (array.text.size() + 1) / 2 : count_numbers(array, encoding);
 }
 

@@ -39,7 +39,7 @@ std::size_t vtu_type_bytes(std::string_view type);
 std::uint64_t count_numbers(const VtuArray& array, const VtuEncoding& encoding);
 
 /// At least as many numbers as count_numbers() finds, without a look at ASCII data. Throws InvalidMesh.
-std::uint64_t most_numbers(const VtuArray& array, const VtuEncoding& encoding);
+std::uint64_t max_numbers(const VtuArray& array, const VtuEncoding& encoding);
 
 /// Decodes the data and leaves them: what count_numbers() takes on trust is seen to be there. ASCII data have nothing
 /// more to check. Throws InvalidMesh.

@@ -133,7 +133,7 @@ void check_field(const VtuArray& array, const VtuEncoding& encoding) {
 ReadSizes sizes_of(const VtkXmlFile& file, std::uint64_t file_size) {
   ReadSizes sizes;
   sizes.file = 2 * file_size;
-  const auto numbers_of = [&](const VtuArray& array) { return most_numbers(array, file.encoding); };
+  const auto numbers_of = [&](const VtuArray& array) { return max_numbers(array, file.encoding); };
   for (const VtkXmlPiece& piece : file.pieces) {
     for (const auto& [section, arrays] : piece.sections) {
       for (const VtuArray& array : arrays) {

@@ -19,9 +19,9 @@ void check_barrel(const BarrelOptions& o) {
   if (!(o.bulge >= 0.0) || !std::isfinite(o.bulge))
     throw InvalidArgument("barrel: the bulge must be finite and not negative");
   if (!is_finite(o.centre)) throw InvalidArgument("barrel: the centre must be finite");
-  constexpr std::uint32_t most = 1U << 14U;
-  if (o.staves < 3 || o.staves > most) throw InvalidArgument("barrel: the staves must be between 3 and 2^14");
-  if (o.rows < 1 || o.rows > most || o.rings < 1 || o.rings > most)
+  constexpr std::uint32_t limit = 1U << 14U;
+  if (o.staves < 3 || o.staves > limit) throw InvalidArgument("barrel: the staves must be between 3 and 2^14");
+  if (o.rows < 1 || o.rows > limit || o.rings < 1 || o.rings > limit)
     throw InvalidArgument("barrel: rows and rings must be between 1 and 2^14");
 }
 

@@ -26,11 +26,11 @@ constexpr std::array<const char*, 6> side_names = {"xmin", "xmax", "ymin", "ymax
 constexpr unsigned z_sides = 0b110000;
 constexpr unsigned all_sides = 0b111111;
 
-struct Part {
+struct BoxPart {
   CellType type;
   std::vector<std::uint8_t> corners;
 };
-using Pattern = std::vector<Part>;
+using Pattern = std::vector<BoxPart>;
 
 const Pattern whole = {{CellType::hexahedron, {0, 1, 2, 3, 4, 5, 6, 7}}};
 const Pattern two_prisms = {{CellType::prism, {0, 1, 2, 4, 5, 6}}, {CellType::prism, {0, 2, 3, 4, 6, 7}}};
@@ -68,14 +68,14 @@ void check(const BoxOptions& o) {
   if (o.type == CellType::polyhedron) {
     throw InvalidArgument("box: no polyhedra; take another type, or the octahedra generator");
   }
-  std::uint64_t most_per_cube = o.type == CellType::hexahedron ? 1 : (o.type == CellType::prism ? 2 : 6);
-  if (o.mixed) most_per_cube = 12;
-  std::uint64_t room = Cell::index_mask / most_per_cube;
+  std::uint64_t max_per_cube = o.type == CellType::hexahedron ? 1 : (o.type == CellType::prism ? 2 : 6);
+  if (o.mixed) max_per_cube = 12;
+  std::uint64_t room = Cell::index_mask / max_per_cube;
   for (const std::uint32_t n : o.cells) room /= n;
   if (room == 0) {
     throw InvalidArgument(
         fmt::format("box: {} x {} x {} cubes of up to {} cells are more than the {} cells a mesh may have", o.cells[0],
-                    o.cells[1], o.cells[2], most_per_cube, Cell::index_mask));
+                    o.cells[1], o.cells[2], max_per_cube, Cell::index_mask));
   }
 }
 
@@ -205,7 +205,7 @@ class BoxBuilder {
       mesh_.points.push_back(sum * 0.125);
     }
     std::array<std::uint32_t, 8> corners{};
-    for (const Part& piece : pieces) {
+    for (const BoxPart& piece : pieces) {
       for (std::size_t c = 0; c < piece.corners.size(); ++c) corners[c] = points[piece.corners[c]];
       mesh_.add_cell(piece.type, {corners.data(), piece.corners.size()});
     }
@@ -218,7 +218,7 @@ class BoxBuilder {
       const std::uint32_t step = s % 2;
       if (step == 0 ? p[axis] != 0 : p[axis] + 1 != n_[axis]) continue;
       const auto on_side = [&](std::uint8_t c) { return c != cube_middle && corner_steps[c][axis] == step; };
-      for (const Part& piece : pieces) {
+      for (const BoxPart& piece : pieces) {
         for (const auto& numbers : standard_faces(piece.type)) {
           std::vector<std::uint32_t> face;
           for (const std::uint8_t f : numbers) {

@@ -15,23 +15,25 @@ namespace {
 
 // A lattice point, in quarters of a cube. Middles of octahedra have coordinates that are all 2 or all 0 modulo 4;
 // around a middle at 0 the 24 corners are the permutations of (0, +-1, +-2).
-using Place = std::array<int, 3>;
+using LatticePlace = std::array<int, 3>;
 
-constexpr Place operator+(const Place& a, const Place& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-constexpr int dot(const Place& a, const Place& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-constexpr int det(const Place& a, const Place& b, const Place& c) {
+constexpr LatticePlace operator+(const LatticePlace& a, const LatticePlace& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+constexpr int dot(const LatticePlace& a, const LatticePlace& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+constexpr int det(const LatticePlace& a, const LatticePlace& b, const LatticePlace& c) {
   return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
 
 struct Face {
-  Place to_neighbour;          // from the octahedron's middle to that of the octahedron across the face
-  std::vector<Place> corners;  // counterclockwise seen from the outside
+  LatticePlace to_neighbour;          // from the octahedron's middle to that of the octahedron across the face
+  std::vector<LatticePlace> corners;  // counterclockwise seen from the outside
 };
 
 // The face across which the neighbour lies: the corners halfway to it, each joined to the next counterclockwise by an
 // edge of length sqrt 2.
-Face make_face(const Place& to_neighbour) {
-  std::vector<Place> on_face;
+Face make_face(const LatticePlace& to_neighbour) {
+  std::vector<LatticePlace> on_face;
   for (int x = -2; x <= 2; ++x) {
     for (int y = -2; y <= 2; ++y) {
       for (int z = -2; z <= 2; ++z) {
@@ -43,9 +45,9 @@ Face make_face(const Place& to_neighbour) {
   }
   Face face{to_neighbour, {on_face[0]}};
   while (face.corners.size() < on_face.size()) {
-    const Place& last = face.corners.back();
-    for (const Place& next : on_face) {
-      const Place edge = {next[0] - last[0], next[1] - last[1], next[2] - last[2]};
+    const LatticePlace& last = face.corners.back();
+    for (const LatticePlace& next : on_face) {
+      const LatticePlace edge = {next[0] - last[0], next[1] - last[1], next[2] - last[2]};
       if (dot(edge, edge) == 2 && det(to_neighbour, last, next) > 0) {
         face.corners.push_back(next);
         break;
@@ -59,7 +61,7 @@ std::vector<Face> make_faces() {
   std::vector<Face> faces;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (const int sign : {-4, 4}) {
-      Place square{};
+      LatticePlace square{};
       square[axis] = sign;
       faces.push_back(make_face(square));
     }
@@ -122,7 +124,7 @@ class OctahedraBuilder {
   static constexpr std::uint32_t none = 0xffffffffU;
 
   // Whether there is an octahedron around a place that is a middle of the packing.
-  [[nodiscard]] bool in_block(const Place& middle) const {
+  [[nodiscard]] bool in_block(const LatticePlace& middle) const {
     const int low = (middle[0] & 3) == 2 ? 2 : 4;
     for (std::size_t a = 0; a < 3; ++a) {
       if (middle[a] < low || middle[a] > 4 * n_[a] - 4 + low) return false;
@@ -130,7 +132,7 @@ class OctahedraBuilder {
     return true;
   }
 
-  std::uint32_t point(const Place& p) {
+  std::uint32_t point(const LatticePlace& p) {
     const auto index = [&](std::size_t a) { return static_cast<std::size_t>(p[a]); };
     const auto extent = [&](std::size_t a) { return 4 * static_cast<std::size_t>(n_[a]) + 3; };
     std::uint32_t& number = numbers_[index(0) + extent(0) * (index(1) + extent(1) * index(2))];
@@ -143,12 +145,12 @@ class OctahedraBuilder {
     return number;
   }
 
-  void add_octahedron(const Place& middle) {
+  void add_octahedron(const LatticePlace& middle) {
     stream_.assign(1, static_cast<std::uint32_t>(faces_.size()));
     bool outermost = false;
     for (const Face& face : faces_) {
       stream_.push_back(static_cast<std::uint32_t>(face.corners.size()));
-      for (const Place& corner : face.corners) stream_.push_back(point(middle + corner));
+      for (const LatticePlace& corner : face.corners) stream_.push_back(point(middle + corner));
       if (in_block(middle + face.to_neighbour)) continue;
       mesh_.add_patch_face({stream_.data() + stream_.size() - face.corners.size(), face.corners.size()}, 1);
       outermost = true;

@@ -145,12 +145,12 @@ void check_squares(const RectangleOptions& o, const char* generator) {
   }
   if (!(o.blocked_share >= 0 && o.blocked_share <= 1)) refuse("blocked_share must be in [0, 1]");
   if (!o.mixed && dimension(o.type) != 2) refuse("cells of space; take triangles, quadrilaterals or polygons");
-  const double most = o.mixed || o.type == CellType::polygon ? largest_polygon_jitter : largest_square_jitter;
-  if (!(o.jitter >= 0 && o.jitter <= most)) refuse(fmt::format("jitter must be in [0, {}] for these cells", most));
-  const std::uint64_t most_per_square = !o.mixed && o.type == CellType::quadrilateral ? 1 : 2;
-  if (Cell::index_mask / most_per_square / o.cells[0] / o.cells[1] == 0) {
+  const double limit = o.mixed || o.type == CellType::polygon ? largest_polygon_jitter : largest_square_jitter;
+  if (!(o.jitter >= 0 && o.jitter <= limit)) refuse(fmt::format("jitter must be in [0, {}] for these cells", limit));
+  const std::uint64_t max_per_square = !o.mixed && o.type == CellType::quadrilateral ? 1 : 2;
+  if (Cell::index_mask / max_per_square / o.cells[0] / o.cells[1] == 0) {
     refuse(fmt::format("{} x {} squares of up to {} cells are more than the {} cells a mesh may have", o.cells[0],
-                       o.cells[1], most_per_square, Cell::index_mask));
+                       o.cells[1], max_per_square, Cell::index_mask));
   }
 }
 

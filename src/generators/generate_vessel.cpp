@@ -72,9 +72,9 @@ struct Slice {
 
 // Slices of one half from the inlet to its outlet, in its own axes: the right half as it is, the left half turned by
 // half a turn about z.
-class Half {
+class VesselHalf {
  public:
-  Half(const VesselOptions& options, const VesselSection& section, std::size_t side)
+  VesselHalf(const VesselOptions& options, const VesselSection& section, std::size_t side)
       : o_(options), section_(section), length_(options.branch_lengths[side]) {
     trunk_steps_ = static_cast<std::size_t>(std::lround(o_.trunk_length / o_.step_length));
     const auto branch_steps = static_cast<std::size_t>(std::lround(length_ / o_.step_length));
@@ -200,7 +200,7 @@ class Half {
       if (b <= section_.arc || parted == 1.0) s.speed[section_.wall(b)] = 0.0;
     }
     double flux = 0.0;
-    for (const Quad& q : section_.lumen) {
+    for (const QuadCorners& q : section_.lumen) {
       const auto turn = [&](std::size_t i) {
         const Point2 &a = places[q[0]], &b = places[q[i]], &c = places[q[i + 1]];
         return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
@@ -227,7 +227,7 @@ class VesselBuilder {
   explicit VesselBuilder(const VesselOptions& options)
       : o_(options),
         section_(options.core, options.rings, options.tissue_layers),
-        halves_{Half(options, section_, 0), Half(options, section_, 1)} {}
+        halves_{VesselHalf(options, section_, 0), VesselHalf(options, section_, 1)} {}
 
   MeshData build() {
     add_points();
@@ -344,12 +344,12 @@ class VesselBuilder {
   void add_step(std::size_t side, std::size_t i) {
     const Ids &a = ids_[side][i], &b = ids_[side][i + 1];
     const std::size_t carina = halves_[side].carina();
-    const auto hexahedron = [&](const Quad& q, int region) {
+    const auto hexahedron = [&](const QuadCorners& q, int region) {
       add_cell(CellType::hexahedron, {a[q[0]], a[q[1]], a[q[2]], a[q[3]], b[q[0]], b[q[1]], b[q[2]], b[q[3]]}, region);
     };
-    for (const Quad& q : section_.lumen) hexahedron(q, lumen_region);
-    for (const Quad& q : section_.tissue_arc) hexahedron(q, tissue_region);
-    for (const Quad& q : section_.tissue_columns) {
+    for (const QuadCorners& q : section_.lumen) hexahedron(q, lumen_region);
+    for (const QuadCorners& q : section_.tissue_arc) hexahedron(q, tissue_region);
+    for (const QuadCorners& q : section_.tissue_columns) {
       if (i == carina) {
         add_cell(CellType::prism, {a[q[0]], b[q[0]], b[q[1]], a[q[3]], b[q[3]], b[q[2]]}, tissue_region);
       } else if (i > carina) {
@@ -371,7 +371,7 @@ class VesselBuilder {
                          {outer_patch, "outer"}};
     for (std::size_t side = 0; side < 2; ++side) {
       const Ids &first = ids_[side].front(), &last = ids_[side].back();
-      for (const Quad& q : section_.lumen) {
+      for (const QuadCorners& q : section_.lumen) {
         mesh_.add_patch_face(std::array{first[q[0]], first[q[3]], first[q[2]], first[q[1]]}, inlet);
         mesh_.add_patch_face(std::array{last[q[0]], last[q[1]], last[q[2]], last[q[3]]},
                              side == 0 ? outlet_left : outlet_right);
@@ -410,7 +410,7 @@ class VesselBuilder {
 
   const VesselOptions& o_;
   const VesselSection section_;
-  const std::array<Half, 2> halves_;
+  const std::array<VesselHalf, 2> halves_;
   std::array<std::vector<Ids>, 2> ids_;  // the points of each half's slices
   std::vector<Node> nodes_;
   MeshData mesh_;

@@ -61,7 +61,7 @@ void VesselSection::add_tissue() {
 void VesselSection::solve_weights() {
   const std::uint32_t inner = lumen_count - around;
   std::vector<std::vector<std::uint32_t>> neighbours(inner);
-  for (const Quad& q : lumen) {
+  for (const QuadCorners& q : lumen) {
     // Each inner edge is met once in each direction, by the quads on its two sides.
     for (std::size_t i = 0; i < 4; ++i) {
       if (q[i] < inner) neighbours[q[i]].push_back(q[(i + 1) % 4]);

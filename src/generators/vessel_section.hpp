@@ -9,7 +9,7 @@
 namespace dartcast {
 
 using Point2 = std::array<double, 2>;
-using Quad = std::array<std::uint32_t, 4>;  ///< counterclockwise
+using QuadCorners = std::array<std::uint32_t, 4>;  ///< counterclockwise
 
 /// The lumen of one half is a square of core x core quads in `rings` rings of quads. Of the 4 core places of its
 /// boundary, 0 to `arc` lie on the vessel's outer wall, and arc to 4 core (which is 0 again) on the side that faces the
@@ -27,7 +27,7 @@ class VesselSection {
   std::uint32_t lumen_count;   ///< vertices of the lumen; they have the lowest numbers
   std::uint32_t vertex_count;  ///< all vertices
 
-  std::vector<Quad> lumen, tissue_arc, tissue_columns;
+  std::vector<QuadCorners> lumen, tissue_arc, tissue_columns;
   std::vector<std::uint32_t> line;  ///< the line's vertices, from the outside over the flat side to the outside
 
   [[nodiscard]] std::uint32_t wall(std::uint32_t place) const { return lumen_count - around + place % around; }

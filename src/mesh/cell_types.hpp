@@ -18,7 +18,7 @@ std::span<const std::vector<std::uint8_t>> standard_faces(CellType type);
 
 /// Calls visit(span of point indices) for each face of cell c, counterclockwise seen from the outside; in the plane,
 /// for each edge in the direction of the cell's corners. Precondition: the cell's connectivity is well formed (see
-/// inspect()).
+/// check_and_repair()).
 template <class Visit>
 void for_each_face(const MeshData& mesh, std::size_t c, Visit&& visit) {
   const auto corners = mesh.cell(c);

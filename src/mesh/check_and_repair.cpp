@@ -154,7 +154,7 @@ void check_boundary(const MeshData& mesh, const FaceMatch& match, const std::vec
   add_finding(report.warnings, points);
 }
 
-void inspect_cells(MeshData& mesh, const std::vector<std::uint32_t>& point_source, MeshReport& report) {
+void check_cells(MeshData& mesh, const std::vector<std::uint32_t>& point_source, MeshReport& report) {
   close_polyhedra(mesh, report);
   if (!report.valid()) return;
   orient_cells(mesh, report);
@@ -166,7 +166,7 @@ void inspect_cells(MeshData& mesh, const std::vector<std::uint32_t>& point_sourc
 
 }  // namespace
 
-MeshReport inspect(MeshData& mesh) {
+MeshReport check_and_repair(MeshData& mesh) {
   MeshReport report;
   check_arrays(mesh, report);
   if (!report.valid()) return report;
@@ -177,7 +177,7 @@ MeshReport inspect(MeshData& mesh) {
     if (report.valid()) {
       if (mesh.dimension() == 2) put_in_plane(mesh, point_source, report);
       check_repeated_points(mesh, point_source, report);
-      if (report.valid()) inspect_cells(mesh, point_source, report);
+      if (report.valid()) check_cells(mesh, point_source, report);
     }
   }
   report.dimension = static_cast<int>(mesh.dimension());

@@ -15,19 +15,19 @@ namespace {
 constexpr double flatness = 1e-9;  // off the plane by rounding, relative to the size of the face
 constexpr std::size_t pairs_a_face = 200;
 
-using Triangle = std::array<std::uint32_t, 3>;
+using FaceTriangle = std::array<std::uint32_t, 3>;
 
 double largest(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
 /// A triangle of a face's fan, with what is asked of it again and again.
-struct Piece {
-  Triangle corners;
+struct FacePiece {
+  FaceTriangle corners;
   Vec3 normal;
   double size;
 };
 
 /// Normal of largest component 1: no product of coordinates overflows in what follows.
-Vec3 normal_of(const MeshData& mesh, const Triangle& t) {
+Vec3 normal_of(const MeshData& mesh, const FaceTriangle& t) {
   const auto& p = mesh.points;
   Vec3 u = p[t[1]] - p[t[0]];
   Vec3 v = p[t[2]] - p[t[0]];
@@ -44,7 +44,7 @@ int main_axis(const Vec3& n) {
 }
 
 /// Whether all of t lies on or to the right of an edge of s, s being counterclockwise (turn positive) in the plane.
-bool separates(const MeshData& mesh, const Triangle& s, const Triangle& t, int axis, Sign turn) {
+bool separates(const MeshData& mesh, const FaceTriangle& s, const FaceTriangle& t, int axis, Sign turn) {
   const auto at = [&](std::uint32_t v) { return drop(mesh.points[v], axis); };
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint32_t a = s[k];
@@ -61,8 +61,8 @@ bool separates(const MeshData& mesh, const Triangle& s, const Triangle& t, int a
 
 /// Whether the insides of two triangles, seen along `axis`, have a point in common. Two convex polygons have none
 /// exactly where an edge of one has the other on its far side.
-bool areas_overlap(const MeshData& mesh, const Triangle& s, const Triangle& t, int axis) {
-  const auto turn = [&](const Triangle& x) {
+bool areas_overlap(const MeshData& mesh, const FaceTriangle& s, const FaceTriangle& t, int axis) {
+  const auto turn = [&](const FaceTriangle& x) {
     return orient2d(drop(mesh.points[x[0]], axis), drop(mesh.points[x[1]], axis), drop(mesh.points[x[2]], axis));
   };
   const Sign turn_s = turn(s);
@@ -71,7 +71,7 @@ bool areas_overlap(const MeshData& mesh, const Triangle& s, const Triangle& t, i
   return !separates(mesh, s, t, axis, turn_s) && !separates(mesh, t, s, axis, turn_t);
 }
 
-double size_of(const MeshData& mesh, const Triangle& t) {
+double size_of(const MeshData& mesh, const FaceTriangle& t) {
   const auto& p = mesh.points;
   return std::max(largest(p[t[1]] - p[t[0]]), largest(p[t[2]] - p[t[0]]));
 }
@@ -81,16 +81,16 @@ bool ranges_overlap(double a, double b, double c, double x, double y, double z) 
   return std::min({a, b, c}) < std::max({x, y, z}) && std::min({x, y, z}) < std::max({a, b, c});
 }
 
-bool boxes_overlap(const MeshData& mesh, const Triangle& s, const Triangle& t, int axis) {
+bool boxes_overlap(const MeshData& mesh, const FaceTriangle& s, const FaceTriangle& t, int axis) {
   const auto at = [&](std::uint32_t v) { return drop(mesh.points[v], axis); };
   const Vec2 a = at(s[0]), b = at(s[1]), c = at(s[2]), x = at(t[0]), y = at(t[1]), z = at(t[2]);
   return ranges_overlap(a.x, b.x, c.x, x.x, y.x, z.x) && ranges_overlap(a.y, b.y, c.y, x.y, y.y, z.y);
 }
 
-bool lie_against(const MeshData& mesh, const Piece& f, const Piece& g) {
+bool lie_against(const MeshData& mesh, const FacePiece& f, const FacePiece& g) {
   const auto& p = mesh.points;
-  const Triangle& s = f.corners;
-  const Triangle& t = g.corners;
+  const FaceTriangle& s = f.corners;
+  const FaceTriangle& t = g.corners;
   const double thickness = 3.0 * flatness * std::max(f.size, g.size);
   for (const std::uint32_t v : t) {
     if (std::abs(dot(f.normal, p[v] - p[s[0]])) > thickness) return false;
@@ -104,27 +104,27 @@ bool lie_against(const MeshData& mesh, const Piece& f, const Piece& g) {
 }
 
 /// Triangle k of a face's fan from its lowest-numbered corner.
-Triangle fan_triangle(std::span<const std::uint32_t> face, std::size_t k) {
+FaceTriangle fan_triangle(std::span<const std::uint32_t> face, std::size_t k) {
   const auto low = static_cast<std::size_t>(std::min_element(face.begin(), face.end()) - face.begin());
   return {face[low], face[(low + k + 1) % face.size()], face[(low + k + 2) % face.size()]};
 }
 
 /// The fans of all faces, one after another: face f of n corners has its n - 2 pieces from offsets[f] - 2 f on.
-std::vector<Piece> make_pieces(const MeshData& mesh, const BoundaryFaces& boundary) {
-  std::vector<Piece> pieces;
+std::vector<FacePiece> make_pieces(const MeshData& mesh, const BoundaryFaces& boundary) {
+  std::vector<FacePiece> pieces;
   pieces.reserve(boundary.corners.size() - 2 * boundary.size());
   for (std::size_t f = 0; f < boundary.size(); ++f) {
     for (std::size_t k = 0; k + 2 < boundary.face(f).size(); ++k) {
-      const Triangle t = fan_triangle(boundary.face(f), k);
+      const FaceTriangle t = fan_triangle(boundary.face(f), k);
       pieces.push_back({t, normal_of(mesh, t), size_of(mesh, t)});
     }
   }
   return pieces;
 }
 
-bool pieces_lie_against(const MeshData& mesh, std::span<const Piece> f, std::span<const Piece> g) {
-  for (const Piece& s : f) {
-    for (const Piece& t : g) {
+bool pieces_lie_against(const MeshData& mesh, std::span<const FacePiece> f, std::span<const FacePiece> g) {
+  for (const FacePiece& s : f) {
+    for (const FacePiece& t : g) {
       if (lie_against(mesh, s, t)) return true;
     }
   }
@@ -144,7 +144,7 @@ void mark_overlaps(const MeshData& mesh, const BoundaryFaces& boundary, Conformi
   std::vector<Box> boxes(boundary.size());
   for (std::size_t f = 0; f < boxes.size(); ++f) boxes[f] = box_of(mesh, boundary.face(f));
   const BoxTree tree(boxes);
-  const std::vector<Piece> pieces = make_pieces(mesh, boundary);
+  const std::vector<FacePiece> pieces = make_pieces(mesh, boundary);
   const auto pieces_of = [&](std::size_t f) {
     return std::span(pieces).subspan(boundary.offsets[f] - 2 * f, boundary.face(f).size() - 2);
   };
@@ -166,7 +166,7 @@ void mark_overlaps(const MeshData& mesh, const BoundaryFaces& boundary, Conformi
 /// Marks triangles that have their corners in a row in a larger face, and that face: warped faces are not coplanar.
 void mark_shared_corners(const BoundaryFaces& boundary, std::vector<bool>& marked) {
   struct Row {
-    Triangle corners;
+    FaceTriangle corners;
     std::uint32_t face;
   };
   std::vector<Row> rows;

@@ -81,13 +81,13 @@ int compare(const MeshData& mesh, const FaceKey& a, const FaceKey& b) {
   return x == y ? 0 : (x < y ? -1 : 1);
 }
 
-enum class Meeting { opposite, same_side, twisted };
+enum class FaceUse { opposite, same_side, twisted };
 
 /// How two faces with the same set of corners lie to each other.
-Meeting meeting(const MeshData& mesh, const FaceKey& a, const FaceKey& b) {
+FaceUse meeting(const MeshData& mesh, const FaceKey& a, const FaceKey& b) {
   if (a.size <= 4) {
-    if (a.opposite != b.opposite) return Meeting::twisted;
-    return a.forward != b.forward ? Meeting::opposite : Meeting::same_side;
+    if (a.opposite != b.opposite) return FaceUse::twisted;
+    return a.forward != b.forward ? FaceUse::opposite : FaceUse::same_side;
   }
   const auto x = corners_of(mesh, a);
   auto y = corners_of(mesh, b);
@@ -95,9 +95,9 @@ Meeting meeting(const MeshData& mesh, const FaceKey& a, const FaceKey& b) {
     std::rotate(y.begin(), std::find(y.begin(), y.end(), x[0]), y.end());
     return x == y;
   };
-  if (matches()) return Meeting::same_side;
+  if (matches()) return FaceUse::same_side;
   std::reverse(y.begin(), y.end());
-  return matches() ? Meeting::opposite : Meeting::twisted;
+  return matches() ? FaceUse::opposite : FaceUse::twisted;
 }
 
 /// Faces grouped by their smallest corner, by counting: bucket v holds keys [start[v], start[v + 1]).
@@ -152,12 +152,12 @@ FaceMatch match_faces(const MeshData& mesh) {
     } else if (group.size() > 2) {
       out.crowded.push_back(group[0].cell);
     } else {
-      const Meeting how = meeting(mesh, group[0], group[1]);
-      if (how == Meeting::same_side) {
+      const FaceUse how = meeting(mesh, group[0], group[1]);
+      if (how == FaceUse::same_side) {
         out.same_side.push_back({group[0].cell, group[1].cell});
         return;
       }
-      if (how == Meeting::twisted) out.twisted.push_back(group[0].cell);
+      if (how == FaceUse::twisted) out.twisted.push_back(group[0].cell);
     }
     for (const FaceKey& key : group) unite(group[0].cell, key.cell);
   };

@@ -9,15 +9,15 @@ namespace dartcast {
 namespace {
 
 /// A side of a boundary face, with the places of its two ends in BoundaryFaces::corners.
-struct Side {
+struct FaceSide {
   std::uint32_t low;
   std::uint32_t high;
   std::size_t low_place;
   std::size_t high_place;
 };
 
-std::vector<Side> sorted_sides(const BoundaryFaces& boundary) {
-  std::vector<Side> sides;
+std::vector<FaceSide> sorted_sides(const BoundaryFaces& boundary) {
+  std::vector<FaceSide> sides;
   sides.reserve(boundary.corners.size());
   for (std::size_t f = 0; f < boundary.size(); ++f) {
     const std::size_t begin = boundary.offsets[f];
@@ -30,7 +30,7 @@ std::vector<Side> sorted_sides(const BoundaryFaces& boundary) {
       sides.push_back({boundary.corners[i], boundary.corners[j], i, j});
     }
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+  std::sort(sides.begin(), sides.end(), [](const FaceSide& a, const FaceSide& b) {
     return std::tie(a.low, a.high, a.low_place) < std::tie(b.low, b.high, b.low_place);
   });
   return sides;
@@ -41,7 +41,7 @@ std::vector<Side> sorted_sides(const BoundaryFaces& boundary) {
 Pinches find_pinches(const FaceMatch& match) {
   Pinches out;
   const BoundaryFaces& boundary = match.boundary;
-  const std::vector<Side> sides = sorted_sides(boundary);
+  const std::vector<FaceSide> sides = sorted_sides(boundary);
   std::vector<std::size_t> parent(boundary.corners.size());
   std::iota(parent.begin(), parent.end(), std::size_t{0});
   const auto root = [&](std::size_t i) {

@@ -83,7 +83,7 @@ Votes count_faces(const MeshData& mesh, std::size_t c) {
 /// A closed polygon whose corners all turn left or go straight is weakly convex exactly where its edges turn from
 /// forward to backward, in the order of coordinates, once: then it is two chains between its first and its last corner,
 /// each bent one way only. More turns are more rounds, or edges that go back on themselves.
-Orientation judge_polygon(const MeshData& mesh, std::size_t c) {
+Orientation orient_polygon(const MeshData& mesh, std::size_t c) {
   const auto cell = mesh.cell(c);
   const std::size_t n = cell.size();
   const auto at = [&](std::size_t k) -> const Vec3& { return mesh.points[cell[k % n]]; };
@@ -130,7 +130,7 @@ void mirror(MeshData& mesh, std::size_t c) {
 
 Orientation orient_cell(MeshData& mesh, std::size_t c) {
   if (dimension(mesh.types[c]) == 2) {
-    const Orientation found = judge_polygon(mesh, c);
+    const Orientation found = orient_polygon(mesh, c);
     if (found == Orientation::mirrored) mirror(mesh, c);
     return found;
   }

@@ -19,8 +19,8 @@ void select_patches(MeshData& mesh, std::span<const std::string> names);
 /// `degrees`, and the edge belongs to these two walls alone; a patch is all walls that are connected in this way. The
 /// normal of a warped face is that of its projected area. Patches are named patch1, patch2, ... in the order of the
 /// first cell, by its number in the file, with a face in them, and where that is one cell by the corners of the first
-/// such face. Precondition: a mesh that inspect() found valid. Angles are rounded. Cost: n log n in the faces of free
-/// cells.
+/// such face. Precondition: a mesh that check_and_repair() found valid. Angles are rounded. Cost: n log n in the faces
+/// of free cells.
 void divide_walls(MeshData& mesh, double degrees);
 
 }  // namespace dartcast

@@ -9,21 +9,21 @@ namespace dartcast {
 namespace {
 
 /// An edge of a face, from its smaller corner.
-struct Edge {
+struct PolyhedronEdge {
   std::uint32_t low;
   std::uint32_t high;
   std::uint32_t face;
   bool forward;  // the face runs from low to high
 };
 
-struct Faces {
+struct PolyhedronFaces {
   std::vector<std::uint32_t*> start;  // of each face's corners
   std::vector<std::size_t> size;
 };
 
-Faces faces_of(MeshData& mesh, std::size_t c) {
+PolyhedronFaces faces_of(MeshData& mesh, std::size_t c) {
   std::uint32_t* cell = mesh.connectivity.data() + mesh.offsets[c];
-  Faces faces;
+  PolyhedronFaces faces;
   std::size_t at = 1;
   for (std::uint32_t f = 0; f < cell[0]; ++f) {
     faces.start.push_back(cell + at + 1);
@@ -33,8 +33,8 @@ Faces faces_of(MeshData& mesh, std::size_t c) {
   return faces;
 }
 
-std::vector<Edge> sorted_edges(const Faces& faces) {
-  std::vector<Edge> edges;
+std::vector<PolyhedronEdge> sorted_edges(const PolyhedronFaces& faces) {
+  std::vector<PolyhedronEdge> edges;
   for (std::uint32_t f = 0; f < faces.start.size(); ++f) {
     for (std::size_t k = 0; k < faces.size[f]; ++k) {
       const std::uint32_t a = faces.start[f][k];
@@ -42,7 +42,7 @@ std::vector<Edge> sorted_edges(const Faces& faces) {
       edges.push_back({std::min(a, b), std::max(a, b), f, a < b});
     }
   }
-  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+  std::sort(edges.begin(), edges.end(), [](const PolyhedronEdge& a, const PolyhedronEdge& b) {
     return std::tie(a.low, a.high, a.face) < std::tie(b.low, b.high, b.face);
   });
   return edges;
@@ -57,13 +57,13 @@ struct Neighbour {
 }  // namespace
 
 Closure close_polyhedron(MeshData& mesh, std::size_t c) {
-  const Faces faces = faces_of(mesh, c);
-  const std::vector<Edge> edges = sorted_edges(faces);
+  const PolyhedronFaces faces = faces_of(mesh, c);
+  const std::vector<PolyhedronEdge> edges = sorted_edges(faces);
   if (edges.size() % 2 != 0) return Closure::open;
   std::vector<std::vector<Neighbour>> neighbours(faces.start.size());
   for (std::size_t i = 0; i < edges.size(); i += 2) {
-    const Edge& a = edges[i];
-    const Edge& b = edges[i + 1];
+    const PolyhedronEdge& a = edges[i];
+    const PolyhedronEdge& b = edges[i + 1];
     const bool pair = a.low == b.low && a.high == b.high;
     const bool third = i + 2 < edges.size() && edges[i + 2].low == a.low && edges[i + 2].high == a.high;
     if (!pair || third) return Closure::open;

@@ -36,7 +36,7 @@ std::string_view bytes_of(const std::vector<T>& values) {
 }
 
 // A file is a sequence of plain values. Writer and CheckpointReader go through the same list of them, below.
-class Writer {
+class CheckpointWriter {
  public:
   template <class T>
   void value(T& v) {
@@ -121,7 +121,7 @@ void fields(Archive& a, Vec3& v) {
 }
 
 template <class Archive>
-void fields(Archive& a, State& s) {
+void fields(Archive& a, ParticleState& s) {
   fields(a, s.position);
   values(a, s.cell.value, s.simplex, s.touching_count);
   value_as<std::uint8_t>(a, s.held);
@@ -134,14 +134,14 @@ void fields(Archive& a, Weights& weights) {
 }
 
 template <class Archive>
-void fields(Archive& a, FlowCheckpoint::Particle& p) {
+void fields(Archive& a, SimulationCheckpoint::Particle& p) {
   a.value(p.id);
   fields(a, p.state);
   fields(a, p.held_weights);
   fields(a, p.velocity);
   value_as<std::uint8_t>(a, p.fate);
   values(a, p.contacts, p.radius);
-  if (p.fate > Fate::escaped) throw Error("a particle has no such fate");
+  if (p.fate > ParticleStatus::escaped) throw Error("a particle has no such fate");
 }
 
 template <class Archive>
@@ -159,15 +159,15 @@ void fields(Archive& a, CollisionCounts& c) {
 }
 
 template <class Archive>
-void fields(Archive& a, KeptImpulse& k) {
+void fields(Archive& a, CachedImpulse& k) {
   values(a, k.a, k.b);
   fields(a, k.normal);
-  a.value(k.along);
-  fields(a, k.across);
+  a.value(k.normal_impulse);
+  fields(a, k.tangent_impulse);
 }
 
 template <class Archive>
-void fields(Archive& a, FlowTotals& t) {
+void fields(Archive& a, SimulationTotals& t) {
   values(a, t.start, t.injected, t.absorbed, t.escaped);
   fields(a, t.counters);
   fields(a, t.collisions);
@@ -185,8 +185,8 @@ void fields(Archive& a, EventReport& e) {
 }
 
 template <class Archive>
-void fields(Archive& a, SurgeryLog& log) {
-  a.list(log.changes, [&](SurgeryLog::Change& c) { values(a, c.step, c.event, c.what); });
+void fields(Archive& a, EventLog& log) {
+  a.list(log.changes, [&](EventLog::Change& c) { values(a, c.step, c.event, c.what); });
   a.list(log.events, [&](EventReport& e) { fields(a, e); });
   values(a, log.mended, log.left, log.subdivided, log.merged, log.refused, log.in_opened);
 }
@@ -206,7 +206,8 @@ void fields(Archive& a, Bodies::Checkpoint::Particle& p) {
   value_as<std::uint8_t>(a, p.fate);
   for (CellFace& f : p.on.face) values(a, f.cell.value, f.face);
   a.value(p.on.count);
-  if (p.fate > Fate::escaped || p.on.count > p.on.face.size()) throw Error("a body's particle has no such state");
+  if (p.fate > ParticleStatus::escaped || p.on.count > p.on.face.size())
+    throw Error("a body's particle has no such state");
 }
 
 template <class Archive>
@@ -217,7 +218,7 @@ void fields(Archive& a, SolidsCheckpoint& c) {
   a.list(c.bodies.fits, [&](Fit& f) { fields(a, f); });
   a.list(c.bodies.particles, [&](Bodies::Checkpoint::Particle& p) { fields(a, p); });
   a.list(c.catheters, [&](CatheterCheckpoint& k) {
-    a.list(k.states, [&](State& s) { fields(a, s); });
+    a.list(k.states, [&](ParticleState& s) { fields(a, s); });
     a.list(k.held_weights, [&](Weights& w) { fields(a, w); });
     values(a, k.inserted, k.turned);
     fields(a, k.direction);
@@ -234,9 +235,9 @@ void fields(Archive& a, Checkpoint& c) {
   values(a, c.flow.steps, c.flow.next_id, random, gone[0], gone[1]);
   c.flow.random = Random::from_state(random);
   c.flow.gone = StateHash(gone);
-  a.list(c.flow.particles, [&](FlowCheckpoint::Particle& p) { fields(a, p); });
+  a.list(c.flow.particles, [&](SimulationCheckpoint::Particle& p) { fields(a, p); });
   fields(a, c.flow.totals);
-  a.list(c.flow.impulses, [&](KeptImpulse& k) { fields(a, k); });
+  a.list(c.flow.impulses, [&](CachedImpulse& k) { fields(a, k); });
   values(a, c.recording.stats_bytes, c.recording.contacts_bytes);
   a.list(c.recording.frames, [&](RecordingFrame& f) { values(a, f.step, f.time); });
   fields(a, c.surgery);
@@ -284,10 +285,10 @@ RunIdentity run_identity(const std::string& scene_text, const MeshData& mesh, st
 }
 
 void write_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint) {
-  Writer body;
+  CheckpointWriter body;
   Checkpoint copy = checkpoint;  // the list of fields is one for reading and writing
   fields(body, copy);
-  Writer head;
+  CheckpointWriter head;
   std::uint64_t mark = magic;
   std::uint64_t sum = digest(body.text());
   values(head, mark, sum);

@@ -26,9 +26,9 @@ RunIdentity run_identity(const std::string& scene_text, const MeshData& mesh, st
 
 struct Checkpoint {
   RunIdentity run;
-  FlowCheckpoint flow;
+  SimulationCheckpoint flow;
   RecordingProgress recording;
-  SurgeryLog surgery;
+  EventLog surgery;
   std::uint64_t held = 0;  ///< in the last step
   std::uint64_t audited = 0;
   SolidsCheckpoint solids;

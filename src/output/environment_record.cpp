@@ -31,7 +31,7 @@ DataArray gathered(const DataArray& from, std::size_t count, Row&& row) {
   return to;
 }
 
-// As dartcast::follow(), for an array of any number of components.
+// As dartcast::update_after_edit(), for an array of any number of components.
 void follow_edit(const ComplexEditReport& edit, std::size_t size, DataArray& array) {
   const std::size_t n = array.components;
   array.values.resize(size * n);
@@ -61,7 +61,7 @@ EnvironmentRecord::EnvironmentRecord(MeshData mesh) : mesh_(std::move(mesh)) {
   mesh_.cell_data.push_back(source_array(mesh_));
 }
 
-void EnvironmentRecord::follow(const Environment& environment) {
+void EnvironmentRecord::update_after_edit(const Environment& environment) {
   for (DataArray& array : mesh_.point_data)
     follow_edit(environment.last_edit(), environment.complex().positions().size(), array);
 }
@@ -84,7 +84,7 @@ std::vector<std::size_t> EnvironmentRecord::rows(const MeshData& edited) const {
   return rows;
 }
 
-void EnvironmentRecord::write_edited(const Complex& complex, const std::filesystem::path& file) const {
+void EnvironmentRecord::write_edited(const CellComplex& complex, const std::filesystem::path& file) const {
   std::vector<Vertex> vertices;
   MeshData mesh = to_mesh(complex, &vertices);
   const std::vector<std::size_t> from = rows(mesh);

@@ -17,11 +17,11 @@ namespace dartcast {
 /// edit made the weighted mean of those that it was made between.
 class EnvironmentRecord {
  public:
-  /// `mesh`: the environment's, as inspect() left it.
+  /// `mesh`: the environment's, as check_and_repair() left it.
   explicit EnvironmentRecord(MeshData mesh);
 
   /// To be called after each edit. Cost: the vertices made, and the arrays' growth.
-  void follow(const Environment& environment);
+  void update_after_edit(const Environment& environment);
 
   /// As it is in the mesh.
   void write_at_rest(const std::filesystem::path& file) const;
@@ -29,7 +29,7 @@ class EnvironmentRecord {
   void write(const Environment& environment, const std::filesystem::path& file);
 
  private:
-  void write_edited(const Complex& complex, const std::filesystem::path& file) const;
+  void write_edited(const CellComplex& complex, const std::filesystem::path& file) const;
   [[nodiscard]] std::vector<std::size_t> rows(const MeshData& edited) const;
 
   MeshData mesh_;                      // without patches

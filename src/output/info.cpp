@@ -25,7 +25,7 @@ void count_cells(const MeshData& mesh, MeshInfo& info) {
 }
 
 /// Adds a face as triangles around its first corner; an edge of the plane as it is.
-void add_place(const Complex& complex, const CellView& view, std::uint16_t face, PatchPlace& sum) {
+void add_place(const CellComplex& complex, const CellView& view, std::uint16_t face, PatchPlace& sum) {
   const auto corners = view.shape().corners(face);
   const auto at = [&](std::size_t k) { return complex.positions()[view.vertex(corners[k]).value]; };
   const auto add = [&](double size, const Vec3& middle) {
@@ -39,8 +39,8 @@ void add_place(const Complex& complex, const CellView& view, std::uint16_t face,
   }
 }
 
-void count_walls(const Complex& complex, MeshInfo& info) {
-  const Map& map = complex.map();
+void count_walls(const CellComplex& complex, MeshInfo& info) {
+  const CombinatorialMap& map = complex.map();
   info.wall_faces = map.wall_face_count();
   for (const Cell c : map.cells()) {
     const CellView view = map.view(c);
@@ -71,8 +71,8 @@ void find_bounds(const std::vector<Vec3>& points, MeshInfo& info) {
 
 ArrayInfo array_info(const DataArray& array) {
   ArrayInfo info{array.name, array.components, {}, 0};
-  constexpr double most = std::numeric_limits<double>::max();
-  std::vector<std::array<double, 2>> ranges(array.components, {most, -most});
+  constexpr double limit = std::numeric_limits<double>::max();
+  std::vector<std::array<double, 2>> ranges(array.components, {limit, -limit});
   for (std::size_t i = 0; i < array.values.size(); ++i) {
     const double x = array.values[i];
     if (!std::isfinite(x)) {
@@ -136,11 +136,11 @@ MeshInfo mesh_info(const MeshData& mesh, std::string name, Threads threads) {
   info.points = mesh.points.size();
   count_cells(mesh, info);
   find_bounds(mesh.points, info);
-  const Complex complex(mesh, threads);
+  const CellComplex complex(mesh, threads);
   count_walls(complex, info);
   info.shapes = complex.map().shapes().size();
   info.simplices = complex.simplex_count();
-  info.interior_points = complex.interior_point_count();
+  info.steiner_points = complex.steiner_point_count();
   info.bytes = complex.bytes();
   info.point_arrays = array_infos(mesh.point_data);
   info.cell_arrays = array_infos(mesh.cell_data);
@@ -163,7 +163,7 @@ std::string info_json(const MeshInfo& i) {
                                  {"wall_faces", i.wall_faces},
                                  {"shapes", i.shapes},
                                  {"simplices", i.simplices},
-                                 {"interior_points", i.interior_points},
+                                 {"interior_points", i.steiner_points},
                                  {"bytes", i.bytes},
                                  {"point_arrays", arrays_json(i.point_arrays)},
                                  {"cell_arrays", arrays_json(i.cell_arrays)}};
@@ -185,7 +185,7 @@ std::string info_text(const MeshInfo& i) {
   out += plane ? fmt::format("bounds: ({}, {}) to ({}, {}) in the plane z = 0\n", i.low.x, i.low.y, i.high.x, i.high.y)
                : fmt::format("bounds: ({}, {}, {}) to ({}, {}, {})\n", i.low.x, i.low.y, i.low.z, i.high.x, i.high.y,
                              i.high.z);
-  out += fmt::format("{} shapes, {} simplices, {} interior points\n", i.shapes, i.simplices, i.interior_points);
+  out += fmt::format("{} shapes, {} simplices, {} interior points\n", i.shapes, i.simplices, i.steiner_points);
   out += arrays_text("point", i.point_arrays) + arrays_text("cell", i.cell_arrays);
   const double per_cell = static_cast<double>(i.bytes) / static_cast<double>(std::max<std::size_t>(1, i.cell_count()));
   return out + fmt::format("memory: {} bytes, {:.1f} per cell\n", i.bytes, per_cell);

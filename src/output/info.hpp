@@ -39,17 +39,17 @@ struct MeshInfo {
   std::size_t wall_faces = 0;
   std::size_t shapes = 0;  ///< kinds of cell that the map tells apart
   std::uint64_t simplices = 0;
-  std::size_t interior_points = 0;  ///< added where a cell needs one
-  Vec3 low, high;                   ///< of the points
-  std::size_t bytes = 0;            ///< of the map, its positions and tables
+  std::size_t steiner_points = 0;  ///< added where a cell needs one
+  Vec3 low, high;                  ///< of the points
+  std::size_t bytes = 0;           ///< of the map, its positions and tables
   std::vector<ArrayInfo> point_arrays;
   std::vector<ArrayInfo> cell_arrays;
 
   [[nodiscard]] std::size_t cell_count() const;
 };
 
-/// Of a mesh that inspect() found valid. Of one of space builds the complex. Throws InvalidMesh where that is not
-/// possible.
+/// Of a mesh that check_and_repair() found valid. Of one of space builds the complex. Throws InvalidMesh where that is
+/// not possible.
 MeshInfo mesh_info(const MeshData& mesh, std::string name, Threads threads = {});
 
 std::string info_json(const MeshInfo& info);

@@ -39,7 +39,7 @@ bool holds_a_run(const fs::path& folder) {
 std::string particles_name(std::uint64_t step) { return frame_name("particles", step, ".vtp"); }
 std::string environment_name(std::uint64_t step) { return frame_name("environment", step, ".vtu"); }
 
-Kind kind_of(const Complex& complex, const State& s) {
+Kind kind_of(const CellComplex& complex, const ParticleState& s) {
   return s.held ? Kind::volume : forecast(complex.map(), s, complex.corners(s.at())).kind;
 }
 
@@ -91,11 +91,11 @@ Recording::Recording(Options options, EnvironmentRecord record, const RecordingP
   }
 }
 
-void Recording::follow(const Environment& environment) {
-  if (environment_) environment_->follow(environment);
+void Recording::update_after_edit(const Environment& environment) {
+  if (environment_) environment_->update_after_edit(environment);
 }
 
-void Recording::add_frame(const Flow& flow) {
+void Recording::add_frame(const Simulation& flow) {
   write_particles(flow, options_.folder / particles_name(flow.steps()));
   if (environment_) environment_->write(flow.environment(), options_.folder / environment_name(flow.steps()));
   if (frames_.empty() || frames_.back().step != flow.steps()) frames_.push_back({flow.steps(), flow.time()});
@@ -114,9 +114,9 @@ void Recording::write_lists() const {
 
 RecordingProgress Recording::progress() { return {stats_.written(), contacts_.written(), frames_}; }
 
-void Recording::write_particles(const Flow& flow, const fs::path& path) const {
+void Recording::write_particles(const Simulation& flow, const fs::path& path) const {
   const Particles& particles = flow.particles();
-  const Complex& complex = flow.environment().complex();
+  const CellComplex& complex = flow.environment().complex();
   VtpWriter file(particles.size(), [&](std::size_t i) { return particles[i].position; });
   file.add_vertices();
   file.add("id", [&](std::size_t i) { return static_cast<double>(flow.ids()[i]); });
@@ -129,21 +129,21 @@ void Recording::write_particles(const Flow& flow, const fs::path& path) const {
   file.write(path);
 }
 
-void Recording::add_step(const Flow& flow, const FlowStep& step, std::uint64_t in_opened) {
+void Recording::add_step(const Simulation& flow, const SimulationStep& step, std::uint64_t in_opened) {
   const Counters& c = step.report.counters;
   fmt::print(stats_.stream(), "{},{},{},{},{},{},{},{},{},{},{},{}", flow.steps(), flow.time(), flow.particles().size(),
              step.injected, step.absorbed, step.escaped, step.report.held.size(), step.report.contacts.contacts.size(),
              c.orientation.tests, c.orientation.exact, c.forecast_kept, c.updated_by_deformation);
   if (options_.surgery) fmt::print(stats_.stream(), ",{}", in_opened);
-  const FlowEnergy energy = flow.energy();
+  const SimulationEnergy energy = flow.energy();
   fmt::print(stats_.stream(), ",{},{}\n", energy.kinetic, energy.potential);
   if (options_.contacts) write_contacts(flow, step);
   stats_.check();
 }
 
-void Recording::write_contacts(const Flow& flow, const FlowStep& step) {
+void Recording::write_contacts(const Simulation& flow, const SimulationStep& step) {
   static constexpr std::string_view kinds[] = {"vertex", "edge", "face", "volume"};
-  const Map& map = flow.environment().map();
+  const CombinatorialMap& map = flow.environment().map();
   const double dt = step.duration;
   for (std::size_t i = 0; i < step.contact_ids.size(); ++i) {
     const Contact& c = step.report.contacts.contacts[i];

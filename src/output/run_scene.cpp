@@ -33,13 +33,13 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-Responses make_responses(const ContactScene& scene, const Map& map) {
-  Responses responses(scene.general);
+WallResponses make_responses(const ContactScene& scene, const CombinatorialMap& map) {
+  WallResponses responses(scene.general);
   for (const auto& [name, response] : scene.by_patch) responses.set(map.patch(name), response);
   return responses;
 }
 
-std::vector<Event> make_events(const Scene& scene, const Map& map) {
+std::vector<Event> make_events(const Scene& scene, const CombinatorialMap& map) {
   std::vector<Event> events;
   for (const EventScene& e : scene.events) {
     events.push_back(e.event);
@@ -49,8 +49,8 @@ std::vector<Event> make_events(const Scene& scene, const Map& map) {
   return events;
 }
 
-FlowOptions flow_options(const Scene& scene, const RunOptions& options) {
-  FlowOptions flow;
+SimulationOptions flow_options(const Scene& scene, const RunOptions& options) {
+  SimulationOptions flow;
   flow.dt = scene.motion.dt;
   flow.gravity = scene.motion.gravity;
   flow.drag = scene.motion.drag;
@@ -60,7 +60,8 @@ FlowOptions flow_options(const Scene& scene, const RunOptions& options) {
   return flow;
 }
 
-void add_placed(Flow& flow, const std::filesystem::path& file, const ParticlesScene& scene, const ReadOptions& read) {
+void add_placed(Simulation& flow, const std::filesystem::path& file, const ParticlesScene& scene,
+                const ReadOptions& read) {
   Seeds seeds = read_seeds(file, read);
   if (seeds.velocities.empty()) seeds.velocities.assign(seeds.points.size(), scene.velocity);
   if (seeds.radii.empty()) seeds.radii.assign(seeds.points.size(), scene.radius);
@@ -72,14 +73,14 @@ void add_placed(Flow& flow, const std::filesystem::path& file, const ParticlesSc
   }
 }
 
-void add_inlets(Flow& flow, const Scene& scene) {
+void add_inlets(Simulation& flow, const Scene& scene) {
   for (const ParticlesScene& p : scene.particles) {
     if (const auto* inlet = std::get_if<InletParticles>(&p.source))
       flow.add_inlet(flow.environment().map().patch(inlet->patch), inlet->rate, p.velocity, p.radius);
   }
 }
 
-void add_particles(Flow& flow, const Scene& scene, const ReadOptions& read) {
+void add_particles(Simulation& flow, const Scene& scene, const ReadOptions& read) {
   for (const ParticlesScene& p : scene.particles) {
     if (const auto* random = std::get_if<RandomParticles>(&p.source))
       flow.add_random(random->count, p.velocity, p.radius);
@@ -88,7 +89,7 @@ void add_particles(Flow& flow, const Scene& scene, const ReadOptions& read) {
 }
 
 void describe(const Environment& environment, Summary& summary) {
-  const Map& map = environment.map();
+  const CombinatorialMap& map = environment.map();
   summary.threads = environment.threads().count;
   if (summary.threads == 0) summary.threads = std::max(1U, std::thread::hardware_concurrency());
   summary.cells = map.cell_count();
@@ -131,9 +132,9 @@ class Output {
   }
 
   /// To be called after each edit of the environment.
-  void follow(const Environment& environment) {
-    if (recording_) return recording_->follow(environment);
-    if (record_) record_->follow(environment);
+  void update_after_edit(const Environment& environment) {
+    if (recording_) return recording_->update_after_edit(environment);
+    if (record_) record_->update_after_edit(environment);
   }
 
   void open() {
@@ -149,7 +150,7 @@ class Output {
 
   [[nodiscard]] const std::optional<Checkpoint>& found() const { return found_; }
 
-  void add_step(const Flow& flow, const FlowStep& step, const SurgeryLog& surgery, const Solids& solids) {
+  void add_step(const Simulation& flow, const SimulationStep& step, const EventLog& surgery, const Solids& solids) {
     timed([&] {
       recording_->add_step(flow, step, surgery.in_opened);
       solids_->add_step(solids, flow.steps(), flow.time());
@@ -158,7 +159,7 @@ class Output {
 
   /// To be called before the first step and after each: a frame and a checkpoint where the scene wants one, and at the
   /// end.
-  void add_frame(const Flow& flow, const SurgeryLog& surgery, const Solids& solids, bool last) {
+  void add_frame(const Simulation& flow, const EventLog& surgery, const Solids& solids, bool last) {
     if (!last && !on_schedule(flow.steps())) return;
     timed([&] {
       if (every_ > 0) {
@@ -205,7 +206,8 @@ class Output {
 // The steps of a run, with their output and audit.
 class Run {
  public:
-  Run(Flow& flow, Surgery& surgery, Solids& solids, Output& output, std::uint64_t steps, bool audit, Summary& summary)
+  Run(Simulation& flow, EventScheduler& surgery, Solids& solids, Output& output, std::uint64_t steps, bool audit,
+      Summary& summary)
       : flow_(flow),
         surgery_(surgery),
         solids_(solids),
@@ -225,7 +227,7 @@ class Run {
     while (flow_.steps() < steps_) {
       surgery_.before_step();
       const double begin = flow_.time();
-      const FlowStep& step = flow_.step();
+      const SimulationStep& step = flow_.step();
       step_solids(begin);
       surgery_.after_step();
       summary_.held = step.report.held.size();
@@ -257,7 +259,7 @@ class Run {
       summary_.surgery = surgery_.log();
       describe(flow_.environment(), summary_);
     }
-    const FlowTotals& t = summary_.totals;
+    const SimulationTotals& t = summary_.totals;
     summary_.lost = t.start + t.injected - t.absorbed - t.escaped - summary_.alive;
     if (audit_) summary_.lost += check().failed;
     StateHash hash = flow_.state_hash();
@@ -266,8 +268,8 @@ class Run {
     summary_.catheters = solids_.catheter_summaries();
   }
 
-  Flow& flow_;
-  Surgery& surgery_;
+  Simulation& flow_;
+  EventScheduler& surgery_;
   Solids& solids_;
   Output& output_;
   std::uint64_t steps_;
@@ -276,12 +278,12 @@ class Run {
 };
 
 // Particles at the start, or as a checkpoint has them.
-void start(Flow& flow, Surgery& surgery, Solids& solids, Output& output, const Scene& scene,
+void start(Simulation& flow, EventScheduler& surgery, Solids& solids, Output& output, const Scene& scene,
            const std::optional<Checkpoint>& checkpoint, const ReadOptions& read) {
   add_inlets(flow, scene);
-  flow.set_after_edit([&](Stranded) {
+  flow.set_after_edit([&](OrphanPolicy) {
     surgery.after_edit();
-    output.follow(flow.environment());
+    output.update_after_edit(flow.environment());
   });
   if (checkpoint) {
     surgery.replay(checkpoint->surgery);
@@ -290,10 +292,10 @@ void start(Flow& flow, Surgery& surgery, Solids& solids, Output& output, const S
   } else {
     add_particles(flow, scene, read);
   }
-  flow.set_after_edit([&](Stranded stranded) {
+  flow.set_after_edit([&](OrphanPolicy orphaned) {
     surgery.after_edit();
-    solids.follow(stranded);
-    output.follow(flow.environment());
+    solids.update_after_edit(orphaned);
+    output.update_after_edit(flow.environment());
   });
 }
 
@@ -301,8 +303,8 @@ void start(Flow& flow, Surgery& surgery, Solids& solids, Output& output, const S
 
 Summary run_scene(const Scene& scene, const RunOptions& options, const Progress& progress) {
   if (!options.folder.empty()) check_output_folder(options.folder);
-  if (options.steps.value_or(0) > most_steps)
-    throw InvalidArgument(fmt::format("run: {} steps; give at most {}", *options.steps, most_steps));
+  if (options.steps.value_or(0) > max_steps)
+    throw InvalidArgument(fmt::format("run: {} steps; give at most {}", *options.steps, max_steps));
   Summary summary;
   summary.scene = scene.name;
   summary.deforms = !scene.deformation.empty();
@@ -314,8 +316,8 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
   MeshData& mesh = loaded.mesh;
   summary.skipped = loaded.skipped;
   Environment environment = with_mesh_name(wanted.mesh, [&] { return Environment(mesh, options.threads); });
-  const Responses responses = make_responses(scene.contact, environment.map());
-  Flow flow(environment, flow_options(scene, options), responses);
+  const WallResponses responses = make_responses(scene.contact, environment.map());
+  Simulation flow(environment, flow_options(scene, options), responses);
   if (!scene.motion.field.empty()) {
     flow.set_field(VelocityField(environment.complex(), point_vectors(mesh, scene.motion.field), scene.motion.frame));
   }
@@ -323,8 +325,8 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
     flow.set_deformation(Deformation(load_deformation(scene.deformation, mesh, wanted, read), mesh.points));
   describe(environment, summary);
   const std::vector<Event> events = make_events(scene, environment.map());
-  Surgery surgery(events, scene.remesh, scene.crowding, scene.motion.dt, flow);
-  if (!events.empty() || scene.remesh.every > 0 || scene.crowding.every > 0) summary.surgery.emplace();
+  EventScheduler surgery(events, scene.remesh, scene.adaptive_subdivision, scene.motion.dt, flow);
+  if (!events.empty() || scene.remesh.every > 0 || scene.adaptive_subdivision.every > 0) summary.surgery.emplace();
   Solids solids(scene, environment, responses, read);
   if (scene.collisions && solids.bodies()) flow.set_bodies(*solids.bodies());
   summary.seconds_load = load.seconds();

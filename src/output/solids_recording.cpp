@@ -103,7 +103,7 @@ void SolidsRecording::write_body(const Solids& solids, std::size_t body, std::ui
   points.add_vertices();
   points.add("id", [](std::size_t i) { return static_cast<double>(i); });
   points.add_vectors("velocity", [&](std::size_t i) { return bodies.velocities()[first + i]; });
-  const Map& map = solids.environment().map();
+  const CombinatorialMap& map = solids.environment().map();
   points.add("cell",
              [&](std::size_t i) { return static_cast<double>(map.source(bodies.particles()[first + i].cell)); });
   points.add("radius", [&](std::size_t i) { return bodies.radii()[first + i]; });

@@ -49,7 +49,7 @@ Json seconds(const Summary& s) {
   return json;
 }
 
-Json events(const SurgeryLog& log) {
+Json events(const EventLog& log) {
   Json list = Json::array();
   for (const EventReport& e : log.events) {
     list.push_back({{"kind", event_kind_names[e.kind]},
@@ -74,7 +74,7 @@ Json events(const SurgeryLog& log) {
   return list;
 }
 
-Json collisions(const FlowTotals& t) {
+Json collisions(const SimulationTotals& t) {
   const CollisionCounts& c = t.collisions;
   return {{"pairs_tested", c.pairs_tested},
           {"pairs_near", c.pairs_near},
@@ -125,7 +125,7 @@ double ns_per_particle_step(const Summary& s) {
 std::string version() { return DARTCAST_VERSION; }
 
 std::string summary_json(const Summary& s) {
-  const FlowTotals& t = s.totals;
+  const SimulationTotals& t = s.totals;
   Json json = {{"version", version()},
                {"scene", s.scene},
                {"threads", s.threads},
@@ -185,7 +185,7 @@ std::string solids_text(const Summary& s) {
   return out;
 }
 
-std::string surgery_text(const SurgeryLog& log) {
+std::string surgery_text(const EventLog& log) {
   std::string out;
   for (const EventReport& e : log.events) {
     out += fmt::format(
@@ -206,7 +206,7 @@ std::string surgery_text(const SurgeryLog& log) {
 }  // namespace
 
 std::string summary_text(const Summary& s) {
-  const FlowTotals& t = s.totals;
+  const SimulationTotals& t = s.totals;
   const Counters& c = t.counters;
   std::string out = fmt::format("{}: {} steps, {} cells ({} free), {} wall faces, {:.1f} MB\n", s.scene, s.steps,
                                 s.cells, s.free_cells, s.wall_faces, static_cast<double>(s.bytes) / 1e6);

@@ -26,7 +26,7 @@ struct Summary {
   std::size_t bytes = 0;
   Finding skipped;  ///< bad cells that were left out
 
-  FlowTotals totals;
+  SimulationTotals totals;
   std::uint64_t alive = 0;
   std::uint64_t held = 0;  ///< at the end
   std::uint64_t lost = 0;
@@ -35,7 +35,7 @@ struct Summary {
   double seconds_locate = 0.0;
   double seconds_solids = 0.0;  ///< steps of bodies and catheters
   double seconds_write = 0.0;
-  std::optional<SurgeryLog> surgery;  ///< where the scene has events or is remeshed
+  std::optional<EventLog> surgery;  ///< where the scene has events or is remeshed
   std::vector<BodySummary> bodies;
   std::vector<CatheterSummary> catheters;
   std::optional<Audit> audit;

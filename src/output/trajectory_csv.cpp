@@ -6,7 +6,7 @@
 
 namespace dartcast {
 
-std::string trajectory_csv(const Map& map, std::span<const Trace> traces) {
+std::string trajectory_csv(const CombinatorialMap& map, std::span<const Trace> traces) {
   std::string table = "step,time,event,kind,x,y,z,cell,next\n";
   for (const TrajectoryPoint& p : trajectory_points(traces)) {
     const std::string next = p.next.valid() ? fmt::format("{}", map.source(p.next)) : std::string();

@@ -13,6 +13,6 @@ namespace dartcast {
 /// end), kind (vertex, edge, face, volume: of the cell of the map that the particle is in, or passes), x, y, z, cell
 /// and next (indices in the mesh; next: the one entered at a crossing, else empty). Numbers are the shortest that give
 /// the same bits back, whatever the locale. `map`: the one that the traces were made in. Cost: linear.
-std::string trajectory_csv(const Map& map, std::span<const Trace> traces);
+std::string trajectory_csv(const CombinatorialMap& map, std::span<const Trace> traces);
 
 }  // namespace dartcast

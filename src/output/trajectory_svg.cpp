@@ -59,7 +59,7 @@ class SvgView {
 };
 
 // The corners of a polygon, counterclockwise.
-std::vector<Vec3> outline_of(const Complex& complex, Cell cell) {
+std::vector<Vec3> outline_of(const CellComplex& complex, Cell cell) {
   const CellView view = complex.map().view(cell);
   std::vector<Vec3> corners;
   for (std::uint16_t d = 0; d < view.shape().dart_count(); ++d)
@@ -84,7 +84,7 @@ std::vector<Cell> cells_passed(std::span<const TrajectoryPoint> points) {
   return cells;
 }
 
-SvgView view_of(const Complex& complex, std::span<const Cell> passed, std::span<const TrajectoryPoint> points) {
+SvgView view_of(const CellComplex& complex, std::span<const Cell> passed, std::span<const TrajectoryPoint> points) {
   SvgView view;
   for (const Cell cell : passed) {
     for (const Vec3& corner : outline_of(complex, cell)) view.include(corner);
@@ -94,7 +94,7 @@ SvgView view_of(const Complex& complex, std::span<const Cell> passed, std::span<
   return view;
 }
 
-void add_outlines(const Complex& complex, const SvgView& view, std::span<const Cell> passed, std::string& svg) {
+void add_outlines(const CellComplex& complex, const SvgView& view, std::span<const Cell> passed, std::string& svg) {
   std::string free, blocked, on_the_way;
   for (const Cell cell : complex.map().cells()) {
     const std::vector<Vec3> outline = outline_of(complex, cell);
@@ -132,7 +132,7 @@ void add_pieces(const SvgView& view, std::span<const TrajectoryPoint> points, st
   end_piece();
 }
 
-void add_mark(const Map& map, const SvgView& view, const TrajectoryPoint& p, std::string& svg) {
+void add_mark(const CombinatorialMap& map, const SvgView& view, const TrajectoryPoint& p, std::string& svg) {
   svg += fmt::format("<g><title>step {}, t = {}: {}, {}, cell {}", p.step + 1, p.time, name_of(p.mark), name_of(p.kind),
                      map.source(p.cell));
   if (p.next.valid()) svg += fmt::format(" to {}", map.source(p.next));
@@ -151,7 +151,7 @@ void add_mark(const Map& map, const SvgView& view, const TrajectoryPoint& p, std
 
 }  // namespace
 
-std::string trajectory_svg(const Complex& complex, std::span<const Trace> traces) {
+std::string trajectory_svg(const CellComplex& complex, std::span<const Trace> traces) {
   if (complex.map().dimension() != 2)
     throw InvalidArgument("a trajectory in space cannot be drawn as SVG: write it as .csv instead");
   if (traces.empty()) throw InvalidArgument("there is no trajectory to draw: give it one target or more");

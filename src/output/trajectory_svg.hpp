@@ -18,6 +18,6 @@ namespace dartcast {
 ///
 /// `complex`: the one that the traces were made in, drawn as it stands. Throws InvalidArgument where there is no trace,
 /// or where the complex is not of the plane. Cost: one look at each cell of the scene.
-std::string trajectory_svg(const Complex& complex, std::span<const Trace> traces);
+std::string trajectory_svg(const CellComplex& complex, std::span<const Trace> traces);
 
 }  // namespace dartcast

@@ -1,7 +1,8 @@
 // Twice the digits of a double: an unevaluated sum of two.
 //
 // Y. Hida, X. S. Li, D. H. Bailey, "Algorithms for quad-double precision floating point arithmetic", ARITH 2001. Each
-// operation is right to Twofold::rounding of its result, where nothing overflows or falls below the smallest double.
+// operation is right to DoubleDouble::rounding of its result, where nothing overflows or falls below the smallest
+// double.
 #pragma once
 
 #include <cmath>
@@ -10,61 +11,61 @@
 
 namespace dartcast::detail {
 
-struct Twofold {
+struct DoubleDouble {
   double high = 0.0;
   double low = 0.0;
 
   static constexpr double rounding = 0x1p-100;
 
-  constexpr Twofold() = default;
-  constexpr Twofold(double h) : high(h) {}  // NOLINT(google-explicit-constructor): a double is one, as it is
-  constexpr explicit Twofold(TwoTerms t) : high(t.high), low(t.low) {}
+  constexpr DoubleDouble() = default;
+  constexpr DoubleDouble(double h) : high(h) {}  // NOLINT(google-explicit-constructor): a double is one, as it is
+  constexpr explicit DoubleDouble(TwoTerms t) : high(t.high), low(t.low) {}
   explicit operator double() const { return high + low; }
 
-  friend Twofold operator-(const Twofold& a) {
-    Twofold r(-a.high);
+  friend DoubleDouble operator-(const DoubleDouble& a) {
+    DoubleDouble r(-a.high);
     r.low = -a.low;
     return r;
   }
-  friend Twofold operator+(const Twofold& a, const Twofold& b) {
+  friend DoubleDouble operator+(const DoubleDouble& a, const DoubleDouble& b) {
     const TwoTerms s = two_sum(a.high, b.high);
     const TwoTerms t = two_sum(a.low, b.low);
     const TwoTerms u = fast_two_sum(s.high, s.low + t.high);
-    return Twofold(fast_two_sum(u.high, u.low + t.low));
+    return DoubleDouble(fast_two_sum(u.high, u.low + t.low));
   }
-  friend Twofold operator-(const Twofold& a, const Twofold& b) { return a + -b; }
-  friend Twofold operator*(const Twofold& a, const Twofold& b) {
+  friend DoubleDouble operator-(const DoubleDouble& a, const DoubleDouble& b) { return a + -b; }
+  friend DoubleDouble operator*(const DoubleDouble& a, const DoubleDouble& b) {
     const TwoTerms p = two_product(a.high, b.high);
-    return Twofold(fast_two_sum(p.high, p.low + (a.high * b.low + a.low * b.high)));
+    return DoubleDouble(fast_two_sum(p.high, p.low + (a.high * b.low + a.low * b.high)));
   }
   /// Two quotients, and the rest by the second.
-  friend Twofold operator/(const Twofold& a, const Twofold& b) {
+  friend DoubleDouble operator/(const DoubleDouble& a, const DoubleDouble& b) {
     const double first = a.high / b.high;
-    const Twofold rest = a - b * Twofold(first);
+    const DoubleDouble rest = a - b * DoubleDouble(first);
     const double second = rest.high / b.high;
-    const double third = (rest - b * Twofold(second)).high / b.high;
-    return Twofold(fast_two_sum(first, second)) + Twofold(third);
+    const double third = (rest - b * DoubleDouble(second)).high / b.high;
+    return DoubleDouble(fast_two_sum(first, second)) + DoubleDouble(third);
   }
-  friend bool operator<(const Twofold& a, const Twofold& b) {
+  friend bool operator<(const DoubleDouble& a, const DoubleDouble& b) {
     return a.high < b.high || (a.high == b.high && a.low < b.low);
   }
-  friend bool operator>(const Twofold& a, const Twofold& b) { return b < a; }
-  friend bool operator<=(const Twofold& a, const Twofold& b) {
+  friend bool operator>(const DoubleDouble& a, const DoubleDouble& b) { return b < a; }
+  friend bool operator<=(const DoubleDouble& a, const DoubleDouble& b) {
     return a.high < b.high || (a.high == b.high && a.low <= b.low);
   }
 };
 
 /// Newton's correction of the root in doubles. Precondition: a is not negative.
-inline Twofold square_root(const Twofold& a) {
+inline DoubleDouble square_root(const DoubleDouble& a) {
   if (!(a.high > 0.0)) return {};
   const double root = std::sqrt(a.high);
-  const Twofold rest = a - Twofold(two_product(root, root));
-  const Twofold better = Twofold(root) + Twofold(rest.high / (2.0 * root));
-  return better + Twofold((a - better * better).high / (2.0 * root));
+  const DoubleDouble rest = a - DoubleDouble(two_product(root, root));
+  const DoubleDouble better = DoubleDouble(root) + DoubleDouble(rest.high / (2.0 * root));
+  return better + DoubleDouble((a - better * better).high / (2.0 * root));
 }
 inline double square_root(double a) { return std::sqrt(a); }
 
-/// a - b, exactly where Real is Twofold.
+/// a - b, exactly where Real is DoubleDouble.
 template <class Real>
 Real exact_difference(double a, double b) {
   if constexpr (requires(Real r) { r.low; })

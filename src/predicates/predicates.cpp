@@ -222,13 +222,13 @@ double orient2d_value(const Vec3& a, const Vec3& b, const Vec3& c) {
   return exact_plane_determinant(a, b, c).estimate();
 }
 
-Shift::Shift(const Vec3& p, std::span<const Vec3> opposite) : p_(p) {
+SymbolicPerturbation::SymbolicPerturbation(const Vec3& p, std::span<const Vec3> opposite) : p_(p) {
   opposite_.fill(p);
   std::copy(opposite.begin(), opposite.end(), opposite_.begin());
 }
 
 // With n = (q - p) x (b - a), the terms are n.w, n.x, n.y and n.z.
-Sign Shift::of_line(const Vec3& a, const Vec3& b, const Vec3& q) const {
+Sign SymbolicPerturbation::of_line(const Vec3& a, const Vec3& b, const Vec3& q) const {
   const auto& [o0, o1, o2] = opposite_;
   const Vec3 extent = extent_of(q - p_, b - a, o0 - p_, o1 - p_, o2 - p_);
   const Vec3 n = cross(q - p_, b - a);
@@ -248,7 +248,7 @@ Sign Shift::of_line(const Vec3& a, const Vec3& b, const Vec3& q) const {
   return Sign::zero;
 }
 
-Sign Shift::of_line_exact(const Vec3& a, const Vec3& b, const Vec3& q) const {
+Sign SymbolicPerturbation::of_line_exact(const Vec3& a, const Vec3& b, const Vec3& q) const {
   if (!all_in_range(p_, opposite_[0], opposite_[1], opposite_[2], a, b, q)) return Sign::undecidable;
   const auto difference_of = [](const Vec3& u, const Vec3& v) { return exact_difference<2>(flushed(u), flushed(v)); };
   const auto n = exact_cross(difference_of(q, p_), difference_of(b, a));
@@ -260,13 +260,13 @@ Sign Shift::of_line_exact(const Vec3& a, const Vec3& b, const Vec3& q) const {
   return Sign::zero;
 }
 
-PlaneShift::PlaneShift(const Vec3& p, std::span<const Vec3> opposite) : p_(flushed(p)) {
+PlanarSymbolicPerturbation::PlanarSymbolicPerturbation(const Vec3& p, std::span<const Vec3> opposite) : p_(flushed(p)) {
   opposite_.fill(p_);
   std::copy(opposite.begin(), opposite.end(), opposite_.begin());
 }
 
 // With d = q - p the terms are w x d, d.y and -d.x; (o - p) x (q - p) is that of o, q and p.
-Sign PlaneShift::of_line(const Vec3& q0) const {
+Sign PlanarSymbolicPerturbation::of_line(const Vec3& q0) const {
   const Vec3 q = flushed(q0);
   if (!all_in_plane_range(p_, q, opposite_[0], opposite_[1])) return Sign::undecidable;
   const auto along = exact_plane_determinant(opposite_[0], q, p_) + exact_plane_determinant(opposite_[1], q, p_);

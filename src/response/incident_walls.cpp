@@ -15,16 +15,16 @@ bool comes_before(const WallHit& a, const WallHit& b) {
   return key(a) < key(b);
 }
 
-// The wall that v points into most, and by more than `most`.
-const WallHit* most_opposed(const Vec3& v, const JointWalls& walls, double most) {
+// The wall that v points into most, and by more than `limit`.
+const WallHit* max_opposed(const Vec3& v, const JointWalls& walls, double limit) {
   const WallHit* worst = nullptr;
-  double least = -most;
+  double lowest = -limit;
   for (std::size_t i = 0; i < walls.size(); ++i) {
     const WallHit& wall = walls[i];
     const double along = dot(v, wall.normal);
-    if (!(along <= least)) continue;
-    if (along < least || (worst != nullptr && comes_before(wall, *worst))) {
-      least = along;
+    if (!(along <= lowest)) continue;
+    if (along < lowest || (worst != nullptr && comes_before(wall, *worst))) {
+      lowest = along;
       worst = &wall;
     }
   }
@@ -32,7 +32,7 @@ const WallHit* most_opposed(const Vec3& v, const JointWalls& walls, double most)
 }
 
 // Walls that may hold v back: at most four, in their order.
-class FewWalls {
+class WallSubset {
  public:
   void add(const WallHit* wall) {
     std::size_t at = count_++;
@@ -41,9 +41,9 @@ class FewWalls {
   }
   [[nodiscard]] std::size_t size() const { return count_; }
   const WallHit& operator[](std::size_t i) const { return *wall_[i]; }
-  [[nodiscard]] bool permit(const Vec3& v, double most) const {
+  [[nodiscard]] bool permit(const Vec3& v, double limit) const {
     return std::all_of(wall_.begin(), wall_.begin() + static_cast<std::ptrdiff_t>(count_),
-                       [&](const WallHit* w) { return dot(v, w->normal) >= -most; });
+                       [&](const WallHit* w) { return dot(v, w->normal) >= -limit; });
   }
 
  private:
@@ -73,12 +73,12 @@ HeldBack held_by(const Vec3& v, const WallHit& wall, double into) {
 }
 
 // One wall alone holds v back, where the others let it.
-bool hold_by_one(const Vec3& v, const FewWalls& walls, double most, HeldBack& held) {
+bool hold_by_one(const Vec3& v, const WallSubset& walls, double limit, HeldBack& held) {
   for (std::size_t i = 0; i < walls.size(); ++i) {
     const double into = -dot(v, walls[i].normal);
     if (!(into > 0.0)) continue;
     held = held_by(v, walls[i], into);
-    if (walls.permit(held.velocity, most)) return true;
+    if (walls.permit(held.velocity, limit)) return true;
   }
   return false;
 }
@@ -96,7 +96,7 @@ bool leads_there(const Vec3& v, HeldBack& held) {
 }
 
 // Along the crease of two that push it there, where the others let it.
-bool hold_by_two(const Vec3& v, const FewWalls& walls, double most, HeldBack& held) {
+bool hold_by_two(const Vec3& v, const WallSubset& walls, double limit, HeldBack& held) {
   for (std::size_t i = 0; i < walls.size(); ++i) {
     const Vec3& n = walls[i].normal;
     const Vec3 plane = into_plane(v, n);
@@ -107,14 +107,14 @@ bool hold_by_two(const Vec3& v, const FewWalls& walls, double most, HeldBack& he
       const double second = -dot(plane, m) / sine;
       const double first = -dot(v, n) - second * dot(n, walls[j].normal);
       held = {into_plane(plane, m), {&walls[i], &walls[j]}, {first, second}, 2};
-      if (walls.permit(held.velocity, most) && leads_there(v, held)) return true;
+      if (walls.permit(held.velocity, limit) && leads_there(v, held)) return true;
     }
   }
   return false;
 }
 
 // Three walls take all of v. Where rounding finds none that do, it ends without.
-void hold_by_three(const Vec3& v, const FewWalls& walls, HeldBack& held) {
+void hold_by_three(const Vec3& v, const WallSubset& walls, HeldBack& held) {
   for (std::size_t i = 0; i < walls.size(); ++i) {
     for (std::size_t j = i + 1; j < walls.size(); ++j) {
       const Vec3 crease = cross(walls[i].normal, walls[j].normal);
@@ -136,9 +136,9 @@ void hold_by_three(const Vec3& v, const FewWalls& walls, HeldBack& held) {
 
 }  // namespace
 
-bool points_into(const Vec3& v, const JointWalls& walls, double most) {
+bool points_into(const Vec3& v, const JointWalls& walls, double limit) {
   for (std::size_t i = 0; i < walls.size(); ++i) {
-    if (dot(v, walls[i].normal) < -most) return true;
+    if (dot(v, walls[i].normal) < -limit) return true;
   }
   return false;
 }
@@ -147,39 +147,39 @@ bool points_into(const Vec3& v, const JointWalls& walls, double most) {
 // those that hold the last result back, and the wall that it points into most, hold it back anew. Each time it is
 // farther from v, so that no set of walls comes twice; rounding may end that, and then all of v is given up.
 HeldBack held_back(const Vec3& v, const JointWalls& walls) {
-  constexpr unsigned most_rounds = 32;
+  constexpr unsigned max_rounds = 32;
   HeldBack held;
   held.velocity = v;
-  const WallHit* next = most_opposed(v, walls, 0.0);
+  const WallHit* next = max_opposed(v, walls, 0.0);
   if (next == nullptr) return held;
-  const double most = rounding_share * norm(v);
+  const double limit = rounding_share * norm(v);
   held = held_by(v, *next, -dot(v, next->normal));
-  for (unsigned round = 0; round < most_rounds; ++round) {
-    next = most_opposed(held.velocity, walls, most);
+  for (unsigned round = 0; round < max_rounds; ++round) {
+    next = max_opposed(held.velocity, walls, limit);
     if (next == nullptr) return held;
-    FewWalls few;
-    few.add(next);
-    for (unsigned i = 0; i < held.count; ++i) few.add(held.wall[i]);
-    if (!hold_by_one(v, few, most, held) && !hold_by_two(v, few, most, held)) hold_by_three(v, few, held);
+    WallSubset subset;
+    subset.add(next);
+    for (unsigned i = 0; i < held.count; ++i) subset.add(held.wall[i]);
+    if (!hold_by_one(v, subset, limit, held) && !hold_by_two(v, subset, limit, held)) hold_by_three(v, subset, held);
     if (held.count == 0) break;
   }
   return {};
 }
 
-Vec3 shortened(const Vec3& velocity, double most, const Vec3& lead) {
+Vec3 shortened(const Vec3& velocity, double limit, const Vec3& lead) {
   const double square = dot(velocity, velocity);
   const double along = dot(lead, velocity);
-  if (!(square + 2.0 * along > most) || square == 0.0) return velocity;
+  if (!(square + 2.0 * along > limit) || square == 0.0) return velocity;
   if (lead != Vec3{}) {
     // The larger root s of s^2 square + 2 s along = most.
-    const double root = along * along + square * most;
+    const double root = along * along + square * limit;
     const double share = ((root > 0.0 ? std::sqrt(root) : 0.0) - along) / square;
     return velocity * std::clamp(share, 0.0, 1.0);
   }
   // By the quotient, and a few units in the last place more: each makes components smaller that are not subnormal, and
   // others do not count in the square.
-  Vec3 result = velocity * std::sqrt(most / square);
-  while (dot(result, result) > most) result *= 1.0 - 0x1p-52;
+  Vec3 result = velocity * std::sqrt(limit / square);
+  while (dot(result, result) > limit) result *= 1.0 - 0x1p-52;
   return result;
 }
 

@@ -40,8 +40,8 @@ class JointWalls {
 /// is never returned, so that the share bounds every result. No decision of a walk depends on it.
 inline constexpr double rounding_share = 0x1p-46;
 
-/// Whether v points into a wall by more than `most`.
-bool points_into(const Vec3& v, const JointWalls& walls, double most);
+/// Whether v points into a wall by more than `limit`.
+bool points_into(const Vec3& v, const JointWalls& walls, double limit);
 
 /// A velocity that its walls hold back, and what they need for it: at most three of them, along their normals.
 struct HeldBack {
@@ -62,9 +62,9 @@ struct WallSurface {
   double friction = 0.0;     ///< >= 0
 };
 
-/// `velocity`, or less of it: shortened so that |velocity + lead|^2 - |lead|^2 is at most `most`, as it is computed; to
-/// the least value on the line where that is still more. Without a lead its square is never more than `most`.
-Vec3 shortened(const Vec3& velocity, double most, const Vec3& lead);
+/// `velocity`, or less of it: shortened so that |velocity + lead|^2 - |lead|^2 is at most `limit`, as it is computed;
+/// to the least value on the line where that is still more. Without a lead its square is never more than `limit`.
+Vec3 shortened(const Vec3& velocity, double limit, const Vec3& lead);
 
 namespace detail {
 
@@ -107,9 +107,9 @@ Vec3 after_impact(const Vec3& v, const JointWalls& walls, const SurfaceOf& surfa
   }
   // Of walls that answer differently and face each other some may give more than all of them took together.
   if (held.count > 1) {
-    const double most = norm(held.velocity - v);
+    const double limit = norm(held.velocity - v);
     const double given = norm(back);
-    if (given > most) back *= most / given;
+    if (given > limit) back *= limit / given;
   }
   if (lead != Vec3{}) back = detail::rebound_of_moment(back, v - held.velocity, lead);
   const double speed = norm(held.velocity);
@@ -122,13 +122,13 @@ Vec3 after_impact(const Vec3& v, const JointWalls& walls, const SurfaceOf& surfa
 /// of v, and its energy is not above that of v, as for after_impact().
 template <class SurfaceOf>
 Vec3 rebounded(const Vec3& v, const JointWalls& walls, const SurfaceOf& surface_of, const Vec3& lead = {}) {
-  constexpr unsigned most_impacts = 32;  // between two walls at 5.7 degrees or more there are no more
+  constexpr unsigned max_impacts = 32;  // between two walls at 5.7 degrees or more there are no more
   if (!points_into(v, walls, 0.0)) return v;
-  const double most = rounding_share * norm(v);
+  const double limit = rounding_share * norm(v);
   Vec3 result = v;
-  for (unsigned impact = 0; impact < most_impacts; ++impact) {
+  for (unsigned impact = 0; impact < max_impacts; ++impact) {
     result = after_impact(result, walls, surface_of, lead);
-    if (!points_into(result, walls, most)) return result;
+    if (!points_into(result, walls, limit)) return result;
   }
   return shortened(held_back(result, walls).velocity, dot(result, result) + 2.0 * dot(lead, result), lead);
 }

@@ -11,19 +11,19 @@ namespace dartcast {
 
 namespace {
 
-void check(const Response& r) {
+void check(const WallResponse& r) {
   if (!(r.restitution >= 0.0 && r.restitution <= 1.0)) throw InvalidArgument("a restitution must be between 0 and 1");
   if (!(r.friction >= 0.0) || !std::isfinite(r.friction))
     throw InvalidArgument("a friction must be finite and not negative");
 }
 
-const WallHit* most_opposed(const Vec3& v, std::span<const WallHit> walls) {
+const WallHit* max_opposed(const Vec3& v, std::span<const WallHit> walls) {
   const WallHit* worst = nullptr;
-  double least = 0.0;
+  double lowest = 0.0;
   for (const WallHit& wall : walls) {
     const double along = dot(v, wall.normal);
-    if (along < least) {
-      least = along;
+    if (along < lowest) {
+      lowest = along;
       worst = &wall;
     }
   }
@@ -36,7 +36,7 @@ constexpr double opposed_share = 1e-12;
 
 // A wall that v points into by more than that.
 const WallHit* opposed(const Vec3& v, std::span<const WallHit> walls) {
-  const WallHit* wall = most_opposed(v, walls);
+  const WallHit* wall = max_opposed(v, walls);
   return wall != nullptr && dot(v, wall->normal) < -opposed_share * norm(v) ? wall : nullptr;
 }
 
@@ -44,9 +44,9 @@ Vec3 on_plane(const Vec3& v, const Vec3& n) { return v - n * dot(v, n); }
 
 }  // namespace
 
-Responses::Responses(const Response& general) : general_(general) { check(general); }
+WallResponses::WallResponses(const WallResponse& general) : general_(general) { check(general); }
 
-void Responses::set(Patch patch, const Response& response) {
+void WallResponses::set(Patch patch, const WallResponse& response) {
   check(response);
   if (by_patch_.size() <= patch.value) by_patch_.resize(patch.value + 1U);
   by_patch_[patch.value] = {response, true};
@@ -57,7 +57,7 @@ Vec3 reflected(const Vec3& v, std::span<const WallHit> walls, double restitution
 }
 
 Vec3 slid(const Vec3& v, std::span<const WallHit> walls, std::span<const WallHit> earlier) {
-  const WallHit* newest = most_opposed(v, walls);
+  const WallHit* newest = max_opposed(v, walls);
   if (newest == nullptr) return v;
   const Vec3 plane = on_plane(v, newest->normal);
   const WallHit* second = opposed(plane, walls);
@@ -75,22 +75,22 @@ namespace {
 
 // What respond_with() was given.
 struct Answers {
-  const Responses& responses;
+  const WallResponses& responses;
   std::span<Vec3> velocities;
-  std::span<Fate> fates;
+  std::span<ParticleStatus> fates;
   double dt;
   Acceleration acceleration;
 
   [[nodiscard]] Vec3 rebound(const Vec3& v, const JointWalls& walls, const Vec3& lead) const {
     const auto surface_of = [&](const WallHit& wall, double) {
-      const Response& r = responses.of(wall.patch);
-      return r.kind == ResponseKind::slide ? WallSurface{} : WallSurface{r.restitution, r.friction};
+      const WallResponse& r = responses.of(wall.patch);
+      return r.kind == WallResponseKind::slide ? WallSurface{} : WallSurface{r.restitution, r.friction};
     };
     return rebounded(v, walls, surface_of, lead);
   }
 
   // Where accelerated, the way left is that of the velocity; else it may be of another making, and is reflected itself.
-  [[nodiscard]] Continuation reflect(const Contact& contact, std::span<const WallHit> walls,
+  [[nodiscard]] AfterContact reflect(const Contact& contact, std::span<const WallHit> walls,
                                      std::span<const WallHit> earlier) const {
     const JointWalls met(walls, contact.last ? earlier : earlier.last(contact.together));
     const Vec3 wall_velocity = contact.wall_displacement * (1.0 / dt);
@@ -106,45 +106,46 @@ struct Answers {
 
 }  // namespace
 
-Respond respond_with(const Responses& responses, std::span<Vec3> velocities, std::span<Fate> fates, double dt,
-                     const Acceleration& acceleration) {
+ContactCallback respond_with(const WallResponses& responses, std::span<Vec3> velocities,
+                             std::span<ParticleStatus> fates, double dt, const Acceleration& acceleration) {
   if (!(dt > 0.0)) throw InvalidArgument("the duration of a step must be positive");
   if (velocities.size() != fates.size()) throw InvalidArgument("one velocity and one fate per particle are needed");
   if (acceleration.value != Vec3{} && !(acceleration.duration > 0.0))
     throw InvalidArgument("the duration of an acceleration must be positive");
   const Answers answers{responses, velocities, fates, dt, acceleration};
   return [answers](const Contact& contact, std::span<const WallHit> walls,
-                   std::span<const WallHit> earlier) -> Continuation {
-    Fate& fate = answers.fates[contact.particle];
-    if (fate != Fate::alive) return {};
+                   std::span<const WallHit> earlier) -> AfterContact {
+    ParticleStatus& fate = answers.fates[contact.particle];
+    if (fate != ParticleStatus::alive) return {};
     const Vec3 wall_velocity = contact.wall_displacement * (1.0 / answers.dt);
     Vec3& velocity = answers.velocities[contact.particle];
     switch (answers.responses.of(walls.front().patch).kind) {
-      case ResponseKind::reflect: return answers.reflect(contact, walls, earlier);
-      case ResponseKind::slide:
+      case WallResponseKind::reflect: return answers.reflect(contact, walls, earlier);
+      case WallResponseKind::slide:
         velocity = wall_velocity + slid(velocity - wall_velocity, walls, earlier);
         return {slid(contact.unused, walls, earlier), true};
-      case ResponseKind::stick:
+      case WallResponseKind::stick:
         velocity = wall_velocity;
-        fate = Fate::stuck;
+        fate = ParticleStatus::stuck;
         return {};
-      case ResponseKind::absorb: fate = Fate::absorbed; return {};
-      case ResponseKind::escape: fate = Fate::escaped; return {};
+      case WallResponseKind::absorb: fate = ParticleStatus::absorbed; return {};
+      case WallResponseKind::escape: fate = ParticleStatus::escaped; return {};
     }
     return {};
   };
 }
 
-void hold_stopped(const StepReport& report, const Responses& responses, std::span<Vec3> velocities,
-                  std::span<const Fate> fates, double dt, const Acceleration& acceleration) {
+void hold_stopped(const StepReport& report, const WallResponses& responses, std::span<Vec3> velocities,
+                  std::span<const ParticleStatus> fates, double dt, const Acceleration& acceleration) {
   const std::vector<Contact>& contacts = report.contacts.contacts;
   auto next = contacts.begin();
-  for (const Stopped& stopped : report.stopped) {
+  for (const StoppedParticle& stopped : report.stopped) {
     next = std::find_if(next, contacts.end(), [&](const Contact& c) { return c.particle > stopped.particle; });
     if (next == contacts.begin() || std::prev(next)->particle != stopped.particle) continue;
     const Contact& contact = *std::prev(next);
     const std::span<const WallHit> walls = report.contacts.walls_of(contact);
-    if (fates[contact.particle] != Fate::alive || responses.of(walls.front().patch).kind != ResponseKind::reflect)
+    if (fates[contact.particle] != ParticleStatus::alive ||
+        responses.of(walls.front().patch).kind != WallResponseKind::reflect)
       continue;
     const Vec3 wall_velocity = contact.wall_displacement * (1.0 / dt);
     Vec3& velocity = velocities[contact.particle];

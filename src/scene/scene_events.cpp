@@ -137,9 +137,9 @@ EventScene read_event(TomlTable& t) {
     scene.event.what = reconnect(t);
     t.get("patch", scene.patch);
   }
-  std::size_t stranded = 0;
-  constexpr std::array<Stranded, 3> choices = {Stranded::move, Stranded::stay, Stranded::absorb};
-  if (t.get("stranded", stranded, {"move", "stay", "absorb"})) scene.event.stranded = choices[stranded];
+  std::size_t orphaned = 0;
+  constexpr std::array<OrphanPolicy, 3> choices = {OrphanPolicy::relocate, OrphanPolicy::hold, OrphanPolicy::absorb};
+  if (t.get("stranded", orphaned, {"move", "stay", "absorb"})) scene.event.orphaned = choices[orphaned];
   t.finish();
   return scene;
 }

@@ -26,7 +26,7 @@ class SceneReader {
 
   Scene read(TomlTable root) const {
     Scene scene;
-    root.get("seed", scene.seed, 0, most_seed);
+    root.get("seed", scene.seed, 0, max_seed);
     root.require("environment", "say [environment] with mesh = \"FILE\" or generator = \"box\"");
     scene.environment = read_environment(root.table("environment"), folder_);
     for (TomlTable& t : root.tables("deformation")) scene.deformation.push_back(deformation(t));
@@ -42,7 +42,7 @@ class SceneReader {
     std::stable_sort(scene.events.begin(), scene.events.end(),
                      [](const EventScene& a, const EventScene& b) { return a.event.at < b.event.at; });
     scene.remesh = remesh(root.table("remesh"));
-    scene.crowding = crowding(root.table("crowding"));
+    scene.adaptive_subdivision = adaptive_subdivision(root.table("crowding"));
     scene.output = output(root.table("output"));
     root.finish();
     return scene;
@@ -132,7 +132,7 @@ class SceneReader {
   static MotionScene motion(TomlTable t) {
     MotionScene scene;
     t.get("dt", scene.dt, Range::positive);
-    t.get("steps", scene.steps, 0, most_steps);
+    t.get("steps", scene.steps, 0, max_steps);
     t.get("gravity", scene.gravity);
     t.get("drag", scene.drag, Range::not_negative);
     t.get("substeps", scene.substeps, 1U, 1000U);
@@ -146,10 +146,10 @@ class SceneReader {
     return scene;
   }
 
-  static void response(TomlTable& t, Response& r) {
+  static void response(TomlTable& t, WallResponse& r) {
     std::size_t kind = 0;
     if (t.get("response", kind, {"reflect", "slide", "stick", "absorb", "escape"}))
-      r.kind = static_cast<ResponseKind>(kind);
+      r.kind = static_cast<WallResponseKind>(kind);
     t.get("restitution", r.restitution, {0.0, 1.0});
     t.get("friction", r.friction, Range::not_negative);
   }
@@ -160,7 +160,7 @@ class SceneReader {
     TomlTable patches = t.table("patch");
     for (const std::string& name : patches.keys()) {
       TomlTable patch = patches.table(name);
-      Response& r = scene.by_patch[name] = scene.general;
+      WallResponse& r = scene.by_patch[name] = scene.general;
       response(patch, r);
       patch.finish();
     }
@@ -174,40 +174,40 @@ class SceneReader {
     t.get("friction", options.friction, Range::not_negative);
     t.get("density", options.density, Range::positive);
     t.get("iterations", options.iterations, 1U, 100000U);
-    t.get("push_iterations", options.push_iterations, 0U, 100000U);
+    t.get("push_iterations", options.position_iterations, 0U, 100000U);
     double between_bodies = 0.0;
     if (t.get("body_restitution", between_bodies, {0.0, 1.0})) scene.body_collisions.restitution = between_bodies;
     t.get("body_friction", scene.body_collisions.friction, Range::not_negative);
     t.finish();
   }
 
-  static CrowdingScene crowding(TomlTable t) {
-    CrowdingScene scene;
-    t.get("every", scene.every, 0, most_steps);
-    t.get("most", scene.options.most, 1U, 0xfffffffeU);
-    t.get("least", scene.options.least, 0U, 0xfffffffdU);
+  static AdaptiveSubdivisionScene adaptive_subdivision(TomlTable t) {
+    AdaptiveSubdivisionScene scene;
+    t.get("every", scene.every, 0, max_steps);
+    t.get("most", scene.options.max_particles, 1U, 0xfffffffeU);
+    t.get("least", scene.options.min_particles, 0U, 0xfffffffdU);
     t.get("smallest", scene.options.smallest, Range::not_negative);
     t.get("edits", scene.options.edits, 1U, 0xfffffffeU);
-    if (scene.options.least >= scene.options.most)
-      t.fail("least",
-             fmt::format("least = {}: it must be less than most, {}", scene.options.least, scene.options.most));
+    if (scene.options.min_particles >= scene.options.max_particles)
+      t.fail("least", fmt::format("least = {}: it must be less than most, {}", scene.options.min_particles,
+                                  scene.options.max_particles));
     t.finish();
     return scene;
   }
 
   static RemeshScene remesh(TomlTable t) {
     RemeshScene scene;
-    t.get("every", scene.every, 0, most_steps);
-    std::uint64_t most = scene.options.most_cells;
-    t.get("most_cells", most, 1, 1U << 20U);
-    scene.options.most_cells = most;
+    t.get("every", scene.every, 0, max_steps);
+    std::uint64_t max_particles = scene.options.max_cells;
+    t.get("most_cells", max_particles, 1, 1U << 20U);
+    scene.options.max_cells = max_particles;
     t.finish();
     return scene;
   }
 
   static OutputScene output(TomlTable t) {
     OutputScene scene;
-    t.get("every", scene.every, 0, most_steps);
+    t.get("every", scene.every, 0, max_steps);
     t.get("contacts", scene.contacts);
     t.finish();
     return scene;

@@ -29,7 +29,7 @@ MeshData generated(const MeshSource& source) {
 MeshFile load_source(const MeshSource& source, const ReadOptions& options) {
   if (const auto* path = std::get_if<std::filesystem::path>(&source)) return read_mesh(*path, options);
   MeshFile file{generated(source), {}};
-  file.report = inspect(file.mesh);
+  file.report = check_and_repair(file.mesh);
   file.report.file = "the generated mesh";
   file.report.format = "generated";
   return file;
@@ -39,7 +39,7 @@ MeshFile load_source(const MeshSource& source, const ReadOptions& options) {
 void scale_points(MeshFile& file, double scale) {
   if (scale == 1.0 || file.mesh.types.empty()) return;
   for (Vec3& x : file.mesh.points) x *= scale;
-  if (file.report.valid()) file.report.defects = inspect(file.mesh).defects;
+  if (file.report.valid()) file.report.defects = check_and_repair(file.mesh).defects;
 }
 
 void select_free(MeshData& mesh, const EnvironmentScene& scene) {
@@ -78,7 +78,7 @@ void keep_cells_of(const MeshData& mesh, MeshData& frame) {
   }
   kept.points = std::move(frame.points);
   frame = std::move(kept);
-  inspect(frame);  // drops the points of the other cells
+  check_and_repair(frame);  // drops the points of the other cells
 }
 
 std::vector<Vec3> frame_positions(const std::filesystem::path& file, const MeshData& mesh,

@@ -22,7 +22,7 @@ void get_counts(TomlTable& t, std::string_view key, std::array<std::uint32_t, n>
   }
 }
 
-void get_seed(TomlTable& t, std::uint64_t& seed) { t.get("seed", seed, 0, most_seed); }
+void get_seed(TomlTable& t, std::uint64_t& seed) { t.get("seed", seed, 0, max_seed); }
 
 // What the box and the octahedra have in common. Cells are of unit size unless `size` is given.
 template <class Options>

@@ -40,9 +40,9 @@ void body_samples(TomlTable& t, BodyScene& scene) {
   std::size_t samples = 0;
   t.get("sample", samples, {"solid", "surface", "volume"});
   scene.samples = static_cast<BodySamples>(samples);
-  std::uint64_t most = scene.sampling.most;
-  t.get("most_particles", most, 1, 0xfffffffeU);
-  scene.sampling.most = most;
+  std::uint64_t max_count = scene.sampling.max_count;
+  t.get("most_particles", max_count, 1, 0xfffffffeU);
+  scene.sampling.max_count = max_count;
 }
 
 void body_matter(TomlTable& t, BodyScene& scene) {
@@ -57,7 +57,7 @@ void body_matter(TomlTable& t, BodyScene& scene) {
   t.get("keep_volume", body.match.keep_volume);
   t.get("cluster", scene.cluster, Range::not_negative);
   t.get("velocity", body.velocity);
-  t.get("spin", body.spin);
+  t.get("spin", body.angular_velocity);
 }
 
 CatheterScene::Move catheter_move(TomlTable& t, double begin) {

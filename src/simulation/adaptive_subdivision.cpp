@@ -13,13 +13,13 @@ namespace dartcast {
 
 namespace {
 
-bool has_vertex(const Map& map, Cell c, Vertex v) {
+bool has_vertex(const CombinatorialMap& map, Cell c, Vertex v) {
   const auto vertices = map.view(c).vertices();
   return std::find(vertices.begin(), vertices.end(), v.value) != vertices.end();
 }
 
 // The cells around the vertex, from one of them on, through faces.
-std::vector<Cell> cells_around(const Map& map, Cell start, Vertex v) {
+std::vector<Cell> cells_around(const CombinatorialMap& map, Cell start, Vertex v) {
   std::vector<Cell> cells = {start};
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const CellView cell = map.view(cells[i]);
@@ -33,7 +33,7 @@ std::vector<Cell> cells_around(const Map& map, Cell start, Vertex v) {
 }
 
 // The shortest extent along an axis; edges do not tell: neighbours that were subdivided have halved some.
-double extent_of(const Complex& complex, Cell c) {
+double extent_of(const CellComplex& complex, Cell c) {
   const CellView cell = complex.map().view(c);
   Vec3 low = complex.positions()[cell.vertex(0).value];
   Vec3 high = low;
@@ -48,22 +48,22 @@ double extent_of(const Complex& complex, Cell c) {
 
 }  // namespace
 
-Crowding::Crowding(const CrowdingOptions& options) : options_(options) {
-  if (options.least >= options.most)
+AdaptiveSubdivision::AdaptiveSubdivision(const AdaptiveSubdivisionOptions& options) : options_(options) {
+  if (options.min_particles >= options.max_particles)
     throw InvalidArgument("crowding: cells must be made again at fewer particles than they are subdivided at");
   if (!(options.smallest >= 0.0) || !std::isfinite(options.smallest))
     throw InvalidArgument("crowding: the smallest size must be finite and not negative");
 }
 
-void Crowding::follow(const Map& map, std::span<const Cell> added) {
-  for (Subdivision& s : subdivisions_) dartcast::follow(map, added, s);
+void AdaptiveSubdivision::update_after_edit(const CombinatorialMap& map, std::span<const Cell> added) {
+  for (Subdivision& s : subdivisions_) dartcast::update_after_edit(map, added, s);
 }
 
 // Of equal ones the first by number.
-Crowding::Fullest Crowding::fullest(const Particles& particles) const {
+AdaptiveSubdivision::Fullest AdaptiveSubdivision::fullest(const Particles& particles) const {
   std::vector<Cell> full;
-  for (const State& s : particles.states()) {
-    if (lists_.count(s.cell) > options_.most) full.push_back(s.cell);
+  for (const ParticleState& s : particles.states()) {
+    if (lists_.count(s.cell) > options_.max_particles) full.push_back(s.cell);
   }
   std::sort(full.begin(), full.end());
   full.erase(std::unique(full.begin(), full.end()), full.end());
@@ -81,7 +81,7 @@ Crowding::Fullest Crowding::fullest(const Particles& particles) const {
 }
 
 // Throws EditRefused, nothing changed.
-void Crowding::make(const Complex& complex, const CrowdingChange& change, const Edit& edit) {
+void AdaptiveSubdivision::make(const CellComplex& complex, const SubdivisionChange& change, const Edit& edit) {
   std::optional<Subdivision> made;
   const ComplexEditReport done = edit([&](ComplexEdit& e) {
     if (change.merged)
@@ -93,10 +93,10 @@ void Crowding::make(const Complex& complex, const CrowdingChange& change, const 
     subdivisions_.push_back(*std::move(made));
   else
     subdivisions_.erase(subdivisions_.begin() + static_cast<std::ptrdiff_t>(change.what));
-  follow(complex.map(), done.map.added);
+  update_after_edit(complex.map(), done.map.added);
 }
 
-void Crowding::repeat(const Complex& complex, const CrowdingChange& change, const Edit& edit) {
+void AdaptiveSubdivision::repeat(const CellComplex& complex, const SubdivisionChange& change, const Edit& edit) {
   if (change.merged ? change.what >= subdivisions_.size() : !complex.map().contains(Cell(change.what)))
     throw InvalidArgument(
         fmt::format("crowding: there is no {} {} to edit again", change.merged ? "subdivision" : "cell", change.what));
@@ -104,8 +104,8 @@ void Crowding::repeat(const Complex& complex, const CrowdingChange& change, cons
 }
 
 // Whether it was made; a refusal is told.
-bool Crowding::try_edit(const Complex& complex, const CrowdingChange& change, const Edit& edit, CrowdingRefusal refusal,
-                        CrowdingReport& report) {
+bool AdaptiveSubdivision::try_edit(const CellComplex& complex, const SubdivisionChange& change, const Edit& edit,
+                                   SubdivisionRefusal refusal, AdaptiveSubdivisionReport& report) {
   try {
     make(complex, change, edit);
     report.changes.push_back(change);
@@ -117,14 +117,14 @@ bool Crowding::try_edit(const Complex& complex, const CrowdingChange& change, co
   }
 }
 
-void Crowding::subdivide_fullest(const Complex& complex, const Particles& particles, const Edit& edit,
-                                 CrowdingReport& report) {
+void AdaptiveSubdivision::subdivide_fullest(const CellComplex& complex, const Particles& particles, const Edit& edit,
+                                            AdaptiveSubdivisionReport& report) {
   passed_over_.clear();
   while (true) {
     lists_.update(complex.map(), particles.states());
     const Fullest full = fullest(particles);
     if (!full.cell.valid()) return;
-    const CrowdingRefusal refusal = {full.cell, full.particles, {}};
+    const SubdivisionRefusal refusal = {full.cell, full.particles, {}};
     if (report.subdivided == options_.edits) {
       report.waiting = full.others + 1;
       return;
@@ -146,7 +146,7 @@ void Crowding::subdivide_fullest(const Complex& complex, const Particles& partic
 }
 
 // Whether no part is subdivided itself: what is in a part has the middle of what is around among its ancestors only.
-bool Crowding::is_whole(const Map& map, std::size_t subdivision) const {
+bool AdaptiveSubdivision::is_whole(const CombinatorialMap& map, std::size_t subdivision) const {
   const Subdivision& s = subdivisions_[subdivision];
   return map.contains(s.part) && cells_around(map, s.part.cell, s.middle).size() == s.corners.size() &&
          std::none_of(subdivisions_.begin() + static_cast<std::ptrdiff_t>(subdivision) + 1, subdivisions_.end(),
@@ -155,23 +155,24 @@ bool Crowding::is_whole(const Map& map, std::size_t subdivision) const {
                       });
 }
 
-void Crowding::merge_emptiest(const Complex& complex, const Particles& particles, const Edit& edit,
-                              CrowdingReport& report) {
-  const Map& map = complex.map();
+void AdaptiveSubdivision::merge_emptiest(const CellComplex& complex, const Particles& particles, const Edit& edit,
+                                         AdaptiveSubdivisionReport& report) {
+  const CombinatorialMap& map = complex.map();
   for (std::size_t i = subdivisions_.size(); i-- > 0 && report.merged < options_.edits;) {
     if (!is_whole(map, i)) continue;
     const Subdivision& s = subdivisions_[i];
     lists_.update(map, particles.states());
     std::uint32_t held = 0;
     for (const Cell c : cells_around(map, s.part.cell, s.middle)) held += lists_.count(c);
-    if (held >= options_.least) continue;
-    const CrowdingRefusal refusal = {s.part.cell, held, {}};
+    if (held >= options_.min_particles) continue;
+    const SubdivisionRefusal refusal = {s.part.cell, held, {}};
     if (try_edit(complex, {true, static_cast<std::uint32_t>(i)}, edit, refusal, report)) ++report.merged;
   }
 }
 
-CrowdingReport Crowding::relieve(const Complex& complex, const Particles& particles, const Edit& edit) {
-  CrowdingReport report;
+AdaptiveSubdivisionReport AdaptiveSubdivision::adapt(const CellComplex& complex, const Particles& particles,
+                                                     const Edit& edit) {
+  AdaptiveSubdivisionReport report;
   subdivide_fullest(complex, particles, edit, report);
   merge_emptiest(complex, particles, edit, report);
   return report;

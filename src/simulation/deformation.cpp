@@ -27,9 +27,9 @@ Vec3 turn(const Vec3& r, const Vec3& a, double sine, double cosine) {
   return r * cosine + cross(a, r) * sine + a * (dot(a, r) * (1 - cosine));
 }
 
-class Checker {
+class DeformationChecker {
  public:
-  Checker(const DeformationStep& step, std::size_t index, std::size_t vertices)
+  DeformationChecker(const DeformationStep& step, std::size_t index, std::size_t vertices)
       : step_(step), index_(index), vertices_(vertices) {}
 
   void check() const {
@@ -218,7 +218,7 @@ Deformation::Deformation(std::vector<DeformationStep> steps, std::span<const Vec
     : steps_(std::move(steps)), rest_(rest.begin(), rest.end()), size_(rest.size()) {
   for (std::size_t i = 0; i < steps_.size(); ++i) {
     DeformationStep& s = steps_[i];
-    Checker(s, i, rest_.size()).check();
+    DeformationChecker(s, i, rest_.size()).check();
     if (norm(s.axis) > 0) s.axis *= 1 / norm(s.axis);
     s.direction -= s.axis * dot(s.axis, s.direction);
     if (s.kind == DeformationKind::bend) s.direction *= 1 / norm(s.direction);
@@ -254,7 +254,7 @@ void Deformation::positions(double time, std::span<Vec3> out, Threads threads) c
   add_later(time, out);
 }
 
-void Deformation::follow(const ComplexEditReport& edit, std::size_t size) {
+void Deformation::update_after_edit(const ComplexEditReport& edit, std::size_t size) {
   later_.insert(later_.end(), edit.placed.begin(), edit.placed.end());
   size_ = size;
 }

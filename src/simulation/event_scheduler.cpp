@@ -9,23 +9,23 @@
 
 namespace dartcast {
 
-Surgery::Surgery(const std::vector<Event>& events, const RemeshScene& remesh, const CrowdingScene& crowding, double dt,
-                 Flow& flow)
+EventScheduler::EventScheduler(const std::vector<Event>& events, const RemeshScene& remesh,
+                               const AdaptiveSubdivisionScene& adaptive_subdivision, double dt, Simulation& flow)
     : events_(events),
       remesh_(remesh),
-      relieve_every_(crowding.every),
-      crowding_(crowding.options),
+      adapt_every_(adaptive_subdivision.every),
+      adaptive_subdivision_(adaptive_subdivision.options),
       dt_(dt),
       flow_(flow) {
-  const double latest = static_cast<double>(most_steps) * dt;
+  const double latest = static_cast<double>(max_steps) * dt;
   for (std::size_t i = 0; i < events_.size(); ++i) {
     const double at = events_[i].at;
     if (!(at >= 0.0 && at <= latest))
       throw InvalidArgument(fmt::format("event {} ({}): its time is {} s: it must be between 0 and {} s", i + 1,
                                         event_kind_names[events_[i].what.index()], at, latest));
   }
-  const Map& map = flow.environment().map();
-  if (map.dimension() == 2 && relieve_every_ > 0)
+  const CombinatorialMap& map = flow.environment().map();
+  if (map.dimension() == 2 && adapt_every_ > 0)
     throw InvalidArgument("crowding: in the plane cells are not subdivided; leave [crowding] out");
   for (std::size_t i = 0; map.dimension() == 2 && i < events_.size(); ++i) {
     if (!std::holds_alternative<Ligature>(events_[i].what))
@@ -40,14 +40,14 @@ Surgery::Surgery(const std::vector<Event>& events, const RemeshScene& remesh, co
 }
 
 // Times that are whole numbers of steps but for rounding count as such.
-std::uint64_t Surgery::step_of(const Event& event) const {
+std::uint64_t EventScheduler::step_of(const Event& event) const {
   constexpr double rounding = 1e-9;
   constexpr double never = 0x1p+63;  // more steps than any run has, and still a number of steps
   const double steps = event.at / dt_;
   return static_cast<std::uint64_t>(std::min(never, std::ceil(steps * (1.0 - rounding))));
 }
 
-void Surgery::before_step() {
+void EventScheduler::before_step() {
   for (; next_ < events_.size() && step_of(events_[next_]) <= flow_.steps(); ++next_) {
     const std::uint64_t in_opened = count_in_opened();
     log_.events.push_back(operate(next_));
@@ -56,7 +56,7 @@ void Surgery::before_step() {
   }
 }
 
-EventReport Surgery::operate(std::uint32_t event) {
+EventReport EventScheduler::operate(std::uint32_t event) {
   try {
     return apply(flow_, events_[event]);
   } catch (const Error& e) {
@@ -65,41 +65,42 @@ EventReport Surgery::operate(std::uint32_t event) {
   }
 }
 
-void Surgery::after_step() {
+void EventScheduler::after_step() {
   if (remesh_.every > 0 && flow_.steps() % remesh_.every == 0) {
     const RepairReport report = remesh();
     log_.mended += report.mended.size();
     log_.left = report.left.size();
-    if (!report.mended.empty()) log_.changes.push_back({flow_.steps(), SurgeryLog::Change::remeshing, 0});
+    if (!report.mended.empty()) log_.changes.push_back({flow_.steps(), EventLog::Change::remeshing, 0});
   }
-  if (relieve_every_ > 0 && flow_.steps() % relieve_every_ == 0) relieve();
+  if (adapt_every_ > 0 && flow_.steps() % adapt_every_ == 0) adapt();
   if (!log_.changes.empty()) log_.in_opened = count_in_opened();
 }
 
-RepairReport Surgery::remesh() { return flow_.repair(remesh_.options); }
+RepairReport EventScheduler::remesh() { return flow_.repair(remesh_.options); }
 
-void Surgery::relieve() {
-  const CrowdingReport report = flow_.relieve(crowding_);
+void EventScheduler::adapt() {
+  const AdaptiveSubdivisionReport report = flow_.adapt(adaptive_subdivision_);
   log_.subdivided += report.subdivided;
   log_.merged += report.merged;
   log_.refused = report.refused.size();
-  for (const CrowdingChange& c : report.changes) {
-    const std::uint32_t event = c.merged ? SurgeryLog::Change::merging : SurgeryLog::Change::subdividing;
+  for (const SubdivisionChange& c : report.changes) {
+    const std::uint32_t event = c.merged ? EventLog::Change::merging : EventLog::Change::subdividing;
     log_.changes.push_back({flow_.steps(), event, c.what});
   }
 }
 
-void Surgery::repeat(const SurgeryLog::Change& change) {
+void EventScheduler::repeat(const EventLog::Change& change) {
   const auto edit = [&](const std::function<void(ComplexEdit&)>& make) { return flow_.edit(make).edit; };
-  crowding_.repeat(flow_.environment().complex(), {change.event == SurgeryLog::Change::merging, change.what}, edit);
+  adaptive_subdivision_.repeat(flow_.environment().complex(), {change.event == EventLog::Change::merging, change.what},
+                               edit);
 }
 
-void Surgery::replay(const SurgeryLog& log) {
-  for (const SurgeryLog::Change& change : log.changes) {
+void EventScheduler::replay(const EventLog& log) {
+  for (const EventLog::Change& change : log.changes) {
     flow_.go_to(change.step);
-    if (change.event == SurgeryLog::Change::remeshing) {
+    if (change.event == EventLog::Change::remeshing) {
       remesh();
-    } else if (change.event == SurgeryLog::Change::subdividing || change.event == SurgeryLog::Change::merging) {
+    } else if (change.event == EventLog::Change::subdividing || change.event == EventLog::Change::merging) {
       repeat(change);
     } else if (change.event < events_.size()) {
       operate(change.event);
@@ -111,10 +112,10 @@ void Surgery::replay(const SurgeryLog& log) {
   log_ = log;
 }
 
-std::uint64_t Surgery::count_in_opened() const {
-  const Map& map = flow_.environment().map();
+std::uint64_t EventScheduler::count_in_opened() const {
+  const CombinatorialMap& map = flow_.environment().map();
   const auto states = flow_.particles().states();
-  return static_cast<std::uint64_t>(std::count_if(states.begin(), states.end(), [&](const State& s) {
+  return static_cast<std::uint64_t>(std::count_if(states.begin(), states.end(), [&](const ParticleState& s) {
     const std::uint32_t source = map.source(s.cell);
     return !s.held && source < blocked_.size() && blocked_[source];
   }));

@@ -9,7 +9,7 @@
 namespace dartcast {
 
 /// What has been done to the topology, in order: enough to do it again.
-struct SurgeryLog {
+struct EventLog {
   struct Change {
     static constexpr std::uint32_t remeshing = 0xffffffffU;
     static constexpr std::uint32_t subdividing = 0xfffffffeU;
@@ -17,7 +17,7 @@ struct SurgeryLog {
 
     std::uint64_t step = 0;           ///< steps done before it
     std::uint32_t event = remeshing;  ///< its place in the scene's list
-    std::uint32_t what = 0;           ///< CrowdingChange::what
+    std::uint32_t what = 0;           ///< SubdivisionChange::what
   };
 
   std::vector<Change> changes;
@@ -30,41 +30,44 @@ struct SurgeryLog {
   std::uint64_t in_opened = 0;   ///< particles in cells that were blocked when the run began
 };
 
-class Surgery {
+class EventScheduler {
  public:
   /// All outlive it. `events`: by time. Throws InvalidArgument where an event's time is negative or beyond 2^53 steps,
-  /// the scene is of the plane and an event is no ligature, or crowded cells are to be subdivided; and as Crowding.
-  Surgery(const std::vector<Event>& events, const RemeshScene& remesh, const CrowdingScene& crowding, double dt,
-          Flow& flow);
+  /// the scene is of the plane and an event is no ligature, or crowded cells are to be subdivided; and as
+  /// AdaptiveSubdivision.
+  EventScheduler(const std::vector<Event>& events, const RemeshScene& remesh,
+                 const AdaptiveSubdivisionScene& adaptive_subdivision, double dt, Simulation& flow);
 
   /// To be called before each step: events that are due. Throws as apply(), naming the event.
   void before_step();
   /// To be called after each step: checks and remeshes, and relieves crowded cells, where that is due; and counts.
   void after_step();
   /// Does again what an earlier run has done, to a flow without particles.
-  void replay(const SurgeryLog& log);
+  void replay(const EventLog& log);
   /// To be called after each edit of the environment, by whomever.
-  void after_edit() { crowding_.follow(flow_.environment().map(), flow_.environment().last_edit().map.added); }
+  void after_edit() {
+    adaptive_subdivision_.update_after_edit(flow_.environment().map(), flow_.environment().last_edit().map.added);
+  }
 
-  [[nodiscard]] const SurgeryLog& log() const { return log_; }
+  [[nodiscard]] const EventLog& log() const { return log_; }
 
  private:
   [[nodiscard]] std::uint64_t step_of(const Event& event) const;
   EventReport operate(std::uint32_t event);
   RepairReport remesh();
-  void relieve();
-  void repeat(const SurgeryLog::Change& change);
+  void adapt();
+  void repeat(const EventLog::Change& change);
   [[nodiscard]] std::uint64_t count_in_opened() const;
 
   const std::vector<Event>& events_;
   const RemeshScene& remesh_;
-  std::uint64_t relieve_every_;
-  Crowding crowding_;
+  std::uint64_t adapt_every_;
+  AdaptiveSubdivision adaptive_subdivision_;
   double dt_;
-  Flow& flow_;
+  Simulation& flow_;
   std::vector<bool> blocked_;  // by source, when the run began
   std::uint32_t next_ = 0;     // event
-  SurgeryLog log_;
+  EventLog log_;
 };
 
 }  // namespace dartcast

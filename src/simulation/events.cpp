@@ -10,7 +10,7 @@ namespace {
 
 class Surgeon {
  public:
-  Surgeon(Flow& flow, const Event& event) : flow_(flow), event_(event) {}
+  Surgeon(Simulation& flow, const Event& event) : flow_(flow), event_(event) {}
 
   EventReport operate() {
     report_.kind = static_cast<std::uint32_t>(event_.what.index());
@@ -21,7 +21,7 @@ class Surgeon {
   }
 
  private:
-  [[nodiscard]] const Complex& complex() const { return flow_.environment().complex(); }
+  [[nodiscard]] const CellComplex& complex() const { return flow_.environment().complex(); }
 
   void make(const Cut& cut) {
     carve(std::visit([&](const auto& surface) { return thicken(surface, cut.width); }, cut.surface), Carving::open, {});
@@ -36,15 +36,15 @@ class Surgeon {
   void carve(const std::vector<ConvexTool>& tools, Carving what, const CarveOptions& options) {
     const std::vector<Cell> near = cells_near(complex(), tools);
     Carved carved;
-    note(flow_.edit([&](ComplexEdit& e) { carved = dartcast::carve(e, near, tools, what, options); }, event_.stranded));
+    note(flow_.edit([&](ComplexEdit& e) { carved = dartcast::carve(e, near, tools, what, options); }, event_.orphaned));
     report_.cells_opened = carved.opened.size();
     report_.cells_whole = carved.whole.size();
   }
 
   void make(const Ligature& tie) {
     std::vector<Cell> section;
-    const FlowEdit done =
-        flow_.edit([&](ComplexEdit& e) { section = ligature(e, tie.plane, tie.place); }, event_.stranded);
+    const SimulationEdit done =
+        flow_.edit([&](ComplexEdit& e) { section = ligature(e, tie.plane, tie.place); }, event_.orphaned);
     note(done);
     report_.cells_blocked = section.size();
     for (Cell& c : section) c = done.edit.now(c);
@@ -55,9 +55,9 @@ class Surgeon {
     const auto now = flow_.environment().positions();
     std::vector<Vec3> drawn(now.begin(), now.end());
     draw_together(complex(), section, tie.plane, tie.tying, drawn);
-    const auto flattening = flow_.environment().first_flattening(drawn);
+    const auto inversion = flow_.environment().first_inversion(drawn);
     constexpr double room = 0.75;  // of the way to where a simplex is flattened
-    const double share = flattening ? room * flattening->how.safe_time : 1.0;
+    const double share = inversion ? room * inversion->how.safe_time : 1.0;
     for (std::size_t v = 0; v < drawn.size(); ++v) drawn[v] = (drawn[v] - now[v]) * share;
     flow_.pull(drawn, tie.duration);
   }
@@ -68,32 +68,32 @@ class Surgeon {
         [&](ComplexEdit& e) {
           reconnect(e, open_faces(e, all, what.a, what.within), open_faces(e, all, what.b, what.within), what.options);
         },
-        event_.stranded));
+        event_.orphaned));
   }
 
-  void note(const FlowEdit& done) {
+  void note(const SimulationEdit& done) {
     report_.cells_removed = done.edit.map.removed.size();
     report_.cells_added = done.edit.map.added.size();
     report_.boundary_shift = done.edit.boundary_shift;
     report_.particles_touched = done.particles.touched;
     report_.particles_located = done.particles.located;
-    const auto count = [&](Stranded became) {
-      return static_cast<std::uint64_t>(std::count_if(done.particles.stranded.begin(), done.particles.stranded.end(),
-                                                      [&](const StrandedParticle& p) { return p.became == became; }));
+    const auto count = [&](OrphanPolicy outcome) {
+      return static_cast<std::uint64_t>(std::count_if(done.particles.orphaned.begin(), done.particles.orphaned.end(),
+                                                      [&](const OrphanedParticle& p) { return p.outcome == outcome; }));
     };
-    report_.particles_moved = count(Stranded::move);
-    report_.particles_held = count(Stranded::stay);
-    report_.particles_absorbed = count(Stranded::absorb);
+    report_.particles_moved = count(OrphanPolicy::relocate);
+    report_.particles_held = count(OrphanPolicy::hold);
+    report_.particles_absorbed = count(OrphanPolicy::absorb);
   }
 
-  Flow& flow_;
+  Simulation& flow_;
   const Event& event_;
   EventReport report_;
 };
 
 }  // namespace
 
-EventReport apply(Flow& flow, const Event& event) {
+EventReport apply(Simulation& flow, const Event& event) {
   const auto start = std::chrono::steady_clock::now();
   EventReport report = Surgeon(flow, event).operate();
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

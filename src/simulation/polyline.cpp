@@ -31,7 +31,7 @@ void check(const Particles& particles, std::span<const Vec3> targets, std::size_
 }
 
 StepReport follow_segments(Environment& environment, Particles& particles, std::span<const Vec3> targets,
-                           std::size_t segments, const Respond& respond, const StepOptions& options) {
+                           std::size_t segments, const ContactCallback& respond, const StepOptions& options) {
   std::vector<std::uint8_t> ended(particles.size(), 0);
   std::vector<Vec3> aims(particles.size());
   StepReport report;
@@ -41,7 +41,7 @@ StepReport follow_segments(Environment& environment, Particles& particles, std::
     }
     StepReport segment = environment.advance(particles, aims, respond, options);
     for (const Contact& c : segment.contacts.contacts) ended[c.particle] = 1;
-    for (const Held& h : segment.held) ended[h.particle] = 1;
+    for (const HeldParticle& h : segment.held) ended[h.particle] = 1;
     append_segment(report, std::move(segment), k, segments);
   }
   report.stopped.clear();
@@ -65,16 +65,17 @@ void append_segment(StepReport& report, StepReport segment, std::size_t index, s
     std::stable_sort(report.contacts.contacts.begin(), report.contacts.contacts.end(),
                      [](const Contact& a, const Contact& b) { return a.particle < b.particle; });
   }
-  std::vector<Held> held;
+  std::vector<HeldParticle> held;
   std::set_union(report.held.begin(), report.held.end(), segment.held.begin(), segment.held.end(),
-                 std::back_inserter(held), [](const Held& a, const Held& b) { return a.particle < b.particle; });
+                 std::back_inserter(held),
+                 [](const HeldParticle& a, const HeldParticle& b) { return a.particle < b.particle; });
   report.held = std::move(held);
   report.stopped = std::move(segment.stopped);
   report.counters += segment.counters;
 }
 
 StepReport advance_polyline(Environment& environment, Particles& particles, std::span<const Vec3> targets,
-                            std::size_t segments, const Respond& respond, const StepOptions& options) {
+                            std::size_t segments, const ContactCallback& respond, const StepOptions& options) {
   check(particles, targets, segments, environment.map().dimension() == 2);
   if (particles.size() == 0) return environment.advance(particles, {}, respond, options);
   if (!respond) return follow_segments(environment, particles, targets, segments, respond, options);

@@ -16,7 +16,7 @@ namespace dartcast {
 /// reached to the last target). Times of impact are fractions of the whole step. A particle counts as one particle-step
 /// per segment. Throws as Environment::advance(), before anything is changed.
 StepReport advance_polyline(Environment& environment, Particles& particles, std::span<const Vec3> targets,
-                            std::size_t segments, const Respond& respond = {}, const StepOptions& options = {});
+                            std::size_t segments, const ContactCallback& respond = {}, const StepOptions& options = {});
 
 /// Joins the report of segment `index` of `segments` equal ones to those before it: contacts by particle, then by time.
 void append_segment(StepReport& report, StepReport segment, std::size_t index, std::size_t segments);

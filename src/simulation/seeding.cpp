@@ -9,7 +9,7 @@ namespace dartcast {
 
 namespace {
 
-// In the plane twice the area: see Complex::corners().
+// In the plane twice the area: see CellComplex::corners().
 double volume6(const Corners& v) { return std::max(0.0, dot(v[1] - v[0], cross(v[2] - v[0], v[3] - v[0]))); }
 
 // N non-negative numbers that sum to 1, uniformly: the gaps between N - 1 random cuts of [0, 1].
@@ -30,7 +30,7 @@ std::size_t choose(const std::vector<double>& up_to, Random& random) {
 
 }  // namespace
 
-VolumeSampler::VolumeSampler(const Complex& complex) {
+VolumeSampler::VolumeSampler(const CellComplex& complex) {
   double sum = 0.0;
   for (const Cell c : complex.map().cells()) {
     const CellView view = complex.map().view(c);
@@ -44,7 +44,7 @@ VolumeSampler::VolumeSampler(const Complex& complex) {
   if (cells_.empty() || !(sum > 0.0)) throw InvalidArgument("there is no free cell to put particles into");
 }
 
-Sample VolumeSampler::sample(const Complex& complex, Random& random) const {
+Sample VolumeSampler::sample(const CellComplex& complex, Random& random) const {
   const Cell cell = cells_[choose(volume_up_to_, random)];
   std::vector<double> up_to;
   double sum = 0.0;
@@ -65,7 +65,7 @@ namespace {
 
 // Calls visit(cell, its shape, face) for each wall of the patch at a free cell.
 template <class Visit>
-void for_each_face(const Map& map, Patch patch, Visit&& visit) {
+void for_each_face(const CombinatorialMap& map, Patch patch, Visit&& visit) {
   for (const Cell c : map.cells()) {
     const CellView view = map.view(c);
     if (!view.is_free()) continue;
@@ -77,7 +77,7 @@ void for_each_face(const Map& map, Patch patch, Visit&& visit) {
 
 }  // namespace
 
-bool has_free_face(const Map& map, Patch patch) {
+bool has_free_face(const CombinatorialMap& map, Patch patch) {
   bool found = false;
   for_each_face(map, patch, [&](Cell, const Shape&, std::uint16_t) { found = true; });
   return found;
@@ -104,7 +104,7 @@ Vec3 random_on_facet(unsigned dimension, const Corners& v, unsigned facet, Rando
 
 }  // namespace
 
-PatchSampler::PatchSampler(const Complex& complex, Patch patch) {
+PatchSampler::PatchSampler(const CellComplex& complex, Patch patch) {
   for_each_face(complex.map(), patch, [&](Cell c, const Shape& shape, std::uint16_t f) {
     for (std::uint16_t t = 0; t < shape.triangle_count(f); ++t) {
       const Across behind = shape.entry(f, t);
@@ -115,7 +115,7 @@ PatchSampler::PatchSampler(const Complex& complex, Patch patch) {
   update(complex);
 }
 
-void PatchSampler::update(const Complex& complex) {
+void PatchSampler::update(const CellComplex& complex) {
   area_up_to_.clear();
   double sum = 0.0;
   for (const Triangle& t : triangles_) {
@@ -124,7 +124,7 @@ void PatchSampler::update(const Complex& complex) {
   }
 }
 
-Sample PatchSampler::sample(const Complex& complex, Random& random) const {
+Sample PatchSampler::sample(const CellComplex& complex, Random& random) const {
   const Triangle& t = triangles_[choose(area_up_to_, random)];
   const Corners v = complex.corners(t.simplex);
   const Vec3 on_face = random_on_facet(complex.map().dimension(), v, t.facet, random);

@@ -20,9 +20,9 @@ struct Sample {
 class VolumeSampler {
  public:
   /// Throws InvalidArgument where no cell is free.
-  explicit VolumeSampler(const Complex& complex);
+  explicit VolumeSampler(const CellComplex& complex);
   /// In a free cell. Cost: the logarithm of the cells.
-  [[nodiscard]] Sample sample(const Complex& complex, Random& random) const;
+  [[nodiscard]] Sample sample(const CellComplex& complex, Random& random) const;
 
  private:
   std::vector<Cell> cells_;
@@ -30,17 +30,17 @@ class VolumeSampler {
 };
 
 /// Whether a patch has a wall at a free cell. Cost: linear in the cells.
-bool has_free_face(const Map& map, Patch patch);
+bool has_free_face(const CombinatorialMap& map, Patch patch);
 
 /// Points of equal likelihood by area on a patch's faces, moved inwards by 1/64 of the way to the opposite corner of
 /// the simplex there.
 class PatchSampler {
  public:
   /// Throws InvalidArgument where the patch has no face at a free cell.
-  PatchSampler(const Complex& complex, Patch patch);
+  PatchSampler(const CellComplex& complex, Patch patch);
   /// Takes the areas at the complex's current positions. Cost: the patch's faces.
-  void update(const Complex& complex);
-  [[nodiscard]] Sample sample(const Complex& complex, Random& random) const;
+  void update(const CellComplex& complex);
+  [[nodiscard]] Sample sample(const CellComplex& complex, Random& random) const;
 
  private:
   struct Triangle {

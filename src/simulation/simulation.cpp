@@ -17,7 +17,7 @@ namespace dartcast {
 namespace {
 
 constexpr std::size_t grain = 512;
-constexpr double most_injected = 0x1p+31;  // by an inlet in a step
+constexpr double max_injected = 0x1p+31;  // by an inlet in a step
 
 // Adds the time that it lives to a sum of seconds.
 class Timer {
@@ -41,7 +41,7 @@ void check_plane(const Environment& environment, const Vec3& v, std::string_view
     throw InvalidArgument(fmt::format("flow: {} is ({}, {}, {}): in the plane its z must be 0", what, v.x, v.y, v.z));
 }
 
-void check(const FlowOptions& o) {
+void check(const SimulationOptions& o) {
   if (!(o.dt >= smallest_dt && o.dt <= largest_dt))
     throw InvalidArgument(fmt::format("flow: dt is {}: it must be between 2^-100 and 2^100 s", o.dt));
   if (!(o.drag >= 0.0) || !std::isfinite(o.drag)) throw InvalidArgument("flow: drag must be finite and not negative");
@@ -71,14 +71,14 @@ void keep_unmarked(std::vector<T>& values, std::span<const std::uint8_t> marks) 
 
 }  // namespace
 
-Flow::Flow(Environment& environment, const FlowOptions& options, Responses responses)
+Simulation::Simulation(Environment& environment, const SimulationOptions& options, WallResponses responses)
     : environment_(environment), options_(options), responses_(std::move(responses)), random_(options.seed) {
   check(options);
   check_plane(environment, options.gravity, "gravity");
   totals_.contacts_by_patch.resize(environment.map().patch_names().size());
 }
 
-void Flow::set_deformation(Deformation deformation) {
+void Simulation::set_deformation(Deformation deformation) {
   if (deformation.size() != environment_.positions().size()) {
     throw InvalidArgument("flow: the deformation is made for another number of points than the environment has");
   }
@@ -86,33 +86,33 @@ void Flow::set_deformation(Deformation deformation) {
   deformation_ = std::move(deformation);
 }
 
-void Flow::check_motion(const Vec3& velocity, double radius, std::string_view whose) const {
+void Simulation::check_motion(const Vec3& velocity, double radius, std::string_view whose) const {
   if (!is_finite(velocity)) throw InvalidArgument(fmt::format("flow: {} velocity must be finite", whose));
   check_plane(environment_, velocity, fmt::format("{} velocity", whose));
   if (!is_radius(radius))
     throw InvalidArgument(fmt::format("flow: {} radius is {}: it must be between 0 and 2^100", whose, radius));
 }
 
-void Flow::add_inlet(Patch patch, double rate, const Vec3& velocity, double radius) {
-  if (!(rate >= 0.0 && rate * options_.dt <= most_injected))
+void Simulation::add_inlet(Patch patch, double rate, const Vec3& velocity, double radius) {
+  if (!(rate >= 0.0 && rate * options_.dt <= max_injected))
     throw InvalidArgument(
         fmt::format("flow: an inlet's rate is {}: it must not be negative, and at most {} a second with steps of {} s "
                     "(2^31 particles a step)",
-                    rate, most_injected / options_.dt, options_.dt));
+                    rate, max_injected / options_.dt, options_.dt));
   check_motion(velocity, radius, "an inlet's");
   inlets_.push_back({patch, PatchSampler(environment_.complex(), patch), rate, velocity, radius});
 }
 
-std::vector<Added> Flow::add(std::span<const Vec3> positions, const Vec3& velocity, double radius) {
+std::vector<AddResult> Simulation::add(std::span<const Vec3> positions, const Vec3& velocity, double radius) {
   check_motion(velocity, radius, "a particle's");
-  std::vector<Added> added = environment_.add(particles_, positions);
+  std::vector<AddResult> added = environment_.add(particles_, positions);
   complete(velocity, radius);
   totals_.start = next_id_ - totals_.injected;
   return added;
 }
 
-std::vector<Added> Flow::add(std::span<const Vec3> positions, std::span<const Vec3> velocities,
-                             std::span<const double> radii) {
+std::vector<AddResult> Simulation::add(std::span<const Vec3> positions, std::span<const Vec3> velocities,
+                                       std::span<const double> radii) {
   if (velocities.size() != positions.size() || radii.size() != positions.size())
     throw InvalidArgument(fmt::format("flow: {} velocities and {} radii for {} positions", velocities.size(),
                                       radii.size(), positions.size()));
@@ -120,7 +120,7 @@ std::vector<Added> Flow::add(std::span<const Vec3> positions, std::span<const Ve
     const bool good = is_finite(velocities[i]) && !leaves_plane(environment_, velocities[i]) && is_radius(radii[i]);
     if (!good) check_motion(velocities[i], radii[i], fmt::format("particle {}'s", i));
   }
-  std::vector<Added> added = environment_.add(particles_, positions);
+  std::vector<AddResult> added = environment_.add(particles_, positions);
   for (std::size_t i = 0; i < added.size(); ++i) {
     if (added[i].location.place == Place::free) complete_next(velocities[i], radii[i]);
   }
@@ -129,14 +129,14 @@ std::vector<Added> Flow::add(std::span<const Vec3> positions, std::span<const Ve
 }
 
 // Gives ids, velocities and radii to the particles added last.
-void Flow::complete(const Vec3& velocity, double radius) {
+void Simulation::complete(const Vec3& velocity, double radius) {
   while (ids_.size() < particles_.size()) complete_next(velocity, radius);
 }
 
-void Flow::complete_next(const Vec3& velocity, double radius) {
+void Simulation::complete_next(const Vec3& velocity, double radius) {
   ids_.push_back(next_id_++);
   velocities_.push_back(velocity);
-  fates_.push_back(Fate::alive);
+  fates_.push_back(ParticleStatus::alive);
   contact_counts_.push_back(0);
   radii_.push_back(radius);
   held_.push_back(0);
@@ -145,14 +145,14 @@ void Flow::complete_next(const Vec3& velocity, double radius) {
 
 // Sampled points are rounded: one that fell out of its simplex is drawn again.
 template <class Sampler>
-void Flow::add_sampled(const Sampler& sampler, std::size_t count, const Vec3& velocity, double radius) {
-  constexpr int most_tries = 1000;
+void Simulation::add_sampled(const Sampler& sampler, std::size_t count, const Vec3& velocity, double radius) {
+  constexpr int max_tries = 1000;
   for (std::size_t i = 0; i < count; ++i) {
     int tries = 0;
     while (true) {
       const Sample s = sampler.sample(environment_.complex(), random_);
       if (environment_.add(particles_, s.simplex, flushed(s.position))) break;
-      if (++tries == most_tries) {
+      if (++tries == max_tries) {
         complete(velocity, radius);
         throw InvalidArgument(
             "flow: random points fall outside the free cells again and again: their cells are too thin or not valid");
@@ -162,20 +162,20 @@ void Flow::add_sampled(const Sampler& sampler, std::size_t count, const Vec3& ve
   complete(velocity, radius);
 }
 
-void Flow::move_vertices_to(std::uint64_t steps) {
+void Simulation::move_vertices_to(std::uint64_t steps) {
   if (!deformation_ || steps == 0) return;
   deformation_->positions(static_cast<double>(steps) * options_.dt, environment_.next_positions(),
                           environment_.threads());
   environment_.move();
 }
 
-void Flow::add_random(std::size_t count, const Vec3& velocity, double radius) {
+void Simulation::add_random(std::size_t count, const Vec3& velocity, double radius) {
   check_motion(velocity, radius, "a particle's");
   if (count > 0) add_sampled(VolumeSampler(environment_.complex()), count, velocity, radius);
   totals_.start = next_id_ - totals_.injected;
 }
 
-const FlowStep& Flow::step() {
+const SimulationStep& Simulation::step() {
   last_ = {};
   last_.duration = options_.dt;
   last_.absorbed = std::exchange(absorbed_between_, 0);
@@ -192,7 +192,7 @@ const FlowStep& Flow::step() {
   return last_;
 }
 
-void Flow::inject() {
+void Simulation::inject() {
   const Timer timer(totals_.seconds_respond);
   for (Inlet& inlet : inlets_) {
     const auto up_to = [&](std::uint64_t steps) {
@@ -207,13 +207,13 @@ void Flow::inject() {
   totals_.injected += last_.injected;
 }
 
-void Flow::move_vertices() {
+void Simulation::move_vertices() {
   if (!deformation_) return;
   const Timer timer(totals_.seconds_deform);
   move_vertices_to(steps_ + 1);
 }
 
-void Flow::advance_segment(unsigned segment) {
+void Simulation::advance_segment(unsigned segment) {
   const double dt = options_.dt / options_.substeps;
   const bool moving = deformation_ && segment == 0;
   if (collides()) {
@@ -230,7 +230,7 @@ void Flow::advance_segment(unsigned segment) {
     aim(dt, moving);
   }
   const Timer timer(totals_.seconds_detect);
-  const Respond respond = respond_with(responses_, velocities_, fates_, options_.dt, acceleration(dt));
+  const ContactCallback respond = respond_with(responses_, velocities_, fates_, options_.dt, acceleration(dt));
   if (spheres_ == 0) {
     StepReport report = environment_.advance(particles_, targets_, respond, options_.step);
     hold_stopped(report, responses_, velocities_, fates_, options_.dt, acceleration(dt));
@@ -247,11 +247,11 @@ void Flow::advance_segment(unsigned segment) {
   last_.overlaps.insert(last_.overlaps.end(), report.overlaps.begin(), report.overlaps.end());
 }
 
-void Flow::aim(double dt, bool moving) {
+void Simulation::aim(double dt, bool moving) {
   targets_.resize(particles_.size());
   parallel_for(particles_.size(), grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Aim a = fates_[i] == Fate::absorbed || fates_[i] == Fate::escaped
+      const Aim a = fates_[i] == ParticleStatus::absorbed || fates_[i] == ParticleStatus::escaped
                         ? Aim{velocities_[i], particles_[i].position}
                         : aim_at(i, dt, moving);
       velocities_[i] = a.velocity;
@@ -260,14 +260,14 @@ void Flow::aim(double dt, bool moving) {
   });
 }
 
-Vec3 Flow::accelerated(const Vec3& v, const Vec3& flow, double dt) const {
+Vec3 Simulation::accelerated(const Vec3& v, const Vec3& flow, double dt) const {
   if (options_.drag == 0.0) return field_ ? flow : v + options_.gravity * dt;
   const double lost = -std::expm1(-options_.drag * dt);
   return v + (flow + options_.gravity * (1.0 / options_.drag) - v) * lost;
 }
 
 // What contacts know of the forces: nothing where a field or other spheres make velocities, too. Drag takes its part.
-Acceleration Flow::acceleration(double dt) const {
+Acceleration Simulation::acceleration(double dt) const {
   if (field_ || collides()) return {};
   if (options_.drag == 0.0) return {options_.gravity, dt};
   return {options_.gravity * (-std::expm1(-options_.drag * dt) / (options_.drag * dt)), dt};
@@ -276,24 +276,24 @@ Acceleration Flow::acceleration(double dt) const {
 // A particle's velocity after the acceleration, and where it then wants to go: relative to positions before a move. One
 // that is held takes no step; one that sticks goes where riding along puts it, to the last bit, so that no contact
 // follows.
-Flow::Aim Flow::aim_at(std::size_t i, double dt, bool moving) const {
-  const State& s = particles_[i];
+Simulation::Aim Simulation::aim_at(std::size_t i, double dt, bool moving) const {
+  const ParticleState& s = particles_[i];
   if (s.held) return {velocities_[i], s.position};
-  const bool stuck = fates_[i] == Fate::stuck;
+  const bool stuck = fates_[i] == ParticleStatus::stuck;
   if (!stuck && !field_) {
     const Vec3 v = accelerated(velocities_[i], {}, dt);
     return {v, s.position + v * dt};
   }
   if (stuck && !moving) return {velocities_[i], s.position};
-  const Complex& complex = environment_.complex();
+  const CellComplex& complex = environment_.complex();
   const Corners now = complex.corners(s.at());
   const Corners before = deforms() ? complex.previous_corners(s.at()) : now;
   const Weights w = detail::barycentric(moving ? before : now, s.position);
-  const Vec3 ridden = detail::combine(now, w);
-  const Vec3 mesh = (ridden - detail::combine(before, w)) * (1.0 / options_.dt);
+  const Vec3 carried = detail::combine(now, w);
+  const Vec3 mesh = (carried - detail::combine(before, w)) * (1.0 / options_.dt);
   if (stuck) {
     const bool positive = volume_sign(now) == Sign::positive;
-    return {mesh, positive ? detail::ridden(complex, s.at(), w).position : s.position};
+    return {mesh, positive ? detail::carried(complex, s.at(), w).position : s.position};
   }
   const Vec3 flow = field_->at(complex, s.at(), w, now);
   if (field_->frame() == FieldFrame::space) {
@@ -301,10 +301,10 @@ Flow::Aim Flow::aim_at(std::size_t i, double dt, bool moving) const {
     return {v, s.position + v * dt};
   }
   const Vec3 v = accelerated(velocities_[i], flow + mesh, dt);
-  return {v, (moving ? ridden : s.position) + (v - mesh) * dt};
+  return {v, (moving ? carried : s.position) + (v - mesh) * dt};
 }
 
-void Flow::count_contacts() {
+void Simulation::count_contacts() {
   const ContactList& list = last_.report.contacts;
   last_.contact_ids.reserve(list.contacts.size());
   for (const Contact& c : list.contacts) {
@@ -314,19 +314,19 @@ void Flow::count_contacts() {
   }
 }
 
-void Flow::mark_held() {
+void Simulation::mark_held() {
   std::fill(held_.begin(), held_.end(), std::uint8_t{0});
-  for (const Held& h : last_.report.held) held_[h.particle] = 1;
+  for (const HeldParticle& h : last_.report.held) held_[h.particle] = 1;
 }
 
-void Flow::remove_gone() {
+void Simulation::remove_gone() {
   std::vector<std::uint8_t> gone(particles_.size(), 0);
   std::uint64_t absorbed = 0;
   for (std::size_t i = 0; i < gone.size(); ++i) {
-    const Fate fate = fates_[i];
-    if (fate != Fate::absorbed && fate != Fate::escaped) continue;
+    const ParticleStatus fate = fates_[i];
+    if (fate != ParticleStatus::absorbed && fate != ParticleStatus::escaped) continue;
     gone[i] = 1;
-    ++(fate == Fate::absorbed ? absorbed : last_.escaped);
+    ++(fate == ParticleStatus::absorbed ? absorbed : last_.escaped);
     gone_.add(ids_[i], particles_[i], velocities_[i], static_cast<std::uint64_t>(fate));
   }
   last_.absorbed += absorbed;
@@ -338,7 +338,7 @@ void Flow::remove_gone() {
 }
 
 // What is kept beside the particles themselves.
-void Flow::remove_marked(std::span<const std::uint8_t> marks) {
+void Simulation::remove_marked(std::span<const std::uint8_t> marks) {
   keep_unmarked(ids_, marks);
   keep_unmarked(velocities_, marks);
   keep_unmarked(fates_, marks);
@@ -349,7 +349,7 @@ void Flow::remove_marked(std::span<const std::uint8_t> marks) {
   count_spheres();
 }
 
-void Flow::count_spheres() {
+void Simulation::count_spheres() {
   spheres_ = static_cast<std::size_t>(std::count_if(radii_.begin(), radii_.end(), [](double r) { return r > 0.0; }));
 }
 

@@ -4,8 +4,8 @@
 
 namespace dartcast {
 
-FlowCheckpoint Flow::checkpoint() const {
-  FlowCheckpoint saved;
+SimulationCheckpoint Simulation::checkpoint() const {
+  SimulationCheckpoint saved;
   saved.steps = steps_;
   saved.next_id = next_id_;
   saved.random = random_;
@@ -15,18 +15,19 @@ FlowCheckpoint Flow::checkpoint() const {
   }
   saved.totals = totals_;
   saved.gone = gone_;
-  const auto kept = meets_bodies() ? body_collider_.solver().kept() : collider_.solver().kept();
-  saved.impulses.assign(kept.begin(), kept.end());
+  const auto cached_impulses =
+      meets_bodies() ? body_collider_.solver().cached_impulses() : collider_.solver().cached_impulses();
+  saved.impulses.assign(cached_impulses.begin(), cached_impulses.end());
   return saved;
 }
 
-void Flow::restore(const FlowCheckpoint& saved) {
+void Simulation::restore(const SimulationCheckpoint& saved) {
   if (saved.totals.contacts_by_patch.size() != totals_.contacts_by_patch.size())
     throw InvalidArgument("flow: the checkpoint is of an environment with other patches");
   if (steps_ != saved.steps) stand_at(saved.steps);
-  std::vector<State> states;
+  std::vector<ParticleState> states;
   std::vector<Weights> weights;
-  for (const FlowCheckpoint::Particle& p : saved.particles) {
+  for (const SimulationCheckpoint::Particle& p : saved.particles) {
     states.push_back(p.state);
     weights.push_back(p.held_weights);
   }
@@ -37,7 +38,7 @@ void Flow::restore(const FlowCheckpoint& saved) {
   contact_counts_.clear();
   radii_.clear();
   held_.clear();
-  for (const FlowCheckpoint::Particle& p : saved.particles) {
+  for (const SimulationCheckpoint::Particle& p : saved.particles) {
     ids_.push_back(p.id);
     velocities_.push_back(p.velocity);
     fates_.push_back(p.fate);
@@ -47,8 +48,8 @@ void Flow::restore(const FlowCheckpoint& saved) {
   }
   clear_.clear();
   count_spheres();
-  body_collider_.solver().set_kept(saved.impulses);  // whichever goes on forgets the other's
-  collider_.solver().set_kept(saved.impulses);
+  body_collider_.solver().set_cached_impulses(saved.impulses);  // whichever goes on forgets the other's
+  collider_.solver().set_cached_impulses(saved.impulses);
   steps_ = saved.steps;
   next_id_ = saved.next_id;
   random_ = saved.random;
@@ -56,19 +57,19 @@ void Flow::restore(const FlowCheckpoint& saved) {
   gone_ = saved.gone;
 }
 
-void Flow::go_to(std::uint64_t steps) {
+void Simulation::go_to(std::uint64_t steps) {
   if (particles_.size() > 0) throw InvalidArgument("flow: there are particles, which would be left behind");
   if (steps_ != steps) stand_at(steps);
   steps_ = steps;
 }
 
 // As after the last of these steps: where vertices were before it counts, too.
-void Flow::stand_at(std::uint64_t steps) {
+void Simulation::stand_at(std::uint64_t steps) {
   if (steps > 1) move_vertices_to(steps - 1);
   move_vertices_to(steps);
 }
 
-StateHash Flow::state_hash() const {
+StateHash Simulation::state_hash() const {
   StateHash hash = gone_;
   for (std::size_t i = 0; i < ids_.size(); ++i) {
     hash.add(ids_[i], particles_[i], velocities_[i], static_cast<std::uint64_t>(fates_[i]));

@@ -19,7 +19,7 @@ constexpr double wall_share = 0.25;
 
 }  // namespace
 
-void Flow::set_bodies(Bodies& bodies) {
+void Simulation::set_bodies(Bodies& bodies) {
   if (options_.substeps != 1) throw InvalidArgument("flow: spheres and bodies meet once in a step: substeps must be 1");
   if (bodies.options().dt != options_.dt)
     throw InvalidArgument("flow: the steps of bodies that its spheres meet must be as long as its own");
@@ -28,26 +28,27 @@ void Flow::set_bodies(Bodies& bodies) {
 }
 
 // Masses, and who takes part: those held or gone meet nobody, those that stick to a wall cannot be pushed.
-void Flow::weigh() {
+void Simulation::weigh() {
   met_radii_.resize(radii_.size());
   inverse_masses_.resize(radii_.size());
   displacements_.resize(radii_.size());
   for (std::size_t i = 0; i < radii_.size(); ++i) {
     const double r = radii_[i];
-    const bool meets = !particles_[i].held && (fates_[i] == Fate::alive || fates_[i] == Fate::stuck);
+    const bool meets =
+        !particles_[i].held && (fates_[i] == ParticleStatus::alive || fates_[i] == ParticleStatus::stuck);
     met_radii_[i] = meets ? r : 0.0;
     const double m = mass(i);
-    inverse_masses_[i] = fates_[i] == Fate::alive && m > 0.0 ? 1.0 / m : 0.0;
+    inverse_masses_[i] = fates_[i] == ParticleStatus::alive && m > 0.0 ? 1.0 / m : 0.0;
   }
 }
 
 // What is known of the room around a sphere from where it was measured. Distances were rounded: a share is given up.
-double Flow::clearance(std::size_t i) const {
+double Simulation::clearance(std::size_t i) const {
   const double room = clear_[i].distance * (1.0 - 0x1p-20) - norm(particles_[i].position - clear_[i].centre);
   return std::max(0.0, room);
 }
 
-void Flow::walls_of(std::size_t i, double dt, bool moving, NearWalls& near, std::vector<WallContact>& found) {
+void Simulation::walls_of(std::size_t i, double dt, bool moving, NearWalls& near, std::vector<WallContact>& found) {
   const double r = met_radii_[i];
   clearances_[i] = clearance(i);
   if (clearances_[i] >= r * (1.0 + wall_share)) return;
@@ -59,9 +60,9 @@ void Flow::walls_of(std::size_t i, double dt, bool moving, NearWalls& near, std:
   clear_[i] = {particles_[i].position, walls.empty() ? r + reach : walls.front().distance};
   clearances_[i] = clearance(i);
   for (const WallFeature& w : walls) {
-    const Response& response = responses_.of(w.patch);
-    if (response.kind != ResponseKind::reflect && response.kind != ResponseKind::slide) continue;
-    const bool slides = response.kind == ResponseKind::slide;
+    const WallResponse& response = responses_.of(w.patch);
+    if (response.kind != WallResponseKind::reflect && response.kind != WallResponseKind::slide) continue;
+    const bool slides = response.kind == WallResponseKind::slide;
     const Vec3 velocity = moving ? w.displacement * (1.0 / dt) : Vec3{};
     const double gap = w.distance - r;
     const bool meets = gap <= wall_share * r && dot(velocities_[i] - velocity, w.normal) * dt <= -gap;
@@ -71,7 +72,7 @@ void Flow::walls_of(std::size_t i, double dt, bool moving, NearWalls& near, std:
   }
 }
 
-void Flow::find_walls(double dt, bool moving) {
+void Simulation::find_walls(double dt, bool moving) {
   const std::size_t chunks = chunk_count(radii_.size(), wall_grain);
   if (near_.size() < chunks) near_.resize(chunks);
   near_contacts_.resize(chunks);
@@ -90,13 +91,13 @@ void Flow::find_walls(double dt, bool moving) {
 }
 
 // Where those that stick to a wall go is known once it has moved.
-void Flow::aim_stuck(double dt) {
+void Simulation::aim_stuck(double dt) {
   for (std::size_t i = 0; i < fates_.size(); ++i) {
-    if (fates_[i] == Fate::stuck) targets_[i] = flushed(aim_at(i, dt, true).target);
+    if (fates_[i] == ParticleStatus::stuck) targets_[i] = flushed(aim_at(i, dt, true).target);
   }
 }
 
-void Flow::collide(double dt, bool moving) {
+void Simulation::collide(double dt, bool moving) {
   aim(dt, false);
   weigh();
   find_walls(dt, moving);
@@ -106,27 +107,28 @@ void Flow::collide(double dt, bool moving) {
   solver.restitution = c.restitution;
   solver.friction = c.friction;
   solver.iterations = c.iterations;
-  solver.push_iterations = c.push_iterations;
+  solver.position_iterations = c.position_iterations;
   solver.resting_speed = 2.0 * norm(options_.gravity) * dt;
-  const Complex& complex = environment_.complex();
+  const CellComplex& complex = environment_.complex();
   const CollidingSpheres spheres = {particles_.states(), ids_,        met_radii_,    inverse_masses_,
                                     clearances_,         velocities_, displacements_};
   if (meets_bodies()) {
     last_.collisions += body_collider_.collide(complex, spheres, walls_, *bodies_, solver, environment_.threads());
-    collider_.solver().set_kept({});
+    collider_.solver().set_cached_impulses({});
   } else {
     last_.collisions += collider_.collide(complex, spheres, walls_, solver, environment_.threads());
-    body_collider_.solver().set_kept({});
+    body_collider_.solver().set_cached_impulses({});
   }
   for (std::size_t i = 0; i < targets_.size(); ++i) {
-    if (fates_[i] == Fate::alive && !particles_[i].held)
+    if (fates_[i] == ParticleStatus::alive && !particles_[i].held)
       targets_[i] = flushed(particles_[i].position + displacements_[i]);
   }
 }
 
-CrowdingReport Flow::relieve(Crowding& crowding, Stranded stranded) {
-  return crowding.relieve(environment_.complex(), particles_,
-                          [&](const std::function<void(ComplexEdit&)>& make) { return edit(make, stranded).edit; });
+AdaptiveSubdivisionReport Simulation::adapt(AdaptiveSubdivision& adaptive_subdivision, OrphanPolicy orphaned) {
+  return adaptive_subdivision.adapt(
+      environment_.complex(), particles_,
+      [&](const std::function<void(ComplexEdit&)>& make) { return edit(make, orphaned).edit; });
 }
 
 }  // namespace dartcast

@@ -6,29 +6,29 @@
 
 namespace dartcast {
 
-FlowEdit Flow::edit(const std::function<void(ComplexEdit&)>& make, Stranded stranded) {
-  const std::vector<State> before(particles_.states().begin(), particles_.states().end());
-  FlowEdit done;
+SimulationEdit Simulation::edit(const std::function<void(ComplexEdit&)>& make, OrphanPolicy orphaned) {
+  const std::vector<ParticleState> before(particles_.states().begin(), particles_.states().end());
+  SimulationEdit done;
   done.edit = environment_.edit(make);
   clear_.clear();
-  done.particles = environment_.follow(particles_, stranded);
+  done.particles = environment_.update_after_edit(particles_, orphaned);
   remove_absorbed(done.particles, before);
-  if (deformation_) deformation_->follow(done.edit, environment_.positions().size());
-  if (field_) field_->follow(done.edit, environment_.complex());
+  if (deformation_) deformation_->update_after_edit(done.edit, environment_.positions().size());
+  if (field_) field_->update_after_edit(done.edit, environment_.complex());
   reopen_inlets();
-  if (after_edit_) after_edit_(stranded);
+  if (after_edit_) after_edit_(orphaned);
   return done;
 }
 
-void Flow::remove_absorbed(const FollowReport& report, std::span<const State> before) {
+void Simulation::remove_absorbed(const UpdateReport& report, std::span<const ParticleState> before) {
   std::vector<std::uint8_t> marks(ids_.size(), 0);
   std::uint64_t absorbed = 0;
-  for (const StrandedParticle& p : report.stranded) {
-    if (p.became != Stranded::absorb) continue;
+  for (const OrphanedParticle& p : report.orphaned) {
+    if (p.outcome != OrphanPolicy::absorb) continue;
     marks[p.particle] = 1;
     ++absorbed;
     gone_.add(ids_[p.particle], before[p.particle], velocities_[p.particle],
-              static_cast<std::uint64_t>(Fate::absorbed));
+              static_cast<std::uint64_t>(ParticleStatus::absorbed));
   }
   if (absorbed == 0) return;
   totals_.absorbed += absorbed;
@@ -36,14 +36,14 @@ void Flow::remove_absorbed(const FollowReport& report, std::span<const State> be
   remove_marked(marks);
 }
 
-void Flow::reopen_inlets() {
+void Simulation::reopen_inlets() {
   for (Inlet& inlet : inlets_) {
     inlet.sampler.reset();
     if (has_free_face(environment_.map(), inlet.patch)) inlet.sampler.emplace(environment_.complex(), inlet.patch);
   }
 }
 
-RepairReport Flow::repair(const RepairOptions& options) {
+RepairReport Simulation::repair(const RepairOptions& options) {
   std::vector<Cell> invalid;
   for (const InvalidCell& c : environment_.validity(static_cast<std::size_t>(-1)).first) invalid.push_back(c.cell);
   RepairReport report;
@@ -52,7 +52,7 @@ RepairReport Flow::repair(const RepairOptions& options) {
   return report;
 }
 
-void Flow::pull(std::span<const Vec3> displacement, double duration) {
+void Simulation::pull(std::span<const Vec3> displacement, double duration) {
   const auto positions = environment_.positions();
   const bool plane = environment_.map().dimension() == 2;
   if (plane && std::any_of(displacement.begin(), displacement.end(), [](const Vec3& d) { return d.z != 0.0; }))

@@ -14,7 +14,7 @@ constexpr std::size_t energy_grain = 4096;  // sums of so many are added up in o
 }  // namespace
 
 // Precondition: there are collisions.
-double Flow::mass(std::size_t i) const {
+double Simulation::mass(std::size_t i) const {
   if (radii_[i] == 0.0) return 0.0;
   constexpr double smallest_weighed = 0x1p-100;  // a smaller sphere gets the mass of this one: its own could be 0
   const double r = std::max(radii_[i], smallest_weighed);
@@ -22,18 +22,18 @@ double Flow::mass(std::size_t i) const {
   return options_.collisions->density * (plane ? std::numbers::pi * r * r : 4.0 / 3.0 * std::numbers::pi * r * r * r);
 }
 
-FlowEnergy Flow::energy() const {
-  std::vector<FlowEnergy> parts(chunk_count(particles_.size(), energy_grain));
+SimulationEnergy Simulation::energy() const {
+  std::vector<SimulationEnergy> parts(chunk_count(particles_.size(), energy_grain));
   parallel_for(particles_.size(), energy_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
-    FlowEnergy& part = parts[begin / energy_grain];
+    SimulationEnergy& part = parts[begin / energy_grain];
     for (std::size_t i = begin; i < end; ++i) {
       const double m = options_.collisions ? mass(i) : 1.0;
       part.kinetic += 0.5 * m * dot(velocities_[i], velocities_[i]);
       part.potential -= m * dot(options_.gravity, particles_[i].position);
     }
   });
-  FlowEnergy all;
-  for (const FlowEnergy& part : parts) {
+  SimulationEnergy all;
+  for (const SimulationEnergy& part : parts) {
     all.kinetic += part.kinetic;
     all.potential += part.potential;
   }

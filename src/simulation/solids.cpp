@@ -68,7 +68,7 @@ auto with_name(const char* kind, const std::string& name, Make&& make) {
 
 }  // namespace
 
-Solids::Solids(const Scene& scene, Environment& environment, const Responses& responses, const ReadOptions& options)
+Solids::Solids(const Scene& scene, Environment& environment, const WallResponses& responses, const ReadOptions& options)
     : scene_(scene), environment_(environment) {
   if (!scene.bodies.empty()) bodies_.emplace(environment, bodies_options(scene), responses);
   for (const BodyScene& body : scene.bodies) with_name("body", body.name, [&] { add(body, options); });
@@ -85,7 +85,7 @@ void Solids::add(const BodyScene& scene, const ReadOptions& read) {
   if (points.empty()) throw Error("no particle fits into it; make its spacing smaller");
   BodyOptions options = scene.body;
   if (scene.cluster > 0.0) options.match.clusters = overlapping_clusters(points, scene.cluster);
-  const AddedBody added = bodies_->add(points, options);
+  const AddBodyResult added = bodies_->add(points, options);
   if (!added.refused.empty()) {
     const Vec3& x = points[added.refused.front()];
     throw Error(fmt::format("{} of its {} particles are in no free cell, the first at ({}, {}, {}); move or turn it",
@@ -106,9 +106,9 @@ void Solids::step(double begin) {
   }
 }
 
-void Solids::follow(Stranded stranded) {
-  if (bodies_) bodies_->follow(stranded);
-  for (Catheter& c : catheters_) c.follow();
+void Solids::update_after_edit(OrphanPolicy orphaned) {
+  if (bodies_) bodies_->update_after_edit(orphaned);
+  for (Catheter& c : catheters_) c.update_after_edit();
 }
 
 std::vector<BodySummary> Solids::body_summaries() const {

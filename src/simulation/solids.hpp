@@ -60,14 +60,14 @@ class Solids {
   /// Makes them where the scene puts them. All outlive it. Throws Error that names the body or catheter: its surface
   /// cannot be read (of the options `max_memory` counts) or sampled, a particle is in no free cell (how many, and the
   /// first), the entry is not in the lumen.
-  Solids(const Scene& scene, Environment& environment, const Responses& responses, const ReadOptions& options = {});
+  Solids(const Scene& scene, Environment& environment, const WallResponses& responses, const ReadOptions& options = {});
 
   [[nodiscard]] bool empty() const { return scene_.bodies.empty() && scene_.catheters.empty(); }
 
   /// One step, to be called once after each move of the environment. `begin`: its time, s.
   void step(double begin);
   /// To be called after each edit of the environment.
-  void follow(Stranded stranded);
+  void update_after_edit(OrphanPolicy orphaned);
 
   /// None where the scene has none.
   [[nodiscard]] const std::optional<Bodies>& bodies() const { return bodies_; }

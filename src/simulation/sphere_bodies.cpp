@@ -47,7 +47,7 @@ void SphereBodyCollider::add_particles(const Bodies& bodies, double dt) {
   const auto states = bodies.particles().states();
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const auto mover = static_cast<std::uint32_t>(movers_.size());
-    movers_.push_back(bodies.foreseen(b));
+    movers_.push_back(bodies.predicted_state(b));
     for (std::size_t i = 0; i < bodies.particle_count(b); ++i) {
       const std::size_t p = bodies.first_particle(b) + i;
       const Vec3& x = states[p].position;
@@ -60,8 +60,9 @@ void SphereBodyCollider::add_particles(const Bodies& bodies, double dt) {
 }
 
 // A chunk of candidates: those that are near become contacts.
-void SphereBodyCollider::judge(const Complex& complex, const CollidingSpheres& spheres,
-                               std::span<const SpherePair> candidates, const SolverOptions& options, Part& part) const {
+void SphereBodyCollider::find_contacts(const CellComplex& complex, const CollidingSpheres& spheres,
+                                       std::span<const SpherePair> candidates, const SolverOptions& options,
+                                       Part& part) const {
   const std::size_t count = spheres.states.size();
   for (const SpherePair& p : candidates) {
     if (p.a >= count && p.b >= count) continue;
@@ -90,7 +91,7 @@ void SphereBodyCollider::judge(const Complex& complex, const CollidingSpheres& s
   }
 }
 
-void SphereBodyCollider::find_contacts(const Complex& complex, const CollidingSpheres& spheres,
+void SphereBodyCollider::find_contacts(const CellComplex& complex, const CollidingSpheres& spheres,
                                        const SolverOptions& options, Threads threads, CollisionCounts& counts) {
   lists_.update(complex.map(), states_);
   const std::span<const SpherePair> candidates = finder_.find(complex, lists_, states_, swept_, threads);
@@ -100,7 +101,7 @@ void SphereBodyCollider::find_contacts(const Complex& complex, const CollidingSp
     part.contacts.clear();
     part.overlaps = 0;
     part.deepest = 0.0;
-    judge(complex, spheres, candidates.subspan(begin, end - begin), options, part);
+    find_contacts(complex, spheres, candidates.subspan(begin, end - begin), options, part);
   });
   contacts_.clear();
   for (const Part& part : parts_) {
@@ -127,7 +128,7 @@ void SphereBodyCollider::add_walls(const CollidingSpheres& spheres, std::span<co
   }
 }
 
-CollisionCounts SphereBodyCollider::collide(const Complex& complex, const CollidingSpheres& spheres,
+CollisionCounts SphereBodyCollider::collide(const CellComplex& complex, const CollidingSpheres& spheres,
                                             std::span<const WallContact> walls, Bodies& bodies,
                                             const SolverOptions& options, Threads threads) {
   CollisionCounts counts;
@@ -138,9 +139,9 @@ CollisionCounts SphereBodyCollider::collide(const Complex& complex, const Collid
   solver_.solve(contacts_, movers_, options);
   for (std::size_t i = 0; i < count; ++i) {
     spheres.velocities[i] = movers_[i].velocity;
-    spheres.displacements[i] = movers_[i].shift;
+    spheres.displacements[i] = movers_[i].position_delta;
   }
-  for (std::size_t b = 0; b < bodies.size(); ++b) bodies.act(b, movers_[count + b]);
+  for (std::size_t b = 0; b < bodies.size(); ++b) bodies.apply_impulse(b, movers_[count + b]);
   counts.pairs_touching = solver_.loaded_pairs();
   counts.walls_touching = solver_.loaded_walls();
   return counts;

@@ -16,11 +16,13 @@ namespace dartcast {
 class SphereBodyCollider {
  public:
   /// Finds the pairs of spheres, and of spheres and particles of bodies, and solves them together with `walls`, as
-  /// Collider::collide(). The bodies get theirs by Bodies::act(), for the step that they take after this one of the
-  /// spheres; contacts between them are their own. Momentum changes at walls and by rounding alone. Preconditions: all
-  /// states are of the complex as it stands; the ids of spheres are below 2^63. The same for any number of threads.
-  CollisionCounts collide(const Complex& complex, const CollidingSpheres& spheres, std::span<const WallContact> walls,
-                          Bodies& bodies, const SolverOptions& options, Threads threads);
+  /// Collider::collide(). The bodies get theirs by Bodies::apply_impulse(), for the step that they take after this one
+  /// of the spheres; contacts between them are their own. Momentum changes at walls and by rounding alone.
+  /// Preconditions: all states are of the complex as it stands; the ids of spheres are below 2^63. The same for any
+  /// number of threads.
+  CollisionCounts collide(const CellComplex& complex, const CollidingSpheres& spheres,
+                          std::span<const WallContact> walls, Bodies& bodies, const SolverOptions& options,
+                          Threads threads);
 
   [[nodiscard]] RigidSolver& solver() { return solver_; }
   [[nodiscard]] const RigidSolver& solver() const { return solver_; }
@@ -34,9 +36,9 @@ class SphereBodyCollider {
 
   void gather(const CollidingSpheres& spheres, const Bodies& bodies, double dt);
   void add_particles(const Bodies& bodies, double dt);
-  void judge(const Complex& complex, const CollidingSpheres& spheres, std::span<const SpherePair> candidates,
-             const SolverOptions& options, Part& part) const;
-  void find_contacts(const Complex& complex, const CollidingSpheres& spheres, const SolverOptions& options,
+  void find_contacts(const CellComplex& complex, const CollidingSpheres& spheres,
+                     std::span<const SpherePair> candidates, const SolverOptions& options, Part& part) const;
+  void find_contacts(const CellComplex& complex, const CollidingSpheres& spheres, const SolverOptions& options,
                      Threads threads, CollisionCounts& counts);
   void add_walls(const CollidingSpheres& spheres, std::span<const WallContact> walls);
 
@@ -44,7 +46,7 @@ class SphereBodyCollider {
   PairFinder finder_;
   RigidSolver solver_;
   // Spheres, then particles of bodies.
-  std::vector<State> states_;
+  std::vector<ParticleState> states_;
   std::vector<std::uint64_t> ids_;
   std::vector<std::uint32_t> mover_of_;
   std::vector<SphereMotion> moving_;

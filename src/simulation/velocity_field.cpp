@@ -11,10 +11,10 @@ namespace dartcast {
 namespace {
 
 // Interior vertices take values as they take positions.
-std::vector<Vec3> at_all_vertices(const Complex& complex, std::span<const Vec3> values) {
+std::vector<Vec3> at_all_vertices(const CellComplex& complex, std::span<const Vec3> values) {
   std::vector<Vec3> all(values.begin(), values.end());
   all.resize(complex.positions().size());
-  complex.interior().compute(all);
+  complex.steiner_weights().compute(all);
   return all;
 }
 
@@ -32,7 +32,8 @@ Vec3 mapped(const Corners& from, const Corners& to, const Vec3& u) {
 
 }  // namespace
 
-VelocityField::VelocityField(const Complex& complex, std::span<const Vec3> values, FieldFrame frame) : frame_(frame) {
+VelocityField::VelocityField(const CellComplex& complex, std::span<const Vec3> values, FieldFrame frame)
+    : frame_(frame) {
   if (values.size() != complex.point_count()) {
     throw InvalidArgument(
         fmt::format("the velocity field has {} values for {} points", values.size(), complex.point_count()));
@@ -48,16 +49,16 @@ VelocityField::VelocityField(const Complex& complex, std::span<const Vec3> value
   if (frame == FieldFrame::mesh) rest_.assign(complex.positions().begin(), complex.positions().end());
 }
 
-void VelocityField::follow(const ComplexEditReport& edit, const Complex& complex) {
+void VelocityField::update_after_edit(const ComplexEditReport& edit, const CellComplex& complex) {
   const auto take_over = [&](std::vector<Vec3>& values) {
-    dartcast::follow(edit, complex.positions().size(), values);
-    complex.interior().compute(values);
+    dartcast::update_after_edit(edit, complex.positions().size(), values);
+    complex.steiner_weights().compute(values);
   };
   take_over(values_);
   if (frame_ == FieldFrame::mesh) take_over(rest_);
 }
 
-Vec3 VelocityField::at(const Complex& complex, SimplexId simplex, const std::array<double, 4>& w,
+Vec3 VelocityField::at(const CellComplex& complex, SimplexId simplex, const std::array<double, 4>& w,
                        const Corners& now) const {
   const auto v = complex.vertices(simplex);
   const Vec3 u = (values_[v[0].value] * w[0] + values_[v[1].value] * w[1]) +

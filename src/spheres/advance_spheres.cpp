@@ -98,7 +98,7 @@ class SphereCall {
 
  public:
   SphereCall(Buffers& b, Environment& environment, Particles& particles, std::span<const double> radii,
-             std::span<const Vec3> targets, const Respond& respond, const StepOptions& options,
+             std::span<const Vec3> targets, const ContactCallback& respond, const StepOptions& options,
              std::span<const double> clearances)
       : b_(b),
         environment_(environment),
@@ -147,7 +147,7 @@ class SphereCall {
 
   // What the environment refuses is left to it.
   void plan_first(std::size_t i, Chunk& chunk) {
-    const State& state = particles_[i];
+    const ParticleState& state = particles_[i];
     if (radii_[i] == 0.0 || state.held || !is_finite(targets_[i])) return;
     if (!scene_.complex->map().contains(state.cell) || is_clear(i, state.position)) return;
     const auto particle = static_cast<std::uint32_t>(i);
@@ -164,9 +164,9 @@ class SphereCall {
   StepReport advance_all() {
     const bool points = std::any_of(radii_.begin(), radii_.end(), [](double r) { return r == 0.0; });
     if (!respond_ || !points) return environment_.advance(particles_, b_.targets, {}, options_);
-    const Respond points_only = [this](const Contact& contact, std::span<const WallHit> walls,
-                                       std::span<const WallHit> earlier) {
-      return radii_[contact.particle] == 0.0 ? respond_(contact, walls, earlier) : Continuation{};
+    const ContactCallback points_only = [this](const Contact& contact, std::span<const WallHit> walls,
+                                               std::span<const WallHit> earlier) {
+      return radii_[contact.particle] == 0.0 ? respond_(contact, walls, earlier) : AfterContact{};
     };
     return environment_.advance(particles_, b_.targets, points_only, options_);
   }
@@ -222,7 +222,7 @@ class SphereCall {
     parallel_for(active.size(), spheres_in_chunk, environment_.threads(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         SphereRun& run = b_.runs[active[k]];
-        const State& state = now[all ? run.particle() : k];
+        const ParticleState& state = now[all ? run.particle() : k];
         b_.goes_on[k] = run.land(scene_, state, b_.centres[k], b_.chunks[begin / spheres_in_chunk].near) ? 1 : 0;
       }
     });
@@ -245,7 +245,7 @@ class SphereCall {
     const StepReport report = environment_.advance(some, b_.targets, {}, options_);
     counters.orientation.tests += report.counters.orientation.tests;
     counters.orientation.exact += report.counters.orientation.exact;
-    for (const Held& h : report.held) b_.runs[b_.active[h.particle]].hold(h.cell);
+    for (const HeldParticle& h : report.held) b_.runs[b_.active[h.particle]].hold(h.cell);
     CentreContacts centres(report.contacts);
     b_.centres.clear();
     for (std::size_t k = 0; k < some.size(); ++k) b_.centres.push_back(centres.of(static_cast<std::uint32_t>(k)));
@@ -290,7 +290,7 @@ class SphereCall {
   std::span<const double> radii_;
   std::span<const Vec3> targets_;
   std::span<const double> clearances_;
-  const Respond& respond_;
+  const ContactCallback& respond_;
   const StepOptions& options_;
   SphereScene scene_;
 };
@@ -303,8 +303,8 @@ SphereStepper::SphereStepper(SphereStepper&&) noexcept = default;
 SphereStepper& SphereStepper::operator=(SphereStepper&&) noexcept = default;
 
 SphereReport SphereStepper::advance(Environment& environment, Particles& particles, std::span<const double> radii,
-                                    std::span<const Vec3> targets, const Respond& respond, const StepOptions& options,
-                                    std::span<const double> clearances) {
+                                    std::span<const Vec3> targets, const ContactCallback& respond,
+                                    const StepOptions& options, std::span<const double> clearances) {
   check_radii(particles, radii, targets, clearances);
   environment.check_advance(particles, options);
   const bool points_only = std::all_of(radii.begin(), radii.end(), [](double r) { return r == 0.0; });
@@ -322,7 +322,8 @@ SphereReport SphereStepper::advance(Environment& environment, Particles& particl
 }
 
 SphereReport advance_spheres(Environment& environment, Particles& particles, std::span<const double> radii,
-                             std::span<const Vec3> targets, const Respond& respond, const StepOptions& options) {
+                             std::span<const Vec3> targets, const ContactCallback& respond,
+                             const StepOptions& options) {
   return SphereStepper().advance(environment, particles, radii, targets, respond, options);
 }
 

@@ -8,7 +8,7 @@ namespace dartcast {
 
 namespace {
 
-constexpr int most_turns = 4;
+constexpr int max_turns = 4;
 constexpr int sweeps = 64;
 constexpr int halvings = 30;
 constexpr double enough = 0x1p-50;  // share of the radius: depths below it are rounding
@@ -51,20 +51,20 @@ Vec3 widest(std::span<const WallFeature> walls, double radius, std::span<double>
 
 }  // namespace
 
-Vec3 push_out(const Complex& complex, Cell cell, const Vec3& centre, double radius, NearWalls& near) {
+Vec3 push_out(const CellComplex& complex, Cell cell, const Vec3& centre, double radius, NearWalls& near) {
   std::vector<double> pull;
   Vec3 out;
-  double least = -1.0;
+  double lowest = -1.0;
   Vec3 best;
-  for (int turn = 0; turn <= most_turns; ++turn) {
+  for (int turn = 0; turn <= max_turns; ++turn) {
     const auto walls = near.within(complex, cell, centre + out, 2.0 * radius, false);
     if (walls.empty()) return out;
     const double distance = walls.front().distance;
-    if (distance > least) {
-      least = distance;
+    if (distance > lowest) {
+      lowest = distance;
       best = out;
     }
-    if (distance >= radius * (1.0 - enough) || turn == most_turns) break;
+    if (distance >= radius * (1.0 - enough) || turn == max_turns) break;
     pull.resize(walls.size());
     out += widest(walls, radius, pull);
     const double length = norm(out);

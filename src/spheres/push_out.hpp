@@ -10,6 +10,6 @@ namespace dartcast {
 /// large as it can be. No longer than twice the radius. The walls are taken as they stand, each as the plane across the
 /// direction to its nearest point, again from where that leads (four times at most). Walls passed on the way are not
 /// asked for: the environment's walk stops the centre there. Cost: some microseconds.
-Vec3 push_out(const Complex& complex, Cell cell, const Vec3& centre, double radius, NearWalls& near);
+Vec3 push_out(const CellComplex& complex, Cell cell, const Vec3& centre, double radius, NearWalls& near);
 
 }  // namespace dartcast

@@ -14,14 +14,14 @@ namespace dartcast::detail {
 namespace {
 
 // A sphere that was moved out is asked again once, since walls are not planes.
-constexpr unsigned most_pushes = 2;
+constexpr unsigned max_pushes = 2;
 // A slide into a wall by up to this share of its length is rounding: responses leave 2^-39 (src/response/response.cpp).
 constexpr double lift_share = 0x1p-36;
 
 }  // namespace
 
-void list_overlaps(const Complex& complex, const State& state, std::uint32_t particle, double radius, NearWalls& near,
-                   std::vector<SphereOverlap>& overlaps) {
+void list_overlaps(const CellComplex& complex, const ParticleState& state, std::uint32_t particle, double radius,
+                   NearWalls& near, std::vector<SphereOverlap>& overlaps) {
   for (const WallFeature& f : near.within(complex, state.cell, state.position, radius, false)) {
     if (f.distance < radius - touching_slack(state.position, radius))
       overlaps.push_back({particle, radius - f.distance, 0.0, f.face, f.point, f.normal});
@@ -35,7 +35,7 @@ void SphereRun::start(std::uint32_t particle, const MovingSphere& sphere, const 
   aim_ = sphere.to;
   moving_ = moving;
   time_ = 0.0;
-  pushes_ = 0;
+  corrections_ = 0;
   way_ = way;
   contacts_.clear();
   walls_.clear();
@@ -45,17 +45,17 @@ void SphereRun::start(std::uint32_t particle, const MovingSphere& sphere, const 
   unfinished_ = false;
 }
 
-const Vec3& SphereRun::plan(const SphereScene& scene, const State& state, NearWalls& near) {
+const Vec3& SphereRun::plan(const SphereScene& scene, const ParticleState& state, NearWalls& near) {
   moving_ = false;
   begin_ = state.position;
-  way_ = way_of(*scene.complex, {state.cell, {begin_, aim_, radius_}, false, pushes_ < most_pushes}, near);
+  way_ = way_of(*scene.complex, {state.cell, {begin_, aim_, radius_}, false, corrections_ < max_pushes}, near);
   way_.target = flushed(way_.target);
   if (way_.end == WayEnd::overlap && overlaps_.empty())
     list_overlaps(*scene.complex, state, particle_, radius_, near, overlaps_);
   return way_.target;
 }
 
-bool SphereRun::land(const SphereScene& scene, const State& state, CentreContact centre, NearWalls& near) {
+bool SphereRun::land(const SphereScene& scene, const ParticleState& state, CentreContact centre, NearWalls& near) {
   if (held_) return false;
   if (way_.end == WayEnd::overlap) return moved_out(scene, state, near);
   if (centre.contact != nullptr) return touched_by_centre(scene, state, centre);
@@ -63,13 +63,13 @@ bool SphereRun::land(const SphereScene& scene, const State& state, CentreContact
 }
 
 // Its own motion is still to be made: all of it, but what the wall made for it.
-bool SphereRun::moved_out(const SphereScene& scene, const State& state, NearWalls& near) {
+bool SphereRun::moved_out(const SphereScene& scene, const ParticleState& state, NearWalls& near) {
   bool again = moving_;
   if (!moving_) {
-    ++pushes_;
+    ++corrections_;
     const auto walls = near.within(*scene.complex, state.cell, state.position, radius_, false);
     const double depth = walls.empty() ? 0.0 : radius_ - walls.front().distance;
-    again = depth > slack(state.position) && pushes_ < most_pushes;
+    again = depth > slack(state.position) && corrections_ < max_pushes;
     for (SphereOverlap& o : overlaps_) o.left = depth > slack(state.position) ? depth : 0.0;
   }
   aim_ = flushed(state.position + ((aim_ - begin_) - way_.wall_displacement));
@@ -77,8 +77,8 @@ bool SphereRun::moved_out(const SphereScene& scene, const State& state, NearWall
 }
 
 // All places touched there and then are its walls; the one that the sphere came to first is the first.
-bool SphereRun::touched(const SphereScene& scene, const State& state, NearWalls& near) {
-  const Complex& complex = *scene.complex;
+bool SphereRun::touched(const SphereScene& scene, const ParticleState& state, NearWalls& near) {
+  const CellComplex& complex = *scene.complex;
   const Vec3 own = aim_ - begin_;
   const double reach = radius_ + slack(state.position) + 2.0 * sphere_time_bound * norm(own);
   const auto features = near.within(complex, state.cell, state.position, reach, scene.moved);
@@ -103,7 +103,7 @@ bool SphereRun::touched(const SphereScene& scene, const State& state, NearWalls&
 }
 
 // The environment stopped the centre before the sphere's own contact, or where it had none.
-bool SphereRun::touched_by_centre(const SphereScene& scene, const State& state, CentreContact centre) {
+bool SphereRun::touched_by_centre(const SphereScene& scene, const ParticleState& state, CentreContact centre) {
   const Contact& met = *centre.contact;
   Contact& contact = contacts_.emplace_back(met);
   contact.particle = particle_;
@@ -127,7 +127,7 @@ bool SphereRun::touched_by_centre(const SphereScene& scene, const State& state, 
 }
 
 // After a contact among moving walls there is a stretch, if only to see what other walls came to overlap it.
-bool SphereRun::follow(const SphereScene& scene, const State& state, Contact& contact) {
+bool SphereRun::follow(const SphereScene& scene, const ParticleState& state, Contact& contact) {
   const auto count = static_cast<unsigned>(contacts_.size());
   contact.last = count >= scene.options->max_contacts;
   if (count == 1 || contact.time_of_impact - time_ >= share_together) first_here_ = contact.first_wall;
@@ -136,12 +136,12 @@ bool SphereRun::follow(const SphereScene& scene, const State& state, Contact& co
   const bool asked = static_cast<bool>(*scene.respond);
   if (!asked || count > scene.options->max_contacts) {
     unfinished_ = asked;
-    stopped_ = Stopped{particle_, contact.unused};
+    stopped_ = StoppedParticle{particle_, contact.unused};
     aim_ = state.position;
     return moving_;
   }
   const std::span<const WallHit> all = walls_;
-  const Continuation next = (*scene.respond)(contact, all.subspan(contact.first_wall), all.first(contact.first_wall));
+  const AfterContact next = (*scene.respond)(contact, all.subspan(contact.first_wall), all.first(contact.first_wall));
   Vec3 q = flushed(state.position + next.displacement);
   if (!in_exact_range(q))
     throw InvalidArgument(fmt::format(
@@ -154,11 +154,11 @@ bool SphereRun::follow(const SphereScene& scene, const State& state, Contact& co
 // A slide must not be turned into a wall by rounding.
 void SphereRun::lift(const Vec3& position, Vec3& q) const {
   const double above = 0.25 * slack(q);
-  const double most = lift_share * norm(q - position) + above;
+  const double limit = lift_share * norm(q - position) + above;
   for (int pass = 0; pass < 2; ++pass) {
     for (const WallHit& wall : walls_) {
       const double height = dot(q - position, wall.normal);
-      if (height < above && height >= -most) q += wall.normal * (above - height);
+      if (height < above && height >= -limit) q += wall.normal * (above - height);
     }
   }
   q = flushed(q);

@@ -11,9 +11,9 @@ namespace dartcast::detail {
 
 /// What all spheres of a call have in common.
 struct SphereScene {
-  const Complex* complex = nullptr;
+  const CellComplex* complex = nullptr;
   bool moved = false;  ///< the vertices, in this step
-  const Respond* respond = nullptr;
+  const ContactCallback* respond = nullptr;
   const StepOptions* options = nullptr;
 };
 
@@ -31,11 +31,11 @@ class SphereRun {
   void start(std::uint32_t particle, const MovingSphere& sphere, const SphereWay& way, bool moving);
 
   /// Plans the stretch that comes next; the centre's target.
-  const Vec3& plan(const SphereScene& scene, const State& state, NearWalls& near);
+  const Vec3& plan(const SphereScene& scene, const ParticleState& state, NearWalls& near);
   /// After the centre has been advanced to the target planned: records what was touched, asks what follows. False where
   /// the step is at its end.
-  bool land(const SphereScene& scene, const State& state, CentreContact centre, NearWalls& near);
-  void hold(Cell invalid) { held_ = Held{particle_, invalid}; }
+  bool land(const SphereScene& scene, const ParticleState& state, CentreContact centre, NearWalls& near);
+  void hold(Cell invalid) { held_ = HeldParticle{particle_, invalid}; }
 
   [[nodiscard]] std::uint32_t particle() const { return particle_; }
   [[nodiscard]] const Vec3& target() const { return way_.target; }
@@ -44,10 +44,10 @@ class SphereRun {
   void report(SphereReport& report) const;
 
  private:
-  bool touched(const SphereScene& scene, const State& state, NearWalls& near);
-  bool touched_by_centre(const SphereScene& scene, const State& state, CentreContact centre);
-  bool follow(const SphereScene& scene, const State& state, Contact& contact);
-  bool moved_out(const SphereScene& scene, const State& state, NearWalls& near);
+  bool touched(const SphereScene& scene, const ParticleState& state, NearWalls& near);
+  bool touched_by_centre(const SphereScene& scene, const ParticleState& state, CentreContact centre);
+  bool follow(const SphereScene& scene, const ParticleState& state, Contact& contact);
+  bool moved_out(const SphereScene& scene, const ParticleState& state, NearWalls& near);
   void lift(const Vec3& position, Vec3& q) const;
   [[nodiscard]] double slack(const Vec3& centre) const { return touching_slack(centre, radius_); }
 
@@ -58,18 +58,18 @@ class SphereRun {
   double time_ = 0.0;             // when it began
   std::uint32_t first_here_ = 0;  // of the walls met at the place of the last contact
   bool moving_ = false;
-  unsigned pushes_ = 0;
+  unsigned corrections_ = 0;
   SphereWay way_;
   std::vector<Contact> contacts_;
   std::vector<WallHit> walls_;
   std::vector<SphereOverlap> overlaps_;
-  std::optional<Stopped> stopped_;
-  std::optional<Held> held_;
+  std::optional<StoppedParticle> stopped_;
+  std::optional<HeldParticle> held_;
   bool unfinished_ = false;
 };
 
 /// Adds the walls that overlap a sphere, deepest first.
-void list_overlaps(const Complex& complex, const State& state, std::uint32_t particle, double radius, NearWalls& near,
-                   std::vector<SphereOverlap>& overlaps);
+void list_overlaps(const CellComplex& complex, const ParticleState& state, std::uint32_t particle, double radius,
+                   NearWalls& near, std::vector<SphereOverlap>& overlaps);
 
 }  // namespace dartcast::detail

@@ -14,9 +14,9 @@ namespace {
 class Way {
  public:
   /// `nearest`: of each wall at the beginning.
-  Way(const SphereStretch& stretch, std::span<const NearWall> walls, std::span<const NearestOnTriangle> nearest)
-      : moving_(stretch.moving),
-        sphere_(stretch.sphere),
+  Way(const SphereInterval& interval, std::span<const NearWall> walls, std::span<const NearestOnTriangle> nearest)
+      : moving_(interval.moving),
+        sphere_(interval.sphere),
         walls_(walls),
         nearest_(nearest),
         slack_(touching_slack(sphere_.from, sphere_.radius)) {
@@ -105,21 +105,21 @@ class Way {
 
 }  // namespace
 
-SphereWay way_of(const Complex& complex, const SphereStretch& stretch, NearWalls& near) {
-  const MovingSphere& sphere = stretch.sphere;
+SphereWay way_of(const CellComplex& complex, const SphereInterval& interval, NearWalls& near) {
+  const MovingSphere& sphere = interval.sphere;
   SphereWay result;
   result.target = sphere.to;
-  const auto walls = near.search(complex, stretch.cell, sphere, stretch.moving);
+  const auto walls = near.search(complex, interval.cell, sphere, interval.moving);
   if (walls.empty()) return result;
-  Way way(stretch, walls, near.nearest(sphere.from));
-  if (way.overlaps() && !stretch.push_out) way.shrink();
+  Way way(interval, walls, near.nearest(sphere.from));
+  if (way.overlaps() && !interval.push_out) way.shrink();
   if (way.overlaps()) {
     result.end = WayEnd::overlap;
-    if (stretch.moving) {
+    if (interval.moving) {
       result.wall_displacement = way.displacement_of_overlaps();
       result.target = sphere.from + result.wall_displacement;
     } else {
-      result.target = sphere.from + push_out(complex, stretch.cell, sphere.from, sphere.radius, near);
+      result.target = sphere.from + push_out(complex, interval.cell, sphere.from, sphere.radius, near);
     }
     return result;
   }

@@ -25,7 +25,7 @@ struct SphereWay {
 };
 
 /// A sphere at the beginning of a stretch. Positions before the last move where `moving`, else as they are now.
-struct SphereStretch {
+struct SphereInterval {
   Cell cell;
   MovingSphere sphere;
   bool moving = false;   ///< the walls move meanwhile
@@ -33,6 +33,6 @@ struct SphereStretch {
 };
 
 /// Where it comes to. Cost: that of the search, and some 0.1 us for each wall found.
-SphereWay way_of(const Complex& complex, const SphereStretch& stretch, NearWalls& near);
+SphereWay way_of(const CellComplex& complex, const SphereInterval& interval, NearWalls& near);
 
 }  // namespace dartcast::detail

@@ -142,7 +142,7 @@ void check_areas(const MeshData& mesh, MeshReport& report) {
 
 }  // namespace
 
-MeshReport inspect_surface(MeshData& mesh) {
+MeshReport check_and_repair_surface(MeshData& mesh) {
   MeshReport report;
   report.dimension = 2;
   report.surface = true;

@@ -6,9 +6,9 @@
 
 namespace dartcast {
 
-/// As inspect(), of a mesh whose cells are triangles, quadrilaterals and polygons anywhere in space. A polygon is
-/// fanned from its lowest-numbered corner and need not be plane: the triangles of the fan are the surface. Repairs in
-/// place:
+/// As check_and_repair(), of a mesh whose cells are triangles, quadrilaterals and polygons anywhere in space. A polygon
+/// is fanned from its lowest-numbered corner and need not be plane: the triangles of the fan are the surface. Repairs
+/// in place:
 ///   orientation (faces that ran against their neighbours were turned; of each part the first face decides).
 /// Warns of what can be used with care:
 ///   repeated_points (that faces use), open_border (edges of one face), pinched_points (several fans of faces at one).
@@ -18,6 +18,6 @@ namespace dartcast {
 ///   area, exactly), too_large.
 /// Surfaces that cross themselves are taken: particles know nothing of it. Never throws for any content of the arrays.
 /// Cost: n log n.
-MeshReport inspect_surface(MeshData& mesh);
+MeshReport check_and_repair_surface(MeshData& mesh);
 
 }  // namespace dartcast

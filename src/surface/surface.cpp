@@ -18,8 +18,8 @@ namespace {
 
 constexpr std::size_t surface_grain = 4096;
 
-MeshData inspected_surface(MeshData mesh) {
-  const MeshReport report = inspect_surface(mesh);
+MeshData checked_surface(MeshData mesh) {
+  const MeshReport report = check_and_repair_surface(mesh);
   if (!report.defects.empty()) {
     const Finding& f = report.defects.front();
     throw InvalidMesh(fmt::format("{}: {}, the first: {}", f.message, f.count, fmt::join(f.first, ", ")));
@@ -41,8 +41,8 @@ void check_positions(std::span<const Vec3> positions, std::size_t count) {
 }  // namespace
 
 Surface::Surface(MeshData mesh) {
-  mesh = inspected_surface(std::move(mesh));
-  map_ = Map(mesh);
+  mesh = checked_surface(std::move(mesh));
+  map_ = CombinatorialMap(mesh);
   positions_ = std::move(mesh.points);
   std::transform(positions_.begin(), positions_.end(), positions_.begin(), flushed);
 }

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t particle_grain = 512;
 
 SurfaceStep named_step(const Surface& surface, SurfacePlace& place, const Vec3& displacement,
-                       const SurfaceRespond& respond, const SurfaceOptions& options,
+                       const SurfaceContactCallback& respond, const SurfaceOptions& options,
                        std::vector<SurfaceContact>& contacts, std::size_t particle) {
   try {
     return step(surface, place, displacement, respond, options, {&contacts, nullptr},
@@ -26,7 +26,7 @@ SurfaceStep named_step(const Surface& surface, SurfacePlace& place, const Vec3& 
 }  // namespace
 
 SurfaceReport advance(const Surface& surface, std::span<SurfacePlace> places, std::span<const Vec3> displacements,
-                      const SurfaceRespond& respond, const SurfaceOptions& options, Threads threads) {
+                      const SurfaceContactCallback& respond, const SurfaceOptions& options, Threads threads) {
   if (places.size() != displacements.size())
     throw InvalidArgument(fmt::format("advance: {} places and {} displacements", places.size(), displacements.size()));
   SurfaceReport report;

@@ -17,6 +17,7 @@ struct SurfaceReport {
 /// Steps every place by its displacement, as step() does. Results are the same bits for any number of threads. Throws
 /// as step(), naming the particle, and what a response throws: no place is changed then.
 SurfaceReport advance(const Surface& surface, std::span<SurfacePlace> places, std::span<const Vec3> displacements,
-                      const SurfaceRespond& respond = {}, const SurfaceOptions& options = {}, Threads threads = {});
+                      const SurfaceContactCallback& respond = {}, const SurfaceOptions& options = {},
+                      Threads threads = {});
 
 }  // namespace dartcast

@@ -32,14 +32,14 @@ struct SurfaceContact {
 };
 
 /// What a particle does after a contact, in the rest of the step.
-struct SurfaceContinuation {
+struct AfterSurfaceContact {
   Vec3 displacement;   ///< in the plane of the contact's triangle; what is normal to it is left out
   bool along = false;  ///< where it points into the wall, or off it by rounding alone, it runs along it exactly
 };
 
 /// Decides what follows a contact. Called from several threads at once for different particles; an empty function stops
 /// the particle at the wall until the end of the step.
-using SurfaceRespond = std::function<SurfaceContinuation(const SurfaceContact&)>;
+using SurfaceContactCallback = std::function<AfterSurfaceContact(const SurfaceContact&)>;
 
 // For a caller's own responses: what becomes of a vector at the wall. They do nothing where it points off the wall.
 

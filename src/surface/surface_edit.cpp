@@ -11,21 +11,21 @@
 namespace dartcast {
 
 SurfaceEdit::SurfaceEdit(Surface& surface)
-    : surface_(surface), transaction_(surface.map_), born_(transaction_, surface.positions_) {}
+    : surface_(surface), transaction_(surface.map_), created_(transaction_, surface.positions_) {}
 
-SurfaceEdit::~SurfaceEdit() { born_.give_up(); }
+SurfaceEdit::~SurfaceEdit() { created_.give_up(); }
 
-Vec3 SurfaceEdit::position(Vertex v) { return born_.at(v); }
+Vec3 SurfaceEdit::position(Vertex v) { return created_.at(v); }
 
-void SurfaceEdit::place(Vertex v, const Vec3& x) { born_.place(v, x); }
+void SurfaceEdit::place(Vertex v, const Vec3& x) { created_.place(v, x); }
 
 SurfaceEditReport SurfaceEdit::commit() {
-  born_.take();
+  created_.take();
   for (const Cell c : transaction_.added()) {
     if (!surface_.has_flat_triangle(c, surface_.positions_)) continue;
     const std::uint32_t source = map().source(c);
     transaction_.roll_back();
-    born_.take();
+    created_.take();
     throw EditRefused(
         fmt::format("face {} would have a triangle without area: split it at the vertices on its edges", source));
   }
@@ -38,7 +38,7 @@ SurfaceEditReport SurfaceEdit::commit() {
   std::sort(report.gone.begin(), report.gone.end(),
             [](const auto& a, const auto& b) { return a.triangle < b.triangle; });
   report.map = transaction_.commit();
-  born_.keep();
+  created_.keep();
   return report;
 }
 
@@ -67,10 +67,10 @@ std::optional<SurfacePlace> followed(const Surface& surface, const SurfaceEditRe
   const auto was = std::lower_bound(report.gone.begin(), report.gone.end(), place.triangle,
                                     [](const GoneTriangle& a, SimplexId b) { return a.triangle < b; });
   if (was == report.gone.end() || was->triangle != place.triangle) return place;
-  const Map& map = surface.map();
+  const CombinatorialMap& map = surface.map();
   const Vec3 x = point_in(*was, place.weights);
   std::optional<SurfacePlace> nearest;
-  std::pair<double, bool> least;  // distance, and whether of another face's origin
+  std::pair<double, bool> lowest;  // distance, and whether of another face's origin
   for (const Cell c : report.map.added) {
     const bool other = map.source(c) != was->source;
     for (std::uint16_t s = 0; s < map.shape(c).simplices().size(); ++s) {
@@ -79,9 +79,9 @@ std::optional<SurfacePlace> followed(const Surface& surface, const SurfaceEditRe
       }
       const SurfaceLocation at = nearest_in_triangle(surface, {c, s}, x);
       const std::pair<double, bool> rank = {at.distance, other};
-      if (nearest && !(rank < least)) continue;
+      if (nearest && !(rank < lowest)) continue;
       nearest = at.place;
-      least = rank;
+      lowest = rank;
     }
   }
   return nearest;

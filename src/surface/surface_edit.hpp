@@ -38,7 +38,7 @@ class SurfaceEdit {
   ~SurfaceEdit();
 
   [[nodiscard]] Transaction& topology() { return transaction_; }
-  [[nodiscard]] const Map& map() const { return transaction_.map(); }
+  [[nodiscard]] const CombinatorialMap& map() const { return transaction_.map(); }
   /// Where a vertex is. One put on an edge lies in its middle until it is placed, one that was parted where the other
   /// does; of two that were sewn to each other the lower-numbered one stays where it is. Throws InvalidArgument where
   /// there is no such vertex.
@@ -55,7 +55,7 @@ class SurfaceEdit {
  private:
   Surface& surface_;
   Transaction transaction_;
-  detail::BornPositions<std::vector<Vec3>> born_;
+  detail::CreatedPositions<std::vector<Vec3>> created_;
 };
 
 /// A place after an edit: as it was where its face was not replaced; in a triangle with the same corners, if one of the

@@ -135,8 +135,8 @@ class Stepping {
            std::uint32_t particle)
       : surface_(surface), course_(surface, place), options_(options), trace_(trace), particle_(particle) {}
 
-  SurfaceStep run(const Vec3& displacement, const SurfaceRespond& respond) {
-    SurfaceContinuation next{displacement, false};
+  SurfaceStep run(const Vec3& displacement, const SurfaceContactCallback& respond) {
+    AfterSurfaceContact next{displacement, false};
     while (true) {
       set_out(next.displacement);
       if (left_ == 0.0 || (begin(next.along) && advance())) break;
@@ -358,8 +358,9 @@ SurfacePlace in_free_face(const Surface& surface, const SurfacePlace& place) {
 
 }  // namespace
 
-SurfaceStep step(const Surface& surface, SurfacePlace& place, const Vec3& displacement, const SurfaceRespond& respond,
-                 const SurfaceOptions& options, const SurfaceTrace& trace, std::uint32_t particle) {
+SurfaceStep step(const Surface& surface, SurfacePlace& place, const Vec3& displacement,
+                 const SurfaceContactCallback& respond, const SurfaceOptions& options, const SurfaceTrace& trace,
+                 std::uint32_t particle) {
   if (!surface.contains(place)) throw InvalidArgument("step: the place is none of this surface");
   if (options.max_contacts == 0) throw InvalidArgument("step: max_contacts is 0: it must be at least 1");
   Stepping::check_displacement(displacement);

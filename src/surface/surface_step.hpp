@@ -65,8 +65,8 @@ struct SurfaceTrace {
 /// meets it at time 1. Throws InvalidArgument, the place unchanged, where the place is none of this surface,
 /// max_contacts is 0, or the displacement (or a response's) is not finite or above 2^300.
 SurfaceStep step(const Surface& surface, SurfacePlace& place, const Vec3& displacement,
-                 const SurfaceRespond& respond = {}, const SurfaceOptions& options = {}, const SurfaceTrace& trace = {},
-                 std::uint32_t particle = 0);
+                 const SurfaceContactCallback& respond = {}, const SurfaceOptions& options = {},
+                 const SurfaceTrace& trace = {}, std::uint32_t particle = 0);
 
 /// The tangent of a length at an angle, counterclockwise from the edge that starts at a corner of the triangle.
 Vec3 tangent(const Surface& surface, SimplexId triangle, unsigned corner, double angle, double length = 1.0);

@@ -6,8 +6,8 @@
 
 namespace dartcast {
 
-/// Adds the warnings of inspect_surface() to the report. Precondition: the surface has no defect of its arrays,
-/// corners, coordinates and edges. Cost: n log n.
+/// Adds the warnings of check_and_repair_surface() to the report. Precondition: the surface has no defect of its
+/// arrays, corners, coordinates and edges. Cost: n log n.
 void add_surface_warnings(const MeshData& mesh, MeshReport& report);
 
 }  // namespace dartcast

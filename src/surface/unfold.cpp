@@ -22,12 +22,12 @@ double length_of(const Vec3& v) {
   return square > 0x1p-900 ? std::sqrt(square) : std::hypot(v.x, v.y, v.z);
 }
 
-struct Edges {
+struct UnfoldedEdges {
   Vec3 base, side;  // from a to b, to c; scaled
   double scale;
 };
 
-Edges edges_of(const Vec3& a, const Vec3& b, const Vec3& c) {
+UnfoldedEdges edges_of(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 base = b - a;
   const Vec3 side = c - a;
   const Vec3 extent = extent_of(base, side);
@@ -36,7 +36,7 @@ Edges edges_of(const Vec3& a, const Vec3& b, const Vec3& c) {
 }
 
 // (b - a) x (c - a), scaled. Where the triangle is thin the products cancel: each is then taken exactly.
-Vec3 normal_of(const Vec3& a, const Vec3& b, const Vec3& c, const Edges& e) {
+Vec3 normal_of(const Vec3& a, const Vec3& b, const Vec3& c, const UnfoldedEdges& e) {
   const Vec3 n = cross(e.base, e.side);
   const double square = dot(n, n);
   if (square > 0x1p-900 && square > 0x1p-8 * dot(e.base, e.base) * dot(e.side, e.side)) return n;
@@ -99,7 +99,7 @@ bool has_area(const Vec3& a, const Vec3& b, const Vec3& c) {
 }
 
 Unfolded unfold(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Edges e = edges_of(a, b, c);
+  const UnfoldedEdges e = edges_of(a, b, c);
   Unfolded t;
   t.length = length_of(e.base);
   t.x = dot(e.base, e.side) / t.length;
@@ -109,7 +109,7 @@ Unfolded unfold(const Vec3& a, const Vec3& b, const Vec3& c) {
 }
 
 Frame frame_of(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Edges e = edges_of(a, b, c);
+  const UnfoldedEdges e = edges_of(a, b, c);
   const auto divided = [](const Vec3& v) {
     const double length = length_of(v);
     return Vec3{v.x / length, v.y / length, v.z / length};

@@ -13,12 +13,12 @@ namespace dartcast {
 
 class MapBuilder {
  public:
-  MapBuilder(Map& map, const MeshData& mesh, const InteriorPoints& interior)
-      : map_(map), mesh_(mesh), interior_(interior) {}
+  MapBuilder(CombinatorialMap& map, const MeshData& mesh, const SteinerPoints& steiner)
+      : map_(map), mesh_(mesh), steiner_(steiner) {}
 
   void build() {
     if (mesh_.dimension() == 2) enter_plane();
-    map_.vertex_count_ = mesh_.points.size() + interior_vertices();
+    map_.vertex_count_ = mesh_.points.size() + steiner_vertices();
     map_.wall_vertices_.resize(map_.vertex_count_);
     add_cells();
     sew();
@@ -38,10 +38,10 @@ class MapBuilder {
     map_.pools_[1].stride = 10;
   }
 
-  [[nodiscard]] std::size_t interior_vertices() const {
+  [[nodiscard]] std::size_t steiner_vertices() const {
     std::size_t next = mesh_.points.size();
-    for (const auto& [cell, v] : interior_.of_cells) next = std::max<std::size_t>(next, v.value + 1U);
-    for (const auto& f : interior_.of_faces) next = std::max<std::size_t>(next, f.point.value + 1U);
+    for (const auto& [cell, v] : steiner_.of_cells) next = std::max<std::size_t>(next, v.value + 1U);
+    for (const auto& f : steiner_.of_faces) next = std::max<std::size_t>(next, f.point.value + 1U);
     return next - mesh_.points.size();
   }
 
@@ -49,10 +49,10 @@ class MapBuilder {
     place_cells();
     // Standard cells first: their shapes are few, and their numbers fit in 16 bits.
     for (std::uint32_t c = 0; c < mesh_.cell_count(); ++c) {
-      if (place_[c].pool() != Map::general_pool) add_standard(c);
+      if (place_[c].pool() != CombinatorialMap::general_pool) add_standard(c);
     }
     for (std::uint32_t c = 0; c < mesh_.cell_count(); ++c) {
-      if (place_[c].pool() != Map::general_pool) continue;
+      if (place_[c].pool() != CombinatorialMap::general_pool) continue;
       try {
         add_general(c);
       } catch (const InvalidMesh& e) {
@@ -64,13 +64,13 @@ class MapBuilder {
   // Which pool each cell goes to. Cells with interior points don't fit in their type's records.
   void place_cells() {
     std::vector<bool> general(mesh_.cell_count());
-    for (const auto& entry : interior_.of_cells) general[entry.first] = true;
-    for (const auto& f : interior_.of_faces) general[f.cell] = true;
+    for (const auto& entry : steiner_.of_cells) general[entry.first] = true;
+    for (const auto& f : steiner_.of_faces) general[f.cell] = true;
     place_.resize(mesh_.cell_count());
     for (std::uint32_t c = 0; c < mesh_.cell_count(); ++c) {
       if (dimension(mesh_.types[c]) != map_.dimension_)
         throw InvalidMesh("cell " + std::to_string(source(c)) + " is of another dimension than the first one");
-      const auto pool = general[c] ? Map::general_pool : Map::pool_of(mesh_.types[c]);
+      const auto pool = general[c] ? CombinatorialMap::general_pool : CombinatorialMap::pool_of(mesh_.types[c]);
       const std::size_t index = map_.pools_[pool].count++;
       if (index >= Cell::index_mask) throw InvalidMesh("more than 2^29 - 1 cells of one type: split the mesh");
       place_[c] = Cell(pool, static_cast<std::uint32_t>(index));
@@ -116,7 +116,7 @@ class MapBuilder {
       vertices.push_back(point.value);
     }
     const std::uint32_t shape = map_.shapes_.intern(key).number;
-    map_.open_record(Map::general_pool, 2 + vertices.size() + 2 * faces.size());
+    map_.open_record(CombinatorialMap::general_pool, 2 + vertices.size() + 2 * faces.size());
     map_.write_cell(place_[c], shape, vertices, is_free(c));
   }
 
@@ -149,14 +149,14 @@ class MapBuilder {
   }
 
   [[nodiscard]] Vertex cell_point(std::uint32_t c) const {
-    const auto& all = interior_.of_cells;
+    const auto& all = steiner_.of_cells;
     const auto found =
         std::lower_bound(all.begin(), all.end(), c, [](const auto& e, auto key) { return e.first < key; });
     return found != all.end() && found->first == c ? found->second : Vertex{};
   }
 
   [[nodiscard]] Vertex face_point(std::uint32_t c, std::uint16_t f) const {
-    const auto& all = interior_.of_faces;
+    const auto& all = steiner_.of_faces;
     const auto found = std::lower_bound(all.begin(), all.end(), std::pair{c, f}, [](const auto& e, const auto& key) {
       return std::pair{e.cell, e.face} < key;
     });
@@ -309,14 +309,16 @@ class MapBuilder {
     }
   }
 
-  Map& map_;
+  CombinatorialMap& map_;
   const MeshData& mesh_;
-  const InteriorPoints& interior_;
+  const SteinerPoints& steiner_;
   std::vector<Cell> place_;
   std::vector<std::size_t> bucket_;
   std::vector<FaceEntry> entries_;
 };
 
-Map::Map(const MeshData& mesh, const InteriorPoints& interior) { MapBuilder(*this, mesh, interior).build(); }
+CombinatorialMap::CombinatorialMap(const MeshData& mesh, const SteinerPoints& steiner) {
+  MapBuilder(*this, mesh, steiner).build();
+}
 
 }  // namespace dartcast

@@ -9,7 +9,7 @@
 
 namespace dartcast {
 
-Dart Map::across(Dart d) const {
+Dart CombinatorialMap::across(Dart d) const {
   const CellView c = view(d.cell);
   const std::uint16_t f = c.shape().face_of(d.number);
   const Cell other = c.neighbour(f);
@@ -20,13 +20,13 @@ Dart Map::across(Dart d) const {
   return {other, static_cast<std::uint16_t>(first + c.shape().degree(f) - 1 - place)};
 }
 
-CellFace Map::opposite(CellFace f) const {
+CellFace CombinatorialMap::opposite(CellFace f) const {
   const CellView c = view(f.cell);
   const Cell other = c.neighbour(f.face);
   return other.valid() ? CellFace{other, c.neighbour_face(f.face)} : CellFace{};
 }
 
-Vertex Map::point(CellFace f) const {
+Vertex CombinatorialMap::point(CellFace f) const {
   const CellView v = view(f.cell);
   const auto& key = v.shape().key();
   if (!key.faces[f.face].has_point) return {};
@@ -36,24 +36,24 @@ Vertex Map::point(CellFace f) const {
   return v.vertex(local);
 }
 
-CellType Map::type_of(std::uint32_t pool) const {
+CellType CombinatorialMap::type_of(std::uint32_t pool) const {
   if (dimension_ == 3) return static_cast<CellType>(pool);
   constexpr std::array<CellType, 5> planar = {CellType::triangle, CellType::quadrilateral, CellType::polygon,
                                               CellType::polygon, CellType::polygon};
   return planar[pool];
 }
 
-std::size_t Map::cell_count() const {
+std::size_t CombinatorialMap::cell_count() const {
   return std::accumulate(pools_.begin(), pools_.end(), std::size_t{0},
                          [](std::size_t sum, const Pool& pool) { return sum + pool.count - pool.gone; });
 }
 
-std::uint32_t Map::source(Cell c) const {
+std::uint32_t CombinatorialMap::source(Cell c) const {
   const auto& source = pools_[c.pool()].source;
   return source.empty() ? c.index() : source[c.index()];
 }
 
-std::vector<Cell> Map::cells() const {
+std::vector<Cell> CombinatorialMap::cells() const {
   std::vector<Cell> all;
   all.reserve(cell_count());
   for (std::uint32_t p = 0; p < pools_.size(); ++p) {
@@ -64,14 +64,14 @@ std::vector<Cell> Map::cells() const {
   return all;
 }
 
-void Map::set_free(Cell c, bool free) {
+void CombinatorialMap::set_free(Cell c, bool free) {
   const std::uint32_t bit = 1U << (c.pool() == general_pool ? 16U : 24U);
   std::uint32_t& flags = record(c)[1];
   flags = free ? flags | bit : flags & ~bit;
   mark_walls(c);
 }
 
-Patch Map::patch(std::string_view name) const {
+Patch CombinatorialMap::patch(std::string_view name) const {
   const auto found = std::find(patch_names_.begin(), patch_names_.end(), name);
   if (found != patch_names_.end()) return Patch{static_cast<std::uint16_t>(found - patch_names_.begin())};
   std::string known;
@@ -80,7 +80,7 @@ Patch Map::patch(std::string_view name) const {
                         "\"; there are: " + (known.empty() ? "none" : known));
 }
 
-std::size_t Map::wall_face_count() const {
+std::size_t CombinatorialMap::wall_face_count() const {
   std::size_t count = 0;
   for (const Cell c : cells()) {
     const CellView v = view(c);
@@ -90,8 +90,8 @@ std::size_t Map::wall_face_count() const {
   return count;
 }
 
-std::size_t Map::bytes() const {
-  std::size_t sum = sizeof(Map) + shapes_.bytes() + patches_.bytes() + flats_.bytes() +
+std::size_t CombinatorialMap::bytes() const {
+  std::size_t sum = sizeof(CombinatorialMap) + shapes_.bytes() + patches_.bytes() + flats_.bytes() +
                     wall_vertices_.words.size() * sizeof(std::uint64_t) + cells_at_.size() * sizeof(std::uint32_t) +
                     vacant_vertices_.size() * sizeof(Vertex);
   for (const Pool& pool : pools_) {

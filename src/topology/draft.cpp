@@ -10,7 +10,7 @@
 
 namespace dartcast {
 
-CellDraft draft_of(const Map& map, Cell c) {
+CellDraft draft_of(const CombinatorialMap& map, Cell c) {
   const CellView v = map.view(c);
   const Shape& s = v.shape();
   CellDraft draft;
@@ -26,7 +26,7 @@ CellDraft draft_of(const Map& map, Cell c) {
     if (s.key().faces[f].has_point) face.point = v.vertex(point++);
     face.corners.reserve(s.degree(f) + std::size_t{1});
     for (std::uint16_t d = s.first_dart(f); d < s.first_dart(static_cast<std::uint16_t>(f + 1)); ++d) {
-      const Map::Flat flat = map.flat({c, d});
+      const CombinatorialMap::Flat flat = map.flat({c, d});
       face.corners.push_back({v.vertex(s.origin(d)), flat.straight, flat.coplanar});
     }
     if (s.dimension() == 2) face.corners.push_back({v.vertex(s.corners(f)[1])});
@@ -36,9 +36,9 @@ CellDraft draft_of(const Map& map, Cell c) {
 
 namespace {
 
-constexpr std::size_t most_darts = 0x3fff;
+constexpr std::size_t max_darts = 0x3fff;
 
-class Judge {
+class DraftChecker {
  public:
   DraftForm form(const CellDraft& draft) {
     reset(draft);
@@ -48,7 +48,7 @@ class Judge {
     form.face.resize(draft_->faces.size());
     if (!has_points() && standard(form)) return form;
     std::iota(form.face.begin(), form.face.end(), std::uint16_t{0});
-    form.pool = Map::general_pool;
+    form.pool = CombinatorialMap::general_pool;
     form.corners = corners_;
     form.local = origin_;
     return form;
@@ -61,8 +61,8 @@ class Judge {
     draft_ = &draft;
     std::size_t darts = 0;
     for (const DraftFace& face : draft.faces) darts += face.corners.size();
-    local_.reset(std::min(darts, most_darts));
-    edges_.reset(std::min(darts, most_darts));
+    local_.reset(std::min(darts, max_darts));
+    edges_.reset(std::min(darts, max_darts));
     corners_.clear();
     origin_.clear();
     face_of_.clear();
@@ -84,7 +84,7 @@ class Judge {
     first_.push_back(0);
     std::vector<std::uint16_t> last;  // face that had the corner last
     for (const DraftFace& face : draft_->faces) {
-      if (origin_.size() + face.corners.size() > most_darts) return "would have more than 16383 darts";
+      if (origin_.size() + face.corners.size() > max_darts) return "would have more than 16383 darts";
       const auto f = static_cast<std::uint16_t>(first_.size());
       bool distinct = face.corners.size() >= 3;
       for (const DraftCorner& c : face.corners) {
@@ -230,7 +230,7 @@ class Judge {
 
 std::string polygon_defect(const CellDraft& draft) {
   if (draft.faces.size() < 3) return "would have fewer than three edges";
-  if (draft.faces.size() > most_darts) return "would have more than 16383 darts";
+  if (draft.faces.size() > max_darts) return "would have more than 16383 darts";
   std::vector<std::uint32_t> vertices;
   for (std::size_t f = 0; f < draft.faces.size(); ++f) {
     const auto& edge = draft.faces[f].corners;
@@ -252,7 +252,7 @@ DraftForm form_of_polygon(const CellDraft& draft) {
   const std::size_t n = draft.faces.size();
   const bool standard = n <= 4 && !draft.point.valid();
   const CellType type = n == 3 ? CellType::triangle : n == 4 ? CellType::quadrilateral : CellType::polygon;
-  form.pool = standard ? Map::pool_of(type) : Map::general_pool;
+  form.pool = standard ? CombinatorialMap::pool_of(type) : CombinatorialMap::general_pool;
   for (const DraftFace& edge : draft.faces) form.corners.push_back(edge.corners[0].vertex.value);
   std::size_t first = 0;  // the corner that the record begins with
   if (standard) {
@@ -272,14 +272,14 @@ DraftForm form_of_polygon(const CellDraft& draft) {
 }  // namespace
 
 DraftForm form_of(const CellDraft& draft, unsigned dimension) {
-  return dimension == 2 ? form_of_polygon(draft) : Judge().form(draft);
+  return dimension == 2 ? form_of_polygon(draft) : DraftChecker().form(draft);
 }
 
 std::vector<DraftForm> forms_of(std::span<const CellDraft> drafts, unsigned dimension) {
-  Judge judge;
+  DraftChecker checker;
   std::vector<DraftForm> forms;
   forms.reserve(drafts.size());
-  for (const CellDraft& draft : drafts) forms.push_back(dimension == 2 ? form_of_polygon(draft) : judge.form(draft));
+  for (const CellDraft& draft : drafts) forms.push_back(dimension == 2 ? form_of_polygon(draft) : checker.form(draft));
   return forms;
 }
 

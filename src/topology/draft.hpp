@@ -47,11 +47,11 @@ struct CellDraft {
 
 /// A draft of the cell as it is, corner k of face f for dart first_dart(f) + k, but without a point of its own: what is
 /// to be coned anew has to find a new one. Faces keep their points. Precondition: contains(c).
-CellDraft draft_of(const Map& map, Cell c);
+CellDraft draft_of(const CombinatorialMap& map, Cell c);
 
 /// How a draft goes into a record.
 struct DraftForm {
-  std::uint32_t pool = Map::general_pool;
+  std::uint32_t pool = CombinatorialMap::general_pool;
   std::vector<std::uint32_t> corners;  ///< in the record's order
   std::vector<std::uint16_t> local;    ///< general pool: place of each face's corners in these, one face after another
   std::vector<std::uint16_t> face;     ///< the record's number of each of the draft's faces

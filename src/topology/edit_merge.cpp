@@ -17,7 +17,7 @@ using detail::Rework;
 namespace {
 
 // The faces of a cell but one; those beyond its edges may from now on lie in one plane with others.
-std::vector<DraftFace> all_but(const Map& map, CellFace f) {
+std::vector<DraftFace> all_but(const CombinatorialMap& map, CellFace f) {
   const Shape& s = map.shape(f.cell);
   CellDraft draft = draft_of(map, f.cell);
   for (std::uint16_t d = s.first_dart(f.face); d < s.first_dart(f.face) + s.degree(f.face); ++d) {
@@ -29,7 +29,7 @@ std::vector<DraftFace> all_but(const Map& map, CellFace f) {
 }
 
 // Whether a cell has another face to the same neighbour.
-bool share_more(const Map& map, CellFace f) {
+bool share_more(const CombinatorialMap& map, CellFace f) {
   const CellView v = map.view(f.cell);
   for (std::uint16_t g = 0; g < v.shape().face_count(); ++g) {
     if (g != f.face && v.neighbour(g) == v.neighbour(f.face)) return true;
@@ -40,7 +40,7 @@ bool share_more(const Map& map, CellFace f) {
 }  // namespace
 
 Cell merge_cells(Transaction& t, CellFace f) {
-  const Map& map = t.map();
+  const CombinatorialMap& map = t.map();
   expect_face(map, f);
   const CellFace other = map.opposite(f);
   if (!other.valid()) refuse(map, f.cell, "has nothing beyond the face to merge with: it is on the boundary");
@@ -83,7 +83,7 @@ void join_faces(CellDraft& draft, const Shape& s, std::uint16_t dart) {
 }  // namespace
 
 std::vector<Cell> merge_faces(Transaction& t, Dart d) {
-  const Map& map = t.map();
+  const CombinatorialMap& map = t.map();
   expect_dart(map, d);
   if (map.dimension() == 2) return {merge_cells(t, map.face(d))};
   const Dart beyond = map.phi3(d);
@@ -111,7 +111,7 @@ void drop_corner(CellDraft& draft, const Shape& s, std::uint16_t dart) {
 }  // namespace
 
 std::vector<Cell> merge_edges(Transaction& t, Dart d) {
-  const Map& map = t.map();
+  const CombinatorialMap& map = t.map();
   expect_dart(map, d);
   if (map.dimension() == 2) return detail::merge_edges_in_plane(t, d);
   Rework rework(t);
@@ -133,7 +133,7 @@ void remove(Transaction& t, Cell c) {
   t.replace(cells, {});
 }
 
-Dart find_dart(const Map& map, Cell c, Vertex from, Vertex to) {
+Dart find_dart(const CombinatorialMap& map, Cell c, Vertex from, Vertex to) {
   if (!map.contains(c)) return {};
   const Shape& s = map.shape(c);
   for (std::uint16_t d = 0; d < s.dart_count(); ++d) {

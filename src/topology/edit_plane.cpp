@@ -8,9 +8,11 @@ namespace dartcast::detail {
 
 namespace {
 
-using Edges = std::vector<DraftFace>;
+using PolygonEdges = std::vector<DraftFace>;
 
-Edges::iterator at(Edges& edges, std::size_t number) { return edges.begin() + static_cast<std::ptrdiff_t>(number); }
+PolygonEdges::iterator at(PolygonEdges& edges, std::size_t number) {
+  return edges.begin() + static_cast<std::ptrdiff_t>(number);
+}
 
 // Cuts an edge in two at v; the second part follows the first, which continues the edge.
 void cut_edge(CellDraft& draft, std::uint16_t edge, Vertex v) {
@@ -32,9 +34,9 @@ void link(Rework& rework, Cell c, std::size_t edge, Cell other, std::size_t othe
 }  // namespace
 
 SplitEdge split_edge_in_plane(Transaction& t, Dart d) {
-  const Map& map = t.map();
+  const CombinatorialMap& map = t.map();
   const Dart beyond = map.phi2(d);
-  const Transaction::Mark before = t.mark();
+  const Transaction::Savepoint before = t.savepoint();
   SplitEdge split;
   split.vertex = t.add_vertex(map.origin(d), map.origin(map.phi1(d)));
   try {
@@ -54,7 +56,7 @@ SplitEdge split_edge_in_plane(Transaction& t, Dart d) {
 }
 
 std::vector<Cell> split_polygon(Transaction& t, Dart a, Dart b) {
-  const Map& map = t.map();
+  const CombinatorialMap& map = t.map();
   if (a.cell != b.cell) refuse(map, a.cell, "has not both of the corners: name two of one polygon");
   if (a == b || map.phi1(a) == b || map.phi1(b) == a)
     refuse(map, a.cell, "has the two corners side by side: name two that no edge joins");
@@ -77,7 +79,7 @@ std::vector<Cell> split_polygon(Transaction& t, Dart a, Dart b) {
 }
 
 Cell merge_polygons(Transaction& t, Dart d) {
-  const Map& map = t.map();
+  const CombinatorialMap& map = t.map();
   const Dart beyond = map.phi2(d);
   CellDraft whole = draft_of(map, d.cell);
   CellDraft other = draft_of(map, beyond.cell);
@@ -104,7 +106,7 @@ void join_edges(CellDraft& draft, std::uint16_t first, std::uint16_t second) {
 }  // namespace
 
 std::vector<Cell> merge_edges_in_plane(Transaction& t, Dart d) {
-  const Map& map = t.map();
+  const CombinatorialMap& map = t.map();
   const Dart before = map.phi_1(d);
   const Dart beyond = map.phi2(d);
   const Dart beyond_before = map.phi2(before);

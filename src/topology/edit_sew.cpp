@@ -21,7 +21,7 @@ bool has_corner(const CellView& view, std::uint16_t face, Vertex v) {
 }
 
 // The cells around a vertex of a cell, reached over faces with that vertex but for one face.
-std::vector<Cell> around_vertex(const Map& map, Cell start, Vertex v, CellFace but = {}) {
+std::vector<Cell> around_vertex(const CombinatorialMap& map, Cell start, Vertex v, CellFace but = {}) {
   const CellFace from_beyond = but.valid() ? map.opposite(but) : CellFace{};
   std::vector<Cell> cells = {start};
   std::unordered_set<std::uint32_t> seen = {start.value};
@@ -39,7 +39,7 @@ std::vector<Cell> around_vertex(const Map& map, Cell start, Vertex v, CellFace b
 
 // Gives a vertex of a cell another number, all renamings at once: the map says which vertex a corner was. A face that
 // has it needs another point: weights name corners.
-void rename(const Map& map, Cell c, CellDraft& draft, Vertex from, Vertex to) {
+void rename(const CombinatorialMap& map, Cell c, CellDraft& draft, Vertex from, Vertex to) {
   const CellView v = map.view(c);
   for (std::uint16_t f = 0; f < v.shape().face_count(); ++f) {
     const auto corners = v.shape().corners(f);
@@ -52,7 +52,7 @@ void rename(const Map& map, Cell c, CellDraft& draft, Vertex from, Vertex to) {
 }
 
 // The corners of the dart's face, from its origin on.
-std::vector<Vertex> corners_from(const Map& map, Dart d) {
+std::vector<Vertex> corners_from(const CombinatorialMap& map, Dart d) {
   const CellView view = map.view(d.cell);
   const auto corners = view.shape().corners(view.shape().face_of(d.number));
   const std::size_t first = detail::corner_of(view.shape(), d.number);
@@ -65,7 +65,7 @@ std::vector<Vertex> corners_from(const Map& map, Dart d) {
 }  // namespace
 
 std::vector<Cell> sew(Transaction& t, Dart a, Dart b) {
-  const Map& map = t.map();
+  const CombinatorialMap& map = t.map();
   expect_dart(map, a);
   expect_dart(map, b);
   const CellFace f = map.face(a);
@@ -76,7 +76,7 @@ std::vector<Cell> sew(Transaction& t, Dart a, Dart b) {
   if (a.cell == b.cell) refuse(map, a.cell, "is to be sewn to itself: split it first");
   if (map.shape(f.cell).degree(f.face) != map.shape(g.cell).degree(g.face))
     refuse(map, a.cell, "has a face with another number of corners than the one to sew it to: split an edge first");
-  const Transaction::Mark before = t.mark();
+  const Transaction::Savepoint before = t.savepoint();
   Rework rework(t);
   rework.draft(f.cell).faces[f.face].across.face = g;
   rework.draft(g.cell).faces[g.face].across.face = f;
@@ -91,7 +91,7 @@ std::vector<Cell> sew(Transaction& t, Dart a, Dart b) {
     const Vertex gone = std::max(u, v);
     for (const Cell c : around_vertex(map, u > v ? a.cell : b.cell, gone))
       rename(map, c, rework.draft(c), gone, std::min(u, v));
-    t.note_identified(gone, std::min(u, v));
+    t.note_merged(gone, std::min(u, v));
   }
   try {
     return rework.put();
@@ -102,11 +102,11 @@ std::vector<Cell> sew(Transaction& t, Dart a, Dart b) {
 }
 
 std::vector<Cell> unsew(Transaction& t, CellFace f) {
-  const Map& map = t.map();
+  const CombinatorialMap& map = t.map();
   expect_face(map, f);
   const CellFace g = map.opposite(f);
   if (!g.valid()) refuse(map, f.cell, "has nothing beyond the face to unsew: it is on the boundary");
-  const Transaction::Mark before = t.mark();
+  const Transaction::Savepoint before = t.savepoint();
   try {
     Rework rework(t);
     rework.draft(f.cell).faces[f.face].across = {};

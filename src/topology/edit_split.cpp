@@ -47,10 +47,10 @@ void cut_face(CellDraft& draft, std::uint16_t face, Vertex u, Vertex v) {
 }  // namespace
 
 SplitEdge split_edge(Transaction& t, Dart d) {
-  const Map& map = t.map();
+  const CombinatorialMap& map = t.map();
   expect_dart(map, d);
   if (map.dimension() == 2) return detail::split_edge_in_plane(t, d);
-  const Transaction::Mark before = t.mark();
+  const Transaction::Savepoint before = t.savepoint();
   SplitEdge split;
   split.vertex = t.add_vertex(map.origin(d), map.origin(map.phi1(d)));
   try {
@@ -69,7 +69,7 @@ SplitEdge split_edge(Transaction& t, Dart d) {
 }
 
 std::vector<Cell> split_face(Transaction& t, Dart a, Dart b) {
-  const Map& map = t.map();
+  const CombinatorialMap& map = t.map();
   expect_dart(map, a);
   expect_dart(map, b);
   if (map.dimension() == 2) return detail::split_polygon(t, a, b);
@@ -117,7 +117,7 @@ std::vector<bool> left_of(const Shape& s, std::span<const std::uint16_t> path) {
 // straight.
 class CutFace {
  public:
-  CutFace(const Map& map, Cell c) : map_(map), s_(map.shape(c)), cell_(c) {}
+  CutFace(const CombinatorialMap& map, Cell c) : map_(map), s_(map.shape(c)), cell_(c) {}
 
   DraftFace seen_from_left(std::span<const std::uint16_t> path) const {
     DraftFace face;
@@ -141,12 +141,12 @@ class CutFace {
     return true;
   }
 
-  const Map& map_;
+  const CombinatorialMap& map_;
   const Shape& s_;
   Cell cell_;
 };
 
-std::vector<std::uint16_t> checked_path(const Map& map, std::span<const Dart> path) {
+std::vector<std::uint16_t> checked_path(const CombinatorialMap& map, std::span<const Dart> path) {
   if (path.size() < 3) throw InvalidArgument("a path to cut along has at least three darts");
   std::vector<std::uint16_t> numbers;
   std::vector<Vertex> vertices;
@@ -175,7 +175,7 @@ void part_at(CellDraft& whole, const Shape& s, std::span<const std::uint16_t> pa
 }  // namespace
 
 std::array<Cell, 2> split_cell(Transaction& t, std::span<const Dart> path) {
-  const Map& map = t.map();
+  const CombinatorialMap& map = t.map();
   if (map.dimension() == 2) throw InvalidArgument("a polygon is split between two of its corners: call split_face()");
   const std::vector<std::uint16_t> numbers = checked_path(map, path);
   const Cell c = path[0].cell;

@@ -6,9 +6,9 @@ namespace dartcast {
 
 namespace {
 
-class Checker {
+class IntegrityChecker {
  public:
-  Checker(const Map& map, std::size_t most) : map_(map), most_(most) {}
+  IntegrityChecker(const CombinatorialMap& map, std::size_t max_count) : map_(map), max_count_(max_count) {}
 
   void check(Cell c) {
     const CellView v = map_.view(c);
@@ -20,7 +20,7 @@ class Checker {
     for (std::uint16_t f = 0; f < v.shape().face_count(); ++f) check_face({c, f}, v);
   }
 
-  [[nodiscard]] bool full() const { return found_.size() >= most_; }
+  [[nodiscard]] bool full() const { return found_.size() >= max_count_; }
   std::vector<Violation> take() { return std::move(found_); }
 
  private:
@@ -103,15 +103,16 @@ class Checker {
     }
   }
 
-  const Map& map_;
-  std::size_t most_;
+  const CombinatorialMap& map_;
+  std::size_t max_count_;
   std::vector<Violation> found_;
 };
 
 }  // namespace
 
-std::vector<Violation> check_integrity(const Map& map, std::span<const Cell> cells, std::size_t most) {
-  Checker checker(map, most);
+std::vector<Violation> check_integrity(const CombinatorialMap& map, std::span<const Cell> cells,
+                                       std::size_t max_count) {
+  IntegrityChecker checker(map, max_count);
   for (const Cell c : cells) {
     if (checker.full()) break;
     checker.check(c);
@@ -119,8 +120,8 @@ std::vector<Violation> check_integrity(const Map& map, std::span<const Cell> cel
   return checker.take();
 }
 
-std::vector<Violation> check_integrity(const Map& map, std::size_t most) {
-  return check_integrity(map, map.cells(), most);
+std::vector<Violation> check_integrity(const CombinatorialMap& map, std::size_t max_count) {
+  return check_integrity(map, map.cells(), max_count);
 }
 
 }  // namespace dartcast

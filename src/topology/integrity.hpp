@@ -18,9 +18,10 @@ struct Violation {
 /// points that turns the edge around; phi3 and phi1 o phi3 are involutions (where defined); sewn darts have the same
 /// vertices; both sides of a face are fanned from the same point, or from none of its own; a face starts at its
 /// lowest-numbered vertex; vertices are in range, and distinct in a cell; a face is marked as a wall where exactly one
-/// side is free, or there is no other side, and its vertices as those of a wall. Returns at most `most` violations.
-/// Cost: linear in the darts.
-std::vector<Violation> check_integrity(const Map& map, std::span<const Cell> cells, std::size_t most = 100);
-std::vector<Violation> check_integrity(const Map& map, std::size_t most = 100);
+/// side is free, or there is no other side, and its vertices as those of a wall. Returns at most `max_count`
+/// violations. Cost: linear in the darts.
+std::vector<Violation> check_integrity(const CombinatorialMap& map, std::span<const Cell> cells,
+                                       std::size_t max_count = 100);
+std::vector<Violation> check_integrity(const CombinatorialMap& map, std::size_t max_count = 100);
 
 }  // namespace dartcast

@@ -13,11 +13,11 @@ class KeyTable {
  public:
   static constexpr std::uint32_t none = 0xffffffffU;
 
-  explicit KeyTable(std::size_t most = 0) { reset(most); }
+  explicit KeyTable(std::size_t max_keys = 0) { reset(max_keys); }
 
   /// Forgets all keys.
-  void reset(std::size_t most) {
-    places_.assign(std::bit_ceil(2 * most + 2), {});
+  void reset(std::size_t max_keys) {
+    places_.assign(std::bit_ceil(2 * max_keys + 2), {});
     shift_ = 64 - static_cast<unsigned>(std::countr_zero(places_.size()));
   }
 

@@ -22,7 +22,7 @@ std::vector<Dart> closure(Dart d, Relation... relation) {
 
 }  // namespace
 
-std::vector<Dart> vertex_orbit(const Map& map, Dart d) {
+std::vector<Dart> vertex_orbit(const CombinatorialMap& map, Dart d) {
   const auto phi21 = [&](Dart x) { return map.alpha1(x); };
   const auto phi_12 = [&](Dart x) { return map.phi2(map.phi_1(x)); };
   const auto phi31 = [&](Dart x) {
@@ -33,17 +33,17 @@ std::vector<Dart> vertex_orbit(const Map& map, Dart d) {
   return closure(d, phi21, phi_12, phi31, phi_13);
 }
 
-std::vector<Dart> edge_orbit(const Map& map, Dart d) {
+std::vector<Dart> edge_orbit(const CombinatorialMap& map, Dart d) {
   return closure(
       d, [&](Dart x) { return map.phi2(x); }, [&](Dart x) { return map.phi3(x); });
 }
 
-std::vector<Dart> face_orbit(const Map& map, Dart d) {
+std::vector<Dart> face_orbit(const CombinatorialMap& map, Dart d) {
   return closure(
       d, [&](Dart x) { return map.phi1(x); }, [&](Dart x) { return map.phi3(x); });
 }
 
-std::vector<Dart> cell_orbit(const Map& map, Dart d) {
+std::vector<Dart> cell_orbit(const CombinatorialMap& map, Dart d) {
   if (map.dimension() == 2) return face_orbit(map, d);
   return closure(
       d, [&](Dart x) { return map.phi1(x); }, [&](Dart x) { return map.phi2(x); });

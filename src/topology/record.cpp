@@ -27,14 +27,14 @@ std::uint16_t CellView::neighbour_face_from_7(std::uint16_t face) const {
 }
 
 // A record of zeros behind the others.
-void Map::open_record(std::uint32_t pool, std::size_t words) {
+void CombinatorialMap::open_record(std::uint32_t pool, std::size_t words) {
   Pool& p = pools_[pool];
   if (pool == general_pool) p.offsets.push_back(p.words.size());
   p.words.resize(p.words.size() + words);
 }
 
 // All but the version, which stays; no neighbours, no walls.
-void Map::write_cell(Cell c, std::uint32_t shape, std::span<const std::uint32_t> vertices, bool free) {
+void CombinatorialMap::write_cell(Cell c, std::uint32_t shape, std::span<const std::uint32_t> vertices, bool free) {
   const bool general = c.pool() == general_pool;
   std::uint32_t* word = record(c);
   const std::uint16_t faces = shapes_[shape].face_count();
@@ -45,7 +45,7 @@ void Map::write_cell(Cell c, std::uint32_t shape, std::span<const std::uint32_t>
   if (general) std::fill_n(next, faces, 0U);
 }
 
-void Map::set_neighbour(CellFace f, CellFace other) {
+void CombinatorialMap::set_neighbour(CellFace f, CellFace other) {
   std::uint32_t* word = record(f.cell);
   const Shape& s = shape(f.cell);
   word[2U + s.point_count() + f.face] = other.cell.value;
@@ -59,7 +59,7 @@ void Map::set_neighbour(CellFace f, CellFace other) {
   }
 }
 
-void Map::set_wall(CellFace f, bool wall) {
+void CombinatorialMap::set_wall(CellFace f, bool wall) {
   std::uint32_t* word = record(f.cell);
   const Shape& s = shape(f.cell);
   const bool general = f.cell.pool() == general_pool;
@@ -73,7 +73,7 @@ void Map::set_wall(CellFace f, bool wall) {
   }
 }
 
-void Map::mark_walls(Cell c) {
+void CombinatorialMap::mark_walls(Cell c) {
   const CellView v = view(c);
   for (std::uint16_t f = 0; f < v.shape().face_count(); ++f) {
     const CellFace other = opposite({c, f});

@@ -9,15 +9,15 @@ namespace dartcast {
 
 namespace {
 
-class Judgement {
+class ReplacementPlanner {
  public:
-  Judgement(const Map& map, std::span<const Cell> removed, std::span<const CellDraft> drafts)
+  ReplacementPlanner(const CombinatorialMap& map, std::span<const Cell> removed, std::span<const CellDraft> drafts)
       : map_(map), drafts_(drafts), continued_(face_count(drafts)) {
     plan_.removed.assign(removed.begin(), removed.end());
     std::sort(plan_.removed.begin(), plan_.removed.end());
   }
 
-  Replacement judge() {
+  Replacement plan_replacement() {
     check_removed();
     plan_.forms = forms_of(drafts_, map_.dimension());
     for (std::uint32_t i = 0; i < drafts_.size(); ++i) check_draft(i);
@@ -161,7 +161,7 @@ class Judgement {
     }
   }
 
-  const Map& map_;
+  const CombinatorialMap& map_;
   std::span<const CellDraft> drafts_;
   Replacement plan_;
   detail::KeyTable continued_;                                  // faces of removed cells: number in the next
@@ -171,8 +171,9 @@ class Judgement {
 
 }  // namespace
 
-Replacement judge(const Map& map, std::span<const Cell> removed, std::span<const CellDraft> drafts) {
-  return Judgement(map, removed, drafts).judge();
+Replacement plan_replacement(const CombinatorialMap& map, std::span<const Cell> removed,
+                             std::span<const CellDraft> drafts) {
+  return ReplacementPlanner(map, removed, drafts).plan_replacement();
 }
 
 }  // namespace dartcast

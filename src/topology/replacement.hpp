@@ -10,7 +10,7 @@
 
 namespace dartcast {
 
-/// What is to be done; made by judge().
+/// What is to be done; made by plan_replacement().
 struct Replacement {
   struct Link {
     std::uint32_t draft;  ///< number of the draft
@@ -31,6 +31,7 @@ struct Replacement {
 /// a face of a draft, or one of a cell that stays, which is open now or sewn to a removed cell. Throws InvalidArgument
 /// where a cell is named that there is not, or twice; EditRefused where the result would be no map. Cost: n log n in
 /// the darts of the drafts and of the cells removed.
-Replacement judge(const Map& map, std::span<const Cell> removed, std::span<const CellDraft> drafts);
+Replacement plan_replacement(const CombinatorialMap& map, std::span<const Cell> removed,
+                             std::span<const CellDraft> drafts);
 
 }  // namespace dartcast

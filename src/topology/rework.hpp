@@ -15,7 +15,7 @@ class Rework {
  public:
   explicit Rework(Transaction& t) : transaction_(t) {}
 
-  [[nodiscard]] const Map& map() const { return transaction_.map(); }
+  [[nodiscard]] const CombinatorialMap& map() const { return transaction_.map(); }
 
   /// Number of the cell's draft; drafts it when it is first asked for.
   std::uint32_t take(Cell c) {
@@ -52,36 +52,36 @@ inline std::size_t corner_of(const Shape& s, std::uint16_t dart) {
   return dart - std::size_t{s.first_dart(s.face_of(dart))};
 }
 
-[[noreturn]] inline void refuse(const Map& map, Cell c, const std::string& reason) {
+[[noreturn]] inline void refuse(const CombinatorialMap& map, Cell c, const std::string& reason) {
   throw EditRefused("cell " + std::to_string(map.source(c)) + " " + reason);
 }
 
 /// Throws InvalidArgument where there is no such cell.
-inline void expect_cell(const Map& map, Cell c) {
+inline void expect_cell(const CombinatorialMap& map, Cell c) {
   if (!map.contains(c)) throw InvalidArgument("there is no such cell: an earlier edit replaced it; look it up anew");
 }
 
 /// Throws InvalidArgument where the map is one of the plane. `what`: "cuts", say.
-inline void expect_space(const Map& map, const char* what) {
+inline void expect_space(const CombinatorialMap& map, const char* what) {
   if (map.dimension() == 2)
     throw InvalidArgument(std::string(what) +
                           " need cells of space: in the plane, edit the map (dartcast/map_edits.hpp)");
 }
 
 /// Throws InvalidArgument where there is no such dart.
-inline void expect_dart(const Map& map, Dart d) {
+inline void expect_dart(const CombinatorialMap& map, Dart d) {
   if (!map.contains(d.cell) || d.number >= map.shape(d.cell).dart_count())
     throw InvalidArgument("there is no such dart: an earlier edit replaced its cell; find it anew by its vertices");
 }
 
 /// Throws InvalidArgument where there is no such face.
-inline void expect_face(const Map& map, CellFace f) {
+inline void expect_face(const CombinatorialMap& map, CellFace f) {
   if (!map.contains(f.cell) || f.face >= map.shape(f.cell).face_count())
     throw InvalidArgument("there is no such face: an earlier edit replaced its cell; find it anew by its vertices");
 }
 
 /// A dart of the edge in each cell around it, all in the direction of d.
-inline std::vector<Dart> around_edge(const Map& map, Dart d) {
+inline std::vector<Dart> around_edge(const CombinatorialMap& map, Dart d) {
   std::vector<Dart> darts = {d};
   for (Dart x = map.phi3(map.phi2(d)); x.valid() && x != d; x = map.phi3(map.phi2(x))) darts.push_back(x);
   if (!map.phi3(map.phi2(darts.back())).valid()) {

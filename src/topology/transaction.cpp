@@ -30,7 +30,7 @@ ShapeKey general_key(const CellDraft& draft, const DraftForm& form, std::vector<
 
 }  // namespace
 
-Transaction::Transaction(Map& map) : map_(map) { prepare(); }
+Transaction::Transaction(CombinatorialMap& map) : map_(map) { prepare(); }
 
 Transaction::~Transaction() { roll_back(); }
 
@@ -38,7 +38,7 @@ void Transaction::prepare() {
   if (map_.cells_at_.size() == map_.vertex_count_) return;
   map_.cells_at_.assign(map_.vertex_count_, 0);
   for (const Cell c : map_.cells()) count_vertices(c, true);
-  for (Map::Pool& pool : map_.pools_) {
+  for (CombinatorialMap::Pool& pool : map_.pools_) {
     if (!pool.source.empty()) continue;
     pool.source.resize(pool.count);
     std::iota(pool.source.begin(), pool.source.end(), 0U);
@@ -50,7 +50,7 @@ Vertex Transaction::add_vertex(Vertex from, Vertex other) {
   if (appended && map_.vertex_count_ + 1 >= Vertex::invalid_value)
     throw EditRefused("the map would have more than 2^32 - 2 vertices: split the scene");
   const Vertex v = appended ? Vertex(static_cast<std::uint32_t>(map_.vertex_count_)) : map_.vacant_vertices_.back();
-  born_.push_back({{v, from, other}, appended});
+  created_.push_back({{v, from, other}, appended});
   if (appended) {
     map_.cells_at_.push_back(0);
     ++map_.vertex_count_;
@@ -72,7 +72,7 @@ void Transaction::keep_face(CellFace f) {
   const Shape& s = map_.shape(f.cell);
   const std::size_t neighbour = 2U + s.point_count() + f.face;
   keep(f.cell, neighbour);
-  keep(f.cell, f.cell.pool() == Map::general_pool ? neighbour + s.face_count() : 1);
+  keep(f.cell, f.cell.pool() == CombinatorialMap::general_pool ? neighbour + s.face_count() : 1);
 }
 
 void Transaction::count_vertices(Cell c, bool more) {
@@ -80,8 +80,8 @@ void Transaction::count_vertices(Cell c, bool more) {
 }
 
 std::vector<Cell> Transaction::replace(std::span<const Cell> removed, std::span<const CellDraft> drafts) {
-  const Replacement plan = judge(map_, removed, drafts);
-  const Mark before = mark();
+  const Replacement plan = plan_replacement(map_, removed, drafts);
+  const Savepoint before = savepoint();
   try {
     for (const Cell c : plan.removed) take_away(c);
     for (const CellFace f : plan.opened) {
@@ -106,8 +106,8 @@ void Transaction::take_away(Cell c) {
   keep(c, 0);
   keep(c, 1);
   std::uint32_t* word = map_.record(c);
-  word[1] |= Map::vacant_bit;
-  if (c.pool() == Map::general_pool) {
+  word[1] |= CombinatorialMap::vacant_bit;
+  if (c.pool() == CombinatorialMap::general_pool) {
     word[1] = (word[1] & 0xffff0000U) | ((word[1] + 1U) & 0xffffU);
   } else {
     word[0] += 0x10000U;
@@ -118,7 +118,7 @@ void Transaction::take_away(Cell c) {
 Cell Transaction::put(const CellDraft& draft, const DraftForm& form) {
   std::vector<std::uint32_t> vertices = form.corners;
   ShapeTable::Interned shape{};
-  if (form.pool == Map::general_pool) {
+  if (form.pool == CombinatorialMap::general_pool) {
     shape = map_.shapes_.intern(general_key(draft, form, vertices));
   } else {
     const CellType type = map_.type_of(form.pool);
@@ -127,7 +127,7 @@ Cell Transaction::put(const CellDraft& draft, const DraftForm& form) {
   }
   added_.push_back({{}, false, shape});
   const std::size_t faces = draft.faces.size();
-  const std::size_t words = 2 + vertices.size() + (form.pool == Map::general_pool ? 2 : 1) * faces;
+  const std::size_t words = 2 + vertices.size() + (form.pool == CombinatorialMap::general_pool ? 2 : 1) * faces;
   const Cell c = open_place(form.pool, static_cast<std::uint32_t>(words));
   map_.write_cell(c, shape.number, vertices, draft.free);
   map_.pools_[c.pool()].source[c.index()] = draft.source;
@@ -138,14 +138,14 @@ Cell Transaction::put(const CellDraft& draft, const DraftForm& form) {
 
 // A vacant place for a record of this length, or a new one.
 Cell Transaction::open_place(std::uint32_t pool, std::uint32_t words) {
-  Map::Pool& p = map_.pools_[pool];
+  CombinatorialMap::Pool& p = map_.pools_[pool];
   const auto vacant = p.vacant.find(words);
-  Added& added = added_.back();
+  AddedCell& added = added_.back();
   if (vacant != p.vacant.end() && !vacant->second.empty()) {
     added.cell = Cell(pool, vacant->second.back());
     vacant->second.pop_back();
     --p.gone;
-    map_.record(added.cell)[1] &= ~Map::vacant_bit;
+    map_.record(added.cell)[1] &= ~CombinatorialMap::vacant_bit;
     return added.cell;
   }
   if (p.count >= Cell::index_mask)
@@ -170,9 +170,10 @@ void Transaction::write_sides(Cell c, const CellDraft& draft, const DraftForm& f
     const std::size_t first = s.dimension() == 2 ? 0 : static_cast<std::size_t>(lowest - face.corners.begin());
     for (std::size_t j = 0; j < k; ++j) {
       const DraftCorner& corner = face.corners[(first + j) % k];
-      const auto bits = (corner.straight ? Map::straight_bit : 0) | (corner.coplanar ? Map::coplanar_bit : 0);
+      const auto bits = (corner.straight ? CombinatorialMap::straight_bit : 0) |
+                        (corner.coplanar ? CombinatorialMap::coplanar_bit : 0);
       if (bits == 0) continue;
-      map_.record(c)[1] |= Map::flat_bit;
+      map_.record(c)[1] |= CombinatorialMap::flat_bit;
       map_.flats_.set(c, static_cast<std::uint16_t>(s.first_dart(f) + j), static_cast<std::uint16_t>(bits));
     }
   }
@@ -215,11 +216,11 @@ void Transaction::set_free(Cell c, bool free) {
   map_.set_free(c, free);
 }
 
-Transaction::Mark Transaction::mark() const {
-  return {words_.size(), added_.size(), removed_.size(), born_.size(), identified_.size(), marked_.size()};
+Transaction::Savepoint Transaction::savepoint() const {
+  return {words_.size(), added_.size(), removed_.size(), created_.size(), merged_.size(), marked_.size()};
 }
 
-void Transaction::roll_back(const Mark& to) {
+void Transaction::roll_back(const Savepoint& to) {
   for (; words_.size() > to.words; words_.pop_back())
     map_.pools_[words_.back().pool].words[words_.back().at] = words_.back().value;
   for (; removed_.size() > to.removed; removed_.pop_back()) {
@@ -227,21 +228,21 @@ void Transaction::roll_back(const Mark& to) {
     --map_.pools_[removed_.back().pool()].gone;
   }
   for (; added_.size() > to.added; added_.pop_back()) take_back(added_.back());
-  for (; born_.size() > to.born; born_.pop_back()) {
-    const Vertex v = born_.back().vertex.vertex;
-    if (born_.back().appended) {
+  for (; created_.size() > to.created; created_.pop_back()) {
+    const Vertex v = created_.back().vertex.vertex;
+    if (created_.back().appended) {
       map_.cells_at_.pop_back();
       --map_.vertex_count_;
     } else {
-      map_.cells_at_[v.value] = Map::vacant_vertex;
+      map_.cells_at_[v.value] = CombinatorialMap::vacant_vertex;
       map_.vacant_vertices_.push_back(v);
     }
   }
-  identified_.resize(to.identified);
+  merged_.resize(to.merged);
   marked_.resize(to.marked);
 }
 
-void Transaction::take_back(const Added& added) {
+void Transaction::take_back(const AddedCell& added) {
   const Cell c = added.cell;
   if (c.valid()) {
     count_vertices(c, false);
@@ -258,13 +259,13 @@ void Transaction::take_back(const Added& added) {
 
 std::uint32_t Transaction::length_of(Cell c) const {
   const Shape& s = map_.shape(c);
-  return 2U + s.point_count() + (c.pool() == Map::general_pool ? 2U : 1U) * s.face_count();
+  return 2U + s.point_count() + (c.pool() == CombinatorialMap::general_pool ? 2U : 1U) * s.face_count();
 }
 
 void Transaction::drop_last(std::uint32_t pool, std::uint32_t words) {
-  Map::Pool& p = map_.pools_[pool];
+  CombinatorialMap::Pool& p = map_.pools_[pool];
   p.words.resize(p.words.size() - words);
-  if (pool == Map::general_pool) p.offsets.pop_back();
+  if (pool == CombinatorialMap::general_pool) p.offsets.pop_back();
   p.source.pop_back();
   --p.count;
 }
@@ -272,40 +273,41 @@ void Transaction::drop_last(std::uint32_t pool, std::uint32_t words) {
 // Leaves of a record its version alone, and its place to others: but for a place whose versions have run out, once in
 // 65,535 cells.
 void Transaction::vacate(Cell c) {
-  Map::Pool& p = map_.pools_[c.pool()];
+  CombinatorialMap::Pool& p = map_.pools_[c.pool()];
   const std::uint32_t words = length_of(c);
   const std::uint16_t version = map_.view(c).version();
   std::uint32_t* word = map_.record(c);
   std::fill_n(word, words, 0U);
-  word[c.pool() == Map::general_pool ? 1 : 0] = c.pool() == Map::general_pool ? version : std::uint32_t{version} << 16U;
-  word[1] |= Map::vacant_bit;
+  word[c.pool() == CombinatorialMap::general_pool ? 1 : 0] =
+      c.pool() == CombinatorialMap::general_pool ? version : std::uint32_t{version} << 16U;
+  word[1] |= CombinatorialMap::vacant_bit;
   p.source[c.index()] = Cell::invalid_value;
   if (version != 0xffffU) p.vacant[words].push_back(c.index());
 }
 
 EditReport Transaction::commit() {
   EditReport report = report_cells();
-  bury(report);
+  release_vertices(report);
   for (const Cell c : removed_) {
     const CellView v = map_.view(c);
-    const std::uint32_t shape = c.pool() == Map::general_pool ? v.words()[0] : v.words()[0] & 0xffffU;
+    const std::uint32_t shape = c.pool() == CombinatorialMap::general_pool ? v.words()[0] : v.words()[0] & 0xffffU;
     clear_sides(c);
     vacate(c);
     map_.shapes_.release(shape);
   }
-  report.identified = std::move(identified_);
+  report.merged = std::move(merged_);
   words_.clear();
   added_.clear();
   removed_.clear();
-  born_.clear();
-  identified_.clear();
+  created_.clear();
+  merged_.clear();
   marked_.clear();
   return report;
 }
 
 std::vector<Cell> Transaction::added() const {
   std::vector<Cell> cells;
-  for (const Added& a : added_) {
+  for (const AddedCell& a : added_) {
     if (map_.contains(a.cell)) cells.push_back(a.cell);
   }
   return cells;
@@ -323,7 +325,7 @@ std::vector<Cell> Transaction::removed() const {
 
 std::vector<Cell> Transaction::all_added() const {
   std::vector<Cell> cells;
-  for (const Added& a : added_) cells.push_back(a.cell);
+  for (const AddedCell& a : added_) cells.push_back(a.cell);
   std::sort(cells.begin(), cells.end());
   return cells;
 }
@@ -348,23 +350,23 @@ EditReport Transaction::report_cells() const {
 }
 
 // Vertices without cells: those that came with the transaction were never there.
-void Transaction::bury(EditReport& report) {
+void Transaction::release_vertices(EditReport& report) {
   const auto give_up = [&](Vertex v) {
-    map_.cells_at_[v.value] = Map::vacant_vertex;
+    map_.cells_at_[v.value] = CombinatorialMap::vacant_vertex;
     map_.vacant_vertices_.push_back(v);
   };
-  for (const Born& b : born_) {
+  for (const Created& b : created_) {
     if (map_.cells_at_[b.vertex.vertex.value] == 0) {
       give_up(b.vertex.vertex);
     } else {
-      report.born.push_back(b.vertex);
+      report.created.push_back(b.vertex);
     }
   }
   for (const Cell c : removed_) {
     for (const std::uint32_t v : map_.view(c).vertices()) {
       if (map_.cells_at_[v] != 0) continue;
       give_up(Vertex(v));
-      report.died.emplace_back(v);
+      report.deleted.emplace_back(v);
     }
   }
 }

@@ -42,15 +42,15 @@ inline Vec3 combine(const PlaneCorners& v, const Weights& w) { return (v[0] * w[
 /// The particle with coordinates w, in the moved simplex; settled where rounding put it outside. Precondition: the
 /// moved simplex is positive.
 template <class Positions, std::size_t N>
-Settled ridden(const Space<Positions, N>& space, SimplexId simplex, const Weights& w) {
+SimplexPlacement carried(const Space<Positions, N>& space, SimplexId simplex, const Weights& w) {
   const std::array<Vec3, N> v = space.corners(simplex);
-  return settle(space, simplex, v, combine(v, w));
+  return place_in_simplex(space, simplex, v, combine(v, w));
 }
 
 /// The same in a complex as it is now, of space or of the plane.
-inline Settled ridden(const Complex& complex, SimplexId simplex, const Weights& w) {
-  return complex.map().dimension() == 2 ? ridden(current_space<3>(complex), simplex, w)
-                                        : ridden(current_space<4>(complex), simplex, w);
+inline SimplexPlacement carried(const CellComplex& complex, SimplexId simplex, const Weights& w) {
+  return complex.map().dimension() == 2 ? carried(current_space<3>(complex), simplex, w)
+                                        : carried(current_space<4>(complex), simplex, w);
 }
 
 /// The dual basis of the edges from a simplex's first corner, times its volume (in the plane its area).
@@ -62,12 +62,12 @@ inline std::array<Vec3, 2> duals(const std::array<Vec3, 2>& e) {
 }
 
 /// Frobenius norm of the gradient of the displacement that takes simplex v to simplex w, and v's shortest edge.
-struct Deformation {
+struct DisplacementGradient {
   double gradient;
   double edge;
 };
 template <std::size_t N>
-Deformation deformation(const std::array<Vec3, N>& v, const std::array<Vec3, N>& w) {
+DisplacementGradient displacement_gradient(const std::array<Vec3, N>& v, const std::array<Vec3, N>& w) {
   std::array<Vec3, N - 1> e;
   std::array<Vec3, N - 1> u;
   for (unsigned i = 0; i + 1 < N; ++i) {

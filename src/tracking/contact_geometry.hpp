@@ -37,13 +37,13 @@ struct Determinant {
 
 /// How a segment from p, before a wall's facet, to q, beyond it, passes. N: as for Space.
 template <std::size_t N>
-class Passing;
+class SegmentHit;
 
 /// A triangle. All differences are to p.
 template <>
-class Passing<4> {
+class SegmentHit<4> {
  public:
-  Passing(const WallPlane& w, const Vec3& p, const Vec3& q)
+  SegmentHit(const WallPlane& w, const Vec3& p, const Vec3& q)
       : wall_(w),
         p_(p),
         q_(q),
@@ -80,9 +80,9 @@ class Passing<4> {
 
 /// An edge: its sides are its ends.
 template <>
-class Passing<3> {
+class SegmentHit<3> {
  public:
-  Passing(const WallPlane& w, const Vec3& p, const Vec3& q) : wall_(w), p_(p), q_(q) {}
+  SegmentHit(const WallPlane& w, const Vec3& p, const Vec3& q) : wall_(w), p_(p), q_(q) {}
 
   /// Whether the line meets the end opposite to corner i of the edge; exact.
   [[nodiscard]] bool meets_side(unsigned i) const { return orient2d(p_, q_, i == 0 ? wall_.b : wall_.a) == Sign::zero; }
@@ -100,7 +100,8 @@ class Passing<3> {
 };
 
 /// The wall behind a facet.
-inline WallHit wall_hit(const Map& map, SimplexId id, const CellView& cell, unsigned facet, const Vec3& normal) {
+inline WallHit wall_hit(const CombinatorialMap& map, SimplexId id, const CellView& cell, unsigned facet,
+                        const Vec3& normal) {
   const Across across = cell.shape().simplices()[id.simplex].across[facet];
   const CellFace face = {id.cell, across.face()};
   return {face, across.place, map.patch(face), normal};
@@ -158,7 +159,7 @@ inline std::array<double, 2> weights_in(const PlaneCorners&, const WallPlane& li
 /// Displacement over the whole step of the wall's material point nearest to x: the facet's corners' displacements,
 /// weighted by x's barycentric coordinates in it. `v`: of the simplex.
 template <std::size_t N>
-Vec3 wall_displacement(const Complex& complex, SimplexId simplex, unsigned facet, const std::array<Vec3, N>& v,
+Vec3 wall_displacement(const CellComplex& complex, SimplexId simplex, unsigned facet, const std::array<Vec3, N>& v,
                        const WallPlane& plane, const Vec3& x) {
   const auto vertices = complex.vertices(simplex);
   const std::array<double, N - 1> weight = weights_in(v, plane, x);
@@ -194,7 +195,7 @@ Shape::Feature map_feature(const Shape& shape, std::uint16_t simplex, unsigned w
 /// For a walk that ends on a wall the facets of the wall's simplex that q lies on: those that hold what it lies on in
 /// the walk's last simplex. No coordinate is read.
 template <std::size_t N>
-unsigned zeros_at_end(const Map& map, const Walk& w) {
+unsigned zeros_at_end(const CombinatorialMap& map, const Walk& w) {
   if (w.simplex == w.wall_simplex) return w.zeros;
   const CellView last = map.view(w.simplex.cell);
   const CellView cell = map.view(w.wall_simplex.cell);
@@ -204,19 +205,19 @@ unsigned zeros_at_end(const Map& map, const Walk& w) {
 
 /// Where a walk met a wall: the fraction of the segment, and bit i is set where the point lies on the facet opposite to
 /// corner i of the wall's simplex.
-struct Meeting {
+struct ContactGeometry {
   double fraction;
   unsigned zeros;
 };
 template <std::size_t N>
-Meeting meeting(const Map& map, const std::array<Vec3, N>& v, const WallPlane& wall, const Walk& w, const Vec3& p,
-                const Vec3& q) {
+ContactGeometry contact_geometry(const CombinatorialMap& map, const std::array<Vec3, N>& v, const WallPlane& wall,
+                                 const Walk& w, const Vec3& p, const Vec3& q) {
   if (w.at_start) return {0.0, zeros_of(v, p)};
   if (w.at_end) return {1.0, zeros_at_end<N>(map, w)};
-  const Passing<N> passing(wall, p, q);
+  const SegmentHit<N> hit(wall, p, q);
   unsigned zeros = 1U << w.wall_facet;
-  for (unsigned i = 0; i < N - 1; ++i) zeros |= passing.meets_side(i) ? 1U << facet_corner<N>(w.wall_facet, i) : 0U;
-  return {passing.fraction(), zeros};
+  for (unsigned i = 0; i < N - 1; ++i) zeros |= hit.meets_side(i) ? 1U << facet_corner<N>(w.wall_facet, i) : 0U;
+  return {hit.fraction(), zeros};
 }
 
 /// Fills the parts of a contact that the geometry gives: kind, dart, walls, point. Returns the fraction of the segment.
@@ -226,7 +227,7 @@ double describe_contact(const Space<Positions, N>& space, const Walk& w, const s
                         const WallPlane& wall, const Vec3& p, const Vec3& q, Contact& contact, ContactList& list) {
   const CellView cell = space.map->view(w.wall_simplex.cell);
   const ImplicitSimplex& s = cell.shape().simplices()[w.wall_simplex.simplex];
-  const auto [t, zeros] = meeting(*space.map, v, wall, w, p, q);
+  const auto [t, zeros] = contact_geometry(*space.map, v, wall, w, p, q);
   const Shape::Feature feature = map_feature<N>(cell.shape(), w.wall_simplex.simplex, w.wall_facet, zeros);
   contact.kind = feature.kind;
   contact.dart = {w.wall_simplex.cell, feature.dart};
@@ -241,17 +242,17 @@ double describe_contact(const Space<Positions, N>& space, const Walk& w, const s
 }
 
 /// The same of a wall that is known.
-inline void describe_landing(const Map& map, const Walk& w, const Landing& landing, Contact& contact,
-                             ContactList& list) {
+inline void describe_impact(const CombinatorialMap& map, const Walk& w, const WallImpact& impact, Contact& contact,
+                            ContactList& list) {
   const CellView cell = map.view(w.wall_simplex.cell);
   contact.first_wall = static_cast<std::uint32_t>(list.walls.size());
   contact.wall_count = 1;
-  list.walls.push_back(wall_hit(map, w.wall_simplex, cell, w.wall_facet, landing.normal));
+  list.walls.push_back(wall_hit(map, w.wall_simplex, cell, w.wall_facet, impact.normal));
   const CellFace face = list.walls.back().face;
   contact.kind = static_cast<Kind>(map.dimension() - 1);
   contact.dart = {face.cell, cell.shape().first_dart(face.face)};
-  contact.point = landing.point;
-  contact.wall_displacement = landing.wall_displacement;
+  contact.point = impact.point;
+  contact.wall_displacement = impact.wall_displacement;
 }
 
 }  // namespace dartcast::detail

@@ -32,7 +32,7 @@ inline std::array<double, 2> passing_weights(const PlaneCorners& v, unsigned fac
 class CrossingRecorder {
  public:
   /// `start`: its cell. `moved`: as for Stepper. `contacts`: those of the step.
-  CrossingRecorder(const Complex& complex, bool moved, Cell start, const ContactList& contacts,
+  CrossingRecorder(const CellComplex& complex, bool moved, Cell start, const ContactList& contacts,
                    std::vector<Crossing>& crossings)
       : complex_(complex), moved_(moved), cell_(start), contacts_(contacts), crossings_(crossings) {}
 
@@ -56,7 +56,7 @@ class CrossingRecorder {
   }
 
   /// The particle has this state at this time: rounding may have put it into another cell.
-  void put(const State& state, double time) {
+  void put(const ParticleState& state, double time) {
     last_is_here_ = false;
     const Kind inside = static_cast<Kind>(complex_.map().dimension());
     add({after(time), state.position, cell_, state.cell, inside, {}, 0});
@@ -158,7 +158,7 @@ class CrossingRecorder {
     return point;
   }
 
-  const Complex& complex_;
+  const CellComplex& complex_;
   bool moved_;
   Cell cell_;
   double time_ = 0.0;

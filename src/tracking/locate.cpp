@@ -27,7 +27,7 @@ std::uint32_t bin_along(double x, double low, double high, std::uint32_t bins) {
 
 // The first simplex of the cell whose corners are such that holds(corners); invalid where none is.
 template <class Holds>
-SimplexId find_in(const Complex& complex, Cell c, Holds&& holds) {
+SimplexId find_in(const CellComplex& complex, Cell c, Holds&& holds) {
   const CellView cell = complex.map().view(c);
   const auto& simplices = cell.shape().simplices();
   const auto find = [&](const auto& space) -> SimplexId {
@@ -40,7 +40,7 @@ SimplexId find_in(const Complex& complex, Cell c, Holds&& holds) {
 }
 
 // The first closed simplex of the cell that holds x.
-SimplexId find_in(const Complex& complex, Cell c, const Vec3& x) {
+SimplexId find_in(const CellComplex& complex, Cell c, const Vec3& x) {
   return find_in(complex, c, [&](const auto& corners) { return detail::in_closed_simplex(corners, x); });
 }
 
@@ -58,7 +58,7 @@ bool holds_way(const std::array<Vec3, N>& corners, const Vec3& x, const Vec3& in
 
 }  // namespace
 
-Locator::Locator(const Complex& complex) {
+Locator::Locator(const CellComplex& complex) {
   bounds_ = {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
   for (const Vec3& x : complex.positions()) {
     if (in_exact_range(x)) extend(bounds_.low, bounds_.high, flushed(x));
@@ -66,7 +66,7 @@ Locator::Locator(const Complex& complex) {
   make(complex, complex.map().cells());
 }
 
-Locator::Locator(const Complex& complex, const std::vector<Cell>& cells) {
+Locator::Locator(const CellComplex& complex, const std::vector<Cell>& cells) {
   bounds_ = {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
   for (const Cell c : cells) {
     const Box box = box_of(complex, c);
@@ -76,7 +76,7 @@ Locator::Locator(const Complex& complex, const std::vector<Cell>& cells) {
   make(complex, cells);
 }
 
-void Locator::make(const Complex& complex, const std::vector<Cell>& cells) {
+void Locator::make(const CellComplex& complex, const std::vector<Cell>& cells) {
   choose_bins(cells.size());
   // Cells much larger than a bin would fill the grid: then the bins grow.
   while (bins_ != std::array<std::uint32_t, 3>{1, 1, 1} && entry_count(complex, cells) > 32 * cells.size()) {
@@ -85,7 +85,7 @@ void Locator::make(const Complex& complex, const std::vector<Cell>& cells) {
   fill(complex, cells);
 }
 
-Locator::Box Locator::box_of(const Complex& complex, Cell c) {
+Locator::Box Locator::box_of(const CellComplex& complex, Cell c) {
   Box box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
   const auto positions = complex.positions();
   for (const std::uint32_t v : complex.map().view(c).vertices()) extend(box.low, box.high, flushed(positions[v]));
@@ -121,7 +121,7 @@ void Locator::choose_bins(std::size_t cells) {
     bins_[a] = static_cast<std::uint32_t>(std::clamp(per_largest * share[a], 1.0, 4096.0));
 }
 
-std::size_t Locator::entry_count(const Complex& complex, const std::vector<Cell>& cells) const {
+std::size_t Locator::entry_count(const CellComplex& complex, const std::vector<Cell>& cells) const {
   std::size_t count = 0;
   for (const Cell c : cells) {
     const Box box = box_of(complex, c);
@@ -132,7 +132,7 @@ std::size_t Locator::entry_count(const Complex& complex, const std::vector<Cell>
   return count;
 }
 
-void Locator::fill(const Complex& complex, const std::vector<Cell>& cells) {
+void Locator::fill(const CellComplex& complex, const std::vector<Cell>& cells) {
   first_.assign(std::size_t{bins_[0]} * bins_[1] * bins_[2] + 1, 0);
   for (const Cell c : cells) for_each_bin(box_of(complex, c), [&](std::size_t bin) { ++first_[bin + 1]; });
   for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
@@ -143,7 +143,7 @@ void Locator::fill(const Complex& complex, const std::vector<Cell>& cells) {
 
 // The first simplex in a free cell that look(cell) finds, else the first in a blocked one.
 template <class Look>
-SimplexId Locator::first_free(const Complex& complex, const Vec3& x, Look&& look) const {
+SimplexId Locator::first_free(const CellComplex& complex, const Vec3& x, Look&& look) const {
   if (!bounds_.holds(x)) return {};
   const std::size_t at = bin(x);
   SimplexId blocked;
@@ -156,18 +156,18 @@ SimplexId Locator::first_free(const Complex& complex, const Vec3& x, Look&& look
   return blocked;
 }
 
-SimplexId Locator::find(const Complex& complex, const Vec3& x) const {
+SimplexId Locator::find(const CellComplex& complex, const Vec3& x) const {
   return first_free(complex, x, [&](Cell c) { return find_in(complex, c, x); });
 }
 
-SimplexId Locator::find(const Complex& complex, const Vec3& x, const Vec3& inner) const {
+SimplexId Locator::find(const CellComplex& complex, const Vec3& x, const Vec3& inner) const {
   return first_free(complex, x, [&](Cell c) {
     return find_in(complex, c, [&](const auto& corners) { return holds_way(corners, x, inner); });
   });
 }
 
 // Cells with a simplex that is not positive hold nothing.
-Location Locator::locate(const Complex& complex, const Vec3& x) const {
+Location Locator::locate(const CellComplex& complex, const Vec3& x) const {
   const SimplexId found = first_free(complex, x, [&](Cell c) {
     const SimplexId here = find_in(complex, c, x);
     return here.valid() && check_cell(complex.map(), complex.positions(), c) ? SimplexId{} : here;

@@ -22,20 +22,20 @@ struct Location {
 /// A grid over one complex at one instant: make it again after a move or an edit. Cost to make: linear in the cells.
 class Locator {
  public:
-  explicit Locator(const Complex& complex);
+  explicit Locator(const CellComplex& complex);
   /// Over these cells alone: all others count as outside. Cost: linear in them.
-  Locator(const Complex& complex, const std::vector<Cell>& cells);
+  Locator(const CellComplex& complex, const std::vector<Cell>& cells);
 
   /// Where x is in the complex that the grid was made for. A point on the border of a free cell is free; among equals
   /// the lowest cell and simplex are named. Cells with a simplex that is not positive are skipped. Precondition: x is
   /// finite and in the exact range. Cost: the cells whose boxes share x's grid bin.
-  [[nodiscard]] Location locate(const Complex& complex, const Vec3& x) const;
+  [[nodiscard]] Location locate(const CellComplex& complex, const Vec3& x) const;
 
   /// The simplex alone, where all cells of the grid are known to be valid; invalid outside.
-  [[nodiscard]] SimplexId find(const Complex& complex, const Vec3& x) const;
+  [[nodiscard]] SimplexId find(const CellComplex& complex, const Vec3& x) const;
   /// The same, for one that holds the beginning of the way from x to `inner`, too: of the simplices on two sides of a
   /// wall that x lies on, the one on the side of `inner`.
-  [[nodiscard]] SimplexId find(const Complex& complex, const Vec3& x, const Vec3& inner) const;
+  [[nodiscard]] SimplexId find(const CellComplex& complex, const Vec3& x, const Vec3& inner) const;
 
   /// The number of x's bin, or of one at the border. Points taken by bins find their cells in the cache: of many
   /// points, ten times faster than in random order.
@@ -51,7 +51,7 @@ class Locator {
       return low.x <= x.x && x.x <= high.x && low.y <= x.y && x.y <= high.y && low.z <= x.z && x.z <= high.z;
     }
   };
-  [[nodiscard]] static Box box_of(const Complex& complex, Cell c);
+  [[nodiscard]] static Box box_of(const CellComplex& complex, Cell c);
   [[nodiscard]] std::array<std::uint32_t, 3> bin_of(const Vec3& x) const;
   [[nodiscard]] std::size_t bin_index(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
     return (std::size_t{k} * bins_[1] + j) * bins_[0] + i;
@@ -59,11 +59,11 @@ class Locator {
   template <class Visit>
   void for_each_bin(const Box& box, Visit&& visit) const;
   void choose_bins(std::size_t cells);
-  [[nodiscard]] std::size_t entry_count(const Complex& complex, const std::vector<Cell>& cells) const;
+  [[nodiscard]] std::size_t entry_count(const CellComplex& complex, const std::vector<Cell>& cells) const;
   template <class Look>
-  [[nodiscard]] SimplexId first_free(const Complex& complex, const Vec3& x, Look&& look) const;
-  void make(const Complex& complex, const std::vector<Cell>& cells);
-  void fill(const Complex& complex, const std::vector<Cell>& cells);
+  [[nodiscard]] SimplexId first_free(const CellComplex& complex, const Vec3& x, Look&& look) const;
+  void make(const CellComplex& complex, const std::vector<Cell>& cells);
+  void fill(const CellComplex& complex, const std::vector<Cell>& cells);
 
   Box bounds_;
   std::array<std::uint32_t, 3> bins_{1, 1, 1};

@@ -42,7 +42,7 @@ struct OnSurface {
   std::uint16_t triangle = 0;
 };
 
-OnSurface nearest_on_surface(const Complex& complex, Cell c, const Vec3& x) {
+OnSurface nearest_on_surface(const CellComplex& complex, Cell c, const Vec3& x) {
   const CellView v = complex.map().view(c);
   const Shape& s = v.shape();
   OnSurface nearest;
@@ -58,9 +58,9 @@ OnSurface nearest_on_surface(const Complex& complex, Cell c, const Vec3& x) {
   return nearest;
 }
 
-class Search {
+class NearestFreeSearch {
  public:
-  Search(const Complex& complex, const Vec3& x) : complex_(complex), x_(x) {}
+  NearestFreeSearch(const CellComplex& complex, const Vec3& x) : complex_(complex), x_(x) {}
 
   std::optional<NearestFree> from(std::span<const Cell> start) {
     for (const Cell c : start) reach(c);
@@ -84,13 +84,13 @@ class Search {
   [[nodiscard]] NearestFree placed_in(Cell c) const {
     const OnSurface on = nearest_on_surface(complex_, c, x_);
     const SimplexId simplex{c, complex_.map().shape(c).entry(on.face, on.triangle).index};
-    const Settled settled = settle(complex_, simplex, on.point);
-    return {settled, norm(settled.position - x_)};
+    const SimplexPlacement placed = place_in_simplex(complex_, simplex, on.point);
+    return {placed, norm(placed.position - x_)};
   }
 
   using Reached = std::pair<double, Cell>;
 
-  const Complex& complex_;
+  const CellComplex& complex_;
   const Vec3& x_;
   std::priority_queue<Reached, std::vector<Reached>, std::greater<>> reached_;
   std::unordered_set<std::uint32_t> seen_;
@@ -98,8 +98,8 @@ class Search {
 
 }  // namespace
 
-std::optional<NearestFree> nearest_free(const Complex& complex, std::span<const Cell> start, const Vec3& x) {
-  return Search(complex, x).from(start);
+std::optional<NearestFree> nearest_free(const CellComplex& complex, std::span<const Cell> start, const Vec3& x) {
+  return NearestFreeSearch(complex, x).from(start);
 }
 
 }  // namespace dartcast

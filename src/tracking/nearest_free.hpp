@@ -10,7 +10,7 @@
 namespace dartcast {
 
 struct NearestFree {
-  Settled place;
+  SimplexPlacement place;
   double distance = 0.0;  ///< from the point to there
 };
 
@@ -19,7 +19,7 @@ struct NearestFree {
 /// positive are passed through. The place is exactly in its closed simplex; distances are rounded. `start`: cells next
 /// to x; the one that holds x, if one does, comes first. Precondition: x is in the exact range. Cost: the cells nearer
 /// than the place found.
-std::optional<NearestFree> nearest_free(const Complex& complex, std::span<const Cell> start, const Vec3& x);
+std::optional<NearestFree> nearest_free(const CellComplex& complex, std::span<const Cell> start, const Vec3& x);
 
 /// The point of a triangle that is nearest to x, rounded (C. Ericson, "Real-Time Collision Detection", 2005, section
 /// 5.1.5).

@@ -4,7 +4,7 @@
 
 namespace dartcast {
 
-Placement placement(const Map& map, SimplexId simplex, const Corners& corners, const Vec3& x) {
+Placement placement(const CombinatorialMap& map, SimplexId simplex, const Corners& corners, const Vec3& x) {
   const CellView cell = map.view(simplex.cell);
   const ImplicitSimplex& s = cell.shape().simplices()[simplex.simplex];
   std::array<std::uint16_t, 4> points{};
@@ -20,7 +20,7 @@ Placement placement(const Map& map, SimplexId simplex, const Corners& corners, c
   return {feature.kind, {simplex.cell, feature.dart}};
 }
 
-Forecast forecast(const Map& map, const State& state, const Corners& corners) {
+Forecast forecast(const CombinatorialMap& map, const ParticleState& state, const Corners& corners) {
   const CellView cell = map.view(state.cell);
   const Across base = cell.shape().simplices()[state.simplex].across[0];
   Forecast result;

@@ -136,15 +136,15 @@ inline WallPlane flushed_plane(WallPlane plane) {
   return plane;
 }
 
-struct Settled {
+struct SimplexPlacement {
   SimplexId simplex;
   Vec3 position;
 };
 
 namespace detail {
 
-constexpr int few_doublings = 6;
-constexpr double most_units = 256.0;  // of the coordinates
+constexpr int early_doublings = 6;
+constexpr double max_units = 256.0;  // of the coordinates
 
 /// Whether a corner's coordinate is x's, as decisions see it.
 inline bool is_level(double corner, double x) {
@@ -180,7 +180,7 @@ std::optional<Vec3> proved_inside(const std::array<Vec3, N>& v, const Vec3& x) {
   const double length = norm(direction);
   const double unit = lift_distance(v[facet_corner<N>(facet, 0)], x, 0);
   const double distance = (2.0 * d.error() - off) / (largest * length) + unit;
-  if (!(distance < most_units * unit)) return {};
+  if (!(distance < max_units * unit)) return {};
   const Vec3 lifted = flushed(x + direction * (distance / length));
   const Determinants there(v, lifted);
   if (there.all_proved_positive() || (in_exact_range(lifted) && there.all_positive_in_range())) return lifted;
@@ -207,7 +207,7 @@ Vec3 nearest_corner(const std::array<Vec3, N>& v, const Vec3& x) {
 inline bool is_rounded_off(const Vec3& corner, const Vec3& x) {
   const Vec3 d = corner - x;
   const double off = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
-  return off <= lift_distance(corner, x, few_doublings - 1);
+  return off <= lift_distance(corner, x, early_doublings - 1);
 }
 
 inline Vec3 mean_of(const Corners& v) { return ((v[0] + v[1]) + (v[2] + v[3])) * 0.25; }
@@ -218,7 +218,7 @@ template <std::size_t N>
 std::optional<Vec3> lifted_inside(const std::array<Vec3, N>& v, const Vec3& p, Vec3 x) {
   WallPlanes<N> facets;
   for (unsigned i = 0; i < N; ++i) facets.add(facet_plane(v, i));
-  lift_off(facets, p, x, few_doublings);
+  lift_off(facets, p, x, early_doublings);
   x = flushed(x);
   if (!in_closed_simplex(v, x)) return {};
   return x;
@@ -226,23 +226,24 @@ std::optional<Vec3> lifted_inside(const std::array<Vec3, N>& v, const Vec3& p, V
 
 /// Walks from p to x; nothing where x is not reached.
 template <class Positions, std::size_t N>
-std::optional<Settled> reached(const Space<Positions, N>& space, SimplexId start, const Vec3& p, const Vec3& x) {
-  if (x == p) return Settled{start, p};
+std::optional<SimplexPlacement> reached(const Space<Positions, N>& space, SimplexId start, const Vec3& p,
+                                        const Vec3& x) {
+  if (x == p) return SimplexPlacement{start, p};
   TestCounts uncounted;
   const Walk w = walk(space, start, p, x, uncounted);
-  if (w.end == WalkEnd::arrived || w.at_end) return Settled{w.simplex, x};
+  if (w.end == WalkEnd::arrived || w.at_end) return SimplexPlacement{w.simplex, x};
   return {};
 }
 
 /// Lifts x off the walls in the way from p, one unit in the last place at first, doubling; nothing where that does not
 /// do.
 template <class Positions, std::size_t N>
-std::optional<Settled> lifted(const Space<Positions, N>& space, SimplexId start, const Vec3& p, Vec3 x) {
+std::optional<SimplexPlacement> lifted(const Space<Positions, N>& space, SimplexId start, const Vec3& p, Vec3 x) {
   WallPlanes<N> planes;
-  for (int k = 0; k < few_doublings; ++k) {
+  for (int k = 0; k < early_doublings; ++k) {
     TestCounts uncounted;
     const Walk w = walk(space, start, p, x, uncounted);
-    if (w.end == WalkEnd::arrived || w.at_end) return Settled{w.simplex, x};
+    if (w.end == WalkEnd::arrived || w.at_end) return SimplexPlacement{w.simplex, x};
     if (w.end == WalkEnd::invalid_cell) return {};
     if (planes.none_behind(x)) planes.add(facet_plane(space.corners(w.wall_simplex), w.wall_facet));
     if (planes.none_behind(x)) return {};
@@ -262,22 +263,23 @@ std::optional<Settled> lifted(const Space<Positions, N>& space, SimplexId start,
 /// for (tracking/representable_point.hpp); in the end it is p or the corner nearest to x. No wall is passed.
 /// Precondition: the simplex is positive, its cell free.
 template <class Positions, std::size_t N>
-Settled settle(const Space<Positions, N>& space, SimplexId simplex, const std::array<Vec3, N>& v, const Vec3& rounded) {
+SimplexPlacement place_in_simplex(const Space<Positions, N>& space, SimplexId simplex, const std::array<Vec3, N>& v,
+                                  const Vec3& rounded) {
   const Vec3 x = flushed(rounded);
   if (detail::in_closed_simplex(v, x)) return {simplex, x};
   Vec3 p = flushed(detail::mean_of(v));
   if (const auto lifted = detail::lifted_inside(v, p, x)) return {simplex, *lifted};
   if (!detail::in_closed_simplex(v, p)) p = detail::nearest_corner(v, x);
   if (!in_exact_range(x)) return {simplex, detail::nearest_known(v, p, x)};
-  if (const auto settled = detail::reached(space, simplex, p, x)) return *settled;
-  if (const auto settled = detail::lifted(space, simplex, p, x)) return *settled;
-  if (const auto found = detail::double_inside(v, x)) return {simplex, *found};
+  if (const auto placed = detail::reached(space, simplex, p, x)) return *placed;
+  if (const auto placed = detail::lifted(space, simplex, p, x)) return *placed;
+  if (const auto found = detail::representable_inside(v, x)) return {simplex, *found};
   return {simplex, detail::nearest_known(v, p, x)};
 }
 
 /// The same in a complex as it is now, of space or of the plane.
-inline Settled settle(const Complex& complex, SimplexId simplex, const Vec3& rounded) {
-  const auto in = [&](const auto& space) { return settle(space, simplex, space.corners(simplex), rounded); };
+inline SimplexPlacement place_in_simplex(const CellComplex& complex, SimplexId simplex, const Vec3& rounded) {
+  const auto in = [&](const auto& space) { return place_in_simplex(space, simplex, space.corners(simplex), rounded); };
   return complex.map().dimension() == 2 ? in(current_space<3>(complex)) : in(current_space(complex));
 }
 

@@ -130,9 +130,9 @@ class LatticeBasis {
     if constexpr (axes == 3) step_[2] = {0.0, 0.0, unit.z};
     for (unsigned k = 0; k < axes; ++k) effect_[k] = effect_of(step_[k]);
     orthogonalize();
-    constexpr int most_rounds = 1000;  // rounding may keep it from ending
+    constexpr int max_rounds = 1000;  // rounding may keep it from ending
     unsigned k = 1;
-    for (int round = 0; k < axes && round < most_rounds; ++round) {
+    for (int round = 0; k < axes && round < max_rounds; ++round) {
       if (shorten(k, effect_of)) continue;  // large factors are rounded: once more
       const double mu = share(effect_[k], k - 1);
       if (dot(own_[k], own_[k]) >= (0.75 - mu * mu) * dot(own_[k - 1], own_[k - 1])) {
@@ -192,7 +192,7 @@ class LatticeBasis {
 /// A double close to the point with coordinates `room`, at most about `distance` away; none of the coordinates is lost
 /// where one is found as close as the room allows.
 template <std::size_t N>
-Vec3 double_near(const Coordinates<N>& coordinates, const std::array<double, N>& room, double distance) {
+Vec3 representable_near(const Coordinates<N>& coordinates, const std::array<double, N>& room, double distance) {
   const Vec3 middle = coordinates.place(room);
   const auto spacing = [&](double c) {
     const double large = std::max({std::abs(c), distance, smallest_magnitude});
@@ -226,7 +226,7 @@ Vec3 double_near(const Coordinates<N>& coordinates, const std::array<double, N>&
 /// is of the order of a^(-1/3) units, which is the least that can be hoped for. Cost: some 10 us for each doubling of
 /// the distance. Precondition: the simplex is positive.
 template <std::size_t N>
-std::optional<Vec3> double_inside(const std::array<Vec3, N>& v, const Vec3& x) {
+std::optional<Vec3> representable_inside(const std::array<Vec3, N>& v, const Vec3& x) {
   const Coordinates<N> coordinates(v);
   const std::array<double, N> next = coordinates.inside(coordinates.at(x));
   double size = 0.0;
@@ -236,7 +236,7 @@ std::optional<Vec3> double_inside(const std::array<Vec3, N>& v, const Vec3& x) {
     std::array<double, N> room;
     for (unsigned i = 0; i < N; ++i) room[i] = (1.0 - drawn) * next[i] + drawn * (1.0 / N);
     for (int turn = 0; turn < 3; ++turn) room = coordinates.centred(room);
-    const Vec3 found = double_near(coordinates, room, drawn * size);
+    const Vec3 found = representable_near(coordinates, room, drawn * size);
     if (in_closed_simplex(v, found)) return found;
   }
   return {};

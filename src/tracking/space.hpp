@@ -29,7 +29,7 @@ struct Between {
 /// N: the number of a simplex's corners, 4 in space and 3 in the plane.
 template <class Positions, std::size_t N = 4>
 struct Space {
-  const Map* map;
+  const CombinatorialMap* map;
   Positions positions;
   std::uint64_t simplex_count;  ///< no walk meets more
 
@@ -48,15 +48,15 @@ struct Space {
 };
 
 template <std::size_t N = 4>
-Space<Stored, N> current_space(const Complex& complex) {
+Space<Stored, N> current_space(const CellComplex& complex) {
   return {&complex.map(), {complex.positions().data()}, complex.simplex_count()};
 }
 template <std::size_t N = 4>
-Space<Stored, N> previous_space(const Complex& complex) {
+Space<Stored, N> previous_space(const CellComplex& complex) {
   return {&complex.map(), {complex.previous_positions().data()}, complex.simplex_count()};
 }
 template <std::size_t N = 4>
-Space<Between, N> space_between(const Complex& complex, double s) {
+Space<Between, N> space_between(const CellComplex& complex, double s) {
   return {
       &complex.map(), {complex.previous_positions().data(), complex.positions().data(), s}, complex.simplex_count()};
 }
@@ -66,7 +66,7 @@ struct Passage {
   SimplexId simplex;
   std::uint16_t facet;
 };
-inline Passage pass(const Map& map, SimplexId from, const CellView& cell, Across across) {
+inline Passage pass(const CombinatorialMap& map, SimplexId from, const CellView& cell, Across across) {
   if (!across.outer()) return {{from.cell, across.index}, across.place};
   const std::uint16_t face = across.face();
   const Cell next = cell.neighbour(face);

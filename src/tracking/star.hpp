@@ -44,7 +44,7 @@ namespace detail {
 
 // Codes found so far, each once, in order. Stars have some tens: then all stays on the stack, and nothing is
 // written before it is needed.
-class Found {
+class FoundSimplex {
  public:
   /// One that was not found before, nor will be again.
   void push(std::uint64_t code) {
@@ -105,7 +105,7 @@ class FewCells {
  public:
   /// Returns false: there is no room.
   bool add(Cell c) {
-    if (count_ == most) return false;
+    if (count_ == limit) return false;
     // As a whole: a part just written could not be read along with the others yet.
     Four& four = cells_[count_ / 4];
     const std::uint32_t lane = count_ % 4;
@@ -124,9 +124,9 @@ class FewCells {
   using Bits = std::uint64_t __attribute__((vector_size(16)));
   static Four all(std::uint32_t x) { return Four{x, x, x, x}; }
 
-  static constexpr std::uint32_t most = 16;
+  static constexpr std::uint32_t limit = 16;
 
-  std::array<Four, most / 4> cells_;  // in the last four the first one again where there are not as many
+  std::array<Four, limit / 4> cells_;  // in the last four the first one again where there are not as many
   std::uint32_t count_ = 0;
 };
 
@@ -136,8 +136,8 @@ class FewCells {
 /// feature and are no walls. Calls on_simplex(SimplexId, CellView, ImplicitSimplex) for each, start first; it ends the
 /// search by returning false. Purely combinatorial: no coordinate is read. Cost: linear in the star.
 template <std::size_t N = 4, class OnSimplex>
-void search_star(const Map& map, SimplexId start, const Feature& feature, OnSimplex&& on_simplex) {
-  detail::Found found;
+void search_star(const CombinatorialMap& map, SimplexId start, const Feature& feature, OnSimplex&& on_simplex) {
+  detail::FoundSimplex found;
   found.add(detail::code_of(start.cell, start.simplex));
   for (std::size_t next = 0; next < found.size(); ++next) {
     const SimplexId id = {detail::cell_of(found[next]), detail::number_of(found[next])};
@@ -159,7 +159,7 @@ namespace detail {
 
 /// search_walls() in the plane, around a vertex: from triangle to triangle.
 template <class OnWall>
-void search_plane_walls(const Map& map, SimplexId start, const Feature& feature, OnWall&& on_wall) {
+void search_plane_walls(const CombinatorialMap& map, SimplexId start, const Feature& feature, OnWall&& on_wall) {
   search_star<3>(map, start, feature, [&](SimplexId id, const CellView& cell, const ImplicitSimplex& s) {
     for (unsigned facets = facets_holding<3>(feature, cell, s); facets != 0; facets &= facets - 1) {
       const auto facet = static_cast<std::uint16_t>(std::countr_zero(facets));
@@ -176,9 +176,9 @@ void search_plane_walls(const Map& map, SimplexId start, const Feature& feature,
 /// Calls on_wall(SimplexId, CellView, ImplicitSimplex, facet) for each wall facet that holds the feature; it ends the
 /// search by returning false. Cost: linear in the number of cells around the feature.
 template <std::size_t N = 4, class OnWall>
-void search_walls(const Map& map, SimplexId start, const Feature& feature, OnWall&& on_wall) {
+void search_walls(const CombinatorialMap& map, SimplexId start, const Feature& feature, OnWall&& on_wall) {
   if constexpr (N == 3) return detail::search_plane_walls(map, start, feature, on_wall);
-  detail::Found found;
+  detail::FoundSimplex found;
   detail::FewCells whole;
   const auto add = [&](Cell c, const Stars& stars, std::uint16_t star) {
     const std::uint64_t code = detail::code_of(c, star);
@@ -223,7 +223,8 @@ struct SimplexFacet {
 /// where search_walls() finds none from there. Cost: one look inside a face, else linear in the star. Precondition: 1
 /// to N - 1 bits are set.
 template <std::size_t N = 4>
-std::optional<SimplexFacet> find_wall(const Map& map, SimplexId simplex, unsigned zeros, const Feature& feature) {
+std::optional<SimplexFacet> find_wall(const CombinatorialMap& map, SimplexId simplex, unsigned zeros,
+                                      const Feature& feature) {
   if (feature.count == N - 1) {
     const auto facet = static_cast<std::uint16_t>(std::countr_zero(zeros));
     const CellView cell = map.view(simplex.cell);

@@ -13,7 +13,7 @@ struct NoRecorder {
   static NoVisitor visitor() { return {}; }
   template <class... Arguments>
   static void walked(const Arguments&...) {}
-  static void put(const State&, double) {}
+  static void put(const ParticleState&, double) {}
 };
 
 }  // namespace
@@ -26,12 +26,12 @@ void check(const StepOptions& options, const char* caller) {
     throw InvalidArgument(fmt::format("{}: max_contacts is 0: it must be at least 1", caller));
 }
 
-StepResult Stepper::step(std::uint32_t particle, State& state, Weights& weights, const Vec3& target,
-                         ContactList& contacts, Counters& counters, const Begun* begun) const {
+StepResult Stepper::step(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
+                         ContactList& contacts, Counters& counters, const PartialStep* partial) const {
   constexpr NoRecorder none;
   if (complex_.map().dimension() == 2)
-    return step_in<3>(particle, state, weights, target, contacts, counters, begun, none);
-  return step_in<4>(particle, state, weights, target, contacts, counters, begun, none);
+    return step_in<3>(particle, state, weights, target, contacts, counters, partial, none);
+  return step_in<4>(particle, state, weights, target, contacts, counters, partial, none);
 }
 
 }  // namespace dartcast

@@ -30,7 +30,7 @@ struct StepOptions {
 void check(const StepOptions& options, const char* caller);
 
 /// A particle that a cell kept from its step, and why.
-struct Held {
+struct HeldParticle {
   std::uint32_t particle = 0;
   Cell cell;  ///< the invalid cell: its own, or one on its way; or its own, which is blocked
 };
@@ -46,7 +46,7 @@ struct StepResult {
 using Weights = std::array<double, 4>;
 
 /// What is known of a wall's face that a walk has come to, inside of it.
-struct Landing {
+struct WallImpact {
   Vec3 normal;
   double fraction = 0.0;  ///< of the segment
   Vec3 point;
@@ -55,17 +55,18 @@ struct Landing {
 };
 
 /// A step that has been walked up to its first wall: see Stepper::step().
-struct Begun {
+struct PartialStep {
   Vec3 from;         ///< where the walk began: the particle's place, after riding along with the vertices
   Walk walk;         ///< ends at a wall: one that q is beyond, or one that q is on
   TestCounts tests;  ///< made so far
-  const Landing* landing = nullptr;
+  const WallImpact* impact = nullptr;
 
-  Begun(const Vec3& start, const Walk& first, const TestCounts& counts) : from(start), walk(first), tests(counts) {}
+  PartialStep(const Vec3& start, const Walk& first, const TestCounts& counts)
+      : from(start), walk(first), tests(counts) {}
 
   /// Whether the step has put the particle where it landed, and it has stayed there.
-  [[nodiscard]] bool stays(const State& after) const {
-    return landing != nullptr && after.at() == walk.wall_simplex && after.position == landing->position;
+  [[nodiscard]] bool stays(const ParticleState& after) const {
+    return impact != nullptr && after.at() == walk.wall_simplex && after.position == impact->position;
   }
 };
 
@@ -74,28 +75,29 @@ class Stepper {
  public:
   /// `moved`: the complex's positions have been committed for this step; targets then are relative to positions before
   /// the move (they are absolute points, computed by the caller from where the particle was).
-  Stepper(const Complex& complex, bool moved, const StepOptions& options, const Respond& respond)
+  Stepper(const CellComplex& complex, bool moved, const StepOptions& options, const ContactCallback& respond)
       : complex_(complex), moved_(moved), options_(options), respond_(respond) {}
 
-  /// Steps one particle to `target`, a finite point in the exact range. Adds its contacts in order of time. `begun`:
+  /// Steps one particle to `target`, a finite point in the exact range. Adds its contacts in order of time. `partial`:
   /// goes on from there, if it is not null; the step is one that is not split.
-  StepResult step(std::uint32_t particle, State& state, Weights& weights, const Vec3& target, ContactList& contacts,
-                  Counters& counters, const Begun* begun = nullptr) const;
+  StepResult step(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
+                  ContactList& contacts, Counters& counters, const PartialStep* partial = nullptr) const;
 
   /// The same step to the same bits, for one particle to be looked at: adds its crossings, too. Cost: some exact values
   /// for each of these.
-  StepResult trace(std::uint32_t particle, State& state, Weights& weights, const Vec3& target, ContactList& contacts,
-                   std::vector<Crossing>& crossings) const;
+  StepResult trace(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
+                   ContactList& contacts, std::vector<Crossing>& crossings) const;
 
  private:
   template <std::size_t N, class Recorder>
-  StepResult step_in(std::uint32_t particle, State& state, Weights& weights, const Vec3& target, ContactList& contacts,
-                     Counters& counters, const Begun* begun, const Recorder& recorder) const;
+  StepResult step_in(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
+                     ContactList& contacts, Counters& counters, const PartialStep* partial,
+                     const Recorder& recorder) const;
 
-  const Complex& complex_;
+  const CellComplex& complex_;
   bool moved_;
   const StepOptions& options_;
-  const Respond& respond_;
+  const ContactCallback& respond_;
 };
 
 }  // namespace dartcast

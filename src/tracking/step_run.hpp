@@ -17,7 +17,7 @@ namespace detail {
 template <class Recorder>
 struct RunOf {
   std::uint32_t particle;
-  State& state;
+  ParticleState& state;
   ContactList& contacts;
   Counters& counters;
   StepResult result{};
@@ -32,13 +32,13 @@ struct RunOf {
 inline constexpr int lift_doublings = 16;  // for targets along walls
 
 // The stretch of the step that is walked in one geometry: the particle's motion from time `begin` to time `end`.
-struct Stretch {
+struct TimeInterval {
   double begin;
   double end;
   Vec3 later;  // displacement planned after `end`, not relative to anything
 };
 
-inline void touch(State& state, std::span<const WallHit> walls) {
+inline void touch(ParticleState& state, std::span<const WallHit> walls) {
   state.touching_count = 0;
   for (const WallHit& wall : walls) {
     if (state.touching_count == state.touching.size()) break;
@@ -48,68 +48,68 @@ inline void touch(State& state, std::span<const WallHit> walls) {
 }
 
 template <class Positions, std::size_t N, class Recorder>
-class Part {
+class StepPart {
   using Run = RunOf<Recorder>;
 
  public:
-  Part(const Complex& complex, bool moved, const Space<Positions, N>& space, const StepOptions& options,
-       const Respond& respond)
+  StepPart(const CellComplex& complex, bool moved, const Space<Positions, N>& space, const StepOptions& options,
+           const ContactCallback& respond)
       : complex_(complex), moved_(moved), space_(space), options_(options), respond_(respond) {}
 
   // Walks to q, with the contacts on the way. Returns the displacement still planned after this stretch.
-  Vec3 move(Run& run, Vec3 q, Stretch stretch, const Begun* begun = nullptr) const {
+  Vec3 move(Run& run, Vec3 q, TimeInterval interval, const PartialStep* partial = nullptr) const {
     while (q != run.state.position) {
       const Vec3 p = run.state.position;
-      const Landing* const landing = begun != nullptr ? begun->landing : nullptr;
+      const WallImpact* const impact = partial != nullptr ? partial->impact : nullptr;
       Walk walked;
-      if (begun == nullptr)
+      if (partial == nullptr)
         walked = walk(space_, run.state.at(), p, q, run.tests, run.recorder.visitor());
-      else if (landing == nullptr)
-        walked = end_walk(space_, begun->walk, p, q, run.tests, run.recorder.visitor());
-      const Walk& w = landing != nullptr ? begun->walk : walked;
-      begun = nullptr;
+      else if (impact == nullptr)
+        walked = end_walk(space_, partial->walk, p, q, run.tests, run.recorder.visitor());
+      const Walk& w = impact != nullptr ? partial->walk : walked;
+      partial = nullptr;
       if (w.end == WalkEnd::invalid_cell) {
         run.result.held = true;
         run.result.invalid_cell = w.simplex.cell;
         return {};
       }
-      run.recorder.walked(space_, w, p, q, stretch.begin, stretch.end);
+      run.recorder.walked(space_, w, p, q, interval.begin, interval.end);
       if (w.end == WalkEnd::arrived) {
         run.state.put(w.simplex, q);
         run.state.touching_count = 0;
-        return stretch.later;
+        return interval.later;
       }
-      const Continuation next = meet(run, w, p, q, stretch, landing);
+      const AfterContact next = meet(run, w, p, q, interval, impact);
       if (run.result.stopped) return {};
-      const double share = stretch.end < 1.0 ? (stretch.end - stretch.begin) / (1.0 - stretch.begin) : 1.0;
-      stretch.later =
-          next.displacement * (1.0 - share) + run.contacts.contacts.back().wall_displacement * (1.0 - stretch.end);
+      const double share = interval.end < 1.0 ? (interval.end - interval.begin) / (1.0 - interval.begin) : 1.0;
+      interval.later =
+          next.displacement * (1.0 - share) + run.contacts.contacts.back().wall_displacement * (1.0 - interval.end);
       q = aim(run, next, share);
     }
-    return stretch.later;
+    return interval.later;
   }
 
  private:
   // Records the contact, puts the particle there, and asks what follows.
-  Continuation meet(Run& run, const Walk& w, const Vec3& p, const Vec3& q, Stretch& stretch,
-                    const Landing* landing) const {
+  AfterContact meet(Run& run, const Walk& w, const Vec3& p, const Vec3& q, TimeInterval& interval,
+                    const WallImpact* impact) const {
     Contact& contact = run.contacts.contacts.emplace_back();
     contact.particle = run.particle;
-    const double t = landing != nullptr ? land(run, w, *landing, contact) : hit(run, w, p, q, contact);
+    const double t = impact != nullptr ? land(run, w, *impact, contact) : hit(run, w, p, q, contact);
     contact.earlier = contact.first_wall - run.first_wall;
     contact.last = ++run.contact_count >= options_.max_contacts;
-    stretch.begin += t * (stretch.end - stretch.begin);
-    contact.time_of_impact = stretch.begin;
-    if (stretch.begin - run.last_time >= share_together) run.first_here = contact.first_wall;
+    interval.begin += t * (interval.end - interval.begin);
+    contact.time_of_impact = interval.begin;
+    if (interval.begin - run.last_time >= share_together) run.first_here = contact.first_wall;
     contact.together = contact.first_wall - run.first_here;
-    run.last_time = stretch.begin;
+    run.last_time = interval.begin;
     run.recorder.put(run.state, contact.time_of_impact);
-    const Vec3 later = stretch.later - contact.wall_displacement * (1.0 - stretch.end);
+    const Vec3 later = interval.later - contact.wall_displacement * (1.0 - interval.end);
     contact.displacement = (q - p) + later;
     contact.unused = (q - p) * (1.0 - t) + later;
     ++run.counters.contacts[static_cast<std::size_t>(contact.kind)];
     touch(run.state, run.contacts.walls_of(contact));
-    return follow(run, contact);
+    return update_after_edit(run, contact);
   }
 
   // What the contact is, and where it puts the particle. Returns the fraction of the segment.
@@ -124,13 +124,13 @@ class Part {
     return t;
   }
 
-  double land(Run& run, const Walk& w, const Landing& landing, Contact& contact) const {
-    describe_landing(*space_.map, w, landing, contact, run.contacts);
-    run.state.put(w.wall_simplex, landing.position);
-    return landing.fraction;
+  double land(Run& run, const Walk& w, const WallImpact& impact, Contact& contact) const {
+    describe_impact(*space_.map, w, impact, contact, run.contacts);
+    run.state.put(w.wall_simplex, impact.position);
+    return impact.fraction;
   }
 
-  Continuation follow(Run& run, const Contact& contact) const {
+  AfterContact update_after_edit(Run& run, const Contact& contact) const {
     if (!respond_ || run.contact_count > options_.max_contacts) {
       run.counters.unfinished += respond_ ? 1 : 0;
       run.result.stopped = true;
@@ -145,27 +145,27 @@ class Part {
   void place(Run& run, const Walk& w, const std::array<Vec3, N>& corners, const Vec3& p, const Contact& contact) const {
     if (w.at_end) return run.state.put(w.simplex, contact.point);
     if (const auto proved = proved_inside(corners, contact.point)) return run.state.put(w.wall_simplex, *proved);
-    const Settled settled = next_to(w.wall_simplex, corners, contact.point);
+    const SimplexPlacement placed = next_to(w.wall_simplex, corners, contact.point);
     const auto distance = [&](const Vec3& x) {
       return std::hypot(x.x - contact.point.x, x.y - contact.point.y, x.z - contact.point.z);
     };
     const double unit = lift_distance(contact.point, contact.point, 0);
-    if (distance(settled.position) > std::max(distance(p), most_units * unit)) return;
-    run.state.put(settled.simplex, settled.position);
+    if (distance(placed.position) > std::max(distance(p), max_units * unit)) return;
+    run.state.put(placed.simplex, placed.position);
   }
 
   // Where the filter proves nothing: at a corner that is as near as rounding; else where x settles, or at a corner that
   // is nearer.
-  [[nodiscard]] Settled next_to(SimplexId simplex, const std::array<Vec3, N>& v, const Vec3& x) const {
-    const Settled corner = {simplex, nearest_corner(v, x)};
+  [[nodiscard]] SimplexPlacement next_to(SimplexId simplex, const std::array<Vec3, N>& v, const Vec3& x) const {
+    const SimplexPlacement corner = {simplex, nearest_corner(v, x)};
     if (is_rounded_off(corner.position, x)) return corner;
-    const Settled settled = settle(space_, simplex, v, x);
-    return norm(corner.position - x) < norm(settled.position - x) ? corner : settled;
+    const SimplexPlacement placed = place_in_simplex(space_, simplex, v, x);
+    return norm(corner.position - x) < norm(placed.position - x) ? corner : placed;
   }
 
   // Where to go after a contact; along a wall, the target is lifted off the planes that rounding put it behind, but not
   // off those that it is meant to be behind: they are met again.
-  [[nodiscard]] Vec3 aim(const Run& run, const Continuation& next, double share) const {
+  [[nodiscard]] Vec3 aim(const Run& run, const AfterContact& next, double share) const {
     Vec3 q = flushed(run.state.position + next.displacement * share);
     if (!in_exact_range(q))
       throw InvalidArgument("the response for particle " + std::to_string(run.particle) +
@@ -189,11 +189,11 @@ class Part {
     return flushed(q);
   }
 
-  const Complex& complex_;
+  const CellComplex& complex_;
   bool moved_;
   const Space<Positions, N>& space_;
   const StepOptions& options_;
-  const Respond& respond_;
+  const ContactCallback& respond_;
 };
 
 template <std::size_t N>
@@ -214,7 +214,7 @@ class MovingStep {
   using Run = RunOf<Recorder>;
 
  public:
-  MovingStep(const Complex& complex, const StepOptions& options, const Respond& respond)
+  MovingStep(const CellComplex& complex, const StepOptions& options, const ContactCallback& respond)
       : complex_(complex), options_(options), respond_(respond) {}
 
   void run(Run& run, Weights& weights, const Vec3& target) const {
@@ -232,7 +232,7 @@ class MovingStep {
       ride(current_space<N>(complex_), run, weights, 0.0);
       // Nothing is in the way within the simplex, wherever rounding has put the particle.
       if (Determinants(after, target).all_proved_positive()) run.state.put(start, run.state.position);
-      Part<Stored, N, Recorder>(complex_, true, space_, options_, respond_).move(run, target, {0.0, 1.0, {}});
+      StepPart<Stored, N, Recorder>(complex_, true, space_, options_, respond_).move(run, target, {0.0, 1.0, {}});
       return;
     }
     ++run.counters.steps_split;
@@ -254,20 +254,20 @@ class MovingStep {
     const Simplex after = space_.corners(run.state.at());
     if (positive(after) && is_free(run)) return ride(space_, run, weights, 1.0);
     run.state.held = true;
-    const Vec3 ridden = flushed(combine(after, weights));
-    if (in_exact_range(ridden)) run.state.position = ridden;  // else a corner is not finite: it stays where it was
+    const Vec3 carried = flushed(combine(after, weights));
+    if (in_exact_range(carried)) run.state.position = carried;  // else a corner is not finite: it stays where it was
   }
 
   template <class Positions>
   void ride(const Space<Positions, N>& space, Run& run, const Weights& weights, double time) const {
-    const Settled settled = ridden(space, run.state.at(), weights);
-    run.state.put(settled.simplex, settled.position);
+    const SimplexPlacement placed = carried(space, run.state.at(), weights);
+    run.state.put(placed.simplex, placed.position);
     run.recorder.put(run.state, time);
   }
 
   [[nodiscard]] unsigned part_count(const Simplex& before, const Simplex& after, const Weights& weights,
                                     const Vec3& target) const {
-    const auto [gradient, edge] = deformation(before, after);
+    const auto [gradient, edge] = displacement_gradient(before, after);
     const double own = norm(target - combine(after, weights));
     const double parts = std::ceil(std::sqrt(gradient * own / (2.0 * options_.tolerance * edge)));
     if (!(parts > 1.0)) return 1;
@@ -291,33 +291,33 @@ class MovingStep {
       const Vec3 share = planned * (1.0 / (parts - j + 1));
       const Vec3 q = j == parts && run.contact_count == 0 ? target : flushed(here + share);
       planned =
-          Part<Between, N, Recorder>(complex_, true, to, options_, respond_)
+          StepPart<Between, N, Recorder>(complex_, true, to, options_, respond_)
               .move(run, q, {static_cast<double>(j - 1) / parts, static_cast<double>(j) / parts, planned - share});
       own_motion = !run.result.stopped && !run.result.held;
     }
   }
 
-  const Complex& complex_;
+  const CellComplex& complex_;
   const StepOptions& options_;
-  const Respond& respond_;
+  const ContactCallback& respond_;
   Space<Stored, N> space_ = current_space<N>(complex_);
 };
 
 }  // namespace detail
 
 template <std::size_t N, class Recorder>
-StepResult Stepper::step_in(std::uint32_t particle, State& state, Weights& weights, const Vec3& target,
-                            ContactList& contacts, Counters& counters, const Begun* begun,
+StepResult Stepper::step_in(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
+                            ContactList& contacts, Counters& counters, const PartialStep* partial,
                             const Recorder& recorder) const {
   detail::RunOf<Recorder> run{particle, state, contacts, counters, {}, 0, 0, 0, -1.0, {}, recorder};
   run.first_wall = static_cast<std::uint32_t>(contacts.walls.size());
   const SimplexId start = state.at();
   const Vec3 p = state.position;
-  if (begun != nullptr) {
-    run.tests = begun->tests;
-    state.position = begun->from;
-    detail::Part<Stored, N, Recorder>(complex_, moved_, current_space<N>(complex_), options_, respond_)
-        .move(run, target, {0.0, 1.0, {}}, begun);
+  if (partial != nullptr) {
+    run.tests = partial->tests;
+    state.position = partial->from;
+    detail::StepPart<Stored, N, Recorder>(complex_, moved_, current_space<N>(complex_), options_, respond_)
+        .move(run, target, {0.0, 1.0, {}}, partial);
   } else if (moved_) {
     detail::MovingStep<N, Recorder>(complex_, options_, respond_).run(run, weights, target);
   } else {
@@ -327,7 +327,8 @@ StepResult Stepper::step_in(std::uint32_t particle, State& state, Weights& weigh
       run.result.invalid_cell = state.cell;
     } else {
       state.held = false;
-      detail::Part<Stored, N, Recorder>(complex_, false, space, options_, respond_).move(run, target, {0.0, 1.0, {}});
+      detail::StepPart<Stored, N, Recorder>(complex_, false, space, options_, respond_)
+          .move(run, target, {0.0, 1.0, {}});
     }
   }
   ++counters.particle_steps;

@@ -4,7 +4,7 @@
 
 namespace dartcast {
 
-StepResult Stepper::trace(std::uint32_t particle, State& state, Weights& weights, const Vec3& target,
+StepResult Stepper::trace(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
                           ContactList& contacts, std::vector<Crossing>& crossings) const {
   const detail::CrossingRecorder recorder(complex_, moved_, state.cell, contacts, crossings);
   Counters counters;

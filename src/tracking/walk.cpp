@@ -4,7 +4,7 @@
 
 namespace dartcast::detail {
 
-void throw_overrun(const Map& map, SimplexId start, const Vec3& p, const Vec3& q) {
+void throw_overrun(const CombinatorialMap& map, SimplexId start, const Vec3& p, const Vec3& q) {
   throw InternalError(
       fmt::format("a walk met more simplices than there are: please report this with the scene and this replay: cell = "
                   "{}, simplex = {}, "

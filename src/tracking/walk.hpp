@@ -76,17 +76,17 @@ class Ties {
 
   /// Sign of orient3d(a, b, p, q) of the shifted segment, where it is zero.
   [[nodiscard]] Sign line(const Vec3& a, const Vec3& b) {
-    if (!shift_) make_shift();
+    if (!shift_) make_perturbation();
     return shift_->of_line(a, b, q_);
   }
   /// Sign of orient2d(p, q, c) of the shifted segment, where it is zero.
   [[nodiscard]] Sign line() {
-    if (!shift_) make_shift();
+    if (!shift_) make_perturbation();
     return shift_->of_line(q_);
   }
 
  private:
-  void make_shift() {
+  void make_perturbation() {
     const std::array<Vec3, N> v = space_.corners(start_);
     const unsigned zeros = zeros_ ? *zeros_ : zeros_of(v, p_);
     std::array<Vec3, N - 1> opposite;
@@ -102,10 +102,10 @@ class Ties {
   const Vec3& p_;
   const Vec3& q_;
   std::optional<unsigned> zeros_;
-  std::optional<std::conditional_t<N == 4, Shift, PlaneShift>> shift_;
+  std::optional<std::conditional_t<N == 4, SymbolicPerturbation, PlanarSymbolicPerturbation>> shift_;
 };
 
-[[noreturn]] void throw_overrun(const Map& map, SimplexId start, const Vec3& p, const Vec3& q);
+[[noreturn]] void throw_overrun(const CombinatorialMap& map, SimplexId start, const Vec3& p, const Vec3& q);
 
 /// Whether the shifted segment leaves by facet i before facet j, both of which q is strictly beyond.
 template <class Positions>
@@ -210,7 +210,7 @@ SimplexId simplex_towards(const Space<Positions, N>& space, SimplexId at, const 
 
 /// Walls are closed: where q lies exactly on one, the walk ends at it.
 template <std::size_t N>
-void find_wall_at_end(const Map& map, Walk& walk) {
+void find_wall_at_end(const CombinatorialMap& map, Walk& walk) {
   const CellView cell = map.view(walk.simplex.cell);
   const ImplicitSimplex& s = cell.shape().simplices()[walk.simplex.simplex];
   const auto wall = find_wall<N>(map, walk.simplex, walk.zeros, feature_of<N>(cell, s, walk.zeros));

@@ -9,9 +9,9 @@
 #include <string>
 
 #include "bench/chart.hpp"
+#include "bench/comparison.hpp"
 #include "bench/figures.hpp"
 #include "bench/plan.hpp"
-#include "bench/race.hpp"
 #include "bench/report.hpp"
 #include "dartcast/audit.hpp"
 #include "dartcast/error.hpp"
@@ -54,13 +54,14 @@ Hit nearest(const Walls& walls, const std::vector<Vec3>& points, const Segment& 
   return hit;
 }
 
-void expect_as_brute_force(Peer& peer, const Walls& walls, const std::vector<Vec3>& points, const std::string& name) {
+void expect_as_brute_force(Competitor& competitor, const Walls& walls, const std::vector<Vec3>& points,
+                           const std::string& name) {
   Random random(3);
   const auto place = [&] { return Vec3{random.uniform(0, 6), random.uniform(0, 6), random.uniform(0, 6)}; };
   std::vector<Segment> segments(500);  // no multiple of a packet's 16
   for (Segment& s : segments) s = {place(), place()};
   std::vector<Hit> hits(segments.size());
-  peer.cast(segments, hits);
+  competitor.cast(segments, hits);
   std::size_t met = 0;
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const Hit truth = nearest(walls, points, segments[i]);
@@ -71,22 +72,22 @@ void expect_as_brute_force(Peer& peer, const Walls& walls, const std::vector<Vec
   EXPECT_GT(met, 300U);
 }
 
-TEST(Peers, FindWhatBruteForceFindsBeforeAndAfterRefitting) {
+TEST(Competitors, FindWhatBruteForceFindsBeforeAndAfterRefitting) {
   Workload workload(small(Scene::box, true));
   const Walls walls = walls_of(workload.environment().complex());
   std::vector<Vec3> points;
   walls.gather(workload.environment().complex().positions(), points);
-  for (const PeerKind& kind : peer_kinds()) {
+  for (const PeerKind& kind : competitor_kinds()) {
     if (kind.name == "paper") continue;  // it follows particles
     for (const bool deforms : {false, true}) {
-      const auto peer = kind.make({workload.environment().complex(), walls, points, {}, deforms});
-      expect_as_brute_force(*peer, walls, points, kind.name);
+      const auto competitor = kind.make({workload.environment().complex(), walls, points, {}, deforms});
+      expect_as_brute_force(*competitor, walls, points, kind.name);
       if (!deforms) continue;
       std::vector<Vec3> moved = points;
       for (Vec3& p : moved) p = {0.9 * p.x + 0.1 * p.y, p.y, p.z - 0.2 * p.x};
-      peer->write(moved);
-      peer->refit();
-      expect_as_brute_force(*peer, walls, moved, kind.name + " refitted");
+      competitor->write(moved);
+      competitor->refit();
+      expect_as_brute_force(*competitor, walls, moved, kind.name + " refitted");
     }
   }
 }
@@ -115,8 +116,8 @@ std::vector<Vec3> flown(const WorkloadOptions& options) {
   for (std::size_t step = 0; step < options.steps; ++step) {
     workload.aim();
     if (options.deforms) workload.environment().move();
-    workload.follow(workload.environment().advance(workload.particles(), workload.targets()));
-    for (const State& s : workload.particles().states()) track.push_back(s.position);
+    workload.update_after_edit(workload.environment().advance(workload.particles(), workload.targets()));
+    for (const ParticleState& s : workload.particles().states()) track.push_back(s.position);
   }
   EXPECT_EQ(audit(workload.environment().complex(), workload.particles()).failed, 0U);
   return track;
@@ -148,29 +149,29 @@ TEST(Workload, StepsKeepTheirLength) {
       sum += norm(workload.targets()[i] - workload.particles()[i].position);
     }
     workload.environment().move();
-    workload.follow(workload.environment().advance(workload.particles(), workload.targets()));
+    workload.update_after_edit(workload.environment().advance(workload.particles(), workload.targets()));
   }
   EXPECT_NEAR(sum / static_cast<double>(options.steps * options.particles), 0.1, 0.01);
 }
 
-TEST(Race, AllAgreeButForRounding) {
+TEST(Comparison, AllAgreeButForRounding) {
   for (const bool deforms : {false, true}) {
-    const std::vector<Row> rows = race(small(Scene::box, deforms, 200), peer_kinds());
+    const std::vector<Row> rows = compare(small(Scene::box, deforms, 200), competitor_kinds());
     ASSERT_EQ(rows.size(), 1U);
     const Row& row = rows[0];
     EXPECT_EQ(row.counters.particle_steps, 20000U);
     EXPECT_GT(row.counters.contacts[2], 100U);
-    for (const Lane& lane : row.lanes) {
-      EXPECT_EQ(lane.step_ns.size(), 200U) << lane.name;
-      EXPECT_GT(lane.quantile_ns(0.0), 0.0) << lane.name;
-      EXPECT_LE(lane.quantile_ns(0.5), lane.quantile_ns(0.99)) << lane.name;
-      if (lane.name != "paper") EXPECT_LE(lane.disagreements, 10U) << lane.name;
+    for (const Series& series : row.all_series) {
+      EXPECT_EQ(series.step_ns.size(), 200U) << series.name;
+      EXPECT_GT(series.quantile_ns(0.0), 0.0) << series.name;
+      EXPECT_LE(series.quantile_ns(0.5), series.quantile_ns(0.99)) << series.name;
+      if (series.name != "paper") EXPECT_LE(series.disagreements, 10U) << series.name;
     }
   }
 }
 
 // Says the same of every segment.
-class Constant : public Peer {
+class Constant : public Competitor {
  public:
   explicit Constant(const Hit& hit) : hit_(hit) {}
   void write(std::span<const Vec3> /*points*/) override {}
@@ -183,61 +184,63 @@ class Constant : public Peer {
   mutable std::uint64_t asked_ = 6;
 };
 
-std::unique_ptr<Peer> make_blind(const PeerScene&) { return std::make_unique<Constant>(Hit{}); }
-std::unique_ptr<Peer> make_timid(const PeerScene&) { return std::make_unique<Constant>(Hit{0, 1.0}); }
-std::unique_ptr<Peer> make_lost(const PeerScene&) { return std::make_unique<Constant>(Hit{Hit::failed, 1.0}); }
+std::unique_ptr<Competitor> make_self_hit_epsilon(const PeerScene&) { return std::make_unique<Constant>(Hit{}); }
+std::unique_ptr<Competitor> make_timid(const PeerScene&) { return std::make_unique<Constant>(Hit{0, 1.0}); }
+std::unique_ptr<Competitor> make_lost(const PeerScene&) { return std::make_unique<Constant>(Hit{Hit::failed, 1.0}); }
 
-TEST(Race, TellsErrorsApart) {
-  const std::vector<PeerKind> kinds = {
-      {"blind", make_blind, true}, {"timid", make_timid, true}, {"lost", make_lost, true}, {"of space", make_lost}};
+TEST(Comparison, TellsErrorsApart) {
+  const std::vector<PeerKind> kinds = {{"blind", make_self_hit_epsilon, true},
+                                       {"timid", make_timid, true},
+                                       {"lost", make_lost, true},
+                                       {"of space", make_lost}};
   for (const Scene scene : {Scene::squares, Scene::box}) {
-    const Row row = race(small(scene, true, 100), kinds).front();
-    ASSERT_EQ(row.lanes.size(), scene == Scene::box ? 5U : 4U) << "only in space";
+    const Row row = compare(small(scene, true, 100), kinds).front();
+    ASSERT_EQ(row.all_series.size(), scene == Scene::box ? 5U : 4U) << "only in space";
     const std::uint64_t steps = row.counters.particle_steps;
     const auto& c = row.counters.contacts;
     const std::uint64_t contacts = c[0] + c[1] + c[2];
     ASSERT_GT(contacts, 100U);
-    const Lane& blind = row.lanes[1];
-    EXPECT_EQ(blind.through, contacts);
-    EXPECT_EQ(blind.disagreements, contacts);
-    EXPECT_EQ(blind.stopped + blind.failed, 0U);
-    const Lane& timid = row.lanes[2];
+    const Series& self_hit_epsilon = row.all_series[1];
+    EXPECT_EQ(self_hit_epsilon.through, contacts);
+    EXPECT_EQ(self_hit_epsilon.disagreements, contacts);
+    EXPECT_EQ(self_hit_epsilon.stopped + self_hit_epsilon.failed, 0U);
+    const Series& timid = row.all_series[2];
     EXPECT_EQ(timid.stopped, steps - contacts);
     EXPECT_EQ(timid.through + timid.failed, 0U);
-    const Lane& lost = row.lanes[3];
+    const Series& lost = row.all_series[3];
     EXPECT_EQ(lost.failed, steps);
     EXPECT_EQ(lost.through + lost.stopped, 0U);
     EXPECT_EQ(lost.wrong_cells, 1U) << "since the first block, which is not counted";
   }
 }
 
-TEST(Race, TakesTurnsWithThreads) {
+TEST(Comparison, TakesTurnsWithThreads) {
   WorkloadOptions options = small(Scene::box, false, 10);
   options.threads = {1, 2};
-  options.against_peers = false;
-  const std::vector<Row> rows = race(options, peer_kinds());
+  options.against_competitors = false;
+  const std::vector<Row> rows = compare(options, competitor_kinds());
   ASSERT_EQ(rows.size(), 2U);
   for (const Row& row : rows) {
-    ASSERT_EQ(row.lanes.size(), 1U);
-    EXPECT_EQ(row.lanes[0].step_ns.size(), 10U);
+    ASSERT_EQ(row.all_series.size(), 1U);
+    EXPECT_EQ(row.all_series[0].step_ns.size(), 10U);
   }
 }
 
-TEST(Lane, MediansAndQuantiles) {
-  Lane lane;
-  for (int i = 1; i <= 100; ++i) lane.step_ns.push_back(i);  // 50 blocks with the means 1.5, 3.5 ... 99.5
-  EXPECT_DOUBLE_EQ(lane.ns_per_particle_step(1), 51.5);
-  EXPECT_DOUBLE_EQ(lane.mean_ns_per_particle_step(10), 5.05);
-  EXPECT_DOUBLE_EQ(lane.quantile_ns(0.5), 50.0);
-  EXPECT_DOUBLE_EQ(lane.quantile_ns(0.99), 99.0);
-  EXPECT_DOUBLE_EQ(lane.quantile_ns(1.0), 100.0);
+TEST(Series, MediansAndQuantiles) {
+  Series series;
+  for (int i = 1; i <= 100; ++i) series.step_ns.push_back(i);  // 50 blocks with the means 1.5, 3.5 ... 99.5
+  EXPECT_DOUBLE_EQ(series.ns_per_particle_step(1), 51.5);
+  EXPECT_DOUBLE_EQ(series.mean_ns_per_particle_step(10), 5.05);
+  EXPECT_DOUBLE_EQ(series.quantile_ns(0.5), 50.0);
+  EXPECT_DOUBLE_EQ(series.quantile_ns(0.99), 99.0);
+  EXPECT_DOUBLE_EQ(series.quantile_ns(1.0), 100.0);
 }
 
 // Blocks of 20 steps would have means of 145 and 190, and 190 for their median.
-TEST(Lane, BlocksAreWholePeriodsOfTheLattice) {
-  Lane lane;
-  for (int i = 0; i < 1000; ++i) lane.step_ns.push_back(i % 8 < 2 ? 480.0 : 30.0);
-  EXPECT_DOUBLE_EQ(lane.ns_per_particle_step(1), 142.5);
+TEST(Series, BlocksAreWholePeriodsOfTheLattice) {
+  Series series;
+  for (int i = 0; i < 1000; ++i) series.step_ns.push_back(i % 8 < 2 ? 480.0 : 30.0);
+  EXPECT_DOUBLE_EQ(series.ns_per_particle_step(1), 142.5);
 }
 
 // Every tag is closed by its own, in turn.
@@ -265,19 +268,20 @@ TEST(Report, SaysTheSameInAllForms) {
     WorkloadOptions options = small(Scene::box, deforms, 5);
     options.name = deforms ? "W2" : "W1";
     options.particles = 1000;
-    rows.push_back(race(options, peer_kinds()).front());
+    rows.push_back(compare(options, competitor_kinds()).front());
   }
   const auto json = nlohmann::json::parse(report_json(rows));
   ASSERT_EQ(json["rows"].size(), 2U);
   EXPECT_EQ(json["rows"][0]["workload"], "W1");
   EXPECT_EQ(json["rows"][1]["deforms"], true);
   for (const auto& row : json["rows"]) {
-    EXPECT_EQ(row["ns_per_particle_step"].size(), 1 + peer_kinds().size());
-    EXPECT_EQ(row["disagreements"].size(), peer_kinds().size());
+    EXPECT_EQ(row["ns_per_particle_step"].size(), 1 + competitor_kinds().size());
+    EXPECT_EQ(row["disagreements"].size(), competitor_kinds().size());
     EXPECT_GT(row["orientation_tests_per_particle_step"]["dartcast"], 4.0);
   }
   const std::string csv = report_csv(rows);
-  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * static_cast<std::ptrdiff_t>(1 + peer_kinds().size()));
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'),
+            1 + 2 * static_cast<std::ptrdiff_t>(1 + competitor_kinds().size()));
   const std::string text = report_text(rows);
   EXPECT_NE(text.find("W1, 512 cells"), std::string::npos);
   const std::string svg = chart_svg(rows);
@@ -292,16 +296,16 @@ TEST(Report, SaysWhatWentWrongInThePlane) {
     for (const std::uint32_t size : {32U, 1000U}) {
       WorkloadOptions options = small(Scene::squares, deforms, 5);
       options.name = "W6";
-      rows.push_back(race(options, peer_kinds()).front());
+      rows.push_back(compare(options, competitor_kinds()).front());
       rows.back().workload.size = size;
       rows.back().workload.particles = 1000;
     }
   }
-  rows[3].lanes[1].disagreements = 100;
-  rows[3].lanes[1].through = 10;
-  rows[3].lanes[1].stopped = 20;
-  rows[3].lanes[1].failed = 30;
-  rows[3].lanes[1].wrong_cells = 50;
+  rows[3].all_series[1].disagreements = 100;
+  rows[3].all_series[1].through = 10;
+  rows[3].all_series[1].stopped = 20;
+  rows[3].all_series[1].failed = 30;
+  rows[3].all_series[1].wrong_cells = 50;
   const std::string text = report_text(rows);
   EXPECT_NE(text.find("W6, 1000000 faces, moving"), std::string::npos);
   EXPECT_NE(text.find("10 20 40 30 50"), std::string::npos) << text;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/random.hpp"
-#include "bench/race.hpp"
+#include "bench/comparison.hpp"
 #include "dartcast/environment.hpp"
 #include "generators/generate_rectangle.hpp"
 #include "support/scheme_pair.hpp"
@@ -77,9 +77,9 @@ TEST(PaperScheme2D, TakesThreeTestsAndOneForEachTurn) {
   for (const Case& c : {Case{{0.5, 0.1, 0.0}, 3}, Case{{0.9, 0.5, 0.0}, 4}, Case{{0.5, 0.9, 0.0}, 4},
                         Case{{0.1, 0.5, 0.0}, 3}, Case{{1.5, 0.5, 0.0}, 8}}) {
     PaperScheme2D scheme(environment.complex());
-    State state;
+    ParticleState state;
     state.put({Cell(1, 0), 0}, start);
-    scheme.start(std::span<const State>(&state, 1));
+    scheme.start(std::span<const ParticleState>(&state, 1));
     PaperResult result;
     scheme.advance(std::span<const Vec3>(&c.target, 1), std::span<PaperResult>(&result, 1));
     EXPECT_EQ(result.end, PaperEnd::arrived);
@@ -107,8 +107,8 @@ TEST(PaperScheme2D, FollowsADeformation) {
   EXPECT_GT(pair.differ, 0U) << "a way that starts at the middle of the cell meets other walls";
 }
 
-bool in_polygon(const Complex& complex, Cell cell, const Vec3& x) {
-  const Map& map = complex.map();
+bool in_polygon(const CellComplex& complex, Cell cell, const Vec3& x) {
+  const CombinatorialMap& map = complex.map();
   const auto at = [&](Dart d) { return complex.positions()[map.origin(d).value]; };
   for (std::uint16_t n = 0; n < map.shape(cell).dart_count(); ++n) {
     if (orient2d(at({cell, n}), at(map.phi1({cell, n})), x) == Sign::negative) return false;
@@ -163,9 +163,9 @@ TEST(PaperScheme2D, RacesInThePlane) {
     options.deforms = deforms;
     options.particles = 200;
     options.steps = 200;
-    const bench::Row row = race(options, bench::peer_kinds()).front();
-    ASSERT_EQ(row.lanes.size(), 2U) << "no hierarchy over triangles";
-    const bench::Lane& paper = *row.lane("paper");
+    const bench::Row row = compare(options, bench::competitor_kinds()).front();
+    ASSERT_EQ(row.all_series.size(), 2U) << "no hierarchy over triangles";
+    const bench::Series& paper = *row.series("paper");
     EXPECT_EQ(row.cells, 256U);
     EXPECT_EQ(row.counters.particle_steps, 40000U);
     EXPECT_GT(row.counters.contacts[1], 500U) << "edges";

@@ -78,8 +78,8 @@ TEST(PaperScheme, FollowsADeformation) {
 TEST(PaperScheme, TakesAboutThePapersTestsInItsBar) {
   Pair pair(generate_bar(), test::scaled(1000, 10000), {5.0, 5.0, 28.0});
   std::vector<Vec3> velocities(pair.particles.size(), Vec3{2.0, 3.0, 0.0});
-  std::vector<Fate> fates(pair.particles.size());
-  const Responses walls;
+  std::vector<ParticleStatus> fates(pair.particles.size());
+  const WallResponses walls;
   const double dt = 0.01;
   for (int n = 0; n < 1000; ++n) {
     for (std::size_t i = 0; i < velocities.size(); ++i) {
@@ -92,7 +92,7 @@ TEST(PaperScheme, TakesAboutThePapersTestsInItsBar) {
   EXPECT_NEAR(pair.tests_per_step(), 5.1, 0.3);  // 4 in 87% of the steps
 }
 
-bool in_closed_cell(const Complex& complex, Cell cell, const Vec3& x) {
+bool in_closed_cell(const CellComplex& complex, Cell cell, const Vec3& x) {
   const std::size_t count = complex.map().shape(cell).simplices().size();
   for (std::uint16_t simplex = 0; simplex < count; ++simplex) {
     const Corners v = complex.corners({cell, simplex});

@@ -44,14 +44,14 @@ struct Fall {
 
 Fall fall(const BodyOptions& options, int steps, unsigned threads = 1) {
   Environment environment(channel(), Threads{threads});
-  Response wall;
+  WallResponse wall;
   wall.restitution = 0.3;
   wall.friction = 0.4;
   BodiesOptions o;
   o.dt = dt;
   o.gravity = {0.0, 0.0, -9.81};
   o.drag = 2.0;  // a barrel on its side rocks for long
-  Bodies bodies(environment, o, Responses(wall));
+  Bodies bodies(environment, o, WallResponses(wall));
   BarrelOptions barrel;
   barrel.centre = {0.5, 0.5, 3.6};
   bodies.add(generate_barrel(barrel).points, options);
@@ -88,7 +88,7 @@ BodyOptions oak() {
   o.mass = 10.0;
   o.pull = 0.3;
   o.damping = 5.0;
-  o.spin = {0.5, 0.0, 0.3};
+  o.angular_velocity = {0.5, 0.0, 0.3};
   return o;
 }
 

@@ -38,11 +38,11 @@ BodiesOptions options(double dt, const Vec3& gravity = {}) {
   return o;
 }
 
-Responses bouncing(double restitution, double friction) {
-  Response r;
+WallResponses bouncing(double restitution, double friction) {
+  WallResponse r;
   r.restitution = restitution;
   r.friction = friction;
-  return Responses(r);
+  return WallResponses(r);
 }
 
 constexpr Vec3 earth = {0.0, 0.0, -9.81};
@@ -64,7 +64,7 @@ TEST(Bodies, StiffBodyThatSpinsFreelyKeepsItsMomenta) {
     o.pull = pull;
     o.damping = pull;
     o.velocity = {1.0, -0.5, 0.25};
-    o.spin = {3.0, 5.0, -2.0};
+    o.angular_velocity = {3.0, 5.0, -2.0};
     ASSERT_EQ(bodies.add(block(5, 0.1, {4.0, 5.0, 5.0}), o).body, 0U);
     const RigidMotion before = bodies.rigid_motion_of(0);
     const auto steps = scaled(1000, 4000);
@@ -107,7 +107,7 @@ std::vector<Vec3> shaken(int steps) {
   BodyOptions o;
   o.stiffness = 400.0;
   o.pull = 0.0;
-  o.spin = {2.0, 1.0, 3.0};
+  o.angular_velocity = {2.0, 1.0, 3.0};
   bodies.add(block(3, 0.3, {5.0, 5.0, 5.0}), o);
   for (std::size_t p = 0; p < bodies.positions().size(); ++p) {
     const Vec3 x = bodies.positions()[p] - Vec3{5, 5, 5};
@@ -161,7 +161,7 @@ void expect_energy_law(const Material& m, std::uint64_t seed) {
   o.match.linear = m.linear;
   for (int tries = 0; bodies.size() < 2 && tries < 1000; ++tries) {
     o.velocity = {8 * u(), 8 * u(), 8 * u()};
-    o.spin = {30 * u(), 30 * u(), 30 * u()};
+    o.angular_velocity = {30 * u(), 30 * u(), 30 * u()};
     const auto points = block(4, 0.05, {0.5 + 0.3 * u(), 0.5 + 0.3 * u(), 0.5 + 0.3 * u()}, {u(), {u(), u(), u()}});
     o.match.clusters = m.clusters ? overlapping_clusters(points, 0.1) : std::vector<std::vector<std::uint32_t>>{};
     bodies.add(points, o);
@@ -212,7 +212,7 @@ TEST(Bodies, DroppedOnAFloorComesToRest) {
     o.stiffness = stiffness * 1e6;
     o.pull = 0.3;
     o.damping = 20.0;
-    o.spin = {1, 2, 3};
+    o.angular_velocity = {1, 2, 3};
     bodies.add(block(5, 0.04, {0.5, 0.5, 0.4}), o);
     double peak = 0.0;
     for (int i = 0; i < 2500; ++i) {
@@ -276,12 +276,12 @@ TEST(Bodies, ParticleBouncesAsItsPatchSays) {
 
 TEST(Bodies, StickToSomeWallsAndLeaveAtOthers) {
   Environment environment = room();
-  Responses responses;
-  Response stick;
-  stick.kind = ResponseKind::stick;
+  WallResponses responses;
+  WallResponse stick;
+  stick.kind = WallResponseKind::stick;
   responses.set(environment.map().patch("zmin"), stick);
-  Response escape;
-  escape.kind = ResponseKind::escape;
+  WallResponse escape;
+  escape.kind = WallResponseKind::escape;
   responses.set(environment.map().patch("xmax"), escape);
   Bodies bodies(environment, options(1e-3, earth), responses);
   BodyOptions o;
@@ -301,10 +301,10 @@ TEST(Bodies, StickToSomeWallsAndLeaveAtOthers) {
   EXPECT_EQ(bodies.first_particle(1), 27U);
   EXPECT_EQ(bodies.body_of()[27], 1U);
   EXPECT_EQ(bodies.particles().size(), 54U);
-  const auto stuck = std::count(bodies.fates().begin(), bodies.fates().end(), Fate::stuck);
+  const auto stuck = std::count(bodies.fates().begin(), bodies.fates().end(), ParticleStatus::stuck);
   EXPECT_GE(stuck, 1);
   for (std::size_t p = 0; p < 54; ++p) {
-    if (bodies.fates()[p] == Fate::stuck) EXPECT_NEAR(bodies.positions()[p].z, 0.0, 1e-12);
+    if (bodies.fates()[p] == ParticleStatus::stuck) EXPECT_NEAR(bodies.positions()[p].z, 0.0, 1e-12);
   }
 }
 
@@ -350,7 +350,7 @@ TEST(Bodies, AreTheSameBitsForAnyNumberOfThreads) {
     Bodies bodies(environment, options(1e-3, earth), bouncing(0.5, 0.3));
     BodyOptions o;
     for (int k = 0; k < 8; ++k) {
-      o.spin = {1.0 * k, 2.0, -3.0};
+      o.angular_velocity = {1.0 * k, 2.0, -3.0};
       const Vec3 centre = {0.25 + 0.5 * (k & 1), 0.25 + 0.5 * (k >> 1 & 1), 0.25 + 0.5 * (k >> 2)};
       ASSERT_EQ(bodies.add(block(5, 0.04, centre), o).body, static_cast<std::uint32_t>(k));
     }
@@ -365,7 +365,7 @@ TEST(Bodies, GoOnFromACheckpointToTheSameBits) {
     Bodies bodies(environment, options(1e-3, earth), bouncing(0.5, 0.3));
     BodyOptions o;
     o.velocity = {2.0, 1.0, -1.0};
-    o.spin = {5.0, 4.0, 3.0};
+    o.angular_velocity = {5.0, 4.0, 3.0};
     bodies.add(block(4, 0.05, {0.5, 0.5, 0.3}), o);
     o.match.linear = 0.3;
     bodies.add(block(3, 0.05, {0.2, 0.2, 0.3}), o);
@@ -407,14 +407,14 @@ TEST(Bodies, FollowEdits) {
   const Cell under = bodies.particles()[0].cell;
   environment.edit([&](ComplexEdit& edit) { edit.topology().set_free(under, false); });
   EXPECT_THROW(bodies.step(), InvalidArgument);
-  const FollowReport moved = bodies.follow();
-  EXPECT_GT(moved.stranded.size(), 0U);
+  const UpdateReport moved = bodies.update_after_edit();
+  EXPECT_GT(moved.orphaned.size(), 0U);
   for (int i = 0; i < 50; ++i) bodies.step();
   EXPECT_EQ(audit(environment.complex(), bodies.particles()).failed, 0U);
   ASSERT_EQ(bodies.size(), 2U);
 
   environment.edit([&](ComplexEdit& edit) { edit.topology().set_free(bodies.particles()[3].cell, false); });
-  bodies.follow(Stranded::absorb);
+  bodies.update_after_edit(OrphanPolicy::absorb);
   ASSERT_EQ(bodies.size(), 1U);
   EXPECT_EQ(bodies.id(0), 1U);
   EXPECT_EQ(bodies.particles().size(), 64U);
@@ -445,7 +445,7 @@ TEST(Bodies, RefuseWhatIsOutOfRange) {
   EXPECT_EQ(bodies.size(), 0U);
   auto outside = points;
   outside[5].x = 2.0;
-  const AddedBody added = bodies.add(outside, {});
+  const AddBodyResult added = bodies.add(outside, {});
   EXPECT_EQ(added.body, 0xffffffffU);
   EXPECT_EQ(added.refused, std::vector<std::uint32_t>{5});
   EXPECT_EQ(bodies.particles().size(), 0U);

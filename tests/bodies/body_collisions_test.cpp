@@ -138,7 +138,7 @@ TEST(BodyCollisions, RigidBodiesReboundAsTheFormulaSays) {
       const Sums after = sums(bodies);
       EXPECT_LE(norm(after.momentum - before.momentum), 1e-9);
       EXPECT_LE(norm(after.angular_momentum - before.angular_momentum), 1e-9);
-      EXPECT_LE(norm(bodies.rigid_motion_of(0).spin), 1e-6);
+      EXPECT_LE(norm(bodies.rigid_motion_of(0).angular_velocity), 1e-6);
       const double lost = 0.5 * (1.0 - restitution * restitution) * ratio / (1.0 + ratio) * approach * approach;
       EXPECT_NEAR(after.energy, before.energy - lost, 1e-6);
     }
@@ -196,10 +196,10 @@ TEST(BodyCollisions, ReboundsKeepMomentaAndAddNoEnergy) {
     const double x[] = {0.3, 0.5, 0.7};
     for (int k = 0; k < 3; ++k) {
       BodyOptions o = ball_set({3.0 * (1 - k), u(), u()});
-      o.spin = {10 * u(), 10 * u(), 10 * u()};
+      o.angular_velocity = {10 * u(), 10 * u(), 10 * u()};
       o.mass = random.uniform(0.2, 3.0);
-      const Quaternion turned = {u(), {u(), u(), u()}};
-      bodies.add(block(3, {x[k], 0.5 + 0.05 * u(), 0.5 + 0.05 * u()}, turned), o);
+      const Quaternion rotation_delta = {u(), {u(), u(), u()}};
+      bodies.add(block(3, {x[k], 0.5 + 0.05 * u(), 0.5 + 0.05 * u()}, rotation_delta), o);
     }
     ASSERT_EQ(bodies.size(), 3U);
     const Sums before = sums(bodies);
@@ -225,12 +225,12 @@ TEST(BodyCollisions, ReboundsKeepMomentaAndAddNoEnergy) {
 // One on top of the other: both come to rest.
 void expect_rest(const std::optional<double>& restitution) {
   Environment environment = room();
-  Response floor;
+  WallResponse floor;
   floor.restitution = 0.2;
   floor.friction = 0.6;
   BodiesOptions options = colliding({0.0, 0.0, -9.81}, 0.6);
   options.collisions->restitution = restitution;
-  Bodies bodies(environment, options, Responses(floor));
+  Bodies bodies(environment, options, WallResponses(floor));
   BodyOptions o = ball_set({});
   o.damping = 20.0;
   o.pull = 0.3;
@@ -321,7 +321,7 @@ TEST(BodyCollisions, RefuseOptionsOutOfRange) {
   refused([](BodyCollisionOptions& o) { o.friction = std::numeric_limits<double>::infinity(); });
   refused([](BodyCollisionOptions& o) { o.restitution = 1.5; });
   refused([](BodyCollisionOptions& o) { o.restitution = std::nan(""); });
-  refused([](BodyCollisionOptions& o) { o.push = 2.0; });
+  refused([](BodyCollisionOptions& o) { o.position_correction = 2.0; });
   refused([](BodyCollisionOptions& o) { o.iterations = 0; });
 }
 

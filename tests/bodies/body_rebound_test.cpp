@@ -102,13 +102,13 @@ TEST(BodyRebounds, KeepAngularMomentum) {
     for (RigidMover& m : balls.movers) {
       m.turns = true;
       m.centre += vector(0.3);
-      m.spin = vector(20.0);
+      m.angular_velocity = vector(20.0);
       m.inverse_inertia = Mat3{{4.0, 0.0, 0.0}, {0.0, 4.0, 0.0}, {0.0, 0.0, 4.0}};
     }
     const auto angular = [&] {
       Vec3 sum;
       for (const RigidMover& m : balls.movers)
-        sum += cross(m.centre, m.velocity * (1.0 / m.inverse_mass)) + m.spin * 0.25;
+        sum += cross(m.centre, m.velocity * (1.0 / m.inverse_mass)) + m.angular_velocity * 0.25;
       return sum;
     };
     const Vec3 before = angular();

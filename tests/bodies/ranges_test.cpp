@@ -115,7 +115,7 @@ TEST(MovedFrom, BodiesAreEmpty) {
   EXPECT_EQ(first.size(), 0U);
   EXPECT_EQ(first.particles().size(), 0U);
   EXPECT_NO_THROW(first.step());
-  EXPECT_NO_THROW(first.follow());
+  EXPECT_NO_THROW(first.update_after_edit());
   fill(first);
   EXPECT_EQ(first.size(), 2U);
   for (std::size_t p = 0; p < first.positions().size(); ++p)

@@ -70,7 +70,7 @@ class Truth {
       triangles_.emplace_back(std::array{exact(mesh.points[t[0]]), exact(mesh.points[t[1]]), exact(mesh.points[t[2]])});
   }
 
-  Side side(const Vec3& x) {
+  PointSide side(const Vec3& x) {
     while (true) {
       const Exact3 d = {Rational(int(random_.below(2001)) - 1000), Rational(int(random_.below(2001)) - 1000),
                         Rational(int(random_.below(2001)) - 1000)};
@@ -78,11 +78,11 @@ class Truth {
       bool tie = false;
       for (const Facet& t : triangles_) {
         const int meets = ray_meets(exact(x), d, t);
-        if (meets == 2) return Side::on;
+        if (meets == 2) return PointSide::on;
         tie = tie || meets < 0;
         layers += meets == 1 ? 1 : 0;
       }
-      if (!tie) return layers % 2 == 1 ? Side::inside : Side::outside;
+      if (!tie) return layers % 2 == 1 ? PointSide::inside : PointSide::outside;
     }
   }
 
@@ -116,10 +116,10 @@ TEST(InsideTest, AgreesWithRationalsOnALattice) {
   int in = 0;
   for (int i = 0; i < test::scaled(400, 20000); ++i) {
     const Vec3 x = {0.25 * random.below(14) - 0.25, 0.25 * random.below(14) - 0.25, 0.25 * random.below(14) - 0.25};
-    const Side expected = truth.side(x);
+    const PointSide expected = truth.side(x);
     ASSERT_EQ(inside.side(x), expected) << x.x << " " << x.y << " " << x.z;
-    on += expected == Side::on ? 1 : 0;
-    in += expected == Side::inside ? 1 : 0;
+    on += expected == PointSide::on ? 1 : 0;
+    in += expected == PointSide::inside ? 1 : 0;
   }
   EXPECT_GT(on, 0);
   EXPECT_GT(in, 0);
@@ -139,9 +139,9 @@ TEST(InsideTest, AgreesWithRationalsAnywhereAndBesideTheSurface) {
     Vec3 x = random.below(2) == 0 ? (a + b) * 0.5 : a * (u * 0.5) + b * (0.5 - u * 0.5) + c * 0.5;
     if (random.below(4) == 0) x = {random.uniform(-1.5, 1.5), random.uniform(-1.5, 1.5), random.uniform(-0.5, 0.5)};
     if (random.below(4) == 0) x = a;
-    const Side expected = truth.side(x);
+    const PointSide expected = truth.side(x);
     ASSERT_EQ(inside.side(x), expected);
-    in += expected == Side::inside ? 1 : 0;
+    in += expected == PointSide::inside ? 1 : 0;
   }
   EXPECT_GT(in, 0);
 }
@@ -149,11 +149,11 @@ TEST(InsideTest, AgreesWithRationalsAnywhereAndBesideTheSurface) {
 // A shell within another is a cavity, whichever way it is oriented.
 TEST(InsideTest, ACavityIsOutside) {
   const InsideTest inside(both(test::cuboid({0, 0, 0}, {4, 4, 4}), test::cuboid({1, 1, 1}, {3, 3, 3})));
-  EXPECT_EQ(inside.side({2, 2, 2}), Side::outside);
-  EXPECT_EQ(inside.side({0.5, 2, 2}), Side::inside);
-  EXPECT_EQ(inside.side({1, 2, 2}), Side::on);
-  EXPECT_EQ(inside.side({4, 4, 4}), Side::on);
-  EXPECT_EQ(inside.side({4, 4, 5}), Side::outside);
+  EXPECT_EQ(inside.side({2, 2, 2}), PointSide::outside);
+  EXPECT_EQ(inside.side({0.5, 2, 2}), PointSide::inside);
+  EXPECT_EQ(inside.side({1, 2, 2}), PointSide::on);
+  EXPECT_EQ(inside.side({4, 4, 4}), PointSide::on);
+  EXPECT_EQ(inside.side({4, 4, 5}), PointSide::outside);
   EXPECT_THROW(static_cast<void>(inside.side({std::numeric_limits<double>::quiet_NaN(), 0, 0})), InvalidArgument);
 }
 
@@ -228,9 +228,9 @@ TEST(Sampling, FillsAVolume) {
   const SolidSamples solid = sample_solid(mesh, {spacing, 3});
   expect_apart(volume, spacing);
   expect_apart(solid.points, spacing);
-  for (const Vec3& x : volume) EXPECT_EQ(inside.side(x), Side::inside);
+  for (const Vec3& x : volume) EXPECT_EQ(inside.side(x), PointSide::inside);
   for (std::size_t i = solid.on_surface; i < solid.points.size(); ++i)
-    EXPECT_EQ(inside.side(solid.points[i]), Side::inside);
+    EXPECT_EQ(inside.side(solid.points[i]), PointSide::inside);
   const std::vector<Vec3> on_surface(solid.points.begin(),
                                      solid.points.begin() + static_cast<std::ptrdiff_t>(solid.on_surface));
   EXPECT_EQ(on_surface, sample_surface(mesh, {spacing, 3}));
@@ -239,7 +239,7 @@ TEST(Sampling, FillsAVolume) {
   int deep = 0;
   for (int i = 0; i < test::scaled(4000, 100000); ++i) {
     const Vec3 x = {random.uniform(0, 3), random.uniform(0, 3), random.uniform(0, 3)};
-    if (inside.side(x) != Side::inside) continue;
+    if (inside.side(x) != PointSide::inside) continue;
     ASSERT_LE(nearest(x, solid.points), solid_cover * spacing);
     // One cube of the L holds its middle deeper than the diagonal.
     const Vec3 m = {std::floor(x.x) + 0.5, std::floor(x.y) + 0.5, std::floor(x.z) + 0.5};

@@ -68,11 +68,11 @@ TEST(CatheterOrder, AnEditThenAMove) {
   Inserted in_turn;
   Inserted late;
   in_turn.split_an_edge_at({1.5, 1.5, 1.5});
-  in_turn.catheter.follow();
+  in_turn.catheter.update_after_edit();
   in_turn.turn(0.1);
   late.split_an_edge_at({1.5, 1.5, 1.5});
   late.turn(0.1);
-  late.catheter.follow();
+  late.catheter.update_after_edit();
   in_turn.catheter.step({});
   late.catheter.step({});
   EXPECT_EQ(in_turn.catheter.state_hash(), late.catheter.state_hash());
@@ -86,10 +86,10 @@ TEST(CatheterOrder, AMoveThenAnEdit) {
   in_turn.turn(0.1);
   in_turn.catheter.step({});
   in_turn.split_an_edge_at({1.4, 1.6, 1.5});
-  in_turn.catheter.follow();
+  in_turn.catheter.update_after_edit();
   late.turn(0.1);
   late.split_an_edge_at({1.4, 1.6, 1.5});
-  late.catheter.follow();
+  late.catheter.update_after_edit();
   late.catheter.step({});
   EXPECT_NEAR(late.catheter.direction().y, std::sin(0.1), 1e-12);
   expect_near(in_turn, late, 1e-6);
@@ -99,10 +99,10 @@ TEST(CatheterOrder, AMoveThenAnEdit) {
 TEST(CatheterOrder, AnEditThatLeavesNoFreeCell) {
   Inserted scene;
   scene.free_all(false);
-  EXPECT_NO_THROW(scene.catheter.follow());
+  EXPECT_NO_THROW(scene.catheter.update_after_edit());
   EXPECT_NO_THROW(scene.catheter.step({0.0625}));
   scene.free_all(true);
-  EXPECT_NO_THROW(scene.catheter.follow());
+  EXPECT_NO_THROW(scene.catheter.update_after_edit());
   EXPECT_NEAR(scene.catheter.step({0.0625}).pushed, 0.0625, 1e-12);
   EXPECT_TRUE(scene.is_sound());
 }

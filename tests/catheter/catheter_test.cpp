@@ -70,7 +70,7 @@ TEST(Catheter, GoesStraightThroughAStraightPipeAndBack) {
   const CatheterStep all = c.step({-1e3});
   EXPECT_NEAR(all.pushed, -asked, 1e-9);
   EXPECT_NEAR(c.inserted(), 0.0, 1e-9);
-  for (const State& s : c.particles().states()) EXPECT_LE(norm(s.position - c.entry()), 1e-9);
+  for (const ParticleState& s : c.particles().states()) EXPECT_LE(norm(s.position - c.entry()), 1e-9);
 }
 
 TEST(Catheter, IsNotLongerThanItIs) {
@@ -171,11 +171,11 @@ TEST(Catheter, TurnsItsTip) {
   o.tip_curvature = 0.2;
   Catheter c(environment, o);
   c.step({10.0});
-  const auto settle = [&] {
+  const auto place_in_simplex = [&] {
     for (int i = 0; i < 60; ++i) c.step({});
     return c.points();
   };
-  const std::vector<Vec3> first = settle();
+  const std::vector<Vec3> first = place_in_simplex();
   for (std::size_t i = 1; i < 7; ++i) {  // the tip's last point has but half of the bend
     const double turn = norm(cross(first[i - 1] - first[i], first[i] - first[i + 1])) / (o.spacing * o.spacing);
     EXPECT_NEAR(std::asin(turn) / o.spacing, 0.2, 0.002) << i;
@@ -185,10 +185,10 @@ TEST(Catheter, TurnsItsTip) {
   EXPECT_GT(dot(tip, normal), 1.0);
   EXPECT_NEAR(dot(tip, cross({0, 0, 1}, normal)), 0.0, 1e-6);
   c.step({0.0, 0.5 * pi});
-  const Vec3 quarter = settle().front() - o.entry;
+  const Vec3 quarter = place_in_simplex().front() - o.entry;
   EXPECT_LE(norm(quarter - (cross({0, 0, 1}, normal) * dot(tip, normal) + Vec3{0, 0, tip.z})), 1e-3 * o.spacing);
   c.step({0.0, 1.5 * pi});
-  const std::vector<Vec3> whole = settle();
+  const std::vector<Vec3> whole = place_in_simplex();
   ASSERT_EQ(whole.size(), first.size());
   for (std::size_t i = 0; i < whole.size(); ++i) EXPECT_LE(norm(whole[i] - first[i]), 1e-3 * o.spacing) << i;
 }
@@ -303,7 +303,7 @@ TEST(Catheter, FollowsEdits) {
     for (const Cell cell : ahead) edit.topology().set_free(cell, false);
   });
   EXPECT_THROW(c.step({0.1}), InvalidArgument);
-  c.follow();
+  c.update_after_edit();
   for (int i = 0; i < 40; ++i) c.step({0.2});
   EXPECT_LE(c.inserted(), 4.0 * 1.01);
   EXPECT_GE(c.inserted(), 3.9);

@@ -69,8 +69,8 @@ struct Insertion {
     Vec3 rest;
     double path = 0.0;
   };
-  [[nodiscard]] Where where(const State& s) const {
-    const Map& map = vessel.environment.map();
+  [[nodiscard]] Where where(const ParticleState& s) const {
+    const CombinatorialMap& map = vessel.environment.map();
     const auto corners = vessel.mesh.cell(map.source(s.cell));
     Where w;
     for (const std::uint32_t v : corners) {
@@ -109,7 +109,7 @@ TEST(Steering, StaysAndComesBack) {
   EXPECT_LE(run.worst_segment, 0.01);
   EXPECT_EQ(run.catheter.inserted(), 0.0);
   EXPECT_EQ(run.failed, 0U);
-  for (const State& s : run.catheter.particles().states()) EXPECT_EQ(s.position, run.catheter.entry());
+  for (const ParticleState& s : run.catheter.particles().states()) EXPECT_EQ(s.position, run.catheter.entry());
 }
 
 TEST(Steering, IsTheSameForAnyThreadsAndGoesOnFromACheckpoint) {

@@ -29,7 +29,7 @@ Exact volume6(const Corners& v) {
   return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
 
-Exact volume6(const Complex& complex) {
+Exact volume6(const CellComplex& complex) {
   Exact sum(0);
   for (const Cell c : complex.map().cells()) {
     for (std::uint16_t s = 0; s < complex.map().shape(c).simplices().size(); ++s)
@@ -38,14 +38,14 @@ Exact volume6(const Complex& complex) {
   return sum;
 }
 
-std::uint64_t count_simplices(const Complex& complex) {
+std::uint64_t count_simplices(const CellComplex& complex) {
   std::uint64_t sum = 0;
   for (const Cell c : complex.map().cells()) sum += complex.map().shape(c).simplices().size();
   return sum;
 }
 
 // Cell points and face points, each once.
-std::size_t count_interior(const Complex& complex) {
+std::size_t count_interior(const CellComplex& complex) {
   std::map<std::uint32_t, int> seen;
   for (const Cell c : complex.map().cells()) {
     const CellView v = complex.map().view(c);
@@ -54,12 +54,12 @@ std::size_t count_interior(const Complex& complex) {
   return seen.size();
 }
 
-void expect_sound(const Complex& complex) {
+void expect_sound(const CellComplex& complex) {
   ASSERT_TRUE(check_integrity(complex.map(), 1).empty());
   const Validity validity = check_validity(complex, {});
   ASSERT_TRUE(validity.valid()) << validity.first.front().message;
   EXPECT_EQ(complex.simplex_count(), count_simplices(complex));
-  EXPECT_EQ(complex.interior_point_count(), count_interior(complex));
+  EXPECT_EQ(complex.steiner_point_count(), count_interior(complex));
   EXPECT_GE(complex.positions().size(), complex.map().vertex_count());
 }
 
@@ -75,8 +75,8 @@ MeshData in_few_digits(MeshData mesh) {
   return mesh;
 }
 
-Complex prepared(const MeshData& mesh) {
-  Complex complex(mesh);
+CellComplex prepared(const MeshData& mesh) {
+  CellComplex complex(mesh);
   const ComplexEdit counts_what_edits_need(complex);
   return complex;
 }
@@ -98,7 +98,7 @@ bool in_one_plane(ComplexEdit& edit, std::span<const Dart> path) {
 
 // In the plane, where corners of the boundary may have two edges without being straight.
 bool goes_straight_on(ComplexEdit& edit, Dart d) {
-  const Map& map = edit.map();
+  const CombinatorialMap& map = edit.map();
   const auto at = [&](Dart x) { return edit.position(map.origin(x)); };
   return map.dimension() == 3 || orient2d(at(map.phi_1(d)), at(d), at(map.phi1(d))) == Sign::zero;
 }
@@ -139,7 +139,7 @@ class RandomEdits {
     }
   }
 
-  Complex complex;
+  CellComplex complex;
   Random random = Random(42);
   test::EditKind kind{};
   std::map<test::EditKind, int> done;
@@ -150,7 +150,7 @@ class RandomEdits {
   std::size_t usual_;
 };
 
-void expect_same(const Complex& complex, const Complex& before) {
+void expect_same(const CellComplex& complex, const CellComplex& before) {
   ASSERT_EQ(complex.map(), before.map());
   for (std::uint32_t v = 0; v < complex.map().vertex_count(); ++v) {
     if (complex.map().is_vertex(Vertex(v))) ASSERT_EQ(complex.positions()[v], before.positions()[v]);
@@ -162,7 +162,7 @@ TEST_P(ComplexEdits, LeaveAValidComplexOfTheSameVolume) {
   Exact volume = volume6(edits.complex);
   int refused = 0;
   for (int i = 0; i < test::scaled(400, 4000); ++i) {
-    std::optional<Complex> before;
+    std::optional<CellComplex> before;
     if (i % 50 == 0) before = edits.complex;
     const auto report = edits.make();
     refused += report ? 0 : 1;
@@ -187,7 +187,7 @@ TEST_P(ComplexEdits, LeaveAValidComplexOfTheSameVolume) {
 // Among planes, nothing moves but by what is said; and cells stay convex when the whole is sheared.
 TEST_P(ComplexEdits, AmongPlanesMoveNothing) {
   RandomEdits edits(GetParam().make(), true);
-  Complex& complex = edits.complex;
+  CellComplex& complex = edits.complex;
   Exact volume = volume6(complex);
   for (int i = 0; i < test::scaled(400, 4000); ++i) {
     const auto report = edits.make();
@@ -209,17 +209,17 @@ TEST_P(ComplexEdits, AmongPlanesMoveNothing) {
 INSTANTIATE_TEST_SUITE_P(Meshes, ComplexEdits, testing::ValuesIn(test::all_edit_meshes()),
                          [](const auto& mesh) { return std::string(mesh.param.name); });
 
-Complex one_box() {
+CellComplex one_box() {
   BoxOptions o;
   o.cells = {1, 1, 1};
   o.blocked_layer = false;
   return prepared(generate_box(o));
 }
 
-Dart any_dart(const Map& map) { return {map.cells().front(), 0}; }
+Dart any_dart(const CombinatorialMap& map) { return {map.cells().front(), 0}; }
 
 TEST(ComplexEdit, PutsAVertexInTheMiddleOfItsEdgeUnlessItIsPlaced) {
-  Complex complex = one_box();
+  CellComplex complex = one_box();
   ComplexEdit edit(complex);
   const Dart d = any_dart(edit.map());
   const Vec3 a = edit.position(edit.map().origin(d));
@@ -236,8 +236,8 @@ TEST(ComplexEdit, PutsAVertexInTheMiddleOfItsEdgeUnlessItIsPlaced) {
 }
 
 TEST(ComplexEdit, TakesEverythingBackWhereACellIsNotConvex) {
-  Complex complex = one_box();
-  const Complex before = complex;
+  CellComplex complex = one_box();
+  const CellComplex before = complex;
   {
     ComplexEdit edit(complex);
     const Dart d = any_dart(edit.map());
@@ -255,7 +255,7 @@ TEST(ComplexEdit, TakesEverythingBackWhereACellIsNotConvex) {
 
 // Between a move and the next one, new vertices count as not moved.
 TEST(ComplexEdit, GivesNewVerticesAPast) {
-  Complex complex = one_box();
+  CellComplex complex = one_box();
   const auto next = complex.next_positions();
   for (std::size_t v = 0; v < next.size(); ++v) next[v] = complex.positions()[v] + Vec3{0.5, 0.0, 0.0};
   complex.commit_positions();
@@ -264,12 +264,12 @@ TEST(ComplexEdit, GivesNewVerticesAPast) {
   const ComplexEditReport report = edit.commit();
   EXPECT_EQ(complex.previous_positions()[v.value], complex.positions()[v.value]);
   EXPECT_EQ(complex.previous_positions()[0], complex.positions()[0] - (Vec3{0.5, 0.0, 0.0}));
-  EXPECT_FALSE(report.map.born.empty());
+  EXPECT_FALSE(report.map.created.empty());
 }
 
 TEST(ComplexEdit, WithoutACommitIsNothing) {
-  Complex complex = one_box();
-  const Complex before = complex;
+  CellComplex complex = one_box();
+  const CellComplex before = complex;
   {
     ComplexEdit edit(complex);
     edit.place(split_edge(edit.topology(), any_dart(edit.map())).vertex, {0.0, 0.0, 0.0});
@@ -279,14 +279,14 @@ TEST(ComplexEdit, WithoutACommitIsNothing) {
 }
 
 TEST(ComplexEdit, RefusesPlacesThatAreNone) {
-  Complex complex = one_box();
+  CellComplex complex = one_box();
   ComplexEdit edit(complex);
   EXPECT_THROW(edit.place(Vertex(0), {0.0, 0.0, 0.0}), InvalidArgument);
   EXPECT_THROW(static_cast<void>(edit.position(Vertex(1000))), InvalidArgument);
   const Vertex v = split_edge(edit.topology(), any_dart(edit.map())).vertex;
   EXPECT_THROW(edit.place(v, {1e200, 0.0, 0.0}), InvalidArgument);
   EXPECT_THROW(edit.place(v, std::vector<Vertex>{Vertex(0)}, std::vector<double>{0.5, 0.5}), InvalidArgument);
-  const auto mark = edit.mark();
+  const auto mark = edit.savepoint();
   const Vertex w = split_edge(edit.topology(), any_dart(edit.map())).vertex;
   edit.place(w, {0.25, 0.0, 0.0});
   edit.roll_back(mark);
@@ -300,13 +300,13 @@ TEST(ComplexEdit, TellsHowFarAWarpedWallMoved) {
   o.blocked_layer = false;
   MeshData mesh = generate_box(o);
   mesh.points[7] += Vec3{0.0, 0.0, 0.125};
-  Complex complex(mesh);
-  const Map& map = complex.map();
+  CellComplex complex(mesh);
+  const CombinatorialMap& map = complex.map();
   const Cell c = map.cells().front();
   int moved = 0;
   for (std::uint16_t f = 0; f < map.shape(c).face_count(); ++f) {
     for (const unsigned k : {0U, 1U}) {
-      Complex copy = complex;
+      CellComplex copy = complex;
       ComplexEdit edit(copy);
       const auto first = static_cast<std::uint16_t>(map.shape(c).first_dart(f) + k);
       split_face(edit.topology(), {c, first}, {c, static_cast<std::uint16_t>(first + 2)});
@@ -320,7 +320,7 @@ TEST(ComplexEdit, TellsHowFarAWarpedWallMoved) {
 
 // What is given at vertices follows: a linear function stays what it is.
 TEST(ComplexEdit, ValuesFollow) {
-  Complex complex(test::edit_box(CellType::hexahedron));
+  CellComplex complex(test::edit_box(CellType::hexahedron));
   const auto linear = [](const Vec3& x) { return 3.0 * x.x - 2.0 * x.y + x.z + 1.0; };
   std::vector<double> values;
   for (const Vec3& x : complex.positions()) values.push_back(linear(x));
@@ -333,11 +333,11 @@ TEST(ComplexEdit, ValuesFollow) {
       const Dart d{c, static_cast<std::uint16_t>(random.below(edit.map().shape(c).dart_count()))};
       const Vertex v = split_edge(edit.topology(), d).vertex;
       if (k > 0) continue;
-      const BornVertex& born = edit.topology().born(edit.topology().born_count() - 1);
-      edit.place(v, std::vector<Vertex>{born.from, born.other}, std::vector<double>{0.25, 0.75});
+      const CreatedVertex& created = edit.topology().created(edit.topology().created_count() - 1);
+      edit.place(v, std::vector<Vertex>{created.from, created.other}, std::vector<double>{0.25, 0.75});
     }
     const ComplexEditReport report = edit.commit();
-    follow(report, complex.point_count(), values);
+    update_after_edit(report, complex.point_count(), values);
     for (const PlacedVertex& p : report.placed)
       EXPECT_NEAR(values[p.vertex.value], linear(complex.positions()[p.vertex.value]), 1e-12);
   }

@@ -50,12 +50,12 @@ std::vector<Vec3> mapped(std::span<const Vec3> points, const std::function<Vec3(
 
 struct Reference {
   SimplexId simplex;
-  Flattening how;
+  SimplexInversion how;
 };
 
 // All simplices one after another.
-std::optional<Reference> reference(const Map& map, std::span<const Vec3> before, std::span<const Vec3> after,
-                                   const std::vector<Cell>& cells) {
+std::optional<Reference> reference(const CombinatorialMap& map, std::span<const Vec3> before,
+                                   std::span<const Vec3> after, const std::vector<Cell>& cells) {
   std::optional<Reference> first;
   for (const Cell c : cells) {
     const CellView v = map.view(c);
@@ -65,14 +65,15 @@ std::optional<Reference> reference(const Map& map, std::span<const Vec3> before,
         from[i] = before[v.vertex(v.shape().simplices()[s].vertex[i]).value];
         to[i] = after[v.vertex(v.shape().simplices()[s].vertex[i]).value];
       }
-      const auto how = find_flattening(from, to);
+      const auto how = find_inversion(from, to);
       if (how && (!first || how->safe_time < first->how.safe_time)) first = {{c, s}, *how};
     }
   }
   return first;
 }
 
-void expect_same(const Map& map, const std::optional<CellFlattening>& found, const std::optional<Reference>& truth) {
+void expect_same(const CombinatorialMap& map, const std::optional<CellInversion>& found,
+                 const std::optional<Reference>& truth) {
   ASSERT_EQ(found.has_value(), truth.has_value());
   if (!found) return;
   EXPECT_EQ(found->simplex, truth->simplex);
@@ -86,18 +87,18 @@ TEST(FirstFlattening, IsThatOfAllSimplicesOneByOne) {
   int flattened = 0, none = 0;
   for (int kind = 0; kind < mesh_kinds; ++kind) {
     const MeshData mesh = mesh_of(kind);
-    const Complex complex(mesh);
-    const Map& map = complex.map();
+    const CellComplex complex(mesh);
+    const CombinatorialMap& map = complex.map();
     ASSERT_TRUE(complex.invalid_cells().empty());
-    if (kind == 6) ASSERT_GT(complex.interior_point_count(), 0U);
+    if (kind == 6) ASSERT_GT(complex.steiner_point_count(), 0U);
     Random random(static_cast<std::uint64_t>(kind) + 1);
     for (const double size : {0.01, 0.05, 0.15, 0.5, 3.0}) {
       const auto after = moved(complex.positions(), random, size);
-      const auto found = first_flattening(map, complex.positions(), after, Threads{1});
+      const auto found = first_inversion(map, complex.positions(), after, Threads{1});
       expect_same(map, found, reference(map, complex.positions(), after, map.cells()));
       (found ? flattened : none) += 1;
       for (const Cell c : map.cells()) {
-        expect_same(map, first_flattening(map, complex.positions(), after, c),
+        expect_same(map, first_inversion(map, complex.positions(), after, c),
                     reference(map, complex.positions(), after, {c}));
       }
     }
@@ -108,9 +109,9 @@ TEST(FirstFlattening, IsThatOfAllSimplicesOneByOne) {
 
 TEST(FirstFlattening, OfMotionsThatFlattenNothing) {
   for (int kind = 0; kind < mesh_kinds; ++kind) {
-    const Complex complex(mesh_of(kind));
+    const CellComplex complex(mesh_of(kind));
     const auto found = [&](const std::function<Vec3(const Vec3&)>& to) {
-      return first_flattening(complex.map(), complex.positions(), mapped(complex.positions(), to));
+      return first_inversion(complex.map(), complex.positions(), mapped(complex.positions(), to));
     };
     EXPECT_FALSE(found([](const Vec3& p) { return p; }));
     EXPECT_FALSE(found([](const Vec3& p) { return p + Vec3{8, -1, 2}; }));
@@ -121,7 +122,7 @@ TEST(FirstFlattening, OfMotionsThatFlattenNothing) {
     // By 180 degrees every simplex is flat half way, and has turned nothing in the end.
     const auto half_turn = found([](const Vec3& p) { return Vec3{-p.x, -p.y, p.z}; });
     ASSERT_TRUE(half_turn);
-    EXPECT_EQ(half_turn->how.safe_time, 0.5 - flattening_resolution);
+    EXPECT_EQ(half_turn->how.safe_time, 0.5 - inversion_resolution);
     EXPECT_TRUE(check_validity(complex.map(),
                                mapped(complex.positions(),
                                       [](const Vec3& p) {
@@ -139,18 +140,18 @@ TEST(FirstFlattening, SameForAnyNumberOfThreadsAndFirstByCell) {
   o.size = {24, 24, 24};
   o.blocked_share = 0.3;
   const MeshData mesh = generate_box(o);
-  const Map map(mesh);
+  const CombinatorialMap map(mesh);
   Random random(9);
   const auto some = moved(mesh.points, random, 0.3);
   const auto truth = reference(map, mesh.points, some, map.cells());
   ASSERT_TRUE(truth);
   const auto all = mapped(mesh.points, [](const Vec3& p) { return Vec3{p.x, p.y, -3.0 * p.z}; });
   for (const unsigned threads : {1U, 2U, 7U}) {
-    expect_same(map, first_flattening(map, mesh.points, some, Threads{threads}), truth);
-    const auto first = first_flattening(map, mesh.points, all, Threads{threads});
+    expect_same(map, first_inversion(map, mesh.points, some, Threads{threads}), truth);
+    const auto first = first_inversion(map, mesh.points, all, Threads{threads});
     ASSERT_TRUE(first);
     EXPECT_EQ(first->simplex, (SimplexId{Cell(1, 0), 0}));
-    EXPECT_EQ(first->how.safe_time, 0.25 - flattening_resolution);
+    EXPECT_EQ(first->how.safe_time, 0.25 - inversion_resolution);
   }
 }
 
@@ -160,8 +161,8 @@ TEST(FirstFlattening, BlockedCellsCount) {
   blocked.free.assign(blocked.cell_count(), 0);
   std::vector<Vec3> after = plain.points;
   after[21] = {1.5, 1.5, 3.5};  // a corner of the cell in the middle goes through the whole of it, and beyond
-  const auto one = first_flattening(Map(plain), plain.points, after);
-  const auto other = first_flattening(Map(blocked), blocked.points, after);
+  const auto one = first_inversion(CombinatorialMap(plain), plain.points, after);
+  const auto other = first_inversion(CombinatorialMap(blocked), blocked.points, after);
   ASSERT_TRUE(one && other);
   EXPECT_EQ(one->how, other->how);
   EXPECT_EQ(one->message, other->message);
@@ -177,12 +178,12 @@ MeshData tetrahedron() {
 
 TEST(FirstFlattening, MessagesNameCellTimeAndVertices) {
   const MeshData mesh = tetrahedron();
-  const Map map(mesh);
+  const CombinatorialMap map(mesh);
   const auto corners = mesh.cell(0);
   const auto text = [&](std::size_t corner, const Vec3& to) {
     std::vector<Vec3> after = mesh.points;
     after[corners[corner]] = to;
-    const auto found = first_flattening(map, mesh.points, after, Cell(0, 0));
+    const auto found = first_inversion(map, mesh.points, after, Cell(0, 0));
     return found ? found->message : std::string("nothing");
   };
   const auto number = [&](std::size_t corner) { return std::to_string(corners[corner]); };
@@ -198,43 +199,43 @@ TEST(FirstFlattening, MessagesNameCellTimeAndVertices) {
   std::vector<Vec3> flat = mesh.points;
   flat[corners[0]] = mean;
   flat[corners[1]] = mesh.points[corners[2]];
-  const auto found = first_flattening(map, flat, mesh.points, Cell(0, 0));
+  const auto found = first_inversion(map, flat, mesh.points, Cell(0, 0));
   ASSERT_TRUE(found);
-  EXPECT_EQ(found->how.kind, FlatteningKind::from_the_start);
+  EXPECT_EQ(found->how.kind, InversionKind::from_the_start);
   EXPECT_NE(found->message.find("is flat or inverted before the motion"), std::string::npos);
 }
 
 TEST(FirstFlattening, OfTheLastMoveOfAComplex) {
-  Complex complex(mesh_of(6));
-  EXPECT_FALSE(first_flattening(complex));
+  CellComplex complex(mesh_of(6));
+  EXPECT_FALSE(first_inversion(complex));
   const std::span<Vec3> next = complex.next_positions();
   for (Vec3& p : next) p.z = -p.z;
   complex.commit_positions();
-  const auto found = first_flattening(complex);
+  const auto found = first_inversion(complex);
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->how.safe_time, 0.5, 1e-9);  // interior points are rounded
 }
 
 TEST(FirstFlattening, RefusesPositionsThatAreNotAsManyAsVertices) {
   const MeshData mesh = mesh_of(0);
-  const Map map(mesh);
+  const CombinatorialMap map(mesh);
   std::vector<Vec3> fewer(mesh.points.begin(), mesh.points.end() - 1);
-  EXPECT_THROW(first_flattening(map, fewer, mesh.points), InvalidArgument);
-  EXPECT_THROW(first_flattening(map, mesh.points, fewer), InvalidArgument);
-  EXPECT_THROW(follow_until(map, {}, mesh.points, mesh.points, 1.0, fewer), InvalidArgument);
+  EXPECT_THROW(first_inversion(map, fewer, mesh.points), InvalidArgument);
+  EXPECT_THROW(first_inversion(map, mesh.points, fewer), InvalidArgument);
+  EXPECT_THROW(move_towards(map, {}, mesh.points, mesh.points, 1.0, fewer), InvalidArgument);
 }
 
 // A mesh with its interior points.
 struct Scene {
-  Map map;
-  InteriorWeights weights;
+  CombinatorialMap map;
+  SteinerWeights weights;
   std::vector<Vec3> positions;
 
   explicit Scene(const MeshData& mesh) : map(mesh), positions(mesh.points) {
     std::vector<Cell> bad;
     for (const InvalidCell& c : check_validity(map, positions, {}, map.cell_count()).first) bad.push_back(c.cell);
-    const InteriorSolution solution = find_interior_points(mesh, map, bad);
-    map = Map(mesh, solution.points);
+    const SteinerSolution solution = find_steiner_points(mesh, map, bad);
+    map = CombinatorialMap(mesh, solution.points);
     weights = solution.weights;
     place(positions);
   }
@@ -254,13 +255,13 @@ TEST(FollowUntil, LeavesAValidSceneCloseToTheFlattening) {
     for (int step = 0; step < test::scaled(40, 1000); ++step) {
       std::vector<Vec3> after = moved(scene.positions, random, 0.2);
       scene.place(after);
-      const auto found = first_flattening(scene.map, scene.positions, after);
+      const auto found = first_inversion(scene.map, scene.positions, after);
       const double safe = found ? found->how.safe_time : 1.0;
       std::vector<Vec3> reached(scene.positions.size());
-      const double time = follow_until(scene.map, scene.weights, scene.positions, after, safe, reached);
+      const double time = move_towards(scene.map, scene.weights, scene.positions, after, safe, reached);
       ASSERT_LE(time, safe);
       ASSERT_TRUE(check_validity(scene.map, reached, {}, 1).valid());
-      ASSERT_FALSE(first_flattening(scene.map, scene.positions, reached));
+      ASSERT_FALSE(first_inversion(scene.map, scene.positions, reached));
       if (!found) EXPECT_EQ(reached, after);
       std::vector<Vec3> placed = reached;
       scene.place(placed);
@@ -268,7 +269,7 @@ TEST(FollowUntil, LeavesAValidSceneCloseToTheFlattening) {
       stopped += found ? 1 : 0;
       at_once += time == safe ? 1 : 0;
       EXPECT_GT(time, safe - 0x1p-20) << "mesh " << kind << ", step " << step;
-      const double half = follow_until(scene.map, scene.weights, scene.positions, after, 0.5 * safe, reached);
+      const double half = move_towards(scene.map, scene.weights, scene.positions, after, 0.5 * safe, reached);
       EXPECT_EQ(half, 0.5 * safe);
       ASSERT_TRUE(check_validity(scene.map, reached, {}, 1).valid());
       scene.positions = reached;
@@ -285,16 +286,16 @@ TEST(FollowUntil, GoesBackWhereRoundingFlattens) {
   const auto after = mapped(scene.positions, [](const Vec3& p) {
     return Vec3{0x1p+40 - 0.7 * (p.x - 0x1p+40), p.y, p.z};
   });
-  const auto found = first_flattening(scene.map, scene.positions, after);
+  const auto found = first_inversion(scene.map, scene.positions, after);
   ASSERT_TRUE(found);
   std::vector<Vec3> reached(scene.positions.size());
-  const double time = follow_until(scene.map, {}, scene.positions, after, found->how.safe_time, reached);
+  const double time = move_towards(scene.map, {}, scene.positions, after, found->how.safe_time, reached);
   EXPECT_LT(time, found->how.safe_time);
   EXPECT_GT(time, 0.9 * found->how.safe_time);
   EXPECT_TRUE(check_validity(scene.map, reached, {}, 1).valid());
 
   const auto spoilt = mapped(scene.positions, [](const Vec3& p) { return Vec3{p.x, std::nan(""), p.z}; });
-  EXPECT_EQ(follow_until(scene.map, {}, scene.positions, spoilt, 1.0, reached), 0.0);
+  EXPECT_EQ(move_towards(scene.map, {}, scene.positions, spoilt, 1.0, reached), 0.0);
   EXPECT_EQ(reached, scene.positions);
 }
 

@@ -56,8 +56,8 @@ TEST(PositiveCells, ProvesOnlyWhatIsSo) {
   int cells = 0;
   int positive = 0;
   for (int i = 0; i < test::scaled(3000, 300000); ++i) {
-    const Complex complex(mesh_of(i % 6));
-    const Map& map = complex.map();
+    const CellComplex complex(mesh_of(i % 6));
+    const CombinatorialMap& map = complex.map();
     std::vector<Vec3> points(complex.positions().begin(), complex.positions().end());
     spoil(points, random);
     if (i % 4 == 3) {  // so small that products underflow
@@ -94,7 +94,7 @@ TEST(PositiveCells, ProvesOnlyWhatIsSo) {
 
 TEST(PositiveCells, LeavesNoPlainCellOpen) {
   for (int which = 0; which < 6; ++which) {
-    const Complex complex(mesh_of(which));
+    const CellComplex complex(mesh_of(which));
     for (const Cell c : complex.map().cells()) {
       std::array<const std::uint32_t*, 4> vertices;
       vertices.fill(complex.map().view(c).vertices().data());

@@ -29,7 +29,7 @@ struct Tally {
   int none = 0, from_the_start = 0, by_kind[5] = {}, touching = 0;
 };
 
-void expect_first_root(const Motion& m, const std::optional<Flattening>& found, Tally& tally) {
+void expect_first_root(const Motion& m, const std::optional<SimplexInversion>& found, Tally& tally) {
   const MovingSimplex truth(m.before, m.after);
   const DyadicTime end{1, 0};
   if (!found) {
@@ -38,34 +38,34 @@ void expect_first_root(const Motion& m, const std::optional<Flattening>& found, 
     ++tally.none;
     return;
   }
-  if (found->kind == FlatteningKind::from_the_start) {
+  if (found->kind == InversionKind::from_the_start) {
     ASSERT_LE(truth.sign_of_volume({}), 0);
-    ASSERT_EQ(*found, (Flattening{0.0, FlatteningKind::from_the_start}));
+    ASSERT_EQ(*found, (SimplexInversion{0.0, InversionKind::from_the_start}));
     ++tally.from_the_start;
     return;
   }
-  ASSERT_NE(found->kind, FlatteningKind::undecidable);
+  ASSERT_NE(found->kind, InversionKind::undecidable);
   ASSERT_EQ(truth.sign_of_volume({}), 1);
   ASSERT_FALSE(truth.has_root_by(DyadicTime::of(found->safe_time))) << "too late";
-  const DyadicTime next = DyadicTime::of(found->safe_time + flattening_resolution);
+  const DyadicTime next = DyadicTime::of(found->safe_time + inversion_resolution);
   ASSERT_TRUE(truth.has_root_by(next)) << "too early, or invented";
   ++tally.by_kind[static_cast<int>(found->kind)];
   tally.touching += truth.sign_of_volume(next) > 0 ? 1 : 0;
 }
 
 // The parts hold only corners that are on that side of the facets' common line just before the root.
-void expect_parts(const Motion& m, const Flattening& found) {
+void expect_parts(const Motion& m, const SimplexInversion& found) {
   const int count = std::popcount(found.one) + std::popcount(found.other);
   ASSERT_EQ(found.one & found.other, 0);
   ASSERT_LE(std::popcount(found.one), std::popcount(found.other));
   switch (found.kind) {
-    case FlatteningKind::vertex_face: ASSERT_EQ(std::popcount(found.one), 1); [[fallthrough]];
-    case FlatteningKind::edge_edge: ASSERT_EQ(count, 4); break;
-    case FlatteningKind::vertex_edge: ASSERT_EQ(count, 3); break;
-    case FlatteningKind::vertex_vertex: ASSERT_EQ(count, 2); break;
+    case InversionKind::vertex_face: ASSERT_EQ(std::popcount(found.one), 1); [[fallthrough]];
+    case InversionKind::edge_edge: ASSERT_EQ(count, 4); break;
+    case InversionKind::vertex_edge: ASSERT_EQ(count, 3); break;
+    case InversionKind::vertex_vertex: ASSERT_EQ(count, 2); break;
     default: ASSERT_EQ(count, 0); return;
   }
-  if (found.kind == FlatteningKind::edge_edge) ASSERT_TRUE(found.one & 1U);
+  if (found.kind == InversionKind::edge_edge) ASSERT_TRUE(found.one & 1U);
   const MovingSimplex truth(m.before, m.after);
   const auto signs = truth.facet_signs(truth.last_before_root(140));
   unsigned positive = 0, negative = 0;
@@ -79,13 +79,13 @@ void expect_parts(const Motion& m, const Flattening& found) {
       << "parts " << int{found.one} << ", " << int{found.other} << "; sides " << positive << ", " << negative;
 }
 
-TEST(Flattening, IsTheFirstRootOfTheVolume) {
+TEST(SimplexInversion, IsTheFirstRootOfTheVolume) {
   std::array<Tally, test::motion_kinds> tallies;
   for (int i = 0; i < test::scaled(4'000, 100'000); ++i) {
     Motions motions(static_cast<std::uint64_t>(i) + 1);
     const auto kind = i % test::motion_kinds;
     const Motion m = motions.make(static_cast<MotionKind>(kind));
-    const auto found = find_flattening(m.before, m.after);
+    const auto found = find_inversion(m.before, m.after);
     expect_first_root(m, found, tallies[static_cast<std::size_t>(kind)]);
     if (found && !HasFatalFailure()) expect_parts(m, *found);
     if (HasFatalFailure()) FAIL() << "motion " << i << " of kind " << kind;
@@ -106,25 +106,25 @@ TEST(Flattening, IsTheFirstRootOfTheVolume) {
   EXPECT_EQ(of(MotionKind::rest).by_kind[0], 0);
 }
 
-TEST(Flattening, UntilAGivenTimeIsTheSameOrNothing) {
+TEST(SimplexInversion, UntilAGivenTimeIsTheSameOrNothing) {
   int cut = 0, kept = 0;
   for (int i = 0; i < test::scaled(4'000, 100'000); ++i) {
     Motions motions(static_cast<std::uint64_t>(i) + 77);
     const Motion m = motions.make(static_cast<MotionKind>(i % test::motion_kinds));
-    const auto whole = find_flattening(m.before, m.after);
+    const auto whole = find_inversion(m.before, m.after);
     if (!whole) {
-      EXPECT_FALSE(find_flattening(m.before, m.after, motions.random().uniform()));
+      EXPECT_FALSE(find_inversion(m.before, m.after, motions.random().uniform()));
       continue;
     }
-    const bool from_the_start = whole->kind == FlatteningKind::from_the_start;
-    const double next = whole->safe_time + (from_the_start ? 0.0 : flattening_resolution);
+    const bool from_the_start = whole->kind == InversionKind::from_the_start;
+    const double next = whole->safe_time + (from_the_start ? 0.0 : inversion_resolution);
     for (const double until : {next, std::min(1.0, next * 1.5), 1.0}) {
-      ASSERT_EQ(find_flattening(m.before, m.after, until), whole) << "motion " << i;
+      ASSERT_EQ(find_inversion(m.before, m.after, until), whole) << "motion " << i;
       ++kept;
     }
     if (from_the_start) continue;
     for (const double until : {whole->safe_time, 0.5 * whole->safe_time, std::nextafter(next, 0.0), 0.0}) {
-      ASSERT_FALSE(find_flattening(m.before, m.after, until)) << "motion " << i;
+      ASSERT_FALSE(find_inversion(m.before, m.after, until)) << "motion " << i;
       ++cut;
     }
   }
@@ -195,65 +195,66 @@ TEST(VolumeCubic, HalvingProvesWhatIsTrueAndMuchOfIt) {
 }
 
 // A motion of one corner of the unit simplex, or of two.
-Flattening flattening_of(Corners after) {
-  const auto found = find_flattening(unit, after);
-  return found ? *found : Flattening{-1.0};
+SimplexInversion flattening_of(Corners after) {
+  const auto found = find_inversion(unit, after);
+  return found ? *found : SimplexInversion{-1.0};
 }
 
-TEST(Flattening, NamesWhatMeets) {
+TEST(SimplexInversion, NamesWhatMeets) {
   Corners after = unit;
   after[3] = {0.25, 0.25, -1};  // corner 3 through the facet below it, at 1/2
   EXPECT_EQ(flattening_of(after),
-            (Flattening{0.5 - flattening_resolution, FlatteningKind::vertex_face, 0b1000, 0b0111}));
+            (SimplexInversion{0.5 - inversion_resolution, InversionKind::vertex_face, 0b1000, 0b0111}));
   after[3] = {4, 4, -1};  // at (2, 2, 0): the edge from there to the origin crosses the one from 1 to 2
-  EXPECT_EQ(flattening_of(after), (Flattening{0.5 - flattening_resolution, FlatteningKind::edge_edge, 0b1001, 0b0110}));
+  EXPECT_EQ(flattening_of(after),
+            (SimplexInversion{0.5 - inversion_resolution, InversionKind::edge_edge, 0b1001, 0b0110}));
   after[3] = {1, 1, -1};  // at (1/2, 1/2, 0): on the edge from 1 to 2
   EXPECT_EQ(flattening_of(after),
-            (Flattening{0.5 - flattening_resolution, FlatteningKind::vertex_edge, 0b1000, 0b0110}));
+            (SimplexInversion{0.5 - inversion_resolution, InversionKind::vertex_edge, 0b1000, 0b0110}));
   after[3] = {0, 0, -3};  // at corner 0, at 1/4
   EXPECT_EQ(flattening_of(after),
-            (Flattening{0.25 - flattening_resolution, FlatteningKind::vertex_vertex, 0b0001, 0b1000}));
+            (SimplexInversion{0.25 - inversion_resolution, InversionKind::vertex_vertex, 0b0001, 0b1000}));
   after[3] = {-2, 0, -1};  // at (-1, 0, 0): corner 0 is then between it and corner 1
   EXPECT_EQ(flattening_of(after),
-            (Flattening{0.5 - flattening_resolution, FlatteningKind::vertex_edge, 0b0001, 0b1010}));
+            (SimplexInversion{0.5 - inversion_resolution, InversionKind::vertex_edge, 0b0001, 0b1010}));
   after[3] = {-2, -2, -1};  // at (-1, -1, 0): corner 0 comes to lie in the triangle
   EXPECT_EQ(flattening_of(after),
-            (Flattening{0.5 - flattening_resolution, FlatteningKind::vertex_face, 0b0001, 0b1110}));
+            (SimplexInversion{0.5 - inversion_resolution, InversionKind::vertex_face, 0b0001, 0b1110}));
   after = {Vec3{0, 0, 0}, {1, 0, 0}, {2, -1, 0}, {3, 0, -1}};  // all on the x axis at 1/2
-  EXPECT_EQ(flattening_of(after), (Flattening{0.5 - flattening_resolution, FlatteningKind::line}));
+  EXPECT_EQ(flattening_of(after), (SimplexInversion{0.5 - inversion_resolution, InversionKind::line}));
   after = {Vec3{0, 0, 0}, {-3, 0, 0}, {0, -3, 0}, {0, 0, -3}};  // all at one point at 1/4
-  EXPECT_EQ(flattening_of(after), (Flattening{0.25 - flattening_resolution, FlatteningKind::line}));
+  EXPECT_EQ(flattening_of(after), (SimplexInversion{0.25 - inversion_resolution, InversionKind::line}));
 }
 
-TEST(Flattening, EndsOfTheStepAndItsInside) {
+TEST(SimplexInversion, EndsOfTheStepAndItsInside) {
   Corners after = unit;
   after[3] = {0.25, 0.25, 0};  // flat at the end: counts
-  EXPECT_EQ(flattening_of(after).safe_time, 1.0 - flattening_resolution);
+  EXPECT_EQ(flattening_of(after).safe_time, 1.0 - inversion_resolution);
   after[3].z = smallest_magnitude;
-  EXPECT_FALSE(find_flattening(unit, after));
-  EXPECT_EQ(find_flattening(after, unit), std::nullopt);
+  EXPECT_FALSE(find_inversion(unit, after));
+  EXPECT_EQ(find_inversion(after, unit), std::nullopt);
   after[3].z = 0.0;
-  EXPECT_EQ(find_flattening(after, unit), (Flattening{0.0, FlatteningKind::from_the_start}));
+  EXPECT_EQ(find_inversion(after, unit), (SimplexInversion{0.0, InversionKind::from_the_start}));
   // Turned by 180 degrees, it touches zero at 1/2 and is positive before and after.
   after = {Vec3{0, 0, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}};
-  EXPECT_EQ(flattening_of(after).safe_time, 0.5 - flattening_resolution);
+  EXPECT_EQ(flattening_of(after).safe_time, 0.5 - inversion_resolution);
   // Flattened at once: nothing is safe but the start.
   const Corners low = {Vec3{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.25, 0.25, 0x1p-50}};
   after = unit;
   after[3] = {0.25, 0.25, -1};
-  EXPECT_EQ(find_flattening(low, after), (Flattening{0.0, FlatteningKind::vertex_face, 0b1000, 0b0111}));
+  EXPECT_EQ(find_inversion(low, after), (SimplexInversion{0.0, InversionKind::vertex_face, 0b1000, 0b0111}));
 }
 
-TEST(Flattening, OfWhatIsOutOfRangeIsUndecidable) {
+TEST(SimplexInversion, OfWhatIsOutOfRangeIsUndecidable) {
   const double infinity = std::numeric_limits<double>::infinity();
-  const Flattening undecidable{0.0, FlatteningKind::undecidable};
+  const SimplexInversion undecidable{0.0, InversionKind::undecidable};
   for (const double bad : {std::nan(""), infinity, -infinity, 0x1p+400}) {
     for (unsigned place = 0; place < 24; ++place) {
       Motion m{unit, unit};
       Vec3& p = (place < 12 ? m.before : m.after)[place % 4];
       (place / 4 % 3 == 0 ? p.x : place / 4 % 3 == 1 ? p.y : p.z) = bad;
-      EXPECT_EQ(find_flattening(m.before, m.after), undecidable) << "place " << place << ", " << bad;
-      EXPECT_EQ(find_flattening(m.before, m.after, 0.25), undecidable);
+      EXPECT_EQ(find_inversion(m.before, m.after), undecidable) << "place " << place << ", " << bad;
+      EXPECT_EQ(find_inversion(m.before, m.after, 0.25), undecidable);
     }
   }
 }

@@ -20,8 +20,8 @@
 namespace dartcast::interior_test {
 
 // Every fan triangle of a sewn face has the same vertices from both sides; and the map is whole.
-void expect_conforming(const Complex& complex) {
-  const Map& map = complex.map();
+void expect_conforming(const CellComplex& complex) {
+  const CombinatorialMap& map = complex.map();
   EXPECT_TRUE(check_integrity(map).empty());
   for (const Cell c : map.cells()) {
     const CellView v = map.view(c);
@@ -42,7 +42,7 @@ void expect_conforming(const Complex& complex) {
 }
 
 // Sum of all simplices' volumes, times 6.
-double volume6(const Complex& complex) {
+double volume6(const CellComplex& complex) {
   double sum = 0;
   for (const Cell c : complex.map().cells()) {
     for (std::uint16_t s = 0; s < complex.map().shape(c).simplices().size(); ++s) {
@@ -150,26 +150,26 @@ class Octree {
 };
 
 void expect_valid_and_whole(const MeshData& mesh, double volume) {
-  const Complex complex(mesh);
+  const CellComplex complex(mesh);
   for (const InvalidCell& c : complex.invalid_cells()) ADD_FAILURE() << c.message;
   EXPECT_TRUE(check_validity(complex).valid());
   expect_conforming(complex);
   EXPECT_NEAR(volume6(complex), 6.0 * volume, 1e-9 * volume);
 }
 
-TEST(InteriorPoints, ACubeBesideSmallOnes) {
+TEST(SteinerPoints, ACubeBesideSmallOnes) {
   const Octree octree({2, 1, 1}, {false, true});
   ASSERT_EQ(octree.mesh.cell_count(), 9U);
   ASSERT_EQ(octree.mesh.cell(0)[0], 9U);  // five squares and four quarters
   MeshData mesh = octree.mesh;
-  EXPECT_TRUE(inspect(mesh).valid());
+  EXPECT_TRUE(check_and_repair(mesh).valid());
   Random random(2);
   for (int i = 0; i < 60; ++i) {
     expect_valid_and_whole(test::renumbered(mesh, test::permutation(mesh.points.size(), random)), 16.0);
   }
 }
 
-TEST(InteriorPoints, RandomOctreesInRandomNumberings) {
+TEST(SteinerPoints, RandomOctreesInRandomNumberings) {
   Random random(3);
   for (int i = 0; i < 40; ++i) {
     std::vector<bool> cut(3 * 3 * 2);
@@ -180,10 +180,10 @@ TEST(InteriorPoints, RandomOctreesInRandomNumberings) {
   }
 }
 
-TEST(InteriorPoints, MoveWithTheirCorners) {
+TEST(SteinerPoints, MoveWithTheirCorners) {
   const Octree octree({2, 2, 1}, {false, true, false, false});
-  Complex complex(octree.mesh);
-  ASSERT_GT(complex.interior_point_count(), 0U);
+  CellComplex complex(octree.mesh);
+  ASSERT_GT(complex.steiner_point_count(), 0U);
   const auto at_first = std::vector<Vec3>(complex.positions().begin(), complex.positions().end());
   Random random(4);
   for (int step = 1; step <= 20; ++step) {
@@ -211,9 +211,9 @@ TEST(InteriorPoints, MoveWithTheirCorners) {
   }
 }
 
-TEST(InteriorPoints, PreviousPositionsAreThoseOfTheLastMove) {
+TEST(SteinerPoints, PreviousPositionsAreThoseOfTheLastMove) {
   const Octree octree({2, 1, 1}, {false, true});
-  Complex complex(octree.mesh);
+  CellComplex complex(octree.mesh);
   EXPECT_EQ(complex.previous_positions().data(), complex.positions().data());
   const std::vector<Vec3> before(complex.positions().begin(), complex.positions().end());
   const auto next = complex.next_positions();
@@ -274,17 +274,17 @@ MeshData warped_cube(std::uint64_t seed, double most) {
   return mesh;
 }
 
-TEST(InteriorPoints, WarpedHexahedraWithAKernelGetThem) {
+TEST(SteinerPoints, WarpedHexahedraWithAKernelGetThem) {
   for (const double most : {0.4, 0.55}) {
     int plain = 0, bad = 0, with_kernel = 0, with_kernel_mended = 0, mended = 0;
     for (std::uint64_t seed = 1; seed <= 1500; seed += test::sanitized() ? 3 : 1) {
       const MeshData mesh = warped_cube(seed, most);
-      const Complex complex(mesh);
+      const CellComplex complex(mesh);
       const bool valid = complex.invalid_cells().empty();
       EXPECT_EQ(check_validity(complex).valid(), valid);
       if (test::count_not_positive(mesh, mesh.points) == 0) {
         ++plain;
-        EXPECT_EQ(complex.interior_point_count(), 0U);
+        EXPECT_EQ(complex.steiner_point_count(), 0U);
         EXPECT_TRUE(valid);
         continue;
       }
@@ -305,7 +305,7 @@ TEST(InteriorPoints, WarpedHexahedraWithAKernelGetThem) {
   }
 }
 
-TEST(InteriorPoints, WarpedMeshesStayConforming) {
+TEST(SteinerPoints, WarpedMeshesStayConforming) {
   for (int which = 0; which < 5; ++which) {
     BoxOptions o;
     o.cells = {5, 4, 4};
@@ -315,7 +315,7 @@ TEST(InteriorPoints, WarpedMeshesStayConforming) {
     if (which < 4) o.type = static_cast<CellType>(which);
     o.mixed = which == 4;
     const MeshData mesh = generate_box(o);
-    const Complex complex(mesh);
+    const CellComplex complex(mesh);
     expect_conforming(complex);
     EXPECT_NEAR(volume6(complex), 6.0 * 5 * 4 * 4, 1e-9);
     EXPECT_EQ(complex.invalid_cells().size(), check_validity(complex, {}, 0).invalid_count);
@@ -323,7 +323,7 @@ TEST(InteriorPoints, WarpedMeshesStayConforming) {
   }
 }
 
-TEST(InteriorPoints, AHopelessCellIsReported) {
+TEST(SteinerPoints, AHopelessCellIsReported) {
   BoxOptions o;
   o.cells = {3, 1, 1};
   o.size = {3, 1, 1};
@@ -332,22 +332,22 @@ TEST(InteriorPoints, AHopelessCellIsReported) {
   // The far end of the last cube turned by a half turn: a bow tie.
   std::swap(mesh.points[3], mesh.points[15]);
   std::swap(mesh.points[7], mesh.points[11]);
-  const Complex complex(mesh);
+  const CellComplex complex(mesh);
   ASSERT_EQ(complex.invalid_cells().size(), 1U);
   EXPECT_EQ(complex.map().source(complex.invalid_cells()[0].cell), 300U);
   EXPECT_NE(complex.invalid_cells()[0].message.find("cell 300"), std::string::npos);
 }
 
-TEST(InteriorPoints, ScaleWithTheMesh) {
+TEST(SteinerPoints, ScaleWithTheMesh) {
   int with_points = 0;
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     const MeshData mesh = warped_cube(seed, 0.6);
-    const Complex original(mesh);
-    with_points += original.interior_point_count() > 0 && original.invalid_cells().empty() ? 1 : 0;
+    const CellComplex original(mesh);
+    with_points += original.steiner_point_count() > 0 && original.invalid_cells().empty() ? 1 : 0;
     for (const int k : {-280, 280}) {
       MeshData scaled = mesh;
       for (Vec3& p : scaled.points) p *= std::ldexp(1.0, k);
-      const Complex complex(scaled);
+      const CellComplex complex(scaled);
       ASSERT_EQ(complex.invalid_cells().size(), original.invalid_cells().size()) << "seed " << seed << ", 2^" << k;
       ASSERT_EQ(complex.positions().size(), original.positions().size()) << "seed " << seed << ", 2^" << k;
     }

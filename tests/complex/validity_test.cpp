@@ -27,7 +27,7 @@ MeshData box(int which) {
   return generate_box(o);
 }
 
-std::set<std::uint32_t> sources(const Map& map, const Validity& validity) {
+std::set<std::uint32_t> sources(const CombinatorialMap& map, const Validity& validity) {
   std::set<std::uint32_t> cells;
   for (const InvalidCell& c : validity.first) cells.insert(map.source(c.cell));
   return cells;
@@ -50,9 +50,9 @@ TEST(Validity, FindsExactlyTheSpoiltCells) {
   constexpr std::size_t all = 100000;
   for (int which = 0; which < 5; ++which) {
     const MeshData mesh = box(which);
-    const Complex complex(mesh);
-    ASSERT_EQ(complex.interior_point_count(), 0U);
-    const Map& map = complex.map();
+    const CellComplex complex(mesh);
+    ASSERT_EQ(complex.steiner_point_count(), 0U);
+    const CombinatorialMap& map = complex.map();
     std::vector<Vec3> points = mesh.points;
     EXPECT_TRUE(check_validity(map, points, {}, all).valid());
     Random random(5);
@@ -81,7 +81,7 @@ TEST(Validity, MessagesNameCellAndKind) {
   MeshData mesh = box(0);
   mesh.source.resize(mesh.cell_count());
   for (std::uint32_t c = 0; c < mesh.cell_count(); ++c) mesh.source[c] = c + 5000;
-  const Complex complex(mesh);
+  const CellComplex complex(mesh);
   const auto text = [&](const Vec3& p) {
     std::vector<Vec3> points = mesh.points;
     points[mesh.cell(0)[0]] = p;
@@ -100,7 +100,7 @@ TEST(Validity, SameResultForAnyNumberOfThreadsAndAtMostSoMany) {
   o.cells = {24, 24, 24};
   o.jitter = 0.9;
   const MeshData mesh = generate_box(o);
-  const Map map(mesh);
+  const CombinatorialMap map(mesh);
   const Validity one = check_validity(map, mesh.points, Threads{1}, 50);
   ASSERT_GT(one.invalid_count, 50U);
   EXPECT_EQ(one.first.size(), 50U);
@@ -123,24 +123,24 @@ TEST(Validity, SameResultForAnyNumberOfThreadsAndAtMostSoMany) {
 // Places of cells that edits have taken away hold nothing to check: in pools of standard types, and in the general one.
 TEST(Validity, PassesOverVacantPlaces) {
   const MeshData mesh = box(1);
-  Map map(mesh);
+  CombinatorialMap map(mesh);
   Transaction t(map);
   const Cell last(1, static_cast<std::uint32_t>(map.slot_count(1) - 1));
   const auto split = split_face(t, {last, 0}, {last, 2});
   t.commit();
-  ASSERT_GT(map.cell_count(Map::general_pool), 0U);
+  ASSERT_GT(map.cell_count(CombinatorialMap::general_pool), 0U);
   remove(t, split.front());
   remove(t, Cell(1, 0));
   t.commit();
-  ASSERT_LT(map.cell_count(Map::general_pool), map.slot_count(Map::general_pool));
+  ASSERT_LT(map.cell_count(CombinatorialMap::general_pool), map.slot_count(CombinatorialMap::general_pool));
   ASSERT_LT(map.cell_count(1), map.slot_count(1));
   std::vector<Vec3> points = mesh.points;
   EXPECT_EQ(check_validity(map, points, Threads{1}, 10).cells_checked, map.cell_count());
   // What vacant places hold is not looked at: the general cells are flat on purpose, by their split faces.
   for (const InvalidCell& c : check_validity(map, points, Threads{1}, 10).first)
-    EXPECT_EQ(c.cell.pool(), Map::general_pool);
-  const auto flattening = first_flattening(map, points, points, Threads{1});
-  EXPECT_TRUE(!flattening || map.contains(flattening->simplex.cell));
+    EXPECT_EQ(c.cell.pool(), CombinatorialMap::general_pool);
+  const auto inversion = first_inversion(map, points, points, Threads{1});
+  EXPECT_TRUE(!inversion || map.contains(inversion->simplex.cell));
 }
 
 }  // namespace dartcast::validity_test

@@ -130,7 +130,7 @@ TEST(Collider, FindsAndSolvesWhatAllPairsSay) {
       EXPECT_EQ(found, velocities);
       EXPECT_EQ(moved, displacements);
       // What it keeps in memory is not taken for this step's.
-      collider.solver().set_kept({});
+      collider.solver().set_cached_impulses({});
       found = cloud.velocities;
       const CollisionCounts again =
           collider.collide(cloud.environment.complex(),
@@ -190,7 +190,7 @@ TEST(Collider, IsTheSameForAnyOrderAndThreads) {
       std::vector<std::size_t> order(count);
       std::iota(order.begin(), order.end(), std::size_t{0});
       if (turned) std::reverse(order.begin(), order.end());
-      std::vector<State> states;
+      std::vector<ParticleState> states;
       std::vector<std::uint64_t> ids;
       std::vector<double> radii;
       std::vector<double> inverse;

@@ -35,26 +35,27 @@ struct OneByOne {
   }
   void start() {
     for (std::size_t i = 0; i < ends.size(); ++i) {
-      if (terms[i].along > 0.0) apply(i, terms[i].normal * terms[i].along + terms[i].across, bodies);
+      if (terms[i].normal_impulse > 0.0)
+        apply(i, terms[i].normal * terms[i].normal_impulse + terms[i].tangent_impulse, bodies);
     }
   }
   void solve(std::size_t i) {
     ContactTerms& t = terms[i];
     const Vec3 relative = bodies[ends[i].b].velocity - bodies[ends[i].a].velocity;
     const double nearing = dot(relative, t.normal);
-    const double along = std::max(0.0, t.along - t.mass * (nearing - t.bound));
-    if (along == 0.0 && t.along == 0.0) return;
-    Vec3 across = t.across - (relative - t.normal * nearing) * t.mass;
-    const double most = t.friction * along;
-    const double square = dot(across, across);
-    if (square > most * most) across *= most / std::sqrt(square);
-    apply(i, (across - t.across) + t.normal * (along - t.along), bodies);
-    t.along = along;
-    t.across = across;
+    const double normal_impulse = std::max(0.0, t.normal_impulse - t.mass * (nearing - t.bound));
+    if (normal_impulse == 0.0 && t.normal_impulse == 0.0) return;
+    Vec3 tangent_impulse = t.tangent_impulse - (relative - t.normal * nearing) * t.mass;
+    const double most = t.friction * normal_impulse;
+    const double square = dot(tangent_impulse, tangent_impulse);
+    if (square > most * most) tangent_impulse *= most / std::sqrt(square);
+    apply(i, (tangent_impulse - t.tangent_impulse) + t.normal * (normal_impulse - t.normal_impulse), bodies);
+    t.normal_impulse = normal_impulse;
+    t.tangent_impulse = tangent_impulse;
   }
-  void push(std::size_t i, std::vector<ContactBody>& to) {
+  void position_correction(std::size_t i, std::vector<ContactBody>& to) {
     const double nearing = dot(to[ends[i].b].velocity - to[ends[i].a].velocity, terms[i].normal);
-    const double after = std::max(0.0, pushes[i] - terms[i].mass * (nearing - terms[i].push_bound));
+    const double after = std::max(0.0, pushes[i] - terms[i].mass * (nearing - terms[i].position_bound));
     apply(i, terms[i].normal * (after - pushes[i]), to);
     pushes[i] = after;
   }
@@ -66,7 +67,7 @@ struct OneByOne {
   }
   void rebound() {
     for (ContactTerms& t : terms) {
-      if (t.rebound > 0.0 && t.along > 0.0) t.bound = t.rebound;
+      if (t.rebound > 0.0 && t.normal_impulse > 0.0) t.bound = t.rebound;
     }
   }
 };
@@ -90,12 +91,12 @@ OneByOne random_contacts(Random& random, std::uint32_t body_count, std::size_t c
     t.mass = 1.0 / inverse;
     t.friction = random.below(3) == 0 ? 0.0 : random.uniform(0.0, 1.0);
     t.bound = random.below(2) == 0 ? 0.0 : random.uniform(-0.5, 0.0);
-    t.push_bound = random.uniform(-0.5, 0.5);
+    t.position_bound = random.uniform(-0.5, 0.5);
     t.rebound = random.below(3) == 0 ? random.uniform(0.1, 1.0) : 0.0;
     const bool loaded = random.below(2) == 0;
     if (loaded) {
-      t.along = random.uniform(0.0, 0.2);
-      t.across = cross(t.normal, random_part(random, 1.0)) * (t.friction * t.along / 2.0);
+      t.normal_impulse = random.uniform(0.0, 0.2);
+      t.tangent_impulse = cross(t.normal, random_part(random, 1.0)) * (t.friction * t.normal_impulse / 2.0);
     }
     all.ends.push_back({a, b, loaded});
     all.terms.push_back(t);
@@ -108,8 +109,8 @@ void expect_same(const ContactPackets& packets, const OneByOne& truth, const std
                  const char* when) {
   for (std::size_t i = 0; i < bodies.size(); ++i) ASSERT_EQ(bodies[i].velocity, truth.bodies[i].velocity) << when << i;
   for (std::size_t i = 0; i < truth.ends.size(); ++i) {
-    ASSERT_EQ(packets.along(i), truth.terms[i].along) << when << i;
-    ASSERT_EQ(packets.across(i), truth.terms[i].across) << when << i;
+    ASSERT_EQ(packets.normal_impulse(i), truth.terms[i].normal_impulse) << when << i;
+    ASSERT_EQ(packets.tangent_impulse(i), truth.terms[i].tangent_impulse) << when << i;
   }
 }
 
@@ -125,15 +126,15 @@ void compare(OneByOne truth, InstructionSet set, unsigned iterations) {
   expect_same(packets, truth, bodies, "solve ");
   std::vector<ContactBody> pushed = bodies;
   std::vector<ContactBody> truly_pushed = bodies;
-  packets.push(pushed, iterations, set);
-  truth.sweep(iterations, [&](std::size_t i) { truth.push(i, truly_pushed); });
+  packets.position_correction(pushed, iterations, set);
+  truth.sweep(iterations, [&](std::size_t i) { truth.position_correction(i, truly_pushed); });
   for (std::size_t i = 0; i < bodies.size(); ++i) ASSERT_EQ(pushed[i].velocity, truly_pushed[i].velocity) << i;
   const bool any = std::any_of(truth.terms.begin(), truth.terms.end(),
-                               [](const ContactTerms& t) { return t.rebound > 0.0 && t.along > 0.0; });
+                               [](const ContactTerms& t) { return t.rebound > 0.0 && t.normal_impulse > 0.0; });
   EXPECT_EQ(packets.rebound(), any);
   truth.rebound();
   for (std::size_t i = 0; i < truth.ends.size(); ++i)
-    ASSERT_EQ(packets.rebounds(i), truth.terms[i].rebound > 0.0 && truth.terms[i].along > 0.0);
+    ASSERT_EQ(packets.rebounds(i), truth.terms[i].rebound > 0.0 && truth.terms[i].normal_impulse > 0.0);
   packets.solve(bodies, iterations, set);
   truth.sweep(iterations, [&](std::size_t i) { truth.solve(i); });
   expect_same(packets, truth, bodies, "rebound ");

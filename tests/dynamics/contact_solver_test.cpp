@@ -176,16 +176,16 @@ TEST(ContactSolver, GapsAreUsedUp) {
   crowd.step();
   EXPECT_DOUBLE_EQ(crowd.positions[0].x, 0.125);
   EXPECT_DOUBLE_EQ(crowd.positions[1].x, 1.125);
-  Crowd passing;
-  passing.options.dt = 1.0;
-  passing.options.restitution = 1.0;
-  passing.add({0, 0, 0}, {4, 0, 0}, 0.5, 1.0);
-  passing.add({2, 1.0001, 0}, {0, 0, 0}, 0.5, 1.0);
+  Crowd hit;
+  hit.options.dt = 1.0;
+  hit.options.restitution = 1.0;
+  hit.add({0, 0, 0}, {4, 0, 0}, 0.5, 1.0);
+  hit.add({2, 1.0001, 0}, {0, 0, 0}, 0.5, 1.0);
   std::vector<SphereMotion> spheres = {{{0, 0, 0}, {4, 0, 0}, 0.5}, {{2, 1.0001, 0}, {}, 0.5}};
   const Approach near = approach(spheres[0], spheres[1]);
-  passing.step(std::vector<PairContact>{{0, 1, near.normal, near.gap}});
-  EXPECT_EQ(passing.positions[0], (Vec3{4, 0, 0}));
-  EXPECT_EQ(passing.velocities[1], (Vec3{}));
+  hit.step(std::vector<PairContact>{{0, 1, near.normal, near.gap}});
+  EXPECT_EQ(hit.positions[0], (Vec3{4, 0, 0}));
+  EXPECT_EQ(hit.velocities[1], (Vec3{}));
 }
 
 // On a plane tilted by an angle: below the friction angle it sticks, above it slides with g (sin - mu cos).
@@ -271,8 +271,8 @@ TEST(ContactSolver, OrderDoesNotMatter) {
       EXPECT_EQ(first.positions[i], second.positions[place[i]]);
       EXPECT_EQ(first.velocities[i], second.velocities[place[i]]);
     }
-    EXPECT_TRUE(std::equal(first.solver.kept().begin(), first.solver.kept().end(), second.solver.kept().begin(),
-                           second.solver.kept().end()));
+    EXPECT_TRUE(std::equal(first.solver.cached_impulses().begin(), first.solver.cached_impulses().end(),
+                           second.solver.cached_impulses().begin(), second.solver.cached_impulses().end()));
   }
   EXPECT_EQ(first.velocities[5], fixed);
 }
@@ -291,8 +291,9 @@ TEST(ContactSolver, WarmStartCarriesAStack) {
       std::vector<PairContact> contacts;
       for (std::uint32_t i = 0; i + 1 < 20; ++i)
         contacts.push_back({i, i + 1, {0, 0, 1}, crowd.positions[i + 1].z - crowd.positions[i].z - 1.0});
-      const std::vector<KeptImpulse> kept(crowd.solver.kept().begin(), crowd.solver.kept().end());
-      crowd.solver.set_kept(keep ? std::span<const KeptImpulse>(kept) : std::span<const KeptImpulse>());
+      const std::vector<CachedImpulse> kept(crowd.solver.cached_impulses().begin(),
+                                            crowd.solver.cached_impulses().end());
+      crowd.solver.set_cached_impulses(keep ? std::span<const CachedImpulse>(kept) : std::span<const CachedImpulse>());
       crowd.step(contacts);
     }
     return crowd.energy();
@@ -315,7 +316,7 @@ TEST(ContactSolver, RefusesWhatIsOutOfRange) {
   refuses([](Crowd& c, auto&) { c.options.dt = 0.0; });
   refuses([](Crowd& c, auto&) { c.options.restitution = 1.5; });
   refuses([](Crowd& c, auto&) { c.options.friction = -1.0; });
-  refuses([](Crowd& c, auto&) { c.options.push = std::nan(""); });
+  refuses([](Crowd& c, auto&) { c.options.position_correction = std::nan(""); });
   refuses([](Crowd& c, auto&) { c.options.resting_speed = -1.0; });
   refuses([](Crowd& c, auto&) { c.ids.pop_back(); });
   refuses([](Crowd&, auto& pairs) { pairs[0].b = 2; });

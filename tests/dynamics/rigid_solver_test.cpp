@@ -46,8 +46,8 @@ Lump lump(Draw& draw) {
   }
   std::vector<Vec3> velocities;
   const Vec3 common = draw.vector();
-  const Vec3 spin = draw.vector(3.0);
-  for (const Vec3& x : l.points) velocities.push_back(common + cross(spin, x));
+  const Vec3 angular_velocity = draw.vector(3.0);
+  for (const Vec3& x : l.points) velocities.push_back(common + cross(angular_velocity, x));
   const RigidMotion m = rigid_motion(l.masses, l.points, velocities);
   l.mass = m.mass;
   l.mover.inverse_mass = 1.0 / m.mass;
@@ -55,7 +55,7 @@ Lump lump(Draw& draw) {
   l.mover.inverse_inertia = inverse_inertia(l.masses, l.points, m.centre);
   l.mover.centre = m.centre;
   l.mover.velocity = m.velocity;
-  l.mover.spin = m.spin;
+  l.mover.angular_velocity = m.angular_velocity;
   return l;
 }
 
@@ -108,7 +108,7 @@ TEST(RigidSolver, OneContactIsAsNewtonsLaw) {
     RigidSolver().solve(std::span(&c, 1), movers, options());
     if (before >= 0.0) {
       EXPECT_EQ(movers[0].velocity, a.mover.velocity);
-      EXPECT_EQ(movers[1].spin, b.mover.spin);
+      EXPECT_EQ(movers[1].angular_velocity, b.mover.angular_velocity);
       continue;
     }
     ++hit;
@@ -142,19 +142,20 @@ TEST(RigidSolver, FrictionIsCoulombs) {
     o.iterations = 2000;
     RigidSolver().solve(std::span(&c, 1), movers, o);
     const Vec3 impulse = (movers[1].velocity - b.mover.velocity) * b.mass;
-    const double along = dot(impulse, c.normal);
-    if (along < 1e-3) continue;
-    const Vec3 across = impulse - c.normal * along;
+    const double normal_impulse = dot(impulse, c.normal);
+    if (normal_impulse < 1e-3) continue;
+    const Vec3 tangent_impulse = impulse - c.normal * normal_impulse;
     const Vec3 left = movers[1].velocity_at(c.point_b) - movers[0].velocity_at(c.point_a);
     ASSERT_NEAR(dot(left, c.normal), 0.0, 1e-9);
-    ASSERT_LE(norm(across), c.friction * along * (1.0 + 1e-9));
+    ASSERT_LE(norm(tangent_impulse), c.friction * normal_impulse * (1.0 + 1e-9));
     if (norm(left) < 1e-6) {
       ++sticks;
       continue;
     }
     ++slips;
-    ASSERT_NEAR(norm(across), c.friction * along, 1e-6 * along);
-    ASSERT_NEAR(dot(across, left), -norm(across) * norm(left), 1e-6 * norm(across) * norm(left));
+    ASSERT_NEAR(norm(tangent_impulse), c.friction * normal_impulse, 1e-6 * normal_impulse);
+    ASSERT_NEAR(dot(tangent_impulse, left), -norm(tangent_impulse) * norm(left),
+                1e-6 * norm(tangent_impulse) * norm(left));
   }
   EXPECT_GT(sticks, 30);
   EXPECT_GT(slips, 30);
@@ -218,10 +219,10 @@ TEST(RigidSolver, SpheresAreAsInTheContactSolver) {
     solver.solve(contacts, movers, o);
     EXPECT_EQ(solver.loaded_pairs(), expected.loaded_pairs());
     EXPECT_EQ(solver.loaded_walls(), expected.loaded_walls());
-    ASSERT_EQ(solver.kept().size(), expected.kept().size());
+    ASSERT_EQ(solver.cached_impulses().size(), expected.cached_impulses().size());
     for (std::size_t i = 0; i < count; ++i) {
       ASSERT_LE(norm(movers[i].velocity - velocities[i]), 1e-12) << step;
-      ASSERT_LE(norm(movers[i].shift - displacements[i]), 1e-14) << step;
+      ASSERT_LE(norm(movers[i].position_delta - displacements[i]), 1e-14) << step;
       velocities[i] += Vec3{0.0, 0.0, -0.3};
       movers[i].velocity = velocities[i];
     }
@@ -253,18 +254,18 @@ TEST(RigidSolver, OrderDoesNotMatterAndKeptImpulsesGoOn) {
   for (int step = 0; step < 3; ++step) {
     one.solve(contacts, movers, options());
     other.solve(reversed, again, options());
-    ASSERT_FALSE(one.kept().empty());
+    ASSERT_FALSE(one.cached_impulses().empty());
     for (std::size_t i = 0; i < movers.size(); ++i) {
       ASSERT_EQ(movers[i].velocity, again[i].velocity);
-      ASSERT_EQ(movers[i].spin, again[i].spin);
-      ASSERT_EQ(movers[i].shift, again[i].shift);
-      ASSERT_EQ(movers[i].turned, again[i].turned);
+      ASSERT_EQ(movers[i].angular_velocity, again[i].angular_velocity);
+      ASSERT_EQ(movers[i].position_delta, again[i].position_delta);
+      ASSERT_EQ(movers[i].rotation_delta, again[i].rotation_delta);
       movers[i].velocity += Vec3{0.0, 0.0, -0.1};
       again[i].velocity = movers[i].velocity;
     }
-    const std::vector<KeptImpulse> kept(one.kept().begin(), one.kept().end());
+    const std::vector<CachedImpulse> kept(one.cached_impulses().begin(), one.cached_impulses().end());
     other = RigidSolver();
-    other.set_kept(kept);
+    other.set_cached_impulses(kept);
   }
 }
 
@@ -275,13 +276,15 @@ TEST(RigidSolver, PushesDoNotChangeVelocities) {
     const Lump a = lump(draw);
     const Lump b = lump(draw);
     std::vector<RigidMover> movers = {a.mover, b.mover};
-    for (RigidMover& m : movers) m.velocity = m.spin = {};
+    for (RigidMover& m : movers) m.velocity = m.angular_velocity = {};
     RigidContact c = touch(draw.direction(), draw.vector());
     c.gap = -0.1;
     RigidSolver().solve(std::span(&c, 1), movers, options());
     EXPECT_EQ(movers[0].velocity, Vec3{});
-    EXPECT_EQ(movers[1].spin, Vec3{});
-    const auto moved = [&](const RigidMover& m) { return m.shift + cross(m.turned, c.point_a - m.centre); };
+    EXPECT_EQ(movers[1].angular_velocity, Vec3{});
+    const auto moved = [&](const RigidMover& m) {
+      return m.position_delta + cross(m.rotation_delta, c.point_a - m.centre);
+    };
     EXPECT_NEAR(dot(moved(movers[1]) - moved(movers[0]), c.normal), 0.02, 1e-12);
   }
 }

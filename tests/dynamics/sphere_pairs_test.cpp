@@ -39,7 +39,7 @@ struct Crowd {
     for (std::size_t i = 0; i < count; ++i) {
       places.push_back({random.uniform(low.x, high.x), random.uniform(low.y, high.y), random.uniform(low.z, high.z)});
     }
-    for (const Added& a : environment.add(particles, places)) {
+    for (const AddResult& a : environment.add(particles, places)) {
       if (a.particle == 0xffffffffU) continue;
       spheres.push_back(sphere(random));
       spheres.back().centre = particles[a.particle].position;
@@ -160,7 +160,7 @@ TEST(SpherePairs, SeparatedByAWallFarAway) {
   EXPECT_TRUE(separated(environment.complex(), particles[0], particles[1]));
   EXPECT_TRUE(separated(environment.complex(), particles[1], particles[0]));
   EXPECT_FALSE(separated(environment.complex(), particles[0], particles[2]));
-  State held = particles[0];
+  ParticleState held = particles[0];
   held.held = true;
   EXPECT_FALSE(separated(environment.complex(), held, particles[1]));
   EXPECT_FALSE(separated(environment.complex(), particles[1], held));
@@ -245,7 +245,7 @@ TEST(CellLists, FollowMotionEditsAndRemovals) {
       });
       EXPECT_EQ(in_cell.size(), crowd.lists.count(c));
       listed += in_cell.size();
-      crowded += in_cell.size() > CellLists::few ? 1 : 0;
+      crowded += in_cell.size() > CellLists::short_list ? 1 : 0;
     }
     EXPECT_EQ(listed, crowd.particles.size());
     EXPECT_EQ(crowd.lists.crowded(), crowded);
@@ -254,7 +254,7 @@ TEST(CellLists, FollowMotionEditsAndRemovals) {
   EXPECT_EQ(crowd.lists.crossed(), 0U);
   for (int step = 0; step < 5; ++step) {
     std::vector<Vec3> targets;
-    for (const State& s : crowd.particles.states())
+    for (const ParticleState& s : crowd.particles.states())
       targets.push_back(s.position + Vec3{random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), 0.1});
     crowd.environment.advance(crowd.particles, targets);
     expect_right();
@@ -266,11 +266,11 @@ TEST(CellLists, FollowMotionEditsAndRemovals) {
   crowd.particles.remove(marks);
   expect_right();
   crowd.environment.edit([&](ComplexEdit& e) {
-    const Map& map = e.topology().map();
+    const CombinatorialMap& map = e.topology().map();
     split_edge(e.topology(), {crowd.particles[0].cell, 0});
     EXPECT_TRUE(map.cell_count() > 0);
   });
-  crowd.environment.follow(crowd.particles);
+  crowd.environment.update_after_edit(crowd.particles);
   expect_right();
   Particles none;
   crowd.lists.update(crowd.environment.map(), none.states());

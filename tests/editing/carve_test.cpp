@@ -19,11 +19,11 @@ using test::volume6;
 
 class Carvings : public testing::TestWithParam<MeshKind> {
  protected:
-  static Complex box(std::array<std::uint32_t, 3> cells) {
-    return Complex(test::blocked_box(cells, GetParam().type, GetParam().mixed));
+  static CellComplex box(std::array<std::uint32_t, 3> cells) {
+    return CellComplex(test::blocked_box(cells, GetParam().type, GetParam().mixed));
   }
 };
-INSTANTIATE_TEST_SUITE_P(Surgery, Carvings,
+INSTANTIATE_TEST_SUITE_P(EventScheduler, Carvings,
                          testing::Values(MeshKind{"hexahedra", CellType::hexahedron, false},
                                          MeshKind{"tetrahedra", CellType::tetrahedron, false},
                                          MeshKind{"prisms", CellType::prism, false},
@@ -31,14 +31,14 @@ INSTANTIATE_TEST_SUITE_P(Surgery, Carvings,
                                          MeshKind{"mixed", CellType::hexahedron, true}),
                          [](const auto& i) { return std::string(i.param.name); });
 
-std::size_t count_free(const Map& map) {
+std::size_t count_free(const CombinatorialMap& map) {
   const std::vector<Cell> cells = map.cells();
   return static_cast<std::size_t>(std::count_if(cells.begin(), cells.end(), [&](Cell c) { return map.is_free(c); }));
 }
 
 TEST_P(Carvings, ALayerHasItsAreaTimesItsWidth) {
   for (const auto& [height, width] : {std::pair{1.5, 0.25}, std::pair{1.25, 1.0}, std::pair{2.0, 0.125}}) {
-    Complex complex = box({4, 3, 3});
+    CellComplex complex = box({4, 3, 3});
     const Plane plane = plane_through({0, 0, height}, {0, 0, 1});
     const auto tools = thicken(plane, width);
     ComplexEdit edit(complex);
@@ -56,7 +56,7 @@ TEST_P(Carvings, ALayerHasItsAreaTimesItsWidth) {
 
 TEST_P(Carvings, ABoxInsideCells) {
   for (const Carving what : {Carving::open, Carving::remove}) {
-    Complex complex = box({4, 4, 4});
+    CellComplex complex = box({4, 4, 4});
     const ConvexTool tools[] = {box_tool({0.75, 1.25, 1.5}, {2.5, 2.75, 2.25})};
     ComplexEdit edit(complex);
     Carved carved = carve(edit, cells_near(complex, tools), tools, what);
@@ -81,7 +81,7 @@ TEST_P(Carvings, ADiscEndsInsideCells) {
   Random random(3);
   for (int i = 0; i < std::max(1, test::scaled(2, 60)); ++i) {
     SCOPED_TRACE(i);
-    Complex complex = box({4, 4, 4});
+    CellComplex complex = box({4, 4, 4});
     Disc disc;
     disc.centre = {random.uniform(1.5, 2.5), random.uniform(1.5, 2.5), random.uniform(1.5, 2.5)};
     disc.normal = {random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)};
@@ -91,7 +91,7 @@ TEST_P(Carvings, ADiscEndsInsideCells) {
     const auto tools = thicken(disc, width);
     ComplexEdit edit(complex);
     CarveOptions options;
-    options.snap = i % 2 == 0 ? SectionOptions::least_snap : options.snap;
+    options.snap = i % 2 == 0 ? SectionOptions::min_snap : options.snap;
     Carved carved = cut(edit, cells_near(complex, tools), disc, width, options);
     carved.opened = test::now(edit.commit(), carved.opened);
     test::expect_sound(complex);
@@ -108,7 +108,7 @@ TEST_P(Carvings, CutsThatCross) {
   Random random(4);
   for (int i = 0; i < std::max(1, test::scaled(1, 40)); ++i) {
     SCOPED_TRACE(i);
-    Complex complex = box({3, 3, 3});
+    CellComplex complex = box({3, 3, 3});
     for (int k = 0; k < 3; ++k) {
       const Plane plane =
           plane_through({random.uniform(1.0, 2.0), random.uniform(1.0, 2.0), random.uniform(1.0, 2.0)},
@@ -138,13 +138,13 @@ TEST_P(Carvings, ABallAndACapsule) {
   std::vector<Vec3> ends = {{1.3, 2.4, 2.2}};
   if (GetParam().type == CellType::prism || test::full_tier()) ends.push_back({2.0, 2.1, 1.9});  // a ball
   for (const Vec3& b : ends) {
-    Complex complex = box({4, 4, 4});
+    CellComplex complex = box({4, 4, 4});
     const Vec3 a = {2.0, 2.1, 1.9};
     const double r = 0.8;
     const ConvexTool tools[] = {capsule_tool(a, b, r)};
     ComplexEdit edit(complex);
     const Carved carved =
-        carve(edit, cells_near(complex, tools), tools, Carving::open, {false, SectionOptions::least_snap});
+        carve(edit, cells_near(complex, tools), tools, Carving::open, {false, SectionOptions::min_snap});
     edit.commit();
     test::expect_sound(complex);
     ASSERT_FALSE(HasFatalFailure());
@@ -162,7 +162,7 @@ TEST_P(Carvings, ABallAndACapsule) {
 
 // A path that bends: each part has its area times the width, up to the corners.
 TEST_P(Carvings, ThePathOfABlade) {
-  Complex complex = box({5, 4, 3});
+  CellComplex complex = box({5, 4, 3});
   BladePath path;
   for (const auto& [x, y] : {std::pair{0.7, 1.1}, std::pair{2.2, 1.3}, std::pair{3.1, 2.4}, std::pair{4.3, 2.6}})
     path.places.push_back({Vec3{x, y, 0.8}, Vec3{x, y, 2.3}});
@@ -170,7 +170,7 @@ TEST_P(Carvings, ThePathOfABlade) {
   const auto tools = thicken(path, width);
   EXPECT_EQ(tools.size(), 3U);
   ComplexEdit edit(complex);
-  Carved carved = cut(edit, cells_near(complex, tools), path, width, {false, SectionOptions::least_snap});
+  Carved carved = cut(edit, cells_near(complex, tools), path, width, {false, SectionOptions::min_snap});
   carved.opened = test::now(edit.commit(), carved.opened);
   test::expect_sound(complex);
   ASSERT_FALSE(HasFatalFailure());
@@ -182,7 +182,7 @@ TEST_P(Carvings, ThePathOfABlade) {
 }
 
 TEST_P(Carvings, ABladeThatTwistsAndPivots) {
-  Complex complex = box({5, 4, 4});
+  CellComplex complex = box({5, 4, 4});
   BladePath path;
   path.places = {{Vec3{1.0, 2.0, 0.6}, Vec3{1.1, 2.1, 3.1}},
                  {Vec3{2.0, 2.2, 0.7}, Vec3{2.3, 2.9, 3.2}},
@@ -202,7 +202,7 @@ TEST_P(Carvings, ABladeThatTwistsAndPivots) {
 
 TEST(Carving, TakesWholeCells) {
   for (const Carving what : {Carving::open, Carving::remove}) {
-    Complex complex(test::blocked_box({4, 4, 4}));
+    CellComplex complex(test::blocked_box({4, 4, 4}));
     const ConvexTool tools[] = {box_tool({0.75, 1.25, 1.75}, {2.75, 2.75, 2.25})};
     ComplexEdit edit(complex);
     Carved carved = carve(edit, cells_near(complex, tools), tools, what, {true});
@@ -226,7 +226,7 @@ TEST(Carving, TakesWholeCells) {
 TEST(Carving, SplitsNoFreeCells) {
   MeshData mesh = test::blocked_box({4, 4, 4});
   for (std::size_t c = 0; c < mesh.cell_count(); c += 2) mesh.free[c] = 1;
-  Complex complex(mesh);
+  CellComplex complex(mesh);
   const auto tools = thicken(plane_through({2, 2, 1.4}, {0.1, 0.2, 1.0}), 0.1);
   ComplexEdit edit(complex);
   Carved carved = carve(edit, cells_near(complex, tools), tools, Carving::open);
@@ -236,7 +236,7 @@ TEST(Carving, SplitsNoFreeCells) {
 }
 
 TEST(Carving, FindsCellsNearByWalking) {
-  const Complex complex(test::blocked_box({9, 9, 9}));
+  const CellComplex complex(test::blocked_box({9, 9, 9}));
   const ConvexTool tools[] = {capsule_tool({2.2, 3.1, 4.5}, {6.0, 6.2, 4.1}, 0.7)};
   std::vector<Cell> all = cells_near(complex, tools);
   std::vector<Cell> walked = cells_near(complex, tools, all.front());
@@ -250,7 +250,7 @@ TEST(Carving, FindsCellsNearByWalking) {
 
 TEST(Carving, CostsWhatIsNearTheTool) {
   for (const std::uint32_t n : {6U, 24U}) {
-    Complex complex(test::blocked_box({n, n, n}));
+    CellComplex complex(test::blocked_box({n, n, n}));
     const ConvexTool tools[] = {box_tool({2.25, 2.25, 2.25}, {3.75, 3.75, 3.75})};
     ComplexEdit edit(complex);
     carve(edit, cells_near(complex, tools), tools, Carving::open);
@@ -260,7 +260,7 @@ TEST(Carving, CostsWhatIsNearTheTool) {
 }
 
 TEST(Carving, RefusesWithoutAChange) {
-  Complex complex(test::blocked_box({3, 3, 3}));
+  CellComplex complex(test::blocked_box({3, 3, 3}));
   { ComplexEdit first(complex); }
   const Before before(complex);
   ComplexEdit edit(complex);

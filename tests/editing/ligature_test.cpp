@@ -24,7 +24,7 @@ VesselOptions small_vessel() {
 }
 
 // The free cell at one of the vessel's ends.
-Cell end_of(const Complex& complex, const char* patch) {
+Cell end_of(const CellComplex& complex, const char* patch) {
   const Patch wanted = complex.map().patch(patch);
   for (const Cell c : complex.map().cells()) {
     for (std::uint16_t f = 0; f < complex.map().shape(c).face_count(); ++f) {
@@ -35,7 +35,7 @@ Cell end_of(const Complex& complex, const char* patch) {
 }
 
 TEST(Ligature, SealsAVessel) {
-  Complex complex(generate_vessel(small_vessel()));
+  CellComplex complex(generate_vessel(small_vessel()));
   const Cell inlet = end_of(complex, "inlet");
   const Cell left = end_of(complex, "outlet_left");
   const Cell right = end_of(complex, "outlet_right");
@@ -62,7 +62,7 @@ TEST(Ligature, SealsAVessel) {
 
 // A plane that crosses both branches: only the one at the place is tied.
 TEST(Ligature, TiesOneBranchOfTwo) {
-  Complex complex(generate_vessel(small_vessel()));
+  CellComplex complex(generate_vessel(small_vessel()));
   const Cell inlet = end_of(complex, "inlet");
   const Cell left = end_of(complex, "outlet_left");
   const Cell right = end_of(complex, "outlet_right");
@@ -75,10 +75,10 @@ TEST(Ligature, TiesOneBranchOfTwo) {
 }
 
 class Ligatures : public testing::TestWithParam<test::EditMesh> {};
-INSTANTIATE_TEST_SUITE_P(Surgery, Ligatures, testing::ValuesIn(test::edit_meshes()),
+INSTANTIATE_TEST_SUITE_P(EventScheduler, Ligatures, testing::ValuesIn(test::edit_meshes()),
                          [](const auto& i) { return std::string(i.param.name); });
 
-double height_of(const Complex& complex, const Plane& plane, Cell c, bool highest) {
+double height_of(const CellComplex& complex, const Plane& plane, Cell c, bool highest) {
   const CellView v = complex.map().view(c);
   double h = highest ? -1e300 : 1e300;
   for (std::uint16_t k = 0; k < v.shape().corner_count(); ++k) {
@@ -96,7 +96,7 @@ TEST_P(Ligatures, SealWhereverThePlaneLies) {
     SCOPED_TRACE(i);
     MeshData mesh = GetParam().make();
     mesh.free.clear();
-    Complex complex(mesh);
+    CellComplex complex(mesh);
     const Vec3 x = complex.positions()[random.below(static_cast<std::uint32_t>(complex.positions().size()))];
     const Vec3 normal = i % 2 == 0 ? Vec3{0, 0, 1} : Vec3{random.uniform(-1, 1), random.uniform(-1, 1), 1.0};
     const Plane plane = plane_through(x, normal);
@@ -119,7 +119,7 @@ TEST_P(Ligatures, SealWhereverThePlaneLies) {
 
 TEST(Ligature, DrawsWallsTogether) {
   Environment environment(generate_vessel(small_vessel()));
-  Complex tied(generate_vessel(small_vessel()));
+  CellComplex tied(generate_vessel(small_vessel()));
   const Plane plane = plane_through({0, 0, -12e-3}, {0, 0, 1});
   ComplexEdit edit(tied);
   const std::vector<Cell> section = ligature(edit, plane, Vec3{0, 0, -12e-3});
@@ -136,12 +136,12 @@ TEST(Ligature, DrawsWallsTogether) {
   }
   EXPECT_LT(narrowest, 1.4e-3);
   EXPECT_GT(narrowest, 1.0e-3);
-  EXPECT_EQ(environment.move_until_flattened(positions), 1.0);
+  EXPECT_EQ(environment.move_until_inverted(positions), 1.0);
   EXPECT_TRUE(environment.validity().valid());
 }
 
 TEST(Ligature, RefusesWithoutAChange) {
-  Complex complex(test::blocked_box({3, 3, 3}));
+  CellComplex complex(test::blocked_box({3, 3, 3}));
   { ComplexEdit first(complex); }
   const test::Before before(complex);
   const Plane plane = plane_through({1.5, 1.5, 1.5}, {0, 0, 1});

@@ -41,7 +41,7 @@ std::vector<CellFace> faces_at(ComplexEdit& edit, double z, double within = 1e-9
 }
 
 // The number of parts that all cells fall into.
-std::size_t count_parts(Map map) {
+std::size_t count_parts(CombinatorialMap map) {
   for (const Cell c : map.cells()) map.set_free(c, true);
   return test::count_rooms(map);
 }
@@ -54,7 +54,7 @@ constexpr MeshKind matching[] = {{"hexahedra", CellType::hexahedron, false},
                                  {"tetrahedra", CellType::tetrahedron, false},
                                  {"prisms", CellType::prism, false},
                                  {"pyramids", CellType::pyramid, false}};
-INSTANTIATE_TEST_SUITE_P(Surgery, Reconnecting, testing::ValuesIn(matching),
+INSTANTIATE_TEST_SUITE_P(EventScheduler, Reconnecting, testing::ValuesIn(matching),
                          [](const auto& i) { return std::string(i.param.name); });
 // Cut at random: the faces of two boxes do not match.
 INSTANTIATE_TEST_SUITE_P(Mixed, Reconnecting, testing::Values(MeshKind{"mixed", CellType::hexahedron, true}),
@@ -62,13 +62,13 @@ INSTANTIATE_TEST_SUITE_P(Mixed, Reconnecting, testing::Values(MeshKind{"mixed", 
 
 // Those whose boxes match.
 class ReconnectingAlike : public Reconnecting {};
-INSTANTIATE_TEST_SUITE_P(Surgery, ReconnectingAlike, testing::ValuesIn(matching),
+INSTANTIATE_TEST_SUITE_P(EventScheduler, ReconnectingAlike, testing::ValuesIn(matching),
                          [](const auto& i) { return std::string(i.param.name); });
 
 // Two boxes whose faces match, the second a little off: sewn, with the first one's corners kept.
 TEST_P(ReconnectingAlike, SewsFacesThatLieTogether) {
   for (const double off : {0.0, 0.0625}) {
-    Complex complex(both(box({3, 2, 2}), box({3, 2, 2}), {off, 0, 2.0 + off}));
+    CellComplex complex(both(box({3, 2, 2}), box({3, 2, 2}), {off, 0, 2.0 + off}));
     const std::size_t faces = complex.map().wall_face_count();
     EXPECT_EQ(count_parts(complex.map()), 2U);
     ComplexEdit edit(complex);
@@ -100,7 +100,7 @@ TEST_P(ReconnectingAlike, SewsFacesThatLieTogether) {
 
 // What unsewing took apart.
 TEST_P(Reconnecting, UndoesACutAlongFaces) {
-  Complex complex(box({3, 3, 4}));
+  CellComplex complex(box({3, 3, 4}));
   const Dyadic before = volume6(complex);
   const std::size_t faces = complex.map().wall_face_count();
   ComplexEdit part(complex);
@@ -131,7 +131,7 @@ TEST(Reconnect, FillsBetweenEndsThatDoNotMatch) {
   for (const CellType type : {CellType::tetrahedron, CellType::prism, CellType::hexahedron}) {
     MeshData finer = free_box({4, 4, 2}, type);
     for (Vec3& x : finer.points) x = {x.x * 0.5, x.y * 0.5, x.z};
-    Complex complex(both(free_box({2, 2, 2}), finer, {0, 0, 3.0}));
+    CellComplex complex(both(free_box({2, 2, 2}), finer, {0, 0, 3.0}));
     ComplexEdit edit(complex);
     const Reconnected joined = reconnect(edit, faces_at(edit, 2.0), faces_at(edit, 3.0));
     EXPECT_EQ(joined.how, Reconnection::bridged);
@@ -152,7 +152,7 @@ TEST(Reconnect, FillsBetweenEndsAtAnAngle) {
     const double s = std::sin(0.3);
     x = {1.1 + c * y.x - s * y.y, 0.9 + s * y.x + c * y.y, 0.3 * y.x + y.z};
   }
-  Complex complex(both(free_box({2, 2, 2}), upper, {0, 0, 3.5}));
+  CellComplex complex(both(free_box({2, 2, 2}), upper, {0, 0, 3.5}));
   ComplexEdit edit(complex);
   std::vector<CellFace> b;
   for (const CellFace& f :
@@ -169,7 +169,7 @@ TEST(Reconnect, FillsBetweenEndsAtAnAngle) {
 // The edge that faces the other end is nearest to the wrong one there.
 TEST(Reconnect, MatchesTheWholeEndsNotTheirNearestEdges) {
   for (const Vec3& shift : {Vec3{1.2, 0, 1.3}, Vec3{-1.2, 0, 1.3}, Vec3{0, 1.2, 1.3}, Vec3{0, -1.2, 1.3}}) {
-    Complex complex(both(free_box({1, 1, 1}), free_box({1, 1, 1}), shift));
+    CellComplex complex(both(free_box({1, 1, 1}), free_box({1, 1, 1}), shift));
     ComplexEdit edit(complex);
     EXPECT_EQ(reconnect(edit, faces_at(edit, 1.0), faces_at(edit, 1.3)).how, Reconnection::paired);
     edit.commit();
@@ -213,7 +213,7 @@ class Vessel {
     return generate_vessel(o);
   }
 
-  Complex complex;
+  CellComplex complex;
 
  private:
   Plane low_, high_;
@@ -222,7 +222,7 @@ class Vessel {
 // Within a layer of cells the ends match: the piece is put back, lumen and tissue.
 TEST(Reconnect, ReplacesAPieceOfAVessel) {
   Vessel vessel({{0, 0, 1}, -14.2e-3}, {{0, 0, 1}, -13.7e-3});
-  const Dyadic before = volume6(Complex(Vessel::made()));
+  const Dyadic before = volume6(CellComplex(Vessel::made()));
   const Reconnected joined = vessel.reconnect_ends(false, {1e-6, {}});
   ASSERT_FALSE(testing::Test::HasFatalFailure());
   EXPECT_EQ(joined.how, Reconnection::paired);
@@ -254,7 +254,7 @@ TEST(Reconnect, BridgesTheLumenOfAVessel) {
 
 TEST(Reconnect, GivesNewFacesAtTheSideAPatch) {
   MeshData mesh = both(free_box({1, 1, 1}), free_box({1, 1, 1}), {0, 0, 2.0});
-  Complex complex(mesh);
+  CellComplex complex(mesh);
   ComplexEdit edit(complex);
   const Patch side = edit.map().patch("xmin");
   const Reconnected joined = reconnect(edit, faces_at(edit, 1.0), faces_at(edit, 2.0), {0.1, side});
@@ -276,7 +276,7 @@ TEST(Reconnect, RefusesWithoutAChange) {
   mesh = both(mesh, free_box({3, 1, 1}), {0, 0, 5.0});
   mesh.free.assign(mesh.cell_count(), 1);
   mesh.free[0] = 0;
-  Complex complex(mesh);
+  CellComplex complex(mesh);
   { ComplexEdit first(complex); }
   const test::Before before(complex);
   ComplexEdit edit(complex);

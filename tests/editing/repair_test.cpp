@@ -26,8 +26,8 @@ using test::walls;
 
 // Whether a point is found from which the surface of the cells around some corner of the cell is seen from the inside:
 // by trying.
-bool seen_by_trying(const Complex& complex, Cell c, Random& random) {
-  const Map& map = complex.map();
+bool seen_by_trying(const CellComplex& complex, Cell c, Random& random) {
+  const CombinatorialMap& map = complex.map();
   const auto position = [&](Vertex v) { return complex.positions()[v.value]; };
   const auto corners = map.view(c).vertices().first(map.shape(c).corner_count());
   for (const std::uint32_t v : corners) {
@@ -76,7 +76,7 @@ TEST_P(RepairOn, MendsOneVertexGoneAstray) {
   Random random(3);
   std::size_t repaired = 0;
   for (int i = 0; i < std::max(1, test::scaled(6, 1000)); ++i) {
-    Complex complex(GetParam().make());
+    CellComplex complex(GetParam().make());
     const auto inner = inner_vertices(complex.map());
     ASSERT_FALSE(inner.empty());
     const auto walls_before = walls(complex);
@@ -104,7 +104,7 @@ TEST_P(RepairOn, MendsOrLeaves) {
   std::size_t mended = 0;
   std::size_t left = 0;
   for (int i = 0; i < std::max(1, test::scaled(6, 2000)); ++i) {
-    Complex complex(GetParam().make());
+    CellComplex complex(GetParam().make());
     { ComplexEdit counts(complex); }
     const auto inner = inner_vertices(complex.map());
     std::vector<std::pair<Vertex, Vec3>> moves;
@@ -119,7 +119,7 @@ TEST_P(RepairOn, MendsOrLeaves) {
     const auto walls_before = walls(complex);
     const test::Dyadic free_before = free_volume6(complex);
     const test::Dyadic before = volume6(complex);
-    const Map map_before = complex.map();
+    const CombinatorialMap map_before = complex.map();
     const auto bad = invalid_cells(complex);
     ComplexEdit edit(complex);
     const RepairReport report = repair(edit, bad);
@@ -153,7 +153,7 @@ TEST_P(RepairAmong, MendsNextToSubdivided) {
   std::size_t mended = 0;
   std::size_t left = 0;
   for (int i = 0; i < std::max(1, test::scaled(6, 1000)); ++i) {
-    Complex complex(GetParam().make());
+    CellComplex complex(GetParam().make());
     for (int k = 0; k < 4; ++k) {
       const auto cells = complex.map().cells();
       ComplexEdit edit(complex);
@@ -197,9 +197,9 @@ Vertex grid_vertex(std::uint32_t n, std::uint32_t i, std::uint32_t j, std::uint3
 }
 
 TEST(Repair, PassesOverWhatIsValid) {
-  Complex complex(grid(3));
+  CellComplex complex(grid(3));
   { ComplexEdit counts(complex); }
-  const Map before = complex.map();
+  const CombinatorialMap before = complex.map();
   ComplexEdit edit(complex);
   const RepairReport report = repair(edit, complex.map().cells());
   EXPECT_TRUE(report.mended.empty());
@@ -210,7 +210,7 @@ TEST(Repair, PassesOverWhatIsValid) {
 
 // A little beyond a face: the vertex goes back among its cells, which stay hexahedra.
 TEST(Repair, MovesAVertexBack) {
-  Complex complex(grid(4));
+  CellComplex complex(grid(4));
   displace(complex, {{grid_vertex(4, 2, 2, 2), {1.5, 0.0, 0.0}}});
   ComplexEdit edit(complex);
   const RepairReport report = repair(edit, invalid_cells(complex));
@@ -225,7 +225,7 @@ TEST(Repair, MovesAVertexBack) {
 
 // Two neighbours that swapped places: no single one can be moved back, nor is the surface around one good.
 TEST(Repair, CutsWhereTwoWentAstray) {
-  Complex complex(grid(5));
+  CellComplex complex(grid(5));
   const test::Dyadic before = volume6(complex);
   displace(complex, {{grid_vertex(5, 2, 2, 2), {1.75, 0.25, 0.0}}, {grid_vertex(5, 3, 2, 2), {-1.75, 0.0, 0.25}}});
   ComplexEdit edit(complex);
@@ -249,7 +249,7 @@ TEST(Repair, CutsWhereTwoWentAstray) {
   EXPECT_TRUE(volume6(complex) == before);
 }
 
-std::vector<MendedRegion> repaired(Complex& complex) {
+std::vector<MendedRegion> repaired(CellComplex& complex) {
   ComplexEdit edit(complex);
   RepairReport report = repair(edit, invalid_cells(complex));
   EXPECT_TRUE(report.left.empty());
@@ -260,7 +260,7 @@ std::vector<MendedRegion> repaired(Complex& complex) {
 
 // The four corners of a face on the wrong side of each other: the cells around all four are enough.
 TEST(Repair, CutsTheCellsAroundSeveral) {
-  Complex complex(grid(7));
+  CellComplex complex(grid(7));
   displace(complex, {{grid_vertex(7, 3, 3, 3), {2.5, 0.25, 0.25}},
                      {grid_vertex(7, 4, 3, 3), {0.25, 2.5, -0.25}},
                      {grid_vertex(7, 4, 4, 3), {-2.5, 0.25, 0.25}},
@@ -269,13 +269,13 @@ TEST(Repair, CutsTheCellsAroundSeveral) {
 }
 
 TEST(Repair, TakesNoLargerRegionsThanAllowed) {
-  Complex complex(grid(5));
+  CellComplex complex(grid(5));
   { ComplexEdit counts(complex); }
   displace(complex, {{grid_vertex(5, 2, 2, 2), {1.75, 0.25, 0.0}}, {grid_vertex(5, 3, 2, 2), {-1.75, 0.0, 0.25}}});
-  const Map before = complex.map();
+  const CombinatorialMap before = complex.map();
   const auto bad = invalid_cells(complex);
   ComplexEdit edit(complex);
-  const RepairReport report = repair(edit, bad, {.most_cells = 3});
+  const RepairReport report = repair(edit, bad, {.max_cells = 3});
   EXPECT_TRUE(report.mended.empty());
   ASSERT_EQ(report.left.size(), bad.size());
   test::expect_parts(report.left[0].reason, {"at most 3 cells"});
@@ -283,10 +283,10 @@ TEST(Repair, TakesNoLargerRegionsThanAllowed) {
 }
 
 TEST(Repair, LeavesWhatHasNoInside) {
-  Complex complex(grid(3));
+  CellComplex complex(grid(3));
   { ComplexEdit counts(complex); }
   displace(complex, {{grid_vertex(3, 0, 0, 0), {1.5, 0.0, 0.0}}});  // the boundary itself is inverted there
-  const Map before = complex.map();
+  const CombinatorialMap before = complex.map();
   const auto bad = invalid_cells(complex);
   ASSERT_FALSE(bad.empty());
   ComplexEdit edit(complex);
@@ -300,7 +300,7 @@ TEST(Repair, LeavesWhatHasNoInside) {
 }
 
 TEST(Repair, RefusesCellsThatAreNotThere) {
-  Complex complex(grid(3));
+  CellComplex complex(grid(3));
   ComplexEdit edit(complex);
   const Cell cells[] = {Cell(1, 77)};
   EXPECT_THROW(repair(edit, cells), InvalidArgument);

@@ -20,7 +20,7 @@ struct Bounds {
   Vec3 low, high;
 };
 
-Bounds bounds_of(const Complex& complex) {
+Bounds bounds_of(const CellComplex& complex) {
   Bounds b = {complex.positions()[0], complex.positions()[0]};
   for (const Vec3& x : complex.positions()) {
     b.low = {std::min(b.low.x, x.x), std::min(b.low.y, x.y), std::min(b.low.z, x.z)};
@@ -29,7 +29,7 @@ Bounds bounds_of(const Complex& complex) {
   return b;
 }
 
-Plane random_plane(const Complex& complex, Random& random) {
+Plane random_plane(const CellComplex& complex, Random& random) {
   const Bounds b = bounds_of(complex);
   const Vec3 x = {random.uniform(b.low.x, b.high.x), random.uniform(b.low.y, b.high.y),
                   random.uniform(b.low.z, b.high.z)};
@@ -53,7 +53,7 @@ double below6(Corners v, const Plane& plane) {
   return all * (a * b * (1.0 - c) * 1.0 + b * c * (1.0 - d) + c * d);
 }
 
-double below6(const Complex& complex, const Plane& plane) {
+double below6(const CellComplex& complex, const Plane& plane) {
   double sum = 0.0;
   for (const Cell c : complex.map().cells()) {
     for (std::uint16_t s = 0; s < complex.map().shape(c).simplices().size(); ++s)
@@ -62,7 +62,7 @@ double below6(const Complex& complex, const Plane& plane) {
   return sum;
 }
 
-double farthest(const Complex& complex, std::span<const Cell> cells, const Plane& plane) {
+double farthest(const CellComplex& complex, std::span<const Cell> cells, const Plane& plane) {
   double far = 0.0;
   for (const Cell c : cells) {
     const CellView v = complex.map().view(c);
@@ -78,7 +78,7 @@ void update(Section& section, const ComplexEditReport& report) {
 }
 
 class Sections : public testing::TestWithParam<test::EditMesh> {};
-INSTANTIATE_TEST_SUITE_P(Surgery, Sections, testing::ValuesIn(test::edit_meshes()),
+INSTANTIATE_TEST_SUITE_P(EventScheduler, Sections, testing::ValuesIn(test::edit_meshes()),
                          [](const auto& i) { return std::string(i.param.name); });
 
 // Where the truth is of few digits, nothing is rounded: planes across the axes at quarters of the cells.
@@ -87,13 +87,13 @@ TEST_P(Sections, PartAxisAlignedVolumesExactly) {
   for (Vec3& x : mesh.points)
     x = {std::nearbyint(x.x * 48.0) / 4.0, std::nearbyint(x.y * 48.0) / 4.0, std::nearbyint(x.z * 48.0) / 4.0};
   for (const Vec3& normal : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, -1}}) {
-    Complex complex(mesh);
+    CellComplex complex(mesh);
     const Bounds b = bounds_of(complex);
     const Plane plane = plane_through(b.low + (b.high - b.low) * 0.375, normal);
     const Dyadic before = volume6(complex);
     const double below = below6(complex, plane);
     ComplexEdit edit(complex);
-    Section section = split_by_plane(edit, complex.map().cells(), plane, {SectionOptions::least_snap});
+    Section section = split_by_plane(edit, complex.map().cells(), plane, {SectionOptions::min_snap});
     update(section, edit.commit());
     test::expect_sound(complex);
     ASSERT_FALSE(HasFatalFailure());
@@ -112,9 +112,9 @@ TEST_P(Sections, PartRandomly) {
   Random random(5);
   for (int i = 0; i < std::max(1, test::scaled(4, 400)); ++i) {
     SCOPED_TRACE(i);
-    Complex complex(mesh);
+    CellComplex complex(mesh);
     const Plane plane = random_plane(complex, random);
-    const SectionOptions options = {i % 2 == 0 ? SectionOptions::least_snap : SectionOptions{}.snap};
+    const SectionOptions options = {i % 2 == 0 ? SectionOptions::min_snap : SectionOptions{}.snap};
     const Dyadic before = volume6(complex);
     const double below = below6(complex, plane);
     const double size = norm(bounds_of(complex).high - bounds_of(complex).low);
@@ -137,7 +137,7 @@ TEST_P(Sections, PartRandomly) {
 
 // A few cells in the middle are split; those around take the new vertices into their faces and stay whole.
 TEST_P(Sections, EndAtCellsThatAreNotNamed) {
-  Complex complex(GetParam().make());
+  CellComplex complex(GetParam().make());
   Random random(6);
   for (int i = 0; i < std::max(1, test::scaled(4, 200)); ++i) {
     SCOPED_TRACE(i);
@@ -162,7 +162,7 @@ TEST_P(Sections, EndAtCellsThatAreNotNamed) {
     EXPECT_TRUE(test::near(volume6(complex), before, 1e-9));
     EXPECT_GE(complex.map().cell_count(), all.size());
     EXPECT_GE(complex.map().cell_count(), free);
-    if (complex.map().cell_count() > 4 * all.size() || i % 5 == 4) complex = Complex(GetParam().make());
+    if (complex.map().cell_count() > 4 * all.size() || i % 5 == 4) complex = CellComplex(GetParam().make());
   }
 }
 
@@ -172,7 +172,7 @@ TEST_P(Sections, PartAlmostAlongFaces) {
   Random random(8);
   for (int i = 0; i < std::max(1, test::scaled(12, 400)); ++i) {
     SCOPED_TRACE(i);
-    Complex complex(mesh);
+    CellComplex complex(mesh);
     const Vec3 x = complex.positions()[random.below(static_cast<std::uint32_t>(complex.positions().size()))];
     Vec3 normal = {random.uniform(-0.05, 0.05), random.uniform(-0.05, 0.05), i % 2 == 0 ? 1.0 : -1.0};
     if (i % 3 == 1) normal = {normal.z, normal.x, normal.y};
@@ -188,7 +188,7 @@ TEST_P(Sections, PartAlmostAlongFaces) {
 }
 
 TEST(Section, SplitsNothingAlongFaces) {
-  Complex complex(test::edit_box(CellType::hexahedron));
+  CellComplex complex(test::edit_box(CellType::hexahedron));
   const Before before(complex);
   ComplexEdit edit(complex);
   // Half a hundredth of an edge beside the faces: within the snap.
@@ -209,7 +209,7 @@ TEST(Section, SplitsWarpedCells) {
   for (int i = 0; i < count; ++i) {
     SCOPED_TRACE(i);
     o.seed = static_cast<std::uint64_t>(i);
-    Complex complex(generate_box(o));
+    CellComplex complex(generate_box(o));
     if (!complex.invalid_cells().empty()) continue;
     ComplexEdit edit(complex);
     try {
@@ -228,7 +228,7 @@ TEST(Section, SplitsWarpedCells) {
 }
 
 TEST(Section, RefusesWithoutAChange) {
-  Complex complex(test::edit_box(CellType::hexahedron));
+  CellComplex complex(test::edit_box(CellType::hexahedron));
   { ComplexEdit first(complex); }
   const Before before(complex);
   const Plane plane = plane_through({0.4, 0.4, 0.4}, {1, 2, 3});

@@ -25,11 +25,11 @@ MeshData odd_box(CellType type) {
 
 // Signs of rounded middles do not tell whether a face is straight: it is marked, and has a point of its own.
 TEST(SubdivideMarks, HangingMiddlesAreMarked) {
-  Complex complex(odd_box(CellType::hexahedron));
+  CellComplex complex(odd_box(CellType::hexahedron));
   ComplexEdit edit(complex);
   const Subdivided s = subdivide(edit, complex.map().cells()[13]);
   edit.commit();
-  const Map& map = complex.map();
+  const CombinatorialMap& map = complex.map();
   std::size_t hanging = 0;
   for (const Cell c : map.cells()) {
     const Shape& shape = map.shape(c);
@@ -51,7 +51,7 @@ TEST(SubdivideMarks, HangingMiddlesAreMarked) {
 // A middle of equal coordinates has that coordinate, however many digits it has.
 TEST(SubdivideMarks, SidesOfABoxStayPlane) {
   for (const CellType type : {CellType::tetrahedron, CellType::hexahedron, CellType::prism, CellType::pyramid}) {
-    Complex complex(odd_box(type));
+    CellComplex complex(odd_box(type));
     Random random(1);
     for (int i = 0; i < test::scaled(30, 300); ++i) {
       const auto cells = complex.map().cells();
@@ -80,7 +80,7 @@ TEST(SubdivideMarks, CellsThatWereMergedAtRandom) {
   int refused = 0;
   for (std::uint64_t seed = 0; seed < test::scaled<std::uint64_t>(20, 4000); ++seed) {
     Random random(seed);
-    Complex complex(test::edit_box(seed % 2 == 0 ? CellType::tetrahedron : CellType::hexahedron, seed % 3 == 0, 2));
+    CellComplex complex(test::edit_box(seed % 2 == 0 ? CellType::tetrahedron : CellType::hexahedron, seed % 3 == 0, 2));
     ComplexEdit edit(complex);
     for (int i = 0; i < 30; ++i) {
       const auto cells = complex.map().cells();
@@ -98,7 +98,7 @@ TEST(SubdivideMarks, CellsThatWereMergedAtRandom) {
     }
     for (const Cell c : complex.map().cells()) {
       if (!complex.map().contains(c)) continue;
-      const Map before = complex.map();
+      const CombinatorialMap before = complex.map();
       const std::string outcome = refusal([&] { subdivide(edit, c); });
       if (outcome == "done") {
         ++done;
@@ -114,17 +114,17 @@ TEST(SubdivideMarks, CellsThatWereMergedAtRandom) {
 }
 
 TEST(SubdivideMarks, Refusals) {
-  Complex complex(odd_box(CellType::hexahedron));
+  CellComplex complex(odd_box(CellType::hexahedron));
   ComplexEdit edit(complex);
   test::expect_parts(refusal([&] { subdivide(edit, Cell(1, 99)); }), {"invalid: there is no such cell"});
   const Subdivided s = subdivide(edit, complex.map().cells()[13]);
   Subdivision stale = s.subdivision;
   const Subdivided inner = subdivide(edit, s.cells[0]);
   test::expect_parts(refusal([&] { coarsen(edit, stale); }), {"invalid: the part", "follow()"});
-  follow(edit.map(), inner.cells, stale);
+  update_after_edit(edit.map(), inner.cells, stale);
   test::expect_parts(refusal([&] { coarsen(edit, stale); }), {"refused: cell 13", "coarsen these first"});
   coarsen(edit, inner.subdivision);
-  for (const Cell c : complex.map().cells()) follow(edit.map(), {&c, 1}, stale);
+  for (const Cell c : complex.map().cells()) update_after_edit(edit.map(), {&c, 1}, stale);
   edit.topology().set_free(stale.part.cell, false);
   test::expect_parts(refusal([&] { coarsen(edit, stale); }), {"refused: cell 13", "mark them alike first"});
   edit.topology().set_free(stale.part.cell, true);

@@ -20,7 +20,7 @@ using test::written;
 // Subdivided cells, most recent last; parts are found again after every edit.
 class Refinement {
  public:
-  explicit Refinement(Complex& complex) : complex_(complex) {}
+  explicit Refinement(CellComplex& complex) : complex_(complex) {}
 
   void subdivide(Cell c) {
     ComplexEdit edit(complex_);
@@ -48,10 +48,10 @@ class Refinement {
   void finish(ComplexEdit& edit, List&& list) {
     const ComplexEditReport report = edit.commit();
     list();
-    for (Subdivision& s : all_) follow(complex_.map(), report.map.added, s);
+    for (Subdivision& s : all_) update_after_edit(complex_.map(), report.map.added, s);
   }
 
-  Complex& complex_;
+  CellComplex& complex_;
   std::vector<Subdivision> all_;
 };
 
@@ -63,19 +63,19 @@ MeshData unit_boxes(std::uint32_t n, CellType type) {
   return generate_box(o);
 }
 
-std::size_t vertices_in_use(const Map& map) {
+std::size_t vertices_in_use(const CombinatorialMap& map) {
   std::size_t count = 0;
   for (std::uint32_t v = 0; v < map.vertex_count(); ++v) count += map.is_vertex(Vertex(v)) ? 1 : 0;
   return count;
 }
 
-bool has_flat(const Map& map) {
+bool has_flat(const CombinatorialMap& map) {
   const auto cells = map.cells();
   return std::any_of(cells.begin(), cells.end(), [&](Cell c) { return map.has_flat(c); });
 }
 
 TEST(Subdivide, HexahedronGivesEightHexahedra) {
-  Complex complex(unit_boxes(1, CellType::hexahedron));
+  CellComplex complex(unit_boxes(1, CellType::hexahedron));
   ComplexEdit edit(complex);
   const Subdivided s = subdivide(edit, complex.map().cells()[0]);
   const ComplexEditReport done = edit.commit();
@@ -99,7 +99,7 @@ TEST(Subdivide, PartsOfEachType) {
   };
   for (const Case& c :
        {Case{CellType::tetrahedron, 4, 4}, Case{CellType::prism, 6, 6}, Case{CellType::pyramid, 5, 4}}) {
-    Complex complex(unit_boxes(1, c.type));
+    CellComplex complex(unit_boxes(1, c.type));
     ComplexEdit edit(complex);
     const Subdivided s = subdivide(edit, complex.map().cells()[0]);
     EXPECT_EQ(s.subdivision.corners.size(), c.parts);
@@ -115,7 +115,7 @@ TEST(Subdivide, PartsOfEachType) {
 TEST(Subdivide, AnyOrderGivesTheFineGrid) {
   for (std::uint64_t seed = 0; seed < test::scaled<std::uint64_t>(3, 500); ++seed) {
     Random random(seed);
-    Complex complex(unit_boxes(2, CellType::hexahedron));
+    CellComplex complex(unit_boxes(2, CellType::hexahedron));
     const std::vector<std::string> before = written(complex.map());
     Refinement refinement(complex);
     const auto edge = [&](Cell c) {
@@ -152,7 +152,7 @@ TEST(Subdivide, AnyOrderGivesTheFineGrid) {
 class OnMeshes : public testing::TestWithParam<test::EditMesh> {};
 
 TEST_P(OnMeshes, CoarsenRestores) {
-  Complex complex(GetParam().make());
+  CellComplex complex(GetParam().make());
   const std::vector<std::string> before = written(complex.map());
   const std::vector<Vec3> positions(complex.positions().begin(),
                                     complex.positions().begin() + static_cast<std::ptrdiff_t>(complex.point_count()));
@@ -173,9 +173,9 @@ TEST_P(OnMeshes, CoarsenRestores) {
 
 // In one edit, without a commit between; taken back, the map is the same to the last record.
 TEST_P(OnMeshes, TakenBack) {
-  Complex complex(GetParam().make());
+  CellComplex complex(GetParam().make());
   { ComplexEdit first(complex); }
-  const Map before = complex.map();
+  const CombinatorialMap before = complex.map();
   {
     ComplexEdit edit(complex);
     const auto cells = complex.map().cells();
@@ -183,13 +183,13 @@ TEST_P(OnMeshes, TakenBack) {
     for (std::size_t i = 0; i < cells.size(); i += 3) {
       if (!complex.map().contains(cells[i])) continue;
       const Subdivided s = subdivide(edit, cells[i]);
-      for (Subdivision& other : all) follow(edit.map(), s.cells, other);
+      for (Subdivision& other : all) update_after_edit(edit.map(), s.cells, other);
       all.push_back(s.subdivision);
     }
     EXPECT_TRUE(check_integrity(complex.map()).empty());
     for (std::size_t i = 0; i < all.size(); i += 2) {
       const auto news = coarsen(edit, all[i]);
-      for (std::size_t k = i + 1; k < all.size(); ++k) follow(edit.map(), news, all[k]);
+      for (std::size_t k = i + 1; k < all.size(); ++k) update_after_edit(edit.map(), news, all[k]);
     }
     EXPECT_TRUE(check_integrity(complex.map()).empty());
   }
@@ -197,7 +197,7 @@ TEST_P(OnMeshes, TakenBack) {
 }
 
 TEST_P(OnMeshes, RandomSequences) {
-  Complex complex(GetParam().make());
+  CellComplex complex(GetParam().make());
   const std::vector<std::string> before = written(complex.map());
   const test::Dyadic volume = volume6(complex);
   const bool exact =
@@ -235,15 +235,15 @@ TEST_P(OnMeshes, RandomSequences) {
 TEST_P(OnMeshes, NoTraceOfOthers) {
   for (std::uint64_t seed = 0; seed < test::scaled<std::uint64_t>(2, 300); ++seed) {
     Random random(seed);
-    Complex complex(GetParam().make());
-    Complex other(GetParam().make());
+    CellComplex complex(GetParam().make());
+    CellComplex other(GetParam().make());
     const auto cells = complex.map().cells();
     std::vector<std::uint32_t> sources(cells.size());
     for (std::uint32_t i = 0; i < sources.size(); ++i) sources[i] = i;
     for (std::size_t i = sources.size(); i > 1; --i)
       std::swap(sources[i - 1], sources[random.below(static_cast<std::uint32_t>(i))]);
     sources.resize(cells.size() / 2);
-    const auto of_source = [](const Map& map, std::uint32_t source) {
+    const auto of_source = [](const CombinatorialMap& map, std::uint32_t source) {
       for (const Cell c : map.cells()) {
         if (map.source(c) == source) return c;
       }

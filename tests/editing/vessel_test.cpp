@@ -18,7 +18,7 @@ TEST(VesselCuts, OpenTheLumen) {
   o.core = 2;
   o.out_of_plane = 0.0;
   o.rings = 1;
-  Complex complex(generate_vessel(o));
+  CellComplex complex(generate_vessel(o));
   const double r = o.radius;
   Disc disc;
   disc.centre = {0, 0, -12e-3};
@@ -48,12 +48,12 @@ TEST(VesselCuts, AtRandom) {
   o.rings = 1;
   const MeshData mesh = generate_vessel(o);
   Random random(12);
-  Complex complex(mesh);
+  CellComplex complex(mesh);
   int with_whole = 0;  // cuts that left a cell whole, whose section is no simple loop
   const auto direction = [&] { return Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)}; };
   for (int i = 0; i < std::max(1, test::scaled(8, 200)); ++i) {
     SCOPED_TRACE(i);
-    if (i % 8 == 0) complex = Complex(mesh);
+    if (i % 8 == 0) complex = CellComplex(mesh);
     const std::vector<Cell> cells = complex.map().cells();
     const Vec3 x = complex.corners({cells[random.below(static_cast<std::uint32_t>(cells.size()))], 0})[0];
     const Vec3 n = plane_through({}, direction()).normal;

@@ -31,7 +31,7 @@ struct OneTetrahedron {
 
   Environment environment;
   Particles particles;
-  Complex complex;  // to be moved away from the particle
+  CellComplex complex;  // to be moved away from the particle
 };
 
 TEST(Audit, AcceptsAParticleOnTheBorder) {
@@ -68,7 +68,7 @@ TEST(Audit, FindsBlockedAndMissingCells) {
   OneTetrahedron scene;
   scene.complex.map().set_free(scene.particles[0].cell, false);
   EXPECT_NE(audit(scene.complex, scene.particles).first.find("blocked"), std::string::npos);
-  const Complex hexahedra(generate_box({}));
+  const CellComplex hexahedra(generate_box({}));
   EXPECT_NE(audit(hexahedra, scene.particles).first.find("no such cell"), std::string::npos);
 }
 
@@ -93,7 +93,7 @@ TEST(Audit, AgreesWithTheOracleOnALattice) {
   environment.add(particles, positions);
   ASSERT_EQ(particles.size(), positions.size());
   for (const double shift : {0.0, 0.5, -1.0, 0x1p-52, -0x1p-300}) {
-    Complex moved = environment.complex();
+    CellComplex moved = environment.complex();
     std::vector<Vec3> points = mesh.points;
     for (Vec3& p : points) p.x += shift;
     std::copy(points.begin(), points.end(), moved.next_positions().begin());

@@ -173,8 +173,8 @@ TEST(Contacts, TimesAreRightAtTheSecondReboundOffAWall) {
     const double fall = random.uniform(4, 12);
     const Vec3 motion = turned({random.uniform(-3, 3), random.uniform(-3, 3), -fall});
     std::vector<Vec3> velocity = {motion};
-    std::vector<Fate> fate(1);
-    const Responses responses(Response{ResponseKind::reflect, 1.0, 0.0});
+    std::vector<ParticleStatus> fate(1);
+    const WallResponses responses(WallResponse{WallResponseKind::reflect, 1.0, 0.0});
     const StepReport report = environment.advance(particles, std::vector<Vec3>{particles[0].position + motion},
                                                   respond_with(responses, velocity, fate, 1.0));
     for (std::size_t i = 0; i < report.contacts.contacts.size(); ++i) {

@@ -18,7 +18,7 @@ using test::scaled;
 // Exact: in the closed simplex named, of a free cell, at the current positions.
 void expect_valid(const Environment& env, const Particles& particles) {
   for (std::size_t i = 0; i < particles.size(); ++i) {
-    const State& s = particles[i];
+    const ParticleState& s = particles[i];
     ASSERT_TRUE(env.map().is_free(s.cell)) << "particle " << i;
     const Corners v = env.complex().corners(s.at());
     for (unsigned f = 0; f < 4; ++f) {
@@ -30,7 +30,7 @@ void expect_valid(const Environment& env, const Particles& particles) {
 
 std::vector<Vec3> positions_of(const Particles& particles) {
   std::vector<Vec3> p;
-  for (const State& s : particles.states()) p.push_back(s.position);
+  for (const ParticleState& s : particles.states()) p.push_back(s.position);
   return p;
 }
 
@@ -46,8 +46,8 @@ void scatter(Environment& env, Particles& particles, std::size_t count, const Ve
   }
 }
 
-template <class Map>
-void move_all(Environment& env, std::span<const Vec3> rest, Map&& map) {
+template <class CombinatorialMap>
+void move_all(Environment& env, std::span<const Vec3> rest, CombinatorialMap&& map) {
   auto next = env.next_positions();
   for (std::size_t i = 0; i < rest.size(); ++i) next[i] = map(rest[i]);
   env.move();
@@ -101,7 +101,7 @@ TEST_P(DeformingByType, SlabThatSweepsOverParticlesAtRest) {
     const auto targets = positions_of(particles);
     env.advance(particles, targets,
                 [](const Contact& c, std::span<const WallHit> walls, std::span<const WallHit> earlier) {
-                  return Continuation{slid(c.unused, walls, earlier), true};
+                  return AfterContact{slid(c.unused, walls, earlier), true};
                 });
     ASSERT_NO_FATAL_FAILURE(expect_valid(env, particles));
   }
@@ -142,7 +142,7 @@ TEST_P(DeformingByType, ContactWithMovingFloorFor10000Steps) {
     auto targets = positions_of(particles);
     for (Vec3& t : targets) t.z -= 0.1;
     const StepReport report = env.advance(particles, targets, [](const Contact& c, auto walls, auto earlier) {
-      return Continuation{slid(c.unused, walls, earlier), true};
+      return AfterContact{slid(c.unused, walls, earlier), true};
     });
     ASSERT_TRUE(report.held.empty());
     ASSERT_NO_FATAL_FAILURE(expect_valid(env, particles)) << "step " << step;
@@ -199,7 +199,7 @@ TEST_P(DeformingByType, BladeThatTurns) {
     move_all(env, flat, [&](const Vec3& p) { return ring(p, angle); });
     const auto targets = positions_of(particles);
     env.advance(particles, targets, [](const Contact& c, auto walls, auto earlier) {
-      return Continuation{slid(c.unused, walls, earlier), true};
+      return AfterContact{slid(c.unused, walls, earlier), true};
     });
     ASSERT_NO_FATAL_FAILURE(expect_valid(env, particles));
   }
@@ -273,10 +273,10 @@ TEST(Deforming, RandomMotionOfAllVertices) {
     Particles particles;
     scatter(env, particles, 200, {2.5, 2.5, 2.5}, seed);
     std::vector<Vec3> velocity(particles.size());
-    std::vector<Fate> fate(particles.size());
+    std::vector<ParticleStatus> fate(particles.size());
     for (Vec3& v : velocity) v = {unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5};
-    const Response response{static_cast<ResponseKind>(seed % 3), unit(random), 0.3 * unit(random)};
-    const Responses responses(response);
+    const WallResponse response{static_cast<WallResponseKind>(seed % 3), unit(random), 0.3 * unit(random)};
+    const WallResponses responses(response);
     const double scale = norm(rest[mesh.cell(0)[0]] - rest[mesh.cell(0)[1]]);
     for (int step = 0; step < 60; ++step) {
       move_all(env, rest, [&](Vec3 p) {
@@ -286,7 +286,8 @@ TEST(Deforming, RandomMotionOfAllVertices) {
         return Vec3{p.x + 0.3 * a * p.y, p.y - a * p.z * 0.3, p.z + 0.2 * a} + shift;
       });
       auto targets = positions_of(particles);
-      for (std::size_t i = 0; i < targets.size(); ++i) targets[i] += velocity[i] * (fate[i] == Fate::alive ? 0.4 : 0.0);
+      for (std::size_t i = 0; i < targets.size(); ++i)
+        targets[i] += velocity[i] * (fate[i] == ParticleStatus::alive ? 0.4 : 0.0);
       const StepReport report = env.advance(particles, targets, respond_with(responses, velocity, fate, 0.4));
       ASSERT_TRUE(report.held.empty()) << "seed " << seed << ", step " << step;
       ASSERT_NO_FATAL_FAILURE(expect_valid(env, particles)) << "seed " << seed << ", step " << step;
@@ -305,8 +306,8 @@ TEST(Deforming, ReboundFromPiston) {
   const double dt = 0.1;
   const double piston = 0.5;
   std::vector<Vec3> velocity = {{-1.0, 0.2, 0.0}};
-  std::vector<Fate> fate(1);
-  const Responses responses(Response{ResponseKind::reflect, 1.0, 0.0});
+  std::vector<ParticleStatus> fate(1);
+  const WallResponses responses(WallResponse{WallResponseKind::reflect, 1.0, 0.0});
   std::size_t contacts = 0;
   for (int step = 1; step <= 20; ++step) {
     const double x = piston * dt * step;

@@ -26,7 +26,7 @@ void expect_audited(const Environment& environment, const Particles& particles) 
 
 std::vector<Vec3> jittered(const Particles& particles, Random& random, double by, unsigned dimension = 3) {
   std::vector<Vec3> targets;
-  for (const State& s : particles.states()) {
+  for (const ParticleState& s : particles.states()) {
     const Vec3 by_random{random.uniform(-by, by), random.uniform(-by, by), random.uniform(-by, by)};
     targets.push_back(s.position + Vec3{by_random.x, by_random.y, dimension == 2 ? 0.0 : by_random.z});
   }
@@ -44,7 +44,7 @@ MeshData unit_cubes(std::array<std::uint32_t, 3> cells) {
 Cell cell_at(Environment& environment, const Vec3& x) { return environment.locate(x).simplex.cell; }
 
 // The face between two cells, as the first sees it.
-CellFace face_between(const Map& map, Cell a, Cell b) {
+CellFace face_between(const CombinatorialMap& map, Cell a, Cell b) {
   for (std::uint16_t f = 0; f < map.shape(a).face_count(); ++f) {
     if (map.view(a).neighbour(f) == b) return {a, f};
   }
@@ -52,25 +52,25 @@ CellFace face_between(const Map& map, Cell a, Cell b) {
 }
 
 // Everything that must hold of particles that followed an edit; `before`: their states before it.
-void expect_followed(const ComplexEditReport& edit, const FollowReport& report, const std::vector<State>& before,
-                     const Particles& after) {
+void expect_followed(const ComplexEditReport& edit, const UpdateReport& report,
+                     const std::vector<ParticleState>& before, const Particles& after) {
   std::set<Cell> touched;
   for (const CellHandle& h : edit.map.removed) touched.insert(h.cell);
   touched.insert(edit.map.marked.begin(), edit.map.marked.end());
-  std::map<std::uint32_t, StrandedParticle> stranded;
-  for (const StrandedParticle& p : report.stranded) stranded[p.particle] = p;
+  std::map<std::uint32_t, OrphanedParticle> orphaned;
+  for (const OrphanedParticle& p : report.orphaned) orphaned[p.particle] = p;
   std::uint64_t at_touched = 0;
   std::size_t j = 0;  // absorbed particles leave gaps
   for (std::uint32_t i = 0; i < before.size(); ++i) {
-    const State& s = before[i];
+    const ParticleState& s = before[i];
     at_touched += touched.count(s.cell) != 0 || std::any_of(s.touching.begin(), s.touching.begin() + s.touching_count,
                                                             [&](CellFace f) { return touched.count(f.cell) != 0; })
                       ? 1
                       : 0;
-    const auto found = stranded.find(i);
-    if (found != stranded.end() && found->second.became == Stranded::absorb) continue;
-    const State& now = after[j++];
-    if (found == stranded.end() && !before[i].held) ASSERT_EQ(test::bits(now.position), test::bits(before[i].position));
+    const auto found = orphaned.find(i);
+    if (found != orphaned.end() && found->second.outcome == OrphanPolicy::absorb) continue;
+    const ParticleState& now = after[j++];
+    if (found == orphaned.end() && !before[i].held) ASSERT_EQ(test::bits(now.position), test::bits(before[i].position));
     if (touched.count(before[i].cell) != 0 || before[i].touching_count > 0) continue;
     ASSERT_TRUE(same_bits(now, before[i])) << "particle " << i << " was not touched";
   }
@@ -83,10 +83,10 @@ class Edits : public testing::TestWithParam<test::EditMesh> {};
 // A scene that turns, with particles that slide, and edits at random in between.
 class EditedScene {
  public:
-  EditedScene(const MeshData& mesh, Stranded stranded)
+  EditedScene(const MeshData& mesh, OrphanPolicy orphaned)
       : environment_(mesh),
-        random_(static_cast<std::uint64_t>(stranded) + 1),
-        stranded_(stranded),
+        random_(static_cast<std::uint64_t>(orphaned) + 1),
+        orphaned_(orphaned),
         rest_(environment_.positions().begin(), environment_.positions().end()),
         bag_(environment_.map()),
         usual_(bag_.size()) {
@@ -108,13 +108,13 @@ class EditedScene {
     ++edits;
     bag_.update(done.map);
     ASSERT_TRUE(check_integrity(environment_.map(), done.map.added, 1).empty());
-    const std::vector<State> before = test::copy_of(particles_);
-    const FollowReport report = environment_.follow(particles_, stranded_);
+    const std::vector<ParticleState> before = test::copy_of(particles_);
+    const UpdateReport report = environment_.update_after_edit(particles_, orphaned_);
     expect_followed(done, report, before, particles_);
-    follow(done, environment_.positions().size(), rest_);
+    update_after_edit(done, environment_.positions().size(), rest_);
     for (const PlacedVertex& p : done.placed) rest_[p.vertex.value] = environment_.positions()[p.vertex.value];
     located += report.located;
-    left += report.stranded.size();
+    left += report.orphaned.size();
   }
 
   void move(double turn) {
@@ -124,9 +124,9 @@ class EditedScene {
   }
 
   void advance() {
-    const Respond slide = [](const Contact& c, std::span<const WallHit> walls, auto) {
+    const ContactCallback slide = [](const Contact& c, std::span<const WallHit> walls, auto) {
       const Vec3 n = walls[0].normal;
-      return Continuation{c.unused - n * dot(c.unused, n), true};
+      return AfterContact{c.unused - n * dot(c.unused, n), true};
     };
     environment_.advance(particles_, jittered(particles_, random_, 0.2, environment_.map().dimension()), slide);
   }
@@ -141,7 +141,7 @@ class EditedScene {
  private:
   Environment environment_;
   Random random_;
-  Stranded stranded_;
+  OrphanPolicy orphaned_;
   Particles particles_;
   std::vector<Vec3> rest_;
   test::CellBag bag_;
@@ -150,8 +150,8 @@ class EditedScene {
 
 // Ten edits are tried in each step: 10^4 in all, 10^6 in the full tier.
 TEST_P(Edits, LoseNobody) {
-  for (const Stranded stranded : {Stranded::stay, Stranded::move, Stranded::absorb}) {
-    EditedScene scene(GetParam().make(), stranded);
+  for (const OrphanPolicy orphaned : {OrphanPolicy::hold, OrphanPolicy::relocate, OrphanPolicy::absorb}) {
+    EditedScene scene(GetParam().make(), orphaned);
     for (int step = 0; step < test::scaled(48, 4800); ++step) {
       for (int i = 0; i < 10; ++i) ASSERT_NO_FATAL_FAILURE(scene.edit());
       ASSERT_NO_FATAL_FAILURE(scene.check());
@@ -185,7 +185,7 @@ TEST(FollowEdit, OpensTheWayWhereCellsAreSewn) {
   EXPECT_EQ(particles[0].touching_count, 1);
 
   environment.edit([&](ComplexEdit& e) {
-    const Map& map = e.map();
+    const CombinatorialMap& map = e.map();
     const Cell a = particles[0].cell;
     const Cell b = particles[1].cell;
     for (std::uint16_t d = 0; d < map.shape(a).dart_count(); ++d) {
@@ -202,10 +202,10 @@ TEST(FollowEdit, OpensTheWayWhereCellsAreSewn) {
       }
     }
   });
-  const FollowReport report = environment.follow(particles);
+  const UpdateReport report = environment.update_after_edit(particles);
   EXPECT_EQ(report.touched, 2U);
   EXPECT_EQ(report.located, 2U);
-  EXPECT_TRUE(report.stranded.empty());
+  EXPECT_TRUE(report.orphaned.empty());
   EXPECT_EQ(particles[0].touching_count, 0);  // it touches no wall any more
   EXPECT_TRUE(environment.advance(particles, across).contacts.contacts.empty());
   EXPECT_EQ(particles[0].position, across[0]);
@@ -217,12 +217,12 @@ TEST(FollowEdit, LocatesInTheCellThatWasSimplified) {
   Environment environment(unit_cubes({4, 1, 1}));
   Particles particles;
   environment.add(particles, std::vector<Vec3>{{0.5, 0.5, 0.25}, {1.25, 0.5, 0.5}, {3.5, 0.5, 0.5}});
-  const std::vector<State> before = test::copy_of(particles);
+  const std::vector<ParticleState> before = test::copy_of(particles);
   const CellHandle stale = environment.map().handle(before[0].cell);
   environment.edit(
       [&](ComplexEdit& e) { merge_cells(e.topology(), face_between(e.map(), before[0].cell, before[1].cell)); });
   EXPECT_FALSE(environment.map().contains(stale));
-  const FollowReport report = environment.follow(particles);
+  const UpdateReport report = environment.update_after_edit(particles);
   EXPECT_EQ(report.touched, 2U);
   EXPECT_EQ(report.located, 2U);
   EXPECT_EQ(particles[0].cell, particles[1].cell);
@@ -281,13 +281,13 @@ TEST(FollowEdit, LocatesInTheHalfThatItIsIn) {
     }
     split_cell(e.topology(), path);
   });
-  const FollowReport report = environment.follow(particles);
+  const UpdateReport report = environment.update_after_edit(particles);
   EXPECT_EQ(report.located, 3U);
   EXPECT_NE(particles[0].cell, particles[1].cell);
   expect_audited(environment, particles);
   environment.edit(
       [&](ComplexEdit& e) { unsew(e.topology(), face_between(e.map(), particles[0].cell, particles[1].cell)); });
-  environment.follow(particles);
+  environment.update_after_edit(particles);
   expect_audited(environment, particles);
   const std::vector<Vec3> across = {{0.75, 0.5, 0.5}, {0.25, 0.5, 0.5}, {0.5, 0.25, 0.5}};
   EXPECT_GE(environment.advance(particles, across).contacts.contacts.size(), 2U);
@@ -311,13 +311,13 @@ class LeftInABlockedCell : public testing::Test {
 
 TEST_F(LeftInABlockedCell, MovesToTheNearestFreePlace) {
   block_the_middle();
-  const FollowReport report = environment.follow(particles, Stranded::move);
+  const UpdateReport report = environment.update_after_edit(particles, OrphanPolicy::relocate);
   EXPECT_EQ(report.touched, 1U);
-  ASSERT_EQ(report.stranded.size(), 1U);
-  EXPECT_EQ(report.stranded[0].particle, 1U);
-  EXPECT_EQ(report.stranded[0].place, Place::blocked);
-  EXPECT_EQ(report.stranded[0].became, Stranded::move);
-  EXPECT_EQ(report.stranded[0].distance, 0.25);
+  ASSERT_EQ(report.orphaned.size(), 1U);
+  EXPECT_EQ(report.orphaned[0].particle, 1U);
+  EXPECT_EQ(report.orphaned[0].place, Place::blocked);
+  EXPECT_EQ(report.orphaned[0].outcome, OrphanPolicy::relocate);
+  EXPECT_EQ(report.orphaned[0].distance, 0.25);
   EXPECT_EQ(particles[1].position, (Vec3{1.0, 0.5, 0.5}));
   EXPECT_EQ(particles[1].cell, particles[0].cell);
   expect_audited(environment, particles);
@@ -325,9 +325,9 @@ TEST_F(LeftInABlockedCell, MovesToTheNearestFreePlace) {
 
 TEST_F(LeftInABlockedCell, StaysAndRidesAlongUntilItsCellIsFree) {
   block_the_middle();
-  const FollowReport report = environment.follow(particles, Stranded::stay);
-  ASSERT_EQ(report.stranded.size(), 1U);
-  EXPECT_EQ(report.stranded[0].became, Stranded::stay);
+  const UpdateReport report = environment.update_after_edit(particles, OrphanPolicy::hold);
+  ASSERT_EQ(report.orphaned.size(), 1U);
+  EXPECT_EQ(report.orphaned[0].outcome, OrphanPolicy::hold);
   EXPECT_TRUE(particles[1].held);
   const std::vector<Vec3> right = {{0.5, 0.5, 0.25}, {1.75, 0.5, 0.5}, {2.5, 0.5, 0.5}};
   StepReport step = environment.advance(particles, right);
@@ -348,7 +348,7 @@ TEST_F(LeftInABlockedCell, StaysAndRidesAlongUntilItsCellIsFree) {
   EXPECT_NO_THROW(
       static_cast<void>(environment.restored(particles.states(), std::vector<Weights>(3, particles.held_weights(1)))));
   block_the_middle(true);
-  EXPECT_TRUE(environment.follow(particles).stranded.empty());
+  EXPECT_TRUE(environment.update_after_edit(particles).orphaned.empty());
   EXPECT_FALSE(particles[1].held);
   expect_audited(environment, particles);
   const std::vector<Vec3> on = {particles[0].position, {1.75, 1.0, 0.5}, particles[2].position};
@@ -358,10 +358,10 @@ TEST_F(LeftInABlockedCell, StaysAndRidesAlongUntilItsCellIsFree) {
 
 TEST_F(LeftInABlockedCell, IsAbsorbed) {
   block_the_middle();
-  const State last = particles[2];
-  const FollowReport report = environment.follow(particles, Stranded::absorb);
-  ASSERT_EQ(report.stranded.size(), 1U);
-  EXPECT_EQ(report.stranded[0].position, (Vec3{1.25, 0.5, 0.5}));
+  const ParticleState last = particles[2];
+  const UpdateReport report = environment.update_after_edit(particles, OrphanPolicy::absorb);
+  ASSERT_EQ(report.orphaned.size(), 1U);
+  EXPECT_EQ(report.orphaned[0].position, (Vec3{1.25, 0.5, 0.5}));
   ASSERT_EQ(particles.size(), 2U);
   EXPECT_TRUE(same_bits(particles[1], last));
 }
@@ -370,18 +370,18 @@ TEST_F(LeftInABlockedCell, IsAbsorbedWhereThereIsNoFreeCell) {
   environment.edit([&](ComplexEdit& e) {
     for (const Cell c : e.map().cells()) e.topology().set_free(c, false);
   });
-  const FollowReport report = environment.follow(particles, Stranded::move);
-  EXPECT_EQ(report.stranded.size(), 3U);
-  for (const StrandedParticle& p : report.stranded) EXPECT_EQ(p.became, Stranded::absorb);
+  const UpdateReport report = environment.update_after_edit(particles, OrphanPolicy::relocate);
+  EXPECT_EQ(report.orphaned.size(), 3U);
+  for (const OrphanedParticle& p : report.orphaned) EXPECT_EQ(p.outcome, OrphanPolicy::absorb);
   EXPECT_EQ(particles.size(), 0U);
 }
 
 TEST_F(LeftInABlockedCell, AndOutsideWhereACellIsRemoved) {
   environment.edit([&](ComplexEdit& e) { remove(e.topology(), middle); });
-  const FollowReport report = environment.follow(particles, Stranded::stay);
-  ASSERT_EQ(report.stranded.size(), 1U);
-  EXPECT_EQ(report.stranded[0].place, Place::outside);
-  EXPECT_EQ(report.stranded[0].became, Stranded::move);  // it can't stay where there is nothing
+  const UpdateReport report = environment.update_after_edit(particles, OrphanPolicy::hold);
+  ASSERT_EQ(report.orphaned.size(), 1U);
+  EXPECT_EQ(report.orphaned[0].place, Place::outside);
+  EXPECT_EQ(report.orphaned[0].outcome, OrphanPolicy::relocate);  // it can't stay where there is nothing
   EXPECT_EQ(particles[1].position, (Vec3{1.0, 0.5, 0.5}));
   expect_audited(environment, particles);
 }
@@ -389,13 +389,13 @@ TEST_F(LeftInABlockedCell, AndOutsideWhereACellIsRemoved) {
 // A wall that a particle rests on is taken away, from the other side.
 TEST_F(LeftInABlockedCell, ForgetsAWallThatIsNoneAnyMore) {
   block_the_middle();
-  environment.follow(particles, Stranded::absorb);
+  environment.update_after_edit(particles, OrphanPolicy::absorb);
   const std::vector<Vec3> right = {{1.5, 0.5, 0.25}, particles[1].position};
   environment.advance(particles, right);
   ASSERT_EQ(particles[0].touching_count, 1);
   EXPECT_EQ(particles[0].position.x, 1.0);
   block_the_middle(true);
-  environment.follow(particles);
+  environment.update_after_edit(particles);
   EXPECT_EQ(particles[0].touching_count, 0);
   EXPECT_TRUE(environment.advance(particles, right).contacts.contacts.empty());
 }
@@ -405,17 +405,17 @@ TEST_F(LeftInABlockedCell, MustFollowEachEdit) {
   EXPECT_THROW(environment.advance(particles, std::vector<Vec3>(3)), InvalidArgument);
   EXPECT_THROW(environment.add(particles, std::vector<Vec3>{{0.5, 0.5, 0.5}}), InvalidArgument);
   block_the_middle(true);
-  EXPECT_THROW(environment.follow(particles), InvalidArgument);
+  EXPECT_THROW(environment.update_after_edit(particles), InvalidArgument);
   Particles others;
   EXPECT_NO_THROW(environment.add(others, std::vector<Vec3>{{0.5, 0.5, 0.5}}));
   environment.move(std::vector<Vec3>(environment.positions().begin(), environment.positions().end()));
   block_the_middle();
-  EXPECT_NO_THROW(environment.follow(others));  // it goes along with the move first
+  EXPECT_NO_THROW(environment.update_after_edit(others));  // it goes along with the move first
   EXPECT_NO_THROW(environment.advance(others, std::vector<Vec3>{{0.5, 0.5, 0.5}}));
 }
 
 TEST_F(LeftInABlockedCell, AnEditThatIsRefusedIsNone) {
-  const Map before = environment.map();
+  const CombinatorialMap before = environment.map();
   EXPECT_THROW(environment.edit([&](ComplexEdit& e) {
     e.topology().set_free(middle, false);
     remove(e.topology(), middle);
@@ -447,7 +447,7 @@ TEST(FollowEdit, IsTheSameForAnyNumberOfThreads) {
                          }
                        })
                        .map);
-        environment.follow(particles);
+        environment.update_after_edit(particles);
       } catch (const EditRefused&) {
       }
       environment.advance(particles, jittered(particles, random, 0.1));

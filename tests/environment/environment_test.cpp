@@ -51,7 +51,7 @@ double& coordinate(Vec3& p, unsigned axis) { return axis == 0 ? p.x : axis == 1 
 
 std::vector<Vec3> positions_of(const Particles& particles) {
   std::vector<Vec3> all;
-  for (const State& s : particles.states()) all.push_back(s.position);
+  for (const ParticleState& s : particles.states()) all.push_back(s.position);
   return all;
 }
 
@@ -62,7 +62,7 @@ TEST(EnvironmentRefuses, BadNumbersAtEveryEntryAndNothingChanges) {
   const std::vector<Vec3> start = test::random_points(20, {0, 0, 0}, {3, 3, 3}, random);
   environment.add(particles, start);
   ASSERT_EQ(particles.size(), 20U);
-  const std::vector<State> before = test::copy_of(particles);
+  const std::vector<ParticleState> before = test::copy_of(particles);
   for (const double bad : bad_numbers) {
     for (unsigned axis = 0; axis < 3; ++axis) {
       std::vector<Vec3> points = start;
@@ -95,7 +95,7 @@ TEST(EnvironmentRefuses, SizesThatDoNotMatch) {
   Environment environment(box(2));
   Particles particles;
   environment.add(particles, std::vector<Vec3>(5, Vec3{0.3, 0.4, 0.5}));
-  const std::vector<State> before = test::copy_of(particles);
+  const std::vector<ParticleState> before = test::copy_of(particles);
   expect_refused([&] { environment.advance(particles, std::vector<Vec3>(4)); }, "4 targets for 5 particles");
   expect_refused([&] { environment.move(std::vector<Vec3>(26)); }, "26 positions for 27 points");
   expect_refused([&] { particles.remove(std::vector<std::uint8_t>(6)); }, "one mark per particle");
@@ -109,7 +109,7 @@ TEST(EnvironmentRefuses, OptionsThatMakeNoSense) {
   Environment environment(box(2));
   Particles particles;
   environment.add(particles, std::vector<Vec3>{{0.3, 0.4, 0.5}});
-  const std::vector<State> before = test::copy_of(particles);
+  const std::vector<ParticleState> before = test::copy_of(particles);
   const std::vector<Vec3> targets = {{0.6, 0.6, 0.6}};
   for (const double tolerance : {0.0, -1.0, std::nan("")}) {
     StepOptions options;
@@ -135,7 +135,7 @@ TEST(EnvironmentRefuses, ParticlesThatMissedAMove) {
   environment.add(early, place);  // has followed
   EXPECT_EQ(early.size(), 2U);
   environment.move(mesh.points);
-  const std::vector<State> before = test::copy_of(late);
+  const std::vector<ParticleState> before = test::copy_of(late);
   expect_refused([&] { environment.advance(late, place); }, "missed a move");
   EXPECT_TRUE(test::same_bits(before, late));
   environment.advance(early, positions_of(early));
@@ -161,11 +161,13 @@ TEST(EnvironmentRefuses, ResponsesThatAreNotFinite) {
       Environment environment(mesh);
       Particles particles;
       environment.add(particles, std::vector<Vec3>{{1.5, 1.5, 1.5}, {0.3, 0.4, 0.5}});
-      const std::vector<State> before = test::copy_of(particles);
+      const std::vector<ParticleState> before = test::copy_of(particles);
       if (moved) environment.move(mesh.points);
       const std::vector<Vec3> targets = {{1.6, 1.6, 1.6}, {-2, 0.4, 0.5}};
-      Continuation next{{0.1, bad, 0}, true};
-      const Respond respond = [&](const Contact&, std::span<const WallHit>, std::span<const WallHit>) { return next; };
+      AfterContact next{{0.1, bad, 0}, true};
+      const ContactCallback respond = [&](const Contact&, std::span<const WallHit>, std::span<const WallHit>) {
+        return next;
+      };
       expect_refused([&] { environment.advance(particles, targets, respond); }, "particle 1");
       EXPECT_TRUE(test::same_bits(before, particles));
       next = {{0.25, 0, 0}, true};
@@ -208,7 +210,7 @@ TEST(EnvironmentLocate, EveryKindOfPlaceOnLattices) {
   for (int which = 0; which < 5; ++which) {
     const MeshData mesh = box(3, which, 0.4);
     Environment environment(mesh);
-    const Map& map = environment.map();
+    const CombinatorialMap& map = environment.map();
     std::vector<Vec3> points;
     for (int k = -1; k <= 13; ++k) {
       for (int j = -1; j <= 13; ++j) {
@@ -258,7 +260,7 @@ TEST(Environment, AddReportsWhatItDoesNotAdd) {
   Environment environment(mesh);
   Particles particles;
   const std::vector<Vec3> places = {{0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}, {4, 0, 0}, {1, 1, 1}, {1.5, 1.5, 1}, {3, 3, 3}};
-  const std::vector<Added> added = environment.add(particles, places);
+  const std::vector<AddResult> added = environment.add(particles, places);
   ASSERT_EQ(added.size(), places.size());
   const std::vector<Place> expected = {Place::free, Place::blocked, Place::outside,
                                        Place::free, Place::free,    Place::free};
@@ -316,7 +318,7 @@ TEST(Environment, RemoveAndReorderKeepTheRest) {
   Particles particles;
   Random random(9);
   environment.add(particles, test::random_points(6, {0, 0, 0}, {2, 2, 2}, random));
-  const std::vector<State> before = test::copy_of(particles);
+  const std::vector<ParticleState> before = test::copy_of(particles);
   particles.reorder(std::vector<std::uint32_t>{5, 3, 1, 0, 2, 4});
   for (const auto& [now, then] : {std::pair{0, 5}, {1, 3}, {2, 1}, {3, 0}, {4, 2}, {5, 4}}) {
     EXPECT_TRUE(test::same_bits(particles[static_cast<std::size_t>(now)], before[static_cast<std::size_t>(then)]));
@@ -327,7 +329,7 @@ TEST(Environment, RemoveAndReorderKeepTheRest) {
   EXPECT_TRUE(test::same_bits(particles[1], before[1]));
   EXPECT_TRUE(test::same_bits(particles[2], before[4]));
   environment.advance(particles, std::vector<Vec3>(3, Vec3{1, 1, 1}));
-  for (const State& s : particles.states()) EXPECT_EQ(s.position, (Vec3{1, 1, 1}));
+  for (const ParticleState& s : particles.states()) EXPECT_EQ(s.position, (Vec3{1, 1, 1}));
   particles.remove(std::vector<std::uint8_t>{1, 1, 1});
   EXPECT_EQ(environment.advance(particles, {}).counters.particle_steps, 0U);
 }
@@ -406,7 +408,7 @@ void fill(Environment& environment, Particles& particles) {
   environment.add(particles, middles);
 }
 
-bool has_vertex(const Environment& environment, const State& s, std::uint32_t vertex) {
+bool has_vertex(const Environment& environment, const ParticleState& s, std::uint32_t vertex) {
   const auto v = environment.complex().vertices(s.at());
   return std::any_of(v.begin(), v.end(), [&](Vertex x) { return x.value == vertex; });
 }
@@ -420,8 +422,8 @@ TEST(EnvironmentHolds, ParticlesThatMeetAVertexThatIsNotFinite) {
       fill(environment, particles);
       constexpr std::uint32_t vertex = 21;  // of the lattice, inside
       std::vector<bool> meets;
-      for (const State& s : particles.states()) meets.push_back(has_vertex(environment, s, vertex));
-      const std::vector<State> before = test::copy_of(particles);
+      for (const ParticleState& s : particles.states()) meets.push_back(has_vertex(environment, s, vertex));
+      const std::vector<ParticleState> before = test::copy_of(particles);
 
       std::vector<Vec3> points = mesh.points;
       points[vertex].y = bad;
@@ -429,7 +431,7 @@ TEST(EnvironmentHolds, ParticlesThatMeetAVertexThatIsNotFinite) {
         environment.move(points);
         const StepReport report = environment.advance(particles, positions_of(particles));
         std::set<std::uint32_t> held;
-        for (const Held& h : report.held) {
+        for (const HeldParticle& h : report.held) {
           held.insert(h.particle);
           EXPECT_EQ(h.cell, before[h.particle].cell);
         }
@@ -488,14 +490,14 @@ TEST(EnvironmentHolds, ParticlesOfAnInvertedCellRideAlong) {
     Environment environment(mesh);
     Particles particles;
     fill(environment, particles);
-    const std::vector<State> before = test::copy_of(particles);
+    const std::vector<ParticleState> before = test::copy_of(particles);
     constexpr std::uint32_t vertex = 21;
     std::vector<Vec3> points = mesh.points;
     points[vertex] += Vec3{1.75, 0.125, 0.25};  // through the cells on one side
     environment.move(points);
     const StepReport report = environment.advance(particles, positions_of(particles));
     std::set<std::uint32_t> held;
-    for (const Held& h : report.held) held.insert(h.particle);
+    for (const HeldParticle& h : report.held) held.insert(h.particle);
     std::size_t inverted = 0;
     for (std::uint32_t i = 0; i < particles.size(); ++i) {
       const Corners v = environment.complex().corners(before[i].at());
@@ -511,7 +513,7 @@ TEST(EnvironmentHolds, ParticlesOfAnInvertedCellRideAlong) {
     EXPECT_EQ(test::check_states(environment, particles), "");
     // Not moved again: still held, wherever it wants to go.
     const std::vector<Vec3> targets(particles.size(), Vec3{0.125, 0.25, 0.125});
-    const std::vector<State> waiting = test::copy_of(particles);
+    const std::vector<ParticleState> waiting = test::copy_of(particles);
     environment.advance(particles, targets);
     for (std::uint32_t i = 0; i < particles.size(); ++i) {
       if (waiting[i].held) EXPECT_TRUE(test::same_bits(particles[i], waiting[i]));
@@ -521,7 +523,7 @@ TEST(EnvironmentHolds, ParticlesOfAnInvertedCellRideAlong) {
     environment.move(mesh.points);
     const StepReport mended = environment.advance(particles, targets);
     EXPECT_LT(mended.held.size(), inverted);
-    for (const State& s : particles.states()) EXPECT_FALSE(s.held);
+    for (const ParticleState& s : particles.states()) EXPECT_FALSE(s.held);
     ASSERT_EQ(test::check_states(environment, particles), "");
     EXPECT_TRUE(environment.advance(particles, targets).held.empty());
     EXPECT_TRUE(positions_of(particles) == targets);
@@ -544,8 +546,8 @@ TEST(EnvironmentHolds, AContactInTheStepThatMends) {
   environment.move(mesh.points);
   std::vector<Vec3> targets = positions_of(particles);
   for (Vec3& t : targets) t += (t - Vec3{1, 1, 1}) * 4.0;
-  const Respond back = [](const Contact& c, std::span<const WallHit>, std::span<const WallHit>) {
-    return Continuation{c.unused * -0.125};
+  const ContactCallback back = [](const Contact& c, std::span<const WallHit>, std::span<const WallHit>) {
+    return AfterContact{c.unused * -0.125};
   };
   const StepReport report = environment.advance(particles, targets, back);
   EXPECT_TRUE(report.held.empty());

@@ -32,7 +32,7 @@ std::vector<Vec3> shaken(std::span<const Vec3> positions, double size, Random& r
 }
 
 // The volume of no simplex reaches zero on the way: exact, by another method.
-bool stays_positive(const Complex& complex) {
+bool stays_positive(const CellComplex& complex) {
   for (const Cell c : complex.map().cells()) {
     const CellView cell = complex.map().view(c);
     for (const ImplicitSimplex& s : cell.shape().simplices()) {
@@ -49,48 +49,48 @@ bool stays_positive(const Complex& complex) {
   return true;
 }
 
-TEST(Flattening, AVertexPushedThroughItsCellIsStoppedWhereTheCellIsFlat) {
+TEST(SimplexInversion, AVertexPushedThroughItsCellIsStoppedWhereTheCellIsFlat) {
   Environment e = box_of(2);
   std::vector<Vec3> next = copy(e.positions());
   std::size_t middle = 0;
   while (next[middle] != Vec3{1, 1, 1}) ++middle;
   next[middle] = {1, 1, 3};  // the upper cells' ceiling is at 2
-  const auto flattening = e.first_flattening(next);
-  ASSERT_TRUE(flattening);
-  EXPECT_GT(flattening->how.safe_time, 0.2);
-  EXPECT_LE(flattening->how.safe_time, 0.5);
-  EXPECT_NE(flattening->message.find("vertex " + std::to_string(middle)), std::string::npos) << flattening->message;
-  const double time = e.move_until_flattened(next);
-  EXPECT_LE(time, flattening->how.safe_time);
-  EXPECT_GT(time, flattening->how.safe_time - 1e-9);
+  const auto inversion = e.first_inversion(next);
+  ASSERT_TRUE(inversion);
+  EXPECT_GT(inversion->how.safe_time, 0.2);
+  EXPECT_LE(inversion->how.safe_time, 0.5);
+  EXPECT_NE(inversion->message.find("vertex " + std::to_string(middle)), std::string::npos) << inversion->message;
+  const double time = e.move_until_inverted(next);
+  EXPECT_LE(time, inversion->how.safe_time);
+  EXPECT_GT(time, inversion->how.safe_time - 1e-9);
   EXPECT_TRUE(e.validity().valid());
   EXPECT_NEAR(e.positions()[middle].z, 1.0 + 2.0 * time, 1e-9);
 }
 
-TEST(Flattening, AShareOfTheWayCanBeLeft) {
+TEST(SimplexInversion, AShareOfTheWayCanBeLeft) {
   Environment e = box_of(2);
   std::vector<Vec3> next = copy(e.positions());
   for (Vec3& p : next) p.z = 2.0 - p.z;  // turned inside out: flat in the middle
-  EXPECT_NEAR(e.first_flattening(next)->how.safe_time, 0.5, 1e-9);
-  EXPECT_NEAR(e.move_until_flattened(next, 0.5), 0.25, 1e-9);
+  EXPECT_NEAR(e.first_inversion(next)->how.safe_time, 0.5, 1e-9);
+  EXPECT_NEAR(e.move_until_inverted(next, 0.5), 0.25, 1e-9);
   EXPECT_NEAR(e.positions().back().z, 1.5, 1e-9);
 }
 
-TEST(Flattening, WhatHarmsNothingIsMadeWhole) {
+TEST(SimplexInversion, WhatHarmsNothingIsMadeWhole) {
   Environment e = box_of(2);
   Random random(1);
   const std::vector<Vec3> next = shaken(e.positions(), 0.05, random);
-  EXPECT_FALSE(e.first_flattening(next));
-  EXPECT_EQ(e.move_until_flattened(next), 1.0);
+  EXPECT_FALSE(e.first_inversion(next));
+  EXPECT_EQ(e.move_until_inverted(next), 1.0);
   EXPECT_TRUE(std::ranges::equal(e.positions(), next));
 }
 
-TEST(Flattening, APositionTooFewIsRefused) {
+TEST(SimplexInversion, APositionTooFewIsRefused) {
   Environment e = box_of(2);
   std::vector<Vec3> next = copy(e.positions());
   next.pop_back();
-  EXPECT_THROW((void)e.first_flattening(next), InvalidArgument);
-  EXPECT_THROW(e.move_until_flattened(next), InvalidArgument);
+  EXPECT_THROW((void)e.first_inversion(next), InvalidArgument);
+  EXPECT_THROW(e.move_until_inverted(next), InvalidArgument);
 }
 
 class FlatteningOf : public ::testing::TestWithParam<int> {};
@@ -103,7 +103,7 @@ TEST_P(FlatteningOf, WildMotionsLeaveAllCellsValidAndParticlesInTheirs) {
   std::size_t whole = 0;
   for (std::uint64_t seed = 0; seed < std::max<std::uint64_t>(2, scaled(6, 300)); ++seed) {
     const MeshData mesh = oracle::random_scene(kind, seed, 0.2);
-    if (!Complex(mesh).invalid_cells().empty()) continue;
+    if (!CellComplex(mesh).invalid_cells().empty()) continue;
     Environment e(mesh, Threads{1});
     Random random(seed, 5);
     Particles particles;
@@ -116,13 +116,13 @@ TEST_P(FlatteningOf, WildMotionsLeaveAllCellsValidAndParticlesInTheirs) {
     for (int step = 0; step < 5; ++step) {
       const double edge = norm(e.positions()[1] - e.positions()[0]);
       const std::vector<Vec3> next = shaken(e.positions(), edge * std::exp2(random.uniform(-8.0, 1.0)), random);
-      const bool flattens = e.first_flattening(next).has_value();
-      const double time = e.move_until_flattened(next, random.uniform());
+      const bool flattens = e.first_inversion(next).has_value();
+      const double time = e.move_until_inverted(next, random.uniform());
       EXPECT_EQ(time == 1.0, !flattens);
       EXPECT_TRUE(e.validity().valid()) << "seed " << seed << ", step " << step;
       EXPECT_TRUE(stays_positive(e.complex())) << "seed " << seed << ", step " << step;
       std::vector<Vec3> targets;
-      for (const State& s : particles.states()) targets.push_back(s.position);
+      for (const ParticleState& s : particles.states()) targets.push_back(s.position);
       const StepReport report = e.advance(particles, targets);
       EXPECT_TRUE(report.held.empty());
       (flattens ? stopped : whole) += 1;

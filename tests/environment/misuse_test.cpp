@@ -40,7 +40,7 @@ TEST(OtherEnvironment, ItsParticlesAreRefusedUnchanged) {
   Environment smaller(cubes(1));
   for (Environment* other : {&equal, &smaller}) {
     Particles particles = added_to(environment);
-    const std::vector<State> before = test::copy_of(particles);
+    const std::vector<ParticleState> before = test::copy_of(particles);
     const std::vector<double> radii(particles.size(), 0.1);
     SphereStepper stepper;
     const auto refuses = [&](const std::function<void()>& call) {
@@ -50,7 +50,7 @@ TEST(OtherEnvironment, ItsParticlesAreRefusedUnchanged) {
     refuses([&] { other->advance(particles, places); });
     refuses([&] { other->add(particles, places); });
     refuses([&] { other->add(particles, SimplexId{other->map().cells()[0], 0}, places[0]); });
-    refuses([&] { other->follow(particles); });
+    refuses([&] { other->update_after_edit(particles); });
     refuses([&] { static_cast<void>(other->trace(particles, 0, places)); });
     refuses([&] { stepper.advance(*other, particles, radii, places); });
     // The remedy.
@@ -117,7 +117,7 @@ class Indices : public testing::Test {
 
   Environment environment = Environment(cubes(2));
   Particles particles = added_to(environment);
-  const std::vector<State> before = test::copy_of(particles);
+  const std::vector<ParticleState> before = test::copy_of(particles);
 };
 
 TEST_F(Indices, ThatNameNoParticle) {
@@ -178,14 +178,14 @@ TEST_F(Indices, OfSimplicesThatAreNone) {
 TEST(StepOptionsRefused, WithoutAContact) {
   Environment environment(cubes(2));
   Particles particles = added_to(environment);
-  const std::vector<State> before = test::copy_of(particles);
+  const std::vector<ParticleState> before = test::copy_of(particles);
   const std::vector<double> radii(particles.size(), 0.1);
   StepOptions options;
   options.max_contacts = 0;
   SphereStepper stepper;
   const std::string words = "max_contacts is 0: it must be at least 1";
-  const Respond respond = [](const Contact&, auto, auto) { return Continuation{}; };
-  for (const Respond& r : {Respond{}, respond}) {
+  const ContactCallback respond = [](const Contact&, auto, auto) { return AfterContact{}; };
+  for (const ContactCallback& r : {ContactCallback{}, respond}) {
     expect_refused([&] { environment.advance(particles, places, r, options); }, words);
     expect_refused([&] { static_cast<void>(environment.trace(particles, 0, places, r, options)); }, words);
     expect_refused([&] { stepper.advance(environment, particles, radii, places, r, options); }, words);

@@ -22,7 +22,7 @@ using test::same_bits;
 
 std::vector<Vec3> places_of(const Particles& particles) {
   std::vector<Vec3> places;
-  for (const State& s : particles.states()) places.push_back(s.position);
+  for (const ParticleState& s : particles.states()) places.push_back(s.position);
   return places;
 }
 
@@ -62,7 +62,7 @@ class Scene {
           test::apply(e.topology(), test::draw_edit(e.map(), kind, c, bag_, random));
         });
         bag_.update(done.map);
-        follow(done, environment.positions().size(), rest_);
+        update_after_edit(done, environment.positions().size(), rest_);
         return true;
       } catch (const Error&) {
       }
@@ -84,12 +84,12 @@ class Scene {
  private:
   template <std::size_t N>
   [[nodiscard]] Vec3 carried(const Particles& particles, std::size_t i) const {
-    const State& s = particles[i];
+    const ParticleState& s = particles[i];
     const auto now = current_space<N>(environment.complex());
     const auto before = previous_space<N>(environment.complex()).corners(s.at());
     if (volume_sign(now.corners(s.at())) != Sign::positive) return s.position;
     const Weights w = s.held ? particles.held_weights(i) : detail::barycentric(before, s.position);
-    return detail::ridden(now, s.at(), w).position;
+    return detail::carried(now, s.at(), w).position;
   }
 
   std::vector<Vec3> rest_;
@@ -110,14 +110,14 @@ struct Twins {
 
 class Orders : public testing::TestWithParam<test::EditMesh> {};
 
-constexpr std::array all_policies = {Stranded::stay, Stranded::move, Stranded::absorb};
+constexpr std::array all_policies = {OrphanPolicy::hold, OrphanPolicy::relocate, OrphanPolicy::absorb};
 
 // What follows an edit made after a move is where it would be, had it gone along with the vertices in between.
 TEST_P(Orders, AMoveThenAnEditIsFollowed) {
   std::size_t changed = 0;
   for (int run = 0; run < test::scaled(12, 400); ++run) {
     Twins t(GetParam().make(), static_cast<std::uint64_t>(run));
-    const Stranded stranded = all_policies[static_cast<std::size_t>(run) % 3];
+    const OrphanPolicy orphaned = all_policies[static_cast<std::size_t>(run) % 3];
     for (int step = 0; step < 6; ++step) {
       const double strength = step == 4 ? 0.2 : 0.01;
       t.a.move(strength);
@@ -126,10 +126,10 @@ TEST_P(Orders, AMoveThenAnEditIsFollowed) {
       const bool edited = t.a.edit();
       ASSERT_EQ(t.b.edit(), edited);
       if (!edited) break;
-      const FollowReport in_turn = t.a.environment.follow(t.in_a, stranded);
-      const FollowReport late = t.b.environment.follow(t.in_b, stranded);
+      const UpdateReport in_turn = t.a.environment.update_after_edit(t.in_a, orphaned);
+      const UpdateReport late = t.b.environment.update_after_edit(t.in_b, orphaned);
       changed += in_turn.located;
-      ASSERT_EQ(in_turn.stranded.size(), late.stranded.size());
+      ASSERT_EQ(in_turn.orphaned.size(), late.orphaned.size());
       ASSERT_TRUE(same_bits(test::copy_of(t.in_a), t.in_b)) << "run " << run << ", step " << step;
       EXPECT_FALSE(t.b.environment.awaits_advance(t.in_b));
       const Audit found = audit(t.b.environment.complex(), t.in_b);
@@ -149,16 +149,16 @@ TEST_P(Orders, AMoveThenAnEditIsFollowed) {
 TEST_P(Orders, AnEditThenAMoveIsFollowed) {
   for (int run = 0; run < test::scaled(12, 400); ++run) {
     Twins t(GetParam().make(), static_cast<std::uint64_t>(run) + 1000);
-    const Stranded stranded = all_policies[static_cast<std::size_t>(run) % 3];
+    const OrphanPolicy orphaned = all_policies[static_cast<std::size_t>(run) % 3];
     for (int step = 0; step < 6; ++step) {
       const bool edited = t.a.edit();
       ASSERT_EQ(t.b.edit(), edited);
       if (!edited) break;
-      t.a.environment.follow(t.in_a, stranded);
+      t.a.environment.update_after_edit(t.in_a, orphaned);
       const double strength = step == 4 ? 0.2 : 0.01;
       t.a.move(strength);
       t.b.move(strength);
-      t.b.environment.follow(t.in_b, stranded);
+      t.b.environment.update_after_edit(t.in_b, orphaned);
       ASSERT_TRUE(same_bits(test::copy_of(t.in_a), t.in_b)) << "run " << run << ", step " << step;
       EXPECT_TRUE(t.b.environment.awaits_advance(t.in_b));
       const std::vector<Vec3> on = t.a.points(t.in_a.size());
@@ -198,7 +198,7 @@ class Machine {
       case 4:
       case 5: advance(set); break;
       case 6:
-      case 7: follow(set); break;
+      case 7: update_after_edit(set); break;
       case 8: add(set); break;
       case 9: thin_out(set); break;
       case 10: part_and_join(set); break;
@@ -215,7 +215,7 @@ class Machine {
       if (!advanced.empty()) {
         ASSERT_NE(advanced.find("follow()"), std::string::npos) << advanced;
         ASSERT_TRUE(same_bits(test::copy_of(set.particles), tried));
-        ASSERT_EQ(refusal([&] { scene_.environment.follow(tried); }), "");
+        ASSERT_EQ(refusal([&] { scene_.environment.update_after_edit(tried); }), "");
         ASSERT_EQ(refusal([&] { scene_.environment.advance(tried, places_of(tried)); }), "");
       }
       const Audit found = audit(scene_.environment.complex(), tried);
@@ -263,7 +263,7 @@ class Machine {
 
   void advance(Set& set) {
     const std::vector<Vec3> targets = scene_.points(set.particles.size());
-    const std::vector<State> before = test::copy_of(set.particles);
+    const std::vector<ParticleState> before = test::copy_of(set.particles);
     const std::string why = refusal([&] { scene_.environment.advance(set.particles, targets); });
     if (set.particles.size() > 0 && set.edits != edits_) {
       ASSERT_NE(why.find("follow()"), std::string::npos) << why;
@@ -275,13 +275,13 @@ class Machine {
     set.edits = edits_;
   }
 
-  void follow(Set& set) {
-    const auto stranded = all_policies[scene_.random.below(3)];
+  void update_after_edit(Set& set) {
+    const auto orphaned = all_policies[scene_.random.below(3)];
     const std::size_t size = set.particles.size();
     ASSERT_EQ(refusal([&] {
-                const FollowReport report = scene_.environment.follow(set.particles, stranded);
-                const auto gone = std::count_if(report.stranded.begin(), report.stranded.end(),
-                                                [](const auto& p) { return p.became == Stranded::absorb; });
+                const UpdateReport report = scene_.environment.update_after_edit(set.particles, orphaned);
+                const auto gone = std::count_if(report.orphaned.begin(), report.orphaned.end(),
+                                                [](const auto& p) { return p.outcome == OrphanPolicy::absorb; });
                 ASSERT_EQ(set.particles.size() + static_cast<std::size_t>(gone), size);
               }),
               "");
@@ -291,7 +291,7 @@ class Machine {
 
   void add(Set& set) {
     const std::vector<Vec3> places = scene_.points(20);
-    const std::vector<State> before = test::copy_of(set.particles);
+    const std::vector<ParticleState> before = test::copy_of(set.particles);
     for (int tries = 0;; ++tries) {
       const std::string why = refusal([&] { scene_.environment.add(set.particles, places); });
       if (why.empty()) break;
@@ -300,7 +300,7 @@ class Machine {
       ASSERT_FALSE(is_current(set));
       // It names what to do first.
       if (why.find("follow()") != std::string::npos)
-        follow(set);
+        update_after_edit(set);
       else if (why.find("advance") != std::string::npos)
         advance(set);
       else
@@ -328,9 +328,9 @@ class Machine {
       ASSERT_EQ(refusal([&] { set.particles.replace(which, some.particles); }), "");
       return;
     }
-    const std::vector<State> before = test::copy_of(set.particles);
+    const std::vector<ParticleState> before = test::copy_of(set.particles);
     if (set.edits != edits_)
-      follow(some);
+      update_after_edit(some);
     else
       advance(some);
     if (some.particles.size() != which.size()) return;
@@ -339,7 +339,7 @@ class Machine {
     ASSERT_TRUE(same_bits(before, set.particles));
     // The remedy: the whole set does the same.
     if (set.edits != edits_)
-      follow(set);
+      update_after_edit(set);
     else
       advance(set);
     if (set.particles.size() != before.size()) return;
@@ -359,10 +359,11 @@ class Machine {
     if (late_->particles.size() == 0) return late_.reset();
     if (late_->moves + 2 > moves_ && late_->edits + 2 > edits_) return;
     Particles& particles = late_->particles;
-    const std::vector<State> before = test::copy_of(particles);
+    const std::vector<ParticleState> before = test::copy_of(particles);
     const std::vector<Vec3> places = places_of(particles);
     for (const auto& call : std::vector<std::function<void()>>{
-             [&] { scene_.environment.advance(particles, places); }, [&] { scene_.environment.follow(particles); },
+             [&] { scene_.environment.advance(particles, places); },
+             [&] { scene_.environment.update_after_edit(particles); },
              [&] { scene_.environment.add(particles, places); },
              [&] { static_cast<void>(scene_.environment.trace(particles, 0, places)); }}) {
       const std::string why = refusal(call);
@@ -439,7 +440,7 @@ TEST(Order, AMoveThenAnEditTakesParticlesAlong) {
   c.split();
   EXPECT_TRUE(c.environment.awaits_advance(c.particles));
   EXPECT_THROW(c.environment.advance(c.particles, places_of(c.particles)), InvalidArgument);
-  const FollowReport report = c.environment.follow(c.particles);
+  const UpdateReport report = c.environment.update_after_edit(c.particles);
   EXPECT_EQ(report.located, 1U);
   EXPECT_LT(norm(c.particles[0].position - Vec3{0.625, 0.5, 0.5}), 1e-15);
   EXPECT_LT(norm(c.particles[1].position - Vec3{0.15625, 0.125, 0.125}), 1e-15);
@@ -458,9 +459,9 @@ TEST(Order, AnEditAfterAMoveNeedsNobody) {
   Particles later;
   c.environment.add(later, std::vector<Vec3>{{0.5, 0.5, 0.5}});
   c.split();
-  EXPECT_EQ(c.environment.follow(later).stranded.size(), 0U);
+  EXPECT_EQ(c.environment.update_after_edit(later).orphaned.size(), 0U);
   for (Particles* particles : {&empty, &emptied}) {
-    EXPECT_NO_THROW(c.environment.follow(*particles));
+    EXPECT_NO_THROW(c.environment.update_after_edit(*particles));
     EXPECT_NO_THROW(c.environment.add(*particles, std::vector<Vec3>{{0.5, 0.5, 0.5}}));
     EXPECT_NO_THROW(c.environment.advance(*particles, places_of(*particles)));
   }

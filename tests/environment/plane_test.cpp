@@ -52,7 +52,7 @@ class Swarm {
       const double angle = random_.uniform(0, 2 * std::numbers::pi);
       velocities.push_back({speed * std::cos(angle), speed * std::sin(angle), 0});
     }
-    fates.assign(set.size(), Fate::alive);
+    fates.assign(set.size(), ParticleStatus::alive);
   }
 
   StepReport step(double dt) {
@@ -63,7 +63,7 @@ class Swarm {
 
   Particles set;
   std::vector<Vec3> velocities;
-  std::vector<Fate> fates;
+  std::vector<ParticleStatus> fates;
 
  private:
   [[nodiscard]] std::vector<Vec3> targets(double dt) const {
@@ -74,12 +74,12 @@ class Swarm {
 
   Environment& environment_;
   Random random_;
-  Responses responses_;
+  WallResponses responses_;
 };
 
 // Whether the contact's dart is where its point is: the vertex, or the edge; places are right to rounding.
 void expect_dart_at_point(const Environment& environment, const Contact& c) {
-  const Map& map = environment.map();
+  const CombinatorialMap& map = environment.map();
   const Vec3 a = environment.positions()[map.origin(c.dart).value];
   const Vec3 b = environment.positions()[map.origin(map.phi1(c.dart)).value];
   if (c.kind == Kind::vertex) {
@@ -130,8 +130,8 @@ TEST_P(InThePlane, NobodyIsLostOnALattice) {
     Particles set;
     environment.add(set, points);
     std::vector<Vec3> velocities(set.size());
-    std::vector<Fate> fates(set.size(), Fate::alive);
-    const Responses responses;
+    std::vector<ParticleStatus> fates(set.size(), ParticleStatus::alive);
+    const WallResponses responses;
     for (int i = 0; i < 40; ++i) {
       std::vector<Vec3> targets;
       for (std::size_t k = 0; k < set.size(); ++k) {
@@ -218,8 +218,8 @@ TEST(Plane, ReboundsFoldAStraightPath) {
     const Vec3 velocity = {11.5, -7.125, 0};
     environment.add(set, std::vector<Vec3>{start});
     std::vector<Vec3> velocities = {velocity};
-    std::vector<Fate> fates = {Fate::alive};
-    const Responses responses;
+    std::vector<ParticleStatus> fates = {ParticleStatus::alive};
+    const WallResponses responses;
     for (int i = 1; i <= 50; ++i) {
       const std::vector<Vec3> targets = {set[0].position + velocities[0]};
       environment.advance(set, targets, respond_with(responses, velocities, fates, 1.0));
@@ -258,7 +258,7 @@ TEST(Plane, LocatesInFacesOnEdgesAndAtVertices) {
   EXPECT_EQ(environment.locate({1.0, 2.0, 0}).kind, Kind::vertex);
   EXPECT_EQ(environment.locate({4.5, 2.0, 0}).place, Place::outside);
   const Location edge = environment.locate({1.0, 0.25, 0});
-  const Map& map = environment.map();
+  const CombinatorialMap& map = environment.map();
   EXPECT_EQ(environment.positions()[map.origin(edge.dart).value].x, 1.0);
   EXPECT_EQ(environment.positions()[map.origin(map.phi1(edge.dart)).value].x, 1.0);
   EXPECT_EQ(map.phi2(map.phi2(edge.dart)), edge.dart);
@@ -268,7 +268,7 @@ TEST(Plane, LocatesInFacesOnEdgesAndAtVertices) {
 Cell cell_at(Environment& environment, const Vec3& x) { return environment.locate(x).simplex.cell; }
 
 // The edge between two cells, as the first runs along it.
-Dart dart_between(const Map& map, Cell a, Cell b) {
+Dart dart_between(const CombinatorialMap& map, Cell a, Cell b) {
   for (std::uint16_t d = 0; d < map.shape(a).dart_count(); ++d) {
     if (map.view(a).neighbour(d) == b) return {a, d};
   }
@@ -282,7 +282,7 @@ TEST(Plane, ParticlesFollowWhatIsOpenedAndSewn) {
   const Cell right = cell_at(environment, {1.5, 0.5, 0});
   const auto opened =
       environment.edit([&](ComplexEdit& e) { unsew(e.topology(), e.map().face(dart_between(e.map(), left, right))); });
-  EXPECT_EQ(opened.map.born.size(), 2U) << "both ends of the edge are parted";
+  EXPECT_EQ(opened.map.created.size(), 2U) << "both ends of the edge are parted";
   Particles set;
   environment.add(set, std::vector<Vec3>{{0.5, 0.25, 0}, {1.5, 0.5, 0}});
   const std::vector<Vec3> across = {{1.75, 0.25, 0}, {1.5, 0.5, 0}};
@@ -291,7 +291,7 @@ TEST(Plane, ParticlesFollowWhatIsOpenedAndSewn) {
   EXPECT_EQ(set[0].touching_count, 1);
 
   environment.edit([&](ComplexEdit& e) {
-    const Map& map = e.map();
+    const CombinatorialMap& map = e.map();
     const auto at_one = [&](Cell c) {
       std::uint16_t d = 0;
       while (e.position(map.origin({c, d})).x != 1.0 || e.position(map.origin(map.phi1({c, d}))).x != 1.0) ++d;
@@ -299,7 +299,7 @@ TEST(Plane, ParticlesFollowWhatIsOpenedAndSewn) {
     };
     sew(e.topology(), at_one(set[0].cell), at_one(set[1].cell));
   });
-  const FollowReport report = environment.follow(set);
+  const UpdateReport report = environment.update_after_edit(set);
   EXPECT_EQ(report.located, 2U);
   EXPECT_EQ(set[0].touching_count, 0);
   EXPECT_TRUE(environment.advance(set, across).contacts.contacts.empty());
@@ -311,9 +311,9 @@ TEST(Plane, ParticlesFollowMergedAndSplitFaces) {
   Environment environment(rectangle(1, {4, 1}, 0.0, 0.0));
   Particles set;
   environment.add(set, std::vector<Vec3>{{0.5, 0.25, 0}, {1.25, 0.5, 0}, {3.5, 0.5, 0}});
-  const State far = set[2];
+  const ParticleState far = set[2];
   environment.edit([&](ComplexEdit& e) { merge_faces(e.topology(), dart_between(e.map(), set[0].cell, set[1].cell)); });
-  EXPECT_EQ(environment.follow(set).touched, 2U);
+  EXPECT_EQ(environment.update_after_edit(set).touched, 2U);
   EXPECT_EQ(set[0].cell, set[1].cell);
   EXPECT_EQ(set[2].cell, far.cell);
   const Cell whole = set[0].cell;
@@ -326,13 +326,13 @@ TEST(Plane, ParticlesFollowMergedAndSplitFaces) {
     split_face(e.topology(), ends[0], ends[1]);
   });
   EXPECT_EQ(split.map.added.size(), 2U);
-  EXPECT_EQ(environment.follow(set).located, 2U);
+  EXPECT_EQ(environment.update_after_edit(set).located, 2U);
   EXPECT_NE(set[0].cell, set[1].cell);
   EXPECT_EQ(environment.map().type(set[0].cell), CellType::quadrilateral);
   environment.edit([&](ComplexEdit& e) { e.topology().set_free(set[1].cell, false); });
-  const FollowReport moved = environment.follow(set, Stranded::move);
-  ASSERT_EQ(moved.stranded.size(), 1U);
-  EXPECT_EQ(moved.stranded[0].distance, 0.25) << "to the edge of the cell on the left";
+  const UpdateReport moved = environment.update_after_edit(set, OrphanPolicy::relocate);
+  ASSERT_EQ(moved.orphaned.size(), 1U);
+  EXPECT_EQ(moved.orphaned[0].distance, 0.25) << "to the edge of the cell on the left";
   EXPECT_EQ(set[1].position, (Vec3{1.0, 0.5, 0}));
   EXPECT_EQ(audit(environment.complex(), set).failed, 0U);
 }
@@ -358,12 +358,12 @@ TEST(Plane, SaysWhenATriangleIsFlattened) {
   mesh.add_cell(CellType::triangle, std::vector<std::uint32_t>{0, 1, 2});
   Environment environment(mesh);
   const std::vector<Vec3> after = {{0, 0, 0}, {4, 0, 0}, {1, -2, 0}};
-  const auto found = environment.first_flattening(after);
+  const auto found = environment.first_inversion(after);
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->how.safe_time, 0.5, 1e-9);
   EXPECT_LE(found->how.safe_time, 0.5);
-  EXPECT_EQ(found->how.kind, FlatteningKind::vertex_edge);
-  const double share = environment.move_until_flattened(after, 0.9);
+  EXPECT_EQ(found->how.kind, InversionKind::vertex_edge);
+  const double share = environment.move_until_inverted(after, 0.9);
   EXPECT_NEAR(share, 0.45, 1e-9);
   EXPECT_TRUE(environment.validity().valid());
 }
@@ -426,8 +426,8 @@ TEST(Plane, MovesOutOfItAreRefused) {
     EXPECT_NE(std::string(e.what()).find("plane"), std::string::npos) << e.what();
   }
   EXPECT_EQ(std::vector<Vec3>(environment.positions().begin(), environment.positions().end()), before);
-  EXPECT_THROW((void)environment.first_flattening(after), InvalidArgument);
-  EXPECT_THROW(environment.move_until_flattened(after), InvalidArgument);
+  EXPECT_THROW((void)environment.first_inversion(after), InvalidArgument);
+  EXPECT_THROW(environment.move_until_inverted(after), InvalidArgument);
 }
 
 }  // namespace dartcast::plane_test

@@ -54,8 +54,8 @@ struct World {
   Environment environment;
   Particles particles;
   std::vector<Vec3> velocities;
-  std::vector<Fate> fates;
-  Responses responses{Response{ResponseKind::reflect, 0.5, 0.1}};
+  std::vector<ParticleStatus> fates;
+  WallResponses responses{WallResponse{WallResponseKind::reflect, 0.5, 0.1}};
   std::vector<Vec3> rest;
 
   World(unsigned dimension, bool simplices) : World(mesh_of(dimension, simplices), places(dimension), dimension) {}
@@ -209,7 +209,7 @@ TEST(Range, AFloorWithAGaussianDent) {
     }
     World world(generate_box(o), at, 3);
     ASSERT_EQ(world.particles.size(), at.size());
-    if (scene % 3 == 1) world.responses = Responses(Response{ResponseKind::slide, 1.0, 0.0});
+    if (scene % 3 == 1) world.responses = WallResponses(WallResponse{WallResponseKind::slide, 1.0, 0.0});
     for (Vec3& v : world.velocities)
       v = {random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-0.5, 0)};
     for (int step = 0; step < 40; ++step) {

@@ -25,7 +25,7 @@ MeshData scene(double scale, const Vec3& shift) {
 }
 
 struct Outcome {
-  std::vector<State> states;
+  std::vector<ParticleState> states;
   std::vector<Vec3> velocities;
   std::vector<Contact> contacts;
   Counters counters;
@@ -47,8 +47,8 @@ Outcome run(double scale, const Vec3& shift, Motion motion, int steps) {
   for (std::size_t i = 0; i < particles.size(); ++i) {
     outcome.velocities.push_back(Vec3{random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2)} * scale);
   }
-  std::vector<Fate> fates(particles.size(), Fate::alive);
-  const Responses responses({ResponseKind::reflect, 0.9, 0.05});
+  std::vector<ParticleStatus> fates(particles.size(), ParticleStatus::alive);
+  const WallResponses responses({WallResponseKind::reflect, 0.9, 0.05});
   std::vector<Vec3> targets(particles.size());
   for (int step = 1; step <= steps; ++step) {
     for (std::size_t i = 0; i < targets.size(); ++i) targets[i] = particles[i].position + outcome.velocities[i] * 0.25;
@@ -76,7 +76,7 @@ Outcome run(double scale, const Vec3& shift, Motion motion, int steps) {
 void expect_scaled(const Outcome& a, const Outcome& b, double scale) {
   ASSERT_EQ(a.states.size(), b.states.size());
   for (std::size_t i = 0; i < a.states.size(); ++i) {
-    State s = a.states[i];
+    ParticleState s = a.states[i];
     s.position *= scale;
     ASSERT_TRUE(test::same_bits(s, b.states[i])) << "particle " << i;
     ASSERT_EQ(test::bits(a.velocities[i] * scale), test::bits(b.velocities[i])) << "particle " << i;

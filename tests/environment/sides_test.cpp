@@ -84,7 +84,7 @@ TEST_P(Sides, AreKeptWhereBothAreReplaced) {
     }
     environment.advance(particles, targets);
     std::vector<std::array<int, 3>> cubes;
-    for (const State& s : particles.states()) {
+    for (const ParticleState& s : particles.states()) {
       cubes.push_back(cube_of(environment, s.cell));
       on_walls += s.position.x == std::floor(s.position.x) || s.position.y == std::floor(s.position.y) ? 1 : 0;
     }
@@ -99,7 +99,7 @@ TEST_P(Sides, AreKeptWhereBothAreReplaced) {
                            const auto cells = e.map().cells();
                            const Cell c = cells[random.below(static_cast<std::uint32_t>(cells.size()))];
                            const auto kind = test::in_dimension(kinds[random.below(3)], GetParam() ? 2 : 3);
-                           const Transaction::Mark before = e.mark();
+                           const Transaction::Savepoint before = e.savepoint();
                            try {
                              test::apply(e.topology(), test::draw_edit(e.map(), kind, c, bag, random));
                            } catch (const Error&) {
@@ -111,7 +111,7 @@ TEST_P(Sides, AreKeptWhereBothAreReplaced) {
       } catch (const EditRefused&) {
         continue;
       }
-      ASSERT_TRUE(environment.follow(particles).stranded.empty());
+      ASSERT_TRUE(environment.update_after_edit(particles).orphaned.empty());
       for (std::size_t i = 0; i < particles.size(); ++i)
         ASSERT_EQ(cube_of(environment, particles[i].cell), cubes[i]) << "run " << run << ", particle " << i;
       const Audit found = audit(environment.complex(), particles);

@@ -72,7 +72,7 @@ class Mixed {
 
   std::vector<Vec3> any_targets(const Particles& set) {
     std::vector<Vec3> targets;
-    for (const State& s : set.states())
+    for (const ParticleState& s : set.states())
       targets.push_back(on_lattice_ ? next_on_lattice(s.position) : s.position + any_vector(0.2));
     return targets;
   }
@@ -141,7 +141,7 @@ class Mixed {
       if (on_lattice_) return e.topology().set_free(c, !environment_.map().is_free(c));
       split_edge(e.topology(), {c, static_cast<std::uint16_t>(random_.below(static_cast<std::uint32_t>(darts)))});
     });
-    environment_.follow(set_);
+    environment_.update_after_edit(set_);
     ++edits;
   }
 
@@ -172,14 +172,14 @@ void expect_steps_of_particles_that_keep_nothing(Places places) {
   EXPECT_GT(edits, static_cast<std::size_t>(std::max(1, scaled(40, 2000))));
 }
 
-TEST(Memos, NeverChangeAStep) { expect_steps_of_particles_that_keep_nothing(Places::anywhere); }
+TEST(SimplexCache, NeverChangeAStep) { expect_steps_of_particles_that_keep_nothing(Places::anywhere); }
 
 // Cells are blocked and freed beside particles that know that they are on no wall.
-TEST(Memos, NeverChangeAStepOnALattice) { expect_steps_of_particles_that_keep_nothing(Places::lattice); }
+TEST(SimplexCache, NeverChangeAStepOnALattice) { expect_steps_of_particles_that_keep_nothing(Places::lattice); }
 
 // The inner facet lies in x + 3y = 0, and its gradient is (1/3, 1, 0), of which a float keeps (g, 1, 0): g x + y is
 // zero, and nothing rounded, where x + 3y is 2^-26.
-TEST(Memos, CoordinatesThatAreRoundedProveNoZeros) {
+TEST(SimplexCache, CoordinatesThatAreRoundedProveNoZeros) {
   MeshData mesh;
   mesh.points = {{0, 0, 0}, {3, -1, 0}, {0, 0, 1}, {0, 1, 0}, {1, -2, 0}};
   mesh.add_cell(CellType::tetrahedron, {{1, 0, 2, 3}});

@@ -14,15 +14,15 @@
 
 namespace dartcast::state_hash_test {
 
-State some_state() {
-  State s;
+ParticleState some_state() {
+  ParticleState s;
   s.put({Cell{1, 12}, 3}, {0.1, -2.0, 3e10});
   s.touching_count = 1;
   s.touching[0] = {Cell{1, 12}, 2};
   return s;
 }
 
-std::string hash_of(std::uint64_t id, const State& s, const Vec3& v, std::uint64_t fate = 0) {
+std::string hash_of(std::uint64_t id, const ParticleState& s, const Vec3& v, std::uint64_t fate = 0) {
   StateHash h;
   h.add(id, s, v, fate);
   return h.hex();
@@ -36,23 +36,23 @@ TEST(StateHash, HasThirtyTwoDigitsAndIsZeroForNoParticles) {
 
 // Each part of a particle counts, down to the last bit.
 TEST(StateHash, EveryPartOfAStateCounts) {
-  const State s = some_state();
+  const ParticleState s = some_state();
   const Vec3 v = {1.0, 2.0, 3.0};
   std::set<std::string> hashes = {hash_of(7, s, v), hash_of(8, s, v), hash_of(7, s, v, 1)};
   std::size_t expected = 3;
-  const auto expect_new = [&](const State& changed, const Vec3& velocity) {
+  const auto expect_new = [&](const ParticleState& changed, const Vec3& velocity) {
     hashes.insert(hash_of(7, changed, velocity));
     EXPECT_EQ(hashes.size(), ++expected);
   };
   for (double Vec3::*c : {&Vec3::x, &Vec3::y, &Vec3::z}) {
-    State moved = s;
+    ParticleState moved = s;
     moved.position.*c = std::nextafter(moved.position.*c, 1e300);
     expect_new(moved, v);
     Vec3 faster = v;
     faster.*c = std::nextafter(faster.*c, 1e300);
     expect_new(s, faster);
   }
-  State other = s;
+  ParticleState other = s;
   other.cell = Cell{1, 13};
   expect_new(other, v);
   other = s;
@@ -70,8 +70,8 @@ TEST(StateHash, EveryPartOfAStateCounts) {
 }
 
 TEST(StateHash, TheOrderOfAddingDoesNotMatterButWhoIsWhereDoes) {
-  State a = some_state();
-  State b = some_state();
+  ParticleState a = some_state();
+  ParticleState b = some_state();
   b.position.x = 5.0;
   StateHash forward, backward, swapped, parts, part;
   forward.add(1, a, {});

@@ -20,7 +20,7 @@ using test::full_tier;
 
 // Everything that a run leaves behind, by the particles' numbers.
 struct Outcome {
-  std::vector<State> states;
+  std::vector<ParticleState> states;
   std::vector<Vec3> velocities;
   std::map<std::uint32_t, std::vector<std::uint64_t>> contacts;  // all bits, in order of time
   Counters counters;
@@ -81,8 +81,8 @@ Outcome run(unsigned threads, bool deforming, std::uint64_t shuffle, std::size_t
   std::vector<Vec3> shuffled;
   for (const std::uint32_t n : name) shuffled.push_back(velocities[n]);
   velocities = shuffled;
-  std::vector<Fate> fates(particles.size(), Fate::alive);
-  const Responses responses({ResponseKind::reflect, 0.9, 0.1});
+  std::vector<ParticleStatus> fates(particles.size(), ParticleStatus::alive);
+  const WallResponses responses({WallResponseKind::reflect, 0.9, 0.1});
 
   Outcome outcome;
   std::vector<Vec3> targets(particles.size());

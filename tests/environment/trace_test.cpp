@@ -72,7 +72,7 @@ class Draw {
 
 // Whether the dart is where x is: the vertex, on the edge, of the face that holds it.
 void expect_dart_at(const Environment& environment, const Crossing& c, const WeightedPoint& x) {
-  const Map& map = environment.map();
+  const CombinatorialMap& map = environment.map();
   ASSERT_EQ(c.dart.cell, c.from);
   const auto corner = [&](Dart d) { return test::whole(environment.positions()[map.origin(d).value]); };
   if (c.kind == Kind::vertex) {
@@ -220,7 +220,7 @@ bool same_contacts(const ContactList& a, const ContactList& b, std::uint32_t par
 
 // How far x is from the face, edge or vertex at a time of the step.
 double distance(const Environment& environment, const Crossing& c) {
-  const Map& map = environment.map();
+  const CombinatorialMap& map = environment.map();
   const auto at = [&](Vertex v) {
     const Vec3 a = environment.complex().previous_positions()[v.value];
     return a + (environment.complex().positions()[v.value] - a) * c.time;
@@ -281,13 +281,13 @@ void check_chain(const Environment& environment, const Trace& trace, bool moved,
 // One step of many particles: each is traced first, and does then what the trace said.
 void compare_step(Environment& environment, Particles& set, const std::vector<Vec3>& targets, bool moved, bool responds,
                   Compared& compared) {
-  Respond respond;
+  ContactCallback respond;
   if (responds)
     respond = [](const Contact& c, std::span<const WallHit> walls, std::span<const WallHit>) {
-      return Continuation{reflected(c.unused, walls, 1.0, 0.0), false};
+      return AfterContact{reflected(c.unused, walls, 1.0, 0.0), false};
     };
   std::vector<Trace> traces;
-  const std::vector<State> before = test::copy_of(set);
+  const std::vector<ParticleState> before = test::copy_of(set);
   for (std::size_t i = 0; i < set.size(); ++i) {
     traces.push_back(environment.trace(set, i, {&targets[i], 1}, respond)[0]);
     ASSERT_NO_FATAL_FAILURE(check_chain(environment, traces[i], moved, compared));
@@ -361,7 +361,7 @@ void compare_scene(int kind, int seed, Compared& still, Compared& moving) {
     const bool moved = step % 3 != 0;
     const double length = step % 4 == 0 ? 8.0 : 1.5;
     std::vector<Vec3> targets;
-    for (const State& s : set.states()) {
+    for (const ParticleState& s : set.states()) {
       Vec3 r = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
       if (kind < plane_kinds) r.z = 0.0;
       targets.push_back(s.position + r * length);
@@ -409,7 +409,7 @@ TEST(Trace, InASceneThatIsCarriedAlongIsThatOfTheRelativeMotion) {
     const std::vector<Vec3> from = test::random_points(200, {}, high, random);
     const std::vector<Vec3> to = test::random_points(200, {}, high, random);
     Particles a, b;
-    const std::vector<Added> added = still.add(a, from);
+    const std::vector<AddResult> added = still.add(a, from);
     carried.add(b, from);
     carried.move(next);
     for (std::size_t i = 0; i < from.size(); ++i) {

@@ -123,7 +123,7 @@ class HostileStructure : public testing::Test {
       return;
     }
     ++accepted_;
-    const MeshReport again = inspect(file.mesh);
+    const MeshReport again = check_and_repair(file.mesh);
     EXPECT_TRUE(again.valid() && again.repairs.empty()) << how << "\n" << report_text(again);
     std::set<std::string> names;
     for (const DataArray& a : file.mesh.cell_data) EXPECT_TRUE(names.insert(a.name).second) << how << ": " << a.name;

@@ -80,7 +80,7 @@ bool expect_verdict(const Folder& folder, const std::string& name, const std::st
     EXPECT_FALSE(file.report.defects[0].message.empty()) << name << ", " << how;
     return false;
   }
-  const MeshReport again = inspect(file.mesh);
+  const MeshReport again = check_and_repair(file.mesh);
   EXPECT_TRUE(again.valid() && again.repairs.empty()) << name << ", " << how << "\n" << report_text(again);
   return true;
 }

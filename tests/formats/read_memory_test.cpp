@@ -46,7 +46,7 @@ MeshData box_of(std::uint32_t edge, CellType type) {
   options.size = {1, 1, 1};
   options.type = type;
   MeshData mesh = generate_box(options);
-  (void)inspect(mesh);
+  (void)check_and_repair(mesh);
   return mesh;
 }
 
@@ -114,7 +114,7 @@ TEST(ReadMemory, SumsStop) {
 }
 
 /// The least limit under which the file is read, up to the digits that the refusal shows.
-std::uint64_t least_limit(const std::filesystem::path& path) {
+std::uint64_t min_limit(const std::filesystem::path& path) {
   ReadOptions options;
   options.max_memory = 1;
   const std::string message = refusal(read_mesh(path, options));
@@ -135,7 +135,7 @@ TEST(ReadMemory, TheCountIsAnUpperBound) {
   OctahedraOptions octahedra;
   octahedra.cells = {20, 20, 20};
   MeshData polyhedra_mesh = generate_octahedra(octahedra);
-  (void)inspect(polyhedra_mesh);
+  (void)check_and_repair(polyhedra_mesh);
   const std::vector<std::pair<std::string, MeshData>> meshes = {
       {"tetrahedra", tetrahedra}, {"hexahedra", box_of(36, CellType::hexahedron)}, {"octahedra", polyhedra_mesh}};
   for (const auto& [kind, mesh] : meshes) {
@@ -144,11 +144,12 @@ TEST(ReadMemory, TheCountIsAnUpperBound) {
       if (kind == "octahedra" && ending[1] == 'm') continue;
       const auto path = folder / (kind + ending);
       write_mesh(mesh, path);
-      const std::uint64_t limit = least_limit(path) - 24 * mebi;  // less what the program itself has
-      const std::uint64_t taken = peak_of([&] { const Complex complex(read_mesh(path).mesh); });
+      const std::uint64_t limit = min_limit(path) - 24 * mebi;  // less what the program itself has
+      const std::uint64_t taken = peak_of([&] { const CellComplex complex(read_mesh(path).mesh); });
       // The program itself, with the libraries that a file of this format calls in.
       write_mesh(box_of(1, CellType::hexahedron), folder / ("tiny" + ending));
-      const std::uint64_t idle = peak_of([&] { const Complex complex(read_mesh(folder / ("tiny" + ending)).mesh); });
+      const std::uint64_t idle =
+          peak_of([&] { const CellComplex complex(read_mesh(folder / ("tiny" + ending)).mesh); });
       EXPECT_LE(taken, idle + limit) << path << ": " << (taken - idle) / mebi << " of " << limit / mebi;
       EXPECT_LE(limit, 6 * (taken - std::min(taken, idle)) + 48 * mebi)
           << path << ": " << (taken - idle) / mebi << " of " << limit / mebi;

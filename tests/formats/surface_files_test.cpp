@@ -531,7 +531,7 @@ bool expect_surface_or_error(const Folder& folder, const std::string& name, cons
     EXPECT_FALSE(file.report.defects[0].message.empty()) << name << ", " << how;
     return false;
   }
-  const MeshReport again = inspect_surface(file.mesh);
+  const MeshReport again = check_and_repair_surface(file.mesh);
   EXPECT_TRUE(again.valid() && again.repairs.empty()) << name << ", " << how << "\n" << report_text(again);
   EXPECT_NO_THROW(Surface(file.mesh)) << name << ", " << how;
   return true;

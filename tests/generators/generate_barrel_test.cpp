@@ -31,7 +31,7 @@ TEST(GenerateBarrel, IsAClosedSurfaceThatNeedsNoRepair) {
     // Closed: as many points and faces as edges, but 2 (Euler); each edge is in two faces, once each way, or a repair
     // or a defect would tell.
     EXPECT_EQ(mesh.points.size() + mesh.cell_count(), mesh.connectivity.size() / 2 + 2);
-    const MeshReport report = inspect_surface(mesh);
+    const MeshReport report = check_and_repair_surface(mesh);
     EXPECT_TRUE(report.repairs.empty());
     EXPECT_TRUE(report.defects.empty());
   }

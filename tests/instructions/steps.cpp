@@ -91,7 +91,7 @@ int edit(std::uint32_t box_edge, std::uint32_t count) {
     while (!environment.map().contains(cells[at])) ++at;
     const Cell c = cells[at];
     environment.edit([&](ComplexEdit& e) { split_edge(e.topology(), {c, static_cast<std::uint16_t>(i % 24)}); });
-    environment.follow(set);
+    environment.update_after_edit(set);
   }
   std::printf("%u edits\n", count);
   return 0;
@@ -107,11 +107,11 @@ int rest_in_corner() {
   const Vec3 at{0, 0, -1 + 1e-12};
   for (std::size_t i = 0; i < particles; ++i) environment.add(set, std::span<const Vec3>(&at, 1));
   const Acceleration gravity{{0, 0, -3}, 0.01};
-  const Responses responses({ResponseKind::reflect, 0.5, 0.0});
+  const WallResponses responses({WallResponseKind::reflect, 0.5, 0.0});
   std::vector<Vec3> velocities(particles);
-  std::vector<Fate> fates(particles, Fate::alive);
+  std::vector<ParticleStatus> fates(particles, ParticleStatus::alive);
   std::vector<Vec3> targets(particles);
-  const Respond respond = respond_with(responses, velocities, fates, gravity.duration, gravity);
+  const ContactCallback respond = respond_with(responses, velocities, fates, gravity.duration, gravity);
   std::uint64_t contacts = 0;
   for (std::size_t step = 0; step < steps; ++step) {
     for (std::size_t i = 0; i < particles; ++i) {

@@ -71,7 +71,7 @@ TEST(Inspect, GoodCellsAreAccepted) {
   for (const CellType type : all_types) {
     MeshData mesh = one_of(type);
     const auto before = mesh.connectivity;
-    const MeshReport report = inspect(mesh);
+    const MeshReport report = check_and_repair(mesh);
     EXPECT_TRUE(report.valid()) << static_cast<int>(type);
     EXPECT_TRUE(report.warnings.empty());
     EXPECT_EQ(report.cells, (Kinds{{std::string(cell_type_names[static_cast<std::size_t>(type)]), 1}}));
@@ -100,14 +100,14 @@ std::set<std::vector<std::uint32_t>> faces_of(const MeshData& mesh, bool backwar
 TEST(Inspect, CellsInsideOutAreMirrored) {
   for (const CellType type : all_types) {
     MeshData mesh = one_of(type);
-    inspect(mesh);  // drops unused points
+    check_and_repair(mesh);  // drops unused points
     for (Vec3& p : mesh.points) p.x = -p.x;
     const auto expected = faces_of(mesh, true);
-    const MeshReport report = inspect(mesh);
+    const MeshReport report = check_and_repair(mesh);
     EXPECT_TRUE(report.valid());
     EXPECT_EQ(kinds(report.repairs), (Kinds{{"orientation", 1}})) << static_cast<int>(type);
     EXPECT_EQ(faces_of(mesh, false), expected) << static_cast<int>(type);
-    EXPECT_EQ(inspect(mesh).verdict(), Verdict::accept);
+    EXPECT_EQ(check_and_repair(mesh).verdict(), Verdict::accept);
   }
 }
 
@@ -115,7 +115,7 @@ TEST(Inspect, FlatCellsAreRefused) {
   for (const CellType type : all_types) {
     MeshData mesh = one_of(type);
     for (Vec3& p : mesh.points) p.z = 0.5 * p.x + p.y;
-    EXPECT_EQ(kinds(inspect(mesh).defects)["flat"], 1U) << static_cast<int>(type);
+    EXPECT_EQ(kinds(check_and_repair(mesh).defects)["flat"], 1U) << static_cast<int>(type);
   }
 }
 
@@ -123,14 +123,14 @@ TEST(Inspect, FlatByOneUlpIsNotFlat) {
   MeshData mesh;
   mesh.points = {{0.1, 0.1, 0.1}, {0.3, 0.1, 0.1}, {0.1, 0.3, 0.1}, {0.2, 0.2, std::nextafter(0.1, 1.0)}};
   add(mesh, CellType::tetrahedron, {0, 1, 2, 3});
-  EXPECT_EQ(inspect(mesh).verdict(), Verdict::accept);
+  EXPECT_EQ(check_and_repair(mesh).verdict(), Verdict::accept);
 }
 
 TEST(Inspect, CornersInAWrongOrderAreInverted) {
   MeshData mesh = row(1);
   std::swap(mesh.connectivity[2], mesh.connectivity[3]);  // as in a voxel
   std::swap(mesh.connectivity[6], mesh.connectivity[7]);
-  EXPECT_EQ(kinds(inspect(mesh).defects)["inverted"], 1U);
+  EXPECT_EQ(kinds(check_and_repair(mesh).defects)["inverted"], 1U);
 }
 
 TEST(Inspect, UnusedPointsAreDroppedWithTheirData) {
@@ -141,7 +141,7 @@ TEST(Inspect, UnusedPointsAreDroppedWithTheirData) {
   DataArray data{"x", 2, {}};
   for (int p = 0; p < 13; ++p) data.values.insert(data.values.end(), {1.0 * p, -1.0 * p});
   mesh.point_data = {data};
-  const MeshReport report = inspect(mesh);
+  const MeshReport report = check_and_repair(mesh);
   EXPECT_EQ(report.verdict(), Verdict::repair);
   EXPECT_EQ(kinds(report.repairs), (Kinds{{"unused_points", 1}}));
   EXPECT_EQ(report.repairs[0].first, std::vector<std::size_t>{3});
@@ -158,18 +158,18 @@ TEST(Inspect, IdsOutOfRange) {
   MeshData mesh = row(3);
   mesh.connectivity[8] = 16;
   mesh.source = {10, 11, 12};
-  const MeshReport report = inspect(mesh);
+  const MeshReport report = check_and_repair(mesh);
   EXPECT_EQ(kinds(report.defects), (Kinds{{"id_out_of_range", 1}}));
   EXPECT_EQ(report.defects[0].first, std::vector<std::size_t>{11});
   MeshData patch = row(1);
   patch.add_patch_face(std::vector<std::uint32_t>{0, 1, 0xffffffffU}, 1);
-  EXPECT_EQ(kinds(inspect(patch).defects), (Kinds{{"id_out_of_range", 1}}));
+  EXPECT_EQ(kinds(check_and_repair(patch).defects), (Kinds{{"id_out_of_range", 1}}));
 }
 
 TEST(Inspect, RepeatedCorners) {
   MeshData mesh = row(3);
   mesh.connectivity[9] = mesh.connectivity[8];
-  EXPECT_EQ(kinds(inspect(mesh).defects), (Kinds{{"repeated_corner", 1}}));
+  EXPECT_EQ(kinds(check_and_repair(mesh).defects), (Kinds{{"repeated_corner", 1}}));
 }
 
 TEST(Inspect, CoordinatesThatAreNoNumbersOrOutOfRange) {
@@ -178,7 +178,7 @@ TEST(Inspect, CoordinatesThatAreNoNumbersOrOutOfRange) {
   mesh.points[2].z = -std::numeric_limits<double>::infinity();
   mesh.points[3].z = 1e200;
   mesh.points[4].x = 1e-200;
-  const MeshReport report = inspect(mesh);
+  const MeshReport report = check_and_repair(mesh);
   EXPECT_EQ(kinds(report.defects), (Kinds{{"not_finite", 2}, {"out_of_range", 1}})) << "what is small counts as 0";
   EXPECT_EQ(report.defects[0].first, (std::vector<std::size_t>{1, 2}));
 }
@@ -187,7 +187,7 @@ TEST(Inspect, ArraysThatDoNotFit) {
   const auto refused = [](auto&& change) {
     MeshData mesh = row(2);
     change(mesh);
-    return kinds(inspect(mesh).defects);
+    return kinds(check_and_repair(mesh).defects);
   };
   EXPECT_EQ(refused([](MeshData& m) { m.offsets.back() += 1; }), (Kinds{{"structure", 1}}));
   EXPECT_EQ(refused([](MeshData& m) { m.offsets = {}; }), (Kinds{{"structure", 1}}));
@@ -208,7 +208,7 @@ TEST(Inspect, FacesSharedByThreeCells) {
   add(mesh, CellType::tetrahedron, {0, 1, 2, 3});
   add(mesh, CellType::tetrahedron, {0, 2, 1, 4});
   add(mesh, CellType::tetrahedron, {0, 1, 2, 5});
-  EXPECT_EQ(kinds(inspect(mesh).defects), (Kinds{{"face_shared", 1}}));
+  EXPECT_EQ(kinds(check_and_repair(mesh).defects), (Kinds{{"face_shared", 1}}));
 }
 
 TEST(Inspect, CellsOnTheSameSideOfAFace) {
@@ -216,11 +216,11 @@ TEST(Inspect, CellsOnTheSameSideOfAFace) {
   mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.2, 0.2, 2}};
   add(mesh, CellType::tetrahedron, {0, 1, 2, 3});
   add(mesh, CellType::tetrahedron, {0, 1, 2, 4});
-  EXPECT_EQ(kinds(inspect(mesh).defects), (Kinds{{"same_side", 1}}));
+  EXPECT_EQ(kinds(check_and_repair(mesh).defects), (Kinds{{"same_side", 1}}));
   MeshData twice = one_of(CellType::polyhedron);
   const auto stream = twice.connectivity;
   add(twice, CellType::polyhedron, stream);
-  EXPECT_EQ(kinds(inspect(twice).defects), (Kinds{{"same_side", 6}}));
+  EXPECT_EQ(kinds(check_and_repair(twice).defects), (Kinds{{"same_side", 6}}));
 }
 
 TEST(Inspect, OneFaceInTwoOrders) {
@@ -229,13 +229,13 @@ TEST(Inspect, OneFaceInTwoOrders) {
   mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {.5, .5, 1}, {.5, .5, -1}};
   add(mesh, CellType::pyramid, {0, 1, 2, 3, 4});
   add(mesh, CellType::pyramid, {0, 2, 1, 3, 5});
-  EXPECT_EQ(kinds(inspect(mesh).defects)["face_order"], 1U);
+  EXPECT_EQ(kinds(check_and_repair(mesh).defects)["face_order"], 1U);
 }
 
 TEST(Inspect, PolyhedraMustBeClosed) {
   MeshData mesh = one_of(CellType::polyhedron);
   std::reverse(mesh.connectivity.begin() + 7, mesh.connectivity.begin() + 11);
-  const MeshReport turned = inspect(mesh);
+  const MeshReport turned = check_and_repair(mesh);
   EXPECT_TRUE(turned.valid());
   EXPECT_EQ(kinds(turned.repairs), (Kinds{{"polyhedron_faces", 1}}));
 
@@ -243,7 +243,7 @@ TEST(Inspect, PolyhedraMustBeClosed) {
   open.connectivity.resize(26);
   open.connectivity[0] = 5;
   open.offsets.back() = 26;
-  EXPECT_EQ(kinds(inspect(open).defects), (Kinds{{"polyhedron", 1}}));
+  EXPECT_EQ(kinds(check_and_repair(open).defects), (Kinds{{"polyhedron", 1}}));
 
   // Two tetrahedra that share an edge only, as one cell: that edge is used four times.
   MeshData pinched;
@@ -256,15 +256,15 @@ TEST(Inspect, PolyhedraMustBeClosed) {
     }
   }
   add(pinched, CellType::polyhedron, faces);
-  EXPECT_EQ(kinds(inspect(pinched).defects), (Kinds{{"polyhedron", 1}}));
+  EXPECT_EQ(kinds(check_and_repair(pinched).defects), (Kinds{{"polyhedron", 1}}));
 
   MeshData stream = one_of(CellType::polyhedron);
   stream.connectivity[1] = 40;
-  EXPECT_EQ(kinds(inspect(stream).defects), (Kinds{{"polyhedron", 1}}));
+  EXPECT_EQ(kinds(check_and_repair(stream).defects), (Kinds{{"polyhedron", 1}}));
   stream.connectivity[1] = 0xffffffffU;
-  EXPECT_EQ(kinds(inspect(stream).defects), (Kinds{{"polyhedron", 1}}));
+  EXPECT_EQ(kinds(check_and_repair(stream).defects), (Kinds{{"polyhedron", 1}}));
   stream.connectivity[0] = 0xffffffffU;
-  EXPECT_EQ(kinds(inspect(stream).defects), (Kinds{{"polyhedron", 1}}));
+  EXPECT_EQ(kinds(check_and_repair(stream).defects), (Kinds{{"polyhedron", 1}}));
 }
 
 /// Two cubes side by side, without common points; the second moved by `shift` in y.
@@ -280,7 +280,7 @@ MeshData loose_pair(double shift) {
 
 TEST(Inspect, RepeatedPointsAreAWarning) {
   MeshData mesh = loose_pair(0.0);
-  const MeshReport report = inspect(mesh);
+  const MeshReport report = check_and_repair(mesh);
   EXPECT_EQ(report.verdict(), Verdict::warn);
   EXPECT_EQ(kinds(report.warnings), (Kinds{{"repeated_points", 4}, {"non_conforming", 2}}));
   EXPECT_EQ(report.parts, 2U);
@@ -288,13 +288,13 @@ TEST(Inspect, RepeatedPointsAreAWarning) {
 
 TEST(Inspect, FacesThatLieAgainstEachOther) {
   MeshData shifted = loose_pair(0.25);
-  EXPECT_EQ(kinds(inspect(shifted).warnings), (Kinds{{"non_conforming", 2}}));
+  EXPECT_EQ(kinds(check_and_repair(shifted).warnings), (Kinds{{"non_conforming", 2}}));
   MeshData beyond = loose_pair(1.5);
-  EXPECT_EQ(inspect(beyond).verdict(), Verdict::accept);
+  EXPECT_EQ(check_and_repair(beyond).verdict(), Verdict::accept);
   MeshData barely = loose_pair(std::nextafter(1.0, 0.0));
-  EXPECT_EQ(kinds(inspect(barely).warnings)["non_conforming"], 2U);
+  EXPECT_EQ(kinds(check_and_repair(barely).warnings)["non_conforming"], 2U);
   MeshData edge = loose_pair(1.0);  // only an edge in common: no area
-  EXPECT_EQ(kinds(inspect(edge).warnings).count("non_conforming"), 0U);
+  EXPECT_EQ(kinds(check_and_repair(edge).warnings).count("non_conforming"), 0U);
 }
 
 /// Turns a mesh so that its planes are no coordinate planes any more, and its points are rounded.
@@ -307,11 +307,11 @@ void turn(MeshData& mesh) {
 TEST(Inspect, FacesThatLieAgainstEachOtherAfterRounding) {
   MeshData shifted = loose_pair(0.25);
   turn(shifted);
-  EXPECT_EQ(kinds(inspect(shifted).warnings), (Kinds{{"non_conforming", 2}}));
+  EXPECT_EQ(kinds(check_and_repair(shifted).warnings), (Kinds{{"non_conforming", 2}}));
   MeshData apart = loose_pair(0.25);
   for (std::size_t p = 8; p < 16; ++p) apart.points[p].x += 1e-6;
   turn(apart);
-  EXPECT_EQ(inspect(apart).verdict(), Verdict::accept);
+  EXPECT_EQ(check_and_repair(apart).verdict(), Verdict::accept);
 }
 
 TEST(Inspect, DiagonalsThatDisagree) {
@@ -322,7 +322,7 @@ TEST(Inspect, DiagonalsThatDisagree) {
     add(mesh, CellType::tetrahedron, {0, 1, 3, 4});
     add(mesh, CellType::tetrahedron, {1, 2, 3, 4});
     add(mesh, CellType::pyramid, {0, 3, 2, 1, 5});
-    EXPECT_EQ(kinds(inspect(mesh).warnings)["non_conforming"], 3U) << warp;
+    EXPECT_EQ(kinds(check_and_repair(mesh).warnings)["non_conforming"], 3U) << warp;
   }
   MeshData mesh;
   mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {.5, .5, 1}, {.5, .5, -1}};
@@ -330,12 +330,12 @@ TEST(Inspect, DiagonalsThatDisagree) {
   add(mesh, CellType::tetrahedron, {0, 2, 3, 4});
   add(mesh, CellType::tetrahedron, {1, 0, 3, 5});
   add(mesh, CellType::tetrahedron, {2, 1, 3, 5});
-  EXPECT_EQ(kinds(inspect(mesh).warnings)["non_conforming"], 4U);
+  EXPECT_EQ(kinds(check_and_repair(mesh).warnings)["non_conforming"], 4U);
 }
 
 TEST(Inspect, BoundariesThatAreMuchInOnePlaneAreFine) {
   MeshData mesh = row(200);
-  const MeshReport report = inspect(mesh);
+  const MeshReport report = check_and_repair(mesh);
   EXPECT_EQ(report.verdict(), Verdict::accept);
   EXPECT_EQ(report.cells.at("hexahedron"), 200U);
 }
@@ -345,7 +345,7 @@ TEST(Inspect, PinchedBoundaries) {
   // A second cube that shares the edge x = 1, y = 1 only.
   edge.points.insert(edge.points.end(), {{2, 1, 0}, {2, 2, 0}, {1, 2, 0}, {2, 1, 1}, {2, 2, 1}, {1, 2, 1}});
   add(edge, CellType::hexahedron, {5, 8, 9, 10, 6, 11, 12, 13});
-  EXPECT_EQ(kinds(inspect(edge).warnings), (Kinds{{"boundary_edges", 1}}));
+  EXPECT_EQ(kinds(check_and_repair(edge).warnings), (Kinds{{"boundary_edges", 1}}));
 
   // A ring of four tetrahedra-like prisms would be long; a bent row whose ends share one point is enough.
   MeshData point = row(5);
@@ -354,7 +354,7 @@ TEST(Inspect, PinchedBoundaries) {
     p = {(3.0 + p.y) * std::cos(angle), (3.0 + p.y) * std::sin(angle), p.z};
   }
   for (std::uint32_t& v : point.connectivity) v = v == 20 ? 0 : v;
-  const MeshReport report = inspect(point);
+  const MeshReport report = check_and_repair(point);
   EXPECT_EQ(kinds(report.warnings), (Kinds{{"boundary_points", 1}}));
 }
 
@@ -362,7 +362,7 @@ TEST(Inspect, PartsThatTouchInAPointAreFine) {
   MeshData mesh = row(1);
   mesh.points.insert(mesh.points.end(), {{2, 1, 1}, {1, 2, 1}, {1, 1, 2}});
   add(mesh, CellType::tetrahedron, {6, 8, 9, 10});
-  const MeshReport report = inspect(mesh);
+  const MeshReport report = check_and_repair(mesh);
   EXPECT_EQ(report.verdict(), Verdict::accept);
   EXPECT_EQ(report.parts, 2U);
 }
@@ -373,7 +373,7 @@ TEST(Inspect, PatchFacesThatAreNoFacesAreDropped) {
   mesh.add_patch_face(std::vector<std::uint32_t>{0, 1, 2}, 2);
   mesh.add_patch_face(std::vector<std::uint32_t>{6, 7, 4, 5}, 3);  // between the two cells
   mesh.add_patch_face(std::vector<std::uint32_t>{0, 1, 2, 3}, 4);  // a face in two groups
-  const MeshReport report = inspect(mesh);
+  const MeshReport report = check_and_repair(mesh);
   EXPECT_EQ(kinds(report.warnings), (Kinds{{"patch_faces", 1}}));
   EXPECT_EQ(mesh.patch_tags, (std::vector<std::int32_t>{1, 3, 4}));
   EXPECT_EQ(mesh.patch_offsets, (std::vector<std::size_t>{0, 4, 8, 12}));
@@ -383,7 +383,7 @@ TEST(Inspect, RegionsAreCounted) {
   MeshData mesh = row(3);
   mesh.regions = {7, 8, 7};
   mesh.region_names = {{7, "lumen"}};
-  EXPECT_EQ(inspect(mesh).regions, (Kinds{{"lumen", 2}, {"8", 1}}));
+  EXPECT_EQ(check_and_repair(mesh).regions, (Kinds{{"lumen", 2}, {"8", 1}}));
 }
 
 /// An independent, slow count of the boundary: each face's set of corners in a map.

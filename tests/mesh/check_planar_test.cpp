@@ -48,7 +48,7 @@ MeshData polygon(std::vector<Vec3> points) {
 
 TEST(InspectPlanar, GoodCellsAreAccepted) {
   MeshData mesh = house();
-  const MeshReport report = inspect(mesh);
+  const MeshReport report = check_and_repair(mesh);
   EXPECT_EQ(report.verdict(), Verdict::accept);
   EXPECT_EQ(report.dimension, 2);
   EXPECT_EQ(report.parts, 1U);
@@ -66,7 +66,7 @@ TEST(InspectPlanar, GeneratedMeshesAreAcceptedAsTheyAre) {
     o.seed = seed;
     const MeshData before = generate_rectangle(o);
     MeshData mesh = before;
-    const MeshReport report = inspect(mesh);
+    const MeshReport report = check_and_repair(mesh);
     EXPECT_EQ(report.verdict(), Verdict::accept);
     EXPECT_EQ(report.parts, 1U);
     EXPECT_EQ(mesh.points, before.points);
@@ -79,20 +79,20 @@ TEST(InspectPlanar, PointsAreMovedToThePlane) {
   MeshData mesh = house();
   for (Vec3& p : mesh.points) p.z = -2.5;
   mesh.points.push_back({0, 0, 7});  // unused: its z does not matter
-  const MeshReport report = inspect(mesh);
+  const MeshReport report = check_and_repair(mesh);
   ASSERT_EQ(kinds(report.repairs), (Kinds{{"unused_points", 1}, {"plane", 5}}));
   EXPECT_NE(report.repairs.back().message.find("z = -2.5"), std::string::npos);
   EXPECT_EQ(mesh.points, house().points);
   MeshData negative_zero = house();
   for (Vec3& p : negative_zero.points) p.z = -0.0;
-  EXPECT_EQ(inspect(negative_zero).verdict(), Verdict::accept);
+  EXPECT_EQ(check_and_repair(negative_zero).verdict(), Verdict::accept);
   EXPECT_FALSE(std::signbit(negative_zero.points[0].z));
 }
 
 TEST(InspectPlanar, SurfacesInSpaceAreRefused) {
   MeshData mesh = house();
   mesh.points[4].z = 1e-90;
-  const MeshReport report = inspect(mesh);
+  const MeshReport report = check_and_repair(mesh);
   ASSERT_EQ(kinds(report.defects), (Kinds{{"no_volume", 2}}));
   EXPECT_NE(report.defects[0].message.find("a surface in space"), std::string::npos);
 }
@@ -103,7 +103,7 @@ TEST(InspectPlanar, ClockwiseCellsAreTurned) {
   add(mesh, CellType::polygon, {2, 5, 6, 3});
   mesh.points.insert(mesh.points.end(), {{1, 2, 0}, {0, 2, 0}});
   std::reverse(mesh.connectivity.begin() + 7, mesh.connectivity.end());
-  const MeshReport report = inspect(mesh);
+  const MeshReport report = check_and_repair(mesh);
   ASSERT_EQ(kinds(report.repairs), (Kinds{{"orientation", 2}}));
   EXPECT_EQ(report.repairs[0].first, (std::vector<std::size_t>{0, 2}));
   EXPECT_EQ(report.verdict(), Verdict::repair);
@@ -113,21 +113,21 @@ TEST(InspectPlanar, ClockwiseCellsAreTurned) {
 TEST(InspectPlanar, FlatCells) {
   MeshData mesh = house();
   mesh.points[4] = {1, 3, 0};
-  EXPECT_EQ(kinds(inspect(mesh).defects)["flat"], 1U);
+  EXPECT_EQ(kinds(check_and_repair(mesh).defects)["flat"], 1U);
   mesh.points[4] = {std::nextafter(1.0, 2.0), 3, 0};
-  EXPECT_EQ(kinds(inspect(mesh).defects).count("flat"), 0U);
+  EXPECT_EQ(kinds(check_and_repair(mesh).defects).count("flat"), 0U);
   MeshData line = polygon({{0, 0, 0}, {1, 1, 0}, {2, 2, 0}, {1.5, 1.5, 0}});
-  EXPECT_EQ(kinds(inspect(line).defects), (Kinds{{"flat", 1}}));
+  EXPECT_EQ(kinds(check_and_repair(line).defects), (Kinds{{"flat", 1}}));
 }
 
 TEST(InspectPlanar, CellsThatAreNotConvex) {
   const auto defects = [](std::vector<Vec3> points) {
     MeshData mesh = polygon(points);
-    const Kinds found = kinds(inspect(mesh).defects);
+    const Kinds found = kinds(check_and_repair(mesh).defects);
     // The other way around it is as bad.
     std::reverse(points.begin(), points.end());
     MeshData reversed = polygon(points);
-    EXPECT_EQ(kinds(inspect(reversed).defects), found);
+    EXPECT_EQ(kinds(check_and_repair(reversed).defects), found);
     return found;
   };
   const Kinds none, inverted = {{"inverted", 1}};
@@ -196,7 +196,7 @@ TEST(InspectPlanar, StructureOfCells) {
   const auto refused = [](auto&& change) {
     MeshData mesh = house();
     change(mesh);
-    return kinds(inspect(mesh).defects);
+    return kinds(check_and_repair(mesh).defects);
   };
   EXPECT_EQ(refused([](MeshData& m) { add(m, CellType::polygon, {0, 1}); }), (Kinds{{"structure", 1}}));
   EXPECT_EQ(refused([](MeshData& m) { add(m, CellType::polygon, {}); }), (Kinds{{"structure", 1}}));
@@ -224,20 +224,20 @@ TEST(InspectPlanar, CoordinatesThatAreNoNumbersOrOutOfRange) {
   mesh.points[0].y = std::numeric_limits<double>::quiet_NaN();
   mesh.points[1].z = std::numeric_limits<double>::infinity();
   mesh.points[2].x = 1e200;
-  EXPECT_EQ(kinds(inspect(mesh).defects), (Kinds{{"not_finite", 2}, {"out_of_range", 1}}));
+  EXPECT_EQ(kinds(check_and_repair(mesh).defects), (Kinds{{"not_finite", 2}, {"out_of_range", 1}}));
 }
 
 TEST(InspectPlanar, EdgesOfTooManyCellsOrOneSide) {
   MeshData crowded = house();
   crowded.points.push_back({1.5, .5, 0});
   add(crowded, CellType::triangle, {1, 5, 2});
-  EXPECT_EQ(kinds(inspect(crowded).defects), (Kinds{{"face_shared", 1}}));
+  EXPECT_EQ(kinds(check_and_repair(crowded).defects), (Kinds{{"face_shared", 1}}));
   MeshData same_side = house();
   same_side.points[4] = {.5, .5, 0};  // the triangle, turned, lies in the square
-  EXPECT_EQ(kinds(inspect(same_side).defects), (Kinds{{"same_side", 1}}));
+  EXPECT_EQ(kinds(check_and_repair(same_side).defects), (Kinds{{"same_side", 1}}));
   MeshData twice = house();
   add(twice, CellType::quadrilateral, {2, 3, 0, 1});
-  EXPECT_EQ(kinds(inspect(twice).defects), (Kinds{{"face_shared", 1}, {"same_side", 3}}));
+  EXPECT_EQ(kinds(check_and_repair(twice).defects), (Kinds{{"face_shared", 1}, {"same_side", 3}}));
 }
 
 TEST(InspectPlanar, UnusedPointsAndStrayEdgesAreDropped) {
@@ -251,7 +251,7 @@ TEST(InspectPlanar, UnusedPointsAndStrayEdgesAreDropped) {
   add_edge(mesh, 1, 2, 7);  // of an unused point
   add_edge(mesh, 3, 2, 8);  // between two cells
   add_edge(mesh, 7, 4, 9);
-  const MeshReport report = inspect(mesh);
+  const MeshReport report = check_and_repair(mesh);
   EXPECT_EQ(kinds(report.repairs), (Kinds{{"unused_points", 1}}));
   EXPECT_EQ(kinds(report.warnings), (Kinds{{"patch_faces", 2}}));
   EXPECT_EQ(mesh.patch_tags, (std::vector<std::int32_t>{5, 8, 9}));
@@ -271,7 +271,7 @@ MeshData hanging(const Vec3& at) {
 
 TEST(InspectPlanar, HangingPoints) {
   MeshData mesh = hanging({1, 0, 0});
-  const MeshReport report = inspect(mesh);
+  const MeshReport report = check_and_repair(mesh);
   ASSERT_EQ(kinds(report.warnings), (Kinds{{"non_conforming", 3}}));
   EXPECT_EQ(report.warnings[0].first, (std::vector<std::size_t>{0, 1, 2}));
   // As a corner of the square it hangs no more.
@@ -281,10 +281,10 @@ TEST(InspectPlanar, HangingPoints) {
   add(joined, CellType::polygon, {0, 4, 1, 2, 3});
   add(joined, CellType::quadrilateral, {5, 6, 4, 0});
   add(joined, CellType::quadrilateral, {6, 7, 1, 4});
-  EXPECT_EQ(inspect(joined).verdict(), Verdict::accept);
+  EXPECT_EQ(check_and_repair(joined).verdict(), Verdict::accept);
   // Off the line by the smallest step there is a gap.
   MeshData apart = hanging({1, -0x1p-60, 0});
-  EXPECT_EQ(inspect(apart).verdict(), Verdict::accept);
+  EXPECT_EQ(check_and_repair(apart).verdict(), Verdict::accept);
 }
 
 // A triangle below the square that touches its lower edge with a corner, the first or the last of it along x.
@@ -293,7 +293,7 @@ TEST(InspectPlanar, APointInsideAnEdge) {
     MeshData mesh = house();
     mesh.points.insert(mesh.points.end(), {{.5, 0, 0}, {left, -1, 0}, {left + 0.25, -1, 0}});
     add(mesh, CellType::triangle, {5, 6, 7});
-    const MeshReport report = inspect(mesh);
+    const MeshReport report = check_and_repair(mesh);
     ASSERT_EQ(kinds(report.warnings), (Kinds{{"non_conforming", 1}}));
     EXPECT_EQ(report.warnings[0].first, std::vector<std::size_t>{0});
     EXPECT_EQ(report.parts, 2U);
@@ -305,7 +305,7 @@ TEST(InspectPlanar, SeamsOfDoubledPoints) {
   mesh.points.insert(mesh.points.end(), {mesh.points[1], mesh.points[2]});
   mesh.connectivity[4] = 5;
   mesh.connectivity[6] = 6;
-  const MeshReport report = inspect(mesh);
+  const MeshReport report = check_and_repair(mesh);
   EXPECT_EQ(kinds(report.warnings), (Kinds{{"repeated_points", 2}, {"non_conforming", 2}}));
   EXPECT_EQ(report.parts, 2U);
   // In one line but apart, or with an end in common, edges are no seam.
@@ -313,7 +313,7 @@ TEST(InspectPlanar, SeamsOfDoubledPoints) {
   ends.points.insert(ends.points.end(), {{-1, 0, 0}, {-3, 0, 0}, {-2, 0, 0}, {-1, 1, 0}, {-2, 1, 0}, {-3, 1, 0}});
   add(ends, CellType::quadrilateral, {6, 7, 9, 10});
   add(ends, CellType::quadrilateral, {7, 5, 8, 9});
-  EXPECT_EQ(inspect(ends).verdict(), Verdict::accept);
+  EXPECT_EQ(check_and_repair(ends).verdict(), Verdict::accept);
 }
 
 TEST(InspectPlanar, PinchedBoundaries) {
@@ -328,7 +328,7 @@ TEST(InspectPlanar, PinchedBoundaries) {
   };
   for (const auto& [i, j] : {std::pair{0U, 0U}, {1U, 0U}, {2U, 0U}, {0U, 1U}, {0U, 2U}, {1U, 2U}, {2U, 1U}})
     square(i, j);
-  const MeshReport report = inspect(mesh);  // (2, 2) is not there: (1, 2) and (2, 1) touch in a point
+  const MeshReport report = check_and_repair(mesh);  // (2, 2) is not there: (1, 2) and (2, 1) touch in a point
   ASSERT_EQ(kinds(report.warnings), (Kinds{{"boundary_points", 1}}));
   EXPECT_EQ(report.warnings[0].first, std::vector<std::size_t>{10});
   // Two parts that touch in a point are fine.
@@ -336,7 +336,7 @@ TEST(InspectPlanar, PinchedBoundaries) {
   parts.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
   add(parts, CellType::triangle, {0, 1, 2});
   add(parts, CellType::triangle, {0, 3, 4});
-  const MeshReport fine = inspect(parts);
+  const MeshReport fine = check_and_repair(parts);
   EXPECT_EQ(fine.verdict(), Verdict::accept);
   EXPECT_EQ(fine.parts, 2U);
 }
@@ -345,7 +345,7 @@ TEST(InspectPlanar, RegionsAreCounted) {
   MeshData mesh = house();
   mesh.regions = {7, 8};
   mesh.region_names = {{7, "lumen"}};
-  EXPECT_EQ(inspect(mesh).regions, (Kinds{{"lumen", 1}, {"8", 1}}));
+  EXPECT_EQ(check_and_repair(mesh).regions, (Kinds{{"lumen", 1}, {"8", 1}}));
 }
 
 /// An independent, slow count: each edge's two corners in a map.

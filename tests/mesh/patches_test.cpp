@@ -53,7 +53,7 @@ TEST(Patches, ABoxHasSixSidesWhateverItsCells) {
     EXPECT_EQ(content(mesh), content(given));
     EXPECT_EQ(mesh.patch_names.size(), 6U);
     EXPECT_EQ(mesh.patch_names.at(1), "patch1");
-    EXPECT_TRUE(inspect(mesh).warnings.empty());
+    EXPECT_TRUE(check_and_repair(mesh).warnings.empty());
     divide_walls(mesh, 90.5);
     EXPECT_EQ(counts(mesh).size(), 1U);
     divide_walls(mesh, 89.5);
@@ -76,7 +76,7 @@ TEST(Patches, TheAngleIsThatBetweenNormals) {
       const std::uint32_t b = 2 + 2 * ((k + 1) % static_cast<std::uint32_t>(n));
       mesh.add_cell(CellType::prism, std::vector<std::uint32_t>{0, a, b, 1, a + 1, b + 1});
     }
-    ASSERT_TRUE(inspect(mesh).valid());
+    ASSERT_TRUE(check_and_repair(mesh).valid());
     divide_walls(mesh, 360.0 / n + 0.01);
     EXPECT_EQ(counts(mesh).size(), 3U) << n;
     divide_walls(mesh, 360.0 / n - 0.01);

@@ -123,12 +123,12 @@ TEST_F(EnvironmentRecordTest, CellsAndParticlesAreJoinedBySource) {
   MeshData mesh = labelled_box();
   for (std::uint32_t c = 0; c < mesh.cell_count(); ++c) mesh.source.push_back(7 + 2 * c);
   Environment environment(mesh);
-  FlowOptions options;
+  SimulationOptions options;
   options.dt = 0.1;
-  Flow flow(environment, options);
+  Simulation flow(environment, options);
   flow.add_random(80, {1.0, -2.0, 0.5});
   Recording recording({folder, true, true}, EnvironmentRecord(mesh), "");
-  flow.set_after_edit([&](Stranded) { recording.follow(environment); });
+  flow.set_after_edit([&](OrphanPolicy) { recording.update_after_edit(environment); });
   flow.step();
   recording.add_frame(flow);
   expect_joined(folder, "000001", true);

@@ -94,9 +94,9 @@ TEST_F(RecordingTest, FramesReadBackBitByBit) {
   BoxOptions box = std::get<BoxOptions>(scene.environment.mesh);
   const MeshData mesh = generate_box(box);
   Environment environment(mesh);
-  FlowOptions options;
+  SimulationOptions options;
   options.dt = 0.1;
-  Flow flow(environment, options);
+  Simulation flow(environment, options);
   flow.add_random(50, {1.0, -2.0, 0.1});
   Recording recording({folder, false, false}, EnvironmentRecord(mesh), "");
   for (int i = 0; i < 5; ++i) recording.add_step(flow, flow.step());
@@ -147,9 +147,9 @@ TEST_F(RecordingTest, RunsInThePlaneLeaveTheSameFiles) {
 TEST_F(RecordingTest, TheKindOfAParticleOnAWallIsSaid) {
   const MeshData mesh = generate_box({});
   Environment environment(mesh);
-  FlowOptions options;
+  SimulationOptions options;
   options.dt = 1.0;
-  Flow flow(environment, options, Responses(Response{ResponseKind::stick, 0, 0}));
+  Simulation flow(environment, options, WallResponses(WallResponse{WallResponseKind::stick, 0, 0}));
   flow.add(std::vector<Vec3>{{0.5, 0.25, 0.75}}, {0.7, 0, 0});
   flow.add(std::vector<Vec3>{{0.5, 0.25, 0.75}}, {0.0, 0, 0});
   flow.step();

@@ -32,7 +32,7 @@ Environment squares(std::uint32_t edge, bool mixed = false, double blocked = 0.0
 }
 
 std::vector<Trace> trace_of(Environment& environment, const Vec3& from, const std::vector<Vec3>& to,
-                            const Respond& respond = {}) {
+                            const ContactCallback& respond = {}) {
   Particles set;
   if (environment.add(set, {&from, 1})[0].location.place != Place::free) return {};
   return environment.trace(set, 0, to, respond);
@@ -98,11 +98,12 @@ TEST(TrajectorySvg, HasAPieceMoreThanCrossings) {
   for (int i = 0; i < 100; ++i) {
     Environment environment = squares(8, i % 2 == 1, i % 3 == 0 ? 0.1 : 0.0);
     const auto draw = [&] { return Vec3{random.below(33) / 4.0, random.below(33) / 4.0, 0}; };
-    const Respond respond = [](const Contact& c, std::span<const WallHit> walls, std::span<const WallHit>) {
-      return Continuation{reflected(c.unused, walls, 1.0, 0.0), false};
+    const ContactCallback respond = [](const Contact& c, std::span<const WallHit> walls, std::span<const WallHit>) {
+      return AfterContact{reflected(c.unused, walls, 1.0, 0.0), false};
     };
     const Vec3 from = draw();
-    const std::vector<Trace> traces = trace_of(environment, from, {draw(), draw()}, i % 4 == 0 ? respond : Respond{});
+    const std::vector<Trace> traces =
+        trace_of(environment, from, {draw(), draw()}, i % 4 == 0 ? respond : ContactCallback{});
     if (traces.empty()) continue;
     const std::string svg = trajectory_svg(environment.complex(), traces);
     ASSERT_EQ(what_is_malformed(svg), "") << svg;

@@ -140,12 +140,13 @@ TEST(Orient3d, CountsSmallCoordinatesAsZero) {
     ASSERT_NEAR(value(q), value(zeroed), 0x1p-48 * std::abs(value(zeroed))) << text(q);
     const std::array<Vec3, 1> opposite = {q[0]};
     const std::array<Vec3, 1> zeroed_opposite = {zeroed[0]};
-    ASSERT_EQ(Shift(q[2], opposite).of_line(q[0], q[1], q[3]),
-              Shift(zeroed[2], zeroed_opposite).of_line(zeroed[0], zeroed[1], zeroed[3]))
+    ASSERT_EQ(SymbolicPerturbation(q[2], opposite).of_line(q[0], q[1], q[3]),
+              SymbolicPerturbation(zeroed[2], zeroed_opposite).of_line(zeroed[0], zeroed[1], zeroed[3]))
         << text(q);
     ASSERT_EQ(orient2d(q[0], q[1], q[2]), orient2d(zeroed[0], zeroed[1], zeroed[2])) << text(q);
     ASSERT_EQ(orient2d_exact(q[0], q[1], q[2]), orient2d(zeroed[0], zeroed[1], zeroed[2])) << text(q);
-    ASSERT_EQ(PlaneShift(q[2], opposite).of_line(q[3]), PlaneShift(zeroed[2], zeroed_opposite).of_line(zeroed[3]))
+    ASSERT_EQ(PlanarSymbolicPerturbation(q[2], opposite).of_line(q[3]),
+              PlanarSymbolicPerturbation(zeroed[2], zeroed_opposite).of_line(zeroed[3]))
         << text(q);
   }
   EXPECT_GT(zeros, n / 50);

@@ -40,7 +40,7 @@ struct Sizes {
 };
 constexpr Sizes all_sizes[] = {{1, 1.0}, {2, 0.5}, {4, 1.0}, {1 << 11, 1.0}, {1 << 14, 1.0}, {1 << 20, 0x1p-20}};
 
-TEST(Shift, OfALineIsTheSignWithASmallTrueShift) {
+TEST(SymbolicPerturbation, OfALineIsTheSignWithASmallTrueShift) {
   Quadruples quadruples(2);
   for (int i = 0; i < 6 * cases; ++i) {
     const Sizes s = all_sizes[i % 6];
@@ -49,7 +49,7 @@ TEST(Shift, OfALineIsTheSignWithASmallTrueShift) {
     for (Vec3& x : t) x *= s.scale;
     const auto& [a, b, p, q] = t;
     const auto opposite = some_points(quadruples, quadruples.random().below(4), s.largest, s.scale);
-    const Sign sign = Shift(p, opposite).of_line(a, b, q);
+    const Sign sign = SymbolicPerturbation(p, opposite).of_line(a, b, q);
     ASSERT_EQ(sign, shifted_line(a, b, p, q, opposite)) << i;
     const bool parallel = cross(b - a, q - p) == Vec3{};
     if (s.largest <= 4) {
@@ -59,19 +59,19 @@ TEST(Shift, OfALineIsTheSignWithASmallTrueShift) {
 }
 
 // Beyond the range it may be undecidable.
-TEST(Shift, HoldsOverTheWholeRange) {
+TEST(SymbolicPerturbation, HoldsOverTheWholeRange) {
   Quadruples quadruples(3);
   int refused = 0;
   for (int i = 0; i < 2 * cases; ++i) {
     const double scale = std::ldexp(1.0, static_cast<int>(quadruples.random().below(1000)) - 500);
     const Quadruple t = quadruples.coplanar_integers(4);
     const auto opposite = some_points(quadruples, 3, 4, 1.0);
-    const Sign unscaled = Shift(t[2], opposite).of_line(t[0], t[1], t[3]);
+    const Sign unscaled = SymbolicPerturbation(t[2], opposite).of_line(t[0], t[1], t[3]);
     Quadruple u = t;
     for (Vec3& x : u) x *= scale;
     std::vector<Vec3> far = opposite;
     for (Vec3& x : far) x *= scale;
-    const Sign sign = Shift(u[2], far).of_line(u[0], u[1], u[3]);
+    const Sign sign = SymbolicPerturbation(u[2], far).of_line(u[0], u[1], u[3]);
     refused += sign == Sign::undecidable ? 1 : 0;
     const auto in_range = [](const Vec3& x) {
       const auto good = [](double c) {
@@ -86,7 +86,7 @@ TEST(Shift, HoldsOverTheWholeRange) {
 }
 
 // Every coordinate at an end of the range: the longest expansions there are.
-TEST(Shift, HoldsWithExtremeCoordinatesSideBySide) {
+TEST(SymbolicPerturbation, HoldsWithExtremeCoordinatesSideBySide) {
   Quadruples quadruples(4);
   const auto point = [&] {
     Vec3 p;
@@ -103,26 +103,26 @@ TEST(Shift, HoldsWithExtremeCoordinatesSideBySide) {
     const std::vector<Vec3> opposite = {point(), point(), point()};
     // The line ab meets pq at p, so that the sign is zero; the first term alone decides.
     const Sign truth = shifted_line(a, p, p, q, opposite, 8000);
-    ASSERT_EQ(Shift(p, opposite).of_line(a, p, q), truth) << i;
+    ASSERT_EQ(SymbolicPerturbation(p, opposite).of_line(a, p, q), truth) << i;
   }
 }
 
-TEST(Shift, RefusesWhatIsNotFinite) {
+TEST(SymbolicPerturbation, RefusesWhatIsNotFinite) {
   const Vec3 a{0, 0, 0};
   const Vec3 b{1, 0, 0};
   const Vec3 c{0, 1, 0};
   for (const double x : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     for (const Vec3 bad : {Vec3{x, 0, 0}, Vec3{0, x, 0}, Vec3{0, 0, x}}) {
-      EXPECT_EQ(Shift(bad, {}).of_line(a, b, c), Sign::undecidable);
-      EXPECT_EQ(Shift(c, std::array{bad}).of_line(a, b, a), Sign::undecidable);
-      EXPECT_EQ(Shift(c, {}).of_line(bad, b, a), Sign::undecidable);
-      EXPECT_EQ(Shift(c, {}).of_line(a, bad, b), Sign::undecidable);
-      EXPECT_EQ(Shift(c, {}).of_line(a, b, bad), Sign::undecidable);
+      EXPECT_EQ(SymbolicPerturbation(bad, {}).of_line(a, b, c), Sign::undecidable);
+      EXPECT_EQ(SymbolicPerturbation(c, std::array{bad}).of_line(a, b, a), Sign::undecidable);
+      EXPECT_EQ(SymbolicPerturbation(c, {}).of_line(bad, b, a), Sign::undecidable);
+      EXPECT_EQ(SymbolicPerturbation(c, {}).of_line(a, bad, b), Sign::undecidable);
+      EXPECT_EQ(SymbolicPerturbation(c, {}).of_line(a, b, bad), Sign::undecidable);
     }
   }
 }
 
-TEST(Shift, IsUndecidableOrRightOutsideTheRange) {
+TEST(SymbolicPerturbation, IsUndecidableOrRightOutsideTheRange) {
   Quadruples quadruples(5);
   const auto point = [&] {
     Vec3 p;
@@ -139,7 +139,7 @@ TEST(Shift, IsUndecidableOrRightOutsideTheRange) {
     const Vec3 p = point();
     const Vec3 q = point();
     const std::vector<Vec3> opposite = {point(), point(), point()};
-    const Sign sign = Shift(p, opposite).of_line(a, p, q);
+    const Sign sign = SymbolicPerturbation(p, opposite).of_line(a, p, q);
     if (sign == Sign::undecidable) continue;
     ++decided;
     ASSERT_EQ(sign, shifted_line(a, p, p, q, opposite, 9000)) << i;
@@ -148,7 +148,7 @@ TEST(Shift, IsUndecidableOrRightOutsideTheRange) {
 }
 
 // In the plane: p + e w + (e^2, e^3), and c anywhere on the line through p and q.
-TEST(PlaneShift, OfALineIsTheSignWithASmallTrueShift) {
+TEST(PlanarSymbolicPerturbation, OfALineIsTheSignWithASmallTrueShift) {
   Quadruples quadruples(5);
   int zero_along = 0;
   for (int i = 0; i < 6 * cases; ++i) {
@@ -174,12 +174,12 @@ TEST(PlaneShift, OfALineIsTheSignWithASmallTrueShift) {
     };
     const auto [px, py] = from_c(p);
     const auto [qx, qy] = from_c(q);
-    ASSERT_EQ(PlaneShift(p, opposite).of_line(q), static_cast<Sign>((px * qy - py * qx).sign())) << i;
+    ASSERT_EQ(PlanarSymbolicPerturbation(p, opposite).of_line(q), static_cast<Sign>((px * qy - py * qx).sign())) << i;
     zero_along += along.sign() == 0 && q != p ? 1 : 0;
   }
   EXPECT_GT(zero_along, cases) << "the further terms decide";
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(PlaneShift({0, 0, 0}, {}).of_line({1, nan, 0}), Sign::undecidable);
+  EXPECT_EQ(PlanarSymbolicPerturbation({0, 0, 0}, {}).of_line({1, nan, 0}), Sign::undecidable);
 }
 
 }  // namespace dartcast::test::shift_test

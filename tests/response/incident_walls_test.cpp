@@ -94,10 +94,10 @@ TEST(IncidentWalls, FansOfOnePlaneAreOneWall) {
 
 // What answer_motion() makes of a velocity, without forces.
 Vec3 bounced(const Vec3& v, const std::vector<WallHit>& walls, double restitution, double friction) {
-  Response r;
+  WallResponse r;
   r.restitution = restitution;
   r.friction = friction;
-  const Responses responses(r);
+  const WallResponses responses(r);
   std::vector<Leg> legs(1);
   legs[0].before = legs[0].after = v;
   std::vector<PassBody> bodies(1);
@@ -105,7 +105,7 @@ Vec3 bounced(const Vec3& v, const std::vector<WallHit>& walls, double restitutio
   std::vector<Vec3> none(1);
   std::vector<TouchedFaces> on(1);
   std::vector<TouchedFaces> next(1);
-  std::vector<Fate> fates(1, Fate::alive);
+  std::vector<ParticleStatus> fates(1, ParticleStatus::alive);
   const Pass pass{&responses, {}, 1e-3, bodies, body_of, none, none, on, next, fates, legs};
   Contact contact;
   contact.time_of_impact = 0.5;

@@ -129,31 +129,31 @@ TEST(Slid, NeverPointsIntoAWallNorGrows) {
   }
 }
 
-TEST(Responses, RefuseWhatIsOutOfRange) {
+TEST(WallResponses, RefuseWhatIsOutOfRange) {
   for (const double bad : {-0.1, 1.1, std::nan(""), std::numeric_limits<double>::infinity()}) {
-    EXPECT_THROW(Responses({ResponseKind::reflect, bad, 0.0}), InvalidArgument);
-    Responses r;
-    EXPECT_THROW(r.set(Patch{1}, {ResponseKind::reflect, bad, 0.0}), InvalidArgument);
-    if (bad != 1.1) EXPECT_THROW(r.set(Patch{1}, {ResponseKind::slide, 1.0, bad}), InvalidArgument);
-    EXPECT_EQ(r.of(Patch{1}).kind, ResponseKind::reflect);
+    EXPECT_THROW(WallResponses({WallResponseKind::reflect, bad, 0.0}), InvalidArgument);
+    WallResponses r;
+    EXPECT_THROW(r.set(Patch{1}, {WallResponseKind::reflect, bad, 0.0}), InvalidArgument);
+    if (bad != 1.1) EXPECT_THROW(r.set(Patch{1}, {WallResponseKind::slide, 1.0, bad}), InvalidArgument);
+    EXPECT_EQ(r.of(Patch{1}).kind, WallResponseKind::reflect);
   }
   std::vector<Vec3> velocities(2);
-  std::vector<Fate> fates(2);
-  const Responses r;
+  std::vector<ParticleStatus> fates(2);
+  const WallResponses r;
   for (const double dt : {0.0, -1.0, std::nan("")})
     EXPECT_THROW(respond_with(r, velocities, fates, dt), InvalidArgument);
-  EXPECT_THROW(respond_with(r, velocities, std::span<Fate>(fates).first(1), 1.0), InvalidArgument);
+  EXPECT_THROW(respond_with(r, velocities, std::span<ParticleStatus>(fates).first(1), 1.0), InvalidArgument);
 }
 
-TEST(Responses, OfAPatchOrTheGeneralOne) {
-  Responses r({ResponseKind::slide});
-  r.set(Patch{3}, {ResponseKind::absorb});
-  EXPECT_EQ(r.of(Patch{0}).kind, ResponseKind::slide);
-  EXPECT_EQ(r.of(Patch{2}).kind, ResponseKind::slide);
-  EXPECT_EQ(r.of(Patch{3}).kind, ResponseKind::absorb);
-  EXPECT_EQ(r.of(Patch{9}).kind, ResponseKind::slide);
-  r.set(Patch{3}, {ResponseKind::stick});
-  EXPECT_EQ(r.of(Patch{3}).kind, ResponseKind::stick);
+TEST(WallResponses, OfAPatchOrTheGeneralOne) {
+  WallResponses r({WallResponseKind::slide});
+  r.set(Patch{3}, {WallResponseKind::absorb});
+  EXPECT_EQ(r.of(Patch{0}).kind, WallResponseKind::slide);
+  EXPECT_EQ(r.of(Patch{2}).kind, WallResponseKind::slide);
+  EXPECT_EQ(r.of(Patch{3}).kind, WallResponseKind::absorb);
+  EXPECT_EQ(r.of(Patch{9}).kind, WallResponseKind::slide);
+  r.set(Patch{3}, {WallResponseKind::stick});
+  EXPECT_EQ(r.of(Patch{3}).kind, WallResponseKind::stick);
 }
 
 // --- whole steps in a box of 2 x 2 x 2 cubes
@@ -169,7 +169,7 @@ struct Scene {
   void add(const Vec3& position, const Vec3& velocity) {
     environment.add(particles, std::vector<Vec3>{position});
     velocities.push_back(velocity);
-    fates.push_back(Fate::alive);
+    fates.push_back(ParticleStatus::alive);
   }
   StepReport step(double dt = 1.0) {
     std::vector<Vec3> targets;
@@ -179,14 +179,14 @@ struct Scene {
 
   Environment environment;
   Particles particles;
-  Responses responses;
+  WallResponses responses;
   std::vector<Vec3> velocities;
-  std::vector<Fate> fates;
+  std::vector<ParticleStatus> fates;
 };
 
 TEST(RespondWith, ReflectsPositionsAndVelocities) {
   Scene s;
-  s.responses = Responses({ResponseKind::reflect, 1.0, 0.0});
+  s.responses = WallResponses({WallResponseKind::reflect, 1.0, 0.0});
   s.add({1.5, 0.75, 0.5}, {1, 0, 0});
   s.add({1.5, 1.5, 1.75}, {1, 1, 0.5});   // into the corner
   s.add({0.5, 0.75, 0.25}, {3.5, 0, 0});  // to the far side and back to the near one
@@ -202,8 +202,8 @@ TEST(RespondWith, ReflectsPositionsAndVelocities) {
 
 TEST(RespondWith, RestitutionAndSlideLoseTheNormalPart) {
   Scene s;
-  s.responses = Responses({ResponseKind::reflect, 0.5, 0.0});
-  s.responses.set(s.environment.map().patch("ymax"), {ResponseKind::slide});
+  s.responses = WallResponses({WallResponseKind::reflect, 0.5, 0.0});
+  s.responses.set(s.environment.map().patch("ymax"), {WallResponseKind::slide});
   s.add({1.5, 0.75, 0.5}, {1, 0, 0});
   s.add({0.25, 1.5, 0.5}, {1, 1, 0.25});
   s.step();
@@ -215,15 +215,16 @@ TEST(RespondWith, RestitutionAndSlideLoseTheNormalPart) {
 
 TEST(RespondWith, FatesPerPatch) {
   Scene s;
-  s.responses.set(s.environment.map().patch("xmax"), {ResponseKind::absorb});
-  s.responses.set(s.environment.map().patch("xmin"), {ResponseKind::escape});
-  s.responses.set(s.environment.map().patch("zmin"), {ResponseKind::stick});
+  s.responses.set(s.environment.map().patch("xmax"), {WallResponseKind::absorb});
+  s.responses.set(s.environment.map().patch("xmin"), {WallResponseKind::escape});
+  s.responses.set(s.environment.map().patch("zmin"), {WallResponseKind::stick});
   s.add({1.5, 0.5, 0.5}, {1, 0, 0});
   s.add({0.5, 0.5, 0.75}, {-1, 0, 0});
   s.add({0.5, 0.75, 0.5}, {0.25, 0, -1});
   s.add({0.5, 0.5, 0.5}, {0.25, 0, 0});
   const StepReport report = s.step();
-  EXPECT_EQ(s.fates, (std::vector<Fate>{Fate::absorbed, Fate::escaped, Fate::stuck, Fate::alive}));
+  EXPECT_EQ(s.fates, (std::vector<ParticleStatus>{ParticleStatus::absorbed, ParticleStatus::escaped,
+                                                  ParticleStatus::stuck, ParticleStatus::alive}));
   EXPECT_EQ(s.particles[0].position, (Vec3{2, 0.5, 0.5}));
   EXPECT_EQ(s.particles[1].position, (Vec3{0, 0.5, 0.75}));
   EXPECT_EQ(s.particles[2].position, (Vec3{0.625, 0.75, 0}));
@@ -235,13 +236,13 @@ TEST(RespondWith, FatesPerPatch) {
   s.step();
   EXPECT_EQ(s.particles[2].position, stuck);
   EXPECT_EQ(s.particles[0].position, (Vec3{2, 0.5, 0.5}));
-  EXPECT_EQ(s.fates[2], Fate::stuck);
+  EXPECT_EQ(s.fates[2], ParticleStatus::stuck);
 }
 
 TEST(RespondWith, AWallThatMovesGivesItsVelocity) {
-  for (const ResponseKind kind : {ResponseKind::reflect, ResponseKind::slide, ResponseKind::stick}) {
+  for (const WallResponseKind kind : {WallResponseKind::reflect, WallResponseKind::slide, WallResponseKind::stick}) {
     Scene s;
-    s.responses = Responses({kind, 1.0, 0.0});
+    s.responses = WallResponses({kind, 1.0, 0.0});
     s.add({0.125, 0.75, 0.5}, {0, 0, 0});
     // The wall x = 0 moves by 1/4 in a step of 1/2: past the particle at rest.
     std::vector<Vec3> points(s.environment.positions().begin(), s.environment.positions().end());
@@ -252,16 +253,16 @@ TEST(RespondWith, AWallThatMovesGivesItsVelocity) {
     const StepReport report = s.step(0.5);
     ASSERT_GE(report.contacts.contacts.size(), 1U);
     expect_near(report.contacts.contacts[0].wall_displacement, {0.25, 0, 0});
-    expect_near(s.velocities[0], kind == ResponseKind::reflect ? Vec3{1, 0, 0} : Vec3{0.5, 0, 0}, 1e-12);
+    expect_near(s.velocities[0], kind == WallResponseKind::reflect ? Vec3{1, 0, 0} : Vec3{0.5, 0, 0}, 1e-12);
     EXPECT_GE(s.particles[0].position.x, 0.25);
-    EXPECT_EQ(s.fates[0], kind == ResponseKind::stick ? Fate::stuck : Fate::alive);
+    EXPECT_EQ(s.fates[0], kind == WallResponseKind::stick ? ParticleStatus::stuck : ParticleStatus::alive);
   }
 }
 
 TEST(RespondWith, ABilliardKeepsItsEnergyAndAnInelasticOneLosesIt) {
   for (const double restitution : {1.0, 0.7}) {
     Scene s;
-    s.responses = Responses({ResponseKind::reflect, restitution, restitution < 1.0 ? 0.1 : 0.0});
+    s.responses = WallResponses({WallResponseKind::reflect, restitution, restitution < 1.0 ? 0.1 : 0.0});
     Random random(5);
     for (int i = 0; i < 60; ++i) {
       const Vec3 at{random.uniform(0, 2), random.uniform(0, 2), random.uniform(0, 2)};
@@ -308,8 +309,8 @@ TEST(RespondWith, AtTheLastContactNoVelocityPointsIntoAWallMet) {
         environment.add(particles, std::vector<Vec3>{{0, 0.5, 0.25}, {0.1 * std::sin(angle / 2), 0.5, 0.25}});
         ASSERT_EQ(particles.size(), 2U);
         std::vector<Vec3> velocities = {{0, 0.1, -1}, {0.01 * angle, 0.2, -1}};
-        std::vector<Fate> fates(2, Fate::alive);
-        const Responses responses({ResponseKind::reflect, restitution, 0.0});
+        std::vector<ParticleStatus> fates(2, ParticleStatus::alive);
+        const WallResponses responses({WallResponseKind::reflect, restitution, 0.0});
         const std::vector<Vec3> before = velocities;
         std::vector<Vec3> targets;
         for (std::size_t i = 0; i < 2; ++i) targets.push_back(particles[i].position + velocities[i]);
@@ -317,9 +318,9 @@ TEST(RespondWith, AtTheLastContactNoVelocityPointsIntoAWallMet) {
         options.max_contacts = most;
         const StepReport report =
             environment.advance(particles, targets, respond_with(responses, velocities, fates, 1.0), options);
-        std::array<bool, 2> answered{};
+        std::array<bool, 2> solved{};
         for (const Contact& c : report.contacts.contacts) {
-          if (!c.last || std::exchange(answered[c.particle], true)) continue;  // the next one is not answered
+          if (!c.last || std::exchange(solved[c.particle], true)) continue;  // the next one is not answered
           for (const auto& met : {report.contacts.walls_of(c), report.contacts.earlier_walls_of(c)}) {
             for (const WallHit& w : met)
               EXPECT_GE(dot(velocities[c.particle], w.normal), -1e-13) << degrees << ' ' << restitution << ' ' << most;
@@ -340,8 +341,8 @@ TEST(RespondWith, WallsMetAtOnePlaceAnswerTogether) {
   environment.add(particles, std::vector<Vec3>{{1e-12, 0.5, 1e-9}});
   ASSERT_EQ(particles.size(), 1U);
   std::vector<Vec3> velocity = {{0.0, 0.0, -0.01}};
-  std::vector<Fate> fate(1, Fate::alive);
-  const Responses responses({ResponseKind::reflect, 0.5, 0.0});
+  std::vector<ParticleStatus> fate(1, ParticleStatus::alive);
+  const WallResponses responses({WallResponseKind::reflect, 0.5, 0.0});
   const StepReport report = environment.advance(particles, std::vector<Vec3>{particles[0].position + velocity[0]},
                                                 respond_with(responses, velocity, fate, 1.0));
   ASSERT_GE(report.contacts.contacts.size(), 2U);

@@ -41,7 +41,7 @@ TEST(SceneFile, DefaultsAreThoseOfTheDocumentation) {
   EXPECT_EQ(s.motion.gravity, Vec3());
   EXPECT_EQ(s.motion.drag, 0.0);
   EXPECT_EQ(s.motion.substeps, 1U);
-  EXPECT_EQ(s.contact.general.kind, ResponseKind::reflect);
+  EXPECT_EQ(s.contact.general.kind, WallResponseKind::reflect);
   EXPECT_EQ(s.contact.general.restitution, 1.0);
   EXPECT_EQ(s.contact.general.friction, 0.0);
   EXPECT_EQ(s.output.every, 10U);
@@ -79,15 +79,15 @@ edits = 7
   EXPECT_EQ(s.collisions->friction, 0.25);
   EXPECT_EQ(s.collisions->density, 2500.0);
   EXPECT_EQ(s.collisions->iterations, 30U);
-  EXPECT_EQ(s.collisions->push_iterations, 6U);
+  EXPECT_EQ(s.collisions->position_iterations, 6U);
   EXPECT_EQ(s.body_collisions.restitution, 0.0);
   EXPECT_EQ(s.body_collisions.friction, 0.75);
   EXPECT_FALSE(parse_scene(box, "folder/scene.toml").body_collisions.restitution);
-  EXPECT_EQ(s.crowding.every, 10U);
-  EXPECT_EQ(s.crowding.options.most, 40U);
-  EXPECT_EQ(s.crowding.options.least, 4U);
-  EXPECT_EQ(s.crowding.options.smallest, 0.1);
-  EXPECT_EQ(s.crowding.options.edits, 7U);
+  EXPECT_EQ(s.adaptive_subdivision.every, 10U);
+  EXPECT_EQ(s.adaptive_subdivision.options.max_particles, 40U);
+  EXPECT_EQ(s.adaptive_subdivision.options.min_particles, 4U);
+  EXPECT_EQ(s.adaptive_subdivision.options.smallest, 0.1);
+  EXPECT_EQ(s.adaptive_subdivision.options.edits, 7U);
   EXPECT_FALSE(parse_scene(box, "folder/scene.toml").collisions);
 }
 
@@ -180,7 +180,7 @@ patch = "xmin"
 )",
                               "folder/scene.toml");
   EXPECT_EQ(s.remesh.every, 5U);
-  EXPECT_EQ(s.remesh.options.most_cells, 12U);
+  EXPECT_EQ(s.remesh.options.max_cells, 12U);
   ASSERT_EQ(s.events.size(), 4U);
   const auto& cut = std::get<Cut>(s.events[0].event.what);
   EXPECT_EQ(s.events[0].event.at, 1.0);
@@ -194,12 +194,12 @@ patch = "xmin"
   EXPECT_EQ(tie.tying.share, 0.5);
   EXPECT_EQ(tie.tying.reach, 3.0);
   EXPECT_EQ(tie.duration, 0.25);
-  EXPECT_EQ(s.events[1].event.stranded, Stranded::stay);
+  EXPECT_EQ(s.events[1].event.orphaned, OrphanPolicy::hold);
   const auto& carve = std::get<Carve>(s.events[2].event.what);
   EXPECT_EQ(carve.what, Carving::remove);
   EXPECT_TRUE(carve.whole_cells);
   EXPECT_EQ(carve.tool.planes.size(), 26U);
-  EXPECT_EQ(s.events[2].event.stranded, Stranded::absorb);
+  EXPECT_EQ(s.events[2].event.orphaned, OrphanPolicy::absorb);
   const auto& reconnect = std::get<Reconnect>(s.events[3].event.what);
   EXPECT_EQ(reconnect.b.offset, 1.0);
   EXPECT_EQ(reconnect.within, 0.5);
@@ -301,10 +301,10 @@ contacts = true
   EXPECT_EQ(s.motion.frame, FieldFrame::mesh);
   EXPECT_EQ(s.motion.drag, 3.0);
   EXPECT_EQ(s.motion.substeps, 4U);
-  EXPECT_EQ(s.contact.general.kind, ResponseKind::slide);
-  EXPECT_EQ(s.contact.by_patch.at("outlet").kind, ResponseKind::escape);
+  EXPECT_EQ(s.contact.general.kind, WallResponseKind::slide);
+  EXPECT_EQ(s.contact.by_patch.at("outlet").kind, WallResponseKind::escape);
   EXPECT_EQ(s.contact.by_patch.at("outlet").friction, 0.5);  // the rest as in [contact]
-  EXPECT_EQ(s.contact.by_patch.at("a wall, thick").kind, ResponseKind::slide);
+  EXPECT_EQ(s.contact.by_patch.at("a wall, thick").kind, WallResponseKind::slide);
   EXPECT_EQ(s.contact.by_patch.at("a wall, thick").restitution, 0.75);
   EXPECT_EQ(s.output.every, 3U);
   EXPECT_TRUE(s.output.contacts);

@@ -21,12 +21,12 @@ MeshData crowding_box() {
   return generate_box(o);
 }
 
-std::size_t fullest_cell(const Flow& flow) {
+std::size_t fullest_cell(const Simulation& flow) {
   std::map<Cell, std::size_t> counts;
-  for (const State& s : flow.particles().states()) ++counts[s.cell];
-  std::size_t most = 0;
-  for (const auto& [cell, count] : counts) most = std::max(most, count);
-  return most;
+  for (const ParticleState& s : flow.particles().states()) ++counts[s.cell];
+  std::size_t max_particles = 0;
+  for (const auto& [cell, count] : counts) max_particles = std::max(max_particles, count);
+  return max_particles;
 }
 
 std::vector<Vec3> cluster(std::size_t count, const Vec3& low, const Vec3& high) {
@@ -38,103 +38,103 @@ std::vector<Vec3> cluster(std::size_t count, const Vec3& low, const Vec3& high) 
 }
 
 // A crowd gathers, and the cells get small; it leaves, and they are as many as before.
-TEST(Crowding, SubdividesAndMergesAgain) {
+TEST(AdaptiveSubdivision, SubdividesAndMergesAgain) {
   Environment environment(crowding_box(), Threads{1});
-  FlowOptions o;
+  SimulationOptions o;
   o.dt = 0.1;
-  Flow flow(environment, o);
+  Simulation flow(environment, o);
   const std::size_t cells = environment.map().cell_count();
   flow.add(cluster(300, {1.1, 1.1, 1.1}, {1.9, 1.9, 1.9}), {0.1, 0.05, 0.02});
-  CrowdingOptions options;
-  options.most = 20;
-  options.least = 10;
-  Crowding crowding(options);
-  CrowdingReport first;
+  AdaptiveSubdivisionOptions options;
+  options.max_particles = 20;
+  options.min_particles = 10;
+  AdaptiveSubdivision adaptive_subdivision(options);
+  AdaptiveSubdivisionReport first;
   for (int i = 0; i < 5; ++i) {
-    const CrowdingReport report = flow.relieve(crowding);
+    const AdaptiveSubdivisionReport report = flow.adapt(adaptive_subdivision);
     first.subdivided += report.subdivided;
     EXPECT_TRUE(report.refused.empty()) << report.refused.front().reason;
     EXPECT_EQ(report.waiting, 0U);
-    EXPECT_LE(fullest_cell(flow), options.most);
+    EXPECT_LE(fullest_cell(flow), options.max_particles);
     EXPECT_TRUE(environment.validity().valid());
     EXPECT_EQ(audit(environment.complex(), flow.particles()).failed, 0U);
     flow.step();
   }
   EXPECT_GT(first.subdivided, 8U);
-  EXPECT_GT(crowding.subdivisions().size(), 8U);
+  EXPECT_GT(adaptive_subdivision.subdivisions().size(), 8U);
   EXPECT_EQ(flow.particles().size(), 300U);
   // With everyone still there nothing is merged; with nobody all is.
-  EXPECT_EQ(flow.relieve(crowding).merged, 0U);
-  Flow empty(environment, o);
+  EXPECT_EQ(flow.adapt(adaptive_subdivision).merged, 0U);
+  Simulation empty(environment, o);
   std::uint64_t merged = 0;
-  for (int i = 0; i < 10 && !crowding.subdivisions().empty(); ++i) {
-    const CrowdingReport report = empty.relieve(crowding);
+  for (int i = 0; i < 10 && !adaptive_subdivision.subdivisions().empty(); ++i) {
+    const AdaptiveSubdivisionReport report = empty.adapt(adaptive_subdivision);
     merged += report.merged;
     EXPECT_TRUE(report.refused.empty()) << report.refused.front().reason;
   }
-  EXPECT_TRUE(crowding.subdivisions().empty());
+  EXPECT_TRUE(adaptive_subdivision.subdivisions().empty());
   EXPECT_EQ(environment.map().cell_count(), cells);
   EXPECT_GT(merged, 8U);
 }
 
 // A report names what was not done: cells too small, and more of them than one call edits.
-TEST(Crowding, TellsWhatItLeaves) {
+TEST(AdaptiveSubdivision, TellsWhatItLeaves) {
   Environment environment(crowding_box(), Threads{1});
-  Flow flow(environment, FlowOptions{});
+  Simulation flow(environment, SimulationOptions{});
   flow.add(cluster(400, {1.1, 1.1, 1.1}, {2.9, 1.9, 1.9}), {});
-  CrowdingOptions options;
-  options.most = 20;
+  AdaptiveSubdivisionOptions options;
+  options.max_particles = 20;
   options.smallest = 0.4;
-  Crowding small(options);
-  const CrowdingReport report = flow.relieve(small);
+  AdaptiveSubdivision small(options);
+  const AdaptiveSubdivisionReport report = flow.adapt(small);
   EXPECT_EQ(report.subdivided, 2U);
   ASSERT_GT(report.refused.size(), 4U);
-  EXPECT_GT(report.refused.front().particles, options.most);
+  EXPECT_GT(report.refused.front().particles, options.max_particles);
   EXPECT_NE(report.refused.front().reason.find("across"), std::string::npos);
   options.smallest = 0.0;
   options.edits = 1;
-  Crowding slow(options);
-  const CrowdingReport some = flow.relieve(slow);
+  AdaptiveSubdivision slow(options);
+  const AdaptiveSubdivisionReport some = flow.adapt(slow);
   EXPECT_EQ(some.subdivided, 1U);
   EXPECT_GT(some.waiting, 0U);
 }
 
-TEST(Crowding, RefusesOptionsOutOfRange) {
-  CrowdingOptions options;
-  options.least = options.most;
-  EXPECT_THROW(Crowding{options}, InvalidArgument);
+TEST(AdaptiveSubdivision, RefusesOptionsOutOfRange) {
+  AdaptiveSubdivisionOptions options;
+  options.min_particles = options.max_particles;
+  EXPECT_THROW(AdaptiveSubdivision{options}, InvalidArgument);
   options = {};
   options.smallest = -1.0;
-  EXPECT_THROW(Crowding{options}, InvalidArgument);
+  EXPECT_THROW(AdaptiveSubdivision{options}, InvalidArgument);
 }
 
 // Spheres that rest on each other go on resting while the cells around them change.
-TEST(Crowding, SpheresDoNotNotice) {
-  const auto run = [](bool relieve) {
+TEST(AdaptiveSubdivision, SpheresDoNotNotice) {
+  const auto run = [](bool adapt) {
     Environment environment(crowding_box(), Threads{1});
-    FlowOptions o;
+    SimulationOptions o;
     o.dt = 5e-3;
     o.gravity = {0.0, 0.0, -9.81};
     o.collisions = CollisionOptions{};
     o.collisions->friction = 0.3;
-    Flow flow(environment, o, Responses(Response{ResponseKind::reflect, 0.0, 0.3}));
+    Simulation flow(environment, o, WallResponses(WallResponse{WallResponseKind::reflect, 0.0, 0.3}));
     for (int i = 0; i < 90; ++i) {
       const Vec3 place = {0.3 + 0.21 * (i % 5), 0.3 + 0.21 * (i / 5 % 6), 0.15 + 0.25 * (i / 30)};
       flow.add(std::span(&place, 1), {}, 0.1);
     }
-    CrowdingOptions options;
-    options.most = 10;
-    options.least = 5;
-    Crowding crowding(options);
+    AdaptiveSubdivisionOptions options;
+    options.max_particles = 10;
+    options.min_particles = 5;
+    AdaptiveSubdivision adaptive_subdivision(options);
     std::uint64_t edits = 0;
     for (int i = 0; i < 200; ++i) {
-      if (relieve && i % 20 == 10) edits += flow.relieve(crowding).subdivided;
+      if (adapt && i % 20 == 10) edits += flow.adapt(adaptive_subdivision).subdivided;
       flow.step();
     }
-    EXPECT_EQ(edits > 0, relieve);
+    EXPECT_EQ(edits > 0, adapt);
     EXPECT_EQ(flow.particles().size(), 90U);
     std::vector<Vec3> places;
-    for (const State& s : flow.particles().states()) places.push_back(s.position);
+    for (const ParticleState& s : flow.particles().states()) places.push_back(s.position);
     return places;
   };
   const auto without = run(false);

@@ -22,8 +22,8 @@ MeshData box_of(std::array<std::uint32_t, 3> cells, const Vec3& size) {
   return generate_box(o);
 }
 
-FlowOptions colliding(double dt, double restitution, double friction) {
-  FlowOptions o;
+SimulationOptions colliding(double dt, double restitution, double friction) {
+  SimulationOptions o;
   o.dt = dt;
   o.collisions = CollisionOptions{};
   o.collisions->restitution = restitution;
@@ -31,14 +31,14 @@ FlowOptions colliding(double dt, double restitution, double friction) {
   return o;
 }
 
-double kinetic(const Flow& flow) {
+double kinetic(const Simulation& flow) {
   double sum = 0.0;
   for (std::size_t i = 0; i < flow.radii().size(); ++i)
     sum += std::pow(flow.radii()[i], 3) * dot(flow.velocities()[i], flow.velocities()[i]);
   return sum;
 }
 
-double deepest_overlap(const Flow& flow) {
+double deepest_overlap(const Simulation& flow) {
   double deepest = 0.0;
   const auto states = flow.particles().states();
   for (std::size_t i = 0; i < states.size(); ++i) {
@@ -70,10 +70,10 @@ TEST(Collisions, GrainsComeToRest) {
   const double width = 2.4 * r * across;
   const double height = 2.4 * r * (double(count) / across / across + 3);
   Environment environment(box_of({across / 2, across / 2, across}, {width, width, height}), Threads{1});
-  FlowOptions o = colliding(large ? 2e-3 : 4e-3, 0.3, 0.3);
+  SimulationOptions o = colliding(large ? 2e-3 : 4e-3, 0.3, 0.3);
   if (large) o.collisions->iterations = 20;
   o.gravity = {0, 0, -9.81};
-  Flow flow(environment, o, Responses(Response{ResponseKind::reflect, 0.3, 0.3}));
+  Simulation flow(environment, o, WallResponses(WallResponse{WallResponseKind::reflect, 0.3, 0.3}));
   const auto places = lattice(count, across, Vec3{1.2 * r, 1.2 * r, 2.0 * r}, 2.4 * r);
   for (std::size_t i = 0; i < count; ++i) flow.add(std::span(&places[i], 1), {}, r * (i % 3 == 0 ? 0.8 : 1.0));
   ASSERT_EQ(flow.particles().size(), count);
@@ -92,14 +92,14 @@ TEST(Collisions, GrainsComeToRest) {
   if (!large) {
     EXPECT_LT(deepest_overlap(flow), 1e-3 * r);
   }
-  for (const State& s : flow.particles().states()) EXPECT_GE(s.position.z, 0.8 * r * (1.0 - 1e-9));
+  for (const ParticleState& s : flow.particles().states()) EXPECT_GE(s.position.z, 0.8 * r * (1.0 - 1e-9));
   EXPECT_EQ(audit(environment.complex(), flow.particles()).failed, 0U);
 }
 
 // In free space, within a large box: momentum is kept while they collide.
 TEST(Collisions, KeepMomentum) {
   Environment environment(box_of({8, 8, 8}, {4, 4, 4}), Threads{1});
-  Flow flow(environment, colliding(0.01, 0.9, 0.2));
+  Simulation flow(environment, colliding(0.01, 0.9, 0.2));
   Random random(3);
   Vec3 momentum;
   double sum = 0.0;
@@ -130,18 +130,18 @@ TEST(Collisions, ThreadsAndCheckpoints) {
     box.blocked_share = 0.1;
     box.jitter = 0.2;
     Environment environment(generate_box(box), Threads{threads});
-    FlowOptions o = colliding(1e-2, 0.4, 0.3);
+    SimulationOptions o = colliding(1e-2, 0.4, 0.3);
     o.gravity = {0.0, 0.0, -10.0};
-    Flow flow(environment, o, Responses(Response{ResponseKind::reflect, 0.4, 0.3}));
+    Simulation flow(environment, o, WallResponses(WallResponse{WallResponseKind::reflect, 0.4, 0.3}));
     const std::size_t count = std::max<std::size_t>(60, test::scaled<std::size_t>(600, 3000));
     flow.add_random(count / 4, {1.0, 0.0, -2.0}, 0.12);
     flow.add_random(count / 2, {0.0, 1.0, -2.0}, 0.06);
     flow.add_random(count / 4, {0.0, 0.0, -1.0});
     for (int i = 0; i < 40; ++i) {
       if (i == save_at) {
-        const FlowCheckpoint saved = flow.checkpoint();
+        const SimulationCheckpoint saved = flow.checkpoint();
         Environment again(generate_box(box), Threads{threads});
-        Flow other(again, o, Responses(Response{ResponseKind::reflect, 0.4, 0.3}));
+        Simulation other(again, o, WallResponses(WallResponse{WallResponseKind::reflect, 0.4, 0.3}));
         other.restore(saved);
         for (; i < 40; ++i) other.step();
         return other.state_hash().hex();
@@ -162,9 +162,9 @@ TEST(Collisions, FrictionAngle) {
   for (const double share : {0.9, 1.1}) {
     Environment environment(box_of({10, 2, 2}, {10, 2, 2}), Threads{1});
     const double angle = std::atan(0.5) * share;
-    FlowOptions o = colliding(2e-3, 0.0, 0.5);
+    SimulationOptions o = colliding(2e-3, 0.0, 0.5);
     o.gravity = {9.81 * std::sin(angle), 0.0, -9.81 * std::cos(angle)};
-    Flow flow(environment, o, Responses(Response{ResponseKind::reflect, 0.0, 0.5}));
+    Simulation flow(environment, o, WallResponses(WallResponse{WallResponseKind::reflect, 0.0, 0.5}));
     const double r = 0.1;
     flow.add(std::vector<Vec3>{{1.0, 1.0, r * (1.0 + resting_gap)}}, {}, r);
     const int steps = 400;
@@ -178,7 +178,8 @@ TEST(Collisions, FrictionAngle) {
 // Two spheres meet in the middle of a box, one bounces off a wall: as the formulas say.
 TEST(Collisions, ReboundAtWallsAndEachOther) {
   Environment environment(box_of({4, 4, 4}, {4, 4, 4}), Threads{1});
-  Flow flow(environment, colliding(0.01, 0.5, 0.0), Responses(Response{ResponseKind::reflect, 0.25, 0.0}));
+  Simulation flow(environment, colliding(0.01, 0.5, 0.0),
+                  WallResponses(WallResponse{WallResponseKind::reflect, 0.25, 0.0}));
   flow.add(std::vector<Vec3>{{1.0, 2.0, 2.0}}, {1.0, 0.0, 0.0}, 0.2);
   flow.add(std::vector<Vec3>{{3.0, 2.0, 2.0}}, {-1.0, 0.0, 0.0}, 0.2);
   flow.add(std::vector<Vec3>{{0.5, 0.5, 0.5}}, {0.0, 0.0, -2.0}, 0.2);
@@ -196,9 +197,9 @@ TEST(Collisions, ReboundAtWallsAndEachOther) {
 TEST(Collisions, MovingWallsCarry) {
   const MeshData mesh = box_of({4, 4, 4}, {4, 4, 4});
   Environment environment(mesh, Threads{1});
-  FlowOptions o = colliding(0.01, 0.0, 0.3);
+  SimulationOptions o = colliding(0.01, 0.0, 0.3);
   o.gravity = {0, 0, -9.81};
-  Flow flow(environment, o, Responses(Response{ResponseKind::reflect, 0.0, 0.3}));
+  Simulation flow(environment, o, WallResponses(WallResponse{WallResponseKind::reflect, 0.0, 0.3}));
   std::vector<Vec3> shift(mesh.points.size());
   for (std::size_t i = 0; i < shift.size(); ++i) shift[i] = {0.0, 0.0, 0.5 * (1.0 - mesh.points[i].z / 4.0)};
   const auto places = lattice(60, 4, {0.5, 0.5, 0.4}, 0.65);
@@ -206,7 +207,7 @@ TEST(Collisions, MovingWallsCarry) {
   for (int i = 0; i < 150; ++i) flow.step();
   flow.pull(shift, 1.0);
   for (int i = 0; i < 150; ++i) flow.step();
-  for (const State& s : flow.particles().states()) {
+  for (const ParticleState& s : flow.particles().states()) {
     EXPECT_FALSE(s.held);
     EXPECT_GE(s.position.z, 0.5 + 0.3 - 1e-9);
   }
@@ -220,9 +221,9 @@ TEST(Collisions, InThePlane) {
   rectangle.cells = {6, 6};
   rectangle.size = {6.0, 6.0};
   Environment environment(generate_rectangle(rectangle), Threads{1});
-  FlowOptions o = colliding(0.01, 0.2, 0.3);
+  SimulationOptions o = colliding(0.01, 0.2, 0.3);
   o.gravity = {0, -9.81, 0};
-  Flow flow(environment, o, Responses(Response{ResponseKind::reflect, 0.2, 0.3}));
+  Simulation flow(environment, o, WallResponses(WallResponse{WallResponseKind::reflect, 0.2, 0.3}));
   std::vector<Vec3> places;
   for (int i = 0; i < 40; ++i) places.push_back({0.5 + 0.62 * (i % 8) + 0.01 * (i % 3), 0.5 + 0.7 * (i / 8), 0.0});
   flow.add(places, {}, 0.25);
@@ -233,21 +234,21 @@ TEST(Collisions, InThePlane) {
   }
   EXPECT_LT(kinetic(flow), 1e-6 * peak);
   EXPECT_LT(deepest_overlap(flow), 1e-3);
-  for (const State& s : flow.particles().states()) EXPECT_EQ(s.position.z, 0.0);
+  for (const ParticleState& s : flow.particles().states()) EXPECT_EQ(s.position.z, 0.0);
 }
 
 TEST(Collisions, RefuseWhatIsOutOfRange) {
   Environment environment(box_of({2, 2, 2}, {2, 2, 2}), Threads{1});
   const auto refused = [&](auto&& spoil) {
-    FlowOptions o = colliding(0.01, 0.5, 0.5);
+    SimulationOptions o = colliding(0.01, 0.5, 0.5);
     spoil(*o.collisions);
-    EXPECT_THROW(Flow(environment, o), InvalidArgument);
+    EXPECT_THROW(Simulation(environment, o), InvalidArgument);
   };
   refused([](CollisionOptions& c) { c.restitution = 1.1; });
   refused([](CollisionOptions& c) { c.friction = -0.1; });
   refused([](CollisionOptions& c) { c.density = 0.0; });
   refused([](CollisionOptions& c) { c.iterations = 0; });
-  Flow flow(environment, colliding(0.01, 0.5, 0.5));
+  Simulation flow(environment, colliding(0.01, 0.5, 0.5));
   EXPECT_THROW(flow.add(std::vector<Vec3>{{1, 1, 1}}, {}, -1.0), InvalidArgument);
   EXPECT_THROW(flow.add_random(1, {}, std::nan("")), InvalidArgument);
   EXPECT_EQ(flow.particles().size(), 0U);

@@ -22,21 +22,21 @@ MeshData channel() {
   return generate_box(o);
 }
 
-FlowOptions falling(double dt) {
-  FlowOptions o;
+SimulationOptions falling(double dt) {
+  SimulationOptions o;
   o.dt = dt;
   o.gravity = {0.0, 0.0, -1.0};
   return o;
 }
 
-void expect_audited(const Flow& flow) {
+void expect_audited(const Simulation& flow) {
   const Audit found = audit(flow.environment().complex(), flow.particles());
   ASSERT_EQ(found.failed, 0U) << found.first;
 }
 
-std::size_t count_if(const Flow& flow, const std::function<bool(const Vec3&)>& where) {
+std::size_t count_if(const Simulation& flow, const std::function<bool(const Vec3&)>& where) {
   std::size_t count = 0;
-  for (const State& s : flow.particles().states()) count += where(s.position) ? 1 : 0;
+  for (const ParticleState& s : flow.particles().states()) count += where(s.position) ? 1 : 0;
   return count;
 }
 
@@ -50,12 +50,12 @@ Deformation sway(const Environment& environment) {
   return Deformation({twist}, environment.positions());
 }
 
-const Event cut_below = {0.0, Cut{Disc{{6.0, 3.0, 0.5}, {1.0, 0.0, 0.0}, 1.0}, 0.5}, Stranded::move};
+const Event cut_below = {0.0, Cut{Disc{{6.0, 3.0, 0.5}, {1.0, 0.0, 0.0}, 1.0}, 0.5}, OrphanPolicy::relocate};
 
 // Particles that fall reach the bottom of the gap, and nothing else below the channel.
 TEST(Events, ParticlesLeakIntoACut) {
   Environment environment(channel());
-  Flow flow(environment, falling(0.02), Responses(Response{ResponseKind::slide, 0.0, 0.0}));
+  Simulation flow(environment, falling(0.02), WallResponses(WallResponse{WallResponseKind::slide, 0.0, 0.0}));
   std::vector<Vec3> places;
   for (int i = 0; i < 100; ++i) places.push_back({5.76 + 0.005 * i, 3.0, 2.0});
   flow.add(places, {});
@@ -73,12 +73,13 @@ TEST(Events, ParticlesLeakIntoACut) {
 
 TEST(Events, ALigatureSealsAndItsWallsAreDrawnTogether) {
   Environment environment(channel());
-  Flow flow(environment, FlowOptions{.dt = 0.02}, Responses(Response{ResponseKind::reflect, 1.0, 0.0}));
+  Simulation flow(environment, SimulationOptions{.dt = 0.02},
+                  WallResponses(WallResponse{WallResponseKind::reflect, 1.0, 0.0}));
   std::vector<Vec3> places;
   for (int i = 0; i < 300; ++i) places.push_back({1.5 + 0.008 * i, 1.5 + 0.01 * i, 3.0 + 0.003 * (i % 7)});
   flow.add(places, {2.0, 0.3, 0.7});
   Ligature tie{plane_through({6.5, 3.0, 3.0}, {1.0, 0.0, 0.0}), {6.5, 3.0, 3.0}, {0.8, 2.0}, 0.5};
-  const EventReport report = apply(flow, {0.0, tie, Stranded::move});
+  const EventReport report = apply(flow, {0.0, tie, OrphanPolicy::relocate});
   EXPECT_EQ(report.cells_blocked, 16U);
   const Vec3 corner = environment.positions()[7 + 13 * (1 + 7 * 1)];  // (7, 1, 1)
   for (int i = 0; i < 400; ++i) {
@@ -99,17 +100,18 @@ TEST(Events, SurgeryOnWhatDeforms) {
   std::vector<std::string> hashes;
   for (const unsigned threads : {1U, 3U}) {
     Environment environment(channel(), {threads});
-    Flow flow(environment, falling(0.02), Responses(Response{ResponseKind::reflect, 0.5, 0.0}));
+    Simulation flow(environment, falling(0.02), WallResponses(WallResponse{WallResponseKind::reflect, 0.5, 0.0}));
     flow.set_deformation(sway(environment));
     flow.set_field(
         VelocityField(environment.complex(), std::vector<Vec3>(environment.positions().size(), Vec3{0.5, 0.0, -1.0})));
     flow.add_random(300, {});
     for (int i = 0; i < 200; ++i) {
       if (i == 20) apply(flow, cut_below);
-      if (i == 60) apply(flow, {0.0, Carve{capsule_tool({9.0, 3.0, 0.3}, {9.0, 3.0, 1.5}, 0.4)}, Stranded::move});
+      if (i == 60)
+        apply(flow, {0.0, Carve{capsule_tool({9.0, 3.0, 0.3}, {9.0, 3.0, 1.5}, 0.4)}, OrphanPolicy::relocate});
       if (i == 100)
         apply(flow, {0.0, Ligature{plane_through({3.5, 3.0, 3.0}, {1.0, 0.0, 0.0}), {3.5, 3.0, 3.0}, {0.5, 1.5}, 0.4},
-                     Stranded::stay});
+                     OrphanPolicy::hold});
       flow.step();
       if (i % 10 == 0) ASSERT_NO_FATAL_FAILURE(expect_audited(flow));
       const Validity validity = environment.validity();
@@ -124,10 +126,10 @@ TEST(Events, SurgeryOnWhatDeforms) {
 
 TEST(Events, ASliceIsTakenOutAndFilledAgain) {
   Environment environment(channel());
-  Flow flow(environment, falling(0.02), Responses(Response{ResponseKind::reflect, 0.5, 0.0}));
+  Simulation flow(environment, falling(0.02), WallResponses(WallResponse{WallResponseKind::reflect, 0.5, 0.0}));
   flow.add_random(500, {1.0, 0.0, 0.0});
   const std::size_t in_slice = count_if(flow, [](const Vec3& x) { return x.x > 5.5 && x.x < 7.5; });
-  Event remove{0.0, Carve{box_tool({5.5, -1.0, -1.0}, {7.5, 7.0, 7.0}), Carving::remove}, Stranded::absorb};
+  Event remove{0.0, Carve{box_tool({5.5, -1.0, -1.0}, {7.5, 7.0, 7.0}), Carving::remove}, OrphanPolicy::absorb};
   const EventReport removed = apply(flow, remove);
   EXPECT_EQ(removed.particles_absorbed, in_slice);
   EXPECT_EQ(flow.totals().absorbed, in_slice);
@@ -137,7 +139,7 @@ TEST(Events, ASliceIsTakenOutAndFilledAgain) {
   EXPECT_EQ(count_if(flow, [](const Vec3& x) { return x.x <= 5.5; }), left);
   expect_audited(flow);
   const auto at = [](double x) { return plane_through({x, 0.0, 0.0}, {1.0, 0.0, 0.0}); };
-  const EventReport filled = apply(flow, {0.0, Reconnect{at(5.5), at(7.5), 0.01, {}}, Stranded::move});
+  const EventReport filled = apply(flow, {0.0, Reconnect{at(5.5), at(7.5), 0.01, {}}, OrphanPolicy::relocate});
   EXPECT_GT(filled.cells_added, 0U);
   std::size_t crossed = 0;
   for (int i = 0; i < 300; ++i) {
@@ -153,12 +155,12 @@ TEST(Events, AnInletIsClosedWithItsLastFace) {
   o.cells = {4, 1, 1};
   o.size = {4.0, 1.0, 1.0};
   Environment environment(generate_box(o));
-  Flow flow(environment, FlowOptions{.dt = 0.1});
+  Simulation flow(environment, SimulationOptions{.dt = 0.1});
   flow.add_inlet(environment.map().patch("xmin"), 50.0, {0.1, 0.0, 0.0});
   flow.step();
   EXPECT_EQ(flow.totals().injected, 5U);
   const Cell first = flow.particles()[0].cell;
-  flow.edit([&](ComplexEdit& e) { e.topology().set_free(first, false); }, Stranded::move);
+  flow.edit([&](ComplexEdit& e) { e.topology().set_free(first, false); }, OrphanPolicy::relocate);
   flow.step();
   EXPECT_EQ(flow.totals().injected, 5U);
   flow.edit([&](ComplexEdit& e) { e.topology().set_free(first, true); });
@@ -175,7 +177,8 @@ TEST(Events, RemeshesWhereADeformationTurnsCellsOver) {
   std::size_t invalid[2] = {0, 0};  // cells, over all steps
   for (const bool remeshed : {false, true}) {
     Environment environment(generate_box(o));
-    Flow flow(environment, FlowOptions{.dt = 0.02}, Responses(Response{ResponseKind::reflect, 1.0, 0.0}));
+    Simulation flow(environment, SimulationOptions{.dt = 0.02},
+                    WallResponses(WallResponse{WallResponseKind::reflect, 1.0, 0.0}));
     DeformationStep bump;
     bump.kind = DeformationKind::bump;
     bump.amplitude = 2.5;
@@ -202,9 +205,9 @@ TEST(Events, SurgeryKeepsToTheTimesAndDoesItAgain) {
       cut_below, {0.1, Ligature{plane_through({3.5, 3.0, 3.0}, {1.0, 0.0, 0.0}), {3.5, 3.0, 3.0}, {0.0, 1.0}, 0.0}}};
   const RemeshScene never;
   Environment environment(channel());
-  Flow flow(environment, falling(0.02), Responses(Response{ResponseKind::slide, 0.0, 0.0}));
+  Simulation flow(environment, falling(0.02), WallResponses(WallResponse{WallResponseKind::slide, 0.0, 0.0}));
   flow.add_random(200, {});
-  Surgery surgery(events, never, {}, 0.02, flow);
+  EventScheduler surgery(events, never, {}, 0.02, flow);
   for (int i = 0; i < 20; ++i) {
     surgery.before_step();
     EXPECT_EQ(surgery.log().events.size(), i < 5 ? 1U : 2U);
@@ -212,8 +215,8 @@ TEST(Events, SurgeryKeepsToTheTimesAndDoesItAgain) {
     surgery.after_step();
   }
   Environment other(channel());
-  Flow again(other, falling(0.02));
-  Surgery replayed(events, never, {}, 0.02, again);
+  Simulation again(other, falling(0.02));
+  EventScheduler replayed(events, never, {}, 0.02, again);
   replayed.replay(surgery.log());
   EXPECT_EQ(other.map(), environment.map());
   again.restore(flow.checkpoint());
@@ -223,9 +226,9 @@ TEST(Events, SurgeryKeepsToTheTimesAndDoesItAgain) {
 TEST(Events, SayWhichIsRefused) {
   const std::vector<Event> events = {{0.0, Ligature{plane_through({60.0, 3.0, 3.0}, {1.0, 0.0, 0.0}), {}, {}, 0.0}}};
   Environment environment(channel());
-  Flow flow(environment, falling(0.02));
+  Simulation flow(environment, falling(0.02));
   const RemeshScene never;
-  Surgery surgery(events, never, {}, 0.02, flow);
+  EventScheduler surgery(events, never, {}, 0.02, flow);
   try {
     surgery.before_step();
     FAIL() << "there is nothing to tie";
@@ -241,19 +244,19 @@ TEST(Events, InThePlaneALigatureSeals) {
   o.cells = {12, 4};
   o.size = {12.0, 4.0};
   Environment environment(generate_rectangle(o));
-  FlowOptions drift;
+  SimulationOptions drift;
   drift.dt = 0.05;
   drift.gravity = {1.0, 0.0, 0.0};
-  Flow flow(environment, drift, Responses(Response{ResponseKind::slide, 0.0, 0.0}));
+  Simulation flow(environment, drift, WallResponses(WallResponse{WallResponseKind::slide, 0.0, 0.0}));
   std::vector<Vec3> places;
   for (int i = 0; i < 20; ++i) places.push_back({1.0, 0.1 + 0.19 * i, 0.0});
   flow.add(places, {});
   const RemeshScene never;
   const std::vector<Event> cut = {cut_below};
-  EXPECT_THROW(Surgery(cut, never, {}, 0.05, flow), InvalidArgument);
+  EXPECT_THROW(EventScheduler(cut, never, {}, 0.05, flow), InvalidArgument);
   const std::vector<Event> tie = {
       {0.5, Ligature{plane_through({6.5, 2.0, 0.0}, {1.0, 0.0, 0.0}), {6.5, 2.0, 0.0}, {0.0, 1.0}, 0.0}}};
-  Surgery surgery(tie, never, {}, 0.05, flow);
+  EventScheduler surgery(tie, never, {}, 0.05, flow);
   for (int i = 0; i < 200; ++i) {
     surgery.before_step();
     flow.step();

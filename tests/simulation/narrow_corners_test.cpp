@@ -53,20 +53,20 @@ MeshData top() {
 struct Case {
   const char* name;
   MeshData mesh;
-  FlowOptions options;
-  Response response;
+  SimulationOptions options;
+  WallResponse response;
   Vec3 velocity;
 };
 
 // That of the leapfrog scheme: the rule of the flow conserves it in free fall (docs/method.md, "Reflection").
-double energy(const Flow& flow, std::size_t i, const FlowOptions& o, double shift) {
+double energy(const Simulation& flow, std::size_t i, const SimulationOptions& o, double shift) {
   const Vec3 v = flow.velocities()[i] + o.gravity * (shift * o.dt);
   return 0.5 * dot(v, v) - dot(o.gravity, flow.particles()[i].position);
 }
 
 void expect_bounded(Case c, std::size_t count, std::uint64_t steps) {
   Environment environment(c.mesh, Threads{1});
-  Flow flow(environment, c.options, Responses(c.response));
+  Simulation flow(environment, c.options, WallResponses(c.response));
   flow.add_random(count, c.velocity);
   const double step_energy = dot(c.options.gravity, c.options.gravity) * c.options.dt * c.options.dt;
   std::vector<double> start;
@@ -91,11 +91,11 @@ void expect_bounded(Case c, std::size_t count, std::uint64_t steps) {
   EXPECT_EQ(flow.particles().size(), count);
 }
 
-FlowOptions falling(const Vec3& gravity, double dt = 0.01, unsigned most_contacts = 16) {
-  FlowOptions o;
+SimulationOptions falling(const Vec3& gravity, double dt = 0.01, unsigned max_contacts = 16) {
+  SimulationOptions o;
   o.dt = dt;
   o.gravity = gravity;
-  o.step.max_contacts = most_contacts;
+  o.step.max_contacts = max_contacts;
   return o;
 }
 
@@ -107,8 +107,8 @@ TEST(NarrowCorners, EnergyStaysBoundedInWedges) {
     for (const double restitution : {0.0, 0.5, 1.0}) {
       for (const Vec3& gravity : {Vec3{0, 0, -3}, Vec3{0.3, 1.0, -3}}) {
         expect_bounded(
-            {"wedge", wedge(degrees), falling(gravity), {ResponseKind::reflect, restitution, 0.0}, {0.3, 0.2, 0}}, 4,
-            steps());
+            {"wedge", wedge(degrees), falling(gravity), {WallResponseKind::reflect, restitution, 0.0}, {0.3, 0.2, 0}},
+            4, steps());
         if (HasFatalFailure()) FAIL() << degrees << " degrees";
       }
     }
@@ -119,8 +119,8 @@ TEST(NarrowCorners, EnergyStaysBoundedInVertices) {
   for (const double degrees : {0.1, 1.6, 7.0, 30.0, 90.0}) {
     for (const double restitution : {0.0, 0.5, 1.0}) {
       expect_bounded(
-          {"vertex", cone(degrees), falling({0, 0, -3}), {ResponseKind::reflect, restitution, 0.0}, {0.3, 0.2, 0}}, 4,
-          steps());
+          {"vertex", cone(degrees), falling({0, 0, -3}), {WallResponseKind::reflect, restitution, 0.0}, {0.3, 0.2, 0}},
+          4, steps());
       if (HasFatalFailure()) FAIL() << degrees << " degrees";
     }
   }
@@ -130,14 +130,15 @@ TEST(NarrowCorners, EnergyStaysBoundedWithFrictionDragAndFewContacts) {
   const Vec3 aslant = {1.0, -0.65, -3.25};
   const Vec3 velocity = {0.8, 0.5, 0.3};
   for (const double restitution : {0.0, 0.5, 1.0}) {
-    const Response smooth = {ResponseKind::reflect, restitution, 0.0};
-    for (const unsigned most : {1U, 2U, 3U}) {
-      expect_bounded({"few contacts", sliver(), falling(aslant, 0.01, most), smooth, velocity}, few(), steps());
-      expect_bounded({"few contacts", top(), falling(aslant, 0.01, most), smooth, velocity}, few(), steps());
+    const WallResponse smooth = {WallResponseKind::reflect, restitution, 0.0};
+    for (const unsigned max_particles : {1U, 2U, 3U}) {
+      expect_bounded({"few contacts", sliver(), falling(aslant, 0.01, max_particles), smooth, velocity}, few(),
+                     steps());
+      expect_bounded({"few contacts", top(), falling(aslant, 0.01, max_particles), smooth, velocity}, few(), steps());
     }
-    expect_bounded({"friction", sliver(), falling(aslant), {ResponseKind::reflect, restitution, 0.3}, velocity}, few(),
-                   steps());
-    FlowOptions drag = falling(aslant);
+    expect_bounded({"friction", sliver(), falling(aslant), {WallResponseKind::reflect, restitution, 0.3}, velocity},
+                   few(), steps());
+    SimulationOptions drag = falling(aslant);
     drag.drag = 0.5;
     expect_bounded({"drag", sliver(), drag, smooth, velocity}, few(), steps());
     if (HasFatalFailure()) return;
@@ -147,7 +148,7 @@ TEST(NarrowCorners, EnergyStaysBoundedWithFrictionDragAndFewContacts) {
 // The particles that once gained energy: between two sides at 1.6 degrees, and in a sharp vertex.
 TEST(NarrowCorners, EnergyStaysBoundedInASliver) {
   for (const double restitution : {0.0, 0.5, 1.0}) {
-    const Response smooth = {ResponseKind::reflect, restitution, 0.0};
+    const WallResponse smooth = {WallResponseKind::reflect, restitution, 0.0};
     expect_bounded({"sliver", sliver(), falling({1.0, -0.65, -3.25}), smooth, {0.8, 0.5, 0.3}}, few(), steps());
     expect_bounded({"top", top(), falling({0, 0, -3}), smooth, {0.3, 0.2, 0}}, few(), steps());
     if (HasFatalFailure()) return;
@@ -158,8 +159,8 @@ TEST(NarrowCorners, EnergyStaysBoundedInASliver) {
 // across the wedge.
 TEST(NarrowCorners, AContactNextToACornerMovesNobody) {
   Environment environment(wedge(0.1), Threads{1});
-  const FlowOptions o = falling({0.3, 1.0, -3});
-  Flow flow(environment, o, Responses({ResponseKind::reflect, 1.0, 0.0}));
+  const SimulationOptions o = falling({0.3, 1.0, -3});
+  Simulation flow(environment, o, WallResponses({WallResponseKind::reflect, 1.0, 0.0}));
   flow.add(std::vector<Vec3>{{1.9762194268653117e-06, 1, 0.019869600474872146}},
            {-0.0033525515524524914, 0, -2.052864144302796});
   const double before = energy(flow, 0, o, 0.5);
@@ -172,8 +173,8 @@ TEST(NarrowCorners, AContactNextToACornerMovesNobody) {
 // An elastic rebound keeps its energy over many steps: no drift either way.
 TEST(NarrowCorners, AnElasticParticleKeepsItsEnergy) {
   Environment environment(wedge(90.0), Threads{1});
-  const FlowOptions o = falling({0, 0, -3});
-  Flow flow(environment, o, Responses({ResponseKind::reflect, 1.0, 0.0}));
+  const SimulationOptions o = falling({0, 0, -3});
+  Simulation flow(environment, o, WallResponses({WallResponseKind::reflect, 1.0, 0.0}));
   flow.add(std::vector<Vec3>{{0.01, 0.5, 0.6}}, {0, 0, 0});
   const double start = energy(flow, 0, o, 0.5);
   const double rest = 0.0;  // at the edge
@@ -186,14 +187,14 @@ TEST(NarrowCorners, AnElasticParticleKeepsItsEnergy) {
 TEST(NarrowCorners, WhatHasComeToRestInAVertexStaysThereAtOneContactAStep) {
   for (const double restitution : {0.0, 0.5, 0.9}) {
     Environment environment(top(), Threads{1});
-    Flow flow(environment, falling({0, 0, -3}), Responses({ResponseKind::reflect, restitution, 0.0}));
+    Simulation flow(environment, falling({0, 0, -3}), WallResponses({WallResponseKind::reflect, restitution, 0.0}));
     flow.add_random(20, {0.3, 0.2, 0});
     for (int step = 0; step < 3000; ++step) flow.step();
     for (std::size_t i = 0; i < flow.particles().size(); ++i) {
       EXPECT_EQ(flow.particles()[i].position, (Vec3{0, 0, -1})) << i;
       EXPECT_EQ(flow.velocities()[i], Vec3{}) << i;
     }
-    const FlowStep& step = flow.step();
+    const SimulationStep& step = flow.step();
     EXPECT_EQ(step.report.contacts.contacts.size(), 20U);
     EXPECT_TRUE(step.report.stopped.empty());
   }
@@ -203,7 +204,7 @@ TEST(NarrowCorners, WhatHasComeToRestInAVertexStaysThereAtOneContactAStep) {
 TEST(NarrowCorners, WhatHasComeToRestOnAnEdgeStaysThere) {
   for (const double degrees : {1.6, 30.0, 90.0}) {
     Environment environment(wedge(degrees), Threads{1});
-    Flow flow(environment, falling({0, 0, -3}), Responses({ResponseKind::reflect, 0.5, 0.3}));
+    Simulation flow(environment, falling({0, 0, -3}), WallResponses({WallResponseKind::reflect, 0.5, 0.3}));
     flow.add_random(20, {0.01, 0.2, 0});
     for (int step = 0; step < 3000; ++step) flow.step();
     const std::vector<Vec3> velocities(flow.velocities().begin(), flow.velocities().end());

@@ -23,8 +23,8 @@ using test::expect_refused;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-FlowOptions colliding(double density = 1000.0) {
-  FlowOptions o;
+SimulationOptions colliding(double density = 1000.0) {
+  SimulationOptions o;
   o.dt = 0.1;
   o.collisions = CollisionOptions{};
   o.collisions->density = density;
@@ -33,7 +33,7 @@ FlowOptions colliding(double density = 1000.0) {
 
 TEST(FlowRanges, RadiiThatOverflow) {
   Environment environment(cubes(3));
-  Flow flow(environment, colliding());
+  Simulation flow(environment, colliding());
   for (const double radius : {1e308, 1e307, 1e300, 1e90, 0x1.1p+100, infinity, std::nan(""), -1.0}) {
     const std::string words = " is " + fmt::format("{}", radius) + ": it must be between 0 and 2^100";
     expect_refused([&] { flow.add_random(2, {1, 0, 0}, radius); }, words);
@@ -52,10 +52,10 @@ TEST(FlowRanges, RadiiAndDensitiesAtTheEnds) {
   for (const double radius : {1e-310, 1e-105, 0x1p-100, 0x1p+100}) {
     for (const double density : {0x1p-100, 1000.0, 0x1p+100}) {
       Environment environment(cubes(3));
-      Flow flow(environment, colliding(density));
+      Simulation flow(environment, colliding(density));
       flow.add_random(3, {1, 0, 0}, radius);
       for (int i = 0; i < 3; ++i) flow.step();
-      for (const State& s : flow.particles().states()) EXPECT_TRUE(is_finite(s.position));
+      for (const ParticleState& s : flow.particles().states()) EXPECT_TRUE(is_finite(s.position));
       for (const Vec3& v : flow.velocities()) EXPECT_TRUE(is_finite(v)) << radius << ", " << density;
     }
   }
@@ -63,23 +63,23 @@ TEST(FlowRanges, RadiiAndDensitiesAtTheEnds) {
 
 TEST(FlowRanges, Options) {
   Environment environment(cubes(2));
-  const auto refused = [&](const std::function<void(FlowOptions&)>& spoil, const std::string& words) {
-    FlowOptions o = colliding();
+  const auto refused = [&](const std::function<void(SimulationOptions&)>& spoil, const std::string& words) {
+    SimulationOptions o = colliding();
     spoil(o);
-    expect_refused([&] { const Flow flow(environment, o); }, words);
+    expect_refused([&] { const Simulation flow(environment, o); }, words);
   };
   for (const double bad : {0.0, -1.0, 1e-320, 1e-200, 1e40, infinity, std::nan("")}) {
-    refused([&](FlowOptions& o) { o.dt = bad; }, "dt is " + fmt::format("{}", bad));
-    refused([&](FlowOptions& o) { o.collisions->density = bad; }, "density is " + fmt::format("{}", bad));
+    refused([&](SimulationOptions& o) { o.dt = bad; }, "dt is " + fmt::format("{}", bad));
+    refused([&](SimulationOptions& o) { o.collisions->density = bad; }, "density is " + fmt::format("{}", bad));
   }
-  refused([](FlowOptions& o) { o.step.max_contacts = 0; }, "max_contacts");
-  refused([](FlowOptions& o) { o.step.max_parts = 0; }, "max_parts");
-  refused([](FlowOptions& o) { o.step.tolerance = std::nan(""); }, "tolerance");
+  refused([](SimulationOptions& o) { o.step.max_contacts = 0; }, "max_contacts");
+  refused([](SimulationOptions& o) { o.step.max_parts = 0; }, "max_parts");
+  refused([](SimulationOptions& o) { o.step.tolerance = std::nan(""); }, "tolerance");
 }
 
 TEST(FlowRanges, RatesOfInlets) {
   Environment environment(cubes(2));
-  Flow flow(environment, colliding());
+  Simulation flow(environment, colliding());
   for (const double rate : {1e300, 1e30, 0x1p+40, infinity, std::nan(""), -1.0})
     expect_refused([&] { flow.add_inlet(Patch{1}, rate, {1, 0, 0}); }, "rate is " + fmt::format("{}", rate));
   flow.step();
@@ -89,7 +89,7 @@ TEST(FlowRanges, RatesOfInlets) {
 TEST(FlowRanges, SpeedsThatOverflow) {
   for (const double speed : {1e308, 1e300}) {
     Environment environment(cubes(2));
-    Flow flow(environment, colliding());
+    Simulation flow(environment, colliding());
     flow.add_random(2, {speed, 0, 0}, 0.1);
     EXPECT_THROW(flow.step(), InvalidArgument);
   }
@@ -98,8 +98,8 @@ TEST(FlowRanges, SpeedsThatOverflow) {
 TEST(FlowRanges, BodiesOfAnotherEnvironment) {
   Environment environment(cubes(2));
   Environment other(cubes(2));
-  FlowOptions o = colliding();
-  Flow flow(environment, o);
+  SimulationOptions o = colliding();
+  Simulation flow(environment, o);
   BodiesOptions of_bodies;
   of_bodies.dt = o.dt;
   Bodies strangers(other, of_bodies);
@@ -154,21 +154,21 @@ TEST(PolylineRanges, AResponseThatThrowsInALaterSegment) {
   Particles particles;
   environment.add(particles, std::vector<Vec3>{{0.5, 0.5, 0.5}});
   const std::vector<Vec3> targets = {{1.5, 0.5, 0.5}, {2.5, 0.5, 0.5}};
-  const Respond thrower = [](const Contact&, auto, auto) -> Continuation { throw Error("mine"); };
+  const ContactCallback thrower = [](const Contact&, auto, auto) -> AfterContact { throw Error("mine"); };
   EXPECT_THROW(advance_polyline(environment, particles, targets, 2, thrower), Error);
   EXPECT_EQ(particles[0].position, (Vec3{0.5, 0.5, 0.5}));
 }
 
 TEST(SurgeryRanges, TimesOfEvents) {
   Environment environment(cubes(2));
-  FlowOptions o;
+  SimulationOptions o;
   o.dt = 1e-3;
-  Flow flow(environment, o);
+  Simulation flow(environment, o);
   const RemeshScene remesh;
-  const CrowdingScene crowding;
+  const AdaptiveSubdivisionScene adaptive_subdivision;
   for (const double at : {-1.0, 1e300, 1e17, infinity, std::nan("")}) {
     const std::vector<Event> events = {{0.0, Ligature{}}, {at, Ligature{}}};
-    expect_refused([&] { const Surgery surgery(events, remesh, crowding, o.dt, flow); },
+    expect_refused([&] { const EventScheduler surgery(events, remesh, adaptive_subdivision, o.dt, flow); },
                    "event 2 (ligature): its time is " + fmt::format("{}", at));
   }
 }

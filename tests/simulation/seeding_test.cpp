@@ -29,7 +29,7 @@ MeshData corner_tetrahedron() {
 
 // The part of a tetrahedron within half its height of a corner is an eighth of it.
 TEST(VolumeSampler, FillsATetrahedronEvenly) {
-  const Complex complex(corner_tetrahedron());
+  const CellComplex complex(corner_tetrahedron());
   const VolumeSampler sampler(complex);
   Random random(1);
   std::array<int, 4> near_corner{};
@@ -46,7 +46,7 @@ TEST(VolumeSampler, FillsATetrahedronEvenly) {
 
 // A quarter of a triangle is within half its height of a corner.
 TEST(PatchSampler, FillsATriangleEvenlyJustInside) {
-  const Complex complex(corner_tetrahedron());
+  const CellComplex complex(corner_tetrahedron());
   const PatchSampler sampler(complex, complex.map().patch("base"));
   Random random(1);
   std::array<int, 3> near_corner{};
@@ -74,9 +74,9 @@ TEST(PatchSampler, FollowsTheMovingMesh) {
   frames.frames = {mesh.points, mesh.points};
   for (Vec3& p : frames.frames[1]) p.x += p.x == 1.0 ? 0.5 : 0.0;
   Environment environment(mesh);
-  FlowOptions options;
+  SimulationOptions options;
   options.dt = 1.0;
-  Flow flow(environment, options);
+  Simulation flow(environment, options);
   flow.set_deformation(Deformation({frames}, mesh.points));
   flow.add_inlet(environment.map().patch("zmin"), count, {});
   const auto in_first_cell = [&](std::size_t from) {
@@ -94,7 +94,7 @@ TEST(PatchSampler, FollowsTheMovingMesh) {
 TEST(Samplers, NeedSomewhereToPutParticles) {
   MeshData mesh = corner_tetrahedron();
   mesh.free = {0};
-  const Complex complex(mesh);
+  const CellComplex complex(mesh);
   EXPECT_THROW(VolumeSampler{complex}, InvalidArgument);
   EXPECT_THROW(PatchSampler(complex, complex.map().patch("base")), InvalidArgument);
 }

@@ -22,8 +22,8 @@ MeshData box_mesh(std::uint32_t n, double size = 10.0) {
   return generate_box(box);
 }
 
-FlowOptions options(double dt) {
-  FlowOptions o;
+SimulationOptions options(double dt) {
+  SimulationOptions o;
   o.dt = dt;
   return o;
 }
@@ -39,11 +39,11 @@ std::vector<Vec3> values(const MeshData& mesh, const std::function<Vec3(const Ve
   return result;
 }
 
-TEST(Flow, FallsAsEulersMethodSays) {
+TEST(Simulation, FallsAsEulersMethodSays) {
   Environment environment(box_mesh(4));
-  FlowOptions o = options(0.01);
+  SimulationOptions o = options(0.01);
   o.gravity = {0, 0, -2.0};
-  Flow flow(environment, o);
+  Simulation flow(environment, o);
   flow.add(std::vector<Vec3>{{5, 5, 9}}, {1, 0, 0});
   for (int i = 0; i < 100; ++i) flow.step();
   expect_near(flow.particles()[0].position, {6, 5, 9 - 2.0 * 1e-4 * 100 * 101 / 2}, 1e-12);
@@ -53,68 +53,68 @@ TEST(Flow, FallsAsEulersMethodSays) {
 }
 
 // A checkpoint that does not fit is refused as a whole.
-TEST(Flow, RestoresOnlyStatesThatHold) {
+TEST(Simulation, RestoresOnlyStatesThatHold) {
   Environment environment(box_mesh(3));
-  Flow flow(environment, options(0.01));
+  Simulation flow(environment, options(0.01));
   flow.add_random(20, {1, 2, 3});
   flow.step();
-  const FlowCheckpoint good = flow.checkpoint();
+  const SimulationCheckpoint good = flow.checkpoint();
   const std::string hash = flow.state_hash().hex();
   const auto expect_refused = [&](auto&& spoil) {
-    FlowCheckpoint bad = good;
+    SimulationCheckpoint bad = good;
     spoil(bad.particles[7].state);
     EXPECT_THROW(flow.restore(bad), InvalidArgument);
     EXPECT_EQ(flow.state_hash().hex(), hash);
   };
-  expect_refused([](State& s) { s.cell = Cell(); });
-  expect_refused([](State& s) { s.cell = Cell{s.cell.value + 1}; });
-  expect_refused([](State& s) { s.simplex = 6; });
-  expect_refused([](State& s) { s.simplex = s.simplex == 0 ? 1 : 0; });
-  expect_refused([](State& s) { s.position.x += 4.0; });
-  expect_refused([](State& s) { s.position.x = std::numeric_limits<double>::quiet_NaN(); });
-  expect_refused([](State& s) { s.touching_count = 4; });
-  expect_refused([](State& s) { s.touching_count = 1; });
+  expect_refused([](ParticleState& s) { s.cell = Cell(); });
+  expect_refused([](ParticleState& s) { s.cell = Cell{s.cell.value + 1}; });
+  expect_refused([](ParticleState& s) { s.simplex = 6; });
+  expect_refused([](ParticleState& s) { s.simplex = s.simplex == 0 ? 1 : 0; });
+  expect_refused([](ParticleState& s) { s.position.x += 4.0; });
+  expect_refused([](ParticleState& s) { s.position.x = std::numeric_limits<double>::quiet_NaN(); });
+  expect_refused([](ParticleState& s) { s.touching_count = 4; });
+  expect_refused([](ParticleState& s) { s.touching_count = 1; });
   flow.restore(good);
   EXPECT_EQ(flow.state_hash().hex(), hash);
 }
 
-TEST(Flow, DragTakesSpeedExponentiallyWhateverTheStep) {
+TEST(Simulation, DragTakesSpeedExponentiallyWhateverTheStep) {
   for (const double dt : {0.001, 0.5}) {
     Environment environment(box_mesh(2));
-    FlowOptions o = options(dt);
+    SimulationOptions o = options(dt);
     o.drag = 3.0;
-    Flow flow(environment, o);
+    Simulation flow(environment, o);
     flow.add(std::vector<Vec3>{{1, 5, 5}}, {2, 0, 0});
     while (flow.time() < 1.0 - 1e-9) flow.step();
     expect_near(flow.velocities()[0], {2 * std::exp(-3.0), 0, 0}, 1e-12);
   }
 }
 
-TEST(Flow, DragAndGravityEndAtTheTerminalVelocity) {
+TEST(Simulation, DragAndGravityEndAtTheTerminalVelocity) {
   Environment environment(box_mesh(2));
-  FlowOptions o = options(0.1);
+  SimulationOptions o = options(0.1);
   o.drag = 50.0;
   o.gravity = {0, 0, -10};
-  Flow flow(environment, o);
+  Simulation flow(environment, o);
   flow.add(std::vector<Vec3>{{5, 5, 8}}, {});
   for (int i = 0; i < 20; ++i) flow.step();
   expect_near(flow.velocities()[0], {0, 0, -0.2}, 1e-12);
 }
 
 // Interior points need a mesh whose pulling triangulation is not enough: strongly displaced corners.
-TEST(Flow, ALinearFieldIsReproducedInEverySimplex) {
+TEST(Simulation, ALinearFieldIsReproducedInEverySimplex) {
   BoxOptions box;
   box.cells = {6, 6, 6};
   box.size = {6, 6, 6};
   box.jitter = 0.7;
   const MeshData mesh = generate_box(box);
   Environment environment(mesh);
-  ASSERT_GT(environment.complex().interior_point_count(), 0U);
+  ASSERT_GT(environment.complex().steiner_point_count(), 0U);
   const auto field = [](const Vec3& p) { return Vec3{p.y + 0.5, 2 * p.z - p.x, 1 - p.y}; };
-  Flow flow(environment, options(1e-9));
+  Simulation flow(environment, options(1e-9));
   flow.set_field(VelocityField(environment.complex(), values(mesh, field)));
   flow.add_random(2000, {});
-  const std::vector<State> before(flow.particles().states().begin(), flow.particles().states().end());
+  const std::vector<ParticleState> before(flow.particles().states().begin(), flow.particles().states().end());
   flow.step();
   for (std::size_t i = 0; i < before.size(); ++i) expect_near(flow.velocities()[i], field(before[i].position), 1e-10);
 }
@@ -122,9 +122,9 @@ TEST(Flow, ALinearFieldIsReproducedInEverySimplex) {
 double off_circle(unsigned substeps) {
   const MeshData mesh = box_mesh(5);
   Environment environment(mesh);
-  FlowOptions o = options(0.05);
+  SimulationOptions o = options(0.05);
   o.substeps = substeps;
-  Flow flow(environment, o);
+  Simulation flow(environment, o);
   flow.set_field(VelocityField(environment.complex(), values(mesh, [](const Vec3& p) {
                                  return Vec3{5 - p.y, p.x - 5, 0};
                                })));
@@ -135,7 +135,7 @@ double off_circle(unsigned substeps) {
 }
 
 // Euler's error on a circle is of first order in a segment's length.
-TEST(Flow, SubstepsFollowACurvedFieldMoreClosely) {
+TEST(Simulation, SubstepsFollowACurvedFieldMoreClosely) {
   const double one = off_circle(1);
   EXPECT_NEAR(one / off_circle(4), 4.0, 0.3);
   EXPECT_NEAR(one / off_circle(16), 16.0, 1.2);
@@ -149,10 +149,10 @@ Deformation turning(const MeshData& mesh) {
   return Deformation({step}, mesh.points);
 }
 
-TEST(Flow, AFieldInTheMeshsFrameCarriesAlong) {
+TEST(Simulation, AFieldInTheMeshsFrameCarriesAlong) {
   const MeshData mesh = box_mesh(5);
   Environment environment(mesh);
-  Flow flow(environment, options(0.01));
+  Simulation flow(environment, options(0.01));
   flow.set_field(VelocityField(environment.complex(),
                                values(mesh,
                                       [](const Vec3&) {
@@ -166,10 +166,10 @@ TEST(Flow, AFieldInTheMeshsFrameCarriesAlong) {
   EXPECT_EQ(flow.totals().counters.contacts[2], 0U);
 }
 
-TEST(Flow, AFieldInSpaceDoesNotCarryAlong) {
+TEST(Simulation, AFieldInSpaceDoesNotCarryAlong) {
   const MeshData mesh = box_mesh(5);
   Environment environment(mesh);
-  Flow flow(environment, options(0.01));
+  Simulation flow(environment, options(0.01));
   flow.set_field(VelocityField(environment.complex(), values(mesh, [](const Vec3&) { return Vec3{1, 0, 0}; })));
   flow.set_deformation(turning(mesh));
   flow.add(std::vector<Vec3>{{4, 4, 5}}, {});
@@ -177,14 +177,14 @@ TEST(Flow, AFieldInSpaceDoesNotCarryAlong) {
   expect_near(flow.particles()[0].position, {4.25, 4, 5}, 1e-9);
 }
 
-TEST(Flow, StuckParticlesMoveWithTheWallWithoutNewContacts) {
+TEST(Simulation, StuckParticlesMoveWithTheWallWithoutNewContacts) {
   const MeshData mesh = box_mesh(3);
   Environment environment(mesh);
-  Flow flow(environment, options(0.01), Responses(Response{ResponseKind::stick, 0, 0}));
+  Simulation flow(environment, options(0.01), WallResponses(WallResponse{WallResponseKind::stick, 0, 0}));
   flow.set_deformation(turning(mesh));
   flow.add(std::vector<Vec3>{{9.95, 5, 5}}, {20, 0, 0});
   flow.step();
-  ASSERT_EQ(flow.fates()[0], Fate::stuck);
+  ASSERT_EQ(flow.fates()[0], ParticleStatus::stuck);
   const Vec3 r = flow.particles()[0].position - Vec3{5, 5, 5};
   for (int i = 0; i < 50; ++i) flow.step();
   expect_near(flow.particles()[0].position - Vec3{5, 5, 5}, -r, 1e-9);
@@ -192,22 +192,22 @@ TEST(Flow, StuckParticlesMoveWithTheWallWithoutNewContacts) {
   EXPECT_NEAR(norm(flow.velocities()[0]), 2 * std::numbers::pi * norm(r), 0.01 * norm(r));
 }
 
-TEST(Flow, ParticlesLeaveWhereTheyAreAbsorbedOrEscape) {
+TEST(Simulation, ParticlesLeaveWhereTheyAreAbsorbedOrEscape) {
   Environment environment(box_mesh(3));
-  Responses responses(Response{ResponseKind::reflect, 1, 0});
-  responses.set(environment.map().patch("xmax"), {ResponseKind::escape, 0, 0});
-  responses.set(environment.map().patch("xmin"), {ResponseKind::absorb, 0, 0});
-  Flow flow(environment, options(1.0), responses);
+  WallResponses responses(WallResponse{WallResponseKind::reflect, 1, 0});
+  responses.set(environment.map().patch("xmax"), {WallResponseKind::escape, 0, 0});
+  responses.set(environment.map().patch("xmin"), {WallResponseKind::absorb, 0, 0});
+  Simulation flow(environment, options(1.0), responses);
   flow.add(std::vector<Vec3>{{9, 1, 1}, {5, 5, 5}}, {1.5, 0, 0});
   flow.add(std::vector<Vec3>{{1, 5, 5}}, {-1.5, 0, 0});
-  const FlowStep& step = flow.step();
+  const SimulationStep& step = flow.step();
   EXPECT_EQ(step.escaped, 1U);
   EXPECT_EQ(step.absorbed, 1U);
   EXPECT_EQ(step.contact_ids, (std::vector<std::uint64_t>{0, 2}));
   ASSERT_EQ(flow.particles().size(), 1U);
   EXPECT_EQ(flow.ids()[0], 1U);
   expect_near(flow.particles()[0].position, {6.5, 5, 5}, 1e-12);
-  const FlowTotals& t = flow.totals();
+  const SimulationTotals& t = flow.totals();
   EXPECT_EQ(t.start, 3U);
   EXPECT_EQ(t.escaped, 1U);
   EXPECT_EQ(t.absorbed, 1U);
@@ -215,18 +215,18 @@ TEST(Flow, ParticlesLeaveWhereTheyAreAbsorbedOrEscape) {
   EXPECT_EQ(t.contacts_by_patch[environment.map().patch("xmin").value], 1U);
 }
 
-TEST(Flow, AReflectionKeepsTheUnusedWay) {
+TEST(Simulation, AReflectionKeepsTheUnusedWay) {
   Environment environment(box_mesh(3));
-  Flow flow(environment, options(1.0));
+  Simulation flow(environment, options(1.0));
   flow.add(std::vector<Vec3>{{9, 5, 4.5}}, {3, 0, 0});
   flow.step();
   expect_near(flow.particles()[0].position, {8, 5, 4.5}, 1e-12);
   expect_near(flow.velocities()[0], {-3, 0, 0}, 1e-12);
 }
 
-TEST(Flow, InletsInjectAtTheirRateAndPlace) {
+TEST(Simulation, InletsInjectAtTheirRateAndPlace) {
   Environment environment(box_mesh(4));
-  Flow flow(environment, options(0.1));
+  Simulation flow(environment, options(0.1));
   flow.add_inlet(environment.map().patch("zmin"), 25.0, {0, 0, 1.0});
   std::uint64_t expected_id = 0;
   for (int i = 1; i <= 20; ++i) {
@@ -234,7 +234,7 @@ TEST(Flow, InletsInjectAtTheirRateAndPlace) {
     EXPECT_TRUE(injected == 2 || injected == 3);
     EXPECT_EQ(flow.totals().injected, static_cast<std::uint64_t>(2.5 * i));
     for (; expected_id < flow.totals().injected; ++expected_id) {
-      const State& s = flow.particles()[expected_id];
+      const ParticleState& s = flow.particles()[expected_id];
       EXPECT_EQ(flow.ids()[expected_id], expected_id);
       EXPECT_GT(s.position.z, 0.1);  // moved by 0.1 from just inside
       EXPECT_LT(s.position.z, 0.1 + 2.5 / 64 + 1e-12);
@@ -243,17 +243,17 @@ TEST(Flow, InletsInjectAtTheirRateAndPlace) {
   EXPECT_EQ(flow.totals().start, 0U);
 }
 
-TEST(Flow, RandomParticlesFillTheFreeCellsEvenly) {
+TEST(Simulation, RandomParticlesFillTheFreeCellsEvenly) {
   BoxOptions box;
   box.cells = {4, 4, 4};
   box.size = {4, 4, 4};
   box.blocked_share = 0.25;
   Environment environment(generate_box(box));
-  Flow flow(environment, options(1.0));
+  Simulation flow(environment, options(1.0));
   flow.add_random(48000, {});
   std::vector<int> counts(64);
   Vec3 in_cell;
-  for (const State& s : flow.particles().states()) {
+  for (const ParticleState& s : flow.particles().states()) {
     ++counts[environment.map().source(s.cell)];
     in_cell += {s.position.x - std::floor(s.position.x), s.position.y - std::floor(s.position.y),
                 s.position.z - std::floor(s.position.z)};
@@ -275,14 +275,14 @@ std::string run_vessel(unsigned threads, std::uint64_t seed, Audit* result = nul
   small.step_length = 1.5e-3;
   const MeshData mesh = generate_vessel(small);
   Environment environment(mesh, Threads{threads});
-  FlowOptions o = options(1e-3);
+  SimulationOptions o = options(1e-3);
   o.seed = seed;
   o.gravity = {0, -9.81, 0};
   o.drag = 500;
-  Responses responses(Response{ResponseKind::reflect, 0.5, 0.1});
-  responses.set(environment.map().patch("outlet_left"), {ResponseKind::escape, 0, 0});
-  responses.set(environment.map().patch("outlet_right"), {ResponseKind::absorb, 0, 0});
-  Flow flow(environment, o, responses);
+  WallResponses responses(WallResponse{WallResponseKind::reflect, 0.5, 0.1});
+  responses.set(environment.map().patch("outlet_left"), {WallResponseKind::escape, 0, 0});
+  responses.set(environment.map().patch("outlet_right"), {WallResponseKind::absorb, 0, 0});
+  Simulation flow(environment, o, responses);
   DeformationStep bend;
   bend.kind = DeformationKind::bend;
   bend.amplitude = 0.8;
@@ -302,7 +302,7 @@ std::string run_vessel(unsigned threads, std::uint64_t seed, Audit* result = nul
     flow.step();
     if (result != nullptr) *result += audit(environment.complex(), flow.particles(), Threads{2});
   }
-  const FlowTotals& t = flow.totals();
+  const SimulationTotals& t = flow.totals();
   EXPECT_EQ(t.start, 1500U);
   EXPECT_EQ(t.injected, 80U);
   EXPECT_GT(t.escaped + t.absorbed, 0U);
@@ -311,7 +311,7 @@ std::string run_vessel(unsigned threads, std::uint64_t seed, Audit* result = nul
   return flow.state_hash().hex();
 }
 
-TEST(Flow, OneHashForAnyNumberOfThreadsAndAnotherForAnotherSeed) {
+TEST(Simulation, OneHashForAnyNumberOfThreadsAndAnotherForAnotherSeed) {
   Audit result;
   const std::string expected = run_vessel(1, 1, &result);
   EXPECT_EQ(result.failed, 0U) << result.first;
@@ -321,10 +321,10 @@ TEST(Flow, OneHashForAnyNumberOfThreadsAndAnotherForAnotherSeed) {
   EXPECT_NE(run_vessel(2, 2), expected);
 }
 
-TEST(Flow, ThoseWhoLeftStayInTheHash) {
+TEST(Simulation, ThoseWhoLeftStayInTheHash) {
   Environment environment(box_mesh(1));
   const auto hash = [&](double y) {
-    Flow flow(environment, options(1.0), Responses(Response{ResponseKind::escape, 1, 0}));
+    Simulation flow(environment, options(1.0), WallResponses(WallResponse{WallResponseKind::escape, 1, 0}));
     flow.add(std::vector<Vec3>{{9, y, 5}}, {3, 0, 0});
     flow.step();
     EXPECT_EQ(flow.particles().size(), 0U);
@@ -334,21 +334,21 @@ TEST(Flow, ThoseWhoLeftStayInTheHash) {
   EXPECT_NE(hash(5.0), hash(5.5));
 }
 
-TEST(Flow, RefusesWhatHasNoMeaning) {
+TEST(Simulation, RefusesWhatHasNoMeaning) {
   Environment environment(box_mesh(1));
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(Flow(environment, options(0.0)), InvalidArgument);
-  EXPECT_THROW(Flow(environment, options(nan)), InvalidArgument);
-  FlowOptions o = options(1.0);
+  EXPECT_THROW(Simulation(environment, options(0.0)), InvalidArgument);
+  EXPECT_THROW(Simulation(environment, options(nan)), InvalidArgument);
+  SimulationOptions o = options(1.0);
   o.drag = -1;
-  EXPECT_THROW(Flow(environment, o), InvalidArgument);
+  EXPECT_THROW(Simulation(environment, o), InvalidArgument);
   o = options(1.0);
   o.substeps = 0;
-  EXPECT_THROW(Flow(environment, o), InvalidArgument);
+  EXPECT_THROW(Simulation(environment, o), InvalidArgument);
   o = options(1.0);
   o.gravity.y = nan;
-  EXPECT_THROW(Flow(environment, o), InvalidArgument);
-  Flow flow(environment, options(1.0));
+  EXPECT_THROW(Simulation(environment, o), InvalidArgument);
+  Simulation flow(environment, options(1.0));
   EXPECT_THROW(flow.add(std::vector<Vec3>{{1, 1, nan}}, {}), InvalidArgument);
   EXPECT_THROW(flow.add(std::vector<Vec3>{{1, 1, 1}}, {nan, 0, 0}), InvalidArgument);
   EXPECT_THROW(flow.add_random(1, {nan, 0, 0}), InvalidArgument);
@@ -362,15 +362,15 @@ TEST(Flow, RefusesWhatHasNoMeaning) {
 }
 
 // Sums of many terms: the same bits for any number of threads.
-TEST(Flow, EnergyDoesNotDependOnThreads) {
+TEST(Simulation, EnergyDoesNotDependOnThreads) {
   Environment environment(box_mesh(4));
-  FlowOptions o = options(0.1);
+  SimulationOptions o = options(0.1);
   o.gravity = {0.3, -0.7, -9.81};
-  Flow flow(environment, o);
+  Simulation flow(environment, o);
   flow.add_random(20000, {1.0, 2.0, -0.3});
   flow.step();
   environment.set_threads(Threads{1});
-  const FlowEnergy one = flow.energy();
+  const SimulationEnergy one = flow.energy();
   EXPECT_GT(one.kinetic, 0.0);
   for (const unsigned threads : {2U, 3U, 7U}) {
     environment.set_threads(Threads{threads});
@@ -379,9 +379,9 @@ TEST(Flow, EnergyDoesNotDependOnThreads) {
   }
 }
 
-TEST(Flow, ParticlesAreAddedWithVelocitiesAndRadiiOfTheirOwn) {
+TEST(Simulation, ParticlesAreAddedWithVelocitiesAndRadiiOfTheirOwn) {
   Environment environment(box_mesh(4));
-  Flow flow(environment, options(1.0));
+  Simulation flow(environment, options(1.0));
   const std::vector<Vec3> points = {{1, 1, 1}, {19, 9, 9}, {2, 2, 2}};
   const std::vector<Vec3> velocities = {{0.5, 0, 0}, {7, 7, 7}, {0, 0.25, 0}};
   const std::vector<double> radii = {0.1, 0.2, 0.0};
@@ -400,16 +400,16 @@ TEST(Flow, ParticlesAreAddedWithVelocitiesAndRadiiOfTheirOwn) {
   EXPECT_EQ(flow.particles()[1].position, (Vec3{2, 2.25, 2}));
 }
 
-TEST(Flow, RefusesWhatLeavesThePlane) {
+TEST(Simulation, RefusesWhatLeavesThePlane) {
   RectangleOptions o;
   o.cells = {2, 2};
   o.size = {2.0, 2.0};
   const MeshData mesh = generate_rectangle(o);
   Environment environment(mesh);
-  FlowOptions up = options(1.0);
+  SimulationOptions up = options(1.0);
   up.gravity = {0, 0, -9.81};
-  EXPECT_THROW(Flow(environment, up), InvalidArgument);
-  Flow flow(environment, options(1.0));
+  EXPECT_THROW(Simulation(environment, up), InvalidArgument);
+  Simulation flow(environment, options(1.0));
   EXPECT_THROW(flow.add(std::vector<Vec3>{{1, 1, 0}}, {0, 0, 1}), InvalidArgument);
   EXPECT_THROW(flow.add_random(1, {0, 0, 1}), InvalidArgument);
   EXPECT_THROW(flow.add_inlet(environment.map().patch("xmin"), 1.0, {0, 0, 1}), InvalidArgument);

@@ -34,20 +34,20 @@ double mass_of(double radius, double density) { return density * 4.0 / 3.0 * std
 // A flow and bodies that meet.
 struct Both {
   Environment environment;
-  Flow flow;
+  Simulation flow;
   Bodies bodies;
   double density;
 
-  Both(MeshData mesh, const Vec3& gravity, const CollisionOptions& collisions, const Response& walls,
+  Both(MeshData mesh, const Vec3& gravity, const CollisionOptions& collisions, const WallResponse& walls,
        Threads threads = {1})
       : environment(std::move(mesh), threads),
-        flow(environment, flow_options(gravity, collisions), Responses(walls)),
-        bodies(environment, bodies_options(gravity), Responses(walls)),
+        flow(environment, flow_options(gravity, collisions), WallResponses(walls)),
+        bodies(environment, bodies_options(gravity), WallResponses(walls)),
         density(collisions.density) {
     flow.set_bodies(bodies);
   }
-  static FlowOptions flow_options(const Vec3& gravity, const CollisionOptions& collisions) {
-    FlowOptions o;
+  static SimulationOptions flow_options(const Vec3& gravity, const CollisionOptions& collisions) {
+    SimulationOptions o;
     o.dt = dt;
     o.gravity = gravity;
     o.collisions = collisions;
@@ -119,7 +119,7 @@ TEST(SphereBodies, ReboundAsTheFormulaSays) {
     for (const double ratio : {1e-4, 0.1, 1.0, 20.0}) {  // of the ball's mass to the body's
       CollisionOptions c;
       c.restitution = restitution;
-      Both both(closed_box(), {}, c, Response{});
+      Both both(closed_box(), {}, c, WallResponse{});
       const double m = mass_of(r, c.density);
       const double body = m / ratio;
       both.add_body(3, {0.5, 0.5, 0.5}, {}, body);
@@ -142,7 +142,7 @@ TEST(SphereBodies, TurnWhatTheyHitBesideItsCentre) {
   const double r = 0.04;
   CollisionOptions c;
   c.restitution = 0.5;
-  Both both(closed_box(), {}, c, Response{});
+  Both both(closed_box(), {}, c, WallResponse{});
   const double m = mass_of(r, c.density);
   both.add_body(3, {0.5, 0.5, 0.5}, {}, 2.0 * m);
   both.flow.add(std::vector<Vec3>{{0.3, 0.56, 0.5}}, {1.5, 0.0, 0.0}, r);
@@ -154,7 +154,7 @@ TEST(SphereBodies, TurnWhatTheyHitBesideItsCentre) {
   const Vec3 before = angular();
   for (int i = 0; i < 80; ++i) both.step();
   ASSERT_EQ(both.contacts(), 0U);
-  EXPECT_LT(both.bodies.rigid_motion_of(0).spin.z, -1.0);
+  EXPECT_LT(both.bodies.rigid_motion_of(0).angular_velocity.z, -1.0);
   EXPECT_LE(norm(angular() - before), 1e-3 * norm(before));
 }
 
@@ -163,7 +163,7 @@ TEST(SphereBodies, MomentumIsKept) {
   CollisionOptions c;
   c.restitution = 0.6;
   c.friction = 0.3;
-  Both both(closed_box(), {}, c, Response{ResponseKind::reflect, 0.6, 0.2});
+  Both both(closed_box(), {}, c, WallResponse{WallResponseKind::reflect, 0.6, 0.2});
   Random random(5);
   const double r = 0.03;
   both.add_body(4, {0.25, 0.5, 0.5}, {4.0, 0.1, -0.2}, 3.0);
@@ -198,7 +198,7 @@ TEST(SphereBodies, BodyComesToRestOnSpheres) {
   c.restitution = 0.2;
   c.friction = 0.5;
   c.iterations = 20;
-  Both both(closed_box(0.6), {0.0, 0.0, -9.81}, c, Response{ResponseKind::reflect, 0.2, 0.5});
+  Both both(closed_box(0.6), {0.0, 0.0, -9.81}, c, WallResponse{WallResponseKind::reflect, 0.2, 0.5});
   const double r = 0.04;
   for (int i = 0; i < 49; ++i) {
     const Vec3 x = {0.042 + 0.085 * (i % 7) + 0.0003 * (i % 5), 0.042 + 0.085 * (i / 7), 0.041};
@@ -229,7 +229,7 @@ TEST(SphereBodies, ASphereStandsOnABody) {
     CollisionOptions c;
     c.restitution = 0.2;
     c.friction = 0.5;
-    Both both(closed_box(0.6), {0.0, 0.0, -9.81}, c, Response{ResponseKind::reflect, 0.2, 0.5});
+    Both both(closed_box(0.6), {0.0, 0.0, -9.81}, c, WallResponse{WallResponseKind::reflect, 0.2, 0.5});
     const double r = 0.04;
     both.add_body(4, {0.3, 0.3, 0.08}, {}, ratio * mass_of(r, c.density), 20.0);
     const Vec3 x = {0.3, 0.3, 0.3};
@@ -254,7 +254,7 @@ TEST(SphereBodies, AreTheSameBitsForAnyNumberOfThreadsAndFromACheckpoint) {
     c.restitution = 0.3;
     c.friction = 0.4;
     auto both = std::make_unique<Both>(closed_box(), Vec3{0.0, 0.0, -9.81}, c,
-                                       Response{ResponseKind::reflect, 0.3, 0.4}, Threads{threads});
+                                       WallResponse{WallResponseKind::reflect, 0.3, 0.4}, Threads{threads});
     both->add_body(4, {0.3, 0.4, 0.2}, {2.0, 0.5, 0.0}, 2.0);
     both->add_body(3, {0.6, 0.6, 0.3}, {-2.0, 0.0, 1.0}, 0.2);
     return both;
@@ -268,7 +268,7 @@ TEST(SphereBodies, AreTheSameBitsForAnyNumberOfThreadsAndFromACheckpoint) {
     const auto both = prepared(threads);
     fill(*both);
     for (int i = 0; i < half; ++i) both->step();
-    const FlowCheckpoint flow = both->flow.checkpoint();
+    const SimulationCheckpoint flow = both->flow.checkpoint();
     const Bodies::Checkpoint bodies = both->bodies.checkpoint();
     EXPECT_FALSE(flow.impulses.empty());
     for (int i = 0; i < half; ++i) both->step();
@@ -290,7 +290,7 @@ TEST(SphereBodies, ThroughAWallNobodyMeets) {
   MeshData mesh = generate_box(box);
   mesh.free.assign(mesh.cell_count(), 1);
   mesh.free[3 + 7 * (1 + 3)] = 0;  // a pillar in the middle
-  Both both(std::move(mesh), {}, CollisionOptions{}, Response{});
+  Both both(std::move(mesh), {}, CollisionOptions{}, WallResponse{});
   BodyOptions o;
   o.radius = 0.12;
   both.bodies.add(std::vector<Vec3>{{0.25, 0.15, 0.15}}, o);
@@ -308,12 +308,12 @@ TEST(SphereBodies, ThroughAWallNobodyMeets) {
 
 // What a body is given is for one step, and its energy is told.
 TEST(SphereBodies, ABodyIsGivenSomethingOnce) {
-  Both both(closed_box(), {}, CollisionOptions{}, Response{});
+  Both both(closed_box(), {}, CollisionOptions{}, WallResponse{});
   both.add_body(3, {0.4, 0.5, 0.5}, {}, 2.0);
-  RigidMover m = both.bodies.foreseen(0);
+  RigidMover m = both.bodies.predicted_state(0);
   m.velocity.x = 1.5;
-  m.shift.x = 1.5 * dt;
-  both.bodies.act(0, m);
+  m.position_delta.x = 1.5 * dt;
+  both.bodies.apply_impulse(0, m);
   EXPECT_NEAR(both.bodies.step().input, 0.5 * 2.0 * 1.5 * 1.5, 1e-9);
   EXPECT_NEAR(both.bodies.rigid_motion_of(0).centre.x, 0.4 + 1.5 * dt, 1e-12);
   EXPECT_EQ(both.bodies.step().input, 0.0);
@@ -321,7 +321,7 @@ TEST(SphereBodies, ABodyIsGivenSomethingOnce) {
 }
 
 TEST(SphereBodies, ContactsBetweenBodiesAreTheirOwn) {
-  Both both(closed_box(), {}, CollisionOptions{}, Response{});
+  Both both(closed_box(), {}, CollisionOptions{}, WallResponse{});
   both.add_body(3, {0.4, 0.5, 0.5}, {1.0, 0.0, 0.0}, 1.0);
   both.add_body(3, {0.56, 0.5, 0.5}, {-1.0, 0.0, 0.0}, 1.0);
   both.flow.add(std::vector<Vec3>{{0.8, 0.8, 0.8}}, {}, 0.02);
@@ -334,10 +334,10 @@ TEST(SphereBodies, ContactsBetweenBodiesAreTheirOwn) {
 TEST(SphereBodies, ABodyThatAWallHoldsGivesNoWay) {
   CollisionOptions c;
   c.restitution = 1.0;
-  Both both(closed_box(), {}, c, Response{ResponseKind::stick, 0.0, 0.0});
+  Both both(closed_box(), {}, c, WallResponse{WallResponseKind::stick, 0.0, 0.0});
   both.add_body(3, {0.06, 0.5, 0.5}, {-2.0, 0.0, 0.0}, 1.0);
   for (int i = 0; i < 50; ++i) both.step();
-  ASSERT_TRUE(std::find(both.bodies.fates().begin(), both.bodies.fates().end(), Fate::stuck) !=
+  ASSERT_TRUE(std::find(both.bodies.fates().begin(), both.bodies.fates().end(), ParticleStatus::stuck) !=
               both.bodies.fates().end());
   both.flow.add(std::vector<Vec3>{{0.4, 0.5, 0.5}}, {-2.0, 0.0, 0.0}, 0.04);
   for (int i = 0; i < 150; ++i) both.step();
@@ -346,14 +346,14 @@ TEST(SphereBodies, ABodyThatAWallHoldsGivesNoWay) {
 
 TEST(SphereBodies, RefuseWhatIsOutOfRange) {
   Environment environment(closed_box(), Threads{1});
-  FlowOptions o = Both::flow_options({}, CollisionOptions{});
+  SimulationOptions o = Both::flow_options({}, CollisionOptions{});
   BodiesOptions b = Both::bodies_options({});
   b.dt = 2e-3;
   Bodies slow(environment, b);
-  EXPECT_THROW(Flow(environment, o).set_bodies(slow), InvalidArgument);
+  EXPECT_THROW(Simulation(environment, o).set_bodies(slow), InvalidArgument);
   Bodies bodies(environment, Both::bodies_options({}));
   o.substeps = 2;
-  EXPECT_THROW(Flow(environment, o).set_bodies(bodies), InvalidArgument);
+  EXPECT_THROW(Simulation(environment, o).set_bodies(bodies), InvalidArgument);
 }
 
 }  // namespace dartcast::sphere_bodies_test

@@ -18,12 +18,12 @@ using test::scaled;
 using test::slack_of;
 using test::Swarm;
 
-const Responses& bouncing() {
-  static const Responses responses(Response{ResponseKind::reflect, 0.9, 0.1});
+const WallResponses& bouncing() {
+  static const WallResponses responses(WallResponse{WallResponseKind::reflect, 0.9, 0.1});
   return responses;
 }
-const Responses& sliding() {
-  static const Responses responses(Response{ResponseKind::slide, 0.0, 0.0});
+const WallResponses& sliding() {
+  static const WallResponses responses(WallResponse{WallResponseKind::slide, 0.0, 0.0});
   return responses;
 }
 
@@ -34,7 +34,7 @@ struct Checked {
 };
 
 // One step of all spheres; the first contact of each is the first of all walls, and after it none overlaps a wall.
-Checked checked_step(Swarm& swarm, const Responses& responses, bool moved = false, bool expect_room = true) {
+Checked checked_step(Swarm& swarm, const WallResponses& responses, bool moved = false, bool expect_room = true) {
   const auto walls = all_walls(swarm.environment.complex(), moved);
   std::vector<Vec3> before;
   std::vector<Vec3> velocities = swarm.velocities;
@@ -249,7 +249,7 @@ TEST(AdvanceSpheres, CarriedByAWallThatTurns) {
 TEST(AdvanceSpheres, ContactsInTheirOrder) {
   Swarm swarm(cubes(4));
   swarm.add({2.25, 2.125, 1.0}, 0.25, {4.0, 0.0, -3.0});
-  const Responses elastic(Response{ResponseKind::reflect, 1.0, 0.0});
+  const WallResponses elastic(WallResponse{WallResponseKind::reflect, 1.0, 0.0});
   const SphereReport report = swarm.step(elastic);
   const auto& contacts = report.step.contacts.contacts;
   ASSERT_EQ(contacts.size(), 2U);
@@ -271,7 +271,8 @@ TEST(AdvanceSpheres, ContactsAreLimited) {
     StepOptions options;
     options.max_contacts = 3;
     std::size_t asked = 0;
-    const Respond into = [&](const Contact& c, std::span<const WallHit>, std::span<const WallHit>) -> Continuation {
+    const ContactCallback into = [&](const Contact& c, std::span<const WallHit>,
+                                     std::span<const WallHit>) -> AfterContact {
       EXPECT_EQ(c.last, ++asked >= 3);
       return {Vec3{0, 0, -1}, false};
     };
@@ -406,7 +407,8 @@ TEST(AdvanceSpheres, SlidesInATurnedBox) {
 TEST(AdvanceSpheres, SlidesAreLiftedOffTheWall) {
   Swarm swarm(cubes(4));
   swarm.add({1.25, 2.125, 0.25}, 0.25);
-  const Respond nearly_along = [](const Contact&, std::span<const WallHit>, std::span<const WallHit>) -> Continuation {
+  const ContactCallback nearly_along = [](const Contact&, std::span<const WallHit>,
+                                          std::span<const WallHit>) -> AfterContact {
     return {Vec3{1.0, 0.0, -1e-12}, true};
   };
   const SphereReport report = swarm.stepper.advance(swarm.environment, swarm.particles, swarm.radii,
@@ -506,12 +508,12 @@ TEST(AdvanceSpheres, OfRadiusZeroArePoints) {
       std::vector<Vec3> targets;
       for (std::size_t i = 0; i < swarm.radii.size(); ++i)
         targets.push_back(swarm.particles[i].position + swarm.velocities[i]);
-      const Respond respond = respond_with(bouncing(), swarm.velocities, swarm.fates, 1.0);
+      const ContactCallback respond = respond_with(bouncing(), swarm.velocities, swarm.fates, 1.0);
       const StepReport report =
           spheres ? swarm.stepper.advance(swarm.environment, swarm.particles, swarm.radii, targets, respond).step
                   : swarm.environment.advance(swarm.particles, targets, respond);
       for (const Contact& c : report.contacts.contacts) where.push_back(c.point);
-      for (const State& s : swarm.particles.states()) where.push_back(s.position);
+      for (const ParticleState& s : swarm.particles.states()) where.push_back(s.position);
     }
     return where;
   };
@@ -525,14 +527,14 @@ TEST(AdvanceSpheres, SmallerThanRounding) {
     swarm.add({1.25, 2.125, 0.25}, 1e-300);
     swarm.add({1.25, 2.125, 0.25}, 0.0);
     std::array<int, 2> asked{};
-    const Respond rebound = [&](const Contact& c, std::span<const WallHit> walls, std::span<const WallHit>) {
+    const ContactCallback rebound = [&](const Contact& c, std::span<const WallHit> walls, std::span<const WallHit>) {
       ++asked[c.particle];
       EXPECT_NEAR(c.time_of_impact, 0.5, 1e-12);
-      return Continuation{reflected(c.unused, walls, 1.0, 0.0), true};
+      return AfterContact{reflected(c.unused, walls, 1.0, 0.0), true};
     };
     const SphereReport report = swarm.stepper.advance(swarm.environment, swarm.particles, swarm.radii,
                                                       std::vector<Vec3>{{2.25, 2.125, -0.25}, {2.25, 2.125, -0.25}},
-                                                      response ? Respond(rebound) : Respond{});
+                                                      response ? ContactCallback(rebound) : ContactCallback{});
     EXPECT_EQ(report.step.contacts.contacts.size(), 2U);
     EXPECT_EQ(asked[0], response ? 1 : 0);
     EXPECT_EQ(asked[1], asked[0]);
@@ -572,7 +574,7 @@ TEST(AdvanceSpheres, TheSameBitsForAnyThreads) {
       const SphereReport report = swarm.step(bouncing());
       for (const Contact& c : report.step.contacts.contacts) where.push_back(c.point);
       for (const WallHit& w : report.step.contacts.walls) where.push_back(w.normal);
-      for (const State& s : swarm.particles.states()) where.push_back(s.position);
+      for (const ParticleState& s : swarm.particles.states()) where.push_back(s.position);
     }
     return where;
   };
@@ -592,7 +594,7 @@ TEST(AdvanceSpheres, TheSameBitsInAnyOrder) {
     if (reversed) std::reverse(swarm.velocities.begin(), swarm.velocities.end());
     for (int step = 0; step < 10; ++step) swarm.step(bouncing());
     std::vector<Vec3> where;
-    for (const State& s : swarm.particles.states()) where.push_back(s.position);
+    for (const ParticleState& s : swarm.particles.states()) where.push_back(s.position);
     if (reversed) std::reverse(where.begin(), where.end());
     return where;
   };
@@ -633,7 +635,7 @@ TEST(AdvanceSpheres, AfterEdits) {
     const Cell cell = cells[swarm.random.below(static_cast<std::uint32_t>(cells.size()))];
     const bool free = swarm.environment.map().is_free(cell);
     swarm.environment.edit([&](ComplexEdit& edit) { edit.topology().set_free(cell, !free); });
-    swarm.environment.follow(swarm.particles);
+    swarm.environment.update_after_edit(swarm.particles);
     swarm.step(bouncing());  // moves out those that the edit left in a wall
     const Checked checked = checked_step(swarm, bouncing(), false, false);
     contacts += checked.contacts;
@@ -665,7 +667,7 @@ TEST(AdvanceSpheres, AResponseThatThrowsChangesNothing) {
   Swarm swarm(cubes(3));
   swarm.add({1.5, 1.5, 1.5}, 0.25);
   swarm.add({0.5, 1.5, 1.5}, 0.25);
-  const Respond bad = [](const Contact&, std::span<const WallHit>, std::span<const WallHit>) -> Continuation {
+  const ContactCallback bad = [](const Contact&, std::span<const WallHit>, std::span<const WallHit>) -> AfterContact {
     return {Vec3{std::nan(""), 0, 0}, false};
   };
   const std::vector<Vec3> targets = {{2, 1, 1}, {-1, 1.5, 1.5}};

@@ -13,7 +13,7 @@ using test::Swarm;
 
 // Where clearances hold the way no walls are looked for, and nothing else changes; they are believed.
 TEST(Clearances, SaveTheSearch) {
-  const Responses bouncing(Response{ResponseKind::reflect, 0.9, 0.1});
+  const WallResponses bouncing(WallResponse{WallResponseKind::reflect, 0.9, 0.1});
   const auto run = [&bouncing](double share, std::size_t& contacts) {
     Swarm swarm(cubes(4, CellType::hexahedron, 0.1), 7);
     swarm.fill(test::scaled<std::size_t>(60, 400), 0.2, {0.2, 0.2, 0.2}, {3.8, 3.8, 3.8}, 0.3);
@@ -25,7 +25,7 @@ TEST(Clearances, SaveTheSearch) {
         targets.push_back(swarm.particles[i].position + swarm.velocities[i]);
         clearances.push_back(share * clearance(walls, swarm.particles[i].position));
       }
-      const Respond respond = respond_with(bouncing, swarm.velocities, swarm.fates, 1.0);
+      const ContactCallback respond = respond_with(bouncing, swarm.velocities, swarm.fates, 1.0);
       const SphereReport report =
           swarm.stepper.advance(swarm.environment, swarm.particles, swarm.radii, targets, respond, {}, clearances);
       contacts += report.step.contacts.contacts.size();

@@ -31,8 +31,8 @@ void run(std::size_t vertex, double Vec3::*axis, double to) {
   Particles particles;
   environment.add(particles, start);
   const std::vector<double> radii(start.size(), 0.15);
-  std::vector<Fate> fates(start.size());
-  const Responses responses(Response{ResponseKind::reflect, 0.5, 0.1});
+  std::vector<ParticleStatus> fates(start.size());
+  const WallResponses responses(WallResponse{WallResponseKind::reflect, 0.5, 0.1});
   SphereStepper stepper;
   const std::vector<Vec3> rest(environment.positions().begin(), environment.positions().end());
   for (int step = 0; step < 6; ++step) {

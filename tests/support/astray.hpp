@@ -15,21 +15,21 @@
 namespace dartcast::test {
 
 /// Moves some vertices; the others stay.
-inline void displace(Complex& complex, const std::vector<std::pair<Vertex, Vec3>>& moves) {
+inline void displace(CellComplex& complex, const std::vector<std::pair<Vertex, Vec3>>& moves) {
   const auto next = complex.next_positions();
   std::copy_n(complex.positions().begin(), next.size(), next.begin());
   for (const auto& [v, by] : moves) next[v.value] += by;
   complex.commit_positions();
 }
 
-inline std::vector<Cell> invalid_cells(const Complex& complex) {
+inline std::vector<Cell> invalid_cells(const CellComplex& complex) {
   std::vector<Cell> cells;
   for (const InvalidCell& c : check_validity(complex, Threads{1}, 1000000).first) cells.push_back(c.cell);
   return cells;
 }
 
 /// Vertices of no wall (nor of the boundary).
-inline std::vector<Vertex> inner_vertices(const Map& map) {
+inline std::vector<Vertex> inner_vertices(const CombinatorialMap& map) {
   std::vector<Vertex> inner;
   for (std::uint32_t v = 0; v < map.vertex_count(); ++v) {
     if (map.is_vertex(Vertex(v)) && !map.may_touch_wall(Vertex(v))) inner.emplace_back(v);
@@ -38,9 +38,9 @@ inline std::vector<Vertex> inner_vertices(const Map& map) {
 }
 
 /// All that a wall is: seen from the free side, corners with their coordinates, patch.
-inline std::multiset<std::string> walls(const Complex& complex) {
+inline std::multiset<std::string> walls(const CellComplex& complex) {
   std::multiset<std::string> walls;
-  const Map& map = complex.map();
+  const CombinatorialMap& map = complex.map();
   for (const Cell c : map.cells()) {
     const CellView v = map.view(c);
     for (std::uint16_t f = 0; f < v.shape().face_count(); ++f) {
@@ -57,7 +57,7 @@ inline std::multiset<std::string> walls(const Complex& complex) {
   return walls;
 }
 
-inline Dyadic free_volume6(const Complex& complex) {
+inline Dyadic free_volume6(const CellComplex& complex) {
   Dyadic sum;
   for (const Cell c : complex.map().cells()) {
     if (!complex.map().is_free(c)) continue;

@@ -21,9 +21,9 @@ std::vector<std::uint32_t> sorted_corners(const CellView& cell, std::uint16_t fa
 
 // The interior points that the library chose, as the oracle names them. In a shape, points are numbered: corners, then
 // the points of faces, then the cell's.
-oracle::InteriorVertices interior_of(const Complex& complex, const MeshData& mesh) {
+oracle::InteriorVertices interior_of(const CellComplex& complex, const MeshData& mesh) {
   oracle::InteriorVertices interior;
-  const Map& map = complex.map();
+  const CombinatorialMap& map = complex.map();
   for (const Cell c : map.cells()) {
     const CellView cell = map.view(c);
     const std::uint32_t number = map.source(c);
@@ -182,7 +182,7 @@ std::string CheckedScene::check_wall(const Walk& w, SimplexId start, const Vec3&
   return {};
 }
 
-std::string CheckedScene::check_state(const State& state) const {
+std::string CheckedScene::check_state(const ParticleState& state) const {
   const std::uint32_t s = oracle_simplex(state.at());
   if (s == oracle::none) return "the state names a simplex that does not exist";
   if (!oracle_->triangulation().is_free(oracle_->triangulation().simplices()[s].cell))
@@ -190,20 +190,20 @@ std::string CheckedScene::check_state(const State& state) const {
   if (!oracle_->contains(s, state.position)) return "the position is not in the state's simplex";
   if (state.held) return "held in a valid scene";
   const auto kind = static_cast<Kind>(oracle_->dimension_at(s, state.position));
-  State untouched = state;
+  ParticleState untouched = state;
   untouched.touching_count = 0;
   if (forecast(complex_.map(), untouched, complex_.corners(state.at())).kind != kind) return "the kind is wrong";
   return {};
 }
 
-std::string CheckedScene::check_step(State& state, const Vec3& q, ContactList& contacts) const {
-  const State before = state;
+std::string CheckedScene::check_step(ParticleState& state, const Vec3& q, ContactList& contacts) const {
+  const ParticleState before = state;
   const oracle::Trace trace = oracle_->trace(state.position, q);
   std::string wrong = q == state.position ? "" : check_walk(state.at(), state.position, q, trace);
   contacts.clear();
   Counters counters;
   Weights weights{};
-  const Respond none;
+  const ContactCallback none;
   const StepOptions options;
   const StepResult result = Stepper(complex_, false, options, none).step(0, state, weights, q, contacts, counters);
   if (wrong.empty()) wrong = check_state(state);
@@ -219,7 +219,7 @@ std::string CheckedScene::check_step(State& state, const Vec3& q, ContactList& c
                      text(q));
 }
 
-double CheckedScene::least_distance(const Vec3& x, double from) const {
+double CheckedScene::min_distance(const Vec3& x, double from) const {
   const auto none_within = [&](double distance) {
     const Vec3 reach = {distance, distance, distance};
     const Box box = {x - reach, x + reach};
@@ -231,8 +231,9 @@ double CheckedScene::least_distance(const Vec3& x, double from) const {
   return least;
 }
 
-std::string CheckedScene::check_contact(const Contact& contact, std::span<const WallHit> walls, const State& before,
-                                        const State& after, const Vec3& q, const oracle::Trace& trace) const {
+std::string CheckedScene::check_contact(const Contact& contact, std::span<const WallHit> walls,
+                                        const ParticleState& before, const ParticleState& after, const Vec3& q,
+                                        const oracle::Trace& trace) const {
   const Vec3& p = before.position;
   if (walls.empty()) return "a contact without a wall";
   const oracle::Touch* first = find(trace, oracle_wall(walls[0]));
@@ -252,7 +253,7 @@ std::string CheckedScene::check_contact(const Contact& contact, std::span<const 
   const Vec3 point = p + (q - p) * time;
   if (norm(contact.point - point) > 1e-13 * (largest + norm(q - p))) return "the contact point is off";
   const double off = norm(after.position - contact.point);
-  if (off > 1e-11 * largest && off > 4.0 * least_distance(contact.point, 1e-11 * largest))
+  if (off > 1e-11 * largest && off > 4.0 * min_distance(contact.point, 1e-11 * largest))
     return "the particle is far from the contact point";
   for (const WallHit& hit : walls) {
     const std::uint32_t wall = oracle_wall(hit);

@@ -21,7 +21,7 @@ class CheckedScene {
 
   /// Whether the library and the oracle find every simplex positive; nothing else may be asked where it is false.
   [[nodiscard]] bool valid() const { return oracle_ != nullptr && oracle_->all_positive(); }
-  [[nodiscard]] const Complex& complex() const { return complex_; }
+  [[nodiscard]] const CellComplex& complex() const { return complex_; }
   [[nodiscard]] const MeshData& mesh() const { return mesh_; }
   [[nodiscard]] const oracle::Oracle& oracle() const { return *oracle_; }
   /// Free simplices, by their numbers in the oracle.
@@ -35,24 +35,25 @@ class CheckedScene {
 
   /// Steps the state towards q without a response, and says what is wrong with the walk, the contact and the new state;
   /// empty if nothing is.
-  [[nodiscard]] std::string check_step(State& state, const Vec3& q, ContactList& contacts) const;
+  [[nodiscard]] std::string check_step(ParticleState& state, const Vec3& q, ContactList& contacts) const;
 
   /// Whether the state is what it must always be: the position in the closed simplex named, in a free cell.
-  [[nodiscard]] std::string check_state(const State& state) const;
+  [[nodiscard]] std::string check_state(const ParticleState& state) const;
 
  private:
   [[nodiscard]] std::string check_walk(SimplexId start, const Vec3& p, const Vec3& q, const oracle::Trace& trace) const;
   [[nodiscard]] std::string check_arrival(const Walk& w, const Vec3& q, const oracle::Trace& trace) const;
   [[nodiscard]] std::string check_wall(const Walk& w, SimplexId start, const Vec3& p, const Vec3& q,
                                        const oracle::Trace& trace) const;
-  [[nodiscard]] std::string check_contact(const Contact& contact, std::span<const WallHit> walls, const State& before,
-                                          const State& after, const Vec3& q, const oracle::Trace& trace) const;
+  [[nodiscard]] std::string check_contact(const Contact& contact, std::span<const WallHit> walls,
+                                          const ParticleState& before, const ParticleState& after, const Vec3& q,
+                                          const oracle::Trace& trace) const;
   /// A distance within which, by an exact proof, no double lies in a closed free simplex: `from` or more, where that
   /// can be shown, else 0.
-  [[nodiscard]] double least_distance(const Vec3& x, double from) const;
+  [[nodiscard]] double min_distance(const Vec3& x, double from) const;
 
   MeshData mesh_;
-  Complex complex_;
+  CellComplex complex_;
   std::unique_ptr<oracle::Oracle> oracle_;
   std::vector<SimplexId> library_;
   std::vector<std::uint32_t> free_simplices_;

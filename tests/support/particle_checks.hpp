@@ -14,9 +14,9 @@ namespace dartcast::test {
 
 /// What is wrong with the particles that are not held: empty if each lies in the closed simplex named, of a free cell.
 inline std::string check_states(const Environment& environment, const Particles& particles) {
-  const Map& map = environment.map();
+  const CombinatorialMap& map = environment.map();
   for (std::size_t i = 0; i < particles.size(); ++i) {
-    const State& s = particles[i];
+    const ParticleState& s = particles[i];
     if (s.held) continue;
     const std::string who = "particle " + std::to_string(i);
     if (!map.contains(s.cell) || s.simplex >= map.shape(s.cell).simplices().size()) return who + " is in no simplex";
@@ -37,14 +37,14 @@ inline std::array<std::uint64_t, 3> bits(const Vec3& p) {
   return {std::bit_cast<std::uint64_t>(p.x), std::bit_cast<std::uint64_t>(p.y), std::bit_cast<std::uint64_t>(p.z)};
 }
 
-inline bool same_bits(const State& a, const State& b) {
+inline bool same_bits(const ParticleState& a, const ParticleState& b) {
   return bits(a.position) == bits(b.position) && a.cell == b.cell && a.simplex == b.simplex &&
          a.touching_count == b.touching_count && a.held == b.held && a.touching == b.touching;
 }
 
-inline std::vector<State> copy_of(const Particles& p) { return {p.states().begin(), p.states().end()}; }
+inline std::vector<ParticleState> copy_of(const Particles& p) { return {p.states().begin(), p.states().end()}; }
 
-inline bool same_bits(const std::vector<State>& a, const Particles& b) {
+inline bool same_bits(const std::vector<ParticleState>& a, const Particles& b) {
   if (a.size() != b.size()) return false;
   for (std::size_t i = 0; i < a.size(); ++i) {
     if (!same_bits(a[i], b[i])) return false;

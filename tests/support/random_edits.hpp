@@ -33,7 +33,7 @@ struct Edit {
 /// The cells of a map, to draw from: all alike, or those that edits made lately.
 class CellBag {
  public:
-  explicit CellBag(const Map& map) : cells_(map.cells()) {
+  explicit CellBag(const CombinatorialMap& map) : cells_(map.cells()) {
     for (std::size_t i = 0; i < cells_.size(); ++i) place_[cells_[i].value] = i;
   }
 
@@ -50,7 +50,7 @@ class CellBag {
   [[nodiscard]] std::size_t size() const { return cells_.size(); }
   [[nodiscard]] std::span<const Cell> all() const { return cells_; }
 
-  Cell draw(const Map& map, Random& random) const {
+  Cell draw(const CombinatorialMap& map, Random& random) const {
     if (!recent_.empty() && random.below(2) == 0) {
       const auto& some = recent_[random.below(static_cast<std::uint32_t>(recent_.size()))];
       const Cell c = some[random.below(static_cast<std::uint32_t>(some.size()))];
@@ -93,7 +93,7 @@ inline EditKind draw_kind(const CellBag& bag, std::size_t usual, Random& random,
 }
 
 /// An edit of the kind at the cell; it may turn out to be impossible.
-inline Edit draw_edit(const Map& map, EditKind kind, Cell c, const CellBag& bag, Random& random) {
+inline Edit draw_edit(const CombinatorialMap& map, EditKind kind, Cell c, const CellBag& bag, Random& random) {
   const Shape& s = map.shape(c);
   const auto any_dart = [&](Cell x) {
     return Dart{x, static_cast<std::uint16_t>(random.below(map.shape(x).dart_count()))};
@@ -147,7 +147,7 @@ inline Edit draw_edit(const Map& map, EditKind kind, Cell c, const CellBag& bag,
 
 /// Does it; returns the new cells.
 inline std::vector<Cell> apply(Transaction& t, const Edit& e) {
-  const Map& map = t.map();
+  const CombinatorialMap& map = t.map();
   switch (e.kind) {
     case EditKind::split_edge: return split_edge(t, e.darts[0]).cells;
     case EditKind::split_face: return split_face(t, e.darts[0], e.darts[1]);

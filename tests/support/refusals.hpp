@@ -11,9 +11,9 @@
 
 namespace dartcast::test {
 
-inline std::string refusal(const std::function<void()>& act) {
+inline std::string refusal(const std::function<void()>& apply_impulse) {
   try {
-    act();
+    apply_impulse();
   } catch (const EditRefused& e) {
     return std::string("refused: ") + e.what();
   } catch (const InvalidArgument& e) {

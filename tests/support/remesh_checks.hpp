@@ -14,7 +14,7 @@
 
 namespace dartcast::test {
 
-inline void expect_good(const Complex& complex) {
+inline void expect_good(const CellComplex& complex) {
   const auto violations = check_integrity(complex.map(), 3);
   for (const Violation& v : violations) ADD_FAILURE() << v.constraint << ": " << v.message;
   const Validity validity = check_validity(complex, Threads{1}, 3);
@@ -23,13 +23,13 @@ inline void expect_good(const Complex& complex) {
 
 /// A cell by the names of its vertices: source, mark, and each face with its patch, its marks, and what is beyond.
 template <class Name>
-std::string written(const Map& map, Cell c, Name&& name) {
+std::string written(const CombinatorialMap& map, Cell c, Name&& name) {
   const Shape& s = map.shape(c);
   std::vector<std::string> faces;
   for (std::uint16_t f = 0; f < s.face_count(); ++f) {
     std::vector<std::string> corners;
     for (std::uint16_t d = s.first_dart(f); d < s.first_dart(f) + s.degree(f); ++d) {
-      const Map::Flat flat = map.flat({c, d});
+      const CombinatorialMap::Flat flat = map.flat({c, d});
       corners.push_back(name(map.origin({c, d})) + (flat.straight ? "s" : "") + (flat.coplanar ? "c" : "") + " ");
     }
     std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
@@ -47,19 +47,19 @@ std::string written(const Map& map, Cell c, Name&& name) {
 }
 
 template <class Name>
-std::vector<std::string> written(const Map& map, Name&& name) {
+std::vector<std::string> written(const CombinatorialMap& map, Name&& name) {
   std::vector<std::string> cells;
   for (const Cell c : map.cells()) cells.push_back(written(map, c, name));
   std::sort(cells.begin(), cells.end());
   return cells;
 }
 
-inline std::vector<std::string> written(const Map& map) {
+inline std::vector<std::string> written(const CombinatorialMap& map) {
   return written(map, [](Vertex v) { return std::to_string(v.value); });
 }
 
 /// Vertices by where they are: what does not depend on the order of edits.
-inline std::vector<std::string> written_by_place(const Complex& complex) {
+inline std::vector<std::string> written_by_place(const CellComplex& complex) {
   return written(complex.map(), [&](Vertex v) {
     const Vec3 x = complex.positions()[v.value];
     return std::to_string(x.x) + "," + std::to_string(x.y) + "," + std::to_string(x.z);

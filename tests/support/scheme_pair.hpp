@@ -35,7 +35,7 @@ struct SchemePair {
   }
 
   /// One step of both, which then go on from where the library's particles are.
-  void step(const Respond& respond = {}) {
+  void step(const ContactCallback& respond = {}) {
     scheme.advance(targets, results);
     const StepReport report = environment.advance(particles, targets, respond);
     std::vector<const Contact*> first(particles.size(), nullptr);
@@ -44,7 +44,7 @@ struct SchemePair {
     }
     for (std::uint32_t i = 0; i < particles.size(); ++i) {
       compare(i, first[i], report.contacts);
-      const State& s = particles[i];
+      const ParticleState& s = particles[i];
       if (first[i] != nullptr || scheme.position(i) != s.position || scheme.cell(i) != s.cell)
         scheme.place(i, s.position, s.cell);
     }

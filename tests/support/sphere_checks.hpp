@@ -31,7 +31,7 @@ inline MeshData cubes(std::uint32_t n, CellType type = CellType::hexahedron, dou
 }
 
 /// All fan triangles of wall faces, seen from free cells.
-inline std::vector<MovingTriangle> all_walls(const Complex& complex, bool moving) {
+inline std::vector<MovingTriangle> all_walls(const CellComplex& complex, bool moving) {
   std::vector<MovingTriangle> walls;
   const auto after = complex.positions();
   const auto before = moving ? complex.previous_positions() : after;
@@ -84,7 +84,7 @@ struct Swarm {
     if (added[0].location.place != Place::free) return false;
     radii.push_back(radius);
     velocities.push_back(velocity);
-    fates.push_back(Fate::alive);
+    fates.push_back(ParticleStatus::alive);
     return true;
   }
   /// At random places where there is room; fewer where none is found.
@@ -101,7 +101,7 @@ struct Swarm {
     return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
   }
   /// By the velocities, and the wall's response to them.
-  SphereReport step(const Responses& responses, double dt = 1.0) {
+  SphereReport step(const WallResponses& responses, double dt = 1.0) {
     targets.clear();
     for (std::size_t i = 0; i < radii.size(); ++i) targets.push_back(particles[i].position + velocities[i] * dt);
     return stepper.advance(environment, particles, radii, targets, respond_with(responses, velocities, fates, dt));
@@ -117,7 +117,7 @@ struct Swarm {
   Particles particles;
   std::vector<double> radii;
   std::vector<Vec3> velocities;
-  std::vector<Fate> fates;
+  std::vector<ParticleStatus> fates;
   std::vector<Vec3> targets;
   SphereStepper stepper;
 };

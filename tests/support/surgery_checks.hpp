@@ -36,14 +36,14 @@ inline std::vector<Cell> now(const ComplexEditReport& report, std::vector<Cell> 
 /// Whether two exact numbers are nearer than this.
 inline bool near(const Dyadic& a, const Dyadic& b, double within) { return (a - b).abs() < Dyadic(within); }
 
-inline void expect_sound(const Complex& complex) {
+inline void expect_sound(const CellComplex& complex) {
   for (const Violation& v : check_integrity(complex.map(), 1)) FAIL() << v.constraint << ": " << v.message;
   const Validity validity = check_validity(complex, {});
   ASSERT_TRUE(validity.valid()) << validity.first.front().message;
 }
 
 /// All free cells that are reached from one over faces that are no walls.
-inline std::unordered_set<std::uint32_t> flood(const Map& map, Cell start) {
+inline std::unordered_set<std::uint32_t> flood(const CombinatorialMap& map, Cell start) {
   std::unordered_set<std::uint32_t> seen = {start.value};
   std::vector<Cell> cells = {start};
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -57,7 +57,7 @@ inline std::unordered_set<std::uint32_t> flood(const Map& map, Cell start) {
 }
 
 /// The number of parts that free cells fall into.
-inline std::size_t count_rooms(const Map& map) {
+inline std::size_t count_rooms(const CombinatorialMap& map) {
   std::unordered_set<std::uint32_t> seen;
   std::size_t rooms = 0;
   for (const Cell c : map.cells()) {
@@ -71,7 +71,7 @@ inline std::size_t count_rooms(const Map& map) {
 /// A copy of what an operation may change, to see that it has not.
 class Before {
  public:
-  explicit Before(const Complex& complex)
+  explicit Before(const CellComplex& complex)
       : complex_(complex), map_(complex.map()), positions_(complex.positions().begin(), complex.positions().end()) {}
 
   void expect_unchanged() const {
@@ -81,8 +81,8 @@ class Before {
   }
 
  private:
-  const Complex& complex_;
-  Map map_;
+  const CellComplex& complex_;
+  CombinatorialMap map_;
   std::vector<Vec3> positions_;
 };
 

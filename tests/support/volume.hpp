@@ -11,7 +11,7 @@
 namespace dartcast::test {
 
 /// Six times the volume of some cells, exactly.
-inline Dyadic volume6(const Complex& complex, std::span<const Cell> cells) {
+inline Dyadic volume6(const CellComplex& complex, std::span<const Cell> cells) {
   Dyadic sum;
   for (const Cell c : cells) {
     EXPECT_TRUE(complex.map().contains(c));
@@ -22,6 +22,6 @@ inline Dyadic volume6(const Complex& complex, std::span<const Cell> cells) {
   }
   return sum;
 }
-inline Dyadic volume6(const Complex& complex) { return volume6(complex, complex.map().cells()); }
+inline Dyadic volume6(const CellComplex& complex) { return volume6(complex, complex.map().cells()); }
 
 }  // namespace dartcast::test

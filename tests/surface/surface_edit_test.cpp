@@ -21,7 +21,7 @@ namespace dartcast::surface_edit_test {
 Vertex refine(SurfaceEdit& edit, Dart d) {
   const SplitEdge split = split_edge(edit.topology(), d);
   for (const Cell c : split.cells) {
-    const Map& map = edit.map();
+    const CombinatorialMap& map = edit.map();
     std::uint16_t at = 0;
     while (map.origin({c, at}) != split.vertex) ++at;
     const Dart a{c, at};
@@ -104,7 +104,7 @@ TEST(SurfaceEdits, WhatIsOpenedIsAWallAndWhatIsSewnIsNone) {
   EXPECT_EQ(walker.triangle.cell, places[0].triangle.cell);
   EXPECT_EQ(walker.kind(), Kind::edge);
 
-  const Map& map = edit.map();
+  const CombinatorialMap& map = edit.map();
   const Dart here = find_dart(map, places[0].triangle.cell, corners[(edge + 1) % 3], corners[(edge + 2) % 3]);
   const Dart there = find_dart(map, places[2].triangle.cell, corners[(edge + 2) % 3], corners[(edge + 1) % 3]);
   sew(edit.topology(), here, there);
@@ -126,7 +126,7 @@ TEST(SurfaceEdits, WeightsGoAlongWithTheirCorners) {
   unsew(edit.topology(),
         edit.map().face(find_dart(edit.map(), test::triangle_of(surface, 0).cell, Vertex(1), Vertex(2))));
   const SurfaceEditReport report = edit.commit();
-  EXPECT_EQ(report.map.born.size(), 2U);
+  EXPECT_EQ(report.map.created.size(), 2U);
   EXPECT_EQ(follow_all(surface, report, places, 1e-15), 0U);
   EXPECT_NE(surface.positions()[surface.vertices(places[0].triangle)[0].value], surface.positions()[first.value]);
   for (unsigned i = 0; i < 2; ++i) EXPECT_EQ(surface.point(places[i]), before[i]);
@@ -157,7 +157,7 @@ TEST(SurfaceEdits, ASplitKeepsEveryoneWhereTheyAre) {
 
 TEST(SurfaceEdits, ATriangleWithoutAreaIsRefusedAndNothingChanges) {
   Surface surface(test::sphere(1));
-  const Map before = [&] {
+  const CombinatorialMap before = [&] {
     const SurfaceEdit counts(surface);
     return surface.map();
   }();

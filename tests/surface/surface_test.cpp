@@ -21,7 +21,7 @@ namespace dartcast::surface_test {
 double gap(const Vec3& a, const Vec3& b) { return norm(a - b); }
 
 std::string first_defect(MeshData mesh) {
-  const MeshReport report = inspect_surface(mesh);
+  const MeshReport report = check_and_repair_surface(mesh);
   EXPECT_EQ(report.valid(), report.defects.empty());
   if (report.defects.empty()) return "";
   try {
@@ -95,7 +95,7 @@ TEST(Surfaces, AreTurnedWhereTheyCanBe) {
     std::swap(mixed.connectivity[3 * c], mixed.connectivity[3 * c + 1]);
     ++turned;
   }
-  MeshReport report = inspect_surface(mixed);
+  MeshReport report = check_and_repair_surface(mixed);
   EXPECT_TRUE(report.valid());
   EXPECT_EQ(report.parts, 1U);
   ASSERT_EQ(report.repairs.size(), 1U);
@@ -245,7 +245,7 @@ TEST(Surfaces, GiveTheSameBitsForAnyThreads) {
     start.push_back(test::random_place(surface, random));
     ways.push_back(test::random_vector(random));
   }
-  const auto mirror = [](const SurfaceContact& c) { return SurfaceContinuation{reflected(c, c.unused, 0.7), true}; };
+  const auto mirror = [](const SurfaceContact& c) { return AfterSurfaceContact{reflected(c, c.unused, 0.7), true}; };
   const auto run = [&](unsigned threads, std::vector<SurfacePlace>& places) {
     places = start;
     return advance(surface, places, ways, mirror, {}, Threads{threads});
@@ -305,7 +305,7 @@ TEST(Surfaces, MayBeHostile) {
       if (scene % 5 == 0)
         p = {1.0 + 0x1p-52 * random.below(8), 1.0 + 0x1p-52 * random.below(8), 1.0 + 0x1p-52 * random.below(8)};
     }
-    if (!inspect_surface(mesh).valid()) continue;
+    if (!check_and_repair_surface(mesh).valid()) continue;
     const Surface surface(mesh);
     SurfaceOptions options;
     options.max_crossings = 60;

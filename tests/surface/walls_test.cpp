@@ -79,7 +79,7 @@ void check_contact(const Surface& surface, const SurfaceContact& c) {
   ASSERT_GE(dot(cross(n, b - a), c.normal), 0.0);
 }
 
-SurfaceContinuation random_answer(const SurfaceContact& c, Random& random) {
+AfterSurfaceContact random_answer(const SurfaceContact& c, Random& random) {
   switch (random.below(4)) {
     case 0: return {reflected(c, c.unused), true};
     case 1: return {slid(c, c.unused), true};
@@ -177,7 +177,7 @@ TEST(SurfaceWalls, MirrorAsInABox) {
     const SurfaceStep step = dartcast::step(
         sheet.surface, place, sheet.motion.turned(way),
         [](const SurfaceContact& c) {
-          return SurfaceContinuation{reflected(c, c.unused), true};
+          return AfterSurfaceContact{reflected(c, c.unused), true};
         },
         options);
     ASSERT_EQ(step.end, SurfaceEnd::arrived);
@@ -194,7 +194,7 @@ TEST(SurfaceWalls, SlideAlongBordersIntoTheCorner) {
   for (int seed = 1; seed <= std::max(2, test::scaled(20, 100)); ++seed) {
     const Sheet sheet(static_cast<std::uint64_t>(seed), seed % 2 == 0 ? CellType::triangle : CellType::quadrilateral);
     Random random(static_cast<std::uint64_t>(seed));
-    const auto slide = [](const SurfaceContact& c) { return SurfaceContinuation{slid(c, c.unused), true}; };
+    const auto slide = [](const SurfaceContact& c) { return AfterSurfaceContact{slid(c, c.unused), true}; };
     SurfacePlace place = test::random_place(sheet.surface, random);
     const Vec3 start = sheet.local(sheet.surface.point(place));
     // To the side y = 3, and along it: its vertices stop nothing.
@@ -225,7 +225,7 @@ TEST(SurfaceWalls, SlideAroundABowl) {
   options.max_contacts = 200;
   double kept = 1.0;
   std::vector<SurfaceContact> contacts;
-  const auto slide = [&](const SurfaceContact& c) { return SurfaceContinuation{slid(c, c.unused), true}; };
+  const auto slide = [&](const SurfaceContact& c) { return AfterSurfaceContact{slid(c, c.unused), true}; };
   const SurfaceStep step = dartcast::step(surface, place, {0.2, 20.0, 0.0}, slide, options, {&contacts, nullptr});
   EXPECT_EQ(step.end, SurfaceEnd::arrived);
   EXPECT_EQ(place.kind(), Kind::edge);
@@ -248,7 +248,8 @@ TEST(SurfaceWalls, CornersOfBlockedFacesStopAndLetGo) {
   mesh.free.assign(9, 1);
   mesh.free[4] = 0;
   const Surface surface(mesh);
-  const auto run = [&](const Vec3& p, Vec3 way, const SurfaceRespond& respond, std::vector<SurfaceContact>& contacts) {
+  const auto run = [&](const Vec3& p, Vec3 way, const SurfaceContactCallback& respond,
+                       std::vector<SurfaceContact>& contacts) {
     SurfacePlace place;
     for (const SimplexId t : surface.triangles()) {
       const auto x = surface.corners(t);
@@ -270,8 +271,8 @@ TEST(SurfaceWalls, CornersOfBlockedFacesStopAndLetGo) {
   EXPECT_EQ(contacts[0].time_of_impact, 0.5);
   EXPECT_EQ(end, (Vec3{1.0, 1.0, 0.0}));
   EXPECT_LE(gap(contacts[0].normal, Vec3{-1.0, -1.0, 0.0} * std::sqrt(0.5)), 1e-15);
-  const auto mirror = [](const SurfaceContact& c) { return SurfaceContinuation{reflected(c, c.unused), true}; };
-  const auto slide = [](const SurfaceContact& c) { return SurfaceContinuation{slid(c, c.unused), true}; };
+  const auto mirror = [](const SurfaceContact& c) { return AfterSurfaceContact{reflected(c, c.unused), true}; };
+  const auto slide = [](const SurfaceContact& c) { return AfterSurfaceContact{slid(c, c.unused), true}; };
   EXPECT_LE(gap(run(left, {1.0, 0.0, 0.0}, mirror, contacts), {1.0, 0.5, 0.0}), 1e-15);
   EXPECT_LE(gap(run(left, {1.0, 0.0, 0.0}, slide, contacts), {1.25, 0.75, 0.0}), 1e-15);
   // To the left along the lower side, and straight on behind its end.
@@ -423,7 +424,7 @@ TEST(SurfaceWalls, StopAfterSoManyContacts) {
   SurfacePlace place = test::random_place(sheet.surface, random);
   SurfaceOptions options;
   options.max_contacts = 5;
-  const auto mirror = [](const SurfaceContact& c) { return SurfaceContinuation{reflected(c, c.unused), true}; };
+  const auto mirror = [](const SurfaceContact& c) { return AfterSurfaceContact{reflected(c, c.unused), true}; };
   const Vec3 way = sheet.motion.turned({100.0, 37.0, 0.0});
   const SurfaceStep step = dartcast::step(sheet.surface, place, way, mirror, options);
   EXPECT_EQ(step.contacts, 5U);
@@ -455,10 +456,10 @@ TEST(SurfaceWalls, BadAnswersChangeNothing) {
   std::vector<SurfacePlace> places(3, test::random_place(sheet.surface, random));
   const auto before = places;
   const std::vector<Vec3> ways(3, sheet.motion.turned({10.0, 0.0, 0.0}));
-  const auto nan = [](const SurfaceContact&) { return SurfaceContinuation{{std::nan(""), 0.0, 0.0}, false}; };
+  const auto nan = [](const SurfaceContact&) { return AfterSurfaceContact{{std::nan(""), 0.0, 0.0}, false}; };
   EXPECT_THROW(advance(sheet.surface, places, ways, nan), InvalidArgument);
   EXPECT_EQ(places, before);
-  const auto failing = [](const SurfaceContact& c) -> SurfaceContinuation {
+  const auto failing = [](const SurfaceContact& c) -> AfterSurfaceContact {
     if (c.particle == 1) throw std::runtime_error("no");
     return {};
   };

@@ -11,7 +11,7 @@ namespace dartcast::build_test {
 
 std::string refusal(const MeshData& mesh) {
   try {
-    const Map map(mesh);
+    const CombinatorialMap map(mesh);
   } catch (const InvalidMesh& e) {
     return e.what();
   }
@@ -60,10 +60,10 @@ TEST(MapBuild, APolyhedronThatDoesNotCloseIsRefused) {
 }
 
 TEST(MapBuild, CellsAndVerticesAreCounted) {
-  const Map map(test::mixed_mesh());
+  const CombinatorialMap map(test::mixed_mesh());
   EXPECT_EQ(map.cell_count(), 8U);
   EXPECT_EQ(map.cell_count(0), 4U);
-  EXPECT_EQ(map.cell_count(Map::general_pool), 1U);
+  EXPECT_EQ(map.cell_count(CombinatorialMap::general_pool), 1U);
   EXPECT_EQ(map.vertex_count(), 21U);
 }
 

@@ -20,7 +20,7 @@ namespace dartcast::shape_test {
 using Rational = boost::multiprecision::cpp_rational;
 
 // One separate cell of the type for every numbering of its corners.
-Map every_numbering(CellType type, std::uint32_t corners) {
+CombinatorialMap every_numbering(CellType type, std::uint32_t corners) {
   std::vector<std::uint32_t> order(corners);
   std::iota(order.begin(), order.end(), 0U);
   MeshData mesh;
@@ -31,7 +31,7 @@ Map every_numbering(CellType type, std::uint32_t corners) {
     mesh.add_cell(type, cell);
   } while (std::next_permutation(order.begin(), order.end()));
   mesh.points.resize(mesh.cell_count() * corners);
-  return Map(mesh);
+  return CombinatorialMap(mesh);
 }
 
 TEST(Shapes, FewServeEveryNumbering) {
@@ -43,7 +43,7 @@ TEST(Shapes, FewServeEveryNumbering) {
 }
 
 TEST(Shapes, SimplicesPerType) {
-  const auto counts = [](const Map& map) {
+  const auto counts = [](const CombinatorialMap& map) {
     std::set<std::size_t> n;
     for (const Cell c : map.cells()) n.insert(map.shape(c).simplices().size());
     return n;
@@ -91,7 +91,7 @@ Triple facet(const ImplicitSimplex& s, unsigned opposite) {
 TEST(Shapes, EveryFacetIsMatchedOnce) {
   for (int which = 0; which < mesh_kinds; ++which) {
     for (const MeshData& mesh : numbered_meshes(which)) {
-      const Map map(mesh);
+      const CombinatorialMap map(mesh);
       for (std::uint32_t n = 0; n < map.shapes().size(); ++n) {
         const Shape& shape = map.shapes()[n];
         const auto& simplices = shape.simplices();
@@ -133,7 +133,7 @@ Rational determinant(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
 TEST(Shapes, SimplicesSumToTheVolumeWithinTheFans) {
   for (int which = 0; which < mesh_kinds; ++which) {
     for (const MeshData& mesh : numbered_meshes(which)) {
-      const Map map(mesh);
+      const CombinatorialMap map(mesh);
       for (const Cell c : map.cells()) {
         const CellView v = map.view(c);
         const auto at = [&](std::uint16_t k) { return mesh.points[v.vertex(k).value]; };
@@ -163,7 +163,7 @@ TEST(Shapes, SimplicesSumToTheVolumeWithinTheFans) {
 TEST(Shapes, TrianglesHaveTheSameCornersFromBothSides) {
   for (int which = 0; which < mesh_kinds; ++which) {
     for (const MeshData& mesh : numbered_meshes(which)) {
-      const Map map(mesh);
+      const CombinatorialMap map(mesh);
       std::size_t sewn = 0;
       for (const Cell c : map.cells()) {
         const CellView v = map.view(c);

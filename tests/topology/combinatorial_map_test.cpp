@@ -49,7 +49,7 @@ class EveryMesh : public testing::TestWithParam<Case> {
   std::vector<MeshData> meshes_;
 };
 
-INSTANTIATE_TEST_SUITE_P(Map, EveryMesh,
+INSTANTIATE_TEST_SUITE_P(CombinatorialMap, EveryMesh,
                          testing::Values(Case{"tetrahedra", [] { return box(CellType::tetrahedron); }},
                                          Case{"hexahedra", [] { return box(CellType::hexahedron); }},
                                          Case{"prisms", [] { return box(CellType::prism); }},
@@ -65,7 +65,7 @@ INSTANTIATE_TEST_SUITE_P(Map, EveryMesh,
                                          Case{"handmade", [] { return test::mixed_mesh(); }}),
                          [](const auto& i) { return std::string(i.param.name); });
 
-std::vector<Dart> all_darts(const Map& map) {
+std::vector<Dart> all_darts(const CombinatorialMap& map) {
   std::vector<Dart> darts;
   for (const Cell c : map.cells()) {
     for (std::uint16_t d = 0; d < map.shape(c).dart_count(); ++d) darts.push_back({c, d});
@@ -73,7 +73,7 @@ std::vector<Dart> all_darts(const Map& map) {
   return darts;
 }
 
-FaceKey key_of(const Map& map, Dart d) {
+FaceKey key_of(const CombinatorialMap& map, Dart d) {
   FaceKey key;
   Dart x = d;
   do {
@@ -99,7 +99,7 @@ std::map<FaceKey, std::set<std::uint32_t>> cells_by_face(const MeshData& mesh) {
 
 TEST_P(EveryMesh, FacesAreThoseOfTheMeshInTheirOrder) {
   for (const MeshData& mesh : meshes_) {
-    const Map map(mesh);
+    const CombinatorialMap map(mesh);
     ASSERT_EQ(map.cell_count(), mesh.cell_count());
     for (const Cell c : map.cells()) {
       EXPECT_EQ(map.type(c), mesh.types[map.source(c)]);
@@ -124,7 +124,7 @@ TEST_P(EveryMesh, FacesAreThoseOfTheMeshInTheirOrder) {
 
 TEST_P(EveryMesh, RelationsHoldAtEveryDart) {
   for (const MeshData& mesh : meshes_) {
-    const Map map(mesh);
+    const CombinatorialMap map(mesh);
     const auto cells = cells_by_face(mesh);
     for (const Dart d : all_darts(map)) {
       const Vertex a = map.origin(d);
@@ -160,7 +160,7 @@ TEST_P(EveryMesh, RelationsHoldAtEveryDart) {
 
 TEST_P(EveryMesh, EveryCellIsASphere) {
   for (const MeshData& mesh : meshes_) {
-    const Map map(mesh);
+    const CombinatorialMap map(mesh);
     for (const Cell c : map.cells()) {
       const Shape& s = map.shape(c);
       EXPECT_EQ(s.corner_count() - s.dart_count() / 2 + s.face_count(), 2);
@@ -170,7 +170,7 @@ TEST_P(EveryMesh, EveryCellIsASphere) {
 
 // All darts that `holds` accepts, in the cells reached from d's over faces that hold all of `corners`.
 template <class Holds>
-std::set<Dart> brute_orbit(const Map& map, const std::map<FaceKey, std::set<std::uint32_t>>& faces,
+std::set<Dart> brute_orbit(const CombinatorialMap& map, const std::map<FaceKey, std::set<std::uint32_t>>& faces,
                            const std::map<std::uint32_t, Cell>& cell_of, Dart d, const FaceKey& corners,
                            Holds&& holds) {
   std::set<std::uint32_t> reached = {map.source(d.cell)};
@@ -194,7 +194,7 @@ std::set<Dart> brute_orbit(const Map& map, const std::map<FaceKey, std::set<std:
 
 TEST_P(EveryMesh, OrbitsAreThoseFoundByBruteForce) {
   for (const MeshData& mesh : meshes_) {
-    const Map map(mesh);
+    const CombinatorialMap map(mesh);
     const auto faces = cells_by_face(mesh);
     std::map<std::uint32_t, Cell> cell_of;
     for (const Cell c : map.cells()) cell_of[map.source(c)] = c;
@@ -228,19 +228,19 @@ TEST_P(EveryMesh, OrbitsAreThoseFoundByBruteForce) {
 
 TEST_P(EveryMesh, IntegrityIsClean) {
   for (const MeshData& mesh : meshes_) {
-    const Map map(mesh);
+    const CombinatorialMap map(mesh);
     for (const Violation& v : check_integrity(map)) ADD_FAILURE() << v.message;
   }
 }
 
-TEST(Map, IntegrityOfTheVesselAndTheBarIsClean) {
+TEST(CombinatorialMap, IntegrityOfTheVesselAndTheBarIsClean) {
   VesselOptions small;
   small.core = 2;
   small.rings = 1;
   small.tissue_layers = 1;
   small.step_length = 1.5e-3;
-  EXPECT_TRUE(check_integrity(Map(generate_vessel(small))).empty());
-  EXPECT_TRUE(check_integrity(Map(generate_bar())).empty());
+  EXPECT_TRUE(check_integrity(CombinatorialMap(generate_vessel(small))).empty());
+  EXPECT_TRUE(check_integrity(CombinatorialMap(generate_bar())).empty());
 }
 
 // Wall faces of free cells, by the mesh's own faces.
@@ -256,7 +256,7 @@ std::size_t brute_wall_count(const MeshData& mesh, const std::vector<std::uint8_
 
 TEST_P(EveryMesh, SetFreeMarksItsWallsAndThoseOfItsNeighbours) {
   for (const MeshData& mesh : meshes_) {
-    Map map(mesh);
+    CombinatorialMap map(mesh);
     std::vector<std::uint8_t> free = mesh.free;
     if (free.empty()) free.assign(mesh.cell_count(), 1);
     ASSERT_EQ(map.wall_face_count(), brute_wall_count(mesh, free));
@@ -283,7 +283,7 @@ TEST_P(EveryMesh, SetFreeMarksItsWallsAndThoseOfItsNeighbours) {
 }
 
 // A cube of twelve triangles with a tetrahedron on each: a tetrahedron's record has 3 bits for its neighbour's face.
-TEST(Map, StandardCellsFindTheirPlaceAmongManyFaces) {
+TEST(CombinatorialMap, StandardCellsFindTheirPlaceAmongManyFaces) {
   MeshData mesh;
   mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
   std::vector<std::uint32_t> faces = {12};
@@ -301,9 +301,9 @@ TEST(Map, StandardCellsFindTheirPlaceAmongManyFaces) {
   }
   Random random(5);
   for (int i = 0; i < 20; ++i) {
-    const Map map(test::renumbered(mesh, test::permutation(mesh.points.size(), random)));
+    const CombinatorialMap map(test::renumbered(mesh, test::permutation(mesh.points.size(), random)));
     EXPECT_TRUE(check_integrity(map).empty());
-    const Cell cube(Map::general_pool, 0);
+    const Cell cube(CombinatorialMap::general_pool, 0);
     for (std::uint16_t f = 0; f < 12; ++f) {
       const CellFace other = map.opposite({cube, f});
       ASSERT_TRUE(other.valid());
@@ -312,10 +312,10 @@ TEST(Map, StandardCellsFindTheirPlaceAmongManyFaces) {
   }
 }
 
-TEST(Map, SourceNumbersOfAMixedMeshAreThoseOfTheInput) {
+TEST(CombinatorialMap, SourceNumbersOfAMixedMeshAreThoseOfTheInput) {
   MeshData mesh = test::mixed_mesh();
   mesh.source = {70, 10, 20, 30, 40, 50, 60, 80};
-  const Map map(mesh);
+  const CombinatorialMap map(mesh);
   std::map<std::uint32_t, CellType> types;
   for (const Cell c : map.cells()) types[map.source(c)] = map.type(c);
   for (std::size_t c = 0; c < mesh.cell_count(); ++c) EXPECT_EQ(types.at(mesh.source[c]), mesh.types[c]);
@@ -324,9 +324,9 @@ TEST(Map, SourceNumbersOfAMixedMeshAreThoseOfTheInput) {
   EXPECT_FALSE(map.contains(Cell(5, 0)));
 }
 
-TEST(Map, PatchesOfABoxAreItsSides) {
+TEST(CombinatorialMap, PatchesOfABoxAreItsSides) {
   const MeshData mesh = box(CellType::prism);
-  const Map map(mesh);
+  const CombinatorialMap map(mesh);
   const std::set<std::string> names(map.patch_names().begin(), map.patch_names().end());
   EXPECT_EQ(names, (std::set<std::string>{"", "xmin", "xmax", "ymin", "ymax", "zmin", "zmax"}));
   EXPECT_EQ(map.patch_names()[0], "");
@@ -351,7 +351,7 @@ TEST(Map, PatchesOfABoxAreItsSides) {
   EXPECT_EQ(faces["xmin"], 2 * 3);
 }
 
-TEST(Map, APatchFaceInsideIsNamedFromBothSides) {
+TEST(CombinatorialMap, APatchFaceInsideIsNamedFromBothSides) {
   MeshData mesh = test::mixed_mesh();
   mesh.add_patch_face(std::vector<std::uint32_t>{6, 5, 1, 2},
                       5);                                       // between hexahedron and pyramid, from another corner
@@ -360,7 +360,7 @@ TEST(Map, APatchFaceInsideIsNamedFromBothSides) {
   mesh.add_patch_face(std::vector<std::uint32_t>{1, 6, 2, 5}, 9);  // no face: crossed
   mesh.add_patch_face(std::vector<std::uint32_t>{1, 2, 8, 5}, 9);  // no face: one corner is another
   mesh.patch_names[5] = "gate";
-  const Map map(mesh);
+  const CombinatorialMap map(mesh);
   const Patch gate = map.patch("gate");
   std::map<std::uint32_t, int> of_gate, of_nine;
   for (const Cell c : map.cells()) {
@@ -373,8 +373,8 @@ TEST(Map, APatchFaceInsideIsNamedFromBothSides) {
   EXPECT_EQ(of_nine, (std::map<std::uint32_t, int>{{1, 1}, {3, 1}}));
 }
 
-TEST(Map, AnUnknownPatchListsTheKnownOnes) {
-  const Map map(box(CellType::hexahedron));
+TEST(CombinatorialMap, AnUnknownPatchListsTheKnownOnes) {
+  const CombinatorialMap map(box(CellType::hexahedron));
   try {
     (void)map.patch("inlet");
     FAIL() << "an unknown patch was taken";
@@ -386,7 +386,7 @@ TEST(Map, AnUnknownPatchListsTheKnownOnes) {
     }
   }
   try {
-    (void)Map(test::mixed_mesh()).patch("inlet");
+    (void)CombinatorialMap(test::mixed_mesh()).patch("inlet");
     FAIL() << "an unknown patch was taken";
   } catch (const InvalidArgument& e) {
     EXPECT_NE(std::string(e.what()).find("none"), std::string::npos) << e.what();

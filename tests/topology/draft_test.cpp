@@ -71,10 +71,10 @@ TEST(Draft, WithPointsItIsGeneral) {
   Loops loops = standard_loops(CellType::hexahedron, {0, 1, 2, 3, 4, 5, 6, 7});
   CellDraft draft = draft_from(loops);
   draft.point = Vertex(8);
-  EXPECT_EQ(form_of(draft).pool, Map::general_pool);
+  EXPECT_EQ(form_of(draft).pool, CombinatorialMap::general_pool);
   draft.point = {};
   draft.faces[2].point = Vertex(9);
-  EXPECT_EQ(form_of(draft).pool, Map::general_pool);
+  EXPECT_EQ(form_of(draft).pool, CombinatorialMap::general_pool);
   EXPECT_EQ(form_of(draft).corners, (std::vector<std::uint32_t>{0, 3, 2, 1, 4, 5, 6, 7}));
 }
 
@@ -89,7 +89,7 @@ TEST(Draft, WhatOnlyCountsAlikeIsGeneral) {
       shuffle(loops, random);
       const DraftForm form = form_of(draft_from(loops));
       ASSERT_EQ(form.defect, "");
-      ASSERT_EQ(form.pool, Map::general_pool);
+      ASSERT_EQ(form.pool, CombinatorialMap::general_pool);
       for (std::uint16_t f = 0; f < loops.size(); ++f) ASSERT_EQ(form.face[f], f);
       ASSERT_EQ(std::set<std::uint32_t>(form.corners.begin(), form.corners.end()).size(), form.corners.size());
     }
@@ -149,7 +149,7 @@ TEST(Draft, WhatIsNoCellIsRefused) {
 }
 
 TEST(Draft, OfACellIsTheCell) {
-  const Map map(test::mixed_mesh());
+  const CombinatorialMap map(test::mixed_mesh());
   for (const Cell c : map.cells()) {
     const CellDraft draft = draft_of(map, c);
     const Shape& s = map.shape(c);

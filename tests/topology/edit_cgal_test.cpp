@@ -32,7 +32,7 @@ auto point_of(Vertex v) {
     return typename LccOf<3>::Point(v.value, 0.0, 0.0);
 }
 
-std::vector<Dart> darts_of(const Map& map) {
+std::vector<Dart> darts_of(const CombinatorialMap& map) {
   std::vector<Dart> darts;
   for (const Cell c : map.cells()) {
     for (std::uint16_t d = 0; d < map.shape(c).dart_count(); ++d) darts.push_back({c, d});
@@ -42,7 +42,7 @@ std::vector<Dart> darts_of(const Map& map) {
 
 // The map as a complex of CGAL's, dart by dart; a vertex's number is its x.
 template <unsigned dimension>
-auto copy(const Map& map, LccOf<dimension>& lcc) {
+auto copy(const CombinatorialMap& map, LccOf<dimension>& lcc) {
   std::map<Dart, typename LccOf<dimension>::Dart_handle> handle;
   const std::vector<Dart> darts = darts_of(map);
   for (const Dart d : darts) handle[d] = lcc.create_dart();
@@ -69,7 +69,7 @@ class Mirror {
   using Handle = typename Lcc::Dart_handle;
 
  public:
-  explicit Mirror(const Map& map) : map_(map) {
+  explicit Mirror(const CombinatorialMap& map) : map_(map) {
     for (const auto& [d, handle] : copy<dimension>(map, lcc_)) {
       if (d.number == 0) cell_[d.cell.value] = handle;
     }
@@ -83,7 +83,7 @@ class Mirror {
   }
 
   // After it.
-  void follow(const Edit& e, const EditReport& report) {
+  void update_after_edit(const Edit& e, const EditReport& report) {
     std::set<Handle> touched = touched_by(report);
     apply(e, report);
     for (const CellHandle& h : report.removed) cell_.erase(h.cell.value);
@@ -150,7 +150,7 @@ class Mirror {
   void apply(const Edit& e, const EditReport& report) {
     switch (e.kind) {
       case EditKind::split_edge:
-        lcc_.template insert_point_in_cell<1>(darts_[0], point_of<dimension>(report.born.at(0).vertex));
+        lcc_.template insert_point_in_cell<1>(darts_[0], point_of<dimension>(report.created.at(0).vertex));
         break;
       case EditKind::split_face: lcc_.insert_cell_1_in_cell_2(darts_[0], darts_[1]); break;
       case EditKind::split_cell:
@@ -194,14 +194,14 @@ class Mirror {
     lcc_.template unsew<dimension>(darts_[0]);
     std::size_t parted = 0;
     for (const auto& [here, beyond] : corners_) {
-      const auto born = std::find_if(report.born.begin(), report.born.end(),
-                                     [&, v = vertex(here)](const BornVertex& b) { return b.from == v; });
-      ASSERT_EQ(lcc_.vertex_attribute(here) != lcc_.vertex_attribute(beyond), born != report.born.end());
-      if (born == report.born.end()) continue;
+      const auto created = std::find_if(report.created.begin(), report.created.end(),
+                                        [&, v = vertex(here)](const CreatedVertex& b) { return b.from == v; });
+      ASSERT_EQ(lcc_.vertex_attribute(here) != lcc_.vertex_attribute(beyond), created != report.created.end());
+      if (created == report.created.end()) continue;
       ++parted;
-      lcc_.point(beyond) = point_of<dimension>(born->vertex);
+      lcc_.point(beyond) = point_of<dimension>(created->vertex);
     }
-    ASSERT_EQ(parted, report.born.size());
+    ASSERT_EQ(parted, report.created.size());
   }
 
   using Loops = std::set<std::vector<std::uint32_t>>;  // from the lowest vertex; edges in their direction
@@ -249,7 +249,7 @@ class Mirror {
     }
   }
 
-  const Map& map_;
+  const CombinatorialMap& map_;
   Lcc lcc_;
   std::unordered_map<std::uint32_t, Handle> cell_;  // a dart of each cell
   std::vector<Handle> darts_;                       // of the edit
@@ -258,7 +258,7 @@ class Mirror {
 
 template <unsigned dimension>
 void stay_isomorphic(const MeshData& mesh, int count) {
-  Map map(mesh);
+  CombinatorialMap map(mesh);
   CellBag bag(map);
   Mirror<dimension> mirror(map);
   Random random(23);
@@ -275,7 +275,7 @@ void stay_isomorphic(const MeshData& mesh, int count) {
     }
     const EditReport report = t.commit();
     bag.update(report);
-    mirror.follow(edit, report);
+    mirror.update_after_edit(edit, report);
     ASSERT_FALSE(testing::Test::HasFailure()) << "edit " << edits << " of kind " << static_cast<int>(edit.kind);
     if (++edits % 200 != 0 && edits != count) continue;
     mirror.expect_isomorphic();
@@ -286,12 +286,12 @@ void stay_isomorphic(const MeshData& mesh, int count) {
 std::string name_of(const testing::TestParamInfo<test::EditMesh>& info) { return info.param.name; }
 
 class EditsAndCgal : public testing::TestWithParam<test::EditMesh> {};
-INSTANTIATE_TEST_SUITE_P(Map, EditsAndCgal, testing::ValuesIn(test::edit_meshes()), name_of);
+INSTANTIATE_TEST_SUITE_P(CombinatorialMap, EditsAndCgal, testing::ValuesIn(test::edit_meshes()), name_of);
 
 TEST_P(EditsAndCgal, StayIsomorphic) { stay_isomorphic<3>(GetParam().make(), test::scaled(1430, 143000)); }
 
 class PlanarEditsAndCgal : public testing::TestWithParam<test::EditMesh> {};
-INSTANTIATE_TEST_SUITE_P(Map, PlanarEditsAndCgal, testing::ValuesIn(test::planar_edit_meshes()), name_of);
+INSTANTIATE_TEST_SUITE_P(CombinatorialMap, PlanarEditsAndCgal, testing::ValuesIn(test::planar_edit_meshes()), name_of);
 
 TEST_P(PlanarEditsAndCgal, StayIsomorphic) { stay_isomorphic<2>(GetParam().make(), test::scaled(3400, 340000)); }
 

@@ -90,7 +90,7 @@ class Lattice {
   }
 
   void place(const EditReport& report) {
-    for (const BornVertex& v : report.born) {
+    for (const CreatedVertex& v : report.created) {
       if (at.size() <= v.vertex.value) at.resize(v.vertex.value + std::size_t{1});
       const Point& a = at[v.from.value];
       const Point& b = at[v.other.value];
@@ -99,7 +99,7 @@ class Lattice {
   }
 
   static constexpr std::int64_t unit = 256;
-  Map map;
+  CombinatorialMap map;
   Transaction t;
   std::vector<Point> at;
 
@@ -156,7 +156,7 @@ Marks marks_of(const Lattice& l, std::span<const Cell> cells) {
   for (const Cell c : cells) {
     for (std::uint16_t n = 0; n < l.map.shape(c).dart_count(); ++n) {
       const Dart d{c, n};
-      const Map::Flat flat = l.map.flat(d);
+      const CombinatorialMap::Flat flat = l.map.flat(d);
       if (l.straight(d)) {
         ++m.true_straight;
         EXPECT_TRUE(flat.straight) << "cell " << l.map.source(c) << " vertex " << l.map.origin(d).value;
@@ -175,7 +175,7 @@ Marks marks_of(const Lattice& l, std::span<const Cell> cells) {
 }
 
 class Flats : public testing::TestWithParam<CellType> {};
-INSTANTIATE_TEST_SUITE_P(Map, Flats,
+INSTANTIATE_TEST_SUITE_P(CombinatorialMap, Flats,
                          testing::Values(CellType::tetrahedron, CellType::hexahedron, CellType::prism,
                                          CellType::pyramid),
                          [](const auto& i) { return std::string(cell_type_names[static_cast<std::size_t>(i.param)]); });

@@ -17,7 +17,7 @@ using test::CellBag;
 using test::Edit;
 using test::EditKind;
 
-std::vector<Cell> with_neighbours(const Map& map, std::span<const Cell> cells) {
+std::vector<Cell> with_neighbours(const CombinatorialMap& map, std::span<const Cell> cells) {
   std::set<Cell> all;
   for (const Cell c : cells) {
     all.insert(c);
@@ -29,7 +29,7 @@ std::vector<Cell> with_neighbours(const Map& map, std::span<const Cell> cells) {
   return {all.begin(), all.end()};
 }
 
-std::set<std::uint32_t> vertices_of(const Map& map) {
+std::set<std::uint32_t> vertices_of(const CombinatorialMap& map) {
   std::set<std::uint32_t> all;
   for (const Cell c : map.cells()) {
     const auto vertices = map.view(c).vertices();
@@ -39,20 +39,20 @@ std::set<std::uint32_t> vertices_of(const Map& map) {
 }
 
 // Shapes of general cells; those of standard types, at most 45, stay when no cell uses them.
-std::size_t shapes_used(const Map& map) {
+std::size_t shapes_used(const CombinatorialMap& map) {
   std::set<const Shape*> used;
   for (const Cell c : map.cells()) {
-    if (c.pool() == Map::general_pool) used.insert(&map.shape(c));
+    if (c.pool() == CombinatorialMap::general_pool) used.insert(&map.shape(c));
   }
   return used.size();
 }
 
 class RandomEdits : public testing::TestWithParam<test::EditMesh> {};
-INSTANTIATE_TEST_SUITE_P(Map, RandomEdits, testing::ValuesIn(test::all_edit_meshes()),
+INSTANTIATE_TEST_SUITE_P(CombinatorialMap, RandomEdits, testing::ValuesIn(test::all_edit_meshes()),
                          [](const auto& i) { return std::string(i.param.name); });
 
 TEST_P(RandomEdits, LeaveAValidMap) {
-  Map map(GetParam().make());
+  CombinatorialMap map(GetParam().make());
   CellBag bag(map);
   const std::size_t usual = bag.size();
   std::set<std::uint32_t> vertices = vertices_of(map);
@@ -75,8 +75,8 @@ TEST_P(RandomEdits, LeaveAValidMap) {
     ++done[static_cast<std::size_t>(kind)];
     const EditReport report = t.commit();
     bag.update(report);
-    for (const BornVertex& v : report.born) ASSERT_TRUE(vertices.insert(v.vertex.value).second);
-    for (const Vertex v : report.died) ASSERT_EQ(vertices.erase(v.value), 1U);
+    for (const CreatedVertex& v : report.created) ASSERT_TRUE(vertices.insert(v.vertex.value).second);
+    for (const Vertex v : report.deleted) ASSERT_EQ(vertices.erase(v.value), 1U);
     for (const CellHandle& h : report.removed) ASSERT_FALSE(map.contains(h));
     for (const Cell c : report.added) ASSERT_TRUE(map.contains(c));
     const auto touched =

@@ -44,7 +44,7 @@ class Handmade : public testing::Test {
     return v;
   }
 
-  Map map{test::mixed_mesh()};
+  CombinatorialMap map{test::mixed_mesh()};
   Transaction t{map};
 };
 
@@ -66,14 +66,15 @@ TEST_F(Handmade, SplitEdgeReachesAllCellsAround) {
     EXPECT_TRUE(map.flat(find_dart(map, c, split.vertex, Vertex(2))).straight);
   }
   const EditReport report = t.commit();
-  ASSERT_EQ(report.born.size(), 1U);
-  EXPECT_EQ(report.born[0].vertex, split.vertex);
-  EXPECT_EQ(std::set<Vertex>({report.born[0].from, report.born[0].other}), (std::set<Vertex>{Vertex(1), Vertex(2)}));
+  ASSERT_EQ(report.created.size(), 1U);
+  EXPECT_EQ(report.created[0].vertex, split.vertex);
+  EXPECT_EQ(std::set<Vertex>({report.created[0].from, report.created[0].other}),
+            (std::set<Vertex>{Vertex(1), Vertex(2)}));
   EXPECT_EQ(report.removed.size(), 4U);
 }
 
 TEST_F(Handmade, MergedEdgesGiveTheCellsTheirTypesBack) {
-  const Map before = map;
+  const CombinatorialMap before = map;
   const SplitEdge split = split_edge(t, dart(0, 1, 2));
   merge_edges(t, find_dart(map, split.cells[0], split.vertex, Vertex(2)));
   expect_valid();
@@ -89,8 +90,8 @@ TEST_F(Handmade, MergedEdgesGiveTheCellsTheirTypesBack) {
     EXPECT_FALSE(map.has_flat(is));
   }
   const EditReport report = t.commit();
-  EXPECT_TRUE(report.born.empty());
-  EXPECT_TRUE(report.died.empty());
+  EXPECT_TRUE(report.created.empty());
+  EXPECT_TRUE(report.deleted.empty());
   EXPECT_FALSE(map.is_vertex(split.vertex));
 }
 
@@ -159,32 +160,32 @@ TEST_F(Handmade, RemovedCellsLeaveOpenFaces) {
   EXPECT_FALSE(map.opposite(base).valid());
   EXPECT_TRUE(map.view(base.cell).is_wall(base.face));
   const EditReport report = t.commit();
-  EXPECT_EQ(report.died, std::vector<Vertex>{});  // 4 is a corner of cell 7, too
+  EXPECT_EQ(report.deleted, std::vector<Vertex>{});  // 4 is a corner of cell 7, too
   EXPECT_EQ(map.cell_count(), 7U);
   remove(t, cell(7));
   EXPECT_EQ(std::set<Vertex>({Vertex(4), Vertex(18), Vertex(19), Vertex(20)}), [&] {
     const EditReport r = t.commit();
-    return std::set<Vertex>(r.died.begin(), r.died.end());
+    return std::set<Vertex>(r.deleted.begin(), r.deleted.end());
   }());
 }
 
 // Cells 1 and 3 apart and together again.
 TEST_F(Handmade, WhatIsUnsewnCanBeSewn) {
-  const Map before = map;
+  const CombinatorialMap before = map;
   unsew(t, face(1, 1, 2));
   expect_valid();
   EXPECT_FALSE(map.opposite(face(1, 1, 2)).valid());
   const EditReport apart = t.commit();
-  EXPECT_EQ(apart.born.size(), 3U);  // cell 3 hung on that face alone
+  EXPECT_EQ(apart.created.size(), 3U);  // cell 3 hung on that face alone
   Vertices from;
-  for (const BornVertex& v : apart.born) {
+  for (const CreatedVertex& v : apart.created) {
     EXPECT_EQ(v.from, v.other);
     from.push_back(v.from.value);
   }
   std::sort(from.begin(), from.end());
   EXPECT_EQ(from, (Vertices{1, 2, 8}));
   const auto name = [&](std::uint32_t v) {
-    return std::find_if(apart.born.begin(), apart.born.end(), [&](const auto& b) { return b.from.value == v; })
+    return std::find_if(apart.created.begin(), apart.created.end(), [&](const auto& b) { return b.from.value == v; })
         ->vertex.value;
   };
   EXPECT_TRUE(dart(1, 1, 2).valid());
@@ -193,16 +194,16 @@ TEST_F(Handmade, WhatIsUnsewnCanBeSewn) {
   sew(t, dart(3, name(2), name(1)), dart(1, 1, 2));
   expect_valid();
   const EditReport together = t.commit();
-  EXPECT_EQ(together.identified.size(), 3U);
-  EXPECT_EQ(together.died.size(), 3U);
-  for (const Identified& i : together.identified) EXPECT_LT(i.survivor, i.gone);
+  EXPECT_EQ(together.merged.size(), 3U);
+  EXPECT_EQ(together.deleted.size(), 3U);
+  for (const MergedVertex& i : together.merged) EXPECT_LT(i.merged_into, i.gone);
   EXPECT_EQ(map.opposite(face(1, 1, 2)).cell, cell(3));
   for (const Cell c : before.cells())
     EXPECT_TRUE(std::ranges::equal(before.view(c).vertices(), map.view(cell(before.source(c))).vertices()));
 }
 
 TEST_F(Handmade, ImpossibleEditsSayWhy) {
-  const Map before = map;
+  const CombinatorialMap before = map;
   const auto said = [&](const std::function<void()>& act) {
     const std::string text = test::refusal(act);
     EXPECT_TRUE(map == before) << text;
@@ -290,7 +291,7 @@ TEST(Edits, LimitsLeaveTheMapAsItIs) {
   for (std::uint32_t i = 0; i < n; ++i) cone.insert(cone.end(), {3, i, (i + 1) % n, n});
   mesh.add_cell(CellType::polyhedron, cone);
   mesh.add_cell(CellType::tetrahedron, Vertices{0, 1, n, n + 1});
-  Map map(mesh);
+  CombinatorialMap map(mesh);
   ASSERT_TRUE(check_integrity(map).empty());
   Transaction t(map);
   const auto split = [&] {
@@ -299,7 +300,7 @@ TEST(Edits, LimitsLeaveTheMapAsItIs) {
     }
   };
   split();  // 16382 darts
-  const Map before = map;
+  const CombinatorialMap before = map;
   test::expect_parts(test::refusal(split), {"refused", "cell 0", "16383 darts"});
   EXPECT_TRUE(map == before);
 }
@@ -308,9 +309,9 @@ TEST(Edits, LimitsLeaveTheMapAsItIs) {
 TEST(Edits, CutsOpenWhereTheLastFaceGoes) {
   BoxOptions o;
   o.cells = {3, 3, 2};
-  Map map(generate_box(o));
+  CombinatorialMap map(generate_box(o));
   Transaction t(map);
-  std::size_t born = 0;
+  std::size_t created = 0;
   for (std::uint32_t i = 0; i < 9; ++i) {
     Cell below{};
     for (const Cell c : map.cells()) {
@@ -324,12 +325,12 @@ TEST(Edits, CutsOpenWhereTheLastFaceGoes) {
     ASSERT_TRUE(between.valid());
     unsew(t, between);
     const EditReport report = t.commit();
-    born += report.born.size();
-    if (i == 0) EXPECT_EQ(report.born.size(), 1U);  // the corner of the box
-    if (i == 8) EXPECT_EQ(report.born.size(), 9U - 2U - 2U - 1U);
+    created += report.created.size();
+    if (i == 0) EXPECT_EQ(report.created.size(), 1U);  // the corner of the box
+    if (i == 8) EXPECT_EQ(report.created.size(), 9U - 2U - 2U - 1U);
     EXPECT_TRUE(check_integrity(map).empty());
   }
-  EXPECT_EQ(born, 16U);
+  EXPECT_EQ(created, 16U);
   EXPECT_EQ(map.cell_count(1), 18U);
 }
 
@@ -337,7 +338,7 @@ TEST(Edits, CutsOpenWhereTheLastFaceGoes) {
 TEST(Edits, ACrackInsideStaysOpenWhenItsRimIsSplit) {
   BoxOptions o;
   o.cells = {3, 3, 2};
-  Map map(generate_box(o));
+  CombinatorialMap map(generate_box(o));
   Transaction t(map);
   const auto find = [&](std::uint32_t source) {
     for (const Cell c : map.cells()) {
@@ -359,7 +360,7 @@ TEST(Edits, ACrackInsideStaysOpenWhenItsRimIsSplit) {
       break;
     }
   }
-  EXPECT_TRUE(t.commit().born.empty());
+  EXPECT_TRUE(t.commit().created.empty());
   for (const std::uint32_t source : {4U, 13U}) EXPECT_EQ(open_faces(find(source)).size(), 2U);
   const auto top = [&] {
     for (const CellFace f : open_faces(find(4))) {
@@ -386,10 +387,10 @@ TEST(Edits, ACrackInsideStaysOpenWhenItsRimIsSplit) {
   const Dart a{f.cell, map.shape(f.cell).first_dart(f.face)};
   sew(t, a, find_dart(map, g.cell, map.origin(map.phi1(a)), map.origin(a)));
   EXPECT_TRUE(check_integrity(map).empty());
-  EXPECT_TRUE(t.commit().identified.empty());
+  EXPECT_TRUE(t.commit().merged.empty());
 }
 
-std::map<std::string, std::size_t> faces_by_patch(const Map& map) {
+std::map<std::string, std::size_t> faces_by_patch(const CombinatorialMap& map) {
   std::map<std::string, std::size_t> count;
   for (const Cell c : map.cells()) {
     for (std::uint16_t f = 0; f < map.shape(c).face_count(); ++f)
@@ -401,7 +402,7 @@ std::map<std::string, std::size_t> faces_by_patch(const Map& map) {
 TEST(Edits, PatchesFollow) {
   BoxOptions o;
   o.cells = {2, 1, 1};
-  Map map(generate_box(o));
+  CombinatorialMap map(generate_box(o));
   Transaction t(map);
   const auto on = [&](std::string_view name) {
     for (const Cell c : map.cells()) {
@@ -451,8 +452,8 @@ TEST(Edits, FacePointsStayWhereTheFaceDoes) {
   BoxOptions o;
   o.cells = {2, 1, 1};
   const MeshData mesh = generate_box(o);
-  const Map plain(mesh);
-  InteriorPoints points;
+  const CombinatorialMap plain(mesh);
+  SteinerPoints points;
   std::uint16_t sides[2] = {6, 6};
   for (std::uint32_t c = 0; c < 2; ++c) {
     std::uint16_t f = 0;
@@ -464,7 +465,7 @@ TEST(Edits, FacePointsStayWhereTheFaceDoes) {
     points.of_faces.push_back({c, sides[c], Vertex(12)});
     points.of_cells.emplace_back(c, Vertex(13 + c));
   }
-  Map map(mesh, points);
+  CombinatorialMap map(mesh, points);
   ASSERT_TRUE(check_integrity(map).empty());
   Transaction t(map);
   const auto with_point = [&] {
@@ -480,7 +481,7 @@ TEST(Edits, FacePointsStayWhereTheFaceDoes) {
   split_edge(t, find_dart(map, map.cells()[0], Vertex(0), Vertex(3)));
   EXPECT_TRUE(check_integrity(map).empty());
   EXPECT_EQ(with_point(), 2U);
-  EXPECT_EQ(t.commit().died, std::vector<Vertex>{Vertex(13)});
+  EXPECT_EQ(t.commit().deleted, std::vector<Vertex>{Vertex(13)});
 
   // An edge of the face: both cells and the face do.
   const Cell first = map.cells()[0];
@@ -489,12 +490,12 @@ TEST(Edits, FacePointsStayWhereTheFaceDoes) {
   EXPECT_TRUE(check_integrity(map).empty());
   EXPECT_EQ(with_point(), 0U);
   const EditReport report = t.commit();
-  EXPECT_EQ(std::set<Vertex>(report.died.begin(), report.died.end()), (std::set<Vertex>{Vertex(12), Vertex(14)}));
+  EXPECT_EQ(std::set<Vertex>(report.deleted.begin(), report.deleted.end()), (std::set<Vertex>{Vertex(12), Vertex(14)}));
 }
 
 // How the layer above gives points to cells that need them: by their own drafts.
 TEST(Edits, TouchedCellsTakePointsByTheirOwnDrafts) {
-  Map map(test::edit_box(CellType::hexahedron, false, 2));
+  CombinatorialMap map(test::edit_box(CellType::hexahedron, false, 2));
   Transaction t(map);
   const Vertex middle(13);  // of the box
   const SplitEdge split = split_edge(t, [&] {
@@ -530,13 +531,13 @@ TEST(Edits, TouchedCellsTakePointsByTheirOwnDrafts) {
     EXPECT_TRUE(map.has_flat(c));
     EXPECT_GT(map.shape(c).simplices().size(), 12U);
   }
-  EXPECT_EQ(t.commit().born.size(), 9U);
+  EXPECT_EQ(t.commit().created.size(), 9U);
 }
 
 // What an edit touches does not depend on the size of the scene: the same around the cube in its middle.
 TEST(Edits, TouchAsManyCellsInAnyScene) {
   const auto touched = [](CellType type, std::uint32_t size) {
-    Map map(test::edit_box(type, false, size));
+    CombinatorialMap map(test::edit_box(type, false, size));
     Transaction t(map);
     const std::uint32_t per_cube = static_cast<std::uint32_t>(map.cell_count()) / (size * size * size);
     const std::uint32_t first = per_cube * (size / 2) * (1 + size + size * size);
@@ -544,13 +545,13 @@ TEST(Edits, TouchAsManyCellsInAnyScene) {
     for (std::uint32_t i = first; i < first + per_cube; ++i) {
       const Cell c(static_cast<std::uint32_t>(type), i);
       for (const Dart d : cell_orbit(map, {c, 0})) {
-        const Transaction::Mark none = t.mark();
+        const Transaction::Savepoint none = t.savepoint();
         counts.push_back(split_edge(t, d).cells.size());
         t.roll_back();
         counts.push_back(unsew(t, map.face(d)).size());
         t.roll_back();
         remove(t, c);
-        const Transaction::Mark mark = t.mark();
+        const Transaction::Savepoint mark = t.savepoint();
         counts.insert(counts.end(), {mark.words, mark.removed, mark.added});
         t.roll_back(none);
       }

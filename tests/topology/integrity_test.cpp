@@ -23,10 +23,10 @@ struct Record {
   std::uint32_t* word;
   bool general;
 
-  Record(const Map& map, Cell c)
+  Record(const CombinatorialMap& map, Cell c)
       : view(map.view(c)),
         word(const_cast<std::uint32_t*>(view.vertices().data()) - 2),
-        general(c.pool() == Map::general_pool) {}
+        general(c.pool() == CombinatorialMap::general_pool) {}
 
   std::uint32_t& vertex(unsigned k) { return word[2 + k]; }
   std::uint32_t& neighbour(unsigned f) { return word[2U + view.shape().point_count() + f]; }
@@ -41,7 +41,7 @@ struct Record {
   void flip_wall(unsigned f) { general ? extra(f) ^= 1U << 16U : word[1] ^= 1U << (18U + f); }
 };
 
-Cell cell_in_the_middle(const Map& map) {
+Cell cell_in_the_middle(const CombinatorialMap& map) {
   for (const Cell c : map.cells()) {
     const CellView v = map.view(c);
     bool inside = true;
@@ -51,8 +51,8 @@ Cell cell_in_the_middle(const Map& map) {
   return {};
 }
 
-Cell vacant_cell(const Map& map) {
-  for (std::uint32_t pool = 0; pool <= Map::general_pool; ++pool) {
+Cell vacant_cell(const CombinatorialMap& map) {
+  for (std::uint32_t pool = 0; pool <= CombinatorialMap::general_pool; ++pool) {
     for (std::uint32_t i = 0; i < map.slot_count(pool); ++i) {
       if (!map.contains(Cell(pool, i))) return Cell(pool, i);
     }
@@ -61,8 +61,8 @@ Cell vacant_cell(const Map& map) {
 }
 
 void expect_found(const MeshData& mesh, const char* constraint,
-                  const std::function<void(const Map&, Record&, Cell)>& plant) {
-  Map map(mesh);
+                  const std::function<void(const CombinatorialMap&, Record&, Cell)>& plant) {
+  CombinatorialMap map(mesh);
   const Cell c = cell_in_the_middle(map);
   ASSERT_TRUE(c.valid());
   Record record(map, c);
@@ -95,55 +95,57 @@ INSTANTIATE_TEST_SUITE_P(Integrity, Planted, testing::Range(0, 5),
                          [](const auto& i) { return std::string(cell_type_names[static_cast<std::size_t>(i.param)]); });
 
 TEST_P(Planted, VertexOutOfRange) {
-  expect_found(mesh(), "vertices are in range",
-               [](const Map& map, Record& r, Cell) { r.vertex(2) = static_cast<std::uint32_t>(map.vertex_count()); });
+  expect_found(mesh(), "vertices are in range", [](const CombinatorialMap& map, Record& r, Cell) {
+    r.vertex(2) = static_cast<std::uint32_t>(map.vertex_count());
+  });
 }
 
 TEST_P(Planted, VertexTwiceInACell) {
   expect_found(mesh(), "the vertices of a cell are distinct",
-               [](const Map&, Record& r, Cell) { r.vertex(2) = r.vertex(1); });
+               [](const CombinatorialMap&, Record& r, Cell) { r.vertex(2) = r.vertex(1); });
 }
 
 TEST_P(Planted, VerticesExchanged) {
-  const auto exchange = [](const Map&, Record& r, Cell) { std::swap(r.vertex(0), r.vertex(1)); };
+  const auto exchange = [](const CombinatorialMap&, Record& r, Cell) { std::swap(r.vertex(0), r.vertex(1)); };
   expect_found(mesh(), "sewn darts have the same vertices", exchange);
   expect_found(mesh(), "a face starts at its lowest-numbered vertex", exchange);
 }
 
 TEST_P(Planted, NeighbourThatIsNone) {
   expect_found(mesh(), "phi3 leads to a face with as many darts",
-               [](const Map&, Record& r, Cell c) { r.neighbour(1) = Cell(c.pool(), 100000).value; });
+               [](const CombinatorialMap&, Record& r, Cell c) { r.neighbour(1) = Cell(c.pool(), 100000).value; });
   expect_found(mesh(), "phi3 leads to a face with as many darts",
-               [](const Map&, Record& r, Cell) { r.neighbour(1) = Cell(7, 0).value; });
+               [](const CombinatorialMap&, Record& r, Cell) { r.neighbour(1) = Cell(7, 0).value; });
 }
 
 TEST_P(Planted, NeighbourFaceThatIsNone) {
-  expect_found(mesh(), "phi3 leads to a face with as many darts", [](const Map&, Record& r, Cell) {
+  expect_found(mesh(), "phi3 leads to a face with as many darts", [](const CombinatorialMap&, Record& r, Cell) {
     for (unsigned f = 0; f < r.view.shape().face_count(); ++f) r.set_neighbour_face(f, r.general ? 99 : 6);
   });
 }
 
 TEST_P(Planted, NeighbourThatDoesNotPointBack) {
-  expect_found(mesh(), "phi3 is an involution", [](const Map&, Record& r, Cell c) {
+  expect_found(mesh(), "phi3 is an involution", [](const CombinatorialMap&, Record& r, Cell c) {
     r.neighbour(1) = Cell(c.pool(), c.index() == 0 ? 1 : 0).value;
     r.set_neighbour_face(1, 1);
   });
 }
 
 TEST_P(Planted, SewnToItself) {
-  expect_found(mesh(), "phi3 is an involution", [](const Map&, Record& r, Cell c) {
+  expect_found(mesh(), "phi3 is an involution", [](const CombinatorialMap&, Record& r, Cell c) {
     r.neighbour(1) = c.value;
     r.set_neighbour_face(1, 0);
   });
 }
 
 TEST_P(Planted, WallMarkTurned) {
-  expect_found(mesh(), "a wall is where exactly one side is free", [](const Map&, Record& r, Cell) { r.flip_wall(1); });
+  expect_found(mesh(), "a wall is where exactly one side is free",
+               [](const CombinatorialMap&, Record& r, Cell) { r.flip_wall(1); });
 }
 
 // Faults planted in maps that were edited: each is found in the cell itself, and only as long as it is there.
 TEST_P(Planted, AfterEdits) {
-  Map map(mesh());
+  CombinatorialMap map(mesh());
   Random random(41);
   {
     Transaction t(map);
@@ -191,7 +193,7 @@ TEST_P(Planted, AfterEdits) {
 TEST(Integrity, BothSidesOfAFaceHaveOnePoint) {
   BoxOptions o;
   o.cells = {2, 1, 1};
-  Map map(generate_box(o));
+  CombinatorialMap map(generate_box(o));
   Transaction t(map);
   std::vector<CellDraft> drafts;
   const auto cells = map.cells();
@@ -212,7 +214,7 @@ TEST(Integrity, BothSidesOfAFaceHaveOnePoint) {
 
 TEST(Integrity, NamesAtMostSoManyAndOnlyTheCellsGiven) {
   const MeshData mesh = test::mixed_mesh();
-  Map map(mesh);
+  CombinatorialMap map(mesh);
   std::vector<Cell> others;
   for (const Cell c : map.cells()) {
     if (map.type(c) == CellType::prism) {

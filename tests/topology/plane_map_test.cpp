@@ -27,14 +27,14 @@ MeshData rectangle(int kind) {
 class PlaneMaps : public testing::TestWithParam<int> {};
 
 TEST_P(PlaneMaps, AreIntact) {
-  const Map map(rectangle(GetParam()));
+  const CombinatorialMap map(rectangle(GetParam()));
   EXPECT_EQ(map.dimension(), 2U);
   for (const Violation& v : check_integrity(map)) ADD_FAILURE() << v.message;
 }
 
 TEST_P(PlaneMaps, AreSewnAsTheMeshSays) {
   const MeshData mesh = rectangle(GetParam());
-  const Map map(mesh);
+  const CombinatorialMap map(mesh);
   std::set<std::pair<std::uint32_t, std::uint32_t>> edges;  // as cells run along them
   for (std::size_t c = 0; c < mesh.cell_count(); ++c)
     for_each_face(mesh, c, [&](std::span<const std::uint32_t> e) { edges.emplace(e[0], e[1]); });
@@ -56,7 +56,7 @@ TEST_P(PlaneMaps, AreSewnAsTheMeshSays) {
 
 TEST_P(PlaneMaps, OrbitsAreVerticesEdgesAndFaces) {
   const MeshData mesh = rectangle(GetParam());
-  const Map map(mesh);
+  const CombinatorialMap map(mesh);
   std::vector<std::size_t> cells_at(mesh.points.size(), 0);
   for (std::size_t c = 0; c < mesh.cell_count(); ++c)
     for_each_face(mesh, c, [&](std::span<const std::uint32_t> e) { ++cells_at[e[0]]; });
@@ -76,7 +76,7 @@ TEST_P(PlaneMaps, OrbitsAreVerticesEdgesAndFaces) {
 INSTANTIATE_TEST_SUITE_P(Meshes, PlaneMaps, testing::Values(0, 1, 2));
 
 TEST(PlaneMap, OneShapeServesAllPolygonsOfSoManyCorners) {
-  const Map map(rectangle(2));
+  const CombinatorialMap map(rectangle(2));
   EXPECT_EQ(map.shapes().size(), 3U);
   for (const Cell c : map.cells()) {
     const Shape& s = map.shape(c);
@@ -123,10 +123,10 @@ TEST(PlaneMap, RefusesWhatIsNone) {
   MeshData mesh = rectangle(1);
   const std::vector<std::uint32_t> first(mesh.cell(0).begin(), mesh.cell(0).end());
   mesh.add_cell(CellType::quadrilateral, first);
-  EXPECT_THROW(Map{mesh}, InvalidMesh) << "the same cell twice";
+  EXPECT_THROW(CombinatorialMap{mesh}, InvalidMesh) << "the same cell twice";
   mesh = rectangle(1);
   mesh.add_cell(CellType::tetrahedron, first);
-  EXPECT_THROW(Map{mesh}, InvalidMesh) << "a cell of space";
+  EXPECT_THROW(CombinatorialMap{mesh}, InvalidMesh) << "a cell of space";
 }
 
 // Two squares side by side; the sides have patches.
@@ -141,14 +141,14 @@ class TwoSquares : public testing::Test {
     for (const Violation& v : check_integrity(map)) ADD_FAILURE() << v.message;
   }
 
-  Map map{mesh()};
+  CombinatorialMap map{mesh()};
   Transaction t{map};
   Cell left = map.cells()[0];
   Cell right = map.cells()[1];
 };
 
 TEST_F(TwoSquares, AnEdgeIsSplitInBothAndMergedAgain) {
-  const Map before = map;
+  const CombinatorialMap before = map;
   const Dart d = find_dart(map, left, Vertex(1), Vertex(4));
   ASSERT_EQ(map.phi2(d).cell, right);
   const SplitEdge split = split_edge(t, d);
@@ -221,7 +221,7 @@ TEST_F(TwoSquares, EdgesAreSewnTheOtherWayAroundOrNotAtAll) {
 }
 
 TEST_F(TwoSquares, WhatWouldBeNoMapIsRefused) {
-  const Map before = map;
+  const CombinatorialMap before = map;
   const Dart d = find_dart(map, left, Vertex(1), Vertex(4));
   EXPECT_THROW(split_face(t, d, map.phi1(d)), EditRefused) << "side by side";
   EXPECT_THROW(split_face(t, d, map.phi2(d)), EditRefused) << "of two polygons";

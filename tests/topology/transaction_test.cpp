@@ -38,11 +38,11 @@ int edit_at_random(Transaction& t, int count, Random& random) {
 }
 
 class Transactions : public testing::TestWithParam<test::EditMesh> {};
-INSTANTIATE_TEST_SUITE_P(Map, Transactions, testing::ValuesIn(test::all_edit_meshes()),
+INSTANTIATE_TEST_SUITE_P(CombinatorialMap, Transactions, testing::ValuesIn(test::all_edit_meshes()),
                          [](const auto& i) { return std::string(i.param.name); });
 
 TEST_P(Transactions, TakenBackLeaveTheMapAsItWas) {
-  Map map(GetParam().make());
+  CombinatorialMap map(GetParam().make());
   Random random(5);
   for (int round = 0; round < test::scaled(60, 5000); ++round) {
     {
@@ -50,7 +50,7 @@ TEST_P(Transactions, TakenBackLeaveTheMapAsItWas) {
       edit_at_random(t, static_cast<int>(random.below(4)), random);
       t.commit();
     }
-    const Map before = map;
+    const CombinatorialMap before = map;
     {
       Transaction t(map);
       edit_at_random(t, 1 + static_cast<int>(random.below(8)), random);
@@ -62,13 +62,13 @@ TEST_P(Transactions, TakenBackLeaveTheMapAsItWas) {
 }
 
 TEST_P(Transactions, GoBackToAMark) {
-  Map map(GetParam().make());
+  CombinatorialMap map(GetParam().make());
   Random random(6);
   for (int round = 0; round < test::scaled(40, 2000); ++round) {
     Transaction t(map);
     edit_at_random(t, static_cast<int>(random.below(4)), random);
-    const Map before = map;
-    const Transaction::Mark mark = t.mark();
+    const CombinatorialMap before = map;
+    const Transaction::Savepoint mark = t.savepoint();
     edit_at_random(t, 1 + static_cast<int>(random.below(6)), random);
     t.roll_back(mark);
     ASSERT_TRUE(map == before) << "round " << round;
@@ -79,12 +79,12 @@ TEST_P(Transactions, GoBackToAMark) {
 
 // Whatever is refused, refused it has changed nothing.
 TEST_P(Transactions, RefusedEditsChangeNothing) {
-  Map map(GetParam().make());
+  CombinatorialMap map(GetParam().make());
   Random random(7);
   Transaction t(map);
   edit_at_random(t, 20, random);
   t.commit();
-  const Map before = map;
+  const CombinatorialMap before = map;
   int refused = 0;
   for (int i = 0; i < test::scaled(400, 20000); ++i) {
     const CellBag bag(map);
@@ -101,7 +101,7 @@ TEST_P(Transactions, RefusedEditsChangeNothing) {
 }
 
 TEST_P(Transactions, ReportWhatChangedInAll) {
-  Map map(GetParam().make());
+  CombinatorialMap map(GetParam().make());
   Random random(8);
   for (int round = 0; round < test::scaled(60, 5000); ++round) {
     Transaction t(map);
@@ -118,8 +118,8 @@ TEST_P(Transactions, ReportWhatChangedInAll) {
     const EditReport report = t.commit();
     for (const CellHandle& h : report.removed) ASSERT_EQ(before.erase(h), 1U);
     for (const Cell c : report.added) ASSERT_TRUE(before.insert(map.handle(c)).second);
-    for (const BornVertex& v : report.born) ASSERT_TRUE(vertices.insert(v.vertex.value).second);
-    for (const Vertex v : report.died) ASSERT_EQ(vertices.erase(v.value), 1U);
+    for (const CreatedVertex& v : report.created) ASSERT_TRUE(vertices.insert(v.vertex.value).second);
+    for (const Vertex v : report.deleted) ASSERT_EQ(vertices.erase(v.value), 1U);
     for (const Cell c : report.marked) ASSERT_TRUE(map.contains(c));
     std::set<CellHandle> after;
     std::set<std::uint32_t> vertices_after;
@@ -141,7 +141,7 @@ TEST_P(Transactions, ReportWhatChangedInAll) {
 
 // The size of the map is bounded by the most that there was at one time, not by the number of edits.
 TEST(Transaction, PlacesAndNumbersAreUsedAgain) {
-  Map map(test::edit_box(CellType::hexahedron, false, 3));
+  CombinatorialMap map(test::edit_box(CellType::hexahedron, false, 3));
   Random random(9);
   std::size_t bytes = 0;
   const int rounds = test::scaled(400, 20000);
@@ -159,11 +159,11 @@ TEST(Transaction, PlacesAndNumbersAreUsedAgain) {
       break;
     }
     const EditReport report = t.commit();
-    ASSERT_EQ(report.died, std::vector<Vertex>{split.vertex});
+    ASSERT_EQ(report.deleted, std::vector<Vertex>{split.vertex});
     ASSERT_FALSE(map.is_vertex(split.vertex));
     ASSERT_EQ(map.vertex_count(), 65U);
     ASSERT_EQ(map.cell_count(1), 27U);
-    ASSERT_LE(map.slot_count(1) + map.slot_count(Map::general_pool), 40U);
+    ASSERT_LE(map.slot_count(1) + map.slot_count(CombinatorialMap::general_pool), 40U);
   }
   EXPECT_LE(map.bytes(), bytes + 4096);
   EXPECT_TRUE(check_integrity(map).empty());
@@ -171,7 +171,7 @@ TEST(Transaction, PlacesAndNumbersAreUsedAgain) {
 
 // A cell is replaced again and again, in two places by turns, until their versions have run out: then others are used.
 TEST(Transaction, HandlesGoStale) {
-  Map map(test::edit_box(CellType::hexahedron, false, 2));
+  CombinatorialMap map(test::edit_box(CellType::hexahedron, false, 2));
   Transaction t(map);
   CellHandle now = map.handle(map.cells()[0]);
   std::vector<CellHandle> first;
@@ -193,7 +193,7 @@ TEST(Transaction, HandlesGoStale) {
 }
 
 TEST(Transaction, WhatIsFreedIsNotUsedAgainBeforeTheCommit) {
-  Map map(test::edit_box(CellType::tetrahedron, false, 2));
+  CombinatorialMap map(test::edit_box(CellType::tetrahedron, false, 2));
   Random random(10);
   Transaction t(map);
   edit_at_random(t, 30, random);
@@ -212,11 +212,11 @@ TEST(Transaction, WhatIsFreedIsNotUsedAgainBeforeTheCommit) {
 TEST(Transaction, ReplaceRefusesWhatWouldBeNoMap) {
   MeshData mesh = test::mixed_mesh();
   mesh.source = {70, 10, 20, 30, 40, 50, 60, 80};
-  Map map(mesh);
+  CombinatorialMap map(mesh);
   std::map<std::uint32_t, Cell> cell;
   for (const Cell c : map.cells()) cell[map.source(c)] = c;
   Transaction t(map);
-  const Map before = map;
+  const CombinatorialMap before = map;
   const auto replaced = [&](std::vector<Cell> removed, std::vector<CellDraft> drafts) {
     const std::string text = test::refusal([&] { t.replace(removed, drafts); });
     EXPECT_TRUE(map == before);
@@ -259,7 +259,7 @@ TEST(Transaction, ReplaceRefusesWhatWouldBeNoMap) {
 
 // A transaction can put in cells that never were, and take out all.
 TEST(Transaction, CellsCanComeFromNothingAndGo) {
-  Map map(test::mixed_mesh());
+  CombinatorialMap map(test::mixed_mesh());
   Transaction t(map);
   const auto cells = map.cells();
   std::vector<CellDraft> drafts;
@@ -273,7 +273,7 @@ TEST(Transaction, CellsCanComeFromNothingAndGo) {
   EXPECT_TRUE(check_integrity(map).empty());
   for (std::size_t i = 0; i < cells.size(); ++i) EXPECT_EQ(map.source(again[i]), map.source(cells[i]));
   EXPECT_EQ(t.commit().removed.size(), cells.size());
-  EXPECT_EQ(map.cell_count(Map::general_pool), 0U);  // the polyhedron is combinatorially a hexahedron
+  EXPECT_EQ(map.cell_count(CombinatorialMap::general_pool), 0U);  // the polyhedron is combinatorially a hexahedron
   EXPECT_EQ(map.cell_count(1), 2U);
 }
 

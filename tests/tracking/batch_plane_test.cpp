@@ -78,32 +78,32 @@ class BothWaysInThePlane {
   std::string step(PlaneTally& tally) {
     if (moves_) move();
     std::vector<Vec3> targets;
-    for (const State& s : states_) targets.push_back(target(s));
-    std::vector<State> states = states_;
+    for (const ParticleState& s : states_) targets.push_back(target(s));
+    std::vector<ParticleState> states = states_;
     std::vector<detail::VertexNumbers> vertices;
-    for (const State& s : states) vertices.push_back(detail::vertex_numbers(complex_, s.at()));
-    std::vector<detail::Taken> taken(particle_count);
-    std::vector<Begun> begun;
-    std::vector<Landing> landings;
+    for (const ParticleState& s : states) vertices.push_back(detail::vertex_numbers(complex_, s.at()));
+    std::vector<detail::StepStatus> taken(particle_count);
+    std::vector<PartialStep> partial;
+    std::vector<WallImpact> impacts;
     Counters counters;
     const StepOptions options;
     detail::step_plane({&complex_, moves_, false, options.tolerance},
-                       {states, vertices, {}, targets, taken, begun, landings}, counters);
-    const Respond none;
+                       {states, vertices, {}, targets, taken, partial, impacts}, counters);
+    const ContactCallback none;
     const Stepper stepper(complex_, moves_, options, none);
     Counters expected;
     for (std::uint32_t i = 0; i < particle_count; ++i) {
-      State next = states_[i];
+      ParticleState next = states_[i];
       Weights weights{};
       ContactList contacts;
       Counters own;
       const StepResult result = stepper.step(i, next, weights, targets[i], contacts, own);
-      const bool all = taken[i] == detail::taken_all;
-      if (!all && taken[i] != detail::taken_nothing) {
-        State state = states_[i];
+      const bool all = taken[i] == detail::step_complete;
+      if (!all && taken[i] != detail::step_untouched) {
+        ParticleState state = states_[i];
         ContactList handed_over;
         Counters counts;
-        stepper.step(i, state, weights, targets[i], handed_over, counts, &begun[taken[i]]);
+        stepper.step(i, state, weights, targets[i], handed_over, counts, &partial[taken[i]]);
         if (!same_bits(state, next)) return fmt::format("particle {}: another state, handed over", i);
         if (!same_contacts(handed_over, contacts)) return fmt::format("particle {}: other contacts, handed over", i);
         if (!same_counts(counts, own)) return fmt::format("particle {}: other counts, handed over", i);
@@ -148,8 +148,8 @@ class BothWaysInThePlane {
     complex_.commit_positions();
   }
 
-  Vec3 target(const State& s) {
-    if (moves_ && s.touching_count > 0 && random_.below(4) == 0) return ridden(s);  // it goes on touching
+  Vec3 target(const ParticleState& s) {
+    if (moves_ && s.touching_count > 0 && random_.below(4) == 0) return carried(s);  // it goes on touching
     if (lattice_) {
       const auto by = [&] { return 0.25 * (static_cast<double>(random_.below(9)) - 4.0); };
       return s.position + Vec3{by(), by(), 0.0};
@@ -158,16 +158,16 @@ class BothWaysInThePlane {
     return s.position + Vec3{random_.uniform(-reach, reach), random_.uniform(-reach, reach), 0.0};
   }
 
-  [[nodiscard]] Vec3 ridden(const State& s) const {
+  [[nodiscard]] Vec3 carried(const ParticleState& s) const {
     const Weights weights = detail::barycentric(previous_space<3>(complex_).corners(s.at()), s.position);
-    return detail::ridden(current_space<3>(complex_), s.at(), weights).position;
+    return detail::carried(current_space<3>(complex_), s.at(), weights).position;
   }
 
   Random random_;
   bool moves_;
   bool lattice_;
-  Complex complex_;
-  std::vector<State> states_;
+  CellComplex complex_;
+  std::vector<ParticleState> states_;
 };
 
 TEST(FilteredPlane, TakesTheSameStepsToTheBit) {

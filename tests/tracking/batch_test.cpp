@@ -49,7 +49,7 @@ class BothWays {
       }
     }
     while (states_.size() < particles) {
-      State state;
+      ParticleState state;
       const SimplexId at = free[random_.below(static_cast<std::uint32_t>(free.size()))];
       state.put(at, point_of(complex_.corners(at)));
       states_.push_back(state);
@@ -62,18 +62,18 @@ class BothWays {
   std::string step(Tally& tally) {
     if (moves_) move();
     std::vector<Vec3> targets;
-    for (const State& s : states_) targets.push_back(target(s));
+    for (const ParticleState& s : states_) targets.push_back(target(s));
     const Filtered portable = filtered(targets, detail::InstructionSet::portable, moves_, {});
-    const Filtered best = filtered(targets, detail::best_instruction_set(), true, memos_);
+    const Filtered best = filtered(targets, detail::best_instruction_set(), true, caches_);
     if (!std::ranges::equal(portable.taken, best.taken, alike)) return "instruction sets leave different steps";
-    if (!moves_ && !same_memos(best, filtered(targets, detail::InstructionSet::portable, true, memos_)))
+    if (!moves_ && !same_memos(best, filtered(targets, detail::InstructionSet::portable, true, caches_)))
       return "instruction sets keep different coordinates";
     const StepOptions options;
-    const Respond none;
+    const ContactCallback none;
     const Stepper stepper(complex_, moves_, options, none);
     Counters counters;  // of the steps taken
-    std::vector<State> next = states_;
-    detail::Memos next_memos;
+    std::vector<ParticleState> next = states_;
+    detail::SimplexCache next_memos;
     for (std::size_t i = 0; i < particles; ++i) {
       Weights weights{};
       ContactList contacts;
@@ -84,90 +84,92 @@ class BothWays {
       if (stays && own.steps_split == 0 && !result.held &&
           (next[i].at() != states_[i].at() || !contacts.contacts.empty()))
         return fmt::format("particle {}: something in the way within its simplex", i);
-      const bool taken = best.taken[i] == detail::taken_all;
+      const bool taken = best.taken[i] == detail::step_complete;
       bool landed = false;
-      if (!taken && best.taken[i] != detail::taken_nothing) {
+      if (!taken && best.taken[i] != detail::step_untouched) {
         for (const Filtered* f : {&portable, &best}) {
-          const Begun& begun = f->begun[f->taken[i]];
-          State state = states_[i];
+          const PartialStep& partial = f->partial[f->taken[i]];
+          ParticleState state = states_[i];
           Weights unused{};
           ContactList handed_over;
           Counters counts;
-          stepper.step(static_cast<std::uint32_t>(i), state, unused, targets[i], handed_over, counts, &begun);
+          stepper.step(static_cast<std::uint32_t>(i), state, unused, targets[i], handed_over, counts, &partial);
           if (!same_bits(state, next[i])) return fmt::format("particle {}: another state, handed over", i);
           if (!same(handed_over, contacts)) return fmt::format("particle {}: other contacts, handed over", i);
           if (!same(counts, own)) return fmt::format("particle {}: other counts, handed over", i);
-          landed = begun.landing != nullptr;
-          if (landed && !begun.stays(state)) return fmt::format("particle {}: not where it landed", i);
+          landed = partial.impact != nullptr;
+          if (landed && !partial.stays(state)) return fmt::format("particle {}: not where it landed", i);
         }
         tally.handed_over += 1;
         tally.landed += landed ? 1 : 0;
       }
       const bool described = taken || landed;  // by its vertices and memo
-      const State& expected = taken ? next[i] : states_[i];
+      const ParticleState& expected = taken ? next[i] : states_[i];
       if (!same_bits(best.states[i], expected) || !same_bits(portable.states[i], expected))
         return fmt::format("particle {}: another state", i);
       if (taken && (result.held || !contacts.contacts.empty())) return fmt::format("particle {}: held or stopped", i);
       if (best.vertices[i] != detail::vertex_numbers(complex_, (described ? next[i] : expected).at()))
         return fmt::format("particle {}: other vertices", i);
-      const detail::Memo memo =
-          detail::memo_of(moves_ ? detail::MemoKind::trail : detail::MemoKind::coordinates, complex_.positions(),
-                          detail::vertex_numbers(complex_, next[i].at()), next[i].position);
-      if (moves_ && described && (!equal(best.memos[i], memo) || !equal(portable.memos[i], memo)))
+      const detail::SimplexCacheEntry entry = detail::cache_entry_of(
+          moves_ ? detail::CacheKind::previous_geometry : detail::CacheKind::barycentric, complex_.positions(),
+          detail::vertex_numbers(complex_, next[i].at()), next[i].position);
+      if (moves_ && described && (!equal(best.caches[i], entry) || !equal(portable.caches[i], entry)))
         return fmt::format("particle {}: another trail", i);
-      if (!moves_ && described && !std::isnan(best.memos[i].w[0])) tally.remembered += 1;
-      if (landed && !moves_ && best.memos.mark(i) != 0) return fmt::format("particle {}: marked on a wall", i);
-      if (taken && !moves_ && best.memos.mark(i) != 0) {
+      if (!moves_ && described && !std::isnan(best.caches[i].w[0])) tally.remembered += 1;
+      if (landed && !moves_ && best.caches.mark(i) != 0) return fmt::format("particle {}: marked on a wall", i);
+      if (taken && !moves_ && best.caches.mark(i) != 0) {
         const unsigned zeros = detail::zeros_of(complex_.corners(next[i].at()), next[i].position);
-        if (best.memos.mark(i) != (detail::exact_mark | zeros)) return fmt::format("particle {}: another mark", i);
+        if (best.caches.mark(i) != (detail::exact_flag | zeros)) return fmt::format("particle {}: another mark", i);
         tally.exact += 1;
       }
       if (described)
-        next_memos.push_back(best.memos[i], best.memos.mark(i));
+        next_memos.push_back(best.caches[i], best.caches.mark(i));
       else
-        next_memos.push_back(memo);
+        next_memos.push_back(entry);
       if (taken) counters += rides_to(i, targets[i]) ? counts_of_a_kept_forecast() : own;
       tally.steps += 1;
       tally.taken += taken ? 1 : 0;
       tally.moved_on += taken && next[i].at() != states_[i].at() ? 1 : 0;
     }
     states_ = next;
-    memos_ = random_.below(8) == 0 ? detail::Memos{} : next_memos;
+    caches_ = random_.below(8) == 0 ? detail::SimplexCache{} : next_memos;
     return same(counters, best.counters) && same(counters, portable.counters) ? "" : "other counts";
   }
 
  private:
   struct Filtered {
-    std::vector<State> states;
+    std::vector<ParticleState> states;
     std::vector<detail::VertexNumbers> vertices;
-    detail::Memos memos;
-    std::vector<detail::Taken> taken;
-    std::vector<Begun> begun;
-    std::vector<Landing> landings;
+    detail::SimplexCache caches;
+    std::vector<detail::StepStatus> taken;
+    std::vector<PartialStep> partial;
+    std::vector<WallImpact> impacts;
     Counters counters;
   };
 
   // With memos or without, those of the step before or new ones.
   Filtered filtered(std::span<const Vec3> targets, detail::InstructionSet set, bool with_memos,
-                    const detail::Memos& memos) const {
-    Filtered f{states_, {}, memos, std::vector<detail::Taken>(particles), {}, {}, {}};
-    f.memos.resize(with_memos ? particles : 0);
-    for (const State& s : states_) f.vertices.push_back(detail::vertex_numbers(complex_, s.at()));
-    detail::step_filtered({&complex_, moves_, !memos.empty(), StepOptions{}.tolerance},
-                          {f.states, f.vertices, f.memos.from(0), targets, f.taken, f.begun, f.landings}, f.counters,
-                          set);
+                    const detail::SimplexCache& caches) const {
+    Filtered f{states_, {}, caches, std::vector<detail::StepStatus>(particles), {}, {}, {}};
+    f.caches.resize(with_memos ? particles : 0);
+    for (const ParticleState& s : states_) f.vertices.push_back(detail::vertex_numbers(complex_, s.at()));
+    detail::step_batch({&complex_, moves_, !caches.empty(), StepOptions{}.tolerance},
+                       {f.states, f.vertices, f.caches.from(0), targets, f.taken, f.partial, f.impacts}, f.counters,
+                       set);
     return f;
   }
 
   // Walks may be handed over in another order.
-  static bool alike(detail::Taken a, detail::Taken b) {
-    const auto handed_over = [](detail::Taken t) { return t != detail::taken_all && t != detail::taken_nothing; };
+  static bool alike(detail::StepStatus a, detail::StepStatus b) {
+    const auto handed_over = [](detail::StepStatus t) {
+      return t != detail::step_complete && t != detail::step_untouched;
+    };
     return a == b || (handed_over(a) && handed_over(b));
   }
   static bool same_memos(const Filtered& a, const Filtered& b) {
-    bool same = a.memos.size() == b.memos.size();
-    for (std::size_t i = 0; same && i < a.memos.size(); ++i)
-      same = equal(a.memos[i], b.memos[i]) && a.memos.mark(i) == b.memos.mark(i);
+    bool same = a.caches.size() == b.caches.size();
+    for (std::size_t i = 0; same && i < a.caches.size(); ++i)
+      same = equal(a.caches[i], b.caches[i]) && a.caches.mark(i) == b.caches.mark(i);
     return same;
   }
 
@@ -176,7 +178,7 @@ class BothWays {
     if (!moves_) return false;
     const SimplexId at = states_[i].at();
     const Weights weights = detail::barycentric(previous_space(complex_).corners(at), states_[i].position);
-    return detail::ridden(current_space(complex_), at, weights).position == target;
+    return detail::carried(current_space(complex_), at, weights).position == target;
   }
   static Counters counts_of_a_kept_forecast() {
     Counters counts;
@@ -200,7 +202,9 @@ class BothWays {
            std::ranges::equal(a.walls, b.walls, equal_walls);
   }
 
-  static bool equal(const detail::Memo& a, const detail::Memo& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+  static bool equal(const detail::SimplexCacheEntry& a, const detail::SimplexCacheEntry& b) {
+    return std::memcmp(&a, &b, sizeof a) == 0;
+  }
 
   static bool same(const Counters& a, const Counters& b) {
     return a.particle_steps == b.particle_steps && a.orientation.tests == b.orientation.tests &&
@@ -228,7 +232,7 @@ class BothWays {
   }
 
   // A target other than the place, but for particles that touch a wall: at rest elsewhere only the counts differ.
-  Vec3 target(const State& s) {
+  Vec3 target(const ParticleState& s) {
     const Vec3 q = any_target(s);
     if (q != s.position || s.touching_count > 0) return q;
     const dartcast::Corners v = complex_.corners(s.at());
@@ -236,7 +240,7 @@ class BothWays {
   }
 
   // Mostly small steps; some to a corner, some nowhere, some out of the scene.
-  Vec3 any_target(const State& s) {
+  Vec3 any_target(const ParticleState& s) {
     const dartcast::Corners v = complex_.corners(s.at());
     const double edge = norm(v[1] - v[0]);
     const std::uint32_t kind = random_.below(16);
@@ -249,14 +253,14 @@ class BothWays {
   }
 
   // One of eighths, along axes and diagonals.
-  Vec3 lattice_target(const State& s) {
+  Vec3 lattice_target(const ParticleState& s) {
     const double length = 0.125 * (1 + random_.below(4));
     const auto next = [&](double x) { return std::round(8.0 * x) / 8.0 + length * (random_.below(3) - 1.0); };
     return {next(s.position.x), next(s.position.y), next(s.position.z)};
   }
 
   // Through an edge, after a third of the step, where no double may be.
-  Vec3 through_edge(const State& s, const dartcast::Corners& v) {
+  Vec3 through_edge(const ParticleState& s, const dartcast::Corners& v) {
     const std::uint32_t first = random_.below(4);
     const Vec3& a = v[first];
     const Vec3& b = v[(first + 1 + random_.below(3)) % 4];
@@ -293,13 +297,13 @@ class BothWays {
   }
 
   MeshData mesh_;
-  Complex complex_;
+  CellComplex complex_;
   Random random_;
   bool moves_;
   bool on_lattice_;
   bool on_facets_;  // some particles begin there
-  std::vector<State> states_;
-  detail::Memos memos_;  // of these, once a step has been taken
+  std::vector<ParticleState> states_;
+  detail::SimplexCache caches_;  // of these, once a step has been taken
 };
 
 class FilteredBatch : public ::testing::TestWithParam<std::tuple<int, bool>> {};

@@ -30,19 +30,19 @@ class LatticeMotion {
   LatticeMotion(const CheckedScene& scene, std::uint64_t seed) : scene_(scene), random_(seed, 4) {}
 
   // A corner, or the middle of two or four corners: exact, but for some interior points.
-  State place() {
+  ParticleState place() {
     const auto& free = scene_.free_simplices();
     while (true) {
       const std::uint32_t s = free[random_.below(static_cast<std::uint32_t>(free.size()))];
       const Vec3 p = middle(scene_.complex().corners(scene_.library_simplex(s)));
       if (!scene_.oracle().contains(s, p)) continue;
-      State state;
+      ParticleState state;
       state.put(scene_.library_simplex(s), p);
       return state;
     }
   }
 
-  Vec3 target(const State& state, const ContactList& last) {
+  Vec3 target(const ParticleState& state, const ContactList& last) {
     Vec3 q = exact_target(state, last);
     if (random_.below(8) == 0) nudge(q);
     return q;
@@ -51,7 +51,7 @@ class LatticeMotion {
   bool place_again() { return random_.below(12) == 0; }
 
  private:
-  Vec3 exact_target(const State& state, const ContactList& last) {
+  Vec3 exact_target(const ParticleState& state, const ContactList& last) {
     const Vec3& p = state.position;
     const Corners v = scene_.complex().corners(state.at());
     switch (random_.below(9)) {
@@ -118,7 +118,7 @@ std::string walk_lattice(oracle::SceneKind kind, std::uint64_t seed, Tally& tall
   if (!scene.valid()) return fmt::format("{}, seed {}: invalid", oracle::name_of(kind), seed);
   LatticeMotion motion(scene, seed);
   ContactList contacts;
-  State state = motion.place();
+  ParticleState state = motion.place();
   for (std::uint64_t i = 0; i < steps_per_scene; ++i) {
     if (motion.place_again()) {
       state = motion.place();

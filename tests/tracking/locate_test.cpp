@@ -22,7 +22,7 @@ struct Box {
 // The answer by brute force: free if any closed simplex of a free cell holds x.
 class Brute {
  public:
-  explicit Brute(const Complex& complex) : complex_(complex) {
+  explicit Brute(const CellComplex& complex) : complex_(complex) {
     for (const Cell c : complex.map().cells()) {
       for (std::uint16_t s = 0; s < complex.map().shape(c).simplices().size(); ++s) {
         const auto v = complex.corners({c, s});
@@ -60,7 +60,7 @@ class Brute {
   }
 
  private:
-  const Complex& complex_;
+  const CellComplex& complex_;
   std::vector<std::pair<SimplexId, Box>> simplices_;
 };
 
@@ -85,7 +85,7 @@ MeshData mesh_of(int which) {
 TEST(Locate, RandomPointsAgreeWithASearchThroughAllCells) {
   int outside = 0, blocked = 0, free = 0;
   for (int which = 0; which < 6; ++which) {
-    const Complex complex(mesh_of(which));
+    const CellComplex complex(mesh_of(which));
     ASSERT_TRUE(complex.invalid_cells().empty());
     const Locator locator(complex);
     const Brute brute(complex);
@@ -117,7 +117,7 @@ TEST(Locate, CellsOfVeryDifferentSizes) {
   o.size = {3, 3, 24};
   MeshData mesh = generate_box(o);
   for (Vec3& p : mesh.points) p.z = std::ldexp(1.0, static_cast<int>(p.z)) - 1.0;
-  const Complex complex(mesh);
+  const CellComplex complex(mesh);
   const Locator locator(complex);
   const Brute brute(complex);
   Random random(3);
@@ -135,7 +135,7 @@ TEST(Locate, OneUlpInsideAndOutside) {
   o.cells = {3, 3, 3};
   o.size = {0.3, 0.3, 0.3};
   o.origin = {0.1, 0.1, 0.1};
-  const Complex complex(generate_box(o));
+  const CellComplex complex(generate_box(o));
   const Locator locator(complex);
   const double high = complex.positions().back().x;
   EXPECT_EQ(locator.locate(complex, {high, 0.2, 0.3}).place, Place::free);
@@ -150,7 +150,7 @@ TEST(Locate, VerticesThatAreNotFiniteSpoilTheirCellsOnly) {
   o.cells = {3, 3, 3};
   o.size = {3, 3, 3};
   const MeshData mesh = generate_box(o);
-  Complex complex(mesh);
+  CellComplex complex(mesh);
   const auto next = complex.next_positions();
   next[0] = {std::nan(""), std::numeric_limits<double>::infinity(), 0};
   for (const std::uint32_t v : mesh.cell(26)) next[v] = {std::nan(""), std::nan(""), std::nan("")};

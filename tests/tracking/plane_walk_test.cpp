@@ -180,7 +180,7 @@ struct Counts {
 };
 
 // One particle's walk, judged by the oracle.
-void judge(const Oracle& oracle, const Complex& complex, const Walk& w, const Vec3& from, const Vec3& to) {
+void judge(const Oracle& oracle, const CellComplex& complex, const Walk& w, const Vec3& from, const Vec3& to) {
   using Where = Oracle::Where;
   const Point p = point_of(from);
   const Point q = point_of(to);
@@ -223,7 +223,7 @@ TEST_P(PlaneWalks, AreRightOnLattices) {
   for (int seed = 1; seed <= seeds; ++seed) {
     const MeshData mesh = lattice(GetParam(), static_cast<std::uint64_t>(seed));
     const Oracle oracle(mesh);
-    const Complex complex(mesh);
+    const CellComplex complex(mesh);
     ASSERT_TRUE(complex.invalid_cells().empty());
     const Locator locator(complex);
     const Space<Stored, 3> space = current_space<3>(complex);

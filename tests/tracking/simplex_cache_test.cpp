@@ -20,7 +20,7 @@ namespace dartcast::test::memo_test {
 Vec3 any_vector(Random& random) { return {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)}; }
 
 // One tetrahedron: of any shape, at any distance from the origin, of any size.
-std::optional<Complex> any_tetrahedron(Random& random) {
+std::optional<CellComplex> any_tetrahedron(Random& random) {
   const double size = std::exp2(random.uniform(-40.0, 40.0));
   const double flat = std::exp2(random.uniform(-6.0, 0.0));
   const Vec3 away = any_vector(random) * (size * std::exp2(random.uniform(-2.0, 44.0)));
@@ -33,7 +33,7 @@ std::optional<Complex> any_tetrahedron(Random& random) {
   if (volume_sign({mesh.points[0], mesh.points[1], mesh.points[2], mesh.points[3]}) == Sign::negative)
     std::swap(mesh.points[0], mesh.points[1]);
   mesh.add_cell(CellType::tetrahedron, std::array<std::uint32_t, 4>{0, 1, 2, 3});
-  Complex complex(mesh);
+  CellComplex complex(mesh);
   if (!complex.invalid_cells().empty()) return std::nullopt;
   return complex;
 }
@@ -46,24 +46,24 @@ Vec3 combined(const Corners& v, const std::array<double, 4>& weights) {
 }
 
 // What a step leaves that stays where it is.
-detail::Memo memo_at(const Complex& complex, SimplexId at, const Vec3& p) {
-  std::vector<State> states(1);
+detail::SimplexCacheEntry memo_at(const CellComplex& complex, SimplexId at, const Vec3& p) {
+  std::vector<ParticleState> states(1);
   states[0].put(at, p);
   std::vector<detail::VertexNumbers> vertices = {detail::vertex_numbers(complex, at)};
-  detail::Memos memos;
-  memos.resize(1);
+  detail::SimplexCache caches;
+  caches.resize(1);
   const std::vector<Vec3> targets = {p};
-  std::vector<detail::Taken> taken(1);
-  std::vector<Begun> begun;
-  std::vector<Landing> landings;
+  std::vector<detail::StepStatus> taken(1);
+  std::vector<PartialStep> partial;
+  std::vector<WallImpact> impacts;
   Counters counters;
-  detail::step_filtered({&complex, false, false, StepOptions{}.tolerance},
-                        {states, vertices, memos.from(0), targets, taken, begun, landings}, counters);
-  return memos[0];
+  detail::step_batch({&complex, false, false, StepOptions{}.tolerance},
+                     {states, vertices, caches.from(0), targets, taken, partial, impacts}, counters);
+  return caches[0];
 }
 
 // As the batch computes them.
-std::array<double, 4> coordinates(const detail::Memo& m, const Vec3& q) {
+std::array<double, 4> coordinates(const detail::SimplexCacheEntry& m, const Vec3& q) {
   std::array<double, 4> c{};
   for (unsigned i = 0; i < 4; ++i)
     c[i] = ((double{m.x[i]} * q.x + double{m.y[i]} * q.y) + double{m.z[i]} * q.z) + m.w[i];
@@ -94,7 +94,7 @@ struct Tally {
 std::string wrong_about(const std::array<double, 4>& c, const Corners& v, const Vec3& q, Tally& tally) {
   using detail::coordinate_margin;
   const auto above = [](double x) { return x > coordinate_margin; };
-  const auto known = [](double x) { return std::abs(x) > coordinate_margin && std::abs(x) <= detail::most_for_sign; };
+  const auto known = [](double x) { return std::abs(x) > coordinate_margin && std::abs(x) <= detail::max_for_sign; };
   const bool inside = std::ranges::all_of(c, above);
   if (!inside && !std::ranges::all_of(c, known)) return {};
   ++(inside ? tally.inside : tally.beyond);
@@ -108,7 +108,7 @@ std::string wrong_about(const std::array<double, 4>& c, const Corners& v, const 
   return {};
 }
 
-TEST(Memo, CoordinatesClaimNothingWrong) {
+TEST(SimplexCacheEntry, CoordinatesClaimNothingWrong) {
   Tally tally;
   const auto count = static_cast<std::uint64_t>(scaled(4000, 400000));
   for (std::uint64_t seed = 0; seed < count; ++seed) {
@@ -119,11 +119,11 @@ TEST(Memo, CoordinatesClaimNothingWrong) {
     const Corners v = complex->corners(at);
     const Vec3 p = combined(v, {random.uniform(), random.uniform(), random.uniform(), random.uniform()});
     if (!detail::in_closed_simplex(v, p)) continue;
-    const detail::Memo memo = memo_at(*complex, at, p);
-    if (memo.w[0] == detail::proves_nothing) ++tally.none;
+    const detail::SimplexCacheEntry entry = memo_at(*complex, at, p);
+    if (entry.w[0] == detail::proves_nothing) ++tally.none;
     for (int i = 0; i < 20; ++i) {
       const Vec3 q = any_point(random, v);
-      ASSERT_EQ(wrong_about(coordinates(memo, q), v, q, tally), "") << "seed " << seed;
+      ASSERT_EQ(wrong_about(coordinates(entry, q), v, q, tally), "") << "seed " << seed;
     }
   }
   EXPECT_GT(tally.inside, scaled(8000, 800000));
@@ -133,22 +133,22 @@ TEST(Memo, CoordinatesClaimNothingWrong) {
 }
 
 // Corners at the edge of the range, and numbers that floats don't hold: nothing is claimed.
-TEST(Memo, CoordinatesAreNotMadeOutOfTheirRange) {
+TEST(SimplexCacheEntry, CoordinatesAreNotMadeOutOfTheirRange) {
   for (const double size : {0x1p-290, 0x1p-150, 0x1p+101, 0x1p+290}) {
     MeshData mesh;
     mesh.points = {{0, 0, 0}, {size, 0, 0}, {0, size, 0}, {0, 0, size}};
     mesh.add_cell(CellType::tetrahedron, std::array<std::uint32_t, 4>{0, 1, 2, 3});
-    const Complex complex(mesh);
+    const CellComplex complex(mesh);
     const Vec3 p = Vec3{0.25, 0.25, 0.25} * size;
-    const detail::Memo memo = memo_at(complex, {complex.map().cells().front(), 0}, p);
-    EXPECT_EQ(memo.w[0], detail::proves_nothing) << size;
-    for (const double c : coordinates(memo, p)) EXPECT_FALSE(c > detail::coordinate_margin) << size;
+    const detail::SimplexCacheEntry entry = memo_at(complex, {complex.map().cells().front(), 0}, p);
+    EXPECT_EQ(entry.w[0], detail::proves_nothing) << size;
+    for (const double c : coordinates(entry, p)) EXPECT_FALSE(c > detail::coordinate_margin) << size;
   }
 }
 
 // Two tetrahedra share a face x + y + z = 2. Particles on it, known to be, go beside it, to points of few bits each
 // whose sum rounds to 2.
-TEST(Memo, ZerosAreProvedOnlyWhereNothingIsRounded) {
+TEST(SimplexCacheEntry, ZerosAreProvedOnlyWhereNothingIsRounded) {
   for (const bool in_x : {false, true}) {
     const Vec3 shift = in_x ? Vec3{0, 0, 2} : Vec3{2, 0, 0};
     MeshData mesh;

@@ -77,13 +77,13 @@ std::string slide_in_box(CellType type, Pose pose, std::uint64_t seed, std::atom
   const Frame frame = make_frame(pose, random);
   const CheckedScene scene(make_box(type, frame, seed));
   if (!scene.valid()) return fmt::format("seed {}: invalid", seed);
-  const Respond slide = [](const Contact& c, std::span<const WallHit> walls, std::span<const WallHit> earlier) {
-    return Continuation{slid(c.unused, walls, earlier), true};
+  const ContactCallback slide = [](const Contact& c, std::span<const WallHit> walls, std::span<const WallHit> earlier) {
+    return AfterContact{slid(c.unused, walls, earlier), true};
   };
   const StepOptions options;
   const Stepper stepper(scene.complex(), false, options, slide);
   const auto start = scene.oracle().all_containing(frame.outward({2.9, 3.1, 3.3}));
-  State state;
+  ParticleState state;
   state.put(scene.library_simplex(start.at(0)), frame.outward({2.9, 3.1, 3.3}));
   Weights weights{};
   Counters counters;

@@ -19,7 +19,7 @@ namespace dartcast::test::star_test {
 using Walls = std::set<std::pair<SimplexId, unsigned>>;
 
 // All walls that hold the feature, reached through facets that hold it.
-Walls simplex_by_simplex(const Map& map, SimplexId start, const Feature& feature) {
+Walls simplex_by_simplex(const CombinatorialMap& map, SimplexId start, const Feature& feature) {
   Walls walls;
   std::vector<SimplexId> open = {start};
   std::set<SimplexId> seen = {start};
@@ -45,7 +45,7 @@ Walls simplex_by_simplex(const Map& map, SimplexId start, const Feature& feature
   return walls;
 }
 
-Walls cell_by_cell(const Map& map, SimplexId start, const Feature& feature) {
+Walls cell_by_cell(const CombinatorialMap& map, SimplexId start, const Feature& feature) {
   Walls walls;
   search_walls(map, start, feature, [&](SimplexId id, const CellView&, const ImplicitSimplex&, unsigned facet) {
     EXPECT_TRUE(walls.emplace(id, facet).second) << "found twice";
@@ -75,7 +75,7 @@ Shape::Feature feature_face_by_face(const Shape& shape, const std::vector<std::u
 }
 
 // Every corner and edge of every simplex of free cells; what is wrong.
-std::string compare(const Map& map, std::size_t& with_walls, std::size_t& without) {
+std::string compare(const CombinatorialMap& map, std::size_t& with_walls, std::size_t& without) {
   for (const Cell c : map.cells()) {
     if (!map.is_free(c)) continue;
     const CellView cell = map.view(c);
@@ -114,7 +114,7 @@ TEST_P(StarSearch, FindsTheWallsThatTheSimplicesReach) {
   std::size_t with_walls = 0;
   std::size_t without = 0;
   for (std::uint64_t seed = 0; seed < std::max<std::uint64_t>(2, scaled(4, 200)); ++seed) {
-    Complex complex(seed % 2 == 0 ? oracle::lattice_scene(kind, seed) : oracle::random_scene(kind, seed, 0.5));
+    CellComplex complex(seed % 2 == 0 ? oracle::lattice_scene(kind, seed) : oracle::random_scene(kind, seed, 0.5));
     if (!complex.invalid_cells().empty()) continue;
     ASSERT_EQ(compare(complex.map(), with_walls, without), "") << "seed " << seed;
     // Marks that change: a vertex may be thought to touch a wall that it no longer does, never the other way round.
@@ -143,7 +143,7 @@ TEST(StarSearch, GoesOnWhereAVertexHasMoreCellsThanFitOnTheStack) {
     const std::uint32_t b = 1 + (i + 1) % n;
     mesh.add_cell(CellType::prism, {{0, a, b, n + 1, n + 1 + a, n + 1 + b}});
   }
-  const Map map(mesh);
+  const CombinatorialMap map(mesh);
   std::size_t with_walls = 0;
   std::size_t without = 0;
   EXPECT_EQ(compare(map, with_walls, without), "");

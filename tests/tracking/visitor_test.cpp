@@ -24,7 +24,7 @@ TEST(Visitor, SeesAChainOfNeighbours) {
     o.blocked_share = 0.1;
     if (which < 4) o.type = static_cast<CellType>(which);
     o.mixed = which == 4;
-    const Complex complex(generate_box(o));
+    const CellComplex complex(generate_box(o));
     const Locator locator(complex);
     const auto space = current_space(complex);
     Random random(static_cast<std::uint64_t>(which));
@@ -79,7 +79,7 @@ TEST(Visitor, SeesAChainOfNeighbours) {
 }
 
 TEST(Visitor, SeesNothingWhereTheSimplexIsNotLeft) {
-  const Complex complex(generate_box({}));
+  const CellComplex complex(generate_box({}));
   const Corners v = complex.corners({complex.map().cells()[0], 0});
   const Vec3 middle = (v[0] + v[1] + v[2] + v[3]) * 0.25;
   std::size_t seen = 0;

@@ -29,19 +29,19 @@ class RandomMotion {
   RandomMotion(const CheckedScene& scene, std::uint64_t seed) : scene_(scene), random_(seed, 3) {}
 
   // A new particle somewhere in a free simplex, inside or at a corner; the position is exactly in it.
-  State place() {
+  ParticleState place() {
     const auto& free = scene_.free_simplices();
     while (true) {
       const std::uint32_t s = free[random_.below(static_cast<std::uint32_t>(free.size()))];
       const Vec3 p = random_.below(4) == 0 ? corner(s) : point_in(s);
       if (!scene_.oracle().contains(s, p)) continue;
-      State state;
+      ParticleState state;
       state.put(scene_.library_simplex(s), p);
       return state;
     }
   }
 
-  Vec3 target(const State& state) {
+  Vec3 target(const ParticleState& state) {
     const auto& points = scene_.oracle().points();
     if (random_.below(8) == 0) return points[random_.below(static_cast<std::uint32_t>(points.size()))];
     const auto v = scene_.complex().corners(state.at());
@@ -83,10 +83,10 @@ struct Tally {
 std::string walk_scene(oracle::SceneKind kind, std::uint64_t seed, Tally& tally) {
   const auto scene = make_valid(kind, seed);
   if (!scene->valid()) return "the scene is invalid even without a warp";
-  tally.with_interior_points += scene->complex().interior_point_count() > 0 ? 1 : 0;
+  tally.with_interior_points += scene->complex().steiner_point_count() > 0 ? 1 : 0;
   RandomMotion motion(*scene, seed);
   ContactList contacts;
-  State state = motion.place();
+  ParticleState state = motion.place();
   for (std::uint64_t i = 0; i < steps_per_scene; ++i) {
     if (motion.place_again()) state = motion.place();
     std::string wrong = scene->check_step(state, motion.target(state), contacts);
@@ -147,7 +147,7 @@ TEST(SliverContacts, KeepsContactsBetweenWallsAtSmallAnglesInPlace) {
     const auto scene = make_valid(oracle::SceneKind::slivers, step.seed);
     ASSERT_TRUE(scene->valid()) << step.seed;
     ASSERT_TRUE(scene->oracle().contains(step.simplex, step.from)) << step.seed;
-    State state;
+    ParticleState state;
     state.put(scene->library_simplex(step.simplex), step.from);
     ContactList contacts;
     EXPECT_EQ(scene->check_step(state, step.to, contacts), "") << step.seed;

@@ -21,15 +21,16 @@ namespace dartcast::detail {
 namespace {
 
 // Four doubles. Where the instruction set has no such register, the compiler takes two of half the size.
-using Quad = double __attribute__((vector_size(32)));
+using Double4 = double __attribute__((vector_size(32)));
 // clang++ takes no notice of the alignment in an alias.
-typedef double UnalignedQuad __attribute__((vector_size(32), aligned(8), may_alias));  // NOLINT(modernize-use-using)
-using Pair = double __attribute__((vector_size(16)));
-typedef double UnalignedPair __attribute__((vector_size(16), aligned(8), may_alias));  // NOLINT(modernize-use-using)
-using Floats = float __attribute__((vector_size(16)));
-typedef float UnalignedFloats __attribute__((vector_size(16), aligned(4), may_alias));  // NOLINT(modernize-use-using)
-using Mask = long long __attribute__((vector_size(32)));
-typedef long long UnalignedMask __attribute__((vector_size(32), aligned(8), may_alias));  // NOLINT(modernize-use-using)
+typedef double UnalignedDouble4 __attribute__((vector_size(32), aligned(8), may_alias));  // NOLINT(modernize-use-using)
+using Double2 = double __attribute__((vector_size(16)));
+typedef double UnalignedDouble2 __attribute__((vector_size(16), aligned(8), may_alias));  // NOLINT(modernize-use-using)
+using Float4 = float __attribute__((vector_size(16)));
+typedef float UnalignedFloat4 __attribute__((vector_size(16), aligned(4), may_alias));  // NOLINT(modernize-use-using)
+using Mask4 = long long __attribute__((vector_size(32)));
+typedef long long UnalignedMask4
+    __attribute__((vector_size(32), aligned(8), may_alias));  // NOLINT(modernize-use-using)
 
 // Sign of u . (v x w), evaluated as in src/predicates/predicates.cpp; 0 where the filter leaves it open.
 inline int filtered_sign(const Vec3& u, const Vec3& v, const Vec3& w) {
@@ -49,30 +50,32 @@ inline Corners corners_of(const Vec3* positions, const VertexNumbers& v) {
 
 namespace portable {
 
-inline unsigned lanes_set(const Mask& m) {
-  const Mask bits = m & Mask{1, 2, 4, 8};
+inline unsigned lanes_set(const Mask4& m) {
+  const Mask4 bits = m & Mask4{1, 2, 4, 8};
   return static_cast<unsigned>((bits[0] | bits[1]) | (bits[2] | bits[3]));
 }
 
-inline Quad widened(const Floats& x) { return __builtin_convertvector(x, Quad); }
-inline Floats narrowed(const Quad& x) { return __builtin_convertvector(x, Floats); }
+inline Double4 widened(const Float4& x) { return __builtin_convertvector(x, Double4); }
+inline Float4 narrowed(const Double4& x) { return __builtin_convertvector(x, Float4); }
 // Two doubles from each of two places.
-inline Quad load_pairs(const double* a, const double* b) {
-  const Pair low = *reinterpret_cast<const UnalignedPair*>(a);
-  const Pair high = *reinterpret_cast<const UnalignedPair*>(b);
+inline Double4 load_pairs(const double* a, const double* b) {
+  const Double2 low = *reinterpret_cast<const UnalignedDouble2*>(a);
+  const Double2 high = *reinterpret_cast<const UnalignedDouble2*>(b);
   return __builtin_shufflevector(low, high, 0, 1, 2, 3);
 }
-inline Quad root(const Quad& x) { return Quad{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])}; }
+inline Double4 root(const Double4& x) {
+  return Double4{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])};
+}
 
 #define DARTCAST_TARGET
 #include "tracking/batch/batch_kernel.inl"
 #undef DARTCAST_TARGET
 
-void step(const FilteredScene& scene, const FilteredSteps& steps, Counters& counters) {
-  const std::uint64_t most_rounds = scene.complex->simplex_count();
-  if (scene.moved) return Batch<MemoKind::trail>(scene, steps, counters).run(most_rounds);
-  if (steps.memos.empty()) return Batch<MemoKind::none>(scene, steps, counters).run(most_rounds);
-  Batch<MemoKind::coordinates>(scene, steps, counters).run(most_rounds);
+void step(const BatchScene& scene, const BatchSteps& steps, Counters& counters) {
+  const std::uint64_t max_rounds = scene.complex->simplex_count();
+  if (scene.moved) return Batch<CacheKind::previous_geometry>(scene, steps, counters).run(max_rounds);
+  if (steps.caches.empty()) return Batch<CacheKind::none>(scene, steps, counters).run(max_rounds);
+  Batch<CacheKind::barycentric>(scene, steps, counters).run(max_rounds);
 }
 
 }  // namespace portable
@@ -82,26 +85,26 @@ namespace avx2 {
 
 #define DARTCAST_TARGET __attribute__((target("avx2")))
 
-DARTCAST_TARGET inline unsigned lanes_set(const Mask& m) {
+DARTCAST_TARGET inline unsigned lanes_set(const Mask4& m) {
   return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(m)));
 }
 
 // The compiler makes two halves of __builtin_convertvector.
-DARTCAST_TARGET inline Quad widened(const Floats& x) { return _mm256_cvtps_pd(x); }
-DARTCAST_TARGET inline Floats narrowed(const Quad& x) { return _mm256_cvtpd_ps(x); }
+DARTCAST_TARGET inline Double4 widened(const Float4& x) { return _mm256_cvtps_pd(x); }
+DARTCAST_TARGET inline Float4 narrowed(const Double4& x) { return _mm256_cvtpd_ps(x); }
 // The compiler moves a half from register to register.
-DARTCAST_TARGET inline Quad load_pairs(const double* a, const double* b) {
+DARTCAST_TARGET inline Double4 load_pairs(const double* a, const double* b) {
   return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(a)), _mm_loadu_pd(b), 1);
 }
-DARTCAST_TARGET inline Quad root(const Quad& x) { return _mm256_sqrt_pd(x); }
+DARTCAST_TARGET inline Double4 root(const Double4& x) { return _mm256_sqrt_pd(x); }
 
 #include "tracking/batch/batch_kernel.inl"
 
-DARTCAST_TARGET void step(const FilteredScene& scene, const FilteredSteps& steps, Counters& counters) {
-  const std::uint64_t most_rounds = scene.complex->simplex_count();
-  if (scene.moved) return Batch<MemoKind::trail>(scene, steps, counters).run(most_rounds);
-  if (steps.memos.empty()) return Batch<MemoKind::none>(scene, steps, counters).run(most_rounds);
-  Batch<MemoKind::coordinates>(scene, steps, counters).run(most_rounds);
+DARTCAST_TARGET void step(const BatchScene& scene, const BatchSteps& steps, Counters& counters) {
+  const std::uint64_t max_rounds = scene.complex->simplex_count();
+  if (scene.moved) return Batch<CacheKind::previous_geometry>(scene, steps, counters).run(max_rounds);
+  if (steps.caches.empty()) return Batch<CacheKind::none>(scene, steps, counters).run(max_rounds);
+  Batch<CacheKind::barycentric>(scene, steps, counters).run(max_rounds);
 }
 
 #undef DARTCAST_TARGET
@@ -111,23 +114,24 @@ DARTCAST_TARGET void step(const FilteredScene& scene, const FilteredSteps& steps
 
 }  // namespace
 
-Memo memo_of(MemoKind kind, std::span<const Vec3> positions, const VertexNumbers& vertices, const Vec3& p) {
-  Memo memo = unknown_memo();
-  if (kind != MemoKind::trail) return memo;
+SimplexCacheEntry cache_entry_of(CacheKind kind, std::span<const Vec3> positions, const VertexNumbers& vertices,
+                                 const Vec3& p) {
+  SimplexCacheEntry entry = unknown_entry();
+  if (kind != CacheKind::previous_geometry) return entry;
   const Corners v = corners_of(positions.data(), vertices);
   const Determinants d(v, p);
   for (unsigned i = 0; i < 4; ++i) {
     const Vec3 relative = v[i] - p;
-    memo.x[i] = static_cast<float>(relative.x);
-    memo.y[i] = static_cast<float>(relative.y);
-    memo.z[i] = static_cast<float>(relative.z);
+    entry.x[i] = static_cast<float>(relative.x);
+    entry.y[i] = static_cast<float>(relative.y);
+    entry.z[i] = static_cast<float>(relative.z);
   }
-  if (d.proves_coordinates()) memo.w = d.value;
-  return memo;
+  if (d.proves_coordinates()) entry.w = d.value;
+  return entry;
 }
 
-void step_filtered(const FilteredScene& scene, const FilteredSteps& steps, Counters& counters,
-                   [[maybe_unused]] InstructionSet set) {
+void step_batch(const BatchScene& scene, const BatchSteps& steps, Counters& counters,
+                [[maybe_unused]] InstructionSet set) {
 #if defined(__x86_64__)
   if (set == InstructionSet::avx2) return avx2::step(scene, steps, counters);
 #endif

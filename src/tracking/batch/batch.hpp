@@ -23,51 +23,52 @@
 namespace dartcast::detail {
 
 /// Particles in one call, at most.
-inline constexpr std::size_t filtered_batch = 1024;
+inline constexpr std::size_t max_batch = 1024;
 
-struct FilteredScene {
-  const Complex* complex = nullptr;
-  bool moved = false;        ///< as for Stepper
-  bool memos_match = false;  ///< they are of the states; trails: before the move
-  double tolerance = 0.0;    ///< as in StepOptions
-  bool walls_match = true;   ///< no wall is new since the marks were made
+struct BatchScene {
+  const CellComplex* complex = nullptr;
+  bool moved = false;         ///< as for Stepper
+  bool caches_match = false;  ///< they are of the states; trails: before the move
+  double tolerance = 0.0;     ///< as in StepOptions
+  bool walls_match = true;    ///< no wall is new since the marks were made
 };
 
 /// The numbers of the vertices of the simplex that a particle is in: kept beside its state, so that a step that ends in
 /// the same simplex need not look them up.
 using VertexNumbers = std::array<std::uint32_t, 4>;
 
-inline VertexNumbers vertex_numbers(const Complex& complex, SimplexId s) {
+inline VertexNumbers vertex_numbers(const CellComplex& complex, SimplexId s) {
   const auto v = complex.vertices(s);
   return {v[0].value, v[1].value, v[2].value, v[3].value};
 }
 
 /// What is kept of a particle at p: a trail; coordinates are left to the next step. `positions`: of all vertices.
-Memo memo_of(MemoKind kind, std::span<const Vec3> positions, const VertexNumbers& vertices, const Vec3& p);
+SimplexCacheEntry cache_entry_of(CacheKind kind, std::span<const Vec3> positions, const VertexNumbers& vertices,
+                                 const Vec3& p);
 
 /// What was done of a step: all, nothing, or, where it has come to its first wall, the number of its Begun; its state
 /// is as it was, then.
-using Taken = std::uint16_t;
-inline constexpr Taken taken_all = 0xffff;
-inline constexpr Taken taken_nothing = 0xfffe;
+using StepStatus = std::uint16_t;
+inline constexpr StepStatus step_complete = 0xffff;
+inline constexpr StepStatus step_untouched = 0xfffe;
 
 /// One entry per particle in each.
-struct FilteredSteps {
-  std::span<State> states;
+struct BatchSteps {
+  std::span<ParticleState> states;
   std::span<VertexNumbers> vertices;  ///< of each state
-  MemoSpan memos;  ///< moved: trails; else coordinates, or empty: none are kept. In where they match; out for each step
-                   ///< taken
+  SimplexCacheSpan caches;  ///< moved: trails; else coordinates, or empty: none are kept. In where they match; out for
+                            ///< each step taken
   std::span<const Vec3> targets;
-  std::span<Taken> taken;          ///< out
-  std::vector<Begun>& begun;       ///< out; empty before
-  std::vector<Landing>& landings;  ///< of these; out; empty before
+  std::span<StepStatus> taken;        ///< out
+  std::vector<PartialStep>& partial;  ///< out; empty before
+  std::vector<WallImpact>& impacts;   ///< of these; out; empty before
 };
 
 /// Takes the steps that it can, and counts them. The same bits with every instruction set. Preconditions: as for
 /// Stepper::step(). Cost: about 20 ns a step; memory is asked for ahead of time, so that a large scene costs little
 /// more than a small one.
-void step_filtered(const FilteredScene& scene, const FilteredSteps& steps, Counters& counters,
-                   InstructionSet set = best_instruction_set());
+void step_batch(const BatchScene& scene, const BatchSteps& steps, Counters& counters,
+                InstructionSet set = best_instruction_set());
 
 /// Whether all points are in the exact range, and flushed() (dartcast/predicates.hpp).
 bool all_as_decided(std::span<const Vec3> points);

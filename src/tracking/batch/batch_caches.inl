@@ -1,53 +1,55 @@
 // What is kept of simplices (tracking/batch/simplex_cache.hpp), of four particles in vectors. Part of
 // tracking/batch/batch_kernel.inl: no include guard, no includes.
 
-DARTCAST_TARGET inline Quad load_floats(const float* in) {
-  const Floats four = *reinterpret_cast<const UnalignedFloats*>(in);
+DARTCAST_TARGET inline Double4 load_floats(const float* in) {
+  const Float4 four = *reinterpret_cast<const UnalignedFloat4*>(in);
   return widened(four);
 }
-DARTCAST_TARGET inline void store_floats(const Quad& four, float* out) {
-  *reinterpret_cast<UnalignedFloats*>(out) = narrowed(four);
+DARTCAST_TARGET inline void store_floats(const Double4& four, float* out) {
+  *reinterpret_cast<UnalignedFloat4*>(out) = narrowed(four);
 }
-DARTCAST_TARGET inline Quad load_doubles(const double* in) { return *reinterpret_cast<const UnalignedQuad*>(in); }
-DARTCAST_TARGET inline void store_doubles(const Quad& four, double* out) {
-  *reinterpret_cast<UnalignedQuad*>(out) = four;
+DARTCAST_TARGET inline Double4 load_doubles(const double* in) { return *reinterpret_cast<const UnalignedDouble4*>(in); }
+DARTCAST_TARGET inline void store_doubles(const Double4& four, double* out) {
+  *reinterpret_cast<UnalignedDouble4*>(out) = four;
 }
 // Of corner i.
-DARTCAST_TARGET inline Points load_vectors(const MemosOfFour& memos, unsigned i) {
-  return {load_floats(memos.x[i].data()), load_floats(memos.y[i].data()), load_floats(memos.z[i].data())};
+DARTCAST_TARGET inline Vec3x4 load_vectors(const SimplexCache4& caches, unsigned i) {
+  return {load_floats(caches.x[i].data()), load_floats(caches.y[i].data()), load_floats(caches.z[i].data())};
 }
-DARTCAST_TARGET inline void store_vectors(const Points& four, MemosOfFour& memos, unsigned i) {
-  store_floats(four.x, memos.x[i].data());
-  store_floats(four.y, memos.y[i].data());
-  store_floats(four.z, memos.z[i].data());
+DARTCAST_TARGET inline void store_vectors(const Vec3x4& four, SimplexCache4& caches, unsigned i) {
+  store_floats(four.x, caches.x[i].data());
+  store_floats(four.y, caches.y[i].data());
+  store_floats(four.z, caches.z[i].data());
 }
 
 // The trails of the particles that d's corners are relative to.
-DARTCAST_TARGET inline void leave_trails(const FilteredDeterminants& d, MemosOfFour& memos) {
-  const Mask known = d.proves_coordinates();
+DARTCAST_TARGET inline void store_previous_geometry(const BatchDeterminants& d, SimplexCache4& caches) {
+  const Mask4 known = d.proves_coordinates();
   for (unsigned i = 0; i < 4; ++i) {
-    store_vectors(d.relative[i], memos, i);
-    store_doubles(known ? d.value[i] : splat(unknown), memos.w[i].data());
+    store_vectors(d.relative[i], caches, i);
+    store_doubles(known ? d.value[i] : splat(unknown), caches.w[i].data());
   }
 }
 
 // Whether a number has no more than 29 bits: times a float it then makes a double. x + 2^24 x is rounded to a multiple
 // of the last place of 2^24 x, the 29th place of x.
-DARTCAST_TARGET inline Mask has_few_bits(const Quad& x) {
-  const Quad far = x * splat(0x1p+24);
+DARTCAST_TARGET inline Mask4 has_short_mantissa(const Double4& x) {
+  const Double4 far = x * splat(0x1p+24);
   return (far + x) - far == x;
 }
 
 // Whether s, the rounded sum of a and b, is exact: the difference to the larger one is.
-DARTCAST_TARGET inline Mask is_sum(const Quad& s, const Quad& a, const Quad& b) { return (s - a == b) & (s - b == a); }
+DARTCAST_TARGET inline Mask4 is_sum(const Double4& s, const Double4& a, const Double4& b) {
+  return (s - a == b) & (s - b == a);
+}
 
 // Whether g.q + w comes out as zero though nothing is rounded: g are floats, q has few bits.
-DARTCAST_TARGET inline Mask is_zero(const Points& g, const Quad& w, const Points& q) {
-  const Quad x = g.x * q.x;
-  const Quad y = g.y * q.y;
-  const Quad z = g.z * q.z;
-  const Quad xy = x + y;
-  const Quad xyz = xy + z;
+DARTCAST_TARGET inline Mask4 is_zero(const Vec3x4& g, const Double4& w, const Vec3x4& q) {
+  const Double4 x = g.x * q.x;
+  const Double4 y = g.y * q.y;
+  const Double4 z = g.z * q.z;
+  const Double4 xy = x + y;
+  const Double4 xyz = xy + z;
   return (xyz + w == 0.0) & is_sum(xy, x, y) & is_sum(xyz, xy, z);
 }
 
@@ -60,66 +62,69 @@ DARTCAST_TARGET inline Mask is_zero(const Points& g, const Quad& w, const Points
 // place that has the right gradient and is zero at a corner of the facet. Differences are below 2^16 units: where p is
 // within 2^12 of the largest one, corners are below 2^29 units, and have few bits.
 template <bool ask_exact>
-DARTCAST_TARGET inline unsigned leave_coordinates(const FilteredDeterminants& d, const Points& p, MemosOfFour& memos) {
-  const Quad volume = d.volume6();
-  const Quad share = 1.0 / volume;
-  const Quad extent = largest(d.extent);
-  const Points m = magnitude(p);
-  const Quad reach = largest(larger(d.extent, m * splat(1.0 / extents_from_origin)));
-  Mask proved =
-      d.proves_coordinates() & (volume >= least_volume * (extent * extent * extent)) & (extent <= farthest_corner);
-  Mask exact{};
+DARTCAST_TARGET inline unsigned store_barycentric(const BatchDeterminants& d, const Vec3x4& p, SimplexCache4& caches) {
+  const Double4 volume = d.volume6();
+  const Double4 share = 1.0 / volume;
+  const Double4 extent = largest(d.extent);
+  const Vec3x4 m = magnitude(p);
+  const Double4 reach = largest(larger(d.extent, m * splat(1.0 / extents_from_origin)));
+  Mask4 proved =
+      d.proves_coordinates() & (volume >= min_volume * (extent * extent * extent)) & (extent <= farthest_corner);
+  Mask4 exact{};
   if constexpr (ask_exact) {
     constexpr double close = 0x1p+12;
-    exact =
-        has_few_bits(volume) & (m.x <= close * d.extent.x) & (m.y <= close * d.extent.y) & (m.z <= close * d.extent.z);
+    exact = has_short_mantissa(volume) & (m.x <= close * d.extent.x) & (m.y <= close * d.extent.y) &
+            (m.z <= close * d.extent.z);
   }
-  Quad at_origin[4];
+  Double4 at_origin[4];
   for (unsigned i = 0; i < 4; ++i) {
-    const Points& a = d.relative[i ^ 1U];
-    const Points normal = cross(d.relative[3 - i] - a, d.relative[i ^ 2U] - a);
-    store_vectors(normal * share, memos, i);
-    const Points g = load_vectors(memos, i);
+    const Vec3x4& a = d.relative[i ^ 1U];
+    const Vec3x4 normal = cross(d.relative[3 - i] - a, d.relative[i ^ 2U] - a);
+    store_vectors(normal * share, caches, i);
+    const Vec3x4 g = load_vectors(caches, i);
     proved &= (magnitude(g.x) + magnitude(g.y) + magnitude(g.z)) * reach <= steepest_gradient;
     at_origin[i] = d.value[i] * share - dot(g, p);
     if constexpr (ask_exact)
       exact &= (g.x * volume == normal.x) & (g.y * volume == normal.y) & (g.z * volume == normal.z) &
                is_zero(g, at_origin[i], p + a);
   }
-  for (unsigned i = 0; i < 4; ++i) store_doubles(proved ? at_origin[i] : splat(proves_nothing), memos.w[i].data());
+  for (unsigned i = 0; i < 4; ++i) store_doubles(proved ? at_origin[i] : splat(proves_nothing), caches.w[i].data());
   return ask_exact ? lanes_set(proved & exact) : 0;
 }
 
 // Coordinate i of q.
-DARTCAST_TARGET inline Quad coordinate_of(const MemosOfFour& memos, unsigned i, const Points& q) {
-  return dot(load_vectors(memos, i), q) + load_doubles(memos.w[i].data());
+DARTCAST_TARGET inline Double4 coordinate_of(const SimplexCache4& caches, unsigned i, const Vec3x4& q) {
+  return dot(load_vectors(caches, i), q) + load_doubles(caches.w[i].data());
 }
 
 // Bits of the facets that q is proved to lie on, where coordinates are exact.
-DARTCAST_TARGET inline Mask proved_zeros(const MemosOfFour& memos, const Points& q) {
-  Mask zero[4];
-  for (unsigned i = 0; i < 4; ++i) zero[i] = is_zero(load_vectors(memos, i), load_doubles(memos.w[i].data()), q);
-  return has_few_bits(q.x) & has_few_bits(q.y) & has_few_bits(q.z) & facet_bits(zero[0], zero[1], zero[2], zero[3]);
+DARTCAST_TARGET inline Mask4 proved_zeros(const SimplexCache4& caches, const Vec3x4& q) {
+  Mask4 zero[4];
+  for (unsigned i = 0; i < 4; ++i) zero[i] = is_zero(load_vectors(caches, i), load_doubles(caches.w[i].data()), q);
+  return has_short_mantissa(q.x) & has_short_mantissa(q.y) & has_short_mantissa(q.z) &
+         facet_bits(zero[0], zero[1], zero[2], zero[3]);
 }
 
-DARTCAST_TARGET inline bool has_coordinates(const MemosOfFour* memos, std::uint32_t i) {
-  return !std::isnan(memos[i / 4].w[0][i % 4]);
+DARTCAST_TARGET inline bool has_coordinates(const SimplexCache4* caches, std::uint32_t i) {
+  return !std::isnan(caches[i / 4].w[0][i % 4]);
 }
-DARTCAST_TARGET inline void forget(MemosOfFour* memos, Mark* marks, std::uint32_t i) {
-  for (auto& of_corner : memos[i / 4].w) of_corner[i % 4] = unknown;
+DARTCAST_TARGET inline void forget(SimplexCache4* caches, CacheFlags* marks, std::uint32_t i) {
+  for (auto& of_corner : caches[i / 4].w) of_corner[i % 4] = unknown;
   marks[i] = 0;
 }
 
 // As flushed() in tracking/representable_point.hpp.
-DARTCAST_TARGET inline Quad without_tiny(const Quad& x) { return magnitude(x) < smallest_magnitude ? Quad{} : x; }
+DARTCAST_TARGET inline Double4 without_tiny(const Double4& x) {
+  return magnitude(x) < smallest_magnitude ? Double4{} : x;
+}
 
 // The points of tracking/carry.hpp that have, in the moved simplices, the coordinates that w are in proportion to.
-DARTCAST_TARGET inline Points ride_along(const Quad (&w)[4], const Tetrahedra& now) {
-  Quad share[4];
-  for (unsigned i = 0; i < 4; ++i) share[i] = larger(w[i], Quad{});
-  const Quad sum = ((share[0] + share[1]) + share[2]) + share[3];
-  for (Quad& s : share) s = s / sum;
-  const Points x =
+DARTCAST_TARGET inline Vec3x4 carry_along(const Double4 (&w)[4], const Corners4& now) {
+  Double4 share[4];
+  for (unsigned i = 0; i < 4; ++i) share[i] = larger(w[i], Double4{});
+  const Double4 sum = ((share[0] + share[1]) + share[2]) + share[3];
+  for (Double4& s : share) s = s / sum;
+  const Vec3x4 x =
       (now.corner[0] * share[0] + now.corner[1] * share[1]) + (now.corner[2] * share[2] + now.corner[3] * share[3]);
   return {without_tiny(x.x), without_tiny(x.y), without_tiny(x.z)};
 }
@@ -132,7 +137,7 @@ DARTCAST_TARGET inline Weights shares_of(Weights w) {
   return w;
 }
 
-// Whether what ride_along() comes to surely lies strictly inside of the moved simplices, for targets q that were not
+// Whether what carry_along() comes to surely lies strictly inside of the moved simplices, for targets q that were not
 // proved to; d: of the targets.
 //
 // Let E be the largest |r_i| of the corners relative to q, V the volume, M the largest |c_i| of the corners. The place
@@ -141,17 +146,17 @@ DARTCAST_TARGET inline Weights shares_of(Weights w) {
 // applies, in the corners, too.) The cross products of a facet's edges have components of 8 E^2 at most. So the place's
 // determinants are s_i V, off by 24 E^2 9uM < 2^-33 E^3, as M <= (2^12 + 1) E; and s_i V >= 2^-32 (1 - 2^-25) E^3. It
 // is not q: one of q's is below 2^-46 E^3.
-DARTCAST_TARGET inline Mask surely_rides_inside(const MemosOfFour& trails, const FilteredDeterminants& d,
-                                                const Points& q) {
-  constexpr double least_share = 0x1p-12;
+DARTCAST_TARGET inline Mask4 surely_carried_inside(const SimplexCache4& previous_caches, const BatchDeterminants& d,
+                                                   const Vec3x4& q) {
+  constexpr double min_share = 0x1p-12;
   constexpr double farthest = 0x1p+12;
-  const Quad w[4] = {load_doubles(trails.w[0].data()), load_doubles(trails.w[1].data()),
-                     load_doubles(trails.w[2].data()), load_doubles(trails.w[3].data())};
-  const Quad sum = (w[0] + w[1]) + (w[2] + w[3]);
-  const Quad extent = largest(d.extent);
-  return (d.volume6() > d.bound) & (d.volume6() >= least_volume * (extent * extent * extent)) &
+  const Double4 w[4] = {load_doubles(previous_caches.w[0].data()), load_doubles(previous_caches.w[1].data()),
+                        load_doubles(previous_caches.w[2].data()), load_doubles(previous_caches.w[3].data())};
+  const Double4 sum = (w[0] + w[1]) + (w[2] + w[3]);
+  const Double4 extent = largest(d.extent);
+  return (d.volume6() > d.bound) & (d.volume6() >= min_volume * (extent * extent * extent)) &
          (largest(magnitude(q)) <= farthest * extent) &
-         (smaller(smaller(w[0], w[1]), smaller(w[2], w[3])) >= least_share * sum);
+         (smaller(smaller(w[0], w[1]), smaller(w[2], w[3])) >= min_share * sum);
 }
 
 // Whether steps relative to moving vertices surely need no splitting (tracking/step.hpp): |A| |r| <= 2 tolerance edge.
@@ -167,58 +172,59 @@ DARTCAST_TARGET inline Mask surely_rides_inside(const MemosOfFour& trails, const
 class OnePart {
  public:
   // `after`: the moved corners relative to the targets q; p: where the particles were.
-  DARTCAST_TARGET OnePart(const MemosOfFour& trails, const Points (&after)[4], const Points& p, const Points& q,
-                          double tolerance)
-      : before_{load_vectors(trails, 0), load_vectors(trails, 1), load_vectors(trails, 2), load_vectors(trails, 3)} {
-    const Points d0 = after[0] - before_[0];
+  DARTCAST_TARGET OnePart(const SimplexCache4& previous_caches, const Vec3x4 (&after)[4], const Vec3x4& p,
+                          const Vec3x4& q, double tolerance)
+      : before_{load_vectors(previous_caches, 0), load_vectors(previous_caches, 1), load_vectors(previous_caches, 2),
+                load_vectors(previous_caches, 3)} {
+    const Vec3x4 d0 = after[0] - before_[0];
     l2_ = square(before_[0]);
-    Quad farthest = square(d0);
-    Quad u2{};
+    Double4 farthest = square(d0);
+    Double4 u2{};
     for (unsigned i = 1; i < 4; ++i) {
-      const Points d = after[i] - before_[i];
+      const Vec3x4 d = after[i] - before_[i];
       l2_ = larger(l2_, square(before_[i]));
       farthest = larger(farthest, square(d));
       u2 += square(d - d0);
     }
-    const Quad r2 = 0x1.1p+0 * farthest + 0x1p-42 * l2_;
+    const Double4 r2 = 0x1.1p+0 * farthest + 0x1p-42 * l2_;
     u2_r2_ = (0x1.1p+0 * u2 + 0x1p-37 * l2_) * r2;
-    const Points own = q - p;
-    const Quad far = 0x1p+56 * l2_;
+    const Vec3x4 own = q - p;
+    const Double4 far = 0x1p+56 * l2_;
     in_range_ =
         (l2_ > 0x1p-140) & (l2_ < 0x1p+140) & (farthest < far) & (square(own) < far) & (square(q) < 0x1p+44 * l2_);
     // Not a number where the trail is unknown: then nothing is less.
-    volume_ = (load_doubles(trails.w[0].data()) + load_doubles(trails.w[1].data())) +
-              (load_doubles(trails.w[2].data()) + load_doubles(trails.w[3].data()));
+    volume_ = (load_doubles(previous_caches.w[0].data()) + load_doubles(previous_caches.w[1].data())) +
+              (load_doubles(previous_caches.w[2].data()) + load_doubles(previous_caches.w[3].data()));
     limit_ = 1.98 * tolerance * volume_;
   }
 
   // By L alone: |e_i| <= 2 L, sum of |n_i|^2 <= 48 L^4, edge >= V / (4 L^2).
-  [[nodiscard]] DARTCAST_TARGET Mask by_size() const {
-    const Quad limit = limit_ * volume_;
-    const Quad l4 = l2_ * l2_;
+  [[nodiscard]] DARTCAST_TARGET Mask4 by_size() const {
+    const Double4 limit = limit_ * volume_;
+    const Double4 l4 = l2_ * l2_;
     constexpr double rounding = 1.01;
     return in_range_ & (u2_r2_ * (rounding * 48.0 * 16.0) * (l4 * l4) <= limit * limit);
   }
 
   // By the simplex's own faces and edges.
-  [[nodiscard]] DARTCAST_TARGET Mask by_shape() const {
-    const Points e1 = before_[1] - before_[0];
-    const Points e2 = before_[2] - before_[0];
-    const Points e3 = before_[3] - before_[0];
-    const Quad faces = square(cross(e1, e2)) + square(cross(e2, e3)) + square(cross(e3, e1));
-    const Quad at_first = smaller(smaller(square(e1), square(e2)), square(e3));
-    const Quad others = smaller(smaller(square(before_[1] - before_[2]), square(before_[2] - before_[3])),
-                                square(before_[3] - before_[1]));
-    const Quad n2 = 0x1.1p+0 * faces + 0x1p-32 * l2_ * l2_;
-    const Quad edge2 = 0.94 * (smaller(at_first, others) - 0x1p-40 * l2_);
+  [[nodiscard]] DARTCAST_TARGET Mask4 by_shape() const {
+    const Vec3x4 e1 = before_[1] - before_[0];
+    const Vec3x4 e2 = before_[2] - before_[0];
+    const Vec3x4 e3 = before_[3] - before_[0];
+    const Double4 faces = square(cross(e1, e2)) + square(cross(e2, e3)) + square(cross(e3, e1));
+    const Double4 at_first = smaller(smaller(square(e1), square(e2)), square(e3));
+    const Double4 others = smaller(smaller(square(before_[1] - before_[2]), square(before_[2] - before_[3])),
+                                   square(before_[3] - before_[1]));
+    const Double4 n2 = 0x1.1p+0 * faces + 0x1p-32 * l2_ * l2_;
+    const Double4 edge2 = 0.94 * (smaller(at_first, others) - 0x1p-40 * l2_);
     return in_range_ & (u2_r2_ * n2 <= limit_ * limit_ * edge2);
   }
 
  private:
-  Points before_[4];
-  Quad l2_;
-  Quad u2_r2_;
-  Quad volume_;
-  Quad limit_;
-  Mask in_range_;
+  Vec3x4 before_[4];
+  Double4 l2_;
+  Double4 u2_r2_;
+  Double4 volume_;
+  Double4 limit_;
+  Mask4 in_range_;
 };

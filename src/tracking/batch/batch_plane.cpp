@@ -12,13 +12,13 @@ namespace dartcast::detail {
 namespace {
 
 // Without a z to reckon with.
-struct Flat {
+struct Vec2x4 {
   double x, y;
 
-  Flat operator-(const Flat& b) const { return {x - b.x, y - b.y}; }
+  Vec2x4 operator-(const Vec2x4& b) const { return {x - b.x, y - b.y}; }
   [[nodiscard]] double square() const { return x * x + y * y; }
 };
-Flat from_to(const Vec3& a, const Vec3& b) { return {b.x - a.x, b.y - a.y}; }
+Vec2x4 from_to(const Vec3& a, const Vec3& b) { return {b.x - a.x, b.y - a.y}; }
 
 // What a step among moving vertices reads of the triangle that it begins in.
 struct PlaneMove {
@@ -38,20 +38,20 @@ struct PlaneMove {
 // + 17 b^2. The last line keeps products from over- and underflow.
 bool surely_one_part(const PlaneMove& move, double tolerance) {
   const auto& [v, w, was, will, p, q] = move;
-  const Flat own = from_to(p, q);
-  const Flat d0 = from_to(v[0], w[0]);
-  const Flat d1 = from_to(v[1], w[1]);
-  const Flat d2 = from_to(v[2], w[2]);
+  const Vec2x4 own = from_to(p, q);
+  const Vec2x4 d0 = from_to(v[0], w[0]);
+  const Vec2x4 d1 = from_to(v[1], w[1]);
+  const Vec2x4 d2 = from_to(v[2], w[2]);
   const double m = 0x1p-22 * (was.extent.x + was.extent.y + will.extent.x + will.extent.y) +
                    0x1p-48 * (std::abs(q.x) + std::abs(q.y) + std::abs(own.x) + std::abs(own.y));
   const double farthest = std::max(std::max((d0 - own).square(), (d1 - own).square()), (d2 - own).square());
   const double r2 = 0x1.1p+0 * farthest + 17.0 * m * m;
-  const Flat e0 = from_to(v[0], v[1]);
-  const Flat e1 = from_to(v[0], v[2]);
-  const Flat u0 = d1 - d0;
-  const Flat u1 = d2 - d0;
-  const Flat ax = {e1.y * u0.x - e0.y * u1.x, e0.x * u1.x - e1.x * u0.x};
-  const Flat ay = {e1.y * u0.y - e0.y * u1.y, e0.x * u1.y - e1.x * u0.y};
+  const Vec2x4 e0 = from_to(v[0], v[1]);
+  const Vec2x4 e1 = from_to(v[0], v[2]);
+  const Vec2x4 u0 = d1 - d0;
+  const Vec2x4 u1 = d2 - d0;
+  const Vec2x4 ax = {e1.y * u0.x - e0.y * u1.x, e0.x * u1.x - e1.x * u0.x};
+  const Vec2x4 ay = {e1.y * u0.y - e0.y * u1.y, e0.x * u1.y - e1.x * u0.y};
   const double volume = e0.x * e1.y - e0.y * e1.x;
   const double limit = 1.98 * tolerance * volume;
   const double edge2 = std::min(std::min(e0.square(), e1.square()), from_to(v[1], v[2]).square());
@@ -61,7 +61,7 @@ bool surely_one_part(const PlaneMove& move, double tolerance) {
 }
 
 // A triangle that a walk has come to. Without initializers: a batch has room for many, and uses few.
-struct PlaneVisit {
+struct PlaneWalkCursor {
   std::uint32_t particle;
   std::uint32_t cell;   // its value
   std::uint16_t index;  // of the simplex, or of the face that was entered through
@@ -74,7 +74,7 @@ struct PlaneVisit {
 // Triangles are taken block by block, in passes, as in tracking/batch/batch_kernel.inl.
 class PlaneBatch {
  public:
-  PlaneBatch(const FilteredScene& scene, const FilteredSteps& steps, Counters& counters)
+  PlaneBatch(const BatchScene& scene, const BatchSteps& steps, Counters& counters)
       : scene_(scene),
         space_(current_space<3>(*scene.complex)),
         before_(scene.moved ? scene.complex->previous_positions().data() : nullptr),
@@ -83,7 +83,7 @@ class PlaneBatch {
         counters_(counters) {}
 
   void run() {
-    std::fill_n(steps_.taken.begin(), size_, taken_all);
+    std::fill_n(steps_.taken.begin(), size_, step_complete);
     std::size_t count = before_ == nullptr ? begin<false>() : begin<true>();
     for (std::uint64_t round = 0; count > 0; ++round) {
       if (round > space_.simplex_count) return leave_all(count);
@@ -100,11 +100,11 @@ class PlaneBatch {
   template <bool moved>
   std::size_t begin() {
     std::size_t count = 0;
-    for (std::uint32_t i = 0; i < std::min(size_, block); ++i) ask_for<moved>(i);
+    for (std::uint32_t i = 0; i < std::min(size_, block); ++i) prefetch<moved>(i);
     for (std::uint32_t i = 0; i < size_; ++i) {
-      if (i + block < size_) ask_for<moved>(i + block);
+      if (i + block < size_) prefetch<moved>(i + block);
       if (!begins<moved>(i)) continue;
-      const State& s = steps_.states[i];
+      const ParticleState& s = steps_.states[i];
       visits_[count++] = {i, s.cell.value, s.simplex, all_facets, false, 0, 0};
       __builtin_prefetch(space_.map->record(s.cell));
     }
@@ -114,7 +114,7 @@ class PlaneBatch {
   // Whether the step goes on from its first triangle; it has ended, or is left, else.
   template <bool moved>
   bool begins(std::uint32_t i) {
-    State& s = steps_.states[i];
+    ParticleState& s = steps_.states[i];
     const Vec3& q = steps_.targets[i];
     const PlaneCorners now = corners(space_.positions.at, i);
     const Determinants d(now, q);
@@ -139,9 +139,9 @@ class PlaneBatch {
     const Vec3& p = steps_.states[i].position;
     const Determinants d(now, p);
     left_behind_[i] = std::any_of(d.value.begin(), d.value.end(), [&](double v) { return v < -d.bound; });
-    const Vec3 ridden = flushed(combine(now, barycentric(old, p)));
-    if (ridden == steps_.targets[i] || !Determinants(now, ridden).all_proved_positive()) return leave(i);
-    ridden_[i] = {ridden.x, ridden.y, ridden.z};
+    const Vec3 carried = flushed(combine(now, barycentric(old, p)));
+    if (carried == steps_.targets[i] || !Determinants(now, carried).all_proved_positive()) return leave(i);
+    carried_[i] = {carried.x, carried.y, carried.z};
     return true;
   }
 
@@ -152,97 +152,97 @@ class PlaneBatch {
       const std::size_t n = std::min<std::size_t>(block, count - first);
       for (std::size_t k = 0; k < n; ++k) enter(visits_[first + k]);
       for (std::size_t k = 0; k < n; ++k) {
-        PlaneVisit& visit = visits_[next] = visits_[first + k];
-        next += leave_triangle(visit) ? 1 : 0;
+        PlaneWalkCursor& cursor = visits_[next] = visits_[first + k];
+        next += leave_triangle(cursor) ? 1 : 0;
       }
     }
     return next;
   }
 
   // Finds the triangle behind the face that was entered through, and asks for its corners.
-  void enter(PlaneVisit& visit) const {
-    const CellView cell = space_.map->view(Cell(visit.cell));
-    if (visit.through_face) {
-      const Across at = cell.shape().entry(visit.index, 0);
-      visit.index = at.index;
-      visit.asked = static_cast<std::uint8_t>(all_facets & ~(1U << at.place));
+  void enter(PlaneWalkCursor& cursor) const {
+    const CellView cell = space_.map->view(Cell(cursor.cell));
+    if (cursor.through_face) {
+      const Across at = cell.shape().entry(cursor.index, 0);
+      cursor.index = at.index;
+      cursor.asked = static_cast<std::uint8_t>(all_facets & ~(1U << at.place));
     }
-    const auto& local = cell.shape().simplices()[visit.index].vertex;
+    const auto& local = cell.shape().simplices()[cursor.index].vertex;
     for (unsigned i = 0; i < 3; ++i) __builtin_prefetch(space_.positions.at + cell.vertex(local[i]).value);
   }
 
   // As walk_to_wall() does in one triangle. False where the walk has ended, or is left.
-  bool leave_triangle(PlaneVisit& visit) {
-    const Vec3& q = steps_.targets[visit.particle];
-    const CellView cell = space_.map->view(Cell(visit.cell));
-    const ImplicitSimplex& s = cell.shape().simplices()[visit.index];
+  bool leave_triangle(PlaneWalkCursor& cursor) {
+    const Vec3& q = steps_.targets[cursor.particle];
+    const CellView cell = space_.map->view(Cell(cursor.cell));
+    const ImplicitSimplex& s = cell.shape().simplices()[cursor.index];
     const PlaneCorners v = space_.corners(cell, s);
     const Determinants d(v, q);
-    if (!d.proves_positive() && volume_sign(v) != Sign::positive) return leave(visit.particle);
-    TestCounts counts{visit.asked == all_facets ? 3U : 2U, 0};
-    const DeterminantSigns signs = signs_of(d, v, q, visit.asked, counts.exact);
+    if (!d.proves_positive() && volume_sign(v) != Sign::positive) return leave(cursor.particle);
+    TestCounts counts{cursor.asked == all_facets ? 3U : 2U, 0};
+    const DeterminantSigns signs = signs_of(d, v, q, cursor.asked, counts.exact);
     unsigned facet = 0;
-    if (signs.negative != 0) facet = exit_by(visit, v, signs.negative, counts);
-    visit.tests += static_cast<std::uint32_t>(counts.tests);
-    visit.exact += static_cast<std::uint32_t>(counts.exact);
-    return signs.negative == 0 ? arrive(visit, signs.zero) : pass_on(visit, cell, s.across[facet], facet);
+    if (signs.negative != 0) facet = exit_by(cursor, v, signs.negative, counts);
+    cursor.tests += static_cast<std::uint32_t>(counts.tests);
+    cursor.exact += static_cast<std::uint32_t>(counts.exact);
+    return signs.negative == 0 ? arrive(cursor, signs.zero) : pass_on(cursor, cell, s.across[facet], facet);
   }
 
-  unsigned exit_by(const PlaneVisit& visit, const PlaneCorners& v, unsigned behind, TestCounts& counts) const {
+  unsigned exit_by(const PlaneWalkCursor& cursor, const PlaneCorners& v, unsigned behind, TestCounts& counts) const {
     if ((behind & (behind - 1)) == 0) return static_cast<unsigned>(std::countr_zero(behind));
-    const Vec3 p = start_of(visit.particle);
-    const Vec3& q = steps_.targets[visit.particle];
-    Ties<Stored, 3> ties(space_, steps_.states[visit.particle].at(), p, q);
+    const Vec3 p = start_of(cursor.particle);
+    const Vec3& q = steps_.targets[cursor.particle];
+    Ties<Stored, 3> ties(space_, steps_.states[cursor.particle].at(), p, q);
     return exit_facet(v, behind, p, q, ties, counts);
   }
 
-  bool pass_on(PlaneVisit& visit, const CellView& cell, Across across, unsigned facet) {
-    visit.through_face = across.outer();
+  bool pass_on(PlaneWalkCursor& cursor, const CellView& cell, Across across, unsigned facet) {
+    cursor.through_face = across.outer();
     if (!across.outer()) {
-      visit.index = across.index;
-      visit.asked = static_cast<std::uint8_t>(all_facets & ~(1U << across.place));
+      cursor.index = across.index;
+      cursor.asked = static_cast<std::uint8_t>(all_facets & ~(1U << across.place));
       return true;
     }
     const std::uint16_t face = across.face();
     if (cell.is_wall(face)) {
       Walk walk;
       walk.end = WalkEnd::wall;
-      walk.simplex = walk.wall_simplex = {Cell(visit.cell), visit.index};
+      walk.simplex = walk.wall_simplex = {Cell(cursor.cell), cursor.index};
       walk.wall_facet = static_cast<std::uint8_t>(facet);
-      return hand_over(visit, walk);
+      return hand_over(cursor, walk);
     }
-    visit.cell = cell.neighbour(face).value;
-    visit.index = cell.neighbour_face(face);
-    __builtin_prefetch(space_.map->record(Cell(visit.cell)));
+    cursor.cell = cell.neighbour(face).value;
+    cursor.index = cell.neighbour_face(face);
+    __builtin_prefetch(space_.map->record(Cell(cursor.cell)));
     return true;
   }
 
-  bool arrive(const PlaneVisit& visit, unsigned zeros) {
+  bool arrive(const PlaneWalkCursor& cursor, unsigned zeros) {
     Walk walk;
-    walk.simplex = {Cell(visit.cell), visit.index};
+    walk.simplex = {Cell(cursor.cell), cursor.index};
     walk.zeros = static_cast<std::uint8_t>(zeros);
     if (zeros != 0) find_wall_at_end<3>(*space_.map, walk);
-    if (walk.end == WalkEnd::wall) return hand_over(visit, walk);
-    const std::uint32_t i = visit.particle;
-    State& s = steps_.states[i];
+    if (walk.end == WalkEnd::wall) return hand_over(cursor, walk);
+    const std::uint32_t i = cursor.particle;
+    ParticleState& s = steps_.states[i];
     const bool kept = s.at() == walk.simplex;
     if (before_ != nullptr && !kept) counters_.updated_by_deformation += left_behind_[i] ? 1 : 0;
     s.put(walk.simplex, steps_.targets[i]);
     s.touching_count = 0;
     if (!kept) steps_.vertices[i] = vertex_numbers(*scene_.complex, walk.simplex);
-    count_step({visit.tests, visit.exact}, kept);
+    count_step({cursor.tests, cursor.exact}, kept);
     return false;
   }
 
   // What follows at a wall is not done here. Returns false: the walk does not go on.
-  bool hand_over(const PlaneVisit& visit, const Walk& walk) {
-    steps_.taken[visit.particle] = static_cast<Taken>(steps_.begun.size());
-    steps_.begun.emplace_back(start_of(visit.particle), walk, TestCounts{visit.tests, visit.exact});
+  bool hand_over(const PlaneWalkCursor& cursor, const Walk& walk) {
+    steps_.taken[cursor.particle] = static_cast<StepStatus>(steps_.partial.size());
+    steps_.partial.emplace_back(start_of(cursor.particle), walk, TestCounts{cursor.tests, cursor.exact});
     return false;
   }
   // The step is not taken here. Returns false, too.
   bool leave(std::uint32_t i) {
-    steps_.taken[i] = taken_nothing;
+    steps_.taken[i] = step_untouched;
     return false;
   }
   void leave_all(std::size_t count) {
@@ -258,7 +258,7 @@ class PlaneBatch {
   }
 
   [[nodiscard]] Vec3 start_of(std::uint32_t i) const {
-    return before_ == nullptr ? steps_.states[i].position : Vec3{ridden_[i][0], ridden_[i][1], ridden_[i][2]};
+    return before_ == nullptr ? steps_.states[i].position : Vec3{carried_[i][0], carried_[i][1], carried_[i][2]};
   }
   [[nodiscard]] PlaneCorners corners(const Vec3* positions, std::uint32_t i) const {
     const VertexNumbers& v = steps_.vertices[i];
@@ -266,28 +266,28 @@ class PlaneBatch {
     return {flat(0), flat(1), flat(2)};
   }
   template <bool moved>
-  void ask_for(std::uint32_t i) const {
+  void prefetch(std::uint32_t i) const {
     for (unsigned k = 0; k < 3; ++k) {
       __builtin_prefetch(space_.positions.at + steps_.vertices[i][k]);
       if constexpr (moved) __builtin_prefetch(before_ + steps_.vertices[i][k]);
     }
   }
 
-  const FilteredScene& scene_;
+  const BatchScene& scene_;
   const Space<Stored, 3> space_;
   const Vec3* before_;  // null where the scene stands still
-  const FilteredSteps& steps_;
+  const BatchSteps& steps_;
   std::uint32_t size_;
   Counters& counters_;
 
-  std::array<PlaneVisit, filtered_batch> visits_;             // walks that go on
-  std::array<std::array<double, 3>, filtered_batch> ridden_;  // where particles have ridden to
-  std::array<bool, filtered_batch> left_behind_;
+  std::array<PlaneWalkCursor, max_batch> visits_;         // walks that go on
+  std::array<std::array<double, 3>, max_batch> carried_;  // where particles have ridden to
+  std::array<bool, max_batch> left_behind_;
 };
 
 }  // namespace
 
-void step_plane(const FilteredScene& scene, const FilteredSteps& steps, Counters& counters) {
+void step_plane(const BatchScene& scene, const BatchSteps& steps, Counters& counters) {
   PlaneBatch(scene, steps, counters).run();
 }
 

@@ -13,6 +13,6 @@ namespace dartcast::detail {
 
 /// Takes the steps that it can, and counts them. No trails are read or left. Preconditions: the complex is of the
 /// plane; else as for Stepper::step(). Cost: about 20 ns a step.
-void step_plane(const FilteredScene& scene, const FilteredSteps& steps, Counters& counters);
+void step_plane(const BatchScene& scene, const BatchSteps& steps, Counters& counters);
 
 }  // namespace dartcast::detail

@@ -2,7 +2,7 @@
 // Part of tracking/batch/batch_kernel.inl: no include guard, no includes.
 
 // A simplex that a walk has come to.
-struct Visit {
+struct WalkCursor {
   std::uint32_t particle;
   std::uint32_t cell;   // its value
   std::uint16_t index;  // of the simplex, or of the face that was entered through
@@ -16,37 +16,38 @@ struct Visit {
 inline constexpr std::uint8_t no_facet = 4;
 
 // Of the simplex that a step begins in.
-DARTCAST_TARGET inline Visit first_visit(std::uint32_t particle, const State& s, const std::uint32_t* record,
-                                         std::uint16_t tests, int exact) {
+DARTCAST_TARGET inline WalkCursor first_cursor(std::uint32_t particle, const ParticleState& s,
+                                               const std::uint32_t* record, std::uint16_t tests, int exact) {
   return {particle, s.cell.value, s.simplex, no_facet, tests, static_cast<std::uint16_t>(exact), false, record};
 }
 
 // The wall that a target lies on that lies on these facets of its simplex.
-DARTCAST_TARGET inline std::optional<SimplexFacet> find_touched_wall(const Map& map, const Visit& visit,
+DARTCAST_TARGET inline std::optional<SimplexFacet> find_touched_wall(const CombinatorialMap& map,
+                                                                     const WalkCursor& cursor,
                                                                      const VertexNumbers& corners, unsigned on) {
   Feature feature;
   for (unsigned i = 0; i < 4; ++i) feature.add_if(((on >> i) & 1U) == 0, Vertex{corners[i]});
-  return find_wall(map, {Cell(visit.cell), visit.index}, on, feature);
+  return find_wall(map, {Cell(cursor.cell), cursor.index}, on, feature);
 }
 
 // A walk that leaves its first simplex, and what is proved of its target.
-struct Departure {
+struct ExitCandidate {
   std::uint32_t particle;
   std::uint16_t behind;         // bits of facets that its target is proved to be behind
   std::uint16_t exact;          // of the four tests
   const std::uint32_t* record;  // of its cell
 };
-DARTCAST_TARGET inline Departure departure(std::uint32_t particle, unsigned behind, unsigned exact,
-                                           const std::uint32_t* record) {
+DARTCAST_TARGET inline ExitCandidate exit_candidate(std::uint32_t particle, unsigned behind, unsigned exact,
+                                                    const std::uint32_t* record) {
   return {particle, static_cast<std::uint16_t>(behind), static_cast<std::uint16_t>(std::popcount(exact)), record};
 }
 // A walk that may leave its first simplex, of whose target nothing is proved.
-struct Unproved {
+struct UndecidedExit {
   std::uint32_t particle;
   const std::uint32_t* record;  // of its cell
 };
 // One that leaves its cell, too.
-struct Outward {
+struct CellExit {
   std::uint32_t particle;
   Across across;
   std::uint16_t facet;
@@ -60,82 +61,83 @@ struct Arrival {
 };
 struct FacetArrival {
   std::uint32_t particle;
-  Mark on;
+  CacheFlags on;
 };
 
-DARTCAST_TARGET inline void count_step(const Visit& visit, Counters& counters) {
+DARTCAST_TARGET inline void count_step(const WalkCursor& cursor, Counters& counters) {
   ++counters.particle_steps;
-  counters.orientation.tests += visit.tests;
-  counters.orientation.exact += visit.exact;
-  ++counters.histogram[std::min<std::size_t>(visit.tests, Counters::histogram_size - 1)];
-  counters.forecast_kept += visit.place == no_facet ? 1 : 0;
+  counters.orientation.tests += cursor.tests;
+  counters.orientation.exact += cursor.exact;
+  ++counters.histogram[std::min<std::size_t>(cursor.tests, Counters::histogram_size - 1)];
+  counters.forecast_kept += cursor.place == no_facet ? 1 : 0;
 }
 
 // Inlined: a call that does nothing but ask would be left out.
-[[gnu::always_inline]] DARTCAST_TARGET inline void ask_for(const Vec3* positions, const VertexNumbers& v) {
+[[gnu::always_inline]] DARTCAST_TARGET inline void prefetch(const Vec3* positions, const VertexNumbers& v) {
   for (unsigned i = 0; i < 4; ++i) {
     __builtin_prefetch(positions + v[i]);
     __builtin_prefetch(&(positions + v[i])->z);
   }
 }
 
-struct Four {
+struct Index4 {
   std::uint32_t at[4];
 };
 
 // Four particles in a row of `size`; at its end the last one again in the lanes that are left.
-DARTCAST_TARGET inline Four four_from(std::uint32_t i, std::uint32_t size) {
+DARTCAST_TARGET inline Index4 index4_from(std::uint32_t i, std::uint32_t size) {
   const std::uint32_t last = size - 1;
   return {{i, std::min(i + 1, last), std::min(i + 2, last), std::min(i + 3, last)}};
 }
 
-DARTCAST_TARGET inline Four particles_of(const FacetArrival* arrivals, const Four& i) {
+DARTCAST_TARGET inline Index4 particles_of(const FacetArrival* arrivals, const Index4& i) {
   return {
       {arrivals[i.at[0]].particle, arrivals[i.at[1]].particle, arrivals[i.at[2]].particle, arrivals[i.at[3]].particle}};
 }
 
 // What a trail keeps, of all corners of one particle, and of one corner of four.
-DARTCAST_TARGET inline Weights determinants_of(const MemosOfFour::Table<double>* w, std::uint32_t i) {
+DARTCAST_TARGET inline Weights determinants_of(const SimplexCache4::Table<double>* w, std::uint32_t i) {
   Weights of_corner;
   for (unsigned c = 0; c < 4; ++c) of_corner[c] = w[i / 4][c][i % 4];
   return of_corner;
 }
-DARTCAST_TARGET inline Quad determinants_of(const MemosOfFour::Table<double>* w, const Four& i, unsigned corner) {
+DARTCAST_TARGET inline Double4 determinants_of(const SimplexCache4::Table<double>* w, const Index4& i,
+                                               unsigned corner) {
   const auto of = [&](std::uint32_t particle) { return w[particle / 4][corner][particle % 4]; };
-  return Quad{of(i.at[0]), of(i.at[1]), of(i.at[2]), of(i.at[3])};
+  return Double4{of(i.at[0]), of(i.at[1]), of(i.at[2]), of(i.at[3])};
 }
 
-// Bits of the lanes where it is proved that ride_along() comes to a place strictly inside, other than q; as computed.
-DARTCAST_TARGET inline unsigned rides_inside(const MemosOfFour::Table<double>* trails, const Four& i,
-                                             const Tetrahedra& now, const Points& q) {
-  const Quad w[4] = {determinants_of(trails, i, 0), determinants_of(trails, i, 1), determinants_of(trails, i, 2),
-                     determinants_of(trails, i, 3)};
-  const Points x = ride_along(w, now);
-  const Mask proved = (w[0] == w[0]) & FilteredDeterminants(now, x).all_positive();
+// Bits of the lanes where it is proved that carry_along() comes to a place strictly inside, other than q; as computed.
+DARTCAST_TARGET inline unsigned carried_inside(const SimplexCache4::Table<double>* previous_caches, const Index4& i,
+                                               const Corners4& now, const Vec3x4& q) {
+  const Double4 w[4] = {determinants_of(previous_caches, i, 0), determinants_of(previous_caches, i, 1),
+                        determinants_of(previous_caches, i, 2), determinants_of(previous_caches, i, 3)};
+  const Vec3x4 x = carry_along(w, now);
+  const Mask4 proved = (w[0] == w[0]) & BatchDeterminants(now, x).all_positive();
   return lanes_set(proved & ((x.x != q.x) | (x.y != q.y) | (x.z != q.z)));
 }
 
-DARTCAST_TARGET inline bool any_marked(const Mark* of_four) {
+DARTCAST_TARGET inline bool any_marked(const CacheFlags* of_four) {
   std::uint32_t four;
   std::memcpy(&four, of_four, sizeof four);
   return four != 0;
 }
 
 // Of four particles those in the mask `which` lie on these facets now. No branch: who does cannot be foretold.
-DARTCAST_TARGET inline void mark_zeros(const Mask& zeros, std::uint32_t which, Mark* of_four) {
+DARTCAST_TARGET inline void mark_zeros(const Mask4& zeros, std::uint32_t which, CacheFlags* of_four) {
   for (std::uint32_t j = 0; j < 4; ++j) {
     const auto mark = static_cast<std::uint32_t>(of_four[j]);
-    const std::uint32_t next = (mark & exact_mark) | static_cast<std::uint32_t>(zeros[j]);
-    of_four[j] = static_cast<Mark>(mark ^ ((mark ^ next) & (0U - ((which >> j) & 1U))));
+    const std::uint32_t next = (mark & exact_flag) | static_cast<std::uint32_t>(zeros[j]);
+    of_four[j] = static_cast<CacheFlags>(mark ^ ((mark ^ next) & (0U - ((which >> j) & 1U))));
   }
 }
 
 // Which particles are held, or touch a wall: a bit for each. What says so are two bytes of the word that begins with
 // the cell.
-DARTCAST_TARGET inline std::uint32_t held_or_touching(const State* states, std::uint32_t size, std::uint32_t first,
-                                                      std::uint32_t n) {
-  constexpr std::size_t begin = offsetof(State, cell);
-  static_assert(offsetof(State, touching_count) == begin + 6 && offsetof(State, held) == begin + 7);
+DARTCAST_TARGET inline std::uint32_t held_or_touching(const ParticleState* states, std::uint32_t size,
+                                                      std::uint32_t first, std::uint32_t n) {
+  constexpr std::size_t begin = offsetof(ParticleState, cell);
+  static_assert(offsetof(ParticleState, touching_count) == begin + 6 && offsetof(ParticleState, held) == begin + 7);
   constexpr auto last_two = std::bit_cast<long long>(std::array<std::uint8_t, 8>{0, 0, 0, 0, 0, 0, 255, 255});
   const auto word = [&](std::uint32_t i) {
     long long bits;
@@ -144,8 +146,8 @@ DARTCAST_TARGET inline std::uint32_t held_or_touching(const State* states, std::
   };
   std::uint32_t bits = 0;
   for (std::uint32_t k = 0; k < n; k += 4) {
-    const Four i = four_from(first + k, size);
-    const Mask words = {word(i.at[0]), word(i.at[1]), word(i.at[2]), word(i.at[3])};
+    const Index4 i = index4_from(first + k, size);
+    const Mask4 words = {word(i.at[0]), word(i.at[1]), word(i.at[2]), word(i.at[3])};
     bits |= lanes_set((words & splat_bits(last_two)) != 0) << k;
   }
   return bits;

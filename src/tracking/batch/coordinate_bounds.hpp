@@ -21,8 +21,8 @@ namespace dartcast::detail {
 /// R <= 4.1 E + 2^-13 R: R < 5 E. Where none is above 2 in magnitude, R <= 4 E (2.01 + 2^-17 R/E): R < 9 E. Either
 /// way they are off by less than 2^-14.3.
 inline constexpr double coordinate_margin = 0x1p-12;
-inline constexpr double most_for_sign = 2.0;
-inline constexpr double least_volume = 0x1p-20;         ///< V over E^3
+inline constexpr double max_for_sign = 2.0;
+inline constexpr double min_volume = 0x1p-20;           ///< V over E^3
 inline constexpr double farthest_corner = 0x1p+100;     ///< E
 inline constexpr double steepest_gradient = 64.0;       ///< |g|_1 E
 inline constexpr double extents_from_origin = 0x1p+28;  ///< |p| over E that counts as much as E

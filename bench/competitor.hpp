@@ -14,7 +14,7 @@ struct Segment {
   Vec3 to;
   /// Where it starts on a wall that the particle has just met: the share of the segment in which floats can't tell that
   /// wall from others. Hits there are passed over, as whoever casts rays from walls does. Else 0.
-  double blind = 0.0;
+  double self_hit_epsilon = 0.0;
 };
 
 /// The first wall triangle met, by its number (walls.hpp), or none; `time` is the fraction of the segment.
@@ -27,19 +27,19 @@ struct Hit {
 };
 
 /// A way to find contacts that stands beside dartcast. Runs on one thread, and is not for use by several at once.
-class Peer {
+class Competitor {
  public:
-  Peer() = default;
-  Peer(const Peer&) = delete;
-  Peer& operator=(const Peer&) = delete;
-  virtual ~Peer() = default;
+  Competitor() = default;
+  Competitor(const Competitor&) = delete;
+  Competitor& operator=(const Competitor&) = delete;
+  virtual ~Competitor() = default;
 
   /// Takes over the walls' points after a move, before refit(): writing vertices counts for nobody. Not timed.
   virtual void write(std::span<const Vec3> points) = 0;
   /// Makes the hierarchy follow the points written. Timed.
   virtual void refit() = 0;
   /// Where the particles of the next segments are, for those who remember particles. Not timed.
-  virtual void place(std::span<const State> /*states*/) {}
+  virtual void place(std::span<const ParticleState> /*states*/) {}
   /// The first hit of every segment. Timed. `hits`: as many as segments.
   virtual void cast(std::span<const Segment> segments, std::span<Hit> hits) = 0;
   /// Writes into the hits what cast() knew by other names. Not timed.

@@ -1,8 +1,8 @@
-#include "bench/peers.hpp"
+#include "bench/competitors.hpp"
 
 namespace dartcast::bench {
 
-std::vector<PeerKind> peer_kinds() {
+std::vector<PeerKind> competitor_kinds() {
   std::vector<PeerKind> kinds;
 #ifdef DARTCAST_BENCH_BULLET
   kinds.push_back({"bullet", make_bullet});

@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "bench/peers.hpp"
+#include "bench/competitors.hpp"
 #include "bench/workload.hpp"
 #include "tracking/counters.hpp"
 
 namespace dartcast::bench {
 
 /// How one competitor did.
-struct Lane {
+struct Series {
   std::string name;
   std::vector<double> step_ns;      ///< per step, of all its particles: refitting and casting
   std::uint64_t disagreements = 0;  ///< segments where it answers otherwise than dartcast
@@ -39,10 +39,10 @@ struct Row {
   unsigned threads = 1;
   std::size_t cells = 0;
   std::size_t wall_triangles = 0;
-  std::vector<Lane> lanes;  ///< dartcast first
-  Counters counters;        ///< dartcast's
+  std::vector<Series> all_series;  ///< dartcast first
+  Counters counters;               ///< dartcast's
 
-  [[nodiscard]] const Lane* lane(std::string_view name) const;
+  [[nodiscard]] const Series* series(std::string_view name) const;
 };
 
 /// Runs a workload: a row for each number of threads. In the plane only competitors that have an answer there take
@@ -53,6 +53,6 @@ struct Row {
 ///
 /// A competitor disagrees on a segment where one of the two meets a wall and the other does not, or where both do and
 /// neither the triangle nor the time (within 1e-4 of a cell) is the same. What dartcast finds is what happens.
-std::vector<Row> race(const WorkloadOptions& options, std::span<const PeerKind> kinds);
+std::vector<Row> compare(const WorkloadOptions& options, std::span<const PeerKind> kinds);
 
 }  // namespace dartcast::bench

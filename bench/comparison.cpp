@@ -1,4 +1,4 @@
-#include "bench/race.hpp"
+#include "bench/comparison.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -15,7 +15,7 @@ namespace dartcast::bench {
 namespace {
 
 constexpr std::size_t block_size = 100;
-constexpr std::size_t most_records = 1000000;  // particles times steps of a block
+constexpr std::size_t max_records = 1000000;  // particles times steps of a block
 constexpr std::size_t warming_steps = 10;
 // Lattice lines are crossed by all particles in the same step of eight. Blocks of 20 steps would hold two or three of
 // these, and the median would be that of the dearer half.
@@ -32,7 +32,7 @@ double nanoseconds(Work&& work) {
 // One step: what the others are asked, and what dartcast answers.
 struct Record {
   std::uint64_t step = 0;
-  std::vector<State> before;
+  std::vector<ParticleState> before;
   std::vector<Segment> segments;
   std::vector<Hit> hits;
 };
@@ -48,7 +48,7 @@ class Stage {
  public:
   explicit Stage(const Workload& workload) : workload_(workload), complex_(workload.environment().complex()) {}
 
-  [[nodiscard]] const Complex& complex() const { return complex_; }
+  [[nodiscard]] const CellComplex& complex() const { return complex_; }
   void set(std::uint64_t step) {
     workload_.positions_after(step, complex_.next_positions());
     complex_.commit_positions();
@@ -56,17 +56,17 @@ class Stage {
 
  private:
   const Workload& workload_;
-  Complex complex_;
+  CellComplex complex_;
 };
 
-class Race {
+class Comparison {
  public:
-  Race(const WorkloadOptions& options, std::span<const PeerKind> kinds)
+  Comparison(const WorkloadOptions& options, std::span<const PeerKind> kinds)
       : options_(options), workload_(options), records_(size_of_block(options)) {
-    if (options.against_peers) {
+    if (options.against_competitors) {
       twin_.emplace(options);
       twin_->environment().set_threads(Threads{1});
-      make_peers(kinds);
+      make_competitors(kinds);
     }
     for (const unsigned threads : options.threads) {
       Row& row = rows_.emplace_back();
@@ -84,10 +84,10 @@ class Race {
     const std::size_t all = options_.steps * rows_.size();
     for (std::size_t done = 0; done < all; done += records_.size()) block(std::min(records_.size(), all - done));
     for (Row& row : rows_) {
-      row.lanes[0].tests = row.counters.orientation.tests;
-      for (std::size_t k = 0; k < peers_.size(); ++k) {
-        row.lanes[k + 1].tests = peers_[k]->tests() - tests_before_[k];
-        row.lanes[k + 1].wrong_cells = peers_[k]->wrong_cells() - wrong_before_[k];
+      row.all_series[0].tests = row.counters.orientation.tests;
+      for (std::size_t k = 0; k < competitors_.size(); ++k) {
+        row.all_series[k + 1].tests = competitors_[k]->tests() - tests_before_[k];
+        row.all_series[k + 1].wrong_cells = competitors_[k]->wrong_cells() - wrong_before_[k];
       }
     }
     return std::move(rows_);
@@ -95,13 +95,15 @@ class Race {
 
  private:
   static std::size_t size_of_block(const WorkloadOptions& options) {
-    if (!options.against_peers) return 1;
-    return std::clamp<std::size_t>(most_records / options.particles, 1, std::min(block_size, options.steps));
+    if (!options.against_competitors) return 1;
+    return std::clamp<std::size_t>(max_records / options.particles, 1, std::min(block_size, options.steps));
   }
 
-  [[nodiscard]] const Complex& complex() const { return stage_ ? stage_->complex() : twin_->environment().complex(); }
+  [[nodiscard]] const CellComplex& complex() const {
+    return stage_ ? stage_->complex() : twin_->environment().complex();
+  }
 
-  void make_peers(std::span<const PeerKind> kinds) {
+  void make_competitors(std::span<const PeerKind> kinds) {
     if (options_.deforms) stage_.emplace(*twin_);
     walls_ = walls_of(complex());
     walls_.gather(complex().positions(), points_);
@@ -109,30 +111,30 @@ class Race {
     for (const PeerKind& kind : kinds) {
       if (plane && !kind.in_plane) continue;
       names_.push_back(kind.name);
-      peers_.push_back(kind.make({complex(), walls_, points_, twin_->particles().states(), options_.deforms}));
+      competitors_.push_back(kind.make({complex(), walls_, points_, twin_->particles().states(), options_.deforms}));
     }
   }
 
   void clear() {
     tests_before_.clear();
     wrong_before_.clear();
-    for (const auto& peer : peers_) {
-      tests_before_.push_back(peer->tests());
-      wrong_before_.push_back(peer->wrong_cells());
+    for (const auto& competitor : competitors_) {
+      tests_before_.push_back(competitor->tests());
+      wrong_before_.push_back(competitor->wrong_cells());
     }
     for (Row& row : rows_) {
       row.counters = {};
-      row.lanes.assign(1, {"dartcast", {}});
-      for (const std::string& name : names_) row.lanes.push_back({name, {}});
+      row.all_series.assign(1, {"dartcast", {}});
+      for (const std::string& name : names_) row.all_series.push_back({name, {}});
     }
   }
 
   void block(std::size_t size) {
     const std::span<Record> records = std::span(records_).first(size);
     for (std::size_t i = 0; i < size; ++i) lead();
-    if (peers_.empty()) return;
+    if (competitors_.empty()) return;
     for (Record& record : records) write_down(record);
-    for (std::size_t k = 0; k < peers_.size(); ++k) answer((k + blocks_) % peers_.size(), records);
+    for (std::size_t k = 0; k < competitors_.size(); ++k) answer((k + blocks_) % competitors_.size(), records);
     ++blocks_;
   }
 
@@ -141,9 +143,9 @@ class Race {
     workload_.environment().set_threads(Threads{row.threads});
     workload_.aim();
     StepReport report;
-    row.lanes[0].step_ns.push_back(nanoseconds([&] { report = advance(workload_); }));
+    row.all_series[0].step_ns.push_back(nanoseconds([&] { report = advance(workload_); }));
     row.counters += report.counters;
-    workload_.follow(report);
+    workload_.update_after_edit(report);
   }
 
   // The twin takes the same step, to the last bit. Were it written down while dartcast leads, that would drive
@@ -156,28 +158,29 @@ class Race {
     record.step = twin_->step();
     record.segments.resize(record.before.size());
     for (std::size_t i = 0; i < record.before.size(); ++i) {
-      const State& before = record.before[i];
+      const ParticleState& before = record.before[i];
       Segment& s = record.segments[i];
-      s = {options_.deforms ? ridden(twin_->environment().complex(), before) : before.position, twin_->targets()[i]};
-      if (before.touching_count > 0) s.blind = std::min(1.0, same_place * twin_->cell_size() / norm(s.to - s.from));
+      s = {options_.deforms ? carried(twin_->environment().complex(), before) : before.position, twin_->targets()[i]};
+      if (before.touching_count > 0)
+        s.self_hit_epsilon = std::min(1.0, same_place * twin_->cell_size() / norm(s.to - s.from));
     }
     record.hits.assign(record.before.size(), {});
     for (const Contact& c : report.contacts.contacts) {
       const WallHit& wall = report.contacts.walls_of(c).front();
       record.hits[c.particle] = {walls_.number({wall.face, wall.triangle}), c.time_of_impact};
     }
-    twin_->follow(report);
+    twin_->update_after_edit(report);
   }
 
   // Where the walk began: in the geometry after the move.
-  static Vec3 ridden(const Complex& complex, const State& before) {
+  static Vec3 carried(const CellComplex& complex, const ParticleState& before) {
     return complex.map().dimension() == 2 ? ridden_in<3>(complex, before) : ridden_in<4>(complex, before);
   }
 
   template <std::size_t N>
-  static Vec3 ridden_in(const Complex& complex, const State& before) {
+  static Vec3 ridden_in(const CellComplex& complex, const ParticleState& before) {
     const Weights weights = detail::barycentric(previous_space<N>(complex).corners(before.at()), before.position);
-    return detail::ridden(current_space<N>(complex), before.at(), weights).position;
+    return detail::carried(current_space<N>(complex), before.at(), weights).position;
   }
 
   // Comes to each step from computing the new positions where the scene deforms, as dartcast does.
@@ -185,37 +188,37 @@ class Race {
     if (stage_) stage_->set(records[0].step - 1);
     for (const Record& record : records) {
       if (stage_) stage_->set(record.step);
-      answer(*peers_[k], rows_[0].lanes[k + 1], record);
+      answer(*competitors_[k], rows_[0].all_series[k + 1], record);
     }
   }
 
-  void answer(Peer& peer, Lane& lane, const Record& record) {
+  void answer(Competitor& competitor, Series& series, const Record& record) {
     if (options_.deforms) {
       walls_.gather(complex().positions(), points_);
-      peer.write(points_);
+      competitor.write(points_);
     }
-    peer.place(record.before);
+    competitor.place(record.before);
     // Copied, so that they are in the caches, as the targets that dartcast is given.
     asked_.assign(record.segments.begin(), record.segments.end());
     answers_.resize(asked_.size());
-    lane.step_ns.push_back(nanoseconds([&] {
-      if (options_.deforms) peer.refit();
-      peer.cast(asked_, answers_);
+    series.step_ns.push_back(nanoseconds([&] {
+      if (options_.deforms) competitor.refit();
+      competitor.cast(asked_, answers_);
     }));
-    peer.translate(answers_);
-    for (std::size_t i = 0; i < answers_.size(); ++i) compare(lane, record.hits[i], answers_[i], asked_[i]);
+    competitor.translate(answers_);
+    for (std::size_t i = 0; i < answers_.size(); ++i) compare(series, record.hits[i], answers_[i], asked_[i]);
   }
 
-  void compare(Lane& lane, const Hit& ours, const Hit& theirs, const Segment& s) const {
+  void compare(Series& series, const Hit& ours, const Hit& theirs, const Segment& s) const {
     const double tolerance = same_place * workload_.cell_size();
     const double length = norm(s.to - s.from);
     if (agree(ours, theirs, tolerance / length)) return;
-    ++lane.disagreements;
+    ++series.disagreements;
     const bool met_at_start = theirs.triangle < Hit::failed && theirs.time * length <= tolerance;
-    lane.at_start += s.blind > 0.0 || met_at_start ? 1 : 0;
-    lane.failed += theirs.triangle == Hit::failed ? 1 : 0;
-    lane.through += theirs.triangle == Hit::none ? 1 : 0;
-    lane.stopped += ours.triangle == Hit::none && theirs.triangle < Hit::failed ? 1 : 0;
+    series.at_start += s.self_hit_epsilon > 0.0 || met_at_start ? 1 : 0;
+    series.failed += theirs.triangle == Hit::failed ? 1 : 0;
+    series.through += theirs.triangle == Hit::none ? 1 : 0;
+    series.stopped += ours.triangle == Hit::none && theirs.triangle < Hit::failed ? 1 : 0;
   }
 
   // Neither meets a wall, or both the same, or both at the same place: where triangles meet, any of them will do.
@@ -230,7 +233,7 @@ class Race {
   std::optional<Workload> twin_;  // for the others
   Walls walls_;
   std::vector<std::string> names_;
-  std::vector<std::unique_ptr<Peer>> peers_;
+  std::vector<std::unique_ptr<Competitor>> competitors_;
   std::vector<std::uint64_t> tests_before_;
   std::vector<std::uint64_t> wrong_before_;
   std::vector<Record> records_;
@@ -245,9 +248,9 @@ class Race {
 
 }  // namespace
 
-double Lane::ns_per_particle_step(std::size_t particles) const {
-  constexpr std::size_t most_blocks = 50;
-  std::size_t size = (step_ns.size() + most_blocks - 1) / most_blocks;
+double Series::ns_per_particle_step(std::size_t particles) const {
+  constexpr std::size_t max_blocks = 50;
+  std::size_t size = (step_ns.size() + max_blocks - 1) / max_blocks;
   if (size > lattice_period) size = (size + lattice_period - 1) / lattice_period * lattice_period;
   std::vector<double> means;
   for (std::size_t first = 0; first < step_ns.size(); first += size) {
@@ -261,24 +264,25 @@ double Lane::ns_per_particle_step(std::size_t particles) const {
   return *middle / static_cast<double>(particles);
 }
 
-double Lane::mean_ns_per_particle_step(std::size_t particles) const {
+double Series::mean_ns_per_particle_step(std::size_t particles) const {
   return std::accumulate(step_ns.begin(), step_ns.end(), 0.0) / static_cast<double>(step_ns.size() * particles);
 }
 
-double Lane::quantile_ns(double share) const {
+double Series::quantile_ns(double share) const {
   std::vector<double> sorted = step_ns;
   std::sort(sorted.begin(), sorted.end());
   const double rank = std::ceil(share * static_cast<double>(sorted.size()));
   return sorted[std::clamp<std::size_t>(static_cast<std::size_t>(rank), 1, sorted.size()) - 1];
 }
 
-const Lane* Row::lane(std::string_view name) const {
-  const auto found = std::find_if(lanes.begin(), lanes.end(), [&](const Lane& l) { return l.name == name; });
-  return found == lanes.end() ? nullptr : &*found;
+const Series* Row::series(std::string_view name) const {
+  const auto found =
+      std::find_if(all_series.begin(), all_series.end(), [&](const Series& l) { return l.name == name; });
+  return found == all_series.end() ? nullptr : &*found;
 }
 
-std::vector<Row> race(const WorkloadOptions& options, std::span<const PeerKind> kinds) {
-  return Race(options, kinds).run();
+std::vector<Row> compare(const WorkloadOptions& options, std::span<const PeerKind> kinds) {
+  return Comparison(options, kinds).run();
 }
 
 }  // namespace dartcast::bench
