@@ -8,7 +8,7 @@
 
 #include "bench/competitors.hpp"
 #include "bench/workload.hpp"
-#include "tracking/counters.hpp"
+#include "dartcast/step.hpp"
 
 namespace dartcast::bench {
 

@@ -6,8 +6,6 @@
 #include "bench/workload.hpp"
 #include "dartcast/generators.hpp"
 #include "generators/generate_blocked.hpp"
-#include "generators/generate_rectangle.hpp"
-#include "generators/generate_vessel.hpp"
 
 namespace dartcast::bench {
 

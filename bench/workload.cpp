@@ -7,8 +7,8 @@
 #include <numeric>
 #include <utility>
 
+#include "dartcast/generators.hpp"
 #include "dartcast/response.hpp"
-#include "generators/generate_vessel.hpp"
 #include "simulation/seeding.hpp"
 #include "tracking/carry.hpp"
 

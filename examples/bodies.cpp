@@ -9,7 +9,6 @@
 #include "dartcast/generators.hpp"
 #include "dartcast/sampling.hpp"
 #include "dartcast/simulation.hpp"
-#include "generators/generate_barrel.hpp"
 
 int main() {
   using namespace dartcast;
@@ -22,7 +21,8 @@ int main() {
   const WallResponses walls(WallResponse{WallResponseKind::reflect, 0.3, 0.4});
 
   // Grains: particles with a radius. With collisions they meet each other.
-  Simulation grains(environment, {.dt = dt, .gravity = gravity, .collisions = CollisionOptions{.friction = 0.4}}, walls);
+  Simulation grains(environment, {.dt = dt, .gravity = gravity, .collisions = CollisionOptions{.friction = 0.4}},
+                    walls);
   std::vector<Vec3> places;
   for (int i = 0; i < 100; ++i) places.push_back({0.05 + 0.1 * (i % 10), 0.05 + 0.1 * (i / 10), 0.3});
   grains.add(places, {0.0, 0.0, 0.0}, 0.02);

@@ -1,5 +1,7 @@
 // A swarm on a torus that breathes: it leaves one place in all directions, goes straight on within the surface, and
 // comes back from a ring of blocked faces. Writes surface_NN.vtu and particles_NN.csv into the folder named, or here.
+#include "dartcast/surface.hpp"
+
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -8,9 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "formats/write_mesh.hpp"
-#include "surface/surface_advance.hpp"
-#include "surface/surface_locator.hpp"
+#include "dartcast/mesh_files.hpp"
 
 namespace {
 

@@ -5,7 +5,6 @@
 #include "dartcast/cutting.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/generators.hpp"
-#include "editing/ligature.hpp"
 
 int main() {
   using namespace dartcast;

@@ -7,7 +7,7 @@ import sys
 
 MAX_LINES = 700
 SKIPPED_FOLDERS = {".git", "build", "__pycache__", ".cache"}
-COUNTED = {".cpp", ".hpp", ".py", ".cmake", ".sh", ".toml"}
+COUNTED = {".cpp", ".hpp", ".inl", ".py", ".cmake", ".sh", ".toml"}
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s#]+)(?:#[^)\s]*)?\)")
 CODE = re.compile(r"```.*?```|`[^`\n]+`", re.DOTALL)
 DEV_COMMAND = re.compile(r"\./dev ([a-z]+)")

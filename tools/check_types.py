@@ -6,7 +6,7 @@ import re
 import sys
 
 TOKEN = re.compile(
-    r"//[^\n]*|/\*.*?\*/|\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])*'|^[ \t]*#(?:\\\n|[^\n])*|[A-Za-z_]\w*|[{}();<>=:,\[\]]|\n",
+    r"//[^\n]*|/\*.*?\*/|\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])*'|^[ \t]*#(?:\\\n|[^\n])*|[A-Za-z_]\w*|::|[{}();<>=:,\[\]]|\n",
     re.DOTALL | re.MULTILINE)
 KEYWORDS = {"class", "struct", "union", "enum"}
 # Between the keyword and the name.

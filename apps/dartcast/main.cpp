@@ -6,7 +6,7 @@
 #include <string>
 
 #include "commands.hpp"
-#include "output/summary.hpp"
+#include "dartcast/run.hpp"
 
 namespace {
 

@@ -7,9 +7,8 @@
 
 #include "commands.hpp"
 #include "dartcast/mesh_files.hpp"
+#include "dartcast/run.hpp"
 #include "dartcast/scene_file.hpp"
-#include "formats/check_mesh.hpp"
-#include "formats/write_mesh.hpp"
 #include "max_memory.hpp"
 #include "output/info.hpp"
 #include "output/mesh_report_text.hpp"

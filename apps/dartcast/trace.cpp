@@ -10,12 +10,12 @@
 #include "commands.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/error.hpp"
+#include "dartcast/mesh_files.hpp"
 #include "dartcast/predicates.hpp"
+#include "dartcast/run.hpp"
 #include "dartcast/scene_file.hpp"
-#include "formats/write_mesh.hpp"
+#include "dartcast/trajectory.hpp"
 #include "max_memory.hpp"
-#include "output/trajectory_csv.hpp"
-#include "output/trajectory_svg.hpp"
 #include "scene/scene_mesh.hpp"
 
 namespace dartcast::app {

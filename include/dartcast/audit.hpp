@@ -1,14 +1,18 @@
-// The audit: whether every particle is where its state says, by slow exact arithmetic that shares no code with the
-// walk.
+// Checks of a run: an exact audit of every particle, and a hash of every bit of state.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 
-#include "base/parallel.hpp"
 #include "dartcast/environment.hpp"
+#include "dartcast/particle_state.hpp"
+#include "dartcast/threads.hpp"
 
 namespace dartcast {
+
+// The audit: whether every particle is where its state says, by slow exact arithmetic that shares no code with the
+// walk.
 
 struct Audit {
   std::uint64_t checked = 0;
@@ -23,5 +27,31 @@ struct Audit {
 /// are finite and none is negative. Precondition: the particles have followed the environment's last move. Cost: about
 /// 5 us per particle, parallel.
 Audit audit(const CellComplex& complex, const Particles& particles, Threads threads = {});
+
+// One number for the exact state of a set of particles, whatever their order.
+
+/// A sum of 128-bit hashes, one per particle, over the bits of its state: equal sets give equal sums in any order, and
+/// two sets that differ in one bit are told apart as surely as 128 bits can. 0 and -0 differ.
+class StateHash {
+ public:
+  using Words = std::array<std::uint64_t, 2>;
+
+  StateHash() = default;
+  /// To save a hash and to go on with it.
+  explicit StateHash(const Words& words) : low_(words[0]), high_(words[1]) {}
+  [[nodiscard]] Words words() const { return {low_, high_}; }
+
+  /// Adds a particle. `fate`: what has become of it, as a number that the caller chooses.
+  void add(std::uint64_t id, const ParticleState& state, const Vec3& velocity, std::uint64_t fate = 0);
+  StateHash& operator+=(const StateHash& other);
+  bool operator==(const StateHash&) const = default;
+
+  /// 32 hexadecimal digits.
+  [[nodiscard]] std::string hex() const;
+
+ private:
+  std::uint64_t low_ = 0;
+  std::uint64_t high_ = 0;
+};
 
 }  // namespace dartcast

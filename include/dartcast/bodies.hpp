@@ -11,16 +11,16 @@
 #include <span>
 #include <vector>
 
-#include "base/parallel.hpp"
 #include "bodies/body_collisions.hpp"
 #include "bodies/body_contact.hpp"
 #include "bodies/body_motion.hpp"
 #include "bodies/body_rebound.hpp"
 #include "bodies/shape_matching.hpp"
+#include "dartcast/audit.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/response.hpp"
+#include "dartcast/threads.hpp"
 #include "dynamics/rigid_solver.hpp"
-#include "environment/state_hash.hpp"
 
 namespace dartcast {
 

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "catheter/chain_solver.hpp"
+#include "dartcast/audit.hpp"
 #include "dartcast/environment.hpp"
-#include "environment/state_hash.hpp"
 
 namespace dartcast {
 

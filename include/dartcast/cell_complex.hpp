@@ -10,17 +10,45 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
-#include "base/aligned.hpp"
-#include "base/parallel.hpp"
-#include "complex/simplex.hpp"
-#include "complex/steiner_weights.hpp"
 #include "dartcast/combinatorial_map.hpp"
+#include "dartcast/ids.hpp"
 #include "dartcast/mesh_data.hpp"
+#include "dartcast/storage.hpp"
+#include "dartcast/threads.hpp"
 #include "dartcast/vec3.hpp"
 
 namespace dartcast {
+
+// Interior points: vertices that are combinations of others.
+
+class SteinerWeights {
+ public:
+  [[nodiscard]] std::size_t count() const { return vertex_.size() - removed_; }
+  [[nodiscard]] std::size_t bytes() const;
+
+  /// A further vertex. `weights`: one per corner; they sum to 1. Corners are no interior points.
+  void add(Vertex v, std::span<const std::uint32_t> corners, std::span<const double> weights);
+  /// Adds all of another's.
+  void add(const SteinerWeights& other);
+  /// Forgets a vertex; nothing happens where it is no interior point. The first call lists the vertices, once; after
+  /// that the cost is constant on average.
+  void remove(Vertex v);
+  /// Writes where the vertices are, in a fixed order of operations. `positions`: of all vertices.
+  void compute(std::span<Vec3> positions) const;
+
+ private:
+  void close_gaps();
+
+  std::vector<Vertex> vertex_;              // invalid: removed
+  std::vector<std::size_t> offsets_ = {0};  // one more than vertices
+  std::vector<std::uint32_t> corner_;
+  std::vector<double> weight_;
+  std::size_t removed_ = 0;
+  std::unordered_map<std::uint32_t, std::size_t> place_;  // of a vertex; empty until one is removed
+};
 
 /// A cell with a simplex that is flat, inverted or not representable, and why.
 struct InvalidCell {
@@ -28,6 +56,13 @@ struct InvalidCell {
   std::uint16_t simplex = 0;
   std::string message;
 };
+
+/// A triangle of the plane as a tetrahedron: the fourth corner is one above the first. Its volume is a third of the
+/// triangle's area, and what is asked of a point of the plane, and of the first three facets, has the same answer.
+inline Corners raised(const Corners& v) {
+  const auto flat = [](const Vec3& p) { return Vec3{p.x, p.y, 0.0}; };
+  return {flat(v[0]), flat(v[1]), flat(v[2]), Vec3{v[0].x, v[0].y, 1.0}};
+}
 
 class CellComplex {
  public:
@@ -95,5 +130,12 @@ class CellComplex {
   std::vector<InvalidCell> invalid_;
   std::uint64_t simplex_count_ = 0;
 };
+
+// A complex as a mesh again: for output, and to go on with elsewhere.
+
+/// The cells as they are now, pool by pool, with their free marks and `source` as in the map; points: the vertices that
+/// they use, at their positions, without interior points. No regions, patches or data. `vertices`: unless null, takes
+/// the vertex of each point. Cost: linear.
+MeshData to_mesh(const CellComplex& complex, std::vector<Vertex>* vertices = nullptr);
 
 }  // namespace dartcast

@@ -10,7 +10,7 @@
 //   [vertices] [neighbours] [neighbours' face numbers 16, wall 16 each]
 // In the plane the cells are polygons, the faces their edges, and phi2 leads to the neighbour; records are the same.
 // Wide: a neighbour's face number does not fit in 3 bits; where these say 7, it is looked up in the neighbour.
-// Flat: darts of the cell have marks in a side table. Vacant: the cell was removed (dartcast/transaction.hpp); its
+// Flat: darts of the cell have marks in a side table. Vacant: the cell was removed (dartcast/map_edits.hpp); its
 // place waits for another, the version tells them apart.
 #pragma once
 
@@ -22,11 +22,9 @@
 #include <utility>
 #include <vector>
 
-#include "base/aligned.hpp"
 #include "dartcast/ids.hpp"
 #include "dartcast/mesh_data.hpp"
-#include "topology/shape_table.hpp"
-#include "topology/side_table.hpp"
+#include "dartcast/storage.hpp"
 
 namespace dartcast {
 

@@ -7,13 +7,13 @@
 #include <algorithm>
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "complex/created_positions.hpp"
 #include "dartcast/cell_complex.hpp"
-#include "dartcast/transaction.hpp"
+#include "dartcast/map_edits.hpp"
 
 namespace dartcast {
 
@@ -88,7 +88,7 @@ class ComplexEdit {
   void place(Vertex v, std::span<const Vertex> of, std::span<const double> weights);
 
   [[nodiscard]] Transaction::Savepoint savepoint() const { return transaction_.savepoint(); }
-  /// Takes back everything after the mark. (Not by topology().roll_back(): places would stay.)
+  /// Takes back everything after the savepoint. (Not by topology().roll_back(): places would stay.)
   void roll_back(const Transaction::Savepoint& to);
 
   /// Gives touched cells the interior points that they need (see ComplexEditReport::now()), and makes everything final.
@@ -97,6 +97,7 @@ class ComplexEdit {
   ComplexEditReport commit();
 
  private:
+  struct Created;  // the positions of new vertices
   struct Mean {
     std::vector<Vertex> of;
     std::vector<double> weights;
@@ -110,7 +111,7 @@ class ComplexEdit {
 
   CellComplex& complex_;
   Transaction transaction_;
-  detail::CreatedPositions<AlignedVector<Vec3>> created_;
+  std::unique_ptr<Created> created_;
   std::map<std::size_t, Mean> means_;  // of those placed so, by number among the new
 };
 

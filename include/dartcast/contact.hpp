@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "dartcast/cell_shape.hpp"
 #include "dartcast/ids.hpp"
 #include "dartcast/vec3.hpp"
 

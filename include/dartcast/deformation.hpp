@@ -10,8 +10,8 @@
 #include <variant>
 #include <vector>
 
-#include "base/parallel.hpp"
 #include "dartcast/complex_edit.hpp"
+#include "dartcast/threads.hpp"
 #include "dartcast/vec3.hpp"
 
 namespace dartcast {

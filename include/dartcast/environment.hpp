@@ -8,20 +8,18 @@
 #include <span>
 #include <vector>
 
-#include "base/parallel.hpp"
-#include "complex/first_inversion.hpp"
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/complex_edit.hpp"
 #include "dartcast/contact.hpp"
 #include "dartcast/ids.hpp"
 #include "dartcast/mesh_data.hpp"
+#include "dartcast/step.hpp"
+#include "dartcast/threads.hpp"
 #include "dartcast/trace.hpp"
 #include "dartcast/validity.hpp"
 #include "environment/cell_particle_index.hpp"
 #include "tracking/batch/batch.hpp"
-#include "tracking/counters.hpp"
 #include "tracking/locate.hpp"
-#include "tracking/step.hpp"
 
 namespace dartcast {
 
@@ -68,19 +66,6 @@ class Particles {
 struct AddResult {
   Location location;
   std::uint32_t particle = 0xffffffffU;  ///< its index in the set; none (0xffffffff) unless the place is free
-};
-
-/// A particle stopped at a contact before its target.
-struct StoppedParticle {
-  std::uint32_t particle = 0;
-  Vec3 unused;  ///< displacement left, relative to the wall
-};
-
-struct StepReport {
-  ContactList contacts;                  ///< by particle, then by time
-  std::vector<HeldParticle> held;        ///< by particle
-  std::vector<StoppedParticle> stopped;  ///< by particle
-  Counters counters;
 };
 
 /// What becomes of a particle that an edit leaves in a blocked cell, or outside.
@@ -157,7 +142,7 @@ class Environment {
   void move(std::span<const Vec3> positions);
   /// The first simplex that is flattened while the vertices go to `positions`, those of all the mesh's points, on
   /// straight lines; nothing where all stay positive. It tells what of the environment meets itself, when and how.
-  /// Nothing is moved. Throws and costs as complex/first_inversion.hpp.
+  /// Nothing is moved. Throws and costs as dartcast/validity.hpp.
   [[nodiscard]] std::optional<CellInversion> first_inversion(std::span<const Vec3> positions) const;
   /// move() to `positions` where nothing is flattened on the straight way there; else as far as `share`, in [0, 1], of
   /// the way to the first flattening, so that every simplex stays positive. Returns the fraction of the way made.

@@ -1,4 +1,4 @@
-// Boxes of cubes, each cube one hexahedron or cut into smaller cells.
+// Meshes made by the library: boxes, octahedra, vessels, barrels; rectangles and mazes of the plane.
 #pragma once
 
 #include <array>
@@ -7,6 +7,8 @@
 #include "dartcast/mesh_data.hpp"
 
 namespace dartcast {
+
+// Boxes of cubes, each cube one hexahedron or cut into smaller cells.
 
 struct BoxOptions {
   std::array<std::uint32_t, 3> cells = {1, 1, 1};  ///< cubes along x, y and z
@@ -36,5 +38,147 @@ BoxOptions bar_options();
 
 /// generate_box(bar_options()).
 MeshData generate_bar();
+
+// A block of truncated octahedra: real polyhedra that fill space.
+
+struct OctahedraOptions {
+  std::array<std::uint32_t, 3> cells = {1, 1, 1};  ///< cubes of the packing's lattice; two octahedra in each
+  Vec3 origin = {0.0, 0.0, 0.0};
+  Vec3 size = {1.0, 1.0, 1.0};  ///< edge lengths of the lattice: cells cubes of size / cells
+  bool blocked_layer = false;   ///< the octahedra at the block's boundary are blocked
+  double blocked_share = 0.0;   ///< of the others, this share (rounded to whole cells) is blocked at random
+  std::uint64_t seed = 1;       ///< for all that is random: the same seed gives the same bits everywhere
+};
+
+/// A conforming mesh of 2 nx ny nz polyhedra, each with 8 hexagons and 6 squares: the body-centred cubic packing. Cube
+/// (i, j, k), x fastest, has one octahedron around its middle and one around its highest corner, so the block reaches
+/// half a cube beyond `size`. Coordinates are origin + size u / (4 n) with integers u: where size / (4 cells) is a
+/// double of few digits, they are exact, and every face is exactly plane. Patch 1, "boundary": the block's ragged
+/// outside. `free` is filled where a cell is blocked.
+///
+/// Throws InvalidArgument: no cubes along an axis, 2^29 cells or more, a size that is not positive, a number that is
+/// not finite, a share outside [0, 1]. Cost: about 2 us per cell.
+MeshData generate_octahedra(const OctahedraOptions& options);
+
+// A blood vessel that branches: one inlet, two outlets, tissue around.
+
+/// SI units: metres, radians, metres per second.
+struct VesselOptions {
+  double radius = 3e-3;                                   ///< of the trunk's lumen
+  double trunk_length = 30e-3;                            ///< along the centre line, in whole steps
+  std::array<double, 2> branch_lengths = {36e-3, 30e-3};  ///< left, right
+  double branch_radius = 0.79;  ///< of each branch, as a share of `radius`; Murray's law asks for 0.794
+  double branch_angle = 0.6;    ///< between the trunk's and each branch's direction, in one plane
+  double out_of_plane = 0.5;    ///< by how much the trunk and, further on, the branches turn out of that plane
+  double tissue_thickness = 1.5e-3;
+  std::uint32_t core = 6;           ///< cells across the square in the middle of each half of the lumen
+  std::uint32_t rings = 3;          ///< rings of cells around that square
+  std::uint32_t tissue_layers = 2;  ///< layers of cells through the tissue
+  double step_length = 0.9e-3;      ///< of a cell along the centre line
+  double peak_speed = 0.3;          ///< of the flow, in the middle of the inlet
+};
+
+/// A conforming mesh of hexahedra, with prisms where the tissue between the branches begins. The trunk comes along z
+/// and is made of two halves sewn along a plane; at the carina (the origin) they part, and each becomes round along its
+/// own branch, the left one towards -x, the right one towards +x. At the default options: 20,948 cells, 15,012 of them
+/// lumen.
+///
+/// Regions: 1 "lumen" (free), 2 "tissue" (blocked). Patches: 1 "inlet", 2 "outlet_left", 3 "outlet_right" (the lumen's
+/// ends), 4 "wall" (the faces between lumen and tissue, seen from the lumen), 5 "outer" (the tissue's outside, with its
+/// ends). Point data:
+///  - "velocity" (3): along the vessel, a paraboloid over the inlet, 0 on the wall and in the tissue. The flux through
+///  each section is the
+///    same, half of it in each branch; between sections the field is free of divergence as far as the mesh resolves it.
+///  - "pulse_direction" (3): from the centre line to the point, in its section: the vessel widens by a share a in
+///  radius where
+///    points move by a times this.
+///  - "path_length" (1): along the centre line from the inlet.
+///
+/// Throws InvalidArgument where an option is out of the range in which every cell is positive: radius > 0, trunk_length
+/// >= 4 radii, branch_lengths
+/// >= 6 radii, branch_radius in [0.7, 0.85], branch_angle in [0.4, 0.8], out_of_plane in [0, 0.7], tissue_thickness in
+/// [0.2, 0.8] radii, core in [2, 64], rings in [1, 32], tissue_layers in [1, 32], step_length in [0.02, 0.5] radii,
+/// peak_speed finite. Cost: about 2 us per cell.
+MeshData generate_vessel(const VesselOptions& options = {});
+
+// The surface of a barrel: staves that bulge, and two heads.
+
+/// SI units.
+struct BarrelOptions {
+  double height = 0.5;        ///< along z
+  double radius = 0.2;        ///< of the heads
+  double bulge = 0.05;        ///< by how much the radius is greater in the middle
+  std::uint32_t staves = 24;  ///< around, each of them flat across
+  std::uint32_t rows = 16;    ///< of quadrilaterals along a stave
+  std::uint32_t rings = 4;    ///< of faces on each head, a fan of triangles in the middle
+  Vec3 centre = {0.0, 0.0, 0.0};
+};
+
+/// A closed surface in space, its faces counterclockwise seen from the outside: what check_and_repair_surface() accepts
+/// as it is. The radius at height s from the middle is radius + bulge (1 - (2 s / height)^2), at the staves' edges.
+/// Points: those of the staves, staves (rows + 1) of them from the lower head up; then those inside the lower and the
+/// upper head. They are at equal distances along heights and radii, so that they sample the barrel, too. Regions: 1
+/// "staves", 2 "heads".
+///
+/// Throws InvalidArgument where a length is not positive (bulge: negative) or not finite, staves are fewer than 3 or
+/// more than 2^14, rows or rings none or more than 2^14.
+MeshData generate_barrel(const BarrelOptions& options = {});
+
+// Rectangles of squares in the plane, each square one quadrilateral, cut into triangles, or merged into hexagons.
+
+struct RectangleOptions {
+  std::array<std::uint32_t, 2> cells = {1, 1};  ///< squares along x and y
+  std::array<double, 2> origin = {0.0, 0.0};    ///< the lowest corner
+  std::array<double, 2> size = {1.0, 1.0};      ///< edge lengths of the whole rectangle
+  CellType type = CellType::quadrilateral;      ///< each square is 1 quadrilateral or 2 triangles; or see below
+  bool mixed = false;                           ///< instead of `type`: all three at random, still conforming
+  double blocked_share = 0.0;  ///< this share of the squares (rounded to whole squares) is blocked at random
+  double jitter = 0.0;         ///< inner lattice points move by up to jitter / 2 square edges along each axis
+  std::uint64_t seed = 1;      ///< for all that is random: the same seed gives the same bits everywhere
+};
+
+/// The largest jitter that leaves every cell strictly convex, so that its fan from any corner is positive. A corner of
+/// a square keeps at least 1 - 2 jitter of its area, one of a hexagon 1 - 3 jitter.
+inline constexpr double largest_square_jitter = 0.45;
+inline constexpr double largest_polygon_jitter = 0.3;
+
+/// A conforming mesh of a rectangle, all z = 0. Point (i, j) of the lattice lies at origin + size * i / nx and so on:
+/// exactly on integers where size equals cells. Points come in the order i + (nx + 1) j, and so do squares, x fastest.
+/// Polygons are hexagons: of every third inner point of the lattice ((i + j) a multiple of 3) the six triangles around
+/// it are merged, and the point is left out; what is left of the squares are quadrilaterals and triangles. Hexagons
+/// come after all other cells. Patches 1 to 4 ("xmin", "xmax", "ymin", "ymax") are the rectangle's sides. `free` is
+/// filled where a square is to be blocked; cells are merged only from squares that are all free or all blocked.
+///
+/// Throws InvalidArgument: no squares along an axis, 2^29 cells or more, a size that is not positive, a number that is
+/// not finite, a share outside [0, 1], a jitter that is negative or above the largest, cells of space asked for. Cost:
+/// about 0.1 us a cell.
+MeshData generate_rectangle(const RectangleOptions& options);
+
+// Mazes in the plane: rooms full of obstacles, joined by doors.
+
+struct MazeOptions {
+  std::array<std::uint32_t, 2> rooms = {4, 4};  ///< columns and rows
+  std::uint32_t room_cells = 8;                 ///< squares along a room's edge
+  std::uint32_t door_cells = 2;                 ///< squares that a door is wide
+  std::uint32_t obstacles = 4;                  ///< squares blocked in each room; fewer where more would cut it
+  double extra_doors = 0.1;  ///< doors that no room needs: this share (rounded down) of the walls left without one
+  std::array<double, 2> origin = {0.0, 0.0};  ///< the lowest corner
+  std::array<double, 2> size = {1.0, 1.0};    ///< edge lengths of the whole maze
+  CellType type = CellType::quadrilateral;    ///< cells, as in RectangleOptions
+  bool mixed = false;
+  double jitter = 0.0;     ///< as in RectangleOptions, with its bounds
+  std::uint64_t seed = 1;  ///< for all that is random: the same seed gives the same bits everywhere
+};
+
+/// A generate_rectangle() of columns (room_cells + 1) - 1 by rows (room_cells + 1) - 1 squares. Between rooms the
+/// squares are blocked, one deep, apart from doors; a random spanning tree of the rooms has them, and some other walls.
+/// Within rooms obstacles are blocked one by one where what is left of the room and its doors stays connected. So all
+/// free cells are connected by edges between free cells, and every room has some. All boundary edges are in patch 1,
+/// "border".
+///
+/// Throws InvalidArgument: no rooms along an axis, rooms without squares, doors without squares or wider than a room,
+/// as many obstacles as a room has squares, a share outside [0, 1], and as generate_rectangle() does. Cost: about 0.1
+/// us a cell, and of obstacles about 10 ns times the squares of a room each.
+MeshData generate_maze(const MazeOptions& options);
 
 }  // namespace dartcast

@@ -56,6 +56,18 @@ struct CellFace {
   constexpr auto operator<=>(const CellFace&) const = default;
 };
 
+/// Names an implicit simplex: a cell and the number of one of its shape's simplices.
+struct SimplexId {
+  Cell cell;
+  std::uint16_t simplex = 0;
+
+  [[nodiscard]] constexpr bool valid() const { return cell.valid(); }
+  constexpr auto operator<=>(const SimplexId&) const = default;
+};
+
+/// The kind of cell of the map in whose interior a point lies; the value is its dimension.
+enum class Kind : std::uint8_t { vertex = 0, edge = 1, face = 2, volume = 3 };
+
 /// A named group of wall faces; 0 is the unnamed rest.
 struct Patch {
   std::uint16_t value = 0;

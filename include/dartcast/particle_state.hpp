@@ -4,10 +4,12 @@
 #include <array>
 #include <cstdint>
 
-#include "complex/simplex.hpp"
-#include "dartcast/combinatorial_map.hpp"
+#include "dartcast/ids.hpp"
+#include "dartcast/vec3.hpp"
 
 namespace dartcast {
+
+class CombinatorialMap;
 
 /// A plain record. It says: `position` lies in the closed simplex named, and the cell is free (guarantee G3). The walls
 /// are those of the last contact, until the particle leaves them.
@@ -26,6 +28,9 @@ struct ParticleState {
     simplex = s.simplex;
   }
 };
+
+/// Barycentric coordinates that a held particle keeps; in the plane the fourth is 0.
+using Weights = std::array<double, 4>;
 
 /// The paper's k and i, derived from a state.
 struct Forecast {
@@ -46,5 +51,15 @@ struct Placement {
   Dart dart;
 };
 Placement placement(const CombinatorialMap& map, SimplexId simplex, const Corners& corners, const Vec3& x);
+
+/// Where a point is.
+enum class Place : std::uint8_t { free, blocked, outside };
+
+struct Location {
+  Place place = Place::outside;
+  SimplexId simplex;         ///< invalid outside
+  Kind kind = Kind::volume;  ///< of the cell of the map that holds the point in its interior
+  Dart dart;                 ///< of that face, edge or vertex; invalid for a volume
+};
 
 }  // namespace dartcast

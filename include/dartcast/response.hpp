@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "dartcast/contact.hpp"
-#include "dartcast/environment.hpp"
+#include "dartcast/step.hpp"
 #include "dartcast/vec3.hpp"
 
 namespace dartcast {

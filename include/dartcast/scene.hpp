@@ -1,4 +1,4 @@
-// A scene: all that a run needs, as plain data. Files of scenes: dartcast/scene_file.hpp; their keys: docs/scene.md.
+// A scene: all that a run needs, as plain data. Files of scenes: dartcast/run.hpp; their keys: docs/scene.md.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,6 @@
 #include <variant>
 #include <vector>
 
-#include "dartcast/adaptive_subdivision.hpp"
 #include "dartcast/bodies.hpp"
 #include "dartcast/catheter.hpp"
 #include "dartcast/deformation.hpp"
@@ -19,11 +18,6 @@
 #include "dartcast/sampling.hpp"
 #include "dartcast/simulation.hpp"
 #include "dartcast/velocity_field.hpp"
-#include "generators/generate_barrel.hpp"
-#include "generators/generate_maze.hpp"
-#include "generators/generate_octahedra.hpp"
-#include "generators/generate_rectangle.hpp"
-#include "generators/generate_vessel.hpp"
 
 namespace dartcast {
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "base/random.hpp"
-#include "dartcast/adaptive_subdivision.hpp"
+#include "dartcast/audit.hpp"
 #include "dartcast/deformation.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/remeshing.hpp"
@@ -21,11 +21,13 @@
 #include "dartcast/spheres.hpp"
 #include "dartcast/velocity_field.hpp"
 #include "dynamics/collider.hpp"
-#include "environment/state_hash.hpp"
 #include "simulation/seeding.hpp"
 #include "simulation/sphere_bodies.hpp"
 
 namespace dartcast {
+
+class AdaptiveSubdivision;
+struct AdaptiveSubdivisionReport;
 
 /// The limits of a step's duration in seconds. Speeds and displacements then neither overflow nor vanish.
 inline constexpr double smallest_dt = 0x1p-100;

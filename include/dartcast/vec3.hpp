@@ -1,6 +1,7 @@
 // Points and vectors in space: three doubles, nothing else.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <compare>
 
@@ -30,5 +31,10 @@ constexpr Vec3 cross(const Vec3& a, const Vec3& b) {
 }
 inline double norm(const Vec3& a) { return std::sqrt(dot(a, a)); }
 inline bool is_finite(const Vec3& a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
+
+/// The corners of a simplex of space.
+using Corners = std::array<Vec3, 4>;
+/// Of the plane; z is not read.
+using PlaneCorners = std::array<Vec3, 3>;
 
 }  // namespace dartcast

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "complex/simplex.hpp"
 #include "dartcast/bodies.hpp"
 #include "tracking/carry.hpp"
 

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/parallel.hpp"
 #include "dartcast/error.hpp"
 #include "mesh/box_tree.hpp"
 

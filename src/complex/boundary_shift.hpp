@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "dartcast/transaction.hpp"
+#include "dartcast/map_edits.hpp"
 #include "dartcast/vec3.hpp"
 
 namespace dartcast {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "complex/boundary_shift.hpp"
+#include "complex/created_positions.hpp"
 #include "complex/place_steiner_points.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/validity.hpp"
@@ -22,19 +23,25 @@ std::uint64_t simplices_of(const CombinatorialMap& map, std::span<const Cell> ce
 
 }  // namespace
 
+struct ComplexEdit::Created : detail::CreatedPositions<AlignedVector<Vec3>> {
+  using CreatedPositions::CreatedPositions;
+};
+
 ComplexEdit::ComplexEdit(CellComplex& complex)
-    : complex_(complex), transaction_(complex.map_), created_(transaction_, complex.front_) {}
+    : complex_(complex),
+      transaction_(complex.map_),
+      created_(std::make_unique<Created>(transaction_, complex.front_)) {}
 
-ComplexEdit::~ComplexEdit() { created_.give_up(); }
+ComplexEdit::~ComplexEdit() { created_->give_up(); }
 
-Vec3 ComplexEdit::position(Vertex v) { return created_.at(v); }
+Vec3 ComplexEdit::position(Vertex v) { return created_->at(v); }
 
 // Returns its number among the new ones.
 std::size_t ComplexEdit::place_created(Vertex v, const Vec3& x) {
   if (map().dimension() == 2 && x.z != 0.0)
     throw InvalidArgument(
         fmt::format("place: vertex {} would be at ({}, {}, {}): in the plane z must be 0", v.value, x.x, x.y, x.z));
-  return created_.place(v, x);
+  return created_->place(v, x);
 }
 
 void ComplexEdit::place(Vertex v, const Vec3& x) { means_.erase(place_created(v, x)); }
@@ -52,15 +59,15 @@ void ComplexEdit::place(Vertex v, std::span<const Vertex> of, std::span<const do
 void ComplexEdit::roll_back(const Transaction::Savepoint& to) {
   transaction_.roll_back(to);
   means_.erase(means_.lower_bound(transaction_.created_count()), means_.end());
-  created_.take();
+  created_->take();
 }
 
 ComplexEditReport ComplexEdit::commit() {
   try {
-    created_.take();
-    const std::size_t created = created_.count();
+    created_->take();
+    const std::size_t created = created_->count();
     PlacedSteinerPoints given = place_steiner_points(transaction_, complex_.front_);
-    created_.take();
+    created_->take();
     given.weights.compute(complex_.front_);
     check_added();
     ComplexEditReport report = make_final(given.weights, created);
@@ -137,7 +144,7 @@ ComplexEditReport ComplexEdit::make_final(const SteinerWeights& points, std::siz
     for (const Vertex v : news) complex_.back_[v.value] = complex_.front_[v.value];
   }
   std::erase_if(complex_.invalid_, [&](const InvalidCell& c) { return !map().contains(c.cell); });
-  created_.keep();
+  created_->keep();
   means_.clear();
   return report;
 }

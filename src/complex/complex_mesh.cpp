@@ -1,7 +1,7 @@
-#include "complex/complex_mesh.hpp"
-
 #include <utility>
 #include <vector>
+
+#include "dartcast/cell_complex.hpp"
 
 namespace dartcast {
 

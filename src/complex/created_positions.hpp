@@ -6,8 +6,8 @@
 #include <string>
 
 #include "dartcast/error.hpp"
+#include "dartcast/map_edits.hpp"
 #include "dartcast/predicates.hpp"
-#include "dartcast/transaction.hpp"
 
 namespace dartcast::detail {
 

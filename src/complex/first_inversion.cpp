@@ -1,14 +1,14 @@
-#include "complex/first_inversion.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
 #include <vector>
 
+#include "base/parallel.hpp"
 #include "complex/steiner_points.hpp"
 #include "complex/volume_cubic.hpp"
 #include "dartcast/error.hpp"
+#include "dartcast/validity.hpp"
 
 namespace dartcast {
 

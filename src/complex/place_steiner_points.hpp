@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "complex/steiner_weights.hpp"
-#include "dartcast/transaction.hpp"
+#include "dartcast/cell_complex.hpp"
+#include "dartcast/map_edits.hpp"
 
 namespace dartcast {
 

@@ -8,31 +8,11 @@
 #include <cstdint>
 #include <limits>
 
+#include "dartcast/cell_complex.hpp"
 #include "dartcast/ids.hpp"
 #include "dartcast/predicates.hpp"
 
 namespace dartcast {
-
-/// Names an implicit simplex: a cell and the number of one of its shape's simplices.
-struct SimplexId {
-  Cell cell;
-  std::uint16_t simplex = 0;
-
-  [[nodiscard]] constexpr bool valid() const { return cell.valid(); }
-  constexpr auto operator<=>(const SimplexId&) const = default;
-};
-
-/// The corners of a simplex of space.
-using Corners = std::array<Vec3, 4>;
-/// Of the plane; z is not read.
-using PlaneCorners = std::array<Vec3, 3>;
-
-/// A triangle of the plane as a tetrahedron: the fourth corner is one above the first. Its volume is a third of the
-/// triangle's area, and what is asked of a point of the plane, and of the first three facets, has the same answer.
-inline Corners raised(const Corners& v) {
-  const auto flat = [](const Vec3& p) { return Vec3{p.x, p.y, 0.0}; };
-  return {flat(v[0]), flat(v[1]), flat(v[2]), Vec3{v[0].x, v[0].y, 1.0}};
-}
 
 /// The corners of the facet opposite to corner i, so that orient3d(a, b, c, x) is positive on the side of corner i; in
 /// the plane orient2d(a, b, x).

@@ -1,9 +1,8 @@
-#include "complex/simplex_inversion.hpp"
-
 #include <bit>
 #include <cmath>
 
 #include "complex/volume_cubic.hpp"
+#include "dartcast/validity.hpp"
 
 namespace dartcast {
 

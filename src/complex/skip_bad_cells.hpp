@@ -4,8 +4,8 @@
 #include <string_view>
 
 #include "base/parallel.hpp"
+#include "dartcast/mesh_check.hpp"
 #include "dartcast/mesh_data.hpp"
-#include "mesh/mesh_report.hpp"
 
 namespace dartcast {
 

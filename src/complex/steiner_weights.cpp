@@ -1,6 +1,6 @@
-#include "complex/steiner_weights.hpp"
-
 #include <utility>
+
+#include "dartcast/cell_complex.hpp"
 
 namespace dartcast {
 

@@ -6,7 +6,9 @@
 #include <string>
 #include <utility>
 
+#include "base/parallel.hpp"
 #include "complex/positive_cells.hpp"
+#include "complex/simplex.hpp"
 
 namespace dartcast {
 

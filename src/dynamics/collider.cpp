@@ -4,6 +4,7 @@
 #include <chrono>
 #include <utility>
 
+#include "base/parallel.hpp"
 #include "dartcast/error.hpp"
 
 namespace dartcast {

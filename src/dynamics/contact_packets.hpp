@@ -12,8 +12,8 @@
 #include <span>
 #include <vector>
 
-#include "base/aligned.hpp"
 #include "base/instruction_set.hpp"
+#include "dartcast/storage.hpp"
 #include "dartcast/vec3.hpp"
 
 namespace dartcast::detail {

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "base/aligned.hpp"
+#include "dartcast/storage.hpp"
 #include "dartcast/vec3.hpp"
 #include "dynamics/contact_packets.hpp"
 

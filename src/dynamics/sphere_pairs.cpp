@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/parallel.hpp"
 #include "dartcast/error.hpp"
 #include "tracking/step.hpp"
 

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "dartcast/map_edits.hpp"
-#include "editing/subdivide.hpp"
+#include "dartcast/remeshing.hpp"
 #include "topology/rework.hpp"
 
 namespace dartcast {

@@ -1,9 +1,8 @@
-#include "editing/ligature.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <unordered_set>
 
+#include "dartcast/cutting.hpp"
 #include "dartcast/error.hpp"
 #include "editing/sides.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "editing/tool.hpp"
+#include "dartcast/cutting.hpp"
 
 namespace dartcast::detail {
 

@@ -1,11 +1,10 @@
-#include "editing/reconnect.hpp"
-
 #include <algorithm>
 #include <limits>
 #include <set>
 
+#include "dartcast/cutting.hpp"
 #include "dartcast/error.hpp"
-#include "dartcast/map_queries.hpp"
+#include "dartcast/map_edits.hpp"
 #include "editing/cutter.hpp"
 #include "editing/face_set.hpp"
 #include "topology/rework.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "complex/cone_point.hpp"
-#include "topology/draft.hpp"
+#include "dartcast/map_edits.hpp"
 
 namespace dartcast::detail {
 

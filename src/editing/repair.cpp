@@ -2,6 +2,7 @@
 #include <optional>
 #include <unordered_set>
 
+#include "complex/simplex.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/remeshing.hpp"
 #include "editing/kernel_point.hpp"

@@ -1,8 +1,7 @@
-#include "editing/section.hpp"
-
 #include <cmath>
 #include <numeric>
 
+#include "dartcast/cutting.hpp"
 #include "dartcast/error.hpp"
 #include "editing/cutter.hpp"
 

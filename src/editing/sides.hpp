@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <unordered_map>
 
-#include "editing/section.hpp"
+#include "dartcast/cutting.hpp"
 
 namespace dartcast::detail {
 

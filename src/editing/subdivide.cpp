@@ -1,7 +1,6 @@
-#include "editing/subdivide.hpp"
-
 #include <algorithm>
 
+#include "dartcast/remeshing.hpp"
 #include "editing/outline.hpp"
 #include "topology/rework.hpp"
 

@@ -1,10 +1,9 @@
-#include "editing/tool.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <unordered_set>
 
+#include "dartcast/cutting.hpp"
 #include "dartcast/error.hpp"
 #include "editing/near.hpp"
 

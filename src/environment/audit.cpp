@@ -9,6 +9,8 @@
 #include <limits>
 #include <vector>
 
+#include "base/parallel.hpp"
+
 namespace dartcast {
 
 namespace {

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <utility>
 
+#include "base/parallel.hpp"
+#include "complex/simplex.hpp"
 #include "complex/steiner_points.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_check.hpp"

@@ -1,9 +1,9 @@
-#include "environment/state_hash.hpp"
-
 #include <fmt/format.h>
 
 #include <bit>
 #include <initializer_list>
+
+#include "dartcast/audit.hpp"
 
 namespace dartcast {
 

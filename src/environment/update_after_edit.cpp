@@ -3,6 +3,8 @@
 #include <array>
 #include <utility>
 
+#include "base/parallel.hpp"
+#include "complex/simplex.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/error.hpp"
 #include "tracking/carry.hpp"

@@ -1,10 +1,8 @@
-#include "formats/check_mesh.hpp"
-
 #include <fmt/format.h>
 
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/error.hpp"
-#include "formats/read_surface.hpp"
+#include "dartcast/mesh_files.hpp"
 #include "formats/skip_in_file.hpp"
 
 namespace dartcast {

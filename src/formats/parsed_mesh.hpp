@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "dartcast/mesh_check.hpp"
 #include "dartcast/mesh_data.hpp"
-#include "mesh/mesh_report.hpp"
 
 namespace dartcast {
 

@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
+#include "dartcast/mesh_check.hpp"
 #include "dartcast/mesh_data.hpp"
 #include "formats/file_text.hpp"
-#include "mesh/mesh_report.hpp"
 
 namespace dartcast {
 

@@ -13,7 +13,6 @@
 #include "formats/medit.hpp"
 #include "formats/parsed_mesh.hpp"
 #include "formats/read_memory.hpp"
-#include "formats/read_surface.hpp"
 #include "formats/vtk_mesh.hpp"
 
 namespace dartcast {

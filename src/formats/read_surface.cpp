@@ -1,11 +1,10 @@
-#include "formats/read_surface.hpp"
-
 #include <fmt/format.h>
 
 #include <string>
 #include <utility>
 
 #include "dartcast/error.hpp"
+#include "dartcast/mesh_files.hpp"
 #include "formats/checked_file.hpp"
 #include "formats/file_text.hpp"
 #include "formats/obj.hpp"

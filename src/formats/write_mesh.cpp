@@ -1,5 +1,3 @@
-#include "formats/write_mesh.hpp"
-
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -10,6 +8,7 @@
 #include <system_error>
 
 #include "dartcast/error.hpp"
+#include "dartcast/mesh_files.hpp"
 #include "formats/gmsh.hpp"
 #include "formats/medit.hpp"
 #include "formats/vtk_mesh.hpp"

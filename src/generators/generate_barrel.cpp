@@ -1,10 +1,9 @@
-#include "generators/generate_barrel.hpp"
-
 #include <array>
 #include <cmath>
 #include <numbers>
 
 #include "dartcast/error.hpp"
+#include "dartcast/generators.hpp"
 
 namespace dartcast {
 

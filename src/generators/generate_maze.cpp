@@ -1,5 +1,3 @@
-#include "generators/generate_maze.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 
 #include "base/random.hpp"
 #include "dartcast/error.hpp"
+#include "dartcast/generators.hpp"
 #include "dartcast/ids.hpp"
 #include "generators/generate_squares.hpp"
 

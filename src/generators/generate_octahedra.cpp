@@ -1,5 +1,3 @@
-#include "generators/generate_octahedra.hpp"
-
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -7,6 +5,7 @@
 #include <vector>
 
 #include "dartcast/error.hpp"
+#include "dartcast/generators.hpp"
 #include "dartcast/ids.hpp"
 #include "generators/generate_blocked.hpp"
 

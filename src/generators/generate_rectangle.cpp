@@ -1,7 +1,6 @@
-#include "generators/generate_rectangle.hpp"
-
 #include <vector>
 
+#include "dartcast/generators.hpp"
 #include "generators/generate_blocked.hpp"
 #include "generators/generate_squares.hpp"
 

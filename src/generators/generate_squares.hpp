@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "generators/generate_rectangle.hpp"
+#include "dartcast/generators.hpp"
 
 namespace dartcast {
 

@@ -1,5 +1,3 @@
-#include "generators/generate_vessel.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <vector>
 
 #include "dartcast/error.hpp"
+#include "dartcast/generators.hpp"
 #include "generators/vessel_section.hpp"
 #include "mesh/faces.hpp"
 

@@ -1,5 +1,3 @@
-#include "mesh/patches.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -14,6 +12,7 @@
 #include <vector>
 
 #include "dartcast/error.hpp"
+#include "dartcast/mesh_selection.hpp"
 #include "mesh/faces.hpp"
 
 namespace dartcast {

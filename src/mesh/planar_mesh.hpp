@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "dartcast/mesh_check.hpp"
 #include "dartcast/mesh_data.hpp"
 #include "mesh/conformity.hpp"
 #include "mesh/faces.hpp"
-#include "mesh/mesh_report.hpp"
 
 namespace dartcast {
 

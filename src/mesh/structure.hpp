@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "dartcast/mesh_check.hpp"
 #include "dartcast/mesh_data.hpp"
-#include "mesh/mesh_report.hpp"
 
 namespace dartcast {
 

@@ -8,9 +8,9 @@
 #include <type_traits>
 
 #include "dartcast/error.hpp"
+#include "dartcast/mesh_files.hpp"
+#include "dartcast/run.hpp"
 #include "formats/file_text.hpp"
-#include "formats/write_mesh.hpp"
-#include "output/summary.hpp"
 
 namespace dartcast {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "complex/complex_mesh.hpp"
+#include "dartcast/cell_complex.hpp"
 #include "formats/vtk_mesh.hpp"
 
 namespace dartcast {

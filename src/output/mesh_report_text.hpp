@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "mesh/mesh_report.hpp"
+#include "dartcast/mesh_check.hpp"
 
 namespace dartcast {
 

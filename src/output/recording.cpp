@@ -10,9 +10,9 @@
 #include <string_view>
 
 #include "dartcast/error.hpp"
+#include "dartcast/mesh_files.hpp"
 #include "dartcast/particle_state.hpp"
 #include "formats/vtp_write.hpp"
-#include "formats/write_mesh.hpp"
 #include "output/run_files.hpp"
 #include "output/run_lock.hpp"
 

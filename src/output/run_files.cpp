@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "dartcast/error.hpp"
-#include "formats/write_mesh.hpp"
+#include "dartcast/mesh_files.hpp"
 
 namespace dartcast {
 

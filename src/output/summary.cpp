@@ -1,9 +1,9 @@
-#include "output/summary.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
+
+#include "dartcast/run.hpp"
 
 namespace dartcast {
 

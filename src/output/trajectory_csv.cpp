@@ -1,5 +1,3 @@
-#include "output/trajectory_csv.hpp"
-
 #include <fmt/format.h>
 
 #include "dartcast/trajectory.hpp"

@@ -1,5 +1,3 @@
-#include "output/trajectory_svg.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>

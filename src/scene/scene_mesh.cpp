@@ -12,7 +12,6 @@
 #include "dartcast/mesh_selection.hpp"
 #include "formats/checked_file.hpp"
 #include "formats/skip_in_file.hpp"
-#include "mesh/patches.hpp"
 
 namespace dartcast {
 

@@ -10,10 +10,10 @@
 
 #include "base/parallel.hpp"
 #include "dartcast/error.hpp"
+#include "dartcast/mesh_check.hpp"
 #include "dartcast/mesh_data.hpp"
 #include "dartcast/mesh_files.hpp"
 #include "dartcast/scene.hpp"
-#include "mesh/mesh_report.hpp"
 
 namespace dartcast {
 

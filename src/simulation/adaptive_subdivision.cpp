@@ -1,5 +1,3 @@
-#include "dartcast/adaptive_subdivision.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <utility>
 
 #include "dartcast/error.hpp"
+#include "dartcast/events.hpp"
 
 namespace dartcast {
 

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/parallel.hpp"
 #include "dartcast/error.hpp"
 
 namespace dartcast {

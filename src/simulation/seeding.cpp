@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "complex/simplex.hpp"
 #include "dartcast/error.hpp"
 
 namespace dartcast {

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <utility>
 
+#include "base/parallel.hpp"
+#include "complex/simplex.hpp"
 #include "dartcast/error.hpp"
 #include "simulation/polyline.hpp"
 #include "tracking/carry.hpp"

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "base/parallel.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/simulation.hpp"
 #include "tracking/representable_point.hpp"

@@ -3,6 +3,7 @@
 #include <numbers>
 #include <vector>
 
+#include "base/parallel.hpp"
 #include "dartcast/simulation.hpp"
 
 namespace dartcast {

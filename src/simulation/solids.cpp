@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "dartcast/error.hpp"
-#include "formats/read_surface.hpp"
+#include "dartcast/mesh_files.hpp"
 
 namespace dartcast {
 

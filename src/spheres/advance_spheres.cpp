@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/spheres.hpp"
 #include "spheres/sphere_run.hpp"

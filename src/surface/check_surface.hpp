@@ -1,8 +1,8 @@
 // Judging a surface in space before anything is built from it.
 #pragma once
 
+#include "dartcast/mesh_check.hpp"
 #include "dartcast/mesh_data.hpp"
-#include "mesh/mesh_report.hpp"
 
 namespace dartcast {
 

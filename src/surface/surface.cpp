@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/parallel.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/predicates.hpp"
 #include "surface/check_surface.hpp"

@@ -1,10 +1,10 @@
-#include "surface/surface_advance.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "base/parallel.hpp"
 #include "dartcast/error.hpp"
+#include "dartcast/surface.hpp"
 
 namespace dartcast {
 

@@ -1,6 +1,6 @@
-#include "surface/surface_contact.hpp"
-
 #include <cmath>
+
+#include "dartcast/surface.hpp"
 
 namespace dartcast {
 

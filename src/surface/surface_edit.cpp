@@ -1,31 +1,36 @@
-#include "surface/surface_edit.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <utility>
 
+#include "complex/created_positions.hpp"
 #include "dartcast/error.hpp"
-#include "surface/surface_locator.hpp"
+#include "dartcast/surface.hpp"
 
 namespace dartcast {
 
+struct SurfaceEdit::Created : detail::CreatedPositions<std::vector<Vec3>> {
+  using CreatedPositions::CreatedPositions;
+};
+
 SurfaceEdit::SurfaceEdit(Surface& surface)
-    : surface_(surface), transaction_(surface.map_), created_(transaction_, surface.positions_) {}
+    : surface_(surface),
+      transaction_(surface.map_),
+      created_(std::make_unique<Created>(transaction_, surface.positions_)) {}
 
-SurfaceEdit::~SurfaceEdit() { created_.give_up(); }
+SurfaceEdit::~SurfaceEdit() { created_->give_up(); }
 
-Vec3 SurfaceEdit::position(Vertex v) { return created_.at(v); }
+Vec3 SurfaceEdit::position(Vertex v) { return created_->at(v); }
 
-void SurfaceEdit::place(Vertex v, const Vec3& x) { created_.place(v, x); }
+void SurfaceEdit::place(Vertex v, const Vec3& x) { created_->place(v, x); }
 
 SurfaceEditReport SurfaceEdit::commit() {
-  created_.take();
+  created_->take();
   for (const Cell c : transaction_.added()) {
     if (!surface_.has_flat_triangle(c, surface_.positions_)) continue;
     const std::uint32_t source = map().source(c);
     transaction_.roll_back();
-    created_.take();
+    created_->take();
     throw EditRefused(
         fmt::format("face {} would have a triangle without area: split it at the vertices on its edges", source));
   }
@@ -38,7 +43,7 @@ SurfaceEditReport SurfaceEdit::commit() {
   std::sort(report.gone.begin(), report.gone.end(),
             [](const auto& a, const auto& b) { return a.triangle < b.triangle; });
   report.map = transaction_.commit();
-  created_.keep();
+  created_->keep();
   return report;
 }
 

@@ -1,5 +1,3 @@
-#include "surface/surface_locator.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +6,8 @@
 
 #include "dartcast/error.hpp"
 #include "dartcast/predicates.hpp"
+#include "dartcast/surface.hpp"
+#include "mesh/box_tree.hpp"
 
 namespace dartcast {
 
@@ -86,16 +86,25 @@ SurfaceLocation nearest_in_triangle(const Surface& surface, SimplexId triangle, 
   return out;
 }
 
-SurfaceLocator::SurfaceLocator(const Surface& surface)
-    : triangles_(triangles_by_source(surface)), tree_(boxes_of_triangles(surface, triangles_)) {
-  const auto count = static_cast<double>(triangles_.size());
-  bounds_ = box_of_triangle(surface, triangles_.front());
-  for (const SimplexId t : triangles_) {
-    const Box box = box_of_triangle(surface, t);
-    bounds_ = join(bounds_, box);
-    start_ += longest_side(box) / (2.0 * count);
+struct SurfaceLocator::Tree {
+  std::vector<SimplexId> triangles;  // by face of the mesh
+  BoxTree boxes;
+  Box bounds;
+  double start = 0.0;  // a first guess at a distance: half the mean size of the triangles
+
+  explicit Tree(const Surface& surface)
+      : triangles(triangles_by_source(surface)), boxes(boxes_of_triangles(surface, triangles)) {
+    const auto count = static_cast<double>(triangles.size());
+    bounds = box_of_triangle(surface, triangles.front());
+    for (const SimplexId t : triangles) {
+      const Box box = box_of_triangle(surface, t);
+      bounds = join(bounds, box);
+      start += longest_side(box) / (2.0 * count);
+    }
   }
-}
+};
+
+SurfaceLocator::SurfaceLocator(const Surface& surface) : tree_(std::make_shared<const Tree>(surface)) {}
 
 // A place at a distance up to r lies in the box of that size around x, and so its triangle's box overlaps it: the best
 // of these is the best of all if it is no farther.
@@ -103,13 +112,13 @@ SurfaceLocation SurfaceLocator::nearest(const Surface& surface, const Vec3& x) c
   if (!in_exact_range(x))
     throw InvalidArgument("nearest: a point's coordinates must be finite, and at most 2^300 in magnitude");
   const auto padded = [](double r) { return r * (1.0 + 0x1p-40); };
-  double r = padded(distance_to(bounds_, x)) + start_;
+  double r = padded(distance_to(tree_->bounds, x)) + tree_->start;
   while (true) {
     std::uint32_t best = 0xffffffffU;
     SurfaceLocation found;
     found.distance = std::numeric_limits<double>::infinity();
-    tree_.query(box_around(x, r), [&](std::uint32_t i) {
-      const SurfaceLocation here = nearest_in_triangle(surface, triangles_[i], x);
+    tree_->boxes.query(box_around(x, r), [&](std::uint32_t i) {
+      const SurfaceLocation here = nearest_in_triangle(surface, tree_->triangles[i], x);
       if (here.distance < found.distance || (here.distance == found.distance && i < best)) {
         found = here;
         best = i;

@@ -1,5 +1,3 @@
-#include "surface/surface_step.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -7,6 +5,7 @@
 
 #include "dartcast/error.hpp"
 #include "dartcast/predicates.hpp"
+#include "dartcast/surface.hpp"
 #include "surface/fan.hpp"
 #include "surface/unfold.hpp"
 

@@ -1,8 +1,8 @@
 // What a surface can be used with, but its maker may not have meant.
 #pragma once
 
+#include "dartcast/mesh_check.hpp"
 #include "dartcast/mesh_data.hpp"
-#include "mesh/mesh_report.hpp"
 
 namespace dartcast {
 

@@ -1,9 +1,8 @@
-#include "topology/draft.hpp"
-
 #include <algorithm>
 #include <array>
 #include <numeric>
 
+#include "dartcast/map_edits.hpp"
 #include "mesh/cell_types.hpp"
 #include "topology/cell_form.hpp"
 #include "topology/key_table.hpp"

@@ -1,6 +1,6 @@
-#include "topology/integrity.hpp"
-
 #include <algorithm>
+
+#include "dartcast/map_edits.hpp"
 
 namespace dartcast {
 

@@ -1,7 +1,7 @@
 #include <initializer_list>
 #include <set>
 
-#include "dartcast/map_queries.hpp"
+#include "dartcast/map_edits.hpp"
 
 namespace dartcast {
 

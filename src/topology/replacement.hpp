@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "topology/draft.hpp"
+#include "dartcast/map_edits.hpp"
 
 namespace dartcast {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "dartcast/error.hpp"
-#include "dartcast/transaction.hpp"
+#include "dartcast/map_edits.hpp"
 
 namespace dartcast::detail {
 

@@ -1,8 +1,7 @@
-#include "topology/shape_table.hpp"
-
 #include <algorithm>
 
 #include "dartcast/error.hpp"
+#include "dartcast/storage.hpp"
 
 namespace dartcast {
 

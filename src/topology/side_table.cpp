@@ -1,6 +1,6 @@
-#include "topology/side_table.hpp"
-
 #include <algorithm>
+
+#include "dartcast/storage.hpp"
 
 namespace dartcast {
 

@@ -1,5 +1,3 @@
-#include "topology/stars.hpp"
-
 #include <algorithm>
 #include <bit>
 #include <utility>

@@ -1,9 +1,8 @@
-#include "dartcast/transaction.hpp"
-
 #include <algorithm>
 #include <numeric>
 
 #include "dartcast/error.hpp"
+#include "dartcast/map_edits.hpp"
 #include "topology/cell_form.hpp"
 
 namespace dartcast {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "complex/simplex.hpp"
 #include "dartcast/validity.hpp"
 #include "tracking/carry.hpp"
 

@@ -10,15 +10,6 @@
 
 namespace dartcast {
 
-enum class Place : std::uint8_t { free, blocked, outside };
-
-struct Location {
-  Place place = Place::outside;
-  SimplexId simplex;         ///< invalid outside
-  Kind kind = Kind::volume;  ///< of the cell of the map that holds the point in its interior
-  Dart dart;                 ///< of that face, edge or vertex; invalid for a volume
-};
-
 /// A grid over one complex at one instant: make it again after a move or an edit. Cost to make: linear in the cells.
 class Locator {
  public:

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "complex/simplex.hpp"
+#include "dartcast/combinatorial_map.hpp"
+
 namespace dartcast {
 
 Placement placement(const CombinatorialMap& map, SimplexId simplex, const Corners& corners, const Vec3& x) {

@@ -172,9 +172,9 @@ void search_plane_walls(const CombinatorialMap& map, SimplexId start, const Feat
 
 }  // namespace detail
 
-/// The same search for walls alone, around one or two vertices: from cell to cell, by their stars (topology/stars.hpp).
-/// Calls on_wall(SimplexId, CellView, ImplicitSimplex, facet) for each wall facet that holds the feature; it ends the
-/// search by returning false. Cost: linear in the number of cells around the feature.
+/// The same search for walls alone, around one or two vertices: from cell to cell, by their stars
+/// (dartcast/cell_shape.hpp). Calls on_wall(SimplexId, CellView, ImplicitSimplex, facet) for each wall facet that holds
+/// the feature; it ends the search by returning false. Cost: linear in the number of cells around the feature.
 template <std::size_t N = 4, class OnWall>
 void search_walls(const CombinatorialMap& map, SimplexId start, const Feature& feature, OnWall&& on_wall) {
   if constexpr (N == 3) return detail::search_plane_walls(map, start, feature, on_wall);

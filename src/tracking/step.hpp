@@ -9,41 +9,11 @@
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/contact.hpp"
 #include "dartcast/particle_state.hpp"
-#include "tracking/counters.hpp"
-#include "tracking/crossing.hpp"
+#include "dartcast/step.hpp"
+#include "dartcast/trace.hpp"
 #include "tracking/walk.hpp"
 
 namespace dartcast {
-
-struct StepOptions {
-  /// Contacts allowed to a particle in one step, at least 1; at the last one it is asked to slide.
-  unsigned max_contacts = 16;
-  /// How far the chord may be off the true motion relative to the vertices, as a share (> 0) of the local edge: a step
-  /// is split into ceil(sqrt(|A| |r| / (2 tolerance edge))) parts, A the displacement gradient of the vertices, r the
-  /// particle's own motion.
-  double tolerance = 0.05;
-  /// Parts at most, at least 1; a step that would need more is taken in this many.
-  unsigned max_parts = 256;
-};
-
-/// Throws InvalidArgument, which names the caller and the option, where one is out of range.
-void check(const StepOptions& options, const char* caller);
-
-/// A particle that a cell kept from its step, and why.
-struct HeldParticle {
-  std::uint32_t particle = 0;
-  Cell cell;  ///< the invalid cell: its own, or one on its way; or its own, which is blocked
-};
-
-struct StepResult {
-  bool held = false;
-  Cell invalid_cell;
-  bool stopped = false;  ///< at a contact that nothing followed
-  Vec3 unused;           ///< displacement left when it stopped, relative to the wall
-};
-
-/// Barycentric coordinates that a held particle keeps; in the plane the fourth is 0.
-using Weights = std::array<double, 4>;
 
 /// What is known of a wall's face that a walk has come to, inside of it.
 struct WallImpact {

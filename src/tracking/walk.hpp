@@ -17,7 +17,7 @@
 #include <type_traits>
 
 #include "dartcast/error.hpp"
-#include "tracking/counters.hpp"
+#include "dartcast/step.hpp"
 #include "tracking/space.hpp"
 #include "tracking/star.hpp"
 

@@ -1,11 +1,11 @@
 // Large arrays: where they start, what they keep as they grow, and that their memory is given back.
-#include "base/aligned.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cstdint>
 #include <fstream>
 #include <numeric>
+
+#include "dartcast/storage.hpp"
 
 namespace dartcast::test::aligned_test {
 

@@ -12,7 +12,7 @@
 #include "base/random.hpp"
 #include "bench/comparison.hpp"
 #include "dartcast/environment.hpp"
-#include "generators/generate_rectangle.hpp"
+#include "dartcast/generators.hpp"
 #include "support/scheme_pair.hpp"
 #include "support/tier.hpp"
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/random.hpp"
+#include "complex/simplex.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/response.hpp"

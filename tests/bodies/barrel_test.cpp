@@ -8,7 +8,6 @@
 #include "dartcast/audit.hpp"
 #include "dartcast/bodies.hpp"
 #include "dartcast/generators.hpp"
-#include "generators/generate_barrel.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::barrel_test {

@@ -8,8 +8,8 @@
 
 #include "base/random.hpp"
 #include "dartcast/error.hpp"
+#include "dartcast/mesh_files.hpp"
 #include "dartcast/sampling.hpp"
-#include "formats/read_surface.hpp"
 #include "support/closed_surfaces.hpp"
 #include "support/shared_data.hpp"
 #include "support/tier.hpp"

@@ -10,7 +10,7 @@
 #include "base/random.hpp"
 #include "bodies/inside.hpp"
 #include "dartcast/error.hpp"
-#include "formats/read_surface.hpp"
+#include "dartcast/mesh_files.hpp"
 #include "support/closed_surfaces.hpp"
 #include "support/shared_data.hpp"
 #include "support/tier.hpp"

@@ -9,7 +9,7 @@
 
 #include "dartcast/audit.hpp"
 #include "dartcast/error.hpp"
-#include "generators/generate_rectangle.hpp"
+#include "dartcast/generators.hpp"
 #include "support/catheter_scenes.hpp"
 #include "support/tier.hpp"
 

@@ -8,12 +8,13 @@
 #include <optional>
 
 #include "dartcast/error.hpp"
+#include "dartcast/map_edits.hpp"
+#include "dartcast/predicates.hpp"
 #include "dartcast/validity.hpp"
 #include "oracle/fraction.hpp"
 #include "support/edit_meshes.hpp"
 #include "support/random_edits.hpp"
 #include "support/tier.hpp"
-#include "topology/integrity.hpp"
 
 namespace dartcast::complex_edit_test {
 

@@ -1,6 +1,4 @@
 // The first flattening of a scene is that of its simplices taken one by one; a motion followed until then stays valid.
-#include "complex/first_inversion.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +11,6 @@
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/validity.hpp"
-#include "generators/generate_octahedra.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::first_flattening_test {

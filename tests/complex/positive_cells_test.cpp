@@ -10,7 +10,6 @@
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/validity.hpp"
-#include "generators/generate_octahedra.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::positive_cells_test {

@@ -1,6 +1,4 @@
 // The first flattening of a moving simplex, against Sturm's theorem over the integers.
-#include "complex/simplex_inversion.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <utility>
 
 #include "complex/volume_cubic.hpp"
+#include "dartcast/validity.hpp"
 #include "support/dyadic.hpp"
 #include "support/motions.hpp"
 #include "support/moving_simplex.hpp"

@@ -12,7 +12,6 @@
 #include "dartcast/environment.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
-#include "generators/generate_rectangle.hpp"
 #include "support/generate_checks.hpp"
 
 namespace dartcast::skip_bad_cells_test {

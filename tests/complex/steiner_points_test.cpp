@@ -10,12 +10,12 @@
 
 #include "base/random.hpp"
 #include "dartcast/generators.hpp"
+#include "dartcast/map_edits.hpp"
 #include "dartcast/mesh_check.hpp"
 #include "dartcast/validity.hpp"
 #include "support/generate_checks.hpp"
 #include "support/mixed_mesh.hpp"
 #include "support/tier.hpp"
-#include "topology/integrity.hpp"
 
 namespace dartcast::interior_test {
 

@@ -9,10 +9,8 @@
 #include <set>
 
 #include "base/random.hpp"
-#include "complex/first_inversion.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/map_edits.hpp"
-#include "generators/generate_octahedra.hpp"
 #include "support/generate_checks.hpp"
 
 namespace dartcast::validity_test {

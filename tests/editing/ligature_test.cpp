@@ -1,13 +1,12 @@
 // Ligatures: flooding tells that they seal, a motion that they can be drawn together.
-#include "editing/ligature.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include "base/random.hpp"
+#include "dartcast/cutting.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/error.hpp"
-#include "generators/generate_vessel.hpp"
+#include "dartcast/generators.hpp"
 #include "support/refusals.hpp"
 #include "support/surgery_checks.hpp"
 #include "support/tier.hpp"

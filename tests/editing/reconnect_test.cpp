@@ -1,12 +1,10 @@
 // Ends that are sewn, and gaps that are filled: exact volumes, and who is connected again.
-#include "editing/reconnect.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include "dartcast/cutting.hpp"
 #include "dartcast/error.hpp"
-#include "generators/generate_vessel.hpp"
+#include "dartcast/generators.hpp"
 #include "support/refusals.hpp"
 #include "support/surgery_checks.hpp"
 #include "support/tier.hpp"

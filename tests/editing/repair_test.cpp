@@ -6,7 +6,6 @@
 #include "dartcast/remeshing.hpp"
 #include "editing/kernel_point.hpp"
 #include "editing/region.hpp"
-#include "editing/subdivide.hpp"
 #include "support/astray.hpp"
 #include "support/edit_meshes.hpp"
 #include "support/refusals.hpp"

@@ -1,10 +1,9 @@
 // Sections of meshes of every cell type: exact volumes along dyadic planes, and random planes.
-#include "editing/section.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include "base/random.hpp"
+#include "dartcast/cutting.hpp"
 #include "dartcast/error.hpp"
 #include "support/refusals.hpp"
 #include "support/surgery_checks.hpp"

@@ -3,8 +3,8 @@
 
 #include "base/random.hpp"
 #include "dartcast/map_edits.hpp"
+#include "dartcast/remeshing.hpp"
 #include "editing/outline.hpp"
-#include "editing/subdivide.hpp"
 #include "support/edit_meshes.hpp"
 #include "support/refusals.hpp"
 #include "support/remesh_checks.hpp"

@@ -1,11 +1,10 @@
-#include "editing/subdivide.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <set>
 
 #include "base/random.hpp"
+#include "dartcast/remeshing.hpp"
 #include "support/edit_meshes.hpp"
 #include "support/refusals.hpp"
 #include "support/remesh_checks.hpp"

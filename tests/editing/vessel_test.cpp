@@ -3,7 +3,7 @@
 
 #include "base/random.hpp"
 #include "dartcast/cutting.hpp"
-#include "generators/generate_vessel.hpp"
+#include "dartcast/generators.hpp"
 #include "support/surgery_checks.hpp"
 #include "support/tier.hpp"
 

@@ -5,10 +5,10 @@
 #include <numbers>
 #include <random>
 
+#include "complex/simplex.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/response.hpp"
-#include "generators/generate_octahedra.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::deforming_test {

@@ -7,13 +7,12 @@
 
 #include "dartcast/audit.hpp"
 #include "dartcast/error.hpp"
+#include "dartcast/map_edits.hpp"
 #include "dartcast/response.hpp"
-#include "environment/state_hash.hpp"
 #include "support/edit_meshes.hpp"
 #include "support/particle_checks.hpp"
 #include "support/random_edits.hpp"
 #include "support/tier.hpp"
-#include "topology/integrity.hpp"
 
 namespace dartcast::edits_test {
 

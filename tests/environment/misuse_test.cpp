@@ -14,7 +14,6 @@
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/spheres.hpp"
-#include "generators/generate_rectangle.hpp"
 #include "support/particle_checks.hpp"
 #include "support/refused.hpp"
 

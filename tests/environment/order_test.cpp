@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "complex/simplex.hpp"
 #include "dartcast/audit.hpp"
 #include "dartcast/error.hpp"
 #include "support/edit_meshes.hpp"

@@ -11,11 +11,10 @@
 #include "dartcast/audit.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/error.hpp"
+#include "dartcast/generators.hpp"
 #include "dartcast/map_edits.hpp"
 #include "dartcast/response.hpp"
 #include "dartcast/validity.hpp"
-#include "environment/state_hash.hpp"
-#include "generators/generate_rectangle.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::plane_test {

@@ -13,7 +13,6 @@
 #include "dartcast/environment.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/response.hpp"
-#include "generators/generate_rectangle.hpp"
 #include "support/particle_checks.hpp"
 #include "support/tier.hpp"
 

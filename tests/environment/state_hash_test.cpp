@@ -1,5 +1,3 @@
-#include "environment/state_hash.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <vector>
 
 #include "base/random.hpp"
+#include "dartcast/audit.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/generators.hpp"
 

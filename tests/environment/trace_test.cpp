@@ -11,7 +11,6 @@
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/response.hpp"
-#include "generators/generate_rectangle.hpp"
 #include "oracle/scenes.hpp"
 #include "support/cells_passed.hpp"
 #include "support/particle_checks.hpp"

@@ -7,7 +7,6 @@
 #include "dartcast/mesh_files.hpp"
 #include "formats/gmsh.hpp"
 #include "formats/medit.hpp"
-#include "formats/write_mesh.hpp"
 #include "output/mesh_report_text.hpp"
 #include "support/round_trip.hpp"
 

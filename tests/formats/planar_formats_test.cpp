@@ -4,12 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "dartcast/error.hpp"
+#include "dartcast/generators.hpp"
 #include "dartcast/mesh_files.hpp"
-#include "formats/check_mesh.hpp"
 #include "formats/gmsh.hpp"
 #include "formats/medit.hpp"
-#include "formats/write_mesh.hpp"
-#include "generators/generate_rectangle.hpp"
 #include "output/info.hpp"
 #include "output/mesh_report_text.hpp"
 #include "support/round_trip.hpp"

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "dartcast/mesh_files.hpp"
 #include "dartcast/surface.hpp"
-#include "formats/read_surface.hpp"
 #include "support/shared_data.hpp"
 
 namespace dartcast::test::surface_data_test {

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "dartcast/error.hpp"
+#include "dartcast/mesh_files.hpp"
 #include "dartcast/surface.hpp"
-#include "formats/read_surface.hpp"
 #include "output/mesh_report_text.hpp"
 #include "support/sample_mesh.hpp"
 #include "support/tier.hpp"

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "formats/read_surface.hpp"
+#include "dartcast/mesh_files.hpp"
 #include "support/sample_mesh.hpp"
 
 namespace dartcast::test::surface_warnings_test {

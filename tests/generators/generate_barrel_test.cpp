@@ -1,5 +1,3 @@
-#include "generators/generate_barrel.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,6 +5,7 @@
 #include <numbers>
 
 #include "dartcast/error.hpp"
+#include "dartcast/generators.hpp"
 #include "surface/check_surface.hpp"
 
 namespace dartcast::generate_barrel_test {

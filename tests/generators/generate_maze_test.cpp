@@ -1,10 +1,9 @@
-#include "generators/generate_maze.hpp"
-
 #include <cmath>
 #include <limits>
 #include <numeric>
 
 #include "dartcast/error.hpp"
+#include "dartcast/generators.hpp"
 #include "support/planar_checks.hpp"
 #include "support/tier.hpp"
 

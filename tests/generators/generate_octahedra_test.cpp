@@ -1,8 +1,7 @@
-#include "generators/generate_octahedra.hpp"
-
 #include <limits>
 
 #include "dartcast/error.hpp"
+#include "dartcast/generators.hpp"
 #include "support/generate_checks.hpp"
 
 namespace dartcast::generate_octahedra_test {

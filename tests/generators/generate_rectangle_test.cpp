@@ -1,11 +1,10 @@
-#include "generators/generate_rectangle.hpp"
-
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
 #include "dartcast/error.hpp"
+#include "dartcast/generators.hpp"
 #include "support/planar_checks.hpp"
 #include "support/tier.hpp"
 

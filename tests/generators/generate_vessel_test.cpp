@@ -1,5 +1,3 @@
-#include "generators/generate_vessel.hpp"
-
 #include <cstdlib>
 #include <limits>
 #include <numeric>
@@ -7,6 +5,7 @@
 
 #include "base/random.hpp"
 #include "dartcast/error.hpp"
+#include "dartcast/generators.hpp"
 #include "support/generate_checks.hpp"
 #include "support/tier.hpp"
 

@@ -15,7 +15,6 @@
 #include "dartcast/generators.hpp"
 #include "dartcast/map_edits.hpp"
 #include "dartcast/response.hpp"
-#include "generators/generate_rectangle.hpp"
 #include "simulation/seeding.hpp"
 
 namespace {

@@ -8,8 +8,8 @@
 #include <numeric>
 
 #include "base/random.hpp"
+#include "dartcast/generators.hpp"
 #include "dartcast/mesh_check.hpp"
-#include "generators/generate_rectangle.hpp"
 #include "mesh/faces.hpp"
 #include "mesh/orientation.hpp"
 #include "support/findings.hpp"

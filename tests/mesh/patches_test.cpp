@@ -1,5 +1,3 @@
-#include "mesh/patches.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,8 +10,7 @@
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/mesh_check.hpp"
-#include "generators/generate_rectangle.hpp"
-#include "generators/generate_vessel.hpp"
+#include "dartcast/mesh_selection.hpp"
 
 namespace dartcast::test::patches_test {
 

@@ -6,6 +6,7 @@
 #include <deque>
 #include <optional>
 
+#include "complex/simplex.hpp"
 #include "oracle/fraction.hpp"
 
 namespace dartcast::oracle {

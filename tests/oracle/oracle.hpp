@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "complex/simplex.hpp"
 #include "dartcast/mesh_data.hpp"
 #include "dartcast/vec3.hpp"
 #include "oracle/box_grid.hpp"

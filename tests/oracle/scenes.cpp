@@ -11,7 +11,6 @@
 
 #include "base/random.hpp"
 #include "dartcast/generators.hpp"
-#include "generators/generate_octahedra.hpp"
 #include "oracle/triangulation.hpp"
 
 namespace dartcast::oracle {

@@ -6,10 +6,10 @@
 #include <string>
 
 #include "dartcast/error.hpp"
+#include "dartcast/mesh_files.hpp"
 #include "dartcast/run.hpp"
 #include "dartcast/scene_file.hpp"
 #include "formats/file_text.hpp"
-#include "formats/write_mesh.hpp"
 #include "support/sample_mesh.hpp"
 
 namespace dartcast::resume_test {

@@ -16,9 +16,6 @@
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/response.hpp"
-#include "generators/generate_rectangle.hpp"
-#include "output/trajectory_csv.hpp"
-#include "output/trajectory_svg.hpp"
 
 namespace dartcast::trajectory_test {
 

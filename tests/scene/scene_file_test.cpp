@@ -10,6 +10,7 @@
 #include <string>
 
 #include "dartcast/error.hpp"
+#include "dartcast/run.hpp"
 #include "scene/scene_mesh.hpp"
 
 namespace dartcast::scene_file_test {

@@ -1,5 +1,3 @@
-#include "dartcast/adaptive_subdivision.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include "base/random.hpp"
 #include "dartcast/audit.hpp"
 #include "dartcast/error.hpp"
+#include "dartcast/events.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/simulation.hpp"
 #include "support/tier.hpp"

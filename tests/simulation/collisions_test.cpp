@@ -10,7 +10,6 @@
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/simulation.hpp"
-#include "generators/generate_rectangle.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::collisions_test {

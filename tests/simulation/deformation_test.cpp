@@ -12,7 +12,6 @@
 
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
-#include "generators/generate_vessel.hpp"
 #include "support/generate_checks.hpp"
 #include "support/tier.hpp"
 

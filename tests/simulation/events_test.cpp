@@ -6,8 +6,6 @@
 #include "dartcast/audit.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
-#include "generators/generate_rectangle.hpp"
-#include "generators/generate_vessel.hpp"
 #include "simulation/event_scheduler.hpp"
 #include "support/tier.hpp"
 

@@ -11,7 +11,6 @@
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/simulation.hpp"
-#include "generators/generate_rectangle.hpp"
 #include "simulation/event_scheduler.hpp"
 #include "simulation/polyline.hpp"
 #include "support/refused.hpp"

@@ -10,8 +10,6 @@
 #include "dartcast/audit.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
-#include "generators/generate_rectangle.hpp"
-#include "generators/generate_vessel.hpp"
 
 namespace dartcast::flow_test {
 

@@ -3,9 +3,8 @@
 
 #include "dartcast/deformation.hpp"
 #include "dartcast/error.hpp"
+#include "dartcast/generators.hpp"
 #include "dartcast/spheres.hpp"
-#include "generators/generate_rectangle.hpp"
-#include "generators/generate_vessel.hpp"
 #include "support/sphere_checks.hpp"
 
 namespace dartcast::advance_spheres_test {

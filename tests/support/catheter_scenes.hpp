@@ -7,7 +7,6 @@
 #include "dartcast/catheter.hpp"
 #include "dartcast/deformation.hpp"
 #include "dartcast/generators.hpp"
-#include "generators/generate_vessel.hpp"
 
 namespace dartcast::test {
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "complex/simplex.hpp"
 #include "tracking/step.hpp"
 
 namespace dartcast::test {

@@ -5,8 +5,6 @@
 #include <vector>
 
 #include "dartcast/generators.hpp"
-#include "generators/generate_octahedra.hpp"
-#include "generators/generate_rectangle.hpp"
 #include "support/mixed_mesh.hpp"
 
 namespace dartcast::test {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "dartcast/cell_complex.hpp"
+#include "dartcast/map_edits.hpp"
 #include "dartcast/validity.hpp"
 #include "support/volume.hpp"
-#include "topology/integrity.hpp"
 
 namespace dartcast::test {
 

@@ -7,7 +7,6 @@
 
 #include "dartcast/mesh_files.hpp"
 #include "formats/gmsh.hpp"
-#include "formats/write_mesh.hpp"
 #include "output/mesh_report_text.hpp"
 #include "support/same_mesh.hpp"
 #include "support/sample_mesh.hpp"

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "dartcast/mesh_data.hpp"
-#include "formats/write_mesh.hpp"
+#include "dartcast/mesh_files.hpp"
 
 namespace dartcast::test {
 

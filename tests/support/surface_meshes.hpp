@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "base/random.hpp"
+#include "dartcast/generators.hpp"
 #include "dartcast/mesh_data.hpp"
 #include "dartcast/predicates.hpp"
 #include "dartcast/surface.hpp"
-#include "generators/generate_rectangle.hpp"
 
 namespace dartcast::test {
 

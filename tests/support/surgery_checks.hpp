@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "dartcast/complex_edit.hpp"
+#include "dartcast/map_edits.hpp"
 #include "dartcast/mesh_data.hpp"
 #include "dartcast/validity.hpp"
 #include "support/dyadic.hpp"
 #include "support/edit_meshes.hpp"
 #include "support/volume.hpp"
-#include "topology/integrity.hpp"
 
 namespace dartcast::test {
 

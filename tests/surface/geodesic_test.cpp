@@ -5,10 +5,10 @@
 #include <cmath>
 #include <string>
 
+#include "dartcast/surface.hpp"
 #include "support/geodesic_oracle.hpp"
 #include "support/surface_meshes.hpp"
 #include "support/tier.hpp"
-#include "surface/surface_step.hpp"
 
 namespace dartcast::geodesic_test {
 

@@ -8,9 +8,9 @@
 #include <numbers>
 #include <vector>
 
+#include "dartcast/surface.hpp"
 #include "support/surface_meshes.hpp"
 #include "support/tier.hpp"
-#include "surface/surface_step.hpp"
 
 namespace dartcast::known_paths_test {
 

@@ -1,7 +1,5 @@
 // Surfaces that are cut, sewn and refined under particles: who is not touched keeps every bit, nobody leaves the
 // surface, and what is opened is a wall.
-#include "surface/surface_edit.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,11 +7,10 @@
 
 #include "dartcast/error.hpp"
 #include "dartcast/map_edits.hpp"
+#include "dartcast/surface.hpp"
 #include "support/random_edits.hpp"
 #include "support/surface_meshes.hpp"
 #include "support/tier.hpp"
-#include "surface/surface_step.hpp"
-#include "topology/integrity.hpp"
 
 namespace dartcast::surface_edit_test {
 

@@ -1,4 +1,6 @@
 // Surfaces themselves: what is refused and repaired, bending, location, threads, and extreme shapes and sizes.
+#include "dartcast/surface.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,8 +15,6 @@
 #include "support/surface_meshes.hpp"
 #include "support/tier.hpp"
 #include "surface/check_surface.hpp"
-#include "surface/surface_advance.hpp"
-#include "surface/surface_locator.hpp"
 
 namespace dartcast::surface_test {
 

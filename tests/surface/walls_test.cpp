@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "dartcast/error.hpp"
+#include "dartcast/surface.hpp"
 #include "mesh/cell_types.hpp"
 #include "support/surface_meshes.hpp"
 #include "support/tier.hpp"
-#include "surface/surface_advance.hpp"
 
 namespace dartcast::walls_test {
 

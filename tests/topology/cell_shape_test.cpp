@@ -12,7 +12,6 @@
 #include "dartcast/combinatorial_map.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
-#include "generators/generate_octahedra.hpp"
 #include "support/mixed_mesh.hpp"
 
 namespace dartcast::shape_test {

@@ -11,12 +11,9 @@
 #include "base/random.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
-#include "dartcast/map_queries.hpp"
-#include "generators/generate_octahedra.hpp"
-#include "generators/generate_vessel.hpp"
+#include "dartcast/map_edits.hpp"
 #include "mesh/cell_types.hpp"
 #include "support/mixed_mesh.hpp"
-#include "topology/integrity.hpp"
 
 namespace dartcast::map_test {
 

@@ -1,12 +1,11 @@
 // What a draft is taken for, and which are refused.
-#include "topology/draft.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <set>
 
 #include "base/random.hpp"
+#include "dartcast/map_edits.hpp"
 #include "mesh/cell_types.hpp"
 #include "support/mixed_mesh.hpp"
 #include "topology/cell_form.hpp"

@@ -6,10 +6,10 @@
 #include <set>
 
 #include "dartcast/error.hpp"
+#include "dartcast/map_edits.hpp"
 #include "support/edit_meshes.hpp"
 #include "support/random_edits.hpp"
 #include "support/tier.hpp"
-#include "topology/integrity.hpp"
 
 namespace dartcast::edit_random_test {
 

@@ -8,12 +8,10 @@
 
 #include "dartcast/error.hpp"
 #include "dartcast/map_edits.hpp"
-#include "dartcast/map_queries.hpp"
 #include "mesh/cell_types.hpp"
 #include "support/edit_meshes.hpp"
 #include "support/refusals.hpp"
 #include "support/tier.hpp"
-#include "topology/integrity.hpp"
 
 namespace dartcast::edit_test {
 

@@ -1,8 +1,6 @@
 // Faults planted in a map's records are found and named. (phi1 and phi2 are tables of an immutable shape, whose
 // constructor refuses what does not close; phi1 o phi3 follows from phi3 in these records: those constraints can't be
 // broken from outside.)
-#include "topology/integrity.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +9,6 @@
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/map_edits.hpp"
-#include "generators/generate_octahedra.hpp"
 #include "support/mixed_mesh.hpp"
 #include "support/random_edits.hpp"
 

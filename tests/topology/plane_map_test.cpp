@@ -6,11 +6,9 @@
 
 #include "dartcast/combinatorial_map.hpp"
 #include "dartcast/error.hpp"
+#include "dartcast/generators.hpp"
 #include "dartcast/map_edits.hpp"
-#include "dartcast/map_queries.hpp"
-#include "generators/generate_rectangle.hpp"
 #include "mesh/cell_types.hpp"
-#include "topology/integrity.hpp"
 
 namespace dartcast::plane_map_test {
 

@@ -1,12 +1,11 @@
 // Which shapes a table keeps, and under which numbers.
-#include "topology/shape_table.hpp"
-
 #include <gtest/gtest.h>
 
 #include <map>
 
 #include "base/random.hpp"
 #include "dartcast/error.hpp"
+#include "dartcast/storage.hpp"
 #include "support/tier.hpp"
 #include "topology/cell_form.hpp"
 

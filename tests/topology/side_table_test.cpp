@@ -1,11 +1,10 @@
 // Side tables against std::map.
-#include "topology/side_table.hpp"
-
 #include <gtest/gtest.h>
 
 #include <map>
 
 #include "base/random.hpp"
+#include "dartcast/storage.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::side_table_test {

@@ -1,6 +1,4 @@
 // What transactions give back, and that they leave nothing behind when they are taken back.
-#include "dartcast/transaction.hpp"
-
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -12,7 +10,6 @@
 #include "support/random_edits.hpp"
 #include "support/refusals.hpp"
 #include "support/tier.hpp"
-#include "topology/integrity.hpp"
 
 namespace dartcast::transaction_test {
 

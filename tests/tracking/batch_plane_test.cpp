@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/random.hpp"
-#include "generators/generate_rectangle.hpp"
+#include "dartcast/generators.hpp"
 #include "support/particle_checks.hpp"
 #include "support/seeds.hpp"
 #include "support/tier.hpp"

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/random.hpp"
+#include "complex/simplex.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::ride_test {

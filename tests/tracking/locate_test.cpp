@@ -9,7 +9,6 @@
 
 #include "base/random.hpp"
 #include "dartcast/generators.hpp"
-#include "generators/generate_octahedra.hpp"
 #include "support/generate_checks.hpp"
 #include "support/tier.hpp"
 

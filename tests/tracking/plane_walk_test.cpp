@@ -10,8 +10,9 @@
 #include <vector>
 
 #include "base/random.hpp"
+#include "complex/simplex.hpp"
 #include "dartcast/cell_complex.hpp"
-#include "generators/generate_rectangle.hpp"
+#include "dartcast/generators.hpp"
 #include "mesh/cell_types.hpp"
 #include "support/tier.hpp"
 #include "tracking/locate.hpp"

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "base/random.hpp"
+#include "complex/simplex.hpp"
 #include "dartcast/environment.hpp"
 #include "support/tier.hpp"
 #include "tracking/batch/batch.hpp"

@@ -16,8 +16,8 @@
 #include "base/instruction_set.hpp"
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/particle_state.hpp"
+#include "dartcast/step.hpp"
 #include "tracking/batch/simplex_cache.hpp"
-#include "tracking/counters.hpp"
 #include "tracking/step.hpp"
 
 namespace dartcast::detail {

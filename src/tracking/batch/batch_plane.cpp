@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "complex/simplex.hpp"
 #include "tracking/carry.hpp"
 
 namespace dartcast::detail {

@@ -1,7 +1,7 @@
-#include "base/aligned.hpp"
-
 #include <cstdint>
 #include <new>
+
+#include "dartcast/storage.hpp"
 
 #if defined(__linux__)
 #include <sys/mman.h>

@@ -1,8 +1,13 @@
-// What a batch of steps cost, and what happened in it.
+// What a step of particles takes and gives: options, contacts, those held or stopped, counts.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <vector>
+
+#include "dartcast/contact.hpp"
+#include "dartcast/ids.hpp"
+#include "dartcast/vec3.hpp"
 
 namespace dartcast {
 
@@ -39,6 +44,46 @@ struct Counters {
     unfinished += other.unfinished;
     return *this;
   }
+};
+
+struct StepOptions {
+  /// Contacts allowed to a particle in one step, at least 1; at the last one it is asked to slide.
+  unsigned max_contacts = 16;
+  /// How far the chord may be off the true motion relative to the vertices, as a share (> 0) of the local edge: a step
+  /// is split into ceil(sqrt(|A| |r| / (2 tolerance edge))) parts, A the displacement gradient of the vertices, r the
+  /// particle's own motion.
+  double tolerance = 0.05;
+  /// Parts at most, at least 1; a step that would need more is taken in this many.
+  unsigned max_parts = 256;
+};
+
+/// Throws InvalidArgument, which names the caller and the option, where one is out of range.
+void check(const StepOptions& options, const char* caller);
+
+/// A particle that a cell kept from its step, and why.
+struct HeldParticle {
+  std::uint32_t particle = 0;
+  Cell cell;  ///< the invalid cell: its own, or one on its way; or its own, which is blocked
+};
+
+struct StepResult {
+  bool held = false;
+  Cell invalid_cell;
+  bool stopped = false;  ///< at a contact that nothing followed
+  Vec3 unused;           ///< displacement left when it stopped, relative to the wall
+};
+
+/// A particle stopped at a contact before its target.
+struct StoppedParticle {
+  std::uint32_t particle = 0;
+  Vec3 unused;  ///< displacement left, relative to the wall
+};
+
+struct StepReport {
+  ContactList contacts;                  ///< by particle, then by time
+  std::vector<HeldParticle> held;        ///< by particle
+  std::vector<StoppedParticle> stopped;  ///< by particle
+  Counters counters;
 };
 
 }  // namespace dartcast
