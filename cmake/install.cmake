@@ -1,7 +1,8 @@
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/dartcast)
-install(TARGETS dartcast EXPORT dartcastTargets FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+list(TRANSFORM DARTCAST_LIBRARIES PREPEND dartcast_ OUTPUT_VARIABLE targets)
+install(TARGETS dartcast ${targets} EXPORT dartcastTargets FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT dartcastTargets NAMESPACE dartcast:: DESTINATION ${package_dir})
 if(TARGET dartcast_command)
   install(TARGETS dartcast_command)

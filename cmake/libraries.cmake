@@ -1,0 +1,71 @@
+# Three libraries over the rooms of src/, each on top of the one before, and dartcast::dartcast for all of them.
+# tools/check_includes.py has the order of the rooms, and checks that these lists agree with it.
+set(core_rooms base predicates mesh generators topology complex editing surface tracking response environment)
+set(simulation_rooms dynamics spheres bodies catheter simulation)
+set(io_rooms formats scene output)
+# Public headers; core has all others.
+set(simulation_headers spheres bodies sampling catheter simulation deformation velocity_field events scene)
+set(io_headers mesh_files scene_file run trajectory)
+
+# Adds dartcast_NAME, known as dartcast::NAME, from its rooms and public headers. Further arguments: libraries it uses.
+function(add_dartcast_library name)
+  set(target dartcast_${name})
+  set(sources)
+  foreach(room IN LISTS ${name}_rooms)
+    file(GLOB_RECURSE found CONFIGURE_DEPENDS src/${room}/*.cpp)
+    list(APPEND sources ${found})
+  endforeach()
+  list(TRANSFORM ${name}_headers REPLACE "(.+)" "include/dartcast/\\1.hpp" OUTPUT_VARIABLE headers)
+  add_library(${target} ${sources})
+  add_library(dartcast::${name} ALIAS ${target})
+  target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS include FILES ${headers})
+  target_include_directories(${target} PRIVATE src)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  # Templates in headers take exact decisions: users must not contract a * b + c either.
+  target_compile_options(${target} PUBLIC -ffp-contract=off)
+  target_compile_definitions(${target} PRIVATE DARTCAST_VERSION="${PROJECT_VERSION}")
+  target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:dartcast_flags> ${ARGN})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} VERSION ${PROJECT_VERSION}
+                        SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} INSTALL_RPATH "$ORIGIN")
+  if(DARTCAST_SANITIZE)
+    target_precompile_headers(${target} PRIVATE ${DARTCAST_COMMON_HEADERS} <fmt/format.h>)
+  endif()
+  # Where CMAKE_UNITY_BUILD is set (in all presets for tests: half of the time), the files of a folder are compiled as one.
+  # Those of tracking are not where speed counts: what is called from one place of a file alone is inlined there.
+  set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+  foreach(source IN LISTS sources)
+    string(REGEX REPLACE ".*/([^/]+)/[^/]+$" "\\1" folder ${source})
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder})
+    if(source MATCHES "/src/tracking/" AND NOT DARTCAST_SANITIZE)
+      set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    endif()
+  endforeach()
+endfunction()
+
+file(GLOB core_headers RELATIVE ${PROJECT_SOURCE_DIR}/include/dartcast CONFIGURE_DEPENDS include/dartcast/*.hpp)
+list(TRANSFORM core_headers REPLACE "\\.hpp$" "")
+list(REMOVE_ITEM core_headers dartcast ${simulation_headers} ${io_headers})
+# Vectors wider than the instruction set's are passed within the file alone; g++ 12 warns without naming a place.
+set_source_files_properties(src/tracking/batch/batch.cpp PROPERTIES COMPILE_OPTIONS -Wno-psabi)
+if(DARTCAST_THREADS STREQUAL "std")
+  set_source_files_properties(src/base/parallel.cpp PROPERTIES COMPILE_DEFINITIONS DARTCAST_THREADS_STD)
+endif()
+set(DARTCAST_LIBRARIES core simulation)
+add_dartcast_library(core "$<BUILD_INTERFACE:Boost::headers;Eigen3::Eigen>" fmt::fmt ${DARTCAST_THREAD_LIBRARIES})
+add_dartcast_library(simulation "$<BUILD_INTERFACE:Boost::headers;Eigen3::Eigen>" fmt::fmt)
+target_link_libraries(dartcast_simulation PUBLIC dartcast_core)
+if(DARTCAST_IO)
+  list(APPEND DARTCAST_LIBRARIES io)
+  list(APPEND io_headers dartcast)  # the header that includes all others
+  add_dartcast_library(io $<BUILD_INTERFACE:nlohmann_json::nlohmann_json> fmt::fmt tomlplusplus::tomlplusplus ${DARTCAST_VTK})
+  target_link_libraries(dartcast_io PUBLIC dartcast_simulation)
+endif()
+
+# All libraries that are built, for users; for our own programs, with the headers of the rooms.
+add_library(dartcast INTERFACE)
+add_library(dartcast::dartcast ALIAS dartcast)
+list(TRANSFORM DARTCAST_LIBRARIES PREPEND dartcast_ OUTPUT_VARIABLE targets)
+target_link_libraries(dartcast INTERFACE ${targets})
+add_library(dartcast_rooms INTERFACE)
+target_include_directories(dartcast_rooms INTERFACE ${PROJECT_SOURCE_DIR}/src)
+target_link_libraries(dartcast_rooms INTERFACE dartcast dartcast_flags)
