@@ -1,13 +1,11 @@
 #!/usr/bin/env python3
-"""Checks what documents say against what exists: links, ./dev commands, dartcast verbs; and paths and sizes of all files."""
+"""Checks what documents say against what exists: links, ./dev commands, dartcast verbs; and paths of all files."""
 import os
 import pathlib
 import re
 import sys
 
-MAX_LINES = 700
 SKIPPED_FOLDERS = {".git", "build", "__pycache__", ".cache"}
-COUNTED = {".cpp", ".hpp", ".inl", ".py", ".cmake", ".sh", ".toml"}
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s#]+)(?:#[^)\s]*)?\)")
 CODE = re.compile(r"```.*?```|`[^`\n]+`", re.DOTALL)
 DEV_COMMAND = re.compile(r"\./dev ([a-z]+)")
@@ -53,8 +51,6 @@ def check_file(path: pathlib.Path) -> list[str]:
     except UnicodeDecodeError:
         return []  # binary
     found = [f"{path}:{i}: a path of somebody's machine" for i, line in enumerate(lines, 1) if MACHINE_PATH.search(line)]
-    if path.suffix in COUNTED and len(lines) >= MAX_LINES:
-        found.append(f"{path}: {len(lines)} lines; a file has less than {MAX_LINES}")
     return found
 
 
