@@ -17,7 +17,7 @@
 // then     neighbours                              neighbours
 // then                                             per face: number of the neighbour's face 16, wall 16
 //
-//  - version: how often another cell took this place. It tells a stale handle from a valid one.
+//  - version: how often another cell took this place. A stale handle has another version.
 //  - wide: the number of a neighbour's face does not fit in 3 bits. Where the bits are 7, the neighbour is searched.
 //  - patch: a face of the cell is in a patch. The patches are in a side table.
 //  - flat: darts of the cell have marks. The marks are in a side table.

@@ -70,7 +70,7 @@ struct ContactList {
 /// wall's normal is meant to run along the wall, and the difference is rounding.
 inline constexpr double along_share = 4e-12;
 
-/// What a particle does after a contact, in the rest of the step.
+/// The motion of a particle after a contact, in the rest of the step.
 struct AfterContact {
   Vec3 displacement;  ///< relative to the wall
   /// Whether the displacement runs along walls. Then rounding cannot turn it into the walls touched in this step that
