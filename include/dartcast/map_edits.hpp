@@ -130,9 +130,10 @@ struct Replacement;
 /// on it. Readers see the edits made so far. Numbers of removed cells and vertices are not used again before the
 /// commit.
 ///
-/// The first transaction on a map counts the cells of each vertex and lists the cells' sources. That is linear in the
-/// map, once, and takes four bytes for each vertex and cell from then on. After that the cost of each function is that
-/// of the cells that it names and their neighbours, whatever the size of the map. Arrays grow by doubling.
+/// The first transaction on a map counts the cells of each vertex and lists the cells' sources. This cost is linear in
+/// the map and occurs once. From then on the map needs four more bytes for each vertex and cell. After that the cost of
+/// each function is that of the cells that it names and their neighbours, whatever the size of the map. Arrays grow by
+/// doubling.
 class Transaction {
  public:
   explicit Transaction(CombinatorialMap& map);
@@ -263,8 +264,8 @@ std::vector<Cell> merge_faces(Transaction& t, Dart d);
 /// there.
 std::vector<Cell> merge_edges(Transaction& t, Dart d);
 
-/// Sews a's face to b's, dart a to dart b: a's origin and b's end become one vertex, and so on around the faces. Of two
-/// vertices the lower number remains. Refused where a face is not open, where the faces have different numbers of
+/// Sews a's face to b's, dart a to dart b: a's origin and b's end become one vertex, and so on around the faces. Each
+/// pair of vertices keeps the lower number. Refused where a face is not open, where the faces have different numbers of
 /// corners, or where a cell would have one vertex twice.
 std::vector<Cell> sew(Transaction& t, Dart a, Dart b);
 
