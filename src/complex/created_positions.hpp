@@ -56,12 +56,12 @@ class CreatedPositions {
 
   /// The number of new vertices with positions.
   [[nodiscard]] std::size_t count() const { return count_; }
-  /// Clears the list after a commit.
+  /// Makes the new positions permanent, after a commit.
   void keep() {
     before_ = positions_.size();
     count_ = 0;
   }
-  /// Takes everything back if there is no commit.
+  /// Removes the new positions, where there is no commit.
   void give_up() { positions_.resize(before_); }
 
  private:

@@ -234,8 +234,8 @@ Sign SymbolicPerturbation::of_line(const Vec3& a, const Vec3& b, const Vec3& q) 
   const Vec3 extent = extent_of(q - p_, b - a, o0 - p_, o1 - p_, o2 - p_);
   const Vec3 n = cross(q - p_, b - a);
   const double along = dot(n, (o0 - p_) + (o1 - p_) + (o2 - p_));
-  // There are four roundings in a component of n, three in one of w, one in their product and two in the sum. That
-  // makes 10 e for each of 18 products, each at most m. The last factor is that of determinant_error.
+  // There are four roundings in a component of n, three in one of w, one in their product and two in the sum. The
+  // total is 10 e for each of 18 products, each at most m. The last factor is that of determinant_error.
   constexpr double error = 180.0 * 0x1p-53 * (1.0 + 0x1p-10);
   const double m = extent.x * extent.y * extent.z;
   if (filter_applies(extent) && std::abs(along) > error * m) return sign(along);
