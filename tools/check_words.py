@@ -12,7 +12,7 @@ import re
 import sys
 
 DOCUMENTS = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/*.md"]
-SOURCES = ["include", "src", "apps", "bench", "examples"]
+SOURCES = ["include", "src", "apps", "bench", "examples", "tests"]
 SUFFIXES = {".cpp", ".hpp", ".inl"}
 # Rooms and headers whose comments are not yet in plain English. Nothing is ever added here.
 UNCLEAN: list[str] = []
