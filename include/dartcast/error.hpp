@@ -26,7 +26,7 @@ class InvalidMesh : public Error {
   using Error::Error;
 };
 
-/// An edit that would leave no valid map. The text names the cells and says what to do; the map is as it was.
+/// An edit that would leave no valid map. The text names the cells and says what to do; the map is unchanged.
 class EditRefused : public Error {
  public:
   using Error::Error;

@@ -117,7 +117,7 @@ struct MergedVertex {
 struct EditReport {
   std::vector<CellHandle> removed;     ///< the handles that they had; stale now
   std::vector<Cell> added;             ///< in the place of those
-  std::vector<Cell> marked;            ///< freed or blocked, otherwise as they were
+  std::vector<Cell> marked;            ///< freed or blocked, otherwise unchanged
   std::vector<CreatedVertex> created;  ///< in order: `from` and `other` are older
   std::vector<MergedVertex> merged;    ///< in order: `merged_into` may itself be merged later
   std::vector<Vertex> deleted;         ///< in no cell any more (Steiner points, too): their numbers are used again
@@ -194,7 +194,7 @@ class Transaction {
   };
   struct AddedCell {
     Cell cell;
-    bool appended;  // in a place that there was not before
+    bool appended;  // in a new place
     ShapeTable::Interned shape;
   };
   struct Created {

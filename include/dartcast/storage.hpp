@@ -91,7 +91,7 @@ class ShapeTable {
   struct Interned {
     std::uint32_t number;
     bool made;      ///< the shape is new
-    bool appended;  ///< under a number that there was not before
+    bool appended;  ///< under a new number
   };
 
   /// Returns the shape with this key and adds one use. Throws as Shape does.
