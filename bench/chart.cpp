@@ -46,7 +46,7 @@ struct Axes {
   }
 };
 
-// What is drawn.
+// The content of a drawing.
 struct Content {
   const char* still;   // workloads
   const char* moving;  // may have the same name

@@ -17,8 +17,8 @@ namespace {
 constexpr std::size_t block_size = 100;
 constexpr std::size_t max_records = 1000000;  // particles times steps of a block
 constexpr std::size_t warming_steps = 10;
-// Lattice lines are crossed by all particles in the same step of eight. Blocks of 20 steps would hold two or three of
-// these, and the median would be that of the dearer half.
+// All particles cross lattice lines in the same step of eight. Blocks of 20 steps would hold two or three of these, and
+// the median would be that of the more expensive half.
 constexpr std::size_t lattice_period = 8;
 constexpr double same_place = 1e-4;  // cells
 

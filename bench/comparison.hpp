@@ -29,7 +29,7 @@ struct Series {
   [[nodiscard]] double ns_per_particle_step(std::size_t particles) const;
   /// All steps, per particle.
   [[nodiscard]] double mean_ns_per_particle_step(std::size_t particles) const;
-  /// Of the times of single steps, ns; `share` 0.5: the median, 1: the longest.
+  /// A quantile of the times of single steps, ns. `share` 0.5: the median, 1: the longest.
   [[nodiscard]] double quantile_ns(double share) const;
 };
 
@@ -52,7 +52,7 @@ struct Row {
 /// deforms; what disturbs one disturbs all.
 ///
 /// A competitor disagrees on a segment where one of the two meets a wall and the other does not, or where both do and
-/// neither the triangle nor the time (within 1e-4 of a cell) is the same. What dartcast finds is what happens.
+/// neither the triangle nor the time (within 1e-4 of a cell) is the same. The scene continues with dartcast's answers.
 std::vector<Row> compare(const WorkloadOptions& options, std::span<const PeerKind> kinds);
 
 }  // namespace dartcast::bench

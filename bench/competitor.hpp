@@ -1,4 +1,4 @@
-// What a competitor must do: keep the walls' triangles, and find the first one that a segment meets.
+// The interface of a competitor: it keeps the walls' triangles, and finds the first one that a segment meets.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,9 @@ namespace dartcast::bench {
 struct Segment {
   Vec3 from;
   Vec3 to;
-  /// Where it starts on a wall that the particle has just met: the share of the segment in which floats can't tell that
-  /// wall from others. Hits there are passed over, as whoever casts rays from walls does. Else 0.
+  /// For a segment that starts on a wall which the particle has just met: the share of the segment in which floats
+  /// cannot distinguish that wall from others. Hits there are ignored, as in every program that casts rays from walls.
+  /// Else 0.
   double self_hit_epsilon = 0.0;
 };
 

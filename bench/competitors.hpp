@@ -11,7 +11,7 @@
 
 namespace dartcast::bench {
 
-/// What a competitor is made for. Complex and walls outlive it.
+/// The scene that a competitor is made for. Complex and walls outlive it.
 struct PeerScene {
   const CellComplex& complex;
   const Walls& walls;

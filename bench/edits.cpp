@@ -119,7 +119,7 @@ class Editor {
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-// Edits until a tenth of the cells may have been touched; a face that was split and merged keeps a point of its own.
+// Edits until a tenth of the cells may have been touched. A face that was split and merged keeps a Steiner point.
 double edit_some(std::uint32_t edge, std::size_t count, EditRow& row) {
   Environment environment = box(edge);
   Random random(2);

@@ -1,4 +1,4 @@
-// What rows say of each other: growth with the scene, the price of deformation, of threads, of degenerate places.
+// Relations of rows to each other: growth with the scene, the cost of deformation, of threads, of degenerate places.
 #pragma once
 
 #include <span>

@@ -33,7 +33,7 @@ class Paper : public Competitor {
   void write(std::span<const Vec3> /*points*/) override {}  // it reads the complex
   void refit() override { scheme_.moved(); }
 
-  // What it did otherwise than dartcast, and what followed at walls, it takes over.
+  // Takes over dartcast's answers where it differed, and what followed at walls.
   void place(std::span<const ParticleState> states) override {
     for (std::size_t i = 0; i < states.size(); ++i) {
       const ParticleState& s = states[i];

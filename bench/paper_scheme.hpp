@@ -28,7 +28,7 @@ namespace dartcast::bench {
 
 enum class PaperEnd : std::uint8_t { arrived, collision, error };  ///< error: a loop, or no way on
 
-/// What became of one particle in a step.
+/// The result of one particle's step.
 struct PaperResult {
   PaperEnd end = PaperEnd::arrived;
   CellFace wall;            ///< on a collision: seen from the free cell
@@ -36,7 +36,7 @@ struct PaperResult {
   std::uint32_t tests = 0;  ///< orientation tests
 };
 
-/// Of all cells' edges, each as often as it has darts. Cost: linear in the cells.
+/// The mean length of all cells' edges, each counted as often as it has darts. Cost: linear in the cells.
 double mean_edge(const CellComplex& complex);
 
 /// The paper's state S = (p, k, i), and the point of the face aimed at.

@@ -34,7 +34,7 @@ class PaperWalk2D : public PaperPath<PaperState2D> {
     return x_[c.vertex(c.shape().origin(dart)).value];
   }
   [[nodiscard]] bool is_free(Dart i) const { return i.valid() && map_.is_free(i.cell); }
-  // Of q: 1 to the left of the half-line from p through x.
+  // The side of q: 1 to the left of the half-line from p through x.
   int side_of(const Vec3& x) { return test(turn_from(x - s_.p, q_ - s_.p)); }
   bool go_on(Kind k, Dart i) {
     s_.k = k;

@@ -39,7 +39,7 @@ class PaperPath {
     result_.time = 1.0 - left_;
     return end(PaperEnd::collision);
   }
-  // Moves p by a share of what is left of the step.
+  // Moves p by a share of the rest of the step.
   void go(double share) {
     s_.p += (q_ - s_.p) * share;
     left_ *= 1.0 - share;

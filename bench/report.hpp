@@ -8,14 +8,14 @@
 
 namespace dartcast::bench {
 
-/// What sets a row apart from others of its name: "10^5 cells, deforming, 1,000 particles".
+/// The properties that distinguish a row from others of its name: "10^5 cells, deforming, 1,000 particles".
 std::string title(const WorkloadOptions& workload);
 
 /// ns per particle-step and how many times dartcast's each competitor takes; then the longest steps, disagreements and
 /// orientation tests; then growth with the scene and what the rows say of each other.
 std::string report_text(std::span<const Row> rows);
 
-/// One object with "rows", an object per row. What has no meaning in a row is left out.
+/// One object with "rows", an object per row. Values that a row does not have are left out.
 std::string report_json(std::span<const Row> rows);
 
 /// A line per row and competitor.

@@ -1,4 +1,4 @@
-// What a step of colliding spheres costs, part by part.
+// The cost of a step of colliding spheres, part by part.
 #pragma once
 
 #include <cstddef>
@@ -26,8 +26,9 @@ struct SphereRow {
   double deepest = 0.0;  ///< largest overlap of a pair, as a share of the radius
 };
 
-/// A heap of `count` spheres on the floor of a box, every one with 5 neighbours or so; after some steps in which they
-/// settle, the cost of those that follow. Cells hold about three spheres each; or, crowded, there are 8 cells in all.
+/// A heap of `count` spheres on the floor of a box, each with about 5 neighbours. First it comes to rest for some
+/// steps. Then the cost of the next steps is measured. Cells hold about three spheres each; or, crowded, there are 8
+/// cells in all.
 SphereRow heap(std::size_t count, bool crowded);
 
 std::string spheres_text(std::span<const SphereRow> rows);

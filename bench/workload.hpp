@@ -1,4 +1,4 @@
-// What is measured: a scene, particles in it, and how both move.
+// A workload: a scene, particles in it, and how both move.
 #pragma once
 
 #include <cstdint>

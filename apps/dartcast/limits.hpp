@@ -6,8 +6,8 @@
 
 namespace dartcast::app {
 
-/// A transform for an option whose value is a whole number, in decimal digits, from `low` to `high`. What else is given
-/// is wrong usage: the message has the option, the value and the range.
+/// A transform for an option whose value is a whole number, in decimal digits, from `low` to `high`. Any other value is
+/// wrong usage: the message has the option, the value and the range.
 CLI::Validator whole_number(std::uint64_t low, std::uint64_t high);
 
 }  // namespace dartcast::app

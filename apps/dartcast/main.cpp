@@ -52,7 +52,7 @@ Outcome run(int argc, char** argv) {
   return {status, ""};
 }
 
-// What was printed may still wait in a buffer: a full disk, or a closed pipe, shows when it is sent.
+// Printed text may still wait in a buffer. A full disk, or a closed pipe, shows only when it is sent.
 bool send_output() { return std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.flush().good(); }
 
 }  // namespace

@@ -17,31 +17,31 @@ namespace dartcast {
 struct Audit {
   std::uint64_t checked = 0;
   std::uint64_t failed = 0;
-  std::string first;  ///< what is wrong with the first particle that failed; empty: nothing
+  std::string first;  ///< the failure of the first particle that failed; empty: none failed
 
   Audit& operator+=(const Audit& other);
 };
 
-/// Checks guarantee G3 for each particle, in integers of any length: its cell exists and is free; the simplex that its
-/// state names is positive and holds its position, border included. A held particle: its cell exists, its coordinates
-/// are finite and none is negative. Precondition: the particles have followed the environment's last move. Cost: about
-/// 5 us per particle, parallel.
+/// Checks guarantee G3 for each particle, in integers of any length. Its cell exists and is free, and the simplex that
+/// its state names is positive and holds its position, border included. For a held particle: its cell exists, its
+/// coordinates are finite, and none is negative. Precondition: the particles have taken part in the environment's last
+/// move. Cost: about 5 us per particle, parallel.
 Audit audit(const CellComplex& complex, const Particles& particles, Threads threads = {});
 
 // One number for the exact state of a set of particles, whatever their order.
 
-/// A sum of 128-bit hashes, one per particle, over the bits of its state: equal sets give equal sums in any order, and
-/// two sets that differ in one bit are told apart as surely as 128 bits can. 0 and -0 differ.
+/// A sum of 128-bit hashes, one per particle, over the bits of its state. Equal sets give equal sums in any order. Sets
+/// that differ in one bit give different sums, up to a collision of 128 bits. 0 and -0 differ.
 class StateHash {
  public:
   using Words = std::array<std::uint64_t, 2>;
 
   StateHash() = default;
-  /// To save a hash and to go on with it.
+  /// For a hash that was saved with words().
   explicit StateHash(const Words& words) : low_(words[0]), high_(words[1]) {}
   [[nodiscard]] Words words() const { return {low_, high_}; }
 
-  /// Adds a particle. `fate`: what has become of it, as a number that the caller chooses.
+  /// Adds a particle. `fate`: its status, as a number that the caller chooses.
   void add(std::uint64_t id, const ParticleState& state, const Vec3& velocity, std::uint64_t fate = 0);
   StateHash& operator+=(const StateHash& other);
   bool operator==(const StateHash&) const = default;

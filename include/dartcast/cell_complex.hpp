@@ -1,8 +1,8 @@
-// The cell complex: a map with positions. It is all that a walk reads.
+// The cell complex: a map with positions. A walk reads nothing else.
 //
-// Every cell is a union of implicit simplices with vertices as corners (dartcast/cell_shape.hpp), so that the complex
-// is watertight for any positions (guarantee G2). A cell whose pulling triangulation is not positive takes interior
-// points: extra vertices, affine combinations of its corners with stored weights, computed again at each move.
+// Every cell is a union of implicit simplices with vertices as corners (dartcast/cell_shape.hpp). So the complex is
+// watertight for any positions (guarantee G2). A cell without a positive pulling triangulation gets Steiner points:
+// extra vertices that are affine combinations of its corners with stored weights. Each move computes them again.
 #pragma once
 
 #include <array>
@@ -22,21 +22,21 @@
 
 namespace dartcast {
 
-// Interior points: vertices that are combinations of others.
+// Steiner points: vertices that are combinations of others.
 
 class SteinerWeights {
  public:
   [[nodiscard]] std::size_t count() const { return vertex_.size() - removed_; }
   [[nodiscard]] std::size_t bytes() const;
 
-  /// A further vertex. `weights`: one per corner; they sum to 1. Corners are no interior points.
+  /// Adds a vertex. `weights`: one per corner; they sum to 1. Corners are not Steiner points themselves.
   void add(Vertex v, std::span<const std::uint32_t> corners, std::span<const double> weights);
   /// Adds all of another's.
   void add(const SteinerWeights& other);
-  /// Forgets a vertex; nothing happens where it is no interior point. The first call lists the vertices, once; after
+  /// Removes a vertex; nothing happens if it is not a Steiner point. The first call lists the vertices, once. After
   /// that the cost is constant on average.
   void remove(Vertex v);
-  /// Writes where the vertices are, in a fixed order of operations. `positions`: of all vertices.
+  /// Writes the positions of the vertices, in a fixed order of operations. `positions`: of all vertices.
   void compute(std::span<Vec3> positions) const;
 
  private:
@@ -58,7 +58,7 @@ struct InvalidCell {
 };
 
 /// A triangle of the plane as a tetrahedron: the fourth corner is one above the first. Its volume is a third of the
-/// triangle's area, and what is asked of a point of the plane, and of the first three facets, has the same answer.
+/// triangle's area. Signs of a point of the plane against the first three facets are the same as in the plane.
 inline Corners raised(const Corners& v) {
   const auto flat = [](const Vec3& p) { return Vec3{p.x, p.y, 0.0}; };
   return {flat(v[0]), flat(v[1]), flat(v[2]), Vec3{v[0].x, v[0].y, 1.0}};
@@ -66,17 +66,17 @@ inline Corners raised(const Corners& v) {
 
 class CellComplex {
  public:
-  /// Builds the map, finds interior points where they are needed, and checks every simplex. Cells for which no interior
-  /// point makes all simplices positive are listed in invalid_cells(); the complex can be used, particles there are
-  /// held. Preconditions and errors as for Map. Cost: linear.
+  /// Builds the map, finds Steiner points where cells need them, and checks every simplex. Cells that no Steiner point
+  /// makes positive are listed in invalid_cells(). The complex can still be used; particles in these cells are held.
+  /// Preconditions and errors as for CombinatorialMap. Cost: linear.
   explicit CellComplex(const MeshData& mesh, Threads threads = {});
 
   [[nodiscard]] const CombinatorialMap& map() const { return map_; }
   [[nodiscard]] CombinatorialMap& map() { return map_; }
   [[nodiscard]] const std::vector<InvalidCell>& invalid_cells() const { return invalid_; }
 
-  /// Positions of all vertices: the mesh's points (in the mesh's order), then interior points, then what edits made
-  /// (their numbers, too, may be those of vertices that are gone).
+  /// Positions of all vertices: the mesh's points (in the mesh's order), then Steiner points, then vertices that edits
+  /// made. Edits may also use the numbers of removed vertices again.
   [[nodiscard]] std::span<const Vec3> positions() const { return front_; }
   /// Positions before the last commit_positions(); equal to positions() before the first.
   [[nodiscard]] std::span<const Vec3> previous_positions() const {
@@ -84,21 +84,20 @@ class CellComplex {
   }
   [[nodiscard]] const SteinerWeights& steiner_weights() const { return steiner_; }
   /// Number of the first entries of positions() that a move gives: the mesh's own points, and once edits have made
-  /// vertices, everything up to the last of these. What lies between, interior points and numbers not in use, can be
-  /// given any value.
+  /// vertices, everything up to the last of these. Steiner points and unused numbers among them can be given any value.
   [[nodiscard]] std::size_t point_count() const { return point_count_; }
 
-  /// Where the next positions of these points are to be written, all of them; the content is what it was two moves
-  /// ago. Ends the validity of previous_positions().
+  /// The array for the next positions of these points. The caller must write all of them; the content is that of two
+  /// moves ago. Ends the validity of previous_positions().
   [[nodiscard]] std::span<Vec3> next_positions();
-  /// Makes the positions written current. Cost: a swap, and the interior points. No vertex is checked: one that is not
-  /// finite, or above 2^300 in magnitude, is found by the walk that meets it, and by check_validity().
+  /// Makes the written positions current. Cost: a swap, and the Steiner points. No vertex is checked. A vertex that is
+  /// not finite, or above 2^300 in magnitude, is found by the walk that meets it, and by check_validity().
   void commit_positions();
-  /// A copy with previous_positions() as its positions: with edits made since, but as if it had not moved. Cost:
-  /// linear.
+  /// A copy with previous_positions() as its positions: with all edits, but without the last move. Cost: linear.
   [[nodiscard]] CellComplex before_move() const;
 
-  /// In the plane the fourth is the third again, and the fourth corner is one above the first (raised()).
+  /// The vertices of a simplex. In the plane the fourth vertex repeats the third, and the fourth corner is one above
+  /// the first (raised()).
   [[nodiscard]] std::array<Vertex, 4> vertices(SimplexId s) const {
     const CellView c = map_.view(s.cell);
     const auto& local = c.shape().simplices()[s.simplex].vertex;
@@ -109,7 +108,7 @@ class CellComplex {
 
   [[nodiscard]] std::uint64_t simplex_count() const { return simplex_count_; }
   [[nodiscard]] std::size_t steiner_point_count() const { return steiner_.count(); }
-  /// All arrays, positions counted once.
+  /// Size of all arrays, with positions counted once.
   [[nodiscard]] std::size_t bytes() const;
 
  private:
@@ -131,11 +130,11 @@ class CellComplex {
   std::uint64_t simplex_count_ = 0;
 };
 
-// A complex as a mesh again: for output, and to go on with elsewhere.
+// A complex as a mesh again: for output, and to continue elsewhere.
 
-/// The cells as they are now, pool by pool, with their free marks and `source` as in the map; points: the vertices that
-/// they use, at their positions, without interior points. No regions, patches or data. `vertices`: unless null, takes
-/// the vertex of each point. Cost: linear.
+/// The current cells, pool by pool, with their free marks and their `source` as in the map. Points: the vertices that
+/// they use, at their positions, without Steiner points. There are no regions, patches or data. `vertices`: unless
+/// null, it receives the vertex of each point. Cost: linear.
 MeshData to_mesh(const CellComplex& complex, std::vector<Vertex>* vertices = nullptr);
 
 }  // namespace dartcast

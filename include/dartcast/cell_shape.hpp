@@ -1,14 +1,13 @@
-// The combinatorial type of a cell: its darts, faces, fans and implicit simplices, shared by all cells alike.
+// The combinatorial type of a cell: its darts, faces, fans and implicit simplices. All cells of one type share it.
 //
 // The darts are those of a combinatorial map: T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism for
 // continuous collision detection in deformable environments", SPM 2009, section 3.1. The simplices are a pulling
-// triangulation: each face is fanned from its lowest-numbered vertex (or from an interior point of its own), and the
-// cell is coned from its lowest-numbered vertex over the fan triangles that do not contain it (or from an interior
-// point).
+// triangulation. Each face is a fan around its lowest-numbered vertex, or around a Steiner point. The cell is coned
+// from its lowest-numbered vertex over the fan triangles that do not contain it, or from a Steiner point.
 //
-// A cell of the plane is a polygon: its faces are its edges, of two corners and one dart each, in the direction that
-// they are run around in, and a simplex is a triangle, of which the fourth corner and facet mean nothing. phi2 is then
-// no matter of the shape: it leads to the next polygon (dartcast/combinatorial_map.hpp).
+// A cell of the plane is a polygon. Its faces are its edges, of two corners and one dart each, in counterclockwise
+// direction. Its simplices are triangles, and their fourth corner and facet are not used. phi2 leads to the next
+// polygon, so it is not part of the shape (dartcast/combinatorial_map.hpp).
 #pragma once
 
 #include <array>
@@ -21,13 +20,13 @@
 
 namespace dartcast {
 
-// The simplices of one shape around its corners and edges, and where they reach the faces: to go from cell to cell
-// around a vertex or an edge without looking at every simplex.
+// The simplices of one shape around its corners and edges, and the triangles of faces at which they end. A search uses
+// them to go from cell to cell around a vertex or an edge without a look at every simplex.
 
 struct ImplicitSimplex;
 
-/// Simplices that hold the same point or edge are one *star* where they hang together by facets that hold it. In a cell
-/// that is a ball, as all valid ones are, a point or an edge has one star.
+/// Simplices that hold the same point or edge are one *star* if facets that hold it connect them. In a cell that is a
+/// ball, as all valid cells are, a point or an edge has one star.
 class Stars {
  public:
   /// A facet of a simplex that is a triangle of a face.
@@ -35,33 +34,33 @@ class Stars {
     std::uint16_t simplex;
     std::uint16_t facet;
     std::uint16_t face;
-    std::uint16_t rest;      ///< so many more of this face follow
-    std::uint16_t triangle;  ///< of the face's fan, by the number that the neighbour gives to it
-    std::uint16_t
-        held;  ///< bits of the triangle's corners that are the point's or the edge's, as the neighbour has them
+    std::uint16_t rest;      ///< number of further facets of this face that follow
+    std::uint16_t triangle;  ///< of the face's fan, numbered as the neighbour does
+    std::uint16_t held;      ///< mask of the triangle's corners at the point or the edge, as the neighbour numbers them
   };
 
   /// The triangles of the faces' fans, by the points that are their corners.
   struct Fans {
     std::vector<std::array<std::uint16_t, 3>> triangles;
-    std::vector<std::uint32_t> first;  ///< of each face; and how many there are
+    std::vector<std::uint32_t> first;  ///< first triangle of each face; at the end the number of triangles
   };
 
   Stars() = default;
-  /// `simplices`: connected, none of them flat. `fans`: of all faces that these reach. Cost: linear but for sorting.
+  /// `simplices`: connected, none of them flat. `fans`: of all faces that these reach. Cost: linear, except for sorting.
   Stars(std::span<const ImplicitSimplex> simplices, const Fans& fans);
 
-  /// The star of a simplex around its corners in the mask `corners`, one or two of them.
+  /// The star of a simplex around its corners in the mask `corners`. The mask has one or two bits.
   [[nodiscard]] std::uint16_t star(std::uint16_t simplex, unsigned corners) const {
     return star_[simplex * features + feature_of_mask[corners]];
   }
-  /// The star around corners of a triangle of a face, in the mask `held`, one or two of them: of the simplex behind it.
+  /// The star of the simplex behind a triangle of a face, around the corners in the mask `held`. The mask has one or
+  /// two bits.
   [[nodiscard]] std::uint16_t star_behind(std::uint16_t face, std::uint16_t triangle, unsigned held) const {
     return behind_[(first_triangle_[face] + triangle) * masks + held];
   }
   /// Stars are numbered from 0 on.
   [[nodiscard]] std::size_t size() const { return first_.size() - 1; }
-  /// The star's triangles of faces that hold the point or the edge; those of one face come one after another.
+  /// The star's triangles of faces that hold the point or the edge. Those of one face are adjacent in the list.
   [[nodiscard]] std::span<const Facet> outer_facets(std::uint16_t star) const {
     return {facets_.data() + first_[star], facets_.data() + first_[star + 1U]};
   }
@@ -88,23 +87,24 @@ class Stars {
   bool one_each_ = true;
 };
 
-/// What a shape is made from. Points of the cell have local numbers: corners, then face points, then the cell's point.
+/// The key of a shape. Points of the cell have local numbers: corners, then Steiner points of faces, then that of the
+/// cell.
 struct ShapeKey {
   struct Face {
-    /// From the lowest-numbered vertex, counterclockwise seen from the outside; in the plane, the edge's two corners in
-    /// its direction.
+    /// Corners from the lowest-numbered vertex, counterclockwise as seen from the outside. In the plane: the edge's two
+    /// corners in its direction.
     std::vector<std::uint16_t> corners;
-    bool has_point = false;  ///< fanned from a point of its own
+    bool has_point = false;  ///< fanned from a Steiner point
     auto operator<=>(const Face&) const = default;
   };
   std::uint16_t corner_count = 0;
-  std::uint16_t apex = 0;  ///< local number of the lowest-numbered corner, where the cell has no point of its own
-  bool has_point = false;  ///< coned from a point of its own
+  std::uint16_t apex = 0;  ///< local number of the lowest-numbered corner, where the cell has no Steiner point
+  bool has_point = false;  ///< coned from a Steiner point
   std::vector<Face> faces;
   auto operator<=>(const ShapeKey&) const = default;
 };
 
-/// What lies beyond a facet of a simplex: another simplex of the cell, or a triangle of a face's fan.
+/// The other side of a facet of a simplex: another simplex of the cell, or a triangle of a face's fan.
 struct Across {
   static constexpr std::uint16_t outer_bit = 0x8000U;
 
@@ -116,8 +116,8 @@ struct Across {
   constexpr bool operator==(const Across&) const = default;
 };
 
-/// A tetrahedron with points of the cell as corners, positive: det[v1 - v0, v2 - v0, v3 - v0] > 0 in a valid cell; in
-/// the plane a triangle, positive where its corners turn counterclockwise.
+/// A tetrahedron with points of the cell as corners. It is positive in a valid cell: det[v1 - v0, v2 - v0, v3 - v0] >
+/// 0. In the plane it is a triangle, positive if its corners turn counterclockwise.
 struct ImplicitSimplex {
   std::array<std::uint16_t, 4> vertex;  ///< local numbers
   std::array<Across, 4> across;         ///< beyond the facet opposite to vertex i
@@ -126,16 +126,16 @@ struct ImplicitSimplex {
 /// Immutable. Darts are numbered face by face, from the face's lowest-numbered vertex.
 class Shape {
  public:
-  /// Throws InvalidMesh where the faces do not close: an edge not used once in each direction; in the plane, where the
-  /// edges are not one cycle in the order given. Where two fans hold the
-  /// same triangle (faces that meet in an edge with a corner on it), the fans bound no solid: the shape then has one
-  /// simplex, flat at any positions, so that the cell is invalid until such faces take points of their own.
+  /// Throws InvalidMesh where the faces do not close: an edge is not used once in each direction, or in the plane the
+  /// edges are not one cycle in the given order. Faces that meet in an edge with a corner on it may have fans with a
+  /// common triangle. Then the fans bound no solid. The shape has one simplex that is flat at any positions, so that
+  /// the cell is invalid until such faces get Steiner points.
   explicit Shape(ShapeKey key);
 
   /// 2: a polygon; 3: a polyhedron.
   [[nodiscard]] unsigned dimension() const { return dimension_; }
   [[nodiscard]] std::uint16_t corner_count() const { return key_.corner_count; }
-  /// Corners and interior points.
+  /// Number of corners and Steiner points.
   [[nodiscard]] std::uint16_t point_count() const { return point_count_; }
   [[nodiscard]] std::uint16_t face_count() const { return face_count_; }
   [[nodiscard]] std::uint16_t dart_count() const { return static_cast<std::uint16_t>(origin_.size()); }
@@ -164,14 +164,14 @@ class Shape {
   [[nodiscard]] const std::vector<ImplicitSimplex>& simplices() const { return simplices_; }
   /// Empty where the shape is flat, or a polygon.
   [[nodiscard]] const Stars& stars() const { return stars_; }
-  /// Number of triangles in a face's fan: degree - 2, or degree where the face has a point of its own. In the plane a
-  /// face is one facet of a simplex, as a triangle is.
+  /// Number of triangles in a face's fan: degree - 2, or degree where the face has a Steiner point. In the plane a face
+  /// is one facet of a simplex, as a triangle is.
   [[nodiscard]] std::uint16_t triangle_count(std::uint16_t face) const {
     if (dimension_ == 2) return 1;
     return static_cast<std::uint16_t>(degree(face) - (key_.faces[face].has_point ? 0 : 2));
   }
-  /// Local numbers of the corners of a fan triangle, counterclockwise seen from the outside; in the plane the edge's
-  /// corners, the second one twice.
+  /// Local numbers of the corners of a fan triangle, counterclockwise as seen from the outside. In the plane: the
+  /// edge's corners, the second one twice.
   [[nodiscard]] std::array<std::uint16_t, 3> triangle(std::uint16_t face, std::uint16_t t) const;
   /// The number that the cell on the other side gives to a triangle of this face.
   [[nodiscard]] std::uint16_t triangle_from_other_side(std::uint16_t face, std::uint16_t t) const {
@@ -180,12 +180,12 @@ class Shape {
   /// The simplex behind a fan triangle, and its facet: `index` and `place`.
   [[nodiscard]] Across entry(std::uint16_t face, std::uint16_t t) const { return entries_[first_entry_[face] + t]; }
 
-  /// The face that a point of its own fans; face_count() where `point` is a corner or the cell's point.
+  /// The face that has this Steiner point; face_count() if `point` is a corner or the Steiner point of the cell.
   [[nodiscard]] std::uint16_t face_of_point(std::uint16_t point) const;
 
   struct Feature {
     Kind kind;
-    std::uint16_t dart;  ///< of that face, edge or vertex (its origin); of no meaning for a volume
+    std::uint16_t dart;  ///< of that face, edge or vertex (its origin); not used for a volume
   };
   /// The cell of the map whose interior holds the relative interior of the given points' hull. `points`: local numbers,
   /// 1 to 4 corners of one simplex. Cost: linear in the faces at the first of them.

@@ -1,17 +1,30 @@
-// The combinatorial map: darts with phi1, phi2, phi3 over convex cells, free or blocked. No coordinates.
+// The combinatorial map: darts with phi1, phi2, phi3 over convex cells, free or blocked. It has no coordinates.
 //
-// T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism for continuous collision detection in
+// After T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism for continuous collision detection in
 // deformable environments", SPM 2009, section 3.1. No dart is stored: a dart is a cell and a number in the cell's
-// shape; phi1 and phi2 look up in the shape, phi3 goes through the record of the cell.
+// shape. phi1 and phi2 look up in the shape. phi3 goes through the record of the cell.
 //
-// Records, in 32-bit words (a walk reads one record per cell it enters; a hexahedron's fills one cache line):
-//   standard types   [shape 16, version 16] [neighbours' face numbers 3 each, wall mask 6, free 1, wide 1, 0 (4), flat
-//   1, vacant 1] [vertices] [neighbours] any other cell   [shape 32] [version 16, free 1, 0 (13), flat 1, vacant 1]
-//   [vertices] [neighbours] [neighbours' face numbers 16, wall 16 each]
-// In the plane the cells are polygons, the faces their edges, and phi2 leads to the neighbour; records are the same.
-// Wide: a neighbour's face number does not fit in 3 bits; where these say 7, it is looked up in the neighbour.
-// Flat: darts of the cell have marks in a side table. Vacant: the cell was removed (dartcast/map_edits.hpp); its
-// place waits for another, the version tells them apart.
+// A walk reads one record for each cell that it enters. The record of a hexahedron fills one cache line. Records
+// consist of 32-bit words:
+//
+// word     standard types (pools 0 to 3)           any other cell (pool 4)
+// -------  --------------------------------------  -----------------------------------------------
+// 0        shape 16, version 16                    shape 32
+// 1        numbers of the neighbours' faces 3      version 16, free 1, not used 12, patch 1,
+//          each (18), wall mask 6, free 1, wide 1, flat 1, vacant 1
+//          not used 3, patch 1, flat 1, vacant 1
+// 2 ...    vertices                                vertices
+// then     neighbours                              neighbours
+// then                                             per face: number of the neighbour's face 16, wall 16
+//
+//  - version: how often another cell took this place. A stale handle has another version.
+//  - wide: the number of a neighbour's face does not fit in 3 bits. Where the bits are 7, the neighbour is searched.
+//  - patch: a face of the cell is in a patch. The patches are in a side table.
+//  - flat: darts of the cell have marks. The marks are in a side table.
+//  - vacant: the cell was removed (dartcast/map_edits.hpp), and its place waits for another.
+//
+// In the plane the cells are polygons, the faces are their edges, and phi2 leads to the neighbour. Records are the
+// same.
 #pragma once
 
 #include <array>
@@ -30,7 +43,7 @@ namespace dartcast {
 
 class CombinatorialMap;
 
-/// What a walk reads of a cell. Valid until the map is edited.
+/// The part of the map that a walk reads of a cell. Valid until the map is edited.
 class CellView {
  public:
   CellView() = default;
@@ -72,8 +85,7 @@ class CellView {
   bool general_ = false;
 };
 
-/// A cell as it is now: after an edit that replaces it, the handle is stale, though another cell may have taken its
-/// place.
+/// A cell at this moment. An edit that replaces the cell makes the handle stale, even if another cell takes its place.
 struct CellHandle {
   Cell cell;
   std::uint16_t version = 0;
@@ -81,8 +93,8 @@ struct CellHandle {
   constexpr auto operator<=>(const CellHandle&) const = default;
 };
 
-/// Interior points that cells need where the plain pulling triangulation is not positive (see
-/// dartcast/cell_complex.hpp). Numbers are vertices beyond the mesh's own points.
+/// Steiner points of cells and faces without a positive pulling triangulation (see dartcast/cell_complex.hpp). Their
+/// numbers are vertices beyond the mesh's own points.
 struct SteinerPoints {
   std::vector<std::pair<std::uint32_t, Vertex>> of_cells;  ///< mesh cell, its point; sorted
   struct FacePoint {
@@ -97,31 +109,32 @@ class CombinatorialMap {
  public:
   /// Pools 0 to 3: tetrahedra, hexahedra, prisms, pyramids; in the plane 0 and 1: triangles, quadrilaterals.
   static constexpr std::uint32_t general_pool = 4;
-  /// Of cells of a type, but those with points of their own, which are in the general pool.
+  /// The pool of the cells of a type. Cells with Steiner points are in the general pool instead.
   static constexpr std::uint32_t pool_of(CellType type) {
     if (dartcast::dimension(type) == 3) return static_cast<std::uint32_t>(type);
     return type == CellType::polygon ? general_pool : type == CellType::quadrilateral ? 1 : 0;
   }
 
   CombinatorialMap() = default;
-  /// Builds cells, sews faces by their vertices, and takes over free marks and patches. Cost: linear but for sorting.
-  /// Preconditions: check_and_repair() found no defect. Throws InvalidMesh where a face has three cells or two on the
-  /// same side, or a cell is not closed: names the cell by its number in the mesh.
+  /// Builds cells, sews faces by their vertices, and takes over free marks and patches. Precondition:
+  /// check_and_repair() found no defect. Throws InvalidMesh, which names the cell by its number in the mesh, where a
+  /// face has three cells or two on the same side, or a cell is not closed. Cost: linear, except for sorting.
   explicit CombinatorialMap(const MeshData& mesh, const SteinerPoints& steiner = {});
 
-  /// 2: cells are polygons of the plane, faces their edges; 3.
+  /// 2 in the plane, where cells are polygons and faces are their edges; else 3.
   [[nodiscard]] unsigned dimension() const { return dimension_; }
 
   // Darts. Preconditions: dart and cell of this map.
   [[nodiscard]] Dart phi1(Dart d) const { return {d.cell, shape(d.cell).phi1(d.number)}; }
   [[nodiscard]] Dart phi_1(Dart d) const { return {d.cell, shape(d.cell).phi_1(d.number)}; }
-  /// The same edge of the next face of the cell; in the plane, of the next polygon: invalid on the boundary.
+  /// The same edge of the other face of the cell at that edge. In the plane: of the next polygon, invalid on the
+  /// boundary.
   [[nodiscard]] Dart phi2(Dart d) const {
     return dimension_ == 2 ? across(d) : Dart{d.cell, shape(d.cell).phi2(d.number)};
   }
   /// The same edge of the same face from the other side; invalid on the boundary, and in the plane.
   [[nodiscard]] Dart phi3(Dart d) const { return dimension_ == 2 ? Dart{} : across(d); }
-  /// The dart that follows in the vertex of d: phi1(phi2(d)); invalid where phi2(d) is.
+  /// The next dart around the vertex of d: phi1(phi2(d)). Invalid where phi2(d) is.
   [[nodiscard]] Dart alpha1(Dart d) const {
     const Dart other = phi2(d);
     return other.valid() ? phi1(other) : other;
@@ -133,19 +146,19 @@ class CombinatorialMap {
   [[nodiscard]] CellFace face(Dart d) const { return {d.cell, shape(d.cell).face_of(d.number)}; }
   /// The same face from the other side; invalid on the boundary.
   [[nodiscard]] CellFace opposite(CellFace f) const;
-  /// The point of its own that a face is fanned from; invalid where it has none.
+  /// The Steiner point that a face is fanned from; invalid where the face has none.
   [[nodiscard]] Vertex point(CellFace f) const;
 
   // Cells.
-  /// Where a cell's record starts: to ask memory for it ahead of time.
+  /// The start of a cell's record, so that a caller can prefetch it.
   [[nodiscard]] const std::uint32_t* record(Cell c) const {
     const Pool& pool = pools_[c.pool()];
     return pool.words.data() +
            (c.pool() == general_pool ? pool.offsets[c.index()] : std::size_t{c.index()} * pool.stride);
   }
-  // Inlined: every walk does this for each cell that it enters, and a call is as dear.
+  // Inlined: every walk calls it for each cell that it enters, and a call costs as much as the work.
   [[nodiscard]] [[gnu::always_inline]] CellView view(Cell c) const { return view(c, record(c)); }
-  /// Where its record is known.
+  /// The same for a caller that has the record.
   [[nodiscard]] [[gnu::always_inline]] CellView view(Cell c, const std::uint32_t* record) const {
     const bool general = c.pool() == general_pool;
     return {*this, record, shapes_[general ? record[0] : record[0] & 0xffffU], general};
@@ -159,26 +172,26 @@ class CombinatorialMap {
   /// Precondition: contains(c).
   [[nodiscard]] CellHandle handle(Cell c) const { return {c, view(c).version()}; }
   [[nodiscard]] CellType type(Cell c) const { return type_of(c.pool()); }
-  /// Of the cells in a pool.
+  /// The type of the cells in a pool.
   [[nodiscard]] CellType type_of(std::uint32_t pool) const;
   [[nodiscard]] std::size_t cell_count() const;
   [[nodiscard]] std::size_t cell_count(std::uint32_t pool) const { return pools_[pool].count - pools_[pool].gone; }
-  /// Places for cells in a pool, vacant ones too: indices are below. As many as there are cells until the map is
-  /// edited.
+  /// Number of places in a pool, vacant ones included. Indices of cells are below it. Until the map is edited it equals
+  /// the number of cells.
   [[nodiscard]] std::size_t slot_count(std::uint32_t pool) const { return pools_[pool].count; }
-  /// Numbers of vertices are below; after edits some may be in no cell.
+  /// An upper bound on the numbers of vertices. After edits some numbers below it may be in no cell.
   [[nodiscard]] std::size_t vertex_count() const { return vertex_count_; }
-  /// Whether the number is a vertex's: edits give numbers up and use them again.
+  /// Whether the number names a vertex: edits give numbers up and use them again.
   [[nodiscard]] bool is_vertex(Vertex v) const {
     return v.value < vertex_count_ && (cells_at_.empty() || cells_at_[v.value] != vacant_vertex);
   }
   [[nodiscard]] const ShapeTable& shapes() const { return shapes_; }
-  /// The cell's index in the mesh (or the file that it was read from); for one that an edit made, that of the cell
-  /// which it was made from.
+  /// The cell's index in the mesh, or in the file that the mesh was read from. A cell that an edit made has the index
+  /// of the cell which it was made from.
   [[nodiscard]] std::uint32_t source(Cell c) const;
   /// All cells, pool by pool.
   [[nodiscard]] std::vector<Cell> cells() const;
-  /// Calls visit(cell, view) for those of a pool in the places [begin, end).
+  /// Calls visit(cell, view) for the cells of a pool in the places [begin, end).
   template <class Visit>
   void for_each_cell(std::uint32_t pool, std::size_t begin, std::size_t end, Visit&& visit) const {
     const bool general = pool == general_pool;
@@ -193,14 +206,14 @@ class CombinatorialMap {
 
   // Marks.
   [[nodiscard]] bool is_free(Cell c) const { return view(c).is_free(); }
-  /// Marks a cell free or blocked; its faces and those of its neighbours become walls or cease to be. Cost: its faces.
+  /// Marks a cell free or blocked. Its faces, seen from both sides, become walls or cease to be walls. Cost: its faces.
   void set_free(Cell c, bool free);
-  /// False only where no wall has the vertex. True where one has, or has had.
+  /// False only if no wall has the vertex. True if a wall has it or once had it.
   [[nodiscard]] bool may_touch_wall(Vertex v) const {
     return ((wall_vertices_.words[v.value / 64U] >> (v.value % 64U)) & 1U) != 0;
   }
 
-  // What edits leave for whoever gives cells interior points (see dartcast/map_edits.hpp).
+  // Marks that edits leave for the code that gives cells Steiner points (see dartcast/map_edits.hpp).
   struct Flat {
     bool straight = false;  ///< the face of the dart may be straight in its origin
     bool coplanar = false;  ///< the two faces of the cell that meet in its edge may lie in one plane
@@ -219,13 +232,13 @@ class CombinatorialMap {
   }
   /// Index 0 is "" (the unnamed rest).
   [[nodiscard]] const std::vector<std::string>& patch_names() const { return patch_names_; }
-  /// Throws InvalidArgument that lists the names there are.
+  /// The patch of a name. Throws InvalidArgument, which lists the names that exist.
   [[nodiscard]] Patch patch(std::string_view name) const;
   /// Number of wall faces seen from free cells.
   [[nodiscard]] std::size_t wall_face_count() const;
 
   [[nodiscard]] std::size_t bytes() const;
-  /// The same records, numbers, vacant places, shapes, vertices and patches. Cost: linear.
+  /// Whether records, numbers, vacant places, shapes, vertices and patches are the same. Cost: linear.
   bool operator==(const CombinatorialMap&) const = default;
 
  private:
@@ -246,13 +259,13 @@ class CombinatorialMap {
     AlignedVector<std::uint32_t> words = {};
     std::vector<std::size_t> offsets = {};   // general pool only: start of each record
     std::vector<std::uint32_t> source = {};  // empty: the index in the pool is the index in the mesh
-    // Vacant places by the length of their records: of each length never more than were once in use together.
+    // Vacant places by the length of their records. At most as many of each length as were once in use together.
     std::map<std::uint32_t, std::vector<std::uint32_t>> vacant = {};
 
     bool operator==(const Pool&) const = default;
   };
 
-  // A bit for each vertex that a wall has. What more it says, of walls that are gone, is of no account.
+  // A bit for each vertex of a wall. Bits of walls that no longer exist may stay set, so they are not compared.
   struct WallVertices {
     std::vector<std::uint64_t> words;
 

@@ -1,7 +1,7 @@
-// Edits of a complex: those of the map (dartcast/map_edits.hpp), with positions and interior points. All or nothing.
+// Edits of a complex: the edits of the map (dartcast/map_edits.hpp), with positions and Steiner points. All or nothing.
 //
-// "Sewing, simplifying or cutting cells": T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism for
-// continuous collision detection in deformable environments", SPM 2009, section 6.2.
+// After "Sewing, simplifying or cutting cells": T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism
+// for continuous collision detection in deformable environments", SPM 2009, section 6.2.
 #pragma once
 
 #include <algorithm>
@@ -17,8 +17,9 @@
 
 namespace dartcast {
 
-/// A vertex that an edit made, and how data given at the vertices follow: it lies at the sum of `weights` times the
-/// positions of `of`, and `offset`. On an edge: of its ends. Parted from another: of that one.
+/// A vertex that an edit made, and the rule by which data at the vertices follow. It lies at the sum of `weights` times
+/// the positions of `of`, plus `offset`. For a vertex on an edge, `of` are the ends of the edge. For a copy of a
+/// vertex, made where faces were opened, `of` is that vertex.
 struct PlacedVertex {
   Vertex vertex;
   std::vector<Vertex> of;  ///< older ones
@@ -26,20 +27,22 @@ struct PlacedVertex {
   Vec3 offset;  ///< in the positions when it was made
 };
 
-/// What an edit did.
+/// The changes that an edit made.
 struct ComplexEditReport {
   EditReport map;
-  /// Vertices made, interior points apart, in order. Among them may be some that were given up again.
+  /// Vertices that the edit made, without Steiner points, in order. Some of them may have been removed again.
   std::vector<PlacedVertex> placed;
-  /// Cells that commit() replaced to give them points: what they were while the edit was open, and are now. Sorted.
+  /// Cells that commit() replaced to give them Steiner points: the cell while the edit was open, and the cell now.
+  /// Sorted.
   std::vector<std::pair<Cell, Cell>> given_points;
-  /// Cells that stay as they are, next to cells that were touched.
+  /// Unchanged cells next to touched cells.
   std::vector<Cell> around;
-  /// No point of a wall or of the boundary where an edit split, merged or fanned faces anew lies farther than this from
-  /// where it lay (m): rounding where the faces are planar, their warp else. Faces that became walls are no part of it.
+  /// Bound on the motion of walls and of the boundary where an edit split, merged or fanned faces anew (m). No point of
+  /// them lies farther than this from its old position. It is rounding where the faces are planar, else their warp.
+  /// Faces that became walls do not count.
   double boundary_shift = 0.0;
 
-  /// What a cell is now that an edit returned before commit(). Cost: logarithmic.
+  /// The current cell in place of a cell that an edit returned before commit(). Cost: logarithmic.
   [[nodiscard]] Cell now(Cell c) const {
     const auto at = std::lower_bound(given_points.begin(), given_points.end(), std::pair{c, Cell{}},
                                      [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -47,8 +50,8 @@ struct ComplexEditReport {
   }
 };
 
-/// Values at the vertices after an edit: those of new vertices are interpolated. `values`: one per vertex before the
-/// edit; takes as many as `size` afterwards. Cost: the vertices made.
+/// Updates values at the vertices after an edit: those of new vertices are interpolated. `values`: one per vertex
+/// before the edit; afterwards `size` of them. Cost: the new vertices.
 template <class T>
 void update_after_edit(const ComplexEditReport& report, std::size_t size, std::vector<T>& values) {
   values.resize(size);
@@ -60,8 +63,8 @@ void update_after_edit(const ComplexEditReport& report, std::size_t size, std::v
   }
 }
 
-/// A sequence of edits. What is not committed when it ends is taken back. While it is open, nobody else edits, copies
-/// or moves the complex; whoever reads it sees cells without their interior points.
+/// A sequence of edits. If it ends without a commit, everything is undone. While it is open, no other code may edit,
+/// copy or move the complex, and readers see cells without their Steiner points.
 class ComplexEdit {
  public:
   explicit ComplexEdit(CellComplex& complex);
@@ -71,29 +74,29 @@ class ComplexEdit {
   ComplexEdit& operator=(ComplexEdit&&) = delete;
   ~ComplexEdit();
 
-  /// For the functions of dartcast/map_edits.hpp. Drafts given to its replace() name no points of cells: commit() finds
-  /// these.
+  /// The transaction for the functions of dartcast/map_edits.hpp. Drafts given to its replace() name no Steiner points
+  /// of cells: commit() finds these.
   [[nodiscard]] Transaction& topology() { return transaction_; }
   [[nodiscard]] const CombinatorialMap& map() const { return transaction_.map(); }
 
-  /// Where a vertex is. One that this edit put on an edge lies in its middle until it is placed; one that was parted
-  /// lies where the other does.
+  /// The position of a vertex. A vertex that this edit put on an edge lies in its middle until it is placed. A copy of
+  /// a vertex lies where that vertex lies.
   [[nodiscard]] Vec3 position(Vertex v);
-  /// Places a vertex that this edit made. Throws InvalidArgument where it made no such vertex, or x is not finite,
-  /// outside the exact range, or not in the plane where the map is.
+  /// Places a vertex that this edit made. Throws InvalidArgument where this edit made no such vertex, or x is not
+  /// finite, outside the exact range, or not in the plane of a planar map.
   void place(Vertex v, const Vec3& x);
-  /// Places it at the weighted mean of older vertices, which is what data given at the vertices follow by: better for
-  /// one that is in the middle of a face or a cell. `weights`: one per vertex of `of`; they sum to 1. Throws as above,
+  /// Places it at the weighted mean of older vertices. Data at the vertices follow by the same weights, which is better
+  /// for a vertex in the middle of a face or a cell. `weights`: one per vertex of `of`; they sum to 1. Throws as above,
   /// and where the numbers do not match.
   void place(Vertex v, std::span<const Vertex> of, std::span<const double> weights);
 
   [[nodiscard]] Transaction::Savepoint savepoint() const { return transaction_.savepoint(); }
-  /// Takes back everything after the savepoint. (Not by topology().roll_back(): places would stay.)
+  /// Undoes everything after the savepoint. Do not use topology().roll_back() for it: positions would stay.
   void roll_back(const Transaction::Savepoint& to);
 
-  /// Gives touched cells the interior points that they need (see ComplexEditReport::now()), and makes everything final.
-  /// Throws EditRefused, everything taken back, where a new cell has a simplex that is not positive and no interior
-  /// point mends it: names the cell. Cost: that of the cells touched and their neighbours.
+  /// Gives touched cells the Steiner points that they need (see ComplexEditReport::now()), and makes everything final.
+  /// Throws EditRefused, which names the cell, where a new cell has a simplex that is not positive and no Steiner point
+  /// repairs it. Then everything is undone. Cost: that of the cells touched and their neighbours.
   ComplexEditReport commit();
 
  private:

@@ -1,4 +1,4 @@
-// Contacts: what a particle met, where, when, and how the wall moves there.
+// Contacts: which walls a particle meets, where and when, and how the walls move there.
 #pragma once
 
 #include <cstdint>
@@ -16,32 +16,34 @@ struct WallHit {
   CellFace face;               ///< of the free cell
   std::uint16_t triangle = 0;  ///< in the face's fan
   Patch patch;
-  /// Unit, into the free side. A wall without area, or with a corner outside the exact range, has none of its own: it
-  /// has that of the contact's first wall with one; where there is none, it is opposite to the particle's motion.
+  /// Unit vector into the free side. Some walls have no normal of their own: those without area, and those with a
+  /// corner outside the exact range. They get the normal of the contact's first wall that has one. If none has one, the
+  /// normal is opposite to the particle's motion.
   Vec3 normal;
 };
 
-/// Contacts of a particle less than this share of the step apart count as one place: it has hardly moved. Which walls a
-/// response joins depends on it, no decision of a walk.
+/// Contacts of a particle that are less than this share of the step apart count as one place: the particle has hardly
+/// moved. Only responses use it, to join walls. No decision of a walk depends on it.
 inline constexpr double share_together = 0x1p-20;
 
 struct Contact {
   std::uint32_t particle = 0;
-  Kind kind = Kind::face;  ///< of the place on the wall: face, edge or vertex
+  Kind kind = Kind::face;  ///< kind of the place on the wall: face, edge or vertex
   Dart dart;               ///< of that face, edge or vertex, in the free cell at the wall
   std::uint32_t first_wall =
       0;  ///< its walls are walls[first_wall .. first_wall + wall_count) of the list; the one met first
   std::uint32_t wall_count = 0;
-  std::uint32_t earlier = 0;    ///< number of walls before those that this particle met earlier in the same step
-  std::uint32_t together = 0;   ///< so many of these, the last ones, were met at this place (share_together)
+  std::uint32_t earlier = 0;    ///< number of walls in front of these that the particle met earlier in this step
+  std::uint32_t together = 0;   ///< number of those, the last ones, that were met at this place (share_together)
   bool last = false;            ///< no further contact is allowed in this step
   double time_of_impact = 0.0;  ///< fraction of the step, in [0, 1]
-  /// On the wall, rounded. The particle is put into the free closed cell there: at most 256 units in the last place of
-  /// the point's largest coordinate away; where that cannot be, no farther than where its motion to the wall began.
+  /// On the wall, rounded. The particle is put into the free closed cell there, at most 256 units in the last place of
+  /// the point's largest coordinate away. Where that is impossible, it is no farther away than the start of its motion
+  /// to the wall.
   Vec3 point;
-  Vec3 wall_displacement;  ///< of the wall at that point, over the whole step; zero where the scene stands still
-  Vec3 displacement;  ///< of the particle relative to the wall, over the whole of the motion that led to the contact
-  Vec3 unused;        ///< displacement not used, relative to the wall
+  Vec3 wall_displacement;  ///< motion of the wall at that point over the whole step; zero in a scene at rest
+  Vec3 displacement;       ///< motion that led to the contact, relative to the wall, up to its planned end
+  Vec3 unused;             ///< the remaining part of `displacement`, relative to the wall
 };
 
 /// Contacts of a batch: by particle, then by time.
@@ -52,7 +54,7 @@ struct ContactList {
   [[nodiscard]] std::span<const WallHit> walls_of(const Contact& c) const {
     return {walls.data() + c.first_wall, c.wall_count};
   }
-  /// Walls that the particle met earlier in the same step, oldest first.
+  /// The walls that the particle met earlier in the same step, oldest first.
   [[nodiscard]] std::span<const WallHit> earlier_walls_of(const Contact& c) const {
     return {walls.data() + c.first_wall - c.earlier, c.earlier};
   }
@@ -64,21 +66,21 @@ struct ContactList {
   void append(const ContactList& other);
 };
 
-/// Of a displacement's largest component: what points into a wall by less than this along its normal is meant to run
-/// along it, and rounding is to blame.
+/// A share of a displacement's largest component. A displacement that points into a wall by less than this along the
+/// wall's normal is meant to run along the wall, and the difference is rounding.
 inline constexpr double along_share = 4e-12;
 
-/// What a particle does after a contact, in the rest of the step.
+/// The motion of a particle after a contact, in the rest of the step.
 struct AfterContact {
   Vec3 displacement;  ///< relative to the wall
-  /// Rounding must not turn it into the walls touched in this step that it runs along, or off (along_share). A wall
-  /// that it points into is met again.
+  /// Whether the displacement runs along walls. Then rounding cannot turn it into the walls touched in this step that
+  /// it runs along or points away from (along_share). A wall that it points into is met again.
   bool along = false;
 };
 
-/// Decides what follows a contact: given the contact, its walls, and those met earlier in the same step. Called from
-/// several threads at once for different particles; an empty function stops the particle at the wall until the end of
-/// the step.
+/// Decides what follows a contact. It gets the contact, its walls, and the walls met earlier in the same step. It is
+/// called from several threads at once for different particles. An empty function stops the particle at the wall until
+/// the end of the step.
 using ContactCallback =
     std::function<AfterContact(const Contact&, std::span<const WallHit> walls, std::span<const WallHit> earlier)>;
 

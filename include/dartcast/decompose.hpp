@@ -22,27 +22,28 @@ struct DecomposeOptions {
   std::uint32_t max_corners = 1000;  ///< of a cell, 3 to 1000; with 3 all cells are triangles
 };
 
-/// A planar mesh of the inside of rings: of all points from which a ray crosses them an odd number of times, so that
-/// rings within rings are holes, islands in holes, and so on. Points are those of the rings, in order and unchanged,
-/// then (with_outside) the four corners of the rectangle, counterclockwise from the lowest.
+/// A planar mesh of the inside of rings. A point is inside if a ray from it crosses the rings an odd number of times.
+/// So rings within rings are holes, rings in holes are islands, and so on. Points are those of the rings, in order and
+/// unchanged, then (with_outside) the four corners of the rectangle, counterclockwise from the lowest.
 ///
 /// Cells are strictly convex, decided exactly, so that every three corners of one are a positive triangle. They
-/// conform: each edge of a ring is an edge of the mesh, and every other edge, but for those of the rectangle, is shared
-/// by two cells. Each begins with its point of the lowest number; they are ordered by it, those inside first. Those
-/// inside are free and of region 1, "inside"; the others blocked and of region 2, "outside". Edges of named rings are
-/// patch faces, in the ring's direction; rings of one name share a patch. The same rings scaled by a power of two give
-/// the same cells.
+/// conform: each edge of a ring is an edge of the mesh, and every other edge, except those of the rectangle, is shared
+/// by two cells. Each cell starts with its point of the lowest number. Cells are ordered by that point, those inside
+/// first. Cells inside are free and of region 1, "inside". The others are blocked and of region 2, "outside". Edges of
+/// named rings are patch faces, in the ring's direction. Rings of one name share a patch. The same rings scaled by a
+/// power of two give the same cells.
 ///
-/// Throws InvalidMesh, naming ring and point: fewer than three points, one that is not finite, outside the exact range,
-/// off the plane z = 0, or given before in any ring; edges that cross, overlap, or run through another point: rings may
-/// not touch themselves or each other. Throws InvalidArgument: no rings, 2^28 points or more, an option out of range, a
-/// margin so small or so large that the rectangle cannot be told from the drawing, or leaves the exact range.
+/// Throws InvalidMesh, which names ring and point, for fewer than three points, for a point that is not finite, outside
+/// the exact range, off the plane z = 0, or given before in any ring, and for edges that cross, overlap, or run through
+/// another point. Rings may not touch themselves or each other. Throws InvalidArgument for no rings, 2^28 points or
+/// more, an option out of range, or a margin so small that the rectangle coincides with the drawing, or so large that
+/// it leaves the exact range.
 ///
-/// Cost: n log n for usual drawings, 5 to 10 us and about 350 bytes a point; each edge costs, besides, the edges
+/// Cost: n log n for usual drawings, 5 to 10 us and about 350 bytes a point. In addition, each edge costs the edges
 /// between points on either side of it that it has to break.
 ///
-/// This work is based on a constrained Delaunay triangulation (mesh/planar_triangulation.hpp), whose edges are then
-/// taken out as long as cells stay convex (mesh/merge_convex.hpp).
+/// This work is based on a constrained Delaunay triangulation (mesh/planar_triangulation.hpp). Its edges are then
+/// removed as long as cells stay convex (mesh/merge_convex.hpp).
 MeshData decompose(std::span<const Ring> rings, const DecomposeOptions& options = {});
 
 }  // namespace dartcast

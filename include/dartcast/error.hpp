@@ -1,5 +1,4 @@
-// Errors: bad input is an exception whose text says what, where and what to do. A collision is a result, never an
-// error.
+// Errors: bad input raises an exception that says what, where and what to do. A collision is a result, never an error.
 #pragma once
 
 #include <stdexcept>
@@ -7,7 +6,7 @@
 
 namespace dartcast {
 
-/// Base of everything that dartcast throws. State is unchanged after a throw, unless a function's contract says
+/// Base of all exceptions of dartcast. After a throw the state is unchanged, unless the contract of a function says
 /// otherwise.
 class Error : public std::runtime_error {
  public:
@@ -27,7 +26,7 @@ class InvalidMesh : public Error {
   using Error::Error;
 };
 
-/// An edit that would leave no valid map. The text names the cells and says what to do; the map is as it was.
+/// An edit that would leave no valid map. The text names the cells and says what to do; the map is unchanged.
 class EditRefused : public Error {
  public:
   using Error::Error;

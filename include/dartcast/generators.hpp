@@ -17,20 +17,20 @@ struct BoxOptions {
   CellType type = CellType::hexahedron;            ///< each cube is 1 hexahedron, 6 tetrahedra, 2 prisms or 6 pyramids
   bool mixed = false;          ///< instead of `type`: each cube cut at random, all four types, still conforming
   bool blocked_layer = false;  ///< the outermost cubes are blocked
-  double blocked_share = 0.0;  ///< of the other cubes, this share (rounded to whole cubes) is blocked at random
+  double blocked_share = 0.0;  ///< share of the other cubes (rounded to whole cubes) that is blocked at random
   double jitter = 0.0;         ///< inner lattice points move by up to jitter / 2 cube edges along each axis
   std::uint64_t seed = 1;      ///< for all that is random: the same seed gives the same bits everywhere
 };
 
 /// A conforming mesh of a box. Point (i, j, k) of the lattice has number i + (nx + 1) (j + (ny + 1) k) and lies at
-/// origin + size * i / nx and so on: exactly on integers where size equals cells. The middle points of cubes cut from
-/// their middle (pyramids) follow; each is the mean of the cube's corners. Cubes come in the same order, x fastest, and
-/// the cells of a cube one after another. Patches 1 to 6 ("xmin", "xmax", "ymin", "ymax", "zmin", "zmax") are the box's
-/// sides. `free` is filled where a cube is blocked. Where jitter is more than about 0.5, cells may turn invalid.
+/// origin + size * i / nx and so on: exactly on integers where size equals cells. The middle points of cubes that are
+/// cut from their middle (pyramids) follow; each is the mean of the cube's corners. Cubes come in the same order, x
+/// fastest, and the cells of a cube one after another. Patches 1 to 6 ("xmin", "xmax", "ymin", "ymax", "zmin", "zmax")
+/// are the sides of the box. `free` is filled if a cube is blocked. With a jitter above about 0.5, cells may become
+/// invalid.
 ///
-/// Throws InvalidArgument: no cubes along an axis, 2^29 cells or more, a size that is not positive, a number that is
-/// not finite, a share outside [0, 1], a jitter outside [0, 1], polyhedra asked for. Cost: about 0.15 us per
-/// hexahedron.
+/// Throws InvalidArgument for no cubes along an axis, 2^29 cells or more, a size that is not positive, a number that is
+/// not finite, a share outside [0, 1], a jitter outside [0, 1], or polyhedra. Cost: about 0.15 us per hexahedron.
 MeshData generate_box(const BoxOptions& options);
 
 /// The bar of Jund, Cazier and Dufourd (2009): 5 x 5 x 28 unit cubes whose outer layer is blocked.
@@ -46,18 +46,18 @@ struct OctahedraOptions {
   Vec3 origin = {0.0, 0.0, 0.0};
   Vec3 size = {1.0, 1.0, 1.0};  ///< edge lengths of the lattice: cells cubes of size / cells
   bool blocked_layer = false;   ///< the octahedra at the block's boundary are blocked
-  double blocked_share = 0.0;   ///< of the others, this share (rounded to whole cells) is blocked at random
+  double blocked_share = 0.0;   ///< share of the others (rounded to whole cells) that is blocked at random
   std::uint64_t seed = 1;       ///< for all that is random: the same seed gives the same bits everywhere
 };
 
 /// A conforming mesh of 2 nx ny nz polyhedra, each with 8 hexagons and 6 squares: the body-centred cubic packing. Cube
-/// (i, j, k), x fastest, has one octahedron around its middle and one around its highest corner, so the block reaches
-/// half a cube beyond `size`. Coordinates are origin + size u / (4 n) with integers u: where size / (4 cells) is a
-/// double of few digits, they are exact, and every face is exactly plane. Patch 1, "boundary": the block's ragged
-/// outside. `free` is filled where a cell is blocked.
+/// (i, j, k), x fastest, has one octahedron around its middle and one around its highest corner. So the block reaches
+/// half a cube beyond `size`. Coordinates are origin + size u / (4 n) with integers u. Where size / (4 cells) is a
+/// double of few digits they are exact, and every face is exactly planar. Patch 1, "boundary", is the block's ragged
+/// outside. `free` is filled if a cell is blocked.
 ///
-/// Throws InvalidArgument: no cubes along an axis, 2^29 cells or more, a size that is not positive, a number that is
-/// not finite, a share outside [0, 1]. Cost: about 2 us per cell.
+/// Throws InvalidArgument for no cubes along an axis, 2^29 cells or more, a size that is not positive, a number that is
+/// not finite, or a share outside [0, 1]. Cost: about 2 us per cell.
 MeshData generate_octahedra(const OctahedraOptions& options);
 
 // A blood vessel that branches: one inlet, two outlets, tissue around.
@@ -78,27 +78,33 @@ struct VesselOptions {
   double peak_speed = 0.3;          ///< of the flow, in the middle of the inlet
 };
 
-/// A conforming mesh of hexahedra, with prisms where the tissue between the branches begins. The trunk comes along z
-/// and is made of two halves sewn along a plane; at the carina (the origin) they part, and each becomes round along its
-/// own branch, the left one towards -x, the right one towards +x. At the default options: 20,948 cells, 15,012 of them
-/// lumen.
+/// A conforming mesh of hexahedra, with prisms where the tissue between the branches starts. The trunk comes along z
+/// and consists of two halves sewn along a plane. At the carina (the origin) they separate, and each becomes round
+/// along its own branch, the left one towards -x, the right one towards +x. The default options give 20,948 cells,
+/// 15,012 of them lumen.
 ///
-/// Regions: 1 "lumen" (free), 2 "tissue" (blocked). Patches: 1 "inlet", 2 "outlet_left", 3 "outlet_right" (the lumen's
-/// ends), 4 "wall" (the faces between lumen and tissue, seen from the lumen), 5 "outer" (the tissue's outside, with its
-/// ends). Point data:
+/// Regions: 1 "lumen" (free), 2 "tissue" (blocked).
+///
+/// Patches: 1 "inlet", 2 "outlet_left", 3 "outlet_right" (the ends of the lumen), 4 "wall" (the faces between lumen and
+/// tissue, seen from the lumen), 5 "outer" (the outside of the tissue, with its ends).
+///
+/// Point data:
+///
 ///  - "velocity" (3): along the vessel, a paraboloid over the inlet, 0 on the wall and in the tissue. The flux through
-///  each section is the
-///    same, half of it in each branch; between sections the field is free of divergence as far as the mesh resolves it.
-///  - "pulse_direction" (3): from the centre line to the point, in its section: the vessel widens by a share a in
-///  radius where
-///    points move by a times this.
+///    each section is the same, half of it in each branch. Between sections the field is free of divergence as far as
+///    the mesh resolves it.
+///  - "pulse_direction" (3): from the centre line to the point, in its section. If points move by a times this, the
+///    vessel widens by a share a in radius.
 ///  - "path_length" (1): along the centre line from the inlet.
 ///
-/// Throws InvalidArgument where an option is out of the range in which every cell is positive: radius > 0, trunk_length
-/// >= 4 radii, branch_lengths
-/// >= 6 radii, branch_radius in [0.7, 0.85], branch_angle in [0.4, 0.8], out_of_plane in [0, 0.7], tissue_thickness in
-/// [0.2, 0.8] radii, core in [2, 64], rings in [1, 32], tissue_layers in [1, 32], step_length in [0.02, 0.5] radii,
-/// peak_speed finite. Cost: about 2 us per cell.
+/// Throws InvalidArgument where an option is out of the range in which every cell is positive:
+///
+///  - radius > 0, trunk_length >= 4 radii, branch_lengths >= 6 radii;
+///  - branch_radius in [0.7, 0.85], branch_angle in [0.4, 0.8], out_of_plane in [0, 0.7];
+///  - tissue_thickness in [0.2, 0.8] radii, step_length in [0.02, 0.5] radii;
+///  - core in [2, 64], rings in [1, 32], tissue_layers in [1, 32], peak_speed finite.
+///
+/// Cost: about 2 us per cell.
 MeshData generate_vessel(const VesselOptions& options = {});
 
 // The surface of a barrel: staves that bulge, and two heads.
@@ -114,14 +120,14 @@ struct BarrelOptions {
   Vec3 centre = {0.0, 0.0, 0.0};
 };
 
-/// A closed surface in space, its faces counterclockwise seen from the outside: what check_and_repair_surface() accepts
-/// as it is. The radius at height s from the middle is radius + bulge (1 - (2 s / height)^2), at the staves' edges.
+/// A closed surface in space, with faces counterclockwise as seen from the outside. check_and_repair_surface() accepts
+/// it unchanged. The radius at height s from the middle is radius + bulge (1 - (2 s / height)^2), at the staves' edges.
 /// Points: those of the staves, staves (rows + 1) of them from the lower head up; then those inside the lower and the
-/// upper head. They are at equal distances along heights and radii, so that they sample the barrel, too. Regions: 1
+/// upper head. They are at equal distances along heights and radii, so that they also sample the barrel. Regions: 1
 /// "staves", 2 "heads".
 ///
-/// Throws InvalidArgument where a length is not positive (bulge: negative) or not finite, staves are fewer than 3 or
-/// more than 2^14, rows or rings none or more than 2^14.
+/// Throws InvalidArgument where a length is not positive (bulge: negative) or not finite, where there are fewer than 3
+/// staves or more than 2^14, or where rows or rings are 0 or more than 2^14.
 MeshData generate_barrel(const BarrelOptions& options = {});
 
 // Rectangles of squares in the plane, each square one quadrilateral, cut into triangles, or merged into hexagons.
@@ -137,20 +143,23 @@ struct RectangleOptions {
   std::uint64_t seed = 1;      ///< for all that is random: the same seed gives the same bits everywhere
 };
 
-/// The largest jitter that leaves every cell strictly convex, so that its fan from any corner is positive. A corner of
-/// a square keeps at least 1 - 2 jitter of its area, one of a hexagon 1 - 3 jitter.
+/// The largest jitter with which every cell is strictly convex, so that its fan from any corner is positive. A corner
+/// of a square keeps at least 1 - 2 jitter of its area, one of a hexagon 1 - 3 jitter.
 inline constexpr double largest_square_jitter = 0.45;
 inline constexpr double largest_polygon_jitter = 0.3;
 
 /// A conforming mesh of a rectangle, all z = 0. Point (i, j) of the lattice lies at origin + size * i / nx and so on:
 /// exactly on integers where size equals cells. Points come in the order i + (nx + 1) j, and so do squares, x fastest.
-/// Polygons are hexagons: of every third inner point of the lattice ((i + j) a multiple of 3) the six triangles around
-/// it are merged, and the point is left out; what is left of the squares are quadrilaterals and triangles. Hexagons
-/// come after all other cells. Patches 1 to 4 ("xmin", "xmax", "ymin", "ymax") are the rectangle's sides. `free` is
-/// filled where a square is to be blocked; cells are merged only from squares that are all free or all blocked.
 ///
-/// Throws InvalidArgument: no squares along an axis, 2^29 cells or more, a size that is not positive, a number that is
-/// not finite, a share outside [0, 1], a jitter that is negative or above the largest, cells of space asked for. Cost:
+/// Polygons are hexagons. Around every third inner point of the lattice ((i + j) a multiple of 3) the six triangles are
+/// merged, and the point is left out. The remaining parts of the squares are quadrilaterals and triangles. Hexagons
+/// come after all other cells.
+///
+/// Patches 1 to 4 ("xmin", "xmax", "ymin", "ymax") are the sides of the rectangle. `free` is filled if a square is
+/// blocked. Cells are merged only from squares that are all free or all blocked.
+///
+/// Throws InvalidArgument for no squares along an axis, 2^29 cells or more, a size that is not positive, a number that
+/// is not finite, a share outside [0, 1], a jitter that is negative or above the largest, or cells of space. Cost:
 /// about 0.1 us a cell.
 MeshData generate_rectangle(const RectangleOptions& options);
 
@@ -161,7 +170,8 @@ struct MazeOptions {
   std::uint32_t room_cells = 8;                 ///< squares along a room's edge
   std::uint32_t door_cells = 2;                 ///< squares that a door is wide
   std::uint32_t obstacles = 4;                  ///< squares blocked in each room; fewer where more would cut it
-  double extra_doors = 0.1;  ///< doors that no room needs: this share (rounded down) of the walls left without one
+  double extra_doors =
+      0.1;  ///< share (rounded down) of the walls without a door that get one although no room needs it
   std::array<double, 2> origin = {0.0, 0.0};  ///< the lowest corner
   std::array<double, 2> size = {1.0, 1.0};    ///< edge lengths of the whole maze
   CellType type = CellType::quadrilateral;    ///< cells, as in RectangleOptions
@@ -171,14 +181,14 @@ struct MazeOptions {
 };
 
 /// A generate_rectangle() of columns (room_cells + 1) - 1 by rows (room_cells + 1) - 1 squares. Between rooms the
-/// squares are blocked, one deep, apart from doors; a random spanning tree of the rooms has them, and some other walls.
-/// Within rooms obstacles are blocked one by one where what is left of the room and its doors stays connected. So all
-/// free cells are connected by edges between free cells, and every room has some. All boundary edges are in patch 1,
-/// "border".
+/// squares are blocked, one deep, apart from doors. A random spanning tree of the rooms has doors, and so have some
+/// other walls. Within rooms obstacles are blocked one by one, where the rest of the room and its doors stays
+/// connected. So all free cells are connected by edges between free cells, and every room has some. All boundary edges
+/// are in patch 1, "border".
 ///
-/// Throws InvalidArgument: no rooms along an axis, rooms without squares, doors without squares or wider than a room,
-/// as many obstacles as a room has squares, a share outside [0, 1], and as generate_rectangle() does. Cost: about 0.1
-/// us a cell, and of obstacles about 10 ns times the squares of a room each.
+/// Throws InvalidArgument for no rooms along an axis, rooms without squares, doors without squares or wider than a
+/// room, as many obstacles as a room has squares, a share outside [0, 1], and as generate_rectangle() does. Cost: about
+/// 0.1 us a cell, and for each obstacle about 10 ns times the squares of a room.
 MeshData generate_maze(const MazeOptions& options);
 
 }  // namespace dartcast

@@ -1,4 +1,4 @@
-// Distinct types for the numbers that name things: a cell cannot be passed where a vertex is meant.
+// Distinct types for the numbers of things, so that a cell cannot be passed as a vertex.
 #pragma once
 
 #include <compare>
@@ -65,7 +65,7 @@ struct SimplexId {
   constexpr auto operator<=>(const SimplexId&) const = default;
 };
 
-/// The kind of cell of the map in whose interior a point lies; the value is its dimension.
+/// The kind of the map's cell that holds a point in its interior. The value is the cell's dimension.
 enum class Kind : std::uint8_t { vertex = 0, edge = 1, face = 2, volume = 3 };
 
 /// A named group of wall faces; 0 is the unnamed rest.

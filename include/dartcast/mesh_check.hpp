@@ -1,4 +1,4 @@
-// Judging a mesh before anything is built from it.
+// Checks of a mesh before anything is built from it.
 #pragma once
 
 #include <cstddef>
@@ -12,16 +12,16 @@
 
 namespace dartcast {
 
-// What is in a mesh, what was repaired, and what is wrong with it: the answer of `dartcast check`.
+// The report on a mesh: its content, its repairs and its defects. `dartcast check` prints it.
 
-/// One kind of thing found in a mesh: how often, and the first places (indices in the input file, ten at most).
+/// One kind of finding in a mesh: how often it occurs, and the first places (indices in the input file, at most ten).
 struct Finding {
   std::string kind;
   std::size_t count = 0;
   std::vector<std::size_t> first;
   std::string message;
 
-  /// Counts one more, at this place.
+  /// Counts one more occurrence, at this place.
   void add(std::size_t place) {
     ++count;
     if (first.size() < 10) first.push_back(place);
@@ -30,7 +30,7 @@ struct Finding {
 
 enum class Verdict { accept, repair, warn, refuse };
 
-/// A mesh is refused for any defect; it can be used as it is, repaired, or with warnings.
+/// The report. A mesh with a defect is refused. Other meshes can be used as they are, repaired, or with warnings.
 struct MeshReport {
   std::string file;
   std::string format;
@@ -38,7 +38,7 @@ struct MeshReport {
   bool surface = false;                        ///< cells of two dimensions in space
   std::size_t points = 0;                      ///< after repairs
   std::map<std::string, std::size_t> cells;    ///< cells by type
-  std::map<std::string, std::size_t> regions;  ///< cells by region; a region without a name goes by its tag
+  std::map<std::string, std::size_t> regions;  ///< cells by region; the tag is the name of a region without one
   std::size_t parts = 0;                       ///< groups of cells connected by faces
   std::vector<Finding> repairs;
   std::vector<Finding> warnings;
@@ -62,23 +62,42 @@ inline void add_finding(std::vector<Finding>& list, Finding finding) {
   if (finding.count > 0) list.push_back(std::move(finding));
 }
 
-/// Repairs in place what can be repaired without a guess, and says so:
-///   orientation (cells inside out), polyhedron_faces (faces that disagree with their neighbours), unused_points
-///   (dropped), plane (points of a planar mesh with one z that is not 0).
-/// Warns of what can be used with care:
-///   repeated_points, non_conforming (cells against each other without matching faces: particles meet a wall there),
-///   boundary_edges and boundary_points (pinched), patch_faces (that are no cell's face; dropped), unfinished.
-/// Refuses:
-///   empty, structure (array sizes, cells of two dimensions), polyhedron (faces not closed, more than 1000, fewer than
-///   three corners), id_out_of_range, repeated_corner, not_finite, out_of_range (coordinates), flat, inverted,
-///   face_shared (by three cells or more), same_side (two cells on one side of a face), face_order (one set of corners
-///   in two orders), no_volume (a surface in space), too_large.
+/// Repairs a mesh in place where no guess is needed, and reports it:
+///
+///  - orientation: cells that were inside out;
+///  - polyhedron_faces: faces that disagreed with their neighbours;
+///  - unused_points: dropped;
+///  - plane: points of a planar mesh with one z that is not 0.
+///
+/// Warns about findings with which the mesh can be used with care:
+///
+///  - repeated_points;
+///  - non_conforming: cells next to each other without matching faces. Particles meet a wall there;
+///  - boundary_edges and boundary_points: pinched;
+///  - patch_faces: faces that are not a cell's face; dropped;
+///  - unfinished.
+///
+/// Refuses a mesh for:
+///
+///  - empty;
+///  - structure: array sizes, cells of two dimensions;
+///  - polyhedron: faces that are not closed, more than 1000 faces, fewer than three corners;
+///  - id_out_of_range, repeated_corner;
+///  - not_finite, out_of_range: coordinates;
+///  - flat, inverted;
+///  - face_shared: by three cells or more;
+///  - same_side: two cells on one side of a face;
+///  - face_order: one set of corners in two orders;
+///  - no_volume: a surface in space;
+///  - too_large.
+///
 /// Places are indices in the input: of cells (MeshData::source), of patch faces (MeshData::patch_source), or of points
 /// for findings about points.
 ///
-/// Of a mesh of the plane (report.dimension = 2) faces are edges, and cells that are not weakly convex are inverted;
-/// non_conforming are edges with a point of another inside, or that lie against others; boundary_edges there are none.
-/// Never throws for any content of the arrays. Cost: n log n, about 2 us a hexahedron; 40 bytes a face.
+/// In a mesh of the plane (report.dimension = 2) faces are edges, and cells that are not weakly convex are inverted.
+/// non_conforming are edges with a point of another inside, or that lie against others. There are no boundary_edges.
+///
+/// It never throws, whatever the arrays contain. Cost: n log n, about 2 us a hexahedron; 40 bytes a face.
 MeshReport check_and_repair(MeshData& mesh);
 
 }  // namespace dartcast

@@ -1,4 +1,4 @@
-// A mesh as plain arrays: what files are read into, generators fill, and the map is built from.
+// A mesh as plain arrays. Files are read into it, generators fill it, and the map is built from it.
 #pragma once
 
 #include <array>
@@ -37,19 +37,20 @@ struct DataArray {
   std::vector<double> values;
 };
 
-/// Points and cells. SI units by convention (metres); nothing in the library depends on it.
+/// Points and cells. Units are SI by convention (metres); nothing in the library depends on it.
 ///
 /// Corners of a positive cell:
-///  - tetrahedron 0 1 2 3: det[p1 - p0, p2 - p0, p3 - p0] > 0;
-///  - hexahedron: 0 1 2 3 the base, counterclockwise seen from the inside, 4 5 6 7 above them (VTK and Gmsh agree);
-///  - prism: 0 1 2 the base, counterclockwise seen from the inside, 3 4 5 above them (Gmsh; VTK's own order is the
-///  mirror);
-///  - pyramid: 0 1 2 3 the base, counterclockwise seen from the inside, 4 the apex (VTK and Gmsh agree);
-///  - polyhedron: connectivity holds the number of faces, then for each face its number of corners and the corners,
-///    counterclockwise seen from the outside;
-///  - triangle, quadrilateral, polygon: counterclockwise seen from above, where z = 0 for all points.
 ///
-/// All cells are of one dimension. In the plane the faces of a cell, and those of patches, are edges of two corners.
+///  - tetrahedron 0 1 2 3: det[p1 - p0, p2 - p0, p3 - p0] > 0;
+///  - hexahedron: 0 1 2 3 the base, counterclockwise as seen from the inside, 4 5 6 7 above them (as in VTK and Gmsh);
+///  - prism: 0 1 2 the base, counterclockwise as seen from the inside, 3 4 5 above them (as in Gmsh; VTK has the mirror
+///    image);
+///  - pyramid: 0 1 2 3 the base, counterclockwise as seen from the inside, 4 the apex (as in VTK and Gmsh);
+///  - polyhedron: connectivity holds the number of faces, then for each face its number of corners and the corners,
+///    counterclockwise as seen from the outside;
+///  - triangle, quadrilateral, polygon: counterclockwise as seen from above, where z = 0 for all points.
+///
+/// All cells have the same dimension. In the plane the faces of a cell, and those of patches, are edges of two corners.
 struct MeshData {
   std::vector<Vec3> points;
 
@@ -73,7 +74,7 @@ struct MeshData {
   std::vector<DataArray> cell_data;
 
   [[nodiscard]] std::size_t cell_count() const { return types.size(); }
-  /// That of the first cell; 3 where there is none.
+  /// The dimension of the first cell; 3 if there is none.
   [[nodiscard]] unsigned dimension() const { return types.empty() ? 3 : dartcast::dimension(types.front()); }
   [[nodiscard]] std::span<const std::uint32_t> cell(std::size_t c) const {
     return {connectivity.data() + offsets[c], offsets[c + 1] - offsets[c]};

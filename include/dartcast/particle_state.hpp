@@ -1,4 +1,4 @@
-// Where a particle is: the paper's S = (p, k, i), with the simplex in place of the dart.
+// The state of a particle: the paper's S = (p, k, i), with the simplex in place of the dart.
 #pragma once
 
 #include <array>
@@ -11,14 +11,15 @@ namespace dartcast {
 
 class CombinatorialMap;
 
-/// A plain record. It says: `position` lies in the closed simplex named, and the cell is free (guarantee G3). The walls
-/// are those of the last contact, until the particle leaves them.
+/// A plain record with this meaning: `position` lies in the closed simplex that the record names, and the cell is free
+/// (guarantee G3). The walls are those of the last contact, until the particle leaves them.
 struct ParticleState {
   Vec3 position;
   Cell cell;
   std::uint16_t simplex = 0;
   std::uint8_t touching_count = 0;
-  bool held = false;  ///< its simplex is not positive at present, or its cell blocked: it rides along, takes no step
+  bool held =
+      false;  ///< its simplex is not positive now, or its cell is blocked: it moves with the mesh, takes no step
   std::array<CellFace, 3> touching{};
 
   [[nodiscard]] SimplexId at() const { return {cell, simplex}; }
@@ -34,31 +35,31 @@ using Weights = std::array<double, 4>;
 
 /// The paper's k and i, derived from a state.
 struct Forecast {
-  /// Of the cell of the map that the particle is in (volume; in the plane face), or touches after a contact.
+  /// Kind of the map's cell that the particle is in (volume; in the plane face), or that it touches after a contact.
   Kind kind = Kind::volume;
-  Dart dart;  ///< aimed at: the edge of the base of the particle's simplex; its face is the face aimed at
+  Dart dart;  ///< edge of the base of the particle's simplex; its face is the one that it is heading for
   CellFace face;
 };
 
-/// Kind from exact zeros, or from the walls touched; the dart of the simplex's base. `corners` are those of the state's
-/// simplex. Cost: four exact signs.
+/// The kind from exact zeros, or from the walls touched, and the dart of the simplex's base. `corners` are those of the
+/// state's simplex. Cost: four exact signs.
 Forecast forecast(const CombinatorialMap& map, const ParticleState& state, const Corners& corners);
 
-/// Kind, and a dart of that face, edge or vertex (invalid inside of a cell), of the cell of the map that holds x in its
-/// interior.
+/// The cell of the map that holds a point in its interior: its kind, and a dart of that face, edge or vertex. The dart
+/// is invalid inside a cell.
 struct Placement {
   Kind kind = Kind::volume;
   Dart dart;
 };
 Placement placement(const CombinatorialMap& map, SimplexId simplex, const Corners& corners, const Vec3& x);
 
-/// Where a point is.
+/// Whether a point is in a free cell, in a blocked cell or outside.
 enum class Place : std::uint8_t { free, blocked, outside };
 
 struct Location {
   Place place = Place::outside;
   SimplexId simplex;         ///< invalid outside
-  Kind kind = Kind::volume;  ///< of the cell of the map that holds the point in its interior
+  Kind kind = Kind::volume;  ///< kind of the map's cell that holds the point in its interior
   Dart dart;                 ///< of that face, edge or vertex; invalid for a volume
 };
 

@@ -1,7 +1,7 @@
-// Where cells are not valid any more: local remeshing until they are, or the place is named and left.
+// Local remeshing where cells are not valid any more. Each place becomes valid, or is reported and left as it is.
 //
-// "Convexity": T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism for continuous collision detection
-// in deformable environments", SPM 2009, section 6.3.
+// After "Convexity": T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism for continuous collision
+// detection in deformable environments", SPM 2009, section 6.3.
 #pragma once
 
 #include <cstddef>
@@ -14,51 +14,51 @@
 
 namespace dartcast {
 
-// Refinement: a cell into one part for each corner, and back again.
+// Subdivision of a cell into one part for each corner, and the way back.
 //
-// "Subdivisions": T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism for continuous collision
+// After "Subdivisions": T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism for continuous collision
 // detection in deformable environments", SPM 2009, section 7.3.
 
-/// A cell that was subdivided: what is needed to make it again. It names vertices, which stay while others edit.
+/// A subdivided cell: the data from which coarsen() makes it again. It names vertices, which other edits do not change.
 struct Subdivision {
   Vertex middle;                     ///< of the cell: a corner of every part
   CellHandle part;                   ///< one of the parts: see update_after_edit()
   std::vector<Vertex> corners;       ///< of the cell, one part for each
-  std::vector<Vertex> edge_middles;  ///< also those that were there before
+  std::vector<Vertex> edge_middles;  ///< also those that existed before
   std::vector<Vertex> face_middles;
 };
 
 struct Subdivided {
   Subdivision subdivision;
-  std::vector<Cell> cells;  ///< all that are new: the parts, in the order of the corners, then those around them
+  std::vector<Cell> cells;  ///< all new cells: the parts, in the order of the corners, then the cells around them
 };
 
-/// Cuts a cell into one part for each corner, around a vertex in its middle, one in the middle of each face and one in
-/// that of each edge (means of corners): a hexahedron into 8 hexahedra, a tetrahedron into 4; a corner with k edges
-/// gives a part with 2 k faces. The cells around an edge take its middle as a corner in which their faces are straight,
-/// the neighbour across a face has it split into the same quadrilaterals. Parts keep the free mark and the source,
-/// faces their patch.
+/// Cuts a cell into one part for each corner. The new vertices are one in the middle of the cell, one in the middle of
+/// each face and one in that of each edge (means of corners). A hexahedron becomes 8 hexahedra, a tetrahedron 4. A
+/// corner with k edges gives a part with 2 k faces. The cells around an edge get its middle as a corner in which their
+/// faces are straight. The neighbour across a face has it split into the same quadrilaterals. Parts keep the free mark
+/// and the source, faces their patch.
 ///
-/// What neighbours have left of this kind is used, so that neighbours that are subdivided one after the other, any
-/// number of times, conform: where faces may lie in one plane (CombinatorialMap::flat()) and have a vertex among them
-/// that is joined to one on each edge, they are one face with its middle; of several vertices those next to the middle
-/// are taken. Other faces that may lie in one plane are subdivided each by itself.
+/// Middles that neighbours already have are used. So neighbours that are subdivided one after the other, any number of
+/// times, conform. Faces that may lie in one plane (CombinatorialMap::flat()) count as one face with its middle, if
+/// they have a vertex among them that is joined to a vertex on each edge. If there are several such vertices, those
+/// next to the middle are taken. Other faces that may lie in one plane are subdivided separately.
 ///
-/// Throws InvalidArgument where there is no such cell; EditRefused, nothing changed, where a face would have fewer than
-/// three corners, or the result would be no map. Cost: that of the cells around the cell's edges.
+/// Throws InvalidArgument where there is no such cell. Throws EditRefused, nothing changed, where a face would have
+/// fewer than three corners, or the result would not be a map. Cost: that of the cells around the cell's edges.
 Subdivided subdivide(ComplexEdit& edit, Cell c);
 
-/// Makes the cell again; returns it, then the cells around that are new. Middles of faces and edges go where no other
-/// cell needs them: a face or edge that is needed by a neighbour goes when that is made again. Right after subdivide()
-/// it leaves what was before, to the last face and mark, but for the numbers of the cells.
+/// Makes the cell again. Returns it, then the new cells around it. Middles of faces and edges are removed where no
+/// other cell needs them. A middle that a neighbour needs is removed when that neighbour is made again. Right after
+/// subdivide() the map is as before, to the last face and mark, except for the numbers of the cells.
 ///
-/// Throws InvalidArgument where the part named is not there any more (update_after_edit() was not called); EditRefused,
-/// nothing changed, where the parts are not all there (they were subdivided themselves, merged or removed) or not all
-/// free or all blocked. Cost: that of the cells around the cell's edges.
+/// Throws InvalidArgument where the named part does not exist any more (update_after_edit() was not called). Throws
+/// EditRefused, nothing changed, where parts are missing (they were subdivided themselves, merged or removed) or are
+/// not all free or all blocked. Cost: that of the cells around the cell's edges.
 std::vector<Cell> coarsen(ComplexEdit& edit, const Subdivision& subdivision);
 
-/// To be called for a subdivision after later edits next to it, and after the commit, which replace its parts. `added`:
-/// cells that the edit made (EditReport::added). Cost: their corners, where the part named is gone.
+/// Updates a subdivision. Call it after later edits next to the cell, and after the commit, which replaces its parts.
+/// `added`: cells that the edit made (EditReport::added). Cost: the corners of these cells, if the named part is gone.
 void update_after_edit(const CombinatorialMap& map, std::span<const Cell> added, Subdivision& subdivision);
 
 struct RepairOptions {
@@ -66,15 +66,15 @@ struct RepairOptions {
 };
 
 enum class Mending : std::uint8_t {
-  point,  ///< the cell is coned from a point of its own
-  moved,  ///< a vertex around which there are only cells of the region lies elsewhere (it is a new vertex)
+  point,  ///< the cell is coned from a Steiner point
+  moved,  ///< a vertex that only cells of the region have was moved (it is a new vertex)
   cut     ///< the region was merged, and cut into pyramids, in the plane triangles, around a new vertex
 };
 
 struct MendedRegion {
   Mending how = Mending::point;
   std::vector<std::uint32_t> sources;  ///< of its cells, sorted
-  std::vector<Cell> cells;             ///< in their place
+  std::vector<Cell> cells;             ///< the cells in their place
 };
 
 struct LeftCell {
@@ -85,24 +85,26 @@ struct LeftCell {
 
 struct RepairReport {
   std::vector<MendedRegion> mended;
-  std::vector<LeftCell> left;  ///< as they were: no part of the edit
+  std::vector<LeftCell> left;  ///< unchanged cells
 };
 
-/// Mends cells that have a simplex that is not positive; others among those given are passed over. For each in turn the
-/// first of these that makes all simplices positive, by exact signs:
-///  - a point of its own in the mean of its corners;
-///  - moving one of its corners, around which there are only cells of the same kind (free or blocked);
-///  - merging and cutting again: the cell alone, then the cells around one of its corners, around several of them, then
-///    all neighbours, and so on; only cells of the same kind, at most so many as the options say. The region's surface
-///    must have a kernel (a point from which all of it is seen from the inside).
-/// No vertex on the surface of a region moves, vertices inside it go. The outer faces keep their patches; a new cell
-/// takes the source of the cell that had its outer face. Corners are tried in the order of how many such cells
-/// they have around them, then of their numbers. Cells that are left are tried again after others were mended.
+/// Repairs cells that have a simplex that is not positive. Other given cells are ignored. For each cell in turn it
+/// takes the first of these methods that makes all simplices positive, by exact signs:
 ///
-/// Where there are no such cells, or none can be mended, the map is as it was, to the last record. After edits in
-/// the same ComplexEdit that have not been committed, cells are judged without the points that the commit gives them.
-/// Throws InvalidArgument where there is no such cell. Cost: that of the largest regions tried, whatever the size of
-/// the scene; where regions hang together, so often as this mends one.
+///  - a Steiner point in the mean of its corners;
+///  - a move of one of its corners, if only cells of the same kind (free or blocked) are around that corner;
+///  - merging and cutting again. It tries the cell alone, then the cells around one of its corners, around several of
+///    them, then all neighbours, and so on. It takes only cells of the same kind, at most as many as the options say.
+///    The region's surface must have a kernel (a point from which all of it is seen from the inside).
+///
+/// Vertices on the surface of a region do not move, and vertices inside it are removed. The outer faces keep their
+/// patches. A new cell has the source of the cell that had its outer face. Corners are tried by the number of such
+/// cells around them, then by their numbers. Cells that fail are tried again after others were repaired.
+///
+/// If there are no such cells, or none can be repaired, the map stays as it is, to the last record. After edits in the
+/// same ComplexEdit that have not been committed, cells are checked without the Steiner points that the commit gives
+/// them. Throws InvalidArgument where there is no such cell. Cost: that of the largest regions tried, whatever the size
+/// of the scene. Where regions are connected, it is paid once for each repair.
 RepairReport repair(ComplexEdit& edit, std::span<const Cell> cells, const RepairOptions& options = {});
 
 }  // namespace dartcast

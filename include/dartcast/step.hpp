@@ -1,4 +1,4 @@
-// What a step of particles takes and gives: options, contacts, those held or stopped, counts.
+// The options and the report of a step: contacts, held and stopped particles, counts.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace dartcast {
 
-/// Signs asked in walks: `tests` counts each once, side tests included, however it was answered; `exact` those that the
-/// filter left open. Locating, certifying a position and audits are not counted.
+/// Signs that walks ask for. `tests` counts each sign once, side tests included, whichever stage decides it. `exact`
+/// counts those that the filter left open. Location, placement in a simplex and audits are not counted.
 struct TestCounts {
   std::uint64_t tests = 0;
   std::uint64_t exact = 0;
@@ -24,13 +24,13 @@ struct Counters {
 
   std::uint64_t particle_steps = 0;
   TestCounts orientation;
-  /// Particle-steps by number of orientation tests; the last entry also holds all above.
+  /// Particle-steps by their number of orientation tests. The last entry also holds all larger numbers.
   std::array<std::uint64_t, histogram_size> histogram{};
   std::uint64_t forecast_kept = 0;           ///< ended in the simplex where they began, without a contact
-  std::uint64_t updated_by_deformation = 0;  ///< changed simplex where the vertices' motion alone would have done it
-  std::uint64_t steps_split = 0;             ///< taken in several parts, for the vertices turned or stretched too much
-  std::array<std::uint64_t, 3> contacts{};   ///< by kind: vertex, edge, face
-  std::uint64_t unfinished = 0;              ///< stopped at the last contact allowed in a step
+  std::uint64_t updated_by_deformation = 0;  ///< changed simplex, as the vertices' motion alone would have done
+  std::uint64_t steps_split = 0;  ///< taken in several parts, because the vertices turned or stretched too much
+  std::array<std::uint64_t, 3> contacts{};  ///< by kind: vertex, edge, face
+  std::uint64_t unfinished = 0;             ///< stopped at the last contact allowed in a step
 
   Counters& operator+=(const Counters& other) {
     particle_steps += other.particle_steps;
@@ -47,29 +47,29 @@ struct Counters {
 };
 
 struct StepOptions {
-  /// Contacts allowed to a particle in one step, at least 1; at the last one it is asked to slide.
+  /// Largest number of contacts of a particle in one step, at least 1. At the last one it is asked to slide.
   unsigned max_contacts = 16;
-  /// How far the chord may be off the true motion relative to the vertices, as a share (> 0) of the local edge: a step
-  /// is split into ceil(sqrt(|A| |r| / (2 tolerance edge))) parts, A the displacement gradient of the vertices, r the
-  /// particle's own motion.
+  /// Largest error of the chord against the true motion relative to the vertices, as a share (> 0) of the local edge. A
+  /// step is split into ceil(sqrt(|A| |r| / (2 tolerance edge))) parts. A is the gradient of the vertices'
+  /// displacement, r is the particle's own motion.
   double tolerance = 0.05;
-  /// Parts at most, at least 1; a step that would need more is taken in this many.
+  /// Largest number of parts, at least 1. A step that needs more is taken in this many.
   unsigned max_parts = 256;
 };
 
-/// Throws InvalidArgument, which names the caller and the option, where one is out of range.
+/// Throws InvalidArgument, which names the caller and the option, if an option is out of range.
 void check(const StepOptions& options, const char* caller);
 
 /// A particle that a cell kept from its step, and why.
 struct HeldParticle {
   std::uint32_t particle = 0;
-  Cell cell;  ///< the invalid cell: its own, or one on its way; or its own, which is blocked
+  Cell cell;  ///< the invalid cell, its own or one on its path; or its own blocked cell
 };
 
 struct StepResult {
   bool held = false;
   Cell invalid_cell;
-  bool stopped = false;  ///< at a contact that nothing followed
+  bool stopped = false;  ///< at a contact without a response
   Vec3 unused;           ///< displacement left when it stopped, relative to the wall
 };
 

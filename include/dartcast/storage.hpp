@@ -1,5 +1,5 @@
-// How maps and complexes are stored: aligned arrays, a table of shapes, a table of rare marks. Part of the layout of
-// CombinatorialMap and CellComplex; programs use those.
+// The storage of maps and complexes: aligned arrays, a table of shapes, a table of rare marks. It is part of the layout
+// of CombinatorialMap and CellComplex. Programs use those classes.
 #pragma once
 
 #include <cstddef>
@@ -13,12 +13,12 @@
 
 namespace dartcast {
 
-// A vector whose storage starts on a cache line, so that a 64-byte record never straddles two; some bytes behind its
-// last element can be read, so that vector instructions may load more than they use.
+// A vector whose storage starts on a cache line, so that a 64-byte record never straddles two. Some bytes behind its
+// last element are readable, so that vector instructions may load more than they use.
 
 namespace detail {
-// On a cache line; large arrays on huge pages where the system has them: without, most of the time in a large scene
-// goes into finding pages.
+// The memory starts on a cache line. Large arrays lie on huge pages where the system has them. Without huge pages, most
+// of the time in a large scene is spent on page walks.
 void* allocate_aligned(std::size_t bytes);
 void deallocate_aligned(void* p, std::size_t bytes) noexcept;
 }  // namespace detail
@@ -45,8 +45,8 @@ using AlignedVector = std::vector<T, CacheLineAllocator<T>>;
 
 // 16-bit values for a few of the faces, or darts, of cells.
 
-/// Values by cell and number; 0 where none was set. Eight bytes for each place of a hash table that is at most three
-/// quarters full. Cost of each function but bytes() and ==: constant on average.
+/// Values by cell and number; 0 if none was set. Each place of the hash table takes eight bytes, and at most three
+/// quarters of the places are full. Cost of each function but bytes() and ==: constant on average.
 class SideTable {
  public:
   [[nodiscard]] std::uint16_t find(Cell cell, std::uint16_t number) const {
@@ -56,12 +56,12 @@ class SideTable {
       if (places_[at] >> 16U == key_of(cell, number)) return static_cast<std::uint16_t>(places_[at] & 0xffffU);
     }
   }
-  /// 0 takes a value away.
+  /// Sets a value; 0 removes it.
   void set(Cell cell, std::uint16_t number, std::uint16_t value);
 
   [[nodiscard]] std::size_t size() const { return count_; }
   [[nodiscard]] std::size_t bytes() const { return places_.size() * sizeof(std::uint64_t); }
-  /// The same values, however they came.
+  /// Whether the values are the same, in whatever order they were set.
   bool operator==(const SideTable& other) const;
 
  private:
@@ -79,41 +79,41 @@ class SideTable {
   std::size_t count_ = 0;
 };
 
-// Shapes by number: cells alike share one, and those that no cell uses any more are given up.
+// Shapes by number. Equal cells share one shape. A shape that no cell uses any more is released.
 
 class ShapeTable {
  public:
-  /// Numbers of standard shapes fit in 16 bits: the last 64 of these are kept for them (45 serve every numbering of the
-  /// four types).
+  /// Numbers of standard shapes fit in 16 bits. The last 64 of these are reserved for them (45 serve every numbering of
+  /// the four types).
   static constexpr std::uint32_t kept_begin = 0x10000U - 64U;
   static constexpr std::uint32_t kept_end = 0x10000U;
 
   struct Interned {
     std::uint32_t number;
     bool made;      ///< the shape is new
-    bool appended;  ///< under a number that there was not before
+    bool appended;  ///< under a new number
   };
 
-  /// The shape with this key, one use more. Throws as Shape does.
+  /// Returns the shape with this key and adds one use. Throws as Shape does.
   Interned intern(ShapeKey key);
-  /// The shape of a standard cell, told by its signature (see topology/cell_form.hpp); it stays for good.
-  /// `key()` is called where the shape is new.
+  /// Returns the shape of a standard cell by its signature (see topology/cell_form.hpp). It is never released. `key()`
+  /// is called if the shape is new.
   template <class Key>
   Interned intern_standard(std::uint32_t signature, Key&& key) {
     const auto found = standard_.find(signature);
     if (found != standard_.end()) return {found->second, false, false};
     return add_standard(signature, key());
   }
-  /// One use less; a shape without uses is given up, and its number used again.
+  /// Removes one use. A shape without uses is released, and its number is used again.
   void release(std::uint32_t number);
-  /// Takes back the last intern() or intern_standard() that has not been taken back: all is as before.
+  /// Undoes the last intern() or intern_standard() that has not been undone.
   void undo(const Interned& interned);
 
   [[nodiscard]] const Shape& operator[](std::uint32_t number) const { return *shapes_[number]; }
   /// Number of shapes. They are numbered from 0 without gaps until the map is edited.
   [[nodiscard]] std::size_t size() const { return count_; }
   [[nodiscard]] std::size_t bytes() const;
-  /// The same shapes under the same numbers, with the same uses.
+  /// Whether the same shapes have the same numbers and uses.
   bool operator==(const ShapeTable& other) const;
 
  private:
@@ -131,7 +131,7 @@ class ShapeTable {
 
   std::vector<std::shared_ptr<const Shape>> shapes_;  // shared by copies of the table: they are immutable
   std::vector<std::uint32_t> uses_;
-  std::vector<std::uint32_t> vacant_;                                              // numbers given up
+  std::vector<std::uint32_t> vacant_;                                              // released numbers
   std::unordered_map<const ShapeKey*, std::uint32_t, KeyHash, KeyEqual> numbers_;  // keys lie in the shapes
   std::unordered_map<std::uint32_t, std::uint32_t> standard_;                      // by signature
   std::size_t count_ = 0;

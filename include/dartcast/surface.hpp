@@ -1,8 +1,8 @@
 // A surface in space: a map of polygons with positions. Particles move within it.
 //
-// A polygon is fanned from its lowest-numbered corner (dartcast/cell_shape.hpp); the triangles of the fans are the
-// surface, so that it has no gaps however it is bent. Where a particle is is told within a triangle, by weights: there
-// is no point beside the surface to fall off it.
+// A polygon is a fan around its lowest-numbered corner (dartcast/cell_shape.hpp). The triangles of the fans are the
+// surface, so it has no gaps however it is bent. A particle's place is a triangle and weights in it. So no particle can
+// leave the surface.
 #pragma once
 
 #include <array>
@@ -26,12 +26,13 @@
 namespace dartcast {
 
 /// A place on a surface: a triangle of a face's fan, and barycentric coordinates in it, none negative. On an edge one
-/// of them is exactly 0, at a vertex two. It needs no update when the surface bends: what is on it rides along.
+/// of them is exactly 0, at a vertex two. A place needs no update when the surface bends, because it moves with the
+/// surface.
 struct SurfacePlace {
   SimplexId triangle;
   std::array<double, 3> weights = {1.0, 0.0, 0.0};
 
-  /// Inside of the triangle, on an edge, or at a vertex.
+  /// The kind of the place: inside the triangle, on an edge, or at a vertex.
   [[nodiscard]] Kind kind() const {
     const int zeros = (weights[0] == 0.0 ? 1 : 0) + (weights[1] == 0.0 ? 1 : 0) + (weights[2] == 0.0 ? 1 : 0);
     return zeros == 0 ? Kind::face : zeros == 1 ? Kind::edge : Kind::vertex;
@@ -39,7 +40,7 @@ struct SurfacePlace {
   bool operator==(const SurfacePlace&) const = default;
 };
 
-/// What lies across an edge of a triangle; edge i is opposite to corner i.
+/// The other side of an edge of a triangle; edge i is opposite to corner i.
 struct AcrossEdge {
   CellFace face;       ///< the map's edge, of the cell left behind; invalid within a polygon
   SimplexId triangle;  ///< invalid at an open border
@@ -49,39 +50,41 @@ struct AcrossEdge {
 
 class Surface {
  public:
-  /// Takes the mesh as check_and_repair_surface() repairs it. Throws InvalidMesh where that finds a defect, with the
-  /// first faces. Cost: n log n.
+  /// Takes the mesh as check_and_repair_surface() repairs it. Throws InvalidMesh, with the first faces, where that
+  /// finds a defect. Cost: n log n.
   explicit Surface(MeshData mesh);
 
   [[nodiscard]] const CombinatorialMap& map() const { return map_; }
-  /// Positions of all points of the mesh, in its order, then of those that edits made (dartcast/surface.hpp).
+  /// Positions of all points of the mesh, in its order, then positions of the points that edits made (SurfaceEdit).
   [[nodiscard]] std::span<const Vec3> positions() const { return positions_; }
 
-  /// New positions of all points (numbers that edits gave up can have any); particles ride along. Throws
-  /// InvalidArgument, nothing changed, where their number does not match or one is not finite or out of the exact
-  /// range, and InvalidMesh, nothing changed, with the faces (numbers in the mesh) that would have a triangle without
-  /// area. Cost: linear.
+  /// Sets new positions of all points, and carries the particles. Numbers that edits gave up can have any position.
+  /// Throws InvalidArgument where the number does not match, or a position is not finite or outside the exact range.
+  /// Throws InvalidMesh, which names the faces by their numbers in the mesh, where a face would have a triangle without
+  /// area. Then nothing is changed. Cost: linear.
   void move(std::span<const Vec3> positions, Threads threads = {});
 
-  /// Frees or blocks a face, at once: particles in a blocked one are held, its edges to free ones are walls. Throws
-  /// InvalidArgument where there is no such face.
+  /// Frees or blocks a face, at once. Particles in a blocked face are held, and its edges to free faces are walls.
+  /// Throws InvalidArgument where there is no such face.
   void set_free(Cell face, bool free);
 
   /// All triangles, face by face.
   [[nodiscard]] std::vector<SimplexId> triangles() const;
-  /// Corners counterclockwise, seen from the side that normals point to.
+  /// The corners, counterclockwise as seen from the side that normals point to.
   [[nodiscard]] std::array<Vertex, 3> vertices(SimplexId t) const;
   [[nodiscard]] std::array<Vec3, 3> corners(SimplexId t) const;
   [[nodiscard]] AcrossEdge across(SimplexId t, unsigned edge) const;
   /// Unit normal of a triangle.
   [[nodiscard]] Vec3 normal(SimplexId t) const;
 
-  /// Whether a place can be one here: the triangle is there, weights are in [0, 1] and sum to 1 up to rounding.
+  /// Whether a place is one of this surface: the triangle exists, and the weights are in [0, 1] and sum to 1 up to
+  /// rounding.
   [[nodiscard]] bool contains(const SurfacePlace& place) const;
-  /// The point in space, to rounding. One place of an edge is the same point from both sides; a vertex its position.
+  /// The point in space, rounded. A place on an edge is the same point from both sides. A place at a vertex is the
+  /// vertex's position.
   [[nodiscard]] Vec3 point(const SurfacePlace& place) const;
-  /// A place by any weights that are finite, not negative and not all 0, which are scaled to sum to 1. Throws
-  /// InvalidArgument where they are not, or where there is no such triangle.
+  /// A place by any weights that are finite, not negative and not all 0. The weights are scaled to sum to 1. Throws
+  /// InvalidArgument where they are not such weights, or where there is no such triangle.
   [[nodiscard]] SurfacePlace place(SimplexId triangle, const std::array<double, 3>& weights) const;
 
  private:
@@ -93,22 +96,22 @@ class Surface {
   std::vector<Vec3> positions_;
 };
 
-// The place of a surface that is nearest to a point.
+// The search for the place of a surface that is nearest to a point.
 
 struct SurfaceLocation {
   SurfacePlace place;
   double distance = 0.0;
 };
 
-/// A tree over the triangles of a surface at one instant: make it again after a move. Cost to make: n log n.
+/// A tree over the triangles of a surface at one instant. Make it again after a move. Cost to make: n log n.
 class SurfaceLocator {
  public:
   explicit SurfaceLocator(const Surface& surface);
 
-  /// The nearest place, rounded; of places at equal distances, as doubles, that in the lowest-numbered face of the mesh
-  /// and its first triangle. In free faces and blocked ones alike. Throws InvalidArgument where x is not finite or out
-  /// of the exact range. Precondition: the surface that it was made for, unmoved. Cost: the triangles whose boxes come
-  /// nearer than about twice the distance, times a logarithm.
+  /// The nearest place, rounded, in free and blocked faces alike. If several places have equal distances, as doubles,
+  /// it is that in the lowest-numbered face of the mesh and its first triangle. Throws InvalidArgument where x is not
+  /// finite or outside the exact range. Precondition: the surface is that for which the tree was made, not moved since.
+  /// Cost: the triangles with boxes nearer than about twice the distance, times a logarithm.
   [[nodiscard]] SurfaceLocation nearest(const Surface& surface, const Vec3& x) const;
 
  private:
@@ -121,61 +124,60 @@ class SurfaceLocator {
 /// C. Ericson, "Real-time collision detection", 2005, section 5.1.5.
 SurfaceLocation nearest_in_triangle(const Surface& surface, SimplexId triangle, const Vec3& x);
 
-// What a particle meets on a surface, and what it may do then.
+// Contacts on a surface, and responses to them.
 
-/// A wall on a surface: an open border, or the border of a blocked face. Vectors are in the plane of the triangle that
-/// the place names, that of the particle.
+/// A contact with a wall of a surface: an open border, or the border of a blocked face. Vectors are in the plane of the
+/// triangle that `place` names, which is that of the particle.
 struct SurfaceContact {
   std::uint32_t particle = 0;
   Kind kind = Kind::edge;       ///< edge or vertex
-  Dart dart;                    ///< of the wall's edge, or from that vertex; in the free face
-  Patch patch;                  ///< of the edge; at a vertex none
+  Dart dart;                    ///< dart of the wall's edge, or from that vertex, in the free face
+  Patch patch;                  ///< patch of the edge; at a vertex none
   double time_of_impact = 0.0;  ///< fraction of the step, in [0, 1]
   SurfacePlace place;
   Vec3 point;
-  /// Unit, within the surface, into the free side; at a vertex it halves the angle between the two walls that meet
-  /// there.
+  /// Unit vector within the surface, into the free side. At a vertex it halves the angle between the two walls that
+  /// meet there.
   Vec3 normal;
-  std::array<Vec3, 2>
-      sides;          ///< unit, along the wall, away from the point: to the right as seen along the normal, left
-  Vec3 displacement;  ///< the motion that led here, from the place where it began in this step
-  Vec3 unused;        ///< what is left of it
+  std::array<Vec3, 2> sides;  ///< unit vectors along the wall, away from the point: right (seen along the normal), left
+  Vec3 displacement;          ///< the motion that led here, from its start in this step
+  Vec3 unused;                ///< the remaining part of it
 };
 
-/// What a particle does after a contact, in the rest of the step.
+/// The motion of a particle after a contact, in the rest of the step.
 struct AfterSurfaceContact {
-  Vec3 displacement;   ///< in the plane of the contact's triangle; what is normal to it is left out
-  bool along = false;  ///< where it points into the wall, or off it by rounding alone, it runs along it exactly
+  Vec3 displacement;   ///< in the plane of the contact's triangle; a normal part is ignored
+  bool along = false;  ///< run along the wall exactly, if it points into the wall or off it only by rounding
 };
 
-/// Decides what follows a contact. Called from several threads at once for different particles; an empty function stops
-/// the particle at the wall until the end of the step.
+/// Decides what follows a contact. It is called from several threads at once for different particles. An empty function
+/// stops the particle at the wall until the end of the step.
 using SurfaceContactCallback = std::function<AfterSurfaceContact(const SurfaceContact&)>;
 
-// For a caller's own responses: what becomes of a vector at the wall. They do nothing where it points off the wall.
+// For your own responses: the change of a vector at the wall. A vector that points off the wall stays as it is.
 
-/// Rebound, with the share `restitution` of what is normal to the wall.
+/// Rebound, with the share `restitution` of the part that is normal to the wall.
 Vec3 reflected(const SurfaceContact& contact, const Vec3& v, double restitution = 1.0);
 
-/// What of it runs along the wall; in a corner that closes both ways, nothing.
+/// The part that runs along the wall. In a corner that closes both ways it is zero.
 Vec3 slid(const SurfaceContact& contact, const Vec3& v);
 
 // One step of a particle within a surface: straight lines that unfold across edges.
 //
-// Straight at vertices, too: K. Polthier, M. Schmies, "Straightest geodesics on polyhedral surfaces", 1998: the path
-// leaves a vertex so that the angles on its left and on its right are equal.
+// Paths are straight at vertices, too: K. Polthier, M. Schmies, "Straightest geodesics on polyhedral surfaces", 1998.
+// The path leaves a vertex so that the angles on its left and on its right are equal.
 
 struct SurfaceOptions {
-  /// Contacts allowed to a particle in one step, at least 1; at the last one it stops.
+  /// Largest number of contacts of a particle in one step, at least 1. At the last one the particle stops.
   unsigned max_contacts = 16;
-  /// Edges and vertices passed in one step, at most. A straight path passes an edge once in a while: around a vertex it
-  /// turns by less than pi, so that only the number of triangles along it counts. This bounds the time of a step
-  /// whatever rounding does, and steps that are longer than meant.
+  /// Largest number of edges and vertices passed in one step. It bounds the time of a step, whatever rounding does and
+  /// however long the step is. A straight path turns around a vertex by less than pi, so in practice only the number of
+  /// triangles along the path counts.
   std::uint32_t max_crossings = 1U << 20U;
 };
 
 enum class SurfaceEnd : std::uint8_t {
-  arrived,  ///< the whole way is done
+  arrived,  ///< at its target
   stopped,  ///< at a contact
   limit,    ///< after max_crossings
   held      ///< its face is blocked
@@ -185,11 +187,12 @@ struct SurfaceStep {
   SurfaceEnd end = SurfaceEnd::arrived;
   std::uint32_t contacts = 0;
   std::uint32_t crossings = 0;  ///< edges (those within polygons, too) and vertices passed
-  double length = 0.0;          ///< of the way done
-  /// Unit, in the plane of the place's triangle: the direction that it moved in last, to move on in; zero where it has
-  /// not moved. On an edge or at a vertex it may point out of the triangle: a step along it goes straight on.
+  double length = 0.0;          ///< length of the path so far
+  /// Unit vector in the plane of the place's triangle: the last direction of motion, in which the particle can
+  /// continue. Zero if the particle has not moved. On an edge or at a vertex it may point out of the triangle; a step
+  /// along it continues straight.
   Vec3 direction;
-  Vec3 remaining;  ///< displacement left, likewise
+  Vec3 remaining;  ///< the remaining displacement, in the same plane
 };
 
 /// An edge or a vertex passed.
@@ -197,31 +200,35 @@ struct SurfaceCrossing {
   double time = 0.0;  ///< fraction of the step, in [0, 1]
   Vec3 point;
   Kind kind = Kind::edge;
-  Dart dart;           ///< of that edge or from that vertex, in the face left behind; invalid within a polygon
-  SurfacePlace place;  ///< in the triangle left behind
+  Dart dart;           ///< dart of that edge or from that vertex, in the face behind; invalid within a polygon
+  SurfacePlace place;  ///< in the triangle behind
 };
 
-/// Where to note what a step meets; null: nowhere.
+/// The lists to which a step adds its contacts and crossings. Null: it adds none.
 struct SurfaceTrace {
   std::vector<SurfaceContact>* contacts = nullptr;
   std::vector<SurfaceCrossing>* crossings = nullptr;
 };
 
-/// Moves a place by a displacement in the plane of its triangle; what is normal to that plane is left out. From an edge
-/// it may point to either side, as if the triangle across were unfolded into that plane; from a vertex it is an angle
-/// around it: straight through the vertex where it points away from the triangle, else counted from the triangle's
-/// corner around the vertex on the shorter side. It goes as far as it says, around corners and over edges, unless walls
-/// stop it. Errors of the way: some units in the last place for each triangle passed.
+/// Moves a place by a displacement in the plane of its triangle. A part that is normal to that plane is ignored. The
+/// place moves by the whole length, around corners and over edges, unless walls stop it. The error of the path is some
+/// units in the last place for each triangle passed.
 ///
-/// The place ends on the surface in a free face whatever happens: a ray leaves a triangle by one of its edges or
-/// corners, by construction (surface/unfold.hpp). A step of zero length meets nothing; one that ends exactly on a wall
-/// meets it at time 1. Throws InvalidArgument, the place unchanged, where the place is none of this surface,
-/// max_contacts is 0, or the displacement (or a response's) is not finite or above 2^300.
+/// From an edge the displacement may point to either side, as if the triangle across were unfolded into that plane.
+/// From a vertex it is an angle around the vertex. If it points away from the triangle, the path goes straight through
+/// the vertex. Otherwise the angle is counted from the triangle's corner around the vertex on the shorter side.
+///
+/// The place always ends in a free face of the surface, because a ray leaves a triangle by one of its edges or corners
+/// by construction (surface/unfold.hpp). A step of zero length has no contact. A step that ends exactly on a wall has a
+/// contact at time 1.
+///
+/// Throws InvalidArgument, the place unchanged, where the place is not one of this surface, max_contacts is 0, or the
+/// displacement (or that of a response) is not finite or above 2^300.
 SurfaceStep step(const Surface& surface, SurfacePlace& place, const Vec3& displacement,
                  const SurfaceContactCallback& respond = {}, const SurfaceOptions& options = {},
                  const SurfaceTrace& trace = {}, std::uint32_t particle = 0);
 
-/// The tangent of a length at an angle, counterclockwise from the edge that starts at a corner of the triangle.
+/// A tangent vector at a corner of the triangle. `angle` is counterclockwise from the edge that starts at that corner.
 Vec3 tangent(const Surface& surface, SimplexId triangle, unsigned corner, double angle, double length = 1.0);
 
 // Many particles on a surface at once.
@@ -232,12 +239,12 @@ struct SurfaceReport {
 };
 
 /// Steps every place by its displacement, as step() does. Results are the same bits for any number of threads. Throws
-/// as step(), naming the particle, and what a response throws: no place is changed then.
+/// as step(), which names the particle, and passes on exceptions of a response. Then no place is changed.
 SurfaceReport advance(const Surface& surface, std::span<SurfacePlace> places, std::span<const Vec3> displacements,
                       const SurfaceContactCallback& respond = {}, const SurfaceOptions& options = {},
                       Threads threads = {});
 
-// Edits of a surface: those of the plane (dartcast/map_edits.hpp), with positions. All or nothing.
+// Edits of a surface: the edits of the plane (dartcast/map_edits.hpp), with positions. All or nothing.
 
 /// A triangle of a face that an edit replaced, as it was.
 struct GoneTriangle {
@@ -252,8 +259,8 @@ struct SurfaceEditReport {
 };
 
 /// A sequence of edits: split_edge(), split_face(), merge_faces(), merge_edges(), sew(), unsew(), remove(), and
-/// set_free() of the transaction. What is not committed when it ends is taken back. While it is open, nobody else
-/// edits, moves or copies the surface. Cost: that of the faces touched.
+/// set_free() of the transaction. If it ends without a commit, everything is undone. While it is open, no other code
+/// may edit, move or copy the surface. Cost: that of the faces touched.
 class SurfaceEdit {
  public:
   explicit SurfaceEdit(Surface& surface);
@@ -265,17 +272,17 @@ class SurfaceEdit {
 
   [[nodiscard]] Transaction& topology() { return transaction_; }
   [[nodiscard]] const CombinatorialMap& map() const { return transaction_.map(); }
-  /// Where a vertex is. One put on an edge lies in its middle until it is placed, one that was parted where the other
-  /// does; of two that were sewn to each other the lower-numbered one stays where it is. Throws InvalidArgument where
-  /// there is no such vertex.
+  /// The position of a vertex. A vertex that was put on an edge lies in its middle until it is placed. A vertex that
+  /// was made by opening an edge lies where the old one lies. If two vertices were sewn to each other, the
+  /// lower-numbered one keeps its position. Throws InvalidArgument where there is no such vertex.
   [[nodiscard]] Vec3 position(Vertex v);
-  /// Places a vertex that this edit made. Throws InvalidArgument where it made no such vertex, or x is not finite or
-  /// out of the exact range.
+  /// Places a vertex that this edit made. Throws InvalidArgument where this edit made no such vertex, or x is not
+  /// finite or outside the exact range.
   void place(Vertex v, const Vec3& x);
 
-  /// Makes everything final. Places in the faces replaced are to follow (followed()); moves give positions of the new
-  /// vertices, too. Throws EditRefused, everything taken back, where a new face has a triangle without area: a face
-  /// with a vertex on its edge has one, unless it is split there in the same edit.
+  /// Makes everything final. Afterwards every place must follow the edit (followed()), and moves give positions of the
+  /// new vertices, too. Throws EditRefused, everything undone, where a new face has a triangle without area. A face
+  /// with a vertex on its edge has such a triangle, unless it is split there in the same edit.
   SurfaceEditReport commit();
 
  private:
@@ -286,11 +293,13 @@ class SurfaceEdit {
   std::unique_ptr<Created> created_;
 };
 
-/// A place after an edit: as it was where its face was not replaced; in a triangle with the same corners, if one of the
-/// new faces from its face (by source) has it, with the same weights; else the nearest place in the new faces, of
-/// several at the same distance that in a face from its own, then the first. So what lies on an edge that is opened
-/// stays on its side. Nothing where no face took the place of those removed. Every place must follow each edit before
-/// the next. Cost: linear in the new faces.
+/// A place after an edit. If its face was not replaced, it stays as it is. If one of the new faces that come from its
+/// face (by source) has a triangle with the same corners, the place goes there with the same weights. Otherwise it goes
+/// to the nearest place in the new faces; at equal distances a face that comes from its own is preferred, then the
+/// first. So a place on an edge that is opened stays on its side.
+///
+/// Returns nothing if no face took the place of the removed ones. Every place must follow each edit before the next.
+/// Cost: linear in the new faces.
 std::optional<SurfacePlace> followed(const Surface& surface, const SurfaceEditReport& report,
                                      const SurfacePlace& place);
 

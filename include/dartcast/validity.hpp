@@ -12,7 +12,7 @@
 
 namespace dartcast {
 
-// Whether all implicit simplices are positive: the whole-scene check, a streaming pass.
+// Validity: whether all implicit simplices are positive. The check of the whole scene is a streaming pass.
 
 struct Validity {
   std::size_t cells_checked = 0;
@@ -30,13 +30,13 @@ Validity check_validity(const CellComplex& complex, Threads threads = {}, std::s
 Validity check_validity(const CombinatorialMap& map, std::span<const Vec3> positions, Threads threads,
                         std::size_t max_count);
 
-// When a simplex whose corners move on straight lines first ceases to be positive, and what meets what there.
+// Inversion: the first time at which a simplex with corners on straight lines is not positive any more.
 
-/// Times of flattening are multiples of this. Steps of time that are much finer would be lost when positions are
-/// rounded.
+/// Times of inversion are multiples of this. Much finer steps of time would be lost when positions are rounded.
 inline constexpr double inversion_resolution = 0x1p-40;
 
-/// What meets when a simplex becomes flat: the parts of its corners whose convex hulls then have a point in common.
+/// The features that meet when a simplex becomes flat: the parts of its corners whose convex hulls then have a point in
+/// common.
 enum class InversionKind : std::uint8_t {
   vertex_face,     ///< a corner and the inside of the opposite facet
   edge_edge,       ///< the insides of two opposite edges
@@ -47,10 +47,10 @@ enum class InversionKind : std::uint8_t {
   undecidable      ///< a coordinate is not finite or outside the exact range
 };
 
-/// A simplex's first flattening in a step.
+/// The first inversion of a simplex in a step.
 struct SimplexInversion {
-  /// The volume is positive in [0, safe_time], and first zero in (safe_time, safe_time + inversion_resolution]. It is
-  /// 0, and not safe, for the kinds from_the_start and undecidable.
+  /// The volume is positive in [0, safe_time], and first zero in (safe_time, safe_time + inversion_resolution]. For the
+  /// kinds from_the_start and undecidable it is 0, and that time is not safe.
   double safe_time = 0.0;
   InversionKind kind = InversionKind::line;
   std::uint8_t one = 0;    ///< corners that meet the others, bit i for corner i; 0 where all lie on a line
@@ -59,27 +59,27 @@ struct SimplexInversion {
   bool operator==(const SimplexInversion&) const = default;
 };
 
-/// The first time in [0, until] at which the volume of the simplex is not positive, its corners going from `before` to
-/// `after` on straight lines, a + t (b - a) without rounding; nothing where it stays positive. A volume that touches
-/// zero and is positive again counts. Exact: no flattening is missed, none is invented. Precondition: `until` is in
-/// [0, 1]; it is rounded down to a multiple of inversion_resolution.
+/// The first time in [0, until] at which the volume of the simplex is not positive. Its corners go from `before` to
+/// `after` on straight lines, a + t (b - a) without rounding. Returns nothing if the volume stays positive. A volume
+/// that touches zero and is positive again counts. Exact: no inversion is missed, none is invented. Precondition:
+/// `until` is in [0, 1]; it is rounded down to a multiple of inversion_resolution.
 ///
-/// The kind: a corner is counted to one of the parts where its facet's area, projected along an axis, is proved to keep
-/// its sign until the root, that is where it is above 2^-35 of the simplex's extents before and after; else to none. So
-/// the kinds from vertex_edge to line mean: this, or too near to it to tell. Coordinates outside the exact range may be
-/// found undecidable even where the volume stays positive.
+/// The kind: a corner is counted to one of the parts if its facet's area, projected along an axis, is proved to keep
+/// its sign until the root. This is so where the area is above 2^-35 of the simplex's extents before and after.
+/// Otherwise the corner is counted to neither part. So the kinds from vertex_edge to line mean: this, or too close to
+/// it to distinguish. Coordinates outside the exact range may give undecidable even where the volume stays positive.
 ///
 /// Cost: about 20 ns where the filter proves the volume positive, some 0.1 us where it must halve the step, 2 to 5 us
-/// where exact signs are needed, 20 us where the simplex is flattened.
+/// where exact signs are needed, 20 us where the simplex is inverted.
 ///
 /// The cubic is that of X. Provot, "Collision and self-collision handling in cloth model dedicated to design garments",
-/// 1997; its first root is enclosed by exact signs, of its values, its discriminant and Bernstein's coefficients.
+///  1997. Its first root is enclosed by exact signs of its values, its discriminant and Bernstein's coefficients.
 std::optional<SimplexInversion> find_inversion(const Corners& before, const Corners& after, double until = 1.0);
 
-// When a motion of the vertices first flattens a simplex of the scene, and how far it can be followed: collisions of
-// the environment with itself.
+// Collisions of the environment with itself: when a motion of the vertices first inverts a simplex of the scene, and
+// how far the motion can be followed.
 
-/// A simplex of a cell that a motion flattens.
+/// A simplex of a cell that a motion inverts.
 struct CellInversion {
   SimplexId simplex;
   std::array<Vertex, 4> vertices;  ///< the simplex's corners 0 to 3
@@ -87,13 +87,14 @@ struct CellInversion {
   std::string message;  ///< names the cell as in the mesh, the time, and the vertices that meet
 };
 
-/// The first simplex that is flattened while every vertex goes from `before` to `after` on a straight line; nothing
-/// where all stay positive. First by safe_time, then in the order of cells. Blocked cells count: they must stay valid,
-/// too. A simplex that is not positive to begin with is flattened at the time 0. Interior points move on straight lines
-/// like other vertices: positions are those of all vertices of the map. Exact as find_inversion(). Cost: linear,
-/// parallel, 20 to 40 ns a simplex on one thread, about as check_validity(); more where very many simplices are
-/// flattened within inversion_resolution of the first (4 us each). The result does not depend on the threads. Throws
-/// InvalidArgument where the positions are not as many as the map's vertices.
+/// The first simplex that is inverted while every vertex goes from `before` to `after` on a straight line. Returns
+/// nothing if all stay positive. The order is by safe_time, then by cell. Blocked cells count, because they must stay
+/// valid, too. A simplex that is not positive at the start is inverted at the time 0. Steiner points move on straight
+/// lines like other vertices: positions are those of all vertices of the map. Exact as find_inversion().
+///
+/// Throws InvalidArgument where the number of positions is not that of the map's vertices. Cost: linear, parallel, 20
+/// to 40 ns a simplex on one thread, about as much as check_validity(). It is more where very many simplices are
+/// inverted within inversion_resolution of the first (4 us each). The result does not depend on the threads.
 std::optional<CellInversion> first_inversion(const CombinatorialMap& map, std::span<const Vec3> before,
                                              std::span<const Vec3> after, Threads threads = {});
 
@@ -104,13 +105,14 @@ std::optional<CellInversion> first_inversion(const CellComplex& complex, Threads
 std::optional<CellInversion> first_inversion(const CombinatorialMap& map, std::span<const Vec3> before,
                                              std::span<const Vec3> after, Cell c, double until = 1.0);
 
-/// Follows a motion up to `time`, or as far as it can be: writes into `positions` where the vertices are then, rounded,
-/// and returns the time. The move from `before` to the positions written flattens nothing: that very move, rounded as
-/// it is, has been checked by first_inversion(). Where it does at `time`, earlier times are tried, further and further
-/// back from inversion_resolution on, and in the end 0, which gives `before` itself. Typically called with the
-/// safe_time of a flattening, or with part of it. Interior points are computed from the weights. Preconditions:
-/// `before` is valid, `time` is in [0, 1], the spans do not overlap. Cost: a few passes of first_inversion(). Throws
-/// InvalidArgument where the positions are not as many as the map's vertices.
+/// Follows a motion up to `time`, or as far as possible. Writes the rounded positions of the vertices at that time into
+/// `positions`, and returns the time. The move from `before` to the written positions inverts nothing:
+/// first_inversion() has checked that rounded move. If the move to `time` would invert a simplex, earlier times are
+/// tried, at increasing distances that start with inversion_resolution. The last one is 0, which gives `before` itself.
+/// Callers usually pass the safe_time of an inversion, or a part of it. Steiner points are computed from the weights.
+///
+/// Preconditions: `before` is valid, `time` is in [0, 1], the spans do not overlap. Throws InvalidArgument where the
+/// number of positions is not that of the map's vertices. Cost: a few passes of first_inversion().
 double move_towards(const CombinatorialMap& map, const SteinerWeights& steiner_weights, std::span<const Vec3> before,
                     std::span<const Vec3> after, double time, std::span<Vec3> positions, Threads threads = {});
 

@@ -34,7 +34,7 @@ inline bool is_finite(const Vec3& a) { return std::isfinite(a.x) && std::isfinit
 
 /// The corners of a simplex of space.
 using Corners = std::array<Vec3, 4>;
-/// Of the plane; z is not read.
+/// The corners of a simplex of the plane; z is not read.
 using PlaneCorners = std::array<Vec3, 3>;
 
 }  // namespace dartcast

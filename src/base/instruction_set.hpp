@@ -7,7 +7,7 @@ namespace dartcast::detail {
 
 enum class InstructionSet : std::uint8_t { portable, avx2 };
 
-/// The best that this machine has.
+/// The best set that this machine has.
 inline InstructionSet best_instruction_set() {
 #if defined(__x86_64__)
   static const bool has_avx2 = __builtin_cpu_supports("avx2") != 0;

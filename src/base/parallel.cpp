@@ -1,4 +1,4 @@
-// Chunks of a loop, on TBB's threads or on std::thread's, and how many of these the system gives.
+// Chunks of a loop on threads of TBB or std::thread, and the number of threads that the system gives.
 #include "base/parallel.hpp"
 
 #include <fmt/format.h>
@@ -24,7 +24,7 @@ namespace dartcast {
 
 namespace {
 
-constexpr unsigned usual_limit = 256;  // TBB can always be asked for so many
+constexpr unsigned usual_limit = 256;  // TBB always accepts this many
 
 unsigned machine_threads() {
 #ifdef DARTCAST_THREADS_STD
@@ -34,8 +34,8 @@ unsigned machine_threads() {
 #endif
 }
 
-// How many threads there can be at once, with the one that asks; no more than `wanted`. TBB ends the program where it
-// cannot start one, so they are started and ended here first.
+// The number of threads that can exist at once, with the calling one; at most `wanted`. TBB ends the program if it
+// cannot start a thread, so all are started and ended here first.
 unsigned given_by_system(unsigned wanted) {
   std::vector<std::thread> started;
   std::atomic<bool> end = false;
@@ -54,7 +54,7 @@ unsigned given_by_system(unsigned wanted) {
 unsigned max_threads() { return std::max(usual_limit, machine_threads()); }
 
 void check_threads(Threads threads) {
-  static std::atomic<unsigned> given = 1;  // the most that the system has given: it is asked once
+  static std::atomic<unsigned> given = 1;  // the largest number that the system has given: it is asked once
   if (threads.count <= given) return;
   if (threads.count > max_threads())
     throw InvalidArgument(fmt::format("{} threads: at most {} can be asked for, 0 stands for all that the machine has",
@@ -74,7 +74,7 @@ namespace dartcast::detail {
 
 namespace {
 
-// Keeps the first exception by chunk order, so that what is thrown does not depend on threads either.
+// Keeps the first exception by chunk order, so that the exception does not depend on threads either.
 class Chunks {
  public:
   Chunks(std::size_t count, std::size_t grain, ChunkBody body, void* context)
@@ -119,14 +119,14 @@ void run_parallel(Chunks& chunks, unsigned threads) {
   std::vector<std::thread> pool;
   try {
     for (unsigned i = 1; i < threads; ++i) pool.emplace_back(work);
-  } catch (const std::exception&) {  // the system gave them before: fewer do now
+  } catch (const std::exception&) {  // the system gave them before: fewer suffice now
   }
   work();
   for (auto& t : pool) t.join();
 }
 #else
 void run_parallel(Chunks& chunks, unsigned threads) {
-  // Asked for more threads than there are cores, TBB would start fewer and complain on stderr.
+  // If a caller asks for more threads than cores, TBB would start fewer and complain on stderr.
   std::optional<tbb::global_control> more;
   if (threads > machine_threads()) more.emplace(tbb::global_control::max_allowed_parallelism, threads);
   tbb::task_arena arena(static_cast<int>(threads));

@@ -9,7 +9,7 @@ namespace dartcast {
 /// "Fast splittable pseudorandom number generators", 2014. Every operation is an integer one or exact in doubles.
 class Random {
  public:
-  /// Streams of one seed are sequences of their own, so that one use does not shift the numbers of another.
+  /// Streams of one seed are separate sequences, so that one use does not shift the numbers of another.
   explicit constexpr Random(std::uint64_t seed, std::uint64_t stream = 0) : state_(seed) {
     state_ = next() ^ (stream * 0xd1342543de82ef95U);
   }
@@ -32,7 +32,7 @@ class Random {
   /// An integer in [0, n), n > 0; uniform to n / 2^32.
   constexpr std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(((next() >> 32U) * n) >> 32U); }
 
-  /// To save a sequence, and to go on with it.
+  /// To save a sequence and to continue it.
   [[nodiscard]] constexpr std::uint64_t state() const { return state_; }
   static constexpr Random from_state(std::uint64_t state) {
     Random random(0);

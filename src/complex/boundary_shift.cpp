@@ -1,3 +1,4 @@
+// The distance by which an edit moved walls and the boundary.
 #include "complex/boundary_shift.hpp"
 
 #include <algorithm>
@@ -16,7 +17,7 @@ using VertexNumbering = std::vector<std::uint32_t>;
 
 struct BoundaryWall {
   VertexNumbering corners;  // from the lowest-numbered
-  Vertex point;             // of its own
+  Vertex point;             // Steiner point
 
   bool operator==(const BoundaryWall&) const = default;
 };
@@ -42,7 +43,7 @@ struct BoundaryPlane {
   Vec3 a, b, c;
 };
 
-// Through the widest triangle of a fan; upright through an edge of the plane.
+// The plane through the widest triangle of a fan. In the plane it is upright through an edge.
 BoundaryPlane plane_of(const VertexNumbering& corners, std::span<const Vec3> positions) {
   const Vec3 a = positions[corners.front()];
   BoundaryPlane plane{a, a, a};
@@ -59,7 +60,7 @@ BoundaryPlane plane_of(const VertexNumbering& corners, std::span<const Vec3> pos
   return plane;
 }
 
-// Exactly 0 where all lie in the plane.
+// The result is exactly 0 if all points lie in the plane.
 double extent_over(const BoundaryPlane& plane, const BoundaryWall& before, const BoundaryWall& after,
                    std::span<const Vec3> positions) {
   const Vec3 normal = cross(plane.b - plane.a, plane.c - plane.a);
@@ -113,7 +114,7 @@ class BoundaryWalls {
            std::any_of(found->second.begin(), found->second.end(), [&](std::size_t i) { return old_[i] == wall; });
   }
 
-  // The vertices there were before from which the corners of a new wall came.
+  // The older vertices from which the corners of a new wall were made.
   [[nodiscard]] VertexNumbering origins_of(const BoundaryWall& wall) const {
     VertexNumbering origins;
     VertexNumbering open = wall.corners;
@@ -131,7 +132,7 @@ class BoundaryWalls {
     return origins;
   }
 
-  // Nothing where the new wall is neither a part of the old one nor holds it.
+  // Nothing if the new wall is neither a part of the old one nor contains it.
   [[nodiscard]] double between(const BoundaryWall& before, const BoundaryWall& after,
                                const VertexNumbering& origins) const {
     const bool part =
@@ -140,7 +141,8 @@ class BoundaryWalls {
     return extent_over(plane_of(part ? before.corners : after.corners, positions_), before, after, positions_);
   }
 
-  // Whether it has all corners of the old wall that its cells have kept, an edge at least, in the plane a corner.
+  // Whether the new wall has all corners of the old wall that its cells have kept: at least an edge, in the plane a
+  // corner.
   [[nodiscard]] bool is_whole_of(const BoundaryWall& after, const BoundaryWall& before) const {
     const auto kept = [&](std::uint32_t v) { return kept_.count(v) != 0; };
     const std::ptrdiff_t lowest = before.corners.size() == 2 ? 1 : 2;

@@ -1,4 +1,4 @@
-// How far an edit moved the walls and the boundary.
+// The distance by which an edit moved the walls and the boundary.
 #pragma once
 
 #include <span>
@@ -8,10 +8,10 @@
 
 namespace dartcast {
 
-/// A bound of the distance from any point of a wall or of the boundary, where an open transaction split, merged or
-/// fanned its faces anew, to where it lay: 0 where it is fanned as it was; else the extent along its normal of the
-/// corners of the face before and after, which hold both. Vertices that were identified count with their distance.
-/// `positions`: of all vertices, those gone included. Cost: linear in the cells touched, on average.
+/// A bound of the distance from any point of a wall or of the boundary to its old position, where an open transaction
+/// split, merged or fanned faces anew. It is 0 where a face is fanned as before. Otherwise it is the extent, along the
+/// face's normal, of the corners of the face before and after, which contain both. Merged vertices count with their
+/// distance. `positions`: of all vertices, including removed ones. Cost: linear in the cells touched, on average.
 double boundary_shift(const Transaction& t, std::span<const Vec3> positions);
 
 }  // namespace dartcast

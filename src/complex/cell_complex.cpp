@@ -1,3 +1,4 @@
+// Builds a cell complex, and swaps its positions.
 #include "dartcast/cell_complex.hpp"
 
 #include <utility>

@@ -1,3 +1,4 @@
+// Edits of a complex: positions of new vertices, Steiner points, validity at the commit.
 #include "dartcast/complex_edit.hpp"
 
 #include <fmt/format.h>
@@ -36,7 +37,7 @@ ComplexEdit::~ComplexEdit() { created_->give_up(); }
 
 Vec3 ComplexEdit::position(Vertex v) { return created_->at(v); }
 
-// Returns its number among the new ones.
+// Returns the number of the vertex among the new ones.
 std::size_t ComplexEdit::place_created(Vertex v, const Vec3& x) {
   if (map().dimension() == 2 && x.z != 0.0)
     throw InvalidArgument(
@@ -49,7 +50,8 @@ void ComplexEdit::place(Vertex v, const Vec3& x) { means_.erase(place_created(v,
 void ComplexEdit::place(Vertex v, std::span<const Vertex> of, std::span<const double> weights) {
   if (of.empty() || of.size() != weights.size())
     throw InvalidArgument("place: give one weight per vertex, one at least");
-  // From the first one: the mean of equal coordinates is that coordinate, so that planes across an axis stay plane.
+  // The mean is taken relative to the first one. So the mean of equal coordinates is that coordinate, and planes
+  // perpendicular to an axis stay plane.
   const Vec3 first = position(of[0]);
   Vec3 x = first;
   for (std::size_t i = 1; i < of.size(); ++i) x += (position(of[i]) - first) * weights[i];
@@ -123,7 +125,7 @@ std::vector<Cell> ComplexEdit::around() const {
   return around;
 }
 
-// Nothing here is refused.
+// From here on nothing can be refused.
 ComplexEditReport ComplexEdit::make_final(const SteinerWeights& points, std::size_t created) {
   ComplexEditReport report;
   report.boundary_shift = boundary_shift(transaction_, complex_.front_);

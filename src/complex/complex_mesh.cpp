@@ -1,3 +1,4 @@
+// A complex as a mesh again.
 #include <utility>
 #include <vector>
 
@@ -12,7 +13,7 @@ class ComplexMeshBuilder {
   explicit ComplexMeshBuilder(const CellComplex& complex)
       : complex_(complex), number_(complex.map().vertex_count(), none) {}
 
-  // `vertices`: takes that of each point.
+  // `vertices`: receives the vertex of each point.
   MeshData write(std::vector<Vertex>& vertices) {
     const CombinatorialMap& map = complex_.map();
     for (const Cell c : map.cells()) {

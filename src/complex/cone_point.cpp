@@ -1,3 +1,4 @@
+// Finds a point from which a cell can be coned.
 #include "complex/cone_point.hpp"
 
 #include <Eigen/Dense>
@@ -21,8 +22,8 @@ bool all_positive(const Vec3& apex, std::span<const ConeTriangle> triangles) {
 
 namespace {
 
-// A point strictly behind all triangles, found by moving away from the nearest one; `start` where there is none. What
-// it returns is only a proposal: the validity check decides.
+// A point strictly behind all triangles, found by moving away from the nearest one; `start` if none is found. The
+// result is only a proposal: the validity check decides.
 Vec3 kernel_point(const Vec3& start, std::span<const ConeTriangle> triangles, double size) {
   constexpr int steps = 400;
   Vec3 x = start;

@@ -1,4 +1,4 @@
-// Where to put the point of its own that a cell is coned from.
+// The place of the Steiner point that a cell is coned from.
 #pragma once
 
 #include <algorithm>
@@ -15,14 +15,15 @@ struct ConeTriangle {
   Vec3 a, b, c;  ///< counterclockwise seen from the outside
 };
 
-/// Over an edge of a polygon in the plane: a point of the plane is behind it as it is on the left of the edge.
+/// The triangle over an edge of a planar polygon. A point of the plane is behind it exactly if it is on the left of the
+/// edge.
 inline ConeTriangle upright(const Vec3& a, const Vec3& b) { return {a, b, {a.x, a.y, a.z + norm(b - a)}}; }
 
-/// The sum over the number, in the order given.
+/// The mean: the sum, in the given order, over the number.
 Vec3 mean(std::span<const Vec3> points, std::span<const std::uint32_t> corners);
 
-/// Adds the fan of a face: from its own point where it has one, else from its lowest-numbered vertex. `at(v)`: where
-/// the vertex with that number is.
+/// Adds the fan of a face: around its Steiner point if it has one, else around its lowest-numbered vertex. `at(v)`: the
+/// position of the vertex with that number.
 template <class At>
 void add_fan(std::vector<ConeTriangle>& triangles, std::span<const std::uint32_t> face,
              const std::optional<Vec3>& point, At&& at) {
@@ -47,11 +48,11 @@ inline std::vector<ConeTriangle> fan(std::span<const Vec3> points, std::span<con
 /// Whether the apex makes a positive simplex with every triangle; exact.
 bool all_positive(const Vec3& apex, std::span<const ConeTriangle> triangles);
 
-/// Weights over the corners, summing to 1, that give x but for rounding: the equal weights and the least correction.
+/// Weights over the corners, with sum 1, that give x up to rounding: equal weights and the smallest correction.
 std::vector<double> weights_for(const Vec3& x, std::span<const Vec3> points, std::span<const std::uint32_t> corners);
 
-/// Weights over the corners, summing to 1, of a point from which all triangles are positive: equal ones where their
-/// mean is such a point, or where none is found.
+/// Weights over the corners, with sum 1, of a point from which all triangles are positive. They are equal if the mean
+/// is such a point, or if none is found.
 std::vector<double> cone_weights(std::span<const Vec3> points, std::span<const std::uint32_t> corners,
                                  std::span<const ConeTriangle> triangles);
 

@@ -18,7 +18,7 @@ class CreatedPositions {
   CreatedPositions(const Transaction& transaction, Positions& positions)
       : transaction_(transaction), positions_(positions), before_(positions.size()) {}
 
-  /// Gives new vertices their first positions: numbers used again lie among the others.
+  /// Gives new vertices their first positions. Numbers that are used again lie among the others.
   void take() {
     count_ = std::min(count_, transaction_.created_count());
     positions_.resize(transaction_.map().vertex_count());
@@ -37,8 +37,8 @@ class CreatedPositions {
     return positions_[v.value];
   }
 
-  /// Returns the vertex' number among the new ones. Throws InvalidArgument where it is none of these, or x is not
-  /// finite or out of the exact range.
+  /// Returns the number of the vertex among the new ones. Throws InvalidArgument where it is none of these, or x is not
+  /// finite or outside the exact range.
   std::size_t place(Vertex v, const Vec3& x) {
     take();
     std::size_t i = count_;
@@ -54,14 +54,14 @@ class CreatedPositions {
     return i - 1;
   }
 
-  /// How many new vertices have positions.
+  /// The number of new vertices with positions.
   [[nodiscard]] std::size_t count() const { return count_; }
-  /// After a commit.
+  /// Makes the new positions permanent, after a commit.
   void keep() {
     before_ = positions_.size();
     count_ = 0;
   }
-  /// Without one.
+  /// Removes the new positions, where there is no commit.
   void give_up() { positions_.resize(before_); }
 
  private:

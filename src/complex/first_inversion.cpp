@@ -1,3 +1,4 @@
+// The first inversion of a scene, and how far a motion can be followed.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +17,7 @@ namespace {
 
 constexpr std::size_t chunk = 4096;
 
-// The vertices of a part of the corners: "vertex 5", "edge 5 7".
+// Text for the vertices of a part of the corners: "vertex 5", "edge 5 7".
 std::string part(const std::array<Vertex, 4>& vertices, unsigned corners) {
   constexpr std::array<const char*, 4> names = {"", "vertex", "edge", "face"};
   std::string text = names[static_cast<std::size_t>(std::popcount(corners))];
@@ -47,13 +48,13 @@ void check_count(const CombinatorialMap& map, std::size_t count, const char* wha
                                       count, what, map.vertex_count()));
 }
 
-// Keeps the first flattening of the cells it is shown, in their order.
+// Keeps the first inversion of the cells that it is shown, in their order.
 class InversionSearch {
  public:
   InversionSearch(const CombinatorialMap& map, std::span<const Vec3> before, std::span<const Vec3> after, double until)
       : map_(map), before_(before), after_(after), until_(until) {}
 
-  // Later cells of the same safe_time are of no interest: the first is kept.
+  // Later cells with the same safe_time are ignored: the first is kept.
   void look_at(Cell c) {
     if (found_ && found_->how.safe_time == 0.0) return;
     const CellView v = map_.view(c);
@@ -108,7 +109,7 @@ std::optional<CellInversion> described(const CombinatorialMap& map, std::optiona
   return found;
 }
 
-// Where a vertex is at the time t: exact at 0 and 1.
+// The position of a vertex at the time t: exact at 0 and 1.
 Vec3 on_line(const Vec3& before, const Vec3& after, double t) { return (1.0 - t) * before + t * after; }
 
 }  // namespace

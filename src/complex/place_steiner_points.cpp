@@ -1,3 +1,4 @@
+// Gives Steiner points to the cells that an edit made.
 #include "complex/place_steiner_points.hpp"
 
 #include <algorithm>
@@ -35,8 +36,8 @@ CornerNumbers corners_of(const CellDraft& draft) {
   return corners;
 }
 
-// Powers of two that sum to 1, about equal: in a plane of constant coordinates of few digits they put the point exactly
-// there.
+// Weights that are about equal powers of two with sum 1. In a plane of constant coordinates of few digits they put the
+// point exactly there.
 std::vector<double> face_weights(std::size_t corners) {
   const std::size_t whole = std::bit_ceil(corners);
   std::vector<double> weights(corners, 1.0 / static_cast<double>(whole));
@@ -157,7 +158,7 @@ class SteinerPlacer {
   std::set<Cell> cells_;
   std::vector<Cell> taken_;  // the same, in the order found
   std::set<CellFace> faces_;
-  std::map<std::uint32_t, Vec3> points_;  // of faces, that were made here
+  std::map<std::uint32_t, Vec3> points_;  // of faces, made here
   SteinerWeights weights_;
 };
 

@@ -1,4 +1,4 @@
-// One implicit simplex in space: its corners, and the four determinants that say where a point is.
+// One implicit simplex: its corners, and the determinants that say where a point is.
 #pragma once
 
 #include <algorithm>
@@ -14,8 +14,8 @@
 
 namespace dartcast {
 
-/// The corners of the facet opposite to corner i, so that orient3d(a, b, c, x) is positive on the side of corner i; in
-/// the plane orient2d(a, b, x).
+/// The corners of the facet opposite to corner i, in an order for which orient3d(a, b, c, x) is positive on the side of
+/// corner i. In the plane: orient2d(a, b, x).
 inline constexpr std::array<std::array<std::uint8_t, 3>, 4> facet_corners = {
     {{2, 1, 3}, {0, 2, 3}, {1, 0, 3}, {0, 1, 2}}};
 inline constexpr std::array<std::array<std::uint8_t, 2>, 3> plane_facet_corners = {{{1, 2}, {2, 0}, {0, 1}}};
@@ -53,7 +53,7 @@ inline double orient_facet_value(const PlaneCorners& v, unsigned facet, const Ve
   return orient2d_value(v[f[0]], v[f[1]], x);
 }
 
-/// The gradient of det_i: the facet's normal to the inner side, as long as twice its area (in the plane its length).
+/// The gradient of det_i: the facet's inner normal, with a length of twice its area (in the plane: its length).
 inline Vec3 facet_gradient(const Corners& v, unsigned facet) {
   const auto& f = facet_corners[facet];
   return cross(v[f[1]] - v[f[0]], v[f[2]] - v[f[0]]);
@@ -64,8 +64,8 @@ inline Vec3 facet_gradient(const PlaneCorners& v, unsigned facet) {
   return {-along.y, along.x, 0.0};
 }
 
-/// det_i: the determinant of a simplex of N corners with corner i replaced by x. All are positive inside a valid
-/// simplex, and sum to six times its volume (in the plane twice its area); det_i over the sum is x's barycentric
+/// The determinants det_i of a point x: that of the simplex with corner i replaced by x. All are positive inside a
+/// valid simplex. They sum to six times its volume (in the plane twice its area). det_i over the sum is x's barycentric
 /// coordinate i.
 template <std::size_t N>
 struct Determinants {
@@ -99,23 +99,23 @@ struct Determinants {
     if constexpr (N == 4) return (value[0] + value[1]) + (value[2] + value[3]);
     return (value[0] + value[1]) + value[2];
   }
-  /// The errors, and the rounding of three sums of values that are at most 6 m each (m = bound /
-  /// determinant_error).
+  /// Whether the sum exceeds its errors: those of the values, and the rounding of three sums of values that are at most
+  /// 6 m each (m = bound / determinant_error).
   [[nodiscard]] bool proves_positive() const { return volume6() > 8.0 * bound; }
-  /// The values over their sum are the coordinates of a point of the simplex right to 2^-26: each value is off by at
-  /// most the bound, the sum by eight times that.
+  /// The values over their sum are the coordinates of a point of the simplex, accurate to 2^-26. Each value is off by
+  /// at most the bound, and the sum by eight times that.
   [[nodiscard]] bool proves_coordinates() const { return volume6() > 0x1p+30 * bound_in_range(); }
   /// x is strictly inside, and the simplex positive.
   [[nodiscard]] bool all_proved_positive() const { return smallest() > bound; }
-  /// The same where all is known to be in the exact range.
+  /// The same for points that are known to be in the exact range.
   [[nodiscard]] bool all_positive_in_range() const { return smallest() > bound_in_range(); }
   [[nodiscard]] bool decides(unsigned i) const { return std::abs(value[i]) > bound; }
-  /// What the bound is where the filter applies.
+  /// The bound if the filter applies.
   [[nodiscard]] double error() const {
     if constexpr (N == 4) return determinant_error * (extent.x * extent.y * extent.z);
     return plane_error * (extent.x * extent.y);
   }
-  /// Whether the values are exact. `v`, `x`: those that the determinants are of.
+  /// Whether the values are exact. `v`, `x`: the simplex and the point of these determinants.
   [[nodiscard]] bool exact(const std::array<Vec3, N>& v, const Vec3& x) const {
     if (!(bound <= std::numeric_limits<double>::max())) return false;
     if constexpr (N == 4) return rounds_nothing(extent, v[0], v[1], v[2], v[3], x);
@@ -124,7 +124,7 @@ struct Determinants {
 
  private:
   [[nodiscard]] double smallest() const { return *std::min_element(value.begin(), value.end()); }
-  // Where all is in the exact range, the bound holds farther than the filter applies.
+  // For points in the exact range, the bound holds farther than the filter applies.
   [[nodiscard]] double bound_in_range() const {
     if (bound <= std::numeric_limits<double>::max()) return bound;
     const bool holds = N == 4 ? bound_holds(extent) : plane_bound_holds(extent.x, extent.y);
@@ -134,8 +134,8 @@ struct Determinants {
 template <std::size_t N>
 Determinants(const std::array<Vec3, N>&, const Vec3&) -> Determinants<N>;
 
-/// Of some of the determinants: bit i is set where det_i is negative, or zero. In neither: positive, or
-/// undecidable.
+/// Signs of some of the determinants. Bit i is set where det_i is negative, or where it is zero. If neither is set, it
+/// is positive or undecidable.
 struct DeterminantSigns {
   unsigned negative = 0;
   unsigned zero = 0;
@@ -181,7 +181,7 @@ Sign sign_of(const Determinants<N>& d, unsigned i, const std::array<Vec3, N>& v,
   return orient_facet_exact(v, i, x);
 }
 
-/// The determinant as a double, right to 2^-49 of itself.
+/// The determinant as a double, accurate to 2^-49 of itself.
 inline double volume_value(const Corners& v) { return orient3d_value(v[0], v[1], v[2], v[3]); }
 inline double volume_value(const PlaneCorners& v) { return orient2d_value(v[0], v[1], v[2]); }
 

@@ -1,3 +1,4 @@
+// The first inversion of one simplex, and the features that meet.
 #include <bit>
 #include <cmath>
 
@@ -14,9 +15,9 @@ using SimplexEdges = std::array<Vec3, 3>;
 
 SimplexEdges edges_of(const Corners& v) { return {v[1] - v[0], v[2] - v[0], v[3] - v[0]}; }
 
-// The edges from corner 0 at the time t, each axis measured in its largest difference: no coordinate is above 1 by more
-// than rounding. They are off by at most 2^-39 (1 + 2^-10) from what they are at any time until t + 2^-40: an edge
-// moves by 2 in a step, and four operations are rounded.
+// The edges from corner 0 at the time t. Each axis is measured in its largest difference, so no coordinate is above 1
+// by more than rounding. They are off by at most 2^-39 (1 + 2^-10) from their values at any time until t + 2^-40: an
+// edge moves by 2 in a step, and four operations are rounded.
 SimplexEdges scaled_edges(const Corners& before, const Corners& after, double t) {
   const SimplexEdges p = edges_of(before);
   const SimplexEdges q = edges_of(after);
@@ -34,9 +35,9 @@ struct DependenceParts {
   unsigned negative = 0;
 };
 
-// The sign of the corners' coordinates in their affine dependence: at the root, the facets' area vectors are multiples
-// of one vector, by just these. Along an axis each is a sum of at most three differences of two products: off by
-// at most 3 (4 2^-39 (1 + 2^-9)), and rounding, in all less than 2^-35.
+// The signs of the corners' coefficients in their affine dependence. At the root, the facets' area vectors are
+// multiples of one vector by just these coefficients. Along an axis each is a sum of at most three differences of two
+// products. It is off by at most 3 (4 2^-39 (1 + 2^-9)), and rounding, in all less than 2^-35.
 DependenceParts dependence(const SimplexEdges& e) {
   const Vec3 w1 = cross(e[1], e[2]);
   const Vec3 w2 = cross(e[2], e[0]);
@@ -72,7 +73,7 @@ SimplexInversion inversion_at(const Corners& before, const Corners& after, doubl
   const auto [positive, negative] = dependence(scaled_edges(before, after, time));
   const int above = std::popcount(positive);
   const int below = std::popcount(negative);
-  // Of equal parts, the one with the lowest corner is the first.
+  // If the parts are equal, the one with the lowest corner is the first.
   const bool positive_first = above != below ? above < below : std::countr_zero(positive) < std::countr_zero(negative);
   const InversionKind kind = positive_first ? kind_of(above, below) : kind_of(below, above);
   if (kind == InversionKind::line) return {time, kind};

@@ -1,3 +1,4 @@
+// Leaves the bad cells of a mesh out.
 #include "complex/skip_bad_cells.hpp"
 
 #include <algorithm>
@@ -44,7 +45,7 @@ void remove_cells(MeshData& mesh, const CellMarks& bad) {
   for (DataArray& array : mesh.cell_data) keep_good(array.values, bad, array.components);
 }
 
-// Cells that have no volume, or no order of their corners that makes them positive.
+// Cells without volume, and cells that no order of their corners makes positive.
 CellMarks shapeless_cells(MeshData& mesh) {
   CellMarks bad(mesh.cell_count(), 0);
   for (std::size_t c = 0; c < bad.size(); ++c) {
@@ -54,8 +55,8 @@ CellMarks shapeless_cells(MeshData& mesh) {
   return bad;
 }
 
-// Groups of cells that match face to face, and which of them use a face from the same side. Two sides of an overlap
-// take turns from group to group; the side with fewer cells is the inverted one.
+// Groups of cells that match face to face, and the pairs of groups that use a face from the same side. The two sides of
+// an overlap alternate from group to group. The side with fewer cells is the inverted one.
 class OverlappingGroups {
  public:
   explicit OverlappingGroups(const FaceMatch& match) : group_of_(match.part) {
@@ -114,7 +115,7 @@ CellMarks indivisible_cells(const MeshData& mesh, Threads threads) {
 
 bool has_any(const CellMarks& bad) { return std::find(bad.begin(), bad.end(), 1) != bad.end(); }
 
-// Of the first kind that there is.
+// The cells of the first kind that occurs.
 CellMarks some_bad_cells(MeshData& mesh, const MeshReport& report, Threads threads) {
   for (const Finding& defect : report.defects) {
     if (!is_of_bad_cells(defect.kind)) throw InvalidMesh(defect.message);

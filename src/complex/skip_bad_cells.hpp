@@ -1,4 +1,4 @@
-// Using a mesh some of whose cells are bad: these are left out, and what is left has walls around them.
+// Use of a mesh with some bad cells: these are left out, and the rest has walls around them.
 #pragma once
 
 #include <string_view>
@@ -13,13 +13,18 @@ namespace dartcast {
 /// inverted, same_side.
 bool is_of_bad_cells(std::string_view defect);
 
-/// Leaves out the cells that are not positive: flat ones, ones that no order of their corners makes positive, ones that
-/// lie inverted among their neighbours (where cells use a face from the same side, the fewer of them), and ones that
-/// cannot be divided into positive simplices. Their faces at other cells become walls without a patch, so that every
-/// guarantee holds for what is left. Regions, arrays, patches and `source` go along; the mesh is then as
-/// check_and_repair() leaves it. Returns a finding of kind "bad_cells" with their number and the first, as indices in
-/// the input; of none where the mesh is good. Throws InvalidMesh where the mesh has other defects, or no cell is left.
-/// Cost: that of check_and_repair() and of building a complex, once more for each kind of bad cell.
+/// Leaves out the cells that are not positive:
+///
+///  - flat cells;
+///  - cells that no order of their corners makes positive;
+///  - cells that lie inverted among their neighbours (where cells use a face from the same side, the fewer of them);
+///  - cells that cannot be divided into positive simplices.
+///
+/// Their faces at other cells become walls without a patch, so that every guarantee holds for the rest. Regions,
+/// arrays, patches and `source` are kept. The mesh is then as check_and_repair() leaves it. Returns a finding of kind
+/// "bad_cells" with their number and the first of them, as indices in the input; an empty one if the mesh is good.
+/// Throws InvalidMesh where the mesh has other defects, or no cell remains. Cost: that of check_and_repair() and of
+/// building a complex, once more for each kind of bad cell.
 Finding skip_bad_cells(MeshData& mesh, Threads threads = {});
 
 }  // namespace dartcast

@@ -1,3 +1,4 @@
+// Finds Steiner points for cells of a mesh without a positive pulling triangulation.
 #include "complex/steiner_points.hpp"
 
 #include <algorithm>
@@ -48,7 +49,7 @@ class SteinerSolver {
   }
 
  private:
-  // The plain map has a cell for each of the mesh, in the mesh's order within each type.
+  // The plain map has one cell for each cell of the mesh, in the mesh's order within each type.
   void number_cells() {
     for (std::uint32_t c = 0; c < mesh_.cell_count(); ++c)
       number_[CombinatorialMap::pool_of(mesh_.types[c])].push_back(c);
@@ -58,12 +59,12 @@ class SteinerSolver {
     }
   }
 
-  // A cell that is to have a point of its own: no longer coned from a corner, all its fans must be positive.
+  // Takes a cell that needs a Steiner point. It is no longer coned from a corner, so all its fans must be positive.
   void add_cell(std::uint32_t c) {
     if (with_point_.insert(c).second) chosen_.push_back(c);
   }
 
-  // A face whose triangles are not all positive seen from the mean of the cell's corners, but would be with a point.
+  // A face whose triangles are not all positive as seen from the mean of the cell's corners, but would be with a point.
   void choose_face_points(std::uint32_t c) {
     if (plain_.dimension() == 2) return;
     const CornerLists faces = faces_of(mesh_, c);
@@ -140,7 +141,7 @@ class SteinerSolver {
   const MeshData& mesh_;
   const CombinatorialMap& plain_;
   std::array<std::vector<std::uint32_t>, 5> number_;  // by pool and index: the cell's number in the mesh
-  std::vector<Cell> cell_;                            // and back
+  std::vector<Cell> cell_;                            // the cell by its number
   std::set<std::uint32_t> with_point_;
   std::vector<std::uint32_t> chosen_;  // the same, in the order found
   std::map<std::vector<std::uint32_t>, std::vector<Side>> face_points_;

@@ -1,4 +1,4 @@
-// Interior points for cells whose pulling triangulation is not positive.
+// Steiner points for cells without a positive pulling triangulation.
 #pragma once
 
 #include <vector>
@@ -7,16 +7,15 @@
 
 namespace dartcast {
 
-/// Interior points that make cells positive, as far as they can be found.
+/// Steiner points that make cells positive, as far as they can be found.
 struct SteinerSolution {
   SteinerPoints points;    ///< for the map
   SteinerWeights weights;  ///< in the order of the vertices' numbers
 };
 
-/// Looks for interior points for the cells given (numbers in the mesh). A cell takes a point of its own: the mean of
-/// its corners, or a point of its kernel; where a fan triangle of a face stays flat (a corner that lies on an edge),
-/// the face takes a point, too, shared by both its cells, which then have a point each. Cost: linear in these cells and
-/// their neighbours.
+/// Looks for Steiner points for some cells (numbers in the mesh). A cell gets the mean of its corners, or a point of
+/// its kernel. Where a fan triangle of a face stays flat (a corner lies on an edge), the face gets a point, too. Both
+/// its cells share that point, and each of them then has one. Cost: linear in these cells and their neighbours.
 SteinerSolution find_steiner_points(const MeshData& mesh, const CombinatorialMap& plain, std::span<const Cell> cells);
 
 }  // namespace dartcast

@@ -1,3 +1,4 @@
+// Vertices that are weighted means of others.
 #include <utility>
 
 #include "dartcast/cell_complex.hpp"

@@ -1,3 +1,4 @@
+// Checks the simplices of all cells, four cells of one shape at a time.
 #include "dartcast/validity.hpp"
 
 #include <algorithm>
@@ -21,7 +22,7 @@ std::string describe(const CombinatorialMap& map, Cell c, std::uint16_t simplex,
   return "cell " + std::to_string(map.source(c)) + ": simplex " + std::to_string(simplex) + what;
 }
 
-// Judges cells four of one shape at a time, and keeps those that the filter leaves open.
+// Checks cells four of one shape at a time, and collects those that the filter leaves open.
 class Sieve {
  public:
   explicit Sieve(std::span<const Vec3> positions) : positions_(positions) {}
@@ -32,7 +33,7 @@ class Sieve {
       open_.push_back(c);
       return;
     }
-    // Shapes that meet in a group judge each other's cells early: it costs time, no more.
+    // Shapes that share a group cause each other's cells to be checked early. This costs time and changes no result.
     Group& group = groups_[reinterpret_cast<std::uintptr_t>(shape) / 64U % groups_.size()];
     if (group.shape != shape) {
       check(group);
@@ -43,7 +44,7 @@ class Sieve {
     if (++group.size == group.cells.size()) check(group);
   }
 
-  /// In order. To be called at the end.
+  /// The cells left open, in order. Called at the end.
   std::vector<Cell> open() {
     for (Group& group : groups_) check(group);
     std::sort(open_.begin(), open_.end());

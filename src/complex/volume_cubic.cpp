@@ -1,3 +1,4 @@
+// The first root of a moving simplex's volume, by filters and then by integers.
 #include "complex/volume_cubic.hpp"
 
 #include <boost/multiprecision/cpp_int.hpp>
@@ -30,12 +31,12 @@ bool proves_positive(const Bernstein& b, double bound, int halvings) {
   return proves_positive(parts.left, bound, halvings - 1) && proves_positive(parts.right, bound, halvings - 1);
 }
 
-// Integers of any size; these many bits are kept in place, enough for most.
+// Integers of any size. This many bits are stored in place, which is usually enough.
 using CubicInteger =
     boost::multiprecision::number<boost::multiprecision::cpp_int_backend<512>, boost::multiprecision::et_off>;
 using IntegerVec3 = std::array<CubicInteger, 3>;
 
-// Coordinates of one axis, before and after, as integers over one power of two: it scales the volume, no more.
+// Coordinates of one axis, before and after, as integers over one power of two. The power only scales the volume.
 using AxisNumbers = std::array<double, 8>;
 
 std::array<CubicInteger, 8> to_integers(const AxisNumbers& numbers) {
@@ -61,7 +62,7 @@ CubicInteger dot(const IntegerVec3& a, const IntegerVec3& b) { return a[0] * b[0
 
 IntegerVec3 operator+(const IntegerVec3& a, const IntegerVec3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 
-// VolumeCubic with nothing rounded.
+// VolumeCubic without rounding.
 class ExactCubic {
  public:
   ExactCubic(const Corners& before, const Corners& after) {

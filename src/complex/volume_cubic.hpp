@@ -1,4 +1,4 @@
-// The volume of a simplex whose corners move on straight lines: a cubic in time, and where it first reaches zero.
+// The volume of a simplex with corners on straight lines: a cubic in time, and its first root.
 #pragma once
 
 #include <algorithm>
@@ -40,7 +40,7 @@ inline double largest_of(Ends a, Ends b, Ends c) {
   return std::max(both[0], both[1]);
 }
 
-/// False, too, where one is not a number.
+/// Also false if one is not a number.
 inline bool all_above(const std::array<double, 4>& b, double bound) {
   return b[0] > bound && b[1] > bound && b[2] > bound && b[3] > bound;
 }
@@ -95,11 +95,11 @@ struct VolumeRoot {
     undecidable      ///< a coordinate is not finite or outside the exact range
   };
   Outcome fate = Outcome::stays_positive;
-  double safe_time = 0.0;  ///< where it reaches zero: the last multiple of time_unit before it first does
+  double safe_time = 0.0;  ///< the last multiple of time_unit before the volume first reaches zero
 };
 
 /// The first root of the volume in [0, until], without rounding. Precondition: `until` is a multiple of time_unit in
-/// [0, 1]. Cost: tens of microseconds; for what the filters above left open.
+/// [0, 1]. Cost: tens of microseconds. Callers use it where the filters above decide nothing.
 VolumeRoot first_root(const Corners& before, const Corners& after, double until);
 
 }  // namespace dartcast::detail

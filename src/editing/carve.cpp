@@ -1,3 +1,4 @@
+// Cutting and carving: splits cells by the planes of tools, and frees or removes the parts inside.
 #include <algorithm>
 #include <cmath>
 
@@ -44,7 +45,7 @@ class Carver {
   }
 
  private:
-  // Cells that are not taken yet, nor out of question.
+  // Cells that are neither taken nor excluded yet.
   template <class Condition>
   [[nodiscard]] CellNumbers left(Condition&& condition) {
     CellNumbers numbers;
@@ -61,7 +62,7 @@ class Carver {
     });
   }
 
-  // What is beyond one of the planes to come is not split by those before it.
+  // Parts beyond one of the later planes are not split by the earlier ones.
   CellNumbers split_by(const ConvexTool& tool) {
     CellNumbers inside = left(
         [&](Cell c) { return detail::near(edit_.map().view(c), tool, [&](Vertex v) { return edit_.position(v); }); });

@@ -1,4 +1,4 @@
-// The way back from subdivide().
+// Merges the parts of a subdivided cell again: the inverse of subdivide().
 #include <algorithm>
 #include <optional>
 
@@ -23,7 +23,7 @@ std::size_t faces_at(const std::vector<DraftFace>& faces, Vertex v) {
       std::count_if(faces.begin(), faces.end(), [&](const DraftFace& f) { return has_corner(f, v); }));
 }
 
-// Whether exactly two faces have the vertex, and are faces without it.
+// Whether exactly two faces have the vertex, and remain faces without it.
 bool may_drop(const std::vector<DraftFace>& faces, Vertex v) {
   return faces_at(faces, v) == 2 && std::all_of(faces.begin(), faces.end(), [&](const DraftFace& f) {
            return f.corners.size() > 3 || !has_corner(f, v);
@@ -42,8 +42,8 @@ void drop(std::vector<DraftFace>& faces, Vertex v) {
   }
 }
 
-// The corners of the one face that all the faces around a vertex make; nothing where they make none. It is straight
-// where two of them met.
+// The corners of the one face that all faces around a vertex form together; empty if they form none. The face is
+// straight where two of them met.
 std::optional<std::vector<DraftCorner>> joined_around(const std::vector<DraftFace>& faces, Vertex middle) {
   std::vector<std::vector<DraftCorner>> around;
   for (const DraftFace& f : faces) {
@@ -73,7 +73,7 @@ std::optional<std::vector<DraftCorner>> joined_around(const std::vector<DraftFac
   return ring;
 }
 
-// Puts the ring in the place of one of the faces around the vertex, and takes the others away.
+// Replaces one of the faces around the vertex by the ring, and removes the others.
 void join(std::vector<DraftFace>& faces, Vertex middle, CellFace kept, std::vector<DraftCorner> ring) {
   const auto first = std::find_if(faces.begin(), faces.end(), [&](const DraftFace& f) { return f.from == kept; });
   first->corners = std::move(ring);
@@ -132,7 +132,7 @@ class Coarsener {
     }
   }
 
-  // Where faces of two parts meet on the outside, they may lie in one plane.
+  // Faces of two parts that meet on the outside may lie in one plane.
   void put_together() {
     CellDraft whole;
     for (const Cell c : parts_) {
@@ -153,8 +153,8 @@ class Coarsener {
     rework_.draft(whole_) = std::move(whole);
   }
 
-  // One face of those around a vertex in the middle of a side, if beyond them there is one cell or none, and no other
-  // needs them.
+  // Merges the faces around a vertex in the middle of a side, if there is at most one cell beyond them and no other
+  // cell needs them.
   void merge_faces_around(Vertex v) {
     std::vector<const DraftFace*> around;
     for (const DraftFace& f : rework_.draft(whole_).faces) {
@@ -178,7 +178,7 @@ class Coarsener {
     join(rework_.draft(whole_).faces, v, first.from, std::move(*ring));
   }
 
-  // One edge of the two at a vertex, where no cell has more edges there.
+  // Merges the two edges at a vertex, if no cell has more edges there.
   void merge_edges_at(Vertex v) {
     if (!may_drop(rework_.draft(whole_).faces, v)) return;
     std::vector<Cell> others;
@@ -191,7 +191,7 @@ class Coarsener {
     drop(rework_.draft(whole_).faces, v);
   }
 
-  // Of the parts, along one of the two edges that are left at the vertex.
+  // The parts along one of the two remaining edges at the vertex.
   [[nodiscard]] Dart outer_dart_at(Vertex v) {
     for (const DraftFace& f : rework_.draft(whole_).faces) {
       const auto at = std::find_if(f.corners.begin(), f.corners.end(), [&](const auto& c) { return c.vertex == v; });

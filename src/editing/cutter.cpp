@@ -1,3 +1,4 @@
+// Splits cells by a plane: vertices on edges, then edges in faces, then faces in cells.
 #include "editing/cutter.hpp"
 
 #include <algorithm>
@@ -90,7 +91,7 @@ Cutter::Parts Cutter::split(std::span<const std::uint32_t> numbers, const Plane&
 
 namespace {
 
-// Puts a vertex between two corners of a face that follow each other. The face may be straight there.
+// Adds a vertex between two adjacent corners of a face. The face may be straight there.
 void put_between(DraftFace& face, Vertex first, Vertex middle) {
   const auto at = std::find_if(face.corners.begin(), face.corners.end(),
                                [&](const DraftCorner& corner) { return corner.vertex == first; });
@@ -102,11 +103,12 @@ std::uint64_t key(std::uint32_t high, std::uint32_t low) { return (std::uint64_t
 
 }  // namespace
 
-// All edges at once, as split_edge() does one: each cell is replaced only once, and it is known by what.
+// Splits all edges at once, as split_edge() splits one. So each cell is replaced only once, and the replacement is
+// known.
 void Cutter::split_edges(std::span<const std::uint32_t> numbers, Sides& sides) {
   Rework rework(edit_.topology());
   const CombinatorialMap& map = edit_.map();
-  std::unordered_map<std::uint64_t, Vertex> middle;  // by the edge's ends: parts that touch in an edge alone agree
+  std::unordered_map<std::uint64_t, Vertex> middle;  // by the edge's ends: parts that touch only in an edge agree
   std::unordered_set<std::uint64_t> done;            // darts from below to above
   std::vector<Cell> old;
   for (const std::uint32_t n : numbers) {
@@ -136,7 +138,7 @@ void Cutter::split_edges(std::span<const std::uint32_t> numbers, Sides& sides) {
 }
 
 void Cutter::split_faces(std::uint32_t number, Sides& sides) {
-  // After a split the others may come in another order.
+  // After a split the other faces may have another order.
   for (std::uint16_t f = 0; f < edit_.map().shape(cells_[number]).face_count();) {
     if (split_face_of(cells_[number], f, sides))
       f = 0;
@@ -154,13 +156,13 @@ bool Cutter::split_face_of(Cell c, std::uint16_t face, Sides& sides) {
     replace(c, now[0]);
     if (beyond.valid()) replace(beyond, now[1]);
   } catch (const EditRefused&) {
-    return false;  // an edge of the cell joins the two corners already: it stays whole
+    return false;  // an edge of the cell joins the two corners already: the face stays whole
   }
   return true;
 }
 
-// Where to split a face whose rim changes sides twice: from the first corner on the plane after those above to the last
-// one before them. No answer for others.
+// The corners at which to split a face whose rim changes sides twice: from the first corner on the plane after those
+// above to the last one before them. Nothing for other faces.
 std::optional<std::array<Dart, 2>> Cutter::chord_of(Cell c, std::uint16_t face, Sides& sides) const {
   const CombinatorialMap& map = edit_.map();
   const Shape& s = map.shape(c);
@@ -181,8 +183,8 @@ std::optional<std::array<Dart, 2>> Cutter::chord_of(Cell c, std::uint16_t face, 
   return ends;
 }
 
-// Which faces of a cell are to be above: those with a corner above; of those on the plane the ones that look down, for
-// the cell is above them. Nothing where one has corners on both sides.
+// The faces of a cell that belong to the part above: those with a corner above. A face in the plane belongs to it if it
+// looks down, because then the cell is above it. Empty if a face has corners on both sides.
 std::vector<bool> Cutter::faces_above(Cell c, Sides& sides) {
   const CellView v = edit_.map().view(c);
   std::vector<bool> all(v.shape().face_count());
@@ -199,7 +201,7 @@ std::vector<bool> Cutter::faces_above(Cell c, Sides& sides) {
   return all;
 }
 
-// The rim of the faces above: its darts are theirs. Empty where there is none, or it is no simple loop.
+// The rim of the faces above, as darts of these faces. Empty if there is none, or if it is not a simple loop.
 std::vector<Dart> Cutter::path_around(Cell c, Sides& sides) {
   const Shape& s = edit_.map().shape(c);
   const std::vector<bool> above = faces_above(c, sides);

@@ -1,4 +1,4 @@
-// Cells that are cut by one plane after another. Private to surgery.
+// Cells that are split by one plane after another. Private to editing.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace dartcast::detail {
 
-/// Takes back what an action did to an edit where it throws.
+/// Undoes the work of an action on an edit if the action throws.
 template <class Action>
 auto all_or_nothing(ComplexEdit& edit, Action&& action) {
   const Transaction::Savepoint before = edit.savepoint();
@@ -24,7 +24,7 @@ auto all_or_nothing(ComplexEdit& edit, Action&& action) {
   }
 }
 
-/// Cells by numbers of their own, which stay while edits replace the cells.
+/// Cells by private numbers, which stay the same while edits replace the cells.
 class Cutter {
  public:
   /// Numbers the cells from 0. Throws InvalidArgument where there is no such cell, or it is named twice.
@@ -37,13 +37,13 @@ class Cutter {
   struct Parts {
     std::vector<std::uint32_t> below, above, whole;
   };
-  /// As split_by_plane(); vertices at most `within` metres from the plane count as on it. The part below keeps the
-  /// number, the one above is given the next.
+  /// As split_by_plane(). Vertices at most `within` metres from the plane count as on it. The part below keeps the
+  /// number of the cell. The part above gets the next number.
   Parts split(std::span<const std::uint32_t> numbers, const Plane& plane, double within);
-  /// Those cells that have a part below the plane.
+  /// The cells with a part below the plane.
   [[nodiscard]] std::vector<std::uint32_t> reaching_below(std::span<const std::uint32_t> numbers, const Plane& plane,
                                                           double within);
-  /// How far vertices of these cells may be from a plane that they count as on.
+  /// The distance from a plane within which vertices of these cells count as on it.
   [[nodiscard]] double snap_distance(std::span<const std::uint32_t> numbers, const SectionOptions& options);
 
  private:

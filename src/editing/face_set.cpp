@@ -1,3 +1,4 @@
+// The end of a vessel as a set of open faces, and the best matching of two ends.
 #include "editing/face_set.hpp"
 
 #include <algorithm>
@@ -60,7 +61,7 @@ void FaceSet::refuse_rim() const {
 
 namespace {
 
-// A matching in the making, of one part of the ends that hangs together after another.
+// A partial matching. It is extended by one connected part of the ends after another.
 class Matcher {
  public:
   Matcher(ComplexEdit& edit, const FaceSet& a, const FaceSet& b) : edit_(edit), a_(a), b_(b) {}
@@ -80,7 +81,7 @@ class Matcher {
     double cost = 0.0;
   };
 
-  // The best way to match the part of `start`; the likeliest are tried first, so that others are soon given up.
+  // The best matching of the part of `start`. The most likely starts come first, so that others are abandoned early.
   bool match_part(Dart start) {
     std::vector<std::pair<double, Dart>> ways;
     for (const Dart d : b_.darts()) ways.emplace_back(distance(start, d), d);
@@ -120,7 +121,7 @@ class Matcher {
     return true;
   }
 
-  // Matches the faces of two darts, and notes what is to match across their edges.
+  // Matches the faces of two darts, and queues the faces across their edges.
   bool match_faces(Part& part, Dart x, Dart y, std::vector<std::pair<Dart, Dart>>& open) {
     const CombinatorialMap& map = edit_.map();
     const CellFace f = map.face(x);

@@ -1,4 +1,4 @@
-// Open faces that make up the end of a vessel, and how two such ends match. Private to surgery.
+// The open faces that form the end of a vessel, and how two such ends match. Private to editing.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@
 
 namespace dartcast::detail {
 
-/// Open faces, by their darts.
+/// A set of open faces, by their darts.
 class FaceSet {
  public:
-  /// Throws InvalidArgument where a face is not there or is named twice, or there is none; EditRefused where one is not
-  /// open, or two share an edge in the same direction.
+  /// Throws InvalidArgument where a face does not exist or is named twice, or there is none. Throws EditRefused where a
+  /// face is not open, or two share an edge in the same direction.
   FaceSet(const CombinatorialMap& map, std::span<const CellFace> faces);
 
   [[nodiscard]] const CombinatorialMap& map() const { return map_; }
@@ -26,7 +26,7 @@ class FaceSet {
   [[nodiscard]] Vertex to(Dart d) const { return map_.origin(map_.phi1(d)); }
   /// The dart of another face of the set along the same edge; invalid at the rim.
   [[nodiscard]] Dart across(Dart d) const { return find(to(d), from(d)); }
-  /// The darts at the rim, one after another. Throws EditRefused where they are no simple loop.
+  /// The darts at the rim, one after another. Throws EditRefused where they are not a simple loop.
   [[nodiscard]] std::vector<Dart> rim() const;
 
  private:
@@ -39,10 +39,10 @@ class FaceSet {
   std::unordered_map<std::uint64_t, Dart> by_ends_;
 };
 
-/// Which dart of one set lies against which of another: their origins and ends are exchanged.
+/// The pairs of darts of two sets that lie against each other: their origins and ends are exchanged.
 using Matching = std::map<Dart, Dart>;
 
-/// The best matching of two sets of faces; nothing where they do not match.
+/// The best matching of two sets of faces. Nothing if they do not match.
 std::optional<Matching> match(ComplexEdit& edit, const FaceSet& a, const FaceSet& b);
 
 }  // namespace dartcast::detail

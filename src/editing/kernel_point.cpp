@@ -1,3 +1,4 @@
+// The middle of the largest ball behind some planes, by the dual simplex method.
 #include "editing/kernel_point.hpp"
 
 #include <Eigen/Dense>
@@ -11,7 +12,8 @@ namespace {
 
 using Row = Eigen::Vector4d;
 
-// A row (n, 1) with limit h: n x + r <= h, that is, the ball of radius r around x is behind the plane; (n, 0): x is.
+// A row (n, 1) with limit h means n x + r <= h: the ball of radius r around x is behind the plane. A row (n, 0) means
+// that x is behind it.
 struct HalfSpace {
   Row row;
   double limit;
@@ -32,11 +34,11 @@ class BallProgram {
     for (const ConeTriangle& t : triangles) add(t);
   }
 
-  // Nothing where a triangle has no plane.
+  // Nothing if a triangle has no plane.
   [[nodiscard]] std::optional<Vec3> solve() {
     if (flat_ || planes_.size() <= cube) return {};
     start();
-    // Far more than are ever needed, unless rounding leads in circles.
+    // Far more steps than are ever necessary, unless rounding leads in circles.
     constexpr int max_exchanges = 300;
     for (int i = 0; i < max_exchanges; ++i) {
       if (!exchange(i < max_exchanges / 2)) break;
@@ -59,7 +61,7 @@ class BallProgram {
     planes_.push_back({Row(n.x, n.y, n.z, 1.0), dot(n, a)});
   }
 
-  // One triangle, and the planes of the cube that stand against it.
+  // The start: one triangle, and the planes of the cube that stand against it.
   void start() {
     basis_[0] = cube;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -68,8 +70,8 @@ class BallProgram {
     }
   }
 
-  // The dual simplex method: x meets four planes, and takes the plane that it is farthest beyond (or, so as not to go
-  // in circles, the first) for one of these. False where it is behind all.
+  // The dual simplex method: x lies on four planes. It replaces one of these by the plane that x is farthest beyond
+  // (or, to avoid circles, by the first such plane). False if x is behind all planes.
   bool exchange(bool farthest) {
     Eigen::Matrix4d rows;
     Row limits;

@@ -1,3 +1,4 @@
+// Ties a vessel: finds the crossed cells of a section, blocks them, and draws the walls together.
 #include <algorithm>
 #include <cmath>
 #include <unordered_set>
@@ -10,8 +11,8 @@ namespace dartcast {
 
 namespace {
 
-// As if the plane lay a little lower: vertices on it count as above, so that a step from below to above over a face of
-// two cells that are not crossed would need a corner on both sides.
+// Whether the plane crosses the cell, as if it lay a little lower: vertices on it count as above. So a face between two
+// cells that are not crossed cannot lead from below to above, for it would need a corner on both sides.
 bool is_crossed(ComplexEdit& edit, const Plane& plane, Cell c) {
   const CellView v = edit.map().view(c);
   bool below = false;
@@ -66,7 +67,7 @@ struct FaceRing {
   double radius = 0.0;
 };
 
-// The section's middle, and how far its corners are from it, in parallel to the plane.
+// The section's middle, and the distance of its corners from it, parallel to the plane.
 FaceRing ring_of(const CellComplex& complex, std::span<const Cell> section, const Plane& plane) {
   std::unordered_set<std::uint32_t> corners;
   for (const Cell c : section) {

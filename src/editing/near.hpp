@@ -1,4 +1,4 @@
-// Whether a cell may meet a tool. Private to surgery.
+// Whether a cell may meet a tool. Private to editing.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 
 namespace dartcast::detail {
 
-/// Whether no plane of the tool has all corners of the cell on its outside. `position`: of a vertex.
+/// Whether no plane of the tool has all corners of the cell on its outside. `position`: that of a vertex.
 template <class Position>
 bool near(const CellView& cell, const ConvexTool& tool, Position&& position) {
   return std::all_of(tool.planes.begin(), tool.planes.end(), [&](const Plane& plane) {

@@ -1,3 +1,4 @@
+// Finds the form that a cell had before subdivision: corners, edges, sides, spokes.
 #include "editing/outline.hpp"
 
 #include <algorithm>
@@ -13,7 +14,7 @@ Outline::Outline(const CombinatorialMap& map, Cell c, std::span<const Vec3> posi
   while (!trace(map, c)) continue;
 }
 
-// Each face takes the lowest number that it is joined to.
+// Gives each face the lowest number to which it is joined.
 void Outline::join_coplanar(const CombinatorialMap& map, Cell c) {
   class_.assign(shape_.face_count(), none);
   for (std::uint16_t first = 0; first < shape_.face_count(); ++first) {
@@ -33,8 +34,7 @@ void Outline::join_coplanar(const CombinatorialMap& map, Cell c) {
   }
 }
 
-// Lists the sides. False where some turned out to be none: their faces stand for themselves from now on, which may make
-// corners of other sides.
+// Lists the sides. False if some were not sides. Their faces then stand alone, which may change corners of other sides.
 bool Outline::trace(const CombinatorialMap& map, Cell c) {
   rims_at_.assign(shape_.corner_count(), 0);
   for (std::uint16_t d = 0; d < shape_.dart_count(); ++d) {
@@ -71,7 +71,7 @@ std::optional<Outline::Side> Outline::side_with(std::vector<std::uint16_t> faces
   return side;
 }
 
-// The rim is one closed path without a vertex twice, and has three corners.
+// Whether the rim is one closed path that visits no vertex twice and has three corners.
 bool Outline::trace_rim(Side& side) {
   std::size_t count = 0;
   std::uint16_t start = none;
@@ -109,14 +109,14 @@ bool Outline::trace_rim(Side& side) {
   return count == 0 && side.corners.size() >= 3;
 }
 
-// Of two as near the first in the numbering of the cell, whatever the direction of the edge.
+// If two are equally near, the first in the numbering of the cell is taken, whatever the direction of the edge.
 std::uint16_t Outline::nearest(std::span<const std::uint16_t> vertices, const Vec3& x) const {
   const auto key = [&](std::uint16_t v) { return std::pair{norm(positions_[v] - x), v}; };
   const auto best = std::min_element(vertices.begin(), vertices.end(), [&](auto v, auto w) { return key(v) < key(w); });
   return best == vertices.end() ? none : *best;
 }
 
-// By which vertex each one is reached first from a vertex inside a side, through others inside it.
+// The vertex from which each vertex is first reached, starting at a vertex inside a side, through others inside it.
 std::vector<std::uint16_t> Outline::reach(std::uint16_t from) const {
   std::vector<std::uint16_t> before(shape_.corner_count(), none);
   before[from] = from;
@@ -171,7 +171,7 @@ bool Outline::find_spokes(Side& side) {
   return true;
 }
 
-// Each face to the one corner from which it is reached without crossing a spoke.
+// Assigns each face to the corner from which it is reached without crossing a spoke.
 bool Outline::give_out(Side& side) {
   std::vector<std::uint16_t> corner(shape_.face_count(), none);
   for (std::size_t i = 0; i < side.corners.size(); ++i) {

@@ -1,4 +1,4 @@
-// The form that a cell had before vertices were put on its edges and its faces were cut. Not installed.
+// The form that a cell had before vertices were put on its edges and its faces were split. Private to editing.
 #pragma once
 
 #include <optional>
@@ -10,32 +10,31 @@
 
 namespace dartcast::detail {
 
-/// Corners, edges from corner to corner, and sides of one or more faces. Faces that may lie in one plane are taken as
-/// one side where they look as if cut by subdivision: a disc with a vertex inside from which paths, apart from each
-/// other, lead to a vertex on each edge of the disc. Other faces are a side each. Vertices, faces and darts go by their
-/// numbers in the cell's shape.
+/// Corners, edges from corner to corner, and sides of one or more faces. Faces that may lie in one plane are one side
+/// if they look like a subdivision: a disc with a vertex inside, from which separate paths lead to a vertex on each
+/// edge of the disc. Every other face is a side. Vertices, faces and darts have their numbers in the cell's shape.
 class Outline {
  public:
   static constexpr std::uint16_t none = 0xffffU;
 
-  /// Begins at a corner, so that edge i leads from corner i to the next.
+  /// Starts at a corner, so that edge i leads from corner i to the next.
   struct Side {
     std::vector<std::uint16_t> faces;
-    std::vector<std::uint16_t> corner_of;  ///< of each of the faces: that in whose part it lies; one face: none
-    std::vector<std::uint16_t> corners;    ///< counterclockwise seen from the outside
+    std::vector<std::uint16_t> corner_of;           ///< for each face the corner in whose part it lies; one face: none
+    std::vector<std::uint16_t> corners;             ///< counterclockwise seen from the outside
     std::vector<std::vector<std::uint16_t>> edges;  ///< the darts of each
-    std::vector<std::uint16_t> edge_middles;        ///< on each edge; none: there is no vertex
-    /// From the middle to each of these, by their vertices; empty: one face, with nothing inside.
+    std::vector<std::uint16_t> edge_middles;        ///< one on each edge; none: there is no vertex
+    /// The vertices of the paths from the middle to each of these. Empty: one face, with nothing inside.
     std::vector<std::vector<std::uint16_t>> spokes;
   };
 
-  /// `positions`: of the cell's corners; of several vertices that could be a middle the nearest to it is taken. Throws
+  /// `positions`: of the cell's corners. If several vertices could be a middle, the nearest to it is taken. Throws
   /// EditRefused where a side would have fewer than three corners. Cost: linear in the darts, on average.
   Outline(const CombinatorialMap& map, Cell c, std::span<const Vec3> positions);
 
   [[nodiscard]] const std::vector<Side>& sides() const { return sides_; }
   [[nodiscard]] std::uint16_t side_of(std::uint16_t dart) const { return number_[class_[shape_.face_of(dart)]]; }
-  /// Number, in its side, of the edge that a dart of the rim lies on.
+  /// The number, in its side, of the edge that a dart of the rim lies on.
   [[nodiscard]] std::uint16_t edge_of(std::uint16_t dart) const { return edge_of_[dart]; }
   /// Whether the dart lies along a spoke.
   [[nodiscard]] bool is_cut(std::uint16_t dart) const { return cut_[dart]; }

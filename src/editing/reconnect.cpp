@@ -1,3 +1,4 @@
+// Sews two ends of a vessel, or fills the gap between them with cells.
 #include <algorithm>
 #include <limits>
 #include <set>
@@ -16,7 +17,7 @@ using detail::Matching;
 
 namespace {
 
-// How far corners are from their counterparts, in metres and as the largest share of a shortest edge.
+// The distance of corners from their counterparts, in metres and as the largest share of a shortest edge.
 struct Gap {
   double distance = 0.0;
   double share = 0.0;
@@ -40,7 +41,7 @@ Gap gap_of(ComplexEdit& edit, const FaceSet& a, const FaceSet& b, const Matching
   return gap;
 }
 
-// All faces at once: one after another, some would be refused for what the next mends.
+// Sews all faces at once. One after another, some would be refused for a state that the next one repairs.
 std::vector<Cell> sew_all(ComplexEdit& edit, const FaceSet& a, const Matching& matching) {
   const CombinatorialMap& map = edit.map();
   detail::Rework rework(edit.topology());
@@ -68,7 +69,7 @@ std::vector<Cell> sew_all(ComplexEdit& edit, const FaceSet& a, const Matching& m
   return rework.put();
 }
 
-// A cell that fills a gap against some open faces.
+// A cell that fills a gap along some open faces.
 class Filling {
  public:
   Filling(const CombinatorialMap& map, bool free, std::uint32_t source) : map_(map) {
@@ -76,8 +77,8 @@ class Filling {
     draft.source = source;
   }
 
-  /// A face against an open one: its corners the other way around. `coplanar`: of the open face's dart, whether the
-  /// filling's face beyond that edge may lie in the same plane.
+  /// Adds a face against an open one, with its corners in opposite order. `coplanar`: whether, at a dart of the open
+  /// face, the filling's face beyond that edge may lie in the same plane.
   template <class Coplanar>
   void add_against(CellFace f, Coplanar&& coplanar) {
     const Shape& s = map_.shape(f.cell);
@@ -105,7 +106,7 @@ class Filling {
   const CombinatorialMap& map_;
 };
 
-// A cell between each two faces; its sides against those of the next.
+// Makes a cell between each pair of faces. Its sides meet those of the next.
 std::vector<Cell> fill_pairs(ComplexEdit& edit, const FaceSet& a, const FaceSet& b, const Matching& matching,
                              Patch side) {
   const CombinatorialMap& map = edit.map();
@@ -133,7 +134,8 @@ std::vector<Cell> fill_pairs(ComplexEdit& edit, const FaceSet& a, const FaceSet&
   return edit.topology().replace({}, drafts);
 }
 
-// Triangles between two rims. Both have their end on the left; the shorter of two diagonals is taken, step by step.
+// Makes triangles between two rims. Both have their end on the left. Step by step, the shorter of two diagonals is
+// taken.
 void add_strip(ComplexEdit& edit, const FaceSet& a, const FaceSet& b, Patch patch, Filling& filling) {
   std::vector<Vertex> rim_a;
   std::vector<Vertex> rim_b;

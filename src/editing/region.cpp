@@ -1,3 +1,4 @@
+// Regions of cells: their surface, and pyramids that fill it.
 #include "editing/region.hpp"
 
 #include <algorithm>
@@ -46,7 +47,7 @@ std::vector<Cell> grown(const CombinatorialMap& map, std::span<const Cell> cells
 
 namespace {
 
-// Puts edges one behind another, from the first one on; where they are no cycle, the rest stays behind.
+// Orders edges one behind another, from the first one on. If they are not a cycle, the others stay at the end.
 void chain(std::vector<DraftFace>& edges) {
   for (std::size_t i = 1; i < edges.size(); ++i) {
     const Vertex end = edges[i - 1].corners[1].vertex;
@@ -139,7 +140,7 @@ std::vector<CellDraft> pyramids_on(const CombinatorialMap& map, std::span<const 
       const DraftCorner& w = base.corners[(i + 1) % k];
       side[{u.vertex, w.vertex}] = {
           {}, static_cast<std::uint32_t>(pyramids.size() - 1), static_cast<std::uint16_t>(i + 1)};
-      // Where the base is straight, so is the path that the two sides meet in.
+      // At a straight corner of the base, the path in which the two sides meet is straight, too.
       DraftFace triangle;
       triangle.corners = {{w.vertex, false, false}, {u.vertex, false, u.straight}, {apex, false, w.straight}};
       pyramid.faces.push_back(std::move(triangle));

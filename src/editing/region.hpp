@@ -1,4 +1,4 @@
-// Some cells together: their outer surface, and what can be put inside it. Not installed.
+// A group of cells: its outer surface, and the cells that can fill it. Private to editing.
 #pragma once
 
 #include <functional>
@@ -12,8 +12,8 @@ namespace dartcast::detail {
 
 using Position = std::function<Vec3(Vertex)>;
 
-/// The cells of one kind, free or blocked, around a vertex: those reached from the first one through faces that have
-/// it.
+/// The cells of one kind, free or blocked, around a vertex. They are connected to the first one through faces with that
+/// vertex.
 struct Star {
   Vertex vertex;
   std::vector<Cell> cells;
@@ -25,20 +25,20 @@ Star star_of(const CombinatorialMap& map, Cell first, Vertex v, std::size_t limi
 /// The cells and their neighbours of the same kind; sorted.
 std::vector<Cell> grown(const CombinatorialMap& map, std::span<const Cell> cells);
 
-/// Faces of the cells with none of the others beyond; `from` tells whose. In the plane one behind another, as far as
-/// they are one cycle. `cells`: sorted.
+/// The faces of the cells with none of the cells beyond; `from` is the cell's own face. In the plane they are one
+/// behind another, as far as they are one cycle. `cells`: sorted.
 std::vector<DraftFace> surface_of(const CombinatorialMap& map, std::span<const Cell> cells);
 
-/// Whether the faces bound one solid, in the plane one polygon, without holes.
+/// Whether the faces bound one solid (in the plane: one polygon) without holes.
 bool bounds_solid(const std::vector<DraftFace>& faces);
 
 std::vector<Vertex> corners_of(std::span<const DraftFace> faces);
 
-/// All triangles of the faces' fans; in the plane the upright ones over the edges.
+/// All triangles of the faces' fans. In the plane: the upright triangles over the edges.
 std::vector<ConeTriangle> fans_of(std::span<const DraftFace> faces, const Position& position);
 
-/// A pyramid on each of the faces, with the apex in common; of the source of the cell that had the face. In the plane a
-/// triangle on each of the edges. Precondition: bounds_solid().
+/// A pyramid on each face, all with the same apex. Its source is that of the cell that had the face. In the plane: a
+/// triangle on each edge. Precondition: bounds_solid().
 std::vector<CellDraft> pyramids_on(const CombinatorialMap& map, std::span<const DraftFace> faces, Vertex apex);
 
 }  // namespace dartcast::detail

@@ -1,3 +1,4 @@
+// Local remeshing: Steiner points, moved vertices, regions that are merged and cut again.
 #include <algorithm>
 #include <optional>
 #include <unordered_set>
@@ -61,7 +62,7 @@ class Repairer {
     return [this](Vertex v) { return edit_.position(v); };
   }
 
-  // Around each corner; those with the most cells to mend first.
+  // The cells around each corner. Those with the most cells to repair come first.
   std::vector<Star> stars_around(Cell c) {
     struct Ranked {
       std::size_t bad;
@@ -80,7 +81,7 @@ class Repairer {
     return stars;
   }
 
-  // The commit gives a cell the mean of its corners wherever that serves.
+  // The commit gives a cell the mean of its corners wherever that suffices.
   bool give_point(Cell c) {
     const CellDraft draft = draft_of(map_, c);
     const Vec3 mean = mean_of(detail::corners_of(draft.faces));
@@ -95,7 +96,7 @@ class Repairer {
     return sum * (1.0 / static_cast<double>(corners.size()));
   }
 
-  // Only where the commit gives no points: these would depend on where the vertex lies.
+  // Only if the commit gives no Steiner points, because these would depend on the position of the vertex.
   bool move(const Star& star) {
     for (const Cell c : star.cells) {
       const auto& faces = map_.shape(c).key().faces;
@@ -125,7 +126,7 @@ class Repairer {
     return false;
   }
 
-  // In the plane the triangles are upright, and see a point as they see what is above and below it.
+  // In the plane the triangles are upright, and a point sees the same above and below it.
   [[nodiscard]] std::optional<Vec3> kernel_point(std::span<const detail::ConeTriangle> triangles) const {
     std::optional<Vec3> x = detail::kernel_point(triangles);
     if (x && planar()) x->z = 0.0;
@@ -150,7 +151,7 @@ class Repairer {
     return cells;
   }
 
-  // The facets that the vertex has to be behind for the simplices that have it to be positive.
+  // The facets that the vertex must be behind, so that the simplices with the vertex are positive.
   std::vector<detail::ConeTriangle> opposite(std::span<const Cell> cells, Vertex v) {
     std::vector<detail::ConeTriangle> facets;
     for (const Cell c : cells) {
@@ -183,8 +184,8 @@ class Repairer {
     });
   }
 
-  // As a combination of the corners, so that it goes along with them; at x itself where rounding leads out of the
-  // kernel.
+  // The vertex is a combination of the corners, so that it moves with them. It is at x itself if rounding leads out of
+  // the kernel.
   void place(Vertex v, std::span<const Vertex> corners, const Vec3& x,
              std::span<const detail::ConeTriangle> triangles) {
     std::vector<Vec3> points;
@@ -212,7 +213,7 @@ class Repairer {
              std::to_string(options_.max_cells) + " cells of its kind has a surface that can be seen from one point"});
   }
 
-  // Drafts in the place of the cells. False, nothing changed, where that would be no map.
+  // Puts drafts in the place of the cells. False, nothing changed, if the result would not be a map.
   template <class Drafts>
   bool put(Mending how, const std::vector<Cell>& cells, Drafts&& drafts) {
     const Transaction::Savepoint before = edit_.savepoint();

@@ -1,3 +1,4 @@
+// Splits cells by a plane, as a single section.
 #include <cmath>
 #include <numeric>
 

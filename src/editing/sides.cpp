@@ -1,3 +1,4 @@
+// The sides of a plane on which vertices and cells lie, each decided once.
 #include "editing/sides.hpp"
 
 #include <cmath>

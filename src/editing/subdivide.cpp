@@ -1,3 +1,4 @@
+// Subdivides a cell into one part for each corner.
 #include <algorithm>
 
 #include "dartcast/remeshing.hpp"
@@ -13,7 +14,7 @@ using detail::Rework;
 
 namespace {
 
-// Puts a vertex between two corners that follow each other, in either order.
+// Adds a vertex between two adjacent corners, in either order.
 void put_between(DraftFace& face, Vertex u, Vertex w, Vertex v) {
   const std::size_t k = face.corners.size();
   for (std::size_t i = 0; i < k; ++i) {
@@ -26,7 +27,7 @@ void put_between(DraftFace& face, Vertex u, Vertex w, Vertex v) {
   }
 }
 
-// Cuts a face along edges from a new middle to some of its corners; the first part follows the first of these.
+// Splits a face along edges from a new middle to some of its corners. The first part follows the first of these.
 std::vector<DraftFace> cut_around(const DraftFace& face, std::span<const Vertex> ends, Vertex middle, bool coplanar) {
   std::vector<DraftCorner> all = face.corners;
   const auto first =
@@ -151,7 +152,7 @@ class Subdivider {
     }
   }
 
-  // A face that is whole is cut from both sides. The neighbour has its corners the other way around.
+  // A whole face is split on both sides. The neighbour has its corners in opposite order.
   void cut_face(std::size_t i) {
     const Side& side = outline_.sides()[i];
     const CellFace face{cell_, side.faces[0]};
@@ -179,7 +180,7 @@ class Subdivider {
       parts_[part_at(side.corners[k])].faces.push_back(std::move(pieces[k]));
   }
 
-  // Between the parts at both ends of each edge.
+  // The faces between the parts at the two ends of each edge.
   void add_inner_faces() {
     const auto& sides = outline_.sides();
     std::vector<std::vector<DraftLink>> place(sides.size());
@@ -199,7 +200,7 @@ class Subdivider {
     }
   }
 
-  // As the part at the edge's beginning sees it: from the middle of the side out to the edge, and back through the side
+  // As the part at the edge's start sees it: from the middle of the side out to the edge, and back through the side
   // beyond.
   [[nodiscard]] DraftFace inner_face(std::size_t i, std::size_t j) const {
     const auto& edge = outline_.sides()[i].edges[j];

@@ -1,3 +1,4 @@
+// Tools to cut with: planes thickened, discs, blades, boxes and capsules as convex bodies.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -18,7 +19,7 @@ void expect_positive(double length, const char* name) {
 
 Vec3 unit(const Vec3& v) { return plane_through({}, v).normal; }
 
-// Two unit vectors that make a frame with a third.
+// Two unit vectors that form a frame with a third.
 std::array<Vec3, 2> across(const Vec3& axis) {
   const Vec3 far = std::abs(axis.x) < 0.6 ? Vec3{1.0, 0.0, 0.0} : Vec3{0.0, 1.0, 0.0};
   const Vec3 u = unit(cross(far, axis));
@@ -56,7 +57,8 @@ std::vector<ConvexTool> thicken(const Disc& disc, double width) {
 
 namespace {
 
-// A planar part of what a blade sweeps: the blade comes in by the edge from corner 0 to 1, and leaves by another.
+// A planar part of the region that a blade sweeps. The blade enters by the edge from corner 0 to 1, and leaves by
+// another.
 struct Facet {
   std::vector<Vec3> corners;
   std::size_t exit;  // the edge from this corner to the next
@@ -76,7 +78,7 @@ std::vector<Facet> facets_of(const BladePath& path) {
     const auto& [a, b] = path.places[i];
     const auto& [c, d] = path.places[i + 1];
     const Vec3 n = cross(d - a, c - b);
-    // Twice the diagonals' distance, times |n|: of no more than rounding.
+    // Twice the distance of the diagonals, times |n|. Here it is only rounding.
     const double twist = std::abs(dot(n, (b - a) - (d - c)));
     const bool flat = a != c && b != d && twist <= 0x1p-40 * norm(n) * (norm(d - a) + norm(c - b));
     const bool convex = dot(n, cross(b - a, c - a)) > 0.0 && dot(n, cross(b - a, d - b)) > 0.0 &&
@@ -91,7 +93,7 @@ std::vector<Facet> facets_of(const BladePath& path) {
   return facets;
 }
 
-// The plane through an edge of a facet, upright on it or, between two of them, half way.
+// The plane through an edge of a facet: upright on the facet or, between two facets, half way.
 Plane side_of(const Facet& facet, std::size_t edge, const Facet* next) {
   const Vec3 up = next == nullptr ? facet.normal : facet.normal + next->normal;
   if (next != nullptr && dot(facet.normal, next->normal) < -0.9)
@@ -118,8 +120,8 @@ std::vector<ConvexTool> thicken(const BladePath& path, double width) {
       if (k == 0 && i > 0) next = &facets[i - 1];
       if (k == facet.exit && i + 1 < facets.size()) next = &facets[i + 1];
       tools.back().planes.push_back(side_of(facet, k, next));
-      // Beyond a slight bend the sides of one part run on close to those of the next: the wedges between them are to be
-      // cut as they are, for they are too thin to be bent.
+      // Beyond a slight bend, the sides of one part nearly continue those of the next. The wedges between them are cut
+      // as they are, because they are too thin to be bent.
       const double bend = next == nullptr ? 1.0 : norm(cross(facet.normal, next->normal));
       if (next != nullptr && bend > 0x1p-30)
         tools.back().finest = std::min(tools.back().finest, width * bend * 0x1p-10);

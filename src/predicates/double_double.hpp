@@ -1,7 +1,7 @@
-// Twice the digits of a double: an unevaluated sum of two.
+// Double-double numbers: an unevaluated sum of two doubles, with twice the digits of one.
 //
-// Y. Hida, X. S. Li, D. H. Bailey, "Algorithms for quad-double precision floating point arithmetic", ARITH 2001. Each
-// operation is right to DoubleDouble::rounding of its result, where nothing overflows or falls below the smallest
+// After Y. Hida, X. S. Li, D. H. Bailey, "Algorithms for quad-double precision floating point arithmetic", ARITH 2001.
+// Each operation is accurate to DoubleDouble::rounding of its result, if nothing overflows or falls below the smallest
 // double.
 #pragma once
 
@@ -38,7 +38,7 @@ struct DoubleDouble {
     const TwoTerms p = two_product(a.high, b.high);
     return DoubleDouble(fast_two_sum(p.high, p.low + (a.high * b.low + a.low * b.high)));
   }
-  /// Two quotients, and the rest by the second.
+  /// The first quotient, corrected by that of the remainder.
   friend DoubleDouble operator/(const DoubleDouble& a, const DoubleDouble& b) {
     const double first = a.high / b.high;
     const DoubleDouble rest = a - b * DoubleDouble(first);

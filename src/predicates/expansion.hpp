@@ -21,13 +21,13 @@ struct Expansion {
     if (c != 0.0) component[size++] = c;
   }
 
-  /// -1, 0 or 1: the largest component is never zero, and outweighs the rest.
+  /// -1, 0 or 1. The largest component is never zero, and it outweighs the rest.
   [[nodiscard]] int sign() const {
     if (size == 0) return 0;
     return component[size - 1] > 0.0 ? 1 : -1;
   }
 
-  /// The value to a few units in the last place, of the exact sign.
+  /// The value to a few units in the last place, with the exact sign.
   [[nodiscard]] double estimate() const {
     double sum = 0.0;
     for (std::size_t i = 0; i < size; ++i) sum += component[i];

@@ -1,3 +1,4 @@
+// Signs of determinants in stages: a filter, cases in which doubles are exact, double-doubles, expansions.
 #include "dartcast/predicates.hpp"
 
 #include <algorithm>
@@ -16,7 +17,7 @@ bool all_in_range(const Points&... points) {
 
 Sign sign(double x) { return x > 0.0 ? Sign::positive : x < 0.0 ? Sign::negative : Sign::zero; }
 
-// Differences of N components each: 2, or 1 where none of them is rounded.
+// Differences as expansions of N components each: 2, or 1 if none of them is rounded.
 template <std::size_t N>
 struct ExactVector {
   Expansion<N> x, y, z;
@@ -56,12 +57,12 @@ auto exact_determinant(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& 
   return exact_dot(exact_difference<N>(a, d), exact_cross(exact_difference<N>(c, d), exact_difference<N>(b, d)));
 }
 
-// Two equal points: the determinant is 0. At a vertex that is most of what the filter leaves open.
+// Two equal points: the determinant is 0. At a vertex this is the usual case that the filter leaves open.
 bool has_equal(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   return a == d || b == d || c == d || a == b || a == c || b == c;
 }
 
-// use(determinant), an expansion no longer than it must be.
+// Calls use(determinant) with an expansion that is no longer than necessary.
 template <class Use>
 auto with_exact_determinant(const Vec3& a0, const Vec3& b0, const Vec3& c0, const Vec3& d0, Use&& use) {
   const Vec3 a = flushed(a0);
@@ -79,7 +80,7 @@ struct Filtered {
   double m;
   Vec3 extent;
 
-  /// Whether the value is beyond so many times its bound.
+  /// Whether the value exceeds this multiple of its bound.
   [[nodiscard]] bool exceeds(double times) const { return std::abs(value) > times * (determinant_error * m); }
 };
 
@@ -91,7 +92,7 @@ Filtered filtered_determinant(const Vec3& a, const Vec3& b, const Vec3& c, const
   return {dot(u, cross(v, w)), extent.x * extent.y * extent.z, extent};
 }
 
-// Sums and products of pairs of doubles, each off by a few 2^-106 of the magnitudes of its terms.
+// Sums and products of double-doubles. Each is off by a few 2^-106 of the magnitudes of its terms.
 using detail::TwoTerms;
 
 // a b - c d
@@ -106,10 +107,10 @@ TwoTerms paired_product(double a, const TwoTerms& b) {
   return {p.high, p.low + a * b.low};
 }
 
-// The determinant in pairs of doubles, where differences round nothing: off by less than 2^-97 m, m being the product
-// of the extents. A minor of v and w is off by 3 2^-106 of the sum of its products' magnitudes, each of the three
-// products with u by 3 2^-106 of itself more, their sum by 24 2^-106 of all: in all less than 2^-101 of the permanent,
-// which is at most 6 m. Within the exact range nothing under- or overflows.
+// The determinant as a double-double, where differences round nothing. It is off by less than 2^-97 m, where m is the
+// product of the extents. A minor of v and w is off by 3 2^-106 of the sum of its products' magnitudes. Each of the
+// three products with u is off by 3 2^-106 of itself more, and their sum by 24 2^-106 of all. In all this is less than
+// 2^-101 of the permanent, which is at most 6 m. Within the exact range nothing under- or overflows.
 double paired_determinant(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Vec3 u = a - d;
   const Vec3 v = c - d;
@@ -139,7 +140,7 @@ Sign orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, std::u
 Sign orient3d_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   if (!all_in_range(a, b, c, d)) return Sign::undecidable;
   const Filtered f = filtered_determinant(a, b, c, d);
-  // Points of a plane across an axis: a difference is 0 only where it is 0 exactly.
+  // Points of a plane perpendicular to an axis: a rounded difference is 0 only if the exact one is.
   if (f.extent.x == 0.0 || f.extent.y == 0.0 || f.extent.z == 0.0 || has_equal(a, b, c, d)) return Sign::zero;
   if (bound_holds(f.extent) && rounds_nothing(f.extent, a, b, c, d)) return sign(f.value);
   return with_exact_determinant(a, b, c, d, [](const auto& value) { return static_cast<Sign>(value.sign()); });
@@ -155,7 +156,7 @@ double orient3d_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d
   if (bounded && (f.exceeds(enough) || rounds_nothing(f.extent, a, b, c, d))) return f.value;
   if (bounded && !rounds_difference(a, d) && !rounds_difference(b, d) && !rounds_difference(c, d)) {
     const double value = paired_determinant(flushed(a), flushed(b), flushed(c), flushed(d));
-    if (std::abs(value) >= 0x1p-47 * f.m) return value;  // right to 2^-50 of itself, and once rounded
+    if (std::abs(value) >= 0x1p-47 * f.m) return value;  // accurate to 2^-50 of itself, and then rounded once
   }
   return with_exact_determinant(a, b, c, d, [](const auto& value) { return value.estimate(); });
 }
@@ -209,7 +210,7 @@ Sign orient2d(const Vec3& a, const Vec3& b, const Vec3& c, std::uint64_t& exact)
 Sign orient2d_exact(const Vec3& a, const Vec3& b, const Vec3& c) {
   if (!all_in_plane_range(a, b, c)) return Sign::undecidable;
   const PlaneFiltered f = plane_determinant(a, b, c);
-  if (f.x == 0.0 || f.y == 0.0) return Sign::zero;  // on a line across an axis
+  if (f.x == 0.0 || f.y == 0.0) return Sign::zero;  // on a line perpendicular to an axis
   return static_cast<Sign>(exact_plane_determinant(a, b, c).sign());
 }
 
@@ -233,8 +234,8 @@ Sign SymbolicPerturbation::of_line(const Vec3& a, const Vec3& b, const Vec3& q) 
   const Vec3 extent = extent_of(q - p_, b - a, o0 - p_, o1 - p_, o2 - p_);
   const Vec3 n = cross(q - p_, b - a);
   const double along = dot(n, (o0 - p_) + (o1 - p_) + (o2 - p_));
-  // Four roundings in a component of n, three in one of w, one in their product and two in the sum: 10 e, of 18
-  // products that are at most m each. The last factor is that of determinant_error.
+  // There are four roundings in a component of n, three in one of w, one in their product and two in the sum. The
+  // total is 10 e for each of 18 products, each at most m. The last factor is that of determinant_error.
   constexpr double error = 180.0 * 0x1p-53 * (1.0 + 0x1p-10);
   const double m = extent.x * extent.y * extent.z;
   if (filter_applies(extent) && std::abs(along) > error * m) return sign(along);

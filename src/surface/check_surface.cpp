@@ -1,3 +1,4 @@
+// Checks a surface in space, and turns its faces to one orientation.
 #include "surface/check_surface.hpp"
 
 #include <algorithm>
@@ -18,7 +19,7 @@ namespace {
 
 std::size_t surface_source(const MeshData& mesh, std::size_t c) { return mesh.source.empty() ? c : mesh.source[c]; }
 
-// A face at an edge: where both of an edge's faces run forward, or both backward, they do not agree.
+// A face at an edge. If both faces of an edge run forward, or both backward, they do not agree.
 struct EdgeUse {
   std::uint32_t low, high;
   std::uint32_t cell;
@@ -45,7 +46,7 @@ struct FaceNeighbour {
   bool agrees;
 };
 
-// Both ways across each edge of two faces; an edge of more is a defect.
+// Both directions across each edge of two faces. An edge of more faces is a defect.
 std::vector<FaceNeighbour> neighbours_of(const MeshData& mesh, MeshReport& report) {
   const std::vector<EdgeUse> uses = edge_uses(mesh);
   std::vector<FaceNeighbour> pairs;

@@ -1,3 +1,4 @@
+// The fan of triangles around a vertex, up to the walls.
 #include "surface/fan.hpp"
 
 #include <algorithm>
@@ -15,8 +16,8 @@ FanCorner fan_corner(const Surface& surface, SimplexId triangle, unsigned corner
   return {triangle, corner, angle_at_base(unfold(v[corner], v[(corner + 1) % 3], v[(corner + 2) % 3]))};
 }
 
-// The next one around the vertex; nothing behind a wall. Both triangles run counterclockwise: an edge from the vertex
-// in one of them leads to it in the other.
+// The next triangle around the vertex; nothing behind a wall. Both triangles run counterclockwise: an edge that starts
+// at the vertex in one of them ends at the vertex in the other.
 std::optional<FanCorner> next_corner(const Surface& surface, const FanCorner& at, FanWalls walls,
                                      bool counterclockwise) {
   const AcrossEdge across = surface.across(at.triangle, (at.corner + (counterclockwise ? 1 : 2)) % 3);

@@ -1,4 +1,4 @@
-// The triangles around a vertex of a surface, as far as no wall parts them.
+// The triangles around a vertex of a surface, as far as no wall separates them.
 #pragma once
 
 #include <cstddef>
@@ -17,23 +17,24 @@ struct FanCorner {
   double angle = 0.0;
 };
 
-/// Counterclockwise. Where walls meet the vertex (`closed` is false), from the wall on the right to that on the left.
+/// The corners counterclockwise. If walls meet the vertex (`closed` is false), they go from the wall on the right to
+/// the wall on the left.
 struct Fan {
   std::vector<FanCorner> corners;
   bool closed = true;
   double total = 0.0;   ///< sum of the angles
-  std::size_t own = 0;  ///< which is that of the triangle asked for; 0 where closed
+  std::size_t own = 0;  ///< the index of the given triangle's corner; 0 where closed
   double before = 0.0;  ///< sum of those before it
 
-  /// The corner that an angle from the fan's first edge falls in, and what is left of the angle there, in [0, its
-  /// angle].
+  /// The corner that contains an angle from the fan's first edge, and the rest of the angle there, in [0, its angle].
   [[nodiscard]] std::pair<FanCorner, double> at(double angle) const;
 };
 
-/// Whether walls end a fan, or only open borders.
+/// Which edges end a fan: all walls, or only open borders.
 enum class FanWalls : std::uint8_t { end, passed };
 
-/// Starting with the corner's own triangle where the fan is closed. Cost: linear in the triangles around the vertex.
+/// The fan of a corner. It starts with the corner's own triangle if the fan is closed. Cost: linear in the triangles
+/// around the vertex.
 Fan fan_of(const Surface& surface, SimplexId triangle, unsigned corner, FanWalls walls = FanWalls::end);
 
 }  // namespace dartcast::detail

@@ -1,3 +1,4 @@
+// Surfaces: construction, moves, places and points.
 #include "dartcast/surface.hpp"
 
 #include <fmt/format.h>
@@ -130,7 +131,7 @@ bool Surface::contains(const SurfacePlace& place) const {
 Vec3 Surface::point(const SurfacePlace& place) const {
   const auto number = vertices(place.triangle);
   const auto& w = place.weights;
-  unsigned k = 0;  // the nearest corner: which of equals, its number decides, so that both sides of an edge agree
+  unsigned k = 0;  // the nearest corner: of equals the lower number, so that both sides of an edge agree
   for (unsigned i = 1; i < 3; ++i) {
     if (w[i] > w[k] || (w[i] == w[k] && number[i] < number[k])) k = i;
   }

@@ -1,3 +1,4 @@
+// Steps many particles on a surface, in parallel.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Responses at walls of a surface: reflection and sliding.
 #include <cmath>
 
 #include "dartcast/surface.hpp"
@@ -6,7 +7,7 @@ namespace dartcast {
 
 namespace {
 
-// Whether v points off the wall, or along it: it is at most as far from the normal as the wall's sides are.
+// Whether v points off the wall, or along it: its angle to the normal is at most that of the wall's sides.
 bool points_off(const SurfaceContact& c, const Vec3& v) {
   return dot(v, c.normal) >= norm(v) * dot(c.sides[0], c.normal);
 }

@@ -1,3 +1,4 @@
+// Edits of a surface, and the places that follow them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -49,7 +50,7 @@ SurfaceEditReport SurfaceEdit::commit() {
 
 namespace {
 
-// The same corners, from whichever on: the place keeps its weights.
+// The triangles have the same corners, in any rotation: the place keeps its weights.
 std::optional<SurfacePlace> in_same_corners(const Surface& surface, const GoneTriangle& was, SimplexId now,
                                             const std::array<double, 3>& weights) {
   const auto corners = surface.corners(now);
@@ -75,7 +76,7 @@ std::optional<SurfacePlace> followed(const Surface& surface, const SurfaceEditRe
   const CombinatorialMap& map = surface.map();
   const Vec3 x = point_in(*was, place.weights);
   std::optional<SurfacePlace> nearest;
-  std::pair<double, bool> lowest;  // distance, and whether of another face's origin
+  std::pair<double, bool> lowest;  // distance, and whether the face has another source
   for (const Cell c : report.map.added) {
     const bool other = map.source(c) != was->source;
     for (std::uint16_t s = 0; s < map.shape(c).simplices().size(); ++s) {

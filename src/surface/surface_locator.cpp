@@ -1,3 +1,4 @@
+// Finds the place of a surface that is nearest to a point.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -38,7 +39,7 @@ double longest_side(const Box& box) {
   return std::max({size.x, size.y, size.z});
 }
 
-// All points at a distance up to r, and more by what rounding of x and r takes away.
+// A box of all points at a distance up to r, and of more by the rounding of x and r.
 Box box_around(const Vec3& x, double r) {
   const double half = r + 0x1p-50 * std::max({r, std::abs(x.x), std::abs(x.y), std::abs(x.z)});
   return {x - Vec3{half, half, half}, x + Vec3{half, half, half}};
@@ -106,8 +107,8 @@ struct SurfaceLocator::Tree {
 
 SurfaceLocator::SurfaceLocator(const Surface& surface) : tree_(std::make_shared<const Tree>(surface)) {}
 
-// A place at a distance up to r lies in the box of that size around x, and so its triangle's box overlaps it: the best
-// of these is the best of all if it is no farther.
+// A place at a distance up to r lies in the box of that size around x, so the box of its triangle overlaps it. The best
+// of these places is the best of all if it is no farther than r.
 SurfaceLocation SurfaceLocator::nearest(const Surface& surface, const Vec3& x) const {
   if (!in_exact_range(x))
     throw InvalidArgument("nearest: a point's coordinates must be finite, and at most 2^300 in magnitude");

@@ -1,3 +1,4 @@
+// One step on a surface: rays that unfold from triangle to triangle, vertices, walls.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -22,13 +23,13 @@ using detail::Unfolded;
 
 constexpr double pi = std::numbers::pi;
 
-// A direction that is meant to run along a wall, and is off by no more than that, runs along it exactly: it is what
-// rounding leaves of zero. Nothing else depends on it.
+// A direction that is meant to run along a wall, and differs from it by no more than this, runs along it exactly: the
+// difference is rounding. Nothing else depends on it.
 constexpr double rounding_of_angles = 1e-12;
 
 Heading heading_at(double angle) { return {std::cos(angle), std::sin(angle)}; }
 
-// The triangle that a particle is in, laid out on one of its edges, and the way it goes there.
+// The triangle of a particle, laid out on one of its edges, and the particle's direction there.
 class Course {
  public:
   Course(const Surface& surface, SurfacePlace& place) : surface_(surface), place_(place) { lay_out(first_base()); }
@@ -47,14 +48,14 @@ class Course {
     for (unsigned i = 0; i < 3; ++i) place_.weights[(base_ + i) % 3] = w[i];
   }
 
-  // The same triangle on another edge: the heading stays what it is in space.
+  // Lays the same triangle out on another edge. The heading stays the same in space.
   void turn_to(unsigned base) {
     if (base == base_) return;
     heading_ = detail::turned_to(layout_, (base + 3 - base_) % 3, heading_);
     lay_out(base);
   }
 
-  // To a corner of another triangle, at an angle from its first edge; along its edges exactly.
+  // Goes to a corner of another triangle, at an angle from its first edge; along its edges exactly.
   void go_to_corner(const FanCorner& to, double angle) {
     place_.triangle = to.triangle;
     place_.weights = {};
@@ -64,7 +65,7 @@ class Course {
     heading_ = along_last ? Heading{-1.0, 0.0} : heading_at(angle);
   }
 
-  // Across the base: unfolded, the direction is the same. Precondition: the apex's weight is 0.
+  // Crosses the base: unfolded, the direction is the same. Precondition: the apex's weight is 0.
   void cross_base(const AcrossEdge& across) {
     const TriangleWeights w = weights();
     place_.triangle = across.triangle;
@@ -90,7 +91,7 @@ class Course {
     return (f.along * h.along + f.across * h.across) * length;
   }
 
-  // Where the particle is on a border: an edge becomes the base, a vertex its start.
+  // The base for a particle on a border: the edge, or an edge that starts at the vertex.
   [[nodiscard]] unsigned border_base() const {
     const auto& w = place_.weights;
     const auto at =
@@ -115,7 +116,7 @@ class Course {
   Heading heading_;
 };
 
-// The dart of the edge, or from the vertex, at which the place is; invalid on an edge within a polygon.
+// The dart of the edge, or from the vertex, at the place; invalid on an edge within a polygon.
 Dart dart_of(const Surface& surface, const SurfacePlace& place, const AcrossEdge& across) {
   const Shape& shape = surface.map().shape(place.triangle.cell);
   if (place.kind() == Kind::edge)
@@ -161,7 +162,7 @@ class Stepping {
   }
 
  private:
-  // Takes a displacement into the plane of the triangle.
+  // Projects a displacement into the plane of the triangle.
   void set_out(const Vec3& displacement) {
     const Frame f = course_.frame();
     const double along = dot(displacement, f.along);
@@ -172,7 +173,7 @@ class Stepping {
     set_out_ = f.along * along + f.across * across;
   }
 
-  // From an edge or a vertex, to the triangle that the heading points into. False at a wall.
+  // Goes from an edge or a vertex to the triangle that the heading points into. False at a wall.
   bool begin(bool along) {
     if (course_.place().kind() == Kind::face) return true;
     course_.turn_to(course_.border_base());
@@ -201,7 +202,7 @@ class Stepping {
     return begin_between_walls(fan, angle, angle >= 0.0 && angle <= own, along);
   }
 
-  // `inside`: of the particle's own triangle.
+  // `inside`: whether the angle is in the particle's own triangle.
   bool begin_between_walls(const Fan& fan, double angle, bool inside, bool along) {
     const double half = fan.total / 2;
     double off = angle + fan.before - half;  // from the middle between the walls
@@ -218,14 +219,14 @@ class Stepping {
     return true;
   }
 
-  // The fan of the vertex that the particle is at, which becomes the base's start.
+  // The fan of the vertex at which the particle is. The vertex becomes the base's start.
   Fan fan_here() {
     course_.turn_to(course_.border_base());
     return detail::fan_of(surface_, course_.place().triangle, course_.base());
   }
   [[nodiscard]] double angle_here() const { return std::atan2(course_.heading().across, course_.heading().along); }
 
-  // Goes on from a vertex at an angle from the fan's first edge, any number of turns away.
+  // Continues from a vertex at an angle from the fan's first edge, any number of turns away.
   void pass(const Fan& fan, double angle) {
     note_crossing({});
     angle -= fan.total * std::floor(angle / fan.total);
@@ -245,7 +246,7 @@ class Stepping {
     trace_.crossings->push_back({now(), surface_.point(place), place.kind(), dart_of(surface_, place, across), place});
   }
 
-  // Straight on until the way is done (true), or a wall (false).
+  // Goes straight to the end of the path (true), or to a wall (false).
   bool advance() {
     while (true) {
       if (result_.crossings >= options_.max_crossings) {
@@ -327,12 +328,12 @@ class Stepping {
   std::uint32_t particle_;
   SurfaceStep result_;
   Vec3 set_out_;
-  double way_ = 0.0;    // to go when it set out
-  double left_ = 0.0;   // of it
-  double began_ = 0.0;  // when it set out, as a fraction of the step
+  double way_ = 0.0;    // length to go at the last start
+  double left_ = 0.0;   // remaining part of it
+  double began_ = 0.0;  // time of the last start, as a fraction of the step
 };
 
-// A place on the border of a blocked face may be one of a free face, too.
+// A place on the border of a blocked face may also be one of a free face.
 SurfacePlace in_free_face(const Surface& surface, const SurfacePlace& place) {
   if (surface.map().is_free(place.triangle.cell) || place.kind() == Kind::face) return place;
   const auto& w = place.weights;

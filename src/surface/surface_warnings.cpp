@@ -1,3 +1,4 @@
+// Findings on a surface that are allowed: repeated points, open borders, pinched points.
 #include "surface/surface_warnings.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What a surface can be used with, but its maker may not have meant.
+// Findings with which a surface can be used, although its maker may not have meant them.
 #pragma once
 
 #include "dartcast/mesh_check.hpp"

@@ -1,3 +1,4 @@
+// Lays triangles out in the plane, and finds the edge or corner by which a ray leaves.
 #include "surface/unfold.hpp"
 
 #include <algorithm>
@@ -9,7 +10,7 @@ namespace dartcast::detail {
 
 namespace {
 
-// Below it a weight or a rate is 0: far below rounding, and products of what is above are in the exact range.
+// A weight or a rate below this is 0. It is far below rounding, and products of larger values are in the exact range.
 constexpr double smallest_weight = 0x1p-200;
 
 double twice_area(const Vec3& a, const Vec3& b, const Vec3& c, double Vec3::*u, double Vec3::*v) {
@@ -23,7 +24,7 @@ double length_of(const Vec3& v) {
 }
 
 struct UnfoldedEdges {
-  Vec3 base, side;  // from a to b, to c; scaled
+  Vec3 base, side;  // from a to b, and to c; scaled
   double scale;
 };
 
@@ -35,7 +36,7 @@ UnfoldedEdges edges_of(const Vec3& a, const Vec3& b, const Vec3& c) {
   return {base * scale, side * scale, scale};
 }
 
-// (b - a) x (c - a), scaled. Where the triangle is thin the products cancel: each is then taken exactly.
+// The vector (b - a) x (c - a), scaled. In a thin triangle the products cancel, and each is then computed exactly.
 Vec3 normal_of(const Vec3& a, const Vec3& b, const Vec3& c, const UnfoldedEdges& e) {
   const Vec3 n = cross(e.base, e.side);
   const double square = dot(n, n);
@@ -50,7 +51,8 @@ Heading unit(double along, double across) {
   return {along / length, across / length};
 }
 
-// How fast the weights change, up to a factor: that of corner i is the way along the ray times rate[i] / area.
+// The speed at which the weights change, up to a factor: weight i changes by the length along the ray times rate[i] /
+// area.
 struct Rates {
   TriangleWeights rate;
   double area;
@@ -64,8 +66,8 @@ Rates rates_of(const Unfolded& t, const Heading& h) {
   return {rate, t.length * t.height / largest};
 }
 
-// a d - b c of numbers that are not negative, 0 or at least 2^-200 and at most 1: of the exact sign, and right to some
-// 2^-53 of the larger product. Each product is off by 2^-53 of itself, and so is their difference.
+// The determinant a d - b c of numbers that are 0, or at least 2^-200 and at most 1. It has the exact sign and is
+// accurate to some 2^-53 of the larger product. Each product is off by 2^-53 of itself, and so is their difference.
 double determinant(double a, double b, double c, double d) {
   const double ad = a * d;
   const double bc = b * c;
@@ -73,7 +75,7 @@ double determinant(double a, double b, double c, double d) {
   return orient2d_value({}, {a, b, 0.0}, {c, d, 0.0});
 }
 
-// By edge i, where it is known what is left of weight j: right to rounding of itself.
+// Leaves by edge i, where the remaining part of weight j is known: it is accurate to rounding of itself.
 Exit by_edge(const TriangleWeights& from, const Rates& r, unsigned i, unsigned j, double left) {
   const unsigned k = 3 - i - j;
   Exit exit;
@@ -85,7 +87,7 @@ Exit by_edge(const TriangleWeights& from, const Rates& r, unsigned i, unsigned j
   return exit;
 }
 
-// Straight to the apex. Where no weight falls the ray runs there: see way_out().
+// Leaves straight to the apex. If no weight decreases, the ray runs there: see way_out().
 Exit to_apex(const Unfolded& t, const TriangleWeights& from) {
   const double x = from[1] * t.length + from[2] * t.x;
   return {{0.0, 0.0, 1.0}, std::hypot(t.x - x, t.height - from[2] * t.height)};
@@ -141,10 +143,10 @@ bool are_weights(const TriangleWeights& w) {
   return std::all_of(w.begin(), w.end(), is_weight) && std::abs(((w[0] + w[1]) + w[2]) - 1.0) <= 0x1p-50;
 }
 
-// Only a weight that is not 0 can fall: a ray does not leave by the edge or the corner that it starts from, whatever
-// was rounded. At least one falls. With u = t.x - t.length rounded, u <= t.x, and so u across <= x across for across >=
-// 0, rounded or not: rate[0] and rate[1] are not both positive, and where both are 0 the ray runs to the apex as
-// exactly as doubles can tell. With across < 0 rate[2] is negative.
+// Only a weight that is not 0 can decrease. So a ray does not leave by the edge or the corner from which it starts, no
+// matter how numbers were rounded. At least one weight decreases. With u = t.x - t.length rounded, u <= t.x, and so u
+// across <= x across for across >= 0, rounded or not. Hence rate[0] and rate[1] are not both positive. If both are 0,
+// the ray runs to the apex as exactly as doubles can represent. With across < 0 rate[2] is negative.
 Exit way_out(const Unfolded& t, const TriangleWeights& from, const Heading& h) {
   const Rates r = rates_of(t, h);
   std::array<unsigned, 3> falling{};
@@ -159,7 +161,7 @@ Exit way_out(const Unfolded& t, const TriangleWeights& from, const Heading& h) {
     const unsigned k = (i + 1) % 3;
     return by_edge(from, r, i, k, from[k] + from[i] * (r.rate[k] / -r.rate[i]));
   }
-  // from[i] / -rate[i] < from[j] / -rate[j] where this is negative.
+  // If this is negative, from[i] / -rate[i] < from[j] / -rate[j].
   const double order = determinant(from[i], from[j], -r.rate[i], -r.rate[j]);
   if (order > 0.0) return by_edge(from, r, j, i, order / -r.rate[j]);
   return by_edge(from, r, i, j, -order / -r.rate[i]);

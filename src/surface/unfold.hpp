@@ -1,4 +1,4 @@
-// A triangle of space laid out in the plane, and the way that a ray takes through it.
+// A triangle of space laid out in the plane, and the path of a ray through it.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@ struct Heading {
   double across = 0.0;
 };
 
-/// The base from (0, 0) to (length, 0), the apex at (x, height), height > 0; scaled by a power of two, so that the
-/// longest edge is about 1: nothing under- or overflows for corners in the exact range.
+/// The base is from (0, 0) to (length, 0), the apex at (x, height), height > 0. Lengths are scaled by a power of two,
+/// so that the longest edge is about 1. So nothing under- or overflows for corners in the exact range.
 struct Unfolded {
   double length = 0.0;
   double x = 0.0;
@@ -32,8 +32,8 @@ struct Frame {
 /// Whether a triangle has an area, exactly. Precondition of all: corners in the exact range.
 bool has_area(const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// Lays out a triangle with an area, base from a to b. Each number is right to a few units in the last place of the
-/// longest edge; the height to a relative 2^-44, however thin the triangle.
+/// Lays out a triangle with an area, with the base from a to b. Each number is accurate to a few units in the last
+/// place of the longest edge, and the height to a relative 2^-44, however thin the triangle is.
 Unfolded unfold(const Vec3& a, const Vec3& b, const Vec3& c);
 
 Frame frame_of(const Vec3& a, const Vec3& b, const Vec3& c);
@@ -49,25 +49,25 @@ double angle_at_base(const Unfolded& t);
 /// base's start, 1 its end, 2 the apex.
 using TriangleWeights = std::array<double, 3>;
 
-/// What is left of rounding: coordinates below 2^-200 become 0, and the largest is 1 less the others.
+/// Removes rounding: coordinates below 2^-200 become 0, and the largest becomes 1 minus the others.
 TriangleWeights normalized(TriangleWeights w);
 
-/// Whether they are such: in [0, 1], none between 0 and 2^-200, their sum 1 up to rounding.
+/// Whether weights are valid: in [0, 1], none between 0 and 2^-200, with sum 1 up to rounding.
 bool are_weights(const TriangleWeights& w);
 
-/// Where a ray leaves a triangle: on an edge (one weight is 0) or at a corner (two are).
+/// The place where a ray leaves a triangle: on an edge (one weight is 0) or at a corner (two are).
 struct Exit {
   TriangleWeights weights;
-  double length = 0.0;  ///< of the way, scaled
+  double length = 0.0;  ///< of the path, scaled
 };
 
-/// The way out from a point of the triangle. Preconditions: the heading points into the triangle or along an edge where
-/// the point is on the border: on an edge that is the base, and across >= 0; at a corner it is corner 0, or corner 1
-/// and the heading runs back along the base, exactly.
+/// The exit of a ray from a point of the triangle. Preconditions: the heading points into the triangle or along an
+/// edge. A point on the border lies on the base, with across >= 0. A point at a corner is at corner 0, or at corner 1
+/// with a heading that runs back along the base, exactly.
 ///
-/// Weights change along a ray at constant rates; the first to reach 0 tells the edge. Which of two is first is the sign
-/// of a determinant of two weights and two rates: exact, though the rates are rounded. The way out is then on that edge
-/// by construction: its weight is 0, the others are not negative.
+/// Weights change along a ray at constant rates. The first weight that reaches 0 decides the edge. The sign of a
+/// determinant of two weights and two rates decides which of two is first. This sign is exact, although the rates are
+/// rounded. The exit is on that edge by construction: its weight is 0, and the others are not negative.
 Exit way_out(const Unfolded& t, const TriangleWeights& from, const Heading& h);
 
 }  // namespace dartcast::detail

@@ -1,3 +1,4 @@
+// Memory that starts on a cache line, on huge pages where it is large.
 #include <cstdint>
 #include <new>
 
@@ -22,8 +23,8 @@ std::size_t whole_pages(std::size_t bytes) {
   return (bytes + page - 1) / page * page;
 }
 
-// From the system itself: what the heap hands out again has small pages already, which stay small. Starts on a huge
-// page.
+// Large arrays come from the system itself. Memory from the heap may already have small pages, which stay small. The
+// result starts on a huge page.
 void* map_pages(std::size_t bytes) {
   const std::size_t size = whole_pages(bytes);
   const std::size_t room = size + huge_page;
@@ -33,7 +34,7 @@ void* map_pages(std::size_t bytes) {
   const std::size_t before = (huge_page - reinterpret_cast<std::uintptr_t>(begin) % huge_page) % huge_page;
   if (before > 0) ::munmap(begin, before);
   if (before < huge_page) ::munmap(begin + before + size, huge_page - before);
-  ::madvise(begin + before, size, MADV_HUGEPAGE);  // advice: where it is not taken all works the same
+  ::madvise(begin + before, size, MADV_HUGEPAGE);  // advice: without it everything works the same
   return begin + before;
 }
 

@@ -1,4 +1,4 @@
-// Building a map from mesh arrays: records, shapes, sewing, marks and patches.
+// Builds a map from mesh arrays: records, shapes, sewing, marks and patches.
 #include <algorithm>
 #include <map>
 #include <string>
@@ -61,7 +61,7 @@ class MapBuilder {
     }
   }
 
-  // Which pool each cell goes to. Cells with interior points don't fit in their type's records.
+  // Chooses the pool of each cell. Cells with Steiner points do not fit in the records of their type.
   void place_cells() {
     std::vector<bool> general(mesh_.cell_count());
     for (const auto& entry : steiner_.of_cells) general[entry.first] = true;
@@ -131,7 +131,7 @@ class MapBuilder {
     };
     if (mesh_.types[c] != CellType::polyhedron) {
       const auto corners = mesh_.cell(c);
-      // A polygon begins at its lowest vertex: so those of n corners are of one shape.
+      // A polygon starts at its lowest vertex. So all polygons of n corners share one shape.
       std::size_t first = 0;
       if (map_.dimension_ == 2)
         first = static_cast<std::size_t>(std::min_element(corners.begin(), corners.end()) - corners.begin());
@@ -198,8 +198,7 @@ class MapBuilder {
     });
   }
 
-  // Whether two faces with the same lowest vertex have the same corners, run around in opposite directions or in the
-  // same.
+  // Whether two faces with the same lowest vertex have the same corners, in opposite directions or in the same.
   [[nodiscard]] bool same_corners(CellFace f, CellFace g, bool opposite) const {
     const CellView a = map_.view(f.cell);
     const CellView b = map_.view(g.cell);
@@ -234,7 +233,8 @@ class MapBuilder {
     }
   }
 
-  // Faces that agree in the lowest vertex and its two neighbours: almost always one face from its two sides.
+  // Faces with the same lowest vertex and the same two neighbours of it. Almost always they are the two sides of one
+  // face.
   void sew_group(std::span<FaceEntry> group) {
     for (std::size_t i = 0; i < group.size(); ++i) {
       const CellFace f = group[i].face;
@@ -288,7 +288,8 @@ class MapBuilder {
     return Patch{number};
   }
 
-  // A patch face is matched to the cells' faces by its corners; one that belongs to no cell is no wall and is left out.
+  // A patch face is matched to the cells' faces by its corners. One that belongs to no cell is not a wall, and is left
+  // out.
   void add_patch_face(std::span<const std::uint32_t> corners, Patch patch) {
     const auto lowest = std::min_element(corners.begin(), corners.end());
     if (lowest == corners.end() || *lowest + 1U >= bucket_.size()) return;
@@ -304,7 +305,7 @@ class MapBuilder {
     for (; entry != end && entry->ends == ends; ++entry) {
       auto candidate = face_vertices(entry->face);
       std::sort(candidate.begin(), candidate.end());
-      // A face named twice keeps its first name.
+      // A face that is listed twice keeps its first patch.
       if (candidate == sorted && map_.patch(entry->face) == Patch{}) map_.set_patch(entry->face, patch);
     }
   }

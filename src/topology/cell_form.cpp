@@ -1,3 +1,4 @@
+// The standard order of a cell's corners, and the key of its shape.
 #include "topology/cell_form.hpp"
 
 #include <algorithm>

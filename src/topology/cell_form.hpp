@@ -1,4 +1,4 @@
-// How a cell is put down in a record: which corner comes first, and the key of its shape.
+// The form of a cell in a record: its first corner, and the key of its shape.
 #pragma once
 
 #include <array>
@@ -10,20 +10,20 @@
 
 namespace dartcast {
 
-/// Corners of a cell of a standard type; behind the type's own number of them, zeros.
+/// Corners of a cell of a standard type. Places that the type does not use are zero.
 using StandardCorners = std::array<std::uint32_t, 8>;
 
-/// The same cell with its corners in the order that comes first among the rotations of the type onto itself: so few
-/// shapes serve all cells, and the order is still a valid one of the type. Cost: rotations times corners.
+/// The same cell with its corners in the order that comes first among the rotations of the type onto itself. So few
+/// shapes serve all cells, and the order is still valid for the type. Cost: rotations times corners.
 StandardCorners turned(CellType type, std::span<const std::uint32_t> corners);
 
-/// What tells the shape of a standard cell: its type and, for each face, which corner is the lowest-numbered.
+/// The signature of a standard cell's shape: its type and the lowest-numbered corner of each face.
 std::uint32_t standard_signature(CellType type, std::span<const std::uint32_t> corners);
 
 /// The key of that shape: faces in the order of standard_faces(), corners as given.
 ShapeKey standard_key(CellType type, std::span<const std::uint32_t> corners);
 
-/// A face of local numbers, turned to begin at its lowest-numbered vertex; `vertices` by local number.
+/// A face of local numbers, rotated to start at its lowest-numbered vertex. `vertices`: by local number.
 ShapeKey::Face from_lowest(std::span<const std::uint16_t> corners, std::span<const std::uint32_t> vertices);
 
 /// Local number of the lowest-numbered vertex.

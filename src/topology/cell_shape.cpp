@@ -1,3 +1,4 @@
+// Makes a shape from its key: darts, fans, simplices and what lies across their facets.
 #include "dartcast/cell_shape.hpp"
 
 #include <algorithm>
@@ -44,7 +45,7 @@ void check_key(const ShapeKey& key) {
   if (darts > 0x3fffU) throw InvalidMesh("the cell has more than 16383 darts: split it");
 }
 
-// One number for three, in any order.
+// One number for three numbers in any order.
 std::uint64_t facet_key(std::array<std::uint16_t, 3> t) {
   if (t[0] > t[1]) std::swap(t[0], t[1]);
   if (t[1] > t[2]) std::swap(t[1], t[2]);
@@ -176,7 +177,7 @@ void Shape::make_triangles() {
 
 void Shape::connect_simplices() {
   constexpr std::uint32_t none = detail::KeyTable::none;
-  detail::KeyTable open(4 * simplices_.size());  // facets that still wait for their other side: simplex 16, facet 16
+  detail::KeyTable open(4 * simplices_.size());  // facets without their other side yet: simplex 16, facet 16
   std::size_t waiting = 0;
   for (std::uint16_t s = 0; s < simplices_.size(); ++s) {
     for (std::uint16_t i = 0; i < 4; ++i) {
@@ -210,7 +211,7 @@ void Shape::connect_simplices() {
   if (waiting > 0) make_flat();
 }
 
-// One simplex without extent, entered by every triangle: nothing can be in it, and no walk goes on from it.
+// One simplex without extent, entered by every triangle. Nothing can be in it, and no walk continues from it.
 void Shape::make_flat() {
   simplices_.assign(1, ImplicitSimplex{{key_.apex, key_.apex, key_.apex, key_.apex}, {}});
   first_entry_.clear();

@@ -1,3 +1,4 @@
+// The functions of CombinatorialMap that are not inlined.
 #include "dartcast/combinatorial_map.hpp"
 
 #include <algorithm>
@@ -14,7 +15,7 @@ Dart CombinatorialMap::across(Dart d) const {
   const std::uint16_t f = c.shape().face_of(d.number);
   const Cell other = c.neighbour(f);
   if (!other.valid()) return {};
-  // Both sides number a face's darts from its lowest vertex, one forwards, one backwards.
+  // Both sides number a face's darts from its lowest vertex, one side forwards, the other backwards.
   const int place = d.number - c.shape().first_dart(f);
   const int first = shape(other).first_dart(c.neighbour_face(f));
   return {other, static_cast<std::uint16_t>(first + c.shape().degree(f) - 1 - place)};

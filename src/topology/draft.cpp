@@ -1,3 +1,4 @@
+// Checks drafts of cells, and finds the form in which each goes into a record.
 #include <algorithm>
 #include <array>
 #include <numeric>
@@ -81,7 +82,7 @@ class DraftChecker {
   std::string flatten() {
     first_.reserve(draft_->faces.size() + 1);
     first_.push_back(0);
-    std::vector<std::uint16_t> last;  // face that had the corner last
+    std::vector<std::uint16_t> last;  // last face that had the corner
     for (const DraftFace& face : draft_->faces) {
       if (origin_.size() + face.corners.size() > max_darts) return "would have more than 16383 darts";
       const auto f = static_cast<std::uint16_t>(first_.size());
@@ -130,7 +131,7 @@ class DraftChecker {
     return d + 1 == first_[f + 1U] ? first_[f] : static_cast<std::uint16_t>(d + 1);
   }
 
-  // Connected, and of Euler characteristic 2: a vertex that two fans of faces share counts once.
+  // The surface must be connected and have Euler characteristic 2. A vertex that two fans of faces share counts once.
   [[nodiscard]] bool is_sphere() const {
     if (corners_.size() + draft_->faces.size() != origin_.size() / 2 + 2) return false;
     std::vector<bool> seen(draft_->faces.size());
@@ -164,7 +165,7 @@ class DraftChecker {
            std::none_of(points.begin(), points.end(), [&](std::uint32_t v) { return local_.find(v) != none; });
   }
 
-  // The type with these numbers of faces and corners, if the faces are its faces.
+  // The type with these numbers of faces and corners, if the faces match.
   bool standard(DraftForm& form) const {
     const std::size_t faces = draft_->faces.size();
     const std::size_t darts = origin_.size();
@@ -182,7 +183,7 @@ class DraftChecker {
     const std::uint16_t first = first_[static_cast<std::size_t>(base - draft_->faces.begin())];
     std::array<std::uint32_t, 8> corners{};
     const std::size_t count = corner_count(type);
-    // The base is seen from the inside in the type's order; above each of its corners is the end of the third edge.
+    // In the type's order the base is seen from the inside. Above each of its corners is the end of the third edge.
     for (std::size_t i = 0; i < base_degree; ++i) {
       const auto d = static_cast<std::uint16_t>(first + i);
       const std::size_t place = (base_degree - i) % base_degree;
@@ -198,7 +199,7 @@ class DraftChecker {
     return true;
   }
 
-  // Whether the draft has every face of the type, each once; numbers them.
+  // Whether the draft has every face of the type, each once. Numbers them.
   bool faces_match(DraftForm& form, CellType type, const StandardCorners& corners) const {
     std::uint16_t number = 0;
     unsigned matched = 0;
@@ -253,7 +254,7 @@ DraftForm form_of_polygon(const CellDraft& draft) {
   const CellType type = n == 3 ? CellType::triangle : n == 4 ? CellType::quadrilateral : CellType::polygon;
   form.pool = standard ? CombinatorialMap::pool_of(type) : CombinatorialMap::general_pool;
   for (const DraftFace& edge : draft.faces) form.corners.push_back(edge.corners[0].vertex.value);
-  std::size_t first = 0;  // the corner that the record begins with
+  std::size_t first = 0;  // the first corner of the record
   if (standard) {
     const StandardCorners best = turned(type, form.corners);
     first =

@@ -1,4 +1,4 @@
-// Edits that take away a face, an edge, a vertex or a cell.
+// Edits that remove a face, an edge, a vertex or a cell.
 #include <algorithm>
 
 #include "dartcast/map_edits.hpp"
@@ -16,7 +16,7 @@ using detail::Rework;
 
 namespace {
 
-// The faces of a cell but one; those beyond its edges may from now on lie in one plane with others.
+// The faces of a cell without one. The faces beyond its edges may now lie in one plane with others.
 std::vector<DraftFace> all_but(const CombinatorialMap& map, CellFace f) {
   const Shape& s = map.shape(f.cell);
   CellDraft draft = draft_of(map, f.cell);
@@ -60,7 +60,7 @@ Cell merge_cells(Transaction& t, CellFace f) {
 
 namespace {
 
-// One face of the two at the edge of a dart; the second goes.
+// Merges the two faces at the edge of a dart. The second face is removed.
 void join_faces(CellDraft& draft, const Shape& s, std::uint16_t dart) {
   const std::uint16_t beyond = s.phi2(dart);
   const std::uint16_t f = s.face_of(dart);
@@ -98,7 +98,7 @@ std::vector<Cell> merge_faces(Transaction& t, Dart d) {
 
 namespace {
 
-// Takes the corner at which a dart starts out of its face.
+// Removes the corner at which a dart starts from its face.
 void drop_corner(CellDraft& draft, const Shape& s, std::uint16_t dart) {
   auto& corners = draft.faces[s.face_of(dart)].corners;
   const std::size_t at = corner_of(s, dart);

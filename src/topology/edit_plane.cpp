@@ -1,3 +1,4 @@
+// The edits of dartcast/map_edits.hpp where cells are polygons.
 #include "topology/edit_plane.hpp"
 
 #include <algorithm>
@@ -14,7 +15,7 @@ PolygonEdges::iterator at(PolygonEdges& edges, std::size_t number) {
   return edges.begin() + static_cast<std::ptrdiff_t>(number);
 }
 
-// Cuts an edge in two at v; the second part follows the first, which continues the edge.
+// Splits an edge at v. The second part follows the first, which continues the edge.
 void cut_edge(CellDraft& draft, std::uint16_t edge, Vertex v) {
   DraftFace rest = draft.faces[edge];
   rest.from = {};
@@ -85,7 +86,7 @@ Cell merge_polygons(Transaction& t, Dart d) {
   CellDraft other = draft_of(map, beyond.cell);
   std::rotate(whole.faces.begin(), at(whole.faces, d.number), whole.faces.end());
   std::rotate(other.faces.begin(), at(other.faces, beyond.number), other.faces.end());
-  // Where the edge ended, the polygon may be straight now.
+  // At the former ends of the edge the polygon may be straight now.
   whole.faces[1].corners[0].straight = other.faces[1].corners[0].straight = true;
   whole.faces.erase(whole.faces.begin());
   whole.faces.insert(whole.faces.end(), other.faces.begin() + 1, other.faces.end());
@@ -95,7 +96,7 @@ Cell merge_polygons(Transaction& t, Dart d) {
 
 namespace {
 
-// One edge of an edge and the one behind it.
+// Merges an edge with the next one.
 void join_edges(CellDraft& draft, std::uint16_t first, std::uint16_t second) {
   DraftFace& edge = draft.faces[first];
   edge.corners[1] = draft.faces[second].corners[1];

@@ -20,7 +20,7 @@ bool has_corner(const CellView& view, std::uint16_t face, Vertex v) {
   return std::any_of(corners.begin(), corners.end(), [&](std::uint16_t k) { return view.vertex(k) == v; });
 }
 
-// The cells around a vertex of a cell, reached over faces with that vertex but for one face.
+// The cells around a vertex of a cell that are connected to it over faces with that vertex, except one face.
 std::vector<Cell> around_vertex(const CombinatorialMap& map, Cell start, Vertex v, CellFace but = {}) {
   const CellFace from_beyond = but.valid() ? map.opposite(but) : CellFace{};
   std::vector<Cell> cells = {start};
@@ -37,8 +37,8 @@ std::vector<Cell> around_vertex(const CombinatorialMap& map, Cell start, Vertex 
   return cells;
 }
 
-// Gives a vertex of a cell another number, all renamings at once: the map says which vertex a corner was. A face that
-// has it needs another point: weights name corners.
+// Gives vertices of a cell other numbers, all at once: the map says which vertex each corner was. A face with such a
+// vertex needs a new Steiner point, because weights name corners.
 void rename(const CombinatorialMap& map, Cell c, CellDraft& draft, Vertex from, Vertex to) {
   const CellView v = map.view(c);
   for (std::uint16_t f = 0; f < v.shape().face_count(); ++f) {

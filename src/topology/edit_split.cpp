@@ -1,4 +1,4 @@
-// Edits that put in a vertex, an edge or a face.
+// Edits that add a vertex, an edge or a face.
 #include <algorithm>
 
 #include "dartcast/map_edits.hpp"
@@ -15,7 +15,7 @@ using detail::Rework;
 
 namespace {
 
-// Puts a vertex behind the corner that the dart starts from.
+// Adds a vertex behind the corner at which the dart starts.
 void put_on_edge(CellDraft& draft, const Shape& s, std::uint16_t dart, Vertex v) {
   DraftFace& face = draft.faces[s.face_of(dart)];
   const std::size_t at = corner_of(s, dart);
@@ -23,7 +23,7 @@ void put_on_edge(CellDraft& draft, const Shape& s, std::uint16_t dart, Vertex v)
   face.point = {};
 }
 
-// Cuts a face in two: it keeps its corners from u to v, a new one at the end takes those from v to u.
+// Splits a face. It keeps its corners from u to v. A new face at the end takes those from v to u.
 void cut_face(CellDraft& draft, std::uint16_t face, Vertex u, Vertex v) {
   std::vector<DraftCorner> all = draft.faces[face].corners;
   const auto is = [](Vertex w) { return [w](const DraftCorner& c) { return c.vertex == w; }; };
@@ -94,7 +94,7 @@ std::vector<Cell> split_face(Transaction& t, Dart a, Dart b) {
 
 namespace {
 
-// The faces on the left of a closed path, reached from those of its darts without crossing it.
+// The faces on the left of a closed path. A search finds them from the faces of the path's darts without crossing it.
 std::vector<bool> left_of(const Shape& s, std::span<const std::uint16_t> path) {
   std::vector<bool> crossed(s.dart_count());
   for (const std::uint16_t d : path) crossed[d] = crossed[s.phi2(d)] = true;
@@ -113,8 +113,8 @@ std::vector<bool> left_of(const Shape& s, std::span<const std::uint16_t> path) {
   return left;
 }
 
-// The face in which a cell is cut, as the part on the left sees it; what lies around the path tells where it may be
-// straight.
+// The face along which a cell is split, as the part on the left sees it. The faces around the path decide where it may
+// be straight.
 class CutFace {
  public:
   CutFace(const CombinatorialMap& map, Cell c) : map_(map), s_(map.shape(c)), cell_(c) {}
@@ -130,8 +130,8 @@ class CutFace {
   }
 
  private:
-  // Whether the faces on the left between two darts of the path may lie in one plane (and if it is one face, be
-  // straight there). Where the path runs straight on, they do, for the cell is convex; so do those on the right.
+  // Whether the faces on the left between two darts of the path may lie in one plane (or, if it is one face, be
+  // straight there). If the path is straight there, they do, because the cell is convex, and so do those on the right.
   [[nodiscard]] bool one_plane(std::uint16_t in, std::uint16_t out) const {
     std::uint16_t d = s_.phi1(in);
     if (d == out) return map_.flat({cell_, d}).straight;
@@ -164,7 +164,7 @@ std::vector<std::uint16_t> checked_path(const CombinatorialMap& map, std::span<c
   return numbers;
 }
 
-// Faces on either side of the path are in two cells from now on.
+// Faces on the two sides of the path are now in two cells.
 void part_at(CellDraft& whole, const Shape& s, std::span<const std::uint16_t> path) {
   for (const std::uint16_t d : path) {
     for (const std::uint16_t side : {d, s.phi2(d)})

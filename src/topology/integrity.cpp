@@ -1,3 +1,4 @@
+// Checks the constraints of a combinatorial map, dart by dart.
 #include <algorithm>
 
 #include "dartcast/map_edits.hpp"
@@ -47,7 +48,7 @@ class IntegrityChecker {
            "phi2 turns the edge around", d);
   }
 
-  // Whether the record's neighbour exists; where not, phi3 can't be asked.
+  // Whether the record's neighbour exists. If not, phi3 cannot be evaluated.
   [[nodiscard]] bool sewn_well(CellFace f, const CellView& v) const {
     const Cell other = v.neighbour(f.face);
     return map_.contains(other) && v.neighbour_face(f.face) < map_.shape(other).face_count() &&

@@ -1,4 +1,4 @@
-// A small hash table for work within one cell: built, asked and thrown away, in a time linear in its entries.
+// A small hash table for work within one cell. It is built, used and dropped in a time linear in its entries.
 #pragma once
 
 #include <bit>
@@ -8,20 +8,20 @@
 
 namespace dartcast::detail {
 
-/// Numbers by key, for at most so many keys as are told beforehand. Open addressing: half the places stay empty.
+/// Numbers by key, for at most the announced number of keys. Open addressing: half the places stay empty.
 class KeyTable {
  public:
   static constexpr std::uint32_t none = 0xffffffffU;
 
   explicit KeyTable(std::size_t max_keys = 0) { reset(max_keys); }
 
-  /// Forgets all keys.
+  /// Removes all keys.
   void reset(std::size_t max_keys) {
     places_.assign(std::bit_ceil(2 * max_keys + 2), {});
     shift_ = 64 - static_cast<unsigned>(std::countr_zero(places_.size()));
   }
 
-  /// The number of a key, `none` where it has none yet; can be written to. Precondition: key < 2^64 - 1.
+  /// The number of a key, `none` if it has none yet. The caller can write to it. Precondition: key < 2^64 - 1.
   std::uint32_t& operator[](std::uint64_t key) {
     Place* p = place(key);
     p->key = key;

@@ -1,3 +1,4 @@
+// Orbits: the darts that are reached from one by some of the phi.
 #include <initializer_list>
 #include <set>
 
@@ -7,7 +8,7 @@ namespace dartcast {
 
 namespace {
 
-// Closure of {d} under the relations given; they include inverses, for a boundary breaks the cycles.
+// Closure of {d} under some relations. They include inverses, because a boundary breaks the cycles.
 template <class... Relation>
 std::vector<Dart> closure(Dart d, Relation... relation) {
   std::vector<Dart> orbit = {d};

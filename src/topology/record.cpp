@@ -1,4 +1,4 @@
-// The records of cells, word by word: their layout is described at the head of map.hpp.
+// The records of cells, word by word. The head of dartcast/combinatorial_map.hpp describes their layout.
 #include <algorithm>
 
 #include "dartcast/combinatorial_map.hpp"
@@ -11,7 +11,7 @@ constexpr std::uint32_t wide_bit = 1U << 25U;
 
 }  // namespace
 
-// The neighbour's dart along our first edge, the other way around, tells which of its faces is meant.
+// The neighbour's dart along our first edge, in the opposite direction, belongs to the face in question.
 std::uint16_t CellView::neighbour_face_from_7(std::uint16_t face) const {
   if ((word_[1] & wide_bit) == 0) return 7;
   const Cell other = neighbour(face);
@@ -26,14 +26,14 @@ std::uint16_t CellView::neighbour_face_from_7(std::uint16_t face) const {
   return 7;
 }
 
-// A record of zeros behind the others.
+// Appends a record of zeros.
 void CombinatorialMap::open_record(std::uint32_t pool, std::size_t words) {
   Pool& p = pools_[pool];
   if (pool == general_pool) p.offsets.push_back(p.words.size());
   p.words.resize(p.words.size() + words);
 }
 
-// All but the version, which stays; no neighbours, no walls.
+// Writes everything except the version, which stays. The cell has no neighbours and no walls yet.
 void CombinatorialMap::write_cell(Cell c, std::uint32_t shape, std::span<const std::uint32_t> vertices, bool free) {
   const bool general = c.pool() == general_pool;
   std::uint32_t* word = record(c);

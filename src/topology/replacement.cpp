@@ -1,3 +1,4 @@
+// Plans a replacement of cells: links the faces of drafts, and checks that the result is a map.
 #include "topology/replacement.hpp"
 
 #include <algorithm>
@@ -110,7 +111,7 @@ class ReplacementPlanner {
     }
   }
 
-  // A face of a removed cell stands for the one that continues it.
+  // A face of a removed cell means the draft's face that continues it.
   [[nodiscard]] DraftLink resolved(std::uint32_t draft, std::uint16_t face) const {
     DraftLink link = drafts_[draft].faces[face].across;
     if (link.draft != DraftLink::no_draft || !is_removed(link.face.cell)) return link;
@@ -131,7 +132,8 @@ class ReplacementPlanner {
                         std::to_string(map_.source(across)) + ", which stays: unsew it first");
   }
 
-  // The same corners the other way around, and the same point. `vertex(i)`: of the other face's `count` corners.
+  // Whether the other face has the same corners in opposite order, and the same point. `vertex(i)`: of its `count`
+  // corners.
   template <class VertexAt>
   void check_fit(std::uint32_t draft, const DraftFace& face, Vertex point, std::size_t count, VertexAt&& vertex) const {
     const std::size_t k = face.corners.size();
@@ -139,7 +141,7 @@ class ReplacementPlanner {
     while (start < count && vertex(start) != face.corners[0].vertex) ++start;
     bool fits = count == k && start < k;
     for (std::size_t i = 0; fits && i < k; ++i) fits = face.corners[i].vertex == vertex((start + k - i) % k);
-    if (map_.dimension() == 2) fits = fits && start == 1;  // an edge has a beginning and an end
+    if (map_.dimension() == 2) fits = fits && start == 1;  // an edge has a start and an end
     if (!fits) refuse(draft, "would be sewn to a face with other corners, or with them in another order");
     if (face.point != point) refuse(draft, "would be sewn to a face that is fanned from another point");
   }

@@ -1,4 +1,4 @@
-// Drafts of the cells that an edit touches, to be altered and put in their place.
+// Drafts of the cells that an edit touches. The edit alters them and puts them in the place of the cells.
 #pragma once
 
 #include <string>
@@ -10,14 +10,14 @@
 
 namespace dartcast::detail {
 
-/// Cells in the order taken, each with its draft; links between faces follow by themselves (DraftLink).
+/// Cells in the order in which they were taken, each with its draft. Links between faces follow (DraftLink).
 class Rework {
  public:
   explicit Rework(Transaction& t) : transaction_(t) {}
 
   [[nodiscard]] const CombinatorialMap& map() const { return transaction_.map(); }
 
-  /// Number of the cell's draft; drafts it when it is first asked for.
+  /// The number of the cell's draft. The first call for a cell makes the draft.
   std::uint32_t take(Cell c) {
     const auto [found, fresh] = number_.try_emplace(c.value, static_cast<std::uint32_t>(drafts_.size()));
     if (fresh) {
@@ -29,12 +29,12 @@ class Rework {
   [[nodiscard]] bool taken(Cell c) const { return number_.contains(c.value); }
   CellDraft& draft(std::uint32_t number) { return drafts_[number]; }
   CellDraft& draft(Cell c) { return drafts_[take(c)]; }
-  /// A further draft, for no cell of its own.
+  /// Adds a draft without a cell.
   std::uint32_t add(CellDraft draft) {
     drafts_.push_back(std::move(draft));
     return static_cast<std::uint32_t>(drafts_.size() - 1);
   }
-  /// Takes a cell without putting anything in its place.
+  /// Takes a cell that nothing replaces.
   void only_remove(Cell c) { cells_.push_back(c); }
 
   /// Puts the drafts in the place of the cells.
@@ -61,7 +61,7 @@ inline void expect_cell(const CombinatorialMap& map, Cell c) {
   if (!map.contains(c)) throw InvalidArgument("there is no such cell: an earlier edit replaced it; look it up anew");
 }
 
-/// Throws InvalidArgument where the map is one of the plane. `what`: "cuts", say.
+/// Throws InvalidArgument where the map is planar. `what`: the action, such as "cuts".
 inline void expect_space(const CombinatorialMap& map, const char* what) {
   if (map.dimension() == 2)
     throw InvalidArgument(std::string(what) +

@@ -1,3 +1,4 @@
+// The table of shapes: equal cells share one, and unused ones are released.
 #include <algorithm>
 
 #include "dartcast/error.hpp"

@@ -1,3 +1,4 @@
+// A hash table of 16-bit values for a few faces or darts of cells.
 #include <algorithm>
 
 #include "dartcast/storage.hpp"
@@ -31,7 +32,7 @@ void SideTable::grow() {
   }
 }
 
-// Moves up what would no longer be found behind the gap.
+// Closes a gap: moves up the entries that a search would no longer find behind it.
 void SideTable::close_gap(std::size_t gap) {
   for (std::size_t at = (gap + 1) & mask(); places_[at] != empty; at = (at + 1) & mask()) {
     const std::size_t from_home = (at - home(places_[at] >> 16U)) & mask();

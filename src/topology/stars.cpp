@@ -1,3 +1,4 @@
+// Builds the stars of a shape: groups of simplices around each corner and edge.
 #include <algorithm>
 #include <bit>
 #include <utility>
@@ -10,7 +11,7 @@ namespace {
 
 constexpr std::uint16_t none = 0xffffU;
 
-// The points of one or two corners in a mask, in ascending order; a single one twice.
+// The points of the one or two corners in a mask, in ascending order. A single one comes twice.
 template <std::size_t N>
 std::pair<std::uint16_t, std::uint16_t> points_of(const std::array<std::uint16_t, N>& vertex, unsigned corners) {
   const std::uint16_t a = vertex[static_cast<std::size_t>(std::countr_zero(corners))];

@@ -1,3 +1,4 @@
+// Transactions: replacements of cells that can be undone, down to the last word of a record.
 #include <algorithm>
 #include <numeric>
 
@@ -9,7 +10,8 @@ namespace dartcast {
 
 namespace {
 
-// The key of a draft's shape in the general pool, and the record's vertices: corners, face points, the cell's point.
+// The key of a draft's shape in the general pool, and the record's vertices: corners, Steiner points of faces, that of
+// the cell.
 ShapeKey general_key(const CellDraft& draft, const DraftForm& form, std::vector<std::uint32_t>& vertices) {
   ShapeKey key;
   key.corner_count = static_cast<std::uint16_t>(vertices.size());
@@ -61,7 +63,7 @@ Vertex Transaction::add_vertex(Vertex from, Vertex other) {
   return v;
 }
 
-// Notes a word of a record before it changes.
+// Saves a word of a record before it changes.
 void Transaction::keep(Cell c, std::size_t offset) {
   const std::size_t at = static_cast<std::size_t>(map_.record(c) - map_.pools_[c.pool()].words.data()) + offset;
   words_.push_back({c.pool(), at, map_.pools_[c.pool()].words[at]});
@@ -98,7 +100,7 @@ std::vector<Cell> Transaction::replace(std::span<const Cell> removed, std::span<
   }
 }
 
-// The record stays as it is until the commit, but for the marks that tell handles.
+// The record stays as it is until the commit, except for the marks that make handles stale.
 void Transaction::take_away(Cell c) {
   removed_.push_back(c);
   count_vertices(c, false);
@@ -156,7 +158,7 @@ Cell Transaction::open_place(std::uint32_t pool, std::uint32_t words) {
   return added.cell;
 }
 
-// Patches of faces, and what may be flat, by the numbers of the record: a face's darts begin at its lowest corner.
+// Patches and flat marks, by the numbers of the record: a face's darts start at its lowest corner.
 void Transaction::write_sides(Cell c, const CellDraft& draft, const DraftForm& form) {
   const Shape& s = map_.shape(c);
   for (std::size_t i = 0; i < draft.faces.size(); ++i) {
@@ -269,8 +271,8 @@ void Transaction::drop_last(std::uint32_t pool, std::uint32_t words) {
   --p.count;
 }
 
-// Leaves of a record its version alone, and its place to others: but for a place whose versions have run out, once in
-// 65,535 cells.
+// Clears a record except its version, and makes its place vacant. A place whose versions have run out is not used
+// again; this happens once in 65,535 cells.
 void Transaction::vacate(Cell c) {
   CombinatorialMap::Pool& p = map_.pools_[c.pool()];
   const std::uint32_t words = length_of(c);
@@ -312,7 +314,7 @@ std::vector<Cell> Transaction::added() const {
   return cells;
 }
 
-// Cells that came and went within the transaction are not told.
+// Cells that were added and removed within the transaction are not reported.
 std::vector<Cell> Transaction::removed() const {
   const std::vector<Cell> news = all_added();
   std::vector<Cell> cells;
@@ -348,7 +350,7 @@ EditReport Transaction::report_cells() const {
   return report;
 }
 
-// Vertices without cells: those that came with the transaction were never there.
+// Vertices without cells. Those that the transaction made are dropped without a report.
 void Transaction::release_vertices(EditReport& report) {
   const auto give_up = [&](Vertex v) {
     map_.cells_at_[v.value] = CombinatorialMap::vacant_vertex;

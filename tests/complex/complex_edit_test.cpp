@@ -316,10 +316,10 @@ TEST(ComplexEdit, TellsHowFarAWarpedWallMoved) {
       moved += shift > 0.05 ? 1 : 0;
     }
   }
-  EXPECT_EQ(moved, 2);  // the face that is warped, either way: a bound does not tell which diagonal there was
+  EXPECT_EQ(moved, 2);  // the warped face, either way: a bound does not know which diagonal there was
 }
 
-// What is given at vertices follows: a linear function stays what it is.
+// Values at vertices follow: a linear function stays the same.
 TEST(ComplexEdit, ValuesFollow) {
   CellComplex complex(test::edit_box(CellType::hexahedron));
   const auto linear = [](const Vec3& x) { return 3.0 * x.x - 2.0 * x.y + x.z + 1.0; };

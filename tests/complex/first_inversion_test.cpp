@@ -1,4 +1,4 @@
-// The first flattening of a scene is that of its simplices taken one by one; a motion followed until then stays valid.
+// The first inversion of a scene is that of its simplices taken one by one. A motion followed until then stays valid.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace dartcast::first_flattening_test {
 
 constexpr int mesh_kinds = 7;
 
-// Hexahedra, tetrahedra, prisms, pyramids, all of them mixed, polyhedra, and hexahedra that need interior points.
+// Hexahedra, tetrahedra, prisms, pyramids, all of them mixed, polyhedra, and hexahedra that need Steiner points.
 MeshData mesh_of(int kind) {
   if (kind == 5) return generate_octahedra({.cells = {3, 3, 3}, .size = {3, 3, 3}});
   BoxOptions o;
@@ -130,7 +130,7 @@ TEST(FirstFlattening, OfMotionsThatFlattenNothing) {
   }
 }
 
-// 13,824 cells: several chunks. Simplices that all flatten at once, and some that do so one after another.
+// 13,824 cells: several chunks. Some simplices all invert at once, some one after another.
 TEST(FirstFlattening, SameForAnyNumberOfThreadsAndFirstByCell) {
   BoxOptions o;
   o.cells = {24, 24, 24};
@@ -210,7 +210,7 @@ TEST(FirstFlattening, OfTheLastMoveOfAComplex) {
   complex.commit_positions();
   const auto found = first_inversion(complex);
   ASSERT_TRUE(found);
-  EXPECT_NEAR(found->how.safe_time, 0.5, 1e-9);  // interior points are rounded
+  EXPECT_NEAR(found->how.safe_time, 0.5, 1e-9);  // Steiner points are rounded
 }
 
 TEST(FirstFlattening, RefusesPositionsThatAreNotAsManyAsVertices) {
@@ -222,7 +222,7 @@ TEST(FirstFlattening, RefusesPositionsThatAreNotAsManyAsVertices) {
   EXPECT_THROW(move_towards(map, {}, mesh.points, mesh.points, 1.0, fewer), InvalidArgument);
 }
 
-// A mesh with its interior points.
+// A mesh with its Steiner points.
 struct Scene {
   CombinatorialMap map;
   SteinerWeights weights;
@@ -243,7 +243,7 @@ struct Scene {
   }
 };
 
-// As a mechanical system would: stop at the flattening, choose another motion there, and go on.
+// As a mechanical system does: stop at the inversion, choose another motion there, and continue.
 TEST(FollowUntil, LeavesAValidSceneCloseToTheFlattening) {
   int stopped = 0, at_once = 0;
   for (int kind = 0; kind < mesh_kinds; ++kind) {
@@ -262,7 +262,7 @@ TEST(FollowUntil, LeavesAValidSceneCloseToTheFlattening) {
       if (!found) EXPECT_EQ(reached, after);
       std::vector<Vec3> placed = reached;
       scene.place(placed);
-      ASSERT_EQ(placed, reached);  // interior points are where their weights put them
+      ASSERT_EQ(placed, reached);  // Steiner points are where their weights put them
       stopped += found ? 1 : 0;
       at_once += time == safe ? 1 : 0;
       EXPECT_GT(time, safe - 0x1p-20) << "mesh " << kind << ", step " << step;
@@ -276,8 +276,8 @@ TEST(FollowUntil, LeavesAValidSceneCloseToTheFlattening) {
   EXPECT_GT(at_once, stopped / 2);
 }
 
-// Far from the origin rounding leaves no room at the flattening: times before it are taken; and in a scene that leaves
-// no room at all, nothing moves.
+// Far from the origin rounding leaves no room at the inversion, and earlier times are taken. In a scene that leaves no
+// room at all, nothing moves.
 TEST(FollowUntil, GoesBackWhereRoundingFlattens) {
   Scene scene(generate_box({.cells = {2, 2, 2}, .origin = {0x1p+40, 0, 0}, .size = {2, 2, 2}}));
   const auto after = mapped(scene.positions, [](const Vec3& p) {

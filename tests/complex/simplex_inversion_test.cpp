@@ -1,4 +1,4 @@
-// The first flattening of a moving simplex, against Sturm's theorem over the integers.
+// The first inversion of a moving simplex, against Sturm's theorem over the integers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -237,7 +237,7 @@ TEST(SimplexInversion, EndsOfTheStepAndItsInside) {
   // Turned by 180 degrees, it touches zero at 1/2 and is positive before and after.
   after = {Vec3{0, 0, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}};
   EXPECT_EQ(flattening_of(after).safe_time, 0.5 - inversion_resolution);
-  // Flattened at once: nothing is safe but the start.
+  // Inverted at once: only the start is safe.
   const Corners low = {Vec3{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.25, 0.25, 0x1p-50}};
   after = unit;
   after[3] = {0.25, 0.25, -1};

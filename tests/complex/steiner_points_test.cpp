@@ -1,4 +1,4 @@
-// Interior points: cells that the plain triangulation does not divide get some, keep them through moves, and conform.
+// Steiner points: cells that the plain triangulation does not divide get some, keep them through moves, and conform.
 #include "complex/steiner_points.hpp"
 
 #include <gtest/gtest.h>
@@ -187,7 +187,7 @@ TEST(SteinerPoints, MoveWithTheirCorners) {
   const auto at_first = std::vector<Vec3>(complex.positions().begin(), complex.positions().end());
   Random random(4);
   for (int step = 1; step <= 20; ++step) {
-    // A linear map of all space: an interior point, a combination of corners, moves with it.
+    // A linear map of all space: a Steiner point, a combination of corners, moves with it.
     const double shear = 0.02 * step;
     const auto moved = [&](const Vec3& p) { return Vec3{p.x + shear * p.y, p.y * (1.0 + shear), p.z - shear * p.x}; };
     const auto next = complex.next_positions();

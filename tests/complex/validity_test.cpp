@@ -134,7 +134,7 @@ TEST(Validity, PassesOverVacantPlaces) {
   ASSERT_LT(map.cell_count(1), map.slot_count(1));
   std::vector<Vec3> points = mesh.points;
   EXPECT_EQ(check_validity(map, points, Threads{1}, 10).cells_checked, map.cell_count());
-  // What vacant places hold is not looked at: the general cells are flat on purpose, by their split faces.
+  // The content of vacant places is not read. The general cells are flat on purpose, by their split faces.
   for (const InvalidCell& c : check_validity(map, points, Threads{1}, 10).first)
     EXPECT_EQ(c.cell.pool(), CombinatorialMap::general_pool);
   const auto inversion = first_inversion(map, points, points, Threads{1});

@@ -1,4 +1,4 @@
-// Ligatures: flooding tells that they seal, a motion that they can be drawn together.
+// Ligatures: flooding shows that they seal, a motion that they can be drawn together.
 #include <algorithm>
 #include <cmath>
 

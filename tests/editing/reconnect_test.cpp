@@ -96,7 +96,7 @@ TEST_P(ReconnectingAlike, SewsFacesThatLieTogether) {
   }
 }
 
-// What unsewing took apart.
+// Reconnects the faces that unsewing opened.
 TEST_P(Reconnecting, UndoesACutAlongFaces) {
   CellComplex complex(box({3, 3, 4}));
   const Dyadic before = volume6(complex);

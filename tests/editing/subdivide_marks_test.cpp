@@ -1,4 +1,4 @@
-// What subdivide() leaves in the cells around, and what it makes of cells that other edits made.
+// The marks that subdivide() leaves in the cells around, and its effect on cells that other edits made.
 #include <gtest/gtest.h>
 
 #include "base/random.hpp"
@@ -23,7 +23,7 @@ MeshData odd_box(CellType type) {
   return generate_box(o);
 }
 
-// Signs of rounded middles do not tell whether a face is straight: it is marked, and has a point of its own.
+// Signs of rounded middles cannot decide whether a face is straight. It is marked, and has a Steiner point.
 TEST(SubdivideMarks, HangingMiddlesAreMarked) {
   CellComplex complex(odd_box(CellType::hexahedron));
   ComplexEdit edit(complex);
@@ -44,7 +44,7 @@ TEST(SubdivideMarks, HangingMiddlesAreMarked) {
       hanging += straight ? 1 : 0;
     }
   }
-  // Of each edge's three other cells, both faces; but the four quadrilaterals across a face are cut there.
+  // Both faces of each edge's three other cells hang. But the four quadrilaterals across a face are cut there.
   EXPECT_EQ(hanging, 12U * (3U * 2U - 2U));
 }
 

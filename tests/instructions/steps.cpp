@@ -1,5 +1,5 @@
 // Fixed small scenes to count instructions in: `steps still`, `steps moving` or `steps lattice`, and in the plane
-// `steps plane` or `steps plane_moving`; `steps corner` for particles that rest in a vertex. What counts is what
+// `steps plane` or `steps plane_moving`; `steps corner` for particles that rest in a vertex. The count is the code that
 // Environment::advance() executes (run.cmake); the number of particle-steps is printed. And `steps edits EDGE COUNT`:
 // edits of a box of EDGE^3 cells, each followed by the particles.
 #include <algorithm>

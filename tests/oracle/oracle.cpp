@@ -66,8 +66,8 @@ std::optional<Meeting> meet_in_plane(const Corners& t, const Vec3& p, const Vec3
   return m;
 }
 
-// What the mesh has at a point of a wall: a corner where two edges meet, an edge, or the face (diagonals of its fan
-// too).
+// The feature of the mesh at a point of a wall: a corner where two edges meet, an edge, or the face (including
+// diagonals of its fan).
 int dimension_of(const WallTriangle& wall, const std::array<bool, 3>& on_edge, std::size_t mesh_point_count) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (on_edge[i] && on_edge[(i + 2) % 3]) return wall.vertex[i] < mesh_point_count ? 0 : 2;

@@ -29,7 +29,7 @@ struct Touch {
   [[nodiscard]] bool lies_in_plane() const { return from == 0 && to == 0; }
 };
 
-/// What a segment from p to q meets.
+/// The walls that a segment from p to q meets.
 struct Trace {
   std::vector<Touch> touches;  ///< by time
   bool leaves = false;         ///< whether it leaves the union of the closed free cells
@@ -62,7 +62,8 @@ class Oracle {
   /// Wall triangles that contain q.
   [[nodiscard]] std::vector<std::uint32_t> walls_at(const Vec3& q) const;
 
-  /// What the closed segment touches, and whether it leaves the free cells. Precondition: p lies in a closed free cell.
+  /// The walls that the closed segment touches, and whether it leaves the free cells. Precondition: p lies in a closed
+  /// free cell.
   [[nodiscard]] Trace trace(const Vec3& p, const Vec3& q) const;
 
   /// Whether a particle at p in the closed free simplex can start towards q: in that simplex, or in one reached from it

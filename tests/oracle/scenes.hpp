@@ -17,7 +17,7 @@ std::string name_of(SceneKind kind);
 /// blocked cells, the numbers of the points, a displacement of each point (which warps faces) times `warp` in [0, 1], a
 /// rotation, a scale by a power of two and a shift. With a large warp some cells may be invalid; with 0 none is.
 /// Flat corners are hexahedra with
-/// vertices in the middle of some edges: simplices are flat unless faces and cells get points of their own. Slivers are
+/// vertices in the middle of some edges: simplices are flat unless faces and cells get Steiner points. Slivers are
 /// tetrahedra of which some are squashed to about 1e-12 of their volume.
 MeshData random_scene(SceneKind kind, std::uint64_t seed, double warp);
 

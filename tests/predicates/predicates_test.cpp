@@ -342,8 +342,8 @@ TEST(Orient3dValue, IsNearTheTrueValueAndOfItsSign) {
   }
 }
 
-// Of the differences to the last point, that of one other alone is rounded: b and c are next to d, a is far from them
-// and close to their plane.
+// Only one of the differences to the last point is rounded: b and c are next to d, a is far from them and close to
+// their plane.
 TEST(Orient3dValue, IsNearTheTrueValueWhereOneDifferenceIsRounded) {
   Random random(310);
   const auto any = [&](double low, double high) {

@@ -128,7 +128,7 @@ TEST(Unfolding, TurnsHeadings) {
   }
 }
 
-// Along the side, as far as its rounded angle tells: the way ends at the apex, on whichever side of it, and does not
+// Along the side, as far as its rounded angle allows: the path ends at the apex, on whichever side of it, and does not
 // stay at the corner.
 TEST(Unfolding, WaysAlongTheSideLeaveTheCorner) {
   Random random(4);

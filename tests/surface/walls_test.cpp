@@ -230,7 +230,7 @@ TEST(SurfaceWalls, SlideAroundABowl) {
   EXPECT_EQ(step.end, SurfaceEnd::arrived);
   EXPECT_EQ(place.kind(), Kind::edge);
   EXPECT_GT(contacts.size(), 20U);
-  // At each corner what is left is projected on the next edge; after a corner it goes on all the way to the next.
+  // At each corner the rest is projected on the next edge. After a corner it goes all the way to the next.
   for (std::size_t i = 2; i < contacts.size(); ++i) {
     kept = norm(contacts[i].displacement) / (norm(contacts[i - 1].unused));
     EXPECT_NEAR(kept, std::cos(2 * std::numbers::pi / n), 0.01);

@@ -81,7 +81,7 @@ FaceKey key_of(const CombinatorialMap& map, Dart d) {
   return key;
 }
 
-// What the mesh says: which cells have which faces.
+// The mesh's own answer: which cells have which faces.
 std::map<FaceKey, std::set<std::uint32_t>> cells_by_face(const MeshData& mesh) {
   std::map<FaceKey, std::set<std::uint32_t>> cells;
   for (std::size_t c = 0; c < mesh.cell_count(); ++c) {

@@ -1,4 +1,4 @@
-// What a draft is taken for, and which are refused.
+// The forms that drafts take, and the drafts that are refused.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// What may be straight or coplanar after edits, against coordinates: no such corner or edge goes without its mark.
+// The marks of straight and coplanar places after edits, against coordinates: no such corner or edge is without its
+// mark.
 #include <gtest/gtest.h>
 
 #include <algorithm>

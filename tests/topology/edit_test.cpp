@@ -1,4 +1,4 @@
-// What each edit does to cells that can be checked by hand, and what it refuses.
+// The effect of each edit on cells that can be checked by hand, and the edits that are refused.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -532,7 +532,7 @@ TEST(Edits, TouchedCellsTakePointsByTheirOwnDrafts) {
   EXPECT_EQ(t.commit().created.size(), 9U);
 }
 
-// What an edit touches does not depend on the size of the scene: the same around the cube in its middle.
+// The number of touched cells does not depend on the size of the scene: the same around the cube in its middle.
 TEST(Edits, TouchAsManyCellsInAnyScene) {
   const auto touched = [](CellType type, std::uint32_t size) {
     CombinatorialMap map(test::edit_box(type, false, size));

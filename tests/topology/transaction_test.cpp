@@ -1,4 +1,4 @@
-// What transactions give back, and that they leave nothing behind when they are taken back.
+// The reports of transactions. A transaction that is undone leaves nothing behind.
 #include <gtest/gtest.h>
 
 #include <functional>
