@@ -1,3 +1,4 @@
+// The parts of Gmsh's format that all versions share: numbers, element types, groups.
 #include "formats/gmsh_parts.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Writes Gmsh's .msh, versions 2.2 and 4.1, as text.
 #include <fmt/format.h>
 
 #include <array>
@@ -11,18 +12,23 @@
 namespace dartcast {
 namespace {
 
-/// Of an edge or a face.
-int face_type(std::size_t corners) {
-  if (corners > 4)
-    throw InvalidArgument("Gmsh's format cannot hold polygons or faces of more than four corners; write .vtu");
-  return static_cast<int>(corners) - 1;
+/// Gmsh's number of an element type.
+int element_type(CellType type, std::size_t corners) {
+  switch (type) {
+    case CellType::tetrahedron: return 4;
+    case CellType::hexahedron: return 5;
+    case CellType::prism: return 6;
+    case CellType::pyramid: return 7;
+    case CellType::triangle: return 2;
+    case CellType::quadrilateral: return 3;
+    case CellType::polygon: return static_cast<int>(corners) - 1;
+    case CellType::polyhedron: break;
+  }
+  throw InternalError("Gmsh's format has no polyhedra");
 }
 
-int element_type(CellType type, std::size_t corners) {
-  if (type == CellType::polyhedron) throw InvalidArgument("Gmsh's format cannot hold polyhedra; write .vtu");
-  static constexpr std::array<int, 4> types = {4, 5, 6, 7};
-  return dimension(type) == 2 ? face_type(corners) : types[static_cast<std::size_t>(type)];
-}
+/// Of an edge, a triangle or a quadrilateral.
+int face_type(std::size_t corners) { return static_cast<int>(corners) - 1; }
 
 std::int32_t region_of(const MeshData& mesh, std::size_t c) { return mesh.regions.empty() ? 0 : mesh.regions[c]; }
 

@@ -1,3 +1,4 @@
+// Reads Wavefront's .obj line by line.
 #include "formats/obj.hpp"
 
 #include <fmt/format.h>

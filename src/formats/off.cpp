@@ -1,3 +1,4 @@
+// Reads Geomview's .off.
 #include "formats/off.hpp"
 
 #include <cstdint>

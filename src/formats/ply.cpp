@@ -1,3 +1,4 @@
+// Reads Stanford's .ply: the header, then each element in ASCII or binary.
 #include "formats/ply.hpp"
 
 #include <fmt/format.h>

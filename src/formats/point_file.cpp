@@ -1,3 +1,4 @@
+// Reads points from .vtp and .csv files.
 #include "formats/point_file.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Bounds of the memory that reading a file takes, and the limit of this machine.
 #include "formats/read_memory.hpp"
 
 #include <fmt/format.h>

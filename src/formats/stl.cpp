@@ -1,3 +1,4 @@
+// Reads .stl, ASCII and binary, and joins equal corners.
 #include "formats/stl.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Catches VTK's error texts with an output window of its own, one caller at a time.
 #include "formats/vtk_errors.hpp"
 
 #include <vtkLogger.h>

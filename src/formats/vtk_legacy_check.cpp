@@ -1,3 +1,4 @@
+// Checks every size and number of a legacy .vtk file before VTK reads it.
 #include "formats/vtk_legacy_check.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Regions and patches of a VTK grid, from its cell arrays.
 #include "formats/vtk_tags.hpp"
 
 #include <fmt/format.h>

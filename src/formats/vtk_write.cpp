@@ -1,3 +1,4 @@
+// Writes .vtu and legacy .vtk: a VTK grid from the mesh, then VTK's writer.
 #include <fmt/format.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>

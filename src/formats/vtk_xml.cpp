@@ -1,3 +1,4 @@
+// Reads the pieces, sections and arrays of VTK's XML files.
 #include "formats/vtk_xml.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Decodes one array of a .vtu file: ASCII, base64, raw, compressed.
 #include "formats/vtu_array.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Checks every array of a .vtu or .vtp file before VTK reads it.
 #include "formats/vtu_check.hpp"
 
 #include <fmt/format.h>
