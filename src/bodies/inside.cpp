@@ -1,3 +1,4 @@
+// The parity of the triangles above a point, with a symbolic shift that no triangle's edge can meet.
 #include "bodies/inside.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// The nearest rotation: Newton's method from a guess, else Eigen's JacobiSVD.
 #include "bodies/rotation.hpp"
 
 #include <Eigen/Dense>

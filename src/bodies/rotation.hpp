@@ -5,7 +5,7 @@
 // Eigen's JacobiSVD.
 #pragma once
 
-#include "base/mat3.hpp"
+#include "dynamics/mat3.hpp"
 
 namespace dartcast {
 

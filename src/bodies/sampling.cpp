@@ -1,5 +1,4 @@
-#include "dartcast/sampling.hpp"
-
+// Samples of a surface, on it and in it: candidates in random order, kept where no sample is near.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include "base/random.hpp"
 #include "bodies/inside.hpp"
 #include "bodies/triangles.hpp"
+#include "dartcast/bodies.hpp"
 #include "dartcast/error.hpp"
 #include "tracking/representable_point.hpp"
 

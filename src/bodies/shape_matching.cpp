@@ -1,3 +1,4 @@
+// Shape matching: the best rotation or linear transformation of each region, and the goals that follow.
 #include "bodies/shape_matching.hpp"
 
 #include <fmt/format.h>

@@ -8,33 +8,10 @@
 #include <span>
 #include <vector>
 
-#include "base/mat3.hpp"
+#include "dartcast/bodies.hpp"
+#include "dynamics/mat3.hpp"
 
 namespace dartcast {
-
-struct MatchOptions {
-  /// Share of the best linear transformation in the goals, in [0, 1]; the rest is that of the best rotation.
-  double linear = 0.0;
-  /// The linear transformation is scaled to keep the volume (where the body is squeezed below an eighth of it, as if it
-  /// were an eighth).
-  bool keep_volume = true;
-  /// Regions of the rest shape that are matched each by itself, for softer bodies; a particle's goal is the mean over
-  /// its regions. They should overlap, or the body falls apart. Empty: one region of all.
-  std::vector<std::vector<std::uint32_t>> clusters = {};
-};
-
-/// How a region of the rest shape lies in space. A plain record.
-struct Fit {
-  Quaternion rotation;  ///< of length 1: the best one
-  Vec3 centre;          ///< where the region's centre of mass is
-  Mat3 transform;       ///< of rest positions relative to the rest centre of mass: goal = centre + transform * rest
-  double strain = 0.0;  ///< part of the matching energy that the particles' places do not change, per stiffness
-};
-
-/// The limits of a mass. Its inverse, and sums and products with it, then neither overflow nor vanish.
-inline constexpr double smallest_mass = 0x1p-300;
-inline constexpr double largest_mass = 0x1p+300;
-inline bool is_mass(double m) { return m >= smallest_mass && m <= largest_mass; }
 
 /// A rest shape with masses. Flat and linear ones, and single points, are shapes like others.
 ///
@@ -95,10 +72,5 @@ class RestShape {
 /// Matching energy per stiffness for goals of fixed fits, given their constant.
 double matching_energy(const RestShape& shape, std::span<const Vec3> positions, std::span<const Vec3> goals,
                        double constant);
-
-/// Regions for MatchOptions::clusters: cubes of edge `size` on a lattice of half that spacing, those that hold points.
-/// Every point is in at most 8. Throws InvalidArgument where size is not positive, or so small beside the points'
-/// extent that lattice numbers exceed 2^20.
-std::vector<std::vector<std::uint32_t>> overlapping_clusters(std::span<const Vec3> points, double size);
 
 }  // namespace dartcast

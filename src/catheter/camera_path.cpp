@@ -1,5 +1,4 @@
-#include "catheter/camera_path.hpp"
-
+// A camera's path: a spline through points of the lumen, and a walk from each point to the spline.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +6,7 @@
 #include <cmath>
 
 #include "catheter/transport.hpp"
+#include "dartcast/catheter.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/response.hpp"
 #include "tracking/representable_point.hpp"

@@ -1,3 +1,4 @@
+// One implicit step of a chain of points: springs, friction and walls in one banded system.
 #include "catheter/chain_solver.hpp"
 
 #include <algorithm>

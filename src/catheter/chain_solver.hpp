@@ -6,18 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "dartcast/catheter.hpp"
 #include "dartcast/vec3.hpp"
 
 namespace dartcast {
-
-/// A plane that a point is to stay above: normal . (x - point) >= 0.
-struct ChainWall {
-  std::uint32_t index = 0;  ///< of the point
-  Vec3 normal;              ///< unit
-  Vec3 point;
-  double pressure = 0.0;   ///< of the point on it, found by solve(); 0: not in contact
-  std::uint32_t idle = 0;  ///< for the caller: for how many walks it has not been met
-};
 
 /// Weights are relative to what resists a point's motion.
 struct ChainWeights {

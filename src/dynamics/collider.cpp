@@ -1,3 +1,4 @@
+// One step's collisions of spheres: swept spheres, pairs, contacts, impulses.
 #include "dynamics/collider.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Sorts contacts into packets of four without a common body; the order gives the serial result.
 #include "dynamics/contact_packets.hpp"
 
 #include <algorithm>

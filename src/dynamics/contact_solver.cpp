@@ -1,3 +1,4 @@
+// Sequential impulses for spheres: rows from contacts, cached impulses, sweeps, rebounds.
 #include "dynamics/contact_solver.hpp"
 
 #include <algorithm>

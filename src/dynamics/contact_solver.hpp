@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "dartcast/dynamics.hpp"
 #include "dartcast/storage.hpp"
 #include "dartcast/vec3.hpp"
 #include "dynamics/contact_packets.hpp"
@@ -45,18 +46,6 @@ struct SolverOptions {
   /// good choice.
   double resting_speed = 0.0;
   double position_correction = 0.2;  ///< share of a penetration taken out in one step, in [0, 1]
-};
-
-/// An impulse that the next step starts from.
-struct CachedImpulse {
-  std::uint64_t a = 0;  ///< ids of the spheres; of a wall's: that of the sphere, and none
-  std::uint64_t b = 0;
-  Vec3 normal;
-  double normal_impulse = 0.0;  ///< the normal
-  Vec3 tangent_impulse;
-
-  static constexpr std::uint64_t wall = ~std::uint64_t{0};
-  bool operator==(const CachedImpulse&) const = default;
 };
 
 /// What acts on the spheres: entry i of each belongs to sphere i.

@@ -1,3 +1,4 @@
+// The search for walls near a sphere, cell by cell through the faces that it reaches.
 #include "dynamics/near_walls.hpp"
 
 #include <algorithm>

@@ -12,6 +12,7 @@
 
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/contact.hpp"
+#include "dartcast/dynamics.hpp"
 #include "dartcast/particle_state.hpp"
 #include "dynamics/swept_sphere.hpp"
 
@@ -43,12 +44,7 @@ struct WallFeature {
   [[nodiscard]] WallHit hit() const { return {face, triangle, patch, normal}; }
 };
 
-/// A sphere is at the distance of its radius from a wall where the two differ by no more than this share of (radius +
-/// the largest coordinate of the centre): what rounding leaves where it is put there. Places that are no farther apart
-/// are one.
-inline constexpr double touching_bound = 0x1p-46;
-
-/// That bound, as a length.
+/// touching_bound as a length.
 double touching_slack(const Vec3& centre, double radius);
 
 /// What a search needs, to be used again: for one thread at a time. After a few searches none allocates.

@@ -1,3 +1,4 @@
+// Sequential impulses for bodies that turn: rows from contacts, cached impulses, sweeps, rebounds.
 #include "dynamics/rigid_solver.hpp"
 
 #include <algorithm>

@@ -9,27 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "base/mat3.hpp"
 #include "dynamics/contact_solver.hpp"
+#include "dynamics/mat3.hpp"
 
 namespace dartcast {
-
-/// A body, or a sphere: a body that does not turn.
-struct RigidMover {
-  double inverse_mass = 0.0;  ///< 0: it cannot be pushed, and does not turn
-  bool turns = false;
-  Mat3 inverse_inertia = zero_matrix();  ///< about the centre; symmetric, no eigenvalue below 0
-  Vec3 centre;
-  Vec3 velocity;  ///< of the centre; in: after all other forces; out: after the impulses, with rebounds
-  Vec3 angular_velocity;
-  Vec3 position_delta;  ///< out: displacement in the step, without rebounds, with what takes out penetration; turned
-                        ///< likewise
-  Vec3 rotation_delta;
-
-  [[nodiscard]] Vec3 velocity_at(const Vec3& x) const {
-    return turns ? velocity + cross(angular_velocity, x - centre) : velocity;
-  }
-};
 
 /// Two movers near each other, or one and a wall: their motion relative to each other along the normal must not be
 /// below -gap.

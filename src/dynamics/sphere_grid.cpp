@@ -1,3 +1,4 @@
+// A hash grid of several levels: each box is stored once, in the level of its size.
 #include "dynamics/sphere_grid.hpp"
 
 #include <algorithm>

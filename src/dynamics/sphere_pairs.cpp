@@ -1,3 +1,4 @@
+// Pairs of spheres whose swept boxes meet: from cell lists where spheres are small, else from the grid.
 #include "dynamics/sphere_pairs.hpp"
 
 #include <fmt/format.h>

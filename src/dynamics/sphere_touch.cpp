@@ -1,3 +1,4 @@
+// The first touch of two moving spheres: a filtered quadratic, exact where rounding leaves it open.
 #include "dynamics/sphere_touch.hpp"
 
 #include <algorithm>

@@ -3,14 +3,9 @@
 
 #include <optional>
 
-#include "dartcast/vec3.hpp"
+#include "dartcast/dynamics.hpp"
 
 namespace dartcast {
-
-/// The largest radius of a sphere, in the unit of the positions. Volumes and masses then do not overflow. A point has
-/// the radius 0.
-inline constexpr double largest_radius = 0x1p+100;
-inline bool is_radius(double r) { return r >= 0.0 && r <= largest_radius; }
 
 /// A sphere whose centre is at centre + t displacement, t in [0, 1].
 struct SphereMotion {

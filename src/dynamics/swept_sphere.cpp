@@ -1,3 +1,4 @@
+// The first touch of a moving sphere and triangle: intervals are proved clear, or divided.
 #include "dynamics/swept_sphere.hpp"
 
 #include <algorithm>

@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "dartcast/vec3.hpp"
+#include "dartcast/dynamics.hpp"
 
 namespace dartcast {
 
@@ -48,9 +48,6 @@ struct SphereTouch {
   double contact = 0.0;   ///< at or after `time`, by no more than that bound: where the distance is next to the radius
   bool at_start = false;  ///< they touch or overlap at the time 0 already, and the distance then gets smaller
 };
-
-/// Share of the motion.
-inline constexpr double sphere_time_bound = 0x1p-30;
 
 /// A grazing sphere may be found to touch where it passes at more than its radius, but by no more than this share of M,
 /// the largest of the radius and the distances between the centre and a corner, before and after; never the other way

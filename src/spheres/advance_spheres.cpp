@@ -1,3 +1,4 @@
+// One step of all spheres: rounds of planning, advancing the centres, and landing.
 #include <fmt/format.h>
 
 #include <algorithm>

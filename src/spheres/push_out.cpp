@@ -1,3 +1,4 @@
+// The shortest displacement that takes a sphere out of the walls, by Hildreth's method.
 #include "spheres/push_out.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// One sphere's step after its first stretch: contacts, overlaps, and the stretches that follow.
 #include "spheres/sphere_run.hpp"
 
 #include <fmt/format.h>

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "dartcast/spheres.hpp"
+#include "dynamics/near_walls.hpp"
 #include "spheres/sphere_way.hpp"
 
 namespace dartcast::detail {

@@ -1,3 +1,4 @@
+// One stretch of a sphere's way: the first wall that it touches, and the target of the centre.
 #include "spheres/sphere_way.hpp"
 
 #include <algorithm>

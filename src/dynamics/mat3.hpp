@@ -1,18 +1,11 @@
-// Matrices of 3 by 3 and rotations: what shape matching needs, nothing else.
+// Arithmetic of 3 by 3 matrices and of rotations: the part that shape matching needs.
 #pragma once
 
-#include "dartcast/vec3.hpp"
+#include <cmath>
+
+#include "dartcast/dynamics.hpp"
 
 namespace dartcast {
-
-/// By columns: the images of the unit vectors.
-struct Mat3 {
-  Vec3 x = {1.0, 0.0, 0.0};
-  Vec3 y = {0.0, 1.0, 0.0};
-  Vec3 z = {0.0, 0.0, 1.0};
-
-  constexpr bool operator==(const Mat3&) const = default;
-};
 
 constexpr Mat3 operator+(const Mat3& a, const Mat3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 constexpr Mat3 operator-(const Mat3& a, const Mat3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
@@ -26,14 +19,6 @@ constexpr Mat3 outer(const Vec3& a, const Vec3& b) { return {a * b.x, a * b.y, a
 constexpr double determinant(const Mat3& a) { return dot(a.x, cross(a.y, a.z)); }
 /// Sum of the products of entries: the trace of a^T b.
 constexpr double dot(const Mat3& a, const Mat3& b) { return (dot(a.x, b.x) + dot(a.y, b.y)) + dot(a.z, b.z); }
-
-/// w + v; one of length 1 is a rotation.
-struct Quaternion {
-  double w = 1.0;
-  Vec3 v;
-
-  constexpr bool operator==(const Quaternion&) const = default;
-};
 
 constexpr Quaternion operator*(const Quaternion& a, const Quaternion& b) {
   return {a.w * b.w - dot(a.v, b.v), (b.v * a.w + a.v * b.w) + cross(a.v, b.v)};
