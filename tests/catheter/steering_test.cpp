@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "base/random.hpp"
-#include "catheter/camera_path.hpp"
 #include "dartcast/audit.hpp"
+#include "dartcast/catheter.hpp"
 #include "dartcast/error.hpp"
 #include "support/catheter_scenes.hpp"
 #include "support/tier.hpp"

@@ -5,6 +5,7 @@
 
 #include "base/random.hpp"
 #include "dartcast/generators.hpp"
+#include "support/meshes.hpp"
 #include "tracking/locate.hpp"
 #include "tracking/walk.hpp"
 
@@ -22,8 +23,7 @@ TEST(Visitor, SeesAChainOfNeighbours) {
     o.size = {5, 5, 5};
     o.jitter = 0.4;
     o.blocked_share = 0.1;
-    if (which < 4) o.type = static_cast<CellType>(which);
-    o.mixed = which == 4;
+    test::set_kind(o, which);
     const CellComplex complex(generate_box(o));
     const Locator locator(complex);
     const auto space = current_space(complex);
