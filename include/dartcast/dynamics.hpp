@@ -1,4 +1,4 @@
-// What spheres, bodies and catheters share: limits of numbers, bounds of contacts, and records of rigid bodies.
+// The public types that spheres, bodies and catheters share: limits of numbers, bounds of contacts, and records of rigid bodies.
 #pragma once
 
 #include <cstdint>
@@ -21,11 +21,11 @@ inline bool is_mass(double m) { return m >= smallest_mass && m <= largest_mass; 
 inline constexpr double sphere_time_bound = 0x1p-30;
 
 /// A sphere touches a wall where its radius and its distance from the wall differ by no more than this share of
-/// (radius + the largest coordinate of the centre). That is the rounding of a centre that was put there. Two points
-/// that are no farther apart count as one.
+/// (radius + the largest coordinate of the centre): the rounding of a centre at that distance. Two points that are no
+/// farther apart count as one.
 inline constexpr double touching_bound = 0x1p-46;
 
-/// What one step's collisions of spheres, with each other and with walls, were.
+/// Collisions of spheres, with each other and with walls, in one step.
 struct CollisionCounts {
   std::uint64_t pairs_tested = 0;    ///< pairs whose swept boxes met
   std::uint64_t pairs_near = 0;      ///< pairs given to the solver

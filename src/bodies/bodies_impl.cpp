@@ -26,7 +26,7 @@ Vec3 lowest_corner(std::span<const Vec3> points, const Vec3& gravity) {
 
 void check_collisions(const BodyCollisionOptions& o) {
   if (!(o.position_correction >= 0.0 && o.position_correction <= 1.0))
-    throw InvalidArgument("bodies: the push of collisions must be between 0 and 1");
+    throw InvalidArgument("bodies: the position_correction of collisions must be between 0 and 1");
   if (!(o.friction >= 0.0) || !std::isfinite(o.friction))
     throw InvalidArgument("bodies: the friction of collisions must be finite and not negative");
   if (o.restitution && !(*o.restitution >= 0.0 && *o.restitution <= 1.0))
@@ -63,7 +63,7 @@ void Bodies::Impl::check(const BodyOptions& o) const {
   if (!(o.damping >= 0.0) || !std::isfinite(o.damping))
     throw InvalidArgument("bodies: the damping must be finite and not negative");
   if (!is_finite(o.velocity) || !is_finite(o.angular_velocity))
-    throw InvalidArgument("bodies: a body's velocity and spin must be finite");
+    throw InvalidArgument("bodies: a body's velocity and angular_velocity must be finite");
   if (!(o.stiffness >= 0.0) || !std::isfinite(o.stiffness))
     throw InvalidArgument("bodies: a stiffness must be finite and not negative");
   if (o.stiffness * (options_.dt * options_.dt) > 1.0 + 0x1p-40)

@@ -33,7 +33,7 @@ struct Bodies::Impl {
     double trial_constant = 0.0;
     double budget = 0.0;     // total energy that the body may have
     double before = 0.0;     // total energy at the start
-    double moving = 0.0;     // kinetic energy that its motion asks for
+    double moving = 0.0;     // kinetic energy of its motion
     double input = 0.0;      // energy from moving walls and apply_impulse()
     double work = 0.0;       // work of other bodies on it
     double allowed = 0.0;    // part of the budget that remains for motion

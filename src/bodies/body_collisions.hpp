@@ -21,7 +21,7 @@ struct BodyParticles {
   std::span<const std::uint32_t> body_of;
   std::span<const std::uint64_t> ids;
   std::span<const Vec3> positions;
-  std::span<const double> radii;  ///< 0: meets nobody
+  std::span<const double> radii;  ///< 0: it meets no other
   std::span<const double> inverse_masses;
 };
 

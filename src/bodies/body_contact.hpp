@@ -47,7 +47,7 @@ struct PotentialEnergy {
 struct PassBody {
   double stiffness = 0.0;
   bool limited = false;  ///< first pass: targets are limited to those that the energy pays for
-  bool slides = false;   ///< second pass: what the walls leave of the way is gone, too
+  bool slides = false;   ///< second pass: particles lose the rest of their way at walls
 };
 
 /// Data of one pass; the spans have an entry per particle, `bodies` one per body.

@@ -1,5 +1,4 @@
-// Shape matching: where the particles of a body would be if it had its rest shape, as near as possible to where they
-// are.
+// Shape matching: goals for the particles of a body, in its rest shape, as near as possible to their positions.
 //
 // M. Mueller, B. Heidelberger, M. Teschner, M. Gross, "Meshless deformations based on shape matching", SIGGRAPH 2005.
 #pragma once
@@ -13,17 +12,17 @@
 
 namespace dartcast {
 
-/// A rest shape with masses. Flat and linear ones, and single points, are shapes like others.
+/// A rest shape with masses. It may be flat, a line, or a single point.
 ///
-/// The matching energy per stiffness, for particles at x and goals g of fixed fits, is constant + sum m |x - g|^2 / 2,
-/// so that the force per stiffness is -m (x - g). Where the fits are those of match(), without keep_volume or with
-/// linear = 0, it is the least over all fits; then its derivative is that force, too: the energy of match() is the
-/// force's potential.
+/// The matching energy per stiffness, for particles at x and goals g of fixed fits, is constant + sum m |x - g|^2 /
+/// 2, so that the force per stiffness is -m (x - g). Where the fits are those of match(), without keep_volume or with
+/// linear = 0, the energy is the least over all fits. Then its derivative is that force, so it is the potential of
+/// the force.
 class RestShape {
  public:
   /// `masses`: one per point. Throws InvalidArgument where there is no point, a mass is out of range (is_mass()), a
-  /// point is not finite, linear is outside [0, 1], a cluster is empty, names no point or one twice, or a point is in
-  /// none.
+  /// point is not finite, linear is outside [0, 1], a cluster is empty, names a missing point or one twice, or a
+  /// point is in no cluster.
   RestShape(std::span<const Vec3> points, std::span<const double> masses, const MatchOptions& options = {});
 
   [[nodiscard]] std::size_t size() const { return masses_.size(); }
@@ -33,12 +32,12 @@ class RestShape {
   /// Whether match() gives the fits of least energy.
   [[nodiscard]] bool has_least_fits() const { return !keep_volume_ || linear_ == 0.0; }
 
-  /// Fits the regions to the particles' places. `fits`: one per cluster, in as the last ones (only their rotations
-  /// count, as guesses), out the new ones. Returns how many rotations were left to the fallback. Preconditions: sizes
+  /// Fits the regions to the particles' positions. `fits`: one per cluster; in: the last ones, whose rotations are
+  /// guesses; out: the new ones. Returns the number of rotations that needed the fallback. Preconditions: sizes
   /// match. Cost: about 10 ns per member of a cluster, 100 ns per cluster.
   unsigned match(std::span<const Vec3> positions, std::span<Fit> fits) const;
 
-  /// Where the fits want the particles. Returns the constant of the energy. Cost: a few ns per member.
+  /// Sets the goals of the fits. Returns the constant of the energy. Cost: a few ns per member.
   double goals(std::span<const Fit> fits, std::span<Vec3> goals) const;
 
  private:
@@ -52,7 +51,7 @@ class RestShape {
     double mass;
     Mat3 moments;      // sum of weight rest rest^T
     Mat3 inverse;      // its inverse on the space that the region spans, 0 across it
-    Mat3 not_spanned;  // projection onto what is across it
+    Mat3 not_spanned;  // projection onto the complement of that space
   };
 
   void add_region(std::span<const std::uint32_t> particles, std::span<const Vec3> points);

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double max_push = 0.25;    // of the spacing, in a substep
 constexpr double max_turn = 0.2;     // rad, in a substep
-constexpr int max_halvings = 4;      // of a push that does not go
+constexpr int max_halvings = 4;      // of a push that is not possible
 constexpr double max_bending = 1e8;  // see src/catheter/chain_solver.cpp
 constexpr double max_points = 1e6;
 
@@ -77,10 +77,10 @@ std::size_t Catheter::Impl::inserted_points() const {
   return std::min(rounded_up ? m - 1 : m, count_ - 1);
 }
 
-// The last one inserted is held by the proximal end.
+// The proximal end holds the last one inserted.
 std::size_t Catheter::Impl::free_points() const { return std::max<std::size_t>(inserted_points(), 1) - 1; }
 
-// Where the last point inserted is, and where the points behind it would be, in a straight line through the entry.
+// The place of the last point inserted, and of the points behind it, on a straight line through the entry.
 Vec3 Catheter::Impl::base(std::size_t i) const {
   return entry() + direction_ * (inserted_ - static_cast<double>(i) * options_.spacing);
 }
@@ -97,7 +97,7 @@ void Catheter::Impl::check(const CatheterInput& input) const {
 CatheterStep Catheter::Impl::step(const CatheterInput& input) {
   check(input);
   if (edits_ != environment_.edit_count())
-    throw InvalidArgument("catheter: the environment was edited: call follow() after each edit");
+    throw InvalidArgument("catheter: the environment was edited: call update_after_edit() after each edit");
   CatheterStep result;
   move_with_vessel(result);
   const double push = std::clamp(input.push, -inserted_, total_length() - inserted_);
@@ -119,7 +119,7 @@ CatheterStep Catheter::Impl::step(const CatheterInput& input) {
   return result;
 }
 
-// A substep, taken back where it leaves a segment off by more than `limit`.
+// Tries a substep, and undoes it where it leaves a segment off by more than `limit`.
 bool Catheter::Impl::attempt(const CatheterInput& piece, double share, Bending bending, double limit,
                              CatheterStep& result) {
   save();
@@ -137,13 +137,13 @@ bool Catheter::Impl::attempt(const CatheterInput& piece, double share, Bending b
   return true;
 }
 
-// A pull may leave segments that the vessel has drawn out as they are.
+// A pull may leave segments as long as the vessel has drawn them out.
 bool Catheter::Impl::make(const CatheterInput& piece, double share, CatheterStep& result) {
   const double limit = piece.push < 0.0 ? std::max(options_.tolerance, worst_segment()) : options_.tolerance;
   return attempt(piece, share, Bending::stiff, limit, result);
 }
 
-// The half of the substep, or of that: what is left of it is refused.
+// Tries half of the substep, then half of that, and so on. The rest is refused.
 void Catheter::Impl::make_less(const CatheterInput& piece, double share, CatheterStep& result) {
   double part = 1.0;
   for (int i = 0; i < max_halvings; ++i) {
@@ -152,15 +152,15 @@ void Catheter::Impl::make_less(const CatheterInput& piece, double share, Cathete
   }
 }
 
-// Nothing could be made of the step but what the vessel does: lengths come before bends then, and if they cannot be
-// mended, all stays as it rode along.
+// No part of the push was possible. Lengths come before bends then. If they cannot be corrected either, the points
+// stay where the vessel carried them.
 void Catheter::Impl::relax(const Vec3& load, CatheterStep& result) {
   const CatheterInput nothing = {0.0, 0.0, load};
   if (attempt(nothing, 1.0, Bending::stiff, options_.tolerance, result)) return;
   attempt({}, 1.0, Bending::limp, std::max(options_.tolerance, worst_segment()), result);
 }
 
-// All points keep their weights in their simplices, which may have moved.
+// Carries the points with the vessel: they keep their weights in their simplices, which may have moved.
 void Catheter::Impl::move_with_vessel(CatheterStep& result) {
   for (std::size_t i = 0; i <= count_; ++i) targets_[i] = flushed(carried(i));
   const Corners corners = environment_.complex().corners(particles_[count_].at());
@@ -183,7 +183,7 @@ Vec3 Catheter::Impl::carried(std::size_t i) const {
   return x;
 }
 
-// The entry's direction, as a line drawn in its simplex.
+// Turns the entry's direction like a line drawn in its simplex.
 void Catheter::Impl::turn_with_vessel(const Corners& now) {
   const Corners& before = holds_.back().corners;
   std::array<Vec3, 3> edges;
@@ -198,8 +198,8 @@ void Catheter::Impl::turn_with_vessel(const Corners& now) {
   reference_ = transported(reference_, old, direction_);
 }
 
-// Stores where the points are in their simplices, so that they can ride along. The points are still in the previous
-// positions where they await a move.
+// Stores the points' weights in their simplices, so that the vessel can carry them. Points that await a move are
+// still in the previous positions.
 void Catheter::Impl::hold() {
   const bool before_move = environment_.awaits_advance(particles_);
   const CellComplex& complex = environment_.complex();

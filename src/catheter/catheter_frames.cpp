@@ -1,4 +1,4 @@
-// What a catheter looks like, how it is saved, and how it follows edits.
+// A catheter's points and frames, checkpoints, and its update after edits.
 #include <algorithm>
 #include <cmath>
 #include <utility>

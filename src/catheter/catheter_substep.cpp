@@ -12,12 +12,13 @@ namespace dartcast {
 namespace {
 
 // Shares of the spacing.
-constexpr double reach = 0.5;           // of a point in one solve, and of what is known of a wall
+constexpr double reach = 0.5;           // largest displacement of a point in one solve, and range of a wall's plane
 constexpr double settled_share = 0.03;  // points that move less have arrived
-// Of the tolerance: lengths that are right to that are right.
+// Share of the tolerance: smaller errors of lengths end the rounds.
 constexpr double length_share = 0.05;
 
-constexpr double same_wall = 0.9999;   // cosine between normals of what counts as one wall: nothing is decided by it
+constexpr double same_wall =
+    0.9999;  // cosine between normals of one wall; an estimate that no exact decision depends on
 constexpr std::uint32_t max_idle = 3;  // walks after which a wall that is not met is forgotten
 
 }  // namespace
@@ -49,7 +50,7 @@ Catheter::Impl::Outcome Catheter::Impl::substep(const CatheterInput& piece, doub
   return outcome;
 }
 
-// Each point goes where the one before it (after it, where the catheter is pulled) was, as far as the push goes.
+// Each point moves towards the place of the one before it (in a pull: after it), as far as the push goes.
 void Catheter::Impl::follow_path(double push, std::size_t free) {
   const double share = std::abs(push) / options_.spacing;
   for (std::size_t i = 0; i < free; ++i) {
@@ -60,7 +61,7 @@ void Catheter::Impl::follow_path(double push, std::size_t free) {
   for (std::size_t i = free; i < count_; ++i) targets_[i] = base(i);
 }
 
-// The second differences that the tip has at rest: along its frame's normal at each point.
+// Sets the second differences of the tip at rest: along its frame's normal at each point.
 void Catheter::Impl::bend_tip(std::size_t free) {
   const double h = options_.spacing;
   const double bend = 2.0 * h * std::sin(0.5 * options_.tip_curvature * h);
@@ -77,7 +78,7 @@ void Catheter::Impl::bend_tip(std::size_t free) {
   }
 }
 
-// To where the solver wants the points. The largest displacement of a free one.
+// Walks the points to the solver's targets. Returns the largest displacement of a free one.
 double Catheter::Impl::walk(std::size_t free, Outcome& outcome) {
   const std::size_t inserted = inserted_points();
   for (std::size_t i = 0; i <= count_; ++i) targets_[i] = i < inserted ? flushed(targets_[i]) : entry();
@@ -95,7 +96,7 @@ double Catheter::Impl::walk(std::size_t free, Outcome& outcome) {
   return moved;
 }
 
-// Walls that points have met, as planes: as long as the points are near where they met them, and meet them again.
+// Keeps walls that points have met, as planes, while the points are near the place of contact and meet them again.
 void Catheter::Impl::keep_walls(const ContactList& contacts) {
   const std::size_t free = free_points();
   const double far = reach * options_.spacing;

@@ -24,7 +24,7 @@ constexpr Quaternion operator*(const Quaternion& a, const Quaternion& b) {
   return {a.w * b.w - dot(a.v, b.v), (b.v * a.w + a.v * b.w) + cross(a.v, b.v)};
 }
 
-/// Of the same direction and length 1. Precondition: not 0.
+/// The quaternion scaled to length 1. Precondition: it is not 0.
 inline Quaternion normalized(const Quaternion& q) {
   const double s = 1.0 / std::sqrt(q.w * q.w + dot(q.v, q.v));
   return {q.w * s, q.v * s};

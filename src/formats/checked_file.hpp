@@ -16,7 +16,7 @@
 
 namespace dartcast {
 
-/// Calls read(file); what it throws becomes a defect of kind "file". `what`: "mesh", "surface".
+/// Calls read(file). An exception of it becomes a defect of kind "file". `what`: "mesh", "surface".
 template <class Read>
 MeshFile checked_file(const std::filesystem::path& path, const char* what, Read&& read) {
   MeshFile out;

@@ -1,4 +1,4 @@
-// A file in memory, read number by number: every number is range-checked, every count is checked against the bytes that remain.
+// A file in memory, read number by number, with checks of ranges, and of counts against the bytes that remain.
 #pragma once
 
 #include <cstddef>

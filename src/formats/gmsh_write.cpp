@@ -27,7 +27,7 @@ int element_type(CellType type, std::size_t corners) {
   throw InternalError("Gmsh's format has no polyhedra");
 }
 
-/// Of an edge, a triangle or a quadrilateral.
+/// The same, for an edge, a triangle or a quadrilateral.
 int face_type(std::size_t corners) { return static_cast<int>(corners) - 1; }
 
 std::int32_t region_of(const MeshData& mesh, std::size_t c) { return mesh.regions.empty() ? 0 : mesh.regions[c]; }
@@ -114,7 +114,7 @@ std::string format_gmsh_4(const MeshData& mesh) {
   fmt::format_to(append, "$EndEntities\n$Nodes\n1 {} 1 {}\n{} {} 0 {}\n", n, n, first.first, first.second, n);
   for (std::size_t p = 0; p < n; ++p) fmt::format_to(append, "{}\n", p + 1);
   for (const Vec3& p : mesh.points) append_point(out, p);
-  // Neighbours in the list that agree share a block, so that the order of the elements is kept.
+  // Only equal neighbours in the list share a block, so that the elements keep their order.
   std::string blocks;
   std::size_t count = 0;
   for (std::size_t e = 0, end = 0; e < elements.size(); e = end, ++count) {

@@ -70,7 +70,7 @@ void read_elements(FileText& text, ParsedMesh& parsed, const Keyword& keyword) {
   }
 }
 
-/// Skips the numbers of a section that is of no use here.
+/// Skips the numbers of a section that this library does not use.
 void skip_numbers(FileText& text) {
   while (!text.at_end() && std::isalpha(static_cast<unsigned char>(text.peek()[0])) == 0) text.word("a number");
 }

@@ -31,7 +31,7 @@
 namespace dartcast {
 namespace {
 
-/// How a linear VTK cell becomes one here. A face has `type` polyhedron.
+/// The conversion of a linear VTK cell. A face has `type` polyhedron.
 struct Standard {
   int vtk;
   CellType type;
@@ -212,7 +212,7 @@ ParsedMesh convert(vtkUnstructuredGrid& grid, std::string format, const std::str
   return parsed;
 }
 
-/// Runs a VTK reader; whatever it complains about refuses the file.
+/// Runs a VTK reader. Any complaint of it refuses the file.
 template <class Reader>
 ParsedMesh read_with(Reader& reader, const std::string& format, const std::string& patch_array) {
   const VtkErrors errors;

@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where the bytes of a file go in the end: behind links.
+/// The file that a path names, after all links.
 fs::path target_of(const fs::path& path) {
   std::error_code error;
   const fs::path target = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : path;
@@ -40,12 +40,13 @@ void move_over(const fs::path& part, const fs::path& target) {
   if (error) throw Error(fmt::format("{}: the file cannot be replaced: {}", target.string(), error.message()));
 }
 
-/// Calls write(file) for a new file beside the target, and puts that in the target's place when it is whole.
+/// Calls write(file) for a new file beside the target, which takes the target's place when it is whole.
 template <class Write>
 void write_beside(const fs::path& path, Write&& write) {
   const fs::path target = target_of(path);
   std::error_code error;
-  if (fs::exists(target, error) && !fs::is_regular_file(target, error)) return write(path);  // a device has no beside
+  if (fs::exists(target, error) && !fs::is_regular_file(target, error))
+    return write(path);  // a device has no folder to write in
   const fs::path part = target.string() + fmt::format(".{}.part", ::getpid());
   try {
     write(part);
