@@ -218,6 +218,16 @@ TEST(FollowEdit, LocatesInTheCellThatWasSimplified) {
   test::expect_audited(environment.complex(), particles);
 }
 
+// The darts of a face that start at x = 0.5.
+std::vector<Dart> middle_darts(ComplexEdit& e, Cell c, std::uint16_t f) {
+  std::vector<Dart> darts;
+  for (unsigned i = 0; i < e.map().shape(c).degree(f); ++i) {
+    const Dart d{c, static_cast<std::uint16_t>(e.map().shape(c).first_dart(f) + i)};
+    if (e.position(e.map().origin(d)).x == 0.5) darts.push_back(d);
+  }
+  return darts;
+}
+
 // The third: a cell is cut in two, each particle is in the half where it lies; the cut then opened is a wall.
 TEST(FollowEdit, LocatesInTheHalfThatItIsIn) {
   Environment environment(test::unit_box({1, 1, 1}));
@@ -236,18 +246,10 @@ TEST(FollowEdit, LocatesInTheHalfThatItIsIn) {
         }
       }
     }
-    const auto middles = [&](Cell c, std::uint16_t f) {
-      std::vector<Dart> darts;
-      for (unsigned i = 0; i < e.map().shape(c).degree(f); ++i) {
-        const Dart d{c, static_cast<std::uint16_t>(e.map().shape(c).first_dart(f) + i)};
-        if (e.position(e.map().origin(d)).x == 0.5) darts.push_back(d);
-      }
-      return darts;
-    };
     for (int k = 0; k < 4; ++k) {
       const Cell c = e.map().cells().front();
       for (std::uint16_t f = 0; f < e.map().shape(c).face_count(); ++f) {
-        const auto ends = middles(c, f);
+        const auto ends = middle_darts(e, c, f);
         if (ends.size() != 2 || e.map().shape(c).degree(f) != 6) continue;
         split_face(e.topology(), ends[0], ends[1]);
         break;

@@ -228,7 +228,10 @@ TEST(Deformation, RefusesWhatItCannotDo) {
       Kind::frames, [](S& s) { s.frames[1].clear(); }, "frame 1");
   refuses(
       Kind::frames, [](S& s) { s.frames[0][0].z = inf; }, "frame 0 must be finite");
+}
 
+TEST(Deformation, RefusesFramesBesideOthersAndBadTimes) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   const Vec3 x;
   Vec3 out = {1, 2, 3};
   DeformationStep frames = step(Kind::frames, 0.0);
