@@ -148,8 +148,9 @@ std::string ply_binary(bool big, const std::vector<Ids>& faces, const std::strin
   return out;
 }
 
-std::string off(const std::vector<Ids>& faces, const std::string& header = "OFF\n", const std::string& edges = " 0",
-                const std::string& behind_point = "", const std::string& behind_face = "") {
+inline std::string off(const std::vector<Ids>& faces, const std::string& header = "OFF\n",
+                       const std::string& edges = " 0", const std::string& behind_point = "",
+                       const std::string& behind_face = "") {
   std::string out = header + "8 " + std::to_string(faces.size()) + edges + "\n";
   for (const Xyz& p : cube_points) out += words(p) + behind_point + "\n";
   for (const Ids& face : faces) {
