@@ -241,7 +241,7 @@ class Bodies {
   Bodies(Environment& environment, const BodiesOptions& options, WallResponses responses = WallResponses{});
   ~Bodies();
   Bodies(const Bodies& other);
-  Bodies(Bodies&& other);
+  Bodies(Bodies&& other);  // NOLINT(performance-noexcept-move-constructor): it gives the other one new members
   Bodies& operator=(const Bodies&) = delete;
   Bodies& operator=(Bodies&&) = delete;
 

@@ -12,7 +12,8 @@ Bodies::Bodies(Environment& environment, const BodiesOptions& options, WallRespo
 Bodies::~Bodies() = default;
 Bodies::Bodies(const Bodies& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}
 // The other one keeps members, for it can be used again.
-Bodies::Bodies(Bodies&& other) : impl_(std::make_unique<Impl>(std::move(*other.impl_))) {}
+Bodies::Bodies(Bodies&& other)  // NOLINT(performance-noexcept-move-constructor)
+    : impl_(std::make_unique<Impl>(std::move(*other.impl_))) {}
 
 AddBodyResult Bodies::add(std::span<const Vec3> points, const BodyOptions& options) {
   return impl_->add(points, options);
