@@ -7,7 +7,6 @@
 
 #include "dartcast/environment.hpp"
 #include "dartcast/generators.hpp"
-#include "dartcast/sampling.hpp"
 #include "dartcast/simulation.hpp"
 
 int main() {

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -46,7 +47,9 @@ void add_check(CLI::App& app, int& status) {
   const auto mesh = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
   CLI::App* verb = app.add_subcommand("check", "Say what is in a mesh file, and whether it is valid.");
-  verb->add_option("MESH", *mesh, "a mesh: .vtu .vtk .msh .msh2 .msh4 .mesh; or a surface: .stl .obj .ply .off")
+  verb->add_option("MESH", *mesh,
+                   fmt::format("a mesh: {}; or a surface: {}", fmt::join(mesh_endings(), " "),
+                               fmt::join(surface_endings(), " ")))
       ->required();
   const auto skip = std::make_shared<bool>(false);
   verb->add_flag("--skip-bad-cells", *skip, "with this option of dartcast run: bad cells are left out, and a warning");
@@ -72,7 +75,7 @@ void add_convert(CLI::App& app, int& status) {
   const auto out = std::make_shared<std::string>();
   CLI::App* verb = app.add_subcommand("convert", "Write a mesh in another format, given by the ending.");
   verb->add_option("IN", *in, "the mesh to read")->required();
-  verb->add_option("OUT", *out, "the file to write: .vtu .vtk .msh .msh2 .msh4 .mesh")->required();
+  verb->add_option("OUT", *out, fmt::format("the file to write: {}", fmt::join(mesh_endings(), " ")))->required();
   const auto memory = std::make_shared<std::uint64_t>(0);
   add_max_memory(*verb, *memory);
   verb->callback([in, out, memory, &status] { status = convert(*in, *out, *memory); });

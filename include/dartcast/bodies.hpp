@@ -2,318 +2,309 @@
 //
 // T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism for continuous collision detection in
 // deformable environments", SPM 2009, section 7.4.
+// Shapes: M. Mueller, B. Heidelberger, M. Teschner, M. Gross, "Meshless deformations based on shape matching",
+// SIGGRAPH 2005.
 #pragma once
 
-#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "bodies/body_collisions.hpp"
-#include "bodies/body_contact.hpp"
-#include "bodies/body_motion.hpp"
-#include "bodies/body_rebound.hpp"
-#include "bodies/shape_matching.hpp"
 #include "dartcast/audit.hpp"
+#include "dartcast/dynamics.hpp"
 #include "dartcast/environment.hpp"
+#include "dartcast/mesh_data.hpp"
 #include "dartcast/response.hpp"
-#include "dartcast/threads.hpp"
-#include "dynamics/rigid_solver.hpp"
 
 namespace dartcast {
+
+// Samples of a surface: the particles of a body.
+//
+// Random candidates, one in each piece of a fine division, are taken in random order. A candidate is dropped where a
+// sample is nearer than the spacing ("dart throwing": R. L. Cook, "Stochastic sampling in computer graphics", 1986; on
+// meshes: D. Cline, S. Jeschke, K. White, A. Razdan, P. Wonka, "Dart throwing on surfaces", 2009). Every piece has a
+// candidate, so the gaps between the samples are bounded, too.
+
+/// Lengths in the surface's unit.
+struct SamplingOptions {
+  double spacing = 0.0;            ///< > 0: no two samples are nearer to each other
+  std::uint64_t seed = 1;          ///< the same samples for the same seed, surface and spacing
+  std::size_t max_count = 100000;  ///< the largest number of samples that the caller accepts
+};
+
+/// The largest distance to the nearest sample, in spacings. `surface_cover`: from a point of the surface.
+/// `volume_cover`: from a point inside that is deeper under the surface than `cell_diagonal`. `solid_cover`: from any
+/// point inside, where samples are taken on the surface, too. Each is 1, plus the size of the pieces that hold a
+/// candidate each, plus a hundredth or less for rounding.
+inline constexpr double surface_cover = 1.26;
+inline constexpr double cell_diagonal = 0.8661;  // of candidates' cubes, of half a spacing: sqrt(3) / 2
+inline constexpr double volume_cover = 1.8661;
+inline constexpr double solid_cover = 2.1261;
+
+/// Samples on a surface, closed or open; at least one. Throws InvalidArgument where the spacing is not positive and
+/// finite, or below 2^-30 of the largest coordinate (samples would be rounding). Throws it, too, where the surface needs
+/// more than `max_count` samples (or 200 candidates for each of these); the message says which spacing to choose.
+/// Throws InvalidMesh where check_and_repair_surface() refuses the surface. Cost: 64 to 128 candidates per spacing^2 of
+/// area, one per triangle at least.
+std::vector<Vec3> sample_surface(const MeshData& surface, const SamplingOptions& options);
+
+/// Samples strictly inside a closed surface. A body thinner than the spacing may have none. Throws as sample_surface(),
+/// and InvalidMesh, which names an edge, where the surface is open. Cost: 8 candidates per spacing^3 of the surface's
+/// box; one exact decision of inside for each candidate that is not near a sample.
+std::vector<Vec3> sample_volume(const MeshData& surface, const SamplingOptions& options);
+
+/// A whole body: samples on its surface (the first `on_surface`), then inside. No two are nearer than the spacing.
+struct SolidSamples {
+  std::vector<Vec3> points;
+  std::size_t on_surface = 0;
+};
+/// Throws and costs as sample_surface() and sample_volume() together.
+SolidSamples sample_solid(const MeshData& surface, const SamplingOptions& options);
+
+// Bodies: their options, and the records of a step.
 
 /// Share of itself by which rounding, and the error of Runge-Kutta's method while nothing is met, may raise a body's
 /// energy in a step.
 inline constexpr double energy_slack = 0x1p-30;
+
+/// Contacts between bodies: impulses between particles of different bodies that touch as spheres.
+struct BodyCollisionOptions {
+  /// In [0, 1]. Bodies that hit each other faster than 2 |gravity| dt rebound as rigid bodies, with this share of the
+  /// speed. None: their matching forces alone part them.
+  std::optional<double> restitution = {};
+  double friction = 0.0;  ///< >= 0
+  unsigned iterations = 10;
+  double position_correction = 0.2;  ///< share of an overlap taken out in one step, in [0, 1]
+};
+
+/// Contacts between bodies in one step.
+struct BodyCollisionCounts {
+  std::uint64_t pairs_near = 0;      ///< given to the solver
+  std::uint64_t pairs_touching = 0;  ///< given an impulse
+  std::uint64_t impacts = 0;         ///< pairs that came together fast; 0 without restitution
+  std::uint64_t overlaps = 0;
+  double deepest = 0.0;  ///< the deepest overlap, m
+};
 
 /// SI units.
 struct BodiesOptions {
   double dt = 1e-3;  ///< of a step, between 2^-100 and 2^100
   Vec3 gravity = {0.0, 0.0, 0.0};
   double drag = 0.0;  ///< 1 / s, >= 0: all velocities fall as exp(-drag t), as in a resting medium
-  std::optional<BodyCollisionOptions> collisions =
-      {};  ///< between bodies with radii; none: they pass through each other
+  /// Between bodies with radii. None: they pass through each other.
+  std::optional<BodyCollisionOptions> collisions = {};
   StepOptions step = {};
 };
 
-/// What a body is made of. SI units.
+/// How a body is matched with its rest shape.
+struct MatchOptions {
+  /// Share of the best linear transformation in the goals, in [0, 1]; the rest is that of the best rotation.
+  double linear = 0.0;
+  /// The linear transformation is scaled to keep the volume (where the body is squeezed below an eighth of it, as if it
+  /// were an eighth).
+  bool keep_volume = true;
+  /// Regions of the rest shape that are matched separately, for softer bodies. A particle's goal is the mean over its
+  /// regions. Let them overlap, or the body falls apart. Empty: one region of all particles.
+  std::vector<std::vector<std::uint32_t>> clusters = {};
+};
+
+/// Regions for MatchOptions::clusters: cubes of edge `size` on a lattice of half that spacing, those that hold points.
+/// Every point is in at most 8. Throws InvalidArgument where a point is not finite, the size is not positive, or it is
+/// so small beside the points' extent that lattice numbers exceed 2^20. Cost: n log n.
+std::vector<std::vector<std::uint32_t>> overlapping_clusters(std::span<const Vec3> points, double size);
+
+/// Properties of one body. SI units.
 struct BodyOptions {
-  double mass = 1.0;                ///< as is_mass(), in equal parts on the particles
+  double mass = 1.0;                ///< is_mass(), in equal parts on the particles
   std::vector<double> masses = {};  ///< or of each particle; empty: `mass`
-  /// Of each particle (is_radius()), for contacts with other bodies; walls are met by the centres.
+  /// Of each particle (is_radius()), for contacts with other bodies. Walls are met by the centres.
   double radius = 0.0;
-  /// Acceleration towards the goal per distance from it, 1 / s^2: at most 1 / dt^2; 0: just that.
+  /// Acceleration towards the goal per distance from it, 1 / s^2: at most 1 / dt^2; 0: 1 / dt^2.
   double stiffness = 0.0;
-  double pull = 0.1;           ///< share of the way to its goal that the second pass pulls a particle, in [0, 1]
+  double pull = 0.1;           ///< share of the way to its goal that the second pass moves a particle, in [0, 1]
   double damping = 0.0;        ///< 1 / s: velocities relative to the rigid part of the motion fall as exp(-damping t)
   Vec3 velocity = {};          ///< of the centre of mass
-  Vec3 angular_velocity = {};  ///< angular velocity, 1 / s
+  Vec3 angular_velocity = {};  ///< 1 / s
   MatchOptions match = {};
 };
 
-/// What came of a request to add a body.
+/// The answer to a request to add a body.
 struct AddBodyResult {
   std::uint32_t body = 0xffffffffU;    ///< its id; none (0xffffffff) where a point is in no free cell
   std::vector<std::uint32_t> refused;  ///< those points
 };
 
-/// Mechanical energy in joules. Potential: counted from the corner of the box around the environment's first positions
-/// where it is least, so that no part is negative there.
+/// Mechanical energy in joules. The potential energy counts from the corner of the box around the environment's first
+/// positions where it is least, so that no part is negative there.
 struct BodyEnergy {
   double kinetic = 0.0;
   double potential = 0.0;
-  double matching = 0.0;  ///< stiffness * (constant + sum m |x - goal|^2 / 2); see RestShape
+  double matching = 0.0;  ///< stiffness * (constant + sum m |x - goal|^2 / 2), with the constant of the fits
 
   [[nodiscard]] double total() const { return (kinetic + potential) + matching; }
 };
 
-/// What happened in one step.
+/// The rigid motion with the same momentum and angular momentum as some particles. SI units.
+struct RigidMotion {
+  double mass = 0.0;
+  Vec3 centre;            ///< of mass
+  Vec3 velocity;          ///< of the centre
+  Vec3 angular_momentum;  ///< about the centre
+  Vec3 angular_velocity;  ///< without a part about an axis that all mass lies on
+
+  [[nodiscard]] Vec3 velocity_at(const Vec3& x) const { return velocity + cross(angular_velocity, x - centre); }
+  /// Never more than the particles have. The difference is the energy of their velocities relative to this motion.
+  [[nodiscard]] double kinetic_energy() const {
+    return 0.5 * (mass * dot(velocity, velocity) + dot(angular_velocity, angular_momentum));
+  }
+};
+
+/// How a region of the rest shape lies in space. A plain record.
+struct Fit {
+  Quaternion rotation;  ///< of length 1: the best one
+  Vec3 centre;          ///< of the region's mass
+  Mat3 transform;       ///< of rest positions relative to the rest centre of mass: goal = centre + transform * rest
+  double strain = 0.0;  ///< part of the matching energy that the particles' positions do not change, per stiffness
+};
+
+/// Wall faces that a particle met last in a step.
+struct TouchedFaces {
+  std::array<CellFace, 3> face{};
+  std::uint8_t count = 0;
+
+  [[nodiscard]] bool has(CellFace f) const;
+  /// Takes the faces of a contact, the first three at most.
+  void set(std::span<const WallHit> walls);
+};
+
+/// Report of one step.
 struct BodiesStep {
   StepReport motion;               ///< of the first pass; particles by their index during the step
   StepReport pull;                 ///< of the second pass
   BodyCollisionCounts collisions;  ///< between bodies
-  /// Energy that moving walls and apply_impulse() gave, J; less than 0 where the latter took more. 0 where neither was
-  /// there.
+  /// Energy from moving walls and from apply_impulse(), J; below 0 where the latter took more than both gave.
   double input = 0.0;
   std::uint64_t fallbacks = 0;      ///< rotations left to Eigen's SVD
   std::uint64_t repeated = 0;       ///< bodies whose first pass was repeated with limited targets
   std::vector<std::uint32_t> gone;  ///< ids of bodies that left at an absorbing or escape wall
 };
 
+/// The state of all bodies after a step. The mesh, the options and the bodies' shapes are not in it.
+struct BodiesCheckpoint {
+  struct Particle {
+    ParticleState state;
+    Weights held_weights{};
+    Vec3 velocity;
+    ParticleStatus fate = ParticleStatus::alive;
+    TouchedFaces on;
+  };
+  std::uint64_t steps = 0;
+  Counters counters;
+  std::vector<std::uint32_t> ids;  ///< of the bodies still there
+  std::vector<Fit> fits;           ///< body by body
+  std::vector<CachedImpulse> impulses;
+  std::vector<Particle> particles;
+};
+
 /// Many bodies in one set of particles.
 ///
 /// A step, after the environment may have moved:
-///  1. Velocities and places by Runge-Kutta's method of order 4 under gravity and the matching forces, the fits
-///  computed anew at each stage. Particles then go there by Environment::advance(). At a contact the velocity is that
-///  of the moment; all incident walls at once turn it round with restitution (bouncing: the particle was not on that
-///  face at the end of the last step, and comes faster than the acceleration makes it in two steps) or without
-///  (sliding), and with friction (response/incident_walls.hpp); then the particle is integrated for the time left,
-///  which goes along the walls that it would enter, with friction.
-///  2. The fits are computed again, and particles are pulled towards their goals, by Environment::advance() again: by
-///  places only, so that it takes out energy. To be exact they are pulled to where they would be at rest in the body:
-///  where the matching force is in balance with the centrifugal one, or with gravity where the body has met a wall.
-///  Damping and drag act on velocities between the passes.
-/// The number of contacts in a pass is bounded by StepOptions::max_contacts.
+///  1. Motion. Runge-Kutta's method of order 4 gives velocities and positions under gravity and the matching forces;
+///  each stage computes the fits anew. Environment::advance() then moves the particles there. A contact sees the
+///  velocity of its moment. All incident walls answer at once: with restitution where the particle was not on that face
+///  at the end of the last step and comes faster than two steps of its acceleration explain, else without; and with
+///  friction (response/incident_walls.hpp). The particle is then integrated for the rest of the step, along the walls
+///  that it would enter.
+///  2. Pull. The fits are computed again, and Environment::advance() moves the particles towards their goals. Positions
+///  alone change, which takes out energy. The exact goal is the place of rest in the body: where the matching force is
+///  in balance with the centrifugal force, or with gravity where the body has met a wall. Damping and drag act on
+///  velocities between the passes.
+/// StepOptions::max_contacts bounds the contacts of a particle in a pass.
 ///
-/// Energy law: the total energy of a body never grows in a step by more than energy_slack of itself, plus
-/// BodiesStep::input (docs/method.md says why); changes of velocities() between steps apart. The total is the kinetic,
-/// the potential and the matching energy, none of them negative.
+/// Energy law: in a step the total energy of a body never grows by more than energy_slack of itself, plus
+/// BodiesStep::input (docs/method.md gives the reason). Changes of velocities() between steps are not counted. The total
+/// is the kinetic, the potential and the matching energy, none of them negative.
 ///
-/// Walls answer by their patch's Response: reflect, slide, stick (the particle stays on the wall). A body leaves as a
-/// whole when a wall absorbs one of its particles or lets it escape. Whatever else acts on bodies may change
-/// velocities() between steps. Results are the same bits for any number of threads. A moved-from object has no bodies.
+/// Walls answer by their patch's response: reflect, slide, stick (the particle stays on the wall). A body leaves as a
+/// whole when a wall absorbs one of its particles or lets it escape. A caller may change velocities() between steps.
+/// Results are the same bits for any number of threads. A moved-from object has no bodies and can be used again.
 class Bodies {
  public:
-  /// `environment` outlives the bodies; it may hold other sets of particles, and is moved and edited by its owner.
-  /// Throws InvalidArgument where an option is out of range, or the environment is of the plane.
-  Bodies(Environment& environment, const BodiesOptions& options, WallResponses responses = WallResponses{});
+  using Checkpoint = BodiesCheckpoint;
 
-  /// Adds a body in its rest shape at these points; where one of them is in no free cell, nothing. Throws
-  /// InvalidArgument where an option is out of range (a stiffness above 1 / dt^2 is: with the largest dt for it), or as
-  /// RestShape and Environment::add().
+  /// `environment` outlives the bodies. It may hold other sets of particles; its owner moves and edits it. Throws
+  /// InvalidArgument where an option is out of range, or the environment is of the plane.
+  Bodies(Environment& environment, const BodiesOptions& options, WallResponses responses = WallResponses{});
+  ~Bodies();
+  Bodies(const Bodies& other);
+  Bodies(Bodies&& other);  // NOLINT(performance-noexcept-move-constructor): it gives the other one new members
+  Bodies& operator=(const Bodies&) = delete;
+  Bodies& operator=(Bodies&&) = delete;
+
+  /// Adds a body whose rest shape is these points. Adds nothing where one of them is in no free cell. Throws
+  /// InvalidArgument where an option is out of range (the message about a stiffness above 1 / dt^2 gives the largest
+  /// dt), there is no point, a mass is not is_mass(), or a cluster is empty, names no point or one twice, or leaves a
+  /// point in none. Throws as Environment::add().
   AddBodyResult add(std::span<const Vec3> points, const BodyOptions& options);
 
   /// One step; once after each Environment::move(). Throws as Environment::advance(). Cost: about 0.5 us per particle.
   const BodiesStep& step();
 
-  /// A body as a rigid one, with its velocity at the end of the next step if it meets nothing; it cannot be pushed
+  /// A body as a rigid one, with its velocity at the end of the next step if it meets nothing. Its inverse mass is 0
   /// where a wall holds one of its particles. Cost: about 20 ns per particle.
   [[nodiscard]] RigidMover predicted_state(std::size_t body) const;
-  /// What contacts with others than bodies made of predicted_state(): forces in the next step lead to that change of
-  /// momentum, and the body goes as far as was answered. What this gives is BodiesStep::input.
+  /// Gives a body an impulse. `solved`: the predicted_state() after contacts with others than bodies changed it. In the
+  /// next step forces make that change of momentum, and the body moves by the displacement in `solved`.
+  /// BodiesStep::input counts the energy.
   void apply_impulse(std::size_t body, const RigidMover& solved);
 
-  /// Takes the bodies along after an edit of the environment. A body of which the edit absorbs a particle leaves.
-  /// Throws as Environment::update_after_edit().
+  /// To be called after each edit of the environment. A body leaves where the edit absorbs one of its particles. Throws
+  /// as Environment::update_after_edit().
   UpdateReport update_after_edit(OrphanPolicy orphaned = OrphanPolicy::relocate);
 
-  [[nodiscard]] const Environment& environment() const { return environment_; }
-  [[nodiscard]] const BodiesOptions& options() const { return options_; }
-  [[nodiscard]] std::uint64_t steps() const { return steps_; }
-  [[nodiscard]] std::size_t size() const { return bodies_.size(); }
-  [[nodiscard]] std::uint32_t id(std::size_t body) const { return bodies_[body].id; }
-  /// Its particles are [first_particle, first_particle + particle_count).
-  [[nodiscard]] std::size_t first_particle(std::size_t body) const { return bodies_[body].first; }
-  [[nodiscard]] std::size_t particle_count(std::size_t body) const { return bodies_[body].shape.size(); }
-  [[nodiscard]] const RestShape& shape(std::size_t body) const { return bodies_[body].shape; }
-  [[nodiscard]] std::span<const Fit> fits(std::size_t body) const { return bodies_[body].fits; }
+  [[nodiscard]] const Environment& environment() const;
+  [[nodiscard]] const BodiesOptions& options() const;
+  [[nodiscard]] std::uint64_t steps() const;
+  [[nodiscard]] std::size_t size() const;
+  [[nodiscard]] std::uint32_t id(std::size_t body) const;
+  /// The body's particles are [first_particle, first_particle + particle_count).
+  [[nodiscard]] std::size_t first_particle(std::size_t body) const;
+  [[nodiscard]] std::size_t particle_count(std::size_t body) const;
+  /// One fit per region of its rest shape.
+  [[nodiscard]] std::span<const Fit> fits(std::size_t body) const;
   [[nodiscard]] BodyEnergy energy(std::size_t body) const;
   [[nodiscard]] RigidMotion rigid_motion_of(std::size_t body) const;
 
-  // Of all particles, body by body.
-  [[nodiscard]] const Particles& particles() const { return particles_; }
-  [[nodiscard]] std::span<const Vec3> positions() const { return positions_; }
-  [[nodiscard]] std::span<const Vec3> velocities() const { return velocities_; }
+  // All particles, body by body.
+  [[nodiscard]] const Particles& particles() const;
+  [[nodiscard]] std::span<const Vec3> positions() const;
+  [[nodiscard]] std::span<const Vec3> velocities() const;
   /// For impulses between steps.
-  [[nodiscard]] std::span<Vec3> velocities() { return velocities_; }
-  [[nodiscard]] std::span<const double> masses() const { return masses_; }
-  [[nodiscard]] std::span<const double> radii() const { return radii_; }
+  [[nodiscard]] std::span<Vec3> velocities();
+  [[nodiscard]] std::span<const double> masses() const;
+  [[nodiscard]] std::span<const double> radii() const;
   /// Index of the body of each particle.
-  [[nodiscard]] std::span<const std::uint32_t> body_of() const { return body_of_; }
-  [[nodiscard]] std::span<const ParticleStatus> fates() const { return fates_; }
+  [[nodiscard]] std::span<const std::uint32_t> body_of() const;
+  [[nodiscard]] std::span<const ParticleStatus> fates() const;
 
-  /// Sums over all steps, both passes; `steps` times particles are counted once for each pass.
-  [[nodiscard]] const Counters& counters() const { return counters_; }
+  /// Sums over all steps and both passes. Each pass counts `steps` times particles.
+  [[nodiscard]] const Counters& counters() const;
   /// Of all particles in the scene, by body id and number in the body.
   [[nodiscard]] StateHash state_hash() const;
 
-  /// All that the bodies go on from after a step; what they were made with is not in it.
-  struct Checkpoint {
-    struct Particle {
-      ParticleState state;
-      Weights held_weights{};
-      Vec3 velocity;
-      ParticleStatus fate = ParticleStatus::alive;
-      TouchedFaces on;
-    };
-    std::uint64_t steps = 0;
-    Counters counters;
-    std::vector<std::uint32_t> ids;  ///< of the bodies still there
-    std::vector<Fit> fits;           ///< body by body
-    std::vector<CachedImpulse> impulses;
-    std::vector<Particle> particles;
-  };
-  [[nodiscard]] Checkpoint checkpoint() const;
-  /// Goes on from a checkpoint, where the same bodies have been added to an environment that stands as it did then.
-  /// Every later step is then the same to the last bit. Throws InvalidArgument, nothing changed, where bodies or sizes
-  /// do not match, or as Environment::restored().
-  void restore(const Checkpoint& saved);
+  [[nodiscard]] BodiesCheckpoint checkpoint() const;
+  /// Goes on from a checkpoint, where the same bodies have been added to an environment in the same state as then.
+  /// Every later step is the same to the last bit. Throws InvalidArgument, nothing changed, where bodies or sizes do not
+  /// match, or as Environment::restored().
+  void restore(const BodiesCheckpoint& saved);
 
  private:
-  struct Body {
-    std::uint32_t id;
-    std::size_t first;
-    RestShape shape;
-    double stiffness;
-    double pull;
-    double kept;  // share of velocities relative to the rigid motion that a step keeps
-    std::vector<Fit> fits;
-    double constant = 0.0;  // of the energy for `fits`
-
-    // Of one step.
-    std::vector<Fit> trial = {};  // of a stage, or not accepted yet
-    double trial_constant = 0.0;
-    double budget = 0.0;     // total energy that it may have
-    double before = 0.0;     // total energy at the begin
-    double moving = 0.0;     // what it needs for motion
-    double input = 0.0;      // from walls that move
-    double work = 0.0;       // of other bodies
-    double allowed = 0.0;    // of both, what is left for motion
-    RigidMotion rigid = {};  // after the first pass
-    unsigned fallbacks = 0;
-    bool accepted = false;  // the trial fits
-    bool pays = false;      // for its places
-    bool limited = false;   // targets of the first pass
-    bool met = false;       // a wall
-    bool slides = false;    // in the second pass
-    bool pushed = false;    // off other bodies, there
-    bool collided = false;  // with another body
-    BodyAction action = {};
-    double lift = 0.0;  // of the displacement in it: what the wells would take for it, at most
-
-    [[nodiscard]] bool changes() const { return pull > 0.0 || kept < 1.0 || pushed; }  // in the second pass
-  };
-
-  void check(const BodyOptions& options) const;
-  void resize_arrays(double radius);
-  // Handed to threads in groups of about so many particles.
-  static constexpr std::size_t particles_in_group = 2048;
-  template <class Work>
-  void for_each_body(const Work& work) {
-    const std::size_t share = bodies_.size() * particles_in_group / std::max<std::size_t>(positions_.size(), 1);
-    parallel_for(bodies_.size(), std::max<std::size_t>(share, 1), environment_.threads(),
-                 [&](std::size_t first, std::size_t end) {
-                   for (std::size_t b = first; b < end; ++b) work(bodies_[b]);
-                 });
-  }
-  template <class T>
-  [[nodiscard]] std::span<T> of(const Body& body, std::vector<T>& values) const {
-    return std::span<T>(values).subspan(body.first, body.shape.size());
-  }
-  [[nodiscard]] double potential(const Body& body, std::span<const Vec3> positions) const;
-  [[nodiscard]] double kinetic(const Body& body) const;
-
-  void first_pass();
-  void begin(Body& body);
-  // What a particle moves in during the first pass.
-  [[nodiscard]] PotentialEnergy potential_of(const Body& body, std::size_t particle) const {
-    return {body.stiffness, goals_[particle], options_.gravity + contact_forces_[particle]};
-  }
-  [[nodiscard]] BodyParticles body_particles() const;
-  [[nodiscard]] RigidMover as_rigid(std::size_t body) const;
-  void find_pairs();
-  std::uint64_t rebound();
-  void spread_action(const Body& body);
-  [[nodiscard]] double action_work(const Body& body) const;
-  void collide();
-  void integrate(Body& body);
-  void set_legs(Body& body);
-  void limit_targets(const Body& body);
-  void stay(const Body& body);
-  void hold_stuck();
-  StepReport advance(bool pulls);
-  void measure();
-  [[nodiscard]] double given(const Body& body) const;
-  void fit(Body& body);
-  void accept(Body& body);
-  void limit_energy(Body& body);
-  void second_pass();
-  void share_energy();
-  [[nodiscard]] bool lacks_motion(const Body& body);
-  void limit_energy_together();
-  void cut_together(std::span<const std::uint32_t> group);
-  void aim_pull(Body& body);
-  static void charge_lift(Body& body);
-  void damp(Body& body);
-  void remove_gone();
-  void remove_bodies(std::span<const std::uint8_t> leaving);
-
-  Environment& environment_;
-  BodiesOptions options_;
-  WallResponses responses_;
-  Vec3 lowest_;
-  std::uint64_t steps_ = 0;
-  std::uint32_t next_id_ = 0;
-  Counters counters_;
-  BodiesStep last_;
-
-  std::vector<Body> bodies_;
-  Particles particles_;
-  // One entry per particle in each.
-  std::vector<Vec3> positions_;
-  std::vector<Vec3> velocities_;
-  std::vector<double> masses_;
-  std::vector<double> radii_;
-  std::vector<std::uint32_t> body_of_;
-  std::vector<ParticleStatus> fates_;
-  std::vector<TouchedFaces> on_;  // faces met in the last step
-  // Of one step.
-  struct Sums {
-    Vec3 earlier;  // acceleration of the stage before the last one
-    Vec3 last;
-    Vec3 way;    // sum of accelerations, for the place
-    Vec3 speed;  // for the velocity
-  };
-  std::vector<Sums> sums_;
-  std::vector<Vec3> goals_;  // of the fits at the begin of the pass
-  std::vector<Vec3> trial_goals_;
-  std::vector<Vec3> targets_;
-  std::vector<Vec3> reached_;
-  std::vector<Leg> legs_;
-  // Of collisions.
-  BodyCollisions collisions_;
-  BodyRebounds rebounds_;
-  std::vector<RigidMover> movers_;
-  std::vector<std::uint64_t> ids_;
-  std::vector<double> inverse_masses_;
-  std::vector<Vec3> led_to_;  // velocities that forces lead to
-  std::vector<Vec3> corrections_;
-  std::vector<Vec3> outer_forces_;    // of what acts on bodies from outside in this step, per mass
-  std::vector<Vec3> contact_forces_;  // with those between bodies
-  std::vector<TouchedFaces> next_on_;
-  std::vector<PassBody> pass_bodies_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace dartcast

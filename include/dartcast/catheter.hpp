@@ -1,17 +1,18 @@
-// A catheter: a chain of particles, held and moved at its proximal end, in an environment that may deform.
+// A catheter: a chain of particles, held and moved at its proximal end, in an environment that may deform. And a
+// camera's path along it: an endoscopy.
 //
 // T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism for continuous collision detection in
-// deformable environments", SPM 2009, section 1, names it as what the method is for. The chain is solved as an implicit
-// step of an inextensible rod with a rest curvature at its tip and without twisting energy of its own (M. Bergou et
-// al., "Discrete elastic rods", 2008); what the solver wants, exact walks of the points grant as far as walls let them.
+// deformable environments", SPM 2009, section 1, names catheters as a use of the method. The chain is solved as an
+// implicit step of an inextensible rod with a rest curvature at its tip and without twisting energy (M. Bergou et al.,
+// "Discrete elastic rods", 2008). The points then walk exactly towards the solver's positions, as far as walls let them.
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
-#include "catheter/chain_solver.hpp"
 #include "dartcast/audit.hpp"
 #include "dartcast/environment.hpp"
 
@@ -19,31 +20,32 @@ namespace dartcast {
 
 /// SI units: metres, radians.
 struct CatheterOptions {
-  double length = 0.1;    ///< of the whole catheter, in whole spacings
-  double spacing = 1e-3;  ///< of its points; less than the smallest feature of the vessel: edges do not meet walls
-  /// Bending stiffness (N m^2), over what resists sideways motion of a metre of it in one step (N / m^2): m^4. Bends
-  /// that are longer than its fourth root outlast a step.
+  double length = 0.1;  ///< of the whole catheter, in whole spacings
+  /// Between its points. Choose it smaller than the smallest feature of the vessel: edges do not meet walls.
+  double spacing = 1e-3;
+  /// Bending stiffness (N m^2), over the resistance to sideways motion of a metre of catheter in one step (N / m^2):
+  /// m^4. Bends that are longer than its fourth root outlast a step.
   double stiffness = 1e-8;
   double tip_length = 0.0;     ///< of the pre-bent tip
-  double tip_curvature = 0.0;  ///< of it at rest, 1 / m; the bend is along a frame's normal
-  Vec3 entry = {};             ///< where it comes in: strictly inside of a free cell
-  Vec3 direction = {};         ///< in which it does; of any length but 0
+  double tip_curvature = 0.0;  ///< of the tip at rest, 1 / m; the bend is along a frame's normal
+  Vec3 entry = {};             ///< where the catheter comes in: strictly inside a free cell
+  Vec3 direction = {};         ///< in which it comes in; of any length but 0
   double friction = 0.05;      ///< Coulomb's coefficient at walls, >= 0
   unsigned rounds = 24;        ///< of solving and walking, in one substep at most; > 0
   /// Largest relative error of a segment's length that a push may leave; below 0.01.
   double tolerance = 0.008;
 };
 
-/// What is done to the proximal end in one step.
+/// The motion of the proximal end in one step.
 struct CatheterInput {
   double push = 0.0;  ///< m; negative: pulled
   double turn = 0.0;  ///< rad, about the direction of the entry, by the right hand; at most 2 pi in magnitude
-  Vec3 load = {};     ///< displacement in one step that weight or flow would give to a point that is held by nothing, m
+  Vec3 load = {};     ///< displacement by weight or flow, in one step, of a point that nothing holds, m
 };
 
-/// What came of it.
+/// Report of one step.
 struct CatheterStep {
-  double pushed = 0.0;         ///< m: how far it really went; less than asked where there was no way on
+  double pushed = 0.0;         ///< m: the real push; less than the input where there was no way on
   double turned = 0.0;         ///< rad
   double worst_segment = 0.0;  ///< largest relative error of the length of a segment in the lumen
   std::uint32_t substeps = 0;
@@ -53,14 +55,23 @@ struct CatheterStep {
   std::uint32_t held = 0;      ///< points in cells that are not valid now
 };
 
-/// Axes at a point: right-handed, without twist along the chain but what the proximal end was turned by.
+/// Axes at a point: right-handed. Along the chain they do not twist, except by the turn of the proximal end.
 struct CatheterFrame {
   Vec3 tangent;   ///< unit, towards the tip
   Vec3 normal;    ///< unit: the side that the tip is pre-bent to
   Vec3 binormal;  ///< tangent x normal
 };
 
-/// All that a catheter goes on from; environment and options are not in it.
+/// A plane that a point of the chain must stay above: normal . (x - point) >= 0.
+struct ChainWall {
+  std::uint32_t index = 0;  ///< of the point
+  Vec3 normal;              ///< unit
+  Vec3 point;
+  double pressure = 0.0;   ///< of the point on it, from the last solve; 0: not in contact
+  std::uint32_t idle = 0;  ///< walks since the point met it
+};
+
+/// The state of a catheter after a step; environment and options are not in it.
 struct CatheterCheckpoint {
   std::vector<ParticleState> states;
   std::vector<Weights> held_weights;
@@ -71,127 +82,93 @@ struct CatheterCheckpoint {
   Vec3 reference;
 };
 
-/// Points from the tip (0) to the proximal end, then one at the entry. Every one is a particle of the environment: in
-/// the lumen, exactly, at any time. Those not inserted yet wait at the entry, which rides along with the vessel.
+/// Points from the tip (0) to the proximal end, then one at the entry. Each is a particle of the environment, so it is
+/// in the lumen, exactly, at any time. Points that are not inserted yet wait at the entry, which the vessel carries.
 ///
-/// A step, after the environment's move if there is one: all points ride along with the vessel; then the push and the
-/// turn are made in substeps of at most a quarter of the spacing and a fifth of a radian. In each, points follow the
-/// chain's own path, and rounds of solving for bending, lengths, walls met so far and friction
-/// (catheter/chain_solver.hpp) alternate with walks, in which points slide at walls. A substep that leaves a segment
-/// off by more than the tolerance is taken back and tried again as half of it, four times; then the rest of the push is
-/// refused. The first spacing beyond the entry is straight; a push is refused, too, where that has no room. Where the
-/// vessel's motion leaves no such solution, bends are given up before lengths. Twist passes at once to the tip: the
-/// chain is as stiff against it as it can be. Results are the same bits for any number of threads.
+/// A step, after the environment's move if there is one: first the vessel carries all points along. Then the push and
+/// the turn are made in substeps of at most a quarter of the spacing and a fifth of a radian. In a substep points
+/// follow the chain's own path. Then rounds of solving alternate with walks, in which points slide at walls. A solve
+/// takes bending, lengths, friction and the walls met so far. A substep that leaves a segment off by more than the
+/// tolerance is undone and tried again with half the length, four times; the rest of the push is refused. The first
+/// spacing beyond the entry is straight; a push is refused, too, where it has no room. Where the vessel's motion leaves
+/// no such solution, lengths come before bends. Twist reaches the tip at once: the chain is infinitely stiff against
+/// it. Results are the same bits for any number of threads.
 class Catheter {
  public:
-  /// Nothing is inserted yet. `environment` outlives the catheter, and is moved and edited by others. Throws
-  /// InvalidArgument, naming it, where an option is out of range, the entry is in no free cell, or the way from there
-  /// by the spacing is not free, or the environment is not of space.
+  /// Nothing is inserted yet. `environment` outlives the catheter; its owner moves and edits it. Throws
+  /// InvalidArgument, which names the option, where one is out of range, the entry is in no free cell, the way from the
+  /// entry by the spacing is not free, or the environment is not of space.
   Catheter(Environment& environment, const CatheterOptions& options);
+  ~Catheter();
   Catheter(const Catheter&) = delete;
   Catheter& operator=(const Catheter&) = delete;
 
-  /// Once after each move of the environment, and as often as wanted between. Throws InvalidArgument, nothing changed,
+  /// Once after each move of the environment, and any number of times between. Throws InvalidArgument, nothing changed,
   /// where an input is not finite or too large, or the catheter missed a move or an edit. Where the vessel itself
   /// leaves no room, a segment may be off without any push: see `worst_segment`. Cost: some 1 us per point and round.
   CatheterStep step(const CatheterInput& input);
 
-  /// To be called after each edit of the environment, as Environment::update_after_edit(): points without a place are
-  /// moved to the nearest free one; where there is none they are held in their blocked cells until these are free
-  /// again. Throws InvalidArgument, nothing changed, where a point's cell was removed and no free cell is left; the
-  /// catheter cannot be used after that.
+  /// To be called after each edit of the environment, as Environment::update_after_edit(). Points without a place move
+  /// to the nearest free one. Where there is none they are held in their blocked cells until these are free again.
+  /// Throws InvalidArgument, nothing changed, where a point's cell was removed and no free cell exists; the catheter
+  /// cannot be used after that.
   UpdateReport update_after_edit();
 
   /// The points in the lumen, from the tip on; then the entry, unless nothing is inserted.
   [[nodiscard]] std::vector<Vec3> points() const;
   /// Their frames.
   [[nodiscard]] std::vector<CatheterFrame> frames() const;
-  /// Of the part in the lumen, as it should be; measured along the points it is right to 1%.
-  [[nodiscard]] double inserted() const { return inserted_; }
-  /// Of the part in the lumen, measured along its points.
+  /// Nominal length of the part in the lumen; measured along the points it is right to 1%.
+  [[nodiscard]] double inserted() const;
+  /// Length of the part in the lumen, measured along its points.
   [[nodiscard]] double measured_length() const;
   [[nodiscard]] double total_length() const;
-  [[nodiscard]] double turned() const { return turned_; }
-  [[nodiscard]] Vec3 entry() const { return particles_[count_].position; }
-  [[nodiscard]] Vec3 direction() const { return direction_; }
+  [[nodiscard]] double turned() const;
+  [[nodiscard]] Vec3 entry() const;
+  [[nodiscard]] Vec3 direction() const;
 
   /// All points with the waiting ones, then the entry: for audits.
-  [[nodiscard]] const Particles& particles() const { return particles_; }
-  [[nodiscard]] const CatheterOptions& options() const { return options_; }
+  [[nodiscard]] const Particles& particles() const;
+  [[nodiscard]] const CatheterOptions& options() const;
   [[nodiscard]] StateHash state_hash() const;
 
   [[nodiscard]] CatheterCheckpoint checkpoint() const;
-  /// Goes on from a checkpoint of a catheter with the same options in an equal environment at the same move: to the
-  /// same bits. Throws InvalidArgument, nothing changed, where it does not fit.
+  /// Goes on from a checkpoint of a catheter with the same options, in an equal environment after the same move. Every
+  /// later step is the same to the last bit. Throws InvalidArgument, nothing changed, where the checkpoint does not fit.
   void restore(const CatheterCheckpoint& saved);
 
  private:
-  // Where a point was in its simplex when that was last looked at.
-  struct Hold {
-    Corners corners;
-    Weights weights;
-  };
-  // What a substep that fails is taken back to.
-  struct Saved {
-    Particles particles;
-    double inserted = 0.0;
-    double turned = 0.0;
-    std::vector<ChainWall> walls;
-  };
-  enum class Bending : std::uint8_t { stiff, limp };
-  struct Outcome {
-    double worst = 0.0;
-    std::uint32_t rounds = 0;
-    std::uint32_t held = 0;
-    std::uint64_t contacts = 0;
-  };
-
-  // catheter.cpp: a step.
-  [[nodiscard]] std::size_t inserted_points() const;
-  [[nodiscard]] std::size_t free_points() const;
-  [[nodiscard]] Vec3 base(std::size_t i) const;
-  void check(const CatheterInput& input) const;
-  bool attempt(const CatheterInput& piece, double share, Bending bending, double limit, CatheterStep& result);
-  bool make(const CatheterInput& piece, double share, CatheterStep& result);
-  void make_less(const CatheterInput& piece, double share, CatheterStep& result);
-  void relax(const Vec3& load, CatheterStep& result);
-  void ride(CatheterStep& result);
-  [[nodiscard]] Vec3 carried(std::size_t i) const;
-  void turn_with_vessel(const Corners& now);
-  void hold();
-  void save();
-  void take_back();
-  // catheter_substep.cpp: a part of it.
-  static AfterContact slide_at_walls(const Contact& contact, std::span<const WallHit> walls,
-                                     std::span<const WallHit> earlier);
-  Outcome substep(const CatheterInput& piece, double share, Bending bending);
-  void follow_path(double push, std::size_t free);
-  void bend_tip(std::size_t free);
-  double walk(std::size_t free, Outcome& outcome);
-  void keep_walls(const ContactList& contacts);
-  [[nodiscard]] double worst_segment() const;
-  [[nodiscard]] std::uint32_t points_at_walls() const;
-  // catheter_frames.cpp: what it looks like.
-  [[nodiscard]] Vec3 base_normal() const;
-
-  Environment& environment_;
-  CatheterOptions options_;
-  std::size_t count_ = 0;  // points of the chain, without the entry
-  Particles particles_;
-  double inserted_ = 0.0;
-  double turned_ = 0.0;
-  Vec3 direction_;  // unit
-  Vec3 reference_;  // unit, perpendicular to it: the normal of a frame that is not turned
-  std::vector<Hold> holds_;
-  std::uint64_t edits_ = 0;
-  std::vector<Vec3> targets_;  // of all particles; between walks the chain as it is solved for
-  std::vector<Vec3> wanted_;
-  std::vector<Vec3> start_;
-  std::vector<Vec3> bends_;
-  std::vector<Vec3> before_;
-  std::vector<ChainWall> walls_;
-  ChainSolver solver_;
-  Saved saved_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
+
+// A camera's path along a catheter, or any chain of points in the lumen.
+
+struct CameraOptions {
+  double spacing = 1e-3;           ///< of the cameras along the spline, > 0
+  Vec3 up = {0.0, 1.0, 0.0};       ///< at the first camera, made perpendicular to its direction
+  std::size_t max_count = 100000;  ///< cameras at most
+};
+
+struct Camera {
+  Vec3 position;     ///< in the lumen, exactly
+  Vec3 direction;    ///< unit: along the spline
+  Vec3 up;           ///< unit, perpendicular to it; carried along without twist
+  double arc = 0.0;  ///< from the first camera, along the line through all, m
+};
+
+struct CameraPath {
+  std::vector<Camera> cameras;
+  std::size_t at_walls = 0;  ///< cameras that a wall kept from the spline
+};
+
+/// Cameras along the centripetal spline through `points` (E. Catmull, R. Rom, "A class of local interpolating splines",
+/// 1974; C. Yuksel, S. Schaefer, J. Keyser, "Parameterization and applications of Catmull-Rom curves", 2011). They are
+/// evenly spaced along it, except where a wall keeps one off; the last is at its end. A camera is a particle that walks
+/// from the point before it to the spline, so that no wall is between. Points that repeat count once. Throws
+/// InvalidArgument where there are not two points, one (named) is in no free cell, the path would take more than
+/// `max_count` cameras, or the environment is not of space. Cost: 4 us per camera, and once after a move a grid over
+/// the cells (Environment::locate()).
+CameraPath camera_path(Environment& environment, std::span<const Vec3> points, const CameraOptions& options = {});
 
 }  // namespace dartcast

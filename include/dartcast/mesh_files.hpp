@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "dartcast/mesh_check.hpp"
 #include "dartcast/mesh_data.hpp"
@@ -12,16 +13,22 @@
 
 namespace dartcast {
 
-// Any mesh file: read, repaired and judged.
+/// Endings of the files that read_mesh() and write_mesh() take, as ".vtu".
+std::vector<std::string> mesh_endings();
+/// Endings of the files that check_surface() takes, as ".stl".
+std::vector<std::string> surface_endings();
+
+// Any mesh file: read, checked and repaired.
 
 struct ReadOptions {
-  /// Of .vtu and .vtk: the cell array that gives the boundary cells (triangles, quadrilaterals, polygons; in the plane
-  /// lines) their patches: whole numbers, where 0 is none, or texts, where an empty one is none. Empty: the array
-  /// `patch`, else the one that gives the regions. Other formats have groups of their own, and refuse a name here.
+  /// The cell array of a .vtu or .vtk file that gives the boundary cells (triangles, quadrilaterals, polygons; in the
+  /// plane lines) their patches. It holds whole numbers, where 0 is no patch, or texts, where an empty one is none.
+  /// Empty: the array `patch`, else the one that gives the regions. Other formats have groups of their own, and refuse
+  /// a name here.
   std::string patch_array;
   /// Bytes that this process may take while it reads one file and builds the map from it; 0: half of the machine's
-  /// memory. What a file needs is counted from above, from the sizes that it announces, before the memory is taken
-  /// (formats/read_memory.hpp); a file that may need more is refused with kind "file".
+  /// memory. An upper bound of the need follows from the sizes that the file announces (formats/read_memory.hpp). It is
+  /// checked before the memory is taken; a file that may need more is refused with kind "file".
   std::uint64_t max_memory = 0;
 };
 
@@ -30,24 +37,24 @@ struct MeshFile {
   MeshReport report;
 };
 
-/// Reads .vtu, .vtk (legacy), .msh, .msh2, .msh4 (Gmsh 1, 2 and 4) or .mesh (Medit), by ending and content, and
-/// inspects it. Nothing in the file makes this throw: what cannot be read is a defect of kind "file" in the report,
-/// with line or byte. Cost: a few times the file's size in memory.
+/// Reads .vtu, .vtk (legacy), .msh, .msh2, .msh4 (Gmsh 1, 2 and 4) or .mesh (Medit), by ending and content, and checks
+/// and repairs it. Nothing in the file makes this throw: a file that cannot be read has a defect of kind "file" in the
+/// report, with line or byte. Cost: a few times the file's size in memory.
 MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// The same, but throws InvalidMesh, with the file's name and the first defect, where the mesh is refused.
 MeshFile read_valid_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
-// Any file of a surface in space: read, repaired and judged.
+// Any file of a surface in space: read, checked and repaired.
 
 /// Whether the ending is one of those that check_surface() reads.
 bool is_surface_file(const std::filesystem::path& path);
 
-/// Reads .stl (ASCII, binary), .obj, .ply (ASCII, binary) or .off, by ending and content, and inspects it as
-/// check_and_repair_surface() does. Nothing in the file makes this throw: what cannot be read is a defect of kind
-/// "file" in the report, with line or byte. Points keep their order and those that no face uses are kept, so that the
-/// positions of another file of the same faces can be handed to Surface::move(); of .stl see formats/stl.hpp. Of the
-/// options `max_memory` counts. Cost: n log n; a few times the file's size in memory.
+/// Reads .stl (ASCII, binary), .obj, .ply (ASCII, binary) or .off, by ending and content, and then calls
+/// check_and_repair_surface(). Nothing in the file makes this throw: a file that cannot be read has a defect of kind
+/// "file" in the report, with line or byte. Points keep their order, and points that no face uses are kept, so that
+/// Surface::move() can take the positions of another file of the same faces; formats/stl.hpp says which points a .stl
+/// has. The option `max_memory` counts, the other does not. Cost: n log n; a few times the file's size in memory.
 MeshFile check_surface(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// The same, but throws InvalidMesh, with the file's name, the first defect and its first faces, where the surface is
@@ -57,10 +64,10 @@ MeshFile read_surface(const std::filesystem::path& path, const ReadOptions& opti
 // Writing meshes.
 
 /// Writes a mesh in the format of the path's ending: .vtu, .vtk (legacy), .msh or .msh2 (Gmsh 2.2 ASCII), .msh4
-/// (Gmsh 4.1 ASCII), .mesh (Medit). read_mesh() reads the same cells, points bit by bit, regions and patches back. What
-/// a format has no place for is left out: arrays and `free` outside VTK's formats; names of regions and patches in .vtk
-/// and .mesh. The bytes go to a file beside the path, with ".part" in its name, which takes the path's place when it is
-/// whole: on failure what was at the path is as it was. Preconditions: a mesh that check_and_repair() found valid.
+/// (Gmsh 4.1 ASCII), .mesh (Medit). read_mesh() reads the same cells, points bit by bit, regions and patches back. Data
+/// without a place in the format are left out: arrays and `free` outside VTK's formats; names of regions and patches in
+/// .vtk and .mesh. The bytes go to a file beside the path, with ".part" in its name. When it is whole it takes the
+/// path's place; on failure the file at the path is unchanged. Precondition: check_and_repair() found the mesh valid.
 /// Throws InvalidArgument where the ending is none of these, or where .msh or .mesh should hold polyhedra, or polygons
 /// or faces of more than four corners; Error where the file cannot be written.
 void write_mesh(const MeshData& mesh, const std::filesystem::path& path);
@@ -68,12 +75,12 @@ void write_mesh(const MeshData& mesh, const std::filesystem::path& path);
 /// Writes bytes to a file. Throws Error where that fails.
 void write_bytes(const std::filesystem::path& path, std::string_view bytes);
 
-// The whole verdict on a mesh file: `dartcast check`.
+// The full check of a mesh file: `dartcast check`.
 
-/// Reads and inspects a file; one of a surface in space as check_surface() does. Of a mesh without a defect also
-/// divides every cell into simplices: a cell that has no division into positive ones, not even around a point of its
-/// own, is a defect of kind "not_star_shaped". With `without_bad_cells` these, and cells that are flat or inverted, are
-/// left out, and are a warning (see complex/skip_bad_cells.hpp). Throws nothing for a file's content.
+/// Reads and checks a file, one of a surface as check_surface() does. A mesh without a defect is also divided into
+/// simplices. A cell that has no division into positive ones, not even around a Steiner point, is a defect of kind
+/// "not_star_shaped". With `without_bad_cells` these cells, and flat or inverted ones, are left out, and are a warning
+/// (see complex/skip_bad_cells.hpp). Nothing in the file makes this throw.
 MeshFile check_mesh(const std::filesystem::path& path, Threads threads = {}, const ReadOptions& options = {},
                     bool without_bad_cells = false);
 

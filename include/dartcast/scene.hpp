@@ -15,7 +15,6 @@
 #include "dartcast/events.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/response.hpp"
-#include "dartcast/sampling.hpp"
 #include "dartcast/simulation.hpp"
 #include "dartcast/velocity_field.hpp"
 

@@ -21,6 +21,7 @@
 #include "dartcast/spheres.hpp"
 #include "dartcast/velocity_field.hpp"
 #include "dynamics/collider.hpp"
+#include "dynamics/near_walls.hpp"
 #include "simulation/seeding.hpp"
 #include "simulation/sphere_bodies.hpp"
 

@@ -21,13 +21,13 @@ struct TrajectoryPoint {
   std::size_t step = 0;  ///< index of the trace
   double time = 0.0;     ///< fraction of that step
   Vec3 point;
-  Kind kind = Kind::vertex;  ///< of the place: the paper's k
+  Kind kind = Kind::vertex;  ///< of the cell of the map there: the paper's k
   Cell cell;                 ///< the particle's; at a crossing the one left, at a contact the one at the wall
   Cell next;                 ///< at a crossing: the one entered; else invalid
 };
 
-/// From the start, through what happened on the way to each target (which it reached: `target`), to the end of the last
-/// trace: at its target, or where the particle stopped or was held. In the order of time.
+/// The points of a particle's way, in the order of time: the start; the crossings and contacts on the way to each
+/// target, and the target if it was reached; the end of the last trace, where the particle arrived, stopped or was held.
 std::vector<TrajectoryPoint> trajectory_points(std::span<const Trace> traces);
 
 /// "vertex", "edge", "face", "volume".
@@ -40,7 +40,7 @@ std::string_view name_of(TrajectoryMark mark);
 /// Columns: step (from 1, one for each target), time (fraction of the step), event (start, crossing, contact, target,
 /// end), kind (vertex, edge, face, volume: of the cell of the map that the particle is in, or passes), x, y, z, cell
 /// and next (indices in the mesh; next: the one entered at a crossing, else empty). Numbers are the shortest that give
-/// the same bits back, whatever the locale. `map`: the one that the traces were made in. Cost: linear.
+/// the same bits back, for any locale. `map`: the one that the traces were made in. Cost: linear.
 std::string trajectory_csv(const CombinatorialMap& map, std::span<const Trace> traces);
 
 // One trajectory in the plane as a drawing, in the manner of figures 5 and 6 of T. Jund, D. Cazier, J.-F. Dufourd, SPM
@@ -48,9 +48,9 @@ std::string trajectory_csv(const CombinatorialMap& map, std::span<const Trace> t
 
 /// SVG: the cells around those passed (these tinted, blocked ones filled), the trajectory in pieces of alternating
 /// colours (one more than there are crossings), a dot and a letter at the start, each crossing, target and the end (f
-/// face, e edge, v vertex: the cell of the map that the particle is in there), a cross at each contact. What they are
-/// is in their titles. Its size depends on the cells passed, not on the scene; positions are rounded to 1/100 of a
-/// pixel, 800 of which are the longer side. The same bytes whatever the machine's locale.
+/// face, e edge, v vertex: the cell of the map that the particle is in there), a cross at each contact. Their
+/// titles describe them. The size of the text depends on the cells passed, not on the scene. The longer side has 800
+/// pixels; positions are rounded to 1/100 of a pixel. The bytes are the same for any locale.
 ///
 /// `complex`: the one that the traces were made in, drawn as it stands. Throws InvalidArgument where there is no trace,
 /// or where the complex is not of the plane. Cost: one look at each cell of the scene.

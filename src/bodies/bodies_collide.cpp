@@ -1,11 +1,11 @@
-// What bodies are to each other, and to what acts on them from outside.
+// Contacts between bodies, and impulses from outside.
 #include <algorithm>
 
-#include "dartcast/bodies.hpp"
+#include "bodies/bodies_impl.hpp"
 
 namespace dartcast {
 
-RigidMover Bodies::as_rigid(std::size_t body) const {
+RigidMover Bodies::Impl::as_rigid(std::size_t body) const {
   const Body& b = bodies_[body];
   const std::span<const Vec3> positions(positions_.data() + b.first, b.shape.size());
   const RigidMotion rigid = rigid_motion_of(body);
@@ -22,15 +22,15 @@ RigidMover Bodies::as_rigid(std::size_t body) const {
   return mover;
 }
 
-RigidMover Bodies::predicted_state(std::size_t body) const {
+RigidMover Bodies::Impl::predicted_state(std::size_t body) const {
   RigidMover mover = as_rigid(body);
   mover.velocity += options_.gravity * options_.dt;
   return mover;
 }
 
-// Contacts reckon with velocities that change at the begin of a step. Forces over the step lead half as far: the other
-// half is a displacement, less what they only took from gravity, which leads half as far, too.
-void Bodies::apply_impulse(std::size_t body, const RigidMover& solved) {
+// The solver changes velocities at the start of a step, while forces act over the whole step and lead half as far. The
+// other half becomes a displacement. Forces that only balance gravity get none, because gravity leads half as far, too.
+void Bodies::Impl::apply_impulse(std::size_t body, const RigidMover& solved) {
   const RigidMover before = predicted_state(body);
   const double dt = options_.dt;
   const Vec3 fall = options_.gravity * dt;
@@ -46,16 +46,16 @@ void Bodies::apply_impulse(std::size_t body, const RigidMover& solved) {
   bodies_[body].action = action;
 }
 
-void Bodies::spread_action(const Body& body) {
+void Bodies::Impl::spread_action(const Body& body) {
   const double rate = 1.0 / options_.dt;
   for (std::size_t p = body.first; p < body.first + body.shape.size(); ++p)
     outer_forces_[p] = body.action.velocity_at(positions_[p]) * rate;
 }
 
-BodyParticles Bodies::body_particles() const { return {body_of_, ids_, positions_, radii_, inverse_masses_}; }
+BodyParticles Bodies::Impl::body_particles() const { return {body_of_, ids_, positions_, radii_, inverse_masses_}; }
 
-// For the next step, while the states are of the environment as it stands.
-void Bodies::find_pairs() {
+// Finds the pairs of the next step now, while the particles and the environment are in the same state.
+void Bodies::Impl::find_pairs() {
   if (!options_.collisions || environment_.awaits_advance(particles_)) return;
   for (std::size_t p = 0; p < ids_.size(); ++p) {
     const Body& body = bodies_[body_of_[p]];
@@ -67,8 +67,8 @@ void Bodies::find_pairs() {
                    environment_.threads());
 }
 
-// Bodies that are about to hit each other go on with the velocities that they have after it.
-std::uint64_t Bodies::rebound() {
+// Bodies that are about to hit each other take the velocities after the impact.
+std::uint64_t Bodies::Impl::rebound() {
   if (!options_.collisions || !options_.collisions->restitution || collisions_.pairs().empty()) return 0;
   movers_.clear();
   for (std::size_t b = 0; b < bodies_.size(); ++b) movers_.push_back(as_rigid(b));
@@ -86,8 +86,8 @@ std::uint64_t Bodies::rebound() {
   return impacts;
 }
 
-// Forces between bodies in this step: they lead to the velocities that impulses ask for at its end.
-void Bodies::collide() {
+// Forces between bodies in this step. They lead to the velocities that the impulses give at its end.
+void Bodies::Impl::collide() {
   const double dt = options_.dt;
   for (std::size_t p = 0; p < led_to_.size(); ++p) {
     sums_[p].last = velocities_[p] + potential_of(bodies_[body_of_[p]], p).acceleration(positions_[p]) * dt;

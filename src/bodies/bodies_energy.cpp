@@ -1,22 +1,23 @@
-// What the energy of bodies pays for. Why it never grows: docs/method.md, "Bodies".
+// The limits of energy: budgets of bodies, and the velocities that they pay for. docs/method.md, "Bodies", says why
+// energy never grows.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "dartcast/bodies.hpp"
+#include "bodies/bodies_impl.hpp"
 
 namespace dartcast {
 
-// Whether each body's energy pays for where its particles are: with new fits, or where these are not those of least
-// energy, with the last ones.
-void Bodies::measure() {
+// Sets for each body whether its energy pays for the positions of its particles, with new fits. Where new fits cost more
+// than the body has, and are not those of least energy, the last ones count.
+void Bodies::Impl::measure() {
   for_each_body([&](Body& body) {
     body.input = given(body) + action_work(body);
     body.work = 0.0;
     for (std::size_t p = body.first; p < body.first + body.shape.size(); ++p)
       body.work += masses_[p] * dot(contact_forces_[p] - outer_forces_[p], reached_[p] - positions_[p]);
   });
-  // What bodies gain from each other is at most what others lose.
+  // Bodies gain at most as much energy from each other as others lose.
   double gained = 0.0;
   double lost = 0.0;
   for (const Body& body : bodies_) (body.work > 0.0 ? gained : lost) += std::abs(body.work);
@@ -31,16 +32,16 @@ void Bodies::measure() {
     body.pays = body.allowed >= -energy_slack * body.budget || (body.limited && !body.collided);
 }
 
-// Energy that outer forces gave on the way.
-double Bodies::action_work(const Body& body) const {
+// Energy from outer forces on the way.
+double Bodies::Impl::action_work(const Body& body) const {
   double work = 0.0;
   for (std::size_t p = body.first; p < body.first + body.shape.size(); ++p)
     work += masses_[p] * dot(outer_forces_[p], reached_[p] - positions_[p]);
   return work;
 }
 
-// Energy that moving walls gave the particles they met, in the wells of the begin of the step.
-double Bodies::given(const Body& body) const {
+// Energy from moving walls that particles met, with the potentials of the start of the step.
+double Bodies::Impl::given(const Body& body) const {
   double sum = 0.0;
   for (std::size_t i = 0; i < body.shape.size(); ++i) {
     const std::size_t p = body.first + i;
@@ -53,8 +54,8 @@ double Bodies::given(const Body& body) const {
   return sum;
 }
 
-// Fits the shape to where the particles are, and says what of the budget is left for motion.
-void Bodies::fit(Body& body) {
+// Fits the shape to the positions of the particles, and sets the part of the budget that remains for motion.
+void Bodies::Impl::fit(Body& body) {
   const auto reached = of(body, reached_);
   body.trial = body.fits;
   body.fallbacks += body.shape.match(reached, body.trial);
@@ -68,7 +69,7 @@ void Bodies::fit(Body& body) {
                      : without - body.stiffness * matching_energy(body.shape, reached, of(body, goals_), body.constant);
 }
 
-void Bodies::accept(Body& body) {
+void Bodies::Impl::accept(Body& body) {
   if (!body.accepted) return;
   body.fits.swap(body.trial);
   body.constant = body.trial_constant;
@@ -76,9 +77,9 @@ void Bodies::accept(Body& body) {
   std::copy(fresh.begin(), fresh.end(), of(body, goals_).begin());
 }
 
-// Takes from the velocities what the body's energy does not pay for. While it has met no wall, from those relative to
-// the rigid motion alone, if that is enough but for the slack: momentum and angular momentum stay.
-void Bodies::limit_energy(Body& body) {
+// Cuts velocities to the energy that the body has. Where it met no wall, it cuts those relative to the rigid motion
+// alone, if that suffices up to the slack: then momentum and angular momentum stay.
+void Bodies::Impl::limit_energy(Body& body) {
   const double has = kinetic(body);
   const double allowed = std::max(0.0, body.allowed);
   if (has <= allowed) return;
@@ -100,16 +101,16 @@ void Bodies::limit_energy(Body& body) {
 }
 
 // Whether limit_energy() would cut the rigid motion, too.
-bool Bodies::lacks_motion(const Body& body) {
+bool Bodies::Impl::lacks_motion(const Body& body) {
   const double allowed = std::max(0.0, body.allowed);
   if (kinetic(body) <= allowed) return false;
   const RigidMotion rigid = rigid_motion(body.shape.masses(), of(body, reached_), of(body, velocities_));
   return rigid.kinetic_energy() > allowed + energy_slack * body.budget;
 }
 
-// Bodies that touch, and meet no wall, are cut as one where one of them lacks energy for its rigid motion: velocities
-// relative to the rigid motion of all together fall, so that momentum and angular momentum stay.
-void Bodies::limit_energy_together() {
+// Cuts bodies that touch, and meet no wall, as one body where one of them lacks energy for its rigid motion. Velocities
+// relative to the rigid motion of all of them fall, so that momentum and angular momentum stay.
+void Bodies::Impl::limit_energy_together() {
   if (std::none_of(bodies_.begin(), bodies_.end(), [](const Body& b) { return b.collided; })) return;
   std::vector<std::uint32_t> joined(bodies_.size());
   std::iota(joined.begin(), joined.end(), 0U);
@@ -134,7 +135,7 @@ void Bodies::limit_energy_together() {
   }
 }
 
-void Bodies::cut_together(std::span<const std::uint32_t> group) {
+void Bodies::Impl::cut_together(std::span<const std::uint32_t> group) {
   std::vector<double> masses;
   std::vector<Vec3> places;
   std::vector<Vec3> velocities;
@@ -164,9 +165,9 @@ void Bodies::cut_together(std::span<const std::uint32_t> group) {
   }
 }
 
-// What one of the bodies that collide does not need, another may: what impulses take from one and give to the other is
-// known only as far as the step is foreseen.
-void Bodies::share_energy() {
+// Gives the spare energy of bodies that collide to those that lack it. The exact transfer at their contacts is unknown,
+// because the impulses come from a prediction of the step.
+void Bodies::Impl::share_energy() {
   double spare = 0.0;
   double wanted = 0.0;
   for (Body& body : bodies_) {

@@ -1,15 +1,27 @@
-// A step of the bodies. Why energy never grows: docs/method.md, "Bodies".
+// A step of the bodies. docs/method.md, "Bodies", says why energy never grows.
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "bodies/bodies_impl.hpp"
 #include "complex/simplex.hpp"
-#include "dartcast/bodies.hpp"
 #include "tracking/carry.hpp"
 
 namespace dartcast {
 
-const BodiesStep& Bodies::step() {
+// A step, in order:
+//  1. rebound()              bodies that hit each other fast take the velocities of an impact (bodies_collide.cpp)
+//  2. start(), spread_action()   each body's energy; impulses from outside become forces on its particles
+//  3. collide()              forces between bodies that touch (bodies_collide.cpp)
+//  4. integrate(), set_legs()    targets by Runge-Kutta's method, and the first leg of each particle
+//  5. limit_targets(), hold_stuck()   for bodies that start at rest, and particles that stick to walls
+//  6. advance()              particles go there; answer_motion() answers at walls (body_contact.cpp)
+//  7. measure()              energy of the new positions; bodies that cannot pay repeat 4 to 6 with limited targets
+//  8. accept(), limit_energy()   new fits; velocities that the energy does not pay for are cut (bodies_energy.cpp)
+//  9. aim_pull(), advance()  the second pass: particles go towards their goals; answer_pull() answers at walls
+// 10. fit(), damp(), limit_energy()   new fits, damping, and the limits of energy once more
+// 11. remove_gone(), find_pairs()   bodies that left; pairs that may touch in the next step
+const BodiesStep& Bodies::Impl::step() {
   last_ = {};
   first_pass();
   second_pass();
@@ -30,10 +42,10 @@ const BodiesStep& Bodies::step() {
 
 // --- the first pass
 
-void Bodies::first_pass() {
+void Bodies::Impl::first_pass() {
   const std::uint64_t impacts = rebound();
   for_each_body([&](Body& body) {
-    begin(body);
+    start(body);
     spread_action(body);
   });
   std::copy(outer_forces_.begin(), outer_forces_.end(), contact_forces_.begin());
@@ -49,7 +61,8 @@ void Bodies::first_pass() {
   const std::vector<ParticleStatus> fates = fates_;
   last_.motion = advance(false);
   measure();
-  // Limited targets are paid for; where bodies that collide still lack energy, without the collision.
+  // Energy always pays for limited targets of a body that touches no other. Where bodies that collide still lack it,
+  // the last try leaves the collision out.
   for (const bool collides : {true, false}) {
     if (std::all_of(bodies_.begin(), bodies_.end(), [](const Body& b) { return b.pays; })) return;
     particles_ = before;
@@ -69,7 +82,7 @@ void Bodies::first_pass() {
   }
 }
 
-void Bodies::begin(Body& body) {
+void Bodies::Impl::start(Body& body) {
   body.trial = body.fits;
   body.fallbacks = 0;
   body.constant = body.shape.goals(body.fits, of(body, goals_));
@@ -78,15 +91,15 @@ void Bodies::begin(Body& body) {
   body.collided = false;
   body.before = (kinetic(body) + potential(body, positions)) +
                 body.stiffness * matching_energy(body.shape, positions, of(body, goals_), body.constant);
-  // At rest: forces alone move it, which is always paid for.
+  // A body at rest is moved by forces alone, which energy always pays for.
   body.limited = kinetic(body) <= energy_slack * body.before;
 }
 
-// Runge-Kutta's method of order 4. A stage's places depend on the accelerations of the stage before the last one alone.
-void Bodies::integrate(Body& body) {
+// Runge-Kutta's method of order 4. The positions of a stage depend on the accelerations of the stage before alone.
+void Bodies::Impl::integrate(Body& body) {
   struct Stage {
     double time;  // share of the step
-    double way;   // weights of its accelerations, for the places and for the velocities
+    double way;   // weights of its accelerations, for positions and for velocities
     double speed;
   };
   constexpr std::array<Stage, 4> stages = {{{0.0, 1.0, 1.0}, {0.5, 1.0, 2.0}, {0.5, 1.0, 2.0}, {1.0, 0.0, 1.0}}};
@@ -119,7 +132,7 @@ void Bodies::integrate(Body& body) {
   }
 }
 
-void Bodies::set_legs(Body& body) {
+void Bodies::Impl::set_legs(Body& body) {
   body.met = false;
   for (std::size_t i = 0; i < body.shape.size(); ++i) {
     const std::size_t p = body.first + i;
@@ -136,7 +149,7 @@ void Bodies::set_legs(Body& body) {
   }
 }
 
-void Bodies::limit_targets(const Body& body) {
+void Bodies::Impl::limit_targets(const Body& body) {
   for (std::size_t i = 0; i < body.shape.size(); ++i) {
     const std::size_t p = body.first + i;
     const Vec3 way = targets_[p] - positions_[p];
@@ -145,16 +158,16 @@ void Bodies::limit_targets(const Body& body) {
   }
 }
 
-// Where it is, without any energy but that of its place.
-void Bodies::stay(const Body& body) {
+// The body stays where it is: its energy is that of its position alone.
+void Bodies::Impl::stay(const Body& body) {
   for (std::size_t p = body.first; p < body.first + body.shape.size(); ++p) {
     targets_[p] = positions_[p];
     legs_[p].after = {};
   }
 }
 
-// One that sticks to a wall goes along with it, to the last bit, so that no contact follows.
-void Bodies::hold_stuck() {
+// A particle that sticks to a wall moves exactly with it, so that no contact follows.
+void Bodies::Impl::hold_stuck() {
   const bool moving = environment_.awaits_advance(particles_);
   const CellComplex& complex = environment_.complex();
   for (std::size_t p = 0; p < fates_.size(); ++p) {
@@ -170,8 +183,8 @@ void Bodies::hold_stuck() {
   }
 }
 
-// Advances all particles to their targets, and reads where they are then.
-StepReport Bodies::advance(bool pulls) {
+// Advances all particles to their targets, and reads their new positions.
+StepReport Bodies::Impl::advance(bool pulls) {
   for (std::size_t b = 0; b < bodies_.size(); ++b)
     pass_bodies_[b] = {bodies_[b].stiffness, bodies_[b].limited, bodies_[b].slides};
   const Pass pass{&responses_, options_.gravity, options_.dt, pass_bodies_, body_of_, goals_, contact_forces_,
@@ -195,7 +208,7 @@ StepReport Bodies::advance(bool pulls) {
 
 // --- the second pass
 
-void Bodies::second_pass() {
+void Bodies::Impl::second_pass() {
   const double kept = std::exp(-options_.drag * options_.dt);
   for_each_body([&](Body& body) {
     accept(body);
@@ -227,12 +240,14 @@ void Bodies::second_pass() {
   for_each_body([&](Body& body) { limit_energy(body); });
 }
 
-// Free of walls, to where goal and centrifugal force are in balance: that leaves the centre of mass where it is, and a
-// body that spins as it is. The body's energy must pay for it even if walls stop any of the particles on the way. Else,
-// and where it has met a wall, they are pulled to the bottoms of their wells, which costs nothing. With
-// those that touch other bodies the forces of these are in balance, too, and overlaps are taken out, as far as that
-// costs nothing. What apply_impulse() asks for is input.
-void Bodies::aim_pull(Body& body) {
+// Targets of the second pass.
+// - A body that met no wall: where the matching and the centrifugal force are in balance. Its centre of mass stays, and
+//   so does the shape of a body that spins. Its energy must pay for this even if walls stop some of the particles.
+// - Else: the minimum of each particle's potential, which costs nothing.
+// - Particles that touch other bodies: the contact forces join the balance, and overlaps are taken out, as far as that
+//   costs nothing.
+// - Displacements from apply_impulse(): on top of all that. Their energy counts as input.
+void Bodies::Impl::aim_pull(Body& body) {
   const double softness = 1.0 / body.stiffness;
   double cost = 0.0;
   for (std::size_t p = body.first; p < body.first + body.shape.size(); ++p) {
@@ -266,9 +281,9 @@ void Bodies::aim_pull(Body& body) {
   }
 }
 
-// What of a displacement nothing else pays for. A shape that is moved as a whole costs its weight alone: its wells go
-// along.
-void Bodies::charge_lift(Body& body) {
+// Counts the part of a displacement's energy that nothing else pays for as input. A body that is displaced as a whole
+// costs its weight alone, because the minima of its potentials move along.
+void Bodies::Impl::charge_lift(Body& body) {
   const double cost = std::min(body.lift, body.moving - body.allowed);
   if (!(cost > 0.0)) return;
   body.input += cost;
@@ -276,9 +291,9 @@ void Bodies::charge_lift(Body& body) {
   body.allowed += cost;
 }
 
-// Velocities relative to the rigid motion fall; what the pull did to places changes neither momentum nor angular
+// Damps velocities relative to the rigid motion. Neither this nor the pull of positions changes momentum or angular
 // momentum.
-void Bodies::damp(Body& body) {
+void Bodies::Impl::damp(Body& body) {
   const auto velocities = of(body, velocities_);
   const auto places = of(body, reached_);
   const auto masses = body.shape.masses();

@@ -1,3 +1,4 @@
+// Contacts between bodies: pairs from swept spheres, impulses from the contact solver.
 #include "bodies/body_collisions.hpp"
 
 #include <algorithm>
@@ -14,12 +15,12 @@ void BodyCollisions::sweep(const BodyParticles& particles, std::span<const Vec3>
     swept_[i] = {particles.positions[i], velocities[i] * dt, particles.radii[i] * (1.0 + near_share)};
 }
 
-// Particles of bodies whose bounding spheres meet no other need not be looked at one by one.
+// Leaves out the particles of bodies whose bounding spheres meet no other.
 void BodyCollisions::leave_out_lonely(const BodyParticles& particles, Threads threads) {
   bounds_.clear();
   for (std::size_t i = 0; i < swept_.size();) {
     const std::uint32_t body = particles.body_of[i];
-    const Vec3 centre = swept_[i].centre;  // any point of it will do
+    const Vec3 centre = swept_[i].centre;  // any point of the body will do
     double reach = 0.0;
     for (; i < swept_.size() && particles.body_of[i] == body; ++i) {
       const SphereMotion& s = swept_[i];
@@ -60,7 +61,7 @@ BodyCollisionCounts BodyCollisions::solve(const BodyParticles& particles, const 
     const Vec3 way_b = (velocities[p.b] + led_to[p.b]) * (0.5 * dt);
     const Approach near = approach({particles.positions[p.a], way_a, particles.radii[p.a]},
                                    {particles.positions[p.b], way_b, particles.radii[p.b]});
-    // A pair that parts at the begin may come back to where it was: the force between them then does no work.
+    // A pair that parts at the start may come back to the same place: then the force between them does no work.
     const double parting = std::max(0.0, dot(velocities[p.b] - velocities[p.a], near.normal)) * dt;
     contacts_.push_back({p.a, p.b, near.normal, (near.gap - resting_gap * r) + parting});
     if (near.distance >= 0.0) continue;

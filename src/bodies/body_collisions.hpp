@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/parallel.hpp"
+#include "dartcast/bodies.hpp"
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/particle_state.hpp"
 #include "dynamics/cell_lists.hpp"
@@ -15,31 +16,12 @@
 
 namespace dartcast {
 
-/// Particles do not rebound from each other.
-struct BodyCollisionOptions {
-  /// In [0, 1]: bodies that hit each other faster than 2 |gravity| dt part as rigid ones, at this share of the speed.
-  /// None: they part by their matching forces, as these happen to.
-  std::optional<double> restitution = {};
-  double friction = 0.0;  ///< >= 0
-  unsigned iterations = 10;
-  double position_correction = 0.2;  ///< share of an overlap taken out in one step, in [0, 1]
-};
-
-/// What happened in one step.
-struct BodyCollisionCounts {
-  std::uint64_t pairs_near = 0;      ///< given to the solver
-  std::uint64_t pairs_touching = 0;  ///< given an impulse
-  std::uint64_t impacts = 0;         ///< pairs that came together fast; 0 without restitution
-  std::uint64_t overlaps = 0;
-  double deepest = 0.0;  ///< of these, m
-};
-
 /// Particles of all bodies; entry i of each belongs to particle i.
 struct BodyParticles {
   std::span<const std::uint32_t> body_of;
   std::span<const std::uint64_t> ids;
   std::span<const Vec3> positions;
-  std::span<const double> radii;  ///< 0: meets nobody
+  std::span<const double> radii;  ///< 0: it meets no other
   std::span<const double> inverse_masses;
 };
 
@@ -52,13 +34,13 @@ class BodyCollisions {
   void find(const CellComplex& complex, std::span<const ParticleState> states, const BodyParticles& particles,
             std::span<const Vec3> velocities, double dt, Threads threads);
 
-  /// Impulses for the pairs found. `velocities`: at the begin of the step; `led_to`: those that its forces would lead
-  /// to; out with the impulses. Pairs that stay apart on the way, at the mean of both, get none. `corrections`: out, by
-  /// how much the overlaps are to be taken out. Throws as ContactSolver::solve().
+  /// Impulses for the pairs found. `velocities`: at the start of the step. `led_to`: in, the velocities that its forces
+  /// would lead to; out, with the impulses. Pairs that stay apart at the mean of both get no impulse. `corrections`:
+  /// out, the displacements that take out overlaps. Throws as ContactSolver::solve().
   BodyCollisionCounts solve(const BodyParticles& particles, const BodyCollisionOptions& options, double dt,
                             std::span<const Vec3> velocities, std::span<Vec3> led_to, std::span<Vec3> corrections);
 
-  /// Those found; sorted.
+  /// The pairs of the last find(), sorted.
   [[nodiscard]] std::span<const SpherePair> pairs() const { return pairs_; }
   [[nodiscard]] ContactSolver& solver() { return solver_; }
   [[nodiscard]] const ContactSolver& solver() const { return solver_; }

@@ -1,3 +1,4 @@
+// The answer of a body's particle to a wall, in both passes of a step.
 #include "bodies/body_contact.hpp"
 
 #include <algorithm>
@@ -9,15 +10,14 @@ namespace dartcast {
 
 namespace {
 
-// A particle that comes no faster than the acceleration makes it in so many steps rests on the wall: it does not
-// bounce.
+// A particle rests on the wall, and does not bounce, where the acceleration of so many steps explains its speed.
 constexpr double resting_steps = 2.0;
 
 bool enters(const Vec3& v, std::span<const WallHit> walls) {
   return std::any_of(walls.begin(), walls.end(), [&](const WallHit& w) { return dot(v, w.normal) < 0.0; });
 }
 
-// Along the walls, with friction, and not into those met earlier in the step.
+// The velocity along the walls, with friction, which also points into none of those met earlier in the step.
 Vec3 along_walls(const Pass& pass, const Vec3& v, std::span<const WallHit> walls, std::span<const WallHit> earlier) {
   const Vec3 result = rebounded(v, walls, [&](const WallHit& wall, double) {
     const WallResponse& r = pass.responses->of(wall.patch);
@@ -26,7 +26,7 @@ Vec3 along_walls(const Pass& pass, const Vec3& v, std::span<const WallHit> walls
   return enters(result, earlier) ? slid(v, walls, earlier) : result;
 }
 
-// Whether the particle ends here, by its patch's answer.
+// Whether the wall's response ends the particle's step here.
 bool ends_here(const Pass& pass, const Contact& contact, std::span<const WallHit> walls) {
   ParticleStatus& fate = pass.fates[contact.particle];
   if (fate != ParticleStatus::alive) return true;
@@ -49,17 +49,17 @@ struct BodyImpact {
   PassBody body;
   Leg& leg;
   Vec3 wall_velocity;
-  double left;  // time
+  double left;  // rest of the step, s
 
   [[nodiscard]] PotentialEnergy potential() const {
     return {body.stiffness, pass.goals[contact.particle], pass.gravity + pass.forces[contact.particle]};
   }
-  // Foreseen for the particle where nothing was met: what the contact changes acts from the next step on.
+  // The predicted acceleration ignores the contact, whose effect on the forces starts with the next step.
   [[nodiscard]] Vec3 acceleration(const Vec3& at, double time) const {
     return body.limited ? potential().acceleration(at) : leg.early + (leg.late - leg.early) * time;
   }
 
-  // Bouncing on walls that the particle was not on, sliding on the others.
+  // The particle bounces off walls that it was not on, and slides on the others.
   [[nodiscard]] Vec3 bounced(const Vec3& relative) const {
     const double resting = resting_steps * pass.dt * norm(acceleration(contact.point, contact.time_of_impact));
     return rebounded(relative, walls, [&](const WallHit& wall, double into) {
@@ -70,7 +70,7 @@ struct BodyImpact {
     });
   }
 
-  // What the particle still has, and a velocity that goes with it. A wall that moves gives what it gives.
+  // The energy that the particle still has, and a velocity with that energy. A moving wall may add any amount.
   [[nodiscard]] double spent(Vec3& velocity) const {
     const double wanted = 0.5 * dot(velocity, velocity);
     if (leg.pushed) return wanted;

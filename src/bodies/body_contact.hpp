@@ -1,4 +1,4 @@
-// What a particle of a body does at walls, in both passes of a step.
+// The answers of a body's particles to walls, in both passes of a step.
 //
 // T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism for continuous collision detection in
 // deformable environments", SPM 2009, section 7.4.
@@ -9,34 +9,25 @@
 #include <span>
 
 #include "bodies/body_motion.hpp"
+#include "dartcast/bodies.hpp"
 #include "dartcast/response.hpp"
 
 namespace dartcast {
 
-/// Wall faces that a particle met last in a step.
-struct TouchedFaces {
-  std::array<CellFace, 3> face{};
-  std::uint8_t count = 0;
-
-  [[nodiscard]] bool has(CellFace f) const;
-  /// Those of a contact; past the third none is kept.
-  void set(std::span<const WallHit> walls);
-};
-
 /// A particle from one contact to the next (or to an end of the step).
 struct Leg {
-  Vec3 from;             ///< where it begins
+  Vec3 from;             ///< its start
   Vec3 before;           ///< velocity there
   Vec3 after;            ///< velocity at the end of the step, if no wall is met
-  Vec3 early;            ///< acceleration at the begin of the step
-  Vec3 late;             ///< at its end, as foreseen
-  double kinetic = 0.0;  ///< per mass, what it may have in `from`: where targets are limited
-  double begin = 0.0;    ///< share of the step
-  bool pushed = false;   ///< it has met a wall that moves, or been held
+  Vec3 early;            ///< acceleration at the start of the step
+  Vec3 late;             ///< at its end, as predicted
+  double kinetic = 0.0;  ///< limit of the energy per mass in `from`, where targets are limited
+  double begin = 0.0;    ///< time of `from`, as a share of the step
+  bool pushed = false;   ///< it met a moving wall, or was held
 };
 
-/// The well that a particle moves in while the fits are fixed: per mass its energy is stiffness |x - goal|^2 / 2 -
-/// gravity . x, convex.
+/// The potential that a particle moves in while the fits are fixed. Its energy per mass, stiffness |x - goal|^2 / 2 -
+/// gravity . x, is convex.
 struct PotentialEnergy {
   double stiffness = 0.0;
   Vec3 goal;
@@ -47,16 +38,16 @@ struct PotentialEnergy {
   [[nodiscard]] double rise(const Vec3& x, const Vec3& d) const {
     return 0.5 * stiffness * dot(d, d) - dot(acceleration(x), d);
   }
-  /// The largest share of the way d from x, in [0, 1], at whose end (and so, the well being convex, before which) the
-  /// energy has not risen by more than `kinetic`.
+  /// The largest share of the way d from x, in [0, 1], over which the energy rises by at most `kinetic`. (It rises by
+  /// no more before the end than at the end, because it is convex.)
   [[nodiscard]] double affordable_share(const Vec3& x, const Vec3& d, double kinetic) const;
 };
 
-/// What a body's contacts need of it.
+/// The properties of a body that its contacts need.
 struct PassBody {
   double stiffness = 0.0;
-  bool limited = false;  ///< first pass: no particle aims where it cannot pay to be
-  bool slides = false;   ///< second pass: what the walls leave of the way is gone, too
+  bool limited = false;  ///< first pass: targets are limited to those that the energy pays for
+  bool slides = false;   ///< second pass: particles lose the rest of their way at walls
 };
 
 /// Data of one pass; the spans have an entry per particle, `bodies` one per body.
@@ -66,18 +57,18 @@ struct Pass {
   double dt = 0.0;
   std::span<const PassBody> bodies;
   std::span<const std::uint32_t> body_of;
-  std::span<const Vec3> goals;       ///< at the begin of the pass
-  std::span<const Vec3> forces;      ///< per mass, of other bodies: in the first pass
+  std::span<const Vec3> goals;       ///< at the start of the pass
+  std::span<const Vec3> forces;      ///< from other bodies, per mass: in the first pass
   std::span<const TouchedFaces> on;  ///< at the end of the last step
   std::span<TouchedFaces> next_on;
   std::span<ParticleStatus> fates;
   std::span<Leg> legs;
 };
 
-/// The answer to a contact in the first pass; the leg becomes that after the contact.
+/// Answers a contact in the first pass. The particle's leg becomes the one after the contact.
 AfterContact answer_motion(const Pass& pass, const Contact& contact, std::span<const WallHit> walls,
                            std::span<const WallHit> earlier);
-/// The answer to a contact in the second pass.
+/// Answers a contact in the second pass.
 AfterContact answer_pull(const Pass& pass, const Contact& contact, std::span<const WallHit> walls,
                          std::span<const WallHit> earlier);
 

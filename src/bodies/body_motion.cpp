@@ -1,3 +1,4 @@
+// The rigid part of the motion of some particles: momentum, inertia, angular velocity.
 #include "bodies/body_motion.hpp"
 
 #include <Eigen/Dense>
@@ -28,7 +29,7 @@ Mat3 inertia_of(std::span<const double> masses, std::span<const Vec3> positions,
   return inertia;
 }
 
-// The spin of least energy with this angular momentum.
+// The angular velocity of least energy with this angular momentum.
 Vec3 spin_of(const Mat3& inertia, const Vec3& momentum) {
   const PrincipalAxes solver = principal_axes(inertia);
   const Eigen::Vector3d& values = solver.eigenvalues();

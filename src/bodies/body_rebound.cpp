@@ -1,3 +1,4 @@
+// Impacts between bodies: the impulses without rebound, enlarged by the restitution, island by island.
 #include "bodies/body_rebound.hpp"
 
 #include <algorithm>
@@ -9,8 +10,8 @@ namespace dartcast {
 
 namespace {
 
-// The solver is started anew from what it has come to, so many times at most, until all that approach are held back but
-// for this share of the fastest approach. Faces that meet flat need hundreds of iterations.
+// The solver starts again from its last result, so many times at most, until no pair approaches faster than this share
+// of the fastest approach. Faces that meet flat need hundreds of iterations.
 constexpr unsigned max_rounds = 100;
 constexpr double left_share = 0x1p-32;
 
@@ -20,7 +21,7 @@ Vec3 relative_velocity(const RigidContact& c, std::span<const RigidMover> movers
 
 }  // namespace
 
-// Pairs that touch within the step are as if they touched.
+// Pairs that touch within the step count as touching now.
 void BodyRebounds::find_contacts(const BodyParticles& particles, std::span<const SpherePair> pairs, double friction,
                                  double dt, std::span<const RigidMover> movers) {
   contacts_.clear();
@@ -39,7 +40,7 @@ void BodyRebounds::find_contacts(const BodyParticles& particles, std::span<const
     c.a_id = particles.ids[p.a];
     c.b_id = particles.ids[p.b];
     c.normal = near.normal;
-    // One place for both, so that what they get has no moment.
+    // One point for both, so that the pair of impulses has no moment.
     c.point_a = ((a.centre + c.normal * a.radius) + (b.centre - c.normal * b.radius)) * 0.5;
     c.point_b = c.point_a;
     c.friction = friction;
@@ -52,7 +53,7 @@ std::uint32_t BodyRebounds::root_of(std::uint32_t mover) const {
   return mover;
 }
 
-// What cannot be pushed joins nobody.
+// A body that nothing can push joins no island.
 BodyRebounds::Island& BodyRebounds::island_of(const RigidContact& contact) {
   return islands_[root_of(before_[contact.a].inverse_mass > 0.0 ? contact.a : contact.b)];
 }
@@ -91,7 +92,7 @@ void BodyRebounds::measure(std::span<const RigidMover> after) {
   }
 }
 
-// No contact approaches afterwards.
+// Solves until no contact approaches.
 void BodyRebounds::hold_back(const BodyCollisionOptions& options, double dt, std::span<RigidMover> movers) {
   SolverOptions solver;
   solver.dt = dt;

@@ -1,4 +1,4 @@
-// Bodies that hit each other rebound, as rigid ones.
+// Impacts between bodies, as between rigid ones.
 //
 // J. J. Moreau, "Unilateral contact and dry friction in finite freedom dynamics", 1988: an impact is the one without
 // rebound, its impulses enlarged by 1 + restitution.
@@ -17,19 +17,20 @@ namespace dartcast {
 /// Keeps its memory from step to step.
 class BodyRebounds {
  public:
-  /// Finds the pairs that come together within a step, faster than `resting_speed`, and gives the bodies that they join
-  /// the impulses of an impact. `pairs` as found by BodyCollisions; `movers`: the bodies, with their velocities; out
-  /// with those after the impact. Returns the number of such pairs. Momentum and angular momentum change by rounding
-  /// alone, and the kinetic energy of the bodies that are joined does not grow beyond that, however far the solver
-  /// came: it is a quadratic function of the share of the impulses that is given, least at some share, and twice that
-  /// is never exceeded. Preconditions: options are in range, restitution is set, pairs are sorted and their ids ascend.
+  /// Finds the pairs that come together within a step, faster than `resting_speed`, and gives the bodies that they
+  /// join the impulses of an impact. `pairs`: as found by BodyCollisions. `movers`: the bodies with their velocities;
+  /// out: those after the impact. Returns the number of such pairs. Momentum and angular momentum change by rounding
+  /// alone, and the kinetic energy of joined bodies grows by rounding alone, however far the solver came. Reason: the
+  /// energy is a quadratic function of the share of the impulses that is given; it is least at some share, and the
+  /// share given is at most twice that. Preconditions: options are in range, restitution is set, pairs are sorted and
+  /// their ids ascend.
   std::uint64_t solve(const BodyParticles& particles, std::span<const SpherePair> pairs,
                       const BodyCollisionOptions& options, double dt, double resting_speed,
                       std::span<RigidMover> movers);
 
  private:
   struct Island {
-    std::uint32_t root = 0;  // of the bodies that contacts join
+    std::uint32_t root = 0;  // root of the bodies that contacts join
     bool impact = false;
     double slope = 0.0;  // energy by the share s of the impulses: slope s + bend s^2 / 2
     double bend = 0.0;

@@ -1,3 +1,4 @@
+// Weights of samples for each vertex, by moving least squares, and the vertices that follow from them.
 #include "bodies/carried_surface.hpp"
 
 #include <fmt/format.h>
@@ -18,10 +19,10 @@ namespace dartcast {
 namespace {
 
 constexpr double max_amplification = 8.0;
-constexpr double flatness = 0x1p-20;  // of the extent of samples: what is thinner counts as flat
+constexpr double flatness = 0x1p-20;  // of the extent of samples; thinner sets count as flat
 constexpr std::size_t grain = 256;    // vertices
 
-// Nearest samples first; of equal distances the lower number first.
+// Sorts nearest samples first; at equal distances the lower number first.
 class NearestSamples {
  public:
   explicit NearestSamples(std::span<const Vec3> samples) : samples_(samples), tree_(points(samples)) {
@@ -29,7 +30,7 @@ class NearestSamples {
     for (const Vec3& p : samples) bounds_ = join(bounds_, {p, p});
     const Vec3 size = bounds_.high - bounds_.low;
     start_ = std::max({size.x, size.y, size.z}) / std::cbrt(static_cast<double>(samples.size()));
-    if (!(start_ > 0.0)) start_ = 1.0;  // all at one place: any will do to begin with
+    if (!(start_ > 0.0)) start_ = 1.0;  // all at one place: any radius will do
   }
 
   [[nodiscard]] std::vector<std::uint32_t> of(const Vec3& x, std::size_t count) const {
@@ -73,7 +74,7 @@ double product(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 // Makes the columns orthonormal, left to right, each twice (W. Kahan, B. N. Parlett: twice is enough), and solves R' z
-// = (1, 0, 0, 0) for the factor R. Nothing where a column is, to rounding, one of those before it.
+// = (1, 0, 0, 0) for the factor R. Returns nothing where a column depends on those before it, to rounding.
 std::optional<std::array<double, 4>> orthonormalized(Columns& q) {
   std::array<double, 4> z{};
   for (std::size_t j = 0; j < 4; ++j) {

@@ -1,3 +1,4 @@
+// The parity of the triangles above a point, with a symbolic shift that no triangle's edge can meet.
 #include "bodies/inside.hpp"
 
 #include <algorithm>
@@ -29,7 +30,7 @@ Sign shifted_side(const Vec3& a, const Vec3& b, const Vec3& x) {
   return rise != Sign::zero ? rise : compare(b.x, a.x);
 }
 
-// Whether the line upwards through the shifted x meets the triangle.
+// Whether the vertical line through the shifted x meets the triangle.
 bool under_or_over(const std::array<Vec3, 3>& t, const Vec3& x) {
   const Sign s = shifted_side(t[0], t[1], x);
   return s != Sign::zero && shifted_side(t[1], t[2], x) == s && shifted_side(t[2], t[0], x) == s;
@@ -39,7 +40,8 @@ Vec3 without(const Vec3& p, int axis) {
   return axis == 0 ? Vec3{p.y, p.z, 0.0} : axis == 1 ? Vec3{p.z, p.x, 0.0} : Vec3{p.x, p.y, 0.0};
 }
 
-// Whether x, which is in the triangle's plane, is in the closed triangle: in a projection that keeps its area.
+// Whether x, a point of the triangle's plane, is in the closed triangle. Decided in a projection where the triangle
+// has an area.
 bool holds_in_plane(const std::array<Vec3, 3>& t, const Vec3& x) {
   for (int axis = 0; axis < 3; ++axis) {
     const std::array<Vec3, 3> flat = {without(t[0], axis), without(t[1], axis), without(t[2], axis)};

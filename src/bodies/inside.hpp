@@ -1,4 +1,4 @@
-// Whether a point is inside of a closed surface, decided exactly.
+// Exact tests whether a point is inside a closed surface.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,12 @@ namespace dartcast {
 
 enum class PointSide : std::uint8_t { inside, outside, on };
 
-/// Answers for one closed surface, by the parity of the triangles above the point: what an odd number of layers
-/// encloses is inside, so that a shell within another is a cavity, whichever way it is oriented.
+/// The test for one closed surface, by the parity of the triangles above the point. A point that an odd number of
+/// layers encloses is inside. So a shell within another is a cavity, for any orientation.
 ///
-/// Every answer comes from exact signs. The upward ray starts at x + (e, e^2, 0) with e infinitesimal: it meets no edge
-/// and no corner, and where it starts on a triangle x is on that triangle. (H. Edelsbrunner, E. P. Muecke, "Simulation
-/// of simplicity", 1990.)
+/// Every answer comes from exact signs. The upward ray starts at x + (e, e^2, 0) with e infinitesimal: it meets no
+/// edge and no corner. Where it starts on a triangle, x is on that triangle. (H. Edelsbrunner, E. P. Muecke,
+/// "Simulation of simplicity", 1990.)
 class InsideTest {
  public:
   /// Throws InvalidMesh as surface_triangles() and check_closed(). Cost: n log n.

@@ -1,3 +1,4 @@
+// The nearest rotation: Newton's method from a guess, else Eigen's JacobiSVD.
 #include "bodies/rotation.hpp"
 
 #include <Eigen/Dense>
@@ -43,12 +44,12 @@ std::optional<Vec3> solve_positive(const Symmetric& h, const Vec3& t, double low
   return Vec3{(t.x / h.xx - lyx * wy) - lzx * z, wy, z};
 }
 
-// Its adjugate and its determinant, with which no division is needed, as quaternions are normalized anyway. Of norms
-// within the bounds above, determinants and their squares neither overflow nor vanish.
+// The adjugate and the determinant avoid a division, because quaternions are normalized later. For norms within the
+// bounds above, determinants and their squares neither overflow nor vanish.
 struct Adjugate {
   double xx, xy, xz, yy, yz, zz;
   double determinant;
-  bool proves_positive;  // by the leading minors; if not, nothing is known
+  bool proves_positive;  // by the leading minors; false: unknown
 
   Adjugate(const Symmetric& h, double norm)
       : xx(h.yy * h.zz - h.yz * h.yz),
@@ -69,7 +70,7 @@ struct Adjugate {
 };
 
 // Newton's method for the maximum of trace(R^T A) over rotations R exp(w): with M = R^T A the first derivative is the
-// axial vector of M, the second -(trace(M) 1 - sym(M)). That it is negative definite proves a maximum that is unique:
+// axial vector of M, the second -(trace(M) 1 - sym(M)). Where the second is negative definite the maximum is unique:
 // its eigenvalues are sums of two singular values, the least one with the sign of det A.
 std::optional<Quaternion> newton(const Mat3& a, Quaternion q, double norm) {
   for (int i = 0; i < rotation_iterations; ++i) {
@@ -100,7 +101,7 @@ std::optional<Quaternion> newton(const Mat3& a, Quaternion q, double norm) {
   return std::nullopt;
 }
 
-// U V^T, with the least singular value's direction turned round where that is a reflection.
+// U V^T, with the direction of the least singular value reversed where that product is a reflection.
 Quaternion by_svd(const Mat3& a) {
   Eigen::Matrix3d m;
   m << a.x.x, a.y.x, a.z.x, a.x.y, a.y.y, a.z.y, a.x.z, a.y.z, a.z.z;
@@ -130,7 +131,8 @@ Rotation nearest_rotation(const Mat3& a, const Quaternion& start) {
   if (norm2 >= smallest_norm2 && norm2 <= largest_norm2) return nearest_in_range(a, start);
   const double largest = largest_entry(a);
   if (largest == 0.0) return {start, false};
-  const double scale = std::ldexp(1.0, -std::ilogb(largest) / 2);  // in two halves: the whole may overflow
+  const double scale =
+      std::ldexp(1.0, -std::ilogb(largest) / 2);  // applied twice, because the whole factor may overflow
   const double rest = std::ldexp(1.0, -std::ilogb(largest * scale));
   return nearest_in_range((a * scale) * rest, start);
 }

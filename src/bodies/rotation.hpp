@@ -1,11 +1,11 @@
 // The rotation nearest to a matrix: the rotational part of its polar decomposition.
 //
-// As M. Mueller, J. Bender, N. Chentanez, M. Macklin, "A robust method to extract the rotational part of deformations",
-// 2016, it starts from the rotation that it was; here each iteration is one of Newton's. What does not converge goes to
-// Eigen's JacobiSVD.
+// As M. Mueller, J. Bender, N. Chentanez, M. Macklin, "A robust method to extract the rotational part of
+// deformations", 2016, it starts from the last rotation; here each iteration is one of Newton's. Eigen's JacobiSVD
+// takes cases that do not converge.
 #pragma once
 
-#include "base/mat3.hpp"
+#include "dynamics/mat3.hpp"
 
 namespace dartcast {
 
@@ -14,8 +14,7 @@ namespace dartcast {
 /// orthonormal up to 6 u), a component of the axial vector, a difference of two, by less than 16 u |A|.
 inline constexpr double rotation_residual = 0x1p-48;
 
-/// Iterations before the fallback. From a start within 60 degrees four suffice; from one step to the next it takes one
-/// or two.
+/// Iterations before the fallback. From a start within 60 degrees four suffice; from one step to the next one or two.
 inline constexpr int rotation_iterations = 8;
 
 struct Rotation {

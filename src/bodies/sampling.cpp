@@ -1,5 +1,4 @@
-#include "dartcast/sampling.hpp"
-
+// Samples of a surface, on it and in it: candidates in random order, kept where no sample is near.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include "base/random.hpp"
 #include "bodies/inside.hpp"
 #include "bodies/triangles.hpp"
+#include "dartcast/bodies.hpp"
 #include "dartcast/error.hpp"
 #include "tracking/representable_point.hpp"
 
@@ -21,7 +21,7 @@ namespace {
 constexpr double piece_share = 0.25;         // of the spacing: the longest edge of a piece of the surface
 constexpr double cube_share = 0.5;           // of the spacing: the edge of a cube of candidates
 constexpr double smallest_share = 0x1p-30;   // of the largest coordinate: a smaller spacing would be lost in rounding
-constexpr std::size_t max_candidates = 200;  // for each sample that the caller is ready for
+constexpr std::size_t max_candidates = 200;  // for each sample that the caller accepts
 
 enum Stream : std::uint64_t { surface_stream = 1, volume_stream = 2, order_stream = 3 };
 
@@ -50,7 +50,7 @@ std::vector<Vec3> shuffled(std::vector<Vec3> points, std::uint64_t seed) {
   return points;
 }
 
-// The samples so far, by cubes as wide as the spacing: one that is too near is in a cube beside.
+// The samples so far, by cubes as wide as the spacing. A sample that is too near is in the same cube or beside it.
 class Samples {
  public:
   explicit Samples(double spacing) : spacing_(spacing) {}
@@ -80,8 +80,7 @@ class Samples {
   using Cube = std::array<std::int64_t, 3>;
   static constexpr std::uint32_t none = 0xffffffffU;
 
-  // Below 2^31 in magnitude, for the spacing is at least 2^-30 of every coordinate (and of its own for a body that is
-  // smaller).
+  // Below 2^31 in magnitude, because the spacing is at least 2^-30 of every coordinate.
   [[nodiscard]] Cube cube_of(const Vec3& x) const {
     const auto at = [this](double c) { return static_cast<std::int64_t>(std::floor(c / spacing_)); };
     return {at(x.x), at(x.y), at(x.z)};
@@ -101,7 +100,7 @@ class Samples {
 
 using TrianglePiece = std::array<Vec3, 3>;
 
-// Which edge is the longest: from corner i to the next.
+// The longest edge: from corner i to the next.
 std::size_t longest_edge(const TrianglePiece& t) {
   std::array<double, 3> length{};
   for (std::size_t i = 0; i < 3; ++i) length[i] = norm(t[(i + 1) % 3] - t[i]);
@@ -121,7 +120,7 @@ Vec3 random_point(const TrianglePiece& t, Random& random) {
 // A piece whose longest edge is 1 has at most this area.
 constexpr double largest_piece = 0.4331;  // sqrt(3) / 4, rounded up
 
-// Refuses at once what would take too many pieces by area alone.
+// Refuses surfaces whose area alone needs too many pieces.
 void check_area(const std::vector<TrianglePiece>& triangles, const SamplingOptions& o, double max_count) {
   double area = 0.0;
   for (const TrianglePiece& t : triangles) area += 0.5 * norm(cross(t[1] - t[0], t[2] - t[0]));
@@ -129,8 +128,8 @@ void check_area(const std::vector<TrianglePiece>& triangles, const SamplingOptio
   if (area / edge / edge > largest_piece * max_count) refuse_number(o);
 }
 
-// One random point in each piece: triangles are halved across their longest edge (M.-C. Rivara, 1984), so that needles
-// do not make more of them than their area and length ask for.
+// One random point in each piece. Triangles are halved across their longest edge (M.-C. Rivara, 1984), so that
+// needles make no more pieces than their area and length need.
 std::vector<Vec3> surface_candidates(const MeshData& surface, const SamplingOptions& o) {
   std::vector<TrianglePiece> open;
   for (const SurfaceTriangle& t : surface_triangles(surface))

@@ -1,3 +1,4 @@
+// Shape matching: the best rotation or linear transformation of each region, and the goals that follow.
 #include "bodies/shape_matching.hpp"
 
 #include <fmt/format.h>
@@ -24,7 +25,7 @@ Mat3 from_eigen(const Eigen::Matrix3d& m) {
   return {{m(0, 0), m(1, 0), m(2, 0)}, {m(0, 1), m(1, 1), m(2, 1)}, {m(0, 2), m(1, 2), m(2, 2)}};
 }
 
-// The inverse of a symmetric matrix on the space that it spans, and the projection onto what is across that.
+// The inverse of a symmetric matrix on the space that it spans, and the projection onto its complement.
 struct Inverse {
   Mat3 inverse;
   Mat3 not_spanned;
@@ -60,7 +61,7 @@ void check_shape(std::span<const Vec3> points, std::span<const double> masses, c
     throw InvalidArgument("rest shape: the linear share must be between 0 and 1");
 }
 
-// How many clusters each point is in.
+// The number of clusters of each point.
 std::vector<double> counted(const std::vector<std::vector<std::uint32_t>>& clusters, std::size_t size) {
   std::vector<double> count(size, 0.0);
   std::vector<std::size_t> last(size, 0);
@@ -97,7 +98,7 @@ RestShape::RestShape(std::span<const Vec3> points, std::span<const double> masse
 
 void RestShape::add_region(std::span<const std::uint32_t> particles, std::span<const Vec3> points) {
   Region region{0.0, zero_matrix(), {}, {}};
-  Vec3 sum;  // relative to a point of it: the less is rounded
+  Vec3 sum;  // relative to a point of it, for less rounding
   const Vec3 origin = points[particles.front()];
   for (const std::uint32_t i : particles) {
     const double weight = masses_[i] * shares_[i];
@@ -138,7 +139,7 @@ unsigned RestShape::match(std::span<const Vec3> positions, std::span<Fit> fits) 
   return fallbacks;
 }
 
-// Across a flat region the linear transformation is the rotation: nothing else is known of it there.
+// Across a flat region the linear transformation is the rotation, because the points determine nothing else.
 void RestShape::fit(const Region& region, const Mat3& covariance, Fit& fit) const {
   const Mat3 rotation = matrix(fit.rotation);
   fit.transform = rotation;

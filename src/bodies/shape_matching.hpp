@@ -1,5 +1,4 @@
-// Shape matching: where the particles of a body would be if it had its rest shape, as near as possible to where they
-// are.
+// Shape matching: goals for the particles of a body, in its rest shape, as near as possible to their positions.
 //
 // M. Mueller, B. Heidelberger, M. Teschner, M. Gross, "Meshless deformations based on shape matching", SIGGRAPH 2005.
 #pragma once
@@ -8,45 +7,22 @@
 #include <span>
 #include <vector>
 
-#include "base/mat3.hpp"
+#include "dartcast/bodies.hpp"
+#include "dynamics/mat3.hpp"
 
 namespace dartcast {
 
-struct MatchOptions {
-  /// Share of the best linear transformation in the goals, in [0, 1]; the rest is that of the best rotation.
-  double linear = 0.0;
-  /// The linear transformation is scaled to keep the volume (where the body is squeezed below an eighth of it, as if it
-  /// were an eighth).
-  bool keep_volume = true;
-  /// Regions of the rest shape that are matched each by itself, for softer bodies; a particle's goal is the mean over
-  /// its regions. They should overlap, or the body falls apart. Empty: one region of all.
-  std::vector<std::vector<std::uint32_t>> clusters = {};
-};
-
-/// How a region of the rest shape lies in space. A plain record.
-struct Fit {
-  Quaternion rotation;  ///< of length 1: the best one
-  Vec3 centre;          ///< where the region's centre of mass is
-  Mat3 transform;       ///< of rest positions relative to the rest centre of mass: goal = centre + transform * rest
-  double strain = 0.0;  ///< part of the matching energy that the particles' places do not change, per stiffness
-};
-
-/// The limits of a mass. Its inverse, and sums and products with it, then neither overflow nor vanish.
-inline constexpr double smallest_mass = 0x1p-300;
-inline constexpr double largest_mass = 0x1p+300;
-inline bool is_mass(double m) { return m >= smallest_mass && m <= largest_mass; }
-
-/// A rest shape with masses. Flat and linear ones, and single points, are shapes like others.
+/// A rest shape with masses. It may be flat, a line, or a single point.
 ///
-/// The matching energy per stiffness, for particles at x and goals g of fixed fits, is constant + sum m |x - g|^2 / 2,
-/// so that the force per stiffness is -m (x - g). Where the fits are those of match(), without keep_volume or with
-/// linear = 0, it is the least over all fits; then its derivative is that force, too: the energy of match() is the
-/// force's potential.
+/// The matching energy per stiffness, for particles at x and goals g of fixed fits, is constant + sum m |x - g|^2 /
+/// 2, so that the force per stiffness is -m (x - g). Where the fits are those of match(), without keep_volume or with
+/// linear = 0, the energy is the least over all fits. Then its derivative is that force, so it is the potential of
+/// the force.
 class RestShape {
  public:
   /// `masses`: one per point. Throws InvalidArgument where there is no point, a mass is out of range (is_mass()), a
-  /// point is not finite, linear is outside [0, 1], a cluster is empty, names no point or one twice, or a point is in
-  /// none.
+  /// point is not finite, linear is outside [0, 1], a cluster is empty, names a missing point or one twice, or a
+  /// point is in no cluster.
   RestShape(std::span<const Vec3> points, std::span<const double> masses, const MatchOptions& options = {});
 
   [[nodiscard]] std::size_t size() const { return masses_.size(); }
@@ -56,12 +32,12 @@ class RestShape {
   /// Whether match() gives the fits of least energy.
   [[nodiscard]] bool has_least_fits() const { return !keep_volume_ || linear_ == 0.0; }
 
-  /// Fits the regions to the particles' places. `fits`: one per cluster, in as the last ones (only their rotations
-  /// count, as guesses), out the new ones. Returns how many rotations were left to the fallback. Preconditions: sizes
+  /// Fits the regions to the particles' positions. `fits`: one per cluster; in: the last ones, whose rotations are
+  /// guesses; out: the new ones. Returns the number of rotations that needed the fallback. Preconditions: sizes
   /// match. Cost: about 10 ns per member of a cluster, 100 ns per cluster.
   unsigned match(std::span<const Vec3> positions, std::span<Fit> fits) const;
 
-  /// Where the fits want the particles. Returns the constant of the energy. Cost: a few ns per member.
+  /// Sets the goals of the fits. Returns the constant of the energy. Cost: a few ns per member.
   double goals(std::span<const Fit> fits, std::span<Vec3> goals) const;
 
  private:
@@ -75,7 +51,7 @@ class RestShape {
     double mass;
     Mat3 moments;      // sum of weight rest rest^T
     Mat3 inverse;      // its inverse on the space that the region spans, 0 across it
-    Mat3 not_spanned;  // projection onto what is across it
+    Mat3 not_spanned;  // projection onto the complement of that space
   };
 
   void add_region(std::span<const std::uint32_t> particles, std::span<const Vec3> points);
@@ -95,10 +71,5 @@ class RestShape {
 /// Matching energy per stiffness for goals of fixed fits, given their constant.
 double matching_energy(const RestShape& shape, std::span<const Vec3> positions, std::span<const Vec3> goals,
                        double constant);
-
-/// Regions for MatchOptions::clusters: cubes of edge `size` on a lattice of half that spacing, those that hold points.
-/// Every point is in at most 8. Throws InvalidArgument where size is not positive, or so small beside the points'
-/// extent that lattice numbers exceed 2^20.
-std::vector<std::vector<std::uint32_t>> overlapping_clusters(std::span<const Vec3> points, double size);
 
 }  // namespace dartcast

@@ -1,3 +1,4 @@
+// The triangles of a surface, cut from its faces, and the check that it is closed.
 #include "bodies/triangles.hpp"
 
 #include <fmt/format.h>

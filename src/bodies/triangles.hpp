@@ -1,4 +1,4 @@
-// The triangles of a surface that bodies are made of, judged before they are used.
+// The triangles of a body's surface, checked before use.
 #pragma once
 
 #include <array>
@@ -12,13 +12,13 @@ namespace dartcast {
 
 using SurfaceTriangle = std::array<std::uint32_t, 3>;
 
-/// The triangles that a surface's faces consist of, oriented alike across edges: those of the fans from each face's
-/// lowest-numbered corner, face after face. Throws InvalidMesh, with the kind of the first defect and its first face,
-/// where check_and_repair_surface() refuses the surface. Cost: n log n.
+/// The triangles of a surface's faces, oriented alike across edges. Each face gives a fan from its lowest-numbered
+/// corner. Throws InvalidMesh, with the kind of the first defect and its first face, where check_and_repair_surface()
+/// refuses the surface. Cost: n log n.
 std::vector<SurfaceTriangle> surface_triangles(const MeshData& surface);
 
-/// Throws InvalidMesh, naming an edge, where a triangle has no neighbour across one of its edges: the surface is open
-/// and has no inside. Precondition: no edge has more than two triangles. Cost: n log n.
+/// Throws InvalidMesh, which names an edge, where a triangle has no neighbour across one of its edges. Such a surface
+/// is open and has no inside. Precondition: no edge has more than two triangles. Cost: n log n.
 void check_closed(const std::vector<SurfaceTriangle>& triangles);
 
 /// The smallest box that holds some corners of points.

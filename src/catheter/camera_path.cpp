@@ -1,5 +1,4 @@
-#include "catheter/camera_path.hpp"
-
+// A camera's path: a spline through points of the lumen, and a walk from each point to the spline.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +6,7 @@
 #include <cmath>
 
 #include "catheter/transport.hpp"
+#include "dartcast/catheter.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/response.hpp"
 #include "tracking/representable_point.hpp"
@@ -25,7 +25,7 @@ struct Span {
   [[nodiscard]] Vec3 slope(double u) const { return b + (c * 2.0 + d * (3.0 * u)) * u; }
 };
 
-// From p[1] to p[2]: knots are apart by the roots of the points' distances.
+// From p[1] to p[2]. The distances of knots are the roots of the points' distances.
 Span span_of(const std::array<Vec3, 4>& p) {
   std::array<double, 3> gap{};
   for (std::size_t i = 0; i < 3; ++i) gap[i] = std::sqrt(norm(p[i + 1] - p[i]));
@@ -36,7 +36,7 @@ Span span_of(const std::array<Vec3, 4>& p) {
   return {p[1], start, through * 3.0 - start * 2.0 - end, (start + end) - through * 2.0};
 }
 
-// The points without those that repeat, and from which point each span starts.
+// The points without repeats, and the point at which each span starts.
 struct Knots {
   std::vector<Vec3> points;
   std::vector<std::size_t> index;
@@ -75,7 +75,7 @@ std::vector<double> lengths_of(const std::vector<Span>& spans) {
   return lengths;
 }
 
-// A camera's place on the spline: the span, and where in it.
+// A camera's place on the spline: the span, and the parameter in it.
 struct Stop {
   std::size_t span;
   double u;

@@ -1,5 +1,4 @@
-#include "dartcast/catheter.hpp"
-
+// A catheter's step: pieces of the push, each tried, and undone where it leaves a segment too long or too short.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "catheter/catheter_impl.hpp"
 #include "catheter/transport.hpp"
 #include "dartcast/error.hpp"
 #include "tracking/carry.hpp"
@@ -18,7 +18,7 @@ namespace {
 
 constexpr double max_push = 0.25;    // of the spacing, in a substep
 constexpr double max_turn = 0.2;     // rad, in a substep
-constexpr int max_halvings = 4;      // of a push that does not go
+constexpr int max_halvings = 4;      // of a push that is not possible
 constexpr double max_bending = 1e8;  // see src/catheter/chain_solver.cpp
 constexpr double max_points = 1e6;
 
@@ -43,7 +43,7 @@ void check_options(const CatheterOptions& o) {
 
 }  // namespace
 
-Catheter::Catheter(Environment& environment, const CatheterOptions& options)
+Catheter::Impl::Impl(Environment& environment, const CatheterOptions& options)
     : environment_(environment), options_(options) {
   check_options(options);
   if (environment.map().dimension() != 3) throw InvalidArgument("catheter: the environment must be of space");
@@ -68,24 +68,24 @@ Catheter::Catheter(Environment& environment, const CatheterOptions& options)
   hold();
 }
 
-double Catheter::total_length() const { return static_cast<double>(count_ - 1) * options_.spacing; }
+double Catheter::Impl::total_length() const { return static_cast<double>(count_ - 1) * options_.spacing; }
 
 // Those that are farther than 0 from the entry.
-std::size_t Catheter::inserted_points() const {
+std::size_t Catheter::Impl::inserted_points() const {
   const auto m = static_cast<std::size_t>(std::ceil(inserted_ / options_.spacing));
   const bool rounded_up = m > 0 && !(static_cast<double>(m - 1) * options_.spacing < inserted_);
   return std::min(rounded_up ? m - 1 : m, count_ - 1);
 }
 
-// The last one inserted is held by the proximal end.
-std::size_t Catheter::free_points() const { return std::max<std::size_t>(inserted_points(), 1) - 1; }
+// The proximal end holds the last one inserted.
+std::size_t Catheter::Impl::free_points() const { return std::max<std::size_t>(inserted_points(), 1) - 1; }
 
-// Where the last point inserted is, and where the points behind it would be, in a straight line through the entry.
-Vec3 Catheter::base(std::size_t i) const {
+// The place of the last point inserted, and of the points behind it, on a straight line through the entry.
+Vec3 Catheter::Impl::base(std::size_t i) const {
   return entry() + direction_ * (inserted_ - static_cast<double>(i) * options_.spacing);
 }
 
-void Catheter::check(const CatheterInput& input) const {
+void Catheter::Impl::check(const CatheterInput& input) const {
   if (!std::isfinite(input.push) || !is_finite(input.load))
     throw InvalidArgument("catheter: the push and the load must be finite");
   if (!(std::abs(input.turn) <= 2.0 * std::numbers::pi))
@@ -94,12 +94,12 @@ void Catheter::check(const CatheterInput& input) const {
     throw InvalidArgument("catheter: the load must not displace a point by more than the catheter's length in a step");
 }
 
-CatheterStep Catheter::step(const CatheterInput& input) {
+CatheterStep Catheter::Impl::step(const CatheterInput& input) {
   check(input);
   if (edits_ != environment_.edit_count())
-    throw InvalidArgument("catheter: the environment was edited: call follow() after each edit");
+    throw InvalidArgument("catheter: the environment was edited: call update_after_edit() after each edit");
   CatheterStep result;
-  ride(result);
+  move_with_vessel(result);
   const double push = std::clamp(input.push, -inserted_, total_length() - inserted_);
   const double asked = std::max(std::abs(push) / (max_push * options_.spacing), std::abs(input.turn) / max_turn);
   const auto pieces = static_cast<std::uint32_t>(std::max(1.0, std::ceil(asked)));
@@ -119,8 +119,9 @@ CatheterStep Catheter::step(const CatheterInput& input) {
   return result;
 }
 
-// A substep, taken back where it leaves a segment off by more than `limit`.
-bool Catheter::attempt(const CatheterInput& piece, double share, Bending bending, double limit, CatheterStep& result) {
+// Tries a substep, and undoes it where it leaves a segment off by more than `limit`.
+bool Catheter::Impl::attempt(const CatheterInput& piece, double share, Bending bending, double limit,
+                             CatheterStep& result) {
   save();
   const Outcome outcome = substep(piece, share, bending);
   result.rounds += outcome.rounds;
@@ -136,14 +137,14 @@ bool Catheter::attempt(const CatheterInput& piece, double share, Bending bending
   return true;
 }
 
-// A pull may leave segments that the vessel has drawn out as they are.
-bool Catheter::make(const CatheterInput& piece, double share, CatheterStep& result) {
+// A pull may leave segments as long as the vessel has drawn them out.
+bool Catheter::Impl::make(const CatheterInput& piece, double share, CatheterStep& result) {
   const double limit = piece.push < 0.0 ? std::max(options_.tolerance, worst_segment()) : options_.tolerance;
   return attempt(piece, share, Bending::stiff, limit, result);
 }
 
-// The half of the substep, or of that: what is left of it is refused.
-void Catheter::make_less(const CatheterInput& piece, double share, CatheterStep& result) {
+// Tries half of the substep, then half of that, and so on. The rest is refused.
+void Catheter::Impl::make_less(const CatheterInput& piece, double share, CatheterStep& result) {
   double part = 1.0;
   for (int i = 0; i < max_halvings; ++i) {
     part *= 0.5;
@@ -151,16 +152,16 @@ void Catheter::make_less(const CatheterInput& piece, double share, CatheterStep&
   }
 }
 
-// Nothing could be made of the step but what the vessel does: lengths come before bends then, and if they cannot be
-// mended, all stays as it rode along.
-void Catheter::relax(const Vec3& load, CatheterStep& result) {
+// No part of the push was possible. Lengths come before bends then. If they cannot be corrected either, the points
+// stay where the vessel carried them.
+void Catheter::Impl::relax(const Vec3& load, CatheterStep& result) {
   const CatheterInput nothing = {0.0, 0.0, load};
   if (attempt(nothing, 1.0, Bending::stiff, options_.tolerance, result)) return;
   attempt({}, 1.0, Bending::limp, std::max(options_.tolerance, worst_segment()), result);
 }
 
-// All points keep their weights in their simplices, which may have moved.
-void Catheter::ride(CatheterStep& result) {
+// Carries the points with the vessel: they keep their weights in their simplices, which may have moved.
+void Catheter::Impl::move_with_vessel(CatheterStep& result) {
   for (std::size_t i = 0; i <= count_; ++i) targets_[i] = flushed(carried(i));
   const Corners corners = environment_.complex().corners(particles_[count_].at());
   std::vector<ChainWall> moved = walls_;  // walls move as the points on them do
@@ -172,7 +173,7 @@ void Catheter::ride(CatheterStep& result) {
   keep_walls(report.contacts);
 }
 
-Vec3 Catheter::carried(std::size_t i) const {
+Vec3 Catheter::Impl::carried(std::size_t i) const {
   const bool waits = i + 1 >= holds_.size();
   const Hold& h = waits ? holds_.back() : holds_[i];
   const ParticleState& s = particles_[waits ? count_ : i];
@@ -182,8 +183,8 @@ Vec3 Catheter::carried(std::size_t i) const {
   return x;
 }
 
-// The entry's direction, as a line drawn in its simplex.
-void Catheter::turn_with_vessel(const Corners& now) {
+// Turns the entry's direction like a line drawn in its simplex.
+void Catheter::Impl::turn_with_vessel(const Corners& now) {
   const Corners& before = holds_.back().corners;
   std::array<Vec3, 3> edges;
   for (std::size_t k = 0; k < 3; ++k) edges[k] = before[k + 1] - before[0];
@@ -197,9 +198,9 @@ void Catheter::turn_with_vessel(const Corners& now) {
   reference_ = transported(reference_, old, direction_);
 }
 
-// Stores where the points are in their simplices, so that they can ride along. The points are still in the previous
-// positions where they await a move.
-void Catheter::hold() {
+// Stores the points' weights in their simplices, so that the vessel can carry them. Points that await a move are
+// still in the previous positions.
+void Catheter::Impl::hold() {
   const bool before_move = environment_.awaits_advance(particles_);
   const CellComplex& complex = environment_.complex();
   const std::size_t inserted = inserted_points();
@@ -212,18 +213,40 @@ void Catheter::hold() {
   edits_ = environment_.edit_count();
 }
 
-void Catheter::save() {
+void Catheter::Impl::save() {
   saved_.particles = particles_;
   saved_.inserted = inserted_;
   saved_.turned = turned_;
   saved_.walls = walls_;
 }
 
-void Catheter::take_back() {
+void Catheter::Impl::take_back() {
   particles_ = saved_.particles;
   inserted_ = saved_.inserted;
   turned_ = saved_.turned;
   walls_ = saved_.walls;
 }
+
+// The public functions.
+
+Catheter::Catheter(Environment& environment, const CatheterOptions& options)
+    : impl_(std::make_unique<Impl>(environment, options)) {}
+Catheter::~Catheter() = default;
+
+CatheterStep Catheter::step(const CatheterInput& input) { return impl_->step(input); }
+UpdateReport Catheter::update_after_edit() { return impl_->update_after_edit(); }
+std::vector<Vec3> Catheter::points() const { return impl_->points(); }
+std::vector<CatheterFrame> Catheter::frames() const { return impl_->frames(); }
+double Catheter::inserted() const { return impl_->inserted_; }
+double Catheter::measured_length() const { return impl_->measured_length(); }
+double Catheter::total_length() const { return impl_->total_length(); }
+double Catheter::turned() const { return impl_->turned_; }
+Vec3 Catheter::entry() const { return impl_->entry(); }
+Vec3 Catheter::direction() const { return impl_->direction_; }
+const Particles& Catheter::particles() const { return impl_->particles_; }
+const CatheterOptions& Catheter::options() const { return impl_->options_; }
+StateHash Catheter::state_hash() const { return impl_->state_hash(); }
+CatheterCheckpoint Catheter::checkpoint() const { return impl_->checkpoint(); }
+void Catheter::restore(const CatheterCheckpoint& saved) { impl_->restore(saved); }
 
 }  // namespace dartcast

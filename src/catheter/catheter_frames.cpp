@@ -1,19 +1,19 @@
-// What a catheter looks like, how it is saved, and how it follows edits.
+// A catheter's points and frames, checkpoints, and its update after edits.
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "catheter/catheter_impl.hpp"
 #include "catheter/transport.hpp"
-#include "dartcast/catheter.hpp"
 #include "dartcast/error.hpp"
 
 namespace dartcast {
 
-Vec3 Catheter::base_normal() const {
+Vec3 Catheter::Impl::base_normal() const {
   return reference_ * std::cos(turned_) + cross(direction_, reference_) * std::sin(turned_);
 }
 
-std::vector<Vec3> Catheter::points() const {
+std::vector<Vec3> Catheter::Impl::points() const {
   std::vector<Vec3> all;
   const std::size_t inserted = inserted_points();
   for (std::size_t i = 0; i < inserted; ++i) all.push_back(particles_[i].position);
@@ -21,7 +21,7 @@ std::vector<Vec3> Catheter::points() const {
   return all;
 }
 
-std::vector<CatheterFrame> Catheter::frames() const {
+std::vector<CatheterFrame> Catheter::Impl::frames() const {
   const std::vector<Vec3> all = points();
   std::vector<CatheterFrame> frames(all.size());
   Vec3 tangent = direction_;
@@ -38,14 +38,14 @@ std::vector<CatheterFrame> Catheter::frames() const {
   return frames;
 }
 
-double Catheter::measured_length() const {
+double Catheter::Impl::measured_length() const {
   const std::vector<Vec3> all = points();
   double length = 0.0;
   for (std::size_t i = 0; i + 1 < all.size(); ++i) length += norm(all[i] - all[i + 1]);
   return length;
 }
 
-StateHash Catheter::state_hash() const {
+StateHash Catheter::Impl::state_hash() const {
   StateHash hash;
   for (std::size_t i = 0; i <= count_; ++i) hash.add(i, particles_[i], {});
   ParticleState frame;
@@ -55,7 +55,7 @@ StateHash Catheter::state_hash() const {
   return hash;
 }
 
-CatheterCheckpoint Catheter::checkpoint() const {
+CatheterCheckpoint Catheter::Impl::checkpoint() const {
   CatheterCheckpoint saved;
   saved.states.assign(particles_.states().begin(), particles_.states().end());
   for (std::size_t i = 0; i <= count_; ++i) saved.held_weights.push_back(particles_.held_weights(i));
@@ -67,7 +67,7 @@ CatheterCheckpoint Catheter::checkpoint() const {
   return saved;
 }
 
-void Catheter::restore(const CatheterCheckpoint& saved) {
+void Catheter::Impl::restore(const CatheterCheckpoint& saved) {
   const bool fits = saved.states.size() == count_ + 1 && saved.inserted >= 0.0 && saved.inserted <= total_length() &&
                     std::isfinite(saved.turned) && is_finite(saved.direction) && is_finite(saved.reference);
   const std::size_t count = count_;
@@ -85,7 +85,7 @@ void Catheter::restore(const CatheterCheckpoint& saved) {
   hold();
 }
 
-UpdateReport Catheter::update_after_edit() {
+UpdateReport Catheter::Impl::update_after_edit() {
   Particles moved;
   UpdateReport report;
   for (const OrphanPolicy orphaned : {OrphanPolicy::relocate, OrphanPolicy::hold}) {

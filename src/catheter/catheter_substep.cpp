@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catheter/catheter_impl.hpp"
 #include "catheter/transport.hpp"
-#include "dartcast/catheter.hpp"
 #include "dartcast/response.hpp"
 #include "tracking/representable_point.hpp"
 
@@ -12,22 +12,23 @@ namespace dartcast {
 namespace {
 
 // Shares of the spacing.
-constexpr double reach = 0.5;           // of a point in one solve, and of what is known of a wall
+constexpr double reach = 0.5;           // largest displacement of a point in one solve, and range of a wall's plane
 constexpr double settled_share = 0.03;  // points that move less have arrived
-// Of the tolerance: lengths that are right to that are right.
+// Share of the tolerance: smaller errors of lengths end the rounds.
 constexpr double length_share = 0.05;
 
-constexpr double same_wall = 0.9999;   // cosine between normals of what counts as one wall: nothing is decided by it
+constexpr double same_wall =
+    0.9999;  // cosine between normals of one wall; an estimate that no exact decision depends on
 constexpr std::uint32_t max_idle = 3;  // walks after which a wall that is not met is forgotten
 
 }  // namespace
 
-AfterContact Catheter::slide_at_walls(const Contact& contact, std::span<const WallHit> walls,
-                                      std::span<const WallHit> earlier) {
+AfterContact Catheter::Impl::slide_at_walls(const Contact& contact, std::span<const WallHit> walls,
+                                            std::span<const WallHit> earlier) {
   return {slid(contact.unused, walls, earlier), true};
 }
 
-Catheter::Outcome Catheter::substep(const CatheterInput& piece, double share, Bending bending) {
+Catheter::Impl::Outcome Catheter::Impl::substep(const CatheterInput& piece, double share, Bending bending) {
   const double h = options_.spacing;
   inserted_ = std::clamp(inserted_ + piece.push, 0.0, total_length());
   turned_ += piece.turn;
@@ -49,8 +50,8 @@ Catheter::Outcome Catheter::substep(const CatheterInput& piece, double share, Be
   return outcome;
 }
 
-// Each point goes where the one before it (after it, where the catheter is pulled) was, as far as the push goes.
-void Catheter::follow_path(double push, std::size_t free) {
+// Each point moves towards the place of the one before it (in a pull: after it), as far as the push goes.
+void Catheter::Impl::follow_path(double push, std::size_t free) {
   const double share = std::abs(push) / options_.spacing;
   for (std::size_t i = 0; i < free; ++i) {
     const Vec3 ahead =
@@ -60,8 +61,8 @@ void Catheter::follow_path(double push, std::size_t free) {
   for (std::size_t i = free; i < count_; ++i) targets_[i] = base(i);
 }
 
-// The second differences that the tip has at rest: along its frame's normal at each point.
-void Catheter::bend_tip(std::size_t free) {
+// Sets the second differences of the tip at rest: along its frame's normal at each point.
+void Catheter::Impl::bend_tip(std::size_t free) {
   const double h = options_.spacing;
   const double bend = 2.0 * h * std::sin(0.5 * options_.tip_curvature * h);
   std::fill_n(bends_.begin(), std::min(free + 2, bends_.size()), Vec3{});
@@ -77,8 +78,8 @@ void Catheter::bend_tip(std::size_t free) {
   }
 }
 
-// To where the solver wants the points. The largest displacement of a free one.
-double Catheter::walk(std::size_t free, Outcome& outcome) {
+// Walks the points to the solver's targets. Returns the largest displacement of a free one.
+double Catheter::Impl::walk(std::size_t free, Outcome& outcome) {
   const std::size_t inserted = inserted_points();
   for (std::size_t i = 0; i <= count_; ++i) targets_[i] = i < inserted ? flushed(targets_[i]) : entry();
   double moved = 0.0;
@@ -95,8 +96,8 @@ double Catheter::walk(std::size_t free, Outcome& outcome) {
   return moved;
 }
 
-// Walls that points have met, as planes: as long as the points are near where they met them, and meet them again.
-void Catheter::keep_walls(const ContactList& contacts) {
+// Keeps walls that points have met, as planes, while the points are near the place of contact and meet them again.
+void Catheter::Impl::keep_walls(const ContactList& contacts) {
   const std::size_t free = free_points();
   const double far = reach * options_.spacing;
   for (ChainWall& w : walls_) ++w.idle;
@@ -119,7 +120,7 @@ void Catheter::keep_walls(const ContactList& contacts) {
   });
 }
 
-double Catheter::worst_segment() const {
+double Catheter::Impl::worst_segment() const {
   const std::size_t inserted = inserted_points();
   const double h = options_.spacing;
   double worst = 0.0;
@@ -132,7 +133,7 @@ double Catheter::worst_segment() const {
   return worst;
 }
 
-std::uint32_t Catheter::points_at_walls() const {
+std::uint32_t Catheter::Impl::points_at_walls() const {
   std::uint32_t count = 0;
   for (std::size_t k = 0; k < walls_.size(); ++k) {
     const bool first = std::none_of(walls_.begin(), walls_.begin() + static_cast<std::ptrdiff_t>(k),

@@ -1,3 +1,4 @@
+// One implicit step of a chain of points: springs, friction and walls in one banded system.
 #include "catheter/chain_solver.hpp"
 
 #include <algorithm>
@@ -9,12 +10,12 @@ namespace dartcast {
 
 namespace {
 
-// Lengths and walls are so many times as stiff as all else at a point: what is left of their errors is a thousandth of
-// what bending would make of them, and the system is well conditioned for any bending up to 10^8.
+// Lengths and walls are so many times as stiff as all else at a point. Their remaining errors are then a thousandth
+// of those that bending alone would cause, and the system is well conditioned for any bending up to 10^8.
 double hardness(const ChainWeights& weights) { return 1e3 * (1.0 + 16.0 * weights.bending); }
 
-// Shares of the spacing. Below the first friction grows with the motion, so that a point at rest has a direction; a gap
-// below the second is rounding, and no reason to let a wall press.
+// Shares of the spacing. Below the first share friction grows with the motion, so that a point at rest has a
+// direction of friction. A gap below the second share is rounding, and does not make a wall press.
 constexpr double creep = 1e-3;
 constexpr double gap_share = 1e-9;
 
@@ -41,8 +42,8 @@ void ChainSolver::add_right(std::size_t i, const Vec3& force) {
   right_[3 * i + 2] += force.z;
 }
 
-// A spring between what some neighbouring points do: stiffness / 2 |sum factor u + offset|^2, along `direction` alone
-// unless that is 0.
+// A spring between the displacements u of some neighbouring points: stiffness / 2 |sum factor u + offset|^2, along
+// `direction` alone unless that is 0.
 void ChainSolver::add_spring(std::size_t first, std::span<const double> factors, std::size_t free, double stiffness,
                              const Vec3& offset, const Vec3& direction) {
   const bool line = direction != Vec3{};
@@ -76,7 +77,7 @@ void ChainSolver::add_springs(const Chain& chain, const ChainWeights& weights) {
 
 void ChainSolver::add_friction(const ChainWall& wall, const Chain& chain, const ChainWeights& weights) {
   const Vec3 slip = across(chain.points[wall.index] - chain.start[wall.index], wall.normal);
-  // No more than hardness, so that the system stays as well conditioned as it is.
+  // Limited to hardness, so that the system stays well conditioned.
   const double w =
       std::min(weights.friction * wall.pressure / std::max(norm(slip), creep * weights.spacing), hardness(weights));
   if (w == 0.0) return;
@@ -85,7 +86,8 @@ void ChainSolver::add_friction(const ChainWall& wall, const Chain& chain, const 
   add_block(wall.index, wall.index, {across({w, 0.0, 0.0}, n), across({0.0, w, 0.0}, n), across({0.0, 0.0, w}, n)});
 }
 
-// Cholesky's factors in place, then the solution in right_. What is left of the first column is 0 in the matrix.
+// Cholesky's factors in place, then the solution in right_. Entries to the left of the first column are 0 in the
+// matrix.
 void ChainSolver::factor_and_solve() {
   constexpr std::size_t last = band - 1;  // the diagonal's place in a row
   const std::size_t n = right_.size();
@@ -115,7 +117,8 @@ void ChainSolver::factor_and_solve() {
 
 Vec3 ChainSolver::displacement(std::size_t i) const { return {right_[3 * i], right_[3 * i + 1], right_[3 * i + 2]}; }
 
-// Lets walls press that points would pass, and those no more that would hold points back; whether any has changed.
+// Adds walls that points would pass to those that press, and removes walls that would pull points back. Returns
+// whether any changed.
 bool ChainSolver::change_walls(const Chain& chain, const ChainWeights& weights, std::span<ChainWall> walls) {
   bool changed = false;
   for (std::size_t k = 0; k < walls.size(); ++k) {

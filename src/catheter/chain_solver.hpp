@@ -6,20 +6,12 @@
 #include <span>
 #include <vector>
 
+#include "dartcast/catheter.hpp"
 #include "dartcast/vec3.hpp"
 
 namespace dartcast {
 
-/// A plane that a point is to stay above: normal . (x - point) >= 0.
-struct ChainWall {
-  std::uint32_t index = 0;  ///< of the point
-  Vec3 normal;              ///< unit
-  Vec3 point;
-  double pressure = 0.0;   ///< of the point on it, found by solve(); 0: not in contact
-  std::uint32_t idle = 0;  ///< for the caller: for how many walks it has not been met
-};
-
-/// Weights are relative to what resists a point's motion.
+/// Weights are relative to the resistance to a point's motion.
 struct ChainWeights {
   double spacing = 1.0;
   double bending = 0.0;   ///< of squared second differences
@@ -27,15 +19,17 @@ struct ChainWeights {
   double reach = 0.0;     ///< largest displacement of a point in one solve
 };
 
-/// The energy, with x the points and r = x[i - 1] - 2 x[i] + x[i + 1] - bends[i]:
-///   1/2 sum |x - wanted|^2 + 1/2 bending sum |r|^2, lengths and walls as stiff springs, friction against the motion
-///   from
-/// `start`. One Newton step without second derivatives of lengths; which walls press is found by up to four solves.
+/// Minimizes an energy. With x the points and r = x[i - 1] - 2 x[i] + x[i + 1] - bends[i] it is
+///
+///   1/2 sum |x - wanted|^2 + 1/2 bending sum |r|^2,
+///
+/// plus stiff springs for lengths and walls, plus friction against the motion from `start`. One Newton step leaves out
+/// second derivatives of lengths. Up to four solves find the walls that press.
 class ChainSolver {
  public:
   /// The chain: `free` points that can move, then those that cannot: at least 2 of these, where any is free.
   struct Chain {
-    std::span<Vec3> points;  ///< in: where they are. Out: the free ones where they should go.
+    std::span<Vec3> points;  ///< in: where they are. Out: the targets of the free ones.
     std::size_t free = 0;
     std::span<const Vec3> wanted;  ///< per free point
     std::span<const Vec3> start;   ///< per free point
@@ -46,7 +40,7 @@ class ChainSolver {
   void solve(const Chain& chain, const ChainWeights& weights, std::span<ChainWall> walls);
 
  private:
-  static constexpr std::size_t band = 9;  // of the system: a point depends on two before it and two after
+  static constexpr std::size_t band = 9;  // width of the system's band: a point depends on two before it and two after
 
   void add_block(std::size_t i, std::size_t j, const std::array<Vec3, 3>& rows);
   void add_right(std::size_t i, const Vec3& force);

@@ -1,4 +1,4 @@
-// Frames along a curve that do not twist.
+// Frames along a curve, without twist.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@ inline Vec3 unit_or(const Vec3& v, const Vec3& otherwise) {
   return length > 0.0 && std::isfinite(length) ? v * (1.0 / length) : otherwise;
 }
 
-/// Any unit vector perpendicular to a unit vector; the same one for the same bits.
+/// A unit vector perpendicular to a unit vector; the same one for the same bits.
 inline Vec3 any_normal(const Vec3& t) {
   const double x = std::abs(t.x);
   const double y = std::abs(t.y);

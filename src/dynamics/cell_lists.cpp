@@ -1,3 +1,4 @@
+// Each cell's list of particles, updated for those that changed cells alone.
 #include "dynamics/cell_lists.hpp"
 
 namespace dartcast {

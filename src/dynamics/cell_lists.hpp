@@ -17,12 +17,12 @@ namespace dartcast {
 
 class CellLists {
  public:
-  /// Cells with more particles than this are crowded: a list is not the way to find pairs there (sphere_pairs.hpp).
+  /// Cells with more particles than this are crowded: lists are slow to find pairs there (sphere_pairs.hpp).
   static constexpr std::uint32_t short_list = 8;
 
-  /// Brings the lists up to date with the cells that the states name, whatever has happened since: motion, edits,
-  /// particles added or removed. Cost: a look at each particle, and a constant for each that is in another cell than it
-  /// was; no allocation unless there are more particles or cells than ever before.
+  /// Updates the lists to the cells that the states name, after motion, edits, and particles added or removed. Cost:
+  /// a look at each particle, and a constant for each that changed cells; it allocates only where there are more
+  /// particles or cells than ever before.
   void update(const CombinatorialMap& map, std::span<const ParticleState> states);
 
   [[nodiscard]] std::size_t size() const { return cell_of_.size(); }
@@ -36,11 +36,11 @@ class CellLists {
   /// Number of particles that the last update() moved to another list.
   [[nodiscard]] std::size_t crossed() const { return crossed_; }
 
-  /// Whether the particle is the one with which for_each() begins in its cell: one of each cell is.
+  /// Whether the particle is the first of its cell's for_each().
   [[nodiscard]] bool leads(std::uint32_t particle) const { return links_[particle].previous == none; }
 
-  /// Calls visit(particle) for each in the cell, in an order that depends on how they came: what must not depend on it
-  /// is sorted afterwards.
+  /// Calls visit(particle) for each in the cell. The order depends on the history: sort results that must not depend
+  /// on it.
   template <class Visit>
   void for_each(Cell c, Visit&& visit) const {
     const auto& pool = pools_[c.pool()];
@@ -67,7 +67,7 @@ class CellLists {
 
   std::array<std::vector<List>, 5> pools_;  // by a cell's pool and index
   std::vector<Link> links_;                 // by particle
-  std::vector<Cell> cell_of_;               // by particle: whose list it is in
+  std::vector<Cell> cell_of_;               // by particle: the cell whose list holds it
   std::size_t crowded_ = 0;
   std::size_t crossed_ = 0;
 };

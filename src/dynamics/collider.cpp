@@ -1,3 +1,4 @@
+// One step's collisions of spheres: swept spheres, pairs, contacts, impulses.
 #include "dynamics/collider.hpp"
 
 #include <algorithm>
@@ -21,11 +22,11 @@ void check_spheres(const CollidingSpheres& s) {
     throw InvalidArgument("collide: one id, radius, mass, velocity and displacement per particle are needed");
 }
 
-// Impulses may stop or turn a sphere: another that comes along with it then comes nearer by as much as it moves.
+// Impulses may stop or turn a sphere. Another one that moves along with it then comes nearer by its own motion.
 double room_of(const SphereMotion& s) { return s.radius * near_share + std::min(norm(s.displacement), s.radius); }
 
-// Whether the balls without walls around the two centres hold the way between them. Clearances are distances that were
-// rounded: a share of them is given up.
+// Whether the balls without walls around the two centres hold the way between them. A share of each clearance is
+// given up, because it is a rounded distance.
 bool in_clear(const CollidingSpheres& s, std::uint32_t a, std::uint32_t b) {
   if (s.clearances.empty()) return false;
   const double clear = (s.clearances[a] + s.clearances[b]) * (1.0 - 0x1p-20);
@@ -45,8 +46,8 @@ CollisionCounts& CollisionCounts::operator+=(const CollisionCounts& other) {
   return *this;
 }
 
-// Whether they do not come near each other however they move as far as they do: most of the pairs whose boxes meet. The
-// margin is more than rounding, so that approach() says no less.
+// Whether two spheres stay apart in whatever direction they move so far, as most pairs whose boxes meet do. The
+// margin is more than rounding, so that approach() agrees.
 bool Collider::surely_apart(std::uint32_t a, std::uint32_t b) const {
   const Reach& first = reaches_[a];
   const Reach& second = reaches_[b];

@@ -7,6 +7,7 @@
 
 #include "base/parallel.hpp"
 #include "dartcast/cell_complex.hpp"
+#include "dartcast/dynamics.hpp"
 #include "dartcast/particle_state.hpp"
 #include "dynamics/cell_lists.hpp"
 #include "dynamics/contact_solver.hpp"
@@ -15,29 +16,18 @@
 
 namespace dartcast {
 
-/// Spheres at rest keep this share of the smaller radius between them, and from walls: what rounding and unfinished
-/// iterations leave is then no contact.
+/// Spheres at rest keep this share of the smaller radius between them, and from walls. Rounding and unfinished
+/// iterations then make no contact.
 inline constexpr double resting_gap = 0x1p-10;
-/// Pairs count as near within this share of a radius and the motion of one of them, at most its radius: an impulse
-/// elsewhere may bring them together within the step. Walls count within this share. What is further and still meets
-/// overlaps, and is parted in the steps that follow.
+/// Pairs count as near within this share of a radius and the motion of one of them, at most its radius, because an
+/// impulse elsewhere may bring them together within the step. Walls count within this share. Pairs that are further
+/// apart and still meet overlap; the next steps part them.
 inline constexpr double near_share = 0x1p-4;
-
-struct CollisionCounts {
-  std::uint64_t pairs_tested = 0;    ///< whose swept boxes met
-  std::uint64_t pairs_near = 0;      ///< given to the solver
-  std::uint64_t pairs_touching = 0;  ///< given an impulse
-  std::uint64_t walls_touching = 0;  ///< likewise
-  std::uint64_t overlaps = 0;        ///< pairs closer than the sum of their radii at the start of the step
-  double deepest = 0.0;              ///< of these
-
-  CollisionCounts& operator+=(const CollisionCounts& other);
-};
 
 /// Time spent in all calls so far.
 struct CollisionSeconds {
-  double lists = 0.0;     ///< keeping up each cell's particles
-  double pairs = 0.0;     ///< finding those whose swept boxes meet
+  double lists = 0.0;     ///< updating each cell's particles
+  double pairs = 0.0;     ///< finding pairs whose swept boxes meet
   double contacts = 0.0;  ///< when and where they touch, walls in between
   double impulses = 0.0;
 };
@@ -46,9 +36,9 @@ struct CollisionSeconds {
 struct CollidingSpheres {
   std::span<const ParticleState> states;
   std::span<const std::uint64_t> ids;      ///< distinct
-  std::span<const double> radii;           ///< 0: meets nobody
-  std::span<const double> inverse_masses;  ///< 0: it cannot be pushed
-  std::span<const double> clearances;      ///< no wall is nearer to the centre; may be empty: nothing is known
+  std::span<const double> radii;           ///< 0: it meets no sphere
+  std::span<const double> inverse_masses;  ///< 0: nothing can push it
+  std::span<const double> clearances;      ///< no wall is nearer to the centre; empty: unknown
   std::span<Vec3> velocities;              ///< in: after all other forces; out: after the collisions
   std::span<Vec3> displacements;           ///< out: of this step
 };
@@ -56,9 +46,10 @@ struct CollidingSpheres {
 /// Keeps lists, impulses and memory from step to step.
 class Collider {
  public:
-  /// Finds the pairs and solves them together with `walls`, whose gaps are those of the geometry: resting gaps are
-  /// taken off here. Pairs with a wall between their centres do not meet. Precondition: the states are of the complex
-  /// as it stands. Throws as ContactSolver::solve(). The same for any number of threads and any order of particles.
+  /// Finds the pairs and solves them together with `walls`, whose gaps are those of the geometry; this function
+  /// subtracts the resting gaps. Pairs with a wall between their centres do not meet. Precondition: the states are of
+  /// the complex as it stands. Throws as ContactSolver::solve(). The result is the same for any number of threads and
+  /// any order of particles.
   CollisionCounts collide(const CellComplex& complex, const CollidingSpheres& spheres,
                           std::span<const WallContact> walls, const SolverOptions& options, Threads threads);
 
@@ -75,7 +66,7 @@ class Collider {
     double deepest = 0.0;
   };
 
-  // How far a sphere comes from where its centre is, and the room around it in which another is near.
+  // The distance that a sphere can move from its centre, and the room around it in which another is near.
   struct Reach {
     Vec3 centre;
     double limit = 0.0;

@@ -1,9 +1,9 @@
-// Contacts for a solver that takes one after the other, stored so that four are solved at once with the same result.
+// Contacts of a sequential solver, stored so that four are solved at once with the same result.
 //
-// A contact reads and writes what moves its two bodies, nothing else. So those that share no body may change places, or
-// be solved at once, and no bit changes. Each contact is put into the first level behind those of all earlier contacts
-// of its bodies; levels are stored one after the other, four contacts to a packet. Forwards or backwards through the
-// packets, the result is that of the contacts one by one in the order in which they were given.
+// A contact reads and writes the velocities of its two bodies alone. So contacts that share no body may change
+// places, or be solved at once, and no bit changes. Each contact is put into the first level behind those of all
+// earlier contacts of its bodies; levels are stored one after the other, four contacts to a packet. Forwards or
+// backwards through the packets, the result is that of the contacts one by one, in the order of the caller.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ inline constexpr std::uint32_t packet_lanes = 4;
 using PacketNumbers = std::array<double, packet_lanes>;
 using PacketVectors = std::array<PacketNumbers, 3>;  // x, y, z
 
-/// What contacts act on: a sphere, or a wall, whose inverse mass is 0.
+/// A sphere, or a wall, whose inverse mass is 0.
 struct alignas(32) ContactBody {
   Vec3 velocity;
   double inverse_mass = 0.0;
@@ -32,24 +32,24 @@ struct alignas(32) ContactBody {
 struct ContactEnds {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
-  /// Whether it begins with an impulse. Packets of those that have none, and get none, are passed over quickly: in a
-  /// level they are stored together. The results do not depend on it.
+  /// Whether it starts with an impulse. A level stores the contacts without one together, because packets that have
+  /// none and get none are quick. The results do not depend on it.
   bool loaded = false;
 };
 
-/// What is solved for: the velocity of b relative to a along the normal must not be below the bound.
+/// The constraint: the velocity of b relative to a along the normal must not be below the bound.
 struct alignas(64) ContactTerms {
   Vec3 normal;        ///< unit, from a to b
   double mass = 0.0;  ///< 1 / (sum of the inverse masses)
   double friction = 0.0;
   double bound = 0.0;
   double position_bound = 0.0;  ///< the same, for displacements
-  double rebound = 0.0;  ///< bound that takes its place after rebound(), if the contact has an impulse; 0: none does
-  double normal_impulse = 0.0;  ///< impulse on b that it begins with: along the normal, and across it
+  double rebound = 0.0;         ///< bound that replaces it after rebound(), if the contact has an impulse; 0: none
+  double normal_impulse = 0.0;  ///< impulse on b at the start: along the normal, and across it
   Vec3 tangent_impulse;
 };
 
-/// Four contacts: whom they act on, and how. All of this is read in every iteration.
+/// Four contacts: their bodies and terms. Every iteration reads all of this.
 struct alignas(64) ContactPacket {
   std::array<std::uint32_t, packet_lanes> a{};
   std::array<std::uint32_t, packet_lanes> b{};
@@ -62,7 +62,7 @@ struct alignas(64) PacketImpulses {
   PacketNumbers normal_impulse{};
   PacketVectors tangent_impulse{};
 };
-/// What is needed for those that have impulses, and at the end.
+/// The terms that only contacts with impulses, and the end of the step, need.
 struct alignas(64) PacketSurfaces {
   PacketNumbers friction{};
   PacketNumbers rebound{};
@@ -75,9 +75,9 @@ struct alignas(64) PacketCorrections {
 
 class ContactPackets {
  public:
-  /// Sorts the contacts into packets; terms: one for each. The last of the bodies must be in no contact and have no
-  /// velocity and an inverse mass of 0: it stands for what is missing in packets that are not full. Contacts of a body
-  /// whose inverse mass is 0 do not wait for each other. Cost: some 20 ns a contact; no allocation in steady state.
+  /// Sorts the contacts into packets; one of the terms for each. The last body fills packets that are not full: it
+  /// must be in no contact, and have no velocity and an inverse mass of 0. Contacts of a body whose inverse mass is 0
+  /// do not wait for each other. Cost: some 20 ns a contact; no allocation in steady state.
   void assign(std::span<const ContactEnds> contacts, std::span<const ContactTerms> terms,
               std::span<const ContactBody> bodies);
 
@@ -87,18 +87,18 @@ class ContactPackets {
     const PacketVectors& v = impulses_[packet(i)].tangent_impulse;
     return {v[0][lane(i)], v[1][lane(i)], v[2][lane(i)]};
   }
-  /// Whether it was given an impulse, and rebounds.
+  /// Whether the contact got an impulse and rebounds.
   [[nodiscard]] bool rebounds(std::size_t i) const { return surfaces_[packet(i)].rebound[lane(i)] > 0.0; }
 
-  /// Gives the bodies the impulses that contacts begin with.
+  /// Applies the impulses that contacts start with.
   void start(std::span<ContactBody> bodies, InstructionSet set = best_instruction_set());
-  /// Solves for velocities. Forwards and backwards in turn, so that an impulse passes through a chain either way; the
-  /// last time is forwards. Cost: some 6 ns a contact and iteration.
+  /// Solves for velocities, forwards and backwards in turn, so that an impulse passes through a chain either way. The
+  /// last pass is forwards. Cost: some 6 ns a contact and iteration.
   void solve(std::span<ContactBody> bodies, unsigned iterations, InstructionSet set = best_instruction_set());
-  /// The same for displacements over a unit of time, by impulses along normals that are forgotten.
+  /// The same for displacements over a unit of time, by impulses along normals that are not kept.
   void position_correction(std::span<ContactBody> bodies, unsigned iterations,
                            InstructionSet set = best_instruction_set());
-  /// From now on those that have an impulse and rebound are bound to do so. Whether there are any.
+  /// Replaces the bounds of contacts that have an impulse and rebound. Returns whether there are any.
   bool rebound();
 
  private:

@@ -1,3 +1,4 @@
+// Sequential impulses for spheres: rows from contacts, cached impulses, sweeps, rebounds.
 #include "dynamics/contact_solver.hpp"
 
 #include <algorithm>
@@ -46,7 +47,7 @@ Vec3 on_tangent(const Vec3& v, const Vec3& normal) { return v - normal * dot(v, 
 
 }  // namespace
 
-// Spheres, then walls' contacts, then nobody, who stands for what is missing.
+// Spheres, then the walls of contacts, then the body that fills packets.
 void ContactSolver::make_bodies(std::span<const WallContact> walls, const SolverSpheres& spheres) {
   const std::size_t count = spheres.ids.size();
   bodies_.clear();
@@ -56,7 +57,7 @@ void ContactSolver::make_bodies(std::span<const WallContact> walls, const Solver
   bodies_.emplace_back();
 }
 
-// Reads the impulses of the last step side by side with the rows, which are sorted alike.
+// Reads the impulses of the last step along with the rows, which have the same order.
 class ContactSolver::ImpulseCacheReader {
  public:
   explicit ImpulseCacheReader(const ContactSolver& solver)
@@ -69,7 +70,7 @@ class ContactSolver::ImpulseCacheReader {
     return found ? &cached_[next_pair_] : nullptr;
   }
 
-  // Of a sphere's walls the one with the nearest normal.
+  // The sphere's wall with the nearest normal.
   const CachedImpulse* of_wall(std::uint64_t sphere, const Vec3& normal) {
     while (next_wall_ < cached_.size() && cached_[next_wall_].a < sphere) ++next_wall_;
     const CachedImpulse* best = nullptr;
@@ -90,7 +91,7 @@ class ContactSolver::ImpulseCacheReader {
   std::size_t next_wall_;
 };
 
-// Of two spheres that cannot be pushed there is nothing to solve.
+// Leaves out pairs of spheres that nothing can push.
 void ContactSolver::add_row(detail::ContactEnds ends, const Surface& surface, const CachedImpulse* cached_impulses,
                             const SolverOptions& options) {
   const detail::ContactBody& a = bodies_[ends.a];
@@ -134,8 +135,8 @@ void ContactSolver::list_pairs(std::span<const PairContact> pairs, std::span<con
   pair_rows_ = ends_.size();
 }
 
-// Walls of a sphere in the order of their normals, which the order they were found in does not change. They come after
-// all pairs, so that they have the last word: no sphere goes on into one.
+// Sorts the walls of a sphere by their normals, so that the order of the search does not matter. They come after all
+// pairs, so that no sphere ends with a velocity into a wall.
 void ContactSolver::list_walls(std::span<const WallContact> walls, std::span<const std::uint64_t> ids,
                                const SolverOptions& options) {
   wall_order_.resize(walls.size());
@@ -163,15 +164,15 @@ void ContactSolver::set_cached_impulses(std::span<const CachedImpulse> cached_im
                                              [](const CachedImpulse& k) { return k.b != CachedImpulse::wall; }));
 }
 
-// Displacements are those of the velocities, and what penetrates is pushed apart by some of its depth, with impulses
-// of their own that are forgotten afterwards.
+// Displacements follow from the velocities. Separate impulses, which are not kept, take out a share of each
+// penetration.
 void ContactSolver::position_correction(const SolverSpheres& spheres, const SolverOptions& options) {
   pushed_ = bodies_;
   packets_.position_correction(pushed_, options.position_iterations);
   for (std::size_t i = 0; i < spheres.ids.size(); ++i) spheres.displacements[i] = pushed_[i].velocity * options.dt;
 }
 
-// What rebounds needs no impulse in the next step.
+// A contact that rebounds needs no impulse in the next step.
 void ContactSolver::keep(std::span<const std::uint64_t> ids) {
   cached_.clear();
   cached_pairs_ = loaded_pairs_ = loaded_walls_ = 0;

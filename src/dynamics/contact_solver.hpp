@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "dartcast/dynamics.hpp"
 #include "dartcast/storage.hpp"
 #include "dartcast/vec3.hpp"
 #include "dynamics/contact_packets.hpp"
@@ -39,7 +40,7 @@ struct SolverOptions {
   double restitution = 0.0;          ///< between spheres, in [0, 1]
   double friction = 0.0;             ///< between spheres, >= 0
   unsigned iterations = 10;          ///< over all contacts, for velocities
-  unsigned position_iterations = 4;  ///< for displacements: what takes out penetration
+  unsigned position_iterations = 4;  ///< for displacements, which take out penetration
   unsigned rebound_iterations = 4;   ///< for velocities after rebounds
   /// Contacts that approach slower than this do not rebound. Gravity alone makes g dt in a step at rest: 2 g dt is a
   /// good choice.
@@ -47,22 +48,10 @@ struct SolverOptions {
   double position_correction = 0.2;  ///< share of a penetration taken out in one step, in [0, 1]
 };
 
-/// An impulse that the next step starts from.
-struct CachedImpulse {
-  std::uint64_t a = 0;  ///< ids of the spheres; of a wall's: that of the sphere, and none
-  std::uint64_t b = 0;
-  Vec3 normal;
-  double normal_impulse = 0.0;  ///< the normal
-  Vec3 tangent_impulse;
-
-  static constexpr std::uint64_t wall = ~std::uint64_t{0};
-  bool operator==(const CachedImpulse&) const = default;
-};
-
-/// What acts on the spheres: entry i of each belongs to sphere i.
+/// Data of the spheres: entry i of each belongs to sphere i.
 struct SolverSpheres {
   std::span<const std::uint64_t> ids;      ///< distinct; contacts are taken in their order
-  std::span<const double> inverse_masses;  ///< 0: it cannot be pushed
+  std::span<const double> inverse_masses;  ///< 0: nothing can push it
   std::span<Vec3> velocities;              ///< in: after all other forces; out: after the impulses, with rebounds
   std::span<Vec3> displacements;  ///< out: of this step; that of the impulses without rebounds, which begin with the
                                   ///< next step, and with the penetration taken out
@@ -80,12 +69,11 @@ class ContactSolver {
   void solve(std::span<const PairContact> pairs, std::span<const WallContact> walls, const SolverSpheres& spheres,
              const SolverOptions& options);
 
-  /// Impulses of the last step: pairs by ids, then walls; set_cached_impulses() goes on from them as if there had been
-  /// no break.
+  /// Impulses of the last step: pairs by ids, then walls; set_cached_impulses() continues from them exactly.
   [[nodiscard]] std::span<const CachedImpulse> cached_impulses() const { return cached_; }
   void set_cached_impulses(std::span<const CachedImpulse> cached_impulses);
 
-  /// Numbers of contacts that the last step gave an impulse.
+  /// Numbers of contacts that got an impulse in the last step.
   [[nodiscard]] std::size_t loaded_pairs() const { return loaded_pairs_; }
   [[nodiscard]] std::size_t loaded_walls() const { return loaded_walls_; }
 
@@ -113,13 +101,13 @@ class ContactSolver {
   void position_correction(const SolverSpheres& spheres, const SolverOptions& options);
   void keep(std::span<const std::uint64_t> ids);
 
-  // Rows are contacts in the order in which they are solved: pairs by ids, then walls by ids and normals. Of a wall the
+  // Rows are contacts in the order of the solver: pairs by ids, then walls by ids and normals. In a wall's row the
   // sphere is b.
   std::vector<detail::ContactEnds> ends_;      // by row
-  AlignedVector<detail::ContactTerms> terms_;  // by row, as they were to begin with
+  AlignedVector<detail::ContactTerms> terms_;  // by row, as at the start
   std::size_t pair_rows_ = 0;
   detail::ContactPackets packets_;             // of rows
-  AlignedVector<detail::ContactBody> bodies_;  // spheres, walls, nobody
+  AlignedVector<detail::ContactBody> bodies_;  // spheres, walls, and one that fills packets
   AlignedVector<detail::ContactBody> pushed_;  // the same, for displacements
   std::vector<PairKey> pair_order_;
   std::vector<std::uint32_t> wall_order_;

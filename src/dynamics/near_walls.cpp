@@ -1,3 +1,4 @@
+// The search for walls near a sphere, cell by cell through the faces that it reaches.
 #include "dynamics/near_walls.hpp"
 
 #include <algorithm>
@@ -11,7 +12,7 @@ namespace dartcast {
 
 namespace {
 
-// Boxes are widened by more than rounding can take off them.
+// Boxes are widened by more than their rounding.
 constexpr double box_margin = 0x1p-50;
 
 Vec3 normal_of_wall(const std::array<Vec3, 3>& v, bool plane) {  // to the free side
@@ -21,7 +22,7 @@ Vec3 normal_of_wall(const std::array<Vec3, 3>& v, bool plane) {  // to the free 
   return length > 0.0 ? n * (1.0 / length) : Vec3{};
 }
 
-// Vertices of the place where a wall is nearest, sorted; those that there are not count as invalid.
+// Vertices of the wall's nearest feature, sorted; the missing ones of an edge or a vertex are invalid.
 std::array<Vertex, 3> key_of(const NearWall& w, const NearestOnTriangle& nearest) {
   std::array<Vertex, 3> key;
   for (unsigned i = 0; i < 3; ++i) {
@@ -31,7 +32,7 @@ std::array<Vertex, 3> key_of(const NearWall& w, const NearestOnTriangle& nearest
   return key;
 }
 
-// Its corners as they are before and after the last move; or, where `before` is `after`, as they are.
+// The corners before and after the last move; both as they are now where `before` is `after`.
 NearWall wall_at(const CellView& cell, CellFace face, std::uint16_t triangle, std::span<const Vec3> before,
                  std::span<const Vec3> after) {
   NearWall wall;
@@ -81,7 +82,7 @@ double touching_slack(const Vec3& centre, double radius) {
   return touching_bound * (radius + std::max({std::abs(centre.x), std::abs(centre.y), std::abs(centre.z)}));
 }
 
-// The sphere on its way: a box, and where the way is long the ball around a box is asked for, too.
+// The sphere on its way, as a box. Where the way is long, the ball around another box is tested, too.
 struct NearWalls::Reach {
   struct Bounds {
     Vec3 low;
@@ -138,7 +139,7 @@ void NearWalls::grow() {
   }
 }
 
-// Where a cell is in the table, or would be.
+// The slot of a cell in the table, or the free one that it would take.
 std::size_t NearWalls::slot(Cell c) const {
   std::size_t at = (c.value * 0x9e3779b97f4a7c15U) >> 32U;
   for (;; ++at) {
@@ -173,8 +174,8 @@ void NearWalls::add_walls(const CellComplex& complex, const Reach& reach, CellFa
   }
 }
 
-// A face bounds all that passes from one cell to the other: only where the sphere meets it does the search go on. Its
-// box misses the sphere's where all its points lie on the same side.
+// Every way from one cell to the other passes their face, so the search passes only faces that the sphere meets. The
+// box of a face misses the sphere's where all points of the face lie beyond one side of it.
 void NearWalls::visit(const CellComplex& complex, const Reach& reach, Cell c, bool moving) {
   const CellView cell = complex.map().view(c);
   const Shape& shape = cell.shape();

@@ -1,8 +1,9 @@
-// The walls near a sphere: found from the cell that its centre is in, by going out through the faces that it reaches.
+// The walls near a sphere. The search starts in the cell of the centre, and goes through the faces that the sphere
+// reaches.
 //
-// Never a global search, and never through a wall: what lies behind one is not found. Whatever a sphere touches first
-// is found, for the straight way from the centre to the point that it touches crosses free cells alone, through faces
-// which the sphere meets.
+// It never searches the whole scene, and never looks through a wall. It always finds the wall that a sphere touches
+// first: the straight way from the centre to the point of contact crosses free cells alone, through faces that the
+// sphere meets.
 #pragma once
 
 #include <array>
@@ -12,6 +13,7 @@
 
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/contact.hpp"
+#include "dartcast/dynamics.hpp"
 #include "dartcast/particle_state.hpp"
 #include "dynamics/swept_sphere.hpp"
 
@@ -23,8 +25,7 @@ struct NearWall {
   std::uint16_t triangle = 0;
   std::array<std::uint16_t, 3> local{};  ///< numbers of the corners in the cell
   std::array<Vertex, 3> vertex;
-  MovingTriangle
-      corners;  ///< before and after the last move of the vertices; both as they are now where none was asked
+  MovingTriangle corners;  ///< before and after the last move of the vertices; both as they are now without a move
 };
 
 /// A place on the walls that a sphere may touch.
@@ -43,33 +44,28 @@ struct WallFeature {
   [[nodiscard]] WallHit hit() const { return {face, triangle, patch, normal}; }
 };
 
-/// A sphere is at the distance of its radius from a wall where the two differ by no more than this share of (radius +
-/// the largest coordinate of the centre): what rounding leaves where it is put there. Places that are no farther apart
-/// are one.
-inline constexpr double touching_bound = 0x1p-46;
-
-/// That bound, as a length.
+/// touching_bound as a length.
 double touching_slack(const Vec3& centre, double radius);
 
-/// What a search needs, to be used again: for one thread at a time. After a few searches none allocates.
+/// Memory of searches, for one thread at a time. After a few searches none allocates.
 class NearWalls {
  public:
-  /// Walls that meet the box around a sphere on its way; `cell`: the one that `sphere.from` is in. `moving`: the
-  /// vertices go from their previous positions to those of now while the centre moves; else they stand where they are.
-  /// In the order in which they were reached, which only depends on the scene. Walls with a corner that is not finite
-  /// are left out. Valid until the next search. Cost: 0.1 to 0.3 us for each cell reached (those which the sphere meets
-  /// while it moves, and few more); each is looked at once.
+  /// Walls that meet the box around a sphere on its way. `cell` holds `sphere.from`. `moving`: the vertices move from
+  /// their previous positions to their current ones while the centre moves; else they do not move. The order is that
+  /// of the search, which depends on the scene alone. Walls with a corner that is not finite are left out. Valid
+  /// until the next search. Cost: 0.1 to 0.3 us for each cell reached (those which the sphere meets while it moves,
+  /// and few more); each is looked at once.
   std::span<const NearWall> search(const CellComplex& complex, Cell cell, const MovingSphere& sphere, bool moving);
 
-  /// Of each wall found by the last search, as it was before the move, what is nearest to `centre`. Valid until the
+  /// The nearest point to `centre` of each wall of the last search, as the wall was before the move. Valid until the
   /// next search or call of this.
   std::span<const NearestOnTriangle> nearest(const Vec3& centre);
 
-  /// The places on walls that are no farther from `centre` than `reach`, as the walls stand now, and nearer than all of
-  /// the wall around them (so that a vertex or an edge of a wall that is nearer elsewhere does not count), each once,
-  /// however many triangles share it. By distance; equal ones in the order in which they were reached. `displacement`
-  /// is that of the last move where `moved` is set, else 0. Valid until the next search. Cost: that of the search, and
-  /// 0.1 us a triangle.
+  /// The places on walls that are no farther from `centre` than `reach`, as the walls stand now, and nearer than all
+  /// of the wall around them (so that a vertex or an edge of a wall that is nearer elsewhere does not count), each
+  /// once, however many triangles share it. Sorted by distance, equal ones in the order of the search. `displacement`
+  /// is that of the last move where `moved` is set, else 0. Valid until the next search. Cost: that of the search,
+  /// and 0.1 us a triangle.
   std::span<const WallFeature> within(const CellComplex& complex, Cell cell, const Vec3& centre, double reach,
                                       bool moved);
 

@@ -1,3 +1,4 @@
+// Sequential impulses for bodies that turn: rows from contacts, cached impulses, sweeps, rebounds.
 #include "dynamics/rigid_solver.hpp"
 
 #include <algorithm>
@@ -11,7 +12,7 @@ namespace {
 // Normals of one wall in two steps: closer than some 25 degrees.
 constexpr double same_wall_as_before = 0.9;
 
-// What a unit impulse in this direction changes of the velocity along it, where it acts.
+// The change of velocity by a unit impulse, along it and at its point.
 double mobility(const RigidMover& m, const Vec3& lever, const Vec3& direction) {
   if (!m.turns) return m.inverse_mass;
   const Vec3 moment = cross(lever, direction);
@@ -38,7 +39,7 @@ void position_correction(const RigidMover& m, const Vec3& lever, const Vec3& imp
 
 Vec3 across_normal(const Vec3& v, const Vec3& normal) { return v - normal * dot(v, normal); }
 
-// Forwards and backwards in turn; the last time forwards, so that walls, which are last, have the last word.
+// Forwards and backwards in turn. The last pass is forwards, so that it ends with the walls.
 template <class Each>
 void back_and_forth(std::size_t rows, unsigned iterations, Each&& each) {
   for (unsigned k = 0; k < iterations; ++k) {
@@ -46,7 +47,7 @@ void back_and_forth(std::size_t rows, unsigned iterations, Each&& each) {
   }
 }
 
-// As a kept impulse has them.
+// The ids as a cached impulse has them.
 std::tuple<bool, std::uint64_t, std::uint64_t> ids_of(const RigidContact& c) {
   const bool wall = c.a == RigidContact::wall;
   return {wall, wall ? c.b_id : c.a_id, wall ? CachedImpulse::wall : c.b_id};
@@ -120,7 +121,7 @@ void RigidSolver::make_rows(std::span<const RigidContact> contacts, std::span<co
             [](const Row& x, const Row& y) { return key_of(*x.contact) < key_of(*y.contact); });
 }
 
-// Both are sorted alike: one pass. Of a sphere's walls the one with the nearest normal is taken.
+// Both have the same order, so one pass suffices. A sphere's wall takes the impulse with the nearest normal.
 void RigidSolver::load_cached_impulses() {
   std::size_t k = 0;
   for (Row& row : rows_) {
@@ -141,7 +142,7 @@ void RigidSolver::load_cached_impulses() {
   }
 }
 
-// Friction first: what keeps things apart has the last word.
+// Friction comes first, so that the normal impulse, which keeps bodies apart, is exact at the end.
 void RigidSolver::solve_row(Row& row, double bound, std::span<RigidMover> movers) {
   const RigidContact& c = *row.contact;
   const BothSides sides{c, row.lever_a, row.lever_b, movers, &RigidMover::velocity, &RigidMover::angular_velocity};
@@ -159,8 +160,8 @@ void RigidSolver::solve_row(Row& row, double bound, std::span<RigidMover> movers
   row.normal_impulse = normal_impulse;
 }
 
-// As in ContactSolver: displacements are those of the velocities, and what penetrates is pushed apart by some of its
-// depth, with impulses that are forgotten afterwards.
+// As in ContactSolver: displacements follow from the velocities, and separate impulses, which are not kept, take out
+// a share of each penetration.
 void RigidSolver::correct_positions(std::span<RigidMover> movers, const SolverOptions& options) {
   for (RigidMover& m : movers) {
     m.position_delta = m.velocity;
@@ -195,7 +196,7 @@ void RigidSolver::rebound(std::span<RigidMover> movers, unsigned iterations) {
   });
 }
 
-// What rebounds needs no impulse in the next step.
+// A contact that rebounds needs no impulse in the next step.
 void RigidSolver::keep() {
   cached_.clear();
   loaded_pairs_ = loaded_walls_ = 0;

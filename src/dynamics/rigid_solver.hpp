@@ -1,35 +1,18 @@
-// Impulses at the contacts of bodies that answer as rigid ones, and of spheres, with each other and with walls.
+// Impulses at the contacts of rigid bodies and spheres, with each other and with walls.
 //
 // As dynamics/contact_solver.hpp (E. Catto, "Iterative dynamics with temporal coherence", 2005), where a body also
-// turns. As friction then changes what comes along the normal, it is found first, from the impulse of the iteration
-// before.
+// turns. Friction then changes the velocity along the normal, so it is solved first, from the impulse of the
+// iteration before.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "base/mat3.hpp"
 #include "dynamics/contact_solver.hpp"
+#include "dynamics/mat3.hpp"
 
 namespace dartcast {
-
-/// A body, or a sphere: a body that does not turn.
-struct RigidMover {
-  double inverse_mass = 0.0;  ///< 0: it cannot be pushed, and does not turn
-  bool turns = false;
-  Mat3 inverse_inertia = zero_matrix();  ///< about the centre; symmetric, no eigenvalue below 0
-  Vec3 centre;
-  Vec3 velocity;  ///< of the centre; in: after all other forces; out: after the impulses, with rebounds
-  Vec3 angular_velocity;
-  Vec3 position_delta;  ///< out: displacement in the step, without rebounds, with what takes out penetration; turned
-                        ///< likewise
-  Vec3 rotation_delta;
-
-  [[nodiscard]] Vec3 velocity_at(const Vec3& x) const {
-    return turns ? velocity + cross(angular_velocity, x - centre) : velocity;
-  }
-};
 
 /// Two movers near each other, or one and a wall: their motion relative to each other along the normal must not be
 /// below -gap.
@@ -38,7 +21,8 @@ struct RigidContact {
 
   std::uint32_t a = wall;
   std::uint32_t b = 0;
-  std::uint64_t a_id = CachedImpulse::wall;  ///< of what touches: a sphere, a particle of a body; of a pair a_id < b_id
+  std::uint64_t a_id =
+      CachedImpulse::wall;  ///< of the sphere, or of the body's particle, that touches; a_id < b_id in a pair
   std::uint64_t b_id = 0;
   Vec3 normal;   ///< unit, from a to b
   Vec3 point_a;  ///< where impulses act on each
@@ -51,19 +35,19 @@ struct RigidContact {
 
 class RigidSolver {
  public:
-  /// Each impulse acts on both sides, equal and opposite: momentum changes by rounding alone. Options as those of
-  /// ContactSolver::solve(), restitution and friction apart, which each contact has. Contacts are taken in the order of
-  /// ids; the result does not depend on the order of contacts or movers. Preconditions: options in range, contacts name
-  /// movers. Serial.
+  /// Each impulse acts on both sides, equal and opposite: momentum changes by rounding alone. Options as in
+  /// ContactSolver::solve(), but each contact has its own restitution and friction. Contacts are taken in the order
+  /// of ids; the result does not depend on the order of contacts or movers. Preconditions: options in range, contacts
+  /// name movers. Serial.
   void solve(std::span<const RigidContact> contacts, std::span<RigidMover> movers, const SolverOptions& options);
 
-  /// Impulses of the last step, in the order of ids; set_cached_impulses() goes on from them.
+  /// Impulses of the last step, in the order of ids; set_cached_impulses() continues from them.
   [[nodiscard]] std::span<const CachedImpulse> cached_impulses() const { return cached_; }
   void set_cached_impulses(std::span<const CachedImpulse> cached_impulses) {
     cached_.assign(cached_impulses.begin(), cached_impulses.end());
   }
 
-  /// Numbers of contacts that the last step gave an impulse.
+  /// Numbers of contacts that got an impulse in the last step.
   [[nodiscard]] std::size_t loaded_pairs() const { return loaded_pairs_; }
   [[nodiscard]] std::size_t loaded_walls() const { return loaded_walls_; }
 

@@ -1,3 +1,4 @@
+// A hash grid of several levels: each box is stored once, in the level of its size.
 #include "dynamics/sphere_grid.hpp"
 
 #include <algorithm>
@@ -119,7 +120,7 @@ void SphereGrid::find(std::size_t entry, std::vector<SpherePair>& found) const {
     for (Place p = low; p[2] <= high[2]; ++p[2]) {
       for (p[1] = low[1]; p[1] <= high[1]; ++p[1]) {
         for (p[0] = low[0]; p[0] <= high[0]; ++p[0]) {
-          // Of its own level, the places before its own: by z, then y, then x.
+          // In its own level, only earlier places count: by z, then y, then x.
           if (same && std::tie(p[2], p[1], p[0]) >= std::tie(own.place[2], own.place[1], own.place[0])) continue;
           const std::uint32_t cell = table_[slot(*level, p)];
           if (cell != nothing) find_in(cells_[cell], cells_[cell].first + cells_[cell].count, e, found);

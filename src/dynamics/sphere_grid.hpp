@@ -1,8 +1,8 @@
 // A grid of several levels for boxes of very different sizes.
 //
-// A box is in one cell only, by its middle, of the level whose cells are the next power of two above its longest edge:
-// its neighbours of that level are in 27 cells, those of coarser levels in at most 27 of each. M. Mueller and others
-// call it a hierarchical grid: B. Mirtich, "Efficient algorithms for two-phase collision detection", 1997.
+// A box is in the one cell that holds its middle, in the level whose cells are the next power of two above its
+// longest edge. Its neighbours of that level are in 27 cells, those of each coarser level in at most 27. M. Mueller
+// and others call it a hierarchical grid: B. Mirtich, "Efficient algorithms for two-phase collision detection", 1997.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@ struct SpherePair {
 
 namespace detail {
 
-/// What a sphere sweeps; nothing where low is above high.
+/// The box that a sphere sweeps; empty where low is above high.
 struct SweptBox {
   Vec3 low;
   Vec3 high;
@@ -46,10 +46,10 @@ class SphereGrid {
   /// Puts the boxes that are not empty into cells. Cost: linear; no allocation in steady state.
   void build(std::span<const SweptBox> boxes);
 
-  /// Boxes in the grid, in an order of their own: neighbours are mostly near each other in it.
+  /// The number of boxes in the grid. Their order puts most neighbours near each other.
   [[nodiscard]] std::size_t size() const { return entries_.size(); }
-  /// Adds the pairs of an entry's box with those of coarser levels, and with those of its level at places before it:
-  /// over all entries each pair whose boxes meet once.
+  /// Adds the pairs of an entry's box with boxes of coarser levels, and with boxes of its level at earlier places.
+  /// Over all entries, that is each pair whose boxes meet once.
   void find(std::size_t entry, std::vector<SpherePair>& found) const;
 
  private:

@@ -1,3 +1,4 @@
+// Pairs of spheres whose swept boxes meet: from cell lists where spheres are small, else from the grid.
 #include "dynamics/sphere_pairs.hpp"
 
 #include <fmt/format.h>
@@ -17,8 +18,8 @@ namespace {
 
 constexpr std::size_t pair_grain = 256;
 
-// Lists are quicker than the grid where edges of cells are longer than this many reaches, so that few spheres meet
-// other cells than their own: measured between 16 and 32, for 0.1 to 3 particles a cell.
+// Lists are quicker than the grid where edges of cells are longer than this many reaches, because few spheres then
+// meet other cells. Measured between 16 and 32, for 0.1 to 3 particles a cell.
 constexpr double short_reach = 16.0;
 
 constexpr double max_coordinate = 0x1p+1000;  // of a box: differences and levels of the grid stay in range
@@ -36,7 +37,7 @@ bool in_range(const Vec3& v) {
       i, s.centre.x, s.centre.y, s.centre.z, s.displacement.x, s.displacement.y, s.displacement.z, s.radius));
 }
 
-// Particles are looked for in cells of this set: each is visited once.
+// The set of cells that a search has visited.
 class VisitedCells {
  public:
   // Whether it is new.
@@ -69,7 +70,7 @@ class VisitedCells {
     while (table_[at].valid() && table_[at] != c) at = (at + 1) & (table_.size() - 1);
     return at;
   }
-  // While others are taken out: a place on the way may be empty already.
+  // During removal: an earlier slot of the chain may be empty already.
   [[nodiscard]] std::size_t slot_of_kept(Cell c) const {
     std::size_t at = home(c);
     while (table_[at] != c) at = (at + 1) & (table_.size() - 1);
@@ -91,7 +92,7 @@ detail::SweptBox bounds_of(const CellComplex& complex, const CellView& cell) {
   return box;
 }
 
-// Cells whose bounds meet the box, reached from the first one through free ones.
+// Cells whose bounds meet the box, and that free cells connect to the first one.
 void visit_cells(const CellComplex& complex, Cell start, const detail::SweptBox& box, VisitedCells& cells) {
   const CombinatorialMap& map = complex.map();
   cells.clear();
@@ -125,7 +126,7 @@ void PairFinder::make_boxes(std::span<const SphereMotion> spheres, Threads threa
   });
 }
 
-// The farthest reaching sphere stands for all: only the cost hangs on it.
+// The sphere with the farthest reach decides for all: only the cost depends on it.
 bool PairFinder::lists_do(const CellComplex& complex, const CellLists& lists,
                           std::span<const ParticleState> states) const {
   if (lists.crowded() > 0 || states.empty()) return lists.crowded() == 0;
@@ -136,7 +137,7 @@ bool PairFinder::lists_do(const CellComplex& complex, const CellLists& lists,
   return short_reach * *farthest <= std::max({edge.x, edge.y, edge.z});
 }
 
-// Where the centre may be of a sphere that reaches no further than this one and meets its box.
+// The box that holds the centre of every sphere with at most this reach that meets this one's box.
 detail::SweptBox PairFinder::room_of(std::uint32_t sphere) const {
   const detail::SweptBox& b = boxes_[sphere];
   const double far = std::max({std::abs(b.low.x), std::abs(b.high.x), std::abs(b.low.y), std::abs(b.high.y),
@@ -147,8 +148,8 @@ detail::SweptBox PairFinder::room_of(std::uint32_t sphere) const {
   return {b.low - room, b.high + room};
 }
 
-// A pair is found from the cell of the sphere that reaches further: the other's centre is in its room. All spheres of a
-// cell go out together.
+// The sphere with the further reach finds a pair: the other's centre is in its room. All spheres of a cell search
+// together.
 void PairFinder::search_lists(const CellComplex& complex, const CellLists& lists, std::span<const ParticleState> states,
                               Threads threads) {
   parts_.resize(chunk_count(states.size(), pair_grain));

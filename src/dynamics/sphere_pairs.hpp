@@ -1,9 +1,9 @@
-// Which spheres may meet in a step: each pair once, sorted.
+// Pairs of spheres that may meet in a step: each pair once, sorted.
 //
-// Where cells hold few particles and these are small, their lists are followed through neighbouring free cells as far
-// as a sphere and its motion reach; where they hold many, or spheres are larger, a grid of several levels, one for each
-// power of two of the spheres' extents, takes their place: its cost per sphere depends neither on the crowd in a
-// cell nor on how different the radii are. Apart from pairs with walls in between both give the same.
+// Where cells hold few and small particles, the search follows the cells' lists through free neighbours, as far as a
+// sphere and its motion reach. Where cells hold many, or spheres are larger, it uses a grid of several levels, one
+// for each power of two of the spheres' extents. The cost of the grid per sphere depends neither on the crowd in a
+// cell nor on the range of radii. Both give the same pairs, except pairs with walls in between.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@
 
 namespace dartcast {
 
-/// How pairs are looked for.
+/// The method of the search.
 enum class PairSearch : std::uint8_t {
   automatic,  ///< by lists where no cell is crowded and spheres reach a small part of a cell, else by the grid
   lists,
@@ -30,19 +30,19 @@ enum class PairSearch : std::uint8_t {
 /// Finds pairs of spheres, and keeps its memory from step to step.
 class PairFinder {
  public:
-  /// The pairs whose swept boxes (centre, motion and radius) overlap or touch, sorted. Spheres of radius 0 meet nobody.
-  /// The search through cells goes through free ones alone, from the cells that centres are in: pairs are left out
-  /// that no way within the box of both connects, as on two sides of a blocked layer; whether walls are between those
-  /// that are found is for separated() to say. `states`, `spheres`: by particle; `lists` up to date with the states.
-  /// The result holds until the next call. The same for any number of threads. Throws InvalidArgument where a sphere's
-  /// box is not finite or reaches beyond 2^1000.
+  /// The pairs whose swept boxes (centre, motion and radius) overlap or touch, sorted. Spheres of radius 0 meet no
+  /// other. The search through cells starts in the cells of the centres and passes free cells alone. So it leaves out
+  /// pairs that no way within the box of both connects, as on two sides of a blocked layer. separated() decides
+  /// whether a wall is between the others. `states`, `spheres`: by particle; `lists` up to date with the states. The
+  /// result holds until the next call. It is the same for any number of threads. Throws InvalidArgument where a
+  /// sphere's box is not finite or reaches beyond 2^1000.
   std::span<const SpherePair> find(const CellComplex& complex, const CellLists& lists,
                                    std::span<const ParticleState> states, std::span<const SphereMotion> spheres,
                                    Threads threads = {}, PairSearch search = PairSearch::automatic);
   /// By the grid, without an environment.
   std::span<const SpherePair> find(std::span<const SphereMotion> spheres, Threads threads = {});
 
-  /// Whether the last search went by lists.
+  /// Whether the last search used lists.
   [[nodiscard]] bool by_lists() const { return by_lists_; }
 
  private:
@@ -56,7 +56,7 @@ class PairFinder {
   void merge();
 
   std::vector<detail::SweptBox> boxes_;
-  std::vector<double> reaches_;                 // by sphere: how far the box reaches from the centre
+  std::vector<double> reaches_;                 // by sphere: the reach of its box from the centre
   std::vector<std::vector<SpherePair>> parts_;  // by chunk
   std::vector<std::uint32_t> starts_;           // of each sphere's pairs
   std::vector<SpherePair> pairs_;
@@ -65,7 +65,7 @@ class PairFinder {
 };
 
 /// Whether a wall is between the centres, on the straight way. Exact. Precondition: both states are of the complex as
-/// it stands; held ones are not separated from anyone. Cost: a walk; a comparison where both are in one cell.
+/// it stands; held ones are separated from none. Cost: a walk; a comparison where both are in one cell.
 bool separated(const CellComplex& complex, const ParticleState& a, const ParticleState& b);
 
 }  // namespace dartcast

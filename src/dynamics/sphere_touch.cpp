@@ -1,3 +1,4 @@
+// The first touch of two moving spheres: a filtered quadratic, exact where rounding leaves it open.
 #include "dynamics/sphere_touch.hpp"
 
 #include <algorithm>
@@ -53,7 +54,7 @@ struct Relative {
     for (const Vec3& along : {at(t), motion}) {
       const double size = largest_part(along);
       if (!(size > 0.0)) continue;
-      const Vec3 v = along * (1.0 / size);  // what is small among large lengths has squares that vanish
+      const Vec3 v = along * (1.0 / size);  // squares of lengths that are small beside the scale vanish
       return v * (1.0 / norm(v));
     }
     return {1.0, 0.0, 0.0};
@@ -80,10 +81,10 @@ cpp_int units(double x, int exponent) {
   int e = 0;
   const auto mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(x, &e), 53));
   const int shift = e - 53 - exponent;
-  return shift >= 0 ? cpp_int(mantissa) << shift : cpp_int(mantissa >> -shift);  // what is shifted out is zeros
+  return shift >= 0 ? cpp_int(mantissa) << shift : cpp_int(mantissa >> -shift);  // only zeros are shifted out
 }
 
-// The largest exponent, of 2, that all are multiples of: of the last place of the smallest, or below it.
+// The exponent of the largest power of two that divides all numbers, or a lower one.
 int common_exponent(const SphereMotion& s, int lowest) {
   for (const double x :
        {s.centre.x, s.centre.y, s.centre.z, s.displacement.x, s.displacement.y, s.displacement.z, s.radius}) {
@@ -150,8 +151,8 @@ std::optional<PairTouch> exact_touch(const Relative& r, const SphereMotion& firs
 // is off by at most 12 u s^2, 2 b t by 12 u s^2 and a t^2 by 6 u s^2, for t in [0, 1]; the rounding of b^2 - a c, at
 // most 4 u (b^2 + a |c|), is that of c moved by 8 u s^2, as b^2 <= a s^2. So the true quadratic lies between those
 // with c - e and c + e, e = 64 u s^2 (which leaves room for the rounding of s and of c -+ e), and so do the roots,
-// apart from 4 u in the last operations. What is so small that it may have lost digits to underflow is left to exact
-// arithmetic.
+// apart from 4 u in the last operations. Exact arithmetic decides numbers so small that they may have lost digits to
+// underflow.
 std::optional<PairTouch> first_meeting(const SphereMotion& a, const SphereMotion& b) {
   const Relative r(a, b);
   const double s = r.distance + r.radius + norm(r.motion);

@@ -1,3 +1,4 @@
+// The first touch of a moving sphere and triangle: intervals are proved clear, or divided.
 #include "dynamics/swept_sphere.hpp"
 
 #include <algorithm>
@@ -20,12 +21,12 @@ constexpr double time_grid = 0x1p-45;  // times are multiples of this: 1 - t is 
 constexpr unsigned max_divisions = 4096;
 constexpr std::size_t max_open = 64;  // intervals that wait
 
-// What is computed is off by no more than this share of M, the largest length there is. A difference to the centre is
-// off by e = 2^-53 of itself, a corner at a time t by 4 e M along each axis and so by 7 e M in a product with a unit
-// vector; the product's own rounding adds 3 e M, the mean of two e M, the vector's length 4 e r: less than 16 e M for a
-// coefficient. A distance: 7 e M from the corners, 9 e M from their weights and the sum, 3 e M from its length. (With
-// twice the digits, the same with DoubleDouble::rounding.) The rest pays for M's own rounding, and for coordinates that
-// scaling takes below the smallest double.
+// The error of each computed number is at most this share of M, the largest length. A difference to the centre is off
+// by e = 2^-53 of itself, a corner at a time t by 4 e M along each axis and so by 7 e M in a product with a unit
+// vector; the product's own rounding adds 3 e M, the mean of two e M, the vector's length 4 e r: less than 16 e M for
+// a coefficient. A distance: 7 e M from the corners, 9 e M from their weights and the sum, 3 e M from its length.
+// (With twice the digits, the same with DoubleDouble::rounding.) The rest pays for M's own rounding, and for
+// coordinates that scaling takes below the smallest double.
 template <class Real>
 constexpr double rounding_share = 32.0 * 0x1p-53;
 template <>
@@ -149,8 +150,8 @@ class TouchSearch {
     return dot(n, d[0]) > bound && dot(n, d[1]) > bound && dot(n, d[2]) > bound;
   }
 
-  // Whether an interval that the proof fails for is not to be divided: in doubles at once where it is short; with twice
-  // the digits where it grazes.
+  // Whether an interval without a proof stays undivided: in doubles where it is short, with twice the digits where it
+  // grazes.
   [[nodiscard]] bool is_settled(const Instant& a, const Instant& b, const Real& level, double width,
                                 double resolution) const {
     if (width > resolution) return false;
@@ -172,7 +173,7 @@ class TouchSearch {
     return true;
   }
 
-  // By how much the distance grows in the whole of the motion, as it does now.
+  // The growth of the distance over the whole motion, at the rate of this instant.
   [[nodiscard]] double rate(const Instant& x) const {
     double sum = 0.0;
     for (unsigned i = 0; i < 3; ++i)
@@ -183,7 +184,8 @@ class TouchSearch {
   [[nodiscard]] static double on_grid(double t) { return std::floor(t / time_grid) * time_grid; }
   [[nodiscard]] static double middle(const Instant& a, const Instant& b) { return on_grid(0.5 * (a.time + b.time)); }
 
-  // Where to divide: just before the level is reached, as the distance falls now; or, near it, just behind.
+  // The time to divide at: just before the distance reaches the level at its current rate; near the level, just
+  // after.
   [[nodiscard]] double guess(const Instant& a, const Instant& b, const Real& level) const {
     constexpr double step = sphere_time_bound / 16;
     const double fall = -rate(a);
@@ -194,7 +196,7 @@ class TouchSearch {
     return t > a.time && t < b.time ? t : middle(a, b);
   }
 
-  // Between the two the distance changes all but evenly.
+  // Between the two the distance changes almost linearly.
   [[nodiscard]] static TouchCandidate touch(const Instant& a, const Instant& b, const Real& level) {
     const double before = double(a.nearest.distance - level);
     const double after = double(b.nearest.distance - level);
@@ -207,7 +209,7 @@ class TouchSearch {
   double error_;
 };
 
-// From `begin` on, in doubles; in twice their digits from where these prove no more.
+// Searches from `begin` in doubles, and from where these prove no more in twice their digits.
 template <class Real>
 TouchCandidate first_at_level(const Scaled& s, const TouchSearch<Real>& search,
                               const typename TouchSearch<Real>::Instant& begin, double until, const Real& level) {
@@ -232,7 +234,7 @@ std::optional<SphereTouch> touch_from(const Scaled& s, const TouchSearch<Real>& 
   const Real radius(s.sphere.radius);
   const Real touching = radius + Real(slack);
   if (start.nearest.distance > touching) {
-    if (s.slack > 0.0) {  // what only grazes is the usual case: a sphere on a floor, and the floor's next triangle
+    if (s.slack > 0.0) {  // grazing is the usual case: a sphere on a floor, and the floor's next triangle
       const TouchCandidate deep = first_at_level(s, search, start, until, radius - Real(s.slack));
       if (deep.end == TouchCandidate::End::apart) return {};
       if (deep.end == TouchCandidate::End::touch) until = deep.until;

@@ -1,18 +1,18 @@
-// When a moving sphere first touches a moving triangle.
+// The first touch of a moving sphere and a moving triangle.
 //
-// Nothing is solved for. Between two instants a and b the triangle stays clear of the sphere where a direction that
-// turns from m to n (of lengths at most 1) has all three corners d_i, seen from the centre, at more than the radius:
-// the corners are linear in time, so that this is a quadratic for each, with Bernstein's coefficients m.d_i(a),
-// (m.d_i(b) + n.d_i(a)) / 2 and n.d_i(b). m and n are the directions to the nearest points: rounding in them makes the
-// proof weaker, never wrong, whatever the triangle looks like. Where it fails the interval is divided, the earlier part
-// first. What doubles leave open is asked again in twice their digits.
+// No equation is solved: intervals of time are proved free of contact. Let a direction turn from m to n (of lengths
+// at most 1) between two instants a and b. The triangle stays clear of the sphere where all three corners d_i, seen
+// from the centre, are further than the radius along it. The corners are linear in time, so this is a quadratic for
+// each, with Bernstein's coefficients m.d_i(a), (m.d_i(b) + n.d_i(a)) / 2 and n.d_i(b). m and n are the directions to
+// the nearest points. Their rounding makes the proof weaker, never wrong, for any triangle. Where the proof fails the
+// interval is divided, the earlier part first. Where doubles do not decide, twice their digits do.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <optional>
 
-#include "dartcast/vec3.hpp"
+#include "dartcast/dynamics.hpp"
 
 namespace dartcast {
 
@@ -49,23 +49,20 @@ struct SphereTouch {
   bool at_start = false;  ///< they touch or overlap at the time 0 already, and the distance then gets smaller
 };
 
-/// Share of the motion.
-inline constexpr double sphere_time_bound = 0x1p-30;
-
-/// A grazing sphere may be found to touch where it passes at more than its radius, but by no more than this share of M,
-/// the largest of the radius and the distances between the centre and a corner, before and after; never the other way
-/// round.
+/// A sphere that passes at more than its radius may count as touching, where the difference is at most this share of
+/// M. M is the largest of the radius and the distances between the centre and a corner, before and after. The
+/// opposite never happens.
 inline constexpr double grazing_bound = 0x1p-60;
 
 /// The first touch within [0, until]: the first time at which the distance is at most the radius; nothing where there
 /// is none.
 ///
-/// `slack`: what counts as rounding. A sphere that comes no nearer than radius - slack does not touch. Where the
-/// distance is at most radius + slack (at least 2^-94 M) at the time 0 already, a touch is where it is below that
-/// distance less slack: so that a sphere that rests on the triangle, or is held off it, may slide and leave. It is
-/// reported as at 0 (at_start) unless the sphere was farther than radius + slack in between.
+/// `slack`: the length that counts as rounding. A sphere that comes no nearer than radius - slack does not touch.
+/// Where the distance is at most radius + slack (at least 2^-94 M) at the time 0 already, a touch is where it falls
+/// below that distance less slack. So a sphere that rests on the triangle, or is held off it, can slide and leave.
+/// The touch is reported as at 0 (at_start) unless the sphere was farther than radius + slack in between.
 ///
-/// Errors: `time` as in SphereTouch. Intervals are divided at most 4096 times; where that were not enough (never seen)
+/// Errors: `time` as in SphereTouch. Intervals are divided at most 4096 times. If that were not enough (never seen),
 /// the touch is reported where the proof ended: early, never late.
 ///
 /// Preconditions: radius > 0, slack >= 0, until in [0, 1], all finite and below 2^300 in magnitude. Cost: 0.25 us where

@@ -38,7 +38,8 @@ struct NearestTo {
   std::uint8_t corners = 0;  ///< bit i: corner i has a weight
 };
 
-/// Inside where the foot of the origin is; else on the nearest of the sides, which do where the triangle is flat.
+/// The point is inside where the foot of the origin is; else on the nearest side. Sides suffice where the triangle is
+/// flat.
 template <class Real>
 NearestTo<Real> nearest_to_origin(const TriangleOf<Real>& d) {
   const Real zero(0.0);
@@ -63,7 +64,7 @@ NearestTo<Real> nearest_to_origin(const TriangleOf<Real>& d) {
   NearestTo<Real> nearest;
   Vector<Real> point = d[0];
   Real square = dot(point, point);
-  nearest.weights[0] = one;  // where rounding finds no side's place, in a triangle that is all but a point
+  nearest.weights[0] = one;  // where rounding finds no point on a side, in a triangle that is almost a point
   nearest.corners = 1;
   for (unsigned i = 0; i < 3; ++i) {
     const unsigned j = (i + 1) % 3;
@@ -78,7 +79,7 @@ NearestTo<Real> nearest_to_origin(const TriangleOf<Real>& d) {
       at = at + e * w;
       corners = static_cast<std::uint8_t>(corners | 1U << j);
     } else if (along > zero) {
-      continue;  // the next side begins with that corner
+      continue;  // the next side starts at that corner
     }
     const Real here = dot(at, at);
     if (!(here < square)) continue;

@@ -1,3 +1,4 @@
+// The full check of a mesh file, with the division of its cells into simplices.
 #include <fmt/format.h>
 
 #include "dartcast/cell_complex.hpp"

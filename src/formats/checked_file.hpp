@@ -1,12 +1,10 @@
-// What meshes and surfaces in files have in common: nothing in a file throws, and who asks for a valid one is told why
-// not. Not installed.
+// The part that meshes and surfaces in files share: nothing in a file throws, and a caller who asks for a valid one
+// gets the reason where it is not.
 #pragma once
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <new>
 #include <stdexcept>
@@ -18,15 +16,7 @@
 
 namespace dartcast {
 
-/// With its dot, in lower case.
-inline std::string ending_of(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
-}
-
-/// Calls read(file); what it throws becomes a defect of kind "file". `what`: "mesh", "surface".
+/// Calls read(file). An exception of it becomes a defect of kind "file". `what`: "mesh", "surface".
 template <class Read>
 MeshFile checked_file(const std::filesystem::path& path, const char* what, Read&& read) {
   MeshFile out;

@@ -1,3 +1,4 @@
+// Reads tables of numbers from .csv files.
 #include "formats/csv_table.hpp"
 
 #include <fmt/format.h>

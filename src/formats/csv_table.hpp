@@ -1,4 +1,4 @@
-// Tables of numbers in .csv files. Not installed.
+// Tables of numbers in .csv files.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@ class CsvTable {
 
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
   [[nodiscard]] bool has(std::string_view name) const;
-  /// Where a column is. Throws Error, with the columns that `needed` names, where it is not there.
+  /// The index of a column. Throws Error, with the columns that `needed` names, where it is missing.
   [[nodiscard]] std::size_t column(std::string_view name, std::string_view needed) const;
   /// Reads the other lines: the numbers in these columns, one line after another. Throws Error, with the line, where
   /// one is no finite number.

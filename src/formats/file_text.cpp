@@ -1,3 +1,4 @@
+// Reads a file's words and numbers, with the line or byte in every message.
 #include "formats/file_text.hpp"
 
 #include <fmt/format.h>
@@ -28,6 +29,10 @@ std::string_view without_plus(std::string_view word) {
 }
 
 }  // namespace
+
+std::string_view from_first_word(std::string_view content) {
+  return content.substr(std::min(content.find_first_not_of(" \t\r\n"), content.size()));
+}
 
 std::uint64_t file_bytes(const std::filesystem::path& path) {
   std::error_code error;

@@ -1,4 +1,4 @@
-// A file in memory, read number by number: every number is range-checked, every count is checked against what is left.
+// A file in memory, read number by number, with checks of ranges, and of counts against the bytes that remain.
 #pragma once
 
 #include <cstddef>
@@ -14,6 +14,9 @@ std::uint64_t file_bytes(const std::filesystem::path& path);
 
 /// All bytes of a regular file. Throws InvalidMesh where it cannot be read.
 std::string read_bytes(const std::filesystem::path& path);
+
+/// The content from its first byte that is not white space.
+std::string_view from_first_word(std::string_view content);
 
 /// Reads words and numbers from text, and raw bytes in between. Errors are InvalidMesh and name the line, or in binary
 /// parts the byte.

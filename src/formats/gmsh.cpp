@@ -1,3 +1,4 @@
+// Reads Gmsh's .msh section by section; gmsh_2.cpp and gmsh_4.cpp read those that differ between versions.
 #include "formats/gmsh.hpp"
 
 #include <fmt/format.h>
@@ -77,7 +78,7 @@ void read_elements(NumberReader& in, Model& model, Version version) {
   }
 }
 
-/// Reads the section `name`; false where its content is of no use here and remains to be skipped.
+/// Reads the section `name`; false where this library does not use it: then the caller skips it.
 bool read_section(std::string_view name, NumberReader& in, Model& model, Version& version) {
   if (name == "NOD" || name == "ELM") {
     version = Version::v1;
@@ -99,9 +100,20 @@ bool read_section(std::string_view name, NumberReader& in, Model& model, Version
   return true;
 }
 
+/// Names the other formats that end in .msh.
+void refuse_other_msh(std::string_view content) {
+  const std::string_view text = from_first_word(content);
+  if (text.starts_with("("))
+    throw InvalidMesh("this .msh is of ANSYS Fluent, which is not supported; convert it to Gmsh's");
+  if (text.starts_with("$")) return;
+  if (text.starts_with("MeshVersionFormatted")) throw InvalidMesh("this .msh is of Medit; rename it to .mesh");
+  throw InvalidMesh("this .msh is not of Gmsh: it does not start with '$'");
+}
+
 }  // namespace
 
 ParsedMesh parse_gmsh(std::string_view content) {
+  refuse_other_msh(content);
   FileText text(content);
   NumberReader in(text);
   Model model;

@@ -55,7 +55,7 @@ void read_entities_4(NumberReader& in, Model& model, bool v41) {
       const std::size_t groups = in.count("physical groups", 2, 4);
       for (std::size_t k = 0; k < groups; ++k) {
         const std::int32_t group = in.int32("a physical group");
-        // The sign says which way round an entity belongs to its group.
+        // The sign is the orientation of the entity in its group.
         if (k == 0) model.physical[{dimension, tag}] = group < 0 && group != INT32_MIN ? -group : group;
       }
       if (dimension == 0) continue;

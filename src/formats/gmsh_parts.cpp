@@ -1,3 +1,4 @@
+// The parts of Gmsh's format that all versions share: numbers, element types, groups.
 #include "formats/gmsh_parts.hpp"
 
 #include <fmt/format.h>
@@ -78,7 +79,7 @@ constexpr std::array<int, 141> node_counts = {
     4};
 
 constexpr std::array<int, 11> curves_and_points = {8, 15, 26, 27, 28, 62, 63, 64, 65, 66, 84};
-/// Of order 0, with one node; and the wedge of two triangles and a quadrangle.
+/// Types of order 0, with one node; and the wedge of two triangles and a quadrangle.
 constexpr std::array<int, 7> unusable = {85, 86, 87, 88, 89, 132, 140};
 
 template <std::size_t n>

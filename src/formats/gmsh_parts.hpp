@@ -1,4 +1,4 @@
-// The parts that all versions of Gmsh's format have in common.
+// The parts that all versions of Gmsh's format share.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ class NumberReader {
   /// An unsigned number of the size of the file's size_t.
   std::uint64_t size(std::string_view what);
   double real(std::string_view what);
-  /// Such a number, of items that take at least the bytes given each.
+  /// The same, for a number of items of at least so many bytes each.
   std::size_t count(std::string_view what, std::size_t text_bytes, std::size_t binary_bytes);
 
  private:
@@ -51,13 +51,12 @@ class NodeTable {
   bool closed_ = false;
 };
 
-/// Number of nodes of an element type, those of every order included; 0 for an unknown type and for one without a fixed
-/// number.
+/// Number of nodes of an element type of any order; 0 for an unknown type, and for one without a fixed number.
 int node_count(int type);
 /// The same. Throws InvalidMesh with the line where it is 0.
 int known_node_count(const NumberReader& in, int type);
 
-/// What the sections fill.
+/// The result that the sections fill.
 struct Model {
   ParsedMesh parsed;
   NodeTable nodes;

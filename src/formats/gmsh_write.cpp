@@ -1,3 +1,4 @@
+// Writes Gmsh's .msh, versions 2.2 and 4.1, as text.
 #include <fmt/format.h>
 
 #include <array>
@@ -11,18 +12,23 @@
 namespace dartcast {
 namespace {
 
-/// Of an edge or a face.
-int face_type(std::size_t corners) {
-  if (corners > 4)
-    throw InvalidArgument("Gmsh's format cannot hold polygons or faces of more than four corners; write .vtu");
-  return static_cast<int>(corners) - 1;
+/// Gmsh's number of an element type.
+int element_type(CellType type, std::size_t corners) {
+  switch (type) {
+    case CellType::tetrahedron: return 4;
+    case CellType::hexahedron: return 5;
+    case CellType::prism: return 6;
+    case CellType::pyramid: return 7;
+    case CellType::triangle: return 2;
+    case CellType::quadrilateral: return 3;
+    case CellType::polygon: return static_cast<int>(corners) - 1;
+    case CellType::polyhedron: break;
+  }
+  throw InternalError("Gmsh's format has no polyhedra");
 }
 
-int element_type(CellType type, std::size_t corners) {
-  if (type == CellType::polyhedron) throw InvalidArgument("Gmsh's format cannot hold polyhedra; write .vtu");
-  static constexpr std::array<int, 4> types = {4, 5, 6, 7};
-  return dimension(type) == 2 ? face_type(corners) : types[static_cast<std::size_t>(type)];
-}
+/// The same, for an edge, a triangle or a quadrilateral.
+int face_type(std::size_t corners) { return static_cast<int>(corners) - 1; }
 
 std::int32_t region_of(const MeshData& mesh, std::size_t c) { return mesh.regions.empty() ? 0 : mesh.regions[c]; }
 
@@ -108,7 +114,7 @@ std::string format_gmsh_4(const MeshData& mesh) {
   fmt::format_to(append, "$EndEntities\n$Nodes\n1 {} 1 {}\n{} {} 0 {}\n", n, n, first.first, first.second, n);
   for (std::size_t p = 0; p < n; ++p) fmt::format_to(append, "{}\n", p + 1);
   for (const Vec3& p : mesh.points) append_point(out, p);
-  // Neighbours in the list that agree share a block, so that the order of the elements is kept.
+  // Only equal neighbours in the list share a block, so that the elements keep their order.
   std::string blocks;
   std::size_t count = 0;
   for (std::size_t e = 0, end = 0; e < elements.size(); e = end, ++count) {

@@ -1,3 +1,4 @@
+// Reads Medit's .mesh section by section.
 #include "formats/medit.hpp"
 
 #include <fmt/format.h>
@@ -69,14 +70,29 @@ void read_elements(FileText& text, ParsedMesh& parsed, const Keyword& keyword) {
   }
 }
 
-/// Skips the numbers of a section that is of no use here.
+/// Skips the numbers of a section that this library does not use.
 void skip_numbers(FileText& text) {
   while (!text.at_end() && std::isalpha(static_cast<unsigned char>(text.peek()[0])) == 0) text.word("a number");
+}
+
+/// Names the other formats that end in .mesh.
+void refuse_other_mesh(std::string_view content) {
+  const std::string_view text = from_first_word(content);
+  if (text.starts_with("MFEM NC mesh")) {
+    throw InvalidMesh(
+        "this .mesh is of MFEM, non-conforming (MFEM NC mesh), which is not supported; make it conforming and write "
+        "Gmsh's or VTK's format");
+  }
+  if (text.starts_with("MFEM ")) {
+    throw InvalidMesh(fmt::format("this .mesh is of MFEM ({}), which is not supported; write Gmsh's or VTK's format",
+                                  text.substr(0, std::min<std::size_t>(text.find_first_of("\r\n"), 40))));
+  }
 }
 
 }  // namespace
 
 ParsedMesh parse_medit(std::string_view content) {
+  refuse_other_mesh(content);
   FileText text(content);
   text.set_comment('#');
   ParsedMesh parsed;

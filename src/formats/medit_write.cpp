@@ -1,9 +1,9 @@
+// Writes Medit's .mesh as text.
 #include <fmt/format.h>
 
 #include <array>
 #include <iterator>
 
-#include "dartcast/error.hpp"
 #include "formats/medit.hpp"
 #include "mesh/cell_types.hpp"
 
@@ -19,16 +19,12 @@ void append_section(std::string& out, const char* name, std::size_t count, const
   if (count > 0) fmt::format_to(std::back_inserter(out), "{}\n{}\n{}", name, count, lines);
 }
 
-constexpr const char* no_polygons =
-    "Medit's format cannot hold polygons or faces of more than four corners; write .vtu";
-
 void append_faces(std::string& out, const MeshData& mesh, std::size_t corners, const char* name) {
   std::string lines;
   std::size_t count = 0;
   for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) {
     const std::size_t begin = mesh.patch_offsets[f];
     const std::size_t size = mesh.patch_offsets[f + 1] - begin;
-    if (size > 4) throw InvalidArgument(no_polygons);
     if (size != corners) continue;
     append_element(lines, {mesh.patch_faces.data() + begin, size}, mesh.patch_tags[f]);
     ++count;
@@ -36,11 +32,9 @@ void append_faces(std::string& out, const MeshData& mesh, std::size_t corners, c
   append_section(out, name, count, lines);
 }
 
-/// Whether a cell belongs to the section of `type`: in the plane its corners alone say so.
+/// Whether a cell belongs to the section of `type`: in the plane the number of its corners decides.
 bool is_of(const MeshData& mesh, std::size_t c, CellType type) {
-  if (mesh.types[c] == CellType::polyhedron) throw InvalidArgument("Medit's format cannot hold polyhedra; write .vtu");
   if (mesh.types[c] != CellType::polygon) return mesh.types[c] == type;
-  if (mesh.cell(c).size() > 4) throw InvalidArgument(no_polygons);
   return dimension(type) == 2 && mesh.cell(c).size() == corner_count(type);
 }
 

@@ -1,3 +1,4 @@
+// Reads Wavefront's .obj line by line.
 #include "formats/obj.hpp"
 
 #include <fmt/format.h>
@@ -13,7 +14,7 @@
 namespace dartcast {
 namespace {
 
-/// Whether a word comes before the line's end; lines that end in a backslash go on in the next one.
+/// Whether a word comes before the line's end; a line that ends in a backslash continues in the next one.
 bool statement_goes_on(FileText& text) {
   while (!text.line_ends()) {
     if (text.peek() != "\\") return text.peek().front() != '#';

@@ -1,3 +1,4 @@
+// Reads Geomview's .off.
 #include "formats/off.hpp"
 
 #include <cstdint>
@@ -23,7 +24,7 @@ void read_off_header(FileText& text) {
   if (text.peek() == "BINARY") text.fail("binary OFF is not supported; write it in ASCII, or as .ply");
 }
 
-/// Where the line has ended, the number is missing: that of the next line is not taken for it.
+/// Throws where the line has ended: the number is missing, and the next line's must not take its place.
 void expect_off_number(const FileText& text) {
   if (text.line_ends()) text.fail("the line ends too early: a vertex or face has all of its numbers on one line");
 }

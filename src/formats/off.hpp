@@ -7,9 +7,9 @@
 
 namespace dartcast {
 
-/// The word OFF, also as COFF, NOFF, STOFF and so on, may be missing, and so may the number of edges. One vertex or
-/// face a line: what follows its numbers there (colours, normals) is passed over. Throws InvalidMesh with the line
-/// where the content is not right.
+/// The word OFF, also as COFF, NOFF, STOFF and so on, may be missing, and so may the number of edges. A line has one
+/// vertex or face. The rest of it (colours, normals) is ignored. Throws InvalidMesh with the line where the content
+/// is not right.
 ParsedSurface parse_off(std::string_view content);
 
 }  // namespace dartcast

@@ -1,3 +1,4 @@
+// The last step of each mesh reader: which elements are cells, and which are patch faces.
 #include "formats/parsed_mesh.hpp"
 
 #include <algorithm>

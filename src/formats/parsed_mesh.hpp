@@ -1,4 +1,4 @@
-// What a reader of one file format hands on, before the mesh is inspected.
+// The result of a reader of one mesh format, before the mesh is checked.
 #pragma once
 
 #include <array>
@@ -13,7 +13,8 @@
 namespace dartcast {
 
 /// Ids that name no point are kept as 0xffffffff, for check_and_repair() to find. Readers put the cells of space into
-/// `mesh`, all faces into its patch faces and all edges beside it; finish() makes of them what they are in this file.
+/// `mesh`, all faces into its patch faces and all edges beside it; finish() turns them into the cells and patch faces
+/// of this file.
 struct ParsedMesh {
   MeshData mesh;
   std::vector<std::array<std::uint32_t, 2>> edges;
@@ -40,7 +41,7 @@ inline constexpr std::uint32_t no_point = 0xffffffffU;
 /// patch faces. Returns whether that is so.
 bool take_plane(ParsedMesh& parsed);
 
-/// Last step of each reader, take_plane() among it. Only patch faces with a tag are kept; without tags regions stay
+/// Last step of each reader; it calls take_plane(). Only patch faces with a tag are kept; without tags regions stay
 /// empty.
 void finish(ParsedMesh& parsed);
 

@@ -1,3 +1,4 @@
+// Faces, points and regions of a surface, as its reader finds them.
 #include "formats/parsed_surface.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// What a reader of one format of surface files hands on, before the surface is inspected.
+// The result of a reader of one surface format, before the surface is checked.
 #pragma once
 
 #include <cstdint>
@@ -23,10 +23,10 @@ struct ParsedSurface {
   std::vector<Finding> repairs;
   Finding short_faces{"short_faces", 0, {}, "faces of one or two corners; they have been left out"};
 
-  /// Of the face's 3 to 1000 corners; a face of one or two is left out. Throws InvalidMesh with the line, or with the
-  /// byte in binary parts, where it has none or more, or where there are too many faces.
+  /// Adds a face of 3 to 1000 corners; a face of one or two is left out. Throws InvalidMesh with the line, or with
+  /// the byte in binary parts, where it has none or more, or where there are too many faces.
   void add_face(std::span<const std::uint32_t> corners, const FileText& text, bool binary = false);
-  /// Throws InvalidMesh where a coordinate is not finite or there are too many points, likewise.
+  /// Throws InvalidMesh, likewise, where a coordinate is not finite or there are too many points.
   void add_point(const Vec3& point, const FileText& text, bool binary = false);
   /// Faces that follow are in the region of this name (without the white space around it); with an empty one in none.
   void enter_region(std::string_view name);

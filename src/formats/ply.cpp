@@ -1,3 +1,4 @@
+// Reads Stanford's .ply: the header, then each element in ASCII or binary.
 #include "formats/ply.hpp"
 
 #include <fmt/format.h>
@@ -43,7 +44,7 @@ enum class PlyRole : std::uint8_t { none, x, y, z, corners };
 struct PlyProperty {
   PlyRole role = PlyRole::none;
   const PlyType* type = nullptr;
-  const PlyType* count = nullptr;  // of a list: the type of its length
+  const PlyType* count = nullptr;  // for a list: the type of its length
 };
 
 enum class PlyKind : std::uint8_t { other, vertex, face };

@@ -1,3 +1,4 @@
+// Reads points from .vtp and .csv files.
 #include "formats/point_file.hpp"
 
 #include <fmt/format.h>
@@ -31,7 +32,7 @@ DataArray to_array(vtkDataArray& from) {
   return array;
 }
 
-// Calls check(); refusals get the file's name.
+// Calls check(), and adds the file's name to its errors.
 template <class Check>
 void with_file_name(const std::filesystem::path& path, Check&& check) {
   try {

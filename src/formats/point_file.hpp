@@ -15,7 +15,7 @@ struct PointFile {
 };
 
 /// Reads .vtp (its points and their arrays) or .csv (columns x, y, z by name in the first line; others are ignored).
-/// Of the options `max_memory` counts. Throws Error with file and, for .csv, line.
+/// The option `max_memory` counts, the other does not. Throws Error with file and, for .csv, line.
 PointFile read_points(const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace dartcast

@@ -1,3 +1,4 @@
+// Bounds of the memory that reading a file takes, and the limit of this machine.
 #include "formats/read_memory.hpp"
 
 #include <fmt/format.h>
@@ -31,7 +32,7 @@ std::uint64_t mesh_bytes(const ReadSizes& s) {
   return ByteSum().add(s.points, 32).add(s.corners, 10).add(s.cells, 32).add(s.values, 8).bytes();
 }
 
-/// What is added to the mesh when it is inspected, or the map is built.
+/// Memory beyond the mesh for its check, or for building the map.
 std::uint64_t use_bytes(const ReadSizes& s) {
   return std::max(ByteSum().add(s.corners, 32).add(s.points, 48).add(s.cells, 8).bytes(),
                   ByteSum().add(s.corners, 32).add(s.points, 24).add(s.cells, 24).bytes());

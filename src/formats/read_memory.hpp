@@ -1,4 +1,4 @@
-// How much memory the reading of a file takes, from above, before it is taken.
+// Upper bounds of the memory that reading a file takes, checked before it is taken.
 #pragma once
 
 #include <cstdint>
@@ -18,18 +18,19 @@ struct ReadSizes {
   std::uint64_t vtk = 0;      ///< bytes of all arrays as VTK holds them, those of cells apart
 };
 
-/// Bytes that the process takes at most while it reads a file of VTK with these sizes and builds the map from the mesh.
-/// Counted are, in bytes: 48 * 2^20 for the program and for what the allocator keeps of small blocks that are free; the
-/// file; and the largest of three stages. VTK: its arrays, 18 a corner and 20 a cell for its cells and their copies,
-/// and the mesh. Inspection: the mesh, 32 a corner for faces, 48 a point, 8 a cell. The map: the mesh, 32 a corner, 24
-/// a point and a cell. The mesh takes 32 a point, 10 a corner, 32 a cell and 8 a value. Sums stop at 2^63. Cells that
-/// need points of their own inside are not foreseen.
+/// Bytes that the process takes at most while it reads a file of VTK with these sizes and builds the map from the
+/// mesh. The sum in bytes: 48 * 2^20 for the program and for free small blocks that the allocator keeps; the file;
+/// and the largest of three stages. VTK: its arrays, 18 a corner and 20 a cell for its cells and their copies, and
+/// the mesh. Check: the mesh, 32 a corner for faces, 48 a point, 8 a cell. The map: the mesh, 32 a corner, 24 a point
+/// and a cell. The mesh takes 32 a point, 10 a corner, 32 a cell and 8 a value. Sums stop at 2^63. Steiner points
+/// inside cells are not counted.
 std::uint64_t memory_of_vtk(const ReadSizes& sizes);
 
-/// The same of a file whose numbers are read one by one, up to its mesh: no format takes more than ten times the file.
+/// The same for a file whose numbers are read one by one, up to its mesh: no format takes more than ten times the
+/// file.
 std::uint64_t memory_of_text(std::uint64_t file);
 
-/// The same of a mesh that has been read: what inspection and map add to it.
+/// The same for a mesh that has been read: the memory that its check and the map add.
 std::uint64_t memory_of_mesh(const MeshData& mesh);
 
 /// Throws InvalidMesh, with both numbers and the remedy, where `bytes` is more than the limit; 0: half of the machine's

@@ -1,79 +1,59 @@
+// Reads a mesh file: the ending chooses the format, then the mesh is checked and repaired.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_check.hpp"
 #include "dartcast/mesh_files.hpp"
 #include "formats/checked_file.hpp"
 #include "formats/file_text.hpp"
-#include "formats/gmsh.hpp"
-#include "formats/medit.hpp"
-#include "formats/parsed_mesh.hpp"
+#include "formats/format_table.hpp"
 #include "formats/read_memory.hpp"
-#include "formats/vtk_mesh.hpp"
 
 namespace dartcast {
 namespace {
 
-constexpr std::string_view supported =
-    ".vtu, .vtk (legacy), .msh (Gmsh 1, 2 or 4; also .msh2, .msh4) and .mesh (Medit)";
-
-bool starts(std::string_view text, std::string_view with) { return text.substr(0, with.size()) == with; }
-
-/// The content from its first byte that is not white space.
-std::string_view body(std::string_view content) {
-  return content.substr(std::min(content.find_first_not_of(" \t\r\n"), content.size()));
+/// As ".msh (Gmsh 1, 2 or 4; also .msh2, .msh4)".
+std::string described(const MeshFormat& format) {
+  std::string note(format.note);
+  for (std::size_t i = 1; i < format.endings.size(); ++i)
+    note += fmt::format("{}{}", i == 1 ? "; also " : ", ", format.endings[i].ending);
+  const std::string_view ending = format.endings.front().ending;
+  return note.empty() ? std::string(ending) : fmt::format("{} ({})", ending, note);
 }
 
-ParsedMesh parse_msh(std::string_view content) {
-  const std::string_view text = body(content);
-  if (starts(text, "("))
-    throw InvalidMesh("this .msh is of ANSYS Fluent, which is not supported; convert it to Gmsh's");
-  if (starts(text, "$")) return parse_gmsh(content);
-  if (starts(text, "MeshVersionFormatted")) throw InvalidMesh("this .msh is of Medit; rename it to .mesh");
-  throw InvalidMesh("this .msh is not of Gmsh: it does not start with '$'");
+std::string supported() {
+  std::vector<std::string> list;
+  for (const MeshFormat& format : mesh_formats()) list.push_back(described(format));
+  return in_words(list, "and");
 }
 
-ParsedMesh parse_mesh(std::string_view content) {
-  const std::string_view text = body(content);
-  if (starts(text, "MFEM NC mesh")) {
-    throw InvalidMesh(
-        "this .mesh is of MFEM, non-conforming (MFEM NC mesh), which is not supported; make it conforming and write "
-        "Gmsh's or VTK's format");
+std::string endings_with_arrays() {
+  std::vector<std::string> list;
+  for (const MeshFormat& format : mesh_formats()) {
+    if (format.arrays) list.emplace_back(format.endings.front().ending);
   }
-  if (starts(text, "MFEM ")) {
-    throw InvalidMesh(fmt::format("this .mesh is of MFEM ({}), which is not supported; write Gmsh's or VTK's format",
-                                  text.substr(0, std::min<std::size_t>(text.find_first_of("\r\n"), 40))));
-  }
-  return parse_medit(content);
+  return in_words(list, "and");
 }
 
 ParsedMesh parse(const std::filesystem::path& path, const ReadOptions& options) {
-  const std::string ending = ending_of(path);
-  const bool vtu = ending == ".vtu";
-  const bool vtk = ending == ".vtk";
-  const bool msh = ending == ".msh" || ending == ".msh2" || ending == ".msh4";
-  if (!vtu && !vtk && !msh && ending != ".mesh") {
-    const bool surface = is_surface_file(path);
-    throw InvalidMesh(fmt::format("files that end in '{}' are not supported; supported are {}{}", ending, supported,
-                                  surface ? "; a surface in space is read by read_surface()" : ""));
+  const MeshFormat* format = mesh_format_of(path);
+  if (format == nullptr) {
+    throw InvalidMesh(fmt::format("files that end in '{}' are not supported; supported are {}{}", ending_of(path),
+                                  supported(),
+                                  is_surface_file(path) ? "; a surface in space is read by read_surface()" : ""));
   }
-  if (!vtu && !vtk && !options.patch_array.empty())
-    throw InvalidMesh(
-        fmt::format("patches from the cell array '{}': arrays are in .vtu and .vtk files; in this one groups of faces "
-                    "are the patches",
-                    options.patch_array));
-  check_memory(vtu ? memory_of_vtk({.file = 2 * file_bytes(path)}) : memory_of_text(file_bytes(path)),
-               options.max_memory);
+  if (!format->arrays && !options.patch_array.empty())
+    throw InvalidMesh(fmt::format(
+        "patches from the cell array '{}': arrays are in {} files; in this one groups of faces are the patches",
+        options.patch_array, endings_with_arrays()));
+  check_memory(format->memory(file_bytes(path)), options.max_memory);
   const std::string content = read_bytes(path);
   if (content.empty()) throw InvalidMesh("the file is empty");
-  if (vtu) return parse_vtu(path, content, options);
-  if (vtk && starts(body(content), "<")) throw InvalidMesh("this .vtk is one of VTK's XML files; rename it to .vtu");
-  if (vtk) return parse_legacy_vtk(path, content, options);
-  return msh ? parse_msh(content) : parse_mesh(content);
+  return format->read(path, content, options);
 }
 
 }  // namespace

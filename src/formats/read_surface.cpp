@@ -1,3 +1,4 @@
+// Reads a file of a surface in space: the ending chooses the format, then the surface is checked and repaired.
 #include <fmt/format.h>
 
 #include <string>
@@ -7,40 +8,28 @@
 #include "dartcast/mesh_files.hpp"
 #include "formats/checked_file.hpp"
 #include "formats/file_text.hpp"
-#include "formats/obj.hpp"
-#include "formats/off.hpp"
-#include "formats/parsed_surface.hpp"
-#include "formats/ply.hpp"
+#include "formats/format_table.hpp"
 #include "formats/read_memory.hpp"
-#include "formats/stl.hpp"
 #include "surface/check_surface.hpp"
 
 namespace dartcast {
 namespace {
 
 ParsedSurface parse_surface(const std::filesystem::path& path, const ReadOptions& options) {
-  const std::string ending = ending_of(path);
-  const bool stl = ending == ".stl";
-  const bool obj = ending == ".obj";
-  const bool ply = ending == ".ply";
-  if (!is_surface_file(path)) {
-    throw InvalidMesh(fmt::format(
-        "surfaces in files that end in '{}' are not supported; supported are .stl, .obj, .ply and .off", ending));
+  const SurfaceFormat* format = surface_format_of(path);
+  if (format == nullptr) {
+    throw InvalidMesh(fmt::format("surfaces in files that end in '{}' are not supported; supported are {}",
+                                  ending_of(path), in_words(surface_endings(), "and")));
   }
   check_memory(memory_of_text(file_bytes(path)), options.max_memory);
   const std::string content = read_bytes(path);
   if (content.empty()) throw InvalidMesh("the file is empty");
-  if (stl) return parse_stl(content);
-  if (obj) return parse_obj(content);
-  return ply ? parse_ply(content) : parse_off(content);
+  return format->read(content);
 }
 
 }  // namespace
 
-bool is_surface_file(const std::filesystem::path& path) {
-  const std::string ending = ending_of(path);
-  return ending == ".stl" || ending == ".obj" || ending == ".ply" || ending == ".off";
-}
+bool is_surface_file(const std::filesystem::path& path) { return surface_format_of(path) != nullptr; }
 
 MeshFile check_surface(const std::filesystem::path& path, const ReadOptions& options) {
   return checked_file(path, "surface", [&](MeshFile& out) {

@@ -1,3 +1,4 @@
+// Leaves bad cells of a mesh file out, and reports them as a warning.
 #include "formats/skip_in_file.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Bad cells of a mesh file, left out. Not installed.
+// Removal of bad cells from a mesh file.
 #pragma once
 
 #include "base/parallel.hpp"
@@ -6,8 +6,8 @@
 
 namespace dartcast {
 
-/// Leaves the bad cells out of a file that was read (complex/skip_bad_cells.hpp), and reports on what is left: those
-/// left out are its first warning. Where the file has other defects it stays as it is, refused.
+/// Leaves the bad cells out of a file that was read (complex/skip_bad_cells.hpp). The report is then of the other
+/// cells, and its first warning counts those left out. A file with other defects stays as it is, refused.
 void skip_bad_cells(MeshFile& file, Threads threads = {});
 
 }  // namespace dartcast

@@ -1,3 +1,4 @@
+// Reads .stl, ASCII and binary, and joins equal corners.
 #include "formats/stl.hpp"
 
 #include <fmt/format.h>
@@ -35,7 +36,8 @@ std::uint64_t announced_triangles(std::string_view content) {
   return raw_number<std::uint32_t>(content.substr(stl_head - 4, 4), std::endian::little);
 }
 
-/// By its size, since the comment of a binary file may begin with "solid", too; of a damaged one by its zeros.
+/// Decided by the size, because the comment of a binary file may start with "solid", too; for a damaged file by its
+/// zeros.
 bool is_text_stl(std::string_view content) {
   if (content.size() >= stl_head && content.size() == stl_head + stl_triangle * announced_triangles(content))
     return false;

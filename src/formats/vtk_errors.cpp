@@ -1,3 +1,4 @@
+// Catches VTK's error texts with an output window of its own, one caller at a time.
 #include "formats/vtk_errors.hpp"
 
 #include <vtkLogger.h>
@@ -45,7 +46,7 @@ VtkErrors::VtkErrors() {
   before_ = vtkOutputWindow::GetInstance();
   window_ = vtkSmartPointer<Catcher>::New();
   vtkOutputWindow::SetInstance(window_);
-  // VTK logs errors to the terminal besides.
+  // VTK also logs errors to the terminal.
   verbosity_ = vtkLogger::GetCurrentVerbosityCutoff();
   vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
 }

@@ -8,7 +8,7 @@
 
 namespace dartcast {
 
-/// While it lives, errors and warnings of VTK go here and not to the terminal. One at a time: others wait.
+/// While it lives, errors and warnings of VTK go here and not to the terminal. Only one lives at a time: others wait.
 class VtkErrors {
  public:
   VtkErrors();

@@ -1,3 +1,4 @@
+// Checks every size and number of a legacy .vtk file before VTK reads it.
 #include "formats/vtk_legacy_check.hpp"
 
 #include <fmt/format.h>
@@ -26,8 +27,8 @@ std::string lower(std::string_view word) {
   return out;
 }
 
-/// A name as VTK reads it: %41 is A, and a '%' among the last two characters is nothing. None where VTK would read
-/// beyond the name's end, would take what was in memory for a character, or would cut the name.
+/// A name as VTK reads it: %41 is A, and VTK drops a '%' among the last two characters. None where VTK would read
+/// beyond the name's end, would read a character from uninitialized memory, or would cut the name.
 std::optional<std::string> decoded(std::string_view name) {
   std::string out;
   for (std::size_t i = 0; i < name.size(); ++i) {
@@ -93,7 +94,7 @@ class LegacyChecker {
   void head() {
     const std::string_view first = text_.line();
     if (first.substr(0, 23) != "# vtk DataFile Version ") text_.fail("'# vtk DataFile Version' should stand here");
-    // From version 5 on VTK looks for offsets, before for a stream of corners, whatever stands there.
+    // From version 5 on VTK expects offsets, before that a stream of corners, whatever the file has.
     const std::string_view version = first.substr(23, first.find_last_not_of(' ') - 22);
     if (version.size() != 3 || version[0] < '1' || version[0] > '5' || version[1] != '.' || version[2] < '0' ||
         version[2] > '9') {
@@ -163,8 +164,8 @@ class LegacyChecker {
     text_.fail(fmt::format("'{}' is not a section of a legacy VTK file", name.substr(0, 40)));
   }
 
-  /// VTK keeps one table of arrays for the points, one for the cells and one for the file, and of two arrays of one
-  /// name the last.
+  /// VTK keeps one table of arrays for the points, one for the cells and one for the file. Of two arrays with one
+  /// name it keeps the last.
   void take_name(std::string_view word) {
     static constexpr std::array<std::string_view, 3> places = {"of the file", "at the points", "at the cells"};
     const auto owner = static_cast<std::size_t>(owner_);
@@ -207,7 +208,7 @@ class LegacyChecker {
     }
   }
 
-  /// Texts: in ASCII one on a line; in binary each behind its length.
+  /// Texts: in ASCII one on a line; in binary each after its length.
   void texts(std::uint64_t items, std::uint64_t components) {
     components_ = 1;
     text_.check_count("texts", items, 1);
@@ -224,7 +225,7 @@ class LegacyChecker {
     }
   }
 
-  /// The two highest bits of the first byte say how many bytes hold the length: 3 one, 2 two, 1 four, 0 eight.
+  /// The two highest bits of the first byte give the number of bytes of the length: 3 one, 2 two, 1 four, 0 eight.
   std::size_t text_length() {
     const auto first = static_cast<unsigned char>(text_.raw(1, "a text's length")[0]);
     std::size_t length = first & 0x3fU;
@@ -240,8 +241,8 @@ class LegacyChecker {
     data("colours", size, 4, find_type(binary_ ? "unsigned_char" : "float"));
   }
 
-  /// Behind an array: lines up to an empty one. VTK goes by the number of components and by the keys it knows, over
-  /// empty lines as well: so only what it surely reads in the same way is taken.
+  /// After an array: lines up to an empty one. VTK goes by the number of components and by the keys it knows, across
+  /// empty lines, too. So only lines that it surely reads in the same way are accepted.
   void metadata() {
     text_.line();
     while (text_.left() > 0) {
@@ -405,7 +406,7 @@ class LegacyChecker {
   std::optional<std::size_t> points_;
   std::optional<Cells> cells_;
   std::uint64_t items_ = 0;
-  std::uint64_t components_ = 1;  // of the last array
+  std::uint64_t components_ = 1;  // components of the last array
   enum class Owner : std::uint8_t { file, points, cells } owner_ = Owner::file;
   std::array<std::set<std::string>, 3> names_;  // by owner
   ReadSizes sizes_;

@@ -1,4 +1,4 @@
-// A look at a legacy .vtk file before VTK reads it.
+// Checks of a legacy .vtk file before VTK reads it.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,7 @@ namespace dartcast {
 /// an ASCII file, the numbers of corners and the faces of polyhedra, and names of arrays: each once at the points, at
 /// the cells, in the file. Throws InvalidMesh with the line (or byte) where something is wrong, or where the data set
 /// is not an unstructured grid. VTK may then read the file without reaching beyond its arrays. Point numbers are not
-/// checked.
-/// `max_memory`: as of ReadOptions, for what VTK and the mesh need.
+/// checked. `max_memory`: as of ReadOptions, for VTK and the mesh.
 void check_legacy_vtk(std::string_view content, std::uint64_t max_memory = 0);
 
 }  // namespace dartcast

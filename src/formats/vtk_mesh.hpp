@@ -9,14 +9,14 @@
 
 namespace dartcast {
 
-/// Cells of three dimensions become cells: voxels as hexahedra, prisms from VTK's order of corners, which is the mirror
-/// of MeshData's. All their arrays of numbers are kept; `region`, `gmsh:physical` or `medit:ref` (the first there is,
-/// of whole numbers) gives the regions. Triangles, quadrangles and polygons become patch faces by the cell array
-/// options.patch_array; where that is empty by the one named `patch`, else by that of the regions (ReadOptions). Names
-/// come from arrays of texts, or from the field arrays `region_names` and `patch_names` of write_vtu(). In a file
-/// without cells of three dimensions those of two are the cells, and lines of two points (poly-lines piece by piece)
-/// the faces that patches are made of; points, and otherwise lines, are left out. `content` is what the file holds: it
-/// is checked first, then VTK reads the file. Throws InvalidMesh.
+/// Cells of three dimensions become cells: voxels as hexahedra, prisms from VTK's order of corners, which is the
+/// mirror of MeshData's. All their arrays of numbers are kept. The first array of whole numbers among `region`,
+/// `gmsh:physical` and `medit:ref` gives the regions. Triangles, quadrangles and polygons become patch faces by the
+/// cell array options.patch_array. Where that is empty, the array `patch` counts, else the array of the regions
+/// (ReadOptions). Names come from arrays of texts, or from the field arrays `region_names` and `patch_names` of
+/// write_vtu(). In a file without cells of three dimensions those of two are the cells, and lines of two points
+/// (poly-lines piece by piece) the faces that patches are made of; points, and otherwise lines, are left out.
+/// `content` is the content of the file. It is checked first, then VTK reads the file. Throws InvalidMesh.
 ParsedMesh parse_vtu(const std::filesystem::path& path, std::string_view content, const ReadOptions& options = {});
 ParsedMesh parse_legacy_vtk(const std::filesystem::path& path, std::string_view content,
                             const ReadOptions& options = {});

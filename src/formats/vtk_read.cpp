@@ -1,3 +1,4 @@
+// Reads VTK's unstructured grids, after the checks of their content.
 #include <fmt/format.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -20,6 +21,7 @@
 
 #include "dartcast/error.hpp"
 #include "formats/face_stream.hpp"
+#include "formats/file_text.hpp"
 #include "formats/vtk_errors.hpp"
 #include "formats/vtk_legacy_check.hpp"
 #include "formats/vtk_mesh.hpp"
@@ -29,7 +31,7 @@
 namespace dartcast {
 namespace {
 
-/// How a linear VTK cell becomes one here. A face has `type` polyhedron.
+/// The conversion of a linear VTK cell. A face has `type` polyhedron.
 struct Standard {
   int vtk;
   CellType type;
@@ -210,7 +212,7 @@ ParsedMesh convert(vtkUnstructuredGrid& grid, std::string format, const std::str
   return parsed;
 }
 
-/// Runs a VTK reader; whatever it complains about refuses the file.
+/// Runs a VTK reader. Any complaint of it refuses the file.
 template <class Reader>
 ParsedMesh read_with(Reader& reader, const std::string& format, const std::string& patch_array) {
   const VtkErrors errors;
@@ -238,6 +240,8 @@ ParsedMesh parse_vtu(const std::filesystem::path& path, std::string_view content
 }
 
 ParsedMesh parse_legacy_vtk(const std::filesystem::path& path, std::string_view content, const ReadOptions& options) {
+  if (from_first_word(content).starts_with("<"))
+    throw InvalidMesh("this .vtk is one of VTK's XML files; rename it to .vtu");
   check_legacy_vtk(content, options.max_memory);
   vtkNew<vtkUnstructuredGridReader> reader;
   reader->SetFileName(path.c_str());

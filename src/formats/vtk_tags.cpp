@@ -1,3 +1,4 @@
+// Regions and patches of a VTK grid, from its cell arrays.
 #include "formats/vtk_tags.hpp"
 
 #include <fmt/format.h>
@@ -19,7 +20,7 @@
 namespace dartcast {
 namespace {
 
-/// Tags of the rows of an array, and the names of those that are texts.
+/// Tags of the rows of an array, and the names where they are texts.
 struct Tags {
   std::vector<std::int32_t> values;
   std::map<std::int32_t, std::string> names;
@@ -67,7 +68,7 @@ std::map<std::int32_t, std::string> written_names(vtkUnstructuredGrid& grid, con
   return names;
 }
 
-/// Regions, and by the same array patches.
+/// Sets regions, and patches by the same array.
 void copy_regions(vtkUnstructuredGrid& grid, const Places& places, MeshData& mesh) {
   for (const char* name : {"region", "gmsh:physical", "medit:ref"}) {
     vtkDataArray* array = grid.GetCellData()->GetArray(name);

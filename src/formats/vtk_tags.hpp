@@ -11,7 +11,7 @@
 
 namespace dartcast {
 
-/// What becomes of the cells of the file.
+/// The new places of the file's cells.
 struct Places {
   std::vector<std::uint32_t> cells;  ///< per cell here: its index in the file; so for faces and edges
   std::vector<std::uint32_t> faces;
@@ -19,8 +19,8 @@ struct Places {
 };
 
 /// Sets the regions of the cells and the tags of the patch faces, with their names. `patch_array`: see
-/// ReadOptions::patch_array. Returns whether the cell array `patch` is one that write_vtu() adds: it says nothing of
-/// the cells. Throws InvalidMesh where the array that is asked for cannot be used, naming those that there are.
+/// ReadOptions::patch_array. Returns whether the cell array `patch` is one that write_vtu() adds, so that it has no
+/// data of the cells. Throws InvalidMesh, which names the arrays of the file, where the requested one cannot be used.
 bool copy_tags(vtkUnstructuredGrid& grid, const Places& places, const std::string& patch_array, MeshData& mesh);
 
 }  // namespace dartcast

@@ -1,3 +1,4 @@
+// Writes .vtu and legacy .vtk: a VTK grid from the mesh, then VTK's writer.
 #include <fmt/format.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -75,13 +76,13 @@ void add_array(vtkFieldData& to, const DataArray& from, vtkIdType items) {
   to.AddArray(array);
 }
 
-// By what the mesh itself says of its cells.
+// Whether the mesh's own data of its cells replace an array of this name.
 bool is_replaced(const MeshData& mesh, const std::string& cell_array) {
   return (cell_array == "region" && !mesh.regions.empty()) || (cell_array == "free" && !mesh.free.empty()) ||
          (cell_array == "patch" && !mesh.patch_tags.empty());
 }
 
-/// Regions at the cells; tags of patches at the cells behind them that are patch faces.
+/// Adds regions at the cells, and tags of patches at the patch faces, which come after them.
 void add_tags(const MeshData& mesh, vtkUnstructuredGrid& grid) {
   const auto add = [&](const char* name, auto&& cell_tag, auto&& face_tag) {
     vtkNew<vtkIntArray> array;

@@ -1,3 +1,4 @@
+// Reads the pieces, sections and arrays of VTK's XML files.
 #include "formats/vtk_xml.hpp"
 
 #include <fmt/format.h>
@@ -131,9 +132,9 @@ class VtkXmlReader {
     }
   }
 
-  /// The appended data, which need not be XML: they end before the last closing tag of their own.
+  /// The appended data, which need not be XML. They end before their last closing tag.
   void read_appended(const XmlTag& tag) {
-    // VTK looks for the tag's text and takes the first byte behind white space for the mark, whatever it is.
+    // VTK searches for the tag's text, and takes the first byte after white space as the mark, whatever it is.
     const std::size_t first = content_.find('>', content_.find("<AppendedData"));
     const std::size_t begin = content_.find_first_not_of(" \t\r\n", tag.end);
     const std::size_t end = content_.rfind("</AppendedData");
@@ -167,7 +168,7 @@ class VtkXmlReader {
     if (array.components == 0 || array.components > 1000000) tags_.fail("a number of components is out of range");
     if (tag.attributes.contains("TimeStep")) tags_.fail("several times in one file are not supported");
     if (tag.closes) return array;
-    // VTK takes what follows the first '>' for the data.
+    // VTK takes the text after the first '>' as the data.
     const std::size_t begin = content_.rfind('<', tag.end - 1);
     if (content_.find('>', begin) + 1 != tag.end) tags_.fail("an array's tag has '>' in a value");
     array.text = content_.substr(tag.end, content_.find('<', tag.end) - tag.end);

@@ -1,4 +1,4 @@
-// The pieces, sections and arrays of one of VTK's XML files, read without trust before VTK reads them.
+// The pieces, sections and arrays of one of VTK's XML files, checked before VTK reads them.
 #pragma once
 
 #include <cstdint>
@@ -30,10 +30,10 @@ struct VtkXmlFile {
 };
 
 /// Reads all tags of a file of this kind, "UnstructuredGrid" or "PolyData". VTK finds sections and arrays by their
-/// names and by their order, and reads on where none is found: so a section must stand where it belongs, once, and hold
-/// nothing but arrays; each array must have a name of its own in its section; all pieces must have the same arrays at
-/// points and cells. Throws InvalidMesh, with the line or the array, where that does not hold, where a tag is damaged,
-/// or where the file is of another kind. Sizes and data are not looked at.
+/// names and by their order, and does not stop where one is missing. So each section must be in its place, once, and
+/// hold nothing but arrays. Each array must have a unique name in its section. All pieces must have the same arrays
+/// at points and cells. Throws InvalidMesh, with the line or the array, where that does not hold, where a tag is
+/// damaged, or where the file is of another kind. Sizes and data are not checked.
 VtkXmlFile read_vtk_xml(std::string_view content, std::string_view kind);
 
 }  // namespace dartcast

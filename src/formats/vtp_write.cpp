@@ -1,3 +1,4 @@
+// Writes points, lines and polygons with data as .vtp.
 #include "formats/vtp_write.hpp"
 
 #include <fmt/format.h>

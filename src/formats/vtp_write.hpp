@@ -1,4 +1,4 @@
-// Points with data, lines and polygons among them, as a .vtp file: through VTK.
+// Points with data, lines and polygons, as a .vtp file that VTK writes.
 #pragma once
 
 #include <vtkNew.h>
@@ -15,12 +15,12 @@
 
 namespace dartcast {
 
-/// A file while it is put together: points first, then what is made of them, then data. Float64, flags UInt8.
+/// A file under construction: points first, then lines and polygons, then data. Float64, flags UInt8.
 class VtpWriter {
  public:
   VtpWriter(std::size_t count, const std::function<Vec3(std::size_t)>& point);
 
-  /// Every point is shown by itself.
+  /// Makes every point visible.
   void add_vertices();
   /// A line through all points in their order, where there are any.
   void add_line();

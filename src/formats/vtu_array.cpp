@@ -1,3 +1,4 @@
+// Decodes one array of a .vtu file: ASCII, base64, raw, compressed.
 #include "formats/vtu_array.hpp"
 
 #include <fmt/format.h>
@@ -44,7 +45,7 @@ const Type* find_type(std::string_view name) {
   return found == array_types.end() ? nullptr : found;
 }
 
-/// Bytes in base64, read from the start on; each call to take() decodes one run with a padding of its own.
+/// Bytes in base64, read from the start; each call of take() decodes one run with its own padding.
 class Base64 {
  public:
   explicit Base64(std::string_view text) : text_(text) {}
@@ -71,7 +72,8 @@ class Base64 {
   }
 
  private:
-  /// Value of the next digit, 64 for padding; nothing at the end or at a byte that is no digit: VTK skips none either.
+  /// Value of the next digit, 64 for padding; nothing at the end or at a byte that is no digit, because VTK skips
+  /// none either.
   std::optional<unsigned> next() {
     if (at_ >= text_.size()) return std::nullopt;
     const char c = text_[at_++];
@@ -88,7 +90,7 @@ class Base64 {
   std::size_t at_ = 0;
 };
 
-/// The encoded bytes of an array: first a header, then its data, each a run of its own in base64.
+/// The encoded bytes of an array: first a header, then its data, each a separate run of base64.
 class Source {
  public:
   Source(const VtuArray& array, const VtuEncoding& encoding)
@@ -108,7 +110,7 @@ class Source {
     text_.remove_prefix(out.size());
     return std::string(out);
   }
-  /// Goes on behind a padding: a compressed array's header is encoded in two runs that VTK decodes as one.
+  /// Continues after a padding: a compressed array's header is encoded in two runs that VTK decodes as one.
   void restart(std::uint64_t bytes) {
     if (raw_) return;
     base64_ = Base64(text_.substr(std::min<std::uint64_t>((bytes + 2) / 3 * 4, text_.size())));
@@ -131,7 +133,7 @@ std::uint64_t integer_at(std::string_view bytes, std::size_t at, std::size_t siz
 /// Sizes that the header of compressed data announces.
 struct Blocks {
   std::vector<std::uint64_t> compressed;
-  std::uint64_t size = 0;  // of each block but the last, decompressed
+  std::uint64_t size = 0;  // of each block except the last, decompressed
   std::uint64_t last = 0;
 
   [[nodiscard]] std::uint64_t size_of(std::size_t b) const {
@@ -189,7 +191,7 @@ vtkSmartPointer<vtkDataCompressor> make_compressor(const VtuArray& array, const 
 
 std::string decompress(const VtuArray& array, const VtuEncoding& encoding, Source& source) {
   const Blocks blocks = read_blocks(array, encoding, source, available_bytes(array, encoding));
-  const VtkErrors errors;  // the compressor's complaints are told by the size it returns
+  const VtkErrors errors;  // the size that the compressor returns reports its errors
   const auto compressor = make_compressor(array, encoding.compressor);
   std::uint64_t all = 0;
   for (const std::uint64_t c : blocks.compressed) all += c;

@@ -1,4 +1,4 @@
-// The data of one array of a .vtu file, decoded and checked without trust in any number it announces.
+// The data of one array of a .vtu file, decoded with a check of every number that it announces.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace dartcast {
 
-/// What the file's first tag says about all arrays.
+/// The attributes of the file's first tag, for all arrays.
 struct VtuEncoding {
   bool big_endian = false;
   std::size_t header_bytes = 4;
@@ -34,14 +34,14 @@ struct VtuArray {
 /// Bytes of one number of a type; 0 for a type that is not known, 1 for strings.
 std::size_t vtu_type_bytes(std::string_view type);
 
-/// The number of numbers that the data announce; the bytes to hold them have been seen to be there, or for compressed
-/// data the compressed ones. For ASCII every number is read. Throws InvalidMesh.
+/// The number of numbers that the data announce. The bytes for them are checked to exist; for compressed data, the
+/// compressed ones. For ASCII every number is read. Throws InvalidMesh.
 std::uint64_t count_numbers(const VtuArray& array, const VtuEncoding& encoding);
 
 /// At least as many numbers as count_numbers() finds, without a look at ASCII data. Throws InvalidMesh.
 std::uint64_t max_numbers(const VtuArray& array, const VtuEncoding& encoding);
 
-/// Decodes the data and leaves them: what count_numbers() takes on trust is seen to be there. ASCII data have nothing
+/// Decodes the data, and discards them: this checks the sizes that count_numbers() assumes. ASCII data have nothing
 /// more to check. Throws InvalidMesh.
 void check_bytes(const VtuArray& array, const VtuEncoding& encoding);
 

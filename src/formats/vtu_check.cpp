@@ -1,3 +1,4 @@
+// Checks every array of a .vtu or .vtp file before VTK reads it.
 #include "formats/vtu_check.hpp"
 
 #include <fmt/format.h>
@@ -90,7 +91,7 @@ void check_texts(const VtuArray& array, const VtuEncoding& encoding, std::uint64
   }
 }
 
-/// The arrays at points or cells. Where VTK fails to read one at cells, it looks for the section of points.
+/// The arrays at points or cells. Where VTK fails to read one at cells, it tries the section of points.
 void check_data(const VtkXmlPiece& piece, std::string_view section, const VtuEncoding& encoding) {
   const bool at_cells = section == "CellData";
   const std::uint64_t items = at_cells ? piece.cells() : piece.points();
@@ -120,7 +121,7 @@ void check_piece(const VtkXmlPiece& piece, const VtuEncoding& encoding) {
   }
 }
 
-/// VTK makes room for the values that the tag announces, and trusts it.
+/// VTK allocates the values that the tag announces, without a check.
 void check_field(const VtuArray& array, const VtuEncoding& encoding) {
   if (array.type == "String") {
     check_texts(array, encoding, array.tuples);
@@ -129,7 +130,7 @@ void check_field(const VtuArray& array, const VtuEncoding& encoding) {
   }
 }
 
-/// Of arrays as they announce themselves, not as the pieces do: these are compared later.
+/// Sums the sizes that arrays announce. A later check compares them with those of the pieces.
 ReadSizes sizes_of(const VtkXmlFile& file, std::uint64_t file_size) {
   ReadSizes sizes;
   sizes.file = 2 * file_size;

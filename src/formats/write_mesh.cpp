@@ -1,17 +1,14 @@
+// Writes a mesh in the format of the path's ending: to a file beside it, which then takes its place.
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <string>
 #include <system_error>
 
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_files.hpp"
-#include "formats/gmsh.hpp"
-#include "formats/medit.hpp"
-#include "formats/vtk_mesh.hpp"
+#include "formats/format_table.hpp"
 
 namespace dartcast {
 
@@ -28,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where the bytes of a file go in the end: behind links.
+/// The file that a path names, after all links.
 fs::path target_of(const fs::path& path) {
   std::error_code error;
   const fs::path target = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : path;
@@ -43,12 +40,13 @@ void move_over(const fs::path& part, const fs::path& target) {
   if (error) throw Error(fmt::format("{}: the file cannot be replaced: {}", target.string(), error.message()));
 }
 
-/// Calls write(file) for a new file beside the target, and puts that in the target's place when it is whole.
+/// Calls write(file) for a new file beside the target, which takes the target's place when it is whole.
 template <class Write>
 void write_beside(const fs::path& path, Write&& write) {
   const fs::path target = target_of(path);
   std::error_code error;
-  if (fs::exists(target, error) && !fs::is_regular_file(target, error)) return write(path);  // a device has no beside
+  if (fs::exists(target, error) && !fs::is_regular_file(target, error))
+    return write(path);  // a device has no folder to write in
   const fs::path part = target.string() + fmt::format(".{}.part", ::getpid());
   try {
     write(part);
@@ -65,22 +63,33 @@ void write_beside(const fs::path& path, Write&& write) {
   }
 }
 
+/// Throws InvalidArgument where the format has no place for a cell or a face.
+void check_cells(const MeshData& mesh, const MeshFormat& format) {
+  if (format.polyhedra) return;
+  const auto check_face = [&](std::size_t corners) {
+    if (corners > 4)
+      throw InvalidArgument(
+          fmt::format("{}'s format cannot hold polygons or faces of more than four corners; write .vtu", format.name));
+  };
+  for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f)
+    check_face(mesh.patch_offsets[f + 1] - mesh.patch_offsets[f]);
+  for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
+    if (mesh.types[c] == CellType::polyhedron)
+      throw InvalidArgument(fmt::format("{}'s format cannot hold polyhedra; write .vtu", format.name));
+    if (dimension(mesh.types[c]) == 2) check_face(mesh.cell(c).size());
+  }
+}
+
 }  // namespace
 
 void write_mesh(const MeshData& mesh, const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  const auto write = [&](const std::string& bytes) {
-    write_beside(path, [&](const fs::path& file) { write_bytes(file, bytes); });
-  };
-  if (ending == ".vtu") return write_beside(path, [&](const fs::path& file) { write_vtu(mesh, file); });
-  if (ending == ".vtk") return write_beside(path, [&](const fs::path& file) { write_legacy_vtk(mesh, file); });
-  if (ending == ".msh" || ending == ".msh2") return write(format_gmsh_2(mesh));
-  if (ending == ".msh4") return write(format_gmsh_4(mesh));
-  if (ending == ".mesh") return write(format_medit(mesh));
-  throw InvalidArgument(fmt::format(
-      "{}: cannot write files that end in '{}'; use .vtu, .vtk, .msh, .msh2, .msh4 or .mesh", path.string(), ending));
+  const FormatEnding* ending = mesh_ending_of(path);
+  if (ending == nullptr) {
+    throw InvalidArgument(fmt::format("{}: cannot write files that end in '{}'; use {}", path.string(), ending_of(path),
+                                      in_words(mesh_endings(), "or")));
+  }
+  check_cells(mesh, *mesh_format_of(path));
+  write_beside(path, [&](const fs::path& file) { ending->write(mesh, file); });
 }
 
 }  // namespace dartcast

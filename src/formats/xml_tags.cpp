@@ -1,3 +1,4 @@
+// Reads the tags of an XML file one after another.
 #include "formats/xml_tags.hpp"
 
 #include <fmt/format.h>

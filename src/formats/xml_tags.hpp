@@ -1,4 +1,4 @@
-// The tags of an XML file, one after another: enough of XML for VTK's files.
+// The tags of an XML file, one after another. This part of XML suffices for VTK's files.
 #pragma once
 
 #include <cstddef>
@@ -11,10 +11,10 @@ namespace dartcast {
 
 struct XmlTag {
   std::string name;
-  std::map<std::string, std::string> attributes;  ///< values as XML means them: entities decoded, white space as blanks
+  std::map<std::string, std::string> attributes;  ///< values with entities decoded, and white space as blanks
   bool opens = false;                             ///< <name ...>; with `closes`: <name .../>
   bool closes = false;                            ///< </name>
-  std::size_t end = 0;                            ///< the byte behind it
+  std::size_t end = 0;                            ///< the byte after it
 };
 
 /// Reads tags and checks that they are nested. Errors are InvalidMesh with the line.
@@ -23,8 +23,8 @@ class XmlTags {
   explicit XmlTags(std::string_view content) : content_(content) {}
 
   /// The next tag, comments and processing instructions left out; false at the end of the file. Throws where a tag is
-  /// damaged, closes another one than the last opened, or is open at the end, and at declarations: they may define
-  /// entities, so that one file would read in two ways.
+  /// damaged, closes another one than the last opened, or is open at the end, and at declarations, because entities
+  /// that they define would give the file a second meaning.
   bool next(XmlTag& tag);
 
   /// Moves to a byte, over content that is not XML.

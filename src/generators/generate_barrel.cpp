@@ -1,3 +1,4 @@
+// The closed surface of a barrel.
 #include <array>
 #include <cmath>
 #include <numbers>

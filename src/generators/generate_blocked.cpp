@@ -1,3 +1,4 @@
+// Blocks a share of the cells at random.
 #include "generators/generate_blocked.hpp"
 
 #include <algorithm>

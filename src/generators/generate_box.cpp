@@ -1,3 +1,4 @@
+// A box of cubes, each a hexahedron, or cut into tetrahedra, prisms or pyramids.
 #include <fmt/format.h>
 
 #include <utility>

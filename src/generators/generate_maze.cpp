@@ -1,3 +1,4 @@
+// A maze in the plane: rooms full of obstacles, joined by the doors of a random tree.
 #include <fmt/format.h>
 
 #include <algorithm>

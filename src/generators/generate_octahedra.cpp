@@ -1,3 +1,4 @@
+// A lattice of truncated octahedra, as polyhedra.
 #include <fmt/format.h>
 
 #include <cstdlib>

@@ -1,3 +1,4 @@
+// A rectangle of squares in the plane.
 #include <vector>
 
 #include "dartcast/generators.hpp"

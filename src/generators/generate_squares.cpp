@@ -1,3 +1,4 @@
+// Squares of a lattice in the plane, cut into triangles or merged into polygons.
 #include "generators/generate_squares.hpp"
 
 #include <fmt/format.h>

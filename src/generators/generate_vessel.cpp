@@ -1,3 +1,4 @@
+// A branching vessel of hexahedra, with its lumen and its wall of tissue.
 #include <fmt/format.h>
 
 #include <algorithm>

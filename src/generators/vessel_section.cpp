@@ -1,3 +1,4 @@
+// Half of a vessel's cross-section: its quads, and the places of its inner points.
 #include "generators/vessel_section.hpp"
 
 #include <cmath>

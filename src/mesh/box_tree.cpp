@@ -1,3 +1,4 @@
+// Builds the tree of boxes: each node divides its boxes by the median along its longest side.
 #include "mesh/box_tree.hpp"
 
 #include <algorithm>

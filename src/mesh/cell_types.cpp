@@ -1,3 +1,4 @@
+// Tables of the standard cell types: corners and faces.
 #include "mesh/cell_types.hpp"
 
 namespace dartcast {

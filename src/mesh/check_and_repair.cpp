@@ -1,3 +1,4 @@
+// Checks a mesh step by step, repairs it where the repair is certain, and reports the rest.
 #include <algorithm>
 
 #include "dartcast/mesh_check.hpp"

@@ -1,3 +1,4 @@
+// Boundary faces that lie against each other without being one face.
 #include "mesh/conformity.hpp"
 
 #include <algorithm>

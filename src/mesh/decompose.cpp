@@ -1,3 +1,4 @@
+// Divides a plane domain between rings into triangles or convex cells.
 #include "dartcast/decompose.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Matches equal faces of cells by sorted corners, in buckets.
 #include "mesh/faces.hpp"
 
 #include <algorithm>

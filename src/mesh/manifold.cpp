@@ -1,3 +1,4 @@
+// Finds vertices and edges where the boundary of a mesh is pinched.
 #include "mesh/manifold.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Merges triangles into convex cells, across the longest edges first.
 #include "mesh/merge_convex.hpp"
 
 #include <algorithm>

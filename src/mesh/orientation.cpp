@@ -1,3 +1,4 @@
+// Orients each cell by exact signs of its corners; mirrors cells that are inside out.
 #include "mesh/orientation.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Selects patches by name, or divides walls into patches where they are sharp.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

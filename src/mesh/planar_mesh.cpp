@@ -1,3 +1,4 @@
+// Puts meshes into the plane, and finds boundary edges that lie against each other.
 #include "mesh/planar_mesh.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// An incremental Delaunay triangulation: points, then segments by flips.
 #include "mesh/planar_triangulation.hpp"
 
 #include <algorithm>

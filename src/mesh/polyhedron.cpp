@@ -1,3 +1,4 @@
+// Turns the faces of a polyhedron the same way, and checks that they close.
 #include "mesh/polyhedron.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Selects the free cells of a mesh, by region or by values of an array.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -1,3 +1,4 @@
+// Finds points at the place of another one, by sorting.
 #include "mesh/repeated_points.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Checks the arrays of a mesh, ids and corners; drops unused points and stray patch faces.
 #include "mesh/structure.hpp"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "catheter/camera_path.hpp"
+#include "dartcast/catheter.hpp"
 
 namespace dartcast {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "catheter/camera_path.hpp"
+#include "dartcast/catheter.hpp"
 #include "formats/vtp_write.hpp"
 #include "output/camera_path_file.hpp"
 

@@ -1,6 +1,9 @@
 #include "scene/scene_solids.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "dartcast/mesh_files.hpp"
 
 namespace dartcast {
 
@@ -21,7 +24,8 @@ void body_surface(TomlTable& t, const std::filesystem::path& folder, BodyScene& 
   std::size_t generator = 0;
   const bool has_file = t.get("surface", file);
   if (has_file == t.get("generator", generator, {"barrel"}))
-    t.fail("surface", "give either surface = \"FILE\" (.stl, .obj, .ply, .off) or generator = \"barrel\"");
+    t.fail("surface", fmt::format("give either surface = \"FILE\" ({}) or generator = \"barrel\"",
+                                  fmt::join(surface_endings(), ", ")));
   if (has_file) {
     scene.surface = folder / file;
     return;

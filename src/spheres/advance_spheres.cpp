@@ -1,3 +1,4 @@
+// One step of all spheres: rounds of planning, advancing the centres, and landing.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -66,7 +67,7 @@ struct SphereStepper::Buffers {
     SphereWay way;
   };
 
-  // What the planning of one chunk needs and finds.
+  // Scratch memory and results of the planning of one chunk.
   struct Chunk {
     NearWalls near;
     std::vector<Planned> planned;
@@ -90,8 +91,13 @@ struct SphereStepper::Buffers {
 
 namespace {
 
-// One call of advance(). Rounds: every sphere's next stretch is planned, all centres are advanced to where their
-// stretches end, and what was touched there says how each goes on.
+// One call of advance(), in order:
+//  1. plan_all()     the first stretch of every sphere: to its target, a contact, or out of walls
+//  2. advance_all()  all centres go to the ends of their stretches; points go all their way
+//  3. start_runs()   a run for each sphere whose step is not at its end
+//  4. land()         records contacts and calls the response; the runs that go on stay active
+//  5. next_round()   the active runs plan, advance and land again, until none is left
+//  6. merge()        the report: by particle, contacts of points and of runs
 class SphereCall {
   using Buffers = SphereStepper::Buffers;
   using Planned = Buffers::Planned;
@@ -139,14 +145,13 @@ class SphereCall {
     });
   }
 
-  // Whether no wall is within reach of any place on the way. Clearances are distances that were rounded: a share of
-  // them is given up.
+  // Whether no wall is within reach of the way. A share of the clearance is given up, because it is a rounded distance.
   [[nodiscard]] bool is_clear(std::size_t i, const Vec3& from) const {
     if (clearances_.empty() || scene_.moved) return false;
     return radii_[i] + norm(targets_[i] - from) <= clearances_[i] * (1.0 - 0x1p-20);
   }
 
-  // What the environment refuses is left to it.
+  // Input that the environment refuses is left to it.
   void plan_first(std::size_t i, Chunk& chunk) {
     const ParticleState& state = particles_[i];
     if (radii_[i] == 0.0 || state.held || !is_finite(targets_[i])) return;
@@ -161,7 +166,7 @@ class SphereCall {
     chunk.planned.push_back({particle, state.position, way});
   }
 
-  // Points go all their way, spheres to the end of their first stretch, or where the centre meets a wall.
+  // Points go all their way, spheres to the end of their first stretch, or to a wall that the centre meets.
   StepReport advance_all() {
     const bool points = std::any_of(radii_.begin(), radii_.end(), [](double r) { return r == 0.0; });
     if (!respond_ || !points) return environment_.advance(particles_, b_.targets, {}, options_);
@@ -172,7 +177,7 @@ class SphereCall {
     return environment_.advance(particles_, b_.targets, points_only, options_);
   }
 
-  // Those whose step is not at its end: their first stretch ends in a contact or an overlap, or the centre met a wall.
+  // Starts runs for spheres whose first stretch ends in a contact or an overlap, or whose centre met a wall.
   void start_runs(const StepReport& first) {
     b_.run_count = 0;
     b_.active.clear();
@@ -214,7 +219,7 @@ class SphereCall {
     b_.add_run().start(i, {planned.begin, targets_[i], radii_[i]}, planned.way, scene_.moved);
   }
 
-  // What follows for the active runs, whose centres are now in these particles, one each or at their own numbers.
+  // Lands the active runs. Their centres are in `now`: at the particles' numbers if those are all, else in order.
   void land(const Particles& now, std::span<const std::uint32_t> active) {
     const bool all = &now == &particles_;
     b_.goes_on.assign(active.size(), 0);
@@ -254,7 +259,7 @@ class SphereCall {
     land(some, b_.active);
   }
 
-  // By particle: what the environment reports of points, and of spheres that were held, and the runs.
+  // Writes the report by particle: points, and spheres that were held, from the environment; the others from the runs.
   void merge(const StepReport& first, SphereReport& report) const {
     StepReport& step = report.step;
     step.counters = first.counters;

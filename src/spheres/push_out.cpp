@@ -1,3 +1,4 @@
+// The shortest displacement that takes a sphere out of the walls, by Hildreth's method.
 #include "spheres/push_out.hpp"
 
 #include <algorithm>
@@ -14,7 +15,8 @@ constexpr int halvings = 30;
 constexpr double enough = 0x1p-50;  // share of the radius: depths below it are rounding
 
 // The shortest x with normal . x >= radius - distance for all walls, nearly: Hildreth's method (C. Hildreth, "A
-// quadratic programming procedure", 1957), which corrects one wall after another. Nothing where it does not come there.
+// quadratic programming procedure", 1957), which corrects one wall after another. Returns nothing where it does not
+// converge.
 std::optional<Vec3> shortest(std::span<const WallFeature> walls, double radius, std::span<double> pull) {
   std::fill(pull.begin(), pull.end(), 0.0);
   Vec3 x;
@@ -34,10 +36,10 @@ std::optional<Vec3> shortest(std::span<const WallFeature> walls, double radius, 
   return x;
 }
 
-// As above; where there is no room, for the largest radius there is some for.
+// As shortest(); where there is no room, for the largest radius that fits.
 Vec3 widest(std::span<const WallFeature> walls, double radius, std::span<double> pull) {
   if (const auto x = shortest(walls, radius, pull)) return *x;
-  double fits = walls.front().distance;  // they come by distance: x = 0 does
+  double fits = walls.front().distance;  // sorted by distance: x = 0 fits this radius
   double too_large = radius;
   Vec3 best;
   for (int k = 0; k < halvings; ++k) {

@@ -1,15 +1,15 @@
-// Where a sphere that overlaps walls is moved out to.
+// The displacement of a sphere out of walls that it overlaps.
 #pragma once
 
 #include "dynamics/near_walls.hpp"
 
 namespace dartcast {
 
-/// The displacement of a sphere at `centre`, in this cell, that takes it out of the walls by as little as it can: to
-/// the distance of its radius from all of them, or, where there is no room nearby, to where the least distance is as
-/// large as it can be. No longer than twice the radius. The walls are taken as they stand, each as the plane across the
-/// direction to its nearest point, again from where that leads (four times at most). Walls passed on the way are not
-/// asked for: the environment's walk stops the centre there. Cost: some microseconds.
+/// The shortest displacement of a sphere at `centre`, in this cell, to a place at the distance of its radius from all
+/// walls. Where there is no such place near by, it maximizes the least distance. It is no longer than twice the
+/// radius. Each wall counts as the plane across the direction to its nearest point; the planes are found again at the
+/// new place, four times at most. Walls on the way are ignored, because the environment's walk stops the centre
+/// there. Cost: some microseconds.
 Vec3 push_out(const CellComplex& complex, Cell cell, const Vec3& centre, double radius, NearWalls& near);
 
 }  // namespace dartcast

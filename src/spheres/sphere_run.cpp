@@ -1,3 +1,4 @@
+// One sphere's step after its first stretch: contacts, overlaps, and the stretches that follow.
 #include "spheres/sphere_run.hpp"
 
 #include <fmt/format.h>
@@ -13,7 +14,7 @@ namespace dartcast::detail {
 
 namespace {
 
-// A sphere that was moved out is asked again once, since walls are not planes.
+// A sphere is moved out twice at most: walls are not planes, so once may not suffice.
 constexpr unsigned max_pushes = 2;
 // A slide into a wall by up to this share of its length is rounding: responses leave 2^-39 (src/response/response.cpp).
 constexpr double lift_share = 0x1p-36;
@@ -62,7 +63,7 @@ bool SphereRun::land(const SphereScene& scene, const ParticleState& state, Centr
   return way_.end == WayEnd::contact && touched(scene, state, near);
 }
 
-// Its own motion is still to be made: all of it, but what the wall made for it.
+// The sphere still has its own motion to make, less the displacement of the wall, which is already made.
 bool SphereRun::moved_out(const SphereScene& scene, const ParticleState& state, NearWalls& near) {
   bool again = moving_;
   if (!moving_) {
@@ -76,7 +77,7 @@ bool SphereRun::moved_out(const SphereScene& scene, const ParticleState& state, 
   return again || aim_ != state.position;
 }
 
-// All places touched there and then are its walls; the one that the sphere came to first is the first.
+// The contact's walls are all places touched at that time. The one that the sphere came to first is the first.
 bool SphereRun::touched(const SphereScene& scene, const ParticleState& state, NearWalls& near) {
   const CellComplex& complex = *scene.complex;
   const Vec3 own = aim_ - begin_;
@@ -111,12 +112,12 @@ bool SphereRun::touched_by_centre(const SphereScene& scene, const ParticleState&
   contact.earlier = contact.first_wall;
   const auto walls = centre.list->walls_of(met);
   walls_.insert(walls_.end(), walls.begin(), walls.end());
-  if (scene.moved && !moving_) {  // the environment's later stretches know of no move
+  if (scene.moved && !moving_) {  // the environment does not count later stretches as a move
     const WallHit& wall = walls.front();
     contact.wall_displacement =
         NearWalls::place_on(*scene.complex, wall.face, wall.triangle, met.point, true).displacement;
   }
-  if (way_.end == WayEnd::contact) {  // on the way to the sphere's own contact, a part of its motion
+  if (way_.end == WayEnd::contact) {  // before the sphere's own contact: only a part of its motion is made
     const double share = way_.used * met.time_of_impact;
     contact.time_of_impact = share;
     contact.displacement = moving_ ? (aim_ - begin_) - contact.wall_displacement : aim_ - begin_;
@@ -126,7 +127,7 @@ bool SphereRun::touched_by_centre(const SphereScene& scene, const ParticleState&
   return follow(scene, state, contact);
 }
 
-// After a contact among moving walls there is a stretch, if only to see what other walls came to overlap it.
+// After a contact among moving walls another stretch always follows, because other walls may overlap the sphere now.
 bool SphereRun::follow(const SphereScene& scene, const ParticleState& state, Contact& contact) {
   const auto count = static_cast<unsigned>(contacts_.size());
   contact.last = count >= scene.options->max_contacts;
@@ -151,7 +152,7 @@ bool SphereRun::follow(const SphereScene& scene, const ParticleState& state, Con
   return moving_ || q != state.position;
 }
 
-// A slide must not be turned into a wall by rounding.
+// Corrects slides that rounding turned into a wall.
 void SphereRun::lift(const Vec3& position, Vec3& q) const {
   const double above = 0.25 * slack(q);
   const double limit = lift_share * norm(q - position) + above;

@@ -1,15 +1,16 @@
-// One sphere's step: stretch after stretch, each ended by a contact, an overlap or the target.
+// One sphere's step: a sequence of stretches, each of which ends with a contact, an overlap or the target.
 #pragma once
 
 #include <optional>
 #include <vector>
 
 #include "dartcast/spheres.hpp"
+#include "dynamics/near_walls.hpp"
 #include "spheres/sphere_way.hpp"
 
 namespace dartcast::detail {
 
-/// What all spheres of a call have in common.
+/// Data that all spheres of a call share.
 struct SphereScene {
   const CellComplex* complex = nullptr;
   bool moved = false;  ///< the vertices, in this step
@@ -17,30 +18,29 @@ struct SphereScene {
   const StepOptions* options = nullptr;
 };
 
-/// Where the centre came to a wall: from the environment's report.
+/// The environment's report of a centre that came to a wall.
 struct CentreContact {
-  const Contact* contact = nullptr;  ///< null: it did not
+  const Contact* contact = nullptr;  ///< null: it came to none
   const ContactList* list = nullptr;
 };
 
-/// A sphere that its first stretch did not bring to its target. Kept from step to step for the memory it holds.
+/// The step of a sphere whose first stretch does not end at its target. It is kept from step to step for its memory.
 class SphereRun {
  public:
-  /// Begins with a stretch that has been planned, as `sphere`.
-  /// `moving`: among moving walls.
+  /// Starts with a stretch that has been planned for `sphere`. `moving`: among moving walls.
   void start(std::uint32_t particle, const MovingSphere& sphere, const SphereWay& way, bool moving);
 
-  /// Plans the stretch that comes next; the centre's target.
+  /// Plans the next stretch. Returns the centre's target.
   const Vec3& plan(const SphereScene& scene, const ParticleState& state, NearWalls& near);
-  /// After the centre has been advanced to the target planned: records what was touched, asks what follows. False where
-  /// the step is at its end.
+  /// To be called when the centre has been advanced to the planned target. Records the contact and calls the
+  /// response. Returns whether another stretch follows.
   bool land(const SphereScene& scene, const ParticleState& state, CentreContact centre, NearWalls& near);
   void hold(Cell invalid) { held_ = HeldParticle{particle_, invalid}; }
 
   [[nodiscard]] std::uint32_t particle() const { return particle_; }
   [[nodiscard]] const Vec3& target() const { return way_.target; }
   [[nodiscard]] std::vector<SphereOverlap>& overlaps() { return overlaps_; }
-  /// Adds what happened.
+  /// Adds contacts, overlaps and counts.
   void report(SphereReport& report) const;
 
  private:
@@ -55,8 +55,8 @@ class SphereRun {
   double radius_ = 0.0;
   Vec3 begin_;  // of the stretch
   Vec3 aim_;
-  double time_ = 0.0;             // when it began
-  std::uint32_t first_here_ = 0;  // of the walls met at the place of the last contact
+  double time_ = 0.0;             // at the start of the stretch
+  std::uint32_t first_here_ = 0;  // first of the walls met at the place of the last contact
   bool moving_ = false;
   unsigned corrections_ = 0;
   SphereWay way_;

@@ -1,3 +1,4 @@
+// One stretch of a sphere's way: the first wall that it touches, and the target of the centre.
 #include "spheres/sphere_way.hpp"
 
 #include <algorithm>
@@ -13,7 +14,7 @@ namespace {
 // The walls of one search, the sphere among them.
 class Way {
  public:
-  /// `nearest`: of each wall at the beginning.
+  /// `nearest`: of each wall at the start.
   Way(const SphereInterval& interval, std::span<const NearWall> walls, std::span<const NearestOnTriangle> nearest)
       : moving_(interval.moving),
         sphere_(interval.sphere),
@@ -30,7 +31,7 @@ class Way {
   };
 
   [[nodiscard]] bool overlaps() const { return room_ < sphere_.radius - slack_; }
-  // From now on it is as large as there is room for it, so that it can move on, if no deeper.
+  // Shrinks the sphere to the radius that there is room for, so that it can move, but not deeper.
   void shrink() { sphere_.radius = room_; }
 
   [[nodiscard]] First first() const {
@@ -63,7 +64,7 @@ class Way {
     return count > 0.0 ? sum * (1.0 / count) : sum;
   }
 
-  // Where the centre is put after the first touch.
+  // Sets the position of the centre after the first touch.
   void place(const First& first, SphereWay& way) const {
     const double t = first.touch.contact;
     const MovingTriangle& corners = first.wall->corners;
@@ -80,7 +81,7 @@ class Way {
       for (unsigned i = 0; i < 3; ++i) way.wall_displacement += (corners.to[i] - corners.from[i]) * touched.weights[i];
       way.target += way.wall_displacement * (1.0 - t);
     } else if (first.touch.at_start) {
-      return;  // it is where it belongs
+      return;  // it has the right distance
     }
     const NearestOnTriangle nearest = nearest_on_triangle(corners.to, way.target);
     if (nearest.distance > 0.0) way.target += nearest.normal * (sphere_.radius - nearest.distance);

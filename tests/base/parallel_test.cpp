@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "dartcast/error.hpp"
+#include "support/expectations.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::parallel_test {
@@ -93,19 +94,10 @@ TEST_P(ParallelFor, MayBeNested) {
 
 // --- more threads than there can be
 
-std::string refusal(Threads threads) {
-  try {
-    check_threads(threads);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return {};
-}
-
 TEST(ParallelForRefuses, MoreThreadsThanCanBeAskedFor) {
   EXPECT_GE(max_threads(), 256U);
   for (const unsigned count : {max_threads() + 1, 100'000U, 0x7fffffffU, 0x80000000U, 0xffffffffU}) {
-    const std::string why = refusal({count});
+    const std::string why = test::error_text([&] { check_threads({count}); });
     EXPECT_NE(why.find(std::to_string(count) + " threads"), std::string::npos) << why;
     EXPECT_NE(why.find("at most " + std::to_string(max_threads())), std::string::npos) << why;
     for (const std::size_t items : {0U, 1U, 100U})
@@ -132,7 +124,7 @@ class ParallelForUnderALimit : public ::testing::Test {
 
 [[noreturn]] void ask_for_too_many() {
   limit_memory(std::size_t{100} << 20U);
-  const std::string why = refusal({200});
+  const std::string why = test::error_text([&] { check_threads({200}); });
   int done = 0;
   parallel_for(2, 1, {2}, [&](std::size_t, std::size_t) { __atomic_add_fetch(&done, 1, __ATOMIC_RELAXED); });
   try {

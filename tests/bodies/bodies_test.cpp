@@ -12,6 +12,7 @@
 #include "dartcast/audit.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
+#include "support/meshes.hpp"
 #include "support/point_block.hpp"
 #include "support/tier.hpp"
 
@@ -20,10 +21,7 @@ namespace dartcast::bodies_test {
 using test::scaled;
 
 Environment room(std::uint32_t cells = 6, double size = 1.0) {
-  BoxOptions box;
-  box.cells = {cells, cells, cells};
-  box.size = {size, size, size};
-  return Environment(generate_box(box), Threads{1});
+  return Environment(test::cube_of(cells, size), Threads{1});
 }
 
 // A lattice of n x n x n points with this spacing, turned somehow, around a centre.

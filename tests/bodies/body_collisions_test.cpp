@@ -14,6 +14,7 @@
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dynamics/collider.hpp"
+#include "support/meshes.hpp"
 #include "support/point_block.hpp"
 #include "support/tier.hpp"
 
@@ -24,11 +25,7 @@ using test::scaled;
 constexpr double dt = 1e-3;
 constexpr double spacing = 0.05;
 
-Environment room(unsigned threads = 1) {
-  BoxOptions box;
-  box.cells = {6, 6, 6};
-  return Environment(generate_box(box), Threads{threads});
-}
+Environment room(unsigned threads = 1) { return Environment(test::cube_of(6, 1.0), Threads{threads}); }
 
 BodiesOptions colliding(const Vec3& gravity, double friction) {
   BodiesOptions o;

@@ -7,14 +7,17 @@
 #include <limits>
 
 #include "base/random.hpp"
+#include "dartcast/bodies.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_files.hpp"
-#include "dartcast/sampling.hpp"
 #include "support/closed_surfaces.hpp"
+#include "support/random_vectors.hpp"
 #include "support/shared_data.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::carried_surface_test {
+
+using test::random_vector;
 
 struct AffineMap {
   std::array<Vec3, 3> rows;
@@ -24,10 +27,6 @@ struct AffineMap {
     return Vec3{dot(rows[0], x), dot(rows[1], x), dot(rows[2], x)} + offset;
   }
 };
-
-Vec3 random_in(Random& random, double size) {
-  return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
-}
 
 void expect_follows(const std::vector<Vec3>& vertices, const std::vector<Vec3>& samples, double size, double within) {
   const CarriedSurface carried(vertices, samples);
@@ -41,8 +40,8 @@ void expect_follows(const std::vector<Vec3>& vertices, const std::vector<Vec3>& 
   };
   expect_mapped({{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}, {}}, size);
   for (int i = 0; i < std::max(1, test::scaled(20, 1000)); ++i) {
-    const AffineMap map = {{random_in(random, 2), random_in(random, 2), random_in(random, 2)},
-                           random_in(random, 10 * size)};
+    const AffineMap map = {{random_vector(random, 2), random_vector(random, 2), random_vector(random, 2)},
+                           random_vector(random, 10 * size)};
     expect_mapped(map, 20 * size);
   }
 }

@@ -14,7 +14,8 @@
 #include "dartcast/catheter.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
-#include "support/refused.hpp"
+#include "support/expectations.hpp"
+#include "support/meshes.hpp"
 
 namespace dartcast::body_ranges_test {
 

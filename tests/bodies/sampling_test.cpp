@@ -1,6 +1,4 @@
 // Points sampled on and in surfaces: exact decisions against rational arithmetic, spacing and cover against all pairs.
-#include "dartcast/sampling.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,23 +7,22 @@
 
 #include "base/random.hpp"
 #include "bodies/inside.hpp"
+#include "dartcast/bodies.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_files.hpp"
 #include "support/closed_surfaces.hpp"
+#include "support/exact_vectors.hpp"
 #include "support/shared_data.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::sampling_test {
 
-using Rational = boost::multiprecision::cpp_rational;
-using Exact3 = std::array<Rational, 3>;
-
-Exact3 exact(const Vec3& v) { return {Rational(v.x), Rational(v.y), Rational(v.z)}; }
-Exact3 minus(const Exact3& a, const Exact3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Exact3 times(const Exact3& a, const Exact3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-Rational along(const Exact3& a, const Exact3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+using test::cross;
+using test::dot;
+using test::exact;
+using test::minus;
+using test::Rational;
+using Exact3 = test::Exact3<Rational>;
 
 // A triangle, and its edges and normal.
 struct Facet {
@@ -33,13 +30,13 @@ struct Facet {
   Exact3 e, f, n;
 
   explicit Facet(const std::array<Exact3, 3>& corners)
-      : t(corners), e(minus(t[1], t[0])), f(minus(t[2], t[0])), n(times(e, f)) {}
+      : t(corners), e(minus(t[1], t[0])), f(minus(t[2], t[0])), n(cross(e, f)) {}
 
   // For scale (> 0) times a point of its plane, relative to the first corner: 1 inside, 0 on the border, -1 outside.
   [[nodiscard]] int place(const Exact3& r, const Rational& scale) const {
-    const Rational v = along(times(e, r), n);
-    const Rational u = along(times(r, f), n);
-    const Rational w = along(n, n) * scale - u - v;
+    const Rational v = dot(cross(e, r), n);
+    const Rational u = dot(cross(r, f), n);
+    const Rational w = dot(n, n) * scale - u - v;
     if (u < 0 || v < 0 || w < 0) return -1;
     return u == 0 || v == 0 || w == 0 ? 0 : 1;
   }
@@ -49,8 +46,8 @@ struct Facet {
 // on its border or in its plane (ask again with another ray); 2 where the ray starts on it.
 int ray_meets(const Exact3& x, const Exact3& d, const Facet& facet) {
   const Exact3 from = minus(x, facet.t[0]);
-  const Rational speed = along(facet.n, d);
-  const Rational height = along(facet.n, from);
+  const Rational speed = dot(facet.n, d);
+  const Rational height = dot(facet.n, from);
   if (height == 0 && facet.place(from, 1) >= 0) return 2;
   if (speed == 0) return height == 0 ? -1 : 0;
   if ((height > 0) == (speed > 0) || height == 0) return 0;

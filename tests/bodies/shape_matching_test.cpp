@@ -9,16 +9,13 @@
 
 #include "base/random.hpp"
 #include "dartcast/error.hpp"
+#include "support/random_vectors.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::shape_matching_test {
 
+using test::random_vector;
 using test::scaled;
-
-Vec3 random_vector(Random& random, double size = 1.0) {
-  const auto u = [&] { return random.uniform(-size, size); };
-  return {u(), u(), u()};
-}
 
 Mat3 random_turn(Random& random) { return matrix(normalized({random.uniform(-1.0, 1.0), random_vector(random)})); }
 

@@ -1,11 +1,10 @@
 // Camera paths in a straight bar: places on the spline, in the lumen, without twist.
-#include "catheter/camera_path.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
+#include "dartcast/catheter.hpp"
 #include "dartcast/error.hpp"
 #include "support/catheter_scenes.hpp"
 

@@ -8,18 +8,12 @@
 #include "dartcast/catheter.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/map_edits.hpp"
+#include "support/meshes.hpp"
 
 namespace dartcast::catheter_order_test {
 
-MeshData block() {
-  BoxOptions o;
-  o.cells = {2, 2, 2};
-  o.size = {2.0, 2.0, 2.0};
-  return generate_box(o);
-}
-
 struct Inserted {
-  Environment environment = Environment(block(), Threads{1});
+  Environment environment = Environment(test::cubes(2), Threads{1});
   Catheter catheter = Catheter(environment, options());
 
   Inserted() { catheter.step({0.25}); }

@@ -8,9 +8,12 @@
 #include <vector>
 
 #include "base/random.hpp"
+#include "support/random_vectors.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::chain_solver_test {
+
+using test::random_vector;
 
 struct Case {
   std::vector<Vec3> points, wanted, start, bends;
@@ -19,21 +22,17 @@ struct Case {
   std::vector<ChainWall> walls;
 };
 
-Vec3 noise(Random& random, double size) {
-  return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
-}
-
 Case random_case(Random& random, std::size_t free) {
   Case c;
   c.free = free;
   c.weights = {1.0, std::pow(10.0, random.uniform(-2, 3)), 0.0, 1e9};
   for (std::size_t i = 0; i < free + 2; ++i) {
-    c.points.push_back(Vec3{0, 0, -static_cast<double>(i)} + noise(random, 0.2));
-    c.bends.push_back(noise(random, 0.1));
+    c.points.push_back(Vec3{0, 0, -static_cast<double>(i)} + random_vector(random, 0.2));
+    c.bends.push_back(random_vector(random, 0.1));
   }
   for (std::size_t i = 0; i < free; ++i) {
-    c.wanted.push_back(c.points[i] + noise(random, 0.2));
-    c.start.push_back(c.points[i] + noise(random, 0.2));
+    c.wanted.push_back(c.points[i] + random_vector(random, 0.2));
+    c.start.push_back(c.points[i] + random_vector(random, 0.2));
   }
   return c;
 }

@@ -11,9 +11,13 @@
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/validity.hpp"
+#include "support/meshes.hpp"
+#include "support/random_vectors.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::first_flattening_test {
+
+using test::random_vector;
 
 constexpr int mesh_kinds = 7;
 
@@ -24,18 +28,13 @@ MeshData mesh_of(int kind) {
   o.cells = {5, 4, 4};
   o.size = {5, 4, 4};
   o.jitter = kind == 6 ? 0.9 : 0.3;
-  if (kind < 4) o.type = static_cast<CellType>(kind);
-  o.mixed = kind == 4;
+  test::set_kind(o, kind);
   return generate_box(o);
-}
-
-Vec3 vector(Random& random, double size) {
-  return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
 }
 
 std::vector<Vec3> moved(std::span<const Vec3> points, Random& random, double size) {
   std::vector<Vec3> result(points.begin(), points.end());
-  for (Vec3& p : result) p += vector(random, size);
+  for (Vec3& p : result) p += random_vector(random, size);
   return result;
 }
 

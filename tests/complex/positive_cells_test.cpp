@@ -10,6 +10,7 @@
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/validity.hpp"
+#include "support/meshes.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::positive_cells_test {
@@ -23,8 +24,7 @@ MeshData mesh_of(int which) {
   o.cells = {3, 2, 2};
   o.size = {3, 2, 2};
   o.jitter = 0.2;
-  if (which < 4) o.type = static_cast<CellType>(which);
-  o.mixed = which == 4;
+  test::set_kind(o, which);
   return generate_box(o);
 }
 

@@ -9,21 +9,12 @@
 #include <utility>
 
 #include "base/random.hpp"
+#include "support/exact_vectors.hpp"
 
 namespace dartcast::simplex_test {
 
-using Rational = boost::multiprecision::cpp_rational;
-
-Rational determinant(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  const auto minus = [&](const Vec3& p) {
-    return std::array<Rational, 3>{Rational(p.x) - Rational(a.x), Rational(p.y) - Rational(a.y),
-                                   Rational(p.z) - Rational(a.z)};
-  };
-  const auto u = minus(b);
-  const auto v = minus(c);
-  const auto w = minus(d);
-  return u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) + u[2] * (v[0] * w[1] - v[1] * w[0]);
-}
+using test::exact_volume6;
+using test::Rational;
 
 // Random simplices, from fat ones to exactly flat ones and slivers a rounding apart; a point in, on or near them.
 class Sample {
@@ -72,7 +63,7 @@ TEST(Determinants, SignsAndProofsAgreeWithRationals) {
     for (unsigned i = 0; i < 4; ++i) {
       Corners replaced = s.v;
       replaced[i] = s.x;
-      const Rational truth = determinant(replaced[0], replaced[1], replaced[2], replaced[3]);
+      const Rational truth = exact_volume6(replaced[0], replaced[1], replaced[2], replaced[3]);
       sum += truth;
       negative |= truth < 0 ? 1U << i : 0U;
       zero |= truth == 0 ? 1U << i : 0U;
@@ -93,7 +84,7 @@ TEST(Determinants, SignsAndProofsAgreeWithRationals) {
     }
     undecided += exact > 0 ? 1 : 0;
     on_lattice += exact > 0 && d.exact(s.v, s.x) ? 1 : 0;
-    const Rational volume = determinant(s.v[0], s.v[1], s.v[2], s.v[3]);
+    const Rational volume = exact_volume6(s.v[0], s.v[1], s.v[2], s.v[3]);
     EXPECT_EQ(sum, volume);
     EXPECT_EQ(static_cast<int>(volume_sign(s.v)), volume.sign());
     if (d.proves_positive()) EXPECT_GT(volume, 0) << "seed " << seed;

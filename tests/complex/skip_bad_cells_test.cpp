@@ -13,18 +13,13 @@
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "support/generate_checks.hpp"
+#include "support/meshes.hpp"
 
 namespace dartcast::skip_bad_cells_test {
 
 using Cells = std::set<std::uint32_t>;
 
-MeshData box(CellType type, std::uint32_t n = 4) {
-  BoxOptions o;
-  o.cells = {n, n, n};
-  o.size = {static_cast<double>(n), static_cast<double>(n), static_cast<double>(n)};
-  o.type = type;
-  return generate_box(o);
-}
+MeshData box(CellType type) { return test::cubes(4, type); }
 
 // By rationals: tetrahedra whose corners, in the order in the mesh, do not turn as a positive cell's.
 Cells not_positive(const MeshData& mesh) {

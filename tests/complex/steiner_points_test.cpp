@@ -14,6 +14,7 @@
 #include "dartcast/mesh_check.hpp"
 #include "dartcast/validity.hpp"
 #include "support/generate_checks.hpp"
+#include "support/meshes.hpp"
 #include "support/mixed_mesh.hpp"
 #include "support/tier.hpp"
 
@@ -312,8 +313,7 @@ TEST(SteinerPoints, WarpedMeshesStayConforming) {
     o.size = {5, 4, 4};
     o.jitter = 0.75;
     o.seed = 21;
-    if (which < 4) o.type = static_cast<CellType>(which);
-    o.mixed = which == 4;
+    test::set_kind(o, which);
     const MeshData mesh = generate_box(o);
     const CellComplex complex(mesh);
     expect_conforming(complex);

@@ -12,6 +12,7 @@
 #include "dartcast/generators.hpp"
 #include "dartcast/map_edits.hpp"
 #include "support/generate_checks.hpp"
+#include "support/meshes.hpp"
 
 namespace dartcast::validity_test {
 
@@ -20,8 +21,7 @@ MeshData box(int which) {
   o.cells = {6, 5, 4};
   o.size = {6, 5, 4};
   o.jitter = 0.3;
-  if (which < 4) o.type = static_cast<CellType>(which);
-  o.mixed = which == 4;
+  test::set_kind(o, which);
   return generate_box(o);
 }
 

@@ -6,19 +6,18 @@
 #include <cmath>
 
 #include "base/random.hpp"
+#include "support/random_vectors.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::contact_packets_test {
+
+using test::random_vector;
 
 using detail::ContactBody;
 using detail::ContactEnds;
 using detail::ContactPackets;
 using detail::ContactTerms;
 using detail::InstructionSet;
-
-Vec3 random_part(Random& random, double size) {
-  return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
-}
 
 // Contacts solved one after the other, in the order given.
 struct OneByOne {
@@ -77,7 +76,7 @@ struct OneByOne {
 OneByOne random_contacts(Random& random, std::uint32_t body_count, std::size_t count) {
   OneByOne all;
   for (std::size_t i = 0; i < body_count; ++i)
-    all.bodies.push_back({random_part(random, 1.0), random.below(8) == 0 ? 0.0 : random.uniform(0.1, 3.0)});
+    all.bodies.push_back({random_vector(random, 1.0), random.below(8) == 0 ? 0.0 : random.uniform(0.1, 3.0)});
   all.bodies[0].inverse_mass = 1.0;
   all.bodies.emplace_back();
   while (all.ends.size() < count) {
@@ -86,7 +85,7 @@ OneByOne random_contacts(Random& random, std::uint32_t body_count, std::size_t c
     const double inverse = all.bodies[a].inverse_mass + all.bodies[b].inverse_mass;
     if (a == b || !(inverse > 0.0)) continue;
     ContactTerms t;
-    t.normal = random_part(random, 1.0);
+    t.normal = random_vector(random, 1.0);
     t.normal *= 1.0 / norm(t.normal);
     t.mass = 1.0 / inverse;
     t.friction = random.below(3) == 0 ? 0.0 : random.uniform(0.0, 1.0);
@@ -96,7 +95,7 @@ OneByOne random_contacts(Random& random, std::uint32_t body_count, std::size_t c
     const bool loaded = random.below(2) == 0;
     if (loaded) {
       t.normal_impulse = random.uniform(0.0, 0.2);
-      t.tangent_impulse = cross(t.normal, random_part(random, 1.0)) * (t.friction * t.normal_impulse / 2.0);
+      t.tangent_impulse = cross(t.normal, random_vector(random, 1.0)) * (t.friction * t.normal_impulse / 2.0);
     }
     all.ends.push_back({a, b, loaded});
     all.terms.push_back(t);

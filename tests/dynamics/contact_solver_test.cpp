@@ -11,9 +11,12 @@
 #include "dartcast/error.hpp"
 #include "dynamics/sphere_pairs.hpp"
 #include "dynamics/sphere_touch.hpp"
+#include "support/random_vectors.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::contact_solver_test {
+
+using test::random_vector;
 
 // Spheres in free space, or above planes.
 struct Crowd {
@@ -67,10 +70,6 @@ struct Crowd {
   }
 };
 
-Vec3 random_part(Random& random, double size) {
-  return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
-}
-
 // v1' = (m1 v1 + m2 v2 - m2 e (v1 - v2)) / (m1 + m2), and the other way round, along the line of centres.
 TEST(ContactSolver, TwoBodiesReboundByTheFormula) {
   Random random(1);
@@ -80,10 +79,10 @@ TEST(ContactSolver, TwoBodiesReboundByTheFormula) {
     crowd.options.restitution = random.uniform();
     const double m1 = random.uniform(0.1, 10.0);
     const double m2 = random.uniform(0.1, 10.0);
-    const Vec3 u1 = random_part(random, 1.0);
-    const Vec3 u2 = random_part(random, 1.0);
+    const Vec3 u1 = random_vector(random, 1.0);
+    const Vec3 u2 = random_vector(random, 1.0);
     crowd.add({0, 0, 0}, u1, random.uniform(0.1, 0.5), m1);
-    crowd.add(random_part(random, 1.0), u2, random.uniform(0.1, 0.5), m2);
+    crowd.add(random_vector(random, 1.0), u2, random.uniform(0.1, 0.5), m2);
     const auto contacts = crowd.contacts();
     crowd.step();
     Vec3 v1 = u1;
@@ -129,7 +128,8 @@ TEST(ContactSolver, KeepsMomentum) {
     crowd.options.restitution = 0.8;
     crowd.options.friction = friction;
     for (int i = 0; i < 1000; ++i)
-      crowd.add(random_part(random, 1.0), random_part(random, 1.0), random.uniform(0.02, 0.1), random.uniform(0.1, 2));
+      crowd.add(random_vector(random, 1.0), random_vector(random, 1.0), random.uniform(0.02, 0.1),
+                random.uniform(0.1, 2));
     const Vec3 before = crowd.momentum();
     double sum = 0.0;
     for (std::size_t i = 0; i < 1000; ++i) sum += norm(crowd.velocities[i]) / crowd.inverse_masses[i];
@@ -151,7 +151,7 @@ TEST(ContactSolver, KeepsMomentum) {
 TEST(ContactSolver, PartsOverlapsWithoutEnergy) {
   Random random(3);
   Crowd crowd;
-  for (int i = 0; i < 200; ++i) crowd.add(random_part(random, 0.5), {}, 0.1, random.uniform(0.5, 2.0));
+  for (int i = 0; i < 200; ++i) crowd.add(random_vector(random, 0.5), {}, 0.1, random.uniform(0.5, 2.0));
   crowd.add(crowd.positions[0], {}, 0.1, 1.0);  // centres that coincide
   const auto deepest = [&] {
     double depth = 0.0;
@@ -237,7 +237,8 @@ TEST(ContactSolver, OrderDoesNotMatter) {
   first.options.restitution = 0.4;
   first.options.friction = 0.3;
   for (int i = 0; i < 100; ++i)
-    first.add(random_part(random, 0.5), random_part(random, 1.0), random.uniform(0.05, 0.1), random.uniform(0.5, 2.0));
+    first.add(random_vector(random, 0.5), random_vector(random, 1.0), random.uniform(0.05, 0.1),
+              random.uniform(0.5, 2.0));
   first.inverse_masses[5] = first.inverse_masses[6] = 0.0;
   const Vec3 fixed = first.velocities[5];
   std::vector<std::uint32_t> order(100);

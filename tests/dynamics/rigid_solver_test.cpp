@@ -161,33 +161,10 @@ TEST(RigidSolver, FrictionIsCoulombs) {
   EXPECT_GT(slips, 30);
 }
 
-// A random cluster of spheres with walls, without friction: what ContactSolver makes of it, step after step.
-TEST(RigidSolver, SpheresAreAsInTheContactSolver) {
-  Draw draw(3);
-  constexpr std::size_t count = 40;
-  std::vector<RigidMover> movers(count);
-  std::vector<std::uint64_t> ids(count);
-  std::vector<double> inverse(count);
-  std::vector<Vec3> velocities(count);
-  std::vector<Vec3> displacements(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    ids[i] = 7 * i % count;
-    inverse[i] = movers[i].inverse_mass = i == 5 ? 0.0 : draw.in(0.5, 2.0);
-    velocities[i] = movers[i].velocity = draw.vector();
-  }
-  std::vector<PairContact> pairs;
-  std::vector<WallContact> walls;
+// The contacts of spheres as those of rigid bodies.
+std::vector<RigidContact> as_rigid(std::span<const PairContact> pairs, std::span<const WallContact> walls,
+                                   std::span<const std::uint64_t> ids) {
   std::vector<RigidContact> contacts;
-  for (int i = 0; i < 120; ++i) {
-    auto a = static_cast<std::uint32_t>(draw.below(count));
-    auto b = static_cast<std::uint32_t>(draw.below(count));
-    if (a == b) continue;
-    if (ids[a] > ids[b]) std::swap(a, b);
-    if (std::any_of(pairs.begin(), pairs.end(), [&](const PairContact& p) { return p.a == a && p.b == b; })) continue;
-    pairs.push_back({a, b, draw.direction(), draw.in(-0.001, 0.002)});
-  }
-  for (std::uint32_t i = 0; i < 30; ++i)
-    walls.push_back({3 * (i / 3), draw.direction(), draw.in(-0.001, 0.001), draw.vector(0.1), 0.3, 0.0});
   for (const PairContact& p : pairs) {
     RigidContact c = touch(p.normal, {});
     c.a = p.a;
@@ -209,6 +186,36 @@ TEST(RigidSolver, SpheresAreAsInTheContactSolver) {
     c.wall_velocity = w.wall_velocity;
     contacts.push_back(c);
   }
+  return contacts;
+}
+
+// A random cluster of spheres with walls, without friction: the result of ContactSolver, step after step.
+TEST(RigidSolver, SpheresAreAsInTheContactSolver) {
+  Draw draw(3);
+  constexpr std::size_t count = 40;
+  std::vector<RigidMover> movers(count);
+  std::vector<std::uint64_t> ids(count);
+  std::vector<double> inverse(count);
+  std::vector<Vec3> velocities(count);
+  std::vector<Vec3> displacements(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    ids[i] = 7 * i % count;
+    inverse[i] = movers[i].inverse_mass = i == 5 ? 0.0 : draw.in(0.5, 2.0);
+    velocities[i] = movers[i].velocity = draw.vector();
+  }
+  std::vector<PairContact> pairs;
+  std::vector<WallContact> walls;
+  for (int i = 0; i < 120; ++i) {
+    auto a = static_cast<std::uint32_t>(draw.below(count));
+    auto b = static_cast<std::uint32_t>(draw.below(count));
+    if (a == b) continue;
+    if (ids[a] > ids[b]) std::swap(a, b);
+    if (std::any_of(pairs.begin(), pairs.end(), [&](const PairContact& p) { return p.a == a && p.b == b; })) continue;
+    pairs.push_back({a, b, draw.direction(), draw.in(-0.001, 0.002)});
+  }
+  for (std::uint32_t i = 0; i < 30; ++i)
+    walls.push_back({3 * (i / 3), draw.direction(), draw.in(-0.001, 0.001), draw.vector(0.1), 0.3, 0.0});
+  const std::vector<RigidContact> contacts = as_rigid(pairs, walls, ids);
   SolverOptions o = options();
   o.restitution = 0.4;
   o.resting_speed = 0.05;

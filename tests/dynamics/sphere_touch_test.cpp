@@ -9,9 +9,12 @@
 #include <optional>
 
 #include "base/random.hpp"
+#include "support/random_vectors.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::sphere_touch_test {
+
+using test::random_vector;
 
 using Fraction = boost::multiprecision::cpp_rational;
 using Decimal = boost::multiprecision::cpp_bin_float_100;
@@ -58,10 +61,6 @@ bool expect_true(const SphereMotion& a, const SphereMotion& b) {
   EXPECT_NEAR(norm(found->normal), 1.0, 1e-15);
   EXPECT_TRUE(found->depth == 0.0 || (found->depth > 0.0 && found->overlap));  // the least ones are rounded to 0
   return true;
-}
-
-Vec3 random_vector(Random& random, double size) {
-  return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
 }
 
 // Powers of ten from 10^-low to 1.

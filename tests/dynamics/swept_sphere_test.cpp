@@ -7,16 +7,15 @@
 
 #include "base/random.hpp"
 #include "oracle/first_touch.hpp"
+#include "support/random_vectors.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::swept_sphere_test {
 
+using test::random_vector;
+
 using oracle::Digits;
 using oracle::TouchOracle;
-
-Vec3 random_in(Random& random, double size) {
-  return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
-}
 
 struct Case {
   MovingSphere sphere;
@@ -77,7 +76,7 @@ Case aimed(Random& random, unsigned corners, Motion motion, double graze) {
   double sum = 0.0;
   for (unsigned i = 0; i < corners; ++i) sum += w[i] = random.uniform(0.05, 1.0);
   std::array<Vec3, 3> at;
-  for (Vec3& v : at) v = random_in(random, 1.0);
+  for (Vec3& v : at) v = random_vector(random, 1.0);
   const double size = std::exp(random.uniform(-4.0, 2.0));
   Vec3 point;
   for (unsigned i = 0; i < 3; ++i) {
@@ -91,19 +90,19 @@ Case aimed(Random& random, unsigned corners, Motion motion, double graze) {
     normal = normal * (random.uniform(-1.0, 1.0) / norm(normal)) - away * (1.0 / norm(away));
   } else if (corners == 1) {
     const Vec3 middle = (at[1] + at[2]) * 0.5 - at[0];
-    normal = middle * (-1.0 / norm(middle)) + random_in(random, 0.3);
+    normal = middle * (-1.0 / norm(middle)) + random_vector(random, 0.3);
   }
   normal = normal * (1.0 / norm(normal));
   const double radius = std::exp(random.uniform(-4.0, 2.0));
   const double t = random.uniform(0.05, 0.95);
   std::array<Vec3, 3> speed{};  // of the corners, in the whole of the motion
-  const Vec3 shift = motion == Motion::still ? Vec3{} : random_in(random, 1.0);
+  const Vec3 shift = motion == Motion::still ? Vec3{} : random_vector(random, 1.0);
   Vec3 there;
   for (unsigned i = 0; i < 3; ++i) {
-    speed[i] = shift + (motion == Motion::turning ? random_in(random, size) : Vec3{});
+    speed[i] = shift + (motion == Motion::turning ? random_vector(random, size) : Vec3{});
     there += speed[i] * (w[i] / sum);
   }
-  Vec3 own = random_in(random, std::exp(random.uniform(-3.0, 2.0)));
+  Vec3 own = random_vector(random, std::exp(random.uniform(-3.0, 2.0)));
   if (graze >= 0.0) own = own - normal * dot(own, normal);
   own += there;
   const Vec3 centre = point + normal * (radius + (random.below(2) == 0 ? graze : -graze));
@@ -146,8 +145,8 @@ TEST(FirstTouch, OfAnything) {
     Case c;
     const double size = std::exp(random.uniform(-3.0, 3.0));
     for (unsigned k = 0; k < 3; ++k) {
-      c.triangle.from[k] = random_in(random, size);
-      c.triangle.to[k] = random_in(random, size);
+      c.triangle.from[k] = random_vector(random, size);
+      c.triangle.to[k] = random_vector(random, size);
       if (i % 5 == 0 && k == 2) {  // flat: a side twice, or a corner three times
         c.triangle.from[k] = c.triangle.from[1];
         c.triangle.to[k] = c.triangle.to[1];
@@ -158,7 +157,7 @@ TEST(FirstTouch, OfAnything) {
       }
     }
     const double far = std::exp(random.uniform(-1.0, 2.0));
-    c.sphere = {random_in(random, far), random_in(random, far), std::exp(random.uniform(-4.0, 1.0))};
+    c.sphere = {random_vector(random, far), random_vector(random, far), std::exp(random.uniform(-4.0, 1.0))};
     if (i % 7 == 0) c.sphere.to = c.sphere.from;
     SCOPED_TRACE(i);
     check(c, tally);
@@ -179,7 +178,7 @@ TEST(FirstTouch, EndsAtTheTouch) {
     normal = normal * (1.0 / norm(normal));
     const double off = (static_cast<double>(random.below(9)) - 4.0) * 0x1p-54 * largest_in(c);
     c.sphere.to = (v[0] + v[1] + v[2]) * (1.0 / 3.0) + normal * (c.sphere.radius + off);
-    c.sphere.from = c.sphere.to + normal * random.uniform(0.1, 1.0) + random_in(random, i % 2 == 0 ? 0.0 : 0.05);
+    c.sphere.from = c.sphere.to + normal * random.uniform(0.1, 1.0) + random_vector(random, i % 2 == 0 ? 0.0 : 0.05);
     SCOPED_TRACE(i);
     check(c, tally);
   }
@@ -264,10 +263,10 @@ TEST(NearestOnTriangle, AgainstDigits) {
   const int cases = std::max(40, test::scaled(3000, 100000));
   for (int i = 0; i < cases; ++i) {
     std::array<Vec3, 3> t;
-    for (Vec3& v : t) v = random_in(random, 1.0);
+    for (Vec3& v : t) v = random_vector(random, 1.0);
     if (i % 5 == 0) t[2] = t[1];
     if (i % 10 == 0) t[1] = t[0];
-    const Vec3 x = random_in(random, std::exp(random.uniform(-3.0, 3.0)));
+    const Vec3 x = random_vector(random, std::exp(random.uniform(-3.0, 3.0)));
     const NearestOnTriangle n = nearest_on_triangle(t, x);
     EXPECT_NEAR(n.distance, double(TouchOracle(t, t, x, x).distance(0)), 0x1p-48 * (2.0 + norm(x)));
     EXPECT_NEAR(n.weights[0] + n.weights[1] + n.weights[2], 1.0, 1e-15);

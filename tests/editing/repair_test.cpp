@@ -20,7 +20,7 @@ using test::displace;
 using test::free_volume6;
 using test::inner_vertices;
 using test::invalid_cells;
-using test::random_vector;
+using test::random_displacement;
 using test::walls;
 
 // Whether a point is found from which the surface of the cells around some corner of the cell is seen from the inside:
@@ -82,7 +82,7 @@ TEST_P(RepairOn, MendsOneVertexGoneAstray) {
     const test::Dyadic free_before = free_volume6(complex);
     const test::Dyadic before = volume6(complex);
     const Vertex v = inner[random.below(static_cast<std::uint32_t>(inner.size()))];
-    displace(complex, {{v, random_vector(random, 1.5, complex.map().dimension())}});
+    displace(complex, {{v, random_displacement(random, 1.5, complex.map().dimension())}});
     const auto bad = invalid_cells(complex);
     ComplexEdit edit(complex);
     const RepairReport report = repair(edit, bad);
@@ -112,7 +112,7 @@ TEST_P(RepairOn, MendsOrLeaves) {
       const auto all = static_cast<std::uint32_t>(complex.point_count());
       const auto number = static_cast<std::uint32_t>(inner.size());
       moves.emplace_back(any ? Vertex(random.below(all)) : inner[random.below(number)],
-                         random_vector(random, 1.0, complex.map().dimension()));
+                         random_displacement(random, 1.0, complex.map().dimension()));
     }
     displace(complex, moves);
     const auto walls_before = walls(complex);
@@ -162,7 +162,8 @@ TEST_P(RepairAmong, MendsNextToSubdivided) {
     const auto inner = inner_vertices(complex.map());
     std::vector<std::pair<Vertex, Vec3>> moves;
     for (int k = 0; k < 4; ++k)
-      moves.emplace_back(inner[random.below(static_cast<std::uint32_t>(inner.size()))], random_vector(random, 0.7));
+      moves.emplace_back(inner[random.below(static_cast<std::uint32_t>(inner.size()))],
+                         random_displacement(random, 0.7));
     displace(complex, moves);
     const auto walls_before = walls(complex);
     ComplexEdit edit(complex);

@@ -12,18 +12,11 @@
 #include "dartcast/environment.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/response.hpp"
+#include "support/meshes.hpp"
 #include "support/particle_checks.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::contacts_test {
-
-MeshData box(std::uint32_t n, CellType type) {
-  BoxOptions o;
-  o.cells = {n, n, n};
-  o.size = {1.0 * n, 1.0 * n, 1.0 * n};
-  o.type = type;
-  return generate_box(o);
-}
 
 void expect_unit_normals(const ContactList& list, const std::string& what) {
   for (const Contact& c : list.contacts) {
@@ -36,7 +29,7 @@ void expect_unit_normals(const ContactList& list, const std::string& what) {
 TEST(Contacts, NormalsAreUnitVectorsWhereWallsHaveNoArea) {
   std::size_t contacts = 0;
   for (const CellType type : {CellType::hexahedron, CellType::tetrahedron}) {
-    MeshData mesh = box(2, type);
+    MeshData mesh = test::cubes(2, type);
     mesh.free.assign(mesh.cell_count(), 1);
     for (std::size_t c = 0; c < mesh.cell_count(); c += 3) mesh.free[c] = 0;
     std::vector<Vec3> start;
@@ -110,7 +103,7 @@ TEST(Contacts, AParticleIsNeverFartherFromItsContactThanItsStart) {
   for (int scene = 0; scene < test::scaled(40, 2000); ++scene) {
     const Vec3 size = sizes[static_cast<std::size_t>(scene) % sizes.size()];
     Random random(static_cast<std::uint64_t>(scene));
-    MeshData mesh = box(3, scene % 3 == 0 ? CellType::hexahedron : CellType::tetrahedron);
+    MeshData mesh = test::cubes(3, scene % 3 == 0 ? CellType::hexahedron : CellType::tetrahedron);
     const auto stretched = [&](const Vec3& p) { return Vec3{p.x * size.x, p.y * size.y, p.z * size.z}; };
     const double shear = scene % 2 == 0 ? 0.0 : 0.3;
     const auto place = [&](Vec3 p) {
@@ -164,7 +157,7 @@ TEST(Contacts, TimesAreRightAtTheSecondReboundOffAWall) {
       const Vec3 q = {std::cos(a) * p.x - std::sin(a) * p.y, std::sin(a) * p.x + std::cos(a) * p.y, p.z};
       return Vec3{q.x, std::cos(b) * q.y - std::sin(b) * q.z, std::sin(b) * q.y + std::cos(b) * q.z};
     };
-    MeshData mesh = box(1, CellType::hexahedron);
+    MeshData mesh = test::cubes(1, CellType::hexahedron);
     for (Vec3& p : mesh.points) p = turned({100 * p.x - 50, 100 * p.y - 50, p.z});  // a slab of thickness 1
     Environment environment(mesh);
     Particles particles;

@@ -9,10 +9,13 @@
 #include "dartcast/environment.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/response.hpp"
+#include "support/meshes.hpp"
+#include "support/particle_checks.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::deforming_test {
 
+using test::positions_of;
 using test::scaled;
 
 // Exact: in the closed simplex named, of a free cell, at the current positions.
@@ -26,12 +29,6 @@ void expect_valid(const Environment& env, const Particles& particles) {
       ASSERT_NE(orient_facet(v, f, s.position), Sign::undecidable) << "particle " << i;
     }
   }
-}
-
-std::vector<Vec3> positions_of(const Particles& particles) {
-  std::vector<Vec3> p;
-  for (const ParticleState& s : particles.states()) p.push_back(s.position);
-  return p;
 }
 
 // Random points in the free cells of a mesh over a box.
@@ -53,14 +50,6 @@ void move_all(Environment& env, std::span<const Vec3> rest, CombinatorialMap&& m
   env.move();
 }
 
-MeshData box(std::array<std::uint32_t, 3> cells, CellType type) {
-  BoxOptions options;
-  options.cells = cells;
-  options.size = {double(cells[0]), double(cells[1]), double(cells[2])};
-  options.type = type;
-  return generate_box(options);
-}
-
 // Blocks the cells whose corners' mean satisfies `inside`.
 template <class Inside>
 void block(MeshData& mesh, Inside&& inside) {
@@ -80,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(Types, DeformingByType,
 // A blocked slab travels through a box of particles at rest: each stays on its side, and only those on its way are
 // moved.
 TEST_P(DeformingByType, SlabThatSweepsOverParticlesAtRest) {
-  MeshData mesh = box({10, 3, 3}, GetParam());
+  MeshData mesh = test::unit_box({10, 3, 3}, GetParam());
   block(mesh, [](const Vec3& m) { return m.x > 4.0 && m.x < 5.0; });
   Environment env(mesh);
   const std::vector<Vec3> rest(mesh.points);
@@ -125,7 +114,7 @@ TEST_P(DeformingByType, SlabThatSweepsOverParticlesAtRest) {
 
 // A particle pressed on a floor that heaves for 10^4 steps follows it, and goes nowhere else.
 TEST_P(DeformingByType, ContactWithMovingFloorFor10000Steps) {
-  const MeshData mesh = box({3, 3, 3}, GetParam());
+  const MeshData mesh = test::unit_box({3, 3, 3}, GetParam());
   Environment env(mesh);
   const std::vector<Vec3> rest(mesh.points);
   Particles particles;
@@ -172,7 +161,7 @@ struct Ring {
 // moved only when the blade or an end of the ring has come to it.
 TEST_P(DeformingByType, BladeThatTurns) {
   const std::uint32_t sectors = 40;
-  MeshData mesh = box({6, sectors, 2}, GetParam());
+  MeshData mesh = test::unit_box({6, sectors, 2}, GetParam());
   block(mesh, [](const Vec3& m) { return m.y > 20.0 && m.y < 21.0; });
   const std::vector<Vec3> flat(mesh.points);
   const Ring ring{static_cast<double>(sectors)};
@@ -224,7 +213,7 @@ TEST_P(DeformingByType, BladeThatTurns) {
 // With the ring turning far in one step, splitting keeps the error of the chord within its tolerance.
 TEST(Deforming, LargeTurnsAreSplit) {
   const std::uint32_t sectors = 40;
-  MeshData mesh = box({6, sectors, 2}, CellType::hexahedron);
+  MeshData mesh = test::unit_box({6, sectors, 2}, CellType::hexahedron);
   const std::vector<Vec3> flat(mesh.points);
   const Ring ring{static_cast<double>(sectors)};
   for (Vec3& p : mesh.points) p = ring(p, 0.0);
@@ -264,8 +253,7 @@ TEST(Deforming, RandomMotionOfAllVertices) {
     options.blocked_share = 0.15;
     options.seed = seed;
     options.jitter = 0.3;
-    options.mixed = seed % 5 == 4;
-    if (!options.mixed) options.type = static_cast<CellType>(seed % 5);
+    test::set_kind(options, static_cast<int>(seed % 5));
     const MeshData mesh = seed % 6 == 5 ? generate_octahedra({.cells = {3, 3, 3}, .blocked_share = 0.2, .seed = seed})
                                         : generate_box(options);
     Environment env(mesh);
@@ -275,7 +263,8 @@ TEST(Deforming, RandomMotionOfAllVertices) {
     std::vector<Vec3> velocity(particles.size());
     std::vector<ParticleStatus> fate(particles.size());
     for (Vec3& v : velocity) v = {unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5};
-    const WallResponse response{static_cast<WallResponseKind>(seed % 3), unit(random), 0.3 * unit(random)};
+    static constexpr std::array kinds = {WallResponseKind::reflect, WallResponseKind::slide, WallResponseKind::stick};
+    const WallResponse response{kinds[seed % 3], unit(random), 0.3 * unit(random)};
     const WallResponses responses(response);
     const double scale = norm(rest[mesh.cell(0)[0]] - rest[mesh.cell(0)[1]]);
     for (int step = 0; step < 60; ++step) {
@@ -298,7 +287,7 @@ TEST(Deforming, RandomMotionOfAllVertices) {
 // The rebound from a wall in motion uses the wall motion that the detection used: elastic, from a piston of speed w, a
 // particle of speed v comes back with v + 2 w.
 TEST(Deforming, ReboundFromPiston) {
-  const MeshData mesh = box({4, 2, 2}, CellType::hexahedron);
+  const MeshData mesh = test::unit_box({4, 2, 2}, CellType::hexahedron);
   Environment env(mesh);
   const std::vector<Vec3> rest(mesh.points);
   Particles particles;

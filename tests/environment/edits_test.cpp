@@ -10,18 +10,16 @@
 #include "dartcast/map_edits.hpp"
 #include "dartcast/response.hpp"
 #include "support/edit_meshes.hpp"
+#include "support/expectations.hpp"
+#include "support/meshes.hpp"
 #include "support/particle_checks.hpp"
 #include "support/random_edits.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::edits_test {
 
+using test::cell_at;
 using test::same_bits;
-
-void expect_audited(const Environment& environment, const Particles& particles) {
-  const Audit found = audit(environment.complex(), particles);
-  ASSERT_EQ(found.failed, 0U) << found.first;
-}
 
 std::vector<Vec3> jittered(const Particles& particles, Random& random, double by, unsigned dimension = 3) {
   std::vector<Vec3> targets;
@@ -31,16 +29,6 @@ std::vector<Vec3> jittered(const Particles& particles, Random& random, double by
   }
   return targets;
 }
-
-MeshData unit_cubes(std::array<std::uint32_t, 3> cells) {
-  BoxOptions o;
-  o.cells = cells;
-  o.size = {double(cells[0]), double(cells[1]), double(cells[2])};
-  o.blocked_layer = false;
-  return generate_box(o);
-}
-
-Cell cell_at(Environment& environment, const Vec3& x) { return environment.locate(x).simplex.cell; }
 
 // The face between two cells, as the first sees it.
 CellFace face_between(const CombinatorialMap& map, Cell a, Cell b) {
@@ -130,7 +118,7 @@ class EditedScene {
     environment_.advance(particles_, jittered(particles_, random_, 0.2, environment_.map().dimension()), slide);
   }
 
-  void check() const { expect_audited(environment_, particles_); }
+  void check() const { test::expect_audited(environment_.complex(), particles_); }
   void check_all() const { ASSERT_TRUE(check_integrity(environment_.map(), 1).empty()); }
 
   int edits = 0;
@@ -171,7 +159,7 @@ INSTANTIATE_TEST_SUITE_P(Meshes, Edits, testing::ValuesIn(test::all_edit_meshes(
 
 // The paper's first case: two cells are sewn, and a particle crosses where there was a wall.
 TEST(FollowEdit, OpensTheWayWhereCellsAreSewn) {
-  Environment environment(unit_cubes({2, 1, 1}));
+  Environment environment(test::unit_box({2, 1, 1}));
   const Cell left = cell_at(environment, {0.5, 0.5, 0.5});
   const Cell right = cell_at(environment, {1.5, 0.5, 0.5});
   environment.edit([&](ComplexEdit& e) { unsew(e.topology(), face_between(e.map(), left, right)); });
@@ -208,12 +196,12 @@ TEST(FollowEdit, OpensTheWayWhereCellsAreSewn) {
   EXPECT_EQ(particles[0].touching_count, 0);  // it touches no wall any more
   EXPECT_TRUE(environment.advance(particles, across).contacts.contacts.empty());
   EXPECT_EQ(particles[0].position, across[0]);
-  expect_audited(environment, particles);
+  test::expect_audited(environment.complex(), particles);
 }
 
 // The second: cells are merged, a particle's cell is another but its place is not; far away nobody is touched.
 TEST(FollowEdit, LocatesInTheCellThatWasSimplified) {
-  Environment environment(unit_cubes({4, 1, 1}));
+  Environment environment(test::unit_box({4, 1, 1}));
   Particles particles;
   environment.add(particles, std::vector<Vec3>{{0.5, 0.5, 0.25}, {1.25, 0.5, 0.5}, {3.5, 0.5, 0.5}});
   const std::vector<ParticleState> before = test::copy_of(particles);
@@ -227,12 +215,22 @@ TEST(FollowEdit, LocatesInTheCellThatWasSimplified) {
   EXPECT_EQ(particles[0].cell, particles[1].cell);
   EXPECT_EQ(particles[0].position, before[0].position);
   EXPECT_TRUE(same_bits(particles[2], before[2]));
-  expect_audited(environment, particles);
+  test::expect_audited(environment.complex(), particles);
+}
+
+// The darts of a face that start at x = 0.5.
+std::vector<Dart> middle_darts(ComplexEdit& e, Cell c, std::uint16_t f) {
+  std::vector<Dart> darts;
+  for (unsigned i = 0; i < e.map().shape(c).degree(f); ++i) {
+    const Dart d{c, static_cast<std::uint16_t>(e.map().shape(c).first_dart(f) + i)};
+    if (e.position(e.map().origin(d)).x == 0.5) darts.push_back(d);
+  }
+  return darts;
 }
 
 // The third: a cell is cut in two, each particle is in the half where it lies; the cut then opened is a wall.
 TEST(FollowEdit, LocatesInTheHalfThatItIsIn) {
-  Environment environment(unit_cubes({1, 1, 1}));
+  Environment environment(test::unit_box({1, 1, 1}));
   Particles particles;
   environment.add(particles, std::vector<Vec3>{{0.25, 0.5, 0.5}, {0.75, 0.5, 0.5}, {0.5, 0.25, 0.125}});
   environment.edit([&](ComplexEdit& e) {
@@ -248,18 +246,10 @@ TEST(FollowEdit, LocatesInTheHalfThatItIsIn) {
         }
       }
     }
-    const auto middles = [&](Cell c, std::uint16_t f) {
-      std::vector<Dart> darts;
-      for (unsigned i = 0; i < e.map().shape(c).degree(f); ++i) {
-        const Dart d{c, static_cast<std::uint16_t>(e.map().shape(c).first_dart(f) + i)};
-        if (e.position(e.map().origin(d)).x == 0.5) darts.push_back(d);
-      }
-      return darts;
-    };
     for (int k = 0; k < 4; ++k) {
       const Cell c = e.map().cells().front();
       for (std::uint16_t f = 0; f < e.map().shape(c).face_count(); ++f) {
-        const auto ends = middles(c, f);
+        const auto ends = middle_darts(e, c, f);
         if (ends.size() != 2 || e.map().shape(c).degree(f) != 6) continue;
         split_face(e.topology(), ends[0], ends[1]);
         break;
@@ -283,14 +273,14 @@ TEST(FollowEdit, LocatesInTheHalfThatItIsIn) {
   const UpdateReport report = environment.update_after_edit(particles);
   EXPECT_EQ(report.located, 3U);
   EXPECT_NE(particles[0].cell, particles[1].cell);
-  expect_audited(environment, particles);
+  test::expect_audited(environment.complex(), particles);
   environment.edit(
       [&](ComplexEdit& e) { unsew(e.topology(), face_between(e.map(), particles[0].cell, particles[1].cell)); });
   environment.update_after_edit(particles);
-  expect_audited(environment, particles);
+  test::expect_audited(environment.complex(), particles);
   const std::vector<Vec3> across = {{0.75, 0.5, 0.5}, {0.25, 0.5, 0.5}, {0.5, 0.25, 0.5}};
   EXPECT_GE(environment.advance(particles, across).contacts.contacts.size(), 2U);
-  expect_audited(environment, particles);
+  test::expect_audited(environment.complex(), particles);
 }
 
 class LeftInABlockedCell : public testing::Test {
@@ -303,7 +293,7 @@ class LeftInABlockedCell : public testing::Test {
     environment.edit([&](ComplexEdit& e) { e.topology().set_free(middle, free); });
   }
 
-  Environment environment = Environment(unit_cubes({3, 1, 1}));
+  Environment environment = Environment(test::unit_box({3, 1, 1}));
   Particles particles;
   Cell middle = cell_at(environment, {1.5, 0.5, 0.5});
 };
@@ -319,7 +309,7 @@ TEST_F(LeftInABlockedCell, MovesToTheNearestFreePlace) {
   EXPECT_EQ(report.orphaned[0].distance, 0.25);
   EXPECT_EQ(particles[1].position, (Vec3{1.0, 0.5, 0.5}));
   EXPECT_EQ(particles[1].cell, particles[0].cell);
-  expect_audited(environment, particles);
+  test::expect_audited(environment.complex(), particles);
 }
 
 TEST_F(LeftInABlockedCell, StaysAndRidesAlongUntilItsCellIsFree) {
@@ -343,13 +333,13 @@ TEST_F(LeftInABlockedCell, StaysAndRidesAlongUntilItsCellIsFree) {
   EXPECT_EQ(step.held.size(), 1U);
   EXPECT_NEAR(particles[1].position.y, 1.0, 1e-15);
   EXPECT_TRUE(particles[1].held);
-  expect_audited(environment, particles);
+  test::expect_audited(environment.complex(), particles);
   EXPECT_NO_THROW(
       static_cast<void>(environment.restored(particles.states(), std::vector<Weights>(3, particles.held_weights(1)))));
   block_the_middle(true);
   EXPECT_TRUE(environment.update_after_edit(particles).orphaned.empty());
   EXPECT_FALSE(particles[1].held);
-  expect_audited(environment, particles);
+  test::expect_audited(environment.complex(), particles);
   const std::vector<Vec3> on = {particles[0].position, {1.75, 1.0, 0.5}, particles[2].position};
   EXPECT_TRUE(environment.advance(particles, on).held.empty());
   EXPECT_EQ(particles[1].position, on[1]);
@@ -382,7 +372,7 @@ TEST_F(LeftInABlockedCell, AndOutsideWhereACellIsRemoved) {
   EXPECT_EQ(report.orphaned[0].place, Place::outside);
   EXPECT_EQ(report.orphaned[0].outcome, OrphanPolicy::relocate);  // it can't stay where there is nothing
   EXPECT_EQ(particles[1].position, (Vec3{1.0, 0.5, 0.5}));
-  expect_audited(environment, particles);
+  test::expect_audited(environment.complex(), particles);
 }
 
 // A wall that a particle rests on is taken away, from the other side.

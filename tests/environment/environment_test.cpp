@@ -14,10 +14,16 @@
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "mesh/cell_types.hpp"
+#include "support/expectations.hpp"
+#include "support/meshes.hpp"
 #include "support/particle_checks.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::environment_test {
+
+using test::error_text;
+using test::expect_refused;
+using test::positions_of;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 const std::vector<double> bad_numbers = {std::nan(""), infinity, -infinity, 0x1p+301, -0x1p+301};
@@ -28,32 +34,11 @@ MeshData box(int n, int which = 1, double blocked = 0.0) {
   o.cells = {edge, edge, edge};
   o.size = {1.0 * n, 1.0 * n, 1.0 * n};
   o.blocked_share = blocked;
-  if (which < 4) o.type = static_cast<CellType>(which);
-  o.mixed = which == 4;
+  test::set_kind(o, which);
   return generate_box(o);
 }
 
-std::string refusal(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return {};
-}
-
-void expect_refused(const std::function<void()>& call, const std::string& part) {
-  EXPECT_THROW(call(), InvalidArgument);
-  EXPECT_NE(refusal(call).find(part), std::string::npos) << "no \"" << part << "\" in: " << refusal(call);
-}
-
 double& coordinate(Vec3& p, unsigned axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
-
-std::vector<Vec3> positions_of(const Particles& particles) {
-  std::vector<Vec3> all;
-  for (const ParticleState& s : particles.states()) all.push_back(s.position);
-  return all;
-}
 
 TEST(EnvironmentRefuses, BadNumbersAtEveryEntryAndNothingChanges) {
   Environment environment(box(3));
@@ -85,8 +70,8 @@ TEST(EnvironmentRefuses, BadPointsOfTheMeshByNumber) {
       MeshData mesh = box(2);
       coordinate(mesh.points[17], axis) = bad;
       EXPECT_THROW(Environment{mesh}, InvalidMesh);
-      EXPECT_NE(refusal([&] { const Environment e(mesh); }).find("17"), std::string::npos)
-          << refusal([&] { const Environment e(mesh); });
+      EXPECT_NE(error_text([&] { const Environment e(mesh); }).find("17"), std::string::npos)
+          << error_text([&] { const Environment e(mesh); });
     }
   }
 }

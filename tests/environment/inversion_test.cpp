@@ -10,6 +10,7 @@
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "oracle/scenes.hpp"
+#include "support/meshes.hpp"
 #include "support/moving_simplex.hpp"
 #include "support/tier.hpp"
 
@@ -17,12 +18,7 @@ namespace dartcast::test::flattening_test {
 
 std::vector<Vec3> copy(std::span<const Vec3> positions) { return {positions.begin(), positions.end()}; }
 
-Environment box_of(std::uint32_t edge) {
-  BoxOptions box;
-  box.cells = {edge, edge, edge};
-  box.size = {1.0 * edge, 1.0 * edge, 1.0 * edge};
-  return Environment(generate_box(box), Threads{1});
-}
+Environment box_of(std::uint32_t edge) { return Environment(cubes(edge), Threads{1}); }
 
 // Every vertex in a direction of its own, by up to `size`.
 std::vector<Vec3> shaken(std::span<const Vec3> positions, double size, Random& random) {

@@ -14,8 +14,9 @@
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/spheres.hpp"
+#include "support/expectations.hpp"
+#include "support/meshes.hpp"
 #include "support/particle_checks.hpp"
-#include "support/refused.hpp"
 
 namespace dartcast::misuse_test {
 

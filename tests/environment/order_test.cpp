@@ -12,6 +12,7 @@
 #include "dartcast/audit.hpp"
 #include "dartcast/error.hpp"
 #include "support/edit_meshes.hpp"
+#include "support/expectations.hpp"
 #include "support/particle_checks.hpp"
 #include "support/random_edits.hpp"
 #include "support/tier.hpp"
@@ -19,6 +20,7 @@
 
 namespace dartcast::order_test {
 
+using test::error_text;
 using test::same_bits;
 
 std::vector<Vec3> places_of(const Particles& particles) {
@@ -175,15 +177,6 @@ TEST_P(Orders, AnEditThenAMoveIsFollowed) {
 
 // --- any order
 
-std::string refusal(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const InvalidArgument& e) {
-    return e.what();
-  }
-  return {};
-}
-
 // Sets of particles in one environment, and what each has gone along with so far.
 class Machine {
  public:
@@ -212,12 +205,12 @@ class Machine {
     for (const Set& set : sets_) {
       if (set.particles.size() == 0) continue;
       Particles tried = set.particles;
-      const std::string advanced = refusal([&] { scene_.environment.advance(tried, places_of(tried)); });
+      const std::string advanced = error_text([&] { scene_.environment.advance(tried, places_of(tried)); });
       if (!advanced.empty()) {
         ASSERT_NE(advanced.find("follow()"), std::string::npos) << advanced;
         ASSERT_TRUE(same_bits(test::copy_of(set.particles), tried));
-        ASSERT_EQ(refusal([&] { scene_.environment.update_after_edit(tried); }), "");
-        ASSERT_EQ(refusal([&] { scene_.environment.advance(tried, places_of(tried)); }), "");
+        ASSERT_EQ(error_text([&] { scene_.environment.update_after_edit(tried); }), "");
+        ASSERT_EQ(error_text([&] { scene_.environment.advance(tried, places_of(tried)); }), "");
       }
       const Audit found = audit(scene_.environment.complex(), tried);
       ASSERT_EQ(found.failed, 0U) << found.first;
@@ -265,7 +258,7 @@ class Machine {
   void advance(Set& set) {
     const std::vector<Vec3> targets = scene_.points(set.particles.size());
     const std::vector<ParticleState> before = test::copy_of(set.particles);
-    const std::string why = refusal([&] { scene_.environment.advance(set.particles, targets); });
+    const std::string why = error_text([&] { scene_.environment.advance(set.particles, targets); });
     if (set.particles.size() > 0 && set.edits != edits_) {
       ASSERT_NE(why.find("follow()"), std::string::npos) << why;
       ASSERT_TRUE(same_bits(before, set.particles));
@@ -279,7 +272,7 @@ class Machine {
   void update_after_edit(Set& set) {
     const auto orphaned = all_policies[scene_.random.below(3)];
     const std::size_t size = set.particles.size();
-    ASSERT_EQ(refusal([&] {
+    ASSERT_EQ(error_text([&] {
                 const UpdateReport report = scene_.environment.update_after_edit(set.particles, orphaned);
                 const auto gone = std::count_if(report.orphaned.begin(), report.orphaned.end(),
                                                 [](const auto& p) { return p.outcome == OrphanPolicy::absorb; });
@@ -294,7 +287,7 @@ class Machine {
     const std::vector<Vec3> places = scene_.points(20);
     const std::vector<ParticleState> before = test::copy_of(set.particles);
     for (int tries = 0;; ++tries) {
-      const std::string why = refusal([&] { scene_.environment.add(set.particles, places); });
+      const std::string why = error_text([&] { scene_.environment.add(set.particles, places); });
       if (why.empty()) break;
       ASSERT_LT(tries, 2);
       ASSERT_TRUE(tries > 0 || same_bits(before, set.particles));
@@ -326,7 +319,7 @@ class Machine {
     if (some.particles.size() == 0) return;
     if (set.edits == edits_ && set.moves == moves_) {
       advance(some);
-      ASSERT_EQ(refusal([&] { set.particles.replace(which, some.particles); }), "");
+      ASSERT_EQ(error_text([&] { set.particles.replace(which, some.particles); }), "");
       return;
     }
     const std::vector<ParticleState> before = test::copy_of(set.particles);
@@ -335,7 +328,7 @@ class Machine {
     else
       advance(some);
     if (some.particles.size() != which.size()) return;
-    const std::string why = refusal([&] { set.particles.replace(which, some.particles); });
+    const std::string why = error_text([&] { set.particles.replace(which, some.particles); });
     ASSERT_NE(why, "");
     ASSERT_TRUE(same_bits(before, set.particles));
     // The remedy: the whole set does the same.
@@ -344,7 +337,7 @@ class Machine {
     else
       advance(set);
     if (set.particles.size() != before.size()) return;
-    ASSERT_EQ(refusal([&] { set.particles.replace(which, some.particles); }), "");
+    ASSERT_EQ(error_text([&] { set.particles.replace(which, some.particles); }), "");
   }
 
   void restore(Set& set) {
@@ -367,15 +360,15 @@ class Machine {
              [&] { scene_.environment.update_after_edit(particles); },
              [&] { scene_.environment.add(particles, places); },
              [&] { static_cast<void>(scene_.environment.trace(particles, 0, places)); }}) {
-      const std::string why = refusal(call);
+      const std::string why = error_text(call);
       ASSERT_NE(why.find("missed"), std::string::npos) << why;
       ASSERT_NE(why.find("add() their positions to a new set"), std::string::npos) << why;
       ASSERT_TRUE(same_bits(before, particles));
     }
     ++late_refused;
     Particles anew;
-    ASSERT_EQ(refusal([&] { scene_.environment.add(anew, places); }), "");
-    ASSERT_EQ(refusal([&] { scene_.environment.advance(anew, places_of(anew)); }), "");
+    ASSERT_EQ(error_text([&] { scene_.environment.add(anew, places); }), "");
+    ASSERT_EQ(error_text([&] { scene_.environment.advance(anew, places_of(anew)); }), "");
     remedies += anew.size() > 0 ? 1 : 0;
     late_.reset();
   }

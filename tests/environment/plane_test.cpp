@@ -15,9 +15,12 @@
 #include "dartcast/map_edits.hpp"
 #include "dartcast/response.hpp"
 #include "dartcast/validity.hpp"
+#include "support/particle_checks.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::plane_test {
+
+using test::cell_at;
 
 // 0: triangles, 1: quadrilaterals, 2: with hexagons.
 MeshData rectangle(int kind, std::array<std::uint32_t, 2> cells, double jitter, double blocked,
@@ -263,8 +266,6 @@ TEST(Plane, LocatesInFacesOnEdgesAndAtVertices) {
   EXPECT_EQ(map.phi2(map.phi2(edge.dart)), edge.dart);
   EXPECT_FALSE(map.phi3(edge.dart).valid());
 }
-
-Cell cell_at(Environment& environment, const Vec3& x) { return environment.locate(x).simplex.cell; }
 
 // The edge between two cells, as the first runs along it.
 Dart dart_between(const CombinatorialMap& map, Cell a, Cell b) {

@@ -12,6 +12,7 @@
 #include "output/mesh_report_text.hpp"
 #include "support/same_mesh.hpp"
 #include "support/sample_mesh.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::test::shared_data_test {
 
@@ -215,6 +216,7 @@ TEST(SharedData, EveryVolumeSurvivesARoundTrip) {
   NEED_DATA("meshes made by others");
   const Folder folder;
   for (const Expected& expected : volumes()) {
+    if (repeats_smaller_ones(expected.points)) continue;
     const MeshFile original = read_mesh(data_folder() / expected.file);
     for (const char* name : {"a.vtu", "a.vtk", "a.msh", "a.msh4", "a.mesh"}) {
       write_mesh(original.mesh, folder / name);

@@ -9,15 +9,9 @@
 
 #include "dartcast/mesh_files.hpp"
 #include "support/sample_mesh.hpp"
+#include "support/surface_files.hpp"
 
 namespace dartcast::test::surface_warnings_test {
-
-using Ids = std::vector<std::uint32_t>;
-
-MeshFile read(const std::string& name, const std::string& content) {
-  const Folder folder;
-  return read_surface(folder.file(name, content));
-}
 
 // Edges and vertices are written as faces of two corners and one.
 TEST(SurfaceWarnings, FacesOfTwoCornersAreLeftOutWithAWarning) {

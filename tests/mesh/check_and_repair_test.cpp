@@ -14,6 +14,7 @@
 #include "mesh/cell_types.hpp"
 #include "mesh/conformity.hpp"
 #include "support/findings.hpp"
+#include "support/meshes.hpp"
 
 namespace dartcast::inspect_test {
 
@@ -198,7 +199,7 @@ TEST(Inspect, ArraysThatDoNotFit) {
   EXPECT_EQ(refused([](MeshData& m) { m.patch_offsets = {0, 4}; }), (Kinds{{"structure", 1}}));
   EXPECT_EQ(refused([](MeshData& m) { m.point_data = {{"a", 1, {1.0}}}; }), (Kinds{{"structure", 1}}));
   EXPECT_EQ(refused([](MeshData& m) { m.cell_data = {{"a", 0, {}}}; }), (Kinds{{"structure", 1}}));
-  EXPECT_EQ(refused([](MeshData& m) { m.types[0] = static_cast<CellType>(77); }), (Kinds{{"structure", 1}}));
+  EXPECT_EQ(refused([](MeshData& m) { m.types[0] = test::no_cell_type; }), (Kinds{{"structure", 1}}));
   EXPECT_EQ(refused([](MeshData& m) { m = {}; }), (Kinds{{"empty", 1}}));
 }
 

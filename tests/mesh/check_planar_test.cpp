@@ -13,6 +13,7 @@
 #include "mesh/faces.hpp"
 #include "mesh/orientation.hpp"
 #include "support/findings.hpp"
+#include "support/meshes.hpp"
 #include "support/planar_checks.hpp"
 #include "support/tier.hpp"
 
@@ -204,7 +205,7 @@ TEST(InspectPlanar, StructureOfCells) {
             (Kinds{{"structure", 1}}));
   EXPECT_EQ(refused([](MeshData& m) { add(m, CellType::triangle, {0, 1, 2, 3}); }), (Kinds{{"structure", 1}}));
   EXPECT_EQ(refused([](MeshData& m) { add(m, CellType::tetrahedron, {0, 1, 2, 3}); }), (Kinds{{"structure", 1}}));
-  EXPECT_EQ(refused([](MeshData& m) { m.types[1] = static_cast<CellType>(77); }), (Kinds{{"structure", 1}}));
+  EXPECT_EQ(refused([](MeshData& m) { m.types[1] = test::no_cell_type; }), (Kinds{{"structure", 1}}));
   EXPECT_EQ(refused([](MeshData& m) { m.connectivity[6] = 5; }), (Kinds{{"id_out_of_range", 1}}));
   EXPECT_EQ(refused([](MeshData& m) { m.connectivity[6] = 1; }), (Kinds{{"repeated_corner", 1}}));
   EXPECT_EQ(refused([](MeshData& m) { add(m, CellType::polygon, {0, 1, 2, 1}); }), (Kinds{{"repeated_corner", 1}}));

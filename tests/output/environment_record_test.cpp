@@ -17,17 +17,14 @@
 #include "formats/file_text.hpp"
 #include "formats/point_file.hpp"
 #include "output/recording.hpp"
+#include "support/data_arrays.hpp"
 #include "support/sample_mesh.hpp"
 
 namespace dartcast::environment_record_test {
 
-namespace fs = std::filesystem;
+using test::array;
 
-const DataArray& array(const std::vector<DataArray>& arrays, const std::string& name) {
-  const auto found = std::find_if(arrays.begin(), arrays.end(), [&](const DataArray& a) { return a.name == name; });
-  if (found == arrays.end()) throw Error("no array " + name);
-  return *found;
-}
+namespace fs = std::filesystem;
 
 // Cubes whose cells, regions and arrays say where each is: `number` of a cell, `place` and `height` of a point.
 MeshData labelled_box() {

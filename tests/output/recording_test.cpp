@@ -13,9 +13,12 @@
 #include "dartcast/scene_file.hpp"
 #include "formats/point_file.hpp"
 #include "output/run_files.hpp"
+#include "support/data_arrays.hpp"
 #include "support/sample_mesh.hpp"
 
 namespace dartcast::recording_test {
+
+using test::array;
 
 namespace fs = std::filesystem;
 
@@ -58,13 +61,6 @@ Summary run(const std::string& text, const fs::path& folder, bool audit = false)
   options.folder = folder;
   options.audit = audit;
   return run_scene(parse_scene(text, "test.toml"), options);
-}
-
-const DataArray& array(const PointFile& file, const std::string& name) {
-  const auto found =
-      std::find_if(file.arrays.begin(), file.arrays.end(), [&](const DataArray& a) { return a.name == name; });
-  if (found == file.arrays.end()) throw Error("no array " + name);
-  return *found;
 }
 
 class RecordingTest : public testing::Test {

@@ -24,18 +24,14 @@
 #include "formats/point_file.hpp"
 #include "output/info.hpp"
 #include "scene/seed_file.hpp"
+#include "support/data_arrays.hpp"
 #include "support/sample_mesh.hpp"
 
 namespace dartcast::run_files_test {
 
-namespace fs = std::filesystem;
+using test::array;
 
-const DataArray& array(const PointFile& file, const std::string& name) {
-  const auto found =
-      std::find_if(file.arrays.begin(), file.arrays.end(), [&](const DataArray& a) { return a.name == name; });
-  if (found == file.arrays.end()) throw Error("no array " + name);
-  return *found;
-}
+namespace fs = std::filesystem;
 
 // A row of a table of numbers, by the names in its header.
 class Table {

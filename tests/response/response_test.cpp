@@ -12,8 +12,13 @@
 #include "dartcast/environment.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
+#include "support/expectations.hpp"
+#include "support/random_vectors.hpp"
 
 namespace dartcast::respond_test {
+
+using test::expect_near;
+using test::random_vector;
 
 WallHit wall(const Vec3& normal) {
   WallHit hit;
@@ -24,11 +29,6 @@ std::vector<WallHit> walls(const std::vector<Vec3>& normals) {
   std::vector<WallHit> all;
   for (const Vec3& n : normals) all.push_back(wall(n));
   return all;
-}
-Vec3 random_vector(Random& random) { return {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)}; }
-
-void expect_near(const Vec3& a, const Vec3& b, double tolerance = 1e-14) {
-  EXPECT_LE(norm(a - b), tolerance) << a.x << " " << a.y << " " << a.z << " is not " << b.x << " " << b.y << " " << b.z;
 }
 
 TEST(Reflected, AgainstTheDefinition) {

@@ -141,8 +141,7 @@ moves = [{ until = 1.0, push = 0.1 }, { until = 2.0, push = -0.1, turn = 0.5 }]
   EXPECT_EQ(s.catheters[0].moves[1].turn, 0.5);
 }
 
-TEST(SceneFile, EventsAreReadInOrderOfTime) {
-  const Scene s = parse_scene(box + R"(
+const std::string events_text = R"(
 [remesh]
 every = 5
 most_cells = 12
@@ -178,8 +177,10 @@ b = { point = [1.0, 0.0, 0.0], normal = [1.0, 0.0, 0.0] }
 within = 0.5
 tolerance = 0.25
 patch = "xmin"
-)",
-                              "folder/scene.toml");
+)";
+
+TEST(SceneFile, EventsAreReadInOrderOfTime) {
+  const Scene s = parse_scene(box + events_text, "folder/scene.toml");
   EXPECT_EQ(s.remesh.every, 5U);
   EXPECT_EQ(s.remesh.options.max_cells, 12U);
   ASSERT_EQ(s.events.size(), 4U);
@@ -223,8 +224,7 @@ TEST(SceneFile, EventsThatCannotBeSayWhy) {
                "width");
 }
 
-TEST(SceneFile, EveryKeyIsRead) {
-  const Scene s = parse_scene(R"(
+const std::string all_keys_text = R"(
 seed = 5
 [environment]
 mesh = "a/vessel.vtu"
@@ -272,8 +272,10 @@ restitution = 0.75
 [output]
 every = 3
 contacts = true
-)",
-                              "folder/scene.toml");
+)";
+
+TEST(SceneFile, EveryKeyIsRead) {
+  const Scene s = parse_scene(all_keys_text, "folder/scene.toml");
   EXPECT_EQ(std::get<std::filesystem::path>(s.environment.mesh), "folder/a/vessel.vtu");
   EXPECT_EQ(std::get<FreeRegions>(s.environment.free).regions, (std::vector<std::string>{"lumen", "2"}));
   EXPECT_EQ(std::get<std::vector<std::string>>(s.environment.patches), (std::vector<std::string>{"inlet", "wall"}));

@@ -9,16 +9,10 @@
 #include "dartcast/events.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/simulation.hpp"
+#include "support/meshes.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::crowding_test {
-
-MeshData crowding_box() {
-  BoxOptions o;
-  o.cells = {4, 4, 4};
-  o.size = {4.0, 4.0, 4.0};
-  return generate_box(o);
-}
 
 std::size_t fullest_cell(const Simulation& flow) {
   std::map<Cell, std::size_t> counts;
@@ -38,7 +32,7 @@ std::vector<Vec3> cluster(std::size_t count, const Vec3& low, const Vec3& high) 
 
 // A crowd gathers, and the cells get small; it leaves, and they are as many as before.
 TEST(AdaptiveSubdivision, SubdividesAndMergesAgain) {
-  Environment environment(crowding_box(), Threads{1});
+  Environment environment(test::cubes(4), Threads{1});
   SimulationOptions o;
   o.dt = 0.1;
   Simulation flow(environment, o);
@@ -78,7 +72,7 @@ TEST(AdaptiveSubdivision, SubdividesAndMergesAgain) {
 
 // A report names what was not done: cells too small, and more of them than one call edits.
 TEST(AdaptiveSubdivision, TellsWhatItLeaves) {
-  Environment environment(crowding_box(), Threads{1});
+  Environment environment(test::cubes(4), Threads{1});
   Simulation flow(environment, SimulationOptions{});
   flow.add(cluster(400, {1.1, 1.1, 1.1}, {2.9, 1.9, 1.9}), {});
   AdaptiveSubdivisionOptions options;
@@ -110,7 +104,7 @@ TEST(AdaptiveSubdivision, RefusesOptionsOutOfRange) {
 // Spheres that rest on each other go on resting while the cells around them change.
 TEST(AdaptiveSubdivision, SpheresDoNotNotice) {
   const auto run = [](bool adapt) {
-    Environment environment(crowding_box(), Threads{1});
+    Environment environment(test::cubes(4), Threads{1});
     SimulationOptions o;
     o.dt = 5e-3;
     o.gravity = {0.0, 0.0, -9.81};

@@ -12,10 +12,13 @@
 
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
+#include "support/expectations.hpp"
 #include "support/generate_checks.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::deformation_test {
+
+using test::expect_near;
 
 using Kind = DeformationKind;
 constexpr double pi = std::numbers::pi;
@@ -32,11 +35,6 @@ Vec3 move(const DeformationStep& s, double time, const Vec3& x) {
   Vec3 out;
   Deformation({s}, {&x, 1}).positions(time, {&out, 1});
   return out;
-}
-
-void expect_near(const Vec3& a, const Vec3& b, double within = 1e-14) {
-  EXPECT_LE(norm(a - b), within) << a.x << " " << a.y << " " << a.z << " instead of " << b.x << " " << b.y << " "
-                                 << b.z;
 }
 
 // At a quarter of the period, w = 1.
@@ -230,7 +228,10 @@ TEST(Deformation, RefusesWhatItCannotDo) {
       Kind::frames, [](S& s) { s.frames[1].clear(); }, "frame 1");
   refuses(
       Kind::frames, [](S& s) { s.frames[0][0].z = inf; }, "frame 0 must be finite");
+}
 
+TEST(Deformation, RefusesFramesBesideOthersAndBadTimes) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   const Vec3 x;
   Vec3 out = {1, 2, 3};
   DeformationStep frames = step(Kind::frames, 0.0);
@@ -265,15 +266,6 @@ bool leaves_the_plane(const std::vector<DeformationStep>& steps) {
   return false;
 }
 
-std::string refusal(const std::vector<DeformationStep>& steps) {
-  try {
-    Deformation(steps, plane_points()).check_plane();
-  } catch (const InvalidArgument& e) {
-    return e.what();
-  }
-  return {};
-}
-
 DeformationStep step_about(Kind kind, const Vec3& axis, const Vec3& direction = {1, 0, 0}) {
   DeformationStep s = step(kind, kind == Kind::rotate ? 0.0 : 0.7, 3.1);
   s.axis = axis;
@@ -281,6 +273,10 @@ DeformationStep step_about(Kind kind, const Vec3& axis, const Vec3& direction = 
   s.length = 4.0;
   s.centre = {0.3, -0.2, 0.0};
   return s;
+}
+
+std::string refusal(const std::vector<DeformationStep>& steps) {
+  return test::error_text([&] { Deformation(steps, plane_points()).check_plane(); });
 }
 
 DeformationStep step_of_frames(double z) {

@@ -7,6 +7,7 @@
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "simulation/event_scheduler.hpp"
+#include "support/expectations.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::event_test {
@@ -25,11 +26,6 @@ SimulationOptions falling(double dt) {
   o.dt = dt;
   o.gravity = {0.0, 0.0, -1.0};
   return o;
-}
-
-void expect_audited(const Simulation& flow) {
-  const Audit found = audit(flow.environment().complex(), flow.particles());
-  ASSERT_EQ(found.failed, 0U) << found.first;
 }
 
 std::size_t count_if(const Simulation& flow, const std::function<bool(const Vec3&)>& where) {
@@ -63,7 +59,7 @@ TEST(Events, ParticlesLeakIntoACut) {
   EXPECT_EQ(report.boundary_shift, 0.0);
   for (int i = 0; i < 200; ++i) {
     flow.step();
-    ASSERT_NO_FATAL_FAILURE(expect_audited(flow));
+    ASSERT_NO_FATAL_FAILURE(test::expect_audited(flow.environment().complex(), flow.particles()));
   }
   EXPECT_EQ(count_if(flow, [](const Vec3& x) { return x.z < 0.9; }), 99U);  // all but the first, beside the gap
   EXPECT_EQ(count_if(flow, [](const Vec3& x) { return x.z < 0.9 && std::abs(x.x - 6.0) > 0.25; }), 0U);
@@ -82,7 +78,7 @@ TEST(Events, ALigatureSealsAndItsWallsAreDrawnTogether) {
   const Vec3 corner = environment.positions()[7 + 13 * (1 + 7 * 1)];  // (7, 1, 1)
   for (int i = 0; i < 400; ++i) {
     flow.step();
-    if (i % 20 == 0) ASSERT_NO_FATAL_FAILURE(expect_audited(flow));
+    if (i % 20 == 0) ASSERT_NO_FATAL_FAILURE(test::expect_audited(flow.environment().complex(), flow.particles()));
     ASSERT_EQ(count_if(flow, [](const Vec3& x) { return x.x > 6.5; }), 0U);
   }
   EXPECT_TRUE(environment.validity().valid());
@@ -111,7 +107,7 @@ TEST(Events, SurgeryOnWhatDeforms) {
         apply(flow, {0.0, Ligature{plane_through({3.5, 3.0, 3.0}, {1.0, 0.0, 0.0}), {3.5, 3.0, 3.0}, {0.5, 1.5}, 0.4},
                      OrphanPolicy::hold});
       flow.step();
-      if (i % 10 == 0) ASSERT_NO_FATAL_FAILURE(expect_audited(flow));
+      if (i % 10 == 0) ASSERT_NO_FATAL_FAILURE(test::expect_audited(flow.environment().complex(), flow.particles()));
       const Validity validity = environment.validity();
       ASSERT_TRUE(validity.valid()) << "step " << i << ": " << validity.first.front().message;
     }
@@ -135,7 +131,7 @@ TEST(Events, ASliceIsTakenOutAndFilledAgain) {
   const std::size_t left = count_if(flow, [](const Vec3& x) { return x.x < 5.5; });
   for (int i = 0; i < 100; ++i) flow.step();
   EXPECT_EQ(count_if(flow, [](const Vec3& x) { return x.x <= 5.5; }), left);
-  expect_audited(flow);
+  test::expect_audited(flow.environment().complex(), flow.particles());
   const auto at = [](double x) { return plane_through({x, 0.0, 0.0}, {1.0, 0.0, 0.0}); };
   const EventReport filled = apply(flow, {0.0, Reconnect{at(5.5), at(7.5), 0.01, {}}, OrphanPolicy::relocate});
   EXPECT_GT(filled.cells_added, 0U);
@@ -145,7 +141,7 @@ TEST(Events, ASliceIsTakenOutAndFilledAgain) {
     crossed = std::max(crossed, count_if(flow, [](const Vec3& x) { return x.x > 5.5 && x.x < 7.5; }));
   }
   EXPECT_GT(crossed, 0U);
-  expect_audited(flow);
+  test::expect_audited(flow.environment().complex(), flow.particles());
 }
 
 TEST(Events, AnInletIsClosedWithItsLastFace) {
@@ -164,7 +160,7 @@ TEST(Events, AnInletIsClosedWithItsLastFace) {
   flow.edit([&](ComplexEdit& e) { e.topology().set_free(first, true); });
   flow.step();
   EXPECT_EQ(flow.totals().injected, 10U);
-  expect_audited(flow);
+  test::expect_audited(flow.environment().complex(), flow.particles());
 }
 
 // A bump turns cells over; they are remeshed, and particles go on.
@@ -189,7 +185,7 @@ TEST(Events, RemeshesWhereADeformationTurnsCellsOver) {
       flow.step();
       if (remeshed) mended += flow.repair().mended.size();
       invalid[remeshed ? 1 : 0] += environment.validity().invalid_count;
-      expect_audited(flow);
+      test::expect_audited(flow.environment().complex(), flow.particles());
     }
     if (remeshed) EXPECT_GT(mended, 0U);
     EXPECT_EQ(flow.particles().size(), 300U);
@@ -218,7 +214,7 @@ TEST(Events, SurgeryKeepsToTheTimesAndDoesItAgain) {
   replayed.replay(surgery.log());
   EXPECT_EQ(other.map(), environment.map());
   again.restore(flow.checkpoint());
-  expect_audited(again);
+  test::expect_audited(again.environment().complex(), again.particles());
 }
 
 TEST(Events, SayWhichIsRefused) {
@@ -259,7 +255,7 @@ TEST(Events, InThePlaneALigatureSeals) {
     surgery.before_step();
     flow.step();
     surgery.after_step();
-    ASSERT_NO_FATAL_FAILURE(expect_audited(flow));
+    ASSERT_NO_FATAL_FAILURE(test::expect_audited(flow.environment().complex(), flow.particles()));
   }
   EXPECT_EQ(surgery.log().events.at(0).cells_blocked, 4U);
   EXPECT_EQ(count_if(flow, [](const Vec3& x) { return x.x == 6.0; }), 20U);

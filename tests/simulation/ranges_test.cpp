@@ -13,7 +13,8 @@
 #include "dartcast/simulation.hpp"
 #include "simulation/event_scheduler.hpp"
 #include "simulation/polyline.hpp"
-#include "support/refused.hpp"
+#include "support/expectations.hpp"
+#include "support/meshes.hpp"
 
 namespace dartcast::ranges_test {
 

@@ -10,25 +10,17 @@
 #include "dartcast/audit.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
+#include "support/expectations.hpp"
+#include "support/meshes.hpp"
 
 namespace dartcast::flow_test {
 
-MeshData box_mesh(std::uint32_t n, double size = 10.0) {
-  BoxOptions box;
-  box.cells = {n, n, n};
-  box.size = {size, size, size};
-  return generate_box(box);
-}
+using test::expect_near;
 
 SimulationOptions options(double dt) {
   SimulationOptions o;
   o.dt = dt;
   return o;
-}
-
-void expect_near(const Vec3& a, const Vec3& b, double within) {
-  EXPECT_LE(norm(a - b), within) << a.x << " " << a.y << " " << a.z << " instead of " << b.x << " " << b.y << " "
-                                 << b.z;
 }
 
 std::vector<Vec3> values(const MeshData& mesh, const std::function<Vec3(const Vec3&)>& f) {
@@ -38,7 +30,7 @@ std::vector<Vec3> values(const MeshData& mesh, const std::function<Vec3(const Ve
 }
 
 TEST(Simulation, FallsAsEulersMethodSays) {
-  Environment environment(box_mesh(4));
+  Environment environment(test::cube_of(4, 10.0));
   SimulationOptions o = options(0.01);
   o.gravity = {0, 0, -2.0};
   Simulation flow(environment, o);
@@ -52,7 +44,7 @@ TEST(Simulation, FallsAsEulersMethodSays) {
 
 // A checkpoint that does not fit is refused as a whole.
 TEST(Simulation, RestoresOnlyStatesThatHold) {
-  Environment environment(box_mesh(3));
+  Environment environment(test::cube_of(3, 10.0));
   Simulation flow(environment, options(0.01));
   flow.add_random(20, {1, 2, 3});
   flow.step();
@@ -78,7 +70,7 @@ TEST(Simulation, RestoresOnlyStatesThatHold) {
 
 TEST(Simulation, DragTakesSpeedExponentiallyWhateverTheStep) {
   for (const double dt : {0.001, 0.5}) {
-    Environment environment(box_mesh(2));
+    Environment environment(test::cube_of(2, 10.0));
     SimulationOptions o = options(dt);
     o.drag = 3.0;
     Simulation flow(environment, o);
@@ -89,7 +81,7 @@ TEST(Simulation, DragTakesSpeedExponentiallyWhateverTheStep) {
 }
 
 TEST(Simulation, DragAndGravityEndAtTheTerminalVelocity) {
-  Environment environment(box_mesh(2));
+  Environment environment(test::cube_of(2, 10.0));
   SimulationOptions o = options(0.1);
   o.drag = 50.0;
   o.gravity = {0, 0, -10};
@@ -118,7 +110,7 @@ TEST(Simulation, ALinearFieldIsReproducedInEverySimplex) {
 }
 
 double off_circle(unsigned substeps) {
-  const MeshData mesh = box_mesh(5);
+  const MeshData mesh = test::cube_of(5, 10.0);
   Environment environment(mesh);
   SimulationOptions o = options(0.05);
   o.substeps = substeps;
@@ -148,7 +140,7 @@ Deformation turning(const MeshData& mesh) {
 }
 
 TEST(Simulation, AFieldInTheMeshsFrameCarriesAlong) {
-  const MeshData mesh = box_mesh(5);
+  const MeshData mesh = test::cube_of(5, 10.0);
   Environment environment(mesh);
   Simulation flow(environment, options(0.01));
   flow.set_field(VelocityField(environment.complex(),
@@ -165,7 +157,7 @@ TEST(Simulation, AFieldInTheMeshsFrameCarriesAlong) {
 }
 
 TEST(Simulation, AFieldInSpaceDoesNotCarryAlong) {
-  const MeshData mesh = box_mesh(5);
+  const MeshData mesh = test::cube_of(5, 10.0);
   Environment environment(mesh);
   Simulation flow(environment, options(0.01));
   flow.set_field(VelocityField(environment.complex(), values(mesh, [](const Vec3&) { return Vec3{1, 0, 0}; })));
@@ -176,7 +168,7 @@ TEST(Simulation, AFieldInSpaceDoesNotCarryAlong) {
 }
 
 TEST(Simulation, StuckParticlesMoveWithTheWallWithoutNewContacts) {
-  const MeshData mesh = box_mesh(3);
+  const MeshData mesh = test::cube_of(3, 10.0);
   Environment environment(mesh);
   Simulation flow(environment, options(0.01), WallResponses(WallResponse{WallResponseKind::stick, 0, 0}));
   flow.set_deformation(turning(mesh));
@@ -191,7 +183,7 @@ TEST(Simulation, StuckParticlesMoveWithTheWallWithoutNewContacts) {
 }
 
 TEST(Simulation, ParticlesLeaveWhereTheyAreAbsorbedOrEscape) {
-  Environment environment(box_mesh(3));
+  Environment environment(test::cube_of(3, 10.0));
   WallResponses responses(WallResponse{WallResponseKind::reflect, 1, 0});
   responses.set(environment.map().patch("xmax"), {WallResponseKind::escape, 0, 0});
   responses.set(environment.map().patch("xmin"), {WallResponseKind::absorb, 0, 0});
@@ -214,7 +206,7 @@ TEST(Simulation, ParticlesLeaveWhereTheyAreAbsorbedOrEscape) {
 }
 
 TEST(Simulation, AReflectionKeepsTheUnusedWay) {
-  Environment environment(box_mesh(3));
+  Environment environment(test::cube_of(3, 10.0));
   Simulation flow(environment, options(1.0));
   flow.add(std::vector<Vec3>{{9, 5, 4.5}}, {3, 0, 0});
   flow.step();
@@ -223,7 +215,7 @@ TEST(Simulation, AReflectionKeepsTheUnusedWay) {
 }
 
 TEST(Simulation, InletsInjectAtTheirRateAndPlace) {
-  Environment environment(box_mesh(4));
+  Environment environment(test::cube_of(4, 10.0));
   Simulation flow(environment, options(0.1));
   flow.add_inlet(environment.map().patch("zmin"), 25.0, {0, 0, 1.0});
   std::uint64_t expected_id = 0;
@@ -320,7 +312,7 @@ TEST(Simulation, OneHashForAnyNumberOfThreadsAndAnotherForAnotherSeed) {
 }
 
 TEST(Simulation, ThoseWhoLeftStayInTheHash) {
-  Environment environment(box_mesh(1));
+  Environment environment(test::cube_of(1, 10.0));
   const auto hash = [&](double y) {
     Simulation flow(environment, options(1.0), WallResponses(WallResponse{WallResponseKind::escape, 1, 0}));
     flow.add(std::vector<Vec3>{{9, y, 5}}, {3, 0, 0});
@@ -333,7 +325,7 @@ TEST(Simulation, ThoseWhoLeftStayInTheHash) {
 }
 
 TEST(Simulation, RefusesWhatHasNoMeaning) {
-  Environment environment(box_mesh(1));
+  Environment environment(test::cube_of(1, 10.0));
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(Simulation(environment, options(0.0)), InvalidArgument);
   EXPECT_THROW(Simulation(environment, options(nan)), InvalidArgument);
@@ -361,7 +353,7 @@ TEST(Simulation, RefusesWhatHasNoMeaning) {
 
 // Sums of many terms: the same bits for any number of threads.
 TEST(Simulation, EnergyDoesNotDependOnThreads) {
-  Environment environment(box_mesh(4));
+  Environment environment(test::cube_of(4, 10.0));
   SimulationOptions o = options(0.1);
   o.gravity = {0.3, -0.7, -9.81};
   Simulation flow(environment, o);
@@ -378,7 +370,7 @@ TEST(Simulation, EnergyDoesNotDependOnThreads) {
 }
 
 TEST(Simulation, ParticlesAreAddedWithVelocitiesAndRadiiOfTheirOwn) {
-  Environment environment(box_mesh(4));
+  Environment environment(test::cube_of(4, 10.0));
   Simulation flow(environment, options(1.0));
   const std::vector<Vec3> points = {{1, 1, 1}, {19, 9, 9}, {2, 2, 2}};
   const std::vector<Vec3> velocities = {{0.5, 0, 0}, {7, 7, 7}, {0, 0.25, 0}};

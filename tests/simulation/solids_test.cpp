@@ -11,6 +11,7 @@
 #include "dartcast/run.hpp"
 #include "dartcast/scene_file.hpp"
 #include "formats/point_file.hpp"
+#include "support/expectations.hpp"
 #include "support/sample_mesh.hpp"
 
 namespace dartcast::solids_test {
@@ -57,15 +58,6 @@ Summary run(const std::string& text, const fs::path& folder = {}) {
   options.folder = folder;
   options.audit = true;
   return run_scene(parse_scene(text, "test.toml"), options);
-}
-
-std::string refusal(const std::string& text) {
-  try {
-    run(text);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return {};
 }
 
 std::size_t line_count(const fs::path& path) {
@@ -140,6 +132,10 @@ every = 0
   EXPECT_NEAR(apart.bodies[0].energy.kinetic, 0.02, 1e-3);
   EXPECT_LT(together.bodies[0].energy.kinetic, 0.015);
   EXPECT_EQ(together.audit->failed, 0U);
+}
+
+std::string refusal(const std::string& text) {
+  return test::error_text([&] { run(text); });
 }
 
 TEST(SolidsInScenes, ThreadsDoNotMatter) {

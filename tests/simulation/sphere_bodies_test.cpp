@@ -12,6 +12,7 @@
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/simulation.hpp"
+#include "support/meshes.hpp"
 #include "support/point_block.hpp"
 #include "support/tier.hpp"
 
@@ -21,13 +22,6 @@ using test::scaled;
 
 constexpr double dt = 1e-3;
 constexpr double spacing = 0.05;
-
-MeshData closed_box(double size = 1.0) {
-  BoxOptions box;
-  box.cells = {6, 6, 6};
-  box.size = {size, size, size};
-  return generate_box(box);
-}
 
 double mass_of(double radius, double density) { return density * 4.0 / 3.0 * std::numbers::pi * std::pow(radius, 3); }
 
@@ -119,7 +113,7 @@ TEST(SphereBodies, ReboundAsTheFormulaSays) {
     for (const double ratio : {1e-4, 0.1, 1.0, 20.0}) {  // of the ball's mass to the body's
       CollisionOptions c;
       c.restitution = restitution;
-      Both both(closed_box(), {}, c, WallResponse{});
+      Both both(test::cube_of(6, 1.0), {}, c, WallResponse{});
       const double m = mass_of(r, c.density);
       const double body = m / ratio;
       both.add_body(3, {0.5, 0.5, 0.5}, {}, body);
@@ -142,7 +136,7 @@ TEST(SphereBodies, TurnWhatTheyHitBesideItsCentre) {
   const double r = 0.04;
   CollisionOptions c;
   c.restitution = 0.5;
-  Both both(closed_box(), {}, c, WallResponse{});
+  Both both(test::cube_of(6, 1.0), {}, c, WallResponse{});
   const double m = mass_of(r, c.density);
   both.add_body(3, {0.5, 0.5, 0.5}, {}, 2.0 * m);
   both.flow.add(std::vector<Vec3>{{0.3, 0.56, 0.5}}, {1.5, 0.0, 0.0}, r);
@@ -163,7 +157,7 @@ TEST(SphereBodies, MomentumIsKept) {
   CollisionOptions c;
   c.restitution = 0.6;
   c.friction = 0.3;
-  Both both(closed_box(), {}, c, WallResponse{WallResponseKind::reflect, 0.6, 0.2});
+  Both both(test::cube_of(6, 1.0), {}, c, WallResponse{WallResponseKind::reflect, 0.6, 0.2});
   Random random(5);
   const double r = 0.03;
   both.add_body(4, {0.25, 0.5, 0.5}, {4.0, 0.1, -0.2}, 3.0);
@@ -198,7 +192,7 @@ TEST(SphereBodies, BodyComesToRestOnSpheres) {
   c.restitution = 0.2;
   c.friction = 0.5;
   c.iterations = 20;
-  Both both(closed_box(0.6), {0.0, 0.0, -9.81}, c, WallResponse{WallResponseKind::reflect, 0.2, 0.5});
+  Both both(test::cube_of(6, 0.6), {0.0, 0.0, -9.81}, c, WallResponse{WallResponseKind::reflect, 0.2, 0.5});
   const double r = 0.04;
   for (int i = 0; i < 49; ++i) {
     const Vec3 x = {0.042 + 0.085 * (i % 7) + 0.0003 * (i % 5), 0.042 + 0.085 * (i / 7), 0.041};
@@ -229,7 +223,7 @@ TEST(SphereBodies, ASphereStandsOnABody) {
     CollisionOptions c;
     c.restitution = 0.2;
     c.friction = 0.5;
-    Both both(closed_box(0.6), {0.0, 0.0, -9.81}, c, WallResponse{WallResponseKind::reflect, 0.2, 0.5});
+    Both both(test::cube_of(6, 0.6), {0.0, 0.0, -9.81}, c, WallResponse{WallResponseKind::reflect, 0.2, 0.5});
     const double r = 0.04;
     both.add_body(4, {0.3, 0.3, 0.08}, {}, ratio * mass_of(r, c.density), 20.0);
     const Vec3 x = {0.3, 0.3, 0.3};
@@ -253,7 +247,7 @@ TEST(SphereBodies, AreTheSameBitsForAnyNumberOfThreadsAndFromACheckpoint) {
     CollisionOptions c;
     c.restitution = 0.3;
     c.friction = 0.4;
-    auto both = std::make_unique<Both>(closed_box(), Vec3{0.0, 0.0, -9.81}, c,
+    auto both = std::make_unique<Both>(test::cube_of(6, 1.0), Vec3{0.0, 0.0, -9.81}, c,
                                        WallResponse{WallResponseKind::reflect, 0.3, 0.4}, Threads{threads});
     both->add_body(4, {0.3, 0.4, 0.2}, {2.0, 0.5, 0.0}, 2.0);
     both->add_body(3, {0.6, 0.6, 0.3}, {-2.0, 0.0, 1.0}, 0.2);
@@ -308,7 +302,7 @@ TEST(SphereBodies, ThroughAWallNobodyMeets) {
 
 // What a body is given is for one step, and its energy is told.
 TEST(SphereBodies, ABodyIsGivenSomethingOnce) {
-  Both both(closed_box(), {}, CollisionOptions{}, WallResponse{});
+  Both both(test::cube_of(6, 1.0), {}, CollisionOptions{}, WallResponse{});
   both.add_body(3, {0.4, 0.5, 0.5}, {}, 2.0);
   RigidMover m = both.bodies.predicted_state(0);
   m.velocity.x = 1.5;
@@ -321,7 +315,7 @@ TEST(SphereBodies, ABodyIsGivenSomethingOnce) {
 }
 
 TEST(SphereBodies, ContactsBetweenBodiesAreTheirOwn) {
-  Both both(closed_box(), {}, CollisionOptions{}, WallResponse{});
+  Both both(test::cube_of(6, 1.0), {}, CollisionOptions{}, WallResponse{});
   both.add_body(3, {0.4, 0.5, 0.5}, {1.0, 0.0, 0.0}, 1.0);
   both.add_body(3, {0.56, 0.5, 0.5}, {-1.0, 0.0, 0.0}, 1.0);
   both.flow.add(std::vector<Vec3>{{0.8, 0.8, 0.8}}, {}, 0.02);
@@ -334,7 +328,7 @@ TEST(SphereBodies, ContactsBetweenBodiesAreTheirOwn) {
 TEST(SphereBodies, ABodyThatAWallHoldsGivesNoWay) {
   CollisionOptions c;
   c.restitution = 1.0;
-  Both both(closed_box(), {}, c, WallResponse{WallResponseKind::stick, 0.0, 0.0});
+  Both both(test::cube_of(6, 1.0), {}, c, WallResponse{WallResponseKind::stick, 0.0, 0.0});
   both.add_body(3, {0.06, 0.5, 0.5}, {-2.0, 0.0, 0.0}, 1.0);
   for (int i = 0; i < 50; ++i) both.step();
   ASSERT_TRUE(std::find(both.bodies.fates().begin(), both.bodies.fates().end(), ParticleStatus::stuck) !=
@@ -345,7 +339,7 @@ TEST(SphereBodies, ABodyThatAWallHoldsGivesNoWay) {
 }
 
 TEST(SphereBodies, RefuseWhatIsOutOfRange) {
-  Environment environment(closed_box(), Threads{1});
+  Environment environment(test::cube_of(6, 1.0), Threads{1});
   SimulationOptions o = Both::flow_options({}, CollisionOptions{});
   BodiesOptions b = Both::bodies_options({});
   b.dt = 2e-3;

@@ -70,7 +70,7 @@ inline Dyadic free_volume6(const CellComplex& complex) {
 }
 
 /// In the plane where that is the dimension.
-inline Vec3 random_vector(Random& random, double size, unsigned dimension = 3) {
+inline Vec3 random_displacement(Random& random, double size, unsigned dimension = 3) {
   const auto one = [&] { return (random.uniform() * 2.0 - 1.0) * size; };
   const double x = one();
   const double y = one();

@@ -13,6 +13,7 @@
 #include "dartcast/mesh_data.hpp"
 #include "dartcast/vec3.hpp"
 #include "mesh/cell_types.hpp"
+#include "support/exact_vectors.hpp"
 
 namespace dartcast::test {
 
@@ -21,11 +22,6 @@ using Whole = std::array<Integer, 3>;
 
 inline Whole whole(const Vec3& v) {
   return {static_cast<Integer>(v.x), static_cast<Integer>(v.y), static_cast<Integer>(v.z)};
-}
-inline Whole minus(const Whole& a, const Whole& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-inline Integer times(const Whole& a, const Whole& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-inline Whole cross(const Whole& a, const Whole& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
 /// n / d, d > 0.
@@ -120,18 +116,18 @@ class CellsPassed {
     const Whole along = minus(b, a);
     const Whole from = minus(x.x, {a[0] * x.w, a[1] * x.w, a[2] * x.w});
     if (test::cross(along, from) != Whole{}) return false;
-    const Integer place = times(along, from);
-    return place >= 0 && place <= times(along, along) * x.w;
+    const Integer place = dot(along, from);
+    return place >= 0 && place <= dot(along, along) * x.w;
   }
 
  private:
   struct Side {
     std::vector<Whole> corners;
     Whole inwards;
-    [[nodiscard]] Integer height(const Whole& x) const { return times(inwards, minus(x, corners[0])); }
+    [[nodiscard]] Integer height(const Whole& x) const { return dot(inwards, minus(x, corners[0])); }
     [[nodiscard]] Integer height(const WeightedPoint& x) const {
       const Whole& a = corners[0];
-      return times(inwards, minus(x.x, {a[0] * x.w, a[1] * x.w, a[2] * x.w}));
+      return dot(inwards, minus(x.x, {a[0] * x.w, a[1] * x.w, a[2] * x.w}));
     }
   };
 

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
 #include <map>
 #include <span>
@@ -14,6 +13,7 @@
 
 #include "dartcast/mesh_data.hpp"
 #include "mesh/cell_types.hpp"
+#include "support/exact_vectors.hpp"
 
 namespace dartcast::test {
 
@@ -49,17 +49,7 @@ inline int exact_sign(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d
   const double bound = r.x * (p.y * q.z + p.z * q.y) + r.y * (p.z * q.x + p.x * q.z) + r.z * (p.x * q.y + p.y * q.x);
   if (std::abs(value) > 1e-14 * bound) return value > 0 ? 1 : -1;
 
-  using Rational = boost::multiprecision::cpp_rational;
-  std::array<std::array<Rational, 3>, 3> m;
-  const std::array<Vec3, 3> ends = {b, c, d};
-  for (std::size_t i = 0; i < 3; ++i) {
-    m[i] = {Rational(ends[i].x) - Rational(a.x), Rational(ends[i].y) - Rational(a.y),
-            Rational(ends[i].z) - Rational(a.z)};
-  }
-  const Rational det = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) +
-                       m[0][1] * (m[1][2] * m[2][0] - m[1][0] * m[2][2]) +
-                       m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-  return det.sign();
+  return exact_volume6(a, b, c, d).sign();
 }
 
 /// Calls visit(a, b, c, d) for each simplex of the cell's pulling triangulation: the cone from its lowest vertex over

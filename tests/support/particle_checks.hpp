@@ -1,5 +1,4 @@
-// What must hold of every particle after every call, checked without the library's predicates; and comparison to the
-// bit.
+// Checks of every particle after every call, without the library's predicates, and comparison to the bit.
 #pragma once
 
 #include <bit>
@@ -50,6 +49,14 @@ inline bool same_bits(const std::vector<ParticleState>& a, const Particles& b) {
     if (!same_bits(a[i], b[i])) return false;
   }
   return true;
+}
+
+inline Cell cell_at(Environment& environment, const Vec3& x) { return environment.locate(x).simplex.cell; }
+
+inline std::vector<Vec3> positions_of(const Particles& particles) {
+  std::vector<Vec3> all;
+  for (const ParticleState& s : particles.states()) all.push_back(s.position);
+  return all;
 }
 
 /// Uniform points in a box.

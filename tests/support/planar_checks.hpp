@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <boost/multiprecision/cpp_int.hpp>
 #include <map>
 #include <queue>
 #include <set>
@@ -13,12 +12,12 @@
 #include <vector>
 
 #include "dartcast/mesh_data.hpp"
+#include "support/exact_vectors.hpp"
 
 namespace dartcast::test {
 
 /// Sign of det[b - a, c - a] in rationals.
 inline int plane_sign(const Vec3& a, const Vec3& b, const Vec3& c) {
-  using Rational = boost::multiprecision::cpp_rational;
   const auto minus = [](double x, double y) { return Rational(Rational(x) - Rational(y)); };
   const Rational det = minus(b.x, a.x) * minus(c.y, a.y) - minus(b.y, a.y) * minus(c.x, a.x);
   return det.sign();

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "base/mat3.hpp"
+#include "dynamics/mat3.hpp"
 
 namespace dartcast::test {
 

@@ -179,82 +179,120 @@ inline std::string gmsh_22_binary(const MeshData& mesh, bool swapped) {
   return b.text("\n$EndElements\n").out;
 }
 
-/// The mixed or planar mesh in Gmsh 4.0 or 4.1, binary. One entity for each tag. `short_sizes`: of 4 bytes (4.1).
-inline std::string gmsh_4_binary(const MeshData& mesh, bool v41, bool swapped, bool short_sizes = false) {
-  Bytes b(swapped);
-  const auto size = [&](std::size_t n) {
-    short_sizes ? b.number(static_cast<std::uint32_t>(n)) : b.number(static_cast<std::uint64_t>(n));
-  };
-  const auto integer = [&](std::int64_t n) { b.number(static_cast<std::int32_t>(n)); };
-  const auto node = [&](std::size_t n) { v41 ? size(n) : integer(static_cast<std::int64_t>(n)); };
-  b.text(v41 ? (short_sizes ? "$MeshFormat\n4.1 1 4\n" : "$MeshFormat\n4.1 1 8\n") : "$MeshFormat\n4 1 8\n")
-      .number<std::int32_t>(1)
-      .text("\n$EndMeshFormat\n$Entities\n");
-  const bool planar = mesh.dimension() == 2;
-  for (const std::size_t n : planar ? std::array<std::size_t, 4>{1, 2, 3, 0} : std::array<std::size_t, 4>{1, 1, 2, 3})
-    size(n);
-  integer(1);  // a point
-  for (int k = 0; k < (v41 ? 3 : 6); ++k) b.number(0.5);
-  size(0);
-  const auto entity = [&](int tag, int group, int boundary) {
+/// Writes Gmsh 4.0 or 4.1, binary, section by section.
+class Gmsh4Writer {
+ public:
+  Gmsh4Writer(const MeshData& mesh, bool v41, bool swapped, bool short_sizes)
+      : mesh_(mesh), v41_(v41), short_sizes_(short_sizes), b_(swapped) {}
+
+  std::string write() {
+    head();
+    entities();
+    nodes();
+    elements();
+    return b_.out;
+  }
+
+ private:
+  void size(std::size_t n) {
+    short_sizes_ ? b_.number(static_cast<std::uint32_t>(n)) : b_.number(static_cast<std::uint64_t>(n));
+  }
+  void integer(std::int64_t n) { b_.number(static_cast<std::int32_t>(n)); }
+  void node(std::size_t n) { v41_ ? size(n) : integer(static_cast<std::int64_t>(n)); }
+
+  void head() {
+    b_.text(v41_ ? (short_sizes_ ? "$MeshFormat\n4.1 1 4\n" : "$MeshFormat\n4.1 1 8\n") : "$MeshFormat\n4 1 8\n")
+        .number<std::int32_t>(1)
+        .text("\n$EndMeshFormat\n");
+  }
+
+  void entity(int tag, int group, int boundary) {
     integer(tag);
-    for (int k = 0; k < 6; ++k) b.number(0.5);
+    for (int k = 0; k < 6; ++k) b_.number(0.5);
     size(group != 0 ? 1 : 0);
     if (group != 0) integer(group);
     size(boundary != 0 ? 1 : 0);
     if (boundary != 0) integer(boundary);
-  };
-  if (!planar) entity(7, 0, 1);
-  entity(1, 10, -7);
-  entity(2, -11, 0);
-  for (const int tag : {1, 2, 3}) entity(tag, tag, 1);
-  b.text("\n$EndEntities\n$Nodes\n");
-  size(2);
-  size(mesh.points.size());
-  if (v41) {
-    size(1);
-    size(mesh.points.size());
   }
+  void entities() {
+    b_.text("$Entities\n");
+    const bool planar = mesh_.dimension() == 2;
+    for (const std::size_t n : planar ? std::array<std::size_t, 4>{1, 2, 3, 0} : std::array<std::size_t, 4>{1, 1, 2, 3})
+      size(n);
+    integer(1);  // a point
+    for (int k = 0; k < (v41_ ? 3 : 6); ++k) b_.number(0.5);
+    size(0);
+    if (!planar) entity(7, 0, 1);
+    entity(1, 10, -7);
+    entity(2, -11, 0);
+    for (const int tag : {1, 2, 3}) entity(tag, tag, 1);
+    b_.text("\n$EndEntities\n");
+  }
+
   // The first point alone, with a parameter on its curve; then the others.
-  for (const bool first : {true, false}) {
-    const std::size_t begin = first ? 0 : 1;
-    const std::size_t end = first ? 1 : mesh.points.size();
-    integer(v41 ? (first ? 1 : 3) : 7);
-    integer(v41 ? 7 : (first ? 1 : 3));
-    integer(first ? 1 : 0);
-    size(end - begin);
-    for (std::size_t p = begin; v41 && p < end; ++p) size(p + 1);
-    for (std::size_t p = begin; p < end; ++p) {
-      if (!v41) node(p + 1);
-      b.number(mesh.points[p].x).number(mesh.points[p].y).number(mesh.points[p].z);
-      if (first) b.number(0.25);
+  void nodes() {
+    b_.text("$Nodes\n");
+    size(2);
+    size(mesh_.points.size());
+    if (v41_) {
+      size(1);
+      size(mesh_.points.size());
     }
+    for (const bool first : {true, false}) {
+      const std::size_t begin = first ? 0 : 1;
+      const std::size_t end = first ? 1 : mesh_.points.size();
+      integer(v41_ ? (first ? 1 : 3) : 7);
+      integer(v41_ ? 7 : (first ? 1 : 3));
+      integer(first ? 1 : 0);
+      size(end - begin);
+      for (std::size_t p = begin; v41_ && p < end; ++p) size(p + 1);
+      for (std::size_t p = begin; p < end; ++p) {
+        if (!v41_) node(p + 1);
+        b_.number(mesh_.points[p].x).number(mesh_.points[p].y).number(mesh_.points[p].z);
+        if (first) b_.number(0.25);
+      }
+    }
+    b_.text("\n$EndNodes\n");
   }
-  b.text("\n$EndNodes\n$Elements\n");
-  size(mesh.cell_count() + mesh.patch_tags.size());
-  size(mesh.cell_count() + mesh.patch_tags.size());
-  if (v41) {
-    size(1);
-    size(mesh.cell_count() + mesh.patch_tags.size());
-  }
-  std::size_t number = 1;
-  const int dimension = static_cast<int>(mesh.dimension());
-  const auto element = [&](int of, int tag, int type, std::span<const std::uint32_t> corners) {
-    integer(v41 ? of : tag);
-    integer(v41 ? tag : of);
+
+  void element(int of, int tag, int type, std::span<const std::uint32_t> corners) {
+    integer(v41_ ? of : tag);
+    integer(v41_ ? tag : of);
     integer(type);
     size(1);
-    node(number++);
+    node(number_++);
     for (const std::uint32_t v : corners) node(v + 1);
-  };
-  for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) {
-    const std::size_t n = mesh.patch_offsets[f + 1] - mesh.patch_offsets[f];
-    element(dimension - 1, mesh.patch_tags[f] - 9, gmsh_face_type(n),
-            {mesh.patch_faces.data() + mesh.patch_offsets[f], n});
   }
-  for (std::size_t c = 0; c < mesh.cell_count(); ++c)
-    element(dimension, mesh.regions[c], gmsh_type(mesh.types[c]), mesh.cell(c));
-  return b.text("\n$EndElements\n").out;
+  void elements() {
+    b_.text("$Elements\n");
+    const std::size_t count = mesh_.cell_count() + mesh_.patch_tags.size();
+    size(count);
+    size(count);
+    if (v41_) {
+      size(1);
+      size(count);
+    }
+    const int dimension = static_cast<int>(mesh_.dimension());
+    for (std::size_t f = 0; f < mesh_.patch_tags.size(); ++f) {
+      const std::size_t n = mesh_.patch_offsets[f + 1] - mesh_.patch_offsets[f];
+      element(dimension - 1, mesh_.patch_tags[f] - 9, gmsh_face_type(n),
+              {mesh_.patch_faces.data() + mesh_.patch_offsets[f], n});
+    }
+    for (std::size_t c = 0; c < mesh_.cell_count(); ++c)
+      element(dimension, mesh_.regions[c], gmsh_type(mesh_.types[c]), mesh_.cell(c));
+    b_.text("\n$EndElements\n");
+  }
+
+  const MeshData& mesh_;
+  bool v41_;
+  bool short_sizes_;
+  Bytes b_;
+  std::size_t number_ = 1;
+};
+
+/// The mixed or planar mesh in Gmsh 4.0 or 4.1, binary. One entity for each tag. `short_sizes`: of 4 bytes (4.1).
+inline std::string gmsh_4_binary(const MeshData& mesh, bool v41, bool swapped, bool short_sizes = false) {
+  return Gmsh4Writer(mesh, v41, swapped, short_sizes).write();
 }
 
 /// The mixed or planar mesh in Gmsh 1, with node numbers far apart.

@@ -1,4 +1,4 @@
-// Scenes with spheres in them, and what is true of them by all walls of the scene, without a search.
+// Scenes with spheres, and the truth about them from all walls of the scene, without a search.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,21 +13,20 @@
 #include "dartcast/generators.hpp"
 #include "dartcast/response.hpp"
 #include "dartcast/spheres.hpp"
+#include "dynamics/near_walls.hpp"
+#include "support/meshes.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::test {
 
-/// n x n x n unit cubes, or cells cut from them.
-inline MeshData cubes(std::uint32_t n, CellType type = CellType::hexahedron, double blocked_share = 0.0,
-                      double jitter = 0.0, std::uint64_t seed = 1) {
-  BoxOptions options;
-  options.cells = {n, n, n};
-  options.size = {double(n), double(n), double(n)};
-  options.type = type;
-  options.blocked_share = blocked_share;
-  options.jitter = jitter;
-  options.seed = seed;
-  return generate_box(options);
+/// Walls that reflect with little loss, and walls that let slide.
+inline const WallResponses& bouncing() {
+  static const WallResponses responses(WallResponse{WallResponseKind::reflect, 0.9, 0.1});
+  return responses;
+}
+inline const WallResponses& sliding() {
+  static const WallResponses responses(WallResponse{WallResponseKind::slide, 0.0, 0.0});
+  return responses;
 }
 
 /// All fan triangles of wall faces, seen from free cells.

@@ -14,6 +14,7 @@
 #include "dartcast/mesh_data.hpp"
 #include "dartcast/predicates.hpp"
 #include "dartcast/surface.hpp"
+#include "support/random_vectors.hpp"
 
 namespace dartcast::test {
 
@@ -176,9 +177,8 @@ inline SurfacePlace random_place(const Surface& surface, Random& random) {
   return surface.place(t, {random.uniform(0.01, 1.0), random.uniform(0.01, 1.0), random.uniform(0.01, 1.0)});
 }
 
-inline Vec3 random_vector(Random& random) {
-  return {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
-}
+/// The distance between two points.
+inline double gap(const Vec3& a, const Vec3& b) { return norm(a - b); }
 
 /// The triangle of a face of the mesh, by its number there.
 inline SimplexId triangle_of(const Surface& surface, std::uint32_t face, std::uint16_t number = 0) {

@@ -1,7 +1,8 @@
-// How much a test does: quick, full (DARTCAST_FULL is set), and a twentieth of either under sanitizers
+// The size of tests: quick, full (DARTCAST_FULL is set), and a twentieth of either under sanitizers
 // (DARTCAST_SANITIZED).
 #pragma once
 
+#include <cstddef>
 #include <cstdlib>
 
 namespace dartcast::test {
@@ -15,5 +16,15 @@ Count scaled(Count quick, Count full) {
   const Count count = full_tier() ? full : quick;
   return sanitized() ? count / 20 : count;
 }
+
+/// The distance between the cases of a list that are taken: all in the full tier, fewer in the quick one and under
+/// sanitizers.
+inline std::size_t stride(std::size_t quick, std::size_t under_sanitizers) {
+  return full_tier() ? 1 : sanitized() ? under_sanitizers : quick;
+}
+
+/// Whether a mesh of so many points only repeats smaller ones at a larger size. Under sanitizers such meshes are left
+/// to the full tier.
+inline bool repeats_smaller_ones(std::size_t points) { return sanitized() && !full_tier() && points > 1000; }
 
 }  // namespace dartcast::test

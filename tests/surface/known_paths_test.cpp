@@ -14,9 +14,9 @@
 
 namespace dartcast::known_paths_test {
 
-constexpr double pi = std::numbers::pi;
+using test::gap;
 
-double gap(const Vec3& a, const Vec3& b) { return norm(a - b); }
+constexpr double pi = std::numbers::pi;
 
 // The tetrahedron rolls over the triangular lattice and marks its points: (i, j) is corner i mod 2 + 2 (j mod 2).
 Vec3 on_tetrahedron(const MeshData& mesh, long double u, long double v) {

@@ -18,7 +18,7 @@
 
 namespace dartcast::surface_test {
 
-double gap(const Vec3& a, const Vec3& b) { return norm(a - b); }
+using test::gap;
 
 std::string first_defect(MeshData mesh) {
   const MeshReport report = check_and_repair_surface(mesh);

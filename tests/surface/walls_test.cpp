@@ -19,7 +19,7 @@
 
 namespace dartcast::walls_test {
 
-double gap(const Vec3& a, const Vec3& b) { return norm(a - b); }
+using test::gap;
 
 // Which free faces hang together by edges, from the mesh alone: a particle never changes its part.
 std::vector<std::uint32_t> parts_of(const MeshData& mesh) {

@@ -12,11 +12,14 @@
 #include "dartcast/combinatorial_map.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
+#include "support/exact_vectors.hpp"
+#include "support/meshes.hpp"
 #include "support/mixed_mesh.hpp"
 
 namespace dartcast::shape_test {
 
-using Rational = boost::multiprecision::cpp_rational;
+using test::exact_volume6;
+using test::Rational;
 
 // One separate cell of the type for every numbering of its corners.
 CombinatorialMap every_numbering(CellType type, std::uint32_t corners) {
@@ -59,8 +62,7 @@ MeshData meshes(int which) {
   o.cells = {2, 3, 2};
   o.jitter = 0.7;
   o.seed = 11;
-  if (which < 4) o.type = static_cast<CellType>(which);
-  o.mixed = which == 4;
+  test::set_kind(o, which);
   if (which < 5) return generate_box(o);
   if (which == 6) return test::mixed_mesh();
   OctahedraOptions p;
@@ -118,17 +120,6 @@ TEST(Shapes, EveryFacetIsMatchedOnce) {
   }
 }
 
-Rational determinant(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  const auto minus = [&](const Vec3& p) {
-    return std::array<Rational, 3>{Rational(p.x) - Rational(a.x), Rational(p.y) - Rational(a.y),
-                                   Rational(p.z) - Rational(a.z)};
-  };
-  const auto u = minus(b);
-  const auto v = minus(c);
-  const auto w = minus(d);
-  return u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) + u[2] * (v[0] * w[1] - v[1] * w[0]);
-}
-
 TEST(Shapes, SimplicesSumToTheVolumeWithinTheFans) {
   for (int which = 0; which < mesh_kinds; ++which) {
     for (const MeshData& mesh : numbered_meshes(which)) {
@@ -138,7 +129,7 @@ TEST(Shapes, SimplicesSumToTheVolumeWithinTheFans) {
         const auto at = [&](std::uint16_t k) { return mesh.points[v.vertex(k).value]; };
         Rational simplices = 0;
         for (const auto& s : v.shape().simplices()) {
-          const Rational volume = determinant(at(s.vertex[0]), at(s.vertex[1]), at(s.vertex[2]), at(s.vertex[3]));
+          const Rational volume = exact_volume6(at(s.vertex[0]), at(s.vertex[1]), at(s.vertex[2]), at(s.vertex[3]));
           EXPECT_GT(volume, 0);
           simplices += volume;
         }
@@ -150,7 +141,7 @@ TEST(Shapes, SimplicesSumToTheVolumeWithinTheFans) {
           const auto corners = v.shape().corners(f);
           for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
             EXPECT_LT(v.vertex(corners[0]), v.vertex(corners[k]));
-            surface += determinant(anywhere, at(corners[0]), at(corners[k]), at(corners[k + 1]));
+            surface += exact_volume6(anywhere, at(corners[0]), at(corners[k]), at(corners[k + 1]));
           }
         }
         EXPECT_EQ(simplices, surface) << "cell " << map.source(c);

@@ -13,9 +13,12 @@
 #include "dartcast/generators.hpp"
 #include "dartcast/map_edits.hpp"
 #include "mesh/cell_types.hpp"
+#include "support/darts.hpp"
 #include "support/mixed_mesh.hpp"
 
 namespace dartcast::map_test {
+
+using test::all_darts;
 
 using FaceKey = std::vector<std::uint32_t>;  // sorted corners
 
@@ -61,14 +64,6 @@ INSTANTIATE_TEST_SUITE_P(CombinatorialMap, EveryMesh,
                                               }},
                                          Case{"handmade", [] { return test::mixed_mesh(); }}),
                          [](const auto& i) { return std::string(i.param.name); });
-
-std::vector<Dart> all_darts(const CombinatorialMap& map) {
-  std::vector<Dart> darts;
-  for (const Cell c : map.cells()) {
-    for (std::uint16_t d = 0; d < map.shape(c).dart_count(); ++d) darts.push_back({c, d});
-  }
-  return darts;
-}
 
 FaceKey key_of(const CombinatorialMap& map, Dart d) {
   FaceKey key;

@@ -10,12 +10,14 @@
 #include <unordered_map>
 
 #include "dartcast/error.hpp"
+#include "support/darts.hpp"
 #include "support/edit_meshes.hpp"
 #include "support/random_edits.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::edit_cgal_test {
 
+using test::all_darts;
 using test::CellBag;
 using test::Edit;
 using test::EditKind;
@@ -32,19 +34,11 @@ auto point_of(Vertex v) {
     return typename LccOf<3>::Point(v.value, 0.0, 0.0);
 }
 
-std::vector<Dart> darts_of(const CombinatorialMap& map) {
-  std::vector<Dart> darts;
-  for (const Cell c : map.cells()) {
-    for (std::uint16_t d = 0; d < map.shape(c).dart_count(); ++d) darts.push_back({c, d});
-  }
-  return darts;
-}
-
 // The map as a complex of CGAL's, dart by dart; a vertex's number is its x.
 template <unsigned dimension>
 auto copy(const CombinatorialMap& map, LccOf<dimension>& lcc) {
   std::map<Dart, typename LccOf<dimension>::Dart_handle> handle;
-  const std::vector<Dart> darts = darts_of(map);
+  const std::vector<Dart> darts = all_darts(map);
   for (const Dart d : darts) handle[d] = lcc.create_dart();
   for (const Dart d : darts) {
     lcc.basic_link_beta_1(handle[d], handle[map.phi1(d)]);

@@ -8,23 +8,22 @@
 
 #include "dartcast/error.hpp"
 #include "support/edit_meshes.hpp"
+#include "support/exact_vectors.hpp"
 #include "support/random_edits.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::edit_flat_test {
 
 using test::CellBag;
+using test::cross;
+using test::dot;
 using test::Edit;
 using test::EditKind;
+using test::minus;
 
 using Point = std::array<std::int64_t, 3>;
 
-Point minus(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Point cross(const Point& a, const Point& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 bool is_zero(const Point& a) { return a == Point{0, 0, 0}; }
-std::int64_t dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 // A box of cells on a lattice fine enough to halve edges some times: all faces stay flat, all positions exact.
 class Lattice {

@@ -74,21 +74,23 @@ void expect_found(const MeshData& mesh, const char* constraint,
   EXPECT_NE(named->message.find(constraint), std::string::npos);
 }
 
-class Planted : public testing::TestWithParam<int> {
+class Planted : public testing::TestWithParam<CellType> {
  protected:
   static MeshData mesh() {
-    if (GetParam() == 4) {
+    if (GetParam() == CellType::polyhedron) {
       OctahedraOptions o;
       o.cells = {3, 3, 3};
       return generate_octahedra(o);
     }
     BoxOptions o;
     o.cells = {3, 3, 3};
-    o.type = static_cast<CellType>(GetParam());
+    o.type = GetParam();
     return generate_box(o);
   }
 };
-INSTANTIATE_TEST_SUITE_P(Integrity, Planted, testing::Range(0, 5),
+INSTANTIATE_TEST_SUITE_P(Integrity, Planted,
+                         testing::Values(CellType::tetrahedron, CellType::hexahedron, CellType::prism,
+                                         CellType::pyramid, CellType::polyhedron),
                          [](const auto& i) { return std::string(cell_type_names[static_cast<std::size_t>(i.param)]); });
 
 TEST_P(Planted, VertexOutOfRange) {

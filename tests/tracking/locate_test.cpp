@@ -10,6 +10,7 @@
 #include "base/random.hpp"
 #include "dartcast/generators.hpp"
 #include "support/generate_checks.hpp"
+#include "support/meshes.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::locate_test {
@@ -76,8 +77,7 @@ MeshData mesh_of(int which) {
   o.size = {3, 3, 3};
   o.jitter = 0.4;
   o.blocked_share = 0.3;
-  if (which < 4) o.type = static_cast<CellType>(which);
-  o.mixed = which == 4;
+  test::set_kind(o, which);
   return generate_box(o);
 }
 

@@ -11,6 +11,7 @@
 #include "base/random.hpp"
 #include "complex/simplex.hpp"
 #include "dartcast/environment.hpp"
+#include "support/random_vectors.hpp"
 #include "support/tier.hpp"
 #include "tracking/batch/batch.hpp"
 #include "tracking/batch/coordinate_bounds.hpp"
@@ -18,16 +19,14 @@
 
 namespace dartcast::test::memo_test {
 
-Vec3 any_vector(Random& random) { return {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)}; }
-
 // One tetrahedron: of any shape, at any distance from the origin, of any size.
 std::optional<CellComplex> any_tetrahedron(Random& random) {
   const double size = std::exp2(random.uniform(-40.0, 40.0));
   const double flat = std::exp2(random.uniform(-6.0, 0.0));
-  const Vec3 away = any_vector(random) * (size * std::exp2(random.uniform(-2.0, 44.0)));
+  const Vec3 away = random_vector(random) * (size * std::exp2(random.uniform(-2.0, 44.0)));
   MeshData mesh;
   for (unsigned i = 0; i < 4; ++i) {
-    Vec3 v = any_vector(random) * size;
+    Vec3 v = random_vector(random) * size;
     v.z *= flat;
     mesh.points.push_back(Vec3{v.y, v.z, v.x} + away);
   }

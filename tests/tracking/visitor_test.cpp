@@ -5,6 +5,7 @@
 
 #include "base/random.hpp"
 #include "dartcast/generators.hpp"
+#include "support/meshes.hpp"
 #include "tracking/locate.hpp"
 #include "tracking/walk.hpp"
 
@@ -15,16 +16,19 @@ struct Left {
   unsigned facet;
 };
 
+MeshData jittered_box(int kind) {
+  BoxOptions o;
+  o.cells = {5, 5, 5};
+  o.size = {5, 5, 5};
+  o.jitter = 0.4;
+  o.blocked_share = 0.1;
+  test::set_kind(o, kind);
+  return generate_box(o);
+}
+
 TEST(Visitor, SeesAChainOfNeighbours) {
   for (int which = 0; which < 5; ++which) {
-    BoxOptions o;
-    o.cells = {5, 5, 5};
-    o.size = {5, 5, 5};
-    o.jitter = 0.4;
-    o.blocked_share = 0.1;
-    if (which < 4) o.type = static_cast<CellType>(which);
-    o.mixed = which == 4;
-    const CellComplex complex(generate_box(o));
+    const CellComplex complex(jittered_box(which));
     const Locator locator(complex);
     const auto space = current_space(complex);
     Random random(static_cast<std::uint64_t>(which));

@@ -1,18 +1,11 @@
-// Matrices of 3 by 3 and rotations: what shape matching needs, nothing else.
+// Arithmetic of 3 by 3 matrices and of rotations: the part that shape matching needs.
 #pragma once
 
-#include "dartcast/vec3.hpp"
+#include <cmath>
+
+#include "dartcast/dynamics.hpp"
 
 namespace dartcast {
-
-/// A matrix by columns: the images of the unit vectors.
-struct Mat3 {
-  Vec3 x = {1.0, 0.0, 0.0};
-  Vec3 y = {0.0, 1.0, 0.0};
-  Vec3 z = {0.0, 0.0, 1.0};
-
-  constexpr bool operator==(const Mat3&) const = default;
-};
 
 constexpr Mat3 operator+(const Mat3& a, const Mat3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 constexpr Mat3 operator-(const Mat3& a, const Mat3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
@@ -21,31 +14,23 @@ constexpr Vec3 operator*(const Mat3& a, const Vec3& v) { return (a.x * v.x + a.y
 constexpr Mat3 operator*(const Mat3& a, const Mat3& b) { return {a * b.x, a * b.y, a * b.z}; }
 
 constexpr Mat3 zero_matrix() { return {{}, {}, {}}; }
-/// The product a b^T.
+/// a b^T.
 constexpr Mat3 outer(const Vec3& a, const Vec3& b) { return {a * b.x, a * b.y, a * b.z}; }
 constexpr double determinant(const Mat3& a) { return dot(a.x, cross(a.y, a.z)); }
 /// Sum of the products of entries: the trace of a^T b.
 constexpr double dot(const Mat3& a, const Mat3& b) { return (dot(a.x, b.x) + dot(a.y, b.y)) + dot(a.z, b.z); }
 
-/// A quaternion w + v. One of length 1 is a rotation.
-struct Quaternion {
-  double w = 1.0;
-  Vec3 v;
-
-  constexpr bool operator==(const Quaternion&) const = default;
-};
-
 constexpr Quaternion operator*(const Quaternion& a, const Quaternion& b) {
   return {a.w * b.w - dot(a.v, b.v), (b.v * a.w + a.v * b.w) + cross(a.v, b.v)};
 }
 
-/// The quaternion of the same direction with length 1. Precondition: not 0.
+/// The quaternion scaled to length 1. Precondition: it is not 0.
 inline Quaternion normalized(const Quaternion& q) {
   const double s = 1.0 / std::sqrt(q.w * q.w + dot(q.v, q.v));
   return {q.w * s, q.v * s};
 }
 
-/// The matrix of a rotation. Precondition: length 1.
+/// The rotation's matrix. Precondition: of length 1.
 constexpr Mat3 matrix(const Quaternion& q) {
   const Vec3 d = q.v + q.v;
   const Vec3 w = d * q.w;
