@@ -93,7 +93,7 @@ class SquaresBuilder {
     if (!blocked_.empty()) mesh_.free.push_back(blocked ? 0 : 1);
   }
 
-  // What hexagons leave of a square.
+  // The part of a square that hexagons leave.
   void add_square(std::uint32_t i, std::uint32_t j, bool cut) {
     const std::array<std::uint32_t, 4> p = {point(i, j), point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)};
     if (p[0] == merged || p[2] == merged) return;

@@ -44,7 +44,7 @@ double smooth(double x) {
   return x * x * (3 - 2 * x);
 }
 
-// What a point of a section carries. Points between others carry the mixture, so everything varies smoothly.
+// Data of a section's point. Points between others mix their data, so that all of it varies smoothly.
 struct Node {
   Vec3 position;
   Vec3 from_centre;
@@ -91,7 +91,7 @@ class VesselHalf {
   [[nodiscard]] const std::vector<Slice>& slices() const { return slices_; }
   [[nodiscard]] std::size_t carina() const { return trunk_steps_; }
 
-  // The last slice whose tissue still reaches the other half's.
+  // The last slice with tissue that reaches the tissue of the other half.
   [[nodiscard]] std::size_t last_joined() const { return last_joined_; }
 
  private:

@@ -20,14 +20,14 @@ using FaceTriangle = std::array<std::uint32_t, 3>;
 
 double largest(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-/// A triangle of a face's fan, with what is asked of it again and again.
+/// A triangle of a face's fan, with its box and normal, which many tests use.
 struct FacePiece {
   FaceTriangle corners;
   Vec3 normal;
   double size;
 };
 
-/// Normal of largest component 1: no product of coordinates overflows in what follows.
+/// Normal of largest component 1, so that no product of coordinates overflows later.
 Vec3 normal_of(const MeshData& mesh, const FaceTriangle& t) {
   const auto& p = mesh.points;
   Vec3 u = p[t[1]] - p[t[0]];

@@ -34,7 +34,7 @@ void check(const DecomposeOptions& o) {
   }
 }
 
-/// The points of all rings, one ring after another. Edge i begins in point i.
+/// The points of all rings, one ring after another. Edge i starts at point i.
 class Drawing {
  public:
   explicit Drawing(std::span<const Ring> rings) : rings_(rings) {

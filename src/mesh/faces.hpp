@@ -1,4 +1,4 @@
-// Which faces of the cells are the same, and which lie on the boundary.
+// Matches of equal faces of cells, and the faces on the boundary.
 #pragma once
 
 #include <array>

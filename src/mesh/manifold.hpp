@@ -14,8 +14,8 @@ struct Pinches {
       points;  ///< points where the boundary of one part touches itself, ends of such edges left out
 };
 
-/// In the plane points alone can be pinched. Precondition: what match_faces() found, of cells that are oriented. Cost:
-/// n log n in the boundary faces.
+/// In the plane points alone can be pinched. Precondition: the result of match_faces() for oriented cells. Cost: n
+/// log n in the boundary faces.
 Pinches find_pinches(const FaceMatch& match);
 
 }  // namespace dartcast

@@ -77,8 +77,9 @@ class Cells {
 
 }  // namespace
 
-// Two strictly convex cells whose union is strictly convex at both ends of their edge are so everywhere; then all
-// triangles of corners are positive, whichever a fan begins in. Corners only widen: one look at each edge is enough.
+// The union of two strictly convex cells is strictly convex where it is so at both ends of their common edge. Then
+// all triangles of corners are positive, for a fan from any corner. Angles at corners only grow, so one look at each
+// edge is enough.
 std::vector<std::uint32_t> merge_convex(const PlanarTriangulation& triangles, std::span<const Vec3> points,
                                         std::uint32_t max_corners) {
   Cells cells(triangles);

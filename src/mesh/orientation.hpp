@@ -1,4 +1,4 @@
-// Which way round the cells are: exact signs of their corners, mirrored where all is inside out.
+// Orientation of cells, by exact signs of their corners. Cells that are inside out are mirrored.
 #pragma once
 
 #include <cstddef>

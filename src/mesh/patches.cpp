@@ -34,7 +34,7 @@ MeshData take_patch_faces(MeshData& mesh) {
   return out;
 }
 
-/// The free cells alone: what is on their boundary is a wall. `source`: their numbers in the file.
+/// The free cells alone, whose boundary is the walls. `source`: their numbers in the file.
 MeshData free_cells(const MeshData& mesh) {
   MeshData out;
   out.points = mesh.points;

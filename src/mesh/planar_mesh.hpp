@@ -11,8 +11,8 @@
 
 namespace dartcast {
 
-/// Puts points that have one z in common to z = 0 (repair: plane). Refuses a mesh whose z differ (no_volume): a surface
-/// in space. `point_source`: per point, its index in the input. Precondition: a mesh of the plane, finite coordinates.
+/// Moves points that share one z to z = 0 (repair: plane). Refuses a mesh whose z differ (no_volume): a surface in
+/// space. `point_source`: per point, its index in the input. Precondition: a mesh of the plane, finite coordinates.
 void put_in_plane(MeshData& mesh, const std::vector<std::uint32_t>& point_source, MeshReport& report);
 
 /// find_unmatched_faces() in the plane. Two boundary edges lie against each other where they are on one line and have

@@ -1,4 +1,5 @@
-// Segments in a triangulation of the plane: what they cross is taken out, and the two sides of the gap are filled.
+// Inserts segments into a triangulation of the plane: removes the triangles that they cross, and fills both sides of
+// the gap.
 #include <algorithm>
 
 #include "dartcast/error.hpp"
@@ -30,7 +31,7 @@ std::optional<Obstacle> PlanarTriangulation::insert_segment(std::uint32_t a, std
   return std::nullopt;
 }
 
-/// Of a point c on the line through a and b: whether it is on b's side of a.
+/// Whether a point c on the line through a and b is on b's side of a.
 bool PlanarTriangulation::is_ahead(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
   const Vec3& p = points_[a];
   const Vec3& q = points_[b];

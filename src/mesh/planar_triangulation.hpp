@@ -11,16 +11,16 @@
 
 namespace dartcast::detail {
 
-/// What keeps a segment out: a point on it, or a segment that it crosses. The other one is `none`.
+/// The obstacle of a segment: a point on it, or a segment that it crosses. The other one is `none`.
 struct Obstacle {
   std::uint32_t point;
   std::uint32_t segment;
 };
 
-/// Triangles in half-edges: triangle t has 3 t, 3 t + 1 and 3 t + 2, counterclockwise; each begins in its origin and
+/// Triangles in half-edges: triangle t has 3 t, 3 t + 1 and 3 t + 2, counterclockwise; each starts at its origin and
 /// has its triangle to the left. Every triangle is strictly positive at all times, by exact signs; the empty-circle
-/// test that makes them well shaped is in doubles: it may be wrong, and then only the shape suffers. It ends all the
-/// same: what is flipped for a new point gains that point an edge, and what is flipped for a segment is counted.
+/// test that makes them well shaped is in doubles. It may be wrong, which affects the shape alone. It ends in any
+/// case: a flip for a new point gives that point an edge, and flips for a segment are counted.
 ///
 /// This work is based on C. L. Lawson, "Software for C1 surface interpolation", 1977 (flips); O. Devillers, S. Pion, M.
 /// Teillaud, "Walking in a triangulation", 2002; N. Amenta, S. Choi, G. Rote, "Incremental constructions con BRIO",
@@ -31,9 +31,9 @@ class PlanarTriangulation {
  public:
   static constexpr std::uint32_t none = 0xffffffffU;
 
-  /// Of all points, in expected n log n. Preconditions: the last four are the corners of a rectangle, counterclockwise,
-  /// and the others lie strictly inside it; no two are equal; all are in the exact range; fewer than 2^28. They are not
-  /// copied.
+  /// Triangulates all points, in expected n log n. Preconditions: the last four are the corners of a rectangle,
+  /// counterclockwise, and the others lie strictly inside it; no two are equal; all are in the exact range; fewer
+  /// than 2^28. They are not copied.
   explicit PlanarTriangulation(std::span<const Vec3> points);
 
   /// Makes the segment from a to b an edge that is never flipped again, with a name (not `none`). Where that cannot be,
@@ -48,7 +48,7 @@ class PlanarTriangulation {
   [[nodiscard]] std::uint32_t twin(std::uint32_t h) const { return twin_[h]; }
   /// The name of the segment that this edge is, or `none`.
   [[nodiscard]] std::uint32_t segment(std::uint32_t h) const { return segment_[h]; }
-  /// One half-edge that begins in the point.
+  /// A half-edge that starts at the point.
   [[nodiscard]] std::uint32_t half_edge_at(std::uint32_t point) const { return at_[point]; }
 
   static constexpr std::uint32_t next(std::uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
@@ -60,7 +60,7 @@ class PlanarTriangulation {
     std::uint32_t triangle;
     std::uint32_t on_edge;
   };
-  /// A half-edge at the border of a gap, in a triangle that goes, and what takes its place.
+  /// A half-edge at the border of a gap, in a triangle that is removed, and its replacement.
   struct Side {
     std::uint32_t half_edge;
     std::uint32_t origin;
@@ -100,7 +100,7 @@ class PlanarTriangulation {
   std::vector<std::uint32_t> segment_;
   std::vector<std::uint32_t> at_;
   std::vector<std::uint32_t> open_;  // half-edges that may have to be flipped
-  std::vector<std::uint32_t> now_;   // per half-edge at the border of the gap: what takes its place; else none
+  std::vector<std::uint32_t> now_;   // per half-edge at the border of the gap: its replacement; else none
   Gap gap_;
   Random random_{1};
 };

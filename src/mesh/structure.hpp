@@ -9,8 +9,8 @@
 
 namespace dartcast {
 
-/// Sizes of arrays that must agree, offsets that must ascend, cells of one dimension, and limits of 2^29 cells and 2^32
-/// - 2 points. Defects: structure, too_large, empty. What follows may be called only if there are none.
+/// Sizes of arrays that must agree, offsets that must ascend, cells of one dimension, and limits of 2^29 cells and
+/// 2^32 - 2 points. Defects: structure, too_large, empty. The functions below may be called only if there are none.
 void check_arrays(const MeshData& mesh, MeshReport& report);
 
 /// Numbers of corners, ids in range, corners that repeat, limits of polyhedra. Defects: structure, polyhedron,

@@ -9,11 +9,13 @@
 
 #include "base/random.hpp"
 #include "dartcast/error.hpp"
+#include "support/points.hpp"
 #include "support/random_vectors.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::shape_matching_test {
 
+using test::mapped;
 using test::random_vector;
 using test::scaled;
 
@@ -29,12 +31,6 @@ std::vector<double> random_masses(std::size_t count, Random& random) {
   std::vector<double> masses(count);
   for (double& m : masses) m = random.uniform(0.1, 1.0);
   return masses;
-}
-
-std::vector<Vec3> mapped(std::span<const Vec3> points, const std::function<Vec3(const Vec3&)>& map) {
-  std::vector<Vec3> result;
-  for (const Vec3& p : points) result.push_back(map(p));
-  return result;
 }
 
 struct Matched {

@@ -12,11 +12,13 @@
 #include "dartcast/generators.hpp"
 #include "dartcast/validity.hpp"
 #include "support/meshes.hpp"
+#include "support/points.hpp"
 #include "support/random_vectors.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::first_flattening_test {
 
+using test::mapped;
 using test::random_vector;
 
 constexpr int mesh_kinds = 7;
@@ -35,12 +37,6 @@ MeshData mesh_of(int kind) {
 std::vector<Vec3> moved(std::span<const Vec3> points, Random& random, double size) {
   std::vector<Vec3> result(points.begin(), points.end());
   for (Vec3& p : result) p += random_vector(random, size);
-  return result;
-}
-
-std::vector<Vec3> mapped(std::span<const Vec3> points, const std::function<Vec3(const Vec3&)>& to) {
-  std::vector<Vec3> result;
-  for (const Vec3& p : points) result.push_back(to(p));
   return result;
 }
 

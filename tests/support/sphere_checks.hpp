@@ -15,6 +15,7 @@
 #include "dartcast/spheres.hpp"
 #include "dynamics/near_walls.hpp"
 #include "support/meshes.hpp"
+#include "support/random_vectors.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::test {
@@ -96,9 +97,7 @@ struct Swarm {
       add(x, radius, vector(speed));
     }
   }
-  Vec3 vector(double size) {
-    return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
-  }
+  Vec3 vector(double size) { return random_vector(random, size); }
   /// By the velocities, and the wall's response to them.
   SphereReport step(const WallResponses& responses, double dt = 1.0) {
     targets.clear();

@@ -7,10 +7,13 @@
 #include "base/random.hpp"
 #include "dartcast/map_edits.hpp"
 #include "mesh/cell_types.hpp"
+#include "support/generate_checks.hpp"
 #include "support/mixed_mesh.hpp"
 #include "topology/cell_form.hpp"
 
 namespace dartcast::draft_test {
+
+using test::from_lowest;
 
 using Loops = std::vector<std::vector<std::uint32_t>>;
 
@@ -38,11 +41,6 @@ void shuffle(Loops& loops, Random& random) {
     std::swap(loops[i - 1], loops[random.below(static_cast<std::uint32_t>(i))]);
   for (auto& loop : loops)
     std::rotate(loop.begin(), loop.begin() + random.below(static_cast<std::uint32_t>(loop.size())), loop.end());
-}
-
-std::vector<std::uint32_t> from_lowest(std::vector<std::uint32_t> loop) {
-  std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
-  return loop;
 }
 
 TEST(Draft, StandardTypesAreKnownHoweverTheyAreTold) {
