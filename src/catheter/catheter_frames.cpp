@@ -5,6 +5,7 @@
 
 #include "catheter/transport.hpp"
 #include "dartcast/catheter.hpp"
+#include "dartcast/cell_complex.hpp"
 #include "dartcast/error.hpp"
 
 namespace dartcast {

@@ -9,6 +9,7 @@
 #include "dartcast/events.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/simulation.hpp"
+#include "dartcast/validity.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::crowding_test {
