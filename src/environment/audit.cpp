@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/parallel.hpp"
+#include "dartcast/cell_complex.hpp"
 
 namespace dartcast {
 
