@@ -75,7 +75,7 @@ struct AddResult {
   std::uint32_t particle = 0xffffffffU;  ///< its index in the set; none (0xffffffff) unless the place is free
 };
 
-/// What update_after_edit() does with an orphaned particle: one that is in a blocked cell, or outside, after an edit.
+/// How update_after_edit() treats an orphaned particle: one that is in a blocked cell, or outside, after an edit.
 enum class OrphanPolicy : std::uint8_t {
   hold,      ///< held in the blocked cell, and carried along with it, until it is free again; outside: as relocate
   relocate,  ///< to the nearest point of the free cells; absorbed where there is none
@@ -90,7 +90,7 @@ struct OrphanedParticle {
   double distance = 0.0;  ///< from there to where it was relocated
 };
 
-/// What an edit did to a set of particles.
+/// The effect of an edit on a set of particles.
 struct UpdateReport {
   std::uint64_t touched = 0;               ///< particles in cells removed or marked, or at walls of these
   std::uint64_t located = 0;               ///< of these, the particles located again in a cell that replaced theirs

@@ -1,5 +1,5 @@
-// Vectors of four doubles, and of four points: one item in each lane. What is asked of one item is asked of four by the
-// same operations, with the same results as those of doubles, in every instruction set.
+// Vectors of four doubles, and of four points: one item in each lane. The operations on four items
+// are those on one, and give the same bits as doubles do, in every instruction set.
 #pragma once
 
 #include <algorithm>

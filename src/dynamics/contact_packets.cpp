@@ -70,7 +70,7 @@ void ContactPackets::set(std::size_t p, std::size_t l, const ContactEnds& ends, 
   corrections_[p].bound[l] = terms.position_bound;
 }
 
-// Terms are read in an order of their own, from all over memory: so they are asked for in time.
+// Terms are read in an order of their own, from all over memory: so they are prefetched.
 void ContactPackets::assign(std::span<const ContactEnds> contacts, std::span<const ContactTerms> terms,
                             std::span<const ContactBody> bodies) {
   constexpr std::size_t ahead = 16;

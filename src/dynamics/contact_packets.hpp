@@ -22,7 +22,7 @@ inline constexpr std::uint32_t packet_lanes = 4;
 using PacketNumbers = std::array<double, packet_lanes>;
 using PacketVectors = std::array<PacketNumbers, 3>;  // x, y, z
 
-/// What contacts act on: a sphere, or a wall, whose inverse mass is 0.
+/// A body that contacts act on: a sphere, or a wall, whose inverse mass is 0.
 struct alignas(32) ContactBody {
   Vec3 velocity;
   double inverse_mass = 0.0;
@@ -37,7 +37,7 @@ struct ContactEnds {
   bool loaded = false;
 };
 
-/// What is solved for: the velocity of b relative to a along the normal must not be below the bound.
+/// The condition that is solved for: the velocity of b relative to a along the normal must not be below the bound.
 struct alignas(64) ContactTerms {
   Vec3 normal;        ///< unit, from a to b
   double mass = 0.0;  ///< 1 / (sum of the inverse masses)
@@ -62,7 +62,7 @@ struct alignas(64) PacketImpulses {
   PacketNumbers normal_impulse{};
   PacketVectors tangent_impulse{};
 };
-/// What is needed for those that have impulses, and at the end.
+/// Data that is read for contacts with impulses, and at the end.
 struct alignas(64) PacketSurfaces {
   PacketNumbers friction{};
   PacketNumbers rebound{};

@@ -89,7 +89,7 @@ Environment::Members::Members(MeshData mesh, Threads all)
                                 invalid.size(), invalid.front().message));
 }
 
-// What the set kept beside earlier particles must not be read.
+// Data of earlier particles must not be read.
 void Environment::Members::adopt(Particles& particles) const {
   if (particles.size() > 0) return;
   particles = {};

@@ -1,4 +1,4 @@
-// What a set of particles has beside the states.
+// The data that a set of particles has beside the states.
 #pragma once
 
 #include <cstdint>

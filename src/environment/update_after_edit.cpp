@@ -227,7 +227,7 @@ class EditFollower {
     s.held = false;
   }
 
-  // What is kept beside a state.
+  // Updates the data that belongs to a state.
   void keep_up(std::uint32_t i) {
     const ParticleState& s = states_[i];
     if (is_removed(s.cell)) return;  // it is absorbed

@@ -103,7 +103,7 @@ class Coordinates {
   std::array<double, N> steepness_;
 };
 
-/// What a step does to the coordinates, as shares of what may be lost of each, and to the place, as shares of the
+/// The effect of a step on the coordinates, as shares of the loss allowed to each, and on the place, as shares of the
 /// distance allowed.
 template <std::size_t N>
 using Effect = std::array<double, N + 3>;

@@ -1,4 +1,4 @@
-// What a walk reads: a map, and positions at one instant.
+// The input of a walk: a map, and positions at one instant.
 #pragma once
 
 #include <cstdint>

@@ -33,7 +33,7 @@ struct BatchScene {
   bool walls_match = true;    ///< no wall is new since the caches' flags were set
 };
 
-/// What the batch did of a step: all of it, nothing, or, where the step has come to its first wall, the number of its
+/// How much of a step the batch did: all, nothing, or, where the step has come to its first wall, the number of its
 /// PartialStep; its state is unchanged then.
 using StepStatus = std::uint16_t;
 inline constexpr StepStatus step_complete = 0xffff;

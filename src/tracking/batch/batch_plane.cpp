@@ -22,7 +22,7 @@ struct Vec2x4 {
 };
 Vec2x4 from_to(const Vec3& a, const Vec3& b) { return {b.x - a.x, b.y - a.y}; }
 
-// What a step among moving vertices reads of its first triangle.
+// The data of its first triangle that a step among moving vertices reads.
 struct PlaneMove {
   const PlaneCorners& before;
   const PlaneCorners& after;

@@ -1,4 +1,4 @@
-// What the barycentric coordinates in a simplex cache (tracking/batch/simplex_cache.hpp) prove.
+// The bounds within which barycentric coordinates in a simplex cache (tracking/batch/simplex_cache.hpp) prove signs.
 #pragma once
 
 namespace dartcast::detail {

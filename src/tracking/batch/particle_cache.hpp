@@ -1,4 +1,4 @@
-// What the batch keeps of particles from one step to the next, beside their states. It never changes a result.
+// Data that the batch keeps of particles from one step to the next, beside their states. It never changes a result.
 #pragma once
 
 #include <array>

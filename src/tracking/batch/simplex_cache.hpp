@@ -1,4 +1,4 @@
-// What is kept of a particle's simplex from one step to the next: the next step then reads less of the scene.
+// A cache of each particle's simplex from one step to the next: the next step then reads less of the scene.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace dartcast::detail {
 
-/// What is kept of one particle's simplex. One value of each array per corner of the simplex. There are two kinds.
+/// The cache of one particle's simplex. One value of each array per corner of the simplex. There are two kinds.
 ///
 /// Previous geometry, where vertices move: the corners as they were at the last step. Their positions are long out of
 /// the processor's caches when the next step asks for them. (x, y, z): relative to the particle, rounded to floats. w:
