@@ -9,10 +9,12 @@
 #include <nlohmann/json.hpp>
 
 #include "base/random.hpp"
+#include "dartcast/complex_edit.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/map_edits.hpp"
+#include "dartcast/validity.hpp"
 #include "simulation/seeding.hpp"
 
 namespace dartcast::bench {

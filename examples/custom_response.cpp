@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "dartcast/cell_complex.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/particle_state.hpp"

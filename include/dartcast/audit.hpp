@@ -11,6 +11,8 @@
 
 namespace dartcast {
 
+class CellComplex;  // dartcast/cell_complex.hpp
+
 // The audit: whether every particle is where its state says, by slow exact arithmetic that shares no code with the
 // walk.
 

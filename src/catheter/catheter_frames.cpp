@@ -5,6 +5,8 @@
 
 #include "catheter/catheter_impl.hpp"
 #include "catheter/transport.hpp"
+#include "dartcast/catheter.hpp"
+#include "dartcast/cell_complex.hpp"
 #include "dartcast/error.hpp"
 
 namespace dartcast {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "base/instruction_set.hpp"
@@ -17,5 +18,18 @@ namespace dartcast::detail {
 /// where four differ.
 unsigned not_proved_positive(const Shape& shape, const std::array<const std::uint32_t*, 4>& vertices,
                              const Vec3* positions, InstructionSet set = best_instruction_set());
+
+inline constexpr std::size_t max_filtered_points = 64;
+
+// Bit i is set where all simplices of cell i are proved positive. Precondition: the shape has at most
+// max_filtered_points.
+namespace portable {
+unsigned proved_positive(const Shape& shape, const std::array<const std::uint32_t*, 4>& vertices,
+                         const Vec3* positions);
+}  // namespace portable
+namespace avx2 {
+unsigned proved_positive(const Shape& shape, const std::array<const std::uint32_t*, 4>& vertices,
+                         const Vec3* positions);
+}  // namespace avx2
 
 }  // namespace dartcast::detail

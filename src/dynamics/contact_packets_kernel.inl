@@ -1,77 +1,85 @@
-// The iterations of src/dynamics/contact_sweeps.cpp, compiled there once per instruction set: no include guard, no
-// includes, and not to be included elsewhere. Defined before: DARTCAST_TARGET, the attribute of every function;
-// any(Mask), root(Quad), join(Pair, Pair) and split(Quad, Pair&, Pair&).
+// Solves packets of four contacts, one contact in each lane. Compiled once for each instruction set.
+#pragma once
 
-// Vectors of four contacts, one in each lane.
-struct Vec3x4 {
-  Double4 x, y, z;
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "base/double4.inl"
+#include "dynamics/contact_packets.hpp"
+#include "dynamics/contact_sweeps.hpp"
+
+DARTCAST_BEGIN_KERNEL
+namespace dartcast::detail::DARTCAST_SIMD {
+namespace {
+
+inline Double4 load(const PacketNumbers& numbers) { return load_doubles(numbers.data()); }
+inline Vec3x4 load(const PacketVectors& v) { return {load(v[0]), load(v[1]), load(v[2])}; }
+inline void store(const Double4& four, PacketNumbers& to) { store_doubles(four, to.data()); }
+
+// Four bodies as rows of numbers: velocity and inverse mass.
+struct BodyRows {
+  double* row[packet_lanes];
+
+  BodyRows(ContactBody* bodies, const std::array<std::uint32_t, packet_lanes>& which) {
+    static_assert(sizeof(ContactBody) == 4 * sizeof(double));
+    for (std::size_t i = 0; i < packet_lanes; ++i) row[i] = reinterpret_cast<double*>(bodies + which[i]);
+  }
 };
-DARTCAST_TARGET inline Vec3x4 operator+(const Vec3x4& u, const Vec3x4& v) { return {u.x + v.x, u.y + v.y, u.z + v.z}; }
-DARTCAST_TARGET inline Vec3x4 operator-(const Vec3x4& u, const Vec3x4& v) { return {u.x - v.x, u.y - v.y, u.z - v.z}; }
-DARTCAST_TARGET inline Vec3x4 operator*(const Vec3x4& v, const Double4& s) { return {v.x * s, v.y * s, v.z * s}; }
-DARTCAST_TARGET inline Double4 dot(const Vec3x4& u, const Vec3x4& v) { return u.x * v.x + u.y * v.y + u.z * v.z; }
 
-DARTCAST_TARGET inline Double4 load(const PacketNumbers& numbers) {
-  return *reinterpret_cast<const Double4*>(&numbers);
-}
-DARTCAST_TARGET inline Vec3x4 load(const PacketVectors& v) { return {load(v[0]), load(v[1]), load(v[2])}; }
-DARTCAST_TARGET inline void store(const Double4& four, PacketNumbers& to) { *reinterpret_cast<Double4*>(&to) = four; }
-
-// One side of four contacts: velocities and inverse masses.
+// One side of four contacts.
 struct ContactSide {
   Vec3x4 velocity;
   Double4 inverse_mass;
 
-  // Rows of bodies by halves: the upper half of a register comes from memory for the price of a load.
-  DARTCAST_TARGET explicit ContactSide(const BodyRows& rows) {
-    const Double4 xy02 = join(rows[0][0], rows[2][0]);
-    const Double4 xy13 = join(rows[1][0], rows[3][0]);
-    const Double4 zw02 = join(rows[0][1], rows[2][1]);
-    const Double4 zw13 = join(rows[1][1], rows[3][1]);
+  // Rows are loaded by halves: the upper half of a register comes from memory for the price of a load.
+  explicit ContactSide(const BodyRows& bodies) {
+    const auto& row = bodies.row;
+    const Double4 xy02 = load_pairs(row[0], row[2]);
+    const Double4 xy13 = load_pairs(row[1], row[3]);
+    const Double4 zw02 = load_pairs(row[0] + 2, row[2] + 2);
+    const Double4 zw13 = load_pairs(row[1] + 2, row[3] + 2);
     velocity = {__builtin_shufflevector(xy02, xy13, 0, 4, 2, 6), __builtin_shufflevector(xy02, xy13, 1, 5, 3, 7),
                 __builtin_shufflevector(zw02, zw13, 0, 4, 2, 6)};
     inverse_mass = __builtin_shufflevector(zw02, zw13, 1, 5, 3, 7);
   }
 
-  DARTCAST_TARGET void write(const BodyRows& rows) const {
-    const Double4 xy02 = __builtin_shufflevector(velocity.x, velocity.y, 0, 4, 2, 6);
-    const Double4 xy13 = __builtin_shufflevector(velocity.x, velocity.y, 1, 5, 3, 7);
-    const Double4 zw02 = __builtin_shufflevector(velocity.z, inverse_mass, 0, 4, 2, 6);
-    const Double4 zw13 = __builtin_shufflevector(velocity.z, inverse_mass, 1, 5, 3, 7);
-    split(xy02, rows[0][0], rows[2][0]);
-    split(xy13, rows[1][0], rows[3][0]);
-    split(zw02, rows[0][1], rows[2][1]);
-    split(zw13, rows[1][1], rows[3][1]);
+  void write(const BodyRows& bodies) const {
+    const auto& row = bodies.row;
+    store_pairs(__builtin_shufflevector(velocity.x, velocity.y, 0, 4, 2, 6), row[0], row[2]);
+    store_pairs(__builtin_shufflevector(velocity.x, velocity.y, 1, 5, 3, 7), row[1], row[3]);
+    store_pairs(__builtin_shufflevector(velocity.z, inverse_mass, 0, 4, 2, 6), row[0] + 2, row[2] + 2);
+    store_pairs(__builtin_shufflevector(velocity.z, inverse_mass, 1, 5, 3, 7), row[1] + 2, row[3] + 2);
   }
 };
 
-DARTCAST_TARGET inline Double4 positive_part(const Double4& x) { return x > 0.0 ? x : Double4{}; }
+inline Double4 positive_part(const Double4& x) { return x > 0.0 ? x : Double4{}; }
 
 // Impulses on the spheres b, and the opposite ones on a.
-DARTCAST_TARGET inline void apply(const Vec3x4& impulse, ContactSide& a, ContactSide& b, const BodyRows& a_rows,
-                                  const BodyRows& b_rows) {
+inline void apply(const Vec3x4& impulse, ContactSide& a, ContactSide& b, const BodyRows& a_rows,
+                  const BodyRows& b_rows) {
   a.velocity = a.velocity - impulse * a.inverse_mass;
   b.velocity = b.velocity + impulse * b.inverse_mass;
   a.write(a_rows);
   b.write(b_rows);
 }
 
-DARTCAST_TARGET inline void start_packet(const ContactPacket& p, const PacketImpulses& impulses, ContactBody* bodies) {
+inline void start_packet(const ContactPacket& p, const PacketImpulses& impulses, ContactBody* bodies) {
   const Double4 normal_impulse = load(impulses.normal_impulse);
   if (!any(normal_impulse > 0.0)) return;
-  const BodyRows a_rows = rows_of(bodies, p.a);
-  const BodyRows b_rows = rows_of(bodies, p.b);
+  const BodyRows a_rows(bodies, p.a);
+  const BodyRows b_rows(bodies, p.b);
   ContactSide a(a_rows);
   ContactSide b(b_rows);
   apply(load(p.normal) * normal_impulse + load(impulses.tangent_impulse), a, b, a_rows, b_rows);
 }
 
-// Friction acts across the normal: it changes nothing along it. What keeps sticking is at most the share of the impulse
-// along the normal that friction allows, so that where that is 0 both are.
-DARTCAST_TARGET inline void solve_packet(const ContactPacket& p, PacketImpulses& impulses,
-                                         const PacketSurfaces& surfaces, ContactBody* bodies) {
-  const BodyRows a_rows = rows_of(bodies, p.a);
-  const BodyRows b_rows = rows_of(bodies, p.b);
+// The friction impulse is perpendicular to the normal, so that it does not change the normal velocity. It is at most
+// the coefficient of friction times the normal impulse.
+inline void solve_packet(const ContactPacket& p, PacketImpulses& impulses, const PacketSurfaces& surfaces,
+                         ContactBody* bodies) {
+  const BodyRows a_rows(bodies, p.a);
+  const BodyRows b_rows(bodies, p.b);
   ContactSide a(a_rows);
   ContactSide b(b_rows);
   const Vec3x4 relative = b.velocity - a.velocity;
@@ -94,10 +102,9 @@ DARTCAST_TARGET inline void solve_packet(const ContactPacket& p, PacketImpulses&
   store(tangent_impulse.z, impulses.tangent_impulse[2]);
 }
 
-DARTCAST_TARGET inline void correct_packet(const ContactPacket& p, PacketCorrections& corrections,
-                                           ContactBody* bodies) {
-  const BodyRows a_rows = rows_of(bodies, p.a);
-  const BodyRows b_rows = rows_of(bodies, p.b);
+inline void correct_packet(const ContactPacket& p, PacketCorrections& corrections, ContactBody* bodies) {
+  const BodyRows a_rows(bodies, p.a);
+  const BodyRows b_rows(bodies, p.b);
   ContactSide a(a_rows);
   ContactSide b(b_rows);
   const Vec3x4 normal = load(p.normal);
@@ -109,12 +116,14 @@ DARTCAST_TARGET inline void correct_packet(const ContactPacket& p, PacketCorrect
   apply(normal * (position_correction - before), a, b, a_rows, b_rows);
 }
 
-DARTCAST_TARGET inline void start_all(const PacketSpans& s, ContactBody* bodies) {
+}  // namespace
+
+void start_all(const PacketSpans& s, ContactBody* bodies) {
   for (std::size_t i = 0; i < s.count; ++i) start_packet(s.packets[i], s.impulses[i], bodies);
 }
 
 // Backwards and forwards in turn; the last time forwards.
-DARTCAST_TARGET inline void solve_all(const PacketSpans& s, ContactBody* bodies, unsigned iterations) {
+void solve_all(const PacketSpans& s, ContactBody* bodies, unsigned iterations) {
   for (unsigned left = iterations; left > 0; --left) {
     for (std::size_t i = 0; i < s.count; ++i) {
       const std::size_t k = left % 2 == 1 ? i : s.count - 1 - i;
@@ -123,7 +132,7 @@ DARTCAST_TARGET inline void solve_all(const PacketSpans& s, ContactBody* bodies,
   }
 }
 
-DARTCAST_TARGET inline void correct_all(const PacketSpans& s, ContactBody* bodies, unsigned iterations) {
+void correct_all(const PacketSpans& s, ContactBody* bodies, unsigned iterations) {
   for (unsigned left = iterations; left > 0; --left) {
     for (std::size_t i = 0; i < s.count; ++i) {
       const std::size_t k = left % 2 == 1 ? i : s.count - 1 - i;
@@ -131,3 +140,6 @@ DARTCAST_TARGET inline void correct_all(const PacketSpans& s, ContactBody* bodie
     }
   }
 }
+
+}  // namespace dartcast::detail::DARTCAST_SIMD
+DARTCAST_END_KERNEL

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/parallel.hpp"
+#include "dartcast/cell_complex.hpp"
 
 namespace dartcast {
 
@@ -92,7 +93,7 @@ std::string check_held(const Weights& weights) {
   return good ? "" : "a held particle's coordinates are not all finite and at least 0";
 }
 
-// What is wrong with a particle; empty: nothing.
+// The fault of a particle; empty where there is none.
 std::string check(const CellComplex& complex, const Particles& particles, std::size_t i) {
   const ParticleState& s = particles[i];
   const CombinatorialMap& map = complex.map();

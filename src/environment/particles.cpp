@@ -6,6 +6,7 @@
 
 #include "dartcast/environment.hpp"
 #include "dartcast/error.hpp"
+#include "environment/particle_details.hpp"
 
 namespace dartcast {
 
@@ -20,23 +21,41 @@ void check_indices(std::span<const std::uint32_t> which, std::size_t size, const
 
 }  // namespace
 
+Particles::Particles() noexcept = default;
+Particles::Particles(const Particles& other)
+    : states_(other.states_), details_(other.details_ ? std::make_unique<Details>(*other.details_) : nullptr) {}
+Particles::Particles(Particles&& other) noexcept = default;
+Particles& Particles::operator=(const Particles& other) { return *this = Particles(other); }
+Particles& Particles::operator=(Particles&& other) noexcept = default;
+Particles::~Particles() = default;
+
+Particles::Details& Particles::details() {
+  if (!details_) details_ = std::make_unique<Details>();
+  return *details_;
+}
+
+const Particles::Details& Particles::details() const {
+  static const Details of_empty_set;
+  return details_ ? *details_ : of_empty_set;
+}
+
+const Weights& Particles::held_weights(std::size_t i) const { return details().weights[i]; }
+
 void Particles::remove(std::span<const std::uint8_t> marks) {
   if (marks.size() != size())
     throw InvalidArgument(
         fmt::format("remove: {} marks for {} particles: one mark per particle is needed", marks.size(), size()));
+  std::vector<Weights>& weights = details().weights;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < size(); ++i) {
     if (marks[i] != 0) continue;
     states_[kept] = states_[i];
-    weights_[kept] = weights_[i];
-    if (!caches_.empty()) caches_.put(kept, caches_[i], caches_.mark(i));
-    vertices_[kept++] = vertices_[i];
+    weights[kept++] = weights[i];
   }
   states_.resize(kept);
-  weights_.resize(kept);
-  vertices_.resize(kept);
-  if (!caches_.empty()) caches_.resize(kept);
-  index_.reset();
+  weights.resize(kept);
+  details().cache.remove(marks);
+  details().index.reset();
 }
 
 void Particles::reorder(std::span<const std::uint32_t> order) {
@@ -49,36 +68,29 @@ void Particles::reorder(std::span<const std::uint32_t> order) {
     throw InvalidArgument(fmt::format("reorder: the order is no permutation, it names particle {} twice", *again));
   std::vector<ParticleState> states(size());
   std::vector<Weights> weights(size());
-  std::vector<detail::VertexNumbers> vertices(size());
-  detail::SimplexCache caches;
-  caches.resize(caches_.size());
   for (std::size_t i = 0; i < size(); ++i) {
     states[i] = states_[order[i]];
-    weights[i] = weights_[order[i]];
-    vertices[i] = vertices_[order[i]];
-    if (!caches_.empty()) caches.put(i, caches_[order[i]], caches_.mark(order[i]));
+    weights[i] = details().weights[order[i]];
   }
   states_ = std::move(states);
-  weights_ = std::move(weights);
-  vertices_ = std::move(vertices);
-  caches_ = std::move(caches);
-  index_.reset();
+  details().weights = std::move(weights);
+  details().cache.reorder(order);
+  details().index.reset();
 }
 
 Particles Particles::selected(std::span<const std::uint32_t> which) const {
   check_indices(which, size(), "selected");
+  const Details& all = details();
   Particles some;
+  Details& details = some.details();
   for (const std::uint32_t i : which) {
     some.states_.push_back(states_[i]);
-    some.weights_.push_back(weights_[i]);
-    some.vertices_.push_back(vertices_[i]);
-    if (!caches_.empty()) some.caches_.push_back(caches_[i], caches_.mark(i));
+    details.weights.push_back(all.weights[i]);
   }
-  some.cache_kind_ = cache_kind_;
-  some.walls_changed_ = walls_changed_;
-  some.environment_ = environment_;
-  some.moves_ = moves_;
-  some.edits_ = edits_;
+  details.cache = all.cache.selected(which);
+  details.environment = all.environment;
+  details.moves = all.moves;
+  details.edits = all.edits;
   return some;
 }
 
@@ -88,24 +100,20 @@ void Particles::replace(std::span<const std::uint32_t> which, const Particles& b
         fmt::format("replace: {} indices for {} particles: one index per particle is needed", which.size(), by.size()));
   check_indices(which, size(), "replace");
   if (which.empty()) return;
-  if (by.environment_ != environment_) throw InvalidArgument("replace: the particles are of another environment");
-  if (by.moves_ != moves_ || by.edits_ != edits_)
+  const Details& theirs = by.details();
+  Details& ours = details();
+  if (theirs.environment != ours.environment)
+    throw InvalidArgument("replace: the particles are of another environment");
+  if (theirs.moves != ours.moves || theirs.edits != ours.edits)
     throw InvalidArgument(
         "replace: one set has gone along with a move or an edit that the other has not: advance both after each move, "
-        "and follow() each edit with both");
+        "and update_after_edit() both after each edit");
   for (std::size_t k = 0; k < which.size(); ++k) {
-    const std::uint32_t i = which[k];
-    states_[i] = by.states_[k];
-    weights_[i] = by.weights_[k];
-    vertices_[i] = by.vertices_[k];
-    if (caches_.empty()) continue;
-    if (cache_kind_ == by.cache_kind_)
-      caches_.put(i, by.caches_[k], by.caches_.mark(k));
-    else
-      caches_.forget(i);
+    states_[which[k]] = by.states_[k];
+    ours.weights[which[k]] = theirs.weights[k];
   }
-  walls_changed_ = walls_changed_ || by.walls_changed_;
-  index_.reset();
+  ours.cache.replace(which, theirs.cache);
+  ours.index.reset();
 }
 
 }  // namespace dartcast

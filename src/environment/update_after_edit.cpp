@@ -1,14 +1,18 @@
-// How particles follow an edit.
+// How particles follow an edit: those in cells that were replaced get a place in the cells that took theirs.
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <utility>
 
 #include "base/parallel.hpp"
 #include "complex/simplex.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/error.hpp"
+#include "environment/environment_members.hpp"
+#include "environment/particle_details.hpp"
 #include "tracking/carry.hpp"
 #include "tracking/nearest_free.hpp"
+#include "tracking/step.hpp"
 
 namespace dartcast {
 
@@ -30,47 +34,50 @@ class EditFollower {
  public:
   // `complex`: the one that was edited, with the positions that the particles have gone along to.
   EditFollower(const CellComplex& complex, const ComplexEditReport& edit, Particles& particles, OrphanPolicy orphaned)
-      : complex_(complex), edit_(edit), particles_(particles), orphaned_(orphaned) {
+      : complex_(complex),
+        edit_(edit),
+        particles_(particles),
+        states_(particles.states_),
+        details_(particles.details()),
+        orphaned_(orphaned) {
     for (const CellHandle& h : edit_.map.removed) removed_.push_back(h.cell);
     std::sort(removed_.begin(), removed_.end());
   }
 
-  // For particles that were not advanced between a move and the edit: they ride along with the vertices, as in a step
+  // For particles that were not advanced between a move and the edit: the vertices carry them along, as in a step
   // without a motion of their own. Those in removed cells get their new positions, and keep the names of these cells
   // for update_after_edit().
-  void ride(Threads threads) {
+  void carry_with_mesh(Threads threads) {
     constexpr std::size_t edit_grain = 256;
     const StepOptions options;
     const ContactCallback stop;
     const Stepper stepper(complex_, true, options, stop);
+    details_.index.reset();
+    details_.cache.forget();
     parallel_for(particles_.size(), edit_grain, threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        if (is_removed(particles_.states_[i].cell))
-          particles_.states_[i].position = map().dimension() == 2 ? carried<3>(i) : carried<4>(i);
+        if (is_removed(states_[i].cell))
+          states_[i].position = map().dimension() == 2 ? carried<3>(i) : carried<4>(i);
         else
           step(stepper, i);
       }
     });
-    particles_.index_.reset();
-    particles_.cache_kind_ = detail::CacheKind::none;
-    particles_.caches_.resize(0);
-    particles_.stood_still_ = false;
   }
 
   UpdateReport update_after_edit() {
-    if (!particles_.index_) particles_.index_.emplace(particles_.states_);
+    if (!details_.index) details_.index.emplace(states_);
     const std::vector<std::uint32_t> touched = particles_near(removed_, edit_.map.marked);
-    for (const Cell c : removed_) particles_.index_->clear(c);  // another cell may take its number
+    for (const Cell c : removed_) details_.index->clear(c);  // another cell may take its number
     for (const std::uint32_t i : touched) take_along(i);
-    for (const std::uint32_t i : particles_near(edit_.around, edit_.map.added)) leave_walls(particles_.states_[i]);
+    for (const std::uint32_t i : particles_near(edit_.around, edit_.map.added)) leave_walls(states_[i]);
     remove_absorbed();
     return std::move(report_);
   }
 
  private:
   void step(const Stepper& stepper, std::size_t i) const {
-    ParticleState& s = particles_.states_[i];
-    Weights& weights = particles_.weights_[i];
+    ParticleState& s = states_[i];
+    Weights& weights = details_.weights[i];
     const Corners before = complex_.previous_corners(s.at());
     const Weights kept = s.held ? weights : detail::barycentric(before, s.position);
     const bool positive = volume_sign(complex_.corners(s.at())) == Sign::positive;
@@ -78,7 +85,7 @@ class EditFollower {
     ContactList contacts;
     Counters counters;
     stepper.step(static_cast<std::uint32_t>(i), s, weights, target, contacts, counters);
-    particles_.vertices_[i] = detail::vertex_numbers(complex_, s.at());
+    details_.cache.place(i, complex_, s);
   }
 
   // The new position of a particle whose simplex was removed. The vertices of the simplex still have their positions:
@@ -86,15 +93,15 @@ class EditFollower {
   // that is positive.
   template <std::size_t N>
   [[nodiscard]] Vec3 carried(std::size_t i) const {
-    const ParticleState& s = particles_.states_[i];
+    const ParticleState& s = states_[i];
     std::array<Vec3, N> before;
     std::array<Vec3, N> after;
     for (std::size_t k = 0; k < N; ++k) {
-      before[k] = complex_.previous_positions()[particles_.vertices_[i][k]];
-      after[k] = complex_.positions()[particles_.vertices_[i][k]];
+      before[k] = complex_.previous_positions()[details_.cache.vertices(i)[k]];
+      after[k] = complex_.positions()[details_.cache.vertices(i)[k]];
     }
     const Vec3 x =
-        flushed(detail::combine(after, s.held ? particles_.weights_[i] : detail::barycentric(before, s.position)));
+        flushed(detail::combine(after, s.held ? details_.weights[i] : detail::barycentric(before, s.position)));
     if (volume_sign(after) == Sign::positive) return placed_inside(after, x);
     return in_exact_range(x) ? x : s.position;
   }
@@ -106,7 +113,7 @@ class EditFollower {
                                                           std::span<const Cell> others) const {
     std::vector<std::uint32_t> found;
     for (const std::span<const Cell> cells : {some, others}) {
-      for (const Cell c : cells) particles_.index_->for_each(c, [&](std::uint32_t i) { found.push_back(i); });
+      for (const Cell c : cells) details_.index->for_each(c, [&](std::uint32_t i) { found.push_back(i); });
     }
     std::sort(found.begin(), found.end());
     found.erase(std::unique(found.begin(), found.end()), found.end());
@@ -120,7 +127,7 @@ class EditFollower {
   }
 
   void take_along(std::uint32_t i) {
-    ParticleState& s = particles_.states_[i];
+    ParticleState& s = states_[i];
     const bool gone = is_removed(s.cell);
     const bool marked = !gone && is_marked(s.cell);
     if (!gone && !marked && !touches_any(s)) return;  // it has left since it was listed
@@ -149,9 +156,9 @@ class EditFollower {
   // the middle of its old simplex begins in the new one.
   template <std::size_t N>
   [[nodiscard]] SimplexId place_of(std::uint32_t i) const {
-    const ParticleState& s = particles_.states_[i];
+    const ParticleState& s = states_[i];
     std::array<Vec3, N> old;
-    for (std::size_t k = 0; k < N; ++k) old[k] = complex_.positions()[particles_.vertices_[i][k]];
+    for (std::size_t k = 0; k < N; ++k) old[k] = complex_.positions()[details_.cache.vertices(i)[k]];
     const Vec3 middle = flushed(detail::mean_of(old));
     if (!s.held && detail::in_closed_simplex(old, middle)) {
       const SimplexId at = locator_->find(complex_, s.position, middle);
@@ -162,7 +169,7 @@ class EditFollower {
 
   void locate(std::uint32_t i) {
     if (!locator_) locator_.emplace(complex_, edit_.map.added);
-    ParticleState& s = particles_.states_[i];
+    ParticleState& s = states_[i];
     const SimplexId at = map().dimension() == 2 ? place_of<3>(i) : place_of<4>(i);
     if (!at.valid()) return orphan(i, Place::outside, at);
     if (!map().is_free(at.cell)) return orphan(i, Place::blocked, at);
@@ -173,7 +180,7 @@ class EditFollower {
 
   // `at`: the simplex of the blocked cell, invalid outside.
   void orphan(std::uint32_t i, Place place, SimplexId at) {
-    ParticleState& s = particles_.states_[i];
+    ParticleState& s = states_[i];
     OrphanedParticle& p = report_.orphaned.emplace_back();
     p.particle = i;
     p.place = place;
@@ -188,8 +195,8 @@ class EditFollower {
   }
 
   void hold(std::uint32_t i, SimplexId at) {
-    ParticleState& s = particles_.states_[i];
-    if (!s.held || s.at() != at) particles_.weights_[i] = detail::barycentric(complex_.corners(at), s.position);
+    ParticleState& s = states_[i];
+    if (!s.held || s.at() != at) details_.weights[i] = detail::barycentric(complex_.corners(at), s.position);
     s.put(at, s.position);
     s.held = true;
   }
@@ -212,7 +219,7 @@ class EditFollower {
 
   // Where rounding put a held particle beside its simplex, it is put back.
   void release(std::uint32_t i) {
-    ParticleState& s = particles_.states_[i];
+    ParticleState& s = states_[i];
     const Corners corners = complex_.corners(s.at());
     if (volume_sign(corners) != Sign::positive) return;
     const SimplexPlacement placed = place_in_simplex(complex_, s.at(), s.position);
@@ -220,15 +227,12 @@ class EditFollower {
     s.held = false;
   }
 
-  // What is kept beside a state.
+  // Updates the data that belongs to a state.
   void keep_up(std::uint32_t i) {
-    const ParticleState& s = particles_.states_[i];
+    const ParticleState& s = states_[i];
     if (is_removed(s.cell)) return;  // it is absorbed
-    particles_.index_->add(i, s);
-    particles_.vertices_[i] = detail::vertex_numbers(complex_, s.at());
-    if (particles_.cache_kind_ != detail::CacheKind::none)
-      particles_.caches_.put(
-          i, detail::cache_entry_of(particles_.cache_kind_, complex_.positions(), particles_.vertices_[i], s.position));
+    details_.index->add(i, s);
+    details_.cache.place(i, complex_, s);
   }
 
   void remove_absorbed() {
@@ -243,6 +247,8 @@ class EditFollower {
   const CellComplex& complex_;
   const ComplexEditReport& edit_;
   Particles& particles_;
+  std::vector<ParticleState>& states_;
+  Particles::Details& details_;
   OrphanPolicy orphaned_;
   std::vector<Cell> removed_;  // sorted
   std::optional<Locator> locator_;
@@ -250,21 +256,23 @@ class EditFollower {
 };
 
 UpdateReport Environment::update_after_edit(Particles& particles, OrphanPolicy orphaned) const {
-  take_in(particles);
-  check_known(particles, "follow");
-  if (particles.edits_ == edits_) return {};
+  const Members& m = *members_;
+  m.adopt(particles);
+  m.check_known(particles, "update_after_edit");
+  Particles::Details& details = particles.details();
+  if (details.edits == m.edits) return {};
   UpdateReport report;
-  if (particles.moves_ == moves_at_edit_ && moves_ != moves_at_edit_) {
-    const CellComplex before = complex_.before_move();
-    report = EditFollower(before, last_edit_, particles, orphaned).update_after_edit();
+  if (details.moves == m.moves_at_edit && m.moves != m.moves_at_edit) {
+    const CellComplex before = m.complex.before_move();
+    report = EditFollower(before, m.last_edit, particles, orphaned).update_after_edit();
   } else {
-    EditFollower following(complex_, last_edit_, particles, orphaned);
-    if (particles.moves_ != moves_) following.ride(threads_);
-    particles.moves_ = moves_;
-    report = following.update_after_edit();
+    EditFollower follower(m.complex, m.last_edit, particles, orphaned);
+    if (details.moves != m.moves) follower.carry_with_mesh(m.threads);
+    details.moves = m.moves;
+    report = follower.update_after_edit();
   }
-  particles.edits_ = edits_;
-  particles.walls_changed_ = true;
+  details.edits = m.edits;
+  details.cache.note_changed_walls();
   return report;
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "dartcast/cell_complex.hpp"
+#include "dartcast/complex_edit.hpp"
 #include "formats/vtk_mesh.hpp"
 
 namespace dartcast {

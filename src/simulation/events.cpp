@@ -4,6 +4,8 @@
 #include <chrono>
 #include <vector>
 
+#include "dartcast/validity.hpp"
+
 namespace dartcast {
 
 namespace {

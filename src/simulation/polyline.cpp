@@ -7,7 +7,9 @@
 #include <iterator>
 #include <vector>
 
+#include "dartcast/combinatorial_map.hpp"
 #include "dartcast/error.hpp"
+#include "dartcast/predicates.hpp"
 
 namespace dartcast {
 

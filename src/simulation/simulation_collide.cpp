@@ -5,6 +5,7 @@
 
 #include "base/parallel.hpp"
 #include "dartcast/error.hpp"
+#include "dartcast/events.hpp"
 #include "dartcast/simulation.hpp"
 #include "tracking/representable_point.hpp"
 

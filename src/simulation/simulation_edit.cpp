@@ -3,6 +3,7 @@
 
 #include "dartcast/error.hpp"
 #include "dartcast/simulation.hpp"
+#include "dartcast/validity.hpp"
 
 namespace dartcast {
 

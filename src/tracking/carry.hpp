@@ -1,4 +1,4 @@
-// Riding along: a particle keeps its barycentric coordinates while the vertices of its simplex move.
+// Carrying along: a particle keeps its barycentric coordinates while the vertices of its simplex move.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@ Weights barycentric(const std::array<Vec3, N>& v, const Vec3& x) {
     c = std::max(c, 0.0);
     sum += c;
   }
-  if (!(sum > 0.0)) {  // flat: any point of it will do
+  if (!(sum > 0.0)) {  // flat: any point of it is as good
     std::fill_n(w.begin(), N, 1.0 / N);
     return w;
   }
@@ -39,8 +39,8 @@ inline Vec3 combine(const Corners& v, const Weights& w) {
 }
 inline Vec3 combine(const PlaneCorners& v, const Weights& w) { return (v[0] * w[0] + v[1] * w[1]) + v[2] * w[2]; }
 
-/// The particle with coordinates w, in the moved simplex; settled where rounding put it outside. Precondition: the
-/// moved simplex is positive.
+/// The particle with coordinates w, in the moved simplex; placed in the simplex where rounding put it outside.
+/// Precondition: the moved simplex is positive.
 template <class Positions, std::size_t N>
 SimplexPlacement carried(const Space<Positions, N>& space, SimplexId simplex, const Weights& w) {
   const std::array<Vec3, N> v = space.corners(simplex);

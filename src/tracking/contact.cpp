@@ -1,3 +1,4 @@
+// Lists of contacts.
 #include "dartcast/contact.hpp"
 
 namespace dartcast {

@@ -12,8 +12,8 @@
 
 namespace dartcast::detail {
 
-/// A determinant of three differences of stored doubles, in doubles, and its permanent: the error is at most Shewchuk's
-/// share of that, a sixth of determinant_error (dartcast/predicates.hpp).
+/// A determinant of three differences of stored doubles, computed in doubles, and its permanent. After Shewchuk, the
+/// error is at most a sixth of determinant_error (dartcast/predicates.hpp) times the permanent.
 struct Determinant {
   double value;
   double permanent;
@@ -25,9 +25,8 @@ struct Determinant {
                   std::abs(u.z) * (std::abs(v.x * w.y) + std::abs(v.y * w.x))) {}
 
   static constexpr double error = determinant_error / 6.0;
-  static constexpr double smallest_permanent =
-      0x1p-700;                                    // products that underflow are paid for, as in filter_applies()
-  static constexpr double for_fraction = 0x1p+42;  // errors: what a time of impact asks for
+  static constexpr double smallest_permanent = 0x1p-700;  // covers products that underflow, as filter_applies() does
+  static constexpr double for_fraction = 0x1p+42;         // errors: the accuracy that a time of impact needs
 
   /// Whether the value exceeds `times` its error.
   [[nodiscard]] bool exceeds(double times) const {
@@ -35,7 +34,7 @@ struct Determinant {
   }
 };
 
-/// How a segment from p, before a wall's facet, to q, beyond it, passes. N: as for Space.
+/// How a segment from p, in front of a wall's facet, to q, beyond it, passes the facet. N: as for Space.
 template <std::size_t N>
 class SegmentHit;
 
@@ -58,8 +57,8 @@ class SegmentHit<4> {
     return orient3d_exact(corner[(i + 1) % 3], corner[(i + 2) % 3], p_, q_) == Sign::zero;
   }
 
-  /// Where on the segment the wall is met: right to 2^-40 of itself. The sides' determinants sum to the difference of
-  /// the heights of p and q.
+  /// The fraction of the segment at the wall, with a relative error of at most 2^-40. The sum of the sides'
+  /// determinants is the difference of the heights of p and q.
   [[nodiscard]] double fraction() const {
     constexpr double enough = Determinant::for_fraction;
     const double before = height_.exceeds(enough) ? height_.value : orient3d_value(wall_.a, wall_.b, wall_.c, p_);
@@ -107,8 +106,8 @@ inline WallHit wall_hit(const CombinatorialMap& map, SimplexId id, const CellVie
   return {face, across.place, map.patch(face), normal};
 }
 
-/// Adds the other wall triangles that meet at an edge or a vertex; a plane face's triangles count as one. Returns
-/// whether all of them have normals. Precondition: the one that was hit is the last of the list.
+/// Adds the other wall triangles that meet at an edge or a vertex. The triangles of a flat face count as one. Returns
+/// whether all of them have normals. Precondition: the triangle that was hit is the last of the list.
 template <class Positions, std::size_t N>
 bool add_other_walls(const Space<Positions, N>& space, const Walk& w, const Feature& feature, ContactList& list) {
   const auto first = static_cast<std::ptrdiff_t>(list.walls.size()) - 1;
@@ -130,7 +129,7 @@ bool add_other_walls(const Space<Positions, N>& space, const Walk& w, const Feat
   return all_have_normals;
 }
 
-/// Gives the walls of a contact that have no normal of their own another one (dartcast/contact.hpp). `motion`: not 0.
+/// Gives walls of a contact that have no normal of their own the one that dartcast/contact.hpp says. `motion`: not 0.
 [[gnu::cold]] inline void complete_normals(std::span<WallHit> walls, const Vec3& motion) {
   const auto has_normal = [](const WallHit& wall) { return wall.normal != Vec3{}; };
   const auto known = std::find_if(walls.begin(), walls.end(), has_normal);
@@ -169,7 +168,7 @@ Vec3 wall_displacement(const CellComplex& complex, SimplexId simplex, unsigned f
   for (unsigned i = 0; i < N - 1; ++i) {
     const std::uint32_t vertex = vertices[facet_corner<N>(facet, i)].value;
     const Vec3& before = complex.previous_positions()[vertex];
-    if (!in_exact_range(before)) continue;  // the move has brought the vertex back: that was no motion of the wall
+    if (!in_exact_range(before)) continue;  // the vertex came back from out of range: the wall did not move
     Vec3 moved = complex.positions()[vertex] - before;
     if constexpr (N == 3) moved.z = 0.0;  // as Space::corners()
     result += moved * (sum > 0.0 ? weight[i] / sum : 1.0 / (N - 1.0));
@@ -185,15 +184,15 @@ Shape::Feature map_feature(const Shape& shape, std::uint16_t simplex, unsigned w
     return {static_cast<Kind>(N - 2), shape.first_dart(s.across[wall_facet].face())};
   std::array<std::uint16_t, N> points{};
   std::size_t count = 0;
-  for (unsigned i = 0; i < N; ++i) {  // no branches: which they are cannot be foretold
+  for (unsigned i = 0; i < N; ++i) {  // without branches, which would mispredict
     points[count] = s.vertex[i];
     count += ((zeros >> i) & 1U) == 0 ? 1U : 0U;
   }
   return shape.feature(std::span<const std::uint16_t>(points.data(), count));
 }
 
-/// For a walk that ends on a wall the facets of the wall's simplex that q lies on: those that hold what it lies on in
-/// the walk's last simplex. No coordinate is read.
+/// For a walk that ends on a wall: the facets of the wall's simplex that q lies on. They hold the feature that q lies
+/// on in the last simplex of the walk. No coordinate is read.
 template <std::size_t N>
 unsigned zeros_at_end(const CombinatorialMap& map, const Walk& w) {
   if (w.simplex == w.wall_simplex) return w.zeros;
@@ -203,8 +202,8 @@ unsigned zeros_at_end(const CombinatorialMap& map, const Walk& w) {
   return facets_holding<N>(feature, cell, cell.shape().simplices()[w.wall_simplex.simplex]);
 }
 
-/// Where a walk met a wall: the fraction of the segment, and bit i is set where the point lies on the facet opposite to
-/// corner i of the wall's simplex.
+/// Where a walk meets a wall: the fraction of the segment, and a bit i for each facet that the point lies on, the one
+/// opposite to corner i of the wall's simplex.
 struct ContactGeometry {
   double fraction;
   unsigned zeros;
@@ -241,7 +240,7 @@ double describe_contact(const Space<Positions, N>& space, const Walk& w, const s
   return t;
 }
 
-/// The same of a wall that is known.
+/// The same from an impact that has been computed.
 inline void describe_impact(const CombinatorialMap& map, const Walk& w, const WallImpact& impact, Contact& contact,
                             ContactList& list) {
   const CellView cell = map.view(w.wall_simplex.cell);

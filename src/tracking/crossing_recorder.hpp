@@ -36,7 +36,7 @@ class CrossingRecorder {
                    std::vector<Crossing>& crossings)
       : complex_(complex), moved_(moved), cell_(start), contacts_(contacts), crossings_(crossings) {}
 
-  /// For the walk that begins now.
+  /// For the walk that starts now.
   CrossingRecorder& visitor() {
     left_.clear();
     return *this;
@@ -50,7 +50,7 @@ class CrossingRecorder {
     const std::span<const Left> passed = std::span<const Left>(left_).first(left_.size() - (to_wall ? 1 : 0));
     std::size_t first = 0;
     for (std::size_t i = 0; i < passed.size(); ++i) first = is_wall(passed[i]) ? i + 1 : first;
-    // A wall that is left behind is one that p lies on: there the walk began again, in another simplex around p.
+    // A walk passes a wall only where p lies on it: there it started again, in another simplex around p.
     if (first > 0) turn<N>(space, first < left_.size() ? left_[first].simplex : w.simplex, p, begin);
     for (const Left& left : passed.subspan(first)) pass<N>(space, left, p, q, begin, end);
   }

@@ -24,12 +24,12 @@ class Locator {
 
   /// The simplex alone, where all cells of the grid are known to be valid; invalid outside.
   [[nodiscard]] SimplexId find(const CellComplex& complex, const Vec3& x) const;
-  /// The same, for one that holds the beginning of the way from x to `inner`, too: of the simplices on two sides of a
-  /// wall that x lies on, the one on the side of `inner`.
+  /// The same, for a simplex that also holds the start of the way from x to `inner`. Where x lies on a wall between two
+  /// simplices, this is the one on the side of `inner`.
   [[nodiscard]] SimplexId find(const CellComplex& complex, const Vec3& x, const Vec3& inner) const;
 
-  /// The number of x's bin, or of one at the border. Points taken by bins find their cells in the cache: of many
-  /// points, ten times faster than in random order.
+  /// The number of x's bin, or of one at the border. Points sorted by bins find their cells in the
+  /// processor's cache: many points are located ten times faster than in random order.
   [[nodiscard]] std::size_t bin(const Vec3& x) const {
     const auto [i, j, k] = bin_of(x);
     return bin_index(i, j, k);

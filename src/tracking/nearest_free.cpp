@@ -1,3 +1,4 @@
+// Searches outwards, from cell to cell, for the nearest point of the free cells.
 #include "tracking/nearest_free.hpp"
 
 #include <limits>

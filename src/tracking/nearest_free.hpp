@@ -14,11 +14,11 @@ struct NearestFree {
   double distance = 0.0;  ///< from the point to there
 };
 
-/// Goes out from the cells given, always on from the nearest one reached, to the first free cell: the nearest one, if
-/// it can be reached over cells that are no farther. Nothing where there is none. Cells with a simplex that is not
-/// positive are passed through. The place is exactly in its closed simplex; distances are rounded. `start`: cells next
-/// to x; the one that holds x, if one does, comes first. Precondition: x is in the exact range. Cost: the cells nearer
-/// than the place found.
+/// Searches outwards from the cells given, always from the nearest cell reached, to the first free cell. It is the
+/// nearest one if it can be reached over cells that are no farther. Nothing where there is none. Cells with a simplex
+/// that is not positive are passed through. The place is exactly in its closed simplex; distances are rounded. `start`:
+/// cells next to x; the one that holds x, if one does, comes first. Precondition: x is in the exact range. Cost: the
+/// cells nearer than the place found.
 std::optional<NearestFree> nearest_free(const CellComplex& complex, std::span<const Cell> start, const Vec3& x);
 
 /// The point of a triangle that is nearest to x, rounded (C. Ericson, "Real-Time Collision Detection", 2005, section

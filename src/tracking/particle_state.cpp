@@ -1,3 +1,4 @@
+// Kinds, darts and faces derived from where a particle is.
 #include "dartcast/particle_state.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// settle: puts a rounded point into a free closed simplex, however it was rounded.
+// Places a rounded point in a free closed simplex, however it was rounded.
 #pragma once
 
 #include <algorithm>
@@ -52,14 +52,14 @@ class WallPlanes {
 };
 
 /// The k-th distance to lift x by, which was computed from p: one unit in the last place of the larger of the two,
-/// doubling. It is p that tells how large the rounding is: x alone may be next to the origin.
+/// doubling. p shows how large the rounding is: x alone may be next to the origin.
 inline double lift_distance(const Vec3& p, const Vec3& x, int k) {
   const double largest =
       std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z), std::abs(x.x), std::abs(x.y), std::abs(x.z)});
   return std::ldexp(std::max(largest * std::numeric_limits<double>::epsilon(), smallest_magnitude), k);
 }
 
-/// Lifts x, computed from p, until it is behind none of the planes; after so many doublings it is left where it is.
+/// Lifts x, computed from p, until it is behind none of the planes; after so many doublings it stays where it is.
 template <std::size_t N>
 void lift_off(const WallPlanes<N>& planes, const Vec3& p, Vec3& x, int doublings) {
   for (int k = 0; k < doublings && !planes.none_behind(x); ++k) planes.lift(x, lift_distance(p, x, k));
@@ -73,7 +73,7 @@ inline Vec3 scaled_to_one(const Vec3& x) {
   return largest > 0.0 && largest <= std::numeric_limits<double>::max() ? x * std::ldexp(1.0, -std::ilogb(largest)) : x;
 }
 
-/// 0 where the vector is, or is not finite.
+/// Zero where the vector is zero or not finite.
 inline Vec3 unit_of(const Vec3& x) {
   const Vec3 scaled = scaled_to_one(x);
   const double square = dot(scaled, scaled);
@@ -107,7 +107,7 @@ inline Vec3 facet_normal(const Corners& v, unsigned facet) {
   const Vec3 c = v[f[2]] - v[f[0]];
   const Vec3 n = cross(b, c);
   const double square = dot(n, n);
-  // Then coordinates that count as 0 change n by less than 2^-299 2^74, which is 2^-75 of it.
+  // Then flushed coordinates change n by less than 2^-299 2^74, which is 2^-75 of it.
   const bool usual = square > 0x1p-300 && dot(b, b) < 0x1p+140 && dot(c, c) < 0x1p+140;
   return usual ? n * (1.0 / std::sqrt(square)) : detail::unusual_normal(v, facet);
 }
@@ -163,9 +163,9 @@ inline bool on_level_facet(const PlaneCorners& v, unsigned facet, const Vec3& x)
   return (is_level(v[a].x, x.x) && is_level(v[b].x, x.x)) || (is_level(v[a].y, x.y) && is_level(v[b].y, x.y));
 }
 
-/// The usual contact point: x is on one facet, which lies across an axis, or next to one facet; then it is lifted off
-/// that by as little as the filter needs (some tens of units in the last place of the simplex' size). Nothing where the
-/// filter proves too little, or would need more than 256 units of the coordinates.
+/// For the usual contact point: x is on one facet, which lies across an axis, or next to one facet. In the second case
+/// x is lifted off the facet by as little as the filter needs (some tens of units in the last place of the simplex'
+/// size). Nothing where the filter proves too little, or would need more than 256 units of the coordinates.
 template <std::size_t N>
 std::optional<Vec3> proved_inside(const std::array<Vec3, N>& v, const Vec3& x) {
   Determinants d(v, x);
@@ -213,7 +213,7 @@ inline bool is_rounded_off(const Vec3& corner, const Vec3& x) {
 inline Vec3 mean_of(const Corners& v) { return ((v[0] + v[1]) + (v[2] + v[3])) * 0.25; }
 inline Vec3 mean_of(const PlaneCorners& v) { return (v[0] + v[1] + v[2]) * (1.0 / 3.0); }
 
-/// Lifts x off the facets of the simplex; nothing where it is not inside then. p tells how large the rounding is.
+/// Lifts x off the facets of the simplex; nothing where it is not inside then. p shows how large the rounding is.
 template <std::size_t N>
 std::optional<Vec3> lifted_inside(const std::array<Vec3, N>& v, const Vec3& p, Vec3 x) {
   WallPlanes<N> facets;
@@ -235,8 +235,7 @@ std::optional<SimplexPlacement> reached(const Space<Positions, N>& space, Simple
   return {};
 }
 
-/// Lifts x off the walls in the way from p, one unit in the last place at first, doubling; nothing where that does not
-/// do.
+/// Lifts x off the walls in the way from p, one unit in the last place at first, doubling; nothing where that fails.
 template <class Positions, std::size_t N>
 std::optional<SimplexPlacement> lifted(const Space<Positions, N>& space, SimplexId start, const Vec3& p, Vec3 x) {
   WallPlanes<N> planes;
@@ -256,12 +255,15 @@ std::optional<SimplexPlacement> lifted(const Space<Positions, N>& space, Simplex
 
 }  // namespace detail
 
-/// Puts x, a point rounded out of the closed simplex `simplex` (with corners v), into a free closed simplex. First it
-/// is lifted off the facets that it is behind, one unit in the last place at first, doubling. Where that does not do,
-/// it is walked to from a point p of the simplex (its mean, where that is exactly inside; else its corner nearest to x)
-/// and lifted off the walls in the way; where these are too close together for that, a double between them is looked
-/// for (tracking/representable_point.hpp); in the end it is p or the corner nearest to x. No wall is passed.
-/// Precondition: the simplex is positive, its cell free.
+/// Puts x, a point rounded out of the closed simplex `simplex` (with corners v), into a free closed simplex. These are
+/// tried in order:
+/// 1. Lift x off the facets that it is behind, one unit in the last place at first, doubling.
+/// 2. Walk to x from a point p of the simplex, and lift x off the walls in the way. p is the mean of the corners where
+///    that is exactly inside, else the corner nearest to x.
+/// 3. Where the walls are too close together for that, search a double between them
+///    (tracking/representable_point.hpp).
+/// 4. Take p or the corner nearest to x.
+/// No wall is passed. Precondition: the simplex is positive, its cell free.
 template <class Positions, std::size_t N>
 SimplexPlacement place_in_simplex(const Space<Positions, N>& space, SimplexId simplex, const std::array<Vec3, N>& v,
                                   const Vec3& rounded) {

@@ -1,10 +1,11 @@
 // A double inside a thin simplex, close to a point that rounding put beside it.
 //
 // Between two walls that meet at a small angle, all doubles next to a point of their common edge may lie outside. The
-// doubles around a point are a lattice: its basis is reduced (A. K. Lenstra, H. W. Lenstra, L. Lovasz, "Factoring
-// polynomials with rational coefficients", 1982) in the norm in which the room between the facets is round, and the
-// lattice point nearest to the middle of that room (L. Babai, "On Lovasz' lattice reduction and the nearest lattice
-// point problem", 1986) is tried. Floating point only guides the search; exact signs judge what it finds.
+// doubles around a point form a lattice. The search reduces a basis of this lattice (A. K. Lenstra, H. W. Lenstra, L.
+// Lovasz, "Factoring polynomials with rational coefficients", 1982) in the norm in which the space between the facets
+// is round. Then it tries the lattice point nearest to the middle of that space (L. Babai, "On Lovasz' lattice
+// reduction and the nearest lattice point problem", 1986). Floating point only guides the search; exact signs check
+// what it finds.
 #pragma once
 
 #include <algorithm>
@@ -102,7 +103,7 @@ class Coordinates {
   std::array<double, N> steepness_;
 };
 
-/// What a step does to the coordinates, as shares of what may be lost of each, and to the place, as shares of the
+/// The effect of a step on the coordinates, as shares of the loss allowed to each, and on the place, as shares of the
 /// distance allowed.
 template <std::size_t N>
 using Effect = std::array<double, N + 3>;
@@ -160,7 +161,7 @@ class LatticeBasis {
  private:
   [[nodiscard]] double share(const Effect& e, unsigned k) const { return dot(e, own_[k]) / dot(own_[k], own_[k]); }
 
-  // Takes multiples of the steps before from step k; false where none is left to take.
+  // Subtracts multiples of the steps before from step k; false where there is nothing to subtract.
   template <class EffectOf>
   bool shorten(unsigned k, const EffectOf& effect_of) {
     bool shortened = false;
@@ -223,7 +224,7 @@ Vec3 representable_near(const Coordinates<N>& coordinates, const std::array<doub
 
 /// A double in the closed simplex close to x, a point at most a few units in the last place outside; nothing where none
 /// is found, as may be in a simplex thinner than a unit in the last place. At an edge of a small angle a, the distance
-/// is of the order of a^(-1/3) units, which is the least that can be hoped for. Cost: some 10 us for each doubling of
+/// is of the order of a^(-1/3) units, which is optimal. Cost: some 10 us for each doubling of
 /// the distance. Precondition: the simplex is positive.
 template <std::size_t N>
 std::optional<Vec3> representable_inside(const std::array<Vec3, N>& v, const Vec3& x) {

@@ -1,4 +1,4 @@
-// What a walk reads: a map, and positions at one instant.
+// The input of a walk: a map, and positions at one instant.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ struct Stored {
   [[nodiscard]] Vec3 operator[](Vertex v) const { return at[v.value]; }
 };
 
-/// Positions at the fraction s of a step, on straight lines from old to new; the same doubles for whoever asks.
+/// Positions at the fraction s of a step, on straight lines from old to new; the same doubles for every caller.
 struct Between {
   const Vec3* from;
   const Vec3* to;

@@ -21,7 +21,7 @@ struct Feature {
   unsigned count = 0;
 
   void add(Vertex v) { vertex[count++] = v; }
-  /// Where `held`, which cannot be foretold: without a branch.
+  /// Adds it where `held`. Without a branch, which would mispredict.
   void add_if(bool held, Vertex v) {
     vertex[count] = v;
     count += held ? 1U : 0U;
@@ -42,11 +42,11 @@ unsigned facets_holding(const Feature& feature, const CellView& cell, const Impl
 
 namespace detail {
 
-// Codes found so far, each once, in order. Stars have some tens: then all stays on the stack, and nothing is
-// written before it is needed.
+// Codes found so far, each once, in order. Most stars have some tens of codes: these stay on the stack, uninitialized
+// until they are needed.
 class FoundSimplex {
  public:
-  /// One that was not found before, nor will be again.
+  /// Precondition: the code was not found before, and will not be found again.
   void push(std::uint64_t code) {
     if (count_ == near_.size()) return add(code);
     near_[count_++] = code;
@@ -99,14 +99,14 @@ constexpr std::uint64_t code_of(Cell c, std::uint16_t number) { return (std::uin
 constexpr Cell cell_of(std::uint64_t code) { return Cell(static_cast<std::uint32_t>(code >> 16U)); }
 constexpr std::uint16_t number_of(std::uint64_t code) { return static_cast<std::uint16_t>(code); }
 
-// Cells of which nothing more can be found: the first few of them, to be passed by at once. Which of them it is that is
-// met again cannot be foretold: four are compared at once.
+// The first few cells that are finished, so that the search skips them at once. Four are compared at once, as branches
+// would mispredict.
 class FewCells {
  public:
-  /// Returns false: there is no room.
+  /// Returns false where there is no room.
   bool add(Cell c) {
     if (count_ == limit) return false;
-    // As a whole: a part just written could not be read along with the others yet.
+    // Written as a whole: the processor could not load the four yet where one of them was just written.
     Four& four = cells_[count_ / 4];
     const std::uint32_t lane = count_ % 4;
     four = lane == 0 ? all(c.value) : (Four{0, 1, 2, 3} == all(lane)) ? all(c.value) : four;
@@ -220,7 +220,7 @@ struct SimplexFacet {
 };
 
 /// A wall facet that holds `feature`, spanned by the corners of a simplex that have no bit set in `zeros`; nothing
-/// where search_walls() finds none from there. Cost: one look inside a face, else linear in the star. Precondition: 1
+/// where search_walls() finds none from there. Cost: constant inside a face, else linear in the star. Precondition: 1
 /// to N - 1 bits are set.
 template <std::size_t N = 4>
 std::optional<SimplexFacet> find_wall(const CombinatorialMap& map, SimplexId simplex, unsigned zeros,

@@ -1,3 +1,4 @@
+// The usual step of one particle: nothing records it.
 #include "tracking/step.hpp"
 
 #include <fmt/format.h>
@@ -27,11 +28,19 @@ void check(const StepOptions& options, const char* caller) {
 }
 
 StepResult Stepper::step(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
-                         ContactList& contacts, Counters& counters, const PartialStep* partial) const {
+                         ContactList& contacts, Counters& counters) const {
   constexpr NoRecorder none;
   if (complex_.map().dimension() == 2)
-    return step_in<3>(particle, state, weights, target, contacts, counters, partial, none);
-  return step_in<4>(particle, state, weights, target, contacts, counters, partial, none);
+    return step_in<3>(particle, state, weights, target, contacts, counters, nullptr, none);
+  return step_in<4>(particle, state, weights, target, contacts, counters, nullptr, none);
+}
+
+StepResult Stepper::resume(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
+                           ContactList& contacts, Counters& counters, const PartialStep& partial) const {
+  constexpr NoRecorder none;
+  if (complex_.map().dimension() == 2)
+    return step_in<3>(particle, state, weights, target, contacts, counters, &partial, none);
+  return step_in<4>(particle, state, weights, target, contacts, counters, &partial, none);
 }
 
 }  // namespace dartcast

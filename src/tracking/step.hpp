@@ -1,9 +1,9 @@
-// One step of one particle: riding along with the vertices, walking, contacts, and what follows them.
+// One step of one particle: it is carried along with the mesh, walks to its target, and responds at walls.
 #pragma once
 
 #include <array>
 #include <cstdint>
-#include <string>
+#include <optional>
 #include <vector>
 
 #include "dartcast/cell_complex.hpp"
@@ -15,7 +15,7 @@
 
 namespace dartcast {
 
-/// What is known of a wall's face that a walk has come to, inside of it.
+/// Where a segment meets the inside of a wall's face.
 struct WallImpact {
   Vec3 normal;
   double fraction = 0.0;  ///< of the segment
@@ -24,19 +24,19 @@ struct WallImpact {
   Vec3 wall_displacement;
 };
 
-/// A step that has been walked up to its first wall: see Stepper::step().
+/// A step that has been walked up to its first wall: see Stepper::resume().
 struct PartialStep {
-  Vec3 from;         ///< where the walk began: the particle's place, after riding along with the vertices
-  Walk walk;         ///< ends at a wall: one that q is beyond, or one that q is on
-  TestCounts tests;  ///< made so far
-  const WallImpact* impact = nullptr;
+  Vec3 from;                         ///< where the walk started: the particle's place, carried along with the mesh
+  Walk walk;                         ///< ends at a wall that the target is beyond, or that it lies on
+  TestCounts tests;                  ///< made so far
+  std::optional<WallImpact> impact;  ///< where it has been computed
 
   PartialStep(const Vec3& start, const Walk& first, const TestCounts& counts)
       : from(start), walk(first), tests(counts) {}
 
-  /// Whether the step has put the particle where it landed, and it has stayed there.
+  /// Whether the step has put the particle where the impact says, and it has stayed there.
   [[nodiscard]] bool stays(const ParticleState& after) const {
-    return impact != nullptr && after.at() == walk.wall_simplex && after.position == impact->position;
+    return impact && after.at() == walk.wall_simplex && after.position == impact->position;
   }
 };
 
@@ -48,13 +48,15 @@ class Stepper {
   Stepper(const CellComplex& complex, bool moved, const StepOptions& options, const ContactCallback& respond)
       : complex_(complex), moved_(moved), options_(options), respond_(respond) {}
 
-  /// Steps one particle to `target`, a finite point in the exact range. Adds its contacts in order of time. `partial`:
-  /// goes on from there, if it is not null; the step is one that is not split.
+  /// Steps one particle to `target`, a finite point in the exact range. Adds its contacts in order of time.
   StepResult step(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
-                  ContactList& contacts, Counters& counters, const PartialStep* partial = nullptr) const;
+                  ContactList& contacts, Counters& counters) const;
 
-  /// The same step to the same bits, for one particle to be looked at: adds its crossings, too. Cost: some exact values
-  /// for each of these.
+  /// The same step, continued from its first wall. Precondition: the step is taken in one part.
+  StepResult resume(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
+                    ContactList& contacts, Counters& counters, const PartialStep& partial) const;
+
+  /// The same step to the same bits, which also records its crossings. Cost: some exact values for each crossing.
   StepResult trace(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
                    ContactList& contacts, std::vector<Crossing>& crossings) const;
 

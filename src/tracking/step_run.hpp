@@ -1,5 +1,12 @@
-// The step of one particle: part of step.cpp, and with a recorder of trace.cpp. Two files, so that the step without one
-// is compiled as if there were no other: what is called once is inlined.
+// The step of one particle. step.cpp compiles it without a recorder, trace.cpp with one. They are two files so that the
+// compiler inlines functions that are called from one place.
+//
+// The phases of a step, in order (Stepper::step_in()):
+// 1. Where the mesh has moved (MovingStep): a particle whose simplex is not positive before or after is held. Otherwise
+//    the step is split in parts, mostly one, and the mesh carries the particle along at the start of each.
+// 2. Walk to the target of the part (StepPart::move()).
+// 3. At a wall: describe the contact, put the particle there, ask the response, aim at the new target, and walk again.
+// 4. Count.
 #pragma once
 
 #include <cmath>
@@ -23,7 +30,7 @@ struct RunOf {
   StepResult result{};
   unsigned contact_count = 0;
   std::uint32_t first_wall = 0;  // of this particle in this step
-  std::uint32_t first_here = 0;  // of those met at the place of the last contact
+  std::uint32_t first_here = 0;  // of those at the place of the last contact
   double last_time = -1.0;       // of the last contact
   TestCounts tests{};
   [[no_unique_address]] Recorder recorder{};
@@ -31,11 +38,11 @@ struct RunOf {
 
 inline constexpr int lift_doublings = 16;  // for targets along walls
 
-// The stretch of the step that is walked in one geometry: the particle's motion from time `begin` to time `end`.
+// The part of the step that is walked in one geometry: the particle's motion from time `begin` to time `end`.
 struct TimeInterval {
   double begin;
   double end;
-  Vec3 later;  // displacement planned after `end`, not relative to anything
+  Vec3 later;  // displacement planned after `end`, absolute
 };
 
 inline void touch(ParticleState& state, std::span<const WallHit> walls) {
@@ -56,11 +63,11 @@ class StepPart {
            const ContactCallback& respond)
       : complex_(complex), moved_(moved), space_(space), options_(options), respond_(respond) {}
 
-  // Walks to q, with the contacts on the way. Returns the displacement still planned after this stretch.
+  // Walks to q, with the contacts on the way. Returns the displacement still planned after this interval.
   Vec3 move(Run& run, Vec3 q, TimeInterval interval, const PartialStep* partial = nullptr) const {
     while (q != run.state.position) {
       const Vec3 p = run.state.position;
-      const WallImpact* const impact = partial != nullptr ? partial->impact : nullptr;
+      const WallImpact* const impact = partial != nullptr && partial->impact ? &*partial->impact : nullptr;
       Walk walked;
       if (partial == nullptr)
         walked = walk(space_, run.state.at(), p, q, run.tests, run.recorder.visitor());
@@ -79,7 +86,7 @@ class StepPart {
         run.state.touching_count = 0;
         return interval.later;
       }
-      const AfterContact next = meet(run, w, p, q, interval, impact);
+      const AfterContact next = handle_contact(run, w, p, q, interval, impact);
       if (run.result.stopped) return {};
       const double share = interval.end < 1.0 ? (interval.end - interval.begin) / (1.0 - interval.begin) : 1.0;
       interval.later =
@@ -90,12 +97,12 @@ class StepPart {
   }
 
  private:
-  // Records the contact, puts the particle there, and asks what follows.
-  AfterContact meet(Run& run, const Walk& w, const Vec3& p, const Vec3& q, TimeInterval& interval,
-                    const WallImpact* impact) const {
+  // Records the contact, puts the particle there, and asks the response.
+  AfterContact handle_contact(Run& run, const Walk& w, const Vec3& p, const Vec3& q, TimeInterval& interval,
+                              const WallImpact* impact) const {
     Contact& contact = run.contacts.contacts.emplace_back();
     contact.particle = run.particle;
-    const double t = impact != nullptr ? land(run, w, *impact, contact) : hit(run, w, p, q, contact);
+    const double t = impact != nullptr ? use_impact(run, w, *impact, contact) : find_contact(run, w, p, q, contact);
     contact.earlier = contact.first_wall - run.first_wall;
     contact.last = ++run.contact_count >= options_.max_contacts;
     interval.begin += t * (interval.end - interval.begin);
@@ -109,11 +116,11 @@ class StepPart {
     contact.unused = (q - p) * (1.0 - t) + later;
     ++run.counters.contacts[static_cast<std::size_t>(contact.kind)];
     touch(run.state, run.contacts.walls_of(contact));
-    return update_after_edit(run, contact);
+    return respond(run, contact);
   }
 
-  // What the contact is, and where it puts the particle. Returns the fraction of the segment.
-  double hit(Run& run, const Walk& w, const Vec3& p, const Vec3& q, Contact& contact) const {
+  // Describes the contact, and puts the particle there. Returns the fraction of the segment.
+  double find_contact(Run& run, const Walk& w, const Vec3& p, const Vec3& q, Contact& contact) const {
     const std::array<Vec3, N> corners = space_.corners(w.wall_simplex);
     const WallPlane wall = flushed_plane(facet_plane(corners, w.wall_facet));
     const double t = describe_contact(space_, w, corners, wall, p, q, contact, run.contacts);
@@ -124,13 +131,14 @@ class StepPart {
     return t;
   }
 
-  double land(Run& run, const Walk& w, const WallImpact& impact, Contact& contact) const {
+  // The same from an impact that the batch has computed.
+  double use_impact(Run& run, const Walk& w, const WallImpact& impact, Contact& contact) const {
     describe_impact(*space_.map, w, impact, contact, run.contacts);
     run.state.put(w.wall_simplex, impact.position);
     return impact.fraction;
   }
 
-  AfterContact update_after_edit(Run& run, const Contact& contact) const {
+  AfterContact respond(Run& run, const Contact& contact) const {
     if (!respond_ || run.contact_count > options_.max_contacts) {
       run.counters.unfinished += respond_ ? 1 : 0;
       run.result.stopped = true;
@@ -140,8 +148,9 @@ class StepPart {
     return respond_(contact, run.contacts.walls_of(contact), run.contacts.earlier_walls_of(contact));
   }
 
-  // The contact point is rounded: it is put next to where it is, in the simplex at the wall. Where that would put the
-  // particle farther from the point than it was at p, it stays there, in the simplex that the segment began in.
+  // The contact point is rounded, so that it may lie outside the simplex at the wall: the particle is put near by,
+  // inside it. Where that is farther from the point than p is, the particle stays at p, in the simplex where the
+  // segment starts.
   void place(Run& run, const Walk& w, const std::array<Vec3, N>& corners, const Vec3& p, const Contact& contact) const {
     if (w.at_end) return run.state.put(w.simplex, contact.point);
     if (const auto proved = proved_inside(corners, contact.point)) return run.state.put(w.wall_simplex, *proved);
@@ -154,8 +163,8 @@ class StepPart {
     run.state.put(placed.simplex, placed.position);
   }
 
-  // Where the filter proves nothing: at a corner that is as near as rounding; else where x settles, or at a corner that
-  // is nearer.
+  // Where the filter proves nothing: at a corner that is within rounding of x; else where place_in_simplex() puts x, or
+  // at a corner that is nearer.
   [[nodiscard]] SimplexPlacement next_to(SimplexId simplex, const std::array<Vec3, N>& v, const Vec3& x) const {
     const SimplexPlacement corner = {simplex, nearest_corner(v, x)};
     if (is_rounded_off(corner.position, x)) return corner;
@@ -163,8 +172,8 @@ class StepPart {
     return norm(corner.position - x) < norm(placed.position - x) ? corner : placed;
   }
 
-  // Where to go after a contact; along a wall, the target is lifted off the planes that rounding put it behind, but not
-  // off those that it is meant to be behind: they are met again.
+  // The target after a contact. Along walls, it is lifted off the planes that rounding put it behind. It is not lifted
+  // off planes that the response wants it to be behind: those walls are met again.
   [[nodiscard]] Vec3 aim(const Run& run, const AfterContact& next, double share) const {
     Vec3 q = flushed(run.state.position + next.displacement * share);
     if (!in_exact_range(q))
@@ -201,7 +210,7 @@ bool positive(const std::array<Vec3, N>& v) {
   return Determinants(v, v[0]).proves_positive() || volume_sign(v) == Sign::positive;
 }
 
-// Whether p, standing still, would have left the simplex by the vertices' motion alone. For the statistics only.
+// Whether p, at rest, would be outside the simplex by the motion of the vertices alone. Only for the statistics.
 template <std::size_t N>
 bool left_behind(const std::array<Vec3, N>& moved, const Vec3& p) {
   const Determinants d(moved, p);
@@ -229,7 +238,7 @@ class MovingStep {
     run.state.held = false;
     if (parts == 1) {
       const SimplexId start = run.state.at();
-      ride(current_space<N>(complex_), run, weights, 0.0);
+      carry(current_space<N>(complex_), run, weights, 0.0);
       // Nothing is in the way within the simplex, wherever rounding has put the particle.
       if (Determinants(after, target).all_proved_positive()) run.state.put(start, run.state.position);
       StepPart<Stored, N, Recorder>(complex_, true, space_, options_, respond_).move(run, target, {0.0, 1.0, {}});
@@ -242,24 +251,24 @@ class MovingStep {
  private:
   using Simplex = std::array<Vec3, N>;
 
-  // Only one that is held can be in a blocked cell.
+  // Only a held particle can be in a blocked cell.
   [[nodiscard]] bool is_free(const Run& run) const { return !run.state.held || complex_.map().is_free(run.state.cell); }
 
-  // It takes no step. Where its simplex is not positive at the end of the move, or its cell blocked, it is held until
-  // they are; else (only the way there leads through an invalid cell) it rides along all the same.
+  // The particle takes no step, and is carried along. It is held where its simplex is not positive at the end of the
+  // move, or its cell is blocked. Otherwise only its way leads through an invalid cell, and it is free again at once.
   void hold(Run& run, Weights& kept, const Weights& weights, Cell cell) const {
     kept = weights;
     run.result.held = true;
     run.result.invalid_cell = cell;
     const Simplex after = space_.corners(run.state.at());
-    if (positive(after) && is_free(run)) return ride(space_, run, weights, 1.0);
+    if (positive(after) && is_free(run)) return carry(space_, run, weights, 1.0);
     run.state.held = true;
     const Vec3 carried = flushed(combine(after, weights));
-    if (in_exact_range(carried)) run.state.position = carried;  // else a corner is not finite: it stays where it was
+    if (in_exact_range(carried)) run.state.position = carried;  // else a corner is not finite, and it stays
   }
 
   template <class Positions>
-  void ride(const Space<Positions, N>& space, Run& run, const Weights& weights, double time) const {
+  void carry(const Space<Positions, N>& space, Run& run, const Weights& weights, double time) const {
     const SimplexPlacement placed = carried(space, run.state.at(), weights);
     run.state.put(placed.simplex, placed.position);
     run.recorder.put(run.state, time);
@@ -274,8 +283,7 @@ class MovingStep {
     return parts < options_.max_parts ? static_cast<unsigned>(parts) : options_.max_parts;
   }
 
-  // Each part rides and walks in the geometry at its end; the parts' targets lie on the line to what is left of the
-  // motion.
+  // Each part is carried and walks in the geometry at its end. Its target lies on the line along the remaining motion.
   void in_parts(Run& run, Weights& weights, const Vec3& target, unsigned parts) const {
     Vec3 planned = target - run.state.position;
     bool own_motion = true;
@@ -286,7 +294,7 @@ class MovingStep {
       const Vec3 here = run.state.position;
       weights = barycentric(before, here);
       if (!positive(to.corners(run.state.at()))) return hold(run, weights, weights, run.state.cell);
-      ride(to, run, weights, static_cast<double>(j - 1) / parts);
+      carry(to, run, weights, static_cast<double>(j - 1) / parts);
       if (!own_motion) continue;
       const Vec3 share = planned * (1.0 / (parts - j + 1));
       const Vec3 q = j == parts && run.contact_count == 0 ? target : flushed(here + share);

@@ -1,3 +1,4 @@
+// The step of one particle with its crossings recorded.
 #include "tracking/crossing_recorder.hpp"
 #include "tracking/step.hpp"
 #include "tracking/step_run.hpp"

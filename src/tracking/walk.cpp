@@ -1,3 +1,4 @@
+// Reports a walk that does not end, with its replay.
 #include "tracking/walk.hpp"
 
 #include <fmt/format.h>

@@ -4,10 +4,10 @@
 // of vertices and of the segment's ends, and ties are broken by an infinitesimal shift of the whole segment
 // (docs/method.md). The walk ends in the first closed simplex that holds q.
 //
-// Why it is the shifted segment's walk up to there: that leaves a simplex by the first facet that shifted q is beyond.
-// Where q itself is strictly beyond a facet, one whose plane holds q is never the first: the segment meets that plane
-// at its end, or lies in it and is shifted to the inner side, since the shifted segment does pass through the simplex.
-// So only facets that q is strictly beyond count, and ties are left between two of these alone.
+// Up to there it is the walk of the shifted segment. That walk leaves a simplex by the first facet that the shifted q
+// is beyond. Suppose that q itself is strictly beyond some facet. Then a facet whose plane holds q is never the first:
+// the segment meets that plane at its end, or lies in it and is shifted to the inner side, since the shifted segment
+// passes through the simplex. So only facets that q is strictly beyond count, and ties occur only between two of these.
 #pragma once
 
 #include <bit>
@@ -39,7 +39,7 @@ struct Walk {
   bool at_end = false;    ///< wall: met at q itself, which is in `simplex`
 };
 
-/// Sees every simplex that a walk leaves: visit(SimplexId, facet through which it leaves).
+/// Is called for every simplex that a walk leaves: visit(SimplexId, facet through which it leaves).
 struct NoVisitor {
   void operator()(SimplexId, unsigned) const {}
 };
@@ -148,7 +148,7 @@ Walk walk_to_wall(const Space<Positions, N>& space, SimplexId start, const Vec3&
   Ties<Positions, N> ties(space, start, p, q);
   Walk walk;
   walk.simplex = start;
-  unsigned asked = all;  // facets, but that entered by: q is strictly on this side of it
+  unsigned tested = all;  // all facets but the one entered by: q is strictly on this side of that one
   for (std::uint64_t met = 0; met <= space.simplex_count; ++met) {
     const CellView cell = space.map->view(walk.simplex.cell);
     const ImplicitSimplex& s = cell.shape().simplices()[walk.simplex.simplex];
@@ -158,7 +158,7 @@ Walk walk_to_wall(const Space<Positions, N>& space, SimplexId start, const Vec3&
       walk.end = WalkEnd::invalid_cell;
       return walk;
     }
-    const DeterminantSigns signs = signs_of(d, v, q, asked, counts.exact);
+    const DeterminantSigns signs = signs_of(d, v, q, tested, counts.exact);
     counts.tests += met == 0 ? N : N - 1;
     if (signs.negative == 0) {
       walk.zeros = static_cast<std::uint8_t>(signs.zero);
@@ -175,7 +175,7 @@ Walk walk_to_wall(const Space<Positions, N>& space, SimplexId start, const Vec3&
     }
     const Passage next = pass(*space.map, walk.simplex, cell, across);
     walk.simplex = next.simplex;
-    asked = all & ~(1U << next.facet);
+    tested = all & ~(1U << next.facet);
   }
   throw_overrun(*space.map, start, p, q);
 }
@@ -198,10 +198,10 @@ SimplexId simplex_towards(const Space<Positions, N>& space, SimplexId at, const 
   const Feature around = feature_of<N>(first, s0, zeros_of(space.corners(first, s0), p));
   SimplexId found;
   search_star<N>(*space.map, at, around, [&](SimplexId id, const CellView& cell, const ImplicitSimplex& s) {
-    const unsigned asked = facets_holding<N>(around, cell, s);
-    for (unsigned left = asked; left != 0; left &= left - 1) ++counts.tests;
+    const unsigned tested = facets_holding<N>(around, cell, s);
+    for (unsigned left = tested; left != 0; left &= left - 1) ++counts.tests;
     const std::array<Vec3, N> v = space.corners(cell, s);
-    if (signs_of(Determinants(v, q), v, q, asked, counts.exact).negative != 0) return true;
+    if (signs_of(Determinants(v, q), v, q, tested, counts.exact).negative != 0) return true;
     found = id;
     return false;
   });
@@ -221,7 +221,7 @@ void find_wall_at_end(const CombinatorialMap& map, Walk& walk) {
   walk.wall_facet = static_cast<std::uint8_t>(wall->facet);
 }
 
-/// What remains of a walk that has come to its first wall, or to the closed simplex that holds q.
+/// Ends a walk that has come to its first wall, or to the closed simplex that holds q.
 template <class Positions, std::size_t N, class Visitor = NoVisitor>
 Walk end_walk(const Space<Positions, N>& space, Walk walk, const Vec3& p, const Vec3& q, TestCounts& counts,
               Visitor&& visit = {}) {

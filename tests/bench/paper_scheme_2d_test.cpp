@@ -13,6 +13,7 @@
 #include "bench/comparison.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/generators.hpp"
+#include "dartcast/predicates.hpp"
 #include "support/scheme_pair.hpp"
 #include "support/tier.hpp"
 

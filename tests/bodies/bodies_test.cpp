@@ -10,6 +10,7 @@
 
 #include "base/random.hpp"
 #include "dartcast/audit.hpp"
+#include "dartcast/complex_edit.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "support/meshes.hpp"

@@ -6,6 +6,7 @@
 
 #include "dartcast/audit.hpp"
 #include "dartcast/catheter.hpp"
+#include "dartcast/complex_edit.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/map_edits.hpp"
 #include "support/meshes.hpp"

@@ -12,6 +12,7 @@
 #include "dartcast/environment.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
+#include "dartcast/validity.hpp"
 #include "support/generate_checks.hpp"
 #include "support/meshes.hpp"
 

@@ -3,6 +3,7 @@
 
 #include <set>
 
+#include "dartcast/complex_edit.hpp"
 #include "support/sphere_checks.hpp"
 
 namespace dartcast::near_walls_test {

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/random.hpp"
+#include "dartcast/complex_edit.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/map_edits.hpp"

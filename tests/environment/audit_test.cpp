@@ -7,6 +7,7 @@
 
 #include "base/random.hpp"
 #include "dartcast/generators.hpp"
+#include "dartcast/map_edits.hpp"
 #include "oracle/oracle.hpp"
 
 namespace dartcast::audit_test {

@@ -11,6 +11,7 @@
 #include "dartcast/audit.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/generators.hpp"
+#include "dartcast/predicates.hpp"
 #include "dartcast/response.hpp"
 #include "support/meshes.hpp"
 #include "support/particle_checks.hpp"

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "dartcast/audit.hpp"
+#include "dartcast/complex_edit.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/map_edits.hpp"
 #include "dartcast/response.hpp"

@@ -13,6 +13,7 @@
 #include "base/random.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
+#include "dartcast/validity.hpp"
 #include "mesh/cell_types.hpp"
 #include "support/expectations.hpp"
 #include "support/meshes.hpp"

@@ -9,6 +9,7 @@
 #include "dartcast/environment.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
+#include "dartcast/validity.hpp"
 #include "oracle/scenes.hpp"
 #include "support/meshes.hpp"
 #include "support/moving_simplex.hpp"

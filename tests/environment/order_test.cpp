@@ -10,6 +10,7 @@
 
 #include "complex/simplex.hpp"
 #include "dartcast/audit.hpp"
+#include "dartcast/complex_edit.hpp"
 #include "dartcast/error.hpp"
 #include "support/edit_meshes.hpp"
 #include "support/expectations.hpp"
@@ -207,7 +208,7 @@ class Machine {
       Particles tried = set.particles;
       const std::string advanced = error_text([&] { scene_.environment.advance(tried, places_of(tried)); });
       if (!advanced.empty()) {
-        ASSERT_NE(advanced.find("follow()"), std::string::npos) << advanced;
+        ASSERT_NE(advanced.find("update_after_edit()"), std::string::npos) << advanced;
         ASSERT_TRUE(same_bits(test::copy_of(set.particles), tried));
         ASSERT_EQ(error_text([&] { scene_.environment.update_after_edit(tried); }), "");
         ASSERT_EQ(error_text([&] { scene_.environment.advance(tried, places_of(tried)); }), "");
@@ -260,7 +261,7 @@ class Machine {
     const std::vector<ParticleState> before = test::copy_of(set.particles);
     const std::string why = error_text([&] { scene_.environment.advance(set.particles, targets); });
     if (set.particles.size() > 0 && set.edits != edits_) {
-      ASSERT_NE(why.find("follow()"), std::string::npos) << why;
+      ASSERT_NE(why.find("update_after_edit()"), std::string::npos) << why;
       ASSERT_TRUE(same_bits(before, set.particles));
       return;
     }
@@ -293,7 +294,7 @@ class Machine {
       ASSERT_TRUE(tries > 0 || same_bits(before, set.particles));
       ASSERT_FALSE(is_current(set));
       // It names what to do first.
-      if (why.find("follow()") != std::string::npos)
+      if (why.find("update_after_edit()") != std::string::npos)
         update_after_edit(set);
       else if (why.find("advance") != std::string::npos)
         advance(set);

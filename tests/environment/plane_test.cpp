@@ -9,6 +9,7 @@
 
 #include "base/random.hpp"
 #include "dartcast/audit.hpp"
+#include "dartcast/complex_edit.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"

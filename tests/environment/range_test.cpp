@@ -13,6 +13,7 @@
 #include "dartcast/environment.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/response.hpp"
+#include "dartcast/validity.hpp"
 #include "support/particle_checks.hpp"
 #include "support/tier.hpp"
 

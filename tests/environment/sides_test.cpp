@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dartcast/audit.hpp"
+#include "dartcast/complex_edit.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/map_edits.hpp"
 #include "support/edit_meshes.hpp"

@@ -6,13 +6,14 @@
 #include <numeric>
 
 #include "base/random.hpp"
+#include "dartcast/complex_edit.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/map_edits.hpp"
 #include "support/particle_checks.hpp"
 #include "support/tier.hpp"
 
-namespace dartcast::test::memos_test {
+namespace dartcast::test::simplex_caches_test {
 
 enum class Places { anywhere, lattice };
 
@@ -201,4 +202,4 @@ TEST(SimplexCache, CoordinatesThatAreRoundedProveNoZeros) {
   }
 }
 
-}  // namespace dartcast::test::memos_test
+}  // namespace dartcast::test::simplex_caches_test

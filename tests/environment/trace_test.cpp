@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/random.hpp"
+#include "dartcast/cell_complex.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"

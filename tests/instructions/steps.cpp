@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/random.hpp"
+#include "dartcast/complex_edit.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/map_edits.hpp"

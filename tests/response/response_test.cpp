@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/random.hpp"
+#include "dartcast/combinatorial_map.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"

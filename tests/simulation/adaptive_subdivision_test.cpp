@@ -10,6 +10,7 @@
 #include "dartcast/generators.hpp"
 #include "dartcast/simulation.hpp"
 #include "support/meshes.hpp"
+#include "dartcast/validity.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::crowding_test {

@@ -6,6 +6,7 @@
 #include "dartcast/audit.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
+#include "dartcast/validity.hpp"
 #include "simulation/event_scheduler.hpp"
 #include "support/expectations.hpp"
 #include "support/tier.hpp"

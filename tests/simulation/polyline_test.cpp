@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "dartcast/combinatorial_map.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "dartcast/cell_complex.hpp"
 #include "dartcast/environment.hpp"
 #include "support/generate_checks.hpp"
 

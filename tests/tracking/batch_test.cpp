@@ -25,11 +25,11 @@ constexpr std::size_t steps_per_scene = 30;
 struct Tally {
   std::atomic<std::uint64_t> steps{0};
   std::atomic<std::uint64_t> taken{0};
-  std::atomic<std::uint64_t> moved_on{0};     // taken into another simplex
-  std::atomic<std::uint64_t> handed_over{0};  // taken up to a wall
-  std::atomic<std::uint64_t> landed{0};       // of these, the contact is known
-  std::atomic<std::uint64_t> remembered{0};   // taken, and coordinates are kept for the next
-  std::atomic<std::uint64_t> exact{0};        // of these, exact ones
+  std::atomic<std::uint64_t> moved_on{0};    // taken into another simplex
+  std::atomic<std::uint64_t> resumed{0};     // taken up to a wall
+  std::atomic<std::uint64_t> landed{0};      // of these, the contact is known
+  std::atomic<std::uint64_t> remembered{0};  // taken, and coordinates are kept for the next
+  std::atomic<std::uint64_t> exact{0};       // of these, exact ones
 };
 
 // A scene whose particles are stepped both ways.
@@ -66,14 +66,14 @@ class BothWays {
     const Filtered portable = filtered(targets, detail::InstructionSet::portable, moves_, {});
     const Filtered best = filtered(targets, detail::best_instruction_set(), true, caches_);
     if (!std::ranges::equal(portable.taken, best.taken, alike)) return "instruction sets leave different steps";
-    if (!moves_ && !same_memos(best, filtered(targets, detail::InstructionSet::portable, true, caches_)))
+    if (!moves_ && !same_caches(best, filtered(targets, detail::InstructionSet::portable, true, caches_)))
       return "instruction sets keep different coordinates";
     const StepOptions options;
     const ContactCallback none;
     const Stepper stepper(complex_, moves_, options, none);
     Counters counters;  // of the steps taken
     std::vector<ParticleState> next = states_;
-    detail::SimplexCache next_memos;
+    detail::SimplexCache next_caches;
     for (std::size_t i = 0; i < particles; ++i) {
       Weights weights{};
       ContactList contacts;
@@ -91,19 +91,19 @@ class BothWays {
           const PartialStep& partial = f->partial[f->taken[i]];
           ParticleState state = states_[i];
           Weights unused{};
-          ContactList handed_over;
+          ContactList resumed;
           Counters counts;
-          stepper.step(static_cast<std::uint32_t>(i), state, unused, targets[i], handed_over, counts, &partial);
-          if (!same_bits(state, next[i])) return fmt::format("particle {}: another state, handed over", i);
-          if (!same(handed_over, contacts)) return fmt::format("particle {}: other contacts, handed over", i);
-          if (!same(counts, own)) return fmt::format("particle {}: other counts, handed over", i);
-          landed = partial.impact != nullptr;
+          stepper.resume(static_cast<std::uint32_t>(i), state, unused, targets[i], resumed, counts, partial);
+          if (!same_bits(state, next[i])) return fmt::format("particle {}: another state, resumed", i);
+          if (!same(resumed, contacts)) return fmt::format("particle {}: other contacts, resumed", i);
+          if (!same(counts, own)) return fmt::format("particle {}: other counts, resumed", i);
+          landed = partial.impact.has_value();
           if (landed && !partial.stays(state)) return fmt::format("particle {}: not where it landed", i);
         }
-        tally.handed_over += 1;
+        tally.resumed += 1;
         tally.landed += landed ? 1 : 0;
       }
-      const bool described = taken || landed;  // by its vertices and memo
+      const bool described = taken || landed;  // by its vertices and cache entry
       const ParticleState& expected = taken ? next[i] : states_[i];
       if (!same_bits(best.states[i], expected) || !same_bits(portable.states[i], expected))
         return fmt::format("particle {}: another state", i);
@@ -114,25 +114,25 @@ class BothWays {
           moves_ ? detail::CacheKind::previous_geometry : detail::CacheKind::barycentric, complex_.positions(),
           detail::vertex_numbers(complex_, next[i].at()), next[i].position);
       if (moves_ && described && (!equal(best.caches[i], entry) || !equal(portable.caches[i], entry)))
-        return fmt::format("particle {}: another trail", i);
+        return fmt::format("particle {}: other previous geometry", i);
       if (!moves_ && described && !std::isnan(best.caches[i].w[0])) tally.remembered += 1;
-      if (landed && !moves_ && best.caches.mark(i) != 0) return fmt::format("particle {}: marked on a wall", i);
-      if (taken && !moves_ && best.caches.mark(i) != 0) {
+      if (landed && !moves_ && best.caches.flags(i) != 0) return fmt::format("particle {}: flags on a wall", i);
+      if (taken && !moves_ && best.caches.flags(i) != 0) {
         const unsigned zeros = detail::zeros_of(complex_.corners(next[i].at()), next[i].position);
-        if (best.caches.mark(i) != (detail::exact_flag | zeros)) return fmt::format("particle {}: another mark", i);
+        if (best.caches.flags(i) != (detail::exact_flag | zeros)) return fmt::format("particle {}: other flags", i);
         tally.exact += 1;
       }
       if (described)
-        next_memos.push_back(best.caches[i], best.caches.mark(i));
+        next_caches.push_back(best.caches[i], best.caches.flags(i));
       else
-        next_memos.push_back(entry);
+        next_caches.push_back(entry);
       if (taken) counters += rides_to(i, targets[i]) ? counts_of_a_kept_forecast() : own;
       tally.steps += 1;
       tally.taken += taken ? 1 : 0;
       tally.moved_on += taken && next[i].at() != states_[i].at() ? 1 : 0;
     }
     states_ = next;
-    caches_ = random_.below(8) == 0 ? detail::SimplexCache{} : next_memos;
+    caches_ = random_.below(8) == 0 ? detail::SimplexCache{} : next_caches;
     return same(counters, best.counters) && same(counters, portable.counters) ? "" : "other counts";
   }
 
@@ -143,33 +143,29 @@ class BothWays {
     detail::SimplexCache caches;
     std::vector<detail::StepStatus> taken;
     std::vector<PartialStep> partial;
-    std::vector<WallImpact> impacts;
     Counters counters;
   };
 
-  // With memos or without, those of the step before or new ones.
-  Filtered filtered(std::span<const Vec3> targets, detail::InstructionSet set, bool with_memos,
+  // With caches or without, those of the step before or new ones.
+  Filtered filtered(std::span<const Vec3> targets, detail::InstructionSet set, bool with_caches,
                     const detail::SimplexCache& caches) const {
-    Filtered f{states_, {}, caches, std::vector<detail::StepStatus>(particles), {}, {}, {}};
-    f.caches.resize(with_memos ? particles : 0);
+    Filtered f{states_, {}, caches, std::vector<detail::StepStatus>(particles), {}, {}};
+    f.caches.resize(with_caches ? particles : 0);
     for (const ParticleState& s : states_) f.vertices.push_back(detail::vertex_numbers(complex_, s.at()));
     detail::step_batch({&complex_, moves_, !caches.empty(), StepOptions{}.tolerance},
-                       {f.states, f.vertices, f.caches.from(0), targets, f.taken, f.partial, f.impacts}, f.counters,
-                       set);
+                       {f.states, f.vertices, f.caches.from(0), targets, f.taken, f.partial}, f.counters, set);
     return f;
   }
 
-  // Walks may be handed over in another order.
+  // Walks may be resumed in another order.
   static bool alike(detail::StepStatus a, detail::StepStatus b) {
-    const auto handed_over = [](detail::StepStatus t) {
-      return t != detail::step_complete && t != detail::step_untouched;
-    };
-    return a == b || (handed_over(a) && handed_over(b));
+    const auto resumed = [](detail::StepStatus t) { return t != detail::step_complete && t != detail::step_untouched; };
+    return a == b || (resumed(a) && resumed(b));
   }
-  static bool same_memos(const Filtered& a, const Filtered& b) {
+  static bool same_caches(const Filtered& a, const Filtered& b) {
     bool same = a.caches.size() == b.caches.size();
     for (std::size_t i = 0; same && i < a.caches.size(); ++i)
-      same = equal(a.caches[i], b.caches[i]) && a.caches.mark(i) == b.caches.mark(i);
+      same = equal(a.caches[i], b.caches[i]) && a.caches.flags(i) == b.caches.flags(i);
     return same;
   }
 
@@ -350,8 +346,8 @@ TEST_P(FilteredBatch, TakesStepsAsOneParticleDoes) {
   if (kind == oracle::SceneKind::slivers || sanitized()) return;
   EXPECT_GT(tally.taken, tally.steps / (moves ? 8 : 4));
   EXPECT_GT(tally.moved_on, tally.steps / 50);
-  EXPECT_GT(tally.handed_over, tally.steps / 100);
-  EXPECT_GT(tally.landed, tally.handed_over / 6);
+  EXPECT_GT(tally.resumed, tally.steps / 100);
+  EXPECT_GT(tally.landed, tally.resumed / 6);
   EXPECT_TRUE(moves || tally.remembered > tally.steps / 4);
 }
 

@@ -17,7 +17,7 @@
 #include "tracking/batch/coordinate_bounds.hpp"
 #include "tracking/carry.hpp"
 
-namespace dartcast::test::memo_test {
+namespace dartcast::test::simplex_cache_test {
 
 // One tetrahedron: of any shape, at any distance from the origin, of any size.
 std::optional<CellComplex> any_tetrahedron(Random& random) {
@@ -46,7 +46,7 @@ Vec3 combined(const Corners& v, const std::array<double, 4>& weights) {
 }
 
 // What a step leaves that stays where it is.
-detail::SimplexCacheEntry memo_at(const CellComplex& complex, SimplexId at, const Vec3& p) {
+detail::SimplexCacheEntry cache_at(const CellComplex& complex, SimplexId at, const Vec3& p) {
   std::vector<ParticleState> states(1);
   states[0].put(at, p);
   std::vector<detail::VertexNumbers> vertices = {detail::vertex_numbers(complex, at)};
@@ -55,10 +55,9 @@ detail::SimplexCacheEntry memo_at(const CellComplex& complex, SimplexId at, cons
   const std::vector<Vec3> targets = {p};
   std::vector<detail::StepStatus> taken(1);
   std::vector<PartialStep> partial;
-  std::vector<WallImpact> impacts;
   Counters counters;
   detail::step_batch({&complex, false, false, StepOptions{}.tolerance},
-                     {states, vertices, caches.from(0), targets, taken, partial, impacts}, counters);
+                     {states, vertices, caches.from(0), targets, taken, partial}, counters);
   return caches[0];
 }
 
@@ -119,7 +118,7 @@ TEST(SimplexCacheEntry, CoordinatesClaimNothingWrong) {
     const Corners v = complex->corners(at);
     const Vec3 p = combined(v, {random.uniform(), random.uniform(), random.uniform(), random.uniform()});
     if (!detail::in_closed_simplex(v, p)) continue;
-    const detail::SimplexCacheEntry entry = memo_at(*complex, at, p);
+    const detail::SimplexCacheEntry entry = cache_at(*complex, at, p);
     if (entry.w[0] == detail::proves_nothing) ++tally.none;
     for (int i = 0; i < 20; ++i) {
       const Vec3 q = any_point(random, v);
@@ -140,7 +139,7 @@ TEST(SimplexCacheEntry, CoordinatesAreNotMadeOutOfTheirRange) {
     mesh.add_cell(CellType::tetrahedron, std::array<std::uint32_t, 4>{0, 1, 2, 3});
     const CellComplex complex(mesh);
     const Vec3 p = Vec3{0.25, 0.25, 0.25} * size;
-    const detail::SimplexCacheEntry entry = memo_at(complex, {complex.map().cells().front(), 0}, p);
+    const detail::SimplexCacheEntry entry = cache_at(complex, {complex.map().cells().front(), 0}, p);
     EXPECT_EQ(entry.w[0], detail::proves_nothing) << size;
     for (const double c : coordinates(entry, p)) EXPECT_FALSE(c > detail::coordinate_margin) << size;
   }
@@ -173,4 +172,4 @@ TEST(SimplexCacheEntry, ZerosAreProvedOnlyWhereNothingIsRounded) {
   }
 }
 
-}  // namespace dartcast::test::memo_test
+}  // namespace dartcast::test::simplex_cache_test

@@ -1,29 +1,33 @@
-// What is kept of simplices (tracking/batch/simplex_cache.hpp), of four particles in vectors. Part of
-// tracking/batch/batch_kernel.inl: no include guard, no includes.
+// Simplex caches (tracking/batch/simplex_cache.hpp) of four particles, and what they prove. Part of the batch's kernel.
+#pragma once
 
-DARTCAST_TARGET inline Double4 load_floats(const float* in) {
-  const Float4 four = *reinterpret_cast<const UnalignedFloat4*>(in);
-  return widened(four);
-}
-DARTCAST_TARGET inline void store_floats(const Double4& four, float* out) {
-  *reinterpret_cast<UnalignedFloat4*>(out) = narrowed(four);
-}
-DARTCAST_TARGET inline Double4 load_doubles(const double* in) { return *reinterpret_cast<const UnalignedDouble4*>(in); }
-DARTCAST_TARGET inline void store_doubles(const Double4& four, double* out) {
-  *reinterpret_cast<UnalignedDouble4*>(out) = four;
-}
-// Of corner i.
-DARTCAST_TARGET inline Vec3x4 load_vectors(const SimplexCache4& caches, unsigned i) {
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "base/double4.inl"
+#include "dartcast/particle_state.hpp"
+#include "tracking/batch/batch_simplex.inl"
+#include "tracking/batch/coordinate_bounds.hpp"
+#include "tracking/batch/simplex_cache.hpp"
+#include "tracking/representable_point.hpp"
+
+DARTCAST_BEGIN_KERNEL
+namespace dartcast::detail::DARTCAST_SIMD {
+namespace {
+
+// Vectors of corner i.
+inline Vec3x4 load_vectors(const SimplexCache4& caches, unsigned i) {
   return {load_floats(caches.x[i].data()), load_floats(caches.y[i].data()), load_floats(caches.z[i].data())};
 }
-DARTCAST_TARGET inline void store_vectors(const Vec3x4& four, SimplexCache4& caches, unsigned i) {
+inline void store_vectors(const Vec3x4& four, SimplexCache4& caches, unsigned i) {
   store_floats(four.x, caches.x[i].data());
   store_floats(four.y, caches.y[i].data());
   store_floats(four.z, caches.z[i].data());
 }
 
-// The trails of the particles that d's corners are relative to.
-DARTCAST_TARGET inline void store_previous_geometry(const BatchDeterminants& d, SimplexCache4& caches) {
+// Stores the geometry that the next step needs as its previous one. d: relative to the particles.
+inline void store_previous_geometry(const BatchDeterminants& d, SimplexCache4& caches) {
   const Mask4 known = d.proves_coordinates();
   for (unsigned i = 0; i < 4; ++i) {
     store_vectors(d.relative[i], caches, i);
@@ -31,20 +35,18 @@ DARTCAST_TARGET inline void store_previous_geometry(const BatchDeterminants& d, 
   }
 }
 
-// Whether a number has no more than 29 bits: times a float it then makes a double. x + 2^24 x is rounded to a multiple
-// of the last place of 2^24 x, the 29th place of x.
-DARTCAST_TARGET inline Mask4 has_short_mantissa(const Double4& x) {
+// Whether a number has no more than 29 bits: its product with a float is then exact. x + 2^24 x is rounded to a
+// multiple of the last place of 2^24 x, which is the 29th place of x.
+inline Mask4 has_short_mantissa(const Double4& x) {
   const Double4 far = x * splat(0x1p+24);
   return (far + x) - far == x;
 }
 
-// Whether s, the rounded sum of a and b, is exact: the difference to the larger one is.
-DARTCAST_TARGET inline Mask4 is_sum(const Double4& s, const Double4& a, const Double4& b) {
-  return (s - a == b) & (s - b == a);
-}
+// Whether s, the rounded sum of a and b, is exact. The difference of s and the larger one is always exact.
+inline Mask4 is_sum(const Double4& s, const Double4& a, const Double4& b) { return (s - a == b) & (s - b == a); }
 
-// Whether g.q + w comes out as zero though nothing is rounded: g are floats, q has few bits.
-DARTCAST_TARGET inline Mask4 is_zero(const Vec3x4& g, const Double4& w, const Vec3x4& q) {
+// Whether g.q + w is zero and no operation rounds. Preconditions: g are floats, q has few bits.
+inline Mask4 is_zero(const Vec3x4& g, const Double4& w, const Vec3x4& q) {
   const Double4 x = g.x * q.x;
   const Double4 y = g.y * q.y;
   const Double4 z = g.z * q.z;
@@ -53,16 +55,17 @@ DARTCAST_TARGET inline Mask4 is_zero(const Vec3x4& g, const Double4& w, const Ve
   return (xyz + w == 0.0) & is_sum(xy, x, y) & is_sum(xyz, xy, z);
 }
 
-// Leaves the coordinates of the simplices, from particles p that d's corners are relative to: their gradients are the
-// normals of the facets, inwards, over the volume. If asked, returns a bit for each lane in which they are exact; for
-// lanes in which p is in the closed simplex, and arithmetic on the differences of p and the corners rounds nothing
-// (rounds_nothing() in dartcast/predicates.hpp).
+// Stores the barycentric coordinates of four simplices; d: relative to the particles p. The gradient of a coordinate is
+// the inward normal of its facet over the volume.
 //
-// Then normals and the volume, a sum of determinants none of which is negative, are exact; so is a function of the
-// place that has the right gradient and is zero at a corner of the facet. Differences are below 2^16 units: where p is
-// within 2^12 of the largest one, corners are below 2^29 units, and have few bits.
+// ask_exact: returns a bit for each lane in which the coordinates are exact. This holds for lanes in which p is in the
+// closed simplex and arithmetic on the differences of p and the corners rounds nothing (rounds_nothing() in
+// dartcast/predicates.hpp). Then the normals are exact. The volume is exact, too: it is a sum of determinants, none of
+// which is negative. A function is exact where it has the right gradient and is zero at a corner of the facet.
+// Differences are below 2^16 units. Where p is within 2^12 of the largest one, corners are below 2^29 units, and have
+// few bits.
 template <bool ask_exact>
-DARTCAST_TARGET inline unsigned store_barycentric(const BatchDeterminants& d, const Vec3x4& p, SimplexCache4& caches) {
+inline unsigned store_barycentric(const BatchDeterminants& d, const Vec3x4& p, SimplexCache4& caches) {
   const Double4 volume = d.volume6();
   const Double4 share = 1.0 / volume;
   const Double4 extent = largest(d.extent);
@@ -93,33 +96,31 @@ DARTCAST_TARGET inline unsigned store_barycentric(const BatchDeterminants& d, co
 }
 
 // Coordinate i of q.
-DARTCAST_TARGET inline Double4 coordinate_of(const SimplexCache4& caches, unsigned i, const Vec3x4& q) {
+inline Double4 coordinate_of(const SimplexCache4& caches, unsigned i, const Vec3x4& q) {
   return dot(load_vectors(caches, i), q) + load_doubles(caches.w[i].data());
 }
 
-// Bits of the facets that q is proved to lie on, where coordinates are exact.
-DARTCAST_TARGET inline Mask4 proved_zeros(const SimplexCache4& caches, const Vec3x4& q) {
+// Bits of the facets that q is proved to lie on. Precondition: the coordinates are exact.
+inline Mask4 proved_zeros(const SimplexCache4& caches, const Vec3x4& q) {
   Mask4 zero[4];
   for (unsigned i = 0; i < 4; ++i) zero[i] = is_zero(load_vectors(caches, i), load_doubles(caches.w[i].data()), q);
   return has_short_mantissa(q.x) & has_short_mantissa(q.y) & has_short_mantissa(q.z) &
          facet_bits(zero[0], zero[1], zero[2], zero[3]);
 }
 
-DARTCAST_TARGET inline bool has_coordinates(const SimplexCache4* caches, std::uint32_t i) {
+inline bool has_coordinates(const SimplexCache4* caches, std::uint32_t i) {
   return !std::isnan(caches[i / 4].w[0][i % 4]);
 }
-DARTCAST_TARGET inline void forget(SimplexCache4* caches, CacheFlags* marks, std::uint32_t i) {
+inline void forget(SimplexCache4* caches, CacheFlags* marks, std::uint32_t i) {
   for (auto& of_corner : caches[i / 4].w) of_corner[i % 4] = unknown;
   marks[i] = 0;
 }
 
 // As flushed() in tracking/representable_point.hpp.
-DARTCAST_TARGET inline Double4 without_tiny(const Double4& x) {
-  return magnitude(x) < smallest_magnitude ? Double4{} : x;
-}
+inline Double4 without_tiny(const Double4& x) { return magnitude(x) < smallest_magnitude ? Double4{} : x; }
 
-// The points of tracking/carry.hpp that have, in the moved simplices, the coordinates that w are in proportion to.
-DARTCAST_TARGET inline Vec3x4 carry_along(const Double4 (&w)[4], const Corners4& now) {
+// As carried() in tracking/carry.hpp: the points of the moved simplices whose coordinates are proportional to w.
+inline Vec3x4 carry_along(const Double4 (&w)[4], const Corners4& now) {
   Double4 share[4];
   for (unsigned i = 0; i < 4; ++i) share[i] = larger(w[i], Double4{});
   const Double4 sum = ((share[0] + share[1]) + share[2]) + share[3];
@@ -129,25 +130,24 @@ DARTCAST_TARGET inline Vec3x4 carry_along(const Double4 (&w)[4], const Corners4&
   return {without_tiny(x.x), without_tiny(x.y), without_tiny(x.z)};
 }
 
-// Coordinates that determinants are in proportion to.
-DARTCAST_TARGET inline Weights shares_of(Weights w) {
+// The coordinates that these determinants are proportional to.
+inline Weights shares_of(Weights w) {
   for (double& share : w) share = std::max(share, 0.0);
   const double sum = ((w[0] + w[1]) + w[2]) + w[3];
   for (double& share : w) share /= sum;
   return w;
 }
 
-// Whether what carry_along() comes to surely lies strictly inside of the moved simplices, for targets q that were not
-// proved to; d: of the targets.
+// Whether the result of carry_along() surely lies strictly inside the moved simplices. Precondition: the targets q are
+// not proved to lie inside. d: relative to the targets.
 //
-// Let E be the largest |r_i| of the corners relative to q, V the volume, M the largest |c_i| of the corners. The place
-// is a sum of c_i s_i, rounded, with s_i >= 2^-12 that sum to 1 up to 4u: in each component it is 9uM at most off the
-// point that has the coordinates s_i / sum. (What is counted as zero is below 2^-300, which is 2^-66 E where the filter
-// applies, in the corners, too.) The cross products of a facet's edges have components of 8 E^2 at most. So the place's
-// determinants are s_i V, off by 24 E^2 9uM < 2^-33 E^3, as M <= (2^12 + 1) E; and s_i V >= 2^-32 (1 - 2^-25) E^3. It
-// is not q: one of q's is below 2^-46 E^3.
-DARTCAST_TARGET inline Mask4 surely_carried_inside(const SimplexCache4& previous_caches, const BatchDeterminants& d,
-                                                   const Vec3x4& q) {
+// Let E be the largest |r_i| of the corners relative to q, V the volume, M the largest |c_i| of the corners. The result
+// is a rounded sum of c_i s_i, with s_i >= 2^-12 that sum to 1 up to 4u. Each component is off by at most 9uM from the
+// point with the coordinates s_i / sum. (Numbers flushed to zero are below 2^-300, which is 2^-66 E where the filter
+// applies; this is so in the corners, too.) The cross products of a facet's edges have components of at most 8 E^2.
+// So the determinants of the result are s_i V, off by 24 E^2 9uM < 2^-33 E^3, as M <= (2^12 + 1) E. And s_i V is at
+// least 2^-32 (1 - 2^-25) E^3. The result is not q: one of the determinants of q is below 2^-46 E^3.
+inline Mask4 surely_carried_inside(const SimplexCache4& previous_caches, const BatchDeterminants& d, const Vec3x4& q) {
   constexpr double min_share = 0x1p-12;
   constexpr double farthest = 0x1p+12;
   const Double4 w[4] = {load_doubles(previous_caches.w[0].data()), load_doubles(previous_caches.w[1].data()),
@@ -161,19 +161,20 @@ DARTCAST_TARGET inline Mask4 surely_carried_inside(const SimplexCache4& previous
 
 // Whether steps relative to moving vertices surely need no splitting (tracking/step.hpp): |A| |r| <= 2 tolerance edge.
 //
-// The corners' displacements d_i, less the particle's own q - p, have -r as a mean: |r| <= max |d_i|. With
-// u_i = d_i - d_0 and n_i the cross products of the old edges e_i from corner 0, A = sum of u_i n_i^T / V, so that
-// |A|^2 V^2 <= sum of |u_i|^2 times sum of |n_i|^2. Squares are compared. L is the old distance of the farthest corner:
-// floats rounded the old corners by 2^-24 L, and the rule's own doubles round u_i by as much at most, as |q - p| and
-// |d_i| are below 2^28 L. So the coordinates of d_i, u_i, n_i and the edges are off by 2^-24 L, 3 2^-24 L, 2^-20 L^2
-// and 2^-23 L; squares count that as (a + b)^2 <= 17/16 a^2 + 17 b^2. The rule's r is off by 2^-49 |q| as well, less
-// than an eighth of 2^-24 L, and by as much of the d_i. Products reach L^12: with L in [2^-70, 2^70] those on the left
-// neither overflow nor underflow.
+// The displacements d_i of the corners, less the particle's own q - p, have -r as a mean: |r| <= max |d_i|. Let u_i be
+// d_i - d_0, and n_i the cross products of the old edges e_i from corner 0. Then A = sum of u_i n_i^T / V, so that
+// |A|^2 V^2 <= sum of |u_i|^2 times sum of |n_i|^2. Squares are compared.
+//
+// Let L be the old distance of the farthest corner. Floats round the old corners by 2^-24 L. The doubles of the rule
+// round u_i by at most as much, as |q - p| and |d_i| are below 2^28 L. So the coordinates of d_i, u_i, n_i and the
+// edges are off by 2^-24 L, 3 2^-24 L, 2^-20 L^2 and 2^-23 L. In squares, (a + b)^2 <= 17/16 a^2 + 17 b^2 bounds that.
+// The rule's r is off by 2^-49 |q| as well, which is less than an eighth of 2^-24 L, and by as much of the d_i.
+// Products reach L^12: with L in [2^-70, 2^70] those on the left neither overflow nor underflow.
 class OnePart {
  public:
   // `after`: the moved corners relative to the targets q; p: where the particles were.
-  DARTCAST_TARGET OnePart(const SimplexCache4& previous_caches, const Vec3x4 (&after)[4], const Vec3x4& p,
-                          const Vec3x4& q, double tolerance)
+  OnePart(const SimplexCache4& previous_caches, const Vec3x4 (&after)[4], const Vec3x4& p, const Vec3x4& q,
+          double tolerance)
       : before_{load_vectors(previous_caches, 0), load_vectors(previous_caches, 1), load_vectors(previous_caches, 2),
                 load_vectors(previous_caches, 3)} {
     const Vec3x4 d0 = after[0] - before_[0];
@@ -192,22 +193,22 @@ class OnePart {
     const Double4 far = 0x1p+56 * l2_;
     in_range_ =
         (l2_ > 0x1p-140) & (l2_ < 0x1p+140) & (farthest < far) & (square(own) < far) & (square(q) < 0x1p+44 * l2_);
-    // Not a number where the trail is unknown: then nothing is less.
+    // Not a number where the previous geometry is unknown: then every comparison is false.
     volume_ = (load_doubles(previous_caches.w[0].data()) + load_doubles(previous_caches.w[1].data())) +
               (load_doubles(previous_caches.w[2].data()) + load_doubles(previous_caches.w[3].data()));
     limit_ = 1.98 * tolerance * volume_;
   }
 
   // By L alone: |e_i| <= 2 L, sum of |n_i|^2 <= 48 L^4, edge >= V / (4 L^2).
-  [[nodiscard]] DARTCAST_TARGET Mask4 by_size() const {
+  [[nodiscard]] Mask4 by_size() const {
     const Double4 limit = limit_ * volume_;
     const Double4 l4 = l2_ * l2_;
     constexpr double rounding = 1.01;
     return in_range_ & (u2_r2_ * (rounding * 48.0 * 16.0) * (l4 * l4) <= limit * limit);
   }
 
-  // By the simplex's own faces and edges.
-  [[nodiscard]] DARTCAST_TARGET Mask4 by_shape() const {
+  // By the faces and edges of the simplex.
+  [[nodiscard]] Mask4 by_shape() const {
     const Vec3x4 e1 = before_[1] - before_[0];
     const Vec3x4 e2 = before_[2] - before_[0];
     const Vec3x4 e3 = before_[3] - before_[0];
@@ -228,3 +229,7 @@ class OnePart {
   Double4 limit_;
   Mask4 in_range_;
 };
+
+}  // namespace
+}  // namespace dartcast::detail::DARTCAST_SIMD
+DARTCAST_END_KERNEL

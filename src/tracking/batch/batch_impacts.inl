@@ -1,33 +1,42 @@
-// Where steps meet walls, of four particles in vectors: by the operations of tracking/contact_geometry.hpp and
-// tracking/place_in_simplex.hpp, to the same bits, as far as doubles prove what they ask. Part of
-// tracking/batch/batch_kernel.inl: no include guard, no includes.
+// Where four steps meet walls, computed by the operations of tracking/contact_geometry.hpp and
+// tracking/place_in_simplex.hpp, to the same bits, where doubles prove all that they ask. Part of the batch's kernel.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "base/double4.inl"
+#include "tracking/batch/batch_caches.inl"
+#include "tracking/batch/batch_simplex.inl"
+#include "tracking/contact_geometry.hpp"
+#include "tracking/step.hpp"
+
+DARTCAST_BEGIN_KERNEL
+namespace dartcast::detail::DARTCAST_SIMD {
+namespace {
 
 // As Determinant in tracking/contact_geometry.hpp.
 struct BoundedProducts {
   Double4 value;
   Double4 permanent;
 
-  DARTCAST_TARGET BoundedProducts(const Vec3x4& u, const Vec3x4& v, const Vec3x4& w) : value(dot(u, cross(v, w))) {
+  BoundedProducts(const Vec3x4& u, const Vec3x4& v, const Vec3x4& w) : value(dot(u, cross(v, w))) {
     permanent = magnitude(u.x) * sum(v.y * w.z, v.z * w.y) + magnitude(u.y) * sum(v.z * w.x, v.x * w.z) +
                 magnitude(u.z) * sum(v.x * w.y, v.y * w.x);
   }
 
-  [[nodiscard]] DARTCAST_TARGET Mask4 exceed(double times) const { return exceed(value, permanent, times); }
-  DARTCAST_TARGET static Double4 sum(const Double4& a, const Double4& b) { return magnitude(a) + magnitude(b); }
-  DARTCAST_TARGET static Mask4 exceed(const Double4& value, const Double4& permanent, double times) {
+  [[nodiscard]] Mask4 exceed(double times) const { return exceed(value, permanent, times); }
+  static Double4 sum(const Double4& a, const Double4& b) { return magnitude(a) + magnitude(b); }
+  static Mask4 exceed(const Double4& value, const Double4& permanent, double times) {
     return (permanent >= Determinant::smallest_permanent) &
            (magnitude(value) > (times * Determinant::error) * permanent);
   }
 };
 
-DARTCAST_TARGET inline Vec3x4 without_tiny(const Vec3x4& x) {
-  return {without_tiny(x.x), without_tiny(x.y), without_tiny(x.z)};
-}
-DARTCAST_TARGET inline Vec3x4 choose(const Mask4& m, const Vec3x4& a, const Vec3x4& b) {
-  return {m ? a.x : b.x, m ? a.y : b.y, m ? a.z : b.z};
-}
+inline Vec3x4 without_tiny(const Vec3x4& x) { return {without_tiny(x.x), without_tiny(x.y), without_tiny(x.z)}; }
 
-// A walk that has come to a wall's facet, with its target beyond.
+// A walk that has come to a wall's facet; its target is beyond.
 struct AtWall {
   std::uint32_t particle;
   std::uint16_t partial;  // its number
@@ -38,8 +47,8 @@ struct AtWall {
 };
 using AtWalls = const AtWall* [4];
 
-// Of the facets at the wall.
-DARTCAST_TARGET inline Vec3x4 load_corners(const Vec3* positions, const AtWalls& at, unsigned i) {
+// Corner i of the facets at the wall.
+inline Vec3x4 load_corners(const Vec3* positions, const AtWalls& at, unsigned i) {
   return load_vec3x4(positions[at[0]->corner(i)], positions[at[1]->corner(i)], positions[at[2]->corner(i)],
                      positions[at[3]->corner(i)]);
 }
@@ -50,8 +59,7 @@ class WallImpact4 {
   Vec3x4 position;
   Mask4 known;
 
-  DARTCAST_TARGET WallImpact4(const AtWalls& at, const std::vector<PartialStep>& partial, const Vec3* positions,
-                              const Vec3* targets)
+  WallImpact4(const AtWalls& at, const std::vector<PartialStep>& partial, const Vec3* positions, const Vec3* targets)
       : corner_{without_tiny(load_corners(positions, at, 0)), without_tiny(load_corners(positions, at, 1)),
                 without_tiny(load_corners(positions, at, 2))},
         facet_{at[0]->facet, at[1]->facet, at[2]->facet, at[3]->facet} {
@@ -65,8 +73,8 @@ class WallImpact4 {
     pass(load_vec3x4(p(0), p(1), p(2), p(3)), load_vec3x4(q(0), q(1), q(2), q(3)));
   }
 
-  // As proved_inside(): where the point is next to a facet, it is the wall's.
-  DARTCAST_TARGET void put(const Corners4& simplex) {
+  // As proved_inside(). The point is next to the wall's facet.
+  void put(const Corners4& simplex) {
     const BatchDeterminants d(simplex, point_);
     const Mask4 inside = d.all_positive();
     Mask4 others = splat_bits(-1);
@@ -91,7 +99,7 @@ class WallImpact4 {
   }
 
   // As wall_displacement().
-  DARTCAST_TARGET void move_walls(const AtWalls& at, const Vec3* before) {
+  void move_walls(const AtWalls& at, const Vec3* before) {
     Double4 weight[3];
     for (unsigned i = 0; i < 3; ++i)
       weight[i] = larger(dot(normal_, cross(corner_[(i + 1) % 3] - point_, corner_[(i + 2) % 3] - point_)), Double4{});
@@ -106,14 +114,14 @@ class WallImpact4 {
     }
   }
 
-  [[nodiscard]] DARTCAST_TARGET WallImpact of(unsigned lane) const {
+  [[nodiscard]] WallImpact of(unsigned lane) const {
     const auto in_lane = [&](const Vec3x4& x) { return Vec3{x.x[lane], x.y[lane], x.z[lane]}; };
     return {in_lane(normal_), fraction_[lane], in_lane(point_), in_lane(position), in_lane(wall_displacement_)};
   }
 
  private:
-  // As Passing: strictly through the facet, p off it.
-  DARTCAST_TARGET void pass(const Vec3x4& p, const Vec3x4& q) {
+  // As SegmentHit: the segment passes strictly through the facet, and p is not on it.
+  void pass(const Vec3x4& p, const Vec3x4& q) {
     const Vec3x4 a = corner_[0] - p;
     const Vec3x4 b = corner_[1] - p;
     const Vec3x4 c = corner_[2] - p;
@@ -132,12 +140,12 @@ class WallImpact4 {
   }
 
   // As on_level_facet().
-  [[nodiscard]] DARTCAST_TARGET Mask4 level() const {
+  [[nodiscard]] Mask4 level() const {
     const auto& [a, b, c] = corner_;
     return same(a.x, b.x, c.x, point_.x) | same(a.y, b.y, c.y, point_.y) | same(a.z, b.z, c.z, point_.z);
   }
 
-  DARTCAST_TARGET static Mask4 same(const Double4& u, const Double4& v, const Double4& w, const Double4& x) {
+  static Mask4 same(const Double4& u, const Double4& v, const Double4& w, const Double4& x) {
     return (u == x) & (v == x) & (w == x);
   }
 
@@ -149,3 +157,7 @@ class WallImpact4 {
   Vec3x4 point_;
   Vec3x4 wall_displacement_{};
 };
+
+}  // namespace
+}  // namespace dartcast::detail::DARTCAST_SIMD
+DARTCAST_END_KERNEL

@@ -1,3 +1,4 @@
+// The batch of the plane: block by block, one triangle of every walk at a time.
 #include "tracking/batch/batch_plane.hpp"
 
 #include <algorithm>
@@ -12,7 +13,7 @@ namespace dartcast::detail {
 
 namespace {
 
-// Without a z to reckon with.
+// A vector of the plane.
 struct Vec2x4 {
   double x, y;
 
@@ -21,7 +22,7 @@ struct Vec2x4 {
 };
 Vec2x4 from_to(const Vec3& a, const Vec3& b) { return {b.x - a.x, b.y - a.y}; }
 
-// What a step among moving vertices reads of the triangle that it begins in.
+// The data of its first triangle that a step among moving vertices reads.
 struct PlaneMove {
   const PlaneCorners& before;
   const PlaneCorners& after;
@@ -33,10 +34,10 @@ struct PlaneMove {
 
 // Whether the step surely needs no splitting (tracking/step.hpp): |A| |r| <= 2 tolerance edge.
 //
-// |A| V, V and the edge are the rule's own doubles, but for a root and a quotient. With d_i the corners' displacements
-// less q - p, -r is their mean by the particle's coordinates: |r| <= max |d_i|. The rule's r is off from that by no
-// more than m: its coordinates are right to 2^-26, and points are rounded. Squares count that as (a + b)^2 <= 17/16 a^2
-// + 17 b^2. The last line keeps products from over- and underflow.
+// |A| V, V and the edge are the doubles of the rule, up to a root and a quotient. Let d_i be the corners' displacements
+// less q - p. Then -r is their mean, weighted by the particle's coordinates: |r| <= max |d_i|. The rule's r is off from
+// that by at most m: its coordinates are right to 2^-26, and points are rounded. In squares, (a + b)^2 <= 17/16 a^2 +
+// 17 b^2 bounds that. The last line excludes overflow and underflow.
 bool surely_one_part(const PlaneMove& move, double tolerance) {
   const auto& [v, w, was, will, p, q] = move;
   const Vec2x4 own = from_to(p, q);
@@ -61,18 +62,18 @@ bool surely_one_part(const PlaneMove& move, double tolerance) {
          right < 0x1p+1000;
 }
 
-// A triangle that a walk has come to. Without initializers: a batch has room for many, and uses few.
+// A walk, and the triangle that it has come to. Without initializers: a batch has room for many, and uses few.
 struct PlaneWalkCursor {
   std::uint32_t particle;
   std::uint32_t cell;   // its value
   std::uint16_t index;  // of the simplex, or of the face that was entered through
-  std::uint8_t asked;   // facets, but that entered by
+  std::uint8_t tested;  // facets, but that entered by
   bool through_face;
   std::uint32_t tests;  // so far
   std::uint32_t exact;  // of these, those that the filter left open
 };
 
-// Triangles are taken block by block, in passes, as in tracking/batch/batch_kernel.inl.
+// Triangles are taken block by block, in passes, as in tracking/batch/batch_steps.inl.
 class PlaneBatch {
  public:
   PlaneBatch(const BatchScene& scene, const BatchSteps& steps, Counters& counters)
@@ -84,10 +85,10 @@ class PlaneBatch {
         counters_(counters) {}
 
   void run() {
-    std::fill_n(steps_.taken.begin(), size_, step_complete);
-    std::size_t count = before_ == nullptr ? begin<false>() : begin<true>();
+    std::fill_n(steps_.status.begin(), size_, step_complete);
+    std::size_t count = before_ == nullptr ? start<false>() : start<true>();
     for (std::uint64_t round = 0; count > 0; ++round) {
-      if (round > space_.simplex_count) return leave_all(count);
+      if (round > space_.simplex_count) return defer_all(count);
       count = walk_on(count);
     }
   }
@@ -96,25 +97,25 @@ class PlaneBatch {
   static constexpr std::uint32_t block = 32;
   static constexpr std::uint8_t all_facets = 7;
 
-  // Ends the steps whose targets lie strictly inside of the first triangle: wherever they come from in it, nothing is
-  // in the way. Returns the number of the others that are not left.
+  // Ends the steps whose targets lie strictly inside the first triangle: nothing in a triangle is in the way. Returns
+  // the number of walks that go on.
   template <bool moved>
-  std::size_t begin() {
+  std::size_t start() {
     std::size_t count = 0;
     for (std::uint32_t i = 0; i < std::min(size_, block); ++i) prefetch<moved>(i);
     for (std::uint32_t i = 0; i < size_; ++i) {
       if (i + block < size_) prefetch<moved>(i + block);
-      if (!begins<moved>(i)) continue;
+      if (!goes_on<moved>(i)) continue;
       const ParticleState& s = steps_.states[i];
-      visits_[count++] = {i, s.cell.value, s.simplex, all_facets, false, 0, 0};
+      walks_[count++] = {i, s.cell.value, s.simplex, all_facets, false, 0, 0};
       __builtin_prefetch(space_.map->record(s.cell));
     }
     return count;
   }
 
-  // Whether the step goes on from its first triangle; it has ended, or is left, else.
+  // Whether the step goes on from its first triangle; otherwise it has ended, or is deferred.
   template <bool moved>
-  bool begins(std::uint32_t i) {
+  bool goes_on(std::uint32_t i) {
     ParticleState& s = steps_.states[i];
     const Vec3& q = steps_.targets[i];
     const PlaneCorners now = corners(space_.positions.at, i);
@@ -124,10 +125,10 @@ class PlaneBatch {
       const PlaneCorners old = corners(before_, i);
       const Determinants was(old, s.position);
       if (s.held || !was.proves_coordinates() || !surely_one_part({old, now, was, d, s.position, q}, scene_.tolerance))
-        return leave(i);
-      if (!inside) return ride(i, old, now);
+        return defer(i);
+      if (!inside) return carry(i, old, now);
     } else if (s.held || s.position == q) {
-      return leave(i);
+      return defer(i);
     }
     if (!inside) return true;
     s.position = q;
@@ -135,13 +136,13 @@ class PlaneBatch {
     return false;
   }
 
-  // Moves the start of a walk along with the vertices; false where the step is left.
-  bool ride(std::uint32_t i, const PlaneCorners& old, const PlaneCorners& now) {
+  // Carries the start of a walk along with the mesh; false where the step is deferred.
+  bool carry(std::uint32_t i, const PlaneCorners& old, const PlaneCorners& now) {
     const Vec3& p = steps_.states[i].position;
     const Determinants d(now, p);
     left_behind_[i] = std::any_of(d.value.begin(), d.value.end(), [&](double v) { return v < -d.bound; });
     const Vec3 carried = flushed(combine(now, barycentric(old, p)));
-    if (carried == steps_.targets[i] || !Determinants(now, carried).all_proved_positive()) return leave(i);
+    if (carried == steps_.targets[i] || !Determinants(now, carried).all_proved_positive()) return defer(i);
     carried_[i] = {carried.x, carried.y, carried.z};
     return true;
   }
@@ -151,37 +152,37 @@ class PlaneBatch {
     std::size_t next = 0;
     for (std::size_t first = 0; first < count; first += block) {
       const std::size_t n = std::min<std::size_t>(block, count - first);
-      for (std::size_t k = 0; k < n; ++k) enter(visits_[first + k]);
+      for (std::size_t k = 0; k < n; ++k) enter(walks_[first + k]);
       for (std::size_t k = 0; k < n; ++k) {
-        PlaneWalkCursor& cursor = visits_[next] = visits_[first + k];
+        PlaneWalkCursor& cursor = walks_[next] = walks_[first + k];
         next += leave_triangle(cursor) ? 1 : 0;
       }
     }
     return next;
   }
 
-  // Finds the triangle behind the face that was entered through, and asks for its corners.
+  // Finds the triangle behind the face that the walk passes, and prefetches its corners.
   void enter(PlaneWalkCursor& cursor) const {
     const CellView cell = space_.map->view(Cell(cursor.cell));
     if (cursor.through_face) {
       const Across at = cell.shape().entry(cursor.index, 0);
       cursor.index = at.index;
-      cursor.asked = static_cast<std::uint8_t>(all_facets & ~(1U << at.place));
+      cursor.tested = static_cast<std::uint8_t>(all_facets & ~(1U << at.place));
     }
     const auto& local = cell.shape().simplices()[cursor.index].vertex;
     for (unsigned i = 0; i < 3; ++i) __builtin_prefetch(space_.positions.at + cell.vertex(local[i]).value);
   }
 
-  // As walk_to_wall() does in one triangle. False where the walk has ended, or is left.
+  // As walk_to_wall() does in one triangle. False where the walk has ended, or is deferred.
   bool leave_triangle(PlaneWalkCursor& cursor) {
     const Vec3& q = steps_.targets[cursor.particle];
     const CellView cell = space_.map->view(Cell(cursor.cell));
     const ImplicitSimplex& s = cell.shape().simplices()[cursor.index];
     const PlaneCorners v = space_.corners(cell, s);
     const Determinants d(v, q);
-    if (!d.proves_positive() && volume_sign(v) != Sign::positive) return leave(cursor.particle);
-    TestCounts counts{cursor.asked == all_facets ? 3U : 2U, 0};
-    const DeterminantSigns signs = signs_of(d, v, q, cursor.asked, counts.exact);
+    if (!d.proves_positive() && volume_sign(v) != Sign::positive) return defer(cursor.particle);
+    TestCounts counts{cursor.tested == all_facets ? 3U : 2U, 0};
+    const DeterminantSigns signs = signs_of(d, v, q, cursor.tested, counts.exact);
     unsigned facet = 0;
     if (signs.negative != 0) facet = exit_by(cursor, v, signs.negative, counts);
     cursor.tests += static_cast<std::uint32_t>(counts.tests);
@@ -201,7 +202,7 @@ class PlaneBatch {
     cursor.through_face = across.outer();
     if (!across.outer()) {
       cursor.index = across.index;
-      cursor.asked = static_cast<std::uint8_t>(all_facets & ~(1U << across.place));
+      cursor.tested = static_cast<std::uint8_t>(all_facets & ~(1U << across.place));
       return true;
     }
     const std::uint16_t face = across.face();
@@ -210,7 +211,7 @@ class PlaneBatch {
       walk.end = WalkEnd::wall;
       walk.simplex = walk.wall_simplex = {Cell(cursor.cell), cursor.index};
       walk.wall_facet = static_cast<std::uint8_t>(facet);
-      return hand_over(cursor, walk);
+      return defer_at_wall(cursor, walk);
     }
     cursor.cell = cell.neighbour(face).value;
     cursor.index = cell.neighbour_face(face);
@@ -223,7 +224,7 @@ class PlaneBatch {
     walk.simplex = {Cell(cursor.cell), cursor.index};
     walk.zeros = static_cast<std::uint8_t>(zeros);
     if (zeros != 0) find_wall_at_end<3>(*space_.map, walk);
-    if (walk.end == WalkEnd::wall) return hand_over(cursor, walk);
+    if (walk.end == WalkEnd::wall) return defer_at_wall(cursor, walk);
     const std::uint32_t i = cursor.particle;
     ParticleState& s = steps_.states[i];
     const bool kept = s.at() == walk.simplex;
@@ -235,19 +236,19 @@ class PlaneBatch {
     return false;
   }
 
-  // What follows at a wall is not done here. Returns false: the walk does not go on.
-  bool hand_over(const PlaneWalkCursor& cursor, const Walk& walk) {
-    steps_.taken[cursor.particle] = static_cast<StepStatus>(steps_.partial.size());
+  // Defers the step to Stepper, from the wall on. Returns false: the walk does not go on.
+  bool defer_at_wall(const PlaneWalkCursor& cursor, const Walk& walk) {
+    steps_.status[cursor.particle] = static_cast<StepStatus>(steps_.partial.size());
     steps_.partial.emplace_back(start_of(cursor.particle), walk, TestCounts{cursor.tests, cursor.exact});
     return false;
   }
-  // The step is not taken here. Returns false, too.
-  bool leave(std::uint32_t i) {
-    steps_.taken[i] = step_untouched;
+  // Defers the step to Stepper, from its start. Returns false, too.
+  bool defer(std::uint32_t i) {
+    steps_.status[i] = step_untouched;
     return false;
   }
-  void leave_all(std::size_t count) {
-    for (std::size_t k = 0; k < count; ++k) leave(visits_[k].particle);
+  void defer_all(std::size_t count) {
+    for (std::size_t k = 0; k < count; ++k) defer(walks_[k].particle);
   }
 
   void count_step(const TestCounts& counts, bool kept) {
@@ -281,8 +282,8 @@ class PlaneBatch {
   std::uint32_t size_;
   Counters& counters_;
 
-  std::array<PlaneWalkCursor, max_batch> visits_;         // walks that go on
-  std::array<std::array<double, 3>, max_batch> carried_;  // where particles have ridden to
+  std::array<PlaneWalkCursor, max_batch> walks_;          // walks that go on
+  std::array<std::array<double, 3>, max_batch> carried_;  // where the mesh has carried particles to
   std::array<bool, max_batch> left_behind_;
 };
 

@@ -1,5 +1,27 @@
-// What a batch notes of its steps, all left as it is when the batch is made; and what it asks of particles in a row.
-// Part of tracking/batch/batch_kernel.inl: no include guard, no includes.
+// Scratch records of one batch, all left uninitialized on purpose: there is room for many, and few are used. Part of
+// the batch's kernel.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+
+#include "base/double4.inl"
+#include "dartcast/combinatorial_map.hpp"
+#include "dartcast/particle_state.hpp"
+#include "dartcast/step.hpp"
+#include "tracking/batch/batch_caches.inl"
+#include "tracking/batch/batch_simplex.inl"
+#include "tracking/star.hpp"
+
+DARTCAST_BEGIN_KERNEL
+namespace dartcast::detail::DARTCAST_SIMD {
+namespace {
 
 // A simplex that a walk has come to.
 struct WalkCursor {
@@ -15,38 +37,37 @@ struct WalkCursor {
 
 inline constexpr std::uint8_t no_facet = 4;
 
-// Of the simplex that a step begins in.
-DARTCAST_TARGET inline WalkCursor first_cursor(std::uint32_t particle, const ParticleState& s,
-                                               const std::uint32_t* record, std::uint16_t tests, int exact) {
+// In the simplex where a step starts.
+inline WalkCursor first_cursor(std::uint32_t particle, const ParticleState& s, const std::uint32_t* record,
+                               std::uint16_t tests, int exact) {
   return {particle, s.cell.value, s.simplex, no_facet, tests, static_cast<std::uint16_t>(exact), false, record};
 }
 
-// The wall that a target lies on that lies on these facets of its simplex.
-DARTCAST_TARGET inline std::optional<SimplexFacet> find_touched_wall(const CombinatorialMap& map,
-                                                                     const WalkCursor& cursor,
-                                                                     const VertexNumbers& corners, unsigned on) {
+// The wall that a target is on, where the target is on these facets of its simplex.
+inline std::optional<SimplexFacet> find_touched_wall(const CombinatorialMap& map, const WalkCursor& cursor,
+                                                     const VertexNumbers& corners, unsigned on) {
   Feature feature;
   for (unsigned i = 0; i < 4; ++i) feature.add_if(((on >> i) & 1U) == 0, Vertex{corners[i]});
   return find_wall(map, {Cell(cursor.cell), cursor.index}, on, feature);
 }
 
-// A walk that leaves its first simplex, and what is proved of its target.
+// A walk that is proved to leave its first simplex.
 struct ExitCandidate {
   std::uint32_t particle;
-  std::uint16_t behind;         // bits of facets that its target is proved to be behind
+  std::uint16_t behind;         // bits of the facets that its target is behind
   std::uint16_t exact;          // of the four tests
   const std::uint32_t* record;  // of its cell
 };
-DARTCAST_TARGET inline ExitCandidate exit_candidate(std::uint32_t particle, unsigned behind, unsigned exact,
-                                                    const std::uint32_t* record) {
+inline ExitCandidate exit_candidate(std::uint32_t particle, unsigned behind, unsigned exact,
+                                    const std::uint32_t* record) {
   return {particle, static_cast<std::uint16_t>(behind), static_cast<std::uint16_t>(std::popcount(exact)), record};
 }
-// A walk that may leave its first simplex, of whose target nothing is proved.
+// A walk whose first exit is undecided.
 struct UndecidedExit {
   std::uint32_t particle;
   const std::uint32_t* record;  // of its cell
 };
-// One that leaves its cell, too.
+// A walk that leaves its cell with its first simplex.
 struct CellExit {
   std::uint32_t particle;
   Across across;
@@ -64,7 +85,7 @@ struct FacetArrival {
   CacheFlags on;
 };
 
-DARTCAST_TARGET inline void count_step(const WalkCursor& cursor, Counters& counters) {
+inline void count_step(const WalkCursor& cursor, Counters& counters) {
   ++counters.particle_steps;
   counters.orientation.tests += cursor.tests;
   counters.orientation.exact += cursor.exact;
@@ -72,44 +93,33 @@ DARTCAST_TARGET inline void count_step(const WalkCursor& cursor, Counters& count
   counters.forecast_kept += cursor.place == no_facet ? 1 : 0;
 }
 
-// Inlined: a call that does nothing but ask would be left out.
-[[gnu::always_inline]] DARTCAST_TARGET inline void prefetch(const Vec3* positions, const VertexNumbers& v) {
+// Inlined: the compiler would drop a call that only prefetches.
+[[gnu::always_inline]] inline void prefetch(const Vec3* positions, const VertexNumbers& v) {
   for (unsigned i = 0; i < 4; ++i) {
     __builtin_prefetch(positions + v[i]);
     __builtin_prefetch(&(positions + v[i])->z);
   }
 }
 
-struct Index4 {
-  std::uint32_t at[4];
-};
-
-// Four particles in a row of `size`; at its end the last one again in the lanes that are left.
-DARTCAST_TARGET inline Index4 index4_from(std::uint32_t i, std::uint32_t size) {
-  const std::uint32_t last = size - 1;
-  return {{i, std::min(i + 1, last), std::min(i + 2, last), std::min(i + 3, last)}};
-}
-
-DARTCAST_TARGET inline Index4 particles_of(const FacetArrival* arrivals, const Index4& i) {
+inline Index4 particles_of(const FacetArrival* arrivals, const Index4& i) {
   return {
       {arrivals[i.at[0]].particle, arrivals[i.at[1]].particle, arrivals[i.at[2]].particle, arrivals[i.at[3]].particle}};
 }
 
-// What a trail keeps, of all corners of one particle, and of one corner of four.
-DARTCAST_TARGET inline Weights determinants_of(const SimplexCache4::Table<double>* w, std::uint32_t i) {
+// Determinants kept in caches: of all corners of one particle, and of one corner of four.
+inline Weights determinants_of(const SimplexCache4::Table<double>* w, std::uint32_t i) {
   Weights of_corner;
   for (unsigned c = 0; c < 4; ++c) of_corner[c] = w[i / 4][c][i % 4];
   return of_corner;
 }
-DARTCAST_TARGET inline Double4 determinants_of(const SimplexCache4::Table<double>* w, const Index4& i,
-                                               unsigned corner) {
+inline Double4 determinants_of(const SimplexCache4::Table<double>* w, const Index4& i, unsigned corner) {
   const auto of = [&](std::uint32_t particle) { return w[particle / 4][corner][particle % 4]; };
   return Double4{of(i.at[0]), of(i.at[1]), of(i.at[2]), of(i.at[3])};
 }
 
-// Bits of the lanes where it is proved that carry_along() comes to a place strictly inside, other than q; as computed.
-DARTCAST_TARGET inline unsigned carried_inside(const SimplexCache4::Table<double>* previous_caches, const Index4& i,
-                                               const Corners4& now, const Vec3x4& q) {
+// Bits of the lanes where the result of carry_along(), as computed, is proved to lie strictly inside and is not q.
+inline unsigned carried_inside(const SimplexCache4::Table<double>* previous_caches, const Index4& i,
+                               const Corners4& now, const Vec3x4& q) {
   const Double4 w[4] = {determinants_of(previous_caches, i, 0), determinants_of(previous_caches, i, 1),
                         determinants_of(previous_caches, i, 2), determinants_of(previous_caches, i, 3)};
   const Vec3x4 x = carry_along(w, now);
@@ -117,25 +127,24 @@ DARTCAST_TARGET inline unsigned carried_inside(const SimplexCache4::Table<double
   return lanes_set(proved & ((x.x != q.x) | (x.y != q.y) | (x.z != q.z)));
 }
 
-DARTCAST_TARGET inline bool any_marked(const CacheFlags* of_four) {
+inline bool any_flag(const CacheFlags* of_four) {
   std::uint32_t four;
   std::memcpy(&four, of_four, sizeof four);
   return four != 0;
 }
 
-// Of four particles those in the mask `which` lie on these facets now. No branch: who does cannot be foretold.
-DARTCAST_TARGET inline void mark_zeros(const Mask4& zeros, std::uint32_t which, CacheFlags* of_four) {
+// Sets the facets that those of four particles in the mask `which` lie on. Without branches, which would mispredict.
+inline void set_facet_flags(const Mask4& zeros, std::uint32_t which, CacheFlags* of_four) {
   for (std::uint32_t j = 0; j < 4; ++j) {
-    const auto mark = static_cast<std::uint32_t>(of_four[j]);
-    const std::uint32_t next = (mark & exact_flag) | static_cast<std::uint32_t>(zeros[j]);
-    of_four[j] = static_cast<CacheFlags>(mark ^ ((mark ^ next) & (0U - ((which >> j) & 1U))));
+    const auto flags = static_cast<std::uint32_t>(of_four[j]);
+    const std::uint32_t next = (flags & exact_flag) | static_cast<std::uint32_t>(zeros[j]);
+    of_four[j] = static_cast<CacheFlags>(flags ^ ((flags ^ next) & (0U - ((which >> j) & 1U))));
   }
 }
 
-// Which particles are held, or touch a wall: a bit for each. What says so are two bytes of the word that begins with
-// the cell.
-DARTCAST_TARGET inline std::uint32_t held_or_touching(const ParticleState* states, std::uint32_t size,
-                                                      std::uint32_t first, std::uint32_t n) {
+// A bit for each particle that is held or touches a wall: two bytes of the word that starts with the cell say so.
+inline std::uint32_t held_or_touching(const ParticleState* states, std::uint32_t size, std::uint32_t first,
+                                      std::uint32_t n) {
   constexpr std::size_t begin = offsetof(ParticleState, cell);
   static_assert(offsetof(ParticleState, touching_count) == begin + 6 && offsetof(ParticleState, held) == begin + 7);
   constexpr auto last_two = std::bit_cast<long long>(std::array<std::uint8_t, 8>{0, 0, 0, 0, 0, 0, 255, 255});
@@ -152,3 +161,7 @@ DARTCAST_TARGET inline std::uint32_t held_or_touching(const ParticleState* state
   }
   return bits;
 }
+
+}  // namespace
+}  // namespace dartcast::detail::DARTCAST_SIMD
+DARTCAST_END_KERNEL

@@ -1,80 +1,66 @@
-// Simplices of four particles in vectors, one particle in each lane: what a step asks of a particle is asked of four
-// by the same operations. Part of tracking/batch/batch_kernel.inl: no include guard, no includes.
+// Four simplices and a point each, one in each lane: the signs that a step asks for. Part of the batch's kernel.
+#pragma once
 
-DARTCAST_TARGET inline Double4 splat(double x) { return Double4{x, x, x, x}; }
-DARTCAST_TARGET inline Mask4 splat_bits(long long x) { return Mask4{x, x, x, x}; }
-DARTCAST_TARGET inline Double4 magnitude(const Double4& v) {
-  return reinterpret_cast<Double4>(reinterpret_cast<Mask4>(v) & splat_bits(0x7fffffffffffffff));
-}
-DARTCAST_TARGET inline Double4 larger(const Double4& a, const Double4& b) { return a > b ? a : b; }
-DARTCAST_TARGET inline Double4 smaller(const Double4& a, const Double4& b) { return a < b ? a : b; }
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
 
-// A point of each particle.
-struct Vec3x4 {
-  Double4 x, y, z;
-};
-DARTCAST_TARGET inline Vec3x4 operator+(const Vec3x4& a, const Vec3x4& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-DARTCAST_TARGET inline Vec3x4 operator-(const Vec3x4& a, const Vec3x4& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-DARTCAST_TARGET inline Vec3x4 operator*(const Vec3x4& a, const Double4& s) { return {a.x * s, a.y * s, a.z * s}; }
-DARTCAST_TARGET inline Double4 dot(const Vec3x4& a, const Vec3x4& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-DARTCAST_TARGET inline Vec3x4 cross(const Vec3x4& a, const Vec3x4& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-DARTCAST_TARGET inline Double4 square(const Vec3x4& a) { return dot(a, a); }
-DARTCAST_TARGET inline Vec3x4 magnitude(const Vec3x4& a) { return {magnitude(a.x), magnitude(a.y), magnitude(a.z)}; }
-DARTCAST_TARGET inline Vec3x4 larger(const Vec3x4& a, const Vec3x4& b) {
-  return {larger(a.x, b.x), larger(a.y, b.y), larger(a.z, b.z)};
-}
-DARTCAST_TARGET inline Double4 largest(const Vec3x4& a) { return larger(larger(a.x, a.y), a.z); }
-DARTCAST_TARGET inline Double4 smallest(const Vec3x4& a) { return smaller(smaller(a.x, a.y), a.z); }
+#include "base/double4.inl"
+#include "complex/simplex.hpp"
+#include "dartcast/predicates.hpp"
+#include "tracking/batch/particle_cache.hpp"
 
-DARTCAST_TARGET inline Vec3x4 load_vec3x4(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  const Double4 xy02 = load_pairs(&a.x, &c.x);
-  const Double4 xy13 = load_pairs(&b.x, &d.x);
-  const Double4 yz02 = load_pairs(&a.y, &c.y);
-  const Double4 yz13 = load_pairs(&b.y, &d.y);
-  return {__builtin_shufflevector(xy02, xy13, 0, 4, 2, 6), __builtin_shufflevector(xy02, xy13, 1, 5, 3, 7),
-          __builtin_shufflevector(yz02, yz13, 1, 5, 3, 7)};
+DARTCAST_BEGIN_KERNEL
+namespace dartcast::detail::DARTCAST_SIMD {
+namespace {
+
+// Sign of u . (v x w), evaluated as in src/predicates/predicates.cpp; 0 where the filter leaves it open.
+inline int filtered_sign(const Vec3& u, const Vec3& v, const Vec3& w) {
+  const auto largest = [](double a, double b, double c) { return std::max({std::abs(a), std::abs(b), std::abs(c)}); };
+  const double x = largest(u.x, v.x, w.x);
+  const double y = largest(u.y, v.y, w.y);
+  const double z = largest(u.z, v.z, w.z);
+  const double m = x * y * z;
+  if (!filter_applies({x, y, z})) return 0;
+  const double value = dot(u, cross(v, w));
+  return value > determinant_error * m ? 1 : value < -determinant_error * m ? -1 : 0;
 }
-// Of points in a row.
-DARTCAST_TARGET inline Vec3x4 load_vec3x4(const Vec3* p) {
-  const Double4 xy02 = load_pairs(&p[0].x, &p[2].x);
-  const Double4 zx02 = load_pairs(&p[0].z, &p[2].z);  // z and the next one's x
-  const Double4 yz13 = load_pairs(&p[1].y, &p[3].y);
-  return {__builtin_shufflevector(xy02, zx02, 0, 5, 2, 7), __builtin_shufflevector(xy02, yz13, 1, 4, 3, 6),
-          __builtin_shufflevector(zx02, yz13, 0, 5, 2, 7)};
+
+inline Corners corners_of(const Vec3* positions, const VertexNumbers& v) {
+  return {positions[v[0]], positions[v[1]], positions[v[2]], positions[v[3]]};
 }
 
 struct Corners4 {
   Vec3x4 corner[4];
 
-  [[gnu::always_inline]] DARTCAST_TARGET Corners4(const Vec3* positions, const VertexNumbers& a, const VertexNumbers& b,
-                                                  const VertexNumbers& c, const VertexNumbers& d) {
+  [[gnu::always_inline]] Corners4(const Vec3* positions, const VertexNumbers& a, const VertexNumbers& b,
+                                  const VertexNumbers& c, const VertexNumbers& d) {
     for (unsigned i = 0; i < 4; ++i)
       corner[i] = load_vec3x4(positions[a[i]], positions[b[i]], positions[c[i]], positions[d[i]]);
   }
 };
 
-// A bit for each facet, in each lane.
-DARTCAST_TARGET inline Mask4 facet_bits(const Mask4& m0, const Mask4& m1, const Mask4& m2, const Mask4& m3) {
+// In each lane a bit for each facet.
+inline Mask4 facet_bits(const Mask4& m0, const Mask4& m1, const Mask4& m2, const Mask4& m3) {
   return ((m0 & splat_bits(1)) | (m1 & splat_bits(2))) | ((m2 & splat_bits(4)) | (m3 & splat_bits(8)));
 }
 
-// What determinants say of one point, in the bits of its lane.
+// The sides of a simplex's facets that one point is on, as bits: the signs of its determinants.
 class FacetSigns4 {
  public:
   static constexpr long long valid = 1LL << 12;
   static constexpr long long exact = 1LL << 13;
 
-  FacetSigns4() = default;  // left as it is
+  FacetSigns4() = default;  // uninitialized
   explicit FacetSigns4(long long bits) : bits_(static_cast<unsigned>(bits)) {}
   [[nodiscard]] unsigned negative() const { return bits_ & 15U; }
   [[nodiscard]] unsigned zero() const { return (bits_ >> 4U) & 15U; }
   [[nodiscard]] unsigned open() const { return (bits_ >> 8U) & 15U; }  // by the filter
-  // The simplex is proved positive, and on which sides of these facets the point is.
+  // Whether the simplex is proved positive, and the side of each of these facets is proved.
   [[nodiscard]] bool is_known(unsigned facets = 15) const {
     const bool proved = (open() & facets) == 0;
-    return ((bits_ & valid) != 0) & (proved | ((bits_ & exact) != 0));  // no branches: on lattices, none is likely
+    return ((bits_ & valid) != 0) & (proved | ((bits_ & exact) != 0));  // no branches: lattices would mispredict them
   }
   [[nodiscard]] bool is_inside() const { return bits_ == unsigned{1} << 12U; }
 
@@ -82,7 +68,7 @@ class FacetSigns4 {
   unsigned bits_;
 };
 
-// The determinants of complex/simplex.hpp, by the same operations, of four points; and their bounds.
+// The determinants of complex/simplex.hpp, by the same operations, of four points, and the bounds of their errors.
 struct BatchDeterminants {
   Vec3x4 relative[4];  // corners, to the points
   Vec3x4 extent;       // largest magnitudes of these
@@ -90,7 +76,7 @@ struct BatchDeterminants {
   Double4 bound;  // infinite where the filter does not apply
 
   BatchDeterminants() = default;
-  [[gnu::always_inline]] DARTCAST_TARGET BatchDeterminants(const Corners4& v, const Vec3x4& x)
+  [[gnu::always_inline]] BatchDeterminants(const Corners4& v, const Vec3x4& x)
       : relative{v.corner[0] - x, v.corner[1] - x, v.corner[2] - x, v.corner[3] - x},
         extent(larger(larger(magnitude(relative[0]), magnitude(relative[1])),
                       larger(magnitude(relative[2]), magnitude(relative[3])))) {
@@ -105,17 +91,17 @@ struct BatchDeterminants {
         applies ? determinant_error * (extent.x * extent.y * extent.z) : splat(std::numeric_limits<double>::infinity());
   }
 
-  [[nodiscard]] DARTCAST_TARGET Double4 volume6() const { return (value[0] + value[1]) + (value[2] + value[3]); }
-  [[nodiscard]] DARTCAST_TARGET Mask4 proves_coordinates() const { return volume6() > 0x1p+30 * bound; }
-  [[nodiscard]] DARTCAST_TARGET Mask4 all_positive() const {
+  [[nodiscard]] Double4 volume6() const { return (value[0] + value[1]) + (value[2] + value[3]); }
+  [[nodiscard]] Mask4 proves_coordinates() const { return volume6() > 0x1p+30 * bound; }
+  [[nodiscard]] Mask4 all_positive() const {
     return ((value[0] > bound) & (value[1] > bound)) & ((value[2] > bound) & (value[3] > bound));
   }
-  [[nodiscard]] DARTCAST_TARGET Mask4 any_negative() const {
+  [[nodiscard]] Mask4 any_negative() const {
     return ((value[0] < -bound) | (value[1] < -bound)) | ((value[2] < -bound) | (value[3] < -bound));
   }
 
-  // The Signs of each lane. `v`, `x`: those that the determinants are of.
-  [[nodiscard]] DARTCAST_TARGET Mask4 signs(const Corners4& v, const Vec3x4& x) const {
+  // The bits of FacetSigns4 in each lane. `v`, `x`: the corners and points of the determinants.
+  [[nodiscard]] Mask4 signs(const Corners4& v, const Vec3x4& x) const {
     Mask4 negative = facet_bits(value[0] < -bound, value[1] < -bound, value[2] < -bound, value[3] < -bound);
     const Mask4 positive = facet_bits(value[0] > bound, value[1] > bound, value[2] > bound, value[3] > bound);
     const Mask4 open = (negative | positive) ^ splat_bits(15);
@@ -131,7 +117,7 @@ struct BatchDeterminants {
 
  private:
   // Whether the values are exact (rounds_nothing() in dartcast/predicates.hpp), where the filter applies.
-  [[nodiscard]] DARTCAST_TARGET Mask4 are_exact(const Corners4& v, const Vec3x4& x) const {
+  [[nodiscard]] Mask4 are_exact(const Corners4& v, const Vec3x4& x) const {
     const Vec3x4 unit = extent * splat(0x1p+37);
     const Vec3x4 m = magnitude(x);
     Mask4 rounded = is_rounded(m.x, unit.x) | is_rounded(m.y, unit.y) | is_rounded(m.z, unit.z);
@@ -141,20 +127,9 @@ struct BatchDeterminants {
     }
     return ~rounded;
   }
-  DARTCAST_TARGET static Mask4 is_rounded(const Double4& m, const Double4& unit) { return ((m + unit) - unit) != m; }
+  static Mask4 is_rounded(const Double4& m, const Double4& unit) { return ((m + unit) - unit) != m; }
 };
 
-// Whether every number is 0 or between the two magnitudes.
-DARTCAST_TARGET inline bool all_between(const double* x, std::size_t count, double low, double high) {
-  Mask4 between = splat_bits(-1);
-  std::size_t i = 0;
-#pragma GCC unroll 4
-  for (; i + 4 <= count; i += 4) {
-    const Double4 numbers = *reinterpret_cast<const UnalignedDouble4*>(x + i);
-    const Double4 m = magnitude(numbers);
-    between &= ((m >= low) & (m <= high)) | (m == 0.0);
-  }
-  bool rest = true;
-  for (; i < count; ++i) rest = rest && (x[i] == 0.0 || (std::abs(x[i]) >= low && std::abs(x[i]) <= high));
-  return rest && lanes_set(between) == 15U;
-}
+}  // namespace
+}  // namespace dartcast::detail::DARTCAST_SIMD
+DARTCAST_END_KERNEL

@@ -1,4 +1,4 @@
-// What is kept of a particle's simplex from one step to the next, so that the next need not read what is cold.
+// A cache of each particle's simplex from one step to the next: the next step then reads less of the scene.
 #pragma once
 
 #include <array>
@@ -10,15 +10,15 @@
 
 namespace dartcast::detail {
 
-/// Kept beside a particle's state. One value of each array per corner of the simplex.
+/// The cache of one particle's simplex. One value of each array per corner of the simplex. There are two kinds.
 ///
-/// A trail, where vertices move: the corners as they were, which the next step would have to read from memory that is
-/// long since cold. (x, y, z): relative to the particle, rounded; w: the determinants of the particle; unknown where
-/// they don't prove its coordinates.
+/// Previous geometry, where vertices move: the corners as they were at the last step. Their positions are long out of
+/// the processor's caches when the next step asks for them. (x, y, z): relative to the particle, rounded to floats. w:
+/// the determinants of the particle; unknown where they do not prove its coordinates.
 ///
-/// Coordinates, where vertices stand still: the barycentric coordinates of any point q, x q.x + y q.y + z q.z + w, to
+/// Barycentric coordinates, where vertices stand still: coordinate i of any point q is x q.x + y q.y + z q.z + w, to
 /// within the margin of tracking/batch/coordinate_bounds.hpp. A step that ends in the same simplex reads nothing of the
-/// scene. Unknown until a step has ended in the simplex. On lattices they may be exact: see Mark.
+/// scene. They are unknown until a step has ended in the simplex. On lattices they may be exact: see CacheFlags.
 struct SimplexCacheEntry {
   std::array<float, 4> x, y, z;
   std::array<double, 4> w;
@@ -27,12 +27,12 @@ struct SimplexCacheEntry {
 inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();  // w
 inline SimplexCacheEntry unknown_entry() { return {{}, {}, {}, {unknown, unknown, unknown, unknown}}; }
 
-/// w of a simplex that has no coordinates that are good enough. Not even one facet that the target is behind is proved.
+/// w of a simplex whose coordinates are not accurate enough: with it no sign of a coordinate is proved.
 inline constexpr double proves_nothing = -std::numeric_limits<double>::infinity();
 
 enum class CacheKind : std::uint8_t { none, previous_geometry, barycentric };
 
-/// The memos of four particles in a row, as vectors take them: [corner][particle].
+/// The entries of four particles in a row, as vectors load them: [corner][particle].
 struct alignas(64) SimplexCache4 {
   template <class T>
   using Table = std::array<std::array<T, 4>, 4>;
@@ -40,39 +40,39 @@ struct alignas(64) SimplexCache4 {
   Table<double> w;
 
   [[nodiscard]] SimplexCacheEntry of(std::size_t particle) const {
-    SimplexCacheEntry m;
+    SimplexCacheEntry entry;
     for (std::size_t i = 0; i < 4; ++i) {
-      m.x[i] = x[i][particle];
-      m.y[i] = y[i][particle];
-      m.z[i] = z[i][particle];
-      m.w[i] = w[i][particle];
+      entry.x[i] = x[i][particle];
+      entry.y[i] = y[i][particle];
+      entry.z[i] = z[i][particle];
+      entry.w[i] = w[i][particle];
     }
-    return m;
+    return entry;
   }
-  void put(std::size_t particle, const SimplexCacheEntry& m) {
+  void put(std::size_t particle, const SimplexCacheEntry& entry) {
     for (std::size_t i = 0; i < 4; ++i) {
-      x[i][particle] = m.x[i];
-      y[i][particle] = m.y[i];
-      z[i][particle] = m.z[i];
-      w[i][particle] = m.w[i];
+      x[i][particle] = entry.x[i];
+      y[i][particle] = entry.y[i];
+      z[i][particle] = entry.z[i];
+      w[i][particle] = entry.w[i];
     }
   }
 };
 
-/// What else is known of a particle that has coordinates. Bit 4: they are exact, so that a target's zeros are proved,
-/// too. Then bits 0 to 3: the facets of its simplex that it lies on; and it lies on no wall.
+/// Flags of a particle that has barycentric coordinates. Bit 4: they are exact, so that zeros of a target are proved,
+/// too. Where it is set, bits 0 to 3 are the facets of the simplex that the particle lies on, and it lies on no wall.
 using CacheFlags = std::uint8_t;
 inline constexpr CacheFlags exact_flag = 16;
 
-/// SimplexCache and marks of particles in a row. Marks come in fours, too.
+/// Entries and flags of particles in a row. Flags come in fours, too.
 struct SimplexCacheSpan {
   std::span<SimplexCache4> fours;
-  std::span<CacheFlags> marks;
+  std::span<CacheFlags> flags;
 
   [[nodiscard]] bool empty() const { return fours.empty(); }
 };
 
-/// One memo per particle.
+/// One entry per particle.
 class SimplexCache {
  public:
   [[nodiscard]] std::size_t size() const { return size_; }
@@ -80,33 +80,33 @@ class SimplexCache {
   void resize(std::size_t size) {
     size_ = size;
     fours_.resize((size + 3) / 4);
-    marks_.resize(4 * fours_.size());
+    flags_.resize(4 * fours_.size());
   }
   [[nodiscard]] SimplexCacheEntry operator[](std::size_t i) const { return fours_[i / 4].of(i % 4); }
-  [[nodiscard]] CacheFlags mark(std::size_t i) const { return marks_[i]; }
-  void put(std::size_t i, const SimplexCacheEntry& m, CacheFlags mark = 0) {
-    fours_[i / 4].put(i % 4, m);
-    marks_[i] = mark;
+  [[nodiscard]] CacheFlags flags(std::size_t i) const { return flags_[i]; }
+  void put(std::size_t i, const SimplexCacheEntry& entry, CacheFlags flags = 0) {
+    fours_[i / 4].put(i % 4, entry);
+    flags_[i] = flags;
   }
-  /// As put() of an unknown one.
+  /// As put() of an unknown entry.
   void forget(std::size_t i) {
     for (auto& of_corner : fours_[i / 4].w) of_corner[i % 4] = unknown;
-    marks_[i] = 0;
+    flags_[i] = 0;
   }
-  void push_back(const SimplexCacheEntry& m, CacheFlags mark = 0) {
+  void push_back(const SimplexCacheEntry& entry, CacheFlags flags = 0) {
     resize(size_ + 1);
-    put(size_ - 1, m, mark);
+    put(size_ - 1, entry, flags);
   }
-  /// Of the particles from `begin` on; empty where none are kept. Precondition: begin is a multiple of four.
+  /// Those of the particles from `begin` on; empty where none are kept. Precondition: begin is a multiple of four.
   [[nodiscard]] SimplexCacheSpan from(std::size_t begin) {
     if (empty()) return {};
-    return {std::span(fours_).subspan(begin / 4), std::span(marks_).subspan(begin)};
+    return {std::span(fours_).subspan(begin / 4), std::span(flags_).subspan(begin)};
   }
 
  private:
   std::size_t size_ = 0;
   std::vector<SimplexCache4> fours_;
-  std::vector<CacheFlags> marks_;
+  std::vector<CacheFlags> flags_;
 };
 
 }  // namespace dartcast::detail

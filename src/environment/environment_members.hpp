@@ -1,0 +1,40 @@
+// The members of an environment, and the checks on the sets of particles given to it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "dartcast/cell_complex.hpp"
+#include "dartcast/complex_edit.hpp"
+#include "dartcast/environment.hpp"
+#include "tracking/locate.hpp"
+
+namespace dartcast {
+
+struct Environment::Members {
+  Members(MeshData mesh, Threads threads);
+
+  /// Makes an empty set one of this environment, as it is now.
+  void adopt(Particles& particles) const;
+  // These three throw InvalidArgument, with the name of the call. The first refuses sets of other environments, and
+  // those that have missed a move or an edit.
+  void check_known(const Particles& particles, const char* call) const;
+  void check_edit_followed(const Particles& particles, const char* call) const;
+  void check_current(const Particles& particles) const;
+  void check_positions(std::span<const Vec3> positions) const;
+  [[nodiscard]] std::vector<Vec3> with_steiner_points(std::span<const Vec3> positions) const;
+  void add_to(Particles& particles, SimplexId simplex, const Vec3& position) const;
+
+  CellComplex complex;
+  Threads threads;
+  std::uint64_t id;
+  std::uint64_t moves = 0;
+  std::uint64_t edits = 0;
+  std::uint64_t moves_at_edit = 0;  ///< when the last edit was made
+  ComplexEditReport last_edit;
+  std::unique_ptr<Locator> locator;  ///< of the current positions, made by the first locate()
+};
+
+}  // namespace dartcast

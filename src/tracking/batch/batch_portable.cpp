@@ -1,0 +1,2 @@
+// The kernel of the batch, for any machine.
+#include "tracking/batch/batch_kernel.inl"

@@ -1,0 +1,148 @@
+// Chunks over threads; in each the batch, then one by one the steps that it has deferred.
+#include "tracking/batch/batch_stepper.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <utility>
+
+#include "base/parallel.hpp"
+#include "dartcast/error.hpp"
+#include "tracking/batch/batch_plane.hpp"
+#include "tracking/checked_point.hpp"
+
+namespace dartcast::detail {
+
+namespace {
+
+constexpr std::size_t chunk = max_batch;
+
+// The next step, from i on, that the batch has not completed. Most are complete: four are looked at together.
+std::size_t next_deferred(std::span<const StepStatus> status, std::size_t i) {
+  static_assert(sizeof(StepStatus) == 2 && step_complete == 0xffff);
+  for (std::uint64_t four = 0; i + 4 <= status.size(); i += 4) {
+    std::memcpy(&four, &status[i], sizeof four);
+    if (four != ~std::uint64_t{0}) break;
+  }
+  while (i < status.size() && status[i] == step_complete) ++i;
+  return i;
+}
+
+// Reports of consecutive chunks.
+StepReport joined(std::vector<StepReport> parts) {
+  if (parts.size() == 1) return std::move(parts.front());
+  std::size_t contacts = 0;
+  std::size_t walls = 0;
+  for (const StepReport& part : parts) {
+    contacts += part.contacts.contacts.size();
+    walls += part.contacts.walls.size();
+  }
+  StepReport report;
+  report.contacts.contacts.reserve(contacts);
+  report.contacts.walls.reserve(walls);
+  for (const StepReport& part : parts) {
+    report.contacts.append(part.contacts);
+    report.held.insert(report.held.end(), part.held.begin(), part.held.end());
+    report.stopped.insert(report.stopped.end(), part.stopped.begin(), part.stopped.end());
+    report.counters += part.counters;
+  }
+  return report;
+}
+
+}  // namespace
+
+// The targets as decisions see them; empty where that is what they are.
+std::vector<Vec3> BatchStepper::decided_targets(std::span<const Vec3> targets) const {
+  const unsigned dimension = complex_.map().dimension();
+  std::vector<std::uint8_t> good(chunk_count(targets.size(), chunk));
+  parallel_for(targets.size(), chunk, threads_, [&](std::size_t begin, std::size_t end) {
+    const std::span<const Vec3> some = targets.subspan(begin, end - begin);
+    good[begin / chunk] =
+        all_as_decided(some) &&
+        (dimension == 3 || std::all_of(some.begin(), some.end(), [](const Vec3& q) { return q.z == 0.0; }));
+  });
+  if (std::all_of(good.begin(), good.end(), [](std::uint8_t g) { return g != 0; })) return {};
+  std::vector<Vec3> decided(targets.size());
+  for (std::size_t i = 0; i < targets.size(); ++i)
+    decided[i] = checked_point(targets[i], "the target of particle", i, dimension);
+  return decided;
+}
+
+// Coordinates are made from the second step in a row on in which nothing has moved: one step alone does not pay for
+// them.
+CacheKind BatchStepper::cache_kind(const ParticleCache& cache) const {
+  if (complex_.map().dimension() == 2) return CacheKind::none;
+  if (moved_) return CacheKind::previous_geometry;
+  return cache.stood_still_ ? CacheKind::barycentric : CacheKind::none;
+}
+
+void BatchStepper::step_chunk(const BatchScene& scene, const BatchParticles& particles, std::span<const Vec3> targets,
+                              std::size_t begin, std::size_t end, StepReport& report) const {
+  const std::size_t size = end - begin;
+  ParticleCache& cache = particles.cache;
+  std::array<StepStatus, chunk> status;
+  std::vector<PartialStep> partial;
+  partial.reserve(size);
+  const BatchSteps batch{particles.states.subspan(begin, size), std::span(cache.vertices_).subspan(begin, size),
+                         cache.simplices_.from(begin),          targets.subspan(begin, size),
+                         std::span(status).first(size),         partial};
+  if (complex_.map().dimension() == 2)
+    step_plane(scene, batch, report.counters);
+  else
+    step_batch(scene, batch, report.counters);
+  report.contacts.contacts.reserve(partial.size());
+  report.contacts.walls.reserve(3 * partial.size());  // at a corner there are several
+  report.stopped.reserve(partial.size());
+  for (std::size_t i = next_deferred(batch.status, 0); i < size; i = next_deferred(batch.status, i + 1)) {
+    const auto particle = static_cast<std::uint32_t>(begin + i);
+    ParticleState& state = batch.states[i];
+    Weights& weights = particles.weights[particle];
+    const bool whole = status[i] == step_untouched;
+    const StepResult result =
+        whole ? stepper_.step(particle, state, weights, batch.targets[i], report.contacts, report.counters)
+              : stepper_.resume(particle, state, weights, batch.targets[i], report.contacts, report.counters,
+                                partial[status[i]]);
+    if (result.held) report.held.push_back({particle, result.invalid_cell});
+    if (result.stopped) report.stopped.push_back({particle, result.unused});
+    if (whole || !partial[status[i]].stays(state)) cache.place(particle, complex_, state);
+  }
+}
+
+StepReport BatchStepper::step_all(const BatchParticles& particles, std::span<const Vec3> targets) const {
+  ParticleCache& cache = particles.cache;
+  const CacheKind kind = cache_kind(cache);
+  const BatchScene scene{&complex_, moved_, kind == cache.kind_, options_.tolerance, !cache.walls_changed_};
+  cache.kind_ = kind;
+  cache.simplices_.resize(kind == CacheKind::none ? 0 : targets.size());
+  cache.stood_still_ = !moved_;
+  cache.walls_changed_ = false;
+  std::vector<StepReport> parts(chunk_count(targets.size(), chunk));
+  parallel_for(targets.size(), chunk, threads_, [&](std::size_t begin, std::size_t end) {
+    step_chunk(scene, particles, targets, begin, end, parts[begin / chunk]);
+  });
+  return joined(std::move(parts));
+}
+
+StepReport BatchStepper::advance(const BatchParticles& particles, std::span<const Vec3> targets) const {
+  if (targets.size() != particles.states.size())
+    throw InvalidArgument(fmt::format("advance: {} targets for {} particles", targets.size(), particles.states.size()));
+  const std::vector<Vec3> decided = decided_targets(targets);
+  if (!decided.empty()) targets = decided;
+  if (!respond_) return step_all(particles, targets);
+  // A response is the caller's code: it may throw.
+  const std::vector<ParticleState> states(particles.states.begin(), particles.states.end());
+  const std::vector<Weights> weights(particles.weights.begin(), particles.weights.end());
+  const ParticleCache cache = particles.cache;
+  try {
+    return step_all(particles, targets);
+  } catch (...) {
+    std::copy(states.begin(), states.end(), particles.states.begin());
+    std::copy(weights.begin(), weights.end(), particles.weights.begin());
+    particles.cache = cache;
+    throw;
+  }
+}
+
+}  // namespace dartcast::detail

@@ -1,0 +1,89 @@
+// Walks that end at walls: where they meet them, for Stepper to resume from. Part of the batch's kernel
+// (tracking/batch/batch_kernel.inl).
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "tracking/batch/batch_steps.inl"
+
+DARTCAST_BEGIN_KERNEL
+namespace dartcast::detail::DARTCAST_SIMD {
+namespace {
+
+// The target is beyond a wall.
+template <CacheKind kind>
+bool Batch<kind>::end_at_wall(const WalkCursor& cursor, const VertexNumbers& corners, unsigned facet) {
+  Walk walk;
+  walk.end = WalkEnd::wall;
+  walk.simplex = walk.wall_simplex = {Cell(cursor.cell), cursor.index};
+  walk.wall_facet = static_cast<std::uint8_t>(facet);
+  at_walls_[at_wall_count_++] = {cursor.particle, static_cast<StepStatus>(partial_.size()), walk.wall_facet, corners};
+  return defer_at_wall(cursor, walk);
+}
+
+// The target is on a wall.
+template <CacheKind kind>
+bool Batch<kind>::end_on_wall(const WalkCursor& cursor, unsigned on, const SimplexFacet& wall) {
+  Walk walk;
+  walk.end = WalkEnd::wall;
+  walk.simplex = {Cell(cursor.cell), cursor.index};
+  walk.zeros = static_cast<std::uint8_t>(on);
+  walk.wall_simplex = wall.simplex;
+  walk.wall_facet = static_cast<std::uint8_t>(wall.facet);
+  walk.at_end = true;
+  return defer_at_wall(cursor, walk);
+}
+
+// Defers the step to Stepper, from the wall on. Returns false: the walk does not go on.
+template <CacheKind kind>
+inline bool Batch<kind>::defer_at_wall(const WalkCursor& cursor, const Walk& walk) {
+  const std::uint32_t i = cursor.particle;
+  if constexpr (moved) {  // Stepper will ask how the wall has moved
+    const CellView cell = map_.view(walk.wall_simplex.cell);
+    for (const std::uint16_t local : cell.shape().simplices()[walk.wall_simplex.simplex].vertex)
+      __builtin_prefetch(before_ + cell.vertex(local).value);
+  }
+  status_[i] = static_cast<StepStatus>(partial_.size());
+  partial_.emplace_back(start_of(i), walk, TestCounts{cursor.tests, cursor.exact});
+  return false;
+}
+
+// Where doubles do not prove an impact, Stepper computes it.
+template <CacheKind kind>
+inline void Batch<kind>::compute_impacts() {
+  for (std::uint32_t k = 0; k < at_wall_count_; k += 4) compute_impact4(k);
+}
+
+template <CacheKind kind>
+inline void Batch<kind>::compute_impact4(std::uint32_t k) {
+  const std::uint32_t last = at_wall_count_ - 1;
+  const AtWalls at = {&at_walls_[k], &at_walls_[std::min(k + 1, last)], &at_walls_[std::min(k + 2, last)],
+                      &at_walls_[std::min(k + 3, last)]};
+  WallImpact4 impacts(at, partial_, now_, targets_);
+  if (lanes_set(impacts.known) == 0) return;
+  impacts.put(Corners4(now_, at[0]->corners, at[1]->corners, at[2]->corners, at[3]->corners));
+  if constexpr (moved) impacts.move_walls(at, before_);
+  SimplexCache4 caches;
+  if constexpr (moved) store_previous_geometry(impacts.there, caches);
+  if constexpr (kind == CacheKind::barycentric) store_barycentric<false>(impacts.there, impacts.position, caches);
+  for (std::uint32_t l = 0; l < 4 && k + l < at_wall_count_; ++l) {
+    if (impacts.known[l] == 0) continue;
+    const std::uint32_t i = at[l]->particle;
+    PartialStep& partial = partial_[at[l]->partial];
+    partial.impact = impacts.of(l);
+    ++partial.tests.tests;  // on which side p is
+    vertices_[i] = at[l]->corners;
+    if constexpr (kind == CacheKind::none) continue;
+    if (moved || partial.tests.tests <= short_tests) {
+      caches_[i / 4].put(i % 4, caches.of(l));
+      if (!moved) flags_[i] = 0;
+    } else {
+      forget(caches_, flags_, i);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace dartcast::detail::DARTCAST_SIMD
+DARTCAST_END_KERNEL

@@ -1,0 +1,14 @@
+// Points that a caller gives: refused with a message that names them.
+#pragma once
+
+#include <cstddef>
+
+#include "dartcast/vec3.hpp"
+
+namespace dartcast::detail {
+
+/// The point as decisions see it (flushed()). Throws InvalidArgument, which names the point by `what` and its index,
+/// where a coordinate is not finite or out of the exact range, or in the plane where z is not 0.
+Vec3 checked_point(const Vec3& x, const char* what, std::size_t index, unsigned dimension);
+
+}  // namespace dartcast::detail
