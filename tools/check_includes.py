@@ -31,6 +31,7 @@ PUBLIC = {
     "tracking": "particle_state contact step trace",
     "response": "response",
     "environment": "environment audit",
+    "dynamics": "dynamics",
     "spheres": "spheres",
     "bodies": "bodies sampling",
     "catheter": "catheter",

@@ -7,6 +7,7 @@
 
 #include "base/parallel.hpp"
 #include "dartcast/cell_complex.hpp"
+#include "dartcast/dynamics.hpp"
 #include "dartcast/particle_state.hpp"
 #include "dynamics/cell_lists.hpp"
 #include "dynamics/contact_solver.hpp"
@@ -22,17 +23,6 @@ inline constexpr double resting_gap = 0x1p-10;
 /// elsewhere may bring them together within the step. Walls count within this share. What is further and still meets
 /// overlaps, and is parted in the steps that follow.
 inline constexpr double near_share = 0x1p-4;
-
-struct CollisionCounts {
-  std::uint64_t pairs_tested = 0;    ///< whose swept boxes met
-  std::uint64_t pairs_near = 0;      ///< given to the solver
-  std::uint64_t pairs_touching = 0;  ///< given an impulse
-  std::uint64_t walls_touching = 0;  ///< likewise
-  std::uint64_t overlaps = 0;        ///< pairs closer than the sum of their radii at the start of the step
-  double deepest = 0.0;              ///< of these
-
-  CollisionCounts& operator+=(const CollisionCounts& other);
-};
 
 /// Time spent in all calls so far.
 struct CollisionSeconds {

@@ -1,3 +1,4 @@
+// The layout of checkpoint.bin, and its digest.
 #include "output/checkpoint.hpp"
 
 #include <fmt/format.h>
@@ -54,6 +55,11 @@ class CheckpointWriter {
     value(count);
     text_ += s;
   }
+  // Left out where it is empty: for the last list of a file.
+  template <class T, class Each>
+  void optional_list(std::vector<T>& values, Each&& each) {
+    if (!values.empty()) list(values, each);
+  }
   [[nodiscard]] const std::string& text() const { return text_; }
 
  private:
@@ -85,6 +91,10 @@ class CheckpointReader {
     need(count);
     s = text_.substr(0, count);
     text_.remove_prefix(count);
+  }
+  template <class T, class Each>
+  void optional_list(std::vector<T>& values, Each&& each) {
+    if (!at_end()) list(values, each);
   }
   [[nodiscard]] bool at_end() const { return text_.empty(); }
 
@@ -134,7 +144,7 @@ void fields(Archive& a, Weights& weights) {
 }
 
 template <class Archive>
-void fields(Archive& a, SimulationCheckpoint::Particle& p) {
+void fields(Archive& a, ParticleSystemState::Particle& p) {
   a.value(p.id);
   fields(a, p.state);
   fields(a, p.held_weights);
@@ -178,10 +188,11 @@ void fields(Archive& a, SimulationTotals& t) {
 
 template <class Archive>
 void fields(Archive& a, EventReport& e) {
-  values(a, e.kind, e.step, e.time, e.cells_removed, e.cells_added, e.cells_opened, e.cells_blocked, e.cells_whole,
+  value_as<std::uint32_t>(a, e.kind);
+  values(a, e.step, e.time, e.cells_removed, e.cells_added, e.cells_opened, e.cells_blocked, e.cells_whole,
          e.particles_in_opened, e.particles_touched, e.particles_located, e.particles_moved, e.particles_held,
          e.particles_absorbed, e.boundary_shift, e.seconds);
-  if (e.kind >= std::size(event_kind_names)) throw Error("an event has no such kind");
+  if (name_of(e.kind).empty()) throw Error("an event has no such kind");
 }
 
 template <class Archive>
@@ -211,12 +222,16 @@ void fields(Archive& a, Bodies::Checkpoint::Particle& p) {
 }
 
 template <class Archive>
-void fields(Archive& a, SolidsCheckpoint& c) {
-  a.value(c.bodies.steps);
-  fields(a, c.bodies.counters);
-  a.list(c.bodies.ids, [&](std::uint32_t& id) { a.value(id); });
-  a.list(c.bodies.fits, [&](Fit& f) { fields(a, f); });
-  a.list(c.bodies.particles, [&](Bodies::Checkpoint::Particle& p) { fields(a, p); });
+void fields(Archive& a, Bodies::Checkpoint& c) {
+  a.value(c.steps);
+  fields(a, c.counters);
+  a.list(c.ids, [&](std::uint32_t& id) { a.value(id); });
+  a.list(c.fits, [&](Fit& f) { fields(a, f); });
+  a.list(c.particles, [&](Bodies::Checkpoint::Particle& p) { fields(a, p); });
+}
+
+template <class Archive>
+void fields(Archive& a, CathetersState& c) {
   a.list(c.catheters, [&](CatheterCheckpoint& k) {
     a.list(k.states, [&](ParticleState& s) { fields(a, s); });
     a.list(k.held_weights, [&](Weights& w) { fields(a, w); });
@@ -224,26 +239,33 @@ void fields(Archive& a, SolidsCheckpoint& c) {
     fields(a, k.direction);
     fields(a, k.reference);
   });
-  a.list(c.catheter_totals, [&](CatheterTotals& t) { values(a, t.worst_segment, t.refused); });
+  a.list(c.totals, [&](CatheterTotals& t) { values(a, t.worst_segment, t.refused); });
+}
+
+template <class Archive>
+void fields(Archive& a, ParticleSystemState& s) {
+  std::uint64_t random = s.random.state();
+  StateHash::Words gone = s.gone.words();
+  values(a, s.steps, s.next_id, random, gone[0], gone[1]);
+  s.random = Random::from_state(random);
+  s.gone = StateHash(gone);
+  a.list(s.particles, [&](ParticleSystemState::Particle& p) { fields(a, p); });
+  fields(a, s.totals);
+  a.list(s.impulses, [&](CachedImpulse& k) { fields(a, k); });
 }
 
 template <class Archive>
 void fields(Archive& a, Checkpoint& c) {
   fields(a, c.run);
-  std::uint64_t random = c.flow.random.state();
-  StateHash::Words gone = c.flow.gone.words();
-  values(a, c.flow.steps, c.flow.next_id, random, gone[0], gone[1]);
-  c.flow.random = Random::from_state(random);
-  c.flow.gone = StateHash(gone);
-  a.list(c.flow.particles, [&](SimulationCheckpoint::Particle& p) { fields(a, p); });
-  fields(a, c.flow.totals);
-  a.list(c.flow.impulses, [&](CachedImpulse& k) { fields(a, k); });
+  fields(a, c.simulation.particles);
   values(a, c.recording.stats_bytes, c.recording.contacts_bytes);
   a.list(c.recording.frames, [&](RecordingFrame& f) { values(a, f.step, f.time); });
-  fields(a, c.surgery);
+  fields(a, c.simulation.events);
   values(a, c.held, c.audited);
-  fields(a, c.solids);
+  fields(a, c.simulation.bodies);
+  fields(a, c.simulation.catheters);
   values(a, c.solids_recording.bodies_bytes, c.solids_recording.catheters_bytes);
+  a.optional_list(c.simulation.particles.user_data, [&](double& d) { a.value(d); });
 }
 
 void check_same(const RunIdentity& saved, const RunIdentity& run) {

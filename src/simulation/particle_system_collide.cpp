@@ -1,11 +1,11 @@
-// The collisions of a flow's spheres.
+// The collisions of spheres: masses, walls near by, impulses.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "base/parallel.hpp"
-#include "dartcast/error.hpp"
-#include "dartcast/simulation.hpp"
+#include "response/incident_walls.hpp"
+#include "simulation/particle_system.hpp"
 #include "tracking/representable_point.hpp"
 
 namespace dartcast {
@@ -18,18 +18,22 @@ constexpr std::size_t wall_grain = 256;
 // place of a wall that is far away says little about what is touched.
 constexpr double wall_share = 0.25;
 
-}  // namespace
-
-void Simulation::set_bodies(Bodies& bodies) {
-  if (options_.substeps != 1) throw InvalidArgument("flow: spheres and bodies meet once in a step: substeps must be 1");
-  if (bodies.options().dt != options_.dt)
-    throw InvalidArgument("flow: the steps of bodies that its spheres meet must be as long as its own");
-  if (&bodies.environment() != &environment_) throw InvalidArgument("flow: the bodies are in another environment");
-  bodies_ = &bodies;
+// What a wall does to a sphere that the solver lets rest on it; none where the sphere must meet it by its own step.
+std::optional<WallSurface> solved_surface(const WallResponse& response) {
+  switch (response.kind) {
+    case WallResponseKind::reflect: return WallSurface{response.restitution, response.friction};
+    case WallResponseKind::slide: return WallSurface{};
+    case WallResponseKind::stick:
+    case WallResponseKind::absorb:
+    case WallResponseKind::escape: break;
+  }
+  return std::nullopt;
 }
 
+}  // namespace
+
 // Masses, and who takes part: those held or gone meet nobody, those that stick to a wall cannot be pushed.
-void Simulation::weigh() {
+void ParticleSystem::weigh() {
   met_radii_.resize(radii_.size());
   inverse_masses_.resize(radii_.size());
   displacements_.resize(radii_.size());
@@ -44,12 +48,12 @@ void Simulation::weigh() {
 }
 
 // What is known of the room around a sphere from where it was measured. Distances were rounded: a share is given up.
-double Simulation::clearance(std::size_t i) const {
+double ParticleSystem::clearance(std::size_t i) const {
   const double room = clear_[i].distance * (1.0 - 0x1p-20) - norm(particles_[i].position - clear_[i].centre);
   return std::max(0.0, room);
 }
 
-void Simulation::walls_of(std::size_t i, double dt, bool moving, NearWalls& near, std::vector<WallContact>& found) {
+void ParticleSystem::walls_of(std::size_t i, double dt, bool moving, NearWalls& near, std::vector<WallContact>& found) {
   const double r = met_radii_[i];
   clearances_[i] = clearance(i);
   if (clearances_[i] >= r * (1.0 + wall_share)) return;
@@ -61,19 +65,17 @@ void Simulation::walls_of(std::size_t i, double dt, bool moving, NearWalls& near
   clear_[i] = {particles_[i].position, walls.empty() ? r + reach : walls.front().distance};
   clearances_[i] = clearance(i);
   for (const WallFeature& w : walls) {
-    const WallResponse& response = responses_.of(w.patch);
-    if (response.kind != WallResponseKind::reflect && response.kind != WallResponseKind::slide) continue;
-    const bool slides = response.kind == WallResponseKind::slide;
+    const std::optional<WallSurface> surface = solved_surface(responses_.of(w.patch));
+    if (!surface) continue;
     const Vec3 velocity = moving ? w.displacement * (1.0 / dt) : Vec3{};
     const double gap = w.distance - r;
     const bool meets = gap <= wall_share * r && dot(velocities_[i] - velocity, w.normal) * dt <= -gap;
     if (gap > near_share * r && !meets) continue;
-    found.push_back({static_cast<std::uint32_t>(i), w.normal, gap, velocity, slides ? 0.0 : response.restitution,
-                     slides ? 0.0 : response.friction});
+    found.push_back({static_cast<std::uint32_t>(i), w.normal, gap, velocity, surface->restitution, surface->friction});
   }
 }
 
-void Simulation::find_walls(double dt, bool moving) {
+void ParticleSystem::find_walls(double dt, bool moving) {
   const std::size_t chunks = chunk_count(radii_.size(), wall_grain);
   if (near_.size() < chunks) near_.resize(chunks);
   near_contacts_.resize(chunks);
@@ -92,13 +94,13 @@ void Simulation::find_walls(double dt, bool moving) {
 }
 
 // Where those that stick to a wall go is known once it has moved.
-void Simulation::aim_stuck(double dt) {
+void ParticleSystem::aim_stuck(double dt) {
   for (std::size_t i = 0; i < fates_.size(); ++i) {
     if (fates_[i] == ParticleStatus::stuck) targets_[i] = flushed(aim_at(i, dt, true).target);
   }
 }
 
-void Simulation::collide(double dt, bool moving) {
+void ParticleSystem::collide(double dt, bool moving) {
   aim(dt, false);
   weigh();
   find_walls(dt, moving);
@@ -124,12 +126,6 @@ void Simulation::collide(double dt, bool moving) {
     if (fates_[i] == ParticleStatus::alive && !particles_[i].held)
       targets_[i] = flushed(particles_[i].position + displacements_[i]);
   }
-}
-
-AdaptiveSubdivisionReport Simulation::adapt(AdaptiveSubdivision& adaptive_subdivision, OrphanPolicy orphaned) {
-  return adaptive_subdivision.adapt(
-      environment_.complex(), particles_,
-      [&](const std::function<void(ComplexEdit&)>& make) { return edit(make, orphaned).edit; });
 }
 
 }  // namespace dartcast

@@ -1,0 +1,189 @@
+// The simulation's interface: a step, an edit and a checkpoint go through all components in their order.
+#include "dartcast/simulation.hpp"
+
+#include <utility>
+
+#include "dartcast/error.hpp"
+#include "simulation/simulation_parts.hpp"
+#include "simulation/simulation_state.hpp"
+#include "simulation/timer.hpp"
+
+namespace dartcast {
+
+SimulationCheckpoint::SimulationCheckpoint(SimulationState state)
+    : state_(std::make_shared<const SimulationState>(std::move(state))) {}
+
+std::uint64_t SimulationCheckpoint::steps() const { return state_->particles.steps; }
+
+Simulation::Simulation(Environment& environment, const SimulationOptions& options)
+    : parts_(std::make_unique<Parts>(*this, nullptr, environment, options)) {}
+
+Simulation::~Simulation() = default;
+
+// A step goes through these phases:
+//  1. events that are due edit the environment;
+//  2. the particles step: inlets inject, vertices move, velocities change, particles advance, some leave;
+//  3. the other components step in the environment as it stands then: bodies, catheters;
+//  4. invalid cells are remeshed and crowded cells are subdivided, where that is due.
+const SimulationStep& Simulation::step() {
+  const double begin = time();
+  parts_->events.before_step();
+  for (SimulationComponent* component : parts_->components) {
+    double ignored = 0.0;  // particles have clocks of their own
+    const ScopeTimer timer(component == &parts_->particles ? ignored : parts_->seconds_solids);
+    component->step(begin);
+  }
+  parts_->events.after_step();
+  return parts_->particles.last_step();
+}
+
+SimulationEdit Simulation::edit(const std::function<void(ComplexEdit&)>& make, OrphanPolicy orphaned) {
+  SimulationEdit done;
+  done.edit = parts_->environment.edit(make);
+  for (SimulationComponent* component : parts_->components) {
+    if (parts_->replaying && component != &parts_->particles) continue;
+    component->update_after_edit(done.edit, orphaned);
+  }
+  parts_->events.after_edit();
+  if (parts_->after_edit) parts_->after_edit(parts_->environment);
+  done.particles = parts_->particles.last_update();
+  return done;
+}
+
+void Simulation::set_after_edit(AfterEdit after_edit) { parts_->after_edit = std::move(after_edit); }
+
+RepairReport Simulation::repair(const RepairOptions& options) {
+  std::vector<Cell> invalid;
+  for (const InvalidCell& c : environment().validity(static_cast<std::size_t>(-1)).first) invalid.push_back(c.cell);
+  RepairReport report;
+  if (invalid.empty()) return report;
+  edit([&](ComplexEdit& e) { report = dartcast::repair(e, invalid, options); });
+  return report;
+}
+
+AdaptiveSubdivisionReport Simulation::adapt() { return parts_->events.adapt(); }
+
+void Simulation::set_events(std::vector<Event> events) { parts_->events.set_events(std::move(events)); }
+void Simulation::set_remeshing(const RemeshScene& remeshing) { parts_->events.set_remeshing(remeshing); }
+void Simulation::set_adaptive_subdivision(const AdaptiveSubdivisionScene& subdivision) {
+  parts_->events.set_adaptive_subdivision(subdivision);
+}
+
+SimulationCheckpoint Simulation::checkpoint() const {
+  SimulationState state;
+  for (const SimulationComponent* component : parts_->components) component->save(state);
+  state.events = parts_->events.log();
+  return SimulationCheckpoint(std::move(state));
+}
+
+void Simulation::restore(const SimulationCheckpoint& saved) {
+  parts_->replaying = true;
+  try {
+    parts_->events.replay(saved.state().events);
+  } catch (...) {
+    parts_->replaying = false;
+    throw;
+  }
+  parts_->replaying = false;
+  for (SimulationComponent* component : parts_->components) component->restore(saved.state());
+  parts_->events.set_log(saved.state().events);
+}
+
+void Simulation::go_to(std::uint64_t steps) { parts_->particles.go_to(steps); }
+
+void Simulation::set_field(VelocityField field) { parts_->particles.set_field(std::move(field)); }
+void Simulation::set_deformation(Deformation deformation) { parts_->particles.set_deformation(std::move(deformation)); }
+
+void Simulation::pull(std::span<const Vec3> displacement, double duration) {
+  parts_->particles.pull(displacement, duration);
+}
+
+void Simulation::add_inlet(Patch patch, double rate, const Vec3& velocity, double radius,
+                           std::span<const double> user_data) {
+  parts_->particles.add_inlet(patch, rate, velocity, radius, user_data);
+}
+
+std::vector<AddResult> Simulation::add(std::span<const Vec3> positions, const Vec3& velocity, double radius,
+                                       std::span<const double> user_data) {
+  return parts_->particles.add(positions, velocity, radius, user_data);
+}
+
+std::vector<AddResult> Simulation::add(std::initializer_list<Vec3> positions, const Vec3& velocity, double radius) {
+  return parts_->particles.add({positions.begin(), positions.size()}, velocity, radius, {});
+}
+
+std::vector<AddResult> Simulation::add(std::span<const Vec3> positions, std::span<const Vec3> velocities,
+                                       std::span<const double> radii, std::span<const double> user_data) {
+  return parts_->particles.add(positions, velocities, radii, user_data);
+}
+
+void Simulation::add_random(std::size_t count, const Vec3& velocity, double radius, std::span<const double> user_data) {
+  parts_->particles.add_random(count, velocity, radius, user_data);
+}
+
+namespace {
+
+// With collisions the spheres meet the bodies.
+void introduce(ParticleSystem& particles, BodiesComponent& bodies) {
+  if (particles.options().collisions && bodies.bodies()) particles.set_bodies(*bodies.bodies());
+}
+
+}  // namespace
+
+AddBodyResult Simulation::add_body(std::span<const Vec3> points, const BodyOptions& options) {
+  AddBodyResult added = parts_->bodies.add(points, options);
+  introduce(parts_->particles, parts_->bodies);
+  return added;
+}
+
+void Simulation::add(const BodyScene& body) {
+  parts_->bodies.add(body);
+  introduce(parts_->particles, parts_->bodies);
+}
+
+void Simulation::add(const CatheterScene& catheter) { parts_->catheters.add(catheter); }
+
+const SimulationOptions& Simulation::options() const { return parts_->particles.options(); }
+std::uint64_t Simulation::steps() const { return parts_->particles.steps(); }
+const Environment& Simulation::environment() const { return parts_->environment; }
+bool Simulation::deforms() const { return parts_->particles.deforms(); }
+const Particles& Simulation::particles() const { return parts_->particles.particles(); }
+std::span<const std::uint64_t> Simulation::ids() const { return parts_->particles.ids(); }
+std::span<const Vec3> Simulation::velocities() const { return parts_->particles.velocities(); }
+std::span<const ParticleStatus> Simulation::fates() const { return parts_->particles.fates(); }
+std::span<const std::uint32_t> Simulation::contact_counts() const { return parts_->particles.contact_counts(); }
+std::span<const double> Simulation::radii() const { return parts_->particles.radii(); }
+std::span<const std::uint8_t> Simulation::held() const { return parts_->particles.held(); }
+std::span<const double> Simulation::user_data(std::size_t particle) const {
+  return std::as_const(parts_->particles).user_data(particle);
+}
+std::span<double> Simulation::user_data(std::size_t particle) { return parts_->particles.user_data(particle); }
+
+const Bodies* Simulation::bodies() const {
+  const std::optional<Bodies>& bodies = std::as_const(parts_->bodies).bodies();
+  return bodies ? &*bodies : nullptr;
+}
+Bodies* Simulation::bodies() { return parts_->bodies.bodies() ? &*parts_->bodies.bodies() : nullptr; }
+std::size_t Simulation::catheter_count() const { return parts_->catheters.catheters().size(); }
+const Catheter& Simulation::catheter(std::size_t i) const { return parts_->catheters.catheters()[i]; }
+
+const SimulationTotals& Simulation::totals() const { return parts_->particles.totals(); }
+double Simulation::seconds_solids() const { return parts_->seconds_solids; }
+const EventLog& Simulation::event_log() const { return parts_->events.log(); }
+std::vector<BodySummary> Simulation::body_summaries() const { return parts_->bodies.summaries(); }
+std::vector<CatheterSummary> Simulation::catheter_summaries() const { return parts_->catheters.summaries(); }
+SimulationEnergy Simulation::energy() const { return parts_->particles.energy(); }
+
+Audit Simulation::audit() const {
+  Audit all;
+  for (const SimulationComponent* component : parts_->components) all += component->audit();
+  return all;
+}
+
+StateHash Simulation::state_hash() const {
+  StateHash all;
+  for (const SimulationComponent* component : parts_->components) all += component->state_hash();
+  return all;
+}
+
+}  // namespace dartcast
