@@ -14,6 +14,7 @@
 #include "formats/point_file.hpp"
 #include "output/run_files.hpp"
 #include "support/sample_mesh.hpp"
+#include "support/with_response.hpp"
 
 namespace dartcast::recording_test {
 
@@ -149,7 +150,7 @@ TEST_F(RecordingTest, TheKindOfAParticleOnAWallIsSaid) {
   Environment environment(mesh);
   SimulationOptions options;
   options.dt = 1.0;
-  Simulation flow(environment, options, WallResponses(WallResponse{WallResponseKind::stick, 0, 0}));
+  Simulation flow(environment, test::with_response(options, Stick{}));
   flow.add(std::vector<Vec3>{{0.5, 0.25, 0.75}}, {0.7, 0, 0});
   flow.add(std::vector<Vec3>{{0.5, 0.25, 0.75}}, {0.0, 0, 0});
   flow.step();

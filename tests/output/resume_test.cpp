@@ -222,6 +222,7 @@ class Resume : public testing::Test {
     options.audit = true;
     return run_scene(parse_scene(text, "test.toml"), options, [&](std::uint64_t done, std::uint64_t) {
       if (done == cut) throw CutOff();
+      return true;
     });
   }
 
