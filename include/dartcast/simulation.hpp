@@ -278,8 +278,10 @@ class Simulation {
   /// None where no body has been added. Their velocities() may be changed between steps; the simulation calls step().
   [[nodiscard]] const Bodies* bodies() const;
   [[nodiscard]] Bodies* bodies();
+  [[nodiscard]] const BodiesStep& bodies_step() const;  ///< the last one
   [[nodiscard]] std::size_t catheter_count() const;
   [[nodiscard]] const Catheter& catheter(std::size_t i) const;
+  [[nodiscard]] const CatheterStep& catheter_step(std::size_t i) const;  ///< the last one
 
   [[nodiscard]] const SimulationTotals& totals() const;
   [[nodiscard]] double seconds_solids() const;  ///< steps of bodies and catheters so far

@@ -57,7 +57,7 @@ void SolidsRecording::add_step(const Simulation& simulation) {
 void SolidsRecording::add_bodies(const Simulation& simulation) {
   const BodiesComponent& component = simulation.parts().bodies;
   const Bodies& bodies = *component.bodies();
-  const BodiesStep& last = component.last_step();
+  const BodiesStep& last = simulation.bodies_step();
   std::vector<std::uint64_t> contacts(bodies.size());
   if (last.gone.empty()) {  // else its contacts' particles have other numbers now
     for (const Contact& c : last.motion.contacts.contacts) ++contacts[bodies.body_of()[c.particle]];
@@ -76,7 +76,7 @@ void SolidsRecording::add_catheters(const Simulation& simulation) {
   const CathetersComponent& component = simulation.parts().catheters;
   for (std::size_t i = 0; i < component.catheters().size(); ++i) {
     const Catheter& c = component.catheters()[i];
-    const CatheterStep& s = component.last_steps()[i];
+    const CatheterStep& s = simulation.catheter_step(i);
     const Vec3 tip = c.particles()[0].position;
     fmt::print(catheters_.stream(), "{},{},{},{},{},{},{},{},{},{},{},{},{}\n", simulation.steps(), simulation.time(),
                component.scenes()[i].name, c.inserted(), c.turned(), s.pushed, s.worst_segment, s.contacts, s.at_walls,

@@ -164,8 +164,10 @@ const Bodies* Simulation::bodies() const {
   return bodies ? &*bodies : nullptr;
 }
 Bodies* Simulation::bodies() { return parts_->bodies.bodies() ? &*parts_->bodies.bodies() : nullptr; }
+const BodiesStep& Simulation::bodies_step() const { return parts_->bodies.last_step(); }
 std::size_t Simulation::catheter_count() const { return parts_->catheters.catheters().size(); }
 const Catheter& Simulation::catheter(std::size_t i) const { return parts_->catheters.catheters()[i]; }
+const CatheterStep& Simulation::catheter_step(std::size_t i) const { return parts_->catheters.last_steps()[i]; }
 
 const SimulationTotals& Simulation::totals() const { return parts_->particles.totals(); }
 double Simulation::seconds_solids() const { return parts_->seconds_solids; }

@@ -10,6 +10,7 @@
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/simulation.hpp"
+#include "dynamics/collider.hpp"
 #include "support/tier.hpp"
 #include "support/with_response.hpp"
 

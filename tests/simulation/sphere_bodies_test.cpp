@@ -193,8 +193,8 @@ TEST(SphereBodies, BodyComesToRestOnSpheres) {
   double peak = 0.0;
   double last = both.bodies().energy(0).total();
   for (int i = 0; i < 2500; ++i) {
-    both.flow.step();
-    const BodiesStep& step = both.bodies().step();
+    both.step();
+    const BodiesStep& step = both.flow.bodies_step();
     const double now = both.bodies().energy(0).total();
     ASSERT_LE(now, last + step.input + (last + std::abs(step.input)) * 2.0 * energy_slack) << i;
     last = now;
