@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 #include <span>
 #include <string_view>
@@ -55,11 +56,8 @@ class CheckpointWriter {
     value(count);
     text_ += s;
   }
-  // Left out where it is empty: for the last list of a file.
-  template <class T, class Each>
-  void optional_list(std::vector<T>& values, Each&& each) {
-    if (!values.empty()) list(values, each);
-  }
+  // Whether there is a last part, which is left out where nothing is in it.
+  static bool has_more(bool filled) { return filled; }
   [[nodiscard]] const std::string& text() const { return text_; }
 
  private:
@@ -92,10 +90,7 @@ class CheckpointReader {
     s = text_.substr(0, count);
     text_.remove_prefix(count);
   }
-  template <class T, class Each>
-  void optional_list(std::vector<T>& values, Each&& each) {
-    if (!at_end()) list(values, each);
-  }
+  [[nodiscard]] bool has_more(bool /*filled*/) const { return !at_end(); }
   [[nodiscard]] bool at_end() const { return text_.empty(); }
 
  private:
@@ -254,6 +249,24 @@ void fields(Archive& a, ParticleSystemState& s) {
   a.list(s.impulses, [&](CachedImpulse& k) { fields(a, k); });
 }
 
+// What version 0.1 did not write.
+template <class Archive>
+void later_fields(Archive& a, SimulationState& s) {
+  std::vector<CatheterCheckpoint>& catheters = s.catheters.catheters;
+  const bool walls = std::any_of(catheters.begin(), catheters.end(), [](const auto& c) { return !c.walls.empty(); });
+  if (!a.has_more(walls || !s.bodies.impulses.empty() || !s.particles.user_data.empty())) return;
+  a.list(s.particles.user_data, [&](double& d) { a.value(d); });
+  a.list(s.bodies.impulses, [&](CachedImpulse& k) { fields(a, k); });
+  for (CatheterCheckpoint& c : catheters) {
+    a.list(c.walls, [&](ChainWall& w) {
+      a.value(w.index);
+      fields(a, w.normal);
+      fields(a, w.point);
+      values(a, w.pressure, w.idle);
+    });
+  }
+}
+
 template <class Archive>
 void fields(Archive& a, Checkpoint& c) {
   fields(a, c.run);
@@ -265,7 +278,7 @@ void fields(Archive& a, Checkpoint& c) {
   fields(a, c.simulation.bodies);
   fields(a, c.simulation.catheters);
   values(a, c.solids_recording.bodies_bytes, c.solids_recording.catheters_bytes);
-  a.optional_list(c.simulation.particles.user_data, [&](double& d) { a.value(d); });
+  later_fields(a, c.simulation);
 }
 
 void check_same(const RunIdentity& saved, const RunIdentity& run) {

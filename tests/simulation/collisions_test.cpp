@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 
+#include "base/random.hpp"
 #include "dartcast/audit.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <string>
 
+#include "base/random.hpp"
 #include "dartcast/audit.hpp"
 #include "dartcast/bodies.hpp"
 #include "dartcast/error.hpp"
