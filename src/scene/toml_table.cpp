@@ -1,3 +1,4 @@
+// Reads and checks values of a TOML table, with messages that say where.
 #include "scene/toml_table.hpp"
 
 #include <fmt/format.h>

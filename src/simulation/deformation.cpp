@@ -165,8 +165,6 @@ class Motion {
   }
 
   [[nodiscard]] Vec3 operator()(const Vec3& x, std::size_t vertex) const {
-    if (s_.kind == DeformationKind::frames)
-      return s_.frames[before_][vertex] * (1 - weight_) + s_.frames[after_][vertex] * weight_;
     const Vec3 r = x - s_.centre;
     const double height = dot(r, s_.axis);
     switch (s_.kind) {
@@ -186,7 +184,8 @@ class Motion {
         const double inside = 1 - dot(r, r) / (s_.length * s_.length);
         return inside > 0 ? x + s_.axis * (amount_ * inside * inside) : x;
       }
-      case DeformationKind::frames: break;
+      case DeformationKind::frames:
+        return s_.frames[before_][vertex] * (1 - weight_) + s_.frames[after_][vertex] * weight_;
     }
     return x;
   }

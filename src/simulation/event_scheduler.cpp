@@ -11,6 +11,20 @@
 
 namespace dartcast {
 
+namespace {
+
+bool is_possible_in_plane(EventKind kind) {
+  switch (kind) {
+    case EventKind::ligature: return true;
+    case EventKind::cut:
+    case EventKind::carve:
+    case EventKind::reconnect: return false;
+  }
+  return false;
+}
+
+}  // namespace
+
 EventScheduler::EventScheduler(Simulation& simulation, const Environment& environment, double dt)
     : simulation_(simulation), environment_(environment), dt_(dt) {
   const CombinatorialMap& map = environment.map();
@@ -29,7 +43,7 @@ void EventScheduler::set_events(std::vector<Event> events) {
     if (!(at >= 0.0 && at <= latest))
       throw InvalidArgument(
           fmt::format("event {} ({}): its time is {} s: it must be between 0 and {} s", i + 1, name, at, latest));
-    if (environment_.map().dimension() == 2 && kind_of(events[i]) != EventKind::ligature)
+    if (environment_.map().dimension() == 2 && !is_possible_in_plane(kind_of(events[i])))
       throw InvalidArgument(
           fmt::format("event {} ({}): in the plane a ligature can be tied, and nothing else be done", i + 1, name));
   }

@@ -21,6 +21,17 @@ namespace {
 
 constexpr std::size_t grain = 512;
 
+// Whether a particle leaves the scene at the end of the step.
+bool leaves(ParticleStatus status) {
+  switch (status) {
+    case ParticleStatus::alive:
+    case ParticleStatus::stuck: return false;
+    case ParticleStatus::absorbed:
+    case ParticleStatus::escaped: return true;
+  }
+  return false;
+}
+
 WallResponses responses_of(const SimulationOptions& options, const CombinatorialMap& map) {
   WallResponses responses(options.response);
   for (const auto& [name, response] : options.patch_responses) responses.set(map.patch(name), response);
@@ -100,6 +111,11 @@ void ParticleSystem::move_vertices_to(std::uint64_t steps) {
   environment_.move();
 }
 
+// Phases, in order:
+//  1. inlets inject;
+//  2. vertices move (with collisions: in phase 3, after the spheres' impulses);
+//  3. for each segment of the way: velocities change, targets are set, particles walk and respond at walls;
+//  4. contacts are counted, and those absorbed or escaped leave.
 void ParticleSystem::step(double /*begin*/) {
   last_ = {};
   last_.duration = options_.dt;
@@ -160,9 +176,7 @@ void ParticleSystem::aim(double dt, bool moving) {
   targets_.resize(particles_.size());
   parallel_for(particles_.size(), grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Aim a = fates_[i] == ParticleStatus::absorbed || fates_[i] == ParticleStatus::escaped
-                        ? Aim{velocities_[i], particles_[i].position}
-                        : aim_at(i, dt, moving);
+      const Aim a = leaves(fates_[i]) ? Aim{velocities_[i], particles_[i].position} : aim_at(i, dt, moving);
       velocities_[i] = a.velocity;
       targets_[i] = flushed(a.target);
     }
@@ -175,16 +189,15 @@ Vec3 ParticleSystem::accelerated(const Vec3& v, const Vec3& flow, double dt) con
   return v + (flow + options_.gravity * (1.0 / options_.drag) - v) * lost;
 }
 
-// What contacts know of the forces: nothing where a field or other spheres make velocities, too. Drag takes its part.
+// The acceleration that contacts know of: none where a field or other spheres change velocities, too. Drag reduces it.
 Acceleration ParticleSystem::acceleration(double dt) const {
   if (field_ || collides()) return {};
   if (options_.drag == 0.0) return {options_.gravity, dt};
   return {options_.gravity * (-std::expm1(-options_.drag * dt) / (options_.drag * dt)), dt};
 }
 
-// A particle's velocity after the acceleration, and where it then wants to go: relative to positions before a move. One
-// that is held takes no step; one that sticks goes where riding along puts it, to the last bit, so that no contact
-// follows.
+// A particle's velocity after the acceleration, and its target relative to positions before a move. A held particle
+// takes no step. A stuck particle goes exactly where its wall carries it, to the last bit, so that no contact follows.
 ParticleSystem::Aim ParticleSystem::aim_at(std::size_t i, double dt, bool moving) const {
   const ParticleState& s = particles_[i];
   if (s.held) return {velocities_[i], s.position};
@@ -205,9 +218,12 @@ ParticleSystem::Aim ParticleSystem::aim_at(std::size_t i, double dt, bool moving
     return {mesh, positive ? detail::carried(complex, s.at(), w).position : s.position};
   }
   const Vec3 flow = field_->at(complex, s.at(), w, now);
-  if (field_->frame() == FieldFrame::space) {
-    const Vec3 v = accelerated(velocities_[i], flow, dt);
-    return {v, s.position + v * dt};
+  switch (field_->frame()) {
+    case FieldFrame::space: {
+      const Vec3 v = accelerated(velocities_[i], flow, dt);
+      return {v, s.position + v * dt};
+    }
+    case FieldFrame::mesh: break;
   }
   const Vec3 v = accelerated(velocities_[i], flow + mesh, dt);
   return {v, (moving ? carried : s.position) + (v - mesh) * dt};
@@ -232,11 +248,10 @@ void ParticleSystem::remove_gone() {
   std::vector<std::uint8_t> gone(particles_.size(), 0);
   std::uint64_t absorbed = 0;
   for (std::size_t i = 0; i < gone.size(); ++i) {
-    const ParticleStatus fate = fates_[i];
-    if (fate != ParticleStatus::absorbed && fate != ParticleStatus::escaped) continue;
+    if (!leaves(fates_[i])) continue;
     gone[i] = 1;
-    ++(fate == ParticleStatus::absorbed ? absorbed : last_.escaped);
-    gone_.add(ids_[i], particles_[i], velocities_[i], static_cast<std::uint64_t>(fate));
+    ++(fates_[i] == ParticleStatus::absorbed ? absorbed : last_.escaped);
+    gone_.add(ids_[i], particles_[i], velocities_[i], static_cast<std::uint64_t>(fates_[i]));
   }
   last_.absorbed += absorbed;
   totals_.absorbed += absorbed;
@@ -246,7 +261,7 @@ void ParticleSystem::remove_gone() {
   remove_marked(gone);
 }
 
-// What is kept beside the particles themselves.
+// Removes the same particles from the arrays beside the particles.
 void ParticleSystem::remove_marked(std::span<const std::uint8_t> marks) {
   keep_unmarked(ids_, marks);
   keep_unmarked(velocities_, marks);

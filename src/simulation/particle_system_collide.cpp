@@ -14,11 +14,11 @@ namespace {
 
 constexpr std::size_t wall_grain = 256;
 
-// A wall farther than this share of the radius is met by the sphere's own step, with its true contact: the nearest
-// place of a wall that is far away says little about what is touched.
+// The solver takes walls within this share of the radius. A sphere meets farther walls by its own step, with the true
+// contact: the nearest point of a far wall says little about the point that is touched.
 constexpr double wall_share = 0.25;
 
-// What a wall does to a sphere that the solver lets rest on it; none where the sphere must meet it by its own step.
+// The wall as the solver sees it, which lets spheres rest on it; none where a sphere must meet it by its own step.
 std::optional<WallSurface> solved_surface(const WallResponse& response) {
   switch (response.kind) {
     case WallResponseKind::reflect: return WallSurface{response.restitution, response.friction};
@@ -32,7 +32,7 @@ std::optional<WallSurface> solved_surface(const WallResponse& response) {
 
 }  // namespace
 
-// Masses, and who takes part: those held or gone meet nobody, those that stick to a wall cannot be pushed.
+// Masses, and which spheres take part: those held or gone meet nobody, those stuck to a wall cannot be pushed.
 void ParticleSystem::weigh() {
   met_radii_.resize(radii_.size());
   inverse_masses_.resize(radii_.size());
@@ -47,7 +47,8 @@ void ParticleSystem::weigh() {
   }
 }
 
-// What is known of the room around a sphere from where it was measured. Distances were rounded: a share is given up.
+// The distance that is still free of walls around a sphere, from where it was last measured. Distances were rounded, so
+// the result is a little smaller.
 double ParticleSystem::clearance(std::size_t i) const {
   const double room = clear_[i].distance * (1.0 - 0x1p-20) - norm(particles_[i].position - clear_[i].centre);
   return std::max(0.0, room);
@@ -57,8 +58,8 @@ void ParticleSystem::walls_of(std::size_t i, double dt, bool moving, NearWalls& 
   const double r = met_radii_[i];
   clearances_[i] = clearance(i);
   if (clearances_[i] >= r * (1.0 + wall_share)) return;
-  // Where walls stand still and are not next to it, more room is looked into at once, and then serves until the sphere
-  // has used it up. What is found within the share that counts does not depend on it.
+  // Where walls stand still and none is next to the sphere, search farther: the result then serves for many steps. The
+  // walls within the share that counts are the same.
   const bool next_to_wall = deforms() || (clear_[i].distance > 0.0 && clear_[i].distance < 1.5 * r);
   const double reach = next_to_wall ? wall_share * r : r;
   const auto walls = walls_within(environment_.complex(), particles_[i], r + reach, near, moving);
@@ -93,7 +94,7 @@ void ParticleSystem::find_walls(double dt, bool moving) {
   for (const auto& part : near_contacts_) walls_.insert(walls_.end(), part.begin(), part.end());
 }
 
-// Where those that stick to a wall go is known once it has moved.
+// Targets of stuck particles are known only once their walls have moved.
 void ParticleSystem::aim_stuck(double dt) {
   for (std::size_t i = 0; i < fates_.size(); ++i) {
     if (fates_[i] == ParticleStatus::stuck) targets_[i] = flushed(aim_at(i, dt, true).target);
