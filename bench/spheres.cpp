@@ -11,6 +11,7 @@
 #include "base/random.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/simulation.hpp"
+#include "simulation/simulation_parts.hpp"
 
 namespace dartcast::bench {
 
@@ -69,6 +70,8 @@ void time_both_searches(const Simulation& flow, double dt, SphereRow& row) {
   row.pairs_by_grid_ns = time(PairSearch::grid);
 }
 
+const Collider& collider_of(const Simulation& simulation) { return simulation.parts().particles.collider(); }
+
 }  // namespace
 
 SphereRow heap(std::size_t count, bool crowded) {
@@ -79,7 +82,8 @@ SphereRow heap(std::size_t count, bool crowded) {
   o.gravity = {0.0, 0.0, -9.81};
   o.collisions = CollisionOptions{};
   o.collisions->restitution = o.collisions->friction = 0.3;
-  Simulation flow(environment, o, WallResponses(WallResponse{WallResponseKind::reflect, 0.3, 0.3}));
+  o.response = Reflect{0.3, 0.3};
+  Simulation flow(environment, o);
   flow.add(places_in_heap(count, across), {}, radius);
 
   SphereRow row;
@@ -87,11 +91,11 @@ SphereRow heap(std::size_t count, bool crowded) {
   row.cells = environment.map().cell_count();
   row.steps = std::clamp<std::size_t>(1000000 / count, 5, 200);
   for (std::size_t i = 0; i < std::clamp<std::size_t>(2000000 / count, 10, 200); ++i) flow.step();
-  const Sums before = {flow.totals(), flow.collider().seconds()};
+  const Sums before = {flow.totals(), collider_of(flow).seconds()};
   const auto start = Clock::now();
   for (std::size_t i = 0; i < row.steps; ++i) flow.step();
   const double whole = seconds_since(start);
-  const Sums after = {flow.totals(), flow.collider().seconds()};
+  const Sums after = {flow.totals(), collider_of(flow).seconds()};
 
   const double steps = static_cast<double>(row.steps);
   const auto ns = [&](double seconds) { return seconds * 1e9 / (steps * static_cast<double>(row.spheres)); };
@@ -108,7 +112,7 @@ SphereRow heap(std::size_t count, bool crowded) {
   row.contacts = static_cast<double>(after.totals.collisions.pairs_near - before.totals.collisions.pairs_near) /
                  (steps * static_cast<double>(row.spheres));
   row.deepest = after.totals.collisions.deepest / radius;
-  row.by_lists = flow.collider().finder().by_lists();
+  row.by_lists = collider_of(flow).finder().by_lists();
   time_both_searches(flow, o.dt, row);
   return row;
 }

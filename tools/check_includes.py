@@ -28,7 +28,7 @@ PUBLIC = {
     "complex": "cell_complex complex_edit validity",
     "editing": "remeshing cutting",
     "surface": "surface",
-    "tracking": "particle_state contact step trace",
+    "tracking": "particle_state contact step",
     "response": "response",
     "environment": "environment audit",
     "dynamics": "dynamics",

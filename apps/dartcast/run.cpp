@@ -1,3 +1,4 @@
+// The verb run: runs a scene, shows its progress, and prints the summary.
 #include "dartcast/run.hpp"
 
 #include <fmt/format.h>
@@ -74,7 +75,10 @@ int run(const Arguments& a) {
   ProgressBar bar;
   Progress progress;
   if (!a.quiet && !a.json && isatty(STDERR_FILENO) != 0)
-    progress = [&](std::uint64_t step, std::uint64_t all) { bar.show(step, all); };
+    progress = [&](std::uint64_t step, std::uint64_t all) {
+      bar.show(step, all);
+      return true;
+    };
   const Summary summary = run_scene(scene, options, progress);
   report(a, summary, options.folder.string());
   if (summary.audit && summary.audit->failed > 0) {

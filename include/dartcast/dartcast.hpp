@@ -36,7 +36,6 @@
 #include "dartcast/storage.hpp"
 #include "dartcast/surface.hpp"
 #include "dartcast/threads.hpp"
-#include "dartcast/trace.hpp"
 #include "dartcast/trajectory.hpp"
 #include "dartcast/validity.hpp"
 #include "dartcast/vec3.hpp"

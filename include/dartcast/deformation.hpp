@@ -2,6 +2,7 @@
 // drifts.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -16,7 +17,7 @@
 
 namespace dartcast {
 
-/// What a step does to a point x. Below: a the axis and d the direction as unit vectors, d made perpendicular to a; r =
+/// How a step moves a point x. Below: a the axis and d the direction as unit vectors, d made perpendicular to a; r =
 /// x - centre, s = r.a the height of x along the axis, h = r.d; A the amplitude; w(t) = sin(2 pi t / period), so that
 /// at t = 0 all is at rest.
 enum class DeformationKind : std::uint8_t {
@@ -35,8 +36,10 @@ enum class DeformationKind : std::uint8_t {
   frames,   ///< positions given at `times`, linear between them, the first before and the last after them. First in a
             ///< list only.
 };
-inline constexpr std::string_view deformation_kind_names[] = {"rotate",  "swing", "bend", "twist",
-                                                              "stretch", "pulse", "bump", "frames"};
+inline constexpr std::array deformation_kinds = {
+    DeformationKind::rotate,  DeformationKind::swing, DeformationKind::bend, DeformationKind::twist,
+    DeformationKind::stretch, DeformationKind::pulse, DeformationKind::bump, DeformationKind::frames};
+[[nodiscard]] std::string_view name_of(DeformationKind kind);
 
 /// The kind of that name; none if there is no such kind.
 std::optional<DeformationKind> deformation_kind(std::string_view name);

@@ -15,7 +15,6 @@
 #include "dartcast/particle_state.hpp"
 #include "dartcast/step.hpp"
 #include "dartcast/threads.hpp"
-#include "dartcast/trace.hpp"
 #include "dartcast/vec3.hpp"
 
 namespace dartcast {

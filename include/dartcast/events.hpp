@@ -1,10 +1,7 @@
-// Surgery at given times: what a scene does to the topology while it runs.
+// Events: edits of the topology at given times, and subdivision of crowded cells, while a simulation runs.
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -15,25 +12,24 @@
 #include "dartcast/environment.hpp"
 #include "dartcast/remeshing.hpp"
 #include "dartcast/simulation.hpp"
-#include "dynamics/cell_lists.hpp"
 
 namespace dartcast {
 
-// Cells that hold many particles are subdivided, and made again when these have left.
+// Cells that hold many particles are subdivided. The parts are merged again when the particles have left.
 //
 // "Subdivisions": T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism for continuous collision
 // detection in deformable environments", SPM 2009, section 7.3.
 
 struct AdaptiveSubdivisionOptions {
   std::uint32_t max_particles = 32;  ///< particles in a cell, above which it is subdivided
-  std::uint32_t min_particles = 8;   ///< particles in all parts of a cell, below which it is made again; < most
+  std::uint32_t min_particles = 8;   ///< particles in all parts of a cell, below which they are merged; < max_particles
   double smallest = 0.0;     ///< m: a cell is not subdivided if it is less than twice this across, along an axis
   std::uint32_t edits = 64;  ///< of either kind in one call at most, the fullest cells first
 };
 
 /// A cell that was left as it is, and why.
 struct SubdivisionRefusal {
-  Cell cell;  ///< to be subdivided; of one to be made again a part
+  Cell cell;  ///< to be subdivided; or a part of one that was to be merged
   std::uint32_t particles = 0;
   std::string reason;
 };
@@ -47,69 +43,25 @@ struct SubdivisionChange {
 struct AdaptiveSubdivisionReport {
   std::uint64_t subdivided = 0;
   std::uint64_t merged = 0;
-  std::uint64_t waiting =
-      0;  ///< cells above the threshold still that were not refused: the number of edits was reached
+  /// Cells that are still above the threshold because the number of edits was reached.
+  std::uint64_t waiting = 0;
   std::vector<SubdivisionRefusal> refused;
   std::vector<SubdivisionChange> changes;  ///< in order
 };
 
-/// Keeps the subdivisions that it has made.
-class AdaptiveSubdivision {
- public:
-  /// Throws InvalidArgument where least >= most, or smallest is negative or not finite.
-  explicit AdaptiveSubdivision(const AdaptiveSubdivisionOptions& options);
-
-  /// Makes an edit of the environment and takes its particles along: Simulation::edit(), or Environment::edit() and
-  /// update_after_edit(). Returns what Environment::edit() returned.
-  using Edit = std::function<ComplexEditReport(const std::function<void(ComplexEdit&)>& make)>;
-
-  /// Subdivides where a cell holds too many, then makes cells again whose parts hold few enough: each by an edit of its
-  /// own. What cannot be done is left as it is, and told. `particles`: those that `edit` takes along. Throws what
-  /// `edit` throws but EditRefused. Cost: for each edit linear in the particles and subdivisions, and that of the edit.
-  AdaptiveSubdivisionReport adapt(const CellComplex& complex, const Particles& particles, const Edit& edit);
-
-  /// Makes an edit again, where all before it have been made again. Throws EditRefused, or InvalidArgument where there
-  /// is no such cell or subdivision.
-  void repeat(const CellComplex& complex, const SubdivisionChange& change, const Edit& edit);
-
-  /// To be called after other edits of the environment. Cost: that of dartcast::update_after_edit() for each
-  /// subdivision there is.
-  void update_after_edit(const CombinatorialMap& map, std::span<const Cell> added);
-
-  /// What is subdivided now, parents before what is in their parts.
-  [[nodiscard]] std::span<const Subdivision> subdivisions() const { return subdivisions_; }
-
- private:
-  struct Fullest {
-    Cell cell;
-    std::uint32_t particles = 0;
-    std::uint64_t others = 0;  // above the threshold, too
-  };
-
-  [[nodiscard]] Fullest fullest(const Particles& particles) const;
-  void subdivide_fullest(const CellComplex& complex, const Particles& particles, const Edit& edit,
-                         AdaptiveSubdivisionReport& report);
-  void merge_emptiest(const CellComplex& complex, const Particles& particles, const Edit& edit,
-                      AdaptiveSubdivisionReport& report);
-  [[nodiscard]] bool is_whole(const CombinatorialMap& map, std::size_t subdivision) const;
-  void make(const CellComplex& complex, const SubdivisionChange& change, const Edit& edit);
-  bool try_edit(const CellComplex& complex, const SubdivisionChange& change, const Edit& edit,
-                SubdivisionRefusal refusal, AdaptiveSubdivisionReport& report);
-
-  AdaptiveSubdivisionOptions options_;
-  CellLists lists_;
-  std::vector<Subdivision> subdivisions_;
-  std::vector<Cell> passed_over_;  // in this call
-};
+enum class EventKind : std::uint32_t { cut, carve, ligature, reconnect };
+[[nodiscard]] std::string_view name_of(EventKind kind);
 
 /// Opens tissue along a surface (dartcast/cutting.hpp).
 struct Cut {
+  static constexpr EventKind kind = EventKind::cut;
   std::variant<Plane, Disc, BladePath> surface;
   double width = 0.0;  ///< m
 };
 
 /// Frees or takes away what lies in a tool.
 struct Carve {
+  static constexpr EventKind kind = EventKind::carve;
   ConvexTool tool;
   Carving what = Carving::open;
   bool whole_cells = false;
@@ -117,6 +69,7 @@ struct Carve {
 
 /// Blocks a cross-section, and draws its walls together (dartcast/cutting.hpp).
 struct Ligature {
+  static constexpr EventKind kind = EventKind::ligature;
   Plane plane;
   Vec3 place;
   TyingOptions tying = {0.0, 1.0};  ///< share 0: walls stay where they are
@@ -125,6 +78,7 @@ struct Ligature {
 
 /// Joins two ends: the open faces within a distance of two planes (dartcast/cutting.hpp).
 struct Reconnect {
+  static constexpr EventKind kind = EventKind::reconnect;
   Plane a, b;
   double within = 0.0;  ///< m
   ReconnectOptions options;
@@ -135,11 +89,11 @@ struct Event {
   std::variant<Cut, Carve, Ligature, Reconnect> what;
   OrphanPolicy orphaned = OrphanPolicy::relocate;
 };
-inline constexpr std::string_view event_kind_names[] = {"cut", "carve", "ligature", "reconnect"};
+[[nodiscard]] EventKind kind_of(const Event& event);
 
 /// What an event did.
 struct EventReport {
-  std::uint32_t kind = 0;  ///< of event_kind_names
+  EventKind kind = EventKind::cut;
   std::uint64_t step = 0;  ///< steps done before it
   double time = 0.0;       ///< s
   std::uint64_t cells_removed = 0;
@@ -150,16 +104,40 @@ struct EventReport {
   std::uint64_t particles_in_opened = 0;  ///< before it: see EventLog::in_opened
   std::uint64_t particles_touched = 0;
   std::uint64_t particles_located = 0;
-  std::uint64_t particles_moved = 0;  ///< of the stranded ones: moved, held or absorbed
+  std::uint64_t particles_moved = 0;  ///< of the orphaned ones: moved, held or absorbed
   std::uint64_t particles_held = 0;
   std::uint64_t particles_absorbed = 0;
   double boundary_shift = 0.0;  ///< m
   double seconds = 0.0;
 };
 
-/// Does it now, wherever the vertices are. Throws as the functions of surgery/ and Simulation::edit(); nothing is
-/// changed then. Walls that are drawn together go so far that every simplex stays positive, if they cannot go all the
-/// way.
-EventReport apply(Simulation& flow, const Event& event);
+/// What events, remeshing and subdivision have done to the topology, in order: enough to do it again.
+struct EventLog {
+  struct Change {
+    static constexpr std::uint32_t remeshing = 0xffffffffU;
+    static constexpr std::uint32_t subdividing = 0xfffffffeU;
+    static constexpr std::uint32_t merging = 0xfffffffdU;
+
+    std::uint64_t step = 0;           ///< steps done before it
+    std::uint32_t event = remeshing;  ///< its place in the list of events, or one of the constants above
+    std::uint32_t what = 0;           ///< SubdivisionChange::what
+
+    bool operator==(const Change&) const = default;
+  };
+
+  std::vector<Change> changes;
+  std::vector<EventReport> events;
+  std::uint64_t mended = 0;      ///< regions remeshed
+  std::uint64_t left = 0;        ///< cells not valid after the last check
+  std::uint64_t subdivided = 0;  ///< crowded cells
+  std::uint64_t merged = 0;      ///< of these, merged again
+  std::uint64_t refused = 0;     ///< cells that could not be subdivided or merged at the last try
+  std::uint64_t in_opened = 0;   ///< particles in cells that were blocked when the simulation was made
+};
+
+/// Carries an event out now, wherever the vertices are. Throws as the functions of dartcast/cutting.hpp and
+/// Simulation::edit(); nothing is changed then. Walls that are drawn together go so far that every simplex stays
+/// positive, if they cannot go all the way.
+EventReport apply(Simulation& simulation, const Event& event);
 
 }  // namespace dartcast

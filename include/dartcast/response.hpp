@@ -25,6 +25,26 @@ struct WallResponse {
   double friction = 0.0;     ///< Coulomb: tangential velocity lost per normal velocity changed, >= 0
 };
 
+// The responses as values, each with its own parameters: Reflect{0.5, 0.1}, Slide{}.
+
+struct Reflect {
+  double restitution = 1.0;  ///< as WallResponse::restitution
+  double friction = 0.0;     ///< as WallResponse::friction
+  constexpr operator WallResponse() const { return {WallResponseKind::reflect, restitution, friction}; }  // NOLINT
+};
+struct Slide {
+  constexpr operator WallResponse() const { return {WallResponseKind::slide}; }  // NOLINT
+};
+struct Stick {
+  constexpr operator WallResponse() const { return {WallResponseKind::stick}; }  // NOLINT
+};
+struct Absorb {
+  constexpr operator WallResponse() const { return {WallResponseKind::absorb}; }  // NOLINT
+};
+struct Escape {
+  constexpr operator WallResponse() const { return {WallResponseKind::escape}; }  // NOLINT
+};
+
 /// A response for every patch. Wall faces without a patch, and patches without a response, get the general one.
 class WallResponses {
  public:

@@ -9,20 +9,21 @@
 #include <vector>
 
 #include "dartcast/audit.hpp"
+#include "dartcast/events.hpp"
 #include "dartcast/mesh_check.hpp"
 #include "dartcast/scene.hpp"
+#include "dartcast/simulation.hpp"
 #include "dartcast/threads.hpp"
-#include "simulation/event_scheduler.hpp"
-#include "simulation/solids.hpp"
 
 namespace dartcast {
 
-// What a run came to: summary.json.
+// The outcome of a run: summary.json.
 
 struct Summary {
   std::string scene;
   unsigned threads = 1;
   std::uint64_t steps = 0;
+  bool cancelled = false;  ///< the progress callback ended it before its last step
   bool deforms = false;
 
   std::size_t cells = 0;
@@ -69,17 +70,18 @@ struct RunOptions {
   std::optional<std::uint64_t> seed;   ///< instead of the scene's
   bool audit = false;                  ///< check each particle after each step
   bool skip_bad_cells = false;         ///< as EnvironmentScene::skip_bad_cells, which may be set as well
-  /// Go on from the last checkpoint in the folder; from the start where there is none. The outcome is that of a run
-  /// that was never cut off.
+  /// Go on from the last checkpoint in the folder; from the start where there is none. The outcome is the same as of a
+  /// run that was never cut off.
   bool resume = false;
-  std::uint64_t max_memory = 0;  ///< as of ReadOptions, for each file that is read
+  std::uint64_t max_memory = 0;  ///< as in ReadOptions, for each file that is read
 };
 
-/// Called after each step with the number of steps done and of all.
-using Progress = std::function<void(std::uint64_t done, std::uint64_t all)>;
+/// Called after each step with the number of steps done and of all. Returns whether to go on. Where it returns false the
+/// run is cancelled: the output folder is complete up to this step, and `resume` can go on from there.
+using Progress = std::function<bool(std::uint64_t done, std::uint64_t all)>;
 
-/// Runs a scene. Throws Error and its kinds where the scene, its mesh or its positions cannot be used, or output cannot
-/// be written.
+/// Runs a scene, and reads the files that it names. Throws Error and its kinds where the scene, its mesh or its
+/// positions cannot be used, or output cannot be written.
 Summary run_scene(const Scene& scene, const RunOptions& options, const Progress& progress = {});
 
 }  // namespace dartcast

@@ -1,4 +1,7 @@
-// A scene: all that a run needs, as plain data. Files of scenes: dartcast/run.hpp; their keys: docs/scene.md.
+// A scene: all that a simulation is made of, as plain data. It can be built in C++, or read from TOML
+// (dartcast/scene_file.hpp; keys: docs/scene.md).
+//
+// Some members may name a file instead of holding its data: load_scene_files() replaces the name by the data.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +17,7 @@
 #include "dartcast/deformation.hpp"
 #include "dartcast/events.hpp"
 #include "dartcast/generators.hpp"
+#include "dartcast/mesh_data.hpp"
 #include "dartcast/response.hpp"
 #include "dartcast/simulation.hpp"
 #include "dartcast/velocity_field.hpp"
@@ -24,9 +28,9 @@ namespace dartcast {
 inline constexpr std::uint64_t max_seed = 0x7fffffffffffffffU;
 inline constexpr std::uint64_t max_steps = std::uint64_t{1} << 53U;
 
-/// A mesh file, or a generator's options.
-using MeshSource =
-    std::variant<std::filesystem::path, BoxOptions, OctahedraOptions, VesselOptions, RectangleOptions, MazeOptions>;
+/// A mesh file, a generator's options, or a mesh.
+using MeshSource = std::variant<std::filesystem::path, BoxOptions, OctahedraOptions, VesselOptions, RectangleOptions,
+                                MazeOptions, MeshData>;
 
 struct FreeRegions {
   std::vector<std::string> regions;
@@ -54,19 +58,26 @@ struct EnvironmentScene {
   std::variant<std::monostate, std::vector<std::string>, PatchArray, PatchAngle> patches;
 };
 
-/// One step of a deformation; what stands in arrays or files of the mesh is named here and read when the mesh is.
+/// One step of a deformation. Arrays of the mesh are named here.
 struct DeformationScene {
   DeformationStep step;
   std::string field;                          ///< pulse: a point array of three components; empty: none
   std::string path;                           ///< pulse: a point array of one component; empty: none
-  std::vector<std::filesystem::path> frames;  ///< frames: mesh files with the same points
+  std::vector<std::filesystem::path> frames;  ///< frames: mesh files with the same points; empty: step.frames
 };
 
 struct RandomParticles {
   std::size_t count = 0;
 };
+/// Where particles start, and how.
+struct ParticleSeeds {
+  std::string name = "positions";  ///< of messages: the file's
+  std::vector<Vec3> points;
+  std::vector<Vec3> velocities;  ///< one per point; empty: ParticlesScene::velocity
+  std::vector<double> radii;     ///< one per point; empty: ParticlesScene::radius
+};
 struct PlacedParticles {
-  std::filesystem::path positions;  ///< .vtp or .csv
+  std::variant<std::filesystem::path, ParticleSeeds> positions;  ///< the file: .vtp or .csv
 };
 struct InletParticles {
   std::string patch;
@@ -77,17 +88,18 @@ struct ParticlesScene {
   std::variant<RandomParticles, PlacedParticles, InletParticles> source;
   Vec3 velocity;
   double radius = 0.0;
+  std::vector<double> user_data;  ///< of each particle, a number for each name in Scene::user_data; empty: zeros
 };
 
 enum class BodySamples : std::uint8_t { solid, surface, volume };
 
 /// A body: a surface, where it is put, how it is sampled, what it is made of.
 struct BodyScene {
-  std::string name;  ///< of its files; letters, digits, '-' and '_'
-  std::variant<std::filesystem::path, BarrelOptions> surface;
-  double scale = 1.0;  ///< first
-  Vec3 rotate;         ///< then: axis times angle, rad
-  Vec3 at;             ///< then: where the surface's origin goes
+  std::string name;                                                      ///< of its files; letters, digits, '-' and '_'
+  std::variant<std::filesystem::path, BarrelOptions, MeshData> surface;  ///< the file: .stl, .obj, .ply, .off
+  double scale = 1.0;                                                    ///< first
+  Vec3 rotate;                                                           ///< then: axis times angle, rad
+  Vec3 at;                                                               ///< then: where the surface's origin goes
   BodySamples samples = BodySamples::solid;
   SamplingOptions sampling;
   double cluster = 0.0;  ///< edge of the regions that are matched each by itself; 0: the body as a whole
@@ -119,7 +131,7 @@ struct MotionScene {
 };
 
 struct ContactScene {
-  WallResponse general = {WallResponseKind::reflect, 1.0, 0.0};
+  WallResponse general = Reflect{};
   std::map<std::string, WallResponse> by_patch;
 };
 
@@ -151,6 +163,7 @@ struct Scene {
   EnvironmentScene environment;
   std::vector<DeformationScene> deformation;
   std::vector<ParticlesScene> particles;
+  std::vector<std::string> user_data;          ///< SimulationOptions::user_data
   std::optional<CollisionOptions> collisions;  ///< of spheres with each other and bodies; none: they do not meet
   BodyCollisionOptions body_collisions;        ///< of bodies with each other
   std::vector<BodyScene> bodies;

@@ -1,10 +1,13 @@
-// Scenes in TOML.
+// Scenes in TOML, and the files that scenes name.
 #pragma once
 
 #include <filesystem>
 #include <string>
 
+#include "dartcast/mesh_check.hpp"
+#include "dartcast/mesh_files.hpp"
 #include "dartcast/scene.hpp"
+#include "dartcast/threads.hpp"
 
 namespace dartcast {
 
@@ -14,5 +17,15 @@ Scene read_scene(const std::filesystem::path& path);
 
 /// The same from text; `path` is for messages and relative paths.
 Scene parse_scene(const std::string& text, const std::filesystem::path& path);
+
+struct LoadedScene {
+  Scene scene;      ///< names no file any more: a Simulation can be made of it
+  Finding skipped;  ///< bad cells that were left out, where the scene wants that
+};
+
+/// Reads the files that a scene names: its mesh, frames of the deformation, positions, surfaces of bodies. The mesh has
+/// its scale, free cells and patches as the scene says, also where it comes from a generator. Of the options
+/// `max_memory` counts. Throws Error and its kinds, naming the file and its place in the scene.
+LoadedScene load_scene_files(Scene scene, const ReadOptions& options = {}, Threads threads = {});
 
 }  // namespace dartcast

@@ -1,34 +1,41 @@
-// The flow simulation: particles with velocities under gravity, drag or a velocity field, in an environment that may
-// deform.
+// The simulation: particles, spheres, bodies and catheters in an environment that may deform and be edited.
 //
 // T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism for continuous collision detection in
-// deformable environments", SPM 2009, section 7.2.
+// deformable environments", SPM 2009, sections 7.2 to 7.4.
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
+#include <map>
+#include <memory>
 #include <optional>
 #include <span>
-#include <string_view>
+#include <string>
 #include <vector>
 
-#include "base/random.hpp"
 #include "dartcast/audit.hpp"
+#include "dartcast/bodies.hpp"
+#include "dartcast/catheter.hpp"
 #include "dartcast/deformation.hpp"
+#include "dartcast/dynamics.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/remeshing.hpp"
 #include "dartcast/response.hpp"
 #include "dartcast/spheres.hpp"
 #include "dartcast/velocity_field.hpp"
-#include "dynamics/collider.hpp"
-#include "dynamics/near_walls.hpp"
-#include "simulation/seeding.hpp"
-#include "simulation/sphere_bodies.hpp"
 
 namespace dartcast {
 
-class AdaptiveSubdivision;
 struct AdaptiveSubdivisionReport;
+struct AdaptiveSubdivisionScene;
+struct BodyScene;
+struct CatheterScene;
+struct Event;
+struct EventLog;
+struct RemeshScene;
+struct Scene;
+struct SimulationState;
 
 /// The limits of a step's duration in seconds. Speeds and displacements then neither overflow nor vanish.
 inline constexpr double smallest_dt = 0x1p-100;
@@ -37,38 +44,47 @@ inline constexpr double largest_dt = 0x1p+100;
 inline constexpr double smallest_density = 0x1p-100;
 inline constexpr double largest_density = 0x1p+100;
 
-/// Between spheres. With walls, restitution and friction are those of the walls' responses.
+/// Between spheres, and between spheres and bodies. At walls, restitution and friction are those of the responses.
 struct CollisionOptions {
   double restitution = 0.0;          ///< in [0, 1]
   double friction = 0.0;             ///< Coulomb, >= 0
   double density = 1000.0;           ///< kg / m^3; in the plane of a disc, kg / m^2
-  unsigned iterations = 10;          ///< > 0, of the solver (dynamics/contact_solver.hpp)
-  unsigned position_iterations = 4;  ///< of what takes out overlaps
+  unsigned iterations = 10;          ///< > 0, of the solver
+  unsigned position_iterations = 4;  ///< of the correction of overlaps
 };
 
 /// SI units: seconds, metres per square second, 1 / second.
 struct SimulationOptions {
   double dt = 1e-3;  ///< of a step
   Vec3 gravity = {0.0, 0.0, 0.0};
-  double drag = 0.0;       ///< >= 0: the velocity relaxes to the field's (to 0 without a field) as exp(-drag t)
+  double drag = 0.0;           ///< >= 0: the velocity relaxes to the field's (to 0 without one) as exp(-drag t)
+  WallResponse response = {};  ///< what happens at walls: Reflect{0.5}, Slide{}, ...
+  std::map<std::string, WallResponse> patch_responses = {};  ///< at the walls of these patches, by name
   unsigned substeps = 1;   ///< > 0: a step's way is a polyline of so many segments; vertices move with the first one
   std::uint64_t seed = 1;  ///< for all that is random
   StepOptions step = {};
-  /// With it spheres meet each other, and rest on each other and on walls; without they pass through each other.
+  /// With it spheres meet each other and bodies, and rest on each other and on walls. Without it they pass through.
   std::optional<CollisionOptions> collisions = {};
+  /// Between bodies. Without it they pass through each other.
+  std::optional<BodyCollisionOptions> body_collisions = BodyCollisionOptions{};
+  /// Names of numbers that each particle carries for its user (Simulation::user_data()). Output writes an array of each
+  /// name. A name is not empty, not used twice, and none that output uses itself (id, radius, velocity, ...).
+  std::vector<std::string> user_data = {};
 };
 
-/// What happened in one step. `report.contacts` name particles by their index during the step; contact_ids are their
-/// ids.
+/// What happened in one step.
 struct SimulationStep {
-  double duration = 0.0;  ///< s
-  StepReport report;
-  std::vector<std::uint64_t> contact_ids;
+  double duration = 0.0;                   ///< s
+  StepReport report;                       ///< of the particles; it names them by their index during the step
+  std::vector<std::uint64_t> contact_ids;  ///< the id of each contact's particle
   std::uint64_t injected = 0;
   std::uint64_t absorbed = 0;  ///< by edits before this step, too
   std::uint64_t escaped = 0;
   CollisionCounts collisions;           ///< of spheres with each other
   std::vector<SphereOverlap> overlaps;  ///< of spheres with walls
+
+  /// By particle, then by time. Entry i is of the particle contact_ids[i].
+  [[nodiscard]] std::span<const Contact> contacts() const { return report.contacts.contacts; }
 };
 
 /// Sums over all steps so far.
@@ -80,36 +96,28 @@ struct SimulationTotals {
   Counters counters;
   CollisionCounts collisions;
   std::uint64_t wall_overlaps = 0;
-  double deepest_in_wall = 0.0;                  ///< of these
+  double deepest_in_wall = 0.0;                  ///< the deepest of these
   std::vector<std::uint64_t> contacts_by_patch;  ///< by the number of the patch met first
   double seconds_detect = 0.0;                   ///< advancing particles, responses included
   double seconds_deform = 0.0;                   ///< computing and setting the vertices' positions
   double seconds_collide = 0.0;                  ///< pairs and impulses
-  double seconds_respond = 0.0;                  ///< injecting, velocities and targets before, fates after
+  double seconds_respond = 0.0;                  ///< injection, velocities and targets before the walk, fates after it
 };
 
-/// All that a flow goes on from after a step; what it was made with (mesh, options, field, inlets, ...) is not in it.
-struct SimulationCheckpoint {
-  struct Particle {
-    std::uint64_t id = 0;
-    ParticleState state;
-    Weights held_weights{};
-    Vec3 velocity;
-    ParticleStatus fate = ParticleStatus::alive;
-    std::uint32_t contacts = 0;
-    double radius = 0.0;
-  };
-  std::uint64_t steps = 0;
-  std::uint64_t next_id = 0;
-  Random random = Random(0);
-  std::vector<Particle> particles;
-  SimulationTotals totals;
-  StateHash gone;
-  std::vector<CachedImpulse> impulses;  ///< that the next step's collisions start from
+/// All that a simulation goes on from after a step. It does not hold what the simulation was made with: environment,
+/// options, deformation, field, inlets, bodies, ... Copies share one state.
+class SimulationCheckpoint {
+ public:
+  explicit SimulationCheckpoint(SimulationState state);
+  [[nodiscard]] std::uint64_t steps() const;
+  [[nodiscard]] const SimulationState& state() const { return *state_; }  ///< simulation/simulation_state.hpp
+
+ private:
+  std::shared_ptr<const SimulationState> state_;
 };
 
-/// Of all particles. Without collisions particles have no mass: each counts as 1 kg. With them a sphere counts by its
-/// mass, and a point, which has none, not at all.
+/// Of all particles. Without collisions particles have no mass: each counts as 1 kg. With collisions a sphere counts by
+/// its mass, and a point, which has none, not at all.
 struct SimulationEnergy {
   double kinetic = 0.0;    ///< J: the sum of m v^2 / 2
   double potential = 0.0;  ///< J: the sum of -m g.x, which is 0 at the origin
@@ -121,187 +129,179 @@ struct SimulationEdit {
   UpdateReport particles;
 };
 
-/// Carries particles through the steps of a simulation. Each step:
-///  1. inlets inject; 2. vertices move; 3. velocities change: without a field, and with drag, dv/dt = gravity - drag (v
-///  - u) is solved exactly for constant u (the field's velocity at the particle, or 0); with a field and no drag v = u,
-///  and gravity is without effect; 4. particles advance by v dt, wall responses included; 5. those absorbed or escaped
-///  leave.
-/// With collisions the vertices move after 3 (velocities are those at the places before), and spheres are given
-/// impulses before they move and advance: by each other, and by walls that reflect or let slide within a quarter of
-/// their radius (these walls go on as in the last step). Walls met otherwise respond as they do to points. Bodies that
-/// it is told of take part in these collisions. Results are the same bits for any number of threads.
+/// What has become of a body.
+struct BodySummary {
+  std::string name;
+  std::size_t particles = 0;
+  bool gone = false;  ///< it left at a wall; the fields below then say nothing
+  Vec3 centre;
+  BodyEnergy energy;
+};
+
+/// Over all steps so far.
+struct CatheterTotals {
+  double worst_segment = 0.0;  ///< largest relative error of a segment's length
+  double refused = 0.0;        ///< m of pushes and pulls that there was no way for
+};
+
+/// What has become of a catheter.
+struct CatheterSummary {
+  std::string name;
+  double inserted = 0.0;         ///< m
+  double measured_length = 0.0;  ///< of the part in the lumen, m
+  CatheterTotals totals;
+  Vec3 tip;
+};
+
+/// Runs any scene. Each step:
+///  1. Events that are due edit the environment.
+///  2. Inlets inject particles.
+///  3. Vertices move.
+///  4. Velocities change. Without a field, and with drag, dv/dt = gravity - drag (v - u) is solved exactly for constant
+///     u (the field's velocity at the particle, or 0). With a field and no drag v = u, and gravity has no effect.
+///  5. Particles advance by v dt, wall responses included. Those absorbed or escaped leave.
+///  6. Bodies step, then catheters.
+///  7. Where it is due, invalid cells are remeshed and crowded cells are subdivided.
+/// With collisions the vertices move after 4 (velocities are those at the places before), and spheres get impulses
+/// before they move and advance: from each other, from bodies, and from walls that reflect or let slide within a
+/// quarter of their radius (these walls go on as in the last step). Other walls respond as they do to points. Results
+/// are the same bits for any number of threads.
+///
+/// In the plane every vector given to a simulation must have z = 0.
 class Simulation {
  public:
-  /// `environment` outlives the flow, and is moved and edited by it alone. Throws InvalidArgument where an option is
-  /// out of range. In the plane every vector given to a flow must have z = 0: gravity, velocities, fields, motions.
-  Simulation(Environment& environment, const SimulationOptions& options, WallResponses responses = WallResponses{});
-  Simulation(const Simulation&) = delete;  // nor moved: others keep references to it
-  Simulation& operator=(const Simulation&) = delete;
+  using AfterEdit = std::function<void(const Environment&)>;
 
-  void set_field(VelocityField field) { field_ = std::move(field); }
-  /// Throws InvalidArgument where it is not made for the environment's number of points, and in the plane as
+  /// `environment` outlives the simulation, and is moved and edited by it alone. Throws InvalidArgument where an option
+  /// is out of range, or names no patch.
+  explicit Simulation(Environment& environment, const SimulationOptions& options = {});
+  /// Makes the environment, and all that the scene has in it. The scene is plain data: files that it names have been
+  /// read (load_scene_files() in dartcast/scene_file.hpp). Throws InvalidArgument where one has not been; InvalidMesh;
+  /// Error that names the particles, body, catheter or event that cannot be used.
+  explicit Simulation(const Scene& scene, Threads threads = {});
+  /// The same, but particles, bodies and catheters go on from a checkpoint of such a simulation. Throws as restore().
+  /// `after_edit`: as set_after_edit(), for the edits that are made again, too.
+  Simulation(const Scene& scene, const SimulationCheckpoint& saved, Threads threads = {}, AfterEdit after_edit = {});
+  Simulation(const Simulation&) = delete;  // nor moved: parts keep references to it
+  Simulation& operator=(const Simulation&) = delete;
+  ~Simulation();
+
+  void set_field(VelocityField field);
+  /// Throws InvalidArgument where the deformation is made for another number of points, and in the plane as
   /// Deformation::check_plane().
   void set_deformation(Deformation deformation);
-  /// Bodies that the spheres meet, with the options of CollisionOptions, where it has collisions; they outlive its
-  /// last step. Their step() follows each of the flow's. Throws InvalidArgument where substeps are not 1, the
-  /// bodies' steps are of another duration, or they are in another environment.
-  void set_bodies(Bodies& bodies);
-  /// Injects `rate` particles a second at random places of a patch, from the first step on. Throws InvalidArgument
-  /// where the patch has no face at a free cell, the rate is negative or more than 2^31 particles a step, or the radius
-  /// is out of range.
-  void add_inlet(Patch patch, double rate, const Vec3& velocity, double radius = 0.0);
+  /// Injects `rate` particles a second at random places of a patch, from the next step on. Throws InvalidArgument where
+  /// the patch has no face at a free cell, the rate is negative or more than 2^31 particles a step, or as add().
+  void add_inlet(Patch patch, double rate, const Vec3& velocity, double radius = 0.0,
+                 std::span<const double> user_data = {});
 
   /// Adds particles at these positions, as Environment::add(). `radius`: as is_radius(); a sphere that does not fit is
-  /// moved out of walls by its first step, and out of other spheres little by little.
-  std::vector<AddResult> add(std::span<const Vec3> positions, const Vec3& velocity, double radius = 0.0);
-  /// Likewise, each with a velocity and a radius of its own. Throws InvalidArgument, nothing added, where the numbers
-  /// do not match, too.
+  /// moved out of walls by its first step, and out of other spheres little by little. `user_data`: of each of these
+  /// particles, a number for each name in the options; empty: zeros. Throws InvalidArgument, nothing added, where
+  /// a value is out of range.
+  std::vector<AddResult> add(std::span<const Vec3> positions, const Vec3& velocity, double radius = 0.0,
+                             std::span<const double> user_data = {});
+  std::vector<AddResult> add(std::initializer_list<Vec3> positions, const Vec3& velocity, double radius = 0.0);
+  /// The same, with a velocity and a radius for each particle. Throws where the numbers do not match, too.
   std::vector<AddResult> add(std::span<const Vec3> positions, std::span<const Vec3> velocities,
-                             std::span<const double> radii);
+                             std::span<const double> radii, std::span<const double> user_data = {});
   /// Adds particles at random places of the free cells, uniformly by volume. Throws InvalidArgument where no cell is
-  /// free.
-  void add_random(std::size_t count, const Vec3& velocity, double radius = 0.0);
+  /// free, or as add().
+  void add_random(std::size_t count, const Vec3& velocity, double radius = 0.0, std::span<const double> user_data = {});
 
+  /// Adds a body of these particles, as Bodies::add(). Throws as that, and InvalidArgument where there are collisions
+  /// and substeps are not 1.
+  AddBodyResult add_body(std::span<const Vec3> points, const BodyOptions& options);
+  /// Adds a body or a catheter that is plain data. Throws Error that names it where it does not fit in.
+  void add(const BodyScene& body);
+  void add(const CatheterScene& catheter);
+
+  /// Edits at given times, from now on; they replace those set before. Throws InvalidArgument where a time is negative
+  /// or beyond 2^53 steps, or in the plane an event is not a ligature.
+  void set_events(std::vector<Event> events);
+  /// Checks cells, and remeshes those that are not valid, every so many steps.
+  void set_remeshing(const RemeshScene& remeshing);
+  /// Subdivides crowded cells every so many steps, and merges the parts again once they hold few particles. Throws
+  /// InvalidArgument where an option is out of range, in the plane, and where cells are subdivided already.
+  void set_adaptive_subdivision(const AdaptiveSubdivisionScene& subdivision);
+
+  /// Throws as Environment::advance(), and Error that names the event that cannot be carried out.
   const SimulationStep& step();
 
-  /// Edits the environment between two steps, as Environment::edit(), and takes along all that depends on it: particles
-  /// (by update_after_edit(); those absorbed count as such), the deformation, the field, and inlets: one whose patch
-  /// has no face at a free cell any more is closed until it has. Throws as these, nothing changed. Cost: as these;
+  /// Edits the environment between two steps, as Environment::edit(), and updates all that depends on it: particles
+  /// (those absorbed count as such), bodies, catheters, the deformation, the field, and inlets. An inlet whose patch
+  /// has no face at a free cell any more is closed until it has one. Throws as these, nothing changed. Cost: as these;
   /// linear in the cells where there are inlets.
   SimulationEdit edit(const std::function<void(ComplexEdit&)>& make, OrphanPolicy orphaned = OrphanPolicy::relocate);
-  /// To be called at the end of each edit, with what becomes of particles that have no place: for other sets of
-  /// particles in the environment, which must follow it before the next.
-  void set_after_edit(std::function<void(OrphanPolicy)> after_edit) { after_edit_ = std::move(after_edit); }
+  /// Calls this at the end of each edit.
+  void set_after_edit(AfterEdit after_edit);
   /// Remeshes cells that are not valid now (dartcast/remeshing.hpp), by edit(). Nothing happens where all are. Cost: a
-  /// check of the scene, and the regions mended.
+  /// check of all cells, and the regions repaired.
   RepairReport repair(const RepairOptions& options = {});
-  /// Subdivides cells that hold many particles, and makes again those whose parts hold few, by edit().
-  /// `adaptive_subdivision` keeps what it has subdivided; after other edits of the environment call its
-  /// update_after_edit(). Cost: see AdaptiveSubdivision::adapt().
-  AdaptiveSubdivisionReport adapt(AdaptiveSubdivision& adaptive_subdivision,
-                                  OrphanPolicy orphaned = OrphanPolicy::relocate);
-  /// Draws vertices along over the next `duration` seconds, on top of the deformation; they stay there. `displacement`:
+  /// Subdivides and merges cells now, as set_adaptive_subdivision() says, by edit().
+  AdaptiveSubdivisionReport adapt();
+  /// Pulls vertices along over the next `duration` seconds, on top of the deformation; they stay there. `displacement`:
   /// one per position of the environment. Throws as Deformation::add_pull(), and in the plane where one leaves it.
   void pull(std::span<const Vec3> displacement, double duration);
 
   [[nodiscard]] SimulationCheckpoint checkpoint() const;
-  /// Goes on from a checkpoint of a flow made with the same environment, options, deformation, field, inlets, and edits
-  /// (see go_to()): every later step is then the same to the last bit. Replaces all particles; vertices move to the
-  /// checkpoint's time. Throws InvalidArgument, the particles unchanged, where a state does not hold in this
-  /// environment.
+  /// Goes on from a checkpoint of a simulation made in the same way: every later step is then the same to the last bit.
+  /// Edits by events are made again where they have not been made yet; other edits the caller makes before (go_to()).
+  /// Replaces all particles; vertices move to the checkpoint's time. Throws InvalidArgument where a state does not hold
+  /// in this environment, and where edits are to be made again but there are particles. The particles are then
+  /// unchanged.
   void restore(const SimulationCheckpoint& saved);
-  /// Brings the vertices to where they are after so many steps, to make edits there again before restore(). Throws
+  /// Moves the vertices to where they are after so many steps, to make edits there again before restore(). Throws
   /// InvalidArgument where there are particles.
   void go_to(std::uint64_t steps);
 
-  [[nodiscard]] double time() const { return static_cast<double>(steps_) * options_.dt; }
-  [[nodiscard]] std::uint64_t steps() const { return steps_; }
-  [[nodiscard]] const Environment& environment() const { return environment_; }
-  [[nodiscard]] bool deforms() const { return deformation_.has_value(); }
+  [[nodiscard]] const SimulationOptions& options() const;
+  [[nodiscard]] double time() const { return static_cast<double>(steps()) * options().dt; }
+  [[nodiscard]] std::uint64_t steps() const;
+  [[nodiscard]] const Environment& environment() const;
+  [[nodiscard]] bool deforms() const;
 
   // Particles in the scene; entry i of each belongs to the same particle. Ids persist, in the order of adding from 0.
-  [[nodiscard]] const Particles& particles() const { return particles_; }
-  [[nodiscard]] std::span<const std::uint64_t> ids() const { return ids_; }
-  [[nodiscard]] std::span<const Vec3> velocities() const { return velocities_; }
-  [[nodiscard]] std::span<const ParticleStatus> fates() const { return fates_; }
-  [[nodiscard]] std::span<const std::uint32_t> contact_counts() const { return contact_counts_; }
-  [[nodiscard]] std::span<const double> radii() const { return radii_; }
-  /// 1 for those that were held in the last step: they rode along with their cell instead of moving on their own.
-  [[nodiscard]] std::span<const std::uint8_t> held() const { return held_; }
+  [[nodiscard]] const Particles& particles() const;
+  [[nodiscard]] std::span<const std::uint64_t> ids() const;
+  [[nodiscard]] std::span<const Vec3> velocities() const;
+  [[nodiscard]] std::span<const ParticleStatus> fates() const;
+  [[nodiscard]] std::span<const std::uint32_t> contact_counts() const;
+  [[nodiscard]] std::span<const double> radii() const;
+  /// 1 for those that were held in the last step: they moved along with their cell instead of on their own.
+  [[nodiscard]] std::span<const std::uint8_t> held() const;
+  /// A number for each name in SimulationOptions::user_data. It stays with the particle through removals, edits and
+  /// checkpoints. Precondition: there is such a particle.
+  [[nodiscard]] std::span<const double> user_data(std::size_t particle) const;
+  [[nodiscard]] std::span<double> user_data(std::size_t particle);
 
-  [[nodiscard]] const Collider& collider() const { return collider_; }
+  /// None where no body has been added. Their velocities() may be changed between steps; the simulation calls step().
+  [[nodiscard]] const Bodies* bodies() const;
+  [[nodiscard]] Bodies* bodies();
+  [[nodiscard]] const BodiesStep& bodies_step() const;  ///< the last one
+  [[nodiscard]] std::size_t catheter_count() const;
+  [[nodiscard]] const Catheter& catheter(std::size_t i) const;
+  [[nodiscard]] const CatheterStep& catheter_step(std::size_t i) const;  ///< the last one
 
-  [[nodiscard]] const SimulationTotals& totals() const { return totals_; }
+  [[nodiscard]] const SimulationTotals& totals() const;
+  [[nodiscard]] double seconds_solids() const;  ///< steps of bodies and catheters so far
+  [[nodiscard]] const EventLog& event_log() const;
+  [[nodiscard]] std::vector<BodySummary> body_summaries() const;  ///< by id, those that left included
+  [[nodiscard]] std::vector<CatheterSummary> catheter_summaries() const;
   /// At the particles' places and velocities now. The same bits for any number of threads. Cost: linear, parallel.
   [[nodiscard]] SimulationEnergy energy() const;
+  /// Of all particles, those of bodies and catheters included.
+  [[nodiscard]] Audit audit() const;
   /// Of every particle that there has been: those that left count with their last state.
   [[nodiscard]] StateHash state_hash() const;
 
+  struct Parts;  ///< of its own, and of the library's writers: simulation/simulation_parts.hpp
+  [[nodiscard]] const Parts& parts() const { return *parts_; }
+
  private:
-  struct Inlet {
-    Patch patch;
-    std::optional<PatchSampler> sampler;  // none while it is closed
-    double rate;
-    Vec3 velocity;
-    double radius;
-  };
-  struct Aim {
-    Vec3 velocity;
-    Vec3 target;
-  };
+  void make(const Scene& scene, Threads threads);
 
-  void inject();
-  void check_motion(const Vec3& velocity, double radius, std::string_view whose) const;
-  void move_vertices();
-  void stand_at(std::uint64_t steps);
-  void move_vertices_to(std::uint64_t steps);
-  void advance_segment(unsigned segment);
-  void aim(double dt, bool moving);
-  [[nodiscard]] Aim aim_at(std::size_t i, double dt, bool moving) const;
-  [[nodiscard]] Vec3 accelerated(const Vec3& v, const Vec3& flow, double dt) const;
-  [[nodiscard]] Acceleration acceleration(double dt) const;
-  void count_contacts();
-  void mark_held();
-  void remove_absorbed(const UpdateReport& report, std::span<const ParticleState> before);
-  void remove_marked(std::span<const std::uint8_t> marks);
-  void complete(const Vec3& velocity, double radius);
-  void complete_next(const Vec3& velocity, double radius);
-  void count_spheres();
-  // With collisions, in flow_collide.cpp.
-  [[nodiscard]] bool collides() const { return options_.collisions && spheres_ > 0; }
-  [[nodiscard]] double mass(std::size_t i) const;
-  [[nodiscard]] bool meets_bodies() const { return bodies_ != nullptr && bodies_->size() > 0; }
-  void collide(double dt, bool moving);
-  void weigh();
-  void find_walls(double dt, bool moving);
-  [[nodiscard]] double clearance(std::size_t i) const;
-  void walls_of(std::size_t i, double dt, bool moving, NearWalls& near, std::vector<WallContact>& found);
-  void aim_stuck(double dt);
-  void reopen_inlets();
-  void remove_gone();
-  template <class Sampler>
-  void add_sampled(const Sampler& sampler, std::size_t count, const Vec3& velocity, double radius);
-
-  Environment& environment_;
-  SimulationOptions options_;
-  WallResponses responses_;
-  std::optional<VelocityField> field_;
-  std::optional<Deformation> deformation_;
-  std::vector<Inlet> inlets_;
-  std::function<void(OrphanPolicy)> after_edit_;
-  Random random_;
-
-  Particles particles_;
-  std::vector<std::uint64_t> ids_;
-  std::vector<Vec3> velocities_;
-  std::vector<ParticleStatus> fates_;
-  std::vector<std::uint32_t> contact_counts_;
-  std::vector<double> radii_;
-  std::vector<std::uint8_t> held_;
-  std::size_t spheres_ = 0;  // of a radius above 0
-  std::vector<Vec3> targets_;
-  SphereStepper stepper_;
-  Collider collider_;
-  Bodies* bodies_ = nullptr;
-  SphereBodyCollider body_collider_;  // in place of the other one while there are bodies
-  std::vector<double> met_radii_;     // in collisions: 0 for those that meet nobody
-  std::vector<double> inverse_masses_;
-  struct Clear {  // no wall is nearer to this place
-    Vec3 centre;
-    double distance = 0.0;
-  };
-  std::vector<Clear> clear_;  // by particle; until walls move or are edited
-  std::vector<double> clearances_;
-  std::vector<Vec3> displacements_;
-  std::vector<NearWalls> near_;  // by chunk
-  std::vector<std::vector<WallContact>> near_contacts_;
-  std::vector<WallContact> walls_;
-  std::uint64_t next_id_ = 0;
-  std::uint64_t steps_ = 0;
-  std::uint64_t absorbed_between_ = 0;  // by edits since the last step
-  SimulationStep last_;
-  SimulationTotals totals_;
-  StateHash gone_;
+  std::unique_ptr<Parts> parts_;
 };
 
 }  // namespace dartcast

@@ -10,7 +10,7 @@
 
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/combinatorial_map.hpp"
-#include "dartcast/trace.hpp"
+#include "dartcast/step.hpp"
 
 namespace dartcast {
 

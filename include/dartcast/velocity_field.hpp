@@ -10,7 +10,7 @@ namespace dartcast {
 
 enum class FieldFrame {
   space,  ///< the values are velocities in space, wherever their points have moved
-  mesh    ///< the values belong to the mesh at rest: they turn and stretch with it, and what flows is carried along
+  mesh    ///< the values belong to the mesh at rest: they turn and stretch with it, and it carries the flow along
 };
 
 class VelocityField {

@@ -1,3 +1,4 @@
+// Writes a camera path as a file for ParaView.
 #include "output/camera_path_file.hpp"
 
 #include <fmt/format.h>

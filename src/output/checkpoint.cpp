@@ -1,7 +1,9 @@
+// The layout of checkpoint.bin, and its digest.
 #include "output/checkpoint.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 #include <span>
 #include <string_view>
@@ -54,6 +56,8 @@ class CheckpointWriter {
     value(count);
     text_ += s;
   }
+  // Whether there is a last part, which is left out where nothing is in it.
+  static bool has_more(bool filled) { return filled; }
   [[nodiscard]] const std::string& text() const { return text_; }
 
  private:
@@ -86,6 +90,7 @@ class CheckpointReader {
     s = text_.substr(0, count);
     text_.remove_prefix(count);
   }
+  [[nodiscard]] bool has_more(bool /*filled*/) const { return !at_end(); }
   [[nodiscard]] bool at_end() const { return text_.empty(); }
 
  private:
@@ -134,7 +139,7 @@ void fields(Archive& a, Weights& weights) {
 }
 
 template <class Archive>
-void fields(Archive& a, SimulationCheckpoint::Particle& p) {
+void fields(Archive& a, ParticleSystemState::Particle& p) {
   a.value(p.id);
   fields(a, p.state);
   fields(a, p.held_weights);
@@ -178,10 +183,11 @@ void fields(Archive& a, SimulationTotals& t) {
 
 template <class Archive>
 void fields(Archive& a, EventReport& e) {
-  values(a, e.kind, e.step, e.time, e.cells_removed, e.cells_added, e.cells_opened, e.cells_blocked, e.cells_whole,
+  value_as<std::uint32_t>(a, e.kind);
+  values(a, e.step, e.time, e.cells_removed, e.cells_added, e.cells_opened, e.cells_blocked, e.cells_whole,
          e.particles_in_opened, e.particles_touched, e.particles_located, e.particles_moved, e.particles_held,
          e.particles_absorbed, e.boundary_shift, e.seconds);
-  if (e.kind >= std::size(event_kind_names)) throw Error("an event has no such kind");
+  if (name_of(e.kind).empty()) throw Error("an event has no such kind");
 }
 
 template <class Archive>
@@ -211,12 +217,16 @@ void fields(Archive& a, Bodies::Checkpoint::Particle& p) {
 }
 
 template <class Archive>
-void fields(Archive& a, SolidsCheckpoint& c) {
-  a.value(c.bodies.steps);
-  fields(a, c.bodies.counters);
-  a.list(c.bodies.ids, [&](std::uint32_t& id) { a.value(id); });
-  a.list(c.bodies.fits, [&](Fit& f) { fields(a, f); });
-  a.list(c.bodies.particles, [&](Bodies::Checkpoint::Particle& p) { fields(a, p); });
+void fields(Archive& a, Bodies::Checkpoint& c) {
+  a.value(c.steps);
+  fields(a, c.counters);
+  a.list(c.ids, [&](std::uint32_t& id) { a.value(id); });
+  a.list(c.fits, [&](Fit& f) { fields(a, f); });
+  a.list(c.particles, [&](Bodies::Checkpoint::Particle& p) { fields(a, p); });
+}
+
+template <class Archive>
+void fields(Archive& a, CathetersState& c) {
   a.list(c.catheters, [&](CatheterCheckpoint& k) {
     a.list(k.states, [&](ParticleState& s) { fields(a, s); });
     a.list(k.held_weights, [&](Weights& w) { fields(a, w); });
@@ -224,26 +234,51 @@ void fields(Archive& a, SolidsCheckpoint& c) {
     fields(a, k.direction);
     fields(a, k.reference);
   });
-  a.list(c.catheter_totals, [&](CatheterTotals& t) { values(a, t.worst_segment, t.refused); });
+  a.list(c.totals, [&](CatheterTotals& t) { values(a, t.worst_segment, t.refused); });
+}
+
+template <class Archive>
+void fields(Archive& a, ParticleSystemState& s) {
+  std::uint64_t random = s.random.state();
+  StateHash::Words gone = s.gone.words();
+  values(a, s.steps, s.next_id, random, gone[0], gone[1]);
+  s.random = Random::from_state(random);
+  s.gone = StateHash(gone);
+  a.list(s.particles, [&](ParticleSystemState::Particle& p) { fields(a, p); });
+  fields(a, s.totals);
+  a.list(s.impulses, [&](CachedImpulse& k) { fields(a, k); });
+}
+
+// What version 0.1 did not write.
+template <class Archive>
+void later_fields(Archive& a, SimulationState& s) {
+  std::vector<CatheterCheckpoint>& catheters = s.catheters.catheters;
+  const bool walls = std::any_of(catheters.begin(), catheters.end(), [](const auto& c) { return !c.walls.empty(); });
+  if (!a.has_more(walls || !s.bodies.impulses.empty() || !s.particles.user_data.empty())) return;
+  a.list(s.particles.user_data, [&](double& d) { a.value(d); });
+  a.list(s.bodies.impulses, [&](CachedImpulse& k) { fields(a, k); });
+  for (CatheterCheckpoint& c : catheters) {
+    a.list(c.walls, [&](ChainWall& w) {
+      a.value(w.index);
+      fields(a, w.normal);
+      fields(a, w.point);
+      values(a, w.pressure, w.idle);
+    });
+  }
 }
 
 template <class Archive>
 void fields(Archive& a, Checkpoint& c) {
   fields(a, c.run);
-  std::uint64_t random = c.flow.random.state();
-  StateHash::Words gone = c.flow.gone.words();
-  values(a, c.flow.steps, c.flow.next_id, random, gone[0], gone[1]);
-  c.flow.random = Random::from_state(random);
-  c.flow.gone = StateHash(gone);
-  a.list(c.flow.particles, [&](SimulationCheckpoint::Particle& p) { fields(a, p); });
-  fields(a, c.flow.totals);
-  a.list(c.flow.impulses, [&](CachedImpulse& k) { fields(a, k); });
+  fields(a, c.simulation.particles);
   values(a, c.recording.stats_bytes, c.recording.contacts_bytes);
   a.list(c.recording.frames, [&](RecordingFrame& f) { values(a, f.step, f.time); });
-  fields(a, c.surgery);
+  fields(a, c.simulation.events);
   values(a, c.held, c.audited);
-  fields(a, c.solids);
+  fields(a, c.simulation.bodies);
+  fields(a, c.simulation.catheters);
   values(a, c.solids_recording.bodies_bytes, c.solids_recording.catheters_bytes);
+  later_fields(a, c.simulation);
 }
 
 void check_same(const RunIdentity& saved, const RunIdentity& run) {

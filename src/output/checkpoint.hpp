@@ -8,14 +8,13 @@
 
 #include "dartcast/audit.hpp"
 #include "dartcast/mesh_data.hpp"
-#include "dartcast/simulation.hpp"
 #include "output/recording.hpp"
 #include "output/solids_recording.hpp"
-#include "simulation/event_scheduler.hpp"
+#include "simulation/simulation_state.hpp"
 
 namespace dartcast {
 
-/// What the state of a run belongs to: it can go on only where all of this is the same.
+/// The run that a state belongs to: it can go on only where all of this is the same.
 struct RunIdentity {
   std::string version;      ///< of the library: other versions may round elsewhere
   std::uint64_t scene = 0;  ///< digest of the scene's text
@@ -26,12 +25,10 @@ RunIdentity run_identity(const std::string& scene_text, const MeshData& mesh, st
 
 struct Checkpoint {
   RunIdentity run;
-  SimulationCheckpoint flow;
+  SimulationState simulation;
   RecordingProgress recording;
-  EventLog surgery;
   std::uint64_t held = 0;  ///< in the last step
   std::uint64_t audited = 0;
-  SolidsCheckpoint solids;
   SolidsProgress solids_recording;
 };
 

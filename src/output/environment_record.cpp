@@ -1,3 +1,4 @@
+// Writes the environment, with the arrays of its input file, after moves and edits.
 #include "output/environment_record.hpp"
 
 #include <algorithm>

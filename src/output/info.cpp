@@ -1,3 +1,4 @@
+// Counts and sizes of a mesh, for the verb info.
 #include "output/info.hpp"
 
 #include <fmt/format.h>

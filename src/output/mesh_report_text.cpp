@@ -1,3 +1,4 @@
+// The report on a mesh file, for people.
 #include "output/mesh_report_text.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Frames and tables of the particles, and the folder that they stand in.
 #include "output/recording.hpp"
 
 #include <fmt/format.h>
@@ -95,10 +96,12 @@ void Recording::update_after_edit(const Environment& environment) {
   if (environment_) environment_->update_after_edit(environment);
 }
 
-void Recording::add_frame(const Simulation& flow) {
-  write_particles(flow, options_.folder / particles_name(flow.steps()));
-  if (environment_) environment_->write(flow.environment(), options_.folder / environment_name(flow.steps()));
-  if (frames_.empty() || frames_.back().step != flow.steps()) frames_.push_back({flow.steps(), flow.time()});
+void Recording::add_frame(const Simulation& simulation) {
+  write_particles(simulation, options_.folder / particles_name(simulation.steps()));
+  if (environment_)
+    environment_->write(simulation.environment(), options_.folder / environment_name(simulation.steps()));
+  if (frames_.empty() || frames_.back().step != simulation.steps())
+    frames_.push_back({simulation.steps(), simulation.time()});
   write_lists();
 }
 
@@ -114,42 +117,46 @@ void Recording::write_lists() const {
 
 RecordingProgress Recording::progress() { return {stats_.written(), contacts_.written(), frames_}; }
 
-void Recording::write_particles(const Simulation& flow, const fs::path& path) const {
-  const Particles& particles = flow.particles();
-  const CellComplex& complex = flow.environment().complex();
+void Recording::write_particles(const Simulation& simulation, const fs::path& path) const {
+  const Particles& particles = simulation.particles();
+  const CellComplex& complex = simulation.environment().complex();
   VtpWriter file(particles.size(), [&](std::size_t i) { return particles[i].position; });
   file.add_vertices();
-  file.add("id", [&](std::size_t i) { return static_cast<double>(flow.ids()[i]); });
-  file.add("radius", [&](std::size_t i) { return flow.radii()[i]; });
-  file.add_vectors("velocity", [&](std::size_t i) { return flow.velocities()[i]; });
+  file.add("id", [&](std::size_t i) { return static_cast<double>(simulation.ids()[i]); });
+  file.add("radius", [&](std::size_t i) { return simulation.radii()[i]; });
+  file.add_vectors("velocity", [&](std::size_t i) { return simulation.velocities()[i]; });
   file.add("cell", [&](std::size_t i) { return static_cast<double>(complex.map().source(particles[i].cell)); });
   file.add("kind", [&](std::size_t i) { return static_cast<double>(kind_of(complex, particles[i])); });
-  file.add_flags("held", [&](std::size_t i) { return flow.held()[i] != 0; });
-  file.add("contacts", [&](std::size_t i) { return static_cast<double>(flow.contact_counts()[i]); });
+  file.add_flags("held", [&](std::size_t i) { return simulation.held()[i] != 0; });
+  file.add("contacts", [&](std::size_t i) { return static_cast<double>(simulation.contact_counts()[i]); });
+  const std::vector<std::string>& names = simulation.options().user_data;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    file.add(names[k], [&](std::size_t i) { return simulation.user_data(i)[k]; });
   file.write(path);
 }
 
-void Recording::add_step(const Simulation& flow, const SimulationStep& step, std::uint64_t in_opened) {
+void Recording::add_step(const Simulation& simulation, const SimulationStep& step, std::uint64_t in_opened) {
   const Counters& c = step.report.counters;
-  fmt::print(stats_.stream(), "{},{},{},{},{},{},{},{},{},{},{},{}", flow.steps(), flow.time(), flow.particles().size(),
-             step.injected, step.absorbed, step.escaped, step.report.held.size(), step.report.contacts.contacts.size(),
-             c.orientation.tests, c.orientation.exact, c.forecast_kept, c.updated_by_deformation);
+  fmt::print(stats_.stream(), "{},{},{},{},{},{},{},{},{},{},{},{}", simulation.steps(), simulation.time(),
+             simulation.particles().size(), step.injected, step.absorbed, step.escaped, step.report.held.size(),
+             step.report.contacts.contacts.size(), c.orientation.tests, c.orientation.exact, c.forecast_kept,
+             c.updated_by_deformation);
   if (options_.surgery) fmt::print(stats_.stream(), ",{}", in_opened);
-  const SimulationEnergy energy = flow.energy();
+  const SimulationEnergy energy = simulation.energy();
   fmt::print(stats_.stream(), ",{},{}\n", energy.kinetic, energy.potential);
-  if (options_.contacts) write_contacts(flow, step);
+  if (options_.contacts) write_contacts(simulation, step);
   stats_.check();
 }
 
-void Recording::write_contacts(const Simulation& flow, const SimulationStep& step) {
+void Recording::write_contacts(const Simulation& simulation, const SimulationStep& step) {
   static constexpr std::string_view kinds[] = {"vertex", "edge", "face", "volume"};
-  const CombinatorialMap& map = flow.environment().map();
+  const CombinatorialMap& map = simulation.environment().map();
   const double dt = step.duration;
   for (std::size_t i = 0; i < step.contact_ids.size(); ++i) {
     const Contact& c = step.report.contacts.contacts[i];
     const WallHit& wall = step.report.contacts.walls_of(c).front();
-    fmt::print(contacts_.stream(), "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", flow.steps(),
-               flow.time() - dt * (1.0 - c.time_of_impact), step.contact_ids[i],
+    fmt::print(contacts_.stream(), "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", simulation.steps(),
+               simulation.time() - dt * (1.0 - c.time_of_impact), step.contact_ids[i],
                kinds[static_cast<std::size_t>(c.kind)], map.patch_names()[wall.patch.value], map.source(wall.face.cell),
                c.point.x, c.point.y, c.point.z, wall.normal.x, wall.normal.y, wall.normal.z, c.wall_displacement.x,
                c.wall_displacement.y, c.wall_displacement.z);

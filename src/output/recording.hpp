@@ -40,11 +40,11 @@ class Recording {
   Recording(Options options, EnvironmentRecord record, const RecordingProgress& progress);
 
   /// Adds the particles, and the environment where it deforms, as they are now.
-  void add_frame(const Simulation& flow);
+  void add_frame(const Simulation& simulation);
   /// To be called after each edit of the environment.
   void update_after_edit(const Environment& environment);
   /// Adds a step's row to stats.csv, and its contacts. `in_opened`: see EventLog.
-  void add_step(const Simulation& flow, const SimulationStep& step, std::uint64_t in_opened = 0);
+  void add_step(const Simulation& simulation, const SimulationStep& step, std::uint64_t in_opened = 0);
   [[nodiscard]] std::span<const RecordingFrame> frames() const { return frames_; }
   /// Sends the tables to their files, and says how far they have come.
   RecordingProgress progress();
@@ -52,9 +52,9 @@ class Recording {
   void finish(const std::string& summary_json);
 
  private:
-  void write_particles(const Simulation& flow, const std::filesystem::path& path) const;
+  void write_particles(const Simulation& simulation, const std::filesystem::path& path) const;
   void write_lists() const;
-  void write_contacts(const Simulation& flow, const SimulationStep& step);
+  void write_contacts(const Simulation& simulation, const SimulationStep& step);
 
   Options options_;
   std::optional<EnvironmentRecord> environment_;  // where it changes

@@ -1,3 +1,4 @@
+// Names and tables of the files in a run's folder.
 #include "output/run_files.hpp"
 
 #include <fmt/format.h>

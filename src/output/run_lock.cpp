@@ -1,3 +1,4 @@
+// Locks a run's folder, so that no two runs write to it.
 #include "output/run_lock.hpp"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// Writes the series and tables of bodies and catheters.
 #include "output/solids_recording.hpp"
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include "dartcast/catheter.hpp"
 #include "formats/vtp_write.hpp"
 #include "output/camera_path_file.hpp"
+#include "simulation/simulation_parts.hpp"
 
 namespace dartcast {
 
@@ -47,14 +49,15 @@ SolidsRecording::SolidsRecording(fs::path folder, const Scene& scene, const Soli
   if (!scene.catheters.empty()) catheters_ = RunTable(folder_ / "catheters.csv", progress.catheters_bytes);
 }
 
-void SolidsRecording::add_step(const Solids& solids, std::uint64_t step, double time) {
-  if (bodies_.is_open()) add_bodies(solids, step, time);
-  if (catheters_.is_open()) add_catheters(solids, step, time);
+void SolidsRecording::add_step(const Simulation& simulation) {
+  if (bodies_.is_open()) add_bodies(simulation);
+  if (catheters_.is_open()) add_catheters(simulation);
 }
 
-void SolidsRecording::add_bodies(const Solids& solids, std::uint64_t step, double time) {
-  const Bodies& bodies = *solids.bodies();
-  const BodiesStep& last = solids.bodies_step();
+void SolidsRecording::add_bodies(const Simulation& simulation) {
+  const BodiesComponent& component = simulation.parts().bodies;
+  const Bodies& bodies = *component.bodies();
+  const BodiesStep& last = simulation.bodies_step();
   std::vector<std::uint64_t> contacts(bodies.size());
   if (last.gone.empty()) {  // else its contacts' particles have other numbers now
     for (const Contact& c : last.motion.contacts.contacts) ++contacts[bodies.body_of()[c.particle]];
@@ -62,65 +65,70 @@ void SolidsRecording::add_bodies(const Solids& solids, std::uint64_t step, doubl
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const BodyEnergy energy = bodies.energy(b);
     const Vec3 centre = bodies.rigid_motion_of(b).centre;
-    fmt::print(bodies_.stream(), "{},{},{},{},{},{},{},{},{},{}\n", step, time, solids.name(b), centre.x, centre.y,
-               centre.z, energy.kinetic, energy.potential, energy.matching, contacts[b]);
+    fmt::print(bodies_.stream(), "{},{},{},{},{},{},{},{},{},{}\n", simulation.steps(), simulation.time(),
+               component.name(b), centre.x, centre.y, centre.z, energy.kinetic, energy.potential, energy.matching,
+               contacts[b]);
   }
   bodies_.check();
 }
 
-void SolidsRecording::add_catheters(const Solids& solids, std::uint64_t step, double time) {
-  for (std::size_t i = 0; i < solids.catheters().size(); ++i) {
-    const Catheter& c = solids.catheters()[i];
-    const CatheterStep& s = solids.catheter_steps()[i];
+void SolidsRecording::add_catheters(const Simulation& simulation) {
+  const CathetersComponent& component = simulation.parts().catheters;
+  for (std::size_t i = 0; i < component.catheters().size(); ++i) {
+    const Catheter& c = component.catheters()[i];
+    const CatheterStep& s = simulation.catheter_step(i);
     const Vec3 tip = c.particles()[0].position;
-    fmt::print(catheters_.stream(), "{},{},{},{},{},{},{},{},{},{},{},{},{}\n", step, time,
-               solids.scene().catheters[i].name, c.inserted(), c.turned(), s.pushed, s.worst_segment, s.contacts,
-               s.at_walls, s.held, tip.x, tip.y, tip.z);
+    fmt::print(catheters_.stream(), "{},{},{},{},{},{},{},{},{},{},{},{},{}\n", simulation.steps(), simulation.time(),
+               component.scenes()[i].name, c.inserted(), c.turned(), s.pushed, s.worst_segment, s.contacts, s.at_walls,
+               s.held, tip.x, tip.y, tip.z);
   }
   catheters_.check();
 }
 
-void SolidsRecording::add_frame(const Solids& solids, std::span<const RecordingFrame> frames) {
+void SolidsRecording::add_frame(const Simulation& simulation, std::span<const RecordingFrame> frames) {
   const std::uint64_t step = frames.back().step;
-  for (std::size_t b = 0; solids.bodies() && b < solids.bodies()->size(); ++b) {
-    write_body(solids, b, step);
-    write_series(folder_, series("body", solids.name(b)), frames);
-    write_series(folder_, series("surface", solids.name(b)), frames);
+  const BodiesComponent& bodies = simulation.parts().bodies;
+  for (std::size_t b = 0; bodies.bodies() && b < bodies.bodies()->size(); ++b) {
+    write_body(simulation, b, step);
+    write_series(folder_, series("body", bodies.name(b)), frames);
+    if (bodies.skin(b)) write_series(folder_, series("surface", bodies.name(b)), frames);
   }
-  for (std::size_t i = 0; i < solids.catheters().size(); ++i) {
-    const CatheterScene& scene = solids.scene().catheters[i];
-    write_catheter(solids, i, step);
+  for (std::size_t i = 0; i < simulation.catheter_count(); ++i) {
+    const CatheterScene& scene = simulation.parts().catheters.scenes()[i];
+    write_catheter(simulation, i, step);
     write_series(folder_, series("catheter", scene.name), frames);
     if (scene.camera > 0.0) write_series(folder_, series("camera", scene.name), frames);
   }
 }
 
-void SolidsRecording::write_body(const Solids& solids, std::size_t body, std::uint64_t step) const {
-  const Bodies& bodies = *solids.bodies();
+void SolidsRecording::write_body(const Simulation& simulation, std::size_t body, std::uint64_t step) const {
+  const BodiesComponent& component = simulation.parts().bodies;
+  const Bodies& bodies = *component.bodies();
   const std::size_t first = bodies.first_particle(body);
   const std::span<const Vec3> positions = bodies.positions().subspan(first, bodies.particle_count(body));
   VtpWriter points(positions.size(), [&](std::size_t i) { return positions[i]; });
   points.add_vertices();
   points.add("id", [](std::size_t i) { return static_cast<double>(i); });
   points.add_vectors("velocity", [&](std::size_t i) { return bodies.velocities()[first + i]; });
-  const CombinatorialMap& map = solids.environment().map();
+  const CombinatorialMap& map = simulation.environment().map();
   points.add("cell",
              [&](std::size_t i) { return static_cast<double>(map.source(bodies.particles()[first + i].cell)); });
   points.add("radius", [&](std::size_t i) { return bodies.radii()[first + i]; });
-  points.write(folder_ / frame_name(series("body", solids.name(body)), step, ".vtp"));
+  points.write(folder_ / frame_name(series("body", component.name(body)), step, ".vtp"));
 
-  const Solids::Skin& skin = solids.skin(body);
+  if (!component.skin(body)) return;
+  const BodiesComponent::Skin& skin = *component.skin(body);
   std::vector<Vec3> vertices(skin.mesh.points.size());
-  skin.carried.positions(positions, vertices, solids.environment().threads());
+  skin.carried.positions(positions, vertices, simulation.environment().threads());
   VtpWriter surface(vertices.size(), [&](std::size_t i) { return vertices[i]; });
   surface.add_polygons(skin.mesh.offsets, skin.mesh.connectivity);
-  surface.write(folder_ / frame_name(series("surface", solids.name(body)), step, ".vtp"));
+  surface.write(folder_ / frame_name(series("surface", component.name(body)), step, ".vtp"));
 }
 
-void SolidsRecording::write_catheter(const Solids& solids, std::size_t i, std::uint64_t step) const {
-  const CatheterScene& scene = solids.scene().catheters[i];
-  const std::vector<Vec3> points = solids.catheters()[i].points();
-  const std::vector<CatheterFrame> frames = solids.catheters()[i].frames();
+void SolidsRecording::write_catheter(const Simulation& simulation, std::size_t i, std::uint64_t step) const {
+  const CatheterScene& scene = simulation.parts().catheters.scenes()[i];
+  const std::vector<Vec3> points = simulation.catheter(i).points();
+  const std::vector<CatheterFrame> frames = simulation.catheter(i).frames();
   VtpWriter file(points.size(), [&](std::size_t k) { return points[k]; });
   file.add_line();
   file.add_vectors("tangent", [&](std::size_t k) { return frames[k].tangent; });
@@ -130,7 +138,7 @@ void SolidsRecording::write_catheter(const Solids& solids, std::size_t i, std::u
   const fs::path camera = folder_ / frame_name(series("camera", scene.name), step, ".vtp");
   if (points.size() < 2) return write_no_camera(camera);
   const std::vector<Vec3> inwards(points.rbegin(), points.rend());
-  write_camera_path(camera_path(solids.environment(), inwards, {.spacing = scene.camera}), camera);
+  write_camera_path(camera_path(simulation.parts().environment, inwards, {.spacing = scene.camera}), camera);
 }
 
 void SolidsRecording::finish() {

@@ -1,12 +1,13 @@
-// What a run writes of its bodies and catheters.
+// Frames and tables of bodies and catheters.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <span>
 
+#include "dartcast/scene.hpp"
+#include "dartcast/simulation.hpp"
 #include "output/run_files.hpp"
-#include "simulation/solids.hpp"
 
 namespace dartcast {
 
@@ -27,17 +28,17 @@ class SolidsRecording {
   /// Goes on with the files of an earlier run. Throws Error where a table is shorter than it was.
   SolidsRecording(std::filesystem::path folder, const Scene& scene, const SolidsProgress& progress);
 
-  void add_step(const Solids& solids, std::uint64_t step, double time);
+  void add_step(const Simulation& simulation);
   /// `frames`: of the run, this one the last of them.
-  void add_frame(const Solids& solids, std::span<const RecordingFrame> frames);
+  void add_frame(const Simulation& simulation, std::span<const RecordingFrame> frames);
   SolidsProgress progress() { return {bodies_.written(), catheters_.written()}; }
   void finish();
 
  private:
-  void add_bodies(const Solids& solids, std::uint64_t step, double time);
-  void add_catheters(const Solids& solids, std::uint64_t step, double time);
-  void write_body(const Solids& solids, std::size_t body, std::uint64_t step) const;
-  void write_catheter(const Solids& solids, std::size_t i, std::uint64_t step) const;
+  void add_bodies(const Simulation& simulation);
+  void add_catheters(const Simulation& simulation);
+  void write_body(const Simulation& simulation, std::size_t body, std::uint64_t step) const;
+  void write_catheter(const Simulation& simulation, std::size_t i, std::uint64_t step) const;
 
   std::filesystem::path folder_;
   RunTable bodies_;

@@ -1,3 +1,4 @@
+// The summary of a run, as JSON and for people.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -52,7 +53,7 @@ Json seconds(const Summary& s) {
 Json events(const EventLog& log) {
   Json list = Json::array();
   for (const EventReport& e : log.events) {
-    list.push_back({{"kind", event_kind_names[e.kind]},
+    list.push_back({{"kind", name_of(e.kind)},
                     {"time", e.time},
                     {"step", e.step},
                     {"cells",
@@ -160,6 +161,7 @@ std::string summary_json(const Summary& s) {
   json["contacts"] = contacts(s);
   json["seconds"] = seconds(s);
   if (t.counters.particle_steps > 0) json["ns_per_particle_step"] = ns_per_particle_step(s);
+  if (s.cancelled) json["cancelled"] = true;
   if (s.audit) json["audit"] = {{"checked", s.audit->checked}, {"failed", s.audit->failed}};
   json["state_hash"] = s.state_hash;
   return json.dump(1, ' ', false, Json::error_handler_t::replace);
@@ -192,8 +194,8 @@ std::string surgery_text(const EventLog& log) {
         "{} at {:.6g} s: {} cells replaced by {}, {} opened, {} blocked; {} particles located again, {} moved, {} "
         "held, {} "
         "absorbed; {} in opened cells before\n",
-        event_kind_names[e.kind], e.time, e.cells_removed, e.cells_added, e.cells_opened, e.cells_blocked,
-        e.particles_located, e.particles_moved, e.particles_held, e.particles_absorbed, e.particles_in_opened);
+        name_of(e.kind), e.time, e.cells_removed, e.cells_added, e.cells_opened, e.cells_blocked, e.particles_located,
+        e.particles_moved, e.particles_held, e.particles_absorbed, e.particles_in_opened);
   }
   if (log.mended + log.left > 0)
     out += fmt::format("remeshing: {} regions mended, {} cells left as they were\n", log.mended, log.left);
@@ -230,6 +232,7 @@ std::string summary_text(const Summary& s) {
                        t.collisions.pairs_touching, t.collisions.overlaps, t.collisions.deepest);
   out += solids_text(s);
   if (s.surgery) out += surgery_text(*s.surgery);
+  if (s.cancelled) out += fmt::format("cancelled after {} steps\n", s.steps);
   if (s.audit) out += fmt::format("audit: {} checked, {} failed\n", s.audit->checked, s.audit->failed);
   return out + fmt::format("state hash: {}\n", s.state_hash);
 }

@@ -1,3 +1,4 @@
+// The points of a trajectory, from the traces of a particle.
 #include "dartcast/trajectory.hpp"
 
 #include <array>

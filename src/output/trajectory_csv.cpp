@@ -1,3 +1,4 @@
+// A trajectory as a table.
 #include <fmt/format.h>
 
 #include "dartcast/trajectory.hpp"

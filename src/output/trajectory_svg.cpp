@@ -1,3 +1,4 @@
+// A trajectory as a drawing.
 #include <fmt/format.h>
 
 #include <algorithm>

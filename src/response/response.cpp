@@ -1,3 +1,4 @@
+// Responses at walls: what a contact does to a velocity.
 #include "dartcast/response.hpp"
 
 #include <algorithm>
@@ -73,7 +74,31 @@ Vec3 slid(const Vec3& v, std::span<const WallHit> walls, std::span<const WallHit
 
 namespace {
 
-// What respond_with() was given.
+// How a wall of this response takes part in a reflection that another wall has led to.
+WallSurface surface(const WallResponse& response) {
+  switch (response.kind) {
+    case WallResponseKind::slide: return {};
+    case WallResponseKind::reflect:
+    case WallResponseKind::stick:
+    case WallResponseKind::absorb:
+    case WallResponseKind::escape: break;
+  }
+  return {response.restitution, response.friction};
+}
+
+// Whether a particle that a step has stopped at such a wall keeps a velocity of its own.
+bool keeps_velocity(WallResponseKind kind) {
+  switch (kind) {
+    case WallResponseKind::reflect: return true;
+    case WallResponseKind::slide:
+    case WallResponseKind::stick:
+    case WallResponseKind::absorb:
+    case WallResponseKind::escape: break;
+  }
+  return false;
+}
+
+// The arguments of respond_with().
 struct Answers {
   const WallResponses& responses;
   std::span<Vec3> velocities;
@@ -82,10 +107,7 @@ struct Answers {
   Acceleration acceleration;
 
   [[nodiscard]] Vec3 rebound(const Vec3& v, const JointWalls& walls, const Vec3& lead) const {
-    const auto surface_of = [&](const WallHit& wall, double) {
-      const WallResponse& r = responses.of(wall.patch);
-      return r.kind == WallResponseKind::slide ? WallSurface{} : WallSurface{r.restitution, r.friction};
-    };
+    const auto surface_of = [&](const WallHit& wall, double) { return surface(responses.of(wall.patch)); };
     return rebounded(v, walls, surface_of, lead);
   }
 
@@ -144,8 +166,7 @@ void hold_stopped(const StepReport& report, const WallResponses& responses, std:
     if (next == contacts.begin() || std::prev(next)->particle != stopped.particle) continue;
     const Contact& contact = *std::prev(next);
     const std::span<const WallHit> walls = report.contacts.walls_of(contact);
-    if (fates[contact.particle] != ParticleStatus::alive ||
-        responses.of(walls.front().patch).kind != WallResponseKind::reflect)
+    if (fates[contact.particle] != ParticleStatus::alive || !keeps_velocity(responses.of(walls.front().patch).kind))
       continue;
     const Vec3 wall_velocity = contact.wall_displacement * (1.0 / dt);
     Vec3& velocity = velocities[contact.particle];

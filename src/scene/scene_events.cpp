@@ -1,6 +1,6 @@
+// Reads the events of a scene.
 #include "scene/scene_events.hpp"
 
-#include <array>
 #include <limits>
 
 #include "dartcast/error.hpp"
@@ -60,12 +60,14 @@ BladePath blade(TomlTable& t) {
 
 Cut cut(TomlTable& t) {
   Cut c;
-  std::size_t surface = 0;
+  using Surface = decltype(c.surface);
+  Surface (*surface)(TomlTable&) = nullptr;
   t.require("surface", "plane, disc or blade");
-  t.get("surface", surface, {"plane", "disc", "blade"});
-  if (surface == 0) c.surface = plane(t);
-  if (surface == 1) c.surface = disc(t);
-  if (surface == 2) c.surface = blade(t);
+  t.get("surface", surface,
+        {{"plane", [](TomlTable& in) -> Surface { return plane(in); }},
+         {"disc", [](TomlTable& in) -> Surface { return disc(in); }},
+         {"blade", [](TomlTable& in) -> Surface { return blade(in); }}});
+  c.surface = surface(t);
   c.width = length(t, "width", "of the layer that is opened");
   made(t, "surface", [&] { return std::visit([&](const auto& s) { return thicken(s, c.width); }, c.surface); });
   return c;
@@ -89,8 +91,7 @@ ConvexTool tool(TomlTable& t) {
 Carve carve(TomlTable& t) {
   Carve c;
   c.tool = tool(t);
-  std::size_t what = 0;
-  if (t.get("what", what, {"open", "remove"})) c.what = static_cast<Carving>(what);
+  t.get("what", c.what, {{"open", Carving::open}, {"remove", Carving::remove}});
   t.get("whole_cells", c.whole_cells);
   return c;
 }
@@ -127,19 +128,24 @@ EventScene read_event(TomlTable& t) {
   EventScene scene;
   t.require("at", "the time in seconds");
   t.get("at", scene.event.at, Range::not_negative);
-  std::size_t kind = 0;
+  EventKind kind = EventKind::cut;
   t.require("kind", "cut, carve, ligature or reconnect");
-  t.get("kind", kind, {"cut", "carve", "ligature", "reconnect"});
-  if (kind == 0) scene.event.what = cut(t);
-  if (kind == 1) scene.event.what = carve(t);
-  if (kind == 2) scene.event.what = ligature(t);
-  if (kind == 3) {
-    scene.event.what = reconnect(t);
-    t.get("patch", scene.patch);
+  t.get("kind", kind,
+        {{"cut", EventKind::cut},
+         {"carve", EventKind::carve},
+         {"ligature", EventKind::ligature},
+         {"reconnect", EventKind::reconnect}});
+  switch (kind) {
+    case EventKind::cut: scene.event.what = cut(t); break;
+    case EventKind::carve: scene.event.what = carve(t); break;
+    case EventKind::ligature: scene.event.what = ligature(t); break;
+    case EventKind::reconnect:
+      scene.event.what = reconnect(t);
+      t.get("patch", scene.patch);
+      break;
   }
-  std::size_t orphaned = 0;
-  constexpr std::array<OrphanPolicy, 3> choices = {OrphanPolicy::relocate, OrphanPolicy::hold, OrphanPolicy::absorb};
-  if (t.get("stranded", orphaned, {"move", "stay", "absorb"})) scene.event.orphaned = choices[orphaned];
+  t.get("stranded", scene.event.orphaned,
+        {{"move", OrphanPolicy::relocate}, {"stay", OrphanPolicy::hold}, {"absorb", OrphanPolicy::absorb}});
   t.finish();
   return scene;
 }

@@ -1,3 +1,4 @@
+// Reads a scene from TOML.
 #include "dartcast/scene_file.hpp"
 
 #include <fmt/format.h>
@@ -60,30 +61,49 @@ class SceneReader {
       t.fail("kind", fmt::format("kind = \"{}\": it must be one of {}", kind,
                                  "rotate, swing, bend, twist, stretch, pulse, bump, frames"));
     step.kind = *found;
-    if (step.kind == DeformationKind::frames) {
-      frames(t, scene);
-    } else {
-      t.get("period", step.period, Range::positive);
-      t.get("axis", step.axis);
-      t.get("centre", step.centre);
-      if (step.kind != DeformationKind::rotate) {
-        t.require("amplitude", "how much: an angle (swing, bend, twist), a length (bump) or a share (stretch, pulse)");
-        t.get("amplitude", step.amplitude, any_number);
-      }
-      if (step.kind == DeformationKind::bend) t.get("direction", step.direction);
-      if (step.kind == DeformationKind::pulse) {
+    deformation_keys(t, scene);
+    t.finish();
+    return scene;
+  }
+
+  // The keys that this kind of deformation has.
+  void deformation_keys(TomlTable& t, DeformationScene& scene) const {
+    DeformationStep& step = scene.step;
+    switch (step.kind) {
+      case DeformationKind::rotate: return periodic(t, step);
+      case DeformationKind::swing:
+      case DeformationKind::stretch: return oscillation(t, step);
+      case DeformationKind::bend:
+        oscillation(t, step);
+        t.get("direction", step.direction);
+        return deformation_length(t, step);
+      case DeformationKind::twist:
+      case DeformationKind::bump: oscillation(t, step); return deformation_length(t, step);
+      case DeformationKind::pulse:
+        oscillation(t, step);
         t.get("wavelength", step.wavelength, Range::not_negative);
         t.get("field", scene.field);
         t.get("path", scene.path);
-      }
-      if (step.kind == DeformationKind::bend || step.kind == DeformationKind::twist ||
-          step.kind == DeformationKind::bump) {
-        t.require("length", "the length over which it acts");
-        t.get("length", step.length, Range::positive);
-      }
+        return;
+      case DeformationKind::frames: return frames(t, scene);
     }
-    t.finish();
-    return scene;
+  }
+
+  static void periodic(TomlTable& t, DeformationStep& step) {
+    t.get("period", step.period, Range::positive);
+    t.get("axis", step.axis);
+    t.get("centre", step.centre);
+  }
+
+  static void oscillation(TomlTable& t, DeformationStep& step) {
+    periodic(t, step);
+    t.require("amplitude", "how much: an angle (swing, bend, twist), a length (bump) or a share (stretch, pulse)");
+    t.get("amplitude", step.amplitude, any_number);
+  }
+
+  static void deformation_length(TomlTable& t, DeformationStep& step) {
+    t.require("length", "the length over which it acts");
+    t.get("length", step.length, Range::positive);
   }
 
   void frames(TomlTable& t, DeformationScene& scene) const {
@@ -137,19 +157,21 @@ class SceneReader {
     t.get("drag", scene.drag, Range::not_negative);
     t.get("substeps", scene.substeps, 1U, 1000U);
     t.get("field", scene.field);
-    std::size_t frame = 0;
-    if (t.get("field_frame", frame, {"space", "mesh"}) && scene.field.empty()) {
+    if (t.get("field_frame", scene.frame, {{"space", FieldFrame::space}, {"mesh", FieldFrame::mesh}}) &&
+        scene.field.empty()) {
       t.fail("field_frame", "field_frame needs a field");
     }
-    scene.frame = static_cast<FieldFrame>(frame);
     t.finish();
     return scene;
   }
 
   static void response(TomlTable& t, WallResponse& r) {
-    std::size_t kind = 0;
-    if (t.get("response", kind, {"reflect", "slide", "stick", "absorb", "escape"}))
-      r.kind = static_cast<WallResponseKind>(kind);
+    t.get("response", r.kind,
+          {{"reflect", WallResponseKind::reflect},
+           {"slide", WallResponseKind::slide},
+           {"stick", WallResponseKind::stick},
+           {"absorb", WallResponseKind::absorb},
+           {"escape", WallResponseKind::escape}});
     t.get("restitution", r.restitution, {0.0, 1.0});
     t.get("friction", r.friction, Range::not_negative);
   }

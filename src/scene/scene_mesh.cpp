@@ -1,7 +1,7 @@
+// Reads the files that a scene names.
 #include "scene/scene_mesh.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <set>
@@ -9,25 +9,20 @@
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_check.hpp"
 #include "dartcast/mesh_files.hpp"
-#include "dartcast/mesh_selection.hpp"
+#include "dartcast/scene_file.hpp"
 #include "formats/checked_file.hpp"
 #include "formats/skip_in_file.hpp"
+#include "scene/seed_file.hpp"
+#include "simulation/scene_environment.hpp"
+#include "simulation/with_name.hpp"
 
 namespace dartcast {
 
 namespace {
 
-MeshData generated(const MeshSource& source) {
-  if (const auto* octahedra = std::get_if<OctahedraOptions>(&source)) return generate_octahedra(*octahedra);
-  if (const auto* vessel = std::get_if<VesselOptions>(&source)) return generate_vessel(*vessel);
-  if (const auto* rectangle = std::get_if<RectangleOptions>(&source)) return generate_rectangle(*rectangle);
-  if (const auto* maze = std::get_if<MazeOptions>(&source)) return generate_maze(*maze);
-  return generate_box(std::get<BoxOptions>(source));
-}
-
 MeshFile load_source(const MeshSource& source, const ReadOptions& options) {
   if (const auto* path = std::get_if<std::filesystem::path>(&source)) return read_mesh(*path, options);
-  MeshFile file{generated(source), {}};
+  MeshFile file{generated_mesh(source), {}};
   file.report = check_and_repair(file.mesh);
   file.report.file = "the generated mesh";
   file.report.format = "generated";
@@ -39,32 +34,6 @@ void scale_points(MeshFile& file, double scale) {
   if (scale == 1.0 || file.mesh.types.empty()) return;
   for (Vec3& x : file.mesh.points) x *= scale;
   if (file.report.valid()) file.report.defects = check_and_repair(file.mesh).defects;
-}
-
-void select_free(MeshData& mesh, const EnvironmentScene& scene) {
-  if (const auto* by_region = std::get_if<FreeRegions>(&scene.free)) select_free_regions(mesh, by_region->regions);
-  const auto* by_value = std::get_if<FreeValues>(&scene.free);
-  if (by_value == nullptr) return;
-  const bool has_array = std::any_of(mesh.cell_data.begin(), mesh.cell_data.end(),
-                                     [&](const DataArray& a) { return a.name == by_value->array; });
-  if (by_value->array != "region" || has_array) {
-    select_free_values(mesh, by_value->array, by_value->values);
-    return;
-  }
-  std::vector<std::string> tags;  // formats without arrays have their groups as regions
-  for (const double value : by_value->values) tags.push_back(fmt::format("{}", value));
-  select_free_regions(mesh, tags);
-}
-
-const DataArray& point_array(const MeshData& mesh, const std::string& name, std::size_t components) {
-  std::vector<std::string> known;
-  for (const DataArray& a : mesh.point_data) {
-    if (a.name == name && a.components == components) return a;
-    known.push_back(fmt::format("{} ({})", a.name, a.components));
-  }
-  throw InvalidMesh(
-      fmt::format("the mesh has no point array '{}' of {} components; its point arrays (components) are: {}", name,
-                  components, known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))));
 }
 
 // Of the cells that `mesh` has, by their places in the input file.
@@ -109,33 +78,30 @@ SceneMesh load_scene_mesh(const EnvironmentScene& scene, const ReadOptions& opti
   SceneMesh result{std::move(file.mesh), std::move(file.report), {}};
   const std::vector<Finding>& warnings = result.report.warnings;
   if (!warnings.empty() && warnings.front().kind == "bad_cells") result.skipped = warnings.front();
-  with_mesh_name(scene.mesh, [&] {
-    select_free(result.mesh, scene);
-    if (const auto* names = std::get_if<std::vector<std::string>>(&scene.patches)) select_patches(result.mesh, *names);
-    if (const auto* angle = std::get_if<PatchAngle>(&scene.patches)) divide_walls(result.mesh, angle->degrees);
-  });
+  with_mesh_name(scene.mesh, [&] { select_cells_and_patches(result.mesh, scene); });
   return result;
 }
 
-std::vector<Vec3> point_vectors(const MeshData& mesh, const std::string& array) {
-  const DataArray& data = point_array(mesh, array, 3);
-  std::vector<Vec3> result(mesh.points.size());
-  for (std::size_t i = 0; i < result.size(); ++i) {
-    result[i] = {data.values[3 * i], data.values[3 * i + 1], data.values[3 * i + 2]};
+LoadedScene load_scene_files(Scene scene, const ReadOptions& options, Threads threads) {
+  SceneMesh loaded = load_scene_mesh(scene.environment, options, threads);
+  for (DeformationScene& s : scene.deformation) {
+    for (const auto& file : s.frames)
+      s.step.frames.push_back(frame_positions(file, loaded.mesh, scene.environment, options));
+    s.frames.clear();
   }
-  return result;
-}
-
-std::vector<DeformationStep> load_deformation(std::span<const DeformationScene> scene, const MeshData& mesh,
-                                              const EnvironmentScene& environment, const ReadOptions& options) {
-  std::vector<DeformationStep> steps;
-  for (const DeformationScene& s : scene) {
-    DeformationStep& step = steps.emplace_back(s.step);
-    if (!s.field.empty()) step.field = point_vectors(mesh, s.field);
-    if (!s.path.empty()) step.path = point_array(mesh, s.path, 1).values;
-    for (const auto& file : s.frames) step.frames.push_back(frame_positions(file, mesh, environment, options));
+  for (ParticlesScene& p : scene.particles) {
+    auto* placed = std::get_if<PlacedParticles>(&p.source);
+    if (placed == nullptr) continue;
+    if (const auto* file = std::get_if<std::filesystem::path>(&placed->positions))
+      placed->positions = read_seeds(*file, options);
   }
-  return steps;
+  for (BodyScene& body : scene.bodies) {
+    if (const auto* file = std::get_if<std::filesystem::path>(&body.surface))
+      body.surface = with_name("body", body.name, [&] { return read_surface(*file, options).mesh; });
+  }
+  scene.environment = EnvironmentScene{};
+  scene.environment.mesh = std::move(loaded.mesh);
+  return {std::move(scene), std::move(loaded.skipped)};
 }
 
 }  // namespace dartcast

@@ -1,12 +1,10 @@
-// What a scene names, read or generated: its mesh, its fields and frames.
+// The mesh of a scene, read or generated.
 #pragma once
 
 #include <filesystem>
-#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
-#include <vector>
 
 #include "base/parallel.hpp"
 #include "dartcast/error.hpp"
@@ -39,14 +37,5 @@ auto with_mesh_name(const MeshSource& mesh, Make&& make) {
 /// Of the options `max_memory` counts. Throws InvalidMesh with the mesh file's name where the mesh is refused, or a
 /// region, array or patch that the scene names is not in it.
 SceneMesh load_scene_mesh(const EnvironmentScene& scene, const ReadOptions& options = {}, Threads threads = {});
-
-/// A point array of three components as vectors. Throws InvalidMesh that names the arrays there are.
-std::vector<Vec3> point_vectors(const MeshData& mesh, const std::string& array);
-
-/// The deformation's steps, with arrays taken from the mesh and frames read from their files, these scaled and without
-/// bad cells as the mesh is. Of the options `max_memory` counts. Throws InvalidMesh.
-std::vector<DeformationStep> load_deformation(std::span<const DeformationScene> scene, const MeshData& mesh,
-                                              const EnvironmentScene& environment = {},
-                                              const ReadOptions& options = {});
 
 }  // namespace dartcast

@@ -1,8 +1,10 @@
+// Reads the [environment] table of a scene.
 #include "scene/scene_mesh_keys.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 
 namespace dartcast {
 
@@ -24,7 +26,7 @@ void get_counts(TomlTable& t, std::string_view key, std::array<std::uint32_t, n>
 
 void get_seed(TomlTable& t, std::uint64_t& seed) { t.get("seed", seed, 0, max_seed); }
 
-// What the box and the octahedra have in common. Cells are of unit size unless `size` is given.
+// The keys that the box and the octahedra share. Cells are of unit size unless `size` is given.
 template <class Options>
 void read_block(TomlTable& t, Options& o) {
   get_counts(t, "cells", o.cells);
@@ -40,10 +42,15 @@ void read_block(TomlTable& t, Options& o) {
 BoxOptions read_box(TomlTable& t) {
   BoxOptions o;
   read_block(t, o);
-  std::size_t type = 1;
-  t.get("type", type, {"tetrahedron", "hexahedron", "prism", "pyramid", "mixed"});
-  o.mixed = type == 4;
-  if (!o.mixed) o.type = static_cast<CellType>(type);
+  std::optional<CellType> type = CellType::hexahedron;
+  t.get("type", type,
+        {{"tetrahedron", CellType::tetrahedron},
+         {"hexahedron", CellType::hexahedron},
+         {"prism", CellType::prism},
+         {"pyramid", CellType::pyramid},
+         {"mixed", std::nullopt}});
+  o.mixed = !type;
+  if (type) o.type = *type;
   t.get("jitter", o.jitter, share);
   return o;
 }
@@ -72,7 +79,7 @@ VesselOptions read_vessel(TomlTable& t) {
   return o;
 }
 
-// What the rectangle and the maze have in common. Squares are of unit size unless `size` is given.
+// The keys that the rectangle and the maze share. Squares are of unit size unless `size` is given.
 template <class Options>
 void read_squares(TomlTable& t, Options& o, const std::array<std::uint32_t, 2>& squares) {
   const auto get_pair = [&](std::string_view key, std::array<double, 2>& pair) {
@@ -83,12 +90,16 @@ void read_squares(TomlTable& t, Options& o, const std::array<std::uint32_t, 2>& 
   get_pair("origin", o.origin);
   get_pair("size", o.size);
   if (!(o.size[0] > 0.0 && o.size[1] > 0.0)) t.fail("size", "size must be two numbers more than 0");
-  std::size_t type = 1;
-  t.get("type", type, {"triangle", "quadrilateral", "polygon", "mixed"});
-  constexpr std::array types = {CellType::triangle, CellType::quadrilateral, CellType::polygon};
-  o.mixed = type == types.size();
-  if (!o.mixed) o.type = types[type];
-  t.get("jitter", o.jitter, {0.0, type > 1 ? largest_polygon_jitter : largest_square_jitter});
+  std::optional<CellType> type = CellType::quadrilateral;
+  t.get("type", type,
+        {{"triangle", CellType::triangle},
+         {"quadrilateral", CellType::quadrilateral},
+         {"polygon", CellType::polygon},
+         {"mixed", std::nullopt}});
+  o.mixed = !type;
+  if (type) o.type = *type;
+  const bool squares_alone = type == CellType::triangle || type == CellType::quadrilateral;
+  t.get("jitter", o.jitter, {0.0, squares_alone ? largest_square_jitter : largest_polygon_jitter});
   get_seed(t, o.seed);
 }
 
@@ -117,20 +128,21 @@ MazeOptions read_maze(TomlTable& t) {
 
 MeshSource read_source(TomlTable& t, const std::filesystem::path& folder) {
   std::string mesh;
-  std::size_t generator = 0;
+  MeshSource (*generator)(TomlTable&) = nullptr;
   const bool from_file = t.get("mesh", mesh);
-  const bool generated = t.get("generator", generator, {"box", "bar", "octahedra", "vessel", "rectangle", "maze"});
+  const bool generated = t.get("generator", generator,
+                               {{"box", [](TomlTable& in) -> MeshSource { return read_box(in); }},
+                                {"bar", [](TomlTable&) -> MeshSource { return bar_options(); }},
+                                {"octahedra", [](TomlTable& in) -> MeshSource { return read_octahedra(in); }},
+                                {"vessel", [](TomlTable& in) -> MeshSource { return read_vessel(in); }},
+                                {"rectangle", [](TomlTable& in) -> MeshSource { return read_rectangle(in); }},
+                                {"maze", [](TomlTable& in) -> MeshSource { return read_maze(in); }}});
   if (from_file == generated)
     t.fail("mesh",
            "give either mesh = \"FILE\" or generator = \"box\", \"bar\", \"octahedra\", \"vessel\", \"rectangle\" or "
            "\"maze\"");
   if (from_file) return folder / mesh;
-  if (generator == 0) return read_box(t);
-  if (generator == 1) return bar_options();
-  if (generator == 2) return read_octahedra(t);
-  if (generator == 3) return read_vessel(t);
-  if (generator == 4) return read_rectangle(t);
-  return read_maze(t);
+  return generator(t);
 }
 
 void read_free(TomlTable t, EnvironmentScene& scene) {

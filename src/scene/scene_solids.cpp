@@ -1,3 +1,4 @@
+// Reads the bodies and catheters of a scene.
 #include "scene/scene_solids.hpp"
 
 #include <fmt/format.h>
@@ -41,9 +42,8 @@ void body_surface(TomlTable& t, const std::filesystem::path& folder, BodyScene& 
 void body_samples(TomlTable& t, BodyScene& scene) {
   t.require("spacing", "of its particles, in metres");
   t.get("spacing", scene.sampling.spacing, Range::positive);
-  std::size_t samples = 0;
-  t.get("sample", samples, {"solid", "surface", "volume"});
-  scene.samples = static_cast<BodySamples>(samples);
+  t.get("sample", scene.samples,
+        {{"solid", BodySamples::solid}, {"surface", BodySamples::surface}, {"volume", BodySamples::volume}});
   std::uint64_t max_count = scene.sampling.max_count;
   t.get("most_particles", max_count, 1, 0xfffffffeU);
   scene.sampling.max_count = max_count;

@@ -1,3 +1,4 @@
+// Reads where particles start.
 #include "scene/seed_file.hpp"
 
 #include <fmt/format.h>
@@ -26,7 +27,7 @@ bool is_one_of(const std::array<std::string_view, n>& names, std::string_view na
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-Seeds read_csv_seeds(const std::filesystem::path& path, const ReadOptions& options) {
+ParticleSeeds read_csv_seeds(const std::filesystem::path& path, const ReadOptions& options) {
   CsvTable table(path, options.max_memory);
   std::vector<std::size_t> columns;
   for (const char* name : {"x", "y", "z"}) columns.push_back(table.column(name, "x, y and z"));
@@ -41,7 +42,7 @@ Seeds read_csv_seeds(const std::filesystem::path& path, const ReadOptions& optio
   }
   if (wide) columns.push_back(table.column("radius", "radius"));
   const std::vector<double> values = table.rows(columns);
-  Seeds seeds;
+  ParticleSeeds seeds;
   for (std::size_t at = 0; at < values.size(); at += columns.size()) {
     const double* row = &values[at];
     seeds.points.push_back({row[0], row[1], row[2]});
@@ -57,9 +58,9 @@ void check_components(const std::filesystem::path& path, const DataArray& array,
                             array.components, components));
 }
 
-Seeds read_vtp_seeds(const std::filesystem::path& path, const ReadOptions& options) {
+ParticleSeeds read_vtp_seeds(const std::filesystem::path& path, const ReadOptions& options) {
   PointFile file = read_points(path, options);
-  Seeds seeds;
+  ParticleSeeds seeds;
   seeds.points = std::move(file.points);
   for (DataArray& array : file.arrays) {
     if (array.name == "velocity") {
@@ -77,7 +78,7 @@ Seeds read_vtp_seeds(const std::filesystem::path& path, const ReadOptions& optio
   return seeds;
 }
 
-void check_values(const std::filesystem::path& path, const Seeds& seeds) {
+void check_values(const std::filesystem::path& path, const ParticleSeeds& seeds) {
   for (std::size_t i = 0; i < seeds.velocities.size(); ++i) {
     const Vec3& v = seeds.velocities[i];
     if (!is_finite(v))
@@ -93,10 +94,11 @@ void check_values(const std::filesystem::path& path, const Seeds& seeds) {
 
 }  // namespace
 
-Seeds read_seeds(const std::filesystem::path& path, const ReadOptions& options) {
+ParticleSeeds read_seeds(const std::filesystem::path& path, const ReadOptions& options) {
   const bool csv = path.extension() == ".csv" && std::filesystem::is_regular_file(path);
-  Seeds seeds = csv ? read_csv_seeds(path, options) : read_vtp_seeds(path, options);
+  ParticleSeeds seeds = csv ? read_csv_seeds(path, options) : read_vtp_seeds(path, options);
   check_values(path, seeds);
+  seeds.name = path.string();
   return seeds;
 }
 

@@ -2,23 +2,16 @@
 #pragma once
 
 #include <filesystem>
-#include <vector>
 
 #include "dartcast/mesh_files.hpp"
-#include "dartcast/vec3.hpp"
+#include "dartcast/scene.hpp"
 
 namespace dartcast {
-
-struct Seeds {
-  std::vector<Vec3> points;
-  std::vector<Vec3> velocities;  ///< one per point; empty: the file gives none
-  std::vector<double> radii;     ///< likewise
-};
 
 /// Reads .csv, with the columns x, y, z and, where the file gives them, vx, vy, vz and radius; or .vtp, with the
 /// points' arrays velocity (of 3 components) and radius. What else a run's frames have is passed over: id, cell, kind,
 /// contacts, held. Of the options `max_memory` counts. Throws Error, with the file, where another column or array is in
 /// it, or a value is out of range.
-Seeds read_seeds(const std::filesystem::path& path, const ReadOptions& options = {});
+ParticleSeeds read_seeds(const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace dartcast

@@ -1,3 +1,4 @@
+// Reads and checks values of a TOML table, with messages that say where.
 #include "scene/toml_table.hpp"
 
 #include <fmt/format.h>
@@ -138,10 +139,10 @@ bool TomlTable::get(std::string_view key, std::vector<double>& value, std::size_
   return true;
 }
 
-bool TomlTable::get(std::string_view key, std::size_t& value, std::initializer_list<std::string_view> names) {
+bool TomlTable::get(std::string_view key, std::size_t& value, const std::vector<std::string_view>& names) {
   std::string name;
   if (!get(key, name)) return false;
-  const auto* found = std::find(names.begin(), names.end(), name);
+  const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end())
     fail(key, fmt::format("{} = \"{}\": it must be one of {}", key, name, fmt::join(names, ", ")));
   value = static_cast<std::size_t>(found - names.begin());

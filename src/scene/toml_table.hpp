@@ -51,7 +51,18 @@ class TomlTable {
   /// A list of numbers, or one; `count` of them unless 0.
   bool get(std::string_view key, std::vector<double>& value, std::size_t count = 0);
   /// One of some names; the place of the one found.
-  bool get(std::string_view key, std::size_t& value, std::initializer_list<std::string_view> names);
+  bool get(std::string_view key, std::size_t& value, const std::vector<std::string_view>& names);
+
+  /// One of some names, each with the value that it stands for.
+  template <class T>
+  bool get(std::string_view key, T& value, std::initializer_list<std::pair<std::string_view, T>> choices) {
+    std::vector<std::string_view> names;
+    for (const auto& choice : choices) names.push_back(choice.first);
+    std::size_t place = 0;
+    if (!get(key, place, names)) return false;
+    value = choices.begin()[place].second;
+    return true;
+  }
 
   /// A table in this one.
   [[nodiscard]] TomlTable table(std::string_view key);

@@ -1,3 +1,6 @@
+// Which cells are subdivided and merged, and the edits that do it.
+#include "simulation/adaptive_subdivision.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,7 +9,6 @@
 #include <utility>
 
 #include "dartcast/error.hpp"
-#include "dartcast/events.hpp"
 
 namespace dartcast {
 

@@ -1,10 +1,10 @@
+// Where a prescribed motion puts the vertices, and which motions are allowed.
 #include "dartcast/deformation.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <numbers>
 #include <utility>
 
@@ -35,29 +35,42 @@ class DeformationChecker {
 
   void check() const {
     const DeformationStep& s = step_;
-    const bool bounded =
-        s.kind == DeformationKind::bend || s.kind == DeformationKind::twist || s.kind == DeformationKind::bump;
     require(std::isfinite(s.amplitude), "amplitude must be finite");
     require(s.period > 0 && std::isfinite(s.period), "period must be positive");
     require(is_finite(s.axis) && is_finite(s.centre) && is_finite(s.direction),
             "axis, centre and direction must be finite");
-    require(!bounded || (s.length > 0 && std::isfinite(s.length)), "length must be positive");
     require(s.wavelength >= 0 && std::isfinite(s.wavelength), "wavelength must be 0 or positive");
-    require(s.kind != DeformationKind::stretch || std::abs(s.amplitude) < 1, "amplitude must be between -1 and 1");
-    const bool may_lack_axis = s.kind == DeformationKind::pulse || s.kind == DeformationKind::frames;
-    require(may_lack_axis || norm(s.axis) > 0, "axis must not be 0");
-    require(
-        s.kind != DeformationKind::bend || norm(cross(s.axis, s.direction)) > 1e-6 * norm(s.axis) * norm(s.direction),
-        "direction must not be 0 or along the axis");
     require(s.field.empty() || s.field.size() == vertices_, "field must have one entry per vertex");
     require(s.path.empty() || s.path.size() == vertices_, "path must have one entry per vertex");
     require(std::all_of(s.field.begin(), s.field.end(), is_finite), "field must be finite");
     require(std::all_of(s.path.begin(), s.path.end(), [](double p) { return std::isfinite(p); }),
             "path must be finite");
-    if (s.kind == DeformationKind::frames) check_frames();
+    check_kind();
   }
 
  private:
+  void check_kind() const {
+    switch (step_.kind) {
+      case DeformationKind::rotate:
+      case DeformationKind::swing: return check_axis();
+      case DeformationKind::bend:
+        check_length();
+        check_axis();
+        return require(norm(cross(step_.axis, step_.direction)) > 1e-6 * norm(step_.axis) * norm(step_.direction),
+                       "direction must not be 0 or along the axis");
+      case DeformationKind::twist:
+      case DeformationKind::bump: check_length(); return check_axis();
+      case DeformationKind::stretch:
+        require(std::abs(step_.amplitude) < 1, "amplitude must be between -1 and 1");
+        return check_axis();
+      case DeformationKind::pulse: return;
+      case DeformationKind::frames: return check_frames();
+    }
+  }
+
+  void check_axis() const { require(norm(step_.axis) > 0, "axis must not be 0"); }
+  void check_length() const { require(step_.length > 0 && std::isfinite(step_.length), "length must be positive"); }
+
   void check_frames() const {
     const DeformationStep& s = step_;
     require(index_ == 0, "frames must come first in the list: they give positions, not changes");
@@ -73,8 +86,7 @@ class DeformationChecker {
 
   void require(bool holds, std::string_view text) const {
     if (holds) return;
-    throw InvalidArgument(fmt::format("deformation {} ({}): {}", index_ + 1,
-                                      deformation_kind_names[static_cast<std::size_t>(step_.kind)], text));
+    throw InvalidArgument(fmt::format("deformation {} ({}): {}", index_ + 1, name_of(step_.kind), text));
   }
 
   const DeformationStep& step_;
@@ -87,7 +99,7 @@ class PlaneChecker {
   PlaneChecker(const DeformationStep& step, std::size_t index) : step_(step), index_(index) {}
 
   void check() const {
-    if (step_.kind == DeformationKind::frames) return check_frames();
+    if (step_.kind == DeformationKind::frames) return check_frames();  // they have no centre
     require(step_.centre.z == 0.0, "centre", "must have z = 0");
     switch (step_.kind) {
       case DeformationKind::rotate:
@@ -128,7 +140,7 @@ class PlaneChecker {
     if (holds) return;
     throw InvalidArgument(fmt::format(
         "deformation {} ({}) moves points out of the plane z = 0, which a planar mesh must not leave: {} {}",
-        index_ + 1, deformation_kind_names[static_cast<std::size_t>(step_.kind)], member, must));
+        index_ + 1, name_of(step_.kind), member, must));
   }
 
   const DeformationStep& step_;
@@ -140,17 +152,19 @@ class Motion {
  public:
   Motion(const DeformationStep& step, double time) : s_(step), turns_(turns(time, step.period)) {
     amount_ = s_.amplitude * std::sin(full_turn * turns_);
-    if (s_.kind == DeformationKind::rotate || s_.kind == DeformationKind::swing) {
-      const double angle = s_.kind == DeformationKind::rotate ? full_turn * turns_ : amount_;
-      sine_ = std::sin(angle);
-      cosine_ = std::cos(angle);
+    switch (s_.kind) {
+      case DeformationKind::rotate: turn_by(full_turn * turns_); break;
+      case DeformationKind::swing: turn_by(amount_); break;
+      case DeformationKind::frames: find_frames(time); break;
+      case DeformationKind::bend:
+      case DeformationKind::twist:
+      case DeformationKind::stretch:
+      case DeformationKind::pulse:
+      case DeformationKind::bump: break;
     }
-    if (s_.kind == DeformationKind::frames) find_frames(time);
   }
 
   [[nodiscard]] Vec3 operator()(const Vec3& x, std::size_t vertex) const {
-    if (s_.kind == DeformationKind::frames)
-      return s_.frames[before_][vertex] * (1 - weight_) + s_.frames[after_][vertex] * weight_;
     const Vec3 r = x - s_.centre;
     const double height = dot(r, s_.axis);
     switch (s_.kind) {
@@ -170,12 +184,18 @@ class Motion {
         const double inside = 1 - dot(r, r) / (s_.length * s_.length);
         return inside > 0 ? x + s_.axis * (amount_ * inside * inside) : x;
       }
-      case DeformationKind::frames: break;
+      case DeformationKind::frames:
+        return s_.frames[before_][vertex] * (1 - weight_) + s_.frames[after_][vertex] * weight_;
     }
     return x;
   }
 
  private:
+  void turn_by(double angle) {
+    sine_ = std::sin(angle);
+    cosine_ = std::cos(angle);
+  }
+
   void find_frames(double time) {
     const auto next = std::upper_bound(s_.times.begin(), s_.times.end(), time);
     after_ = static_cast<std::size_t>(next - s_.times.begin());
@@ -209,10 +229,25 @@ class Motion {
 
 }  // namespace
 
+std::string_view name_of(DeformationKind kind) {
+  switch (kind) {
+    case DeformationKind::rotate: return "rotate";
+    case DeformationKind::swing: return "swing";
+    case DeformationKind::bend: return "bend";
+    case DeformationKind::twist: return "twist";
+    case DeformationKind::stretch: return "stretch";
+    case DeformationKind::pulse: return "pulse";
+    case DeformationKind::bump: return "bump";
+    case DeformationKind::frames: return "frames";
+  }
+  return {};
+}
+
 std::optional<DeformationKind> deformation_kind(std::string_view name) {
-  const auto* found = std::find(std::begin(deformation_kind_names), std::end(deformation_kind_names), name);
-  if (found == std::end(deformation_kind_names)) return std::nullopt;
-  return static_cast<DeformationKind>(found - std::begin(deformation_kind_names));
+  for (const DeformationKind kind : deformation_kinds) {
+    if (name_of(kind) == name) return kind;
+  }
+  return std::nullopt;
 }
 
 Deformation::Deformation(std::vector<DeformationStep> steps, std::span<const Vec3> rest)

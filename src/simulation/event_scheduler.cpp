@@ -1,42 +1,64 @@
+// Carries out events when they are due, and repeats what a log says.
 #include "simulation/event_scheduler.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "dartcast/error.hpp"
 
 namespace dartcast {
 
-EventScheduler::EventScheduler(const std::vector<Event>& events, const RemeshScene& remesh,
-                               const AdaptiveSubdivisionScene& adaptive_subdivision, double dt, Simulation& flow)
-    : events_(events),
-      remesh_(remesh),
-      adapt_every_(adaptive_subdivision.every),
-      adaptive_subdivision_(adaptive_subdivision.options),
-      dt_(dt),
-      flow_(flow) {
-  const double latest = static_cast<double>(max_steps) * dt;
-  for (std::size_t i = 0; i < events_.size(); ++i) {
-    const double at = events_[i].at;
-    if (!(at >= 0.0 && at <= latest))
-      throw InvalidArgument(fmt::format("event {} ({}): its time is {} s: it must be between 0 and {} s", i + 1,
-                                        event_kind_names[events_[i].what.index()], at, latest));
+namespace {
+
+bool is_possible_in_plane(EventKind kind) {
+  switch (kind) {
+    case EventKind::ligature: return true;
+    case EventKind::cut:
+    case EventKind::carve:
+    case EventKind::reconnect: return false;
   }
-  const CombinatorialMap& map = flow.environment().map();
-  if (map.dimension() == 2 && adapt_every_ > 0)
-    throw InvalidArgument("crowding: in the plane cells are not subdivided; leave [crowding] out");
-  for (std::size_t i = 0; map.dimension() == 2 && i < events_.size(); ++i) {
-    if (!std::holds_alternative<Ligature>(events_[i].what))
-      throw InvalidArgument(fmt::format("event {} ({}): in the plane a ligature can be tied, and nothing else be done",
-                                        i + 1, event_kind_names[events_[i].what.index()]));
-  }
+  return false;
+}
+
+}  // namespace
+
+EventScheduler::EventScheduler(Simulation& simulation, const Environment& environment, double dt)
+    : simulation_(simulation), environment_(environment), dt_(dt) {
+  const CombinatorialMap& map = environment.map();
   for (const Cell c : map.cells()) {
     if (map.is_free(c)) continue;
     blocked_.resize(std::max<std::size_t>(blocked_.size(), map.source(c) + 1U));
     blocked_[map.source(c)] = true;
   }
+}
+
+void EventScheduler::set_events(std::vector<Event> events) {
+  const double latest = static_cast<double>(max_steps) * dt_;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const std::string_view name = name_of(kind_of(events[i]));
+    const double at = events[i].at;
+    if (!(at >= 0.0 && at <= latest))
+      throw InvalidArgument(
+          fmt::format("event {} ({}): its time is {} s: it must be between 0 and {} s", i + 1, name, at, latest));
+    if (environment_.map().dimension() == 2 && !is_possible_in_plane(kind_of(events[i])))
+      throw InvalidArgument(
+          fmt::format("event {} ({}): in the plane a ligature can be tied, and nothing else be done", i + 1, name));
+  }
+  std::stable_sort(events.begin(), events.end(), [](const Event& a, const Event& b) { return a.at < b.at; });
+  events_ = std::move(events);
+  next_ = 0;
+}
+
+void EventScheduler::set_adaptive_subdivision(const AdaptiveSubdivisionScene& subdivision) {
+  if (environment_.map().dimension() == 2 && subdivision.every > 0)
+    throw InvalidArgument("crowding: in the plane cells are not subdivided; leave [crowding] out");
+  if (!subdivision_.subdivisions().empty())
+    throw InvalidArgument("crowding: cells are subdivided already; set the options before the first step");
+  subdivision_ = AdaptiveSubdivision(subdivision.options);
+  adapt_every_ = subdivision.every;
 }
 
 // Times that are whole numbers of steps but for rounding count as such.
@@ -48,73 +70,86 @@ std::uint64_t EventScheduler::step_of(const Event& event) const {
 }
 
 void EventScheduler::before_step() {
-  for (; next_ < events_.size() && step_of(events_[next_]) <= flow_.steps(); ++next_) {
+  for (; next_ < events_.size() && step_of(events_[next_]) <= simulation_.steps(); ++next_) {
     const std::uint64_t in_opened = count_in_opened();
-    log_.events.push_back(operate(next_));
+    log_.events.push_back(carry_out(next_));
     log_.events.back().particles_in_opened = in_opened;
-    log_.changes.push_back({flow_.steps(), next_, 0});
+    log_.changes.push_back({simulation_.steps(), next_, 0});
   }
 }
 
-EventReport EventScheduler::operate(std::uint32_t event) {
+EventReport EventScheduler::carry_out(std::uint32_t event) {
   try {
-    return apply(flow_, events_[event]);
+    return apply(simulation_, events_[event]);
   } catch (const Error& e) {
-    throw Error(fmt::format("event {} ({} at {} s): {}", event + 1, event_kind_names[events_[event].what.index()],
-                            events_[event].at, e.what()));
+    throw Error(fmt::format("event {} ({} at {} s): {}", event + 1, name_of(kind_of(events_[event])), events_[event].at,
+                            e.what()));
   }
 }
 
 void EventScheduler::after_step() {
-  if (remesh_.every > 0 && flow_.steps() % remesh_.every == 0) {
+  if (remeshing_.every > 0 && simulation_.steps() % remeshing_.every == 0) {
     const RepairReport report = remesh();
     log_.mended += report.mended.size();
     log_.left = report.left.size();
-    if (!report.mended.empty()) log_.changes.push_back({flow_.steps(), EventLog::Change::remeshing, 0});
+    if (!report.mended.empty()) log_.changes.push_back({simulation_.steps(), EventLog::Change::remeshing, 0});
   }
-  if (adapt_every_ > 0 && flow_.steps() % adapt_every_ == 0) adapt();
+  if (adapt_every_ > 0 && simulation_.steps() % adapt_every_ == 0) adapt();
   if (!log_.changes.empty()) log_.in_opened = count_in_opened();
 }
 
-RepairReport EventScheduler::remesh() { return flow_.repair(remesh_.options); }
+RepairReport EventScheduler::remesh() { return simulation_.repair(remeshing_.options); }
 
-void EventScheduler::adapt() {
-  const AdaptiveSubdivisionReport report = flow_.adapt(adaptive_subdivision_);
+AdaptiveSubdivisionReport EventScheduler::adapt() {
+  AdaptiveSubdivisionReport report =
+      subdivision_.adapt(environment_.complex(), simulation_.particles(),
+                         [&](const std::function<void(ComplexEdit&)>& make) { return simulation_.edit(make).edit; });
   log_.subdivided += report.subdivided;
   log_.merged += report.merged;
   log_.refused = report.refused.size();
   for (const SubdivisionChange& c : report.changes) {
     const std::uint32_t event = c.merged ? EventLog::Change::merging : EventLog::Change::subdividing;
-    log_.changes.push_back({flow_.steps(), event, c.what});
+    log_.changes.push_back({simulation_.steps(), event, c.what});
+  }
+  return report;
+}
+
+void EventScheduler::after_edit() {
+  subdivision_.update_after_edit(environment_.map(), environment_.last_edit().map.added);
+}
+
+void EventScheduler::replay(const EventLog& log) {
+  const std::size_t made = log_.changes.size();
+  if (made > log.changes.size() || !std::equal(log_.changes.begin(), log_.changes.end(), log.changes.begin()))
+    throw InvalidArgument("events: other edits have been made than those of the checkpoint; make the simulation anew");
+  for (std::size_t i = made; i < log.changes.size(); ++i) {
+    simulation_.go_to(log.changes[i].step);
+    repeat(log.changes[i]);
+    log_.changes.push_back(log.changes[i]);
   }
 }
 
 void EventScheduler::repeat(const EventLog::Change& change) {
-  const auto edit = [&](const std::function<void(ComplexEdit&)>& make) { return flow_.edit(make).edit; };
-  adaptive_subdivision_.repeat(flow_.environment().complex(), {change.event == EventLog::Change::merging, change.what},
-                               edit);
+  if (change.event == EventLog::Change::remeshing) {
+    remesh();
+  } else if (change.event == EventLog::Change::subdividing || change.event == EventLog::Change::merging) {
+    repeat_subdivision(change);
+  } else if (change.event < events_.size()) {
+    carry_out(change.event);
+    next_ = change.event + 1;
+  } else {
+    throw InvalidArgument("events: the log names an event that the scene does not have");
+  }
 }
 
-void EventScheduler::replay(const EventLog& log) {
-  for (const EventLog::Change& change : log.changes) {
-    flow_.go_to(change.step);
-    if (change.event == EventLog::Change::remeshing) {
-      remesh();
-    } else if (change.event == EventLog::Change::subdividing || change.event == EventLog::Change::merging) {
-      repeat(change);
-    } else if (change.event < events_.size()) {
-      operate(change.event);
-      next_ = change.event + 1;
-    } else {
-      throw InvalidArgument("surgery: the log names an event that the scene does not have");
-    }
-  }
-  log_ = log;
+void EventScheduler::repeat_subdivision(const EventLog::Change& change) {
+  const auto edit = [&](const std::function<void(ComplexEdit&)>& make) { return simulation_.edit(make).edit; };
+  subdivision_.repeat(environment_.complex(), {change.event == EventLog::Change::merging, change.what}, edit);
 }
 
 std::uint64_t EventScheduler::count_in_opened() const {
-  const CombinatorialMap& map = flow_.environment().map();
-  const auto states = flow_.particles().states();
+  const CombinatorialMap& map = environment_.map();
+  const auto states = simulation_.particles().states();
   return static_cast<std::uint64_t>(std::count_if(states.begin(), states.end(), [&](const ParticleState& s) {
     const std::uint32_t source = map.source(s.cell);
     return !s.held && source < blocked_.size() && blocked_[source];

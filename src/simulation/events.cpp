@@ -1,29 +1,32 @@
+// What each kind of event does to the environment of a simulation.
 #include "dartcast/events.hpp"
 
 #include <algorithm>
-#include <chrono>
+#include <variant>
 #include <vector>
 
 #include "dartcast/validity.hpp"
+#include "dartcast/simulation.hpp"
+#include "simulation/timer.hpp"
 
 namespace dartcast {
 
 namespace {
 
-class Surgeon {
+class EventRun {
  public:
-  Surgeon(Simulation& flow, const Event& event) : flow_(flow), event_(event) {}
+  EventRun(Simulation& simulation, const Event& event) : simulation_(simulation), event_(event) {}
 
-  EventReport operate() {
-    report_.kind = static_cast<std::uint32_t>(event_.what.index());
-    report_.step = flow_.steps();
-    report_.time = flow_.time();
+  EventReport run() {
+    report_.kind = kind_of(event_);
+    report_.step = simulation_.steps();
+    report_.time = simulation_.time();
     std::visit([&](const auto& what) { make(what); }, event_.what);
     return report_;
   }
 
  private:
-  [[nodiscard]] const CellComplex& complex() const { return flow_.environment().complex(); }
+  [[nodiscard]] const CellComplex& complex() const { return simulation_.environment().complex(); }
 
   void make(const Cut& cut) {
     carve(std::visit([&](const auto& surface) { return thicken(surface, cut.width); }, cut.surface), Carving::open, {});
@@ -38,7 +41,8 @@ class Surgeon {
   void carve(const std::vector<ConvexTool>& tools, Carving what, const CarveOptions& options) {
     const std::vector<Cell> near = cells_near(complex(), tools);
     Carved carved;
-    note(flow_.edit([&](ComplexEdit& e) { carved = dartcast::carve(e, near, tools, what, options); }, event_.orphaned));
+    note(simulation_.edit([&](ComplexEdit& e) { carved = dartcast::carve(e, near, tools, what, options); },
+                          event_.orphaned));
     report_.cells_opened = carved.opened.size();
     report_.cells_whole = carved.whole.size();
   }
@@ -46,7 +50,7 @@ class Surgeon {
   void make(const Ligature& tie) {
     std::vector<Cell> section;
     const SimulationEdit done =
-        flow_.edit([&](ComplexEdit& e) { section = ligature(e, tie.plane, tie.place); }, event_.orphaned);
+        simulation_.edit([&](ComplexEdit& e) { section = ligature(e, tie.plane, tie.place); }, event_.orphaned);
     note(done);
     report_.cells_blocked = section.size();
     for (Cell& c : section) c = done.edit.now(c);
@@ -54,19 +58,19 @@ class Surgeon {
   }
 
   void draw(const Ligature& tie, const std::vector<Cell>& section) {
-    const auto now = flow_.environment().positions();
+    const auto now = simulation_.environment().positions();
     std::vector<Vec3> drawn(now.begin(), now.end());
     draw_together(complex(), section, tie.plane, tie.tying, drawn);
-    const auto inversion = flow_.environment().first_inversion(drawn);
+    const auto inversion = simulation_.environment().first_inversion(drawn);
     constexpr double room = 0.75;  // of the way to where a simplex is flattened
     const double share = inversion ? room * inversion->how.safe_time : 1.0;
     for (std::size_t v = 0; v < drawn.size(); ++v) drawn[v] = (drawn[v] - now[v]) * share;
-    flow_.pull(drawn, tie.duration);
+    simulation_.pull(drawn, tie.duration);
   }
 
   void make(const Reconnect& what) {
-    const std::vector<Cell> all = flow_.environment().map().cells();
-    note(flow_.edit(
+    const std::vector<Cell> all = simulation_.environment().map().cells();
+    note(simulation_.edit(
         [&](ComplexEdit& e) {
           reconnect(e, open_faces(e, all, what.a, what.within), open_faces(e, all, what.b, what.within), what.options);
         },
@@ -88,17 +92,35 @@ class Surgeon {
     report_.particles_absorbed = count(OrphanPolicy::absorb);
   }
 
-  Simulation& flow_;
+  Simulation& simulation_;
   const Event& event_;
   EventReport report_;
 };
 
 }  // namespace
 
-EventReport apply(Simulation& flow, const Event& event) {
-  const auto start = std::chrono::steady_clock::now();
-  EventReport report = Surgeon(flow, event).operate();
-  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+std::string_view name_of(EventKind kind) {
+  switch (kind) {
+    case EventKind::cut: return "cut";
+    case EventKind::carve: return "carve";
+    case EventKind::ligature: return "ligature";
+    case EventKind::reconnect: return "reconnect";
+  }
+  return {};
+}
+
+EventKind kind_of(const Event& event) {
+  return std::visit([](const auto& what) { return what.kind; }, event.what);
+}
+
+EventReport apply(Simulation& simulation, const Event& event) {
+  double seconds = 0.0;
+  EventReport report;
+  {
+    const ScopeTimer timer(seconds);
+    report = EventRun(simulation, event).run();
+  }
+  report.seconds = seconds;
   return report;
 }
 

@@ -1,3 +1,4 @@
+// Advances particles along polylines, segment by segment, as one step.
 #include "simulation/polyline.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Random points, uniform by volume in free cells or by area on a patch.
 #include "simulation/seeding.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Contacts of spheres with each other, with walls and with the particles of bodies, for one rigid solver.
 #include "simulation/sphere_bodies.hpp"
 
 #include <algorithm>

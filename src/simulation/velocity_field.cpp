@@ -1,3 +1,4 @@
+// Interpolates a velocity field, and carries it with a mesh that deforms.
 #include "dartcast/velocity_field.hpp"
 
 #include <fmt/format.h>
@@ -63,7 +64,10 @@ Vec3 VelocityField::at(const CellComplex& complex, SimplexId simplex, const std:
   const auto v = complex.vertices(simplex);
   const Vec3 u = (values_[v[0].value] * w[0] + values_[v[1].value] * w[1]) +
                  (values_[v[2].value] * w[2] + values_[v[3].value] * w[3]);
-  if (frame_ == FieldFrame::space) return u;
+  switch (frame_) {
+    case FieldFrame::space: return u;
+    case FieldFrame::mesh: break;
+  }
   const Corners rest = {rest_[v[0].value], rest_[v[1].value], rest_[v[2].value], rest_[v[3].value]};
   return mapped(complex.map().dimension() == 2 ? raised(rest) : rest, now, u);
 }

@@ -1,4 +1,4 @@
-// Records the crossings of a step (dartcast/trace.hpp) from the facets that its walks leave.
+// Records the crossings of a step (dartcast/step.hpp) from the facets that its walks leave.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/contact.hpp"
 #include "dartcast/particle_state.hpp"
-#include "dartcast/trace.hpp"
+#include "dartcast/step.hpp"
 #include "tracking/walk.hpp"
 
 namespace dartcast::detail {

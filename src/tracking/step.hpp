@@ -10,7 +10,6 @@
 #include "dartcast/contact.hpp"
 #include "dartcast/particle_state.hpp"
 #include "dartcast/step.hpp"
-#include "dartcast/trace.hpp"
 #include "tracking/walk.hpp"
 
 namespace dartcast {

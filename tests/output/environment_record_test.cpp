@@ -125,7 +125,7 @@ TEST_F(EnvironmentRecordTest, CellsAndParticlesAreJoinedBySource) {
   Simulation flow(environment, options);
   flow.add_random(80, {1.0, -2.0, 0.5});
   Recording recording({folder, true, true}, EnvironmentRecord(mesh), "");
-  flow.set_after_edit([&](OrphanPolicy) { recording.update_after_edit(environment); });
+  flow.set_after_edit([&](const Environment& edited) { recording.update_after_edit(edited); });
   flow.step();
   recording.add_frame(flow);
   expect_joined(folder, "000001", true);

@@ -15,6 +15,7 @@
 #include "output/run_files.hpp"
 #include "support/data_arrays.hpp"
 #include "support/sample_mesh.hpp"
+#include "support/with_response.hpp"
 
 namespace dartcast::recording_test {
 
@@ -145,7 +146,7 @@ TEST_F(RecordingTest, TheKindOfAParticleOnAWallIsSaid) {
   Environment environment(mesh);
   SimulationOptions options;
   options.dt = 1.0;
-  Simulation flow(environment, options, WallResponses(WallResponse{WallResponseKind::stick, 0, 0}));
+  Simulation flow(environment, test::with_response(options, Stick{}));
   flow.add(std::vector<Vec3>{{0.5, 0.25, 0.75}}, {0.7, 0, 0});
   flow.add(std::vector<Vec3>{{0.5, 0.25, 0.75}}, {0.0, 0, 0});
   flow.step();

@@ -222,6 +222,7 @@ class Resume : public testing::Test {
     options.audit = true;
     return run_scene(parse_scene(text, "test.toml"), options, [&](std::uint64_t done, std::uint64_t) {
       if (done == cut) throw CutOff();
+      return true;
     });
   }
 
@@ -274,6 +275,51 @@ TEST_F(Resume, ARunCutOffAnywhereEndsAsIfItWereNot) {
   for (const std::uint64_t cut : {1U, 9U, 10U, 23U, 46U}) {
     EXPECT_THROW(run(two, false, 47, cut), CutOff);
     expect_same(whole, run(two, true, 47));
+  }
+}
+
+// Bodies that lie on each other and a catheter at walls go on from the impulses and walls that they had.
+TEST_F(Resume, BodiesAndCathetersGoOnFromTheirContacts) {
+  const std::string scene = R"(
+[environment]
+generator = "box"
+cells = [5, 5, 5]
+size = [0.5, 0.5, 0.5]
+[[body]]
+generator = "barrel"
+radius = 0.05
+bulge = 0.01
+height = 0.12
+spacing = 0.03
+at = [0.25, 0.25, 0.08]
+[[body]]
+generator = "barrel"
+radius = 0.05
+bulge = 0.01
+height = 0.12
+spacing = 0.03
+at = [0.26, 0.26, 0.2]
+velocity = [0.0, 0.0, -1.0]
+[[catheter]]
+entry = [0.02, 0.1, 0.1]
+direction = [1.0, 0.3, 0.2]
+length = 0.7
+spacing = 0.01
+moves = [{ until = 2.0, push = 2.0, turn = 1.0 }]
+[motion]
+dt = 0.005
+steps = 80
+gravity = [0.0, 0.0, -9.81]
+[collisions]
+body_friction = 0.3
+[output]
+every = 10
+)";
+  const Summary whole = run(one, false, 80, 0, scene);
+  EXPECT_GT(whole.catheters.at(0).inserted, 0.5);  // longer than the box
+  for (const std::uint64_t cut : {35U, 55U, 75U}) {
+    EXPECT_THROW(run(two, false, 80, cut, scene), CutOff);
+    expect_same(whole, run(two, true, 80, 0, scene));
   }
 }
 

@@ -272,6 +272,7 @@ TEST_F(RunFilesTest, ASecondRunInTheFolderIsRefused) {
       const std::string process = "(process " + std::to_string(::getpid()) + ")";
       if (std::string(e.what()).find(process) != std::string::npos) ++refused;
     }
+    return true;
   });
   EXPECT_EQ(refused, 4);
   EXPECT_EQ(Table(folder / "stats.csv").size(), 4U);

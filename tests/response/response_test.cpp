@@ -146,6 +146,19 @@ TEST(WallResponses, RefuseWhatIsOutOfRange) {
   EXPECT_THROW(respond_with(r, velocities, std::span<ParticleStatus>(fates).first(1), 1.0), InvalidArgument);
 }
 
+TEST(WallResponses, AreMadeOfValues) {
+  const WallResponse bouncing = Reflect{0.5, 0.1};
+  EXPECT_EQ(bouncing.kind, WallResponseKind::reflect);
+  EXPECT_EQ(bouncing.restitution, 0.5);
+  EXPECT_EQ(bouncing.friction, 0.1);
+  EXPECT_EQ(WallResponse(Reflect{}).restitution, 1.0);
+  EXPECT_EQ(WallResponse(Slide{}).kind, WallResponseKind::slide);
+  EXPECT_EQ(WallResponse(Stick{}).kind, WallResponseKind::stick);
+  EXPECT_EQ(WallResponse(Absorb{}).kind, WallResponseKind::absorb);
+  EXPECT_EQ(WallResponse(Escape{}).kind, WallResponseKind::escape);
+  EXPECT_EQ(WallResponses(Slide{}).of(Patch{3}).kind, WallResponseKind::slide);
+}
+
 TEST(WallResponses, OfAPatchOrTheGeneralOne) {
   WallResponses r({WallResponseKind::slide});
   r.set(Patch{3}, {WallResponseKind::absorb});

@@ -294,7 +294,8 @@ TEST(SceneFile, EveryKeyIsRead) {
   ASSERT_EQ(s.particles.size(), 3U);
   EXPECT_EQ(std::get<RandomParticles>(s.particles[0].source).count, 10U);
   EXPECT_EQ(s.particles[0].velocity, (Vec3{1, 2, 3.5}));
-  EXPECT_EQ(std::get<PlacedParticles>(s.particles[1].source).positions, "folder/seeds.csv");
+  EXPECT_EQ(std::get<std::filesystem::path>(std::get<PlacedParticles>(s.particles[1].source).positions),
+            "folder/seeds.csv");
   EXPECT_EQ(std::get<InletParticles>(s.particles[2].source).patch, "inlet");
   EXPECT_EQ(std::get<InletParticles>(s.particles[2].source).rate, 2.5);
   EXPECT_EQ(s.motion.dt, 0.25);

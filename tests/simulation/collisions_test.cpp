@@ -6,11 +6,14 @@
 #include <map>
 #include <numbers>
 
+#include "base/random.hpp"
 #include "dartcast/audit.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/simulation.hpp"
+#include "dynamics/collider.hpp"
 #include "support/tier.hpp"
+#include "support/with_response.hpp"
 
 namespace dartcast::collisions_test {
 
@@ -72,7 +75,7 @@ TEST(Collisions, GrainsComeToRest) {
   SimulationOptions o = colliding(large ? 2e-3 : 4e-3, 0.3, 0.3);
   if (large) o.collisions->iterations = 20;
   o.gravity = {0, 0, -9.81};
-  Simulation flow(environment, o, WallResponses(WallResponse{WallResponseKind::reflect, 0.3, 0.3}));
+  Simulation flow(environment, test::with_response(o, Reflect{0.3, 0.3}));
   const auto places = lattice(count, across, Vec3{1.2 * r, 1.2 * r, 2.0 * r}, 2.4 * r);
   for (std::size_t i = 0; i < count; ++i) flow.add(std::span(&places[i], 1), {}, r * (i % 3 == 0 ? 0.8 : 1.0));
   ASSERT_EQ(flow.particles().size(), count);
@@ -131,7 +134,7 @@ TEST(Collisions, ThreadsAndCheckpoints) {
     Environment environment(generate_box(box), Threads{threads});
     SimulationOptions o = colliding(1e-2, 0.4, 0.3);
     o.gravity = {0.0, 0.0, -10.0};
-    Simulation flow(environment, o, WallResponses(WallResponse{WallResponseKind::reflect, 0.4, 0.3}));
+    Simulation flow(environment, test::with_response(o, Reflect{0.4, 0.3}));
     const std::size_t count = std::max<std::size_t>(60, test::scaled<std::size_t>(600, 3000));
     flow.add_random(count / 4, {1.0, 0.0, -2.0}, 0.12);
     flow.add_random(count / 2, {0.0, 1.0, -2.0}, 0.06);
@@ -140,7 +143,7 @@ TEST(Collisions, ThreadsAndCheckpoints) {
       if (i == save_at) {
         const SimulationCheckpoint saved = flow.checkpoint();
         Environment again(generate_box(box), Threads{threads});
-        Simulation other(again, o, WallResponses(WallResponse{WallResponseKind::reflect, 0.4, 0.3}));
+        Simulation other(again, test::with_response(o, Reflect{0.4, 0.3}));
         other.restore(saved);
         for (; i < 40; ++i) other.step();
         return other.state_hash().hex();
@@ -163,7 +166,7 @@ TEST(Collisions, FrictionAngle) {
     const double angle = std::atan(0.5) * share;
     SimulationOptions o = colliding(2e-3, 0.0, 0.5);
     o.gravity = {9.81 * std::sin(angle), 0.0, -9.81 * std::cos(angle)};
-    Simulation flow(environment, o, WallResponses(WallResponse{WallResponseKind::reflect, 0.0, 0.5}));
+    Simulation flow(environment, test::with_response(o, Reflect{0.0, 0.5}));
     const double r = 0.1;
     flow.add(std::vector<Vec3>{{1.0, 1.0, r * (1.0 + resting_gap)}}, {}, r);
     const int steps = 400;
@@ -177,8 +180,7 @@ TEST(Collisions, FrictionAngle) {
 // Two spheres meet in the middle of a box, one bounces off a wall: as the formulas say.
 TEST(Collisions, ReboundAtWallsAndEachOther) {
   Environment environment(box_of({4, 4, 4}, {4, 4, 4}), Threads{1});
-  Simulation flow(environment, colliding(0.01, 0.5, 0.0),
-                  WallResponses(WallResponse{WallResponseKind::reflect, 0.25, 0.0}));
+  Simulation flow(environment, test::with_response(colliding(0.01, 0.5, 0.0), Reflect{0.25, 0.0}));
   flow.add(std::vector<Vec3>{{1.0, 2.0, 2.0}}, {1.0, 0.0, 0.0}, 0.2);
   flow.add(std::vector<Vec3>{{3.0, 2.0, 2.0}}, {-1.0, 0.0, 0.0}, 0.2);
   flow.add(std::vector<Vec3>{{0.5, 0.5, 0.5}}, {0.0, 0.0, -2.0}, 0.2);
@@ -198,7 +200,7 @@ TEST(Collisions, MovingWallsCarry) {
   Environment environment(mesh, Threads{1});
   SimulationOptions o = colliding(0.01, 0.0, 0.3);
   o.gravity = {0, 0, -9.81};
-  Simulation flow(environment, o, WallResponses(WallResponse{WallResponseKind::reflect, 0.0, 0.3}));
+  Simulation flow(environment, test::with_response(o, Reflect{0.0, 0.3}));
   std::vector<Vec3> shift(mesh.points.size());
   for (std::size_t i = 0; i < shift.size(); ++i) shift[i] = {0.0, 0.0, 0.5 * (1.0 - mesh.points[i].z / 4.0)};
   const auto places = lattice(60, 4, {0.5, 0.5, 0.4}, 0.65);
@@ -222,7 +224,7 @@ TEST(Collisions, InThePlane) {
   Environment environment(generate_rectangle(rectangle), Threads{1});
   SimulationOptions o = colliding(0.01, 0.2, 0.3);
   o.gravity = {0, -9.81, 0};
-  Simulation flow(environment, o, WallResponses(WallResponse{WallResponseKind::reflect, 0.2, 0.3}));
+  Simulation flow(environment, test::with_response(o, Reflect{0.2, 0.3}));
   std::vector<Vec3> places;
   for (int i = 0; i < 40; ++i) places.push_back({0.5 + 0.62 * (i % 8) + 0.01 * (i % 3), 0.5 + 0.7 * (i / 8), 0.0});
   flow.add(places, {}, 0.25);

@@ -299,7 +299,7 @@ TEST(Deformation, MotionsInThePlaneAreTaken) {
       step_about(Kind::stretch, across), step_about(Kind::pulse, within), step_about(Kind::pulse, across),
       step_about(Kind::pulse, {}),       step_about(Kind::bump, within),  field};
   for (const DeformationStep& s : good) {
-    EXPECT_FALSE(leaves_the_plane({s})) << deformation_kind_names[static_cast<std::size_t>(s.kind)];
+    EXPECT_FALSE(leaves_the_plane({s})) << name_of(s.kind);
     EXPECT_EQ(refusal({s}), "");
   }
   good.insert(good.begin(), step_of_frames(0.0));
@@ -330,7 +330,7 @@ TEST(Deformation, MotionsOutOfThePlaneAreNamed) {
       {high, "centre"},
       {step_of_frames(-0.5), "frame 1 must have z = 0 everywhere, and its position 7 has z = -0.5"}};
   for (const auto& [s, member] : bad) {
-    const std::string kind(deformation_kind_names[static_cast<std::size_t>(s.kind)]);
+    const std::string kind(name_of(s.kind));
     EXPECT_TRUE(leaves_the_plane({s})) << kind;
     EXPECT_NE(refusal({s}).find("deformation 1 (" + kind + ")"), std::string::npos) << refusal({s});
     EXPECT_NE(refusal({s}).find(member), std::string::npos) << refusal({s});

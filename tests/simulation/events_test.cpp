@@ -1,4 +1,4 @@
-// Surgery while a flow runs: what leaks, what is stopped, and that nobody is lost.
+// Events while a simulation runs: what leaks, what is stopped, and that nobody is lost.
 #include "dartcast/events.hpp"
 
 #include <gtest/gtest.h>
@@ -7,9 +7,10 @@
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/validity.hpp"
-#include "simulation/event_scheduler.hpp"
 #include "support/expectations.hpp"
+#include "dartcast/simulation.hpp"
 #include "support/tier.hpp"
+#include "support/with_response.hpp"
 
 namespace dartcast::event_test {
 
@@ -50,12 +51,12 @@ const Event cut_below = {0.0, Cut{Disc{{6.0, 3.0, 0.5}, {1.0, 0.0, 0.0}, 1.0}, 0
 // Particles that fall reach the bottom of the gap, and nothing else below the channel.
 TEST(Events, ParticlesLeakIntoACut) {
   Environment environment(channel());
-  Simulation flow(environment, falling(0.02), WallResponses(WallResponse{WallResponseKind::slide, 0.0, 0.0}));
+  Simulation flow(environment, test::with_response(falling(0.02), Slide{}));
   std::vector<Vec3> places;
   for (int i = 0; i < 100; ++i) places.push_back({5.76 + 0.005 * i, 3.0, 2.0});
   flow.add(places, {});
   const EventReport report = apply(flow, cut_below);
-  EXPECT_EQ(event_kind_names[report.kind], "cut");
+  EXPECT_EQ(name_of(report.kind), "cut");
   EXPECT_GT(report.cells_opened, 0U);
   EXPECT_EQ(report.boundary_shift, 0.0);
   for (int i = 0; i < 200; ++i) {
@@ -68,8 +69,7 @@ TEST(Events, ParticlesLeakIntoACut) {
 
 TEST(Events, ALigatureSealsAndItsWallsAreDrawnTogether) {
   Environment environment(channel());
-  Simulation flow(environment, SimulationOptions{.dt = 0.02},
-                  WallResponses(WallResponse{WallResponseKind::reflect, 1.0, 0.0}));
+  Simulation flow(environment, test::with_response(SimulationOptions{.dt = 0.02}, Reflect{1.0, 0.0}));
   std::vector<Vec3> places;
   for (int i = 0; i < 300; ++i) places.push_back({1.5 + 0.008 * i, 1.5 + 0.01 * i, 3.0 + 0.003 * (i % 7)});
   flow.add(places, {2.0, 0.3, 0.7});
@@ -95,7 +95,7 @@ TEST(Events, SurgeryOnWhatDeforms) {
   std::vector<std::string> hashes;
   for (const unsigned threads : {1U, 3U}) {
     Environment environment(channel(), {threads});
-    Simulation flow(environment, falling(0.02), WallResponses(WallResponse{WallResponseKind::reflect, 0.5, 0.0}));
+    Simulation flow(environment, test::with_response(falling(0.02), Reflect{0.5, 0.0}));
     flow.set_deformation(sway(environment));
     flow.set_field(
         VelocityField(environment.complex(), std::vector<Vec3>(environment.positions().size(), Vec3{0.5, 0.0, -1.0})));
@@ -121,7 +121,7 @@ TEST(Events, SurgeryOnWhatDeforms) {
 
 TEST(Events, ASliceIsTakenOutAndFilledAgain) {
   Environment environment(channel());
-  Simulation flow(environment, falling(0.02), WallResponses(WallResponse{WallResponseKind::reflect, 0.5, 0.0}));
+  Simulation flow(environment, test::with_response(falling(0.02), Reflect{0.5, 0.0}));
   flow.add_random(500, {1.0, 0.0, 0.0});
   const std::size_t in_slice = count_if(flow, [](const Vec3& x) { return x.x > 5.5 && x.x < 7.5; });
   Event remove{0.0, Carve{box_tool({5.5, -1.0, -1.0}, {7.5, 7.0, 7.0}), Carving::remove}, OrphanPolicy::absorb};
@@ -172,8 +172,7 @@ TEST(Events, RemeshesWhereADeformationTurnsCellsOver) {
   std::size_t invalid[2] = {0, 0};  // cells, over all steps
   for (const bool remeshed : {false, true}) {
     Environment environment(generate_box(o));
-    Simulation flow(environment, SimulationOptions{.dt = 0.02},
-                    WallResponses(WallResponse{WallResponseKind::reflect, 1.0, 0.0}));
+    Simulation flow(environment, test::with_response(SimulationOptions{.dt = 0.02}, Reflect{1.0, 0.0}));
     DeformationStep bump;
     bump.kind = DeformationKind::bump;
     bump.amplitude = 2.5;
@@ -198,34 +197,32 @@ TEST(Events, RemeshesWhereADeformationTurnsCellsOver) {
 TEST(Events, SurgeryKeepsToTheTimesAndDoesItAgain) {
   const std::vector<Event> events = {
       cut_below, {0.1, Ligature{plane_through({3.5, 3.0, 3.0}, {1.0, 0.0, 0.0}), {3.5, 3.0, 3.0}, {0.0, 1.0}, 0.0}}};
-  const RemeshScene never;
   Environment environment(channel());
-  Simulation flow(environment, falling(0.02), WallResponses(WallResponse{WallResponseKind::slide, 0.0, 0.0}));
+  Simulation flow(environment, test::with_response(falling(0.02), Slide{}));
   flow.add_random(200, {});
-  EventScheduler surgery(events, never, {}, 0.02, flow);
+  flow.set_events(events);
   for (int i = 0; i < 20; ++i) {
-    surgery.before_step();
-    EXPECT_EQ(surgery.log().events.size(), i < 5 ? 1U : 2U);
     flow.step();
-    surgery.after_step();
+    EXPECT_EQ(flow.event_log().events.size(), i < 5 ? 1U : 2U);
   }
   Environment other(channel());
   Simulation again(other, falling(0.02));
-  EventScheduler replayed(events, never, {}, 0.02, again);
-  replayed.replay(surgery.log());
-  EXPECT_EQ(other.map(), environment.map());
+  again.set_events(events);
   again.restore(flow.checkpoint());
-  test::expect_audited(again.environment().complex(), again.particles());
+  EXPECT_EQ(other.map(), environment.map());
+  EXPECT_EQ(again.state_hash(), flow.state_hash());
+  test::expect_audited(other.complex(), again.particles());
+  Simulation without(other, falling(0.02));  // it has no such events to repeat
+  EXPECT_THROW(without.restore(flow.checkpoint()), InvalidArgument);
 }
 
 TEST(Events, SayWhichIsRefused) {
   const std::vector<Event> events = {{0.0, Ligature{plane_through({60.0, 3.0, 3.0}, {1.0, 0.0, 0.0}), {}, {}, 0.0}}};
   Environment environment(channel());
   Simulation flow(environment, falling(0.02));
-  const RemeshScene never;
-  EventScheduler surgery(events, never, {}, 0.02, flow);
+  flow.set_events(events);
   try {
-    surgery.before_step();
+    flow.step();
     FAIL() << "there is nothing to tie";
   } catch (const Error& e) {
     EXPECT_NE(std::string(e.what()).find("event 1 (ligature at 0 s)"), std::string::npos) << e.what();
@@ -242,23 +239,19 @@ TEST(Events, InThePlaneALigatureSeals) {
   SimulationOptions drift;
   drift.dt = 0.05;
   drift.gravity = {1.0, 0.0, 0.0};
-  Simulation flow(environment, drift, WallResponses(WallResponse{WallResponseKind::slide, 0.0, 0.0}));
+  Simulation flow(environment, test::with_response(drift, Slide{}));
   std::vector<Vec3> places;
   for (int i = 0; i < 20; ++i) places.push_back({1.0, 0.1 + 0.19 * i, 0.0});
   flow.add(places, {});
-  const RemeshScene never;
-  const std::vector<Event> cut = {cut_below};
-  EXPECT_THROW(EventScheduler(cut, never, {}, 0.05, flow), InvalidArgument);
+  EXPECT_THROW(flow.set_events({cut_below}), InvalidArgument);
   const std::vector<Event> tie = {
       {0.5, Ligature{plane_through({6.5, 2.0, 0.0}, {1.0, 0.0, 0.0}), {6.5, 2.0, 0.0}, {0.0, 1.0}, 0.0}}};
-  EventScheduler surgery(tie, never, {}, 0.05, flow);
+  flow.set_events(tie);
   for (int i = 0; i < 200; ++i) {
-    surgery.before_step();
     flow.step();
-    surgery.after_step();
     ASSERT_NO_FATAL_FAILURE(test::expect_audited(flow.environment().complex(), flow.particles()));
   }
-  EXPECT_EQ(surgery.log().events.at(0).cells_blocked, 4U);
+  EXPECT_EQ(flow.event_log().events.at(0).cells_blocked, 4U);
   EXPECT_EQ(count_if(flow, [](const Vec3& x) { return x.x == 6.0; }), 20U);
 }
 

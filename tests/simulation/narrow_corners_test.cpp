@@ -8,6 +8,7 @@
 
 #include "dartcast/simulation.hpp"
 #include "support/tier.hpp"
+#include "support/with_response.hpp"
 
 namespace dartcast::test::narrow_corners_test {
 
@@ -66,7 +67,7 @@ double energy(const Simulation& flow, std::size_t i, const SimulationOptions& o,
 
 void expect_bounded(Case c, std::size_t count, std::uint64_t steps) {
   Environment environment(c.mesh, Threads{1});
-  Simulation flow(environment, c.options, WallResponses(c.response));
+  Simulation flow(environment, test::with_response(c.options, c.response));
   flow.add_random(count, c.velocity);
   const double step_energy = dot(c.options.gravity, c.options.gravity) * c.options.dt * c.options.dt;
   std::vector<double> start;
@@ -161,7 +162,7 @@ TEST(NarrowCorners, EnergyStaysBoundedInASliver) {
 TEST(NarrowCorners, AContactNextToACornerMovesNobody) {
   Environment environment(wedge(0.1), Threads{1});
   const SimulationOptions o = falling({0.3, 1.0, -3});
-  Simulation flow(environment, o, WallResponses({WallResponseKind::reflect, 1.0, 0.0}));
+  Simulation flow(environment, test::with_response(o, Reflect{1.0, 0.0}));
   flow.add(std::vector<Vec3>{{1.9762194268653117e-06, 1, 0.019869600474872146}},
            {-0.0033525515524524914, 0, -2.052864144302796});
   const double before = energy(flow, 0, o, 0.5);
@@ -175,7 +176,7 @@ TEST(NarrowCorners, AContactNextToACornerMovesNobody) {
 TEST(NarrowCorners, AnElasticParticleKeepsItsEnergy) {
   Environment environment(wedge(90.0), Threads{1});
   const SimulationOptions o = falling({0, 0, -3});
-  Simulation flow(environment, o, WallResponses({WallResponseKind::reflect, 1.0, 0.0}));
+  Simulation flow(environment, test::with_response(o, Reflect{1.0, 0.0}));
   flow.add(std::vector<Vec3>{{0.01, 0.5, 0.6}}, {0, 0, 0});
   const double start = energy(flow, 0, o, 0.5);
   const double rest = 0.0;  // at the edge
@@ -188,7 +189,7 @@ TEST(NarrowCorners, AnElasticParticleKeepsItsEnergy) {
 TEST(NarrowCorners, WhatHasComeToRestInAVertexStaysThereAtOneContactAStep) {
   for (const double restitution : {0.0, 0.5, 0.9}) {
     Environment environment(top(), Threads{1});
-    Simulation flow(environment, falling({0, 0, -3}), WallResponses({WallResponseKind::reflect, restitution, 0.0}));
+    Simulation flow(environment, test::with_response(falling({0, 0, -3}), Reflect{restitution, 0.0}));
     flow.add_random(at_rest(), {0.3, 0.2, 0});
     for (int step = 0; step < 3000; ++step) flow.step();
     for (std::size_t i = 0; i < flow.particles().size(); ++i) {
@@ -205,7 +206,7 @@ TEST(NarrowCorners, WhatHasComeToRestInAVertexStaysThereAtOneContactAStep) {
 TEST(NarrowCorners, WhatHasComeToRestOnAnEdgeStaysThere) {
   for (const double degrees : {1.6, 30.0, 90.0}) {
     Environment environment(wedge(degrees), Threads{1});
-    Simulation flow(environment, falling({0, 0, -3}), WallResponses({WallResponseKind::reflect, 0.5, 0.3}));
+    Simulation flow(environment, test::with_response(falling({0, 0, -3}), Reflect{0.5, 0.3}));
     flow.add_random(at_rest(), {0.01, 0.2, 0});
     for (int step = 0; step < 3000; ++step) flow.step();
     const std::vector<Vec3> velocities(flow.velocities().begin(), flow.velocities().end());

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "dartcast/error.hpp"
+#include "dartcast/events.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/simulation.hpp"
-#include "simulation/event_scheduler.hpp"
 #include "simulation/polyline.hpp"
 #include "support/expectations.hpp"
 #include "support/meshes.hpp"
@@ -95,17 +95,12 @@ TEST(FlowRanges, SpeedsThatOverflow) {
   }
 }
 
-TEST(FlowRanges, BodiesOfAnotherEnvironment) {
+TEST(FlowRanges, BodiesAndSubsteps) {
   Environment environment(cubes(2));
-  Environment other(cubes(2));
   SimulationOptions o = colliding();
+  o.substeps = 2;
   Simulation flow(environment, o);
-  BodiesOptions of_bodies;
-  of_bodies.dt = o.dt;
-  Bodies strangers(other, of_bodies);
-  Bodies own(environment, of_bodies);
-  expect_refused([&] { flow.set_bodies(strangers); }, "another environment");
-  EXPECT_NO_THROW(flow.set_bodies(own));
+  expect_refused([&] { flow.add_body(std::vector<Vec3>{{0.5, 0.5, 0.5}}, {}); }, "substeps must be 1");
 }
 
 TEST(PairRanges, SpheresThatReachTooFar) {
@@ -164,12 +159,9 @@ TEST(SurgeryRanges, TimesOfEvents) {
   SimulationOptions o;
   o.dt = 1e-3;
   Simulation flow(environment, o);
-  const RemeshScene remesh;
-  const AdaptiveSubdivisionScene adaptive_subdivision;
   for (const double at : {-1.0, 1e300, 1e17, infinity, std::nan("")}) {
     const std::vector<Event> events = {{0.0, Ligature{}}, {at, Ligature{}}};
-    expect_refused([&] { const EventScheduler surgery(events, remesh, adaptive_subdivision, o.dt, flow); },
-                   "event 2 (ligature): its time is " + fmt::format("{}", at));
+    expect_refused([&] { flow.set_events(events); }, "event 2 (ligature): its time is " + fmt::format("{}", at));
   }
 }
 

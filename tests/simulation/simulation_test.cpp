@@ -12,6 +12,8 @@
 #include "dartcast/generators.hpp"
 #include "support/expectations.hpp"
 #include "support/meshes.hpp"
+#include "simulation/simulation_state.hpp"
+#include "support/with_response.hpp"
 
 namespace dartcast::flow_test {
 
@@ -51,9 +53,9 @@ TEST(Simulation, RestoresOnlyStatesThatHold) {
   const SimulationCheckpoint good = flow.checkpoint();
   const std::string hash = flow.state_hash().hex();
   const auto expect_refused = [&](auto&& spoil) {
-    SimulationCheckpoint bad = good;
-    spoil(bad.particles[7].state);
-    EXPECT_THROW(flow.restore(bad), InvalidArgument);
+    SimulationState bad = good.state();
+    spoil(bad.particles.particles[7].state);
+    EXPECT_THROW(flow.restore(SimulationCheckpoint(bad)), InvalidArgument);
     EXPECT_EQ(flow.state_hash().hex(), hash);
   };
   expect_refused([](ParticleState& s) { s.cell = Cell(); });
@@ -170,7 +172,7 @@ TEST(Simulation, AFieldInSpaceDoesNotCarryAlong) {
 TEST(Simulation, StuckParticlesMoveWithTheWallWithoutNewContacts) {
   const MeshData mesh = test::cube_of(3, 10.0);
   Environment environment(mesh);
-  Simulation flow(environment, options(0.01), WallResponses(WallResponse{WallResponseKind::stick, 0, 0}));
+  Simulation flow(environment, test::with_response(options(0.01), Stick{}));
   flow.set_deformation(turning(mesh));
   flow.add(std::vector<Vec3>{{9.95, 5, 5}}, {20, 0, 0});
   flow.step();
@@ -184,10 +186,9 @@ TEST(Simulation, StuckParticlesMoveWithTheWallWithoutNewContacts) {
 
 TEST(Simulation, ParticlesLeaveWhereTheyAreAbsorbedOrEscape) {
   Environment environment(test::cube_of(3, 10.0));
-  WallResponses responses(WallResponse{WallResponseKind::reflect, 1, 0});
-  responses.set(environment.map().patch("xmax"), {WallResponseKind::escape, 0, 0});
-  responses.set(environment.map().patch("xmin"), {WallResponseKind::absorb, 0, 0});
-  Simulation flow(environment, options(1.0), responses);
+  SimulationOptions o = options(1.0);
+  o.patch_responses = {{"xmax", Escape{}}, {"xmin", Absorb{}}};
+  Simulation flow(environment, o);
   flow.add(std::vector<Vec3>{{9, 1, 1}, {5, 5, 5}}, {1.5, 0, 0});
   flow.add(std::vector<Vec3>{{1, 5, 5}}, {-1.5, 0, 0});
   const SimulationStep& step = flow.step();
@@ -269,10 +270,9 @@ std::string run_vessel(unsigned threads, std::uint64_t seed, Audit* result = nul
   o.seed = seed;
   o.gravity = {0, -9.81, 0};
   o.drag = 500;
-  WallResponses responses(WallResponse{WallResponseKind::reflect, 0.5, 0.1});
-  responses.set(environment.map().patch("outlet_left"), {WallResponseKind::escape, 0, 0});
-  responses.set(environment.map().patch("outlet_right"), {WallResponseKind::absorb, 0, 0});
-  Simulation flow(environment, o, responses);
+  o.response = Reflect{0.5, 0.1};
+  o.patch_responses = {{"outlet_left", Escape{}}, {"outlet_right", Absorb{}}};
+  Simulation flow(environment, o);
   DeformationStep bend;
   bend.kind = DeformationKind::bend;
   bend.amplitude = 0.8;
@@ -314,7 +314,7 @@ TEST(Simulation, OneHashForAnyNumberOfThreadsAndAnotherForAnotherSeed) {
 TEST(Simulation, ThoseWhoLeftStayInTheHash) {
   Environment environment(test::cube_of(1, 10.0));
   const auto hash = [&](double y) {
-    Simulation flow(environment, options(1.0), WallResponses(WallResponse{WallResponseKind::escape, 1, 0}));
+    Simulation flow(environment, test::with_response(options(1.0), Escape{}));
     flow.add(std::vector<Vec3>{{9, y, 5}}, {3, 0, 0});
     flow.step();
     EXPECT_EQ(flow.particles().size(), 0U);
@@ -420,6 +420,20 @@ TEST(Simulation, RefusesWhatLeavesThePlane) {
   flow.add(std::vector<Vec3>{{1, 1, 0}}, {0.5, 0.25, 0});
   flow.step();
   EXPECT_EQ(flow.particles()[0].position, (Vec3{1.5, 1.25, 0}));
+}
+
+TEST(Simulation, ItsContactsCanBeIterated) {
+  Environment environment(generate_bar());
+  Simulation simulation(environment, {.dt = 0.1, .response = Reflect{0.5}});
+  simulation.add({{2.5, 2.5, 14.0}}, {30.0, 0.0, 1.0});
+  std::vector<Vec3> points;
+  for (const Contact& c : simulation.step().contacts()) {
+    EXPECT_GT(c.time_of_impact, 0.0);
+    points.push_back(c.point);
+  }
+  ASSERT_EQ(points.size(), 1U);  // 1.5 of its 3 metres lead to the wall, and half of the rest back
+  EXPECT_EQ(points[0].x, 4.0);
+  EXPECT_NEAR(simulation.particles()[0].position.x, 4.0 - 0.75, 1e-9);
 }
 
 }  // namespace dartcast::flow_test

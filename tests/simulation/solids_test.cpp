@@ -1,6 +1,4 @@
 // Bodies and catheters in scenes: their files, their place in the summary, what is refused.
-#include "simulation/solids.hpp"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -12,6 +10,7 @@
 #include "dartcast/scene_file.hpp"
 #include "formats/point_file.hpp"
 #include "support/expectations.hpp"
+#include "simulation/bodies_component.hpp"
 #include "support/sample_mesh.hpp"
 
 namespace dartcast::solids_test {

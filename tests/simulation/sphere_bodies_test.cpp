@@ -1,6 +1,4 @@
-// Spheres of a flow that meet bodies.
-#include "simulation/sphere_bodies.hpp"
-
+// Spheres that meet bodies.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,13 +6,16 @@
 #include <numbers>
 #include <string>
 
+#include "base/random.hpp"
 #include "dartcast/audit.hpp"
+#include "dartcast/bodies.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/simulation.hpp"
 #include "support/meshes.hpp"
 #include "support/point_block.hpp"
 #include "support/tier.hpp"
+#include "support/with_response.hpp"
 
 namespace dartcast::sphere_bodies_test {
 
@@ -25,34 +26,28 @@ constexpr double spacing = 0.05;
 
 double mass_of(double radius, double density) { return density * 4.0 / 3.0 * std::numbers::pi * std::pow(radius, 3); }
 
-// A flow and bodies that meet.
+// Spheres and bodies in one simulation.
 struct Both {
   Environment environment;
   Simulation flow;
-  Bodies bodies;
   double density;
 
   Both(MeshData mesh, const Vec3& gravity, const CollisionOptions& collisions, const WallResponse& walls,
        Threads threads = {1})
       : environment(std::move(mesh), threads),
-        flow(environment, flow_options(gravity, collisions), WallResponses(walls)),
-        bodies(environment, bodies_options(gravity), WallResponses(walls)),
-        density(collisions.density) {
-    flow.set_bodies(bodies);
-  }
+        flow(environment, test::with_response(flow_options(gravity, collisions), walls)),
+        density(collisions.density) {}
   static SimulationOptions flow_options(const Vec3& gravity, const CollisionOptions& collisions) {
     SimulationOptions o;
     o.dt = dt;
     o.gravity = gravity;
     o.collisions = collisions;
+    o.body_collisions = std::nullopt;
     return o;
   }
-  static BodiesOptions bodies_options(const Vec3& gravity) {
-    BodiesOptions o;
-    o.dt = dt;
-    o.gravity = gravity;
-    return o;
-  }
+
+  [[nodiscard]] Bodies& bodies() { return *flow.bodies(); }
+  [[nodiscard]] const Bodies& bodies() const { return *flow.bodies(); }
 
   void add_body(int n, const Vec3& centre, const Vec3& velocity, double mass, double damping = 0.0) {
     BodyOptions o;
@@ -60,50 +55,41 @@ struct Both {
     o.radius = 0.6 * spacing;
     o.velocity = velocity;
     o.damping = damping;
-    ASSERT_TRUE(bodies.add(test::block(n, spacing, centre, Quaternion{}), o).refused.empty());
+    ASSERT_TRUE(flow.add_body(test::block(n, spacing, centre, Quaternion{}), o).refused.empty());
   }
-  void step() {
-    flow.step();
-    bodies.step();
-  }
+  void step() { flow.step(); }
 
   [[nodiscard]] double mass(std::size_t sphere) const { return mass_of(flow.radii()[sphere], density); }
   [[nodiscard]] Vec3 momentum() const {
     Vec3 sum;
     for (std::size_t i = 0; i < flow.radii().size(); ++i) sum += flow.velocities()[i] * mass(i);
-    for (std::size_t b = 0; b < bodies.size(); ++b)
-      sum += bodies.rigid_motion_of(b).velocity * bodies.rigid_motion_of(b).mass;
+    for (std::size_t b = 0; b < bodies().size(); ++b)
+      sum += bodies().rigid_motion_of(b).velocity * bodies().rigid_motion_of(b).mass;
     return sum;
   }
   [[nodiscard]] double kinetic() const {
     double sum = 0.0;
     for (std::size_t i = 0; i < flow.radii().size(); ++i)
       sum += 0.5 * mass(i) * dot(flow.velocities()[i], flow.velocities()[i]);
-    for (std::size_t b = 0; b < bodies.size(); ++b) sum += bodies.energy(b).kinetic;
+    for (std::size_t b = 0; b < bodies().size(); ++b) sum += bodies().energy(b).kinetic;
     return sum;
   }
   [[nodiscard]] double deepest() const {
     double deepest = 0.0;
     for (std::size_t i = 0; i < flow.radii().size(); ++i) {
-      for (std::size_t p = 0; p < bodies.radii().size(); ++p) {
+      for (std::size_t p = 0; p < bodies().radii().size(); ++p) {
         const double gap =
-            norm(flow.particles()[i].position - bodies.positions()[p]) - flow.radii()[i] - bodies.radii()[p];
+            norm(flow.particles()[i].position - bodies().positions()[p]) - flow.radii()[i] - bodies().radii()[p];
         deepest = std::max(deepest, -gap);
       }
     }
     return deepest;
   }
   [[nodiscard]] std::uint64_t contacts() const {
-    return flow.totals().counters.contacts[2] + bodies.counters().contacts[2];
+    return flow.totals().counters.contacts[2] + bodies().counters().contacts[2];
   }
-  [[nodiscard]] std::size_t failed() const {
-    return audit(environment.complex(), flow.particles()).failed +
-           audit(environment.complex(), bodies.particles()).failed;
-  }
-  [[nodiscard]] std::string hash() const {
-    StateHash all = flow.state_hash();
-    return (all += bodies.state_hash()).hex();
-  }
+  [[nodiscard]] std::size_t failed() const { return flow.audit().failed; }
+  [[nodiscard]] std::string hash() const { return flow.state_hash().hex(); }
 };
 
 // A ball along the line through a body's centre: as Newton's law for two masses says.
@@ -123,7 +109,7 @@ TEST(SphereBodies, ReboundAsTheFormulaSays) {
       ASSERT_EQ(both.contacts(), 0U);
       const double common = 1.5 * m / (m + body);
       EXPECT_NEAR(both.flow.velocities()[0].x, common - restitution * 1.5 * body / (m + body), 1e-9);
-      EXPECT_NEAR(both.bodies.rigid_motion_of(0).velocity.x, common * (1.0 + restitution), 1e-9);
+      EXPECT_NEAR(both.bodies().rigid_motion_of(0).velocity.x, common * (1.0 + restitution), 1e-9);
       // A body's places are rounded, and so its velocity, by some 2^-50 / dt in a step.
       EXPECT_LE(norm(both.momentum() - before), 1e-11 * (m + body));
       EXPECT_LE(both.deepest(), 1e-6 * r);
@@ -141,14 +127,14 @@ TEST(SphereBodies, TurnWhatTheyHitBesideItsCentre) {
   both.add_body(3, {0.5, 0.5, 0.5}, {}, 2.0 * m);
   both.flow.add(std::vector<Vec3>{{0.3, 0.56, 0.5}}, {1.5, 0.0, 0.0}, r);
   const auto angular = [&] {
-    const RigidMotion body = both.bodies.rigid_motion_of(0);
+    const RigidMotion body = both.bodies().rigid_motion_of(0);
     return body.angular_momentum + cross(body.centre, body.velocity * body.mass) +
            cross(both.flow.particles()[0].position, both.flow.velocities()[0] * m);
   };
   const Vec3 before = angular();
   for (int i = 0; i < 80; ++i) both.step();
   ASSERT_EQ(both.contacts(), 0U);
-  EXPECT_LT(both.bodies.rigid_motion_of(0).angular_velocity.z, -1.0);
+  EXPECT_LT(both.bodies().rigid_motion_of(0).angular_velocity.z, -1.0);
   EXPECT_LE(norm(angular() - before), 1e-3 * norm(before));
 }
 
@@ -200,18 +186,18 @@ TEST(SphereBodies, BodyComesToRestOnSpheres) {
   }
   both.add_body(4, {0.3, 0.3, 0.25}, {0.3, 0.0, -1.0}, 20.0, 20.0);
   double peak = 0.0;
-  double last = both.bodies.energy(0).total();
+  double last = both.bodies().energy(0).total();
   for (int i = 0; i < 2500; ++i) {
-    both.flow.step();
-    const BodiesStep& step = both.bodies.step();
-    const double now = both.bodies.energy(0).total();
+    both.step();
+    const BodiesStep& step = both.flow.bodies_step();
+    const double now = both.bodies().energy(0).total();
     ASSERT_LE(now, last + step.input + (last + std::abs(step.input)) * 2.0 * energy_slack) << i;
     last = now;
     peak = std::max(peak, both.kinetic());
   }
   EXPECT_LE(both.kinetic(), 1e-6 * peak);
   EXPECT_LE(both.deepest(), 1e-3 * r);
-  EXPECT_GT(both.bodies.rigid_motion_of(0).centre.z, 1.5 * spacing + 0.6 * spacing + r);  // on them, not among them
+  EXPECT_GT(both.bodies().rigid_motion_of(0).centre.z, 1.5 * spacing + 0.6 * spacing + r);  // on them, not among them
   EXPECT_EQ(both.failed(), 0U);
 }
 
@@ -230,12 +216,12 @@ TEST(SphereBodies, ASphereStandsOnABody) {
     both.flow.add(std::span(&x, 1), {0.0, 0.0, -1.0}, r);
     for (int i = 0; i < 1000; ++i) both.step();
     const Vec3 ball = both.flow.particles()[0].position;
-    const Vec3 body = both.bodies.rigid_motion_of(0).centre;
+    const Vec3 body = both.bodies().rigid_motion_of(0).centre;
     for (int i = 0; i < 500; ++i) both.step();
     EXPECT_LE(norm(both.flow.particles()[0].position - ball), 1e-4 * r) << ratio;
-    EXPECT_LE(norm(both.bodies.rigid_motion_of(0).centre - body), 1e-4 * r) << ratio;
+    EXPECT_LE(norm(both.bodies().rigid_motion_of(0).centre - body), 1e-4 * r) << ratio;
     EXPECT_LE(norm(both.flow.velocities()[0]), 2.0 * 9.81 * dt) << ratio;
-    EXPECT_LE(norm(both.bodies.rigid_motion_of(0).velocity), 9.81 * dt / ratio) << ratio;
+    EXPECT_LE(norm(both.bodies().rigid_motion_of(0).velocity), 9.81 * dt / ratio) << ratio;
     EXPECT_LE(both.deepest(), 0.01 * r) << ratio;
     EXPECT_EQ(both.failed(), 0U);
   }
@@ -262,15 +248,13 @@ TEST(SphereBodies, AreTheSameBitsForAnyNumberOfThreadsAndFromACheckpoint) {
     const auto both = prepared(threads);
     fill(*both);
     for (int i = 0; i < half; ++i) both->step();
-    const SimulationCheckpoint flow = both->flow.checkpoint();
-    const Bodies::Checkpoint bodies = both->bodies.checkpoint();
-    EXPECT_FALSE(flow.impulses.empty());
+    const SimulationCheckpoint saved = both->flow.checkpoint();
+    EXPECT_FALSE(saved.state().particles.impulses.empty());
     for (int i = 0; i < half; ++i) both->step();
     if (expected.empty()) expected = both->hash();
     EXPECT_EQ(both->hash(), expected);
     const auto resumed = prepared(threads);
-    resumed->flow.restore(flow);
-    resumed->bodies.restore(bodies);
+    resumed->flow.restore(saved);
     for (int i = 0; i < half; ++i) resumed->step();
     EXPECT_EQ(resumed->hash(), expected);
     EXPECT_GT(both->flow.totals().collisions.pairs_touching, 100U);
@@ -287,15 +271,15 @@ TEST(SphereBodies, ThroughAWallNobodyMeets) {
   Both both(std::move(mesh), {}, CollisionOptions{}, WallResponse{});
   BodyOptions o;
   o.radius = 0.12;
-  both.bodies.add(std::vector<Vec3>{{0.25, 0.15, 0.15}}, o);
+  both.flow.add_body(std::vector<Vec3>{{0.25, 0.15, 0.15}}, o);
   both.flow.add(std::vector<Vec3>{{0.45, 0.15, 0.15}}, {}, 0.1);
   both.flow.add(std::vector<Vec3>{{0.27, 0.15, 0.15}}, {});  // a point
   for (int i = 0; i < 3; ++i) both.step();
   EXPECT_GT(both.flow.totals().collisions.pairs_tested, 0U);
   EXPECT_EQ(both.flow.totals().collisions.pairs_near, 0U);
-  EXPECT_EQ(both.bodies.velocities()[0], Vec3{});
+  EXPECT_EQ(both.bodies().velocities()[0], Vec3{});
   o.radius = 0.02;
-  both.bodies.add(std::vector<Vec3>{{0.48, 0.15, 0.15}}, o);  // on the other side
+  both.flow.add_body(std::vector<Vec3>{{0.48, 0.15, 0.15}}, o);  // on the other side
   both.step();
   EXPECT_EQ(both.flow.totals().collisions.pairs_near, 1U);
 }
@@ -304,14 +288,14 @@ TEST(SphereBodies, ThroughAWallNobodyMeets) {
 TEST(SphereBodies, ABodyIsGivenSomethingOnce) {
   Both both(test::cube_of(6, 1.0), {}, CollisionOptions{}, WallResponse{});
   both.add_body(3, {0.4, 0.5, 0.5}, {}, 2.0);
-  RigidMover m = both.bodies.predicted_state(0);
+  RigidMover m = both.bodies().predicted_state(0);
   m.velocity.x = 1.5;
   m.position_delta.x = 1.5 * dt;
-  both.bodies.apply_impulse(0, m);
-  EXPECT_NEAR(both.bodies.step().input, 0.5 * 2.0 * 1.5 * 1.5, 1e-9);
-  EXPECT_NEAR(both.bodies.rigid_motion_of(0).centre.x, 0.4 + 1.5 * dt, 1e-12);
-  EXPECT_EQ(both.bodies.step().input, 0.0);
-  EXPECT_NEAR(both.bodies.rigid_motion_of(0).velocity.x, 1.5, 1e-9);
+  both.bodies().apply_impulse(0, m);
+  EXPECT_NEAR(both.bodies().step().input, 0.5 * 2.0 * 1.5 * 1.5, 1e-9);
+  EXPECT_NEAR(both.bodies().rigid_motion_of(0).centre.x, 0.4 + 1.5 * dt, 1e-12);
+  EXPECT_EQ(both.bodies().step().input, 0.0);
+  EXPECT_NEAR(both.bodies().rigid_motion_of(0).velocity.x, 1.5, 1e-9);
 }
 
 TEST(SphereBodies, ContactsBetweenBodiesAreTheirOwn) {
@@ -331,8 +315,8 @@ TEST(SphereBodies, ABodyThatAWallHoldsGivesNoWay) {
   Both both(test::cube_of(6, 1.0), {}, c, WallResponse{WallResponseKind::stick, 0.0, 0.0});
   both.add_body(3, {0.06, 0.5, 0.5}, {-2.0, 0.0, 0.0}, 1.0);
   for (int i = 0; i < 50; ++i) both.step();
-  ASSERT_TRUE(std::find(both.bodies.fates().begin(), both.bodies.fates().end(), ParticleStatus::stuck) !=
-              both.bodies.fates().end());
+  ASSERT_TRUE(std::find(both.bodies().fates().begin(), both.bodies().fates().end(), ParticleStatus::stuck) !=
+              both.bodies().fates().end());
   both.flow.add(std::vector<Vec3>{{0.4, 0.5, 0.5}}, {-2.0, 0.0, 0.0}, 0.04);
   for (int i = 0; i < 150; ++i) both.step();
   EXPECT_NEAR(both.flow.velocities()[0].x, 2.0, 0.02);  // it still trembles
@@ -340,14 +324,13 @@ TEST(SphereBodies, ABodyThatAWallHoldsGivesNoWay) {
 
 TEST(SphereBodies, RefuseWhatIsOutOfRange) {
   Environment environment(test::cube_of(6, 1.0), Threads{1});
-  SimulationOptions o = Both::flow_options({}, CollisionOptions{});
-  BodiesOptions b = Both::bodies_options({});
-  b.dt = 2e-3;
-  Bodies slow(environment, b);
-  EXPECT_THROW(Simulation(environment, o).set_bodies(slow), InvalidArgument);
-  Bodies bodies(environment, Both::bodies_options({}));
+  SimulationOptions o;
+  o.collisions = CollisionOptions{};
   o.substeps = 2;
-  EXPECT_THROW(Simulation(environment, o).set_bodies(bodies), InvalidArgument);
+  const std::vector<Vec3> points = {{0.4, 0.4, 0.4}, {0.5, 0.4, 0.4}, {0.4, 0.5, 0.4}, {0.4, 0.4, 0.5}};
+  EXPECT_THROW(Simulation(environment, o).add_body(points, {}), InvalidArgument);
+  o.collisions.reset();
+  EXPECT_NO_THROW(Simulation(environment, o).add_body(points, {}));
 }
 
 }  // namespace dartcast::sphere_bodies_test

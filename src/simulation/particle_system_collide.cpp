@@ -1,12 +1,11 @@
-// The collisions of a flow's spheres.
+// The collisions of spheres: masses, walls near by, impulses.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "base/parallel.hpp"
-#include "dartcast/error.hpp"
-#include "dartcast/events.hpp"
-#include "dartcast/simulation.hpp"
+#include "response/incident_walls.hpp"
+#include "simulation/particle_system.hpp"
 #include "tracking/representable_point.hpp"
 
 namespace dartcast {
@@ -15,22 +14,26 @@ namespace {
 
 constexpr std::size_t wall_grain = 256;
 
-// A wall farther than this share of the radius is met by the sphere's own step, with its true contact: the nearest
-// place of a wall that is far away says little about what is touched.
+// The solver takes walls within this share of the radius. A sphere meets farther walls by its own step, with the true
+// contact: the nearest point of a far wall says little about the point that is touched.
 constexpr double wall_share = 0.25;
+
+// The wall as the solver sees it, which lets spheres rest on it; none where a sphere must meet it by its own step.
+std::optional<WallSurface> solved_surface(const WallResponse& response) {
+  switch (response.kind) {
+    case WallResponseKind::reflect: return WallSurface{response.restitution, response.friction};
+    case WallResponseKind::slide: return WallSurface{};
+    case WallResponseKind::stick:
+    case WallResponseKind::absorb:
+    case WallResponseKind::escape: break;
+  }
+  return std::nullopt;
+}
 
 }  // namespace
 
-void Simulation::set_bodies(Bodies& bodies) {
-  if (options_.substeps != 1) throw InvalidArgument("flow: spheres and bodies meet once in a step: substeps must be 1");
-  if (bodies.options().dt != options_.dt)
-    throw InvalidArgument("flow: the steps of bodies that its spheres meet must be as long as its own");
-  if (&bodies.environment() != &environment_) throw InvalidArgument("flow: the bodies are in another environment");
-  bodies_ = &bodies;
-}
-
-// Masses, and who takes part: those held or gone meet nobody, those that stick to a wall cannot be pushed.
-void Simulation::weigh() {
+// Masses, and which spheres take part: those held or gone meet nobody, those stuck to a wall cannot be pushed.
+void ParticleSystem::weigh() {
   met_radii_.resize(radii_.size());
   inverse_masses_.resize(radii_.size());
   displacements_.resize(radii_.size());
@@ -44,37 +47,36 @@ void Simulation::weigh() {
   }
 }
 
-// What is known of the room around a sphere from where it was measured. Distances were rounded: a share is given up.
-double Simulation::clearance(std::size_t i) const {
+// The distance that is still free of walls around a sphere, from where it was last measured. Distances were rounded, so
+// the result is a little smaller.
+double ParticleSystem::clearance(std::size_t i) const {
   const double room = clear_[i].distance * (1.0 - 0x1p-20) - norm(particles_[i].position - clear_[i].centre);
   return std::max(0.0, room);
 }
 
-void Simulation::walls_of(std::size_t i, double dt, bool moving, NearWalls& near, std::vector<WallContact>& found) {
+void ParticleSystem::walls_of(std::size_t i, double dt, bool moving, NearWalls& near, std::vector<WallContact>& found) {
   const double r = met_radii_[i];
   clearances_[i] = clearance(i);
   if (clearances_[i] >= r * (1.0 + wall_share)) return;
-  // Where walls stand still and are not next to it, more room is looked into at once, and then serves until the sphere
-  // has used it up. What is found within the share that counts does not depend on it.
+  // Where walls stand still and none is next to the sphere, search farther: the result then serves for many steps. The
+  // walls within the share that counts are the same.
   const bool next_to_wall = deforms() || (clear_[i].distance > 0.0 && clear_[i].distance < 1.5 * r);
   const double reach = next_to_wall ? wall_share * r : r;
   const auto walls = walls_within(environment_.complex(), particles_[i], r + reach, near, moving);
   clear_[i] = {particles_[i].position, walls.empty() ? r + reach : walls.front().distance};
   clearances_[i] = clearance(i);
   for (const WallFeature& w : walls) {
-    const WallResponse& response = responses_.of(w.patch);
-    if (response.kind != WallResponseKind::reflect && response.kind != WallResponseKind::slide) continue;
-    const bool slides = response.kind == WallResponseKind::slide;
+    const std::optional<WallSurface> surface = solved_surface(responses_.of(w.patch));
+    if (!surface) continue;
     const Vec3 velocity = moving ? w.displacement * (1.0 / dt) : Vec3{};
     const double gap = w.distance - r;
     const bool meets = gap <= wall_share * r && dot(velocities_[i] - velocity, w.normal) * dt <= -gap;
     if (gap > near_share * r && !meets) continue;
-    found.push_back({static_cast<std::uint32_t>(i), w.normal, gap, velocity, slides ? 0.0 : response.restitution,
-                     slides ? 0.0 : response.friction});
+    found.push_back({static_cast<std::uint32_t>(i), w.normal, gap, velocity, surface->restitution, surface->friction});
   }
 }
 
-void Simulation::find_walls(double dt, bool moving) {
+void ParticleSystem::find_walls(double dt, bool moving) {
   const std::size_t chunks = chunk_count(radii_.size(), wall_grain);
   if (near_.size() < chunks) near_.resize(chunks);
   near_contacts_.resize(chunks);
@@ -92,14 +94,14 @@ void Simulation::find_walls(double dt, bool moving) {
   for (const auto& part : near_contacts_) walls_.insert(walls_.end(), part.begin(), part.end());
 }
 
-// Where those that stick to a wall go is known once it has moved.
-void Simulation::aim_stuck(double dt) {
+// Targets of stuck particles are known only once their walls have moved.
+void ParticleSystem::aim_stuck(double dt) {
   for (std::size_t i = 0; i < fates_.size(); ++i) {
     if (fates_[i] == ParticleStatus::stuck) targets_[i] = flushed(aim_at(i, dt, true).target);
   }
 }
 
-void Simulation::collide(double dt, bool moving) {
+void ParticleSystem::collide(double dt, bool moving) {
   aim(dt, false);
   weigh();
   find_walls(dt, moving);
@@ -125,12 +127,6 @@ void Simulation::collide(double dt, bool moving) {
     if (fates_[i] == ParticleStatus::alive && !particles_[i].held)
       targets_[i] = flushed(particles_[i].position + displacements_[i]);
   }
-}
-
-AdaptiveSubdivisionReport Simulation::adapt(AdaptiveSubdivision& adaptive_subdivision, OrphanPolicy orphaned) {
-  return adaptive_subdivision.adapt(
-      environment_.complex(), particles_,
-      [&](const std::function<void(ComplexEdit&)>& make) { return edit(make, orphaned).edit; });
 }
 
 }  // namespace dartcast

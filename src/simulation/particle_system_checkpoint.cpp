@@ -1,11 +1,11 @@
-// What a flow goes on from.
+// Saving the particles, going on from a saved state, and their hash.
 #include "dartcast/error.hpp"
-#include "dartcast/simulation.hpp"
+#include "simulation/particle_system.hpp"
 
 namespace dartcast {
 
-SimulationCheckpoint Simulation::checkpoint() const {
-  SimulationCheckpoint saved;
+void ParticleSystem::save(SimulationState& state) const {
+  ParticleSystemState& saved = state.particles;
   saved.steps = steps_;
   saved.next_id = next_id_;
   saved.random = random_;
@@ -18,16 +18,19 @@ SimulationCheckpoint Simulation::checkpoint() const {
   const auto cached_impulses =
       meets_bodies() ? body_collider_.solver().cached_impulses() : collider_.solver().cached_impulses();
   saved.impulses.assign(cached_impulses.begin(), cached_impulses.end());
-  return saved;
+  saved.user_data = user_data_;
 }
 
-void Simulation::restore(const SimulationCheckpoint& saved) {
+void ParticleSystem::restore(const SimulationState& state) {
+  const ParticleSystemState& saved = state.particles;
   if (saved.totals.contacts_by_patch.size() != totals_.contacts_by_patch.size())
-    throw InvalidArgument("flow: the checkpoint is of an environment with other patches");
+    throw InvalidArgument("simulation: the checkpoint is of an environment with other patches");
+  if (saved.user_data.size() != saved.particles.size() * width())
+    throw InvalidArgument("simulation: the checkpoint is of a simulation with other user data");
   if (steps_ != saved.steps) stand_at(saved.steps);
   std::vector<ParticleState> states;
   std::vector<Weights> weights;
-  for (const SimulationCheckpoint::Particle& p : saved.particles) {
+  for (const ParticleSystemState::Particle& p : saved.particles) {
     states.push_back(p.state);
     weights.push_back(p.held_weights);
   }
@@ -38,7 +41,7 @@ void Simulation::restore(const SimulationCheckpoint& saved) {
   contact_counts_.clear();
   radii_.clear();
   held_.clear();
-  for (const SimulationCheckpoint::Particle& p : saved.particles) {
+  for (const ParticleSystemState::Particle& p : saved.particles) {
     ids_.push_back(p.id);
     velocities_.push_back(p.velocity);
     fates_.push_back(p.fate);
@@ -46,6 +49,7 @@ void Simulation::restore(const SimulationCheckpoint& saved) {
     radii_.push_back(p.radius);
     held_.push_back(p.state.held ? 1 : 0);
   }
+  user_data_ = saved.user_data;
   clear_.clear();
   count_spheres();
   body_collider_.solver().set_cached_impulses(saved.impulses);  // whichever goes on forgets the other's
@@ -57,19 +61,23 @@ void Simulation::restore(const SimulationCheckpoint& saved) {
   gone_ = saved.gone;
 }
 
-void Simulation::go_to(std::uint64_t steps) {
-  if (particles_.size() > 0) throw InvalidArgument("flow: there are particles, which would be left behind");
+void ParticleSystem::go_to(std::uint64_t steps) {
+  if (particles_.size() > 0) throw InvalidArgument("simulation: there are particles, which would be left behind");
   if (steps_ != steps) stand_at(steps);
   steps_ = steps;
 }
 
 // As after the last of these steps: where vertices were before it counts, too.
-void Simulation::stand_at(std::uint64_t steps) {
+void ParticleSystem::stand_at(std::uint64_t steps) {
   if (steps > 1) move_vertices_to(steps - 1);
   move_vertices_to(steps);
 }
 
-StateHash Simulation::state_hash() const {
+Audit ParticleSystem::audit() const {
+  return dartcast::audit(environment_.complex(), particles_, environment_.threads());
+}
+
+StateHash ParticleSystem::state_hash() const {
   StateHash hash = gone_;
   for (std::size_t i = 0; i < ids_.size(); ++i) {
     hash.add(ids_[i], particles_[i], velocities_[i], static_cast<std::uint64_t>(fates_[i]));

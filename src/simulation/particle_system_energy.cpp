@@ -1,10 +1,10 @@
-// The energy of a flow's particles.
+// The masses and the energy of particles.
 #include <algorithm>
 #include <numbers>
 #include <vector>
 
 #include "base/parallel.hpp"
-#include "dartcast/simulation.hpp"
+#include "simulation/particle_system.hpp"
 
 namespace dartcast {
 
@@ -15,7 +15,7 @@ constexpr std::size_t energy_grain = 4096;  // sums of so many are added up in o
 }  // namespace
 
 // Precondition: there are collisions.
-double Simulation::mass(std::size_t i) const {
+double ParticleSystem::mass(std::size_t i) const {
   if (radii_[i] == 0.0) return 0.0;
   constexpr double smallest_weighed = 0x1p-100;  // a smaller sphere gets the mass of this one: its own could be 0
   const double r = std::max(radii_[i], smallest_weighed);
@@ -23,7 +23,7 @@ double Simulation::mass(std::size_t i) const {
   return options_.collisions->density * (plane ? std::numbers::pi * r * r : 4.0 / 3.0 * std::numbers::pi * r * r * r);
 }
 
-SimulationEnergy Simulation::energy() const {
+SimulationEnergy ParticleSystem::energy() const {
   std::vector<SimulationEnergy> parts(chunk_count(particles_.size(), energy_grain));
   parallel_for(particles_.size(), energy_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
     SimulationEnergy& part = parts[begin / energy_grain];

@@ -1,0 +1,83 @@
+// Opens, fills and closes the output folder of a run.
+#include "output/run_output.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+#include <variant>
+
+#include "dartcast/error.hpp"
+#include "simulation/timer.hpp"
+
+namespace dartcast {
+
+RunOutput::RunOutput(const Scene& scene, const RunOptions& options, Summary& summary)
+    : scene_(scene),
+      recording_options_{options.folder, summary.deforms || summary.surgery, summary.surgery.has_value(),
+                         scene.output.contacts},
+      every_(scene.output.every),
+      resume_(options.resume),
+      summary_(summary) {
+  if (folder().empty()) return;
+  if (std::filesystem::exists(folder())) lock_.take(folder());
+  identity_ = run_identity(scene.text, std::get<MeshData>(scene.environment.mesh), scene.seed);
+}
+
+void RunOutput::find_checkpoint(std::uint64_t steps) {
+  if (folder().empty() || !resume_) return;
+  found_ = read_checkpoint(file(), identity_);
+  if (!found_) return;
+  record_.emplace(std::get<MeshData>(scene_.environment.mesh));  // it follows the edits that are made again
+  const std::uint64_t done = found_->simulation.particles.steps;
+  if (done > steps)
+    throw Error(
+        fmt::format("{}: {} steps are done already; ask for as many or more with --steps", folder().string(), done));
+  if (done < steps) std::erase_if(found_->recording.frames, [&](const auto& f) { return !on_schedule(f.step); });
+}
+
+void RunOutput::update_after_edit(const Environment& environment) {
+  if (recording_) return recording_->update_after_edit(environment);
+  if (record_) record_->update_after_edit(environment);
+}
+
+void RunOutput::open(MeshData mesh) {
+  if (folder().empty()) return;
+  const ScopeTimer timer(summary_.seconds_write);
+  if (!record_) record_.emplace(std::move(mesh));
+  make_output_folder(folder());
+  lock_.take(folder());
+  recording_ = found_ ? std::make_unique<Recording>(recording_options_, std::move(*record_), found_->recording)
+                      : std::make_unique<Recording>(recording_options_, std::move(*record_), scene_.text);
+  solids_ = found_ ? std::make_unique<SolidsRecording>(folder(), scene_, found_->solids_recording)
+                   : std::make_unique<SolidsRecording>(folder(), scene_);
+}
+
+void RunOutput::add_step(const Simulation& simulation, const SimulationStep& step) {
+  if (folder().empty()) return;
+  const ScopeTimer timer(summary_.seconds_write);
+  recording_->add_step(simulation, step, simulation.event_log().in_opened);
+  solids_->add_step(simulation);
+}
+
+void RunOutput::add_frame(const Simulation& simulation, bool last) {
+  if (folder().empty() || (!last && !on_schedule(simulation.steps()))) return;
+  const ScopeTimer timer(summary_.seconds_write);
+  write_frame(simulation);
+}
+
+void RunOutput::write_frame(const Simulation& simulation) {
+  if (every_ > 0) {
+    recording_->add_frame(simulation);
+    solids_->add_frame(simulation, recording_->frames());
+  }
+  const std::uint64_t audited = summary_.audit ? summary_.audit->checked : 0;
+  write_checkpoint(file(), {identity_, simulation.checkpoint().state(), recording_->progress(), summary_.held, audited,
+                            solids_->progress()});
+}
+
+void RunOutput::finish() {
+  if (solids_) solids_->finish();
+  if (recording_) recording_->finish(summary_json(summary_));
+}
+
+}  // namespace dartcast

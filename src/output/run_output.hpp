@@ -1,0 +1,60 @@
+// Observes a run, and writes its output folder: the recording, and checkpoints beside it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "dartcast/mesh_data.hpp"
+#include "dartcast/run.hpp"
+#include "dartcast/scene.hpp"
+#include "dartcast/simulation.hpp"
+#include "output/checkpoint.hpp"
+#include "output/environment_record.hpp"
+#include "output/recording.hpp"
+#include "output/run_lock.hpp"
+#include "output/solids_recording.hpp"
+
+namespace dartcast {
+
+/// Without a folder it does nothing. Every function throws Error where a file cannot be read or written.
+class RunOutput {
+ public:
+  /// Takes the folder, if it exists, before anything is read from it. `scene`: with its files loaded. All outlive it.
+  RunOutput(const Scene& scene, const RunOptions& options, Summary& summary);
+
+  /// Reads the checkpoint to go on from to so many steps; none: the run starts anew.
+  void find_checkpoint(std::uint64_t steps);
+  [[nodiscard]] const std::optional<Checkpoint>& found() const { return found_; }
+
+  /// After each edit of the environment.
+  void update_after_edit(const Environment& environment);
+  /// Makes the folder, or goes on with the one that there is. `mesh`: the scene's.
+  void open(MeshData mesh);
+  /// After each step, before add_frame().
+  void add_step(const Simulation& simulation, const SimulationStep& step);
+  /// Before the first step and after each: a frame and a checkpoint where the scene wants one, and for the last step.
+  void add_frame(const Simulation& simulation, bool last);
+  void finish();
+
+ private:
+  [[nodiscard]] const std::filesystem::path& folder() const { return recording_options_.folder; }
+  [[nodiscard]] std::filesystem::path file() const { return folder() / "checkpoint.bin"; }
+  [[nodiscard]] bool on_schedule(std::uint64_t step) const { return every_ > 0 && step % every_ == 0; }
+  void write_frame(const Simulation& simulation);
+
+  const Scene& scene_;
+  Recording::Options recording_options_;
+  std::uint64_t every_;
+  bool resume_;
+  Summary& summary_;
+  RunIdentity identity_;
+  RunLock lock_;
+  std::optional<EnvironmentRecord> record_;  // until the recording has it
+  std::optional<Checkpoint> found_;
+  std::unique_ptr<Recording> recording_;
+  std::unique_ptr<SolidsRecording> solids_;
+};
+
+}  // namespace dartcast

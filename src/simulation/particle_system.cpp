@@ -1,0 +1,281 @@
+// A step of the particles: injection, motion of the vertices, forces, the walk, and who leaves.
+#include "simulation/particle_system.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "base/parallel.hpp"
+#include "complex/simplex.hpp"
+#include "dartcast/error.hpp"
+#include "simulation/polyline.hpp"
+#include "simulation/timer.hpp"
+#include "tracking/carry.hpp"
+
+namespace dartcast {
+
+namespace {
+
+constexpr std::size_t grain = 512;
+
+// Whether a particle leaves the scene at the end of the step.
+bool leaves(ParticleStatus status) {
+  switch (status) {
+    case ParticleStatus::alive:
+    case ParticleStatus::stuck: return false;
+    case ParticleStatus::absorbed:
+    case ParticleStatus::escaped: return true;
+  }
+  return false;
+}
+
+WallResponses responses_of(const SimulationOptions& options, const CombinatorialMap& map) {
+  WallResponses responses(options.response);
+  for (const auto& [name, response] : options.patch_responses) responses.set(map.patch(name), response);
+  return responses;
+}
+
+// Names of the arrays that output writes itself.
+constexpr std::string_view own_names[] = {"id", "radius", "velocity", "cell", "kind", "held", "contacts"};
+
+void check_names(const std::vector<std::string>& names) {
+  for (auto name = names.begin(); name != names.end(); ++name) {
+    const bool taken = std::find(std::begin(own_names), std::end(own_names), *name) != std::end(own_names) ||
+                       std::find(names.begin(), name, *name) != name;
+    if (name->empty() || taken)
+      throw InvalidArgument(fmt::format(
+          "simulation: user data \"{}\": give each number a name of its own, and none that output uses itself", *name));
+  }
+}
+
+void check(const SimulationOptions& o) {
+  if (!(o.dt >= smallest_dt && o.dt <= largest_dt))
+    throw InvalidArgument(fmt::format("simulation: dt is {}: it must be between 2^-100 and 2^100 s", o.dt));
+  if (!(o.drag >= 0.0) || !std::isfinite(o.drag))
+    throw InvalidArgument("simulation: drag must be finite and not negative");
+  if (!is_finite(o.gravity)) throw InvalidArgument("simulation: gravity must be finite");
+  if (o.substeps == 0) throw InvalidArgument("simulation: substeps must be at least 1");
+  check(o.step, "simulation");
+  check_names(o.user_data);
+  if (!o.collisions) return;
+  const CollisionOptions& c = *o.collisions;
+  if (!(c.restitution >= 0.0 && c.restitution <= 1.0))
+    throw InvalidArgument("simulation: the spheres' restitution must be between 0 and 1");
+  if (!(c.friction >= 0.0) || !std::isfinite(c.friction))
+    throw InvalidArgument("simulation: the spheres' friction must be finite and not negative");
+  if (!(c.density >= smallest_density && c.density <= largest_density))
+    throw InvalidArgument(
+        fmt::format("simulation: the spheres' density is {}: it must be between 2^-100 and 2^100", c.density));
+  if (c.iterations == 0) throw InvalidArgument("simulation: collisions need an iteration at least");
+}
+
+// `width`: values of a particle.
+template <class T>
+void keep_unmarked(std::vector<T>& values, std::span<const std::uint8_t> marks, std::size_t width = 1) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (marks[i / width] == 0) values[kept++] = values[i];
+  }
+  values.resize(kept);
+}
+
+}  // namespace
+
+ParticleSystem::ParticleSystem(Environment& environment, const SimulationOptions& options)
+    : environment_(environment),
+      options_(options),
+      responses_(responses_of(options, environment.map())),
+      random_(options.seed) {
+  check(options);
+  if (environment.map().dimension() == 2 && options.gravity.z != 0.0)
+    throw InvalidArgument(fmt::format("simulation: gravity is ({}, {}, {}): in the plane its z must be 0",
+                                      options.gravity.x, options.gravity.y, options.gravity.z));
+  totals_.contacts_by_patch.resize(environment.map().patch_names().size());
+}
+
+void ParticleSystem::set_deformation(Deformation deformation) {
+  if (deformation.size() != environment_.positions().size()) {
+    throw InvalidArgument("simulation: the deformation is made for another number of points than the environment has");
+  }
+  if (environment_.map().dimension() == 2) deformation.check_plane();
+  deformation_ = std::move(deformation);
+}
+
+void ParticleSystem::move_vertices_to(std::uint64_t steps) {
+  if (!deformation_ || steps == 0) return;
+  deformation_->positions(static_cast<double>(steps) * options_.dt, environment_.next_positions(),
+                          environment_.threads());
+  environment_.move();
+}
+
+// Phases, in order:
+//  1. inlets inject;
+//  2. vertices move (with collisions: in phase 3, after the spheres' impulses);
+//  3. for each segment of the way: velocities change, targets are set, particles walk and respond at walls;
+//  4. contacts are counted, and those absorbed or escaped leave.
+void ParticleSystem::step(double /*begin*/) {
+  last_ = {};
+  last_.duration = options_.dt;
+  last_.absorbed = std::exchange(absorbed_between_, 0);
+  inject();
+  if (!collides()) move_vertices();
+  for (unsigned segment = 0; segment < options_.substeps; ++segment) advance_segment(segment);
+  const ScopeTimer timer(totals_.seconds_respond);
+  totals_.counters += last_.report.counters;
+  totals_.collisions += last_.collisions;
+  count_contacts();
+  mark_held();
+  remove_gone();
+  ++steps_;
+}
+
+void ParticleSystem::move_vertices() {
+  if (!deformation_) return;
+  const ScopeTimer timer(totals_.seconds_deform);
+  move_vertices_to(steps_ + 1);
+}
+
+void ParticleSystem::advance_segment(unsigned segment) {
+  const double dt = options_.dt / options_.substeps;
+  const bool moving = deformation_ && segment == 0;
+  if (collides()) {
+    {
+      const ScopeTimer timer(totals_.seconds_collide);
+      collide(dt, moving);
+    }
+    if (moving) {
+      move_vertices();
+      aim_stuck(dt);
+    }
+  } else {
+    const ScopeTimer timer(totals_.seconds_respond);
+    aim(dt, moving);
+  }
+  const ScopeTimer timer(totals_.seconds_detect);
+  const ContactCallback respond = respond_with(responses_, velocities_, fates_, options_.dt, acceleration(dt));
+  if (spheres_ == 0) {
+    StepReport report = environment_.advance(particles_, targets_, respond, options_.step);
+    hold_stopped(report, responses_, velocities_, fates_, options_.dt, acceleration(dt));
+    append_segment(last_.report, std::move(report), segment, options_.substeps);
+    return;
+  }
+  const std::span<const double> clearances = collides() ? clearances_ : std::span<const double>();
+  SphereReport report =
+      stepper_.advance(environment_, particles_, radii_, targets_, respond, options_.step, clearances);
+  hold_stopped(report.step, responses_, velocities_, fates_, options_.dt, acceleration(dt));
+  append_segment(last_.report, std::move(report.step), segment, options_.substeps);
+  for (const SphereOverlap& o : report.overlaps) totals_.deepest_in_wall = std::max(totals_.deepest_in_wall, o.depth);
+  totals_.wall_overlaps += report.overlaps.size();
+  last_.overlaps.insert(last_.overlaps.end(), report.overlaps.begin(), report.overlaps.end());
+}
+
+void ParticleSystem::aim(double dt, bool moving) {
+  targets_.resize(particles_.size());
+  parallel_for(particles_.size(), grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Aim a = leaves(fates_[i]) ? Aim{velocities_[i], particles_[i].position} : aim_at(i, dt, moving);
+      velocities_[i] = a.velocity;
+      targets_[i] = flushed(a.target);
+    }
+  });
+}
+
+Vec3 ParticleSystem::accelerated(const Vec3& v, const Vec3& flow, double dt) const {
+  if (options_.drag == 0.0) return field_ ? flow : v + options_.gravity * dt;
+  const double lost = -std::expm1(-options_.drag * dt);
+  return v + (flow + options_.gravity * (1.0 / options_.drag) - v) * lost;
+}
+
+// The acceleration that contacts know of: none where a field or other spheres change velocities, too. Drag reduces it.
+Acceleration ParticleSystem::acceleration(double dt) const {
+  if (field_ || collides()) return {};
+  if (options_.drag == 0.0) return {options_.gravity, dt};
+  return {options_.gravity * (-std::expm1(-options_.drag * dt) / (options_.drag * dt)), dt};
+}
+
+// A particle's velocity after the acceleration, and its target relative to positions before a move. A held particle
+// takes no step. A stuck particle goes exactly where its wall carries it, to the last bit, so that no contact follows.
+ParticleSystem::Aim ParticleSystem::aim_at(std::size_t i, double dt, bool moving) const {
+  const ParticleState& s = particles_[i];
+  if (s.held) return {velocities_[i], s.position};
+  const bool stuck = fates_[i] == ParticleStatus::stuck;
+  if (!stuck && !field_) {
+    const Vec3 v = accelerated(velocities_[i], {}, dt);
+    return {v, s.position + v * dt};
+  }
+  if (stuck && !moving) return {velocities_[i], s.position};
+  const CellComplex& complex = environment_.complex();
+  const Corners now = complex.corners(s.at());
+  const Corners before = deforms() ? complex.previous_corners(s.at()) : now;
+  const Weights w = detail::barycentric(moving ? before : now, s.position);
+  const Vec3 carried = detail::combine(now, w);
+  const Vec3 mesh = (carried - detail::combine(before, w)) * (1.0 / options_.dt);
+  if (stuck) {
+    const bool positive = volume_sign(now) == Sign::positive;
+    return {mesh, positive ? detail::carried(complex, s.at(), w).position : s.position};
+  }
+  const Vec3 flow = field_->at(complex, s.at(), w, now);
+  switch (field_->frame()) {
+    case FieldFrame::space: {
+      const Vec3 v = accelerated(velocities_[i], flow, dt);
+      return {v, s.position + v * dt};
+    }
+    case FieldFrame::mesh: break;
+  }
+  const Vec3 v = accelerated(velocities_[i], flow + mesh, dt);
+  return {v, (moving ? carried : s.position) + (v - mesh) * dt};
+}
+
+void ParticleSystem::count_contacts() {
+  const ContactList& list = last_.report.contacts;
+  last_.contact_ids.reserve(list.contacts.size());
+  for (const Contact& c : list.contacts) {
+    last_.contact_ids.push_back(ids_[c.particle]);
+    ++contact_counts_[c.particle];
+    ++totals_.contacts_by_patch[list.walls_of(c).front().patch.value];
+  }
+}
+
+void ParticleSystem::mark_held() {
+  std::fill(held_.begin(), held_.end(), std::uint8_t{0});
+  for (const HeldParticle& h : last_.report.held) held_[h.particle] = 1;
+}
+
+void ParticleSystem::remove_gone() {
+  std::vector<std::uint8_t> gone(particles_.size(), 0);
+  std::uint64_t absorbed = 0;
+  for (std::size_t i = 0; i < gone.size(); ++i) {
+    if (!leaves(fates_[i])) continue;
+    gone[i] = 1;
+    ++(fates_[i] == ParticleStatus::absorbed ? absorbed : last_.escaped);
+    gone_.add(ids_[i], particles_[i], velocities_[i], static_cast<std::uint64_t>(fates_[i]));
+  }
+  last_.absorbed += absorbed;
+  totals_.absorbed += absorbed;
+  totals_.escaped += last_.escaped;
+  if (absorbed + last_.escaped == 0) return;
+  particles_.remove(gone);
+  remove_marked(gone);
+}
+
+// Removes the same particles from the arrays beside the particles.
+void ParticleSystem::remove_marked(std::span<const std::uint8_t> marks) {
+  keep_unmarked(ids_, marks);
+  keep_unmarked(velocities_, marks);
+  keep_unmarked(fates_, marks);
+  keep_unmarked(contact_counts_, marks);
+  keep_unmarked(radii_, marks);
+  keep_unmarked(held_, marks);
+  if (width() > 0) keep_unmarked(user_data_, marks, width());
+  clear_.clear();
+  count_spheres();
+}
+
+void ParticleSystem::count_spheres() {
+  spheres_ = static_cast<std::size_t>(std::count_if(radii_.begin(), radii_.end(), [](double r) { return r > 0.0; }));
+}
+
+}  // namespace dartcast

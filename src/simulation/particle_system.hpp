@@ -1,0 +1,169 @@
+// The particles of a simulation, points and spheres: injection, forces, contacts, and what becomes of them.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "base/random.hpp"
+#include "dartcast/simulation.hpp"
+#include "dynamics/collider.hpp"
+#include "dynamics/near_walls.hpp"
+#include "simulation/component.hpp"
+#include "simulation/seeding.hpp"
+#include "simulation/simulation_state.hpp"
+#include "simulation/sphere_bodies.hpp"
+
+namespace dartcast {
+
+/// It also moves the vertices: with collisions that comes between the spheres' impulses and their walk. Functions that
+/// have the name of one of Simulation's do what that says.
+class ParticleSystem final : public SimulationComponent {
+ public:
+  ParticleSystem(Environment& environment, const SimulationOptions& options);
+
+  void set_field(VelocityField field) { field_ = std::move(field); }
+  void set_deformation(Deformation deformation);
+  /// Bodies that the spheres meet; they step after each step of the particles. Precondition: there are collisions.
+  void set_bodies(Bodies& bodies) { bodies_ = &bodies; }
+  void add_inlet(Patch patch, double rate, const Vec3& velocity, double radius, std::span<const double> user_data);
+  std::vector<AddResult> add(std::span<const Vec3> positions, const Vec3& velocity, double radius,
+                             std::span<const double> user_data);
+  std::vector<AddResult> add(std::span<const Vec3> positions, std::span<const Vec3> velocities,
+                             std::span<const double> radii, std::span<const double> user_data);
+  void add_random(std::size_t count, const Vec3& velocity, double radius, std::span<const double> user_data);
+  void pull(std::span<const Vec3> displacement, double duration);
+  void go_to(std::uint64_t steps);
+
+  void step(double begin) override;
+  void update_after_edit(const ComplexEditReport& edit, OrphanPolicy orphaned) override;
+  void save(SimulationState& state) const override;
+  void restore(const SimulationState& state) override;
+  [[nodiscard]] Audit audit() const override;
+  [[nodiscard]] StateHash state_hash() const override;
+  [[nodiscard]] SimulationEnergy energy() const;
+
+  [[nodiscard]] const SimulationOptions& options() const { return options_; }
+  [[nodiscard]] const WallResponses& responses() const { return responses_; }
+  [[nodiscard]] const Environment& environment() const { return environment_; }
+  [[nodiscard]] const SimulationStep& last_step() const { return last_; }
+  [[nodiscard]] const UpdateReport& last_update() const { return last_update_; }  ///< of the last edit
+  [[nodiscard]] double time() const { return static_cast<double>(steps_) * options_.dt; }
+  [[nodiscard]] std::uint64_t steps() const { return steps_; }
+  [[nodiscard]] bool deforms() const { return deformation_.has_value(); }
+  [[nodiscard]] const Particles& particles() const { return particles_; }
+  [[nodiscard]] std::span<const std::uint64_t> ids() const { return ids_; }
+  [[nodiscard]] std::span<const Vec3> velocities() const { return velocities_; }
+  [[nodiscard]] std::span<const ParticleStatus> fates() const { return fates_; }
+  [[nodiscard]] std::span<const std::uint32_t> contact_counts() const { return contact_counts_; }
+  [[nodiscard]] std::span<const double> radii() const { return radii_; }
+  [[nodiscard]] std::span<const std::uint8_t> held() const { return held_; }
+  [[nodiscard]] std::span<double> user_data(std::size_t i) {
+    return std::span(user_data_).subspan(i * width(), width());
+  }
+  [[nodiscard]] std::span<const double> user_data(std::size_t i) const {
+    return std::span(user_data_).subspan(i * width(), width());
+  }
+  [[nodiscard]] const SimulationTotals& totals() const { return totals_; }
+  [[nodiscard]] const Collider& collider() const { return collider_; }
+
+ private:
+  struct Inlet {
+    Patch patch;
+    std::optional<PatchSampler> sampler;  // none while it is closed
+    double rate;
+    Vec3 velocity;
+    double radius;
+    std::vector<double> user_data;
+  };
+  struct Aim {
+    Vec3 velocity;
+    Vec3 target;
+  };
+
+  // In particle_system.cpp.
+  void move_vertices();
+  void move_vertices_to(std::uint64_t steps);
+  void advance_segment(unsigned segment);
+  void aim(double dt, bool moving);
+  [[nodiscard]] Aim aim_at(std::size_t i, double dt, bool moving) const;
+  [[nodiscard]] Vec3 accelerated(const Vec3& v, const Vec3& flow, double dt) const;
+  [[nodiscard]] Acceleration acceleration(double dt) const;
+  void count_contacts();
+  void mark_held();
+  void remove_gone();
+  void remove_marked(std::span<const std::uint8_t> marks);
+  void count_spheres();
+  // In particle_system_add.cpp.
+  void inject();
+  void check_motion(const Vec3& velocity, double radius, std::string_view whose) const;
+  void check_user_data(std::span<const double> values) const;
+  void complete(const Vec3& velocity, double radius, std::span<const double> user_data);
+  void complete_next(const Vec3& velocity, double radius, std::span<const double> user_data);
+  template <class Sampler>
+  void add_sampled(const Sampler& sampler, std::size_t count, const Vec3& velocity, double radius,
+                   std::span<const double> user_data);
+  [[nodiscard]] std::size_t width() const { return options_.user_data.size(); }
+  // In particle_system_edit.cpp.
+  void remove_absorbed(const UpdateReport& report, std::span<const ParticleState> before);
+  void reopen_inlets();
+  // In particle_system_checkpoint.cpp.
+  void stand_at(std::uint64_t steps);
+  // With collisions, in particle_system_collide.cpp.
+  [[nodiscard]] bool collides() const { return options_.collisions && spheres_ > 0; }
+  [[nodiscard]] double mass(std::size_t i) const;
+  [[nodiscard]] bool meets_bodies() const { return bodies_ != nullptr && bodies_->size() > 0; }
+  void collide(double dt, bool moving);
+  void weigh();
+  void find_walls(double dt, bool moving);
+  [[nodiscard]] double clearance(std::size_t i) const;
+  void walls_of(std::size_t i, double dt, bool moving, NearWalls& near, std::vector<WallContact>& found);
+  void aim_stuck(double dt);
+
+  Environment& environment_;
+  SimulationOptions options_;
+  WallResponses responses_;
+  std::optional<VelocityField> field_;
+  std::optional<Deformation> deformation_;
+  std::vector<Inlet> inlets_;
+  Random random_;
+
+  Particles particles_;
+  std::vector<std::uint64_t> ids_;
+  std::vector<Vec3> velocities_;
+  std::vector<ParticleStatus> fates_;
+  std::vector<std::uint32_t> contact_counts_;
+  std::vector<double> radii_;
+  std::vector<std::uint8_t> held_;
+  std::vector<double> user_data_;  // particle by particle
+  std::size_t spheres_ = 0;        // of a radius above 0
+  std::vector<Vec3> targets_;
+  SphereStepper stepper_;
+  Collider collider_;
+  Bodies* bodies_ = nullptr;
+  SphereBodyCollider body_collider_;  // in place of the other one while there are bodies
+  std::vector<double> met_radii_;     // in collisions: 0 for those that meet nobody
+  std::vector<double> inverse_masses_;
+  struct Clear {  // no wall is nearer to this place
+    Vec3 centre;
+    double distance = 0.0;
+  };
+  std::vector<Clear> clear_;  // by particle; until walls move or are edited
+  std::vector<double> clearances_;
+  std::vector<Vec3> displacements_;
+  std::vector<NearWalls> near_;  // by chunk
+  std::vector<std::vector<WallContact>> near_contacts_;
+  std::vector<WallContact> walls_;
+  std::uint64_t next_id_ = 0;
+  std::uint64_t steps_ = 0;
+  std::uint64_t absorbed_between_ = 0;  // by edits since the last step
+  SimulationStep last_;
+  UpdateReport last_update_;
+  SimulationTotals totals_;
+  StateHash gone_;
+};
+
+}  // namespace dartcast

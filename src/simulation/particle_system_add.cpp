@@ -1,0 +1,150 @@
+// Adding particles: at given positions, at random, and at inlets.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "dartcast/error.hpp"
+#include "simulation/particle_system.hpp"
+#include "simulation/timer.hpp"
+
+namespace dartcast {
+
+namespace {
+
+constexpr double max_injected = 0x1p+31;  // by an inlet in a step
+
+bool leaves_plane(const Environment& environment, const Vec3& v) {
+  return environment.map().dimension() == 2 && v.z != 0.0;
+}
+
+void check_plane(const Environment& environment, const Vec3& v, std::string_view what) {
+  if (leaves_plane(environment, v))
+    throw InvalidArgument(
+        fmt::format("simulation: {} is ({}, {}, {}): in the plane its z must be 0", what, v.x, v.y, v.z));
+}
+
+}  // namespace
+
+void ParticleSystem::check_motion(const Vec3& velocity, double radius, std::string_view whose) const {
+  if (!is_finite(velocity)) throw InvalidArgument(fmt::format("simulation: {} velocity must be finite", whose));
+  check_plane(environment_, velocity, fmt::format("{} velocity", whose));
+  if (!is_radius(radius))
+    throw InvalidArgument(fmt::format("simulation: {} radius is {}: it must be between 0 and 2^100", whose, radius));
+}
+
+void ParticleSystem::check_user_data(std::span<const double> values) const {
+  if (!values.empty() && values.size() != width())
+    throw InvalidArgument(
+        fmt::format("simulation: {} numbers of user data for a particle; the options name {}", values.size(), width()));
+}
+
+void ParticleSystem::add_inlet(Patch patch, double rate, const Vec3& velocity, double radius,
+                               std::span<const double> user_data) {
+  if (!(rate >= 0.0 && rate * options_.dt <= max_injected))
+    throw InvalidArgument(fmt::format(
+        "simulation: an inlet's rate is {}: it must not be negative, and at most {} a second with steps of {} s "
+        "(2^31 particles a step)",
+        rate, max_injected / options_.dt, options_.dt));
+  check_motion(velocity, radius, "an inlet's");
+  check_user_data(user_data);
+  inlets_.push_back({patch,
+                     PatchSampler(environment_.complex(), patch),
+                     rate,
+                     velocity,
+                     radius,
+                     {user_data.begin(), user_data.end()}});
+}
+
+std::vector<AddResult> ParticleSystem::add(std::span<const Vec3> positions, const Vec3& velocity, double radius,
+                                           std::span<const double> user_data) {
+  check_motion(velocity, radius, "a particle's");
+  check_user_data(user_data);
+  std::vector<AddResult> added = environment_.add(particles_, positions);
+  complete(velocity, radius, user_data);
+  totals_.start = next_id_ - totals_.injected;
+  return added;
+}
+
+std::vector<AddResult> ParticleSystem::add(std::span<const Vec3> positions, std::span<const Vec3> velocities,
+                                           std::span<const double> radii, std::span<const double> user_data) {
+  if (velocities.size() != positions.size() || radii.size() != positions.size())
+    throw InvalidArgument(fmt::format("simulation: {} velocities and {} radii for {} positions", velocities.size(),
+                                      radii.size(), positions.size()));
+  check_user_data(user_data);
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const bool good = is_finite(velocities[i]) && !leaves_plane(environment_, velocities[i]) && is_radius(radii[i]);
+    if (!good) check_motion(velocities[i], radii[i], fmt::format("particle {}'s", i));
+  }
+  std::vector<AddResult> added = environment_.add(particles_, positions);
+  for (std::size_t i = 0; i < added.size(); ++i) {
+    if (added[i].location.place == Place::free) complete_next(velocities[i], radii[i], user_data);
+  }
+  totals_.start = next_id_ - totals_.injected;
+  return added;
+}
+
+// Gives ids, velocities and radii to the particles added last.
+void ParticleSystem::complete(const Vec3& velocity, double radius, std::span<const double> user_data) {
+  while (ids_.size() < particles_.size()) complete_next(velocity, radius, user_data);
+}
+
+void ParticleSystem::complete_next(const Vec3& velocity, double radius, std::span<const double> user_data) {
+  ids_.push_back(next_id_++);
+  velocities_.push_back(velocity);
+  fates_.push_back(ParticleStatus::alive);
+  contact_counts_.push_back(0);
+  radii_.push_back(radius);
+  held_.push_back(0);
+  user_data_.insert(user_data_.end(), user_data.begin(), user_data.end());
+  user_data_.resize(ids_.size() * width());
+  if (radius > 0.0) ++spheres_;
+}
+
+// Sampled points are rounded: one that fell out of its simplex is drawn again.
+template <class Sampler>
+void ParticleSystem::add_sampled(const Sampler& sampler, std::size_t count, const Vec3& velocity, double radius,
+                                 std::span<const double> user_data) {
+  constexpr int max_tries = 1000;
+  for (std::size_t i = 0; i < count; ++i) {
+    int tries = 0;
+    while (true) {
+      const Sample s = sampler.sample(environment_.complex(), random_);
+      if (environment_.add(particles_, s.simplex, flushed(s.position))) break;
+      if (++tries == max_tries) {
+        complete(velocity, radius, user_data);
+        throw InvalidArgument(
+            "simulation: random points fall outside the free cells again and again: their cells are too thin or not "
+            "valid");
+      }
+    }
+  }
+  complete(velocity, radius, user_data);
+}
+
+void ParticleSystem::add_random(std::size_t count, const Vec3& velocity, double radius,
+                                std::span<const double> user_data) {
+  check_motion(velocity, radius, "a particle's");
+  check_user_data(user_data);
+  if (count > 0) add_sampled(VolumeSampler(environment_.complex()), count, velocity, radius, user_data);
+  totals_.start = next_id_ - totals_.injected;
+}
+
+void ParticleSystem::inject() {
+  const ScopeTimer timer(totals_.seconds_respond);
+  for (Inlet& inlet : inlets_) {
+    const auto up_to = [&](std::uint64_t steps) {
+      return std::floor(inlet.rate * options_.dt * static_cast<double>(steps));
+    };
+    const auto count = static_cast<std::uint64_t>(up_to(steps_ + 1) - up_to(steps_));
+    if (count == 0 || !inlet.sampler) continue;
+    if (deformation_) inlet.sampler->update(environment_.complex());
+    add_sampled(*inlet.sampler, count, inlet.velocity, inlet.radius, inlet.user_data);
+    last_.injected += count;
+  }
+  totals_.injected += last_.injected;
+}
+
+}  // namespace dartcast

@@ -1,0 +1,51 @@
+// What follows an edit of the environment: particles, deformation, field and inlets.
+#include <algorithm>
+
+#include "dartcast/error.hpp"
+#include "simulation/particle_system.hpp"
+
+namespace dartcast {
+
+void ParticleSystem::update_after_edit(const ComplexEditReport& edit, OrphanPolicy orphaned) {
+  const std::vector<ParticleState> before(particles_.states().begin(), particles_.states().end());
+  clear_.clear();
+  last_update_ = environment_.update_after_edit(particles_, orphaned);
+  remove_absorbed(last_update_, before);
+  if (deformation_) deformation_->update_after_edit(edit, environment_.positions().size());
+  if (field_) field_->update_after_edit(edit, environment_.complex());
+  reopen_inlets();
+}
+
+void ParticleSystem::remove_absorbed(const UpdateReport& report, std::span<const ParticleState> before) {
+  std::vector<std::uint8_t> marks(ids_.size(), 0);
+  std::uint64_t absorbed = 0;
+  for (const OrphanedParticle& p : report.orphaned) {
+    if (p.outcome != OrphanPolicy::absorb) continue;
+    marks[p.particle] = 1;
+    ++absorbed;
+    gone_.add(ids_[p.particle], before[p.particle], velocities_[p.particle],
+              static_cast<std::uint64_t>(ParticleStatus::absorbed));
+  }
+  if (absorbed == 0) return;
+  totals_.absorbed += absorbed;
+  absorbed_between_ += absorbed;
+  remove_marked(marks);
+}
+
+void ParticleSystem::reopen_inlets() {
+  for (Inlet& inlet : inlets_) {
+    inlet.sampler.reset();
+    if (has_free_face(environment_.map(), inlet.patch)) inlet.sampler.emplace(environment_.complex(), inlet.patch);
+  }
+}
+
+void ParticleSystem::pull(std::span<const Vec3> displacement, double duration) {
+  const auto positions = environment_.positions();
+  const bool plane = environment_.map().dimension() == 2;
+  if (plane && std::any_of(displacement.begin(), displacement.end(), [](const Vec3& d) { return d.z != 0.0; }))
+    throw InvalidArgument("simulation: a pull moves points out of the plane: in the plane every z must be 0");
+  if (!deformation_) deformation_.emplace(std::vector<DeformationStep>{}, positions);
+  deformation_->add_pull(displacement, time(), time() + duration);
+}
+
+}  // namespace dartcast

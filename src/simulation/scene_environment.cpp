@@ -1,0 +1,98 @@
+// Generates the mesh of a scene, selects its free cells and patches, and finds its point arrays.
+#include "simulation/scene_environment.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <variant>
+
+#include "dartcast/error.hpp"
+#include "dartcast/mesh_check.hpp"
+#include "dartcast/mesh_selection.hpp"
+
+namespace dartcast {
+
+namespace {
+
+struct Generator {
+  MeshData operator()(const std::filesystem::path& file) const {
+    throw InvalidArgument(fmt::format("{}: the mesh has not been read; call load_scene_files() first", file.string()));
+  }
+  MeshData operator()(const BoxOptions& o) const { return generate_box(o); }
+  MeshData operator()(const OctahedraOptions& o) const { return generate_octahedra(o); }
+  MeshData operator()(const VesselOptions& o) const { return generate_vessel(o); }
+  MeshData operator()(const RectangleOptions& o) const { return generate_rectangle(o); }
+  MeshData operator()(const MazeOptions& o) const { return generate_maze(o); }
+  MeshData operator()(const MeshData& mesh) const { return mesh; }
+};
+
+void select_free_by_value(MeshData& mesh, const FreeValues& by_value) {
+  const bool has_array = std::any_of(mesh.cell_data.begin(), mesh.cell_data.end(),
+                                     [&](const DataArray& a) { return a.name == by_value.array; });
+  if (by_value.array != "region" || has_array) {
+    select_free_values(mesh, by_value.array, by_value.values);
+    return;
+  }
+  std::vector<std::string> tags;  // formats without arrays have their groups as regions
+  for (const double value : by_value.values) tags.push_back(fmt::format("{}", value));
+  select_free_regions(mesh, tags);
+}
+
+const DataArray& point_array(const MeshData& mesh, const std::string& name, std::size_t components) {
+  std::vector<std::string> known;
+  for (const DataArray& a : mesh.point_data) {
+    if (a.name == name && a.components == components) return a;
+    known.push_back(fmt::format("{} ({})", a.name, a.components));
+  }
+  throw InvalidMesh(
+      fmt::format("the mesh has no point array '{}' of {} components; its point arrays (components) are: {}", name,
+                  components, known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))));
+}
+
+}  // namespace
+
+MeshData generated_mesh(const MeshSource& source) { return std::visit(Generator{}, source); }
+
+void select_cells_and_patches(MeshData& mesh, const EnvironmentScene& scene) {
+  if (const auto* by_region = std::get_if<FreeRegions>(&scene.free)) select_free_regions(mesh, by_region->regions);
+  if (const auto* by_value = std::get_if<FreeValues>(&scene.free)) select_free_by_value(mesh, *by_value);
+  if (const auto* names = std::get_if<std::vector<std::string>>(&scene.patches)) select_patches(mesh, *names);
+  if (const auto* angle = std::get_if<PatchAngle>(&scene.patches)) divide_walls(mesh, angle->degrees);
+}
+
+MeshData scene_mesh(const EnvironmentScene& scene) {
+  if (scene.skip_bad_cells || std::holds_alternative<PatchArray>(scene.patches))
+    throw InvalidArgument("the scene's mesh is not ready for use; call load_scene_files() first");
+  MeshData mesh = generated_mesh(scene.mesh);
+  if (scene.scale != 1.0) {
+    for (Vec3& x : mesh.points) x *= scene.scale;
+  }
+  const MeshReport report = check_and_repair(mesh);
+  if (!report.valid()) throw InvalidMesh("the scene's mesh: " + report.defects.front().message);
+  select_cells_and_patches(mesh, scene);
+  return mesh;
+}
+
+std::vector<Vec3> point_vectors(const MeshData& mesh, const std::string& array) {
+  const DataArray& data = point_array(mesh, array, 3);
+  std::vector<Vec3> result(mesh.points.size());
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    result[i] = {data.values[3 * i], data.values[3 * i + 1], data.values[3 * i + 2]};
+  }
+  return result;
+}
+
+std::vector<DeformationStep> deformation_steps(std::span<const DeformationScene> scene, const MeshData& mesh) {
+  std::vector<DeformationStep> steps;
+  for (const DeformationScene& s : scene) {
+    if (!s.frames.empty())
+      throw InvalidArgument("the deformation's frames have not been read; call load_scene_files() first");
+    DeformationStep& step = steps.emplace_back(s.step);
+    if (!s.field.empty()) step.field = point_vectors(mesh, s.field);
+    if (!s.path.empty()) step.path = point_array(mesh, s.path, 1).values;
+  }
+  return steps;
+}
+
+}  // namespace dartcast

@@ -1,0 +1,48 @@
+// All that a simulation goes on from after a step: a member for each component, and the log of events.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/random.hpp"
+#include "dartcast/bodies.hpp"
+#include "dartcast/catheter.hpp"
+#include "dartcast/events.hpp"
+#include "dartcast/simulation.hpp"
+#include "dynamics/contact_solver.hpp"
+
+namespace dartcast {
+
+struct ParticleSystemState {
+  struct Particle {
+    std::uint64_t id = 0;
+    ParticleState state;
+    Weights held_weights{};
+    Vec3 velocity;
+    ParticleStatus fate = ParticleStatus::alive;
+    std::uint32_t contacts = 0;
+    double radius = 0.0;
+  };
+  std::uint64_t steps = 0;
+  std::uint64_t next_id = 0;
+  Random random = Random(0);
+  std::vector<Particle> particles;
+  SimulationTotals totals;
+  StateHash gone;
+  std::vector<CachedImpulse> impulses;  ///< that the next step's collisions start from
+  std::vector<double> user_data;        ///< particle by particle
+};
+
+struct CathetersState {
+  std::vector<CatheterCheckpoint> catheters;
+  std::vector<CatheterTotals> totals;
+};
+
+struct SimulationState {
+  ParticleSystemState particles;
+  EventLog events;
+  Bodies::Checkpoint bodies;
+  CathetersState catheters;
+};
+
+}  // namespace dartcast
