@@ -27,6 +27,9 @@ function(add_dartcast_library name)
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:dartcast_flags> ${ARGN})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} VERSION ${PROJECT_VERSION}
                         SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} INSTALL_RPATH "$ORIGIN")
+  if(NOT DARTCAST_SANITIZE AND CMAKE_SYSTEM_NAME STREQUAL "Linux")
+    target_link_options(${target} PRIVATE LINKER:-z,defs)  # a library that uses what is above it does not link
+  endif()
   if(DARTCAST_SANITIZE)
     target_precompile_headers(${target} PRIVATE ${DARTCAST_COMMON_HEADERS} <fmt/format.h>)
   endif()

@@ -1,6 +1,7 @@
 # cmake -DWORK=... -DSOURCE=... -DCOMPILER=... -P core.cmake
 # Builds and installs core and simulation where VTK, toml++, JSON, CLI11 and CGAL are not to be found, and a consumer of the
 # core alone on that.
+cmake_minimum_required(VERSION 3.25)
 include(${CMAKE_CURRENT_LIST_DIR}/functions.cmake)
 file(REMOVE_RECURSE ${WORK}/prefix ${WORK}/consumer)
 
