@@ -254,8 +254,8 @@ class Bodies {
   /// One step; once after each Environment::move(). Throws as Environment::advance(). Cost: about 0.5 us per particle.
   const BodiesStep& step();
 
-  /// A body as a rigid one, with its velocity at the end of the next step if it meets nothing. Its inverse mass is 0
-  /// where a wall holds one of its particles. Cost: about 20 ns per particle.
+  /// A body as a rigid one, with its velocity at the end of the next step if it has no contacts. Its inverse mass is
+  /// 0 where a wall holds one of its particles. Cost: about 20 ns per particle.
   [[nodiscard]] RigidMover predicted_state(std::size_t body) const;
   /// Gives a body an impulse. `solved`: the predicted_state() after contacts with others than bodies changed it. In the
   /// next step forces make that change of momentum, and the body moves by the displacement in `solved`.
@@ -293,7 +293,7 @@ class Bodies {
 
   /// Sums over all steps and both passes. Each pass counts `steps` times particles.
   [[nodiscard]] const Counters& counters() const;
-  /// Of all particles in the scene, by body id and number in the body.
+  /// The hash of all particles in the scene, by body id and number in the body.
   [[nodiscard]] StateHash state_hash() const;
 
   [[nodiscard]] BodiesCheckpoint checkpoint() const;

@@ -1,4 +1,4 @@
-// What particles do at walls: reflect, slide, stick, absorb, escape; per patch.
+// The responses of particles at walls: reflect, slide, stick, absorb, escape; per patch.
 #pragma once
 
 #include <cstdint>
@@ -64,7 +64,7 @@ class WallResponses {
   std::vector<Entry> by_patch_;
 };
 
-/// What has become of a particle.
+/// Whether a particle still moves, and why not.
 enum class ParticleStatus : std::uint8_t { alive, stuck, absorbed, escaped };
 
 /// A constant acceleration of all particles, where nothing else changes their velocities between contacts: each target
@@ -75,7 +75,7 @@ struct Acceleration {
 };
 
 /// A callable for Environment::advance() that answers contacts by `responses` and writes each particle's new velocity
-/// and fate. The patch of the wall met first decides which response it is; where that is a reflection, each wall gives
+/// and status. The patch of the wall met first decides which response it is; where that is a reflection, each wall gives
 /// its own restitution and friction. `velocities` in length per time, `dt` the duration > 0 in which the vertices move.
 /// The spans, one entry per particle, and `responses` must outlive it. A particle already absorbed, escaped or stuck
 /// goes no further at a contact: give it its own position as the target.

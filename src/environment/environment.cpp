@@ -116,13 +116,14 @@ void Environment::Members::check_known(const Particles& particles, const char* c
 void Environment::Members::check_edit_followed(const Particles& particles, const char* call) const {
   check_known(particles, call);
   if (particles.size() > 0 && particles.details().edits != edits)
-    throw InvalidArgument(fmt::format("{}: update_after_edit() the last edit with these particles first", call));
+    throw InvalidArgument(
+        fmt::format("{}: these particles missed the last edit: call update_after_edit() with them first", call));
 }
 
 void Environment::Members::check_current(const Particles& particles) const {
   check_edit_followed(particles, "add");
   if (particles.size() > 0 && particles.details().moves != moves)
-    throw InvalidArgument("add: advance the particles first, they have not followed the last move");
+    throw InvalidArgument("add: these particles missed the last move: call advance() with them first");
 }
 
 void Environment::Members::add_to(Particles& particles, SimplexId simplex, const Vec3& position) const {

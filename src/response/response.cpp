@@ -131,7 +131,8 @@ struct Answers {
 ContactCallback respond_with(const WallResponses& responses, std::span<Vec3> velocities,
                              std::span<ParticleStatus> fates, double dt, const Acceleration& acceleration) {
   if (!(dt > 0.0)) throw InvalidArgument("the duration of a step must be positive");
-  if (velocities.size() != fates.size()) throw InvalidArgument("one velocity and one fate per particle are needed");
+  if (velocities.size() != fates.size())
+    throw InvalidArgument("respond_with: one velocity and one status per particle are needed");
   if (acceleration.value != Vec3{} && !(acceleration.duration > 0.0))
     throw InvalidArgument("the duration of an acceleration must be positive");
   const Answers answers{responses, velocities, fates, dt, acceleration};

@@ -35,7 +35,7 @@ class AdaptiveSubdivision {
   /// subdivision there is.
   void update_after_edit(const CombinatorialMap& map, std::span<const Cell> added);
 
-  /// What is subdivided now, parents before what is in their parts.
+  /// The present subdivisions, each before those inside its parts.
   [[nodiscard]] std::span<const Subdivision> subdivisions() const { return subdivisions_; }
 
  private:

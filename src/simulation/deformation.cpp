@@ -93,7 +93,7 @@ class DeformationChecker {
   std::size_t index_, vertices_;
 };
 
-// What the members of a step must be so that it leaves each point of the plane z = 0 in it, to the last bit.
+// Checks the members of a step: it must keep each point of the plane z = 0 in the plane, to the last bit.
 class PlaneChecker {
  public:
   PlaneChecker(const DeformationStep& step, std::size_t index) : step_(step), index_(index) {}
