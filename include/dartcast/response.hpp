@@ -75,10 +75,10 @@ struct Acceleration {
 };
 
 /// A callable for Environment::advance() that answers contacts by `responses` and writes each particle's new velocity
-/// and status. The patch of the wall met first decides which response it is; where that is a reflection, each wall gives
-/// its own restitution and friction. `velocities` in length per time, `dt` the duration > 0 in which the vertices move.
-/// The spans, one entry per particle, and `responses` must outlive it. A particle already absorbed, escaped or stuck
-/// goes no further at a contact: give it its own position as the target.
+/// and status. The patch of the wall met first decides which response it is; where that is a reflection, each wall
+/// gives its own restitution and friction. `velocities` in length per time, `dt` the duration > 0 in which the vertices
+/// move. The spans, one entry per particle, and `responses` must outlive it. A particle already absorbed, escaped or
+/// stuck goes no further at a contact: give it its own position as the target.
 ///
 /// Reflection acts on all walls at once: those of the contact, and those met at the same place (Contact::together); at
 /// the last contact those met before in the step, too, so that the velocity points into none of them, nor does what it

@@ -45,8 +45,8 @@ std::string describe(const CombinatorialMap& map, const CellInversion& f) {
 void check_count(const CombinatorialMap& map, std::size_t count, const char* what) {
   if (count != map.vertex_count())
     throw InvalidArgument(fmt::format(
-        "first_inversion: {} positions {} the motion for {} vertices: give one per vertex, Steiner points included",
-        count, what, map.vertex_count()));
+        "inversion: {} positions {} the motion for {} vertices: give one per vertex, Steiner points included", count,
+        what, map.vertex_count()));
 }
 
 // Keeps the first inversion of the cells that it is shown, in their order.

@@ -109,8 +109,8 @@ void Environment::Members::check_known(const Particles& particles, const char* c
   throw InvalidArgument(fmt::format(
       "{}: the particles missed {} and cannot catch up: add() their positions to a new set; {}", call,
       missed_move ? "a move" : "an edit",
-      missed_move ? "after each move advance every set, or update_after_edit() a later edit, before the next move"
-                  : "update_after_edit() each edit with every set before the next edit"));
+      missed_move ? "call advance() with every set after each move, or update_after_edit() after a later edit"
+                  : "call update_after_edit() with every set after each edit"));
 }
 
 void Environment::Members::check_edit_followed(const Particles& particles, const char* call) const {
@@ -214,8 +214,8 @@ Particles Environment::restored(std::span<const ParticleState> states, std::span
   if (weights.size() != states.size()) throw InvalidArgument("restored: one set of weights per state is needed");
   for (std::size_t i = 0; i < states.size(); ++i) {
     if (!can_be(complex(), states[i], weights[i]))
-      throw InvalidArgument(
-          fmt::format("restored: the state of particle {} is not one of this environment as it stands", i));
+      throw InvalidArgument(fmt::format(
+          "restored: the state of particle {} does not fit this environment: restore the environment first", i));
   }
   Particles particles;
   members_->adopt(particles);

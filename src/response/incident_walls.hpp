@@ -83,8 +83,8 @@ inline Vec3 rebound_of_moment(const Vec3& b, const Vec3& blocked, const Vec3& le
 
 /// The velocity after one impact on all walls that hold v back: these impulses enlarged by 1 + restitution (J. J.
 /// Moreau, "Unilateral contact and dry friction in finite freedom dynamics", 1988), and the rest along the walls
-/// less the part that Coulomb's law takes. It may point into a wall that v did not point into. `surface_of(wall, into)`: `into`
-/// is the speed at which v points into it.
+/// less the part that Coulomb's law takes. It may point into a wall that v did not point into. `surface_of(wall,
+/// into)`: `into` is the speed at which v points into it.
 ///
 /// v is the velocity at the end of the step, and v + lead that of the moment of the contact: with a constant
 /// acceleration a and the contact at a share t of the step dt the lead is (t - 1/2) dt a, otherwise 0. The kinetic

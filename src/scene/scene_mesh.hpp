@@ -34,8 +34,8 @@ auto with_mesh_name(const MeshSource& mesh, Make&& make) {
   }
 }
 
-/// Only the option `max_memory` has an effect. Throws InvalidMesh with the mesh file's name where the mesh is refused, or a
-/// region, array or patch that the scene names is not in it.
+/// Only the option `max_memory` has an effect. Throws InvalidMesh with the mesh file's name where the mesh is refused,
+/// or a region, array or patch that the scene names is not in it.
 SceneMesh load_scene_mesh(const EnvironmentScene& scene, const ReadOptions& options = {}, Threads threads = {});
 
 }  // namespace dartcast

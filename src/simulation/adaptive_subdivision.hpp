@@ -23,8 +23,9 @@ class AdaptiveSubdivision {
   using Edit = std::function<ComplexEditReport(const std::function<void(ComplexEdit&)>& make)>;
 
   /// Subdivides cells that hold too many particles, then merges parts that hold few enough: each by an edit of its own.
-  /// The report names cells that could not be subdivided or merged. `particles`: those that `edit` takes along. Throws what
-  /// `edit` throws but EditRefused. Cost: for each edit linear in the particles and subdivisions, and that of the edit.
+  /// The report names cells that could not be subdivided or merged. `particles`: those that `edit` takes along. Throws
+  /// what `edit` throws but EditRefused. Cost: for each edit linear in the particles and subdivisions, and that of the
+  /// edit.
   AdaptiveSubdivisionReport adapt(const CellComplex& complex, const Particles& particles, const Edit& edit);
 
   /// Makes an edit again, where all before it have been made again. Throws EditRefused, or InvalidArgument where there

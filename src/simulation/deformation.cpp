@@ -299,7 +299,7 @@ void Deformation::add_pull(std::span<const Vec3> displacement, double begin, dou
   if (displacement.size() != size_)
     throw InvalidArgument(fmt::format("deformation: {} displacements for {} vertices", displacement.size(), size_));
   if (!std::isfinite(begin) || !std::isfinite(end) || !(end > begin))
-    throw InvalidArgument("deformation: a pull must end after it begins");
+    throw InvalidArgument("deformation: a pull must end after it starts");
   if (!std::all_of(displacement.begin(), displacement.end(), is_finite))
     throw InvalidArgument("deformation: a displacement is not finite");
   Pull pull{{}, {}, begin, end};

@@ -121,7 +121,7 @@ void EventScheduler::after_edit() {
 void EventScheduler::replay(const EventLog& log) {
   const std::size_t made = log_.changes.size();
   if (made > log.changes.size() || !std::equal(log_.changes.begin(), log_.changes.end(), log.changes.begin()))
-    throw InvalidArgument("events: other edits have been made than those of the checkpoint; make the simulation anew");
+    throw InvalidArgument("events: the edits so far differ from those of the checkpoint; make a new simulation");
   for (std::size_t i = made; i < log.changes.size(); ++i) {
     simulation_.go_to(log.changes[i].step);
     repeat(log.changes[i]);

@@ -24,9 +24,10 @@ void ParticleSystem::save(SimulationState& state) const {
 void ParticleSystem::restore(const SimulationState& state) {
   const ParticleSystemState& saved = state.particles;
   if (saved.totals.contacts_by_patch.size() != totals_.contacts_by_patch.size())
-    throw InvalidArgument("simulation: the checkpoint is of an environment with other patches");
+    throw InvalidArgument(
+        "simulation: the checkpoint is of an environment with other patches: use the mesh that it was saved with");
   if (saved.user_data.size() != saved.particles.size() * width())
-    throw InvalidArgument("simulation: the checkpoint is of a simulation with other user data");
+    throw InvalidArgument("simulation: the checkpoint has other user data: give the options that it was saved with");
   if (steps_ != saved.steps) stand_at(saved.steps);
   std::vector<ParticleState> states;
   std::vector<Weights> weights;
@@ -62,7 +63,8 @@ void ParticleSystem::restore(const SimulationState& state) {
 }
 
 void ParticleSystem::go_to(std::uint64_t steps) {
-  if (particles_.size() > 0) throw InvalidArgument("simulation: there are particles, which would be left behind");
+  if (particles_.size() > 0)
+    throw InvalidArgument("simulation: go_to() needs a simulation without particles: call it before any are added");
   if (steps_ != steps) stand_at(steps);
   steps_ = steps;
 }
