@@ -49,7 +49,7 @@ struct Summary {
   std::string state_hash;
 };
 
-/// One JSON object, as the interface says; what has no meaning in this run is left out.
+/// One JSON object. Entries that do not apply to this run are left out.
 std::string summary_json(const Summary& summary);
 
 /// The same for people, in a few lines.

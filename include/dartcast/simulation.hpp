@@ -246,12 +246,12 @@ class Simulation {
 
   [[nodiscard]] SimulationCheckpoint checkpoint() const;
   /// Goes on from a checkpoint of a simulation made in the same way: every later step is then the same to the last bit.
-  /// Edits by events are made again where they have not been made yet; other edits the caller makes before (go_to()).
-  /// Replaces all particles; vertices move to the checkpoint's time. Throws InvalidArgument where a state does not hold
-  /// in this environment, and where edits are to be made again but there are particles. The particles are then
-  /// unchanged.
+  /// Repeats those edits by events that this simulation has not made yet. The caller makes other edits before
+  /// (go_to()). Replaces all particles; vertices move to the checkpoint's time. Throws InvalidArgument where a state
+  /// does not hold in this environment, and where edits must be repeated but there are particles. The particles are
+  /// then unchanged.
   void restore(const SimulationCheckpoint& saved);
-  /// Moves the vertices to where they are after so many steps, to make edits there again before restore(). Throws
+  /// Moves the vertices to their positions after so many steps, to repeat edits there before restore(). Throws
   /// InvalidArgument where there are particles.
   void go_to(std::uint64_t steps);
 

@@ -242,7 +242,7 @@ void Bodies::Impl::second_pass() {
 
 // Targets of the second pass.
 // - A body that met no wall: where the matching and the centrifugal force are in balance. Its centre of mass stays, and
-//   so does the shape of a body that spins. Its energy must pay for this even if walls stop some of the particles.
+//   so does the shape of a body that spins. Its energy must cover this even if walls stop some of the particles.
 // - Else: the minimum of each particle's potential, which costs nothing.
 // - Particles that touch other bodies: the contact forces join the balance, and overlaps are taken out, as far as that
 //   costs nothing.

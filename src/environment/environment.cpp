@@ -1,4 +1,4 @@
-// The environment: what it does with positions and sets of particles; steps are taken in tracking/.
+// The environment: moves, edits and queries, and checks of sets of particles. The steps themselves are in tracking/.
 #include "dartcast/environment.hpp"
 
 #include <fmt/format.h>

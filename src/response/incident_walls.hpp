@@ -1,4 +1,4 @@
-// The one reflection law: what all walls at a face, edge or vertex make of a velocity, at once. Particles, spheres and
+// The one reflection law: the velocity after all walls at a face, edge or vertex act at once. Particles, spheres and
 // the particles of bodies share it.
 //
 // T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism for continuous collision detection in
@@ -68,8 +68,8 @@ Vec3 shortened(const Vec3& velocity, double limit, const Vec3& lead);
 
 namespace detail {
 
-/// The speed y of the part b of a rebound, y > 0 or 0, with which the energy of the moment becomes what it was without
-/// what restitution took: y^2 / 2 + y l = b^2 / 2 + lead . blocked.
+/// The part b of a rebound with the speed y >= 0. With it the energy of the moment is the energy before, less the part
+/// that restitution took: y^2 / 2 + y l = b^2 / 2 + lead . blocked.
 inline Vec3 rebound_of_moment(const Vec3& b, const Vec3& blocked, const Vec3& lead) {
   const double speed = norm(b);
   if (!(speed > 0.0)) return b;
@@ -93,7 +93,7 @@ inline Vec3 rebound_of_moment(const Vec3& b, const Vec3& blocked, const Vec3& le
 /// B is a sum of the same impulses, each times its restitution <= 1, and is not longer than L: with one restitution by
 /// itself, else it is shortened. Friction shortens P. So |P + B|^2 = |P|^2 + |B|^2 <= |v|^2, up to rounding;
 /// shortened() takes the rounding away: as computed, dot(result, result) <= dot(v, v). With a lead, the same holds for
-/// the energy of the moment, but for what a particle at rest keeps: |lead|^2 / 2 at most.
+/// the energy of the moment, but for the energy that a particle at rest keeps: |lead|^2 / 2 at most.
 template <class SurfaceOf>
 Vec3 after_impact(const Vec3& v, const JointWalls& walls, const SurfaceOf& surface_of, const Vec3& lead = {}) {
   const HeldBack held = held_back(v, walls);

@@ -1,4 +1,4 @@
-// Responses at walls: what a contact does to a velocity.
+// Responses at walls: the velocity after a contact.
 #include "dartcast/response.hpp"
 
 #include <algorithm>

@@ -147,7 +147,7 @@ void AdaptiveSubdivision::subdivide_fullest(const CellComplex& complex, const Pa
   }
 }
 
-// Whether no part is subdivided itself: what is in a part has the middle of what is around among its ancestors only.
+// Whether no part is subdivided itself. A subdivision of a part has the middle among its corners.
 bool AdaptiveSubdivision::is_whole(const CombinatorialMap& map, std::size_t subdivision) const {
   const Subdivision& s = subdivisions_[subdivision];
   return map.contains(s.part) && cells_around(map, s.part.cell, s.middle).size() == s.corners.size() &&

@@ -28,7 +28,7 @@ class AdaptiveSubdivision {
   /// edit.
   AdaptiveSubdivisionReport adapt(const CellComplex& complex, const Particles& particles, const Edit& edit);
 
-  /// Makes an edit again, where all before it have been made again. Throws EditRefused, or InvalidArgument where there
+  /// Repeats an edit, after all edits before it. Throws EditRefused, or InvalidArgument where there
   /// is no such cell or subdivision.
   void repeat(const CellComplex& complex, const SubdivisionChange& change, const Edit& edit);
 

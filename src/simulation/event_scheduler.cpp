@@ -1,4 +1,4 @@
-// Carries out events when they are due, and repeats what a log says.
+// Carries out events when they are due, and repeats the edits of a log.
 #include "simulation/event_scheduler.hpp"
 
 #include <fmt/format.h>

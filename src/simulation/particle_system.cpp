@@ -1,4 +1,5 @@
-// A step of the particles: injection, motion of the vertices, forces, the walk, and who leaves.
+// A step of the particles: injection, motion of the vertices, forces, the walk, and the removal of particles that
+// leave.
 #include "simulation/particle_system.hpp"
 
 #include <fmt/format.h>

@@ -19,8 +19,8 @@
 
 namespace dartcast {
 
-/// It also moves the vertices: with collisions that comes between the spheres' impulses and their walk. Functions that
-/// have the name of one of Simulation's do what that says.
+/// It also moves the vertices: with collisions that comes between the spheres' impulses and their walk. A function
+/// with the name of one of Simulation's does the work of that function.
 class ParticleSystem final : public SimulationComponent {
  public:
   ParticleSystem(Environment& environment, const SimulationOptions& options);

@@ -53,7 +53,7 @@ void ParticleSystem::restore(const SimulationState& state) {
   user_data_ = saved.user_data;
   clear_.clear();
   count_spheres();
-  body_collider_.solver().set_cached_impulses(saved.impulses);  // whichever goes on forgets the other's
+  body_collider_.solver().set_cached_impulses(saved.impulses);  // the one that continues drops the other's
   collider_.solver().set_cached_impulses(saved.impulses);
   steps_ = saved.steps;
   next_id_ = saved.next_id;
@@ -64,7 +64,8 @@ void ParticleSystem::restore(const SimulationState& state) {
 
 void ParticleSystem::go_to(std::uint64_t steps) {
   if (particles_.size() > 0)
-    throw InvalidArgument("simulation: go_to() needs a simulation without particles: call it before any are added");
+    throw InvalidArgument(
+        "simulation: its particles cannot follow to another step: use a simulation without particles");
   if (steps_ != steps) stand_at(steps);
   steps_ = steps;
 }
