@@ -16,12 +16,6 @@ SOURCES = ["include", "src", "apps", "bench", "examples", "tests"]
 SUFFIXES = {".cpp", ".hpp", ".inl"}
 # Rooms and headers whose comments are not yet in plain English. Nothing is ever added here.
 UNCLEAN: list[str] = [
-    *(f"include/dartcast/{name}.hpp" for name in (
-        "bodies catheter deformation environment events mesh_files response run sampling scene simulation spheres "
-        "trajectory velocity_field").split()),
-    *(f"src/{room}" for room in (
-        "bodies catheter dynamics environment formats generators mesh output response scene simulation spheres "
-        "tracking tracking/batch").split()),
     *(f"tests/{room}" for room in (
         "bodies catheter dynamics environment formats generators output response simulation spheres support "
         "tracking").split()),

@@ -1,3 +1,4 @@
+// The verb bench: runs comparisons, and writes their tables and charts.
 #include <fmt/format.h>
 
 #include <cstdint>

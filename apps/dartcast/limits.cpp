@@ -1,3 +1,4 @@
+// Checks options that are whole numbers in a range.
 #include "limits.hpp"
 
 #include <fmt/format.h>

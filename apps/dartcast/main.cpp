@@ -1,3 +1,4 @@
+// The command dartcast: its verbs, and its errors as one line and an exit status.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -10,7 +11,7 @@
 
 namespace {
 
-// Errors are one line: what a library below puts on more is joined.
+// Errors are one line: the lines of a library's message are joined.
 std::string one_line(std::string text) {
   for (char& c : text) {
     if (c == '\n' || c == '\r') c = ' ';

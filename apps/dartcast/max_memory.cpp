@@ -1,3 +1,4 @@
+// Reads the option --max-memory: an amount with a unit.
 #include "max_memory.hpp"
 
 #include <fmt/format.h>

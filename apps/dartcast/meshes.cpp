@@ -1,3 +1,4 @@
+// The verbs of mesh files: check, info and convert.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -1,3 +1,4 @@
+// The verb trace: lists or draws the cells that a particle passes.
 #include <fmt/format.h>
 
 #include <algorithm>

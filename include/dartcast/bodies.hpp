@@ -46,8 +46,8 @@ inline constexpr double volume_cover = 1.8661;
 inline constexpr double solid_cover = 2.1261;
 
 /// Samples on a surface, closed or open; at least one. Throws InvalidArgument where the spacing is not positive and
-/// finite, or below 2^-30 of the largest coordinate (samples would be rounding). Throws it, too, where the surface needs
-/// more than `max_count` samples (or 200 candidates for each of these); the message says which spacing to choose.
+/// finite, or below 2^-30 of the largest coordinate (samples would be rounding). Throws it, too, where the surface
+/// needs more than `max_count` samples (or 200 candidates for each of these); the message says which spacing to choose.
 /// Throws InvalidMesh where check_and_repair_surface() refuses the surface. Cost: 64 to 128 candidates per spacing^2 of
 /// area, one per triangle at least.
 std::vector<Vec3> sample_surface(const MeshData& surface, const SamplingOptions& options);
@@ -226,8 +226,8 @@ struct BodiesCheckpoint {
 /// StepOptions::max_contacts bounds the contacts of a particle in a pass.
 ///
 /// Energy law: in a step the total energy of a body never grows by more than energy_slack of itself, plus
-/// BodiesStep::input (docs/method.md gives the reason). Changes of velocities() between steps are not counted. The total
-/// is the kinetic, the potential and the matching energy, none of them negative.
+/// BodiesStep::input (docs/method.md gives the reason). Changes of velocities() between steps are not counted. The
+/// total is the kinetic, the potential and the matching energy, none of them negative.
 ///
 /// Walls answer by their patch's response: reflect, slide, stick (the particle stays on the wall). A body leaves as a
 /// whole when a wall absorbs one of its particles or lets it escape. A caller may change velocities() between steps.
@@ -254,8 +254,8 @@ class Bodies {
   /// One step; once after each Environment::move(). Throws as Environment::advance(). Cost: about 0.5 us per particle.
   const BodiesStep& step();
 
-  /// A body as a rigid one, with its velocity at the end of the next step if it meets nothing. Its inverse mass is 0
-  /// where a wall holds one of its particles. Cost: about 20 ns per particle.
+  /// A body as a rigid one, with its velocity at the end of the next step if it has no contacts. Its inverse mass is
+  /// 0 where a wall holds one of its particles. Cost: about 20 ns per particle.
   [[nodiscard]] RigidMover predicted_state(std::size_t body) const;
   /// Gives a body an impulse. `solved`: the predicted_state() after contacts with others than bodies changed it. In the
   /// next step forces make that change of momentum, and the body moves by the displacement in `solved`.
@@ -293,13 +293,13 @@ class Bodies {
 
   /// Sums over all steps and both passes. Each pass counts `steps` times particles.
   [[nodiscard]] const Counters& counters() const;
-  /// Of all particles in the scene, by body id and number in the body.
+  /// The hash of all particles in the scene, by body id and number in the body.
   [[nodiscard]] StateHash state_hash() const;
 
   [[nodiscard]] BodiesCheckpoint checkpoint() const;
   /// Goes on from a checkpoint, where the same bodies have been added to an environment in the same state as then.
-  /// Every later step is the same to the last bit. Throws InvalidArgument, nothing changed, where bodies or sizes do not
-  /// match, or as Environment::restored().
+  /// Every later step is the same to the last bit. Throws InvalidArgument, nothing changed, where bodies or sizes do
+  /// not match, or as Environment::restored().
   void restore(const BodiesCheckpoint& saved);
 
  private:

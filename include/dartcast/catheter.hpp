@@ -4,7 +4,8 @@
 // T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism for continuous collision detection in
 // deformable environments", SPM 2009, section 1, names catheters as a use of the method. The chain is solved as an
 // implicit step of an inextensible rod with a rest curvature at its tip and without twisting energy (M. Bergou et al.,
-// "Discrete elastic rods", 2008). The points then walk exactly towards the solver's positions, as far as walls let them.
+// "Discrete elastic rods", 2008). The points then walk exactly towards the solver's positions, as far as walls let
+// them.
 #pragma once
 
 #include <cstddef>
@@ -134,7 +135,8 @@ class Catheter {
 
   [[nodiscard]] CatheterCheckpoint checkpoint() const;
   /// Goes on from a checkpoint of a catheter with the same options, in an equal environment after the same move. Every
-  /// later step is the same to the last bit. Throws InvalidArgument, nothing changed, where the checkpoint does not fit.
+  /// later step is the same to the last bit. Throws InvalidArgument, nothing changed, where the checkpoint does not
+  /// fit.
   void restore(const CatheterCheckpoint& saved);
 
  private:

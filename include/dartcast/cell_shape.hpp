@@ -46,7 +46,8 @@ class Stars {
   };
 
   Stars() = default;
-  /// `simplices`: connected, none of them flat. `fans`: of all faces that these reach. Cost: linear, except for sorting.
+  /// `simplices`: connected, none of them flat. `fans`: of all faces that these reach. Cost: linear, except for
+  /// sorting.
   Stars(std::span<const ImplicitSimplex> simplices, const Fans& fans);
 
   /// The star of a simplex around its corners in the mask `corners`. The mask has one or two bits.

@@ -94,7 +94,7 @@ class Deformation {
     std::vector<Vec3> displacement;
     double begin, end;
   };
-  // What edits and pulls did, in their order.
+  // The effects of edits and pulls, in their order.
   using Later = std::variant<PlacedVertex, Pull>;
 
   void add_later(double time, std::span<Vec3> out) const;

@@ -1,4 +1,5 @@
-// The public types that spheres, bodies and catheters share: limits of numbers, bounds of contacts, and records of rigid bodies.
+// The public types that spheres, bodies and catheters share: limits of numbers, bounds of contacts, and records of
+// rigid bodies.
 #pragma once
 
 #include <cstdint>

@@ -48,7 +48,7 @@ class Particles {
 
   /// Removes the particles marked with 1; the others keep their order. `marks`: one per particle.
   void remove(std::span<const std::uint8_t> marks);
-  /// Reorders: particle i becomes what particle order[i] was. `order`: a permutation.
+  /// Reorders: particle i is then the former particle order[i]. `order`: a permutation.
   void reorder(std::span<const std::uint32_t> order);
   /// A set of these particles alone, in this order, as they are. `which`: indices.
   [[nodiscard]] Particles selected(std::span<const std::uint32_t> which) const;

@@ -91,7 +91,7 @@ struct Event {
 };
 [[nodiscard]] EventKind kind_of(const Event& event);
 
-/// What an event did.
+/// The effects of one event.
 struct EventReport {
   EventKind kind = EventKind::cut;
   std::uint64_t step = 0;  ///< steps done before it
@@ -111,7 +111,7 @@ struct EventReport {
   double seconds = 0.0;
 };
 
-/// What events, remeshing and subdivision have done to the topology, in order: enough to do it again.
+/// The changes of the topology by events, remeshing and subdivision, in order. The log is enough to repeat them.
 struct EventLog {
   struct Change {
     static constexpr std::uint32_t remeshing = 0xffffffffU;

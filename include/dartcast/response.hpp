@@ -1,4 +1,4 @@
-// What particles do at walls: reflect, slide, stick, absorb, escape; per patch.
+// The responses of particles at walls: reflect, slide, stick, absorb, escape; per patch.
 #pragma once
 
 #include <cstdint>
@@ -64,7 +64,7 @@ class WallResponses {
   std::vector<Entry> by_patch_;
 };
 
-/// What has become of a particle.
+/// Whether a particle still moves, and why not.
 enum class ParticleStatus : std::uint8_t { alive, stuck, absorbed, escaped };
 
 /// A constant acceleration of all particles, where nothing else changes their velocities between contacts: each target
@@ -75,24 +75,24 @@ struct Acceleration {
 };
 
 /// A callable for Environment::advance() that answers contacts by `responses` and writes each particle's new velocity
-/// and fate. The patch of the wall met first decides which response it is; where that is a reflection, each wall gives
-/// its own restitution and friction. `velocities` in length per time, `dt` the duration > 0 in which the vertices move.
-/// The spans, one entry per particle, and `responses` must outlive it. A particle already absorbed, escaped or stuck
-/// goes no further at a contact: give it its own position as the target.
+/// and status. The patch of the wall met first decides which response it is; where that is a reflection, each wall
+/// gives its own restitution and friction. `velocities` in length per time, `dt` the duration > 0 in which the vertices
+/// move. The spans, one entry per particle, and `responses` must outlive it. A particle already absorbed, escaped or
+/// stuck goes no further at a contact: give it its own position as the target.
 ///
-/// Reflection acts on all walls at once: those of the contact, and those met at the same place (Contact::together); at
-/// the last contact those met before in the step, too, so that the velocity points into none of them, nor does what it
-/// does from step to step while the particle is wedged. At no contact does the kinetic energy relative to the wall
-/// grow, as it is computed. With an `acceleration` that is the energy at the moment of the contact, and so the sum of
-/// kinetic and potential energy is bounded for any number of steps (docs/method.md, "Reflection"); without one it
+/// Reflection acts on all walls at once: those of the contact, and those met at the same place (Contact::together). At
+/// the last contact it also acts on the walls met earlier in the step. So the velocity points into none of them, and
+/// stays so from step to step while the particle is wedged. The kinetic energy relative to the wall, as computed, does
+/// not grow at any contact. With an `acceleration` this is the energy at the moment of the contact. The sum of kinetic
+/// and potential energy is then bounded for any number of steps (docs/method.md, "Reflection"). Without one the sum
 /// changes at each contact by up to the work of a step.
 ContactCallback respond_with(const WallResponses& responses, std::span<Vec3> velocities,
                              std::span<ParticleStatus> fates, double dt, const Acceleration& acceleration = {});
 
 /// Gives particles that a step has stopped, at a wall beyond their last contact (StepReport::stopped), a velocity that
-/// all walls met in the step permit, with no more energy than they had at that wall: they stand still for the rest of
-/// the step, and what they do not fall they do not gain. To be called after an advance() with respond_with(), with the
-/// same arguments. Cost: linear in the contacts of the step; nothing where none is stopped.
+/// all walls met in the step permit, with no more energy than they had at that wall. They stand still for the rest of
+/// the step, so gravity gives them no energy in it. Call it after an advance() with respond_with(), with the same
+/// arguments. Cost: linear in the contacts of the step; nothing where none is stopped.
 void hold_stopped(const StepReport& report, const WallResponses& responses, std::span<Vec3> velocities,
                   std::span<const ParticleStatus> fates, double dt, const Acceleration& acceleration = {});
 

@@ -49,7 +49,7 @@ struct Summary {
   std::string state_hash;
 };
 
-/// One JSON object, as the interface says; what has no meaning in this run is left out.
+/// One JSON object. Entries that do not apply to this run are left out.
 std::string summary_json(const Summary& summary);
 
 /// The same for people, in a few lines.
@@ -76,8 +76,8 @@ struct RunOptions {
   std::uint64_t max_memory = 0;  ///< as in ReadOptions, for each file that is read
 };
 
-/// Called after each step with the number of steps done and of all. Returns whether to go on. Where it returns false the
-/// run is cancelled: the output folder is complete up to this step, and `resume` can go on from there.
+/// Called after each step with the number of steps done and of all. Returns whether to go on. Where it returns false
+/// the run is cancelled: the output folder is complete up to this step, and `resume` can go on from there.
 using Progress = std::function<bool(std::uint64_t done, std::uint64_t all)>;
 
 /// Runs a scene, and reads the files that it names. Throws Error and its kinds where the scene, its mesh or its

@@ -54,7 +54,7 @@ struct EnvironmentScene {
   double scale = 1.0;           ///< > 0: the mesh's points are multiplied by it, and those of frames
   bool skip_bad_cells = false;  ///< flat, inverted and indivisible cells are left out: their faces are walls
   std::variant<std::monostate, FreeRegions, FreeValues> free;  ///< none: as the mesh says, else all
-  /// The wall groups to tell apart; none: all that the mesh has. Names: of those of the mesh these alone.
+  /// The wall groups to distinguish; none: all groups of the mesh. Names: only these groups of the mesh.
   std::variant<std::monostate, std::vector<std::string>, PatchArray, PatchAngle> patches;
 };
 
@@ -107,7 +107,7 @@ struct BodyScene {
 };
 
 struct CatheterScene {
-  /// What its proximal end does from the end of the move before on.
+  /// The motion of its proximal end, from the end of the previous move.
   struct Move {
     double until = 0.0;  ///< s
     double push = 0.0;   ///< m / s; negative: pulled

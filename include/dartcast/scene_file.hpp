@@ -24,8 +24,8 @@ struct LoadedScene {
 };
 
 /// Reads the files that a scene names: its mesh, frames of the deformation, positions, surfaces of bodies. The mesh has
-/// its scale, free cells and patches as the scene says, also where it comes from a generator. Of the options
-/// `max_memory` counts. Throws Error and its kinds, naming the file and its place in the scene.
+/// its scale, free cells and patches as the scene says, also where it comes from a generator. Only the option
+/// `max_memory` has an effect. Throws Error and its kinds, naming the file and its place in the scene.
 LoadedScene load_scene_files(Scene scene, const ReadOptions& options = {}, Threads threads = {});
 
 }  // namespace dartcast

@@ -72,7 +72,7 @@ struct SimulationOptions {
   std::vector<std::string> user_data = {};
 };
 
-/// What happened in one step.
+/// The results of one step.
 struct SimulationStep {
   double duration = 0.0;                   ///< s
   StepReport report;                       ///< of the particles; it names them by their index during the step
@@ -101,7 +101,7 @@ struct SimulationTotals {
   double seconds_detect = 0.0;                   ///< advancing particles, responses included
   double seconds_deform = 0.0;                   ///< computing and setting the vertices' positions
   double seconds_collide = 0.0;                  ///< pairs and impulses
-  double seconds_respond = 0.0;                  ///< injection, velocities and targets before the walk, fates after it
+  double seconds_respond = 0.0;  ///< injection, velocities and targets before the walk, statuses after it
 };
 
 /// All that a simulation goes on from after a step. It does not hold what the simulation was made with: environment,
@@ -116,20 +116,20 @@ class SimulationCheckpoint {
   std::shared_ptr<const SimulationState> state_;
 };
 
-/// Of all particles. Without collisions particles have no mass: each counts as 1 kg. With collisions a sphere counts by
-/// its mass, and a point, which has none, not at all.
+/// The energy of all particles. Without collisions particles have no mass: each counts as 1 kg. With collisions a
+/// sphere counts by its mass. A point has no mass, and does not count.
 struct SimulationEnergy {
   double kinetic = 0.0;    ///< J: the sum of m v^2 / 2
   double potential = 0.0;  ///< J: the sum of -m g.x, which is 0 at the origin
 };
 
-/// What an edit between two steps did.
+/// The effects of an edit between two steps.
 struct SimulationEdit {
   ComplexEditReport edit;
   UpdateReport particles;
 };
 
-/// What has become of a body.
+/// The state of a body, and sums over its steps.
 struct BodySummary {
   std::string name;
   std::size_t particles = 0;
@@ -144,7 +144,7 @@ struct CatheterTotals {
   double refused = 0.0;        ///< m of pushes and pulls that there was no way for
 };
 
-/// What has become of a catheter.
+/// The state of a catheter, and sums over its steps.
 struct CatheterSummary {
   std::string name;
   double inserted = 0.0;         ///< m
@@ -246,12 +246,12 @@ class Simulation {
 
   [[nodiscard]] SimulationCheckpoint checkpoint() const;
   /// Goes on from a checkpoint of a simulation made in the same way: every later step is then the same to the last bit.
-  /// Edits by events are made again where they have not been made yet; other edits the caller makes before (go_to()).
-  /// Replaces all particles; vertices move to the checkpoint's time. Throws InvalidArgument where a state does not hold
-  /// in this environment, and where edits are to be made again but there are particles. The particles are then
-  /// unchanged.
+  /// Repeats those edits by events that this simulation has not made yet. The caller makes other edits before
+  /// (go_to()). Replaces all particles; vertices move to the checkpoint's time. Throws InvalidArgument where a state
+  /// does not hold in this environment, and where edits must be repeated but there are particles. The particles are
+  /// then unchanged.
   void restore(const SimulationCheckpoint& saved);
-  /// Moves the vertices to where they are after so many steps, to make edits there again before restore(). Throws
+  /// Moves the vertices to their positions after so many steps, to repeat edits there before restore(). Throws
   /// InvalidArgument where there are particles.
   void go_to(std::uint64_t steps);
 
@@ -290,12 +290,12 @@ class Simulation {
   [[nodiscard]] std::vector<CatheterSummary> catheter_summaries() const;
   /// At the particles' places and velocities now. The same bits for any number of threads. Cost: linear, parallel.
   [[nodiscard]] SimulationEnergy energy() const;
-  /// Of all particles, those of bodies and catheters included.
+  /// Checks all particles, those of bodies and catheters included.
   [[nodiscard]] Audit audit() const;
-  /// Of every particle that there has been: those that left count with their last state.
+  /// The hash of every particle that there has been. Particles that left count with their last state.
   [[nodiscard]] StateHash state_hash() const;
 
-  struct Parts;  ///< of its own, and of the library's writers: simulation/simulation_parts.hpp
+  struct Parts;  ///< for this class and the library's writers: simulation/simulation_parts.hpp
   [[nodiscard]] const Parts& parts() const { return *parts_; }
 
  private:

@@ -62,9 +62,9 @@ class SphereStepper {
   /// sphere's way is within its clearance no walls are searched for. After a move() they are ignored.
   ///
   /// Throws as Environment::advance(), and InvalidArgument where a radius is out of range or their number does not
-  /// match; then nothing is changed. Cost: that of a point; where the clearance does not suffice, 0.1 to 0.3 us for each
-  /// cell that the sphere reaches (three of them at a radius of 0.2 cell sizes), 0.1 to 0.4 us for each wall triangle
-  /// there, and some us for each contact.
+  /// match; then nothing is changed. Cost: that of a point; where the clearance does not suffice, 0.1 to 0.3 us for
+  /// each cell that the sphere reaches (three of them at a radius of 0.2 cell sizes), 0.1 to 0.4 us for each wall
+  /// triangle there, and some us for each contact.
   SphereReport advance(Environment& environment, Particles& particles, std::span<const double> radii,
                        std::span<const Vec3> targets, const ContactCallback& respond = {},
                        const StepOptions& options = {}, std::span<const double> clearances = {});

@@ -27,7 +27,8 @@ struct TrajectoryPoint {
 };
 
 /// The points of a particle's way, in the order of time: the start; the crossings and contacts on the way to each
-/// target, and the target if it was reached; the end of the last trace, where the particle arrived, stopped or was held.
+/// target, and the target if it was reached; the end of the last trace, where the particle arrived, stopped or was
+/// held.
 std::vector<TrajectoryPoint> trajectory_points(std::span<const Trace> traces);
 
 /// "vertex", "edge", "face", "volume".

@@ -15,7 +15,7 @@ enum class FieldFrame {
 
 class VelocityField {
  public:
-  /// `values`: one velocity per point of the mesh; interior points take theirs by their weights. The complex's
+  /// `values`: one velocity per point of the mesh; Steiner points take theirs by their weights. The complex's
   /// positions are those at rest. Throws InvalidArgument where the number does not match, a value is not
   /// finite, or in the plane its z is not 0.
   VelocityField(const CellComplex& complex, std::span<const Vec3> values, FieldFrame frame = FieldFrame::space);

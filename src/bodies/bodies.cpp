@@ -1,4 +1,4 @@
-// The public face of Bodies: every function hands over to its members.
+// The public functions of Bodies. Each calls the function of its members that does the work.
 #include "dartcast/bodies.hpp"
 
 #include <utility>

@@ -8,8 +8,8 @@
 
 namespace dartcast {
 
-// Sets for each body whether its energy pays for the positions of its particles, with new fits. Where new fits cost more
-// than the body has, and are not those of least energy, the last ones count.
+// Sets for each body whether its energy covers the positions of its particles, with new fits. Where new fits cost more
+// than the body has, and are not those of least energy, the last fits count.
 void Bodies::Impl::measure() {
   for_each_body([&](Body& body) {
     body.input = given(body) + action_work(body);

@@ -262,7 +262,7 @@ void Bodies::Impl::restore(const BodiesCheckpoint& saved) {
     ++next;
   }
   if (next != saved.ids.size() || particles != saved.particles.size() || fits != saved.fits.size())
-    throw InvalidArgument("bodies: the checkpoint is of other bodies than have been added");
+    throw InvalidArgument("bodies: the checkpoint is of other bodies: add the same bodies in the same order first");
   std::vector<ParticleState> states;
   std::vector<Weights> weights;
   for (const BodiesCheckpoint::Particle& p : saved.particles) {

@@ -40,7 +40,7 @@ struct Bodies::Impl {
     RigidMotion rigid = {};  // after the first pass
     unsigned fallbacks = 0;
     bool accepted = false;  // the trial fits become the fits
-    bool pays = false;      // its energy pays for the positions of its particles
+    bool pays = false;      // its energy covers the positions of its particles
     bool limited = false;   // the first pass limits its targets
     bool met = false;       // a particle met a wall
     bool slides = false;    // in the second pass

@@ -17,7 +17,7 @@ namespace dartcast {
 //  5. limit_targets(), hold_stuck()   for bodies that start at rest, and particles that stick to walls
 //  6. advance()              particles go there; answer_motion() answers at walls (body_contact.cpp)
 //  7. measure()              energy of the new positions; bodies that cannot pay repeat 4 to 6 with limited targets
-//  8. accept(), limit_energy()   new fits; velocities that the energy does not pay for are cut (bodies_energy.cpp)
+//  8. accept(), limit_energy()   new fits; velocities that the energy does not cover are cut (bodies_energy.cpp)
 //  9. aim_pull(), advance()  the second pass: particles go towards their goals; answer_pull() answers at walls
 // 10. fit(), damp(), limit_energy()   new fits, damping, and the limits of energy once more
 // 11. remove_gone(), find_pairs()   bodies that left; pairs that may touch in the next step
@@ -61,7 +61,7 @@ void Bodies::Impl::first_pass() {
   const std::vector<ParticleStatus> fates = fates_;
   last_.motion = advance(false);
   measure();
-  // Energy always pays for limited targets of a body that touches no other. Where bodies that collide still lack it,
+  // Energy always covers limited targets of a body that touches no other. Where bodies that collide still lack it,
   // the last try leaves the collision out.
   for (const bool collides : {true, false}) {
     if (std::all_of(bodies_.begin(), bodies_.end(), [](const Body& b) { return b.pays; })) return;
@@ -91,7 +91,7 @@ void Bodies::Impl::start(Body& body) {
   body.collided = false;
   body.before = (kinetic(body) + potential(body, positions)) +
                 body.stiffness * matching_energy(body.shape, positions, of(body, goals_), body.constant);
-  // A body at rest is moved by forces alone, which energy always pays for.
+  // Only forces move a body at rest, and its energy always covers that motion.
   body.limited = kinetic(body) <= energy_slack * body.before;
 }
 
@@ -242,7 +242,7 @@ void Bodies::Impl::second_pass() {
 
 // Targets of the second pass.
 // - A body that met no wall: where the matching and the centrifugal force are in balance. Its centre of mass stays, and
-//   so does the shape of a body that spins. Its energy must pay for this even if walls stop some of the particles.
+//   so does the shape of a body that spins. Its energy must cover this even if walls stop some of the particles.
 // - Else: the minimum of each particle's potential, which costs nothing.
 // - Particles that touch other bodies: the contact forces join the balance, and overlaps are taken out, as far as that
 //   costs nothing.
@@ -281,7 +281,7 @@ void Bodies::Impl::aim_pull(Body& body) {
   }
 }
 
-// Counts the part of a displacement's energy that nothing else pays for as input. A body that is displaced as a whole
+// Counts the part of a displacement's energy that nothing else covers as input. A body that is displaced as a whole
 // costs its weight alone, because the minima of its potentials move along.
 void Bodies::Impl::charge_lift(Body& body) {
   const double cost = std::min(body.lift, body.moving - body.allowed);

@@ -46,7 +46,7 @@ struct PotentialEnergy {
 /// The properties of a body that its contacts need.
 struct PassBody {
   double stiffness = 0.0;
-  bool limited = false;  ///< first pass: targets are limited to those that the energy pays for
+  bool limited = false;  ///< first pass: targets are limited to those that the energy covers
   bool slides = false;   ///< second pass: particles lose the rest of their way at walls
 };
 

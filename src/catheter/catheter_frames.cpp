@@ -77,7 +77,8 @@ void Catheter::Impl::restore(const CatheterCheckpoint& saved) {
     return w.index < count && is_finite(w.normal) && is_finite(w.point) && std::isfinite(w.pressure);
   });
   if (!fits || !walls_fit)
-    throw InvalidArgument("catheter: the checkpoint is of a catheter with other options, or damaged");
+    throw InvalidArgument(
+        "catheter: the checkpoint is damaged, or of a catheter with other options: give the same options");
   particles_ = environment_.restored(saved.states, saved.held_weights);
   walls_ = saved.walls;
   inserted_ = saved.inserted;

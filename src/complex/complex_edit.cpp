@@ -85,7 +85,7 @@ void ComplexEdit::check_added() const {
   for (const Cell c : transaction_.added()) {
     if (const auto invalid = check_cell(map(), complex_.front_, c)) {
       throw EditRefused(
-          fmt::format("{}; no interior point mends it: place new vertices elsewhere, or split it into convex parts",
+          fmt::format("{}; no Steiner point mends it: place new vertices elsewhere, or split it into convex parts",
                       invalid->message));
     }
   }

@@ -34,18 +34,19 @@ std::string describe(const CombinatorialMap& map, const CellInversion& f) {
     case InversionKind::undecidable:
       return place + "has a corner that is not finite or outside the exact range, before or after the motion";
     case InversionKind::line:
-      return place + fmt::format("is flattened at {}: its vertices {} {} {} {} come to lie on a line", f.how.safe_time,
+      return place + fmt::format("inverts at {}: its vertices {} {} {} {} come to lie on a line", f.how.safe_time,
                                  f.vertices[0].value, f.vertices[1].value, f.vertices[2].value, f.vertices[3].value);
     default:
-      return place + fmt::format("is flattened at {}: {} meets {}", f.how.safe_time, part(f.vertices, f.how.one),
+      return place + fmt::format("inverts at {}: {} meets {}", f.how.safe_time, part(f.vertices, f.how.one),
                                  part(f.vertices, f.how.other));
   }
 }
 
 void check_count(const CombinatorialMap& map, std::size_t count, const char* what) {
   if (count != map.vertex_count())
-    throw InvalidArgument(fmt::format("flattening: {} positions {} the motion for {} vertices (interior points count)",
-                                      count, what, map.vertex_count()));
+    throw InvalidArgument(fmt::format(
+        "inversion: {} positions {} the motion for {} vertices: give one per vertex, Steiner points included", count,
+        what, map.vertex_count()));
 }
 
 // Keeps the first inversion of the cells that it is shown, in their order.

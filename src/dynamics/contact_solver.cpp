@@ -22,9 +22,9 @@ bool is_amount(double x) { return x >= 0.0 && std::isfinite(x); }
 void check_solver(const SolverOptions& o) {
   if (!(o.dt > 0.0) || !std::isfinite(o.dt)) throw InvalidArgument("contacts: dt must be positive and finite");
   if (!is_share(o.restitution) || !is_share(o.position_correction))
-    throw InvalidArgument("contacts: restitution and push must be between 0 and 1");
+    throw InvalidArgument("contacts: restitution and position_correction must be between 0 and 1");
   if (!is_amount(o.friction) || !is_amount(o.resting_speed))
-    throw InvalidArgument("contacts: friction and resting speed must be finite and not negative");
+    throw InvalidArgument("contacts: friction and resting_speed must be finite and not negative");
 }
 
 void check_contacts(std::span<const PairContact> pairs, std::span<const WallContact> walls,

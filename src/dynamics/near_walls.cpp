@@ -67,7 +67,7 @@ bool goes_nearer(const NearWall& w, const std::array<Vertex, 3>& key, const Vec3
 template <class Visit>
 void for_each_point(const Shape& shape, std::uint16_t face, Visit&& visit) {
   const std::uint16_t first = shape.first_dart(face);
-  if (shape.dimension() == 2 || shape.triangle_count(face) == shape.degree(face)) {  // or has a point of its own
+  if (shape.dimension() == 2 || shape.triangle_count(face) == shape.degree(face)) {  // or has a Steiner point
     for (std::uint16_t t = 0; t < shape.triangle_count(face); ++t) {
       for (const std::uint16_t p : shape.triangle(face, t)) visit(p);
     }

@@ -25,7 +25,7 @@ constexpr std::size_t max_open = 64;  // intervals that wait
 // by e = 2^-53 of itself, a corner at a time t by 4 e M along each axis and so by 7 e M in a product with a unit
 // vector; the product's own rounding adds 3 e M, the mean of two e M, the vector's length 4 e r: less than 16 e M for
 // a coefficient. A distance: 7 e M from the corners, 9 e M from their weights and the sum, 3 e M from its length.
-// (With twice the digits, the same with DoubleDouble::rounding.) The rest pays for M's own rounding, and for
+// (In double-double, the same with DoubleDouble::rounding.) The rest covers M's own rounding, and
 // coordinates that scaling takes below the smallest double.
 template <class Real>
 constexpr double rounding_share = 32.0 * 0x1p-53;
@@ -209,7 +209,7 @@ class TouchSearch {
   double error_;
 };
 
-// Searches from `begin` in doubles, and from where these prove no more in twice their digits.
+// Searches from `begin` in doubles, and in double-double from the time at which doubles prove no more.
 template <class Real>
 TouchCandidate first_at_level(const Scaled& s, const TouchSearch<Real>& search,
                               const typename TouchSearch<Real>::Instant& begin, double until, const Real& level) {

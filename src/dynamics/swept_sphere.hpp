@@ -5,7 +5,7 @@
 // from the centre, are further than the radius along it. The corners are linear in time, so this is a quadratic for
 // each, with Bernstein's coefficients m.d_i(a), (m.d_i(b) + n.d_i(a)) / 2 and n.d_i(b). m and n are the directions to
 // the nearest points. Their rounding makes the proof weaker, never wrong, for any triangle. Where the proof fails the
-// interval is divided, the earlier part first. Where doubles do not decide, twice their digits do.
+// interval is divided, the earlier part first. Where doubles do not decide, double-double does.
 #pragma once
 
 #include <array>

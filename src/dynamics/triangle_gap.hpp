@@ -1,4 +1,4 @@
-// The nearest point of a triangle to the origin, in doubles or in twice their digits.
+// The nearest point of a triangle to the origin, in doubles or in double-double.
 #pragma once
 
 #include <array>

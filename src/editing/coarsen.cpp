@@ -112,7 +112,8 @@ class Coarsener {
   void find_parts() {
     const Cell first = subdivision_.part.cell;
     if (!map_.contains(subdivision_.part) || !has_vertex(first, subdivision_.middle))
-      throw InvalidArgument("the part that the subdivision names is not there: follow() the edits since");
+      throw InvalidArgument(
+          "coarsen: the part that the subdivision names is not there: call update_after_edit() on it after each edit");
     parts_ = {first};
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       for (std::uint16_t f = 0; f < map_.shape(parts_[i]).face_count(); ++f) {

@@ -1,3 +1,4 @@
+// Checks every particle's position in integers, by other code than the walk's.
 #include "dartcast/audit.hpp"
 
 #include <fmt/format.h>

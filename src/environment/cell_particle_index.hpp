@@ -10,8 +10,8 @@
 
 namespace dartcast::detail {
 
-/// Lists of particles by cell. An entry may be out of date, where a particle has left since: whoever reads it asks the
-/// state.
+/// Lists of particles by cell. An entry may be out of date, where a particle has left since. A reader checks the
+/// particle's state.
 class CellParticleIndex {
  public:
   /// Cost: linear in the particles.

@@ -1,4 +1,4 @@
-// The environment: what it does with positions and sets of particles; steps are taken in tracking/.
+// The environment: moves, edits and queries, and checks of sets of particles. The steps themselves are in tracking/.
 #include "dartcast/environment.hpp"
 
 #include <fmt/format.h>
@@ -109,20 +109,21 @@ void Environment::Members::check_known(const Particles& particles, const char* c
   throw InvalidArgument(fmt::format(
       "{}: the particles missed {} and cannot catch up: add() their positions to a new set; {}", call,
       missed_move ? "a move" : "an edit",
-      missed_move ? "after each move advance every set, or update_after_edit() a later edit, before the next move"
-                  : "update_after_edit() each edit with every set before the next edit"));
+      missed_move ? "call advance() with every set after each move, or update_after_edit() after a later edit"
+                  : "call update_after_edit() with every set after each edit"));
 }
 
 void Environment::Members::check_edit_followed(const Particles& particles, const char* call) const {
   check_known(particles, call);
   if (particles.size() > 0 && particles.details().edits != edits)
-    throw InvalidArgument(fmt::format("{}: update_after_edit() the last edit with these particles first", call));
+    throw InvalidArgument(
+        fmt::format("{}: these particles missed the last edit: call update_after_edit() with them first", call));
 }
 
 void Environment::Members::check_current(const Particles& particles) const {
   check_edit_followed(particles, "add");
   if (particles.size() > 0 && particles.details().moves != moves)
-    throw InvalidArgument("add: advance the particles first, they have not followed the last move");
+    throw InvalidArgument("add: these particles missed the last move: call advance() with them first");
 }
 
 void Environment::Members::add_to(Particles& particles, SimplexId simplex, const Vec3& position) const {
@@ -213,8 +214,8 @@ Particles Environment::restored(std::span<const ParticleState> states, std::span
   if (weights.size() != states.size()) throw InvalidArgument("restored: one set of weights per state is needed");
   for (std::size_t i = 0; i < states.size(); ++i) {
     if (!can_be(complex(), states[i], weights[i]))
-      throw InvalidArgument(
-          fmt::format("restored: the state of particle {} is not one of this environment as it stands", i));
+      throw InvalidArgument(fmt::format(
+          "restored: the state of particle {} does not fit this environment: restore the environment first", i));
   }
   Particles particles;
   members_->adopt(particles);

@@ -103,11 +103,12 @@ void Particles::replace(std::span<const std::uint32_t> which, const Particles& b
   const Details& theirs = by.details();
   Details& ours = details();
   if (theirs.environment != ours.environment)
-    throw InvalidArgument("replace: the particles are of another environment");
+    throw InvalidArgument(
+        "replace: the particles are of another environment: add() their positions to a new set in this one");
   if (theirs.moves != ours.moves || theirs.edits != ours.edits)
     throw InvalidArgument(
-        "replace: one set has gone along with a move or an edit that the other has not: advance both after each move, "
-        "and update_after_edit() both after each edit");
+        "replace: one set missed a move or an edit that the other has followed: call advance() with both after each "
+        "move, and update_after_edit() with both after each edit");
   for (std::size_t k = 0; k < which.size(); ++k) {
     states_[which[k]] = by.states_[k];
     ours.weights[which[k]] = theirs.weights[k];

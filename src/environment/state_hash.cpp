@@ -1,3 +1,4 @@
+// Hashes the states of particles.
 #include <fmt/format.h>
 
 #include <bit>

@@ -164,8 +164,8 @@ class LegacyChecker {
     text_.fail(fmt::format("'{}' is not a section of a legacy VTK file", name.substr(0, 40)));
   }
 
-  /// VTK keeps one table of arrays for the points, one for the cells and one for the file. Of two arrays with one
-  /// name it keeps the last.
+  /// VTK keeps one table of arrays for the points, one for the cells and one for the file. If two arrays have one
+  /// name, it keeps the last.
   void take_name(std::string_view word) {
     static constexpr std::array<std::string_view, 3> places = {"of the file", "at the points", "at the cells"};
     const auto owner = static_cast<std::size_t>(owner_);

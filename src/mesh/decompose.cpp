@@ -139,7 +139,8 @@ std::vector<Vec3> frame(const Drawing& drawing, double margin) {
   const Vec3 a = {low.x - reach, low.y - reach, 0.0};
   const Vec3 b = {high.x + reach, high.y + reach, 0.0};
   if (!(a.x < low.x && a.y < low.y && b.x > high.x && b.y > high.y)) {
-    throw InvalidArgument(fmt::format("decompose: margin {} is too small to be told from the drawing", margin));
+    throw InvalidArgument(fmt::format(
+        "decompose: margin {} is lost in the rounding of the drawing's coordinates: give a larger one", margin));
   }
   if (!in_exact_range(a) || !in_exact_range(b)) {
     throw InvalidArgument(

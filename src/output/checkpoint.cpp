@@ -146,7 +146,7 @@ void fields(Archive& a, ParticleSystemState::Particle& p) {
   fields(a, p.velocity);
   value_as<std::uint8_t>(a, p.fate);
   values(a, p.contacts, p.radius);
-  if (p.fate > ParticleStatus::escaped) throw Error("a particle has no such fate");
+  if (p.fate > ParticleStatus::escaped) throw Error("a particle has an unknown status");
 }
 
 template <class Archive>
@@ -187,7 +187,7 @@ void fields(Archive& a, EventReport& e) {
   values(a, e.step, e.time, e.cells_removed, e.cells_added, e.cells_opened, e.cells_blocked, e.cells_whole,
          e.particles_in_opened, e.particles_touched, e.particles_located, e.particles_moved, e.particles_held,
          e.particles_absorbed, e.boundary_shift, e.seconds);
-  if (name_of(e.kind).empty()) throw Error("an event has no such kind");
+  if (name_of(e.kind).empty()) throw Error("an event has an unknown kind");
 }
 
 template <class Archive>
@@ -213,7 +213,7 @@ void fields(Archive& a, Bodies::Checkpoint::Particle& p) {
   for (CellFace& f : p.on.face) values(a, f.cell.value, f.face);
   a.value(p.on.count);
   if (p.fate > ParticleStatus::escaped || p.on.count > p.on.face.size())
-    throw Error("a body's particle has no such state");
+    throw Error("a body's particle has an unknown state");
 }
 
 template <class Archive>
@@ -249,7 +249,7 @@ void fields(Archive& a, ParticleSystemState& s) {
   a.list(s.impulses, [&](CachedImpulse& k) { fields(a, k); });
 }
 
-// What version 0.1 did not write.
+// The fields that version 0.1 did not write.
 template <class Archive>
 void later_fields(Archive& a, SimulationState& s) {
   std::vector<CatheterCheckpoint>& catheters = s.catheters.catheters;

@@ -37,7 +37,7 @@ struct MeshInfo {
   std::map<std::string, PatchPlace> patch_places;
   std::size_t free_cells = 0;
   std::size_t wall_faces = 0;
-  std::size_t shapes = 0;  ///< kinds of cell that the map tells apart
+  std::size_t shapes = 0;  ///< kinds of cell that the map distinguishes
   std::uint64_t simplices = 0;
   std::size_t steiner_points = 0;  ///< added where a cell needs one
   Vec3 low, high;                  ///< of the points
@@ -48,8 +48,8 @@ struct MeshInfo {
   [[nodiscard]] std::size_t cell_count() const;
 };
 
-/// Of a mesh that check_and_repair() found valid. Of one of space builds the complex. Throws InvalidMesh where that is
-/// not possible.
+/// Precondition: check_and_repair() found the mesh valid. Builds the complex of a mesh of space. Throws InvalidMesh
+/// where that is not possible.
 MeshInfo mesh_info(const MeshData& mesh, std::string name, Threads threads = {});
 
 std::string info_json(const MeshInfo& info);

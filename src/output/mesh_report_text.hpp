@@ -7,7 +7,7 @@
 
 namespace dartcast {
 
-/// One JSON object, as the interface says, with `dimension`, `parts` and `verdict` besides; UTF-8, invalid bytes
+/// One JSON object with the report, `dimension`, `parts` and `verdict` besides; UTF-8, invalid bytes
 /// replaced.
 std::string report_json(const MeshReport& report);
 

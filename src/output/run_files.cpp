@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What files of frames begin and end with; whether the series has a name of its own in between.
+// The start and the end of the names of a series of frames; whether the name of a body or catheter stands between.
 struct Series {
   std::string_view start;
   std::string_view end;

@@ -7,7 +7,7 @@ namespace dartcast {
 
 namespace {
 
-// An order of walls by what they are, not by where they are listed.
+// An order of walls by their values, not by their places in the list.
 bool comes_before(const WallHit& a, const WallHit& b) {
   const auto key = [](const WallHit& w) {
     return std::tuple(w.normal.x, w.normal.y, w.normal.z, w.patch.value, w.face.cell.value, w.face.face, w.triangle);

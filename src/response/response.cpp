@@ -1,4 +1,4 @@
-// Responses at walls: what a contact does to a velocity.
+// Responses at walls: the velocity after a contact.
 #include "dartcast/response.hpp"
 
 #include <algorithm>
@@ -13,9 +13,10 @@ namespace dartcast {
 namespace {
 
 void check(const WallResponse& r) {
-  if (!(r.restitution >= 0.0 && r.restitution <= 1.0)) throw InvalidArgument("a restitution must be between 0 and 1");
+  if (!(r.restitution >= 0.0 && r.restitution <= 1.0))
+    throw InvalidArgument("response: a restitution must be between 0 and 1");
   if (!(r.friction >= 0.0) || !std::isfinite(r.friction))
-    throw InvalidArgument("a friction must be finite and not negative");
+    throw InvalidArgument("response: a friction must be finite and not negative");
 }
 
 const WallHit* max_opposed(const Vec3& v, std::span<const WallHit> walls) {
@@ -130,10 +131,11 @@ struct Answers {
 
 ContactCallback respond_with(const WallResponses& responses, std::span<Vec3> velocities,
                              std::span<ParticleStatus> fates, double dt, const Acceleration& acceleration) {
-  if (!(dt > 0.0)) throw InvalidArgument("the duration of a step must be positive");
-  if (velocities.size() != fates.size()) throw InvalidArgument("one velocity and one fate per particle are needed");
+  if (!(dt > 0.0)) throw InvalidArgument("respond_with: dt must be positive");
+  if (velocities.size() != fates.size())
+    throw InvalidArgument("respond_with: one velocity and one status per particle are needed");
   if (acceleration.value != Vec3{} && !(acceleration.duration > 0.0))
-    throw InvalidArgument("the duration of an acceleration must be positive");
+    throw InvalidArgument("respond_with: the duration of an acceleration must be positive");
   const Answers answers{responses, velocities, fates, dt, acceleration};
   return [answers](const Contact& contact, std::span<const WallHit> walls,
                    std::span<const WallHit> earlier) -> AfterContact {

@@ -36,7 +36,7 @@ void scale_points(MeshFile& file, double scale) {
   if (file.report.valid()) file.report.defects = check_and_repair(file.mesh).defects;
 }
 
-// Of the cells that `mesh` has, by their places in the input file.
+// Keeps the cells of a frame that `mesh` has, by their places in the input file.
 void keep_cells_of(const MeshData& mesh, MeshData& frame) {
   const std::set<std::uint32_t> wanted(mesh.source.begin(), mesh.source.end());
   MeshData kept;

@@ -16,12 +16,12 @@
 namespace dartcast {
 
 struct SceneMesh {
-  MeshData mesh;      ///< inspected, with `free` and patches as the scene says
+  MeshData mesh;      ///< checked and repaired, with `free` and patches as the scene says
   MeshReport report;  ///< of a file: repairs and warnings; of a generator: counts alone
   Finding skipped;    ///< bad cells that were left out, where the scene wants that
 };
 
-/// Calls make(); puts the mesh file's name before what an InvalidMesh says that it throws.
+/// Calls make(). Where make() throws InvalidMesh, puts the mesh file's name before the message.
 template <class Make>
 auto with_mesh_name(const MeshSource& mesh, Make&& make) {
   try {
@@ -34,8 +34,8 @@ auto with_mesh_name(const MeshSource& mesh, Make&& make) {
   }
 }
 
-/// Of the options `max_memory` counts. Throws InvalidMesh with the mesh file's name where the mesh is refused, or a
-/// region, array or patch that the scene names is not in it.
+/// Only the option `max_memory` has an effect. Throws InvalidMesh with the mesh file's name where the mesh is refused,
+/// or a region, array or patch that the scene names is not in it.
 SceneMesh load_scene_mesh(const EnvironmentScene& scene, const ReadOptions& options = {}, Threads threads = {});
 
 }  // namespace dartcast

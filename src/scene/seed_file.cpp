@@ -19,7 +19,7 @@ namespace dartcast {
 namespace {
 
 constexpr std::array<std::string_view, 7> csv_columns = {"x", "y", "z", "vx", "vy", "vz", "radius"};
-// A run gives these anew.
+// A run computes these itself.
 constexpr std::array<std::string_view, 5> passed_over = {"id", "cell", "kind", "contacts", "held"};
 
 template <std::size_t n>

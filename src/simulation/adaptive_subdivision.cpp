@@ -33,7 +33,7 @@ std::vector<Cell> cells_around(const CombinatorialMap& map, Cell start, Vertex v
   return cells;
 }
 
-// The shortest extent along an axis; edges do not tell: neighbours that were subdivided have halved some.
+// The shortest extent along an axis. Edges are no measure, because neighbours that were subdivided have halved some.
 double extent_of(const CellComplex& complex, Cell c) {
   const CellView cell = complex.map().view(c);
   Vec3 low = complex.positions()[cell.vertex(0).value];
@@ -51,16 +51,16 @@ double extent_of(const CellComplex& complex, Cell c) {
 
 AdaptiveSubdivision::AdaptiveSubdivision(const AdaptiveSubdivisionOptions& options) : options_(options) {
   if (options.min_particles >= options.max_particles)
-    throw InvalidArgument("crowding: cells must be made again at fewer particles than they are subdivided at");
+    throw InvalidArgument("adaptive subdivision: min_particles must be less than max_particles");
   if (!(options.smallest >= 0.0) || !std::isfinite(options.smallest))
-    throw InvalidArgument("crowding: the smallest size must be finite and not negative");
+    throw InvalidArgument("adaptive subdivision: smallest must be finite and not negative");
 }
 
 void AdaptiveSubdivision::update_after_edit(const CombinatorialMap& map, std::span<const Cell> added) {
   for (Subdivision& s : subdivisions_) dartcast::update_after_edit(map, added, s);
 }
 
-// Of equal ones the first by number.
+// The cell with the most particles; the lowest number where several have as many.
 AdaptiveSubdivision::Fullest AdaptiveSubdivision::fullest(const Particles& particles) const {
   std::vector<Cell> full;
   for (const ParticleState& s : particles.states()) {
@@ -100,11 +100,12 @@ void AdaptiveSubdivision::make(const CellComplex& complex, const SubdivisionChan
 void AdaptiveSubdivision::repeat(const CellComplex& complex, const SubdivisionChange& change, const Edit& edit) {
   if (change.merged ? change.what >= subdivisions_.size() : !complex.map().contains(Cell(change.what)))
     throw InvalidArgument(
-        fmt::format("crowding: there is no {} {} to edit again", change.merged ? "subdivision" : "cell", change.what));
+        fmt::format("adaptive subdivision: there is no {} {} to edit again: the log does not fit this simulation",
+                    change.merged ? "subdivision" : "cell", change.what));
   make(complex, change, edit);
 }
 
-// Whether it was made; a refusal is told.
+// Whether the change was made. A refusal is added to the report.
 bool AdaptiveSubdivision::try_edit(const CellComplex& complex, const SubdivisionChange& change, const Edit& edit,
                                    SubdivisionRefusal refusal, AdaptiveSubdivisionReport& report) {
   try {
@@ -146,7 +147,7 @@ void AdaptiveSubdivision::subdivide_fullest(const CellComplex& complex, const Pa
   }
 }
 
-// Whether no part is subdivided itself: what is in a part has the middle of what is around among its ancestors only.
+// Whether no part is subdivided itself. A subdivision of a part has the middle among its corners.
 bool AdaptiveSubdivision::is_whole(const CombinatorialMap& map, std::size_t subdivision) const {
   const Subdivision& s = subdivisions_[subdivision];
   return map.contains(s.part) && cells_around(map, s.part.cell, s.middle).size() == s.corners.size() &&

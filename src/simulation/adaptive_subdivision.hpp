@@ -23,11 +23,12 @@ class AdaptiveSubdivision {
   using Edit = std::function<ComplexEditReport(const std::function<void(ComplexEdit&)>& make)>;
 
   /// Subdivides cells that hold too many particles, then merges parts that hold few enough: each by an edit of its own.
-  /// The report names cells that could not be subdivided or merged. `particles`: those that `edit` takes along. Throws what
-  /// `edit` throws but EditRefused. Cost: for each edit linear in the particles and subdivisions, and that of the edit.
+  /// The report names cells that could not be subdivided or merged. `particles`: those that `edit` takes along. Throws
+  /// what `edit` throws but EditRefused. Cost: for each edit linear in the particles and subdivisions, and that of the
+  /// edit.
   AdaptiveSubdivisionReport adapt(const CellComplex& complex, const Particles& particles, const Edit& edit);
 
-  /// Makes an edit again, where all before it have been made again. Throws EditRefused, or InvalidArgument where there
+  /// Repeats an edit, after all edits before it. Throws EditRefused, or InvalidArgument where there
   /// is no such cell or subdivision.
   void repeat(const CellComplex& complex, const SubdivisionChange& change, const Edit& edit);
 
@@ -35,7 +36,7 @@ class AdaptiveSubdivision {
   /// subdivision there is.
   void update_after_edit(const CombinatorialMap& map, std::span<const Cell> added);
 
-  /// What is subdivided now, parents before what is in their parts.
+  /// The present subdivisions, each before those inside its parts.
   [[nodiscard]] std::span<const Subdivision> subdivisions() const { return subdivisions_; }
 
  private:

@@ -54,7 +54,8 @@ void CathetersComponent::restore(const SimulationState& state) {
   const CathetersState& saved = state.catheters;
   if (saved.catheters.size() != catheters_.size() || saved.totals.size() != catheters_.size())
     throw InvalidArgument(
-        fmt::format("{} catheters were saved, there are {}", saved.catheters.size(), catheters_.size()));
+        fmt::format("catheters: the checkpoint has {}, the simulation has {}: add the same catheters first",
+                    saved.catheters.size(), catheters_.size()));
   for (std::size_t i = 0; i < catheters_.size(); ++i) catheters_[i].restore(saved.catheters[i]);
   totals_ = saved.totals;
 }

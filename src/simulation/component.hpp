@@ -10,7 +10,7 @@ namespace dartcast {
 struct SimulationState;
 
 /// A part of a simulation with particles of its own in the environment. A new one is a class with these functions, a
-/// member of SimulationState for what it saves, and a line in the list of SimulationParts.
+/// member of SimulationState for what it saves, and a line in the list of Simulation::Parts.
 class SimulationComponent {
  public:
   SimulationComponent() = default;

@@ -93,7 +93,7 @@ class DeformationChecker {
   std::size_t index_, vertices_;
 };
 
-// What the members of a step must be so that it leaves each point of the plane z = 0 in it, to the last bit.
+// Checks the members of a step: it must keep each point of the plane z = 0 in the plane, to the last bit.
 class PlaneChecker {
  public:
   PlaneChecker(const DeformationStep& step, std::size_t index) : step_(step), index_(index) {}
@@ -299,7 +299,7 @@ void Deformation::add_pull(std::span<const Vec3> displacement, double begin, dou
   if (displacement.size() != size_)
     throw InvalidArgument(fmt::format("deformation: {} displacements for {} vertices", displacement.size(), size_));
   if (!std::isfinite(begin) || !std::isfinite(end) || !(end > begin))
-    throw InvalidArgument("deformation: a pull must end after it begins");
+    throw InvalidArgument("deformation: a pull must end after it starts");
   if (!std::all_of(displacement.begin(), displacement.end(), is_finite))
     throw InvalidArgument("deformation: a displacement is not finite");
   Pull pull{{}, {}, begin, end};

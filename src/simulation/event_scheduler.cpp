@@ -1,4 +1,4 @@
-// Carries out events when they are due, and repeats what a log says.
+// Carries out events when they are due, and repeats the edits of a log.
 #include "simulation/event_scheduler.hpp"
 
 #include <fmt/format.h>
@@ -54,9 +54,9 @@ void EventScheduler::set_events(std::vector<Event> events) {
 
 void EventScheduler::set_adaptive_subdivision(const AdaptiveSubdivisionScene& subdivision) {
   if (environment_.map().dimension() == 2 && subdivision.every > 0)
-    throw InvalidArgument("crowding: in the plane cells are not subdivided; leave [crowding] out");
+    throw InvalidArgument("adaptive subdivision: cells of the plane are not subdivided; leave [crowding] out");
   if (!subdivision_.subdivisions().empty())
-    throw InvalidArgument("crowding: cells are subdivided already; set the options before the first step");
+    throw InvalidArgument("adaptive subdivision: cells are subdivided already; set the options before the first step");
   subdivision_ = AdaptiveSubdivision(subdivision.options);
   adapt_every_ = subdivision.every;
 }
@@ -121,7 +121,7 @@ void EventScheduler::after_edit() {
 void EventScheduler::replay(const EventLog& log) {
   const std::size_t made = log_.changes.size();
   if (made > log.changes.size() || !std::equal(log_.changes.begin(), log_.changes.end(), log.changes.begin()))
-    throw InvalidArgument("events: other edits have been made than those of the checkpoint; make the simulation anew");
+    throw InvalidArgument("events: the edits so far differ from those of the checkpoint; make a new simulation");
   for (std::size_t i = made; i < log.changes.size(); ++i) {
     simulation_.go_to(log.changes[i].step);
     repeat(log.changes[i]);

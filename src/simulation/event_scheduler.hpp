@@ -11,7 +11,7 @@
 
 namespace dartcast {
 
-/// Functions that have the name of one of Simulation's do what that says.
+/// A function with the name of one of Simulation's does the work of that function.
 class EventScheduler {
  public:
   /// All outlive it. It uses the simulation only in steps and edits. `dt`: of a step, s.

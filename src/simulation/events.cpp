@@ -1,12 +1,12 @@
-// What each kind of event does to the environment of a simulation.
+// Carries out each kind of event on the environment of a simulation.
 #include "dartcast/events.hpp"
 
 #include <algorithm>
 #include <variant>
 #include <vector>
 
-#include "dartcast/validity.hpp"
 #include "dartcast/simulation.hpp"
+#include "dartcast/validity.hpp"
 #include "simulation/timer.hpp"
 
 namespace dartcast {
@@ -62,7 +62,7 @@ class EventRun {
     std::vector<Vec3> drawn(now.begin(), now.end());
     draw_together(complex(), section, tie.plane, tie.tying, drawn);
     const auto inversion = simulation_.environment().first_inversion(drawn);
-    constexpr double room = 0.75;  // of the way to where a simplex is flattened
+    constexpr double room = 0.75;  // of the way to where the first simplex inverts
     const double share = inversion ? room * inversion->how.safe_time : 1.0;
     for (std::size_t v = 0; v < drawn.size(); ++v) drawn[v] = (drawn[v] - now[v]) * share;
     simulation_.pull(drawn, tie.duration);

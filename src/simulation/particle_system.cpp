@@ -1,4 +1,5 @@
-// A step of the particles: injection, motion of the vertices, forces, the walk, and who leaves.
+// A step of the particles: injection, motion of the vertices, forces, the walk, and the removal of particles that
+// leave.
 #include "simulation/particle_system.hpp"
 
 #include <fmt/format.h>
@@ -98,7 +99,8 @@ ParticleSystem::ParticleSystem(Environment& environment, const SimulationOptions
 
 void ParticleSystem::set_deformation(Deformation deformation) {
   if (deformation.size() != environment_.positions().size()) {
-    throw InvalidArgument("simulation: the deformation is made for another number of points than the environment has");
+    throw InvalidArgument(
+        "simulation: the deformation has another number of points than the environment: make it for this mesh");
   }
   if (environment_.map().dimension() == 2) deformation.check_plane();
   deformation_ = std::move(deformation);

@@ -19,8 +19,8 @@
 
 namespace dartcast {
 
-/// It also moves the vertices: with collisions that comes between the spheres' impulses and their walk. Functions that
-/// have the name of one of Simulation's do what that says.
+/// It also moves the vertices: with collisions that comes between the spheres' impulses and their walk. A function
+/// with the name of one of Simulation's does the work of that function.
 class ParticleSystem final : public SimulationComponent {
  public:
   ParticleSystem(Environment& environment, const SimulationOptions& options);
@@ -145,7 +145,7 @@ class ParticleSystem final : public SimulationComponent {
   Collider collider_;
   Bodies* bodies_ = nullptr;
   SphereBodyCollider body_collider_;  // in place of the other one while there are bodies
-  std::vector<double> met_radii_;     // in collisions: 0 for those that meet nobody
+  std::vector<double> met_radii_;     // in collisions: 0 for those without contacts
   std::vector<double> inverse_masses_;
   struct Clear {  // no wall is nearer to this place
     Vec3 centre;

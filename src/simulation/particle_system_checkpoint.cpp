@@ -24,9 +24,10 @@ void ParticleSystem::save(SimulationState& state) const {
 void ParticleSystem::restore(const SimulationState& state) {
   const ParticleSystemState& saved = state.particles;
   if (saved.totals.contacts_by_patch.size() != totals_.contacts_by_patch.size())
-    throw InvalidArgument("simulation: the checkpoint is of an environment with other patches");
+    throw InvalidArgument(
+        "simulation: the checkpoint is of an environment with other patches: use the mesh that it was saved with");
   if (saved.user_data.size() != saved.particles.size() * width())
-    throw InvalidArgument("simulation: the checkpoint is of a simulation with other user data");
+    throw InvalidArgument("simulation: the checkpoint has other user data: give the options that it was saved with");
   if (steps_ != saved.steps) stand_at(saved.steps);
   std::vector<ParticleState> states;
   std::vector<Weights> weights;
@@ -52,7 +53,7 @@ void ParticleSystem::restore(const SimulationState& state) {
   user_data_ = saved.user_data;
   clear_.clear();
   count_spheres();
-  body_collider_.solver().set_cached_impulses(saved.impulses);  // whichever goes on forgets the other's
+  body_collider_.solver().set_cached_impulses(saved.impulses);  // the one that continues drops the other's
   collider_.solver().set_cached_impulses(saved.impulses);
   steps_ = saved.steps;
   next_id_ = saved.next_id;
@@ -62,7 +63,9 @@ void ParticleSystem::restore(const SimulationState& state) {
 }
 
 void ParticleSystem::go_to(std::uint64_t steps) {
-  if (particles_.size() > 0) throw InvalidArgument("simulation: there are particles, which would be left behind");
+  if (particles_.size() > 0)
+    throw InvalidArgument(
+        "simulation: its particles cannot follow to another step: use a simulation without particles");
   if (steps_ != steps) stand_at(steps);
   steps_ = steps;
 }

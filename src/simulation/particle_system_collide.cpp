@@ -32,7 +32,7 @@ std::optional<WallSurface> solved_surface(const WallResponse& response) {
 
 }  // namespace
 
-// Masses, and which spheres take part: those held or gone meet nobody, those stuck to a wall cannot be pushed.
+// Masses, and which spheres take part. Held spheres and those that left have no contacts; stuck ones cannot be pushed.
 void ParticleSystem::weigh() {
   met_radii_.resize(radii_.size());
   inverse_masses_.resize(radii_.size());

@@ -1,4 +1,4 @@
-// What follows an edit of the environment: particles, deformation, field and inlets.
+// Updates particles, deformation, field and inlets after an edit of the environment.
 #include <algorithm>
 
 #include "dartcast/error.hpp"

@@ -1,4 +1,4 @@
-// What a simulation consists of.
+// The parts of a simulation.
 #pragma once
 
 #include <memory>

@@ -75,7 +75,7 @@ class DraftChecker {
     if (std::string faces = flatten(); !faces.empty()) return faces;
     if (std::string edges = pair_edges(); !edges.empty()) return edges;
     if (!is_sphere()) return "would not be one solid without holes, joined by faces alone";
-    return points_distinct() ? "" : "would have a point of its own that is a corner, or that serves twice";
+    return points_distinct() ? "" : "would have a Steiner point that is a corner, or that is used twice";
   }
 
   // All faces' darts, one face after another; corners are numbered as they appear.
@@ -237,7 +237,7 @@ std::string polygon_defect(const CellDraft& draft) {
     const auto& next = draft.faces[(f + 1) % draft.faces.size()].corners;
     if (edge.size() != 2 || next.empty() || edge[1].vertex != next[0].vertex)
       return "would have edges that are not one cycle";
-    if (draft.faces[f].point.valid()) return "would have an edge with a point of its own";
+    if (draft.faces[f].point.valid()) return "would have an edge with a Steiner point";
     vertices.push_back(edge[0].vertex.value);
   }
   if (draft.point.valid()) vertices.push_back(draft.point.value);

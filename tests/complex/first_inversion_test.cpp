@@ -181,7 +181,7 @@ TEST(FirstFlattening, MessagesNameCellTimeAndVertices) {
   const auto number = [&](std::size_t corner) { return std::to_string(corners[corner]); };
   const Vec3 mean = (mesh.points[corners[1]] + mesh.points[corners[2]] + mesh.points[corners[3]]) * (1.0 / 3.0);
   const std::string through = text(0, 2.0 * mean - mesh.points[corners[0]]);
-  EXPECT_NE(through.find("cell 5000: simplex 0 is flattened at 0.49"), std::string::npos) << through;
+  EXPECT_NE(through.find("cell 5000: simplex 0 inverts at 0.49"), std::string::npos) << through;
   EXPECT_NE(through.find(": vertex " + number(0) + " meets face "), std::string::npos) << through;
   const std::string onto = text(1, mesh.points[corners[2]]);
   EXPECT_NE(onto.find("vertex "), std::string::npos) << onto;

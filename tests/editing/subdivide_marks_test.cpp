@@ -120,7 +120,7 @@ TEST(SubdivideMarks, Refusals) {
   const Subdivided s = subdivide(edit, complex.map().cells()[13]);
   Subdivision stale = s.subdivision;
   const Subdivided inner = subdivide(edit, s.cells[0]);
-  test::expect_parts(refusal([&] { coarsen(edit, stale); }), {"invalid: the part", "follow()"});
+  test::expect_parts(refusal([&] { coarsen(edit, stale); }), {"invalid: coarsen: the part", "update_after_edit()"});
   update_after_edit(edit.map(), inner.cells, stale);
   test::expect_parts(refusal([&] { coarsen(edit, stale); }), {"refused: cell 13", "coarsen these first"});
   coarsen(edit, inner.subdivision);

@@ -116,7 +116,7 @@ TEST(EnvironmentRefuses, ParticlesThatMissedAMove) {
   environment.add(early, place);
   environment.add(late, place);
   environment.move(mesh.points);
-  expect_refused([&] { environment.add(late, place); }, "advance the particles first");
+  expect_refused([&] { environment.add(late, place); }, "call advance() with them first");
   environment.advance(early, place);
   environment.add(early, place);  // has followed
   EXPECT_EQ(early.size(), 2U);

@@ -133,9 +133,9 @@ TEST(Draft, WhatIsNoCellIsRefused) {
 
   CellDraft points = draft_from(tetrahedron);
   points.point = Vertex(2);
-  expect_defect(points, "point of its own");
+  expect_defect(points, "Steiner point");
   points.point = points.faces[1].point = Vertex(9);
-  expect_defect(points, "point of its own");
+  expect_defect(points, "Steiner point");
 
   Loops large = {{}};
   for (std::uint32_t i = 0; i < 6000; ++i) {

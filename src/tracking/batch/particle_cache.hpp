@@ -27,7 +27,7 @@ inline VertexNumbers vertex_numbers(const CellComplex& complex, SimplexId s) {
 SimplexCacheEntry cache_entry_of(CacheKind kind, std::span<const Vec3> positions, const VertexNumbers& vertices,
                                  const Vec3& p);
 
-/// One entry for each particle of a set, in the order of the states. Whoever changes a state from outside of a step
+/// One entry for each particle of a set, in the order of the states. Code that changes a state outside of a step
 /// calls place() or forget().
 class ParticleCache {
  public:
