@@ -22,9 +22,6 @@ UNCLEAN: list[str] = [
     *(f"src/{room}" for room in (
         "bodies catheter dynamics environment formats generators mesh output response scene simulation spheres "
         "tracking tracking/batch").split()),
-    *(f"tests/{room}" for room in (
-        "bodies catheter dynamics environment formats generators output response simulation spheres support "
-        "tracking").split()),
 ]
 
 COMMENT = re.compile(r'"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'|//[/!]?<?(?P<text>[^\n]*)')

@@ -169,7 +169,7 @@ class BothWays {
     return same;
   }
 
-  // Whether the particle rides along to its target: the step of one particle then does not walk.
+  // Whether the mesh carries the particle to its target: the step of one particle then does not walk.
   [[nodiscard]] bool rides_to(std::size_t i, const Vec3& target) const {
     if (!moves_) return false;
     const SimplexId at = states_[i].at();
@@ -311,7 +311,7 @@ MeshData flattened(MeshData mesh, double thickness) {
   return mesh;
 }
 
-// What goes wrong in a scene.
+// The first error in a scene, or nothing.
 std::string run(BothWays scene, const std::string& name, Tally& tally) {
   if (!scene.usable()) return {};
   for (std::size_t i = 0; i < steps_per_scene; ++i) {
@@ -328,7 +328,7 @@ std::string run_scene(oracle::SceneKind kind, bool moves, std::uint64_t seed, Ta
     for (Vec3& p : mesh.points) p *= seed % 8 == 2 ? 0x1p-180 : 0x1p+270;
   }
   const bool far = moves && seed % 4 == 3;
-  if (far) {  // who rides along is often rounded out of the simplex
+  if (far) {  // a carried particle is often rounded out of the simplex
     for (Vec3& p : mesh.points) p += Vec3{0x1p+30, -0x1p+31, 0x1p+29} * (seed % 8 == 3 ? 1.0 : 0x1p-12);
   }
   return run(BothWays(std::move(mesh), seed, moves, false, !moves || far),
@@ -385,7 +385,7 @@ TEST(FilteredBatch, SeedsThatWentWrong) {
   Tally tally;
   // A determinant below the filter's bound, exact and not zero: no wall is to be looked for.
   EXPECT_EQ(run_scene(oracle::SceneKind::hexahedra, false, 855, tally), "");
-  // A particle at a corner that is rounded out of its simplex when it rides along.
+  // A particle at a corner that is rounded out of its simplex when the mesh carries it.
   EXPECT_EQ(run_scene(oracle::SceneKind::flat_corners, true, 197, tally), "");
   // Far off: steps that the rule splits, as it rounds the motion up.
   EXPECT_EQ(run_scene(oracle::SceneKind::pyramids, true, 51, tally), "");
