@@ -6,9 +6,9 @@
 #include "dartcast/audit.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
+#include "dartcast/simulation.hpp"
 #include "dartcast/validity.hpp"
 #include "support/expectations.hpp"
-#include "dartcast/simulation.hpp"
 #include "support/tier.hpp"
 #include "support/with_response.hpp"
 

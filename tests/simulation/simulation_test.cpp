@@ -10,9 +10,9 @@
 #include "dartcast/audit.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
+#include "simulation/simulation_state.hpp"
 #include "support/expectations.hpp"
 #include "support/meshes.hpp"
-#include "simulation/simulation_state.hpp"
 #include "support/with_response.hpp"
 
 namespace dartcast::flow_test {
