@@ -5,7 +5,6 @@ sentences start.
 Prose is read paragraph by paragraph, so that a phrase is found across the end of a line. Code in documents is left out,
 but for names that are no longer in use.
 """
-import collections
 import dataclasses
 import pathlib
 import re
@@ -14,12 +13,6 @@ import sys
 DOCUMENTS = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/*.md"]
 SOURCES = ["include", "src", "apps", "bench", "examples", "tests"]
 SUFFIXES = {".cpp", ".hpp", ".inl"}
-# Rooms and headers whose comments are not yet in plain English. Nothing is ever added here.
-UNCLEAN: list[str] = [
-    *(f"tests/{room}" for room in (
-        "bodies catheter dynamics environment formats generators output response simulation spheres support "
-        "tracking").split()),
-]
 
 COMMENT = re.compile(r'"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'|//[/!]?<?(?P<text>[^\n]*)')
 CODE_BLOCK = re.compile(r"^```.*?^```", re.DOTALL | re.MULTILINE)
@@ -124,28 +117,14 @@ def findings_of(paragraph: Paragraph, bans: list[Ban]) -> list[str]:
     return found
 
 
-def unclean_entry(path: pathlib.Path) -> str | None:
-    """The entry of UNCLEAN that a file belongs to: its folder or the file itself."""
-    return next((entry for entry in UNCLEAN if entry in (path.as_posix(), path.parent.as_posix())), None)
-
-
 def main() -> int:
     bans = read_bans(pathlib.Path("tools/banned_words.txt"))
     documents = [path for pattern in DOCUMENTS for path in sorted(pathlib.Path().glob(pattern))]
     sources = [p for root in SOURCES for p in sorted(pathlib.Path(root).rglob("*")) if p.suffix in SUFFIXES]
     paragraphs = [p for path in documents for p in paragraphs_of_document(path)]
     paragraphs += [p for path in sources for p in paragraphs_of_source(path)]
-    found, later = [], collections.Counter()
-    show_all = "--all" in sys.argv[1:]
-    for paragraph in paragraphs:
-        lines = findings_of(paragraph, bans)
-        entry = None if show_all else unclean_entry(paragraph.path)
-        if entry is None:
-            found += lines
-        else:
-            later[entry] += len(lines)
-    notes = [] if show_all else [f"{entry}: {later[entry]} findings, not counted as mistakes yet" for entry in UNCLEAN]
-    print("\n".join(found + notes))
+    found = [line for paragraph in paragraphs for line in findings_of(paragraph, bans)]
+    print("\n".join(found))
     print(f"{len(documents)} documents, {len(sources)} sources, {len(found)} mistakes")
     return 1 if found else 0
 

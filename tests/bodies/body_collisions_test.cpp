@@ -168,7 +168,7 @@ TEST(BodyCollisions, GapsAreUsedUp) {
   }
 }
 
-// Of one particle each, they are balls.
+// Bodies of one particle each are balls.
 TEST(BodyCollisions, BodiesOfOneParticleMeet) {
   Environment environment = room();
   Bodies bodies(environment, rebounding(0.5));

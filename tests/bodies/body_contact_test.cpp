@@ -6,7 +6,7 @@
 
 namespace dartcast::body_contact_test {
 
-// As far as the kinetic energy pays for it, and no less; on the way it pays for every place.
+// The share is the largest one whose potential energy the kinetic energy covers. Every smaller share is covered, too.
 TEST(PotentialEnergy, PayableShareIsAsFarAsTheEnergyReaches) {
   Random random(1);
   const auto vector = [&] { return Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)}; };

@@ -220,7 +220,7 @@ TEST(ShapeMatching, ClustersCoverAllPointsAndOverlap) {
   EXPECT_TRUE(overlapping_clusters({}, 1.0).empty());
 }
 
-// An inverted, flattened or collapsed body has goals that are finite, and of its rest shape.
+// The goals of an inverted, flat or collapsed body are finite and have its rest shape.
 TEST(ShapeMatching, RecoversFromAnyPlaces) {
   Random random(7);
   const auto points = random_points(20, random);

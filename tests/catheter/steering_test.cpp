@@ -64,7 +64,7 @@ struct Insertion {
       step(push, i < turning ? turn / turning : 0.0, audited_too);
   }
 
-  // Of a point's cell at rest: the mean of its corners, and how far along the vessel it is.
+  // The cell of a point, at rest: the mean of its corners, and how far along the vessel it is.
   struct Where {
     Vec3 rest;
     double path = 0.0;

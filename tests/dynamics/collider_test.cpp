@@ -129,7 +129,7 @@ TEST(Collider, FindsAndSolvesWhatAllPairsSay) {
       EXPECT_EQ(counts.walls_touching, solver.loaded_walls());
       EXPECT_EQ(found, velocities);
       EXPECT_EQ(moved, displacements);
-      // What it keeps in memory is not taken for this step's.
+      // Impulses that the solver keeps in memory are not taken for those of this step.
       collider.solver().set_cached_impulses({});
       found = cloud.velocities;
       const CollisionCounts again =

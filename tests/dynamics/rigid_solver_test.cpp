@@ -118,7 +118,7 @@ TEST(RigidSolver, OneContactIsAsNewtonsLaw) {
     ASSERT_LE(norm(momentum), 1e-13);
     const Vec3 turning = angular(a, movers[0]) + angular(b, movers[1]) - angular(a, a.mover) - angular(b, b.mover);
     ASSERT_LE(norm(turning), 1e-12);
-    // What the law takes: (1 - e^2) / 2 of the effective mass times the speed squared.
+    // The energy that the law removes: (1 - e^2) / 2 of the effective mass times the speed squared.
     const Vec3 impulse = (movers[1].velocity - b.mover.velocity) * b.mass;
     const double lost = 0.5 * (1.0 - c.restitution) * norm(impulse) * -before;
     const double had = kinetic(a, a.mover) + kinetic(b, b.mover);
@@ -276,7 +276,7 @@ TEST(RigidSolver, OrderDoesNotMatterAndKeptImpulsesGoOn) {
   }
 }
 
-// What overlaps is taken apart without velocities.
+// Overlaps are corrected without a change of velocities.
 TEST(RigidSolver, PushesDoNotChangeVelocities) {
   Draw draw(6);
   for (int i = 0; i < 50; ++i) {

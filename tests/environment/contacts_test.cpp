@@ -1,4 +1,4 @@
-// What a contact promises: unit normals, a particle near the contact's point, times that are right after a rebound.
+// The guarantees of a contact: unit normals, a particle near the contact's point, times that are right after a rebound.
 #include <gtest/gtest.h>
 
 #include <algorithm>

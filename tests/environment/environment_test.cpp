@@ -504,8 +504,8 @@ TEST(EnvironmentHolds, ParticlesOfAnInvertedCellRideAlong) {
     for (std::uint32_t i = 0; i < particles.size(); ++i) {
       if (waiting[i].held) EXPECT_TRUE(test::same_bits(particles[i], waiting[i]));
     }
-    // Valid again. A step taken in parts leads through the invalid cells once more, so some get no further than riding
-    // along.
+    // Valid again. A step taken in parts leads through the invalid cells once more, so some particles are
+    // only carried with the mesh.
     environment.move(mesh.points);
     const StepReport mended = environment.advance(particles, targets);
     EXPECT_LT(mended.held.size(), inverted);

@@ -1,4 +1,4 @@
-// Moves that would flatten cells: found before they are made, and followed as far as all stays valid.
+// Moves that would invert cells: found before they are made, and made as far as all cells stay valid.
 #include <gtest/gtest.h>
 
 #include <algorithm>

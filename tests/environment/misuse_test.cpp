@@ -82,7 +82,7 @@ TEST(OtherEnvironment, IsRememberedByPartsAndCopiesAndForgottenByEmptySets) {
   }
 }
 
-// What is kept of the particles that were there is of no use in the other environment: it might be of the plane.
+// Caches of earlier particles are of no use in the other environment: they might be of the plane.
 TEST(OtherEnvironment, TakesAnEmptySetAsANewOne) {
   RectangleOptions o;
   o.cells = {2, 2};
@@ -207,7 +207,7 @@ TEST(ThreadsRefused, WhereThereAreTooMany) {
 
 // --- moved from
 
-// What a set keeps beside its states must go with them.
+// The caches that a set keeps beside its states must move with them.
 TEST(MovedFrom, ASetOfParticlesIsEmpty) {
   Environment environment(cubes(2));
   for (int kind = 0; kind < 3; ++kind) {  // nothing is kept, corners, coordinates

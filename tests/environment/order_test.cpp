@@ -116,7 +116,7 @@ class Orders : public testing::TestWithParam<test::EditMesh> {};
 
 constexpr std::array all_policies = {OrphanPolicy::hold, OrphanPolicy::relocate, OrphanPolicy::absorb};
 
-// What follows an edit made after a move is where it would be, had it gone along with the vertices in between.
+// A particle that follows an edit made after a move is where it would be, had the move carried it before the edit.
 TEST_P(Orders, AMoveThenAnEditIsFollowed) {
   std::size_t changed = 0;
   for (int run = 0; run < test::scaled(12, 400); ++run) {
@@ -138,7 +138,7 @@ TEST_P(Orders, AMoveThenAnEditIsFollowed) {
       EXPECT_FALSE(t.b.environment.awaits_advance(t.in_b));
       const Audit found = audit(t.b.environment.complex(), t.in_b);
       ASSERT_EQ(found.failed, 0U) << found.first;
-      // What is kept beside the states is of the new places, too.
+      // The caches beside the states belong to the new places, too.
       const std::vector<Vec3> on = t.a.points(t.in_a.size());
       ASSERT_EQ(t.b.points(t.in_b.size()).size(), on.size());
       t.a.environment.advance(t.in_a, on);
@@ -444,7 +444,7 @@ TEST(Order, AMoveThenAnEditTakesParticlesAlong) {
   EXPECT_EQ(audit(c.environment.complex(), c.particles).failed, 0U);
 }
 
-// Who has nobody to take along may edit after a move: no particles, empty sets, sets that came later.
+// An edit may follow a move if no particle has to be carried: no sets, empty sets, sets that came later.
 TEST(Order, AnEditAfterAMoveNeedsNobody) {
   Cubes c;
   Particles empty;

@@ -1,4 +1,4 @@
-// The environment in the plane: particles bounce, ride along and are swept as in space, and none is lost.
+// The environment in the plane: particles bounce, are carried and are swept as in space, and none is lost.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -378,7 +378,7 @@ TEST(Plane, RefusesWhatIsNotInIt) {
   EXPECT_EQ(audit(environment.complex(), set).failed, 0U);
 }
 
-// Whoever writes positions in the plane may leave anything in z: it is not read.
+// The z of positions in the plane may be any number: it is not read.
 TEST_P(InThePlane, TheHeightOfVerticesIsNotRead) {
   Environment flat(rectangle(GetParam(), {10, 8}, 0.25, 0.2));
   Environment high(rectangle(GetParam(), {10, 8}, 0.25, 0.2));

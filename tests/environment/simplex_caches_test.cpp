@@ -1,5 +1,5 @@
-// What particles keep of their simplices never changes where they go: whatever happens to a set, its next step is that
-// of a set which keeps nothing.
+// The caches of particles never change where they go: whatever happens to a set, its next step equals the step of a set
+// without caches.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -385,7 +385,7 @@ TEST_P(TracesAsAdvanced, ComeToTheSameBits) {
   EXPECT_LT(still.rounded + moving.rounded, (still.crossings + moving.crossings) / 50U);
 }
 
-// Among slivers so thin that a contact or a ride is rounded into the next cell.
+// Among slivers so thin that a contact or a carried position is rounded into the next cell.
 TEST(Trace, SaysWhereRoundingChangesTheCell) {
   Compared still, moving;
   compare_scene(kinds - 1, 162, still, moving);

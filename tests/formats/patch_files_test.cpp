@@ -196,7 +196,7 @@ TEST_F(PatchFiles, LinesInThePlane) {
   EXPECT_EQ(file.report.warnings[0].first, std::vector<std::size_t>{3});
 }
 
-// What is written reads back, over again, whatever arrays the mesh has besides.
+// Written patches read back, twice over, whatever other arrays the mesh has.
 TEST_F(PatchFiles, WrittenPatchesReadBack) {
   for (MeshData mesh : {mixed_mesh(), planar_mesh()}) {
     mesh.cell_data = {{"patch", 1, {9, 9, 9, 9}}, {"region", 1, {5, 5, 5, 5}}};

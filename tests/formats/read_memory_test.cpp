@@ -24,7 +24,7 @@ namespace dartcast::test::read_memory_test {
 
 constexpr std::uint64_t mebi = std::uint64_t{1} << 20U;
 
-/// What the function adds to the memory of a process, at its peak, in bytes.
+/// The memory that the function adds to a process, at its peak, in bytes.
 std::uint64_t peak_of(const std::function<void()>& work) {
   ::malloc_trim(0);  // what this process has to spare would not show
   rusage usage{};

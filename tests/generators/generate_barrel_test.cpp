@@ -10,7 +10,7 @@
 
 namespace dartcast::generate_barrel_test {
 
-// Of the solid that a closed surface of triangles and quadrilaterals bounds, if its faces look outwards.
+// The volume of the solid that a closed surface of triangles and quadrilaterals bounds, if its faces look outwards.
 double enclosed_volume(const MeshData& mesh) {
   double sum = 0.0;
   for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
@@ -28,7 +28,7 @@ TEST(GenerateBarrel, IsAClosedSurfaceThatNeedsNoRepair) {
     MeshData mesh = generate_barrel(o);
     EXPECT_EQ(mesh.points.size(), std::size_t{o.staves} * (o.rows + 1) + 2 * (o.staves * (o.rings - 1) + 1));
     // Closed: as many points and faces as edges, but 2 (Euler); each edge is in two faces, once each way, or a repair
-    // or a defect would tell.
+    // or a defect would be reported.
     EXPECT_EQ(mesh.points.size() + mesh.cell_count(), mesh.connectivity.size() / 2 + 2);
     const MeshReport report = check_and_repair_surface(mesh);
     EXPECT_TRUE(report.repairs.empty());
@@ -36,7 +36,7 @@ TEST(GenerateBarrel, IsAClosedSurfaceThatNeedsNoRepair) {
   }
 }
 
-// Of a solid of revolution, up to what the flat faces cut off.
+// The volume of a solid of revolution, up to the part that the flat faces cut off.
 TEST(GenerateBarrel, HasTheVolumeOfABarrel) {
   BarrelOptions o;
   o.staves = 200;

@@ -56,8 +56,8 @@ TEST(GenerateOctahedra, BlockedLayerAndShare) {
   OctahedraOptions o = block(4, 5, 6);
   o.blocked_layer = true;
   MeshData mesh = generate_octahedra(o);
-  // Free are the octahedra all of whose 14 neighbours are in the block: those of each kind away from its first and last
-  // layers.
+  // An octahedron is free if all of its 14 neighbours are in the block: it is not in the first or last layers of its
+  // kind.
   const auto free_count = [&] { return std::count(mesh.free.begin(), mesh.free.end(), 1); };
   EXPECT_EQ(free_count(), 2 * 2 * 3 * 4);
   const auto faces = test::all_faces(mesh);

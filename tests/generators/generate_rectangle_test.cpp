@@ -41,7 +41,7 @@ TEST(GenerateRectangle, EachTypeConformsIsConvexAndFillsTheRectangle) {
     const auto [triangles, quadrilaterals, polygons] = type_counts(mesh);
     if (type == CellType::quadrilateral) EXPECT_EQ(quadrilaterals, 35U);
     if (type == CellType::triangle) EXPECT_EQ(triangles, 70U);
-    // Of the inner points (1 to 6, 1 to 4), a third each has i + j = 0, 1, 2 mod 3.
+    // A third each of the inner points (1 to 6, 1 to 4) has i + j = 0, 1, 2 mod 3.
     if (type == CellType::polygon) EXPECT_EQ(polygons, 8U);
     EXPECT_EQ(mesh.points.size(), 48U - polygons);
   }

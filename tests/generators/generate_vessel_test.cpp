@@ -169,7 +169,7 @@ TEST(GenerateVessel, TheFlowKeepsToTheLumenAndSplits) {
   EXPECT_NEAR(through["outlet_left"], 0.5 * poiseuille, 0.01 * poiseuille);
   EXPECT_NEAR(through["outlet_right"], 0.5 * poiseuille, 0.01 * poiseuille);
 
-  // What does not leave a cell again, as a share of all that enters cells.
+  // The flow that does not leave a cell again, as a share of all flow that enters cells.
   double lost = 0, entered = 0;
   for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
     if (mesh.free[c] == 0) continue;

@@ -1,4 +1,4 @@
-// What ParaView gets to see of the environment: the input's arrays, and where each cell came from.
+// The data of the environment that ParaView shows: the input's arrays, and where each cell came from.
 #include "output/environment_record.hpp"
 
 #include <gtest/gtest.h>
@@ -81,7 +81,8 @@ std::map<double, Box> boxes_by_source(const MeshData& frame) {
   return boxes;
 }
 
-// The join: a particle with `cell` c lies in the cells whose `source` is c. Of boxes, which are their own bounds.
+// The join: a particle with `cell` c lies in the cells whose `source` is c. The cells are boxes, so
+// that their bounds are exact.
 void expect_joined(const fs::path& folder, const std::string& step, bool static_points) {
   const MeshFile frame = read_mesh(folder / ("environment_" + step + ".vtu"));
   ASSERT_TRUE(frame.report.valid());

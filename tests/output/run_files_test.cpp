@@ -1,4 +1,4 @@
-// What goes into a run besides the scene, and comes out of it besides frames: seeds, scales, energies, the lock.
+// The files that a run reads besides the scene and writes besides frames: seeds, scales, energies, the lock.
 #include "output/run_files.hpp"
 
 #include <fcntl.h>

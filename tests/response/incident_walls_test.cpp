@@ -92,7 +92,7 @@ TEST(IncidentWalls, FansOfOnePlaneAreOneWall) {
   }
 }
 
-// What answer_motion() makes of a velocity, without forces.
+// The velocity after answer_motion(), without forces.
 Vec3 bounced(const Vec3& v, const std::vector<WallHit>& walls, double restitution, double friction) {
   WallResponse r;
   r.restitution = restitution;

@@ -1,4 +1,4 @@
-// What particles do at walls: the operators alone, and in whole steps.
+// The responses of particles at walls: the operators alone, and in whole steps.
 #include "dartcast/response.hpp"
 
 #include <gtest/gtest.h>

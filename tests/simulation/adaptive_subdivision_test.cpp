@@ -11,8 +11,8 @@
 #include "dartcast/events.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/simulation.hpp"
-#include "support/meshes.hpp"
 #include "dartcast/validity.hpp"
+#include "support/meshes.hpp"
 #include "support/tier.hpp"
 #include "support/with_response.hpp"
 

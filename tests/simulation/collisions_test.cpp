@@ -123,7 +123,7 @@ TEST(Collisions, KeepMomentum) {
   EXPECT_LT(norm(momentum), 1e-14 * sum);
 }
 
-// The same bits for any number of threads; and whoever goes on from a checkpoint.
+// The same bits for any number of threads, and for a run that continues from a checkpoint.
 TEST(Collisions, ThreadsAndCheckpoints) {
   const auto run = [](unsigned threads, int save_at) {
     BoxOptions box;

@@ -6,9 +6,9 @@
 #include "dartcast/audit.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
+#include "dartcast/simulation.hpp"
 #include "dartcast/validity.hpp"
 #include "support/expectations.hpp"
-#include "dartcast/simulation.hpp"
 #include "support/tier.hpp"
 #include "support/with_response.hpp"
 
@@ -191,7 +191,7 @@ TEST(Events, RemeshesWhereADeformationTurnsCellsOver) {
     EXPECT_EQ(flow.particles().size(), 300U);
   }
   EXPECT_GT(invalid[0], 0U);
-  EXPECT_LT(invalid[1], invalid[0]);  // most of what is left has a boundary that is turned over itself
+  EXPECT_LT(invalid[1], invalid[0]);  // most of the rest has a boundary that folds over itself
 }
 
 TEST(Events, SurgeryKeepsToTheTimesAndDoesItAgain) {

@@ -59,7 +59,7 @@ struct Case {
   Vec3 velocity;
 };
 
-// That of the leapfrog scheme: the rule of the flow conserves it in free fall (docs/method.md, "Reflection").
+// The energy of the leapfrog scheme: the rule of the simulation conserves it in free fall (docs/method.md, "Energy").
 double energy(const Simulation& flow, std::size_t i, const SimulationOptions& o, double shift) {
   const Vec3 v = flow.velocities()[i] + o.gravity * (shift * o.dt);
   return 0.5 * dot(v, v) - dot(o.gravity, flow.particles()[i].position);

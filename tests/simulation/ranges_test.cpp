@@ -111,7 +111,7 @@ TEST(PairRanges, SpheresThatReachTooFar) {
       if (which == 0) spheres[1].radius = far;
       if (which == 1) spheres[1].displacement.y = far;
       if (which == 2) spheres[1].centre.z = -far;
-      if (which == 0 && std::isnan(far)) continue;  // meets nobody, as one without a radius
+      if (which == 0 && std::isnan(far)) continue;  // has no contacts, as one without a radius
       expect_refused([&] { finder.find(spheres); }, "sphere 1 ");
     }
   }

@@ -10,9 +10,9 @@
 #include "dartcast/audit.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
+#include "simulation/simulation_state.hpp"
 #include "support/expectations.hpp"
 #include "support/meshes.hpp"
-#include "simulation/simulation_state.hpp"
 #include "support/with_response.hpp"
 
 namespace dartcast::flow_test {
@@ -93,7 +93,7 @@ TEST(Simulation, DragAndGravityEndAtTheTerminalVelocity) {
   expect_near(flow.velocities()[0], {0, 0, -0.2}, 1e-12);
 }
 
-// Interior points need a mesh whose pulling triangulation is not enough: strongly displaced corners.
+// Steiner points need a mesh whose pulling triangulation is not enough: strongly displaced corners.
 TEST(Simulation, ALinearFieldIsReproducedInEverySimplex) {
   BoxOptions box;
   box.cells = {6, 6, 6};

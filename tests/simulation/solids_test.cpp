@@ -9,8 +9,8 @@
 #include "dartcast/run.hpp"
 #include "dartcast/scene_file.hpp"
 #include "formats/point_file.hpp"
-#include "support/expectations.hpp"
 #include "simulation/bodies_component.hpp"
+#include "support/expectations.hpp"
 #include "support/sample_mesh.hpp"
 
 namespace dartcast::solids_test {

@@ -171,7 +171,7 @@ TEST(SphereBodies, MomentumIsKept) {
   EXPECT_EQ(both.failed(), 0U);
 }
 
-// Dropped on a heap: all comes to rest, nothing stays in anything, and a body's energy grows by what is told alone.
+// Dropped on a heap: all comes to rest, no overlap stays, and a body's energy grows only by the reported amount.
 TEST(SphereBodies, BodyComesToRestOnSpheres) {
   if (test::sanitized()) GTEST_SKIP() << "takes its full number of steps";
   CollisionOptions c;
@@ -201,8 +201,8 @@ TEST(SphereBodies, BodyComesToRestOnSpheres) {
   EXPECT_EQ(both.failed(), 0U);
 }
 
-// A ball on a body on the floor: both stand still. That the floor holds the body is not known to the ball's contacts,
-// which leaves it a velocity of g dt.
+// A ball on a body on the floor: neither moves. The ball's contacts do not include the floor, so the ball's stored
+// velocity stays near g dt.
 TEST(SphereBodies, ASphereStandsOnABody) {
   if (test::sanitized()) GTEST_SKIP() << "takes its full number of steps";
   for (const double ratio : {10.0, 0.5}) {  // of the body's mass to the ball's
@@ -284,7 +284,7 @@ TEST(SphereBodies, ThroughAWallNobodyMeets) {
   EXPECT_EQ(both.flow.totals().collisions.pairs_near, 1U);
 }
 
-// What a body is given is for one step, and its energy is told.
+// A body gets an impulse for one step only, and its energy is reported.
 TEST(SphereBodies, ABodyIsGivenSomethingOnce) {
   Both both(test::cube_of(6, 1.0), {}, CollisionOptions{}, WallResponse{});
   both.add_body(3, {0.4, 0.5, 0.5}, {}, 2.0);

@@ -236,7 +236,7 @@ TEST(AdvanceSpheres, SlidesInATurnedBox) {
   EXPECT_LE(contacts, 10U * static_cast<std::size_t>(steps));
 }
 
-// What rounding leaves of a slide is lifted off the wall, as for points.
+// A slide that rounding leaves behind the wall is lifted off it, as for points.
 TEST(AdvanceSpheres, SlidesAreLiftedOffTheWall) {
   Swarm swarm(cubes(4));
   swarm.add({1.25, 2.125, 0.25}, 0.25);

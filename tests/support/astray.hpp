@@ -1,4 +1,4 @@
-// Vertices that went astray, and what must not change when cells are mended.
+// Vertices that were moved too far, and values that a repair of cells must not change.
 #pragma once
 
 #include <algorithm>

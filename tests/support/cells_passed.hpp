@@ -91,7 +91,7 @@ class CellsPassed {
     return true;
   }
 
-  /// Of what of the closed cell x lies in.
+  /// The kind of feature of the closed cell that x lies in.
   [[nodiscard]] Kind kind(std::size_t cell, const WeightedPoint& x) const {
     Kind found = plane_ ? Kind::face : Kind::volume;
     for (const Side& side : cells_[cell]) {

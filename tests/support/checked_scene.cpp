@@ -20,7 +20,7 @@ std::vector<std::uint32_t> sorted_corners(const CellView& cell, std::uint16_t fa
   return corners;
 }
 
-// The interior points that the library chose, as the oracle names them. In a shape, points are numbered: corners, then
+// The Steiner points that the library chose, as the oracle names them. In a shape, points are numbered: corners, then
 // the points of faces, then the cell's.
 oracle::InteriorVertices interior_of(const CellComplex& complex, const MeshData& mesh) {
   oracle::InteriorVertices interior;

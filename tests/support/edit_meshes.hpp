@@ -49,7 +49,7 @@ inline MeshData edit_rectangle(CellType type, bool mixed = false) {
   return generate_rectangle(o);
 }
 
-/// Of the plane.
+/// Meshes of the plane.
 inline std::vector<EditMesh> planar_edit_meshes() {
   return {{"triangles", [] { return edit_rectangle(CellType::triangle); }},
           {"quadrilaterals", [] { return edit_rectangle(CellType::quadrilateral); }},

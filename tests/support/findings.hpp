@@ -1,4 +1,4 @@
-// What an inspection found, by kind; cells written in short.
+// The findings of a mesh check, by kind; cells written in short.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What every generated mesh must be: conforming, closed, and positive under the pulling triangulation. Slow and exact;
+// Checks of every generated mesh: conforming, closed, and positive under the pulling triangulation. Slow and exact;
 // shares no code with the library but MeshData and its list of faces.
 #pragma once
 

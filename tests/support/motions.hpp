@@ -1,4 +1,4 @@
-// Motions of a simplex that flatten it, almost flatten it, or do not, for tests.
+// Motions of a simplex that invert it, almost invert it, or do not, for tests.
 #pragma once
 
 #include <array>

@@ -12,7 +12,7 @@
 
 namespace dartcast::test {
 
-/// What is wrong with the particles that are not held: empty if each lies in the closed simplex named, of a free cell.
+/// The first error of the particles that are not held: empty if each lies in the closed simplex named, of a free cell.
 inline std::string check_states(const Environment& environment, const Particles& particles) {
   const CombinatorialMap& map = environment.map();
   for (std::size_t i = 0; i < particles.size(); ++i) {

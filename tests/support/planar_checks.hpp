@@ -1,4 +1,4 @@
-// What every generated mesh of the plane must be: conforming, and strictly convex under the fan from every corner. Slow
+// Checks of every generated mesh of the plane: conforming, and strictly convex under the fan from every corner. Slow
 // and exact; shares no code with the library but MeshData.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What an edit says when it is refused.
+// The message of an edit that is refused.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What must hold of a complex whatever was done to it, and what tells two complexes apart but for cells' numbers.
+// Checks that hold for a complex after every edit, and the differences of two complexes apart from cell numbers.
 #pragma once
 
 #include <gtest/gtest.h>

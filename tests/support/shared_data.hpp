@@ -16,6 +16,6 @@ inline std::filesystem::path data_folder() {
 
 }  // namespace dartcast::test
 
-/// Ends a test that needs the folder where it is not there, and says what is left out.
+/// Ends a test that needs the folder where it is not there, and says which test is skipped.
 #define NEED_DATA(what) \
   if (::dartcast::test::data_folder().empty()) GTEST_SKIP() << "left out without DARTCAST_DATA: " what

@@ -1,4 +1,4 @@
-// What every operation must leave: a sound complex, the same volume, and who can reach whom.
+// Checks after every operation: a sound complex, the same volume, and which cells can reach each other.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ struct MeshKind {
 };
 inline void PrintTo(const MeshKind& k, std::ostream* out) { *out << k.name; }
 
-/// What some cells of an open edit are after its commit.
+/// The cells of an open edit under their numbers after its commit.
 inline std::vector<Cell> now(const ComplexEditReport& report, std::vector<Cell> cells) {
   for (Cell& c : cells) c = report.now(c);
   return cells;

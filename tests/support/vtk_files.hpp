@@ -40,7 +40,7 @@ class XmlArrays {
     return fmt::format("{} format=\"appended\" offset=\"{}\"/>\n", head, appended_.size() - bytes.size());
   }
 
-  /// What stands behind the data set.
+  /// The text behind the data set.
   [[nodiscard]] std::string appended() const {
     if (how_ == XmlData::ascii || how_ == XmlData::inline_base64) return "";
     return fmt::format("<AppendedData encoding=\"{}\">\n_{}\n</AppendedData>\n",

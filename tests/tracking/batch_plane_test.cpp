@@ -53,7 +53,8 @@ bool same_contacts(const ContactList& a, const ContactList& b) {
   return true;
 }
 
-// A scene whose particles are stepped both ways. Of a lattice: places and motions that make determinants zero.
+// A scene whose particles are stepped both ways. Places and motions on a lattice make determinants
+// zero.
 class BothWaysInThePlane {
  public:
   explicit BothWaysInThePlane(std::uint64_t seed)
@@ -133,7 +134,7 @@ class BothWaysInThePlane {
     o.blocked_share = 0.2;
     o.seed = seed;
     MeshData mesh = generate_rectangle(o);
-    if (moves_ && seed % 2 == 1) {  // far off, who rides along is often rounded out of the triangle
+    if (moves_ && seed % 2 == 1) {  // far off, a carried particle is often rounded out of the triangle
       for (Vec3& p : mesh.points) p += Vec3{0x1p+30, -0x1p+31, 0.0};
     }
     return mesh;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -75,58 +76,24 @@ class BothWays {
     std::vector<ParticleState> next = states_;
     detail::SimplexCache next_caches;
     for (std::size_t i = 0; i < particles; ++i) {
-      Weights weights{};
-      ContactList contacts;
-      Counters own;
-      const StepResult result =
-          stepper.step(static_cast<std::uint32_t>(i), next[i], weights, targets[i], contacts, own);
-      const bool stays = Determinants(complex_.corners(states_[i].at()), targets[i]).all_proved_positive();
-      if (stays && own.steps_split == 0 && !result.held &&
-          (next[i].at() != states_[i].at() || !contacts.contacts.empty()))
-        return fmt::format("particle {}: something in the way within its simplex", i);
+      const ScalarStep one = scalar_step(stepper, i, targets[i]);
+      next[i] = one.state;
       const bool taken = best.taken[i] == detail::step_complete;
       bool landed = false;
-      if (!taken && best.taken[i] != detail::step_untouched) {
-        for (const Filtered* f : {&portable, &best}) {
-          const PartialStep& partial = f->partial[f->taken[i]];
-          ParticleState state = states_[i];
-          Weights unused{};
-          ContactList resumed;
-          Counters counts;
-          stepper.resume(static_cast<std::uint32_t>(i), state, unused, targets[i], resumed, counts, partial);
-          if (!same_bits(state, next[i])) return fmt::format("particle {}: another state, resumed", i);
-          if (!same(resumed, contacts)) return fmt::format("particle {}: other contacts, resumed", i);
-          if (!same(counts, own)) return fmt::format("particle {}: other counts, resumed", i);
-          landed = partial.impact.has_value();
-          if (landed && !partial.stays(state)) return fmt::format("particle {}: not where it landed", i);
-        }
+      std::string error = something_in_the_way(one, i, targets[i]);
+      if (error.empty() && !taken && best.taken[i] != detail::step_untouched) {
+        error = compare_resumed(stepper, {&portable, &best}, one, i, targets[i], landed);
         tally.resumed += 1;
         tally.landed += landed ? 1 : 0;
       }
-      const bool described = taken || landed;  // by its vertices and cache entry
-      const ParticleState& expected = taken ? next[i] : states_[i];
-      if (!same_bits(best.states[i], expected) || !same_bits(portable.states[i], expected))
-        return fmt::format("particle {}: another state", i);
-      if (taken && (result.held || !contacts.contacts.empty())) return fmt::format("particle {}: held or stopped", i);
-      if (best.vertices[i] != detail::vertex_numbers(complex_, (described ? next[i] : expected).at()))
-        return fmt::format("particle {}: other vertices", i);
-      const detail::SimplexCacheEntry entry = detail::cache_entry_of(
-          moves_ ? detail::CacheKind::previous_geometry : detail::CacheKind::barycentric, complex_.positions(),
-          detail::vertex_numbers(complex_, next[i].at()), next[i].position);
-      if (moves_ && described && (!equal(best.caches[i], entry) || !equal(portable.caches[i], entry)))
-        return fmt::format("particle {}: other previous geometry", i);
-      if (!moves_ && described && !std::isnan(best.caches[i].w[0])) tally.remembered += 1;
-      if (landed && !moves_ && best.caches.flags(i) != 0) return fmt::format("particle {}: flags on a wall", i);
-      if (taken && !moves_ && best.caches.flags(i) != 0) {
-        const unsigned zeros = detail::zeros_of(complex_.corners(next[i].at()), next[i].position);
-        if (best.caches.flags(i) != (detail::exact_flag | zeros)) return fmt::format("particle {}: other flags", i);
-        tally.exact += 1;
-      }
-      if (described)
+      if (error.empty()) error = compare_states(portable, best, one, i, taken, landed);
+      if (error.empty()) error = compare_caches(portable, best, one, i, taken, landed, tally);
+      if (!error.empty()) return fmt::format("particle {}: {}", i, error);
+      if (taken || landed)
         next_caches.push_back(best.caches[i], best.caches.flags(i));
       else
-        next_caches.push_back(entry);
-      if (taken) counters += rides_to(i, targets[i]) ? counts_of_a_kept_forecast() : own;
+        next_caches.push_back(cache_entry(one.state));
+      if (taken) counters += is_carried_to(i, targets[i]) ? counts_of_a_kept_forecast() : one.counters;
       tally.steps += 1;
       tally.taken += taken ? 1 : 0;
       tally.moved_on += taken && next[i].at() != states_[i].at() ? 1 : 0;
@@ -145,6 +112,80 @@ class BothWays {
     std::vector<PartialStep> partial;
     Counters counters;
   };
+
+  // The exact step of one particle, the truth for the batch.
+  struct ScalarStep {
+    ParticleState state;
+    StepResult result;
+    ContactList contacts;
+    Counters counters;
+  };
+
+  ScalarStep scalar_step(const Stepper& stepper, std::size_t i, const Vec3& target) const {
+    ScalarStep one{states_[i], {}, {}, {}};
+    Weights weights{};
+    one.result = stepper.step(static_cast<std::uint32_t>(i), one.state, weights, target, one.contacts, one.counters);
+    return one;
+  }
+
+  // A step whose target is inside the simplex must have no contact and no other simplex.
+  std::string something_in_the_way(const ScalarStep& one, std::size_t i, const Vec3& target) const {
+    const bool stays = Determinants(complex_.corners(states_[i].at()), target).all_proved_positive();
+    const bool undisturbed = one.state.at() == states_[i].at() && one.contacts.contacts.empty();
+    if (!stays || one.counters.steps_split != 0 || one.result.held || undisturbed) return "";
+    return "something in the way within its simplex";
+  }
+
+  // Resumes the partial step of each instruction set, and compares it with the scalar step.
+  std::string compare_resumed(const Stepper& stepper, const std::array<const Filtered*, 2>& batches,
+                              const ScalarStep& one, std::size_t i, const Vec3& target, bool& landed) const {
+    for (const Filtered* f : batches) {
+      const PartialStep& partial = f->partial[f->taken[i]];
+      ParticleState state = states_[i];
+      Weights unused{};
+      ContactList resumed;
+      Counters counts;
+      stepper.resume(static_cast<std::uint32_t>(i), state, unused, target, resumed, counts, partial);
+      if (!same_bits(state, one.state)) return "another state, resumed";
+      if (!same(resumed, one.contacts)) return "other contacts, resumed";
+      if (!same(counts, one.counters)) return "other counts, resumed";
+      landed = partial.impact.has_value();
+      if (landed && !partial.stays(state)) return "not where it landed";
+    }
+    return "";
+  }
+
+  // A landed particle has its old state, but the vertices of its place at the wall.
+  std::string compare_states(const Filtered& portable, const Filtered& best, const ScalarStep& one, std::size_t i,
+                             bool taken, bool landed) const {
+    const ParticleState& expected = taken ? one.state : states_[i];
+    if (!same_bits(best.states[i], expected) || !same_bits(portable.states[i], expected)) return "another state";
+    if (taken && (one.result.held || !one.contacts.contacts.empty())) return "held or stopped";
+    if (best.vertices[i] != detail::vertex_numbers(complex_, (landed ? one.state : expected).at()))
+      return "other vertices";
+    return "";
+  }
+
+  std::string compare_caches(const Filtered& portable, const Filtered& best, const ScalarStep& one, std::size_t i,
+                             bool taken, bool landed, Tally& tally) const {
+    if (!taken && !landed) return "";
+    if (moves_) {
+      const detail::SimplexCacheEntry entry = cache_entry(one.state);
+      return equal(best.caches[i], entry) && equal(portable.caches[i], entry) ? "" : "other previous geometry";
+    }
+    if (!std::isnan(best.caches[i].w[0])) tally.remembered += 1;
+    if (best.caches.flags(i) == 0) return "";
+    if (landed) return "flags on a wall";
+    const unsigned zeros = detail::zeros_of(complex_.corners(one.state.at()), one.state.position);
+    if (best.caches.flags(i) != (detail::exact_flag | zeros)) return "other flags";
+    tally.exact += 1;
+    return "";
+  }
+
+  [[nodiscard]] detail::SimplexCacheEntry cache_entry(const ParticleState& state) const {
+    return detail::cache_entry_of(moves_ ? detail::CacheKind::previous_geometry : detail::CacheKind::barycentric,
+                                  complex_.positions(), detail::vertex_numbers(complex_, state.at()), state.position);
+  }
 
   // With caches or without, those of the step before or new ones.
   Filtered filtered(std::span<const Vec3> targets, detail::InstructionSet set, bool with_caches,
@@ -169,8 +210,8 @@ class BothWays {
     return same;
   }
 
-  // Whether the particle rides along to its target: the step of one particle then does not walk.
-  [[nodiscard]] bool rides_to(std::size_t i, const Vec3& target) const {
+  // Whether the mesh carries the particle to its target: the step of one particle then does not walk.
+  [[nodiscard]] bool is_carried_to(std::size_t i, const Vec3& target) const {
     if (!moves_) return false;
     const SimplexId at = states_[i].at();
     const Weights weights = detail::barycentric(previous_space(complex_).corners(at), states_[i].position);
@@ -311,7 +352,7 @@ MeshData flattened(MeshData mesh, double thickness) {
   return mesh;
 }
 
-// What goes wrong in a scene.
+// The first error in a scene, or nothing.
 std::string run(BothWays scene, const std::string& name, Tally& tally) {
   if (!scene.usable()) return {};
   for (std::size_t i = 0; i < steps_per_scene; ++i) {
@@ -328,7 +369,7 @@ std::string run_scene(oracle::SceneKind kind, bool moves, std::uint64_t seed, Ta
     for (Vec3& p : mesh.points) p *= seed % 8 == 2 ? 0x1p-180 : 0x1p+270;
   }
   const bool far = moves && seed % 4 == 3;
-  if (far) {  // who rides along is often rounded out of the simplex
+  if (far) {  // a carried particle is often rounded out of the simplex
     for (Vec3& p : mesh.points) p += Vec3{0x1p+30, -0x1p+31, 0x1p+29} * (seed % 8 == 3 ? 1.0 : 0x1p-12);
   }
   return run(BothWays(std::move(mesh), seed, moves, false, !moves || far),
@@ -385,7 +426,7 @@ TEST(FilteredBatch, SeedsThatWentWrong) {
   Tally tally;
   // A determinant below the filter's bound, exact and not zero: no wall is to be looked for.
   EXPECT_EQ(run_scene(oracle::SceneKind::hexahedra, false, 855, tally), "");
-  // A particle at a corner that is rounded out of its simplex when it rides along.
+  // A particle at a corner that is rounded out of its simplex when the mesh carries it.
   EXPECT_EQ(run_scene(oracle::SceneKind::flat_corners, true, 197, tally), "");
   // Far off: steps that the rule splits, as it rounds the motion up.
   EXPECT_EQ(run_scene(oracle::SceneKind::pyramids, true, 51, tally), "");

@@ -17,7 +17,7 @@ namespace dartcast::test::lattice_oracle_test {
 constexpr std::uint64_t steps_per_scene = 1000;
 constexpr int lattice_kinds = 7;  // all but slivers
 
-// What the steps of all scenes met, so that a test that meets nothing fails.
+// Counts of the steps of all scenes, so that a test without contacts fails.
 struct Tally {
   std::array<std::atomic<std::uint64_t>, 3> contacts_of_kind{};
   std::atomic<std::uint64_t> at_start{0};
@@ -29,7 +29,7 @@ class LatticeMotion {
  public:
   LatticeMotion(const CheckedScene& scene, std::uint64_t seed) : scene_(scene), random_(seed, 4) {}
 
-  // A corner, or the middle of two or four corners: exact, but for some interior points.
+  // A corner, or the middle of two or four corners: exact, but for some Steiner points.
   ParticleState place() {
     const auto& free = scene_.free_simplices();
     while (true) {

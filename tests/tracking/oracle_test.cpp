@@ -113,7 +113,7 @@ TEST(Oracle, MakesScenesOfEveryKindThatAreValidWithoutAWarp) {
   for (int k = 0; k < scene_kinds; ++k) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
       const auto kind = static_cast<SceneKind>(k);
-      if (kind == SceneKind::flat_corners) continue;  // they need interior points
+      if (kind == SceneKind::flat_corners) continue;  // they need Steiner points
       EXPECT_TRUE(Oracle(random_scene(kind, seed, 0.0)).all_positive()) << name_of(kind) << " " << seed;
       EXPECT_TRUE(Oracle(lattice_scene(kind, seed)).all_positive()) << name_of(kind) << " " << seed;
     }

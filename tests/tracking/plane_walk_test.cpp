@@ -41,7 +41,7 @@ struct Time {
   friend bool operator==(const Time& a, const Time& b) { return a.n * b.d == b.n * a.d; }
 };
 
-// What a segment of the lattice meets, cell by cell and edge by edge of the mesh itself.
+// The features that a segment of the lattice touches, cell by cell and edge by edge of the mesh itself.
 class Oracle {
  public:
   explicit Oracle(const MeshData& mesh) : mesh_(mesh) {
@@ -180,7 +180,7 @@ struct Counts {
   int passed = 0;
 };
 
-// One particle's walk, judged by the oracle.
+// Compares one particle's walk with the oracle.
 void judge(const Oracle& oracle, const CellComplex& complex, const Walk& w, const Vec3& from, const Vec3& to) {
   using Where = Oracle::Where;
   const Point p = point_of(from);

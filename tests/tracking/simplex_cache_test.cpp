@@ -1,4 +1,4 @@
-// What coordinates kept of a simplex claim, against exact signs.
+// The claims of cached barycentric coordinates, against exact signs.
 #include "tracking/batch/simplex_cache.hpp"
 
 #include <fmt/format.h>
@@ -45,7 +45,7 @@ Vec3 combined(const Corners& v, const std::array<double, 4>& weights) {
   return x;
 }
 
-// What a step leaves that stays where it is.
+// The cache entry after a step that does not move.
 detail::SimplexCacheEntry cache_at(const CellComplex& complex, SimplexId at, const Vec3& p) {
   std::vector<ParticleState> states(1);
   states[0].put(at, p);
@@ -89,7 +89,7 @@ struct Tally {
   std::uint64_t none = 0;
 };
 
-// What is claimed of q and wrong.
+// The first wrong claim about q.
 std::string wrong_about(const std::array<double, 4>& c, const Corners& v, const Vec3& q, Tally& tally) {
   using detail::coordinate_margin;
   const auto above = [](double x) { return x > coordinate_margin; };

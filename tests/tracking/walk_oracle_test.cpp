@@ -73,7 +73,7 @@ class RandomMotion {
   Random random_;
 };
 
-// What all scenes together had, so that a test that meets nothing fails.
+// Counts of all scenes together, so that a test without contacts fails.
 struct Tally {
   std::atomic<std::uint64_t> contacts{0};
   std::atomic<std::uint64_t> with_interior_points{0};

@@ -10,6 +10,7 @@ int main() {
   dartcast::Particles particles;
   environment.add(particles, std::vector<dartcast::Vec3>{{2.5, 2.5, 14.0}});
   const dartcast::StepReport report = environment.advance(particles, std::vector<dartcast::Vec3>{{5.5, 2.5, 14.0}});
-  for (const dartcast::Contact& c : report.contacts.contacts) std::printf("t = %.2f at x = %.2f\n", c.time_of_impact, c.point.x);
+  for (const dartcast::Contact& c : report.contacts.contacts)
+    std::printf("t = %.2f at x = %.2f\n", c.time_of_impact, c.point.x);
   return 0;
 }
