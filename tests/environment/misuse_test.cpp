@@ -154,7 +154,7 @@ TEST_F(Indices, OfParticlesThatDoNotFit) {
   Particles ahead = particles;
   environment.move(std::vector<Vec3>(environment.positions().begin(), environment.positions().end()));
   environment.advance(ahead, places);
-  refuses([&] { particles.replace(which, ahead); }, "advance both after each move");
+  refuses([&] { particles.replace(which, ahead); }, "call advance() with both after each move");
   environment.advance(particles, places);
   EXPECT_NO_THROW(particles.replace(which, ahead));
 }

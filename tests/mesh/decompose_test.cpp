@@ -433,7 +433,7 @@ TEST(Decompose, RefusalsNameRingAndPoint) {
   expect_refused<InvalidArgument>({}, {"no rings"});
   expect_refused<InvalidArgument>({square}, {"margin is 0"}, {.margin = 0});
   expect_refused<InvalidArgument>({square}, {"margin is nan"}, {.margin = nan});
-  expect_refused<InvalidArgument>({square}, {"too small"}, {.margin = 1e-18});
+  expect_refused<InvalidArgument>({square}, {"is lost in the rounding"}, {.margin = 1e-18});
   expect_refused<InvalidArgument>({square}, {"2^300"}, {.margin = 1e100});
   expect_refused<InvalidArgument>({square}, {"max_corners is 2"}, {.max_corners = 2});
   expect_refused<InvalidArgument>({square}, {"max_corners is 1001"}, {.max_corners = 1001});
