@@ -23,8 +23,8 @@ using Mask4 = long long __attribute__((vector_size(32)));  // all bits of a lane
 typedef double UnalignedDouble4 __attribute__((vector_size(32), aligned(8), may_alias));  // NOLINT(modernize-use-using)
 typedef double UnalignedDouble2 __attribute__((vector_size(16), aligned(8), may_alias));  // NOLINT(modernize-use-using)
 typedef float UnalignedFloat4 __attribute__((vector_size(16), aligned(4), may_alias));    // NOLINT(modernize-use-using)
-typedef long long UnalignedMask4
-    __attribute__((vector_size(32), aligned(8), may_alias));  // NOLINT(modernize-use-using)
+// NOLINTNEXTLINE(modernize-use-using)
+typedef long long UnalignedMask4 __attribute__((vector_size(32), aligned(8), may_alias));
 
 // The operations that the compiler does not find by itself.
 #if defined(DARTCAST_AVX2)

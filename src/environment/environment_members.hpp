@@ -14,7 +14,7 @@
 namespace dartcast {
 
 struct Environment::Members {
-  Members(MeshData mesh, Threads threads);
+  Members(MeshData mesh, Threads all);
 
   /// Makes an empty set one of this environment, as it is now.
   void adopt(Particles& particles) const;
