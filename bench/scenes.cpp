@@ -143,8 +143,10 @@ MeshData mesh_of(const WorkloadOptions& options) {
     case Scene::bar: return generate_bar();
     case Scene::vessel: return generate_vessel();
     case Scene::squares: return squares(options.size);
-    default: return box(options.size);
+    case Scene::box:
+    case Scene::lattice: break;
   }
+  return box(options.size);
 }
 
 std::vector<DeformationStep> deformation_of(const WorkloadOptions& options, const MeshData& mesh) {

@@ -111,7 +111,9 @@ void Workload::set_velocities(Random& random) {
       case Scene::lattice: v = lattice_direction(random) * lattice_step; break;
       case Scene::bar: v = {2.0, 3.0, 0.0}; break;
       case Scene::vessel: v = {1.0, 0.0, 0.0}; break;
-      default: v = random_direction(random, environment_.map().dimension()) * speed_;
+      case Scene::box:
+      case Scene::squares:
+      case Scene::tube: v = random_direction(random, environment_.map().dimension()) * speed_; break;
     }
   }
 }

@@ -36,10 +36,13 @@ std::string describe(const CombinatorialMap& map, const CellInversion& f) {
     case InversionKind::line:
       return place + fmt::format("inverts at {}: its vertices {} {} {} {} come to lie on a line", f.how.safe_time,
                                  f.vertices[0].value, f.vertices[1].value, f.vertices[2].value, f.vertices[3].value);
-    default:
-      return place + fmt::format("inverts at {}: {} meets {}", f.how.safe_time, part(f.vertices, f.how.one),
-                                 part(f.vertices, f.how.other));
+    case InversionKind::vertex_face:
+    case InversionKind::edge_edge:
+    case InversionKind::vertex_edge:
+    case InversionKind::vertex_vertex: break;
   }
+  return place + fmt::format("inverts at {}: {} meets {}", f.how.safe_time, part(f.vertices, f.how.one),
+                             part(f.vertices, f.how.other));
 }
 
 void check_count(const CombinatorialMap& map, std::size_t count, const char* what) {
