@@ -39,7 +39,7 @@ function(add_dartcast_library name)
   foreach(source IN LISTS sources)
     string(REGEX REPLACE ".*/([^/]+)/[^/]+$" "\\1" folder ${source})
     set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder})
-    if(source MATCHES "/src/tracking/" AND NOT DARTCAST_SANITIZE)
+    if(source MATCHES "/src/tracking/" AND NOT DARTCAST_SANITIZE AND NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
       set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     endif()
     # Kernels (src/base/simd_kernel.hpp): each includes the same .inl files. They pass vectors wider than the instruction

@@ -24,7 +24,7 @@ namespace dartcast::app {
 
 namespace {
 
-struct Arguments {
+struct BenchArguments {
   bench::PlanOptions plan;
   std::string folder = "bench-out";
   bool json = false;
@@ -46,7 +46,7 @@ int run_edits(bool json) {
   return done;
 }
 
-int run_spheres(const Arguments& a) {
+int run_spheres(const BenchArguments& a) {
   std::vector<bench::SphereRow> rows;
   for (const bool crowded : {false, true}) {
     for (std::size_t count = 1000; count <= a.max_spheres; count *= 10) rows.push_back(bench::heap(count, crowded));
@@ -55,7 +55,7 @@ int run_spheres(const Arguments& a) {
   return done;
 }
 
-int run(const Arguments& a) {
+int run(const BenchArguments& a) {
   const std::vector<bench::WorkloadOptions> plan = bench::plan(a.plan);
   std::filesystem::create_directories(a.folder);
   const std::vector<bench::PeerKind> kinds = bench::competitor_kinds();
@@ -81,7 +81,7 @@ int run(const Arguments& a) {
 }  // namespace
 
 void add_bench(CLI::App& app, int& status) {
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<BenchArguments>();
   CLI::App* verb = app.add_subcommand("bench", "Compare with bounding volume hierarchies on this machine.");
   verb->add_flag("--quick", a->plan.quick, "the main figures only, in under two minutes");
   verb->add_option("--only", a->plan.only, "workloads to run, as in W1,W3 (all)")->delimiter(',');

@@ -18,7 +18,7 @@ namespace dartcast::app {
 
 namespace {
 
-struct Arguments {
+struct RunArguments {
   std::string scene;
   std::string folder;
   unsigned threads = 0;
@@ -51,7 +51,7 @@ class ProgressBar {
   std::chrono::steady_clock::time_point shown_{};
 };
 
-void report(const Arguments& a, const Summary& summary, const std::string& folder) {
+void report(const RunArguments& a, const Summary& summary, const std::string& folder) {
   if (a.json) {
     fmt::print("{}\n", summary_json(summary));
     return;
@@ -61,7 +61,7 @@ void report(const Arguments& a, const Summary& summary, const std::string& folde
   fmt::print("output: {}\n", folder);
 }
 
-int run(const Arguments& a) {
+int run(const RunArguments& a) {
   const Scene scene = read_scene(a.scene);
   RunOptions options;
   options.folder = a.folder.empty() ? scene.name + "-out" : a.folder;
@@ -92,7 +92,7 @@ int run(const Arguments& a) {
 }  // namespace
 
 void add_run(CLI::App& app, int& status) {
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<RunArguments>();
   CLI::App* verb = app.add_subcommand("run", "Run a scene; writes a folder that ParaView opens.");
   verb->add_option("SCENE", a->scene, "a scene in TOML")->required();
   verb->add_option("-o,--output", a->folder, "folder for the output (the scene's name with -out)");

@@ -23,7 +23,7 @@ class Carvings : public testing::TestWithParam<MeshKind> {
     return CellComplex(test::blocked_box(cells, GetParam().type, GetParam().mixed));
   }
 };
-INSTANTIATE_TEST_SUITE_P(EventScheduler, Carvings,
+INSTANTIATE_TEST_SUITE_P(Surgery, Carvings,
                          testing::Values(MeshKind{"hexahedra", CellType::hexahedron, false},
                                          MeshKind{"tetrahedra", CellType::tetrahedron, false},
                                          MeshKind{"prisms", CellType::prism, false},

@@ -74,7 +74,7 @@ TEST(Ligature, TiesOneBranchOfTwo) {
 }
 
 class Ligatures : public testing::TestWithParam<test::EditMesh> {};
-INSTANTIATE_TEST_SUITE_P(EventScheduler, Ligatures, testing::ValuesIn(test::edit_meshes()),
+INSTANTIATE_TEST_SUITE_P(Surgery, Ligatures, testing::ValuesIn(test::edit_meshes()),
                          [](const auto& i) { return std::string(i.param.name); });
 
 double height_of(const CellComplex& complex, const Plane& plane, Cell c, bool highest) {

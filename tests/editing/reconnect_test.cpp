@@ -52,7 +52,7 @@ constexpr MeshKind matching[] = {{"hexahedra", CellType::hexahedron, false},
                                  {"tetrahedra", CellType::tetrahedron, false},
                                  {"prisms", CellType::prism, false},
                                  {"pyramids", CellType::pyramid, false}};
-INSTANTIATE_TEST_SUITE_P(EventScheduler, Reconnecting, testing::ValuesIn(matching),
+INSTANTIATE_TEST_SUITE_P(Surgery, Reconnecting, testing::ValuesIn(matching),
                          [](const auto& i) { return std::string(i.param.name); });
 // Cut at random: the faces of two boxes do not match.
 INSTANTIATE_TEST_SUITE_P(Mixed, Reconnecting, testing::Values(MeshKind{"mixed", CellType::hexahedron, true}),
@@ -60,7 +60,7 @@ INSTANTIATE_TEST_SUITE_P(Mixed, Reconnecting, testing::Values(MeshKind{"mixed", 
 
 // Those whose boxes match.
 class ReconnectingAlike : public Reconnecting {};
-INSTANTIATE_TEST_SUITE_P(EventScheduler, ReconnectingAlike, testing::ValuesIn(matching),
+INSTANTIATE_TEST_SUITE_P(Surgery, ReconnectingAlike, testing::ValuesIn(matching),
                          [](const auto& i) { return std::string(i.param.name); });
 
 // Two boxes whose faces match, the second a little off: sewn, with the first one's corners kept.

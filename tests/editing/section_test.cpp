@@ -77,7 +77,7 @@ void update(Section& section, const ComplexEditReport& report) {
 }
 
 class Sections : public testing::TestWithParam<test::EditMesh> {};
-INSTANTIATE_TEST_SUITE_P(EventScheduler, Sections, testing::ValuesIn(test::edit_meshes()),
+INSTANTIATE_TEST_SUITE_P(Surgery, Sections, testing::ValuesIn(test::edit_meshes()),
                          [](const auto& i) { return std::string(i.param.name); });
 
 // Where the truth is of few digits, nothing is rounded: planes across the axes at quarters of the cells.

@@ -102,7 +102,7 @@ void for_each_vertex(Body&& body) {
   for (const unsigned dimension : {2U, 3U}) {
     for (const bool simplices : {false, true}) {
       const std::size_t vertices = mesh_of(dimension, simplices).points.size();
-      const std::size_t stride = test::full_tier() ? 1 : test::sanitized() ? 13 : 5;
+      const std::size_t stride = test::full_tier() ? 1 : test::sanitized() ? 29 : 5;
       for (std::size_t vertex = 0; vertex < vertices; vertex += stride) {
         for (unsigned axis = 0; axis < dimension; ++axis) body(dimension, simplices, vertex, axes[axis]);
       }

@@ -9,7 +9,8 @@ set(absent)
 foreach(package VTK tomlplusplus nlohmann_json CLI11 CGAL Bullet embree)
   list(APPEND absent -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
 endforeach()
-run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -DCMAKE_BUILD_TYPE=Debug -DCMAKE_UNITY_BUILD=ON -DDARTCAST_IO=OFF
+run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0
+    -DCMAKE_UNITY_BUILD=ON -DDARTCAST_IO=OFF
     -DDARTCAST_TESTS=OFF -DDARTCAST_EXAMPLES=OFF -DCMAKE_CXX_COMPILER=${COMPILER} ${absent})
 run(${CMAKE_COMMAND} --build ${WORK}/build -j2)
 run(${CMAKE_COMMAND} --install ${WORK}/build --prefix ${WORK}/prefix)
