@@ -17,18 +17,18 @@
 
 namespace dartcast::test {
 
-using Integer = std::int64_t;
-using Whole = std::array<Integer, 3>;
+using Coordinate = std::int64_t;
+using Whole = std::array<Coordinate, 3>;
 
 inline Whole whole(const Vec3& v) {
-  return {static_cast<Integer>(v.x), static_cast<Integer>(v.y), static_cast<Integer>(v.z)};
+  return {static_cast<Coordinate>(v.x), static_cast<Coordinate>(v.y), static_cast<Coordinate>(v.z)};
 }
 
 /// n / d, d > 0.
 struct Ratio {
-  Integer n, d;
-  Ratio(Integer above, Integer below) : n(below < 0 ? -above : above), d(below < 0 ? -below : below) {
-    const Integer g = std::gcd(n, d);
+  Coordinate n, d;
+  Ratio(Coordinate above, Coordinate below) : n(below < 0 ? -above : above), d(below < 0 ? -below : below) {
+    const Coordinate g = std::gcd(n, d);
     n /= g;
     d /= g;
   }
@@ -40,7 +40,7 @@ struct Ratio {
 /// A point with coordinates x[i] / w.
 struct WeightedPoint {
   Whole x;
-  Integer w;
+  Coordinate w;
   WeightedPoint(const Whole& p, const Whole& q, const Ratio& t) : x{}, w(t.d) {
     for (std::size_t i = 0; i < 3; ++i) x[i] = p[i] * t.d + (q[i] - p[i]) * t.n;
   }
@@ -72,8 +72,8 @@ class CellsPassed {
   [[nodiscard]] std::optional<Stay> stay(std::size_t cell, const Whole& p, const Whole& q) const {
     Stay stay{{0, 1}, {1, 1}};
     for (const Side& side : cells_[cell]) {
-      const Integer before = side.height(p);
-      const Integer after = side.height(q);
+      const Coordinate before = side.height(p);
+      const Coordinate after = side.height(q);
       if (before < 0 && after < 0) return {};
       if (before >= 0 && after >= 0) continue;
       const Ratio zero(before, before - after);
@@ -116,7 +116,7 @@ class CellsPassed {
     const Whole along = minus(b, a);
     const Whole from = minus(x.x, {a[0] * x.w, a[1] * x.w, a[2] * x.w});
     if (test::cross(along, from) != Whole{}) return false;
-    const Integer place = dot(along, from);
+    const Coordinate place = dot(along, from);
     return place >= 0 && place <= dot(along, along) * x.w;
   }
 
@@ -124,8 +124,8 @@ class CellsPassed {
   struct Side {
     std::vector<Whole> corners;
     Whole inwards;
-    [[nodiscard]] Integer height(const Whole& x) const { return dot(inwards, minus(x, corners[0])); }
-    [[nodiscard]] Integer height(const WeightedPoint& x) const {
+    [[nodiscard]] Coordinate height(const Whole& x) const { return dot(inwards, minus(x, corners[0])); }
+    [[nodiscard]] Coordinate height(const WeightedPoint& x) const {
       const Whole& a = corners[0];
       return dot(inwards, minus(x.x, {a[0] * x.w, a[1] * x.w, a[2] * x.w}));
     }
