@@ -27,23 +27,25 @@ struct WallResponse {
 
 // The responses as values, each with its own parameters: Reflect{0.5, 0.1}, Slide{}.
 
+// They convert by themselves, so that an option takes one as it is: NOLINTBEGIN(google-explicit-constructor)
 struct Reflect {
   double restitution = 1.0;  ///< as WallResponse::restitution
   double friction = 0.0;     ///< as WallResponse::friction
-  constexpr operator WallResponse() const { return {WallResponseKind::reflect, restitution, friction}; }  // NOLINT
+  constexpr operator WallResponse() const { return {WallResponseKind::reflect, restitution, friction}; }
 };
 struct Slide {
-  constexpr operator WallResponse() const { return {WallResponseKind::slide}; }  // NOLINT
+  constexpr operator WallResponse() const { return {WallResponseKind::slide}; }
 };
 struct Stick {
-  constexpr operator WallResponse() const { return {WallResponseKind::stick}; }  // NOLINT
+  constexpr operator WallResponse() const { return {WallResponseKind::stick}; }
 };
 struct Absorb {
-  constexpr operator WallResponse() const { return {WallResponseKind::absorb}; }  // NOLINT
+  constexpr operator WallResponse() const { return {WallResponseKind::absorb}; }
 };
 struct Escape {
-  constexpr operator WallResponse() const { return {WallResponseKind::escape}; }  // NOLINT
+  constexpr operator WallResponse() const { return {WallResponseKind::escape}; }
 };
+// NOLINTEND(google-explicit-constructor)
 
 /// A response for every patch. Wall faces without a patch, and patches without a response, get the general one.
 class WallResponses {

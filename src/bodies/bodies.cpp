@@ -11,7 +11,7 @@ Bodies::Bodies(Environment& environment, const BodiesOptions& options, WallRespo
     : impl_(std::make_unique<Impl>(environment, options, std::move(responses))) {}
 Bodies::~Bodies() = default;
 Bodies::Bodies(const Bodies& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}
-// The other one keeps members, for it can be used again.
+// Allocates, for the other one keeps members: it can be used again.
 Bodies::Bodies(Bodies&& other)  // NOLINT(performance-noexcept-move-constructor)
     : impl_(std::make_unique<Impl>(std::move(*other.impl_))) {}
 

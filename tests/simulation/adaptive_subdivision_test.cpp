@@ -16,11 +16,11 @@
 #include "support/tier.hpp"
 #include "support/with_response.hpp"
 
-namespace dartcast::crowding_test {
+namespace dartcast::adaptive_subdivision_test {
 
-std::size_t fullest_cell(const Simulation& flow) {
+std::size_t fullest_cell(const Simulation& simulation) {
   std::map<Cell, std::size_t> counts;
-  for (const ParticleState& s : flow.particles().states()) ++counts[s.cell];
+  for (const ParticleState& s : simulation.particles().states()) ++counts[s.cell];
   std::size_t max_particles = 0;
   for (const auto& [cell, count] : counts) max_particles = std::max(max_particles, count);
   return max_particles;
@@ -34,9 +34,9 @@ std::vector<Vec3> cluster(std::size_t count, const Vec3& low, const Vec3& high) 
   return places;
 }
 
-AdaptiveSubdivisionReport adapt(Simulation& flow, AdaptiveSubdivision& subdivision) {
-  return subdivision.adapt(flow.environment().complex(), flow.particles(),
-                           [&](const std::function<void(ComplexEdit&)>& make) { return flow.edit(make).edit; });
+AdaptiveSubdivisionReport adapt(Simulation& simulation, AdaptiveSubdivision& subdivision) {
+  return subdivision.adapt(simulation.environment().complex(), simulation.particles(),
+                           [&](const std::function<void(ComplexEdit&)>& make) { return simulation.edit(make).edit; });
 }
 
 // A crowd gathers, and the cells get small; it leaves, and they are as many as before.
@@ -44,29 +44,29 @@ TEST(AdaptiveSubdivision, SubdividesAndMergesAgain) {
   Environment environment(test::cubes(4), Threads{1});
   SimulationOptions o;
   o.dt = 0.1;
-  Simulation flow(environment, o);
+  Simulation simulation(environment, o);
   const std::size_t cells = environment.map().cell_count();
-  flow.add(cluster(300, {1.1, 1.1, 1.1}, {1.9, 1.9, 1.9}), {0.1, 0.05, 0.02});
+  simulation.add(cluster(300, {1.1, 1.1, 1.1}, {1.9, 1.9, 1.9}), {0.1, 0.05, 0.02});
   AdaptiveSubdivisionOptions options;
   options.max_particles = 20;
   options.min_particles = 10;
   AdaptiveSubdivision adaptive_subdivision(options);
   AdaptiveSubdivisionReport first;
   for (int i = 0; i < 5; ++i) {
-    const AdaptiveSubdivisionReport report = adapt(flow, adaptive_subdivision);
+    const AdaptiveSubdivisionReport report = adapt(simulation, adaptive_subdivision);
     first.subdivided += report.subdivided;
     EXPECT_TRUE(report.refused.empty()) << report.refused.front().reason;
     EXPECT_EQ(report.waiting, 0U);
-    EXPECT_LE(fullest_cell(flow), options.max_particles);
+    EXPECT_LE(fullest_cell(simulation), options.max_particles);
     EXPECT_TRUE(environment.validity().valid());
-    EXPECT_EQ(audit(environment.complex(), flow.particles()).failed, 0U);
-    flow.step();
+    EXPECT_EQ(audit(environment.complex(), simulation.particles()).failed, 0U);
+    simulation.step();
   }
   EXPECT_GT(first.subdivided, 8U);
   EXPECT_GT(adaptive_subdivision.subdivisions().size(), 8U);
-  EXPECT_EQ(flow.particles().size(), 300U);
+  EXPECT_EQ(simulation.particles().size(), 300U);
   // With everyone still there nothing is merged; with nobody all is.
-  EXPECT_EQ(adapt(flow, adaptive_subdivision).merged, 0U);
+  EXPECT_EQ(adapt(simulation, adaptive_subdivision).merged, 0U);
   Simulation empty(environment, o);
   std::uint64_t merged = 0;
   for (int i = 0; i < 10 && !adaptive_subdivision.subdivisions().empty(); ++i) {
@@ -82,13 +82,13 @@ TEST(AdaptiveSubdivision, SubdividesAndMergesAgain) {
 // A report names what was not done: cells too small, and more of them than one call edits.
 TEST(AdaptiveSubdivision, TellsWhatItLeaves) {
   Environment environment(test::cubes(4), Threads{1});
-  Simulation flow(environment, SimulationOptions{});
-  flow.add(cluster(400, {1.1, 1.1, 1.1}, {2.9, 1.9, 1.9}), {});
+  Simulation simulation(environment, SimulationOptions{});
+  simulation.add(cluster(400, {1.1, 1.1, 1.1}, {2.9, 1.9, 1.9}), {});
   AdaptiveSubdivisionOptions options;
   options.max_particles = 20;
   options.smallest = 0.4;
   AdaptiveSubdivision small(options);
-  const AdaptiveSubdivisionReport report = adapt(flow, small);
+  const AdaptiveSubdivisionReport report = adapt(simulation, small);
   EXPECT_EQ(report.subdivided, 2U);
   ASSERT_GT(report.refused.size(), 4U);
   EXPECT_GT(report.refused.front().particles, options.max_particles);
@@ -96,7 +96,7 @@ TEST(AdaptiveSubdivision, TellsWhatItLeaves) {
   options.smallest = 0.0;
   options.edits = 1;
   AdaptiveSubdivision slow(options);
-  const AdaptiveSubdivisionReport some = adapt(flow, slow);
+  const AdaptiveSubdivisionReport some = adapt(simulation, slow);
   EXPECT_EQ(some.subdivided, 1U);
   EXPECT_GT(some.waiting, 0U);
 }
@@ -119,10 +119,10 @@ TEST(AdaptiveSubdivision, SpheresDoNotNotice) {
     o.gravity = {0.0, 0.0, -9.81};
     o.collisions = CollisionOptions{};
     o.collisions->friction = 0.3;
-    Simulation flow(environment, test::with_response(o, Reflect{0.0, 0.3}));
+    Simulation simulation(environment, test::with_response(o, Reflect{0.0, 0.3}));
     for (int i = 0; i < 90; ++i) {
       const Vec3 place = {0.3 + 0.21 * (i % 5), 0.3 + 0.21 * (i / 5 % 6), 0.15 + 0.25 * (i / 30)};
-      flow.add(std::span(&place, 1), {}, 0.1);
+      simulation.add(std::span(&place, 1), {}, 0.1);
     }
     AdaptiveSubdivisionOptions options;
     options.max_particles = 10;
@@ -130,13 +130,13 @@ TEST(AdaptiveSubdivision, SpheresDoNotNotice) {
     AdaptiveSubdivision adaptive_subdivision(options);
     std::uint64_t edits = 0;
     for (int i = 0; i < 200; ++i) {
-      if (adapts && i % 20 == 10) edits += adapt(flow, adaptive_subdivision).subdivided;
-      flow.step();
+      if (adapts && i % 20 == 10) edits += adapt(simulation, adaptive_subdivision).subdivided;
+      simulation.step();
     }
     EXPECT_EQ(edits > 0, adapts);
-    EXPECT_EQ(flow.particles().size(), 90U);
+    EXPECT_EQ(simulation.particles().size(), 90U);
     std::vector<Vec3> places;
-    for (const ParticleState& s : flow.particles().states()) places.push_back(s.position);
+    for (const ParticleState& s : simulation.particles().states()) places.push_back(s.position);
     return places;
   };
   const auto without = run(false);
@@ -144,4 +144,4 @@ TEST(AdaptiveSubdivision, SpheresDoNotNotice) {
   for (std::size_t i = 0; i < without.size(); ++i) EXPECT_LT(norm(without[i] - with[i]), 1e-3);
 }
 
-}  // namespace dartcast::crowding_test
+}  // namespace dartcast::adaptive_subdivision_test

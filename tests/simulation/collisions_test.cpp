@@ -1,4 +1,4 @@
-// Spheres of a flow that meet each other and walls.
+// Spheres of a simulation that meet each other and walls.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,19 +33,19 @@ SimulationOptions colliding(double dt, double restitution, double friction) {
   return o;
 }
 
-double kinetic(const Simulation& flow) {
+double kinetic(const Simulation& simulation) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < flow.radii().size(); ++i)
-    sum += std::pow(flow.radii()[i], 3) * dot(flow.velocities()[i], flow.velocities()[i]);
+  for (std::size_t i = 0; i < simulation.radii().size(); ++i)
+    sum += std::pow(simulation.radii()[i], 3) * dot(simulation.velocities()[i], simulation.velocities()[i]);
   return sum;
 }
 
-double deepest_overlap(const Simulation& flow) {
+double deepest_overlap(const Simulation& simulation) {
   double deepest = 0.0;
-  const auto states = flow.particles().states();
+  const auto states = simulation.particles().states();
   for (std::size_t i = 0; i < states.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      const double room = norm(states[i].position - states[j].position) - flow.radii()[i] - flow.radii()[j];
+      const double room = norm(states[i].position - states[j].position) - simulation.radii()[i] - simulation.radii()[j];
       deepest = std::max(deepest, -room);
     }
   }
@@ -75,33 +75,33 @@ TEST(Collisions, GrainsComeToRest) {
   SimulationOptions o = colliding(large ? 2e-3 : 4e-3, 0.3, 0.3);
   if (large) o.collisions->iterations = 20;
   o.gravity = {0, 0, -9.81};
-  Simulation flow(environment, test::with_response(o, Reflect{0.3, 0.3}));
+  Simulation simulation(environment, test::with_response(o, Reflect{0.3, 0.3}));
   const auto places = lattice(count, across, Vec3{1.2 * r, 1.2 * r, 2.0 * r}, 2.4 * r);
-  for (std::size_t i = 0; i < count; ++i) flow.add(std::span(&places[i], 1), {}, r * (i % 3 == 0 ? 0.8 : 1.0));
-  ASSERT_EQ(flow.particles().size(), count);
+  for (std::size_t i = 0; i < count; ++i) simulation.add(std::span(&places[i], 1), {}, r * (i % 3 == 0 ? 0.8 : 1.0));
+  ASSERT_EQ(simulation.particles().size(), count);
   double peak = 0.0;
   int resting = 0;
   for (int i = 0; i < 6000 && resting < 1000; ++i) {
-    flow.step();
-    const double energy = kinetic(flow);
+    simulation.step();
+    const double energy = kinetic(simulation);
     peak = std::max(peak, energy);
     resting = energy < 1e-6 * peak ? resting + 1 : 0;
   }
   EXPECT_EQ(resting, 1000) << count;
-  EXPECT_EQ(flow.totals().wall_overlaps, 0U);
-  EXPECT_LT(flow.totals().collisions.deepest, 0.5 * r);
-  EXPECT_EQ(flow.totals().counters.unfinished, 0U);
+  EXPECT_EQ(simulation.totals().wall_overlaps, 0U);
+  EXPECT_LT(simulation.totals().collisions.deepest, 0.5 * r);
+  EXPECT_EQ(simulation.totals().counters.unfinished, 0U);
   if (!large) {
-    EXPECT_LT(deepest_overlap(flow), 1e-3 * r);
+    EXPECT_LT(deepest_overlap(simulation), 1e-3 * r);
   }
-  for (const ParticleState& s : flow.particles().states()) EXPECT_GE(s.position.z, 0.8 * r * (1.0 - 1e-9));
-  EXPECT_EQ(audit(environment.complex(), flow.particles()).failed, 0U);
+  for (const ParticleState& s : simulation.particles().states()) EXPECT_GE(s.position.z, 0.8 * r * (1.0 - 1e-9));
+  EXPECT_EQ(audit(environment.complex(), simulation.particles()).failed, 0U);
 }
 
 // In free space, within a large box: momentum is kept while they collide.
 TEST(Collisions, KeepMomentum) {
   Environment environment(box_of({8, 8, 8}, {4, 4, 4}), Threads{1});
-  Simulation flow(environment, colliding(0.01, 0.9, 0.2));
+  Simulation simulation(environment, colliding(0.01, 0.9, 0.2));
   Random random(3);
   Vec3 momentum;
   double sum = 0.0;
@@ -110,16 +110,16 @@ TEST(Collisions, KeepMomentum) {
     const double r = random.uniform(0.02, 0.08);
     const Vec3 place = {random.uniform(1.5, 2.5), random.uniform(1.5, 2.5), random.uniform(1.5, 2.5)};
     const Vec3 velocity = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
-    flow.add(std::span(&place, 1), velocity, r);
+    simulation.add(std::span(&place, 1), velocity, r);
     momentum += velocity * mass(r);
     sum += norm(velocity) * mass(r);
   }
   for (int i = 0; i < std::max(2, test::scaled(40, 40)); ++i) {  // later they meet walls
-    flow.step();
-    EXPECT_EQ(flow.totals().counters.contacts[0], 0U);
+    simulation.step();
+    EXPECT_EQ(simulation.totals().counters.contacts[0], 0U);
   }
-  EXPECT_GT(flow.totals().collisions.pairs_touching, 500U);
-  for (std::size_t i = 0; i < 1000; ++i) momentum -= flow.velocities()[i] * mass(flow.radii()[i]);
+  EXPECT_GT(simulation.totals().collisions.pairs_touching, 500U);
+  for (std::size_t i = 0; i < 1000; ++i) momentum -= simulation.velocities()[i] * mass(simulation.radii()[i]);
   EXPECT_LT(norm(momentum), 1e-14 * sum);
 }
 
@@ -134,24 +134,24 @@ TEST(Collisions, ThreadsAndCheckpoints) {
     Environment environment(generate_box(box), Threads{threads});
     SimulationOptions o = colliding(1e-2, 0.4, 0.3);
     o.gravity = {0.0, 0.0, -10.0};
-    Simulation flow(environment, test::with_response(o, Reflect{0.4, 0.3}));
+    Simulation simulation(environment, test::with_response(o, Reflect{0.4, 0.3}));
     const std::size_t count = std::max<std::size_t>(60, test::scaled<std::size_t>(600, 3000));
-    flow.add_random(count / 4, {1.0, 0.0, -2.0}, 0.12);
-    flow.add_random(count / 2, {0.0, 1.0, -2.0}, 0.06);
-    flow.add_random(count / 4, {0.0, 0.0, -1.0});
+    simulation.add_random(count / 4, {1.0, 0.0, -2.0}, 0.12);
+    simulation.add_random(count / 2, {0.0, 1.0, -2.0}, 0.06);
+    simulation.add_random(count / 4, {0.0, 0.0, -1.0});
     for (int i = 0; i < 40; ++i) {
       if (i == save_at) {
-        const SimulationCheckpoint saved = flow.checkpoint();
+        const SimulationCheckpoint saved = simulation.checkpoint();
         Environment again(generate_box(box), Threads{threads});
         Simulation other(again, test::with_response(o, Reflect{0.4, 0.3}));
         other.restore(saved);
         for (; i < 40; ++i) other.step();
         return other.state_hash().hex();
       }
-      flow.step();
+      simulation.step();
     }
-    EXPECT_GT(flow.totals().collisions.pairs_touching, count / 10);
-    return flow.state_hash().hex();
+    EXPECT_GT(simulation.totals().collisions.pairs_touching, count / 10);
+    return simulation.state_hash().hex();
   };
   const std::string one = run(1, -1);
   EXPECT_EQ(run(2, -1), one);
@@ -166,32 +166,32 @@ TEST(Collisions, FrictionAngle) {
     const double angle = std::atan(0.5) * share;
     SimulationOptions o = colliding(2e-3, 0.0, 0.5);
     o.gravity = {9.81 * std::sin(angle), 0.0, -9.81 * std::cos(angle)};
-    Simulation flow(environment, test::with_response(o, Reflect{0.0, 0.5}));
+    Simulation simulation(environment, test::with_response(o, Reflect{0.0, 0.5}));
     const double r = 0.1;
-    flow.add(std::vector<Vec3>{{1.0, 1.0, r * (1.0 + resting_gap)}}, {}, r);
+    simulation.add(std::vector<Vec3>{{1.0, 1.0, r * (1.0 + resting_gap)}}, {}, r);
     const int steps = 400;
-    for (int i = 0; i < steps; ++i) flow.step();
+    for (int i = 0; i < steps; ++i) simulation.step();
     const double acceleration = std::max(0.0, 9.81 * (std::sin(angle) - 0.5 * std::cos(angle)));
-    EXPECT_NEAR(flow.velocities()[0].x, acceleration * steps * o.dt, 1e-9);
-    EXPECT_NEAR(flow.velocities()[0].z, 0.0, 1e-9);
+    EXPECT_NEAR(simulation.velocities()[0].x, acceleration * steps * o.dt, 1e-9);
+    EXPECT_NEAR(simulation.velocities()[0].z, 0.0, 1e-9);
   }
 }
 
 // Two spheres meet in the middle of a box, one bounces off a wall: as the formulas say.
 TEST(Collisions, ReboundAtWallsAndEachOther) {
   Environment environment(box_of({4, 4, 4}, {4, 4, 4}), Threads{1});
-  Simulation flow(environment, test::with_response(colliding(0.01, 0.5, 0.0), Reflect{0.25, 0.0}));
-  flow.add(std::vector<Vec3>{{1.0, 2.0, 2.0}}, {1.0, 0.0, 0.0}, 0.2);
-  flow.add(std::vector<Vec3>{{3.0, 2.0, 2.0}}, {-1.0, 0.0, 0.0}, 0.2);
-  flow.add(std::vector<Vec3>{{0.5, 0.5, 0.5}}, {0.0, 0.0, -2.0}, 0.2);
-  flow.add(std::vector<Vec3>{{3.5, 3.5, 0.5}}, {0.0, 0.0, -50.0}, 0.2);  // too far to be near: its own contact
-  flow.add(std::vector<Vec3>{{0.5, 2.0, 2.0}}, {1.0, 0.0, 0.0});         // a point: meets no sphere
-  for (int i = 0; i < 100; ++i) flow.step();
-  EXPECT_NEAR(flow.velocities()[0].x, -0.5, 1e-12);
-  EXPECT_NEAR(flow.velocities()[1].x, 0.5, 1e-12);
-  EXPECT_NEAR(flow.velocities()[2].z, 0.5, 1e-12);
-  EXPECT_NEAR(std::abs(flow.velocities()[3].z), 12.5 * 0.25, 1e-9);
-  EXPECT_NEAR(flow.velocities()[4].x, 1.0, 1e-15);
+  Simulation simulation(environment, test::with_response(colliding(0.01, 0.5, 0.0), Reflect{0.25, 0.0}));
+  simulation.add(std::vector<Vec3>{{1.0, 2.0, 2.0}}, {1.0, 0.0, 0.0}, 0.2);
+  simulation.add(std::vector<Vec3>{{3.0, 2.0, 2.0}}, {-1.0, 0.0, 0.0}, 0.2);
+  simulation.add(std::vector<Vec3>{{0.5, 0.5, 0.5}}, {0.0, 0.0, -2.0}, 0.2);
+  simulation.add(std::vector<Vec3>{{3.5, 3.5, 0.5}}, {0.0, 0.0, -50.0}, 0.2);  // too far to be near: its own contact
+  simulation.add(std::vector<Vec3>{{0.5, 2.0, 2.0}}, {1.0, 0.0, 0.0});         // a point: meets no sphere
+  for (int i = 0; i < 100; ++i) simulation.step();
+  EXPECT_NEAR(simulation.velocities()[0].x, -0.5, 1e-12);
+  EXPECT_NEAR(simulation.velocities()[1].x, 0.5, 1e-12);
+  EXPECT_NEAR(simulation.velocities()[2].z, 0.5, 1e-12);
+  EXPECT_NEAR(std::abs(simulation.velocities()[3].z), 12.5 * 0.25, 1e-9);
+  EXPECT_NEAR(simulation.velocities()[4].x, 1.0, 1e-15);
 }
 
 // A floor that rises carries what lies on it.
@@ -200,20 +200,20 @@ TEST(Collisions, MovingWallsCarry) {
   Environment environment(mesh, Threads{1});
   SimulationOptions o = colliding(0.01, 0.0, 0.3);
   o.gravity = {0, 0, -9.81};
-  Simulation flow(environment, test::with_response(o, Reflect{0.0, 0.3}));
+  Simulation simulation(environment, test::with_response(o, Reflect{0.0, 0.3}));
   std::vector<Vec3> shift(mesh.points.size());
   for (std::size_t i = 0; i < shift.size(); ++i) shift[i] = {0.0, 0.0, 0.5 * (1.0 - mesh.points[i].z / 4.0)};
   const auto places = lattice(60, 4, {0.5, 0.5, 0.4}, 0.65);
-  flow.add(places, {}, 0.3);
-  for (int i = 0; i < 150; ++i) flow.step();
-  flow.pull(shift, 1.0);
-  for (int i = 0; i < 150; ++i) flow.step();
-  for (const ParticleState& s : flow.particles().states()) {
+  simulation.add(places, {}, 0.3);
+  for (int i = 0; i < 150; ++i) simulation.step();
+  simulation.pull(shift, 1.0);
+  for (int i = 0; i < 150; ++i) simulation.step();
+  for (const ParticleState& s : simulation.particles().states()) {
     EXPECT_FALSE(s.held);
     EXPECT_GE(s.position.z, 0.5 + 0.3 - 1e-9);
   }
-  EXPECT_LT(deepest_overlap(flow), 0.02 * 0.3);
-  EXPECT_EQ(audit(environment.complex(), flow.particles()).failed, 0U);
+  EXPECT_LT(deepest_overlap(simulation), 0.02 * 0.3);
+  EXPECT_EQ(audit(environment.complex(), simulation.particles()).failed, 0U);
 }
 
 // Discs in the plane.
@@ -224,18 +224,18 @@ TEST(Collisions, InThePlane) {
   Environment environment(generate_rectangle(rectangle), Threads{1});
   SimulationOptions o = colliding(0.01, 0.2, 0.3);
   o.gravity = {0, -9.81, 0};
-  Simulation flow(environment, test::with_response(o, Reflect{0.2, 0.3}));
+  Simulation simulation(environment, test::with_response(o, Reflect{0.2, 0.3}));
   std::vector<Vec3> places;
   for (int i = 0; i < 40; ++i) places.push_back({0.5 + 0.62 * (i % 8) + 0.01 * (i % 3), 0.5 + 0.7 * (i / 8), 0.0});
-  flow.add(places, {}, 0.25);
+  simulation.add(places, {}, 0.25);
   double peak = 0.0;
   for (int i = 0; i < 1500; ++i) {
-    flow.step();
-    peak = std::max(peak, kinetic(flow));
+    simulation.step();
+    peak = std::max(peak, kinetic(simulation));
   }
-  EXPECT_LT(kinetic(flow), 1e-6 * peak);
-  EXPECT_LT(deepest_overlap(flow), 1e-3);
-  for (const ParticleState& s : flow.particles().states()) EXPECT_EQ(s.position.z, 0.0);
+  EXPECT_LT(kinetic(simulation), 1e-6 * peak);
+  EXPECT_LT(deepest_overlap(simulation), 1e-3);
+  for (const ParticleState& s : simulation.particles().states()) EXPECT_EQ(s.position.z, 0.0);
 }
 
 TEST(Collisions, RefuseWhatIsOutOfRange) {
@@ -249,10 +249,10 @@ TEST(Collisions, RefuseWhatIsOutOfRange) {
   refused([](CollisionOptions& c) { c.friction = -0.1; });
   refused([](CollisionOptions& c) { c.density = 0.0; });
   refused([](CollisionOptions& c) { c.iterations = 0; });
-  Simulation flow(environment, colliding(0.01, 0.5, 0.5));
-  EXPECT_THROW(flow.add(std::vector<Vec3>{{1, 1, 1}}, {}, -1.0), InvalidArgument);
-  EXPECT_THROW(flow.add_random(1, {}, std::nan("")), InvalidArgument);
-  EXPECT_EQ(flow.particles().size(), 0U);
+  Simulation simulation(environment, colliding(0.01, 0.5, 0.5));
+  EXPECT_THROW(simulation.add(std::vector<Vec3>{{1, 1, 1}}, {}, -1.0), InvalidArgument);
+  EXPECT_THROW(simulation.add_random(1, {}, std::nan("")), InvalidArgument);
+  EXPECT_EQ(simulation.particles().size(), 0U);
 }
 
 }  // namespace dartcast::collisions_test

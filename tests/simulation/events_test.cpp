@@ -30,9 +30,9 @@ SimulationOptions falling(double dt) {
   return o;
 }
 
-std::size_t count_if(const Simulation& flow, const std::function<bool(const Vec3&)>& where) {
+std::size_t count_if(const Simulation& simulation, const std::function<bool(const Vec3&)>& where) {
   std::size_t count = 0;
-  for (const ParticleState& s : flow.particles().states()) count += where(s.position) ? 1 : 0;
+  for (const ParticleState& s : simulation.particles().states()) count += where(s.position) ? 1 : 0;
   return count;
 }
 
@@ -51,43 +51,44 @@ const Event cut_below = {0.0, Cut{Disc{{6.0, 3.0, 0.5}, {1.0, 0.0, 0.0}, 1.0}, 0
 // Particles that fall reach the bottom of the gap, and nothing else below the channel.
 TEST(Events, ParticlesLeakIntoACut) {
   Environment environment(channel());
-  Simulation flow(environment, test::with_response(falling(0.02), Slide{}));
+  Simulation simulation(environment, test::with_response(falling(0.02), Slide{}));
   std::vector<Vec3> places;
   for (int i = 0; i < 100; ++i) places.push_back({5.76 + 0.005 * i, 3.0, 2.0});
-  flow.add(places, {});
-  const EventReport report = apply(flow, cut_below);
+  simulation.add(places, {});
+  const EventReport report = apply(simulation, cut_below);
   EXPECT_EQ(name_of(report.kind), "cut");
   EXPECT_GT(report.cells_opened, 0U);
   EXPECT_EQ(report.boundary_shift, 0.0);
   for (int i = 0; i < 200; ++i) {
-    flow.step();
-    ASSERT_NO_FATAL_FAILURE(test::expect_audited(flow.environment().complex(), flow.particles()));
+    simulation.step();
+    ASSERT_NO_FATAL_FAILURE(test::expect_audited(simulation.environment().complex(), simulation.particles()));
   }
-  EXPECT_EQ(count_if(flow, [](const Vec3& x) { return x.z < 0.9; }), 99U);  // all but the first, beside the gap
-  EXPECT_EQ(count_if(flow, [](const Vec3& x) { return x.z < 0.9 && std::abs(x.x - 6.0) > 0.25; }), 0U);
+  EXPECT_EQ(count_if(simulation, [](const Vec3& x) { return x.z < 0.9; }), 99U);  // all but the first, beside the gap
+  EXPECT_EQ(count_if(simulation, [](const Vec3& x) { return x.z < 0.9 && std::abs(x.x - 6.0) > 0.25; }), 0U);
 }
 
 TEST(Events, ALigatureSealsAndItsWallsAreDrawnTogether) {
   Environment environment(channel());
-  Simulation flow(environment, test::with_response(SimulationOptions{.dt = 0.02}, Reflect{1.0, 0.0}));
+  Simulation simulation(environment, test::with_response(SimulationOptions{.dt = 0.02}, Reflect{1.0, 0.0}));
   std::vector<Vec3> places;
   for (int i = 0; i < 300; ++i) places.push_back({1.5 + 0.008 * i, 1.5 + 0.01 * i, 3.0 + 0.003 * (i % 7)});
-  flow.add(places, {2.0, 0.3, 0.7});
+  simulation.add(places, {2.0, 0.3, 0.7});
   Ligature tie{plane_through({6.5, 3.0, 3.0}, {1.0, 0.0, 0.0}), {6.5, 3.0, 3.0}, {0.8, 2.0}, 0.5};
-  const EventReport report = apply(flow, {0.0, tie, OrphanPolicy::relocate});
+  const EventReport report = apply(simulation, {0.0, tie, OrphanPolicy::relocate});
   EXPECT_EQ(report.cells_blocked, 16U);
   const Vec3 corner = environment.positions()[7 + 13 * (1 + 7 * 1)];  // (7, 1, 1)
   for (int i = 0; i < 400; ++i) {
-    flow.step();
-    if (i % 20 == 0) ASSERT_NO_FATAL_FAILURE(test::expect_audited(flow.environment().complex(), flow.particles()));
-    ASSERT_EQ(count_if(flow, [](const Vec3& x) { return x.x > 6.5; }), 0U);
+    simulation.step();
+    if (i % 20 == 0)
+      ASSERT_NO_FATAL_FAILURE(test::expect_audited(simulation.environment().complex(), simulation.particles()));
+    ASSERT_EQ(count_if(simulation, [](const Vec3& x) { return x.x > 6.5; }), 0U);
   }
   EXPECT_TRUE(environment.validity().valid());
   const Vec3 drawn = environment.positions()[7 + 13 * (1 + 7 * 1)];
   EXPECT_EQ(corner, (Vec3{7.0, 1.0, 1.0}));
   EXPECT_GT(drawn.y, 1.3);
   EXPECT_GT(drawn.z, 1.3);
-  EXPECT_EQ(flow.particles().size(), 300U);
+  EXPECT_EQ(simulation.particles().size(), 300U);
 }
 
 // While the whole twists: vertices of cuts go with the others, and cells stay valid.
@@ -95,54 +96,56 @@ TEST(Events, SurgeryOnWhatDeforms) {
   std::vector<std::string> hashes;
   for (const unsigned threads : {1U, 3U}) {
     Environment environment(channel(), {threads});
-    Simulation flow(environment, test::with_response(falling(0.02), Reflect{0.5, 0.0}));
-    flow.set_deformation(sway(environment));
-    flow.set_field(
+    Simulation simulation(environment, test::with_response(falling(0.02), Reflect{0.5, 0.0}));
+    simulation.set_deformation(sway(environment));
+    simulation.set_field(
         VelocityField(environment.complex(), std::vector<Vec3>(environment.positions().size(), Vec3{0.5, 0.0, -1.0})));
-    flow.add_random(300, {});
+    simulation.add_random(300, {});
     for (int i = 0; i < 200; ++i) {
-      if (i == 20) apply(flow, cut_below);
+      if (i == 20) apply(simulation, cut_below);
       if (i == 60)
-        apply(flow, {0.0, Carve{capsule_tool({9.0, 3.0, 0.3}, {9.0, 3.0, 1.5}, 0.4)}, OrphanPolicy::relocate});
+        apply(simulation, {0.0, Carve{capsule_tool({9.0, 3.0, 0.3}, {9.0, 3.0, 1.5}, 0.4)}, OrphanPolicy::relocate});
       if (i == 100)
-        apply(flow, {0.0, Ligature{plane_through({3.5, 3.0, 3.0}, {1.0, 0.0, 0.0}), {3.5, 3.0, 3.0}, {0.5, 1.5}, 0.4},
-                     OrphanPolicy::hold});
-      flow.step();
-      if (i % 10 == 0) ASSERT_NO_FATAL_FAILURE(test::expect_audited(flow.environment().complex(), flow.particles()));
+        apply(simulation,
+              {0.0, Ligature{plane_through({3.5, 3.0, 3.0}, {1.0, 0.0, 0.0}), {3.5, 3.0, 3.0}, {0.5, 1.5}, 0.4},
+               OrphanPolicy::hold});
+      simulation.step();
+      if (i % 10 == 0)
+        ASSERT_NO_FATAL_FAILURE(test::expect_audited(simulation.environment().complex(), simulation.particles()));
       const Validity validity = environment.validity();
       ASSERT_TRUE(validity.valid()) << "step " << i << ": " << validity.first.front().message;
     }
-    EXPECT_GT(count_if(flow, [](const Vec3& x) { return x.z < 0.9; }), 0U);
-    EXPECT_EQ(flow.particles().size(), 300U);
-    hashes.push_back(flow.state_hash().hex());
+    EXPECT_GT(count_if(simulation, [](const Vec3& x) { return x.z < 0.9; }), 0U);
+    EXPECT_EQ(simulation.particles().size(), 300U);
+    hashes.push_back(simulation.state_hash().hex());
   }
   EXPECT_EQ(hashes[0], hashes[1]);
 }
 
 TEST(Events, ASliceIsTakenOutAndFilledAgain) {
   Environment environment(channel());
-  Simulation flow(environment, test::with_response(falling(0.02), Reflect{0.5, 0.0}));
-  flow.add_random(500, {1.0, 0.0, 0.0});
-  const std::size_t in_slice = count_if(flow, [](const Vec3& x) { return x.x > 5.5 && x.x < 7.5; });
+  Simulation simulation(environment, test::with_response(falling(0.02), Reflect{0.5, 0.0}));
+  simulation.add_random(500, {1.0, 0.0, 0.0});
+  const std::size_t in_slice = count_if(simulation, [](const Vec3& x) { return x.x > 5.5 && x.x < 7.5; });
   Event remove{0.0, Carve{box_tool({5.5, -1.0, -1.0}, {7.5, 7.0, 7.0}), Carving::remove}, OrphanPolicy::absorb};
-  const EventReport removed = apply(flow, remove);
+  const EventReport removed = apply(simulation, remove);
   EXPECT_EQ(removed.particles_absorbed, in_slice);
-  EXPECT_EQ(flow.totals().absorbed, in_slice);
-  EXPECT_EQ(flow.particles().size(), 500 - in_slice);
-  const std::size_t left = count_if(flow, [](const Vec3& x) { return x.x < 5.5; });
-  for (int i = 0; i < 100; ++i) flow.step();
-  EXPECT_EQ(count_if(flow, [](const Vec3& x) { return x.x <= 5.5; }), left);
-  test::expect_audited(flow.environment().complex(), flow.particles());
+  EXPECT_EQ(simulation.totals().absorbed, in_slice);
+  EXPECT_EQ(simulation.particles().size(), 500 - in_slice);
+  const std::size_t left = count_if(simulation, [](const Vec3& x) { return x.x < 5.5; });
+  for (int i = 0; i < 100; ++i) simulation.step();
+  EXPECT_EQ(count_if(simulation, [](const Vec3& x) { return x.x <= 5.5; }), left);
+  test::expect_audited(simulation.environment().complex(), simulation.particles());
   const auto at = [](double x) { return plane_through({x, 0.0, 0.0}, {1.0, 0.0, 0.0}); };
-  const EventReport filled = apply(flow, {0.0, Reconnect{at(5.5), at(7.5), 0.01, {}}, OrphanPolicy::relocate});
+  const EventReport filled = apply(simulation, {0.0, Reconnect{at(5.5), at(7.5), 0.01, {}}, OrphanPolicy::relocate});
   EXPECT_GT(filled.cells_added, 0U);
   std::size_t crossed = 0;
   for (int i = 0; i < 300; ++i) {
-    flow.step();
-    crossed = std::max(crossed, count_if(flow, [](const Vec3& x) { return x.x > 5.5 && x.x < 7.5; }));
+    simulation.step();
+    crossed = std::max(crossed, count_if(simulation, [](const Vec3& x) { return x.x > 5.5 && x.x < 7.5; }));
   }
   EXPECT_GT(crossed, 0U);
-  test::expect_audited(flow.environment().complex(), flow.particles());
+  test::expect_audited(simulation.environment().complex(), simulation.particles());
 }
 
 TEST(Events, AnInletIsClosedWithItsLastFace) {
@@ -150,18 +153,18 @@ TEST(Events, AnInletIsClosedWithItsLastFace) {
   o.cells = {4, 1, 1};
   o.size = {4.0, 1.0, 1.0};
   Environment environment(generate_box(o));
-  Simulation flow(environment, SimulationOptions{.dt = 0.1});
-  flow.add_inlet(environment.map().patch("xmin"), 50.0, {0.1, 0.0, 0.0});
-  flow.step();
-  EXPECT_EQ(flow.totals().injected, 5U);
-  const Cell first = flow.particles()[0].cell;
-  flow.edit([&](ComplexEdit& e) { e.topology().set_free(first, false); }, OrphanPolicy::relocate);
-  flow.step();
-  EXPECT_EQ(flow.totals().injected, 5U);
-  flow.edit([&](ComplexEdit& e) { e.topology().set_free(first, true); });
-  flow.step();
-  EXPECT_EQ(flow.totals().injected, 10U);
-  test::expect_audited(flow.environment().complex(), flow.particles());
+  Simulation simulation(environment, SimulationOptions{.dt = 0.1});
+  simulation.add_inlet(environment.map().patch("xmin"), 50.0, {0.1, 0.0, 0.0});
+  simulation.step();
+  EXPECT_EQ(simulation.totals().injected, 5U);
+  const Cell first = simulation.particles()[0].cell;
+  simulation.edit([&](ComplexEdit& e) { e.topology().set_free(first, false); }, OrphanPolicy::relocate);
+  simulation.step();
+  EXPECT_EQ(simulation.totals().injected, 5U);
+  simulation.edit([&](ComplexEdit& e) { e.topology().set_free(first, true); });
+  simulation.step();
+  EXPECT_EQ(simulation.totals().injected, 10U);
+  test::expect_audited(simulation.environment().complex(), simulation.particles());
 }
 
 // A bump turns cells over; they are remeshed, and particles go on.
@@ -172,23 +175,23 @@ TEST(Events, RemeshesWhereADeformationTurnsCellsOver) {
   std::size_t invalid[2] = {0, 0};  // cells, over all steps
   for (const bool remeshed : {false, true}) {
     Environment environment(generate_box(o));
-    Simulation flow(environment, test::with_response(SimulationOptions{.dt = 0.02}, Reflect{1.0, 0.0}));
+    Simulation simulation(environment, test::with_response(SimulationOptions{.dt = 0.02}, Reflect{1.0, 0.0}));
     DeformationStep bump;
     bump.kind = DeformationKind::bump;
     bump.amplitude = 2.5;
     bump.length = 2.5;
     bump.centre = {3.0, 3.0, 3.0};
-    flow.set_deformation(Deformation({bump}, environment.positions()));
-    flow.add_random(300, {1.0, 0.5, 0.25});
+    simulation.set_deformation(Deformation({bump}, environment.positions()));
+    simulation.add_random(300, {1.0, 0.5, 0.25});
     std::size_t mended = 0;
     for (int i = 0; i < 25; ++i) {
-      flow.step();
-      if (remeshed) mended += flow.repair().mended.size();
+      simulation.step();
+      if (remeshed) mended += simulation.repair().mended.size();
       invalid[remeshed ? 1 : 0] += environment.validity().invalid_count;
-      test::expect_audited(flow.environment().complex(), flow.particles());
+      test::expect_audited(simulation.environment().complex(), simulation.particles());
     }
     if (remeshed) EXPECT_GT(mended, 0U);
-    EXPECT_EQ(flow.particles().size(), 300U);
+    EXPECT_EQ(simulation.particles().size(), 300U);
   }
   EXPECT_GT(invalid[0], 0U);
   EXPECT_LT(invalid[1], invalid[0]);  // most of the rest has a boundary that folds over itself
@@ -198,31 +201,31 @@ TEST(Events, SurgeryKeepsToTheTimesAndDoesItAgain) {
   const std::vector<Event> events = {
       cut_below, {0.1, Ligature{plane_through({3.5, 3.0, 3.0}, {1.0, 0.0, 0.0}), {3.5, 3.0, 3.0}, {0.0, 1.0}, 0.0}}};
   Environment environment(channel());
-  Simulation flow(environment, test::with_response(falling(0.02), Slide{}));
-  flow.add_random(200, {});
-  flow.set_events(events);
+  Simulation simulation(environment, test::with_response(falling(0.02), Slide{}));
+  simulation.add_random(200, {});
+  simulation.set_events(events);
   for (int i = 0; i < 20; ++i) {
-    flow.step();
-    EXPECT_EQ(flow.event_log().events.size(), i < 5 ? 1U : 2U);
+    simulation.step();
+    EXPECT_EQ(simulation.event_log().events.size(), i < 5 ? 1U : 2U);
   }
   Environment other(channel());
   Simulation again(other, falling(0.02));
   again.set_events(events);
-  again.restore(flow.checkpoint());
+  again.restore(simulation.checkpoint());
   EXPECT_EQ(other.map(), environment.map());
-  EXPECT_EQ(again.state_hash(), flow.state_hash());
+  EXPECT_EQ(again.state_hash(), simulation.state_hash());
   test::expect_audited(other.complex(), again.particles());
   Simulation without(other, falling(0.02));  // it has no such events to repeat
-  EXPECT_THROW(without.restore(flow.checkpoint()), InvalidArgument);
+  EXPECT_THROW(without.restore(simulation.checkpoint()), InvalidArgument);
 }
 
 TEST(Events, SayWhichIsRefused) {
   const std::vector<Event> events = {{0.0, Ligature{plane_through({60.0, 3.0, 3.0}, {1.0, 0.0, 0.0}), {}, {}, 0.0}}};
   Environment environment(channel());
-  Simulation flow(environment, falling(0.02));
-  flow.set_events(events);
+  Simulation simulation(environment, falling(0.02));
+  simulation.set_events(events);
   try {
-    flow.step();
+    simulation.step();
     FAIL() << "there is nothing to tie";
   } catch (const Error& e) {
     EXPECT_NE(std::string(e.what()).find("event 1 (ligature at 0 s)"), std::string::npos) << e.what();
@@ -239,20 +242,20 @@ TEST(Events, InThePlaneALigatureSeals) {
   SimulationOptions drift;
   drift.dt = 0.05;
   drift.gravity = {1.0, 0.0, 0.0};
-  Simulation flow(environment, test::with_response(drift, Slide{}));
+  Simulation simulation(environment, test::with_response(drift, Slide{}));
   std::vector<Vec3> places;
   for (int i = 0; i < 20; ++i) places.push_back({1.0, 0.1 + 0.19 * i, 0.0});
-  flow.add(places, {});
-  EXPECT_THROW(flow.set_events({cut_below}), InvalidArgument);
+  simulation.add(places, {});
+  EXPECT_THROW(simulation.set_events({cut_below}), InvalidArgument);
   const std::vector<Event> tie = {
       {0.5, Ligature{plane_through({6.5, 2.0, 0.0}, {1.0, 0.0, 0.0}), {6.5, 2.0, 0.0}, {0.0, 1.0}, 0.0}}};
-  flow.set_events(tie);
+  simulation.set_events(tie);
   for (int i = 0; i < 200; ++i) {
-    flow.step();
-    ASSERT_NO_FATAL_FAILURE(test::expect_audited(flow.environment().complex(), flow.particles()));
+    simulation.step();
+    ASSERT_NO_FATAL_FAILURE(test::expect_audited(simulation.environment().complex(), simulation.particles()));
   }
-  EXPECT_EQ(flow.event_log().events.at(0).cells_blocked, 4U);
-  EXPECT_EQ(count_if(flow, [](const Vec3& x) { return x.x == 6.0; }), 20U);
+  EXPECT_EQ(simulation.event_log().events.at(0).cells_blocked, 4U);
+  EXPECT_EQ(count_if(simulation, [](const Vec3& x) { return x.x == 6.0; }), 20U);
 }
 
 }  // namespace dartcast::event_test

@@ -60,36 +60,36 @@ struct Case {
 };
 
 // The energy of the leapfrog scheme: the rule of the simulation conserves it in free fall (docs/method.md, "Energy").
-double energy(const Simulation& flow, std::size_t i, const SimulationOptions& o, double shift) {
-  const Vec3 v = flow.velocities()[i] + o.gravity * (shift * o.dt);
-  return 0.5 * dot(v, v) - dot(o.gravity, flow.particles()[i].position);
+double energy(const Simulation& simulation, std::size_t i, const SimulationOptions& o, double shift) {
+  const Vec3 v = simulation.velocities()[i] + o.gravity * (shift * o.dt);
+  return 0.5 * dot(v, v) - dot(o.gravity, simulation.particles()[i].position);
 }
 
 void expect_bounded(Case c, std::size_t count, std::uint64_t steps) {
   Environment environment(c.mesh, Threads{1});
-  Simulation flow(environment, test::with_response(c.options, c.response));
-  flow.add_random(count, c.velocity);
+  Simulation simulation(environment, test::with_response(c.options, c.response));
+  simulation.add_random(count, c.velocity);
   const double step_energy = dot(c.options.gravity, c.options.gravity) * c.options.dt * c.options.dt;
   std::vector<double> start;
   std::vector<double> leapfrog;
-  std::vector<Vec3> first(flow.velocities().begin(), flow.velocities().end());
+  std::vector<Vec3> first(simulation.velocities().begin(), simulation.velocities().end());
   for (std::size_t i = 0; i < count; ++i) {
-    start.push_back(energy(flow, i, c.options, 0.0));
-    leapfrog.push_back(energy(flow, i, c.options, 0.5));
+    start.push_back(energy(simulation, i, c.options, 0.0));
+    leapfrog.push_back(energy(simulation, i, c.options, 0.5));
   }
   for (std::uint64_t step = 0; step < steps; ++step) {
-    flow.step();
+    simulation.step();
     for (std::size_t i = 0; i < count; ++i) {
       // Times of impact are right to 2^-40 of the step.
       const double rounding = 1e-12 * static_cast<double>(step + 1) * (1.0 + std::abs(leapfrog[i]));
-      ASSERT_LE(energy(flow, i, c.options, 0.5), leapfrog[i] + 0.125 * step_energy + rounding)
+      ASSERT_LE(energy(simulation, i, c.options, 0.5), leapfrog[i] + 0.125 * step_energy + rounding)
           << c.name << ", restitution " << c.response.restitution << ", particle " << i << ", step " << step;
-      const double bound = 0.5 * c.options.dt * dot(c.options.gravity, first[i] - flow.velocities()[i]);
-      ASSERT_LE(energy(flow, i, c.options, 0.0), start[i] + bound + 0.125 * step_energy + rounding)
+      const double bound = 0.5 * c.options.dt * dot(c.options.gravity, first[i] - simulation.velocities()[i]);
+      ASSERT_LE(energy(simulation, i, c.options, 0.0), start[i] + bound + 0.125 * step_energy + rounding)
           << c.name << ", restitution " << c.response.restitution << ", particle " << i << ", step " << step;
     }
   }
-  EXPECT_EQ(flow.particles().size(), count);
+  EXPECT_EQ(simulation.particles().size(), count);
 }
 
 SimulationOptions falling(const Vec3& gravity, double dt = 0.01, unsigned max_contacts = 16) {
@@ -162,41 +162,41 @@ TEST(NarrowCorners, EnergyStaysBoundedInASliver) {
 TEST(NarrowCorners, AContactNextToACornerMovesNobody) {
   Environment environment(wedge(0.1), Threads{1});
   const SimulationOptions o = falling({0.3, 1.0, -3});
-  Simulation flow(environment, test::with_response(o, Reflect{1.0, 0.0}));
-  flow.add(std::vector<Vec3>{{1.9762194268653117e-06, 1, 0.019869600474872146}},
-           {-0.0033525515524524914, 0, -2.052864144302796});
-  const double before = energy(flow, 0, o, 0.5);
-  flow.step();
-  EXPECT_GE(flow.contact_counts()[0], 3U);
-  EXPECT_NEAR(flow.particles()[0].position.y, 1.0, 1e-12);
-  EXPECT_NEAR(energy(flow, 0, o, 0.5), before, 1e-9);
+  Simulation simulation(environment, test::with_response(o, Reflect{1.0, 0.0}));
+  simulation.add(std::vector<Vec3>{{1.9762194268653117e-06, 1, 0.019869600474872146}},
+                 {-0.0033525515524524914, 0, -2.052864144302796});
+  const double before = energy(simulation, 0, o, 0.5);
+  simulation.step();
+  EXPECT_GE(simulation.contact_counts()[0], 3U);
+  EXPECT_NEAR(simulation.particles()[0].position.y, 1.0, 1e-12);
+  EXPECT_NEAR(energy(simulation, 0, o, 0.5), before, 1e-9);
 }
 
 // An elastic rebound keeps its energy over many steps: no drift either way.
 TEST(NarrowCorners, AnElasticParticleKeepsItsEnergy) {
   Environment environment(wedge(90.0), Threads{1});
   const SimulationOptions o = falling({0, 0, -3});
-  Simulation flow(environment, test::with_response(o, Reflect{1.0, 0.0}));
-  flow.add(std::vector<Vec3>{{0.01, 0.5, 0.6}}, {0, 0, 0});
-  const double start = energy(flow, 0, o, 0.5);
+  Simulation simulation(environment, test::with_response(o, Reflect{1.0, 0.0}));
+  simulation.add(std::vector<Vec3>{{0.01, 0.5, 0.6}}, {0, 0, 0});
+  const double start = energy(simulation, 0, o, 0.5);
   const double rest = 0.0;  // at the edge
   const std::uint64_t count = std::max<std::uint64_t>(steps(), 1000);
-  for (std::uint64_t step = 0; step < count; ++step) flow.step();
-  EXPECT_NEAR(energy(flow, 0, o, 0.5), start, 0.02 * (start - rest));
-  EXPECT_GT(flow.contact_counts()[0], count / 100);
+  for (std::uint64_t step = 0; step < count; ++step) simulation.step();
+  EXPECT_NEAR(energy(simulation, 0, o, 0.5), start, 0.02 * (start - rest));
+  EXPECT_GT(simulation.contact_counts()[0], count / 100);
 }
 
 TEST(NarrowCorners, WhatHasComeToRestInAVertexStaysThereAtOneContactAStep) {
   for (const double restitution : {0.0, 0.5, 0.9}) {
     Environment environment(top(), Threads{1});
-    Simulation flow(environment, test::with_response(falling({0, 0, -3}), Reflect{restitution, 0.0}));
-    flow.add_random(at_rest(), {0.3, 0.2, 0});
-    for (int step = 0; step < 3000; ++step) flow.step();
-    for (std::size_t i = 0; i < flow.particles().size(); ++i) {
-      EXPECT_EQ(flow.particles()[i].position, (Vec3{0, 0, -1})) << i;
-      EXPECT_EQ(flow.velocities()[i], Vec3{}) << i;
+    Simulation simulation(environment, test::with_response(falling({0, 0, -3}), Reflect{restitution, 0.0}));
+    simulation.add_random(at_rest(), {0.3, 0.2, 0});
+    for (int step = 0; step < 3000; ++step) simulation.step();
+    for (std::size_t i = 0; i < simulation.particles().size(); ++i) {
+      EXPECT_EQ(simulation.particles()[i].position, (Vec3{0, 0, -1})) << i;
+      EXPECT_EQ(simulation.velocities()[i], Vec3{}) << i;
     }
-    const SimulationStep& step = flow.step();
+    const SimulationStep& step = simulation.step();
     EXPECT_EQ(step.report.contacts.contacts.size(), at_rest());
     EXPECT_TRUE(step.report.stopped.empty());
   }
@@ -206,19 +206,19 @@ TEST(NarrowCorners, WhatHasComeToRestInAVertexStaysThereAtOneContactAStep) {
 TEST(NarrowCorners, WhatHasComeToRestOnAnEdgeStaysThere) {
   for (const double degrees : {1.6, 30.0, 90.0}) {
     Environment environment(wedge(degrees), Threads{1});
-    Simulation flow(environment, test::with_response(falling({0, 0, -3}), Reflect{0.5, 0.3}));
-    flow.add_random(at_rest(), {0.01, 0.2, 0});
-    for (int step = 0; step < 3000; ++step) flow.step();
-    const std::vector<Vec3> velocities(flow.velocities().begin(), flow.velocities().end());
+    Simulation simulation(environment, test::with_response(falling({0, 0, -3}), Reflect{0.5, 0.3}));
+    simulation.add_random(at_rest(), {0.01, 0.2, 0});
+    for (int step = 0; step < 3000; ++step) simulation.step();
+    const std::vector<Vec3> velocities(simulation.velocities().begin(), simulation.velocities().end());
     std::vector<Vec3> positions;
-    for (std::size_t i = 0; i < velocities.size(); ++i) positions.push_back(flow.particles()[i].position);
+    for (std::size_t i = 0; i < velocities.size(); ++i) positions.push_back(simulation.particles()[i].position);
     std::size_t contacts = 0;
-    for (int step = 0; step < 100; ++step) contacts += flow.step().report.contacts.contacts.size();
+    for (int step = 0; step < 100; ++step) contacts += simulation.step().report.contacts.contacts.size();
     EXPECT_LE(contacts, 100U * at_rest() * 3U) << degrees;
     for (std::size_t i = 0; i < velocities.size(); ++i) {
-      EXPECT_LE(norm(flow.velocities()[i]), 1e-9) << degrees << ' ' << i;
-      EXPECT_LE(norm(flow.particles()[i].position - positions[i]), 1e-9) << degrees << ' ' << i;
-      EXPECT_LE(flow.particles()[i].position.z, 1e-6) << degrees << ' ' << i;
+      EXPECT_LE(norm(simulation.velocities()[i]), 1e-9) << degrees << ' ' << i;
+      EXPECT_LE(norm(simulation.particles()[i].position - positions[i]), 1e-9) << degrees << ' ' << i;
+      EXPECT_LE(simulation.particles()[i].position.z, 1e-6) << degrees << ' ' << i;
     }
   }
 }

@@ -33,30 +33,30 @@ SimulationOptions colliding(double density = 1000.0) {
 
 TEST(FlowRanges, RadiiThatOverflow) {
   Environment environment(cubes(3));
-  Simulation flow(environment, colliding());
+  Simulation simulation(environment, colliding());
   for (const double radius : {1e308, 1e307, 1e300, 1e90, 0x1.1p+100, infinity, std::nan(""), -1.0}) {
     const std::string words = " is " + fmt::format("{}", radius) + ": it must be between 0 and 2^100";
-    expect_refused([&] { flow.add_random(2, {1, 0, 0}, radius); }, words);
-    expect_refused([&] { flow.add(std::vector<Vec3>{{1.5, 1.5, 1.5}}, {1, 0, 0}, radius); }, words);
-    expect_refused([&] { flow.add_inlet(Patch{1}, 10.0, {1, 0, 0}, radius); }, words);
+    expect_refused([&] { simulation.add_random(2, {1, 0, 0}, radius); }, words);
+    expect_refused([&] { simulation.add(std::vector<Vec3>{{1.5, 1.5, 1.5}}, {1, 0, 0}, radius); }, words);
+    expect_refused([&] { simulation.add_inlet(Patch{1}, 10.0, {1, 0, 0}, radius); }, words);
     SphereStepper stepper;
     Particles particles;
     environment.add(particles, std::vector<Vec3>{{1.5, 1.5, 1.5}});
     expect_refused([&] { stepper.advance(environment, particles, std::vector<double>{radius}, std::vector<Vec3>(1)); },
                    words);
   }
-  EXPECT_EQ(flow.particles().size(), 0U);
+  EXPECT_EQ(simulation.particles().size(), 0U);
 }
 
 TEST(FlowRanges, RadiiAndDensitiesAtTheEnds) {
   for (const double radius : {1e-310, 1e-105, 0x1p-100, 0x1p+100}) {
     for (const double density : {0x1p-100, 1000.0, 0x1p+100}) {
       Environment environment(cubes(3));
-      Simulation flow(environment, colliding(density));
-      flow.add_random(3, {1, 0, 0}, radius);
-      for (int i = 0; i < 3; ++i) flow.step();
-      for (const ParticleState& s : flow.particles().states()) EXPECT_TRUE(is_finite(s.position));
-      for (const Vec3& v : flow.velocities()) EXPECT_TRUE(is_finite(v)) << radius << ", " << density;
+      Simulation simulation(environment, colliding(density));
+      simulation.add_random(3, {1, 0, 0}, radius);
+      for (int i = 0; i < 3; ++i) simulation.step();
+      for (const ParticleState& s : simulation.particles().states()) EXPECT_TRUE(is_finite(s.position));
+      for (const Vec3& v : simulation.velocities()) EXPECT_TRUE(is_finite(v)) << radius << ", " << density;
     }
   }
 }
@@ -66,7 +66,7 @@ TEST(FlowRanges, Options) {
   const auto refused = [&](const std::function<void(SimulationOptions&)>& spoil, const std::string& words) {
     SimulationOptions o = colliding();
     spoil(o);
-    expect_refused([&] { const Simulation flow(environment, o); }, words);
+    expect_refused([&] { const Simulation simulation(environment, o); }, words);
   };
   for (const double bad : {0.0, -1.0, 1e-320, 1e-200, 1e40, infinity, std::nan("")}) {
     refused([&](SimulationOptions& o) { o.dt = bad; }, "dt is " + fmt::format("{}", bad));
@@ -79,19 +79,19 @@ TEST(FlowRanges, Options) {
 
 TEST(FlowRanges, RatesOfInlets) {
   Environment environment(cubes(2));
-  Simulation flow(environment, colliding());
+  Simulation simulation(environment, colliding());
   for (const double rate : {1e300, 1e30, 0x1p+40, infinity, std::nan(""), -1.0})
-    expect_refused([&] { flow.add_inlet(Patch{1}, rate, {1, 0, 0}); }, "rate is " + fmt::format("{}", rate));
-  flow.step();
-  EXPECT_EQ(flow.particles().size(), 0U);
+    expect_refused([&] { simulation.add_inlet(Patch{1}, rate, {1, 0, 0}); }, "rate is " + fmt::format("{}", rate));
+  simulation.step();
+  EXPECT_EQ(simulation.particles().size(), 0U);
 }
 
 TEST(FlowRanges, SpeedsThatOverflow) {
   for (const double speed : {1e308, 1e300}) {
     Environment environment(cubes(2));
-    Simulation flow(environment, colliding());
-    flow.add_random(2, {speed, 0, 0}, 0.1);
-    EXPECT_THROW(flow.step(), InvalidArgument);
+    Simulation simulation(environment, colliding());
+    simulation.add_random(2, {speed, 0, 0}, 0.1);
+    EXPECT_THROW(simulation.step(), InvalidArgument);
   }
 }
 
@@ -99,8 +99,8 @@ TEST(FlowRanges, BodiesAndSubsteps) {
   Environment environment(cubes(2));
   SimulationOptions o = colliding();
   o.substeps = 2;
-  Simulation flow(environment, o);
-  expect_refused([&] { flow.add_body(std::vector<Vec3>{{0.5, 0.5, 0.5}}, {}); }, "substeps must be 1");
+  Simulation simulation(environment, o);
+  expect_refused([&] { simulation.add_body(std::vector<Vec3>{{0.5, 0.5, 0.5}}, {}); }, "substeps must be 1");
 }
 
 TEST(PairRanges, SpheresThatReachTooFar) {
@@ -158,10 +158,10 @@ TEST(SurgeryRanges, TimesOfEvents) {
   Environment environment(cubes(2));
   SimulationOptions o;
   o.dt = 1e-3;
-  Simulation flow(environment, o);
+  Simulation simulation(environment, o);
   for (const double at : {-1.0, 1e300, 1e17, infinity, std::nan("")}) {
     const std::vector<Event> events = {{0.0, Ligature{}}, {at, Ligature{}}};
-    expect_refused([&] { flow.set_events(events); }, "event 2 (ligature): its time is " + fmt::format("{}", at));
+    expect_refused([&] { simulation.set_events(events); }, "event 2 (ligature): its time is " + fmt::format("{}", at));
   }
 }
 

@@ -76,18 +76,18 @@ TEST(PatchSampler, FollowsTheMovingMesh) {
   Environment environment(mesh);
   SimulationOptions options;
   options.dt = 1.0;
-  Simulation flow(environment, options);
-  flow.set_deformation(Deformation({frames}, mesh.points));
-  flow.add_inlet(environment.map().patch("zmin"), count, {});
+  Simulation simulation(environment, options);
+  simulation.set_deformation(Deformation({frames}, mesh.points));
+  simulation.add_inlet(environment.map().patch("zmin"), count, {});
   const auto in_first_cell = [&](std::size_t from) {
     int n = 0;
-    for (std::size_t i = from; i < flow.particles().size(); ++i) {
-      n += environment.map().source(flow.particles()[i].cell) == 0 ? 1 : 0;
+    for (std::size_t i = from; i < simulation.particles().size(); ++i) {
+      n += environment.map().source(simulation.particles()[i].cell) == 0 ? 1 : 0;
     }
     return n;
   };
-  flow.step();  // put in at rest, where the faces were equal: those beside x = 1 change cell as it passes
-  flow.step();
+  simulation.step();  // put in at rest, where the faces were equal: those beside x = 1 change cell as it passes
+  simulation.step();
   expect_share(in_first_cell(count), 0.75);
 }
 

@@ -15,7 +15,7 @@
 #include "support/meshes.hpp"
 #include "support/with_response.hpp"
 
-namespace dartcast::flow_test {
+namespace dartcast::simulation_test {
 
 using test::expect_near;
 
@@ -436,4 +436,4 @@ TEST(Simulation, ItsContactsCanBeIterated) {
   EXPECT_NEAR(simulation.particles()[0].position.x, 4.0 - 0.75, 1e-9);
 }
 
-}  // namespace dartcast::flow_test
+}  // namespace dartcast::simulation_test

@@ -29,13 +29,13 @@ double mass_of(double radius, double density) { return density * 4.0 / 3.0 * std
 // Spheres and bodies in one simulation.
 struct Both {
   Environment environment;
-  Simulation flow;
+  Simulation simulation;
   double density;
 
   Both(MeshData mesh, const Vec3& gravity, const CollisionOptions& collisions, const WallResponse& walls,
        Threads threads = {1})
       : environment(std::move(mesh), threads),
-        flow(environment, test::with_response(flow_options(gravity, collisions), walls)),
+        simulation(environment, test::with_response(flow_options(gravity, collisions), walls)),
         density(collisions.density) {}
   static SimulationOptions flow_options(const Vec3& gravity, const CollisionOptions& collisions) {
     SimulationOptions o;
@@ -46,8 +46,8 @@ struct Both {
     return o;
   }
 
-  [[nodiscard]] Bodies& bodies() { return *flow.bodies(); }
-  [[nodiscard]] const Bodies& bodies() const { return *flow.bodies(); }
+  [[nodiscard]] Bodies& bodies() { return *simulation.bodies(); }
+  [[nodiscard]] const Bodies& bodies() const { return *simulation.bodies(); }
 
   void add_body(int n, const Vec3& centre, const Vec3& velocity, double mass, double damping = 0.0) {
     BodyOptions o;
@@ -55,41 +55,41 @@ struct Both {
     o.radius = 0.6 * spacing;
     o.velocity = velocity;
     o.damping = damping;
-    ASSERT_TRUE(flow.add_body(test::block(n, spacing, centre, Quaternion{}), o).refused.empty());
+    ASSERT_TRUE(simulation.add_body(test::block(n, spacing, centre, Quaternion{}), o).refused.empty());
   }
-  void step() { flow.step(); }
+  void step() { simulation.step(); }
 
-  [[nodiscard]] double mass(std::size_t sphere) const { return mass_of(flow.radii()[sphere], density); }
+  [[nodiscard]] double mass(std::size_t sphere) const { return mass_of(simulation.radii()[sphere], density); }
   [[nodiscard]] Vec3 momentum() const {
     Vec3 sum;
-    for (std::size_t i = 0; i < flow.radii().size(); ++i) sum += flow.velocities()[i] * mass(i);
+    for (std::size_t i = 0; i < simulation.radii().size(); ++i) sum += simulation.velocities()[i] * mass(i);
     for (std::size_t b = 0; b < bodies().size(); ++b)
       sum += bodies().rigid_motion_of(b).velocity * bodies().rigid_motion_of(b).mass;
     return sum;
   }
   [[nodiscard]] double kinetic() const {
     double sum = 0.0;
-    for (std::size_t i = 0; i < flow.radii().size(); ++i)
-      sum += 0.5 * mass(i) * dot(flow.velocities()[i], flow.velocities()[i]);
+    for (std::size_t i = 0; i < simulation.radii().size(); ++i)
+      sum += 0.5 * mass(i) * dot(simulation.velocities()[i], simulation.velocities()[i]);
     for (std::size_t b = 0; b < bodies().size(); ++b) sum += bodies().energy(b).kinetic;
     return sum;
   }
   [[nodiscard]] double deepest() const {
     double deepest = 0.0;
-    for (std::size_t i = 0; i < flow.radii().size(); ++i) {
+    for (std::size_t i = 0; i < simulation.radii().size(); ++i) {
       for (std::size_t p = 0; p < bodies().radii().size(); ++p) {
-        const double gap =
-            norm(flow.particles()[i].position - bodies().positions()[p]) - flow.radii()[i] - bodies().radii()[p];
+        const double gap = norm(simulation.particles()[i].position - bodies().positions()[p]) - simulation.radii()[i] -
+                           bodies().radii()[p];
         deepest = std::max(deepest, -gap);
       }
     }
     return deepest;
   }
   [[nodiscard]] std::uint64_t contacts() const {
-    return flow.totals().counters.contacts[2] + bodies().counters().contacts[2];
+    return simulation.totals().counters.contacts[2] + bodies().counters().contacts[2];
   }
-  [[nodiscard]] std::size_t failed() const { return flow.audit().failed; }
-  [[nodiscard]] std::string hash() const { return flow.state_hash().hex(); }
+  [[nodiscard]] std::size_t failed() const { return simulation.audit().failed; }
+  [[nodiscard]] std::string hash() const { return simulation.state_hash().hex(); }
 };
 
 // A ball along the line through a body's centre: as Newton's law for two masses says.
@@ -103,12 +103,12 @@ TEST(SphereBodies, ReboundAsTheFormulaSays) {
       const double m = mass_of(r, c.density);
       const double body = m / ratio;
       both.add_body(3, {0.5, 0.5, 0.5}, {}, body);
-      both.flow.add(std::vector<Vec3>{{0.3, 0.5, 0.5}}, {1.5, 0.0, 0.0}, r);
+      both.simulation.add(std::vector<Vec3>{{0.3, 0.5, 0.5}}, {1.5, 0.0, 0.0}, r);
       const Vec3 before = both.momentum();
       for (int i = 0; i < 60; ++i) both.step();
       ASSERT_EQ(both.contacts(), 0U);
       const double common = 1.5 * m / (m + body);
-      EXPECT_NEAR(both.flow.velocities()[0].x, common - restitution * 1.5 * body / (m + body), 1e-9);
+      EXPECT_NEAR(both.simulation.velocities()[0].x, common - restitution * 1.5 * body / (m + body), 1e-9);
       EXPECT_NEAR(both.bodies().rigid_motion_of(0).velocity.x, common * (1.0 + restitution), 1e-9);
       // A body's places are rounded, and so its velocity, by some 2^-50 / dt in a step.
       EXPECT_LE(norm(both.momentum() - before), 1e-11 * (m + body));
@@ -125,11 +125,11 @@ TEST(SphereBodies, TurnWhatTheyHitBesideItsCentre) {
   Both both(test::cube_of(6, 1.0), {}, c, WallResponse{});
   const double m = mass_of(r, c.density);
   both.add_body(3, {0.5, 0.5, 0.5}, {}, 2.0 * m);
-  both.flow.add(std::vector<Vec3>{{0.3, 0.56, 0.5}}, {1.5, 0.0, 0.0}, r);
+  both.simulation.add(std::vector<Vec3>{{0.3, 0.56, 0.5}}, {1.5, 0.0, 0.0}, r);
   const auto angular = [&] {
     const RigidMotion body = both.bodies().rigid_motion_of(0);
     return body.angular_momentum + cross(body.centre, body.velocity * body.mass) +
-           cross(both.flow.particles()[0].position, both.flow.velocities()[0] * m);
+           cross(both.simulation.particles()[0].position, both.simulation.velocities()[0] * m);
   };
   const Vec3 before = angular();
   for (int i = 0; i < 80; ++i) both.step();
@@ -150,7 +150,7 @@ TEST(SphereBodies, MomentumIsKept) {
   for (int i = 0; i < 60; ++i) {
     const auto off = [&] { return random.uniform(-0.003, 0.003); };
     const Vec3 x = {0.5 + 0.07 * (i % 3) + off(), 0.36 + 0.07 * (i / 3 % 5) + off(), 0.4 + 0.07 * (i / 15) + off()};
-    both.flow.add(std::span(&x, 1), {}, r * random.uniform(0.5, 1.0));
+    both.simulation.add(std::span(&x, 1), {}, r * random.uniform(0.5, 1.0));
   }
   const Vec3 before = both.momentum();
   double energy = both.kinetic();
@@ -159,12 +159,12 @@ TEST(SphereBodies, MomentumIsKept) {
   for (int i = 0; i < 400; ++i) {
     both.step();
     deepest = std::max(deepest, both.deepest());
-    if (both.contacts() + both.flow.totals().collisions.walls_touching > 0) continue;
+    if (both.contacts() + both.simulation.totals().collisions.walls_touching > 0) continue;
     ++free;
     ASSERT_LE(norm(both.momentum() - before), 1e-9 * norm(before)) << i;
   }
   EXPECT_GE(free, 40);
-  EXPECT_GT(both.flow.totals().collisions.pairs_touching, 100U);
+  EXPECT_GT(both.simulation.totals().collisions.pairs_touching, 100U);
   EXPECT_LE(both.kinetic(), energy);
   EXPECT_LE(deepest, 0.5 * r);
   EXPECT_LE(both.deepest(), 0.05 * r);  // none stays
@@ -182,14 +182,14 @@ TEST(SphereBodies, BodyComesToRestOnSpheres) {
   const double r = 0.04;
   for (int i = 0; i < 49; ++i) {
     const Vec3 x = {0.042 + 0.085 * (i % 7) + 0.0003 * (i % 5), 0.042 + 0.085 * (i / 7), 0.041};
-    both.flow.add(std::span(&x, 1), {}, r * (i % 3 == 0 ? 0.9 : 1.0));
+    both.simulation.add(std::span(&x, 1), {}, r * (i % 3 == 0 ? 0.9 : 1.0));
   }
   both.add_body(4, {0.3, 0.3, 0.25}, {0.3, 0.0, -1.0}, 20.0, 20.0);
   double peak = 0.0;
   double last = both.bodies().energy(0).total();
   for (int i = 0; i < 2500; ++i) {
     both.step();
-    const BodiesStep& step = both.flow.bodies_step();
+    const BodiesStep& step = both.simulation.bodies_step();
     const double now = both.bodies().energy(0).total();
     ASSERT_LE(now, last + step.input + (last + std::abs(step.input)) * 2.0 * energy_slack) << i;
     last = now;
@@ -213,14 +213,14 @@ TEST(SphereBodies, ASphereStandsOnABody) {
     const double r = 0.04;
     both.add_body(4, {0.3, 0.3, 0.08}, {}, ratio * mass_of(r, c.density), 20.0);
     const Vec3 x = {0.3, 0.3, 0.3};
-    both.flow.add(std::span(&x, 1), {0.0, 0.0, -1.0}, r);
+    both.simulation.add(std::span(&x, 1), {0.0, 0.0, -1.0}, r);
     for (int i = 0; i < 1000; ++i) both.step();
-    const Vec3 ball = both.flow.particles()[0].position;
+    const Vec3 ball = both.simulation.particles()[0].position;
     const Vec3 body = both.bodies().rigid_motion_of(0).centre;
     for (int i = 0; i < 500; ++i) both.step();
-    EXPECT_LE(norm(both.flow.particles()[0].position - ball), 1e-4 * r) << ratio;
+    EXPECT_LE(norm(both.simulation.particles()[0].position - ball), 1e-4 * r) << ratio;
     EXPECT_LE(norm(both.bodies().rigid_motion_of(0).centre - body), 1e-4 * r) << ratio;
-    EXPECT_LE(norm(both.flow.velocities()[0]), 2.0 * 9.81 * dt) << ratio;
+    EXPECT_LE(norm(both.simulation.velocities()[0]), 2.0 * 9.81 * dt) << ratio;
     EXPECT_LE(norm(both.bodies().rigid_motion_of(0).velocity), 9.81 * dt / ratio) << ratio;
     EXPECT_LE(both.deepest(), 0.01 * r) << ratio;
     EXPECT_EQ(both.failed(), 0U);
@@ -240,24 +240,24 @@ TEST(SphereBodies, AreTheSameBitsForAnyNumberOfThreadsAndFromACheckpoint) {
     return both;
   };
   const auto fill = [](Both& both) {
-    both.flow.add_random(150, {0.0, 0.0, -1.0}, 0.03);
-    both.flow.add_random(20, {0.0, 0.0, -1.0});
+    both.simulation.add_random(150, {0.0, 0.0, -1.0}, 0.03);
+    both.simulation.add_random(20, {0.0, 0.0, -1.0});
   };
   std::string expected;
   for (const unsigned threads : {1U, 2U, 5U}) {
     const auto both = prepared(threads);
     fill(*both);
     for (int i = 0; i < half; ++i) both->step();
-    const SimulationCheckpoint saved = both->flow.checkpoint();
+    const SimulationCheckpoint saved = both->simulation.checkpoint();
     EXPECT_FALSE(saved.state().particles.impulses.empty());
     for (int i = 0; i < half; ++i) both->step();
     if (expected.empty()) expected = both->hash();
     EXPECT_EQ(both->hash(), expected);
     const auto resumed = prepared(threads);
-    resumed->flow.restore(saved);
+    resumed->simulation.restore(saved);
     for (int i = 0; i < half; ++i) resumed->step();
     EXPECT_EQ(resumed->hash(), expected);
-    EXPECT_GT(both->flow.totals().collisions.pairs_touching, 100U);
+    EXPECT_GT(both->simulation.totals().collisions.pairs_touching, 100U);
   }
 }
 
@@ -271,17 +271,17 @@ TEST(SphereBodies, ThroughAWallNobodyMeets) {
   Both both(std::move(mesh), {}, CollisionOptions{}, WallResponse{});
   BodyOptions o;
   o.radius = 0.12;
-  both.flow.add_body(std::vector<Vec3>{{0.25, 0.15, 0.15}}, o);
-  both.flow.add(std::vector<Vec3>{{0.45, 0.15, 0.15}}, {}, 0.1);
-  both.flow.add(std::vector<Vec3>{{0.27, 0.15, 0.15}}, {});  // a point
+  both.simulation.add_body(std::vector<Vec3>{{0.25, 0.15, 0.15}}, o);
+  both.simulation.add(std::vector<Vec3>{{0.45, 0.15, 0.15}}, {}, 0.1);
+  both.simulation.add(std::vector<Vec3>{{0.27, 0.15, 0.15}}, {});  // a point
   for (int i = 0; i < 3; ++i) both.step();
-  EXPECT_GT(both.flow.totals().collisions.pairs_tested, 0U);
-  EXPECT_EQ(both.flow.totals().collisions.pairs_near, 0U);
+  EXPECT_GT(both.simulation.totals().collisions.pairs_tested, 0U);
+  EXPECT_EQ(both.simulation.totals().collisions.pairs_near, 0U);
   EXPECT_EQ(both.bodies().velocities()[0], Vec3{});
   o.radius = 0.02;
-  both.flow.add_body(std::vector<Vec3>{{0.48, 0.15, 0.15}}, o);  // on the other side
+  both.simulation.add_body(std::vector<Vec3>{{0.48, 0.15, 0.15}}, o);  // on the other side
   both.step();
-  EXPECT_EQ(both.flow.totals().collisions.pairs_near, 1U);
+  EXPECT_EQ(both.simulation.totals().collisions.pairs_near, 1U);
 }
 
 // A body gets an impulse for one step only, and its energy is reported.
@@ -302,10 +302,10 @@ TEST(SphereBodies, ContactsBetweenBodiesAreTheirOwn) {
   Both both(test::cube_of(6, 1.0), {}, CollisionOptions{}, WallResponse{});
   both.add_body(3, {0.4, 0.5, 0.5}, {1.0, 0.0, 0.0}, 1.0);
   both.add_body(3, {0.56, 0.5, 0.5}, {-1.0, 0.0, 0.0}, 1.0);
-  both.flow.add(std::vector<Vec3>{{0.8, 0.8, 0.8}}, {}, 0.02);
+  both.simulation.add(std::vector<Vec3>{{0.8, 0.8, 0.8}}, {}, 0.02);
   both.step();
-  EXPECT_GT(both.flow.totals().collisions.pairs_tested, 0U);
-  EXPECT_EQ(both.flow.totals().collisions.pairs_near, 0U);
+  EXPECT_GT(both.simulation.totals().collisions.pairs_tested, 0U);
+  EXPECT_EQ(both.simulation.totals().collisions.pairs_near, 0U);
 }
 
 // A body that sticks to a wall by one of its particles gives no way.
@@ -317,9 +317,9 @@ TEST(SphereBodies, ABodyThatAWallHoldsGivesNoWay) {
   for (int i = 0; i < 50; ++i) both.step();
   ASSERT_TRUE(std::find(both.bodies().fates().begin(), both.bodies().fates().end(), ParticleStatus::stuck) !=
               both.bodies().fates().end());
-  both.flow.add(std::vector<Vec3>{{0.4, 0.5, 0.5}}, {-2.0, 0.0, 0.0}, 0.04);
+  both.simulation.add(std::vector<Vec3>{{0.4, 0.5, 0.5}}, {-2.0, 0.0, 0.0}, 0.04);
   for (int i = 0; i < 150; ++i) both.step();
-  EXPECT_NEAR(both.flow.velocities()[0].x, 2.0, 0.02);  // it still trembles
+  EXPECT_NEAR(both.simulation.velocities()[0].x, 2.0, 0.02);  // it still trembles
 }
 
 TEST(SphereBodies, RefuseWhatIsOutOfRange) {

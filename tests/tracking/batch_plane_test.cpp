@@ -17,7 +17,7 @@
 #include "tracking/carry.hpp"
 #include "tracking/step.hpp"
 
-namespace dartcast::test::filtered_plane_test {
+namespace dartcast::test::batch_plane_test {
 
 constexpr std::size_t particle_count = 70;  // no multiple of a block
 constexpr std::size_t steps_per_scene = 30;
@@ -188,4 +188,4 @@ TEST(FilteredPlane, TakesTheSameStepsToTheBit) {
   EXPECT_GT(tally.exact, 0U);
 }
 
-}  // namespace dartcast::test::filtered_plane_test
+}  // namespace dartcast::test::batch_plane_test

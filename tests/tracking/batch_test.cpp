@@ -18,7 +18,7 @@
 #include "tracking/carry.hpp"
 #include "tracking/step.hpp"
 
-namespace dartcast::test::filtered_test {
+namespace dartcast::test::batch_test {
 
 constexpr std::size_t particles = 41;  // one alone in its vector
 constexpr std::size_t steps_per_scene = 30;
@@ -455,4 +455,4 @@ TEST(FilteredBatch, RangesAreCheckedToTheLastNumber) {
   }
 }
 
-}  // namespace dartcast::test::filtered_test
+}  // namespace dartcast::test::batch_test
