@@ -1,6 +1,7 @@
 // The environment: a complex that deforms, and the particles in it. Most programs need only this header.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -43,6 +44,9 @@ class Particles {
   [[nodiscard]] const ParticleState& operator[](std::size_t i) const { return states_[i]; }
   /// Barycentric coordinates of a held particle in its simplex.
   [[nodiscard]] const Weights& held_weights(std::size_t i) const;
+  /// Numbers of the vertices of each particle's simplex, in the order of CellComplex::vertices(). They are kept from
+  /// step to step, so that values at vertices are interpolated without a look at the cell.
+  [[nodiscard]] std::span<const std::array<std::uint32_t, 4>> vertex_numbers() const;
 
   // All four throw InvalidArgument and change nothing where a size does not match or an index names no particle.
 

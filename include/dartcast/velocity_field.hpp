@@ -21,6 +21,10 @@ class VelocityField {
   VelocityField(const CellComplex& complex, std::span<const Vec3> values, FieldFrame frame = FieldFrame::space);
 
   [[nodiscard]] FieldFrame frame() const { return frame_; }
+  /// Velocities of all vertices, Steiner points last.
+  [[nodiscard]] std::span<const Vec3> values() const { return values_; }
+  /// Positions of all vertices at rest; empty in the frame of space.
+  [[nodiscard]] std::span<const Vec3> rest() const { return rest_; }
 
   /// After an edit: new vertices take the values of those that they were made between. `complex`: as it is now.
   void update_after_edit(const ComplexEditReport& edit, const CellComplex& complex);

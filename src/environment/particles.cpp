@@ -40,6 +40,9 @@ const Particles::Details& Particles::details() const {
 }
 
 const Weights& Particles::held_weights(std::size_t i) const { return details().weights[i]; }
+std::span<const std::array<std::uint32_t, 4>> Particles::vertex_numbers() const {
+  return details().cache.all_vertices();
+}
 
 void Particles::remove(std::span<const std::uint8_t> marks) {
   if (marks.size() != size())

@@ -20,8 +20,6 @@ namespace dartcast {
 
 namespace {
 
-constexpr std::size_t grain = 512;
-
 // Whether a particle leaves the scene at the end of the step.
 bool leaves(ParticleStatus status) {
   switch (status) {
@@ -172,63 +170,6 @@ void ParticleSystem::advance_segment(unsigned segment) {
   for (const SphereOverlap& o : report.overlaps) totals_.deepest_in_wall = std::max(totals_.deepest_in_wall, o.depth);
   totals_.wall_overlaps += report.overlaps.size();
   last_.overlaps.insert(last_.overlaps.end(), report.overlaps.begin(), report.overlaps.end());
-}
-
-void ParticleSystem::aim(double dt, bool moving) {
-  targets_.resize(particles_.size());
-  parallel_for(particles_.size(), grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Aim a = leaves(fates_[i]) ? Aim{velocities_[i], particles_[i].position} : aim_at(i, dt, moving);
-      velocities_[i] = a.velocity;
-      targets_[i] = flushed(a.target);
-    }
-  });
-}
-
-Vec3 ParticleSystem::accelerated(const Vec3& v, const Vec3& flow, double dt) const {
-  if (options_.drag == 0.0) return field_ ? flow : v + options_.gravity * dt;
-  const double lost = -std::expm1(-options_.drag * dt);
-  return v + (flow + options_.gravity * (1.0 / options_.drag) - v) * lost;
-}
-
-// The acceleration that contacts know of: none where a field or other spheres change velocities, too. Drag reduces it.
-Acceleration ParticleSystem::acceleration(double dt) const {
-  if (field_ || collides()) return {};
-  if (options_.drag == 0.0) return {options_.gravity, dt};
-  return {options_.gravity * (-std::expm1(-options_.drag * dt) / (options_.drag * dt)), dt};
-}
-
-// A particle's velocity after the acceleration, and its target relative to positions before a move. A held particle
-// takes no step. A stuck particle goes exactly where its wall carries it, to the last bit, so that no contact follows.
-ParticleSystem::Aim ParticleSystem::aim_at(std::size_t i, double dt, bool moving) const {
-  const ParticleState& s = particles_[i];
-  if (s.held) return {velocities_[i], s.position};
-  const bool stuck = fates_[i] == ParticleStatus::stuck;
-  if (!stuck && !field_) {
-    const Vec3 v = accelerated(velocities_[i], {}, dt);
-    return {v, s.position + v * dt};
-  }
-  if (stuck && !moving) return {velocities_[i], s.position};
-  const CellComplex& complex = environment_.complex();
-  const Corners now = complex.corners(s.at());
-  const Corners before = deforms() ? complex.previous_corners(s.at()) : now;
-  const Weights w = detail::barycentric(moving ? before : now, s.position);
-  const Vec3 carried = detail::combine(now, w);
-  const Vec3 mesh = (carried - detail::combine(before, w)) * (1.0 / options_.dt);
-  if (stuck) {
-    const bool positive = volume_sign(now) == Sign::positive;
-    return {mesh, positive ? detail::carried(complex, s.at(), w).position : s.position};
-  }
-  const Vec3 flow = field_->at(complex, s.at(), w, now);
-  switch (field_->frame()) {
-    case FieldFrame::space: {
-      const Vec3 v = accelerated(velocities_[i], flow, dt);
-      return {v, s.position + v * dt};
-    }
-    case FieldFrame::mesh: break;
-  }
-  const Vec3 v = accelerated(velocities_[i], flow + mesh, dt);
-  return {v, (moving ? carried : s.position) + (v - mesh) * dt};
 }
 
 void ParticleSystem::count_contacts() {

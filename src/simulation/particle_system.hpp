@@ -13,6 +13,7 @@
 #include "dynamics/collider.hpp"
 #include "dynamics/near_walls.hpp"
 #include "simulation/component.hpp"
+#include "simulation/flow_aim.hpp"
 #include "simulation/seeding.hpp"
 #include "simulation/simulation_state.hpp"
 #include "simulation/sphere_bodies.hpp"
@@ -83,20 +84,30 @@ class ParticleSystem final : public SimulationComponent {
     Vec3 velocity;
     Vec3 target;
   };
+  // Effect of gravity and drag in a segment: the same for all particles.
+  struct Forces {
+    double dt;      // s
+    double lost;    // share of the velocity relative to the flow that drag takes
+    Vec3 terminal;  // velocity relative to the flow that gravity and drag lead to
+  };
 
   // In particle_system.cpp.
   void move_vertices();
   void move_vertices_to(std::uint64_t steps);
   void advance_segment(unsigned segment);
-  void aim(double dt, bool moving);
-  [[nodiscard]] Aim aim_at(std::size_t i, double dt, bool moving) const;
-  [[nodiscard]] Vec3 accelerated(const Vec3& v, const Vec3& flow, double dt) const;
-  [[nodiscard]] Acceleration acceleration(double dt) const;
   void count_contacts();
   void mark_held();
   void remove_gone();
   void remove_marked(std::span<const std::uint8_t> marks);
   void count_spheres();
+  // In particle_system_aim.cpp.
+  void aim(double dt, bool moving);
+  [[nodiscard]] detail::FlowScene flow_scene(const Forces& forces, bool moving) const;
+  void aim_in_flow(const detail::FlowScene& scene, std::size_t begin, std::size_t end, std::span<std::uint8_t> aimed);
+  [[nodiscard]] Forces forces_of(double dt) const;
+  [[nodiscard]] Aim aim_at(std::size_t i, const Forces& forces, bool moving) const;
+  [[nodiscard]] Vec3 accelerated(const Vec3& v, const Vec3& flow, const Forces& forces) const;
+  [[nodiscard]] Acceleration acceleration(double dt) const;
   // In particle_system_add.cpp.
   void inject();
   void check_motion(const Vec3& velocity, double radius, std::string_view whose) const;

@@ -96,8 +96,9 @@ void ParticleSystem::find_walls(double dt, bool moving) {
 
 // Targets of stuck particles are known only once their walls have moved.
 void ParticleSystem::aim_stuck(double dt) {
+  const Forces forces = forces_of(dt);
   for (std::size_t i = 0; i < fates_.size(); ++i) {
-    if (fates_[i] == ParticleStatus::stuck) targets_[i] = flushed(aim_at(i, dt, true).target);
+    if (fates_[i] == ParticleStatus::stuck) targets_[i] = flushed(aim_at(i, forces, true).target);
   }
 }
 

@@ -33,6 +33,7 @@ class ParticleCache {
  public:
   [[nodiscard]] std::size_t size() const { return vertices_.size(); }
   [[nodiscard]] const VertexNumbers& vertices(std::size_t i) const { return vertices_[i]; }
+  [[nodiscard]] std::span<const VertexNumbers> all_vertices() const { return vertices_; }
 
   /// Adds a particle that is in this simplex.
   void add(const CellComplex& complex, SimplexId simplex, const Vec3& position);

@@ -1,0 +1,51 @@
+// Velocities and targets of particles that a velocity field carries: a particle in each lane of a vector.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "base/instruction_set.hpp"
+#include "dartcast/particle_state.hpp"
+#include "dartcast/response.hpp"
+#include "tracking/batch/particle_cache.hpp"
+
+namespace dartcast::detail {
+
+/// The values that are the same for all particles in a step. Arrays hold an entry for each vertex.
+struct FlowScene {
+  const Vec3* now = nullptr;
+  const Vec3* before = nullptr;  ///< positions before the last move; `now` where nothing moves
+  const Vec3* values = nullptr;  ///< of the field
+  const Vec3* rest = nullptr;    ///< positions at rest; null in space's frame
+  bool planar = false;
+  bool moving = false;    ///< particles still have positions relative to `before`
+  double per_move = 0.0;  ///< 1 / s: the inverse of the time of the last move
+  double dt = 0.0;        ///< s
+  bool drags = false;     ///< otherwise a particle has the velocity of the flow
+  double lost = 0.0;      ///< share of the velocity relative to the flow that drag takes in this time
+  Vec3 terminal = {};     ///< velocity relative to the flow that gravity and drag lead to
+};
+
+/// Consecutive particles; all spans have the same size, and that of `aimed` is a quarter of it, rounded down.
+struct FlowParticles {
+  std::span<const ParticleState> states;
+  std::span<const VertexNumbers> vertices;
+  std::span<const ParticleStatus> fates;
+  std::span<Vec3> velocities;
+  std::span<Vec3> targets;
+  std::span<std::uint8_t> aimed;
+};
+
+/// Gives particles new velocities and targets, as ParticleSystem::aim_at() does, with the same bits in every
+/// instruction set. Bit k of aimed[i] is set where this was done for particle 4 i + k: it is left to the caller where
+/// the particle is held or stuck or its simplex is a sliver, and at the end, where fewer than four remain.
+void aim_in_flow(const FlowScene& scene, const FlowParticles& particles, InstructionSet set = best_instruction_set());
+
+namespace portable {
+void aim_in_flow(const FlowScene& scene, const FlowParticles& particles);
+}  // namespace portable
+namespace avx2 {
+void aim_in_flow(const FlowScene& scene, const FlowParticles& particles);
+}  // namespace avx2
+
+}  // namespace dartcast::detail

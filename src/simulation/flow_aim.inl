@@ -1,0 +1,129 @@
+// Aims four particles in a flow, one in each lane. The operations are those of VelocityField::at(),
+// detail::barycentric() and ParticleSystem::aim_at(), in their order.
+#pragma once
+
+#include <cstddef>
+
+#include "base/double4.inl"
+#include "simulation/flow_aim.hpp"
+#include "tracking/batch/batch_simplex.inl"
+
+DARTCAST_BEGIN_KERNEL
+namespace dartcast::detail::DARTCAST_SIMD {
+namespace {
+
+struct Weights4 {
+  Double4 at[4];
+};
+
+// The barycentric coordinates that the determinants prove.
+inline Weights4 weights_of(const BatchDeterminants& d) {
+  Weights4 w;
+  for (unsigned i = 0; i < 4; ++i) w.at[i] = d.value[i] < splat(0.0) ? splat(0.0) : d.value[i];
+  const Double4 sum = ((w.at[0] + w.at[1]) + w.at[2]) + w.at[3];
+  for (Double4& c : w.at) c /= sum;
+  return w;
+}
+
+inline Vec3x4 combine(const Corners4& v, const Weights4& w) {
+  return (v.corner[0] * w.at[0] + v.corner[1] * w.at[1]) + (v.corner[2] * w.at[2] + v.corner[3] * w.at[3]);
+}
+
+inline Vec3x4 splat(const Vec3& v) { return {splat(v.x), splat(v.y), splat(v.z)}; }
+
+// The linear map that takes the edges of one simplex to those of another, applied to u.
+inline Vec3x4 mapped(const Corners4& from, const Corners4& to, const Vec3x4& u) {
+  const Vec3x4 a = from.corner[1] - from.corner[0];
+  const Vec3x4 b = from.corner[2] - from.corner[0];
+  const Vec3x4 c = from.corner[3] - from.corner[0];
+  const Vec3x4 across = cross(b, c);
+  const Double4 volume = dot(a, across);
+  const Vec3x4 moved = (to.corner[1] - to.corner[0]) * dot(across, u) +
+                       (to.corner[2] - to.corner[0]) * dot(cross(c, a), u) +
+                       (to.corner[3] - to.corner[0]) * dot(cross(a, b), u);
+  return choose(volume > splat(0.0), moved * (splat(1.0) / volume), u);
+}
+
+// As raised() of cell_complex.hpp.
+inline void raise(Corners4& v) {
+  for (unsigned i = 0; i < 3; ++i) v.corner[i].z = splat(0.0);
+  v.corner[3] = {v.corner[0].x, v.corner[0].y, splat(1.0)};
+}
+
+class FlowKernel {
+ public:
+  FlowKernel(const FlowScene& scene, const FlowParticles& particles) : scene_(scene), particles_(particles) {}
+
+  void aim_all() const {
+    for (std::size_t block = 0; block < particles_.aimed.size(); ++block) particles_.aimed[block] = aim(4 * block);
+  }
+
+ private:
+  [[nodiscard]] Corners4 corners(const Vec3* positions, std::size_t i) const {
+    const VertexNumbers* v = &particles_.vertices[i];
+    Corners4 corners(positions, v[0], v[1], v[2], v[3]);
+    if (scene_.planar) raise(corners);
+    return corners;
+  }
+
+  [[nodiscard]] Vec3x4 values(std::size_t i, const Weights4& w) const {
+    const VertexNumbers* v = &particles_.vertices[i];
+    return combine(Corners4(scene_.values, v[0], v[1], v[2], v[3]), w);
+  }
+
+  // Lanes of particles that take a step of their own.
+  [[nodiscard]] unsigned free_lanes(std::size_t i) const {
+    unsigned lanes = 0;
+    for (unsigned k = 0; k < 4; ++k) {
+      const bool is_free = !particles_.states[i + k].held && particles_.fates[i + k] != ParticleStatus::stuck;
+      lanes |= static_cast<unsigned>(is_free) << k;
+    }
+    return lanes;
+  }
+
+  [[nodiscard]] std::uint8_t aim(std::size_t i) const {
+    const ParticleState* s = &particles_.states[i];
+    const Vec3x4 x = load_vec3x4(s[0].position, s[1].position, s[2].position, s[3].position);
+    const Corners4 now = corners(scene_.now, i);
+    const Corners4 before = scene_.before == scene_.now ? now : corners(scene_.before, i);
+    const BatchDeterminants d(scene_.moving ? before : now, x);
+    const unsigned lanes = free_lanes(i) & lanes_set(d.proves_coordinates());
+    if (lanes == 0) return 0;
+    const Weights4 w = weights_of(d);
+    const Vec3x4 u = values(i, w);
+    const Vec3x4 velocity = load_vec3x4(&particles_.velocities[i]);
+    if (scene_.rest == nullptr) {
+      const Vec3x4 v = accelerated(velocity, u);
+      store(i, lanes, v, x + v * splat(scene_.dt));
+    } else {
+      const Vec3x4 carried = combine(now, w);
+      const Vec3x4 mesh = (carried - combine(before, w)) * splat(scene_.per_move);
+      const Vec3x4 v = accelerated(velocity, mapped(corners(scene_.rest, i), now, u) + mesh);
+      store(i, lanes, v, (scene_.moving ? carried : x) + (v - mesh) * splat(scene_.dt));
+    }
+    return static_cast<std::uint8_t>(lanes);
+  }
+
+  [[nodiscard]] Vec3x4 accelerated(const Vec3x4& v, const Vec3x4& flow) const {
+    if (!scene_.drags) return flow;
+    return v + (flow + splat(scene_.terminal) - v) * splat(scene_.lost);
+  }
+
+  void store(std::size_t i, unsigned lanes, const Vec3x4& velocity, const Vec3x4& target) const {
+    for (unsigned k = 0; k < 4; ++k) {
+      if ((lanes >> k & 1U) == 0) continue;
+      particles_.velocities[i + k] = {velocity.x[k], velocity.y[k], velocity.z[k]};
+      particles_.targets[i + k] = {target.x[k], target.y[k], target.z[k]};
+    }
+  }
+
+  const FlowScene& scene_;
+  const FlowParticles& particles_;
+};
+
+}  // namespace
+
+void aim_in_flow(const FlowScene& scene, const FlowParticles& particles) { FlowKernel(scene, particles).aim_all(); }
+
+}  // namespace dartcast::detail::DARTCAST_SIMD
+DARTCAST_END_KERNEL

@@ -1,0 +1,2 @@
+// Aims particles in a flow, for any machine.
+#include "simulation/flow_aim.inl"

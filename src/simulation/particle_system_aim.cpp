@@ -1,0 +1,113 @@
+// The velocities that gravity, drag and the flow give to particles, and the targets that these lead to.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/parallel.hpp"
+#include "complex/simplex.hpp"
+#include "simulation/flow_aim.hpp"
+#include "simulation/particle_system.hpp"
+#include "tracking/carry.hpp"
+
+namespace dartcast {
+
+namespace {
+
+constexpr std::size_t aim_grain = 512;  // a multiple of the lanes of a vector
+
+}  // namespace
+
+// Most particles of a flow are aimed four at a time; the others one by one.
+void ParticleSystem::aim(double dt, bool moving) {
+  targets_.resize(particles_.size());
+  const Forces forces = forces_of(dt);
+  const detail::FlowScene scene = field_ ? flow_scene(forces, moving) : detail::FlowScene{};
+  parallel_for(particles_.size(), aim_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
+    std::array<std::uint8_t, aim_grain / 4> aimed{};
+    if (field_) aim_in_flow(scene, begin, end, aimed);
+    for (std::size_t i = begin; i < end; ++i) {
+      if ((aimed[(i - begin) / 4] >> (i - begin) % 4 & 1U) != 0) continue;
+      const Aim aim = aim_at(i, forces, moving);
+      velocities_[i] = aim.velocity;
+      targets_[i] = aim.target;
+    }
+  });
+}
+
+detail::FlowScene ParticleSystem::flow_scene(const Forces& forces, bool moving) const {
+  const CellComplex& complex = environment_.complex();
+  detail::FlowScene scene;
+  scene.now = complex.positions().data();
+  scene.before = deforms() ? complex.previous_positions().data() : scene.now;
+  scene.values = field_->values().data();
+  scene.rest = field_->rest().empty() ? nullptr : field_->rest().data();
+  scene.planar = complex.map().dimension() == 2;
+  scene.moving = moving;
+  scene.per_move = 1.0 / options_.dt;
+  scene.dt = forces.dt;
+  scene.drags = options_.drag > 0.0;
+  scene.lost = forces.lost;
+  scene.terminal = forces.terminal;
+  return scene;
+}
+
+void ParticleSystem::aim_in_flow(const detail::FlowScene& scene, std::size_t begin, std::size_t end,
+                                 std::span<std::uint8_t> aimed) {
+  const std::size_t size = end - begin;
+  detail::aim_in_flow(scene,
+                      {particles_.states().subspan(begin, size), particles_.vertex_numbers().subspan(begin, size),
+                       std::span(fates_).subspan(begin, size), std::span(velocities_).subspan(begin, size),
+                       std::span(targets_).subspan(begin, size), aimed.first(size / 4)});
+}
+
+ParticleSystem::Forces ParticleSystem::forces_of(double dt) const {
+  if (options_.drag == 0.0) return {dt, 0.0, {}};
+  return {dt, -std::expm1(-options_.drag * dt), options_.gravity * (1.0 / options_.drag)};
+}
+
+Vec3 ParticleSystem::accelerated(const Vec3& v, const Vec3& flow, const Forces& forces) const {
+  if (options_.drag == 0.0) return field_ ? flow : v + options_.gravity * forces.dt;
+  return v + (flow + forces.terminal - v) * forces.lost;
+}
+
+// The acceleration that contacts know of: none where a field or other spheres change velocities, too. Drag reduces it.
+Acceleration ParticleSystem::acceleration(double dt) const {
+  if (field_ || collides()) return {};
+  if (options_.drag == 0.0) return {options_.gravity, dt};
+  return {options_.gravity * (-std::expm1(-options_.drag * dt) / (options_.drag * dt)), dt};
+}
+
+// A particle's velocity after the acceleration, and its target relative to positions before a move. A held particle
+// takes no step. A stuck particle goes exactly where its wall carries it, to the last bit, so that no contact follows.
+ParticleSystem::Aim ParticleSystem::aim_at(std::size_t i, const Forces& forces, bool moving) const {
+  const ParticleState& s = particles_[i];
+  if (s.held) return {velocities_[i], s.position};
+  const bool stuck = fates_[i] == ParticleStatus::stuck;
+  if (!stuck && !field_) {
+    const Vec3 v = accelerated(velocities_[i], {}, forces);
+    return {v, s.position + v * forces.dt};
+  }
+  if (stuck && !moving) return {velocities_[i], s.position};
+  const CellComplex& complex = environment_.complex();
+  const Corners now = complex.corners(s.at());
+  const Corners before = deforms() ? complex.previous_corners(s.at()) : now;
+  const Weights w = detail::barycentric(moving ? before : now, s.position);
+  const Vec3 carried = detail::combine(now, w);
+  const Vec3 mesh = (carried - detail::combine(before, w)) * (1.0 / options_.dt);
+  if (stuck) {
+    const bool positive = volume_sign(now) == Sign::positive;
+    return {mesh, positive ? detail::carried(complex, s.at(), w).position : s.position};
+  }
+  const Vec3 flow = field_->at(complex, s.at(), w, now);
+  switch (field_->frame()) {
+    case FieldFrame::space: {
+      const Vec3 v = accelerated(velocities_[i], flow, forces);
+      return {v, s.position + v * forces.dt};
+    }
+    case FieldFrame::mesh: break;
+  }
+  const Vec3 v = accelerated(velocities_[i], flow + mesh, forces);
+  return {v, (moving ? carried : s.position) + (v - mesh) * forces.dt};
+}
+
+}  // namespace dartcast
