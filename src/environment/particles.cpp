@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/kept_runs.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/error.hpp"
 #include "environment/particle_details.hpp"
@@ -48,16 +49,10 @@ void Particles::remove(std::span<const std::uint8_t> marks) {
   if (marks.size() != size())
     throw InvalidArgument(
         fmt::format("remove: {} marks for {} particles: one mark per particle is needed", marks.size(), size()));
-  std::vector<Weights>& weights = details().weights;
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < size(); ++i) {
-    if (marks[i] != 0) continue;
-    states_[kept] = states_[i];
-    weights[kept++] = weights[i];
-  }
-  states_.resize(kept);
-  weights.resize(kept);
-  details().cache.remove(marks);
+  const KeptRuns runs(marks);
+  runs.keep_in(states_);
+  runs.keep_in(details().weights);
+  details().cache.keep(runs);
   details().index.reset();
 }
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "base/parallel.hpp"
+#include "base/kept_runs.hpp"
 #include "complex/simplex.hpp"
 #include "dartcast/error.hpp"
 #include "simulation/polyline.hpp"
@@ -69,16 +69,6 @@ void check(const SimulationOptions& o) {
     throw InvalidArgument(
         fmt::format("simulation: the spheres' density is {}: it must be between 2^-100 and 2^100", c.density));
   if (c.iterations == 0) throw InvalidArgument("simulation: collisions need an iteration at least");
-}
-
-// `width`: values of a particle.
-template <class T>
-void keep_unmarked(std::vector<T>& values, std::span<const std::uint8_t> marks, std::size_t width = 1) {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (marks[i / width] == 0) values[kept++] = values[i];
-  }
-  values.resize(kept);
 }
 
 }  // namespace
@@ -206,13 +196,14 @@ void ParticleSystem::remove_gone() {
 
 // Removes the same particles from the arrays beside the particles.
 void ParticleSystem::remove_marked(std::span<const std::uint8_t> marks) {
-  keep_unmarked(ids_, marks);
-  keep_unmarked(velocities_, marks);
-  keep_unmarked(fates_, marks);
-  keep_unmarked(contact_counts_, marks);
-  keep_unmarked(radii_, marks);
-  keep_unmarked(held_, marks);
-  if (width() > 0) keep_unmarked(user_data_, marks, width());
+  const KeptRuns runs(marks);
+  runs.keep_in(ids_);
+  runs.keep_in(velocities_);
+  runs.keep_in(fates_);
+  runs.keep_in(contact_counts_);
+  runs.keep_in(radii_);
+  runs.keep_in(held_);
+  runs.keep_in(user_data_, width());
   clear_.clear();
   count_spheres();
 }

@@ -42,15 +42,14 @@ void ParticleCache::forget() {
   stood_still_ = false;
 }
 
-void ParticleCache::remove(std::span<const std::uint8_t> marks) {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < marks.size(); ++i) {
-    if (marks[i] != 0) continue;
-    if (!simplices_.empty()) simplices_.put(kept, simplices_[i], simplices_.flags(i));
-    vertices_[kept++] = vertices_[i];
+void ParticleCache::keep(const KeptRuns& runs) {
+  runs.keep_in(vertices_);
+  if (simplices_.empty()) return;
+  for (const KeptRuns::Run& run : runs.runs()) {
+    for (std::size_t k = 0; k < run.size; ++k)
+      simplices_.put(run.to + k, simplices_[run.from + k], simplices_.flags(run.from + k));
   }
-  vertices_.resize(kept);
-  if (!simplices_.empty()) simplices_.resize(kept);
+  simplices_.resize(runs.kept());
 }
 
 void ParticleCache::reorder(std::span<const std::uint32_t> order) {

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "base/kept_runs.hpp"
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/particle_state.hpp"
 #include "tracking/batch/simplex_cache.hpp"
@@ -46,7 +47,7 @@ class ParticleCache {
 
   // As the functions of Particles, whose preconditions are checked there.
 
-  void remove(std::span<const std::uint8_t> marks);
+  void keep(const KeptRuns& runs);
   void reorder(std::span<const std::uint32_t> order);
   [[nodiscard]] ParticleCache selected(std::span<const std::uint32_t> which) const;
   void replace(std::span<const std::uint32_t> which, const ParticleCache& by);
