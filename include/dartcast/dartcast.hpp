@@ -39,4 +39,5 @@
 #include "dartcast/trajectory.hpp"
 #include "dartcast/validity.hpp"
 #include "dartcast/vec3.hpp"
+#include "dartcast/vector_field.hpp"
 #include "dartcast/velocity_field.hpp"

@@ -52,6 +52,19 @@ void check_names(const std::vector<std::string>& names) {
   }
 }
 
+void check_integrator(const SimulationOptions& o) {
+  if (o.integrator == Integrator::euler) return;
+  if (o.drag != 0.0)
+    throw InvalidArgument("simulation: the integrator rk4 is for particles without mass, which follow a field: drag "
+                          "must be 0");
+  if (o.substeps != 1)
+    throw InvalidArgument("simulation: the integrator rk4 takes a step as one segment: substeps must be 1; for smaller "
+                          "errors take a smaller dt");
+  if (o.collisions)
+    throw InvalidArgument("simulation: the integrator rk4 is for particles that do not meet: leave collisions out, or "
+                          "take the integrator euler");
+}
+
 void check(const SimulationOptions& o) {
   if (!(o.dt >= smallest_dt && o.dt <= largest_dt))
     throw InvalidArgument(fmt::format("simulation: dt is {}: it must be between 2^-100 and 2^100 s", o.dt));
@@ -59,6 +72,7 @@ void check(const SimulationOptions& o) {
     throw InvalidArgument("simulation: drag must be finite and not negative");
   if (!is_finite(o.gravity)) throw InvalidArgument("simulation: gravity must be finite");
   if (o.substeps == 0) throw InvalidArgument("simulation: substeps must be at least 1");
+  check_integrator(o);
   check(o.step, "simulation");
   check_names(o.user_data);
   if (!o.collisions) return;
@@ -119,6 +133,7 @@ void ParticleSystem::move_vertices_to(std::uint64_t steps) {
 //  3. for each segment of the way: velocities change, targets are set, particles walk and respond at walls;
 //  4. contacts are counted, and those absorbed or escaped leave.
 void ParticleSystem::step(double /*begin*/) {
+  hold_fields();
   last_ = {};
   last_.duration = options_.dt;
   last_.absorbed = std::exchange(absorbed_between_, 0);
@@ -143,6 +158,7 @@ void ParticleSystem::move_vertices() {
 void ParticleSystem::advance_segment(unsigned segment) {
   const double dt = options_.dt / options_.substeps;
   const bool moving = deformation_ && segment == 0;
+  set_fields_to(time() + segment * dt, dt);
   if (collides()) {
     {
       const ScopeTimer timer(totals_.seconds_collide);
@@ -154,7 +170,11 @@ void ParticleSystem::advance_segment(unsigned segment) {
     }
   } else {
     const ScopeTimer timer(totals_.seconds_respond);
-    aim(dt, moving);
+    if (options_.integrator == Integrator::rk4) {
+      aim_by_runge_kutta(dt, moving);
+    } else {
+      aim(dt, moving);
+    }
   }
   const ScopeTimer timer(totals_.seconds_detect);
   const ContactCallback respond = respond_with(responses_, velocities_, fates_, options_.dt, acceleration(dt));
@@ -185,15 +205,17 @@ void ParticleSystem::aim(double dt, bool moving) {
   });
 }
 
-Vec3 ParticleSystem::accelerated(const Vec3& v, const Vec3& flow, double dt) const {
-  if (options_.drag == 0.0) return field_ ? flow : v + options_.gravity * dt;
+Vec3 ParticleSystem::accelerated(const Vec3& v, const Vec3& flow, const Vec3& force, double dt) const {
+  const Vec3 acceleration = force_ ? options_.gravity + force : options_.gravity;
+  if (options_.drag == 0.0) return field_ ? flow : v + acceleration * dt;
   const double lost = -std::expm1(-options_.drag * dt);
-  return v + (flow + options_.gravity * (1.0 / options_.drag) - v) * lost;
+  return v + (flow + acceleration * (1.0 / options_.drag) - v) * lost;
 }
 
-// The acceleration that contacts know of: none where a field or other spheres change velocities, too. Drag reduces it.
+// The acceleration that contacts know of: none where a field, a force or other spheres change velocities,
+// too. Drag reduces it.
 Acceleration ParticleSystem::acceleration(double dt) const {
-  if (field_ || collides()) return {};
+  if (field_ || force_ || collides()) return {};
   if (options_.drag == 0.0) return {options_.gravity, dt};
   return {options_.gravity * (-std::expm1(-options_.drag * dt) / (options_.drag * dt)), dt};
 }
@@ -204,8 +226,8 @@ ParticleSystem::Aim ParticleSystem::aim_at(std::size_t i, double dt, bool moving
   const ParticleState& s = particles_[i];
   if (s.held) return {velocities_[i], s.position};
   const bool stuck = fates_[i] == ParticleStatus::stuck;
-  if (!stuck && !field_) {
-    const Vec3 v = accelerated(velocities_[i], {}, dt);
+  if (!stuck && !field_ && !force_) {
+    const Vec3 v = accelerated(velocities_[i], {}, {}, dt);
     return {v, s.position + v * dt};
   }
   if (stuck && !moving) return {velocities_[i], s.position};
@@ -219,15 +241,13 @@ ParticleSystem::Aim ParticleSystem::aim_at(std::size_t i, double dt, bool moving
     const bool positive = volume_sign(now) == Sign::positive;
     return {mesh, positive ? detail::carried(complex, s.at(), w).position : s.position};
   }
-  const Vec3 flow = field_->at(complex, s.at(), w, now);
-  switch (field_->frame()) {
-    case FieldFrame::space: {
-      const Vec3 v = accelerated(velocities_[i], flow, dt);
-      return {v, s.position + v * dt};
-    }
-    case FieldFrame::mesh: break;
+  const Vec3 force = force_ ? force_->at(complex, s.at(), w, now) : Vec3{};
+  const Vec3 flow = field_ ? field_->at(complex, s.at(), w, now) : Vec3{};
+  if (!field_ || field_->frame() == FieldFrame::space) {
+    const Vec3 v = accelerated(velocities_[i], flow, force, dt);
+    return {v, s.position + v * dt};
   }
-  const Vec3 v = accelerated(velocities_[i], flow + mesh, dt);
+  const Vec3 v = accelerated(velocities_[i], flow + mesh, force, dt);
   return {v, (moving ? carried : s.position) + (v - mesh) * dt};
 }
 

@@ -26,6 +26,7 @@ class ParticleSystem final : public SimulationComponent {
   ParticleSystem(Environment& environment, const SimulationOptions& options);
 
   void set_field(VelocityField field) { field_ = std::move(field); }
+  void set_force(VectorField force) { force_ = std::move(force); }
   void set_deformation(Deformation deformation);
   /// Bodies that the spheres meet; they step after each step of the particles. Precondition: there are collisions.
   void set_bodies(Bodies& bodies) { bodies_ = &bodies; }
@@ -90,13 +91,17 @@ class ParticleSystem final : public SimulationComponent {
   void advance_segment(unsigned segment);
   void aim(double dt, bool moving);
   [[nodiscard]] Aim aim_at(std::size_t i, double dt, bool moving) const;
-  [[nodiscard]] Vec3 accelerated(const Vec3& v, const Vec3& flow, double dt) const;
+  [[nodiscard]] Vec3 accelerated(const Vec3& v, const Vec3& flow, const Vec3& force, double dt) const;
   [[nodiscard]] Acceleration acceleration(double dt) const;
   void count_contacts();
   void mark_held();
   void remove_gone();
   void remove_marked(std::span<const std::uint8_t> marks);
   void count_spheres();
+  // In particle_system_fields.cpp.
+  void hold_fields();
+  void set_fields_to(double begin, double duration);
+  void aim_by_runge_kutta(double dt, bool moving);
   // In particle_system_add.cpp.
   void inject();
   void check_motion(const Vec3& velocity, double radius, std::string_view whose) const;
@@ -127,6 +132,7 @@ class ParticleSystem final : public SimulationComponent {
   SimulationOptions options_;
   WallResponses responses_;
   std::optional<VelocityField> field_;
+  std::optional<VectorField> force_;  // accelerations, on top of gravity
   std::optional<Deformation> deformation_;
   std::vector<Inlet> inlets_;
   Random random_;
