@@ -40,4 +40,3 @@
 #include "dartcast/validity.hpp"
 #include "dartcast/vec3.hpp"
 #include "dartcast/vector_field.hpp"
-#include "dartcast/velocity_field.hpp"

@@ -23,7 +23,7 @@
 #include "dartcast/remeshing.hpp"
 #include "dartcast/response.hpp"
 #include "dartcast/spheres.hpp"
-#include "dartcast/velocity_field.hpp"
+#include "dartcast/vector_field.hpp"
 
 namespace dartcast {
 
@@ -68,7 +68,7 @@ struct SimulationOptions {
   double drag = 0.0;           ///< >= 0: the velocity relaxes to the field's (to 0 without one) as exp(-drag t)
   WallResponse response = {};  ///< what happens at walls: Reflect{0.5}, Slide{}, ...
   std::map<std::string, WallResponse> patch_responses = {};  ///< at the walls of these patches, by name
-  unsigned substeps = 1;   ///< > 0: a step's way is a polyline of so many segments; vertices move with the first one
+  unsigned substeps = 1;  ///< > 0: a step's way is a polyline of so many segments; vertices move with the first one
   Integrator integrator = Integrator::euler;
   std::uint64_t seed = 1;  ///< for all that is random
   StepOptions step = {};

@@ -97,10 +97,13 @@ class VectorField {
   bool plane_ = false;
   std::map<std::size_t, std::vector<Vec3>> held_;  // by number of sample; where the field is steady: none
   std::vector<double> times_;                      // those set; none after an edit
-  std::vector<std::vector<Vec3>> values_;          // at these times; of all vertices, Steiner points included, or by row
-  std::vector<std::uint32_t> row_;                 // cells: the value of a source
-  ComplexEditReport later_;                        // points: all vertices that edits have placed
-  std::vector<Vec3> rest_;                         // of all vertices; in the mesh's frame only
+  std::vector<std::vector<Vec3>> values_;  // at these times; of all vertices, Steiner points included, or by row
+  std::vector<std::uint32_t> row_;         // cells: the value of a source
+  ComplexEditReport later_;                // points: all vertices that edits have placed
+  std::vector<Vec3> rest_;                 // of all vertices; in the mesh's frame only
 };
+
+/// In m / s.
+using VelocityField = VectorField;
 
 }  // namespace dartcast

@@ -44,7 +44,8 @@ void read_field(TomlTable& motion, const char* key, const std::filesystem::path&
     motion.get(key, field.array);
     if (is_pattern(field.array))
       motion.fail(key, fmt::format("{0} = \"{1}\": arrays at several times need their times: {0} = {{ array = \"{1}\", "
-                                   "spacing = 0.01 }}", key, field.array));
+                                   "spacing = 0.01 }}",
+                                   key, field.array));
   }
 }
 
@@ -56,14 +57,25 @@ FieldSeries series_of(const FieldScene& field) {
       throw InvalidArgument(fmt::format("{}: a collection has its times: leave out times and spacing", first.string()));
     series = read_pvd(first);
   } else {
-    series = field.files.size() == 1 && is_pattern(first.string()) ? numbered_files(first)
-                                                                    : FieldSeries{field.files, {}};
+    series =
+        field.files.size() == 1 && is_pattern(first.string()) ? numbered_files(first) : FieldSeries{field.files, {}};
     series.times = field_times(field, series.files.size(), "files");
   }
   for (const auto& file : series.files) {
     if (!std::filesystem::is_regular_file(file)) throw Error(fmt::format("{}: there is no such file", file.string()));
   }
   return series;
+}
+
+// Calls make(), and puts the file's name before the message of an error unless it is there.
+template <class Make>
+auto with_file_name(const std::filesystem::path& file, Make&& make) {
+  try {
+    return make();
+  } catch (const InvalidMesh& e) {
+    if (std::string_view(e.what()).starts_with(file.string())) throw;
+    throw InvalidMesh(fmt::format("{}: {}", file.string(), e.what()));
+  }
 }
 
 // Reads a field from files of the same mesh as the scene's.
@@ -81,21 +93,18 @@ class FieldFiles {
 
   /// The place of the first file's array, from then on that of all.
   FieldPlace find_place() {
-    at_ = field_place(read(0), array_, at_);
+    at_ = with_file_name(files_[0], [&] { return field_place(read(0), array_, at_); });
     return *at_;
   }
 
   [[nodiscard]] std::vector<Vec3> operator()(std::size_t k) const {
-    const MeshData mesh = read(k);
-    try {
-      std::vector<Vec3> values = field_values(mesh, array_, at_);
+    return with_file_name(files_[k], [&] {
+      std::vector<Vec3> values = field_values(read(k), array_, at_);
       const auto bad = std::find_if_not(values.begin(), values.end(), is_finite);
       if (bad != values.end())
         throw InvalidMesh(fmt::format("the array '{}' is not finite at its item {}", array_, bad - values.begin()));
       return values;
-    } catch (const InvalidMesh& e) {
-      throw InvalidMesh(fmt::format("{}: {}", files_[k].string(), e.what()));
-    }
+    });
   }
 
  private:
@@ -111,9 +120,10 @@ class FieldFiles {
       file = valid_file(std::move(file));
     }
     if (file.mesh.points.size() != points_ || file.mesh.cell_count() != cells_) {
-      throw InvalidMesh(fmt::format("{}: {} points and {} cells; the scene's mesh has {} and {}: a field's files must "
-                                    "have the same mesh", files_[k].string(), file.mesh.points.size(),
-                                    file.mesh.cell_count(), points_, cells_));
+      throw InvalidMesh(
+          fmt::format("{}: {} points and {} cells; the scene's mesh has {} and {}: a field's files must "
+                      "have the same mesh",
+                      files_[k].string(), file.mesh.points.size(), file.mesh.cell_count(), points_, cells_));
     }
     return std::move(file.mesh);
   }

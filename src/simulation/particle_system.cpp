@@ -55,14 +55,17 @@ void check_names(const std::vector<std::string>& names) {
 void check_integrator(const SimulationOptions& o) {
   if (o.integrator == Integrator::euler) return;
   if (o.drag != 0.0)
-    throw InvalidArgument("simulation: the integrator rk4 is for particles without mass, which follow a field: drag "
-                          "must be 0");
+    throw InvalidArgument(
+        "simulation: the integrator rk4 is for particles without mass, which follow a field: drag "
+        "must be 0");
   if (o.substeps != 1)
-    throw InvalidArgument("simulation: the integrator rk4 takes a step as one segment: substeps must be 1; for smaller "
-                          "errors take a smaller dt");
+    throw InvalidArgument(
+        "simulation: the integrator rk4 takes a step as one segment: substeps must be 1; for smaller "
+        "errors take a smaller dt");
   if (o.collisions)
-    throw InvalidArgument("simulation: the integrator rk4 is for particles that do not meet: leave collisions out, or "
-                          "take the integrator euler");
+    throw InvalidArgument(
+        "simulation: the integrator rk4 is for particles that do not meet: leave collisions out, or "
+        "take the integrator euler");
 }
 
 void check(const SimulationOptions& o) {

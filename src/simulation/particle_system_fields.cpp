@@ -18,7 +18,8 @@ constexpr std::size_t tracer_grain = 256;
 // Before anything changes: reading may fail.
 void ParticleSystem::hold_fields() {
   if (options_.integrator == Integrator::rk4 && !field_)
-    throw InvalidArgument("simulation: the integrator rk4 follows a velocity field, but there is none: call set_field()");
+    throw InvalidArgument(
+        "simulation: the integrator rk4 follows a velocity field, but there is none: call set_field()");
   if (field_) field_->hold(time(), time() + options_.dt);
   if (force_) force_->hold(time(), time() + options_.dt);
 }

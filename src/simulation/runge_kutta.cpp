@@ -17,7 +17,9 @@ template <std::size_t N>
 class RungeKuttaStages {
  public:
   RungeKuttaStages(const RungeKuttaStep& step, const ParticleState& particle)
-      : step_(step), particle_(particle), weights_(detail::barycentric(corners(particle.at(), 0.0), particle.position)) {}
+      : step_(step),
+        particle_(particle),
+        weights_(detail::barycentric(corners(particle.at(), 0.0), particle.position)) {}
 
   [[nodiscard]] Vec3 mean_velocity() const {
     const Vec3& p = particle_.position;

@@ -16,9 +16,8 @@ namespace {
 constexpr std::size_t components = 3;
 
 const DataArray* find_array(const std::vector<DataArray>& arrays, const std::string& name) {
-  const auto found = std::find_if(arrays.begin(), arrays.end(), [&](const DataArray& a) {
-    return a.name == name && a.components == components;
-  });
+  const auto found = std::find_if(arrays.begin(), arrays.end(),
+                                  [&](const DataArray& a) { return a.name == name && a.components == components; });
   return found != arrays.end() ? &*found : nullptr;
 }
 
@@ -131,8 +130,8 @@ std::vector<double> field_times(const FieldScene& scene, std::size_t count, std:
     return scene.times;
   }
   if (count > 1 && !(scene.spacing > 0.0))
-    throw InvalidArgument(fmt::format("the field '{}' has {} {}, but no times: give times or spacing", scene.array,
-                                      count, owner));
+    throw InvalidArgument(
+        fmt::format("the field '{}' has {} {}, but no times: give times or spacing", scene.array, count, owner));
   std::vector<double> times(count);
   for (std::size_t k = 0; k < count; ++k) times[k] = static_cast<double>(k) * scene.spacing;
   return times;

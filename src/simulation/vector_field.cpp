@@ -102,7 +102,8 @@ void VectorField::find_rows(const CellComplex& complex) {
 
 void VectorField::check(std::size_t k, std::span<const Vec3> values) const {
   const std::string name =
-      steady() ? samples_.name : fmt::format("{}, sample {} (counted from 0, {} s)", samples_.name, k, samples_.times[k]);
+      steady() ? samples_.name
+               : fmt::format("{}, sample {} (counted from 0, {} s)", samples_.name, k, samples_.times[k]);
   const bool cells = samples_.place == FieldPlace::cells;
   const char* item = cells ? "cell" : "point";
   if (values.size() != count_)
@@ -168,7 +169,8 @@ void VectorField::hold(double begin, double end) {
   if (steady()) return;
   const std::vector<std::size_t> numbers = needed(begin, end);
   for (const std::size_t k : numbers) sample(k);
-  std::erase_if(held_, [&](const auto& s) { return std::find(numbers.begin(), numbers.end(), s.first) == numbers.end(); });
+  std::erase_if(held_,
+                [&](const auto& s) { return std::find(numbers.begin(), numbers.end(), s.first) == numbers.end(); });
 }
 
 void VectorField::set_times(std::span<const double> times, const CellComplex& complex, Threads threads) {
@@ -216,10 +218,9 @@ Vec3 VectorField::at(const CellComplex& complex, SimplexId simplex, const std::a
                      std::size_t moment) const {
   const std::vector<Vec3>& values = values_[steady() ? 0 : moment];
   const auto v = complex.vertices(simplex);
-  const Vec3 u = samples_.place == FieldPlace::cells
-                     ? values[row_[complex.map().source(simplex.cell)]]
-                     : (values[v[0].value] * w[0] + values[v[1].value] * w[1]) +
-                           (values[v[2].value] * w[2] + values[v[3].value] * w[3]);
+  const Vec3 u = samples_.place == FieldPlace::cells ? values[row_[complex.map().source(simplex.cell)]]
+                                                     : (values[v[0].value] * w[0] + values[v[1].value] * w[1]) +
+                                                           (values[v[2].value] * w[2] + values[v[3].value] * w[3]);
   switch (frame_) {
     case FieldFrame::space: return u;
     case FieldFrame::mesh: break;
