@@ -4,6 +4,7 @@
 
 #include "base/parallel.hpp"
 #include "dartcast/error.hpp"
+#include "dartcast/predicates.hpp"
 #include "simulation/particle_system.hpp"
 #include "simulation/runge_kutta.hpp"
 

@@ -24,7 +24,7 @@ class RungeKuttaStages {
   [[nodiscard]] Vec3 mean_velocity() const {
     const Vec3& p = particle_.position;
     const double half = 0.5 * step_.dt;
-    const Vec3 k1 = velocity(particle_.at(), weights_, 0.0, 0);
+    const Vec3 k1 = velocity_at_particle(0.0, 0);
     const Vec3 k2 = velocity_towards(p + k1 * half, 0.5, 1);
     const Vec3 k3 = velocity_towards(p + k2 * half, 0.5, 1);
     const Vec3 k4 = velocity_towards(p + k3 * step_.dt, 1.0, 2);
@@ -44,26 +44,34 @@ class RungeKuttaStages {
     return between;
   }
 
-  [[nodiscard]] Vec3 velocity(SimplexId at, const Weights& w, double s, std::size_t moment) const {
+  // `v`: the simplex's corners at the share s.
+  [[nodiscard]] Vec3 velocity(SimplexId at, const Weights& w, const Corners& v, std::size_t moment) const {
     const CellComplex& complex = step_.complex;
-    const Vec3 flow = step_.field.at(complex, at, w, corners(at, s), moment);
+    const Vec3 flow = step_.field.at(complex, at, w, v, moment);
     if (!step_.moving || step_.field.frame() == FieldFrame::space) return flow;
-    const Vec3 way = detail::combine(complex.corners(at), w) - detail::combine(complex.previous_corners(at), w);
-    return flow + way * (1.0 / step_.dt);
+    const Vec3 moved = detail::combine(complex.corners(at), w) - detail::combine(complex.previous_corners(at), w);
+    return flow + moved * (1.0 / step_.dt);
   }
 
   [[nodiscard]] Vec3 velocity_at(SimplexId at, const Vec3& x, double s, std::size_t moment) const {
-    return velocity(at, detail::barycentric(corners(at, s), x), s, moment);
+    const Corners v = corners(at, s);
+    return velocity(at, detail::barycentric(v, x), v, moment);
+  }
+
+  // Where the mesh has carried the particle.
+  [[nodiscard]] Vec3 velocity_at_particle(double s, std::size_t moment) const {
+    return velocity(particle_.at(), weights_, corners(particle_.at(), s), moment);
   }
 
   // The velocity at x, or at the contact before it.
   [[nodiscard]] Vec3 velocity_towards(const Vec3& x, double s, std::size_t moment) const {
+    if (!is_finite(x) || !in_exact_range(x)) return velocity_at_particle(s, moment);
     const auto space = space_between<N>(step_.complex, way(s));
-    const std::array<Vec3, N> v = space.corners(particle_.at());
-    if (!is_finite(x) || !in_exact_range(x) || volume_sign(v) != Sign::positive)
-      return velocity(particle_.at(), weights_, s, moment);
-    const SimplexPlacement start = step_.moving ? detail::carried(space, particle_.at(), weights_)
-                                                : SimplexPlacement{particle_.at(), particle_.position};
+    SimplexPlacement start = {particle_.at(), particle_.position};
+    if (step_.moving) {
+      if (volume_sign(space.corners(start.simplex)) != Sign::positive) return velocity_at_particle(s, moment);
+      start = detail::carried(space, start.simplex, weights_);
+    }
     const Vec3 end = flushed(x);
     if (end == start.position) return velocity_at(start.simplex, end, s, moment);
     TestCounts uncounted;
@@ -73,7 +81,7 @@ class RungeKuttaStages {
       case WalkEnd::wall: return velocity_at(w.wall_simplex, contact(space, w, start.position, end), s, moment);
       case WalkEnd::invalid_cell: break;
     }
-    return velocity(particle_.at(), weights_, s, moment);
+    return velocity_at_particle(s, moment);
   }
 
   // Rounded: the point where the way from p to q meets the wall.
