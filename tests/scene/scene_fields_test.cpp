@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -12,6 +14,7 @@
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/mesh_files.hpp"
+#include "dartcast/run.hpp"
 #include "dartcast/scene_file.hpp"
 #include "dartcast/simulation.hpp"
 #include "formats/field_series.hpp"
@@ -253,6 +256,29 @@ TEST_F(SceneFields, LaterFilesAreCheckedWhenTheyAreNeeded) {
   expect_parts(error_at_five(), {"U_10.vtu", "no point array 'U'"});
   std::ofstream(folder_ / "U_10.vtu") << "no mesh";
   expect_parts(error_at_five(), {"U_10.vtu"});
+}
+
+// The time follows from the steps, and the files are read again.
+TEST_F(SceneFields, AResumedRunIsThatOfARunThatWasNeverCutOff) {
+  for (const char* integrator : {"euler", "rk4"}) {
+    const std::string motion = fmt::format(
+        "integrator = '{}'\nfield = {{ array = 'U', files = 'flow.pvd', period = 2.5 }}\n[[particles]]\ncount = "
+        "100\n[output]\n"
+        "every = 2",
+        integrator);
+    const auto hash = [&](const fs::path& folder, std::uint64_t steps, bool resume) {
+      RunOptions options;
+      options.folder = folder_ / folder;
+      options.steps = steps;
+      options.resume = resume;
+      return run_scene(parse(motion), options).state_hash;
+    };
+    const std::string whole = hash("whole", 30, false);
+    hash("cut", 14, false);
+    EXPECT_EQ(hash("cut", 30, true), whole);
+    EXPECT_NE(hash("other", 29, false), whole);
+    for (const char* folder : {"whole", "cut", "other"}) fs::remove_all(folder_ / folder);
+  }
 }
 
 TEST_F(SceneFields, ASceneWhoseFilesAreNotReadIsRefused) {

@@ -1,9 +1,12 @@
 // Fields at points and cells, at several times, and forces: against closed forms.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -63,6 +66,18 @@ void expect_velocities(const Simulation& simulation, const std::vector<Vec3>& pl
   for (std::size_t i = 0; i < places.size(); ++i) expect_near(simulation.velocities()[i], linear(places[i], t), 1e-11);
 }
 
+Vec3 value_at(const VectorField& field, Environment& environment, const Vec3& x) {
+  const SimplexId at = environment.locate(x).simplex;
+  const Corners v = environment.complex().corners(at);
+  const double volume = dot(v[1] - v[0], cross(v[2] - v[0], v[3] - v[0]));
+  std::array<double, 4> w{};
+  w[1] = dot(x - v[0], cross(v[2] - v[0], v[3] - v[0])) / volume;
+  w[2] = dot(v[1] - v[0], cross(x - v[0], v[3] - v[0])) / volume;
+  w[3] = dot(v[1] - v[0], cross(v[2] - v[0], x - v[0])) / volume;
+  w[0] = 1.0 - w[1] - w[2] - w[3];
+  return field.at(environment.complex(), at, w, v);
+}
+
 // Also outside the samples' times, where the first and last stay.
 TEST(Fields, LinearInSpaceAndTimeIsExactAtPoints) {
   const MeshData mesh = jittered();
@@ -73,18 +88,21 @@ TEST(Fields, LinearInSpaceAndTimeIsExactAtPoints) {
   for (const double t : {0.0, 0.3, 1.0, 2.5, 3.0, -1.0, 4.0}) {
     field.hold(t, t);
     field.set_times(std::vector<double>{t}, environment.complex());
-    for (const Vec3& x : {Vec3{5.1, 5.2, 5.3}, Vec3{1.1, 9.2, 3.3}, Vec3{0.0, 0.0, 0.0}}) {
-      const SimplexId at = environment.locate(x).simplex;
-      const Corners v = environment.complex().corners(at);
-      const double volume = dot(v[1] - v[0], cross(v[2] - v[0], v[3] - v[0]));
-      std::array<double, 4> w{};
-      w[1] = dot(x - v[0], cross(v[2] - v[0], v[3] - v[0])) / volume;
-      w[2] = dot(v[1] - v[0], cross(x - v[0], v[3] - v[0])) / volume;
-      w[3] = dot(v[1] - v[0], cross(v[2] - v[0], x - v[0])) / volume;
-      w[0] = 1.0 - w[1] - w[2] - w[3];
-      expect_near(field.at(environment.complex(), at, w, v), linear(x, std::min(std::max(t, 0.0), 3.0)), 1e-12);
-    }
+    for (const Vec3& x : {Vec3{5.1, 5.2, 5.3}, Vec3{1.1, 9.2, 3.3}, Vec3{0.0, 0.0, 0.0}})
+      expect_near(value_at(field, environment, x), linear(x, std::min(std::max(t, 0.0), 3.0)), 1e-12);
   }
+}
+
+TEST(Fields, AnEditAtTheTimeThatIsSetCounts) {
+  const MeshData mesh = jittered();
+  Environment environment(mesh);
+  VelocityField field(environment.complex(), samples(mesh, {0.0, 1.0}, linear));
+  field.set_times(std::vector<double>{0.5}, environment.complex());
+  const Vec3 x = {5.1, 5.2, 5.3};
+  const Cell cell = environment.locate(x).simplex.cell;
+  field.update_after_edit(environment.edit([&](ComplexEdit& e) { subdivide(e, cell); }), environment.complex());
+  field.set_times(std::vector<double>{0.5}, environment.complex());
+  expect_near(value_at(field, environment, x), linear(x, 0.5), 1e-12);
 }
 
 // The step uses the field at its start; each of its segments that at the segment's start.

@@ -123,6 +123,19 @@ TEST(RungeKutta, PastAWallTheFieldAtTheContactCounts) {
   }
 }
 
+// u = (10, y, 0), aslant to the wall: every stage's contact is at a share of 0.5 / (10 dt) of its way.
+TEST(RungeKutta, TheContactIsOnTheWayToTheStage) {
+  const MeshData mesh = test::cube_of(3, 10.0);
+  Environment environment(mesh);
+  const VelocityField field(environment.complex(), samples(mesh, {0.0}, [](const Vec3& p, double) {
+                              return Vec3{10, p.y, 0};
+                            }));
+  Particles particles;
+  environment.add(particles, std::vector<Vec3>{{9.5, 4, 5}});
+  const Vec3 v = runge_kutta_velocity({environment.complex(), field, 1.0, false}, particles[0]);
+  expect_near(v, {10, 4 * (1 + 2 * 1.05 + 2 * 1.0525 + 1.052625) / 6, 0}, 1e-12);
+}
+
 // The result is the target of an ordinary step: at the wall the particle responds.
 TEST(RungeKutta, AtAWallTheParticleResponds) {
   const MeshData mesh = test::cube_of(4, 10.0);
