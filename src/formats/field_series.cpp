@@ -45,7 +45,7 @@ void add_dataset(const XmlTag& tag, const XmlTags& tags, const std::filesystem::
 FieldSeries numbered_files(const std::filesystem::path& pattern) {
   const std::string name = pattern.filename().string();
   const std::filesystem::path folder = pattern.has_parent_path() ? pattern.parent_path() : ".";
-  if (std::count(name.begin(), name.end(), '*') != 1 || is_pattern(folder.string()))
+  if (std::count(name.begin(), name.end(), '*') != 1)
     throw Error(fmt::format("{}: give one star, in the file's name, for the number", pattern.string()));
   std::vector<std::string> names;
   std::error_code error;

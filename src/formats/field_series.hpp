@@ -13,7 +13,7 @@ struct FieldSeries {
 };
 
 /// The files of a folder with a whole number in place of the star in the path's last part, by number. Throws Error where
-/// there is none, or where a star stands elsewhere.
+/// there is no such file, or the last part has not exactly one star.
 FieldSeries numbered_files(const std::filesystem::path& pattern);
 
 /// The files of a ParaView collection, in its order, relative to its folder. Throws Error, with the file's name, where

@@ -57,8 +57,8 @@ FieldSeries series_of(const FieldScene& field) {
       throw InvalidArgument(fmt::format("{}: a collection has its times: leave out times and spacing", first.string()));
     series = read_pvd(first);
   } else {
-    series =
-        field.files.size() == 1 && is_pattern(first.string()) ? numbered_files(first) : FieldSeries{field.files, {}};
+    series = field.files.size() == 1 && is_pattern(first.filename().string()) ? numbered_files(first)
+                                                                              : FieldSeries{field.files, {}};
     series.times = field_times(field, series.files.size(), "files");
   }
   for (const auto& file : series.files) {
