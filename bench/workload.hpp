@@ -11,7 +11,7 @@
 #include "base/random.hpp"
 #include "dartcast/deformation.hpp"
 #include "dartcast/environment.hpp"
-#include "dartcast/velocity_field.hpp"
+#include "dartcast/vector_field.hpp"
 
 namespace dartcast::bench {
 

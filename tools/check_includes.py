@@ -35,7 +35,7 @@ PUBLIC = {
     "spheres": "spheres",
     "bodies": "bodies",
     "catheter": "catheter",
-    "simulation": "simulation deformation velocity_field events scene",
+    "simulation": "simulation deformation vector_field events scene",
     "formats": "mesh_files",
     "scene": "scene_file",
     "output": "run trajectory",

@@ -84,7 +84,7 @@ HEADERS = {
     "dartcast/simulation/crowding.hpp": "dartcast/events.hpp",
     "dartcast/simulation/deformation.hpp": "dartcast/deformation.hpp",
     "dartcast/simulation/event.hpp": "dartcast/events.hpp",
-    "dartcast/simulation/field.hpp": "dartcast/velocity_field.hpp",
+    "dartcast/simulation/field.hpp": "dartcast/vector_field.hpp",
     "dartcast/simulation/flow.hpp": "dartcast/simulation.hpp",
     "dartcast/simulation/polyline.hpp": "dartcast/simulation.hpp",
     "dartcast/simulation/scene.hpp": "dartcast/scene.hpp",

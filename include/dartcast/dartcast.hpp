@@ -39,4 +39,4 @@
 #include "dartcast/trajectory.hpp"
 #include "dartcast/validity.hpp"
 #include "dartcast/vec3.hpp"
-#include "dartcast/velocity_field.hpp"
+#include "dartcast/vector_field.hpp"

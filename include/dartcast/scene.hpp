@@ -20,7 +20,7 @@
 #include "dartcast/mesh_data.hpp"
 #include "dartcast/response.hpp"
 #include "dartcast/simulation.hpp"
-#include "dartcast/velocity_field.hpp"
+#include "dartcast/vector_field.hpp"
 
 namespace dartcast {
 
@@ -120,14 +120,35 @@ struct CatheterScene {
   double camera = 0.0;      ///< spacing of the camera's places along it; 0: none
 };
 
+/// A field: arrays of three components in the scene's mesh or in files, or samples in memory.
+struct FieldScene {
+  /// Empty: there is no field. In the mesh, "U_*" stands for all arrays with a whole number in place of the star, by
+  /// number: one for each time.
+  std::string array;
+  std::optional<FieldPlace> at;  ///< none: the points where they have the array, else the cells
+  FieldFrame frame = FieldFrame::space;
+  /// Mesh files with the same points and cells, one for each time; or one name with a star in place of a whole number;
+  /// or one .pvd file, which gives the times, too. Empty: the arrays of the scene's mesh.
+  std::vector<std::filesystem::path> files;
+  std::vector<double> times;  ///< s, increasing, one for each array or file; empty: by `spacing`
+  double spacing = 0.0;       ///< s from one time to the next, the first at 0; 0: by `times`
+  double period = 0.0;        ///< FieldSamples::period
+  /// Where it can read, used instead of all above but `frame`. load_scene_files() makes it for files. They are read
+  /// while the simulation runs.
+  FieldSamples samples;
+
+  [[nodiscard]] bool given() const { return !array.empty() || samples.read; }
+};
+
 struct MotionScene {
   double dt = 1e-3;
   std::uint64_t steps = 1000;
   Vec3 gravity;
-  std::string field;  ///< a point array of three components; empty: none
-  FieldFrame frame = FieldFrame::space;
+  FieldScene field;  ///< velocities, m / s
+  FieldScene force;  ///< accelerations, m / s^2, on top of gravity
   double drag = 0.0;
   unsigned substeps = 1;
+  Integrator integrator = Integrator::euler;
 };
 
 struct ContactScene {

@@ -23,7 +23,8 @@ struct LoadedScene {
   Finding skipped;  ///< bad cells that were left out, where the scene wants that
 };
 
-/// Reads the files that a scene names: its mesh, frames of the deformation, positions, surfaces of bodies. The mesh has
+/// Reads the files that a scene names: its mesh, frames of the deformation, positions, surfaces of bodies. A field's
+/// files are found and the first is read; the others are read while the simulation runs. The mesh has
 /// its scale, free cells and patches as the scene says, also where it comes from a generator. Only the option
 /// `max_memory` has an effect. Throws Error and its kinds, naming the file and its place in the scene.
 LoadedScene load_scene_files(Scene scene, const ReadOptions& options = {}, Threads threads = {});

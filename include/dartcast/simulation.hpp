@@ -23,7 +23,7 @@
 #include "dartcast/remeshing.hpp"
 #include "dartcast/response.hpp"
 #include "dartcast/spheres.hpp"
-#include "dartcast/velocity_field.hpp"
+#include "dartcast/vector_field.hpp"
 
 namespace dartcast {
 
@@ -53,6 +53,14 @@ struct CollisionOptions {
   unsigned position_iterations = 4;  ///< of the correction of overlaps
 };
 
+/// How the velocity of particles without mass (a field, and no drag) makes the way of a step.
+enum class Integrator : std::uint8_t {
+  euler,  ///< by the field at the start of the step, or of each segment: of first order in dt
+  /// The classical Runge-Kutta scheme of fourth order. Its four stages walk from the particle; past a wall the field at
+  /// the contact counts. It needs a field, no drag, no collisions and one segment a step.
+  rk4
+};
+
 /// SI units: seconds, metres per square second, 1 / second.
 struct SimulationOptions {
   double dt = 1e-3;  ///< of a step
@@ -60,7 +68,8 @@ struct SimulationOptions {
   double drag = 0.0;           ///< >= 0: the velocity relaxes to the field's (to 0 without one) as exp(-drag t)
   WallResponse response = {};  ///< what happens at walls: Reflect{0.5}, Slide{}, ...
   std::map<std::string, WallResponse> patch_responses = {};  ///< at the walls of these patches, by name
-  unsigned substeps = 1;   ///< > 0: a step's way is a polyline of so many segments; vertices move with the first one
+  unsigned substeps = 1;  ///< > 0: a step's way is a polyline of so many segments; vertices move with the first one
+  Integrator integrator = Integrator::euler;
   std::uint64_t seed = 1;  ///< for all that is random
   StepOptions step = {};
   /// With it spheres meet each other and bodies, and rest on each other and on walls. Without it they pass through.
@@ -157,8 +166,9 @@ struct CatheterSummary {
 ///  1. Events that are due edit the environment.
 ///  2. Inlets inject particles.
 ///  3. Vertices move.
-///  4. Velocities change. Without a field, and with drag, dv/dt = gravity - drag (v - u) is solved exactly for constant
-///     u (the field's velocity at the particle, or 0). With a field and no drag v = u, and gravity has no effect.
+///  4. Velocities change. Without a field, or with drag, dv/dt = g - drag (v - u) is solved exactly for constant g
+///     (gravity and the force's acceleration at the particle) and u (the field's velocity there, or 0), taken at the
+///     start of the step or segment. With a field and no drag v = u, and g has no effect.
 ///  5. Particles advance by v dt, wall responses included. Those absorbed or escaped leave.
 ///  6. Bodies step, then catheters.
 ///  7. Where it is due, invalid cells are remeshed and crowded cells are subdivided.
@@ -187,6 +197,8 @@ class Simulation {
   ~Simulation();
 
   void set_field(VelocityField field);
+  /// Accelerations of all particles (m / s^2), on top of gravity. They have no effect where there is a field and no drag.
+  void set_force(VectorField force);
   /// Throws InvalidArgument where the deformation is made for another number of points, and in the plane as
   /// Deformation::check_plane().
   void set_deformation(Deformation deformation);

@@ -11,6 +11,7 @@
 
 #include "dartcast/error.hpp"
 #include "scene/scene_events.hpp"
+#include "scene/scene_fields.hpp"
 #include "scene/scene_mesh_keys.hpp"
 #include "scene/scene_solids.hpp"
 #include "scene/toml_table.hpp"
@@ -149,18 +150,14 @@ class SceneReader {
     all.push_back(std::forward<Item>(item));
   }
 
-  static MotionScene motion(TomlTable t) {
+  MotionScene motion(TomlTable t) const {
     MotionScene scene;
     t.get("dt", scene.dt, Range::positive);
     t.get("steps", scene.steps, 0, max_steps);
     t.get("gravity", scene.gravity);
     t.get("drag", scene.drag, Range::not_negative);
     t.get("substeps", scene.substeps, 1U, 1000U);
-    t.get("field", scene.field);
-    if (t.get("field_frame", scene.frame, {{"space", FieldFrame::space}, {"mesh", FieldFrame::mesh}}) &&
-        scene.field.empty()) {
-      t.fail("field_frame", "field_frame needs a field");
-    }
+    read_fields(t, folder_, scene);
     t.finish();
     return scene;
   }

@@ -12,6 +12,7 @@
 #include "dartcast/scene_file.hpp"
 #include "formats/checked_file.hpp"
 #include "formats/skip_in_file.hpp"
+#include "scene/scene_fields.hpp"
 #include "scene/seed_file.hpp"
 #include "simulation/scene_environment.hpp"
 #include "simulation/with_name.hpp"
@@ -89,6 +90,8 @@ LoadedScene load_scene_files(Scene scene, const ReadOptions& options, Threads th
       s.step.frames.push_back(frame_positions(file, loaded.mesh, scene.environment, options));
     s.frames.clear();
   }
+  for (FieldScene* field : {&scene.motion.field, &scene.motion.force})
+    load_field(*field, scene.environment, loaded.mesh, options);
   for (ParticlesScene& p : scene.particles) {
     auto* placed = std::get_if<PlacedParticles>(&p.source);
     if (placed == nullptr) continue;

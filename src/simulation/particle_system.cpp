@@ -50,6 +50,22 @@ void check_names(const std::vector<std::string>& names) {
   }
 }
 
+void check_integrator(const SimulationOptions& o) {
+  if (o.integrator == Integrator::euler) return;
+  if (o.drag != 0.0)
+    throw InvalidArgument(
+        "simulation: the integrator rk4 is for particles without mass, which follow a field: drag "
+        "must be 0");
+  if (o.substeps != 1)
+    throw InvalidArgument(
+        "simulation: the integrator rk4 takes a step as one segment: substeps must be 1; for smaller "
+        "errors take a smaller dt");
+  if (o.collisions)
+    throw InvalidArgument(
+        "simulation: the integrator rk4 is for particles that do not meet: leave collisions out, or "
+        "take the integrator euler");
+}
+
 void check(const SimulationOptions& o) {
   if (!(o.dt >= smallest_dt && o.dt <= largest_dt))
     throw InvalidArgument(fmt::format("simulation: dt is {}: it must be between 2^-100 and 2^100 s", o.dt));
@@ -57,6 +73,7 @@ void check(const SimulationOptions& o) {
     throw InvalidArgument("simulation: drag must be finite and not negative");
   if (!is_finite(o.gravity)) throw InvalidArgument("simulation: gravity must be finite");
   if (o.substeps == 0) throw InvalidArgument("simulation: substeps must be at least 1");
+  check_integrator(o);
   check(o.step, "simulation");
   check_names(o.user_data);
   if (!o.collisions) return;
@@ -107,6 +124,7 @@ void ParticleSystem::move_vertices_to(std::uint64_t steps) {
 //  3. for each segment of the way: velocities change, targets are set, particles walk and respond at walls;
 //  4. contacts are counted, and those absorbed or escaped leave.
 void ParticleSystem::step(double /*begin*/) {
+  hold_fields();
   last_ = {};
   last_.duration = options_.dt;
   last_.absorbed = std::exchange(absorbed_between_, 0);
@@ -131,6 +149,7 @@ void ParticleSystem::move_vertices() {
 void ParticleSystem::advance_segment(unsigned segment) {
   const double dt = options_.dt / options_.substeps;
   const bool moving = deformation_ && segment == 0;
+  set_fields_to(time() + segment * dt, dt);
   if (collides()) {
     {
       const ScopeTimer timer(totals_.seconds_collide);
@@ -142,7 +161,11 @@ void ParticleSystem::advance_segment(unsigned segment) {
     }
   } else {
     const ScopeTimer timer(totals_.seconds_respond);
-    aim(dt, moving);
+    if (options_.integrator == Integrator::rk4) {
+      aim_by_runge_kutta(dt, moving);
+    } else {
+      aim(dt, moving);
+    }
   }
   const ScopeTimer timer(totals_.seconds_detect);
   const ContactCallback respond = respond_with(responses_, velocities_, fates_, options_.dt, acceleration(dt));

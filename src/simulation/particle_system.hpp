@@ -27,6 +27,7 @@ class ParticleSystem final : public SimulationComponent {
   ParticleSystem(Environment& environment, const SimulationOptions& options);
 
   void set_field(VelocityField field) { field_ = std::move(field); }
+  void set_force(VectorField force) { force_ = std::move(force); }
   void set_deformation(Deformation deformation);
   /// Bodies that the spheres meet; they step after each step of the particles. Precondition: there are collisions.
   void set_bodies(Bodies& bodies) { bodies_ = &bodies; }
@@ -86,9 +87,8 @@ class ParticleSystem final : public SimulationComponent {
   };
   // Effect of gravity and drag in a segment: the same for all particles.
   struct Forces {
-    double dt;      // s
-    double lost;    // share of the velocity relative to the flow that drag takes
-    Vec3 terminal;  // velocity relative to the flow that gravity and drag lead to
+    double dt;    // s
+    double lost;  // share of the velocity relative to the flow that drag takes
   };
 
   // In particle_system.cpp.
@@ -100,13 +100,17 @@ class ParticleSystem final : public SimulationComponent {
   void remove_gone();
   void remove_marked(std::span<const std::uint8_t> marks);
   void count_spheres();
+  // In particle_system_fields.cpp.
+  void hold_fields();
+  void set_fields_to(double begin, double duration);
+  void aim_by_runge_kutta(double dt, bool moving);
   // In particle_system_aim.cpp.
   void aim(double dt, bool moving);
   [[nodiscard]] detail::FlowScene flow_scene(const Forces& forces, bool moving) const;
   void aim_in_flow(const detail::FlowScene& scene, std::size_t begin, std::size_t end, std::span<std::uint8_t> aimed);
   [[nodiscard]] Forces forces_of(double dt) const;
   [[nodiscard]] Aim aim_at(std::size_t i, const Forces& forces, bool moving) const;
-  [[nodiscard]] Vec3 accelerated(const Vec3& v, const Vec3& flow, const Forces& forces) const;
+  [[nodiscard]] Vec3 accelerated(const Vec3& v, const Vec3& flow, const Vec3& force, const Forces& forces) const;
   [[nodiscard]] Acceleration acceleration(double dt) const;
   // In particle_system_add.cpp.
   void inject();
@@ -138,6 +142,7 @@ class ParticleSystem final : public SimulationComponent {
   SimulationOptions options_;
   WallResponses responses_;
   std::optional<VelocityField> field_;
+  std::optional<VectorField> force_;  // accelerations, on top of gravity
   std::optional<Deformation> deformation_;
   std::vector<Inlet> inlets_;
   Random random_;

@@ -21,10 +21,11 @@ constexpr std::size_t aim_grain = 512;  // a multiple of the lanes of a vector
 void ParticleSystem::aim(double dt, bool moving) {
   targets_.resize(particles_.size());
   const Forces forces = forces_of(dt);
-  const detail::FlowScene scene = field_ ? flow_scene(forces, moving) : detail::FlowScene{};
+  const bool in_fours = field_ && !force_ && field_->place() == FieldPlace::points;
+  const detail::FlowScene scene = in_fours ? flow_scene(forces, moving) : detail::FlowScene{};
   parallel_for(particles_.size(), aim_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
     std::array<std::uint8_t, aim_grain / 4> aimed{};
-    if (field_) aim_in_flow(scene, begin, end, aimed);
+    if (in_fours) aim_in_flow(scene, begin, end, aimed);
     for (std::size_t i = begin; i < end; ++i) {
       if ((aimed[(i - begin) / 4] >> (i - begin) % 4 & 1U) != 0) continue;
       const Aim aim = aim_at(i, forces, moving);
@@ -47,7 +48,7 @@ detail::FlowScene ParticleSystem::flow_scene(const Forces& forces, bool moving) 
   scene.dt = forces.dt;
   scene.drags = options_.drag > 0.0;
   scene.lost = forces.lost;
-  scene.terminal = forces.terminal;
+  if (scene.drags) scene.terminal = options_.gravity * (1.0 / options_.drag);
   return scene;
 }
 
@@ -61,18 +62,19 @@ void ParticleSystem::aim_in_flow(const detail::FlowScene& scene, std::size_t beg
 }
 
 ParticleSystem::Forces ParticleSystem::forces_of(double dt) const {
-  if (options_.drag == 0.0) return {dt, 0.0, {}};
-  return {dt, -std::expm1(-options_.drag * dt), options_.gravity * (1.0 / options_.drag)};
+  return {dt, options_.drag > 0.0 ? -std::expm1(-options_.drag * dt) : 0.0};
 }
 
-Vec3 ParticleSystem::accelerated(const Vec3& v, const Vec3& flow, const Forces& forces) const {
-  if (options_.drag == 0.0) return field_ ? flow : v + options_.gravity * forces.dt;
-  return v + (flow + forces.terminal - v) * forces.lost;
+Vec3 ParticleSystem::accelerated(const Vec3& v, const Vec3& flow, const Vec3& force, const Forces& forces) const {
+  const Vec3 acceleration = force_ ? options_.gravity + force : options_.gravity;
+  if (options_.drag == 0.0) return field_ ? flow : v + acceleration * forces.dt;
+  return v + (flow + acceleration * (1.0 / options_.drag) - v) * forces.lost;
 }
 
-// The acceleration that contacts know of: none where a field or other spheres change velocities, too. Drag reduces it.
+// The acceleration that contacts know of: none where a field, a force or other spheres change velocities,
+// too. Drag reduces it.
 Acceleration ParticleSystem::acceleration(double dt) const {
-  if (field_ || collides()) return {};
+  if (field_ || force_ || collides()) return {};
   if (options_.drag == 0.0) return {options_.gravity, dt};
   return {options_.gravity * (-std::expm1(-options_.drag * dt) / (options_.drag * dt)), dt};
 }
@@ -83,8 +85,8 @@ ParticleSystem::Aim ParticleSystem::aim_at(std::size_t i, const Forces& forces, 
   const ParticleState& s = particles_[i];
   if (s.held) return {velocities_[i], s.position};
   const bool stuck = fates_[i] == ParticleStatus::stuck;
-  if (!stuck && !field_) {
-    const Vec3 v = accelerated(velocities_[i], {}, forces);
+  if (!stuck && !field_ && !force_) {
+    const Vec3 v = accelerated(velocities_[i], {}, {}, forces);
     return {v, s.position + v * forces.dt};
   }
   if (stuck && !moving) return {velocities_[i], s.position};
@@ -98,15 +100,13 @@ ParticleSystem::Aim ParticleSystem::aim_at(std::size_t i, const Forces& forces, 
     const bool positive = volume_sign(now) == Sign::positive;
     return {mesh, positive ? detail::carried(complex, s.at(), w).position : s.position};
   }
-  const Vec3 flow = field_->at(complex, s.at(), w, now);
-  switch (field_->frame()) {
-    case FieldFrame::space: {
-      const Vec3 v = accelerated(velocities_[i], flow, forces);
-      return {v, s.position + v * forces.dt};
-    }
-    case FieldFrame::mesh: break;
+  const Vec3 force = force_ ? force_->at(complex, s.at(), w, now) : Vec3{};
+  const Vec3 flow = field_ ? field_->at(complex, s.at(), w, now) : Vec3{};
+  if (!field_ || field_->frame() == FieldFrame::space) {
+    const Vec3 v = accelerated(velocities_[i], flow, force, forces);
+    return {v, s.position + v * forces.dt};
   }
-  const Vec3 v = accelerated(velocities_[i], flow + mesh, forces);
+  const Vec3 v = accelerated(velocities_[i], flow + mesh, force, forces);
   return {v, (moving ? carried : s.position) + (v - mesh) * forces.dt};
 }
 

@@ -13,6 +13,7 @@ void ParticleSystem::update_after_edit(const ComplexEditReport& edit, OrphanPoli
   remove_absorbed(last_update_, before);
   if (deformation_) deformation_->update_after_edit(edit, environment_.positions().size());
   if (field_) field_->update_after_edit(edit, environment_.complex());
+  if (force_) force_->update_after_edit(edit, environment_.complex());
   reopen_inlets();
 }
 

@@ -92,6 +92,7 @@ void Simulation::restore(const SimulationCheckpoint& saved) {
 void Simulation::go_to(std::uint64_t steps) { parts_->particles.go_to(steps); }
 
 void Simulation::set_field(VelocityField field) { parts_->particles.set_field(std::move(field)); }
+void Simulation::set_force(VectorField force) { parts_->particles.set_force(std::move(force)); }
 void Simulation::set_deformation(Deformation deformation) { parts_->particles.set_deformation(std::move(deformation)); }
 
 void Simulation::pull(std::span<const Vec3> displacement, double duration) {

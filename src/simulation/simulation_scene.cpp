@@ -7,6 +7,7 @@
 #include "dartcast/error.hpp"
 #include "dartcast/scene.hpp"
 #include "simulation/scene_environment.hpp"
+#include "simulation/scene_field.hpp"
 #include "simulation/simulation_parts.hpp"
 
 namespace dartcast {
@@ -21,6 +22,7 @@ SimulationOptions options_of(const Scene& scene) {
   options.response = scene.contact.general;
   options.patch_responses = scene.contact.by_patch;
   options.substeps = scene.motion.substeps;
+  options.integrator = scene.motion.integrator;
   options.seed = scene.seed;
   options.collisions = scene.collisions;
   options.body_collisions = scene.body_collisions;
@@ -94,8 +96,9 @@ void Simulation::make(const Scene& scene, Threads threads) {
   auto own = std::make_unique<Environment>(mesh, threads);
   Environment& environment = *own;
   parts_ = std::make_unique<Parts>(*this, std::move(own), environment, options_of(scene));
-  if (!scene.motion.field.empty())
-    set_field(VelocityField(environment.complex(), point_vectors(mesh, scene.motion.field), scene.motion.frame));
+  const CellComplex& complex = environment.complex();
+  if (const auto field = scene_field(scene.motion.field, "the velocity field", mesh, complex)) set_field(*field);
+  if (const auto force = scene_field(scene.motion.force, "the force", mesh, complex)) set_force(*force);
   if (!scene.deformation.empty()) set_deformation(Deformation(deformation_steps(scene.deformation, mesh), mesh.points));
   set_events(events_of(scene, environment.map()));
   set_remeshing(scene.remesh);

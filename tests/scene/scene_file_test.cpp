@@ -301,8 +301,8 @@ TEST(SceneFile, EveryKeyIsRead) {
   EXPECT_EQ(s.motion.dt, 0.25);
   EXPECT_EQ(s.motion.steps, 7U);
   EXPECT_EQ(s.motion.gravity, (Vec3{0, 0, -1}));
-  EXPECT_EQ(s.motion.field, "velocity");
-  EXPECT_EQ(s.motion.frame, FieldFrame::mesh);
+  EXPECT_EQ(s.motion.field.array, "velocity");
+  EXPECT_EQ(s.motion.field.frame, FieldFrame::mesh);
   EXPECT_EQ(s.motion.drag, 3.0);
   EXPECT_EQ(s.motion.substeps, 4U);
   EXPECT_EQ(s.contact.general.kind, WallResponseKind::slide);

@@ -10,7 +10,7 @@
 #include "complex/simplex.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/generators.hpp"
-#include "dartcast/velocity_field.hpp"
+#include "dartcast/vector_field.hpp"
 #include "tracking/carry.hpp"
 
 namespace dartcast::flow_aim_test {

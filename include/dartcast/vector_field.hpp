@@ -1,0 +1,113 @@
+// A field of vectors (velocities, accelerations) given at the points or cells of a mesh, at one time or several.
+//
+// In space it is linear in each implicit simplex, or constant in each cell. In time it is linear between samples.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "dartcast/complex_edit.hpp"
+#include "dartcast/threads.hpp"
+
+namespace dartcast {
+
+enum class FieldFrame : std::uint8_t {
+  space,  ///< the values are vectors in space, wherever their points have moved
+  mesh    ///< the values belong to the mesh at rest: they turn and stretch with it, and it carries the flow along
+};
+
+enum class FieldPlace : std::uint8_t {
+  points,  ///< linear between points; Steiner points take their values by their weights
+  cells    ///< constant in each cell, with a jump from cell to cell; never averaged
+};
+
+/// The values of a field at increasing times.
+struct FieldSamples {
+  std::string name = "the field";  ///< in messages
+  FieldPlace place = FieldPlace::points;
+  std::vector<double> times = {0.0};  ///< s, increasing; a single one: the field is steady
+  /// The values at times[k]: one per point of the mesh, or one per cell in increasing order of
+  /// CombinatorialMap::source(), which is the order of the mesh. It may read a file; it is called when a step needs the
+  /// sample, from one thread at a time.
+  std::function<std::vector<Vec3>(std::size_t k)> read;
+  /// 0: before the first time the field is as at the first, after the last time as at the last. Above 0, s: the field
+  /// repeats, and is at times[0] + period as at times[0]. Not less than the time from the first to the last.
+  double period = 0.0;
+};
+
+/// Samples in memory, one list of values for each time.
+FieldSamples field_samples(std::vector<double> times, std::vector<std::vector<Vec3>> values,
+                           FieldPlace place = FieldPlace::points, double period = 0.0);
+
+class VectorField {
+ public:
+  /// A steady field at the points. The complex's positions are those at rest. Throws InvalidArgument where the number
+  /// does not match, a value is not finite, or in the plane its z is not 0.
+  VectorField(const CellComplex& complex, std::span<const Vec3> values, FieldFrame frame = FieldFrame::space);
+  /// The complex has not been edited. Reads the first sample and stands at its time. Throws as above and as the samples'
+  /// read(), and where a time, the period or read is not as FieldSamples says.
+  VectorField(const CellComplex& complex, FieldSamples samples, FieldFrame frame = FieldFrame::space);
+
+  [[nodiscard]] FieldFrame frame() const { return frame_; }
+  [[nodiscard]] FieldPlace place() const { return samples_.place; }
+  [[nodiscard]] bool steady() const { return samples_.times.size() == 1; }
+  /// The vectors at the first of the times set: of all vertices, Steiner points last, or one for each source of a cell.
+  [[nodiscard]] std::span<const Vec3> values() const { return values_.front(); }
+  /// Positions of all vertices at rest; empty in the frame of space.
+  [[nodiscard]] std::span<const Vec3> rest() const { return rest_; }
+
+  /// Reads the samples that times from `begin` to `end` (s) need, and forgets all others: two or three where steps are
+  /// shorter than the samples' distances. Throws as the constructor, nothing changed.
+  void hold(double begin, double end);
+  /// Sets the values at these times, for at(). They are computed once for all particles: the cost is linear in the
+  /// points or cells, and nothing where the field is steady or stands at these times already. Samples that are not held
+  /// are read. `complex`: as it is now. The same bits for any number of threads.
+  void set_times(std::span<const double> times, const CellComplex& complex, Threads threads = {});
+
+  /// After an edit: new vertices take the values of those that they were made between, new cells those of the cells
+  /// that they were made from. `complex`: as it is now. Where the field is not steady, call set_times() before at().
+  void update_after_edit(const ComplexEditReport& edit, const CellComplex& complex);
+
+  /// The vector at the point of barycentric coordinates w in a simplex with these corners now, at the `moment`-th of
+  /// the times set. In the mesh's frame: relative to the mesh, taken from rest by the simplex's own linear map, so that
+  /// a flow along a wall stays along it.
+  [[nodiscard]] Vec3 at(const CellComplex& complex, SimplexId simplex, const std::array<double, 4>& w,
+                        const Corners& now, std::size_t moment = 0) const;
+
+ private:
+  // Two samples, and the share of the second one.
+  struct Interval {
+    std::size_t from = 0;
+    std::size_t to = 0;
+    double share = 0.0;
+  };
+
+  [[nodiscard]] Interval interval(double time) const;
+  [[nodiscard]] std::vector<std::size_t> needed(double begin, double end) const;
+  [[nodiscard]] std::vector<Vec3> read(std::size_t k) const;
+  void check(std::size_t k, std::span<const Vec3> values) const;
+  const std::vector<Vec3>& sample(std::size_t k);
+  void find_rows(const CellComplex& complex);
+  void spread(const CellComplex& complex, std::vector<Vec3>& values) const;
+
+  FieldSamples samples_;
+  FieldFrame frame_;
+  std::size_t count_ = 0;  // of a sample's values
+  bool plane_ = false;
+  std::map<std::size_t, std::vector<Vec3>> held_;  // by number of sample; where the field is steady: none
+  std::vector<double> times_;                      // those set; none after an edit
+  std::vector<std::vector<Vec3>> values_;  // at these times; of all vertices, Steiner points included, or by row
+  std::vector<std::uint32_t> row_;         // cells: the value of a source
+  ComplexEditReport later_;                // points: all vertices that edits have placed
+  std::vector<Vec3> rest_;                 // of all vertices; in the mesh's frame only
+};
+
+/// In m / s.
+using VelocityField = VectorField;
+
+}  // namespace dartcast

@@ -1,0 +1,196 @@
+// Reads the fields of a scene, and their files sample by sample.
+#include "scene/scene_fields.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "dartcast/error.hpp"
+#include "formats/checked_file.hpp"
+#include "formats/field_series.hpp"
+#include "formats/format_table.hpp"
+#include "simulation/scene_field.hpp"
+
+namespace dartcast {
+
+namespace {
+
+void read_table(TomlTable t, const std::filesystem::path& folder, FieldScene& field) {
+  t.require("array", "the name of an array of three components");
+  t.get("array", field.array);
+  if (field.array.empty()) t.fail("array", "array must not be empty");
+  FieldPlace at = FieldPlace::points;
+  if (t.get("at", at, {{"points", FieldPlace::points}, {"cells", FieldPlace::cells}})) field.at = at;
+  t.get("frame", field.frame, {{"space", FieldFrame::space}, {"mesh", FieldFrame::mesh}});
+  std::vector<std::string> files;
+  if (t.get("files", files) && files.empty()) t.fail("files", "files must not be empty");
+  for (const std::string& file : files) field.files.push_back(folder / file);
+  const bool times = t.get("times", field.times);
+  const bool spacing = t.get("spacing", field.spacing, Range::positive);
+  if (times && spacing) t.fail("spacing", "give times or spacing, not both");
+  t.get("period", field.period, Range::positive);
+  t.finish();
+}
+
+// A name, or a table.
+void read_field(TomlTable& motion, const char* key, const std::filesystem::path& folder, FieldScene& field) {
+  if (motion.is_table(key)) {
+    read_table(motion.table(key), folder, field);
+  } else {
+    motion.get(key, field.array);
+    if (is_pattern(field.array))
+      motion.fail(key, fmt::format("{0} = \"{1}\": arrays at several times need their times: {0} = {{ array = \"{1}\", "
+                                   "spacing = 0.01 }}",
+                                   key, field.array));
+  }
+}
+
+FieldSeries series_of(const FieldScene& field) {
+  const std::filesystem::path& first = field.files.front();
+  FieldSeries series;
+  if (field.files.size() == 1 && ending_of(first) == ".pvd") {
+    if (!field.times.empty() || field.spacing > 0.0)
+      throw InvalidArgument(fmt::format("{}: a collection has its times: leave out times and spacing", first.string()));
+    series = read_pvd(first);
+  } else {
+    series = field.files.size() == 1 && is_pattern(first.filename().string()) ? numbered_files(first)
+                                                                              : FieldSeries{field.files, {}};
+    series.times = field_times(field, series.files.size(), "files");
+  }
+  for (const auto& file : series.files) {
+    if (!std::filesystem::is_regular_file(file)) throw Error(fmt::format("{}: there is no such file", file.string()));
+  }
+  return series;
+}
+
+// Calls make(), and puts the file's name before the message of an error unless it is there.
+template <class Make>
+auto with_file_name(const std::filesystem::path& file, Make&& make) {
+  try {
+    return make();
+  } catch (const InvalidMesh& e) {
+    if (std::string_view(e.what()).starts_with(file.string())) throw;
+    throw InvalidMesh(fmt::format("{}: {}", file.string(), e.what()));
+  }
+}
+
+// Reads a field from files of the same mesh as the scene's.
+class FieldFiles {
+ public:
+  FieldFiles(const FieldScene& field, const EnvironmentScene& environment, const MeshData& mesh,
+             const ReadOptions& options, std::vector<std::filesystem::path> files)
+      : array_(field.array), at_(field.at), options_(options), files_(std::move(files)) {
+    points_ = mesh.points.size();
+    cells_ = mesh.cell_count();
+    if (!environment.skip_bad_cells) return;
+    for (std::size_t c = 0; c < cells_; ++c) kept_.push_back(source_of(mesh, c));
+    std::sort(kept_.begin(), kept_.end());
+  }
+
+  /// The place of the first file's array, from then on that of all.
+  FieldPlace find_place() {
+    at_ = with_file_name(files_[0], [&] { return field_place(read(0), array_, at_); });
+    return *at_;
+  }
+
+  [[nodiscard]] std::vector<Vec3> operator()(std::size_t k) const {
+    return with_file_name(files_[k], [&] {
+      std::vector<Vec3> values = field_values(read(k), array_, at_);
+      const auto bad = std::find_if_not(values.begin(), values.end(), is_finite);
+      if (bad != values.end())
+        throw InvalidMesh(fmt::format("the array '{}' is not finite at its item {}", array_, bad - values.begin()));
+      return values;
+    });
+  }
+
+ private:
+  static std::uint32_t source_of(const MeshData& mesh, std::size_t c) {
+    return mesh.source.empty() ? static_cast<std::uint32_t>(c) : mesh.source[c];
+  }
+
+  [[nodiscard]] MeshData read(std::size_t k) const {
+    MeshFile file = read_mesh(files_[k], options_);
+    if (!kept_.empty() && !file.mesh.types.empty()) {
+      file.mesh = with_cells_of_scene(std::move(file.mesh));
+    } else {
+      file = valid_file(std::move(file));
+    }
+    if (file.mesh.points.size() != points_ || file.mesh.cell_count() != cells_) {
+      throw InvalidMesh(
+          fmt::format("{}: {} points and {} cells; the scene's mesh has {} and {}: a field's files must "
+                      "have the same mesh",
+                      files_[k].string(), file.mesh.points.size(), file.mesh.cell_count(), points_, cells_));
+    }
+    return std::move(file.mesh);
+  }
+
+  // Without the bad cells that the scene has left out, and the points of these.
+  [[nodiscard]] MeshData with_cells_of_scene(MeshData all) const {
+    MeshData mesh;
+    for (const DataArray& a : all.cell_data) mesh.cell_data.push_back({a.name, a.components, {}});
+    for (std::size_t c = 0; c < all.cell_count(); ++c) {
+      if (!std::binary_search(kept_.begin(), kept_.end(), source_of(all, c))) continue;
+      mesh.add_cell(all.types[c], all.cell(c));
+      for (std::size_t a = 0; a < all.cell_data.size(); ++a) {
+        const DataArray& from = all.cell_data[a];
+        const auto first = from.values.begin() + static_cast<std::ptrdiff_t>(c * from.components);
+        mesh.cell_data[a].values.insert(mesh.cell_data[a].values.end(), first,
+                                        first + static_cast<std::ptrdiff_t>(from.components));
+      }
+    }
+    mesh.points = std::move(all.points);
+    mesh.point_data = std::move(all.point_data);
+    check_and_repair(mesh);  // drops the points of the other cells
+    return mesh;
+  }
+
+  std::string array_;
+  std::optional<FieldPlace> at_;
+  ReadOptions options_;
+  std::vector<std::filesystem::path> files_;
+  std::size_t points_ = 0;
+  std::size_t cells_ = 0;
+  std::vector<std::uint32_t> kept_;  // sources of the scene's cells, where it leaves bad ones out
+};
+
+}  // namespace
+
+void read_fields(TomlTable& motion, const std::filesystem::path& folder, MotionScene& scene) {
+  read_field(motion, "field", folder, scene.field);
+  read_field(motion, "force", folder, scene.force);
+  const bool has_field = scene.field.given();
+  if (motion.is_table("field") && motion.has("field_frame"))
+    motion.fail("field_frame", "field_frame belongs to a field that is a name: say frame in the field's table");
+  if (motion.get("field_frame", scene.field.frame, {{"space", FieldFrame::space}, {"mesh", FieldFrame::mesh}}) &&
+      !has_field) {
+    motion.fail("field_frame", "field_frame needs a field");
+  }
+  motion.get("integrator", scene.integrator, {{"euler", Integrator::euler}, {"rk4", Integrator::rk4}});
+  if (scene.integrator == Integrator::rk4) {
+    if (!has_field) motion.fail("integrator", "integrator = \"rk4\" needs a field, which the particles follow");
+    if (scene.drag != 0.0)
+      motion.fail("integrator", "integrator = \"rk4\" is for particles without mass: leave drag out");
+    if (scene.substeps != 1)
+      motion.fail("integrator", "integrator = \"rk4\" takes a step as one segment: leave substeps out");
+  }
+  if (scene.force.given() && has_field && scene.drag == 0.0)
+    motion.fail("force", "a force has no effect on particles that follow a field without drag: give drag");
+}
+
+void load_field(FieldScene& field, const EnvironmentScene& environment, const MeshData& mesh,
+                const ReadOptions& options) {
+  if (field.files.empty() || field.samples.read) return;
+  FieldSeries series = series_of(field);
+  auto files = std::make_shared<FieldFiles>(field, environment, mesh, options, series.files);
+  field.samples.place = files->find_place();
+  field.samples.times = std::move(series.times);
+  field.samples.period = field.period;
+  field.samples.read = [files](std::size_t k) { return (*files)(k); };
+  field.files.clear();
+}
+
+}  // namespace dartcast
