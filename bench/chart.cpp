@@ -153,8 +153,9 @@ std::string draw(std::span<const Row> rows, const Content& content) {
     shown.push_back(style);
     curves += curve(axes, still, style, false) + curve(axes, moving, style, true);
   }
-  return svg::page(chart_frame, svg::text(chart_frame.left, 32, "start", content.title) + grid(axes, content.unit) +
-                                    curves + legend(shown));
+  return svg::page(
+      chart_frame.width, chart_frame.height,
+      svg::text(chart_frame.left, 32, "start", content.title) + grid(axes, content.unit) + curves + legend(shown));
 }
 
 }  // namespace

@@ -130,9 +130,10 @@ std::string cuts(const Latency& latency, const LatencyAxes& axes) {
 
 std::string latency_svg(const Latency& latency) {
   const LatencyAxes axes = axes_for(latency);
-  return svg::page(latency_frame, svg::text(latency_frame.left, 32, "start",
-                                            "ms of a step; red: with a cut; grey: the bounds of 5 and 10 ms") +
-                                      grid(axes) + bars(latency, axes) + cuts(latency, axes));
+  return svg::page(
+      latency_frame.width, latency_frame.height,
+      svg::text(latency_frame.left, 32, "start", "ms of a step; red: with a cut; grey: the bounds of 5 and 10 ms") +
+          grid(axes) + bars(latency, axes) + cuts(latency, axes));
 }
 
 }  // namespace dartcast::bench

@@ -5,11 +5,11 @@
 
 namespace dartcast::bench::svg {
 
-std::string page(const Frame& frame, const std::string& content) {
+std::string page(double width, double height, const std::string& content) {
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" font-family=\"sans-serif\" "
       "font-size=\"14\" fill=\"#222\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n{}</svg>\n",
-      frame.width, frame.height, content);
+      width, height, content);
 }
 
 std::string line(double x1, double y1, double x2, double y2, const char* colour) {

@@ -12,7 +12,7 @@ struct Frame {
 };
 
 /// A drawing that holds `content`, on white.
-std::string page(const Frame& frame, const std::string& content);
+std::string page(double width, double height, const std::string& content);
 
 std::string line(double x1, double y1, double x2, double y2, const char* colour);
 std::string rectangle(double x, double y, double width, double height, const char* colour);

@@ -16,9 +16,11 @@
 #include "bench/latency.hpp"
 #include "bench/plan.hpp"
 #include "bench/report.hpp"
+#include "bench/run_parts.hpp"
 #include "bench/spheres.hpp"
 #include "commands.hpp"
 #include "dartcast/error.hpp"
+#include "dartcast/threads.hpp"
 #include "limits.hpp"
 
 namespace dartcast::app {
@@ -32,6 +34,8 @@ struct BenchArguments {
   bool edits = false;
   bool spheres = false;
   bool latency = false;
+  bool runs = false;
+  bench::RunPartsOptions run_options;
   std::size_t max_spheres = 100000;
 };
 
@@ -93,11 +97,40 @@ int run_comparison(const BenchArguments& a) {
   return done;
 }
 
+int run_runs(const BenchArguments& a) {
+  bench::RunPartsOptions options = a.run_options;
+  options.command = std::filesystem::read_symlink("/proc/self/exe");
+  options.folder = a.folder;
+  options.steps = a.plan.steps;
+  const std::vector<bench::RunPairs> runs = bench::measure_runs(options);
+  write(options.folder / "run.json", bench::runs_json(runs) + "\n");
+  write(options.folder / "run.svg", bench::runs_svg(runs));
+  fmt::print("{}",
+             a.json ? bench::runs_json(runs) + "\n" : fmt::format("{}output: {}\n", bench::runs_text(runs), a.folder));
+  return done;
+}
+
 int run(const BenchArguments& a) {
   if (a.edits) return run_edits(a.json);
   if (a.spheres) return run_spheres(a);
   if (a.latency) return run_latency(a);
+  if (a.runs) return run_runs(a);
   return run_comparison(a);
+}
+
+void add_run_options(CLI::App& verb, BenchArguments& a) {
+  bench::RunPartsOptions& options = a.run_options;
+  CLI::Option* runs = verb.add_flag("--run", a.runs, "the time of the demo by part, and nothing else");
+  verb.add_option("SCENE", options.scene, "with --run: a scene in TOML, instead of the demo")->needs(runs);
+  verb.add_option("--against", options.against, "with --run: another dartcast command, which runs in turn with this")
+      ->needs(runs)
+      ->check(CLI::ExistingFile);
+  verb.add_option("--repeat", options.repeat, "with --run: runs of each command (3)")
+      ->needs(runs)
+      ->transform(whole_number(1, 1000));
+  verb.add_option("-j,--threads", options.threads, "with --run: threads (all the machine has)")
+      ->needs(runs)
+      ->transform(whole_number(1, max_threads()));
 }
 
 }  // namespace
@@ -116,6 +149,7 @@ void add_bench(CLI::App& app, int& status) {
   verb->add_option("--most", a->max_spheres, "with --spheres: their largest number (1000 to 10^8; 100000)")
       ->transform(whole_number(1000, 100000000));
   verb->add_flag("--latency", a->latency, "the time of single steps of a surgical scene, and nothing else");
+  add_run_options(*verb, *a);
   verb->callback([a, &status] { status = run(*a); });
 }
 
