@@ -88,6 +88,9 @@ Latency measure_latency(const LatencyOptions& options) {
     particles += static_cast<double>(simulation.particles().size());
   }
   latency.particles = static_cast<std::size_t>(std::lround(particles / static_cast<double>(options.steps)));
+  const std::vector<EventReport>& cuts = simulation.event_log().events;
+  for (const EventReport& cut : cuts) latency.cells_replaced += cut.cells_removed;
+  latency.cells_replaced /= std::max<std::size_t>(1, cuts.size());
   return latency;
 }
 

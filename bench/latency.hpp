@@ -24,8 +24,9 @@ struct Latency {
   static constexpr double bound = 5.0;
   static constexpr double cut_bound = 10.0;
 
-  std::size_t cells = 0;      ///< at the start
-  std::size_t particles = 0;  ///< on average
+  std::size_t cells = 0;           ///< at the start
+  std::size_t particles = 0;       ///< on average
+  std::size_t cells_replaced = 0;  ///< by a cut, on average
   std::vector<StepTime> steps;
 
   /// A quantile of the times of all steps with a cut, or of all without, ms. 0.5: the median, 1: the longest.

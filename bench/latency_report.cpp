@@ -37,13 +37,15 @@ std::string latency_text(const Latency& latency) {
                     latency.count(cut), latency.quantile(cut, 0.5), latency.quantile(cut, 0.999),
                     latency.quantile(cut, 1.0), bound_of(cut), latency.over_bound(cut));
   }
-  return out + fmt::format("bounds: {}\n", latency.kept() ? "kept" : "not kept");
+  return out + fmt::format("a cut replaces {} cells\nbounds: {}\n", latency.cells_replaced,
+                           latency.kept() ? "kept" : "not kept");
 }
 
 std::string latency_json(const Latency& latency) {
   nlohmann::ordered_json json = {{"version", DARTCAST_VERSION},
                                  {"cells", latency.cells},
                                  {"particles", latency.particles},
+                                 {"cells_replaced_by_a_cut", latency.cells_replaced},
                                  {"steps", latency_figures(latency, false)},
                                  {"cuts", latency_figures(latency, true)},
                                  {"kept", latency.kept()}};
