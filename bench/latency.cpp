@@ -2,6 +2,7 @@
 #include "bench/latency.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <ctime>
 #include <span>
@@ -24,6 +25,8 @@ double thread_ms() {
   return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
 }
 
+Vec3 unit(const Vec3& v) { return (1.0 / norm(v)) * v; }
+
 // Cuts at random places of the tissue.
 class Surgeon {
  public:
@@ -34,12 +37,19 @@ class Surgeon {
     }
   }
 
-  // Before the next step: a slit of 2 mm, across a random cell of the tissue that no cut has replaced.
+  // Before the next step: a blade of 2 mm is drawn over 2 mm, through a random cell of the tissue that no cut has
+  // replaced.
   void cut() {
-    const Disc disc{centre(random_cell()), random_direction(), 1e-3};
+    const Vec3 middle = centre(random_cell());
+    const Vec3 way = random_direction();
+    const Vec3 blade = unit(cross(way, random_direction()));
+    const auto place = [&](double along) {
+      const Vec3 at = middle + way * (along * 1e-3);
+      return std::array<Vec3, 2>{at - blade * 1e-3, at + blade * 1e-3};
+    };
     Event event;
     event.at = simulation_.time();
-    event.what = Cut{disc, 2e-4};
+    event.what = Cut{BladePath{{place(-1.0), place(1.0)}}, 2e-4};
     simulation_.set_events({event});
   }
 
@@ -53,7 +63,7 @@ class Surgeon {
 
   Vec3 random_direction() {
     const auto part = [this] { return random_.uniform(-1.0, 1.0); };
-    return {part(), part(), part()};
+    return unit({part(), part(), part()});
   }
 
   // At the cell's place now.
@@ -108,6 +118,14 @@ double Latency::quantile(bool cut, double share) const {
 std::size_t Latency::count(bool cut) const {
   return static_cast<std::size_t>(
       std::count_if(steps.begin(), steps.end(), [cut](const StepTime& step) { return step.cut == cut; }));
+}
+
+std::size_t Latency::longest_step(bool cut) const {
+  std::size_t longest = 0;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (steps[i].cut == cut && (longest == 0 || steps[i].ms > steps[longest - 1].ms)) longest = i + 1;
+  }
+  return longest;
 }
 
 std::size_t Latency::over_bound(bool cut) const {

@@ -20,6 +20,7 @@ nlohmann::ordered_json latency_figures(const Latency& latency, bool cut) {
           {"median_ms", latency.quantile(cut, 0.5)},
           {"p999_ms", latency.quantile(cut, 0.999)},
           {"longest_ms", latency.quantile(cut, 1.0)},
+          {"longest_step", latency.longest_step(cut)},
           {"bound_ms", bound_of(cut)},
           {"over_bound", latency.over_bound(cut)}};
 }

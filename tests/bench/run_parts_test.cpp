@@ -87,6 +87,8 @@ TEST(Latency, QuantilesAndBoundsAreOfStepsOfOneKind) {
   EXPECT_EQ(latency.quantile(false, 0.999), 0.999);
   EXPECT_EQ(latency.quantile(false, 1.0), 1.0);
   EXPECT_EQ(latency.quantile(true, 0.5), 9.0);
+  EXPECT_EQ(latency.longest_step(false), 1000U);
+  EXPECT_EQ(latency.longest_step(true), 1001U);
   EXPECT_TRUE(latency.kept());
   latency.steps.push_back({10.5, true});
   EXPECT_EQ(latency.over_bound(true), 1U);
