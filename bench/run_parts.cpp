@@ -32,14 +32,14 @@ std::string quoted(const std::string& text) {
 
 double seconds_of(const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); }
 
-// Of the processes that have ended.
+// Sums over the child processes that have ended.
 double processor_seconds() {
   rusage usage{};
   getrusage(RUSAGE_CHILDREN, &usage);
   return seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
 }
 
-// What a command line prints. Its errors go to stderr.
+// Returns the text that a command line prints to stdout. Its errors go to stderr.
 std::string output_of(const std::string& line) {
   FILE* pipe = popen(line.c_str(), "r");
   if (pipe == nullptr) throw Error("bench: no process can be started");
