@@ -6,16 +6,13 @@
 #include <array>
 #include <cmath>
 
+#include "bench/svg.hpp"
+
 namespace dartcast::bench {
 
 namespace {
 
-constexpr double width = 860.0;
-constexpr double height = 560.0;
-constexpr double left = 80.0;
-constexpr double right = 640.0;
-constexpr double top = 56.0;
-constexpr double bottom = 490.0;
+constexpr svg::Frame chart_frame = {860, 560, 80, 640, 56, 490};
 
 struct Style {
   const char* name;
@@ -39,10 +36,10 @@ struct Axes {
   int y_low = 1, y_high = 3;
 
   [[nodiscard]] double x(double cells) const {
-    return left + (right - left) * (std::log10(cells) - x_low) / (x_high - x_low);
+    return chart_frame.left + (chart_frame.right - chart_frame.left) * (std::log10(cells) - x_low) / (x_high - x_low);
   }
   [[nodiscard]] double y(double ns) const {
-    return bottom - (bottom - top) * (std::log10(ns) - y_low) / (y_high - y_low);
+    return chart_frame.bottom - (chart_frame.bottom - chart_frame.top) * (std::log10(ns) - y_low) / (y_high - y_low);
   }
 };
 
@@ -87,36 +84,29 @@ Axes axes_for(std::span<const Row> rows, const Content& content) {
   return axes;
 }
 
-std::string line(double x1, double y1, double x2, double y2, const char* colour) {
-  return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\"/>\n", x1, y1, x2, y2,
-                     colour);
-}
-
-std::string text(double x, double y, const char* anchor, const std::string& content) {
-  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x, y, anchor, content);
-}
-
 std::string power(int exponent) { return fmt::format("10<tspan dy=\"-6\" font-size=\"10\">{}</tspan>", exponent); }
 
 std::string grid(const Axes& axes, const char* unit) {
   std::string out;
   for (int e = axes.x_low; e <= axes.x_high; ++e) {
     const double x = axes.x(std::pow(10.0, e));
-    out += line(x, top, x, bottom, "#d0d0d0") + text(x, bottom + 22, "middle", power(e));
+    out += svg::line(x, chart_frame.top, x, chart_frame.bottom, "#d0d0d0") +
+           svg::text(x, chart_frame.bottom + 22, "middle", power(e));
   }
   for (int e = axes.y_low; e <= axes.y_high; ++e) {
     const double y = axes.y(std::pow(10.0, e));
-    out += line(left, y, right, y, "#d0d0d0") + text(left - 10, y + 5, "end", power(e));
+    out += svg::line(chart_frame.left, y, chart_frame.right, y, "#d0d0d0") +
+           svg::text(chart_frame.left - 10, y + 5, "end", power(e));
     for (int k = 2; k < 10 && e < axes.y_high; ++k) {
       const double minor = axes.y(k * std::pow(10.0, e));
-      out += line(left, minor, right, minor, "#f0f0f0");
+      out += svg::line(chart_frame.left, minor, chart_frame.right, minor, "#f0f0f0");
     }
   }
-  out += text((left + right) / 2, bottom + 52, "middle", unit);
+  out += svg::text((chart_frame.left + chart_frame.right) / 2, chart_frame.bottom + 52, "middle", unit);
   out += fmt::format(
       "<text transform=\"translate(24 {:.1f}) rotate(-90)\" text-anchor=\"middle\">"
       "ns per particle-step</text>\n",
-      (top + bottom) / 2);
+      (chart_frame.top + chart_frame.bottom) / 2);
   return out;
 }
 
@@ -135,19 +125,18 @@ std::string curve(const Axes& axes, const std::vector<Point>& points, const Styl
 
 std::string legend(const std::vector<Style>& shown) {
   std::string out;
-  double y = top + 16;
+  double y = chart_frame.top + 16;
   for (const Style& style : shown) {
-    out += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"22\" height=\"10\" fill=\"{}\"/>\n", right + 24, y - 10,
-                       style.colour);
-    out += text(right + 54, y, "start", style.label);
+    out += svg::rectangle(chart_frame.right + 24, y - 10, 22, 10, style.colour);
+    out += svg::text(chart_frame.right + 54, y, "start", style.label);
     y += 24;
   }
   y += 8;
   for (const bool deforms : {false, true}) {
     out += fmt::format(
         "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#222\" stroke-width=\"2\"{}/>\n",
-        right + 20, y - 5, right + 50, y - 5, deforms ? " stroke-dasharray=\"7 4\"" : "");
-    out += text(right + 54, y, "start", deforms ? "every vertex moving" : "standing still");
+        chart_frame.right + 20, y - 5, chart_frame.right + 50, y - 5, deforms ? " stroke-dasharray=\"7 4\"" : "");
+    out += svg::text(chart_frame.right + 54, y, "start", deforms ? "every vertex moving" : "standing still");
     y += 24;
   }
   return out;
@@ -164,11 +153,9 @@ std::string draw(std::span<const Row> rows, const Content& content) {
     shown.push_back(style);
     curves += curve(axes, still, style, false) + curve(axes, moving, style, true);
   }
-  return fmt::format(
-             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" font-family=\"sans-serif\" "
-             "font-size=\"14\" fill=\"#222\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
-             width, height) +
-         text(left, 32, "start", content.title) + grid(axes, content.unit) + curves + legend(shown) + "</svg>\n";
+  return svg::page(
+      chart_frame.width, chart_frame.height,
+      svg::text(chart_frame.left, 32, "start", content.title) + grid(axes, content.unit) + curves + legend(shown));
 }
 
 }  // namespace

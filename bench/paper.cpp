@@ -4,6 +4,7 @@
 #include "bench/competitors.hpp"
 #include "bench/paper_scheme.hpp"
 #include "bench/paper_scheme_2d.hpp"
+#include "dartcast/predicates.hpp"
 
 namespace dartcast::bench {
 

@@ -13,11 +13,14 @@
 #include "bench/chart.hpp"
 #include "bench/comparison.hpp"
 #include "bench/edits.hpp"
+#include "bench/latency.hpp"
 #include "bench/plan.hpp"
 #include "bench/report.hpp"
+#include "bench/run_parts.hpp"
 #include "bench/spheres.hpp"
 #include "commands.hpp"
 #include "dartcast/error.hpp"
+#include "dartcast/threads.hpp"
 #include "limits.hpp"
 
 namespace dartcast::app {
@@ -30,6 +33,9 @@ struct BenchArguments {
   bool json = false;
   bool edits = false;
   bool spheres = false;
+  bool latency = false;
+  bool runs = false;
+  bench::RunPartsOptions run_options;
   std::size_t max_spheres = 100000;
 };
 
@@ -55,7 +61,20 @@ int run_spheres(const BenchArguments& a) {
   return done;
 }
 
-int run(const BenchArguments& a) {
+int run_latency(const BenchArguments& a) {
+  bench::LatencyOptions options;
+  options.steps = a.plan.steps.value_or(options.steps);
+  const bench::Latency latency = bench::measure_latency(options);
+  const std::filesystem::path folder = a.folder;
+  std::filesystem::create_directories(folder);
+  write(folder / "latency.json", bench::latency_json(latency) + "\n");
+  write(folder / "latency.svg", bench::latency_svg(latency));
+  fmt::print("{}", a.json ? bench::latency_json(latency) + "\n"
+                          : fmt::format("{}output: {}\n", bench::latency_text(latency), a.folder));
+  return done;
+}
+
+int run_comparison(const BenchArguments& a) {
   const std::vector<bench::WorkloadOptions> plan = bench::plan(a.plan);
   std::filesystem::create_directories(a.folder);
   const std::vector<bench::PeerKind> kinds = bench::competitor_kinds();
@@ -78,6 +97,42 @@ int run(const BenchArguments& a) {
   return done;
 }
 
+int run_runs(const BenchArguments& a) {
+  bench::RunPartsOptions options = a.run_options;
+  options.command = std::filesystem::read_symlink("/proc/self/exe");
+  options.folder = a.folder;
+  options.steps = a.plan.steps;
+  const std::vector<bench::RunPairs> runs = bench::measure_runs(options);
+  write(options.folder / "run.json", bench::runs_json(runs) + "\n");
+  write(options.folder / "run.svg", bench::runs_svg(runs));
+  fmt::print("{}",
+             a.json ? bench::runs_json(runs) + "\n" : fmt::format("{}output: {}\n", bench::runs_text(runs), a.folder));
+  return done;
+}
+
+int run(const BenchArguments& a) {
+  if (a.edits) return run_edits(a.json);
+  if (a.spheres) return run_spheres(a);
+  if (a.latency) return run_latency(a);
+  if (a.runs) return run_runs(a);
+  return run_comparison(a);
+}
+
+void add_run_options(CLI::App& verb, BenchArguments& a) {
+  bench::RunPartsOptions& options = a.run_options;
+  CLI::Option* runs = verb.add_flag("--run", a.runs, "the time of the demo by part, and nothing else");
+  verb.add_option("SCENE", options.scene, "with --run: a scene in TOML, instead of the demo")->needs(runs);
+  verb.add_option("--against", options.against, "with --run: another dartcast command, which runs in turn with this")
+      ->needs(runs)
+      ->check(CLI::ExistingFile);
+  verb.add_option("--repeat", options.repeat, "with --run: runs of each command (3)")
+      ->needs(runs)
+      ->transform(whole_number(1, 1000));
+  verb.add_option("-j,--threads", options.threads, "with --run: threads (all the machine has)")
+      ->needs(runs)
+      ->transform(whole_number(1, max_threads()));
+}
+
 }  // namespace
 
 void add_bench(CLI::App& app, int& status) {
@@ -85,17 +140,17 @@ void add_bench(CLI::App& app, int& status) {
   CLI::App* verb = app.add_subcommand("bench", "Compare with bounding volume hierarchies on this machine.");
   verb->add_flag("--quick", a->plan.quick, "the main figures only, in under two minutes");
   verb->add_option("--only", a->plan.only, "workloads to run, as in W1,W3 (all)")->delimiter(',');
-  verb->add_option("--steps", a->plan.steps, "steps of a workload at most (15 to 1000)")
+  verb->add_option("--steps", a->plan.steps, "steps of a workload or scene at most (its own number)")
       ->transform(whole_number(1, 1000000));
-  verb->add_option("-o,--output", a->folder,
-                   "folder for bench.json, bench.csv, bench.svg and bench_plane.svg (bench-out)")
-      ->take_last();
+  verb->add_option("-o,--output", a->folder, "folder for tables and drawings (bench-out)")->take_last();
   verb->add_flag("--json", a->json, "print one JSON object, and nothing else");
   verb->add_flag("--edits", a->edits, "edits per second at 10^3 and 10^6 cells, and nothing else");
   verb->add_flag("--spheres", a->spheres, "what colliding spheres cost, 10^3 and more, and nothing else");
   verb->add_option("--most", a->max_spheres, "with --spheres: their largest number (1000 to 10^8; 100000)")
       ->transform(whole_number(1000, 100000000));
-  verb->callback([a, &status] { status = a->edits ? run_edits(a->json) : a->spheres ? run_spheres(*a) : run(*a); });
+  verb->add_flag("--latency", a->latency, "the time of single steps of a surgical scene, and nothing else");
+  add_run_options(*verb, *a);
+  verb->callback([a, &status] { status = run(*a); });
 }
 
 }  // namespace dartcast::app
