@@ -150,9 +150,13 @@ struct AdaptiveSubdivisionScene {
   AdaptiveSubdivisionOptions options;
 };
 
+/// Of the arrays in .vtp and .vtu files. `fast`: LZ4. `small`: zlib, which takes some ten times as long.
+enum class Compression : std::uint8_t { none, fast, small };
+
 struct OutputScene {
   std::uint64_t every = 10;  ///< steps between two frames; 0: none
   bool contacts = false;
+  Compression compression = Compression::none;
 };
 
 struct Scene {
