@@ -150,7 +150,7 @@ struct AdaptiveSubdivisionScene {
   AdaptiveSubdivisionOptions options;
 };
 
-/// Of the arrays in .vtp and .vtu files. `fast`: LZ4. `small`: zlib, which takes some ten times as long.
+/// How arrays stand in .vtp and .vtu files. `fast`: LZ4. `small`: zlib, smaller, but many times slower.
 enum class Compression : std::uint8_t { none, fast, small };
 
 struct OutputScene {

@@ -7,7 +7,7 @@
 
 namespace dartcast {
 
-/// What the name of a file ends with while it is written, to take its place when it is whole.
+/// The end of a file's name while it is written. A whole file gets its own name.
 inline constexpr std::string_view part_ending = ".part";
 
 /// Writes the pieces to a file, one after the other, over what it held. Throws Error where that fails.

@@ -24,7 +24,7 @@ constexpr std::array<std::uint8_t, 5> face_types = {0, 0, 3, 5, 9};             
 constexpr std::uint8_t polygon = 7;
 
 // Corners of cells and patch faces, one after the other, and where each ends.
-struct Corners {
+struct VtuCells {
   std::vector<std::uint32_t> ids;
   std::vector<std::int64_t> ends;
   std::vector<std::int64_t> faces;      // of polyhedra
@@ -37,7 +37,7 @@ struct Corners {
 };
 
 // A polyhedron's points, each once, and its faces.
-void add_polyhedron(std::span<const std::uint32_t> stream, Corners& to) {
+void add_polyhedron(std::span<const std::uint32_t> stream, VtuCells& to) {
   std::set<std::uint32_t> points;
   std::size_t at = 1;
   for (std::uint32_t f = 0; f < stream[0]; ++f) {
@@ -49,8 +49,8 @@ void add_polyhedron(std::span<const std::uint32_t> stream, Corners& to) {
   to.faces.insert(to.faces.end(), stream.begin(), stream.begin() + static_cast<std::ptrdiff_t>(at));
 }
 
-Corners corners_of(const MeshData& mesh) {
-  Corners to;
+VtuCells corners_of(const MeshData& mesh) {
+  VtuCells to;
   to.ids.reserve(mesh.connectivity.size() + mesh.patch_faces.size());
   for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
     const auto corners = mesh.cell(c);
@@ -99,7 +99,7 @@ std::vector<XmlArray> cells_of(const Mesh& mesh) {
     arrays.emplace_back("types", types_of(*mesh));
     return arrays;
   }
-  Corners corners = corners_of(*mesh);
+  VtuCells corners = corners_of(*mesh);
   arrays.emplace_back("connectivity", std::move(corners.ids));
   arrays.emplace_back("offsets", std::move(corners.ends));
   arrays.emplace_back("types", types_of(*mesh));

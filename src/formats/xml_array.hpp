@@ -54,7 +54,7 @@ class XmlArray {
   [[nodiscard]] std::string_view type() const { return type_; }
   [[nodiscard]] std::size_t components() const { return components_; }
   [[nodiscard]] std::string_view bytes() const { return bytes_; }
-  /// Of field data; 0: as many as its place in the file says.
+  /// The number of items in field data; 0: as many as the array's section says.
   [[nodiscard]] std::size_t tuples() const { return tuples_; }
   void set_tuples(std::size_t tuples) { tuples_ = tuples; }
 

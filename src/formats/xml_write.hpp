@@ -25,11 +25,11 @@ struct XmlDataSet {
 
   /// Precondition: there is one of this name.
   [[nodiscard]] XmlSection& section(std::string_view name);
-  /// Of all arrays.
+  /// The bytes that the arrays of all sections hold.
   [[nodiscard]] std::size_t bytes() const;
 };
 
-/// How a file comes to its name: write_pieces() or replace_file().
+/// write_pieces() or replace_file().
 using WritePieces = void (*)(const std::filesystem::path& path, std::span<const std::string_view> pieces);
 
 /// Throws Error where the file cannot be written.

@@ -79,13 +79,37 @@ VtpFile particles_file(const Simulation& simulation) {
   return file;
 }
 
-// The checkpoint first: no run goes on without its files. The table stays until the new one takes its place: by it the
-// folder is known as a run's.
-void remove_earlier_run(const fs::path& folder) {
-  fs::remove(folder / "checkpoint.bin");
+// A copy of the names: the folder changes while they are used.
+std::vector<std::string> run_files(const fs::path& folder) {
+  std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename();
-    if (entry.is_regular_file() && is_run_file(name) && name != "stats.csv") fs::remove(entry.path());
+    if (entry.is_regular_file() && is_run_file(name)) names.push_back(name);
+  }
+  return names;
+}
+
+// The checkpoint goes first: no run goes on without its files. Then the lists go, before the frames that they name. The
+// table stays until the new one takes its place: by it the folder is known as a run's.
+void remove_earlier_run(const fs::path& folder) {
+  fs::remove(folder / "checkpoint.bin");
+  const std::vector<std::string> names = run_files(folder);
+  for (const std::string& name : names) {
+    if (name.ends_with(".pvd")) fs::remove(folder / name);
+  }
+  for (const std::string& name : names) {
+    if (name != "stats.csv") fs::remove(folder / name);
+  }
+}
+
+void remove_later_frames(const fs::path& folder, const std::set<std::uint64_t>& kept) {
+  const std::vector<std::string> names = run_files(folder);
+  for (const std::string& name : names) {
+    if (name.ends_with(".pvd")) keep_in_pvd(folder / name, kept);
+  }
+  for (const std::string& name : names) {
+    const auto step = frame_step(name);
+    if (is_part_of_run_file(name) || (step && !kept.contains(*step))) fs::remove(folder / name);
   }
 }
 
@@ -132,11 +156,7 @@ Recording::Recording(WritingThread& writing, Options options, EnvironmentRecord 
   if (options_.changes) environment_ = std::move(record);
   std::set<std::uint64_t> kept;
   for (const RecordingFrame& frame : frames_) kept.insert(frame.step);
-  for (const auto& entry : fs::directory_iterator(options_.folder)) {
-    const std::string name = entry.path().filename();
-    const auto step = frame_step(name);
-    if (is_part_of_run_file(name) || (step && !kept.contains(*step))) fs::remove(entry.path());
-  }
+  remove_later_frames(options_.folder, kept);
 }
 
 void Recording::update_after_edit(const Environment& environment) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "dartcast/error.hpp"
+#include "formats/file_text.hpp"
 #include "formats/file_write.hpp"
 
 namespace dartcast {
@@ -93,6 +94,24 @@ void write_pvd(const fs::path& path, std::span<const RecordingFrame> frames,
   text += " </Collection>\n</VTKFile>\n";
   const std::string_view whole = text;
   replace_file(path, {&whole, 1});
+}
+
+void keep_in_pvd(const fs::path& path, const std::set<std::uint64_t>& kept) {
+  static constexpr std::string_view start = "file=\"";
+  const std::string before = read_bytes(path);
+  std::string after;
+  for (std::size_t at = 0; at < before.size();) {
+    const std::size_t end = std::min(before.find('\n', at), before.size() - 1) + 1;
+    const std::string_view line = std::string_view(before).substr(at, end - at);
+    const std::size_t name = line.find(start);
+    const auto step = name == std::string_view::npos
+                          ? std::nullopt
+                          : frame_step(line.substr(name + start.size(), line.rfind('"') - name - start.size()));
+    if (!step || kept.contains(*step)) after += line;
+    at = end;
+  }
+  const std::string_view whole = after;
+  if (after != before) replace_file(path, {&whole, 1});
 }
 
 RunTable::RunTable(fs::path path, std::string_view header) : path_(std::move(path)), bytes_(header.size() + 1) {

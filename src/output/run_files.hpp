@@ -8,6 +8,7 @@
 #include <functional>
 #include <iterator>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -37,6 +38,9 @@ bool is_part_of_run_file(std::string_view name);
 /// A collection for ParaView, in place of the one before: a file per frame.
 void write_pvd(const std::filesystem::path& path, std::span<const RecordingFrame> frames,
                const std::function<std::string(std::uint64_t step)>& name);
+
+/// Takes the frames of other steps than `kept` out of a list.
+void keep_in_pvd(const std::filesystem::path& path, const std::set<std::uint64_t>& kept);
 
 /// A table that rows are added to in memory, and which a thread writes.
 class RunTable {

@@ -81,7 +81,7 @@ void WritingThread::work() {
   }
 }
 
-// What the job threw. The job's memory is free when this returns.
+// Returns the exception that the job threw, if any. The job's memory is free then.
 std::exception_ptr WritingThread::run(Job job, double& seconds) {
   const ScopeTimer timer(seconds);
   try {

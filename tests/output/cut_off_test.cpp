@@ -1,4 +1,4 @@
-// Runs that are killed, and disks that are full: what is left is whole, and a run goes on from it.
+// Runs that are killed, and disks that are full: the files that remain are whole, and a run goes on from them.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
