@@ -63,7 +63,9 @@ target_link_libraries(dartcast_simulation PUBLIC dartcast_core)
 if(DARTCAST_IO)
   list(APPEND DARTCAST_LIBRARIES io)
   list(APPEND io_headers dartcast)  # the header that includes all others
-  add_dartcast_library(io $<BUILD_INTERFACE:nlohmann_json::nlohmann_json> fmt::fmt tomlplusplus::tomlplusplus ${DARTCAST_VTK})
+  add_dartcast_library(io $<BUILD_INTERFACE:nlohmann_json::nlohmann_json> fmt::fmt tomlplusplus::tomlplusplus ${DARTCAST_VTK}
+                       ZLIB::ZLIB ${LZ4_LIBRARY})
+  target_include_directories(dartcast_io PRIVATE ${LZ4_INCLUDE_DIR})
   target_link_libraries(dartcast_io PUBLIC dartcast_simulation)
 endif()
 

@@ -48,6 +48,7 @@ MOST_LINES = 400
 # Third-party headers, and the rooms that may include them; never in public headers, for users need only our own.
 THIRD_PARTY = [
     (re.compile(r"^vtk"), {"formats"}),
+    (re.compile(r"^(lz4|zlib)\.h"), {"formats"}),
     (re.compile(r"^(tbb|oneapi)/"), {"base"}),
     (re.compile(r"^(Eigen|boost|fmt)/"), set(ROOMS)),
     (re.compile(r"^nlohmann/"), {"output"}),

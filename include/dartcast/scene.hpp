@@ -171,9 +171,13 @@ struct AdaptiveSubdivisionScene {
   AdaptiveSubdivisionOptions options;
 };
 
+/// How arrays stand in .vtp and .vtu files. `fast`: LZ4. `small`: zlib, smaller, but many times slower.
+enum class Compression : std::uint8_t { none, fast, small };
+
 struct OutputScene {
   std::uint64_t every = 10;  ///< steps between two frames; 0: none
   bool contacts = false;
+  Compression compression = Compression::none;
 };
 
 struct Scene {

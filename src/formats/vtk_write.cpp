@@ -1,4 +1,4 @@
-// Writes .vtu and legacy .vtk: a VTK grid from the mesh, then VTK's writer.
+// Writes legacy .vtk: a VTK grid from the mesh, then VTK's writer.
 #include <fmt/format.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -9,10 +9,8 @@
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkSmartPointer.h>
-#include <vtkStringArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkUnstructuredGridWriter.h>
-#include <vtkXMLUnstructuredGridWriter.h>
 
 #include <algorithm>
 #include <array>
@@ -76,12 +74,6 @@ void add_array(vtkFieldData& to, const DataArray& from, vtkIdType items) {
   to.AddArray(array);
 }
 
-// Whether the mesh's own data of its cells replace an array of this name.
-bool is_replaced(const MeshData& mesh, const std::string& cell_array) {
-  return (cell_array == "region" && !mesh.regions.empty()) || (cell_array == "free" && !mesh.free.empty()) ||
-         (cell_array == "patch" && !mesh.patch_tags.empty());
-}
-
 /// Adds regions at the cells, and tags of patches at the patch faces, which come after them.
 void add_tags(const MeshData& mesh, vtkUnstructuredGrid& grid) {
   const auto add = [&](const char* name, auto&& cell_tag, auto&& face_tag) {
@@ -96,14 +88,6 @@ void add_tags(const MeshData& mesh, vtkUnstructuredGrid& grid) {
     add(
         "region", [&](std::size_t c) { return mesh.regions[c]; }, none);
   if (!mesh.patch_tags.empty()) add("patch", none, [&](std::size_t f) { return mesh.patch_tags[f]; });
-}
-
-void add_names(vtkUnstructuredGrid& grid, const char* array_name, const std::map<std::int32_t, std::string>& names) {
-  if (names.empty()) return;
-  vtkNew<vtkStringArray> array;
-  array->SetName(array_name);
-  for (const auto& [tag, name] : names) array->InsertNextValue(fmt::format("{} {}", tag, name));
-  grid.GetFieldData()->AddArray(array);
 }
 
 vtkSmartPointer<vtkUnstructuredGrid> make_grid(const MeshData& mesh) {
@@ -129,33 +113,24 @@ vtkSmartPointer<vtkUnstructuredGrid> make_grid(const MeshData& mesh) {
   return grid;
 }
 
-template <class Writer>
-void write_with(Writer& writer, vtkUnstructuredGrid& grid, const std::filesystem::path& path) {
+}  // namespace
+
+bool is_replaced(const MeshData& mesh, const std::string& cell_array) {
+  return (cell_array == "region" && !mesh.regions.empty()) || (cell_array == "free" && !mesh.free.empty()) ||
+         (cell_array == "patch" && !mesh.patch_tags.empty());
+}
+
+void write_legacy_vtk(const MeshData& mesh, const std::filesystem::path& path) {
   const VtkErrors errors;
-  writer.SetFileName(path.c_str());
-  writer.SetInputData(&grid);
-  if (writer.Write() != 1 || writer.GetErrorCode() != 0 || !errors.first().empty()) {
+  vtkNew<vtkUnstructuredGridWriter> writer;
+  writer->SetFileTypeToBinary();
+  writer->SetFileName(path.c_str());
+  writer->SetInputData(make_grid(mesh));
+  if (writer->Write() != 1 || writer->GetErrorCode() != 0 || !errors.first().empty()) {
     throw Error(fmt::format(
         "{}: the file cannot be written; {}", path.string(),
         errors.first().empty() ? "check the folder, its permissions and the disk's space" : errors.first()));
   }
-}
-
-}  // namespace
-
-void write_vtu(const MeshData& mesh, const std::filesystem::path& path) {
-  const auto grid = make_grid(mesh);
-  add_names(*grid, "region_names", mesh.region_names);
-  add_names(*grid, "patch_names", mesh.patch_names);
-  vtkNew<vtkXMLUnstructuredGridWriter> writer;
-  write_with(*writer, *grid, path);
-}
-
-void write_legacy_vtk(const MeshData& mesh, const std::filesystem::path& path) {
-  const auto grid = make_grid(mesh);
-  vtkNew<vtkUnstructuredGridWriter> writer;
-  writer->SetFileTypeToBinary();
-  write_with(*writer, *grid, path);
 }
 
 }  // namespace dartcast

@@ -1,97 +1,54 @@
-// Writes points, lines and polygons with data as .vtp.
+// Makes .vtp files of points, lines and polygons with data.
 #include "formats/vtp_write.hpp"
 
-#include <fmt/format.h>
-#include <vtkCellArray.h>
-#include <vtkDoubleArray.h>
-#include <vtkPointData.h>
-#include <vtkPoints.h>
-#include <vtkUnsignedCharArray.h>
-#include <vtkXMLPolyDataWriter.h>
-
-#include "dartcast/error.hpp"
-#include "formats/vtk_errors.hpp"
+#include <algorithm>
+#include <numeric>
 
 namespace dartcast {
 
-VtpWriter::VtpWriter(std::size_t count, const std::function<Vec3(std::size_t)>& point) : count_(count) {
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(static_cast<vtkIdType>(count));
-  for (std::size_t i = 0; i < count; ++i) {
-    const Vec3 x = point(i);
-    points->SetPoint(static_cast<vtkIdType>(i), x.x, x.y, x.z);
+VtpFile::VtpFile(std::vector<Vec3> points) : count_(points.size()) {
+  data_ = {"PolyData", {{"NumberOfPoints", count_}}, {}, {{"PointData", {}}, {"CellData", {}}, {"Points", {}}}};
+  data_.section("Points").arrays.emplace_back("Points", std::move(points));
+  for (const auto& [section, attribute] : {std::pair("Verts", "NumberOfVerts"),
+                                           {"Lines", "NumberOfLines"},
+                                           {"Strips", "NumberOfStrips"},
+                                           {"Polys", "NumberOfPolys"}}) {
+    data_.counts.emplace_back(attribute, 0);
+    data_.sections.push_back({section, {}});
+    add_cells(section, {}, {});
   }
-  data_->SetPoints(points);
 }
 
-void VtpWriter::add_vertices() {
-  vtkNew<vtkCellArray> vertices;
-  for (std::size_t i = 0; i < count_; ++i) {
-    const auto id = static_cast<vtkIdType>(i);
-    vertices->InsertNextCell(1, &id);
-  }
-  data_->SetVerts(vertices);
+void VtpFile::add_cells(std::string_view section, std::vector<std::uint32_t> connectivity,
+                        std::vector<std::int64_t> offsets) {
+  const auto count =
+      std::find_if(data_.counts.begin(), data_.counts.end(), [&](const auto& c) { return c.first.ends_with(section); });
+  count->second = offsets.size();
+  std::vector<XmlArray>& arrays = data_.section(section).arrays;
+  arrays.clear();
+  arrays.emplace_back("connectivity", std::move(connectivity));
+  arrays.emplace_back("offsets", std::move(offsets));
 }
 
-void VtpWriter::add_line() {
-  vtkNew<vtkCellArray> lines;
-  if (count_ > 0) lines->InsertNextCell(static_cast<int>(count_));
-  for (std::size_t i = 0; i < count_; ++i) lines->InsertCellPoint(static_cast<vtkIdType>(i));
-  data_->SetLines(lines);
+void VtpFile::add_vertices() {
+  std::vector<std::uint32_t> ids(count_);
+  std::vector<std::int64_t> ends(count_);
+  std::iota(ids.begin(), ids.end(), 0U);
+  std::iota(ends.begin(), ends.end(), 1);
+  add_cells("Verts", std::move(ids), std::move(ends));
 }
 
-void VtpWriter::add_polygons(std::span<const std::size_t> offsets, std::span<const std::uint32_t> corners) {
-  vtkNew<vtkCellArray> polygons;
-  for (std::size_t i = 0; i + 1 < offsets.size(); ++i) {
-    polygons->InsertNextCell(static_cast<int>(offsets[i + 1] - offsets[i]));
-    for (std::size_t k = offsets[i]; k < offsets[i + 1]; ++k) polygons->InsertCellPoint(corners[k]);
-  }
-  data_->SetPolys(polygons);
+void VtpFile::add_line() {
+  if (count_ == 0) return;
+  std::vector<std::uint32_t> ids(count_);
+  std::iota(ids.begin(), ids.end(), 0U);
+  add_cells("Lines", std::move(ids), {static_cast<std::int64_t>(count_)});
 }
 
-void VtpWriter::add(const std::string& name, const std::function<double(std::size_t)>& value) {
-  vtkNew<vtkDoubleArray> array;
-  array->SetName(name.c_str());
-  array->SetNumberOfTuples(static_cast<vtkIdType>(count_));
-  double* out = array->GetPointer(0);
-  for (std::size_t i = 0; i < count_; ++i) out[i] = value(i);
-  data_->GetPointData()->AddArray(array);
-}
-
-void VtpWriter::add_flags(const std::string& name, const std::function<bool(std::size_t)>& flag) {
-  vtkNew<vtkUnsignedCharArray> array;
-  array->SetName(name.c_str());
-  array->SetNumberOfTuples(static_cast<vtkIdType>(count_));
-  unsigned char* out = array->GetPointer(0);
-  for (std::size_t i = 0; i < count_; ++i) out[i] = flag(i) ? 1 : 0;
-  data_->GetPointData()->AddArray(array);
-}
-
-void VtpWriter::add_vectors(const std::string& name, const std::function<Vec3(std::size_t)>& value) {
-  vtkNew<vtkDoubleArray> array;
-  array->SetName(name.c_str());
-  array->SetNumberOfComponents(3);
-  array->SetNumberOfTuples(static_cast<vtkIdType>(count_));
-  double* out = array->GetPointer(0);
-  for (std::size_t i = 0; i < count_; ++i) {
-    const Vec3 v = value(i);
-    out[3 * i] = v.x;
-    out[3 * i + 1] = v.y;
-    out[3 * i + 2] = v.z;
-  }
-  data_->GetPointData()->AddArray(array);
-}
-
-void VtpWriter::write(const std::filesystem::path& path) const {
-  const VtkErrors errors;
-  vtkNew<vtkXMLPolyDataWriter> writer;
-  writer->SetFileName(path.c_str());
-  writer->SetInputData(data_);
-  writer->EncodeAppendedDataOff();
-  if (writer->Write() != 1 || writer->GetErrorCode() != 0 || !errors.first().empty()) {
-    throw Error(fmt::format("{}: the file cannot be written; check the folder and the disk's space", path.string()));
-  }
+void VtpFile::add_polygons(std::span<const std::size_t> offsets, std::span<const std::uint32_t> corners) {
+  std::vector<std::int64_t> ends;
+  for (std::size_t i = 1; i < offsets.size(); ++i) ends.push_back(static_cast<std::int64_t>(offsets[i]));
+  add_cells("Polys", {corners.begin(), corners.end()}, std::move(ends));
 }
 
 }  // namespace dartcast

@@ -1,24 +1,22 @@
-// Points with data, lines and polygons, as a .vtp file that VTK writes.
+// Points with data, lines and polygons, as a .vtp file.
 #pragma once
-
-#include <vtkNew.h>
-#include <vtkPolyData.h>
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
-#include <functional>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "dartcast/vec3.hpp"
+#include "formats/xml_write.hpp"
 
 namespace dartcast {
 
-/// A file under construction: points first, then lines and polygons, then data. Float64, flags UInt8.
-class VtpWriter {
+/// A file under construction: points first, then lines and polygons, then data.
+class VtpFile {
  public:
-  VtpWriter(std::size_t count, const std::function<Vec3(std::size_t)>& point);
+  explicit VtpFile(std::vector<Vec3> points);
 
   /// Makes every point visible.
   void add_vertices();
@@ -26,18 +24,19 @@ class VtpWriter {
   void add_line();
   /// Polygons: corners of one after the other, polygon i from offsets[i] to offsets[i + 1].
   void add_polygons(std::span<const std::size_t> offsets, std::span<const std::uint32_t> corners);
+  /// A value for each point.
+  template <class T>
+  void add(std::string name, std::vector<T> values) {
+    data_.section("PointData").arrays.emplace_back(std::move(name), std::move(values));
+  }
 
-  void add(const std::string& name, const std::function<double(std::size_t)>& value);
-  /// 0 or 1.
-  void add_flags(const std::string& name, const std::function<bool(std::size_t)>& flag);
-  void add_vectors(const std::string& name, const std::function<Vec3(std::size_t)>& value);
-
-  /// Throws Error where the file cannot be written.
-  void write(const std::filesystem::path& path) const;
+  [[nodiscard]] const XmlDataSet& data() const { return data_; }
 
  private:
+  void add_cells(std::string_view section, std::vector<std::uint32_t> connectivity, std::vector<std::int64_t> offsets);
+
   std::size_t count_;
-  vtkNew<vtkPolyData> data_;
+  XmlDataSet data_;
 };
 
 }  // namespace dartcast

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <fstream>
 #include <string>
 #include <system_error>
 
@@ -11,15 +10,6 @@
 #include "formats/format_table.hpp"
 
 namespace dartcast {
-
-void write_bytes(const std::filesystem::path& path, std::string_view bytes) {
-  std::ofstream out(path, std::ios::binary | std::ios::trunc);
-  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  out.close();
-  if (!out)
-    throw Error(fmt::format("{}: the file cannot be written; check the folder, its permissions and the disk's space",
-                            path.string()));
-}
 
 namespace {
 

@@ -4,15 +4,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <span>
 #include <string_view>
 #include <type_traits>
 
 #include "dartcast/error.hpp"
-#include "dartcast/mesh_files.hpp"
 #include "dartcast/run.hpp"
 #include "formats/file_text.hpp"
+#include "formats/file_write.hpp"
 
 namespace dartcast {
 
@@ -319,19 +320,15 @@ RunIdentity run_identity(const std::string& scene_text, const MeshData& mesh, st
   return {version(), digest(scene_text), cells, seed};
 }
 
-void write_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint) {
+void write_checkpoint(const std::filesystem::path& path, Checkpoint& checkpoint) {
   CheckpointWriter body;
-  Checkpoint copy = checkpoint;  // the list of fields is one for reading and writing
-  fields(body, copy);
+  fields(body, checkpoint);
   CheckpointWriter head;
   std::uint64_t mark = magic;
   std::uint64_t sum = digest(body.text());
   values(head, mark, sum);
-  const std::filesystem::path beside = path.string() + ".new";
-  write_bytes(beside, head.text() + body.text());
-  std::error_code error;
-  std::filesystem::rename(beside, path, error);
-  if (error) throw Error(fmt::format("{}: the file cannot be written: {}", path.string(), error.message()));
+  const std::array<std::string_view, 2> pieces = {head.text(), body.text()};
+  replace_file(path, pieces);
 }
 
 std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& path, const RunIdentity& run) {

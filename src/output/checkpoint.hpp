@@ -33,8 +33,9 @@ struct Checkpoint {
 };
 
 /// Writes the file beside its place and then puts it there: whenever a run is cut off, a whole checkpoint is left.
-/// Throws Error where it cannot be written.
-void write_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint);
+/// Throws Error where it cannot be written. `checkpoint`: stays as it is, although the list of its fields, which is one
+/// for reading and writing, does not say so.
+void write_checkpoint(const std::filesystem::path& path, Checkpoint& checkpoint);
 
 /// None where there is no such file. Throws Error where it is damaged, or of a run that differs from `run`: says in
 /// what.

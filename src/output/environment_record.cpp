@@ -1,12 +1,13 @@
-// Writes the environment, with the arrays of its input file, after moves and edits.
+// Makes data sets of the environment, with the arrays of its input file, after moves and edits.
 #include "output/environment_record.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/complex_edit.hpp"
-#include "formats/vtk_mesh.hpp"
+#include "formats/vtu_write.hpp"
 
 namespace dartcast {
 
@@ -14,11 +15,19 @@ namespace {
 
 constexpr const char* source_name = "source";
 
-DataArray source_array(const MeshData& mesh) {
-  DataArray array{source_name, 1, std::vector<double>(mesh.cell_count())};
-  for (std::size_t c = 0; c < mesh.cell_count(); ++c)
-    array.values[c] = static_cast<double>(mesh.source.empty() ? c : mesh.source[c]);
-  return array;
+XmlArray source_array(const MeshData& mesh) {
+  std::vector<std::uint32_t> source = mesh.source;
+  if (source.empty()) {
+    source.resize(mesh.cell_count());
+    std::iota(source.begin(), source.end(), 0U);
+  }
+  return {source_name, std::move(source)};
+}
+
+XmlDataSet with_source(const std::shared_ptr<const MeshData>& mesh) {
+  XmlDataSet data = vtu_data_set(mesh);
+  data.section("CellData").arrays.push_back(source_array(*mesh));
+  return data;
 }
 
 // Item i has the values of `from`'s item row(i).
@@ -49,32 +58,53 @@ void follow_edit(const ComplexEditReport& edit, std::size_t size, DataArray& arr
 
 }  // namespace
 
-EnvironmentRecord::EnvironmentRecord(MeshData mesh) : mesh_(std::move(mesh)) {
-  mesh_.patch_faces.clear();
-  mesh_.patch_offsets = {0};
-  mesh_.patch_tags.clear();
-  mesh_.patch_names.clear();
-  for (std::uint32_t c = 0; c < mesh_.source.size(); ++c) {
-    const std::uint32_t source = mesh_.source[c];
+EnvironmentRecord::EnvironmentRecord(MeshData mesh) {
+  mesh.patch_faces.clear();
+  mesh.patch_offsets = {0};
+  mesh.patch_tags.clear();
+  mesh.patch_names.clear();
+  for (std::uint32_t c = 0; c < mesh.source.size(); ++c) {
+    const std::uint32_t source = mesh.source[c];
     if (source >= row_of_.size()) row_of_.resize(source + std::size_t{1});
     row_of_[source] = c;
   }
-  std::erase_if(mesh_.cell_data, [](const DataArray& a) { return a.name == source_name; });
-  mesh_.cell_data.push_back(source_array(mesh_));
+  std::erase_if(mesh.cell_data, [](const DataArray& a) { return a.name == source_name; });
+  mesh_ = std::make_shared<const MeshData>(std::move(mesh));
 }
 
 void EnvironmentRecord::update_after_edit(const Environment& environment) {
-  for (DataArray& array : mesh_.point_data)
+  if (!at_vertices_) at_vertices_ = mesh_->point_data;
+  for (DataArray& array : *at_vertices_)
     follow_edit(environment.last_edit(), environment.complex().positions().size(), array);
 }
 
-void EnvironmentRecord::write_at_rest(const std::filesystem::path& file) const { write_vtu(mesh_, file); }
+XmlDataSet EnvironmentRecord::at_rest() const { return with_source(mesh_); }
 
-void EnvironmentRecord::write(const Environment& environment, const std::filesystem::path& file) {
-  if (environment.edit_count() > 0) return write_edited(environment.complex(), file);
+void EnvironmentRecord::keep(std::shared_ptr<const MeshData> mesh) {
+  kept_ = with_source(mesh);
+  kept_->section("Points").arrays.clear();
+  for (XmlSection& section : kept_->sections) {
+    for (XmlArray& array : section.arrays) array.keep();
+  }
+}
+
+XmlDataSet EnvironmentRecord::data_set(const Environment& environment) {
+  const std::uint64_t edits = environment.edit_count();
+  if (!kept_ || edits_ != edits) {
+    edits_ = edits;
+    keep(edits == 0 ? mesh_ : std::make_shared<const MeshData>(edited_mesh(environment.complex())));
+  }
   const std::span<const Vec3> positions = environment.positions();
-  mesh_.points.assign(positions.begin(), positions.end());
-  write_vtu(mesh_, file);
+  std::vector<Vec3> points;
+  if (edits == 0) {
+    points.assign(positions.begin(), positions.end());
+  } else {
+    points.reserve(vertices_.size());
+    for (const Vertex v : vertices_) points.push_back(positions[v.value]);
+  }
+  XmlDataSet data = *kept_;
+  data.section("Points").arrays.emplace_back("Points", std::move(points));
+  return data;
 }
 
 // The rows of mesh_ that the cells came from.
@@ -86,19 +116,18 @@ std::vector<std::size_t> EnvironmentRecord::rows(const MeshData& edited) const {
   return rows;
 }
 
-void EnvironmentRecord::write_edited(const CellComplex& complex, const std::filesystem::path& file) const {
-  std::vector<Vertex> vertices;
-  MeshData mesh = to_mesh(complex, &vertices);
+MeshData EnvironmentRecord::edited_mesh(const CellComplex& complex) {
+  MeshData mesh = to_mesh(complex, &vertices_);
   const std::vector<std::size_t> from = rows(mesh);
-  mesh.region_names = mesh_.region_names;
-  if (!mesh_.regions.empty()) {
-    for (const std::size_t row : from) mesh.regions.push_back(mesh_.regions[row]);
+  mesh.region_names = mesh_->region_names;
+  if (!mesh_->regions.empty()) {
+    for (const std::size_t row : from) mesh.regions.push_back(mesh_->regions[row]);
   }
-  for (const DataArray& a : mesh_.cell_data)
+  for (const DataArray& a : mesh_->cell_data)
     mesh.cell_data.push_back(gathered(a, from.size(), [&](std::size_t c) { return from[c]; }));
-  for (const DataArray& a : mesh_.point_data)
-    mesh.point_data.push_back(gathered(a, vertices.size(), [&](std::size_t i) { return vertices[i].value; }));
-  write_vtu(mesh, file);
+  for (const DataArray& a : at_vertices_ ? *at_vertices_ : mesh_->point_data)
+    mesh.point_data.push_back(gathered(a, vertices_.size(), [&](std::size_t i) { return vertices_[i].value; }));
+  return mesh;
 }
 
 }  // namespace dartcast

@@ -3,15 +3,17 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "dartcast/environment.hpp"
 #include "dartcast/mesh_data.hpp"
+#include "formats/xml_write.hpp"
 
 namespace dartcast {
 
-/// Keeps the cells, regions and arrays of a mesh, and writes them at the environment's positions. Cells also get
+/// Keeps the cells, regions and arrays of a mesh, and gives them at the environment's positions. Cells also get
 /// `free`, and `source`: the cell's index in the input file, which particles have as `cell`; an array of that name in
 /// the input is replaced. After edits a cell has the values of the input cell that it came from, and a point that an
 /// edit made the weighted mean of those that it was made between.
@@ -24,16 +26,22 @@ class EnvironmentRecord {
   void update_after_edit(const Environment& environment);
 
   /// As it is in the mesh.
-  void write_at_rest(const std::filesystem::path& file) const;
-  /// As it is now. Throws Error where the file cannot be written. Cost: linear.
-  void write(const Environment& environment, const std::filesystem::path& file);
+  [[nodiscard]] XmlDataSet at_rest() const;
+  /// As it is now: with a copy of the positions, and arrays that all data sets share until the next edit. They must be
+  /// written with the same compression, by one thread at a time. Cost: that of the copy; after an edit linear.
+  [[nodiscard]] XmlDataSet data_set(const Environment& environment);
 
  private:
-  void write_edited(const CellComplex& complex, const std::filesystem::path& file) const;
+  [[nodiscard]] MeshData edited_mesh(const CellComplex& complex);
   [[nodiscard]] std::vector<std::size_t> rows(const MeshData& edited) const;
+  void keep(std::shared_ptr<const MeshData> mesh);
 
-  MeshData mesh_;                      // without patches
-  std::vector<std::uint32_t> row_of_;  // by index in the input file; empty: the index itself
+  std::shared_ptr<const MeshData> mesh_;               // without patches
+  std::vector<std::uint32_t> row_of_;                  // by index in the input file; empty: the index itself
+  std::optional<std::vector<DataArray>> at_vertices_;  // mesh_'s arrays at points, since the first edit
+  std::optional<XmlDataSet> kept_;                     // without the points
+  std::vector<Vertex> vertices_;                       // of its points
+  std::uint64_t edits_ = 0;                            // that it has followed
 };
 
 }  // namespace dartcast

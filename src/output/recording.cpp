@@ -2,9 +2,10 @@
 #include "output/recording.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 
 #include <algorithm>
+#include <array>
+#include <fstream>
 #include <set>
 #include <span>
 #include <string>
@@ -13,7 +14,9 @@
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_files.hpp"
 #include "dartcast/particle_state.hpp"
+#include "formats/file_write.hpp"
 #include "formats/vtp_write.hpp"
+#include "output/frame_files.hpp"
 #include "output/run_files.hpp"
 #include "output/run_lock.hpp"
 
@@ -44,6 +47,72 @@ Kind kind_of(const CellComplex& complex, const ParticleState& s) {
   return s.held ? Kind::volume : forecast(complex.map(), s, complex.corners(s.at())).kind;
 }
 
+// The value of each particle.
+template <class Value>
+auto each(std::size_t count, Value&& value) {
+  std::vector<decltype(value(std::size_t{}))> values(count);
+  for (std::size_t i = 0; i < count; ++i) values[i] = value(i);
+  return values;
+}
+
+template <class T>
+std::vector<T> copy(std::span<const T> values) {
+  return {values.begin(), values.end()};
+}
+
+VtpFile particles_file(const Simulation& simulation) {
+  const Particles& particles = simulation.particles();
+  const CellComplex& complex = simulation.environment().complex();
+  const std::size_t n = particles.size();
+  VtpFile file(each(n, [&](std::size_t i) { return particles[i].position; }));
+  file.add_vertices();
+  file.add("id", copy(simulation.ids()));
+  file.add("radius", copy(simulation.radii()));
+  file.add("velocity", copy(simulation.velocities()));
+  file.add("cell", each(n, [&](std::size_t i) { return complex.map().source(particles[i].cell); }));
+  file.add("kind", each(n, [&](std::size_t i) { return static_cast<std::uint8_t>(kind_of(complex, particles[i])); }));
+  file.add("held", copy(simulation.held()));
+  file.add("contacts", copy(simulation.contact_counts()));
+  const std::vector<std::string>& names = simulation.options().user_data;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    file.add(names[k], each(n, [&](std::size_t i) { return simulation.user_data(i)[k]; }));
+  return file;
+}
+
+// A copy of the names: the folder changes while they are used.
+std::vector<std::string> run_files(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename();
+    if (entry.is_regular_file() && is_run_file(name)) names.push_back(name);
+  }
+  return names;
+}
+
+// The checkpoint goes first: no run goes on without its files. Then the lists go, before the frames that they name. The
+// table stays until the new one takes its place: by it the folder is known as a run's.
+void remove_earlier_run(const fs::path& folder) {
+  fs::remove(folder / "checkpoint.bin");
+  const std::vector<std::string> names = run_files(folder);
+  for (const std::string& name : names) {
+    if (name.ends_with(".pvd")) fs::remove(folder / name);
+  }
+  for (const std::string& name : names) {
+    if (name != "stats.csv") fs::remove(folder / name);
+  }
+}
+
+void remove_later_frames(const fs::path& folder, const std::set<std::uint64_t>& kept) {
+  const std::vector<std::string> names = run_files(folder);
+  for (const std::string& name : names) {
+    if (name.ends_with(".pvd")) keep_in_pvd(folder / name, kept);
+  }
+  for (const std::string& name : names) {
+    const auto step = frame_step(name);
+    if (is_part_of_run_file(name) || (step && !kept.contains(*step))) fs::remove(folder / name);
+  }
+}
+
 }  // namespace
 
 void check_output_folder(const fs::path& folder) {
@@ -51,8 +120,10 @@ void check_output_folder(const fs::path& folder) {
   if (!fs::is_directory(folder)) {
     throw Error(fmt::format("{}: this is a file; name a folder for the output with -o", folder.string()));
   }
-  const bool vacant = std::all_of(fs::directory_iterator(folder), fs::directory_iterator(),
-                                  [](const auto& entry) { return entry.path().filename() == run_lock_name; });
+  const bool vacant = std::all_of(fs::directory_iterator(folder), fs::directory_iterator(), [](const auto& entry) {
+    const std::string name = entry.path().filename();
+    return name == run_lock_name || is_part_of_run_file(name);
+  });
   if (vacant || holds_a_run(folder)) return;
   throw Error(fmt::format("{}: the folder holds other files than a run's; name another with -o", folder.string()));
 }
@@ -63,33 +134,29 @@ void make_output_folder(const fs::path& folder) {
   if (error) throw Error(fmt::format("{}: the folder cannot be made: {}", folder.string(), error.message()));
 }
 
-Recording::Recording(Options options, EnvironmentRecord record, const std::string& scene_text)
-    : options_(std::move(options)) {
+Recording::Recording(WritingThread& writing, Options options, EnvironmentRecord record, const std::string& scene_text)
+    : writing_(writing), options_(std::move(options)) {
   const fs::path& folder = options_.folder;
   check_output_folder(folder);
   make_output_folder(folder);
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.is_regular_file() && is_run_file(entry.path().filename().string())) fs::remove(entry.path());
-  }
+  remove_earlier_run(folder);
   stats_ = RunTable(folder / "stats.csv",
                     fmt::format("{}{}{}", stats_header, options_.surgery ? ",in_opened" : "", energy_header));
   if (options_.contacts) contacts_ = RunTable(folder / "contacts.csv", contacts_header);
   if (!scene_text.empty()) write_bytes(folder / "scene.toml", scene_text);
-  if (!options_.changes) record.write_at_rest(folder / "environment.vtu");
+  if (!options_.changes) write_frame_file(writing_, folder / "environment.vtu", record.at_rest(), options_.compression);
   if (options_.changes) environment_ = std::move(record);
 }
 
-Recording::Recording(Options options, EnvironmentRecord record, const RecordingProgress& progress)
-    : options_(std::move(options)), frames_(progress.frames) {
+Recording::Recording(WritingThread& writing, Options options, EnvironmentRecord record,
+                     const RecordingProgress& progress)
+    : writing_(writing), options_(std::move(options)), frames_(progress.frames) {
   stats_ = RunTable(options_.folder / "stats.csv", progress.stats_bytes);
   if (options_.contacts) contacts_ = RunTable(options_.folder / "contacts.csv", progress.contacts_bytes);
   if (options_.changes) environment_ = std::move(record);
   std::set<std::uint64_t> kept;
   for (const RecordingFrame& frame : frames_) kept.insert(frame.step);
-  for (const auto& entry : fs::directory_iterator(options_.folder)) {
-    const auto step = frame_step(entry.path().filename().string());
-    if (step && !kept.contains(*step)) fs::remove(entry.path());
-  }
+  remove_later_frames(options_.folder, kept);
 }
 
 void Recording::update_after_edit(const Environment& environment) {
@@ -97,55 +164,42 @@ void Recording::update_after_edit(const Environment& environment) {
 }
 
 void Recording::add_frame(const Simulation& simulation) {
-  write_particles(simulation, options_.folder / particles_name(simulation.steps()));
+  const std::uint64_t step = simulation.steps();
+  write_frame_file(writing_, options_.folder / particles_name(step), particles_file(simulation).data(),
+                   options_.compression);
   if (environment_)
-    environment_->write(simulation.environment(), options_.folder / environment_name(simulation.steps()));
-  if (frames_.empty() || frames_.back().step != simulation.steps())
-    frames_.push_back({simulation.steps(), simulation.time()});
+    write_frame_file(writing_, options_.folder / environment_name(step),
+                     environment_->data_set(simulation.environment()), options_.compression);
+  if (frames_.empty() || frames_.back().step != step) frames_.push_back({step, simulation.time()});
   write_lists();
 }
 
 void Recording::write_lists() const {
-  write_pvd(options_.folder / "particles.pvd", frames_, particles_name);
-  if (options_.changes) {
-    write_pvd(options_.folder / "environment.pvd", frames_, environment_name);
-  } else {
-    const RecordingFrame at_rest;
-    write_pvd(options_.folder / "environment.pvd", {&at_rest, 1}, [](std::uint64_t) { return "environment.vtu"; });
-  }
+  write_list(writing_, options_.folder / "particles.pvd", frames_, particles_name);
+  if (options_.changes) return write_list(writing_, options_.folder / "environment.pvd", frames_, environment_name);
+  const RecordingFrame at_rest;
+  write_list(writing_, options_.folder / "environment.pvd", {&at_rest, 1},
+             [](std::uint64_t) { return "environment.vtu"; });
 }
 
-RecordingProgress Recording::progress() { return {stats_.written(), contacts_.written(), frames_}; }
-
-void Recording::write_particles(const Simulation& simulation, const fs::path& path) const {
-  const Particles& particles = simulation.particles();
-  const CellComplex& complex = simulation.environment().complex();
-  VtpWriter file(particles.size(), [&](std::size_t i) { return particles[i].position; });
-  file.add_vertices();
-  file.add("id", [&](std::size_t i) { return static_cast<double>(simulation.ids()[i]); });
-  file.add("radius", [&](std::size_t i) { return simulation.radii()[i]; });
-  file.add_vectors("velocity", [&](std::size_t i) { return simulation.velocities()[i]; });
-  file.add("cell", [&](std::size_t i) { return static_cast<double>(complex.map().source(particles[i].cell)); });
-  file.add("kind", [&](std::size_t i) { return static_cast<double>(kind_of(complex, particles[i])); });
-  file.add_flags("held", [&](std::size_t i) { return simulation.held()[i] != 0; });
-  file.add("contacts", [&](std::size_t i) { return static_cast<double>(simulation.contact_counts()[i]); });
-  const std::vector<std::string>& names = simulation.options().user_data;
-  for (std::size_t k = 0; k < names.size(); ++k)
-    file.add(names[k], [&](std::size_t i) { return simulation.user_data(i)[k]; });
-  file.write(path);
+RecordingProgress Recording::progress() {
+  stats_.send(writing_);
+  contacts_.send(writing_);
+  return {stats_.bytes(), contacts_.bytes(), frames_};
 }
 
 void Recording::add_step(const Simulation& simulation, const SimulationStep& step, std::uint64_t in_opened) {
   const Counters& c = step.report.counters;
-  fmt::print(stats_.stream(), "{},{},{},{},{},{},{},{},{},{},{},{}", simulation.steps(), simulation.time(),
-             simulation.particles().size(), step.injected, step.absorbed, step.escaped, step.report.held.size(),
-             step.report.contacts.contacts.size(), c.orientation.tests, c.orientation.exact, c.forecast_kept,
-             c.updated_by_deformation);
-  if (options_.surgery) fmt::print(stats_.stream(), ",{}", in_opened);
+  stats_.print("{},{},{},{},{},{},{},{},{},{},{},{}", simulation.steps(), simulation.time(),
+               simulation.particles().size(), step.injected, step.absorbed, step.escaped, step.report.held.size(),
+               step.report.contacts.contacts.size(), c.orientation.tests, c.orientation.exact, c.forecast_kept,
+               c.updated_by_deformation);
+  if (options_.surgery) stats_.print(",{}", in_opened);
   const SimulationEnergy energy = simulation.energy();
-  fmt::print(stats_.stream(), ",{},{}\n", energy.kinetic, energy.potential);
+  stats_.print(",{},{}\n", energy.kinetic, energy.potential);
   if (options_.contacts) write_contacts(simulation, step);
-  stats_.check();
+  stats_.send_many(writing_);
+  contacts_.send_many(writing_);
 }
 
 void Recording::write_contacts(const Simulation& simulation, const SimulationStep& step) {
@@ -155,18 +209,12 @@ void Recording::write_contacts(const Simulation& simulation, const SimulationSte
   for (std::size_t i = 0; i < step.contact_ids.size(); ++i) {
     const Contact& c = step.report.contacts.contacts[i];
     const WallHit& wall = step.report.contacts.walls_of(c).front();
-    fmt::print(contacts_.stream(), "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", simulation.steps(),
-               simulation.time() - dt * (1.0 - c.time_of_impact), step.contact_ids[i],
-               kinds[static_cast<std::size_t>(c.kind)], map.patch_names()[wall.patch.value], map.source(wall.face.cell),
-               c.point.x, c.point.y, c.point.z, wall.normal.x, wall.normal.y, wall.normal.z, c.wall_displacement.x,
-               c.wall_displacement.y, c.wall_displacement.z);
+    contacts_.print("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", simulation.steps(),
+                    simulation.time() - dt * (1.0 - c.time_of_impact), step.contact_ids[i],
+                    kinds[static_cast<std::size_t>(c.kind)], map.patch_names()[wall.patch.value],
+                    map.source(wall.face.cell), c.point.x, c.point.y, c.point.z, wall.normal.x, wall.normal.y,
+                    wall.normal.z, c.wall_displacement.x, c.wall_displacement.y, c.wall_displacement.z);
   }
-}
-
-void Recording::finish(const std::string& summary_json) {
-  stats_.close();
-  contacts_.close();
-  write_bytes(options_.folder / "summary.json", summary_json + "\n");
 }
 
 }  // namespace dartcast

@@ -21,7 +21,8 @@ struct RecordingProgress {
 };
 
 /// Writes particles.pvd with a .vtp per frame, environment.pvd with a .vtu per frame (one where nothing changes),
-/// stats.csv, contacts.csv on request, scene.toml and summary.json. Every write throws Error where it fails.
+/// stats.csv, contacts.csv on request, and scene.toml. A thread writes what is added, in that order. Its errors are thrown
+/// by what adds next. The thread outlives this.
 class Recording {
  public:
   struct Options {
@@ -29,15 +30,16 @@ class Recording {
     bool changes = false;  ///< the environment: a frame of it at each time
     bool surgery = false;  ///< the table has a column for particles in opened cells
     bool contacts = false;
+    Compression compression = Compression::none;
   };
 
   /// Makes the folder, or takes over one that is empty or holds an earlier run, whose files are removed. Throws Error,
   /// nothing changed, where the folder holds anything else. `record`: of the environment at rest.
-  Recording(Options options, EnvironmentRecord record, const std::string& scene_text);
+  Recording(WritingThread& writing, Options options, EnvironmentRecord record, const std::string& scene_text);
 
   /// Goes on with the files of an earlier run: what was written to them after `progress` is taken back. Throws Error
   /// where a file is shorter than that. `record`: has followed the edits so far.
-  Recording(Options options, EnvironmentRecord record, const RecordingProgress& progress);
+  Recording(WritingThread& writing, Options options, EnvironmentRecord record, const RecordingProgress& progress);
 
   /// Adds the particles, and the environment where it deforms, as they are now.
   void add_frame(const Simulation& simulation);
@@ -46,16 +48,14 @@ class Recording {
   /// Adds a step's row to stats.csv, and its contacts. `in_opened`: see EventLog.
   void add_step(const Simulation& simulation, const SimulationStep& step, std::uint64_t in_opened = 0);
   [[nodiscard]] std::span<const RecordingFrame> frames() const { return frames_; }
-  /// Sends the tables to their files, and says how far they have come.
+  /// Leaves the rows of the tables to the thread, and says how far all will have come then.
   RecordingProgress progress();
-  /// Writes summary.json and ends the tables.
-  void finish(const std::string& summary_json);
 
  private:
-  void write_particles(const Simulation& simulation, const std::filesystem::path& path) const;
   void write_lists() const;
   void write_contacts(const Simulation& simulation, const SimulationStep& step);
 
+  WritingThread& writing_;
   Options options_;
   std::optional<EnvironmentRecord> environment_;  // where it changes
   RunTable stats_;

@@ -2,7 +2,6 @@
 #include "output/run_files.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 
 #include <algorithm>
 #include <array>
@@ -11,7 +10,8 @@
 #include <utility>
 
 #include "dartcast/error.hpp"
-#include "dartcast/mesh_files.hpp"
+#include "formats/file_text.hpp"
+#include "formats/file_write.hpp"
 
 namespace dartcast {
 
@@ -58,12 +58,17 @@ bool is_list(std::string_view name) {
 
 }  // namespace
 
-bool is_run_file(const std::string& name) {
+bool is_run_file(std::string_view name) {
+  if (is_part_of_run_file(name)) return true;
   static constexpr std::array<std::string_view, 10> fixed = {
       "summary.json", "stats.csv",  "particles.pvd",  "environment.pvd", "environment.vtu",
       "contacts.csv", "scene.toml", "checkpoint.bin", "bodies.csv",      "catheters.csv"};
   if (std::find(fixed.begin(), fixed.end(), name) != fixed.end()) return true;
   return is_list(name) || frame_step(name);
+}
+
+bool is_part_of_run_file(std::string_view name) {
+  return name.ends_with(part_ending) && is_run_file(name.substr(0, name.size() - part_ending.size()));
 }
 
 std::optional<std::uint64_t> frame_step(std::string_view name) {
@@ -86,38 +91,54 @@ void write_pvd(const fs::path& path, std::span<const RecordingFrame> frames,
   for (const RecordingFrame& frame : frames) {
     text += fmt::format("  <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", frame.time, name(frame.step));
   }
-  write_bytes(path, text + " </Collection>\n</VTKFile>\n");
+  text += " </Collection>\n</VTKFile>\n";
+  const std::string_view whole = text;
+  replace_file(path, {&whole, 1});
 }
 
-RunTable::RunTable(fs::path path, std::string_view header) : path_(std::move(path)), file_(path_, std::ios::binary) {
-  fmt::print(file_, "{}\n", header);
-  file_.flush();  // by it the folder is known as a run's, wherever that is cut off
-  if (!file_)
-    throw Error(fmt::format("{}: the file cannot be written; check the folder and its permissions", path_.string()));
+void keep_in_pvd(const fs::path& path, const std::set<std::uint64_t>& kept) {
+  static constexpr std::string_view start = "file=\"";
+  const std::string before = read_bytes(path);
+  std::string after;
+  for (std::size_t at = 0; at < before.size();) {
+    const std::size_t end = std::min(before.find('\n', at), before.size() - 1) + 1;
+    const std::string_view line = std::string_view(before).substr(at, end - at);
+    const std::size_t name = line.find(start);
+    const auto step = name == std::string_view::npos
+                          ? std::nullopt
+                          : frame_step(line.substr(name + start.size(), line.rfind('"') - name - start.size()));
+    if (!step || kept.contains(*step)) after += line;
+    at = end;
+  }
+  const std::string_view whole = after;
+  if (after != before) replace_file(path, {&whole, 1});
 }
 
-RunTable::RunTable(fs::path path, std::uint64_t bytes) : path_(std::move(path)) {
+RunTable::RunTable(fs::path path, std::string_view header) : path_(std::move(path)), bytes_(header.size() + 1) {
+  const std::array<std::string_view, 2> line = {header, "\n"};
+  replace_file(path_, line);  // by it the folder is known as a run's, wherever that is cut off
+}
+
+RunTable::RunTable(fs::path path, std::uint64_t bytes) : path_(std::move(path)), bytes_(bytes) {
   std::error_code error;
   if (fs::file_size(path_, error) < bytes || error)
     throw Error(
         fmt::format("{}: the file is shorter than when the checkpoint was made; run without --resume", path_.string()));
   fs::resize_file(path_, bytes, error);
-  file_.open(path_, std::ios::binary | std::ios::app);
-  if (error || !file_)
+  if (error)
     throw Error(fmt::format("{}: the file cannot be written; check the folder and its permissions", path_.string()));
 }
 
-void RunTable::check() {
-  if (!file_) throw Error(fmt::format("{}: the table cannot be written; check the disk's space", path_.string()));
+void RunTable::send(WritingThread& writing) {
+  if (rows_.empty()) return;
+  bytes_ += rows_.size();
+  const std::size_t size = rows_.size();
+  writing.add(size, [path = path_, rows = std::exchange(rows_, {})] { append_bytes(path, rows); });
 }
 
-std::uint64_t RunTable::written() { return file_.is_open() ? static_cast<std::uint64_t>(file_.flush().tellp()) : 0; }
-
-void RunTable::close() {
-  if (!file_.is_open()) return;
-  file_.close();
-  if (!file_)
-    throw Error(fmt::format("{}: the file could not be written to the end; check the disk's space", path_.string()));
+void RunTable::send_many(WritingThread& writing) {
+  static constexpr std::size_t many = 65536;
+  if (rows_.size() >= many) send(writing);
 }
 
 }  // namespace dartcast

@@ -1,14 +1,20 @@
 // The files of a run's folder: tables that can be gone on with, lists of frames, and which names are a run's.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <functional>
+#include <iterator>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+
+#include "output/writing_thread.hpp"
 
 namespace dartcast {
 
@@ -17,8 +23,8 @@ struct RecordingFrame {
   double time = 0.0;  ///< s
 };
 
-/// Whether a file is one that a run writes: by its name.
-bool is_run_file(const std::string& name);
+/// Whether a file is one that a run writes, or began to write and did not end: by its name.
+bool is_run_file(std::string_view name);
 
 /// The step of a frame's file, by its name; none where it is no frame's.
 std::optional<std::uint64_t> frame_step(std::string_view name);
@@ -26,29 +32,41 @@ std::optional<std::uint64_t> frame_step(std::string_view name);
 /// "particles", step 10, ".vtp": particles_000010.vtp.
 std::string frame_name(std::string_view series, std::uint64_t step, std::string_view ending);
 
-/// A collection for ParaView: a file per frame.
+/// Whether a file is one that a run began to write and did not end.
+bool is_part_of_run_file(std::string_view name);
+
+/// A collection for ParaView, in place of the one before: a file per frame.
 void write_pvd(const std::filesystem::path& path, std::span<const RecordingFrame> frames,
                const std::function<std::string(std::uint64_t step)>& name);
 
-/// A table that steps are added to. Every member throws Error where the file cannot be written.
+/// Takes the frames of other steps than `kept` out of a list.
+void keep_in_pvd(const std::filesystem::path& path, const std::set<std::uint64_t>& kept);
+
+/// A table that rows are added to in memory, and which a thread writes.
 class RunTable {
  public:
   RunTable() = default;
-  /// A new one.
+  /// A new file, at once. Throws Error where it cannot be written.
   RunTable(std::filesystem::path path, std::string_view header);
   /// Goes on behind its first `bytes` bytes. Throws Error where it is shorter.
   RunTable(std::filesystem::path path, std::uint64_t bytes);
 
-  [[nodiscard]] bool is_open() const { return file_.is_open(); }
-  [[nodiscard]] std::ostream& stream() { return file_; }
-  void check();
-  /// Sends it to its file; its length then, 0 where there is none.
-  std::uint64_t written();
-  void close();
+  [[nodiscard]] bool is_open() const { return !path_.empty(); }
+  template <class... Values>
+  void print(fmt::format_string<Values...> form, Values&&... values) {
+    fmt::format_to(std::back_inserter(rows_), form, std::forward<Values>(values)...);
+  }
+  /// Leaves the rows to the thread.
+  void send(WritingThread& writing);
+  /// The same, where they are many.
+  void send_many(WritingThread& writing);
+  /// The file's length when all rows that were sent are in it; 0 where there is no table.
+  [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
 
  private:
   std::filesystem::path path_;
-  std::ofstream file_;
+  std::string rows_;
+  std::uint64_t bytes_ = 0;
 };
 
 }  // namespace dartcast

@@ -3,10 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 
 #include "dartcast/error.hpp"
+#include "formats/file_write.hpp"
 #include "simulation/timer.hpp"
 
 namespace dartcast {
@@ -14,7 +17,7 @@ namespace dartcast {
 RunOutput::RunOutput(const Scene& scene, const RunOptions& options, Summary& summary)
     : scene_(scene),
       recording_options_{options.folder, summary.deforms || summary.surgery, summary.surgery.has_value(),
-                         scene.output.contacts},
+                         scene.output.contacts, scene.output.compression},
       every_(scene.output.every),
       resume_(options.resume),
       summary_(summary) {
@@ -46,15 +49,18 @@ void RunOutput::open(MeshData mesh) {
   if (!record_) record_.emplace(std::move(mesh));
   make_output_folder(folder());
   lock_.take(folder());
-  recording_ = found_ ? std::make_unique<Recording>(recording_options_, std::move(*record_), found_->recording)
-                      : std::make_unique<Recording>(recording_options_, std::move(*record_), scene_.text);
-  solids_ = found_ ? std::make_unique<SolidsRecording>(folder(), scene_, found_->solids_recording)
-                   : std::make_unique<SolidsRecording>(folder(), scene_);
+  writing_ = std::make_unique<WritingThread>();
+  recording_ = found_
+                   ? std::make_unique<Recording>(*writing_, recording_options_, std::move(*record_), found_->recording)
+                   : std::make_unique<Recording>(*writing_, recording_options_, std::move(*record_), scene_.text);
+  solids_ = found_ ? std::make_unique<SolidsRecording>(*writing_, folder(), scene_, found_->solids_recording)
+                   : std::make_unique<SolidsRecording>(*writing_, folder(), scene_);
 }
 
 void RunOutput::add_step(const Simulation& simulation, const SimulationStep& step) {
   if (folder().empty()) return;
   const ScopeTimer timer(summary_.seconds_write);
+  writing_->check();
   recording_->add_step(simulation, step, simulation.event_log().in_opened);
   solids_->add_step(simulation);
 }
@@ -71,13 +77,25 @@ void RunOutput::write_frame(const Simulation& simulation) {
     solids_->add_frame(simulation, recording_->frames());
   }
   const std::uint64_t audited = summary_.audit ? summary_.audit->checked : 0;
-  write_checkpoint(file(), {identity_, simulation.checkpoint().state(), recording_->progress(), summary_.held, audited,
-                            solids_->progress()});
+  auto checkpoint = std::make_shared<Checkpoint>(Checkpoint{
+      identity_, simulation.checkpoint().state(), recording_->progress(), summary_.held, audited, solids_->progress()});
+  const ParticleSystemState& particles = checkpoint->simulation.particles;
+  writing_->add(particles.particles.size() * sizeof(ParticleSystemState::Particle),
+                [checkpoint, path = file()] { write_checkpoint(path, *checkpoint); });
 }
 
 void RunOutput::finish() {
-  if (solids_) solids_->finish();
-  if (recording_) recording_->finish(summary_json(summary_));
+  if (!writing_) return;
+  {
+    const ScopeTimer timer(summary_.seconds_write);
+    recording_->progress();
+    solids_->progress();
+    writing_->finish();
+  }
+  summary_.seconds_writing_thread = writing_->seconds();
+  const std::string text = summary_json(summary_) + "\n";
+  const std::string_view whole = text;
+  replace_file(folder() / "summary.json", {&whole, 1});
 }
 
 }  // namespace dartcast

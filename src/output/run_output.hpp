@@ -15,10 +15,13 @@
 #include "output/recording.hpp"
 #include "output/run_lock.hpp"
 #include "output/solids_recording.hpp"
+#include "output/writing_thread.hpp"
 
 namespace dartcast {
 
-/// Without a folder it does nothing. Every function throws Error where a file cannot be read or written.
+/// Without a folder it does nothing. Every function throws Error where a file cannot be read or written; frames, tables
+/// and checkpoints are written by a thread, and the next function throws its errors. The order is that of the calls, and
+/// a checkpoint comes after all that it counts on: a run that is cut off anywhere can go on.
 class RunOutput {
  public:
   /// Takes the folder, if it exists, before anything is read from it. `scene`: with its files loaded. All outlive it.
@@ -53,6 +56,7 @@ class RunOutput {
   RunLock lock_;
   std::optional<EnvironmentRecord> record_;  // until the recording has it
   std::optional<Checkpoint> found_;
+  std::unique_ptr<WritingThread> writing_;  // before what leaves files to it
   std::unique_ptr<Recording> recording_;
   std::unique_ptr<SolidsRecording> solids_;
 };

@@ -2,8 +2,8 @@
 #include "output/solids_recording.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 
+#include <numeric>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -11,6 +11,7 @@
 #include "dartcast/catheter.hpp"
 #include "formats/vtp_write.hpp"
 #include "output/camera_path_file.hpp"
+#include "output/frame_files.hpp"
 #include "simulation/simulation_parts.hpp"
 
 namespace dartcast {
@@ -25,26 +26,17 @@ constexpr std::string_view catheters_header =
 
 std::string series(std::string_view kind, const std::string& name) { return fmt::format("{}_{}", kind, name); }
 
-void write_series(const fs::path& folder, const std::string& series, std::span<const RecordingFrame> frames) {
-  write_pvd(folder / (series + ".pvd"), frames, [&](std::uint64_t step) { return frame_name(series, step, ".vtp"); });
-}
-
-// Where nothing is inserted: the list names a file for each frame.
-void write_no_camera(const fs::path& path) {
-  VtpWriter none(0, [](std::size_t) { return Vec3(); });
-  none.add_line();
-  none.write(path);
-}
-
 }  // namespace
 
-SolidsRecording::SolidsRecording(fs::path folder, const Scene& scene) : folder_(std::move(folder)) {
+SolidsRecording::SolidsRecording(WritingThread& writing, fs::path folder, const Scene& scene)
+    : writing_(writing), folder_(std::move(folder)), compression_(scene.output.compression) {
   if (!scene.bodies.empty()) bodies_ = RunTable(folder_ / "bodies.csv", bodies_header);
   if (!scene.catheters.empty()) catheters_ = RunTable(folder_ / "catheters.csv", catheters_header);
 }
 
-SolidsRecording::SolidsRecording(fs::path folder, const Scene& scene, const SolidsProgress& progress)
-    : folder_(std::move(folder)) {
+SolidsRecording::SolidsRecording(WritingThread& writing, fs::path folder, const Scene& scene,
+                                 const SolidsProgress& progress)
+    : writing_(writing), folder_(std::move(folder)), compression_(scene.output.compression) {
   if (!scene.bodies.empty()) bodies_ = RunTable(folder_ / "bodies.csv", progress.bodies_bytes);
   if (!scene.catheters.empty()) catheters_ = RunTable(folder_ / "catheters.csv", progress.catheters_bytes);
 }
@@ -65,11 +57,10 @@ void SolidsRecording::add_bodies(const Simulation& simulation) {
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const BodyEnergy energy = bodies.energy(b);
     const Vec3 centre = bodies.rigid_motion_of(b).centre;
-    fmt::print(bodies_.stream(), "{},{},{},{},{},{},{},{},{},{}\n", simulation.steps(), simulation.time(),
-               component.name(b), centre.x, centre.y, centre.z, energy.kinetic, energy.potential, energy.matching,
-               contacts[b]);
+    bodies_.print("{},{},{},{},{},{},{},{},{},{}\n", simulation.steps(), simulation.time(), component.name(b), centre.x,
+                  centre.y, centre.z, energy.kinetic, energy.potential, energy.matching, contacts[b]);
   }
-  bodies_.check();
+  bodies_.send_many(writing_);
 }
 
 void SolidsRecording::add_catheters(const Simulation& simulation) {
@@ -78,11 +69,11 @@ void SolidsRecording::add_catheters(const Simulation& simulation) {
     const Catheter& c = component.catheters()[i];
     const CatheterStep& s = simulation.catheter_step(i);
     const Vec3 tip = c.particles()[0].position;
-    fmt::print(catheters_.stream(), "{},{},{},{},{},{},{},{},{},{},{},{},{}\n", simulation.steps(), simulation.time(),
-               component.scenes()[i].name, c.inserted(), c.turned(), s.pushed, s.worst_segment, s.contacts, s.at_walls,
-               s.held, tip.x, tip.y, tip.z);
+    catheters_.print("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", simulation.steps(), simulation.time(),
+                     component.scenes()[i].name, c.inserted(), c.turned(), s.pushed, s.worst_segment, s.contacts,
+                     s.at_walls, s.held, tip.x, tip.y, tip.z);
   }
-  catheters_.check();
+  catheters_.send_many(writing_);
 }
 
 void SolidsRecording::add_frame(const Simulation& simulation, std::span<const RecordingFrame> frames) {
@@ -90,60 +81,81 @@ void SolidsRecording::add_frame(const Simulation& simulation, std::span<const Re
   const BodiesComponent& bodies = simulation.parts().bodies;
   for (std::size_t b = 0; bodies.bodies() && b < bodies.bodies()->size(); ++b) {
     write_body(simulation, b, step);
-    write_series(folder_, series("body", bodies.name(b)), frames);
-    if (bodies.skin(b)) write_series(folder_, series("surface", bodies.name(b)), frames);
+    write_series(series("body", bodies.name(b)), frames);
+    if (bodies.skin(b)) write_series(series("surface", bodies.name(b)), frames);
   }
   for (std::size_t i = 0; i < simulation.catheter_count(); ++i) {
     const CatheterScene& scene = simulation.parts().catheters.scenes()[i];
     write_catheter(simulation, i, step);
-    write_series(folder_, series("catheter", scene.name), frames);
-    if (scene.camera > 0.0) write_series(folder_, series("camera", scene.name), frames);
+    write_series(series("catheter", scene.name), frames);
+    if (scene.camera > 0.0) write_series(series("camera", scene.name), frames);
   }
+}
+
+void SolidsRecording::write(const std::string& series, std::uint64_t step, const XmlDataSet& data) const {
+  write_frame_file(writing_, folder_ / frame_name(series, step, ".vtp"), data, compression_);
+}
+
+void SolidsRecording::write_series(const std::string& series, std::span<const RecordingFrame> frames) const {
+  write_list(writing_, folder_ / (series + ".pvd"), frames,
+             [series](std::uint64_t step) { return frame_name(series, step, ".vtp"); });
 }
 
 void SolidsRecording::write_body(const Simulation& simulation, std::size_t body, std::uint64_t step) const {
   const BodiesComponent& component = simulation.parts().bodies;
   const Bodies& bodies = *component.bodies();
   const std::size_t first = bodies.first_particle(body);
-  const std::span<const Vec3> positions = bodies.positions().subspan(first, bodies.particle_count(body));
-  VtpWriter points(positions.size(), [&](std::size_t i) { return positions[i]; });
-  points.add_vertices();
-  points.add("id", [](std::size_t i) { return static_cast<double>(i); });
-  points.add_vectors("velocity", [&](std::size_t i) { return bodies.velocities()[first + i]; });
+  const std::size_t count = bodies.particle_count(body);
+  const std::span<const Vec3> positions = bodies.positions().subspan(first, count);
+  const std::span<const Vec3> velocities = bodies.velocities().subspan(first, count);
+  const std::span<const double> radii = bodies.radii().subspan(first, count);
   const CombinatorialMap& map = simulation.environment().map();
-  points.add("cell",
-             [&](std::size_t i) { return static_cast<double>(map.source(bodies.particles()[first + i].cell)); });
-  points.add("radius", [&](std::size_t i) { return bodies.radii()[first + i]; });
-  points.write(folder_ / frame_name(series("body", component.name(body)), step, ".vtp"));
+  std::vector<std::uint32_t> ids(count);
+  std::iota(ids.begin(), ids.end(), 0U);
+  std::vector<std::uint32_t> cells;
+  for (std::size_t i = 0; i < count; ++i) cells.push_back(map.source(bodies.particles()[first + i].cell));
+  VtpFile points({positions.begin(), positions.end()});
+  points.add_vertices();
+  points.add("id", std::move(ids));
+  points.add("velocity", std::vector<Vec3>(velocities.begin(), velocities.end()));
+  points.add("cell", std::move(cells));
+  points.add("radius", std::vector<double>(radii.begin(), radii.end()));
+  write(series("body", component.name(body)), step, points.data());
 
   if (!component.skin(body)) return;
   const BodiesComponent::Skin& skin = *component.skin(body);
   std::vector<Vec3> vertices(skin.mesh.points.size());
   skin.carried.positions(positions, vertices, simulation.environment().threads());
-  VtpWriter surface(vertices.size(), [&](std::size_t i) { return vertices[i]; });
+  VtpFile surface(std::move(vertices));
   surface.add_polygons(skin.mesh.offsets, skin.mesh.connectivity);
-  surface.write(folder_ / frame_name(series("surface", component.name(body)), step, ".vtp"));
+  write(series("surface", component.name(body)), step, surface.data());
 }
 
 void SolidsRecording::write_catheter(const Simulation& simulation, std::size_t i, std::uint64_t step) const {
   const CatheterScene& scene = simulation.parts().catheters.scenes()[i];
   const std::vector<Vec3> points = simulation.catheter(i).points();
-  const std::vector<CatheterFrame> frames = simulation.catheter(i).frames();
-  VtpWriter file(points.size(), [&](std::size_t k) { return points[k]; });
+  std::vector<Vec3> tangents;
+  std::vector<Vec3> normals;
+  for (const CatheterFrame& frame : simulation.catheter(i).frames()) {
+    tangents.push_back(frame.tangent);
+    normals.push_back(frame.normal);
+  }
+  VtpFile file(points);
   file.add_line();
-  file.add_vectors("tangent", [&](std::size_t k) { return frames[k].tangent; });
-  file.add_vectors("normal", [&](std::size_t k) { return frames[k].normal; });
-  file.write(folder_ / frame_name(series("catheter", scene.name), step, ".vtp"));
+  file.add("tangent", std::move(tangents));
+  file.add("normal", std::move(normals));
+  write(series("catheter", scene.name), step, file.data());
   if (scene.camera == 0.0) return;
-  const fs::path camera = folder_ / frame_name(series("camera", scene.name), step, ".vtp");
-  if (points.size() < 2) return write_no_camera(camera);
+  CameraPath path;  // empty where nothing is inserted: the list names a file for each frame
   const std::vector<Vec3> inwards(points.rbegin(), points.rend());
-  write_camera_path(camera_path(simulation.parts().environment, inwards, {.spacing = scene.camera}), camera);
+  if (points.size() >= 2) path = camera_path(simulation.parts().environment, inwards, {.spacing = scene.camera});
+  write(series("camera", scene.name), step, camera_path_data(path));
 }
 
-void SolidsRecording::finish() {
-  bodies_.close();
-  catheters_.close();
+SolidsProgress SolidsRecording::progress() {
+  bodies_.send(writing_);
+  catheters_.send(writing_);
+  return {bodies_.bytes(), catheters_.bytes()};
 }
 
 }  // namespace dartcast

@@ -4,10 +4,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 
 #include "dartcast/scene.hpp"
 #include "dartcast/simulation.hpp"
+#include "formats/xml_write.hpp"
 #include "output/run_files.hpp"
+#include "output/writing_thread.hpp"
 
 namespace dartcast {
 
@@ -19,20 +22,21 @@ struct SolidsProgress {
 
 /// For each body a series of its particles (body_NAME_000010.vtp, body_NAME.pvd) and of the surface that follows them
 /// (surface_NAME_...); for each catheter its points (catheter_NAME_...) and, where the scene wants them, a camera's
-/// places along it (camera_NAME_...). bodies.csv and catheters.csv: a row per step and body or catheter. Every write
-/// throws Error where it fails.
+/// places along it (camera_NAME_...). bodies.csv and catheters.csv: a row per step and body or catheter. A thread writes
+/// what is added, in that order. Its errors are thrown by what adds next. The thread outlives this.
 class SolidsRecording {
  public:
   /// The folder is there, and belongs to the run.
-  SolidsRecording(std::filesystem::path folder, const Scene& scene);
+  SolidsRecording(WritingThread& writing, std::filesystem::path folder, const Scene& scene);
   /// Goes on with the files of an earlier run. Throws Error where a table is shorter than it was.
-  SolidsRecording(std::filesystem::path folder, const Scene& scene, const SolidsProgress& progress);
+  SolidsRecording(WritingThread& writing, std::filesystem::path folder, const Scene& scene,
+                  const SolidsProgress& progress);
 
   void add_step(const Simulation& simulation);
   /// `frames`: of the run, this one the last of them.
   void add_frame(const Simulation& simulation, std::span<const RecordingFrame> frames);
-  SolidsProgress progress() { return {bodies_.written(), catheters_.written()}; }
-  void finish();
+  /// Leaves the rows of the tables to the thread, and says how far they will have come then.
+  SolidsProgress progress();
 
  private:
   void add_bodies(const Simulation& simulation);
@@ -40,7 +44,12 @@ class SolidsRecording {
   void write_body(const Simulation& simulation, std::size_t body, std::uint64_t step) const;
   void write_catheter(const Simulation& simulation, std::size_t i, std::uint64_t step) const;
 
+  void write(const std::string& series, std::uint64_t step, const XmlDataSet& data) const;
+  void write_series(const std::string& series, std::span<const RecordingFrame> frames) const;
+
+  WritingThread& writing_;
   std::filesystem::path folder_;
+  Compression compression_;
   RunTable bodies_;
   RunTable catheters_;
 };

@@ -47,6 +47,7 @@ Json seconds(const Summary& s) {
   json["respond"] = s.totals.seconds_respond;
   if (!s.bodies.empty() || !s.catheters.empty()) json["solids"] = s.seconds_solids;
   json["write"] = s.seconds_write;
+  json["writing_thread"] = s.seconds_writing_thread;
   return json;
 }
 

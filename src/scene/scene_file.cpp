@@ -228,6 +228,8 @@ class SceneReader {
     OutputScene scene;
     t.get("every", scene.every, 0, max_steps);
     t.get("contacts", scene.contacts);
+    t.get("compression", scene.compression,
+          {{"none", Compression::none}, {"fast", Compression::fast}, {"small", Compression::small}});
     t.finish();
     return scene;
   }

@@ -9,13 +9,17 @@
 
 #include <cstdio>
 #include <functional>
+#include <memory>
+#include <utility>
 
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/mesh_check.hpp"
 #include "dartcast/mesh_files.hpp"
+#include "formats/file_write.hpp"
 #include "formats/point_file.hpp"
+#include "formats/vtu_write.hpp"
 #include "output/mesh_report_text.hpp"
 #include "support/tier.hpp"
 #include "support/vtk_files.hpp"
@@ -56,7 +60,8 @@ std::filesystem::path packed(const Folder& folder) {
   MeshData mesh = box_of(12, CellType::tetrahedron);
   for (int k = 0; k < 400; ++k)
     mesh.cell_data.push_back({"zero" + std::to_string(k), 1, std::vector<double>(mesh.cell_count(), 0.0)});
-  write_mesh(mesh, folder / "packed.vtu");
+  const auto shared = std::make_shared<const MeshData>(std::move(mesh));
+  write_xml(folder / "packed.vtu", vtu_data_set(shared), Compression::small, write_pieces);
   return folder / "packed.vtu";
 }
 

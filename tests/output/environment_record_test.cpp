@@ -125,22 +125,26 @@ TEST_F(EnvironmentRecordTest, CellsAndParticlesAreJoinedBySource) {
   options.dt = 0.1;
   Simulation simulation(environment, options);
   simulation.add_random(80, {1.0, -2.0, 0.5});
-  Recording recording({folder, true, true}, EnvironmentRecord(mesh), "");
+  WritingThread writing;
+  Recording recording(writing, {folder, true, true}, EnvironmentRecord(mesh), "");
   simulation.set_after_edit([&](const Environment& edited) { recording.update_after_edit(edited); });
   simulation.step();
   recording.add_frame(simulation);
+  writing.finish();
   expect_joined(folder, "000001", true);
   Event cut;
   cut.what = Cut{plane_through({3.5, 1.5, 1.5}, {1.0, 0.2, 0.1}), 0.4};
   apply(simulation, cut);
   simulation.step();
   recording.add_frame(simulation);
+  writing.finish();
   expect_joined(folder, "000002", true);
   Event carve;
   carve.what = Carve{box_tool({4.2, 0.4, 0.3}, {5.4, 1.6, 1.7}), Carving::remove, false};
   apply(simulation, carve);
   simulation.step();
   recording.add_frame(simulation);
+  writing.finish();
   expect_joined(folder, "000003", true);
 }
 

@@ -95,10 +95,11 @@ TEST_F(RecordingTest, FramesReadBackBitByBit) {
   options.dt = 0.1;
   Simulation simulation(environment, options);
   simulation.add_random(50, {1.0, -2.0, 0.1});
-  Recording recording({folder, false, false}, EnvironmentRecord(mesh), "");
+  WritingThread writing;
+  Recording recording(writing, {folder, false, false}, EnvironmentRecord(mesh), "");
   for (int i = 0; i < 5; ++i) recording.add_step(simulation, simulation.step());
   recording.add_frame(simulation);
-  recording.finish("{}");
+  writing.finish();
   const PointFile file = read_points(folder / "particles_000005.vtp");
   ASSERT_EQ(file.points.size(), simulation.particles().size());
   ASSERT_EQ(array(file, "velocity").components, 3U);
@@ -150,8 +151,10 @@ TEST_F(RecordingTest, TheKindOfAParticleOnAWallIsSaid) {
   simulation.add(std::vector<Vec3>{{0.5, 0.25, 0.75}}, {0.7, 0, 0});
   simulation.add(std::vector<Vec3>{{0.5, 0.25, 0.75}}, {0.0, 0, 0});
   simulation.step();
-  Recording recording({folder, false, false}, EnvironmentRecord(mesh), "");
+  WritingThread writing;
+  Recording recording(writing, {folder, false, false}, EnvironmentRecord(mesh), "");
   recording.add_frame(simulation);
+  writing.finish();
   const PointFile file = read_points(folder / "particles_000001.vtp");
   EXPECT_EQ(array(file, "kind").values[0], 2.0);
   EXPECT_EQ(array(file, "contacts").values, (std::vector<double>{1.0, 0.0}));

@@ -1,0 +1,26 @@
+// Leaves frames and lists of frames to the thread that writes.
+#include "output/frame_files.hpp"
+
+#include <utility>
+#include <vector>
+
+#include "formats/file_write.hpp"
+
+namespace dartcast {
+
+void write_frame_file(WritingThread& writing, std::filesystem::path path, XmlDataSet data, Compression compression) {
+  const std::size_t bytes = data.bytes();
+  writing.add(bytes, [path = std::move(path), data = std::move(data), compression] {
+    write_xml(path, data, compression, replace_file);
+  });
+}
+
+void write_list(WritingThread& writing, std::filesystem::path path, std::span<const RecordingFrame> frames,
+                std::function<std::string(std::uint64_t step)> name) {
+  std::vector<RecordingFrame> copy(frames.begin(), frames.end());
+  writing.add(frames.size_bytes(), [path = std::move(path), frames = std::move(copy), name = std::move(name)] {
+    write_pvd(path, frames, name);
+  });
+}
+
+}  // namespace dartcast
