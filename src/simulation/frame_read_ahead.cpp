@@ -46,13 +46,16 @@ FrameReadAhead::Pair FrameReadAhead::get(std::size_t before, std::size_t after) 
   std::unique_lock lock(mutex_);
   if (!thread_.joinable()) start();
   first_ = before;
-  std::erase_if(frames_, [this](const auto& f) { return !is_wanted(f.first); });
+  std::erase_if(frames_, [&](const auto& f) {
+    const bool needed = f.first == before || f.first == after;
+    return !is_wanted(f.first) || (needed && f.second->error != nullptr);
+  });
   wanted_.notify_one();
   ready_.wait(lock, [&] {
     const auto found = frames_.find(before);
     return found != frames_.end() && (found->second->error != nullptr || frames_.contains(after));
   });
-  return {taken(before), taken(after)};
+  return {read_without_error(before), read_without_error(after)};
 }
 
 void FrameReadAhead::start() {
@@ -63,11 +66,10 @@ void FrameReadAhead::start() {
   }
 }
 
-std::shared_ptr<const ReadFrame> FrameReadAhead::taken(std::size_t frame) {
-  const std::shared_ptr<const ReadFrame> found = frames_.at(frame);
-  if (found->error == nullptr) return found;
-  frames_.erase(frame);
-  std::rethrow_exception(found->error);
+std::shared_ptr<const ReadFrame> FrameReadAhead::read_without_error(std::size_t frame) const {
+  const std::shared_ptr<const ReadFrame>& found = frames_.at(frame);
+  if (found->error != nullptr) std::rethrow_exception(found->error);
+  return found;
 }
 
 void FrameReadAhead::read_on() {

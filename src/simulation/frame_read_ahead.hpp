@@ -37,7 +37,8 @@ class FrameReadAhead {
     std::shared_ptr<const ReadFrame> before, after;
   };
   /// Waits for two frames; precondition: after - before is 0 or 1. Any thread may call it; one at a time is served.
-  /// Throws where one cannot be read; the next call reads that one again. Throws Error where no thread can be started.
+  /// Throws where one cannot be read: now, not only when it was tried ahead of its time. Throws Error where no thread
+  /// can be started.
   Pair get(std::size_t before, std::size_t after);
 
   /// Frames that are held at most.
@@ -49,7 +50,7 @@ class FrameReadAhead {
   [[nodiscard]] std::optional<std::size_t> next() const;
   [[nodiscard]] bool is_wanted(std::size_t frame) const { return frame >= first_ && frame - first_ < capacity_; }
   [[nodiscard]] std::shared_ptr<const ReadFrame> read(std::size_t frame) const;
-  [[nodiscard]] std::shared_ptr<const ReadFrame> taken(std::size_t frame);
+  [[nodiscard]] std::shared_ptr<const ReadFrame> read_without_error(std::size_t frame) const;
 
   const FrameReader reader_;
   const std::size_t count_, vertices_, capacity_;
