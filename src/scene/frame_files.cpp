@@ -99,7 +99,7 @@ class FrameFiles {
     return read_vtu_points(read_bytes(file), max_memory_);
   }
 
-  // The points of a file with the cells of the first; none where it must be checked as a mesh of its own. That also
+  // The points of a file with the cells of the first; none where it must be checked as a mesh of its own. This second reading
   // finds the words for what is wrong with it.
   [[nodiscard]] std::optional<std::vector<Vec3>> read_same_cells(const fs::path& file) const {
     if (!first_cells_) return std::nullopt;

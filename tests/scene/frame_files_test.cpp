@@ -133,6 +133,17 @@ TEST_F(FrameFilesTest, WhatIsRefusedAsAMeshIsRefusedAsAFrame) {
   }
 }
 
+// It has as many points as the mesh, but no cell uses the last one.
+TEST_F(FrameFilesTest, AFrameWithoutACellLacksItsPoint) {
+  const MeshData mesh = test::cubes(3);
+  MeshData fewer = mesh;
+  fewer.types.pop_back();
+  fewer.offsets.pop_back();
+  fewer.connectivity.resize(fewer.offsets.back());
+  const FrameReader read = reader({write("a.vtu", mesh), write("b.vtu", fewer)});
+  EXPECT_NE(test::error_text([&] { read(1); }).find("63 points; the scene's mesh has 64"), std::string::npos);
+}
+
 // A mirrored mesh is taken as it was, and its cells are turned over.
 TEST_F(FrameFilesTest, AMirroredFrameIsTaken) {
   const MeshData mesh = test::cubes(2, CellType::tetrahedron);
