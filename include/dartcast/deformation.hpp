@@ -5,6 +5,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -33,8 +35,8 @@ enum class DeformationKind : std::uint8_t {
             ///< vertex's `path`; without one s. No wave travels where wavelength is 0; where
             ///< one does, points are off their rest at t = 0 too.
   bump,     ///< x + a A w(t) (1 - |r|^2 / length^2)^2 within `length` of the centre: a smooth bulge along the axis
-  frames,   ///< positions given at `times`, linear between them, the first before and the last after them. First in a
-            ///< list only.
+  frames,   ///< positions given at `times`, linear between them, the first before and the last after them: held in
+            ///< `frames`, or read one by one by `reader`. First in a list only.
 };
 inline constexpr std::array deformation_kinds = {
     DeformationKind::rotate,  DeformationKind::swing, DeformationKind::bend, DeformationKind::twist,
@@ -43,6 +45,17 @@ inline constexpr std::array deformation_kinds = {
 
 /// The kind of that name; none if there is no such kind.
 std::optional<DeformationKind> deformation_kind(std::string_view name);
+
+/// Reads a frame: the position of every vertex at times[frame]. It may be called by another thread than the caller's,
+/// and by several at once where several deformations are made with it. Its exceptions reach the caller who needs the
+/// frame.
+using FrameReader = std::function<std::vector<Vec3>(std::size_t frame)>;
+
+/// Bytes of frames that a deformation holds at most, the two that it needs and those read ahead; three where these are
+/// more. One more is being read.
+inline constexpr std::size_t frame_memory = std::size_t{32} << 20U;
+/// And their number.
+inline constexpr std::size_t max_frames_held = 64;
 
 /// SI units: metres, seconds, radians.
 struct DeformationStep {
@@ -57,14 +70,23 @@ struct DeformationStep {
   std::vector<Vec3> field = {};                ///< pulse: one per vertex, or empty
   std::vector<double> path = {};               ///< pulse: one per vertex, or empty
   std::vector<double> times = {};              ///< frames: increasing
-  std::vector<std::vector<Vec3>> frames = {};  ///< frames: all positions, one list per time
+  std::vector<std::vector<Vec3>> frames = {};  ///< frames: all positions, one list per time; or none and a reader
+  FrameReader reader = {};                     ///< frames: instead of `frames`
 };
 
+class DeformationFrames;
+
 /// A list of steps, each applied to the result of those before it.
+///
+/// Frames with a reader are read ahead by a thread, in the order in which time increases, within `frame_memory` and
+/// `max_frames_held`. The thread starts with the first frame that is needed and ends with the last copy of the
+/// deformation. Copies share the thread and its frames: each gets the right positions, but two that are at different
+/// times read frames twice.
 class Deformation {
  public:
   /// Copies the positions at rest. Throws InvalidArgument, naming the step and the member, where one is out of the
-  /// range above, not finite, or a list has not one entry per vertex.
+  /// range above, not finite, or a list has not one entry per vertex. Frames with a reader are checked when they are
+  /// read.
   Deformation(std::vector<DeformationStep> steps, std::span<const Vec3> rest);
 
   [[nodiscard]] std::size_t size() const { return size_; }
@@ -72,8 +94,9 @@ class Deformation {
   /// For a mesh of the plane. Throws InvalidArgument, naming the step and the member, unless every point with z = 0
   /// keeps z = 0 exactly at all times: rotate, swing and twist about [0, 0, 1]; bend and bump with vectors of the
   /// plane; stretch and pulse with an axis in the plane or across it; fields and frames with z = 0; every centre in the
-  /// plane. Cost: linear where there are fields, frames or pulls.
-  void check_plane() const;
+  /// plane. Cost: linear where there are fields, frames or pulls. Frames with a reader are checked, too, from now on
+  /// when they are needed.
+  void check_plane();
 
   /// After an edit: vertices that it made go with those that they were made between, so that nothing jumps. `size`: of
   /// the environment's positions now.
@@ -83,9 +106,15 @@ class Deformation {
   /// number does not match, one is not finite, or the end is not after the beginning.
   void add_pull(std::span<const Vec3> displacement, double begin, double end);
 
+  /// Waits for the frames that positions() needs at `time`, so that it does not throw for them. Nothing without a
+  /// reader. Throws as positions().
+  void load_frames(double time) const;
+
   /// Writes the position of every vertex at `time` (s). The same bits for any number of threads. Throws
-  /// InvalidArgument, and writes nothing, where time is not finite or out has not one place per vertex. Cost: 10 to 60
-  /// ns per vertex and step.
+  /// InvalidArgument, and writes nothing, where time is not finite or out has not one place per vertex. Where a frame
+  /// must be read: the reader's exception, or InvalidMesh that names the frame, where it has not one finite position
+  /// per vertex or, after check_plane(), leaves the plane. A frame that could not be read is read again by the next
+  /// call. Cost: 10 to 60 ns per vertex and step.
   void positions(double time, std::span<Vec3> out, Threads threads = {}) const;
 
  private:
@@ -99,7 +128,9 @@ class Deformation {
 
   void add_later(double time, std::span<Vec3> out) const;
 
-  std::vector<DeformationStep> steps_;  // axis and direction made unit vectors
+  std::vector<DeformationStep> steps_;         // axis and direction made unit vectors; without frames
+  std::shared_ptr<DeformationFrames> frames_;  // none: the motion starts from rest
+  bool in_plane_ = false;
   std::vector<Vec3> rest_;
   std::vector<Later> later_;
   std::size_t size_;

@@ -63,7 +63,7 @@ struct DeformationScene {
   DeformationStep step;
   std::string field;                          ///< pulse: a point array of three components; empty: none
   std::string path;                           ///< pulse: a point array of one component; empty: none
-  std::vector<std::filesystem::path> frames;  ///< frames: mesh files with the same points; empty: step.frames
+  std::vector<std::filesystem::path> frames;  ///< frames: mesh files with the same points; empty: those of `step`
 };
 
 struct RandomParticles {

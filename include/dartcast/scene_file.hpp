@@ -19,12 +19,12 @@ Scene read_scene(const std::filesystem::path& path);
 Scene parse_scene(const std::string& text, const std::filesystem::path& path);
 
 struct LoadedScene {
-  Scene scene;      ///< names no file any more: a Simulation can be made of it
+  Scene scene;      ///< names no file but frames to read later: a Simulation can be made of it
   Finding skipped;  ///< bad cells that were left out, where the scene wants that
 };
 
-/// Reads the files that a scene names: its mesh, frames of the deformation, positions, surfaces of bodies. A field's
-/// files are found and the first is read; the others are read while the simulation runs. The mesh has
+/// Reads the files that a scene names: its mesh, positions, surfaces of bodies. Of the deformation's frames and of a
+/// field's files it reads the first and checks that the others exist: they are read when they are needed. The mesh has
 /// its scale, free cells and patches as the scene says, also where it comes from a generator. Only the option
 /// `max_memory` has an effect. Throws Error and its kinds, naming the file and its place in the scene.
 LoadedScene load_scene_files(Scene scene, const ReadOptions& options = {}, Threads threads = {});

@@ -237,7 +237,8 @@ class Simulation {
   /// InvalidArgument where an option is out of range, in the plane, and where cells are subdivided already.
   void set_adaptive_subdivision(const AdaptiveSubdivisionScene& subdivision);
 
-  /// Throws as Environment::advance(), and Error that names the event that cannot be carried out.
+  /// Throws as Environment::advance(), and Error that names the event that cannot be carried out. Throws as
+  /// Deformation::load_frames(), nothing changed: the step may be repeated.
   const SimulationStep& step();
 
   /// Edits the environment between two steps, as Environment::edit(), and updates all that depends on it: particles

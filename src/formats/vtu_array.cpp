@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <optional>
 
 #include "dartcast/error.hpp"
@@ -297,6 +298,18 @@ std::vector<std::int64_t> decode_integers(const VtuArray& array, const VtuEncodi
     const std::uint64_t bits = integer_at(bytes, at, type.bytes, encoding.big_endian);
     const unsigned shift = 64 - 8 * static_cast<unsigned>(type.bytes);
     out.push_back(type.low < 0 ? static_cast<std::int64_t>(bits << shift) >> shift : static_cast<std::int64_t>(bits));
+  }
+  return out;
+}
+
+std::optional<std::vector<double>> decode_reals(const VtuArray& array, const VtuEncoding& encoding) {
+  const Type& type = *find_type(array.type);
+  if (!type.real || array.format == "ascii") return std::nullopt;
+  const std::string bytes = decode_bytes(array, encoding);
+  std::vector<double> out(bytes.size() / type.bytes);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const std::uint64_t bits = integer_at(bytes, i * type.bytes, type.bytes, encoding.big_endian);
+    out[i] = type.bytes == 8 ? std::bit_cast<double>(bits) : std::bit_cast<float>(static_cast<std::uint32_t>(bits));
   }
   return out;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,5 +48,8 @@ void check_bytes(const VtuArray& array, const VtuEncoding& encoding);
 
 /// All numbers of an array of whole numbers. Throws InvalidMesh.
 std::vector<std::int64_t> decode_integers(const VtuArray& array, const VtuEncoding& encoding);
+
+/// All numbers of an array of Float32 or Float64 that is not ASCII; nothing for other arrays. Throws InvalidMesh.
+std::optional<std::vector<double>> decode_reals(const VtuArray& array, const VtuEncoding& encoding);
 
 }  // namespace dartcast

@@ -1,10 +1,7 @@
 // Reads the files that a scene names.
 #include "scene/scene_mesh.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <set>
+#include <utility>
 
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_check.hpp"
@@ -12,6 +9,7 @@
 #include "dartcast/scene_file.hpp"
 #include "formats/checked_file.hpp"
 #include "formats/skip_in_file.hpp"
+#include "scene/frame_files.hpp"
 #include "scene/scene_fields.hpp"
 #include "scene/seed_file.hpp"
 #include "simulation/scene_environment.hpp"
@@ -37,36 +35,6 @@ void scale_points(MeshFile& file, double scale) {
   if (file.report.valid()) file.report.defects = check_and_repair(file.mesh).defects;
 }
 
-// Keeps the cells of a frame that `mesh` has, by their places in the input file.
-void keep_cells_of(const MeshData& mesh, MeshData& frame) {
-  const std::set<std::uint32_t> wanted(mesh.source.begin(), mesh.source.end());
-  MeshData kept;
-  for (std::size_t c = 0; c < frame.cell_count(); ++c) {
-    const auto source = frame.source.empty() ? static_cast<std::uint32_t>(c) : frame.source[c];
-    if (wanted.count(source) > 0) kept.add_cell(frame.types[c], frame.cell(c));
-  }
-  kept.points = std::move(frame.points);
-  frame = std::move(kept);
-  check_and_repair(frame);  // drops the points of the other cells
-}
-
-std::vector<Vec3> frame_positions(const std::filesystem::path& file, const MeshData& mesh,
-                                  const EnvironmentScene& environment, const ReadOptions& options) {
-  MeshFile read = read_mesh(file, options);
-  if (environment.skip_bad_cells && !read.mesh.types.empty()) {
-    keep_cells_of(mesh, read.mesh);
-  } else {
-    read = valid_file(std::move(read));
-  }
-  std::vector<Vec3> points = std::move(read.mesh.points);
-  if (points.size() != mesh.points.size()) {
-    throw InvalidMesh(fmt::format("{}: {} points; the scene's mesh has {}: frames must have the same points",
-                                  file.string(), points.size(), mesh.points.size()));
-  }
-  for (Vec3& x : points) x *= environment.scale;
-  return points;
-}
-
 }  // namespace
 
 SceneMesh load_scene_mesh(const EnvironmentScene& scene, const ReadOptions& options, Threads threads) {
@@ -86,9 +54,8 @@ SceneMesh load_scene_mesh(const EnvironmentScene& scene, const ReadOptions& opti
 LoadedScene load_scene_files(Scene scene, const ReadOptions& options, Threads threads) {
   SceneMesh loaded = load_scene_mesh(scene.environment, options, threads);
   for (DeformationScene& s : scene.deformation) {
-    for (const auto& file : s.frames)
-      s.step.frames.push_back(frame_positions(file, loaded.mesh, scene.environment, options));
-    s.frames.clear();
+    if (s.frames.empty()) continue;
+    s.step.reader = frame_reader(std::exchange(s.frames, {}), loaded.mesh, scene.environment, options);
   }
   for (FieldScene* field : {&scene.motion.field, &scene.motion.force})
     load_field(*field, scene.environment, loaded.mesh, options);

@@ -10,6 +10,7 @@
 
 #include "base/parallel.hpp"
 #include "dartcast/error.hpp"
+#include "simulation/deformation_frames.hpp"
 
 namespace dartcast {
 namespace {
@@ -64,25 +65,13 @@ class DeformationChecker {
         require(std::abs(step_.amplitude) < 1, "amplitude must be between -1 and 1");
         return check_axis();
       case DeformationKind::pulse: return;
-      case DeformationKind::frames: return check_frames();
+      case DeformationKind::frames:
+        return require(index_ == 0, "frames must come first in the list: they give positions, not changes");
     }
   }
 
   void check_axis() const { require(norm(step_.axis) > 0, "axis must not be 0"); }
   void check_length() const { require(step_.length > 0 && std::isfinite(step_.length), "length must be positive"); }
-
-  void check_frames() const {
-    const DeformationStep& s = step_;
-    require(index_ == 0, "frames must come first in the list: they give positions, not changes");
-    require(!s.times.empty() && s.times.size() == s.frames.size(), "give one time per frame, and at least one frame");
-    for (std::size_t i = 0; i < s.times.size(); ++i) {
-      require(std::isfinite(s.times[i]) && (i == 0 || s.times[i] > s.times[i - 1]),
-              "times must be finite and increasing");
-      require(s.frames[i].size() == vertices_, fmt::format("frame {} must have one position per vertex", i));
-      require(std::all_of(s.frames[i].begin(), s.frames[i].end(), is_finite),
-              fmt::format("frame {} must be finite", i));
-    }
-  }
 
   void require(bool holds, std::string_view text) const {
     if (holds) return;
@@ -99,7 +88,6 @@ class PlaneChecker {
   PlaneChecker(const DeformationStep& step, std::size_t index) : step_(step), index_(index) {}
 
   void check() const {
-    if (step_.kind == DeformationKind::frames) return check_frames();  // they have no centre
     require(step_.centre.z == 0.0, "centre", "must have z = 0");
     switch (step_.kind) {
       case DeformationKind::rotate:
@@ -122,11 +110,6 @@ class PlaneChecker {
   void check_pulse() const {
     if (step_.field.empty()) return require(along() || across(), "axis", "must have z = 0 or be [0, 0, 1]");
     check_list(step_.field, "field", "vector");
-  }
-
-  void check_frames() const {
-    for (std::size_t i = 0; i < step_.frames.size(); ++i)
-      check_list(step_.frames[i], fmt::format("frame {}", i), "position");
   }
 
   void check_list(std::span<const Vec3> list, const std::string& name, const char* what) const {
@@ -155,7 +138,7 @@ class Motion {
     switch (s_.kind) {
       case DeformationKind::rotate: turn_by(full_turn * turns_); break;
       case DeformationKind::swing: turn_by(amount_); break;
-      case DeformationKind::frames: find_frames(time); break;
+      case DeformationKind::frames:
       case DeformationKind::bend:
       case DeformationKind::twist:
       case DeformationKind::stretch:
@@ -184,8 +167,7 @@ class Motion {
         const double inside = 1 - dot(r, r) / (s_.length * s_.length);
         return inside > 0 ? x + s_.axis * (amount_ * inside * inside) : x;
       }
-      case DeformationKind::frames:
-        return s_.frames[before_][vertex] * (1 - weight_) + s_.frames[after_][vertex] * weight_;
+      case DeformationKind::frames: break;
     }
     return x;
   }
@@ -194,14 +176,6 @@ class Motion {
   void turn_by(double angle) {
     sine_ = std::sin(angle);
     cosine_ = std::cos(angle);
-  }
-
-  void find_frames(double time) {
-    const auto next = std::upper_bound(s_.times.begin(), s_.times.end(), time);
-    after_ = static_cast<std::size_t>(next - s_.times.begin());
-    before_ = after_ == 0 ? 0 : after_ - 1;
-    after_ = std::min(after_, s_.times.size() - 1);
-    if (before_ != after_) weight_ = (time - s_.times[before_]) / (s_.times[after_] - s_.times[before_]);
   }
 
   // (1 - cos(ks)) / k as s sin(ks / 2) sinc(ks / 2): right for small k too.
@@ -223,8 +197,6 @@ class Motion {
   const DeformationStep& s_;
   double turns_;
   double amount_ = 0.0, sine_ = 0.0, cosine_ = 1.0;
-  std::size_t before_ = 0, after_ = 0;
-  double weight_ = 0.0;
 };
 
 }  // namespace
@@ -259,16 +231,26 @@ Deformation::Deformation(std::vector<DeformationStep> steps, std::span<const Vec
     s.direction -= s.axis * dot(s.axis, s.direction);
     if (s.kind == DeformationKind::bend) s.direction *= 1 / norm(s.direction);
   }
+  if (steps_.empty() || steps_.front().kind != DeformationKind::frames) return;
+  frames_ = std::make_shared<DeformationFrames>(std::move(steps_.front()), rest_.size());
+  steps_.erase(steps_.begin());
 }
 
-void Deformation::check_plane() const {
-  for (std::size_t i = 0; i < steps_.size(); ++i) PlaneChecker(steps_[i], i).check();
+void Deformation::check_plane() {
+  if (frames_) frames_->check_plane();
+  for (std::size_t i = 0; i < steps_.size(); ++i) PlaneChecker(steps_[i], i + (frames_ ? 1 : 0)).check();
   for (const Later& later : later_) {
     const auto* pull = std::get_if<Pull>(&later);
     if (pull != nullptr && std::any_of(pull->displacement.begin(), pull->displacement.end(), is_off_plane))
       throw InvalidArgument(
           "deformation: a pull moves points out of the plane z = 0, which a planar mesh must not leave");
   }
+  in_plane_ = true;
+}
+
+void Deformation::load_frames(double time) const {
+  if (!std::isfinite(time)) throw InvalidArgument("deformation: time must be finite");
+  if (frames_) frames_->at(time, in_plane_);
 }
 
 void Deformation::positions(double time, std::span<Vec3> out, Threads threads) const {
@@ -280,9 +262,9 @@ void Deformation::positions(double time, std::span<Vec3> out, Threads threads) c
   std::vector<Motion> motions;
   motions.reserve(steps_.size());
   for (const DeformationStep& s : steps_) motions.emplace_back(s, time);
+  const FramePair start = frames_ ? frames_->at(time, in_plane_) : FramePair{rest_, rest_};
   parallel_for(rest_.size(), 4096, threads, [&](std::size_t begin, std::size_t end) {
-    std::copy(rest_.begin() + static_cast<std::ptrdiff_t>(begin), rest_.begin() + static_cast<std::ptrdiff_t>(end),
-              out.begin() + static_cast<std::ptrdiff_t>(begin));
+    start.copy(begin, end, out);
     for (const Motion& motion : motions) {
       for (std::size_t v = begin; v < end; ++v) out[v] = motion(out[v], v);
     }

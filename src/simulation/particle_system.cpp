@@ -118,6 +118,10 @@ void ParticleSystem::move_vertices_to(std::uint64_t steps) {
   environment_.move();
 }
 
+void ParticleSystem::load_motion(std::uint64_t steps) const {
+  if (deformation_) deformation_->load_frames(static_cast<double>(steps) * options_.dt);
+}
+
 // Phases, in order:
 //  1. inlets inject;
 //  2. vertices move (with collisions: in phase 3, after the spheres' impulses);

@@ -29,6 +29,8 @@ class ParticleSystem final : public SimulationComponent {
   void set_field(VelocityField field) { field_ = std::move(field); }
   void set_force(VectorField force) { force_ = std::move(force); }
   void set_deformation(Deformation deformation);
+  /// Reads what moving the vertices to their places after so many steps needs. Throws as Deformation::load_frames().
+  void load_motion(std::uint64_t steps) const;
   /// Bodies that the spheres meet; they step after each step of the particles. Precondition: there are collisions.
   void set_bodies(Bodies& bodies) { bodies_ = &bodies; }
   void add_inlet(Patch patch, double rate, const Vec3& velocity, double radius, std::span<const double> user_data);

@@ -72,6 +72,7 @@ void ParticleSystem::go_to(std::uint64_t steps) {
 
 // As after the last of these steps: where vertices were before it counts, too.
 void ParticleSystem::stand_at(std::uint64_t steps) {
+  if (steps > 0) load_motion(steps);
   if (steps > 1) move_vertices_to(steps - 1);
   move_vertices_to(steps);
 }

@@ -1,0 +1,135 @@
+// Reads frames from mesh files. Only the first is checked as a whole mesh where the others have the same cells.
+#include "scene/frame_files.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "dartcast/error.hpp"
+#include "dartcast/mesh_check.hpp"
+#include "formats/checked_file.hpp"
+#include "formats/file_text.hpp"
+#include "formats/format_table.hpp"
+#include "formats/vtu_points.hpp"
+#include "mesh/same_cells.hpp"
+
+namespace dartcast {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FrameFiles {
+ public:
+  FrameFiles(std::vector<fs::path> files, const MeshData& mesh, const EnvironmentScene& environment,
+             const ReadOptions& options)
+      : files_(std::move(files)),
+        points_(mesh.points.size()),
+        scale_(environment.scale),
+        max_memory_(options.max_memory),
+        skips_cells_(environment.skip_bad_cells),
+        cells_(skips_cells_ ? std::set<std::uint32_t>(mesh.source.begin(), mesh.source.end())
+                            : std::set<std::uint32_t>()) {
+    for (const fs::path& file : files_) {
+      if (!fs::is_regular_file(file)) throw InvalidMesh(fmt::format("{}: no such file", file.string()));
+    }
+    read_first();
+  }
+
+  [[nodiscard]] std::vector<Vec3> read(std::size_t frame) const {
+    try {
+      std::vector<Vec3> points;
+      if (auto same = read_same_cells(files_.at(frame))) {
+        points = std::move(*same);
+      } else {
+        points = read_whole(files_[frame]).points;
+      }
+      for (Vec3& x : points) x *= scale_;
+      return points;
+    } catch (const Error& e) {
+      throw Error(fmt::format("deformation: frame {} cannot be read: {}", frame, e.what()));
+    }
+  }
+
+ private:
+  // The file as a mesh of its own, checked and repaired.
+  [[nodiscard]] MeshData read_whole(const fs::path& file) const {
+    ReadOptions options;
+    options.max_memory = max_memory_;
+    MeshFile read = read_mesh(file, options);
+    if (skips_cells_ && !read.mesh.types.empty()) {
+      keep_cells(read.mesh);
+    } else {
+      read = valid_file(std::move(read));
+    }
+    if (read.mesh.points.size() != points_) {
+      throw InvalidMesh(fmt::format("{}: {} points; the scene's mesh has {}: frames must have the same points",
+                                    file.string(), read.mesh.points.size(), points_));
+    }
+    return std::move(read.mesh);
+  }
+
+  // Keeps the cells of a frame that the scene's mesh has, by their places in the input file.
+  void keep_cells(MeshData& frame) const {
+    MeshData kept;
+    for (std::size_t c = 0; c < frame.cell_count(); ++c) {
+      const auto source = frame.source.empty() ? static_cast<std::uint32_t>(c) : frame.source[c];
+      if (cells_.count(source) > 0) kept.add_cell(frame.types[c], frame.cell(c));
+    }
+    kept.points = std::move(frame.points);
+    frame = std::move(kept);
+    check_and_repair(frame);  // drops the points of the other cells
+  }
+
+  void read_first() {
+    MeshData first = read_whole(files_.front());
+    const std::optional<VtuPoints> plain = skips_cells_ ? std::nullopt : read_points_of(files_.front());
+    if (!plain || plain->points != first.points) return;
+    first_cells_ = plain->cells;
+    first_.types = std::move(first.types);
+    first_.offsets = std::move(first.offsets);
+    first_.connectivity = std::move(first.connectivity);
+  }
+
+  [[nodiscard]] std::optional<VtuPoints> read_points_of(const fs::path& file) const {
+    if (ending_of(file) != ".vtu") return std::nullopt;
+    return read_vtu_points(read_bytes(file), max_memory_);
+  }
+
+  // The points of a file with the cells of the first; none where it must be checked as a mesh of its own. This second reading
+  // finds the words for what is wrong with it.
+  [[nodiscard]] std::optional<std::vector<Vec3>> read_same_cells(const fs::path& file) const {
+    if (!first_cells_) return std::nullopt;
+    try {
+      std::optional<VtuPoints> plain = read_points_of(file);
+      if (!plain || plain->cells != *first_cells_ || plain->points.size() != points_ ||
+          !stays_valid(first_, plain->points))
+        return std::nullopt;
+      return std::move(plain->points);
+    } catch (const InvalidMesh&) {
+      return std::nullopt;
+    }
+  }
+
+  const std::vector<fs::path> files_;
+  const std::size_t points_;
+  const double scale_;
+  const std::uint64_t max_memory_;
+  const bool skips_cells_;
+  const std::set<std::uint32_t> cells_;       // of the input file that the scene's mesh has
+  MeshData first_;                            // cells alone
+  std::optional<std::uint64_t> first_cells_;  // none: each file is read as a mesh of its own
+};
+
+}  // namespace
+
+FrameReader frame_reader(std::vector<fs::path> files, const MeshData& mesh, const EnvironmentScene& environment,
+                         const ReadOptions& options) {
+  const auto all = std::make_shared<const FrameFiles>(std::move(files), mesh, environment, options);
+  return [all](std::size_t frame) { return all->read(frame); };
+}
+
+}  // namespace dartcast

@@ -1,0 +1,114 @@
+// The thread that reads frames ahead, and the exchange with those who need them.
+#include "simulation/frame_read_ahead.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+#include "dartcast/error.hpp"
+
+namespace dartcast {
+namespace {
+
+// The two that are needed and one to read ahead, or more where they fit.
+std::size_t frames_that_fit(std::size_t vertices) {
+  const std::size_t bytes = std::max<std::size_t>(vertices, 1) * sizeof(Vec3);
+  return std::clamp<std::size_t>(frame_memory / bytes, 3, max_frames_held);
+}
+
+void check(const std::vector<Vec3>& points, std::size_t frame, std::size_t vertices) {
+  if (points.size() != vertices)
+    throw InvalidMesh(fmt::format("deformation: frame {} has {} positions; the mesh has {} vertices", frame,
+                                  points.size(), vertices));
+  const auto bad = std::find_if_not(points.begin(), points.end(), is_finite);
+  if (bad != points.end())
+    throw InvalidMesh(fmt::format("deformation: frame {}: position {} is not finite", frame, bad - points.begin()));
+}
+
+}  // namespace
+
+FrameReadAhead::FrameReadAhead(FrameReader reader, std::size_t count, std::size_t vertices)
+    : reader_(std::move(reader)), count_(count), vertices_(vertices), capacity_(frames_that_fit(vertices)) {}
+
+FrameReadAhead::~FrameReadAhead() {
+  {
+    const std::lock_guard lock(mutex_);
+    ends_ = true;
+  }
+  wanted_.notify_one();
+  if (thread_.joinable()) thread_.join();
+}
+
+FrameReadAhead::Pair FrameReadAhead::get(std::size_t before, std::size_t after) {
+  const std::lock_guard turn(turn_);
+  std::unique_lock lock(mutex_);
+  if (!thread_.joinable()) start();
+  first_ = before;
+  std::erase_if(frames_, [&](const auto& f) {
+    const bool needed = f.first == before || f.first == after;
+    return !is_wanted(f.first) || (needed && f.second->error != nullptr);
+  });
+  wanted_.notify_one();
+  ready_.wait(lock, [&] {
+    const auto found = frames_.find(before);
+    return found != frames_.end() && (found->second->error != nullptr || frames_.contains(after));
+  });
+  return {read_without_error(before), read_without_error(after)};
+}
+
+void FrameReadAhead::start() {
+  try {
+    thread_ = std::thread([this] { read_on(); });
+  } catch (const std::system_error& e) {
+    throw Error(fmt::format("deformation: no thread can be started to read frames: {}", e.what()));
+  }
+}
+
+std::shared_ptr<const ReadFrame> FrameReadAhead::read_without_error(std::size_t frame) const {
+  const std::shared_ptr<const ReadFrame>& found = frames_.at(frame);
+  if (found->error != nullptr) std::rethrow_exception(found->error);
+  return found;
+}
+
+void FrameReadAhead::read_on() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    wanted_.wait(lock, [this] { return ends_ || next().has_value(); });
+    if (ends_) return;
+    const std::size_t frame = *next();
+    lock.unlock();
+    std::shared_ptr<const ReadFrame> found = read(frame);
+    lock.lock();
+    if (is_wanted(frame)) frames_.emplace(frame, std::move(found));
+    ready_.notify_one();
+  }
+}
+
+// The first frame that is wanted and not there. After one that cannot be read no further ones are read.
+std::optional<std::size_t> FrameReadAhead::next() const {
+  for (std::size_t frame = first_; frame < count_ && is_wanted(frame); ++frame) {
+    const auto found = frames_.find(frame);
+    if (found == frames_.end()) return frame;
+    if (found->second->error != nullptr) break;
+  }
+  return std::nullopt;
+}
+
+std::shared_ptr<const ReadFrame> FrameReadAhead::read(std::size_t frame) const {
+  auto result = std::make_shared<ReadFrame>();
+  try {
+    result->points = reader_(frame);
+    check(result->points, frame, vertices_);
+    const auto off =
+        std::find_if(result->points.begin(), result->points.end(), [](const Vec3& x) { return x.z != 0.0; });
+    if (off != result->points.end()) result->off_plane = static_cast<std::size_t>(off - result->points.begin());
+  } catch (...) {
+    result->points = {};
+    result->error = std::current_exception();
+  }
+  return result;
+}
+
+}  // namespace dartcast

@@ -1,0 +1,66 @@
+// Reads the frames of a motion ahead of the time that is needed, by a thread.
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <exception>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "dartcast/deformation.hpp"
+
+namespace dartcast {
+
+/// A frame that has been read, or the reason why not.
+struct ReadFrame {
+  std::vector<Vec3> points;
+  std::optional<std::size_t> off_plane;  ///< the first point with z != 0
+  std::exception_ptr error;
+};
+
+/// Holds the frames from the one before the time that is needed, as many as fit in the memory for them. Where time
+/// jumps the frames from there are read instead.
+class FrameReadAhead {
+ public:
+  /// `count` frames of so many vertices. The thread starts with the first call of get().
+  FrameReadAhead(FrameReader reader, std::size_t count, std::size_t vertices);
+  /// Waits for the frame that is being read.
+  ~FrameReadAhead();
+  FrameReadAhead(const FrameReadAhead&) = delete;
+  FrameReadAhead& operator=(const FrameReadAhead&) = delete;
+
+  struct Pair {
+    std::shared_ptr<const ReadFrame> before, after;
+  };
+  /// Waits for two frames; precondition: after - before is 0 or 1. Any thread may call it; one at a time is served.
+  /// Throws where one cannot be read: now, not only when it was tried ahead of its time. Throws Error where no thread
+  /// can be started.
+  Pair get(std::size_t before, std::size_t after);
+
+  /// Frames that are held at most.
+  [[nodiscard]] std::size_t capacity() const { return capacity_; }
+
+ private:
+  void start();
+  void read_on();
+  [[nodiscard]] std::optional<std::size_t> next() const;
+  [[nodiscard]] bool is_wanted(std::size_t frame) const { return frame >= first_ && frame - first_ < capacity_; }
+  [[nodiscard]] std::shared_ptr<const ReadFrame> read(std::size_t frame) const;
+  [[nodiscard]] std::shared_ptr<const ReadFrame> read_without_error(std::size_t frame) const;
+
+  const FrameReader reader_;
+  const std::size_t count_, vertices_, capacity_;
+  std::mutex turn_;   // held by the caller who is served
+  std::mutex mutex_;  // guards the members below
+  std::condition_variable wanted_, ready_;
+  std::size_t first_ = 0;  // of the frames that are wanted
+  std::map<std::size_t, std::shared_ptr<const ReadFrame>> frames_;
+  bool ends_ = false;
+  std::thread thread_;
+};
+
+}  // namespace dartcast
