@@ -95,7 +95,7 @@ class ShapeTable {
   };
 
   /// Returns the shape with this key and adds one use. Throws as Shape does.
-  Interned intern(ShapeKey key);
+  Interned intern(const ShapeKey& key);
   /// Returns the shape of a standard cell by its signature (see topology/cell_form.hpp). It is never released. `key()`
   /// is called if the shape is new.
   template <class Key>
@@ -128,7 +128,7 @@ class ShapeTable {
   static constexpr std::uint16_t max_recent_darts = 128;
 
   [[nodiscard]] std::shared_ptr<const Shape>& recent(const ShapeKey& key);
-  [[nodiscard]] std::shared_ptr<const Shape> make(ShapeKey key);
+  [[nodiscard]] std::shared_ptr<const Shape> make(const ShapeKey& key);
   Interned add_standard(std::uint32_t signature, ShapeKey key);
   Interned put(std::uint32_t number, std::shared_ptr<const Shape> shape, std::uint32_t uses);
   void drop(std::uint32_t number);

@@ -84,6 +84,7 @@ class BoundaryWalls {
  public:
   BoundaryWalls(const Transaction& t, std::span<const Vec3> positions)
       : positions_(positions), old_(walls_of(t.map(), t.removed())), new_(walls_of(t.map(), t.added())) {
+    if (old_.empty() || new_.empty()) return;
     for (std::size_t i = 0; i < t.created_count(); ++i) created_[t.created(i).vertex.value] = t.created(i);
     for (const Cell c : t.added()) {
       for (const std::uint32_t v : t.map().view(c).vertices()) kept_.insert(v);

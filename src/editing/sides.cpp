@@ -53,6 +53,8 @@ bool Sides::is_above(Cell c) {
   return r.below == r.above ? plane_.height(middle(edit_, c)) > 0.0 : r.above;
 }
 
+bool Sides::reaches_below(Cell c) { return reach(c).below || !is_above(c); }
+
 bool Sides::looks_down(CellFace f) {
   const CellView v = edit_.map().view(f.cell);
   const auto corners = v.shape().corners(f.face);

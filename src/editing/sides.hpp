@@ -36,6 +36,8 @@ class Sides {
   [[nodiscard]] Reach reach(Cell c);
   /// Whether a cell that must be on one side counts as above.
   [[nodiscard]] bool is_above(Cell c);
+  /// Whether the cell has a part below: a corner, or all of it.
+  [[nodiscard]] bool reaches_below(Cell c);
   /// Whether the outside of a cell's face faces downwards.
   [[nodiscard]] bool looks_down(CellFace f);
 

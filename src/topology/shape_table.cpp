@@ -17,13 +17,13 @@ std::size_t ShapeTable::KeyHash::operator()(const ShapeKey* key) const {
   return static_cast<std::size_t>(hash);
 }
 
-ShapeTable::Interned ShapeTable::intern(ShapeKey key) {
+ShapeTable::Interned ShapeTable::intern(const ShapeKey& key) {
   const auto found = numbers_.find(&key);
   if (found != numbers_.end()) {
     if (uses_[found->second] != forever) ++uses_[found->second];
     return {found->second, false, false};
   }
-  auto shape = make(std::move(key));
+  auto shape = make(key);
   auto number = static_cast<std::uint32_t>(vacant_.empty() ? shapes_.size() : vacant_.back());
   if (vacant_.empty() && number >= kept_begin && number < kept_end) number = kept_end;
   if (!vacant_.empty()) vacant_.pop_back();
@@ -36,12 +36,12 @@ std::shared_ptr<const Shape>& ShapeTable::recent(const ShapeKey& key) {
   return recent_[KeyHash{}(&key) % recent_places];
 }
 
-std::shared_ptr<const Shape> ShapeTable::make(ShapeKey key) {
+std::shared_ptr<const Shape> ShapeTable::make(const ShapeKey& key) {
   if (!recent_.empty()) {
     std::shared_ptr<const Shape>& known = recent(key);
     if (known && known->key() == key) return std::exchange(known, nullptr);
   }
-  return std::make_shared<const Shape>(std::move(key));
+  return std::make_shared<const Shape>(key);
 }
 
 ShapeTable::Interned ShapeTable::add_standard(std::uint32_t signature, ShapeKey key) {
