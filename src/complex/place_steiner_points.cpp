@@ -22,12 +22,14 @@ using CornerNumbers = std::vector<std::uint32_t>;
 
 CornerNumbers corners_of(const DraftFace& face) {
   CornerNumbers corners;
+  corners.reserve(face.corners.size());
   for (const DraftCorner& c : face.corners) corners.push_back(c.vertex.value);
   return corners;
 }
 
 CornerNumbers corners_of(const CellDraft& draft) {
   CornerNumbers corners;
+  corners.reserve(6 * draft.faces.size());
   for (const DraftFace& face : draft.faces) {
     for (const DraftCorner& c : face.corners) corners.push_back(c.vertex.value);
   }

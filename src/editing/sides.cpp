@@ -19,10 +19,9 @@ Vec3 middle(ComplexEdit& edit, Cell c) {
   return sum * (1.0 / v.shape().corner_count());
 }
 
-double Sides::height(Vertex v) {
-  const auto [known, fresh] = height_.try_emplace(v.value);
-  if (fresh) known->second = plane_.height(edit_.position(v));
-  return known->second;
+// A new vertex lies on the plane but for rounding.
+double Sides::height(Vertex v) const {
+  return !on_.empty() && on_.contains(v.value) ? 0.0 : plane_.height(edit_.position(v));
 }
 
 int Sides::operator[](Vertex v) {
