@@ -51,7 +51,8 @@ BoundaryPlane plane_of(const VertexNumbering& corners, std::span<const Vec3> pos
   const Vec3 a = positions[corners.front()];
   BoundaryPlane plane{a, a, a, {corners[0], corners[0], corners[0]}};
   if (corners.size() == 2)
-    return {a, positions[corners[1]], detail::upright(a, positions[corners[1]]).c, {corners[0], corners[1], corners[1]}};
+    return {
+        a, positions[corners[1]], detail::upright(a, positions[corners[1]]).c, {corners[0], corners[1], corners[1]}};
   double widest = 0.0;
   for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
     const Vec3 b = positions[corners[i]];

@@ -24,6 +24,7 @@ class MapBuilder {
     sew();
     for (const Cell c : map_.cells()) map_.mark_walls(c);
     add_patches();
+    for (std::uint32_t s = 0; s < map_.shapes_.size(); ++s) (void)map_.shapes_[s].stars();  // not in the first step
   }
 
  private:

@@ -272,7 +272,8 @@ Stars::Fans Shape::fans() const {
 std::size_t Shape::bytes() const {
   const Stars* made = stars_.load(std::memory_order_acquire);
   return sizeof(Shape) + (dart_count() * 5U + key_.corner_count) * sizeof(std::uint16_t) +
-         simplices_.size() * sizeof(ImplicitSimplex) + entries_.size() * sizeof(Across) + (made == nullptr ? 0 : made->bytes());
+         simplices_.size() * sizeof(ImplicitSimplex) + entries_.size() * sizeof(Across) +
+         (made == nullptr ? 0 : made->bytes());
 }
 
 }  // namespace dartcast
