@@ -22,12 +22,12 @@ bool all_positive(const Vec3& apex, std::span<const ConeTriangle> triangles) {
 
 namespace {
 
-struct Facet {
+struct ConeFacet {
   Vec3 at, inward;  // inward: of length 1
 };
 
-std::vector<Facet> facets_of(std::span<const ConeTriangle> triangles, double size) {
-  std::vector<Facet> facets;
+std::vector<ConeFacet> facets_of(std::span<const ConeTriangle> triangles, double size) {
+  std::vector<ConeFacet> facets;
   facets.reserve(triangles.size());
   for (const ConeTriangle& t : triangles) {
     Vec3 n = cross((t.c - t.a) * (1.0 / size), (t.b - t.a) * (1.0 / size));  // of a magnitude that can be squared
@@ -46,11 +46,11 @@ Vec3 kernel_point(const Vec3& start, std::span<const ConeTriangle> triangles, do
   Vec3 x = start;
   Vec3 best = start;
   double best_distance = -size;
-  const std::vector<Facet> facets = facets_of(triangles, size);
+  const std::vector<ConeFacet> facets = facets_of(triangles, size);
   for (int k = 0; k < steps; ++k) {
     double nearest = 2.0 * size;
     Vec3 inward;
-    for (const Facet& f : facets) {
+    for (const ConeFacet& f : facets) {
       const double distance = dot(f.inward, x - f.at);
       if (distance < nearest) {
         nearest = distance;
