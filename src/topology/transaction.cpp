@@ -5,6 +5,7 @@
 #include "dartcast/error.hpp"
 #include "dartcast/map_edits.hpp"
 #include "topology/cell_form.hpp"
+#include "topology/replacement.hpp"
 
 namespace dartcast {
 
