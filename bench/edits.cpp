@@ -23,6 +23,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
 Environment box(std::uint32_t edge) {
   BoxOptions o;
   o.cells = {edge, edge, edge};
@@ -60,16 +62,29 @@ class Editor {
   }
 
   void edit(const std::function<void(Transaction&)>& make) {
-    const ComplexEditReport done = environment_.edit([&](ComplexEdit& e) { make(e.topology()); });
+    commit(make);
+    follow();
+  }
+
+  void commit(const std::function<void(Transaction&)>& make) {
+    environment_.edit([&](ComplexEdit& e) { make(e.topology()); });
+  }
+
+  void follow() {
+    const EditReport& done = environment_.last_edit().map;
     row_.particles_touched += static_cast<double>(environment_.update_after_edit(particles_).touched);
-    row_.cells_touched += static_cast<double>(done.map.removed.size() + done.map.added.size() + done.map.marked.size());
+    row_.cells_touched += static_cast<double>(done.removed.size() + done.added.size() + done.marked.size());
     ++row_.edits;
   }
 
   void on_edge(Dart d) {
     const Vertex from = map().origin(d);
     Vertex middle;
-    edit([&](Transaction& t) { middle = split_edge(t, d).vertex; });
+    const auto start = Clock::now();
+    commit([&](Transaction& t) { middle = split_edge(t, d).vertex; });
+    row_.split_seconds += seconds_since(start);
+    ++row_.splits;
+    follow();
     find(middle, from, [&](Dart found) { edit([&](Transaction& t) { merge_edges(t, found); }); });
   }
 
@@ -119,8 +134,6 @@ class Editor {
   Random random_;
 };
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
 // Edits until a tenth of the cells may have been touched. A face that was split and merged keeps a Steiner point.
 double edit_some(std::uint32_t edge, std::size_t count, EditRow& row) {
   Environment environment = box(edge);
@@ -157,6 +170,7 @@ EditRow edit_box(std::uint32_t edge, std::size_t particles, std::size_t edits) {
   double seconds = 0.0;
   while (row.edits < edits) seconds += edit_some(edge, edits - row.edits, row);
   row.edits_per_second = static_cast<double>(row.edits) / seconds;
+  row.splits_per_second = static_cast<double>(row.splits) / row.split_seconds;
   row.cells_touched /= static_cast<double>(row.edits);
   row.particles_touched /= static_cast<double>(row.edits);
   return row;
@@ -167,8 +181,10 @@ std::string edits_text(std::span<const EditRow> rows) {
   for (const EditRow& r : rows) {
     out += fmt::format(
         "{} cells, {} particles: {:.0f} edits a second, each touching {:.1f} cells and {:.1f} particles; "
+        "{:.0f} splits of an edge a second without particles; "
         "validity of the scene: {:.1f} ns a cell\n",
-        r.cells, r.particles, r.edits_per_second, r.cells_touched, r.particles_touched, r.validity_ns_per_cell);
+        r.cells, r.particles, r.edits_per_second, r.cells_touched, r.particles_touched, r.splits_per_second,
+        r.validity_ns_per_cell);
   }
   return out;
 }
@@ -180,6 +196,7 @@ std::string edits_json(std::span<const EditRow> rows) {
                              {"particles", r.particles},
                              {"edits", r.edits},
                              {"edits_per_second", r.edits_per_second},
+                             {"splits_per_second", r.splits_per_second},
                              {"cells_touched", r.cells_touched},
                              {"particles_touched", r.particles_touched},
                              {"validity_ns_per_cell", r.validity_ns_per_cell}});

@@ -13,7 +13,10 @@ struct EditRow {
   std::size_t cells = 0;
   std::size_t particles = 0;
   std::size_t edits = 0;
-  double edits_per_second = 0.0;      ///< each committed by itself and followed by all particles
+  double edits_per_second = 0.0;  ///< each committed by itself and followed by all particles
+  std::size_t splits = 0;         ///< those that put a vertex on an edge
+  double split_seconds = 0.0;     ///< all of them, without the particles
+  double splits_per_second = 0.0;
   double cells_touched = 0.0;         ///< on average: removed, added, marked
   double particles_touched = 0.0;     ///< on average
   double validity_ns_per_cell = 0.0;  ///< one pass over the scene, one thread

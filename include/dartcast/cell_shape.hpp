@@ -11,6 +11,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -132,6 +133,11 @@ class Shape {
   /// common triangle. Then the fans bound no solid. The shape has one simplex that is flat at any positions, so that
   /// the cell is invalid until such faces get Steiner points.
   explicit Shape(ShapeKey key);
+  Shape(const Shape&) = delete;
+  Shape& operator=(const Shape&) = delete;
+  Shape(Shape&&) = delete;
+  Shape& operator=(Shape&&) = delete;
+  ~Shape() { delete stars_.load(std::memory_order_acquire); }
 
   /// 2: a polygon; 3: a polyhedron.
   [[nodiscard]] unsigned dimension() const { return dimension_; }
@@ -163,8 +169,12 @@ class Shape {
   [[nodiscard]] std::span<const std::uint16_t> corners(std::uint16_t face) const { return key_.faces[face].corners; }
 
   [[nodiscard]] const std::vector<ImplicitSimplex>& simplices() const { return simplices_; }
-  /// Empty where the shape is flat, or a polygon.
-  [[nodiscard]] const Stars& stars() const { return stars_; }
+  /// Empty where the shape is flat, or a polygon. The first call makes them, because most shapes that an edit makes are
+  /// released before a walk asks. Any number of threads may call.
+  [[nodiscard]] const Stars& stars() const {
+    const Stars* made = stars_.load(std::memory_order_acquire);
+    return made != nullptr ? *made : make_stars();
+  }
   /// Number of triangles in a face's fan: degree - 2, or degree where the face has a Steiner point. In the plane a face
   /// is one facet of a simplex, as a triangle is.
   [[nodiscard]] std::uint16_t triangle_count(std::uint16_t face) const {
@@ -201,7 +211,9 @@ class Shape {
   void make_triangles();
   void connect_simplices();
   void make_flat();
-  void make_stars();
+  [[nodiscard]] bool is_flat() const;
+  [[nodiscard]] Stars::Fans fans() const;
+  [[nodiscard]] const Stars& make_stars() const;
   [[nodiscard]] bool is_on_face(std::uint16_t point, std::uint16_t face) const;
   [[nodiscard]] std::span<const std::uint16_t> darts_at(std::uint16_t corner) const {
     return {darts_at_.data() + first_dart_at_[corner], darts_at_.data() + first_dart_at_[corner + 1U]};
@@ -214,7 +226,7 @@ class Shape {
   std::vector<std::uint16_t> origin_, face_of_, first_dart_, phi2_;
   std::vector<std::uint16_t> darts_at_, first_dart_at_;  // by corner: those with this origin
   std::vector<ImplicitSimplex> simplices_;
-  Stars stars_;
+  mutable std::atomic<const Stars*> stars_ = nullptr;  // owned; null until they are needed
   std::vector<std::uint16_t> first_entry_;
   std::vector<Across> entries_;
 };

@@ -203,6 +203,7 @@ class Transaction {
   };
 
   void prepare();
+  void set_key(const CellDraft& draft, const DraftForm& form, std::vector<std::uint32_t>& vertices);
   void keep(Cell c, std::size_t offset);
   void keep_face(CellFace f);
   void count_vertices(Cell c, bool more);
@@ -227,6 +228,7 @@ class Transaction {
   std::vector<Created> created_;
   std::vector<MergedVertex> merged_;
   std::vector<Cell> marked_;
+  ShapeKey key_;  // of the last cell that was put; kept for its memory
 };
 
 // All edits below throw InvalidArgument where a dart, face or cell does not exist (an earlier edit replaced it). They

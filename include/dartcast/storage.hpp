@@ -95,7 +95,7 @@ class ShapeTable {
   };
 
   /// Returns the shape with this key and adds one use. Throws as Shape does.
-  Interned intern(ShapeKey key);
+  Interned intern(const ShapeKey& key);
   /// Returns the shape of a standard cell by its signature (see topology/cell_form.hpp). It is never released. `key()`
   /// is called if the shape is new.
   template <class Key>
@@ -124,12 +124,19 @@ class ShapeTable {
     bool operator()(const ShapeKey* a, const ShapeKey* b) const { return *a == *b; }
   };
   static constexpr std::uint32_t forever = 0xffffffffU;  // uses of a standard shape
+  static constexpr std::size_t recent_places = 512;
+  static constexpr std::uint16_t max_recent_darts = 128;
 
+  [[nodiscard]] std::shared_ptr<const Shape>& recent(const ShapeKey& key);
+  [[nodiscard]] std::shared_ptr<const Shape> make(const ShapeKey& key);
   Interned add_standard(std::uint32_t signature, ShapeKey key);
   Interned put(std::uint32_t number, std::shared_ptr<const Shape> shape, std::uint32_t uses);
   void drop(std::uint32_t number);
 
   std::vector<std::shared_ptr<const Shape>> shapes_;  // shared by copies of the table: they are immutable
+  // Released a short time ago: edits need the same few shapes again and again, and a shape is expensive to make. One
+  // for each value of the key's hash. Empty until the first release.
+  std::vector<std::shared_ptr<const Shape>> recent_;
   std::vector<std::uint32_t> uses_;
   std::vector<std::uint32_t> vacant_;                                              // released numbers
   std::unordered_map<const ShapeKey*, std::uint32_t, KeyHash, KeyEqual> numbers_;  // keys lie in the shapes

@@ -2,6 +2,8 @@
 #include "complex/boundary_shift.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <unordered_map>
 #include <unordered_set>
 #include <vector>
@@ -41,13 +43,16 @@ bool holds(const VertexNumbering& numbers, std::uint32_t v) {
 
 struct BoundaryPlane {
   Vec3 a, b, c;
+  std::array<std::uint32_t, 3> corners;  // vertices that lie in it, because they define it
 };
 
 // The plane through the widest triangle of a fan. In the plane it is upright through an edge.
 BoundaryPlane plane_of(const VertexNumbering& corners, std::span<const Vec3> positions) {
   const Vec3 a = positions[corners.front()];
-  BoundaryPlane plane{a, a, a};
-  if (corners.size() == 2) return {a, positions[corners[1]], detail::upright(a, positions[corners[1]]).c};
+  BoundaryPlane plane{a, a, a, {corners[0], corners[0], corners[0]}};
+  if (corners.size() == 2)
+    return {
+        a, positions[corners[1]], detail::upright(a, positions[corners[1]]).c, {corners[0], corners[1], corners[1]}};
   double widest = 0.0;
   for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
     const Vec3 b = positions[corners[i]];
@@ -55,7 +60,7 @@ BoundaryPlane plane_of(const VertexNumbering& corners, std::span<const Vec3> pos
     const double width = norm(cross(b - a, c - a));
     if (!(width > widest)) continue;
     widest = width;
-    plane = {a, b, c};
+    plane = {a, b, c, {corners[0], corners[i], corners[i + 1]}};
   }
   return plane;
 }
@@ -68,6 +73,7 @@ double extent_over(const BoundaryPlane& plane, const BoundaryWall& before, const
   double low = 0.0;
   double high = 0.0;
   const auto add = [&](std::uint32_t v) {
+    if (std::find(plane.corners.begin(), plane.corners.end(), v) != plane.corners.end()) return;
     if (orient3d(plane.a, plane.b, plane.c, positions[v]) == Sign::zero) return;
     const double height = dot(normal, positions[v] - plane.a) / length;
     low = std::min(low, height);
@@ -84,6 +90,7 @@ class BoundaryWalls {
  public:
   BoundaryWalls(const Transaction& t, std::span<const Vec3> positions)
       : positions_(positions), old_(walls_of(t.map(), t.removed())), new_(walls_of(t.map(), t.added())) {
+    if (old_.empty() || new_.empty()) return;
     for (std::size_t i = 0; i < t.created_count(); ++i) created_[t.created(i).vertex.value] = t.created(i);
     for (const Cell c : t.added()) {
       for (const std::uint32_t v : t.map().view(c).vertices()) kept_.insert(v);
@@ -98,16 +105,24 @@ class BoundaryWalls {
     for (const BoundaryWall& wall : new_) {
       if (was_there(wall)) continue;
       const VertexNumbering origins = origins_of(wall);
-      for (const std::uint32_t v : origins) {
-        const auto found = at_.find(v);
-        if (found == at_.end()) continue;
-        for (const std::size_t i : found->second) largest = std::max(largest, between(old_[i], wall, origins));
-      }
+      for (const std::size_t i : old_walls_at(origins)) largest = std::max(largest, between(old_[i], wall, origins));
     }
     return largest;
   }
 
  private:
+  // Each once: most share several vertices with a new wall.
+  [[nodiscard]] std::vector<std::size_t> old_walls_at(const VertexNumbering& vertices) const {
+    std::vector<std::size_t> walls;
+    for (const std::uint32_t v : vertices) {
+      const auto found = at_.find(v);
+      if (found != at_.end()) walls.insert(walls.end(), found->second.begin(), found->second.end());
+    }
+    std::sort(walls.begin(), walls.end());
+    walls.erase(std::unique(walls.begin(), walls.end()), walls.end());
+    return walls;
+  }
+
   [[nodiscard]] bool was_there(const BoundaryWall& wall) const {
     const auto found = at_.find(wall.corners.front());
     return found != at_.end() &&

@@ -22,6 +22,23 @@ bool all_positive(const Vec3& apex, std::span<const ConeTriangle> triangles) {
 
 namespace {
 
+struct ConeFacet {
+  Vec3 at, inward;  // inward: of length 1
+};
+
+std::vector<ConeFacet> facets_of(std::span<const ConeTriangle> triangles, double size) {
+  std::vector<ConeFacet> facets;
+  facets.reserve(triangles.size());
+  for (const ConeTriangle& t : triangles) {
+    Vec3 n = cross((t.c - t.a) * (1.0 / size), (t.b - t.a) * (1.0 / size));  // of a magnitude that can be squared
+    const double length = norm(n);
+    if (!(length > 0.0)) continue;
+    n *= 1.0 / length;
+    facets.push_back({t.a, n});
+  }
+  return facets;
+}
+
 // A point strictly behind all triangles, found by moving away from the nearest one; `start` if none is found. The
 // result is only a proposal: the validity check decides.
 Vec3 kernel_point(const Vec3& start, std::span<const ConeTriangle> triangles, double size) {
@@ -29,18 +46,15 @@ Vec3 kernel_point(const Vec3& start, std::span<const ConeTriangle> triangles, do
   Vec3 x = start;
   Vec3 best = start;
   double best_distance = -size;
+  const std::vector<ConeFacet> facets = facets_of(triangles, size);
   for (int k = 0; k < steps; ++k) {
     double nearest = 2.0 * size;
     Vec3 inward;
-    for (const ConeTriangle& t : triangles) {
-      Vec3 n = cross((t.c - t.a) * (1.0 / size), (t.b - t.a) * (1.0 / size));  // of a magnitude that can be squared
-      const double length = norm(n);
-      if (!(length > 0.0)) continue;
-      n *= 1.0 / length;
-      const double distance = dot(n, x - t.a);
+    for (const ConeFacet& f : facets) {
+      const double distance = dot(f.inward, x - f.at);
       if (distance < nearest) {
         nearest = distance;
-        inward = n;
+        inward = f.inward;
       }
     }
     if (nearest > best_distance) {

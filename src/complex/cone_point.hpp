@@ -41,6 +41,7 @@ void add_fan(std::vector<ConeTriangle>& triangles, std::span<const std::uint32_t
 inline std::vector<ConeTriangle> fan(std::span<const Vec3> points, std::span<const std::uint32_t> face,
                                      const std::optional<Vec3>& point = {}) {
   std::vector<ConeTriangle> triangles;
+  triangles.reserve(face.size());
   add_fan(triangles, face, point, [&](std::uint32_t v) { return points[v]; });
   return triangles;
 }

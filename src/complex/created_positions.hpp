@@ -31,7 +31,7 @@ class CreatedPositions {
 
   /// Throws InvalidArgument where there is no such vertex.
   [[nodiscard]] Vec3 at(Vertex v) {
-    take();
+    if (count_ != transaction_.created_count() || positions_.size() != transaction_.map().vertex_count()) take();
     if (!transaction_.map().is_vertex(v))
       throw InvalidArgument("there is no vertex " + std::to_string(v.value) + ": an edit gave it up");
     return positions_[v.value];

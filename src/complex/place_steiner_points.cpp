@@ -22,12 +22,14 @@ using CornerNumbers = std::vector<std::uint32_t>;
 
 CornerNumbers corners_of(const DraftFace& face) {
   CornerNumbers corners;
+  corners.reserve(face.corners.size());
   for (const DraftCorner& c : face.corners) corners.push_back(c.vertex.value);
   return corners;
 }
 
 CornerNumbers corners_of(const CellDraft& draft) {
   CornerNumbers corners;
+  corners.reserve(6 * draft.faces.size());
   for (const DraftFace& face : draft.faces) {
     for (const DraftCorner& c : face.corners) corners.push_back(c.vertex.value);
   }
@@ -38,10 +40,14 @@ CornerNumbers corners_of(const CellDraft& draft) {
 
 // Weights that are about equal powers of two with sum 1. In a plane of constant coordinates of few digits they put the
 // point exactly there.
-std::vector<double> face_weights(std::size_t corners) {
+double face_weight(std::size_t corners, std::size_t corner) {
   const std::size_t whole = std::bit_ceil(corners);
-  std::vector<double> weights(corners, 1.0 / static_cast<double>(whole));
-  std::fill_n(weights.begin(), whole - corners, 2.0 / static_cast<double>(whole));
+  return (corner < whole - corners ? 2.0 : 1.0) / static_cast<double>(whole);
+}
+
+std::vector<double> face_weights(std::size_t corners) {
+  std::vector<double> weights;
+  for (std::size_t i = 0; i < corners; ++i) weights.push_back(face_weight(corners, i));
   return weights;
 }
 
@@ -90,9 +96,10 @@ class SteinerPlacer {
   // A face is named once, by the lower of its cells.
   void choose_face_points(Cell c) {
     if (map().dimension() == 2) return;
-    const Vec3 mean = detail::mean(positions_, corners_of(rework_.draft(c)));
-    for (std::uint16_t f = 0; f < rework_.draft(c).faces.size(); ++f) {
-      const DraftFace& face = rework_.draft(c).faces[f];
+    const std::uint32_t number = rework_.take(c);
+    const Vec3 mean = detail::mean(positions_, corners_of(rework_.draft(number)));
+    for (std::uint16_t f = 0; f < rework_.draft(number).faces.size(); ++f) {
+      const DraftFace& face = rework_.draft(number).faces[f];
       if (face.point.valid() || face.corners.size() == 3) continue;
       if (!may_be_straight(face) && !asks_for_point(face, mean)) continue;
       const CellFace here{c, f};
@@ -134,9 +141,8 @@ class SteinerPlacer {
   }
 
   [[nodiscard]] Vec3 face_point(const CornerNumbers& corners) const {
-    const std::vector<double> weights = face_weights(corners.size());
     Vec3 sum;
-    for (std::size_t i = 0; i < corners.size(); ++i) sum += positions_[corners[i]] * weights[i];
+    for (std::size_t i = 0; i < corners.size(); ++i) sum += positions_[corners[i]] * face_weight(corners.size(), i);
     return sum;
   }
 

@@ -67,9 +67,10 @@ class Carver {
     CellNumbers inside = left(
         [&](Cell c) { return detail::near(edit_.map().view(c), tool, [&](Vertex v) { return edit_.position(v); }); });
     const double within = cutter_.snap_distance(inside, {options_.snap, tool.finest});
+    std::vector<detail::Cutter::Reaching> reaching(tool.planes.size());
     for (std::size_t i = 0; i < tool.planes.size(); ++i) {
       for (std::size_t k = i; k < tool.planes.size(); ++k)
-        inside = cutter_.reaching_below(inside, tool.planes[k], within);
+        inside = cutter_.reaching_below(inside, tool.planes[k], within, reaching[k]);
       const auto parts = cutter_.split(inside, tool.planes[i], within);
       whole_.insert(whole_.end(), parts.whole.begin(), parts.whole.end());
       inside = parts.below;

@@ -37,11 +37,14 @@ void Cutter::replace(Cell old, Cell now) {
 }
 
 std::vector<std::uint32_t> Cutter::reaching_below(std::span<const std::uint32_t> numbers, const Plane& plane,
-                                                  double within) {
+                                                  double within, Reaching& known) {
   Sides sides(edit_, plane, within);
   std::vector<std::uint32_t> reaching;
+  known.of.resize(cells_.size());
   for (const std::uint32_t n : numbers) {
-    if (sides.reach(cells_[n]).below || !sides.is_above(cells_[n])) reaching.push_back(n);
+    Reaching::Answer& answer = known.of[n];
+    if (answer.cell != cells_[n]) answer = {cells_[n], sides.reaches_below(cells_[n])};
+    if (answer.below) reaching.push_back(n);
   }
   return reaching;
 }

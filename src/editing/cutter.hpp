@@ -40,9 +40,17 @@ class Cutter {
   /// As split_by_plane(). Vertices at most `within` metres from the plane count as on it. The part below keeps the
   /// number of the cell. The part above gets the next number.
   Parts split(std::span<const std::uint32_t> numbers, const Plane& plane, double within);
-  /// The cells with a part below the plane.
+  /// Answers of reaching_below() for one plane, by number of the cell. They hold until the cell is replaced.
+  struct Reaching {
+    struct Answer {
+      Cell cell;
+      bool below = false;
+    };
+    std::vector<Answer> of;
+  };
+  /// The cells with a part below the plane. `known`: of the same plane and distance, empty at first.
   [[nodiscard]] std::vector<std::uint32_t> reaching_below(std::span<const std::uint32_t> numbers, const Plane& plane,
-                                                          double within);
+                                                          double within, Reaching& known);
   /// The distance from a plane within which vertices of these cells count as on it.
   [[nodiscard]] double snap_distance(std::span<const std::uint32_t> numbers, const SectionOptions& options);
 

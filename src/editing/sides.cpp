@@ -19,10 +19,9 @@ Vec3 middle(ComplexEdit& edit, Cell c) {
   return sum * (1.0 / v.shape().corner_count());
 }
 
-double Sides::height(Vertex v) {
-  const auto [known, fresh] = height_.try_emplace(v.value);
-  if (fresh) known->second = plane_.height(edit_.position(v));
-  return known->second;
+// A new vertex lies on the plane but for rounding.
+double Sides::height(Vertex v) const {
+  return !on_.empty() && on_.contains(v.value) ? 0.0 : plane_.height(edit_.position(v));
 }
 
 int Sides::operator[](Vertex v) {
@@ -52,6 +51,8 @@ bool Sides::is_above(Cell c) {
   const Reach r = reach(c);
   return r.below == r.above ? plane_.height(middle(edit_, c)) > 0.0 : r.above;
 }
+
+bool Sides::reaches_below(Cell c) { return reach(c).below || !is_above(c); }
 
 bool Sides::looks_down(CellFace f) {
   const CellView v = edit_.map().view(f.cell);

@@ -24,6 +24,7 @@ class MapBuilder {
     sew();
     for (const Cell c : map_.cells()) map_.mark_walls(c);
     add_patches();
+    for (std::uint32_t s = 0; s < map_.shapes_.size(); ++s) (void)map_.shapes_[s].stars();  // not in the first step
   }
 
  private:
@@ -105,7 +106,7 @@ class MapBuilder {
     key.corner_count = static_cast<std::uint16_t>(vertices.size());
     key.apex = lowest_corner(vertices);
     for (std::uint16_t f = 0; f < faces.size(); ++f) {
-      key.faces.push_back(from_lowest(faces[f], vertices));
+      set_from_lowest(key.faces.emplace_back().corners, faces[f], vertices);
       if (const Vertex point = face_point(c, f); point.valid()) {
         key.faces.back().has_point = true;
         vertices.push_back(point.value);

@@ -76,19 +76,19 @@ ShapeKey standard_key(CellType type, std::span<const std::uint32_t> corners) {
   ShapeKey key;
   key.corner_count = static_cast<std::uint16_t>(corners.size());
   key.apex = lowest_corner(corners);
-  for (const auto& face : standard_faces(type))
-    key.faces.push_back(from_lowest(std::vector<std::uint16_t>(face.begin(), face.end()), corners));
+  for (const auto& face : standard_faces(type)) {
+    set_from_lowest(key.faces.emplace_back().corners, std::vector<std::uint16_t>(face.begin(), face.end()), corners);
+  }
   return key;
 }
 
-ShapeKey::Face from_lowest(std::span<const std::uint16_t> corners, std::span<const std::uint32_t> vertices) {
-  ShapeKey::Face face;
-  const auto lowest =
-      std::min_element(corners.begin(), corners.end(), [&](auto a, auto b) { return vertices[a] < vertices[b]; });
-  face.corners.assign(corners.begin(), corners.end());
-  if (corners.size() == 2) return face;
-  std::rotate(face.corners.begin(), face.corners.begin() + (lowest - corners.begin()), face.corners.end());
-  return face;
+void set_from_lowest(std::vector<std::uint16_t>& face, std::span<const std::uint16_t> corners,
+                     std::span<const std::uint32_t> vertices) {
+  auto first = corners.begin();
+  if (corners.size() > 2)
+    first = std::min_element(corners.begin(), corners.end(), [&](auto a, auto b) { return vertices[a] < vertices[b]; });
+  face.assign(first, corners.end());
+  face.insert(face.end(), corners.begin(), first);
 }
 
 std::uint16_t lowest_corner(std::span<const std::uint32_t> vertices) {

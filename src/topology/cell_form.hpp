@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "dartcast/cell_shape.hpp"
 #include "dartcast/mesh_data.hpp"
@@ -24,7 +25,8 @@ std::uint32_t standard_signature(CellType type, std::span<const std::uint32_t> c
 ShapeKey standard_key(CellType type, std::span<const std::uint32_t> corners);
 
 /// A face of local numbers, rotated to start at its lowest-numbered vertex. `vertices`: by local number.
-ShapeKey::Face from_lowest(std::span<const std::uint16_t> corners, std::span<const std::uint32_t> vertices);
+void set_from_lowest(std::vector<std::uint16_t>& face, std::span<const std::uint16_t> corners,
+                     std::span<const std::uint32_t> vertices);
 
 /// Local number of the lowest-numbered vertex.
 std::uint16_t lowest_corner(std::span<const std::uint32_t> vertices);

@@ -2,6 +2,7 @@
 #include "dartcast/cell_shape.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <numeric>
 #include <utility>
 
@@ -71,8 +72,6 @@ Shape::Shape(ShapeKey key) : key_(std::move(key)) {
   sew_darts();
   make_simplices();
   connect_simplices();
-  const bool flat = simplices_[0].vertex[0] == simplices_[0].vertex[1];
-  if (!flat) make_stars();
 }
 
 void Shape::number_darts() {
@@ -248,7 +247,18 @@ Shape::Feature Shape::feature(std::span<const std::uint16_t> points) const {
   return inside;
 }
 
-void Shape::make_stars() {
+bool Shape::is_flat() const { return simplices_[0].vertex[0] == simplices_[0].vertex[1]; }
+
+// The first of several threads keeps its stars. Those of the others are equal.
+const Stars& Shape::make_stars() const {
+  std::unique_ptr<const Stars> made =
+      dimension_ == 2 || is_flat() ? std::make_unique<Stars>() : std::make_unique<Stars>(simplices_, fans());
+  const Stars* known = nullptr;
+  if (!stars_.compare_exchange_strong(known, made.get(), std::memory_order_acq_rel)) return *known;
+  return *made.release();
+}
+
+Stars::Fans Shape::fans() const {
   Stars::Fans fans;
   fans.triangles.reserve(entries_.size());
   fans.first.assign(first_entry_.begin(), first_entry_.end());
@@ -256,12 +266,14 @@ void Shape::make_stars() {
   for (std::uint16_t f = 0; f < face_count(); ++f) {
     for (std::uint16_t t = 0; t < triangle_count(f); ++t) fans.triangles.push_back(triangle(f, t));
   }
-  stars_ = Stars(simplices_, fans);
+  return fans;
 }
 
 std::size_t Shape::bytes() const {
+  const Stars* made = stars_.load(std::memory_order_acquire);
   return sizeof(Shape) + (dart_count() * 5U + key_.corner_count) * sizeof(std::uint16_t) +
-         simplices_.size() * sizeof(ImplicitSimplex) + entries_.size() * sizeof(Across) + stars_.bytes();
+         simplices_.size() * sizeof(ImplicitSimplex) + entries_.size() * sizeof(Across) +
+         (made == nullptr ? 0 : made->bytes());
 }
 
 }  // namespace dartcast

@@ -1,5 +1,6 @@
 // Edits that add a vertex, an edge or a face.
 #include <algorithm>
+#include <utility>
 
 #include "dartcast/map_edits.hpp"
 #include "topology/edit_plane.hpp"
@@ -25,19 +26,19 @@ void put_on_edge(CellDraft& draft, const Shape& s, std::uint16_t dart, Vertex v)
 
 // Splits a face. It keeps its corners from u to v. A new face at the end takes those from v to u.
 void cut_face(CellDraft& draft, std::uint16_t face, Vertex u, Vertex v) {
-  std::vector<DraftCorner> all = draft.faces[face].corners;
+  DraftFace& first = draft.faces[face];
+  std::vector<DraftCorner> all = std::move(first.corners);
   const auto is = [](Vertex w) { return [w](const DraftCorner& c) { return c.vertex == w; }; };
   std::rotate(all.begin(), std::find_if(all.begin(), all.end(), is(u)), all.end());
   const auto middle = std::find_if(all.begin(), all.end(), is(v));
-  DraftFace rest = draft.faces[face];
+  DraftFace rest;
+  rest.patch = first.patch;
+  rest.corners.reserve(all.size());
   rest.corners.assign(middle, all.end());
   rest.corners.front().straight = false;
   rest.corners.push_back({u, false, true});
-  rest.from = {};
-  rest.across = {};
-  rest.point = {};
-  DraftFace& first = draft.faces[face];
-  first.corners.assign(all.begin(), middle);
+  first.corners = std::move(all);
+  first.corners.erase(middle, first.corners.end());
   first.corners.front().straight = false;
   first.corners.push_back({v, false, true});
   first.point = {};
@@ -187,7 +188,7 @@ std::array<Cell, 2> split_cell(Transaction& t, std::span<const Dart> path) {
     part[side].free = whole.free;
     part[side].source = whole.source;
     for (std::size_t f = 0; f < whole.faces.size(); ++f) {
-      if (left[f] == (side == 0)) part[side].faces.push_back(whole.faces[f]);
+      if (left[f] == (side == 0)) part[side].faces.push_back(std::move(whole.faces[f]));
     }
     if (part[side].faces.size() < 3) refuse(map, c, "is to be cut around fewer than three faces: choose another path");
   }

@@ -1,5 +1,6 @@
 // The table of shapes: equal cells share one, and unused ones are released.
 #include <algorithm>
+#include <utility>
 
 #include "dartcast/error.hpp"
 #include "dartcast/storage.hpp"
@@ -16,19 +17,31 @@ std::size_t ShapeTable::KeyHash::operator()(const ShapeKey* key) const {
   return static_cast<std::size_t>(hash);
 }
 
-ShapeTable::Interned ShapeTable::intern(ShapeKey key) {
+ShapeTable::Interned ShapeTable::intern(const ShapeKey& key) {
   const auto found = numbers_.find(&key);
   if (found != numbers_.end()) {
     if (uses_[found->second] != forever) ++uses_[found->second];
     return {found->second, false, false};
   }
-  auto shape = std::make_shared<const Shape>(std::move(key));
+  auto shape = make(key);
   auto number = static_cast<std::uint32_t>(vacant_.empty() ? shapes_.size() : vacant_.back());
   if (vacant_.empty() && number >= kept_begin && number < kept_end) number = kept_end;
   if (!vacant_.empty()) vacant_.pop_back();
   const Interned interned = put(number, std::move(shape), 1);
   numbers_.emplace(&shapes_[number]->key(), number);
   return interned;
+}
+
+std::shared_ptr<const Shape>& ShapeTable::recent(const ShapeKey& key) {
+  return recent_[KeyHash{}(&key) % recent_places];
+}
+
+std::shared_ptr<const Shape> ShapeTable::make(const ShapeKey& key) {
+  if (!recent_.empty()) {
+    std::shared_ptr<const Shape>& known = recent(key);
+    if (known && known->key() == key) return std::exchange(known, nullptr);
+  }
+  return std::make_shared<const Shape>(key);
 }
 
 ShapeTable::Interned ShapeTable::add_standard(std::uint32_t signature, ShapeKey key) {
@@ -59,6 +72,10 @@ ShapeTable::Interned ShapeTable::put(std::uint32_t number, std::shared_ptr<const
 void ShapeTable::drop(std::uint32_t number) {
   const auto known = numbers_.find(&shapes_[number]->key());
   if (known != numbers_.end() && known->second == number) numbers_.erase(known);
+  if (shapes_[number]->dart_count() <= max_recent_darts) {
+    recent_.resize(recent_places);
+    recent(shapes_[number]->key()) = shapes_[number];
+  }
   shapes_[number].reset();
   uses_[number] = 0;
   --count_;
@@ -89,7 +106,9 @@ void ShapeTable::undo(const Interned& interned) {
 
 std::size_t ShapeTable::bytes() const {
   std::size_t sum = 0;
-  for (const auto& s : shapes_) sum += s ? s->bytes() : 0;
+  for (const auto* shapes : {&shapes_, &recent_}) {
+    for (const auto& s : *shapes) sum += s ? s->bytes() : 0;
+  }
   return sum;
 }
 

@@ -5,31 +5,9 @@
 #include "dartcast/error.hpp"
 #include "dartcast/map_edits.hpp"
 #include "topology/cell_form.hpp"
+#include "topology/replacement.hpp"
 
 namespace dartcast {
-
-namespace {
-
-// The key of a draft's shape in the general pool, and the record's vertices: corners, Steiner points of faces, that of
-// the cell.
-ShapeKey general_key(const CellDraft& draft, const DraftForm& form, std::vector<std::uint32_t>& vertices) {
-  ShapeKey key;
-  key.corner_count = static_cast<std::uint16_t>(vertices.size());
-  key.apex = lowest_corner(vertices);
-  key.faces.reserve(draft.faces.size());
-  std::span<const std::uint16_t> local = form.local;
-  for (const DraftFace& face : draft.faces) {
-    key.faces.push_back(from_lowest(local.first(face.corners.size()), form.corners));
-    key.faces.back().has_point = face.point.valid();
-    if (face.point.valid()) vertices.push_back(face.point.value);
-    local = local.subspan(face.corners.size());
-  }
-  key.has_point = draft.point.valid();
-  if (key.has_point) vertices.push_back(draft.point.value);
-  return key;
-}
-
-}  // namespace
 
 Transaction::Transaction(CombinatorialMap& map) : map_(map) { prepare(); }
 
@@ -76,6 +54,24 @@ void Transaction::keep_face(CellFace f) {
   keep(f.cell, f.cell.pool() == CombinatorialMap::general_pool ? neighbour + s.face_count() : 1);
 }
 
+// Sets the key of a draft's shape in the general pool. Completes the record's vertices: corners, Steiner points of
+// faces, that of the cell.
+void Transaction::set_key(const CellDraft& draft, const DraftForm& form, std::vector<std::uint32_t>& vertices) {
+  key_.corner_count = static_cast<std::uint16_t>(vertices.size());
+  key_.apex = lowest_corner(vertices);
+  key_.faces.resize(draft.faces.size());
+  std::span<const std::uint16_t> local = form.local;
+  for (std::size_t f = 0; f < draft.faces.size(); ++f) {
+    const DraftFace& face = draft.faces[f];
+    set_from_lowest(key_.faces[f].corners, local.first(face.corners.size()), form.corners);
+    key_.faces[f].has_point = face.point.valid();
+    if (face.point.valid()) vertices.push_back(face.point.value);
+    local = local.subspan(face.corners.size());
+  }
+  key_.has_point = draft.point.valid();
+  if (key_.has_point) vertices.push_back(draft.point.value);
+}
+
 void Transaction::count_vertices(Cell c, bool more) {
   for (const std::uint32_t v : map_.view(c).vertices()) map_.cells_at_[v] += more ? 1U : ~0U;
 }
@@ -120,7 +116,8 @@ Cell Transaction::put(const CellDraft& draft, const DraftForm& form) {
   std::vector<std::uint32_t> vertices = form.corners;
   ShapeTable::Interned shape{};
   if (form.pool == CombinatorialMap::general_pool) {
-    shape = map_.shapes_.intern(general_key(draft, form, vertices));
+    set_key(draft, form, vertices);
+    shape = map_.shapes_.intern(key_);
   } else {
     const CellType type = map_.type_of(form.pool);
     shape =

@@ -180,14 +180,15 @@ void search_walls(const CombinatorialMap& map, SimplexId start, const Feature& f
   if constexpr (N == 3) return detail::search_plane_walls(map, start, feature, on_wall);
   detail::FoundSimplex found;
   detail::FewCells whole;
-  const auto add = [&](Cell c, const Stars& stars, std::uint16_t star) {
+  const auto add = [&](Cell c, const Stars& all, std::uint16_t star) {
     const std::uint64_t code = detail::code_of(c, star);
-    if (stars.one_each() && whole.add(c)) return found.push(code);
+    if (all.one_each() && whole.add(c)) return found.push(code);
     found.add(code);
   };
   const CellView first = map.view(start.cell);
   const unsigned beside = facets_holding(feature, first, first.shape().simplices()[start.simplex]);
-  add(start.cell, first.shape().stars(), first.shape().stars().star(start.simplex, 15U & ~beside));
+  const Stars& stars = first.shape().stars();
+  add(start.cell, stars, stars.star(start.simplex, 15U & ~beside));
   for (std::size_t next = 0; next < found.size(); ++next) {
     const Cell at = detail::cell_of(found[next]);
     const CellView cell = map.view(at);
@@ -204,11 +205,11 @@ void search_walls(const CombinatorialMap& map, SimplexId start, const Feature& f
       }
       const Cell neighbour = cell.neighbour(face);
       if (whole.has(neighbour)) continue;
-      const Stars& stars = map.shape(neighbour).stars();
-      if (stars.empty()) continue;  // flat: no way through
+      const Stars& beyond = map.shape(neighbour).stars();
+      if (beyond.empty()) continue;  // flat: no way through
       const std::uint16_t from_there = cell.neighbour_face(face);
-      for (const Stars::Facet& f : of_face.first(stars.one_each() ? 1 : of_face.size()))
-        add(neighbour, stars, stars.star_behind(from_there, f.triangle, f.held));
+      for (const Stars::Facet& f : of_face.first(beyond.one_each() ? 1 : of_face.size()))
+        add(neighbour, beyond, beyond.star_behind(from_there, f.triangle, f.held));
     }
   }
 }

@@ -1,7 +1,7 @@
 // Fixed small scenes to count instructions in: `steps still`, `steps moving` or `steps lattice`, and in the plane
 // `steps plane` or `steps plane_moving`; `steps corner` for particles that rest in a vertex. The count is the code that
 // Environment::advance() executes (run.cmake); the number of particle-steps is printed. And `steps edits EDGE COUNT`:
-// edits of a box of EDGE^3 cells, each followed by the particles.
+// edits of a box of EDGE^3 cells, each followed by the particles. `steps cut`: one cut through the wall of a vessel.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -12,6 +12,7 @@
 
 #include "base/random.hpp"
 #include "dartcast/complex_edit.hpp"
+#include "dartcast/cutting.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/map_edits.hpp"
@@ -97,6 +98,22 @@ int edit(std::uint32_t box_edge, std::uint32_t count) {
   return 0;
 }
 
+// A disc of 24 sides, as in scenes/surgery.toml.
+int cut_vessel() {
+  Environment environment(generate_vessel({}), Threads{1});
+  Particles set;
+  const Vec3 upstream{0, 0, -20e-3};
+  environment.add(set, std::span<const Vec3>(&upstream, 1));
+  const std::vector<ConvexTool> tools = thicken(Disc{{0, 0, -12e-3}, {0, 0.2, 1}, 6e-3}, 1.2e-3);
+  std::size_t opened = 0;
+  environment.edit([&](ComplexEdit& e) {
+    opened = carve(e, cells_near(environment.complex(), tools), tools, Carving::open).opened.size();
+  });
+  environment.update_after_edit(set);
+  std::printf("%zu cells opened\n", opened);
+  return 0;
+}
+
 // Under gravity in the vertex of a sharp tetrahedron, off it by rounding at first.
 int rest_in_corner() {
   MeshData mesh;
@@ -131,6 +148,7 @@ int main(int argc, char** argv) {
     return edit(static_cast<std::uint32_t>(std::atoi(argv[2])), static_cast<std::uint32_t>(std::atoi(argv[3])));
   const char* kind = argc == 2 ? argv[1] : "";
   if (std::strcmp(kind, "corner") == 0) return rest_in_corner();
+  if (std::strcmp(kind, "cut") == 0) return cut_vessel();
   const bool plane = std::strncmp(kind, "plane", 5) == 0;
   const bool moving = std::strcmp(kind, plane ? "plane_moving" : "moving") == 0;
   const bool lattice = std::strcmp(kind, "lattice") == 0;

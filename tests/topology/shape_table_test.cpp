@@ -1,7 +1,11 @@
 // Which shapes a table keeps, and under which numbers.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <map>
+#include <set>
+#include <thread>
+#include <vector>
 
 #include "base/random.hpp"
 #include "dartcast/error.hpp"
@@ -66,6 +70,38 @@ TEST(ShapeTable, UndoneIsAsBefore) {
     ASSERT_TRUE(table == before);
     const auto kept = table.intern(cone(static_cast<std::uint16_t>(3 + random.below(9))));
     if (random.below(2) == 0) table.release(kept.number);
+  }
+}
+
+TEST(ShapeTable, AReleasedShapeIsNotMadeAgain) {
+  ShapeTable table;
+  const auto first = table.intern(cone(5));
+  const Shape* shape = &table[first.number];
+  table.release(first.number);
+  EXPECT_EQ(table.size(), 0U);
+  EXPECT_TRUE(table.intern(cone(6)).made);  // under the number that is vacant
+  const auto again = table.intern(cone(5));
+  EXPECT_TRUE(again.made);
+  EXPECT_EQ(&table[again.number], shape);
+}
+
+// However many large shapes come and go, little memory is kept.
+TEST(ShapeTable, LargeReleasedShapesAreNotKept) {
+  ShapeTable table;
+  for (std::uint16_t n = 200; n < 260; ++n) table.release(table.intern(cone(n)).number);
+  EXPECT_EQ(table.bytes(), 0U);
+}
+
+TEST(Shape, AllThreadsGetTheSameStars) {
+  constexpr std::size_t count = 4;
+  for (std::uint16_t n = 3; n < 40; ++n) {
+    const Shape shape(cone(n));
+    std::array<const Stars*, count> stars{};
+    std::vector<std::thread> threads;
+    for (const Stars*& mine : stars) threads.emplace_back([&] { mine = &shape.stars(); });
+    for (std::thread& t : threads) t.join();
+    EXPECT_FALSE(stars[0]->empty());
+    EXPECT_EQ(std::set(stars.begin(), stars.end()).size(), 1U);
   }
 }
 
