@@ -128,7 +128,6 @@ void ParticleSystem::load_motion(std::uint64_t steps) const {
 //  3. for each segment of the way: velocities change, targets are set, particles walk and respond at walls;
 //  4. contacts are counted, and those absorbed or escaped leave.
 void ParticleSystem::step(double /*begin*/) {
-  hold_fields();
   last_ = {};
   last_.duration = options_.dt;
   last_.absorbed = std::exchange(absorbed_between_, 0);

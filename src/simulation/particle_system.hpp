@@ -31,6 +31,9 @@ class ParticleSystem final : public SimulationComponent {
   void set_deformation(Deformation deformation);
   /// Reads what moving the vertices to their places after so many steps needs. Throws as Deformation::load_frames().
   void load_motion(std::uint64_t steps) const;
+  /// Reads what the next step needs of the motion's and the fields' files, before that step changes anything. Throws as
+  /// load_motion() and VectorField::hold(), and InvalidArgument where an integrator has no field to follow.
+  void load_step();
   /// Bodies that the spheres meet; they step after each step of the particles. Precondition: there are collisions.
   void set_bodies(Bodies& bodies) { bodies_ = &bodies; }
   void add_inlet(Patch patch, double rate, const Vec3& velocity, double radius, std::span<const double> user_data);
@@ -103,7 +106,6 @@ class ParticleSystem final : public SimulationComponent {
   void remove_marked(std::span<const std::uint8_t> marks);
   void count_spheres();
   // In particle_system_fields.cpp.
-  void hold_fields();
   void set_fields_to(double begin, double duration);
   void aim_by_runge_kutta(double dt, bool moving);
   // In particle_system_aim.cpp.

@@ -20,14 +20,14 @@ Simulation::Simulation(Environment& environment, const SimulationOptions& option
 
 Simulation::~Simulation() = default;
 
-// Frames of the motion that cannot be read end a step before anything changes. Then a step goes through these phases:
+// Files of the motion or of fields that cannot be read end a step before anything changes. Then a step goes through these phases:
 //  1. events that are due edit the environment;
 //  2. the particles step: inlets inject, vertices move, velocities change, particles advance, some leave;
 //  3. the other components step in the environment as it stands then: bodies, catheters;
 //  4. invalid cells are remeshed and crowded cells are subdivided, where that is due.
 const SimulationStep& Simulation::step() {
   const double begin = time();
-  parts_->particles.load_motion(steps() + 1);
+  parts_->particles.load_step();
   parts_->events.before_step();
   for (SimulationComponent* component : parts_->components) {
     double ignored = 0.0;  // particles have clocks of their own
