@@ -23,7 +23,8 @@ struct SphereRow {
   double pairs_by_lists_ns = 0.0;  ///< the same pairs, found in each of the two ways; 0: not tried
   double pairs_by_grid_ns = 0.0;
   double steps_per_second = 0.0;
-  double deepest = 0.0;  ///< largest overlap of a pair, as a share of the radius
+  double steps_per_second_all = 0.0;  ///< of the next steps, on all threads of the machine
+  double deepest = 0.0;               ///< largest overlap of a pair, as a share of the radius
 };
 
 /// A heap of `count` spheres on the floor of a box, each with about 5 neighbours. First it comes to rest for some

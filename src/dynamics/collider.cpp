@@ -2,7 +2,10 @@
 #include "dynamics/collider.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "base/parallel.hpp"
@@ -13,6 +16,11 @@ namespace dartcast {
 namespace {
 
 constexpr std::size_t collide_grain = 512;
+
+// Regions are slices of about this many spheres, so that few contacts are between them. Fewer spheres are one region:
+// its contacts take less time than the threads to come.
+constexpr std::size_t spheres_in_region = 4096;
+constexpr std::size_t max_regions = 16;
 
 void check_spheres(const CollidingSpheres& s) {
   const std::size_t count = s.states.size();
@@ -32,6 +40,21 @@ bool in_clear(const CollidingSpheres& s, std::uint32_t a, std::uint32_t b) {
   const double clear = (s.clearances[a] + s.clearances[b]) * (1.0 - 0x1p-20);
   const Vec3 way = s.states[b].position - s.states[a].position;
   return clear > 0.0 && dot(way, way) <= clear * clear;
+}
+
+// The longest axis; that of gravity only where it is much longer than the others. A heap's weight then passes through
+// one region down to the floor.
+double Vec3::*axis_to_divide(const Vec3& extent, const Vec3& gravity) {
+  constexpr double upright = 0.25;
+  constexpr std::array<double Vec3::*, 3> axes = {&Vec3::x, &Vec3::y, &Vec3::z};
+  double Vec3::*down = axes[0];
+  for (double Vec3::*const a : axes) {
+    if (std::abs(gravity.*a) > std::abs(gravity.*down)) down = a;
+  }
+  const auto length = [&](double Vec3::*a) {
+    return a == down && gravity.*down != 0.0 ? upright * (extent.*a) : extent.*a;
+  };
+  return *std::max_element(axes.begin(), axes.end(), [&](auto a, auto b) { return length(a) < length(b); });
 }
 
 }  // namespace
@@ -76,17 +99,46 @@ void Collider::find_contacts(const CellComplex& complex, const CollidingSpheres&
   }
 }
 
-void Collider::sweep(const CollidingSpheres& spheres, double dt) {
+void Collider::sweep(const CollidingSpheres& spheres, double dt, Threads threads) {
   moving_.resize(spheres.states.size());
   swept_.resize(spheres.states.size());
   reaches_.resize(spheres.states.size());
-  for (std::size_t i = 0; i < moving_.size(); ++i) {
-    moving_[i] = {spheres.states[i].position, spheres.velocities[i] * dt, spheres.radii[i]};
-    swept_[i] = moving_[i];
-    const double room = room_of(moving_[i]);
-    swept_[i].radius += room;
-    reaches_[i] = {moving_[i].centre, moving_[i].radius + norm(moving_[i].displacement), room};
+  parallel_for(moving_.size(), 4 * collide_grain, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      moving_[i] = {spheres.states[i].position, spheres.velocities[i] * dt, spheres.radii[i]};
+      swept_[i] = moving_[i];
+      const double room = room_of(moving_[i]);
+      swept_[i].radius += room;
+      reaches_[i] = {moving_[i].centre, moving_[i].radius + norm(moving_[i].displacement), room};
+    }
+  });
+}
+
+// Divides the spheres into slices across one axis, about as many in each. The bins of a histogram are never divided, so
+// the result depends on the positions alone.
+void Collider::divide(const CollidingSpheres& spheres) {
+  constexpr std::size_t bins = 1024;
+  const std::size_t count = spheres.states.size();
+  region_count_ = std::clamp<std::size_t>(count / spheres_in_region, 1, max_regions);
+  regions_.assign(count, 0);
+  if (region_count_ == 1) return;
+  Vec3 low = spheres.states[0].position;
+  Vec3 high = low;
+  for (const ParticleState& s : spheres.states) {
+    low = {std::min(low.x, s.position.x), std::min(low.y, s.position.y), std::min(low.z, s.position.z)};
+    high = {std::max(high.x, s.position.x), std::max(high.y, s.position.y), std::max(high.z, s.position.z)};
   }
+  double Vec3::*const axis = axis_to_divide(high - low, spheres.gravity);
+  const double bins_per_length = static_cast<double>(bins - 1) / (high.*axis - low.*axis);
+  if (!std::isfinite(bins_per_length)) return;
+  const auto bin_of = [&](const ParticleState& s) {
+    return static_cast<std::size_t>((s.position.*axis - low.*axis) * bins_per_length);
+  };
+  std::array<std::size_t, bins> before{};  // the number of spheres in the bin, then in those before
+  for (const ParticleState& s : spheres.states) ++before[bin_of(s)];
+  std::exclusive_scan(before.begin(), before.end(), before.begin(), std::size_t{0});
+  for (std::size_t i = 0; i < count; ++i)
+    regions_[i] = static_cast<std::uint8_t>(before[bin_of(spheres.states[i])] * region_count_ / count);
 }
 
 void Collider::find_contacts(const CellComplex& complex, const CollidingSpheres& spheres,
@@ -121,15 +173,18 @@ CollisionCounts Collider::collide(const CellComplex& complex, const CollidingSph
   };
   lists_.update(complex.map(), spheres.states);
   took(seconds_.lists);
-  sweep(spheres, options.dt);
+  sweep(spheres, options.dt, threads);
   const auto candidates = finder_.find(complex, lists_, spheres.states, swept_, threads);
   took(seconds_.pairs);
   find_contacts(complex, spheres, candidates, threads, counts);
   took(seconds_.contacts);
   walls_.assign(walls.begin(), walls.end());
   for (WallContact& w : walls_) w.gap -= resting_gap * spheres.radii[w.sphere];
-  solver_.solve(pairs_, walls_, {spheres.ids, spheres.inverse_masses, spheres.velocities, spheres.displacements},
-                options);
+  divide(spheres);
+  solver_.solve(
+      pairs_, walls_,
+      {spheres.ids, spheres.inverse_masses, spheres.velocities, spheres.displacements, regions_, region_count_},
+      options, threads);
   took(seconds_.impulses);
   counts.pairs_touching = solver_.loaded_pairs();
   counts.walls_touching = solver_.loaded_walls();

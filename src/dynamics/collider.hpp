@@ -41,6 +41,7 @@ struct CollidingSpheres {
   std::span<const double> clearances;      ///< no wall is nearer to the centre; empty: unknown
   std::span<Vec3> velocities;              ///< in: after all other forces; out: after the collisions
   std::span<Vec3> displacements;           ///< out: of this step
+  Vec3 gravity = {};  ///< its direction: impulses pass along it, so spheres are not divided across it
 };
 
 /// Keeps lists, impulses and memory from step to step.
@@ -73,7 +74,8 @@ class Collider {
     double room = 0.0;
   };
 
-  void sweep(const CollidingSpheres& spheres, double dt);
+  void sweep(const CollidingSpheres& spheres, double dt, Threads threads);
+  void divide(const CollidingSpheres& spheres);
   [[nodiscard]] bool surely_apart(std::uint32_t a, std::uint32_t b) const;
   void find_contacts(const CellComplex& complex, const CollidingSpheres& spheres,
                      std::span<const SpherePair> candidates, Threads threads, CollisionCounts& counts);
@@ -89,6 +91,8 @@ class Collider {
   std::vector<Part> parts_;  // by chunk of candidates
   std::vector<PairContact> pairs_;
   std::vector<WallContact> walls_;
+  std::vector<std::uint8_t> regions_;  // by sphere
+  std::size_t region_count_ = 1;
   CollisionSeconds seconds_;
 };
 

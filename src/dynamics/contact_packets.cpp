@@ -1,36 +1,74 @@
-// Sorts contacts into packets of four without a common body; the order gives the serial result.
+// Sorts contacts into parts, levels, and packets of four without a common body.
 #include "dynamics/contact_packets.hpp"
 
 #include <algorithm>
 
 namespace dartcast::detail {
 
-void ContactPackets::find_levels(std::span<const ContactEnds> contacts, std::span<const ContactBody> bodies) {
-  behind_.assign(bodies.size(), 0);
-  places_.resize(contacts.size());
-  starts_.clear();
+// A wall's contact comes behind all pairs of its sphere, so that no sphere ends with a velocity into a wall.
+void ContactPackets::find_parts(std::span<const ContactEnds> contacts, std::span<const ContactBody> bodies,
+                                std::span<const std::uint8_t> regions) {
+  levels_.assign(contacts.size(), {});
+  if (parts_.size() == 1) return;
+  const auto last = static_cast<std::uint32_t>(parts_.size() - 1);
+  const auto is_pair = [&](const ContactEnds& c) {
+    return bodies[c.a].inverse_mass > 0.0 && bodies[c.b].inverse_mass > 0.0;
+  };
+  between_.assign(bodies.size(), 0);
+  for (const ContactEnds& c : contacts) {
+    if (is_pair(c) && regions[c.a] != regions[c.b]) between_[c.a] = between_[c.b] = 1;
+  }
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const ContactEnds c = contacts[i];
-    const bool a_moves = bodies[c.a].inverse_mass > 0.0;
-    const bool b_moves = bodies[c.b].inverse_mass > 0.0;
-    const std::uint32_t level = std::max(a_moves ? behind_[c.a] : 0, b_moves ? behind_[c.b] : 0);
-    if (a_moves) behind_[c.a] = level + 1;
-    if (b_moves) behind_[c.b] = level + 1;
-    if (2 * level == starts_.size()) starts_.insert(starts_.end(), 2, 0);
-    places_[i] = 2 * level + (c.loaded ? 0 : 1);
-    ++starts_[places_[i]];
+    const ContactEnds& c = contacts[i];
+    const std::uint32_t mover = bodies[c.a].inverse_mass > 0.0 ? c.a : c.b;
+    const bool in_last = is_pair(c) ? regions[c.a] != regions[c.b] : between_[mover] != 0;
+    levels_[i].part = in_last ? last : regions[mover];
   }
 }
 
-void ContactPackets::sort(std::span<const ContactEnds> contacts, std::span<const ContactBody> bodies) {
-  find_levels(contacts, bodies);
+// All contacts of a body within its region come before those between regions, so one counter serves for both: it
+// starts again with the last part.
+void ContactPackets::find_levels(std::span<const ContactEnds> contacts, std::span<const ContactBody> bodies) {
+  for (const bool between : {false, true}) {
+    behind_.assign(bodies.size(), 0);
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      Place& place = levels_[i];
+      if ((parts_.size() > 1 && place.part + 1 == parts_.size()) != between) continue;
+      const ContactEnds c = contacts[i];
+      const bool a_moves = bodies[c.a].inverse_mass > 0.0;
+      const bool b_moves = bodies[c.b].inverse_mass > 0.0;
+      place.level = std::max(a_moves ? behind_[c.a] : 0, b_moves ? behind_[c.b] : 0);
+      if (a_moves) behind_[c.a] = place.level + 1;
+      if (b_moves) behind_[c.b] = place.level + 1;
+      parts_[place.part].levels = std::max(parts_[place.part].levels, place.level + 1);
+    }
+    if (parts_.size() == 1) break;
+  }
+}
+
+void ContactPackets::sort(std::span<const ContactEnds> contacts) {
+  std::uint32_t levels = 0;
+  for (Part& part : parts_) {
+    part.first_level = levels;
+    levels += part.levels;
+  }
+  starts_.assign(2 * std::size_t{levels}, 0);
+  places_.resize(contacts.size());
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    places_[i] = 2 * (parts_[levels_[i].part].first_level + levels_[i].level) + (contacts[i].loaded ? 0 : 1);
+    ++starts_[places_[i]];
+  }
   std::uint32_t packets = 0;
-  for (std::size_t i = 0; i < starts_.size(); i += 2) {
-    const std::uint32_t loaded = starts_[i];
-    const std::uint32_t count = loaded + starts_[i + 1];
-    starts_[i] = packets * packet_lanes;
-    starts_[i + 1] = starts_[i] + loaded;
-    packets += (count + packet_lanes - 1) / packet_lanes;
+  for (Part& part : parts_) {
+    part.begin = packets;
+    for (std::size_t i = 2 * part.first_level; i < 2 * (std::size_t{part.first_level} + part.levels); i += 2) {
+      const std::uint32_t loaded = starts_[i];
+      const std::uint32_t count = loaded + starts_[i + 1];
+      starts_[i] = packets * packet_lanes;
+      starts_[i + 1] = starts_[i] + loaded;
+      packets += (count + packet_lanes - 1) / packet_lanes;
+    }
+    part.end = packets;
   }
   packets_.resize(packets);
   impulses_.resize(packets);
@@ -72,12 +110,11 @@ void ContactPackets::set(std::size_t p, std::size_t l, const ContactEnds& ends, 
 }
 
 // Terms are read in another order, from all over memory, so they are prefetched.
-void ContactPackets::assign(std::span<const ContactEnds> contacts, std::span<const ContactTerms> terms,
-                            std::span<const ContactBody> bodies) {
+void ContactPackets::fill(std::size_t begin, std::size_t end, std::uint32_t nobody,
+                          std::span<const ContactEnds> contacts, std::span<const ContactTerms> terms) {
   constexpr std::size_t ahead = 16;
-  sort(contacts, bodies);
-  for (std::size_t p = 0; p < packets_.size(); ++p) {
-    clear(p, static_cast<std::uint32_t>(bodies.size() - 1));
+  for (std::size_t p = begin; p < end; ++p) {
+    clear(p, nobody);
     for (std::size_t l = 0; l < packet_lanes; ++l) {
       const std::size_t place = packet_lanes * p + l;
       if (place + ahead < order_.size() && order_[place + ahead] != nothing) {
@@ -88,6 +125,19 @@ void ContactPackets::assign(std::span<const ContactEnds> contacts, std::span<con
       if (i != nothing) set(p, l, contacts[i], terms[i]);
     }
   }
+}
+
+// Each part has a body of its own that fills its packets, because threads write to it.
+void ContactPackets::assign(std::span<const ContactEnds> contacts, std::span<const ContactTerms> terms,
+                            std::span<const ContactBody> bodies, std::span<const std::uint8_t> regions,
+                            std::size_t region_count, Threads threads) {
+  parts_.assign(region_count > 1 ? region_count + 1 : 1, {});
+  find_parts(contacts, bodies, regions);
+  find_levels(contacts, bodies);
+  sort(contacts);
+  parallel_for(parts_.size(), 1, threads, [&](std::size_t part, std::size_t) {
+    fill(parts_[part].begin, parts_[part].end, static_cast<std::uint32_t>(bodies.size() - 1 - part), contacts, terms);
+  });
 }
 
 bool ContactPackets::rebound() {

@@ -118,26 +118,21 @@ inline void correct_packet(const ContactPacket& p, PacketCorrections& correction
 
 }  // namespace
 
-void start_all(const PacketSpans& s, ContactBody* bodies) {
-  for (std::size_t i = 0; i < s.count; ++i) start_packet(s.packets[i], s.impulses[i], bodies);
+void start_packets(const PacketSpans& s, ContactBody* bodies, std::size_t begin, std::size_t end) {
+  for (std::size_t i = begin; i < end; ++i) start_packet(s.packets[i], s.impulses[i], bodies);
 }
 
-// Backwards and forwards in turn; the last time forwards.
-void solve_all(const PacketSpans& s, ContactBody* bodies, unsigned iterations) {
-  for (unsigned left = iterations; left > 0; --left) {
-    for (std::size_t i = 0; i < s.count; ++i) {
-      const std::size_t k = left % 2 == 1 ? i : s.count - 1 - i;
-      solve_packet(s.packets[k], s.impulses[k], s.surfaces[k], bodies);
-    }
+void solve_packets(const PacketSpans& s, ContactBody* bodies, std::size_t begin, std::size_t end, bool forwards) {
+  for (std::size_t i = begin; i < end; ++i) {
+    const std::size_t k = forwards ? i : begin + end - 1 - i;
+    solve_packet(s.packets[k], s.impulses[k], s.surfaces[k], bodies);
   }
 }
 
-void correct_all(const PacketSpans& s, ContactBody* bodies, unsigned iterations) {
-  for (unsigned left = iterations; left > 0; --left) {
-    for (std::size_t i = 0; i < s.count; ++i) {
-      const std::size_t k = left % 2 == 1 ? i : s.count - 1 - i;
-      correct_packet(s.packets[k], s.corrections[k], bodies);
-    }
+void correct_packets(const PacketSpans& s, ContactBody* bodies, std::size_t begin, std::size_t end, bool forwards) {
+  for (std::size_t i = begin; i < end; ++i) {
+    const std::size_t k = forwards ? i : begin + end - 1 - i;
+    correct_packet(s.packets[k], s.corrections[k], bodies);
   }
 }
 

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "base/parallel.hpp"
 #include "dartcast/dynamics.hpp"
 #include "dartcast/storage.hpp"
 #include "dartcast/vec3.hpp"
@@ -55,6 +56,8 @@ struct SolverSpheres {
   std::span<Vec3> velocities;              ///< in: after all other forces; out: after the impulses, with rebounds
   std::span<Vec3> displacements;  ///< out: of this step; that of the impulses without rebounds, which begin with the
                                   ///< next step, and with the penetration taken out
+  std::span<const std::uint8_t> regions = {};  ///< threads share the work by regions; empty: there is one
+  std::size_t region_count = 1;
 };
 
 class ContactSolver {
@@ -63,11 +66,12 @@ class ContactSolver {
   /// penetration changes displacements, never velocities. A contact with approach speed u above the resting speed ends
   /// with restitution u along its normal if it was given an impulse (rebounds are solved once more over all contacts).
   /// The result depends on the contacts and ids, not on the order of spheres or contacts. Throws InvalidArgument where
-  /// an option is out of range, spans differ in length, or a contact names no sphere; nothing changed. Cost: linear in
-  /// the contacts times the iterations, after sorting; no allocation in steady state. Serial, four contacts at once:
-  /// some 10 ns a contact and iteration, the sorting included.
+  /// an option is out of range, spans differ in length, or a contact names no sphere; nothing changed. It
+  /// depends on the regions, too, but not on the number of threads. Cost: linear in the contacts times the
+  /// iterations, after sorting. Four contacts at once: some 10 ns a contact and iteration on one thread, the sorting
+  /// included.
   void solve(std::span<const PairContact> pairs, std::span<const WallContact> walls, const SolverSpheres& spheres,
-             const SolverOptions& options);
+             const SolverOptions& options, Threads threads = {1});
 
   /// Impulses of the last step: pairs by ids, then walls; set_cached_impulses() continues from them exactly.
   [[nodiscard]] std::span<const CachedImpulse> cached_impulses() const { return cached_; }
@@ -91,27 +95,43 @@ class ContactSolver {
     double restitution = 0.0;
     double friction = 0.0;
   };
+  // The counts of a chunk of rows.
+  struct KeptCounts {
+    std::size_t loaded_pairs = 0;
+    std::size_t loaded_walls = 0;
+    std::size_t pairs = 0;
+    std::size_t walls = 0;
+    std::size_t begin = 0;  // of those kept, in cached_
+  };
   class ImpulseCacheReader;
 
-  void make_bodies(std::span<const WallContact> walls, const SolverSpheres& spheres);
-  void list_pairs(std::span<const PairContact> pairs, std::span<const std::uint64_t> ids, const SolverOptions& options);
-  void list_walls(std::span<const WallContact> walls, std::span<const std::uint64_t> ids, const SolverOptions& options);
-  void add_row(detail::ContactEnds ends, const Surface& surface, const CachedImpulse* cached_impulses,
+  void make_bodies(std::span<const WallContact> walls, const SolverSpheres& spheres, Threads threads);
+  void order_pairs(std::span<const PairContact> pairs, const SolverSpheres& spheres);
+  void order_walls(std::span<const WallContact> walls, const SolverSpheres& spheres);
+  void list_pairs(std::span<const PairContact> pairs, std::span<const std::uint64_t> ids, const SolverOptions& options,
+                  Threads threads);
+  void list_walls(std::span<const WallContact> walls, std::span<const std::uint64_t> ids, const SolverOptions& options,
+                  Threads threads);
+  void give_bodies_to_fixed_spheres(std::size_t spheres);
+  void set_row(std::size_t row, detail::ContactEnds ends, const Surface& surface, const CachedImpulse* cached_impulses,
                const SolverOptions& options);
-  void position_correction(const SolverSpheres& spheres, const SolverOptions& options);
-  void keep(std::span<const std::uint64_t> ids);
+  void position_correction(const SolverSpheres& spheres, const SolverOptions& options, Threads threads);
+  void keep(std::span<const std::uint64_t> ids, std::span<const WallContact> walls, Threads threads);
+  [[nodiscard]] bool is_kept(std::size_t row) const;
 
   // Rows are contacts in the order of the solver: pairs by ids, then walls by ids and normals. In a wall's row the
   // sphere is b.
   std::vector<detail::ContactEnds> ends_;      // by row
   AlignedVector<detail::ContactTerms> terms_;  // by row, as at the start
   std::size_t pair_rows_ = 0;
-  detail::ContactPackets packets_;             // of rows
-  AlignedVector<detail::ContactBody> bodies_;  // spheres, walls, and one that fills packets
+  detail::ContactPackets packets_;  // of rows
+  // Spheres, walls, a fixed sphere for each of its pairs, and those that fill packets.
+  AlignedVector<detail::ContactBody> bodies_;
   AlignedVector<detail::ContactBody> pushed_;  // the same, for displacements
-  std::vector<PairKey> pair_order_;
-  std::vector<std::uint32_t> wall_order_;
-  std::vector<CachedImpulse> cached_;  // in the order of rows
+  std::vector<PairKey> pair_order_;            // by row
+  std::vector<std::uint32_t> wall_order_;      // by row behind those
+  std::vector<KeptCounts> kept_;               // by chunk of rows
+  std::vector<CachedImpulse> cached_;          // in the order of rows
   std::size_t cached_pairs_ = 0;
   std::size_t loaded_pairs_ = 0;
   std::size_t loaded_walls_ = 0;

@@ -12,20 +12,19 @@ struct PacketSpans {
   PacketImpulses* impulses;
   const PacketSurfaces* surfaces;
   PacketCorrections* corrections;
-  std::size_t count;
 };
 
-// As start(), solve() and position_correction() of ContactPackets.
+// As start(), solve() and position_correction() of ContactPackets, for packets [begin, end).
 namespace portable {
-void start_all(const PacketSpans& spans, ContactBody* bodies);
-void solve_all(const PacketSpans& spans, ContactBody* bodies, unsigned iterations);
-void correct_all(const PacketSpans& spans, ContactBody* bodies, unsigned iterations);
+void start_packets(const PacketSpans& spans, ContactBody* bodies, std::size_t begin, std::size_t end);
+void solve_packets(const PacketSpans& spans, ContactBody* bodies, std::size_t begin, std::size_t end, bool forwards);
+void correct_packets(const PacketSpans& spans, ContactBody* bodies, std::size_t begin, std::size_t end, bool forwards);
 }  // namespace portable
 
 namespace avx2 {
-void start_all(const PacketSpans& spans, ContactBody* bodies);
-void solve_all(const PacketSpans& spans, ContactBody* bodies, unsigned iterations);
-void correct_all(const PacketSpans& spans, ContactBody* bodies, unsigned iterations);
+void start_packets(const PacketSpans& spans, ContactBody* bodies, std::size_t begin, std::size_t end);
+void solve_packets(const PacketSpans& spans, ContactBody* bodies, std::size_t begin, std::size_t end, bool forwards);
+void correct_packets(const PacketSpans& spans, ContactBody* bodies, std::size_t begin, std::size_t end, bool forwards);
 }  // namespace avx2
 
 }  // namespace dartcast::detail

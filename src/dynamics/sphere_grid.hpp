@@ -35,6 +35,10 @@ struct SweptBox {
     return {{std::min(low.x, o.low.x), std::min(low.y, o.low.y), std::min(low.z, o.low.z)},
             {std::max(high.x, o.high.x), std::max(high.y, o.high.y), std::max(high.z, o.high.z)}};
   }
+  [[nodiscard]] bool holds(const SweptBox& o) const {
+    return low.x <= o.low.x && o.high.x <= high.x && low.y <= o.low.y && o.high.y <= high.y && low.z <= o.low.z &&
+           o.high.z <= high.z;
+  }
   [[nodiscard]] bool meets(const SweptBox& o) const {
     return low.x <= o.high.x && o.low.x <= high.x && low.y <= o.high.y && o.low.y <= high.y && low.z <= o.high.z &&
            o.low.z <= high.z;

@@ -22,6 +22,11 @@ constexpr std::size_t pair_grain = 256;
 // meet other cells. Measured between 16 and 32, for 0.1 to 3 particles a cell.
 constexpr double short_reach = 16.0;
 
+// Room of a wide box beyond its own: a share of the radius, and the motion of some steps, up to half a radius.
+constexpr double wide_share = 0x1p-3;
+constexpr double steps_ahead = 4.0;
+constexpr unsigned narrow_searches = 16;
+
 constexpr double max_coordinate = 0x1p+1000;  // of a box: differences and levels of the grid stay in range
 
 // False where one is NaN.
@@ -181,8 +186,9 @@ void PairFinder::search_lists(const CellComplex& complex, const CellLists& lists
   });
 }
 
+// Searches the wide boxes.
 void PairFinder::search_grid(Threads threads) {
-  grid_.build(boxes_);
+  grid_.build(wide_boxes_);
   parts_.resize(chunk_count(grid_.size(), pair_grain));
   parallel_for(grid_.size(), pair_grain, threads, [&](std::size_t begin, std::size_t end) {
     std::vector<SpherePair>& found = parts_[begin / pair_grain];
@@ -191,20 +197,81 @@ void PairFinder::search_grid(Threads threads) {
   });
 }
 
+bool PairFinder::wide_boxes_hold(Threads threads) {
+  if (wide_boxes_.size() != boxes_.size()) return false;
+  hold_.resize(chunk_count(boxes_.size(), 4 * pair_grain));
+  parallel_for(boxes_.size(), 4 * pair_grain, threads, [&](std::size_t begin, std::size_t end) {
+    bool all = true;
+    for (std::size_t i = begin; i < end; ++i) all = all && (boxes_[i].empty() || wide_boxes_[i].holds(boxes_[i]));
+    hold_[begin / (4 * pair_grain)] = all ? 1 : 0;
+  });
+  return std::find(hold_.begin(), hold_.end(), 0) == hold_.end();
+}
+
+// A wide box has room for the sphere's motion of some steps. Where that lasts for no step, the next searches do
+// without, because they find more pairs than they need.
+void PairFinder::widen(std::span<const SphereMotion> spheres) {
+  if (narrow_left_ > 0)
+    --narrow_left_;
+  else if (wide_uses_ == 0 && !wide_boxes_.empty())
+    narrow_left_ = narrow_searches;
+  wide_uses_ = 0;
+  wide_boxes_ = boxes_;
+  if (narrow_left_ > 0) return;
+  for (std::size_t i = 0; i < wide_boxes_.size(); ++i) {
+    detail::SweptBox& box = wide_boxes_[i];
+    if (box.empty()) continue;
+    const double r = spheres[i].radius;
+    const double room = wide_share * r;
+    const auto ahead = [&](double motion) { return std::clamp(steps_ahead * motion, -0.5 * r, 0.5 * r); };
+    const Vec3 d = spheres[i].displacement;
+    const Vec3 way = {ahead(d.x), ahead(d.y), ahead(d.z)};
+    box.low += Vec3{std::min(0.0, way.x) - room, std::min(0.0, way.y) - room, std::min(0.0, way.z) - room};
+    box.high += Vec3{std::max(0.0, way.x) + room, std::max(0.0, way.y) + room, std::max(0.0, way.z) + room};
+  }
+}
+
+// Picks the pairs whose own boxes meet from those whose wide ones do.
+void PairFinder::pick(Threads threads) {
+  const std::size_t grain = 8 * pair_grain;
+  const std::size_t chunks = chunk_count(wide_pairs_.size(), grain);
+  if (picked_.size() < chunks) picked_.resize(chunks);
+  parallel_for(wide_pairs_.size(), grain, threads, [&](std::size_t begin, std::size_t end) {
+    std::vector<SpherePair>& found = picked_[begin / grain];
+    found.clear();
+    for (std::size_t k = begin; k < end; ++k) {
+      if (boxes_[wide_pairs_[k].a].meets(boxes_[wide_pairs_[k].b])) found.push_back(wide_pairs_[k]);
+    }
+  });
+  pairs_.clear();
+  for (std::size_t c = 0; c < chunks; ++c) pairs_.insert(pairs_.end(), picked_[c].begin(), picked_[c].end());
+}
+
+void PairFinder::find_by_grid(std::span<const SphereMotion> spheres, Threads threads) {
+  if (wide_boxes_hold(threads)) {
+    ++wide_uses_;
+  } else {
+    widen(spheres);
+    search_grid(threads);
+    merge(wide_pairs_);
+  }
+  pick(threads);
+}
+
 // Sorts by counting the pairs of each sphere.
-void PairFinder::merge() {
+void PairFinder::merge(std::vector<SpherePair>& pairs) {
   starts_.assign(boxes_.size() + 1, 0);
   for (const auto& part : parts_) {
     for (const SpherePair& p : part) ++starts_[p.a + 1];
   }
   for (std::size_t i = 0; i + 1 < starts_.size(); ++i) starts_[i + 1] += starts_[i];
-  pairs_.resize(starts_.back());
+  pairs.resize(starts_.back());
   for (const auto& part : parts_) {
-    for (const SpherePair& p : part) pairs_[starts_[p.a]++] = p;
+    for (const SpherePair& p : part) pairs[starts_[p.a]++] = p;
   }
   std::size_t begin = 0;  // starts_[i] is now where the pairs of sphere i end
   for (std::size_t i = 0; i + 1 < starts_.size(); ++i) {
-    std::sort(pairs_.begin() + static_cast<std::ptrdiff_t>(begin), pairs_.begin() + starts_[i]);
+    std::sort(pairs.begin() + static_cast<std::ptrdiff_t>(begin), pairs.begin() + starts_[i]);
     begin = starts_[i];
   }
 }
@@ -217,19 +284,19 @@ std::span<const SpherePair> PairFinder::find(const CellComplex& complex, const C
     throw InvalidArgument("pairs: one state and one sphere per listed particle are needed");
   make_boxes(spheres, threads);
   by_lists_ = search == PairSearch::automatic ? lists_do(complex, lists, states) : search == PairSearch::lists;
-  if (by_lists_)
+  if (by_lists_) {
     search_lists(complex, lists, states, threads);
-  else
-    search_grid(threads);
-  merge();
+    merge(pairs_);
+  } else {
+    find_by_grid(spheres, threads);
+  }
   return pairs_;
 }
 
 std::span<const SpherePair> PairFinder::find(std::span<const SphereMotion> spheres, Threads threads) {
   make_boxes(spheres, threads);
   by_lists_ = false;
-  search_grid(threads);
-  merge();
+  find_by_grid(spheres, threads);
   return pairs_;
 }
 

@@ -3,7 +3,10 @@
 // Where cells hold few and small particles, the search follows the cells' lists through free neighbours, as far as a
 // sphere and its motion reach. Where cells hold many, or spheres are larger, it uses a grid of several levels, one
 // for each power of two of the spheres' extents. The cost of the grid per sphere depends neither on the crowd in a
-// cell nor on the range of radii. Both give the same pairs, except pairs with walls in between.
+// cell nor on the range of radii. Both give the same pairs, except pairs with walls in between. The grid is searched
+// with wider boxes, and again only when a sphere has left its own. The pairs of the boxes are picked from those of the
+// wider ones, so the result does not depend on earlier steps. L. Verlet, "Computer experiments on classical fluids I",
+// 1967, keeps lists of neighbours in this way.
 #pragma once
 
 #include <cstddef>
@@ -53,12 +56,23 @@ class PairFinder {
   void search_lists(const CellComplex& complex, const CellLists& lists, std::span<const ParticleState> states,
                     Threads threads);
   void search_grid(Threads threads);
-  void merge();
+  void find_by_grid(std::span<const SphereMotion> spheres, Threads threads);
+  [[nodiscard]] bool wide_boxes_hold(Threads threads);
+  void widen(std::span<const SphereMotion> spheres);
+  void pick(Threads threads);
+  void merge(std::vector<SpherePair>& pairs);
 
   std::vector<detail::SweptBox> boxes_;
-  std::vector<double> reaches_;                 // by sphere: the reach of its box from the centre
-  std::vector<std::vector<SpherePair>> parts_;  // by chunk
-  std::vector<std::uint32_t> starts_;           // of each sphere's pairs
+  // Wider boxes, and the pairs of them that meet. While each box is in its wide one, these are all pairs to look at.
+  std::vector<detail::SweptBox> wide_boxes_;
+  std::vector<SpherePair> wide_pairs_;
+  std::vector<std::vector<SpherePair>> picked_;  // by chunk of those
+  std::vector<std::uint8_t> hold_;               // by chunk of boxes: whether the wide ones hold them
+  unsigned wide_uses_ = 0;                       // searches that the wide boxes have saved
+  unsigned narrow_left_ = 0;                     // searches to make without wide boxes
+  std::vector<double> reaches_;                  // by sphere: the reach of its box from the centre
+  std::vector<std::vector<SpherePair>> parts_;   // by chunk
+  std::vector<std::uint32_t> starts_;            // of each sphere's pairs
   std::vector<SpherePair> pairs_;
   detail::SphereGrid grid_;
   bool by_lists_ = false;

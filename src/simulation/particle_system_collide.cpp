@@ -115,8 +115,8 @@ void ParticleSystem::collide(double dt, bool moving) {
   solver.position_iterations = c.position_iterations;
   solver.resting_speed = 2.0 * norm(options_.gravity) * dt;
   const CellComplex& complex = environment_.complex();
-  const CollidingSpheres spheres = {particles_.states(), ids_,        met_radii_,    inverse_masses_,
-                                    clearances_,         velocities_, displacements_};
+  const CollidingSpheres spheres = {particles_.states(), ids_,        met_radii_,     inverse_masses_,
+                                    clearances_,         velocities_, displacements_, options_.gravity};
   if (meets_bodies()) {
     last_.collisions += body_collider_.collide(complex, spheres, walls_, *bodies_, solver, environment_.threads());
     collider_.solver().set_cached_impulses({});

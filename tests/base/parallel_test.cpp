@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <mutex>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -90,6 +91,40 @@ TEST_P(ParallelFor, MayBeNested) {
     parallel_for(8, 1, {GetParam()}, [&](std::size_t inner, std::size_t) { ++done[8 * outer + inner]; });
   });
   EXPECT_EQ(done, std::vector<int>(64, 1));
+}
+
+TEST_P(ParallelFor, MayBeNestedWithOtherThreads) {
+  std::vector<int> done(64, 0);
+  parallel_for(8, 1, {GetParam()}, [&](std::size_t outer, std::size_t) {
+    parallel_for(8, 1, {GetParam() + 1}, [&](std::size_t inner, std::size_t) { ++done[8 * outer + inner]; });
+  });
+  EXPECT_EQ(done, std::vector<int>(64, 1));
+}
+
+// Each stage counts on from all that the stage before wrote.
+TEST_P(ParallelFor, StagesStartWhenTheOneBeforeHasEnded) {
+  for (const std::size_t grain : {1U, 3U, 100U}) {
+    std::vector<std::vector<std::uint64_t>> rows(60);
+    std::vector<std::size_t> counts;
+    for (std::size_t s = 0; s < rows.size(); ++s) counts.push_back(s % 7 == 5 ? 0 : s + 1);
+    for (std::size_t s = 0; s < rows.size(); ++s) rows[s].assign(s + 1, 0);
+    std::size_t last = 0;
+    parallel_stages(counts, grain, {GetParam()}, [&](std::size_t stage, std::size_t begin, std::size_t end) {
+      const std::size_t before = stage % 7 == 6 ? stage - 2 : stage - 1;
+      for (std::size_t i = begin; i < end; ++i) {
+        std::uint64_t sum = 0;
+        if (stage > 0) sum = std::accumulate(rows[before].begin(), rows[before].end(), std::uint64_t{0});
+        rows[stage][i] = i == 0 ? sum + 1 : 0;
+      }
+      if (begin == 0) last = stage;
+    });
+    std::uint64_t expected = 0;
+    for (std::size_t s = 0; s < rows.size(); ++s) {
+      if (counts[s] > 0) EXPECT_EQ(rows[s][0], ++expected);
+    }
+    EXPECT_EQ(last, rows.size() - 1);
+  }
+  parallel_stages(std::vector<std::size_t>{}, 1, {GetParam()}, [](auto, auto, auto) { FAIL(); });
 }
 
 // --- more threads than there can be

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/random.hpp"
 #include "support/random_vectors.hpp"
@@ -19,8 +20,11 @@ using detail::ContactPackets;
 using detail::ContactTerms;
 using detail::InstructionSet;
 
-// Contacts solved one after the other, in the order given.
+// Contacts solved one after the other.
 struct OneByOne {
+  std::vector<std::size_t> order;
+  std::vector<std::uint8_t> regions;  // by body
+  std::size_t region_count = 1;
   std::vector<ContactEnds> ends;
   std::vector<ContactTerms> terms;
   std::vector<double> pushes;
@@ -33,7 +37,7 @@ struct OneByOne {
     b.velocity += impulse * b.inverse_mass;
   }
   void start() {
-    for (std::size_t i = 0; i < ends.size(); ++i) {
+    for (const std::size_t i : order) {
       if (terms[i].normal_impulse > 0.0)
         apply(i, terms[i].normal * terms[i].normal_impulse + terms[i].tangent_impulse, bodies);
     }
@@ -61,7 +65,7 @@ struct OneByOne {
   template <class Each>
   void sweep(unsigned iterations, Each&& each) const {
     for (unsigned left = iterations; left > 0; --left) {
-      for (std::size_t i = 0; i < ends.size(); ++i) each(left % 2 == 1 ? i : ends.size() - 1 - i);
+      for (std::size_t i = 0; i < order.size(); ++i) each(order[left % 2 == 1 ? i : order.size() - 1 - i]);
     }
   }
   void rebound() {
@@ -113,19 +117,40 @@ void expect_same(const ContactPackets& packets, const OneByOne& truth, const std
   }
 }
 
-void compare(OneByOne truth, InstructionSet set, unsigned iterations) {
+// The order by its definition: the contacts within regions, then those between regions, and walls of their bodies.
+std::vector<std::size_t> expected_order(const OneByOne& all) {
+  const auto moves = [&](std::uint32_t body) { return all.bodies[body].inverse_mass > 0.0; };
+  const auto between = [&](const ContactEnds& c) {
+    return all.region_count > 1 && moves(c.a) && moves(c.b) && all.regions[c.a] != all.regions[c.b];
+  };
+  std::vector<bool> meets_other(all.bodies.size(), false);
+  for (const ContactEnds& c : all.ends) {
+    if (between(c)) meets_other[c.a] = meets_other[c.b] = true;
+  }
+  std::vector<std::size_t> order(all.ends.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_partition(order.begin(), order.end(), [&](std::size_t i) {
+    const ContactEnds& c = all.ends[i];
+    const bool wall = !moves(c.a) || !moves(c.b);
+    return !between(c) && !(wall && meets_other[moves(c.a) ? c.a : c.b]);
+  });
+  return order;
+}
+
+void compare(OneByOne truth, InstructionSet set, unsigned iterations, Threads threads) {
   std::vector<ContactBody> bodies = truth.bodies;
   ContactPackets packets;
-  packets.assign(truth.ends, truth.terms, bodies);
-  packets.start(bodies, set);
+  packets.assign(truth.ends, truth.terms, bodies, truth.regions, truth.region_count, threads);
+  truth.order = expected_order(truth);
+  packets.start(bodies, threads, set);
   truth.start();
   expect_same(packets, truth, bodies, "start ");
-  packets.solve(bodies, iterations, set);
+  packets.solve(bodies, iterations, threads, set);
   truth.sweep(iterations, [&](std::size_t i) { truth.solve(i); });
   expect_same(packets, truth, bodies, "solve ");
   std::vector<ContactBody> pushed = bodies;
   std::vector<ContactBody> truly_pushed = bodies;
-  packets.position_correction(pushed, iterations, set);
+  packets.position_correction(pushed, iterations, threads, set);
   truth.sweep(iterations, [&](std::size_t i) { truth.position_correction(i, truly_pushed); });
   for (std::size_t i = 0; i < bodies.size(); ++i) ASSERT_EQ(pushed[i].velocity, truly_pushed[i].velocity) << i;
   const bool any = std::any_of(truth.terms.begin(), truth.terms.end(),
@@ -134,7 +159,7 @@ void compare(OneByOne truth, InstructionSet set, unsigned iterations) {
   truth.rebound();
   for (std::size_t i = 0; i < truth.ends.size(); ++i)
     ASSERT_EQ(packets.rebounds(i), truth.terms[i].rebound > 0.0 && truth.terms[i].normal_impulse > 0.0);
-  packets.solve(bodies, iterations, set);
+  packets.solve(bodies, iterations, threads, set);
   truth.sweep(iterations, [&](std::size_t i) { truth.solve(i); });
   expect_same(packets, truth, bodies, "rebound ");
 }
@@ -146,8 +171,33 @@ TEST(ContactPackets, SameAsOneByOne) {
     const std::uint32_t bodies = 2 + static_cast<std::uint32_t>(random.below(k % 2 == 0 ? 8 : 200));
     const OneByOne contacts = random_contacts(random, bodies, random.below(300));
     const auto iterations = static_cast<unsigned>(random.below(5));
-    compare(contacts, InstructionSet::portable, iterations);
-    compare(contacts, detail::best_instruction_set(), iterations);
+    compare(contacts, InstructionSet::portable, iterations, {1});
+    compare(contacts, detail::best_instruction_set(), iterations, {1});
+  }
+}
+
+// In regions, a body that cannot be pushed is in one contact.
+void divide(OneByOne& all, Random& random, std::uint32_t region_count) {
+  for (ContactEnds& c : all.ends) {
+    for (std::uint32_t* end : {&c.a, &c.b}) {
+      if (all.bodies[*end].inverse_mass > 0.0) continue;
+      all.bodies.push_back(all.bodies[*end]);
+      *end = static_cast<std::uint32_t>(all.bodies.size() - 1);
+    }
+  }
+  for (std::size_t i = 0; i < all.bodies.size(); ++i)
+    all.regions.push_back(static_cast<std::uint8_t>(random.below(region_count)));
+  all.region_count = region_count;
+  all.bodies.insert(all.bodies.end(), region_count + 1, {});
+}
+
+// In regions on any number of threads, too.
+TEST(ContactPackets, RegionsAreSolvedBesideEachOther) {
+  Random random(2);
+  for (int k = 0; k < 6; ++k) {
+    OneByOne contacts = random_contacts(random, k < 3 ? 60 : 800, k < 3 ? 150 : 2000);
+    divide(contacts, random, 2 + static_cast<std::uint32_t>(random.below(6)));
+    for (const unsigned threads : {1U, 2U, 3U, 7U}) compare(contacts, detail::best_instruction_set(), 5, {threads});
   }
 }
 
@@ -161,7 +211,7 @@ TEST(ContactPackets, FourAtATime) {
     for (std::uint32_t i = 1; i < 21; ++i) star.push_back({0, i, i % 3 == 0});
     bodies.back() = {};
     ContactPackets packets;
-    packets.assign(star, std::vector<ContactTerms>(star.size()), bodies);
+    packets.assign(star, std::vector<ContactTerms>(star.size()), bodies, {}, 1, {1});
     return packets.packet_count();
   };
   EXPECT_EQ(packets_of(0.0), 5U);

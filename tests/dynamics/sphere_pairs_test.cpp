@@ -117,6 +117,28 @@ TEST(SpherePairs, AllThatMeetAreFound) {
   }
 }
 
+// A finder that is used step after step gives the pairs of a new one, whether spheres creep, fly, jump or change.
+TEST(SpherePairs, EarlierStepsDoNotMatter) {
+  Crowd crowd(5, 0.0);
+  crowd.fill(test::scaled<std::size_t>(400, 2000), {1, 1, 1}, {4, 4, 4}, 5, any_sphere);
+  PairFinder kept;
+  Random random(6);
+  std::size_t pairs = 0;
+  for (int step = 0; step < 120; ++step) {
+    const double speed = step < 40 ? 0.001 : step < 80 ? 0.1 : 1.0;
+    for (SphereMotion& s : crowd.spheres) s.centre += s.displacement * speed;
+    if (step % 10 == 9) std::swap(crowd.spheres[random.below(100)].centre, crowd.spheres[random.below(100)].centre);
+    if (step % 25 == 24) crowd.spheres[random.below(100)].radius *= step % 2 == 0 ? 0.0 : 1.5;
+    if (step == 60) crowd.spheres.pop_back();
+    const auto found = kept.find(crowd.spheres);
+    PairFinder fresh;
+    const auto expected = fresh.find(crowd.spheres);
+    ASSERT_TRUE(std::equal(found.begin(), found.end(), expected.begin(), expected.end())) << step;
+    pairs += found.size();
+  }
+  EXPECT_GT(pairs, 1000U);
+}
+
 // Some cells are blocked: pairs that see each other are found by either search, and these are the same.
 TEST(SpherePairs, WallsSeparate) {
   Crowd crowd(6, 0.3);

@@ -159,6 +159,46 @@ TEST(Collisions, ThreadsAndCheckpoints) {
   EXPECT_EQ(run(1, 25), one);
 }
 
+// Heaps that are divided into regions, on a floor that rises: the same bits for any number of threads, and from a
+// checkpoint.
+TEST(Collisions, HeapsAreTheSameOnAnyNumberOfThreads) {
+  const double r = 0.01;
+  const std::uint32_t across = 24;
+  const double width = 2.1 * r * across;
+  const std::size_t count = 8400;  // the fewest that make two regions are 8192
+  const int steps = 3 * test::scaled(6, 20);
+  const MeshData mesh = box_of({6, 6, 6}, {width, width, 2.0 * width});
+  std::vector<Vec3> shift(mesh.points.size());
+  for (std::size_t i = 0; i < shift.size(); ++i)
+    shift[i] = {0.0, 0.0, 2.0 * r * (1.0 - mesh.points[i].z / (2.0 * width))};
+  const auto run = [&](unsigned threads, int save_at) {
+    Environment environment(mesh, Threads{threads});
+    SimulationOptions o = colliding(2e-3, 0.3, 0.3);
+    o.gravity = {0.0, 0.0, -9.81};
+    Simulation simulation(environment, test::with_response(o, Reflect{0.3, 0.3}));
+    simulation.add(lattice(count, across, {1.05 * r, 1.05 * r, 1.2 * r}, 2.1 * r), {}, r);
+    for (int i = 0; i < steps; ++i) {
+      if (i == steps / 2) simulation.pull(shift, 0.01);
+      if (i == save_at) {
+        Environment again(mesh, Threads{threads});
+        Simulation other(again, test::with_response(o, Reflect{0.3, 0.3}));
+        other.restore(simulation.checkpoint());
+        for (; i < steps; ++i) {
+          if (i == steps / 2) other.pull(shift, 0.01);
+          other.step();
+        }
+        return other.state_hash().hex();
+      }
+      simulation.step();
+    }
+    EXPECT_GT(simulation.totals().collisions.pairs_touching, count / 10);
+    return simulation.state_hash().hex();
+  };
+  const std::string one = run(1, -1);
+  for (const unsigned threads : {2U, 3U, 7U}) EXPECT_EQ(run(threads, -1), one) << threads;
+  EXPECT_EQ(run(2, steps / 3), one);
+}
+
 // A sphere on a slope of the box's floor: gravity is tilted instead.
 TEST(Collisions, FrictionAngle) {
   for (const double share : {0.9, 1.1}) {
