@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/elementary.hpp"
 #include "base/parallel.hpp"
 #include "complex/simplex.hpp"
 #include "dartcast/error.hpp"
@@ -86,10 +87,7 @@ void keep_unmarked(std::vector<T>& values, std::span<const std::uint8_t> marks, 
 }  // namespace
 
 ParticleSystem::ParticleSystem(Environment& environment, const SimulationOptions& options)
-    : environment_(environment),
-      options_(options),
-      responses_(responses_of(options, environment.map())),
-      random_(options.seed) {
+    : environment_(environment), options_(options), responses_(responses_of(options, environment.map())) {
   check(options);
   if (environment.map().dimension() == 2 && options.gravity.z != 0.0)
     throw InvalidArgument(fmt::format("simulation: gravity is ({}, {}, {}): in the plane its z must be 0",
@@ -175,6 +173,7 @@ void ParticleSystem::advance_segment(unsigned segment) {
 }
 
 void ParticleSystem::aim(double dt, bool moving) {
+  lost_ = lost_to_drag(dt);
   targets_.resize(particles_.size());
   parallel_for(particles_.size(), grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -185,17 +184,19 @@ void ParticleSystem::aim(double dt, bool moving) {
   });
 }
 
+// The share of a velocity that drag takes within dt.
+double ParticleSystem::lost_to_drag(double dt) const { return -exponential_less_one(-options_.drag * dt); }
+
 Vec3 ParticleSystem::accelerated(const Vec3& v, const Vec3& flow, double dt) const {
   if (options_.drag == 0.0) return field_ ? flow : v + options_.gravity * dt;
-  const double lost = -std::expm1(-options_.drag * dt);
-  return v + (flow + options_.gravity * (1.0 / options_.drag) - v) * lost;
+  return v + (flow + options_.gravity * (1.0 / options_.drag) - v) * lost_;
 }
 
 // The acceleration that contacts know of: none where a field or other spheres change velocities, too. Drag reduces it.
 Acceleration ParticleSystem::acceleration(double dt) const {
   if (field_ || collides()) return {};
   if (options_.drag == 0.0) return {options_.gravity, dt};
-  return {options_.gravity * (-std::expm1(-options_.drag * dt) / (options_.drag * dt)), dt};
+  return {options_.gravity * (lost_to_drag(dt) / (options_.drag * dt)), dt};
 }
 
 // A particle's velocity after the acceleration, and its target relative to positions before a move. A held particle

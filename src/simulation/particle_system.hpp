@@ -8,7 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "base/random.hpp"
 #include "dartcast/simulation.hpp"
 #include "dynamics/collider.hpp"
 #include "dynamics/near_walls.hpp"
@@ -90,6 +89,7 @@ class ParticleSystem final : public SimulationComponent {
   void advance_segment(unsigned segment);
   void aim(double dt, bool moving);
   [[nodiscard]] Aim aim_at(std::size_t i, double dt, bool moving) const;
+  [[nodiscard]] double lost_to_drag(double dt) const;
   [[nodiscard]] Vec3 accelerated(const Vec3& v, const Vec3& flow, double dt) const;
   [[nodiscard]] Acceleration acceleration(double dt) const;
   void count_contacts();
@@ -129,7 +129,7 @@ class ParticleSystem final : public SimulationComponent {
   std::optional<VelocityField> field_;
   std::optional<Deformation> deformation_;
   std::vector<Inlet> inlets_;
-  Random random_;
+  double lost_ = 0.0;  // to drag, in the current part of a step
 
   Particles particles_;
   std::vector<std::uint64_t> ids_;
