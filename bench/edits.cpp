@@ -137,7 +137,7 @@ class Editor {
 // Edits until a tenth of the cells may have been touched. A face that was split and merged keeps a Steiner point.
 double edit_some(std::uint32_t edge, std::size_t count, EditRow& row) {
   Environment environment = box(edge);
-  Random random(2);
+  KeyedRandom random(2, RandomPurpose::place, 0);
   const VolumeSampler sampler(environment.complex());
   Particles set;
   while (set.size() < row.particles) {

@@ -23,7 +23,8 @@ function(add_dartcast_library name)
   target_compile_features(${target} PUBLIC cxx_std_20)
   # Templates in headers take exact decisions: users must not contract a * b + c either.
   target_compile_options(${target} PUBLIC -ffp-contract=off)
-  target_compile_definitions(${target} PRIVATE DARTCAST_VERSION="${PROJECT_VERSION}")
+  # EIGEN_DONT_VECTORIZE: the order of its sums must not depend on the instruction set.
+  target_compile_definitions(${target} PRIVATE DARTCAST_VERSION="${PROJECT_VERSION}" EIGEN_DONT_VECTORIZE)
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:dartcast_flags> ${ARGN})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} VERSION ${PROJECT_VERSION}
                         SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} INSTALL_RPATH "$ORIGIN")

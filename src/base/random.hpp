@@ -32,14 +32,6 @@ class Random {
   /// An integer in [0, n), n > 0; uniform to n / 2^32.
   constexpr std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(((next() >> 32U) * n) >> 32U); }
 
-  /// To save a sequence and to continue it.
-  [[nodiscard]] constexpr std::uint64_t state() const { return state_; }
-  static constexpr Random from_state(std::uint64_t state) {
-    Random random(0);
-    random.state_ = state;
-    return random;
-  }
-
  private:
   std::uint64_t state_;
 };

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/elementary.hpp"
 #include "dartcast/error.hpp"
 #include "dynamics/sphere_touch.hpp"
 
@@ -89,7 +90,7 @@ AddBodyResult Bodies::Impl::add(std::span<const Vec3> points, const BodyOptions&
   added.body = next_id_++;
   const double stiffness = options.stiffness > 0.0 ? options.stiffness : 1.0 / (options_.dt * options_.dt);
   Body body{added.body, positions_.size(), std::move(shape),
-            stiffness,  options.pull,      std::exp(-options.damping * options_.dt),
+            stiffness,  options.pull,      exponential(-options.damping * options_.dt),
             {}};
   body.fits.resize(body.shape.cluster_count());
   body.shape.match(points, body.fits);

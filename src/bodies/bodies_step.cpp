@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/elementary.hpp"
 #include "bodies/bodies_impl.hpp"
 #include "complex/simplex.hpp"
 #include "tracking/carry.hpp"
@@ -209,7 +210,7 @@ StepReport Bodies::Impl::advance(bool pulls) {
 // --- the second pass
 
 void Bodies::Impl::second_pass() {
-  const double kept = std::exp(-options_.drag * options_.dt);
+  const double kept = exponential(-options_.drag * options_.dt);
   for_each_body([&](Body& body) {
     accept(body);
     for (std::size_t p = body.first; p < body.first + body.shape.size(); ++p) {

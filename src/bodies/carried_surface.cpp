@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/elementary.hpp"
 #include "base/parallel.hpp"
 #include "dartcast/error.hpp"
 #include "mesh/box_tree.hpp"
@@ -29,7 +30,7 @@ class NearestSamples {
     bounds_ = {samples.front(), samples.front()};
     for (const Vec3& p : samples) bounds_ = join(bounds_, {p, p});
     const Vec3 size = bounds_.high - bounds_.low;
-    start_ = std::max({size.x, size.y, size.z}) / std::cbrt(static_cast<double>(samples.size()));
+    start_ = std::max({size.x, size.y, size.z}) / cube_root(static_cast<double>(samples.size()));
     if (!(start_ > 0.0)) start_ = 1.0;  // all at one place: any radius will do
   }
 
@@ -104,7 +105,7 @@ std::vector<double> affine_weights(const Vec3& x, std::span<const Vec3> samples,
   Columns columns;  // theta (1, p - x), in units of the farthest
   for (const std::uint32_t i : near) {
     const Vec3 r = (samples[i] - x) * (1.0 / far);
-    bell.push_back(std::exp(-2.0 * dot(r, r)));
+    bell.push_back(exponential(-2.0 * dot(r, r)));
     const std::array<double, 4> row = {1.0, r.x, r.y, r.z};
     for (std::size_t j = 0; j < 4; ++j) columns[j].push_back(bell.back() * row[j]);
   }

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/elementary.hpp"
 #include "bodies/rotation.hpp"
 #include "dartcast/error.hpp"
 
@@ -146,7 +147,7 @@ void RestShape::fit(const Region& region, const Mat3& covariance, Fit& fit) cons
   fit.strain = 0.0;
   if (linear_ == 0.0) return;
   Mat3 best = covariance * region.inverse + rotation * region.not_spanned;
-  if (keep_volume_) best = best * (1.0 / std::cbrt(std::max(determinant(best), min_volume)));
+  if (keep_volume_) best = best * (1.0 / cube_root(std::max(determinant(best), min_volume)));
   const Mat3 beyond = best - rotation;
   fit.transform = rotation + beyond * linear_;
   fit.strain = 0.5 * linear_ * (1.0 - linear_) * dot(beyond * region.moments, beyond);

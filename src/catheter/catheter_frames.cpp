@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/elementary.hpp"
 #include "catheter/catheter_impl.hpp"
 #include "catheter/transport.hpp"
 #include "dartcast/catheter.hpp"
@@ -12,7 +13,8 @@
 namespace dartcast {
 
 Vec3 Catheter::Impl::base_normal() const {
-  return reference_ * std::cos(turned_) + cross(direction_, reference_) * std::sin(turned_);
+  const SineCosine turned = sine_cosine(turned_);
+  return reference_ * turned.cosine + cross(direction_, reference_) * turned.sine;
 }
 
 std::vector<Vec3> Catheter::Impl::points() const {

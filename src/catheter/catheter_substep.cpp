@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.hpp"
 #include "catheter/catheter_impl.hpp"
 #include "catheter/transport.hpp"
 #include "dartcast/response.hpp"
@@ -64,7 +65,7 @@ void Catheter::Impl::follow_path(double push, std::size_t free) {
 // Sets the second differences of the tip at rest: along its frame's normal at each point.
 void Catheter::Impl::bend_tip(std::size_t free) {
   const double h = options_.spacing;
-  const double bend = 2.0 * h * std::sin(0.5 * options_.tip_curvature * h);
+  const double bend = 2.0 * h * sine_cosine(0.5 * options_.tip_curvature * h).sine;
   std::fill_n(bends_.begin(), std::min(free + 2, bends_.size()), Vec3{});
   Vec3 tangent = direction_;
   Vec3 normal = base_normal();

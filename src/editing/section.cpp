@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/elementary.hpp"
 #include "dartcast/cutting.hpp"
 #include "dartcast/error.hpp"
 #include "editing/cutter.hpp"
@@ -9,7 +10,7 @@
 namespace dartcast {
 
 Plane plane_through(const Vec3& point, const Vec3& normal) {
-  const double length = std::hypot(normal.x, normal.y, normal.z);
+  const double length = hypotenuse(normal.x, normal.y, normal.z);
   if (!is_finite(point) || !std::isfinite(length) || !(length > 0.0))
     throw InvalidArgument("a plane needs a finite point and a finite normal that is not zero");
   const Vec3 unit = {normal.x / length, normal.y / length, normal.z / length};

@@ -1,9 +1,9 @@
 // Tools to cut with: planes thickened, discs, blades, boxes and capsules as convex bodies.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <unordered_set>
 
+#include "base/elementary.hpp"
 #include "dartcast/cutting.hpp"
 #include "dartcast/error.hpp"
 #include "editing/near.hpp"
@@ -47,10 +47,11 @@ std::vector<ConvexTool> thicken(const Disc& disc, double width) {
   const Plane plane = plane_through(disc.centre, disc.normal);
   const auto [u, v] = across(plane.normal);
   ConvexTool tool = slab(plane, width);
-  const double step = 2.0 * std::numbers::pi / disc.sides;
+  const double inner_radius = disc.radius * sine_cosine_of_turns(0.5 / disc.sides).cosine;
   for (std::uint32_t i = 0; i < disc.sides; ++i) {
-    const Vec3 out = unit(u * std::cos(i * step) + v * std::sin(i * step));
-    tool.planes.push_back(plane_through(disc.centre + out * (disc.radius * std::cos(step / 2)), out));
+    const SineCosine turned = sine_cosine_of_turns(static_cast<double>(i) / disc.sides);
+    const Vec3 out = unit(u * turned.cosine + v * turned.sine);
+    tool.planes.push_back(plane_through(disc.centre + out * inner_radius, out));
   }
   return {tool};
 }

@@ -1,8 +1,8 @@
 // The closed surface of a barrel.
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "base/elementary.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 
@@ -45,8 +45,8 @@ class BarrelMaker {
   std::uint32_t add_circle(double radius, double z) {
     const auto first = static_cast<std::uint32_t>(mesh_.points.size());
     for (std::uint32_t i = 0; i < o_.staves; ++i) {
-      const double angle = 2.0 * std::numbers::pi * i / o_.staves;
-      mesh_.points.push_back(o_.centre + Vec3{radius * std::cos(angle), radius * std::sin(angle), z});
+      const SineCosine turned = sine_cosine_of_turns(static_cast<double>(i) / o_.staves);
+      mesh_.points.push_back(o_.centre + Vec3{radius * turned.cosine, radius * turned.sine, z});
     }
     return first;
   }

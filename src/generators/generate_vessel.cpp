@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/elementary.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "generators/vessel_section.hpp"
@@ -42,6 +43,11 @@ void check(const VesselOptions& o) {
 double smooth(double x) {
   x = std::clamp(x, 0.0, 1.0);
   return x * x * (3 - 2 * x);
+}
+
+// From -90 degrees at the first place of the half circle to 90 degrees at its last.
+SineCosine on_arc(const VesselSection& section, std::uint32_t place) {
+  return sine_cosine_of_turns(0.5 * (static_cast<double>(place) / section.arc - 0.5));
 }
 
 // Data of a section's point. Points between others mix their data, so that all of it varies smoothly.
@@ -110,25 +116,26 @@ class VesselHalf {
   }
 
   [[nodiscard]] Point2 on_circle(std::uint32_t place) const {
-    const double angle = 2 * pi * (place - 0.5 * section_.arc) / section_.around;
-    return {std::cos(angle), std::sin(angle)};
+    const SineCosine turned = sine_cosine_of_turns((place - 0.5 * section_.arc) / section_.around);
+    return {turned.cosine, turned.sine};
   }
 
   // Half an ellipse with its flat side on u = 0.
   [[nodiscard]] std::vector<Point2> half_ellipse(double width) const {
     std::vector<Point2> wall;
     for (std::uint32_t b = 0; b < section_.around; ++b) {
-      const double angle = pi * (static_cast<double>(b) / section_.arc - 0.5);
+      const SineCosine turned = on_arc(section_, b);
       const double down = 1 - 2 * (static_cast<double>(b) - section_.arc) / section_.flat;
       const bool curved = b < section_.arc;
-      wall.push_back({curved && b > 0 ? width * std::cos(angle) : 0.0, o_.radius * (curved ? std::sin(angle) : down)});
+      wall.push_back({curved && b > 0 ? width * turned.cosine : 0.0, o_.radius * (curved ? turned.sine : down)});
     }
     return wall;
   }
 
   [[nodiscard]] double width_at(double path_to_carina) const {
     const double x = std::max(0.0, widening_length * o_.radius - path_to_carina);
-    return o_.radius + 0.5 * std::tan(parting_angle()) * x * x / (widening_length * o_.radius);
+    const SineCosine parting = sine_cosine(parting_angle());
+    return o_.radius + 0.5 * (parting.sine / parting.cosine) * x * x / (widening_length * o_.radius);
   }
 
   // The trunk's axis turns by `bend` in these axes: opposite in those of the two halves, as their v is.
@@ -138,14 +145,14 @@ class VesselHalf {
     Vec3 origin;
     for (std::size_t i = 0; i <= trunk_steps_; ++i) {
       const double to_carina = o_.step_length * static_cast<double>(i);
-      const double angle = turned(to_carina);
-      Slice s{origin, {1, 0, 0}, {0, std::cos(angle), -std::sin(angle)}, {0, std::sin(angle), std::cos(angle)}};
+      const SineCosine at = sine_cosine(turned(to_carina));
+      Slice s{origin, {1, 0, 0}, {0, at.cosine, -at.sine}, {0, at.sine, at.cosine}};
       s.path = length - to_carina;
       s.wall = half_ellipse(width_at(to_carina));
       add_flow(s, smooth(1 - to_carina / (widening_length * o_.radius)));
       slices_.push_back(std::move(s));
-      const double between = turned(to_carina + 0.5 * o_.step_length);
-      origin -= Vec3{0, std::sin(between), std::cos(between)} * o_.step_length;
+      const SineCosine between = sine_cosine(turned(to_carina + 0.5 * o_.step_length));
+      origin -= Vec3{0, between.sine, between.cosine} * o_.step_length;
     }
     std::reverse(slices_.begin(), slices_.end());
   }
@@ -159,15 +166,18 @@ class VesselHalf {
       return parting_angle() + (o_.branch_angle - parting_angle()) * smooth(s / turn);
     };
     const auto out = [&](double s) { return o_.out_of_plane * smooth((s - turn) / (length_ - turn)); };
-    const auto direction = [](double a, double b) {
-      return Vec3{std::sin(a) * std::cos(b), std::sin(b), std::cos(a) * std::cos(b)};
+    const auto direction = [](double aside, double out_of_plane) {
+      const SineCosine a = sine_cosine(aside);
+      const SineCosine b = sine_cosine(out_of_plane);
+      return Vec3{a.sine * b.cosine, b.sine, a.cosine * b.cosine};
     };
     Vec3 origin = {start, 0, 0};
     for (std::size_t i = 1; i <= steps; ++i) {
       const double s = o_.step_length * static_cast<double>(i), middle = s - 0.5 * o_.step_length;
       origin += direction(sideways(middle), out(middle)) * o_.step_length;
       const double tilt = o_.branch_angle * smooth(s / turn), round = smooth(s / turn);
-      Slice slice{origin, {std::cos(tilt), 0, -std::sin(tilt)}, {}, direction(tilt, out(s))};
+      const SineCosine tilted = sine_cosine(tilt);
+      Slice slice{origin, {tilted.cosine, 0, -tilted.sine}, {}, direction(tilt, out(s))};
       slice.v = cross(slice.t, slice.u);
       slice.centre = -start * (1 - round);
       slice.path = trunk + s;
@@ -179,7 +189,7 @@ class VesselHalf {
             {(1 - round) * (half[b][0] - start) + r * circle[0], (1 - round) * half[b][1] + r * circle[1]});
         inner = std::max(inner, -slice.wall.back()[0]);
       }
-      const double to_other_half = origin.x / std::cos(tilt);
+      const double to_other_half = origin.x / tilted.cosine;
       slice.reach = std::min(inner + o_.tissue_thickness, to_other_half);
       if (slice.reach == to_other_half) last_joined_ = slices_.size();
       add_flow(slice, 1.0);
@@ -252,11 +262,10 @@ class VesselBuilder {
     const std::vector<Point2> lumen = section_.spread(s.wall);
     for (std::uint32_t v = 0; v < section_.lumen_count; ++v) nodes[v] = s.node(lumen[v]);
     const auto over_wall = [&](std::uint32_t layer, std::uint32_t place) {
-      const double angle = pi * (static_cast<double>(place) / section_.arc - 0.5);
+      const SineCosine turned = on_arc(section_, place);
       const double height = o_.tissue_thickness * layer / section_.layers;
       const bool end = place == 0 || place == section_.arc;
-      return Point2{s.wall[place][0] + (end ? 0.0 : height * std::cos(angle)),
-                    s.wall[place][1] + height * std::sin(angle)};
+      return Point2{s.wall[place][0] + (end ? 0.0 : height * turned.cosine), s.wall[place][1] + height * turned.sine};
     };
     for (std::uint32_t l = 1; l <= section_.layers; ++l) {
       for (std::uint32_t k = 0; k <= section_.arc; ++k) nodes[section_.over_arc(l, k)] = s.node(over_wall(l, k));

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/elementary.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_selection.hpp"
 #include "mesh/faces.hpp"
@@ -98,7 +99,7 @@ class SmoothParts {
       if (j - i != 2) continue;
       const Vec3& n = normals[sides[i].wall];
       const Vec3& m = normals[sides[i + 1].wall];
-      if (std::atan2(norm(cross(n, m)), dot(n, m)) <= limit) parent_[root(sides[i].wall)] = root(sides[i + 1].wall);
+      if (polar_angle(norm(cross(n, m)), dot(n, m)) <= limit) parent_[root(sides[i].wall)] = root(sides[i + 1].wall);
     }
   }
 

@@ -240,10 +240,8 @@ void fields(Archive& a, CathetersState& c) {
 
 template <class Archive>
 void fields(Archive& a, ParticleSystemState& s) {
-  std::uint64_t random = s.random.state();
   StateHash::Words gone = s.gone.words();
-  values(a, s.steps, s.next_id, random, gone[0], gone[1]);
-  s.random = Random::from_state(random);
+  values(a, s.steps, s.next_id, gone[0], gone[1]);
   s.gone = StateHash(gone);
   a.list(s.particles, [&](ParticleSystemState::Particle& p) { fields(a, p); });
   fields(a, s.totals);

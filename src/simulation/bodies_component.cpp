@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/elementary.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "simulation/simulation_state.hpp"
@@ -20,7 +21,8 @@ Vec3 turned_about(const Vec3& x, const Vec3& turn) {
   const double angle = norm(turn);
   if (angle == 0.0) return x;
   const Vec3 axis = turn * (1.0 / angle);
-  return x * std::cos(angle) + cross(axis, x) * std::sin(angle) + axis * (dot(axis, x) * (1.0 - std::cos(angle)));
+  const SineCosine turned = sine_cosine(angle);
+  return x * turned.cosine + cross(axis, x) * turned.sine + axis * (dot(axis, x) * (1.0 - turned.cosine));
 }
 
 MeshData placed_surface(const BodyScene& scene) {

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "base/elementary.hpp"
 #include "base/parallel.hpp"
 #include "dartcast/error.hpp"
 #include "simulation/deformation_frames.hpp"
@@ -15,18 +15,14 @@
 namespace dartcast {
 namespace {
 
-constexpr double full_turn = 2 * std::numbers::pi;
-
 // Turns of t / period, less the whole ones: sine and cosine lose no digits however long a run is.
 double turns(double time, double period) { return std::fmod(time / period, 1.0); }
 
 bool is_off_plane(const Vec3& v) { return v.z != 0.0; }
 
-double sinc(double x) { return x == 0.0 ? 1.0 : std::sin(x) / x; }
-
 // The vector r turned about the unit vector a (O. Rodrigues, 1840).
-Vec3 turn(const Vec3& r, const Vec3& a, double sine, double cosine) {
-  return r * cosine + cross(a, r) * sine + a * (dot(a, r) * (1 - cosine));
+Vec3 turn(const Vec3& r, const Vec3& a, const SineCosine& angle) {
+  return r * angle.cosine + cross(a, r) * angle.sine + a * (dot(a, r) * (1 - angle.cosine));
 }
 
 class DeformationChecker {
@@ -134,10 +130,10 @@ class PlaneChecker {
 class Motion {
  public:
   Motion(const DeformationStep& step, double time) : s_(step), turns_(turns(time, step.period)) {
-    amount_ = s_.amplitude * std::sin(full_turn * turns_);
+    amount_ = s_.amplitude * sine_cosine_of_turns(turns_).sine;
     switch (s_.kind) {
-      case DeformationKind::rotate: turn_by(full_turn * turns_); break;
-      case DeformationKind::swing: turn_by(amount_); break;
+      case DeformationKind::rotate: turned_ = sine_cosine_of_turns(turns_); break;
+      case DeformationKind::swing: turned_ = sine_cosine(amount_); break;
       case DeformationKind::frames:
       case DeformationKind::bend:
       case DeformationKind::twist:
@@ -152,11 +148,10 @@ class Motion {
     const double height = dot(r, s_.axis);
     switch (s_.kind) {
       case DeformationKind::rotate:
-      case DeformationKind::swing: return s_.centre + turn(r, s_.axis, sine_, cosine_);
+      case DeformationKind::swing: return s_.centre + turn(r, s_.axis, turned_);
       case DeformationKind::bend: return s_.centre + bent(r, height);
       case DeformationKind::twist: {
-        const double angle = amount_ * height / s_.length;
-        return s_.centre + turn(r, s_.axis, std::sin(angle), std::cos(angle));
+        return s_.centre + turn(r, s_.axis, sine_cosine(amount_ * height / s_.length));
       }
       case DeformationKind::stretch: {
         const Vec3 along = s_.axis * height;
@@ -173,17 +168,14 @@ class Motion {
   }
 
  private:
-  void turn_by(double angle) {
-    sine_ = std::sin(angle);
-    cosine_ = std::cos(angle);
-  }
-
-  // (1 - cos(ks)) / k as s sin(ks / 2) sinc(ks / 2): right for small k too.
+  // By the sine and cosine of half the angle: sin(ks) / k and (1 - cos(ks)) / k keep their digits for small k, too.
   [[nodiscard]] Vec3 bent(const Vec3& r, double height) const {
-    const double angle = amount_ * height / s_.length, depth = dot(r, s_.direction);
+    const double half = 0.5 * (amount_ * height / s_.length), depth = dot(r, s_.direction);
+    const SineCosine at_half = sine_cosine(half);
     const Vec3 aside = r - s_.axis * height - s_.direction * depth;
-    const double along = height * sinc(angle) - depth * std::sin(angle);
-    const double across = height * std::sin(0.5 * angle) * sinc(0.5 * angle) + depth * std::cos(angle);
+    const double chord = half == 0.0 ? height : height * (at_half.sine / half);
+    const double along = chord * at_half.cosine - depth * (2 * at_half.sine * at_half.cosine);
+    const double across = chord * at_half.sine + depth * (1 - 2 * at_half.sine * at_half.sine);
     return s_.axis * along + s_.direction * across + aside;
   }
 
@@ -191,12 +183,13 @@ class Motion {
     double phase = turns_;
     if (s_.wavelength > 0) phase -= (s_.path.empty() ? height : s_.path[vertex]) / s_.wavelength;
     const Vec3 way = s_.field.empty() ? r - s_.axis * height : s_.field[vertex];
-    return way * (s_.amplitude * std::sin(full_turn * phase));
+    return way * (s_.amplitude * sine_cosine_of_turns(phase).sine);
   }
 
   const DeformationStep& s_;
   double turns_;
-  double amount_ = 0.0, sine_ = 0.0, cosine_ = 1.0;
+  double amount_ = 0.0;
+  SineCosine turned_ = {0.0, 1.0};
 };
 
 }  // namespace

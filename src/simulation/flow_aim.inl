@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "base/double4.inl"
+#include "dartcast/predicates.hpp"
 #include "simulation/flow_aim.hpp"
 #include "tracking/batch/batch_simplex.inl"
 
@@ -44,6 +45,10 @@ inline Vec3x4 mapped(const Corners4& from, const Corners4& to, const Vec3x4& u) 
   return choose(volume > splat(0.0), moved * (splat(1.0) / volume), u);
 }
 
+// As flushed() of predicates.hpp.
+inline Double4 flushed(const Double4& x) { return magnitude(x) < splat(smallest_magnitude) ? splat(0.0) : x; }
+inline Vec3x4 flushed(const Vec3x4& v) { return {flushed(v.x), flushed(v.y), flushed(v.z)}; }
+
 // As raised() of cell_complex.hpp.
 inline void raise(Corners4& v) {
   for (unsigned i = 0; i < 3; ++i) v.corner[i].z = splat(0.0);
@@ -75,7 +80,7 @@ class FlowKernel {
   [[nodiscard]] unsigned free_lanes(std::size_t i) const {
     unsigned lanes = 0;
     for (unsigned k = 0; k < 4; ++k) {
-      const bool is_free = !particles_.states[i + k].held && particles_.fates[i + k] != ParticleStatus::stuck;
+      const bool is_free = !particles_.states[i + k].held && particles_.fates[i + k] == ParticleStatus::alive;
       lanes |= static_cast<unsigned>(is_free) << k;
     }
     return lanes;
@@ -94,12 +99,12 @@ class FlowKernel {
     const Vec3x4 velocity = load_vec3x4(&particles_.velocities[i]);
     if (scene_.rest == nullptr) {
       const Vec3x4 v = accelerated(velocity, u);
-      store(i, lanes, v, x + v * splat(scene_.dt));
+      store(i, lanes, v, flushed(x + v * splat(scene_.dt)));
     } else {
       const Vec3x4 carried = combine(now, w);
       const Vec3x4 mesh = (carried - combine(before, w)) * splat(scene_.per_move);
       const Vec3x4 v = accelerated(velocity, mapped(corners(scene_.rest, i), now, u) + mesh);
-      store(i, lanes, v, (scene_.moving ? carried : x) + (v - mesh) * splat(scene_.dt));
+      store(i, lanes, v, flushed((scene_.moving ? carried : x) + (v - mesh) * splat(scene_.dt)));
     }
     return static_cast<std::uint8_t>(lanes);
   }

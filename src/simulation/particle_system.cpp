@@ -20,17 +20,6 @@ namespace dartcast {
 
 namespace {
 
-// Whether a particle leaves the scene at the end of the step.
-bool leaves(ParticleStatus status) {
-  switch (status) {
-    case ParticleStatus::alive:
-    case ParticleStatus::stuck: return false;
-    case ParticleStatus::absorbed:
-    case ParticleStatus::escaped: return true;
-  }
-  return false;
-}
-
 WallResponses responses_of(const SimulationOptions& options, const CombinatorialMap& map) {
   WallResponses responses(options.response);
   for (const auto& [name, response] : options.patch_responses) responses.set(map.patch(name), response);
@@ -91,10 +80,7 @@ void check(const SimulationOptions& o) {
 }  // namespace
 
 ParticleSystem::ParticleSystem(Environment& environment, const SimulationOptions& options)
-    : environment_(environment),
-      options_(options),
-      responses_(responses_of(options, environment.map())),
-      random_(options.seed) {
+    : environment_(environment), options_(options), responses_(responses_of(options, environment.map())) {
   check(options);
   if (environment.map().dimension() == 2 && options.gravity.z != 0.0)
     throw InvalidArgument(fmt::format("simulation: gravity is ({}, {}, {}): in the plane its z must be 0",

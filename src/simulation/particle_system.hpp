@@ -8,7 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "base/random.hpp"
 #include "dartcast/simulation.hpp"
 #include "dynamics/collider.hpp"
 #include "dynamics/near_walls.hpp"
@@ -19,6 +18,17 @@
 #include "simulation/sphere_bodies.hpp"
 
 namespace dartcast {
+
+/// Whether a particle leaves the scene at the end of the step. Until then it stays where it is.
+inline bool leaves(ParticleStatus status) {
+  switch (status) {
+    case ParticleStatus::alive:
+    case ParticleStatus::stuck: return false;
+    case ParticleStatus::absorbed:
+    case ParticleStatus::escaped: return true;
+  }
+  return false;
+}
 
 /// It also moves the vertices: with collisions that comes between the spheres' impulses and their walk. A function
 /// with the name of one of Simulation's does the work of that function.
@@ -112,6 +122,7 @@ class ParticleSystem final : public SimulationComponent {
   void aim(double dt, bool moving);
   [[nodiscard]] detail::FlowScene flow_scene(const Forces& forces, bool moving) const;
   void aim_in_flow(const detail::FlowScene& scene, std::size_t begin, std::size_t end, std::span<std::uint8_t> aimed);
+  [[nodiscard]] double lost_to_drag(double dt) const;
   [[nodiscard]] Forces forces_of(double dt) const;
   [[nodiscard]] Aim aim_at(std::size_t i, const Forces& forces, bool moving) const;
   [[nodiscard]] Vec3 accelerated(const Vec3& v, const Vec3& flow, const Vec3& force, const Forces& forces) const;
@@ -149,7 +160,6 @@ class ParticleSystem final : public SimulationComponent {
   std::optional<VectorField> force_;  // accelerations, on top of gravity
   std::optional<Deformation> deformation_;
   std::vector<Inlet> inlets_;
-  Random random_;
 
   Particles particles_;
   std::vector<std::uint64_t> ids_;

@@ -103,15 +103,16 @@ void ParticleSystem::complete_next(const Vec3& velocity, double radius, std::spa
   if (radius > 0.0) ++spheres_;
 }
 
-// Sampled points are rounded: one that fell out of its simplex is drawn again.
+// Sampled points are rounded: one that fell out of its simplex is drawn again, with the next numbers of the same id.
 template <class Sampler>
 void ParticleSystem::add_sampled(const Sampler& sampler, std::size_t count, const Vec3& velocity, double radius,
                                  std::span<const double> user_data) {
   constexpr int max_tries = 1000;
   for (std::size_t i = 0; i < count; ++i) {
+    KeyedRandom random(options_.seed, RandomPurpose::place, next_id_ + i);
     int tries = 0;
     while (true) {
-      const Sample s = sampler.sample(environment_.complex(), random_);
+      const Sample s = sampler.sample(environment_.complex(), random);
       if (environment_.add(particles_, s.simplex, flushed(s.position))) break;
       if (++tries == max_tries) {
         complete(velocity, radius, user_data);
@@ -128,7 +129,8 @@ void ParticleSystem::add_random(std::size_t count, const Vec3& velocity, double 
                                 std::span<const double> user_data) {
   check_motion(velocity, radius, "a particle's");
   check_user_data(user_data);
-  if (count > 0) add_sampled(VolumeSampler(environment_.complex()), count, velocity, radius, user_data);
+  if (count > 0)
+    add_sampled(VolumeSampler(environment_.complex(), environment_.threads()), count, velocity, radius, user_data);
   totals_.start = next_id_ - totals_.injected;
 }
 

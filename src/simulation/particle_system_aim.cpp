@@ -1,10 +1,11 @@
 // The velocities that gravity, drag and the flow give to particles, and the targets that these lead to.
 #include <algorithm>
 #include <array>
-#include <cmath>
 
+#include "base/elementary.hpp"
 #include "base/parallel.hpp"
 #include "complex/simplex.hpp"
+#include "dartcast/predicates.hpp"
 #include "simulation/flow_aim.hpp"
 #include "simulation/particle_system.hpp"
 #include "tracking/carry.hpp"
@@ -28,9 +29,9 @@ void ParticleSystem::aim(double dt, bool moving) {
     if (in_fours) aim_in_flow(scene, begin, end, aimed);
     for (std::size_t i = begin; i < end; ++i) {
       if ((aimed[(i - begin) / 4] >> (i - begin) % 4 & 1U) != 0) continue;
-      const Aim aim = aim_at(i, forces, moving);
-      velocities_[i] = aim.velocity;
-      targets_[i] = aim.target;
+      const Aim a = leaves(fates_[i]) ? Aim{velocities_[i], particles_[i].position} : aim_at(i, forces, moving);
+      velocities_[i] = a.velocity;
+      targets_[i] = flushed(a.target);
     }
   });
 }
@@ -61,8 +62,11 @@ void ParticleSystem::aim_in_flow(const detail::FlowScene& scene, std::size_t beg
                        std::span(targets_).subspan(begin, size), aimed.first(size / 4)});
 }
 
+// The share of a velocity that drag takes within dt.
+double ParticleSystem::lost_to_drag(double dt) const { return -exponential_less_one(-options_.drag * dt); }
+
 ParticleSystem::Forces ParticleSystem::forces_of(double dt) const {
-  return {dt, options_.drag > 0.0 ? -std::expm1(-options_.drag * dt) : 0.0};
+  return {dt, options_.drag > 0.0 ? lost_to_drag(dt) : 0.0};
 }
 
 Vec3 ParticleSystem::accelerated(const Vec3& v, const Vec3& flow, const Vec3& force, const Forces& forces) const {
@@ -76,7 +80,7 @@ Vec3 ParticleSystem::accelerated(const Vec3& v, const Vec3& flow, const Vec3& fo
 Acceleration ParticleSystem::acceleration(double dt) const {
   if (field_ || force_ || collides()) return {};
   if (options_.drag == 0.0) return {options_.gravity, dt};
-  return {options_.gravity * (-std::expm1(-options_.drag * dt) / (options_.drag * dt)), dt};
+  return {options_.gravity * (lost_to_drag(dt) / (options_.drag * dt)), dt};
 }
 
 // A particle's velocity after the acceleration, and its target relative to positions before a move. A held particle

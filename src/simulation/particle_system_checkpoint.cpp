@@ -8,7 +8,6 @@ void ParticleSystem::save(SimulationState& state) const {
   ParticleSystemState& saved = state.particles;
   saved.steps = steps_;
   saved.next_id = next_id_;
-  saved.random = random_;
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     saved.particles.push_back(
         {ids_[i], particles_[i], particles_.held_weights(i), velocities_[i], fates_[i], contact_counts_[i], radii_[i]});
@@ -57,7 +56,6 @@ void ParticleSystem::restore(const SimulationState& state) {
   collider_.solver().set_cached_impulses(saved.impulses);
   steps_ = saved.steps;
   next_id_ = saved.next_id;
-  random_ = saved.random;
   totals_ = saved.totals;
   gone_ = saved.gone;
 }

@@ -4,7 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/random.hpp"
+#include "base/keyed_random.hpp"
+#include "base/parallel.hpp"
 #include "dartcast/cell_complex.hpp"
 
 namespace dartcast {
@@ -15,18 +16,31 @@ struct Sample {
   Vec3 position;
 };
 
+/// Sums of sizes in fixed point: of a power of 2 that depends on the largest size and their number alone, so that the
+/// sums do not depend on the order or the grouping. The largest of n sizes has 61 - log2(n) bits or more.
+class FixedPointScale {
+ public:
+  FixedPointScale() = default;
+  FixedPointScale(double largest, std::size_t count);
+  [[nodiscard]] std::uint64_t operator()(double size) const;
+
+ private:
+  double factor_ = 0.0;
+};
+
 /// Points of equal likelihood by volume in the free cells, at the complex's positions when it was made. Cost to make:
 /// linear.
 class VolumeSampler {
  public:
   /// Throws InvalidArgument where no cell is free.
-  explicit VolumeSampler(const CellComplex& complex);
+  explicit VolumeSampler(const CellComplex& complex, Threads threads = {});
   /// In a free cell. Cost: the logarithm of the cells.
-  [[nodiscard]] Sample sample(const CellComplex& complex, Random& random) const;
+  [[nodiscard]] Sample sample(const CellComplex& complex, KeyedRandom& random) const;
 
  private:
   std::vector<Cell> cells_;
-  std::vector<double> volume_up_to_;
+  FixedPointScale scale_;
+  std::vector<std::uint64_t> volume_up_to_;
 };
 
 /// Whether a patch has a wall at a free cell. Cost: linear in the cells.
@@ -40,7 +54,7 @@ class PatchSampler {
   PatchSampler(const CellComplex& complex, Patch patch);
   /// Takes the areas at the complex's current positions. Cost: the patch's faces.
   void update(const CellComplex& complex);
-  [[nodiscard]] Sample sample(const CellComplex& complex, Random& random) const;
+  [[nodiscard]] Sample sample(const CellComplex& complex, KeyedRandom& random) const;
 
  private:
   struct Triangle {
@@ -48,7 +62,8 @@ class PatchSampler {
     std::uint16_t facet;
   };
   std::vector<Triangle> triangles_;
-  std::vector<double> area_up_to_;
+  std::vector<double> areas_;
+  std::vector<std::uint64_t> area_up_to_;
 };
 
 }  // namespace dartcast

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/random.hpp"
 #include "dartcast/bodies.hpp"
 #include "dartcast/catheter.hpp"
 #include "dartcast/events.hpp"
@@ -25,7 +24,6 @@ struct ParticleSystemState {
   };
   std::uint64_t steps = 0;
   std::uint64_t next_id = 0;
-  Random random = Random(0);
   std::vector<Particle> particles;
   SimulationTotals totals;
   StateHash gone;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/elementary.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/predicates.hpp"
 #include "dartcast/surface.hpp"
@@ -47,7 +48,7 @@ Box box_around(const Vec3& x, double r) {
 
 double distance_to(const Box& box, const Vec3& x) {
   const auto off = [](double low, double high, double c) { return std::max({low - c, c - high, 0.0}); };
-  return std::hypot(off(box.low.x, box.high.x, x.x), off(box.low.y, box.high.y, x.y), off(box.low.z, box.high.z, x.z));
+  return hypotenuse(off(box.low.x, box.high.x, x.x), off(box.low.y, box.high.y, x.y), off(box.low.z, box.high.z, x.z));
 }
 
 // Weights of the foot of x on the triangle, from products of its edges: Ericson's names.
@@ -83,7 +84,7 @@ SurfaceLocation nearest_in_triangle(const Surface& surface, SimplexId triangle, 
   SurfaceLocation out;
   out.place = surface.place(triangle, w);
   const Vec3 off = surface.point(out.place) - x;
-  out.distance = std::hypot(off.x, off.y, off.z);
+  out.distance = hypotenuse(off.x, off.y, off.z);
   return out;
 }
 

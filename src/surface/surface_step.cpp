@@ -4,6 +4,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/elementary.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/predicates.hpp"
 #include "dartcast/surface.hpp"
@@ -27,7 +28,10 @@ constexpr double pi = std::numbers::pi;
 // difference is rounding. Nothing else depends on it.
 constexpr double rounding_of_angles = 1e-12;
 
-Heading heading_at(double angle) { return {std::cos(angle), std::sin(angle)}; }
+Heading heading_at(double angle) {
+  const SineCosine turned = sine_cosine(angle);
+  return {turned.cosine, turned.sine};
+}
 
 // The triangle of a particle, laid out on one of its edges, and the particle's direction there.
 class Course {
@@ -167,7 +171,7 @@ class Stepping {
     const Frame f = course_.frame();
     const double along = dot(displacement, f.along);
     const double across = dot(displacement, f.across);
-    way_ = left_ = std::hypot(along, across);
+    way_ = left_ = hypotenuse(along, across);
     if (left_ == 0.0) return;
     course_.head({along / left_, across / left_});
     set_out_ = f.along * along + f.across * across;
@@ -224,7 +228,7 @@ class Stepping {
     course_.turn_to(course_.border_base());
     return detail::fan_of(surface_, course_.place().triangle, course_.base());
   }
-  [[nodiscard]] double angle_here() const { return std::atan2(course_.heading().across, course_.heading().along); }
+  [[nodiscard]] double angle_here() const { return polar_angle(course_.heading().across, course_.heading().along); }
 
   // Continues from a vertex at an angle from the fan's first edge, any number of turns away.
   void pass(const Fan& fan, double angle) {
@@ -381,7 +385,8 @@ Vec3 tangent(const Surface& surface, SimplexId triangle, unsigned corner, double
     throw InvalidArgument("tangent: the surface has no such triangle or corner");
   const auto v = surface.corners(triangle);
   const Frame f = detail::frame_of(v[corner], v[(corner + 1) % 3], v[(corner + 2) % 3]);
-  return (f.along * std::cos(angle) + f.across * std::sin(angle)) * length;
+  const SineCosine turned = sine_cosine(angle);
+  return (f.along * turned.cosine + f.across * turned.sine) * length;
 }
 
 }  // namespace dartcast

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.hpp"
 #include "dartcast/predicates.hpp"
 
 namespace dartcast::detail {
@@ -18,10 +19,7 @@ double twice_area(const Vec3& a, const Vec3& b, const Vec3& c, double Vec3::*u, 
   return orient2d_value(flat(a), flat(b), flat(c));
 }
 
-double length_of(const Vec3& v) {
-  const double square = dot(v, v);
-  return square > 0x1p-900 ? std::sqrt(square) : std::hypot(v.x, v.y, v.z);
-}
+double length_of(const Vec3& v) { return hypotenuse(v.x, v.y, v.z); }
 
 struct UnfoldedEdges {
   Vec3 base, side;  // from a to b, and to c; scaled
@@ -47,7 +45,7 @@ Vec3 normal_of(const Vec3& a, const Vec3& b, const Vec3& c, const UnfoldedEdges&
 }
 
 Heading unit(double along, double across) {
-  const double length = std::hypot(along, across);
+  const double length = hypotenuse(along, across);
   return {along / length, across / length};
 }
 
@@ -90,7 +88,7 @@ Exit by_edge(const TriangleWeights& from, const Rates& r, unsigned i, unsigned j
 // Leaves straight to the apex. If no weight decreases, the ray runs there: see way_out().
 Exit to_apex(const Unfolded& t, const TriangleWeights& from) {
   const double x = from[1] * t.length + from[2] * t.x;
-  return {{0.0, 0.0, 1.0}, std::hypot(t.x - x, t.height - from[2] * t.height)};
+  return {{0.0, 0.0, 1.0}, hypotenuse(t.x - x, t.height - from[2] * t.height)};
 }
 
 }  // namespace
@@ -129,7 +127,7 @@ Heading turned_to(const Unfolded& t, unsigned edge, const Heading& h) {
   return unit(h.along * x + h.across * y, h.across * x - h.along * y);
 }
 
-double angle_at_base(const Unfolded& t) { return std::atan2(t.height, t.x); }
+double angle_at_base(const Unfolded& t) { return polar_angle(t.height, t.x); }
 
 TriangleWeights normalized(TriangleWeights w) {
   for (double& x : w) x = x < smallest_weight ? 0.0 : x;

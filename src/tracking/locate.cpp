@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/elementary.hpp"
 #include "complex/simplex.hpp"
 #include "dartcast/validity.hpp"
 #include "tracking/carry.hpp"
@@ -118,7 +119,7 @@ void Locator::choose_bins(std::size_t cells) {
   if (!(largest > 0.0)) return;
   std::array<double, 3> share{};
   for (unsigned a = 0; a < 3; ++a) share[a] = std::max(size[a] / largest, 1e-3);
-  const double per_largest = std::cbrt(static_cast<double>(cells) / (share[0] * share[1] * share[2]));
+  const double per_largest = cube_root(static_cast<double>(cells) / (share[0] * share[1] * share[2]));
   for (unsigned a = 0; a < 3; ++a)
     bins_[a] = static_cast<std::uint32_t>(std::clamp(per_largest * share[a], 1.0, 4096.0));
 }

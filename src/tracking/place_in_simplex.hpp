@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/elementary.hpp"
 #include "tracking/representable_point.hpp"
 #include "tracking/walk.hpp"
 
@@ -115,7 +116,7 @@ inline Vec3 facet_normal(const PlaneCorners& v, unsigned facet) {
   const auto& f = plane_facet_corners[facet];
   const Vec3 along = flushed(v[f[1]]) - flushed(v[f[0]]);
   const Vec3 n = {-along.y, along.x, 0.0};
-  const double length = std::hypot(n.x, n.y);
+  const double length = hypotenuse(n.x, n.y);
   const bool has_length = length > 0.0 && length <= std::numeric_limits<double>::max();
   return has_length ? Vec3{n.x / length, n.y / length, 0.0} : Vec3{};
 }

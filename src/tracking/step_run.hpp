@@ -12,6 +12,7 @@
 #include <cmath>
 #include <string>
 
+#include "base/elementary.hpp"
 #include "dartcast/error.hpp"
 #include "tracking/contact_geometry.hpp"
 #include "tracking/step.hpp"
@@ -156,7 +157,7 @@ class StepPart {
     if (const auto proved = proved_inside(corners, contact.point)) return run.state.put(w.wall_simplex, *proved);
     const SimplexPlacement placed = next_to(w.wall_simplex, corners, contact.point);
     const auto distance = [&](const Vec3& x) {
-      return std::hypot(x.x - contact.point.x, x.y - contact.point.y, x.z - contact.point.z);
+      return hypotenuse(x.x - contact.point.x, x.y - contact.point.y, x.z - contact.point.z);
     };
     const double unit = lift_distance(contact.point, contact.point, 0);
     if (distance(placed.position) > std::max(distance(p), max_units * unit)) return;

@@ -78,7 +78,7 @@ int edit(std::uint32_t box_edge, std::uint32_t count) {
   box.cells = {box_edge, box_edge, box_edge};
   box.size = {double(box_edge), double(box_edge), double(box_edge)};
   Environment environment(generate_box(box), Threads{1});
-  Random random(7);
+  KeyedRandom random(7, RandomPurpose::place, 0);
   const VolumeSampler sampler(environment.complex());
   Particles set;
   while (set.size() < particles) {
@@ -155,10 +155,11 @@ int main(int argc, char** argv) {
   Environment environment = plane ? make_plane() : make_environment();
   const std::vector<Vec3> rest(environment.positions().begin(), environment.positions().end());
   Random random(5);
+  KeyedRandom places(5, RandomPurpose::place, 0);
   const VolumeSampler sampler(environment.complex());
   Particles set;
   while (set.size() < particles) {
-    const Sample s = sampler.sample(environment.complex(), random);
+    const Sample s = sampler.sample(environment.complex(), places);
     const auto nearest = [](double x) { return std::round(8.0 * x) / 8.0; };
     const Vec3 on_lattice{nearest(s.position.x), std::round(s.position.y), std::round(s.position.z)};
     if (lattice) {

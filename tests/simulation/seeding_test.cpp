@@ -31,9 +31,9 @@ MeshData corner_tetrahedron() {
 TEST(VolumeSampler, FillsATetrahedronEvenly) {
   const CellComplex complex(corner_tetrahedron());
   const VolumeSampler sampler(complex);
-  Random random(1);
   std::array<int, 4> near_corner{};
   for (int i = 0; i < count; ++i) {
+    KeyedRandom random(1, RandomPurpose::place, static_cast<std::uint64_t>(i));
     const Vec3 p = sampler.sample(complex, random).position;
     const std::array<double, 4> w = {1 - p.x - p.y - p.z, p.x, p.y, p.z};
     for (std::size_t k = 0; k < 4; ++k) {
@@ -48,9 +48,9 @@ TEST(VolumeSampler, FillsATetrahedronEvenly) {
 TEST(PatchSampler, FillsATriangleEvenlyJustInside) {
   const CellComplex complex(corner_tetrahedron());
   const PatchSampler sampler(complex, complex.map().patch("base"));
-  Random random(1);
   std::array<int, 3> near_corner{};
   for (int i = 0; i < count; ++i) {
+    KeyedRandom random(1, RandomPurpose::place, static_cast<std::uint64_t>(i));
     const Vec3 p = sampler.sample(complex, random).position;
     ASSERT_DOUBLE_EQ(p.z, 1.0 / 64);
     const std::array<double, 3> w = {1 - (p.x + p.y) * 64 / 63, p.x * 64 / 63, p.y * 64 / 63};
@@ -89,6 +89,35 @@ TEST(PatchSampler, FollowsTheMovingMesh) {
   simulation.step();  // put in at rest, where the faces were equal: those beside x = 1 change cell as it passes
   simulation.step();
   expect_share(in_first_cell(count), 0.75);
+}
+
+// The particle with an id gets the same place in whatever portions particles are added.
+TEST(Seeding, PlacesDependOnIdsAlone) {
+  Environment environment(generate_bar());
+  SimulationOptions options;
+  options.seed = 11;
+  Simulation whole(environment, options), parts(environment, options);
+  whole.add_random(300, {});
+  for (const std::size_t n : {1U, 99U, 0U, 200U}) parts.add_random(n, {});
+  for (std::size_t i = 0; i < 300; ++i) EXPECT_EQ(whole.particles()[i].position, parts.particles()[i].position);
+  Simulation later(environment, options);
+  later.add(std::vector<Vec3>(100, whole.particles()[0].position), {});
+  later.add_random(200, {});
+  for (std::size_t i = 100; i < 300; ++i) EXPECT_EQ(whole.particles()[i].position, later.particles()[i].position);
+}
+
+TEST(FixedPointScale, SumsDoNotDependOnOrderAndFitIn63Bits) {
+  for (const double unit : {0x1p-290, 0.7, 0x1p+290}) {
+    for (const std::size_t n : {1UL, 7UL, 1000UL}) {
+      const FixedPointScale scale(unit, n);
+      const std::uint64_t one = scale(unit);
+      EXPECT_LT(one, (1ULL << 62U) / n);
+      EXPECT_GT(one, (1ULL << 59U) / n / 2);
+      EXPECT_NEAR(static_cast<double>(scale(unit / 3)), static_cast<double>(one) / 3,
+                  1.0 + static_cast<double>(one) * 0x1p-52);
+    }
+  }
+  EXPECT_EQ(FixedPointScale(0.0, 3)(0.0), 0U);
 }
 
 TEST(Samplers, NeedSomewhereToPutParticles) {

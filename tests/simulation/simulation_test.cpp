@@ -422,6 +422,25 @@ TEST(Simulation, RefusesWhatLeavesThePlane) {
   EXPECT_EQ(flow.particles()[0].position, (Vec3{1.5, 1.25, 0}));
 }
 
+// In the segments that follow, the flow must not carry it into the wall again.
+TEST(Simulation, AnAbsorbedParticleMeetsNoFurtherWallInItsStep) {
+  BoxOptions box;
+  box.cells = {2, 2, 2};
+  const MeshData mesh = generate_box(box);
+  for (const bool flows : {false, true}) {
+    Environment environment(mesh);
+    SimulationOptions o = options(1.0);
+    o.substeps = 4;
+    o.response = Absorb{};
+    Simulation simulation(environment, o);
+    if (flows)
+      simulation.set_field(VelocityField(environment.complex(), std::vector<Vec3>(mesh.points.size(), Vec3{4, 0, 0})));
+    simulation.add(std::vector<Vec3>(8, Vec3{0.75, 0.25, 0.25}), {4, 0, 0});
+    EXPECT_EQ(simulation.step().report.contacts.contacts.size(), 8U);
+    EXPECT_EQ(simulation.totals().absorbed, 8U);
+  }
+}
+
 TEST(Simulation, ItsContactsCanBeIterated) {
   Environment environment(generate_bar());
   Simulation simulation(environment, {.dt = 0.1, .response = Reflect{0.5}});
