@@ -87,6 +87,7 @@ inline void store_floats(const Double4& four, float* out) { *reinterpret_cast<Un
 struct Vec3x4 {
   Double4 x, y, z;
 };
+inline Vec3x4 splat(const Vec3& v) { return {splat(v.x), splat(v.y), splat(v.z)}; }
 inline Vec3x4 operator+(const Vec3x4& a, const Vec3x4& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 inline Vec3x4 operator-(const Vec3x4& a, const Vec3x4& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 inline Vec3x4 operator*(const Vec3x4& a, const Double4& s) { return {a.x * s, a.y * s, a.z * s}; }

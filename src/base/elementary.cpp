@@ -1,4 +1,4 @@
-// Elementary functions by series and exact reductions.
+// Elementary functions by series and exact reductions. elementary4.inl repeats the sine and cosine for four numbers.
 #include "base/elementary.hpp"
 
 #include <algorithm>
@@ -8,35 +8,14 @@
 #include <limits>
 #include <utility>
 
+#include "base/sine_series.hpp"
 #include "base/wide_integer.hpp"
 
 namespace dartcast {
 
 namespace {
 
-// x + to_integer - to_integer is x rounded to an integer, ties to even; the last bits of x + to_integer are those of the
-// integer. For 0 <= x < 2^51.
-constexpr double to_integer = 0x1.8p+52;
-
-// Above this turns lose their whole ones first.
-constexpr double many_turns = 0x1p+40;
-// 2 pi: 26 bits, the rest, and the rest of that. Half of a number's 53 bits times the first is exact.
-constexpr std::array turn_parts = {0x1.921fb5p+2, 0x1.110b4611a6263p-24, 0x1.8a2e03707344ap-79};
-constexpr double radians_per_turn = 0x1.921fb54442d18p+2;
-constexpr double splitter = 0x1p+27 + 1.0;
-
-// Angles below this are reduced by the parts of pi / 2: up to 2^10 times the first two, of 42 bits each, is exact.
-constexpr double many_radians = 1024.0;
-constexpr std::array half_pi_parts = {0x1.921fb544428p+0, 0x1.4611a62633p-42, 0x1.45c06e0e68948p-86};
-constexpr double per_half_pi = 0x1.45f306dc9c883p-1;
-
-// The series of (x - sin x) / x^3 and of (cos x - 1 + x^2 / 2) / x^4 in x^2. They alternate: in [-pi / 4, pi / 4] the
-// first term that is left out bounds the error: 2^-62 and 2^-58.
-constexpr std::array sine_terms = {
-    1.0 / 6.0,        -1.0 / 120.0,        1.0 / 5040.0,          -1.0 / 362880.0,
-    1.0 / 39916800.0, -1.0 / 6227020800.0, 1.0 / 1307674368000.0, -1.0 / 355687428096000.0};
-constexpr std::array cosine_terms = {1.0 / 24.0,        -1.0 / 720.0,         1.0 / 40320.0,         -1.0 / 3628800.0,
-                                     1.0 / 479001600.0, -1.0 / 87178291200.0, 1.0 / 20922789888000.0};
+using namespace sine_series;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 

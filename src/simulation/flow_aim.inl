@@ -30,8 +30,6 @@ inline Vec3x4 combine(const Corners4& v, const Weights4& w) {
   return (v.corner[0] * w.at[0] + v.corner[1] * w.at[1]) + (v.corner[2] * w.at[2] + v.corner[3] * w.at[3]);
 }
 
-inline Vec3x4 splat(const Vec3& v) { return {splat(v.x), splat(v.y), splat(v.z)}; }
-
 // The linear map that takes the edges of one simplex to those of another, applied to u.
 inline Vec3x4 mapped(const Corners4& from, const Corners4& to, const Vec3x4& u) {
   const Vec3x4 a = from.corner[1] - from.corner[0];

@@ -1,0 +1,2 @@
+// Applies a motion, for any machine.
+#include "simulation/motion.inl"
