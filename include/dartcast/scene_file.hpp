@@ -23,8 +23,8 @@ struct LoadedScene {
   Finding skipped;  ///< bad cells that were left out, where the scene wants that
 };
 
-/// Reads the files that a scene names: its mesh, positions, surfaces of bodies. Of the deformation's frames and of a
-/// field's files it reads the first and checks that the others exist: they are read when they are needed. The mesh has
+/// Reads the files that a scene names: its mesh, positions, surfaces of bodies. It reads the first of the deformation's
+/// frames and of a field's files, and checks that the others exist: they are read when they are needed. The mesh has
 /// its scale, free cells and patches as the scene says, also where it comes from a generator. Only the option
 /// `max_memory` has an effect. Throws Error and its kinds, naming the file and its place in the scene.
 LoadedScene load_scene_files(Scene scene, const ReadOptions& options = {}, Threads threads = {});
