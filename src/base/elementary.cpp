@@ -15,7 +15,16 @@ namespace dartcast {
 
 namespace {
 
-using namespace sine_series;
+using detail::cosine_terms;
+using detail::half_pi_parts;
+using detail::many_radians;
+using detail::many_turns;
+using detail::per_half_pi;
+using detail::radians_per_turn;
+using detail::sine_terms;
+using detail::splitter;
+using detail::to_integer;
+using detail::turn_parts;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -84,7 +93,8 @@ std::uint64_t bits_from(std::size_t bit) {
 Reduced reduced_many_radians(double x) {
   const int exponent = std::ilogb(x) - 52;
   const auto integer = static_cast<std::uint64_t>(std::ldexp(x, -exponent));
-  const auto first = static_cast<std::size_t>(64 + exponent);
+  const int bit = 64 + exponent;
+  const auto first = static_cast<std::size_t>(bit);
   const WideProduct low = wide_product(integer, bits_from(first + 128));
   const WideProduct middle = wide_product(integer, bits_from(first + 64));
   const std::uint64_t m = middle.low + low.high;

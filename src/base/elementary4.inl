@@ -30,7 +30,6 @@ inline Double4 polynomial(const std::array<double, N>& terms, const Double4& x) 
 }
 
 inline Reduced4 reduced_turns(const Double4& t) {
-  using namespace sine_series;
   const Double4 quarters = t * 4.0 + to_integer;
   const Double4 f = t - (quarters - to_integer) * 0.25;
   const Double4 high = f * radians_per_turn;
@@ -43,7 +42,6 @@ inline Reduced4 reduced_turns(const Double4& t) {
 }
 
 inline Reduced4 reduced_radians(const Double4& x) {
-  using namespace sine_series;
   const Double4 shifted = x * per_half_pi + to_integer;
   const Double4 k = shifted - to_integer;
   const Double4 first = x - k * half_pi_parts[0];
@@ -56,7 +54,6 @@ inline Reduced4 reduced_radians(const Double4& x) {
 }
 
 inline SineCosine4 sine_cosine_of(const Double4& x, const Reduced4& r) {
-  using namespace sine_series;
   const Double4 one = splat(1.0);
   const Double4 z = r.high * r.high;
   const Double4 sine = r.high - (r.high * z * polynomial(sine_terms, z) - r.low * (one - 0.5 * z));
@@ -88,14 +85,14 @@ inline SineCosine4 one_by_one(const Double4& x, Function&& function) {
 // As dartcast::sine_cosine().
 inline SineCosine4 sine_cosine(const Double4& x) {
   const Double4 a = magnitude(x);
-  if (lanes_set(a < splat(sine_series::many_radians)) == 15) return sine_cosine_of(x, reduced_radians(a));
+  if (lanes_set(a < splat(many_radians)) == 15) return sine_cosine_of(x, reduced_radians(a));
   return one_by_one(x, dartcast::sine_cosine);
 }
 
 // As dartcast::sine_cosine_of_turns().
 inline SineCosine4 sine_cosine_of_turns(const Double4& t) {
   const Double4 a = magnitude(t);
-  if (lanes_set(a < splat(sine_series::many_turns)) == 15) return sine_cosine_of(t, reduced_turns(a));
+  if (lanes_set(a < splat(many_turns)) == 15) return sine_cosine_of(t, reduced_turns(a));
   return one_by_one(t, dartcast::sine_cosine_of_turns);
 }
 

@@ -3,7 +3,7 @@
 
 #include <array>
 
-namespace dartcast::sine_series {
+namespace dartcast::detail {
 
 /// x + to_integer - to_integer is x rounded to an integer, ties to even; the last bits of x + to_integer are those of the
 /// integer. For 0 <= x < 2^51.
@@ -30,4 +30,4 @@ inline constexpr std::array cosine_terms = {
     1.0 / 24.0,        -1.0 / 720.0,         1.0 / 40320.0,         -1.0 / 3628800.0,
     1.0 / 479001600.0, -1.0 / 87178291200.0, 1.0 / 20922789888000.0};
 
-}  // namespace dartcast::sine_series
+}  // namespace dartcast::detail

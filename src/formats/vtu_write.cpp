@@ -151,7 +151,7 @@ XmlArray vtu_points(std::span<const Vec3> points, std::shared_ptr<const void> ow
   return {"Points", points, std::move(owner)};
 }
 
-XmlDataSet vtu_data_set(Mesh mesh) {
+XmlDataSet vtu_data_set(const Mesh& mesh) {
   const std::size_t points = mesh->points.size();
   const std::size_t cells = mesh->cell_count() + mesh->patch_tags.size();
   XmlDataSet data = {"UnstructuredGrid", {{"NumberOfPoints", points}, {"NumberOfCells", cells}}, {}, {}};

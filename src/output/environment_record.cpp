@@ -80,7 +80,7 @@ void EnvironmentRecord::update_after_edit(const Environment& environment) {
 
 XmlDataSet EnvironmentRecord::at_rest() const { return with_source(mesh_); }
 
-void EnvironmentRecord::keep(std::shared_ptr<const MeshData> mesh) {
+void EnvironmentRecord::keep(const std::shared_ptr<const MeshData>& mesh) {
   kept_ = with_source(mesh);
   kept_->section("Points").arrays.clear();
   for (XmlSection& section : kept_->sections) {

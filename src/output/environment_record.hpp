@@ -34,7 +34,7 @@ class EnvironmentRecord {
  private:
   [[nodiscard]] MeshData edited_mesh(const CellComplex& complex);
   [[nodiscard]] std::vector<std::size_t> rows(const MeshData& edited) const;
-  void keep(std::shared_ptr<const MeshData> mesh);
+  void keep(const std::shared_ptr<const MeshData>& mesh);
 
   std::shared_ptr<const MeshData> mesh_;               // without patches
   std::vector<std::uint32_t> row_of_;                  // by index in the input file; empty: the index itself

@@ -82,10 +82,11 @@ void WritingThread::work() {
 }
 
 // Returns the exception that the job threw, if any. The job's memory is free then.
-std::exception_ptr WritingThread::run(Job job, double& seconds) {
+std::exception_ptr WritingThread::run(Job&& job, double& seconds) {
   const ScopeTimer timer(seconds);
+  const Job own = std::move(job);
   try {
-    job.run();
+    own.run();
   } catch (...) {
     return std::current_exception();
   }

@@ -39,7 +39,7 @@ class WritingThread {
   };
 
   void work();
-  static std::exception_ptr run(Job job, double& seconds);
+  static std::exception_ptr run(Job&& job, double& seconds);
   void throw_error() const;
 
   std::size_t most_bytes_;
