@@ -120,7 +120,7 @@ TEST(SpherePairs, AllThatMeetAreFound) {
 // A finder that is used step after step gives the pairs of a new one, whether spheres creep, fly, jump or change.
 TEST(SpherePairs, EarlierStepsDoNotMatter) {
   Crowd crowd(5, 0.0);
-  crowd.fill(test::scaled<std::size_t>(400, 2000), {1, 1, 1}, {4, 4, 4}, 5, any_sphere);
+  crowd.fill(std::max<std::size_t>(400, test::scaled<std::size_t>(400, 2000)), {1, 1, 1}, {4, 4, 4}, 5, any_sphere);
   PairFinder kept;
   Random random(6);
   std::size_t pairs = 0;
