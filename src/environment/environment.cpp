@@ -16,6 +16,7 @@
 #include "dartcast/validity.hpp"
 #include "environment/environment_members.hpp"
 #include "environment/particle_details.hpp"
+#include "response/library_response.hpp"
 #include "tracking/batch/batch_stepper.hpp"
 #include "tracking/checked_point.hpp"
 #include "tracking/representable_point.hpp"
@@ -284,7 +285,8 @@ StepReport Environment::advance(Particles& particles, std::span<const Vec3> targ
   members_->adopt(particles);
   Particles::Details& details = particles.details();
   details.index.reset();
-  StepReport report = detail::BatchStepper(complex(), moved, threads(), options, respond)
+  const bool may_throw = respond && !detail::is_library_response(respond);  // the caller's code may throw
+  StepReport report = detail::BatchStepper(complex(), moved, threads(), options, respond, may_throw)
                           .advance({particles.states_, details.weights, details.cache}, targets);
   details.moves = members_->moves;
   return report;

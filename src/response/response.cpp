@@ -7,6 +7,7 @@
 
 #include "dartcast/error.hpp"
 #include "response/incident_walls.hpp"
+#include "response/library_response.hpp"
 
 namespace dartcast {
 
@@ -99,8 +100,8 @@ bool keeps_velocity(WallResponseKind kind) {
   return false;
 }
 
-// The arguments of respond_with().
-struct Answers {
+// What respond_with() makes.
+struct LibraryResponse {
   const WallResponses& responses;
   std::span<Vec3> velocities;
   std::span<ParticleStatus> fates;
@@ -125,26 +126,15 @@ struct Answers {
     if (acceleration.value != Vec3{}) return {relative * ((1.0 - time) * acceleration.duration), true};
     return {rebound(contact.unused, met, {}), true};
   }
-};
 
-}  // namespace
-
-ContactCallback respond_with(const WallResponses& responses, std::span<Vec3> velocities,
-                             std::span<ParticleStatus> fates, double dt, const Acceleration& acceleration) {
-  if (!(dt > 0.0)) throw InvalidArgument("respond_with: dt must be positive");
-  if (velocities.size() != fates.size())
-    throw InvalidArgument("respond_with: one velocity and one status per particle are needed");
-  if (acceleration.value != Vec3{} && !(acceleration.duration > 0.0))
-    throw InvalidArgument("respond_with: the duration of an acceleration must be positive");
-  const Answers answers{responses, velocities, fates, dt, acceleration};
-  return [answers](const Contact& contact, std::span<const WallHit> walls,
-                   std::span<const WallHit> earlier) -> AfterContact {
-    ParticleStatus& fate = answers.fates[contact.particle];
+  AfterContact operator()(const Contact& contact, std::span<const WallHit> walls,
+                          std::span<const WallHit> earlier) const {
+    ParticleStatus& fate = fates[contact.particle];
     if (fate != ParticleStatus::alive) return {};
-    const Vec3 wall_velocity = contact.wall_displacement * (1.0 / answers.dt);
-    Vec3& velocity = answers.velocities[contact.particle];
-    switch (answers.responses.of(walls.front().patch).kind) {
-      case WallResponseKind::reflect: return answers.reflect(contact, walls, earlier);
+    const Vec3 wall_velocity = contact.wall_displacement * (1.0 / dt);
+    Vec3& velocity = velocities[contact.particle];
+    switch (responses.of(walls.front().patch).kind) {
+      case WallResponseKind::reflect: return reflect(contact, walls, earlier);
       case WallResponseKind::slide:
         velocity = wall_velocity + slid(velocity - wall_velocity, walls, earlier);
         return {slid(contact.unused, walls, earlier), true};
@@ -156,7 +146,25 @@ ContactCallback respond_with(const WallResponses& responses, std::span<Vec3> vel
       case WallResponseKind::escape: fate = ParticleStatus::escaped; return {};
     }
     return {};
-  };
+  }
+};
+
+}  // namespace
+
+namespace detail {
+
+bool is_library_response(const ContactCallback& respond) { return respond.target<LibraryResponse>() != nullptr; }
+
+}  // namespace detail
+
+ContactCallback respond_with(const WallResponses& responses, std::span<Vec3> velocities,
+                             std::span<ParticleStatus> fates, double dt, const Acceleration& acceleration) {
+  if (!(dt > 0.0)) throw InvalidArgument("respond_with: dt must be positive");
+  if (velocities.size() != fates.size())
+    throw InvalidArgument("respond_with: one velocity and one status per particle are needed");
+  if (acceleration.value != Vec3{} && !(acceleration.duration > 0.0))
+    throw InvalidArgument("respond_with: the duration of an acceleration must be positive");
+  return LibraryResponse{responses, velocities, fates, dt, acceleration};
 }
 
 void hold_stopped(const StepReport& report, const WallResponses& responses, std::span<Vec3> velocities,

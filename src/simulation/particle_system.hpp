@@ -122,6 +122,8 @@ class ParticleSystem final : public SimulationComponent {
   void aim(double dt, bool moving);
   [[nodiscard]] detail::FlowScene flow_scene(const Forces& forces, bool moving) const;
   void aim_in_flow(const detail::FlowScene& scene, std::size_t begin, std::size_t end, std::span<std::uint8_t> aimed);
+  void aim_one(std::size_t i, const Forces& forces, bool moving);
+  void aim_in_flight(const Forces& forces, std::size_t begin, std::size_t end, bool moving);
   [[nodiscard]] double lost_to_drag(double dt) const;
   [[nodiscard]] Forces forces_of(double dt) const;
   [[nodiscard]] Aim aim_at(std::size_t i, const Forces& forces, bool moving) const;

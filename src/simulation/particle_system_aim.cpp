@@ -18,22 +18,44 @@ constexpr std::size_t aim_grain = 512;  // a multiple of the lanes of a vector
 
 }  // namespace
 
-// Most particles of a flow are aimed four at a time; the others one by one.
+// Most particles of a flow are aimed four at a time, and most of those without one in a short loop; the others one by
+// one.
 void ParticleSystem::aim(double dt, bool moving) {
   targets_.resize(particles_.size());
   const Forces forces = forces_of(dt);
   const bool in_fours = field_ && !force_ && field_->place() == FieldPlace::points;
+  const bool flies = !field_ && !force_;
   const detail::FlowScene scene = in_fours ? flow_scene(forces, moving) : detail::FlowScene{};
   parallel_for(particles_.size(), aim_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
     std::array<std::uint8_t, aim_grain / 4> aimed{};
     if (in_fours) aim_in_flow(scene, begin, end, aimed);
+    if (flies) return aim_in_flight(forces, begin, end, moving);
     for (std::size_t i = begin; i < end; ++i) {
-      if ((aimed[(i - begin) / 4] >> (i - begin) % 4 & 1U) != 0) continue;
-      const Aim a = leaves(fates_[i]) ? Aim{velocities_[i], particles_[i].position} : aim_at(i, forces, moving);
-      velocities_[i] = a.velocity;
-      targets_[i] = flushed(a.target);
+      if ((aimed[(i - begin) / 4] >> (i - begin) % 4 & 1U) == 0) aim_one(i, forces, moving);
     }
   });
+}
+
+void ParticleSystem::aim_one(std::size_t i, const Forces& forces, bool moving) {
+  const Aim a = leaves(fates_[i]) ? Aim{velocities_[i], particles_[i].position} : aim_at(i, forces, moving);
+  velocities_[i] = a.velocity;
+  targets_[i] = flushed(a.target);
+}
+
+// As aim_at() and accelerated(), without a field.
+void ParticleSystem::aim_in_flight(const Forces& forces, std::size_t begin, std::size_t end, bool moving) {
+  const bool drags = options_.drag > 0.0;
+  const Vec3 gained = drags ? options_.gravity * (1.0 / options_.drag) : options_.gravity * forces.dt;
+  const std::span<const ParticleState> states = particles_.states();
+  for (std::size_t i = begin; i < end; ++i) {
+    if (states[i].held || fates_[i] != ParticleStatus::alive) {
+      aim_one(i, forces, moving);
+      continue;
+    }
+    const Vec3 v = velocities_[i];
+    velocities_[i] = drags ? v + (Vec3{} + gained - v) * forces.lost : v + gained;
+    targets_[i] = flushed(states[i].position + velocities_[i] * forces.dt);
+  }
 }
 
 detail::FlowScene ParticleSystem::flow_scene(const Forces& forces, bool moving) const {

@@ -130,8 +130,7 @@ StepReport BatchStepper::advance(const BatchParticles& particles, std::span<cons
     throw InvalidArgument(fmt::format("advance: {} targets for {} particles", targets.size(), particles.states.size()));
   const std::vector<Vec3> decided = decided_targets(targets);
   if (!decided.empty()) targets = decided;
-  if (!respond_) return step_all(particles, targets);
-  // A response is the caller's code: it may throw.
+  if (!may_throw_) return step_all(particles, targets);
   const std::vector<ParticleState> states(particles.states.begin(), particles.states.end());
   const std::vector<Weights> weights(particles.weights.begin(), particles.weights.end());
   const ParticleCache cache = particles.cache;

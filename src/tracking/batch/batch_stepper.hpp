@@ -28,14 +28,14 @@ struct BatchParticles {
 /// gives one by one, to the same bits.
 class BatchStepper {
  public:
-  /// `moved`: as for Stepper. The references must outlive the stepper.
+  /// `moved`: as for Stepper. `may_throw`: whether `respond` may. The references must outlive the stepper.
   BatchStepper(const CellComplex& complex, bool moved, Threads threads, const StepOptions& options,
-               const ContactCallback& respond)
+               const ContactCallback& respond, bool may_throw)
       : complex_(complex),
         moved_(moved),
         threads_(threads),
         options_(options),
-        respond_(respond),
+        may_throw_(may_throw),
         stepper_(complex, moved, options, respond) {}
 
   /// Advances each particle to its target. Throws InvalidArgument where the numbers differ, or a target is not finite,
@@ -54,7 +54,7 @@ class BatchStepper {
   bool moved_;
   Threads threads_;
   const StepOptions& options_;
-  const ContactCallback& respond_;
+  bool may_throw_;
   Stepper stepper_;
 };
 
