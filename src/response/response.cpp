@@ -100,7 +100,7 @@ bool keeps_velocity(WallResponseKind kind) {
   return false;
 }
 
-// What respond_with() makes.
+// The callable that respond_with() makes.
 struct LibraryResponse {
   const WallResponses& responses;
   std::span<Vec3> velocities;
