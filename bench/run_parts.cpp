@@ -112,6 +112,7 @@ RunSample read_sample(const std::string& summary, double wall, double processor)
     sample.processor = processor;
     double other = wall;
     for (const auto& [name, seconds] : json.at("seconds").items()) {
+      if (name == "writing_thread") continue;  // it works beside the run, and is no part of its time
       sample.parts.emplace_back(name, seconds.get<double>());
       other -= sample.parts.back().second;
     }
