@@ -18,6 +18,14 @@ constexpr std::size_t aim_grain = 512;  // a multiple of the lanes of a vector
 
 }  // namespace
 
+// Inline: a loop over all particles calls it.
+inline Vec3 ParticleSystem::accelerated(const Vec3& v, const Vec3& flow, const Vec3& force,
+                                        const Forces& forces) const {
+  const Vec3 acceleration = force_ ? options_.gravity + force : options_.gravity;
+  if (options_.drag == 0.0) return field_ ? flow : v + acceleration * forces.dt;
+  return v + (flow + acceleration * (1.0 / options_.drag) - v) * forces.lost;
+}
+
 // Most particles of a flow are aimed four at a time, and most of those without one in a short loop; the others one by
 // one.
 void ParticleSystem::aim(double dt, bool moving) {
@@ -42,18 +50,15 @@ void ParticleSystem::aim_one(std::size_t i, const Forces& forces, bool moving) {
   targets_[i] = flushed(a.target);
 }
 
-// As aim_at() and accelerated(), without a field.
+// As aim_one() without a field, in a loop that needs no look at cells.
 void ParticleSystem::aim_in_flight(const Forces& forces, std::size_t begin, std::size_t end, bool moving) {
-  const bool drags = options_.drag > 0.0;
-  const Vec3 gained = drags ? options_.gravity * (1.0 / options_.drag) : options_.gravity * forces.dt;
   const std::span<const ParticleState> states = particles_.states();
   for (std::size_t i = begin; i < end; ++i) {
     if (states[i].held || fates_[i] != ParticleStatus::alive) {
       aim_one(i, forces, moving);
       continue;
     }
-    const Vec3 v = velocities_[i];
-    velocities_[i] = drags ? v + (Vec3{} + gained - v) * forces.lost : v + gained;
+    velocities_[i] = accelerated(velocities_[i], {}, {}, forces);
     targets_[i] = flushed(states[i].position + velocities_[i] * forces.dt);
   }
 }
@@ -89,12 +94,6 @@ double ParticleSystem::lost_to_drag(double dt) const { return -exponential_less_
 
 ParticleSystem::Forces ParticleSystem::forces_of(double dt) const {
   return {dt, options_.drag > 0.0 ? lost_to_drag(dt) : 0.0};
-}
-
-Vec3 ParticleSystem::accelerated(const Vec3& v, const Vec3& flow, const Vec3& force, const Forces& forces) const {
-  const Vec3 acceleration = force_ ? options_.gravity + force : options_.gravity;
-  if (options_.drag == 0.0) return field_ ? flow : v + acceleration * forces.dt;
-  return v + (flow + acceleration * (1.0 / options_.drag) - v) * forces.lost;
 }
 
 // The acceleration that contacts know of: none where a field, a force or other spheres change velocities,
