@@ -1,0 +1,15 @@
+"""dartcast: exact continuous collision detection of particles and solids in deformable environments.
+
+Arrays of points are float64 of shape (n, 3), C-contiguous; they are taken without a copy, and others are refused.
+Results are fresh arrays. Arrays that are attributes are read-only copies.
+"""
+from ._core import *
+from ._core import __version__ as __version__
+from ._ids import NONE as NONE
+from ._ids import Cell as Cell
+from ._ids import CellFace as CellFace
+from ._ids import CellHandle as CellHandle
+from ._ids import Dart as Dart
+from ._ids import Patch as Patch
+from ._ids import SimplexId as SimplexId
+from ._ids import Vertex as Vertex

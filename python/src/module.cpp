@@ -1,0 +1,20 @@
+// The extension module dartcast._core. The package (python/dartcast) gives its names to users.
+#include <pybind11/pybind11.h>
+
+#include "bind.hpp"
+#include "dartcast/run.hpp"
+
+namespace py = pybind11;
+
+PYBIND11_MODULE(_core, m) {
+  using namespace dartcast::python;
+  m.doc() = "Bindings of the C++ library dartcast.";
+  m.attr("__version__") = dartcast::version();
+  py::options options;
+  options.disable_function_signatures();
+  bind_errors(m);
+  bind_ids(m);
+
+  bind_threads(m);
+  bind_dynamics(m);
+}

@@ -1,0 +1,77 @@
+// Enumerations as Python's own enum.IntEnum: members are numbers, have names, and compare with the values in arrays.
+//
+// DARTCAST_ENUM(Kind) in this file gives a type its conversion; bind_enum() in the file of its header makes the class.
+// A caller may also give the name as a text, in either case: "reflect".
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <cstdint>
+#include <initializer_list>
+#include <string>
+#include <utility>
+
+#include "dartcast/dartcast.hpp"
+
+namespace dartcast::python {
+
+/// Makes the class dartcast.NAME with these members.
+void make_enum(pybind11::module_& m, const char* name, const pybind11::dict& members);
+/// The number of a member; false where the object is none of the class, no number and no name of a member.
+bool load_enum(const char* name, pybind11::handle from, std::int64_t& value);
+pybind11::handle cast_enum(const char* name, std::int64_t value);
+
+
+}  // namespace dartcast::python
+
+namespace pybind11::detail {
+
+#define DARTCAST_ENUM(Type)                                                                 \
+  template <>                                                                               \
+  struct type_caster<dartcast::Type> {                                                      \
+    PYBIND11_TYPE_CASTER(dartcast::Type, const_name(#Type));                                \
+    bool load(handle from, bool /*convert*/) {                                              \
+      std::int64_t number = 0;                                                              \
+      if (!dartcast::python::load_enum(#Type, from, number)) return false;                  \
+      value = static_cast<dartcast::Type>(number);                                          \
+      return true;                                                                          \
+    }                                                                                       \
+    static handle cast(dartcast::Type e, return_value_policy /*policy*/, handle /*up*/) {   \
+      return dartcast::python::cast_enum(#Type, static_cast<std::int64_t>(e));              \
+    }                                                                                       \
+  };
+DARTCAST_ENUM(BodySamples)
+DARTCAST_ENUM(Carving)
+DARTCAST_ENUM(CellType)
+DARTCAST_ENUM(Compression)
+DARTCAST_ENUM(DeformationKind)
+DARTCAST_ENUM(EventKind)
+DARTCAST_ENUM(FieldFrame)
+DARTCAST_ENUM(FieldPlace)
+DARTCAST_ENUM(Integrator)
+DARTCAST_ENUM(InversionKind)
+DARTCAST_ENUM(Kind)
+DARTCAST_ENUM(Mending)
+DARTCAST_ENUM(OrphanPolicy)
+DARTCAST_ENUM(ParticleStatus)
+DARTCAST_ENUM(Place)
+DARTCAST_ENUM(Reconnection)
+DARTCAST_ENUM(Sign)
+DARTCAST_ENUM(SurfaceEnd)
+DARTCAST_ENUM(TrajectoryMark)
+DARTCAST_ENUM(Verdict)
+DARTCAST_ENUM(WallResponseKind)
+#undef DARTCAST_ENUM
+
+}  // namespace pybind11::detail
+
+namespace dartcast::python {
+
+template <class E>
+void bind_enum(pybind11::module_& m, const char* name, std::initializer_list<std::pair<const char*, E>> members) {
+  pybind11::dict values;
+  for (const auto& [member, value] : members) values[member] = static_cast<std::int64_t>(value);
+  make_enum(m, name, values);
+}
+
+}  // namespace dartcast::python

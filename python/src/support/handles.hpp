@@ -1,0 +1,60 @@
+// The long-lived objects as Python holds them. An object keeps alive what it needs. Objects that share data share the
+// mark of their use (in_use.hpp).
+#pragma once
+
+#include <memory>
+
+#include "dartcast/cell_complex.hpp"
+#include "dartcast/complex_edit.hpp"
+#include "dartcast/environment.hpp"
+#include "support/in_use.hpp"
+
+namespace dartcast::python {
+
+/// An environment: the caller's own, or that of a simulation, which nobody else may change.
+struct EnvironmentHandle {
+  std::shared_ptr<void> owner;  ///< what keeps it alive
+  Environment* environment = nullptr;
+  bool borrowed = false;  ///< of a simulation
+  std::shared_ptr<Usage> usage = std::make_shared<Usage>();
+
+  /// To change it. Throws InvalidArgument where it is borrowed: `remedy` says what to call instead.
+  Environment& changeable(const char* remedy) const {
+    if (borrowed) throw InvalidArgument(std::string("this environment belongs to a simulation: ") + remedy);
+    return *environment;
+  }
+};
+
+/// A set of particles.
+struct ParticlesHandle {
+  Particles particles;
+  std::shared_ptr<Usage> usage = std::make_shared<Usage>();
+};
+
+/// A complex of its own, or that of an environment, which only the environment may change.
+struct ComplexHandle {
+  std::shared_ptr<void> owner;
+  const CellComplex* complex = nullptr;
+  CellComplex* changeable = nullptr;  ///< null: it belongs to an environment
+  std::shared_ptr<Usage> usage = std::make_shared<Usage>();
+};
+
+/// A map of its own, or that of a complex or a surface.
+struct MapHandle {
+  std::shared_ptr<void> owner;
+  const CombinatorialMap* map = nullptr;
+  CombinatorialMap* changeable = nullptr;  ///< null: it belongs to something else
+  std::shared_ptr<Usage> usage = std::make_shared<Usage>();
+};
+
+/// An edit that is open: it ends with the call that made it.
+struct EditHandle {
+  ComplexEdit* edit = nullptr;  ///< null: it has ended
+
+  [[nodiscard]] ComplexEdit& open() const {
+    if (edit == nullptr) throw InvalidArgument("this edit has ended: use it in the function given to edit() only");
+    return *edit;
+  }
+};
+
+}  // namespace dartcast::python
