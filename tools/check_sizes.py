@@ -6,7 +6,7 @@ import sys
 
 MAX_FUNCTION = 60
 MAX_FILE = 600
-ROOTS = ("include", "src", "apps", "bench", "examples", "tests", "tools", "cmake")
+ROOTS = ("include", "src", "apps", "bench", "examples", "python", "tests", "tools", "cmake")
 CPP = {".hpp", ".cpp", ".inl"}
 COUNTED = CPP | {".py", ".cmake", ".sh"}
 PIECE = re.compile(

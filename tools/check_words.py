@@ -11,7 +11,7 @@ import re
 import sys
 
 DOCUMENTS = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/*.md"]
-SOURCES = ["include", "src", "apps", "bench", "examples", "tests"]
+SOURCES = ["include", "src", "apps", "bench", "examples", "python", "tests"]
 SUFFIXES = {".cpp", ".hpp", ".inl"}
 
 COMMENT = re.compile(r'"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'|//[/!]?<?(?P<text>[^\n]*)')
