@@ -73,7 +73,7 @@ class Record {
   pybind11::class_<T>& finish() {
     namespace py = pybind11;
     const auto make = [name = name_, members = members_, setters = setters_](const py::args& values,
-                                                                            const py::kwargs& named) {
+                                                                             const py::kwargs& named) {
       T made{};
       const py::dict all = named_values(name.c_str(), *members, values, named);
       for (std::size_t i = 0; i < members->size(); ++i) {
