@@ -25,6 +25,8 @@ bool equal_members(const pybind11::object& a, const pybind11::object& b, const s
 /// that is none of a member, for too many values, and for a value given twice.
 pybind11::dict named_values(const char* record, const std::vector<std::string>& members, const pybind11::args& values,
                             const pybind11::kwargs& named);
+/// The comment of a member. A name that is a keyword of Python ends with an underscore.
+const char* member_doc(const std::string& record, std::string member);
 /// Makes an array read-only; leaves anything else as it is.
 pybind11::object without_writing(pybind11::object value);
 /// Throws TypeError: the member, what was expected, what came.
@@ -53,7 +55,7 @@ class Record {
     setters_->push_back(set);
     class_.def_property(
         name, [member](const T& t) { return without_writing(pybind11::cast(t.*member)); },
-        [set](T& t, const pybind11::object& value) { set(t, value); }, doc(cpp_ + "::" + name));
+        [set](T& t, const pybind11::object& value) { set(t, value); }, member_doc(cpp_, name));
     return *this;
   }
   /// Further definitions: methods, properties.
