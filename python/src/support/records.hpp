@@ -37,9 +37,10 @@ class Record {
   Record(pybind11::handle scope, const char* name, const char* cpp = nullptr)
       : name_(name), cpp_(cpp != nullptr ? cpp : name), class_(scope, name, doc(cpp_)) {}
 
-  /// A member that can be read and set. A member that is an array is given out as a read-only copy.
+  /// A member that can be read and set. A member that is an array is given out as a read-only copy. `cpp_member`: its
+  /// name in C++, where it differs.
   template <class M>
-  Record& field(const char* name, M T::*member) {
+  Record& field(const char* name, M T::*member, const char* cpp_member = nullptr) {
     members_->push_back(name);
     const std::string full = name_ + "." + name;
     const auto set = [member, full](T& t, pybind11::handle value) {
@@ -53,7 +54,7 @@ class Record {
     setters_->push_back(set);
     class_.def_property(
         name, [member](const T& t) { return without_writing(pybind11::cast(t.*member)); },
-        [set](T& t, const pybind11::object& value) { set(t, value); }, doc(cpp_ + "::" + name));
+        [set](T& t, const pybind11::object& value) { set(t, value); }, doc(cpp_ + "::" + (cpp_member != nullptr ? cpp_member : name)));
     return *this;
   }
   /// Further definitions: methods, properties.
