@@ -5,6 +5,8 @@ Results are fresh arrays. Arrays that are attributes are read-only copies.
 """
 from ._core import *
 from ._core import __version__ as __version__
+from ._meshio import from_meshio as from_meshio
+from ._meshio import to_meshio as to_meshio
 from ._ids import NONE as NONE
 from ._ids import Cell as Cell
 from ._ids import CellFace as CellFace

@@ -1,5 +1,6 @@
 // Binds the motion and the edits of dartcast/environment.hpp.
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "bind.hpp"
@@ -74,16 +75,30 @@ double move_until_inverted(const EnvironmentHandle& h, const py::object& positio
   return environment.move_until_inverted(points, share);
 }
 
+// Another thread may still use the edit, which must not end before that.
+void end_when_unused(EditHandle& edit) {
+  while (true) {
+    try {
+      return edit.end();
+    } catch (const InUse&) {
+      const py::gil_scoped_release release;
+      std::this_thread::yield();
+    }
+  }
+}
+
 ComplexEditReport edit(const EnvironmentHandle& h, const py::function& make) {
   const Use use(*h.usage, the_environment);
   return h.changeable(let_simulation).edit([&](ComplexEdit& open) {
     const auto handle = std::make_shared<EditHandle>();
     handle->edit = &open;
-    struct End {
-      EditHandle& edit;
-      ~End() { edit.edit = nullptr; }
-    } end{*handle};
-    make(handle);
+    try {
+      make(handle);
+    } catch (...) {
+      end_when_unused(*handle);
+      throw;
+    }
+    end_when_unused(*handle);
   });
 }
 

@@ -15,6 +15,23 @@ PYBIND11_MODULE(_core, m) {
   bind_errors(m);
   bind_ids(m);
 
+  bind_mesh_data(m);
+  bind_mesh_check(m);
+  bind_mesh_files(m);
+  bind_mesh_selection(m);
+  bind_decompose(m);
+  bind_generators(m);
+
+  bind_predicates(m);
+  bind_cell_shape(m);
+  bind_combinatorial_map(m);
+  bind_map_edits(m);
+  bind_cell_complex(m);
+  bind_complex_edit(m);
+  bind_cutting(m);
+  bind_remeshing(m);
+  bind_validity(m);
+
   bind_threads(m);
   bind_dynamics(m);
   bind_particle_state(m);

@@ -89,7 +89,7 @@ void bind_trace(py::module_& m) {
   Record<Crossing>(m, "Crossing")
       .field("time", &Crossing::time)
       .field("point", &Crossing::point)
-      .field("from_", &Crossing::from)
+      .field("from_", &Crossing::from, "from")
       .field("to", &Crossing::to)
       .field("kind", &Crossing::kind)
       .field("dart", &Crossing::dart)

@@ -35,7 +35,7 @@ void bind_trajectory(py::module_& m) {
       "trajectory_csv",
       [](const MapHandle& map, const std::vector<Trace>& traces) {
         const Use use(*map.usage, "the map");
-        return trajectory_csv(*map.map, traces);
+        return trajectory_csv(map.read(), traces);
       },
       py::arg("map"), py::arg("traces"), doc("trajectory_csv"));
   m.def(

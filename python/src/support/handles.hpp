@@ -4,6 +4,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -52,21 +53,57 @@ struct ComplexHandle {
   std::shared_ptr<Usage> usage = std::make_shared<Usage>();
 };
 
-/// A map of its own, or that of a complex or a surface.
+/// A map of its own, or that of a complex, a surface or an open edit.
 struct MapHandle {
   std::shared_ptr<void> owner;
   const CombinatorialMap* map = nullptr;
   CombinatorialMap* changeable = nullptr;  ///< null: it belongs to something else
   std::shared_ptr<Usage> usage = std::make_shared<Usage>();
+  std::function<const CombinatorialMap&()> of_edit = {};  ///< the map of an edit: throws where that has ended
+
+  [[nodiscard]] const CombinatorialMap& read() const { return of_edit ? of_edit() : *map; }
 };
 
-/// An edit that is open: it ends with the call that made it.
+/// Points of an edit to which it can be rolled back: none beyond one that was returned to, and none before a commit.
+class Savepoints {
+ public:
+  /// Returns its number, which no other savepoint of the process has.
+  std::uint64_t add(const Transaction::Savepoint& savepoint);
+  /// The savepoint; forgets all later ones. Throws InvalidArgument where it is none of these.
+  Transaction::Savepoint return_to(std::uint64_t number);
+  void clear() { known_.clear(); }
+
+ private:
+  std::vector<std::pair<std::uint64_t, Transaction::Savepoint>> known_;
+};
+
+/// An edit of a complex that Python made: the complex is in use until it ends.
+struct OwnEdit {
+  std::shared_ptr<ComplexHandle> complex;
+  Use use;
+  ComplexEdit edit;
+
+  explicit OwnEdit(std::shared_ptr<ComplexHandle> of);
+};
+
+/// An edit that is open. One of an environment ends with the call that made it: that calls end().
 struct EditHandle {
   ComplexEdit* edit = nullptr;  ///< null: it has ended
+  std::shared_ptr<Usage> usage = std::make_shared<Usage>();
+  std::shared_ptr<Savepoints> savepoints = std::make_shared<Savepoints>();
+  std::unique_ptr<OwnEdit> own = {};
 
   [[nodiscard]] ComplexEdit& open() const {
-    if (edit == nullptr) throw InvalidArgument("this edit has ended: use it in the function given to edit() only");
+    if (edit == nullptr)
+      throw InvalidArgument(
+          "this edit has ended: use it in its `with` block, or in the function given to edit(), only");
     return *edit;
+  }
+  /// Throws InUse while another thread's call uses the edit. Undoes it where it is Python's own and not committed.
+  void end() {
+    const Use last(*usage, "the edit");
+    edit = nullptr;
+    own.reset();
   }
 };
 

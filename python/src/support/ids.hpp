@@ -10,6 +10,7 @@
 #include "dartcast/combinatorial_map.hpp"
 #include "dartcast/ids.hpp"
 #include "dartcast/threads.hpp"
+#include "support/arrays.hpp"
 
 namespace dartcast::python {
 
@@ -48,6 +49,29 @@ template <class Tag>
 struct type_caster<dartcast::Id<Tag>> : id_caster<dartcast::Id<Tag>> {};
 template <>
 struct type_caster<dartcast::Cell> : id_caster<dartcast::Cell> {};
+
+/// Cells or vertices: any integers in, an array uint32 (n,) out.
+template <class Id>
+struct id_list_caster {
+  PYBIND11_TYPE_CASTER(std::vector<Id>, const_name("whole numbers (n,)"));
+  bool load(handle from, bool /*convert*/) {
+    if (isinstance<str>(from) || (!isinstance<array>(from) && !PySequence_Check(from.ptr()))) return false;
+    value.clear();
+    for (const std::uint32_t number : dartcast::python::indices(reinterpret_borrow<object>(from), "the array"))
+      value.emplace_back(number);
+    return true;
+  }
+  static handle cast(const std::vector<Id>& ids, return_value_policy /*policy*/, handle /*parent*/) {
+    std::vector<std::uint32_t> numbers;
+    numbers.reserve(ids.size());
+    for (const Id id : ids) numbers.push_back(id.value);
+    return dartcast::python::array_of(std::move(numbers)).release();
+  }
+};
+template <class Tag>
+struct type_caster<std::vector<dartcast::Id<Tag>>> : id_list_caster<dartcast::Id<Tag>> {};
+template <>
+struct type_caster<std::vector<dartcast::Cell>> : id_list_caster<dartcast::Cell> {};
 
 template <>
 struct type_caster<dartcast::Patch> {

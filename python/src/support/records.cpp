@@ -53,11 +53,6 @@ py::dict named_values(const char* record, const std::vector<std::string>& member
   return all;
 }
 
-const char* member_doc(const std::string& record, std::string member) {
-  if (member.ends_with('_')) member.pop_back();
-  return doc(record + "::" + member);
-}
-
 py::object without_writing(py::object value) {
   if (py::isinstance<py::array>(value)) return read_only(py::reinterpret_borrow<py::array>(value));
   return value;

@@ -25,8 +25,6 @@ bool equal_members(const pybind11::object& a, const pybind11::object& b, const s
 /// that is none of a member, for too many values, and for a value given twice.
 pybind11::dict named_values(const char* record, const std::vector<std::string>& members, const pybind11::args& values,
                             const pybind11::kwargs& named);
-/// The comment of a member. A name that is a keyword of Python ends with an underscore.
-const char* member_doc(const std::string& record, std::string member);
 /// Makes an array read-only; leaves anything else as it is.
 pybind11::object without_writing(pybind11::object value);
 /// Throws TypeError: the member, what was expected, what came.
@@ -39,9 +37,10 @@ class Record {
   Record(pybind11::handle scope, const char* name, const char* cpp = nullptr)
       : name_(name), cpp_(cpp != nullptr ? cpp : name), class_(scope, name, doc(cpp_)) {}
 
-  /// A member that can be read and set. A member that is an array is given out as a read-only copy.
+  /// A member that can be read and set. A member that is an array is given out as a read-only copy. `cpp_member`: its
+  /// name in C++, where it differs.
   template <class M>
-  Record& field(const char* name, M T::*member) {
+  Record& field(const char* name, M T::*member, const char* cpp_member = nullptr) {
     members_->push_back(name);
     const std::string full = name_ + "." + name;
     const auto set = [member, full](T& t, pybind11::handle value) {
@@ -55,7 +54,8 @@ class Record {
     setters_->push_back(set);
     class_.def_property(
         name, [member](const T& t) { return without_writing(pybind11::cast(t.*member)); },
-        [set](T& t, const pybind11::object& value) { set(t, value); }, member_doc(cpp_, name));
+        [set](T& t, const pybind11::object& value) { set(t, value); },
+        doc(cpp_ + "::" + (cpp_member != nullptr ? cpp_member : name)));
     return *this;
   }
   /// Further definitions: methods, properties.

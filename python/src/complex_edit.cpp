@@ -1,0 +1,173 @@
+// Binds dartcast/complex_edit.hpp. An edit of a complex of its own is a context manager; that of an environment is open
+// during the call of the function given to edit().
+#include "dartcast/complex_edit.hpp"
+
+#include "bind.hpp"
+#include "support/edits.hpp"
+#include "support/map_checks.hpp"
+#include "support/python.hpp"
+
+namespace py = pybind11;
+
+namespace dartcast::python {
+namespace {
+
+using Class = py::class_<EditHandle, std::shared_ptr<EditHandle>>;
+
+void bind_reports(py::module_& m) {
+  Record<PlacedVertex>(m, "PlacedVertex")
+      .field("vertex", &PlacedVertex::vertex)
+      .field("of", &PlacedVertex::of)
+      .field("weights", &PlacedVertex::weights)
+      .field("offset", &PlacedVertex::offset)
+      .finish();
+  Record<ComplexEditReport>(m, "ComplexEditReport")
+      .field("map", &ComplexEditReport::map)
+      .field("placed", &ComplexEditReport::placed)
+      .field("given_points", &ComplexEditReport::given_points)
+      .field("around", &ComplexEditReport::around)
+      .field("boundary_shift", &ComplexEditReport::boundary_shift)
+      .finish()
+      .def("now", &ComplexEditReport::now, py::arg("c"), doc("ComplexEditReport::now"));
+}
+
+// The rules of a report that anyone may have written.
+void check_placed(const ComplexEditReport& report, std::size_t size) {
+  for (const PlacedVertex& p : report.placed) {
+    const bool right = !p.of.empty() && p.of.size() == p.weights.size() &&
+                       std::all_of(p.of.begin(), p.of.end(), [&](Vertex v) { return v.value < size; });
+    if (!right)
+      throw InvalidArgument("size: a vertex was made from others that are not below " + std::to_string(size) +
+                            "; give the number of vertices after the edit");
+  }
+}
+
+py::array_t<double> updated(const ComplexEditReport& report, std::size_t size, const py::object& given) {
+  const bool is_flat = py::isinstance<py::array>(given) && py::reinterpret_borrow<py::array>(given).ndim() == 1;
+  const bool right = py::isinstance<py::array_t<double, py::array::c_style>>(given) &&
+                     (is_flat || py::reinterpret_borrow<py::array>(given).ndim() == 2);
+  if (!right)
+    refuse_array(given, "values", "float64 (n,) or (n, components), C-contiguous",
+                 "numpy.ascontiguousarray(x, dtype=float)");
+  const auto values = py::reinterpret_borrow<py::array_t<double>>(given);
+  check_placed(report, size);
+  const auto rows = static_cast<std::size_t>(values.shape(0));
+  const std::size_t columns = is_flat ? 1 : static_cast<std::size_t>(values.shape(1));
+  std::vector<py::ssize_t> shape = {static_cast<py::ssize_t>(size)};
+  if (!is_flat) shape.push_back(static_cast<py::ssize_t>(columns));
+  py::array_t<double> made(shape);
+  for (std::size_t k = 0; k < columns; ++k) {
+    std::vector<double> column(rows);
+    for (std::size_t i = 0; i < rows; ++i) column[i] = values.data()[i * columns + k];
+    update_after_edit(report, size, column);
+    for (std::size_t i = 0; i < size; ++i) made.mutable_data()[i * columns + k] = column[i];
+  }
+  return made;
+}
+
+void bind_positions(Class& c) {
+  c.def(
+      "position",
+      [](const EditHandle& h, const py::object& v) -> py::object {
+        if (!py::isinstance<py::array>(v)) {
+          const auto one = v.cast<Vertex>();
+          return py::cast(change(h, [&](ComplexEdit& e) { return e.position(one); }));
+        }
+        const auto vertices = v.cast<std::vector<Vertex>>();
+        return py::cast(change(h, [&](ComplexEdit& e) {
+          std::vector<Vec3> positions;
+          for (const Vertex w : vertices) positions.push_back(e.position(w));
+          return positions;
+        }));
+      },
+      py::arg("v"),
+      (std::string(doc("ComplexEdit::position")) + "\n\nOf an array of vertices: float64 (n, 3).").c_str());
+  c.def(
+      "place", [](const EditHandle& h, Vertex v, const Vec3& x) { change(h, [&](ComplexEdit& e) { e.place(v, x); }); },
+      py::arg("v"), py::arg("x"), doc("ComplexEdit::place"));
+  c.def(
+      "place",
+      [](const EditHandle& h, Vertex v, const std::vector<Vertex>& of, const std::vector<double>& weights) {
+        change(h, [&](ComplexEdit& e) { e.place(v, of, weights); });
+      },
+      py::arg("v"), py::arg("of"), py::arg("weights"));
+}
+
+ComplexEditReport commit(const EditHandle& h) {
+  return change(h, [&](ComplexEdit& e) {
+    if (!h.own) throw InvalidArgument("the call that opened this edit commits it, when the function returns");
+    h.savepoints->clear();
+    return e.commit();
+  });
+}
+
+void bind_ends(Class& c) {
+  c.def(
+      "savepoint",
+      [](const EditHandle& h) {
+        return change(h, [&](ComplexEdit& e) { return SavepointHandle{h.savepoints->add(e.savepoint())}; });
+      },
+      "A point in the sequence to which roll_back() can return.");
+  c.def(
+      "roll_back",
+      [](const EditHandle& h, const SavepointHandle& to) {
+        change(h, [&](ComplexEdit& e) { e.roll_back(h.savepoints->return_to(to.number)); });
+      },
+      py::arg("to"),
+      "Undoes everything after the savepoint. Raises InvalidArgument where that is none of this edit, or was itself "
+      "undone.");
+  c.def("commit", &commit,
+        (std::string(doc("ComplexEdit::commit")) +
+         "\n\nRaises InvalidArgument in an edit of an environment: that commits it when the function returns.")
+            .c_str());
+  c.def("__enter__", [](const std::shared_ptr<EditHandle>& h) {
+    static_cast<void>(h->open());
+    return h;
+  });
+  c.def("__exit__", [](EditHandle& h, const py::args& /*raised*/) {
+    if (!h.own) throw InvalidArgument("this edit is no context manager: it ends with the call that made it");
+    h.end();
+  });
+}
+
+}  // namespace
+
+void bind_complex_edit(py::module_& m) {
+  bind_reports(m);
+  Class c(m, "ComplexEdit",
+          (std::string(doc("ComplexEdit")) + "\n\nAn edit of a complex of its own is a context manager: leaving its "
+                                             "block without commit() undoes it. While it "
+                                             "is open, the complex can be read through `edit.map` and "
+                                             "`edit.position()` only. An environment gives an edit to "
+                                             "the function of its edit().")
+              .c_str());
+  c.def(py::init([](const std::shared_ptr<ComplexHandle>& complex) {
+          auto made = std::make_shared<EditHandle>();
+          const py::gil_scoped_release release;
+          made->own = std::make_unique<OwnEdit>(complex);
+          made->edit = &made->own->edit;
+          return made;
+        }),
+        py::arg("complex"),
+        "Opens an edit. Raises InvalidArgument where the complex belongs to an environment, and InUse where another "
+        "edit of "
+        "it is open.");
+  c.def_property_readonly(
+      "topology",
+      [](const std::shared_ptr<EditHandle>& h) {
+        static_cast<void>(h->open());
+        return std::make_shared<TransactionHandle>(TransactionHandle{h, nullptr, h->usage, h->savepoints});
+      },
+      doc("ComplexEdit::topology"));
+  c.def_property_readonly(
+      "map", [](const std::shared_ptr<EditHandle>& h) { return map_of(h); },
+      "The map as it is now. It can be read until the edit ends.");
+  bind_positions(c);
+  bind_ends(c);
+  m.def("update_after_edit", &updated, py::arg("report"), py::arg("size"), py::arg("values"),
+        (std::string(doc("update_after_edit")) +
+         "\n\nvalues: float64 (n,) or (n, components). Returns a fresh array of `size` rows.")
+            .c_str());
+}
+
+}  // namespace dartcast::python

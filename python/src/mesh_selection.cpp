@@ -1,0 +1,52 @@
+// Binds dartcast/mesh_selection.hpp.
+#include "dartcast/mesh_selection.hpp"
+
+#include "bind.hpp"
+#include "support/meshes.hpp"
+#include "support/python.hpp"
+
+namespace py = pybind11;
+
+namespace dartcast::python {
+namespace {
+
+// Calls a function that changes the mesh.
+template <class Function>
+void change(MeshData& mesh, const Function& function) {
+  check_arrays(mesh);
+  const MeshUse use(mesh, true);
+  const py::gil_scoped_release release;
+  function();
+}
+
+}  // namespace
+
+void bind_mesh_selection(py::module_& m) {
+  using Texts = std::vector<std::string>;
+  m.def(
+      "select_free_regions",
+      [](MeshData& mesh, const Texts& regions) { change(mesh, [&] { select_free_regions(mesh, regions); }); },
+      py::arg("mesh"), py::arg("regions"), doc("select_free_regions"));
+  m.def(
+      "select_free_values",
+      [](MeshData& mesh, const std::string& array, const std::vector<double>& values) {
+        change(mesh, [&] { select_free_values(mesh, array, values); });
+      },
+      py::arg("mesh"), py::arg("array"), py::arg("values"), doc("select_free_values"));
+  m.def(
+      "select_patches",
+      [](MeshData& mesh, const Texts& names) { change(mesh, [&] { select_patches(mesh, names); }); },
+      py::arg("mesh"), py::arg("names"), doc("select_patches"));
+  m.def(
+      "divide_walls",
+      [](MeshData& mesh, double degrees) {
+        change(mesh, [&] {
+          require_checked(mesh);
+          divide_walls(mesh, degrees);
+        });
+      },
+      py::arg("mesh"), py::arg("degrees"),
+      (std::string(doc("divide_walls")) + "\n\nRaises InvalidMesh where check_and_repair() would refuse the mesh, and InvalidArgument where it would change it.").c_str());
+}
+
+}  // namespace dartcast::python

@@ -1,0 +1,43 @@
+// Transactions in Python: which map they belong to, and when they have ended.
+#include "support/edits.hpp"
+
+namespace dartcast::python {
+namespace {
+
+CombinatorialMap& changeable(const MapHandle& map) {
+  if (map.changeable == nullptr)
+    throw InvalidArgument(
+        "this map belongs to a complex, an environment or an edit: use ComplexEdit, or edit() of the environment");
+  return *map.changeable;
+}
+
+}  // namespace
+
+OwnTransaction::OwnTransaction(std::shared_ptr<MapHandle> of)
+    : map(std::move(of)),
+      use(*map->usage, "the map (another transaction on it may be open)"),
+      transaction(changeable(*map)) {}
+
+Transaction& TransactionHandle::open() const {
+  if (edit) return edit->open().topology();
+  if (!own) throw InvalidArgument("this transaction has ended: use it in its `with` block only");
+  return own->transaction;
+}
+
+void TransactionHandle::end() {
+  if (edit) throw InvalidArgument("this transaction belongs to an edit: end that");
+  const Use last(*usage, "the transaction");
+  own.reset();
+}
+
+std::shared_ptr<MapHandle> map_of(const std::shared_ptr<TransactionHandle>& transaction) {
+  const auto look = [transaction]() -> const CombinatorialMap& { return transaction->open().map(); };
+  return std::make_shared<MapHandle>(MapHandle{nullptr, nullptr, nullptr, transaction->usage, look});
+}
+
+std::shared_ptr<MapHandle> map_of(const std::shared_ptr<EditHandle>& edit) {
+  const auto look = [edit]() -> const CombinatorialMap& { return edit->open().map(); };
+  return std::make_shared<MapHandle>(MapHandle{nullptr, nullptr, nullptr, edit->usage, look});
+}
+
+}  // namespace dartcast::python

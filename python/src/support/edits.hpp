@@ -1,0 +1,59 @@
+// Transactions in Python: of a map of its own, or of an edit of a complex.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <memory>
+
+#include "dartcast/map_edits.hpp"
+#include "support/handles.hpp"
+
+namespace dartcast::python {
+
+/// A transaction that Python made on a map: the map is in use until it ends.
+struct OwnTransaction {
+  std::shared_ptr<MapHandle> map;
+  Use use;
+  Transaction transaction;
+
+  explicit OwnTransaction(std::shared_ptr<MapHandle> of);
+};
+
+struct TransactionHandle {
+  std::shared_ptr<EditHandle> edit;  ///< of a complex; null: it has `own`, or has ended
+  std::unique_ptr<OwnTransaction> own;
+  std::shared_ptr<Usage> usage = std::make_shared<Usage>();
+  std::shared_ptr<Savepoints> savepoints = std::make_shared<Savepoints>();
+
+  [[nodiscard]] Transaction& open() const;
+  /// As EditHandle::end().
+  void end();
+};
+
+/// A number that names a savepoint (Savepoints::add).
+struct SavepointHandle {
+  std::uint64_t number = 0;
+};
+
+/// Calls f(transaction) while it is in use, without Python's lock.
+template <class Function>
+auto change(const TransactionHandle& handle, const Function& f) {
+  const Use use(*handle.usage, "the transaction");
+  Transaction& transaction = handle.open();
+  const pybind11::gil_scoped_release release;
+  return f(transaction);
+}
+/// Calls f(edit) while it is in use, without Python's lock.
+template <class Function>
+auto change(const EditHandle& handle, const Function& f) {
+  const Use use(*handle.usage, "the edit");
+  ComplexEdit& edit = handle.open();
+  const pybind11::gil_scoped_release release;
+  return f(edit);
+}
+
+/// The map as the edit has changed it so far. It can be read while the edit is open.
+std::shared_ptr<MapHandle> map_of(const std::shared_ptr<TransactionHandle>& transaction);
+std::shared_ptr<MapHandle> map_of(const std::shared_ptr<EditHandle>& edit);
+
+}  // namespace dartcast::python

@@ -1,0 +1,164 @@
+"""Meshes from and to files, and meshio's meshes."""
+from __future__ import annotations
+
+import pathlib
+
+import dartcast
+import numpy as np
+import pytest
+
+meshio = pytest.importorskip("meshio")
+
+
+def mixed_box():
+    return dartcast.generate_box(cells=[2, 2, 2], mixed=True, blocked_layer=False, seed=3)
+
+
+@pytest.mark.parametrize("ending", dartcast.mesh_endings())
+def test_a_written_mesh_is_read_back(tmp_path, ending):
+    mesh = mixed_box()
+    path = tmp_path / ("box" + ending)
+    dartcast.write_mesh(mesh, path)
+    back, report = dartcast.read_mesh(path)
+    assert report.valid and report.verdict is dartcast.Verdict.ACCEPT
+    assert np.array_equal(back.points, mesh.points)
+    assert {name: len(cells) for name, cells in back.cells.items()} == {n: len(c) for n, c in mesh.cells.items()}
+    assert len(back.patch_tags) == len(mesh.patch_tags)
+
+
+def test_paths_may_be_texts_or_paths(tmp_path):
+    path = tmp_path / "box.vtu"
+    dartcast.write_mesh(mixed_box(), str(path))
+    for given in (path, str(path), pathlib.PurePath(path)):
+        assert dartcast.read_valid_mesh(given).report.valid
+        assert dartcast.check_mesh(given, threads=1).report.valid
+    with pytest.raises(TypeError):
+        dartcast.read_mesh(3)
+
+
+def test_a_file_that_is_no_mesh_is_a_defect_or_an_error(tmp_path):
+    path = tmp_path / "broken.msh"
+    dartcast.write_bytes(path, b"$MeshFormat\nnonsense\n")
+    assert path.read_bytes() == b"$MeshFormat\nnonsense\n"
+    report = dartcast.read_mesh(path).report
+    assert not report.valid and report.defects[0].kind == "file"
+    with pytest.raises(dartcast.InvalidMesh, match="broken.msh"):
+        dartcast.read_valid_mesh(path)
+    with pytest.raises(dartcast.InvalidMesh):
+        dartcast.read_surface(tmp_path / "missing.stl")
+
+
+def test_a_mesh_that_contradicts_itself_is_not_written(tmp_path):
+    mesh = mixed_box()
+    mesh.offsets = [0, 1]
+    with pytest.raises(dartcast.InvalidArgument, match="offsets"):
+        dartcast.write_mesh(mesh, tmp_path / "box.vtu")
+    with pytest.raises(dartcast.InvalidArgument, match="ending|format"):
+        dartcast.write_mesh(mixed_box(), tmp_path / "box.xyz")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_memory_limit_is_kept(tmp_path):
+    path = tmp_path / "box.vtu"
+    dartcast.write_mesh(mixed_box(), path)
+    file = dartcast.read_mesh(path, dartcast.ReadOptions(max_memory=1000))
+    assert not file.report.valid
+
+
+def test_surfaces(tmp_path):
+    path = tmp_path / "tetra.off"
+    path.write_text("OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n")
+    assert dartcast.is_surface_file(path) and not dartcast.is_surface_file("a.vtu")
+    assert ".off" in dartcast.surface_endings()
+    mesh, report = dartcast.read_surface(path)
+    assert report.valid and report.surface and mesh.cell_count == 4
+    assert dartcast.check_surface(path).report.cells == {"triangle": 4}
+
+
+def test_the_mesh_of_a_file_can_be_changed_in_place(tmp_path):
+    path = tmp_path / "box.vtu"
+    dartcast.write_mesh(dartcast.generate_box(), path)
+    file = dartcast.read_mesh(path)
+    file.mesh.regions = [7]
+    assert list(file.mesh.regions) == [7]
+    mesh = file.mesh
+    del file
+    assert list(mesh.regions) == [7]
+
+
+def read_by_meshio(path):
+    mesh = meshio.read(path)
+    for name, values in mesh.cell_data.items():
+        mesh.cell_data[name] = [np.asarray(v) for v in values]
+    return mesh
+
+
+@pytest.mark.parametrize("ending", [".msh", ".vtu"])
+def test_a_mesh_from_meshio_is_that_of_the_own_reader(tmp_path, ending):
+    path = tmp_path / ("box" + ending)
+    dartcast.write_mesh(mixed_box(), path)
+    own = dartcast.read_mesh(path).mesh
+    mesh = dartcast.from_meshio(read_by_meshio(path))
+    report = dartcast.check_and_repair(mesh)
+    assert report.valid and not report.repairs
+    assert np.array_equal(mesh.points, own.points)
+
+    def cells(m):
+        return {frozenset(c.tolist()) for block in m.cells.values() for c in block}
+    assert cells(mesh) == cells(own)
+
+
+def test_patches_and_regions_come_from_gmsh(tmp_path):
+    path = tmp_path / "box.msh"
+    mesh = dartcast.generate_box(cells=[2, 2, 2])
+    mesh.regions = [1, 2] * 4
+    mesh.region_names = {1: "left", 2: "right"}
+    dartcast.write_mesh(mesh, path)
+    back = dartcast.from_meshio(read_by_meshio(path))
+    assert sorted(back.regions) == sorted(mesh.regions)
+    assert back.region_names == mesh.region_names and back.patch_names == mesh.patch_names
+
+    def faces(m):
+        return {(t, frozenset(f.tolist())) for t, f in zip(m.patch_tags, m.patch_faces.reshape(-1, 4))}
+    assert faces(back) == faces(mesh)
+
+
+def test_to_meshio_and_back():
+    mesh = mixed_box()
+    mesh.regions = np.arange(mesh.cell_count) % 3 + 1
+    mesh.cell_data = {"w": np.arange(float(mesh.cell_count))}
+    mesh.point_data = {"v": np.array(mesh.points)}
+    made = dartcast.to_meshio(mesh)
+    assert sum(len(b.data) for b in made.cells) == mesh.cell_count + len(mesh.patch_tags)
+    back = dartcast.from_meshio(made)
+    assert back.patch_names == mesh.patch_names
+    assert {n: c.tolist() for n, c in back.cells.items()} == {n: c.tolist() for n, c in mesh.cells.items()}
+    order = np.argsort(mesh.types, kind="stable")
+    assert np.array_equal(back.regions, mesh.regions[order])
+    assert np.array_equal(back.cell_data["w"], mesh.cell_data["w"][order])
+    assert np.array_equal(back.point_data["v"], mesh.points)
+
+
+def test_polyhedra_go_through_meshio():
+    mesh = dartcast.generate_octahedra(cells=[1, 1, 1])
+    back = dartcast.from_meshio(dartcast.to_meshio(mesh))
+    assert [[f.tolist() for f in c] for c in back.cells["polyhedron"]] == [
+        [f.tolist() for f in c] for c in mesh.cells["polyhedron"]]
+
+
+def test_a_planar_mesh_goes_through_meshio():
+    mesh = dartcast.generate_rectangle(cells=[4, 4], mixed=True)
+    back = dartcast.from_meshio(dartcast.to_meshio(mesh))
+    assert {n: len(c) for n, c in back.cells.items()} == {n: len(c) for n, c in mesh.cells.items()}
+    assert len(back.patch_tags) == len(mesh.patch_tags) == 16
+    assert dartcast.check_and_repair(back).valid
+
+
+def test_points_of_the_plane_get_a_third_coordinate():
+    mesh = dartcast.from_meshio(meshio.Mesh(np.array([[0, 0], [1, 0], [0, 1.0]]), [("triangle", np.array([[0, 1, 2]]))]))
+    assert mesh.points.shape == (3, 3) and dartcast.check_and_repair(mesh).valid
+
+
+def test_a_mesh_without_cells_is_refused():
+    with pytest.raises(ValueError, match="expected cells such as tetra"):
+        dartcast.from_meshio(meshio.Mesh(np.zeros((2, 3)), [("line", np.array([[0, 1]]))]))
