@@ -179,12 +179,13 @@ class NearTool {
  public:
   NearTool(const CellComplex& complex, const ConvexTool& tool)
       : positions_(complex.positions()),
-        first_(std::span(tool.planes).first(std::min<std::size_t>(tool.planes.size(), 4))),
+        first_(std::span(tool.planes).first(std::min<std::size_t>(tool.planes.size(), 2))),
         others_(std::span(tool.planes).subspan(first_.size())),
         below_(positions_.size()) {
-    for (std::size_t v = 0; v < below_.size(); ++v) {
-      for (std::size_t k = 0; k < first_.size(); ++k)
-        below_[v] |= static_cast<std::uint8_t>((first_[k].height(positions_[v]) < 0.0 ? 1U : 0U) << k);
+    for (std::size_t k = 0; k < first_.size(); ++k) {
+      const Plane plane = first_[k];
+      for (std::size_t v = 0; v < below_.size(); ++v)
+        below_[v] |= static_cast<std::uint8_t>((plane.height(positions_[v]) < 0.0 ? 1U : 0U) << k);
     }
   }
 

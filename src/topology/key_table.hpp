@@ -27,12 +27,13 @@ class KeyTable {
   /// Precondition: key < 2^64 - 1.
   std::uint32_t& operator[](std::uint64_t key) {
     Place* p = place(key);
-    if (p->key == key) return p->number;
-    if (2 * ++count_ > places_.size()) {
-      grow();
-      p = place(key);
+    if (p->key != key) {
+      if (2 * ++count_ > places_.size()) [[unlikely]] {
+        grow();
+        p = place(key);
+      }
+      p->key = key;
     }
-    p->key = key;
     return p->number;
   }
   [[nodiscard]] std::uint32_t find(std::uint64_t key) const { return const_cast<KeyTable*>(this)->place(key)->number; }
