@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -120,9 +121,17 @@ TEST(PatchSampler, IsAfterAnEditAsANewOne) {
   BoxOptions box;
   box.cells = {3, 2, 2};
   box.size = {3, 2, 2};
-  CellComplex complex(generate_box(box));
+  MeshData mesh = generate_box(box);
+  const auto point = [&](const Vec3& x) {
+    return static_cast<std::uint32_t>(std::find(mesh.points.begin(), mesh.points.end(), x) - mesh.points.begin());
+  };
+  // An inner face, too: it is a wall while just one of its cells is free.
+  mesh.add_patch_face(
+      std::vector<std::uint32_t>{point({1, 0, 0}), point({1, 1, 0}), point({1, 1, 1}), point({1, 0, 1})},
+      mesh.patch_names.begin()->first);
+  CellComplex complex(mesh);
   const CombinatorialMap& map = complex.map();
-  const Patch patch = map.patch("zmin");
+  const Patch patch = map.patch(mesh.patch_names.begin()->second);
   PatchSampler sampler(complex, patch);
   Random random(3);
   const auto make = [&](const std::function<void(Transaction&)>& action) {
@@ -132,13 +141,13 @@ TEST(PatchSampler, IsAfterAnEditAsANewOne) {
     expect_as_new(sampler, complex, patch);
   };
   const auto any_cell = [&] { return map.cells()[random.below(static_cast<std::uint32_t>(map.cell_count()))]; };
-  for (int i = 0; i < 30; ++i) {
+  for (int i = 0; i < 60; ++i) {
     SCOPED_TRACE(i);
     const Cell c = any_cell();
     const Dart d{c, static_cast<std::uint16_t>(random.below(map.shape(c).dart_count()))};
     if (i % 3 == 0) make([&](Transaction& t) { split_edge(t, d); });
     if (i % 3 == 1) make([&](Transaction& t) { t.set_free(c, !map.is_free(c)); });
-    if (i % 6 == 5) make([&](Transaction& t) { remove(t, c); });
+    if (i % 12 == 11) make([&](Transaction& t) { remove(t, c); });
   }
   for (const bool free : {false, true}) {
     make([&](Transaction& t) {
