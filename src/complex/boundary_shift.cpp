@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <unordered_map>
-#include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "complex/cone_point.hpp"
 #include "dartcast/predicates.hpp"
+#include "topology/key_table.hpp"
 
 namespace dartcast {
 
@@ -89,89 +89,111 @@ double extent_over(const BoundaryPlane& plane, const BoundaryWall& before, const
 class BoundaryWalls {
  public:
   BoundaryWalls(const Transaction& t, std::span<const Vec3> positions)
-      : positions_(positions), old_(walls_of(t.map(), t.removed())), new_(walls_of(t.map(), t.added())) {
+      : transaction_(t),
+        positions_(positions),
+        old_(walls_of(t.map(), t.removed())),
+        new_(walls_of(t.map(), t.added())) {
     if (old_.empty() || new_.empty()) return;
-    for (std::size_t i = 0; i < t.created_count(); ++i) created_[t.created(i).vertex.value] = t.created(i);
-    for (const Cell c : t.added()) {
-      for (const std::uint32_t v : t.map().view(c).vertices()) kept_.insert(v);
-    }
+    for (std::uint32_t i = 0; i < t.created_count(); ++i) created_[t.created(i).vertex.value] = i;
+    list_kept();
     for (std::size_t i = 0; i < old_.size(); ++i) {
-      for (const std::uint32_t v : old_[i].corners) at_[v].push_back(i);
+      for (const std::uint32_t v : old_[i].corners) at_.emplace_back(v, i);
     }
+    std::sort(at_.begin(), at_.end());
   }
 
-  [[nodiscard]] double largest_shift() const {
+  [[nodiscard]] double largest_shift() {
     double largest = 0.0;
     for (const BoundaryWall& wall : new_) {
       if (was_there(wall)) continue;
-      const VertexNumbering origins = origins_of(wall);
-      for (const std::size_t i : old_walls_at(origins)) largest = std::max(largest, between(old_[i], wall, origins));
+      find_origins(wall);
+      for (const std::size_t i : old_walls_at(origins_)) largest = std::max(largest, between(i, wall));
     }
     return largest;
   }
 
  private:
-  // Each once: most share several vertices with a new wall.
-  [[nodiscard]] std::vector<std::size_t> old_walls_at(const VertexNumbering& vertices) const {
-    std::vector<std::size_t> walls;
-    for (const std::uint32_t v : vertices) {
-      const auto found = at_.find(v);
-      if (found != at_.end()) walls.insert(walls.end(), found->second.begin(), found->second.end());
+  using WallAtVertex = std::pair<std::uint32_t, std::size_t>;
+
+  // The corners of each old wall that the new cells have, too.
+  void list_kept() {
+    detail::KeyTable kept;
+    for (const Cell c : transaction_.added()) {
+      for (const std::uint32_t v : transaction_.map().view(c).vertices()) kept[v] = 1;
     }
-    std::sort(walls.begin(), walls.end());
-    walls.erase(std::unique(walls.begin(), walls.end()), walls.end());
-    return walls;
+    kept_of_.reserve(old_.size());
+    for (const BoundaryWall& wall : old_) {
+      VertexNumbering& of = kept_of_.emplace_back(wall.corners);
+      std::erase_if(of, [&](std::uint32_t v) { return kept.find(v) == detail::KeyTable::none; });
+    }
+  }
+
+  template <class Visit>
+  void for_each_old_wall_at(std::uint32_t v, Visit&& visit) const {
+    for (auto at = std::lower_bound(at_.begin(), at_.end(), WallAtVertex{v, 0}); at != at_.end() && at->first == v;
+         ++at)
+      visit(at->second);
+  }
+
+  // Each once: most share several vertices with a new wall.
+  [[nodiscard]] const std::vector<std::size_t>& old_walls_at(const VertexNumbering& vertices) {
+    found_.clear();
+    for (const std::uint32_t v : vertices) for_each_old_wall_at(v, [&](std::size_t i) { found_.push_back(i); });
+    std::sort(found_.begin(), found_.end());
+    found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+    return found_;
   }
 
   [[nodiscard]] bool was_there(const BoundaryWall& wall) const {
-    const auto found = at_.find(wall.corners.front());
-    return found != at_.end() &&
-           std::any_of(found->second.begin(), found->second.end(), [&](std::size_t i) { return old_[i] == wall; });
+    bool found = false;
+    for_each_old_wall_at(wall.corners.front(), [&](std::size_t i) { found = found || old_[i] == wall; });
+    return found;
   }
 
   // The older vertices from which the corners of a new wall were made.
-  [[nodiscard]] VertexNumbering origins_of(const BoundaryWall& wall) const {
-    VertexNumbering origins;
-    VertexNumbering open = wall.corners;
-    while (!open.empty()) {
-      const std::uint32_t v = open.back();
-      open.pop_back();
-      const auto found = created_.find(v);
-      if (found != created_.end()) {
-        open.push_back(found->second.from.value);
-        if (found->second.other != found->second.from) open.push_back(found->second.other.value);
-      } else if (!holds(origins, v)) {
-        origins.push_back(v);
+  void find_origins(const BoundaryWall& wall) {
+    origins_.clear();
+    open_ = wall.corners;
+    while (!open_.empty()) {
+      const std::uint32_t v = open_.back();
+      open_.pop_back();
+      const std::uint32_t number = created_.find(v);
+      if (number != detail::KeyTable::none) {
+        const CreatedVertex& made = transaction_.created(number);
+        open_.push_back(made.from.value);
+        if (made.other != made.from) open_.push_back(made.other.value);
+      } else if (!holds(origins_, v)) {
+        origins_.push_back(v);
       }
     }
-    return origins;
   }
 
-  // Nothing if the new wall is neither a part of the old one nor contains it.
-  [[nodiscard]] double between(const BoundaryWall& before, const BoundaryWall& after,
-                               const VertexNumbering& origins) const {
+  // Nothing if the new wall, whose origins were found, is neither a part of the old one nor contains it.
+  [[nodiscard]] double between(std::size_t old, const BoundaryWall& after) const {
+    const BoundaryWall& before = old_[old];
     const bool part =
-        std::all_of(origins.begin(), origins.end(), [&](std::uint32_t v) { return holds(before.corners, v); });
-    if (!part && !is_whole_of(after, before)) return 0.0;
+        std::all_of(origins_.begin(), origins_.end(), [&](std::uint32_t v) { return holds(before.corners, v); });
+    if (!part && !is_whole_of(after, old)) return 0.0;
     return extent_over(plane_of(part ? before.corners : after.corners, positions_), before, after, positions_);
   }
 
   // Whether the new wall has all corners of the old wall that its cells have kept: at least an edge, in the plane a
   // corner.
-  [[nodiscard]] bool is_whole_of(const BoundaryWall& after, const BoundaryWall& before) const {
-    const auto kept = [&](std::uint32_t v) { return kept_.count(v) != 0; };
-    const std::ptrdiff_t lowest = before.corners.size() == 2 ? 1 : 2;
-    return std::count_if(before.corners.begin(), before.corners.end(), kept) >= lowest &&
-           std::all_of(before.corners.begin(), before.corners.end(),
-                       [&](std::uint32_t v) { return !kept(v) || holds(after.corners, v); });
+  [[nodiscard]] bool is_whole_of(const BoundaryWall& after, std::size_t old) const {
+    const VertexNumbering& kept = kept_of_[old];
+    return kept.size() >= (old_[old].corners.size() == 2 ? 1 : 2) &&
+           std::all_of(kept.begin(), kept.end(), [&](std::uint32_t v) { return holds(after.corners, v); });
   }
 
+  const Transaction& transaction_;
   std::span<const Vec3> positions_;
   std::vector<BoundaryWall> old_;
   std::vector<BoundaryWall> new_;
-  std::unordered_map<std::uint32_t, CreatedVertex> created_;
-  std::unordered_set<std::uint32_t> kept_;                          // vertices of the new cells
-  std::unordered_map<std::uint32_t, std::vector<std::size_t>> at_;  // old walls of a vertex
+  detail::KeyTable created_;              // number of a new vertex
+  std::vector<VertexNumbering> kept_of_;  // by old wall
+  std::vector<WallAtVertex> at_;          // old walls, by their vertices
+  VertexNumbering origins_, open_;        // of the new wall in hand
+  std::vector<std::size_t> found_;        // old walls at these
 };
 
 }  // namespace

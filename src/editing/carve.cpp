@@ -18,8 +18,7 @@ class Carver {
  public:
   Carver(ComplexEdit& edit, std::span<const Cell> cells, Carving what, const CarveOptions& options)
       : edit_(edit), cutter_(edit, cells), what_(what), options_(options), done_(cells.size()) {
-    for (std::uint32_t n = 0; n < cutter_.size(); ++n)
-      done_[n] = what == Carving::open && edit.map().is_free(cutter_.cell(n));
+    for (std::size_t n = 0; n < cells.size(); ++n) done_[n] = what == Carving::open && edit.map().is_free(cells[n]);
   }
 
   void take(const ConvexTool& tool) {
@@ -31,6 +30,7 @@ class Carver {
 
   Carved finish() {
     Carved carved;
+    cutter_.put();
     const std::vector<Cell> taken = cutter_.cells(taken_);
     carved.whole = cutter_.cells(whole_);
     if (what_ == Carving::open) {
@@ -50,28 +50,27 @@ class Carver {
   [[nodiscard]] CellNumbers left(Condition&& condition) {
     CellNumbers numbers;
     for (std::uint32_t n = 0; n < cutter_.size(); ++n) {
-      if (!done_[n] && condition(cutter_.cell(n))) numbers.push_back(n);
+      if (!done_[n] && condition(n)) numbers.push_back(n);
     }
     return numbers;
   }
 
   [[nodiscard]] CellNumbers middles_in(const ConvexTool& tool) {
-    return left([&](Cell c) {
-      const Vec3 x = detail::middle(edit_, c);
+    return left([&](std::uint32_t n) {
+      const Vec3 x = cutter_.middle(n);
       return std::all_of(tool.planes.begin(), tool.planes.end(), [&](const Plane& p) { return p.height(x) < 0.0; });
     });
   }
 
   // Parts beyond one of the later planes are not split by the earlier ones.
   CellNumbers split_by(const ConvexTool& tool) {
-    CellNumbers inside = left(
-        [&](Cell c) { return detail::near(edit_.map().view(c), tool, [&](Vertex v) { return edit_.position(v); }); });
-    const double within = cutter_.snap_distance(inside, {options_.snap, tool.finest});
-    std::vector<detail::Cutter::Reaching> reaching(tool.planes.size());
+    CellNumbers inside = left([&](std::uint32_t n) {
+      return detail::near(cutter_.corners(n), tool.planes, [&](Vertex v) { return edit_.position(v); });
+    });
+    cutter_.take(tool.planes, cutter_.snap_distance(inside, {options_.snap, tool.finest}));
     for (std::size_t i = 0; i < tool.planes.size(); ++i) {
-      for (std::size_t k = i; k < tool.planes.size(); ++k)
-        inside = cutter_.reaching_below(inside, tool.planes[k], within, reaching[k]);
-      const auto parts = cutter_.split(inside, tool.planes[i], within);
+      std::erase_if(inside, [&](std::uint32_t n) { return !cutter_.reaches_below(n, i); });
+      const auto parts = cutter_.split(inside, i);
       whole_.insert(whole_.end(), parts.whole.begin(), parts.whole.end());
       inside = parts.below;
     }

@@ -2,19 +2,19 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
+#include <span>
 
 #include "dartcast/cutting.hpp"
 
 namespace dartcast::detail {
 
-/// Whether no plane of the tool has all corners of the cell on its outside. `position`: that of a vertex.
+/// Whether none of the planes of a tool has all corners of a cell on its outside. `position`: that of a vertex.
 template <class Position>
-bool near(const CellView& cell, const ConvexTool& tool, Position&& position) {
-  return std::all_of(tool.planes.begin(), tool.planes.end(), [&](const Plane& plane) {
-    for (std::uint16_t k = 0; k < cell.shape().corner_count(); ++k) {
-      if (plane.height(position(cell.vertex(k))) < 0.0) return true;
-    }
-    return false;
+bool near(std::span<const std::uint32_t> corners, std::span<const Plane> planes, Position&& position) {
+  return std::all_of(planes.begin(), planes.end(), [&](const Plane& plane) {
+    return std::any_of(corners.begin(), corners.end(),
+                       [&](std::uint32_t v) { return plane.height(position(Vertex(v))) < 0.0; });
   });
 }
 

@@ -24,7 +24,9 @@ Section split_by_plane(ComplexEdit& edit, std::span<const Cell> cells, const Pla
     detail::Cutter cutter(edit, cells);
     std::vector<std::uint32_t> numbers(cells.size());
     std::iota(numbers.begin(), numbers.end(), 0U);
-    const auto parts = cutter.split(numbers, plane, cutter.snap_distance(numbers, options));
+    cutter.take({&plane, 1}, cutter.snap_distance(numbers, options));
+    const auto parts = cutter.split(numbers, 0);
+    cutter.put();
     return Section{cutter.cells(parts.below), cutter.cells(parts.above), cutter.cells(parts.whole)};
   });
 }

@@ -164,17 +164,57 @@ ConvexTool capsule_tool(const Vec3& a, const Vec3& b, double radius) {
 
 namespace {
 
+std::span<const std::uint32_t> corners_of(const CellView& v) { return v.vertices().first(v.shape().corner_count()); }
+
 bool near(const CellComplex& complex, Cell c, std::span<const ConvexTool> tools) {
   const auto position = [&](Vertex v) { return complex.positions()[v.value]; };
-  return std::any_of(tools.begin(), tools.end(),
-                     [&](const ConvexTool& tool) { return detail::near(complex.map().view(c), tool, position); });
+  return std::any_of(tools.begin(), tools.end(), [&](const ConvexTool& tool) {
+    return detail::near(corners_of(complex.map().view(c)), tool.planes, position);
+  });
 }
+
+// Finds cells near a tool. Most cells lie beyond one of the first planes. So each vertex is compared with these once,
+// not once for each of its cells.
+class NearTool {
+ public:
+  NearTool(const CellComplex& complex, const ConvexTool& tool)
+      : positions_(complex.positions()),
+        first_(std::span(tool.planes).first(std::min<std::size_t>(tool.planes.size(), 2))),
+        others_(std::span(tool.planes).subspan(first_.size())),
+        below_(positions_.size()) {
+    for (std::size_t k = 0; k < first_.size(); ++k) {
+      const Plane plane = first_[k];
+      for (std::size_t v = 0; v < below_.size(); ++v)
+        below_[v] |= static_cast<std::uint8_t>((plane.height(positions_[v]) < 0.0 ? 1U : 0U) << k);
+    }
+  }
+
+  [[nodiscard]] bool operator()(std::span<const std::uint32_t> corners) const {
+    unsigned below = 0;
+    for (const std::uint32_t v : corners) below |= below_[v];
+    return below + 1U == 1U << first_.size() &&
+           detail::near(corners, others_, [&](Vertex v) { return positions_[v.value]; });
+  }
+
+ private:
+  std::span<const Vec3> positions_;
+  std::span<const Plane> first_, others_;
+  std::vector<std::uint8_t> below_;  // by vertex: bit k is set below plane k of the first
+};
 
 }  // namespace
 
 std::vector<Cell> cells_near(const CellComplex& complex, std::span<const ConvexTool> tools) {
-  std::vector<Cell> cells = complex.map().cells();
-  std::erase_if(cells, [&](Cell c) { return !near(complex, c, tools); });
+  std::vector<NearTool> near;
+  for (const ConvexTool& tool : tools) near.emplace_back(complex, tool);
+  std::vector<Cell> cells;
+  const CombinatorialMap& map = complex.map();
+  for (std::uint32_t pool = 0; pool <= CombinatorialMap::general_pool; ++pool) {
+    map.for_each_cell(pool, 0, map.slot_count(pool), [&](Cell c, const CellView& v) {
+      if (std::any_of(near.begin(), near.end(), [&](const NearTool& tool) { return tool(corners_of(v)); }))
+        cells.push_back(c);
+    });
+  }
   return cells;
 }
 

@@ -90,7 +90,7 @@ class ParticleSystem final : public SimulationComponent {
  private:
   struct Inlet {
     Patch patch;
-    std::optional<PatchSampler> sampler;  // none while it is closed
+    PatchSampler sampler;  // empty while it is closed
     double rate;
     Vec3 velocity;
     double radius;

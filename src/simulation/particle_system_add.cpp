@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "dartcast/error.hpp"
+#include "dartcast/predicates.hpp"
 #include "simulation/particle_system.hpp"
 #include "simulation/timer.hpp"
 
@@ -141,9 +142,9 @@ void ParticleSystem::inject() {
       return std::floor(inlet.rate * options_.dt * static_cast<double>(steps));
     };
     const auto count = static_cast<std::uint64_t>(up_to(steps_ + 1) - up_to(steps_));
-    if (count == 0 || !inlet.sampler) continue;
-    if (deformation_) inlet.sampler->update(environment_.complex());
-    add_sampled(*inlet.sampler, count, inlet.velocity, inlet.radius, inlet.user_data);
+    if (count == 0 || inlet.sampler.empty()) continue;
+    if (deformation_) inlet.sampler.update(environment_.complex());
+    add_sampled(inlet.sampler, count, inlet.velocity, inlet.radius, inlet.user_data);
     last_.injected += count;
   }
   totals_.injected += last_.injected;

@@ -14,7 +14,7 @@ void ParticleSystem::update_after_edit(const ComplexEditReport& edit, OrphanPoli
   if (deformation_) deformation_->update_after_edit(edit, environment_.positions().size());
   if (field_) field_->update_after_edit(edit, environment_.complex());
   if (force_) force_->update_after_edit(edit, environment_.complex());
-  reopen_inlets();
+  for (Inlet& inlet : inlets_) inlet.sampler.update_after_edit(environment_.complex(), edit);
 }
 
 void ParticleSystem::remove_absorbed(const UpdateReport& report, std::span<const ParticleState> before) {
@@ -31,13 +31,6 @@ void ParticleSystem::remove_absorbed(const UpdateReport& report, std::span<const
   totals_.absorbed += absorbed;
   absorbed_between_ += absorbed;
   remove_marked(marks);
-}
-
-void ParticleSystem::reopen_inlets() {
-  for (Inlet& inlet : inlets_) {
-    inlet.sampler.reset();
-    if (has_free_face(environment_.map(), inlet.patch)) inlet.sampler.emplace(environment_.complex(), inlet.patch);
-  }
 }
 
 void ParticleSystem::pull(std::span<const Vec3> displacement, double duration) {

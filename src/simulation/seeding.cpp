@@ -111,28 +111,6 @@ Sample VolumeSampler::sample(const CellComplex& complex, KeyedRandom& random) co
 
 namespace {
 
-// Calls visit(cell, its shape, face) for each wall of the patch at a free cell.
-template <class Visit>
-void for_each_face(const CombinatorialMap& map, Patch patch, Visit&& visit) {
-  for (const Cell c : map.cells()) {
-    const CellView view = map.view(c);
-    if (!view.is_free()) continue;
-    for (std::uint16_t f = 0; f < view.shape().face_count(); ++f) {
-      if (view.is_wall(f) && map.patch({c, f}) == patch) visit(c, view.shape(), f);
-    }
-  }
-}
-
-}  // namespace
-
-bool has_free_face(const CombinatorialMap& map, Patch patch) {
-  bool found = false;
-  for_each_face(map, patch, [&](Cell, const Shape&, std::uint16_t) { found = true; });
-  return found;
-}
-
-namespace {
-
 // Twice the area of a triangle; in the plane the length of an edge.
 double facet_size(unsigned dimension, const Corners& v, unsigned facet) {
   if (dimension == 2) return norm(v[plane_facet_corners[facet][1]] - v[plane_facet_corners[facet][0]]);
@@ -152,14 +130,39 @@ Vec3 random_on_facet(unsigned dimension, const Corners& v, unsigned facet, Keyed
 
 }  // namespace
 
-PatchSampler::PatchSampler(const CellComplex& complex, Patch patch) {
-  for_each_face(complex.map(), patch, [&](Cell c, const Shape& shape, std::uint16_t f) {
+PatchSampler::PatchSampler(const CellComplex& complex, Patch patch) : patch_(patch) {
+  for (const Cell c : complex.map().cells()) add(complex.map(), c);
+  if (triangles_.empty()) throw InvalidArgument("the patch has no wall face at a free cell");
+  update(complex);
+}
+
+void PatchSampler::add(const CombinatorialMap& map, Cell c) {
+  const CellView view = map.view(c);
+  const Shape& shape = view.shape();
+  for (std::uint16_t f = 0; view.is_free() && f < shape.face_count(); ++f) {
+    if (!view.is_wall(f) || map.patch({c, f}) != patch_) continue;
     for (std::uint16_t t = 0; t < shape.triangle_count(f); ++t) {
       const Across behind = shape.entry(f, t);
       triangles_.push_back({{c, behind.index}, behind.place});
     }
-  });
-  if (triangles_.empty()) throw InvalidArgument("the patch has no wall face at a free cell");
+  }
+}
+
+// The order of the triangles is that of a new sampler.
+void PatchSampler::update_after_edit(const CellComplex& complex, const ComplexEditReport& edit) {
+  std::vector<Cell> touched = edit.around;
+  touched.insert(touched.end(), edit.map.added.begin(), edit.map.added.end());
+  touched.insert(touched.end(), edit.map.marked.begin(), edit.map.marked.end());
+  std::sort(touched.begin(), touched.end());
+  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+  std::vector<Cell> listed = touched;
+  for (const CellHandle& h : edit.map.removed) listed.push_back(h.cell);
+  std::sort(listed.begin(), listed.end());
+  std::erase_if(triangles_,
+                [&](const Triangle& t) { return std::binary_search(listed.begin(), listed.end(), t.simplex.cell); });
+  for (const Cell c : touched) add(complex.map(), c);
+  std::stable_sort(triangles_.begin(), triangles_.end(),
+                   [](const Triangle& a, const Triangle& b) { return a.simplex.cell < b.simplex.cell; });
   update(complex);
 }
 

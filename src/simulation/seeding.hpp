@@ -7,6 +7,7 @@
 #include "base/keyed_random.hpp"
 #include "base/parallel.hpp"
 #include "dartcast/cell_complex.hpp"
+#include "dartcast/complex_edit.hpp"
 
 namespace dartcast {
 
@@ -43,24 +44,29 @@ class VolumeSampler {
   std::vector<std::uint64_t> volume_up_to_;
 };
 
-/// Whether a patch has a wall at a free cell. Cost: linear in the cells.
-bool has_free_face(const CombinatorialMap& map, Patch patch);
-
 /// Points of equal likelihood by area on a patch's faces, moved inwards by 1/64 of the way to the opposite corner of
 /// the simplex there.
 class PatchSampler {
  public:
-  /// Throws InvalidArgument where the patch has no face at a free cell.
+  /// Throws InvalidArgument where the patch has no face at a free cell. Cost: linear in the cells.
   PatchSampler(const CellComplex& complex, Patch patch);
+  /// After an edit it is as a new one, but it may be empty. Cost: the cells touched, and the patch's faces.
+  void update_after_edit(const CellComplex& complex, const ComplexEditReport& edit);
   /// Takes the areas at the complex's current positions. Cost: the patch's faces.
   void update(const CellComplex& complex);
+  /// Whether the patch has no face at a free cell.
+  [[nodiscard]] bool empty() const { return triangles_.empty(); }
+  /// Precondition: it is not empty.
   [[nodiscard]] Sample sample(const CellComplex& complex, KeyedRandom& random) const;
 
  private:
+  void add(const CombinatorialMap& map, Cell c);
+
   struct Triangle {
     SimplexId simplex;
     std::uint16_t facet;
   };
+  Patch patch_;
   std::vector<Triangle> triangles_;
   std::vector<double> areas_;
   std::vector<std::uint64_t> area_up_to_;

@@ -176,7 +176,7 @@ void Shape::make_triangles() {
 
 void Shape::connect_simplices() {
   constexpr std::uint32_t none = detail::KeyTable::none;
-  detail::KeyTable open(4 * simplices_.size());  // facets without their other side yet: simplex 16, facet 16
+  detail::KeyTable open(3 * simplices_.size());  // facets without their other side yet: simplex 16, facet 16
   std::size_t waiting = 0;
   for (std::uint16_t s = 0; s < simplices_.size(); ++s) {
     for (std::uint16_t i = 0; i < 4; ++i) {

@@ -61,7 +61,7 @@ class DraftChecker {
     draft_ = &draft;
     std::size_t darts = 0;
     for (const DraftFace& face : draft.faces) darts += face.corners.size();
-    local_.reset(std::min(darts, max_darts));
+    local_.reset(std::min(darts, max_darts) / 3);  // each corner has three faces or more, mostly
     edges_.reset(std::min(darts, max_darts));
     corners_.clear();
     origin_.clear();

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "dartcast/map_edits.hpp"
+#include "topology/draft_cuts.hpp"
 #include "topology/edit_plane.hpp"
 #include "topology/rework.hpp"
 
@@ -10,6 +11,7 @@ namespace dartcast {
 
 using detail::around_edge;
 using detail::corner_of;
+using detail::cut_face;
 using detail::expect_dart;
 using detail::refuse;
 using detail::Rework;
@@ -22,27 +24,6 @@ void put_on_edge(CellDraft& draft, const Shape& s, std::uint16_t dart, Vertex v)
   const std::size_t at = corner_of(s, dart);
   face.corners.insert(face.corners.begin() + static_cast<std::ptrdiff_t>(at + 1), {v, true, face.corners[at].coplanar});
   face.point = {};
-}
-
-// Splits a face. It keeps its corners from u to v. A new face at the end takes those from v to u.
-void cut_face(CellDraft& draft, std::uint16_t face, Vertex u, Vertex v) {
-  DraftFace& first = draft.faces[face];
-  std::vector<DraftCorner> all = std::move(first.corners);
-  const auto is = [](Vertex w) { return [w](const DraftCorner& c) { return c.vertex == w; }; };
-  std::rotate(all.begin(), std::find_if(all.begin(), all.end(), is(u)), all.end());
-  const auto middle = std::find_if(all.begin(), all.end(), is(v));
-  DraftFace rest;
-  rest.patch = first.patch;
-  rest.corners.reserve(all.size());
-  rest.corners.assign(middle, all.end());
-  rest.corners.front().straight = false;
-  rest.corners.push_back({u, false, true});
-  first.corners = std::move(all);
-  first.corners.erase(middle, first.corners.end());
-  first.corners.front().straight = false;
-  first.corners.push_back({v, false, true});
-  first.point = {};
-  draft.faces.push_back(std::move(rest));
 }
 
 }  // namespace

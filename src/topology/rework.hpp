@@ -28,6 +28,7 @@ class Rework {
   }
   [[nodiscard]] bool taken(Cell c) const { return number_.contains(c.value); }
   CellDraft& draft(std::uint32_t number) { return drafts_[number]; }
+  [[nodiscard]] const CellDraft& draft(std::uint32_t number) const { return drafts_[number]; }
   CellDraft& draft(Cell c) { return drafts_[take(c)]; }
   /// Adds a draft without a cell.
   std::uint32_t add(CellDraft draft) {

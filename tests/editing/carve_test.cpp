@@ -36,6 +36,36 @@ std::size_t count_free(const CombinatorialMap& map) {
   return static_cast<std::size_t>(std::count_if(cells.begin(), cells.end(), [&](Cell c) { return map.is_free(c); }));
 }
 
+// All planes of a tool against all corners.
+TEST_P(Carvings, CellsNearAToolAreThoseThatNoPlaneHasOutside) {
+  const CellComplex complex = box({4, 4, 4});
+  Random random(2);
+  const auto within = [&] {
+    return Vec3{random.uniform(0.0, 4.0), random.uniform(0.0, 4.0), random.uniform(0.0, 4.0)};
+  };
+  for (int i = 0; i < 20; ++i) {
+    const Vec3 a = within();
+    const Vec3 b = within();
+    const ConvexTool tools[] = {box_tool(a - Vec3{0.5, 0.25, 0.75}, a), capsule_tool(a, b, 0.3),
+                                thicken(Disc{b, {0, 1, 2}, 1.0}, 0.1).front()};
+    std::vector<Cell> near;
+    for (const Cell c : complex.map().cells()) {
+      const CellView v = complex.map().view(c);
+      const auto reaches_below = [&](const Plane& plane) {
+        double lowest = 1.0;
+        for (std::uint16_t k = 0; k < v.shape().corner_count(); ++k)
+          lowest = std::min(lowest, plane.height(complex.positions()[v.vertex(k).value]));
+        return lowest < 0.0;
+      };
+      const auto holds = [&](const ConvexTool& tool) {
+        return std::all_of(tool.planes.begin(), tool.planes.end(), reaches_below);
+      };
+      if (std::any_of(std::begin(tools), std::end(tools), holds)) near.push_back(c);
+    }
+    EXPECT_EQ(cells_near(complex, tools), near);
+  }
+}
+
 TEST_P(Carvings, ALayerHasItsAreaTimesItsWidth) {
   for (const auto& [height, width] : {std::pair{1.5, 0.25}, std::pair{1.25, 1.0}, std::pair{2.0, 0.125}}) {
     CellComplex complex = box({4, 3, 3});

@@ -2,11 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
 #include <vector>
 
+#include "base/random.hpp"
+#include "dartcast/complex_edit.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
+#include "dartcast/map_edits.hpp"
 #include "dartcast/simulation.hpp"
 
 namespace dartcast::seeding_test {
@@ -89,6 +95,66 @@ TEST(PatchSampler, FollowsTheMovingMesh) {
   simulation.step();  // put in at rest, where the faces were equal: those beside x = 1 change cell as it passes
   simulation.step();
   expect_share(in_first_cell(count), 0.75);
+}
+
+// Whether both draw the same; an empty one is as good as none.
+void expect_as_new(const PatchSampler& sampler, const CellComplex& complex, Patch patch) {
+  std::optional<PatchSampler> fresh;
+  try {
+    fresh.emplace(complex, patch);
+  } catch (const InvalidArgument&) {
+    EXPECT_TRUE(sampler.empty());
+    return;
+  }
+  ASSERT_FALSE(sampler.empty());
+  for (std::uint64_t i = 0; i < 50; ++i) {
+    KeyedRandom random(2, RandomPurpose::place, i);
+    KeyedRandom same(2, RandomPurpose::place, i);
+    const Sample drawn = sampler.sample(complex, random);
+    const Sample expected = fresh->sample(complex, same);
+    EXPECT_EQ(drawn.simplex, expected.simplex);
+    EXPECT_EQ(drawn.position, expected.position);
+  }
+}
+
+TEST(PatchSampler, IsAfterAnEditAsANewOne) {
+  BoxOptions box;
+  box.cells = {3, 2, 2};
+  box.size = {3, 2, 2};
+  MeshData mesh = generate_box(box);
+  const auto point = [&](const Vec3& x) {
+    return static_cast<std::uint32_t>(std::find(mesh.points.begin(), mesh.points.end(), x) - mesh.points.begin());
+  };
+  // An inner face, too: it is a wall while just one of its cells is free.
+  mesh.add_patch_face(
+      std::vector<std::uint32_t>{point({1, 0, 0}), point({1, 1, 0}), point({1, 1, 1}), point({1, 0, 1})},
+      mesh.patch_names.begin()->first);
+  CellComplex complex(mesh);
+  const CombinatorialMap& map = complex.map();
+  const Patch patch = map.patch(mesh.patch_names.begin()->second);
+  PatchSampler sampler(complex, patch);
+  Random random(3);
+  const auto make = [&](const std::function<void(Transaction&)>& action) {
+    ComplexEdit edit(complex);
+    action(edit.topology());
+    sampler.update_after_edit(complex, edit.commit());
+    expect_as_new(sampler, complex, patch);
+  };
+  const auto any_cell = [&] { return map.cells()[random.below(static_cast<std::uint32_t>(map.cell_count()))]; };
+  for (int i = 0; i < 60; ++i) {
+    SCOPED_TRACE(i);
+    const Cell c = any_cell();
+    const Dart d{c, static_cast<std::uint16_t>(random.below(map.shape(c).dart_count()))};
+    if (i % 3 == 0) make([&](Transaction& t) { split_edge(t, d); });
+    if (i % 3 == 1) make([&](Transaction& t) { t.set_free(c, !map.is_free(c)); });
+    if (i % 12 == 11) make([&](Transaction& t) { remove(t, c); });
+  }
+  for (const bool free : {false, true}) {
+    make([&](Transaction& t) {
+      for (const Cell c : map.cells()) t.set_free(c, free);
+    });
+    EXPECT_EQ(sampler.empty(), !free);
+  }
 }
 
 // The particle with an id gets the same place in whatever portions particles are added.
