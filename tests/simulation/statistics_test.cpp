@@ -56,7 +56,9 @@ TEST(Crossings, APositionOnThePlaneCountsOnce) {
   EXPECT_EQ(count(on, behind), -1);
   EXPECT_EQ(count(beyond, on), 0);
   EXPECT_EQ(count(on, on), 0);
-  EXPECT_EQ(crossings(plane_at(1.0), behind, on)[0].point, on);
+  const auto reached = crossings(plane_at(1.0), behind, on);
+  ASSERT_EQ(reached.size(), 1U);
+  EXPECT_EQ(reached[0].point, on);
 }
 
 TEST(Crossings, OfADiscAreThoseWithinItsRadius) {

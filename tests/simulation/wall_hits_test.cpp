@@ -213,23 +213,49 @@ TEST_F(WallHitsTest, AFaceEndsWhereItsCellIsBlockedOrRemoved) {
   }
 }
 
+TEST_F(WallHitsTest, AFaceEndsWhereTheCellBehindItIsFreed) {
+  Environment environment(box(2));
+  const Cell beside = environment.locate({0.5, 0.5, 0.5}).simplex.cell;
+  environment.edit([&](ComplexEdit& e) { e.topology().set_free(beside, false); });
+  Particles particles;
+  environment.add(particles, std::vector<Vec3>{{1.5, 0.5, 0.5}});
+  WallHits hits;
+  hits.add(environment, environment.advance(particles, std::vector<Vec3>{{0.5, 0.5, 0.5}}).contacts);
+  ASSERT_EQ(sum(hits.faces()), 1U);
+  environment.edit([&](ComplexEdit& e) { e.topology().set_free(beside, true); });
+  hits.update_after_edit(environment);
+  EXPECT_TRUE(hits.faces().empty());
+  EXPECT_EQ(sum(hits.ended_by_patch()), 1U);
+}
+
+// At an edge two walls meet the particle. It counts once, at the first of them.
+TEST_F(WallHitsTest, AContactWithSeveralWallsCountsOnce) {
+  Environment environment(box(1));
+  Particles particles;
+  environment.add(particles, std::vector<Vec3>{{0.5, 0.5, 0.5}});
+  const StepReport report = environment.advance(particles, std::vector<Vec3>{{-1.0, -1.0, 0.5}});
+  ASSERT_EQ(report.contacts.contacts.size(), 1U);
+  const auto walls = report.contacts.walls_of(report.contacts.contacts[0]);
+  ASSERT_GT(walls.size(), 1U);
+  WallHits hits;
+  hits.add(environment, report.contacts);
+  ASSERT_EQ(hits.faces().size(), 1U);
+  EXPECT_EQ(hits.faces()[0].face, walls.front().face);
+  EXPECT_NE(hits.faces()[0].face, walls.back().face);
+}
+
 // A face between two cells is a wall of one, then of the other: these are two walls.
 TEST_F(WallHitsTest, AWallSeenFromItsOtherSideIsAnotherWall) {
   Environment environment(box(2));
-  const Cell a{1, 0};
-  const auto set_free = [&](WallHits& hits, Cell cell, bool free) {
-    environment.edit([&](ComplexEdit& e) { e.topology().set_free(cell, free); });
-    hits.update_after_edit(environment);
-  };
   WallHits hits;
   const Location at = environment.locate({1.5, 0.5, 0.5});
   const Location beside = environment.locate({0.5, 0.5, 0.5});
-  set_free(hits, beside.simplex.cell, false);
+  environment.edit([&](ComplexEdit& e) { e.topology().set_free(beside.simplex.cell, false); });
   Particles particles;
   environment.add(particles, std::vector<Vec3>{{1.5, 0.5, 0.5}});
   const StepReport report = environment.advance(particles, std::vector<Vec3>{{0.5, 0.5, 0.5}});
   hits.add(environment, report.contacts);
-  ASSERT_EQ(hits.faces().at(0).face.cell, at.simplex.cell) << a.value;
+  ASSERT_EQ(hits.faces().at(0).face.cell, at.simplex.cell);
   environment.edit([&](ComplexEdit& e) {
     e.topology().set_free(beside.simplex.cell, true);
     e.topology().set_free(at.simplex.cell, false);
