@@ -81,6 +81,15 @@ TEST(WallHitsFile, HasEveryWallWithItsHitsAndArea) {
   EXPECT_THROW(write_wall_hits(environment, hits, folder / "walls.vtu"), InvalidArgument);
 }
 
+TEST(WallHitsFile, HasTheWallsOfFreeCellsAlone) {
+  Environment environment(generate_bar());
+  const test::Folder folder;
+  write_wall_hits(environment, {}, folder / "walls.vtp");
+  const auto walls = read(folder / "walls.vtp");
+  EXPECT_EQ(walls->GetNumberOfPolys(), static_cast<vtkIdType>(environment.map().wall_face_count()));
+  EXPECT_EQ(walls->GetNumberOfPolys(), 3 * 26 * 4 + 2 * 9);
+}
+
 TEST(WallHitsFile, InThePlaneTheWallsAreLines) {
   RectangleOptions rectangle;
   rectangle.cells = {2, 1};
@@ -148,37 +157,40 @@ generator = "box"
 cells = [4, 4, 2]
 [[particles]]
 count = 20
-velocity = [0.5, 0.0, 0.0]
+velocity = [2.0, 0.0, 0.0]
 [motion]
 dt = 0.01
 steps = 100
 [contact]
 restitution = 1.0
 [statistics]
-pathlines = { every = 4 }
+pathlines = { every = 2 }
 [output]
 every = 50
 )",
                         "test.toml"),
             options);
   const auto lines = read(folder / "out" / "pathlines.vtp");
-  ASSERT_EQ(lines->GetNumberOfLines(), 5);
+  ASSERT_EQ(lines->GetNumberOfLines(), 10);
   vtkNew<vtkIdList> corners;
   std::size_t contacts = 0;
-  for (vtkIdType line = 0; line < 5; ++line) {
-    EXPECT_EQ(value(lines->GetCellData()->GetArray("id"), line), 4.0 * static_cast<double>(line));
+  std::size_t rebounds = 0;
+  for (vtkIdType line = 0; line < 10; ++line) {
+    EXPECT_EQ(value(lines->GetCellData()->GetArray("id"), line), 2.0 * static_cast<double>(line));
     lines->GetCellPoints(line, corners);
     const double start = lines->GetPoint(corners->GetId(0))[0];
     for (vtkIdType k = 0; k < corners->GetNumberOfIds(); ++k) {
       const vtkIdType p = corners->GetId(k);
-      const double way = start + 0.5 * value(lines->GetPointData()->GetArray("time"), p);
+      const double way = start + 2.0 * value(lines->GetPointData()->GetArray("time"), p);
       EXPECT_NEAR(lines->GetPoint(p)[0], way <= 4.0 ? way : 8.0 - way, 1e-9);
       contacts += value(lines->GetPointData()->GetArray("contact"), p) > 0.0 ? 1 : 0;
     }
-    const bool met = start > 3.5;
+    const bool met = start > 2.0;
+    rebounds += met ? 1 : 0;
     EXPECT_EQ(corners->GetNumberOfIds(), 101 + (met ? 1 : 0));
   }
-  EXPECT_LE(contacts, 5U);
+  EXPECT_EQ(contacts, rebounds);
+  EXPECT_GT(rebounds, 0U);
 }
 
 }  // namespace dartcast::statistics_files_test

@@ -13,6 +13,7 @@
 #include "dartcast/run.hpp"
 #include "dartcast/scene_file.hpp"
 #include "formats/file_text.hpp"
+#include "formats/file_write.hpp"
 #include "support/sample_mesh.hpp"
 
 namespace dartcast::statistics_run_test {
@@ -217,10 +218,26 @@ TEST_F(StatisticsRun, ARunCutOffAnywhereEndsAsIfItWereNot) {
   EXPECT_GT(whole.at("planes").at(0).at("backward"), 0);
   for (const std::uint64_t cut : {4U, 17U, 31U, 46U}) {
     EXPECT_THROW(run(surgery, two, 1, false, {}, cut), CutOff);
+    // Rows behind those that the checkpoint counts on.
+    for (const char* name : {"planes.csv", "crossings.csv", "pathlines.bin"}) append_bytes(two / name, "more\n");
     run(surgery, two, 2, true);
     expect_same_files();
     EXPECT_EQ(statistics_of(two), whole);
   }
+}
+
+TEST_F(StatisticsRun, ResidenceTimesOfBothEndsGoOn) {
+  std::string text = plug_flow;
+  text.replace(text.find("2.0, 0.0, 0.0]"), 8, "2.0, 0.3");
+  text += "[contact.patch.ymax]\nresponse = \"absorb\"\n";
+  run(text, one);
+  const nlohmann::json whole = statistics_of(one);
+  EXPECT_GT(whole.at("residence_time").at("absorbed").at("ymax").at("count"), 0);
+  EXPECT_GT(whole.at("residence_time").at("escaped").at("xmax").at("count"), 0);
+  EXPECT_THROW(run(text, two, 1, false, {}, 633), CutOff);
+  run(text, two, 2, true);
+  expect_same_files();
+  EXPECT_EQ(statistics_of(two), whole);
 }
 
 // The rows of a last, shorter interval and the pathlines are taken back.
