@@ -96,6 +96,8 @@ struct SimulationStep {
   double duration = 0.0;                   ///< s
   StepReport report;                       ///< of the particles; it names them by their index during the step
   std::vector<std::uint64_t> contact_ids;  ///< the id of each contact's particle
+  /// The source of the cell at each contact's first wall. Edits at the end of the step may have replaced the cell.
+  std::vector<std::uint32_t> contact_sources;
   std::uint64_t injected = 0;
   std::uint64_t absorbed = 0;  ///< by edits before this step, too
   std::uint64_t escaped = 0;

@@ -178,10 +178,13 @@ void ParticleSystem::advance_segment(unsigned segment) {
 void ParticleSystem::count_contacts() {
   const ContactList& list = last_.report.contacts;
   last_.contact_ids.reserve(list.contacts.size());
+  last_.contact_sources.reserve(list.contacts.size());
   for (const Contact& c : list.contacts) {
     last_.contact_ids.push_back(ids_[c.particle]);
     ++contact_counts_[c.particle];
-    ++totals_.contacts_by_patch[list.walls_of(c).front().patch.value];
+    const WallHit& wall = list.walls_of(c).front();
+    last_.contact_sources.push_back(environment_.map().source(wall.face.cell));
+    ++totals_.contacts_by_patch[wall.patch.value];
   }
 }
 
