@@ -4,8 +4,8 @@ set(core_rooms base predicates mesh generators topology complex editing surface 
 set(simulation_rooms dynamics spheres bodies catheter simulation)
 set(io_rooms formats scene output)
 # Public headers; core has all others.
-set(simulation_headers dynamics spheres bodies catheter simulation deformation vector_field events scene)
-set(io_headers mesh_files scene_file run trajectory)
+set(simulation_headers dynamics spheres bodies catheter simulation deformation vector_field events scene statistics)
+set(io_headers mesh_files scene_file run trajectory statistics_files)
 
 # Adds dartcast_NAME, known as dartcast::NAME, from its rooms and public headers. Further arguments: libraries it uses.
 function(add_dartcast_library name)

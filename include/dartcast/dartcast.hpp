@@ -32,6 +32,8 @@
 #include "dartcast/scene_file.hpp"
 #include "dartcast/simulation.hpp"
 #include "dartcast/spheres.hpp"
+#include "dartcast/statistics.hpp"
+#include "dartcast/statistics_files.hpp"
 #include "dartcast/step.hpp"
 #include "dartcast/storage.hpp"
 #include "dartcast/surface.hpp"

@@ -13,11 +13,25 @@
 #include "dartcast/mesh_check.hpp"
 #include "dartcast/scene.hpp"
 #include "dartcast/simulation.hpp"
+#include "dartcast/statistics.hpp"
 #include "dartcast/threads.hpp"
 
 namespace dartcast {
 
 // The outcome of a run: summary.json.
+
+/// The statistics of a run in numbers (docs/scene.md).
+struct StatisticsSummary {
+  StatisticsOptions options;
+  double time = 0.0;                          ///< s: of the simulation
+  std::uint64_t hit_faces = 0;                ///< wall faces that were hit and that there are at the end
+  std::vector<std::uint64_t> hits_by_patch;   ///< by the number of the patch, ended faces included
+  std::vector<std::uint64_t> ended_by_patch;  ///< of these, on faces that edits ended
+  std::vector<PlaneTotals> planes;            ///< by plane
+  std::vector<LeaveTotals> left;              ///< by the number of the patch
+  ResidenceTimes absorbed_by_edits;
+  double seconds = 0.0;  ///< of computing
+};
 
 struct Summary {
   std::string scene;
@@ -46,6 +60,7 @@ struct Summary {
   std::optional<EventLog> surgery;      ///< where the scene has events or is remeshed
   std::vector<BodySummary> bodies;
   std::vector<CatheterSummary> catheters;
+  std::optional<StatisticsSummary> statistics;  ///< where the scene wants any
   std::optional<Audit> audit;
   std::string state_hash;
 };

@@ -20,6 +20,7 @@
 #include "dartcast/mesh_data.hpp"
 #include "dartcast/response.hpp"
 #include "dartcast/simulation.hpp"
+#include "dartcast/statistics.hpp"
 #include "dartcast/vector_field.hpp"
 
 namespace dartcast {
@@ -171,6 +172,11 @@ struct AdaptiveSubdivisionScene {
   AdaptiveSubdivisionOptions options;
 };
 
+struct StatisticsScene {
+  StatisticsOptions options;
+  bool crossings = false;  ///< a table of all crossings is written
+};
+
 /// How arrays stand in .vtp and .vtu files. `fast`: LZ4. `small`: zlib, smaller, but many times slower.
 enum class Compression : std::uint8_t { none, fast, small };
 
@@ -198,6 +204,7 @@ struct Scene {
   std::vector<EventScene> events;  ///< by time
   RemeshScene remesh;
   AdaptiveSubdivisionScene adaptive_subdivision;
+  StatisticsScene statistics;
   OutputScene output;
 };
 

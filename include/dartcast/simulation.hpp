@@ -36,6 +36,8 @@ struct EventLog;
 struct RemeshScene;
 struct Scene;
 struct SimulationState;
+struct Statistics;
+struct StatisticsOptions;
 
 /// The limits of a step's duration in seconds. Speeds and displacements then neither overflow nor vanish.
 inline constexpr double smallest_dt = 0x1p-100;
@@ -81,14 +83,25 @@ struct SimulationOptions {
   std::vector<std::string> user_data = {};
 };
 
+/// A particle that left at a wall.
+struct LeftParticle {
+  std::uint64_t id = 0;
+  ParticleStatus status = ParticleStatus::escaped;  ///< or absorbed
+  Vec3 position;
+  std::uint32_t contact = 0;  ///< its last contact: an index into those of the step
+};
+
 /// The results of one step.
 struct SimulationStep {
   double duration = 0.0;                   ///< s
   StepReport report;                       ///< of the particles; it names them by their index during the step
   std::vector<std::uint64_t> contact_ids;  ///< the id of each contact's particle
+  /// The source of the cell at each contact's first wall. Edits at the end of the step may have replaced the cell.
+  std::vector<std::uint32_t> contact_sources;
   std::uint64_t injected = 0;
   std::uint64_t absorbed = 0;  ///< by edits before this step, too
   std::uint64_t escaped = 0;
+  std::vector<LeftParticle> left;       ///< by id; without those that edits absorbed
   CollisionCounts collisions;           ///< of spheres with each other
   std::vector<SphereOverlap> overlaps;  ///< of spheres with walls
 
@@ -170,7 +183,7 @@ struct CatheterSummary {
 ///     (gravity and the force's acceleration at the particle) and u (the field's velocity there, or 0), taken at the
 ///     start of the step or segment. With a field and no drag v = u, and g has no effect.
 ///  5. Particles advance by v dt, wall responses included. Those absorbed or escaped leave.
-///  6. Bodies step, then catheters.
+///  6. Bodies step, then catheters. Statistics take what happened.
 ///  7. Where it is due, invalid cells are remeshed and crowded cells are subdivided.
 /// With collisions the vertices move after 4 (velocities are those at the places before), and spheres get impulses
 /// before they move and advance: from each other, from bodies, and from walls that reflect or let slide within a
@@ -237,6 +250,10 @@ class Simulation {
   /// InvalidArgument where an option is out of range, in the plane, and where cells are subdivided already.
   void set_adaptive_subdivision(const AdaptiveSubdivisionScene& subdivision);
 
+  /// Keeps these statistics (dartcast/statistics.hpp) from now on; those kept before are dropped. A checkpoint holds
+  /// them, too. Throws InvalidArgument, nothing changed, where an option is out of range.
+  void set_statistics(const StatisticsOptions& options);
+
   /// Throws as Environment::advance(), and Error that names the event that cannot be carried out. Throws as
   /// Deformation::load_frames(), nothing changed: the step may be repeated.
   const SimulationStep& step();
@@ -297,7 +314,9 @@ class Simulation {
   [[nodiscard]] const CatheterStep& catheter_step(std::size_t i) const;  ///< the last one
 
   [[nodiscard]] const SimulationTotals& totals() const;
-  [[nodiscard]] double seconds_solids() const;  ///< steps of bodies and catheters so far
+  [[nodiscard]] const StatisticsOptions& statistics_options() const;
+  [[nodiscard]] const Statistics& statistics() const;  ///< empty where none are kept
+  [[nodiscard]] double seconds_solids() const;         ///< steps of bodies and catheters so far
   [[nodiscard]] const EventLog& event_log() const;
   [[nodiscard]] std::vector<BodySummary> body_summaries() const;  ///< by id, those that left included
   [[nodiscard]] std::vector<CatheterSummary> catheter_summaries() const;

@@ -45,10 +45,31 @@ void VtpFile::add_line() {
   add_cells("Lines", std::move(ids), {static_cast<std::int64_t>(count_)});
 }
 
-void VtpFile::add_polygons(std::span<const std::size_t> offsets, std::span<const std::uint32_t> corners) {
+namespace {
+
+std::vector<std::int64_t> ends_of(std::span<const std::size_t> offsets) {
   std::vector<std::int64_t> ends;
   for (std::size_t i = 1; i < offsets.size(); ++i) ends.push_back(static_cast<std::int64_t>(offsets[i]));
-  add_cells("Polys", {corners.begin(), corners.end()}, std::move(ends));
+  return ends;
+}
+
+}  // namespace
+
+void VtpFile::add_lines(std::span<const std::size_t> offsets, std::span<const std::uint32_t> corners) {
+  add_cells("Lines", {corners.begin(), corners.end()}, ends_of(offsets));
+}
+
+void VtpFile::add_polygons(std::span<const std::size_t> offsets, std::span<const std::uint32_t> corners) {
+  add_cells("Polys", {corners.begin(), corners.end()}, ends_of(offsets));
+}
+
+void VtpFile::add_texts(std::string name, std::span<const std::string> texts) {
+  if (texts.empty()) return;
+  std::vector<char> characters;  // each text ended by a 0
+  for (const std::string& text : texts)
+    characters.insert(characters.end(), text.c_str(), text.c_str() + text.size() + 1);
+  data_.field.emplace_back(std::move(name), std::move(characters));
+  data_.field.back().set_tuples(texts.size());
 }
 
 }  // namespace dartcast

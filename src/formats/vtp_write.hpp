@@ -24,11 +24,20 @@ class VtpFile {
   void add_line();
   /// Polygons: corners of one after the other, polygon i from offsets[i] to offsets[i + 1].
   void add_polygons(std::span<const std::size_t> offsets, std::span<const std::uint32_t> corners);
+  /// Lines in the same way.
+  void add_lines(std::span<const std::size_t> offsets, std::span<const std::uint32_t> corners);
   /// A value for each point.
   template <class T>
   void add(std::string name, std::vector<T> values) {
     data_.section("PointData").arrays.emplace_back(std::move(name), std::move(values));
   }
+  /// A value for each line or polygon.
+  template <class T>
+  void add_for_cells(std::string name, std::vector<T> values) {
+    data_.section("CellData").arrays.emplace_back(std::move(name), std::move(values));
+  }
+  /// Texts that belong to the whole.
+  void add_texts(std::string name, std::span<const std::string> texts);
 
   [[nodiscard]] const XmlDataSet& data() const { return data_; }
 

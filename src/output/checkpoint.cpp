@@ -248,12 +248,48 @@ void fields(Archive& a, ParticleSystemState& s) {
   a.list(s.impulses, [&](CachedImpulse& k) { fields(a, k); });
 }
 
+template <class Archive>
+void fields(Archive& a, ResidenceTimes& t) {
+  values(a, t.count, t.sum, t.least, t.most, t.bin);
+  for (std::uint64_t& n : t.bins) a.value(n);
+}
+
+bool has_statistics(const StatisticsState& s) { return s.has_hits || s.observes_motion; }
+
+// Nothing where there are no statistics.
+template <class Archive>
+void fields(Archive& a, StatisticsState& s) {
+  if (!a.has_more(has_statistics(s))) return;
+  value_as<std::uint8_t>(a, s.has_hits);
+  a.list(s.hits, [&](FaceHits& f) { values(a, f.face.cell.value, f.face.face, f.patch.value, f.hits); });
+  a.list(s.ended_hits, [&](std::uint64_t& n) { a.value(n); });
+  value_as<std::uint8_t>(a, s.observes_motion);
+  a.list(s.planes, [&](PlaneTotals& p) {
+    fields(a, p.forward);
+    fields(a, p.backward);
+  });
+  a.list(s.left, [&](LeaveTotals& l) {
+    fields(a, l.escaped);
+    fields(a, l.absorbed);
+  });
+  fields(a, s.absorbed_by_edits);
+  a.list(s.starts, [&](StartTimes::Start& start) { values(a, start.first_id, start.time); });
+  a.value(s.next_id);
+}
+
+template <class Archive>
+void fields(Archive& a, StatisticsProgress& p) {
+  values(a, p.planes_bytes, p.crossings_bytes, p.pathlines_bytes, p.interval_begin);
+  a.list(p.at_begin, [&](StatisticsProgress::Plane& plane) { values(a, plane.forward, plane.backward, plane.ages); });
+}
+
 // The fields that version 0.1 did not write.
 template <class Archive>
 void later_fields(Archive& a, SimulationState& s) {
   std::vector<CatheterCheckpoint>& catheters = s.catheters.catheters;
   const bool walls = std::any_of(catheters.begin(), catheters.end(), [](const auto& c) { return !c.walls.empty(); });
-  if (!a.has_more(walls || !s.bodies.impulses.empty() || !s.particles.user_data.empty())) return;
+  const bool statistics = has_statistics(s.statistics);
+  if (!a.has_more(statistics || walls || !s.bodies.impulses.empty() || !s.particles.user_data.empty())) return;
   a.list(s.particles.user_data, [&](double& d) { a.value(d); });
   a.list(s.bodies.impulses, [&](CachedImpulse& k) { fields(a, k); });
   for (CatheterCheckpoint& c : catheters) {
@@ -264,6 +300,7 @@ void later_fields(Archive& a, SimulationState& s) {
       values(a, w.pressure, w.idle);
     });
   }
+  fields(a, s.statistics);
 }
 
 template <class Archive>
@@ -278,6 +315,7 @@ void fields(Archive& a, Checkpoint& c) {
   fields(a, c.simulation.catheters);
   values(a, c.solids_recording.bodies_bytes, c.solids_recording.catheters_bytes);
   later_fields(a, c.simulation);
+  if (has_statistics(c.simulation.statistics)) fields(a, c.statistics_recording);
 }
 
 void check_same(const RunIdentity& saved, const RunIdentity& run) {

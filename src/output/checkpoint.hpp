@@ -10,6 +10,7 @@
 #include "dartcast/mesh_data.hpp"
 #include "output/recording.hpp"
 #include "output/solids_recording.hpp"
+#include "output/statistics_recording.hpp"
 #include "simulation/simulation_state.hpp"
 
 namespace dartcast {
@@ -30,6 +31,7 @@ struct Checkpoint {
   std::uint64_t held = 0;  ///< in the last step
   std::uint64_t audited = 0;
   SolidsProgress solids_recording;
+  StatisticsProgress statistics_recording;
 };
 
 /// Writes the file beside its place and then puts it there: whenever a run is cut off, a whole checkpoint is left.

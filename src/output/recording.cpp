@@ -212,7 +212,7 @@ void Recording::write_contacts(const Simulation& simulation, const SimulationSte
     contacts_.print("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", simulation.steps(),
                     simulation.time() - dt * (1.0 - c.time_of_impact), step.contact_ids[i],
                     kinds[static_cast<std::size_t>(c.kind)], map.patch_names()[wall.patch.value],
-                    map.source(wall.face.cell), c.point.x, c.point.y, c.point.z, wall.normal.x, wall.normal.y,
+                    step.contact_sources[i], c.point.x, c.point.y, c.point.z, wall.normal.x, wall.normal.y,
                     wall.normal.z, c.wall_displacement.x, c.wall_displacement.y, c.wall_displacement.z);
   }
 }

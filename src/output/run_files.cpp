@@ -25,8 +25,9 @@ struct Series {
   std::string_view end;
   bool named;
 };
-constexpr std::array<Series, 6> all_series = {{{"particles_", ".vtp", false},
+constexpr std::array<Series, 7> all_series = {{{"particles_", ".vtp", false},
                                                {"environment_", ".vtu", false},
+                                               {"walls_", ".vtp", false},
                                                {"body_", ".vtp", true},
                                                {"surface_", ".vtp", true},
                                                {"catheter_", ".vtp", true},
@@ -60,9 +61,10 @@ bool is_list(std::string_view name) {
 
 bool is_run_file(std::string_view name) {
   if (is_part_of_run_file(name)) return true;
-  static constexpr std::array<std::string_view, 10> fixed = {
+  static constexpr std::array<std::string_view, 15> fixed = {
       "summary.json", "stats.csv",  "particles.pvd",  "environment.pvd", "environment.vtu",
-      "contacts.csv", "scene.toml", "checkpoint.bin", "bodies.csv",      "catheters.csv"};
+      "contacts.csv", "scene.toml", "checkpoint.bin", "bodies.csv",      "catheters.csv",
+      "walls.pvd",    "planes.csv", "crossings.csv",  "pathlines.bin",   "pathlines.vtp"};
   if (std::find(fixed.begin(), fixed.end(), name) != fixed.end()) return true;
   return is_list(name) || frame_step(name);
 }

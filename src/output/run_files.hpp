@@ -56,6 +56,7 @@ class RunTable {
   void print(fmt::format_string<Values...> form, Values&&... values) {
     fmt::format_to(std::back_inserter(rows_), form, std::forward<Values>(values)...);
   }
+  void append(std::string_view bytes) { rows_ += bytes; }
   /// Leaves the rows to the thread.
   void send(WritingThread& writing);
   /// The same, where they are many.

@@ -55,6 +55,9 @@ void RunOutput::open(MeshData mesh) {
                    : std::make_unique<Recording>(*writing_, recording_options_, std::move(*record_), scene_.text);
   solids_ = found_ ? std::make_unique<SolidsRecording>(*writing_, folder(), scene_, found_->solids_recording)
                    : std::make_unique<SolidsRecording>(*writing_, folder(), scene_);
+  statistics_ = found_
+                    ? std::make_unique<StatisticsRecording>(*writing_, folder(), scene_, found_->statistics_recording)
+                    : std::make_unique<StatisticsRecording>(*writing_, folder(), scene_);
 }
 
 void RunOutput::add_step(const Simulation& simulation, const SimulationStep& step) {
@@ -63,6 +66,7 @@ void RunOutput::add_step(const Simulation& simulation, const SimulationStep& ste
   writing_->check();
   recording_->add_step(simulation, step, simulation.event_log().in_opened);
   solids_->add_step(simulation);
+  statistics_->add_step(simulation);
 }
 
 void RunOutput::add_frame(const Simulation& simulation, bool last) {
@@ -75,21 +79,25 @@ void RunOutput::write_frame(const Simulation& simulation) {
   if (every_ > 0) {
     recording_->add_frame(simulation);
     solids_->add_frame(simulation, recording_->frames());
+    statistics_->add_frame(simulation, recording_->frames());
   }
+  if (on_schedule(simulation.steps())) statistics_->end_interval(simulation);
   const std::uint64_t audited = summary_.audit ? summary_.audit->checked : 0;
-  auto checkpoint = std::make_shared<Checkpoint>(Checkpoint{
-      identity_, simulation.checkpoint().state(), recording_->progress(), summary_.held, audited, solids_->progress()});
+  auto checkpoint =
+      std::make_shared<Checkpoint>(Checkpoint{identity_, simulation.checkpoint().state(), recording_->progress(),
+                                              summary_.held, audited, solids_->progress(), statistics_->progress()});
   const ParticleSystemState& particles = checkpoint->simulation.particles;
   writing_->add(particles.particles.size() * sizeof(ParticleSystemState::Particle),
                 [checkpoint, path = file()] { write_checkpoint(path, *checkpoint); });
 }
 
-void RunOutput::finish() {
+void RunOutput::finish(const Simulation& simulation) {
   if (!writing_) return;
   {
     const ScopeTimer timer(summary_.seconds_write);
     recording_->progress();
     solids_->progress();
+    statistics_->finish(simulation);
     writing_->finish();
   }
   summary_.seconds_writing_thread = writing_->seconds();

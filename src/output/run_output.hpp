@@ -15,6 +15,7 @@
 #include "output/recording.hpp"
 #include "output/run_lock.hpp"
 #include "output/solids_recording.hpp"
+#include "output/statistics_recording.hpp"
 #include "output/writing_thread.hpp"
 
 namespace dartcast {
@@ -39,7 +40,7 @@ class RunOutput {
   void add_step(const Simulation& simulation, const SimulationStep& step);
   /// Before the first step and after each: a frame and a checkpoint where the scene wants one, and for the last step.
   void add_frame(const Simulation& simulation, bool last);
-  void finish();
+  void finish(const Simulation& simulation);
 
  private:
   [[nodiscard]] const std::filesystem::path& folder() const { return recording_options_.folder; }
@@ -59,6 +60,7 @@ class RunOutput {
   std::unique_ptr<WritingThread> writing_;  // before what leaves files to it
   std::unique_ptr<Recording> recording_;
   std::unique_ptr<SolidsRecording> solids_;
+  std::unique_ptr<StatisticsRecording> statistics_;
 };
 
 }  // namespace dartcast

@@ -41,6 +41,22 @@ void describe(const Environment& environment, Summary& summary) {
   summary.patch_names = map.patch_names();
 }
 
+StatisticsSummary summary_of(const Simulation& simulation) {
+  const Statistics& s = simulation.statistics();
+  StatisticsSummary summary;
+  summary.options = simulation.statistics_options();
+  summary.hit_faces = s.hits.faces().size();
+  summary.hits_by_patch = s.hits.by_patch(simulation.environment());
+  summary.ended_by_patch = s.hits.ended_by_patch();
+  summary.ended_by_patch.resize(summary.hits_by_patch.size());
+  summary.time = simulation.time();
+  summary.planes = s.planes;
+  summary.left = s.left;
+  summary.absorbed_by_edits = s.absorbed_by_edits;
+  summary.seconds = s.seconds;
+  return summary;
+}
+
 // The loop over a simulation's steps.
 class Run {
  public:
@@ -86,6 +102,7 @@ class Run {
     summary_.state_hash = simulation_.state_hash().hex();
     summary_.bodies = simulation_.body_summaries();
     summary_.catheters = simulation_.catheter_summaries();
+    if (simulation_.statistics_options().any()) summary_.statistics = summary_of(simulation_);
   }
 
   Simulation& simulation_;
@@ -140,7 +157,7 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
   summary.seconds_locate = locate.seconds();
   output.open(std::move(std::get<MeshData>(loaded.scene.environment.mesh)));
   Run(*simulation, output, steps, summary).run(progress);
-  output.finish();
+  output.finish(*simulation);
   return summary;
 }
 

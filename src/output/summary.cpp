@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "dartcast/run.hpp"
 
@@ -28,16 +29,21 @@ Json orientation_tests(const Summary& s) {
   return json;
 }
 
+// Values by the name of the patch; those without a patch where there are any.
+Json by_patch(const Summary& s, const std::vector<std::uint64_t>& values) {
+  Json json = Json::object();
+  for (std::size_t i = 1; i < values.size(); ++i) json[s.patch_names[i]] = values[i];
+  if (values[0] > 0) json[""] = values[0];
+  return json;
+}
+
 Json contacts(const Summary& s) {
   const auto& by_kind = s.totals.counters.contacts;
-  Json by_patch = Json::object();
-  for (std::size_t i = 1; i < s.patch_names.size(); ++i) by_patch[s.patch_names[i]] = s.totals.contacts_by_patch[i];
-  if (s.totals.contacts_by_patch[0] > 0) by_patch[""] = s.totals.contacts_by_patch[0];
   return {{"total", by_kind[0] + by_kind[1] + by_kind[2]},
           {"face", by_kind[2]},
           {"edge", by_kind[1]},
           {"vertex", by_kind[0]},
-          {"by_patch", by_patch}};
+          {"by_patch", by_patch(s, s.totals.contacts_by_patch)}};
 }
 
 Json seconds(const Summary& s) {
@@ -46,6 +52,7 @@ Json seconds(const Summary& s) {
   if (s.totals.seconds_collide > 0.0) json["collide"] = s.totals.seconds_collide;
   json["respond"] = s.totals.seconds_respond;
   if (!s.bodies.empty() || !s.catheters.empty()) json["solids"] = s.seconds_solids;
+  if (s.statistics) json["statistics"] = s.statistics->seconds;
   json["write"] = s.seconds_write;
   json["writing_thread"] = s.seconds_writing_thread;
   return json;
@@ -118,6 +125,56 @@ Json catheters(const std::vector<CatheterSummary>& all) {
   return list;
 }
 
+std::uint64_t sum(const std::vector<std::uint64_t>& values) {
+  return std::accumulate(values.begin(), values.end(), std::uint64_t{0});
+}
+
+Json residence_time(const ResidenceTimes& t) {
+  if (t.count == 0) return {{"count", 0}};
+  return {{"count", t.count}, {"mean", t.mean()}, {"least", t.least},
+          {"most", t.most},   {"bin", t.bin},     {"histogram", t.bins}};
+}
+
+Json planes(const StatisticsSummary& s) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < s.planes.size(); ++i) {
+    const PlaneTotals& p = s.planes[i];
+    list.push_back({{"name", s.options.planes[i].name},
+                    {"forward", p.forward.count},
+                    {"backward", p.backward.count},
+                    {"residence_time", residence_time(p.forward)}});
+    if (s.time > 0.0)
+      list.back()["flux"] = (static_cast<double>(p.forward.count) - static_cast<double>(p.backward.count)) / s.time;
+  }
+  return list;
+}
+
+// For the patches where particles left.
+Json residence(const Summary& s) {
+  Json json = {{"escaped", Json::object()}, {"absorbed", Json::object()}};
+  const StatisticsSummary& all = *s.statistics;
+  for (std::size_t i = 0; i < all.left.size(); ++i) {
+    if (all.left[i].escaped.count > 0) json["escaped"][s.patch_names[i]] = residence_time(all.left[i].escaped);
+    if (all.left[i].absorbed.count > 0) json["absorbed"][s.patch_names[i]] = residence_time(all.left[i].absorbed);
+  }
+  if (all.absorbed_by_edits.count > 0) json["absorbed_by_edits"] = residence_time(all.absorbed_by_edits);
+  return json;
+}
+
+Json statistics(const Summary& s) {
+  const StatisticsSummary& all = *s.statistics;
+  Json json = Json::object();
+  if (all.options.hits) {
+    json["hits"] = {{"total", sum(all.hits_by_patch)},
+                    {"by_patch", by_patch(s, all.hits_by_patch)},
+                    {"faces", all.hit_faces},
+                    {"ended", sum(all.ended_by_patch)}};
+  }
+  if (!all.planes.empty()) json["planes"] = planes(all);
+  if (all.options.residence) json["residence_time"] = residence(s);
+  return json;
+}
+
 double ns_per_particle_step(const Summary& s) {
   return ratio(s.totals.seconds_detect * 1e9, static_cast<double>(s.totals.counters.particle_steps));
 }
@@ -160,6 +217,7 @@ std::string summary_json(const Summary& s) {
   if (!s.catheters.empty()) json["catheters"] = catheters(s.catheters);
   if (t.counters.particle_steps > 0) json["orientation_tests"] = orientation_tests(s);
   json["contacts"] = contacts(s);
+  if (s.statistics) json["statistics"] = statistics(s);
   json["seconds"] = seconds(s);
   if (t.counters.particle_steps > 0) json["ns_per_particle_step"] = ns_per_particle_step(s);
   if (s.cancelled) json["cancelled"] = true;
@@ -206,6 +264,32 @@ std::string surgery_text(const EventLog& log) {
   return out + fmt::format("{} particles in opened cells at the end\n", log.in_opened);
 }
 
+std::string residence_text(const Summary& s) {
+  std::string out;
+  const auto add = [&](std::string_view how, std::string_view where, const ResidenceTimes& t) {
+    if (t.count > 0)
+      out += fmt::format("{} {}: {} particles after {:.4g} s on average\n", how,
+                         where.empty() ? std::string_view("without a patch") : where, t.count, t.mean());
+  };
+  for (std::size_t i = 0; i < s.statistics->left.size(); ++i) {
+    add("escaped at", s.patch_names[i], s.statistics->left[i].escaped);
+    add("absorbed at", s.patch_names[i], s.statistics->left[i].absorbed);
+  }
+  add("absorbed by", "edits", s.statistics->absorbed_by_edits);
+  return out;
+}
+
+std::string statistics_text(const StatisticsSummary& s) {
+  std::string out;
+  if (s.options.hits)
+    out += fmt::format("hits: {} on {} wall faces, {} on faces that edits ended\n",
+                       sum(s.hits_by_patch) - sum(s.ended_by_patch), s.hit_faces, sum(s.ended_by_patch));
+  for (std::size_t i = 0; i < s.planes.size(); ++i)
+    out += fmt::format("plane {}: {} forward after {:.4g} s on average, {} backward\n", s.options.planes[i].name,
+                       s.planes[i].forward.count, s.planes[i].forward.mean(), s.planes[i].backward.count);
+  return out;
+}
+
 }  // namespace
 
 std::string summary_text(const Summary& s) {
@@ -233,6 +317,7 @@ std::string summary_text(const Summary& s) {
                        t.collisions.pairs_touching, t.collisions.overlaps, t.collisions.deepest);
   out += solids_text(s);
   if (s.surgery) out += surgery_text(*s.surgery);
+  if (s.statistics) out += statistics_text(*s.statistics) + residence_text(s);
   if (s.cancelled) out += fmt::format("cancelled after {} steps\n", s.steps);
   if (s.audit) out += fmt::format("audit: {} checked, {} failed\n", s.audit->checked, s.audit->failed);
   return out + fmt::format("state hash: {}\n", s.state_hash);

@@ -14,6 +14,7 @@
 #include "scene/scene_fields.hpp"
 #include "scene/scene_mesh_keys.hpp"
 #include "scene/scene_solids.hpp"
+#include "scene/scene_statistics.hpp"
 #include "scene/toml_table.hpp"
 
 namespace dartcast {
@@ -45,6 +46,7 @@ class SceneReader {
                      [](const EventScene& a, const EventScene& b) { return a.event.at < b.event.at; });
     scene.remesh = remesh(root.table("remesh"));
     scene.adaptive_subdivision = adaptive_subdivision(root.table("crowding"));
+    scene.statistics = read_statistics(root.table("statistics"));
     scene.output = output(root.table("output"));
     root.finish();
     return scene;

@@ -139,6 +139,18 @@ bool TomlTable::get(std::string_view key, std::vector<double>& value, std::size_
   return true;
 }
 
+bool TomlTable::get(std::string_view key, std::vector<std::uint64_t>& value, std::uint64_t low, std::uint64_t high) {
+  std::vector<double> list;
+  if (!get(key, list)) return false;
+  value.clear();
+  for (const double x : list) {
+    if (x != std::floor(x) || x < static_cast<double>(low) || x > static_cast<double>(high))
+      fail(key, fmt::format("{}: {} is in it: all must be whole numbers between {} and {}", key, x, low, high));
+    value.push_back(static_cast<std::uint64_t>(x));
+  }
+  return true;
+}
+
 bool TomlTable::get(std::string_view key, std::size_t& value, const std::vector<std::string_view>& names) {
   std::string name;
   if (!get(key, name)) return false;
@@ -163,15 +175,18 @@ std::vector<TomlTable> TomlTable::tables(std::string_view key) {
   const toml::node* node = find(key);
   if (node == nullptr) return {};
   if (node->is_table()) return {table(key)};
+  const bool nested = name_.starts_with("[") && !name_.starts_with("[[");
+  const std::string name =
+      nested ? fmt::format("[[{}.{}]]", name_.substr(1, name_.size() - 2), key) : fmt::format("[[{}]]", key);
   std::vector<TomlTable> result;
   if (const toml::array* list = node->as_array()) {
     for (const toml::node& item : *list) {
-      if (!item.is_table()) fail(key, fmt::format("{} must be a list of tables: [[{}]]", key, key));
-      result.emplace_back(*item.as_table(), file_, fmt::format("[[{}]]", key));
+      if (!item.is_table()) fail(key, fmt::format("{} must be a list of tables: {}", key, name));
+      result.emplace_back(*item.as_table(), file_, name);
     }
     return result;
   }
-  fail(key, fmt::format("{} must be tables: [[{}]]; here is a {}", key, key, type_name(*node)));
+  fail(key, fmt::format("{} must be tables: {}; here is a {}", key, name, type_name(*node)));
 }
 
 std::vector<std::string> TomlTable::keys() const {

@@ -50,6 +50,8 @@ class TomlTable {
   bool get(std::string_view key, std::vector<std::string>& value);
   /// A list of numbers, or one; `count` of them unless 0.
   bool get(std::string_view key, std::vector<double>& value, std::size_t count = 0);
+  /// A list of whole numbers, or one.
+  bool get(std::string_view key, std::vector<std::uint64_t>& value, std::uint64_t low, std::uint64_t high);
   /// One of some names; the place of the one found.
   bool get(std::string_view key, std::size_t& value, const std::vector<std::string_view>& names);
 

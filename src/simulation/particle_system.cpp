@@ -118,6 +118,7 @@ void ParticleSystem::step(double /*begin*/) {
   last_.duration = options_.dt;
   last_.absorbed = std::exchange(absorbed_between_, 0);
   inject();
+  if (after_injection_) after_injection_();
   if (!collides()) move_vertices();
   for (unsigned segment = 0; segment < options_.substeps; ++segment) advance_segment(segment);
   const ScopeTimer timer(totals_.seconds_respond);
@@ -177,10 +178,13 @@ void ParticleSystem::advance_segment(unsigned segment) {
 void ParticleSystem::count_contacts() {
   const ContactList& list = last_.report.contacts;
   last_.contact_ids.reserve(list.contacts.size());
+  last_.contact_sources.reserve(list.contacts.size());
   for (const Contact& c : list.contacts) {
     last_.contact_ids.push_back(ids_[c.particle]);
     ++contact_counts_[c.particle];
-    ++totals_.contacts_by_patch[list.walls_of(c).front().patch.value];
+    const WallHit& wall = list.walls_of(c).front();
+    last_.contact_sources.push_back(environment_.map().source(wall.face.cell));
+    ++totals_.contacts_by_patch[wall.patch.value];
   }
 }
 
@@ -192,9 +196,13 @@ void ParticleSystem::mark_held() {
 void ParticleSystem::remove_gone() {
   std::vector<std::uint8_t> gone(particles_.size(), 0);
   std::uint64_t absorbed = 0;
+  const std::vector<Contact>& contacts = last_.report.contacts.contacts;
+  std::uint32_t next = 0;  // the first contact of a particle behind the last one that left
   for (std::size_t i = 0; i < gone.size(); ++i) {
     if (!leaves(fates_[i])) continue;
     gone[i] = 1;
+    while (next < contacts.size() && contacts[next].particle <= i) ++next;
+    last_.left.push_back({ids_[i], fates_[i], particles_[i].position, next - 1});
     ++(fates_[i] == ParticleStatus::absorbed ? absorbed : last_.escaped);
     gone_.add(ids_[i], particles_[i], velocities_[i], static_cast<std::uint64_t>(fates_[i]));
   }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "dartcast/simulation.hpp"
@@ -44,6 +45,8 @@ class ParticleSystem final : public SimulationComponent {
   /// Reads what the next step needs of the motion's and the fields' files, before that step changes anything. Throws as
   /// load_motion() and VectorField::hold(), and InvalidArgument where an integrator has no field to follow.
   void load_step();
+  /// Called in each step when the inlets have injected, before anything moves; empty: nothing is.
+  void set_after_injection(std::function<void()> call) { after_injection_ = std::move(call); }
   /// Bodies that the spheres meet; they step after each step of the particles. Precondition: there are collisions.
   void set_bodies(Bodies& bodies) { bodies_ = &bodies; }
   void add_inlet(Patch patch, double rate, const Vec3& velocity, double radius, std::span<const double> user_data);
@@ -68,6 +71,9 @@ class ParticleSystem final : public SimulationComponent {
   [[nodiscard]] const Environment& environment() const { return environment_; }
   [[nodiscard]] const SimulationStep& last_step() const { return last_; }
   [[nodiscard]] const UpdateReport& last_update() const { return last_update_; }  ///< of the last edit
+  [[nodiscard]] std::span<const std::uint64_t> absorbed_by_edit() const {
+    return absorbed_by_edit_;
+  }  ///< ids, last edit
   [[nodiscard]] double time() const { return static_cast<double>(steps_) * options_.dt; }
   [[nodiscard]] std::uint64_t steps() const { return steps_; }
   [[nodiscard]] bool deforms() const { return deformation_.has_value(); }
@@ -194,6 +200,8 @@ class ParticleSystem final : public SimulationComponent {
   std::uint64_t absorbed_between_ = 0;  // by edits since the last step
   SimulationStep last_;
   UpdateReport last_update_;
+  std::vector<std::uint64_t> absorbed_by_edit_;
+  std::function<void()> after_injection_;
   SimulationTotals totals_;
   StateHash gone_;
 };

@@ -20,10 +20,12 @@ void ParticleSystem::update_after_edit(const ComplexEditReport& edit, OrphanPoli
 void ParticleSystem::remove_absorbed(const UpdateReport& report, std::span<const ParticleState> before) {
   std::vector<std::uint8_t> marks(ids_.size(), 0);
   std::uint64_t absorbed = 0;
+  absorbed_by_edit_.clear();
   for (const OrphanedParticle& p : report.orphaned) {
     if (p.outcome != OrphanPolicy::absorb) continue;
     marks[p.particle] = 1;
     ++absorbed;
+    absorbed_by_edit_.push_back(ids_[p.particle]);
     gone_.add(ids_[p.particle], before[p.particle], velocities_[p.particle],
               static_cast<std::uint64_t>(ParticleStatus::absorbed));
   }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "dartcast/error.hpp"
+#include "dartcast/validity.hpp"
 #include "simulation/simulation_parts.hpp"
 #include "simulation/simulation_state.hpp"
 #include "simulation/timer.hpp"
@@ -23,15 +24,14 @@ Simulation::~Simulation() = default;
 // Files of the motion or of fields that cannot be read end a step before anything changes. Then a step goes through these phases:
 //  1. events that are due edit the environment;
 //  2. the particles step: inlets inject, vertices move, velocities change, particles advance, some leave;
-//  3. the other components step in the environment as it stands then: bodies, catheters;
+//  3. the other components step in the environment as it stands then: bodies, catheters, statistics;
 //  4. invalid cells are remeshed and crowded cells are subdivided, where that is due.
 const SimulationStep& Simulation::step() {
   const double begin = time();
   parts_->particles.load_step();
   parts_->events.before_step();
   for (SimulationComponent* component : parts_->components) {
-    double ignored = 0.0;  // particles have clocks of their own
-    const ScopeTimer timer(component == &parts_->particles ? ignored : parts_->seconds_solids);
+    const ScopeTimer timer(parts_->clock_of(component));
     component->step(begin);
   }
   parts_->events.after_step();
@@ -70,6 +70,10 @@ void Simulation::set_adaptive_subdivision(const AdaptiveSubdivisionScene& subdiv
   parts_->events.set_adaptive_subdivision(subdivision);
 }
 
+void Simulation::set_statistics(const StatisticsOptions& options) { parts_->statistics.set_options(options); }
+const StatisticsOptions& Simulation::statistics_options() const { return parts_->statistics.options(); }
+const Statistics& Simulation::statistics() const { return parts_->statistics.statistics(); }
+
 SimulationCheckpoint Simulation::checkpoint() const {
   SimulationState state;
   for (const SimulationComponent* component : parts_->components) component->save(state);
@@ -78,6 +82,7 @@ SimulationCheckpoint Simulation::checkpoint() const {
 }
 
 void Simulation::restore(const SimulationCheckpoint& saved) {
+  parts_->statistics.check(saved.state());
   parts_->replaying = true;
   try {
     parts_->events.replay(saved.state().events);

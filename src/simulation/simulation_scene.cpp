@@ -103,6 +103,7 @@ void Simulation::make(const Scene& scene, Threads threads) {
   set_events(events_of(scene, environment.map()));
   set_remeshing(scene.remesh);
   set_adaptive_subdivision(scene.adaptive_subdivision);
+  set_statistics(scene.statistics.options);
   for (const BodyScene& body : scene.bodies) add(body);
   for (const CatheterScene& catheter : scene.catheters) add(catheter);
   add_inlets(*this, scene);

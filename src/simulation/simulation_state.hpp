@@ -8,7 +8,9 @@
 #include "dartcast/catheter.hpp"
 #include "dartcast/events.hpp"
 #include "dartcast/simulation.hpp"
+#include "dartcast/statistics.hpp"
 #include "dynamics/contact_solver.hpp"
+#include "simulation/start_times.hpp"
 
 namespace dartcast {
 
@@ -36,11 +38,25 @@ struct CathetersState {
   std::vector<CatheterTotals> totals;
 };
 
+/// The statistics so far.
+struct StatisticsState {
+  bool has_hits = false;
+  std::vector<FaceHits> hits;
+  std::vector<std::uint64_t> ended_hits;
+  bool observes_motion = false;  ///< what follows is kept
+  std::vector<PlaneTotals> planes;
+  std::vector<LeaveTotals> left;
+  ResidenceTimes absorbed_by_edits;
+  std::vector<StartTimes::Start> starts;
+  std::uint64_t next_id = 0;
+};
+
 struct SimulationState {
   ParticleSystemState particles;
   EventLog events;
   Bodies::Checkpoint bodies;
   CathetersState catheters;
+  StatisticsState statistics;
 };
 
 }  // namespace dartcast

@@ -435,6 +435,61 @@ TEST(SceneFile, MistakesAreNamedWithLineAndRemedy) {
   expect_error("particles = 3\n" + box, "1:", "tables");
 }
 
+TEST(SceneFile, StatisticsAreRead) {
+  const Scene s = parse_scene(box + R"(
+[statistics]
+hits = true
+residence = true
+crossings = true
+pathlines = { every = 100, ids = [3, 1] }
+[[statistics.plane]]
+name = "outlet-left"
+point = [1.0, 2.0, 3.0]
+normal = [0.0, 0.0, -2.0]
+radius = 0.5
+[[statistics.plane]]
+name = "whole"
+point = [0.0, 0.0, 0.0]
+normal = [1.0, 0.0, 0.0]
+)",
+                              "folder/scene.toml");
+  const StatisticsOptions& options = s.statistics.options;
+  EXPECT_TRUE(options.hits);
+  EXPECT_TRUE(options.residence);
+  EXPECT_TRUE(s.statistics.crossings);
+  EXPECT_EQ(options.pathlines_every, 100U);
+  EXPECT_EQ(options.pathlines_of, (std::vector<std::uint64_t>{3, 1}));
+  ASSERT_EQ(options.planes.size(), 2U);
+  EXPECT_EQ(options.planes[0].name, "outlet-left");
+  EXPECT_EQ(options.planes[0].point, (Vec3{1.0, 2.0, 3.0}));
+  EXPECT_EQ(options.planes[0].normal, (Vec3{0.0, 0.0, -2.0}));
+  EXPECT_EQ(options.planes[0].radius, 0.5);
+  EXPECT_EQ(options.planes[1].radius, 0.0);
+  EXPECT_FALSE(parse_scene(box, "folder/scene.toml").statistics.options.any());
+}
+
+TEST(SceneFile, StatisticsThatAreWrongAreRefusedWithTheirLine) {
+  const std::string plane = box + "[[statistics.plane]]\nname = 'a'\npoint = [0, 0, 0]\nnormal = [1, 0, 0]\n";
+  EXPECT_EQ(error_of(plane), "");
+  expect_error(box + "[statistics]\nhit = true\n", "4: [statistics]", "unknown");
+  expect_error(box + "[statistics]\nhits = 1\n", "4: [statistics]", "true or false");
+  expect_error(box + "[statistics]\ncrossings = true\n", "4: [statistics]", "no plane");
+  expect_error(box + "[statistics]\npathlines = true\n", "4: [statistics]", "must be a table");
+  expect_error(box + "[statistics]\npathlines = {}\n", "4: [statistics.pathlines]", "give every = N");
+  expect_error(box + "[statistics]\npathlines = { every = 0 }\n", "4: [statistics.pathlines]", "between 1");
+  expect_error(box + "[statistics]\npathlines = { ids = [1, 2.5] }\n", "4: [statistics.pathlines]", "2.5 is in it");
+  expect_error(box + "[statistics]\npathlines = { ids = [-1] }\n", "4: [statistics.pathlines]", "-1 is in it");
+  expect_error(box + "[[statistics.plane]]\nname = 'a'\npoint = [0, 0, 0]\n", "3: [[statistics.plane]]",
+               "normal is missing");
+  expect_error(plane + "radius = 0\n", "7: [[statistics.plane]]", "more than 0");
+  expect_error(plane + "size = 1\n", "7: [[statistics.plane]]", "unknown");
+  expect_error(plane + plane.substr(box.size()), "8: [[statistics.plane]]", "another plane has this name");
+  expect_error(box + "[[statistics.plane]]\nname = 'a b'\npoint = [0, 0, 0]\nnormal = [1, 0, 0]\n",
+               "4: [[statistics.plane]]", "letters");
+  expect_error(box + "[[statistics.plane]]\nname = 'a'\npoint = [0, 0, 0]\nnormal = [0, 0, 0]\n",
+               "4: [[statistics.plane]]", "not zero");
+}
+
 TEST(SceneFile, AMissingFileIsNamed) {
   try {
     read_scene("no/such/scene.toml");

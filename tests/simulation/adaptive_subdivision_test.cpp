@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "base/random.hpp"
@@ -10,6 +11,7 @@
 #include "dartcast/error.hpp"
 #include "dartcast/events.hpp"
 #include "dartcast/generators.hpp"
+#include "dartcast/scene.hpp"
 #include "dartcast/simulation.hpp"
 #include "dartcast/validity.hpp"
 #include "support/meshes.hpp"
@@ -37,6 +39,34 @@ std::vector<Vec3> cluster(std::size_t count, const Vec3& low, const Vec3& high) 
 AdaptiveSubdivisionReport adapt(Simulation& simulation, AdaptiveSubdivision& subdivision) {
   return subdivision.adapt(simulation.environment().complex(), simulation.particles(),
                            [&](const std::function<void(ComplexEdit&)>& make) { return simulation.edit(make).edit; });
+}
+
+// Cells are replaced at the end of the steps in which particles met their walls.
+TEST(AdaptiveSubdivision, ContactsKeepTheSourceOfTheirCell) {
+  Environment environment(test::cubes(3));
+  SimulationOptions o;
+  o.dt = 0.05;
+  Simulation simulation(environment, o);
+  AdaptiveSubdivisionScene subdivision;
+  subdivision.every = 1;
+  subdivision.options.max_particles = 15;
+  subdivision.options.min_particles = 6;
+  simulation.set_adaptive_subdivision(subdivision);
+  simulation.add_random(300, {1.5, 0.75, 0.5});
+  std::size_t replaced = 0;
+  for (int i = 0; i < 30; ++i) {
+    const SimulationStep& step = simulation.step();
+    ASSERT_EQ(step.contact_sources.size(), step.contacts().size());
+    for (std::size_t k = 0; k < step.contacts().size(); ++k) {
+      const Contact& c = step.contacts()[k];
+      const auto place = [](double x) { return std::clamp(std::floor(x), 0.0, 2.0); };
+      const double cube = place(c.point.x) + 3.0 * place(c.point.y) + 9.0 * place(c.point.z);
+      EXPECT_EQ(step.contact_sources[k], cube) << "step " << i;
+      const Cell cell = step.report.contacts.walls_of(c).front().face.cell;
+      if (!environment.map().contains(cell) || environment.map().source(cell) != cube) ++replaced;
+    }
+  }
+  EXPECT_GT(replaced, 0U);
 }
 
 // A crowd gathers, and the cells get small; it leaves, and they are as many as before.

@@ -1,0 +1,111 @@
+// Writes the files of a run's statistics.
+#include "output/statistics_recording.hpp"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "formats/file_write.hpp"
+#include "output/frame_files.hpp"
+#include "output/pathlines.hpp"
+#include "output/wall_faces.hpp"
+
+namespace dartcast {
+
+namespace {
+
+constexpr std::string_view planes_header = "step,time,name,forward,backward,flux,mean_age";
+constexpr std::string_view crossings_header = "step,time,name,id,direction,age,x,y,z";
+
+std::string walls_name(std::uint64_t step) { return frame_name("walls", step, ".vtp"); }
+
+}  // namespace
+
+StatisticsRecording::StatisticsRecording(WritingThread& writing, std::filesystem::path folder, const Scene& scene)
+    : writing_(writing),
+      folder_(std::move(folder)),
+      compression_(scene.output.compression),
+      scene_(scene.statistics),
+      at_begin_(scene.statistics.options.planes.size()) {
+  const StatisticsOptions& options = scene_.options;
+  if (!options.planes.empty()) planes_ = RunTable(folder_ / "planes.csv", planes_header);
+  if (scene_.crossings) crossings_ = RunTable(folder_ / "crossings.csv", crossings_header);
+  if (options.pathlines()) pathlines_ = RunTable(folder_ / "pathlines.bin", pathlines_header);
+}
+
+StatisticsRecording::StatisticsRecording(WritingThread& writing, std::filesystem::path folder, const Scene& scene,
+                                         const StatisticsProgress& progress)
+    : writing_(writing),
+      folder_(std::move(folder)),
+      compression_(scene.output.compression),
+      scene_(scene.statistics),
+      interval_begin_(progress.interval_begin),
+      at_begin_(progress.at_begin) {
+  const StatisticsOptions& options = scene_.options;
+  if (!options.planes.empty()) planes_ = RunTable(folder_ / "planes.csv", progress.planes_bytes);
+  if (scene_.crossings) crossings_ = RunTable(folder_ / "crossings.csv", progress.crossings_bytes);
+  if (options.pathlines()) pathlines_ = RunTable(folder_ / "pathlines.bin", progress.pathlines_bytes);
+  std::filesystem::remove(folder_ / "pathlines.vtp");
+}
+
+void StatisticsRecording::add_step(const Simulation& simulation) {
+  if (scene_.crossings) add_crossings(simulation);
+  if (!pathlines_.is_open()) return;
+  for (const PathPoint& p : simulation.statistics().path_points) pathlines_.append(packed(p));
+  pathlines_.send_many(writing_);
+}
+
+void StatisticsRecording::add_crossings(const Simulation& simulation) {
+  for (const PlanePassage& p : simulation.statistics().passages) {
+    const Vec3& x = p.crossing.point;
+    crossings_.print("{},{},{},{},{},{},{},{},{}\n", simulation.steps(), p.time,
+                     scene_.options.planes[p.crossing.plane].name, p.id, p.crossing.forward ? 1 : -1, p.age, x.x, x.y,
+                     x.z);
+  }
+  crossings_.send_many(writing_);
+}
+
+void StatisticsRecording::add_frame(const Simulation& simulation, std::span<const RecordingFrame> frames) {
+  if (!scene_.options.hits) return;
+  write_frame_file(writing_, folder_ / walls_name(frames.back().step),
+                   wall_faces_file(simulation.environment(), simulation.statistics().hits).data(), compression_);
+  write_list(writing_, folder_ / "walls.pvd", frames, walls_name);
+}
+
+void StatisticsRecording::end_interval(const Simulation& simulation) {
+  const double duration = simulation.time() - interval_begin_;
+  if (!planes_.is_open() || duration <= 0.0) return;
+  for (std::size_t i = 0; i < at_begin_.size(); ++i) {
+    const PlaneTotals& now = simulation.statistics().planes[i];
+    StatisticsProgress::Plane& before = at_begin_[i];
+    const std::uint64_t forward = now.forward.count - before.forward;
+    const std::uint64_t backward = now.backward.count - before.backward;
+    const double net = static_cast<double>(forward) - static_cast<double>(backward);
+    planes_.print("{},{},{},{},{},{},", simulation.steps(), simulation.time(), scene_.options.planes[i].name, forward,
+                  backward, net / duration);
+    if (forward > 0) planes_.print("{}", (now.forward.sum - before.ages) / static_cast<double>(forward));
+    planes_.print("\n");
+    before = {now.forward.count, now.backward.count, now.forward.sum};
+  }
+  interval_begin_ = simulation.time();
+}
+
+StatisticsProgress StatisticsRecording::progress() {
+  planes_.send(writing_);
+  crossings_.send(writing_);
+  pathlines_.send(writing_);
+  return {planes_.bytes(), crossings_.bytes(), pathlines_.bytes(), interval_begin_, at_begin_};
+}
+
+void StatisticsRecording::finish(const Simulation& simulation) {
+  end_interval(simulation);
+  progress();
+  if (!pathlines_.is_open()) return;
+  writing_.add(0, [from = folder_ / "pathlines.bin", to = folder_ / "pathlines.vtp", compression = compression_] {
+    write_xml(to, read_packed_pathlines(from).data(), compression, replace_file);
+  });
+}
+
+}  // namespace dartcast

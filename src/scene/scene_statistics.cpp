@@ -1,0 +1,54 @@
+// Reads the table [statistics].
+#include "scene/scene_statistics.hpp"
+
+#include <fmt/format.h>
+
+#include "dartcast/error.hpp"
+
+namespace dartcast {
+
+namespace {
+
+constexpr std::uint64_t max_id = std::uint64_t{1} << 53U;
+
+// Checked with those before it: the line of the first plane that is wrong is reported.
+void read_plane(TomlTable& t, std::vector<SectionPlane>& planes) {
+  SectionPlane& plane = planes.emplace_back();
+  t.require("name", "a name for the plane, of letters, digits, - and _");
+  t.require("point", "a point of the plane");
+  t.require("normal", "a vector of any length: forward is where it points to");
+  t.get("name", plane.name);
+  t.get("point", plane.point);
+  t.get("normal", plane.normal);
+  t.get("radius", plane.radius, Range::positive);
+  t.finish();
+  try {
+    check(planes);
+  } catch (const Error& e) {
+    t.fail("name", e.what());
+  }
+}
+
+void read_pathlines(TomlTable t, StatisticsOptions& options) {
+  const bool every = t.get("every", options.pathlines_every, 1, max_id);
+  if (!t.get("ids", options.pathlines_of, 0, max_id) && !every)
+    t.fail("", "give every = N for each N-th particle, or ids = [...]");
+  t.finish();
+}
+
+}  // namespace
+
+StatisticsScene read_statistics(TomlTable t) {
+  StatisticsScene scene;
+  t.get("hits", scene.options.hits);
+  t.get("residence", scene.options.residence);
+  for (TomlTable& plane : t.tables("plane")) read_plane(plane, scene.options.planes);
+  t.get("crossings", scene.crossings);
+  if (scene.crossings && scene.options.planes.empty())
+    t.fail("crossings", "crossings = true: there is no plane; add [[statistics.plane]]");
+  if (t.has("pathlines")) read_pathlines(t.table("pathlines"), scene.options);
+  t.finish();
+  return scene;
+}
+
+}  // namespace dartcast

@@ -1,0 +1,184 @@
+// Keeps the statistics of a simulation up to date, step by step and edit by edit.
+//
+// Phases of a step, in order:
+//  1. after the injection, in the middle of the particles' step: positions and new particles are noted;
+//  2. after the particles' step: hits, crossings, residence times of those that left, points of pathlines.
+#include "simulation/statistics_component.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "dartcast/combinatorial_map.hpp"
+#include "dartcast/error.hpp"
+#include "simulation/timer.hpp"
+
+namespace dartcast {
+
+namespace {
+
+constexpr std::uint32_t left_the_scene = 0xffffffffU;
+
+std::vector<Vec3> positions_of(const Particles& particles) {
+  std::vector<Vec3> positions;
+  positions.reserve(particles.size());
+  for (const ParticleState& s : particles.states()) positions.push_back(s.position);
+  return positions;
+}
+
+}  // namespace
+
+void StatisticsComponent::set_options(const StatisticsOptions& options) {
+  dartcast::check(options.planes);
+  options_ = options;
+  std::sort(options_.pathlines_of.begin(), options_.pathlines_of.end());
+  statistics_ = {};
+  statistics_.planes.resize(options.planes.size());
+  if (options.residence) statistics_.left.resize(particles_.environment().map().patch_names().size());
+  starts_ = {};
+  if (observes_motion())
+    particles_.set_after_injection([this] { note_start(); });
+  else
+    particles_.set_after_injection({});
+}
+
+void StatisticsComponent::note_start() {
+  const ScopeTimer timer(statistics_.seconds);
+  const std::span<const std::uint64_t> ids = particles_.ids();
+  const std::span<const Vec3> velocities = particles_.velocities();
+  ids_.assign(ids.begin(), ids.end());
+  before_ = positions_of(particles_.particles());
+  first_new_ = static_cast<std::size_t>(std::lower_bound(ids.begin(), ids.end(), starts_.next_id()) - ids.begin());
+  start_velocities_.assign(velocities.begin() + static_cast<std::ptrdiff_t>(first_new_), velocities.end());
+  if (!ids.empty()) starts_.add(ids.back() + 1, particles_.time());
+}
+
+void StatisticsComponent::step(double begin) {
+  if (options_.hits) statistics_.hits.add(particles_.environment(), particles_.last_step().report.contacts);
+  if (!observes_motion()) return;
+  find_ends();
+  count_crossings(begin);
+  if (options_.residence) count_left(begin);
+  add_path_points(begin);
+}
+
+// Both lists of ids ascend. The particles that are in the first alone have left.
+void StatisticsComponent::find_ends() {
+  const std::span<const std::uint64_t> ids = particles_.ids();
+  auto left = particles_.last_step().left.begin();
+  after_.resize(ids_.size());
+  now_.resize(ids_.size());
+  std::uint32_t next = 0;
+  for (std::size_t i = 0; i < ids_.size(); ++i) {
+    const bool stays = next < ids.size() && ids[next] == ids_[i];
+    now_[i] = stays ? next : left_the_scene;
+    after_[i] = stays ? particles_.particles()[next].position : left->position;
+    if (stays)
+      ++next;
+    else
+      ++left;
+  }
+}
+
+void StatisticsComponent::count_crossings(double begin) {
+  const double dt = particles_.options().dt;
+  statistics_.passages.clear();
+  if (options_.planes.empty()) return;
+  for (const PlaneCrossing& c : find_crossings(options_.planes, before_, after_, particles_.environment().threads())) {
+    PlanePassage passage{c, ids_[c.particle], begin + c.share * dt, 0.0};
+    passage.age = passage.time - starts_.of(passage.id);
+    PlaneTotals& totals = statistics_.planes[c.plane];
+    (c.forward ? totals.forward : totals.backward).add(passage.age, dt);
+    statistics_.passages.push_back(passage);
+  }
+}
+
+void StatisticsComponent::count_left(double begin) {
+  const double dt = particles_.options().dt;
+  const ContactList& list = particles_.last_step().report.contacts;
+  for (const LeftParticle& p : particles_.last_step().left) {
+    const Contact& last = list.contacts[p.contact];
+    LeaveTotals& totals = statistics_.left[list.walls_of(last).front().patch.value];
+    const double time = begin + last.time_of_impact * dt;
+    (p.status == ParticleStatus::escaped ? totals.escaped : totals.absorbed).add(time - starts_.of(p.id), dt);
+  }
+}
+
+bool StatisticsComponent::has_pathline(std::uint64_t id) const {
+  return (options_.pathlines_every > 0 && id % options_.pathlines_every == 0) ||
+         std::binary_search(options_.pathlines_of.begin(), options_.pathlines_of.end(), id);
+}
+
+void StatisticsComponent::add_path_points(double begin) {
+  std::vector<PathPoint>& points = statistics_.path_points;
+  points.clear();
+  if (!options_.pathlines()) return;
+  const std::vector<Contact>& contacts = particles_.last_step().report.contacts.contacts;
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < ids_.size(); ++i) {
+    if (!has_pathline(ids_[i])) continue;
+    if (i >= first_new_) points.push_back({ids_[i], begin, before_[i], start_velocities_[i - first_new_], false});
+    while (first < contacts.size() && contacts[first].particle < i) ++first;
+    std::size_t end = first;
+    while (end < contacts.size() && contacts[end].particle == i) ++end;
+    add_contacts(i, first, end, begin);
+    first = end;
+    if (now_[i] != left_the_scene)
+      points.push_back({ids_[i], particles_.time(), after_[i], particles_.velocities()[now_[i]], false});
+  }
+}
+
+void StatisticsComponent::add_contacts(std::size_t i, std::size_t first, std::size_t end, double begin) {
+  const double dt = particles_.options().dt;
+  double time = begin;
+  Vec3 position = before_[i];
+  for (std::size_t k = first; k < end; ++k) {
+    const Contact& c = particles_.last_step().report.contacts.contacts[k];
+    PathPoint point{ids_[i], begin + c.time_of_impact * dt, c.point, {}, true};
+    if (point.time > time) point.velocity = (point.position - position) * (1.0 / (point.time - time));
+    time = point.time;
+    position = point.position;
+    statistics_.path_points.push_back(point);
+  }
+}
+
+void StatisticsComponent::update_after_edit(const ComplexEditReport& /*edit*/, OrphanPolicy /*orphaned*/) {
+  if (options_.hits) statistics_.hits.update_after_edit(particles_.environment());
+  if (!options_.residence) return;
+  for (const std::uint64_t id : particles_.absorbed_by_edit()) {
+    starts_.add(id + 1, particles_.time());
+    statistics_.absorbed_by_edits.add(particles_.time() - starts_.of(id), particles_.options().dt);
+  }
+}
+
+void StatisticsComponent::check(const SimulationState& state) const {
+  const StatisticsState& saved = state.statistics;
+  if (saved.has_hits != options_.hits || saved.observes_motion != observes_motion() ||
+      saved.planes.size() != options_.planes.size() || saved.left.size() != statistics_.left.size())
+    throw InvalidArgument("simulation: the checkpoint has other statistics: set those that it was saved with");
+}
+
+void StatisticsComponent::save(SimulationState& state) const {
+  StatisticsState& saved = state.statistics;
+  saved.has_hits = options_.hits;
+  saved.hits = statistics_.hits.faces();
+  saved.ended_hits = statistics_.hits.ended_by_patch();
+  saved.observes_motion = observes_motion();
+  saved.planes = statistics_.planes;
+  saved.left = statistics_.left;
+  saved.absorbed_by_edits = statistics_.absorbed_by_edits;
+  saved.starts = starts_.starts();
+  saved.next_id = starts_.next_id();
+}
+
+void StatisticsComponent::restore(const SimulationState& state) {
+  const StatisticsState& saved = state.statistics;
+  statistics_.hits.restore(particles_.environment(), saved.hits, saved.ended_hits);
+  statistics_.planes = saved.planes;
+  statistics_.left = saved.left;
+  statistics_.absorbed_by_edits = saved.absorbed_by_edits;
+  statistics_.passages.clear();
+  statistics_.path_points.clear();
+  starts_ = StartTimes(saved.starts, saved.next_id);
+}
+
+}  // namespace dartcast

@@ -1,0 +1,59 @@
+// The statistics of a simulation: it has no particles of its own, and observes those of the particle system.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "dartcast/statistics.hpp"
+#include "simulation/component.hpp"
+#include "simulation/particle_system.hpp"
+#include "simulation/start_times.hpp"
+
+namespace dartcast {
+
+/// It steps after the particles and before edits that end a step: contacts then still name cells that exist.
+class StatisticsComponent final : public SimulationComponent {
+ public:
+  explicit StatisticsComponent(ParticleSystem& particles) : particles_(particles) {}
+
+  /// Starts anew. Throws as Simulation::set_statistics().
+  void set_options(const StatisticsOptions& options);
+  [[nodiscard]] const StatisticsOptions& options() const { return options_; }
+  [[nodiscard]] const Statistics& statistics() const { return statistics_; }
+  [[nodiscard]] double& seconds() { return statistics_.seconds; }
+  /// Throws InvalidArgument where the state is of a simulation with other statistics.
+  void check(const SimulationState& state) const;
+
+  void step(double begin) override;
+  void update_after_edit(const ComplexEditReport& edit, OrphanPolicy orphaned) override;
+  void save(SimulationState& state) const override;
+  void restore(const SimulationState& state) override;
+  [[nodiscard]] Audit audit() const override { return {}; }
+  [[nodiscard]] StateHash state_hash() const override { return {}; }
+
+ private:
+  [[nodiscard]] bool observes_motion() const {
+    return options_.residence || !options_.planes.empty() || options_.pathlines();
+  }
+  void note_start();
+  void find_ends();
+  void count_crossings(double begin);
+  void count_left(double begin);
+  void add_path_points(double begin);
+  void add_contacts(std::size_t i, std::size_t first, std::size_t end, double begin);
+  [[nodiscard]] bool has_pathline(std::uint64_t id) const;
+
+  ParticleSystem& particles_;
+  StatisticsOptions options_;
+  Statistics statistics_;
+  StartTimes starts_;
+  // The particles of the step, as they were after the injection.
+  std::vector<std::uint64_t> ids_;
+  std::vector<Vec3> before_;
+  std::size_t first_new_ = 0;           // those from here on take their first step
+  std::vector<Vec3> start_velocities_;  // of these
+  std::vector<Vec3> after_;
+  std::vector<std::uint32_t> now_;  // the number of each particle after the step
+};
+
+}  // namespace dartcast

@@ -1,0 +1,268 @@
+// Runs with statistics: their tables and series, the same for any number of threads and after a resume.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "dartcast/error.hpp"
+#include "dartcast/run.hpp"
+#include "dartcast/scene_file.hpp"
+#include "formats/file_text.hpp"
+#include "formats/file_write.hpp"
+#include "support/sample_mesh.hpp"
+
+namespace dartcast::statistics_run_test {
+
+namespace fs = std::filesystem;
+
+// A plug flow of 2 m/s: 100 particles per second, and one that stands still.
+const std::string plug_flow = R"(
+[environment]
+generator = "box"
+cells = [8, 2, 2]
+[[particles]]
+inlet = "xmin"
+rate = 100.0
+velocity = [2.0, 0.0, 0.0]
+[motion]
+dt = 0.01
+steps = 655
+[contact.patch.xmax]
+response = "escape"
+[statistics]
+hits = true
+residence = true
+crossings = true
+pathlines = { every = 100, ids = [5, 6] }
+[[statistics.plane]]
+name = "middle"
+point = [4.0, 0.0, 0.0]
+normal = [1.0, 0.0, 0.0]
+[[statistics.plane]]
+name = "axis"
+point = [2.0, 1.0, 1.0]
+normal = [-1.0, 0.0, 0.0]
+radius = 0.5
+[output]
+every = 100
+)";
+
+// Particles that are injected, absorbed and cut free in a mesh that deforms and is edited.
+const std::string surgery = R"(
+[environment]
+generator = "box"
+cells = [8, 5, 5]
+blocked_layer = true
+[[deformation]]
+kind = "twist"
+amplitude = 0.3
+axis = [1.0, 0.0, 0.0]
+centre = [4.0, 2.5, 2.5]
+length = 8.0
+period = 0.7
+[[particles]]
+count = 300
+velocity = [3.0, 0.5, -0.5]
+[motion]
+dt = 0.02
+steps = 47
+substeps = 2
+gravity = [0.0, 0.0, -5.0]
+[[event]]
+at = 0.3
+kind = "cut"
+surface = "disc"
+point = [4.0, 2.5, 0.5]
+normal = [1.0, 0.0, 0.0]
+radius = 1.5
+width = 0.5
+[[event]]
+at = 0.6
+kind = "carve"
+tool = "box"
+low = [5.0, -1.0, -1.0]
+high = [6.0, 6.0, 6.0]
+what = "remove"
+stranded = "absorb"
+[crowding]
+every = 5
+most = 15
+least = 6
+[statistics]
+hits = true
+residence = true
+crossings = true
+pathlines = { every = 10 }
+[[statistics.plane]]
+name = "middle"
+point = [4.0, 2.5, 2.5]
+normal = [1.0, 0.3, 0.0]
+[output]
+every = 10
+)";
+
+struct CutOff : std::exception {};
+
+std::vector<std::vector<std::string>> rows_of(const fs::path& table) {
+  std::vector<std::vector<std::string>> rows;
+  std::istringstream text(read_bytes(table));
+  for (std::string line; std::getline(text, line);) {
+    rows.emplace_back();
+    std::istringstream fields(line + ",");
+    for (std::string field; std::getline(fields, field, ',');) rows.back().push_back(field);
+  }
+  return rows;
+}
+
+class StatisticsRun : public testing::Test {
+ protected:
+  static Summary run(const std::string& text, const fs::path& to, unsigned threads = 1, bool resume = false,
+                     std::optional<std::uint64_t> steps = {}, std::uint64_t cut = 0) {
+    RunOptions options;
+    options.folder = to;
+    options.resume = resume;
+    options.steps = steps;
+    options.threads = Threads{threads};
+    return run_scene(parse_scene(text, "test.toml"), options, [&](std::uint64_t done, std::uint64_t) {
+      if (done == cut) throw CutOff();
+      return true;
+    });
+  }
+
+  static std::map<std::string, std::string> files(const fs::path& of) {
+    std::map<std::string, std::string> result;
+    for (const auto& entry : fs::directory_iterator(of)) {
+      const std::string name = entry.path().filename();
+      if (name != "summary.json" && name != "checkpoint.bin") result[name] = read_bytes(entry.path());
+    }
+    return result;
+  }
+
+  void expect_same_files() const {
+    const auto expected = files(one);
+    const auto found = files(two);
+    for (const auto& [name, content] : expected) {
+      ASSERT_TRUE(found.contains(name)) << name;
+      EXPECT_TRUE(found.at(name) == content) << name;
+    }
+    EXPECT_EQ(found.size(), expected.size());
+  }
+
+  static nlohmann::json statistics_of(const fs::path& folder) {
+    return nlohmann::json::parse(read_bytes(folder / "summary.json")).at("statistics");
+  }
+
+  test::Folder temporary;
+  fs::path one = temporary / "one";
+  fs::path two = temporary / "two";
+};
+
+// 4 m at 2 m/s take 2 s, less the way that an inlet saves: at most 1/64 m.
+TEST_F(StatisticsRun, APlugFlowHasTheFluxOfItsInlet) {
+  const Summary summary = run(plug_flow, one);
+  const auto rows = rows_of(one / "planes.csv");
+  ASSERT_EQ(rows.size(), 1U + 7 * 2);
+  EXPECT_EQ(rows[0], (std::vector<std::string>{"step", "time", "name", "forward", "backward", "flux", "mean_age"}));
+  std::uint64_t forward = 0;
+  std::uint64_t backward = 0;
+  for (std::size_t r = 1; r < rows.size(); ++r) {
+    const bool middle = rows[r][2] == "middle";
+    const double begin = static_cast<double>((r - 1) / 2);
+    const double end = std::stod(rows[r][1]);
+    EXPECT_NEAR(end, std::min(begin + 1.0, 6.55), 1e-9);
+    (middle ? forward : backward) += std::stoull(rows[r][middle ? 3 : 4]);
+    EXPECT_EQ(rows[r][middle ? 4 : 3], "0");
+    const double expected = std::clamp(end - 2.0, 0.0, end - begin) * 100.0 / (end - begin);
+    if (middle) {
+      EXPECT_NEAR(std::stod(rows[r][5]), expected, 3.0) << r;
+      EXPECT_EQ(rows[r].at(6).empty(), rows[r][3] == "0");
+      if (!rows[r][6].empty()) EXPECT_NEAR(std::stod(rows[r][6]), 2.0, 1.0 / 128 + 1e-9);
+    }
+  }
+  const nlohmann::json s = statistics_of(one);
+  EXPECT_EQ(s.at("planes").at(0).at("name"), "middle");
+  EXPECT_EQ(s.at("planes").at(0).at("forward"), forward);
+  EXPECT_EQ(s.at("planes").at(1).at("backward"), backward);
+  EXPECT_NEAR(s.at("planes").at(0).at("residence_time").at("mean").get<double>(), 2.0, 1.0 / 128 + 1e-9);
+  EXPECT_NEAR(s.at("planes").at(0).at("flux").get<double>(), static_cast<double>(forward) / 6.55, 1e-9);
+  EXPECT_EQ(s.at("residence_time").at("escaped").at("xmax").at("count"), summary.totals.escaped);
+  EXPECT_EQ(s.at("residence_time").at("escaped").size(), 1U);
+  EXPECT_TRUE(s.at("residence_time").at("absorbed").empty());
+  EXPECT_EQ(s.at("hits").at("total"), summary.totals.escaped);
+  EXPECT_EQ(s.at("hits").at("by_patch").at("xmax"), summary.totals.escaped);
+  EXPECT_EQ(s.at("hits").at("ended"), 0);
+  const auto crossings = rows_of(one / "crossings.csv");
+  EXPECT_EQ(crossings.size(), 1 + forward + backward);
+  EXPECT_NE(summary_text(summary).find("plane middle: "), std::string::npos);
+  EXPECT_NE(summary_text(summary).find("escaped at xmax: "), std::string::npos);
+  for (const char* name : {"walls.pvd", "walls_000000.vtp", "walls_000655.vtp", "pathlines.vtp", "pathlines.bin"})
+    EXPECT_TRUE(fs::exists(one / name)) << name;
+}
+
+TEST_F(StatisticsRun, TheFilesAreTheSameForAnyThreads) {
+  run(surgery, one, 1);
+  run(surgery, two, 3);
+  expect_same_files();
+}
+
+TEST_F(StatisticsRun, ARunCutOffAnywhereEndsAsIfItWereNot) {
+  run(surgery, one);
+  const nlohmann::json whole = statistics_of(one);
+  EXPECT_GT(whole.at("hits").at("ended"), 0);
+  EXPECT_GT(whole.at("residence_time").at("absorbed_by_edits").at("count"), 0);
+  EXPECT_GT(whole.at("planes").at(0).at("backward"), 0);
+  for (const std::uint64_t cut : {4U, 17U, 31U, 46U}) {
+    EXPECT_THROW(run(surgery, two, 1, false, {}, cut), CutOff);
+    // Rows behind those that the checkpoint counts on.
+    for (const char* name : {"planes.csv", "crossings.csv", "pathlines.bin"}) append_bytes(two / name, "more\n");
+    run(surgery, two, 2, true);
+    expect_same_files();
+    EXPECT_EQ(statistics_of(two), whole);
+  }
+}
+
+TEST_F(StatisticsRun, ResidenceTimesOfBothEndsGoOn) {
+  std::string text = plug_flow;
+  text.replace(text.find("2.0, 0.0, 0.0]"), 8, "2.0, 0.3");
+  text += "[contact.patch.ymax]\nresponse = \"absorb\"\n";
+  run(text, one);
+  const nlohmann::json whole = statistics_of(one);
+  EXPECT_GT(whole.at("residence_time").at("absorbed").at("ymax").at("count"), 0);
+  EXPECT_GT(whole.at("residence_time").at("escaped").at("xmax").at("count"), 0);
+  EXPECT_THROW(run(text, two, 1, false, {}, 633), CutOff);
+  run(text, two, 2, true);
+  expect_same_files();
+  EXPECT_EQ(statistics_of(two), whole);
+}
+
+// The rows of a last, shorter interval and the pathlines are taken back.
+TEST_F(StatisticsRun, AFinishedRunGoesOnToMoreSteps) {
+  run(surgery, one);
+  run(surgery, two, 1, false, 25);
+  EXPECT_EQ(rows_of(two / "planes.csv").size(), 1U + 3);
+  run(surgery, two, 1, true, 47);
+  expect_same_files();
+  EXPECT_EQ(statistics_of(two), statistics_of(one));
+  run(surgery, two, 1, true, 47);  // nothing left to do
+  expect_same_files();
+}
+
+TEST_F(StatisticsRun, WithoutTheTableNothingIsWritten) {
+  const std::string text = plug_flow.substr(0, plug_flow.find("[statistics]")) + "[output]\nevery = 100\n";
+  run(plug_flow, one);
+  const Summary with = run(plug_flow, two);
+  const Summary without = run(text, two);  // removes the earlier run's files
+  EXPECT_EQ(with.state_hash, without.state_hash);
+  for (const auto& [name, content] : files(two)) {
+    for (const char* part : {"walls", "planes", "crossings", "pathlines"})
+      EXPECT_EQ(name.find(part), std::string::npos) << name;
+  }
+  EXPECT_FALSE(nlohmann::json::parse(read_bytes(two / "summary.json")).contains("statistics"));
+}
+
+}  // namespace dartcast::statistics_run_test
