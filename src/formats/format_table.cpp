@@ -14,7 +14,8 @@
 #include "formats/ply.hpp"
 #include "formats/read_memory.hpp"
 #include "formats/stl.hpp"
-#include "formats/vtk_mesh.hpp"
+#include "formats/vtk_functions.hpp"
+#include "formats/vtu_write.hpp"
 
 namespace dartcast {
 namespace {
@@ -38,8 +39,8 @@ std::uint64_t memory_of_xml(std::uint64_t file) { return memory_of_vtk({.file = 
 
 std::span<const MeshFormat> mesh_formats() {
   static const std::vector<MeshFormat> formats = {
-      {"VTK", "", {{".vtu", write_vtu}}, true, true, memory_of_xml, parse_vtu},
-      {"VTK", "legacy", {{".vtk", write_legacy_vtk}}, true, true, memory_of_text, parse_legacy_vtk},
+      {"VTK", "", {{".vtu", write_vtu}}, true, true, memory_of_xml, vtk_functions.read_vtu},
+      {"VTK", "legacy", {{".vtk", vtk_functions.write_legacy}}, true, true, memory_of_text, vtk_functions.read_legacy},
       {"Gmsh",
        "Gmsh 1, 2 or 4",
        {{".msh", write_text<format_gmsh_2>},
