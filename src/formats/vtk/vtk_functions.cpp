@@ -1,9 +1,9 @@
 // The functions that need VTK, for the table of formats.
 #include "formats/vtk_functions.hpp"
 
-#include "formats/vtk_mesh.hpp"
-#include "formats/vtp_read.hpp"
-#include "formats/vtu_points.hpp"
+#include "formats/vtk/vtk_mesh.hpp"
+#include "formats/vtk/vtp_read.hpp"
+#include "formats/vtk/vtu_points.hpp"
 
 namespace dartcast {
 

@@ -17,8 +17,8 @@
 #include <string>
 
 #include "dartcast/error.hpp"
-#include "formats/vtk_errors.hpp"
-#include "formats/vtk_mesh.hpp"
+#include "formats/vtk/vtk_errors.hpp"
+#include "formats/vtk/vtk_mesh.hpp"
 #include "formats/vtu_write.hpp"
 #include "mesh/cell_types.hpp"
 

@@ -1,5 +1,5 @@
 // Reads points from .vtp files, after a check of their content.
-#include "formats/vtp_read.hpp"
+#include "formats/vtk/vtp_read.hpp"
 
 #include <fmt/format.h>
 #include <vtkDataArray.h>
@@ -12,8 +12,8 @@
 #include "dartcast/error.hpp"
 #include "formats/file_text.hpp"
 #include "formats/read_memory.hpp"
-#include "formats/vtk_errors.hpp"
-#include "formats/vtu_check.hpp"
+#include "formats/vtk/vtk_errors.hpp"
+#include "formats/vtk/vtu_check.hpp"
 
 namespace dartcast {
 
