@@ -105,7 +105,18 @@ std::string in_words(std::span<const std::string> items, std::string_view last) 
 std::vector<std::string> mesh_endings() {
   std::vector<std::string> endings;
   for (const MeshFormat& format : mesh_formats()) {
+    if (format.read == nullptr) continue;
     for (const FormatEnding& e : format.endings) endings.emplace_back(e.ending);
+  }
+  return endings;
+}
+
+std::vector<std::string> writable_mesh_endings() {
+  std::vector<std::string> endings;
+  for (const MeshFormat& format : mesh_formats()) {
+    for (const FormatEnding& e : format.endings) {
+      if (e.write != nullptr) endings.emplace_back(e.ending);
+    }
   }
   return endings;
 }

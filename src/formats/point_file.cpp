@@ -24,11 +24,17 @@ std::vector<Vec3> read_csv(const std::filesystem::path& path, const ReadOptions&
   return points;
 }
 
+PointFile read_vtp(const std::filesystem::path& path, const ReadOptions& options) {
+  if (vtk_functions.read_vtp == nullptr)
+    throw Error(fmt::format("{}: {}", path.string(), needs_vtk("read .vtp files", "write the points to a .csv file")));
+  return vtk_functions.read_vtp(path, options);
+}
+
 }  // namespace
 
 PointFile read_points(const std::filesystem::path& path, const ReadOptions& options) {
   if (!std::filesystem::is_regular_file(path)) throw Error(fmt::format("{}: there is no such file", path.string()));
-  if (path.extension() == ".vtp") return vtk_functions.read_vtp(path, options);
+  if (path.extension() == ".vtp") return read_vtp(path, options);
   if (path.extension() == ".csv") return {read_csv(path, options), {}};
   throw Error(fmt::format("{}: points are read from .vtp and .csv files", path.string()));
 }

@@ -1,9 +1,10 @@
-// What VTK does for us, as one table of functions.
+// The functions that VTK gives us, as one table.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct VtuPoints {
   std::uint64_t cells;       ///< a hash of the arrays of its cells
 };
 
+/// In a build without VTK all are null. formats/vtk has the functions, and says what they do.
 struct VtkFunctions {
   ParsedMesh (*read_vtu)(const std::filesystem::path& path, std::string_view content, const ReadOptions& options);
   ParsedMesh (*read_legacy)(const std::filesystem::path& path, std::string_view content, const ReadOptions& options);
@@ -29,5 +31,8 @@ struct VtkFunctions {
 };
 
 extern const VtkFunctions vtk_functions;
+
+/// Why a build without VTK cannot do a task, as "read .vtu files", and what else helps.
+std::string needs_vtk(std::string_view task, std::string_view remedy);
 
 }  // namespace dartcast
