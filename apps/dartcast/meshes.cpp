@@ -76,7 +76,8 @@ void add_convert(CLI::App& app, int& status) {
   const auto out = std::make_shared<std::string>();
   CLI::App* verb = app.add_subcommand("convert", "Write a mesh in another format, given by the ending.");
   verb->add_option("IN", *in, "the mesh to read")->required();
-  verb->add_option("OUT", *out, fmt::format("the file to write: {}", fmt::join(mesh_endings(), " ")))->required();
+  verb->add_option("OUT", *out, fmt::format("the file to write: {}", fmt::join(writable_mesh_endings(), " ")))
+      ->required();
   const auto memory = std::make_shared<std::uint64_t>(0);
   add_max_memory(*verb, *memory);
   verb->callback([in, out, memory, &status] { status = convert(*in, *out, *memory); });

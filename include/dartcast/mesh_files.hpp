@@ -13,8 +13,14 @@
 
 namespace dartcast {
 
-/// Endings of the files that read_mesh() and write_mesh() take, as ".vtu".
+/// Whether dartcast was built with VTK (CMake: DARTCAST_VTK). Without it .vtu, .vtk and .vtp files are not read, and .vtk
+/// files are not written. All else is there: .vtu files of meshes and the frames of runs are written without VTK.
+bool has_vtk();
+
+/// Endings of the files that read_mesh() takes in this build, as ".vtu".
 std::vector<std::string> mesh_endings();
+/// Endings of the files that write_mesh() takes in this build.
+std::vector<std::string> writable_mesh_endings();
 /// Endings of the files that check_surface() takes, as ".stl".
 std::vector<std::string> surface_endings();
 
@@ -38,8 +44,8 @@ struct MeshFile {
 };
 
 /// Reads .vtu, .vtk (legacy), .msh, .msh2, .msh4 (Gmsh 1, 2 and 4) or .mesh (Medit), by ending and content, and checks
-/// and repairs it. Nothing in the file makes this throw: a file that cannot be read has a defect of kind "file" in the
-/// report, with line or byte. Cost: a few times the file's size in memory.
+/// and repairs it. .vtu and .vtk need VTK (has_vtk()). Nothing in the file makes this throw: a file that cannot be read
+/// has a defect of kind "file" in the report, with line or byte. Cost: a few times the file's size in memory.
 MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// The same, but throws InvalidMesh, with the file's name and the first defect, where the mesh is refused.
@@ -68,8 +74,8 @@ MeshFile read_surface(const std::filesystem::path& path, const ReadOptions& opti
 /// without a place in the format are left out: arrays and `free` outside VTK's formats; names of regions and patches in
 /// .vtk and .mesh. The bytes go to a file beside the path, with ".part" in its name. When it is whole it takes the
 /// path's place; on failure the file at the path is unchanged. Precondition: check_and_repair() found the mesh valid.
-/// Throws InvalidArgument where the ending is none of these, or where .msh or .mesh should hold polyhedra, or polygons
-/// or faces of more than four corners; Error where the file cannot be written.
+/// Throws InvalidArgument where the ending is none of writable_mesh_endings(), or where .msh or .mesh should hold
+/// polyhedra, or polygons or faces of more than four corners; Error where the file cannot be written.
 void write_mesh(const MeshData& mesh, const std::filesystem::path& path);
 
 /// Writes bytes to a file. Throws Error where that fails.

@@ -14,7 +14,8 @@
 #include "formats/ply.hpp"
 #include "formats/read_memory.hpp"
 #include "formats/stl.hpp"
-#include "formats/vtk_mesh.hpp"
+#include "formats/vtk_functions.hpp"
+#include "formats/vtu_write.hpp"
 
 namespace dartcast {
 namespace {
@@ -38,8 +39,8 @@ std::uint64_t memory_of_xml(std::uint64_t file) { return memory_of_vtk({.file = 
 
 std::span<const MeshFormat> mesh_formats() {
   static const std::vector<MeshFormat> formats = {
-      {"VTK", "", {{".vtu", write_vtu}}, true, true, memory_of_xml, parse_vtu},
-      {"VTK", "legacy", {{".vtk", write_legacy_vtk}}, true, true, memory_of_text, parse_legacy_vtk},
+      {"VTK", "", {{".vtu", write_vtu}}, true, true, memory_of_xml, vtk_functions.read_vtu},
+      {"VTK", "legacy", {{".vtk", vtk_functions.write_legacy}}, true, true, memory_of_text, vtk_functions.read_legacy},
       {"Gmsh",
        "Gmsh 1, 2 or 4",
        {{".msh", write_text<format_gmsh_2>},
@@ -104,7 +105,18 @@ std::string in_words(std::span<const std::string> items, std::string_view last) 
 std::vector<std::string> mesh_endings() {
   std::vector<std::string> endings;
   for (const MeshFormat& format : mesh_formats()) {
+    if (format.read == nullptr) continue;
     for (const FormatEnding& e : format.endings) endings.emplace_back(e.ending);
+  }
+  return endings;
+}
+
+std::vector<std::string> writable_mesh_endings() {
+  std::vector<std::string> endings;
+  for (const MeshFormat& format : mesh_formats()) {
+    for (const FormatEnding& e : format.endings) {
+      if (e.write != nullptr) endings.emplace_back(e.ending);
+    }
   }
   return endings;
 }

@@ -15,7 +15,7 @@
 
 namespace dartcast {
 
-/// An ending, with its dot, in lower case, and the function that writes such files.
+/// An ending, with its dot, in lower case, and the function that writes such files; null where this build cannot.
 struct FormatEnding {
   std::string_view ending;
   void (*write)(const MeshData& mesh, const std::filesystem::path& file);
@@ -30,6 +30,7 @@ struct MeshFormat {
   bool polyhedra;  ///< and polygons and faces of more than four corners
   /// Memory that reading a file of so many bytes takes at least.
   std::uint64_t (*memory)(std::uint64_t file);
+  /// Null where this build cannot read such files.
   ParsedMesh (*read)(const std::filesystem::path& path, std::string_view content, const ReadOptions& options);
 };
 

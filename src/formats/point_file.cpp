@@ -2,71 +2,17 @@
 #include "formats/point_file.hpp"
 
 #include <fmt/format.h>
-#include <vtkDataArray.h>
-#include <vtkNew.h>
-#include <vtkPointData.h>
-#include <vtkPoints.h>
-#include <vtkPolyData.h>
-#include <vtkXMLPolyDataReader.h>
 
 #include <array>
 #include <string_view>
 
 #include "dartcast/error.hpp"
 #include "formats/csv_table.hpp"
-#include "formats/file_text.hpp"
-#include "formats/read_memory.hpp"
-#include "formats/vtk_errors.hpp"
-#include "formats/vtu_check.hpp"
+#include "formats/vtk_functions.hpp"
 
 namespace dartcast {
 
 namespace {
-
-DataArray to_array(vtkDataArray& from) {
-  DataArray array{
-      from.GetName() != nullptr ? from.GetName() : "", static_cast<std::size_t>(from.GetNumberOfComponents()), {}};
-  for (vtkIdType i = 0; i < from.GetNumberOfTuples(); ++i) {
-    for (int k = 0; k < from.GetNumberOfComponents(); ++k) array.values.push_back(from.GetComponent(i, k));
-  }
-  return array;
-}
-
-// Calls check(), and adds the file's name to its errors.
-template <class Check>
-void with_file_name(const std::filesystem::path& path, Check&& check) {
-  try {
-    check();
-  } catch (const InvalidMesh& e) {
-    throw Error(fmt::format("{}: the points cannot be read: {}", path.string(), e.what()));
-  }
-}
-
-PointFile read_vtp(const std::filesystem::path& path, const ReadOptions& options) {
-  with_file_name(path, [&] {
-    check_memory(memory_of_vtk({.file = 2 * file_bytes(path)}), options.max_memory);
-    check_vtu(read_bytes(path), "PolyData", options.max_memory);
-  });
-  const VtkErrors errors;
-  vtkNew<vtkXMLPolyDataReader> reader;
-  reader->SetFileName(path.c_str());
-  reader->Update();
-  vtkPolyData& data = *reader->GetOutput();
-  vtkPoints* points = data.GetPoints();
-  if (reader->GetErrorCode() != 0 || !errors.first().empty() || points == nullptr) {
-    throw Error(fmt::format("{}: the points cannot be read: {}", path.string(),
-                            errors.first().empty() ? "this is no .vtp file with points" : errors.first()));
-  }
-  PointFile file;
-  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i) {
-    const double* p = points->GetPoint(i);
-    file.points.push_back({p[0], p[1], p[2]});
-  }
-  for (int i = 0; i < data.GetPointData()->GetNumberOfArrays(); ++i) {
-    if (vtkDataArray* array = data.GetPointData()->GetArray(i)) file.arrays.push_back(to_array(*array));
-  }
-  return file;
-}
 
 std::vector<Vec3> read_csv(const std::filesystem::path& path, const ReadOptions& options) {
   CsvTable table(path, options.max_memory);
@@ -76,6 +22,12 @@ std::vector<Vec3> read_csv(const std::filesystem::path& path, const ReadOptions&
   std::vector<Vec3> points;
   for (std::size_t at = 0; at < values.size(); at += 3) points.push_back({values[at], values[at + 1], values[at + 2]});
   return points;
+}
+
+PointFile read_vtp(const std::filesystem::path& path, const ReadOptions& options) {
+  if (vtk_functions.read_vtp == nullptr)
+    throw Error(fmt::format("{}: {}", path.string(), needs_vtk("read .vtp files", "write the points to a .csv file")));
+  return vtk_functions.read_vtp(path, options);
 }
 
 }  // namespace

@@ -15,7 +15,8 @@ struct PointFile {
 };
 
 /// Reads .vtp (its points and their arrays) or .csv (columns x, y, z by name in the first line; others are ignored).
-/// The option `max_memory` counts, the other does not. Throws Error with file and, for .csv, line.
+/// .vtp needs VTK (has_vtk()). The option `max_memory` counts, the other does not. Throws Error with file and, for .csv,
+/// line.
 PointFile read_points(const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace dartcast

@@ -12,6 +12,7 @@
 #include "formats/file_text.hpp"
 #include "formats/format_table.hpp"
 #include "formats/read_memory.hpp"
+#include "formats/vtk_functions.hpp"
 
 namespace dartcast {
 namespace {
@@ -27,7 +28,9 @@ std::string described(const MeshFormat& format) {
 
 std::string supported() {
   std::vector<std::string> list;
-  for (const MeshFormat& format : mesh_formats()) list.push_back(described(format));
+  for (const MeshFormat& format : mesh_formats()) {
+    if (format.read != nullptr) list.push_back(described(format));
+  }
   return in_words(list, "and");
 }
 
@@ -46,6 +49,8 @@ ParsedMesh parse(const std::filesystem::path& path, const ReadOptions& options) 
                                   supported(),
                                   is_surface_file(path) ? "; a surface in space is read by read_surface()" : ""));
   }
+  if (format->read == nullptr)
+    throw InvalidMesh(needs_vtk(fmt::format("read {} files", ending_of(path)), "convert the file to .msh"));
   if (!format->arrays && !options.patch_array.empty())
     throw InvalidMesh(fmt::format(
         "patches from the cell array '{}': arrays are in {} files; in this one groups of faces are the patches",

@@ -11,7 +11,6 @@
 #include <string>
 
 #include "formats/file_write.hpp"
-#include "formats/vtk_mesh.hpp"
 
 namespace dartcast {
 
@@ -164,6 +163,11 @@ XmlDataSet vtu_data_set(const Mesh& mesh) {
   add_names("region_names", mesh->region_names, data.field);
   add_names("patch_names", mesh->patch_names, data.field);
   return data;
+}
+
+bool is_replaced(const MeshData& mesh, const std::string& cell_array) {
+  return (cell_array == "region" && !mesh.regions.empty()) || (cell_array == "free" && !mesh.free.empty()) ||
+         (cell_array == "patch" && !mesh.patch_tags.empty());
 }
 
 void write_vtu(const MeshData& mesh, const std::filesystem::path& path) {

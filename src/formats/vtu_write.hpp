@@ -1,7 +1,9 @@
-// A mesh as the arrays of a .vtu file.
+// A mesh as a .vtu file, and as its arrays.
 #pragma once
 
+#include <filesystem>
 #include <memory>
+#include <string>
 
 #include "dartcast/mesh_data.hpp"
 #include "formats/xml_write.hpp"
@@ -14,5 +16,13 @@ XmlDataSet vtu_data_set(const std::shared_ptr<const MeshData>& mesh);
 
 /// The points' array, for a data set of other positions.
 XmlArray vtu_points(std::span<const Vec3> points, std::shared_ptr<const void> owner);
+
+/// Writes cells, patch faces and arrays so that a reader of .vtu finds the same bits. `free`, the regions and the patches
+/// become the cell arrays `free`, `region` and `patch`, in place of cell arrays of these names. The bytes are raw. Throws
+/// Error where the file cannot be written.
+void write_vtu(const MeshData& mesh, const std::filesystem::path& path);
+
+/// Whether `free`, the regions or the patches replace a cell array of this name.
+bool is_replaced(const MeshData& mesh, const std::string& cell_array);
 
 }  // namespace dartcast

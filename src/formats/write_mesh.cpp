@@ -8,6 +8,7 @@
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_files.hpp"
 #include "formats/format_table.hpp"
+#include "formats/vtk_functions.hpp"
 
 namespace dartcast {
 
@@ -76,7 +77,11 @@ void write_mesh(const MeshData& mesh, const std::filesystem::path& path) {
   const FormatEnding* ending = mesh_ending_of(path);
   if (ending == nullptr) {
     throw InvalidArgument(fmt::format("{}: cannot write files that end in '{}'; use {}", path.string(), ending_of(path),
-                                      in_words(mesh_endings(), "or")));
+                                      in_words(writable_mesh_endings(), "or")));
+  }
+  if (ending->write == nullptr) {
+    throw InvalidArgument(
+        fmt::format("{}: {}", path.string(), needs_vtk(fmt::format("write {} files", ending->ending), "write .vtu")));
   }
   check_cells(mesh, *mesh_format_of(path));
   write_beside(path, [&](const fs::path& file) { ending->write(mesh, file); });

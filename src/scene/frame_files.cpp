@@ -14,7 +14,7 @@
 #include "formats/checked_file.hpp"
 #include "formats/file_text.hpp"
 #include "formats/format_table.hpp"
-#include "formats/vtu_points.hpp"
+#include "formats/vtk_functions.hpp"
 #include "mesh/same_cells.hpp"
 
 namespace dartcast {
@@ -96,7 +96,7 @@ class FrameFiles {
 
   [[nodiscard]] std::optional<VtuPoints> read_points_of(const fs::path& file) const {
     if (ending_of(file) != ".vtu") return std::nullopt;
-    return read_vtu_points(read_bytes(file), max_memory_);
+    return vtk_functions.read_vtu_points(read_bytes(file), max_memory_);
   }
 
   // The points of a file with the cells of the first; none where it must be checked as a mesh of its own. This second reading

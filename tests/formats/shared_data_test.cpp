@@ -13,6 +13,7 @@
 #include "support/same_mesh.hpp"
 #include "support/sample_mesh.hpp"
 #include "support/tier.hpp"
+#include "support/with_vtk.hpp"
 
 namespace dartcast::test::shared_data_test {
 
@@ -86,6 +87,7 @@ std::vector<ExpectedPlanar> planar_files() {
 }
 
 TEST(SharedData, EveryPlanarMeshLoadsAndSurvivesARoundTrip) {
+  SKIP_WITHOUT_VTK();
   NEED_DATA("meshes made by others");
   const Folder folder;
   for (const ExpectedPlanar& expected : planar_files()) {
@@ -137,6 +139,7 @@ TEST(SharedData, PatchesOfPlanarMeshesAreTheirNamedLines) {
 }
 
 TEST(SharedData, EveryVolumeLoadsWithoutAWarning) {
+  SKIP_WITHOUT_VTK();
   NEED_DATA("meshes made by others");
   for (const Expected& expected : volumes()) {
     const MeshReport report = read_mesh(data_folder() / expected.file).report;
@@ -167,6 +170,7 @@ TEST(SharedData, NoVolumeIsForgotten) {
 }
 
 TEST(SharedData, DefectiveFilesGetTheRightVerdict) {
+  SKIP_WITHOUT_VTK();
   NEED_DATA("meshes made by others");
   std::ifstream table(data_folder() / "EXPECTED.csv");
   std::string line;
@@ -192,6 +196,7 @@ std::map<std::string, std::size_t> kinds(const std::vector<Finding>& findings) {
 }
 
 TEST(SharedData, DefectsAreCountedAsTheListSays) {
+  SKIP_WITHOUT_VTK();
   NEED_DATA("meshes made by others");
   const auto report = [](const char* file) { return read_mesh(data_folder() / "defective" / file).report; };
   EXPECT_EQ(kinds(report("sfepy/elbow2.mesh").repairs), (Counts{{"orientation", 8161}}));
@@ -213,6 +218,7 @@ TEST(SharedData, DefectsAreCountedAsTheListSays) {
 }
 
 TEST(SharedData, EveryVolumeSurvivesARoundTrip) {
+  SKIP_WITHOUT_VTK();
   NEED_DATA("meshes made by others");
   const Folder folder;
   for (const Expected& expected : volumes()) {

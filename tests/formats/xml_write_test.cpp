@@ -26,7 +26,7 @@
 #include "dartcast/generators.hpp"
 #include "formats/file_text.hpp"
 #include "formats/file_write.hpp"
-#include "formats/vtk_mesh.hpp"
+#include "formats/vtk/vtk_mesh.hpp"
 #include "formats/vtp_write.hpp"
 #include "formats/vtu_write.hpp"
 #include "support/sample_mesh.hpp"

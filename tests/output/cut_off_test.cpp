@@ -21,6 +21,7 @@
 #include "output/run_files.hpp"
 #include "support/sample_mesh.hpp"
 #include "support/tier.hpp"
+#include "support/with_vtk.hpp"
 
 namespace dartcast::cut_off_test {
 
@@ -87,14 +88,14 @@ pid_t start(const fs::path& folder, bool resume, Prepare&& prepare) {
   ::_exit(outcome);
 }
 
-// Every frame that a list names, and every other one, can be read.
+// Every frame that a list names, and every other one, can be read: with VTK, which does that.
 void expect_whole(const fs::path& folder) {
   if (!fs::exists(folder)) return;
   for (const auto& entry : fs::directory_iterator(folder)) {
     const fs::path path = entry.path();
     SCOPED_TRACE(path.string());
-    if (path.extension() == ".vtp") EXPECT_NO_THROW(read_points(path));
-    if (path.extension() == ".vtu") EXPECT_NO_THROW(read_mesh(path));
+    if (has_vtk() && path.extension() == ".vtp") EXPECT_NO_THROW(read_points(path));
+    if (has_vtk() && path.extension() == ".vtu") EXPECT_NO_THROW(read_mesh(path));
     if (path.extension() != ".pvd") continue;
     const std::string list = read_bytes(path);
     EXPECT_TRUE(list.ends_with("</VTKFile>\n"));
@@ -203,6 +204,7 @@ TEST(CutOff, PartsAreRemoved) {
 }
 
 TEST(OutputCompression, FramesHoldTheSameInEach) {
+  SKIP_WITHOUT_VTK();
   const test::Folder temporary;
   run(temporary / "none", false);
   std::uintmax_t before = fs::file_size(temporary / "none" / "environment_000010.vtu");

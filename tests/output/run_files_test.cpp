@@ -26,6 +26,7 @@
 #include "scene/seed_file.hpp"
 #include "support/data_arrays.hpp"
 #include "support/sample_mesh.hpp"
+#include "support/with_vtk.hpp"
 
 namespace dartcast::run_files_test {
 
@@ -101,6 +102,7 @@ class RunFilesTest : public testing::Test {
 };
 
 TEST_F(RunFilesTest, SeedsInACsvFileHaveVelocitiesAndRadii) {
+  SKIP_WITHOUT_VTK();
   (void)temporary.file("a.csv", "radius, vx,vy,vz,x,y,z\n0.25,1,0,0,1,2,3\n0,0,-1,0.5,2,2,2\n");
   EXPECT_EQ(run(seeded("a.csv", "velocity = [9, 9, 9]\nradius = 0.1\n")).audit->failed, 0U);
   const PointFile after = read_points(folder / "particles_000001.vtp");
@@ -113,6 +115,7 @@ TEST_F(RunFilesTest, SeedsInACsvFileHaveVelocitiesAndRadii) {
 }
 
 TEST_F(RunFilesTest, SeedsInAVtpFileHaveVelocitiesAndRadii) {
+  SKIP_WITHOUT_VTK();
   const std::string radius = "<DataArray type='Float64' Name='radius' format='ascii'>0 0.25</DataArray>";
   const std::string velocity =
       "<DataArray type='Float64' Name='velocity' NumberOfComponents='3' format='ascii'>1 0 0 1 0 1</DataArray>";
@@ -154,6 +157,7 @@ TEST_F(RunFilesTest, ColumnsOfSeedsThatHaveNoMeaningAreRefused) {
 
 // Free fall: each row's energies are those of the frame's particles.
 TEST_F(RunFilesTest, EnergiesStandInTheTable) {
+  SKIP_WITHOUT_VTK();
   (void)run(
       "[environment]\ngenerator = 'box'\ncells = [4, 4, 4]\n[[particles]]\ncount = 50\nvelocity = [1.0, 2.0, 0.5]\n"
       "[motion]\ndt = 0.02\nsteps = 20\ngravity = [0.0, -1.0, -9.5]\n[output]\nevery = 1\n");
@@ -191,6 +195,7 @@ TEST_F(RunFilesTest, EnergiesAreThoseOfTheMasses) {
 }
 
 TEST_F(RunFilesTest, ParticlesThatAreHeldSaySo) {
+  SKIP_WITHOUT_VTK();
   // The whole box is turned inside out along z: everybody is held.
   const MeshData mesh = generate_box({});
   write_mesh(mesh, temporary / "a.vtu");
@@ -222,12 +227,12 @@ TEST_F(RunFilesTest, MeshesAreScaled) {
   o.size = {3.1, 4.3, 5.7};
   o.jitter = 0.5;
   MeshData mesh = generate_box(o);
-  write_mesh(mesh, temporary / "mm.vtu");
+  write_mesh(mesh, temporary / "mm.msh");
   for (Vec3& x : mesh.points) x *= 1e-3;
-  write_mesh(mesh, temporary / "m.vtu");
+  write_mesh(mesh, temporary / "m.msh");
   const std::string rest = "[[particles]]\ncount = 40\nvelocity = [3e-3, 1e-3, 2e-3]\n[motion]\ndt = 0.1\nsteps = 30\n";
-  const std::string in_m = "[environment]\nmesh = '" + (temporary / "m.vtu").string() + "'\n";
-  const std::string in_mm = "[environment]\nmesh = '" + (temporary / "mm.vtu").string() + "'\nscale = 1e-3\n";
+  const std::string in_m = "[environment]\nmesh = '" + (temporary / "m.msh").string() + "'\n";
+  const std::string in_mm = "[environment]\nmesh = '" + (temporary / "mm.msh").string() + "'\nscale = 1e-3\n";
   const Summary metres = run(in_m + rest);
   const Summary scaled = run(in_mm + rest);
   EXPECT_EQ(metres.state_hash, scaled.state_hash);
@@ -235,8 +240,8 @@ TEST_F(RunFilesTest, MeshesAreScaled) {
   const auto frames = [&](const char* file) {
     return "[[deformation]]\nkind = 'frames'\nfiles = ['" + (temporary / file).string() + "']\ntimes = [0.0]\n";
   };
-  EXPECT_EQ(run(in_mm + frames("mm.vtu") + rest).state_hash, run(in_m + frames("m.vtu") + rest).state_hash);
-  EXPECT_NE(failure(in_m + "scale = 1e300\n" + rest).find("m.vtu: points with a coordinate too large"),
+  EXPECT_EQ(run(in_mm + frames("mm.msh") + rest).state_hash, run(in_m + frames("m.msh") + rest).state_hash);
+  EXPECT_NE(failure(in_m + "scale = 1e300\n" + rest).find("m.msh: points with a coordinate too large"),
             std::string::npos);
 }
 

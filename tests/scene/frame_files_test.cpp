@@ -17,7 +17,7 @@
 #include "dartcast/generators.hpp"
 #include "dartcast/scene_file.hpp"
 #include "formats/file_text.hpp"
-#include "formats/vtu_points.hpp"
+#include "formats/vtk/vtu_points.hpp"
 #include "mesh/same_cells.hpp"
 #include "support/expectations.hpp"
 #include "support/meshes.hpp"

@@ -1,5 +1,5 @@
 // Reads the pieces, sections and arrays of VTK's XML files.
-#include "formats/vtk_xml.hpp"
+#include "formats/vtk/vtk_xml.hpp"
 
 #include <fmt/format.h>
 

@@ -20,13 +20,13 @@
 #include <set>
 
 #include "dartcast/error.hpp"
-#include "formats/face_stream.hpp"
 #include "formats/file_text.hpp"
-#include "formats/vtk_errors.hpp"
-#include "formats/vtk_legacy_check.hpp"
-#include "formats/vtk_mesh.hpp"
-#include "formats/vtk_tags.hpp"
-#include "formats/vtu_check.hpp"
+#include "formats/vtk/face_stream.hpp"
+#include "formats/vtk/vtk_errors.hpp"
+#include "formats/vtk/vtk_legacy_check.hpp"
+#include "formats/vtk/vtk_mesh.hpp"
+#include "formats/vtk/vtk_tags.hpp"
+#include "formats/vtk/vtu_check.hpp"
 
 namespace dartcast {
 namespace {

@@ -1,5 +1,5 @@
 // Checks every array of a .vtu or .vtp file before VTK reads it.
-#include "formats/vtu_check.hpp"
+#include "formats/vtk/vtu_check.hpp"
 
 #include <fmt/format.h>
 
@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "dartcast/error.hpp"
-#include "formats/face_stream.hpp"
 #include "formats/read_memory.hpp"
-#include "formats/vtk_xml.hpp"
-#include "formats/vtu_array.hpp"
+#include "formats/vtk/face_stream.hpp"
+#include "formats/vtk/vtk_xml.hpp"
+#include "formats/vtk/vtu_array.hpp"
 
 namespace dartcast {
 namespace {

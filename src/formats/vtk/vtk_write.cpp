@@ -17,8 +17,9 @@
 #include <string>
 
 #include "dartcast/error.hpp"
-#include "formats/vtk_errors.hpp"
-#include "formats/vtk_mesh.hpp"
+#include "formats/vtk/vtk_errors.hpp"
+#include "formats/vtk/vtk_mesh.hpp"
+#include "formats/vtu_write.hpp"
 #include "mesh/cell_types.hpp"
 
 namespace dartcast {
@@ -114,11 +115,6 @@ vtkSmartPointer<vtkUnstructuredGrid> make_grid(const MeshData& mesh) {
 }
 
 }  // namespace
-
-bool is_replaced(const MeshData& mesh, const std::string& cell_array) {
-  return (cell_array == "region" && !mesh.regions.empty()) || (cell_array == "free" && !mesh.free.empty()) ||
-         (cell_array == "patch" && !mesh.patch_tags.empty());
-}
 
 void write_legacy_vtk(const MeshData& mesh, const std::filesystem::path& path) {
   const VtkErrors errors;

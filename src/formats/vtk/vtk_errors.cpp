@@ -1,5 +1,5 @@
 // Catches VTK's error texts with an output window of its own, one caller at a time.
-#include "formats/vtk_errors.hpp"
+#include "formats/vtk/vtk_errors.hpp"
 
 #include <vtkLogger.h>
 #include <vtkObjectFactory.h>

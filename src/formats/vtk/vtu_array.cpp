@@ -1,5 +1,5 @@
 // Decodes one array of a .vtu file: ASCII, base64, raw, compressed.
-#include "formats/vtu_array.hpp"
+#include "formats/vtk/vtu_array.hpp"
 
 #include <fmt/format.h>
 #include <vtkDataCompressor.h>
@@ -15,7 +15,7 @@
 
 #include "dartcast/error.hpp"
 #include "formats/file_text.hpp"
-#include "formats/vtk_errors.hpp"
+#include "formats/vtk/vtk_errors.hpp"
 
 namespace dartcast {
 namespace {

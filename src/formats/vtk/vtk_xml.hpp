@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "formats/vtu_array.hpp"
+#include "formats/vtk/vtu_array.hpp"
 
 namespace dartcast {
 

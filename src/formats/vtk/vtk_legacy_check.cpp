@@ -1,5 +1,5 @@
 // Checks every size and number of a legacy .vtk file before VTK reads it.
-#include "formats/vtk_legacy_check.hpp"
+#include "formats/vtk/vtk_legacy_check.hpp"
 
 #include <fmt/format.h>
 
@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "formats/face_stream.hpp"
 #include "formats/file_text.hpp"
 #include "formats/read_memory.hpp"
+#include "formats/vtk/face_stream.hpp"
 
 namespace dartcast {
 namespace {

@@ -1,5 +1,5 @@
 // Regions and patches of a VTK grid, from its cell arrays.
-#include "formats/vtk_tags.hpp"
+#include "formats/vtk/vtk_tags.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

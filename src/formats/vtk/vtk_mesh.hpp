@@ -22,14 +22,8 @@ ParsedMesh parse_vtu(const std::filesystem::path& path, std::string_view content
 ParsedMesh parse_legacy_vtk(const std::filesystem::path& path, std::string_view content,
                             const ReadOptions& options = {});
 
-/// Writes cells, patch faces and arrays so that the functions above read them back bit by bit: .vtu (raw), or
-/// legacy .vtk (binary, without the names of regions and patches). `free`, the regions and the patches become the cell
-/// arrays `free`, `region` and `patch`, in place of cell arrays of these names. Throws Error where the file cannot be
-/// written.
-void write_vtu(const MeshData& mesh, const std::filesystem::path& path);
+/// Writes legacy .vtk (binary) so that parse_legacy_vtk() finds the same bits, without the names of regions and patches.
+/// Cell arrays as write_vtu() writes them. Throws Error where the file cannot be written.
 void write_legacy_vtk(const MeshData& mesh, const std::filesystem::path& path);
-
-/// Whether one of those replaces a cell array of this name.
-bool is_replaced(const MeshData& mesh, const std::string& cell_array);
 
 }  // namespace dartcast

@@ -1,10 +1,10 @@
 // Decodes the points of a .vtu file, and hashes its cells.
-#include "formats/vtu_points.hpp"
+#include "formats/vtk/vtu_points.hpp"
 
 #include <utility>
 
-#include "formats/vtk_xml.hpp"
-#include "formats/vtu_check.hpp"
+#include "formats/vtk/vtk_xml.hpp"
+#include "formats/vtk/vtu_check.hpp"
 
 namespace dartcast {
 namespace {
