@@ -2,12 +2,8 @@
 // mark of their use (in_use.hpp).
 #pragma once
 
-#include <pybind11/pybind11.h>
-
 #include <functional>
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/complex_edit.hpp"
@@ -21,20 +17,11 @@ struct EnvironmentHandle {
   std::shared_ptr<void> owner;  ///< what keeps it alive
   Environment* environment = nullptr;
   bool borrowed = false;  ///< of a simulation
-  bool writing = false;   ///< a block writes its next positions
-  /// Arrays of such blocks that were not let go at the end: they, or views of them, see the memory of the positions.
-  mutable std::vector<pybind11::object> kept = {};
   std::shared_ptr<Usage> usage = std::make_shared<Usage>();
 
-  /// To change it. Throws InvalidArgument where it is borrowed (`remedy` says what to call instead), in a block that
-  /// writes its next positions, and while an array of such a block is kept.
+  /// To change it. Throws InvalidArgument where it is borrowed: `remedy` says what to call instead.
   Environment& changeable(const char* remedy) const {
     if (borrowed) throw InvalidArgument(std::string("this environment belongs to a simulation: ") + remedy);
-    if (writing) throw InvalidArgument("the next positions are being written: end the block of next_points() first");
-    std::erase_if(kept, [](const pybind11::object& array) { return array.ref_count() == 1; });
-    if (!kept.empty()) {
-      throw InvalidArgument("an array of next_points(), or a view of it, is kept beyond its block: delete it (del x)");
-    }
     return *environment;
   }
 };
