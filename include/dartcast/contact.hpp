@@ -79,9 +79,17 @@ struct AfterContact {
 };
 
 /// Decides what follows a contact. It gets the contact, its walls, and the walls met earlier in the same step. It is
-/// called from several threads at once for different particles. An empty function stops the particle at the wall until
-/// the end of the step.
+/// called from several threads at once for different particles. An AfterContact{} lets the particle stay at the wall,
+/// and move with it, until the end of the step. An empty function also stops it there: then the report names it with its
+/// unused displacement.
 using ContactCallback =
     std::function<AfterContact(const Contact&, std::span<const WallHit> walls, std::span<const WallHit> earlier)>;
+
+/// Decides what follows the contacts of a round: the next contact of each particle that still has one. It gets them by
+/// particle, at most one for each; ContactList::walls_of() and earlier_walls_of() give their walls. It writes the answer
+/// to contacts.contacts[i] to after[i], which is AfterContact{} before: the particle stays at the wall, and moves with
+/// it, until the end of the step. It is called from the thread of the caller. The list and the span are valid until it
+/// returns. It must not change the environment or the particles.
+using RoundCallback = std::function<void(const ContactList& contacts, std::span<AfterContact> after)>;
 
 }  // namespace dartcast

@@ -146,6 +146,16 @@ void Environment::Members::check_positions(std::span<const Vec3> positions) cons
                                       out - positions.begin(), out->x, out->y, out->z));
 }
 
+StepReport Environment::Members::advance(Particles& particles, std::span<const Vec3> targets,
+                                         const detail::BatchStepper& stepper) const {
+  adopt(particles);
+  Particles::Details& details = particles.details();
+  details.index.reset();
+  StepReport report = stepper.advance({particles.states_, details.weights, details.cache}, targets);
+  details.moves = moves;
+  return report;
+}
+
 std::vector<Vec3> Environment::Members::with_steiner_points(std::span<const Vec3> positions) const {
   check_positions(positions);
   std::vector<Vec3> all(positions.begin(), positions.end());
@@ -281,15 +291,18 @@ void Environment::check_advance(const Particles& particles, const StepOptions& o
 StepReport Environment::advance(Particles& particles, std::span<const Vec3> targets, const ContactCallback& respond,
                                 const StepOptions& options) {
   check_advance(particles, options);
-  const bool moved = awaits_advance(particles);
-  members_->adopt(particles);
-  Particles::Details& details = particles.details();
-  details.index.reset();
   const bool may_throw = respond && !detail::is_library_response(respond);  // the caller's code may throw
-  StepReport report = detail::BatchStepper(complex(), moved, threads(), options, respond, may_throw)
-                          .advance({particles.states_, details.weights, details.cache}, targets);
-  details.moves = members_->moves;
-  return report;
+  return members_->advance(
+      particles, targets,
+      detail::BatchStepper(complex(), awaits_advance(particles), threads(), options, respond, may_throw));
+}
+
+StepReport Environment::advance_in_rounds(Particles& particles, std::span<const Vec3> targets,
+                                          const RoundCallback& respond, const StepOptions& options) {
+  check_advance(particles, options, "advance_in_rounds");
+  if (!respond) return advance(particles, targets, {}, options);
+  return members_->advance(particles, targets,
+                           detail::BatchStepper(complex(), awaits_advance(particles), threads(), options, respond));
 }
 
 std::vector<Trace> Environment::trace(const Particles& particles, std::size_t particle, std::span<const Vec3> targets,

@@ -11,6 +11,10 @@
 #include "dartcast/environment.hpp"
 #include "tracking/locate.hpp"
 
+namespace dartcast::detail {
+class BatchStepper;
+}  // namespace dartcast::detail
+
 namespace dartcast {
 
 struct Environment::Members {
@@ -26,6 +30,8 @@ struct Environment::Members {
   void check_positions(std::span<const Vec3> positions) const;
   [[nodiscard]] std::vector<Vec3> with_steiner_points(std::span<const Vec3> positions) const;
   void add_to(Particles& particles, SimplexId simplex, const Vec3& position) const;
+  /// Precondition: check_advance() passes.
+  StepReport advance(Particles& particles, std::span<const Vec3> targets, const detail::BatchStepper& stepper) const;
 
   CellComplex complex;
   Threads threads;

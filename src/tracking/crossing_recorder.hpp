@@ -12,6 +12,7 @@
 #include "dartcast/contact.hpp"
 #include "dartcast/particle_state.hpp"
 #include "dartcast/step.hpp"
+#include "tracking/step_run.hpp"
 #include "tracking/walk.hpp"
 
 namespace dartcast::detail {
@@ -29,7 +30,7 @@ inline std::array<double, 2> passing_weights(const PlaneCorners& v, unsigned fac
 }
 
 /// Follows one particle through its step.
-class CrossingRecorder {
+class CrossingRecorder : public NeverWaits {
  public:
   /// `start`: its cell. `moved`: as for Stepper. `contacts`: those of the step.
   CrossingRecorder(const CellComplex& complex, bool moved, Cell start, const ContactList& contacts,

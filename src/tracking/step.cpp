@@ -10,7 +10,7 @@ namespace dartcast {
 namespace {
 
 // The usual step records nothing, at no cost.
-struct NoRecorder {
+struct NoRecorder : detail::NeverWaits {
   static NoVisitor visitor() { return {}; }
   template <class... Arguments>
   static void walked(const Arguments&...) {}

@@ -39,6 +39,27 @@ struct PartialStep {
   }
 };
 
+/// The part of the step that is walked in one geometry: the particle's motion from time `begin` to time `end`.
+struct TimeInterval {
+  double begin;
+  double end;
+  Vec3 later;  ///< displacement planned after `end`, absolute
+};
+
+/// A step that waits at a contact for its answer: see Stepper::step_to_contact(). The rest of its state is in the
+/// contact.
+struct PausedStep {
+  bool waits = false;  ///< else the step is complete
+  std::uint32_t particle = 0;
+  SimplexId start;  ///< where the step started
+  Vec3 start_position;
+  TestCounts tests;  ///< made so far
+  unsigned contact_count = 0;
+  TimeInterval interval{};  ///< from the contact on
+  unsigned part = 1;        ///< in which it waits, from 1 on
+  unsigned parts = 1;       ///< in which the step is taken
+};
+
 /// Carries particles through one step of a complex. A plain reader of the complex: any number may run at once.
 class Stepper {
  public:
@@ -59,11 +80,25 @@ class Stepper {
   StepResult trace(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
                    ContactList& contacts, std::vector<Crossing>& crossings) const;
 
+  /// The same step up to its first contact, where it waits for the answer. It calls no response. `partial`: as for
+  /// resume(), or null where the step starts. Where it does not wait, the result is that of step().
+  StepResult step_to_contact(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
+                             ContactList& contacts, Counters& counters, const PartialStep* partial,
+                             PausedStep& paused) const;
+
+  /// Continues a paused step after the answer to `contact`, which is in the list `met`, up to its next contact. Adds the
+  /// next one to `contacts`, with all walls met earlier in the step in front of its own. Returns as step_to_contact().
+  StepResult step_on(const ContactList& met, const Contact& contact, const AfterContact& next, ParticleState& state,
+                     Weights& weights, ContactList& contacts, Counters& counters, PausedStep& paused) const;
+
  private:
   template <std::size_t N, class Recorder>
   StepResult step_in(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
                      ContactList& contacts, Counters& counters, const PartialStep* partial,
                      const Recorder& recorder) const;
+  template <std::size_t N>
+  StepResult step_on_in(const ContactList& met, const Contact& contact, const AfterContact& next, ParticleState& state,
+                        Weights& weights, ContactList& contacts, Counters& counters, PausedStep& paused) const;
 
   const CellComplex& complex_;
   bool moved_;

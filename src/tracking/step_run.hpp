@@ -1,5 +1,6 @@
-// The step of one particle. step.cpp compiles it without a recorder, trace.cpp with one. They are two files so that the
-// compiler inlines functions that are called from one place.
+// The step of one particle. step.cpp compiles it without a recorder, trace.cpp with one that records crossings,
+// pausing_step.cpp with one that stops at each contact. They are three files so that the compiler inlines functions that
+// are called from one place.
 //
 // The phases of a step, in order (Stepper::step_in()):
 // 1. Where the mesh has moved (MovingStep): a particle whose simplex is not positive before or after is held. Otherwise
@@ -37,14 +38,16 @@ struct RunOf {
   [[no_unique_address]] Recorder recorder{};
 };
 
-inline constexpr int lift_doublings = 16;  // for targets along walls
-
-// The part of the step that is walked in one geometry: the particle's motion from time `begin` to time `end`.
-struct TimeInterval {
-  double begin;
-  double end;
-  Vec3 later;  // displacement planned after `end`, absolute
+// The base of recorders whose steps call the response at each contact, and do not wait there for an answer.
+struct NeverWaits {
+  static constexpr bool pausing = false;
+  static constexpr bool waits() { return false; }
+  static void in_part(unsigned, unsigned) {}
+  template <class Run>
+  static void save(const Run&, SimplexId, const Vec3&) {}
 };
+
+inline constexpr int lift_doublings = 16;  // for targets along walls
 
 inline void touch(ParticleState& state, std::span<const WallHit> walls) {
   state.touching_count = 0;
@@ -88,16 +91,26 @@ class StepPart {
         return interval.later;
       }
       const AfterContact next = handle_contact(run, w, p, q, interval, impact);
-      if (run.result.stopped) return {};
-      const double share = interval.end < 1.0 ? (interval.end - interval.begin) / (1.0 - interval.begin) : 1.0;
-      interval.later =
-          next.displacement * (1.0 - share) + run.contacts.contacts.back().wall_displacement * (1.0 - interval.end);
-      q = aim(run, next, share);
+      if (run.result.stopped || run.recorder.waits()) return {};
+      q = redirect(run, run.contacts.contacts.back(), next, interval);
     }
     return interval.later;
   }
 
+  // The same from a contact on, after its answer.
+  Vec3 move_on(Run& run, const Contact& contact, const AfterContact& next, TimeInterval interval) const {
+    const Vec3 q = redirect(run, contact, next, interval);
+    return move(run, q, interval);
+  }
+
  private:
+  // The target after a contact. Sets the displacement planned after the interval.
+  Vec3 redirect(const Run& run, const Contact& contact, const AfterContact& next, TimeInterval& interval) const {
+    const double share = interval.end < 1.0 ? (interval.end - interval.begin) / (1.0 - interval.begin) : 1.0;
+    interval.later = next.displacement * (1.0 - share) + contact.wall_displacement * (1.0 - interval.end);
+    return aim(run, contact, next, share);
+  }
+
   // Records the contact, puts the particle there, and asks the response.
   AfterContact handle_contact(Run& run, const Walk& w, const Vec3& p, const Vec3& q, TimeInterval& interval,
                               const WallImpact* impact) const {
@@ -117,7 +130,7 @@ class StepPart {
     contact.unused = (q - p) * (1.0 - t) + later;
     ++run.counters.contacts[static_cast<std::size_t>(contact.kind)];
     touch(run.state, run.contacts.walls_of(contact));
-    return respond(run, contact);
+    return respond(run, contact, interval);
   }
 
   // Describes the contact, and puts the particle there. Returns the fraction of the segment.
@@ -139,11 +152,16 @@ class StepPart {
     return impact.fraction;
   }
 
-  AfterContact respond(Run& run, const Contact& contact) const {
-    if (!respond_ || run.contact_count > options_.max_contacts) {
-      run.counters.unfinished += respond_ ? 1 : 0;
+  AfterContact respond(Run& run, const Contact& contact, const TimeInterval& interval) const {
+    const bool responds = Recorder::pausing || respond_;
+    if (!responds || run.contact_count > options_.max_contacts) {
+      run.counters.unfinished += responds ? 1 : 0;
       run.result.stopped = true;
       run.result.unused = contact.unused;
+      return {};
+    }
+    if constexpr (Recorder::pausing) {
+      run.recorder.pause(interval);
       return {};
     }
     return respond_(contact, run.contacts.walls_of(contact), run.contacts.earlier_walls_of(contact));
@@ -175,13 +193,12 @@ class StepPart {
 
   // The target after a contact. Along walls, it is lifted off the planes that rounding put it behind. It is not lifted
   // off planes that the response wants it to be behind: those walls are met again.
-  [[nodiscard]] Vec3 aim(const Run& run, const AfterContact& next, double share) const {
+  [[nodiscard]] Vec3 aim(const Run& run, const Contact& contact, const AfterContact& next, double share) const {
     Vec3 q = flushed(run.state.position + next.displacement * share);
     if (!in_exact_range(q))
       throw InvalidArgument("the response for particle " + std::to_string(run.particle) +
                             " returned a displacement that is not finite, or out of range");
     if (!next.along || q == run.state.position) return q;
-    const Contact& contact = run.contacts.contacts.back();
     const Vec3& d = next.displacement;
     const double slack = along_share * std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
     WallPlanes<N> planes;
@@ -246,7 +263,17 @@ class MovingStep {
       return;
     }
     ++run.counters.steps_split;
-    in_parts(run, weights, target, parts);
+    in_parts(run, weights, target, target - run.state.position, 1, parts);
+  }
+
+  // The same from a contact on, after its answer. Precondition: it was in that part of several.
+  void move_on(Run& run, Weights& weights, const Contact& contact, const AfterContact& next,
+               const TimeInterval& interval, unsigned part, unsigned parts) const {
+    const Space<Between, N> to = space_between<N>(complex_, static_cast<double>(part) / parts);
+    const Vec3 planned =
+        StepPart<Between, N, Recorder>(complex_, true, to, options_, respond_).move_on(run, contact, next, interval);
+    if (run.recorder.waits()) return run.recorder.in_part(part, parts);
+    in_parts(run, weights, {}, planned, part + 1, parts);
   }
 
  private:
@@ -284,11 +311,11 @@ class MovingStep {
     return parts < options_.max_parts ? static_cast<unsigned>(parts) : options_.max_parts;
   }
 
-  // Each part is carried and walks in the geometry at its end. Its target lies on the line along the remaining motion.
-  void in_parts(Run& run, Weights& weights, const Vec3& target, unsigned parts) const {
-    Vec3 planned = target - run.state.position;
-    bool own_motion = true;
-    for (unsigned j = 1; j <= parts; ++j) {
+  // Each part, from `first` on, is carried and walks in the geometry at its end. Its target lies on the line along the
+  // remaining motion. Without a contact so far, that of the last part is `target`.
+  void in_parts(Run& run, Weights& weights, const Vec3& target, Vec3 planned, unsigned first, unsigned parts) const {
+    bool own_motion = !run.result.stopped && !run.result.held;
+    for (unsigned j = first; j <= parts; ++j) {
       const Space<Between, N> from = space_between<N>(complex_, static_cast<double>(j - 1) / parts);
       const Space<Between, N> to = space_between<N>(complex_, static_cast<double>(j) / parts);
       const Simplex before = from.corners(run.state.at());
@@ -302,6 +329,7 @@ class MovingStep {
       planned =
           StepPart<Between, N, Recorder>(complex_, true, to, options_, respond_)
               .move(run, q, {static_cast<double>(j - 1) / parts, static_cast<double>(j) / parts, planned - share});
+      if (run.recorder.waits()) return run.recorder.in_part(j, parts);
       own_motion = !run.result.stopped && !run.result.held;
     }
   }
@@ -311,6 +339,25 @@ class MovingStep {
   const ContactCallback& respond_;
   Space<Stored, N> space_ = current_space<N>(complex_);
 };
+
+// Saves a step that waits at a contact, and counts one that is complete. It started at p in the simplex `start`.
+template <std::size_t N, class Recorder>
+StepResult finish(const CellComplex& complex, bool moved, RunOf<Recorder>& run, SimplexId start, const Vec3& p) {
+  if (run.recorder.waits()) {
+    run.recorder.save(run, start, p);
+    return {};
+  }
+  Counters& counters = run.counters;
+  ++counters.particle_steps;
+  counters.orientation.tests += run.tests.tests;
+  counters.orientation.exact += run.tests.exact;
+  ++counters.histogram[std::min<std::size_t>(run.tests.tests, Counters::histogram_size - 1)];
+  const bool kept = run.state.at() == start && run.contact_count == 0 && !run.result.held;
+  counters.forecast_kept += kept ? 1 : 0;
+  if (moved && run.state.at() != start && left_behind(current_space<N>(complex).corners(start), p))
+    ++counters.updated_by_deformation;
+  return run.result;
+}
 
 }  // namespace detail
 
@@ -340,15 +387,7 @@ StepResult Stepper::step_in(std::uint32_t particle, ParticleState& state, Weight
           .move(run, target, {0.0, 1.0, {}});
     }
   }
-  ++counters.particle_steps;
-  counters.orientation.tests += run.tests.tests;
-  counters.orientation.exact += run.tests.exact;
-  ++counters.histogram[std::min<std::size_t>(run.tests.tests, Counters::histogram_size - 1)];
-  const bool kept = state.at() == start && run.contact_count == 0 && !run.result.held;
-  counters.forecast_kept += kept ? 1 : 0;
-  if (moved_ && state.at() != start && detail::left_behind(current_space<N>(complex_).corners(start), p))
-    ++counters.updated_by_deformation;
-  return run.result;
+  return detail::finish<N>(complex_, moved_, run, start, p);
 }
 
 }  // namespace dartcast

@@ -30,28 +30,30 @@ std::size_t next_deferred(std::span<const StepStatus> status, std::size_t i) {
   return i;
 }
 
-// Reports of consecutive chunks.
-StepReport joined(std::vector<StepReport> parts) {
-  if (parts.size() == 1) return std::move(parts.front());
+}  // namespace
+
+ChunkSteps joined(std::vector<ChunkSteps> chunks) {
+  if (chunks.size() == 1) return std::move(chunks.front());
   std::size_t contacts = 0;
   std::size_t walls = 0;
-  for (const StepReport& part : parts) {
-    contacts += part.contacts.contacts.size();
-    walls += part.contacts.walls.size();
+  for (const ChunkSteps& chunk : chunks) {
+    contacts += chunk.report.contacts.contacts.size();
+    walls += chunk.report.contacts.walls.size();
   }
-  StepReport report;
+  ChunkSteps all;
+  StepReport& report = all.report;
   report.contacts.contacts.reserve(contacts);
   report.contacts.walls.reserve(walls);
-  for (const StepReport& part : parts) {
+  for (const ChunkSteps& chunk : chunks) {
+    const StepReport& part = chunk.report;
     report.contacts.append(part.contacts);
     report.held.insert(report.held.end(), part.held.begin(), part.held.end());
     report.stopped.insert(report.stopped.end(), part.stopped.begin(), part.stopped.end());
     report.counters += part.counters;
+    all.waiting.insert(all.waiting.end(), chunk.waiting.begin(), chunk.waiting.end());
   }
-  return report;
+  return all;
 }
-
-}  // namespace
 
 // The targets as decisions see them; empty where that is what they are.
 std::vector<Vec3> BatchStepper::decided_targets(std::span<const Vec3> targets) const {
@@ -79,7 +81,8 @@ CacheKind BatchStepper::cache_kind(const ParticleCache& cache) const {
 }
 
 void BatchStepper::step_chunk(const BatchScene& scene, const BatchParticles& particles, std::span<const Vec3> targets,
-                              std::size_t begin, std::size_t end, StepReport& report) const {
+                              std::size_t begin, std::size_t end, ChunkSteps& steps) const {
+  StepReport& report = steps.report;
   const std::size_t size = end - begin;
   ParticleCache& cache = particles.cache;
   std::array<StepStatus, chunk> status;
@@ -97,6 +100,11 @@ void BatchStepper::step_chunk(const BatchScene& scene, const BatchParticles& par
   report.stopped.reserve(partial.size());
   for (std::size_t i = next_deferred(batch.status, 0); i < size; i = next_deferred(batch.status, i + 1)) {
     const auto particle = static_cast<std::uint32_t>(begin + i);
+    if (rounds_ != nullptr) {
+      const PartialStep* const partial_step = status[i] == step_untouched ? nullptr : &partial[status[i]];
+      step_to_contact(particles, particle, batch.targets[i], partial_step, steps);
+      continue;
+    }
     ParticleState& state = batch.states[i];
     Weights& weights = particles.weights[particle];
     const bool whole = status[i] == step_untouched;
@@ -118,16 +126,19 @@ StepReport BatchStepper::step_all(const BatchParticles& particles, std::span<con
   cache.simplices_.resize(kind == CacheKind::none ? 0 : targets.size());
   cache.stood_still_ = !moved_;
   cache.walls_changed_ = false;
-  std::vector<StepReport> parts(chunk_count(targets.size(), chunk));
+  std::vector<ChunkSteps> chunks(chunk_count(targets.size(), chunk));
   parallel_for(targets.size(), chunk, threads_, [&](std::size_t begin, std::size_t end) {
-    step_chunk(scene, particles, targets, begin, end, parts[begin / chunk]);
+    step_chunk(scene, particles, targets, begin, end, chunks[begin / chunk]);
   });
-  return joined(std::move(parts));
+  ChunkSteps steps = joined(std::move(chunks));
+  return rounds_ != nullptr ? answer_in_rounds(particles, std::move(steps)) : std::move(steps.report);
 }
 
 StepReport BatchStepper::advance(const BatchParticles& particles, std::span<const Vec3> targets) const {
   if (targets.size() != particles.states.size())
-    throw InvalidArgument(fmt::format("advance: {} targets for {} particles", targets.size(), particles.states.size()));
+    throw InvalidArgument(fmt::format("{}: {} targets for {} particles",
+                                      rounds_ != nullptr ? "advance_in_rounds" : "advance", targets.size(),
+                                      particles.states.size()));
   const std::vector<Vec3> decided = decided_targets(targets);
   if (!decided.empty()) targets = decided;
   if (!may_throw_) return step_all(particles, targets);

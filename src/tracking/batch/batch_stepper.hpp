@@ -1,4 +1,5 @@
-// Advances many particles: in chunks over threads, the usual steps in vectors, the others one by one.
+// Advances many particles: in chunks over threads, the usual steps in vectors, the others one by one. With a response
+// in rounds the steps of particles at walls wait until one call has answered all of them (batch_rounds.cpp).
 #pragma once
 
 #include <cstddef>
@@ -24,6 +25,16 @@ struct BatchParticles {
   ParticleCache& cache;
 };
 
+/// Steps of consecutive particles.
+struct ChunkSteps {
+  StepReport report;
+  std::vector<PausedStep>
+      waiting;  ///< one at each of the report's contacts; or none, where these are not to be answered
+};
+
+/// The steps of consecutive chunks.
+ChunkSteps joined(std::vector<ChunkSteps> chunks);
+
 /// Carries any number of particles through one step of a complex, with the results that Stepper (tracking/step.hpp)
 /// gives one by one, to the same bits.
 class BatchStepper {
@@ -37,10 +48,13 @@ class BatchStepper {
         options_(options),
         may_throw_(may_throw),
         stepper_(complex, moved, options, respond) {}
+  /// With a response in rounds, which is not empty.
+  BatchStepper(const CellComplex& complex, bool moved, Threads threads, const StepOptions& options,
+               const RoundCallback& respond);
 
   /// Advances each particle to its target. Throws InvalidArgument where the numbers differ, or a target is not finite,
   /// out of the exact range or not in the plane; throws what a response throws. Nothing is changed then. Cost: some
-  /// 20 ns a particle, and 1 us for each that meets a wall.
+  /// 20 ns a particle, and 1 us for each that meets a wall; and a few us for each round.
   StepReport advance(const BatchParticles& particles, std::span<const Vec3> targets) const;
 
  private:
@@ -48,13 +62,22 @@ class BatchStepper {
   [[nodiscard]] CacheKind cache_kind(const ParticleCache& cache) const;
   [[nodiscard]] StepReport step_all(const BatchParticles& particles, std::span<const Vec3> targets) const;
   void step_chunk(const BatchScene& scene, const BatchParticles& particles, std::span<const Vec3> targets,
-                  std::size_t begin, std::size_t end, StepReport& report) const;
+                  std::size_t begin, std::size_t end, ChunkSteps& steps) const;
+  // In rounds.
+  void step_to_contact(const BatchParticles& particles, std::uint32_t particle, const Vec3& target,
+                       const PartialStep* partial, ChunkSteps& steps) const;
+  [[nodiscard]] ChunkSteps step_on(const BatchParticles& particles, std::span<const PausedStep> waiting,
+                                   const ContactList& met, std::span<const AfterContact> after) const;
+  [[nodiscard]] StepReport answer_in_rounds(const BatchParticles& particles, ChunkSteps steps) const;
+  void add(const BatchParticles& particles, const StepResult& result, const PausedStep& step, std::uint32_t particle,
+           ChunkSteps& steps) const;
 
   const CellComplex& complex_;
   bool moved_;
   Threads threads_;
   const StepOptions& options_;
   bool may_throw_;
+  const RoundCallback* rounds_ = nullptr;  // none: the stepper responds at each contact
   Stepper stepper_;
 };
 
