@@ -202,12 +202,13 @@ class Environment {
                      const StepOptions& options = {});
 
   /// Advances as advance(), but asks in rounds: every particle stops at its next contact, one call answers all of them,
-  /// and the particles continue against the walls as these move in the step. A round for round k has the k-th contacts
-  /// of the particles. The rounds end when no particle has a contact to answer. So there are at most
-  /// StepOptions::max_contacts of them, and none where no particle meets a wall. Results are the bits of advance() with a
-  /// ContactCallback that gives the same answers: states, the whole report with all counts, and errors. An empty function
-  /// is that of advance(). Throws as advance(), nothing changed. Cost: that of advance(), and for each round some
-  /// microseconds and a copy of the walls met so far by its particles.
+  /// and the particles continue against the walls as these move in the step. Round k has the k-th contact of each
+  /// particle that has so many. The rounds end when no particle has a contact to answer. So there are at most
+  /// StepOptions::max_contacts rounds, and none where no particle meets a wall.
+  ///
+  /// Results are the bits of advance() with a ContactCallback that gives the same answers: states, and the whole report
+  /// with all counts. An empty function stops particles as in advance(). Throws as advance(), nothing changed. Cost: that
+  /// of advance(), and for each round some microseconds and a copy of the walls that its particles have met so far.
   StepReport advance_in_rounds(Particles& particles, std::span<const Vec3> targets, const RoundCallback& respond,
                                const StepOptions& options = {});
 
