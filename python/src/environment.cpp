@@ -131,14 +131,12 @@ void bind_queries(EnvironmentClass& c) {
 
 void bind_environment(py::module_& m) {
   bind_particles(m);
-  bind_enum<OrphanPolicy>(m, "OrphanPolicy",
-                          {{"HOLD", OrphanPolicy::hold},
-                           {"RELOCATE", OrphanPolicy::relocate},
-                           {"ABSORB", OrphanPolicy::absorb}});
-  EnvironmentClass c(m, "Environment",
-                     (std::string(doc("Environment")) +
-                      "\n\nIt serves one call at a time: a second thread gets InUse.")
-                         .c_str());
+  bind_enum<OrphanPolicy>(
+      m, "OrphanPolicy",
+      {{"HOLD", OrphanPolicy::hold}, {"RELOCATE", OrphanPolicy::relocate}, {"ABSORB", OrphanPolicy::absorb}});
+  EnvironmentClass c(
+      m, "Environment",
+      (std::string(doc("Environment")) + "\n\nIt serves one call at a time: a second thread gets InUse.").c_str());
   c.def(py::init(&make), py::arg("mesh"), py::arg("threads") = Threads{}, py::arg("free") = py::none(),
         (std::string(doc("Environment::Environment")) +
          "\n\nThe mesh is copied, and stays as it is. free: names of regions whose cells are free, all others are "

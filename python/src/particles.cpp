@@ -139,7 +139,8 @@ void bind_changes(Class& c) {
       "replace",
       [](ParticlesHandle& h, const py::object& given, const ParticlesHandle& by) {
         const auto which = indices(given, "which");
-        if (&h == &by) throw InvalidArgument("replace: a set cannot replace its own particles: give one that was selected()");
+        if (&h == &by)
+          throw InvalidArgument("replace: a set cannot replace its own particles: give one that was selected()");
         const Use use(*h.usage, the_set);
         const Use other(*by.usage, "the other set of particles");
         const py::gil_scoped_release release;

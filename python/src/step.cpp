@@ -22,10 +22,7 @@ void bind_options(py::module_& m) {
 }
 
 void bind_counters(py::module_& m) {
-  Record<TestCounts>(m, "TestCounts")
-      .field("tests", &TestCounts::tests)
-      .field("exact", &TestCounts::exact)
-      .finish();
+  Record<TestCounts>(m, "TestCounts").field("tests", &TestCounts::tests).field("exact", &TestCounts::exact).finish();
   Record<Counters> counters(m, "Counters");
   counters.field("particle_steps", &Counters::particle_steps)
       .field("orientation", &Counters::orientation)
@@ -86,7 +83,8 @@ void bind_report(py::module_& m) {
       "stopped", [](const StepReport& r) { return rows_of(r.stopped); },
       "Particles stopped at a contact before their target, as a structured array: particle, unused (displacement left, "
       "relative to the wall).");
-  c.def_property_readonly("counters", [](const StepReport& r) { return r.counters; }, doc("Counters"));
+  c.def_property_readonly(
+      "counters", [](const StepReport& r) { return r.counters; }, doc("Counters"));
 }
 
 void bind_trace(py::module_& m) {

@@ -26,11 +26,11 @@ struct UseBoth {
 void expect_positions_before(const EnvironmentHandle& e, const ParticlesHandle& p, const char* call);
 
 /// The answers' arguments of a call, by name, for the last arguments of its definition.
-#define DARTCAST_RESPOND_ARGUMENTS                                                                                \
+#define DARTCAST_RESPOND_ARGUMENTS                                                                                  \
   pybind11::arg("respond") = pybind11::none(), pybind11::kw_only(), pybind11::arg("velocities") = pybind11::none(), \
-  pybind11::arg("statuses") = pybind11::none(), pybind11::arg("dt") = pybind11::none(),                           \
-  pybind11::arg("acceleration") = pybind11::none(), pybind11::arg("per_contact") = false,                         \
-  pybind11::arg("options") = StepOptions{}
+  pybind11::arg("statuses") = pybind11::none(), pybind11::arg("dt") = pybind11::none(),                             \
+  pybind11::arg("acceleration") = pybind11::none(), pybind11::arg("per_contact") = false,                           \
+  pybind11::arg("options") = StepOptions {}
 
 /// How docstrings explain these arguments.
 extern const char* const respond_text;

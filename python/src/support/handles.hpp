@@ -19,8 +19,8 @@ struct EnvironmentHandle {
   bool borrowed = false;  ///< of a simulation
   std::shared_ptr<Usage> usage = std::make_shared<Usage>();
   // The blocks of next_points().
-  bool writing = false;             ///< one is open
-  bool overwritten = false;         ///< one was left by an exception: the positions before the last move are lost
+  bool writing = false;              ///< one is open
+  bool overwritten = false;          ///< one was left by an exception: the positions before the last move are lost
   std::weak_ptr<void> written = {};  ///< arrays of a block that still exist; they end at an edit at the latest
 
   /// Throws InvalidArgument while a block is open.
@@ -92,7 +92,8 @@ struct EditHandle {
 
   [[nodiscard]] ComplexEdit& open() const {
     if (edit == nullptr)
-      throw InvalidArgument("this edit has ended: use it in its `with` block, or in the function given to edit(), only");
+      throw InvalidArgument(
+          "this edit has ended: use it in its `with` block, or in the function given to edit(), only");
     return *edit;
   }
   /// Throws InUse while another thread's call uses the edit. Undoes it where it is Python's own and not committed.

@@ -133,10 +133,10 @@ void LibraryAnswers::expect_particles(std::size_t count) const {
 
 Answers::Answers(const RespondArguments& given, const CombinatorialMap& map, std::size_t count) {
   const py::object& respond = given.respond;
-  const bool has_motion = !given.velocities.is_none() || !given.statuses.is_none() || !given.dt.is_none() ||
-                          !given.acceleration.is_none();
-  const bool is_ready = py::isinstance<std::shared_ptr<LibraryAnswers>>(respond) ||
-                        py::isinstance<LibraryAnswers>(respond);
+  const bool has_motion =
+      !given.velocities.is_none() || !given.statuses.is_none() || !given.dt.is_none() || !given.acceleration.is_none();
+  const bool is_ready =
+      py::isinstance<std::shared_ptr<LibraryAnswers>>(respond) || py::isinstance<LibraryAnswers>(respond);
   const bool is_function = !is_ready && PyCallable_Check(respond.ptr()) != 0;
   if (has_motion && (respond.is_none() || is_ready || is_function))
     throw InvalidArgument("velocities, statuses, dt and acceleration go with a response such as Reflect(0.5) only");

@@ -52,10 +52,22 @@ void register_rows() {
 py::array rows_of(const std::vector<Contact>& contacts, std::span<const WallHit> walls) {
   return made_rows<ContactRow>(contacts, [&](const Contact& c, ContactRow& r) {
     const WallHit& wall = walls[c.first_wall];
-    r = {c.particle,        static_cast<std::uint8_t>(c.kind), c.last,           wall.patch.value,
-         c.time_of_impact,  row(c.point),                      row(wall.normal), row(c.wall_displacement),
-         row(c.displacement), row(c.unused),                   c.first_wall,     c.wall_count,
-         c.earlier,         c.together,                        c.dart.cell.value, c.dart.number};
+    r = {c.particle,
+         static_cast<std::uint8_t>(c.kind),
+         c.last,
+         wall.patch.value,
+         c.time_of_impact,
+         row(c.point),
+         row(wall.normal),
+         row(c.wall_displacement),
+         row(c.displacement),
+         row(c.unused),
+         c.first_wall,
+         c.wall_count,
+         c.earlier,
+         c.together,
+         c.dart.cell.value,
+         c.dart.number};
   });
 }
 
@@ -95,8 +107,9 @@ py::array rows_of(const std::vector<HeldParticle>& held) {
 }
 
 py::array rows_of(const std::vector<StoppedParticle>& stopped) {
-  return made_rows<StoppedRow>(stopped,
-                               [](const StoppedParticle& s, StoppedRow& r) { r = {s.particle, row(s.unused)}; });
+  return made_rows<StoppedRow>(stopped, [](const StoppedParticle& s, StoppedRow& r) {
+    r = {s.particle, row(s.unused)};
+  });
 }
 
 py::array rows_of(const std::vector<SphereOverlap>& overlaps) {
