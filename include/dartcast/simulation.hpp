@@ -336,4 +336,11 @@ class Simulation {
   std::unique_ptr<Parts> parts_;
 };
 
+/// Adds particles at random points of the free cells, of equal likelihood by volume (in the plane by area). A particle's
+/// point depends on the seed and its index in the set alone: an empty simulation of the same scene and seed adds the same
+/// ones. Throws InvalidArgument, nothing added, where no cell is free or the particles are of another environment or have
+/// missed a move or an edit; and where points fall outside again and again, because cells are too thin or not valid: those
+/// added before remain. Cost: linear in the cells, and about 1 us for each particle.
+void add_random(Environment& environment, Particles& particles, std::size_t count, std::uint64_t seed = 1);
+
 }  // namespace dartcast

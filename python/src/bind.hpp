@@ -43,6 +43,7 @@ void bind_deformation(pybind11::module_& m);
 void bind_vector_field(pybind11::module_& m);
 
 // All that runs.
+void bind_statistics(pybind11::module_& m);
 void bind_surface(pybind11::module_& m);
 void bind_bodies(pybind11::module_& m);
 void bind_catheter(pybind11::module_& m);

@@ -33,5 +33,17 @@ PYBIND11_MODULE(_core, m) {
   bind_validity(m);
 
   bind_threads(m);
+  bind_particle_state(m);
+  bind_contact(m);
+  bind_step(m);
+  bind_response(m);
+  bind_environment(m);
+  bind_audit(m);
+  bind_spheres(m);
   bind_dynamics(m);
+  bind_trajectory(m);
+  bind_deformation(m);
+  bind_vector_field(m);
+
+  bind_statistics(m);
 }

@@ -60,7 +60,7 @@ FieldSamples field_samples(std::vector<double> times, std::vector<std::vector<Ve
   samples.place = place;
   samples.times = std::move(times);
   samples.period = period;
-  samples.read = [lists = std::move(values)](std::size_t k) { return lists[k]; };
+  samples.read = [lists = std::move(values)](std::size_t k) { return lists.at(k); };
   return samples;
 }
 

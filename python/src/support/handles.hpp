@@ -18,6 +18,16 @@ struct EnvironmentHandle {
   Environment* environment = nullptr;
   bool borrowed = false;  ///< of a simulation
   std::shared_ptr<Usage> usage = std::make_shared<Usage>();
+  // The blocks of next_points().
+  bool writing = false;              ///< one is open
+  bool overwritten = false;          ///< one was left by an exception: the positions before the last move are lost
+  std::weak_ptr<void> written = {};  ///< arrays of a block that still exist; they end at an edit at the latest
+
+  /// Throws InvalidArgument while a block is open.
+  void expect_no_writing(const char* call) const {
+    if (writing)
+      throw InvalidArgument(std::string(call) + ": a next_points() block of this environment is open: leave it first");
+  }
 
   /// To change it. Throws InvalidArgument where it is borrowed: `remedy` says what to call instead.
   Environment& changeable(const char* remedy) const {

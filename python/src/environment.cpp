@@ -1,0 +1,152 @@
+// Binds dartcast/environment.hpp: the class, and queries. Sets of particles, adding, moves and steps are in files of
+// their own.
+#include "dartcast/environment.hpp"
+
+#include <string>
+#include <vector>
+
+#include "bind.hpp"
+#include "dartcast/mesh_selection.hpp"
+#include "dartcast/validity.hpp"
+#include "support/environments.hpp"
+#include "support/meshes.hpp"
+#include "support/rows.hpp"
+
+namespace py = pybind11;
+
+namespace dartcast::python {
+namespace {
+
+EnvironmentPointer make(const MeshData& mesh, Threads threads, const std::optional<std::vector<std::string>>& free) {
+  const MeshUse use(mesh);
+  const py::gil_scoped_release release;
+  check_arrays(mesh);
+  MeshData copy = mesh;
+  if (free) select_free_regions(copy, *free);
+  auto kept = std::make_shared<Environment>(std::move(copy), threads);
+  auto handle = std::make_shared<EnvironmentHandle>();
+  handle->environment = kept.get();
+  handle->owner = std::move(kept);
+  return handle;
+}
+
+void bind_parts(EnvironmentClass& c) {
+  c.def_property_readonly(
+      "complex",
+      [](const EnvironmentHandle& h) {
+        return std::make_shared<ComplexHandle>(ComplexHandle{h.owner, &h.environment->complex(), nullptr, h.usage});
+      },
+      "The cell complex. It can be read; edit() changes it.");
+  c.def_property_readonly(
+      "map",
+      [](const EnvironmentHandle& h) {
+        auto map = std::make_shared<MapHandle>();
+        map->owner = h.owner;
+        map->map = &h.environment->map();
+        map->usage = h.usage;
+        return map;
+      },
+      "The combinatorial map. It can be read; edit() changes it.");
+  c.def_property_readonly(
+      "positions",
+      [](const EnvironmentHandle& h) {
+        const Use use(*h.usage, "the environment");
+        return read_only(array_of(h.environment->positions()));
+      },
+      "Positions of the mesh's points: float64 (n, 3), a read-only copy.");
+  c.def_property(
+      "threads", [](const EnvironmentHandle& h) { return h.environment->threads(); },
+      [](const EnvironmentHandle& h, Threads threads) {
+        const Use use(*h.usage, "the environment");
+        Environment& e = h.changeable("set the threads of the simulation");
+        const py::gil_scoped_release release;
+        e.set_threads(threads);
+      },
+      "The number of threads that calls use; 0: all of the machine. Results never depend on it. Setting it raises "
+      "Error, nothing changed, as check_threads().");
+  c.def_property_readonly(
+      "edit_count", [](const EnvironmentHandle& h) { return h.environment->edit_count(); },
+      "The number of edits so far.");
+  c.def_property_readonly(
+      "last_edit",
+      [](const EnvironmentHandle& h) {
+        const Use use(*h.usage, "the environment");
+        return ComplexEditReport(h.environment->last_edit());
+      },
+      doc("Environment::last_edit"));
+}
+
+py::object locate(const EnvironmentHandle& h, const py::object& x) {
+  const Use use(*h.usage, "the environment");
+  if (py::isinstance<py::array>(x) && py::reinterpret_borrow<py::array>(x).ndim() != 1) {
+    const auto points = vectors(x, "x");
+    std::vector<Location> found;
+    {
+      const py::gil_scoped_release release;
+      found = h.environment->locate(points);
+    }
+    return rows_of(found);
+  }
+  const Vec3 point = vector(x, "x");
+  Location found;
+  {
+    const py::gil_scoped_release release;
+    found = h.environment->locate(point);
+  }
+  return py::cast(found);
+}
+
+void bind_queries(EnvironmentClass& c) {
+  c.def("locate", &locate, py::arg("x"),
+        (std::string(doc("Environment::locate")) +
+         "\n\nx: one point, or float64 (n, 3). Returns a Location; or a structured array: place, kind, simplex, dart, "
+         "cell, dart_cell. NONE stands for no cell.")
+            .c_str());
+  c.def(
+      "validity",
+      [](const EnvironmentHandle& h, std::size_t max_count) {
+        const Use use(*h.usage, "the environment");
+        const py::gil_scoped_release release;
+        return h.environment->validity(max_count);
+      },
+      py::arg("max_count") = 10, doc("Environment::validity"));
+  c.def(
+      "awaits_advance",
+      [](const EnvironmentHandle& h, const ParticlesHandle& p) {
+        const UseBoth use(h, p);
+        return h.environment->awaits_advance(p.particles);
+      },
+      py::arg("particles"), doc("Environment::awaits_advance"));
+  c.def(
+      "check_advance",
+      [](const EnvironmentHandle& h, const ParticlesHandle& p, const StepOptions& options, const std::string& caller) {
+        const UseBoth use(h, p);
+        h.environment->check_advance(p.particles, options, caller.c_str());
+      },
+      py::arg("particles"), py::arg("options") = StepOptions{}, py::arg("caller") = "advance",
+      doc("Environment::check_advance"));
+}
+
+}  // namespace
+
+void bind_environment(py::module_& m) {
+  bind_particles(m);
+  bind_enum<OrphanPolicy>(
+      m, "OrphanPolicy",
+      {{"HOLD", OrphanPolicy::hold}, {"RELOCATE", OrphanPolicy::relocate}, {"ABSORB", OrphanPolicy::absorb}});
+  EnvironmentClass c(
+      m, "Environment",
+      (std::string(doc("Environment")) + "\n\nIt serves one call at a time: a second thread gets InUse.").c_str());
+  c.def(py::init(&make), py::arg("mesh"), py::arg("threads") = Threads{}, py::arg("free") = py::none(),
+        (std::string(doc("Environment::Environment")) +
+         "\n\nThe mesh is copied, and stays as it is. free: names of regions whose cells are free, all others are "
+         "blocked (select_free_regions()); None: as the mesh says.")
+            .c_str());
+  bind_parts(c);
+  bind_queries(c);
+  bind_environment_adding(c);
+  bind_environment_moves(m, c);
+  bind_environment_steps(c);
+}
+
+}  // namespace dartcast::python

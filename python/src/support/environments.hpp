@@ -1,0 +1,55 @@
+// Calls on environments and particles, from several files.
+#pragma once
+
+#include <memory>
+
+#include "support/handles.hpp"
+#include "support/python.hpp"
+#include "support/respond.hpp"
+
+namespace dartcast::python {
+
+using EnvironmentPointer = std::shared_ptr<EnvironmentHandle>;
+using ParticlesPointer = std::shared_ptr<ParticlesHandle>;
+
+/// An environment and particles for the time of one call.
+struct UseBoth {
+  Use environment;
+  Use particles;
+
+  UseBoth(const EnvironmentHandle& e, const ParticlesHandle& p)
+      : environment(*e.usage, "the environment"), particles(*p.usage, "the set of particles") {}
+};
+
+/// Throws InvalidArgument while a next_points() block is open, and where the particles need positions that a block has
+/// overwritten.
+void expect_positions_before(const EnvironmentHandle& e, const ParticlesHandle& p, const char* call);
+
+/// The answers' arguments of a call, by name, for the last arguments of its definition.
+#define DARTCAST_RESPOND_ARGUMENTS                                                                                  \
+  pybind11::arg("respond") = pybind11::none(), pybind11::kw_only(), pybind11::arg("velocities") = pybind11::none(), \
+  pybind11::arg("statuses") = pybind11::none(), pybind11::arg("dt") = pybind11::none(),                             \
+  pybind11::arg("acceleration") = pybind11::none(), pybind11::arg("per_contact") = false,                           \
+  pybind11::arg("options") = StepOptions {}
+
+/// How docstrings explain these arguments.
+extern const char* const respond_text;
+
+/// Targets that a function of Python cannot change while the call runs.
+class Targets {
+ public:
+  Targets(const pybind11::object& given, const RespondArguments& arguments, const char* name = "targets");
+  [[nodiscard]] std::span<const Vec3> get() const { return targets_; }
+
+ private:
+  std::vector<Vec3> own_;
+  std::span<const Vec3> targets_;
+};
+
+void bind_particles(pybind11::module_& m);
+using EnvironmentClass = pybind11::class_<EnvironmentHandle, EnvironmentPointer>;
+void bind_environment_adding(EnvironmentClass& c);
+void bind_environment_moves(pybind11::module_& m, EnvironmentClass& c);
+void bind_environment_steps(EnvironmentClass& c);
+
+}  // namespace dartcast::python
