@@ -11,7 +11,9 @@ Dart = dartcast.Dart
 
 
 def box(n=2):
-    return dartcast.CellComplex(dartcast.generate_box(cells=[n, n, n]))
+    c = dartcast.CellComplex(dartcast.generate_box(cells=[n, n, n]))
+    dartcast.ComplexEdit(c)  # the first edit of a map counts the cells of each vertex
+    return c
 
 
 def first(m):

@@ -6,14 +6,17 @@ namespace {
 
 CombinatorialMap& changeable(const MapHandle& map) {
   if (map.changeable == nullptr)
-    throw InvalidArgument("this map belongs to a complex, an environment or an edit: use ComplexEdit, or edit() of the environment");
+    throw InvalidArgument(
+        "this map belongs to a complex, an environment or an edit: use ComplexEdit, or edit() of the environment");
   return *map.changeable;
 }
 
 }  // namespace
 
 OwnTransaction::OwnTransaction(std::shared_ptr<MapHandle> of)
-    : map(std::move(of)), use(*map->usage, "the map (another transaction on it may be open)"), transaction(changeable(*map)) {}
+    : map(std::move(of)),
+      use(*map->usage, "the map (another transaction on it may be open)"),
+      transaction(changeable(*map)) {}
 
 Transaction& TransactionHandle::open() const {
   if (edit) return edit->open().topology();

@@ -31,6 +31,8 @@ CellComplex& changeable(const ComplexHandle& complex) {
 }  // namespace
 
 OwnEdit::OwnEdit(std::shared_ptr<ComplexHandle> of)
-    : complex(std::move(of)), use(*complex->usage, "the complex (another edit of it may be open)"), edit(changeable(*complex)) {}
+    : complex(std::move(of)),
+      use(*complex->usage, "the complex (another edit of it may be open)"),
+      edit(changeable(*complex)) {}
 
 }  // namespace dartcast::python

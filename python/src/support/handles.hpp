@@ -82,7 +82,8 @@ struct EditHandle {
 
   [[nodiscard]] ComplexEdit& open() const {
     if (edit == nullptr)
-      throw InvalidArgument("this edit has ended: use it in its `with` block, or in the function given to edit(), only");
+      throw InvalidArgument(
+          "this edit has ended: use it in its `with` block, or in the function given to edit(), only");
     return *edit;
   }
   /// Throws InUse while another thread's call uses the edit. Undoes it where it is Python's own and not committed.

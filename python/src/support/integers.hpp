@@ -49,9 +49,9 @@ std::vector<T> integers(const pybind11::object& x, const std::string& name) {
 /// A fresh array (n, columns).
 template <class T>
 pybind11::array_t<T> rows_of(const std::vector<T>& values, std::size_t columns) {
-  return pybind11::array_t<T>({static_cast<pybind11::ssize_t>(values.size() / columns),
-                               static_cast<pybind11::ssize_t>(columns)},
-                              values.data());
+  return pybind11::array_t<T>(
+      {static_cast<pybind11::ssize_t>(values.size() / columns), static_cast<pybind11::ssize_t>(columns)},
+      values.data());
 }
 
 }  // namespace dartcast::python

@@ -54,7 +54,8 @@ class Record {
     setters_->push_back(set);
     class_.def_property(
         name, [member](const T& t) { return without_writing(pybind11::cast(t.*member)); },
-        [set](T& t, const pybind11::object& value) { set(t, value); }, doc(cpp_ + "::" + (cpp_member != nullptr ? cpp_member : name)));
+        [set](T& t, const pybind11::object& value) { set(t, value); },
+        doc(cpp_ + "::" + (cpp_member != nullptr ? cpp_member : name)));
     return *this;
   }
   /// Further definitions: methods, properties.
@@ -74,7 +75,7 @@ class Record {
   pybind11::class_<T>& finish() {
     namespace py = pybind11;
     const auto make = [name = name_, members = members_, setters = setters_](const py::args& values,
-                                                                            const py::kwargs& named) {
+                                                                             const py::kwargs& named) {
       T made{};
       const py::dict all = named_values(name.c_str(), *members, values, named);
       for (std::size_t i = 0; i < members->size(); ++i) {
