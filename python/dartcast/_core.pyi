@@ -34,7 +34,11 @@ Path = Union[str, os.PathLike[str]]
 # --- end of errors.hpp
 
 # --- ids.hpp
-
+class Kind(enum.IntEnum):
+    VERTEX = 0
+    EDGE = 1
+    FACE = 2
+    VOLUME = 3
 # --- end of ids.hpp
 
 # --- mesh_data.hpp
@@ -506,6 +510,7 @@ class Shape:
 _DartLike = tuple[int, int]
 _FaceLike = tuple[int, int]
 class CellView:
+    def __init__(self, *args: Any, **kwargs: Any) -> None: ...
     @property
     def shape(self) -> Shape: ...
     @property
@@ -732,7 +737,8 @@ class SplitEdge:
     def __copy__(self) -> SplitEdge: ...
     def __deepcopy__(self, memo: dict[Any, Any]) -> SplitEdge: ...
 class Transaction:
-    class Savepoint: ...
+    class Savepoint:
+        def __init__(self, *args: Any, **kwargs: Any) -> None: ...
     def __init__(self, map: CombinatorialMap) -> None: ...
     def add_vertex(self, from_: int, other: int) -> Vertex: ...
     def replace(self, removed: _Cells, drafts: Sequence[CellDraft]) -> _Uint32: ...
@@ -1040,6 +1046,7 @@ def reconnect(edit: ComplexEdit, a: Sequence[_FaceLike], b: Sequence[_FaceLike],
 
 # --- remeshing.hpp
 class Subdivision:
+    def __init__(self, *args: Any, **kwargs: Any) -> None: ...
     @property
     def middle(self) -> Vertex: ...
     @property
@@ -1051,6 +1058,7 @@ class Subdivision:
     @property
     def face_middles(self) -> _Uint32: ...
 class Subdivided:
+    def __init__(self, *args: Any, **kwargs: Any) -> None: ...
     @property
     def subdivision(self) -> Subdivision: ...
     @property

@@ -11,7 +11,7 @@ namespace py = pybind11;
 namespace dartcast::python {
 namespace {
 
-/// A subdivision, and the map that it is of. It can only be made by subdivide(), so that its vertices are what they say.
+/// A subdivision, and the map that it is of. Only subdivide() makes one, so that its vertices are what they say.
 struct SubdivisionHandle {
   Subdivision subdivision;
   const CombinatorialMap* map = nullptr;  // to compare only

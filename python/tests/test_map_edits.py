@@ -292,7 +292,8 @@ def test_vertices_and_cells_that_are_not_there_are_refused():
         for edit in (dartcast.merge_cells, dartcast.unsew):
             with pytest.raises(dartcast.InvalidArgument, match="no such face"):
                 edit(t, (c, 6))
-        for path in ([(c, 0), (c, 30), (c, 2)], [(c, 0), (c, 1), (c, 60000)], [(c, 0), (c, 1), (0xFFFFFFF0, 0)], [None] * 3):
+        for path in ([(c, 0), (c, 30), (c, 2)], [(c, 0), (c, 1), (c, 60000)],
+                     [(c, 0), (c, 1), (0xFFFFFFF0, 0)], [None] * 3):
             with pytest.raises((dartcast.InvalidArgument, IndexError)):
                 dartcast.split_cell(t, path)
         with pytest.raises(dartcast.InvalidArgument):
@@ -306,8 +307,8 @@ def test_stale_darts_are_refused():
     with dartcast.Transaction(m) as t:
         dartcast.split_edge(t, (c, 0))
         t.commit()
-    for call in (lambda: m.phi1((c, 0)), lambda: view.vertices, lambda: view.neighbour(0), lambda: dartcast.draft_of(m, c),
-                 lambda: dartcast.vertex_orbit(m, (c, 0)), lambda: dartcast.check_integrity(m, [c])):
+    for call in (lambda: m.phi1((c, 0)), lambda: view.vertices, lambda: view.neighbour(0),
+                 lambda: dartcast.draft_of(m, c), lambda: dartcast.vertex_orbit(m, (c, 0)), lambda: dartcast.check_integrity(m, [c])):
         with pytest.raises(dartcast.InvalidArgument):
             call()
     assert dartcast.find_dart(m, c, 0, 1) is None

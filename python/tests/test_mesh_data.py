@@ -235,7 +235,8 @@ def test_cells_and_faces_can_be_added():
 
 
 def test_copies_are_independent_and_pickles_are_equal():
-    mesh = two_tetrahedra(regions=[1, 2], patches={"inlet": [[0, 2, 1]]}, point_data={"v": POINTS}, free=np.array([1, 0], bool))
+    mesh = two_tetrahedra(regions=[1, 2], patches={"inlet": [[0, 2, 1]]}, point_data={"v": POINTS},
+                          free=np.array([1, 0], bool))
     for other in (copy.copy(mesh), copy.deepcopy(mesh), pickle.loads(pickle.dumps(mesh))):
         for name in ("points", "types", "offsets", "connectivity", "regions", "free", "patch_faces", "patch_tags"):
             assert np.array_equal(getattr(other, name), getattr(mesh, name)), name

@@ -35,7 +35,7 @@ std::string first_defect(const MeshReport& report);
 /// called without Python's lock.
 MeshData checked_mesh(const MeshData& mesh);
 
-/// Throws InvalidMesh as checked_mesh() does, and InvalidArgument where check_and_repair() would change the mesh. May be
+/// Throws InvalidMesh as checked_mesh() does, and InvalidArgument where check_and_repair() would change it. May be
 /// called without Python's lock.
 void require_checked(const MeshData& mesh);
 
