@@ -160,7 +160,8 @@ def test_a_complex_is_in_use_while_an_edit_is_open():
     m = c.map
     with dartcast.ComplexEdit(c):
         for call in (lambda: c.positions, lambda: c.move(np.zeros((27, 3))), lambda: m.cells(),
-                     lambda: dartcast.ComplexEdit(c), lambda: copy.copy(c), lambda: dartcast.check_validity(c), lambda: dartcast.to_mesh(c)):
+                     lambda: dartcast.ComplexEdit(c), lambda: copy.copy(c), lambda: dartcast.check_validity(c),
+                     lambda: dartcast.to_mesh(c)):
             with pytest.raises(dartcast.InUse):
                 call()
     assert len(m.cells()) == 8

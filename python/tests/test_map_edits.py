@@ -308,7 +308,8 @@ def test_stale_darts_are_refused():
         dartcast.split_edge(t, (c, 0))
         t.commit()
     for call in (lambda: m.phi1((c, 0)), lambda: view.vertices, lambda: view.neighbour(0),
-                 lambda: dartcast.draft_of(m, c), lambda: dartcast.vertex_orbit(m, (c, 0)), lambda: dartcast.check_integrity(m, [c])):
+                 lambda: dartcast.draft_of(m, c), lambda: dartcast.vertex_orbit(m, (c, 0)),
+                 lambda: dartcast.check_integrity(m, [c])):
         with pytest.raises(dartcast.InvalidArgument):
             call()
     assert dartcast.find_dart(m, c, 0, 1) is None
