@@ -67,6 +67,9 @@ class Reader:
             elif text == ":" and declaration in (["public"], ["private"], ["protected"]):
                 public = declaration == ["public"]
                 declaration, doc = [], []
+            elif text == "{" and declaration.count("(") > declaration.count(")"):  # a default argument
+                self.skip_block()
+                declaration.append("{}")
             elif text in "{;" and token == "word":
                 before = len(self.names)
                 self.finish(prefix, kind, " ".join(declaration), text, "\n".join(doc), line, public)

@@ -40,8 +40,7 @@ def _patches(blocks: Iterable[tuple[Any, Any]]) -> dict[int, list[Any]]:
         numbers = numpy.asarray(tags, dtype=numpy.int64)
         for tag in numpy.unique(numbers[numbers != 0]):
             chosen = numpy.flatnonzero(numbers == tag)
-            rows = faces[chosen] if isinstance(faces, numpy.ndarray) else [faces[i] for i in chosen]
-            patches.setdefault(int(tag), []).extend(rows)
+            patches.setdefault(int(tag), []).extend(faces[i] for i in chosen)
     return patches
 
 
@@ -109,7 +108,7 @@ def to_meshio(mesh: MeshData) -> Any:
     "medit:ref", with their names in field_data. Cell data have NaN at the faces of patches. Wedges have the order of
     Gmsh. Raises ModuleNotFoundError where meshio is missing.
     """
-    import meshio
+    import meshio  # type: ignore[import]
     order = {"tetra": 0, "hexahedron": 1, "wedge": 2, "pyramid": 3, "polyhedron": 4, "triangle": 5, "quad": 6,
              "polygon": 7}
     blocks: list[tuple[str, Any]] = []
@@ -135,5 +134,5 @@ def to_meshio(mesh: MeshData) -> Any:
     names = {name: numpy.array([tag, d]) for d, known in ((mesh.dimension, mesh.region_names),
                                                          (mesh.dimension - 1, mesh.patch_names))
              for tag, name in known.items()}
-    return meshio.Mesh(mesh.points, blocks + [(name, corners) for name, corners, _ in faces], point_data=mesh.point_data,
-                       cell_data=data, field_data=names)
+    blocks += [(name, corners) for name, corners, _ in faces]
+    return meshio.Mesh(mesh.points, blocks, point_data=mesh.point_data, cell_data=data, field_data=names)

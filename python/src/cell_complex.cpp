@@ -26,11 +26,12 @@ std::shared_ptr<ComplexHandle> copy_of(const ComplexHandle& h) {
 void move(const ComplexHandle& h, const py::object& given) {
   const auto points = vectors(given, "points");
   const Use use(*h.usage, "the complex (an edit of it may be open)");
-  if (h.changeable == nullptr) throw InvalidArgument("this complex belongs to an environment: call move() of the environment");
+  if (h.changeable == nullptr)
+    throw InvalidArgument("this complex belongs to an environment: call move() of the environment");
   CellComplex& complex = *h.changeable;
   if (points.size() != complex.point_count()) {
-    throw InvalidArgument("points: expected " + std::to_string(complex.point_count()) + " positions, one for each point; got " +
-                          std::to_string(points.size()));
+    throw InvalidArgument("points: expected " + std::to_string(complex.point_count()) +
+                          " positions, one for each point; got " + std::to_string(points.size()));
   }
   const py::gil_scoped_release release;
   std::copy(points.begin(), points.end(), complex.next_positions().begin());
@@ -53,9 +54,14 @@ void bind_positions(Class& c) {
       "Positions before the last move(); equal to positions before the first.");
   c.def("move", &move, py::arg("points"),
         "Gives the points new positions: float64 (point_count, 3). Steiner points follow. No vertex is checked: see "
-        "check_validity(). Raises InvalidArgument where the number is another, or the complex belongs to an environment.");
-  c.def("before_move", [](const ComplexHandle& h) { return own_complex(read_long(h, [](const CellComplex& x) { return x.before_move(); })); },
-        "A copy with previous_positions as its positions: with all edits, but without the last move. Cost: linear.");
+        "check_validity(). Raises InvalidArgument where the number is another, or the complex belongs to an "
+        "environment.");
+  c.def(
+      "before_move",
+      [](const ComplexHandle& h) {
+        return own_complex(read_long(h, [](const CellComplex& x) { return x.before_move(); }));
+      },
+      "A copy with previous_positions as its positions: with all edits, but without the last move. Cost: linear.");
 }
 
 void bind_simplices(Class& c) {
@@ -83,11 +89,13 @@ void bind_simplices(Class& c) {
 
 void bind_sizes(Class& c) {
   const auto def = [&c](const char* name, const char* text, auto f) {
-    c.def_property_readonly(name, [f](const ComplexHandle& h) { return read(h, f); }, text);
+    c.def_property_readonly(
+        name, [f](const ComplexHandle& h) { return read(h, f); }, text);
   };
   def("point_count", doc("CellComplex::point_count"), [](const CellComplex& x) { return x.point_count(); });
   def("simplex_count", "The number of implicit simplices.", [](const CellComplex& x) { return x.simplex_count(); });
-  def("steiner_point_count", "The number of Steiner points.", [](const CellComplex& x) { return x.steiner_point_count(); });
+  def("steiner_point_count", "The number of Steiner points.",
+      [](const CellComplex& x) { return x.steiner_point_count(); });
   def("bytes", doc("CellComplex::bytes"), [](const CellComplex& x) { return x.bytes(); });
   def("invalid_cells", "Cells that no Steiner point made positive, as a list of InvalidCell.",
       [](const CellComplex& x) { return x.invalid_cells(); });
@@ -120,19 +128,21 @@ void bind_cell_complex(py::module_& m) {
           return own_complex(CellComplex(checked_mesh(mesh), threads));
         }),
         py::arg("mesh"), py::arg("threads") = Threads{},
-        (std::string(doc("CellComplex::CellComplex")) +
-         "\n\nThe mesh is taken as check_and_repair() repairs it, and is itself unchanged. Raises InvalidMesh where it is "
-         "refused.")
+        (std::string(doc("CellComplex::CellComplex")) + "\n\nThe mesh is taken as check_and_repair() repairs it, and "
+                                                        "is itself unchanged. Raises InvalidMesh where it is "
+                                                        "refused.")
             .c_str());
-  c.def_property_readonly("map", [](const ComplexHandle& h) { return std::make_shared<MapHandle>(map_of(h)); },
-                          "The map. It can be read; ComplexEdit changes it.");
+  c.def_property_readonly(
+      "map", [](const ComplexHandle& h) { return std::make_shared<MapHandle>(map_of(h)); },
+      "The map. It can be read; ComplexEdit changes it.");
   bind_positions(c);
   bind_simplices(c);
   bind_sizes(c);
   c.def("__copy__", &copy_of);
   c.def("__deepcopy__", [](const ComplexHandle& h, const py::dict& /*memo*/) { return copy_of(h); });
   m.def("to_mesh", &mesh_of, py::arg("complex"), py::arg("with_vertices") = false,
-        "The current cells, pool by pool, with their free marks and their `source` as in the map. Points: the vertices that "
+        "The current cells, pool by pool, with their free marks and their `source` as in the map. Points: the vertices "
+        "that "
         "they use, at their positions, without Steiner points. There are no regions, patches or data. With "
         "with_vertices: (mesh, the vertex of each point). Cost: linear.");
 }

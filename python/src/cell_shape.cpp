@@ -69,11 +69,13 @@ void bind_sizes(Class& c) {
   c.def_property_readonly("point_count", &Shape::point_count, doc("Shape::point_count"));
   c.def_property_readonly("face_count", &Shape::face_count, "Number of faces.");
   c.def_property_readonly("dart_count", &Shape::dart_count, "Number of darts.");
-  c.def_property_readonly("key", [](const Shape& s) { return s.key(); }, "The ShapeKey: a copy.");
+  c.def_property_readonly(
+      "key", [](const Shape& s) { return s.key(); }, "The ShapeKey: a copy.");
   c.def_property_readonly("bytes", &Shape::bytes, "Size in memory.");
   c.def_property_readonly(
       "simplices", [](const Shape& s) { return read_only(array_of(std::span<const ImplicitSimplex>(s.simplices()))); },
-      "The implicit simplices: a structured array with `vertex` (4), the local numbers of the corners, and `across` (4): "
+      "The implicit simplices: a structured array with `vertex` (4), the local numbers of the corners, and `across` "
+      "(4): "
       "what is beyond the facet opposite to each. `index` is a simplex, or 0x8000 + a face; `place` is a facet of that "
       "simplex, or a triangle of the face's fan.");
 }
@@ -90,7 +92,8 @@ void bind_darts(Class& c) {
         expect_dart_of(s, dart);
         return s.phi2(dart);
       },
-      py::arg("dart"), "The same edge of the other face of the cell. Raises InvalidArgument where the cell is a polygon.");
+      py::arg("dart"),
+      "The same edge of the other face of the cell. Raises InvalidArgument where the cell is a polygon.");
   c.def("first_dart", of_face(&Shape::first_dart), py::arg("face"), "The first dart of a face.");
   c.def("degree", of_face(&Shape::degree), py::arg("face"), "The number of darts of a face.");
   c.def(

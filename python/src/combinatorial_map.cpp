@@ -50,8 +50,9 @@ void bind_view(py::module_& m) {
   using Number = std::uint16_t;
   const auto at_face = [](const CellView& v, Number face) { expect_number(face, v.shape().face_count(), "face"); };
   py::class_<ViewHandle>(m, "CellView", "A cell of a map. Raises InvalidArgument once an edit has replaced the cell.")
-      .def_property_readonly("shape", [](const ViewHandle& h) { return h.look([](const CellView& v) { return shape_copy(v.shape()); }); },
-                             "The cell's Shape: a copy.")
+      .def_property_readonly(
+          "shape", [](const ViewHandle& h) { return h.look([](const CellView& v) { return shape_copy(v.shape()); }); },
+          "The cell's Shape: a copy.")
       .def(
           "vertex",
           [](const ViewHandle& h, Number local) {
@@ -62,11 +63,14 @@ void bind_view(py::module_& m) {
           },
           py::arg("local"), "The vertex with a local number.")
       .def_property_readonly(
-          "vertices", [](const ViewHandle& h) { return h.look([](const CellView& v) { return array_of(v.vertices()); }); },
+          "vertices",
+          [](const ViewHandle& h) { return h.look([](const CellView& v) { return array_of(v.vertices()); }); },
           "The vertices by their local numbers: uint32 (n,).")
-      .def_property_readonly("is_free", [](const ViewHandle& h) { return h.look([](const CellView& v) { return v.is_free(); }); },
-                             "Whether particles may enter the cell.")
-      .def_property_readonly("version", [](const ViewHandle& h) { return h.cell.version; }, "That of the cell's handle.")
+      .def_property_readonly(
+          "is_free", [](const ViewHandle& h) { return h.look([](const CellView& v) { return v.is_free(); }); },
+          "Whether particles may enter the cell.")
+      .def_property_readonly(
+          "version", [](const ViewHandle& h) { return h.cell.version; }, "That of the cell's handle.")
       .def(
           "neighbour",
           [at_face](const ViewHandle& h, Number face) {
@@ -135,13 +139,18 @@ void bind_faces(Class& c) {
   def("point", [](const Map& map, CellFace f) { return map.point(f); });
   def("patch", [](const Map& map, CellFace f) { return map.patch(f); });
   c.def(
-      "patch", [](const MapHandle& h, const std::string& name) { return read(h, [&](const Map& map) { return map.patch(name); }); },
+      "patch",
+      [](const MapHandle& h, const std::string& name) {
+        return read(h, [&](const Map& map) { return map.patch(name); });
+      },
       py::arg("name"), doc("CombinatorialMap::patch"));
-  c.def_property_readonly("patch_names",
-                          [](const MapHandle& h) { return read(h, [](const Map& map) { return map.patch_names(); }); },
-                          doc("CombinatorialMap::patch_names"));
-  c.def("wall_face_count", [](const MapHandle& h) { return read_long(h, [](const Map& map) { return map.wall_face_count(); }); },
-        doc("CombinatorialMap::wall_face_count"));
+  c.def_property_readonly(
+      "patch_names", [](const MapHandle& h) { return read(h, [](const Map& map) { return map.patch_names(); }); },
+      doc("CombinatorialMap::patch_names"));
+  c.def(
+      "wall_face_count",
+      [](const MapHandle& h) { return read_long(h, [](const Map& map) { return map.wall_face_count(); }); },
+      doc("CombinatorialMap::wall_face_count"));
 }
 
 // One question about one cell, or about an array of cells.
@@ -190,10 +199,16 @@ void bind_cells(Class& c) {
         });
       },
       py::arg("c"), "The Shape of a cell: a copy.");
-  c.def("contains", [](const MapHandle& h, const CellHandle& cell) { return read(h, [&](const Map& map) { return map.contains(cell); }); },
-        py::arg("h"));
-  c.def("contains", [](const MapHandle& h, Cell cell) { return read(h, [&](const Map& map) { return map.contains(cell); }); },
-        py::arg("c"), "Whether there is such a cell. Of a CellHandle: whether it is still the same cell.");
+  c.def(
+      "contains",
+      [](const MapHandle& h, const CellHandle& cell) {
+        return read(h, [&](const Map& map) { return map.contains(cell); });
+      },
+      py::arg("h"));
+  c.def(
+      "contains",
+      [](const MapHandle& h, Cell cell) { return read(h, [&](const Map& map) { return map.contains(cell); }); },
+      py::arg("c"), "Whether there is such a cell. Of a CellHandle: whether it is still the same cell.");
   c.def(
       "handle",
       [](const MapHandle& h, Cell cell) {
@@ -203,12 +218,17 @@ void bind_cells(Class& c) {
         });
       },
       py::arg("c"), "The handle of a cell. Raises InvalidArgument where there is no such cell.");
-  def_of_cells<std::uint8_t>(c, "type", "The CellType of a cell.", [](const Map& map, Cell cell) { return map.type(cell); });
-  def_of_cells<std::uint32_t>(c, "source", doc("CombinatorialMap::source"), [](const Map& map, Cell cell) { return map.source(cell); });
-  def_of_cells<bool>(c, "is_free", "Whether particles may enter a cell.", [](const Map& map, Cell cell) { return map.is_free(cell); });
-  def_of_cells<bool>(c, "has_flat", doc("CombinatorialMap::has_flat"), [](const Map& map, Cell cell) { return map.has_flat(cell); });
-  c.def("cells", [](const MapHandle& h) { return read_long(h, [](const Map& map) { return map.cells(); }); },
-        "All cells, pool by pool: uint32 (n,).");
+  def_of_cells<std::uint8_t>(c, "type", "The CellType of a cell.",
+                             [](const Map& map, Cell cell) { return map.type(cell); });
+  def_of_cells<std::uint32_t>(c, "source", doc("CombinatorialMap::source"),
+                              [](const Map& map, Cell cell) { return map.source(cell); });
+  def_of_cells<bool>(c, "is_free", "Whether particles may enter a cell.",
+                     [](const Map& map, Cell cell) { return map.is_free(cell); });
+  def_of_cells<bool>(c, "has_flat", doc("CombinatorialMap::has_flat"),
+                     [](const Map& map, Cell cell) { return map.has_flat(cell); });
+  c.def(
+      "cells", [](const MapHandle& h) { return read_long(h, [](const Map& map) { return map.cells(); }); },
+      "All cells, pool by pool: uint32 (n,).");
   c.def(
       "set_free",
       [](const MapHandle& h, Cell cell, bool free) {
@@ -221,8 +241,9 @@ void bind_cells(Class& c) {
 }
 
 void bind_sizes(Class& c) {
-  c.def_property_readonly("dimension", [](const MapHandle& h) { return read(h, [](const Map& map) { return map.dimension(); }); },
-                          doc("CombinatorialMap::dimension"));
+  c.def_property_readonly(
+      "dimension", [](const MapHandle& h) { return read(h, [](const Map& map) { return map.dimension(); }); },
+      doc("CombinatorialMap::dimension"));
   c.def(
       "cell_count",
       [](const MapHandle& h, std::optional<std::uint32_t> pool) {
@@ -244,10 +265,13 @@ void bind_sizes(Class& c) {
         return read(h, [&](const Map& map) { return map.type_of(pool); });
       },
       py::arg("pool"), doc("CombinatorialMap::type_of"));
-  c.def_property_readonly("vertex_count", [](const MapHandle& h) { return read(h, [](const Map& map) { return map.vertex_count(); }); },
-                          doc("CombinatorialMap::vertex_count"));
-  c.def("is_vertex", [](const MapHandle& h, Vertex v) { return read(h, [&](const Map& map) { return map.is_vertex(v); }); },
-        py::arg("v"), doc("CombinatorialMap::is_vertex"));
+  c.def_property_readonly(
+      "vertex_count", [](const MapHandle& h) { return read(h, [](const Map& map) { return map.vertex_count(); }); },
+      doc("CombinatorialMap::vertex_count"));
+  c.def(
+      "is_vertex",
+      [](const MapHandle& h, Vertex v) { return read(h, [&](const Map& map) { return map.is_vertex(v); }); },
+      py::arg("v"), doc("CombinatorialMap::is_vertex"));
   c.def(
       "may_touch_wall",
       [](const MapHandle& h, Vertex v) {
@@ -257,8 +281,9 @@ void bind_sizes(Class& c) {
         });
       },
       py::arg("v"), doc("CombinatorialMap::may_touch_wall"));
-  c.def_property_readonly("bytes", [](const MapHandle& h) { return read_long(h, [](const Map& map) { return map.bytes(); }); },
-                          "Size in memory.");
+  c.def_property_readonly(
+      "bytes", [](const MapHandle& h) { return read_long(h, [](const Map& map) { return map.bytes(); }); },
+      "Size in memory.");
 }
 
 // Two maps, or one map twice.
@@ -273,8 +298,9 @@ bool are_equal(const MapHandle& a, const MapHandle& b) {
 
 void bind_combinatorial_map(py::module_& m) {
   bind_view(m);
-  Class c(m, "CombinatorialMap",
-          "The combinatorial map: darts with phi1, phi2, phi3 over convex cells, free or blocked. It has no coordinates.");
+  Class c(
+      m, "CombinatorialMap",
+      "The combinatorial map: darts with phi1, phi2, phi3 over convex cells, free or blocked. It has no coordinates.");
   c.attr("GENERAL_POOL") = Map::general_pool;
   c.def_static("pool_of", &Map::pool_of, py::arg("type"), doc("CombinatorialMap::pool_of"));
   Record<Map::Flat>(c, "Flat", "CombinatorialMap::Flat")
@@ -287,7 +313,8 @@ void bind_combinatorial_map(py::module_& m) {
           return own_map(Map(checked_mesh(mesh)));
         }),
         py::arg("mesh"),
-        "Builds the map of a mesh, as check_and_repair() repairs it; the mesh itself is unchanged. Raises InvalidMesh where "
+        "Builds the map of a mesh, as check_and_repair() repairs it; the mesh itself is unchanged. Raises InvalidMesh "
+        "where "
         "it is refused. Cost: linear, except for sorting.");
   bind_darts(c);
   bind_faces(c);

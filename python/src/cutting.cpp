@@ -54,11 +54,15 @@ void bind_planes(py::module_& m) {
         expect_plane(plane);
         return change(h, [&, own = options](ComplexEdit& e) { return split_by_plane(e, cells, plane, own); });
       },
-      py::arg("edit"), py::arg("cells"), py::arg("plane"), py::arg("options") = SectionOptions{}, doc("split_by_plane"));
+      py::arg("edit"), py::arg("cells"), py::arg("plane"), py::arg("options") = SectionOptions{},
+      doc("split_by_plane"));
 }
 
 void bind_tools(py::module_& m) {
-  Record<ConvexTool>(m, "ConvexTool").field("planes", &ConvexTool::planes).field("finest", &ConvexTool::finest).finish();
+  Record<ConvexTool>(m, "ConvexTool")
+      .field("planes", &ConvexTool::planes)
+      .field("finest", &ConvexTool::finest)
+      .finish();
   Record<Disc>(m, "Disc")
       .field("centre", &Disc::centre)
       .field("normal", &Disc::normal)
@@ -66,7 +70,8 @@ void bind_tools(py::module_& m) {
       .field("sides", &Disc::sides)
       .finish();
   Record<BladePath>(m, "BladePath").field("places", &BladePath::places).finish();
-  m.def("thicken", static_cast<Tools (*)(const Plane&, double)>(&thicken), py::arg("plane"), py::arg("width"), doc("thicken"));
+  m.def("thicken", static_cast<Tools (*)(const Plane&, double)>(&thicken), py::arg("plane"), py::arg("width"),
+        doc("thicken"));
   m.def("thicken", static_cast<Tools (*)(const Disc&, double)>(&thicken), py::arg("disc"), py::arg("width"));
   m.def("thicken", static_cast<Tools (*)(const BladePath&, double)>(&thicken), py::arg("path"), py::arg("width"));
   m.def("box_tool", &box_tool, py::arg("low"), py::arg("high"), doc("box_tool"));
@@ -87,9 +92,11 @@ void bind_cut(py::module_& m, const char* text) {
   m.def(
       "cut",
       [](const EditHandle& h, const Cells& cells, const Surface& given, double width, const CarveOptions& options) {
-        return change(h, [&, surface = given, own = options](ComplexEdit& e) { return cut(e, cells, surface, width, own); });
+        return change(
+            h, [&, surface = given, own = options](ComplexEdit& e) { return cut(e, cells, surface, width, own); });
       },
-      py::arg("edit"), py::arg("cells"), py::arg("surface"), py::arg("width"), py::arg("options") = CarveOptions{}, text);
+      py::arg("edit"), py::arg("cells"), py::arg("surface"), py::arg("width"), py::arg("options") = CarveOptions{},
+      text);
 }
 
 void bind_carving(py::module_& m) {
@@ -109,7 +116,8 @@ void bind_carving(py::module_& m) {
         expect_tools(tools);
         return change(h, [&, own = options](ComplexEdit& e) { return carve(e, cells, tools, what, own); });
       },
-      py::arg("edit"), py::arg("cells"), py::arg("tools"), py::arg("what"), py::arg("options") = CarveOptions{}, doc("carve"));
+      py::arg("edit"), py::arg("cells"), py::arg("tools"), py::arg("what"), py::arg("options") = CarveOptions{},
+      doc("carve"));
   bind_cut<Plane>(m, doc("cut"));
   bind_cut<Disc>(m, "");
   bind_cut<BladePath>(m, "");
@@ -139,7 +147,10 @@ Cells tie(const EditHandle& h, const Plane& given, const py::object& where) {
 void bind_tying(py::module_& m) {
   m.def("ligature", &tie, py::arg("edit"), py::arg("plane"), py::arg("start"),
         (std::string(doc("ligature")) + "\n\nstart: a cell, or three numbers: the place.").c_str());
-  Record<TyingOptions>(m, "TyingOptions").field("share", &TyingOptions::share).field("reach", &TyingOptions::reach).finish();
+  Record<TyingOptions>(m, "TyingOptions")
+      .field("share", &TyingOptions::share)
+      .field("reach", &TyingOptions::reach)
+      .finish();
   m.def(
       "draw_together",
       [](const ComplexHandle& h, const Cells& section, const Plane& plane, const TyingOptions& options,
@@ -151,7 +162,8 @@ void bind_tying(py::module_& m) {
         return moved;
       },
       py::arg("complex"), py::arg("section"), py::arg("plane"), py::arg("options"), py::arg("positions"),
-      (std::string(doc("draw_together")) + "\n\nReturns the changed positions; the given ones stay as they are.").c_str());
+      (std::string(doc("draw_together")) + "\n\nReturns the changed positions; the given ones stay as they are.")
+          .c_str());
 }
 
 void bind_joining(py::module_& m) {
@@ -159,8 +171,9 @@ void bind_joining(py::module_& m) {
       .field("tolerance", &ReconnectOptions::tolerance)
       .field("side", &ReconnectOptions::side)
       .finish();
-  bind_enum<Reconnection>(m, "Reconnection",
-                          {{"SEWN", Reconnection::sewn}, {"PAIRED", Reconnection::paired}, {"BRIDGED", Reconnection::bridged}});
+  bind_enum<Reconnection>(
+      m, "Reconnection",
+      {{"SEWN", Reconnection::sewn}, {"PAIRED", Reconnection::paired}, {"BRIDGED", Reconnection::bridged}});
   Record<Reconnected>(m, "Reconnected")
       .field("how", &Reconnected::how)
       .field("cells", &Reconnected::cells)
@@ -168,7 +181,8 @@ void bind_joining(py::module_& m) {
       .finish();
   m.def(
       "reconnect",
-      [](const EditHandle& h, const std::vector<CellFace>& a, const std::vector<CellFace>& b, const ReconnectOptions& options) {
+      [](const EditHandle& h, const std::vector<CellFace>& a, const std::vector<CellFace>& b,
+         const ReconnectOptions& options) {
         return change(h, [&, own = options](ComplexEdit& e) { return reconnect(e, a, b, own); });
       },
       py::arg("edit"), py::arg("a"), py::arg("b"), py::arg("options") = ReconnectOptions{}, doc("reconnect"));

@@ -121,6 +121,7 @@ void bind_edits(py::module_& m) {
       "split_cell",
       [](const TransactionHandle& h, const std::vector<Dart>& path) {
         return change(h, [&](Transaction& t) {
+          for (const Dart d : path) expect_dart(t.map(), d);
           const auto cells = split_cell(t, path);
           return std::vector<Cell>(cells.begin(), cells.end());
         });

@@ -10,12 +10,11 @@ namespace py = pybind11;
 namespace dartcast::python {
 
 void bind_mesh_check(py::module_& m) {
-  bind_enum<Verdict>(m, "Verdict",
-                     {{"ACCEPT", Verdict::accept},
-                      {"REPAIR", Verdict::repair},
-                      {"WARN", Verdict::warn},
-                      {"REFUSE", Verdict::refuse}});
-  m.def("verdict_name", [](Verdict v) { return std::string(verdict_name(v)); }, py::arg("v"), doc("verdict_name"));
+  bind_enum<Verdict>(
+      m, "Verdict",
+      {{"ACCEPT", Verdict::accept}, {"REPAIR", Verdict::repair}, {"WARN", Verdict::warn}, {"REFUSE", Verdict::refuse}});
+  m.def(
+      "verdict_name", [](Verdict v) { return std::string(verdict_name(v)); }, py::arg("v"), doc("verdict_name"));
   Record<Finding>(m, "Finding")
       .field("kind", &Finding::kind)
       .field("count", &Finding::count)

@@ -129,7 +129,8 @@ void add_methods(py::class_<MeshData, std::shared_ptr<MeshData>>& c) {
         check_arrays(m);
         return cells_by_type(m);
       },
-      "The cells by type, as the constructor takes them. Raises InvalidArgument where the mesh's arrays contradict each "
+      "The cells by type, as the constructor takes them. Raises InvalidArgument where the mesh's arrays contradict "
+      "each "
       "other.");
   c.def(
       "cell",
@@ -175,9 +176,10 @@ void add_methods(py::class_<MeshData, std::shared_ptr<MeshData>>& c) {
 }
 
 // Attributes in the order of a pickle.
-constexpr std::array<const char*, 15> pickled = {
-    "points",      "types",         "offsets",     "connectivity", "source",      "regions", "region_names", "patch_faces",
-    "patch_offsets", "patch_tags", "patch_source", "patch_names",  "free",        "point_data", "cell_data"};
+constexpr std::array<const char*, 15> pickled = {"points",        "types",      "offsets",      "connectivity",
+                                                 "source",        "regions",    "region_names", "patch_faces",
+                                                 "patch_offsets", "patch_tags", "patch_source", "patch_names",
+                                                 "free",          "point_data", "cell_data"};
 
 py::tuple state_of(const py::object& mesh) {
   py::tuple state(pickled.size());
@@ -207,7 +209,8 @@ void bind_mesh_data(py::module_& m) {
   py::tuple names(cell_type_names.size());
   for (std::size_t i = 0; i < cell_type_names.size(); ++i) names[i] = std::string(cell_type_names[i]);
   m.attr("CELL_TYPE_NAMES") = names;
-  m.def("dimension", [](CellType type) { return dimension(type); }, py::arg("type"), doc("dimension"));
+  m.def(
+      "dimension", [](CellType type) { return dimension(type); }, py::arg("type"), doc("dimension"));
 
   py::class_<MeshData, std::shared_ptr<MeshData>> c(m, "MeshData", doc("MeshData"));
   c.def(py::init([](const py::object& points, const py::object& cells, const py::object& regions,

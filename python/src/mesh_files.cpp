@@ -26,7 +26,9 @@ void bind_reading(py::module_& m, const char* name, MeshFile (*read)(const fs::p
 void bind_mesh_file(py::module_& m) {
   py::class_<MeshFile, std::shared_ptr<MeshFile>>(m, "MeshFile",
                                                   "A mesh and the report on it: `mesh, report = read_mesh(path)`.")
-      .def(py::init([](const MeshData& mesh, const MeshReport& report) { return MeshFile{mesh, report}; }),
+      .def(py::init([](const MeshData& mesh, const MeshReport& report) {
+             return MeshFile{mesh, report};
+           }),
            py::arg("mesh") = MeshData{}, py::arg("report") = MeshReport{})
       .def_property(
           "mesh", [](MeshFile& f) -> MeshData& { return f.mesh; },
@@ -38,8 +40,7 @@ void bind_mesh_file(py::module_& m) {
       .def_property(
           "report", [](const MeshFile& f) { return f.report; },
           [](MeshFile& f, const MeshReport& report) { f.report = report; }, "The report: a copy.")
-      .def("__iter__",
-           [](const py::object& f) { return py::iter(py::make_tuple(f.attr("mesh"), f.attr("report"))); })
+      .def("__iter__", [](const py::object& f) { return py::iter(py::make_tuple(f.attr("mesh"), f.attr("report"))); })
       .def("__repr__", [](const MeshFile& f) { return "<dartcast.MeshFile: '" + f.report.file + "'>"; });
 }
 
@@ -77,7 +78,8 @@ void bind_mesh_files(py::module_& m) {
         write_mesh(mesh, path);
       },
       py::arg("mesh"), py::arg("path"),
-      (std::string(doc("write_mesh")) + "\n\nRaises InvalidArgument, too, where the mesh's arrays contradict each other.")
+      (std::string(doc("write_mesh")) +
+       "\n\nRaises InvalidArgument, too, where the mesh's arrays contradict each other.")
           .c_str());
   m.def(
       "write_bytes",

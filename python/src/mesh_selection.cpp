@@ -34,8 +34,7 @@ void bind_mesh_selection(py::module_& m) {
       },
       py::arg("mesh"), py::arg("array"), py::arg("values"), doc("select_free_values"));
   m.def(
-      "select_patches",
-      [](MeshData& mesh, const Texts& names) { change(mesh, [&] { select_patches(mesh, names); }); },
+      "select_patches", [](MeshData& mesh, const Texts& names) { change(mesh, [&] { select_patches(mesh, names); }); },
       py::arg("mesh"), py::arg("names"), doc("select_patches"));
   m.def(
       "divide_walls",
@@ -46,7 +45,9 @@ void bind_mesh_selection(py::module_& m) {
         });
       },
       py::arg("mesh"), py::arg("degrees"),
-      (std::string(doc("divide_walls")) + "\n\nRaises InvalidMesh where check_and_repair() would refuse the mesh, and InvalidArgument where it would change it.").c_str());
+      (std::string(doc("divide_walls")) + "\n\nRaises InvalidMesh where check_and_repair() would refuse the mesh, and "
+                                          "InvalidArgument where it would change it.")
+          .c_str());
 }
 
 }  // namespace dartcast::python

@@ -11,7 +11,7 @@ namespace py = pybind11;
 namespace dartcast::python {
 namespace {
 
-/// A subdivision, and the map that it is of. It can only be made by subdivide(), so that its vertices are what they say.
+/// A subdivision, and the map that it is of. Only subdivide() makes one, so that its vertices are what they say.
 struct SubdivisionHandle {
   Subdivision subdivision;
   const CombinatorialMap* map = nullptr;  // to compare only
@@ -31,14 +31,18 @@ void bind_subdivision(py::module_& m) {
     return [member](const SubdivisionHandle& h) { return without_writing(py::cast(h.subdivision.*member)); };
   };
   py::class_<SubdivisionHandle>(m, "Subdivision", doc("Subdivision"))
-      .def_property_readonly("middle", [](const SubdivisionHandle& h) { return h.subdivision.middle; }, doc("Subdivision::middle"))
-      .def_property_readonly("part", [](const SubdivisionHandle& h) { return h.subdivision.part; }, doc("Subdivision::part"))
+      .def_property_readonly(
+          "middle", [](const SubdivisionHandle& h) { return h.subdivision.middle; }, doc("Subdivision::middle"))
+      .def_property_readonly(
+          "part", [](const SubdivisionHandle& h) { return h.subdivision.part; }, doc("Subdivision::part"))
       .def_property_readonly("corners", list(&Subdivision::corners), doc("Subdivision::corners"))
       .def_property_readonly("edge_middles", list(&Subdivision::edge_middles), doc("Subdivision::edge_middles"))
       .def_property_readonly("face_middles", list(&Subdivision::face_middles), doc("Subdivision::face_middles"));
   py::class_<SubdividedHandle>(m, "Subdivided", "The result of subdivide().")
-      .def_property_readonly("subdivision", [](const SubdividedHandle& h) { return h.subdivision; }, "The Subdivision.")
-      .def_property_readonly("cells", [](const SubdividedHandle& h) { return h.cells; }, doc("Subdivided::cells"));
+      .def_property_readonly(
+          "subdivision", [](const SubdividedHandle& h) { return h.subdivision; }, "The Subdivision.")
+      .def_property_readonly(
+          "cells", [](const SubdividedHandle& h) { return h.cells; }, doc("Subdivided::cells"));
   m.def(
       "subdivide",
       [](const EditHandle& h, Cell c) {
@@ -66,7 +70,8 @@ void bind_subdivision(py::module_& m) {
         });
       },
       py::arg("map"), py::arg("added"), py::arg("subdivision"),
-      "Updates a subdivision. Call it after later edits next to the cell, and after the commit, which replaces its parts. "
+      "Updates a subdivision. Call it after later edits next to the cell, and after the commit, which replaces its "
+      "parts. "
       "`added`: cells that the edit made (EditReport.added).");
 }
 
@@ -83,7 +88,10 @@ void bind_repair(py::module_& m) {
       .field("source", &LeftCell::source)
       .field("reason", &LeftCell::reason)
       .finish();
-  Record<RepairReport>(m, "RepairReport").field("mended", &RepairReport::mended).field("left", &RepairReport::left).finish();
+  Record<RepairReport>(m, "RepairReport")
+      .field("mended", &RepairReport::mended)
+      .field("left", &RepairReport::left)
+      .finish();
   m.def(
       "repair",
       [](const EditHandle& h, const std::vector<Cell>& cells, const RepairOptions& options) {

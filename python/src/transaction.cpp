@@ -14,7 +14,7 @@ using Class = py::class_<TransactionHandle, std::shared_ptr<TransactionHandle>>;
 
 constexpr std::size_t max_faces = 0x3fff;
 
-// In an edit of a complex, a cell's Steiner point comes with the commit, and a face keeps that of the face it continues.
+// In an edit of a complex, commit() finds a cell's Steiner point, and a face keeps that of the face it continues.
 void expect_points_kept(const CombinatorialMap& map, const CellDraft& draft) {
   if (draft.point.valid()) throw InvalidArgument("drafts: name no Steiner point of a cell; commit() finds it");
   for (const DraftFace& f : draft.faces) {

@@ -96,7 +96,7 @@ def test_validity_finds_the_inverted_cells():
 
 
 def test_a_simplex_is_inverted_when_its_volume_is_zero():
-    before = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
+    before = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0.25, 0.25, 1]], dtype=float)
     after = before.copy()
     after[3, 2] = -3.0
     how = dartcast.find_inversion(before, after)
@@ -131,8 +131,8 @@ def test_a_motion_is_followed_as_far_as_possible():
     before, after = np.array(c.positions), np.array(c.positions)
     after[13] = [0.5, 0.5, 2.0]
     safe = dartcast.first_inversion(c.map, before, after).how.safe_time
-    time, positions = dartcast.move_towards(c, before, after, 1.0)
-    assert safe - 1e-6 < time <= safe + 1e-9 and dartcast.first_inversion(c.map, before, positions) is None
+    time, positions = dartcast.move_towards(c, before, after, safe)
+    assert safe - 1e-6 < time <= safe and dartcast.first_inversion(c.map, before, positions) is None
     assert np.array_equal(positions[:13], before[:13])
     with pytest.raises(dartcast.InvalidArgument):
         dartcast.move_towards(c, before, after, 2.0)

@@ -57,8 +57,9 @@ def test_planes_that_are_not_finite_are_refused(plane):
         dartcast.draw_together(c, cells_of(c), plane, dartcast.TyingOptions(), np.zeros((8, 3)))
     with dartcast.ComplexEdit(c) as edit:
         cells = edit.map.cells()
-        for call in (lambda: dartcast.split_by_plane(edit, cells, plane), lambda: dartcast.carve(edit, cells, tools, "open"),
-                     lambda: dartcast.cut(edit, cells, plane, 0.1), lambda: dartcast.open_faces(edit, cells, plane, 0.1),
+        for call in (lambda: dartcast.split_by_plane(edit, cells, plane),
+                     lambda: dartcast.carve(edit, cells, tools, "open"), lambda: dartcast.cut(edit, cells, plane, 0.1),
+                     lambda: dartcast.open_faces(edit, cells, plane, 0.1),
                      lambda: dartcast.ligature(edit, plane, int(cells[0]))):
             with pytest.raises(dartcast.InvalidArgument, match="plane"):
                 call()
@@ -72,7 +73,8 @@ def test_tools():
     assert len(dartcast.thicken(dartcast.Disc(radius=2.0, sides=8), 0.1)[0].planes) == 10
     blade = dartcast.BladePath([[[0, 0, 0], [0, 0, 1]], [[1, 0, 0], [1, 0, 1]], [[2, 1, 0], [2, 1, 1]]])
     assert np.array_equal(blade.places[1][0], [1, 0, 0]) and len(dartcast.thicken(blade, 0.1)) >= 2
-    for bad in (lambda: dartcast.box_tool([0, 0, 0], [0, 1, 1]), lambda: dartcast.capsule_tool([0, 0, 0], [1, 0, 0], -1),
+    for bad in (lambda: dartcast.box_tool([0, 0, 0], [0, 1, 1]),
+                lambda: dartcast.capsule_tool([0, 0, 0], [1, 0, 0], -1),
                 lambda: dartcast.thicken(Plane(), 0), lambda: dartcast.thicken(dartcast.Disc(sides=2), 0.1),
                 lambda: dartcast.thicken(dartcast.BladePath([]), 0.1)):
         with pytest.raises(dartcast.InvalidArgument):
@@ -166,7 +168,8 @@ def test_a_ligature_blocks_a_section():
 def test_a_place_chooses_the_ligature():
     c = box()
     with dartcast.ComplexEdit(c) as edit:
-        assert len(dartcast.ligature(edit, dartcast.plane_through([0, 0, 1.5], [0, 0, 1]), np.array([1.5, 1.5, 1.5]))) == 9
+        plane = dartcast.plane_through([0, 0, 1.5], [0, 0, 1])
+        assert len(dartcast.ligature(edit, plane, np.array([1.5, 1.5, 1.5]))) == 9
 
 
 def test_ends_are_sewn_again():

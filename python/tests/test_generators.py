@@ -40,7 +40,8 @@ def test_the_bar_is_that_of_its_options():
 
 @pytest.mark.parametrize("mesh", [
     dartcast.generate_octahedra(cells=[2, 1, 1]), dartcast.generate_rectangle(cells=[5, 4], type="polygon"),
-    dartcast.generate_maze(rooms=[2, 2], obstacles=1), dartcast.generate_vessel(core=2, rings=1, tissue_layers=1, step_length=1.5e-3)])
+    dartcast.generate_maze(rooms=[2, 2], obstacles=1),
+    dartcast.generate_vessel(core=2, rings=1, tissue_layers=1, step_length=1.5e-3)])
 def test_generated_meshes_are_accepted(mesh):
     assert dartcast.check_and_repair(mesh).verdict is dartcast.Verdict.ACCEPT
 

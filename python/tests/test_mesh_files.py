@@ -53,7 +53,7 @@ def test_a_mesh_that_contradicts_itself_is_not_written(tmp_path):
     mesh.offsets = [0, 1]
     with pytest.raises(dartcast.InvalidArgument, match="offsets"):
         dartcast.write_mesh(mesh, tmp_path / "box.vtu")
-    with pytest.raises(dartcast.InvalidArgument, match="ending|format"):
+    with pytest.raises(dartcast.InvalidArgument, match="cannot write files"):
         dartcast.write_mesh(mixed_box(), tmp_path / "box.xyz")
     assert list(tmp_path.iterdir()) == []
 
@@ -93,7 +93,7 @@ def read_by_meshio(path):
     return mesh
 
 
-@pytest.mark.parametrize("ending", [".msh", ".vtu"])
+@pytest.mark.parametrize("ending", [".msh", ".mesh"])
 def test_a_mesh_from_meshio_is_that_of_the_own_reader(tmp_path, ending):
     path = tmp_path / ("box" + ending)
     dartcast.write_mesh(mixed_box(), path)
@@ -155,7 +155,8 @@ def test_a_planar_mesh_goes_through_meshio():
 
 
 def test_points_of_the_plane_get_a_third_coordinate():
-    mesh = dartcast.from_meshio(meshio.Mesh(np.array([[0, 0], [1, 0], [0, 1.0]]), [("triangle", np.array([[0, 1, 2]]))]))
+    given = meshio.Mesh(np.array([[0, 0], [1, 0], [0, 1.0]]), [("triangle", np.array([[0, 1, 2]]))])
+    mesh = dartcast.from_meshio(given)
     assert mesh.points.shape == (3, 3) and dartcast.check_and_repair(mesh).valid
 
 
