@@ -87,7 +87,7 @@ class Reader:
         if end == "{" and opened and "(" not in re.sub(r"\[ \[.*?\] \]|alignas \(.*?\)", "", text):
             what, name = opened.groups()
             # A specialization of another namespace's template is none of ours.
-            hidden = not public or "::" in text.split(":")[0]
+            hidden = not public or text[opened.end():].startswith(" ::")
             self.add(prefix + name, "enum" if what.startswith("enum") else "class", doc, line, text, not hidden)
             if what.startswith("enum"):
                 return self.enum_values(prefix + name + "::", not hidden)
@@ -111,6 +111,8 @@ class Reader:
         alias = re.match(r"using (\w+) =", text)
         if alias:
             return self.add(prefix + alias.group(1), "alias", doc, line, text)
+        if text.startswith("using "):
+            return None  # a name of a base
         if TYPE.match(text):
             return None  # declared here, defined elsewhere
         plain = re.sub(r"\[ \[.*?\] \] ", "", text)

@@ -11,7 +11,7 @@ environment = dc.Environment(mesh)
 simulation = dc.Simulation(environment, dc.SimulationOptions(
     dt=2e-3, drag=200.0, gravity=[0.0, -9.81, 0.0], response=dc.Stick(),
     patch_responses={"outlet_left": dc.Escape(), "outlet_right": dc.Escape(), "inlet": dc.Reflect()}))
-velocity = next(a for a in mesh.point_data if a.name == "velocity").values.reshape(-1, 3)
+velocity = mesh.point_data["velocity"]
 simulation.set_field(dc.VectorField(environment.complex, velocity))
 simulation.add_inlet(environment.map.patch("inlet"), 20000.0, [0.0, 0.0, 0.1])
 hits = dc.WallHits()

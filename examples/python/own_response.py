@@ -1,5 +1,6 @@
 """An own response at walls, for all contacts of a step at once: particles lose a part of the normal speed, at random."""
 import sys
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -15,13 +16,13 @@ rest = environment.positions
 energy = []
 
 
-def respond(contacts: dc.Records) -> dc.Points:
+def respond(contacts: Any, walls: Any) -> Any:
     """Changes the velocities, and returns the displacements for the rest of the step, relative to the walls."""
     which, normal = contacts["particle"], contacts["normal"]
     loss = random.uniform(0.0, 0.5, (len(contacts), 1))
     wall = contacts["wall_displacement"] / dt
 
-    def rebound(v: dc.Points) -> dc.Points:
+    def rebound(v: Any) -> Any:
         return v - (2 - loss) * np.minimum(0.0, np.sum(v * normal, axis=1, keepdims=True)) * normal
 
     velocities[which] = wall + rebound(velocities[which] - wall)

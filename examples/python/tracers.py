@@ -11,7 +11,7 @@ environment = dc.Environment(mesh)
 options = dc.SimulationOptions(dt=2e-3, integrator="rk4", response=dc.Slide(),
                                patch_responses={"outlet_left": dc.Escape(), "outlet_right": dc.Escape()})
 simulation = dc.Simulation(environment, options)
-velocity = next(a for a in mesh.point_data if a.name == "velocity").values.reshape(-1, 3)
+velocity = mesh.point_data["velocity"]
 simulation.set_field(dc.VectorField(environment.complex, velocity))
 simulation.add_inlet(environment.map.patch("inlet"), 2000.0, [0, 0, 0])
 names = environment.map.patch_names

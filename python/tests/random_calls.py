@@ -13,7 +13,7 @@ import numpy as np
 import dartcast as dc
 
 RESPONSES = [None, dc.Reflect(0.5, friction=0.1), dc.Slide(), dc.Stick(), dc.Absorb(),
-             {"": dc.Reflect(0.9), "xmin": dc.Slide(), "xmax": dc.Escape()}]
+             {None: dc.Reflect(0.9), "xmin": dc.Slide(), "xmax": dc.Escape()}]
 
 
 class Calls:
@@ -58,9 +58,9 @@ class Calls:
         targets = particles.positions + 0.3 * velocities
         kind = self.random.integers(len(RESPONSES) + 2)
         if kind == len(RESPONSES):
-            self.environment.advance(particles, targets, lambda contacts: -0.5 * contacts["unused"])
+            self.environment.advance(particles, targets, lambda contacts, walls: -0.5 * contacts["unused"])
         elif kind == len(RESPONSES) + 1:
-            self.environment.advance(particles, targets, lambda contact: -contact.unused, per_contact=True)
+            self.environment.advance(particles, targets, lambda contact, walls, earlier: -contact.unused, per_contact=True)
         else:
             self.environment.advance(particles, targets, RESPONSES[kind], velocities=velocities, dt=0.3,
                                      statuses=np.zeros(n, np.uint8))
