@@ -53,7 +53,7 @@ auto with_complex(const FieldHandle& h, const ComplexHandle& complex, const Func
 template <class Values>
 FieldPointer make(const ComplexPointer& complex, const Values& values, FieldFrame frame) {
   return read_long(*complex, [&](const CellComplex& c) {
-    return std::make_shared<FieldHandle>(FieldHandle{complex, VectorField(c, values, frame), 1, c.positions().size()});
+    return FieldPointer(new FieldHandle{complex, VectorField(c, values, frame), 1, c.positions().size()});
   });
 }
 

@@ -62,7 +62,11 @@ RoundCallback asked_in_rounds(const py::object& function) {
 }
 
 Patch patch_of(py::handle key, const CombinatorialMap* map) {
-  if (!py::isinstance<py::str>(key)) return key.cast<Patch>();
+  if (!py::isinstance<py::str>(key)) {
+    py::detail::make_caster<Patch> caster;
+    if (!caster.load(key, true)) refuse_member("a patch", "its name, its number, or None for all others", key);
+    return py::detail::cast_op<Patch&>(caster);
+  }
   const auto name = key.cast<std::string>();
   if (map == nullptr) throw InvalidArgument("patch '" + name + "': give its number here");
   return map->patch(name);
@@ -93,7 +97,7 @@ WallResponses responses_of(const py::object& given, const CombinatorialMap* map)
   if (py::isinstance<WallResponses>(given)) return given.cast<WallResponses>();
   if (!py::isinstance<py::dict>(given)) return WallResponses(response_of(given));
   const auto by_patch = py::reinterpret_borrow<py::dict>(given);
-  WallResponses made(by_patch.contains(py::none()) ? response_of(by_patch[py::none()]) : WallResponse{});
+  WallResponses made(by_patch.contains(py::none()) ? response_of(py::object(by_patch[py::none()])) : WallResponse{});
   for (const auto& [key, response] : by_patch) {
     if (!key.is_none()) made.set(patch_of(key, map), response_of(response));
   }
@@ -135,8 +139,7 @@ Answers::Answers(const RespondArguments& given, const CombinatorialMap& map, std
   const py::object& respond = given.respond;
   const bool has_motion =
       !given.velocities.is_none() || !given.statuses.is_none() || !given.dt.is_none() || !given.acceleration.is_none();
-  const bool is_ready =
-      py::isinstance<std::shared_ptr<LibraryAnswers>>(respond) || py::isinstance<LibraryAnswers>(respond);
+  const bool is_ready = py::isinstance<LibraryAnswers>(respond);
   const bool is_function = !is_ready && PyCallable_Check(respond.ptr()) != 0;
   if (has_motion && (respond.is_none() || is_ready || is_function))
     throw InvalidArgument("velocities, statuses, dt and acceleration go with a response such as Reflect(0.5) only");
