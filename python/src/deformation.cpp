@@ -8,6 +8,7 @@
 
 #include "bind.hpp"
 #include "support/edit_reports.hpp"
+#include "support/motions.hpp"
 #include "support/python.hpp"
 
 namespace py = pybind11;
@@ -15,10 +16,6 @@ namespace py = pybind11;
 namespace dartcast::python {
 namespace {
 
-struct DeformationHandle {
-  Deformation deformation;
-  mutable Usage usage;
-};
 constexpr const char* the_deformation = "the deformation";
 
 // The destructor waits for the thread that reads ahead.

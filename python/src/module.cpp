@@ -5,6 +5,9 @@
 #include "dartcast/run.hpp"
 
 namespace py = pybind11;
+namespace dartcast::python {
+void bind_standin(py::module_&);
+}
 
 PYBIND11_MODULE(_core, m) {
   using namespace dartcast::python;
@@ -45,5 +48,12 @@ PYBIND11_MODULE(_core, m) {
   bind_deformation(m);
   bind_vector_field(m);
 
+  bind_surface(m);
+  bind_bodies(m);
+  bind_catheter(m);
   bind_statistics(m);
+  bind_simulation(m);
+  bind_events(m);
+  bind_scene(m);
+  bind_run(m);
 }

@@ -38,6 +38,11 @@ void bind_values(py::module_& m) {
   Record<Stick>(m, "Stick").finish();
   Record<Absorb>(m, "Absorb").finish();
   Record<Escape>(m, "Escape").finish();
+  py::implicitly_convertible<Reflect, WallResponse>();
+  py::implicitly_convertible<Slide, WallResponse>();
+  py::implicitly_convertible<Stick, WallResponse>();
+  py::implicitly_convertible<Absorb, WallResponse>();
+  py::implicitly_convertible<Escape, WallResponse>();
   Record<Acceleration>(m, "Acceleration")
       .field("value", &Acceleration::value)
       .field("duration", &Acceleration::duration)

@@ -39,13 +39,13 @@ void check_drafts(const CombinatorialMap& map, std::span<const CellDraft> drafts
 std::vector<Cell> replace(const TransactionHandle& h, const std::vector<Cell>& removed,
                           const std::vector<CellDraft>& drafts) {
   return change(h, [&](Transaction& t) {
-    check_drafts(t.map(), drafts, h.edit != nullptr);
+    check_drafts(t.map(), drafts, h.is_of_edit());
     return t.replace(removed, drafts);
   });
 }
 
 void expect_own(const TransactionHandle& h) {
-  if (h.edit) throw InvalidArgument("this transaction belongs to an edit: call the same function of that");
+  if (h.is_of_edit()) throw InvalidArgument("this transaction belongs to an edit: call the same function of that");
 }
 
 void roll_back(const TransactionHandle& h, const std::optional<SavepointHandle>& to) {

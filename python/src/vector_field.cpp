@@ -7,6 +7,7 @@
 #include "bind.hpp"
 #include "support/edit_reports.hpp"
 #include "support/map_checks.hpp"
+#include "support/motions.hpp"
 #include "support/python.hpp"
 
 namespace py = pybind11;
@@ -14,16 +15,6 @@ namespace py = pybind11;
 namespace dartcast::python {
 namespace {
 
-using ComplexPointer = std::shared_ptr<ComplexHandle>;
-
-struct FieldHandle {
-  ComplexPointer complex;
-  VectorField field;
-  std::size_t moments = 1;   ///< times that are set
-  std::size_t vertices = 0;  ///< of the complex, that the field has followed
-  mutable Usage usage = {};
-};
-using FieldPointer = std::shared_ptr<FieldHandle>;
 constexpr const char* the_field = "the field";
 
 void expect_same(const FieldHandle& h, const ComplexHandle& complex) {

@@ -20,12 +20,13 @@ OwnTransaction::OwnTransaction(std::shared_ptr<MapHandle> of)
 
 Transaction& TransactionHandle::open() const {
   if (edit) return edit->open().topology();
+  if (of_surface) return of_surface();
   if (!own) throw InvalidArgument("this transaction has ended: use it in its `with` block only");
   return own->transaction;
 }
 
 void TransactionHandle::end() {
-  if (edit) throw InvalidArgument("this transaction belongs to an edit: end that");
+  if (is_of_edit()) throw InvalidArgument("this transaction belongs to an edit: end that");
   const Use last(*usage, "the transaction");
   own.reset();
 }

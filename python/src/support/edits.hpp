@@ -3,6 +3,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <functional>
 #include <memory>
 
 #include "dartcast/map_edits.hpp"
@@ -24,8 +25,11 @@ struct TransactionHandle {
   std::unique_ptr<OwnTransaction> own;
   std::shared_ptr<Usage> usage = std::make_shared<Usage>();
   std::shared_ptr<Savepoints> savepoints = std::make_shared<Savepoints>();
+  std::function<Transaction&()> of_surface = {};  ///< that of a surface's edit: throws where that has ended
 
   [[nodiscard]] Transaction& open() const;
+  /// Whether it belongs to an edit, with which it ends.
+  [[nodiscard]] bool is_of_edit() const { return edit != nullptr || of_surface != nullptr; }
   /// As EditHandle::end().
   void end();
 };

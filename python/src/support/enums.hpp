@@ -21,24 +21,23 @@ void make_enum(pybind11::module_& m, const char* name, const pybind11::dict& mem
 bool load_enum(const char* name, pybind11::handle from, std::int64_t& value);
 pybind11::handle cast_enum(const char* name, std::int64_t value);
 
-
 }  // namespace dartcast::python
 
 namespace pybind11::detail {
 
-#define DARTCAST_ENUM(Type)                                                                 \
-  template <>                                                                               \
-  struct type_caster<dartcast::Type> {                                                      \
-    PYBIND11_TYPE_CASTER(dartcast::Type, const_name(#Type));                                \
-    bool load(handle from, bool /*convert*/) {                                              \
-      std::int64_t number = 0;                                                              \
-      if (!dartcast::python::load_enum(#Type, from, number)) return false;                  \
-      value = static_cast<dartcast::Type>(number);                                          \
-      return true;                                                                          \
-    }                                                                                       \
-    static handle cast(dartcast::Type e, return_value_policy /*policy*/, handle /*up*/) {   \
-      return dartcast::python::cast_enum(#Type, static_cast<std::int64_t>(e));              \
-    }                                                                                       \
+#define DARTCAST_ENUM(Type)                                                               \
+  template <>                                                                             \
+  struct type_caster<dartcast::Type> {                                                    \
+    PYBIND11_TYPE_CASTER(dartcast::Type, const_name(#Type));                              \
+    bool load(handle from, bool /*convert*/) {                                            \
+      std::int64_t number = 0;                                                            \
+      if (!dartcast::python::load_enum(#Type, from, number)) return false;                \
+      value = static_cast<dartcast::Type>(number);                                        \
+      return true;                                                                        \
+    }                                                                                     \
+    static handle cast(dartcast::Type e, return_value_policy /*policy*/, handle /*up*/) { \
+      return dartcast::python::cast_enum(#Type, static_cast<std::int64_t>(e));            \
+    }                                                                                     \
   };
 DARTCAST_ENUM(BodySamples)
 DARTCAST_ENUM(Carving)

@@ -1,0 +1,45 @@
+// Bodies and catheters as Python holds them: objects of their own, or those of a simulation.
+#pragma once
+
+#include <memory>
+
+#include "dartcast/bodies.hpp"
+#include "dartcast/catheter.hpp"
+#include "support/handles.hpp"
+#include "support/python.hpp"
+
+namespace dartcast::python {
+
+/// `T`: Bodies or Catheter. An environment shares its mark of use with what moves in it.
+template <class T>
+struct SolidHandle {
+  std::shared_ptr<EnvironmentHandle> environment;
+  std::shared_ptr<void> owner;  ///< of a simulation; null: it has `own`
+  std::shared_ptr<T> own;       ///< after `environment`, which it needs until its end
+  T* solid = nullptr;
+
+  [[nodiscard]] Use use() const { return Use(*environment->usage, "the Environment of this object"); }
+  /// Throws InvalidArgument where it belongs to a simulation, which alone changes it.
+  [[nodiscard]] T& changeable() const {
+    if (!own) throw InvalidArgument("this object belongs to a simulation, which alone steps and changes it");
+    return *own;
+  }
+};
+using BodiesHandle = SolidHandle<Bodies>;
+using CatheterHandle = SolidHandle<Catheter>;
+
+/// Bodies of a simulation.
+template <class T>
+std::shared_ptr<SolidHandle<T>> lent(std::shared_ptr<EnvironmentHandle> environment, std::shared_ptr<void> owner,
+                                     T* solid) {
+  auto handle = std::make_shared<SolidHandle<T>>();
+  handle->environment = std::move(environment);
+  handle->owner = std::move(owner);
+  handle->solid = solid;
+  return handle;
+}
+
+/// Of bind_bodies().
+void bind_bodies_records(pybind11::module_& m);
+
+}  // namespace dartcast::python

@@ -1,0 +1,138 @@
+// Binds dartcast/run.hpp: runs of scenes. Ctrl-C, and exceptions of the progress callback, end a run between two steps.
+#include "dartcast/run.hpp"
+
+#include <chrono>
+#include <exception>
+#include <string>
+#include <utility>
+
+#include "bind.hpp"
+#include "support/python.hpp"
+
+namespace py = pybind11;
+
+namespace dartcast::python {
+namespace {
+
+// Asks Python after each step whether to go on. An exception cancels the run, whose output is then complete.
+class Asking {
+ public:
+  explicit Asking(py::object progress) : progress_(std::move(progress)) {
+    if (!progress_.is_none() && PyCallable_Check(progress_.ptr()) == 0)
+      throw py::type_error("progress: expected a function of the number of steps done and of all");
+  }
+
+  bool operator()(std::uint64_t done, std::uint64_t all) {
+    if (progress_.is_none() && !is_due()) return true;
+    const py::gil_scoped_acquire acquire;
+    try {
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+      return progress_.is_none() || goes_on(progress_(done, all));
+    } catch (...) {
+      raised_ = std::current_exception();
+      return false;
+    }
+  }
+  /// To be called with Python's lock.
+  void rethrow() const {
+    if (raised_) std::rethrow_exception(raised_);
+  }
+
+ private:
+  static bool goes_on(const py::object& answer) { return answer.is_none() || answer.cast<bool>(); }
+  // Python's lock can take milliseconds to get, where other threads compute.
+  bool is_due() {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last_ < std::chrono::milliseconds(20)) return false;
+    last_ = now;
+    return true;
+  }
+
+  py::object progress_;
+  std::exception_ptr raised_;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+Summary run(const Scene& scene, const RunOptions& options, const py::object& progress) {
+  const Scene own_scene = scene;
+  const RunOptions own_options = options;
+  Asking asking(progress);
+  Summary summary;
+  {
+    const py::gil_scoped_release release;
+    summary = run_scene(own_scene, own_options, std::ref(asking));
+  }
+  asking.rethrow();
+  return summary;
+}
+
+void bind_summary(py::module_& m) {
+  Record<StatisticsSummary>(m, "StatisticsSummary")
+      .field("options", &StatisticsSummary::options)
+      .field("time", &StatisticsSummary::time)
+      .field("hit_faces", &StatisticsSummary::hit_faces)
+      .field("hits_by_patch", &StatisticsSummary::hits_by_patch)
+      .field("ended_by_patch", &StatisticsSummary::ended_by_patch)
+      .field("planes", &StatisticsSummary::planes)
+      .field("left", &StatisticsSummary::left)
+      .field("absorbed_by_edits", &StatisticsSummary::absorbed_by_edits)
+      .field("seconds", &StatisticsSummary::seconds)
+      .finish();
+  Record<Summary>(m, "Summary")
+      .field("scene", &Summary::scene)
+      .field("threads", &Summary::threads)
+      .field("steps", &Summary::steps)
+      .field("cancelled", &Summary::cancelled)
+      .field("deforms", &Summary::deforms)
+      .field("cells", &Summary::cells)
+      .field("free_cells", &Summary::free_cells)
+      .field("vertices", &Summary::vertices)
+      .field("wall_faces", &Summary::wall_faces)
+      .field("bytes", &Summary::bytes)
+      .field("skipped", &Summary::skipped)
+      .field("totals", &Summary::totals)
+      .field("alive", &Summary::alive)
+      .field("held", &Summary::held)
+      .field("lost", &Summary::lost)
+      .field("patch_names", &Summary::patch_names)
+      .field("seconds_load", &Summary::seconds_load)
+      .field("seconds_locate", &Summary::seconds_locate)
+      .field("seconds_solids", &Summary::seconds_solids)
+      .field("seconds_write", &Summary::seconds_write)
+      .field("seconds_writing_thread", &Summary::seconds_writing_thread)
+      .field("surgery", &Summary::surgery)
+      .field("bodies", &Summary::bodies)
+      .field("catheters", &Summary::catheters)
+      .field("statistics", &Summary::statistics)
+      .field("audit", &Summary::audit)
+      .field("state_hash", &Summary::state_hash)
+      .finish();
+  m.def("summary_json", &summary_json, py::arg("summary"), doc("summary_json"));
+  m.def("summary_text", &summary_text, py::arg("summary"), doc("summary_text"));
+  m.def("histogram_text", &histogram_text, py::arg("summary"), doc("histogram_text"));
+  m.def("version", &version, doc("version"));
+}
+
+}  // namespace
+
+void bind_run(py::module_& m) {
+  bind_summary(m);
+  Record<RunOptions>(m, "RunOptions")
+      .field("folder", &RunOptions::folder)
+      .field("threads", &RunOptions::threads)
+      .field("steps", &RunOptions::steps)
+      .field("seed", &RunOptions::seed)
+      .field("audit", &RunOptions::audit)
+      .field("skip_bad_cells", &RunOptions::skip_bad_cells)
+      .field("resume", &RunOptions::resume)
+      .field("max_memory", &RunOptions::max_memory)
+      .finish();
+  const std::string text = std::string(doc("run_scene")) +
+                           "\n\nprogress: a function of the number of steps done and of all. It returns False to "
+                           "cancel the run; None goes on. Ctrl-C, and an exception of progress, end the run between "
+                           "two steps: the output folder is complete up to there, and resume goes on from there.";
+  m.def("run_scene", &run, py::arg("scene"), py::arg("options") = RunOptions{}, py::arg("progress") = py::none(),
+        text.c_str());
+}
+
+}  // namespace dartcast::python
