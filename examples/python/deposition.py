@@ -21,8 +21,10 @@ for _ in range(500):
 for name, count in zip(environment.map.patch_names, hits.by_patch(environment)):
     print(f"{name or '(others)'}: {count}")
 faces = hits.faces()
-corners = [environment.map.corners(face) for face in zip(faces["cell"].tolist(), faces["face"].tolist())]
-centres = np.array([environment.positions[c].mean(axis=0) for c in corners]) * 1e3
+views = [environment.map.view(cell) for cell in faces["cell"].tolist()]
+corners = [[view.vertex(i) for i in view.shape.corners(face)] for view, face in zip(views, faces["face"].tolist())]
+points = environment.positions
+centres = np.array([points[c].mean(axis=0) for c in corners]) * 1e3
 figure, axes = plt.subplots(2, 1, figsize=(8, 6), sharex=True)
 for axis, across, name in zip(axes, (0, 1), "xy"):
     drawn = axis.scatter(centres[:, 2], centres[:, across], c=faces["hits"], s=6, cmap="inferno_r", norm="log")

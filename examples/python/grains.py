@@ -15,7 +15,7 @@ scene = {
     "contact": {"response": "reflect", "restitution": 0.3, "friction": 0.4},
     "collisions": {"restitution": 0.3, "friction": 0.4, "density": 2500.0},
 }
-simulation = dc.Simulation(dc.load_scene_files(dc.parse_scene(scene)).scene)
+simulation = dc.Simulation(dc.load_scene(scene))
 heights = []
 for _ in range(500):
     simulation.step()

@@ -1,6 +1,7 @@
 """The cell of each of a million points, exactly: a slice through a mesh with polyhedra, coloured by cell."""
 import sys
 import time
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -19,10 +20,13 @@ print(f"{len(points)} points in {time.perf_counter() - start:.2f} s")
 for place in dc.Place:
     print(f"{place.name.lower()}: {np.count_nonzero(found['place'] == place)}")
 
-cells = np.where(found["place"] == dc.Place.OUTSIDE, np.nan, found["cell"] * 7919 % 97 + 1.0)
-free = (found["place"] == dc.Place.FREE).reshape(x.shape)
+def picture(values: Any, place: dc.Place) -> Any:
+    return np.where(found["place"] == place, values, np.nan).reshape(x.shape)
+
+
+extent = (-0.1, 1.2, -0.1, 1.2)
 plt.figure(figsize=(5, 5))
-plt.imshow(cells.reshape(x.shape), origin="lower", extent=(-0.1, 1.2, -0.1, 1.2), cmap="turbo")
-plt.imshow(np.where(free, np.nan, 1.0), origin="lower", extent=(-0.1, 1.2, -0.1, 1.2), cmap="gray", alpha=0.5)
+plt.imshow(picture(found["cell"] * 7919 % 97, dc.Place.FREE), origin="lower", extent=extent, cmap="turbo")
+plt.imshow(picture(0.6, dc.Place.BLOCKED), origin="lower", extent=extent, cmap="gray", vmin=0, vmax=1)
 plt.gca().set(xlabel="x", ylabel="z", title="cells at y = 0.5; blocked ones are grey")
 plt.savefig(sys.argv[1] if len(sys.argv) > 1 else "location.png", dpi=90)

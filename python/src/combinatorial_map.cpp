@@ -320,9 +320,12 @@ void bind_combinatorial_map(py::module_& m) {
   bind_faces(c);
   bind_cells(c);
   bind_sizes(c);
-  c.def("__eq__", [](const MapHandle& a, const py::object& b) {
-    return py::isinstance<MapHandle>(b) && are_equal(a, b.cast<const MapHandle&>());
-  });
+  c.def(
+      "__eq__",
+      [](const MapHandle& a, const py::object& b) {
+        return py::isinstance<MapHandle>(b) && are_equal(a, b.cast<const MapHandle&>());
+      },
+      doc("CombinatorialMap::operator=="));
   c.def("__copy__", &copy_of);
   c.def("__deepcopy__", [](const MapHandle& h, const py::dict& /*memo*/) { return copy_of(h); });
 }

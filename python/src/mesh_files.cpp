@@ -52,6 +52,8 @@ void bind_mesh_files(py::module_& m) {
       .field("max_memory", &ReadOptions::max_memory)
       .finish();
   bind_mesh_file(m);
+  m.def("has_vtk", &has_vtk, doc("has_vtk"));
+  m.def("writable_mesh_endings", &writable_mesh_endings, doc("writable_mesh_endings"));
   m.def("mesh_endings", &mesh_endings, doc("mesh_endings"));
   m.def("surface_endings", &surface_endings, doc("surface_endings"));
   m.def("is_surface_file", &is_surface_file, py::arg("path"), doc("is_surface_file"));

@@ -29,6 +29,11 @@ void bind_values(py::module_& m) {
       .field("kind", &WallResponse::kind)
       .field("restitution", &WallResponse::restitution)
       .field("friction", &WallResponse::friction)
+      .def(py::init([](const Reflect& r) { return WallResponse(r); }))
+      .def(py::init([](const Slide& r) { return WallResponse(r); }))
+      .def(py::init([](const Stick& r) { return WallResponse(r); }))
+      .def(py::init([](const Absorb& r) { return WallResponse(r); }))
+      .def(py::init([](const Escape& r) { return WallResponse(r); }))
       .finish();
   Record<Reflect>(m, "Reflect")
       .field("restitution", &Reflect::restitution)

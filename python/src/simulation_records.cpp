@@ -71,7 +71,7 @@ void bind_step_record(py::module_& m) {
           "contact_sources", [](const SimulationStep& s) { return s.contact_sources; },
           doc("SimulationStep::contact_sources"))
       .def_property_readonly(
-          "contacts", [](const py::object& self) { return self.attr("report").attr("contacts"); },
+          "contacts", [](const py::object& self) { return py::object(self.attr("report").attr("contacts")); },
           (std::string(doc("SimulationStep::contacts")) + "\n\nAs StepReport.contacts.").c_str());
 }
 

@@ -222,7 +222,9 @@ void bind_totals(py::module_& m) {
       .field("planes", &StatisticsOptions::planes)
       .field("pathlines_every", &StatisticsOptions::pathlines_every)
       .field("pathlines_of", &StatisticsOptions::pathlines_of)
-      .finish();
+      .finish()
+      .def("pathlines", &StatisticsOptions::pathlines, "Whether there are pathlines.")
+      .def("any", &StatisticsOptions::any, "Whether anything is kept.");
   Record<PlaneTotals>(m, "PlaneTotals")
       .field("forward", &PlaneTotals::forward)
       .field("backward", &PlaneTotals::backward)

@@ -61,6 +61,8 @@ class Calls:
             self.environment.advance(particles, targets, lambda contacts, walls: -0.5 * contacts["unused"])
         elif kind == len(RESPONSES) + 1:
             self.environment.advance(particles, targets, lambda contact, walls, earlier: -contact.unused, per_contact=True)
+        elif RESPONSES[kind] is None:
+            self.environment.advance(particles, targets)
         else:
             self.environment.advance(particles, targets, RESPONSES[kind], velocities=velocities, dt=0.3,
                                      statuses=np.zeros(n, np.uint8))
@@ -72,7 +74,7 @@ class Calls:
         self.advance()
 
     def edit(self) -> None:
-        cells = self.environment.map.cells
+        cells = self.environment.map.cells()
         if len(cells) > 3000:
             return
         cell = int(self.random.choice(cells))
@@ -148,4 +150,4 @@ if __name__ == "__main__":
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 10_000
     done = run(count, int(sys.argv[2]) if len(sys.argv) > 2 else 1)
     print(f"{count} calls, {done.refused} refused, {sum(map(len, done.sets))} particles, "
-          f"{len(done.environment.map.cells)} cells")
+          f"{len(done.environment.map.cells())} cells")

@@ -84,7 +84,9 @@ def test_a_round_has_one_contact_of_each_particle():
         return mirrored(contacts["unused"], contacts["normal"])
 
     report = env.advance(parts, push(parts)[1], respond, options=dartcast.StepOptions(max_contacts=4))
-    assert 1 < len(rounds) <= 4 and sum(map(len, rounds)) == len(report.contacts)
+    # The contact after the last one allowed is reported, but not asked about.
+    asked = sum(map(len, rounds))
+    assert 1 < len(rounds) <= 4 and asked + report.counters.unfinished == len(report.contacts)
 
 
 def test_none_and_zeros_let_particles_stay_at_the_wall():
@@ -106,7 +108,7 @@ def test_a_motion_along_the_wall_is_not_turned_into_it():
         parts, _ = env.add(np.array([[0.2, 0.2, 0.9]]))
         single = answer.__code__.co_argcount == 3
         report = env.advance(parts, np.array([[0.6, 0.7, 1.3]]), answer, per_contact=single)
-        assert len(report.contacts) == 1 and np.allclose(parts.positions, [[0.6, 0.7, 1.0]])
+        assert len(report.contacts) >= 1 and np.allclose(parts.positions, [[0.6, 0.7, 1.0]])
 
 
 def test_strided_answers_are_taken():
@@ -229,7 +231,7 @@ def test_threads_that_share_an_environment_never_break_it():
         t.start()
     for t in threads:
         t.join()
-    assert all(dartcast.audit(env.complex, s).failed == 0 for s in sets) and max(refused) < 100
+    assert all(dartcast.audit(env.complex, s).failed == 0 for s in sets) and sum(refused) < 200
 
 
 @pytest.mark.parametrize("targets, error", [

