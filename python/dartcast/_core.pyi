@@ -198,6 +198,8 @@ def read_surface(path: Path, options: ReadOptions = ...) -> MeshFile: ...
 def check_mesh(path: Path, threads: int = ..., options: ReadOptions = ..., without_bad_cells: bool = ...) -> MeshFile: ...
 def write_mesh(mesh: MeshData, path: Path) -> None: ...
 def write_bytes(path: Path, bytes: bytes) -> None: ...
+def has_vtk() -> bool: ...
+def writable_mesh_endings() -> list[str]: ...
 # --- end of mesh_files.hpp
 
 # --- mesh_selection.hpp
@@ -1849,6 +1851,7 @@ class Deformation:
     def add_pull(self, displacement: Points, begin: float, end: float) -> None: ...
     def load_frames(self, time: float) -> None: ...
     def positions(self, time: float, out: Points | None = ..., threads: int = ...) -> Points: ...
+def name_of(*args: Any, **named: Any) -> Any: ...
 # --- end of deformation.hpp
 
 # --- vector_field.hpp
@@ -1896,29 +1899,1041 @@ VelocityField = VectorField
 
 # --- surface.hpp
 
+class AcrossEdge:
+    face: Any
+    triangle: Any
+    edge: int
+    wall: bool
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class AfterSurfaceContact:
+    displacement: Any
+    along: bool
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class GoneTriangle:
+    triangle: Any
+    source: int
+    corners: list[Any]
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+SURFACE_PLACE: Any
+class Surface:
+    @property
+    def map(self) -> Any: ...
+    @property
+    def positions(self) -> Any: ...
+    def move(self, *args: Any, **named: Any) -> Any: ...
+    def set_free(self, *args: Any, **named: Any) -> Any: ...
+    def triangles(self, *args: Any, **named: Any) -> Any: ...
+    def vertices(self, *args: Any, **named: Any) -> Any: ...
+    def corners(self, *args: Any, **named: Any) -> Any: ...
+    def across(self, *args: Any, **named: Any) -> Any: ...
+    def normal(self, *args: Any, **named: Any) -> Any: ...
+    def contains(self, *args: Any, **named: Any) -> Any: ...
+    def point(self, *args: Any, **named: Any) -> Any: ...
+    def place(self, *args: Any, **named: Any) -> Any: ...
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class SurfaceContact:
+    particle: int
+    kind: Kind
+    dart: Any
+    patch: int
+    time_of_impact: float
+    place: SurfacePlace
+    point: Any
+    normal: Any
+    sides: list[Any]
+    displacement: Any
+    unused: Any
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class SurfaceCrossing:
+    time: float
+    point: Any
+    kind: Kind
+    dart: Any
+    place: SurfacePlace
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class SurfaceEdit:
+    @property
+    def topology(self) -> Any: ...
+    @property
+    def map(self) -> Any: ...
+    def position(self, *args: Any, **named: Any) -> Any: ...
+    def place(self, *args: Any, **named: Any) -> Any: ...
+    def commit(self, *args: Any, **named: Any) -> Any: ...
+    def __enter__(self) -> Any: ...
+    def __exit__(self, *error: Any) -> None: ...
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class SurfaceEditReport:
+    map: EditReport
+    gone: list[Any]
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class SurfaceEnd(enum.IntEnum):
+    ARRIVED = 0
+    STOPPED = 1
+    LIMIT = 2
+    HELD = 3
+
+class SurfaceLocation:
+    place: SurfacePlace
+    distance: float
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class SurfaceLocator:
+    def nearest(self, *args: Any, **named: Any) -> Any: ...
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class SurfaceOptions:
+    max_contacts: int
+    max_crossings: int
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class SurfacePlace:
+    triangle: Any
+    weights: list[Any]
+    @property
+    def kind(self) -> Kind: ...
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class SurfaceReport:
+    @property
+    def steps(self) -> Any: ...
+    @property
+    def contacts(self) -> Any: ...
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class SurfaceStep:
+    end: SurfaceEnd
+    contacts: int
+    crossings: int
+    length: float
+    direction: Any
+    remaining: Any
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class SurfaceTrace:
+    @property
+    def contacts(self) -> list[Any]: ...
+    @property
+    def crossings(self) -> list[Any]: ...
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+def advance(*args: Any, **named: Any) -> Any: ...
+def followed(*args: Any, **named: Any) -> Any: ...
+def nearest_in_triangle(*args: Any, **named: Any) -> Any: ...
+def step(*args: Any, **named: Any) -> Any: ...
+def surface_places(*args: Any, **named: Any) -> Any: ...
+def tangent(*args: Any, **named: Any) -> Any: ...
 # --- end of surface.hpp
 
 # --- bodies.hpp
 
+class AddBodyResult:
+    body: int
+    refused: Any
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class Bodies:
+    def add(self, *args: Any, **named: Any) -> Any: ...
+    def step(self, *args: Any, **named: Any) -> Any: ...
+    def predicted_state(self, *args: Any, **named: Any) -> Any: ...
+    def apply_impulse(self, *args: Any, **named: Any) -> Any: ...
+    def update_after_edit(self, *args: Any, **named: Any) -> Any: ...
+    def checkpoint(self, *args: Any, **named: Any) -> Any: ...
+    def restore(self, *args: Any, **named: Any) -> Any: ...
+    def id(self, *args: Any, **named: Any) -> Any: ...
+    def first_particle(self, *args: Any, **named: Any) -> Any: ...
+    def particle_count(self, *args: Any, **named: Any) -> Any: ...
+    def fits(self, *args: Any, **named: Any) -> Any: ...
+    def energy(self, *args: Any, **named: Any) -> Any: ...
+    def rigid_motion_of(self, *args: Any, **named: Any) -> Any: ...
+    @property
+    def size(self) -> Any: ...
+    @property
+    def environment(self) -> Any: ...
+    @property
+    def options(self) -> Any: ...
+    @property
+    def steps(self) -> Any: ...
+    @property
+    def particles(self) -> Any: ...
+    @property
+    def positions(self) -> Any: ...
+    velocities: Any
+    @property
+    def masses(self) -> Any: ...
+    @property
+    def radii(self) -> Any: ...
+    @property
+    def body_of(self) -> Any: ...
+    @property
+    def fates(self) -> Any: ...
+    @property
+    def counters(self) -> Any: ...
+    def state_hash(self, *args: Any, **named: Any) -> Any: ...
+    def __len__(self) -> int: ...
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class BodiesCheckpoint:
+    class Particle:
+        @property
+        def state(self) -> Any: ...
+        @property
+        def held_weights(self) -> Any: ...
+        @property
+        def velocity(self) -> Any: ...
+        @property
+        def fate(self) -> Any: ...
+        @property
+        def on(self) -> Any: ...
+        def __init__(self, *args: Any, **named: Any) -> None: ...
+
+    @property
+    def steps(self) -> Any: ...
+    @property
+    def counters(self) -> Any: ...
+    @property
+    def ids(self) -> Any: ...
+    @property
+    def fits(self) -> Any: ...
+    @property
+    def impulses(self) -> Any: ...
+    @property
+    def particles(self) -> Any: ...
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class BodiesOptions:
+    dt: float
+    gravity: Any
+    drag: float
+    collisions: Any
+    step: StepOptions
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class BodiesStep:
+    motion: StepReport
+    pull: StepReport
+    collisions: BodyCollisionCounts
+    input: float
+    fallbacks: int
+    repeated: int
+    gone: Any
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class BodyCollisionCounts:
+    pairs_near: int
+    pairs_touching: int
+    impacts: int
+    overlaps: int
+    deepest: float
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class BodyCollisionOptions:
+    restitution: Any
+    friction: float
+    iterations: int
+    position_correction: float
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class BodyEnergy:
+    kinetic: float
+    potential: float
+    matching: float
+    @property
+    def total(self) -> float: ...
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class BodyOptions:
+    mass: float
+    masses: Any
+    radius: float
+    stiffness: float
+    pull: float
+    damping: float
+    velocity: Any
+    angular_velocity: Any
+    match: MatchOptions
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+CELL_DIAGONAL: float
+ENERGY_SLACK: float
+class Fit:
+    rotation: Quaternion
+    centre: Any
+    transform: Mat3
+    strain: float
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class MatchOptions:
+    linear: float
+    keep_volume: bool
+    clusters: list[Any]
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class RigidMotion:
+    mass: float
+    centre: Any
+    velocity: Any
+    angular_momentum: Any
+    angular_velocity: Any
+    def velocity_at(self, *args: Any, **named: Any) -> Any: ...
+    @property
+    def kinetic_energy(self) -> float: ...
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+SOLID_COVER: float
+SURFACE_COVER: float
+class SamplingOptions:
+    spacing: float
+    seed: int
+    max_count: int
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class SolidSamples:
+    points: Points
+    on_surface: int
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+VOLUME_COVER: float
+def overlapping_clusters(*args: Any, **named: Any) -> Any: ...
+def sample_solid(*args: Any, **named: Any) -> Any: ...
+def sample_surface(*args: Any, **named: Any) -> Any: ...
+def sample_volume(*args: Any, **named: Any) -> Any: ...
 # --- end of bodies.hpp
 
 # --- catheter.hpp
 
+class Camera:
+    position: Any
+    direction: Any
+    up: Any
+    arc: float
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class CameraOptions:
+    spacing: float
+    up: Any
+    max_count: int
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class CameraPath:
+    cameras: list[Any]
+    at_walls: int
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class Catheter:
+    def step(self, *args: Any, **named: Any) -> Any: ...
+    def update_after_edit(self, *args: Any, **named: Any) -> Any: ...
+    def checkpoint(self, *args: Any, **named: Any) -> Any: ...
+    def restore(self, *args: Any, **named: Any) -> Any: ...
+    def points(self, *args: Any, **named: Any) -> Any: ...
+    def frames(self, *args: Any, **named: Any) -> Any: ...
+    @property
+    def inserted(self) -> Any: ...
+    @property
+    def measured_length(self) -> Any: ...
+    @property
+    def total_length(self) -> Any: ...
+    @property
+    def turned(self) -> Any: ...
+    @property
+    def entry(self) -> Any: ...
+    @property
+    def direction(self) -> Any: ...
+    @property
+    def environment(self) -> Any: ...
+    @property
+    def particles(self) -> Any: ...
+    @property
+    def options(self) -> Any: ...
+    def state_hash(self, *args: Any, **named: Any) -> Any: ...
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class CatheterCheckpoint:
+    @property
+    def states(self) -> Any: ...
+    @property
+    def held_weights(self) -> Any: ...
+    @property
+    def walls(self) -> Any: ...
+    @property
+    def inserted(self) -> Any: ...
+    @property
+    def turned(self) -> Any: ...
+    @property
+    def direction(self) -> Any: ...
+    @property
+    def reference(self) -> Any: ...
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class CatheterFrame:
+    tangent: Any
+    normal: Any
+    binormal: Any
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class CatheterInput:
+    push: float
+    turn: float
+    load: Any
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class CatheterOptions:
+    length: float
+    spacing: float
+    stiffness: float
+    tip_length: float
+    tip_curvature: float
+    entry: Any
+    direction: Any
+    friction: float
+    rounds: int
+    tolerance: float
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class CatheterStep:
+    pushed: float
+    turned: float
+    worst_segment: float
+    substeps: int
+    rounds: int
+    contacts: int
+    at_walls: int
+    held: int
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class ChainWall:
+    index: int
+    normal: Any
+    point: Any
+    pressure: float
+    idle: int
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+def camera_path(*args: Any, **named: Any) -> Any: ...
 # --- end of catheter.hpp
 
 # --- simulation.hpp
+
+class BodySummary:
+    name: str
+    particles: int
+    gone: bool
+    centre: Any
+    energy: BodyEnergy
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class CatheterSummary:
+    name: str
+    inserted: float
+    measured_length: float
+    totals: CatheterTotals
+    tip: Any
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class CatheterTotals:
+    worst_segment: float
+    refused: float
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class CollisionOptions:
+    restitution: float
+    friction: float
+    density: float
+    iterations: int
+    position_iterations: int
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class Integrator(enum.IntEnum):
+    EULER = 0
+    RK4 = 1
+
+LARGEST_DENSITY: float
+LARGEST_DT: float
+SMALLEST_DENSITY: float
+SMALLEST_DT: float
+class Simulation:
+    def set_field(self, *args: Any, **named: Any) -> Any: ...
+    def set_force(self, *args: Any, **named: Any) -> Any: ...
+    def set_deformation(self, *args: Any, **named: Any) -> Any: ...
+    def set_statistics(self, *args: Any, **named: Any) -> Any: ...
+    def pull(self, *args: Any, **named: Any) -> Any: ...
+    def add(self, *args: Any, **named: Any) -> Any: ...
+    def add_random(self, *args: Any, **named: Any) -> Any: ...
+    def add_inlet(self, *args: Any, **named: Any) -> Any: ...
+    def add_body(self, *args: Any, **named: Any) -> Any: ...
+    def set_events(self, *args: Any, **named: Any) -> Any: ...
+    def set_remeshing(self, *args: Any, **named: Any) -> Any: ...
+    def set_adaptive_subdivision(self, *args: Any, **named: Any) -> Any: ...
+    def set_after_edit(self, *args: Any, **named: Any) -> Any: ...
+    def edit(self, *args: Any, **named: Any) -> Any: ...
+    def repair(self, *args: Any, **named: Any) -> Any: ...
+    def adapt(self, *args: Any, **named: Any) -> Any: ...
+    def step(self, *args: Any, **named: Any) -> Any: ...
+    def checkpoint(self, *args: Any, **named: Any) -> Any: ...
+    def restore(self, *args: Any, **named: Any) -> Any: ...
+    def go_to(self, *args: Any, **named: Any) -> Any: ...
+    @property
+    def options(self) -> Any: ...
+    @property
+    def time(self) -> Any: ...
+    @property
+    def steps(self) -> Any: ...
+    @property
+    def environment(self) -> Any: ...
+    @property
+    def deforms(self) -> Any: ...
+    @property
+    def particles(self) -> Any: ...
+    @property
+    def positions(self) -> Any: ...
+    @property
+    def ids(self) -> Any: ...
+    @property
+    def velocities(self) -> Any: ...
+    @property
+    def fates(self) -> Any: ...
+    @property
+    def contact_counts(self) -> Any: ...
+    @property
+    def radii(self) -> Any: ...
+    @property
+    def held(self) -> Any: ...
+    def user_data(self, *args: Any, **named: Any) -> Any: ...
+    def set_user_data(self, *args: Any, **named: Any) -> Any: ...
+    @property
+    def bodies(self) -> Any: ...
+    @property
+    def bodies_step(self) -> Any: ...
+    @property
+    def catheter_count(self) -> Any: ...
+    def catheter(self, *args: Any, **named: Any) -> Any: ...
+    def catheter_step(self, *args: Any, **named: Any) -> Any: ...
+    def body_summaries(self, *args: Any, **named: Any) -> Any: ...
+    def catheter_summaries(self, *args: Any, **named: Any) -> Any: ...
+    @property
+    def statistics(self) -> Any: ...
+    @property
+    def statistics_options(self) -> Any: ...
+    @property
+    def totals(self) -> Any: ...
+    @property
+    def seconds_solids(self) -> Any: ...
+    @property
+    def event_log(self) -> Any: ...
+    def energy(self, *args: Any, **named: Any) -> Any: ...
+    def audit(self, *args: Any, **named: Any) -> Any: ...
+    def state_hash(self, *args: Any, **named: Any) -> Any: ...
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class SimulationCheckpoint:
+    @property
+    def steps(self) -> Any: ...
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class SimulationEdit:
+    edit: ComplexEditReport
+    particles: UpdateReport
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class SimulationEnergy:
+    kinetic: float
+    potential: float
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class SimulationOptions:
+    dt: float
+    gravity: Any
+    drag: float
+    response: WallResponse
+    patch_responses: dict[str, Any]
+    substeps: int
+    integrator: Integrator
+    seed: int
+    step: StepOptions
+    collisions: Any
+    body_collisions: BodyCollisionOptions
+    user_data: list[Any]
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class SimulationStep:
+    duration: float
+    report: StepReport
+    contact_ids: Any
+    injected: int
+    absorbed: int
+    escaped: int
+    collisions: CollisionCounts
+    @property
+    def overlaps(self) -> Any: ...
+    @property
+    def left(self) -> Any: ...
+    @property
+    def contact_sources(self) -> Any: ...
+    @property
+    def contacts(self) -> Any: ...
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class SimulationTotals:
+    start: int
+    injected: int
+    absorbed: int
+    escaped: int
+    counters: Counters
+    collisions: CollisionCounts
+    wall_overlaps: int
+    deepest_in_wall: float
+    contacts_by_patch: Any
+    seconds_detect: float
+    seconds_deform: float
+    seconds_collide: float
+    seconds_respond: float
+    def __init__(self, *args: Any, **named: Any) -> None: ...
 
 # --- end of simulation.hpp
 
 # --- events.hpp
 
+class AdaptiveSubdivisionOptions:
+    max_particles: int
+    min_particles: int
+    smallest: float
+    edits: int
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class AdaptiveSubdivisionReport:
+    subdivided: int
+    merged: int
+    waiting: int
+    refused: list[Any]
+    changes: list[Any]
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class Carve:
+    tool: ConvexTool
+    what: Carving
+    whole_cells: bool
+    kind: ClassVar[EventKind]
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class Cut:
+    surface: Plane
+    width: float
+    kind: ClassVar[EventKind]
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class Event:
+    at: float
+    what: Cut
+    orphaned: OrphanPolicy
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class EventKind(enum.IntEnum):
+    CUT = 0
+    CARVE = 1
+    LIGATURE = 2
+    RECONNECT = 3
+
+class EventLog:
+    changes: list[Any]
+    events: list[Any]
+    mended: int
+    left: int
+    subdivided: int
+    merged: int
+    refused: int
+    in_opened: int
+    class Change:
+        step: int
+        event: int
+        what: int
+        REMESHING: ClassVar[int]
+        SUBDIVIDING: ClassVar[int]
+        MERGING: ClassVar[int]
+        def __init__(self, *args: Any, **named: Any) -> None: ...
+
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class EventReport:
+    kind: EventKind
+    step: int
+    time: float
+    cells_removed: int
+    cells_added: int
+    cells_opened: int
+    cells_blocked: int
+    cells_whole: int
+    particles_in_opened: int
+    particles_touched: int
+    particles_located: int
+    particles_moved: int
+    particles_held: int
+    particles_absorbed: int
+    boundary_shift: float
+    seconds: float
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class Ligature:
+    plane: Plane
+    place: Any
+    tying: TyingOptions
+    duration: float
+    kind: ClassVar[EventKind]
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class Reconnect:
+    a: Plane
+    b: Plane
+    within: float
+    options: ReconnectOptions
+    kind: ClassVar[EventKind]
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class SubdivisionChange:
+    merged: bool
+    what: int
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class SubdivisionRefusal:
+    cell: Any
+    particles: int
+    reason: str
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+def apply(*args: Any, **named: Any) -> Any: ...
+def kind_of(*args: Any, **named: Any) -> Any: ...
 # --- end of events.hpp
 
 # --- scene.hpp
+
+class AdaptiveSubdivisionScene:
+    every: int
+    options: AdaptiveSubdivisionOptions
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class BodySamples(enum.IntEnum):
+    SOLID = 0
+    SURFACE = 1
+    VOLUME = 2
+
+class BodyScene:
+    name: str
+    surface: Any
+    scale: float
+    rotate: Any
+    at: Any
+    samples: BodySamples
+    sampling: SamplingOptions
+    cluster: float
+    body: BodyOptions
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class CatheterScene:
+    name: str
+    options: CatheterOptions
+    moves: list[Any]
+    camera: float
+    class Move:
+        until: float
+        push: float
+        turn: float
+        def __init__(self, *args: Any, **named: Any) -> None: ...
+
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class Compression(enum.IntEnum):
+    NONE = 0
+    FAST = 1
+    SMALL = 2
+
+class ContactScene:
+    general: WallResponse
+    by_patch: dict[str, Any]
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class DeformationScene:
+    step: DeformationStep
+    field: str
+    path: str
+    frames: list[Any]
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class EnvironmentScene:
+    mesh: Any
+    scale: float
+    skip_bad_cells: bool
+    free: Any
+    patches: Any
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class EventScene:
+    event: Event
+    patch: str
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class FieldScene:
+    array: str
+    at: Any
+    frame: FieldFrame
+    files: list[Any]
+    times: Any
+    spacing: float
+    period: float
+    samples: FieldSamples
+    @property
+    def given(self) -> bool: ...
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class FreeRegions:
+    regions: list[Any]
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class FreeValues:
+    array: str
+    values: Any
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class InletParticles:
+    patch: str
+    rate: float
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+MAX_SEED: int
+MAX_STEPS: int
+class MotionScene:
+    dt: float
+    steps: int
+    gravity: Any
+    field: FieldScene
+    force: FieldScene
+    drag: float
+    substeps: int
+    integrator: Integrator
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class OutputScene:
+    every: int
+    contacts: bool
+    compression: Compression
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class ParticleSeeds:
+    name: str
+    points: Points
+    velocities: Points
+    radii: Any
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class ParticlesScene:
+    source: RandomParticles
+    velocity: Any
+    radius: float
+    user_data: Any
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class PatchAngle:
+    degrees: float
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class PatchArray:
+    name: str
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class PlacedParticles:
+    positions: Any
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class RandomParticles:
+    count: int
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class RemeshScene:
+    every: int
+    options: RepairOptions
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class Scene:
+    name: str
+    file: Any
+    text: str
+    seed: int
+    environment: EnvironmentScene
+    deformation: list[Any]
+    particles: list[Any]
+    user_data: list[Any]
+    collisions: Any
+    body_collisions: BodyCollisionOptions
+    bodies: list[Any]
+    catheters: list[Any]
+    motion: MotionScene
+    contact: ContactScene
+    events: list[Any]
+    remesh: RemeshScene
+    adaptive_subdivision: AdaptiveSubdivisionScene
+    statistics: StatisticsScene
+    output: OutputScene
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class StatisticsScene:
+    options: StatisticsOptions
+    crossings: bool
+    def __init__(self, *args: Any, **named: Any) -> None: ...
 
 # --- end of scene.hpp
 
 # --- run.hpp
 
+class RunOptions:
+    folder: Any
+    threads: int
+    steps: Any
+    seed: Any
+    audit: bool
+    skip_bad_cells: bool
+    resume: bool
+    max_memory: int
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class StatisticsSummary:
+    options: StatisticsOptions
+    time: float
+    hit_faces: int
+    hits_by_patch: Any
+    ended_by_patch: Any
+    planes: list[Any]
+    left: list[Any]
+    absorbed_by_edits: ResidenceTimes
+    seconds: float
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class Summary:
+    scene: str
+    threads: int
+    steps: int
+    cancelled: bool
+    deforms: bool
+    cells: int
+    free_cells: int
+    vertices: int
+    wall_faces: int
+    bytes: int
+    skipped: Finding
+    totals: SimulationTotals
+    alive: int
+    held: int
+    lost: int
+    patch_names: list[Any]
+    seconds_load: float
+    seconds_locate: float
+    seconds_solids: float
+    seconds_write: float
+    seconds_writing_thread: float
+    surgery: Any
+    bodies: list[Any]
+    catheters: list[Any]
+    statistics: Any
+    audit: Any
+    state_hash: str
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+def histogram_text(summary: Summary) -> str: ...
+def run_scene(scene: Scene, options: RunOptions = ..., progress: Callable[[int, int], bool | None] | None = ...) -> Summary: ...
+def summary_json(summary: Summary) -> str: ...
+def summary_text(summary: Summary) -> str: ...
+def version() -> str: ...
 # --- end of run.hpp
 
+
+# --- statistics.hpp
+
+class LeaveTotals:
+    escaped: ResidenceTimes
+    absorbed: ResidenceTimes
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class PlaneTotals:
+    forward: ResidenceTimes
+    backward: ResidenceTimes
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class ResidenceTimes:
+    count: int
+    sum: float
+    least: float
+    most: float
+    bin: float
+    bins: list[Any]
+    def mean(self, *args: Any, **named: Any) -> Any: ...
+    BIN_COUNT: ClassVar[int]
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class SectionPlane:
+    name: str
+    point: Any
+    normal: Any
+    radius: float
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class Statistics:
+    @property
+    def hits(self) -> Any: ...
+    @property
+    def planes(self) -> Any: ...
+    @property
+    def left(self) -> Any: ...
+    @property
+    def absorbed_by_edits(self) -> Any: ...
+    @property
+    def passages(self) -> Any: ...
+    @property
+    def path_points(self) -> Any: ...
+    @property
+    def seconds(self) -> Any: ...
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class StatisticsOptions:
+    hits: bool
+    residence: bool
+    planes: list[Any]
+    pathlines_every: int
+    pathlines_of: Any
+    def pathlines(self, *args: Any, **named: Any) -> Any: ...
+    def any(self, *args: Any, **named: Any) -> Any: ...
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+class WallHits:
+    def add(self, *args: Any, **named: Any) -> Any: ...
+    def update_after_edit(self, *args: Any, **named: Any) -> Any: ...
+    def of(self, *args: Any, **named: Any) -> Any: ...
+    def faces(self, *args: Any, **named: Any) -> Any: ...
+    def ended_by_patch(self, *args: Any, **named: Any) -> Any: ...
+    def by_patch(self, *args: Any, **named: Any) -> Any: ...
+    def restore(self, *args: Any, **named: Any) -> Any: ...
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+def find_crossings(*args: Any, **named: Any) -> Any: ...
+# --- end of statistics.hpp
+
+# --- scene_file.hpp
+
+class LoadedScene:
+    scene: Scene
+    skipped: Finding
+    def __init__(self, *args: Any, **named: Any) -> None: ...
+
+def load_scene_files(scene: Scene, options: ReadOptions = ..., threads: int = ...) -> LoadedScene: ...
+def parse_scene(text: str, path: Path) -> Scene: ...
+def read_scene(path: Path) -> Scene: ...
+# --- end of scene_file.hpp
+
+# --- statistics_files.hpp
+
+def write_pathlines(*args: Any, **named: Any) -> Any: ...
+def write_wall_hits(*args: Any, **named: Any) -> Any: ...
+# --- end of statistics_files.hpp

@@ -108,7 +108,7 @@ def to_meshio(mesh: MeshData) -> Any:
     "medit:ref", with their names in field_data. Cell data have NaN at the faces of patches. Wedges have the order of
     Gmsh. Raises ModuleNotFoundError where meshio is missing.
     """
-    import meshio  # type: ignore[import]
+    import meshio
     order = {"tetra": 0, "hexahedron": 1, "wedge": 2, "pyramid": 3, "polyhedron": 4, "triangle": 5, "quad": 6,
              "polygon": 7}
     blocks: list[tuple[str, Any]] = []

@@ -70,7 +70,8 @@ def run(scene: SceneLike, out: Union[str, "os.PathLike[str]", None] = None, *, t
     progress: see run_scene(). Ctrl-C ends the run between two steps, and resume=True goes on from there. Raises as
     run_scene().
     """
-    options = _core.RunOptions(folder=pathlib.Path(out) if out is not None else pathlib.Path(), threads=threads,
-                               steps=steps, seed=seed, audit=audit, resume=resume, skip_bad_cells=skip_bad_cells,
-                               max_memory=max_memory)
+    options = _core.RunOptions(threads=threads, steps=steps, seed=seed, audit=audit, resume=resume,
+                               skip_bad_cells=skip_bad_cells, max_memory=max_memory)
+    if out is not None:
+        options.folder = pathlib.Path(out)
     return _core.run_scene(_plain(scene), options, progress)

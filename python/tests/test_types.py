@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import os
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -20,9 +21,16 @@ def run(tool: str, *arguments: str) -> subprocess.CompletedProcess[str]:
                           env=os.environ | {"MYPYPATH": str(PACKAGE.parent), "MYPY_CACHE_DIR": os.devnull})
 
 
-def test_stubs_match_the_module(root: pathlib.Path) -> None:
-    done = run("mypy.stubtest", "dartcast", "--mypy-config-file", str(root / "pyproject.toml"))
-    assert done.returncode == 0, done.stdout + done.stderr
+# What stubtest finds in every module of pybind11, the aliases for annotations, and classes that only calls make.
+KNOWN = re.compile(r"metaclass differs$|\.__(copy|deepcopy)__ is not present in stub|"
+                   r"_core\.(Floats|Integers|Marks|Path|Points|Records|Vector) is not present at runtime|"
+                   r"__init__ is inconsistent, stub does not have \*args")
+
+
+def test_stubs_match_the_module() -> None:
+    done = run("mypy.stubtest", "dartcast._core", "--concise")
+    found = [line for line in done.stdout.splitlines() if not KNOWN.search(line)]
+    assert not found and "not checking" not in done.stdout + done.stderr, "\n".join(found) + done.stderr
 
 
 def test_package_and_examples_pass_strict(root: pathlib.Path) -> None:

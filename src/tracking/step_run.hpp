@@ -105,7 +105,8 @@ class StepPart {
 
  private:
   // The target after a contact. Sets the displacement planned after the interval.
-  Vec3 redirect(const Run& run, const Contact& contact, const AfterContact& next, TimeInterval& interval) const {
+  [[gnu::always_inline]] Vec3 redirect(const Run& run, const Contact& contact, const AfterContact& next,
+                                       TimeInterval& interval) const {
     const double share = interval.end < 1.0 ? (interval.end - interval.begin) / (1.0 - interval.begin) : 1.0;
     interval.later = next.displacement * (1.0 - share) + contact.wall_displacement * (1.0 - interval.end);
     return aim(run, contact, next, share);
@@ -342,7 +343,8 @@ class MovingStep {
 
 // Saves a step that waits at a contact, and counts one that is complete. It started at p in the simplex `start`.
 template <std::size_t N, class Recorder>
-StepResult finish(const CellComplex& complex, bool moved, RunOf<Recorder>& run, SimplexId start, const Vec3& p) {
+[[gnu::always_inline]] inline StepResult finish(const CellComplex& complex, bool moved, RunOf<Recorder>& run,
+                                                SimplexId start, const Vec3& p) {
   if (run.recorder.waits()) {
     run.recorder.save(run, start, p);
     return {};

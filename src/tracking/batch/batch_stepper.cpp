@@ -36,21 +36,21 @@ ChunkSteps joined(std::vector<ChunkSteps> chunks) {
   if (chunks.size() == 1) return std::move(chunks.front());
   std::size_t contacts = 0;
   std::size_t walls = 0;
-  for (const ChunkSteps& chunk : chunks) {
-    contacts += chunk.report.contacts.contacts.size();
-    walls += chunk.report.contacts.walls.size();
+  for (const ChunkSteps& steps : chunks) {
+    contacts += steps.report.contacts.contacts.size();
+    walls += steps.report.contacts.walls.size();
   }
   ChunkSteps all;
   StepReport& report = all.report;
   report.contacts.contacts.reserve(contacts);
   report.contacts.walls.reserve(walls);
-  for (const ChunkSteps& chunk : chunks) {
-    const StepReport& part = chunk.report;
+  for (const ChunkSteps& steps : chunks) {
+    const StepReport& part = steps.report;
     report.contacts.append(part.contacts);
     report.held.insert(report.held.end(), part.held.begin(), part.held.end());
     report.stopped.insert(report.stopped.end(), part.stopped.begin(), part.stopped.end());
     report.counters += part.counters;
-    all.waiting.insert(all.waiting.end(), chunk.waiting.begin(), chunk.waiting.end());
+    all.waiting.insert(all.waiting.end(), steps.waiting.begin(), steps.waiting.end());
   }
   return all;
 }
