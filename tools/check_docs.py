@@ -9,7 +9,7 @@ SKIPPED_FOLDERS = {".git", "build", "__pycache__", ".cache"}
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s#]+)(?:#[^)\s]*)?\)")
 CODE = re.compile(r"```.*?```|`[^`\n]+`", re.DOTALL)
 DEV_COMMAND = re.compile(r"\./dev ([a-z]+)")
-VERB = re.compile(r"(?:^|[\s`/$])dartcast ([a-z]+)\b")
+VERB = re.compile(r"(?:^|[\s`/$])(?<!import )dartcast ([a-z]+)\b")
 MACHINE_PATH = re.compile(r"(?<![\w.])/(?:home/\w|root/|work/|Users/\w)")
 
 

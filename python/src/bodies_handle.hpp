@@ -39,7 +39,7 @@ std::shared_ptr<SolidHandle<T>> lent(std::shared_ptr<EnvironmentHandle> environm
   return handle;
 }
 
-/// Of bind_bodies().
+/// A part of bind_bodies().
 void bind_bodies_records(pybind11::module_& m);
 
 }  // namespace dartcast::python

@@ -1,7 +1,7 @@
 // Binds dartcast/deformation.hpp.
 //
-// A thread of the library may read frames by a function of Python. It needs Python's lock for that, so whoever waits for
-// a frame, or for the end of that thread, has released the lock.
+// A thread of the library may read frames by a function of Python. It needs Python's lock for that, so a call that
+// waits for a frame, or for the end of that thread, has released the lock.
 #include "dartcast/deformation.hpp"
 
 #include <optional>

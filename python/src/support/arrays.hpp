@@ -1,8 +1,8 @@
 // Vectors and arrays between NumPy and C++.
 //
-// What comes in is taken without a copy and must be exact: float64 of shape (n, 3), C-contiguous. Another array is
-// refused with a message that says what was expected, what came, and how to convert it. What goes out is a fresh array.
-// One that is an attribute is read-only: writing to it would change nothing.
+// An argument is taken without a copy and must fit exactly: float64 of shape (n, 3), C-contiguous. Another array is
+// refused with a message that says what was expected, what came, and how to convert it. A result is a fresh array. One
+// that is an attribute is read-only: writing to it would change nothing.
 #pragma once
 
 #include <pybind11/numpy.h>

@@ -1,4 +1,4 @@
-// What every file of the bindings includes: pybind11 and the conversions of dartcast's types, the same in all of them.
+// The header that every file of the bindings includes: pybind11 and the conversions of dartcast's types.
 #pragma once
 
 #include <pybind11/functional.h>

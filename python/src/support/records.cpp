@@ -1,4 +1,4 @@
-// What all records share: their representation, comparison, and the values of their constructor.
+// The common part of all records: their representation, comparison, and the values of their constructor.
 #include "support/records.hpp"
 
 #include <algorithm>

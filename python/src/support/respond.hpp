@@ -1,4 +1,4 @@
-// What answers contacts in calls from Python: nothing, a response, responses by patch, or a function.
+// The answers to contacts in calls from Python: nothing, a response, responses by patch, or a function.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -41,7 +41,7 @@ struct LibraryAnswers {
   void expect_particles(std::size_t count) const;
 };
 
-/// What a call was given to answer contacts.
+/// The arguments of a call that answer contacts.
 struct RespondArguments {
   pybind11::object respond, velocities, statuses, dt, acceleration;
   bool per_contact = false;
