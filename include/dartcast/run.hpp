@@ -65,10 +65,11 @@ struct Summary {
   std::string state_hash;
 };
 
-/// One JSON object. Entries that do not apply to this run are left out.
+/// One JSON object. Entries that do not apply to this run are left out. Throws InvalidArgument where there are values for
+/// more patches than patch_names has, or for more planes than options.
 std::string summary_json(const Summary& summary);
 
-/// The same for people, in a few lines.
+/// The same for people, in a few lines. Throws as summary_json().
 std::string summary_text(const Summary& summary);
 
 /// The histogram of orientation tests, a line per number of tests.

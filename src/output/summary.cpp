@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "dartcast/error.hpp"
 #include "dartcast/run.hpp"
 
 namespace dartcast {
@@ -29,11 +31,26 @@ Json orientation_tests(const Summary& s) {
   return json;
 }
 
+// A summary may come from anywhere: each list by patch needs its names, and each plane its options.
+void check_names(const Summary& s) {
+  std::size_t patches = s.totals.contacts_by_patch.size();
+  if (s.statistics) {
+    const StatisticsSummary& all = *s.statistics;
+    patches = std::max({patches, all.hits_by_patch.size(), all.left.size()});
+    if (all.planes.size() > all.options.planes.size()) {
+      throw InvalidArgument(
+          fmt::format("summary: {} planes, but options for {}", all.planes.size(), all.options.planes.size()));
+    }
+  }
+  if (patches > s.patch_names.size())
+    throw InvalidArgument(fmt::format("summary: values for {} patches, but {} names", patches, s.patch_names.size()));
+}
+
 // Values by the name of the patch; those without a patch where there are any.
 Json by_patch(const Summary& s, const std::vector<std::uint64_t>& values) {
   Json json = Json::object();
   for (std::size_t i = 1; i < values.size(); ++i) json[s.patch_names[i]] = values[i];
-  if (values[0] > 0) json[""] = values[0];
+  if (!values.empty() && values[0] > 0) json[""] = values[0];
   return json;
 }
 
@@ -184,6 +201,7 @@ double ns_per_particle_step(const Summary& s) {
 std::string version() { return DARTCAST_VERSION; }
 
 std::string summary_json(const Summary& s) {
+  check_names(s);
   const SimulationTotals& t = s.totals;
   Json json = {{"version", version()},
                {"scene", s.scene},
@@ -293,6 +311,7 @@ std::string statistics_text(const StatisticsSummary& s) {
 }  // namespace
 
 std::string summary_text(const Summary& s) {
+  check_names(s);
   const SimulationTotals& t = s.totals;
   const Counters& c = t.counters;
   std::string out = fmt::format("{}: {} steps, {} cells ({} free), {} wall faces, {:.1f} MB\n", s.scene, s.steps,
