@@ -1,6 +1,7 @@
 """Scenes from files and dicts, and runs of them."""
 from __future__ import annotations
 
+import enum
 import json
 import os
 import pathlib
@@ -14,20 +15,27 @@ from . import _core
 SceneLike = Union[str, "os.PathLike[str]", Mapping[str, Any], _core.Scene]
 
 
+def _text(value: str) -> str:
+    """A text of TOML, as a value or a key."""
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
 def _value(value: Any, where: str) -> str:
     """A value in TOML, on one line."""
     if isinstance(value, numpy.ndarray):
         value = value.tolist()
     elif isinstance(value, numpy.generic):
         value = value.item()
+    if isinstance(value, enum.Enum):
+        value = value.name.lower()
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, (int, float)):
         return repr(value)
     if isinstance(value, (str, os.PathLike)):
-        return json.dumps(os.fspath(value), ensure_ascii=False).replace("\x7f", "\\u007f")
+        return _text(os.fspath(value))
     if isinstance(value, Mapping):
-        entries = (f"{json.dumps(key)} = {_value(entry, f'{where}.{key}')}"
+        entries = (f"{_text(key)} = {_value(entry, f'{where}.{key}')}"
                    for key, entry in value.items() if entry is not None)
         return "{" + ", ".join(entries) + "}"
     if isinstance(value, (list, tuple)):
@@ -40,7 +48,7 @@ def scene_text(scene: Mapping[str, Any]) -> str:
 
     Raises TypeError, which names the key, where a value is of no type that TOML has.
     """
-    return "".join(f"{json.dumps(key)} = {_value(value, key)}\n" for key, value in scene.items() if value is not None)
+    return "".join(f"{_text(key)} = {_value(value, key)}\n" for key, value in scene.items() if value is not None)
 
 
 def load_scene(scene: SceneLike, *, threads: int = 0) -> _core.Scene:
