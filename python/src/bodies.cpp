@@ -23,8 +23,12 @@ std::shared_ptr<Handle> make_bodies(const std::shared_ptr<EnvironmentHandle>& en
   const Use use(*environment->usage, "the Environment");
   auto made = std::make_shared<Handle>();
   made->environment = environment;
-  made->own = std::make_shared<Bodies>(*environment->environment, options,
-                                       wall_responses(responses, *environment->environment));
+  const BodiesOptions own_options = options;
+  WallResponses walls = wall_responses(responses, *environment->environment);
+  {
+    const py::gil_scoped_release release;
+    made->own = std::make_shared<Bodies>(*environment->environment, own_options, std::move(walls));
+  }
   made->solid = made->own.get();
   return made;
 }
@@ -54,7 +58,10 @@ UpdateReport update_after_edit(Handle& self, OrphanPolicy orphaned) {
 
 void restore(Handle& self, const BodiesCheckpoint& saved) {
   const Use use = self.use();
-  self.changeable().restore(saved);
+  Bodies& bodies = self.changeable();
+  const BodiesCheckpoint own = saved;
+  const py::gil_scoped_release release;
+  bodies.restore(own);
 }
 
 void check_body(const Bodies& bodies, std::size_t body) {

@@ -20,7 +20,11 @@ std::shared_ptr<Handle> make_catheter(const std::shared_ptr<EnvironmentHandle>& 
   const Use use(*environment->usage, "the Environment");
   auto made = std::make_shared<Handle>();
   made->environment = environment;
-  made->own = std::make_shared<Catheter>(*environment->environment, options);
+  const CatheterOptions own_options = options;
+  {
+    const py::gil_scoped_release release;
+    made->own = std::make_shared<Catheter>(*environment->environment, own_options);
+  }
   made->solid = made->own.get();
   return made;
 }
@@ -145,7 +149,10 @@ void bind_class(py::module_& m) {
           "restore",
           [](Handle& self, const CatheterCheckpoint& saved) {
             const Use use = self.use();
-            self.changeable().restore(saved);
+            Catheter& own_catheter = self.changeable();
+            const CatheterCheckpoint own = saved;
+            const py::gil_scoped_release release;
+            own_catheter.restore(own);
           },
           py::arg("saved"), doc("Catheter::restore"));
   bind_state(catheter);

@@ -3,6 +3,7 @@
 #include "dartcast/complex_edit.hpp"
 
 #include "bind.hpp"
+#include "support/edit_reports.hpp"
 #include "support/edits.hpp"
 #include "support/map_checks.hpp"
 #include "support/python.hpp"
@@ -31,17 +32,6 @@ void bind_reports(py::module_& m) {
       .def("now", &ComplexEditReport::now, py::arg("c"), doc("ComplexEditReport::now"));
 }
 
-// The rules of a report that anyone may have written.
-void check_placed(const ComplexEditReport& report, std::size_t size) {
-  for (const PlacedVertex& p : report.placed) {
-    const bool right = !p.of.empty() && p.of.size() == p.weights.size() &&
-                       std::all_of(p.of.begin(), p.of.end(), [&](Vertex v) { return v.value < size; });
-    if (!right)
-      throw InvalidArgument("size: a vertex was made from others that are not below " + std::to_string(size) +
-                            "; give the number of vertices after the edit");
-  }
-}
-
 py::array_t<double> updated(const ComplexEditReport& report, std::size_t size, const py::object& given) {
   const bool is_flat = py::isinstance<py::array>(given) && py::reinterpret_borrow<py::array>(given).ndim() == 1;
   const bool right = py::isinstance<py::array_t<double, py::array::c_style>>(given) &&
@@ -50,7 +40,7 @@ py::array_t<double> updated(const ComplexEditReport& report, std::size_t size, c
     refuse_array(given, "values", "float64 (n,) or (n, components), C-contiguous",
                  "numpy.ascontiguousarray(x, dtype=float)");
   const auto values = py::reinterpret_borrow<py::array_t<double>>(given);
-  check_placed(report, size);
+  expect_report(report, size);
   const auto rows = static_cast<std::size_t>(values.shape(0));
   const std::size_t columns = is_flat ? 1 : static_cast<std::size_t>(values.shape(1));
   std::vector<py::ssize_t> shape = {static_cast<py::ssize_t>(size)};

@@ -34,12 +34,14 @@ void bind_parts(EnvironmentClass& c) {
   c.def_property_readonly(
       "complex",
       [](const EnvironmentHandle& h) {
+        const Use use(*h.usage, "the environment");
         return std::make_shared<ComplexHandle>(ComplexHandle{h.owner, &h.environment->complex(), nullptr, h.usage});
       },
       "The cell complex. It can be read; edit() changes it.");
   c.def_property_readonly(
       "map",
       [](const EnvironmentHandle& h) {
+        const Use use(*h.usage, "the environment");
         auto map = std::make_shared<MapHandle>();
         map->owner = h.owner;
         map->map = &h.environment->map();
@@ -55,7 +57,11 @@ void bind_parts(EnvironmentClass& c) {
       },
       "Positions of the mesh's points: float64 (n, 3), a read-only copy.");
   c.def_property(
-      "threads", [](const EnvironmentHandle& h) { return h.environment->threads(); },
+      "threads",
+      [](const EnvironmentHandle& h) {
+        const Use use(*h.usage, "the environment");
+        return h.environment->threads();
+      },
       [](const EnvironmentHandle& h, Threads threads) {
         const Use use(*h.usage, "the environment");
         Environment& e = h.changeable("set the threads of the simulation");
@@ -65,7 +71,11 @@ void bind_parts(EnvironmentClass& c) {
       "The number of threads that calls use; 0: all of the machine. Results never depend on it. Setting it raises "
       "Error, nothing changed, as check_threads().");
   c.def_property_readonly(
-      "edit_count", [](const EnvironmentHandle& h) { return h.environment->edit_count(); },
+      "edit_count",
+      [](const EnvironmentHandle& h) {
+        const Use use(*h.usage, "the environment");
+        return h.environment->edit_count();
+      },
       "The number of edits so far.");
   c.def_property_readonly(
       "last_edit",

@@ -3,10 +3,9 @@
 // next_points() gives the memory of the next positions without a copy. The memory moves at an edit, so an edit is
 // refused while an array of a block exists. Between the start of a block and its end no particles may be advanced,
 // because they may need what the block writes over.
-#include <thread>
-
 #include "bind.hpp"
 #include "dartcast/validity.hpp"
+#include "support/edits.hpp"
 #include "support/environments.hpp"
 #include "support/rows.hpp"
 
@@ -84,17 +83,7 @@ double move_until_inverted(EnvironmentHandle& h, const py::object& given, double
   return way;
 }
 
-// Another thread may still use the edit: waits until it does not. Called with Python's lock.
-void close(EditHandle& edit) {
-  while (!edit.usage->begin()) {
-    const py::gil_scoped_release release;
-    std::this_thread::yield();
-  }
-  edit.edit = nullptr;
-  edit.usage->end();
-}
-
-ComplexEditReport edit(EnvironmentHandle& h, const py::function& make) {
+ComplexEditReport edit(EnvironmentHandle& h, const py::object& make) {
   const Use use(*h.usage, "the environment");
   h.expect_no_writing("edit");
   if (!h.written.expired())
@@ -102,19 +91,9 @@ ComplexEditReport edit(EnvironmentHandle& h, const py::function& make) {
         "edit: an array of a next_points() block still exists, and an edit may move its memory: "
         "delete it first (del x), and all views of it");
   Environment& e = h.changeable("let its events edit it");
+  const auto callback = edit_callback(make);
   const py::gil_scoped_release release;
-  return e.edit([&](ComplexEdit& open) {
-    const py::gil_scoped_acquire lock;
-    const auto handle = std::make_shared<EditHandle>();
-    handle->edit = &open;
-    try {
-      make(handle);
-    } catch (...) {
-      close(*handle);
-      throw;
-    }
-    close(*handle);
-  });
+  return e.edit(callback);
 }
 
 UpdateReport update_after_edit(const EnvironmentHandle& h, ParticlesHandle& p, OrphanPolicy orphaned) {

@@ -5,9 +5,6 @@
 #include "dartcast/run.hpp"
 
 namespace py = pybind11;
-namespace dartcast::python {
-void bind_standin(py::module_&);
-}
 
 PYBIND11_MODULE(_core, m) {
   using namespace dartcast::python;

@@ -3,7 +3,6 @@
 #include "dartcast/simulation.hpp"
 
 #include <string>
-#include <thread>
 #include <utility>
 
 #include "bind.hpp"
@@ -11,6 +10,7 @@
 #include "dartcast/events.hpp"
 #include "dartcast/statistics.hpp"
 #include "simulation_handle.hpp"
+#include "support/edits.hpp"
 #include "support/motions.hpp"
 #include "support/rows.hpp"
 
@@ -58,31 +58,9 @@ auto compute(const Handle& self, F&& f) {
   return f(self.get());
 }
 
-// Ends an edit that a function got; another thread may still use it.
-void close(EditHandle& handle) {
-  const py::gil_scoped_release release;
-  while (!handle.usage->begin()) std::this_thread::yield();
-  handle.edit = nullptr;
-  handle.usage->end();
-}
-
 SimulationEdit edit(Handle& self, const py::object& make, OrphanPolicy orphaned) {
-  if (PyCallable_Check(make.ptr()) == 0) throw py::type_error("make: expected a function of a ComplexEdit");
-  return compute(self, [&](Simulation& s) {
-    const auto call = [&make](ComplexEdit& open) {
-      const py::gil_scoped_acquire acquire;
-      const auto handle = std::make_shared<EditHandle>();
-      handle->edit = &open;
-      try {
-        make(handle);
-      } catch (...) {
-        close(*handle);
-        throw;
-      }
-      close(*handle);
-    };
-    return s.edit(call, orphaned);
-  });
+  const auto callback = edit_callback(make);
+  return compute(self, [&](Simulation& s) { return s.edit(callback, orphaned); });
 }
 
 std::vector<double> optional_numbers(const py::object& given, const char* name) {
@@ -165,29 +143,32 @@ void bind_motion(Class& simulation) {
           "set_field",
           [](Handle& self, const FieldHandle& field) {
             const Use use = self.use();
-            self.get().set_field(field_for(self, field));
+            VectorField own = field_for(self, field);
+            const py::gil_scoped_release release;
+            self.get().set_field(std::move(own));
           },
           py::arg("field"), "The velocities of the medium.")
       .def(
           "set_force",
           [](Handle& self, const FieldHandle& force) {
             const Use use = self.use();
-            self.get().set_force(field_for(self, force));
+            VectorField own = field_for(self, force);
+            const py::gil_scoped_release release;
+            self.get().set_force(std::move(own));
           },
           py::arg("force"), doc("Simulation::set_force"))
       .def(
           "set_deformation",
           [](Handle& self, const DeformationHandle& deformation) {
-            const Use use = self.use();
+            // The thread that reads frames for the former one may wait for Python's lock.
             const Use other(deformation.usage, "the deformation");
-            self.get().set_deformation(deformation.deformation);
+            compute(self, [&](Simulation& s) { s.set_deformation(deformation.deformation); });
           },
           py::arg("deformation"), doc("Simulation::set_deformation"))
       .def(
           "set_statistics",
           [](Handle& self, const StatisticsOptions& options) {
-            const Use use = self.use();
-            self.get().set_statistics(options);
+            compute(self, [own = options](Simulation& s) { s.set_statistics(own); });
           },
           py::arg("options"), doc("Simulation::set_statistics"))
       .def(
@@ -221,29 +202,26 @@ void bind_changes(Class& simulation) {
       .def(
           "set_events",
           [](Handle& self, const std::vector<Event>& events) {
-            const Use use = self.use();
-            self.get().set_events(events);
+            compute(self, [own = events](Simulation& s) { s.set_events(own); });
           },
           py::arg("events"), doc("Simulation::set_events"))
       .def(
           "set_remeshing",
           [](Handle& self, const RemeshScene& remeshing) {
-            const Use use = self.use();
-            self.get().set_remeshing(remeshing);
+            compute(self, [own = remeshing](Simulation& s) { s.set_remeshing(own); });
           },
           py::arg("remeshing"), doc("Simulation::set_remeshing"))
       .def(
           "set_adaptive_subdivision",
           [](Handle& self, const AdaptiveSubdivisionScene& subdivision) {
-            const Use use = self.use();
-            self.get().set_adaptive_subdivision(subdivision);
+            compute(self, [own = subdivision](Simulation& s) { s.set_adaptive_subdivision(own); });
           },
           py::arg("subdivision"), doc("Simulation::set_adaptive_subdivision"))
       .def(
           "set_after_edit",
           [](Handle& self, const py::object& after_edit) {
-            const Use use = self.use();
-            self.get().set_after_edit(after_edit_callback(after_edit));
+            Simulation::AfterEdit callback = after_edit_callback(after_edit);
+            compute(self, [&](Simulation& s) { s.set_after_edit(std::move(callback)); });
           },
           py::arg("after_edit"),
           (std::string(doc("Simulation::set_after_edit")) +

@@ -41,7 +41,11 @@ SimulationOwner::SimulationOwner(std::shared_ptr<EnvironmentHandle> environment,
     : callers_(std::move(environment)) {
   const Use use(*callers_->usage, "the Environment");
   Environment& own = callers_->changeable("make an environment for each simulation");
-  simulation_ = std::make_unique<Simulation>(own, options);
+  const SimulationOptions own_options = options;
+  {
+    const py::gil_scoped_release release;
+    simulation_ = std::make_unique<Simulation>(own, own_options);
+  }
   callers_->borrowed = true;
 }
 

@@ -24,7 +24,7 @@ struct ContactRow {
   std::uint32_t particle;
   std::uint8_t kind;
   std::uint32_t dart_cell;
-  std::uint16_t dart_number;
+  std::uint16_t dart;
   std::uint16_t patch;
   double time_of_impact;
   PlaceRow place;
@@ -58,7 +58,7 @@ ContactRow row_of(const SurfaceContact& c) {
   row.particle = c.particle;
   row.kind = static_cast<std::uint8_t>(c.kind);
   row.dart_cell = c.dart.cell.value;
-  row.dart_number = c.dart.number;
+  row.dart = c.dart.number;
   row.patch = c.patch.value;
   row.time_of_impact = c.time_of_impact;
   row.place = python::row_of(c.place);
@@ -223,15 +223,15 @@ void bind_records(py::module_& m) {
       .def_property_readonly(
           "contacts", [](const ReportArrays& r) { return r.contacts; },
           "By particle, then by time: a structured array with the fields of SurfaceContact; its dart is dart_cell and "
-          "dart_number.");
+          "dart.");
 }
 
 }  // namespace
 
 void bind_surface_steps(py::module_& m) {
   PYBIND11_NUMPY_DTYPE(StepRow, end, contacts, crossings, length, direction, remaining);
-  PYBIND11_NUMPY_DTYPE(ContactRow, particle, kind, dart_cell, dart_number, patch, time_of_impact, place, point, normal,
-                       sides, displacement, unused);
+  PYBIND11_NUMPY_DTYPE(ContactRow, particle, kind, dart_cell, dart, patch, time_of_impact, place, point, normal, sides,
+                       displacement, unused);
   bind_records(m);
   bind_contacts(m);
   const std::string answers =

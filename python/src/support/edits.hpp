@@ -56,6 +56,10 @@ auto change(const EditHandle& handle, const Function& f) {
   return f(edit);
 }
 
+/// The function for an edit of an environment or a simulation: make(edit) is called with Python's lock. The edit ends
+/// with it, and no other thread uses it then. `make` outlives the function.
+std::function<void(ComplexEdit&)> edit_callback(const pybind11::object& make);
+
 /// The map as the edit has changed it so far. It can be read while the edit is open.
 std::shared_ptr<MapHandle> map_of(const std::shared_ptr<TransactionHandle>& transaction);
 std::shared_ptr<MapHandle> map_of(const std::shared_ptr<EditHandle>& edit);

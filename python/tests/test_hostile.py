@@ -1,0 +1,57 @@
+"""Calls that once crashed or hung: each runs in a process of its own, with a limit of time."""
+from __future__ import annotations
+
+import subprocess
+import sys
+import textwrap
+
+import pytest
+
+CASES = {
+    # Lists by patch without names, and an empty one.
+    "summaries of any content": """
+        import dartcast as d
+        d.summary_json(d.Summary()); d.summary_text(d.Summary()); d.histogram_text(d.Summary())
+        wrong = d.Summary(totals=d.SimulationTotals(contacts_by_patch=[0, 1, 2]))
+        planes = d.Summary(statistics=d.StatisticsSummary(planes=[d.PlaneTotals()]))
+        for call in (d.summary_json, d.summary_text):
+            for summary in (wrong, planes):
+                try: call(summary)
+                except d.InvalidArgument: continue
+                raise AssertionError("not refused")
+    """,
+    # An environment that a function of after_edit keeps is read after the simulation has ended.
+    "an environment kept from after_edit": """
+        import gc
+        import dartcast as d
+        environment = d.Environment(d.generate_bar()); simulation = d.Simulation(environment); kept = []
+        simulation.set_after_edit(lambda e: kept.append((e, e.map, e.complex)))
+        simulation.edit(lambda e: e.topology.set_free(int(e.map.cells()[0]), True))
+        simulation.set_after_edit(None); del simulation, environment; gc.collect()
+        e, map_, complex_ = kept[0]
+        for call in (lambda: e.threads, lambda: e.edit_count, lambda: e.last_edit, lambda: e.map, lambda: e.complex,
+                     lambda: e.positions, lambda: e.locate([1.0, 1.0, 1.0]), lambda: e.validity(),
+                     lambda: map_.cell_count(), lambda: complex_.bytes()):
+            try: call()
+            except d.InUse: continue
+            raise AssertionError("not refused")
+    """,
+    # The former deformation's thread waits for Python's lock while the call waits for the thread.
+    "a deformation with a reader is replaced": """
+        import time
+        import dartcast as d, numpy as np
+        environment = d.Environment(d.generate_bar()); rest = np.array(environment.positions)
+        def reader(k): time.sleep(0.02); return rest + 1e-3 * k
+        def make(): return d.Deformation([d.DeformationStep(kind="frames", times=np.arange(30.0), reader=reader)], rest)
+        simulation = d.Simulation(environment, d.SimulationOptions(dt=0.5))
+        for _ in range(3): simulation.set_deformation(make()); simulation.step()
+        del simulation
+    """,
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_it_ends_well(name: str) -> None:
+    done = subprocess.run([sys.executable, "-c", textwrap.dedent(CASES[name])], capture_output=True, text=True,
+                          check=False, timeout=60)
+    assert done.returncode == 0, done.stderr
