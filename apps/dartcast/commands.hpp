@@ -9,6 +9,7 @@ namespace dartcast::app {
 inline constexpr int done = 0;
 inline constexpr int failed = 1;
 inline constexpr int wrong_usage = 2;
+inline constexpr int interrupted = 128;  ///< and the number of the signal: 130 after Ctrl-C
 
 void add_run(CLI::App& app, int& status);
 void add_check(CLI::App& app, int& status);

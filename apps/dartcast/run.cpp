@@ -2,17 +2,18 @@
 #include "dartcast/run.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <chrono>
+#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "commands.hpp"
 #include "dartcast/scene_file.hpp"
+#include "interruption.hpp"
 #include "limits.hpp"
 #include "max_memory.hpp"
+#include "terminal.hpp"
 
 namespace dartcast::app {
 
@@ -33,23 +34,27 @@ struct RunArguments {
   std::uint64_t max_memory = 0;
 };
 
-// A line on the terminal that is written over, a few times a second.
-class ProgressBar {
- public:
-  void show(std::uint64_t step, std::uint64_t all) {
-    const auto now = std::chrono::steady_clock::now();
-    if (step < all && now - shown_ < std::chrono::milliseconds(200)) return;
-    shown_ = now;
-    constexpr std::uint64_t width = 40;
-    const std::uint64_t filled = step * width / all;
-    fmt::print(stderr, "\r[{:#<{}}{:.<{}}] {} of {} steps", "", filled, "", width - filled, step, all);
-    if (step == all) fmt::print(stderr, "\n");
-    std::fflush(stderr);
-  }
+// A text as one word of a shell.
+std::string quoted(const std::string& text) {
+  const bool is_plain = !text.empty() && text.find_first_not_of(
+                                             "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                             "0123456789_./-+=:,@%") == std::string::npos;
+  if (is_plain) return text;
+  std::string word = "'";
+  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + "'";
+}
 
- private:
-  std::chrono::steady_clock::time_point shown_{};
-};
+// The command that goes on where a run was interrupted, as a shell takes it.
+std::string resume_command(const RunArguments& a, const std::string& folder) {
+  std::string line = fmt::format("dartcast run {} -o {} --resume", quoted(a.scene), quoted(folder));
+  if (a.threads > 0) line += fmt::format(" -j {}", a.threads);
+  if (a.steps) line += fmt::format(" --steps {}", *a.steps);
+  if (a.seed) line += fmt::format(" --seed {}", *a.seed);
+  if (a.audit) line += " --audit";
+  if (a.skip_bad_cells) line += " --skip-bad-cells";
+  return line;
+}
 
 void report(const RunArguments& a, const Summary& summary, const std::string& folder) {
   if (a.json) {
@@ -57,8 +62,20 @@ void report(const RunArguments& a, const Summary& summary, const std::string& fo
     return;
   }
   if (a.quiet) return;
-  fmt::print("{}", a.verbose ? summary_text(summary) + histogram_text(summary) : summary_text(summary));
-  fmt::print("output: {}\n", folder);
+  std::string text = summary_text(summary) + fmt::format("{:<13}{}\n", "output", folder);
+  if (has_colours(stdout)) text = with_bold_subjects(text);
+  fmt::print("{}", a.verbose ? text + histogram_text(summary) : text);
+}
+
+int status_of(const RunArguments& a, const Summary& summary, const std::string& folder) {
+  if (summary.audit && summary.audit->failed > 0) {
+    fmt::print(stderr, "dartcast: the audit failed {} times; the first: {}\n", summary.audit->failed,
+               summary.audit->first);
+    return failed;
+  }
+  if (!summary.cancelled) return done;
+  fmt::print(stderr, "dartcast: interrupted after step {}; to go on: {}\n", summary.steps, resume_command(a, folder));
+  return interrupted + Interruption::signal();
 }
 
 int run(const RunArguments& a) {
@@ -72,21 +89,16 @@ int run(const RunArguments& a) {
   options.resume = a.resume;
   options.skip_bad_cells = a.skip_bad_cells;
   options.max_memory = a.max_memory;
-  ProgressBar bar;
-  Progress progress;
-  if (!a.quiet && !a.json && isatty(STDERR_FILENO) != 0)
-    progress = [&](std::uint64_t step, std::uint64_t all) {
-      bar.show(step, all);
-      return true;
-    };
-  const Summary summary = run_scene(scene, options, progress);
+  const bool shows_progress = !a.quiet && !a.json && is_terminal(stderr);
+  ProgressLine line;
+  const Interruption interruption;
+  const Summary summary = run_scene(scene, options, [&](std::uint64_t step, std::uint64_t all) {
+    if (shows_progress) line.show(step, all);
+    return Interruption::signal() == 0;
+  });
+  line.clear();
   report(a, summary, options.folder.string());
-  if (summary.audit && summary.audit->failed > 0) {
-    fmt::print(stderr, "dartcast: the audit failed {} times; the first: {}\n", summary.audit->failed,
-               summary.audit->first);
-    return failed;
-  }
-  return done;
+  return status_of(a, summary, options.folder.string());
 }
 
 }  // namespace

@@ -198,7 +198,7 @@ TEST_F(StatisticsRun, APlugFlowHasTheFluxOfItsInlet) {
   EXPECT_EQ(s.at("hits").at("ended"), 0);
   const auto crossings = rows_of(one / "crossings.csv");
   EXPECT_EQ(crossings.size(), 1 + forward + backward);
-  EXPECT_NE(summary_text(summary).find("plane middle: "), std::string::npos);
+  EXPECT_NE(summary_text(summary).find("planes       middle: "), std::string::npos);
   EXPECT_NE(summary_text(summary).find("escaped at xmax: "), std::string::npos);
   for (const char* name : {"walls.pvd", "walls_000000.vtp", "walls_000655.vtp", "pathlines.vtp", "pathlines.bin"})
     EXPECT_TRUE(fs::exists(one / name)) << name;

@@ -1,0 +1,40 @@
+// What a person sees on a terminal: a line of progress, and subjects in bold. Nothing of it goes to a file or a pipe.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <string>
+
+namespace dartcast::app {
+
+bool is_terminal(std::FILE* file);
+
+/// Whether to print colours: on a terminal that has them, unless the environment variable NO_COLOR is set and not empty
+/// (no-color.org).
+bool has_colours(std::FILE* file);
+
+/// A summary with the subjects of its lines, in the first column, in bold.
+std::string with_bold_subjects(const std::string& table);
+
+/// A line on stderr that is written over, a few times a second: how far a run has come, its rate, the time left.
+class ProgressLine {
+ public:
+  void show(std::uint64_t step, std::uint64_t all);
+  /// Removes the line, so that other text takes its place.
+  void clear();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_;
+  Clock::time_point shown_;
+  std::uint64_t first_ = 0;
+  bool is_shown_ = false;
+};
+
+/// The text of a line of progress, at most `width` characters, with a bar where there is room. `step` of `all` steps are
+/// done; `measured` of them took `seconds`.
+std::string progress_text(std::uint64_t step, std::uint64_t all, std::uint64_t measured, double seconds,
+                          std::size_t width);
+
+}  // namespace dartcast::app

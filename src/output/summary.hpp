@@ -1,0 +1,24 @@
+// What both texts of a summary need.
+#pragma once
+
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+#include "dartcast/run.hpp"
+
+namespace dartcast {
+
+/// A summary may come from anywhere. Throws InvalidArgument where there are values for more patches than patch_names
+/// has, or for more planes than options.
+void check_summary(const Summary& summary);
+
+inline double ratio(std::uint64_t a, std::uint64_t b) { return static_cast<double>(a) / static_cast<double>(b); }
+inline double ns_per_particle_step(const Summary& s) {
+  return s.totals.seconds_detect * 1e9 / static_cast<double>(s.totals.counters.particle_steps);
+}
+inline std::uint64_t sum(const std::vector<std::uint64_t>& values) {
+  return std::accumulate(values.begin(), values.end(), std::uint64_t{0});
+}
+
+}  // namespace dartcast
