@@ -1,4 +1,4 @@
-// What a person sees on a terminal: a line of progress, and subjects in bold. Nothing of it goes to a file or a pipe.
+// A run on a terminal: a line of progress, and subjects in bold. Nothing of it goes to a file or a pipe.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// What both texts of a summary need.
+// The check and the sums that both texts of a summary need.
 #pragma once
 
 #include <cstdint>
