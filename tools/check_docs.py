@@ -5,7 +5,7 @@ import pathlib
 import re
 import sys
 
-SKIPPED_FOLDERS = {".git", "build", "__pycache__", ".cache"}
+SKIPPED_FOLDERS = {".git", "build", "__pycache__", ".cache", ".mypy_cache", ".pytest_cache", "node_modules"}
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s#]+)(?:#[^)\s]*)?\)")
 CODE = re.compile(r"```.*?```|`[^`\n]+`", re.DOTALL)
 DEV_COMMAND = re.compile(r"\./dev ([a-z]+)")
