@@ -2,13 +2,19 @@
 #include "support/records.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace py = pybind11;
 
 namespace dartcast::python {
 
-std::string representation(const py::object& record, const std::vector<std::string>& members) {
-  std::string text = py::type::of(record).attr("__name__").cast<std::string>() + "(";
+namespace {
+
+using Members = std::vector<std::string>;
+
+// "BoxOptions(cells=[1, 1, 1], ...)".
+std::string representation(const py::object& record, const std::string& name, const Members& members) {
+  std::string text = name + "(";
   for (std::size_t i = 0; i < members.size(); ++i) {
     py::object value = record.attr(members[i].c_str());
     if (py::isinstance<py::array>(value) && py::len(value) <= 4) value = value.attr("tolist")();
@@ -17,40 +23,80 @@ std::string representation(const py::object& record, const std::vector<std::stri
   return text + ")";
 }
 
-py::tuple member_values(const py::object& record, const std::vector<std::string>& members) {
+py::tuple values_of(const py::object& record, const Members& members) {
   py::tuple values(members.size());
   for (std::size_t i = 0; i < members.size(); ++i) values[i] = record.attr(members[i].c_str());
   return values;
 }
 
-bool equal_members(const py::object& a, const py::object& b, const std::vector<std::string>& members) {
-  const py::object equal = py::module_::import("numpy").attr("array_equal");
+// Whether all members are equal; arrays entry by entry.
+bool equal(const py::object& a, const py::object& b, const Members& members) {
+  const py::object equal_arrays = py::module_::import("numpy").attr("array_equal");
   return std::all_of(members.begin(), members.end(), [&](const std::string& member) {
     const py::object x = a.attr(member.c_str());
     const py::object y = b.attr(member.c_str());
-    return py::isinstance<py::array>(x) ? equal(x, y).cast<bool>() : x.equal(y);
+    return py::isinstance<py::array>(x) ? equal_arrays(x, y).cast<bool>() : x.equal(y);
   });
 }
 
-py::dict named_values(const char* record, const std::vector<std::string>& members, const py::args& values,
-                      const py::kwargs& named) {
-  if (values.size() > members.size()) {
-    throw py::type_error(std::string(record) + ": " + std::to_string(values.size()) + " values, but it has " +
-                         std::to_string(members.size()) + " members");
+void expect_record(const py::object& self, py::handle record) {
+  if (!py::isinstance(self, record))
+    throw py::type_error("expected " + record.attr("__name__").cast<std::string>() + ", got " +
+                         py::type::of(self).attr("__name__").cast<std::string>());
+}
+
+template <class F>
+void define(py::handle record, const char* name, F&& f) {
+  record.attr(name) = py::cpp_function(std::forward<F>(f), py::name(name), py::is_method(record));
+}
+
+}  // namespace
+
+void RecordMembers::add(const char* name, const Getter& get, const Setter& set, const char* doc) {
+  members_.emplace_back(name);
+  const auto checked_get = [get, record = record_](const py::object& self) {
+    expect_record(self, record);
+    return get(self);
+  };
+  const auto checked_set = [set, record = record_](const py::object& self, const py::object& value) {
+    expect_record(self, record);
+    set(self, value);
+  };
+  const py::object property = py::module_::import("builtins").attr("property");
+  record_.attr(name) = property(py::cpp_function(checked_get, py::is_method(record_)),
+                                py::cpp_function(checked_set, py::is_method(record_)), py::none(), doc);
+}
+
+void RecordMembers::finish() const {
+  define(record_, "__repr__",
+         [name = name_, members = members_](const py::object& self) { return representation(self, name, members); });
+  define(record_, "__eq__", [record = record_, members = members_](const py::object& self, const py::object& other) {
+    return py::isinstance(other, record) && equal(self, other, members);
+  });
+  // Copies and pickles call the constructor with all values.
+  define(record_, "__reduce__", [record = record_, members = members_](const py::object& self) {
+    return py::make_tuple(record, values_of(self, members));
+  });
+  record_.attr("__hash__") = py::none();
+}
+
+void RecordMembers::set(const py::object& self, const py::args& values, const py::kwargs& named) const {
+  if (values.size() > members_.size()) {
+    throw py::type_error(name_ + ": " + std::to_string(values.size()) + " values, but it has " +
+                         std::to_string(members_.size()) + " members");
   }
-  py::dict all;
-  for (std::size_t i = 0; i < values.size(); ++i) all[members[i].c_str()] = values[i];
+  for (std::size_t i = 0; i < values.size(); ++i) py::setattr(self, members_[i].c_str(), values[i]);
   for (const auto& [key, value] : named) {
-    const auto name = key.cast<std::string>();
-    if (std::find(members.begin(), members.end(), name) == members.end()) {
+    const auto member = std::find(members_.begin(), members_.end(), key.cast<std::string>());
+    if (member == members_.end()) {
       std::string known;
-      for (const std::string& m : members) known += (known.empty() ? "" : ", ") + m;
-      throw py::type_error(std::string(record) + " has no member '" + name + "': it has " + known);
+      for (const std::string& m : members_) known += (known.empty() ? "" : ", ") + m;
+      throw py::type_error(name_ + " has no member '" + key.cast<std::string>() + "': it has " + known);
     }
-    if (all.contains(key)) throw py::type_error(std::string(record) + ": '" + name + "' is given twice");
-    all[key] = value;
+    if (static_cast<std::size_t>(member - members_.begin()) < values.size())
+      throw py::type_error(name_ + ": '" + *member + "' is given twice");
+    py::setattr(self, key, value);
   }
-  return all;
 }
 
 py::object without_writing(py::object value) {

@@ -15,47 +15,69 @@
 
 namespace dartcast::python {
 
-/// "BoxOptions(cells=[1, 1, 1], ...)".
-std::string representation(const pybind11::object& record, const std::vector<std::string>& members);
-/// The values of all members.
-pybind11::tuple member_values(const pybind11::object& record, const std::vector<std::string>& members);
-/// Whether all members are equal; arrays entry by entry.
-bool equal_members(const pybind11::object& a, const pybind11::object& b, const std::vector<std::string>& members);
-/// The named values of a call: positional ones in the order of the members, then keywords. Throws TypeError for a name
-/// that is none of a member, for too many values, and for a value given twice.
-pybind11::dict named_values(const char* record, const std::vector<std::string>& members, const pybind11::args& values,
-                            const pybind11::kwargs& named);
 /// Makes an array read-only; leaves anything else as it is.
 pybind11::object without_writing(pybind11::object value);
 /// Throws TypeError: the member, what was expected, what came.
 [[noreturn]] void refuse_member(const std::string& member, const std::string& expected, pybind11::handle value);
+
+/// The part of a record under construction that does not depend on its type. It is compiled once: of each member, only
+/// its conversions are compiled for its type.
+class RecordMembers {
+ public:
+  using Getter = std::function<pybind11::object(const pybind11::object& self)>;
+  using Setter = std::function<void(const pybind11::object& self, const pybind11::object& value)>;
+
+  /// `record`: its class. `name`: in Python.
+  RecordMembers(const pybind11::object& record, const char* name) : record_(record), name_(name) {}
+
+  /// "BoxOptions.cells".
+  [[nodiscard]] std::string full_name(const char* member) const { return name_ + "." + member; }
+  void add(const char* name, const Getter& get, const Setter& set, const char* doc);
+  /// Representation, comparison, copies and pickles. To be called when all members are there.
+  void finish() const;
+  /// Sets what a call of the constructor names: positional values in the order of the members, then keywords. Throws
+  /// TypeError for a name that is none of a member, for too many values, and for a value given twice.
+  void set(const pybind11::object& self, const pybind11::args& values, const pybind11::kwargs& named) const;
+
+ private:
+  pybind11::handle record_;  // the module keeps it
+  std::string name_;
+  std::vector<std::string> members_;
+};
+
+/// A member in Python. A member that is an array is given out as a read-only copy.
+template <class M>
+pybind11::object member_value(const M& member) {
+  return without_writing(pybind11::cast(member));
+}
+template <class M>
+void set_member(M& member, const pybind11::object& value, const std::string& full_name) {
+  pybind11::detail::make_caster<M> caster;
+  if (!caster.load(value, true)) {
+    constexpr auto expected = pybind11::detail::make_caster<M>::name;
+    refuse_member(full_name, expected.text, value);
+  }
+  member = pybind11::detail::cast_op<M&>(caster);
+}
 
 /// A record under construction. `name`: in Python; `cpp`: in C++, where it differs.
 template <class T>
 class Record {
  public:
   Record(pybind11::handle scope, const char* name, const char* cpp = nullptr)
-      : name_(name), cpp_(cpp != nullptr ? cpp : name), class_(scope, name, doc(cpp_)) {}
+      : cpp_(cpp != nullptr ? cpp : name),
+        class_(scope, name, doc(cpp_)),
+        members_(std::make_shared<RecordMembers>(class_, name)) {}
 
-  /// A member that can be read and set. A member that is an array is given out as a read-only copy. `cpp_member`: its
-  /// name in C++, where it differs.
+  /// A member that can be read and set. `cpp_member`: its name in C++, where it differs.
   template <class M>
   Record& field(const char* name, M T::*member, const char* cpp_member = nullptr) {
-    members_->push_back(name);
-    const std::string full = name_ + "." + name;
-    const auto set = [member, full](T& t, pybind11::handle value) {
-      pybind11::detail::make_caster<M> caster;
-      if (!caster.load(value, true)) {
-        constexpr auto expected = pybind11::detail::make_caster<M>::name;
-        refuse_member(full, expected.text, value);
-      }
-      t.*member = pybind11::detail::cast_op<M&>(caster);
+    const auto get = [member](const pybind11::object& self) { return member_value(self.cast<const T&>().*member); };
+    const auto set = [member, full = members_->full_name(name)](const pybind11::object& self,
+                                                                const pybind11::object& value) {
+      set_member(self.cast<T&>().*member, value, full);
     };
-    setters_->push_back(set);
-    class_.def_property(
-        name, [member](const T& t) { return without_writing(pybind11::cast(t.*member)); },
-        [set](T& t, const pybind11::object& value) { set(t, value); },
-        doc(cpp_ + "::" + (cpp_member != nullptr ? cpp_member : name)));
+    members_->add(name, get, set, doc(cpp_ + "::" + (cpp_member != nullptr ? cpp_member : name)));
     return *this;
   }
   /// Further definitions: methods, properties.
@@ -72,38 +94,21 @@ class Record {
 
   /// The constructor, with values by position or by name, and all else that needs the list of members. To be called
   /// last.
-  pybind11::class_<T>& finish() {
+  pybind11::class_<T> finish() {
     namespace py = pybind11;
-    const auto make = [name = name_, members = members_, setters = setters_](const py::args& values,
-                                                                             const py::kwargs& named) {
-      T made{};
-      const py::dict all = named_values(name.c_str(), *members, values, named);
-      for (std::size_t i = 0; i < members->size(); ++i) {
-        const char* member = (*members)[i].c_str();
-        if (all.contains(member)) (*setters)[i](made, all[member]);
-      }
+    class_.def(py::init([members = members_](const py::args& values, const py::kwargs& named) {
+      auto made = std::make_unique<T>();
+      members->set(py::cast(made.get(), py::return_value_policy::reference), values, named);
       return made;
-    };
-    class_.def(py::init(make));
-    class_.def("__repr__", [members = members_](const py::object& self) { return representation(self, *members); });
-    class_.def("__eq__", [members = members_](const py::object& self, const py::object& other) {
-      return py::isinstance<T>(other) && equal_members(self, other, *members);
-    });
-    class_.def("__copy__", [](const T& t) { return T(t); });
-    class_.def("__deepcopy__", [](const T& t, const py::dict& /*memo*/) { return T(t); });
-    class_.def(py::pickle([members = members_](const py::object& self) { return member_values(self, *members); },
-                          [make](const py::tuple& values) { return make(py::args(values), py::kwargs()); }));
+    }));
+    members_->finish();
     return class_;
   }
 
  private:
-  using Setter = std::function<void(T&, pybind11::handle)>;
-
-  std::string name_;
   std::string cpp_;
   pybind11::class_<T> class_;
-  std::shared_ptr<std::vector<std::string>> members_ = std::make_shared<std::vector<std::string>>();
-  std::shared_ptr<std::vector<Setter>> setters_ = std::make_shared<std::vector<Setter>>();
+  std::shared_ptr<RecordMembers> members_;
 };
 
 }  // namespace dartcast::python
