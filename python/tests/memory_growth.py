@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 #: malloc's caches for each thread count as memory in use. This turns them off; it must stand when Python starts.
 ENVIRONMENT = {"GLIBC_TUNABLES": "glibc.malloc.tcache_count=0"}
-WARM_UP = 30
+WARM_UP = 20
 ROUNDS = 3
 
 
@@ -31,8 +31,8 @@ class Memory(NamedTuple):
     objects: int  # small ones of Python
 
 
-#: What any number of calls may leave: tables of Python and NumPy that become larger once. A leak in each of 300 calls
-#: leaves at least 9600 bytes or 300 objects; a list that keeps something of each call has 2400 bytes.
+#: What any number of calls may leave: tables of Python and NumPy that become larger once. A leak in each of 200 calls
+#: leaves at least 6400 bytes or 200 objects; a list that keeps a pointer of each has 1600 bytes.
 BOUND = Memory(1024, 100)
 
 
@@ -83,19 +83,23 @@ def main() -> int:
     word = sys.argv[2] if len(sys.argv) > 2 else ""
     from calls import all_calls
 
-    table = {name: call for name, call in all_calls().items() if word in name}
-    for call in table.values():  # fills caches that many calls share, such as NumPy's small blocks
+    table: dict[Callable[[], object], str] = {}
+    for name, call in all_calls().items():
+        if word in name:
+            table[call] = f"{table[call]}, {name}" if call in table else name
+    for call in table:  # fills caches that many calls share, such as NumPy's small blocks
         for _ in range(WARM_UP):
             call()
     gc.collect()
     gc.freeze()  # the objects that exist by now need no more searching
     failed, start = 0, time.perf_counter()
-    for name, call in table.items():
+    for call, name in table.items():
         grown = growth(call, calls)
         if any(grown):
             failed += 1
             print(f"{name}: memory grows by {grown.bytes} bytes and {grown.objects} objects", flush=True)
-    print(f"{len(table)} kinds of calls, {calls} of each, {time.perf_counter() - start:.0f} s: memory grows in {failed}")
+    seconds = time.perf_counter() - start
+    print(f"{len(table)} kinds of calls, {calls} of each, {seconds:.0f} s: memory grows in {failed}")
     return 1 if failed else 0
 
 

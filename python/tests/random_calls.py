@@ -14,6 +14,7 @@ import numpy as np
 import dartcast as dc
 from random_solids import WORLDS
 
+MAX_CELLS = 1500  # an environment with more cells is made anew
 RESPONSES = [None, dc.Reflect(0.5, friction=0.1), dc.Slide(), dc.Stick(), dc.Absorb(),
              {None: dc.Reflect(0.9), "xmin": dc.Slide(), "xmax": dc.Escape()}]
 
@@ -21,15 +22,18 @@ RESPONSES = [None, dc.Reflect(0.5, friction=0.1), dc.Slide(), dc.Stick(), dc.Abs
 class Calls:
     """The environment, its sets of particles, and one method for each kind of call."""
 
-    KINDS = {"add": 3, "remove": 2, "reorder": 1, "select": 2, "advance_some": 4, "move": 1, "edit": 1, "look": 1, "refuse": 2}
+    KINDS = {"add": 3, "remove": 2, "reorder": 1, "select": 2, "advance_some": 4, "move": 1, "edit": 1, "look": 1,
+             "refuse": 2}
 
-    def __init__(self, random: np.random.Generator, seed: int) -> None:
-        self.random = random
-        box = dc.BoxOptions(cells=[4, 4, 4], size=[4.0, 4.0, 4.0], mixed=True, blocked_share=0.1, jitter=0.2, seed=seed)
+    def __init__(self, random: np.random.Generator) -> None:
+        self.random, self.refused = random, 0
+        self.make()
+
+    def make(self) -> None:
+        box = dc.BoxOptions(cells=[4, 4, 4], size=[4.0, 4.0, 4.0], mixed=True, blocked_share=0.1, jitter=0.2,
+                            seed=int(self.random.integers(1000)))
         self.environment = dc.Environment(dc.generate_box(box), threads=2)
-        self.rest = self.environment.positions.copy()
         self.sets = [dc.Particles() for _ in range(3)]
-        self.refused = 0
 
     def one(self) -> dc.Particles:
         return self.sets[self.random.integers(len(self.sets))]
@@ -67,7 +71,8 @@ class Calls:
         if kind == len(RESPONSES):
             self.environment.advance(particles, targets, lambda contacts, walls: -0.5 * contacts["unused"])
         elif kind == len(RESPONSES) + 1:
-            self.environment.advance(particles, targets, lambda contact, walls, earlier: -contact.unused, per_contact=True)
+            self.environment.advance(particles, targets, lambda contact, walls, earlier: -contact.unused,
+                                     per_contact=True)
         elif RESPONSES[kind] is None:
             self.environment.advance(particles, targets)
         else:
@@ -81,10 +86,9 @@ class Calls:
         self.advance()
 
     def edit(self) -> None:
-        cells = self.environment.map.cells()
-        if len(cells) > 3000:
-            return
-        cell = int(self.random.choice(cells))
+        if self.environment.map.cell_count() > MAX_CELLS:
+            self.make()
+        cell = int(self.random.choice(self.environment.map.cells()))
         plane = dc.plane_through(self.random.uniform(0.5, 3.5, 3), self.random.normal(size=3))
         kind = self.random.integers(4)
 
@@ -143,7 +147,7 @@ class Calls:
 def run(calls: int, seed: int) -> list[Any]:
     """Half of the calls are on the environment. Returns the worlds as they are then."""
     random = np.random.default_rng(seed)
-    worlds = [Calls(random, seed), *(world(random) for world in WORLDS)]
+    worlds: list[Any] = [world(random) for world in (Calls, *WORLDS)]
     kinds = [[name for name, weight in world.KINDS.items() for _ in range(weight)] for world in worlds]
     for _ in range(calls):
         i = int(random.integers(2 * len(WORLDS)))

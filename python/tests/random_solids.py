@@ -19,7 +19,7 @@ def wrong(state: object, call: Callable[[], object]) -> None:
     try:
         call()
     except (dc.Error, TypeError, IndexError, ValueError):
-        state.refused += 1  # type: ignore[attr-defined]
+        state.refused += 1
     else:
         raise AssertionError("a wrong call was not refused")
 
@@ -45,7 +45,8 @@ def change(random: np.random.Generator) -> Callable[[dc.ComplexEdit], object]:
 class SurfaceCalls:
     """Particles on a barrel that is moved and edited."""
 
-    KINDS: ClassVar[dict[str, int]] = {"advance": 4, "step": 3, "move": 1, "mark": 1, "edit": 2, "locate": 2, "refuse": 2}
+    KINDS: ClassVar[dict[str, int]] = {"advance": 4, "step": 3, "move": 1, "mark": 1, "edit": 2, "locate": 2,
+                                       "refuse": 2}
 
     def __init__(self, random: np.random.Generator) -> None:
         self.random, self.refused = random, 0
@@ -194,8 +195,9 @@ class CatheterCalls:
     def make(self) -> None:
         mesh = dc.generate_box(cells=[3, 3, 8], size=[1.0, 1.0, 4.0])
         self.environment = dc.Environment(mesh, threads=2)
-        self.catheter = dc.Catheter(self.environment, dc.CatheterOptions(
-            length=3.0, spacing=0.2, tip_length=0.5, tip_curvature=1.0, entry=[0.5, 0.5, 0.1], direction=[0.1, 0.2, 1.0]))
+        options = dc.CatheterOptions(length=3.0, spacing=0.2, tip_length=0.5, tip_curvature=1.0,
+                                     entry=[0.5, 0.5, 0.1], direction=[0.1, 0.2, 1.0])
+        self.catheter = dc.Catheter(self.environment, options)
         self.saved = self.catheter.checkpoint()
 
     def step(self) -> None:
@@ -235,7 +237,8 @@ class CatheterCalls:
 class SimulationCalls:
     """A simulation with events, bodies, collisions and statistics."""
 
-    KINDS: ClassVar[dict[str, int]] = {"step": 6, "add": 2, "motion": 1, "event": 1, "edit": 1, "restore": 1, "look": 2, "refuse": 2}
+    KINDS: ClassVar[dict[str, int]] = {"step": 6, "add": 2, "motion": 1, "event": 1, "edit": 1, "restore": 1, "look": 2,
+                                       "make": 1, "refuse": 2}
 
     def __init__(self, random: np.random.Generator) -> None:
         self.random, self.refused = random, 0
@@ -324,7 +327,8 @@ class SimulationCalls:
         bad: list[Callable[[], object]] = [
             lambda: self.simulation.add(np.full((2, 3), np.nan), [0, 0, 0]), lambda: self.simulation.catheter(0),
             lambda: self.simulation.user_data(10**6), lambda: self.simulation.pull(np.zeros((2, 3)), 1.0),
-            lambda: self.simulation.environment.move(np.zeros((2, 3))), lambda: dc.Simulation(self.simulation.environment),
+            lambda: self.simulation.environment.move(np.zeros((2, 3))),
+            lambda: dc.Simulation(self.simulation.environment),
             lambda: self.simulation.add_inlet(1, -1.0, [0, 0, 0])]
         wrong(self, bad[self.random.integers(len(bad))])
 

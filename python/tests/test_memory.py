@@ -1,4 +1,4 @@
-"""No call leaks memory, and the calls of memory_growth.py are those of all functions. Random calls keep all in its place."""
+"""No call leaks memory, and the table of calls has all functions. Random calls leave every particle in its place."""
 from __future__ import annotations
 
 import os
@@ -8,27 +8,29 @@ import sys
 
 import calls
 import memory_growth
+import pytest
 from conftest import full
 
 HERE = pathlib.Path(__file__).resolve().parent
 
-#: Functions that leak in each call, and one that does not; the program prints their growth.
+#: Four functions that leak in each call, and one that does not. The program prints the growth of each.
 PLANTED = """
 import ctypes, sys
 sys.path.insert(0, sys.argv[1])
 import memory_growth
 import numpy as np
 import dartcast
-kept, cycles, map_ = [], [], dartcast.CombinatorialMap(dartcast.generate_box())
+kept, libc, python = [], ctypes.CDLL(None), ctypes.pythonapi
+map_ = dartcast.CombinatorialMap(dartcast.generate_box())
 
-def in_a_list(): kept.append(None)
-def in_malloc(): ctypes.CDLL(None).malloc(16)
-def object_of_dartcast(): ctypes.pythonapi.Py_IncRef(ctypes.py_object(map_.view(0x20000000)))
-def array(): ctypes.pythonapi.Py_IncRef(ctypes.py_object(np.zeros(100_000)))
-def cycle(): cycle = []; cycle.append(cycle); map_.cells()
+def append(): kept.append(None)
+def malloc(): libc.malloc(16)
+def view(): python.Py_IncRef(ctypes.py_object(map_.view(0x20000000)))
+def array(): python.Py_IncRef(ctypes.py_object(np.zeros(1000)))
+def cycle(): cycle = [map_.cells()]; cycle.append(cycle)
 
-for call in (in_a_list, in_malloc, object_of_dartcast, array, cycle):
-    print(memory_growth.growth(call, 300))
+for call in (append, malloc, view, array, cycle):
+    print(*memory_growth.growth(call, 200))
 """
 
 
@@ -46,18 +48,20 @@ def test_the_calls_are_those_of_all_functions() -> None:
 
 
 def test_planted_leaks_are_found() -> None:
+    if memory_growth.in_use().bytes == 0:
+        pytest.skip("a sanitizer has replaced malloc, which then counts nothing")
     done = run("-c", PLANTED, str(HERE))
     assert done.returncode == 0, done.stderr
-    in_a_list, in_malloc, object_of_dartcast, array, cycle = map(int, done.stdout.split())
-    assert in_a_list >= 8 * 300 and in_malloc >= 32 * 300 and object_of_dartcast > 32 * 300 and array > 800_000 * 300
-    assert cycle == 0
+    append, malloc, view, array, cycle = (tuple(map(int, line.split())) for line in done.stdout.splitlines())
+    assert append[0] >= 8 * 200 and malloc[0] >= 32 * 200 and view[1] >= 200 and array[0] >= 8000 * 200
+    assert cycle == (0, 0)
 
 
 def test_memory_does_not_grow() -> None:
-    done = run(str(HERE / "memory_growth.py"), "10000" if full() else "300")
+    done = run(str(HERE / "memory_growth.py"), "10000" if full() else "200")
     assert done.returncode == 0, done.stdout[-4000:] + done.stderr[-4000:]
 
 
 def test_random_calls_leave_everything_in_its_place() -> None:
-    done = run(str(HERE / "random_calls.py"), "100000" if full() else "500")
+    done = run(str(HERE / "random_calls.py"), "100000" if full() else "2000")
     assert done.returncode == 0, done.stdout[-4000:] + done.stderr[-4000:]

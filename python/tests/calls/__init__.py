@@ -1,8 +1,11 @@
 """Calls of every public function of dartcast, on small scenes, for memory_growth.py.
 
-A call can be repeated without end: it leaves all objects as they were, or makes them anew. Its name is that of the
-function: "dimension", "Shape.phi1" (a method), "Shape" (the constructor), "Shape.key" (reading a property), "MeshData.free="
-(setting it). What follows a colon tells several calls of one function apart.
+A call can be repeated without end: it leaves all objects as they were. Objects that are meant to grow are made anew in
+each call: simulations that get particles, events or pulls, deformations with pulls, sums of hits, meshes with added
+cells.
+
+The name of a call is that of its function: "dimension", "Shape.phi1" (a method), "Shape" (the constructor), "Shape.key"
+(reading a property), "MeshData.free=" (setting it). What follows a colon tells several calls of one function apart.
 """
 from __future__ import annotations
 
@@ -15,8 +18,10 @@ import dartcast as dc
 Calls = dict[str, Callable[[], object]]
 
 #: Methods that Python itself gives a class.
-BY_PYTHON = {"__new__", "__getattribute__", "__setattr__", "__delattr__", "__class_getitem__"}
-#: Names without calls, and why.
+BY_PYTHON = {"__new__", "__init__", "__getattribute__", "__setattr__", "__delattr__", "__class_getitem__"}
+#: Methods that every record has.
+OF_RECORDS = ("__repr__", "__eq__", "__copy__", "__deepcopy__", "__getstate__", "__setstate__")
+#: Names without calls, and why. Enumerations and errors have none either: they are Python's own classes.
 EXEMPT = {
     "Cell": "typing.NewType: a name for types", "Vertex": "typing.NewType: a name for types",
     "Patch": "typing.NewType: a name for types",
@@ -65,7 +70,7 @@ def names() -> set[str]:
             if isinstance(value, property):
                 found |= {f"{name}.{member}"} | ({f"{name}.{member}="} if value.fset else set())
             elif (callable(value) or isinstance(value, staticmethod)) and not isinstance(value, type) \
-                    and member not in BY_PYTHON | {"__init__"}:
+                    and member not in BY_PYTHON and (member.startswith("__") or not member.startswith("_")):
                 found.add(f"{name}.{member}")
     return found - set(EXEMPT)
 
@@ -75,7 +80,7 @@ def covered(table: Calls) -> set[str]:
     found = {name.partition(":")[0] for name in table}
     for name, cls in classes().items():
         if is_record(cls) and name in found:
-            found |= {f"{name}.{member}" for member in ("__repr__", "__eq__", "__copy__", "__deepcopy__", "__getstate__", "__setstate__")}
+            found |= {f"{name}.{member}" for member in OF_RECORDS}
             for member, value in vars(cls).items():
                 if isinstance(value, property):
                     found |= {f"{name}.{member}", f"{name}.{member}="}

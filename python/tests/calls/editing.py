@@ -81,7 +81,7 @@ def of_planes() -> Calls:
         "Plane.turned": PLANE.turned, "thicken": lambda: dc.thicken(PLANE, 0.1),
         "thicken: disc": lambda: dc.thicken(disc, 0.1), "thicken: blade": lambda: dc.thicken(blade, 0.1),
         "thicken: refused": refused(lambda: dc.thicken(PLANE, 0.0)),
-        "thicken: type refused": refused(lambda: dc.thicken(3, 0.1)),  # type: ignore[call-overload]
+        "thicken: type refused": refused(lambda: dc.thicken(3, 0.1)),
         "box_tool": lambda: dc.box_tool([0, 0, 0], [1, 2, 3]),
         "box_tool: refused": refused(lambda: dc.box_tool([0, 0, 0], [0, 1, 1])),
         "capsule_tool": lambda: dc.capsule_tool([0, 0, 0], [1, 0, 0], 0.5),
@@ -103,7 +103,8 @@ def of_cuts() -> Calls:
         return undone(c, lambda e: refused(lambda: edit(e))())
 
     return {
-        "cells_near": lambda: dc.cells_near(c, [tool]), "cells_near: start": lambda: dc.cells_near(c, [tool], int(cells[0])),
+        "cells_near": lambda: dc.cells_near(c, [tool]),
+        "cells_near: start": lambda: dc.cells_near(c, [tool], int(cells[0])),
         "cells_near: refused": refused(lambda: dc.cells_near(c, [tool], 5)),
         "split_by_plane": undone(c, lambda e: dc.split_by_plane(e, cells, PLANE)),
         "split_by_plane: refused": refused_in(lambda e: dc.split_by_plane(e, [7], PLANE)),

@@ -29,7 +29,8 @@ def of_making() -> Calls:
         "Environment.locate: refused": refused(lambda: env.locate([np.nan, 0.0, 0.0])),
         "Environment.validity": env.validity, "Environment.awaits_advance": lambda: env.awaits_advance(particles),
         "Environment.check_advance": lambda: env.check_advance(particles),
-        "Environment.check_advance: refused": refused(lambda: env.check_advance(particles, dc.StepOptions(max_parts=0))),
+        "Environment.check_advance: refused": refused(
+            lambda: env.check_advance(particles, dc.StepOptions(max_parts=0))),
         "Environment.add": lambda: env.add(x), "Environment.add: one": lambda: env.add(
             dc.Particles(), state.at(), state.position),
         "Environment.add: set": lambda: env.add(dc.Particles(), x),
@@ -84,7 +85,7 @@ def of_edits() -> Calls:
 
     def mark() -> None:
         for free in (False, True):
-            marked.edit(lambda edit: edit.topology.set_free(cell, free))  # type: ignore[arg-type]
+            marked.edit(lambda edit: edit.topology.set_free(cell, free))
             marked.update_after_edit(marking, "hold")
 
     def subdivide() -> None:
@@ -107,7 +108,7 @@ def of_edits() -> Calls:
         "Environment.edit": mark, "Environment.edit: subdivide": subdivide,
         "Environment.edit: raised": refused(lambda: refusing.edit(fail)),
         "Environment.edit: refused": refused(lambda: refusing.edit(lambda edit: dc.remove(edit.topology, 3))),
-        "Environment.edit: no function": refused(lambda: refusing.edit(3)),  # type: ignore[arg-type]
+        "Environment.edit: no function": refused(lambda: refusing.edit(3)),
         "Environment.update_after_edit": orphans,
         "Environment.update_after_edit: nothing": lambda: env.update_after_edit(particles),
         "Environment.update_after_edit: refused": refused(lambda: env.update_after_edit(particles, "no policy")),
@@ -155,14 +156,15 @@ def of_steps() -> Calls:
 
     def step(options: dict[str, object]) -> Callable[[], None]:
         def call() -> None:
-            env.advance(particles, targets, **options)  # type: ignore[arg-type]
+            env.advance(particles, targets, **options)
             particles.replace(which, saved)
         return call
 
     table: Calls = {"Environment.advance: " + name: step(options) for name, options in answers().items()}
     table |= {"Environment.trace: " + name: lambda o=options: env.trace(particles, 0, targets[:2], **o)
               for name, options in answers().items() if not name.startswith("rounds")}
-    table |= {"Environment.advance: refused, " + name: refused(step(options)) for name, options in wrong_answers().items()}
+    table |= {"Environment.advance: refused, " + name: refused(step(options))
+              for name, options in wrong_answers().items()}
     table["Environment.advance: refused, targets"] = refused(lambda: env.advance(particles, targets[1:]))
     table["Environment.trace: refused"] = refused(lambda: env.trace(particles, COUNT, targets[:2]))
     table["Environment.trace: raised"] = refused(

@@ -2,16 +2,14 @@
 from __future__ import annotations
 
 import copy
-import pathlib
 import pickle
-import tempfile
 
 import numpy as np
 
 import dartcast as dc
 
 from . import Calls, refused
-from .scenes import box
+from .scenes import FOLDER, box
 
 POINTS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]], dtype=float)
 TETRA = np.array([[0, 1, 2, 3], [1, 2, 3, 4]])
@@ -31,13 +29,14 @@ def of_data() -> Calls:
         dc.MeshData(POINTS, {"tetra": TETRA}).add_patch_face([0, 1, 2], 3)
 
     def add_cell_refused() -> None:
-        dc.MeshData(POINTS, {"tetra": TETRA}).add_cell("tetrahedron", [0.5])  # type: ignore[list-item]
+        dc.MeshData(POINTS, {"tetra": TETRA}).add_cell("tetrahedron", [0.5])
 
     return {
         "MeshData": lambda: dc.MeshData(POINTS, {"tetra": TETRA}, regions=[1, 2], patches={"inlet": [[0, 2, 1]]},
                                         region_names={1: "the first region of all"}, free=np.array([True, False]),
                                         point_data={"values": POINTS}, cell_data={"values": [1.0, 2.0]}),
-        "MeshData: polyhedra": lambda: dc.MeshData(POINTS, {"polyhedron": [[[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]]}),
+        "MeshData: polyhedra": lambda: dc.MeshData(
+            POINTS, {"polyhedron": [[[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]]}),
         "MeshData: points refused": refused(lambda: dc.MeshData(POINTS.astype(np.float32), {"tetra": TETRA})),
         "MeshData: cells refused": refused(lambda: dc.MeshData(POINTS, {"tetra": TETRA + 5})),
         "MeshData: regions refused": refused(lambda: dc.MeshData(POINTS, {"tetra": TETRA}, regions=[1])),
@@ -62,7 +61,8 @@ def of_checks() -> Calls:
         "check_and_repair: repair": lambda: dc.check_and_repair(copy.copy(inverted)),
         "check_and_repair: defects": lambda: dc.check_and_repair(copy.copy(flat)),
         "Finding.add": lambda: dc.Finding("kind").add(3),
-        "verdict_name": lambda: dc.verdict_name("warn"), "verdict_name: refused": refused(lambda: dc.verdict_name("no")),
+        "verdict_name": lambda: dc.verdict_name("warn"),
+        "verdict_name: refused": refused(lambda: dc.verdict_name("no")),
         "MeshReport: of a mesh": lambda: (copy.copy(report), repr(report), report.valid, report.verdict),
     }
 
@@ -95,26 +95,25 @@ def of_generators() -> Calls:
     return {
         "generate_box": lambda: dc.generate_box(options), "generate_box: by names": lambda: box(),
         "generate_box: refused": refused(lambda: dc.generate_box(cells=[0, 1, 1])),
-        "generate_box: name refused": refused(lambda: dc.generate_box(cell=3)),  # type: ignore[call-overload]
+        "generate_box: name refused": refused(lambda: dc.generate_box(cell=3)),
         "generate_bar": dc.generate_bar, "bar_options": dc.bar_options,
         "generate_barrel": lambda: dc.generate_barrel(staves=8, rows=4, rings=2),
         "generate_maze": lambda: dc.generate_maze(rooms=[2, 2], obstacles=1),
         "generate_octahedra": lambda: dc.generate_octahedra(cells=[1, 1, 1]),
         "generate_rectangle": lambda: dc.generate_rectangle(cells=[5, 4], type="polygon"),
-        "generate_vessel": lambda: dc.generate_vessel(**vessel),  # type: ignore[call-overload]
+        "generate_vessel": lambda: dc.generate_vessel(**vessel),
     }
 
 
 def of_files() -> Calls:
-    folder = pathlib.Path(tempfile.mkdtemp(prefix="dartcast-calls-"))
     mesh = box()
     table: Calls = {}
     for ending in dc.mesh_endings():
-        path = folder / ("box" + ending)
+        path = FOLDER / ("box" + ending)
         dc.write_mesh(mesh, path)
-        table[f"write_mesh: {ending}"] = lambda p=path: dc.write_mesh(mesh, p)  # type: ignore[misc]
-        table[f"read_mesh: {ending}"] = lambda p=path: dc.read_mesh(p)  # type: ignore[misc]
-    path, broken, surface = folder / "box.msh", folder / "broken.msh", folder / "tetra.off"
+        table[f"write_mesh: {ending}"] = lambda p=path: dc.write_mesh(mesh, p)
+        table[f"read_mesh: {ending}"] = lambda p=path: dc.read_mesh(p)
+    path, broken, surface = FOLDER / "box.msh", FOLDER / "broken.msh", FOLDER / "tetra.off"
     dc.write_bytes(broken, BROKEN)
     surface.write_text("OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n", encoding="utf-8")
     file = dc.read_mesh(path)
@@ -124,11 +123,11 @@ def of_files() -> Calls:
         "read_valid_mesh": lambda: dc.read_valid_mesh(path),
         "read_valid_mesh: refused": refused(lambda: dc.read_valid_mesh(broken)),
         "read_surface": lambda: dc.read_surface(surface),
-        "read_surface: refused": refused(lambda: dc.read_surface(folder / "missing.stl")),
+        "read_surface: refused": refused(lambda: dc.read_surface(FOLDER / "missing.stl")),
         "check_surface": lambda: dc.check_surface(surface), "check_mesh": lambda: dc.check_mesh(path, threads=1),
-        "write_mesh: refused": refused(lambda: dc.write_mesh(mesh, folder / "box.xyz")),
-        "write_bytes": lambda: dc.write_bytes(folder / "bytes", b"a few bytes"),
-        "write_bytes: refused": refused(lambda: dc.write_bytes(folder / "none" / "bytes", b"")),
+        "write_mesh: refused": refused(lambda: dc.write_mesh(mesh, FOLDER / "box.xyz")),
+        "write_bytes": lambda: dc.write_bytes(FOLDER / "bytes", b"a few bytes"),
+        "write_bytes: refused": refused(lambda: dc.write_bytes(FOLDER / "none" / "bytes", b"")),
         "is_surface_file": lambda: dc.is_surface_file("a.vtu"), "has_vtk": dc.has_vtk,
         "mesh_endings": dc.mesh_endings, "surface_endings": dc.surface_endings,
         "writable_mesh_endings": dc.writable_mesh_endings,

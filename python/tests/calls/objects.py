@@ -28,7 +28,8 @@ def of_edits() -> dict[str, object]:
     made = dc.subdivide(edit, scenes.first(edit.map))
     surface = dc.Surface(dc.generate_barrel(staves=8, rows=4, rings=2))
     return {"ComplexEdit": edit, "Transaction": edit.topology, "Subdivided": made, "Subdivision": made.subdivision,
-            "SurfaceEdit": dc.SurfaceEdit(surface), "Surface": dc.Surface(dc.generate_barrel(staves=8, rows=4, rings=2))}
+            "SurfaceEdit": dc.SurfaceEdit(surface),
+            "Surface": dc.Surface(dc.generate_barrel(staves=8, rows=4, rings=2))}
 
 
 def of_particles() -> dict[str, object]:
@@ -68,7 +69,8 @@ def of_simulations() -> dict[str, object]:
     simulation.set_statistics(options)
     simulation.add_body(scenes.BODY, dc.BodyOptions(mass=2.0))
     simulation.step()
-    return {"Simulation": simulation, "SimulationCheckpoint": simulation.checkpoint(), "Statistics": simulation.statistics}
+    return {"Simulation": simulation, "SimulationCheckpoint": simulation.checkpoint(),
+            "Statistics": simulation.statistics}
 
 
 def living() -> dict[str, object]:

@@ -20,7 +20,8 @@ def of_sets() -> Calls:
         "Particles": dc.Particles, "Particles.__len__": lambda: len(particles), "Particles.copy": particles.copy,
         "Particles.__getitem__": lambda: particles[3], "Particles.__getitem__: refused": refused(lambda: particles[99]),
         "Particles.__copy__": lambda: copy.copy(particles), "Particles.__deepcopy__": lambda: copy.deepcopy(particles),
-        "Particles.held_weights": particles.held_weights, "Particles.held_weights: one": lambda: particles.held_weights(3),
+        "Particles.held_weights": particles.held_weights,
+        "Particles.held_weights: one": lambda: particles.held_weights(3),
         "Particles.held_weights: refused": refused(lambda: particles.held_weights(99)),
         "Particles.remove": lambda: particles.copy().remove(marks),
         "Particles.remove: refused": refused(lambda: particles.remove(marks[1:])),
@@ -37,16 +38,17 @@ def of_states() -> Calls:
     env, particles = with_particles()
     m = env.map
     state = particles[0]
-    corners = env.complex.corners(state.at())  # type: ignore[arg-type]
+    corners = env.complex.corners(state.at())
     return {
         "forecast": lambda: dc.forecast(m, state, corners),
         "forecast: refused": refused(lambda: dc.forecast(m, dc.ParticleState(), corners)),
-        "placement": lambda: dc.placement(m, state.at(), corners, [0.5, 0.5, 0.5]),  # type: ignore[arg-type]
+        "placement": lambda: dc.placement(m, state.at(), corners, [0.5, 0.5, 0.5]),
         "placement: refused": refused(lambda: dc.placement(m, (12345, 0), corners, [0, 0, 0])),
         "ParticleState.at": state.at, "ParticleState.put": lambda: dc.ParticleState().put((3, 2), [1, 2, 3]),
         "StepOptions.check": dc.StepOptions().check,
         "StepOptions.check: refused": refused(dc.StepOptions(max_parts=0).check),
-        "check_threads": lambda: dc.check_threads(1), "check_threads: refused": refused(lambda: dc.check_threads(10**6)),
+        "check_threads": lambda: dc.check_threads(1),
+        "check_threads: refused": refused(lambda: dc.check_threads(10**6)),
         "max_threads": dc.max_threads, "is_radius": lambda: dc.is_radius(1.0), "is_mass": lambda: dc.is_mass(1.0),
         "RigidMover.velocity_at": lambda: dc.RigidMover(turns=True).velocity_at([2.0, 0, 0]),
         "RigidMotion.velocity_at": lambda: dc.RigidMotion().velocity_at([2.0, 0, 0]),
@@ -59,7 +61,7 @@ def of_audits() -> Calls:
     h, other = dc.StateHash((1, 2)), dc.StateHash((1, 2))
 
     def sum_of(a: object, b: object) -> None:
-        a += b  # type: ignore[operator]
+        a += b
 
     return {
         "audit": lambda: dc.audit(env.complex, particles, threads=1),
@@ -87,16 +89,17 @@ def of_responses() -> Calls:
         "WallResponses": lambda: dc.WallResponses({None: dc.Slide(), "zmax": dc.Reflect(0.25)}, env.map),
         "WallResponses: refused": refused(lambda: dc.WallResponses({"zmax": dc.Slide()})),
         "WallResponses.set": lambda: responses.set(1, dc.Stick()), "WallResponses.of": lambda: responses.of(1),
-        "WallResponses.set: refused": refused(lambda: responses.set(1, 5)),  # type: ignore[arg-type]
+        "WallResponses.set: refused": refused(lambda: responses.set(1, 5)),
         "respond_with": lambda: dc.respond_with(dc.Stick(), v, statuses, 0.1),
         "respond_with: refused": refused(lambda: dc.respond_with(dc.Stick(), v, statuses, 0.0)),
         "hold_stopped": lambda: dc.hold_stopped(report, dc.Reflect(), v, None, 0.1),
         "hold_stopped: refused": refused(lambda: dc.hold_stopped(report, dc.Reflect(), v[1:], None, 0.1)),
         "reflected": lambda: dc.reflected([1, 0, 2], walls, 0.5, 0.1), "slid": lambda: dc.slid([1, 0, 2], walls, walls),
-        "reflected: surface": lambda: dc.reflected(contact, [1, 0, 2], 0.5),  # type: ignore[arg-type, call-arg]
-        "slid: surface": lambda: dc.slid(contact, [1, 0, 2]),  # type: ignore[arg-type, call-arg]
-        "reflected: refused": refused(lambda: dc.reflected("x", walls, 0.5, 0.1)),  # type: ignore[arg-type]
-        "StepReport.walls_of": lambda: report.walls_of(0), "StepReport.earlier_walls_of": lambda: report.earlier_walls_of(0),
+        "reflected: surface": lambda: dc.reflected(contact, [1, 0, 2], 0.5),
+        "slid: surface": lambda: dc.slid(contact, [1, 0, 2]),
+        "reflected: refused": refused(lambda: dc.reflected("x", walls, 0.5, 0.1)),
+        "StepReport.walls_of": lambda: report.walls_of(0),
+        "StepReport.earlier_walls_of": lambda: report.earlier_walls_of(0),
         "StepReport.walls_of: refused": refused(lambda: report.walls_of(99)),
     }
 
@@ -108,7 +111,7 @@ def of_spheres() -> Calls:
     radii, stepper = np.full(COUNT, 0.05), dc.SphereStepper()
 
     def advance(options: dict[str, object], f: object) -> None:
-        f(env, particles, radii, targets, **options)  # type: ignore[operator]
+        f(env, particles, radii, targets, **options)
         particles.replace(which, saved)
 
     table: Calls = {"SphereStepper": dc.SphereStepper}

@@ -17,9 +17,10 @@ def is_empty(value: object) -> bool:
 
 
 def candidates() -> list[object]:
-    """Values for members that are empty by default: texts, numbers, arrays, tables, functions, records, lists of them."""
+    """Values for members that are empty by default, of every type that members have."""
     records = [cls() for cls in classes().values() if is_record(cls)]
-    return ["a text of more than fifteen letters", 1, (0, 1), (0.1, 0.2, 0.3), 0.5, [1, 2, 3], [0.5, 1.5], np.ones((2, 3)), ["one", "two"], [(0, 1), (1, 2)],
+    return ["a text of more than fifteen letters", 1, (0, 1), (0.1, 0.2, 0.3), 0.5, [1, 2, 3], [0.5, 1.5],
+            np.ones((2, 3)), ["one", "two"], [(0, 1), (1, 2)],
             [[1, 2], [3]], {"one": 1}, {"one": dc.Stick()}, {1: "one"}, [np.ones((2, 3))], [[[0, 0, 0], [0, 0, 1]]],
             [dc.generate_box()], dc.generate_box(), lambda k: np.ones((2, 3)), *([r] for r in records), *records]
 

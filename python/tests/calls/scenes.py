@@ -1,6 +1,8 @@
 """Small scenes, which the calls share."""
 from __future__ import annotations
 
+import pathlib
+import tempfile
 from collections.abc import Callable
 
 import numpy as np
@@ -8,10 +10,12 @@ import numpy as np
 import dartcast as dc
 
 COUNT = 10  # particles
+OWN_FOLDER = tempfile.TemporaryDirectory(prefix="dartcast-calls-")  # goes with the program
+FOLDER = pathlib.Path(OWN_FOLDER.name)
 
 
 def box(n: int = 3, **options: object) -> dc.MeshData:
-    return dc.generate_box(cells=[n, n, n], **options)  # type: ignore[arg-type]
+    return dc.generate_box(cells=[n, n, n], **options)
 
 
 def complex_of(n: int = 2, **options: object) -> dc.CellComplex:
@@ -44,7 +48,7 @@ def outer_face(m: dc.CombinatorialMap) -> tuple[int, int]:
 def simulation(**options: object) -> dc.Simulation:
     """Of particles in a box, in which all of them meet walls at every step."""
     named = {"dt": 0.1, "response": dc.Reflect(0.5)} | options
-    made = dc.Simulation(environment(), dc.SimulationOptions(**named))  # type: ignore[arg-type]
+    made = dc.Simulation(environment(), dc.SimulationOptions(**named))
     made.add_random(COUNT, [20.0, 3.0, 10.0])
     return made
 

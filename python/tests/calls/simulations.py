@@ -1,8 +1,6 @@
 """Simulations, events, statistics, scenes and runs."""
 from __future__ import annotations
 
-import pathlib
-import tempfile
 from collections.abc import Callable
 
 import numpy as np
@@ -11,7 +9,7 @@ import dartcast as dc
 
 from . import Calls, refused
 from .environments import fail, raising
-from .scenes import BODY, COUNT, environment, first, simulation, tube
+from .scenes import BODY, COUNT, FOLDER, environment, first, simulation, tube
 
 SCENE = {
     "seed": 3, "environment": {"generator": "box", "cells": [3, 3, 3]},
@@ -69,12 +67,13 @@ def of_adding() -> Calls:
         made.add_body(BODY, dc.BodyOptions(mass=2.0))
         made.add(body)
         made.step()
-        made.bodies.velocities = made.bodies.velocities * 0.5  # type: ignore[union-attr]
+        made.bodies.velocities = made.bodies.velocities * 0.5
         made.body_summaries()
 
     return {
         "Simulation.add": changed(lambda s: s.add(x, [1.0, 0.0, 0.0], 0.01)),
-        "Simulation.add: arrays": changed(lambda s: s.add(x, np.ones((3, 3)), np.full(3, 0.01), [1.0]), user_data=["heat"]),
+        "Simulation.add: arrays": changed(
+            lambda s: s.add(x, np.ones((3, 3)), np.full(3, 0.01), [1.0]), user_data=["heat"]),
         "Simulation.add: refused": refused(lambda: own.add(x, np.ones((2, 3)))),
         "Simulation.add: body": add_body, "Simulation.add_body": add_body, "Simulation.body_summaries": add_body,
         "Simulation.add: catheter": add_catheter, "Simulation.catheter": add_catheter,
@@ -94,10 +93,13 @@ def of_motion() -> Calls:
     pull = np.zeros((n, 3))
 
     def with_field(set_it: Callable[[dc.Simulation, dc.VectorField], None]) -> Callable[[], None]:
-        return changed(lambda s: set_it(s, dc.VectorField(s.environment.complex, s.environment.positions.copy())), drag=1.0)
+        def change(s: dc.Simulation) -> None:
+            set_it(s, dc.VectorField(s.environment.complex, s.environment.positions.copy()))
+        return changed(change, drag=1.0)
 
     def deform(s: dc.Simulation) -> None:
-        s.set_deformation(dc.Deformation([dc.DeformationStep(kind="twist", amplitude=0.1)], s.environment.positions.copy()))
+        step = dc.DeformationStep(kind="twist", amplitude=0.1)
+        s.set_deformation(dc.Deformation([step], s.environment.positions.copy()))
 
     def read_frames(s: dc.Simulation) -> None:
         rest = s.environment.positions.copy()
@@ -111,7 +113,8 @@ def of_motion() -> Calls:
         "Simulation.set_field: refused": refused(lambda: own.set_field(other)),
         "Simulation.set_force: refused": refused(lambda: own.set_force(other)),
         "Simulation.set_deformation": changed(deform), "Simulation.set_deformation: frames": changed(read_frames),
-        "Simulation.set_deformation: refused": refused(lambda: own.set_deformation(dc.Deformation([], np.zeros((3, 3))))),
+        "Simulation.set_deformation: refused": refused(
+            lambda: own.set_deformation(dc.Deformation([], np.zeros((3, 3))))),
         "Simulation.pull": changed(lambda s: s.pull(pull, 0.2)),
         "Simulation.pull: refused": refused(lambda: own.pull(pull[1:], 0.2)),
     }
@@ -147,7 +150,8 @@ def of_changes() -> Calls:
         "Simulation.edit": changed(lambda s: s.edit(lambda edit: dc.subdivide(edit, first(edit.map)))),
         "Simulation.edit: raised": refused(lambda: own.edit(fail)),
         "Simulation.edit: refused": refused(lambda: own.edit(3)), "Simulation.repair": own.repair,
-        "apply": changed(lambda s: dc.apply(s, dc.Event(0.0, cut))), "apply: ligature": changed(lambda s: dc.apply(s, tied)),
+        "apply": changed(lambda s: dc.apply(s, dc.Event(0.0, cut))),
+        "apply: ligature": changed(lambda s: dc.apply(s, tied)),
         "apply: refused": refused(lambda: dc.apply(own, dc.Event(0.0, dc.Cut(dc.Plane([0, 0, 0]), 0.1)))),
         "kind_of": lambda: dc.kind_of(events[0]),
     }
@@ -174,14 +178,15 @@ def of_states() -> Calls:
         "Simulation.step: spheres": changed(spheres, collisions=dc.CollisionOptions()),
         "Simulation.go_to": go_to, "Simulation.go_to: refused": refused(lambda: own.go_to(3)),
         "Simulation.restore: refused": refused(lambda: own.restore(3)),
-        "Simulation.user_data": lambda: own.user_data(3), "Simulation.set_user_data": lambda: own.set_user_data(3, [1.0]),
+        "Simulation.user_data": lambda: own.user_data(3),
+        "Simulation.set_user_data": lambda: own.set_user_data(3, [1.0]),
         "Simulation.user_data: refused": refused(lambda: own.user_data(99)),
         "Simulation.set_user_data: refused": refused(lambda: own.set_user_data(3, [1.0, 2.0])),
         "Simulation.energy": own.energy, "Simulation.audit": own.audit, "Simulation.state_hash": own.state_hash,
     }
 
 
-def of_statistics(folder: pathlib.Path) -> Calls:
+def of_statistics() -> Calls:
     plane = dc.SectionPlane("middle", [0.5, 0.5, 0.5], [0.0, 0.0, 1.0])
     options = dc.StatisticsOptions(hits=True, residence=True, pathlines_every=2)
     options.planes = [plane]
@@ -210,35 +215,38 @@ def of_statistics(folder: pathlib.Path) -> Calls:
         "WallHits.restore: refused": refused(lambda: dc.WallHits().restore(env, broken, ended)),
         "ResidenceTimes.mean": dc.ResidenceTimes().mean, "StatisticsOptions.any": options.any,
         "StatisticsOptions.pathlines": options.pathlines,
-        "write_wall_hits": lambda: dc.write_wall_hits(env, hits, folder / "hits.vtp"),
-        "write_wall_hits: refused": refused(lambda: dc.write_wall_hits(env, hits, folder / "none" / "hits.vtp")),
-        "write_pathlines": lambda: dc.write_pathlines(points, folder / "pathlines.vtp"),
-        "write_pathlines: refused": refused(lambda: dc.write_pathlines(faces, folder / "pathlines.vtp")),
+        "write_wall_hits": lambda: dc.write_wall_hits(env, hits, FOLDER / "hits.vtp"),
+        "write_wall_hits: refused": refused(lambda: dc.write_wall_hits(env, hits, FOLDER / "none" / "hits.vtp")),
+        "write_pathlines": lambda: dc.write_pathlines(points, FOLDER / "pathlines.vtp"),
+        "write_pathlines: refused": refused(lambda: dc.write_pathlines(faces, FOLDER / "pathlines.vtp")),
     }
 
 
-def of_scenes(folder: pathlib.Path) -> Calls:
+def of_scenes() -> Calls:
     text = dc.scene_text(SCENE)
-    file = folder / "scene.toml"
+    file = FOLDER / "scene.toml"
     file.write_text(text, encoding="utf-8")
     scene = dc.parse_scene(text, file)
     return {
-        "scene_text": lambda: dc.scene_text(SCENE), "scene_text: refused": refused(lambda: dc.scene_text({"a": object()})),
+        "scene_text": lambda: dc.scene_text(SCENE),
+        "scene_text: refused": refused(lambda: dc.scene_text({"a": object()})),
         "parse_scene": lambda: dc.parse_scene(text, file),
         "parse_scene: refused": refused(lambda: dc.parse_scene("seed = 'three'", file)),
         "parse_scene: no TOML": refused(lambda: dc.parse_scene("[environment", file)),
-        "read_scene": lambda: dc.read_scene(file), "read_scene: refused": refused(lambda: dc.read_scene(folder / "none.toml")),
-        "load_scene": lambda: dc.load_scene(SCENE, threads=1), "load_scene: file": lambda: dc.load_scene(file, threads=1),
-        "load_scene: refused": refused(lambda: dc.load_scene({"environment": {"generator": "bar", "sice": 3}}, threads=1)),
+        "read_scene": lambda: dc.read_scene(file),
+        "read_scene: refused": refused(lambda: dc.read_scene(FOLDER / "none.toml")),
+        "load_scene": lambda: dc.load_scene(SCENE, threads=1),
+        "load_scene: file": lambda: dc.load_scene(file, threads=1),
+        "load_scene: refused": refused(lambda: dc.load_scene({"environment": {"sice": 3}}, threads=1)),
         "load_scene_files": lambda: dc.load_scene_files(scene, threads=1),
     }
 
 
-def of_runs(folder: pathlib.Path) -> Calls:
+def of_runs() -> Calls:
     scene = dc.load_scene(SCENE, threads=1)
     options = dc.RunOptions(threads=1)
     summary = dc.run(SCENE, threads=1)
-    out = folder / "out"
+    out = FOLDER / "out"
     return {
         "run_scene": lambda: dc.run_scene(scene, options), "run": lambda: dc.run(SCENE, threads=1, audit=True),
         "run: folder": lambda: dc.run(SCENE, out, threads=1),
@@ -251,6 +259,5 @@ def of_runs(folder: pathlib.Path) -> Calls:
 
 
 def calls() -> Calls:
-    folder = pathlib.Path(tempfile.mkdtemp(prefix="dartcast-calls-"))
-    return (of_making() | of_adding() | of_motion() | of_changes() | of_states() | of_statistics(folder)
-            | of_scenes(folder) | of_runs(folder))
+    return (of_making() | of_adding() | of_motion() | of_changes() | of_states() | of_statistics()
+            | of_scenes() | of_runs())

@@ -141,10 +141,11 @@ def of_bodies() -> Calls:
     return table | {
         "Bodies": lambda: dc.Bodies(env, dc.BodiesOptions(dt=0.01), {"zmin": dc.Stick()}),
         "Bodies: refused": refused(lambda: dc.Bodies(env, dc.BodiesOptions(dt=0.01), {"nowhere": dc.Stick()})),
-        "Bodies.add": lambda: bodies(env), "Bodies.add: refused": refused(lambda: own.add(BODY, dc.BodyOptions(mass=-1.0))),
+        "Bodies.add": lambda: bodies(env),
+        "Bodies.add: refused": refused(lambda: own.add(BODY, dc.BodyOptions(mass=-1.0))),
         "Bodies.add: outside": lambda: dc.Bodies(env, dc.BodiesOptions(dt=0.01)).add(BODY + 3.0, dc.BodyOptions()),
         "Bodies.step": step, "Bodies.restore": step, "Bodies.checkpoint": own.checkpoint,
-        "Bodies.restore: refused": refused(lambda: own.restore(3)),  # type: ignore[arg-type]
+        "Bodies.restore: refused": refused(lambda: own.restore(3)),
         "Bodies.apply_impulse": lambda: own.apply_impulse(0, state),
         "Bodies.apply_impulse: refused": refused(lambda: own.apply_impulse(9, state)),
         "Bodies.update_after_edit": edited, "Bodies.__len__": lambda: len(own), "Bodies.state_hash": own.state_hash,
@@ -152,7 +153,7 @@ def of_bodies() -> Calls:
 
 
 def of_samples() -> Calls:
-    mesh, options = barrel(), dc.SamplingOptions(spacing=0.1)
+    mesh, options = barrel(), dc.SamplingOptions(spacing=0.2)
     table: Calls = {}
     for name in ("sample_solid", "sample_surface", "sample_volume"):
         table[name] = lambda f=getattr(dc, name): f(mesh, options)
@@ -183,9 +184,10 @@ def of_catheters() -> Calls:
         "Catheter: refused": refused(lambda: dc.Catheter(env, dc.CatheterOptions(length=-1.0))),
         "Catheter.step": step, "Catheter.restore": step, "Catheter.checkpoint": own.checkpoint,
         "Catheter.step: refused": refused(lambda: own.step(dc.CatheterInput(push=np.nan))),
-        "Catheter.restore: refused": refused(lambda: own.restore(3)),  # type: ignore[arg-type]
+        "Catheter.restore: refused": refused(lambda: own.restore(3)),
         "Catheter.update_after_edit": edited, "Catheter.points": own.points, "Catheter.frames": own.frames,
-        "Catheter.state_hash": own.state_hash, "camera_path": lambda: dc.camera_path(env, points, dc.CameraOptions(spacing=1e-3)),
+        "Catheter.state_hash": own.state_hash,
+        "camera_path": lambda: dc.camera_path(env, points, dc.CameraOptions(spacing=1e-3)),
         "camera_path: refused": refused(lambda: dc.camera_path(env, points, dc.CameraOptions(spacing=-1.0))),
     }
 

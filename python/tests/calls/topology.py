@@ -90,7 +90,8 @@ def of_maps() -> Calls:
         "CombinatorialMap.set_free": lambda: (m.set_free(c, False), m.set_free(c, True)),
         "CombinatorialMap.set_free: refused": refused(lambda: m.set_free(7, False)),
         "CombinatorialMap.cell_count": m.cell_count, "CombinatorialMap.slot_count": lambda: m.slot_count(1),
-        "CombinatorialMap.type_of": lambda: m.type_of(1), "CombinatorialMap.type_of: refused": refused(lambda: m.type_of(5)),
+        "CombinatorialMap.type_of": lambda: m.type_of(1),
+        "CombinatorialMap.type_of: refused": refused(lambda: m.type_of(5)),
         "CombinatorialMap.is_vertex": lambda: m.is_vertex(26),
         "CombinatorialMap.may_touch_wall": lambda: m.may_touch_wall(13),
         "CombinatorialMap.may_touch_wall: refused": refused(lambda: m.may_touch_wall(27)),
@@ -140,7 +141,7 @@ def split_hexahedron(t: dc.Transaction) -> np.ndarray:
                     break
     c = first(t.map)
     loop = [0, 3, 7, 4]
-    return dc.split_cell(t, [dc.find_dart(t.map, c, a, b) for a, b in zip(loop, loop[1:] + loop[:1])])  # type: ignore
+    return dc.split_cell(t, [dc.find_dart(t.map, c, a, b) for a, b in zip(loop, loop[1:] + loop[:1])])
 
 
 def merge_prisms(t: dc.Transaction) -> None:
@@ -159,7 +160,7 @@ def merge_split_edge(t: dc.Transaction) -> None:
 def replace_with_point(t: dc.Transaction) -> None:
     c = first(t.map)
     draft = dc.draft_of(t.map, c)
-    draft.point = t.add_vertex(0, 7)  # type: ignore[assignment]
+    draft.point = t.add_vertex(0, 7)
     t.replace([c], [draft])
 
 
@@ -212,7 +213,8 @@ def of_transactions() -> Calls:
         "Transaction.savepoint": undone(to_savepoint), "Transaction.roll_back": undone(to_savepoint),
         "Transaction.commit": commit, "Transaction.added": marked.added, "Transaction.removed": marked.removed,
         "Transaction.marked": marked.marked, "Transaction.merged": marked.merged,
-        "Transaction.created": lambda: marked.created(0), "Transaction.created: refused": refused(lambda: marked.created(9)),
+        "Transaction.created": lambda: marked.created(0),
+        "Transaction.created: refused": refused(lambda: marked.created(9)),
         "Transaction.__enter__": undone(lambda t: None), "Transaction.__exit__": undone(lambda t: None),
         "Transaction.__exit__: raised": refused(undone(lambda t: {}["no key"])),
         "split_edge": undone(lambda t: dc.split_edge(t, (first(t.map), 0))),
@@ -227,7 +229,8 @@ def of_transactions() -> Calls:
         "merge_edges: refused": refused_in(lambda t: dc.merge_edges(t, (first(t.map), 0))),
         "sew: refused": refused_in(lambda t: dc.sew(t, (first(t.map), 0), (first(t.map), 1))),
         "unsew": undone(open_wall), "unsew: refused": refused_in(lambda t: dc.unsew(t, outer_face(t.map))),
-        "remove": undone(lambda t: dc.remove(t, first(t.map))), "remove: refused": refused_in(lambda t: dc.remove(t, 7)),
+        "remove": undone(lambda t: dc.remove(t, first(t.map))),
+        "remove: refused": refused_in(lambda t: dc.remove(t, 7)),
     }
 
 
