@@ -105,11 +105,9 @@ void bind_log(py::module_& m) {
       .field("refused", &EventLog::refused)
       .field("in_opened", &EventLog::in_opened);
   using Change = EventLog::Change;
-  auto& change = Record<Change>(log.finish(), "Change", "EventLog::Change")
-                     .field("step", &Change::step)
-                     .field("event", &Change::event)
-                     .field("what", &Change::what)
-                     .finish();
+  Record<Change> record(log.finish(), "Change", "EventLog::Change");
+  auto& change =
+      record.field("step", &Change::step).field("event", &Change::event).field("what", &Change::what).finish();
   change.attr("REMESHING") = std::uint32_t{Change::remeshing};
   change.attr("SUBDIVIDING") = std::uint32_t{Change::subdividing};
   change.attr("MERGING") = std::uint32_t{Change::merging};
