@@ -45,6 +45,11 @@ void translate(std::exception_ptr thrown) {
     set(c.internal_error, e);
   } catch (const Error& e) {
     set(c.error, e);
+  } catch (const py::cast_error&) {
+    // pybind11 would raise RuntimeError, and explain how pybind11 is compiled.
+    PyErr_SetString(PyExc_TypeError,
+                    "an argument, or the answer of a function that was given, has a wrong type: the docstring of the "
+                    "called function names the right ones");
   }
 }
 

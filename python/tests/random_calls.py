@@ -1,17 +1,20 @@
 """Random calls on one environment: add, remove, reorder, move, advance, edit, restore, and calls that must be refused.
+Between them random calls on surfaces, bodies, catheters and simulations (random_solids.py).
 
 Run as a program: random_calls.py [CALLS] [SEED]. It is made to run under an address sanitizer, and stops at the first
-particle that is not where its state says.
+particle that is not where its state says. Equal seeds make equal calls.
 """
 from __future__ import annotations
 
 import sys
-from typing import Callable
+from typing import Any, Callable
 
 import numpy as np
 
 import dartcast as dc
+from random_solids import WORLDS
 
+MAX_CELLS = 1500  # an environment with more cells is made anew
 RESPONSES = [None, dc.Reflect(0.5, friction=0.1), dc.Slide(), dc.Stick(), dc.Absorb(),
              {None: dc.Reflect(0.9), "xmin": dc.Slide(), "xmax": dc.Escape()}]
 
@@ -19,13 +22,18 @@ RESPONSES = [None, dc.Reflect(0.5, friction=0.1), dc.Slide(), dc.Stick(), dc.Abs
 class Calls:
     """The environment, its sets of particles, and one method for each kind of call."""
 
-    def __init__(self, seed: int) -> None:
-        self.random = np.random.default_rng(seed)
-        box = dc.BoxOptions(cells=[4, 4, 4], size=[4.0, 4.0, 4.0], mixed=True, blocked_share=0.1, jitter=0.2, seed=seed)
+    KINDS = {"add": 3, "remove": 2, "reorder": 1, "select": 2, "advance_some": 4, "move": 1, "edit": 1, "look": 1,
+             "refuse": 2}
+
+    def __init__(self, random: np.random.Generator) -> None:
+        self.random, self.refused = random, 0
+        self.make()
+
+    def make(self) -> None:
+        box = dc.BoxOptions(cells=[4, 4, 4], size=[4.0, 4.0, 4.0], mixed=True, blocked_share=0.1, jitter=0.2,
+                            seed=int(self.random.integers(1000)))
         self.environment = dc.Environment(dc.generate_box(box), threads=2)
-        self.rest = self.environment.positions.copy()
         self.sets = [dc.Particles() for _ in range(3)]
-        self.refused = 0
 
     def one(self) -> dc.Particles:
         return self.sets[self.random.integers(len(self.sets))]
@@ -52,6 +60,9 @@ class Calls:
         for particles in self.sets:
             self.advance_one(particles)
 
+    def advance_some(self) -> None:
+        self.advance_one(self.one())
+
     def advance_one(self, particles: dc.Particles) -> None:
         n = len(particles)
         velocities = self.random.normal(0.0, 1.0, (n, 3))
@@ -60,7 +71,8 @@ class Calls:
         if kind == len(RESPONSES):
             self.environment.advance(particles, targets, lambda contacts, walls: -0.5 * contacts["unused"])
         elif kind == len(RESPONSES) + 1:
-            self.environment.advance(particles, targets, lambda contact, walls, earlier: -contact.unused, per_contact=True)
+            self.environment.advance(particles, targets, lambda contact, walls, earlier: -contact.unused,
+                                     per_contact=True)
         elif RESPONSES[kind] is None:
             self.environment.advance(particles, targets)
         else:
@@ -74,10 +86,9 @@ class Calls:
         self.advance()
 
     def edit(self) -> None:
-        cells = self.environment.map.cells()
-        if len(cells) > 3000:
-            return
-        cell = int(self.random.choice(cells))
+        if self.environment.map.cell_count() > MAX_CELLS:
+            self.make()
+        cell = int(self.random.choice(self.environment.map.cells()))
         plane = dc.plane_through(self.random.uniform(0.5, 3.5, 3), self.random.normal(size=3))
         kind = self.random.integers(4)
 
@@ -129,25 +140,26 @@ class Calls:
             raise AssertionError("a wrong call was not refused")
 
 
-WEIGHTS = {"add": 3, "remove": 2, "reorder": 1, "select": 2, "advance_one": 4, "move": 1, "edit": 1, "look": 1, "refuse": 2}
+    def check(self) -> None:
+        assert sum(dc.audit(self.environment.complex, particles).failed for particles in self.sets) == 0
 
 
-def run(calls: int, seed: int) -> Calls:
-    state = Calls(seed)
-    names = [name for name, weight in WEIGHTS.items() for _ in range(weight)]
+def run(calls: int, seed: int) -> list[Any]:
+    """Half of the calls are on the environment. Returns the worlds as they are then."""
+    random = np.random.default_rng(seed)
+    worlds: list[Any] = [world(random) for world in (Calls, *WORLDS)]
+    kinds = [[name for name, weight in world.KINDS.items() for _ in range(weight)] for world in worlds]
     for _ in range(calls):
-        name = names[state.random.integers(len(names))]
-        if name == "advance_one":
-            state.advance_one(state.one())
-        else:
-            getattr(state, name)()
-    failed = sum(dc.audit(state.environment.complex, particles).failed for particles in state.sets)
-    assert failed == 0
-    return state
+        i = int(random.integers(2 * len(WORLDS)))
+        i = i + 1 if i < len(WORLDS) else 0
+        getattr(worlds[i], kinds[i][random.integers(len(kinds[i]))])()
+    for world in worlds:
+        world.check()
+    return worlds
 
 
 if __name__ == "__main__":
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 10_000
     done = run(count, int(sys.argv[2]) if len(sys.argv) > 2 else 1)
-    print(f"{count} calls, {done.refused} refused, {sum(map(len, done.sets))} particles, "
-          f"{len(done.environment.map.cells())} cells")
+    print(f"{count} calls, {sum(world.refused for world in done)} refused, {sum(map(len, done[0].sets))} particles, "
+          f"{done[0].environment.map.cell_count()} cells, state {done[-1].simulation.state_hash().hex()}")

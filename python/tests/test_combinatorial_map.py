@@ -57,8 +57,9 @@ def test_cells_are_an_array_and_arrays_of_cells_are_answered_at_once():
     assert m.is_free(int(cells[0])) is True and isinstance(m.type(int(cells[0])), dartcast.CellType)
     with pytest.raises(dartcast.InvalidArgument, match="there is no cell"):
         m.source(np.append(cells, np.uint32(0xFFFFFFFF)))
-    with pytest.raises(TypeError):
-        m.source(cells.astype(float))
+    for wrong in (cells.astype(float), 1.5, "cell"):
+        with pytest.raises(TypeError):
+            m.source(wrong)
 
 
 def test_free_marks_make_walls():

@@ -48,6 +48,17 @@ def test_records_are_copied_compared_and_saved(record):
         type(record)(nonsense=1)
 
 
+@pytest.mark.parametrize("make", [
+    lambda z: dartcast.BladePath([[[0, 0, 0], [0, 0, z]], [[1, 0, 0], [1, 0, 1]]]),
+    lambda z: dartcast.DeformationStep(frames=[np.zeros((2, 3)), np.full((2, 3), z)]),
+    lambda z: dartcast.MatchOptions(clusters=[[0, 1], [int(z)]]),
+])
+def test_records_with_lists_of_arrays_are_compared(make):
+    assert make(1.0) == make(1.0) and copy.copy(make(1.0)) == make(1.0) and make(1.0) != make(2.0)
+    shorter = dartcast.BladePath([[[0, 0, 0], [0, 0, 1.0]]])
+    assert make(1.0) != shorter and shorter != dartcast.BladePath()
+
+
 def test_members_refuse_other_types():
     for make in (lambda: dartcast.Reflect("much"), lambda: dartcast.StepOptions(max_contacts=-1),
                  lambda: dartcast.WallResponse("bounce"), lambda: dartcast.Acceleration([1, 2]),

@@ -1,6 +1,7 @@
 // Which particles are in a cell, or touch a wall of it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <unordered_map>
@@ -11,7 +12,7 @@
 namespace dartcast::detail {
 
 /// Lists of particles by cell. An entry may be out of date, where a particle has left since. A reader checks the
-/// particle's state.
+/// particle's state. Such entries stay: most are soon out of date where particles follow many edits without a step.
 class CellParticleIndex {
  public:
   /// Cost: linear in the particles.
@@ -19,7 +20,11 @@ class CellParticleIndex {
     first_.reserve(states.size());
     entries_.reserve(states.size());
     for (std::uint32_t i = 0; i < states.size(); ++i) add(i, states[i]);
+    made_with_ = entries_.size();
   }
+
+  /// Whether most entries may be out of date. A new index then costs no more than adding them did.
+  [[nodiscard]] bool is_outdated() const { return entries_.size() > 2 * made_with_ + smallest; }
 
   void add(std::uint32_t particle, const ParticleState& state) {
     add(particle, state.cell);
@@ -40,6 +45,7 @@ class CellParticleIndex {
 
  private:
   static constexpr std::uint32_t none = 0xffffffffU;
+  static constexpr std::size_t smallest = 64;  // entries for which a new index is not worth it
 
   struct Entry {
     std::uint32_t particle;
@@ -54,6 +60,7 @@ class CellParticleIndex {
 
   std::unordered_map<std::uint32_t, std::uint32_t> first_;  // entry of a cell
   std::vector<Entry> entries_;
+  std::size_t made_with_ = 0;  // entries of the first lists
 };
 
 }  // namespace dartcast::detail

@@ -65,7 +65,7 @@ class EditFollower {
   }
 
   UpdateReport update_after_edit() {
-    if (!details_.index) details_.index.emplace(states_);
+    if (!details_.index || details_.index->is_outdated()) details_.index.emplace(states_);
     const std::vector<std::uint32_t> touched = particles_near(removed_, edit_.map.marked);
     for (const Cell c : removed_) details_.index->clear(c);  // another cell may take its number
     for (const std::uint32_t i : touched) take_along(i);

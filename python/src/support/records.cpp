@@ -7,8 +7,18 @@
 namespace py = pybind11;
 
 namespace dartcast::python {
-
 namespace {
+
+// Lists may hold arrays, at any depth. `equal`: numpy.array_equal.
+bool equal_values(const py::object& x, const py::object& y, const py::object& equal) {
+  if (py::isinstance<py::array>(x) || py::isinstance<py::array>(y)) return equal(x, y).cast<bool>();
+  if (!py::isinstance<py::list>(x) || !py::isinstance<py::list>(y)) return x.equal(y);
+  const py::list a(x);
+  const py::list b(y);
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](py::handle one, py::handle other) {
+    return equal_values(py::reinterpret_borrow<py::object>(one), py::reinterpret_borrow<py::object>(other), equal);
+  });
+}
 
 using Members = std::vector<std::string>;
 
@@ -35,7 +45,7 @@ bool equal(const py::object& a, const py::object& b, const Members& members) {
   return std::all_of(members.begin(), members.end(), [&](const std::string& member) {
     const py::object x = a.attr(member.c_str());
     const py::object y = b.attr(member.c_str());
-    return py::isinstance<py::array>(x) ? equal_arrays(x, y).cast<bool>() : x.equal(y);
+    return equal_values(x, y, equal_arrays);
   });
 }
 

@@ -1,0 +1,176 @@
+"""Environments: places, moves, edits, steps with every kind of answer, traces."""
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+import dartcast as dc
+
+from . import Calls, refused
+from .scenes import COUNT, box, environment, first, with_particles
+
+
+def of_making() -> Calls:
+    mesh = box()
+    mesh.regions = np.arange(27) % 2 + 1
+    env, particles = with_particles()
+    x = np.random.default_rng(1).uniform(-0.2, 1.2, (20, 3))
+    state = particles[0]
+    states, weights = particles.states, particles.held_weights()
+    broken = states.copy()
+    broken["cell"][3] = 77
+
+    return {
+        "Environment": lambda: dc.Environment(mesh, threads=1),
+        "Environment: free": lambda: dc.Environment(mesh, threads=1, free=["1"]),
+        "Environment: refused": refused(lambda: dc.Environment(mesh, threads=1, free=["bone"])),
+        "Environment.locate": lambda: env.locate([0.25, 0.25, 0.25]), "Environment.locate: many": lambda: env.locate(x),
+        "Environment.locate: refused": refused(lambda: env.locate([np.nan, 0.0, 0.0])),
+        "Environment.validity": env.validity, "Environment.awaits_advance": lambda: env.awaits_advance(particles),
+        "Environment.check_advance": lambda: env.check_advance(particles),
+        "Environment.check_advance: refused": refused(
+            lambda: env.check_advance(particles, dc.StepOptions(max_parts=0))),
+        "Environment.add": lambda: env.add(x), "Environment.add: one": lambda: env.add(
+            dc.Particles(), state.at(), state.position),
+        "Environment.add: set": lambda: env.add(dc.Particles(), x),
+        "Environment.add: refused": refused(lambda: env.add(particles, np.zeros((3, 2)))),
+        "Environment.add_random": lambda: env.add_random(COUNT, seed=3),
+        "Environment.restored": lambda: env.restored(states, weights),
+        "Environment.restored: refused": refused(lambda: env.restored(broken, weights)),
+    }
+
+
+def of_moves() -> Calls:
+    env = environment()
+    rest = env.positions.copy()
+    later, folded = rest + [0.1, 0.0, 0.0], rest.copy()
+    folded[21] += [2.0, 0.0, 0.0]
+
+    def next_points() -> None:
+        for points in (later, rest):
+            with env.next_points() as x:
+                x[:] = points
+
+    def leave_next_points() -> None:
+        with env.next_points() as x:
+            x[0] = 7.0
+            raise KeyError("out of the block")
+
+    return {
+        "Environment.move": lambda: (env.move(later), env.move(rest)),
+        "Environment.move: refused": refused(lambda: env.move(rest[1:])),
+        "Environment.next_points": next_points, "NextPoints.__enter__": next_points, "NextPoints.__exit__": next_points,
+        "NextPoints.__exit__: raised": refused(leave_next_points), "Environment.next_points: unused": env.next_points,
+        "Environment.first_inversion": lambda: env.first_inversion(folded),
+        "Environment.first_inversion: none": lambda: env.first_inversion(later),
+        "Environment.first_inversion: refused": refused(lambda: env.first_inversion(rest[1:])),
+        "Environment.move_until_inverted": lambda: (env.move_until_inverted(folded, 0.5), env.move(rest)),
+        "Environment.move_until_inverted: refused": refused(lambda: env.move_until_inverted(rest, np.nan)),
+    }
+
+
+def fail(edit: dc.ComplexEdit) -> None:
+    dc.remove(edit.topology, first(edit.map))
+    raise KeyError("out of the edit")
+
+
+def of_edits() -> Calls:
+    marked, marking = with_particles()
+    env, particles = with_particles()
+    refusing = environment()
+    subdividing, inside = with_particles()
+
+    cell = marking[0].cell
+
+    def mark() -> None:
+        for free in (False, True):
+            marked.edit(lambda edit: edit.topology.set_free(cell, free))
+            marked.update_after_edit(marking, "hold")
+
+    def subdivide() -> None:
+        made: list[dc.Subdivision] = []
+        report = subdividing.edit(lambda edit: made.append(dc.subdivide(edit, first(edit.map)).subdivision))
+        dc.update_after_edit(subdividing.map, report.map.added, made[0])
+        subdividing.update_after_edit(inside, "hold")
+        subdividing.edit(lambda edit: dc.coarsen(edit, made[0]))
+        subdividing.update_after_edit(inside, "hold")
+
+    def orphans() -> None:
+        """In an environment of its own."""
+        own = environment()
+        own_particles = own.add_random(COUNT, seed=5)
+        own.edit(lambda edit: [edit.topology.set_free(int(c), False) for c in edit.map.cells()[::2]])
+        for policy in ("hold", "relocate", "absorb"):
+            own.update_after_edit(own_particles.copy(), policy)
+
+    return {
+        "Environment.edit": mark, "Environment.edit: subdivide": subdivide,
+        "Environment.edit: raised": refused(lambda: refusing.edit(fail)),
+        "Environment.edit: refused": refused(lambda: refusing.edit(lambda edit: dc.remove(edit.topology, 3))),
+        "Environment.edit: no function": refused(lambda: refusing.edit(3)),
+        "Environment.update_after_edit": orphans,
+        "Environment.update_after_edit: nothing": lambda: env.update_after_edit(particles),
+        "Environment.update_after_edit: refused": refused(lambda: env.update_after_edit(particles, "no policy")),
+    }
+
+
+def raising(*arguments: object) -> None:
+    raise KeyError("out of the response")
+
+
+def answers() -> dict[str, dict[str, object]]:
+    """Keyword arguments of advance() for each kind of answer."""
+    velocities = np.ones((COUNT, 3))
+    by_library = {"velocities": velocities, "dt": 0.3, "statuses": np.zeros(COUNT, np.uint8)}
+    table: dict[str, dict[str, object]] = {
+        "none": {}, "rounds": {"respond": lambda contacts, walls: -0.5 * contacts["unused"]},
+        "rounds, marks": {"respond": lambda c, walls: (-0.5 * c["unused"], np.zeros(len(c), dtype=bool))},
+        "per contact": {"respond": lambda contact, walls, earlier: -contact.unused, "per_contact": True},
+        "per contact, record": {"respond": lambda contact, walls, earlier: dc.AfterContact(-contact.unused),
+                                "per_contact": True},
+        "per contact, stop": {"respond": lambda contact, walls, earlier: None, "per_contact": True}}
+    for response in (dc.Reflect(0.5, friction=0.1), dc.Slide(), dc.Stick(), dc.Absorb(), dc.Escape(),
+                     dc.WallResponse("slide"), dc.WallResponses(dc.Slide())):
+        table[repr(response)] = {"respond": response} | by_library
+    table["by patch"] = {"respond": {None: dc.Reflect(0.9), "xmin": dc.Slide()}} | by_library
+    table["acceleration"] = {"respond": dc.Reflect(), "acceleration": dc.Acceleration([0, 0, -1.0], 0.3)} | by_library
+    return table
+
+
+def wrong_answers() -> dict[str, dict[str, object]]:
+    """Keyword arguments with which advance() is refused."""
+    return {
+        "raised in a round": {"respond": raising}, "raised per contact": {"respond": raising, "per_contact": True},
+        "shape": {"respond": lambda contacts, walls: np.zeros((1, 2))},
+        "type": {"respond": lambda contact, walls, earlier: "text", "per_contact": True},
+        "no velocities": {"respond": dc.Reflect()}, "no response": {"respond": "slide"},
+        "patch": {"respond": {"nowhere": dc.Slide()}, "velocities": np.zeros((COUNT, 3)), "dt": 1.0},
+        "options": {"options": dc.StepOptions(max_parts=0)}}
+
+
+def of_steps() -> Calls:
+    env, particles = with_particles()
+    targets = particles.positions + np.random.default_rng(2).normal(0.0, 1.0, (COUNT, 3))
+    saved, which = particles.copy(), np.arange(COUNT)
+
+    def step(options: dict[str, object]) -> Callable[[], None]:
+        def call() -> None:
+            env.advance(particles, targets, **options)
+            particles.replace(which, saved)
+        return call
+
+    table: Calls = {"Environment.advance: " + name: step(options) for name, options in answers().items()}
+    table |= {"Environment.trace: " + name: lambda o=options: env.trace(particles, 0, targets[:2], **o)
+              for name, options in answers().items() if not name.startswith("rounds")}
+    table |= {"Environment.advance: refused, " + name: refused(step(options))
+              for name, options in wrong_answers().items()}
+    table["Environment.advance: refused, targets"] = refused(lambda: env.advance(particles, targets[1:]))
+    table["Environment.trace: refused"] = refused(lambda: env.trace(particles, COUNT, targets[:2]))
+    table["Environment.trace: raised"] = refused(
+        lambda: env.trace(particles, 0, particles.positions[:1] + 5.0, raising, per_contact=True))
+    return table
+
+
+def calls() -> Calls:
+    return of_making() | of_moves() | of_edits() | of_steps()

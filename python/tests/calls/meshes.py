@@ -1,0 +1,150 @@
+"""Meshes: from arrays, from generators, from and to files; checks and selections."""
+from __future__ import annotations
+
+import copy
+import pickle
+
+import numpy as np
+
+import dartcast as dc
+
+from . import Calls, refused
+from .scenes import FOLDER, box
+
+POINTS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]], dtype=float)
+TETRA = np.array([[0, 1, 2, 3], [1, 2, 3, 4]])
+#: A file that is no mesh.
+BROKEN = b"$MeshFormat\nnonsense\n"
+
+
+def of_data() -> Calls:
+    mesh = box(mixed=True)
+    mesh.regions = np.arange(mesh.cell_count)
+    mesh.cell_data = {"values in the cells": np.ones(mesh.cell_count)}
+
+    def add_cell() -> None:
+        dc.MeshData(POINTS, {"tetra": TETRA}).add_cell("tetrahedron", [0, 1, 2, 4])
+
+    def add_patch_face() -> None:
+        dc.MeshData(POINTS, {"tetra": TETRA}).add_patch_face([0, 1, 2], 3)
+
+    def add_cell_refused() -> None:
+        dc.MeshData(POINTS, {"tetra": TETRA}).add_cell("tetrahedron", [0.5])
+
+    return {
+        "MeshData": lambda: dc.MeshData(POINTS, {"tetra": TETRA}, regions=[1, 2], patches={"inlet": [[0, 2, 1]]},
+                                        region_names={1: "the first region of all"}, free=np.array([True, False]),
+                                        point_data={"values": POINTS}, cell_data={"values": [1.0, 2.0]}),
+        "MeshData: polyhedra": lambda: dc.MeshData(
+            POINTS, {"polyhedron": [[[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]]}),
+        "MeshData: points refused": refused(lambda: dc.MeshData(POINTS.astype(np.float32), {"tetra": TETRA})),
+        "MeshData: cells refused": refused(lambda: dc.MeshData(POINTS, {"tetra": TETRA + 5})),
+        "MeshData: regions refused": refused(lambda: dc.MeshData(POINTS, {"tetra": TETRA}, regions=[1])),
+        "MeshData.cell": lambda: mesh.cell(3), "MeshData.cell: refused": refused(lambda: mesh.cell(10**6)),
+        "MeshData.patch_face": lambda: mesh.patch_face(3),
+        "MeshData.add_cell": add_cell, "MeshData.add_patch_face": add_patch_face,
+        "MeshData.add_cell: refused": refused(add_cell_refused),
+        "MeshData.__repr__": lambda: repr(mesh), "MeshData.__copy__": lambda: copy.copy(mesh),
+        "MeshData.__deepcopy__": lambda: copy.deepcopy(mesh), "MeshData.__getstate__": lambda: pickle.dumps(mesh),
+        "MeshData.__setstate__": lambda: pickle.loads(pickle.dumps(mesh)),
+        "dimension": lambda: dc.dimension("prism"), "dimension: refused": refused(lambda: dc.dimension(8)),
+    }
+
+
+def of_checks() -> Calls:
+    mesh = box(mixed=True)
+    report = dc.check_and_repair(mesh)
+    inverted = dc.MeshData(POINTS, {"tetra": [[0, 2, 1, 3]]})
+    flat = dc.MeshData(POINTS * [1.0, 1.0, 0.0], {"tetra": TETRA})
+    return {
+        "check_and_repair": lambda: dc.check_and_repair(mesh),
+        "check_and_repair: repair": lambda: dc.check_and_repair(copy.copy(inverted)),
+        "check_and_repair: defects": lambda: dc.check_and_repair(copy.copy(flat)),
+        "Finding.add": lambda: dc.Finding("kind").add(3),
+        "verdict_name": lambda: dc.verdict_name("warn"),
+        "verdict_name: refused": refused(lambda: dc.verdict_name("no")),
+        "MeshReport: of a mesh": lambda: (copy.copy(report), repr(report), report.valid, report.verdict),
+    }
+
+
+def of_selections() -> Calls:
+    mesh = box()
+    mesh.regions = np.arange(27) % 2 + 1
+    mesh.region_names = {2: "a lumen with a long name"}
+    mesh.cell_data = {"kind": np.arange(27.0)}
+    outer = np.array([[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]], dtype=float)
+    rings = [dc.Ring(outer, "rim"), dc.Ring(0.5 * outer + 1.0, "hole")]
+    rings[1].points = np.array([[1, 1, 0], [2, 1, 0], [2, 2, 0], [1, 2, 0]], dtype=float)
+    return {
+        "select_free_regions": lambda: dc.select_free_regions(mesh, ["a lumen with a long name"]),
+        "select_free_regions: refused": refused(lambda: dc.select_free_regions(mesh, ["tissue"])),
+        "select_free_values": lambda: dc.select_free_values(mesh, "kind", [1.0, 2.0]),
+        "select_free_values: refused": refused(lambda: dc.select_free_values(mesh, "sort", [1.0])),
+        "select_patches": lambda: dc.select_patches(copy.copy(mesh), ["xmin"]),
+        "select_patches: refused": refused(lambda: dc.select_patches(mesh, ["inlet"])),
+        "divide_walls": lambda: dc.divide_walls(copy.copy(mesh), 30.0),
+        "divide_walls: refused": refused(lambda: dc.divide_walls(dc.MeshData(POINTS, {"tetra": [[0, 2, 1, 3]]}), 30.0)),
+        "decompose": lambda: dc.decompose(rings), "decompose: refused": refused(lambda: dc.decompose([])),
+        "decompose: ring refused": refused(lambda: dc.decompose([dc.Ring(outer[[0, 2, 1, 3]].copy())])),
+    }
+
+
+def of_generators() -> Calls:
+    options = dc.BoxOptions(cells=[2, 2, 2], mixed=True, jitter=0.2)
+    vessel = {"core": 2, "rings": 1, "tissue_layers": 1, "step_length": 1.5e-3}
+    return {
+        "generate_box": lambda: dc.generate_box(options), "generate_box: by names": lambda: box(),
+        "generate_box: refused": refused(lambda: dc.generate_box(cells=[0, 1, 1])),
+        "generate_box: name refused": refused(lambda: dc.generate_box(cell=3)),
+        "generate_bar": dc.generate_bar, "bar_options": dc.bar_options,
+        "generate_barrel": lambda: dc.generate_barrel(staves=8, rows=4, rings=2),
+        "generate_maze": lambda: dc.generate_maze(rooms=[2, 2], obstacles=1),
+        "generate_octahedra": lambda: dc.generate_octahedra(cells=[1, 1, 1]),
+        "generate_rectangle": lambda: dc.generate_rectangle(cells=[5, 4], type="polygon"),
+        "generate_vessel": lambda: dc.generate_vessel(**vessel),
+    }
+
+
+def of_files() -> Calls:
+    mesh = box()
+    table: Calls = {}
+    for ending in dc.mesh_endings():
+        path = FOLDER / ("box" + ending)
+        dc.write_mesh(mesh, path)
+        table[f"write_mesh: {ending}"] = lambda p=path: dc.write_mesh(mesh, p)
+        table[f"read_mesh: {ending}"] = lambda p=path: dc.read_mesh(p)
+    path, broken, surface = FOLDER / "box.msh", FOLDER / "broken.msh", FOLDER / "tetra.off"
+    dc.write_bytes(broken, BROKEN)
+    surface.write_text("OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n", encoding="utf-8")
+    file = dc.read_mesh(path)
+    return table | {
+        "read_mesh: defects": lambda: dc.read_mesh(broken), "read_mesh: refused": refused(lambda: dc.read_mesh(3)),
+        "read_mesh: little memory": lambda: dc.read_mesh(path, dc.ReadOptions(max_memory=1000)),
+        "read_valid_mesh": lambda: dc.read_valid_mesh(path),
+        "read_valid_mesh: refused": refused(lambda: dc.read_valid_mesh(broken)),
+        "read_surface": lambda: dc.read_surface(surface),
+        "read_surface: refused": refused(lambda: dc.read_surface(FOLDER / "missing.stl")),
+        "check_surface": lambda: dc.check_surface(surface), "check_mesh": lambda: dc.check_mesh(path, threads=1),
+        "write_mesh: refused": refused(lambda: dc.write_mesh(mesh, FOLDER / "box.xyz")),
+        "write_bytes": lambda: dc.write_bytes(FOLDER / "bytes", b"a few bytes"),
+        "write_bytes: refused": refused(lambda: dc.write_bytes(FOLDER / "none" / "bytes", b"")),
+        "is_surface_file": lambda: dc.is_surface_file("a.vtu"), "has_vtk": dc.has_vtk,
+        "mesh_endings": dc.mesh_endings, "surface_endings": dc.surface_endings,
+        "writable_mesh_endings": dc.writable_mesh_endings,
+        "MeshFile": lambda: dc.MeshFile(mesh, file.report), "MeshFile.__iter__": lambda: list(file),
+        "MeshFile.__repr__": lambda: repr(file), "MeshFile: mesh alone": lambda: dc.read_mesh(path).mesh.points,
+    }
+
+
+def of_meshio() -> Calls:
+    try:
+        import meshio  # noqa: F401
+    except ImportError:
+        return {}
+    mesh = box(mixed=True)
+    made = dc.to_meshio(mesh)
+    return {"to_meshio": lambda: dc.to_meshio(mesh), "from_meshio": lambda: dc.from_meshio(made)}
+
+
+def calls() -> Calls:
+    return of_data() | of_checks() | of_selections() | of_generators() | of_files() | of_meshio()

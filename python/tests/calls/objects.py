@@ -1,0 +1,99 @@
+"""Properties of living objects, and classes that Python cannot construct."""
+from __future__ import annotations
+
+import numpy as np
+
+import dartcast as dc
+
+from . import Calls, classes, is_record, refused, scenes
+
+
+def of_meshes() -> dict[str, object]:
+    mesh = scenes.box(mixed=True)
+    mesh.regions = np.arange(mesh.cell_count)
+    mesh.region_names = {1: "a region with a long name"}
+    mesh.point_data = {"values at the points": np.ones((len(mesh.points), 3))}
+    mesh.cell_data = {"values in the cells": np.ones(mesh.cell_count)}
+    c = scenes.complex_of()
+    moved = c.positions.copy()
+    moved[0] = 0.9
+    c.move(moved)
+    return {"MeshData": mesh, "CellComplex": c, "CombinatorialMap": c.map, "CellView": c.map.view(scenes.first(c.map)),
+            "Shape": c.map.shape(scenes.first(c.map))}
+
+
+def of_edits() -> dict[str, object]:
+    c = scenes.complex_of()
+    edit = dc.ComplexEdit(c)
+    made = dc.subdivide(edit, scenes.first(edit.map))
+    surface = dc.Surface(dc.generate_barrel(staves=8, rows=4, rings=2))
+    return {"ComplexEdit": edit, "Transaction": edit.topology, "Subdivided": made, "Subdivision": made.subdivision,
+            "SurfaceEdit": dc.SurfaceEdit(surface),
+            "Surface": dc.Surface(dc.generate_barrel(staves=8, rows=4, rings=2))}
+
+
+def of_particles() -> dict[str, object]:
+    env, particles = scenes.with_particles()
+    env.edit(lambda edit: dc.subdivide(edit, scenes.first(edit.map)))
+    update = env.update_after_edit(particles)
+    targets = particles.positions + 2.0
+    spheres = particles.copy()
+    trace = env.trace(particles, 0, targets)[0]
+    overlapping = dc.advance_spheres(env, spheres, np.full(scenes.COUNT, 0.05), targets)
+    report = env.advance(particles, targets, options=dc.StepOptions(max_contacts=1))
+    field = dc.VectorField(env.complex, env.positions.copy())
+    return {"Environment": env, "Particles": particles, "UpdateReport": update, "Trace": trace, "StepReport": report,
+            "SphereReport": overlapping, "VectorField": field, "Deformation": dc.Deformation([], env.positions),
+            "StateHash": dc.StateHash((1, 2)), "MeshFile": dc.MeshFile(scenes.box(), dc.MeshReport())}
+
+
+def of_solids() -> dict[str, object]:
+    bodies = scenes.bodies(scenes.environment())
+    bodies.step()
+    saved = bodies.checkpoint()
+    catheter = scenes.catheter(scenes.tube())
+    surface = dc.Surface(dc.generate_barrel(staves=8, rows=4, rings=2))
+    place = dc.SurfaceLocator(surface).nearest(surface, [0.3, 0.01, 0.02]).place
+    trace = dc.SurfaceTrace()
+    report = dc.advance(surface, dc.surface_places([place]), np.array([[0.0, 0.5, 0.1]]), threads=1)
+    dc.step(surface, place, [0.0, 0.5, 0.1], trace=trace)
+    return {"Bodies": bodies, "BodiesCheckpoint": saved, "BodiesCheckpoint.Particle": saved.particles[0],
+            "Catheter": catheter, "CatheterCheckpoint": catheter.checkpoint(), "SurfaceTrace": trace,
+            "SurfaceReport": report}
+
+
+def of_simulations() -> dict[str, object]:
+    simulation = scenes.simulation()
+    options = dc.StatisticsOptions(hits=True, residence=True, pathlines_every=2)
+    options.planes = [dc.SectionPlane("a-plane-with-a-long-name", [0.5, 0.5, 0.5], [0.0, 0.0, 1.0])]
+    simulation.set_statistics(options)
+    simulation.add_body(scenes.BODY, dc.BodyOptions(mass=2.0))
+    simulation.step()
+    return {"Simulation": simulation, "SimulationCheckpoint": simulation.checkpoint(),
+            "Statistics": simulation.statistics}
+
+
+def living() -> dict[str, object]:
+    return of_meshes() | of_edits() | of_particles() | of_solids() | of_simulations()
+
+
+def calls() -> Calls:
+    table: Calls = {}
+    objects = living()
+    for name, cls in classes().items():
+        if is_record(cls):
+            continue
+        for member, value in vars(cls).items():
+            if isinstance(value, property):
+                table[f"{name}.{member}"] = lambda o=objects[name], m=member: getattr(o, m)
+                if value.fset is not None:
+                    own = getattr(objects[name], member)
+                    table[f"{name}.{member}="] = lambda o=objects[name], m=member, v=own: setattr(o, m, v)
+                    table[f"{name}.{member}=: refused"] = refused(
+                        lambda o=objects[name], m=member: setattr(o, m, Ellipsis))
+        try:
+            cls()
+        except TypeError as error:
+            if "No constructor" in str(error):
+                table[name] = refused(cls)
+    return table

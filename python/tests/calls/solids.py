@@ -1,0 +1,196 @@
+"""Particles on surfaces, bodies, catheters."""
+from __future__ import annotations
+
+import numpy as np
+
+import dartcast as dc
+
+from . import Calls, refused
+from .environments import raising
+from .scenes import BODY, bodies, catheter, environment, first, tube
+
+WAYS = np.random.default_rng(3).normal(0.0, 0.3, (5, 3))
+
+
+def barrel() -> dc.MeshData:
+    return dc.generate_barrel(staves=8, rows=4, rings=2)
+
+
+def of_surfaces() -> Calls:
+    mesh, surface = barrel(), dc.Surface(barrel())
+    locator = dc.SurfaceLocator(surface)
+    x = np.array([[0.3, 0.01, 0.02], [0.0, 0.3, 0.1]])
+    place = locator.nearest(surface, x[0]).place
+    places, t = dc.surface_places([place] * 5), place.triangle
+    rest, face = surface.positions.copy(), first(surface.map)
+    table: Calls = {}
+    for name in ("vertices", "corners", "normal"):
+        table[f"Surface.{name}"] = lambda f=getattr(surface, name): f(t)
+        table[f"Surface.{name}: refused"] = refused(lambda f=getattr(surface, name): f((0xFFFFFF0, 0)))
+    return table | {
+        "Surface": lambda: dc.Surface(mesh), "Surface: refused": refused(lambda: dc.Surface(dc.MeshData())),
+        "Surface.move": lambda: surface.move(rest, threads=1),
+        "Surface.move: refused": refused(lambda: surface.move(rest[1:])),
+        "Surface.set_free": lambda: (surface.set_free(face, False), surface.set_free(face, True)),
+        "Surface.set_free: refused": refused(lambda: surface.set_free(0xFFFFFF0, True)),
+        "Surface.triangles": surface.triangles, "Surface.across": lambda: surface.across(t, 0),
+        "Surface.across: refused": refused(lambda: surface.across(t, 3)),
+        "Surface.contains": lambda: surface.contains(place), "Surface.contains: many": lambda: surface.contains(places),
+        "Surface.point": lambda: surface.point(place), "Surface.point: many": lambda: surface.point(places),
+        "Surface.point: refused": refused(lambda: surface.point(dc.SurfacePlace())),
+        "Surface.place": lambda: surface.place(t, [0.2, 0.3, 0.5]),
+        "Surface.place: refused": refused(lambda: surface.place((0xFFFFFF0, 0), [0.2, 0.3, 0.5])),
+        "surface_places": lambda: dc.surface_places([place, place]),
+        "surface_places: refused": refused(lambda: dc.surface_places([3])),
+        "nearest_in_triangle": lambda: dc.nearest_in_triangle(surface, t, x[0]),
+        "nearest_in_triangle: refused": refused(lambda: dc.nearest_in_triangle(surface, (0xFFFFFF0, 0), x[0])),
+        "SurfaceLocator": lambda: dc.SurfaceLocator(surface),
+        "SurfaceLocator.nearest": lambda: dc.SurfaceLocator(surface).nearest(surface, x[0]),
+        "SurfaceLocator.nearest: many": lambda: dc.SurfaceLocator(surface).nearest(surface, x),
+        "SurfaceLocator.nearest: refused": refused(lambda: locator.nearest(surface, x)),
+        "tangent": lambda: dc.tangent(surface, t, 0, 0.3),
+        "tangent: refused": refused(lambda: dc.tangent(surface, (0xFFFFFF0, 0), 0, 0.3)),
+    }
+
+
+def of_surface_steps() -> Calls:
+    """Particles that meet the walls of faces that are not free."""
+    surface = dc.Surface(barrel())
+    place = dc.SurfaceLocator(surface).nearest(surface, [0.3, 0.01, 0.02]).place
+    for c in surface.map.cells()[::3]:
+        surface.set_free(int(c), bool(c == place.triangle.cell))
+    places, saved = dc.surface_places([place] * 5), dc.surface_places([place] * 5)
+
+    def step(respond: object) -> None:
+        for way in WAYS:
+            dc.step(surface, dc.SurfacePlace(place.triangle, place.weights), way, respond, trace=dc.SurfaceTrace())
+
+    def advance(respond: object) -> None:
+        places[:] = saved
+        dc.advance(surface, places, WAYS, respond, threads=1)
+
+    table: Calls = {"SurfaceTrace": dc.SurfaceTrace}
+    for name, respond in {"none": None, "slide": lambda c: dc.slid(c, c.unused),
+                          "record": lambda c: dc.AfterSurfaceContact(dc.slid(c, c.unused), True)}.items():
+        table[f"step: {name}"] = lambda r=respond: step(r)
+        table[f"advance: {name}"] = lambda r=respond: advance(r)
+    for name, respond in {"raised": raising, "wrong answer": lambda c: "text"}.items():
+        table[f"step: {name}"] = refused(lambda r=respond: step(r))
+        table[f"advance: {name}"] = refused(lambda r=respond: advance(r))
+    table["step: refused"] = refused(lambda: dc.step(surface, dc.SurfacePlace(), WAYS[0]))
+    table["advance: refused"] = refused(lambda: dc.advance(surface, places, WAYS[1:], threads=1))
+    return table
+
+
+def of_surface_edits() -> Calls:
+    surface = dc.Surface(barrel())
+    x = np.array([0.3, 0.01, 0.02])
+    held = dc.Surface(barrel())
+    edit = dc.SurfaceEdit(held)
+
+    def undone() -> None:
+        with dc.SurfaceEdit(surface) as own:
+            v = dc.split_edge(own.topology, (first(own.map), 0)).vertex
+            own.place(v, own.position(v))
+
+    def raised() -> None:
+        with dc.SurfaceEdit(surface) as own:
+            dc.split_edge(own.topology, (first(own.map), 0))
+            raise KeyError("out of the edit")
+
+    def committed() -> None:
+        own = dc.Surface(barrel())
+        place = dc.SurfaceLocator(own).nearest(own, x).place
+        with dc.SurfaceEdit(own) as own_edit:
+            dc.split_edge(own_edit.topology, (place.triangle.cell, 0))
+            report = own_edit.commit()
+        dc.followed(own, report, place)
+        dc.followed(own, report, dc.surface_places([place]))
+
+    other = dc.SurfaceEditReport(map=dc.EditReport(added=[0xFFFFFF0]))
+    return {
+        "SurfaceEdit": lambda: dc.SurfaceEdit(surface), "SurfaceEdit.__enter__": undone, "SurfaceEdit.__exit__": undone,
+        "SurfaceEdit: refused": refused(lambda: dc.SurfaceEdit(held)), "SurfaceEdit.__exit__: raised": refused(raised),
+        "SurfaceEdit.position": lambda: edit.position(0), "SurfaceEdit.place": undone,
+        "SurfaceEdit.position: refused": refused(lambda: edit.position(10**6)),
+        "SurfaceEdit.place: refused": refused(lambda: edit.place(0, [np.nan, 0.0, 0.0])),
+        "SurfaceEdit.commit": committed, "followed": committed,
+        "followed: refused": refused(lambda: dc.followed(surface, other, dc.SurfacePlace())),
+    }
+
+
+def of_bodies() -> Calls:
+    env = environment()
+    own, mover = bodies(env), bodies(env)
+    saved, state = mover.checkpoint(), own.predicted_state(0)
+    table: Calls = {}
+    for name in ("predicted_state", "id", "first_particle", "particle_count", "fits", "energy", "rigid_motion_of"):
+        table[f"Bodies.{name}"] = lambda f=getattr(own, name): f(0)
+        table[f"Bodies.{name}: refused"] = refused(lambda f=getattr(own, name): f(9))
+
+    def step() -> None:
+        mover.step()
+        mover.restore(saved)
+
+    def edited() -> None:
+        own_env = environment()
+        own_bodies = bodies(own_env)
+        own_env.edit(lambda edit: dc.subdivide(edit, first(edit.map)))
+        own_bodies.update_after_edit()
+
+    return table | {
+        "Bodies": lambda: dc.Bodies(env, dc.BodiesOptions(dt=0.01), {"zmin": dc.Stick()}),
+        "Bodies: refused": refused(lambda: dc.Bodies(env, dc.BodiesOptions(dt=0.01), {"nowhere": dc.Stick()})),
+        "Bodies.add": lambda: bodies(env),
+        "Bodies.add: refused": refused(lambda: own.add(BODY, dc.BodyOptions(mass=-1.0))),
+        "Bodies.add: outside": lambda: dc.Bodies(env, dc.BodiesOptions(dt=0.01)).add(BODY + 3.0, dc.BodyOptions()),
+        "Bodies.step": step, "Bodies.restore": step, "Bodies.checkpoint": own.checkpoint,
+        "Bodies.restore: refused": refused(lambda: own.restore(3)),
+        "Bodies.apply_impulse": lambda: own.apply_impulse(0, state),
+        "Bodies.apply_impulse: refused": refused(lambda: own.apply_impulse(9, state)),
+        "Bodies.update_after_edit": edited, "Bodies.__len__": lambda: len(own), "Bodies.state_hash": own.state_hash,
+    }
+
+
+def of_samples() -> Calls:
+    mesh, options = barrel(), dc.SamplingOptions(spacing=0.2)
+    table: Calls = {}
+    for name in ("sample_solid", "sample_surface", "sample_volume"):
+        table[name] = lambda f=getattr(dc, name): f(mesh, options)
+        table[f"{name}: refused"] = refused(lambda f=getattr(dc, name): f(mesh, dc.SamplingOptions(spacing=-1.0)))
+    table["overlapping_clusters"] = lambda: dc.overlapping_clusters(BODY, 0.2)
+    table["overlapping_clusters: refused"] = refused(lambda: dc.overlapping_clusters(BODY, -1.0))
+    return table
+
+
+def of_catheters() -> Calls:
+    env = tube()
+    own, mover = catheter(env), catheter(env)
+    saved, points = mover.checkpoint(), own.points()
+    options = dc.CatheterOptions(length=0.02, spacing=2e-3, entry=[0.0, 0.0, 1e-3], direction=[0.0, 0.0, 1.0])
+
+    def step() -> None:
+        mover.step(dc.CatheterInput(push=1e-3, turn=0.1))
+        mover.restore(saved)
+
+    def edited() -> None:
+        own_env = tube()
+        own_catheter = catheter(own_env)
+        own_env.edit(lambda edit: dc.subdivide(edit, first(edit.map)))
+        own_catheter.update_after_edit()
+
+    return {
+        "Catheter": lambda: dc.Catheter(env, options),
+        "Catheter: refused": refused(lambda: dc.Catheter(env, dc.CatheterOptions(length=-1.0))),
+        "Catheter.step": step, "Catheter.restore": step, "Catheter.checkpoint": own.checkpoint,
+        "Catheter.step: refused": refused(lambda: own.step(dc.CatheterInput(push=np.nan))),
+        "Catheter.restore: refused": refused(lambda: own.restore(3)),
+        "Catheter.update_after_edit": edited, "Catheter.points": own.points, "Catheter.frames": own.frames,
+        "Catheter.state_hash": own.state_hash,
+        "camera_path": lambda: dc.camera_path(env, points, dc.CameraOptions(spacing=1e-3)),
+        "camera_path: refused": refused(lambda: dc.camera_path(env, points, dc.CameraOptions(spacing=-1.0))),
+    }
+
+
+def calls() -> Calls:
+    return (of_surfaces() | of_surface_steps() | of_surface_edits() | of_bodies() | of_samples() | of_catheters())
