@@ -59,6 +59,11 @@ def test_records_with_lists_of_arrays_are_compared(make):
     assert make(1.0) != shorter and shorter != dartcast.BladePath()
 
 
+@pytest.mark.parametrize("cls", [dartcast.BodiesStep, dartcast.SimulationStep, dartcast.SimulationEdit])
+def test_records_with_reports_are_copied(cls):
+    assert type(copy.copy(cls())) is cls and type(copy.deepcopy(cls())) is cls
+
+
 def test_members_refuse_other_types():
     for make in (lambda: dartcast.Reflect("much"), lambda: dartcast.StepOptions(max_contacts=-1),
                  lambda: dartcast.WallResponse("bounce"), lambda: dartcast.Acceleration([1, 2]),

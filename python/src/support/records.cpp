@@ -87,6 +87,11 @@ void RecordMembers::finish() const {
   define(record_, "__reduce__", [record = record_, members = members_](const py::object& self) {
     return py::make_tuple(record, values_of(self, members));
   });
+  // The values are copies already. Some, such as a StepReport, have no deep copy in Python.
+  define(record_, "__deepcopy__",
+         [record = record_, members = members_](const py::object& self, const py::dict& /*memo*/) {
+           return record(*values_of(self, members));
+         });
   record_.attr("__hash__") = py::none();
 }
 

@@ -20,7 +20,7 @@ Calls = dict[str, Callable[[], object]]
 #: Methods that Python itself gives a class.
 BY_PYTHON = {"__new__", "__init__", "__getattribute__", "__setattr__", "__delattr__", "__class_getitem__"}
 #: Methods that every record has.
-OF_RECORDS = ("__repr__", "__eq__", "__copy__", "__deepcopy__", "__getstate__", "__setstate__")
+OF_RECORDS = ("__repr__", "__eq__", "__reduce__", "__deepcopy__")
 #: Names without calls, and why. Enumerations and errors have none either: they are Python's own classes.
 EXEMPT = {
     "Cell": "typing.NewType: a name for types", "Vertex": "typing.NewType: a name for types",
@@ -43,7 +43,7 @@ def refused(call: Callable[[], object]) -> Callable[[], None]:
 
 def is_record(cls: type) -> bool:
     """Whether the class is a plain record: it is made, read, compared and copied in the same way as all others."""
-    return "__setstate__" in vars(cls) and "__eq__" in vars(cls)
+    return "__reduce__" in vars(cls) and "__eq__" in vars(cls)
 
 
 def classes() -> dict[str, type]:
