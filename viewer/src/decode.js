@@ -1,0 +1,106 @@
+// Decodes the blocks of a report: docs/report.md has the format.
+
+/** Bytes of a block. Throws where it is missing or damaged. */
+export async function readBlock(number) {
+  const element = document.getElementById(`b${number}`);
+  if (!element) throw new Error(`block ${number} is missing`);
+  const packed = Uint8Array.from(atob(element.textContent), (c) => c.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+/** A block of numbers: `kind` is a typed array. A null block gives null. */
+export async function readNumbers(number, kind) {
+  if (number === null || number === undefined) return null;
+  const bytes = await readBlock(number);
+  return new kind(bytes.buffer, 0, Math.floor(bytes.byteLength / kind.BYTES_PER_ELEMENT));
+}
+
+const unzigzag = (z) => (z >>> 1) ^ -(z & 1);
+
+/** Undoes second differences of 16 bits: the low bytes of all values, then the high bytes. */
+function undoSecondDifferences(bytes, out, first, count, each) {
+  const n = count * each;
+  if (bytes.length < 2 * n) throw new Error('a group of frames is too short');
+  const base = first * each;
+  for (let i = 0; i < n; ++i) {
+    const code = bytes[i] | (bytes[n + i] << 8);
+    const k = base + i;
+    if (i < each) out[k] = code;
+    else if (i < 2 * each) out[k] = out[k - each] + unzigzag(code);
+    else out[k] = 2 * out[k - each] - out[k - 2 * each] + unzigzag(code);
+  }
+}
+
+/** Undoes first differences of 8 bits. */
+function undoFirstDifferences(bytes, out, first, count, each) {
+  const n = count * each;
+  if (bytes.length < n) throw new Error('a group of frames is too short');
+  const base = first * each;
+  for (let i = 0; i < n; ++i) out[base + i] = i < each ? bytes[i] : out[base + i - each] + unzigzag(bytes[i]);
+}
+
+/** A quantity over the frames, decoded group by group. One with fewer frames than the scene stands still afterwards. */
+export class Series {
+  /** @param {{groups: {first: number, count: number, block: number}[]}} description
+   *  @param {number} each values in a frame
+   *  @param {8|16} bits */
+  constructor(description, each, bits) {
+    this.groups = description.groups;
+    this.each = each;
+    this.bits = bits;
+    const last = this.groups[this.groups.length - 1];
+    this.frames = last ? last.first + last.count : 0;
+    this.values = new (bits === 16 ? Uint16Array : Uint8Array)(this.frames * each);
+    this.decodedGroups = 0;
+  }
+
+  /** The frames that can be read. */
+  get decoded() {
+    const group = this.groups[this.decodedGroups - 1];
+    return group ? group.first + group.count : 0;
+  }
+
+  get isWhole() {
+    return this.decodedGroups === this.groups.length;
+  }
+
+  async decodeNext() {
+    const group = this.groups[this.decodedGroups];
+    const bytes = await readBlock(group.block);
+    (this.bits === 16 ? undoSecondDifferences : undoFirstDifferences)(bytes, this.values, group.first, group.count, this.each);
+    ++this.decodedGroups;
+  }
+
+  /** The values of a frame; those of the last one where there is none. */
+  frame(f) {
+    const k = Math.max(0, Math.min(f, this.decoded - 1));
+    return this.values.subarray(k * this.each, (k + 1) * this.each);
+  }
+}
+
+/** The box of all positions. The scene is drawn around its centre, so that floats are precise. */
+export class Box {
+  constructor([low, high]) {
+    this.low = low;
+    this.high = high;
+    this.size = low.map((x, k) => high[k] - x);
+    this.radius = Math.max(Math.hypot(...this.size) / 2, 1e-30);
+  }
+
+  /** Writes coordinates around the centre. */
+  toScene(values, out) {
+    const [sx, sy, sz] = this.size;
+    for (let i = 0; i < values.length; i += 3) {
+      out[i] = (values[i] / 65535 - 0.5) * sx;
+      out[i + 1] = (values[i + 1] / 65535 - 0.5) * sy;
+      out[i + 2] = (values[i + 2] / 65535 - 0.5) * sz;
+    }
+    return out;
+  }
+
+  /** The position in the run's own coordinates. */
+  toRun(values, item) {
+    return [0, 1, 2].map((k) => this.low[k] + (values[3 * item + k] / 65535) * this.size[k]);
+  }
+}

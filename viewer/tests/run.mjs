@@ -1,0 +1,60 @@
+// Tests of the viewer in headless Chromium.
+//   node tests/run.mjs COMMAND SCENES   runs a scene of each kind with the command dartcast, and checks their reports
+//   node tests/run.mjs FILE.html...     checks reports that are there
+import { spawnSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { launch, withoutWebGL } from './browser.mjs';
+import { checkFallback, checkReport } from './page_checks.mjs';
+
+// Steps, and changes of the scene so that it has several frames.
+const scenes = { vessel: 60, surgery: 460, barrel: 60, catheter_left: 120, grains: 60, maze: 60 };
+
+function makeReports(command, folder, work) {
+  return Object.entries(scenes).map(([name, steps]) => {
+    const text = readFileSync(join(folder, `${name}.toml`), 'utf8').replace(/^every = .*$/m, `every = ${Math.ceil(steps / 6)}`);
+    const scene = join(work, `${name}.toml`);
+    writeFileSync(scene, text);
+    const out = join(work, name);
+    const done = spawnSync(command, ['run', scene, '-o', out, '--steps', String(steps), '-q'], { encoding: 'utf8' });
+    if (done.status !== 0) throw new Error(`${name}: ${done.stderr}`);
+    return join(out, 'report.html');
+  });
+}
+
+async function check(files) {
+  const { browser, missing } = await launch();
+  if (missing) {
+    console.log(`left out: the reports in a browser: ${missing} is missing`);
+    return 0;
+  }
+  let failed = 0;
+  const report = async (name, test) => {
+    try {
+      await test();
+      console.log(`ok ${name}`);
+    } catch (error) {
+      ++failed;
+      console.log(`FAILED ${name}: ${error.message}\n${error.stack}`);
+    }
+  };
+  for (const file of files) await report(file, () => checkReport(browser, file));
+  await browser.close();
+  const { browser: blind } = await launch(withoutWebGL);
+  await report(`${files[0]} without WebGL`, () => checkFallback(blind, files[0]));
+  await blind.close();
+  return failed;
+}
+
+const [first, second] = process.argv.slice(2);
+if (first.endsWith('.html')) {
+  process.exitCode = await check(process.argv.slice(2));
+} else {
+  const work = mkdtempSync(join(tmpdir(), 'dartcast_viewer_'));
+  try {
+    process.exitCode = await check(makeReports(first, second, work));
+  } finally {
+    rmSync(work, { recursive: true });
+  }
+}
