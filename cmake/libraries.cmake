@@ -2,10 +2,10 @@
 # tools/check_includes.py has the order of the rooms, and checks that these lists agree with it.
 set(core_rooms base predicates mesh generators topology complex editing surface tracking response environment)
 set(simulation_rooms dynamics spheres bodies catheter simulation)
-set(io_rooms formats scene output)
+set(io_rooms formats scene report output)
 # Public headers; core has all others.
 set(simulation_headers dynamics spheres bodies catheter simulation deformation vector_field events scene statistics)
-set(io_headers mesh_files scene_file run trajectory statistics_files)
+set(io_headers mesh_files scene_file report run trajectory statistics_files)
 
 # The files of the case that is not built: with VTK, or without it.
 if(DARTCAST_VTK)
@@ -76,6 +76,7 @@ if(DARTCAST_IO)
                        ${DARTCAST_VTK_LIBRARIES} ZLIB::ZLIB ${LZ4_LIBRARY})
   target_include_directories(dartcast_io PRIVATE ${LZ4_INCLUDE_DIR})
   target_link_libraries(dartcast_io PUBLIC dartcast_simulation)
+  include(cmake/viewer.cmake)
 endif()
 
 # All libraries that are built, for users; for our own programs, with the headers of the rooms.

@@ -12,6 +12,8 @@ inline constexpr int wrong_usage = 2;
 inline constexpr int interrupted = 128;  ///< and the number of the signal: 130 after Ctrl-C
 
 void add_run(CLI::App& app, int& status);
+void add_report(CLI::App& app, int& status);
+void add_view(CLI::App& app, int& status);
 void add_check(CLI::App& app, int& status);
 void add_info(CLI::App& app, int& status);
 void add_convert(CLI::App& app, int& status);

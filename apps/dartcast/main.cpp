@@ -31,6 +31,8 @@ Outcome run(int argc, char** argv) {
   app.require_subcommand(0, 1);
   int status = verbs::done;
   verbs::add_run(app, status);
+  verbs::add_report(app, status);
+  verbs::add_view(app, status);
   verbs::add_check(app, status);
   verbs::add_info(app, status);
   verbs::add_convert(app, status);
@@ -40,7 +42,8 @@ Outcome run(int argc, char** argv) {
 #endif
   try {
     app.parse(argc, argv);
-    if (app.get_subcommands().empty()) throw CLI::RequiredError("one of run, check, info, convert, trace, bench");
+    if (app.get_subcommands().empty())
+      throw CLI::RequiredError("one of run, report, view, check, info, convert, trace, bench");
   } catch (const CLI::Success& e) {
     return {app.exit(e), ""};  // help, version
   } catch (const CLI::ParseError& e) {

@@ -63,6 +63,10 @@ void report(const RunArguments& a, const Summary& summary, const std::string& fo
   }
   if (a.quiet) return;
   std::string text = summary_text(summary) + fmt::format("{:<13}{}\n", "output", folder);
+  if (summary.report) {
+    for (const std::string& note : summary.report->notes) text += fmt::format("{:<13}{}\n", "", note);
+    text += fmt::format("{:<13}{}\n", "report", summary.report->file.string());
+  }
   if (has_colours(stdout)) text = with_bold_subjects(text);
   fmt::print("{}", a.verbose ? text + histogram_text(summary) : text);
 }

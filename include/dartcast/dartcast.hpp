@@ -26,6 +26,7 @@
 #include "dartcast/particle_state.hpp"
 #include "dartcast/predicates.hpp"
 #include "dartcast/remeshing.hpp"
+#include "dartcast/report.hpp"
 #include "dartcast/response.hpp"
 #include "dartcast/run.hpp"
 #include "dartcast/scene.hpp"

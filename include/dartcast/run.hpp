@@ -11,6 +11,7 @@
 #include "dartcast/audit.hpp"
 #include "dartcast/events.hpp"
 #include "dartcast/mesh_check.hpp"
+#include "dartcast/report.hpp"
 #include "dartcast/scene.hpp"
 #include "dartcast/simulation.hpp"
 #include "dartcast/statistics.hpp"
@@ -57,6 +58,8 @@ struct Summary {
   double seconds_solids = 0.0;          ///< steps of bodies and catheters
   double seconds_write = 0.0;           ///< the steps' thread, with output: copies for it, and waits
   double seconds_writing_thread = 0.0;  ///< the thread that writes files, at the same time as the steps
+  double seconds_report = 0.0;          ///< recording for the report, and writing it
+  std::optional<ReportSummary> report;  ///< where one was written
   std::optional<EventLog> surgery;      ///< where the scene has events or is remeshed
   std::vector<BodySummary> bodies;
   std::vector<CatheterSummary> catheters;

@@ -183,6 +183,7 @@ enum class Compression : std::uint8_t { none, fast, small };
 struct OutputScene {
   std::uint64_t every = 10;  ///< steps between two frames; 0: none
   bool contacts = false;
+  bool report = true;  ///< report.html, where `every` > 0 (dartcast/report.hpp)
   Compression compression = Compression::none;
 };
 

@@ -52,5 +52,6 @@ PYBIND11_MODULE(_core, m) {
   bind_simulation(m);
   bind_events(m);
   bind_scene(m);
+  bind_report(m);
   bind_run(m);
 }

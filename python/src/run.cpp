@@ -100,6 +100,8 @@ void bind_summary(py::module_& m) {
       .field("seconds_solids", &Summary::seconds_solids)
       .field("seconds_write", &Summary::seconds_write)
       .field("seconds_writing_thread", &Summary::seconds_writing_thread)
+      .field("seconds_report", &Summary::seconds_report)
+      .field("report", &Summary::report)
       .field("surgery", &Summary::surgery)
       .field("bodies", &Summary::bodies)
       .field("catheters", &Summary::catheters)

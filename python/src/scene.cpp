@@ -124,6 +124,7 @@ void bind_changes(py::module_& m) {
   Record<OutputScene>(m, "OutputScene")
       .field("every", &OutputScene::every)
       .field("contacts", &OutputScene::contacts)
+      .field("report", &OutputScene::report)
       .field("compression", &OutputScene::compression)
       .finish();
 }

@@ -72,7 +72,7 @@ void bind_contacts(py::class_<T>& c, const Get& list) {
       doc("ContactList::earlier_walls_of"));
 }
 
-void bind_report(py::module_& m) {
+void bind_step_report(py::module_& m) {
   py::class_<StepReport> c(m, "StepReport", "The report of a step: its contacts, and the particles that it stopped.");
   bind_contacts(c, [](const StepReport& r) -> const ContactList& { return r.contacts; });
   c.def_property_readonly(
@@ -122,7 +122,7 @@ void bind_trace(py::module_& m) {
 void bind_step(py::module_& m) {
   bind_options(m);
   bind_counters(m);
-  bind_report(m);
+  bind_step_report(m);
   bind_trace(m);
 }
 

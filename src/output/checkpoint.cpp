@@ -19,7 +19,7 @@ namespace dartcast {
 
 namespace {
 
-constexpr std::uint64_t magic = 0x33706b6374726164U;  // "dartckp3" on a machine of this byte order
+constexpr std::uint64_t magic = 0x34706b6374726164U;  // "dartckp4" on a machine of this byte order
 
 // Mixes in 8 bytes at a time. It finds damage and changes, not forgery.
 std::uint64_t digest(std::string_view bytes, std::uint64_t start = 0) {
@@ -313,7 +313,7 @@ void fields(Archive& a, Checkpoint& c) {
   values(a, c.held, c.audited);
   fields(a, c.simulation.bodies);
   fields(a, c.simulation.catheters);
-  values(a, c.solids_recording.bodies_bytes, c.solids_recording.catheters_bytes);
+  values(a, c.solids_recording.bodies_bytes, c.solids_recording.catheters_bytes, c.report_recording.bytes);
   later_fields(a, c.simulation);
   if (has_statistics(c.simulation.statistics)) fields(a, c.statistics_recording);
 }

@@ -9,6 +9,7 @@
 #include "dartcast/audit.hpp"
 #include "dartcast/mesh_data.hpp"
 #include "output/recording.hpp"
+#include "output/report_recording.hpp"
 #include "output/solids_recording.hpp"
 #include "output/statistics_recording.hpp"
 #include "simulation/simulation_state.hpp"
@@ -32,6 +33,7 @@ struct Checkpoint {
   std::uint64_t audited = 0;
   SolidsProgress solids_recording;
   StatisticsProgress statistics_recording;
+  ReportProgress report_recording;
 };
 
 /// Writes the file beside its place and then puts it there: whenever a run is cut off, a whole checkpoint is left.

@@ -17,6 +17,7 @@
 #include "formats/file_write.hpp"
 #include "formats/vtp_write.hpp"
 #include "output/frame_files.hpp"
+#include "output/particle_kinds.hpp"
 #include "output/run_files.hpp"
 #include "output/run_lock.hpp"
 
@@ -42,10 +43,6 @@ bool holds_a_run(const fs::path& folder) {
 
 std::string particles_name(std::uint64_t step) { return frame_name("particles", step, ".vtp"); }
 std::string environment_name(std::uint64_t step) { return frame_name("environment", step, ".vtu"); }
-
-Kind kind_of(const CellComplex& complex, const ParticleState& s) {
-  return s.held ? Kind::volume : forecast(complex.map(), s, complex.corners(s.at())).kind;
-}
 
 // The value of each particle.
 template <class Value>

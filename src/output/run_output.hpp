@@ -13,6 +13,7 @@
 #include "output/checkpoint.hpp"
 #include "output/environment_record.hpp"
 #include "output/recording.hpp"
+#include "output/report_recording.hpp"
 #include "output/run_lock.hpp"
 #include "output/solids_recording.hpp"
 #include "output/statistics_recording.hpp"
@@ -34,8 +35,8 @@ class RunOutput {
 
   /// After each edit of the environment.
   void update_after_edit(const Environment& environment);
-  /// Makes the folder, or goes on with the one that there is. `mesh`: the scene's.
-  void open(MeshData mesh);
+  /// Makes the folder, or goes on with the one that there is. `mesh`: the scene's. `simulation`: before the next step.
+  void open(MeshData mesh, const Simulation& simulation);
   /// After each step, before add_frame().
   void add_step(const Simulation& simulation, const SimulationStep& step);
   /// Before the first step and after each: a frame and a checkpoint where the scene wants one, and for the last step.
@@ -47,6 +48,9 @@ class RunOutput {
   [[nodiscard]] std::filesystem::path file() const { return folder() / "checkpoint.bin"; }
   [[nodiscard]] bool on_schedule(std::uint64_t step) const { return every_ > 0 && step % every_ == 0; }
   void write_frame(const Simulation& simulation);
+  void open_report(const Simulation& simulation);
+  void write_summary() const;
+  void write_report_of_run();
 
   const Scene& scene_;
   Recording::Options recording_options_;
@@ -61,6 +65,7 @@ class RunOutput {
   std::unique_ptr<Recording> recording_;
   std::unique_ptr<SolidsRecording> solids_;
   std::unique_ptr<StatisticsRecording> statistics_;
+  std::unique_ptr<ReportRecording> report_;  // none: no report is wanted
 };
 
 }  // namespace dartcast

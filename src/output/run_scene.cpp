@@ -155,7 +155,7 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
       with_mesh_name(scene.environment.mesh, [&] { return make_simulation(loaded.scene, output, options.threads); });
   describe(simulation->environment(), summary);
   summary.seconds_locate = locate.seconds();
-  output.open(std::move(std::get<MeshData>(loaded.scene.environment.mesh)));
+  output.open(std::move(std::get<MeshData>(loaded.scene.environment.mesh)), *simulation);
   Run(*simulation, output, steps, summary).run(progress);
   output.finish(*simulation);
   return summary;

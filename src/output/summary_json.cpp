@@ -49,6 +49,7 @@ Json seconds(const Summary& s) {
   if (s.statistics) json["statistics"] = s.statistics->seconds;
   json["write"] = s.seconds_write;
   json["writing_thread"] = s.seconds_writing_thread;
+  if (s.seconds_report > 0.0) json["report"] = s.seconds_report;
   return json;
 }
 

@@ -105,6 +105,7 @@ void add_cost(SummaryTable& table, const Summary& s) {
   add("solids", s.seconds_solids);
   if (s.statistics) add("statistics", s.statistics->seconds);
   add("write", s.seconds_write);
+  add("report", s.seconds_report);
   table.add("seconds", parts);
 }
 

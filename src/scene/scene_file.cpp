@@ -230,6 +230,7 @@ class SceneReader {
     OutputScene scene;
     t.get("every", scene.every, 0, max_steps);
     t.get("contacts", scene.contacts);
+    t.get("report", scene.report);
     t.get("compression", scene.compression,
           {{"none", Compression::none}, {"fast", Compression::fast}, {"small", Compression::small}});
     t.finish();

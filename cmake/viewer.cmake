@@ -1,0 +1,17 @@
+# The viewer's program as text in a source file of the library. A string of C++ may be too long for a compiler, so it is
+# cut into pieces.
+set(bundle ${PROJECT_SOURCE_DIR}/viewer/viewer.min.js)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${bundle})
+file(READ ${bundle} program)
+string(LENGTH "${program}" length)
+set(piece_length 16000)
+set(pieces "")
+set(at 0)
+while(at LESS length)
+  string(SUBSTRING "${program}" ${at} ${piece_length} piece)
+  string(APPEND pieces "    R\"program(${piece})program\",\n")
+  math(EXPR at "${at} + ${piece_length}")
+endwhile()
+configure_file(${CMAKE_CURRENT_LIST_DIR}/viewer_program.cpp.in ${PROJECT_BINARY_DIR}/viewer_program.cpp @ONLY)
+target_sources(dartcast_io PRIVATE ${PROJECT_BINARY_DIR}/viewer_program.cpp)
+set_source_files_properties(${PROJECT_BINARY_DIR}/viewer_program.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)

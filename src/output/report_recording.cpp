@@ -1,0 +1,231 @@
+// Records particles, walls, solids, contacts and events for the report.
+#include "output/report_recording.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "dartcast/cell_complex.hpp"
+#include "dartcast/combinatorial_map.hpp"
+#include "dartcast/events.hpp"
+#include "output/particle_kinds.hpp"
+#include "output/wall_faces.hpp"
+#include "report/recorded.hpp"
+#include "simulation/simulation_parts.hpp"
+
+namespace dartcast {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t most_particles = 20'000;
+constexpr const char* file_name = "report.bin";
+
+RecordedPoint recorded(const Vec3& x, const Vec3& origin) {
+  return {static_cast<float>(x.x - origin.x), static_cast<float>(x.y - origin.y), static_cast<float>(x.z - origin.z)};
+}
+
+// The middle of the vertices at the start: floats around it are precise enough for a picture.
+Vec3 middle_of(const Environment& environment) {
+  const std::span<const Vec3> x = environment.positions();
+  if (x.empty()) return {};
+  Vec3 low = x.front();
+  Vec3 high = low;
+  for (const Vec3& p : x) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  return 0.5 * low + 0.5 * high;
+}
+
+// Ids are given in the order of coming, so the greatest one says how many there have been.
+std::uint64_t ids_so_far(const Simulation& simulation) {
+  const SimulationTotals& t = simulation.totals();
+  return t.start + t.injected;
+}
+
+RecordedFrame particles_of(const Simulation& simulation, std::uint64_t stride, const Vec3& origin) {
+  RecordedFrame frame;
+  frame.stride = stride;
+  frame.all = ids_so_far(simulation);
+  const Particles& particles = simulation.particles();
+  const CellComplex& complex = simulation.environment().complex();
+  const bool has_radii =
+      std::any_of(simulation.radii().begin(), simulation.radii().end(), [](double r) { return r > 0.0; });
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    const std::uint64_t id = simulation.ids()[i];
+    if (id % stride != 0) continue;
+    frame.ids.push_back(id);
+    frame.positions.push_back(recorded(particles[i].position, origin));
+    frame.speeds.push_back(static_cast<float>(norm(simulation.velocities()[i])));
+    frame.kinds.push_back(static_cast<std::uint8_t>(kind_of(complex, particles[i])));
+    if (has_radii) frame.radii.push_back(static_cast<float>(simulation.radii()[i]));
+  }
+  return frame;
+}
+
+std::vector<RecordedPoint> recorded(std::span<const Vec3> points, const Vec3& origin) {
+  std::vector<RecordedPoint> out;
+  out.reserve(points.size());
+  for (const Vec3& p : points) out.push_back(recorded(p, origin));
+  return out;
+}
+
+// A body's skin as triangles where it has one, else its particles.
+RecordedSolid recorded_body(const Simulation& simulation, std::size_t b, const Vec3& origin) {
+  const BodiesComponent& component = simulation.parts().bodies;
+  const Bodies& bodies = *component.bodies();
+  const std::size_t count = bodies.particle_count(b);
+  const std::span<const Vec3> positions = bodies.positions().subspan(bodies.first_particle(b), count);
+  const std::span<const double> radii = bodies.radii().subspan(bodies.first_particle(b), count);
+  RecordedSolid solid{component.name(b), SolidKind::body, 0.0F, {}, {}};
+  if (!radii.empty()) solid.radius = static_cast<float>(radii.front());
+  if (!component.skin(b)) {
+    solid.points = recorded(positions, origin);
+    return solid;
+  }
+  const BodiesComponent::Skin& skin = *component.skin(b);
+  std::vector<Vec3> vertices(skin.mesh.points.size());
+  skin.carried.positions(positions, vertices, simulation.environment().threads());
+  solid.points = recorded(vertices, origin);
+  for (std::size_t f = 0; f + 1 < skin.mesh.offsets.size(); ++f) {
+    const std::size_t first = skin.mesh.offsets[f];
+    for (std::size_t k = first + 2; k < skin.mesh.offsets[f + 1]; ++k) {
+      for (const std::size_t corner : {first, k - 1, k})
+        solid.triangles.push_back(static_cast<std::uint32_t>(skin.mesh.connectivity[corner]));
+    }
+  }
+  return solid;
+}
+
+std::vector<RecordedSolid> recorded_solids(const Simulation& simulation, const Vec3& origin) {
+  std::vector<RecordedSolid> solids;
+  const BodiesComponent& bodies = simulation.parts().bodies;
+  for (std::size_t b = 0; bodies.bodies() && b < bodies.bodies()->size(); ++b)
+    solids.push_back(recorded_body(simulation, b, origin));
+  for (std::size_t i = 0; i < simulation.catheter_count(); ++i) {
+    const CatheterScene& scene = simulation.parts().catheters.scenes()[i];
+    solids.push_back({scene.name, SolidKind::catheter, 0.0F, {}, recorded(simulation.catheter(i).points(), origin)});
+  }
+  return solids;
+}
+
+std::string text_of(const EventReport& e) {
+  return fmt::format("{}: {} cells replaced by {}, {} opened, {} blocked", name_of(e.kind), e.cells_removed,
+                     e.cells_added, e.cells_opened, e.cells_blocked);
+}
+
+}  // namespace
+
+ReportRecording::ReportRecording(WritingThread& writing, const fs::path& folder, const Scene& scene,
+                                 const Simulation& simulation)
+    : writing_(writing),
+      file_(folder / file_name, recorded_line),
+      origin_(middle_of(simulation.environment())),
+      counts_hits_(!simulation.statistics_options().hits) {
+  RecordedHeader header;
+  header.dimension = simulation.environment().map().dimension();
+  header.every = scene.output.every;
+  header.origin = origin_;
+  file_.append(chunk_of(header));
+}
+
+ReportRecording::ReportRecording(WritingThread& writing, const fs::path& folder, const Simulation& simulation,
+                                 const ReportProgress& progress)
+    : writing_(writing),
+      file_(folder / file_name, progress.bytes),
+      counts_hits_(!simulation.statistics_options().hits) {
+  restore(folder / file_name, simulation);
+}
+
+// The walls of a map are listed in one order, so that the hits of the last frame find their faces again.
+void ReportRecording::restore(const fs::path& path, const Simulation& simulation) {
+  const RecordedFile file(path);
+  origin_ = file.header().origin;
+  events_ = simulation.event_log().events.size();
+  const auto& chunks = file.chunks();
+  const auto last =
+      std::find_if(chunks.rbegin(), chunks.rend(), [](const auto& c) { return c.tag == RecordedFrame::tag; });
+  if (last == chunks.rend()) return;
+  const auto frame = file.read<RecordedFrame>(*last);
+  stride_ = frame.stride;
+  WallFaceList walls = wall_face_list(simulation.environment().map());
+  faces_ = std::move(walls.faces);
+  wall_vertices_ = std::move(walls.vertices);
+  edits_ = simulation.environment().edit_count();
+  has_walls_ = true;
+  if (!counts_hits_ || frame.hits.size() != faces_.size()) return;
+  std::vector<FaceHits> hits;
+  for (std::size_t f = 0; f < faces_.size(); ++f) {
+    if (frame.hits[f] > 0) hits.push_back({faces_[f], simulation.environment().map().patch(faces_[f]), frame.hits[f]});
+  }
+  own_hits_.restore(simulation.environment(), hits, {});
+}
+
+const WallHits& ReportRecording::hits(const Simulation& simulation) const {
+  return counts_hits_ ? own_hits_ : simulation.statistics().hits;
+}
+
+void ReportRecording::update_after_edit(const Environment& environment) {
+  if (counts_hits_) own_hits_.update_after_edit(environment);
+}
+
+void ReportRecording::add_step(const Simulation& simulation, const SimulationStep& step) {
+  const EventLog& log = simulation.event_log();
+  for (; events_ < log.events.size(); ++events_) {
+    const EventReport& e = log.events[events_];
+    file_.append(chunk_of(RecordedEvent{e.step, e.time, text_of(e)}));
+  }
+  const ContactList& list = step.report.contacts;
+  if (counts_hits_) own_hits_.add(simulation.environment(), list);
+  RecordedContacts kept;
+  for (std::size_t i = 0; i < step.contact_ids.size(); ++i) {
+    if (step.contact_ids[i] % stride_ != 0) continue;
+    const Contact& c = list.contacts[i];
+    kept.contacts.push_back({step.contact_ids[i], simulation.time() - step.duration * (1.0 - c.time_of_impact),
+                             recorded(c.point, origin_), list.walls_of(c).front().patch.value,
+                             static_cast<std::uint8_t>(c.kind), 0});
+  }
+  if (!kept.contacts.empty()) file_.append(chunk_of(kept));
+  file_.send_many(writing_);
+}
+
+void ReportRecording::add_walls(const Simulation& simulation) {
+  const CombinatorialMap& map = simulation.environment().map();
+  WallFaceList walls = wall_face_list(map);
+  RecordedWalls recorded;
+  recorded.point_count = static_cast<std::uint32_t>(walls.vertices.size());
+  recorded.corners = std::move(walls.corners);
+  recorded.offsets.assign(walls.offsets.begin(), walls.offsets.end());
+  for (const CellFace f : walls.faces) recorded.patches.push_back(map.patch(f).value);
+  recorded.patch_names = map.patch_names();
+  file_.append(chunk_of(recorded));
+  faces_ = std::move(walls.faces);
+  wall_vertices_ = std::move(walls.vertices);
+  edits_ = simulation.environment().edit_count();
+  has_walls_ = true;
+}
+
+void ReportRecording::add_frame(const Simulation& simulation) {
+  const Environment& environment = simulation.environment();
+  if (!has_walls_ || edits_ != environment.edit_count()) add_walls(simulation);
+  while (ids_so_far(simulation) / stride_ > most_particles) stride_ *= 2;
+  RecordedFrame frame = particles_of(simulation, stride_, origin_);
+  frame.step = simulation.steps();
+  frame.time = simulation.time();
+  for (const Vertex v : wall_vertices_)
+    frame.wall_points.push_back(recorded(environment.positions()[v.value], origin_));
+  for (const CellFace f : faces_) frame.hits.push_back(static_cast<std::uint32_t>(hits(simulation).of(f)));
+  frame.solids = recorded_solids(simulation, origin_);
+  file_.append(chunk_of(frame));
+}
+
+ReportProgress ReportRecording::progress() {
+  file_.send(writing_);
+  return {file_.bytes()};
+}
+
+}  // namespace dartcast

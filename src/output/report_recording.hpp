@@ -1,0 +1,56 @@
+// Records what a report shows, while a run goes on: report.bin. Not installed.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "dartcast/scene.hpp"
+#include "dartcast/simulation.hpp"
+#include "dartcast/statistics.hpp"
+#include "output/run_files.hpp"
+
+namespace dartcast {
+
+/// How far it has come: enough to go on.
+struct ReportProgress {
+  std::uint64_t bytes = 0;
+};
+
+/// Records particles whose id is a multiple of a stride: the smallest power of two with which at most 20,000 are left.
+/// It grows with the number of ids. Cost: some 30 bytes for each of these particles in each frame, 32 for each contact.
+class ReportRecording {
+ public:
+  /// A new file.
+  ReportRecording(WritingThread& writing, const std::filesystem::path& folder, const Scene& scene,
+                  const Simulation& simulation);
+  /// Goes on with the file of an earlier run. `simulation`: in the state of the checkpoint.
+  ReportRecording(WritingThread& writing, const std::filesystem::path& folder, const Simulation& simulation,
+                  const ReportProgress& progress);
+
+  /// After each edit of the environment.
+  void update_after_edit(const Environment& environment);
+  /// After each step.
+  void add_step(const Simulation& simulation, const SimulationStep& step);
+  void add_frame(const Simulation& simulation);
+  ReportProgress progress();
+
+ private:
+  void add_walls(const Simulation& simulation);
+  [[nodiscard]] const WallHits& hits(const Simulation& simulation) const;
+  void restore(const std::filesystem::path& path, const Simulation& simulation);
+
+  WritingThread& writing_;
+  RunTable file_;
+  Vec3 origin_;
+  std::uint64_t stride_ = 1;
+  WallHits own_hits_;  // where the simulation keeps none
+  bool counts_hits_;
+  bool has_walls_ = false;
+  std::uint64_t edits_ = 0;      // those that the last walls have
+  std::size_t events_ = 0;       // of the log, that the file has
+  std::vector<CellFace> faces_;  // of the last walls
+  std::vector<Vertex> wall_vertices_;
+};
+
+}  // namespace dartcast

@@ -1,0 +1,45 @@
+// Charts of a page as SVG. Their colours are variables of the page's style, so that they suit light and dark. Not
+// installed.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dartcast {
+
+struct ChartSeries {
+  std::string name;
+  std::vector<double> x;
+  std::vector<double> y;
+};
+
+struct Chart {
+  std::string title;
+  std::string x_label{};
+  std::string y_label{};
+  bool log_x = false;
+  bool log_y = false;
+  bool from_zero = true;  ///< the axis of values has 0, where it is not logarithmic
+};
+
+/// Lines, each with its name in the legend where there are several. Series of many points are thinned out, with their
+/// peaks kept.
+std::string line_chart(const Chart& chart, const std::vector<ChartSeries>& series);
+
+struct Bar {
+  std::string name;
+  double value = 0.0;
+  std::string label;  ///< the value in words
+};
+/// Horizontal bars with their names and values.
+std::string bar_chart(const Chart& chart, const std::vector<Bar>& bars);
+
+/// Vertical bars over whole numbers: value i belongs to the number `first` + i. Bars so low that they would not be seen
+/// have the height of a pixel.
+std::string histogram_chart(const Chart& chart, std::size_t first, const std::vector<double>& values);
+
+/// A text as HTML wants it. Control characters, and bytes that are no UTF-8, become U+FFFD.
+std::string html(std::string_view text);
+
+}  // namespace dartcast

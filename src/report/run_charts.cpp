@@ -1,0 +1,204 @@
+// Charts and tables of a run.
+#include "report/run_charts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include "dartcast/error.hpp"
+#include "report/chart.hpp"
+
+namespace dartcast {
+
+namespace {
+
+namespace fs = std::filesystem;
+using RunJson = nlohmann::ordered_json;
+
+std::string content_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+RunJson summary_of(const fs::path& folder) {
+  const std::string text = content_of(folder / "summary.json");
+  RunJson json = RunJson::parse(text, nullptr, false);
+  return json.is_object() ? json : RunJson::object();
+}
+
+// stats.csv by columns.
+class Steps {
+ public:
+  explicit Steps(const fs::path& path) {
+    std::ifstream file(path);
+    std::string line;
+    if (!std::getline(file, line)) return;
+    std::stringstream head(line);
+    for (std::string name; std::getline(head, name, ',');) columns_.push_back({name, {}});
+    for (std::size_t row = 2; std::getline(file, line); ++row) add(path, row, line);
+  }
+
+  [[nodiscard]] std::vector<double> operator[](std::string_view name) const {
+    for (const Column& c : columns_) {
+      if (c.name == name) return c.values;
+    }
+    return {};
+  }
+
+ private:
+  struct Column {
+    std::string name;
+    std::vector<double> values;
+  };
+
+  void add(const fs::path& path, std::size_t row, const std::string& line) {
+    const char* at = line.data();
+    const char* const end = at + line.size();
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      double value = 0.0;
+      const auto [next, error] = std::from_chars(at, end, value);
+      const bool ends_well = i + 1 == columns_.size() ? next == end : next != end && *next == ',';
+      if (error != std::errc() || !ends_well)
+        throw Error(fmt::format("{}:{}: it is damaged: column {} has no number", path.string(), row, columns_[i].name));
+      columns_[i].values.push_back(value);
+      at = next + (i + 1 == columns_.size() ? 0 : 1);
+    }
+  }
+
+  std::vector<Column> columns_;
+};
+
+std::vector<double> ratio(const std::vector<double>& a, const std::vector<double>& b, double factor) {
+  std::vector<double> out(std::min(a.size(), b.size()));
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = b[i] > 0.0 ? factor * a[i] / b[i] : std::nan("");
+  return out;
+}
+
+std::vector<double> summed(std::vector<double> values) {
+  for (std::size_t i = 1; i < values.size(); ++i) values[i] += values[i - 1];
+  return values;
+}
+
+bool has_values(const std::vector<double>& values) {
+  return std::any_of(values.begin(), values.end(), [](double v) { return std::isfinite(v) && v != 0.0; });
+}
+
+// A chart over time of those series that have values; nothing where none has.
+std::string over_time(const std::string& title, const std::string& unit, const std::vector<double>& time,
+                      const std::vector<std::pair<std::string, std::vector<double>>>& all) {
+  std::vector<ChartSeries> series;
+  for (const auto& [name, values] : all) {
+    if (has_values(values)) series.push_back({name, time, values});
+  }
+  if (series.empty()) return {};
+  return line_chart({.title = title, .x_label = "time (s)", .y_label = unit}, series);
+}
+
+std::string histogram_of_tests(const RunJson& summary) {
+  const RunJson histogram = summary.value("/orientation_tests/histogram"_json_pointer, RunJson());
+  if (!histogram.is_array()) return {};
+  double all = 0.0;
+  std::vector<double> shares;
+  for (const RunJson& n : histogram) shares.push_back(n.is_number() ? n.get<double>() : 0.0);
+  for (const double n : shares) all += n;
+  if (!(all > 0.0)) return {};
+  for (double& n : shares) n *= 100.0 / all;
+  while (shares.size() > 2 && shares.back() < 1e-4) shares.pop_back();
+  return histogram_chart({.title = "Orientation tests of a particle in a step",
+                          .x_label = "number of tests",
+                          .y_label = "% of particle-steps"},
+                         0, shares);
+}
+
+// Bars of an object of numbers, the greatest first.
+std::vector<Bar> bars_of(const RunJson& object, const char* unit) {
+  std::vector<Bar> bars;
+  if (!object.is_object()) return bars;
+  for (const auto& [name, value] : object.items()) {
+    if (!value.is_number() || !(value.get<double>() > 0.0)) continue;
+    const std::string label = value.is_number_integer() ? fmt::format("{}{}", value.get<std::uint64_t>(), unit)
+                                                        : fmt::format("{:.3g}{}", value.get<double>(), unit);
+    bars.push_back({name.empty() ? "no patch" : name, value.get<double>(), label});
+  }
+  std::sort(bars.begin(), bars.end(), [](const Bar& a, const Bar& b) { return a.value > b.value; });
+  if (bars.size() > 16) bars.resize(16);
+  return bars;
+}
+
+std::string shown(const RunJson& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_float()) return fmt::format("{:.6g}", value.get<double>());
+  return value.dump(-1, ' ', false, RunJson::error_handler_t::replace);
+}
+
+// Rows of an object; objects in it are headed by their name. Long lists stay in the file.
+void add_rows(std::string& out, const RunJson& object, const std::string& path, std::size_t depth) {
+  for (const auto& [name, value] : object.items()) {
+    const std::string key = path.empty() ? name : path + " / " + name;
+    if (value.is_object() && depth < 4) {
+      add_rows(out, value, key, depth + 1);
+    } else if (!value.is_array() || value.size() <= 3) {
+      out += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", html(key), html(shown(value)));
+    }
+  }
+}
+
+}  // namespace
+
+std::string scene_name(const fs::path& folder) {
+  const RunJson name = summary_of(folder).value("scene", RunJson());
+  if (name.is_string() && !name.get<std::string>().empty()) return name.get<std::string>();
+  const fs::path whole = fs::absolute(folder).lexically_normal();
+  return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+}
+
+std::string run_charts(const fs::path& folder) {
+  const RunJson summary = summary_of(folder);
+  const Steps steps(folder / "stats.csv");
+  const std::vector<double> time = steps["time"];
+  const std::vector<double> alive = steps["alive"];
+  std::string out;
+  out += histogram_of_tests(summary);
+  out += over_time("Orientation tests over time", "tests per particle", time,
+                   {{"all", ratio(steps["orientation_tests"], alive, 1.0)}});
+  out += over_time("Forecasts kept", "% of particles", time,
+                   {{"kept", ratio(steps["forecast_kept"], alive, 100.0)},
+                    {"updated by deformation", ratio(steps["updated_by_deformation"], alive, 100.0)}});
+  out += over_time("Contacts", "contacts in a step", time, {{"contacts", steps["contacts"]}});
+  out += bar_chart({.title = "Contacts by patch"},
+                   bars_of(summary.value("/contacts/by_patch"_json_pointer, RunJson()), ""));
+  out += over_time("Particles", "particles", time,
+                   {{"alive", alive},
+                    {"injected", summed(steps["injected"])},
+                    {"escaped", summed(steps["escaped"])},
+                    {"absorbed", summed(steps["absorbed"])},
+                    {"held", steps["held"]}});
+  out +=
+      over_time("Energy", "J", time, {{"kinetic", steps["kinetic_energy"]}, {"potential", steps["potential_energy"]}});
+  out += bar_chart({.title = "Seconds of the run, by part"}, bars_of(summary.value("seconds", RunJson()), " s"));
+  return out;
+}
+
+std::string run_tables(const fs::path& folder) {
+  std::string out;
+  const RunJson summary = summary_of(folder);
+  if (!summary.empty()) {
+    std::string rows;
+    add_rows(rows, summary, "", 0);
+    out +=
+        "<details open><summary>Summary</summary><div class=\"wide\"><table>\n" + rows + "</table></div></details>\n";
+  }
+  const std::string scene = content_of(folder / "scene.toml");
+  if (!scene.empty()) out += "<details><summary>Scene</summary><pre>" + html(scene) + "</pre></details>\n";
+  return out;
+}
+
+}  // namespace dartcast

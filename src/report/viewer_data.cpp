@@ -1,0 +1,377 @@
+// Makes the viewer's data from a recording.
+//
+// Phases: choose frames and particles; read the chosen frames, and put each particle's values into its slot; find the
+// box of all positions; code series of values in groups of frames; sort the contacts by slot; describe all in JSON.
+#include "report/viewer_data.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "dartcast/error.hpp"
+#include "report/encode.hpp"
+#include "report/picture.hpp"
+#include "report/selection.hpp"
+
+namespace dartcast {
+
+namespace {
+
+using ViewerJson = nlohmann::ordered_json;
+
+constexpr std::size_t group_size = 16;          // frames
+constexpr std::size_t most_contacts = 250'000;  // beyond it, those of some slots are left out
+constexpr std::uint8_t unknown_patch = 255;     // any beyond those that a byte can name
+
+// A byte that names a patch: 0 is none.
+std::uint8_t patch_byte(std::uint16_t patch) {
+  return static_cast<std::uint8_t>(std::min<unsigned>(patch + 1U, unknown_patch));
+}
+
+// A list of solids changes over time: each is known by its kind and name.
+struct SolidSeries {
+  RecordedSolid first;
+  std::vector<std::uint32_t> present;
+  std::vector<RecordedPoint> points;  // the items of each frame
+  std::size_t items = 0;
+};
+
+class Builder {
+ public:
+  Builder(const RecordedFile& file, const ReportOptions& options)
+      : file_(file), chosen_(select(file, options)), slots_(chosen_.ids.size()), frames_(std::move(chosen_.recorded)) {}
+
+  ViewerData build() {
+    read_frames();
+    describe_scene();
+    describe_particles();
+    describe_contacts();
+    describe_walls();
+    describe_solids();
+    describe_events();
+    data_.description = json_.dump(-1, ' ', false, ViewerJson::error_handler_t::replace);
+    data_.picture = picture_of(frames_.front(), walls_.at(chosen_.frames.front().walls), file_.header().dimension);
+    return std::move(data_);
+  }
+
+ private:
+  std::size_t block(std::string_view bytes) {
+    data_.blocks.push_back(base64(gzipped(bytes)));
+    return data_.blocks.size() - 1;
+  }
+  template <class T>
+  std::size_t block(const std::vector<T>& values) {
+    return block(bytes_of(std::span<const T>(values)));
+  }
+
+  // The first frame stands alone, so that it can be drawn before the others are decoded.
+  template <class T, class Code>
+  ViewerJson series(const std::vector<T>& values, std::size_t each, Code&& code) {
+    ViewerJson groups = ViewerJson::array();
+    const std::size_t frames = each == 0 ? 0 : values.size() / each;
+    for (std::size_t first = 0; first < frames;) {
+      const std::size_t count = first == 0 ? 1 : std::min(group_size, frames - first);
+      const std::span<const T> part(values.data() + first * each, count * each);
+      groups.push_back({{"first", first}, {"count", count}, {"block", block(code(part, each))}});
+      first += count;
+    }
+    return {{"groups", groups}};
+  }
+  ViewerJson position_series(const std::vector<RecordedPoint>& points, std::size_t each) {
+    std::vector<std::uint16_t> values;
+    values.reserve(points.size() * 3);
+    for (const RecordedPoint& p : points) {
+      for (const std::uint16_t q : box_.quantised(p)) values.push_back(q);
+    }
+    return series(values, each * 3, second_differences);
+  }
+
+  void read_frames() {
+    for (std::size_t k = 0; k < frames_.size(); ++k) {
+      const ReportSelection::Frame& f = chosen_.frames[k];
+      const RecordedFrame& frame = frames_[k];
+      if (!walls_.contains(f.walls)) walls_.emplace(f.walls, file_.read<RecordedWalls>(file_.chunks()[f.walls]));
+      const RecordedWalls& walls = walls_.at(f.walls);
+      if (frame.wall_points.size() != walls.point_count || frame.hits.size() != walls.patches.size())
+        throw Error(fmt::format("report.bin is damaged: the walls of step {} are others than those recorded", f.step));
+      for (const RecordedPoint& p : frame.positions) box_.add(p);
+      for (const RecordedPoint& p : frame.wall_points) box_.add(p);
+      for (const RecordedSolid& s : frame.solids) {
+        for (const RecordedPoint& p : s.points) box_.add(p);
+      }
+    }
+  }
+
+  void describe_scene() {
+    const Vec3& o = file_.header().origin;
+    json_ = {{"version", DARTCAST_VERSION}, {"dimension", file_.header().dimension}};
+    json_["box"] = {{box_.low[0] + o.x, box_.low[1] + o.y, box_.low[2] + o.z},
+                    {box_.high[0] + o.x, box_.high[1] + o.y, box_.high[2] + o.z}};
+    json_["frames"] = ViewerJson::array();
+    for (const ReportSelection::Frame& f : chosen_.frames)
+      json_["frames"].push_back({{"step", f.step}, {"time", f.time}});
+    json_["patches"] = walls_.at(chosen_.frames.back().walls).patch_names;
+    data_.taken.particles = slots_;
+    data_.taken.particles_recorded = chosen_.recorded_ids;
+    data_.taken.particles_of_run = chosen_.all_ids;
+    data_.taken.frames = chosen_.frames.size();
+    data_.taken.frames_recorded = chosen_.recorded_frames;
+  }
+
+  // Calls f(frame, slot, place in the frame) for each particle that has a slot.
+  template <class F>
+  void for_each_particle(F&& f) const {
+    for (std::size_t k = 0; k < frames_.size(); ++k) {
+      const RecordedFrame& frame = frames_[k];
+      for (std::size_t i = 0; i < frame.ids.size(); ++i) {
+        const auto found = chosen_.slot.find(frame.ids[i]);
+        if (found != chosen_.slot.end()) f(k, std::size_t{found->second}, i);
+      }
+    }
+  }
+
+  void find_life() {
+    first_.assign(slots_, 0xffff);
+    last_.assign(slots_, 0);
+    for_each_particle([&](std::size_t k, std::size_t slot, std::size_t) {
+      first_[slot] = std::min(first_[slot], static_cast<std::uint16_t>(k));
+      last_[slot] = std::max(last_[slot], static_cast<std::uint16_t>(k));
+    });
+  }
+
+  // Where a particle is not there it keeps the last values, or has its first ones already: no difference costs nothing.
+  template <class T>
+  std::vector<T> values_of(const std::vector<T>& sparse) const {
+    std::vector<T> values = sparse;
+    for (std::size_t slot = 0; slot < slots_; ++slot) {
+      for (std::size_t k = 0; k < frames_.size(); ++k) {
+        const std::size_t from = std::clamp<std::size_t>(k, first_[slot], last_[slot]);
+        if (from != k) values[k * slots_ + slot] = values[from * slots_ + slot];
+      }
+    }
+    return values;
+  }
+
+  void describe_particles() {
+    if (slots_ == 0) return;
+    find_life();
+    const std::size_t n = frames_.size() * slots_;
+    std::vector<RecordedPoint> positions(n);
+    std::vector<float> speeds(n);
+    std::vector<std::uint8_t> kinds(n);
+    std::vector<float> start(slots_);
+    std::vector<float> radii(slots_);
+    float fastest = 0.0F;
+    for_each_particle([&](std::size_t k, std::size_t slot, std::size_t i) {
+      positions[k * slots_ + slot] = frames_[k].positions[i];
+      speeds[k * slots_ + slot] = frames_[k].speeds[i];
+      kinds[k * slots_ + slot] = frames_[k].kinds[i];
+      fastest = std::max(fastest, frames_[k].speeds[i]);
+      if (!frames_[k].radii.empty()) radii[slot] = frames_[k].radii[i];
+      if (k == first_[slot]) start[slot] = static_cast<float>(frames_[k].time);
+    });
+    std::vector<std::uint8_t> speed_bytes(n);
+    std::transform(speeds.begin(), speeds.end(), speed_bytes.begin(), [&](float v) {
+      return static_cast<std::uint8_t>(fastest > 0.0F ? std::lround(255.0 * static_cast<double>(v) / fastest) : 0);
+    });
+    std::vector<std::uint32_t> ids(chosen_.ids.begin(), chosen_.ids.end());
+    const bool has_radii = std::any_of(radii.begin(), radii.end(), [](float r) { return r > 0.0F; });
+    ViewerJson speed = series(values_of(speed_bytes), slots_, first_differences);
+    speed["max"] = fastest;
+    json_["particles"] = {{"count", slots_}, {"of", chosen_.all_ids}};
+    ViewerJson& out = json_["particles"];
+    out["id"] = block(ids);
+    out["first"] = block(first_);
+    out["last"] = block(last_);
+    out["start"] = block(start);
+    out["radius"] = has_radii ? ViewerJson(block(radii)) : ViewerJson();
+    out["position"] = position_series(values_of(positions), slots_);
+    out["speed"] = std::move(speed);
+    out["kind"] = series(values_of(kinds), slots_, first_differences);
+  }
+
+  // The contacts of the slots, by slot, then by time.
+  std::vector<std::vector<RecordedContact>> contacts_by_slot() const {
+    std::vector<std::vector<RecordedContact>> by_slot(slots_);
+    for (const RecordedFile::Chunk& chunk : file_.chunks()) {
+      if (chunk.tag != RecordedContacts::tag) continue;
+      for (const RecordedContact& c : file_.read<RecordedContacts>(chunk).contacts) {
+        const auto found = chosen_.slot.find(c.id);
+        if (found != chosen_.slot.end()) by_slot[found->second].push_back(c);
+      }
+    }
+    for (auto& list : by_slot)
+      std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
+    return by_slot;
+  }
+
+  // The patch that each particle met last, frame by frame.
+  ViewerJson patch_series(const std::vector<std::vector<RecordedContact>>& by_slot) {
+    std::vector<std::uint8_t> met(frames_.size() * slots_);
+    for (std::size_t slot = 0; slot < slots_; ++slot) {
+      std::size_t next = 0;
+      std::uint8_t last = 0;
+      for (std::size_t k = 0; k < frames_.size(); ++k) {
+        for (; next < by_slot[slot].size() && by_slot[slot][next].time <= frames_[k].time; ++next)
+          last = patch_byte(by_slot[slot][next].patch);
+        met[k * slots_ + slot] = last;
+      }
+    }
+    return series(met, slots_, first_differences);
+  }
+
+  void describe_contacts() {
+    if (slots_ == 0) return;
+    const std::vector<std::vector<RecordedContact>> by_slot = contacts_by_slot();
+    json_["particles"]["patch"] = patch_series(by_slot);
+    std::size_t all = 0;
+    for (const auto& list : by_slot) all += list.size();
+    const std::size_t kept_every = std::max<std::size_t>((all + most_contacts - 1) / most_contacts, 1);
+    std::vector<std::uint32_t> offset = {0};
+    std::vector<float> time;
+    std::vector<std::uint8_t> patch;
+    std::vector<std::uint8_t> kind;
+    std::vector<std::uint16_t> point;
+    for (std::size_t slot = 0; slot < slots_; ++slot) {
+      for (const RecordedContact& c : by_slot[slot]) {
+        if (slot % kept_every != 0) break;
+        time.push_back(static_cast<float>(c.time));
+        patch.push_back(patch_byte(c.patch));
+        kind.push_back(c.kind);
+        for (const std::uint16_t q : box_.quantised(c.point)) point.push_back(q);
+      }
+      offset.push_back(static_cast<std::uint32_t>(time.size()));
+    }
+    ViewerJson& out = json_["contacts"];
+    out = {{"count", time.size()}, {"kept_every", kept_every}, {"of", all}};
+    out["offset"] = block(offset);
+    out["time"] = block(time);
+    out["patch"] = block(patch);
+    out["kind"] = block(kind);
+    out["point"] = block(point);
+    if (kept_every > 1)
+      data_.taken.notes.push_back(
+          fmt::format("of {} contacts those of one particle in {} are in the report", all, kept_every));
+  }
+
+  struct Faces {
+    std::vector<std::uint32_t> corners;  // triangles, or segments in the plane
+    std::vector<std::uint16_t> patches;
+    std::vector<std::uint32_t> hits;
+    std::vector<std::uint32_t> edges;
+  };
+
+  // Polygons as fans of triangles; their own edges for a drawing of wires, each once.
+  Faces faces_of(const RecordedWalls& walls, const std::vector<std::uint32_t>& hits) const {
+    Faces out;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+    const auto add = [&](std::size_t face, std::initializer_list<std::uint32_t> corners) {
+      out.corners.insert(out.corners.end(), corners);
+      out.patches.push_back(walls.patches[face]);
+      out.hits.push_back(hits[face]);
+    };
+    for (std::size_t f = 0; f < walls.patches.size(); ++f) {
+      const std::uint32_t* c = walls.corners.data() + walls.offsets[f];
+      const std::size_t n = walls.offsets[f + 1] - walls.offsets[f];
+      if (file_.header().dimension == 2) {
+        if (n >= 2) add(f, {c[0], c[1]});
+        continue;
+      }
+      for (std::size_t k = 0; k < n; ++k) edges.push_back(std::minmax(c[k], c[(k + 1) % n]));
+      for (std::size_t k = 2; k < n; ++k) add(f, {c[0], c[k - 1], c[k]});
+    }
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    for (const auto& [a, b] : edges) out.edges.insert(out.edges.end(), {a, b});
+    return out;
+  }
+
+  // One entry for the frames that have the same walls.
+  void describe_walls() {
+    json_["walls"] = ViewerJson::array();
+    std::uint32_t most_hits = 0;
+    for (std::size_t begin = 0; begin < frames_.size();) {
+      std::size_t end = begin + 1;
+      while (end < frames_.size() && chosen_.frames[end].walls == chosen_.frames[begin].walls) ++end;
+      const RecordedWalls& walls = walls_.at(chosen_.frames[begin].walls);
+      const Faces faces = faces_of(walls, frames_[end - 1].hits);
+      for (const std::uint32_t h : faces.hits) most_hits = std::max(most_hits, h);
+      const bool moves = std::any_of(
+          frames_.begin() + static_cast<std::ptrdiff_t>(begin), frames_.begin() + static_cast<std::ptrdiff_t>(end),
+          [&](const RecordedFrame& f) { return f.wall_points != frames_[begin].wall_points; });
+      std::vector<RecordedPoint> points;
+      for (std::size_t k = begin; k < (moves ? end : begin + 1); ++k)
+        points.insert(points.end(), frames_[k].wall_points.begin(), frames_[k].wall_points.end());
+      ViewerJson entry = {{"first", begin}, {"points", walls.point_count}, {"faces", faces.patches.size()}};
+      entry["corners"] = block(faces.corners);
+      entry["face_patch"] = block(faces.patches);
+      entry["face_hits"] = block(faces.hits);
+      entry["edges"] = faces.edges.empty() ? ViewerJson() : ViewerJson(block(faces.edges));
+      entry["position"] = position_series(points, walls.point_count);
+      json_["walls"].push_back(std::move(entry));
+      begin = end;
+    }
+    json_["hits_max"] = most_hits;
+  }
+
+  void describe_solids() {
+    std::map<std::pair<SolidKind, std::string>, SolidSeries> all;
+    for (std::size_t k = 0; k < frames_.size(); ++k) {
+      for (const RecordedSolid& s : frames_[k].solids) {
+        SolidSeries& series = all[{s.kind, s.name}];
+        if (series.present.empty()) series.first = s;
+        series.items = std::max(series.items, s.points.size());
+        series.present.resize(frames_.size());
+        series.present[k] = static_cast<std::uint32_t>(s.points.size());
+      }
+    }
+    json_["solids"] = ViewerJson::array();
+    for (auto& [key, series] : all) {
+      std::vector<RecordedPoint> points(frames_.size() * series.items);
+      for (std::size_t k = 0; k < frames_.size(); ++k) {
+        for (const RecordedSolid& s : frames_[k].solids) {
+          if (s.kind == key.first && s.name == key.second)
+            std::copy(s.points.begin(), s.points.end(), points.begin() + static_cast<std::ptrdiff_t>(k * series.items));
+        }
+      }
+      ViewerJson entry = {
+          {"kind", key.first == SolidKind::body ? "body" : "catheter"}, {"name", key.second}, {"items", series.items}};
+      entry["present"] = block(series.present);
+      entry["radius"] = series.first.radius;
+      entry["corners"] = series.first.triangles.empty() ? ViewerJson() : ViewerJson(block(series.first.triangles));
+      entry["position"] = position_series(points, series.items);
+      json_["solids"].push_back(std::move(entry));
+    }
+  }
+
+  void describe_events() {
+    json_["events"] = ViewerJson::array();
+    for (const RecordedFile::Chunk& chunk : file_.chunks()) {
+      if (chunk.tag != RecordedEvent::tag) continue;
+      const auto e = file_.read<RecordedEvent>(chunk);
+      json_["events"].push_back({{"time", e.time}, {"step", e.step}, {"text", e.text}});
+    }
+  }
+
+  const RecordedFile& file_;
+  ReportSelection chosen_;
+  std::size_t slots_;
+  std::vector<RecordedFrame> frames_;
+  std::map<std::size_t, RecordedWalls> walls_;  // by chunk
+  QuantisedBox box_;
+  std::vector<std::uint16_t> first_;  // frame of each slot
+  std::vector<std::uint16_t> last_;
+  ViewerJson json_;
+  ViewerData data_;
+};
+
+}  // namespace
+
+ViewerData viewer_data(const RecordedFile& file, const ReportOptions& options) {
+  return Builder(file, options).build();
+}
+
+}  // namespace dartcast

@@ -1,0 +1,106 @@
+// Makes report.html.
+//
+// Phases: the viewer's data from report.bin; charts and tables from the run's other files; the page. Where the page is
+// too large the first phase is done again with fewer particles, then with fewer frames.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <string_view>
+
+#include "dartcast/error.hpp"
+#include "dartcast/report.hpp"
+#include "formats/file_write.hpp"
+#include "report/chart.hpp"
+#include "report/page.hpp"
+#include "report/run_charts.hpp"
+#include "report/viewer_data.hpp"
+
+namespace dartcast {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// JSON in an element of a script: "<" could end it.
+std::string as_script(const std::string& json) {
+  std::string out;
+  out.reserve(json.size());
+  for (const char c : json) {
+    if (c == '<')
+      out += "\\u003c";
+    else
+      out += c;
+  }
+  return out;
+}
+
+std::string grouped(std::uint64_t n) {
+  std::string digits = std::to_string(n);
+  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, ",");
+  return digits;
+}
+
+void add_notes(ReportSummary& taken) {
+  if (taken.particles < taken.particles_of_run)
+    taken.notes.push_back(fmt::format("{} of {} particles are in the report, evenly chosen", grouped(taken.particles),
+                                      grouped(taken.particles_of_run)));
+  if (taken.frames < taken.frames_recorded)
+    taken.notes.push_back(fmt::format("{} of {} frames are in the report, evenly chosen", grouped(taken.frames),
+                                      grouped(taken.frames_recorded)));
+}
+
+std::string page_of(const ViewerData& data, const std::string& scene, const std::string& charts) {
+  Page page;
+  page.title = scene;
+  page.subtitle =
+      fmt::format("A run of dartcast: {}{} frames",
+                  data.taken.particles > 0 ? grouped(data.taken.particles) + " particles, " : "", data.taken.frames);
+  page.body =
+      "<section id=\"view\" aria-label=\"The scene in 3D\">" + data.picture +
+      "<p class=\"fallback\">This is a still picture: the scene in 3D needs JavaScript and WebGL.</p></section>\n";
+  for (const std::string& note : data.taken.notes) page.body += "<p class=\"notes\">" + html(note) + "</p>\n";
+  page.body += charts;
+  page.scripts.push_back("<script type=\"application/json\" id=\"meta\">" + as_script(data.description) +
+                         "</script>\n");
+  for (std::size_t i = 0; i < data.blocks.size(); ++i)
+    page.scripts.push_back(fmt::format("<script type=\"text/plain\" id=\"b{}\">{}</script>\n", i, data.blocks[i]));
+  page.scripts.push_back(fmt::format("<script type=\"module\">{}</script>\n", viewer_program()));
+  return page_html(page);
+}
+
+}  // namespace
+
+fs::path report_file(const fs::path& run_folder) { return run_folder / "report.html"; }
+
+ReportSummary write_report(const fs::path& run_folder, const ReportOptions& options) {
+  if (options.particles == 0 || options.frames == 0 || options.bytes == 0)
+    throw InvalidArgument("report: give at least one particle, one frame and one byte");
+  const RecordedFile file(run_folder / "report.bin");
+  const std::string charts = "<section class=\"charts\" aria-label=\"Charts\">\n" + run_charts(run_folder) +
+                             "</section>\n" + run_tables(run_folder);
+  ReportOptions now = options;
+  for (bool reduced = false;; reduced = true) {
+    ViewerData data = viewer_data(file, now);
+    if (reduced)
+      data.taken.notes.push_back(fmt::format("with {} particles and {} frames the report would have more than {} MB",
+                                             grouped(options.particles), grouped(options.frames),
+                                             static_cast<double>(options.bytes) / 1e6));
+    add_notes(data.taken);
+    const std::string page = page_of(data, scene_name(run_folder), charts);
+    const bool can_shrink = data.taken.particles > 500 || data.taken.frames > 2;
+    if (page.size() > options.bytes && can_shrink) {
+      std::uint64_t& which = data.taken.particles > 500 ? data.taken.particles : data.taken.frames;
+      (data.taken.particles > 500 ? now.particles : now.frames) = static_cast<std::size_t>(which / 2);
+      continue;
+    }
+    ReportSummary summary = std::move(data.taken);
+    summary.file = report_file(run_folder);
+    summary.bytes = page.size();
+    const std::string_view whole = page;
+    replace_file(summary.file, {&whole, 1});
+    return summary;
+  }
+}
+
+}  // namespace dartcast
