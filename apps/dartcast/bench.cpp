@@ -14,6 +14,7 @@
 #include "bench/comparison.hpp"
 #include "bench/edits.hpp"
 #include "bench/latency.hpp"
+#include "bench/pages.hpp"
 #include "bench/plan.hpp"
 #include "bench/report.hpp"
 #include "bench/run_parts.hpp"
@@ -69,6 +70,7 @@ int run_latency(const BenchArguments& a) {
   std::filesystem::create_directories(folder);
   write(folder / "latency.json", bench::latency_json(latency) + "\n");
   write(folder / "latency.svg", bench::latency_svg(latency));
+  write(folder / "latency.html", bench::latency_page(latency));
   fmt::print("{}", a.json ? bench::latency_json(latency) + "\n"
                           : fmt::format("{}output: {}\n", bench::latency_text(latency), a.folder));
   return done;
@@ -89,6 +91,7 @@ int run_comparison(const BenchArguments& a) {
   write(folder / "bench.csv", bench::report_csv(rows));
   write(folder / "bench.svg", bench::chart_svg(rows));
   write(folder / "bench_plane.svg", bench::plane_chart_svg(rows));
+  write(folder / "bench.html", bench::comparison_page(rows));
   if (a.json) {
     fmt::print("{}\n", bench::report_json(rows));
   } else {
