@@ -94,3 +94,20 @@ def test_ctrl_c_ends_a_run_between_two_steps(tmp_path: pathlib.Path) -> None:
     assert "KeyboardInterrupt" in errors and process.returncode != 0
     summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
     assert summary["steps"] > 0
+
+
+def test_a_run_leaves_its_report(tmp_path: pathlib.Path) -> None:
+    summary = dartcast.run(BAR, tmp_path / "a")
+    assert summary.report is not None and summary.report.file == dartcast.report_file(tmp_path / "a")
+    page = summary.report.file.read_text(encoding="utf-8")
+    assert page.startswith("<!doctype html>") and len(page.encode()) == summary.report.bytes
+    assert (summary.report.particles, summary.report.frames, summary.report.notes) == (50, 3, [])
+    few = dartcast.write_report(tmp_path / "a", dartcast.ReportOptions(particles=7, frames=2))
+    assert (few.particles, few.particles_of_run, few.frames, few.frames_recorded) == (7, 50, 2, 3)
+    assert len(few.notes) == 2
+    with pytest.raises(dartcast.Error, match="report.bin"):
+        dartcast.write_report(tmp_path / "none")
+    with pytest.raises(dartcast.InvalidArgument, match="at least one particle"):
+        dartcast.write_report(tmp_path / "a", dartcast.ReportOptions(particles=0))
+    assert dartcast.run(BAR | {"output": {"report": False}}, tmp_path / "b").report is None
+    assert not dartcast.report_file(tmp_path / "b").exists()

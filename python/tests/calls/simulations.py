@@ -247,7 +247,13 @@ def of_runs() -> Calls:
     options = dc.RunOptions(threads=1)
     summary = dc.run(SCENE, threads=1)
     out = FOLDER / "out"
+    shown = FOLDER / "shown"
+    dc.run(SCENE, shown, threads=1)
+    few = dc.ReportOptions(particles=2, frames=2)
     return {
+        "write_report": lambda: dc.write_report(shown, few),
+        "write_report: refused": refused(lambda: dc.write_report(FOLDER / "none")),
+        "report_file": lambda: dc.report_file(shown),
         "run_scene": lambda: dc.run_scene(scene, options), "run": lambda: dc.run(SCENE, threads=1, audit=True),
         "run: folder": lambda: dc.run(SCENE, out, threads=1),
         "run: cancelled": lambda: dc.run(SCENE, threads=1, progress=lambda done, all_: done < 2),
