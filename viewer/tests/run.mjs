@@ -8,7 +8,7 @@ import { join } from 'node:path';
 import { launch, withoutWebGL } from './browser.mjs';
 import { checkFallback, checkReport } from './page_checks.mjs';
 
-// Steps, and changes of the scene so that it has several frames.
+// Steps of each scene, which has some seven frames then.
 const scenes = { vessel: 60, surgery: 460, barrel: 60, catheter_left: 120, grains: 60, maze: 60 };
 
 function makeReports(command, folder, work) {
@@ -23,12 +23,14 @@ function makeReports(command, folder, work) {
   });
 }
 
-async function check(files) {
+/** Checks the reports that `makeFiles` gives. Returns how many failed. */
+async function check(makeFiles) {
   const { browser, missing } = await launch();
   if (missing) {
     console.log(`left out: the reports in a browser: ${missing} is missing`);
     return 0;
   }
+  const files = makeFiles();
   let failed = 0;
   const report = async (name, test) => {
     try {
@@ -49,11 +51,11 @@ async function check(files) {
 
 const [first, second] = process.argv.slice(2);
 if (first.endsWith('.html')) {
-  process.exitCode = await check(process.argv.slice(2));
+  process.exitCode = await check(() => process.argv.slice(2));
 } else {
   const work = mkdtempSync(join(tmpdir(), 'dartcast_viewer_'));
   try {
-    process.exitCode = await check(makeReports(first, second, work));
+    process.exitCode = await check(() => makeReports(first, second, work));
   } finally {
     rmSync(work, { recursive: true });
   }
