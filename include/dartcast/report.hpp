@@ -7,12 +7,15 @@
 #include <string>
 #include <vector>
 
+#include "dartcast/threads.hpp"
+
 namespace dartcast {
 
 struct ReportOptions {
-  std::size_t particles = 10000;                          ///< at most; chosen evenly by id
-  std::size_t frames = 100;                               ///< at most; chosen evenly
-  std::uint64_t bytes = std::uint64_t{15} * 1000 * 1000;  ///< at most: beyond it, fewer particles and frames are taken
+  std::size_t particles = 10000;     ///< at most; chosen evenly by id
+  std::size_t frames = 100;          ///< at most; chosen evenly
+  std::uint64_t bytes = 15'000'000;  ///< at most: beyond it, fewer particles and frames are taken
+  Threads threads = {};              ///< the page does not depend on them
 };
 
 struct ReportSummary {

@@ -2920,7 +2920,8 @@ class ReportOptions:
     particles: int
     frames: int
     bytes: int
-    def __init__(self, particles: int = ..., frames: int = ..., bytes: int = ...) -> None: ...
+    threads: int
+    def __init__(self, particles: int = ..., frames: int = ..., bytes: int = ..., threads: int = ...) -> None: ...
     def __eq__(self, other: object) -> bool: ...
 class ReportSummary:
     @property

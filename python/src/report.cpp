@@ -13,6 +13,7 @@ void bind_report(py::module_& m) {
       .field("particles", &ReportOptions::particles)
       .field("frames", &ReportOptions::frames)
       .field("bytes", &ReportOptions::bytes)
+      .field("threads", &ReportOptions::threads)
       .finish();
   Record<ReportSummary>(m, "ReportSummary")
       .field("file", &ReportSummary::file)

@@ -21,6 +21,7 @@ RunOutput::RunOutput(const Scene& scene, const RunOptions& options, Summary& sum
                          scene.output.contacts, scene.output.compression},
       every_(scene.output.every),
       resume_(options.resume),
+      threads_(options.threads),
       summary_(summary) {
   if (folder().empty()) return;
   if (std::filesystem::exists(folder())) lock_.take(folder());
@@ -134,7 +135,7 @@ void RunOutput::write_summary() const {
 void RunOutput::write_report_of_run() {
   {
     const ScopeTimer timer(summary_.seconds_report);
-    summary_.report = write_report(folder());
+    summary_.report = write_report(folder(), {.threads = threads_});
   }
   write_summary();
 }

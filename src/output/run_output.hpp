@@ -56,6 +56,7 @@ class RunOutput {
   Recording::Options recording_options_;
   std::uint64_t every_;
   bool resume_;
+  Threads threads_;
   Summary& summary_;
   RunIdentity identity_;
   RunLock lock_;

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "base/parallel.hpp"
 #include "dartcast/error.hpp"
 #include "report/encode.hpp"
 #include "report/picture.hpp"
@@ -42,7 +43,11 @@ struct SolidSeries {
 class Builder {
  public:
   Builder(const RecordedFile& file, const ReportOptions& options)
-      : file_(file), chosen_(select(file, options)), slots_(chosen_.ids.size()), frames_(std::move(chosen_.recorded)) {}
+      : file_(file),
+        chosen_(select(file, options)),
+        slots_(chosen_.ids.size()),
+        threads_(options.threads),
+        frames_(std::move(chosen_.recorded)) {}
 
   ViewerData build() {
     read_frames();
@@ -52,19 +57,23 @@ class Builder {
     describe_walls();
     describe_solids();
     describe_events();
+    parallel_for(data_.blocks.size(), 1, threads_, [this](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) data_.blocks[i] = base64(gzipped(data_.blocks[i]));
+    });
     data_.description = json_.dump(-1, ' ', false, ViewerJson::error_handler_t::replace);
     data_.picture = picture_of(frames_.front(), walls_.at(chosen_.frames.front().walls), file_.header().dimension);
     return std::move(data_);
   }
 
  private:
-  std::size_t block(std::string_view bytes) {
-    data_.blocks.push_back(base64(gzipped(bytes)));
+  // The block is compressed later, together with all others.
+  std::size_t block(std::string bytes) {
+    data_.blocks.push_back(std::move(bytes));
     return data_.blocks.size() - 1;
   }
   template <class T>
   std::size_t block(const std::vector<T>& values) {
-    return block(bytes_of(std::span<const T>(values)));
+    return block(std::string(bytes_of(std::span<const T>(values))));
   }
 
   // The first frame stands alone, so that it can be drawn before the others are decoded.
@@ -359,6 +368,7 @@ class Builder {
   const RecordedFile& file_;
   ReportSelection chosen_;
   std::size_t slots_;
+  Threads threads_;
   std::vector<RecordedFrame> frames_;
   std::map<std::size_t, RecordedWalls> walls_;  // by chunk
   QuantisedBox box_;
