@@ -191,7 +191,7 @@ TEST_F(Command, BenchLatencySaysWhetherBoundsWereKept) {
 }
 
 TEST_F(Command, WrongUsageIsTwo) {
-  expect_failure("", 2, "run, check, info, convert");
+  expect_failure("", 2, "run, report, view, check, info, convert");
   expect_failure("fly", 2, "fly");
   expect_failure("run", 2, "SCENE");
   expect_failure("run a.toml --fast", 2, "--fast");
