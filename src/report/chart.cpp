@@ -91,7 +91,7 @@ std::string grid(const Chart& chart, const Axis& x, const Axis& y) {
     out += text(x.at(v), chart_bottom + 18.0, "middle", number(v));
   }
   out += fmt::format("<path class=\"axis\" d=\"M{} {}H{}\"/>", chart_left, chart_bottom, chart_right);
-  out += text((chart_left + chart_right) / 2.0, chart_bottom + 38.0, "middle", chart.x_label);
+  out += text(chart_right, chart_bottom + 38.0, "end", chart.x_label);  // the legend stands on the left
   return out + text(chart_right, 18.0, "end", chart.y_label);
 }
 
@@ -191,7 +191,7 @@ std::string histogram_chart(const Chart& chart, std::size_t first, const std::ve
   if (values.empty()) return {};
   const double most = *std::max_element(values.begin(), values.end());
   const auto begin = static_cast<double>(first);
-  const Axis x(begin - 0.5, begin + static_cast<double>(values.size()) - 0.5, false, chart_left, chart_right);
+  const Axis x(begin, begin + static_cast<double>(values.size()) - 0.5, false, chart_left, chart_right);
   const Axis y(0.0, most, false, chart_bottom, chart_top);
   std::string out;
   for (std::size_t i = 0; i < values.size(); ++i) {
