@@ -131,9 +131,9 @@ async function fitsNarrowScreens({ page }) {
   assert(await ink(page) > 0.002, 'a narrow screen shows next to nothing');
 }
 
-/** Runs all checks on a page of a run. */
-export async function checkReport(browser, file) {
-  for (const colorScheme of ['light', 'dark']) {
+/** Runs all checks on a page of a run, in each of the colour schemes. */
+export async function checkReport(browser, file, schemes) {
+  for (const colorScheme of schemes) {
     const opened = await open(browser, file, { colorScheme });
     const { page, said, requests, url } = opened;
     assert.equal(await page.evaluate(() => window.dartcastReport.failed ?? ''), '', 'the viewer gave up');
