@@ -72,10 +72,9 @@ bool is_opened(const std::string& path) {
 
 int view(const std::string& run) {
   const fs::path file = report_file(run);
-  const fs::path summary = fs::path(run) / "summary.json";
+  const fs::path recording = fs::path(run) / "report.bin";
   const bool is_current =
-      fs::exists(file) &&
-      (!fs::exists(summary) || fs::last_write_time(file) + std::chrono::seconds(5) >= fs::last_write_time(summary));
+      fs::exists(file) && (!fs::exists(recording) || fs::last_write_time(file) >= fs::last_write_time(recording));
   if (!is_current) write_report(run);
   const std::string path = fs::absolute(file).lexically_normal().string();
   const bool has_display = is_set("DISPLAY") || is_set("WAYLAND_DISPLAY");

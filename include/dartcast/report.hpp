@@ -13,7 +13,7 @@ namespace dartcast {
 
 struct ReportOptions {
   std::size_t particles = 10000;     ///< at most; chosen evenly by id
-  std::size_t frames = 100;          ///< at most; chosen evenly
+  std::size_t frames = 100;          ///< at most, to 65,535; chosen evenly
   std::uint64_t bytes = 15'000'000;  ///< at most: beyond it, fewer particles and frames are taken
   Threads threads = {};              ///< the page does not depend on them
 };
@@ -31,7 +31,8 @@ struct ReportSummary {
 
 /// Makes report.html in a run's folder from what the run recorded there (report.bin, stats.csv, summary.json,
 /// scene.toml). The page needs no other file and no network. Throws Error where the folder holds no recording, or a file
-/// of it is damaged; InvalidArgument where an option is 0. Cost: linear in the recording.
+/// of it is damaged; InvalidArgument where an option is 0, or there are more than 65,535 frames. Cost: linear in the
+/// recording.
 ReportSummary write_report(const std::filesystem::path& run_folder, const ReportOptions& options = {});
 
 /// Where write_report() writes.

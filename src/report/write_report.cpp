@@ -22,6 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t most_frames = 65535;  // 16 bits number them
+
 // JSON in an element of a script: "<" could end it.
 std::string as_script(const std::string& json) {
   std::string out;
@@ -76,6 +78,8 @@ fs::path report_file(const fs::path& run_folder) { return run_folder / "report.h
 ReportSummary write_report(const fs::path& run_folder, const ReportOptions& options) {
   if (options.particles == 0 || options.frames == 0 || options.bytes == 0)
     throw InvalidArgument("report: give at least one particle, one frame and one byte");
+  if (options.frames > most_frames)
+    throw InvalidArgument(fmt::format("report: {} frames; give at most {}", options.frames, most_frames));
   const RecordedFile file(run_folder / "report.bin");
   const std::string charts = "<section class=\"charts\" aria-label=\"Charts\">\n" + run_charts(run_folder) +
                              "</section>\n" + run_tables(run_folder);

@@ -277,6 +277,7 @@ TEST_F(Report, LimitsAreKeptAndSaid) {
   EXPECT_GE(small.notes.size(), 2U);
   EXPECT_THROW(write_report(folder / "a", {0, 3}), InvalidArgument);
   EXPECT_THROW(write_report(folder / "a", {3, 0}), InvalidArgument);
+  EXPECT_THROW(write_report(folder / "a", {3, 65536}), InvalidArgument);
 }
 
 // A recording that was cut off or changed is read as far as it makes sense, or refused: nothing worse.
