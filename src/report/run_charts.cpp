@@ -142,7 +142,7 @@ std::string shown(const RunJson& value) {
 // Rows of an object; objects in it are headed by their name. Long lists stay in the file.
 void add_rows(std::string& out, const RunJson& object, const std::string& path, std::size_t depth) {
   for (const auto& [name, value] : object.items()) {
-    const std::string key = path.empty() ? name : path + " / " + name;
+    const std::string key = path.empty() ? name : fmt::format("{} / {}", path, name);
     if (value.is_object() && depth < 4) {
       add_rows(out, value, key, depth + 1);
     } else if (!value.is_array() || value.size() <= 3) {

@@ -289,7 +289,7 @@ class Builder {
         if (n >= 2) add(f, {c[0], c[1]});
         continue;
       }
-      for (std::size_t k = 0; k < n; ++k) edges.push_back(std::minmax(c[k], c[(k + 1) % n]));
+      for (std::size_t k = 0; k < n; ++k) edges.emplace_back(std::minmax(c[k], c[(k + 1) % n]));
       for (std::size_t k = 2; k < n; ++k) add(f, {c[0], c[k - 1], c[k]});
     }
     std::sort(edges.begin(), edges.end());
