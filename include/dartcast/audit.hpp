@@ -16,6 +16,7 @@ class CellComplex;  // dartcast/cell_complex.hpp
 // The audit: whether every particle is where its state says, by slow exact arithmetic that shares no code with the
 // walk.
 
+/// The outcome of an audit. Sums of audits are audits.
 struct Audit {
   std::uint64_t checked = 0;
   std::uint64_t failed = 0;

@@ -195,6 +195,7 @@ struct BodiesStep {
 
 /// The state of all bodies after a step. The mesh, the options and the bodies' shapes are not in it.
 struct BodiesCheckpoint {
+  /// One particle of a body.
   struct Particle {
     ParticleState state;
     Weights held_weights{};
@@ -296,6 +297,7 @@ class Bodies {
   /// The hash of all particles in the scene, by body id and number in the body.
   [[nodiscard]] StateHash state_hash() const;
 
+  /// The state now, for restore(). Cost: linear in the particles.
   [[nodiscard]] BodiesCheckpoint checkpoint() const;
   /// Goes on from a checkpoint, where the same bodies have been added to an environment in the same state as then.
   /// Every later step is the same to the last bit. Throws InvalidArgument, nothing changed, where bodies or sizes do

@@ -146,12 +146,14 @@ class Catheter {
 
 // A camera's path along a catheter, or any chain of points in the lumen.
 
+/// How camera_path() places the cameras.
 struct CameraOptions {
   double spacing = 1e-3;           ///< of the cameras along the spline, > 0
   Vec3 up = {0.0, 1.0, 0.0};       ///< at the first camera, made perpendicular to its direction
   std::size_t max_count = 100000;  ///< cameras at most
 };
 
+/// A place and a view on the path.
 struct Camera {
   Vec3 position;     ///< in the lumen, exactly
   Vec3 direction;    ///< unit: along the spline
@@ -159,6 +161,7 @@ struct Camera {
   double arc = 0.0;  ///< from the first camera, along the line through all, m
 };
 
+/// The cameras in order, from the first point to the last.
 struct CameraPath {
   std::vector<Camera> cameras;
   std::size_t at_walls = 0;  ///< cameras that a wall kept from the spline

@@ -24,6 +24,7 @@ namespace dartcast {
 
 // Steiner points: vertices that are combinations of others.
 
+/// The vertices of a complex that are combinations of others, with their weights.
 class SteinerWeights {
  public:
   [[nodiscard]] std::size_t count() const { return vertex_.size() - removed_; }
@@ -64,6 +65,7 @@ inline Corners raised(const Corners& v) {
   return {flat(v[0]), flat(v[1]), flat(v[2]), Vec3{v[0].x, v[0].y, 1.0}};
 }
 
+/// A combinatorial map with the positions of its vertices, now and at the start of the current move.
 class CellComplex {
  public:
   /// Builds the map, finds Steiner points where cells need them, and checks every simplex. Cells that no Steiner point

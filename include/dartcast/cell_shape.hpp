@@ -92,6 +92,7 @@ class Stars {
 /// The key of a shape. Points of the cell have local numbers: corners, then Steiner points of faces, then that of the
 /// cell.
 struct ShapeKey {
+  /// A face by its corners.
   struct Face {
     /// Corners from the lowest-numbered vertex, counterclockwise as seen from the outside. In the plane: the edge's two
     /// corners in its direction.
@@ -194,6 +195,7 @@ class Shape {
   /// The face that has this Steiner point; face_count() if `point` is a corner or the Steiner point of the cell.
   [[nodiscard]] std::uint16_t face_of_point(std::uint16_t point) const;
 
+  /// A volume, face, edge or vertex of the cell.
   struct Feature {
     Kind kind;
     std::uint16_t dart;  ///< of that face, edge or vertex (its origin); not used for a volume

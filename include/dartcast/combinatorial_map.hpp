@@ -97,6 +97,7 @@ struct CellHandle {
 /// numbers are vertices beyond the mesh's own points.
 struct SteinerPoints {
   std::vector<std::pair<std::uint32_t, Vertex>> of_cells;  ///< mesh cell, its point; sorted
+  /// A Steiner point of a face, as one of its two cells has it.
   struct FacePoint {
     std::uint32_t cell;  ///< mesh cell
     std::uint16_t face;  ///< in the mesh's order of faces
@@ -105,6 +106,7 @@ struct SteinerPoints {
   std::vector<FacePoint> of_faces;  ///< sorted by cell and face
 };
 
+/// Convex cells, free or blocked, and how they are joined: darts with phi1, phi2 and phi3. No positions.
 class CombinatorialMap {
  public:
   /// Pools 0 to 3: tetrahedra, hexahedra, prisms, pyramids; in the plane 0 and 1: triangles, quadrilaterals.
@@ -214,6 +216,7 @@ class CombinatorialMap {
   }
 
   // Marks that edits leave for the code that gives cells Steiner points (see dartcast/map_edits.hpp).
+  /// Parts of the cell that an edit found to be flat at a dart.
   struct Flat {
     bool straight = false;  ///< the face of the dart may be straight in its origin
     bool coplanar = false;  ///< the two faces of the cell that meet in its edge may lie in one plane

@@ -26,6 +26,7 @@ struct WallHit {
 /// moved. Only responses use it, to join walls. No decision of a walk depends on it.
 inline constexpr double share_together = 0x1p-20;
 
+/// A particle that meets one or more walls: where, when, and the rest of its motion.
 struct Contact {
   std::uint32_t particle = 0;
   Kind kind = Kind::face;  ///< kind of the place on the wall: face, edge or vertex

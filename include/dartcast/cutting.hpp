@@ -26,6 +26,7 @@ struct Plane {
 /// the normal is zero.
 Plane plane_through(const Vec3& point, const Vec3& normal);
 
+/// How a plane splits cells.
 struct SectionOptions {
   /// Vertices nearer to the plane than this share of the mean edge of the cells to be split (or of `finest`, if that is
   /// less) count as on the plane. So no part becomes much thinner than that. Where the plane runs along faces nothing
@@ -83,6 +84,7 @@ struct BladePath {
 // Tools that hold the points at most width / 2 from a surface, up to corners. All throw InvalidArgument where a number
 // is not finite, or a width or radius is not positive, and as they say.
 
+/// The layer between two planes, width / 2 to both sides.
 std::vector<ConvexTool> thicken(const Plane& plane, double width);
 /// Throws also where the number of sides is not 3 to 1000.
 std::vector<ConvexTool> thicken(const Disc& disc, double width);
@@ -106,17 +108,20 @@ std::vector<Cell> cells_near(const CellComplex& complex, std::span<const ConvexT
 
 // Cutting and carving: cells in a tool become free, or are removed.
 
+/// The change that a tool makes to the cells in it.
 enum class Carving : std::uint8_t {
   open,    ///< blocked cells in the tool become free: particles can enter. Free cells are not split.
   remove,  ///< cells in the tool are removed, free ones, too: their neighbours' faces become boundary
 };
 
+/// How a tool treats cells that it meets in part.
 struct CarveOptions {
   /// Whether cells stay whole. Then a cell is taken if the mean of its corners is in the tool.
   bool whole_cells = false;
   double snap = SectionOptions{}.snap;  ///< see SectionOptions
 };
 
+/// The effects of a tool.
 struct Carved {
   std::vector<Cell> opened;  ///< cells that are free now
   std::size_t removed = 0;   ///< number of removed cells
@@ -159,6 +164,7 @@ std::vector<Cell> ligature(ComplexEdit& edit, const Plane& plane, Cell start);
 /// where the plane crosses no free cell. Cost: one pass over the scene besides.
 std::vector<Cell> ligature(ComplexEdit& edit, const Plane& plane, const Vec3& place);
 
+/// How a ligature draws the walls together.
 struct TyingOptions {
   double share = 0.5;  ///< share of the distance to the middle of the section by which its walls move, in [0, 1)
   double reach = 1.0;  ///< m: the motion fades out at this distance from the plane, and from the section's rim
@@ -174,6 +180,7 @@ void draw_together(const CellComplex& complex, std::span<const Cell> section, co
 
 // Sewing the ends of a vessel together.
 
+/// How two ends are matched.
 struct ReconnectOptions {
   /// Ends are sewn if the distance of each corner to its counterpart is within this share of its shortest edge in the
   /// end.
@@ -181,12 +188,14 @@ struct ReconnectOptions {
   Patch side;  ///< patch of the new faces between the rims of two ends; none by default
 };
 
+/// How two ends were joined.
 enum class Reconnection : std::uint8_t {
   sewn,    ///< faces matched and lay together: they are inner faces now
   paired,  ///< faces matched but lay apart: a cell is between each two of them
   bridged  ///< faces did not match: one cell has all of them
 };
 
+/// The effects of reconnect().
 struct Reconnected {
   Reconnection how = Reconnection::sewn;
   std::vector<Cell> cells;  ///< sewn: cells with changed faces or corners; else: the new cells

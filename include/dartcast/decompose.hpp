@@ -16,6 +16,7 @@ struct Ring {
   std::string name;  ///< the patch of its edges; empty: none
 };
 
+/// How a drawing becomes cells.
 struct DecomposeOptions {
   bool with_outside = true;          ///< whether the outside, up to a rectangle around the drawing, has cells too
   double margin = 0.1;               ///< how far that rectangle reaches beyond: share of the drawing's longer extent

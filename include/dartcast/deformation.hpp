@@ -41,6 +41,7 @@ enum class DeformationKind : std::uint8_t {
 inline constexpr std::array deformation_kinds = {
     DeformationKind::rotate,  DeformationKind::swing, DeformationKind::bend, DeformationKind::twist,
     DeformationKind::stretch, DeformationKind::pulse, DeformationKind::bump, DeformationKind::frames};
+/// The name of a kind in scenes, such as "rotate".
 [[nodiscard]] std::string_view name_of(DeformationKind kind);
 
 /// The kind of that name; none if there is no such kind.

@@ -11,11 +11,13 @@ namespace dartcast {
 /// The largest radius of a sphere, in the unit of the positions. Volumes and masses then do not overflow. A point has
 /// the radius 0.
 inline constexpr double largest_radius = 0x1p+100;
+/// Whether r is in [0, largest_radius].
 inline bool is_radius(double r) { return r >= 0.0 && r <= largest_radius; }
 
 /// The limits of a mass. Its inverse, and sums and products with it, then neither overflow nor vanish.
 inline constexpr double smallest_mass = 0x1p-300;
 inline constexpr double largest_mass = 0x1p+300;
+/// Whether m is in [smallest_mass, largest_mass].
 inline bool is_mass(double m) { return m >= smallest_mass && m <= largest_mass; }
 
 /// The time of impact of a sphere is never after the first touch, and before it by at most this share of the motion.
@@ -78,6 +80,7 @@ struct RigidMover {
   Vec3 position_delta;  ///< out: displacement in the step, without rebounds, with the correction of overlaps
   Vec3 rotation_delta;  ///< out: the rotation in the step likewise, rad
 
+  /// The velocity of the point of the body that is at x.
   [[nodiscard]] Vec3 velocity_at(const Vec3& x) const {
     return turns ? velocity + cross(angular_velocity, x - centre) : velocity;
   }

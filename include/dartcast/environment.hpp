@@ -85,6 +85,7 @@ enum class OrphanPolicy : std::uint8_t {
   absorb     ///< removed from the set
 };
 
+/// A particle that an edit left in no free cell.
 struct OrphanedParticle {
   std::uint32_t particle = 0;    ///< its index before any was removed
   Place place = Place::outside;  ///< blocked or outside

@@ -20,6 +20,7 @@ namespace dartcast {
 // "Subdivisions": T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism for continuous collision
 // detection in deformable environments", SPM 2009, section 7.3.
 
+/// When cells are subdivided for the sake of speed, and merged again.
 struct AdaptiveSubdivisionOptions {
   std::uint32_t max_particles = 32;  ///< particles in a cell, above which it is subdivided
   std::uint32_t min_particles = 8;   ///< particles in all parts of a cell, below which they are merged; < max_particles
@@ -40,6 +41,7 @@ struct SubdivisionChange {
   std::uint32_t what = 0;  ///< the number of the cell that was subdivided, or the subdivision's place in the list
 };
 
+/// The effects of one call.
 struct AdaptiveSubdivisionReport {
   std::uint64_t subdivided = 0;
   std::uint64_t merged = 0;
@@ -49,7 +51,9 @@ struct AdaptiveSubdivisionReport {
   std::vector<SubdivisionChange> changes;  ///< in order
 };
 
+/// The kind of change that an event makes.
 enum class EventKind : std::uint32_t { cut, carve, ligature, reconnect };
+/// The name of a kind in scenes, such as "cut".
 [[nodiscard]] std::string_view name_of(EventKind kind);
 
 /// Opens tissue along a surface (dartcast/cutting.hpp).
@@ -84,11 +88,13 @@ struct Reconnect {
   ReconnectOptions options;
 };
 
+/// A change of the topology at a time.
 struct Event {
   double at = 0.0;  ///< s: before the first step that begins at this time or later
   std::variant<Cut, Carve, Ligature, Reconnect> what;
   OrphanPolicy orphaned = OrphanPolicy::relocate;
 };
+/// The kind of an event.
 [[nodiscard]] EventKind kind_of(const Event& event);
 
 /// The effects of one event.
@@ -113,6 +119,7 @@ struct EventReport {
 
 /// The changes of the topology by events, remeshing and subdivision, in order. The log is enough to repeat them.
 struct EventLog {
+  /// One change, with all that is needed to repeat it.
   struct Change {
     static constexpr std::uint32_t remeshing = 0xffffffffU;
     static constexpr std::uint32_t subdividing = 0xfffffffeU;

@@ -10,6 +10,7 @@ namespace dartcast {
 
 // Boxes of cubes, each cube one hexahedron or cut into smaller cells.
 
+/// Options of generate_box().
 struct BoxOptions {
   std::array<std::uint32_t, 3> cells = {1, 1, 1};  ///< cubes along x, y and z
   Vec3 origin = {0.0, 0.0, 0.0};                   ///< the lowest corner
@@ -41,6 +42,7 @@ MeshData generate_bar();
 
 // A block of truncated octahedra: real polyhedra that fill space.
 
+/// Options of generate_octahedra().
 struct OctahedraOptions {
   std::array<std::uint32_t, 3> cells = {1, 1, 1};  ///< cubes of the packing's lattice; two octahedra in each
   Vec3 origin = {0.0, 0.0, 0.0};
@@ -132,6 +134,7 @@ MeshData generate_barrel(const BarrelOptions& options = {});
 
 // Rectangles of squares in the plane, each square one quadrilateral, cut into triangles, or merged into hexagons.
 
+/// Options of generate_rectangle().
 struct RectangleOptions {
   std::array<std::uint32_t, 2> cells = {1, 1};  ///< squares along x and y
   std::array<double, 2> origin = {0.0, 0.0};    ///< the lowest corner
@@ -165,6 +168,7 @@ MeshData generate_rectangle(const RectangleOptions& options);
 
 // Mazes in the plane: rooms full of obstacles, joined by doors.
 
+/// Options of generate_maze().
 struct MazeOptions {
   std::array<std::uint32_t, 2> rooms = {4, 4};  ///< columns and rows
   std::uint32_t room_cells = 8;                 ///< squares along a room's edge

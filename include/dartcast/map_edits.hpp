@@ -58,6 +58,7 @@ struct DraftLink {
   std::uint16_t draft_face = 0;
 };
 
+/// A face of a cell that is to be made.
 struct DraftFace {
   std::vector<DraftCorner> corners;  ///< counterclockwise seen from the outside
   DraftLink across;
@@ -66,6 +67,7 @@ struct DraftFace {
   Vertex point;  ///< its Steiner point, the same from both sides; invalid: it has none
 };
 
+/// A cell that is to be made, by its faces.
 struct CellDraft {
   std::vector<DraftFace> faces;
   Vertex point;  ///< its Steiner point; invalid: it has none
@@ -92,6 +94,7 @@ struct DraftForm {
 /// tetrahedron, hexahedron, prism, pyramid, triangle or quadrilateral takes that form. Cost: linear in its darts, on
 /// average.
 DraftForm form_of(const CellDraft& draft, unsigned dimension = 3);
+/// The forms of several drafts, in order. Throws as form_of().
 std::vector<DraftForm> forms_of(std::span<const CellDraft> drafts, unsigned dimension);
 
 // Edits of a map: all or nothing.
@@ -235,6 +238,7 @@ class Transaction {
 // throw EditRefused, with the cell's source, the reason and a remedy, where the result would not be a map. They return
 // the new cells.
 
+/// The vertex that split_edge() made, and the cells that have it.
 struct SplitEdge {
   Vertex vertex;
   std::vector<Cell> cells;
@@ -299,6 +303,7 @@ std::vector<Dart> cell_orbit(const CombinatorialMap& map, Dart d);
 
 // Integrity: whether a map keeps the constraints of a combinatorial map and of its records. Each broken one is named.
 
+/// A constraint of the map that does not hold.
 struct Violation {
   std::string constraint;  ///< such as "phi3 is an involution"
   Dart dart;               ///< where it was found

@@ -28,6 +28,7 @@ struct Finding {
   }
 };
 
+/// The outcome of a check: the mesh is taken as it is, repaired, taken with warnings, or refused.
 enum class Verdict { accept, repair, warn, refuse };
 
 /// The report. A mesh with a defect is refused. Other meshes can be used as they are, repaired, or with warnings.
@@ -52,6 +53,7 @@ struct MeshReport {
   }
 };
 
+/// The name of a verdict: accept, repair, warn or refuse.
 constexpr std::string_view verdict_name(Verdict v) {
   constexpr std::string_view names[] = {"accept", "repair", "warn", "refuse"};
   return names[static_cast<int>(v)];

@@ -14,6 +14,7 @@
 
 namespace dartcast {
 
+/// The form of a cell, by its number of corners and faces.
 enum class CellType : std::uint8_t {
   tetrahedron,
   hexahedron,

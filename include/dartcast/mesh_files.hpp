@@ -26,6 +26,7 @@ std::vector<std::string> surface_endings();
 
 // Any mesh file: read, checked and repaired.
 
+/// How a mesh file is read.
 struct ReadOptions {
   /// The cell array of a .vtu or .vtk file that gives the boundary cells (triangles, quadrilaterals, polygons; in the
   /// plane lines) their patches. It holds whole numbers, where 0 is no patch, or texts, where an empty one is none.
@@ -38,6 +39,7 @@ struct ReadOptions {
   std::uint64_t max_memory = 0;
 };
 
+/// A mesh as read, and what was found in it.
 struct MeshFile {
   MeshData mesh;  ///< to be used only where report.valid()
   MeshReport report;

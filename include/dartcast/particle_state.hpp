@@ -22,7 +22,9 @@ struct ParticleState {
       false;  ///< its simplex is not positive now, or its cell is blocked: it moves with the mesh, takes no step
   std::array<CellFace, 3> touching{};
 
+  /// The simplex that holds the particle.
   [[nodiscard]] SimplexId at() const { return {cell, simplex}; }
+  /// Sets simplex and position. Precondition: the closed simplex holds the point.
   void put(SimplexId s, const Vec3& p) {
     position = p;
     cell = s.cell;
@@ -51,11 +53,13 @@ struct Placement {
   Kind kind = Kind::volume;
   Dart dart;
 };
+/// Where in the map a point of the closed simplex is, by exact signs. `corners`: those of the simplex.
 Placement placement(const CombinatorialMap& map, SimplexId simplex, const Corners& corners, const Vec3& x);
 
 /// Whether a point is in a free cell, in a blocked cell or outside.
 enum class Place : std::uint8_t { free, blocked, outside };
 
+/// Where a point is in the scene.
 struct Location {
   Place place = Place::outside;
   SimplexId simplex;         ///< invalid outside

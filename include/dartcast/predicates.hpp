@@ -74,10 +74,13 @@ inline constexpr double smallest_extent = 0x1p-234;
 inline constexpr double largest_extent = 0x1p+301;
 inline constexpr double largest_decided_extent = 0x1p+247;
 
+/// Whether all components are in [smallest_extent, largest].
 constexpr bool are_extents(const Vec3& e, double largest) {
   return std::max(std::max(e.x, e.y), e.z) <= largest && std::min(std::min(e.x, e.y), e.z) >= smallest_extent;
 }
+/// Whether determinant_error bounds the error of a determinant of differences up to this large.
 constexpr bool bound_holds(const Vec3& extent) { return are_extents(extent, largest_extent); }
+/// Whether a filter may decide: bound_holds(), and all coordinates are within the exact range.
 constexpr bool filter_applies(const Vec3& extent) { return are_extents(extent, largest_decided_extent); }
 
 /// The largest |x|, |y| and |z| among some vectors. A component that is infinite makes the result infinite. One that is
@@ -135,10 +138,13 @@ double orient2d_value(const Vec3& a, const Vec3& b, const Vec3& c);
 /// + 16 e) e of the permanent, which is at most 2 m. The last factor covers the same as that of determinant_error:
 /// coordinates that count as 0 change the determinant by less than 4 * 2^-299 m / 2^-234 < 2^-62 m.
 inline constexpr double plane_error = 2.0 * (3.0 + 16.0 * 0x1p-53) * 0x1p-53 * (1.0 + 0x1p-10);
+/// Whether both are in [smallest_extent, largest].
 constexpr bool are_plane_extents(double x, double y, double largest) {
   return std::max(x, y) <= largest && std::min(x, y) >= smallest_extent;
 }
+/// As bound_holds(), for plane_error.
 constexpr bool plane_bound_holds(double x, double y) { return are_plane_extents(x, y, largest_extent); }
+/// As filter_applies(), for plane_error.
 constexpr bool plane_filter_applies(double x, double y) { return are_plane_extents(x, y, largest_decided_extent); }
 
 /// The determinant of orient3d() as a double, accurate to 2^-49 of itself, with the exact sign (0 only where it is 0).

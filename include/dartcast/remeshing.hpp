@@ -28,6 +28,7 @@ struct Subdivision {
   std::vector<Vertex> face_middles;
 };
 
+/// The effects of subdivide().
 struct Subdivided {
   Subdivision subdivision;
   std::vector<Cell> cells;  ///< all new cells: the parts, in the order of the corners, then the cells around them
@@ -61,28 +62,33 @@ std::vector<Cell> coarsen(ComplexEdit& edit, const Subdivision& subdivision);
 /// `added`: cells that the edit made (EditReport::added). Cost: the corners of these cells, if the named part is gone.
 void update_after_edit(const CombinatorialMap& map, std::span<const Cell> added, Subdivision& subdivision);
 
+/// How far a repair may reach.
 struct RepairOptions {
   std::size_t max_cells = 64;  ///< the largest region that is merged
 };
 
+/// How a repair made the simplices positive.
 enum class Mending : std::uint8_t {
   point,  ///< the cell is coned from a Steiner point
   moved,  ///< a vertex that only cells of the region have was moved (it is a new vertex)
   cut     ///< the region was merged, and cut into pyramids, in the plane triangles, around a new vertex
 };
 
+/// Cells that were repaired together.
 struct MendedRegion {
   Mending how = Mending::point;
   std::vector<std::uint32_t> sources;  ///< of its cells, sorted
   std::vector<Cell> cells;             ///< the cells in their place
 };
 
+/// A cell that no method repaired, and why.
 struct LeftCell {
   Cell cell;
   std::uint32_t source = 0;
   std::string reason;
 };
 
+/// The effects of a repair.
 struct RepairReport {
   std::vector<MendedRegion> mended;
   std::vector<LeftCell> left;  ///< unchanged cells

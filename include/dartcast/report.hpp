@@ -11,6 +11,7 @@
 
 namespace dartcast {
 
+/// How much a report shows.
 struct ReportOptions {
   std::size_t particles = 10000;     ///< at most; chosen evenly by id
   std::size_t frames = 100;          ///< at most, to 65,535; chosen evenly
@@ -18,6 +19,7 @@ struct ReportOptions {
   Threads threads = {};              ///< the page does not depend on them
 };
 
+/// The contents of a report, and the parts it leaves out.
 struct ReportSummary {
   std::filesystem::path file;
   std::uint64_t bytes = 0;

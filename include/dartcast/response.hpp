@@ -11,6 +11,7 @@
 
 namespace dartcast {
 
+/// The way in which a wall answers a particle that meets it.
 enum class WallResponseKind : std::uint8_t {
   reflect,  ///< rebounds, relative to the moving wall, with restitution and friction
   slide,    ///< loses the normal part of its motion
@@ -19,6 +20,7 @@ enum class WallResponseKind : std::uint8_t {
   escape    ///< leaves the scene through it
 };
 
+/// A kind of response, with its parameters.
 struct WallResponse {
   WallResponseKind kind = WallResponseKind::reflect;
   double restitution = 1.0;  ///< share of the normal velocity kept by a reflection, in [0, 1]
@@ -28,20 +30,25 @@ struct WallResponse {
 // The responses as values, each with its own parameters: Reflect{0.5, 0.1}, Slide{}.
 
 // They convert by themselves, so that an option takes one as it is: NOLINTBEGIN(google-explicit-constructor)
+/// A rebound, relative to the moving wall.
 struct Reflect {
   double restitution = 1.0;  ///< as WallResponse::restitution
   double friction = 0.0;     ///< as WallResponse::friction
   constexpr operator WallResponse() const { return {WallResponseKind::reflect, restitution, friction}; }
 };
+/// The particle goes on along the wall.
 struct Slide {
   constexpr operator WallResponse() const { return {WallResponseKind::slide}; }
 };
+/// The particle stays on the wall from then on, and moves with it.
 struct Stick {
   constexpr operator WallResponse() const { return {WallResponseKind::stick}; }
 };
+/// The particle ends at the wall.
 struct Absorb {
   constexpr operator WallResponse() const { return {WallResponseKind::absorb}; }
 };
+/// The particle leaves the scene through the wall.
 struct Escape {
   constexpr operator WallResponse() const { return {WallResponseKind::escape}; }
 };

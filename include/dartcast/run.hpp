@@ -34,6 +34,7 @@ struct StatisticsSummary {
   double seconds = 0.0;  ///< of computing
 };
 
+/// The outcome of a run, as in summary.json. Times in s.
 struct Summary {
   std::string scene;
   unsigned threads = 1;
@@ -83,6 +84,7 @@ std::string version();
 
 // Running a scene from its mesh to its output folder.
 
+/// How a scene is run.
 struct RunOptions {
   std::filesystem::path folder;  ///< for the output; empty: none is written
   Threads threads = {};

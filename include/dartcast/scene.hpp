@@ -33,9 +33,11 @@ inline constexpr std::uint64_t max_steps = std::uint64_t{1} << 53U;
 using MeshSource = std::variant<std::filesystem::path, BoxOptions, OctahedraOptions, VesselOptions, RectangleOptions,
                                 MazeOptions, MeshData>;
 
+/// The regions whose cells are free, by name.
 struct FreeRegions {
   std::vector<std::string> regions;
 };
+/// Cells are free where a cell array of the mesh file has one of these values.
 struct FreeValues {
   std::string array;
   std::vector<double> values;
@@ -50,6 +52,7 @@ struct PatchAngle {
   double degrees = 30.0;
 };
 
+/// The mesh of a scene, its free cells and its patches.
 struct EnvironmentScene {
   MeshSource mesh;
   double scale = 1.0;           ///< > 0: the mesh's points are multiplied by it, and those of frames
@@ -67,6 +70,7 @@ struct DeformationScene {
   std::vector<std::filesystem::path> frames;  ///< frames: mesh files with the same points; empty: those of `step`
 };
 
+/// Particles at random places of the free cells.
 struct RandomParticles {
   std::size_t count = 0;
 };
@@ -77,14 +81,17 @@ struct ParticleSeeds {
   std::vector<Vec3> velocities;  ///< one per point; empty: ParticlesScene::velocity
   std::vector<double> radii;     ///< one per point; empty: ParticlesScene::radius
 };
+/// Particles at given places.
 struct PlacedParticles {
   std::variant<std::filesystem::path, ParticleSeeds> positions;  ///< the file: .vtp or .csv
 };
+/// Particles that enter through a patch, at a rate.
 struct InletParticles {
   std::string patch;
   double rate = 0.0;  ///< particles per second
 };
 
+/// Particles of one kind: where they start, and how.
 struct ParticlesScene {
   std::variant<RandomParticles, PlacedParticles, InletParticles> source;
   Vec3 velocity;
@@ -92,6 +99,7 @@ struct ParticlesScene {
   std::vector<double> user_data;  ///< of each particle, a number for each name in Scene::user_data; empty: zeros
 };
 
+/// Where a body has its particles: in a solid filled by spheres, on its surface, or in its volume.
 enum class BodySamples : std::uint8_t { solid, surface, volume };
 
 /// A body: a surface, where it is put, how it is sampled, what it is made of.
@@ -107,6 +115,7 @@ struct BodyScene {
   BodyOptions body;
 };
 
+/// A catheter: where it enters, and how its proximal end moves.
 struct CatheterScene {
   /// The motion of its proximal end, from the end of the previous move.
   struct Move {
@@ -141,6 +150,7 @@ struct FieldScene {
   [[nodiscard]] bool given() const { return !array.empty() || samples.read; }
 };
 
+/// Time steps, and the forces on particles.
 struct MotionScene {
   double dt = 1e-3;
   std::uint64_t steps = 1000;
@@ -152,26 +162,31 @@ struct MotionScene {
   Integrator integrator = Integrator::euler;
 };
 
+/// The responses of walls.
 struct ContactScene {
   WallResponse general = Reflect{};
   std::map<std::string, WallResponse> by_patch;
 };
 
+/// An event, with the name of a patch it makes.
 struct EventScene {
   Event event;
   std::string patch;  ///< reconnect: of the new faces on the side; empty: none
 };
 
+/// Repairs of cells that a deformation inverts.
 struct RemeshScene {
   std::uint64_t every = 0;  ///< steps between two checks of all cells; 0: none
   RepairOptions options;
 };
 
+/// Subdivision of full cells during the run.
 struct AdaptiveSubdivisionScene {
   std::uint64_t every = 0;  ///< steps between two looks; 0: none
   AdaptiveSubdivisionOptions options;
 };
 
+/// The statistics to keep.
 struct StatisticsScene {
   StatisticsOptions options;
   bool crossings = false;  ///< a table of all crossings is written
@@ -180,6 +195,7 @@ struct StatisticsScene {
 /// How arrays stand in .vtp and .vtu files. `fast`: LZ4. `small`: zlib, smaller, but many times slower.
 enum class Compression : std::uint8_t { none, fast, small };
 
+/// The files that a run writes.
 struct OutputScene {
   std::uint64_t every = 10;  ///< steps between two frames; 0: none
   bool contacts = false;
@@ -187,6 +203,7 @@ struct OutputScene {
   Compression compression = Compression::none;
 };
 
+/// A scene: all that a run needs. docs/scene.md has the keys of its file.
 struct Scene {
   std::string name;            ///< the file's, without its ending
   std::filesystem::path file;  ///< empty where the scene comes from none

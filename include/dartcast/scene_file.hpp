@@ -18,6 +18,7 @@ Scene read_scene(const std::filesystem::path& path);
 /// The same from text; `path` is for messages and relative paths.
 Scene parse_scene(const std::string& text, const std::filesystem::path& path);
 
+/// A scene with its files read.
 struct LoadedScene {
   Scene scene;      ///< names no file but frames to read later: a Simulation can be made of it
   Finding skipped;  ///< bad cells that were left out, where the scene wants that

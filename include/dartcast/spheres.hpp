@@ -25,6 +25,7 @@ struct SphereOverlap {
   Vec3 normal;         ///< unit, from the point to the centre
 };
 
+/// The effects of one step of spheres.
 struct SphereReport {
   /// Spheres and points, as from Environment::advance(). A sphere's contact has the point on the wall. The `normal` of
   /// each of its walls is the unit vector from the point touched there to the centre; at an edge or a vertex it is not

@@ -19,6 +19,7 @@ namespace dartcast {
 
 // Hits of wall faces: how often particles met each of them.
 
+/// The contacts at one wall face.
 struct FaceHits {
   CellFace face;  ///< of the free cell
   Patch patch;
@@ -85,6 +86,7 @@ struct SectionPlane {
 /// the exact range, the normal is not finite or zero, or the radius is not finite or negative; or two have one name.
 void check(std::span<const SectionPlane> planes);
 
+/// A particle that passed a plane.
 struct PlaneCrossing {
   std::uint32_t plane = 0;
   std::uint32_t particle = 0;
@@ -128,6 +130,7 @@ struct ResidenceTimes {
 
 // The statistics that a simulation keeps.
 
+/// The statistics that a simulation keeps.
 struct StatisticsOptions {
   bool hits = false;                          ///< of wall faces, by particles and spheres
   bool residence = false;                     ///< the times after which particles leave

@@ -47,6 +47,7 @@ struct Counters {
   }
 };
 
+/// Limits of one step of a particle.
 struct StepOptions {
   /// Largest number of contacts of a particle in one step, at least 1. At the last one it is asked to slide.
   unsigned max_contacts = 16;
@@ -67,6 +68,7 @@ struct HeldParticle {
   Cell cell;  ///< the invalid cell, its own or one on its path; or its own blocked cell
 };
 
+/// How the step of one particle ended.
 struct StepResult {
   bool held = false;
   Cell invalid_cell;
@@ -80,6 +82,7 @@ struct StoppedParticle {
   Vec3 unused;  ///< displacement left, relative to the wall
 };
 
+/// The effects of a step of all particles.
 struct StepReport {
   ContactList contacts;                  ///< by particle, then by time
   std::vector<HeldParticle> held;        ///< by particle

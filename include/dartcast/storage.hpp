@@ -81,6 +81,7 @@ class SideTable {
 
 // Shapes by number. Equal cells share one shape. A shape that no cell uses any more is released.
 
+/// The shapes of a map, by number.
 class ShapeTable {
  public:
   /// Numbers of standard shapes fit in 16 bits. The last 64 of these are reserved for them (45 serve every numbering of
@@ -88,6 +89,7 @@ class ShapeTable {
   static constexpr std::uint32_t kept_begin = 0x10000U - 64U;
   static constexpr std::uint32_t kept_end = 0x10000U;
 
+  /// The number of a shape, and how it came to it.
   struct Interned {
     std::uint32_t number;
     bool made;      ///< the shape is new

@@ -48,6 +48,7 @@ struct AcrossEdge {
   bool wall = false;   ///< an open border, or one face is free and the other is blocked
 };
 
+/// A surface of convex faces in space, on which particles move.
 class Surface {
  public:
   /// Takes the mesh as check_and_repair_surface() repairs it. Throws InvalidMesh, with the first faces, where that
@@ -73,6 +74,7 @@ class Surface {
   /// The corners, counterclockwise as seen from the side that normals point to.
   [[nodiscard]] std::array<Vertex, 3> vertices(SimplexId t) const;
   [[nodiscard]] std::array<Vec3, 3> corners(SimplexId t) const;
+  /// The other side of an edge of a triangle. Precondition: there is such an edge.
   [[nodiscard]] AcrossEdge across(SimplexId t, unsigned edge) const;
   /// Unit normal of a triangle.
   [[nodiscard]] Vec3 normal(SimplexId t) const;
@@ -98,6 +100,7 @@ class Surface {
 
 // The search for the place of a surface that is nearest to a point.
 
+/// The place of a surface that is nearest to a point.
 struct SurfaceLocation {
   SurfacePlace place;
   double distance = 0.0;
@@ -167,6 +170,7 @@ Vec3 slid(const SurfaceContact& contact, const Vec3& v);
 // Paths are straight at vertices, too: K. Polthier, M. Schmies, "Straightest geodesics on polyhedral surfaces", 1998.
 // The path leaves a vertex so that the angles on its left and on its right are equal.
 
+/// Limits of one step on a surface.
 struct SurfaceOptions {
   /// Largest number of contacts of a particle in one step, at least 1. At the last one the particle stops.
   unsigned max_contacts = 16;
@@ -176,6 +180,7 @@ struct SurfaceOptions {
   std::uint32_t max_crossings = 1U << 20U;
 };
 
+/// How the step of one particle ended.
 enum class SurfaceEnd : std::uint8_t {
   arrived,  ///< at its target
   stopped,  ///< at a contact
@@ -183,6 +188,7 @@ enum class SurfaceEnd : std::uint8_t {
   held      ///< its face is blocked
 };
 
+/// The step of one particle.
 struct SurfaceStep {
   SurfaceEnd end = SurfaceEnd::arrived;
   std::uint32_t contacts = 0;
@@ -233,6 +239,7 @@ Vec3 tangent(const Surface& surface, SimplexId triangle, unsigned corner, double
 
 // Many particles on a surface at once.
 
+/// The effects of a step of all particles.
 struct SurfaceReport {
   std::vector<SurfaceStep> steps;        ///< one per particle
   std::vector<SurfaceContact> contacts;  ///< by particle, then by time
@@ -253,6 +260,7 @@ struct GoneTriangle {
   std::array<Vec3, 3> corners;
 };
 
+/// The faces that an edit made and replaced.
 struct SurfaceEditReport {
   EditReport map;
   std::vector<GoneTriangle> gone;  ///< sorted by triangle

@@ -14,8 +14,10 @@
 
 namespace dartcast {
 
+/// The reason why a point is on a particle's way.
 enum class TrajectoryMark : std::uint8_t { start, crossing, contact, target, end };
 
+/// A point of a particle's way.
 struct TrajectoryPoint {
   TrajectoryMark mark = TrajectoryMark::start;
   std::size_t step = 0;  ///< index of the trace

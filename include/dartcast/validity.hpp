@@ -14,6 +14,7 @@ namespace dartcast {
 
 // Validity: whether all implicit simplices are positive. The check of the whole scene is a streaming pass.
 
+/// The outcome of a check of all cells.
 struct Validity {
   std::size_t cells_checked = 0;
   std::size_t invalid_count = 0;
@@ -27,6 +28,7 @@ std::optional<InvalidCell> check_cell(const CombinatorialMap& map, std::span<con
 
 /// Checks every cell at the current positions. Cost: linear, parallel; the result does not depend on the threads.
 Validity check_validity(const CellComplex& complex, Threads threads = {}, std::size_t max_count = 10);
+/// The same, at other positions.
 Validity check_validity(const CombinatorialMap& map, std::span<const Vec3> positions, Threads threads,
                         std::size_t max_count);
 

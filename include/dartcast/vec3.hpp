@@ -7,6 +7,7 @@
 
 namespace dartcast {
 
+/// A point or a vector. In the plane z is 0.
 struct Vec3 {
   double x = 0.0;
   double y = 0.0;

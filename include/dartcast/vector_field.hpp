@@ -16,11 +16,13 @@
 
 namespace dartcast {
 
+/// Whether values stay in space or follow the mesh.
 enum class FieldFrame : std::uint8_t {
   space,  ///< the values are vectors in space, wherever their points have moved
   mesh    ///< the values belong to the mesh at rest: they turn and stretch with it, and it carries the flow along
 };
 
+/// Where the values are given.
 enum class FieldPlace : std::uint8_t {
   points,  ///< linear between points; Steiner points take their values by their weights
   cells    ///< constant in each cell, with a jump from cell to cell; never averaged
@@ -44,6 +46,7 @@ struct FieldSamples {
 FieldSamples field_samples(std::vector<double> times, std::vector<std::vector<Vec3>> values,
                            FieldPlace place = FieldPlace::points, double period = 0.0);
 
+/// A vector field on a complex: at points or in cells, steady or at several times.
 class VectorField {
  public:
   /// A steady field at the points. The complex's positions are those at rest. Throws InvalidArgument where the number

@@ -121,7 +121,8 @@ void bind_vector_field(py::module_& m) {
   c.def(py::init([](const ComplexPointer& complex, const py::object& values, FieldFrame frame) {
           return make(complex, vectors(values, "values"), frame);
         }),
-        py::arg("complex"), py::arg("values"), py::arg("frame") = FieldFrame::space);
+        py::arg("complex"), py::arg("values"), py::arg("frame") = FieldFrame::space,
+        "A steady field: one vector for each point of the mesh, float64 (n, 3).");
   bind_members(c);
   c.def(
       "hold",
