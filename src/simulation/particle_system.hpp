@@ -31,6 +31,13 @@ inline bool leaves(ParticleStatus status) {
   return false;
 }
 
+/// Where all vertices were before the last move and after it, and after how many steps.
+struct VertexPlaces {
+  std::uint64_t steps = 0;
+  std::vector<Vec3> before;
+  std::vector<Vec3> now;
+};
+
 /// It also moves the vertices: with collisions that comes between the spheres' impulses and their walk. A function
 /// with the name of one of Simulation's does the work of that function.
 class ParticleSystem final : public SimulationComponent {
@@ -57,6 +64,10 @@ class ParticleSystem final : public SimulationComponent {
   void add_random(std::size_t count, const Vec3& velocity, double radius, std::span<const double> user_data);
   void pull(std::span<const Vec3> displacement, double duration);
   void go_to(std::uint64_t steps);
+  /// For put_back(). Cost: a copy of all positions, twice.
+  [[nodiscard]] VertexPlaces vertex_places() const;
+  /// Moves the vertices back, and counts steps from there. The caller restores all particles.
+  void put_back(const VertexPlaces& places);
 
   void step(double begin) override;
   void update_after_edit(const ComplexEditReport& edit, OrphanPolicy orphaned) override;

@@ -1,4 +1,6 @@
 // Saving the particles, going on from a saved state, and their hash.
+#include <algorithm>
+
 #include "dartcast/error.hpp"
 #include "simulation/particle_system.hpp"
 
@@ -66,6 +68,21 @@ void ParticleSystem::go_to(std::uint64_t steps) {
         "simulation: its particles cannot follow to another step: use a simulation without particles");
   if (steps_ != steps) stand_at(steps);
   steps_ = steps;
+}
+
+VertexPlaces ParticleSystem::vertex_places() const {
+  const auto before = environment_.complex().previous_positions();
+  const auto now = environment_.positions();
+  return {steps_, {before.begin(), before.end()}, {now.begin(), now.end()}};
+}
+
+void ParticleSystem::put_back(const VertexPlaces& places) {
+  for (const std::vector<Vec3>* positions : {&places.before, &places.now}) {
+    const std::span<Vec3> next = environment_.next_positions();  // without Steiner points
+    std::copy_n(positions->begin(), next.size(), next.begin());
+    environment_.move();
+  }
+  steps_ = places.steps;
 }
 
 // As after the last of these steps: where vertices were before it counts, too.

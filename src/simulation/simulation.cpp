@@ -91,7 +91,16 @@ void Simulation::restore(const SimulationCheckpoint& saved) {
     throw;
   }
   parts_->replaying = false;
-  for (SimulationComponent* component : parts_->components) component->restore(saved.state());
+  // Whether states fit is seen only where the vertices stand as they did then. So a refusal comes late, and is undone.
+  const SimulationCheckpoint former = checkpoint();
+  const VertexPlaces places = parts_->particles.vertex_places();
+  try {
+    for (SimulationComponent* component : parts_->components) component->restore(saved.state());
+  } catch (...) {
+    parts_->particles.put_back(places);
+    for (SimulationComponent* component : parts_->components) component->restore(former.state());
+    throw;
+  }
   parts_->events.set_log(saved.state().events);
 }
 
