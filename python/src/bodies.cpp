@@ -132,8 +132,8 @@ void bind_calls(Class& bodies) {
                            "\n\nresponses: one such as Reflect(0.5), a dict of them by the names of patches, or "
                            "WallResponses; None: reflection without loss.";
   bodies
-      .def(py::init(&make_bodies), py::arg("environment"), py::arg("options"), py::arg("responses") = py::none(),
-           text.c_str())
+      .def(py::init(&make_bodies), py::arg("environment").none(false), py::arg("options"),
+           py::arg("responses") = py::none(), text.c_str())
       .def("add", &add, py::arg("points"), py::arg("options"), doc("Bodies::add"))
       .def("step", &step, doc("Bodies::step"))
       .def("predicted_state", of_body([](const Bodies& b, std::size_t i) { return b.predicted_state(i); }),

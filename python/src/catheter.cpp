@@ -141,7 +141,8 @@ void bind_state(Class& catheter) {
 
 void bind_class(py::module_& m) {
   Class catheter(m, "Catheter", doc("Catheter"));
-  catheter.def(py::init(&make_catheter), py::arg("environment"), py::arg("options"), doc("Catheter::Catheter"))
+  catheter
+      .def(py::init(&make_catheter), py::arg("environment").none(false), py::arg("options"), doc("Catheter::Catheter"))
       .def("step", &step, py::arg("input"), doc("Catheter::step"))
       .def("update_after_edit", &update_after_edit, doc("Catheter::update_after_edit"))
       .def("checkpoint", of_catheter([](const Catheter& c) { return c.checkpoint(); }), "The state, for restore().")
@@ -188,8 +189,8 @@ void bind_catheter(py::module_& m) {
       .field("cameras", &CameraPath::cameras)
       .field("at_walls", &CameraPath::at_walls)
       .finish();
-  m.def("camera_path", &cameras, py::arg("environment"), py::arg("points"), py::arg("options") = CameraOptions{},
-        doc("camera_path"));
+  m.def("camera_path", &cameras, py::arg("environment").none(false), py::arg("points"),
+        py::arg("options") = CameraOptions{}, doc("camera_path"));
 }
 
 }  // namespace dartcast::python

@@ -138,7 +138,7 @@ void bind_complex_edit(py::module_& m) {
           made->edit = &made->own->edit;
           return made;
         }),
-        py::arg("complex"),
+        py::arg("complex").none(false),
         "Opens an edit. Raises InvalidArgument where the complex belongs to an environment, and InUse where another "
         "edit of "
         "it is open.");

@@ -117,7 +117,7 @@ void add_scene(Handle& self, const T& scene) {
 
 void bind_making(Class& simulation) {
   simulation
-      .def(py::init(&of_environment), py::arg("environment"), py::arg("options") = SimulationOptions{},
+      .def(py::init(&of_environment), py::arg("environment").none(false), py::arg("options") = SimulationOptions{},
            (std::string(doc("Simulation::Simulation")) +
             "\n\nAs long as the simulation lives, the environment cannot be changed in another way.")
                .c_str())

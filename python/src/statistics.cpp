@@ -9,6 +9,7 @@
 #include "dartcast/statistics_files.hpp"
 #include "support/environments.hpp"
 #include "support/python.hpp"
+#include "support/rows.hpp"
 
 namespace py = pybind11;
 
@@ -105,9 +106,9 @@ py::array path_points_array(const std::vector<PathPoint>& points) {
 
 /// The hits that faces() gave, from an array with its fields.
 std::vector<FaceHits> hits_of(const py::object& faces) {
-  if (!py::isinstance<py::array_t<FaceHitsRow>>(faces))
-    refuse_array(faces, "faces", "the array of faces()", "hits.faces()");
-  const auto rows = py::array_t<FaceHitsRow>(py::reinterpret_borrow<py::array>(faces)).unchecked<1>();
+  const py::array_t<FaceHitsRow> array =
+      structured(faces, py::dtype::of<FaceHitsRow>(), "faces", "the array of faces()", "hits.faces()");
+  const auto rows = array.unchecked<1>();
   std::vector<FaceHits> found;
   for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
     const FaceHitsRow& r = rows(i);
@@ -118,9 +119,10 @@ std::vector<FaceHits> hits_of(const py::object& faces) {
 
 /// The points of pathlines, from an array with their fields.
 std::vector<PathPoint> path_points_of(const py::object& points) {
-  if (!py::isinstance<py::array_t<PathPointRow>>(points))
-    refuse_array(points, "points", "the array of Statistics.path_points", "numpy.concatenate(list of these arrays)");
-  const auto rows = py::array_t<PathPointRow>(py::reinterpret_borrow<py::array>(points)).unchecked<1>();
+  const py::array_t<PathPointRow> array =
+      structured(points, py::dtype::of<PathPointRow>(), "points", "the array of Statistics.path_points",
+                 "numpy.concatenate(list of these arrays)");
+  const auto rows = array.unchecked<1>();
   std::vector<PathPoint> found;
   for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
     const PathPointRow& r = rows(i);

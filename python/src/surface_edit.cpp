@@ -130,7 +130,7 @@ void bind_surface_edit(py::module_& m) {
       "\n\nIt is a context manager: leaving its block without commit() undoes it. While it is open, the "
       "surface can be read through `edit.map` and `edit.position()` only.";
   py::class_<Handle, std::shared_ptr<Handle>>(m, "SurfaceEdit", text.c_str())
-      .def(py::init<std::shared_ptr<SurfaceHandle>>(), py::arg("surface"))
+      .def(py::init<std::shared_ptr<SurfaceHandle>>(), py::arg("surface").none(false))
       .def("__enter__", [](const std::shared_ptr<Handle>& self) { return self; })
       .def("__exit__", [](Handle& self, const py::args& /*raised*/) { self.give_up(); })
       .def_property_readonly("topology", &topology, "The transaction for the functions of map_edits.hpp.")

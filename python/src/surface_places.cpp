@@ -85,7 +85,7 @@ std::span<const PlaceRow> place_rows(const py::object& x, const char* name) {
                      py::reinterpret_borrow<py::array>(x).ndim() == 1 && is_aligned(x);
   if (!right) {
     refuse_array(x, name, "an array of places (dtype dartcast.SURFACE_PLACE), C-contiguous",
-                 "dartcast.surface_places(x), from a list of SurfacePlace");
+                 "x.astype(dartcast.SURFACE_PLACE); from a list of SurfacePlace: dartcast.surface_places(x)");
   }
   const auto a = py::reinterpret_borrow<py::array>(x);
   return {static_cast<const PlaceRow*>(a.data()), static_cast<std::size_t>(a.size())};
@@ -148,8 +148,8 @@ void bind_surface_places(py::module_& m) {
                            "\n\nx: three numbers, for which it returns a SurfaceLocation. Or float64 (n, 3), for which "
                            "it returns an array of places and the distances, float64 (n,).";
   py::class_<LocatorHandle, std::shared_ptr<LocatorHandle>>(m, "SurfaceLocator", doc("SurfaceLocator"))
-      .def(py::init(&make_locator), py::arg("surface"), doc("SurfaceLocator::SurfaceLocator"))
-      .def("nearest", &nearest, py::arg("surface"), py::arg("x"), text.c_str());
+      .def(py::init(&make_locator), py::arg("surface").none(false), doc("SurfaceLocator::SurfaceLocator"))
+      .def("nearest", &nearest, py::arg("surface").none(false), py::arg("x"), text.c_str());
 }
 
 }  // namespace dartcast::python

@@ -158,7 +158,7 @@ void bind_transaction(py::module_& m) {
           made->own = std::make_unique<OwnTransaction>(map);
           return made;
         }),
-        py::arg("map"),
+        py::arg("map").none(false),
         "Opens a transaction on a map of its own. Raises InvalidArgument where the map belongs to something else, and "
         "InUse "
         "where another transaction on it is open.");

@@ -116,12 +116,12 @@ void bind_members(py::class_<FieldHandle, FieldPointer>& c) {
 void bind_vector_field(py::module_& m) {
   bind_samples(m);
   py::class_<FieldHandle, FieldPointer> c(m, "VectorField", "A field of vectors at the points or cells of a mesh.");
-  c.def(py::init(&make<FieldSamples>), py::arg("complex"), py::arg("samples"), py::arg("frame") = FieldFrame::space,
-        doc("VectorField::VectorField"));
+  c.def(py::init(&make<FieldSamples>), py::arg("complex").none(false), py::arg("samples"),
+        py::arg("frame") = FieldFrame::space, doc("VectorField::VectorField"));
   c.def(py::init([](const ComplexPointer& complex, const py::object& values, FieldFrame frame) {
           return make(complex, vectors(values, "values"), frame);
         }),
-        py::arg("complex"), py::arg("values"), py::arg("frame") = FieldFrame::space,
+        py::arg("complex").none(false), py::arg("values"), py::arg("frame") = FieldFrame::space,
         "A steady field: one vector for each point of the mesh, float64 (n, 3).");
   bind_members(c);
   c.def(

@@ -99,3 +99,167 @@ def test_events_cut_while_particles_flow() -> None:
     assert report.cells_added > report.cells_removed > 0 and report.cells_opened > 0
     simulation.step()
     assert simulation.audit().failed == 0
+
+
+def test_setters_refuse_what_is_out_of_range() -> None:
+    simulation = bar()
+    simulation.add_random(5, [1.0, 2.0, 3.0])
+    before = simulation.state_hash().hex()
+    environment = simulation.environment
+    n = len(environment.positions)
+    plane = dartcast.plane_through([2.0, 2.0, 14.0], [0.0, 0.0, 1.0])
+    wrong = [
+        lambda: simulation.add(np.full((2, 3), 2.5), np.zeros((3, 3))),
+        lambda: simulation.add(np.full((2, 3), 2.5), [np.inf, 0.0, 0.0]),
+        lambda: simulation.add(np.full((2, 3), np.nan), [0.0, 0.0, 0.0]),
+        lambda: simulation.add(np.full((2, 3), 2.5), [0.0, 0.0, 0.0], -1.0),
+        lambda: simulation.add(np.full((2, 3), 2.5), [0.0, 0.0, 0.0], np.ones(3)),
+        lambda: simulation.add(np.full((2, 3), 2.5), [0.0, 0.0, 0.0], user_data=[1.0]),
+        lambda: simulation.add_random(3, [np.nan, 0.0, 0.0]),
+        lambda: simulation.add_inlet(60000, 1.0, [0.0, 0.0, 1.0]),
+        lambda: simulation.add_body(np.full((1, 3), 2.5), dartcast.BodyOptions(mass=-1.0)),
+        lambda: simulation.set_events([dartcast.Event(-1.0, dartcast.Cut(plane, 0.1))]),
+        lambda: simulation.set_adaptive_subdivision(dartcast.AdaptiveSubdivisionScene(
+            1, dartcast.AdaptiveSubdivisionOptions(max_particles=1, min_particles=2))),
+        lambda: simulation.set_deformation(dartcast.Deformation([], np.zeros((n + 1, 3)))),
+        lambda: simulation.pull(np.zeros((n + 1, 3)), 1.0),
+        lambda: simulation.pull(np.zeros((n, 3)), -1.0),
+        lambda: simulation.catheter(0),
+        lambda: simulation.go_to(5),
+        lambda: simulation.user_data(99),
+    ]
+    for i, call in enumerate(wrong):
+        with pytest.raises((dartcast.InvalidArgument, IndexError)):
+            call()
+            pytest.fail(f"call {i} was not refused")
+    assert simulation.state_hash().hex() == before and simulation.step().duration == 0.1
+
+
+@pytest.mark.parametrize("named", [{"dt": 0.0}, {"dt": np.nan}, {"substeps": 0}, {"drag": -1.0},
+                                   {"gravity": [np.inf, 0.0, 0.0]}, {"patch_responses": {"none": dartcast.Slide()}},
+                                   {"response": dartcast.Reflect(1.5)}])
+def test_options_out_of_range_are_refused(named: dict[str, object]) -> None:
+    with pytest.raises(dartcast.InvalidArgument):
+        dartcast.Simulation(dartcast.Environment(dartcast.generate_bar()),
+                            dartcast.SimulationOptions(**({"dt": 0.1} | named)))
+
+
+def test_a_function_is_called_once_after_each_edit() -> None:
+    simulation = bar()
+    simulation.add_random(50, [1.0, 2.0, 3.0])
+    cells: list[int] = []
+    simulation.set_after_edit(lambda environment: cells.append(environment.map.cell_count()))
+    for _ in range(3):
+        simulation.edit(lambda edit: dartcast.subdivide(edit, int(edit.map.cells()[0])))
+    assert cells == sorted(set(cells)) and len(cells) == 3 and cells[-1] == simulation.environment.map.cell_count()
+    simulation.set_after_edit(None)
+    simulation.edit(lambda edit: dartcast.subdivide(edit, int(edit.map.cells()[0])))
+    assert len(cells) == 3
+
+
+def test_an_exception_after_an_edit_comes_out_as_itself() -> None:
+    simulation = bar()
+    simulation.add_random(50, [1.0, 2.0, 3.0])
+    before = simulation.environment.map.cell_count()
+
+    def fail(environment: dartcast.Environment) -> None:
+        raise ArithmeticError("mine")
+
+    simulation.set_after_edit(fail)
+    with pytest.raises(ArithmeticError, match="mine"):
+        simulation.edit(lambda edit: dartcast.subdivide(edit, int(edit.map.cells()[0])))
+    simulation.set_after_edit(None)
+    assert simulation.environment.map.cell_count() > before  # the edit is whole: the function is called at its end
+    simulation.step()
+    assert simulation.audit().failed == 0 and len(simulation.particles) == 50
+
+
+def test_an_exception_in_an_edit_undoes_it() -> None:
+    simulation = bar()
+    simulation.add_random(50, [1.0, 2.0, 3.0])
+    before = simulation.state_hash().hex(), simulation.environment.map.cell_count(), simulation.environment.edit_count
+
+    def fail(edit: dartcast.ComplexEdit) -> None:
+        dartcast.subdivide(edit, int(edit.map.cells()[0]))
+        raise KeyError("mine")
+
+    with pytest.raises(KeyError, match="mine"):
+        simulation.edit(fail)
+    assert before == (simulation.state_hash().hex(), simulation.environment.map.cell_count(),
+                      simulation.environment.edit_count)
+
+
+def test_a_checkpoint_of_another_scene_is_refused() -> None:
+    simulation = bar()
+    simulation.add_random(20, [3.0, 2.0, 1.0])
+    simulation.step()
+    saved = simulation.checkpoint()
+    other = dartcast.Simulation(dartcast.Environment(dartcast.generate_box(cells=[1, 1, 1])),
+                                dartcast.SimulationOptions(dt=0.1))
+    other.add_random(3, [1.0, 0.0, 0.0])
+    before = other.state_hash().hex()
+    with pytest.raises(dartcast.InvalidArgument):
+        other.restore(saved)
+    assert other.state_hash().hex() == before and other.audit().failed == 0
+
+
+def vessel(events: list[dartcast.Event]) -> dartcast.Simulation:
+    simulation = dartcast.Simulation(dartcast.Environment(dartcast.generate_vessel()),
+                                     dartcast.SimulationOptions(dt=1e-3))
+    simulation.add_random(200, [0.0, 0.0, 0.1])
+    simulation.set_events(events)
+    return simulation
+
+
+@pytest.mark.parametrize("kind, what", [
+    ("CUT", lambda: dartcast.Cut(dartcast.Disc(centre=[0.0, 0.0, -0.012], radius=6e-3), 1.2e-3)),
+    ("CARVE", lambda: dartcast.Carve(dartcast.box_tool([-4e-3, -4e-3, -4e-3], [4e-3, 4e-3, 4e-3]), "open")),
+    ("LIGATURE", lambda: dartcast.Ligature(dartcast.plane_through([0.0, 0.0, 0.0], [0.0, 0.0, 1.0]), [0.0, 0.0, 0.0],
+                                           dartcast.TyingOptions(0.2, 5e-3), 2e-3))])
+def test_events_happen_at_their_time(kind: str, what: object) -> None:
+    assert callable(what)
+    simulation = vessel([dartcast.Event(2e-3, what())])
+    reports = []
+    for _ in range(4):
+        simulation.step()
+        reports.append(len(simulation.event_log.events))
+    assert reports == [0, 0, 1, 1]  # before the step that begins at 2 ms
+    event, = simulation.event_log.events
+    assert event.kind == dartcast.EventKind[kind] and event.step == 2 and event.time == pytest.approx(2e-3)
+    assert event.cells_added + event.cells_opened + event.cells_blocked > 0
+    assert simulation.audit().failed == 0
+
+
+def test_events_that_cannot_happen_name_themselves() -> None:
+    far = dartcast.Ligature(dartcast.plane_through([0.0, 0.0, 9.0], [0.0, 0.0, 1.0]), [0.0, 0.0, 9.0],
+                            dartcast.TyingOptions(0.2, 5e-3), 2e-3)
+    simulation = vessel([dartcast.Event(0.0, far)])
+    with pytest.raises(dartcast.Error, match="event"):
+        simulation.step()
+    assert simulation.steps == 0 and simulation.audit().failed == 0
+
+
+def test_crowded_cells_are_subdivided_and_merged() -> None:
+    simulation = dartcast.Simulation(dartcast.Environment(dartcast.generate_box(cells=[2, 2, 2])),
+                                     dartcast.SimulationOptions(dt=0.1))
+    simulation.add(np.random.default_rng(1).uniform(0.01, 0.49, (60, 3)), [0.0, 0.0, 0.0])
+    simulation.set_adaptive_subdivision(dartcast.AdaptiveSubdivisionScene(
+        0, dartcast.AdaptiveSubdivisionOptions(max_particles=30, min_particles=4)))
+    report = simulation.adapt()
+    assert report.subdivided == 1 and report.merged == 0 and report.waiting == 0 and not report.refused
+    assert simulation.environment.map.cell_count() > 8 and simulation.audit().failed == 0
+
+
+def test_cells_that_a_motion_inverts_are_repaired() -> None:
+    environment = dartcast.Environment(dartcast.generate_box(cells=[2, 2, 2]))
+    simulation = dartcast.Simulation(environment, dartcast.SimulationOptions(dt=0.1))
+    simulation.add_random(40, [0.5, 0.25, 0.125])
+    assert not simulation.repair().mended
+    displacement = np.zeros((27, 3))
+    displacement[13] = [0.55, 0.0, 0.0]  # the middle vertex passes the wall face's plane at x = 1
+    simulation.pull(displacement, 0.1)
+    simulation.step()
+    assert not simulation.environment.validity().valid
+    report = simulation.repair()
+    assert report.mended or report.left
+    assert simulation.audit().failed == 0

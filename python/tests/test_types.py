@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import ast
+import functools
 import os
 import pathlib
 import re
@@ -98,7 +99,7 @@ def fits(value: object, kind: ast.expr, scope: type) -> bool:
         return type(value) is int
     named = {"float": float, "bool": bool, "str": str}.get(text)
     if named is None:
-        named = getattr(scope, text, None) or getattr(dartcast, text)
+        named = getattr(scope, text, None) or functools.reduce(getattr, text.split("."), dartcast)
     return type(value) is named
 
 

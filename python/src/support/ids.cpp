@@ -22,9 +22,19 @@ bool load_integer(py::handle from, std::uint64_t largest, std::uint64_t& value) 
   return true;
 }
 
+namespace {
+
+// Whether this is a row of a structured array, such as each item of Surface.triangles().
+bool is_row(py::handle from) { return py::hasattr(from, "dtype") && !from.attr("dtype").attr("names").is_none(); }
+
+}  // namespace
+
 bool load_pair(py::handle from, std::array<std::uint64_t, 2>& values) {
-  if (!py::isinstance<py::tuple>(from) || py::len(from) != 2) return false;
-  const auto pair = py::reinterpret_borrow<py::tuple>(from);
+  if ((!py::isinstance<py::tuple>(from) && !is_row(from)) || PyObject_Length(from.ptr()) != 2) {
+    PyErr_Clear();
+    return false;
+  }
+  const auto pair = py::reinterpret_borrow<py::sequence>(from);
   return load_integer(pair[0], 0xffffffffU, values[0]) && load_integer(pair[1], 0xffffU, values[1]);
 }
 

@@ -21,7 +21,7 @@ pybind11::handle tuple_type(const char* name);
 /// object is no integer.
 bool load_integer(pybind11::handle from, std::uint64_t largest, std::uint64_t& value);
 
-/// Two integers of a tuple; false where it is none of two.
+/// Two integers of a tuple, or of a row of a structured array; false where it is none of two.
 bool load_pair(pybind11::handle from, std::array<std::uint64_t, 2>& values);
 
 }  // namespace dartcast::python

@@ -34,6 +34,14 @@ void fill_location(const Location& l, Row& r) {
   r.dart = l.dart.number;
 }
 
+bool same_fields(const py::dtype& a, const py::dtype& b) {
+  const auto names = b.attr("names");
+  if (!a.attr("names").equal(names)) return false;
+  return std::all_of(names.begin(), names.end(), [&](const py::handle field) {
+    return a.attr("fields")[field][py::int_(0)].equal(b.attr("fields")[field][py::int_(0)]);
+  });
+}
+
 }  // namespace
 
 void register_rows() {
@@ -125,12 +133,17 @@ py::array rows_of(const std::vector<OrphanedParticle>& orphaned) {
   });
 }
 
-std::vector<ParticleState> states_of(const py::object& x, const char* name) {
-  const auto expected = py::dtype::of<StateRow>();
+py::array structured(const py::object& x, const py::dtype& wanted, const char* name, const char* expected,
+                     const char* remedy) {
   const bool right = py::isinstance<py::array>(x) && py::reinterpret_borrow<py::array>(x).ndim() == 1 &&
-                     py::reinterpret_borrow<py::array>(x).dtype().equal(expected);
-  if (!right) refuse_array(x, name, "an array as Particles.states gives it", "Particles.states");
-  const auto rows = py::array_t<StateRow, py::array::c_style | py::array::forcecast>::ensure(x);
+                     same_fields(py::reinterpret_borrow<py::array>(x).dtype(), wanted);
+  if (!right) refuse_array(x, name, expected, remedy);
+  return py::module_::import("numpy").attr("ascontiguousarray")(x, wanted);
+}
+
+std::vector<ParticleState> states_of(const py::object& x, const char* name) {
+  const py::array_t<StateRow> rows =
+      structured(x, py::dtype::of<StateRow>(), name, "an array as Particles.states gives it", "Particles.states");
   std::vector<ParticleState> states(static_cast<std::size_t>(rows.size()));
   for (std::size_t i = 0; i < states.size(); ++i) {
     const StateRow& r = rows.data()[i];

@@ -86,6 +86,11 @@ pybind11::array rows_of(const std::vector<StoppedParticle>& stopped);
 pybind11::array rows_of(const std::vector<SphereOverlap>& overlaps);
 pybind11::array rows_of(const std::vector<OrphanedParticle>& orphaned);
 
+/// An array (n,) of this dtype, from one whose fields have the same names and types. Where they stand makes no
+/// difference: numpy.concatenate() packs them. Throws TypeError for another array; `expected` and `remedy`: of its text.
+pybind11::array structured(const pybind11::object& x, const pybind11::dtype& wanted, const char* name,
+                           const char* expected, const char* remedy);
+
 /// States from an array as rows_of() makes it. Throws TypeError for another dtype.
 std::vector<ParticleState> states_of(const pybind11::object& x, const char* name);
 
