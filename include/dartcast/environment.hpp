@@ -48,10 +48,13 @@ class Particles {
   /// step to step, so that values at vertices are interpolated without a look at the cell.
   [[nodiscard]] std::span<const std::array<std::uint32_t, 4>> vertex_numbers() const;
 
-  // All four throw InvalidArgument and change nothing where a size does not match or an index names no particle.
+  // These throw InvalidArgument and change nothing where a size does not match or an index names no particle.
 
   /// Removes the particles marked with 1; the others keep their order. `marks`: one per particle.
   void remove(std::span<const std::uint8_t> marks);
+  /// Keeps the first `count` particles alone; it does nothing where there are no more. Without memory of its own, so that
+  /// it can undo an addition.
+  void truncate(std::size_t count);
   /// Reorders: particle i is then the former particle order[i]. `order`: a permutation.
   void reorder(std::span<const std::uint32_t> order);
   /// A set of these particles alone, in this order, as they are. `which`: indices.

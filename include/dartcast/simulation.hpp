@@ -231,7 +231,7 @@ class Simulation {
   std::vector<AddResult> add(std::span<const Vec3> positions, std::span<const Vec3> velocities,
                              std::span<const double> radii, std::span<const double> user_data = {});
   /// Adds particles at random places of the free cells, uniformly by volume. Throws InvalidArgument where no cell is
-  /// free, or as add().
+  /// free or the count is beyond 2^31, or as add().
   void add_random(std::size_t count, const Vec3& velocity, double radius = 0.0, std::span<const double> user_data = {});
 
   /// Adds a body of these particles, as Bodies::add(). Throws as that, and InvalidArgument where there are collisions
@@ -338,9 +338,9 @@ class Simulation {
 
 /// Adds particles at random points of the free cells, of equal likelihood by volume (in the plane by area). A particle's
 /// point depends on the seed and its index in the set alone: an empty simulation of the same scene and seed adds the same
-/// ones. Throws InvalidArgument, nothing added, where no cell is free or the particles are of another environment or have
-/// missed a move or an edit; and where points fall outside again and again, because cells are too thin or not valid: those
-/// added before remain. Cost: linear in the cells, and about 1 us for each particle.
+/// ones. Throws InvalidArgument, nothing added, where no cell is free, the count is beyond 2^31, or the particles are of
+/// another environment or have missed a move or an edit; and where points fall outside again and again, because cells
+/// are too thin or not valid. Cost: linear in the cells, and about 1 us for each particle.
 void add_random(Environment& environment, Particles& particles, std::size_t count, std::uint64_t seed = 1);
 
 }  // namespace dartcast

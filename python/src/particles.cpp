@@ -118,6 +118,13 @@ void bind_changes(Class& c) {
       },
       py::arg("marks"), (std::string(doc("Particles::remove")) + " bool or uint8 (n,).").c_str());
   c.def(
+      "truncate",
+      [](ParticlesHandle& h, std::size_t count) {
+        const Use use(*h.usage, the_set);
+        h.particles.truncate(count);
+      },
+      py::arg("count"), doc("Particles::truncate"));
+  c.def(
       "reorder",
       [](ParticlesHandle& h, const py::object& given) {
         const auto order = indices(given, "order");

@@ -127,6 +127,10 @@ def test_particles_are_removed_reordered_selected_and_replaced():
     parts.replace([0, 2], some)
     assert np.array_equal(parts.positions, [x[2] + [0, 0.01, 0], x[0], x[1] + [0, 0.01, 0]])
     other = copy.copy(parts)
+    other.truncate(5)
+    assert len(other) == 3
+    some.truncate(1)
+    assert len(some) == 1 and np.array_equal(env.advance(some, some.positions).contacts["particle"], [])
     parts.remove(np.array([True, False, False]))
     assert len(parts) == 2 and len(other) == 3 and len(other.copy()) == 3 and parts.size == 2
     with pytest.raises(dartcast.InvalidArgument):

@@ -8,6 +8,21 @@ import textwrap
 import pytest
 
 CASES = {
+    # Memory ends in the middle of an addition: all of it is undone.
+    "more particles than memory": """
+        import resource
+        import dartcast as d
+        environment = d.Environment(d.generate_bar()); simulation = d.Simulation(environment)
+        simulation.add_random(10, [0.0, 0.0, 0.0])
+        hash = simulation.state_hash()
+        resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30))
+        for call in (lambda: simulation.add_random(2**31, [0.0, 0.0, 0.0]), lambda: d.Environment(d.generate_bar()).add_random(2**31)):
+            try: call()
+            except MemoryError: continue
+            raise AssertionError("not refused")
+        assert len(simulation.particles) == 10 and simulation.state_hash() == hash
+        simulation.step(); assert simulation.audit().failed == 0
+    """,
     # Lists by patch without names, and an empty one.
     "summaries of any content": """
         import dartcast as d

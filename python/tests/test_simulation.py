@@ -116,6 +116,7 @@ def test_setters_refuse_what_is_out_of_range() -> None:
         lambda: simulation.add(np.full((2, 3), 2.5), [0.0, 0.0, 0.0], np.ones(3)),
         lambda: simulation.add(np.full((2, 3), 2.5), [0.0, 0.0, 0.0], user_data=[1.0]),
         lambda: simulation.add_random(3, [np.nan, 0.0, 0.0]),
+        lambda: simulation.add_random(2**40, [0.0, 0.0, 0.0]),
         lambda: simulation.add_inlet(60000, 1.0, [0.0, 0.0, 1.0]),
         lambda: simulation.add_body(np.full((1, 3), 2.5), dartcast.BodyOptions(mass=-1.0)),
         lambda: simulation.set_events([dartcast.Event(-1.0, dartcast.Cut(plane, 0.1))]),

@@ -14,6 +14,7 @@
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_check.hpp"
 #include "dartcast/validity.hpp"
+#include "environment/addition.hpp"
 #include "environment/environment_members.hpp"
 #include "environment/particle_details.hpp"
 #include "response/library_response.hpp"
@@ -25,7 +26,8 @@ namespace dartcast {
 
 namespace {
 
-constexpr std::size_t chunk = 1024;  // points located by one thread at a time
+constexpr std::size_t most_particles = 0xffffffffU;  // their numbers have 32 bits, and the last is no particle
+constexpr std::size_t chunk = 1024;                  // points located by one thread at a time
 
 // 0 is nobody's: sets that no environment has touched have it.
 std::uint64_t next_id() {
@@ -128,6 +130,8 @@ void Environment::Members::check_current(const Particles& particles) const {
 }
 
 void Environment::Members::add_to(Particles& particles, SimplexId simplex, const Vec3& position) const {
+  if (particles.size() >= most_particles)
+    throw Error(fmt::format("add: a set holds at most {} particles; use several sets", most_particles));
   adopt(particles);
   Particles::Details& details = particles.details();
   details.index.reset();
@@ -204,12 +208,14 @@ std::vector<AddResult> Environment::add(Particles& particles, std::span<const Ve
   members_->check_current(particles);
   const std::vector<Location> locations = locate(positions);
   std::vector<AddResult> added(positions.size());
+  Addition addition(particles);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     added[i].location = locations[i];
     if (locations[i].place != Place::free) continue;
     added[i].particle = static_cast<std::uint32_t>(particles.size());
     members_->add_to(particles, locations[i].simplex, flushed(positions[i]));
   }
+  addition.keep();
   return added;
 }
 
@@ -217,7 +223,9 @@ bool Environment::add(Particles& particles, SimplexId simplex, const Vec3& posit
   members_->check_current(particles);
   const Vec3 place = flushed(position);
   if (!is_particle_position(map(), place) || !holds(complex(), simplex, place)) return false;
+  Addition addition(particles);
   members_->add_to(particles, simplex, place);
+  addition.keep();
   return true;
 }
 

@@ -56,6 +56,17 @@ void Particles::remove(std::span<const std::uint8_t> marks) {
   details().index.reset();
 }
 
+void Particles::truncate(std::size_t count) {
+  const auto cut = [count](auto& values) {
+    if (values.size() > count) values.resize(count);
+  };
+  cut(states_);
+  if (!details_) return;
+  cut(details_->weights);
+  details_->cache.truncate(count);
+  details_->index.reset();
+}
+
 void Particles::reorder(std::span<const std::uint32_t> order) {
   if (order.size() != size())
     throw InvalidArgument(fmt::format("reorder: {} indices for {} particles", order.size(), size()));

@@ -147,6 +147,7 @@ class ParticleSystem final : public SimulationComponent {
   [[nodiscard]] Vec3 accelerated(const Vec3& v, const Vec3& flow, const Vec3& force, const Forces& forces) const;
   [[nodiscard]] Acceleration acceleration(double dt) const;
   // In particle_system_add.cpp.
+  class SystemAddition;
   void inject();
   void check_motion(const Vec3& velocity, double radius, std::string_view whose) const;
   void check_user_data(std::span<const double> values) const;

@@ -15,7 +15,7 @@ namespace dartcast {
 
 namespace {
 
-constexpr double max_injected = 0x1p+31;  // by an inlet in a step
+constexpr auto max_injected = static_cast<double>(most_at_once);  // by an inlet in a step
 
 bool leaves_plane(const Environment& environment, const Vec3& v) {
   return environment.map().dimension() == 2 && v.z != 0.0;
@@ -59,12 +59,48 @@ void ParticleSystem::add_inlet(Patch patch, double rate, const Vec3& velocity, d
                      {user_data.begin(), user_data.end()}});
 }
 
+// Undoes an addition to all lists of particles where an exception ends it.
+class ParticleSystem::SystemAddition {
+ public:
+  explicit SystemAddition(ParticleSystem& system)
+      : system_(system), before_(system.particles_.size()), next_id_(system.next_id_), spheres_(system.spheres_) {}
+  SystemAddition(const SystemAddition&) = delete;
+  SystemAddition& operator=(const SystemAddition&) = delete;
+  ~SystemAddition() {
+    if (kept_) return;
+    system_.particles_.truncate(before_);
+    const auto cut = [](auto& values, std::size_t size) {
+      if (values.size() > size) values.resize(size);
+    };
+    cut(system_.ids_, before_);
+    cut(system_.velocities_, before_);
+    cut(system_.fates_, before_);
+    cut(system_.contact_counts_, before_);
+    cut(system_.radii_, before_);
+    cut(system_.held_, before_);
+    cut(system_.user_data_, before_ * system_.width());
+    system_.next_id_ = next_id_;
+    system_.spheres_ = spheres_;
+  }
+  /// The addition is done.
+  void keep() { kept_ = true; }
+
+ private:
+  ParticleSystem& system_;
+  std::size_t before_;
+  std::uint64_t next_id_;
+  std::size_t spheres_;
+  bool kept_ = false;
+};
+
 std::vector<AddResult> ParticleSystem::add(std::span<const Vec3> positions, const Vec3& velocity, double radius,
                                            std::span<const double> user_data) {
   check_motion(velocity, radius, "a particle's");
   check_user_data(user_data);
+  SystemAddition addition(*this);
   std::vector<AddResult> added = environment_.add(particles_, positions);
   complete(velocity, radius, user_data);
+  addition.keep();
   totals_.start = next_id_ - totals_.injected;
   return added;
 }
@@ -79,10 +115,12 @@ std::vector<AddResult> ParticleSystem::add(std::span<const Vec3> positions, std:
     const bool good = is_finite(velocities[i]) && !leaves_plane(environment_, velocities[i]) && is_radius(radii[i]);
     if (!good) check_motion(velocities[i], radii[i], fmt::format("particle {}'s", i));
   }
+  SystemAddition addition(*this);
   std::vector<AddResult> added = environment_.add(particles_, positions);
   for (std::size_t i = 0; i < added.size(); ++i) {
     if (added[i].location.place == Place::free) complete_next(velocities[i], radii[i], user_data);
   }
+  addition.keep();
   totals_.start = next_id_ - totals_.injected;
   return added;
 }
@@ -109,25 +147,26 @@ template <class Sampler>
 void ParticleSystem::add_sampled(const Sampler& sampler, std::size_t count, const Vec3& velocity, double radius,
                                  std::span<const double> user_data) {
   constexpr int max_tries = 1000;
+  SystemAddition addition(*this);
   for (std::size_t i = 0; i < count; ++i) {
     KeyedRandom random(options_.seed, RandomPurpose::place, next_id_ + i);
     int tries = 0;
     while (true) {
       const Sample s = sampler.sample(environment_.complex(), random);
       if (environment_.add(particles_, s.simplex, flushed(s.position))) break;
-      if (++tries == max_tries) {
-        complete(velocity, radius, user_data);
+      if (++tries == max_tries)
         throw InvalidArgument(
             "simulation: random points fall outside the free cells again and again: their cells are too thin or not "
             "valid");
-      }
     }
   }
   complete(velocity, radius, user_data);
+  addition.keep();
 }
 
 void ParticleSystem::add_random(std::size_t count, const Vec3& velocity, double radius,
                                 std::span<const double> user_data) {
+  check_count(count);
   check_motion(velocity, radius, "a particle's");
   check_user_data(user_data);
   if (count > 0)

@@ -1,6 +1,8 @@
 // Random points, uniform by volume in free cells or by area on a patch.
 #include "simulation/seeding.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -49,6 +51,11 @@ double simplex_volume(const CellComplex& complex, Cell cell, std::size_t simplex
 constexpr std::size_t sampler_grain = 1024;  // cells
 
 }  // namespace
+
+void check_count(std::size_t count) {
+  if (count > most_at_once)
+    throw InvalidArgument(fmt::format("add_random: {} particles at once; at most {} (2^31)", count, most_at_once));
+}
 
 // The sum of n sizes of at most 2^(61 - bits of n) each is below 2^62.
 FixedPointScale::FixedPointScale(double largest, std::size_t count) {

@@ -11,6 +11,12 @@
 
 namespace dartcast {
 
+/// Particles that one call, or one step of an inlet, adds at most. A count beyond it is a mistake: it would take hours
+/// before memory ends.
+inline constexpr std::uint64_t most_at_once = std::uint64_t{1} << 31U;
+/// Throws InvalidArgument where the count is beyond it.
+void check_count(std::size_t count);
+
 /// A point, and the simplex that it lies in up to rounding: to be added exactly, and drawn again where that fails.
 struct Sample {
   SimplexId simplex;

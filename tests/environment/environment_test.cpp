@@ -309,6 +309,13 @@ TEST(Environment, RemoveAndReorderKeepTheRest) {
   for (const auto& [now, then] : {std::pair{0, 5}, {1, 3}, {2, 1}, {3, 0}, {4, 2}, {5, 4}}) {
     EXPECT_TRUE(test::same_bits(particles[static_cast<std::size_t>(now)], before[static_cast<std::size_t>(then)]));
   }
+  Particles first = particles;
+  first.truncate(9);
+  EXPECT_EQ(first.size(), 6U);
+  first.truncate(2);
+  ASSERT_EQ(first.size(), 2U);
+  EXPECT_TRUE(test::same_bits(first[1], before[3]));
+  EXPECT_EQ(environment.advance(first, std::vector<Vec3>(2, Vec3{1, 1, 1})).counters.particle_steps, 2U);
   particles.remove(std::vector<std::uint8_t>{0, 1, 0, 1, 1, 0});
   ASSERT_EQ(particles.size(), 3U);
   EXPECT_TRUE(test::same_bits(particles[0], before[5]));

@@ -24,6 +24,7 @@ def of_sets() -> Calls:
         "Particles.held_weights: one": lambda: particles.held_weights(3),
         "Particles.held_weights: refused": refused(lambda: particles.held_weights(99)),
         "Particles.remove": lambda: particles.copy().remove(marks),
+        "Particles.truncate": lambda: particles.copy().truncate(2),
         "Particles.remove: refused": refused(lambda: particles.remove(marks[1:])),
         "Particles.reorder": lambda: particles.reorder(order),
         "Particles.reorder: refused": refused(lambda: particles.reorder([0, 0])),

@@ -52,6 +52,11 @@ void ParticleCache::keep(const KeptRuns& runs) {
   simplices_.resize(runs.kept());
 }
 
+void ParticleCache::truncate(std::size_t count) {
+  if (vertices_.size() > count) vertices_.resize(count);
+  if (simplices_.size() > count) simplices_.resize(count);
+}
+
 void ParticleCache::reorder(std::span<const std::uint32_t> order) {
   std::vector<VertexNumbers> vertices(order.size());
   SimplexCache simplices;

@@ -48,6 +48,7 @@ class ParticleCache {
   // As the functions of Particles, whose preconditions are checked there.
 
   void keep(const KeptRuns& runs);
+  void truncate(std::size_t count);
   void reorder(std::span<const std::uint32_t> order);
   [[nodiscard]] ParticleCache selected(std::span<const std::uint32_t> which) const;
   void replace(std::span<const std::uint32_t> which, const ParticleCache& by);
