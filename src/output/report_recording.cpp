@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "dartcast/cell_complex.hpp"
@@ -23,10 +24,6 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t most_particles = 20'000;
 constexpr const char* file_name = "report.bin";
-
-RecordedPoint recorded(const Vec3& x, const Vec3& origin) {
-  return {static_cast<float>(x.x - origin.x), static_cast<float>(x.y - origin.y), static_cast<float>(x.z - origin.z)};
-}
 
 // The middle of the vertices at the start: floats around it are precise enough for a picture.
 Vec3 middle_of(const Environment& environment) {
@@ -47,7 +44,7 @@ std::uint64_t ids_so_far(const Simulation& simulation) {
   return t.start + t.injected;
 }
 
-RecordedFrame particles_of(const Simulation& simulation, std::uint64_t stride, const Vec3& origin) {
+RecordedFrame particles_of(const Simulation& simulation, std::uint64_t stride, const RecordedHeader& header) {
   RecordedFrame frame;
   frame.stride = stride;
   frame.all = ids_so_far(simulation);
@@ -59,7 +56,7 @@ RecordedFrame particles_of(const Simulation& simulation, std::uint64_t stride, c
     const std::uint64_t id = simulation.ids()[i];
     if (id % stride != 0) continue;
     frame.ids.push_back(id);
-    frame.positions.push_back(recorded(particles[i].position, origin));
+    frame.positions.push_back(recorded(particles[i].position, header));
     frame.speeds.push_back(static_cast<float>(norm(simulation.velocities()[i])));
     frame.kinds.push_back(static_cast<std::uint8_t>(kind_of(complex, particles[i])));
     if (has_radii) frame.radii.push_back(static_cast<float>(simulation.radii()[i]));
@@ -67,15 +64,15 @@ RecordedFrame particles_of(const Simulation& simulation, std::uint64_t stride, c
   return frame;
 }
 
-std::vector<RecordedPoint> recorded(std::span<const Vec3> points, const Vec3& origin) {
+std::vector<RecordedPoint> recorded(std::span<const Vec3> points, const RecordedHeader& header) {
   std::vector<RecordedPoint> out;
   out.reserve(points.size());
-  for (const Vec3& p : points) out.push_back(recorded(p, origin));
+  for (const Vec3& p : points) out.push_back(recorded(p, header));
   return out;
 }
 
 // A body's skin as triangles where it has one, else its particles.
-RecordedSolid recorded_body(const Simulation& simulation, std::size_t b, const Vec3& origin) {
+RecordedSolid recorded_body(const Simulation& simulation, std::size_t b, const RecordedHeader& header) {
   const BodiesComponent& component = simulation.parts().bodies;
   const Bodies& bodies = *component.bodies();
   const std::size_t count = bodies.particle_count(b);
@@ -84,13 +81,13 @@ RecordedSolid recorded_body(const Simulation& simulation, std::size_t b, const V
   RecordedSolid solid{component.name(b), SolidKind::body, 0.0F, {}, {}};
   if (!radii.empty()) solid.radius = static_cast<float>(radii.front());
   if (!component.skin(b)) {
-    solid.points = recorded(positions, origin);
+    solid.points = recorded(positions, header);
     return solid;
   }
   const BodiesComponent::Skin& skin = *component.skin(b);
   std::vector<Vec3> vertices(skin.mesh.points.size());
   skin.carried.positions(positions, vertices, simulation.environment().threads());
-  solid.points = recorded(vertices, origin);
+  solid.points = recorded(vertices, header);
   for (std::size_t f = 0; f + 1 < skin.mesh.offsets.size(); ++f) {
     const std::size_t first = skin.mesh.offsets[f];
     for (std::size_t k = first + 2; k < skin.mesh.offsets[f + 1]; ++k) {
@@ -101,14 +98,14 @@ RecordedSolid recorded_body(const Simulation& simulation, std::size_t b, const V
   return solid;
 }
 
-std::vector<RecordedSolid> recorded_solids(const Simulation& simulation, const Vec3& origin) {
+std::vector<RecordedSolid> recorded_solids(const Simulation& simulation, const RecordedHeader& header) {
   std::vector<RecordedSolid> solids;
   const BodiesComponent& bodies = simulation.parts().bodies;
   for (std::size_t b = 0; bodies.bodies() && b < bodies.bodies()->size(); ++b)
-    solids.push_back(recorded_body(simulation, b, origin));
+    solids.push_back(recorded_body(simulation, b, header));
   for (std::size_t i = 0; i < simulation.catheter_count(); ++i) {
     const CatheterScene& scene = simulation.parts().catheters.scenes()[i];
-    solids.push_back({scene.name, SolidKind::catheter, 0.0F, {}, recorded(simulation.catheter(i).points(), origin)});
+    solids.push_back({scene.name, SolidKind::catheter, 0.0F, {}, recorded(simulation.catheter(i).points(), header)});
   }
   return solids;
 }
@@ -122,15 +119,11 @@ std::string text_of(const EventReport& e) {
 
 ReportRecording::ReportRecording(WritingThread& writing, const fs::path& folder, const Scene& scene,
                                  const Simulation& simulation)
-    : writing_(writing),
-      file_(folder / file_name, recorded_line),
-      origin_(middle_of(simulation.environment())),
-      counts_hits_(!simulation.statistics_options().hits) {
-  RecordedHeader header;
-  header.dimension = simulation.environment().map().dimension();
-  header.every = scene.output.every;
-  header.origin = origin_;
-  file_.append(chunk_of(header));
+    : writing_(writing), file_(folder / file_name, recorded_line), counts_hits_(!simulation.statistics_options().hits) {
+  header_.dimension = simulation.environment().map().dimension();
+  header_.every = scene.output.every;
+  header_.origin = middle_of(simulation.environment());
+  file_.append(chunk_of(header_));
 }
 
 ReportRecording::ReportRecording(WritingThread& writing, const fs::path& folder, const Simulation& simulation,
@@ -144,13 +137,15 @@ ReportRecording::ReportRecording(WritingThread& writing, const fs::path& folder,
 // The walls of a map are listed in one order, so that the hits of the last frame find their faces again.
 void ReportRecording::restore(const fs::path& path, const Simulation& simulation) {
   const RecordedFile file(path);
-  origin_ = file.header().origin;
+  header_ = file.header();
   events_ = simulation.event_log().events.size();
   const auto& chunks = file.chunks();
-  const auto last =
-      std::find_if(chunks.rbegin(), chunks.rend(), [](const auto& c) { return c.tag == RecordedFrame::tag; });
-  if (last == chunks.rend()) return;
-  const auto frame = file.read<RecordedFrame>(*last);
+  const auto last = [&](std::string_view tag) {
+    return std::find_if(chunks.rbegin(), chunks.rend(), [&](const auto& c) { return c.tag == tag; });
+  };
+  if (last(RecordedFrame::tag) == chunks.rend() || last(RecordedWalls::tag) == chunks.rend()) return;
+  const auto frame = file.read<RecordedFrame>(*last(RecordedFrame::tag));
+  wall_points_ = file.read<RecordedWalls>(*last(RecordedWalls::tag)).points;
   stride_ = frame.stride;
   WallFaceList walls = wall_face_list(simulation.environment().map());
   faces_ = std::move(walls.faces);
@@ -186,7 +181,7 @@ void ReportRecording::add_step(const Simulation& simulation, const SimulationSte
     if (step.contact_ids[i] % stride_ != 0) continue;
     const Contact& c = list.contacts[i];
     kept.contacts.push_back({step.contact_ids[i], simulation.time() - step.duration * (1.0 - c.time_of_impact),
-                             recorded(c.point, origin_), list.walls_of(c).front().patch.value,
+                             recorded(c.point, header_), list.walls_of(c).front().patch.value,
                              static_cast<std::uint8_t>(c.kind), 0});
   }
   if (!kept.contacts.empty()) file_.append(chunk_of(kept));
@@ -196,30 +191,38 @@ void ReportRecording::add_step(const Simulation& simulation, const SimulationSte
 void ReportRecording::add_walls(const Simulation& simulation) {
   const CombinatorialMap& map = simulation.environment().map();
   WallFaceList walls = wall_face_list(map);
-  RecordedWalls recorded;
-  recorded.point_count = static_cast<std::uint32_t>(walls.vertices.size());
-  recorded.corners = std::move(walls.corners);
-  recorded.offsets.assign(walls.offsets.begin(), walls.offsets.end());
-  for (const CellFace f : walls.faces) recorded.patches.push_back(map.patch(f).value);
-  recorded.patch_names = map.patch_names();
-  file_.append(chunk_of(recorded));
-  faces_ = std::move(walls.faces);
   wall_vertices_ = std::move(walls.vertices);
+  wall_points_ = wall_points(simulation.environment());
+  RecordedWalls chunk;
+  chunk.points = wall_points_;
+  chunk.corners = std::move(walls.corners);
+  chunk.offsets.assign(walls.offsets.begin(), walls.offsets.end());
+  for (const CellFace f : walls.faces) chunk.patches.push_back(map.patch(f).value);
+  chunk.patch_names = map.patch_names();
+  file_.append(chunk_of(chunk));
+  faces_ = std::move(walls.faces);
   edits_ = simulation.environment().edit_count();
   has_walls_ = true;
+}
+
+std::vector<RecordedPoint> ReportRecording::wall_points(const Environment& environment) const {
+  std::vector<RecordedPoint> points;
+  points.reserve(wall_vertices_.size());
+  for (const Vertex v : wall_vertices_) points.push_back(recorded(environment.positions()[v.value], header_));
+  return points;
 }
 
 void ReportRecording::add_frame(const Simulation& simulation) {
   const Environment& environment = simulation.environment();
   if (!has_walls_ || edits_ != environment.edit_count()) add_walls(simulation);
   while (ids_so_far(simulation) / stride_ > most_particles) stride_ *= 2;
-  RecordedFrame frame = particles_of(simulation, stride_, origin_);
+  RecordedFrame frame = particles_of(simulation, stride_, header_);
   frame.step = simulation.steps();
   frame.time = simulation.time();
-  for (const Vertex v : wall_vertices_)
-    frame.wall_points.push_back(recorded(environment.positions()[v.value], origin_));
+  frame.wall_points = wall_points(environment);
+  if (frame.wall_points == wall_points_) frame.wall_points.clear();
   for (const CellFace f : faces_) frame.hits.push_back(static_cast<std::uint32_t>(hits(simulation).of(f)));
-  frame.solids = recorded_solids(simulation, origin_);
+  frame.solids = recorded_solids(simulation, header_);
   file_.append(chunk_of(frame));
 }
 

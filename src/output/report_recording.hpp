@@ -9,6 +9,7 @@
 #include "dartcast/simulation.hpp"
 #include "dartcast/statistics.hpp"
 #include "output/run_files.hpp"
+#include "report/recorded.hpp"
 
 namespace dartcast {
 
@@ -37,12 +38,13 @@ class ReportRecording {
 
  private:
   void add_walls(const Simulation& simulation);
+  [[nodiscard]] std::vector<RecordedPoint> wall_points(const Environment& environment) const;
   [[nodiscard]] const WallHits& hits(const Simulation& simulation) const;
   void restore(const std::filesystem::path& path, const Simulation& simulation);
 
   WritingThread& writing_;
   RunTable file_;
-  Vec3 origin_;
+  RecordedHeader header_;
   std::uint64_t stride_ = 1;
   WallHits own_hits_;  // where the simulation keeps none
   bool counts_hits_;
@@ -51,6 +53,7 @@ class ReportRecording {
   std::size_t events_ = 0;       // of the log, that the file has
   std::vector<CellFace> faces_;  // of the last walls
   std::vector<Vertex> wall_vertices_;
+  std::vector<RecordedPoint> wall_points_;  // as the file has them with the walls
 };
 
 }  // namespace dartcast

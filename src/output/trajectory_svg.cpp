@@ -9,6 +9,7 @@
 
 #include "dartcast/error.hpp"
 #include "dartcast/trajectory.hpp"
+#include "output/cells_passed.hpp"
 
 namespace dartcast {
 
@@ -70,17 +71,6 @@ SvgView svg_box_of(std::span<const Vec3> points) {
   SvgView box;
   for (const Vec3& p : points) box.include(p);
   return box;
-}
-
-std::vector<Cell> cells_passed(std::span<const TrajectoryPoint> points) {
-  std::vector<Cell> cells;
-  for (const TrajectoryPoint& p : points) {
-    cells.push_back(p.cell);
-    if (p.next.valid()) cells.push_back(p.next);
-  }
-  std::sort(cells.begin(), cells.end());
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-  return cells;
 }
 
 SvgView view_of(const CellComplex& complex, std::span<const Cell> passed, std::span<const TrajectoryPoint> points) {

@@ -60,8 +60,9 @@ PageFit fit_of(const std::vector<PicturePoint>& points) {
 }  // namespace
 
 std::string picture_of(const RecordedFrame& frame, const RecordedWalls& walls, std::uint32_t dimension) {
+  const std::vector<RecordedPoint>& wall_points = frame.wall_points.empty() ? walls.points : frame.wall_points;
   std::vector<PicturePoint> points;
-  for (const auto* list : {&frame.wall_points, &frame.positions}) {
+  for (const auto* list : {&wall_points, &frame.positions}) {
     for (const RecordedPoint& p : *list) points.push_back(projected(p, dimension));
   }
   const PageFit fit = fit_of(points);
@@ -72,7 +73,7 @@ std::string picture_of(const RecordedFrame& frame, const RecordedWalls& walls, s
     const std::size_t first = walls.offsets[f];
     const std::size_t n = walls.offsets[f + 1] - first;
     for (std::size_t k = 0; k < n; ++k) {
-      const PicturePoint p = fit(projected(frame.wall_points[walls.corners[first + k]], dimension));
+      const PicturePoint p = fit(projected(wall_points[walls.corners[first + k]], dimension));
       fmt::format_to(std::back_inserter(path), "{}{:.1f} {:.1f}", k == 0 ? 'M' : 'L', p[0], p[1]);
     }
     if (n > 2) path += 'Z';

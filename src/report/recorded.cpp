@@ -8,7 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <limits>
+#include <sstream>
 #include <utility>
 
 #include "dartcast/error.hpp"
@@ -48,7 +50,7 @@ RecordedHeader unpack(ByteReader& in, const RecordedHeader* /*kind*/) {
 
 RecordedWalls unpack(ByteReader& in, const RecordedWalls* /*kind*/) {
   RecordedWalls w;
-  w.point_count = in.take<std::uint32_t>();
+  w.points = in.take_list<RecordedPoint>();
   w.corners = in.take_list<std::uint32_t>();
   w.offsets = in.take_list<std::uint64_t>();
   w.patches = in.take_list<std::uint16_t>();
@@ -58,10 +60,11 @@ RecordedWalls unpack(ByteReader& in, const RecordedWalls* /*kind*/) {
   expect(w.offsets.front() == 0 && w.offsets.back() == w.corners.size() &&
              std::is_sorted(w.offsets.begin(), w.offsets.end()),
          "wall faces do not follow one another");
-  expect(std::all_of(w.corners.begin(), w.corners.end(), [&](std::uint32_t c) { return c < w.point_count; }),
+  expect(std::all_of(w.corners.begin(), w.corners.end(), [&](std::uint32_t c) { return c < w.points.size(); }),
          "a wall face has a corner that does not exist");
   expect(std::all_of(w.patches.begin(), w.patches.end(), [&](std::uint16_t p) { return p < w.patch_names.size(); }),
          "a patch has no name");
+  expect_finite(w.points);
   return w;
 }
 
@@ -131,6 +134,12 @@ RecordedEvent unpack(ByteReader& in, const RecordedEvent* /*kind*/) {
 
 }  // namespace
 
+RecordedPoint recorded(const Vec3& x, const RecordedHeader& header) {
+  static constexpr double end = std::numeric_limits<float>::max();
+  const auto one = [](double value) { return static_cast<float>(std::clamp(value, -end, end)); };
+  return {one(x.x - header.origin.x), one(x.y - header.origin.y), one(x.z - header.origin.z)};
+}
+
 std::string chunk_of(const RecordedHeader& h) {
   ByteWriter out;
   out.put(h.dimension);
@@ -141,7 +150,7 @@ std::string chunk_of(const RecordedHeader& h) {
 
 std::string chunk_of(const RecordedWalls& w) {
   ByteWriter out;
-  out.put(w.point_count);
+  out.put(w.points);
   out.put(w.corners);
   out.put(w.offsets);
   out.put(w.patches);
@@ -188,34 +197,56 @@ std::string chunk_of(const RecordedEvent& e) {
   return chunk(RecordedEvent::tag, out);
 }
 
-RecordedFile::RecordedFile(std::filesystem::path path) : path_(std::move(path)), file_(path_, std::ios::binary) {
-  if (!file_)
+namespace {
+
+std::unique_ptr<std::istream> opened(const std::filesystem::path& path) {
+  auto stream = std::make_unique<std::ifstream>(path, std::ios::binary);
+  if (!*stream)
     throw Error(fmt::format("{}: it cannot be read; run the scene with every > 0 and report = true in [output]",
-                            path_.string()));
+                            path.string()));
+  return stream;
+}
+
+std::uint64_t length_of(std::istream& stream) {
+  stream.seekg(0, std::ios::end);
+  const auto length = static_cast<std::uint64_t>(stream.tellg());
+  stream.seekg(0);
+  return length;
+}
+
+}  // namespace
+
+RecordedFile::RecordedFile(const std::filesystem::path& path) : RecordedFile(path.string(), opened(path)) {}
+
+RecordedFile::RecordedFile(std::string name, std::string bytes)
+    : RecordedFile(std::move(name), std::make_unique<std::istringstream>(std::move(bytes), std::ios::binary)) {}
+
+RecordedFile::RecordedFile(std::string name, std::unique_ptr<std::istream> stream)
+    : name_(std::move(name)), stream_(std::move(stream)) {
+  const std::uint64_t length = length_of(*stream_);
   std::string line;
-  if (!std::getline(file_, line) || line != recorded_line)
-    throw Error(fmt::format("{}: it is no recording of this version: run the scene again", path_.string()));
-  const std::uint64_t length = std::filesystem::file_size(path_);
+  if (!std::getline(*stream_, line) || line != recorded_line)
+    throw Error(fmt::format("{}: it is no recording of this version: run the scene again", name_));
   for (std::uint64_t at = line.size() + 1; at + head_size <= length;) {
     Chunk next{std::string(4, '\0'), at + head_size, 0};
-    file_.seekg(static_cast<std::streamoff>(at));
-    file_.read(next.tag.data(), 4);
-    file_.read(reinterpret_cast<char*>(&next.size), sizeof next.size);
-    if (!file_ || next.size > length - next.at) break;
+    stream_->seekg(static_cast<std::streamoff>(at));
+    stream_->read(next.tag.data(), 4);
+    stream_->read(reinterpret_cast<char*>(&next.size), sizeof next.size);
+    if (!*stream_ || next.size > length - next.at) break;
     at = next.at + next.size;
     chunks_.push_back(std::move(next));
   }
   if (chunks_.empty() || chunks_.front().tag != RecordedHeader::tag)
-    throw Error(fmt::format("{}: it is no recording of a run", path_.string()));
+    throw Error(fmt::format("{}: it is no recording of a run", name_));
   header_ = read<RecordedHeader>(chunks_.front());
 }
 
 std::string RecordedFile::bytes_of(const Chunk& chunk, std::uint64_t most) const {
   std::string bytes(std::min(chunk.size, most), '\0');
-  file_.clear();
-  file_.seekg(static_cast<std::streamoff>(chunk.at));
-  if (!file_.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
-    throw Error(fmt::format("{}: it cannot be read at byte {}", path_.string(), chunk.at));
+  stream_->clear();
+  stream_->seekg(static_cast<std::streamoff>(chunk.at));
+  if (!stream_->read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
+    throw Error(fmt::format("{}: it cannot be read at byte {}", name_, chunk.at));
   return bytes;
 }
 
@@ -235,7 +266,7 @@ Part RecordedFile::read(const Chunk& chunk) const {
     ByteReader in(bytes);
     return unpack(in, static_cast<const Part*>(nullptr));
   } catch (const Error& e) {
-    throw Error(fmt::format("{}: at byte {}: {}", path_.string(), chunk.at, e.what()));
+    throw Error(fmt::format("{}: at byte {}: {}", name_, chunk.at, e.what()));
   }
 }
 

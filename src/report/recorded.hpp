@@ -7,7 +7,8 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
+#include <istream>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,7 +20,7 @@ namespace dartcast {
 using RecordedPoint = std::array<float, 3>;
 
 /// The first line of the file. Chunks follow it.
-inline constexpr std::string_view recorded_line = "dartcast report 1";
+inline constexpr std::string_view recorded_line = "dartcast report 2";
 
 /// The first chunk.
 struct RecordedHeader {
@@ -30,11 +31,14 @@ struct RecordedHeader {
   Vec3 origin;
 };
 
+/// A point relative to the origin of a recording. Coordinates beyond the range of floats are put to its end.
+RecordedPoint recorded(const Vec3& x, const RecordedHeader& header);
+
 /// The wall faces from the next frame on. Faces and their corners are numbered as they come.
 struct RecordedWalls {
   static constexpr std::string_view tag = "WALL";
 
-  std::uint32_t point_count = 0;
+  std::vector<RecordedPoint> points;   ///< as they are at the next frame
   std::vector<std::uint32_t> corners;  ///< points of the faces
   std::vector<std::uint64_t> offsets;  ///< of the faces in `corners`; one more than faces
   std::vector<std::uint16_t> patches;  ///< of the faces
@@ -63,8 +67,8 @@ struct RecordedFrame {
   std::vector<float> speeds;  ///< m/s
   std::vector<float> radii;   ///< empty: all are points
   std::vector<std::uint8_t> kinds;
-  std::vector<RecordedPoint> wall_points;
-  std::vector<std::uint32_t> hits;  ///< of the wall faces, so far
+  std::vector<RecordedPoint> wall_points;  ///< empty: those of the walls, which have not moved since
+  std::vector<std::uint32_t> hits;         ///< of the wall faces, so far; empty: none
   std::vector<RecordedSolid> solids;
 };
 
@@ -101,7 +105,7 @@ std::string chunk_of(const RecordedFrame& frame);
 std::string chunk_of(const RecordedContacts& contacts);
 std::string chunk_of(const RecordedEvent& event);
 
-/// Reads report.bin. Every function throws Error, which names the file, where it cannot be read, or is damaged.
+/// Reads report.bin, or a recording in memory. Every function throws Error, which names the file, where it cannot be read, or is damaged.
 class RecordedFile {
  public:
   struct Chunk {
@@ -111,7 +115,9 @@ class RecordedFile {
   };
 
   /// Reads where the chunks are. A last chunk that was not written whole is left out.
-  explicit RecordedFile(std::filesystem::path path);
+  explicit RecordedFile(const std::filesystem::path& path);
+  /// The same of a file's bytes; `name`: for messages.
+  RecordedFile(std::string name, std::string bytes);
 
   [[nodiscard]] const RecordedHeader& header() const { return header_; }
   [[nodiscard]] const std::vector<Chunk>& chunks() const { return chunks_; }
@@ -127,10 +133,11 @@ class RecordedFile {
   [[nodiscard]] Part read(const Chunk& chunk) const;
 
  private:
+  RecordedFile(std::string name, std::unique_ptr<std::istream> stream);
   [[nodiscard]] std::string bytes_of(const Chunk& chunk, std::uint64_t most = ~std::uint64_t{0}) const;
 
-  std::filesystem::path path_;
-  mutable std::ifstream file_;
+  std::string name_;
+  std::unique_ptr<std::istream> stream_;
   std::vector<Chunk> chunks_;
   RecordedHeader header_;
 };

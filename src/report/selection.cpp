@@ -4,7 +4,6 @@
 #include "report/selection.hpp"
 
 #include <algorithm>
-#include <set>
 
 #include "dartcast/error.hpp"
 
@@ -45,14 +44,16 @@ ReportSelection select(const RecordedFile& file, const ReportOptions& options) {
   const std::vector<ReportSelection::Frame> all = frames_of(file);
   s.recorded_frames = all.size();
   for (const std::size_t i : evenly(all.size(), options.frames)) s.frames.push_back(all[i]);
-  std::set<std::uint64_t> ids;
+  std::vector<std::uint64_t> ids;
   std::uint64_t stride = 1;
   for (const ReportSelection::Frame& f : s.frames) {
     const RecordedFrame& frame = s.recorded.emplace_back(file.read<RecordedFrame>(file.chunks()[f.chunk]));
-    ids.insert(frame.ids.begin(), frame.ids.end());
+    ids.insert(ids.end(), frame.ids.begin(), frame.ids.end());
     stride = std::max(stride, frame.stride);
     s.all_ids = std::max(s.all_ids, frame.all);
   }
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   std::vector<std::uint64_t> kept;
   std::copy_if(ids.begin(), ids.end(), std::back_inserter(kept), [&](std::uint64_t id) { return id % stride == 0; });
   s.recorded_ids = kept.size();

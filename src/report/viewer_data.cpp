@@ -49,9 +49,10 @@ class Builder {
         threads_(options.threads),
         frames_(std::move(chosen_.recorded)) {}
 
-  ViewerData build() {
+  ViewerData build(std::optional<TrajectorySubject> trajectory) {
     read_frames();
     describe_scene();
+    if (trajectory) json_["trajectory"] = {{"patch", trajectory->patch}};
     describe_particles();
     describe_contacts();
     describe_walls();
@@ -98,16 +99,23 @@ class Builder {
     return series(values, each * 3, second_differences);
   }
 
+  const std::vector<RecordedPoint>& wall_points(std::size_t frame) const {
+    const RecordedFrame& f = frames_[frame];
+    return f.wall_points.empty() ? walls_.at(chosen_.frames[frame].walls).points : f.wall_points;
+  }
+
   void read_frames() {
     for (std::size_t k = 0; k < frames_.size(); ++k) {
       const ReportSelection::Frame& f = chosen_.frames[k];
       const RecordedFrame& frame = frames_[k];
       if (!walls_.contains(f.walls)) walls_.emplace(f.walls, file_.read<RecordedWalls>(file_.chunks()[f.walls]));
       const RecordedWalls& walls = walls_.at(f.walls);
-      if (frame.wall_points.size() != walls.point_count || frame.hits.size() != walls.patches.size())
+      const bool fits = (frame.wall_points.empty() || frame.wall_points.size() == walls.points.size()) &&
+                        (frame.hits.empty() || frame.hits.size() == walls.patches.size());
+      if (!fits)
         throw Error(fmt::format("report.bin is damaged: the walls of step {} are others than those recorded", f.step));
       for (const RecordedPoint& p : frame.positions) box_.add(p);
-      for (const RecordedPoint& p : frame.wall_points) box_.add(p);
+      for (const RecordedPoint& p : wall_points(k)) box_.add(p);
       for (const RecordedSolid& s : frame.solids) {
         for (const RecordedPoint& p : s.points) box_.add(p);
       }
@@ -280,7 +288,7 @@ class Builder {
     const auto add = [&](std::size_t face, std::initializer_list<std::uint32_t> corners) {
       out.corners.insert(out.corners.end(), corners);
       out.patches.push_back(walls.patches[face]);
-      out.hits.push_back(hits[face]);
+      out.hits.push_back(hits.empty() ? 0 : hits[face]);
     };
     for (std::size_t f = 0; f < walls.patches.size(); ++f) {
       const std::uint32_t* c = walls.corners.data() + walls.offsets[f];
@@ -308,18 +316,17 @@ class Builder {
       const RecordedWalls& walls = walls_.at(chosen_.frames[begin].walls);
       const Faces faces = faces_of(walls, frames_[end - 1].hits);
       for (const std::uint32_t h : faces.hits) most_hits = std::max(most_hits, h);
-      const bool moves = std::any_of(
-          frames_.begin() + static_cast<std::ptrdiff_t>(begin), frames_.begin() + static_cast<std::ptrdiff_t>(end),
-          [&](const RecordedFrame& f) { return f.wall_points != frames_[begin].wall_points; });
+      bool moves = false;
+      for (std::size_t k = begin + 1; k < end && !moves; ++k) moves = wall_points(k) != wall_points(begin);
       std::vector<RecordedPoint> points;
       for (std::size_t k = begin; k < (moves ? end : begin + 1); ++k)
-        points.insert(points.end(), frames_[k].wall_points.begin(), frames_[k].wall_points.end());
-      ViewerJson entry = {{"first", begin}, {"points", walls.point_count}, {"faces", faces.patches.size()}};
+        points.insert(points.end(), wall_points(k).begin(), wall_points(k).end());
+      ViewerJson entry = {{"first", begin}, {"points", walls.points.size()}, {"faces", faces.patches.size()}};
       entry["corners"] = block(faces.corners);
       entry["face_patch"] = block(faces.patches);
       entry["face_hits"] = block(faces.hits);
       entry["edges"] = faces.edges.empty() ? ViewerJson() : ViewerJson(block(faces.edges));
-      entry["position"] = position_series(points, walls.point_count);
+      entry["position"] = position_series(points, walls.points.size());
       json_["walls"].push_back(std::move(entry));
       begin = end;
     }
@@ -380,8 +387,9 @@ class Builder {
 
 }  // namespace
 
-ViewerData viewer_data(const RecordedFile& file, const ReportOptions& options) {
-  return Builder(file, options).build();
+ViewerData viewer_data(const RecordedFile& file, const ReportOptions& options,
+                       std::optional<TrajectorySubject> trajectory) {
+  return Builder(file, options).build(trajectory);
 }
 
 }  // namespace dartcast

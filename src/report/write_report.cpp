@@ -11,10 +11,8 @@
 #include "dartcast/error.hpp"
 #include "dartcast/report.hpp"
 #include "formats/file_write.hpp"
-#include "report/chart.hpp"
-#include "report/page.hpp"
 #include "report/run_charts.hpp"
-#include "report/viewer_data.hpp"
+#include "report/viewer_page.hpp"
 
 namespace dartcast {
 
@@ -23,19 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t most_frames = 65535;  // 16 bits number them
-
-// JSON in an element of a script: "<" could end it.
-std::string as_script(const std::string& json) {
-  std::string out;
-  out.reserve(json.size());
-  for (const char c : json) {
-    if (c == '<')
-      out += "\\u003c";
-    else
-      out += c;
-  }
-  return out;
-}
 
 std::string grouped(std::uint64_t n) {
   std::string digits = std::to_string(n);
@@ -53,22 +38,9 @@ void add_notes(ReportSummary& taken) {
 }
 
 std::string page_of(const ViewerData& data, const std::string& scene, const std::string& charts) {
-  Page page;
-  page.title = scene;
-  page.subtitle =
-      fmt::format("A run of dartcast: {}{} frames",
-                  data.taken.particles > 0 ? grouped(data.taken.particles) + " particles, " : "", data.taken.frames);
-  page.body =
-      "<section id=\"view\" aria-label=\"The scene in 3D\">" + data.picture +
-      "<p class=\"fallback\">This is a still picture: the scene in 3D needs JavaScript and WebGL.</p></section>\n";
-  for (const std::string& note : data.taken.notes) page.body += "<p class=\"notes\">" + html(note) + "</p>\n";
-  page.body += charts;
-  page.scripts.push_back("<script type=\"application/json\" id=\"meta\">" + as_script(data.description) +
-                         "</script>\n");
-  for (std::size_t i = 0; i < data.blocks.size(); ++i)
-    page.scripts.push_back(fmt::format("<script type=\"text/plain\" id=\"b{}\">{}</script>\n", i, data.blocks[i]));
-  page.scripts.push_back(fmt::format("<script type=\"module\">{}</script>\n", viewer_program()));
-  return page_html(page);
+  const std::string particles = data.taken.particles > 0 ? grouped(data.taken.particles) + " particles, " : "";
+  return viewer_page({scene, fmt::format("A run of dartcast: {}{} frames", particles, data.taken.frames), charts},
+                     data);
 }
 
 }  // namespace
