@@ -20,6 +20,7 @@ export class Stage {
     this.drawn = 0;
     this.observers = [];
     this.framed = [];
+    this.direction = null; // that frame() looks from; null: it chooses one
     this.colour();
   }
 
@@ -60,8 +61,8 @@ export class Stage {
       this.camera.zoom = 1;
     } else {
       // The viewer looks along the shorter horizontal side, from above a little; from above where the scene is flat.
-      const direction = sy <= sx ? new Vector3(0.35, -1, 0.3) : new Vector3(1, -0.35, 0.3);
-      if (sz < 0.25 * Math.min(sx, sy)) direction.z = 1.2;
+      const direction = this.direction ? new Vector3(...this.direction) : sy <= sx ? new Vector3(0.35, -1, 0.3) : new Vector3(1, -0.35, 0.3);
+      if (!this.direction && sz < 0.25 * Math.min(sx, sy)) direction.z = 1.2;
       this.resize();
       const distance = this.distanceFor(direction.normalize(), centre, points);
       this.camera.position.copy(centre).addScaledVector(direction, distance);
