@@ -3,9 +3,13 @@ from __future__ import annotations
 
 import os
 import pathlib
+import runpy
 import subprocess
 import sys
+from typing import Any
 
+import dartcast
+import numpy as np
 import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
@@ -22,3 +26,57 @@ def test_example(script: pathlib.Path, tmp_path: pathlib.Path) -> None:
                           check=False, env=os.environ | {"MPLBACKEND": "agg"})
     assert done.returncode == 0, done.stderr
     assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def variables(name: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+    """The variables of an example when it has run."""
+    monkeypatch.setattr(sys, "argv", [name, str(tmp_path / "picture.png")])
+    monkeypatch.setenv("MPLBACKEND", "agg")
+    return runpy.run_path(str(ROOT / "examples" / "python" / f"{name}.py"))
+
+
+def test_each_hit_of_deposition_is_a_contact(tmp_path, monkeypatch, capsys):
+    found = variables("deposition", tmp_path, monkeypatch)
+    contacts = found["simulation"].totals.contacts_by_patch
+    names = found["environment"].map.patch_names
+    assert capsys.readouterr().out.splitlines() == [f"{n or '(others)'}: {c}" for n, c in zip(names, contacts)]
+    assert contacts[names.index("wall")] > 10_000 and found["faces"]["hits"].sum() == sum(contacts)
+
+
+def test_each_tracer_is_in_the_scene_or_has_an_age(tmp_path, monkeypatch):
+    found = variables("tracers", tmp_path, monkeypatch)
+    totals = found["simulation"].totals
+    ages = np.concatenate(list(found["ages"].values()))
+    assert totals.injected == 4000 and len(ages) == totals.escaped == 4000 - len(found["simulation"].particles)
+    # The vessel is some 60 mm long, and the flow is nowhere faster than 0.34 m/s.
+    assert ages.min() > 0.15 and ages.max() <= found["simulation"].time
+
+
+def test_a_cut_replaces_the_cells_that_it_names(tmp_path, monkeypatch, capsys):
+    found = variables("cut", tmp_path, monkeypatch)
+    removed, added = (int(word) for word in capsys.readouterr().out.split() if word.isdigit())
+    before = dartcast.Environment(dartcast.generate_vessel()).map
+    assert found["environment"].map.cell_count() == before.cell_count() - removed + added
+    assert dartcast.audit(found["environment"].complex, found["particles"]).failed == 0
+
+
+def test_points_are_in_the_cells_that_contain_them(tmp_path, monkeypatch):
+    found = variables("location", tmp_path, monkeypatch)
+    environment, points = found["environment"], found["points"]
+    positions, map_ = environment.positions, environment.map
+    planes = []
+    for cell in map_.cells().tolist():
+        view = map_.view(cell)
+        corners = [positions[[view.vertex(i) for i in view.shape.corners(f)]] for f in range(view.shape.face_count)]
+        normals = np.array([np.cross(c[1] - c[0], c[2] - c[0]) for c in corners])
+        middle = positions[[view.vertex(i) for i in range(view.shape.point_count)]].mean(axis=0)
+        offsets = np.array([n @ c[0] for n, c in zip(normals, corners)])
+        planes.append((cell, normals * (side := np.sign(offsets - normals @ middle))[:, None], offsets * side))
+    for i in np.random.default_rng(1).integers(len(points), size=100):
+        inside = [cell for cell, normals, offsets in planes if (normals @ points[i] <= offsets + 1e-12).all()]
+        place = dartcast.Place(found["found"]["place"][i])
+        if place == dartcast.Place.OUTSIDE:
+            assert inside == []
+        else:
+            assert found["found"]["cell"][i] in inside
+            assert map_.is_free(int(found["found"]["cell"][i])) == (place == dartcast.Place.FREE)
