@@ -279,7 +279,7 @@ class Simulation {
   /// Repeats those edits by events that this simulation has not made yet. The caller makes other edits before
   /// (go_to()). Replaces all particles; vertices move to the checkpoint's time. Throws InvalidArgument where a state
   /// does not hold in this environment, and where edits must be repeated but there are particles. The particles are
-  /// then unchanged.
+  /// then unchanged; edits that it has repeated remain.
   void restore(const SimulationCheckpoint& saved);
   /// Moves the vertices to their positions after so many steps, to repeat edits there before restore(). Throws
   /// InvalidArgument where there are particles.
