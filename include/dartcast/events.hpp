@@ -52,7 +52,7 @@ struct AdaptiveSubdivisionReport {
 };
 
 /// The kind of change that an event makes.
-enum class EventKind : std::uint32_t { cut, carve, ligature, reconnect };
+enum class EventKind : std::uint32_t { cut, carve, ligature, reconnect, open, close };
 /// The name of a kind in scenes, such as "cut".
 [[nodiscard]] std::string_view name_of(EventKind kind);
 
@@ -88,10 +88,23 @@ struct Reconnect {
   ReconnectOptions options;
 };
 
+/// Frees cells that are blocked, such as those of a valve that opens. `cells`: their numbers in the mesh
+/// (cells_of_region()); where an edit has replaced one, its parts. Cells that are free already stay so.
+struct OpenCells {
+  static constexpr EventKind kind = EventKind::open;
+  std::vector<std::uint32_t> cells;
+};
+
+/// Blocks cells that are free, such as those of a valve that closes. `cells`: as for OpenCells.
+struct CloseCells {
+  static constexpr EventKind kind = EventKind::close;
+  std::vector<std::uint32_t> cells;
+};
+
 /// A change of the topology at a time.
 struct Event {
   double at = 0.0;  ///< s: before the first step that begins at this time or later
-  std::variant<Cut, Carve, Ligature, Reconnect> what;
+  std::variant<Cut, Carve, Ligature, Reconnect, OpenCells, CloseCells> what;
   OrphanPolicy orphaned = OrphanPolicy::relocate;
 };
 /// The kind of an event.

@@ -168,10 +168,11 @@ struct ContactScene {
   std::map<std::string, WallResponse> by_patch;
 };
 
-/// An event, with the name of a patch it makes.
+/// An event, with the names that it uses.
 struct EventScene {
   Event event;
-  std::string patch;  ///< reconnect: of the new faces on the side; empty: none
+  std::string patch{};   ///< reconnect: of the new faces on the side; empty: none
+  std::string region{};  ///< open, close: its cells, in place of those of the event; empty: those
 };
 
 /// Repairs of cells that a deformation inverts.

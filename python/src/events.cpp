@@ -47,7 +47,9 @@ void bind_kinds(py::module_& m) {
                        {{"CUT", EventKind::cut},
                         {"CARVE", EventKind::carve},
                         {"LIGATURE", EventKind::ligature},
-                        {"RECONNECT", EventKind::reconnect}});
+                        {"RECONNECT", EventKind::reconnect},
+                        {"OPEN", EventKind::open},
+                        {"CLOSE", EventKind::close}});
   Record<Cut> cut(m, "Cut");
   cut.field("surface", &Cut::surface).field("width", &Cut::width);
   finish_kind(cut);
@@ -66,6 +68,12 @@ void bind_kinds(py::module_& m) {
       .field("within", &Reconnect::within)
       .field("options", &Reconnect::options);
   finish_kind(reconnect);
+  Record<OpenCells> open(m, "OpenCells");
+  open.field("cells", &OpenCells::cells);
+  finish_kind(open);
+  Record<CloseCells> close(m, "CloseCells");
+  close.field("cells", &CloseCells::cells);
+  finish_kind(close);
   Record<Event>(m, "Event")
       .field("at", &Event::at)
       .field("what", &Event::what)

@@ -28,6 +28,19 @@ void bind_mesh_selection(py::module_& m) {
       [](MeshData& mesh, const Texts& regions) { change(mesh, [&] { select_free_regions(mesh, regions); }); },
       py::arg("mesh"), py::arg("regions"), doc("select_free_regions"));
   m.def(
+      "cells_of_region",
+      [](const MeshData& mesh, const std::string& region) {
+        check_arrays(mesh);
+        std::vector<std::uint32_t> cells;
+        {
+          const MeshUse use(mesh, false);
+          const py::gil_scoped_release release;
+          cells = cells_of_region(mesh, region);
+        }
+        return py::array_t<std::uint32_t>(static_cast<py::ssize_t>(cells.size()), cells.data());
+      },
+      py::arg("mesh"), py::arg("region"), doc("cells_of_region"));
+  m.def(
       "select_free_values",
       [](MeshData& mesh, const std::string& array, const std::vector<double>& values) {
         change(mesh, [&] { select_free_values(mesh, array, values); });

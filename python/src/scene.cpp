@@ -110,7 +110,11 @@ void bind_motion(py::module_& m) {
 }
 
 void bind_changes(py::module_& m) {
-  Record<EventScene>(m, "EventScene").field("event", &EventScene::event).field("patch", &EventScene::patch).finish();
+  Record<EventScene>(m, "EventScene")
+      .field("event", &EventScene::event)
+      .field("patch", &EventScene::patch)
+      .field("region", &EventScene::region)
+      .finish();
   Record<RemeshScene>(m, "RemeshScene")
       .field("every", &RemeshScene::every)
       .field("options", &RemeshScene::options)

@@ -216,7 +216,9 @@ def vessel(events: list[dartcast.Event]) -> dartcast.Simulation:
     ("CUT", lambda: dartcast.Cut(dartcast.Disc(centre=[0.0, 0.0, -0.012], radius=6e-3), 1.2e-3)),
     ("CARVE", lambda: dartcast.Carve(dartcast.box_tool([-4e-3, -4e-3, -4e-3], [4e-3, 4e-3, 4e-3]), "open")),
     ("LIGATURE", lambda: dartcast.Ligature(dartcast.plane_through([0.0, 0.0, 0.0], [0.0, 0.0, 1.0]), [0.0, 0.0, 0.0],
-                                           dartcast.TyingOptions(0.2, 5e-3), 2e-3))])
+                                           dartcast.TyingOptions(0.2, 5e-3), 2e-3)),
+    ("OPEN", lambda: dartcast.OpenCells(np.flatnonzero(dartcast.generate_vessel().free == 0)[:100])),
+    ("CLOSE", lambda: dartcast.CloseCells(np.flatnonzero(dartcast.generate_vessel().free)[:100]))])
 def test_events_happen_at_their_time(kind: str, what: object) -> None:
     assert callable(what)
     simulation = vessel([dartcast.Event(2e-3, what())])

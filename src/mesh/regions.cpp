@@ -19,9 +19,8 @@ std::string name_of(const MeshData& mesh, std::int32_t tag) {
   return name == mesh.region_names.end() ? std::to_string(tag) : fmt::format("{} ({})", name->second, tag);
 }
 
-}  // namespace
-
-void select_free_regions(MeshData& mesh, std::span<const std::string> regions) {
+// The tags of the named regions.
+std::set<std::int32_t> tags_of(const MeshData& mesh, std::span<const std::string> regions) {
   std::set<std::int32_t> present;
   for (std::size_t c = 0; c < mesh.cell_count(); ++c) present.insert(tag_at(mesh, c));
   std::set<std::int32_t> wanted;
@@ -39,6 +38,22 @@ void select_free_regions(MeshData& mesh, std::span<const std::string> regions) {
           fmt::format("the mesh has no region '{}'; its regions are: {}", region, fmt::join(names, ", ")));
     }
   }
+  return wanted;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> cells_of_region(const MeshData& mesh, const std::string& region) {
+  const std::set<std::int32_t> wanted = tags_of(mesh, {&region, 1});
+  std::vector<std::uint32_t> cells;
+  for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
+    if (wanted.count(tag_at(mesh, c)) > 0) cells.push_back(static_cast<std::uint32_t>(c));
+  }
+  return cells;
+}
+
+void select_free_regions(MeshData& mesh, std::span<const std::string> regions) {
+  const std::set<std::int32_t> wanted = tags_of(mesh, regions);
   std::vector<std::uint8_t> free(mesh.cell_count());
   for (std::size_t c = 0; c < free.size(); ++c) free[c] = wanted.count(tag_at(mesh, c)) > 0 ? 1 : 0;
   mesh.free = std::move(free);

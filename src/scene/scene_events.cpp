@@ -129,12 +129,14 @@ EventScene read_event(TomlTable& t) {
   t.require("at", "the time in seconds");
   t.get("at", scene.event.at, Range::not_negative);
   EventKind kind = EventKind::cut;
-  t.require("kind", "cut, carve, ligature or reconnect");
+  t.require("kind", "cut, carve, ligature, reconnect, open or close");
   t.get("kind", kind,
         {{"cut", EventKind::cut},
          {"carve", EventKind::carve},
          {"ligature", EventKind::ligature},
-         {"reconnect", EventKind::reconnect}});
+         {"reconnect", EventKind::reconnect},
+         {"open", EventKind::open},
+         {"close", EventKind::close}});
   switch (kind) {
     case EventKind::cut: scene.event.what = cut(t); break;
     case EventKind::carve: scene.event.what = carve(t); break;
@@ -142,6 +144,15 @@ EventScene read_event(TomlTable& t) {
     case EventKind::reconnect:
       scene.event.what = reconnect(t);
       t.get("patch", scene.patch);
+      break;
+    case EventKind::open:
+    case EventKind::close:
+      if (kind == EventKind::open)
+        scene.event.what = OpenCells{};
+      else
+        scene.event.what = CloseCells{};
+      t.require("region", "the region of the mesh whose cells open or close");
+      t.get("region", scene.region);
       break;
   }
   t.get("stranded", scene.event.orphaned,

@@ -15,7 +15,9 @@ namespace {
 
 bool is_possible_in_plane(EventKind kind) {
   switch (kind) {
-    case EventKind::ligature: return true;
+    case EventKind::ligature:
+    case EventKind::open:
+    case EventKind::close: return true;
     case EventKind::cut:
     case EventKind::carve:
     case EventKind::reconnect: return false;
@@ -44,8 +46,9 @@ void EventScheduler::set_events(std::vector<Event> events) {
       throw InvalidArgument(
           fmt::format("event {} ({}): its time is {} s: it must be between 0 and {} s", i + 1, name, at, latest));
     if (environment_.map().dimension() == 2 && !is_possible_in_plane(kind_of(events[i])))
-      throw InvalidArgument(
-          fmt::format("event {} ({}): in the plane a ligature can be tied, and nothing else be done", i + 1, name));
+      throw InvalidArgument(fmt::format(
+          "event {} ({}): in the plane cells open and close, and a ligature can be tied; nothing else can be done",
+          i + 1, name));
   }
   std::stable_sort(events.begin(), events.end(), [](const Event& a, const Event& b) { return a.at < b.at; });
   events_ = std::move(events);

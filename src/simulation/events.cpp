@@ -77,6 +77,26 @@ class EventRun {
         event_.orphaned));
   }
 
+  void make(const OpenCells& what) { report_.cells_opened = set_free(what.cells, true); }
+  void make(const CloseCells& what) { report_.cells_blocked = set_free(what.cells, false); }
+
+  // Returns how many cells changed.
+  std::uint64_t set_free(std::vector<std::uint32_t> sources, bool free) {
+    std::sort(sources.begin(), sources.end());
+    std::uint64_t changed = 0;
+    note(simulation_.edit(
+        [&](ComplexEdit& e) {
+          for (const Cell c : e.map().cells()) {
+            if (e.map().is_free(c) == free || !std::binary_search(sources.begin(), sources.end(), e.map().source(c)))
+              continue;
+            e.topology().set_free(c, free);
+            ++changed;
+          }
+        },
+        event_.orphaned));
+    return changed;
+  }
+
   void note(const SimulationEdit& done) {
     report_.cells_removed = done.edit.map.removed.size();
     report_.cells_added = done.edit.map.added.size();
@@ -105,6 +125,8 @@ std::string_view name_of(EventKind kind) {
     case EventKind::carve: return "carve";
     case EventKind::ligature: return "ligature";
     case EventKind::reconnect: return "reconnect";
+    case EventKind::open: return "open";
+    case EventKind::close: return "close";
   }
   return {};
 }

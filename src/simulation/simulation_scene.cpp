@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "dartcast/error.hpp"
+#include "dartcast/mesh_selection.hpp"
 #include "dartcast/scene.hpp"
 #include "simulation/scene_environment.hpp"
 #include "simulation/scene_field.hpp"
@@ -30,10 +31,16 @@ SimulationOptions options_of(const Scene& scene) {
   return options;
 }
 
-std::vector<Event> events_of(const Scene& scene, const CombinatorialMap& map) {
+std::vector<Event> events_of(const Scene& scene, const MeshData& mesh, const CombinatorialMap& map) {
   std::vector<Event> events;
   for (const EventScene& e : scene.events) {
     events.push_back(e.event);
+    if (!e.region.empty()) {
+      auto* open = std::get_if<OpenCells>(&events.back().what);
+      auto* close = std::get_if<CloseCells>(&events.back().what);
+      if (open != nullptr) open->cells = cells_of_region(mesh, e.region);
+      if (close != nullptr) close->cells = cells_of_region(mesh, e.region);
+    }
     auto* reconnect = std::get_if<Reconnect>(&events.back().what);
     if (reconnect != nullptr && !e.patch.empty()) reconnect->options.side = map.patch(e.patch);
   }
@@ -100,7 +107,7 @@ void Simulation::make(const Scene& scene, Threads threads) {
   if (const auto field = scene_field(scene.motion.field, "the velocity field", mesh, complex)) set_field(*field);
   if (const auto force = scene_field(scene.motion.force, "the force", mesh, complex)) set_force(*force);
   if (!scene.deformation.empty()) set_deformation(Deformation(deformation_steps(scene.deformation, mesh), mesh.points));
-  set_events(events_of(scene, environment.map()));
+  set_events(events_of(scene, mesh, environment.map()));
   set_remeshing(scene.remesh);
   set_adaptive_subdivision(scene.adaptive_subdivision);
   set_statistics(scene.statistics.options);

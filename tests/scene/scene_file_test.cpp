@@ -209,7 +209,22 @@ TEST(SceneFile, EventsAreReadInOrderOfTime) {
   EXPECT_EQ(s.events[3].patch, "xmin");
 }
 
+TEST(SceneFile, AValveIsARegion) {
+  const Scene s = parse_scene(box +
+                                  "[[event]]\nat = 2.0\nkind = 'close'\nregion = 'valve'\nstranded = 'stay'\n"
+                                  "[[event]]\nat = 1.0\nkind = 'open'\nregion = '7'\n",
+                              "folder/scene.toml");
+  ASSERT_EQ(s.events.size(), 2U);
+  EXPECT_TRUE(std::holds_alternative<OpenCells>(s.events[0].event.what));
+  EXPECT_EQ(s.events[0].region, "7");
+  EXPECT_TRUE(std::holds_alternative<CloseCells>(s.events[1].event.what));
+  EXPECT_EQ(s.events[1].region, "valve");
+  EXPECT_EQ(s.events[1].event.orphaned, OrphanPolicy::hold);
+}
+
 TEST(SceneFile, EventsThatCannotBeSayWhy) {
+  expect_error(box + "[[event]]\nat = 1.0\nkind = 'open'\n", "3", "region");
+  expect_error(box + "[[event]]\nat = 1.0\nkind = 'open'\nregion = 'a'\npatch = 'b'\n", "7", "patch");
   expect_error(box + "[[event]]\nat = 1.0\nkind = 'sew'\n", "5", "one of");
   expect_error(box + "[[event]]\nkind = 'cut'\n", "3", "at");
   expect_error(box +

@@ -6,6 +6,7 @@
 #include "dartcast/audit.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
+#include "dartcast/mesh_selection.hpp"
 #include "dartcast/simulation.hpp"
 #include "dartcast/validity.hpp"
 #include "support/expectations.hpp"
@@ -234,6 +235,106 @@ TEST(Events, SayWhichIsRefused) {
 }
 
 // A ligature across a strip in the plane stops who comes from the left; cuts are refused before anything is done.
+// A box of three regions: the middle one is a valve.
+MeshData valve_mesh(unsigned dimension) {
+  MeshData mesh;
+  if (dimension == 3) {
+    BoxOptions box;
+    box.cells = {12, 3, 3};
+    box.size = {12.0, 3.0, 3.0};
+    mesh = generate_box(box);
+  } else {
+    RectangleOptions rectangle;
+    rectangle.cells = {12, 3};
+    rectangle.size = {12.0, 3.0};
+    mesh = generate_rectangle(rectangle);
+  }
+  mesh.regions.clear();
+  for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
+    double x = 0.0;
+    for (std::uint64_t k = mesh.offsets[c]; k < mesh.offsets[c + 1]; ++k) x += mesh.points[mesh.connectivity[k]].x;
+    x /= static_cast<double>(mesh.offsets[c + 1] - mesh.offsets[c]);
+    mesh.regions.push_back(x < 6.0 ? 1 : x < 7.0 ? 2 : 3);
+  }
+  mesh.region_names = {{1, "left"}, {2, "valve"}, {3, "right"}};
+  return mesh;
+}
+
+class Valve : public testing::TestWithParam<std::tuple<unsigned, OrphanPolicy>> {};
+
+TEST_P(Valve, LetsThroughOnlyWhileItIsOpen) {
+  const auto [dimension, policy] = GetParam();
+  MeshData mesh = valve_mesh(dimension);
+  const std::vector<std::uint32_t> valve = cells_of_region(mesh, "valve");
+  ASSERT_EQ(valve.size(), dimension == 3 ? 9U : 3U);
+  const std::vector<std::string> open_at_first = {"left", "right"};
+  select_free_regions(mesh, open_at_first);
+  Environment environment(mesh);
+  Simulation simulation(environment, test::with_response(SimulationOptions{.dt = 0.05}, Reflect{1.0, 0.0}));
+  std::vector<Vec3> places;
+  std::vector<Vec3> velocities;
+  for (int i = 0; i < 200; ++i) {
+    places.push_back({0.5 + 0.025 * i, 0.3 + 0.012 * i, dimension == 3 ? 1.3 : 0.0});
+    velocities.push_back({2.0 + 0.01 * i, 0.4, 0.0});
+  }
+  simulation.add(places, velocities, std::vector<double>(200));
+  simulation.set_events({{5.0, OpenCells{valve}, policy}, {10.0, CloseCells{valve}, policy}});
+  const auto on_the_right = [&] { return count_if(simulation, [](const Vec3& x) { return x.x >= 7.0; }); };
+  std::size_t passed = 0;
+  for (int i = 0; i < 300; ++i) {
+    simulation.step();
+    ASSERT_NO_FATAL_FAILURE(test::expect_audited(simulation.environment().complex(), simulation.particles()));
+    if (i < 100) ASSERT_EQ(on_the_right(), 0U) << "step " << i;
+    if (i == 200) passed = on_the_right();
+    if (i > 200 && policy != OrphanPolicy::relocate) ASSERT_EQ(on_the_right(), passed) << "step " << i;
+  }
+  EXPECT_GT(passed, 10U);
+  const auto& events = simulation.event_log().events;
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_EQ(events[0].cells_opened, valve.size());
+  EXPECT_EQ(events[1].cells_blocked, valve.size());
+  EXPECT_EQ(events[0].step, 100U);
+  const EventReport& closed = events[1];
+  EXPECT_GT(closed.particles_in_opened, 0U);
+  const std::uint64_t orphans = policy == OrphanPolicy::relocate ? closed.particles_moved
+                                : policy == OrphanPolicy::hold   ? closed.particles_held
+                                                                 : closed.particles_absorbed;
+  EXPECT_EQ(orphans, closed.particles_in_opened);
+  EXPECT_EQ(simulation.particles().size(), policy == OrphanPolicy::absorb ? 200U - orphans : 200U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Policies, Valve,
+                         testing::Combine(testing::Values(2U, 3U),
+                                          testing::Values(OrphanPolicy::relocate, OrphanPolicy::hold,
+                                                          OrphanPolicy::absorb)));
+
+TEST(Events, CellsThatAreOpenStayOpen) {
+  MeshData mesh = valve_mesh(3);
+  Environment environment(mesh);
+  Simulation simulation(environment);
+  const std::vector<std::uint32_t> valve = cells_of_region(mesh, "2");
+  EXPECT_EQ(apply(simulation, {0.0, OpenCells{valve}, OrphanPolicy::hold}).cells_opened, 0U);
+  EXPECT_EQ(apply(simulation, {0.0, CloseCells{valve}, OrphanPolicy::hold}).cells_blocked, 9U);
+  EXPECT_EQ(apply(simulation, {0.0, CloseCells{valve}, OrphanPolicy::hold}).cells_blocked, 0U);
+  EXPECT_THROW((void)cells_of_region(mesh, "none"), InvalidMesh);
+}
+
+// The parts of a cell that was cut follow it.
+TEST(Events, PartsOfCutCellsCloseWithTheirRegion) {
+  MeshData mesh = valve_mesh(3);
+  const std::vector<std::uint32_t> valve = cells_of_region(mesh, "valve");
+  for (const std::uint32_t c : valve) {
+    mesh.free.resize(mesh.cell_count(), 1);
+    mesh.free[c] = 0;
+  }
+  Environment environment(mesh);
+  Simulation simulation(environment);
+  apply(simulation, {0.0, Cut{plane_through({6.5, 1.5, 1.45}, {0.0, 0.0, 1.0}), 0.2}, OrphanPolicy::hold});
+  const EventReport report = apply(simulation, {0.0, OpenCells{valve}, OrphanPolicy::hold});
+  EXPECT_GT(report.cells_opened, 9U);
+  for (const Cell c : environment.map().cells()) EXPECT_TRUE(environment.map().is_free(c));
+}
+
 TEST(Events, InThePlaneALigatureSeals) {
   RectangleOptions o;
   o.cells = {12, 4};

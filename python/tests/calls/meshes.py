@@ -76,6 +76,8 @@ def of_selections() -> Calls:
     rings = [dc.Ring(outer, "rim"), dc.Ring(0.5 * outer + 1.0, "hole")]
     rings[1].points = np.array([[1, 1, 0], [2, 1, 0], [2, 2, 0], [1, 2, 0]], dtype=float)
     return {
+        "cells_of_region": lambda: dc.cells_of_region(mesh, "a lumen with a long name"),
+        "cells_of_region: refused": refused(lambda: dc.cells_of_region(mesh, "tissue")),
         "select_free_regions": lambda: dc.select_free_regions(mesh, ["a lumen with a long name"]),
         "select_free_regions: refused": refused(lambda: dc.select_free_regions(mesh, ["tissue"])),
         "select_free_values": lambda: dc.select_free_values(mesh, "kind", [1.0, 2.0]),
