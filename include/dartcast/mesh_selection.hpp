@@ -20,9 +20,9 @@ void select_free_regions(MeshData& mesh, std::span<const std::string> regions);
 /// The cells of a region, by their numbers in the mesh. Throws as select_free_regions().
 std::vector<std::uint32_t> cells_of_region(const MeshData& mesh, const std::string& region);
 
-/// The same as select_free_regions() by a cell array of one component: a cell is free where its value is one of `values`. Throws InvalidMesh,
-/// which lists the arrays that exist, where there is no such array or it has several components, or where no cell has
-/// one of the values.
+/// As select_free_regions(), by a cell array of one component: a cell is free where its value is one of `values`. Throws
+/// InvalidMesh, which lists the arrays that exist, where there is no such array or it has several components, or where
+/// no cell has one of the values.
 void select_free_values(MeshData& mesh, const std::string& array, std::span<const double> values);
 
 // Selection of the groups of wall faces to distinguish.

@@ -8,6 +8,7 @@
 
 #include "dartcast/error.hpp"
 #include "dartcast/predicates.hpp"
+#include "environment/addition.hpp"
 #include "simulation/particle_system.hpp"
 #include "simulation/timer.hpp"
 
@@ -63,12 +64,15 @@ void ParticleSystem::add_inlet(Patch patch, double rate, const Vec3& velocity, d
 class ParticleSystem::SystemAddition {
  public:
   explicit SystemAddition(ParticleSystem& system)
-      : system_(system), before_(system.particles_.size()), next_id_(system.next_id_), spheres_(system.spheres_) {}
+      : system_(system),
+        particles_(system.particles_),
+        before_(system.particles_.size()),
+        next_id_(system.next_id_),
+        spheres_(system.spheres_) {}
   SystemAddition(const SystemAddition&) = delete;
   SystemAddition& operator=(const SystemAddition&) = delete;
   ~SystemAddition() {
     if (kept_) return;
-    system_.particles_.truncate(before_);
     const auto cut = [](auto& values, std::size_t size) {
       if (values.size() > size) values.resize(size);
     };
@@ -83,10 +87,14 @@ class ParticleSystem::SystemAddition {
     system_.spheres_ = spheres_;
   }
   /// The addition is done.
-  void keep() { kept_ = true; }
+  void keep() {
+    particles_.keep();
+    kept_ = true;
+  }
 
  private:
   ParticleSystem& system_;
+  Addition particles_;
   std::size_t before_;
   std::uint64_t next_id_;
   std::size_t spheres_;
