@@ -8,6 +8,23 @@ import textwrap
 import pytest
 
 CASES = {
+    # Memory ends in the numbers of the user, when ids and velocities are there: they are undone, too.
+    "more numbers of the user than memory": """
+        import resource
+        import dartcast as d
+        options = d.SimulationOptions(user_data=[f"number {i}" for i in range(2000)])
+        simulation = d.Simulation(d.Environment(d.generate_bar()), options)
+        simulation.add_random(10, [0.0, 0.0, 0.0])
+        hash = simulation.state_hash()
+        resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30))
+        try: simulation.add_random(200_000, [0.0, 0.0, 0.0])
+        except MemoryError: pass
+        else: raise AssertionError("not refused")
+        assert len(simulation.particles) == len(simulation.ids) == len(simulation.velocities) == 10
+        assert simulation.state_hash() == hash and simulation.totals.start == 10
+        simulation.add_random(1, [0.0, 0.0, 0.0]); assert simulation.ids.tolist() == list(range(11))
+        simulation.step(); assert simulation.audit().failed == 0
+    """,
     # Memory ends in the middle of an addition: all of it is undone.
     "more particles than memory": """
         import resource
