@@ -12,12 +12,14 @@ LIBRARIES = {
     "core": ["base", "predicates", "mesh", "generators", "topology", "complex", "editing", "surface", "tracking",
              "tracking/batch", "response", "environment"],
     "simulation": ["dynamics", "spheres", "bodies", "catheter", "simulation"],
-    "io": ["formats", "formats/vtk", "scene", "report", "output"],
+    "io": ["formats", "formats/vtk", "formats/openfoam", "scene", "report", "output"],
 }
 ROOMS = [room for rooms in LIBRARIES.values() for room in rooms]
-# Rooms side by side. VTK is reached through formats/vtk_functions.hpp, because a build may be without it.
+# Rooms side by side. VTK is reached through formats/vtk_functions.hpp, because a build may be without
+# it, and OpenFOAM's cases through formats/openfoam.hpp.
 DENIED = {("tracking", "surface"), ("tracking/batch", "surface"), ("spheres", "surface"),
-          ("scene", "formats/vtk"), ("report", "formats/vtk"), ("output", "formats/vtk")}
+          ("formats/openfoam", "formats/vtk")} | {
+    (room, part) for room in ("scene", "report", "output") for part in ("formats/vtk", "formats/openfoam")}
 
 # Public headers by the room that implements them.
 PUBLIC = {
@@ -51,7 +53,7 @@ MOST_LINES = 400
 THIRD_PARTY = [
     (re.compile(r"^vtk"), {"formats/vtk"}),
     (re.compile(r"^lz4\.h"), {"formats"}),
-    (re.compile(r"^zlib\.h"), {"formats", "report"}),
+    (re.compile(r"^zlib\.h"), {"formats", "formats/openfoam", "report"}),
     (re.compile(r"^(tbb|oneapi)/"), {"base"}),
     (re.compile(r"^(Eigen|boost|fmt)/"), set(ROOMS)),
     (re.compile(r"^nlohmann/"), {"report", "output"}),

@@ -49,8 +49,8 @@ void add_check(CLI::App& app, int& status) {
   const auto json = std::make_shared<bool>(false);
   CLI::App* verb = app.add_subcommand("check", "Say what is in a mesh file, and whether it is valid.");
   verb->add_option("MESH", *mesh,
-                   fmt::format("a mesh: {}; or a surface: {}", fmt::join(mesh_endings(), " "),
-                               fmt::join(surface_endings(), " ")))
+                   fmt::format("a mesh: {}, or the folder of an OpenFOAM case; or a surface: {}",
+                               fmt::join(mesh_endings(), " "), fmt::join(surface_endings(), " ")))
       ->required();
   const auto skip = std::make_shared<bool>(false);
   verb->add_flag("--skip-bad-cells", *skip, "with this option of dartcast run: bad cells are left out, and a warning");

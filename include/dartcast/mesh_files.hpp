@@ -45,8 +45,8 @@ struct MeshFile {
   MeshReport report;
 };
 
-/// Reads .vtu, .vtk (legacy), .msh, .msh2, .msh4 (Gmsh 1, 2 and 4) or .mesh (Medit), by ending and content, and checks
-/// and repairs it. .vtu and .vtk need VTK (has_vtk()). Nothing in the file makes this throw: a file that cannot be read
+/// Reads .vtu, .vtk (legacy), .msh, .msh2, .msh4 (Gmsh 1, 2 and 4) or .mesh (Medit), by ending and content, or the
+/// folder of an OpenFOAM case (formats/openfoam.hpp), and checks and repairs it. .vtu and .vtk need VTK (has_vtk()). Nothing in the file makes this throw: a file that cannot be read
 /// has a defect of kind "file" in the report, with line or byte. Cost: a few times the file's size in memory.
 MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 

@@ -67,7 +67,10 @@ struct DeformationScene {
   DeformationStep step;
   std::string field;                          ///< pulse: a point array of three components; empty: none
   std::string path;                           ///< pulse: a point array of one component; empty: none
-  std::vector<std::filesystem::path> frames;  ///< frames: mesh files with the same points; empty: those of `step`
+  /// frames: mesh files with the same points, one for each of the step's times; or one name with a star in place of a
+  /// whole number; or one .pvd file or case of OpenFOAM, which give the times, too. Empty: the frames of `step`.
+  std::vector<std::filesystem::path> frames;
+  double spacing = 0.0;  ///< frames: s from one to the next, the first at 0; 0: by the step's times
 };
 
 /// Particles at random places of the free cells.
@@ -138,7 +141,7 @@ struct FieldScene {
   std::optional<FieldPlace> at;  ///< none: the points where they have the array, else the cells
   FieldFrame frame = FieldFrame::space;
   /// Mesh files with the same points and cells, one for each time; or one name with a star in place of a whole number;
-  /// or one .pvd file, which gives the times, too. Empty: the arrays of the scene's mesh.
+  /// or one .pvd file or case of OpenFOAM, which give the times, too. Empty: the arrays of the scene's mesh.
   std::vector<std::filesystem::path> files;
   std::vector<double> times;  ///< s, increasing, one for each array or file; empty: by `spacing`
   double spacing = 0.0;       ///< s from one time to the next, the first at 0; 0: by `times`

@@ -30,6 +30,7 @@ void bind_environment_scene(py::module_& m) {
       .field("field", &DeformationScene::field)
       .field("path", &DeformationScene::path)
       .field("frames", &DeformationScene::frames)
+      .field("spacing", &DeformationScene::spacing)
       .finish();
 }
 

@@ -28,6 +28,7 @@ struct ParsedMesh {
                        "cells of second or higher order, with curved sides; write the mesh with linear "
                        "cells (Gmsh: -order 1)"};
   Finding unsupported{"cell_type", 0, {}, "cells of a type that cannot be used"};
+  std::vector<Finding> warnings = {};  ///< of the format itself; they come before those of the check
 
   void add_edge(std::uint32_t a, std::uint32_t b, std::int32_t tag) {
     edges.push_back({a, b});

@@ -11,6 +11,7 @@
 #include "formats/checked_file.hpp"
 #include "formats/file_text.hpp"
 #include "formats/format_table.hpp"
+#include "formats/openfoam.hpp"
 #include "formats/read_memory.hpp"
 #include "formats/vtk_functions.hpp"
 
@@ -31,6 +32,7 @@ std::string supported() {
   for (const MeshFormat& format : mesh_formats()) {
     if (format.read != nullptr) list.push_back(described(format));
   }
+  list.emplace_back("folders of OpenFOAM's cases");
   return in_words(list, "and");
 }
 
@@ -42,7 +44,17 @@ std::string endings_with_arrays() {
   return in_words(list, "and");
 }
 
+ParsedMesh parse_folder(const std::filesystem::path& path, const ReadOptions& options) {
+  if (!options.patch_array.empty())
+    throw InvalidMesh(fmt::format("patches from the cell array '{}': a case of OpenFOAM has patches of its own",
+                                  options.patch_array));
+  return parse_openfoam(path, options);
+}
+
 ParsedMesh parse(const std::filesystem::path& path, const ReadOptions& options) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error) || ending_of(path) == ".foam" || is_openfoam(path))
+    return parse_folder(path, options);
   const MeshFormat* format = mesh_format_of(path);
   if (format == nullptr) {
     throw InvalidMesh(fmt::format("files that end in '{}' are not supported; supported are {}{}", ending_of(path),
@@ -72,6 +84,7 @@ MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options
     out.report.format = parsed.format;
     add_finding(out.report.defects, parsed.second_order);
     add_finding(out.report.defects, parsed.unsupported);
+    out.report.warnings.insert(out.report.warnings.begin(), parsed.warnings.begin(), parsed.warnings.end());
   });
 }
 

@@ -14,8 +14,10 @@
 #include "formats/checked_file.hpp"
 #include "formats/file_text.hpp"
 #include "formats/format_table.hpp"
+#include "formats/openfoam.hpp"
 #include "formats/vtk_functions.hpp"
 #include "mesh/same_cells.hpp"
+#include "scene/file_series.hpp"
 
 namespace dartcast {
 namespace {
@@ -33,9 +35,7 @@ class FrameFiles {
         skips_cells_(environment.skip_bad_cells),
         cells_(skips_cells_ ? std::set<std::uint32_t>(mesh.source.begin(), mesh.source.end())
                             : std::set<std::uint32_t>()) {
-    for (const fs::path& file : files_) {
-      if (!fs::is_regular_file(file)) throw InvalidMesh(fmt::format("{}: no such file", file.string()));
-    }
+    check_exist(files_);
     read_first();
   }
 
@@ -95,6 +95,11 @@ class FrameFiles {
   }
 
   [[nodiscard]] std::optional<VtuPoints> read_points_of(const fs::path& file) const {
+    if (is_openfoam(file)) {
+      ReadOptions options;
+      options.max_memory = max_memory_;
+      return VtuPoints{openfoam_points_at(file, options), 0};  // all times of a case have the same cells
+    }
     if (ending_of(file) != ".vtu") return std::nullopt;
     return vtk_functions.read_vtu_points(read_bytes(file), max_memory_);
   }

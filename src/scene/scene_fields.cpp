@@ -11,8 +11,8 @@
 
 #include "dartcast/error.hpp"
 #include "formats/checked_file.hpp"
-#include "formats/field_series.hpp"
-#include "formats/format_table.hpp"
+#include "formats/openfoam.hpp"
+#include "scene/file_series.hpp"
 #include "simulation/scene_field.hpp"
 
 namespace dartcast {
@@ -49,24 +49,6 @@ void read_field(TomlTable& motion, const char* key, const std::filesystem::path&
   }
 }
 
-FieldSeries series_of(const FieldScene& field) {
-  const std::filesystem::path& first = field.files.front();
-  FieldSeries series;
-  if (field.files.size() == 1 && ending_of(first) == ".pvd") {
-    if (!field.times.empty() || field.spacing > 0.0)
-      throw InvalidArgument(fmt::format("{}: a collection has its times: leave out times and spacing", first.string()));
-    series = read_pvd(first);
-  } else {
-    series = field.files.size() == 1 && is_pattern(first.filename().string()) ? numbered_files(first)
-                                                                              : FieldSeries{field.files, {}};
-    series.times = field_times(field, series.files.size(), "files");
-  }
-  for (const auto& file : series.files) {
-    if (!std::filesystem::is_regular_file(file)) throw Error(fmt::format("{}: there is no such file", file.string()));
-  }
-  return series;
-}
-
 // Calls make(), and puts the file's name before the message of an error unless it is there.
 template <class Make>
 auto with_file_name(const std::filesystem::path& file, Make&& make) {
@@ -99,7 +81,7 @@ class FieldFiles {
 
   [[nodiscard]] std::vector<Vec3> operator()(std::size_t k) const {
     return with_file_name(files_[k], [&] {
-      std::vector<Vec3> values = field_values(read(k), array_, at_);
+      std::vector<Vec3> values = read_values(k);
       const auto bad = std::find_if_not(values.begin(), values.end(), is_finite);
       if (bad != values.end())
         throw InvalidMesh(fmt::format("the array '{}' is not finite at its item {}", array_, bad - values.begin()));
@@ -110,6 +92,13 @@ class FieldFiles {
  private:
   static std::uint32_t source_of(const MeshData& mesh, std::size_t c) {
     return mesh.source.empty() ? static_cast<std::uint32_t>(c) : mesh.source[c];
+  }
+
+  [[nodiscard]] std::vector<Vec3> read_values(std::size_t k) const {
+    // A case has one mesh for all times: its values alone are enough.
+    if (at_ == FieldPlace::cells && kept_.empty() && is_openfoam(files_[k]))
+      return openfoam_cell_vectors(files_[k], array_, cells_, options_);
+    return field_values(read(k), array_, at_);
   }
 
   [[nodiscard]] MeshData read(std::size_t k) const {
@@ -184,7 +173,9 @@ void read_fields(TomlTable& motion, const std::filesystem::path& folder, MotionS
 void load_field(FieldScene& field, const EnvironmentScene& environment, const MeshData& mesh,
                 const ReadOptions& options) {
   if (field.files.empty() || field.samples.read) return;
-  FieldSeries series = series_of(field);
+  FieldSeries series =
+      file_series({fmt::format("the field '{}'", field.array), field.array, field.files, field.times, field.spacing});
+  check_exist(series.files);
   auto files = std::make_shared<FieldFiles>(field, environment, mesh, options, series.files);
   field.samples.place = files->find_place();
   field.samples.times = std::move(series.times);

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "dartcast/error.hpp"
+#include "scene/file_series.hpp"
 #include "scene/scene_events.hpp"
 #include "scene/scene_fields.hpp"
 #include "scene/scene_mesh_keys.hpp"
@@ -111,13 +112,15 @@ class SceneReader {
 
   void frames(TomlTable& t, DeformationScene& scene) const {
     std::vector<std::string> files;
-    t.require("files", "mesh files with the same points, one per time");
-    t.require("times", "in seconds, increasing, one per file");
+    t.require("files", "mesh files with the same points, one per time; or a .pvd file or case of OpenFOAM");
     t.get("files", files);
-    t.get("times", scene.step.times);
-    if (files.size() != scene.step.times.size()) {
-      t.fail("times", fmt::format("there are {} times for {} files", scene.step.times.size(), files.size()));
-    }
+    if (files.empty()) t.fail("files", "files must not be empty");
+    const bool times = t.get("times", scene.step.times);
+    if (t.get("spacing", scene.spacing, Range::positive) && times) t.fail("spacing", "give times or spacing, not both");
+    const bool series = files.size() == 1 && names_series(folder_ / files.front());
+    if (!series && scene.spacing == 0.0 && files.size() != scene.step.times.size())
+      t.fail(times ? "times" : "files",
+             fmt::format("there are {} times for {} files", scene.step.times.size(), files.size()));
     for (const std::string& file : files) scene.frames.push_back(folder_ / file);
   }
 

@@ -9,6 +9,7 @@
 #include "dartcast/scene_file.hpp"
 #include "formats/checked_file.hpp"
 #include "formats/skip_in_file.hpp"
+#include "scene/file_series.hpp"
 #include "scene/frame_files.hpp"
 #include "scene/scene_fields.hpp"
 #include "scene/seed_file.hpp"
@@ -55,7 +56,9 @@ LoadedScene load_scene_files(Scene scene, const ReadOptions& options, Threads th
   SceneMesh loaded = load_scene_mesh(scene.environment, options, threads);
   for (DeformationScene& s : scene.deformation) {
     if (s.frames.empty()) continue;
-    s.step.reader = frame_reader(std::exchange(s.frames, {}), loaded.mesh, scene.environment, options);
+    FieldSeries series = file_series({"deformation", {}, std::exchange(s.frames, {}), s.step.times, s.spacing});
+    s.step.times = std::move(series.times);
+    s.step.reader = frame_reader(std::move(series.files), loaded.mesh, scene.environment, options);
   }
   for (FieldScene* field : {&scene.motion.field, &scene.motion.force})
     load_field(*field, scene.environment, loaded.mesh, options);

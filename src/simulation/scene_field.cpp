@@ -70,7 +70,9 @@ FieldSamples samples_of(const FieldScene& scene, const MeshData& mesh) {
   const FieldPlace place = field_place(mesh, names.front(), scene.at);
   std::vector<std::vector<Vec3>> values;
   for (const std::string& name : names) values.push_back(field_values(mesh, name, place));
-  return field_samples(field_times(scene, names.size(), "arrays"), std::move(values), place, scene.period);
+  std::vector<double> times =
+      sample_times(fmt::format("the field '{}'", scene.array), scene.times, scene.spacing, names.size(), "arrays");
+  return field_samples(std::move(times), std::move(values), place, scene.period);
 }
 
 /// The digits that stand in place of the star; empty where the name does not fit.
@@ -122,19 +124,19 @@ FieldPlace field_place(const MeshData& mesh, const std::string& array, std::opti
   return place;
 }
 
-std::vector<double> field_times(const FieldScene& scene, std::size_t count, std::string_view owner) {
-  if (!scene.times.empty()) {
-    if (scene.times.size() != count)
-      throw InvalidArgument(fmt::format("the field '{}' has {} times for {} {}: give one for each", scene.array,
-                                        scene.times.size(), count, owner));
-    return scene.times;
+std::vector<double> sample_times(std::string_view owner, const std::vector<double>& times, double spacing,
+                                 std::size_t count, std::string_view items) {
+  if (!times.empty()) {
+    if (times.size() != count)
+      throw InvalidArgument(
+          fmt::format("{} has {} times for {} {}: give one for each", owner, times.size(), count, items));
+    return times;
   }
-  if (count > 1 && !(scene.spacing > 0.0))
-    throw InvalidArgument(
-        fmt::format("the field '{}' has {} {}, but no times: give times or spacing", scene.array, count, owner));
-  std::vector<double> times(count);
-  for (std::size_t k = 0; k < count; ++k) times[k] = static_cast<double>(k) * scene.spacing;
-  return times;
+  if (count > 1 && !(spacing > 0.0))
+    throw InvalidArgument(fmt::format("{} has {} {}, but no times: give times or spacing", owner, count, items));
+  std::vector<double> result(count);
+  for (std::size_t k = 0; k < count; ++k) result[k] = static_cast<double>(k) * spacing;
+  return result;
 }
 
 std::optional<VectorField> scene_field(const FieldScene& scene, const std::string& name, const MeshData& mesh,

@@ -26,9 +26,10 @@ std::vector<Vec3> field_values(const MeshData& mesh, const std::string& array, s
 /// The place of the values that field_values() takes.
 FieldPlace field_place(const MeshData& mesh, const std::string& array, std::optional<FieldPlace> at);
 
-/// The times of so many samples. `owner`: "arrays", "files". Throws InvalidArgument where the scene gives another number
-/// of times, or several samples have none.
-std::vector<double> field_times(const FieldScene& scene, std::size_t count, std::string_view owner);
+/// The times of so many samples: those given, or from 0 on at a distance. `owner`: "the field 'U'"; `items`: "arrays",
+/// "files". Throws InvalidArgument where the number of times is another one, or several samples have none.
+std::vector<double> sample_times(std::string_view owner, const std::vector<double>& times, double spacing,
+                                 std::size_t count, std::string_view items);
 
 /// None where the scene has no such field. `name`: in messages. Throws InvalidArgument where its files have not been
 /// read; InvalidMesh; as VectorField.

@@ -1,0 +1,110 @@
+// Regions and patches from OpenFOAM's zones and patches.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "dartcast/error.hpp"
+#include "formats/openfoam/poly_cells.hpp"
+
+namespace dartcast {
+namespace {
+
+std::size_t faces_in(const PolyMesh& mesh, std::size_t patch) {
+  return static_cast<std::size_t>(std::count(mesh.patch.begin(), mesh.patch.end(), static_cast<std::uint32_t>(patch)));
+}
+
+void add_regions(const PolyMesh& mesh, ParsedMesh& parsed) {
+  MeshData& out = parsed.mesh;
+  Finding several{"zones", 0, {}, "cells that are in several zones; the first of these is the region"};
+  if (!mesh.cell_zones.empty()) out.regions.assign(mesh.cells, 0);
+  for (std::size_t z = 0; z < mesh.cell_zones.size(); ++z) {
+    const auto tag = static_cast<std::int32_t>(z + 1);
+    out.region_names[tag] = mesh.cell_zones[z].name;
+    for (const std::uint32_t c : mesh.cell_zones[z].labels) {
+      if (out.regions[c] == 0) {
+        out.regions[c] = tag;
+      } else if (out.regions[c] != tag) {
+        several.add(c);
+      }
+    }
+  }
+  add_finding(parsed.warnings, several);
+}
+
+// The tag of each face: of its patch, else of its first zone; 0: none.
+std::vector<std::int32_t> face_tags(const PolyMesh& mesh, ParsedMesh& parsed) {
+  std::vector<std::int32_t> tags(mesh.faces.size(), 0);
+  for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
+    if (mesh.patches[p].type != "empty")
+      parsed.mesh.patch_names[static_cast<std::int32_t>(p + 1)] = mesh.patches[p].name;
+  }
+  for (std::size_t f = 0; f < tags.size(); ++f) tags[f] = static_cast<std::int32_t>(mesh.patch[f] + 1);  // none: 0
+  for (std::size_t z = 0; z < mesh.face_zones.size(); ++z) {
+    const PolyZone& zone = mesh.face_zones[z];
+    const auto named = std::find_if(parsed.mesh.patch_names.begin(), parsed.mesh.patch_names.end(),
+                                    [&](const auto& name) { return name.second == zone.name; });
+    auto tag = static_cast<std::int32_t>(mesh.patches.size() + z + 1);
+    if (named != parsed.mesh.patch_names.end()) {
+      tag = named->first;
+    } else {
+      parsed.mesh.patch_names[tag] = zone.name;
+    }
+    for (const std::uint32_t f : zone.labels) {
+      if (tags[f] == 0) tags[f] = tag;
+    }
+  }
+  return tags;
+}
+
+// A cyclic patch leads to its other side, where we have a wall.
+void warn_of_cyclic(const PolyMesh& mesh, ParsedMesh& parsed) {
+  std::vector<std::string> names;
+  Finding finding{"cyclic", 0, {}, ""};
+  for (std::uint32_t p = 0; p < mesh.patches.size(); ++p) {
+    if (!mesh.patches[p].type.starts_with("cyclic") || faces_in(mesh, p) == 0) continue;
+    names.push_back(mesh.patches[p].name);
+    for (std::uint32_t f = 0; f < mesh.patch.size(); ++f) {
+      if (mesh.patch[f] == p) finding.add(f);
+    }
+  }
+  finding.message = fmt::format("faces in cyclic patches ({}): they are walls here", fmt::join(names, ", "));
+  add_finding(parsed.warnings, finding);
+}
+
+void refuse_types(const PolyMesh& mesh) {
+  for (std::uint32_t p = 0; p < mesh.patches.size(); ++p) {
+    const PolyPatch& patch = mesh.patches[p];
+    if (faces_in(mesh, p) == 0) continue;
+    if (patch.type == "wedge")
+      throw InvalidMesh(
+          fmt::format("the patch {} is a wedge: meshes that stand for a full turn are not supported; make "
+                      "a mesh of the whole domain",
+                      patch.name));
+    if (patch.type.starts_with("processor"))
+      throw InvalidMesh(
+          fmt::format("the patch {} leads to another processor's part: name the case's folder, which has "
+                      "all parts, or run reconstructParMesh",
+                      patch.name));
+  }
+}
+
+}  // namespace
+
+void add_zones_and_patches(const PolyMesh& mesh, const CornersOfFace& corners, ParsedMesh& parsed) {
+  refuse_types(mesh);
+  warn_of_cyclic(mesh, parsed);
+  add_regions(mesh, parsed);
+  const std::vector<std::int32_t> tags = face_tags(mesh, parsed);
+  for (std::uint32_t f = 0; f < tags.size(); ++f) {
+    if (tags[f] == 0) continue;
+    const auto face = corners(f);
+    if (face.empty()) continue;
+    parsed.mesh.add_patch_face(face, tags[f]);
+    parsed.mesh.patch_source.push_back(f);
+  }
+}
+
+}  // namespace dartcast

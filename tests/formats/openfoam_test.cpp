@@ -1,0 +1,408 @@
+// Meshes of OpenFOAM, in every form that its programs write; planes; parts of several processors; what is refused.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+#include <set>
+
+#include "dartcast/error.hpp"
+#include "dartcast/generators.hpp"
+#include "dartcast/mesh_files.hpp"
+#include "output/mesh_report_text.hpp"
+#include "support/foam_case.hpp"
+#include "support/same_mesh.hpp"
+#include "support/sample_mesh.hpp"
+
+namespace dartcast::test::openfoam_test {
+
+using Loop = std::vector<std::uint32_t>;
+
+Loop from_smallest(std::span<const std::uint32_t> corners) {
+  Loop loop(corners.begin(), corners.end());
+  std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
+  return loop;
+}
+
+/// The faces of each cell, seen from outside: all that a cell is, whatever the order of its corners.
+std::vector<std::set<Loop>> shapes_of(const MeshData& mesh) {
+  std::vector<std::set<Loop>> shapes;
+  for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
+    shapes.emplace_back();
+    for_each_face(mesh, c, [&](std::span<const std::uint32_t> face) { shapes.back().insert(from_smallest(face)); });
+  }
+  return shapes;
+}
+
+std::multiset<std::pair<std::string, std::set<std::uint32_t>>> patches_of(const MeshData& mesh) {
+  std::multiset<std::pair<std::string, std::set<std::uint32_t>>> patches;
+  for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) {
+    const auto face = mesh.patch_face(f);
+    patches.insert({mesh.patch_names.at(mesh.patch_tags[f]), {face.begin(), face.end()}});
+  }
+  return patches;
+}
+
+std::vector<std::string> regions_of(const MeshData& mesh) {
+  std::vector<std::string> names;
+  for (const std::int32_t tag : mesh.regions) names.push_back(mesh.region_names.at(tag));
+  return names;
+}
+
+/// The mesh that a case made from `mesh` must give: all boundary faces have a patch.
+void expect_case(const MeshFile& file, const MeshData& mesh, bool types = true) {
+  ASSERT_TRUE(file.report.valid()) << report_text(file.report);
+  EXPECT_EQ(file.report.verdict(), Verdict::accept) << report_text(file.report);
+  EXPECT_EQ(file.mesh.points, mesh.points);
+  EXPECT_EQ(shapes_of(file.mesh), shapes_of(mesh));
+  if (types) {
+    EXPECT_EQ(file.mesh.types, mesh.types);
+  }
+  EXPECT_EQ(regions_of(file.mesh), regions_of(mesh));
+  auto patches = patches_of(file.mesh);
+  std::erase_if(patches, [](const auto& p) { return p.first == "walls"; });
+  EXPECT_EQ(patches, patches_of(mesh));
+}
+
+/// A box of cells of all types, with regions, patches, and a patch inside.
+MeshData box() {
+  BoxOptions options;
+  options.cells = {4, 3, 3};
+  options.mixed = true;
+  options.jitter = 0.3;
+  MeshData mesh = generate_box(options);
+  mesh.patch_faces.clear();
+  mesh.patch_offsets = {0};
+  mesh.patch_tags.clear();
+  mesh.patch_names = {{1, "low"}, {2, "between"}};
+  for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
+    mesh.regions.push_back(c % 2 == 0 ? 1 : 2);
+    for_each_face(mesh, c, [&](std::span<const std::uint32_t> face) {
+      const bool low = std::all_of(face.begin(), face.end(), [&](std::uint32_t p) { return mesh.points[p].z == 0.0; });
+      if (low) mesh.add_patch_face(face, 1);
+    });
+  }
+  mesh.region_names = {{1, "even"}, {2, "odd"}};
+  std::map<std::set<std::uint32_t>, int> seen;
+  for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
+    for_each_face(mesh, c, [&](std::span<const std::uint32_t> face) {
+      const std::set<std::uint32_t> key(face.begin(), face.end());
+      if (++seen[key] == 2 && key.size() == 4) mesh.add_patch_face(face, 2);
+    });
+  }
+  return mesh;
+}
+
+TEST(OpenFoam, EveryFormGivesTheSameMesh) {
+  for (const MeshData& mesh : {box(), mixed_mesh(), polyhedra()}) {
+    for (const FoamStyle& style : foam_styles()) {
+      SCOPED_TRACE(testing::Message() << style.binary << style.label_bytes << style.big_endian << style.gzip);
+      const Folder folder;
+      FoamWriter(folder / "case", style).write(foam_mesh(mesh));
+      expect_case(read_mesh(folder / "case"), mesh, !(mesh.types == polyhedra().types));
+    }
+  }
+}
+
+TEST(OpenFoam, SinglePrecisionIsReadAsItIs) {
+  const MeshData mesh = mixed_mesh();
+  const Folder folder;
+  FoamWriter(folder / "case", {.binary = true, .scalar_bytes = 4}).write(foam_mesh(mesh));
+  const MeshFile file = read_mesh(folder / "case");
+  ASSERT_EQ(file.mesh.points.size(), mesh.points.size());
+  for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+    EXPECT_EQ(file.mesh.points[p].x, static_cast<double>(static_cast<float>(mesh.points[p].x)));
+  }
+}
+
+TEST(OpenFoam, ShapesAreRecognised) {
+  const Folder folder;
+  FoamWriter(folder / "case", {}).write(foam_mesh(polyhedra()));
+  const MeshFile file = read_mesh(folder / "case");
+  EXPECT_EQ(file.mesh.types, (std::vector<CellType>{CellType::hexahedron, CellType::pyramid}));
+}
+
+TEST(OpenFoam, PathsThatNameACase) {
+  const MeshData mesh = mixed_mesh();
+  const Folder folder;
+  FoamWriter(folder / "case", {}).write(foam_mesh(mesh));
+  std::filesystem::create_directories(folder / "case/0.5");
+  write_bytes(folder / "case/any.foam", "");
+  for (const char* path : {"case", "case/", "case/any.foam", "case/constant", "case/constant/polyMesh", "case/0.5"}) {
+    SCOPED_TRACE(path);
+    expect_case(read_mesh(folder / path), mesh);
+  }
+}
+
+TEST(OpenFoam, ListsInOtherWords) {
+  const MeshData mesh = mixed_mesh();
+  const Folder folder;
+  const FoamWriter writer(folder / "case", {});
+  FoamMesh foam = foam_mesh(mesh);
+  foam.cell_zones = {};
+  writer.write(foam);
+  writer.file("constant/polyMesh/cellZones", "regIOobject",
+              "( // no count\n all { type cellZone; inGroups 2(a b); cellLabels ( 0 1 /* two */ 3 ); }\n"
+              "same { cellLabels List<label> 3{2}; note \"a } in; quotes\"; } none { cellLabels 0(); more { x 1; } }"
+              " nothing { cellLabels 0{}; } )");
+  const MeshFile file = read_mesh(folder / "case");
+  ASSERT_TRUE(file.report.valid()) << report_text(file.report);
+  EXPECT_EQ(regions_of(file.mesh), (std::vector<std::string>{"all", "all", "same", "all"}));
+}
+
+TEST(OpenFoam, ACellInSeveralZonesHasTheFirst) {
+  const Folder folder;
+  FoamMesh foam = foam_mesh(mixed_mesh());
+  foam.cell_zones = {{"a", {0, 1}}, {"b", {1, 2, 3}}};
+  FoamWriter(folder / "case", {}).write(foam);
+  const MeshFile file = read_mesh(folder / "case");
+  EXPECT_EQ(regions_of(file.mesh), (std::vector<std::string>{"a", "a", "b", "b"}));
+  ASSERT_EQ(file.report.warnings.size(), 1U);
+  EXPECT_EQ(file.report.warnings[0].kind, "zones");
+  EXPECT_EQ(file.report.warnings[0].first, std::vector<std::size_t>{1});
+}
+
+// Planes.
+
+/// One layer of cells above a mesh of the plane: points of the lower side first. Edges in patches become faces.
+MeshData layer(const MeshData& plane, double below, double above) {
+  MeshData mesh;
+  const auto n = static_cast<std::uint32_t>(plane.points.size());
+  for (const double z : {below, above}) {
+    for (const Vec3& p : plane.points) mesh.points.push_back({p.x, p.y, z});
+  }
+  for (std::size_t c = 0; c < plane.cell_count(); ++c) {
+    const auto corners = plane.cell(c);
+    const auto size = static_cast<std::uint32_t>(corners.size());
+    std::vector<std::uint32_t> stream = {size + 2, size}, top = {size};
+    stream.insert(stream.end(), corners.rbegin(), corners.rend());
+    mesh.add_patch_face({stream.data() + 2, size}, 100);
+    for (const std::uint32_t p : corners) top.push_back(p + n);
+    mesh.add_patch_face({top.data() + 1, size}, 100);
+    stream.insert(stream.end(), top.begin(), top.end());
+    for (std::uint32_t i = 0; i < size; ++i) {
+      const std::uint32_t a = corners[i], b = corners[(i + 1) % size];
+      for (const std::uint32_t x : {4U, a, b, b + n, a + n}) stream.push_back(x);
+    }
+    mesh.add_cell(CellType::polyhedron, stream);
+  }
+  for (std::size_t f = 0; f < plane.patch_tags.size(); ++f) {
+    const auto edge = plane.patch_face(f);
+    const std::array<std::uint32_t, 4> face = {edge[0], edge[1], edge[1] + n, edge[0] + n};
+    mesh.add_patch_face(face, plane.patch_tags[f]);
+  }
+  mesh.regions = plane.regions;
+  mesh.region_names = plane.region_names;
+  mesh.patch_names = plane.patch_names;
+  mesh.patch_names[100] = "sides";
+  return mesh;
+}
+
+MeshData rectangle() {
+  RectangleOptions options;
+  options.cells = {7, 6};
+  options.mixed = true;
+  options.jitter = 0.2;
+  MeshData mesh = generate_rectangle(options);
+  mesh.regions.assign(mesh.cell_count(), 3);
+  mesh.region_names = {{3, "water"}};
+  return mesh;
+}
+
+TEST(OpenFoam, OneLayerIsAPlane) {
+  const MeshData plane = rectangle();
+  for (const FoamStyle& style : foam_styles()) {
+    const Folder folder;
+    FoamWriter(folder / "case", style).write(foam_mesh(layer(plane, -1e-3, 2e-3), {{"sides", "empty"}}));
+    const MeshFile file = read_mesh(folder / "case");
+    ASSERT_TRUE(file.report.valid()) << report_text(file.report);
+    EXPECT_EQ(file.report.dimension, 2);
+    expect_case(file, plane);
+  }
+}
+
+MeshFile read_foam(const FoamMesh& mesh) {
+  const Folder folder;
+  FoamWriter(folder / "case", {}).write(mesh);
+  return read_mesh(folder / "case");
+}
+
+void expect_refused(const MeshFile& file, const std::vector<std::string>& words) {
+  ASSERT_FALSE(file.report.valid());
+  for (const std::string& word : words) {
+    EXPECT_NE(file.report.defects[0].message.find(word), std::string::npos) << file.report.defects[0].message;
+  }
+}
+
+TEST(OpenFoam, PlanesThatAreNone) {
+  BoxOptions box;
+  box.cells = {3, 2, 2};
+  MeshData mesh = generate_box(box);
+  expect_refused(read_foam(foam_mesh(mesh, {{"zmin", "empty"}, {"zmax", "empty"}})), {"cell", "one layer"});
+  expect_refused(read_foam(foam_mesh(mesh, {{"zmin", "empty"}, {"zmax", "empty"}, {"xmin", "empty"}})), {"one layer"});
+  MeshData across = layer(rectangle(), 0.0, 1.0);
+  for (Vec3& p : across.points) p = {p.z, p.x, p.y};
+  expect_refused(read_foam(foam_mesh(across, {{"sides", "empty"}})),
+                 {"across x", "transformPoints", "((1 0 0) (0 0 1))"});
+  for (Vec3& p : across.points) p = {p.z, p.x, p.y};
+  expect_refused(read_foam(foam_mesh(across, {{"sides", "empty"}})), {"across y", "((0 1 0) (0 0 1))"});
+  MeshData bent = layer(rectangle(), 0.0, 1.0);
+  bent.points[0].z = 1.5;
+  expect_refused(read_foam(foam_mesh(bent, {{"sides", "empty"}})), {"two sides of a layer"});
+}
+
+TEST(OpenFoam, EmptyPatchesWithoutFacesAreNoPlane) {
+  FoamMesh foam = foam_mesh(mixed_mesh());
+  foam.patches.push_back({"frontAndBack", "empty"});
+  foam.patches.push_back({"axis", "wedge"});
+  expect_case(read_foam(foam), mixed_mesh());
+}
+
+TEST(OpenFoam, PatchTypes) {
+  const MeshData mesh = mixed_mesh();
+  expect_refused(read_foam(foam_mesh(mesh, {{"inlet", "wedge"}})), {"the patch inlet is a wedge"});
+  expect_refused(read_foam(foam_mesh(mesh, {{"inlet", "processor"}})), {"inlet", "reconstructParMesh"});
+  for (const char* type : {"cyclic", "cyclicAMI"}) {
+    const MeshFile file = read_foam(foam_mesh(mesh, {{"inlet", type}}));
+    ASSERT_EQ(file.report.warnings.size(), 1U) << report_text(file.report);
+    EXPECT_EQ(file.report.warnings[0].kind, "cyclic");
+    EXPECT_EQ(file.report.warnings[0].count, 1U);
+    EXPECT_NE(file.report.warnings[0].message.find("inlet"), std::string::npos);
+    EXPECT_EQ(patches_of(file.mesh).count({"inlet", {0, 1, 2, 3}}), 1U);
+  }
+}
+
+// Parts.
+
+TEST(OpenFoam, PartsMakeUpTheWhole) {
+  const MeshData mesh = box();
+  std::mt19937 random(3);
+  for (const FoamStyle& style : foam_styles()) {
+    for (const std::size_t parts : {1U, 2U, 5U}) {
+      std::vector<std::size_t> part(mesh.cell_count());
+      for (std::size_t& k : part) k = random() % parts;
+      part[0] = parts - 1;
+      const Folder folder;
+      write_foam_parts(folder / "case", style, foam_mesh(mesh), part);
+      const MeshFile file = read_mesh(folder / "case");
+      expect_case(file, mesh);
+      EXPECT_EQ(file.report.format, "OpenFOAM polyMesh, of " + std::to_string(parts) + " processors");
+    }
+  }
+}
+
+TEST(OpenFoam, PartsThatDoNotFit) {
+  const MeshData mesh = box();
+  const FoamMesh whole = foam_mesh(mesh);
+  std::vector<std::size_t> part(mesh.cell_count());
+  for (std::size_t c = 0; c < part.size(); ++c) part[c] = c % 2;
+  const auto refused = [&](const std::string& name, std::vector<std::int64_t> labels,
+                           const std::vector<std::string>& words) {
+    const Folder folder;
+    write_foam_parts(folder / "case", {}, whole, part);
+    FoamWriter(folder / "case/processor1", {}).labels_file(name, labels);
+    expect_refused(read_mesh(folder / "case"), words);
+  };
+  std::vector<std::int64_t> cells;
+  for (std::size_t c = 1; c < part.size(); c += 2) cells.push_back(static_cast<std::int64_t>(c));
+  std::vector<std::int64_t> wrong = cells;
+  wrong[3] = 0;
+  refused("cellProcAddressing", wrong, {"processor1/constant/polyMesh", "cell 3 has the label 0", "decomposePar"});
+  wrong[3] = 1 << 30;
+  refused("cellProcAddressing", wrong, {"cell 3 has the label 1073741824"});
+  wrong.pop_back();
+  refused("cellProcAddressing", wrong, {"labels for", "cells"});
+  refused("cellProcAddressing", {-1}, {"processor1", "item 0 is -1"});
+  refused("pointProcAddressing", {1, 2}, {"2 labels for", "points"});
+  refused("faceProcAddressing", {0}, {"1 labels for", "faces"});
+  const Folder folder;
+  write_foam_parts(folder / "case", {}, whole, part);
+  std::filesystem::remove_all(folder / "case/processor1");
+  expect_refused(read_mesh(folder / "case"), {"beyond all cells", "fit"});
+  std::filesystem::remove_all(folder / "case/processor0");
+  std::filesystem::create_directories(folder / "case/processors2");
+  expect_refused(read_mesh(folder / "case"), {"collated"});
+}
+
+// Refusals.
+
+TEST(OpenFoam, FilesThatAreNotRight) {
+  struct Wrong {
+    std::string file, type, content;
+    std::vector<std::string> words;
+  };
+  const std::vector<Wrong> all = {
+      {"points",
+       "vectorField",
+       "3\n((0 0 0) (1 0 0) (0 1))",
+       {"constant/polyMesh/points, line 13", "a number should stand here"}},
+      {"points", "vectorField", "4((0 0 0) (1 0 0) (0 1 0))", {"line 12", "vector"}},
+      {"points", "vectorField", "400000((0 0 0))", {"400000 points are announced"}},
+      {"points", "vectorField", "12{(0 0 0)}", {"without volume"}},
+      {"faces", "faceList", "1(4(0 1 2 77))", {"faces: item 3 is 77", "less than 12"}},
+      {"faces", "faceList", "1(2(0 1))", {"face 0 has 2 corners"}},
+      {"faces", "faceList", "0()", {"owner"}},
+      {"owner", "labelList", "3(0 0 0)", {"3 owners for"}},
+      {"owner", "labelList", "3(0 0 -1)", {"owners: item 2 is -1"}},
+      {"neighbour", "labelList", "99{0}", {"99 neighbours for"}},
+      {"boundary", "polyBoundaryMesh", "1(a {type patch; nFaces 3; startFace 2;})", {"a has the faces 2 to 4"}},
+      {"boundary", "polyBoundaryMesh", "1(a {type patch; nFaces 3;})", {"no startFace"}},
+      {"boundary", "polyBoundaryMesh", "0()", {"in no patch"}},
+      {"boundary", "polyBoundaryMesh", "(a {type patch; nFaces 14; startFace 3;}", {"truncated"}},
+      {"boundary", "polyBoundaryMesh", "(a {#include \"b\"; nFaces 14; startFace 3;})", {"directives"}},
+      {"cellZones", "regIOobject", "1(z {cellLabels List<label> 1(4);})", {"cellLabels: item 0 is 4"}},
+      {"faceZones", "regIOobject", "1(z {faceLabels List<label> 1(99);})", {"faceLabels: item 0 is 99"}},
+      {"points", "vectorField", "/* no end", {"a comment does not end"}}};
+  for (const Wrong& wrong : all) {
+    SCOPED_TRACE(wrong.file + ": " + wrong.content);
+    const Folder folder;
+    const FoamWriter writer(folder / "case", {});
+    writer.write(foam_mesh(mixed_mesh()));
+    writer.file("constant/polyMesh/" + wrong.file, wrong.type, wrong.content);
+    const MeshFile file = read_mesh(folder / "case");
+    const std::string text = report_text(file.report);
+    EXPECT_FALSE(file.report.valid());
+    for (const std::string& word : wrong.words) EXPECT_NE(text.find(word), std::string::npos) << text;
+  }
+}
+
+TEST(OpenFoam, HeadersAndFolders) {
+  const Folder folder;
+  const auto refused = [&](const std::string& head, const std::string& word) {
+    FoamWriter(folder / "case", {}).write(foam_mesh(mixed_mesh()));
+    write_bytes(folder / "case/constant/polyMesh/owner", head);
+    expect_refused(read_mesh(folder / "case"), {"owner", word});
+  };
+  refused("", "empty");
+  refused("1(0)", "FoamFile");
+  refused("FoamFile { format", "truncated");
+  refused("FoamFile { format yaml; }", "yaml");
+  refused("FoamFile { format ascii; class labelList; } 3(0", "");
+  std::filesystem::remove(folder / "case/constant/polyMesh/owner");
+  expect_refused(read_mesh(folder / "case"), {"owner", "no such file"});
+  expect_refused(read_mesh(folder / "none"), {"OpenFOAM"});
+  std::filesystem::create_directories(folder / "empty");
+  expect_refused(read_mesh(folder / "empty"), {"no case of OpenFOAM"});
+  expect_refused(read_mesh(folder / "none.foam"), {"no case of OpenFOAM"});
+  ReadOptions options;
+  options.patch_array = "patch";
+  FoamWriter(folder / "case", {}).write(foam_mesh(mixed_mesh()));
+  expect_refused(read_mesh(folder / "case", options), {"patches of its own"});
+  options = {};
+  options.max_memory = 1000;
+  expect_refused(read_mesh(folder / "case", options), {"points", "memory"});
+}
+
+TEST(OpenFoam, AFileThatUnpacksToMoreThanTheMemoryIsRefused) {
+  const Folder folder;
+  FoamWriter(folder / "case", {}).write(foam_mesh(mixed_mesh()));
+  std::filesystem::remove(folder / "case/constant/polyMesh/owner");
+  FoamWriter(folder / "case", {.gzip = true})
+      .file("constant/polyMesh/owner", "labelList", "1(0)" + std::string(100'000'000, ' '));
+  EXPECT_LT(std::filesystem::file_size(folder / "case/constant/polyMesh/owner.gz"), 200'000U);
+  ReadOptions options;
+  options.max_memory = 200'000'000;
+  expect_refused(read_mesh(folder / "case", options), {"owner.gz", "memory"});
+}
+
+}  // namespace dartcast::test::openfoam_test

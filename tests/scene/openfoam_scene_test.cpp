@@ -1,0 +1,273 @@
+// Cases of OpenFOAM in scenes: times as frames and as fields, whole and in parts; the cases made by others.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "dartcast/error.hpp"
+#include "dartcast/generators.hpp"
+#include "dartcast/mesh_files.hpp"
+#include "dartcast/scene_file.hpp"
+#include "dartcast/simulation.hpp"
+#include "support/foam_case.hpp"
+#include "support/refusals.hpp"
+#include "support/shared_data.hpp"
+
+namespace dartcast::openfoam_scene_test {
+
+namespace fs = std::filesystem;
+using test::FoamStyle;
+using test::FoamWriter;
+
+MeshData box() {
+  BoxOptions o;
+  o.cells = {4, 3, 3};
+  return generate_box(o);
+}
+
+std::vector<Vec3> swayed(std::vector<Vec3> points, double t) {
+  for (Vec3& x : points) x.x += 0.1 * t * x.y;
+  return points;
+}
+
+std::vector<Vec3> velocities(std::size_t count, double t) {
+  std::vector<Vec3> values;
+  for (std::size_t c = 0; c < count; ++c) values.push_back({0.01 * static_cast<double>(c), 1.0 / 3.0, t});
+  return values;
+}
+
+const std::map<std::string, double> times = {{"0.25", 0.25}, {"1", 1.0}, {"10", 10.0}, {"2e1", 20.0}};
+
+class OpenFoamScene : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(::testing::TempDir()) /
+              fmt::format("openfoam_{}", ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  /// A case with points and U at all times, and what OpenFOAM leaves beside them.
+  void write_case(const std::string& name, const FoamStyle& style) const {
+    const MeshData mesh = box();
+    const FoamWriter writer(folder_ / name, style);
+    writer.write(test::foam_mesh(mesh));
+    for (const auto& [time, t] : times) {
+      writer.points(time, swayed(mesh.points, t));
+      writer.field(time, "U", velocities(mesh.cell_count(), t));
+      writer.file(time + "/p", "volScalarField", "dimensions [0 0 0 0 0 0 0];\ninternalField uniform 7;\n");
+      writer.file(time + "/phi", "surfaceScalarField", "internalField uniform 0;");
+      write_bytes(folder_ / name / time / "notes.txt", "nothing");
+    }
+    fs::create_directories(folder_ / name / "system");
+    write_bytes(folder_ / name / "any.foam", "");
+  }
+
+  [[nodiscard]] Scene load(const std::string& text) const {
+    return load_scene_files(parse_scene("[environment]\nmesh = 'case'\n" + text, folder_ / "scene.toml")).scene;
+  }
+
+  void expect_error(const std::string& text, std::initializer_list<const char*> words) const {
+    SCOPED_TRACE(text);
+    test::expect_parts(test::error_text([&] { static_cast<void>(load(text)); }), words);
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(OpenFoamScene, TimesAreFramesFromConstantOn) {
+  for (const FoamStyle& style : test::foam_styles()) {
+    fs::remove_all(folder_ / "case");
+    write_case("case", style);
+    for (const char* name : {"case", "case/", "case/any.foam"}) {
+      const Scene scene = load(fmt::format("[[deformation]]\nkind = 'frames'\nfiles = '{}'\n", name));
+      const DeformationStep& step = scene.deformation.front().step;
+      EXPECT_EQ(step.times, (std::vector<double>{0.0, 0.25, 1.0, 10.0, 20.0}));
+      for (std::size_t k = 0; k < step.times.size(); ++k)
+        EXPECT_EQ(step.reader(k), swayed(box().points, step.times[k])) << k;
+    }
+  }
+}
+
+TEST_F(OpenFoamScene, APlaceAtZeroIsTheFirstFrame) {
+  write_case("case", {});
+  FoamWriter(folder_ / "case", {}).points("0", swayed(box().points, 3.0));
+  const Scene scene = load("scale = 2\n[[deformation]]\nkind = 'frames'\nfiles = 'case'\n");
+  const DeformationStep& step = scene.deformation.front().step;
+  EXPECT_EQ(step.times.size(), 5U);
+  std::vector<Vec3> expected = swayed(box().points, 3.0);
+  for (Vec3& x : expected) x *= 2.0;
+  EXPECT_EQ(step.reader(0), expected);
+}
+
+TEST_F(OpenFoamScene, FieldsAreSamplesAtTheirTimes) {
+  for (const FoamStyle& style : test::foam_styles()) {
+    fs::remove_all(folder_ / "case");
+    write_case("case", style);
+    const Scene scene = load("[motion]\nfield = { array = 'U', files = 'case' }\n");
+    const FieldSamples& samples = scene.motion.field.samples;
+    EXPECT_EQ(samples.times, (std::vector<double>{0.25, 1.0, 10.0, 20.0}));
+    EXPECT_EQ(samples.place, FieldPlace::cells);
+    for (std::size_t k = 0; k < samples.times.size(); ++k)
+      EXPECT_EQ(samples.read(k), velocities(box().cell_count(), samples.times[k])) << k;
+  }
+}
+
+TEST_F(OpenFoamScene, UniformAndPointFields) {
+  write_case("case", {});
+  const FoamWriter writer(folder_ / "case", {});
+  writer.file("1/V", "volVectorField", "internalField uniform (1 2 3);");
+  writer.field("1", "W", swayed(box().points, 2.0), "pointVectorField");
+  const auto samples = [&](const std::string& array) {
+    return load(fmt::format("[motion]\nfield = {{ array = '{}', files = ['case'] }}\n", array)).motion.field.samples;
+  };
+  EXPECT_EQ(samples("V").read(0), std::vector<Vec3>(box().cell_count(), Vec3{1, 2, 3}));
+  EXPECT_EQ(samples("W").place, FieldPlace::points);
+  EXPECT_EQ(samples("W").read(0), swayed(box().points, 2.0));
+}
+
+TEST_F(OpenFoamScene, ATimeIsAMeshWithItsArrays) {
+  write_case("case", {});
+  const MeshFile file = read_mesh(folder_ / "case/10");
+  ASSERT_TRUE(file.report.valid());
+  EXPECT_EQ(file.mesh.points, swayed(box().points, 10.0));
+  ASSERT_EQ(file.mesh.cell_data.size(), 2U);
+  EXPECT_EQ(file.mesh.cell_data[0].name, "U");
+  EXPECT_EQ(file.mesh.cell_data[1].values, std::vector<double>(box().cell_count(), 7.0));
+  // A time without points has those of the last one before it.
+  fs::remove_all(folder_ / "case/10/polyMesh");
+  EXPECT_EQ(read_mesh(folder_ / "case/10").mesh.points, swayed(box().points, 1.0));
+}
+
+TEST_F(OpenFoamScene, PartsOfSeveralProcessors) {
+  const MeshData mesh = box();
+  std::vector<std::size_t> part;
+  for (std::size_t c = 0; c < mesh.cell_count(); ++c) part.push_back(c % 3);
+  const FoamStyle style = {.binary = true};
+  test::write_foam_parts(folder_ / "case", style, test::foam_mesh(mesh), part);
+  for (const auto& [time, t] : times) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const fs::path processor = folder_ / fmt::format("case/processor{}", k);
+      std::vector<Vec3> values;
+      for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
+        if (part[c] == k) values.push_back(velocities(mesh.cell_count(), t)[c]);
+      }
+      FoamWriter(processor, style).field(time, "U", values);
+    }
+  }
+  const Scene scene = load("[motion]\nfield = { array = 'U', files = 'case' }\n");
+  const FieldSamples& samples = scene.motion.field.samples;
+  ASSERT_EQ(samples.times.size(), times.size());
+  for (std::size_t k = 0; k < samples.times.size(); ++k)
+    EXPECT_EQ(samples.read(k), velocities(mesh.cell_count(), samples.times[k])) << k;
+  // With a mesh of the whole the parts still have the fields.
+  FoamWriter(folder_ / "case", {}).write(test::foam_mesh(mesh));
+  EXPECT_EQ(load("[motion]\nfield = { array = 'U', files = 'case' }\n").motion.field.samples.read(1),
+            velocities(mesh.cell_count(), samples.times[1]));
+}
+
+TEST_F(OpenFoamScene, WhatIsRefused) {
+  write_case("case", {});
+  const std::string frames = "[[deformation]]\nkind = 'frames'\nfiles = 'case'\n";
+  expect_error(frames + "times = [0, 1]\n", {"case", "times of its own"});
+  expect_error("[motion]\nfield = { array = 'V', files = 'case' }\n", {"no time of the case has a field V"});
+  expect_error("[motion]\nfield = { array = 'p', files = 'case' }\n", {"0.25", "'p'"});
+  FoamWriter(folder_ / "case", {}).field("1", "U", velocities(3, 0.0));
+  const Scene scene = load("[motion]\nfield = { array = 'U', files = 'case' }\n");
+  test::expect_parts(test::error_text([&] { scene.motion.field.samples.read(1); }), {"1/U", "3 values for 36 cells"});
+  fs::copy(folder_ / "case/constant/polyMesh/faces", folder_ / "case/10/polyMesh/faces");
+  expect_error(frames, {"case/10/polyMesh", "other faces from the time 10 on"});
+  FoamWriter(folder_ / "none", {}).write(test::foam_mesh(box()));
+  expect_error("[[deformation]]\nkind = 'frames'\nfiles = 'none'\n", {"no time of the case has points"});
+}
+
+TEST_F(OpenFoamScene, AFrameOfOtherPointsIsNamed) {
+  write_case("case", {});
+  FoamWriter(folder_ / "case", {}).points("10", std::vector<Vec3>(7));
+  const Scene scene = load("[[deformation]]\nkind = 'frames'\nfiles = 'case'\n");
+  test::expect_parts(test::error_text([&] { scene.deformation.front().step.reader(3); }),
+                     {"frame 3", "case/10", "7 points"});
+}
+
+// Cases made by others.
+
+struct Made {
+  std::string name;
+  std::size_t cells;
+  bool moves;
+  std::string free;
+  std::map<std::string, std::size_t> patches, regions;
+};
+
+std::vector<Made> made_by_others() {
+  const std::map<std::string, std::size_t> vessel = {
+      {"inlet", 33}, {"outlet", 33}, {"tissue_ends", 24}, {"outer", 120}, {"wall", 120}};
+  const std::map<std::string, std::size_t> zones = {{"lumen", 330}, {"tissue", 120}};
+  return {{"pipe", 1024, true, "", {{"inlet", 64}, {"outlet", 64}, {"wall", 256}}, {{"lumen", 1024}}},
+          {"vessel", 450, true, "free = { region = ['lumen'] }\n", vessel, zones},
+          {"vessel_gz", 450, true, "free = { region = ['lumen'] }\n", vessel, zones},
+          {"vessel_decomposed", 450, false, "free = { region = ['lumen'] }\n", vessel, zones},
+          {"poly", 1241, false, "", {{"inlet", 89}, {"outlet", 89}, {"wall", 304}}, {}},
+          {"dual", 93, true, "", {{"wall", 79}}, {}},
+          {"refined", 120, false, "", {{"floor", 16}, {"lid", 16}, {"sides", 64}}, {}}};
+}
+
+TEST(OpenFoamCases, CountsZonesAndPatches) {
+  NEED_DATA("seven cases of OpenFOAM");
+  for (const Made& made : made_by_others()) {
+    SCOPED_TRACE(made.name);
+    const MeshFile file = read_mesh(test::data_folder() / "openfoam" / made.name);
+    ASSERT_TRUE(file.report.valid());
+    EXPECT_EQ(file.mesh.cell_count(), made.cells);
+    std::map<std::string, std::size_t> patches, regions;
+    for (const std::int32_t tag : file.mesh.patch_tags) ++patches[file.mesh.patch_names.at(tag)];
+    for (const std::int32_t tag : file.mesh.regions) ++regions[file.mesh.region_names.at(tag)];
+    EXPECT_EQ(patches, made.patches);
+    EXPECT_EQ(regions, made.regions);
+  }
+  EXPECT_EQ(read_mesh(test::data_folder() / "openfoam/vessel_decomposed").mesh.points,
+            read_mesh(test::data_folder() / "openfoam/vessel").mesh.points);
+}
+
+TEST(OpenFoamCases, PartsGiveTheMeshOfTheWhole) {
+  NEED_DATA("a decomposed case of OpenFOAM");
+  const fs::path from = test::data_folder() / "openfoam/vessel_decomposed";
+  const fs::path parts = fs::path(::testing::TempDir()) / "openfoam_parts";
+  fs::remove_all(parts);
+  fs::create_directories(parts);
+  for (const char* k : {"processor0", "processor1"}) fs::copy(from / k, parts / k, fs::copy_options::recursive);
+  const MeshFile whole = read_mesh(from);
+  const MeshFile merged = read_mesh(parts);
+  EXPECT_EQ(merged.report.format, "OpenFOAM polyMesh, of 2 processors");
+  EXPECT_EQ(merged.mesh.points, whole.mesh.points);
+  EXPECT_EQ(merged.mesh.connectivity, whole.mesh.connectivity);
+  EXPECT_EQ(merged.mesh.regions, whole.mesh.regions);
+  EXPECT_EQ(merged.mesh.patch_tags, whole.mesh.patch_tags);
+  EXPECT_EQ(merged.mesh.patch_faces, whole.mesh.patch_faces);
+  fs::remove_all(parts);
+}
+
+TEST(OpenFoamCases, RunAuditedWhileTheyDeform) {
+  NEED_DATA("seven cases of OpenFOAM");
+  for (const Made& made : made_by_others()) {
+    SCOPED_TRACE(made.name);
+    const fs::path folder = test::data_folder() / "openfoam" / made.name;
+    std::string text = fmt::format("[environment]\nmesh = '{}'\n{}", folder.string(), made.free);
+    if (made.moves) text += fmt::format("[[deformation]]\nkind = 'frames'\nfiles = '{}'\n", folder.string());
+    text +=
+        "[[particles]]\ncount = 300\n[motion]\ndt = 0.02\ngravity = [0.05, 0.1, -0.3]\n[contact]\nrestitution = 0.9\n";
+    Simulation simulation(load_scene_files(parse_scene(text, "scene.toml")).scene);
+    for (int step = 0; step < 60; ++step) {
+      simulation.step();
+      EXPECT_EQ(simulation.audit().failed, 0U);
+    }
+    EXPECT_EQ(simulation.particles().size(), 300U);
+  }
+}
+
+}  // namespace dartcast::openfoam_scene_test
