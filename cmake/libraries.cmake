@@ -2,7 +2,7 @@
 # tools/check_includes.py has the order of the rooms, and checks that these lists agree with it.
 set(core_rooms base predicates mesh generators topology complex editing surface tracking response environment)
 set(simulation_rooms dynamics spheres bodies catheter simulation)
-set(io_rooms formats scene report output)
+set(io_rooms formats meshing scene report output)
 # Public headers; core has all others.
 set(simulation_headers dynamics spheres bodies catheter simulation deformation vector_field events scene statistics)
 set(io_headers mesh_files scene_file report run trajectory statistics_files)

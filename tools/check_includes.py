@@ -12,14 +12,14 @@ LIBRARIES = {
     "core": ["base", "predicates", "mesh", "generators", "topology", "complex", "editing", "surface", "tracking",
              "tracking/batch", "response", "environment"],
     "simulation": ["dynamics", "spheres", "bodies", "catheter", "simulation"],
-    "io": ["formats", "formats/vtk", "formats/openfoam", "scene", "report", "output"],
+    "io": ["formats", "formats/vtk", "formats/openfoam", "meshing", "scene", "report", "output"],
 }
 ROOMS = [room for rooms in LIBRARIES.values() for room in rooms]
 # Rooms side by side. VTK is reached through formats/vtk_functions.hpp, because a build may be without
 # it, and OpenFOAM's cases through formats/openfoam.hpp.
 DENIED = {("tracking", "surface"), ("tracking/batch", "surface"), ("spheres", "surface"),
           ("formats/openfoam", "formats/vtk")} | {
-    (room, part) for room in ("scene", "report", "output") for part in ("formats/vtk", "formats/openfoam")}
+    (room, part) for room in ("meshing", "scene", "report", "output") for part in ("formats/vtk", "formats/openfoam")}
 
 # Public headers by the room that implements them.
 PUBLIC = {

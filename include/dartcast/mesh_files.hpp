@@ -37,6 +37,9 @@ struct ReadOptions {
   /// memory. An upper bound of the need follows from the sizes that the file announces (formats/read_memory.hpp). It is
   /// checked before the memory is taken; a file that may need more is refused with kind "file".
   std::uint64_t max_memory = 0;
+  /// A .msh file that keeps the mesh made around a scene's surfaces (SurfaceScene). If it was made of the same files
+  /// with the same values, it is read, and no mesher is needed; else the mesh is made and written there. Empty: none.
+  std::filesystem::path kept_mesh = {};
 };
 
 /// A mesh as read, and what was found in it.
@@ -68,6 +71,28 @@ MeshFile check_surface(const std::filesystem::path& path, const ReadOptions& opt
 /// The same, but throws InvalidMesh, with the file's name, the first defect and its first faces, where the surface is
 /// refused: `Surface(read_surface(path).mesh)`.
 MeshFile read_surface(const std::filesystem::path& path, const ReadOptions& options = {});
+
+// Meshes around surfaces.
+
+struct SurfaceScene;  // dartcast/scene.hpp
+
+/// Makes tetrahedra inside and around closed surfaces (section 3.2 of the paper) with tetgen or gmsh, which runs as a
+/// program of its own in a temporary folder.
+///
+/// The surfaces are checked first, by exact signs: closed, oriented (or made so), no triangle without area, no two that
+/// cross or touch. The tetrahedra are checked then: each triangle of the surfaces is a face of two of them, with its
+/// points bit by bit; what a region holds follows from these faces alone; its volume is the enclosed one to 1e-9.
+///
+/// Regions have the surfaces' names; the cells in them are free, and those outside blocked. Patches are the groups of
+/// the files (.stl solids, .obj groups), else the parts between sharp edges (wall, or wall_1, wall_2 ...); caps are
+/// inlet, outlet or outlet_1 ... by decreasing area; the box is `box`. With several surfaces the region's name stands
+/// before each.
+///
+/// Nothing in the files makes this throw: what is wrong is a defect in the report, with faces and a place. A program
+/// that is missing, fails, or takes too long is a defect of kind "mesher". Throws InvalidArgument where a member is out
+/// of range. Only the option `max_memory` has an effect; it also bounds the program. Cost: seconds for 10^4
+/// triangles.
+MeshFile mesh_surfaces(const SurfaceScene& scene, const ReadOptions& options = {});
 
 // Writing meshes.
 

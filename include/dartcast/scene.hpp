@@ -29,9 +29,36 @@ namespace dartcast {
 inline constexpr std::uint64_t max_seed = 0x7fffffffffffffffU;
 inline constexpr std::uint64_t max_steps = std::uint64_t{1} << 53U;
 
-/// A mesh file, a generator's options, or a mesh.
+/// A closed surface, and the name of the region inside it.
+struct NamedSurface {
+  std::string region = "inside";
+  std::filesystem::path file;  ///< one of surface_endings()
+};
+
+/// The program that makes tetrahedra.
+enum class Mesher : std::uint8_t {
+  any,  ///< tetgen; gmsh where tetgen is not there or fails
+  tetgen,
+  gmsh
+};
+
+/// Tetrahedra inside and around closed surfaces, up to a box: mesh_surfaces() makes them with an external program.
+struct SurfaceScene {
+  /// They may lie in one another, and must not touch. A region is what its surface encloses, without the surfaces in
+  /// it. Parts of a file that lie in one another enclose the space between them.
+  std::vector<NamedSurface> surfaces;
+  std::string outside = "outside";  ///< the region up to the box
+  double box = 1.2;                 ///< > 1: edges of the box, as a multiple of those of the box around all surfaces
+  double size = 0.0;                ///< of the tetrahedra's edges, about, as far as the surface allows; 0: any
+  bool cap = false;                 ///< close holes whose edges lie near a plane, as cut ends of vessels do
+  double angle = 60.0;              ///< degrees: sharper edges divide a surface without groups into patches
+  Mesher mesher = Mesher::any;
+  double seconds = 600.0;  ///< that the program may take
+};
+
+/// A mesh file, a generator's options, surfaces to mesh around, or a mesh.
 using MeshSource = std::variant<std::filesystem::path, BoxOptions, OctahedraOptions, VesselOptions, RectangleOptions,
-                                MazeOptions, MeshData>;
+                                MazeOptions, SurfaceScene, MeshData>;
 
 /// The regions whose cells are free, by name.
 struct FreeRegions {
@@ -65,8 +92,8 @@ struct EnvironmentScene {
 /// One step of a deformation. Arrays of the mesh are named here.
 struct DeformationScene {
   DeformationStep step;
-  std::string field;                          ///< pulse: a point array of three components; empty: none
-  std::string path;                           ///< pulse: a point array of one component; empty: none
+  std::string field;  ///< pulse: a point array of three components; empty: none
+  std::string path;   ///< pulse: a point array of one component; empty: none
   /// frames: mesh files with the same points, one for each of the step's times; or one name with a star in place of a
   /// whole number; or one .pvd file or case of OpenFOAM, which give the times, too. Empty: the frames of `step`.
   std::vector<std::filesystem::path> frames;

@@ -26,8 +26,8 @@ struct LoadedScene {
 
 /// Reads the files that a scene names: its mesh, positions, surfaces of bodies. It reads the first of the deformation's
 /// frames and of a field's files, and checks that the others exist: they are read when they are needed. The mesh has
-/// its scale, free cells and patches as the scene says, also where it comes from a generator. Only the option
-/// `max_memory` has an effect. Throws Error and its kinds, naming the file and its place in the scene.
+/// its scale, free cells and patches as the scene says, also where it comes from a generator. Only the options
+/// `max_memory` and `kept_mesh` have an effect. Throws Error and its kinds, naming the file and its place in the scene.
 LoadedScene load_scene_files(Scene scene, const ReadOptions& options = {}, Threads threads = {});
 
 }  // namespace dartcast

@@ -18,6 +18,30 @@ void bind_environment_scene(py::module_& m) {
   Record<FreeValues>(m, "FreeValues").field("array", &FreeValues::array).field("values", &FreeValues::values).finish();
   Record<PatchArray>(m, "PatchArray").field("name", &PatchArray::name).finish();
   Record<PatchAngle>(m, "PatchAngle").field("degrees", &PatchAngle::degrees).finish();
+  bind_enum<Mesher>(m, "Mesher", {{"ANY", Mesher::any}, {"TETGEN", Mesher::tetgen}, {"GMSH", Mesher::gmsh}});
+  Record<NamedSurface>(m, "NamedSurface")
+      .field("region", &NamedSurface::region)
+      .field("file", &NamedSurface::file)
+      .finish();
+  Record<SurfaceScene>(m, "SurfaceScene")
+      .field("surfaces", &SurfaceScene::surfaces)
+      .field("outside", &SurfaceScene::outside)
+      .field("box", &SurfaceScene::box)
+      .field("size", &SurfaceScene::size)
+      .field("cap", &SurfaceScene::cap)
+      .field("angle", &SurfaceScene::angle)
+      .field("mesher", &SurfaceScene::mesher)
+      .field("seconds", &SurfaceScene::seconds)
+      .finish();
+  m.def(
+      "mesh_surfaces",
+      [](const SurfaceScene& surfaces, const ReadOptions& options) {
+        const SurfaceScene own = surfaces;
+        const ReadOptions own_options = options;
+        const py::gil_scoped_release release;
+        return mesh_surfaces(own, own_options);
+      },
+      py::arg("scene"), py::arg("options") = ReadOptions{}, doc("mesh_surfaces"));
   Record<EnvironmentScene>(m, "EnvironmentScene")
       .field("mesh", &EnvironmentScene::mesh)
       .field("scale", &EnvironmentScene::scale)

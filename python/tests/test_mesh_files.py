@@ -26,6 +26,22 @@ def test_a_written_mesh_is_read_back(tmp_path, ending):
     assert len(back.patch_tags) == len(mesh.patch_tags)
 
 
+def test_a_mesh_around_a_surface(tmp_path):
+    surface = tmp_path / "tetrahedron.off"
+    surface.write_text("OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n", encoding="utf-8")
+    scene = dartcast.SurfaceScene(surfaces=[dartcast.NamedSurface(region="lumen", file=surface)], box=2.0)
+    mesh, report = dartcast.mesh_surfaces(scene)
+    assert report.valid, report
+    corners = mesh.points[mesh.cells["tetrahedron"]]
+    edges = corners[:, 1:] - corners[:, :1]
+    volumes = np.linalg.det(edges) / 6.0
+    lumen = np.array([mesh.region_names[tag] == "lumen" for tag in mesh.regions])
+    assert volumes[lumen].sum() == pytest.approx(1.0 / 6.0, rel=1e-12)
+    assert volumes.sum() == pytest.approx(8.0, rel=1e-12)
+    with pytest.raises(dartcast.InvalidArgument, match="box"):
+        dartcast.mesh_surfaces(dartcast.SurfaceScene(surfaces=scene.surfaces, box=1.0))
+
+
 def test_paths_may_be_texts_or_paths(tmp_path):
     path = tmp_path / "box.vtu"
     dartcast.write_mesh(mixed_box(), str(path))

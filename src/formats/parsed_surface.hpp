@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <span>
@@ -37,5 +38,8 @@ struct ParsedSurface {
   std::int32_t region_ = 0;
   std::map<std::string, std::int32_t, std::less<>> tags_;
 };
+
+/// Reads the file by its ending, unchecked. Throws InvalidMesh with the line or byte. `max_memory` as ReadOptions.
+ParsedSurface parse_surface(const std::filesystem::path& path, std::uint64_t max_memory);
 
 }  // namespace dartcast

@@ -71,8 +71,10 @@ std::uint64_t memory_of_mesh(const MeshData& mesh) {
   return ByteSum().add(program_bytes).add(mesh_bytes(sizes)).add(use_bytes(sizes)).bytes();
 }
 
+std::uint64_t allowed_memory(std::uint64_t limit) { return limit > 0 ? limit : machine_bytes() / 2; }
+
 void check_memory(std::uint64_t bytes, std::uint64_t limit) {
-  const std::uint64_t allowed = limit > 0 ? limit : machine_bytes() / 2;
+  const std::uint64_t allowed = allowed_memory(limit);
   if (bytes <= allowed) return;
   throw InvalidMesh(
       fmt::format("reading it may take {} of memory, but {} are allowed{}; check the sizes that the file announces, or "

@@ -13,27 +13,24 @@
 #include "surface/check_surface.hpp"
 
 namespace dartcast {
-namespace {
 
-ParsedSurface parse_surface(const std::filesystem::path& path, const ReadOptions& options) {
+ParsedSurface parse_surface(const std::filesystem::path& path, std::uint64_t max_memory) {
   const SurfaceFormat* format = surface_format_of(path);
   if (format == nullptr) {
     throw InvalidMesh(fmt::format("surfaces in files that end in '{}' are not supported; supported are {}",
                                   ending_of(path), in_words(surface_endings(), "and")));
   }
-  check_memory(memory_of_text(file_bytes(path)), options.max_memory);
+  check_memory(memory_of_text(file_bytes(path)), max_memory);
   const std::string content = read_bytes(path);
   if (content.empty()) throw InvalidMesh("the file is empty");
   return format->read(content);
 }
 
-}  // namespace
-
 bool is_surface_file(const std::filesystem::path& path) { return surface_format_of(path) != nullptr; }
 
 MeshFile check_surface(const std::filesystem::path& path, const ReadOptions& options) {
   return checked_file(path, "surface", [&](MeshFile& out) {
-    ParsedSurface parsed = parse_surface(path, options);
+    ParsedSurface parsed = parse_surface(path, options.max_memory);
     check_memory(memory_of_mesh(parsed.mesh), options.max_memory);
     out.mesh = std::move(parsed.mesh);
     out.report = check_and_repair_surface(out.mesh);

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "base/digest.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/run.hpp"
 #include "formats/file_text.hpp"
@@ -20,18 +21,6 @@ namespace dartcast {
 namespace {
 
 constexpr std::uint64_t magic = 0x34706b6374726164U;  // "dartckp4" on a machine of this byte order
-
-// Mixes in 8 bytes at a time. It finds damage and changes, not forgery.
-std::uint64_t digest(std::string_view bytes, std::uint64_t start = 0) {
-  std::uint64_t h = start ^ (bytes.size() * 0x9e3779b97f4a7c15U);
-  for (std::size_t i = 0; i < bytes.size(); i += 8) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, bytes.data() + i, std::min<std::size_t>(8, bytes.size() - i));
-    h = (h ^ word) * 0xbf58476d1ce4e5b9U;
-    h ^= h >> 29U;
-  }
-  return h;
-}
 
 template <class T>
 std::string_view bytes_of(const std::vector<T>& values) {

@@ -95,7 +95,7 @@ void remove_earlier_run(const fs::path& folder) {
     if (name.ends_with(".pvd")) fs::remove(folder / name);
   }
   for (const std::string& name : names) {
-    if (name != "stats.csv") fs::remove(folder / name);
+    if (name != "stats.csv" && name != kept_mesh_name) fs::remove(folder / name);
   }
 }
 
@@ -119,7 +119,7 @@ void check_output_folder(const fs::path& folder) {
   }
   const bool vacant = std::all_of(fs::directory_iterator(folder), fs::directory_iterator(), [](const auto& entry) {
     const std::string name = entry.path().filename();
-    return name == run_lock_name || is_part_of_run_file(name);
+    return name == run_lock_name || name == kept_mesh_name || is_part_of_run_file(name);
   });
   if (vacant || holds_a_run(folder)) return;
   throw Error(fmt::format("{}: the folder holds other files than a run's; name another with -o", folder.string()));

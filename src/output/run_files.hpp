@@ -23,6 +23,9 @@ struct RecordingFrame {
   double time = 0.0;  ///< s
 };
 
+/// The mesh that was made around a scene's surfaces. A run that starts anew leaves it where it is.
+inline constexpr std::string_view kept_mesh_name = "surface_mesh.msh";
+
 /// Whether a file is one that a run writes, or began to write and did not end: by its name.
 bool is_run_file(std::string_view name);
 

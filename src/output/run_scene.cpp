@@ -144,7 +144,9 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
     summary.surgery.emplace();
   if (options.audit) summary.audit.emplace();
   const Stopwatch load;
-  LoadedScene loaded = load_scene_files(scene_to_run(scene, options), {{}, options.max_memory}, options.threads);
+  ReadOptions read{{}, options.max_memory, {}};
+  if (!options.folder.empty()) read.kept_mesh = options.folder / kept_mesh_name;
+  LoadedScene loaded = load_scene_files(scene_to_run(scene, options), read, options.threads);
   summary.skipped = std::move(loaded.skipped);
   const std::uint64_t steps = options.steps.value_or(scene.motion.steps);
   RunOutput output(loaded.scene, options, summary);

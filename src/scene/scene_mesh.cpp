@@ -11,6 +11,7 @@
 #include "formats/skip_in_file.hpp"
 #include "scene/file_series.hpp"
 #include "scene/frame_files.hpp"
+#include "scene/kept_mesh.hpp"
 #include "scene/scene_fields.hpp"
 #include "scene/seed_file.hpp"
 #include "simulation/scene_environment.hpp"
@@ -22,6 +23,7 @@ namespace {
 
 MeshFile load_source(const MeshSource& source, const ReadOptions& options) {
   if (const auto* path = std::get_if<std::filesystem::path>(&source)) return read_mesh(*path, options);
+  if (const auto* surfaces = std::get_if<SurfaceScene>(&source)) return kept_surface_mesh(*surfaces, options);
   MeshFile file{generated_mesh(source), {}};
   file.report = check_and_repair(file.mesh);
   file.report.file = "the generated mesh";

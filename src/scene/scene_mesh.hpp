@@ -28,14 +28,17 @@ auto with_mesh_name(const MeshSource& mesh, Make&& make) {
     return make();
   } catch (const InvalidMesh& e) {
     const auto* path = std::get_if<std::filesystem::path>(&mesh);
-    const std::string name = path != nullptr ? path->string() : "the generated mesh";
+    const auto* surfaces = std::get_if<SurfaceScene>(&mesh);
+    const std::string name = path != nullptr       ? path->string()
+                             : surfaces != nullptr ? surfaces->surfaces.front().file.string()
+                                                   : "the generated mesh";
     if (std::string_view(e.what()).starts_with(name)) throw;
     throw InvalidMesh(name + ": " + e.what());
   }
 }
 
-/// Only the option `max_memory` has an effect. Throws InvalidMesh with the mesh file's name where the mesh is refused,
-/// or a region, array or patch that the scene names is not in it.
+/// Only the options `max_memory` and `kept_mesh` have an effect. Throws InvalidMesh with the mesh file's name where the
+/// mesh is refused, or a region, array or patch that the scene names is not in it.
 SceneMesh load_scene_mesh(const EnvironmentScene& scene, const ReadOptions& options = {}, Threads threads = {});
 
 }  // namespace dartcast

@@ -126,7 +126,46 @@ MazeOptions read_maze(TomlTable& t) {
   return o;
 }
 
+// One surface, whose region has a name of its own, or a table of regions and their surfaces.
+SurfaceScene read_surfaces(TomlTable t, const std::filesystem::path& folder) {
+  SurfaceScene scene;
+  t.require("surface", "a closed surface, as \"vessel.stl\", or a table { lumen = \"vessel.stl\" }");
+  if (t.is_table("surface")) {
+    TomlTable named = t.table("surface");
+    for (const std::string& region : named.keys()) {
+      std::string file;
+      named.get(region, file);
+      scene.surfaces.push_back({region, folder / file});
+    }
+    if (scene.surfaces.empty()) t.fail("surface", "surface names no region");
+    named.finish();
+  } else {
+    NamedSurface surface;
+    std::string file;
+    t.get("surface", file);
+    t.get("inside", surface.region);
+    surface.file = folder / file;
+    scene.surfaces.push_back(surface);
+  }
+  t.get("outside", scene.outside);
+  for (const NamedSurface& s : scene.surfaces) {
+    if (s.region == scene.outside) t.fail("outside", fmt::format("\"{}\" is a region inside, too", s.region));
+  }
+  t.get("box", scene.box, {1.0, Range::unlimited, true});
+  t.get("size", scene.size, Range::not_negative);
+  t.get("cap", scene.cap);
+  t.get("angle", scene.angle, {0.0, 180.0, true});
+  t.get("with", scene.mesher, {{"tetgen", Mesher::tetgen}, {"gmsh", Mesher::gmsh}});
+  t.get("seconds", scene.seconds, Range::positive);
+  t.finish();
+  return scene;
+}
+
 MeshSource read_source(TomlTable& t, const std::filesystem::path& folder) {
+  if (t.is_table("mesh")) {
+    if (t.has("generator")) t.fail("generator", "give either mesh or generator");
+    return read_surfaces(t.table("mesh"), folder);
+  }
   std::string mesh;
   MeshSource (*generator)(TomlTable&) = nullptr;
   const bool from_file = t.get("mesh", mesh);

@@ -24,6 +24,9 @@ struct Generator {
   MeshData operator()(const VesselOptions& o) const { return generate_vessel(o); }
   MeshData operator()(const RectangleOptions& o) const { return generate_rectangle(o); }
   MeshData operator()(const MazeOptions& o) const { return generate_maze(o); }
+  MeshData operator()(const SurfaceScene& /*surfaces*/) const {
+    throw InvalidArgument("no mesh has been made around the surfaces; call load_scene_files() first");
+  }
   MeshData operator()(const MeshData& mesh) const { return mesh; }
 };
 

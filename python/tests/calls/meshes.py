@@ -119,6 +119,7 @@ def of_files() -> Calls:
     dc.write_bytes(broken, BROKEN)
     surface.write_text("OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n", encoding="utf-8")
     file = dc.read_mesh(path)
+    surfaces = dc.SurfaceScene(surfaces=[dc.NamedSurface(region="lumen", file=surface)])
     return table | {
         "read_mesh: defects": lambda: dc.read_mesh(broken), "read_mesh: refused": refused(lambda: dc.read_mesh(3)),
         "read_mesh: little memory": lambda: dc.read_mesh(path, dc.ReadOptions(max_memory=1000)),
@@ -126,6 +127,8 @@ def of_files() -> Calls:
         "read_valid_mesh: refused": refused(lambda: dc.read_valid_mesh(broken)),
         "read_surface": lambda: dc.read_surface(surface),
         "read_surface: refused": refused(lambda: dc.read_surface(FOLDER / "missing.stl")),
+        "mesh_surfaces": lambda: dc.mesh_surfaces(surfaces),
+        "mesh_surfaces: refused": refused(lambda: dc.mesh_surfaces(dc.SurfaceScene(box=0.5))),
         "check_surface": lambda: dc.check_surface(surface), "check_mesh": lambda: dc.check_mesh(path, threads=1),
         "write_mesh: refused": refused(lambda: dc.write_mesh(mesh, FOLDER / "box.xyz")),
         "write_bytes": lambda: dc.write_bytes(FOLDER / "bytes", b"a few bytes"),

@@ -74,10 +74,10 @@ std::string bytes_of(const fs::path& path, std::uint64_t max_memory) {
 
 /// The file of this name, or with .gz behind it.
 fs::path found_file(const fs::path& folder, std::string_view name) {
-  const fs::path plain = folder / name;
+  fs::path plain = folder / name;
   std::error_code error;
   if (fs::is_regular_file(plain, error)) return plain;
-  const fs::path packed = folder / (std::string(name) + ".gz");
+  fs::path packed = folder / (std::string(name) + ".gz");
   return fs::is_regular_file(packed, error) ? packed : plain;
 }
 

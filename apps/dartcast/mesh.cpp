@@ -1,0 +1,75 @@
+// The verb mesh: tetrahedra inside and around closed surfaces.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "dartcast/mesh_files.hpp"
+#include "dartcast/scene.hpp"
+#include "max_memory.hpp"
+#include "output/mesh_report_text.hpp"
+
+namespace dartcast::app {
+
+namespace {
+
+struct MeshArguments {
+  std::vector<std::string> surfaces;
+  std::string inside = "inside";
+  std::string out;
+  SurfaceScene scene;
+  std::uint64_t max_memory = 0;
+};
+
+// As "lumen=a.stl"; a path alone is the region of --inside.
+NamedSurface named_surface(const std::string& text, const std::string& inside) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) return {inside, text};
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+int mesh(const MeshArguments& a) {
+  SurfaceScene scene = a.scene;
+  for (const std::string& text : a.surfaces) scene.surfaces.push_back(named_surface(text, a.inside));
+  const MeshFile made = mesh_surfaces(scene, {{}, a.max_memory});
+  fmt::print("{}", report_text(made.report));
+  if (!made.report.valid()) return failed;
+  write_mesh(made.mesh, a.out);
+  fmt::print("{}\n", a.out);
+  return done;
+}
+
+}  // namespace
+
+void add_mesh(CLI::App& app, int& status) {
+  const auto a = std::make_shared<MeshArguments>();
+  CLI::App* verb = app.add_subcommand("mesh", "Fill closed surfaces, and the space around them, with tetrahedra.");
+  verb->add_option(
+          "SURFACE", a->surfaces,
+          fmt::format("closed surfaces: {}; NAME=FILE names the region inside", fmt::join(surface_endings(), " ")))
+      ->required();
+  verb->add_option("-o,--output", a->out, fmt::format("the mesh to write: {}", fmt::join(writable_mesh_endings(), " ")))
+      ->required();
+  verb->add_option("--box", a->scene.box, "edges of the box around, as a multiple of the surfaces' own")
+      ->capture_default_str();
+  verb->add_option("--size", a->scene.size, "length of the tetrahedra's edges, about; 0: as the mesher likes")
+      ->capture_default_str();
+  verb->add_option("--inside", a->inside, "the region inside a surface without a name")->capture_default_str();
+  verb->add_option("--outside", a->scene.outside, "the region up to the box")->capture_default_str();
+  verb->add_flag("--cap", a->scene.cap, "close flat holes: patches inlet, outlet ...");
+  verb->add_option("--angle", a->scene.angle, "degrees: sharper edges divide a surface without groups into patches")
+      ->capture_default_str();
+  verb->add_option("--with", a->scene.mesher, "tetgen or gmsh; without it the first one that can")
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, Mesher>{{"tetgen", Mesher::tetgen}, {"gmsh", Mesher::gmsh}}));
+  verb->add_option("--seconds", a->scene.seconds, "the mesher is stopped after this time")->capture_default_str();
+  add_max_memory(*verb, a->max_memory);
+  verb->callback([a, &status] { status = mesh(*a); });
+}
+
+}  // namespace dartcast::app

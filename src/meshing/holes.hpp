@@ -1,0 +1,36 @@
+// Holes of a surface, and the caps that close them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "dartcast/mesh_check.hpp"
+#include "dartcast/mesh_data.hpp"
+#include "dartcast/vec3.hpp"
+
+namespace dartcast {
+
+/// The border of a hole: the corners of a face that would close it, in the sense that this face would have.
+struct Hole {
+  std::vector<std::uint32_t> corners;
+  Vec3 centre;
+  double area = 0.0;       ///< of the border as seen along its normal
+  double off_plane = 0.0;  ///< the largest distance of a corner from the plane through the centre
+};
+
+/// All holes of an oriented surface of triangles, in the order of their lowest corners.
+std::vector<Hole> holes_of(const MeshData& surface);
+
+/// The largest part of its diameter by which a hole's border may be off a plane, for a cap. It is a matter of taste, not
+/// of exactness: a cap's triangles end exactly at the border, however that lies.
+inline constexpr double cap_flatness = 0.05;
+
+/// Closes all holes with triangles, in regions of their own: inlet for the largest one, outlet or outlet_1 ... for the
+/// others. Faces that had no region are in region 0. Holes that are not near a plane are defects, and nothing changes.
+void close_holes(MeshData& surface, MeshReport& report);
+
+/// Holes as a defect, with the first ones' places.
+Finding open_holes(const MeshData& surface);
+
+}  // namespace dartcast

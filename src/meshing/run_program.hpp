@@ -1,0 +1,39 @@
+// Runs another program in a folder, within limits of time and memory, never through a shell.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace dartcast {
+
+/// How a program ended.
+struct ProgramEnd {
+  bool found = true;       ///< whether there is such a program
+  bool in_time = true;     ///< false: it was stopped
+  int status = 0;          ///< its exit status; 128 and its signal where one ended it
+  std::string last_words;  ///< the end of its output, for messages
+  [[nodiscard]] bool well() const { return found && in_time && status == 0; }
+};
+
+/// Runs words[0], found as a shell finds it, with the other words. Its output goes to a file in the folder. It is stopped
+/// after so many seconds, and cannot take more memory than so many bytes. Throws Error where no process can be made.
+ProgramEnd run_program(const std::vector<std::string>& words, const std::filesystem::path& folder, double seconds,
+                       std::uint64_t memory);
+
+/// A new folder for temporary files, removed with all that is in it at the end.
+class TemporaryFolder {
+ public:
+  /// Throws Error where none can be made.
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace dartcast

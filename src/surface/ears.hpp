@@ -1,0 +1,21 @@
+// Polygons in space as triangles, also where they are not convex.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "dartcast/vec3.hpp"
+#include "surface/triangle_pairs.hpp"
+
+namespace dartcast {
+
+/// Twice the vector area of a polygon, rounded.
+Vec3 vector_area(std::span<const Vec3> points, std::span<const std::uint32_t> corners);
+
+/// Triangles with the corners of a polygon, in its sense of rotation, by cutting off ears. Seen along the axis nearest to
+/// its normal the triangles do not overlap, by exact signs, if the polygon does not cross itself as seen from there.
+/// Where it does, the result is a fan. Cost: the square of the corners. Precondition: at least three corners.
+std::vector<TriangleCorners> ears(std::span<const Vec3> points, std::span<const std::uint32_t> corners);
+
+}  // namespace dartcast
