@@ -32,7 +32,7 @@ def test_a_mesh_around_a_surface(tmp_path):
     scene = dartcast.SurfaceScene(surfaces=[dartcast.NamedSurface(region="lumen", file=surface)], box=2.0)
     mesh, report = dartcast.mesh_surfaces(scene)
     assert report.valid, report
-    corners = mesh.points[mesh.cells["tetrahedron"]]
+    corners = mesh.points[mesh.cells["tetra"]]
     edges = corners[:, 1:] - corners[:, :1]
     volumes = np.linalg.det(edges) / 6.0
     lumen = np.array([mesh.region_names[tag] == "lumen" for tag in mesh.regions])
