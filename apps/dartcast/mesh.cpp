@@ -36,7 +36,7 @@ NamedSurface named_surface(const std::string& text, const std::string& inside) {
 int mesh(const MeshArguments& a) {
   SurfaceScene scene = a.scene;
   for (const std::string& text : a.surfaces) scene.surfaces.push_back(named_surface(text, a.inside));
-  const MeshFile made = mesh_surfaces(scene, {{}, a.max_memory});
+  const MeshFile made = mesh_surfaces(scene, {{}, a.max_memory, false, {}});
   fmt::print("{}", report_text(made.report));
   if (!made.report.valid()) return failed;
   write_mesh(made.mesh, a.out);

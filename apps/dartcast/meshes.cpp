@@ -20,26 +20,31 @@ namespace dartcast::app {
 
 namespace {
 
-int check(const std::string& mesh, bool skip_bad_cells, bool json, std::uint64_t max_memory) {
-  const MeshReport report = check_mesh(mesh, {}, {{}, max_memory}, skip_bad_cells).report;
+int check(const std::string& mesh, bool skip_bad_cells, bool json, const ReadOptions& options) {
+  const MeshReport report = check_mesh(mesh, {}, options, skip_bad_cells).report;
   fmt::print("{}{}", json ? report_json(report) : report_text(report), json ? "\n" : "");
   return report.valid() ? done : failed;
 }
 
-int info(const std::string& path, bool json, std::uint64_t max_memory) {
+int info(const std::string& path, bool json, const ReadOptions& options) {
   EnvironmentScene scene;
   scene.mesh = std::filesystem::path(path);
   if (std::filesystem::path(path).extension() == ".toml") scene = read_scene(path).environment;
-  const MeshInfo result = with_mesh_name(scene.mesh, [&] {
-    return mesh_info(load_scene_mesh(scene, {{}, max_memory}).mesh, path);
-  });
+  scene.linearise = scene.linearise || options.linearise;
+  const MeshInfo result =
+      with_mesh_name(scene.mesh, [&] { return mesh_info(load_scene_mesh(scene, options).mesh, path); });
   fmt::print("{}{}", json ? info_json(result) : info_text(result), json ? "\n" : "");
   return done;
 }
 
-int convert(const std::string& in, const std::string& out, std::uint64_t max_memory) {
-  write_mesh(read_valid_mesh(in, {{}, max_memory}).mesh, out);
+int convert(const std::string& in, const std::string& out, const ReadOptions& options) {
+  write_mesh(read_valid_mesh(in, options).mesh, out);
   return done;
+}
+
+void add_read_options(CLI::App& verb, ReadOptions& options) {
+  verb.add_flag("--linearise", options.linearise, "take the corners of cells of second order");
+  add_max_memory(verb, options.max_memory);
 }
 
 }  // namespace
@@ -55,9 +60,9 @@ void add_check(CLI::App& app, int& status) {
   const auto skip = std::make_shared<bool>(false);
   verb->add_flag("--skip-bad-cells", *skip, "with this option of dartcast run: bad cells are left out, and a warning");
   verb->add_flag("--json", *json, "print one JSON object, and nothing else");
-  const auto memory = std::make_shared<std::uint64_t>(0);
-  add_max_memory(*verb, *memory);
-  verb->callback([mesh, skip, json, memory, &status] { status = check(*mesh, *skip, *json, *memory); });
+  const auto options = std::make_shared<ReadOptions>();
+  add_read_options(*verb, *options);
+  verb->callback([mesh, skip, json, options, &status] { status = check(*mesh, *skip, *json, *options); });
 }
 
 void add_info(CLI::App& app, int& status) {
@@ -66,9 +71,9 @@ void add_info(CLI::App& app, int& status) {
   CLI::App* verb = app.add_subcommand("info", "Print counts, bounds, shapes and memory.");
   verb->add_option("MESH_OR_SCENE", *path, "a mesh file, or a scene (.toml)")->required();
   verb->add_flag("--json", *json, "print one JSON object, and nothing else");
-  const auto memory = std::make_shared<std::uint64_t>(0);
-  add_max_memory(*verb, *memory);
-  verb->callback([path, json, memory, &status] { status = info(*path, *json, *memory); });
+  const auto options = std::make_shared<ReadOptions>();
+  add_read_options(*verb, *options);
+  verb->callback([path, json, options, &status] { status = info(*path, *json, *options); });
 }
 
 void add_convert(CLI::App& app, int& status) {
@@ -78,9 +83,9 @@ void add_convert(CLI::App& app, int& status) {
   verb->add_option("IN", *in, "the mesh to read")->required();
   verb->add_option("OUT", *out, fmt::format("the file to write: {}", fmt::join(writable_mesh_endings(), " ")))
       ->required();
-  const auto memory = std::make_shared<std::uint64_t>(0);
-  add_max_memory(*verb, *memory);
-  verb->callback([in, out, memory, &status] { status = convert(*in, *out, *memory); });
+  const auto options = std::make_shared<ReadOptions>();
+  add_read_options(*verb, *options);
+  verb->callback([in, out, options, &status] { status = convert(*in, *out, *options); });
 }
 
 }  // namespace dartcast::app

@@ -37,6 +37,9 @@ struct ReadOptions {
   /// memory. An upper bound of the need follows from the sizes that the file announces (formats/read_memory.hpp). It is
   /// checked before the memory is taken; a file that may need more is refused with kind "file".
   std::uint64_t max_memory = 0;
+  /// Cells of second order are taken by their corners, which is a warning with their number. Their middle points are
+  /// dropped. Without it they are refused, because their sides are curved.
+  bool linearise = false;
   /// A .msh file that keeps the mesh made around a scene's surfaces (SurfaceScene). If it was made of the same files
   /// with the same values, it is read, and no mesher is needed; else the mesh is made and written there. Empty: none.
   std::filesystem::path kept_mesh = {};
@@ -48,8 +51,8 @@ struct MeshFile {
   MeshReport report;
 };
 
-/// Reads .vtu, .vtk (legacy), .msh, .msh2, .msh4 (Gmsh 1, 2 and 4) or .mesh (Medit), by ending and content, or the
-/// folder of an OpenFOAM case (formats/openfoam.hpp), and checks and repairs it. .vtu and .vtk need VTK (has_vtk()). Nothing in the file makes this throw: a file that cannot be read
+/// Reads .vtu, .vtk (legacy), .msh, .msh2, .msh4 (Gmsh 1, 2 and 4), .mesh or .meshb (Medit), .node or .ele with the
+/// other beside it (TetGen), by ending and content, or the folder of an OpenFOAM case (formats/openfoam.hpp), and checks and repairs it. .vtu and .vtk need VTK (has_vtk()). Nothing in the file makes this throw: a file that cannot be read
 /// has a defect of kind "file" in the report, with line or byte. Cost: a few times the file's size in memory.
 MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 

@@ -83,6 +83,7 @@ struct PatchAngle {
 struct EnvironmentScene {
   MeshSource mesh;
   double scale = 1.0;           ///< > 0: the mesh's points are multiplied by it, and those of frames
+  bool linearise = false;       ///< cells of second order are taken by their corners (ReadOptions)
   bool skip_bad_cells = false;  ///< flat, inverted and indivisible cells are left out: their faces are walls
   std::variant<std::monostate, FreeRegions, FreeValues> free;  ///< none: as the mesh says, else all
   /// The wall groups to distinguish; none: all groups of the mesh. Names: only these groups of the mesh.

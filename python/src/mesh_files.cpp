@@ -50,6 +50,7 @@ void bind_mesh_files(py::module_& m) {
   Record<ReadOptions>(m, "ReadOptions")
       .field("patch_array", &ReadOptions::patch_array)
       .field("max_memory", &ReadOptions::max_memory)
+      .field("linearise", &ReadOptions::linearise)
       .field("kept_mesh", &ReadOptions::kept_mesh)
       .finish();
   bind_mesh_file(m);

@@ -45,6 +45,7 @@ void bind_environment_scene(py::module_& m) {
   Record<EnvironmentScene>(m, "EnvironmentScene")
       .field("mesh", &EnvironmentScene::mesh)
       .field("scale", &EnvironmentScene::scale)
+      .field("linearise", &EnvironmentScene::linearise)
       .field("skip_bad_cells", &EnvironmentScene::skip_bad_cells)
       .field("free", &EnvironmentScene::free)
       .field("patches", &EnvironmentScene::patches)

@@ -14,7 +14,7 @@ def mixed_box():
     return dartcast.generate_box(cells=[2, 2, 2], mixed=True, blocked_layer=False, seed=3)
 
 
-@pytest.mark.parametrize("ending", dartcast.mesh_endings())
+@pytest.mark.parametrize("ending", sorted(set(dartcast.mesh_endings()) & set(dartcast.writable_mesh_endings())))
 def test_a_written_mesh_is_read_back(tmp_path, ending):
     mesh = mixed_box()
     path = tmp_path / ("box" + ending)
@@ -24,6 +24,24 @@ def test_a_written_mesh_is_read_back(tmp_path, ending):
     assert np.array_equal(back.points, mesh.points)
     assert {name: len(cells) for name, cells in back.cells.items()} == {n: len(c) for n, c in mesh.cells.items()}
     assert len(back.patch_tags) == len(mesh.patch_tags)
+
+
+def test_a_meshb_of_meshio_is_read(tmp_path):
+    mesh = dartcast.generate_box(cells=[3, 2, 2], type="tetrahedron")
+    path = tmp_path / "box.meshb"
+    meshio.write(path, meshio.Mesh(mesh.points, [("tetra", mesh.cells["tetra"])]))
+    back, report = dartcast.read_mesh(path)
+    assert report.valid and report.format == "Medit binary"
+    assert np.array_equal(back.points, mesh.points) and np.array_equal(back.cells["tetra"], mesh.cells["tetra"])
+
+
+def test_files_of_tetgen_are_read(tmp_path):
+    mesh = dartcast.generate_box(cells=[3, 2, 2], type="tetrahedron")
+    meshio.write(tmp_path / "box.node", meshio.Mesh(mesh.points, [("tetra", mesh.cells["tetra"])]))
+    for ending in ("node", "ele"):
+        back, report = dartcast.read_mesh(tmp_path / f"box.{ending}")
+        assert report.valid and report.format == "TetGen"
+        assert np.array_equal(back.points, mesh.points) and np.array_equal(back.cells["tetra"], mesh.cells["tetra"])
 
 
 def test_a_mesh_around_a_surface(tmp_path):

@@ -9,11 +9,13 @@
 
 #include "formats/gmsh.hpp"
 #include "formats/medit.hpp"
+#include "formats/meshb.hpp"
 #include "formats/obj.hpp"
 #include "formats/off.hpp"
 #include "formats/ply.hpp"
 #include "formats/read_memory.hpp"
 #include "formats/stl.hpp"
+#include "formats/tetgen_files.hpp"
 #include "formats/vtk_functions.hpp"
 #include "formats/vtu_write.hpp"
 
@@ -27,9 +29,9 @@ void write_text(const MeshData& mesh, const fs::path& file) {
   write_bytes(file, format(mesh));
 }
 
-template <ParsedMesh (*parse)(std::string_view)>
-ParsedMesh read_text(const fs::path& /*path*/, std::string_view content, const ReadOptions& /*options*/) {
-  return parse(content);
+template <ParsedMesh (*parse)(std::string_view, bool)>
+ParsedMesh read_text(const fs::path& /*path*/, std::string_view content, const ReadOptions& options) {
+  return parse(content, options.linearise);
 }
 
 // VTK keeps the text of inline arrays beside their values.
@@ -50,7 +52,9 @@ std::span<const MeshFormat> mesh_formats() {
        false,
        memory_of_text,
        read_text<parse_gmsh>},
-      {"Medit", "Medit", {{".mesh", write_text<format_medit>}}, false, false, memory_of_text, read_text<parse_medit>}};
+      {"Medit", "Medit", {{".mesh", write_text<format_medit>}}, false, false, memory_of_text, read_text<parse_medit>},
+      {"Medit", "Medit, binary", {{".meshb", nullptr}}, false, false, memory_of_text, read_text<parse_meshb>},
+      {"TetGen", "TetGen", {{".ele", nullptr}, {".node", nullptr}}, false, false, memory_of_text, parse_tetgen}};
   return formats;
 }
 

@@ -112,11 +112,12 @@ void refuse_other_msh(std::string_view content) {
 
 }  // namespace
 
-ParsedMesh parse_gmsh(std::string_view content) {
+ParsedMesh parse_gmsh(std::string_view content, bool linearise) {
   refuse_other_msh(content);
   FileText text(content);
   NumberReader in(text);
   Model model;
+  model.parsed.linearise = linearise;
   Version version = Version::v2;
   bool elements = false;
   while (!text.at_end()) {

@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "dartcast/error.hpp"
+#include "formats/second_order.hpp"
 
 namespace dartcast::gmsh {
 
@@ -82,6 +83,24 @@ constexpr std::array<int, 11> curves_and_points = {8, 15, 26, 27, 28, 62, 63, 64
 /// Types of order 0, with one node; and the wedge of two triangles and a quadrangle.
 constexpr std::array<int, 7> unusable = {85, 86, 87, 88, 89, 132, 140};
 
+/// The type with the same corners as one of second order; 0 for others.
+int linear_type(int type) {
+  switch (type) {
+    case 8: return 1;
+    case 9: return 2;
+    case 10:
+    case 16: return 3;
+    case 11: return 4;
+    case 12:
+    case 17: return 5;
+    case 13:
+    case 18: return 6;
+    case 14:
+    case 19: return 7;
+    default: return 0;
+  }
+}
+
 template <std::size_t n>
 bool contains(const std::array<int, n>& types, int type) {
   return std::find(types.begin(), types.end(), type) != types.end();
@@ -103,6 +122,11 @@ int known_node_count(const NumberReader& in, int type) {
 
 void Model::add_element(int type, std::span<const std::uint64_t> numbers, std::int32_t physical_tag) {
   const std::size_t place = elements++;
+  if (const int linear = linear_type(type); linear != 0 && parsed.linearise) {
+    take_higher_order(parsed, place);
+    numbers = numbers.first(static_cast<std::size_t>(node_count(linear)));
+    type = linear;
+  }
   if (contains(curves_and_points, type)) return;
   if (type < 1 || type > 7) {
     (contains(unusable, type) ? parsed.unsupported : parsed.second_order).add(place);

@@ -9,29 +9,15 @@
 
 #include "dartcast/error.hpp"
 #include "formats/file_text.hpp"
+#include "formats/medit_elements.hpp"
 
 namespace dartcast {
 namespace {
 
-struct Keyword {
-  std::string_view name;
-  std::size_t corners;
-  unsigned dimension;
-  CellType type;  // of a cell of space
-};
-
-constexpr std::array<Keyword, 7> keywords = {{{"Tetrahedra", 4, 3, CellType::tetrahedron},
-                                              {"Hexahedra", 8, 3, CellType::hexahedron},
-                                              {"Prisms", 6, 3, CellType::prism},
-                                              {"Pyramids", 5, 3, CellType::pyramid},
-                                              {"Triangles", 3, 2, {}},
-                                              {"Quadrilaterals", 4, 2, {}},
-                                              {"Edges", 2, 1, {}}}};
-
-constexpr std::array<std::string_view, 16> higher_order = {
-    "TrianglesP2",  "TrianglesP3",  "TrianglesP4",  "QuadrilateralsQ2", "QuadrilateralsQ3", "QuadrilateralsQ4",
-    "TetrahedraP2", "TetrahedraP3", "TetrahedraP4", "HexahedraQ2",      "HexahedraQ3",      "HexahedraQ4",
-    "PrismsP2",     "PrismsP3",     "PyramidsP2",   "PyramidsP3"};
+// Sections of third order or more are always refused.
+constexpr std::array<std::string_view, 8> higher_order = {"TrianglesP3",      "TrianglesP4",  "QuadrilateralsQ3",
+                                                          "QuadrilateralsQ4", "TetrahedraP3", "TetrahedraP4",
+                                                          "HexahedraQ3",      "HexahedraQ4"};
 
 void read_vertices(FileText& text, MeshData& mesh, int dimension) {
   if (dimension == 0) text.fail("Vertices stand before Dimension");
@@ -48,25 +34,17 @@ void read_vertices(FileText& text, MeshData& mesh, int dimension) {
   }
 }
 
-void read_elements(FileText& text, ParsedMesh& parsed, const Keyword& keyword) {
-  MeshData& mesh = parsed.mesh;
-  const std::size_t n = text.count(keyword.name, 2 * (keyword.corners + 1));
+void read_elements(FileText& text, ParsedMesh& parsed, const MeditSection& section) {
+  const std::size_t n = text.count(section.name, 2 * (section.points + 1));
   std::array<std::uint32_t, 8> corners{};
   for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t k = 0; k < keyword.corners; ++k) {
+    for (std::size_t k = 0; k < section.points; ++k) {
       const std::int64_t number = text.integer("a vertex number", INT64_MIN, INT64_MAX);
-      corners[k] = number >= 1 && number <= no_point ? static_cast<std::uint32_t>(number - 1) : no_point;
+      if (k < section.corners)
+        corners[k] = number >= 1 && number <= no_point ? static_cast<std::uint32_t>(number - 1) : no_point;
     }
     const auto tag = static_cast<std::int32_t>(text.integer("a reference", INT32_MIN, INT32_MAX));
-    const std::span<const std::uint32_t> used(corners.data(), keyword.corners);
-    if (keyword.dimension == 1) {
-      parsed.add_edge(corners[0], corners[1], tag);
-    } else if (keyword.dimension == 2) {
-      mesh.add_patch_face(used, tag);
-    } else {
-      mesh.add_cell(keyword.type, used);
-      mesh.regions.push_back(tag);
-    }
+    add_medit_element(section, std::span(corners).first(section.corners), tag, i, parsed);
   }
 }
 
@@ -91,12 +69,13 @@ void refuse_other_mesh(std::string_view content) {
 
 }  // namespace
 
-ParsedMesh parse_medit(std::string_view content) {
+ParsedMesh parse_medit(std::string_view content, bool linearise) {
   refuse_other_mesh(content);
   FileText text(content);
   text.set_comment('#');
   ParsedMesh parsed;
   parsed.format = "Medit ASCII";
+  parsed.linearise = linearise;
   int dimension = 0;
   bool ended = false;
   if (text.word("'MeshVersionFormatted'") != "MeshVersionFormatted")
@@ -112,9 +91,9 @@ ParsedMesh parse_medit(std::string_view content) {
       dimension = static_cast<int>(text.integer("the dimension", 2, 3));
     } else if (name == "Vertices") {
       read_vertices(text, parsed.mesh, dimension);
-    } else if (const auto* k =
-                   std::find_if(keywords.begin(), keywords.end(), [&](const Keyword& x) { return x.name == name; });
-               k != keywords.end()) {
+    } else if (const auto* k = std::find_if(medit_sections.begin(), medit_sections.end(),
+                                            [&](const MeditSection& x) { return x.name == name; });
+               k != medit_sections.end()) {
       read_elements(text, parsed, *k);
     } else if (std::find(higher_order.begin(), higher_order.end(), name) != higher_order.end()) {
       const std::size_t n = text.count(name, 8);

@@ -11,7 +11,7 @@ namespace dartcast {
 /// References of volume cells become regions, those of triangles and quadrilaterals patches (0: none); in a file
 /// without volume cells those of triangles and quadrilaterals, and of edges. Throws InvalidMesh with the line where the
 /// content is not right, or with the name of another format.
-ParsedMesh parse_medit(std::string_view content);
+ParsedMesh parse_medit(std::string_view content, bool linearise = false);
 
 /// The mesh in Medit's format, of dimension 2 in the plane, every coordinate with the digits it needs to be read back
 /// exactly; regions and patches as references. Precondition: no polyhedra, and no polygons or

@@ -26,8 +26,11 @@ struct ParsedMesh {
                        0,
                        {},
                        "cells of second or higher order, with curved sides; write the mesh with linear "
-                       "cells (Gmsh: -order 1)"};
+                       "cells (Gmsh: -order 1), or take their corners (--linearise)"};
   Finding unsupported{"cell_type", 0, {}, "cells of a type that cannot be used"};
+  bool linearise = false;  ///< the corners of second-order cells are taken
+  Finding linearised{
+      "linearised", 0, {}, "elements of second order, of which the corners are taken: their sides are flat here"};
   std::vector<Finding> warnings = {};  ///< of the format itself; they come before those of the check
 
   void add_edge(std::uint32_t a, std::uint32_t b, std::int32_t tag) {

@@ -84,6 +84,7 @@ MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options
     out.report.format = parsed.format;
     add_finding(out.report.defects, parsed.second_order);
     add_finding(out.report.defects, parsed.unsupported);
+    add_finding(parsed.warnings, parsed.linearised);
     out.report.warnings.insert(out.report.warnings.begin(), parsed.warnings.begin(), parsed.warnings.end());
   });
 }

@@ -75,11 +75,12 @@ void check_cells(const MeshData& mesh, const MeshFormat& format) {
 
 void write_mesh(const MeshData& mesh, const std::filesystem::path& path) {
   const FormatEnding* ending = mesh_ending_of(path);
-  if (ending == nullptr) {
+  const bool needs = ending != nullptr && ending->write == nullptr && ending->ending == ".vtk";
+  if (ending == nullptr || (ending->write == nullptr && !needs)) {
     throw InvalidArgument(fmt::format("{}: cannot write files that end in '{}'; use {}", path.string(), ending_of(path),
                                       in_words(writable_mesh_endings(), "or")));
   }
-  if (ending->write == nullptr) {
+  if (needs) {
     throw InvalidArgument(
         fmt::format("{}: {}", path.string(), needs_vtk(fmt::format("write {} files", ending->ending), "write .vtu")));
   }

@@ -144,7 +144,7 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
     summary.surgery.emplace();
   if (options.audit) summary.audit.emplace();
   const Stopwatch load;
-  ReadOptions read{{}, options.max_memory, {}};
+  ReadOptions read{{}, options.max_memory, false, {}};
   if (!options.folder.empty()) read.kept_mesh = options.folder / kept_mesh_name;
   LoadedScene loaded = load_scene_files(scene_to_run(scene, options), read, options.threads);
   summary.skipped = std::move(loaded.skipped);

@@ -31,7 +31,7 @@ class FrameFiles {
       : files_(std::move(files)),
         points_(mesh.points.size()),
         scale_(environment.scale),
-        max_memory_(options.max_memory),
+        options_{{}, options.max_memory, options.linearise, {}},
         skips_cells_(environment.skip_bad_cells),
         cells_(skips_cells_ ? std::set<std::uint32_t>(mesh.source.begin(), mesh.source.end())
                             : std::set<std::uint32_t>()) {
@@ -57,9 +57,7 @@ class FrameFiles {
  private:
   // The file as a mesh of its own, checked and repaired.
   [[nodiscard]] MeshData read_whole(const fs::path& file) const {
-    ReadOptions options;
-    options.max_memory = max_memory_;
-    MeshFile read = read_mesh(file, options);
+    MeshFile read = read_mesh(file, options_);
     if (skips_cells_ && !read.mesh.types.empty()) {
       keep_cells(read.mesh);
     } else {
@@ -96,12 +94,10 @@ class FrameFiles {
 
   [[nodiscard]] std::optional<VtuPoints> read_points_of(const fs::path& file) const {
     if (is_openfoam(file)) {
-      ReadOptions options;
-      options.max_memory = max_memory_;
-      return VtuPoints{openfoam_points_at(file, options), 0};  // all times of a case have the same cells
+      return VtuPoints{openfoam_points_at(file, options_), 0};  // all times of a case have the same cells
     }
     if (ending_of(file) != ".vtu") return std::nullopt;
-    return vtk_functions.read_vtu_points(read_bytes(file), max_memory_);
+    return vtk_functions.read_vtu_points(read_bytes(file), options_.max_memory);
   }
 
   // The points of a file with the cells of the first; none where it must be checked as a mesh of its own. This second reading
@@ -122,7 +118,7 @@ class FrameFiles {
   const std::vector<fs::path> files_;
   const std::size_t points_;
   const double scale_;
-  const std::uint64_t max_memory_;
+  const ReadOptions options_;
   const bool skips_cells_;
   const std::set<std::uint32_t> cells_;       // of the input file that the scene's mesh has
   MeshData first_;                            // cells alone

@@ -42,6 +42,7 @@ void scale_points(MeshFile& file, double scale) {
 
 SceneMesh load_scene_mesh(const EnvironmentScene& scene, const ReadOptions& options, Threads threads) {
   ReadOptions read = options;
+  read.linearise = scene.linearise;
   if (const auto* patches = std::get_if<PatchArray>(&scene.patches)) read.patch_array = patches->name;
   MeshFile file = load_source(scene.mesh, read);
   scale_points(file, scene.scale);
@@ -54,8 +55,10 @@ SceneMesh load_scene_mesh(const EnvironmentScene& scene, const ReadOptions& opti
   return result;
 }
 
-LoadedScene load_scene_files(Scene scene, const ReadOptions& options, Threads threads) {
-  SceneMesh loaded = load_scene_mesh(scene.environment, options, threads);
+LoadedScene load_scene_files(Scene scene, const ReadOptions& given, Threads threads) {
+  SceneMesh loaded = load_scene_mesh(scene.environment, given, threads);
+  ReadOptions options = given;
+  options.linearise = scene.environment.linearise;
   for (DeformationScene& s : scene.deformation) {
     if (s.frames.empty()) continue;
     FieldSeries series = file_series({"deformation", {}, std::exchange(s.frames, {}), s.step.times, s.spacing});

@@ -223,6 +223,7 @@ EnvironmentScene read_environment(TomlTable table, const std::filesystem::path& 
   EnvironmentScene scene;
   scene.mesh = read_source(table, folder);
   table.get("scale", scene.scale, Range::positive);
+  table.get("linearise", scene.linearise);
   table.get("skip_bad_cells", scene.skip_bad_cells);
   if (table.has("free")) read_free(table.table("free"), scene);
   if (table.is_table("patches")) {

@@ -443,7 +443,9 @@ TEST_F(Command, TraceTellsWhatItCannotDo) {
 TEST_F(Command, ConvertGoesRoundThroughAllFormats) {
   (void)write("a.mesh", tetrahedron());
   std::string from = "a.mesh";
-  for (const std::string& ending : dartcast::mesh_endings()) {
+  const std::vector<std::string> read = dartcast::mesh_endings();
+  for (const std::string& ending : dartcast::writable_mesh_endings()) {
+    if (std::find(read.begin(), read.end(), ending) == read.end()) continue;
     const std::string to = "b" + ending;
     const Result r = run("convert " + from + " " + to);
     ASSERT_EQ(r.status, 0) << to << ": " << r.error;

@@ -1,6 +1,7 @@
 // Writing and reading back, the same for meshes of space and of the plane.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,7 +43,9 @@ inline std::vector<std::pair<std::string, std::string>> gmsh_files(const MeshDat
 /// Points, cells, regions and patches, in every format that is read; names where it has a place for them.
 inline void expect_round_trips(const MeshData& mesh) {
   const Folder folder;
-  for (const std::string& ending : mesh_endings()) {
+  const std::vector<std::string> read = mesh_endings();
+  for (const std::string& ending : writable_mesh_endings()) {
+    if (std::find(read.begin(), read.end(), ending) == read.end()) continue;
     SCOPED_TRACE(ending);
     write_mesh(mesh, folder / ("a" + ending));
     const MeshFile file = read_mesh(folder / ("a" + ending));

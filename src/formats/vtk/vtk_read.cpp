@@ -21,6 +21,7 @@
 
 #include "dartcast/error.hpp"
 #include "formats/file_text.hpp"
+#include "formats/second_order.hpp"
 #include "formats/vtk/face_stream.hpp"
 #include "formats/vtk/vtk_errors.hpp"
 #include "formats/vtk/vtk_legacy_check.hpp"
@@ -52,6 +53,34 @@ const Standard* find_standard(int vtk) {
   }};
   const auto* found = std::find_if(table.begin(), table.end(), [&](const Standard& s) { return s.vtk == vtk; });
   return found == table.end() ? nullptr : found;
+}
+
+/// The linear type with the corners of one of second or higher order, which stand first; the type itself for others.
+int linear_type(int vtk) {
+  switch (vtk) {
+    case VTK_QUADRATIC_EDGE:
+    case VTK_LAGRANGE_CURVE: return VTK_LINE;
+    case VTK_QUADRATIC_TRIANGLE:
+    case VTK_BIQUADRATIC_TRIANGLE:
+    case VTK_LAGRANGE_TRIANGLE: return VTK_TRIANGLE;
+    case VTK_QUADRATIC_QUAD:
+    case VTK_BIQUADRATIC_QUAD:
+    case VTK_QUADRATIC_LINEAR_QUAD:
+    case VTK_LAGRANGE_QUADRILATERAL: return VTK_QUAD;
+    case VTK_QUADRATIC_TETRA:
+    case VTK_LAGRANGE_TETRAHEDRON: return VTK_TETRA;
+    case VTK_QUADRATIC_HEXAHEDRON:
+    case VTK_TRIQUADRATIC_HEXAHEDRON:
+    case VTK_BIQUADRATIC_QUADRATIC_HEXAHEDRON:
+    case VTK_LAGRANGE_HEXAHEDRON: return VTK_HEXAHEDRON;
+    case VTK_QUADRATIC_WEDGE:
+    case VTK_QUADRATIC_LINEAR_WEDGE:
+    case VTK_BIQUADRATIC_QUADRATIC_WEDGE:
+    case VTK_LAGRANGE_WEDGE: return VTK_WEDGE;
+    case VTK_QUADRATIC_PYRAMID:
+    case VTK_LAGRANGE_PYRAMID: return VTK_PYRAMID;
+    default: return vtk;
+  }
 }
 
 bool is_point_or_line(int vtk) {
@@ -104,8 +133,16 @@ void add_polyhedron(vtkUnstructuredGrid& grid, vtkIdType c, MeshData& mesh) {
 /// Adds cell c of the grid, with its corners.
 void add_cell(vtkUnstructuredGrid& grid, vtkIdType c, std::span<const vtkIdType> ids, ParsedMesh& parsed,
               Places& places) {
-  const int vtk = grid.GetCellTypesArray()->GetValue(c);
+  int vtk = grid.GetCellTypesArray()->GetValue(c);
   MeshData& mesh = parsed.mesh;
+  if (const int linear = linear_type(vtk); linear != vtk && parsed.linearise) {
+    const Standard* corners = find_standard(linear);
+    const std::size_t n = corners == nullptr ? 2 : corners->order.size();
+    if (ids.size() < n) throw InvalidMesh(fmt::format("cell {} of VTK's type {} has {} points", c, vtk, ids.size()));
+    take_higher_order(parsed, static_cast<std::size_t>(c));
+    ids = ids.first(n);
+    vtk = linear;
+  }
   const Standard* standard = find_standard(vtk);
   const bool face = vtk == VTK_POLYGON || (standard != nullptr && standard->face);
   std::vector<std::uint32_t> corners;
@@ -188,8 +225,9 @@ void for_each_array(vtkFieldData& data, vtkIdType n, Take&& take) {
   }
 }
 
-ParsedMesh convert(vtkUnstructuredGrid& grid, std::string format, const std::string& patch_array) {
+ParsedMesh convert(vtkUnstructuredGrid& grid, std::string format, const ReadOptions& options) {
   ParsedMesh parsed;
+  parsed.linearise = options.linearise;
   parsed.format = std::move(format);
   MeshData& mesh = parsed.mesh;
   copy_points(grid, mesh);
@@ -202,7 +240,7 @@ ParsedMesh convert(vtkUnstructuredGrid& grid, std::string format, const std::str
                  [&](vtkDataArray& a) { mesh.point_data.push_back(copy_array(a, nullptr)); });
   for_each_array(*grid.GetCellData(), grid.GetNumberOfCells(),
                  [&](vtkDataArray& a) { mesh.cell_data.push_back(copy_array(a, &places.cells)); });
-  if (copy_tags(grid, places, patch_array, mesh))
+  if (copy_tags(grid, places, options.patch_array, mesh))
     std::erase_if(mesh.cell_data, [](const DataArray& a) { return a.name == "patch"; });
   const bool anything = !mesh.types.empty() || parsed.second_order.count + parsed.unsupported.count > 0;
   if (!anything) throw InvalidMesh("the file has no cells");
@@ -214,7 +252,7 @@ ParsedMesh convert(vtkUnstructuredGrid& grid, std::string format, const std::str
 
 /// Runs a VTK reader. Any complaint of it refuses the file.
 template <class Reader>
-ParsedMesh read_with(Reader& reader, const std::string& format, const std::string& patch_array) {
+ParsedMesh read_with(Reader& reader, const std::string& format, const ReadOptions& options) {
   const VtkErrors errors;
   const auto refuse = [&](const std::string& text) {
     throw InvalidMesh(fmt::format("VTK cannot read the file: {}", text));
@@ -227,7 +265,7 @@ ParsedMesh read_with(Reader& reader, const std::string& format, const std::strin
   if (!errors.first().empty()) refuse(errors.first());
   if (reader.GetErrorCode() != 0) refuse(fmt::format("error {}", reader.GetErrorCode()));
   if (reader.GetOutput() == nullptr) refuse("no output");
-  return convert(*reader.GetOutput(), format, patch_array);
+  return convert(*reader.GetOutput(), format, options);
 }
 
 }  // namespace
@@ -236,7 +274,7 @@ ParsedMesh parse_vtu(const std::filesystem::path& path, std::string_view content
   check_vtu(content, "UnstructuredGrid", options.max_memory);
   vtkNew<vtkXMLUnstructuredGridReader> reader;
   reader->SetFileName(path.c_str());
-  return read_with(*reader, "VTK XML (.vtu)", options.patch_array);
+  return read_with(*reader, "VTK XML (.vtu)", options);
 }
 
 ParsedMesh parse_legacy_vtk(const std::filesystem::path& path, std::string_view content, const ReadOptions& options) {
@@ -252,7 +290,7 @@ ParsedMesh parse_legacy_vtk(const std::filesystem::path& path, std::string_view 
   reader->ReadAllColorScalarsOn();
   reader->ReadAllTCoordsOn();
   reader->ReadAllFieldsOn();
-  return read_with(*reader, "VTK legacy (.vtk)", options.patch_array);
+  return read_with(*reader, "VTK legacy (.vtk)", options);
 }
 
 }  // namespace dartcast
