@@ -35,8 +35,8 @@ enum class DeformationKind : std::uint8_t {
             ///< vertex's `path`; without one s. No wave travels where wavelength is 0; where
             ///< one does, points are off their rest at t = 0 too.
   bump,     ///< x + a A w(t) (1 - |r|^2 / length^2)^2 within `length` of the centre: a smooth bulge along the axis
-  frames,   ///< positions given at `times`, linear between them, the first before and the last after them: held in
-            ///< `frames`, or read one by one by `reader`. First in a list only.
+  frames,   ///< positions given at `times`, interpolated between them, the first before and the last after them, or
+            ///< again and again (`cycle`): held in `frames`, or read one by one by `reader`. First in a list only.
 };
 inline constexpr std::array deformation_kinds = {
     DeformationKind::rotate,  DeformationKind::swing, DeformationKind::bend, DeformationKind::twist,
@@ -47,13 +47,20 @@ inline constexpr std::array deformation_kinds = {
 /// The kind of that name; none if there is no such kind.
 std::optional<DeformationKind> deformation_kind(std::string_view name);
 
+/// How positions between frames follow from these.
+enum class Interpolation : std::uint8_t {
+  linear,  ///< from the two frames around the time: velocities jump at each frame
+  cubic    ///< from four: a cubic in time between two frames, with velocities that do not jump (Catmull-Rom's tangents,
+           ///< for unequal distances). Exact for motions that are quadratic in time.
+};
+
 /// Reads a frame: the position of every vertex at times[frame]. It may be called by another thread than the caller's,
 /// and by several at once where several deformations are made with it. Its exceptions reach the caller who needs the
 /// frame.
 using FrameReader = std::function<std::vector<Vec3>(std::size_t frame)>;
 
-/// Bytes of frames that a deformation holds at most, the two that it needs and those read ahead; three where these are
-/// more. One more is being read.
+/// Bytes of frames that a deformation holds at most, the two (cubic: four) that it needs and those read ahead; three
+/// (five) where these are more. One more is being read.
 inline constexpr std::size_t frame_memory = std::size_t{32} << 20U;
 /// And their number.
 inline constexpr std::size_t max_frames_held = 64;
@@ -73,6 +80,10 @@ struct DeformationStep {
   std::vector<double> times = {};              ///< frames: increasing
   std::vector<std::vector<Vec3>> frames = {};  ///< frames: all positions, one list per time; or none and a reader
   FrameReader reader = {};                     ///< frames: instead of `frames`
+  Interpolation interpolation = Interpolation::linear;  ///< frames
+  /// frames: above 0, s: they repeat after this time, at least that from the first to the last. With just that, the last
+  /// frame is the first one again, and is not used.
+  double cycle = 0.0;
 };
 
 class DeformationFrames;

@@ -52,7 +52,8 @@ struct MeshFile {
 };
 
 /// Reads .vtu, .vtk (legacy), .msh, .msh2, .msh4 (Gmsh 1, 2 and 4), .mesh or .meshb (Medit), .node or .ele with the
-/// other beside it (TetGen), by ending and content, or the folder of an OpenFOAM case (formats/openfoam.hpp), and checks and repairs it. .vtu and .vtk need VTK (has_vtk()). Nothing in the file makes this throw: a file that cannot be read
+/// other beside it (TetGen), by ending and content, or the folder of an OpenFOAM case (formats/openfoam.hpp), and checks
+/// and repairs it. .vtu and .vtk need VTK (has_vtk()). Nothing in the file makes this throw: a file that cannot be read
 /// has a defect of kind "file" in the report, with line or byte. Cost: a few times the file's size in memory.
 MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 

@@ -36,6 +36,7 @@ void bind_steps(py::module_& m) {
                               {"PULSE", DeformationKind::pulse},
                               {"BUMP", DeformationKind::bump},
                               {"FRAMES", DeformationKind::frames}});
+  bind_enum<Interpolation>(m, "Interpolation", {{"LINEAR", Interpolation::linear}, {"CUBIC", Interpolation::cubic}});
   m.attr("FRAME_MEMORY") = frame_memory;
   m.attr("MAX_FRAMES_HELD") = max_frames_held;
   m.def("deformation_kind", &deformation_kind, py::arg("name"), doc("deformation_kind"));
@@ -52,6 +53,8 @@ void bind_steps(py::module_& m) {
       .field("path", &DeformationStep::path)
       .field("times", &DeformationStep::times)
       .field("frames", &DeformationStep::frames)
+      .field("interpolation", &DeformationStep::interpolation)
+      .field("cycle", &DeformationStep::cycle)
       .field("reader", &DeformationStep::reader)
       .finish();
 }

@@ -117,6 +117,9 @@ class SceneReader {
     if (files.empty()) t.fail("files", "files must not be empty");
     const bool times = t.get("times", scene.step.times);
     if (t.get("spacing", scene.spacing, Range::positive) && times) t.fail("spacing", "give times or spacing, not both");
+    t.get("interpolation", scene.step.interpolation,
+          {{"linear", Interpolation::linear}, {"cubic", Interpolation::cubic}});
+    t.get("period", scene.step.cycle, Range::positive);
     const bool series = files.size() == 1 && names_series(folder_ / files.front());
     if (!series && scene.spacing == 0.0 && files.size() != scene.step.times.size())
       t.fail(times ? "times" : "files",

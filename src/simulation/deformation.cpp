@@ -183,7 +183,7 @@ void Deformation::positions(double time, std::span<Vec3> out, Threads threads) c
   std::vector<detail::Motion> motions;
   motions.reserve(steps_.size());
   for (const DeformationStep& s : steps_) motions.emplace_back(s, time);
-  const FramePair start = frames_ ? frames_->at(time, in_plane_) : FramePair{rest_, rest_};
+  const FrameBlend start = frames_ ? frames_->at(time, in_plane_) : FrameBlend{{rest_}, {}, {}};
   parallel_for(rest_.size(), vertex_grain, threads, [&](std::size_t begin, std::size_t end) {
     start.copy(begin, end, out);
     for (const detail::Motion& motion : motions) detail::apply(motion, out.subspan(begin, end - begin), begin);

@@ -32,27 +32,29 @@ void check_in_plane(const ReadFrame& read, std::size_t frame) {
 
 }  // namespace
 
-void FramePair::copy(std::size_t begin, std::size_t end, std::span<Vec3> out) const {
-  if (before.data() == after.data()) {
-    std::copy_n(before.begin() + static_cast<std::ptrdiff_t>(begin), end - begin,
+void FrameBlend::copy(std::size_t begin, std::size_t end, std::span<Vec3> out) const {
+  const std::array<double, 4>& w = use.weights;
+  if (use.count == 1) {
+    std::copy_n(frames[0].begin() + static_cast<std::ptrdiff_t>(begin), end - begin,
                 out.begin() + static_cast<std::ptrdiff_t>(begin));
     return;
   }
-  for (std::size_t v = begin; v < end; ++v) out[v] = before[v] * (1 - weight) + after[v] * weight;
+  for (std::size_t v = begin; v < end; ++v) out[v] = frames[0][v] * w[0] + frames[1][v] * w[1];
+  for (std::size_t k = 2; k < use.count; ++k) {
+    for (std::size_t v = begin; v < end; ++v) out[v] += frames[k][v] * w[k];
+  }
 }
 
-DeformationFrames::DeformationFrames(DeformationStep step, std::size_t vertices)
-    : times_(std::move(step.times)), frames_(std::move(step.frames)) {
+DeformationFrames::DeformationFrames(DeformationStep step, std::size_t vertices) : frames_(std::move(step.frames)) {
   require(!step.reader || frames_.empty(), "give frames or a reader of them, not both");
-  require(!times_.empty() && (step.reader || times_.size() == frames_.size()),
+  require(!step.times.empty() && (step.reader || step.times.size() == frames_.size()),
           "give one time per frame, and at least one frame");
-  for (std::size_t i = 0; i < times_.size(); ++i)
-    require(std::isfinite(times_[i]) && (i == 0 || times_[i] > times_[i - 1]), "times must be finite and increasing");
+  times_ = FrameTimes(std::move(step.times), step.interpolation, step.cycle);
   for (std::size_t i = 0; i < frames_.size(); ++i) {
     require(frames_[i].size() == vertices, fmt::format("frame {} must have one position per vertex", i));
     require(std::all_of(frames_[i].begin(), frames_[i].end(), is_finite), fmt::format("frame {} must be finite", i));
   }
-  if (step.reader) ahead_ = std::make_unique<FrameReadAhead>(std::move(step.reader), times_.size(), vertices);
+  if (step.reader) ahead_ = std::make_unique<FrameReadAhead>(std::move(step.reader), times_, vertices);
 }
 
 void DeformationFrames::check_plane() const {
@@ -63,19 +65,15 @@ void DeformationFrames::check_plane() const {
   }
 }
 
-FramePair DeformationFrames::at(double time, bool in_plane) {
-  const auto next = std::upper_bound(times_.begin(), times_.end(), time);
-  std::size_t after = static_cast<std::size_t>(next - times_.begin());
-  const std::size_t before = after == 0 ? 0 : after - 1;
-  after = std::min(after, times_.size() - 1);
-  const double weight = before == after ? 0.0 : (time - times_[before]) / (times_[after] - times_[before]);
-  if (!ahead_) return {frames_[before], frames_[after], weight};
-  FrameReadAhead::Pair read = ahead_->get(before, after);
-  if (in_plane) {
-    check_in_plane(*read.before, before);
-    check_in_plane(*read.after, after);
+FrameBlend DeformationFrames::at(double time, bool in_plane) {
+  FrameBlend blend{{}, times_.at(time), {}};
+  if (ahead_) blend.read = ahead_->get(blend.use.first, blend.use.count);
+  for (std::size_t k = 0; k < blend.use.count; ++k) {
+    const std::size_t frame = (blend.use.first + k) % times_.size();
+    if (ahead_ && in_plane) check_in_plane(*blend.read[k], frame);
+    blend.frames[k] = ahead_ ? std::span<const Vec3>(blend.read[k]->points) : frames_[frame];
   }
-  return {read.before->points, read.after->points, weight, read};
+  return blend;
 }
 
 }  // namespace dartcast

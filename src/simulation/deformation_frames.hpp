@@ -1,21 +1,23 @@
 // Positions that are given at times: from memory, or read ahead from their reader.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "dartcast/deformation.hpp"
+#include "simulation/frame_blend.hpp"
 #include "simulation/frame_read_ahead.hpp"
 
 namespace dartcast {
 
-/// Two frames and the place of a time between them; with weight 0 the first alone counts.
-struct FramePair {
-  std::span<const Vec3> before, after;
-  double weight = 0.0;
-  FrameReadAhead::Pair read = {};  ///< keeps them; empty where they are in memory
+/// The frames that count at a time, and their weights. One alone is copied.
+struct FrameBlend {
+  std::array<std::span<const Vec3>, 4> frames;
+  FrameWeights use;
+  FrameReadAhead::Frames read = {};  ///< keeps them; empty where they are in memory
 
   /// Writes the positions of the vertices in [begin, end).
   void copy(std::size_t begin, std::size_t end, std::span<Vec3> out) const;
@@ -31,10 +33,10 @@ class DeformationFrames {
   void check_plane() const;
 
   /// The frames at a time. Waits for them, and throws, as Deformation::load_frames().
-  FramePair at(double time, bool in_plane);
+  FrameBlend at(double time, bool in_plane);
 
  private:
-  std::vector<double> times_;
+  FrameTimes times_;
   std::vector<std::vector<Vec3>> frames_;
   std::unique_ptr<FrameReadAhead> ahead_;  // none where all frames are in memory
 };

@@ -12,10 +12,10 @@
 namespace dartcast {
 namespace {
 
-// The two that are needed and one to read ahead, or more where they fit.
-std::size_t frames_that_fit(std::size_t vertices) {
+// Those that are needed and one to read ahead, or more where they fit.
+std::size_t frames_that_fit(std::size_t vertices, std::size_t needed) {
   const std::size_t bytes = std::max<std::size_t>(vertices, 1) * sizeof(Vec3);
-  return std::clamp<std::size_t>(frame_memory / bytes, 3, max_frames_held);
+  return std::clamp<std::size_t>(frame_memory / bytes, needed + 1, max_frames_held);
 }
 
 void check(const std::vector<Vec3>& points, std::size_t frame, std::size_t vertices) {
@@ -29,8 +29,12 @@ void check(const std::vector<Vec3>& points, std::size_t frame, std::size_t verti
 
 }  // namespace
 
-FrameReadAhead::FrameReadAhead(FrameReader reader, std::size_t count, std::size_t vertices)
-    : reader_(std::move(reader)), count_(count), vertices_(vertices), capacity_(frames_that_fit(vertices)) {}
+FrameReadAhead::FrameReadAhead(FrameReader reader, const FrameTimes& times, std::size_t vertices)
+    : reader_(std::move(reader)),
+      count_(times.size()),
+      vertices_(vertices),
+      capacity_(frames_that_fit(vertices, times.needed())),
+      repeat_(times.repeat()) {}
 
 FrameReadAhead::~FrameReadAhead() {
   {
@@ -41,21 +45,33 @@ FrameReadAhead::~FrameReadAhead() {
   if (thread_.joinable()) thread_.join();
 }
 
-FrameReadAhead::Pair FrameReadAhead::get(std::size_t before, std::size_t after) {
+FrameReadAhead::Frames FrameReadAhead::get(std::size_t first, std::size_t count) {
   const std::lock_guard turn(turn_);
   std::unique_lock lock(mutex_);
   if (!thread_.joinable()) start();
-  first_ = before;
+  first_ = first;
+  const auto needed = [&](std::size_t k) { return (first + k) % count_; };
+  const auto is_needed = [&](std::size_t frame) { return (frame + count_ - first) % count_ < count; };
   std::erase_if(frames_, [&](const auto& f) {
-    const bool needed = f.first == before || f.first == after;
-    return !is_wanted(f.first) || (needed && f.second->error != nullptr);
+    return !is_wanted(f.first) || (is_needed(f.first) && f.second->error != nullptr);
   });
   wanted_.notify_one();
   ready_.wait(lock, [&] {
-    const auto found = frames_.find(before);
-    return found != frames_.end() && (found->second->error != nullptr || frames_.contains(after));
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto found = frames_.find(needed(k));
+      if (found == frames_.end()) return false;
+      if (found->second->error != nullptr) return true;  // behind it no further one is read
+    }
+    return true;
   });
-  return {read_without_error(before), read_without_error(after)};
+  Frames frames;
+  for (std::size_t k = 0; k < count; ++k) frames[k] = read_without_error(needed(k));
+  return frames;
+}
+
+bool FrameReadAhead::is_wanted(std::size_t frame) const {
+  if (repeat_) return (frame + count_ - first_) % count_ < capacity_;
+  return frame >= first_ && frame - first_ < capacity_;
 }
 
 void FrameReadAhead::start() {
@@ -88,7 +104,8 @@ void FrameReadAhead::read_on() {
 
 // The first frame that is wanted and not there. After one that cannot be read no further ones are read.
 std::optional<std::size_t> FrameReadAhead::next() const {
-  for (std::size_t frame = first_; frame < count_ && is_wanted(frame); ++frame) {
+  for (std::size_t k = 0; k < std::min(capacity_, count_) && (repeat_ || first_ + k < count_); ++k) {
+    const std::size_t frame = (first_ + k) % count_;
     const auto found = frames_.find(frame);
     if (found == frames_.end()) return frame;
     if (found->second->error != nullptr) break;

@@ -1,6 +1,7 @@
 // Reads the frames of a motion ahead of the time that is needed, by a thread.
 #pragma once
 
+#include <array>
 #include <condition_variable>
 #include <cstddef>
 #include <exception>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "dartcast/deformation.hpp"
+#include "simulation/frame_blend.hpp"
 
 namespace dartcast {
 
@@ -26,20 +28,18 @@ struct ReadFrame {
 /// jumps the frames from there are read instead.
 class FrameReadAhead {
  public:
-  /// `count` frames of so many vertices. The thread starts with the first call of get().
-  FrameReadAhead(FrameReader reader, std::size_t count, std::size_t vertices);
+  /// Frames of so many vertices at these times. The thread starts with the first call of get().
+  FrameReadAhead(FrameReader reader, const FrameTimes& times, std::size_t vertices);
   /// Waits for the frame that is being read.
   ~FrameReadAhead();
   FrameReadAhead(const FrameReadAhead&) = delete;
   FrameReadAhead& operator=(const FrameReadAhead&) = delete;
 
-  struct Pair {
-    std::shared_ptr<const ReadFrame> before, after;
-  };
-  /// Waits for two frames; precondition: after - before is 0 or 1. Any thread may call it; one at a time is served.
-  /// Throws where one cannot be read: now, not only when it was tried ahead of its time. Throws Error where no thread
-  /// can be started.
-  Pair get(std::size_t before, std::size_t after);
+  using Frames = std::array<std::shared_ptr<const ReadFrame>, 4>;
+  /// Waits for `count` frames, at most FrameTimes::needed(), from `first` on: of a cycle again from 0 behind the last.
+  /// Any thread may call it; one at a time is served. Throws where one cannot be read: now, not only when it was tried
+  /// ahead of its time. Throws Error where no thread can be started.
+  Frames get(std::size_t first, std::size_t count);
 
   /// Frames that are held at most.
   [[nodiscard]] std::size_t capacity() const { return capacity_; }
@@ -48,12 +48,13 @@ class FrameReadAhead {
   void start();
   void read_on();
   [[nodiscard]] std::optional<std::size_t> next() const;
-  [[nodiscard]] bool is_wanted(std::size_t frame) const { return frame >= first_ && frame - first_ < capacity_; }
+  [[nodiscard]] bool is_wanted(std::size_t frame) const;
   [[nodiscard]] std::shared_ptr<const ReadFrame> read(std::size_t frame) const;
   [[nodiscard]] std::shared_ptr<const ReadFrame> read_without_error(std::size_t frame) const;
 
   const FrameReader reader_;
   const std::size_t count_, vertices_, capacity_;
+  const bool repeat_;
   std::mutex turn_;   // held by the caller who is served
   std::mutex mutex_;  // guards the members below
   std::condition_variable wanted_, ready_;

@@ -105,6 +105,44 @@ TEST_F(OpenFoamScene, APlaceAtZeroIsTheFirstFrame) {
   EXPECT_EQ(step.reader(0), expected);
 }
 
+TEST_F(OpenFoamScene, FramesRepeatAndAreInterpolated) {
+  write_case("case", {});
+  const Scene scene =
+      load("[[deformation]]\nkind = 'frames'\nfiles = 'case'\ninterpolation = 'cubic'\nperiod = 25.0\n");
+  EXPECT_EQ(scene.deformation.front().step.interpolation, Interpolation::cubic);
+  EXPECT_EQ(scene.deformation.front().step.cycle, 25.0);
+  expect_error("[[deformation]]\nkind = 'frames'\nfiles = 'case'\ninterpolation = 'square'\n",
+               {"square", "linear, cubic"});
+}
+
+TEST_F(OpenFoamScene, OtherSeriesOfFrames) {
+  write_case("case", {});
+  MeshData mesh = box();
+  std::string pvd = "<VTKFile type=\"Collection\"><Collection>";
+  for (const int k : {8, 9, 10}) {
+    mesh.points = swayed(box().points, k);
+    write_mesh(mesh, folder_ / fmt::format("beat_{}.msh", k));
+    pvd += fmt::format("<DataSet timestep=\"{}\" file=\"beat_{}.msh\"/>", 0.5 * k, k);
+  }
+  write_bytes(folder_ / "beat.pvd", pvd + "</Collection></VTKFile>");
+  const auto step = [&](const std::string& keys) {
+    return load("[[deformation]]\nkind = 'frames'\n" + keys).deformation.front().step;
+  };
+  const DeformationStep numbered = step("files = 'beat_*.msh'\nspacing = 0.1\n");
+  EXPECT_EQ(numbered.times, (std::vector<double>{0.0, 0.1, 0.2}));
+  EXPECT_EQ(numbered.reader(2), swayed(box().points, 10));
+  const DeformationStep collection = step("files = 'beat.pvd'\n");
+  EXPECT_EQ(collection.times, (std::vector<double>{4.0, 4.5, 5.0}));
+  EXPECT_EQ(collection.reader(1), swayed(box().points, 9));
+  EXPECT_EQ(step("files = 'beat_*.msh'\ntimes = [1, 2, 4]\n").times, (std::vector<double>{1.0, 2.0, 4.0}));
+  const std::string kind = "[[deformation]]\nkind = 'frames'\n";
+  expect_error(kind + "files = 'beat_*.msh'\n", {"deformation", "no times"});
+  expect_error(kind + "files = 'beat_*.msh'\ntimes = [0, 1]\n", {"2 times for 3 files"});
+  expect_error(kind + "files = 'beat.pvd'\nspacing = 1\n", {"times of its own"});
+  expect_error(kind + "files = 'none_*.msh'\nspacing = 1\n", {"none_*.msh"});
+  expect_error(kind + "files = ['beat_8.msh', 'beat_9.msh']\n", {"0 times for 2 files"});
+}
+
 TEST_F(OpenFoamScene, FieldsAreSamplesAtTheirTimes) {
   for (const FoamStyle& style : test::foam_styles()) {
     fs::remove_all(folder_ / "case");

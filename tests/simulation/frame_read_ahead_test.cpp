@@ -44,6 +44,8 @@ DeformationStep step_of(std::size_t count) {
   return s;
 }
 
+FrameTimes times(std::size_t count) { return {step_of(count).times, Interpolation::linear, 0.0}; }
+
 DeformationStep held(const Frames& frames) {
   DeformationStep s = step_of(frames.size());
   s.frames = frames;
@@ -106,6 +108,112 @@ TEST(FrameReadAhead, ThePositionsAreThoseOfFramesInMemory) {
   for (const double time : step_of(150).times) expect_same(time);
 }
 
+// Cubic, and again and again.
+
+std::vector<DeformationStep> series(const Frames& frames) {
+  std::vector<DeformationStep> all;
+  for (const Interpolation interpolation : {Interpolation::linear, Interpolation::cubic}) {
+    const double span = step_of(frames.size()).times.back() - step_of(frames.size()).times.front();
+    for (const double cycle : {0.0, span, span + 0.07}) {
+      all.push_back(held(frames));
+      all.back().interpolation = interpolation;
+      all.back().cycle = cycle;
+    }
+  }
+  return all;
+}
+
+TEST(FrameSeries, ReadFramesGiveThePositionsOfThoseInMemory) {
+  const MeshData mesh = test::cubes(3);
+  for (const std::size_t count : {1U, 2U, 3U, 5U, 100U}) {
+    const Frames frames = swaying(mesh, count);
+    for (const DeformationStep& in_memory : series(frames)) {
+      DeformationStep read = in_memory;
+      read.frames.clear();
+      read.reader = [&](std::size_t k) { return frames.at(k); };
+      const Deformation expected({in_memory}, mesh.points), found({read}, mesh.points);
+      std::vector<Vec3> a(mesh.points.size()), b(mesh.points.size());
+      for (int i = -30; i < 400; ++i) {
+        const double time = 0.0317 * i * (count == 100U ? 1.0 : 0.1);
+        expected.positions(time, a);
+        found.positions(time, b);
+        ASSERT_EQ(a, b) << time;
+      }
+    }
+  }
+}
+
+TEST(FrameSeries, FramesAreMetAtTheirTimes) {
+  const MeshData mesh = test::cubes(2);
+  const Frames frames = swaying(mesh, 6);
+  for (const DeformationStep& step : series(frames)) {
+    const Deformation deformation({step}, mesh.points);
+    std::vector<Vec3> found(mesh.points.size());
+    const std::size_t used = step.cycle == step.times.back() - step.times.front() ? 5 : 6;
+    for (std::size_t k = 0; k < used; ++k) {
+      for (const int turns : {0, 1, -2}) {
+        deformation.positions(step.times[k] + turns * step.cycle, found);
+        for (std::size_t v = 0; v < found.size(); ++v)
+          test::expect_near(found[v], frames[k][v], turns == 0 ? 0.0 : 1e-13);
+      }
+    }
+    deformation.positions(-50.0, found);
+    if (step.cycle == 0.0) EXPECT_EQ(found, frames.front());
+  }
+}
+
+// A motion that is quadratic in time, at unequal distances.
+Vec3 thrown(double t) { return {0.3 - 2.0 * t + 1.5 * t * t, 4.0 * t, 0.25 * t * t}; }
+
+TEST(FrameSeries, ACubicIsExactForQuadraticMotions) {
+  DeformationStep step;
+  step.kind = DeformationKind::frames;
+  step.interpolation = Interpolation::cubic;
+  step.times = {-1.0, -0.4, 0.1, 0.2, 1.3, 1.5};
+  for (const double t : step.times) step.frames.push_back({thrown(t)});
+  const Vec3 rest;
+  const Deformation deformation({step}, {&rest, 1});
+  Vec3 found;
+  for (double t = -0.4; t <= 1.3; t += 0.01) {  // inside, where both neighbours are known
+    deformation.positions(t, {&found, 1});
+    test::expect_near(found, thrown(t), 1e-14);
+  }
+}
+
+TEST(FrameSeries, ACubicHasNoJumpsOfVelocity) {
+  for (const double cycle : {0.0, 1.0, 1.2}) {
+    DeformationStep step;
+    step.kind = DeformationKind::frames;
+    step.interpolation = Interpolation::cubic;
+    step.times = {0.0, 0.3, 0.4, 0.8, 1.0};
+    for (const double x : {0.0, 2.0, -1.0, 0.5, 0.0}) step.frames.push_back({Vec3{x, 0, 0}});
+    step.cycle = cycle;
+    const Vec3 rest;
+    const Deformation deformation({step}, {&rest, 1});
+    const auto at = [&](double t) {
+      Vec3 x;
+      deformation.positions(t, {&x, 1});
+      return x.x;
+    };
+    constexpr double h = 1e-6;
+    for (const double t : {0.3, 0.4, 0.8, 1.0, 1.2, 1.3}) {
+      if (cycle == 0.0 && t > 0.8) continue;
+      EXPECT_NEAR((at(t) - at(t - h)) / h, (at(t + h) - at(t)) / h, 1e-3) << cycle << " at " << t;
+    }
+  }
+}
+
+TEST(FrameSeries, CyclesThatAreTooShortAreRefused) {
+  const MeshData mesh = test::cubes(1);
+  DeformationStep step = held(swaying(mesh, 4));
+  step.cycle = 0.2;
+  EXPECT_THROW(Deformation({step}, mesh.points), InvalidArgument);
+  step.cycle = -1.0;
+  EXPECT_THROW(Deformation({step}, mesh.points), InvalidArgument);
+  step.cycle = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(Deformation({step}, mesh.points), InvalidArgument);
+}
+
 TEST(FrameReadAhead, ReadsInTheOrderOfTimeAndNoMoreThanItMayHold) {
   Record record;
   FrameReadAhead ahead(
@@ -113,24 +221,24 @@ TEST(FrameReadAhead, ReadsInTheOrderOfTimeAndNoMoreThanItMayHold) {
         record.add(k);
         return std::vector<Vec3>(3);
       },
-      1000, 3);
+      times(1000), 3);
   ASSERT_EQ(ahead.capacity(), max_frames_held);
   EXPECT_TRUE(record.frames().empty());
-  ahead.get(0, 1);
+  ahead.get(0, 2);
   EXPECT_EQ(record.after(64), range(0, 64));
-  ahead.get(2, 3);
+  ahead.get(2, 2);
   EXPECT_EQ(record.after(66), range(0, 66));
-  ahead.get(500, 501);
+  ahead.get(500, 2);
   std::vector<std::size_t> expected = range(0, 66);
   for (const std::size_t k : range(500, 564)) expected.push_back(k);
   EXPECT_EQ(record.after(expected.size()), expected);
-  ahead.get(999, 999);
+  ahead.get(999, 1);
   expected.push_back(999);
   EXPECT_EQ(record.after(expected.size()), expected);
 }
 
 TEST(FrameReadAhead, TheNumberHeldFollowsFromTheirMemory) {
-  const auto capacity = [](std::size_t vertices) { return FrameReadAhead({}, 1, vertices).capacity(); };
+  const auto capacity = [](std::size_t vertices) { return FrameReadAhead({}, times(1), vertices).capacity(); };
   EXPECT_EQ(capacity(0), max_frames_held);
   EXPECT_EQ(capacity(100000), 13U);  // 2.4 MB each
   EXPECT_LE(capacity(100000) * 100000 * sizeof(Vec3), frame_memory);
