@@ -52,8 +52,8 @@ struct MeshFile {
 };
 
 /// Reads .vtu, .vtk (legacy), .msh, .msh2, .msh4 (Gmsh 1, 2 and 4), .mesh or .meshb (Medit), .node or .ele with the
-/// other beside it (TetGen), by ending and content, or the folder of an OpenFOAM case (formats/openfoam.hpp), and checks
-/// and repairs it. .vtu and .vtk need VTK (has_vtk()). Nothing in the file makes this throw: a file that cannot be read
+/// other beside it (TetGen), by ending and content, or the folder of an OpenFOAM case (formats/openfoam.hpp) or of
+/// SimVascular (formats/vtp_surface.hpp), and checks and repairs it. .vtu and .vtk need VTK (has_vtk()). Nothing in the file makes this throw: a file that cannot be read
 /// has a defect of kind "file" in the report, with line or byte. Cost: a few times the file's size in memory.
 MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
@@ -65,7 +65,7 @@ MeshFile read_valid_mesh(const std::filesystem::path& path, const ReadOptions& o
 /// Whether the ending is one of those that check_surface() reads.
 bool is_surface_file(const std::filesystem::path& path);
 
-/// Reads .stl (ASCII, binary), .obj, .ply (ASCII, binary) or .off, by ending and content, and then calls
+/// Reads .stl (ASCII, binary), .obj, .ply (ASCII, binary), .off or, with VTK, .vtp, by ending and content, and then calls
 /// check_and_repair_surface(). Nothing in the file makes this throw: a file that cannot be read has a defect of kind
 /// "file" in the report, with line or byte. Points keep their order, and points that no face uses are kept, so that
 /// Surface::move() can take the positions of another file of the same faces; formats/stl.hpp says which points a .stl

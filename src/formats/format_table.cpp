@@ -17,6 +17,7 @@
 #include "formats/stl.hpp"
 #include "formats/tetgen_files.hpp"
 #include "formats/vtk_functions.hpp"
+#include "formats/vtp_surface.hpp"
 #include "formats/vtu_write.hpp"
 
 namespace dartcast {
@@ -32,6 +33,11 @@ void write_text(const MeshData& mesh, const fs::path& file) {
 template <ParsedMesh (*parse)(std::string_view, bool)>
 ParsedMesh read_text(const fs::path& /*path*/, std::string_view content, const ReadOptions& options) {
   return parse(content, options.linearise);
+}
+
+template <ParsedSurface (*parse)(std::string_view)>
+ParsedSurface read_surface_text(std::string_view content, std::uint64_t /*max_memory*/) {
+  return parse(content);
 }
 
 // VTK keeps the text of inline arrays beside their values.
@@ -59,10 +65,11 @@ std::span<const MeshFormat> mesh_formats() {
 }
 
 std::span<const SurfaceFormat> surface_formats() {
-  static const std::vector<SurfaceFormat> formats = {{"Stereolithography", ".stl", parse_stl},
-                                                     {"Wavefront", ".obj", parse_obj},
-                                                     {"Stanford", ".ply", parse_ply},
-                                                     {"Geomview", ".off", parse_off}};
+  static const std::vector<SurfaceFormat> formats = {{"Stereolithography", ".stl", read_surface_text<parse_stl>},
+                                                     {"Wavefront", ".obj", read_surface_text<parse_obj>},
+                                                     {"Stanford", ".ply", read_surface_text<parse_ply>},
+                                                     {"Geomview", ".off", read_surface_text<parse_off>},
+                                                     {"VTK", ".vtp", has_vtk() ? parse_vtp_surface : nullptr}};
   return formats;
 }
 
@@ -127,7 +134,9 @@ std::vector<std::string> writable_mesh_endings() {
 
 std::vector<std::string> surface_endings() {
   std::vector<std::string> endings;
-  for (const SurfaceFormat& format : surface_formats()) endings.emplace_back(format.ending);
+  for (const SurfaceFormat& format : surface_formats()) {
+    if (format.read != nullptr) endings.emplace_back(format.ending);
+  }
   return endings;
 }
 

@@ -37,7 +37,7 @@ struct MeshFormat {
 struct SurfaceFormat {
   std::string_view name;
   std::string_view ending;
-  ParsedSurface (*read)(std::string_view content);
+  ParsedSurface (*read)(std::string_view content, std::uint64_t max_memory);  ///< null where this build cannot
 };
 
 std::span<const MeshFormat> mesh_formats();

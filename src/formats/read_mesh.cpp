@@ -14,6 +14,7 @@
 #include "formats/openfoam.hpp"
 #include "formats/read_memory.hpp"
 #include "formats/vtk_functions.hpp"
+#include "formats/vtp_surface.hpp"
 
 namespace dartcast {
 namespace {
@@ -32,7 +33,7 @@ std::string supported() {
   for (const MeshFormat& format : mesh_formats()) {
     if (format.read != nullptr) list.push_back(described(format));
   }
-  list.emplace_back("folders of OpenFOAM's cases");
+  list.emplace_back("folders of OpenFOAM and SimVascular");
   return in_words(list, "and");
 }
 
@@ -46,9 +47,10 @@ std::string endings_with_arrays() {
 
 ParsedMesh parse_folder(const std::filesystem::path& path, const ReadOptions& options) {
   if (!options.patch_array.empty())
-    throw InvalidMesh(fmt::format("patches from the cell array '{}': a case of OpenFOAM has patches of its own",
-                                  options.patch_array));
-  return parse_openfoam(path, options);
+    throw InvalidMesh(
+        fmt::format("patches from the cell array '{}': a folder of OpenFOAM or SimVascular has patches of its own",
+                    options.patch_array));
+  return is_simvascular(path) ? parse_simvascular(path, options) : parse_openfoam(path, options);
 }
 
 ParsedMesh parse(const std::filesystem::path& path, const ReadOptions& options) {

@@ -10,6 +10,7 @@
 #include "formats/file_text.hpp"
 #include "formats/format_table.hpp"
 #include "formats/read_memory.hpp"
+#include "formats/vtk_functions.hpp"
 #include "surface/check_surface.hpp"
 
 namespace dartcast {
@@ -20,10 +21,11 @@ ParsedSurface parse_surface(const std::filesystem::path& path, std::uint64_t max
     throw InvalidMesh(fmt::format("surfaces in files that end in '{}' are not supported; supported are {}",
                                   ending_of(path), in_words(surface_endings(), "and")));
   }
+  if (format->read == nullptr) throw InvalidMesh(needs_vtk("read .vtp files", "convert the surface to .stl"));
   check_memory(memory_of_text(file_bytes(path)), max_memory);
   const std::string content = read_bytes(path);
   if (content.empty()) throw InvalidMesh("the file is empty");
-  return format->read(content);
+  return format->read(content, max_memory);
 }
 
 bool is_surface_file(const std::filesystem::path& path) { return surface_format_of(path) != nullptr; }

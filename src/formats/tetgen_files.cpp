@@ -151,6 +151,8 @@ ParsedMesh parse_tetgen(const std::filesystem::path& path, std::string_view cont
   }
   ParsedMesh parsed = reader.take();
   parsed.format = "TetGen";
+  if (parsed.mesh.types.empty() && parsed.mesh.patch_tags.empty() && parsed.second_order.count == 0)
+    throw InvalidMesh(".ele: the file has no cells");
   finish(parsed);
   return parsed;
 }

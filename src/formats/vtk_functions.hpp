@@ -21,6 +21,15 @@ struct VtuPoints {
   std::uint64_t cells;       ///< a hash of the arrays of its cells
 };
 
+/// A surface in a .vtp file.
+struct VtpFaces {
+  std::vector<Vec3> points;
+  std::vector<std::vector<std::uint32_t>> faces;
+  std::vector<std::size_t> rows;    ///< per face: its number among all cells of the file
+  std::vector<std::string> groups;  ///< per face: its value of the array patch, region or ModelFaceID; or empty
+  std::vector<double> ids;          ///< per point: GlobalNodeID; or empty
+};
+
 /// In a build without VTK all are null. formats/vtk has the functions, and says what they do.
 struct VtkFunctions {
   ParsedMesh (*read_vtu)(const std::filesystem::path& path, std::string_view content, const ReadOptions& options);
@@ -28,6 +37,7 @@ struct VtkFunctions {
   void (*write_legacy)(const MeshData& mesh, const std::filesystem::path& file);
   PointFile (*read_vtp)(const std::filesystem::path& path, const ReadOptions& options);
   std::optional<VtuPoints> (*read_vtu_points)(std::string_view content, std::uint64_t max_memory);
+  VtpFaces (*read_vtp_faces)(std::string_view content, std::uint64_t max_memory);
 };
 
 extern const VtkFunctions vtk_functions;

@@ -89,18 +89,7 @@ class FieldFiles {
     });
   }
 
- private:
-  static std::uint32_t source_of(const MeshData& mesh, std::size_t c) {
-    return mesh.source.empty() ? static_cast<std::uint32_t>(c) : mesh.source[c];
-  }
-
-  [[nodiscard]] std::vector<Vec3> read_values(std::size_t k) const {
-    // A case has one mesh for all times: its values alone are enough.
-    if (at_ == FieldPlace::cells && kept_.empty() && is_openfoam(files_[k]))
-      return openfoam_cell_vectors(files_[k], array_, cells_, options_);
-    return field_values(read(k), array_, at_);
-  }
-
+  /// The mesh in file k, with its arrays.
   [[nodiscard]] MeshData read(std::size_t k) const {
     MeshFile file = read_mesh(files_[k], options_);
     if (!kept_.empty() && !file.mesh.types.empty()) {
@@ -115,6 +104,18 @@ class FieldFiles {
                       files_[k].string(), file.mesh.points.size(), file.mesh.cell_count(), points_, cells_));
     }
     return std::move(file.mesh);
+  }
+
+ private:
+  static std::uint32_t source_of(const MeshData& mesh, std::size_t c) {
+    return mesh.source.empty() ? static_cast<std::uint32_t>(c) : mesh.source[c];
+  }
+
+  [[nodiscard]] std::vector<Vec3> read_values(std::size_t k) const {
+    // A case has one mesh for all times: its values alone are enough.
+    if (at_ == FieldPlace::cells && kept_.empty() && is_openfoam(files_[k]))
+      return openfoam_cell_vectors(files_[k], array_, cells_, options_);
+    return field_values(read(k), array_, at_);
   }
 
   // Without the bad cells that the scene has left out, and the points of these.
@@ -146,6 +147,19 @@ class FieldFiles {
   std::vector<std::uint32_t> kept_;  // sources of the scene's cells, where it leaves bad ones out
 };
 
+// All times are arrays of one file, and are read at once.
+void read_arrays_of_file(FieldScene& field, const EnvironmentScene& environment, const MeshData& mesh,
+                         const ReadOptions& options) {
+  if (field.files.size() != 1)
+    throw InvalidArgument(
+        fmt::format("the field '{}' has a star for the arrays of one file: name just one", field.array));
+  const std::filesystem::path file = field.files.front();
+  check_exist(field.files);
+  const MeshData read = FieldFiles(field, environment, mesh, options, {file}).read(0);
+  field.samples = with_file_name(file, [&] { return field_samples_of(field, read); });
+  field.files.clear();
+}
+
 }  // namespace
 
 void read_fields(TomlTable& motion, const std::filesystem::path& folder, MotionScene& scene) {
@@ -173,6 +187,7 @@ void read_fields(TomlTable& motion, const std::filesystem::path& folder, MotionS
 void load_field(FieldScene& field, const EnvironmentScene& environment, const MeshData& mesh,
                 const ReadOptions& options) {
   if (field.files.empty() || field.samples.read) return;
+  if (is_pattern(field.array)) return read_arrays_of_file(field, environment, mesh, options);
   FieldSeries series =
       file_series({fmt::format("the field '{}'", field.array), field.array, field.files, field.times, field.spacing});
   check_exist(series.files);

@@ -65,16 +65,6 @@ std::vector<std::string> names_of(const MeshData& mesh, const FieldScene& scene)
   return names;
 }
 
-FieldSamples samples_of(const FieldScene& scene, const MeshData& mesh) {
-  const std::vector<std::string> names = names_of(mesh, scene);
-  const FieldPlace place = field_place(mesh, names.front(), scene.at);
-  std::vector<std::vector<Vec3>> values;
-  for (const std::string& name : names) values.push_back(field_values(mesh, name, place));
-  std::vector<double> times =
-      sample_times(fmt::format("the field '{}'", scene.array), scene.times, scene.spacing, names.size(), "arrays");
-  return field_samples(std::move(times), std::move(values), place, scene.period);
-}
-
 /// The digits that stand in place of the star; empty where the name does not fit.
 std::string_view number_in(std::string_view pattern, std::string_view name) {
   const std::size_t star = pattern.find('*');
@@ -139,12 +129,22 @@ std::vector<double> sample_times(std::string_view owner, const std::vector<doubl
   return result;
 }
 
+FieldSamples field_samples_of(const FieldScene& scene, const MeshData& mesh) {
+  const std::vector<std::string> names = names_of(mesh, scene);
+  const FieldPlace place = field_place(mesh, names.front(), scene.at);
+  std::vector<std::vector<Vec3>> values;
+  for (const std::string& name : names) values.push_back(field_values(mesh, name, place));
+  std::vector<double> times =
+      sample_times(fmt::format("the field '{}'", scene.array), scene.times, scene.spacing, names.size(), "arrays");
+  return field_samples(std::move(times), std::move(values), place, scene.period);
+}
+
 std::optional<VectorField> scene_field(const FieldScene& scene, const std::string& name, const MeshData& mesh,
                                        const CellComplex& complex) {
   if (!scene.given()) return {};
   if (!scene.samples.read && !scene.files.empty())
     throw InvalidArgument(name + "'s files have not been read; call load_scene_files() first");
-  FieldSamples samples = scene.samples.read ? scene.samples : samples_of(scene, mesh);
+  FieldSamples samples = scene.samples.read ? scene.samples : field_samples_of(scene, mesh);
   samples.name = name;
   return VectorField(complex, std::move(samples), scene.frame);
 }

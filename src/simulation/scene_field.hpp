@@ -31,6 +31,9 @@ FieldPlace field_place(const MeshData& mesh, const std::string& array, std::opti
 std::vector<double> sample_times(std::string_view owner, const std::vector<double>& times, double spacing,
                                  std::size_t count, std::string_view items);
 
+/// The arrays of a mesh that the scene names, as samples. Throws InvalidMesh, and as sample_times().
+FieldSamples field_samples_of(const FieldScene& scene, const MeshData& mesh);
+
 /// None where the scene has no such field. `name`: in messages. Throws InvalidArgument where its files have not been
 /// read; InvalidMesh; as VectorField.
 std::optional<VectorField> scene_field(const FieldScene& scene, const std::string& name, const MeshData& mesh,

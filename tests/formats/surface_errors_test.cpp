@@ -37,7 +37,7 @@ std::vector<Wrong> wrong_stl() {
   const std::string facet = stl_facet({"0 0 0", "1 0 0", "0 1 0"});
   const std::string cut = stl_binary_cube("solid x").substr(0, 300);
   return {
-      {"a.txt", "x", "end in '.txt' are not supported; supported are .stl, .obj, .ply and .off"},
+      {"a.txt", "x", "end in '.txt' are not supported; supported are .stl, .obj, .ply"},
       {"a.stl", "", "the file is empty"},
       {"a.stl", "foo", "too short for .stl"},
       {"a.stl", cut, "byte 80: 12 triangles are announced, of 684 bytes in all, but the file has 300"},

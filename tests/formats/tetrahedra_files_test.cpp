@@ -114,6 +114,7 @@ TEST(TetGen, FilesThatAreNotRight) {
   refused([](TetgenFiles& f) { f.ele = "1 4 0\n0 0 1 2 x\n"; }, {".ele, line 2", "whole number"});
   refused([](TetgenFiles& f) { f.ele = "1 4 0\n0 0 1 2 5000\n"; }, {"point"});
   refused([](TetgenFiles& f) { f.ele = "1 10 0\n0 0 1 2 3 4 5 6 7 8 9\n"; }, {"second"});
+  refused([](TetgenFiles& f) { f.ele = "0 4 0\n"; }, {".ele", "no cells"});  // round 21921 of the mutants
   refused([](TetgenFiles& f) { f.face = "3 1\n0 0 1"; }, {".face"});
   const Folder folder;
   (void)folder.file("a.node", tetgen_files(mesh, 0).node);

@@ -122,6 +122,22 @@ class SceneFields : public ::testing::Test {
   fs::path folder_;
 };
 
+// As SimVascular writes its results: all times as arrays of one file, which is not that of the mesh.
+TEST_F(SceneFields, ArraysOfAnotherFile) {
+  fs::rename(folder_ / "mesh.vtu", folder_ / "all_results.vtu");
+  write_mesh(box(), folder_ / "mesh.vtu");
+  expect_flow("field = { array = 'U_*', files = 'all_results.vtu', times = [0, 1, 2] }");
+  expect_flow("field = { array = 'C_*', files = ['all_results.vtu'], spacing = 1 }", true);
+  EXPECT_NE(test::error_text([&] {
+              (void)load("field = { array = 'X_*', files = 'all_results.vtu', spacing = 1 }");
+            }).find("'X_*'"),
+            std::string::npos);
+  EXPECT_NE(test::error_text([&] {
+              (void)load("field = { array = 'U_*', files = ['all_results.vtu', 'U_8.vtu'], spacing = 1 }");
+            }).find("just one"),
+            std::string::npos);
+}
+
 TEST_F(SceneFields, FromWhereverTheyAre) {
   expect_flow("field = { array = 'U_*', spacing = 1.0 }");
   expect_flow("field = { array = 'U_*', times = [0.0, 1.0, 2.0], period = 2.0 }", false, 2.0);

@@ -7,6 +7,7 @@
 
 namespace dartcast {
 
-constinit const VtkFunctions vtk_functions = {parse_vtu, parse_legacy_vtk, write_legacy_vtk, read_vtp, read_vtu_points};
+constinit const VtkFunctions vtk_functions = {parse_vtu, parse_legacy_vtk, write_legacy_vtk,
+                                              read_vtp,  read_vtu_points,  read_vtp_faces};
 
 }  // namespace dartcast

@@ -11,4 +11,7 @@ namespace dartcast {
 /// file's name.
 PointFile read_vtp(const std::filesystem::path& path, const ReadOptions& options);
 
+/// The faces of a .vtp file. Throws InvalidMesh.
+VtpFaces read_vtp_faces(std::string_view content, std::uint64_t max_memory);
+
 }  // namespace dartcast

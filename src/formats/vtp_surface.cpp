@@ -1,0 +1,137 @@
+// Makes surfaces and patches of the faces in .vtp files.
+#include "formats/vtp_surface.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "dartcast/error.hpp"
+#include "formats/file_text.hpp"
+#include "formats/format_table.hpp"
+#include "formats/read_memory.hpp"
+#include "formats/vtk_functions.hpp"
+
+namespace dartcast {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> files_in(const fs::path& folder, std::string_view ending) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (entry.path().filename().string().ends_with(ending)) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// The .vtu file of the mesh; none where there is no such file, or several.
+fs::path mesh_file(const fs::path& folder) {
+  for (const char* ending : {".mesh.vtu", ".vtu"}) {
+    const std::vector<fs::path> found = files_in(folder, ending);
+    if (found.size() == 1) return found.front();
+  }
+  return {};
+}
+
+/// The points of a mesh, by number or by place.
+class MeshPoints {
+ public:
+  explicit MeshPoints(const MeshData& mesh) {
+    for (std::uint32_t p = 0; p < mesh.points.size(); ++p) by_place_[key(mesh.points[p])] = p;
+    const auto ids = std::find_if(mesh.point_data.begin(), mesh.point_data.end(),
+                                  [](const DataArray& a) { return a.name == "GlobalNodeID" && a.components == 1; });
+    if (ids == mesh.point_data.end()) return;
+    for (std::uint32_t p = 0; p < ids->values.size(); ++p) by_id_[ids->values[p]] = p;
+  }
+
+  [[nodiscard]] std::uint32_t find(const VtpFaces& faces, std::uint32_t point) const {
+    if (point >= faces.points.size()) return no_point;
+    if (!by_id_.empty() && !faces.ids.empty()) {
+      const auto found = by_id_.find(faces.ids[point]);
+      return found == by_id_.end() ? no_point : found->second;
+    }
+    const auto found = by_place_.find(key(faces.points[point]));
+    return found == by_place_.end() ? no_point : found->second;
+  }
+
+ private:
+  using Key = std::tuple<double, double, double>;
+  static Key key(const Vec3& p) { return {p.x, p.y, p.z}; }
+
+  std::map<Key, std::uint32_t> by_place_;
+  std::map<double, std::uint32_t> by_id_;
+};
+
+void add_patch(const fs::path& file, const MeshPoints& points, std::uint64_t max_memory, MeshData& mesh) {
+  check_memory(memory_of_vtk({.file = 2 * file_bytes(file)}), max_memory);
+  const VtpFaces faces = vtk_functions.read_vtp_faces(read_bytes(file), max_memory);
+  const auto tag = static_cast<std::int32_t>(mesh.patch_names.size() + 1);
+  mesh.patch_names[tag] = file.stem().string();
+  for (std::size_t f = 0; f < faces.faces.size(); ++f) {
+    std::vector<std::uint32_t> corners = faces.faces[f];
+    for (std::uint32_t& p : corners) {
+      p = points.find(faces, p);
+      if (p == no_point) throw InvalidMesh(fmt::format("face {} has a point that the mesh does not have", f));
+    }
+    mesh.add_patch_face(corners, tag);
+    mesh.patch_source.push_back(static_cast<std::uint32_t>(mesh.patch_tags.size() - 1));
+  }
+}
+
+}  // namespace
+
+ParsedSurface parse_vtp_surface(std::string_view content, std::uint64_t max_memory) {
+  const VtpFaces faces = vtk_functions.read_vtp_faces(content, max_memory);
+  const FileText text(content);
+  ParsedSurface surface;
+  surface.format = "VTK XML (.vtp)";
+  for (const Vec3& p : faces.points) surface.add_point(p, text, true);
+  for (std::size_t f = 0; f < faces.faces.size(); ++f) {
+    if (!faces.groups.empty()) surface.enter_region(faces.groups[f] == "0" ? "" : faces.groups[f]);
+    surface.add_face(faces.faces[f], text, true);
+  }
+  surface.finish();
+  return surface;
+}
+
+bool is_simvascular(const fs::path& folder) {
+  std::error_code error;
+  return fs::is_directory(folder / "mesh-surfaces", error) && !mesh_file(folder).empty();
+}
+
+ParsedMesh parse_simvascular(const fs::path& folder, const ReadOptions& options) {
+  if (!has_vtk()) throw InvalidMesh(needs_vtk("read SimVascular's folders", "convert the mesh to .msh"));
+  const fs::path file = mesh_file(folder);
+  const auto named = [](const fs::path& path, auto&& read) {
+    try {
+      return read();
+    } catch (const InvalidMesh& e) {
+      throw InvalidMesh(fmt::format("{}: {}", path.filename().string(), e.what()));
+    }
+  };
+  ParsedMesh parsed = named(file, [&] {
+    check_memory(memory_of_vtk({.file = 2 * file_bytes(file)}), options.max_memory);
+    return vtk_functions.read_vtu(file, read_bytes(file), options);
+  });
+  parsed.format = "SimVascular";
+  MeshData& mesh = parsed.mesh;
+  mesh.patch_faces.clear();
+  mesh.patch_offsets = {0};
+  mesh.patch_tags.clear();
+  mesh.patch_source.clear();
+  mesh.patch_names.clear();
+  const MeshPoints points(mesh);
+  for (const fs::path& surface : files_in(folder / "mesh-surfaces", ".vtp"))
+    named(surface, [&] { add_patch(surface, points, options.max_memory, mesh); });
+  return parsed;
+}
+
+}  // namespace dartcast

@@ -1,0 +1,186 @@
+// Surfaces in .vtp files, and folders of SimVascular, whose patches they are.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <random>
+#include <set>
+
+#include "dartcast/generators.hpp"
+#include "dartcast/mesh_check.hpp"
+#include "dartcast/mesh_files.hpp"
+#include "output/mesh_report_text.hpp"
+#include "support/refusals.hpp"
+#include "support/same_mesh.hpp"
+#include "support/sample_mesh.hpp"
+#include "support/surface_files.hpp"
+#include "support/tier.hpp"
+#include "support/vtp_text.hpp"
+#include "support/with_vtk.hpp"
+#include "surface/check_surface.hpp"
+
+namespace dartcast::test::vtp_surface_test {
+
+std::vector<Vec3> corners_of_cube() {
+  std::vector<Vec3> points;
+  for (const Xyz& p : cube_points) points.push_back({p[0], p[1], p[2]});
+  return points;
+}
+
+std::string cube_vtp(const std::string& at_cells = "") {
+  return vtp_text(corners_of_cube(), cube_squares, "", at_cells);
+}
+
+TEST(VtpSurface, FacesAndGroups) {
+  SKIP_WITHOUT_VTK();
+  const Folder folder;
+  const MeshFile plain = check_surface(folder.file("a.vtp", cube_vtp()));
+  EXPECT_EQ(plain.report.verdict(), Verdict::accept) << report_text(plain.report);
+  EXPECT_EQ(plain.report.format, "VTK XML (.vtp)");
+  EXPECT_EQ(plain.mesh.points, corners_of_cube());
+  EXPECT_EQ(plain.mesh.cell_count(), 6U);
+  EXPECT_TRUE(plain.mesh.regions.empty());
+  for (const char* name : {"patch", "region", "ModelFaceID"}) {
+    const MeshFile file = check_surface(folder.file("a.vtp", cube_vtp(vtp_array(name, {7, 7, 0, 8, 8, 8}))));
+    ASSERT_TRUE(file.report.valid()) << report_text(file.report);
+    std::vector<std::string> names;
+    for (const std::int32_t tag : file.mesh.regions) names.push_back(tag == 0 ? "" : file.mesh.region_names.at(tag));
+    EXPECT_EQ(names, (std::vector<std::string>{"7", "7", "", "8", "8", "8"}));
+  }
+}
+
+TEST(VtpSurface, FilesThatAreNotRight) {
+  SKIP_WITHOUT_VTK();
+  const Folder folder;
+  const auto refused = [&](const std::string& content) {
+    const MeshFile file = check_surface(folder.file("a.vtp", content));
+    EXPECT_FALSE(file.report.valid()) << content;
+  };
+  refused("");
+  refused("<VTKFile/>");
+  refused("no xml");
+  std::string far = cube_vtp();
+  far.replace(far.find("0 3 2 1"), 1, "9");
+  refused(far);
+  refused(cube_vtp(vtp_array("patch", {1, 2})));
+  refused(cube_vtp().substr(0, 600));
+}
+
+TEST(VtpSurface, MutantsGetAVerdict) {
+  SKIP_WITHOUT_VTK();
+  const Folder folder;
+  const std::string whole = cube_vtp(vtp_array("patch", {7, 7, 0, 8, 8, 8}));
+  const std::vector<std::string> numbers = {"-1", "0", "3", "1e400", "nan", "4294967295", "9223372036854775807",
+                                            "x",  ""};
+  std::mt19937 random(29);
+  const int rounds = scaled(20000, 200000);
+  int accepted = 0;
+  for (int round = 0; round < rounds; ++round) {
+    std::string content = whole;
+    for (auto k = 1 + random() % 2; k > 0; --k) {
+      const std::size_t at = random() % content.size();
+      if (random() % 2 == 0) {
+        content[at] = static_cast<char>(random());
+        continue;
+      }
+      const std::size_t digit = std::min(content.find_first_of("0123456789", at), content.size());
+      const std::size_t end = std::min(content.find_first_not_of("0123456789", digit), content.size());
+      content = content.substr(0, digit) + numbers[random() % numbers.size()] + content.substr(end);
+    }
+    MeshFile file = check_surface(folder.file("a.vtp", content));
+    if (!file.report.valid()) {
+      ASSERT_FALSE(file.report.defects[0].message.empty()) << round;
+      continue;
+    }
+    ++accepted;
+    const MeshReport again = check_and_repair_surface(file.mesh);
+    ASSERT_TRUE(again.valid() && again.repairs.empty()) << round << "\n" << report_text(again);
+  }
+  EXPECT_GT(accepted, rounds / 100);
+}
+
+// SimVascular.
+
+struct SimVascularCase {
+  MeshData mesh;
+  std::map<std::string, std::set<std::set<std::uint32_t>>> patches;
+};
+
+/// A box, its sides in a .vtp file each, whose points are those of the mesh in another order.
+SimVascularCase write_case(const std::filesystem::path& folder, bool with_ids) {
+  BoxOptions options;
+  options.cells = {3, 2, 2};
+  options.type = CellType::tetrahedron;
+  SimVascularCase made{generate_box(options), {}};
+  MeshData mesh = made.mesh;
+  const std::size_t n = mesh.points.size();
+  DataArray ids{"GlobalNodeID", 1, {}};
+  for (std::size_t p = 0; p < n; ++p) ids.values.push_back(static_cast<double>(1 + (7 * p) % n));
+  if (with_ids) mesh.point_data.push_back(ids);
+  std::map<std::int32_t, std::vector<std::size_t>> faces;
+  for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) faces[mesh.patch_tags[f]].push_back(f);
+  std::filesystem::create_directories(folder / "mesh-surfaces");
+  for (const auto& [tag, list] : faces) {
+    std::vector<std::uint32_t> used;
+    for (const std::size_t f : list) used.insert(used.end(), mesh.patch_face(f).begin(), mesh.patch_face(f).end());
+    std::sort(used.rbegin(), used.rend());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    std::vector<Vec3> points;
+    std::vector<std::int64_t> numbers;
+    for (const std::uint32_t p : used) {
+      points.push_back(mesh.points[p]);
+      numbers.push_back(static_cast<std::int64_t>(ids.values[p]));
+      if (with_ids) points.back() *= 1.0 + 1e-7;  // as numbers of fewer digits
+    }
+    std::vector<std::vector<std::uint32_t>> own;
+    const std::string name = mesh.patch_names.at(tag);
+    for (const std::size_t f : list) {
+      own.emplace_back();
+      for (const std::uint32_t p : mesh.patch_face(f))
+        own.back().push_back(static_cast<std::uint32_t>(std::find(used.begin(), used.end(), p) - used.begin()));
+      made.patches[name].insert({mesh.patch_face(f).begin(), mesh.patch_face(f).end()});
+    }
+    write_bytes(folder / "mesh-surfaces" / (name + ".vtp"),
+                vtp_text(points, own, with_ids ? vtp_array("GlobalNodeID", numbers) : ""));
+  }
+  mesh.patch_faces.clear();
+  mesh.patch_offsets = {0};
+  mesh.patch_tags.clear();
+  mesh.patch_names.clear();
+  write_mesh(mesh, folder / "mesh-complete.mesh.vtu");
+  return made;
+}
+
+TEST(SimVascular, SurfacesNameThePatches) {
+  SKIP_WITHOUT_VTK();
+  for (const bool with_ids : {true, false}) {
+    const Folder folder;
+    const SimVascularCase made = write_case(folder / "mesh-complete", with_ids);
+    const MeshFile file = read_mesh(folder / "mesh-complete");
+    EXPECT_EQ(file.report.verdict(), Verdict::accept) << report_text(file.report);
+    EXPECT_EQ(file.report.format, "SimVascular");
+    EXPECT_EQ(file.mesh.points, made.mesh.points);
+    EXPECT_EQ(file.mesh.connectivity, made.mesh.connectivity);
+    std::map<std::string, std::set<std::set<std::uint32_t>>> patches;
+    for (std::size_t f = 0; f < file.mesh.patch_tags.size(); ++f)
+      patches[file.mesh.patch_names.at(file.mesh.patch_tags[f])].insert(
+          {file.mesh.patch_face(f).begin(), file.mesh.patch_face(f).end()});
+    EXPECT_EQ(patches, made.patches);
+    EXPECT_EQ(patches.size(), 6U);
+  }
+}
+
+TEST(SimVascular, FoldersThatAreNotRight) {
+  SKIP_WITHOUT_VTK();
+  const Folder folder;
+  (void)write_case(folder / "a", true);
+  write_bytes(folder / "a/mesh-surfaces/far.vtp", vtp_text({{9, 9, 9}, {9, 9, 8}, {9, 8, 9}}, {{0, 1, 2}}));
+  expect_parts(read_mesh(folder / "a").report.defects.at(0).message, {"far.vtp", "face 0", "does not have"});
+  write_bytes(folder / "a/mesh-surfaces/far.vtp", "<VTKFile/>");
+  expect_parts(read_mesh(folder / "a").report.defects.at(0).message, {"far.vtp"});
+  write_bytes(folder / "a/mesh-complete.mesh.vtu", "nothing");
+  expect_parts(read_mesh(folder / "a").report.defects.at(0).message, {"mesh-complete.mesh.vtu"});
+}
+
+}  // namespace dartcast::test::vtp_surface_test
