@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "dartcast/error.hpp"
 #include "dartcast/mesh_files.hpp"
 #include "dartcast/scene.hpp"
 #include "max_memory.hpp"
@@ -33,7 +35,17 @@ NamedSurface named_surface(const std::string& text, const std::string& inside) {
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
+// Before the mesher runs.
+void check_ending(const std::string& file) {
+  const std::vector<std::string> endings = writable_mesh_endings();
+  const bool known =
+      std::any_of(endings.begin(), endings.end(), [&](const std::string& e) { return file.ends_with(e); });
+  if (!known)
+    throw InvalidArgument(fmt::format("{}: a mesh is written to files that end in {}", file, fmt::join(endings, ", ")));
+}
+
 int mesh(const MeshArguments& a) {
+  check_ending(a.out);
   SurfaceScene scene = a.scene;
   for (const std::string& text : a.surfaces) scene.surfaces.push_back(named_surface(text, a.inside));
   const MeshFile made = mesh_surfaces(scene, {{}, a.max_memory, false, {}});

@@ -1,4 +1,4 @@
-// The verbs of mesh files: check, info and convert.
+// The verbs of files: check, info, convert and lagrangian.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -86,6 +86,20 @@ void add_convert(CLI::App& app, int& status) {
   const auto options = std::make_shared<ReadOptions>();
   add_read_options(*verb, *options);
   verb->callback([in, out, options, &status] { status = convert(*in, *out, *options); });
+}
+
+void add_lagrangian(CLI::App& app, int& status) {
+  const auto run = std::make_shared<std::string>();
+  const auto target = std::make_shared<std::string>();
+  const auto cloud = std::make_shared<std::string>("particles");
+  CLI::App* verb = app.add_subcommand("lagrangian", "Write a run's particles into an OpenFOAM case.");
+  verb->add_option("RUN", *run, "the folder of a run in the case's mesh")->required();
+  verb->add_option("CASE", *target, "the case: frames go to its folders TIME/lagrangian")->required();
+  verb->add_option("--cloud", *cloud, "the name of the cloud")->capture_default_str();
+  verb->callback([run, target, cloud, &status] {
+    fmt::print("{} frames in {}/*/lagrangian/{}\n", write_lagrangian(*run, *target, *cloud), *target, *cloud);
+    status = done;
+  });
 }
 
 }  // namespace dartcast::app

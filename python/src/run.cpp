@@ -112,6 +112,14 @@ void bind_summary(py::module_& m) {
   m.def("summary_json", &summary_json, py::arg("summary"), doc("summary_json"));
   m.def("summary_text", &summary_text, py::arg("summary"), doc("summary_text"));
   m.def("histogram_text", &histogram_text, py::arg("summary"), doc("histogram_text"));
+  m.def(
+      "write_lagrangian",
+      [](const std::filesystem::path& run_folder, const std::filesystem::path& openfoam_case,
+         const std::string& cloud) {
+        const py::gil_scoped_release release;
+        return write_lagrangian(run_folder, openfoam_case, cloud);
+      },
+      py::arg("run_folder"), py::arg("openfoam_case"), py::arg("cloud") = "particles", doc("write_lagrangian"));
   m.def("version", &version, doc("version"));
 }
 

@@ -55,18 +55,18 @@ SceneMesh load_scene_mesh(const EnvironmentScene& scene, const ReadOptions& opti
   return result;
 }
 
-LoadedScene load_scene_files(Scene scene, const ReadOptions& given, Threads threads) {
-  SceneMesh loaded = load_scene_mesh(scene.environment, given, threads);
-  ReadOptions options = given;
-  options.linearise = scene.environment.linearise;
+LoadedScene load_scene_files(Scene scene, const ReadOptions& options, Threads threads) {
+  SceneMesh loaded = load_scene_mesh(scene.environment, options, threads);
+  ReadOptions read = options;
+  read.linearise = scene.environment.linearise;
   for (DeformationScene& s : scene.deformation) {
     if (s.frames.empty()) continue;
     FieldSeries series = file_series({"deformation", {}, std::exchange(s.frames, {}), s.step.times, s.spacing});
     s.step.times = std::move(series.times);
-    s.step.reader = frame_reader(std::move(series.files), loaded.mesh, scene.environment, options);
+    s.step.reader = frame_reader(std::move(series.files), loaded.mesh, scene.environment, read);
   }
   for (FieldScene* field : {&scene.motion.field, &scene.motion.force})
-    load_field(*field, scene.environment, loaded.mesh, options);
+    load_field(*field, scene.environment, loaded.mesh, read);
   for (ParticlesScene& p : scene.particles) {
     auto* placed = std::get_if<PlacedParticles>(&p.source);
     if (placed == nullptr) continue;

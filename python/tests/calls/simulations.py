@@ -251,6 +251,7 @@ def of_runs() -> Calls:
     dc.run(SCENE, shown, threads=1)
     few = dc.ReportOptions(particles=2, frames=2)
     return {
+        "write_lagrangian": refused(lambda: dc.write_lagrangian(shown, FOLDER / "none")),
         "write_report": lambda: dc.write_report(shown, few),
         "write_report: refused": refused(lambda: dc.write_report(FOLDER / "none")),
         "report_file": lambda: dc.report_file(shown),
