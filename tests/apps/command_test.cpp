@@ -1,4 +1,6 @@
 // The command as its users see it: exit status, stdout, stderr, files.
+#include "support/command.hpp"
+
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -11,86 +13,19 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 
-#include "dartcast/generators.hpp"
 #include "dartcast/mesh_files.hpp"
-#include "support/foam_case.hpp"
 #include "support/shared_data.hpp"
 #include "support/with_vtk.hpp"
 
-namespace {
+namespace dartcast::command_test {
 
 namespace fs = std::filesystem;
 
-struct Result {
-  int status = -1;
-  std::string out;
-  std::string error;
-};
+using test::Result;
 
-class Command : public testing::Test {
- protected:
-  void SetUp() override {
-    const char* path = std::getenv("DARTCAST_BINARY");
-    const char* scenes = std::getenv("DARTCAST_SCENES");
-    ASSERT_TRUE(path != nullptr && scenes != nullptr) << "run this through ctest";
-    binary = path;
-    scenes_folder = scenes;
-    folder = fs::temp_directory_path() / ("dartcast_command_" + std::to_string(::getpid()));
-    fs::remove_all(folder);
-    fs::create_directories(folder);
-  }
-  void TearDown() override { fs::remove_all(folder); }
-
-  static std::string content(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
-  [[nodiscard]] fs::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder / name, std::ios::binary) << text;
-    return folder / name;
-  }
-
-  // Runs the command in the test's folder.
-  [[nodiscard]] Result run(const std::string& arguments) const {
-    Result result;
-    const std::string line = "cd '" + folder.string() + "' && '" + binary + "' " + arguments + " 2> error.txt";
-    FILE* pipe = popen(line.c_str(), "r");
-    std::array<char, 4096> buffer{};
-    for (std::size_t n = 0; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
-      result.out.append(buffer.data(), n);
-    const int status = pclose(pipe);
-    result.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    result.error = content(folder / "error.txt");
-    return result;
-  }
-
-  // One clear line on stderr, nothing on stdout.
-  void expect_failure(const std::string& arguments, int status, const std::string& part) const {
-    const Result r = run(arguments);
-    EXPECT_EQ(r.status, status) << arguments << "\n" << r.error;
-    EXPECT_EQ(r.out, "") << arguments;
-    EXPECT_EQ(std::count(r.error.begin(), r.error.end(), '\n'), 1) << arguments << "\n" << r.error;
-    EXPECT_EQ(r.error.rfind("dartcast: ", 0), 0U) << r.error;
-    EXPECT_NE(r.error.find(part), std::string::npos) << arguments << "\n" << r.error;
-  }
-
-  [[nodiscard]] std::string scene(const std::string& name) const {
-    return "'" + (fs::path(scenes_folder) / name).string() + "'";
-  }
-
-  // A tetrahedron, as Medit text.
-  [[nodiscard]] static std::string tetrahedron(const std::string& corners = "1 2 3 4") {
-    return "MeshVersionFormatted 2\nDimension 3\nVertices\n4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\nTetrahedra\n1\n" +
-           corners + " 5\nEnd\n";
-  }
-
-  std::string binary;
-  std::string scenes_folder;
-  fs::path folder;
-};
+class Command : public test::CommandTest {};
 
 TEST_F(Command, RunWritesItsFolderAndSaysSo) {
   const Result r = run("run " + scene("box.toml") + " --steps 5");
@@ -443,62 +378,6 @@ TEST_F(Command, TraceTellsWhatItCannotDo) {
   expect_failure("trace no.vtu" + ends, 1, "no.vtu");
 }
 
-TEST_F(Command, AMeshAroundASurface) {
-  (void)write(
-      "cube.off",
-      "OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 "
-      "5\n4 2 3 7 6\n4 3 0 4 7\n");
-  const Result r = run("mesh lumen=cube.off -o cube.msh --box 2 --outside tissue");
-  ASSERT_EQ(r.status, 0) << r.error;
-  EXPECT_NE(r.out.find("tetrahedra by"), std::string::npos);
-  EXPECT_NE(r.out.find("cube.msh\n"), std::string::npos);
-  const auto json = nlohmann::json::parse(run("info cube.msh --json").out);
-  EXPECT_EQ(json["regions"].size(), 2U) << json;
-  (void)write("open.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
-  const Result open = run("mesh open.off -o open.vtu");
-  EXPECT_EQ(open.status, 1);
-  EXPECT_NE(open.out.find("defect: open: 1 holes"), std::string::npos) << open.out;
-  expect_failure("mesh cube.off -o a.doc", 1, "a.doc: a mesh is written to files that end in");
-  expect_failure("mesh cube.off", 2, "-o");
-  expect_failure("mesh cube.off -o a.vtu --with netgen", 2, "netgen");
-}
-
-TEST_F(Command, ParticlesGoBackIntoAnOpenFoamCase) {
-  if (!dartcast::has_vtk()) GTEST_SKIP() << "frames of a run are read with VTK";
-  dartcast::BoxOptions options;
-  options.cells = {3, 3, 3};
-  dartcast::test::FoamWriter(folder / "case", {}).write(dartcast::test::foam_mesh(dartcast::generate_box(options)));
-  (void)write("s.toml",
-              "[environment]\nmesh = 'case'\n[[particles]]\ncount = 20\nvelocity = [0.1, 0, 0]\n[motion]\ndt = "
-              "0.25\nsteps = 4\n[output]\nevery = 2\n");
-  ASSERT_EQ(run("run s.toml -o out").status, 0);
-  const Result r = run("lagrangian out case --cloud dust");
-  ASSERT_EQ(r.status, 0) << r.error;
-  EXPECT_EQ(r.out, "3 frames in case/*/lagrangian/dust\n");
-  for (const char* time : {"0", "0.5", "1"}) {
-    for (const char* file : {"positions", "U", "origId"}) {
-      const std::string text = content(folder / "case" / time / "lagrangian/dust" / file);
-      EXPECT_NE(text.find("\n20\n(\n"), std::string::npos) << text;
-    }
-  }
-  // Each particle is in the cell that the file names: cell i + 3 j + 9 k of a unit lattice in a box of size 1.
-  const std::string text = content(folder / "case/1/lagrangian/dust/positions");
-  std::istringstream positions(text.substr(text.find("\n20\n(") + 6));
-  char bracket = 0;
-  double x = 0, y = 0, z = 0;
-  int cell = 0, count = 0;
-  while (positions >> bracket >> x >> y >> z >> bracket >> cell) {
-    EXPECT_EQ(cell, int(x * 3) + 3 * int(y * 3) + 9 * int(z * 3));
-    ++count;
-  }
-  EXPECT_EQ(count, 20);
-  // The case is still one, and its times have no points of their own.
-  EXPECT_EQ(run("check case").status, 0);
-  expect_failure("lagrangian out nothing", 1, "no folder of an OpenFOAM case");
-  expect_failure("lagrangian case case", 1, "particles.pvd");
-  expect_failure("lagrangian out case --cloud a/b", 1, "no name for a cloud");
-}
-
 TEST_F(Command, ConvertGoesRoundThroughAllFormats) {
   (void)write("a.mesh", tetrahedron());
   std::string from = "a.mesh";
@@ -632,4 +511,4 @@ TEST_F(Command, SharedDataIsAccepted) {
   EXPECT_EQ(nlohmann::json::parse(r.out)["audit"]["checked"], 25000);
 }
 
-}  // namespace
+}  // namespace dartcast::command_test

@@ -1,0 +1,75 @@
+// The verbs that bring scenes in and particles out: mesh, lagrangian.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "dartcast/generators.hpp"
+#include "dartcast/mesh_files.hpp"
+#include "support/command.hpp"
+#include "support/foam_case.hpp"
+
+namespace dartcast::scene_verbs_test {
+
+using test::Result;
+
+class SceneVerbs : public test::CommandTest {};
+
+TEST_F(SceneVerbs, AMeshAroundASurface) {
+  (void)write(
+      "cube.off",
+      "OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 "
+      "5\n4 2 3 7 6\n4 3 0 4 7\n");
+  const Result r = run("mesh lumen=cube.off -o cube.msh --box 2 --outside tissue");
+  ASSERT_EQ(r.status, 0) << r.error;
+  EXPECT_NE(r.out.find("tetrahedra by"), std::string::npos);
+  EXPECT_NE(r.out.find("cube.msh\n"), std::string::npos);
+  const auto json = nlohmann::json::parse(run("info cube.msh --json").out);
+  EXPECT_EQ(json["regions"].size(), 2U) << json;
+  (void)write("open.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  const Result open = run("mesh open.off -o open.vtu");
+  EXPECT_EQ(open.status, 1);
+  EXPECT_NE(open.out.find("defect: open: 1 holes"), std::string::npos) << open.out;
+  expect_failure("mesh cube.off -o a.doc", 1, "a.doc: a mesh is written to files that end in");
+  expect_failure("mesh cube.off", 2, "-o");
+  expect_failure("mesh cube.off -o a.vtu --with netgen", 2, "netgen");
+}
+
+TEST_F(SceneVerbs, ParticlesGoBackIntoAnOpenFoamCase) {
+  if (!has_vtk()) GTEST_SKIP() << "frames of a run are read with VTK";
+  BoxOptions options;
+  options.cells = {3, 3, 3};
+  test::FoamWriter(folder / "case", {}).write(test::foam_mesh(generate_box(options)));
+  (void)write("s.toml",
+              "[environment]\nmesh = 'case'\n[[particles]]\ncount = 20\nvelocity = [0.1, 0, 0]\n[motion]\ndt = "
+              "0.25\nsteps = 4\n[output]\nevery = 2\n");
+  ASSERT_EQ(run("run s.toml -o out").status, 0);
+  const Result r = run("lagrangian out case --cloud dust");
+  ASSERT_EQ(r.status, 0) << r.error;
+  EXPECT_EQ(r.out, "3 frames in case/*/lagrangian/dust\n");
+  for (const char* time : {"0", "0.5", "1"}) {
+    for (const char* file : {"positions", "U", "origId"}) {
+      const std::string text = content(folder / "case" / time / "lagrangian/dust" / file);
+      EXPECT_NE(text.find("\n20\n(\n"), std::string::npos) << text;
+    }
+  }
+  // Each particle is in the cell that the file names: cell i + 3 j + 9 k of a unit lattice in a box of size 1.
+  const std::string text = content(folder / "case/1/lagrangian/dust/positions");
+  std::istringstream positions(text.substr(text.find("\n20\n(") + 6));
+  char bracket = 0;
+  double x = 0, y = 0, z = 0;
+  int cell = 0, count = 0;
+  while (positions >> bracket >> x >> y >> z >> bracket >> cell) {
+    EXPECT_EQ(cell, int(x * 3) + 3 * int(y * 3) + 9 * int(z * 3));
+    ++count;
+  }
+  EXPECT_EQ(count, 20);
+  // The case is still one, and its times have no points.
+  EXPECT_EQ(run("check case").status, 0);
+  expect_failure("lagrangian out nothing", 1, "no folder of an OpenFOAM case");
+  expect_failure("lagrangian case case", 1, "particles.pvd");
+  expect_failure("lagrangian out case --cloud a/b", 1, "no name for a cloud");
+}
+
+}  // namespace dartcast::scene_verbs_test
