@@ -33,6 +33,13 @@ const pictures = [
     walls: { xmin: 'hidden', ymin: 'hidden', zmax: 'hidden', xmax: 'hidden' }, caption: 'Grains of two sizes come to rest in a box, coloured by speed',
   },
   { name: 'barrel', scenes: ['barrel'], at: 0.08, width: 800, caption: 'A barrel falls through a channel whose walls bulge' },
+  // Scenes of docs/howto. Two need files of their user beside them, and are made by name alone.
+  {
+    name: 'aneurysm', scenes: ['aneurysm'], at: 0.05, colour: 'speed', width: 800, byName: true,
+    caption: 'Particles sink in an aneurysm, whose wall is a surface from a file; coloured by speed',
+  },
+  { name: 'pipe', scenes: ['pipe'], at: 0.75, colour: 'speed', width: 800, byName: true, caption: 'Particles in a pipe of OpenFOAM that moves, coloured by speed' },
+  { name: 'contraction', scenes: ['contraction'], at: 0.5, colour: 'speed', width: 800, byName: true, caption: 'Grains in a vessel that contracts in waves, coloured by speed' },
   { name: 'catheter', scenes: ['catheter_left', 'catheter_right'], at: 1, width: 520, wallNames: true, caption: 'A catheter, steered into the left and into the right branch' },
 ];
 
@@ -176,7 +183,7 @@ async function main([command, scenes, out, ...names]) {
   if (missing) throw new Error(`${missing} is missing`);
   const work = mkdtempSync(join(tmpdir(), 'dartcast_pictures_'));
   try {
-    for (const picture of pictures.filter((p) => names.length === 0 || names.includes(p.name))) {
+    for (const picture of pictures.filter((p) => (names.length === 0 ? !p.byName : names.includes(p.name)))) {
       const files = picture.scenes.map((s) => report(command, scenes, s, work));
       if (!picture.moving) writeFileSync(join(out, `${picture.name}.png`), await still(browser, files, picture));
       else await moving(browser, files[0], picture, join(out, `${picture.name}.webp`), work);

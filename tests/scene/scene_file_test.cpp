@@ -538,4 +538,31 @@ TEST(SceneFile, ScenesOfTheProjectAreRead) {
   EXPECT_GE(blocks, 6);
 }
 
+// The scenes of docs/howto.md are those beside it, without their comments, in the same order.
+TEST(SceneFile, ScenesOfTheHowToPageAreRead) {
+  const char* folder = std::getenv("DARTCAST_SCENES");
+  ASSERT_NE(folder, nullptr);
+  const std::filesystem::path docs = std::filesystem::path(folder) / "../docs";
+  const auto content = [](const std::filesystem::path& path) {
+    std::ifstream file(path);
+    std::string text, line;
+    while (std::getline(file, line)) {
+      if (!line.starts_with("#") && !line.starts_with("seed")) text += line + "\n";
+    }
+    return text.substr(text.find_first_not_of('\n'));
+  };
+  std::ifstream file(docs / "howto.md");
+  std::stringstream text;
+  text << file.rdbuf();
+  const std::string page = text.str();
+  const std::regex block("```toml\n([^`]*)```");
+  std::sregex_iterator i(page.begin(), page.end(), block);
+  for (const char* name : {"aneurysm.toml", "pipe.toml", "contraction.toml"}) {
+    ASSERT_NE(i, std::sregex_iterator()) << name;
+    EXPECT_EQ((*i)[1].str(), content(docs / "howto" / name));
+    EXPECT_NO_THROW(read_scene(docs / "howto" / name)) << name;
+    ++i;
+  }
+}
+
 }  // namespace dartcast::scene_file_test
