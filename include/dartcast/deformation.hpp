@@ -16,6 +16,7 @@
 #include "dartcast/complex_edit.hpp"
 #include "dartcast/threads.hpp"
 #include "dartcast/vec3.hpp"
+#include "dartcast/vector_field.hpp"
 
 namespace dartcast {
 
@@ -47,13 +48,6 @@ inline constexpr std::array deformation_kinds = {
 /// The kind of that name; none if there is no such kind.
 std::optional<DeformationKind> deformation_kind(std::string_view name);
 
-/// How positions between frames follow from these.
-enum class Interpolation : std::uint8_t {
-  linear,  ///< from the two frames around the time: velocities jump at each frame
-  cubic    ///< from four: a cubic in time between two frames, with velocities that do not jump (Catmull-Rom's tangents,
-           ///< for unequal distances). Exact for motions that are quadratic in time.
-};
-
 /// Reads a frame: the position of every vertex at times[frame]. It may be called by another thread than the caller's,
 /// and by several at once where several deformations are made with it. Its exceptions reach the caller who needs the
 /// frame.
@@ -82,7 +76,7 @@ struct DeformationStep {
   FrameReader reader = {};                     ///< frames: instead of `frames`
   Interpolation interpolation = Interpolation::linear;  ///< frames
   /// frames: above 0, s: they repeat after this time, at least that from the first to the last. With just that, the last
-  /// frame is the first one again, and is not used.
+  /// frame should be the first one again.
   double cycle = 0.0;
 };
 

@@ -174,6 +174,7 @@ struct FieldScene {
   std::vector<double> times;  ///< s, increasing, one for each array or file; empty: by `spacing`
   double spacing = 0.0;       ///< s from one time to the next, the first at 0; 0: by `times`
   double period = 0.0;        ///< FieldSamples::period
+  Interpolation interpolation = Interpolation::linear;  ///< FieldSamples::interpolation
   /// Where it can read, used instead of all above but `frame`. load_scene_files() makes it for files. They are read
   /// while the simulation runs.
   FieldSamples samples;

@@ -1,12 +1,13 @@
 // A field of vectors (velocities, accelerations) given at the points or cells of a mesh, at one time or several.
 //
-// In space it is linear in each implicit simplex, or constant in each cell. In time it is linear between samples.
+// In space it is linear in each implicit simplex, or constant in each cell. In time it is interpolated between samples.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,6 +29,13 @@ enum class FieldPlace : std::uint8_t {
   cells    ///< constant in each cell, with a jump from cell to cell; never averaged
 };
 
+/// How values between samples at increasing times follow from these: those of a field, or frames of a deformation.
+enum class Interpolation : std::uint8_t {
+  linear,  ///< from the two samples around the time: rates jump at each sample
+  cubic    ///< from four: a cubic in time between two samples, with rates that do not jump (Catmull-Rom's tangents, for
+           ///< unequal distances). Exact for values that are quadratic in time.
+};
+
 /// The values of a field at increasing times.
 struct FieldSamples {
   std::string name = "the field";  ///< in messages
@@ -38,13 +46,17 @@ struct FieldSamples {
   /// sample, from one thread at a time.
   std::function<std::vector<Vec3>(std::size_t k)> read;
   /// 0: before the first time the field is as at the first, after the last time as at the last. Above 0, s: the field
-  /// repeats, and is at times[0] + period as at times[0]. Not less than the time from the first to the last.
+  /// repeats, and is at times[0] + period as at times[0]. Not less than the time from the first to the last. With just
+  /// that, the last sample should be the first one again.
   double period = 0.0;
+  Interpolation interpolation = Interpolation::linear;
 };
 
 /// Samples in memory, one list of values for each time.
 FieldSamples field_samples(std::vector<double> times, std::vector<std::vector<Vec3>> values,
                            FieldPlace place = FieldPlace::points, double period = 0.0);
+
+class SampleTimes;
 
 /// A vector field on a complex: at points or in cells, steady or at several times.
 class VectorField {
@@ -83,14 +95,6 @@ class VectorField {
                         const Corners& now, std::size_t moment = 0) const;
 
  private:
-  // Two samples, and the share of the second one.
-  struct Interval {
-    std::size_t from = 0;
-    std::size_t to = 0;
-    double share = 0.0;
-  };
-
-  [[nodiscard]] Interval interval(double time) const;
   [[nodiscard]] std::vector<std::size_t> needed(double begin, double end) const;
   [[nodiscard]] std::vector<Vec3> read(std::size_t k) const;
   void check(std::size_t k, std::span<const Vec3> values) const;
@@ -99,6 +103,7 @@ class VectorField {
   void spread(const CellComplex& complex, std::vector<Vec3>& values) const;
 
   FieldSamples samples_;
+  std::shared_ptr<const SampleTimes> times_of_samples_;
   FieldFrame frame_;
   std::size_t count_ = 0;  // of a sample's values
   bool plane_ = false;

@@ -36,7 +36,6 @@ void bind_steps(py::module_& m) {
                               {"PULSE", DeformationKind::pulse},
                               {"BUMP", DeformationKind::bump},
                               {"FRAMES", DeformationKind::frames}});
-  bind_enum<Interpolation>(m, "Interpolation", {{"LINEAR", Interpolation::linear}, {"CUBIC", Interpolation::cubic}});
   m.attr("FRAME_MEMORY") = frame_memory;
   m.attr("MAX_FRAMES_HELD") = max_frames_held;
   m.def("deformation_kind", &deformation_kind, py::arg("name"), doc("deformation_kind"));

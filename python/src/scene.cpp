@@ -116,6 +116,7 @@ void bind_motion(py::module_& m) {
       .field("times", &FieldScene::times)
       .field("spacing", &FieldScene::spacing)
       .field("period", &FieldScene::period)
+      .field("interpolation", &FieldScene::interpolation)
       .field("samples", &FieldScene::samples)
       .def_property_readonly("given", &FieldScene::given, doc("FieldScene::given"))
       .finish();

@@ -82,6 +82,7 @@ void update_after_edit(FieldHandle& h, const ComplexEditReport& edit, const Comp
 
 void bind_samples(py::module_& m) {
   bind_enum<FieldFrame>(m, "FieldFrame", {{"SPACE", FieldFrame::space}, {"MESH", FieldFrame::mesh}});
+  bind_enum<Interpolation>(m, "Interpolation", {{"LINEAR", Interpolation::linear}, {"CUBIC", Interpolation::cubic}});
   bind_enum<FieldPlace>(m, "FieldPlace", {{"POINTS", FieldPlace::points}, {"CELLS", FieldPlace::cells}});
   Record<FieldSamples>(m, "FieldSamples")
       .field("name", &FieldSamples::name)
@@ -89,6 +90,7 @@ void bind_samples(py::module_& m) {
       .field("times", &FieldSamples::times)
       .field("read", &FieldSamples::read)
       .field("period", &FieldSamples::period)
+      .field("interpolation", &FieldSamples::interpolation)
       .finish();
   m.def("field_samples", &field_samples, py::arg("times"), py::arg("values"), py::arg("place") = FieldPlace::points,
         py::arg("period") = 0.0, doc("field_samples"));

@@ -33,6 +33,7 @@ void read_table(TomlTable t, const std::filesystem::path& folder, FieldScene& fi
   const bool spacing = t.get("spacing", field.spacing, Range::positive);
   if (times && spacing) t.fail("spacing", "give times or spacing, not both");
   t.get("period", field.period, Range::positive);
+  t.get("interpolation", field.interpolation, {{"linear", Interpolation::linear}, {"cubic", Interpolation::cubic}});
   t.finish();
 }
 
@@ -195,6 +196,7 @@ void load_field(FieldScene& field, const EnvironmentScene& environment, const Me
   field.samples.place = files->find_place();
   field.samples.times = std::move(series.times);
   field.samples.period = field.period;
+  field.samples.interpolation = field.interpolation;
   field.samples.read = [files](std::size_t k) { return (*files)(k); };
   field.files.clear();
 }

@@ -49,7 +49,7 @@ DeformationFrames::DeformationFrames(DeformationStep step, std::size_t vertices)
   require(!step.reader || frames_.empty(), "give frames or a reader of them, not both");
   require(!step.times.empty() && (step.reader || step.times.size() == frames_.size()),
           "give one time per frame, and at least one frame");
-  times_ = FrameTimes(std::move(step.times), step.interpolation, step.cycle);
+  times_ = SampleTimes("deformation 1 (frames)", std::move(step.times), step.interpolation, step.cycle);
   for (std::size_t i = 0; i < frames_.size(); ++i) {
     require(frames_[i].size() == vertices, fmt::format("frame {} must have one position per vertex", i));
     require(std::all_of(frames_[i].begin(), frames_[i].end(), is_finite), fmt::format("frame {} must be finite", i));
@@ -67,11 +67,11 @@ void DeformationFrames::check_plane() const {
 
 FrameBlend DeformationFrames::at(double time, bool in_plane) {
   FrameBlend blend{{}, times_.at(time), {}};
-  if (ahead_) blend.read = ahead_->get(blend.use.first, blend.use.count);
-  for (std::size_t k = 0; k < blend.use.count; ++k) {
-    const std::size_t frame = (blend.use.first + k) % times_.size();
-    if (ahead_ && in_plane) check_in_plane(*blend.read[k], frame);
-    blend.frames[k] = ahead_ ? std::span<const Vec3>(blend.read[k]->points) : frames_[frame];
+  const std::span<const std::size_t> used(blend.use.samples.data(), blend.use.count);
+  if (ahead_) blend.read = ahead_->get(used);
+  for (std::size_t k = 0; k < used.size(); ++k) {
+    if (ahead_ && in_plane) check_in_plane(*blend.read[k], used[k]);
+    blend.frames[k] = ahead_ ? std::span<const Vec3>(blend.read[k]->points) : frames_[used[k]];
   }
   return blend;
 }

@@ -8,15 +8,15 @@
 #include <vector>
 
 #include "dartcast/deformation.hpp"
-#include "simulation/frame_blend.hpp"
 #include "simulation/frame_read_ahead.hpp"
+#include "simulation/sample_times.hpp"
 
 namespace dartcast {
 
 /// The frames that count at a time, and their weights. One alone is copied.
 struct FrameBlend {
   std::array<std::span<const Vec3>, 4> frames;
-  FrameWeights use;
+  SampleWeights use;
   FrameReadAhead::Frames read = {};  ///< keeps them; empty where they are in memory
 
   /// Writes the positions of the vertices in [begin, end).
@@ -36,7 +36,7 @@ class DeformationFrames {
   FrameBlend at(double time, bool in_plane);
 
  private:
-  FrameTimes times_;
+  SampleTimes times_;
   std::vector<std::vector<Vec3>> frames_;
   std::unique_ptr<FrameReadAhead> ahead_;  // none where all frames are in memory
 };

@@ -29,7 +29,7 @@ void check(const std::vector<Vec3>& points, std::size_t frame, std::size_t verti
 
 }  // namespace
 
-FrameReadAhead::FrameReadAhead(FrameReader reader, const FrameTimes& times, std::size_t vertices)
+FrameReadAhead::FrameReadAhead(FrameReader reader, const SampleTimes& times, std::size_t vertices)
     : reader_(std::move(reader)),
       count_(times.size()),
       vertices_(vertices),
@@ -45,28 +45,34 @@ FrameReadAhead::~FrameReadAhead() {
   if (thread_.joinable()) thread_.join();
 }
 
-FrameReadAhead::Frames FrameReadAhead::get(std::size_t first, std::size_t count) {
+FrameReadAhead::Frames FrameReadAhead::get(std::span<const std::size_t> frames) {
   const std::lock_guard turn(turn_);
   std::unique_lock lock(mutex_);
   if (!thread_.joinable()) start();
-  first_ = first;
-  const auto needed = [&](std::size_t k) { return (first + k) % count_; };
-  const auto is_needed = [&](std::size_t frame) { return (frame + count_ - first) % count_ < count; };
+  first_ = frames.front();
+  // The frames from the first to the last one that is needed, in the order in which they are read.
+  const auto place = [&](std::size_t frame) { return (frame + count_ - first_) % count_; };
+  std::size_t last = 0;
+  for (const std::size_t frame : frames) last = std::max(last, place(frame));
   std::erase_if(frames_, [&](const auto& f) {
-    return !is_wanted(f.first) || (is_needed(f.first) && f.second->error != nullptr);
+    return !is_wanted(f.first) || (place(f.first) <= last && f.second->error != nullptr);
   });
   wanted_.notify_one();
-  ready_.wait(lock, [&] {
-    for (std::size_t k = 0; k < count; ++k) {
-      const auto found = frames_.find(needed(k));
-      if (found == frames_.end()) return false;
-      if (found->second->error != nullptr) return true;  // behind it no further one is read
-    }
-    return true;
-  });
-  Frames frames;
-  for (std::size_t k = 0; k < count; ++k) frames[k] = read_without_error(needed(k));
-  return frames;
+  const auto missing = [&](std::size_t frame) { return !frames_.contains(frame); };
+  ready_.wait(lock, [&] { return std::none_of(frames.begin(), frames.end(), missing) || !next().has_value(); });
+  rethrow_error(last);
+  Frames found;
+  for (std::size_t k = 0; k < frames.size(); ++k) found[k] = frames_.at(frames[k]);
+  return found;
+}
+
+// Throws the error of the first frame that could not be read, if one is among the first ones up to this place: behind it
+// no further one has been read.
+void FrameReadAhead::rethrow_error(std::size_t last) const {
+  for (std::size_t k = 0; k <= last; ++k) {
+    const auto found = frames_.find((first_ + k) % count_);
+    if (found != frames_.end() && found->second->error != nullptr) std::rethrow_exception(found->second->error);
+  }
 }
 
 bool FrameReadAhead::is_wanted(std::size_t frame) const {
@@ -80,12 +86,6 @@ void FrameReadAhead::start() {
   } catch (const std::system_error& e) {
     throw Error(fmt::format("deformation: no thread can be started to read frames: {}", e.what()));
   }
-}
-
-std::shared_ptr<const ReadFrame> FrameReadAhead::read_without_error(std::size_t frame) const {
-  const std::shared_ptr<const ReadFrame>& found = frames_.at(frame);
-  if (found->error != nullptr) std::rethrow_exception(found->error);
-  return found;
 }
 
 void FrameReadAhead::read_on() {

@@ -9,11 +9,12 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <thread>
 #include <vector>
 
 #include "dartcast/deformation.hpp"
-#include "simulation/frame_blend.hpp"
+#include "simulation/sample_times.hpp"
 
 namespace dartcast {
 
@@ -29,17 +30,17 @@ struct ReadFrame {
 class FrameReadAhead {
  public:
   /// Frames of so many vertices at these times. The thread starts with the first call of get().
-  FrameReadAhead(FrameReader reader, const FrameTimes& times, std::size_t vertices);
+  FrameReadAhead(FrameReader reader, const SampleTimes& times, std::size_t vertices);
   /// Waits for the frame that is being read.
   ~FrameReadAhead();
   FrameReadAhead(const FrameReadAhead&) = delete;
   FrameReadAhead& operator=(const FrameReadAhead&) = delete;
 
   using Frames = std::array<std::shared_ptr<const ReadFrame>, 4>;
-  /// Waits for `count` frames, at most FrameTimes::needed(), from `first` on: of a cycle again from 0 behind the last.
-  /// Any thread may call it; one at a time is served. Throws where one cannot be read: now, not only when it was tried
-  /// ahead of its time. Throws Error where no thread can be started.
-  Frames get(std::size_t first, std::size_t count);
+  /// Waits for frames, at most SampleTimes::needed(), in the order of their times; of a cycle again from 0 behind the
+  /// last. Any thread may call it; one at a time is served. Throws where one cannot be read: now, not only when it was
+  /// tried ahead of its time. Throws Error where no thread can be started.
+  Frames get(std::span<const std::size_t> frames);
 
   /// Frames that are held at most.
   [[nodiscard]] std::size_t capacity() const { return capacity_; }
@@ -50,7 +51,7 @@ class FrameReadAhead {
   [[nodiscard]] std::optional<std::size_t> next() const;
   [[nodiscard]] bool is_wanted(std::size_t frame) const;
   [[nodiscard]] std::shared_ptr<const ReadFrame> read(std::size_t frame) const;
-  [[nodiscard]] std::shared_ptr<const ReadFrame> read_without_error(std::size_t frame) const;
+  void rethrow_error(std::size_t last) const;
 
   const FrameReader reader_;
   const std::size_t count_, vertices_, capacity_;

@@ -136,7 +136,9 @@ FieldSamples field_samples_of(const FieldScene& scene, const MeshData& mesh) {
   for (const std::string& name : names) values.push_back(field_values(mesh, name, place));
   std::vector<double> times =
       sample_times(fmt::format("the field '{}'", scene.array), scene.times, scene.spacing, names.size(), "arrays");
-  return field_samples(std::move(times), std::move(values), place, scene.period);
+  FieldSamples samples = field_samples(std::move(times), std::move(values), place, scene.period);
+  samples.interpolation = scene.interpolation;
+  return samples;
 }
 
 std::optional<VectorField> scene_field(const FieldScene& scene, const std::string& name, const MeshData& mesh,

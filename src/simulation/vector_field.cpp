@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "base/parallel.hpp"
 #include "dartcast/error.hpp"
+#include "simulation/sample_times.hpp"
 
 namespace dartcast {
 
@@ -46,6 +48,15 @@ void check_times(const FieldSamples& s) {
                      s.period, span));
 }
 
+Vec3 blended(const std::array<const Vec3*, 4>& from, const SampleWeights& use, std::size_t i) {
+  const Vec3& a = from[0][i];
+  if (use.count == 1) return a;
+  if (use.count == 2) return a + (from[1][i] - a) * use.weights[1];
+  Vec3 sum = a * use.weights[0];
+  for (std::size_t k = 1; k < use.count; ++k) sum += from[k][i] * use.weights[k];
+  return sum;
+}
+
 FieldSamples steady_samples(std::span<const Vec3> values) {
   return field_samples({0.0}, {std::vector<Vec3>(values.begin(), values.end())});
 }
@@ -70,6 +81,8 @@ VectorField::VectorField(const CellComplex& complex, std::span<const Vec3> value
 VectorField::VectorField(const CellComplex& complex, FieldSamples samples, FieldFrame frame)
     : samples_(std::move(samples)), frame_(frame), plane_(complex.map().dimension() == 2) {
   check_times(samples_);
+  times_of_samples_ =
+      std::make_shared<const SampleTimes>(samples_.name, samples_.times, samples_.interpolation, samples_.period);
   if (samples_.place == FieldPlace::cells) {
     find_rows(complex);
   } else {
@@ -129,39 +142,22 @@ const std::vector<Vec3>& VectorField::sample(std::size_t k) {
   return at != held_.end() ? at->second : held_.emplace(k, read(k)).first->second;
 }
 
-VectorField::Interval VectorField::interval(double time) const {
-  const std::vector<double>& times = samples_.times;
-  double t = time;
-  if (samples_.period > 0.0) {
-    const double since = time - times.front();
-    const double phase = since - std::floor(since / samples_.period) * samples_.period;
-    t = times.front() + (phase >= 0.0 && phase < samples_.period ? phase : 0.0);
-  }
-  if (t <= times.front()) return {0, samples_.period > 0.0 ? std::size_t{1} : 0, 0.0};
-  const auto after = std::upper_bound(times.begin(), times.end(), t);
-  const auto k = static_cast<std::size_t>(after - times.begin()) - 1;
-  if (after != times.end()) return {k, k + 1, (t - times[k]) / (times[k + 1] - times[k])};
-  if (samples_.period == 0.0) return {k, k, 0.0};
-  const double gap = times.front() + samples_.period - times.back();
-  return {k, 0, gap > 0.0 ? std::min((t - times.back()) / gap, 1.0) : 0.0};
-}
-
+// Those that times from `begin` to `end` need, in their order.
 std::vector<std::size_t> VectorField::needed(double begin, double end) const {
-  std::vector<std::size_t> numbers;
-  const std::size_t from = interval(begin).from;
-  const std::size_t to = interval(end).to;
-  if (samples_.period == 0.0) {
-    for (std::size_t k = from; k <= to; ++k) numbers.push_back(k);
-    return numbers;
-  }
-  const std::size_t count = samples_.times.size();
-  numbers.push_back(from);
-  std::size_t k = (from + 1) % count;
-  for (; k != to || end - begin >= samples_.period; k = (k + 1) % count) {
-    if (k == from) return numbers;  // all of them
+  const SampleWeights first = times_of_samples_->at(begin);
+  const SampleWeights last = times_of_samples_->at(end);
+  const std::size_t size = times_of_samples_->size();
+  const std::size_t from = first.samples[0];
+  const std::size_t to = last.samples[last.count - 1];
+  // In a cycle the last sample that is needed may be the first one again, after a whole turn.
+  const bool turns =
+      times_of_samples_->repeat() && (end - begin >= samples_.period || size < times_of_samples_->needed());
+  std::vector<std::size_t> numbers = {from};
+  for (std::size_t k = from; turns || k != to;) {
+    k = (k + 1) % size;
+    if (k == from) break;  // all of them
     numbers.push_back(k);
   }
-  if (k != from) numbers.push_back(k);
   return numbers;
 }
 
@@ -178,13 +174,13 @@ void VectorField::set_times(std::span<const double> times, const CellComplex& co
   times_.clear();
   values_.resize(times.size());
   for (std::size_t m = 0; m < times.size(); ++m) {
-    const Interval in = interval(times[m]);
-    const std::vector<Vec3>& a = sample(in.from);
-    const std::vector<Vec3>& b = sample(in.to);
+    const SampleWeights use = times_of_samples_->at(times[m]);
+    std::array<const Vec3*, 4> from{};
+    for (std::size_t k = 0; k < use.count; ++k) from[k] = sample(use.samples[k]).data();
     std::vector<Vec3>& out = values_[m];
     out.resize(count_);
     parallel_for(count_, value_grain, threads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) out[i] = a[i] + (b[i] - a[i]) * in.share;
+      for (std::size_t i = begin; i < end; ++i) out[i] = blended(from, use, i);
     });
     spread(complex, out);
   }

@@ -173,6 +173,52 @@ TEST(Fields, ACyclicFieldWraps) {
   EXPECT_EQ(reads.size(), 4U * 4U + 2U) << "each once in a cycle, and those of the time 4";
 }
 
+// Values that are quadratic in time, at unequal distances; each sample is held as long as four need it.
+TEST(Fields, ACubicInTimeIsExactForQuadratics) {
+  const MeshData mesh = test::cube_of(2, 10.0);
+  Environment environment(mesh);
+  const auto value = [](double t) { return Vec3{0.3 - 0.2 * t + 0.15 * t * t, 0.01 * t * t, 0.02 * t}; };
+  std::vector<std::size_t> reads;
+  FieldSamples s;
+  s.times = {-1.0, -0.25, 0.5, 0.75, 1.5, 2.0, 3.0};
+  s.interpolation = Interpolation::cubic;
+  s.read = [&](std::size_t k) {
+    reads.push_back(k);
+    return std::vector<Vec3>(mesh.points.size(), value(s.times[k]));
+  };
+  Simulation simulation(environment, options(0.0625));
+  simulation.set_field(VelocityField(environment.complex(), s));
+  simulation.add({{1, 5, 5}}, {});
+  for (int i = 0; i < 30; ++i) {  // up to 1.875
+    simulation.step();
+    expect_near(simulation.velocities()[0], value(0.0625 * i), 1e-14);
+  }
+  EXPECT_EQ(reads, (std::vector<std::size_t>{0, 1, 2, 3, 4, 5, 6}));
+}
+
+TEST(Fields, ACubicFieldMayRepeat) {
+  const MeshData mesh = test::cube_of(2, 10.0);
+  for (const double period : {1.0, 1.25}) {
+    Environment environment(mesh);
+    FieldSamples s;
+    s.times = {0.0, 0.25, 0.5, 1.0};
+    s.interpolation = Interpolation::cubic;
+    s.period = period;
+    const std::array heights = {0.0, 2.0, -1.0, 0.0};
+    s.read = [&](std::size_t k) { return std::vector<Vec3>(mesh.points.size(), Vec3{heights[k], 0, 0}); };
+    VelocityField field(environment.complex(), s);
+    const auto at = [&](double t) {
+      field.set_times({{t}}, environment.complex());
+      return field.values()[0].x;
+    };
+    for (const double t : {0.0, 0.1, 0.25, 0.3, 0.9}) EXPECT_NEAR(at(t), at(t + 2.0 * period), 1e-14) << t;
+    for (std::size_t k = 0; k < 4; ++k) EXPECT_DOUBLE_EQ(at(s.times[k]), heights[k]);
+    constexpr double h = 1e-6;
+    for (const double t : {0.25, 0.5, 1.0, period})
+      EXPECT_NEAR((at(t) - at(t - h)) / h, (at(t + h) - at(t)) / h, 1e-3) << period << " at " << t;
+  }
+}
+
 TEST(Fields, WithoutAPeriodTheLastSampleStays) {
   const MeshData mesh = test::cube_of(2, 10.0);
   Environment environment(mesh);
