@@ -4,7 +4,9 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -207,6 +209,33 @@ TEST_F(OpenFoamScene, PartsOfSeveralProcessors) {
   FoamWriter(folder_ / "case", {}).write(test::foam_mesh(mesh));
   EXPECT_EQ(load("[motion]\nfield = { array = 'U', files = 'case' }\n").motion.field.samples.read(1),
             velocities(mesh.cell_count(), samples.times[1]));
+}
+
+TEST_F(OpenFoamScene, PointsOfPartsAtATime) {
+  const MeshData mesh = box();
+  std::vector<std::size_t> part(mesh.cell_count(), 0);
+  test::write_foam_parts(folder_ / "case", {}, test::foam_mesh(mesh), part);
+  const fs::path own = folder_ / "case/processor0";
+  const MeshFile rest = read_mesh(folder_ / "case");
+  ASSERT_TRUE(rest.report.valid());
+  // The part has the points of the whole in another order: its addressing says which.
+  std::ifstream file(own / "constant/polyMesh/pointProcAddressing");
+  std::string text((std::istreambuf_iterator<char>(file)), {});
+  std::istringstream list(text.substr(text.find('(') + 1));
+  std::vector<Vec3> points;
+  for (std::size_t label = 0; list >> label;) points.push_back(swayed(mesh.points, 2.0)[label]);
+  ASSERT_EQ(points.size(), mesh.points.size());
+  FoamWriter(own, {}).points("2", points);
+  EXPECT_EQ(read_mesh(folder_ / "case/2").mesh.points, swayed(mesh.points, 2.0));
+  const DeformationStep step = load("[[deformation]]\nkind = 'frames'\nfiles = 'case'\n").deformation.front().step;
+  EXPECT_EQ(step.reader(1), swayed(mesh.points, 2.0));
+  // A label far beyond all points takes no memory.
+  std::vector<std::int64_t> labels(points.size(), 4000000000);
+  FoamWriter(own, {}).labels_file("pointProcAddressing", labels);
+  FoamWriter(folder_ / "case", {}).write(test::foam_mesh(mesh));
+  const MeshFile far = read_mesh(folder_ / "case/2");
+  ASSERT_FALSE(far.report.valid());
+  test::expect_parts(far.report.defects[0].message, {"pointProcAddressing", "4000000000"});
 }
 
 TEST_F(OpenFoamScene, WhatIsRefused) {

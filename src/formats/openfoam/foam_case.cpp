@@ -161,16 +161,29 @@ std::vector<Vec3> FoamCase::points(std::uint64_t max_memory) const {
   if (time == "constant" && parts_.empty()) return read_poly_points(mesh_, max_memory);
   const fs::path whole = folder_of(time) / "polyMesh";
   if (has_foam_file(whole, "points")) return read_poly_points(whole, max_memory);
-  std::vector<Vec3> points;
+  struct Part {
+    std::vector<std::uint32_t> labels;
+    std::vector<Vec3> points;
+  };
+  std::vector<Part> parts;
+  std::size_t most = 0;  // points of the whole: no more than those of the parts together
   for (const fs::path& processor : processors_) {
-    const auto labels = part_labels(processor / "constant" / "polyMesh", "pointProcAddressing", max_memory);
-    const std::vector<Vec3> own = read_poly_points(processor / time / "polyMesh", max_memory);
+    auto labels = part_labels(processor / "constant" / "polyMesh", "pointProcAddressing", max_memory);
+    std::vector<Vec3> own = read_poly_points(processor / time / "polyMesh", max_memory);
     if (own.size() != labels.size())
       throw InvalidMesh(fmt::format("{}/{}/polyMesh/points: {} points, but pointProcAddressing has {}",
                                     processor.filename().string(), time, own.size(), labels.size()));
-    for (std::size_t i = 0; i < own.size(); ++i) {
-      if (labels[i] >= points.size()) points.resize(labels[i] + std::size_t{1});
-      points[labels[i]] = own[i];
+    most += own.size();
+    parts.push_back({std::move(labels), std::move(own)});
+  }
+  std::vector<Vec3> points;
+  for (const Part& part : parts) {
+    for (std::size_t i = 0; i < part.points.size(); ++i) {
+      if (part.labels[i] >= most)
+        throw InvalidMesh(fmt::format("pointProcAddressing: a point has the label {}; there are at most {} points",
+                                      part.labels[i], most));
+      if (part.labels[i] >= points.size()) points.resize(part.labels[i] + std::size_t{1});
+      points[part.labels[i]] = part.points[i];
     }
   }
   return points;

@@ -12,9 +12,16 @@
 namespace dartcast {
 namespace {
 
-std::size_t faces_in(const PolyMesh& mesh, std::size_t patch) {
-  return static_cast<std::size_t>(std::count(mesh.patch.begin(), mesh.patch.end(), static_cast<std::uint32_t>(patch)));
+/// The number of faces in each patch.
+std::vector<std::size_t> patch_sizes(const PolyMesh& mesh) {
+  std::vector<std::size_t> sizes(mesh.patches.size(), 0);
+  for (const std::uint32_t p : mesh.patch) {
+    if (p != none) ++sizes[p];
+  }
+  return sizes;
 }
+
+bool is_cyclic(const PolyPatch& patch) { return patch.type.starts_with("cyclic"); }
 
 void add_regions(const PolyMesh& mesh, ParsedMesh& parsed) {
   MeshData& out = parsed.mesh;
@@ -63,21 +70,22 @@ std::vector<std::int32_t> face_tags(const PolyMesh& mesh, ParsedMesh& parsed) {
 void warn_of_cyclic(const PolyMesh& mesh, ParsedMesh& parsed) {
   std::vector<std::string> names;
   Finding finding{"cyclic", 0, {}, ""};
-  for (std::uint32_t p = 0; p < mesh.patches.size(); ++p) {
-    if (!mesh.patches[p].type.starts_with("cyclic") || faces_in(mesh, p) == 0) continue;
-    names.push_back(mesh.patches[p].name);
-    for (std::uint32_t f = 0; f < mesh.patch.size(); ++f) {
-      if (mesh.patch[f] == p) finding.add(f);
-    }
+  const std::vector<std::size_t> sizes = patch_sizes(mesh);
+  for (std::size_t p = 0; p < sizes.size(); ++p) {
+    if (is_cyclic(mesh.patches[p]) && sizes[p] > 0) names.push_back(mesh.patches[p].name);
+  }
+  for (std::size_t f = 0; f < mesh.patch.size(); ++f) {
+    if (mesh.patch[f] != none && is_cyclic(mesh.patches[mesh.patch[f]])) finding.add(f);
   }
   finding.message = fmt::format("faces in cyclic patches ({}): they are walls here", fmt::join(names, ", "));
   add_finding(parsed.warnings, finding);
 }
 
 void refuse_types(const PolyMesh& mesh) {
-  for (std::uint32_t p = 0; p < mesh.patches.size(); ++p) {
+  const std::vector<std::size_t> sizes = patch_sizes(mesh);
+  for (std::size_t p = 0; p < sizes.size(); ++p) {
     const PolyPatch& patch = mesh.patches[p];
-    if (faces_in(mesh, p) == 0) continue;
+    if (sizes[p] == 0) continue;
     if (patch.type == "wedge")
       throw InvalidMesh(
           fmt::format("the patch {} is a wedge: meshes that stand for a full turn are not supported; make "
