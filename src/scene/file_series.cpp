@@ -33,7 +33,8 @@ void check_exist(std::span<const fs::path> files) {
 }
 
 bool names_series(const fs::path& file) {
-  const bool folder = mesh_format_of(file) == nullptr;  // a case, whether it is there or not
+  // A case, whether it is there or not.
+  const bool folder = mesh_format_of(file) == nullptr && ending_of(file) != ".vtp";
   return is_pattern(file.filename().string()) || ending_of(file) == ".pvd" || folder;
 }
 

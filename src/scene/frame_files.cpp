@@ -15,6 +15,7 @@
 #include "formats/file_text.hpp"
 #include "formats/format_table.hpp"
 #include "formats/openfoam.hpp"
+#include "formats/point_file.hpp"
 #include "formats/vtk_functions.hpp"
 #include "mesh/same_cells.hpp"
 #include "scene/file_series.hpp"
@@ -42,7 +43,9 @@ class FrameFiles {
   [[nodiscard]] std::vector<Vec3> read(std::size_t frame) const {
     try {
       std::vector<Vec3> points;
-      if (auto same = read_same_cells(files_.at(frame))) {
+      if (has_points_alone(files_.at(frame))) {
+        points = read_points_alone(files_[frame]);
+      } else if (auto same = read_same_cells(files_.at(frame))) {
         points = std::move(*same);
       } else {
         points = read_whole(files_[frame]).points;
@@ -63,11 +66,22 @@ class FrameFiles {
     } else {
       read = valid_file(std::move(read));
     }
-    if (read.mesh.points.size() != points_) {
-      throw InvalidMesh(fmt::format("{}: {} points; the scene's mesh has {}: frames must have the same points",
-                                    file.string(), read.mesh.points.size(), points_));
-    }
+    check_count(file, read.mesh.points.size());
     return std::move(read.mesh);
+  }
+
+  void check_count(const fs::path& file, std::size_t points) const {
+    if (points == points_) return;
+    throw InvalidMesh(fmt::format("{}: {} points; the scene's mesh has {}: frames must have the same points",
+                                  file.string(), points, points_));
+  }
+
+  // A .vtp file has no cells of the mesh: its points are the mesh's, in their order.
+  static bool has_points_alone(const fs::path& file) { return ending_of(file) == ".vtp"; }
+  [[nodiscard]] std::vector<Vec3> read_points_alone(const fs::path& file) const {
+    std::vector<Vec3> points = read_points(file, options_).points;
+    check_count(file, points.size());
+    return points;
   }
 
   // Keeps the cells of a frame that the scene's mesh has, by their places in the input file.
@@ -83,6 +97,10 @@ class FrameFiles {
   }
 
   void read_first() {
+    if (has_points_alone(files_.front())) {
+      static_cast<void>(read_points_alone(files_.front()));
+      return;
+    }
     MeshData first = read_whole(files_.front());
     const std::optional<VtuPoints> plain = skips_cells_ ? std::nullopt : read_points_of(files_.front());
     if (!plain || plain->points != first.points) return;

@@ -22,6 +22,7 @@
 #include "support/expectations.hpp"
 #include "support/meshes.hpp"
 #include "support/vtk_files.hpp"
+#include "support/vtp_text.hpp"
 
 namespace dartcast::frame_files_test {
 
@@ -163,6 +164,25 @@ TEST_F(FrameFilesTest, ChecksFilesAtTheStartAndCountsWhenTheyAreRead) {
   EXPECT_EQ(read(2), moved(test::cubes(2), [](Vec3& x) { x *= 2.0; }).points);
   fs::remove(good);
   EXPECT_NE(test::error_text([&] { read(2); }).find("a.vtu: no such file"), std::string::npos);
+}
+
+TEST_F(FrameFilesTest, PointsAloneAreThoseOfTheMesh) {
+  const MeshData mesh = test::cubes(2);
+  const std::vector<Vec3> swayed = moved(mesh, sway).points;
+  const fs::path first = write("a.vtp", test::vtp_text(mesh.points, {{0, 1, 2}}));
+  EnvironmentScene doubling;
+  doubling.scale = 2.0;
+  const FrameReader read = frame_reader({first, write("b.vtp", test::vtp_text(swayed, {})), write("c.vtu", mesh),
+                                         write("d.vtp", test::vtp_text({swayed.begin(), swayed.end() - 1}, {}))},
+                                        mesh, doubling, {});
+  const auto doubled = [](std::vector<Vec3> points) {
+    for (Vec3& x : points) x *= 2.0;
+    return points;
+  };
+  EXPECT_EQ(read(0), doubled(mesh.points));
+  EXPECT_EQ(read(1), doubled(swayed));
+  EXPECT_EQ(read(2), doubled(mesh.points));
+  EXPECT_NE(test::error_text([&] { read(3); }).find("d.vtp: 26 points; the scene's mesh has 27"), std::string::npos);
 }
 
 TEST_F(FrameFilesTest, AMeshStaysValidWhileItsCellsArePositive) {
