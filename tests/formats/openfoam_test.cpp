@@ -341,6 +341,7 @@ TEST(OpenFoam, FilesThatAreNotRight) {
       {"points", "vectorField", "12{(0 0 0)}", {"without volume"}},
       {"faces", "faceList", "1(4(0 1 2 77))", {"faces: item 3 is 77", "less than 12"}},
       {"faces", "faceList", "1(2(0 1))", {"face 0 has 2 corners"}},
+      {"faces", "faceList", "100{100{0}}", {"faces", "more labels than the file has bytes"}},
       {"faces", "faceList", "0()", {"owner"}},
       {"owner", "labelList", "3(0 0 0)", {"3 owners for"}},
       {"owner", "labelList", "3(0 0 -1)", {"owners: item 2 is -1"}},

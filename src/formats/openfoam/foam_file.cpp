@@ -292,40 +292,33 @@ double FoamFile::raw_scalar(std::string_view raw, std::size_t i) const {
   return scalar_bytes_ == 4 ? raw_number<float>(bytes, order_) : raw_number<double>(bytes, order_);
 }
 
-std::uint32_t FoamFile::checked(std::int64_t label, std::string_view what, std::uint64_t limit,
-                                std::size_t item) const {
-  if (label < 0 || static_cast<std::uint64_t>(label) >= limit)
-    fail(fmt::format("{}: item {} is {}; it must be from 0 to less than {}", what, item, label, limit));
-  return static_cast<std::uint32_t>(label);
+template <class Label, class Checked>
+std::vector<Label> FoamFile::read_labels(std::string_view what, Checked&& checked) {
+  std::vector<Label> out;
+  read_list(
+      what, label_bytes_, [&] { out.push_back(checked(integer("a label", INT64_MIN, INT64_MAX), out.size())); },
+      [&](std::string_view raw, std::size_t n) {
+        out.reserve(n);
+        for (std::size_t i = 0; i < n; ++i) out.push_back(checked(raw_label(raw, i), i));
+      });
+  return out;
 }
 
 std::vector<std::uint32_t> FoamFile::labels(std::string_view what, std::uint64_t limit) {
-  std::vector<std::uint32_t> out;
-  const auto add = [&](std::int64_t label) { out.push_back(checked(label, what, limit, out.size())); };
-  read_list(
-      what, label_bytes_, [&] { add(integer("a label", INT64_MIN, INT64_MAX)); },
-      [&](std::string_view raw, std::size_t n) {
-        out.reserve(n);
-        for (std::size_t i = 0; i < n; ++i) add(raw_label(raw, i));
-      });
-  return out;
+  return read_labels<std::uint32_t>(what, [&](std::int64_t label, std::size_t item) {
+    if (label < 0 || static_cast<std::uint64_t>(label) >= limit)
+      fail(fmt::format("{}: item {} is {}; it must be from 0 to less than {}", what, item, label, limit));
+    return static_cast<std::uint32_t>(label);
+  });
 }
 
 std::vector<std::int64_t> FoamFile::signed_labels(std::string_view what, std::uint64_t limit) {
-  std::vector<std::int64_t> out;
-  const auto add = [&](std::int64_t label) {
-    const auto last = static_cast<std::int64_t>(std::min<std::uint64_t>(limit, INT64_MAX));
+  const auto last = static_cast<std::int64_t>(std::min<std::uint64_t>(limit, INT64_MAX));
+  return read_labels<std::int64_t>(what, [&](std::int64_t label, std::size_t item) {
     if (label < -last || label > last)
-      fail(fmt::format("{}: item {} is {}; it must be from {} to {}", what, out.size(), label, -last, last));
-    out.push_back(label);
-  };
-  read_list(
-      what, label_bytes_, [&] { add(integer("a label", INT64_MIN, INT64_MAX)); },
-      [&](std::string_view raw, std::size_t n) {
-        out.reserve(n);
-        for (std::size_t i = 0; i < n; ++i) add(raw_label(raw, i));
-      });
-  return out;
+      fail(fmt::format("{}: item {} is {}; it must be from {} to {}", what, item, label, -last, last));
+    return label;
+  });
 }
 
 FoamLists FoamFile::lists(std::string_view what, std::uint64_t limit) {
@@ -338,6 +331,8 @@ FoamLists FoamFile::lists(std::string_view what, std::uint64_t limit) {
       binary_ = false;
       out.labels.insert(out.labels.end(), list.begin(), list.end());
       out.offsets.push_back(out.labels.size());
+      // Many lists of one value each, as 1000{0}, could be more than any memory.
+      if (out.labels.size() > bytes_.size()) fail(fmt::format("the {} have more labels than the file has bytes", what));
     };
     read_list(what, 2, one, [](std::string_view, std::size_t) {});
     binary_ = binary;

@@ -81,9 +81,10 @@ class FoamFile {
   void take_type_of_list();
   template <class Ascii, class Binary>
   void read_list(std::string_view what, std::size_t bytes_each, Ascii&& ascii, Binary&& binary);
+  template <class Label, class Checked>
+  std::vector<Label> read_labels(std::string_view what, Checked&& checked);
   std::int64_t raw_label(std::string_view raw, std::size_t i) const;
   double raw_scalar(std::string_view raw, std::size_t i) const;
-  std::uint32_t checked(std::int64_t label, std::string_view what, std::uint64_t limit, std::size_t item) const;
 
   std::string name_;
   std::string bytes_;
