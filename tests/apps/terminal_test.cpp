@@ -15,6 +15,8 @@
 #include <string>
 #include <vector>
 
+#include "support/command.hpp"
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -24,19 +26,12 @@ struct Session {
   std::string screen;  // what came to the terminal
 };
 
-class Terminal : public testing::Test {
+class Terminal : public dartcast::test::CommandTest {
  protected:
   void SetUp() override {
-    const char* path = std::getenv("DARTCAST_BINARY");
-    const char* scenes = std::getenv("DARTCAST_SCENES");
-    ASSERT_TRUE(path != nullptr && scenes != nullptr) << "run this through ctest";
-    binary = path;
-    vessel = fs::path(scenes) / "vessel.toml";
-    folder = fs::temp_directory_path() / ("dartcast_terminal_" + std::to_string(::getpid()));
-    fs::remove_all(folder);
-    fs::create_directories(folder);
+    CommandTest::SetUp();
+    vessel = fs::path(scenes_folder) / "vessel.toml";
   }
-  void TearDown() override { fs::remove_all(folder); }
 
   // Runs the command. Ctrl-C is pressed when each of `awaited` has been seen, in this order.
   [[nodiscard]] Session run(const std::vector<std::string>& arguments, std::vector<std::string> awaited = {},
@@ -76,9 +71,7 @@ class Terminal : public testing::Test {
     return nlohmann::json::parse(std::string(std::istreambuf_iterator<char>(file), {}));
   }
 
-  std::string binary;
   fs::path vessel;
-  fs::path folder;
 };
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }

@@ -2,12 +2,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "dartcast/generators.hpp"
 #include "dartcast/mesh_check.hpp"
 #include "dartcast/mesh_files.hpp"
 #include "output/mesh_report_text.hpp"
+#include "support/mutants.hpp"
 #include "support/refusals.hpp"
 #include "support/same_mesh.hpp"
 #include "support/sample_mesh.hpp"
@@ -218,36 +217,19 @@ TEST(TetrahedraFiles, MutantsGetAVerdict) {
   const TetgenFiles whole = tetgen_files(mesh, 1);
   const std::vector<std::string> meshb = {meshb_of(mixed_mesh(), 1, false), meshb_of(mixed_mesh(), 2, true),
                                           meshb_of(planar_mesh(), 3, false), meshb_of(mixed_mesh(), 4, false)};
-  const std::vector<std::string> numbers = {"-1", "0", "3", "1e400", "nan", "4294967295", "9223372036854775807",
-                                            "x",  ""};
-  std::mt19937 random(17);
-  const auto damaged = [&](std::string content) {
-    for (auto k = 1 + random() % 3; k > 0 && !content.empty(); --k) {
-      const std::size_t at = random() % content.size();
-      if (random() % 8 == 0) content.resize(at);
-      if (content.empty()) break;
-      if (random() % 2 == 0) {
-        content[random() % content.size()] = static_cast<char>(random());
-        continue;
-      }
-      const std::size_t digit = std::min(content.find_first_of("0123456789", at), content.size());
-      const std::size_t end = std::min(content.find_first_not_of("0123456789", digit), content.size());
-      content = content.substr(0, digit) + numbers[random() % numbers.size()] + content.substr(end);
-    }
-    return content;
-  };
+  Mutants mutants(17);
   int accepted = 0;
   const int rounds = scaled(40000, 400000);  // 20,000 for each reader
   for (int round = 0; round < rounds; ++round) {
     std::filesystem::path path;
     if (round % 2 == 0) {
-      path = folder.file("b.meshb", damaged(meshb[random() % meshb.size()]));
+      path = folder.file("b.meshb", mutants.damaged(meshb[mutants.below(meshb.size())]));
     } else {
       TetgenFiles files = whole;
-      std::string& one = std::array{&files.node, &files.ele, &files.face}[random() % 3][0];
-      one = damaged(one);
+      std::string& one = *std::array{&files.node, &files.ele, &files.face}[mutants.below(3)];
+      one = mutants.damaged(one);
       write(folder, files);
-      path = folder / (random() % 2 == 0 ? "a.node" : "a.ele");
+      path = folder / (mutants.below(2) == 0 ? "a.node" : "a.ele");
     }
     MeshFile file = read_mesh(path);
     if (!file.report.valid()) {

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
-#include <random>
 #include <set>
 
 #include "dartcast/generators.hpp"
 #include "dartcast/mesh_check.hpp"
 #include "dartcast/mesh_files.hpp"
 #include "output/mesh_report_text.hpp"
+#include "support/mutants.hpp"
 #include "support/refusals.hpp"
 #include "support/same_mesh.hpp"
 #include "support/sample_mesh.hpp"
@@ -71,24 +71,11 @@ TEST(VtpSurface, MutantsGetAVerdict) {
   SKIP_WITHOUT_VTK();
   const Folder folder;
   const std::string whole = cube_vtp(vtp_array("patch", {7, 7, 0, 8, 8, 8}));
-  const std::vector<std::string> numbers = {"-1", "0", "3", "1e400", "nan", "4294967295", "9223372036854775807",
-                                            "x",  ""};
-  std::mt19937 random(29);
+  Mutants mutants(29);
   const int rounds = scaled(20000, 200000);
   int accepted = 0;
   for (int round = 0; round < rounds; ++round) {
-    std::string content = whole;
-    for (auto k = 1 + random() % 2; k > 0; --k) {
-      const std::size_t at = random() % content.size();
-      if (random() % 2 == 0) {
-        content[at] = static_cast<char>(random());
-        continue;
-      }
-      const std::size_t digit = std::min(content.find_first_of("0123456789", at), content.size());
-      const std::size_t end = std::min(content.find_first_not_of("0123456789", digit), content.size());
-      content = content.substr(0, digit) + numbers[random() % numbers.size()] + content.substr(end);
-    }
-    MeshFile file = check_surface(folder.file("a.vtp", content));
+    MeshFile file = check_surface(folder.file("a.vtp", mutants.damaged(whole)));
     if (!file.report.valid()) {
       ASSERT_FALSE(file.report.defects[0].message.empty()) << round;
       continue;
