@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "dartcast/error.hpp"
 #include "formats/format_table.hpp"
 #include "formats/openfoam.hpp"
@@ -48,6 +50,11 @@ FieldSeries file_series(const NamedSeries& named) {
     series = named.files.size() == 1 && is_pattern(first.filename().string()) ? numbered_files(first)
                                                                               : FieldSeries{named.files, {}};
     series.times = sample_times(named.owner, named.times, named.spacing, series.files.size(), "files");
+  }
+  for (std::size_t k = 0; k < series.times.size(); ++k) {
+    if (std::isfinite(series.times[k]) && (k == 0 || series.times[k] > series.times[k - 1])) continue;
+    throw InvalidArgument(fmt::format("{}: its time {} must be finite and after that of the file before it",
+                                      series.files[k].string(), series.times[k]));
   }
   return series;
 }

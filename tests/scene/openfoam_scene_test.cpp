@@ -140,6 +140,8 @@ TEST_F(OpenFoamScene, OtherSeriesOfFrames) {
   const std::string kind = "[[deformation]]\nkind = 'frames'\n";
   expect_error(kind + "files = 'beat_*.msh'\n", {"deformation", "no times"});
   expect_error(kind + "files = 'beat_*.msh'\ntimes = [0, 1]\n", {"2 times for 3 files"});
+  expect_error(kind + "files = 'beat_*.msh'\ntimes = [0, 2, 2]\n", {"beat_10.msh", "its time 2", "after"});
+  expect_error(kind + "files = 'beat_*.msh'\ntimes = [nan, 1, 2]\n", {"times must be finite"});
   expect_error(kind + "files = 'beat.pvd'\nspacing = 1\n", {"times of its own"});
   expect_error(kind + "files = 'none_*.msh'\nspacing = 1\n", {"none_*.msh"});
   expect_error(kind + "files = ['beat_8.msh', 'beat_9.msh']\n", {"0 times for 2 files"});
