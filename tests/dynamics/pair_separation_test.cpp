@@ -84,7 +84,7 @@ TEST(PairSeparation, IsNeverLate) {
   int near = 0;
   int touching = 0;
   for (const PairKind kind : kinds) {
-    for (int i = 0; i < scaled(400, 10000); ++i) {
+    for (int i = 0; i < scaled(4000, 40000); ++i) {
       const MovingPair pair = random_pair(random);
       const std::string where = "kind " + std::to_string(static_cast<int>(kind)) + ", pair " + std::to_string(i);
       if (smallest_sampled(pair, kind, 0.0) < 2 * separation) continue;  // the rule at the start is another one
@@ -106,7 +106,7 @@ TEST(PairSeparation, IsNeverLate) {
     }
   }
   EXPECT_GT(near, touching);
-  EXPECT_GT(touching, scaled(20, 500));
+  EXPECT_GT(touching, scaled(60, 600));
 }
 
 }  // namespace dartcast::test::pair_separation_test
