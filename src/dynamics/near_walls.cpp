@@ -1,4 +1,4 @@
-// The search for walls near a sphere, cell by cell through the faces that it reaches.
+// The search for walls near a sphere or an element, cell by cell through the faces that it reaches.
 #include "dynamics/near_walls.hpp"
 
 #include <algorithm>
@@ -82,7 +82,7 @@ double touching_slack(const Vec3& centre, double radius) {
   return touching_bound * (radius + std::max({std::abs(centre.x), std::abs(centre.y), std::abs(centre.z)}));
 }
 
-// The sphere on its way, as a box. Where the way is long, the ball around another box is tested, too.
+// The space that a sphere or an element sweeps: a box, and where that is much too large, also a tube around a segment.
 struct NearWalls::Reach {
   struct Bounds {
     Vec3 low;
@@ -92,6 +92,10 @@ struct NearWalls::Reach {
       low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
       high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
     }
+    void widen(double by) {
+      low = low - Vec3{by, by, by};
+      high = high + Vec3{by, by, by};
+    }
     [[nodiscard]] bool meets(const Bounds& b) const {
       return low.x <= b.high.x && b.low.x <= high.x && low.y <= b.high.y && b.low.y <= high.y && low.z <= b.high.z &&
              b.low.z <= high.z;
@@ -99,15 +103,36 @@ struct NearWalls::Reach {
   };
 
   Bounds box;
-  MovingSphere sphere;
-  bool is_long;
+  bool is_long = false;  // whether the tube counts
+  Vec3 begin;            // of the tube's segment
+  Vec3 way;              // to the segment's end
+  double radius = 0.0;   // of the tube
 
-  Reach(const MovingSphere& s, double margin) : box{s.from, s.from}, sphere(s) {
+  explicit Reach(const MovingSphere& s) : box{s.from, s.from}, begin(s.from), way(s.to - s.from) {
     box.include(s.to);
-    const double r = s.radius + margin;
-    box = {box.low - Vec3{r, r, r}, box.high + Vec3{r, r, r}};
-    sphere.radius = r;
-    is_long = norm(s.to - s.from) > 2.0 * r;
+    radius = s.radius + rounding() + box_margin * s.radius;
+    box.widen(radius);
+    is_long = norm(way) > 2.0 * radius;
+  }
+  // A point's tube is around its way. An edge's is around the edge at the time 1/2: no point of the edge is ever farther
+  // from where it is then than half the largest displacement of the ends. A triangle has none.
+  Reach(const MovingElement& e, double margin) : box{e.from[0], e.from[0]} {
+    double farthest = 0.0;
+    for (unsigned i = 0; i < e.count; ++i) {
+      box.include(e.from[i]);
+      box.include(e.to[i]);
+      farthest = std::max(farthest, norm(e.to[i] - e.from[i]));
+    }
+    const double r = margin + rounding() + box_margin * margin;
+    radius = e.count == 1 ? r : r + 0.5 * farthest * (1.0 + 0x1p-20);
+    begin = e.count == 1 ? e.from[0] : (e.from[0] + e.to[0]) * 0.5;
+    if (e.count < 3) way = (e.count == 1 ? e.to[0] : (e.from[1] + e.to[1]) * 0.5) - begin;
+    box.widen(r);
+    is_long = norm(way) > 2.0 * radius;
+  }
+  [[nodiscard]] double rounding() const {
+    const Vec3 largest = extent_of(box.low, box.high);
+    return box_margin * std::max({largest.x, largest.y, largest.z});
   }
   static constexpr unsigned all_sides = 63;
   // The sides of the box that p lies beyond, a bit for each.
@@ -124,10 +149,9 @@ struct NearWalls::Reach {
     if (!box.meets(b)) return false;
     if (!is_long) return true;
     const Vec3 middle = (b.low + b.high) * 0.5;
-    const Vec3 way = sphere.to - sphere.from;
-    const double share = std::clamp(dot(middle - sphere.from, way) / dot(way, way), 0.0, 1.0);
-    const double apart = norm(middle - (sphere.from + way * share));
-    return !(apart > (sphere.radius + 0.5 * norm(b.high - b.low)) * (1.0 + 0x1p-20));
+    const double share = std::clamp(dot(middle - begin, way) / dot(way, way), 0.0, 1.0);
+    const double apart = norm(middle - (begin + way * share));
+    return !(apart > (radius + 0.5 * norm(b.high - b.low)) * (1.0 + 0x1p-20));
   }
 };
 
@@ -157,12 +181,10 @@ void NearWalls::add(Cell c) {
   table_[at] = static_cast<std::uint32_t>(cells_.size());
 }
 
-void NearWalls::add_walls(const CellComplex& complex, const Reach& reach, CellFace face, bool moving) {
+void NearWalls::add_walls(const CellComplex& complex, const Reach& reach, CellFace face, const VertexMotion& motion) {
   const CellView cell = complex.map().view(face.cell);
-  const auto after = complex.positions();
-  const auto before = moving ? complex.previous_positions() : after;
   for (std::uint16_t t = 0; t < cell.shape().triangle_count(face.face); ++t) {
-    const NearWall wall = wall_at(cell, face, t, before, after);
+    const NearWall wall = wall_at(cell, face, t, motion.before, motion.after);
     Reach::Bounds bounds{wall.corners.to[0], wall.corners.to[0]};
     bool in_range = true;  // else the wall belongs to a cell that is invalid, or was before the move
     for (unsigned i = 0; i < 3; ++i) {
@@ -174,13 +196,14 @@ void NearWalls::add_walls(const CellComplex& complex, const Reach& reach, CellFa
   }
 }
 
-// Every way from one cell to the other passes their face, so the search passes only faces that the sphere meets. The
-// box of a face misses the sphere's where all points of the face lie beyond one side of it.
-void NearWalls::visit(const CellComplex& complex, const Reach& reach, Cell c, bool moving) {
+// Every way from one cell to the other passes their face, so the search passes only faces that the reach meets. The
+// box of a face misses the reach's where all points of the face lie beyond one side of it.
+void NearWalls::visit(const CellComplex& complex, const Reach& reach, Cell c, const VertexMotion& motion) {
   const CellView cell = complex.map().view(c);
   const Shape& shape = cell.shape();
-  const Vec3* after = complex.positions().data();
-  const Vec3* before = complex.previous_positions().data();
+  const Vec3* after = motion.after.data();
+  const Vec3* before = motion.before.data();
+  const bool moving = !motion.at_rest();
   sides_.clear();
   for (const std::uint32_t v : cell.vertices()) {
     const unsigned sides = reach.sides(after[v]);
@@ -199,24 +222,32 @@ void NearWalls::visit(const CellComplex& complex, const Reach& reach, Cell c, bo
       if (!reach.meets(bounds)) continue;
     }
     if (cell.is_wall(f))
-      add_walls(complex, reach, {c, f}, moving);
+      add_walls(complex, reach, {c, f}, motion);
     else
       add(cell.neighbour(f));
   }
 }
 
-std::span<const NearWall> NearWalls::search(const CellComplex& complex, Cell cell, const MovingSphere& sphere,
-                                            bool moving) {
+std::span<const NearWall> NearWalls::run(const CellComplex& complex, Cell cell, const Reach& reach,
+                                         const VertexMotion& motion) {
   for (const std::size_t at : slots_) table_[at] = 0;
   slots_.clear();
   cells_.clear();
   walls_.clear();
-  const Vec3 largest = extent_of(sphere.from, sphere.to);
-  const double margin = box_margin * (sphere.radius + std::max({largest.x, largest.y, largest.z}));
-  const Reach reach(sphere, margin);
   add(cell);
-  for (std::size_t i = 0; i < cells_.size(); ++i) visit(complex, reach, cells_[i], moving);
+  for (std::size_t i = 0; i < cells_.size(); ++i) visit(complex, reach, cells_[i], motion);
   return walls_;
+}
+
+std::span<const NearWall> NearWalls::search(const CellComplex& complex, Cell cell, const MovingSphere& sphere,
+                                            bool moving) {
+  const auto after = complex.positions();
+  return run(complex, cell, Reach(sphere), {moving ? complex.previous_positions() : after, after});
+}
+
+std::span<const NearWall> NearWalls::search(const CellComplex& complex, Cell cell, const MovingElement& element,
+                                            const VertexMotion& motion, double margin) {
+  return run(complex, cell, Reach(element, margin), motion);
 }
 
 std::span<const NearestOnTriangle> NearWalls::nearest(const Vec3& centre) {

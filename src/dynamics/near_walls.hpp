@@ -1,9 +1,11 @@
-// The walls near a sphere. The search starts in the cell of the centre, and goes through the faces that the sphere
-// reaches.
+// The walls near a sphere, or near a point, an edge or a triangle that moves. The search starts in the cell of the
+// centre, or of the first corner, and goes through the faces that the sphere or the element reaches.
 //
-// It never searches the whole scene, and never looks through a wall. It always finds the wall that a sphere touches
-// first: the straight way from the centre to the point of contact crosses free cells alone, through faces that the
-// sphere meets.
+// It never searches the whole scene, and never looks through a wall. It always finds the wall that is touched first.
+// For a sphere: the straight way from the centre to the point of contact crosses free cells alone, through faces that
+// the sphere meets. For an element: until the first touch it is connected, and in free cells alone. Follow its first
+// corner up to the time of that touch, then the element to the point of contact. This way passes from cell to cell only
+// through faces that the element meets at some time.
 #pragma once
 
 #include <array>
@@ -26,6 +28,21 @@ struct NearWall {
   std::array<std::uint16_t, 3> local{};  ///< numbers of the corners in the cell
   std::array<Vertex, 3> vertex;
   MovingTriangle corners;  ///< before and after the last move of the vertices; both as they are now without a move
+};
+
+/// A point, an edge or a triangle whose corners move on straight lines, t in [0, 1].
+struct MovingElement {
+  std::array<Vec3, 3> from{};
+  std::array<Vec3, 3> to{};
+  unsigned count = 1;  ///< of corners: 1, 2 or 3
+};
+
+/// The positions of all vertices before and after a move. The same span twice: they do not move.
+struct VertexMotion {
+  std::span<const Vec3> before;
+  std::span<const Vec3> after;
+
+  [[nodiscard]] bool at_rest() const { return before.data() == after.data(); }
 };
 
 /// A place on the walls that a sphere may touch.
@@ -57,6 +74,13 @@ class NearWalls {
   /// and few more); each is looked at once.
   std::span<const NearWall> search(const CellComplex& complex, Cell cell, const MovingSphere& sphere, bool moving);
 
+  /// Walls that the element may touch on its way, or come as near to as `margin`. `cell` holds the first corner before
+  /// the move, and no wall is in the element's way from there to its other corners. Preconditions: all cells that it reaches
+  /// are positive during the whole move; margin >= 0. All else is as above. Cost: an edge as long as a cell reaches some 5
+  /// cells, a triangle 6.
+  std::span<const NearWall> search(const CellComplex& complex, Cell cell, const MovingElement& element,
+                                   const VertexMotion& motion, double margin = 0.0);
+
   /// The nearest point to `centre` of each wall of the last search, as the wall was before the move. Valid until the
   /// next search or call of this.
   std::span<const NearestOnTriangle> nearest(const Vec3& centre);
@@ -73,8 +97,8 @@ class NearWalls {
   [[nodiscard]] static WallFeature place_on(const CellComplex& complex, CellFace face, std::uint16_t triangle,
                                             const Vec3& centre, bool moved);
 
-  /// Cells that the last search looked at.
-  [[nodiscard]] std::size_t cells_reached() const { return cells_.size(); }
+  /// Cells that the last search looked at, in the order in which it reached them.
+  [[nodiscard]] std::span<const Cell> cells_reached() const { return cells_; }
 
  private:
   struct Reach;
@@ -82,10 +106,11 @@ class NearWalls {
   [[nodiscard]] std::size_t slot(Cell c) const;
   void grow();
   void add(Cell c);
-  void visit(const CellComplex& complex, const Reach& reach, Cell c, bool moving);
+  std::span<const NearWall> run(const CellComplex& complex, Cell cell, const Reach& reach, const VertexMotion& motion);
+  void visit(const CellComplex& complex, const Reach& reach, Cell c, const VertexMotion& motion);
   static void describe(const CellComplex& complex, const NearWall& wall, const NearestOnTriangle& nearest, bool moved,
                        WallFeature& feature);
-  void add_walls(const CellComplex& complex, const Reach& reach, CellFace face, bool moving);
+  void add_walls(const CellComplex& complex, const Reach& reach, CellFace face, const VertexMotion& motion);
 
   std::vector<Cell> cells_;           // in the order in which they were reached
   std::vector<std::uint32_t> table_;  // of cells reached: one more than the place in cells_, 0 where empty

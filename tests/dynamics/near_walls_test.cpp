@@ -4,6 +4,7 @@
 #include <set>
 
 #include "dartcast/complex_edit.hpp"
+#include "support/element_checks.hpp"
 #include "support/sphere_checks.hpp"
 
 namespace dartcast::near_walls_test {
@@ -137,8 +138,8 @@ TEST(NearWalls, CellsReachedDoNotGrowWithTheScene) {
       const Vec3 x = {random.uniform(3, 5), random.uniform(3, 5), random.uniform(3, 5)};
       swarm.add(x, 0.2);
       near.search(swarm.environment.complex(), swarm.particles[swarm.particles.size() - 1].cell, {x, x, 0.2}, false);
-      reached[k] += near.cells_reached();
-      EXPECT_LE(near.cells_reached(), 8U);
+      reached[k] += near.cells_reached().size();
+      EXPECT_LE(near.cells_reached().size(), 8U);
     }
   }
   EXPECT_EQ(reached[0], reached[1]);
@@ -150,7 +151,7 @@ TEST(NearWalls, CellsReachedDoNotGrowWithTheScene) {
   swarm.add({0.5, 0.5, 0.5}, 0.2);
   NearWalls near;
   near.search(swarm.environment.complex(), swarm.particles[0].cell, {{0.5, 0.5, 0.5}, {end, end, end}, 0.2}, false);
-  EXPECT_LE(near.cells_reached(), cells * 30U);
+  EXPECT_LE(near.cells_reached().size(), cells * 30U);
 }
 
 }  // namespace dartcast::near_walls_test
