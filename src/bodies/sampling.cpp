@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "base/random.hpp"
-#include "bodies/inside.hpp"
-#include "bodies/triangles.hpp"
 #include "dartcast/bodies.hpp"
 #include "dartcast/error.hpp"
+#include "surface/inside.hpp"
+#include "surface/triangles.hpp"
 #include "tracking/representable_point.hpp"
 
 namespace dartcast {

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "base/random.hpp"
-#include "bodies/inside.hpp"
 #include "dartcast/bodies.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_files.hpp"
@@ -14,6 +13,7 @@
 #include "support/exact_vectors.hpp"
 #include "support/shared_data.hpp"
 #include "support/tier.hpp"
+#include "surface/inside.hpp"
 
 namespace dartcast::sampling_test {
 

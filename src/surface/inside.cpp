@@ -1,5 +1,5 @@
 // The parity of the triangles above a point, with a symbolic shift that no triangle's edge can meet.
-#include "bodies/inside.hpp"
+#include "surface/inside.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-// The triangles of a body's surface, checked before use.
+// The triangles of a surface, checked before use.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // The triangles of a surface, cut from its faces, and the check that it is closed.
-#include "bodies/triangles.hpp"
+#include "surface/triangles.hpp"
 
 #include <fmt/format.h>
 

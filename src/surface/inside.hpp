@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "bodies/triangles.hpp"
 #include "dartcast/vec3.hpp"
+#include "surface/triangles.hpp"
 
 namespace dartcast {
 
