@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "dartcast/error.hpp"
 #include "dartcast/predicates.hpp"
@@ -71,12 +72,15 @@ std::vector<Vec3> flushed_points(std::vector<Vec3> points) {
 
 }  // namespace
 
-InsideTest::InsideTest(const MeshData& surface)
-    : points_(flushed_points(surface.points)),
-      triangles_(surface_triangles(surface)),
-      tree_(boxes_of(points_, triangles_)) {
+InsideTest::InsideTest(const MeshData& surface) : InsideTest(surface.points, surface_triangles(surface)) {
   check_closed(triangles_);
-  top_ = points_.front().z;
+}
+
+InsideTest::InsideTest(std::vector<Vec3> points, std::vector<SurfaceTriangle> triangles)
+    : points_(flushed_points(std::move(points))),
+      triangles_(std::move(triangles)),
+      tree_(boxes_of(points_, triangles_)),
+      top_(points_.front().z) {
   for (const Vec3& p : points_) top_ = std::max(top_, p.z);
 }
 

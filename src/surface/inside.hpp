@@ -21,6 +21,8 @@ class InsideTest {
  public:
   /// Throws InvalidMesh as surface_triangles() and check_closed(). Cost: n log n.
   explicit InsideTest(const MeshData& surface);
+  /// Preconditions: each edge has an even number of triangles; there are triangles.
+  InsideTest(std::vector<Vec3> points, std::vector<SurfaceTriangle> triangles);
 
   /// Throws InvalidArgument where the point is not finite or outside the exact range. Cost: the triangles whose boxes
   /// the ray meets, times a logarithm.
