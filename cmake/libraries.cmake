@@ -1,7 +1,7 @@
 # Three libraries over the rooms of src/, each on top of the one before, and dartcast::dartcast for all of them.
 # tools/check_includes.py has the order of the rooms, and checks that these lists agree with it.
 set(core_rooms base predicates mesh generators topology complex editing surface tracking response environment)
-set(simulation_rooms dynamics spheres bodies catheter simulation)
+set(simulation_rooms dynamics spheres solids bodies catheter simulation)
 set(io_rooms formats meshing scene report output)
 # Public headers; core has all others.
 set(simulation_headers dynamics spheres bodies catheter simulation deformation vector_field events scene statistics)

@@ -11,7 +11,7 @@ import sys
 LIBRARIES = {
     "core": ["base", "predicates", "mesh", "generators", "topology", "complex", "editing", "surface", "tracking",
              "tracking/batch", "response", "environment"],
-    "simulation": ["dynamics", "spheres", "bodies", "catheter", "simulation"],
+    "simulation": ["dynamics", "spheres", "solids", "bodies", "catheter", "simulation"],
     "io": ["formats", "formats/vtk", "formats/openfoam", "meshing", "scene", "report", "output"],
 }
 ROOMS = [room for rooms in LIBRARIES.values() for room in rooms]

@@ -1,0 +1,75 @@
+// The touches of one element of a solid and the walls around it, on a straight way.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "dartcast/cell_complex.hpp"
+#include "dynamics/near_walls.hpp"
+#include "predicates/moving_pair.hpp"
+#include "solids/elements.hpp"
+#include "solids/solids.hpp"
+
+namespace dartcast {
+
+/// The straight way of all vertices of solids, t in [0, 1]. No coordinate is between 0 and 2^-300 (flushed()).
+struct SolidMotion {
+  std::span<const Vec3> from;
+  std::span<const Vec3> to;
+};
+
+/// A part of an element and a part of a wall that touch, and when they first do.
+struct ElementTouch {
+  double time = 0.0;
+  SolidContactKind kind = SolidContactKind::vertex_face;
+  std::uint8_t count = 0;       ///< of the element's vertices that take part
+  std::uint8_t wall_count = 0;  ///< of the wall's corners that take part: 4 - count
+  std::array<std::uint32_t, 3> vertices{};
+  std::array<std::uint8_t, 3> corners{};  ///< of the wall
+  NearWall wall;
+};
+
+/// Memory of the search, for one thread at a time. After a few elements it allocates no more.
+class TouchFinder {
+ public:
+  /// Appends the touches to `touches`, in the order of the search. `cell` holds the element's first vertex at the start.
+  /// Returns the last time known before a cell that the element reaches becomes flat, if one does: touches are complete up
+  /// to there alone. Preconditions: the element touches no wall at the start; `walls` covers all vertices of the complex.
+  std::optional<double> find(const CellComplex& complex, Cell cell, const SolidElement& element,
+                             const SolidMotion& motion, const VertexMotion& walls, std::vector<ElementTouch>& touches);
+
+  /// Pairs that find() has looked at so far.
+  [[nodiscard]] std::uint64_t pairs() const { return pairs_; }
+  /// Those of the last find().
+  [[nodiscard]] std::span<const Cell> cells_reached() const { return near_.cells_reached(); }
+  [[nodiscard]] std::span<const NearWall> walls() const { return walls_; }
+
+ private:
+  struct WallPart {
+    std::uint32_t low;  // numbers of the vertices, sorted; both the same for a vertex
+    std::uint32_t high;
+    std::uint32_t wall;
+    std::uint8_t corner;
+  };
+
+  void ask(detail::PairKind kind, const detail::MovingPair& pair, const ElementTouch& touch,
+           std::vector<ElementTouch>& touches);
+  void ask_corners(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches);
+  void ask_sides(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches);
+  void ask_face(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches);
+  void list_parts(unsigned size);
+
+  NearWalls near_;
+  std::span<const NearWall> walls_;
+  std::vector<WallPart> parts_;  // edges or vertices of the walls, each once
+  std::uint64_t pairs_ = 0;
+};
+
+/// The last time known before a simplex of these cells becomes flat, or nothing: 0 where one is from the start.
+std::optional<double> first_flat_time(const CellComplex& complex, std::span<const Cell> cells,
+                                      const VertexMotion& walls);
+
+}  // namespace dartcast

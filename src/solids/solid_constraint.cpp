@@ -1,0 +1,166 @@
+// Constraints of contacts: weights of the place at the time of the touch, and a normal turned by the start of the step.
+#include "solids/solid_constraint.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "dynamics/swept_sphere.hpp"
+
+namespace dartcast {
+
+namespace {
+
+constexpr double default_separation = 0x1p-10;  // of a side
+// Edges with a smaller sine than this between them have no useful normal of their own.
+constexpr double parallel_sine = 0x1p-26;
+
+using Points = std::array<Vec3, 3>;
+
+Vec3 between(const Vec3& a, const Vec3& b, double t) { return a + (b - a) * t; }
+
+Points solid_points(const ElementTouch& touch, const SolidMotion& motion, double t) {
+  Points p;
+  for (unsigned i = 0; i < touch.count; ++i)
+    p[i] = between(motion.from[touch.vertices[i]], motion.to[touch.vertices[i]], t);
+  return p;
+}
+
+Points wall_points(const ElementTouch& touch, double t) {
+  Points p;
+  for (unsigned i = 0; i < touch.wall_count; ++i)
+    p[i] = between(touch.wall.corners.from[touch.corners[i]], touch.wall.corners.to[touch.corners[i]], t);
+  return p;
+}
+
+Vec3 weighted(const std::array<double, 3>& weights, const Points& points) {
+  return points[0] * weights[0] + points[1] * weights[1] + points[2] * weights[2];
+}
+
+Vec3 unit_or_zero(const Vec3& v) {
+  const double length = norm(v);
+  return length > 0.0 && std::isfinite(length) ? v * (1.0 / length) : Vec3{};
+}
+
+// Shares of the ends of two edges at their nearest points.
+std::pair<double, double> nearest_shares(const Points& a, const Points& b) {
+  const Vec3 u = a[1] - a[0];
+  const Vec3 v = b[1] - b[0];
+  const Vec3 r = a[0] - b[0];
+  const double uu = dot(u, u);
+  const double uv = dot(u, v);
+  const double vv = dot(v, v);
+  const double apart = uu * vv - uv * uv;
+  const auto share = [](double numerator, double denominator) {
+    return denominator > 0.0 ? std::clamp(numerator / denominator, 0.0, 1.0) : 0.5;
+  };
+  const bool parallel = !(apart > parallel_sine * parallel_sine * (uu * vv));
+  const double s = parallel ? 0.5 : share(uv * dot(v, r) - vv * dot(u, r), apart);
+  const double t = share(uv * s + dot(v, r), vv);
+  return {share(uv * t - dot(u, r), uu), t};
+}
+
+double longest_side(const Points& t) { return std::max({norm(t[1] - t[0]), norm(t[2] - t[1]), norm(t[0] - t[2])}); }
+
+// The normal at the time of the touch; 0 where the parts have none.
+Vec3 normal_at(const ElementTouch& touch, const Points& solid, const Points& wall) {
+  const auto of_triangle = [](const Points& t) { return cross(t[1] - t[0], t[2] - t[0]); };
+  switch (touch.kind) {
+    case SolidContactKind::vertex_face: return unit_or_zero(of_triangle(wall));
+    case SolidContactKind::face_vertex: return unit_or_zero(of_triangle(solid));
+    case SolidContactKind::edge_edge: break;
+  }
+  const Vec3 u = unit_or_zero(solid[1] - solid[0]);
+  const Vec3 v = unit_or_zero(wall[1] - wall[0]);
+  const Vec3 n = cross(u, v);
+  return norm(n) > parallel_sine ? unit_or_zero(n) : Vec3{};
+}
+
+Vec3 place_in(const SolidConstraint& c, std::span<const Vec3> positions) {
+  Vec3 place;
+  for (unsigned i = 0; i < c.touch.count; ++i) place += positions[c.touch.vertices[i]] * c.weights[i];
+  return place;
+}
+
+}  // namespace
+
+SolidConstraint constraint_of(const ElementTouch& touch, const SolidMotion& motion, double separation, double longest) {
+  SolidConstraint c;
+  c.touch = touch;
+  const Points solid = solid_points(touch, motion, touch.time);
+  const Points wall = wall_points(touch, touch.time);
+  switch (touch.kind) {
+    case SolidContactKind::vertex_face:
+      c.weights = {1.0};
+      c.wall_weights = nearest_on_triangle(wall, solid[0]).weights;
+      break;
+    case SolidContactKind::face_vertex:
+      c.weights = nearest_on_triangle(solid, wall[0]).weights;
+      c.wall_weights = {1.0};
+      break;
+    case SolidContactKind::edge_edge: {
+      const auto [s, t] = nearest_shares(solid, wall);
+      c.weights = {1.0 - s, s};
+      c.wall_weights = {1.0 - t, t};
+      break;
+    }
+  }
+  const Vec3 apart =
+      weighted(c.weights, solid_points(touch, motion, 0.0)) - weighted(c.wall_weights, wall_points(touch, 0.0));
+  c.normal = normal_at(touch, solid, wall);
+  const double side = dot(c.normal, apart);
+  if (side == 0.0) c.normal = unit_or_zero(apart);
+  if (side < 0.0) c.normal = -c.normal;
+  c.wall_point = weighted(c.wall_weights, wall_points(touch, 1.0));
+  const double side_of_wall = longest_side(touch.wall.corners.from);
+  c.separation = separation > 0.0
+                     ? separation
+                     : default_separation * (longest > 0.0 ? std::min(longest, side_of_wall) : side_of_wall);
+  return c;
+}
+
+double gap_of(const SolidConstraint& c, std::span<const Vec3> targets) {
+  return dot(c.normal, place_in(c, targets) - c.wall_point);
+}
+
+void satisfy(SolidConstraint& c, std::span<Vec3> targets, std::span<const double> inverse_masses) {
+  double mobility = 0.0;
+  for (unsigned i = 0; i < c.touch.count; ++i)
+    mobility += c.weights[i] * c.weights[i] * inverse_masses[c.touch.vertices[i]];
+  const double lack = c.separation - gap_of(c, targets);
+  if (!(lack > 0.0) || !(mobility > 0.0)) return;
+  c.pressed += lack;
+  for (unsigned i = 0; i < c.touch.count; ++i) {
+    const std::uint32_t v = c.touch.vertices[i];
+    targets[v] += c.normal * (lack * c.weights[i] * inverse_masses[v] / mobility);
+  }
+}
+
+SolidContact contact_of(const SolidConstraint& c, const CombinatorialMap& map, const SolidMotion& motion,
+                        std::span<const Vec3> reached, double walls_made) {
+  const NearWall& wall = c.touch.wall;
+  SolidContact contact;
+  contact.kind = c.touch.kind;
+  contact.count = c.touch.count;
+  contact.vertices = c.touch.vertices;
+  contact.weights = c.weights;
+  contact.face = wall.face;
+  contact.triangle = wall.triangle;
+  contact.patch = map.patch(wall.face);
+  std::array<std::uint16_t, 3> local{};
+  for (unsigned i = 0; i < c.touch.wall_count; ++i) local[i] = wall.local[c.touch.corners[i]];
+  const Shape::Feature feature =
+      map.shape(wall.face.cell).feature(std::span<const std::uint16_t>(local).first(c.touch.wall_count));
+  contact.wall_kind = feature.kind;
+  contact.dart = {wall.face.cell, feature.dart};
+  contact.time_of_impact = c.touch.time;
+  contact.point = place_in(c, reached);
+  contact.wall_point = weighted(c.wall_weights, wall_points(c.touch, walls_made));
+  contact.normal = c.normal;
+  contact.gap = dot(c.normal, contact.point - contact.wall_point);
+  contact.displacement = place_in(c, motion.to) - place_in(c, motion.from);
+  contact.wall_displacement = c.wall_point - weighted(c.wall_weights, wall_points(c.touch, 0.0));
+  return contact;
+}
+
+}  // namespace dartcast

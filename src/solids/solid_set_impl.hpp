@@ -1,0 +1,104 @@
+// The state of a set of solids, and the memory of its steps.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "solids/element_touches.hpp"
+#include "solids/elements.hpp"
+#include "solids/solid_constraint.hpp"
+#include "solids/solids.hpp"
+
+namespace dartcast {
+
+struct SolidSet::Impl {
+  explicit Impl(Environment& e) : environment(e) {}
+
+  // --- what the set is
+
+  Environment& environment;
+  Particles particles;          // all vertices, one solid after another
+  std::vector<Vec3> positions;  // theirs
+  std::vector<double> inverse_masses;
+  std::vector<SolidElement> elements;  // of all solids, in order; vertices are numbers in `particles`
+  std::vector<std::uint32_t> solid_of_element;
+  std::vector<std::uint32_t> first_vertex = {0};   // one more than solids
+  std::vector<std::uint32_t> first_element = {0};  // likewise
+  std::vector<double> longest;                     // side of each solid, when it was added
+
+  [[nodiscard]] std::uint32_t count() const { return static_cast<std::uint32_t>(longest.size()); }
+  [[nodiscard]] std::span<Vec3> of(std::vector<Vec3>& values, std::uint32_t solid) const {
+    return {values.data() + first_vertex[solid], first_vertex[solid + 1] - first_vertex[solid]};
+  }
+
+  // --- adding (solid_set.cpp)
+
+  AddSolidResult add(const SolidMesh& given);
+  [[nodiscard]] AddSolidResult refusal(const SolidMesh& mesh, std::span<const SolidElement> elements_of_mesh,
+                                       std::span<const Location> places) const;
+  [[nodiscard]] bool encloses_wall(const SolidMesh& mesh, std::span<const Location> places) const;
+  std::uint32_t append(const SolidMesh& mesh, std::span<const SolidElement> added);
+  void keep_first(std::uint32_t solids);
+  void check_current(const char* caller) const;
+  [[nodiscard]] SolidAudit audit() const;
+
+  // --- a step (solid_step.cpp)
+
+  void advance(std::span<const Vec3> given, const SolidStepOptions& options);
+  void move_with(std::span<const Vec3> given, std::span<const Vec3> walls_to, const SolidStepOptions& options);
+
+  // A cell that an element reaches, and when it becomes flat.
+  struct Flat {
+    std::uint32_t solid = 0;
+    double time = 0.0;
+  };
+  // Part of a detection: consecutive elements.
+  struct Part {
+    TouchFinder finder;
+    std::vector<ElementTouch> touches;
+    std::vector<std::uint32_t> owners;  // the solid of each touch
+    std::vector<Flat> flats;
+  };
+  struct Progress {
+    // From the last detection. Times above 1: none in the step.
+    std::vector<ElementTouch> touches;
+    double touch_time = 2.0;
+    double flat_time = 2.0;  // when a cell that the solid reaches becomes flat
+    // From all detections of the step.
+    std::vector<SolidConstraint> constraints;
+
+    [[nodiscard]] double free_until() const { return std::min(touch_time, flat_time); }
+    [[nodiscard]] bool is_free() const { return free_until() > 1.0; }
+  };
+  using Solids = std::vector<std::uint32_t>;
+
+  [[nodiscard]] std::uint64_t pairs_so_far() const;
+  void start(std::span<const Vec3> given, const SolidStepOptions& options, const char* caller);
+  void detect(const Solids& solids, std::span<const Vec3> to, const VertexMotion& walls);
+  void gather(std::span<const Part> found);
+  void correct_in_rounds(Solids& open, const VertexMotion& walls, const SolidStepOptions& options);
+  void correct(std::uint32_t solid, const SolidStepOptions& options);
+  void go(std::uint32_t solid, double share);
+  void cut_each(Solids open);
+  void cut_all(const Solids& open, std::span<const Vec3> walls_to, std::vector<Vec3>& after);
+  void keep_first_touches(const Solids& cut, const SolidStepOptions& options);
+  void commit_at_rest();
+  [[nodiscard]] std::vector<SimplexId> places_after(const VertexMotion& walls);
+  void commit_moved(const VertexMotion& walls);
+  void report();
+
+  std::vector<Vec3> wanted;                    // targets of the caller
+  std::vector<Vec3> targets;                   // corrected
+  std::vector<Vec3> reached;                   // a share of the way to them
+  std::vector<SolidConstraint> first_touches;  // of the solids that are cut
+  std::vector<Progress> progress;
+  std::vector<Part> parts;
+  std::vector<std::uint32_t> work;  // elements of a detection
+  std::uint64_t pairs_before = 0;
+  SolidStep last;
+};
+
+}  // namespace dartcast

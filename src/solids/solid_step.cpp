@@ -1,0 +1,331 @@
+// A step of solids: detect, correct, cut, commit. docs/method.md, "Solids", has the proofs.
+//
+//  1. start()               targets; all solids have their whole way before them
+//  2. correct_in_rounds()   detect() finds all touches on the way; correct() moves the targets away from these walls
+//  3. cut_each(), cut_all() what still touches goes a share of its way: each solid its own where walls are at rest, all
+//                           solids and the walls the same one where they move. The rounded share is detected again.
+//  4. commit_at_rest(), commit_moved()   the vertices, which are particles, get there
+//  5. report()
+//
+// Whole solids are cut, because a part of a straight motion that is proved free is free. To stop vertices one by one
+// would make another motion, without a proof.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "base/parallel.hpp"
+#include "complex/simplex.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/predicates.hpp"
+#include "solids/solid_set_impl.hpp"
+
+namespace dartcast {
+
+namespace {
+
+constexpr double cut_share = 15.0 / 16.0;  // of the way to the first touch: the next step must not start with one
+constexpr double least_share = 0x1p-30;    // of the way: less is none
+constexpr double pressing_share = 2.0;     // of the separation: a contact with a larger gap at the end has no effect
+
+void check(const SolidStepOptions& o, const char* caller) {
+  if (o.iterations == 0) throw InvalidArgument(fmt::format("{}: iterations is 0: give at least 1", caller));
+  if (!(o.separation >= 0.0) || !std::isfinite(o.separation))
+    throw InvalidArgument(
+        fmt::format("{}: separation is {}: give a finite length of at least 0", caller, o.separation));
+}
+
+Vec3 on_way(const Vec3& from, const Vec3& to, double share) { return flushed(from + (to - from) * share); }
+
+// The first of these cells' simplices that holds a point, border included.
+SimplexId holding(const CellComplex& complex, std::span<const Cell> cells, std::span<const Vec3> positions,
+                  const Vec3& x) {
+  for (const Cell c : cells) {
+    const CellView cell = complex.map().view(c);
+    const auto& simplices = cell.shape().simplices();
+    for (std::uint16_t s = 0; s < simplices.size(); ++s) {
+      Corners v;
+      for (unsigned i = 0; i < 4; ++i) v[i] = positions[cell.vertex(simplices[s].vertex[i]).value];
+      bool holds = true;
+      for (unsigned f = 0; f < 4 && holds; ++f) holds = orient_facet(v, f, x) != Sign::negative;
+      if (holds) return {c, s};
+    }
+  }
+  return {};
+}
+
+// By solid, then by time. A pair that was found in several rounds counts once, as it was found first.
+void sort_and_join(std::vector<SolidContact>& contacts) {
+  const auto by_pair = [](const SolidContact& c) {
+    return std::tie(c.solid, c.kind, c.vertices, c.wall_kind, c.dart, c.triangle);
+  };
+  std::stable_sort(contacts.begin(), contacts.end(),
+                   [&](const SolidContact& a, const SolidContact& b) { return by_pair(a) < by_pair(b); });
+  const auto same = [&](const SolidContact& a, const SolidContact& b) { return by_pair(a) == by_pair(b); };
+  contacts.erase(std::unique(contacts.begin(), contacts.end(), same), contacts.end());
+  std::stable_sort(contacts.begin(), contacts.end(), [](const SolidContact& a, const SolidContact& b) {
+    return std::tie(a.solid, a.time_of_impact) < std::tie(b.solid, b.time_of_impact);
+  });
+}
+
+}  // namespace
+
+std::uint64_t SolidSet::Impl::pairs_so_far() const {
+  std::uint64_t pairs = 0;
+  for (const Part& part : parts) pairs += part.finder.pairs();
+  return pairs;
+}
+
+void SolidSet::Impl::start(std::span<const Vec3> given, const SolidStepOptions& options, const char* caller) {
+  check(options, caller);
+  check_current(caller);
+  if (given.size() != positions.size())
+    throw InvalidArgument(
+        fmt::format("{}: {} targets for {} vertices: give one for each", caller, given.size(), positions.size()));
+  const auto bad = std::find_if_not(given.begin(), given.end(), in_exact_range);
+  if (bad != given.end())
+    throw InvalidArgument(fmt::format("{}: the target of vertex {} is not finite or outside the exact range", caller,
+                                      bad - given.begin()));
+  wanted.resize(given.size());
+  std::transform(given.begin(), given.end(), wanted.begin(), flushed);
+  targets = wanted;
+  reached = positions;
+  progress.resize(count());
+  for (Progress& p : progress) p.constraints.clear();
+  pairs_before = pairs_so_far();
+  last = {};
+  last.made.assign(count(), 1.0);
+}
+
+// All touches of these solids on the way from their positions, into `progress`.
+void SolidSet::Impl::detect(const Solids& solids, std::span<const Vec3> to, const VertexMotion& walls) {
+  work.clear();
+  for (const std::uint32_t s : solids) {
+    progress[s].touches.clear();
+    progress[s].touch_time = 2.0;
+    progress[s].flat_time = 2.0;
+    for (std::uint32_t e = first_element[s]; e < first_element[s + 1]; ++e) work.push_back(e);
+  }
+  const std::size_t grain = std::max<std::size_t>(16, chunk_count(work.size(), 256));
+  const std::size_t used = chunk_count(work.size(), grain);
+  if (parts.size() < used) parts.resize(used);
+  const SolidMotion motion = {positions, to};
+  const CellComplex& complex = environment.complex();
+  parallel_for(work.size(), grain, environment.threads(), [&](std::size_t begin, std::size_t end) {
+    Part& part = parts[begin / grain];
+    part.touches.clear();
+    part.owners.clear();
+    part.flats.clear();
+    for (std::size_t i = begin; i < end; ++i) {
+      const SolidElement& e = elements[work[i]];
+      const std::uint32_t solid = solid_of_element[work[i]];
+      const auto flat = part.finder.find(complex, particles[e.vertex[0]].cell, e, motion, walls, part.touches);
+      part.owners.resize(part.touches.size(), solid);
+      if (flat) part.flats.push_back({solid, *flat});
+    }
+  });
+  gather(std::span<const Part>(parts).first(used));
+}
+
+// By part, then by element: the order does not depend on the threads.
+void SolidSet::Impl::gather(std::span<const Part> found) {
+  for (const Part& part : found) {
+    for (std::size_t i = 0; i < part.touches.size(); ++i) {
+      Progress& p = progress[part.owners[i]];
+      p.touches.push_back(part.touches[i]);
+      p.touch_time = std::min(p.touch_time, part.touches[i].time);
+    }
+    for (const Flat& f : part.flats) progress[f.solid].flat_time = std::min(progress[f.solid].flat_time, f.time);
+  }
+}
+
+// At the end `open` has the solids whose way is still not free.
+void SolidSet::Impl::correct_in_rounds(Solids& open, const VertexMotion& walls, const SolidStepOptions& options) {
+  for (unsigned round = 0;; ++round) {
+    detect(open, targets, walls);
+    std::erase_if(open, [&](std::uint32_t s) { return progress[s].is_free(); });
+    if (open.empty() || round == options.rounds) return;
+    last.rounds = round + 1;
+    parallel_for(open.size(), 1, environment.threads(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) correct(open[i], options);
+    });
+  }
+}
+
+// Gauss-Seidel's sweeps over all constraints found so far; Targets that leave the range of numbers are taken back.
+void SolidSet::Impl::correct(std::uint32_t solid, const SolidStepOptions& options) {
+  Progress& p = progress[solid];
+  const SolidMotion motion = {positions, targets};
+  for (const ElementTouch& touch : p.touches)
+    p.constraints.push_back(constraint_of(touch, motion, options.separation, longest[solid]));
+  for (unsigned i = 0; i < options.iterations; ++i) {
+    for (SolidConstraint& c : p.constraints) satisfy(c, targets, inverse_masses);
+  }
+  const std::span<Vec3> mine = of(targets, solid);
+  const bool good = std::all_of(mine.begin(), mine.end(), in_exact_range);
+  if (good) std::transform(mine.begin(), mine.end(), mine.begin(), flushed);
+  if (!good) std::copy_n(wanted.begin() + first_vertex[solid], mine.size(), mine.begin());
+}
+
+// Where a share of the way to its targets takes a solid.
+void SolidSet::Impl::go(std::uint32_t solid, double share) {
+  last.made[solid] = share;
+  for (std::uint32_t v = first_vertex[solid]; v < first_vertex[solid + 1]; ++v)
+    reached[v] = share == 0.0 ? positions[v] : share == 1.0 ? targets[v] : on_way(positions[v], targets[v], share);
+}
+
+void SolidSet::Impl::keep_first_touches(const Solids& cut, const SolidStepOptions& options) {
+  first_touches.clear();
+  for (const std::uint32_t s : cut) {
+    const Progress& p = progress[s];
+    const auto earlier = [](const ElementTouch& a, const ElementTouch& b) { return a.time < b.time; };
+    const auto first = std::min_element(p.touches.begin(), p.touches.end(), earlier);
+    if (p.flat_time == 0.0) last.held.push_back(s);
+    if (first == p.touches.end() || p.flat_time < first->time) continue;
+    first_touches.push_back(constraint_of(*first, {positions, targets}, options.separation, longest[s]));
+  }
+}
+
+// With walls at rest each solid stops by itself.
+void SolidSet::Impl::cut_each(Solids open) {
+  const auto rest = environment.complex().positions();
+  for (const std::uint32_t s : open) last.made[s] = cut_share * progress[s].free_until();
+  while (!open.empty()) {
+    std::erase_if(open, [&](std::uint32_t s) {
+      const bool too_short = last.made[s] < least_share;
+      go(s, too_short ? 0.0 : last.made[s]);
+      return too_short;
+    });
+    detect(open, reached, {rest, rest});
+    std::erase_if(open, [&](std::uint32_t s) { return progress[s].is_free(); });
+    for (const std::uint32_t s : open) last.made[s] *= 0.5;
+  }
+}
+
+// With walls that move, all stop together. `after`: the positions of all vertices of the environment after the move.
+void SolidSet::Impl::cut_all(const Solids& open, std::span<const Vec3> walls_to, std::vector<Vec3>& after) {
+  const auto before = environment.complex().positions();
+  Solids all(count());
+  for (std::uint32_t s = 0; s < count(); ++s) all[s] = s;
+  double share = 1.0;
+  for (const std::uint32_t s : open) share = std::min(share, cut_share * progress[s].free_until());
+  for (;; share *= 0.5) {
+    if (share < least_share) share = 0.0;
+    for (const std::uint32_t s : all) go(s, share);
+    if (share == 0.0) break;
+    for (std::size_t p = 0; p < walls_to.size(); ++p) after[p] = before[p] + (walls_to[p] - before[p]) * share;
+    environment.complex().steiner_weights().compute(after);
+    detect(all, reached, {before, after});
+    if (std::all_of(progress.begin(), progress.end(), [](const Progress& p) { return p.is_free(); })) break;
+  }
+  last.walls_made = share;
+}
+
+void SolidSet::Impl::commit_at_rest() {
+  environment.advance(particles, reached);
+  for (std::size_t v = 0; v < reached.size(); ++v) {
+    if (particles[v].position != reached[v])
+      throw InternalError(
+          fmt::format("solids: vertex {} met a wall on a way that was proved free; please report it", v));
+  }
+  positions = reached;
+}
+
+// The simplex of each vertex after the move. It is in one of the cells that the vertex reaches.
+std::vector<SimplexId> SolidSet::Impl::places_after(const VertexMotion& walls) {
+  constexpr std::size_t grain = 256;
+  std::vector<SimplexId> places(positions.size());
+  parallel_for(positions.size(), grain, environment.threads(), [&](std::size_t begin, std::size_t end) {
+    NearWalls near;
+    for (std::size_t v = begin; v < end; ++v) {
+      MovingElement point;
+      point.from[0] = positions[v];
+      point.to[0] = reached[v];
+      near.search(environment.complex(), particles[v].cell, point, walls);
+      places[v] = holding(environment.complex(), near.cells_reached(), walls.after, reached[v]);
+      if (!places[v].cell.valid())
+        throw InternalError(fmt::format("solids: no cell holds vertex {} after a move; please report it", v));
+    }
+  });
+  return places;
+}
+
+void SolidSet::Impl::commit_moved(const VertexMotion& walls) {
+  const std::vector<SimplexId> places = places_after(walls);
+  environment.move(walls.after.first(environment.complex().point_count()));
+  Particles moved;
+  for (std::size_t v = 0; v < places.size(); ++v) {
+    if (!environment.add(moved, places[v], reached[v]))
+      throw InternalError(fmt::format("solids: vertex {} is not in its cell after a move; please report it", v));
+  }
+  particles = std::move(moved);
+  positions = reached;
+}
+
+// Contacts that press at the end, and those that stopped a solid; by solid, then by time, each pair once.
+void SolidSet::Impl::report() {
+  const auto describe = [&](const SolidConstraint& c, std::uint32_t solid) {
+    SolidContact contact = contact_of(c, environment.map(), {positions, wanted}, reached, last.walls_made);
+    contact.solid = solid;
+    for (unsigned i = 0; i < contact.count; ++i) contact.vertices[i] -= first_vertex[solid];
+    return contact;
+  };
+  for (std::uint32_t s = 0; s < count(); ++s) {
+    bool corrected = false;
+    for (const SolidConstraint& c : progress[s].constraints) {
+      if (!(c.pressed > 0.0)) continue;
+      corrected = true;
+      const SolidContact contact = describe(c, s);
+      if (contact.gap <= pressing_share * c.separation) last.contacts.push_back(contact);
+    }
+    last.corrected += corrected ? 1 : 0;
+    last.cut += last.made[s] < 1.0 ? 1 : 0;
+  }
+  for (const SolidConstraint& c : first_touches) {
+    const auto after = std::upper_bound(first_vertex.begin(), first_vertex.end(), c.touch.vertices[0]);
+    last.contacts.push_back(describe(c, static_cast<std::uint32_t>(after - first_vertex.begin()) - 1));
+  }
+  sort_and_join(last.contacts);
+  last.pairs = pairs_so_far() - pairs_before;
+}
+
+void SolidSet::Impl::advance(std::span<const Vec3> given, const SolidStepOptions& options) {
+  start(given, options, "advance");
+  const auto rest = environment.complex().positions();
+  Solids open;
+  for (std::uint32_t s = 0; s < count(); ++s) {
+    const auto from = of(positions, s);
+    if (!std::equal(from.begin(), from.end(), of(targets, s).begin())) open.push_back(s);
+  }
+  correct_in_rounds(open, {rest, rest}, options);
+  reached = targets;
+  keep_first_touches(open, options);
+  cut_each(open);
+  report();
+  commit_at_rest();
+}
+
+void SolidSet::Impl::move_with(std::span<const Vec3> given, std::span<const Vec3> walls_to,
+                               const SolidStepOptions& options) {
+  start(given, options, "move_with");
+  const CellComplex& complex = environment.complex();
+  if (walls_to.size() != complex.point_count())
+    throw InvalidArgument(fmt::format("move_with: {} positions for {} points of the mesh: give one for each",
+                                      walls_to.size(), complex.point_count()));
+  std::vector<Vec3> after(complex.positions().begin(), complex.positions().end());
+  std::copy(walls_to.begin(), walls_to.end(), after.begin());
+  complex.steiner_weights().compute(after);
+  const VertexMotion walls = {complex.positions(), after};
+  Solids open(count());
+  for (std::uint32_t s = 0; s < count(); ++s) open[s] = s;
+  correct_in_rounds(open, walls, options);
+  reached = targets;
+  keep_first_touches(open, options);
+  if (!open.empty()) cut_all(open, walls_to, after);
+  report();
+  if (last.walls_made > 0.0) commit_moved(walls);
+}
+
+}  // namespace dartcast
