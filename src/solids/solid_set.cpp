@@ -8,24 +8,12 @@
 #include "dartcast/error.hpp"
 #include "dartcast/predicates.hpp"
 #include "solids/audit_solids.hpp"
+#include "solids/solid_refusal.hpp"
 #include "solids/solid_set_impl.hpp"
-#include "surface/inside.hpp"
 
 namespace dartcast {
 
 namespace {
-
-using Corners3 = std::array<Vec3, 3>;
-
-Corners3 corners_of(const SolidElement& e, std::span<const Vec3> points) {
-  return {points[e.vertex[0]], points[e.vertex[1]], points[e.vertex[2]]};
-}
-
-// Whether all corners of `a` are on one side of the plane of `b`.
-bool on_one_side(const Corners3& a, const Corners3& b) {
-  const Sign first = orient3d(b[0], b[1], b[2], a[0]);
-  return first != Sign::zero && orient3d(b[0], b[1], b[2], a[1]) == first && orient3d(b[0], b[1], b[2], a[2]) == first;
-}
 
 double longest_side(std::span<const SolidElement> elements, std::span<const Vec3> points) {
   double longest = 0.0;
@@ -34,47 +22,6 @@ double longest_side(std::span<const SolidElement> elements, std::span<const Vec3
       longest = std::max(longest, norm(points[e.vertex[(i + 1) % e.count]] - points[e.vertex[i]]));
   }
   return longest;
-}
-
-MovingElement at_rest(const SolidElement& e, std::span<const Vec3> points) {
-  MovingElement m;
-  m.from = corners_of(e, points);
-  m.to = m.from;
-  m.count = e.count;
-  return m;
-}
-
-// Whether each edge of the triangles has an even number of them.
-bool is_closed(const std::vector<std::array<std::uint32_t, 3>>& triangles) {
-  std::vector<std::array<std::uint32_t, 2>> edges;
-  for (const auto& t : triangles) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto [a, b] = std::minmax(t[i], t[(i + 1) % 3]);
-      edges.push_back({a, b});
-    }
-  }
-  std::sort(edges.begin(), edges.end());
-  for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
-    while (end < edges.size() && edges[end] == edges[i]) ++end;
-    if ((end - i) % 2 != 0) return false;
-  }
-  return !triangles.empty();
-}
-
-AddSolidResult refused(SolidRefusal why, const SolidElement& e) { return {why, 0xffffffffU, e.vertex, e.count}; }
-
-VertexMotion walls_at_rest(const CellComplex& complex) { return {complex.positions(), complex.positions()}; }
-
-// Whether an element meets a wall or reaches a flat cell.
-SolidRefusal refusal_of(const CellComplex& complex, NearWalls& near, Cell cell, const SolidElement& e,
-                        std::span<const Vec3> points) {
-  const Corners3 corners = corners_of(e, points);
-  for (const NearWall& w : near.search(complex, cell, at_rest(e, points), walls_at_rest(complex))) {
-    const Corners3 wall = {flushed(w.corners.to[0]), flushed(w.corners.to[1]), flushed(w.corners.to[2])};
-    if (!on_one_side(corners, wall) && audit_meet(corners, wall)) return SolidRefusal::meets_wall;
-  }
-  const bool flat = first_flat_time(complex, near.cells_reached(), walls_at_rest(complex)).has_value();
-  return flat ? SolidRefusal::cell_not_positive : SolidRefusal::none;
 }
 
 }  // namespace
@@ -87,48 +34,18 @@ void SolidSet::Impl::check_current(const char* caller) const {
         caller));
 }
 
-// Walls inside a closed solid touch nothing, so a search of its whole box looks for them.
-bool SolidSet::Impl::encloses_wall(const SolidMesh& mesh, std::span<const Location> places) const {
-  if (!is_closed(mesh.triangles)) return false;
-  const InsideTest test(mesh.points, mesh.triangles);
-  MovingElement box;
-  const std::uint32_t first = mesh.triangles[0][0];
-  box.from[0] = mesh.points[first];
-  box.to[0] = box.from[0];
-  double reach = 0.0;
-  for (const Vec3& p : mesh.points) reach = std::max(reach, norm(p - box.from[0]));
-  NearWalls near;
-  const CellComplex& complex = environment.complex();
-  for (const NearWall& w :
-       near.search(complex, places[first].simplex.cell, box, walls_at_rest(complex), reach * (1.0 + 0x1p-20))) {
-    const auto inside = [&](const Vec3& corner) { return test.side(corner) == PointSide::inside; };
-    if (std::any_of(w.corners.to.begin(), w.corners.to.end(), inside)) return true;
-  }
-  return false;
-}
-
-AddSolidResult SolidSet::Impl::refusal(const SolidMesh& mesh, std::span<const SolidElement> elements_of_mesh,
-                                       std::span<const Location> places) const {
-  for (std::uint32_t i = 0; i < places.size(); ++i) {
-    if (places[i].place != Place::free) return refused(SolidRefusal::vertex_not_free, {{i}, 1});
-  }
-  NearWalls near;
-  for (const SolidElement& e : elements_of_mesh) {
-    const SolidRefusal why = refusal_of(environment.complex(), near, places[e.vertex[0]].simplex.cell, e, mesh.points);
-    if (why != SolidRefusal::none) return refused(why, e);
-  }
-  if (encloses_wall(mesh, places)) return refused(SolidRefusal::encloses_wall, elements_of_mesh.front());
-  return {};
-}
-
-AddSolidResult SolidSet::Impl::add(const SolidMesh& given) {
+SolidPlacement SolidSet::Impl::add(const SolidMesh& given) {
   check(given);
   check_current("add");
   SolidMesh mesh = given;
   std::transform(mesh.points.begin(), mesh.points.end(), mesh.points.begin(), flushed);
   const std::vector<Location> places = environment.locate(mesh.points);
+  std::vector<Cell> cells(places.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (places[i].place == Place::free) cells[i] = places[i].simplex.cell;
+  }
   const std::vector<SolidElement> added = elements_of(mesh);
-  AddSolidResult result = refusal(mesh, added, places);
+  SolidPlacement result = find_refusal(environment.complex(), mesh.points, added, cells);
   if (result.refusal != SolidRefusal::none) return result;
   try {
     for (std::size_t i = 0; i < places.size(); ++i) {
@@ -175,11 +92,12 @@ SolidAudit SolidSet::Impl::audit() const {
   const WallAudit walls(environment.complex());
   std::vector<std::uint8_t> meets(elements.size());
   parallel_for(elements.size(), grain, environment.threads(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) meets[i] = walls.meets_wall(positions, elements[i]) ? 1 : 0;
+    for (std::size_t i = begin; i < end; ++i)
+      meets[i] = !is_stuck(solid_of_element[i]) && walls.meets_wall(positions, elements[i]) ? 1 : 0;
   });
   SolidAudit audit;
-  audit.checked = elements.size();
   for (std::size_t i = 0; i < elements.size(); ++i) {
+    audit.checked += is_stuck(solid_of_element[i]) ? 0 : 1;
     if (meets[i] == 0 || audit.failed++ != 0) continue;
     const std::uint32_t solid = solid_of_element[i];
     std::vector<std::uint32_t> numbers;
@@ -196,11 +114,14 @@ SolidSet::SolidSet(Environment& environment) : impl_(std::make_unique<Impl>(envi
 
 SolidSet::~SolidSet() = default;
 
-AddSolidResult SolidSet::add(const SolidMesh& mesh) { return impl_->add(mesh); }
+SolidPlacement SolidSet::add(const SolidMesh& mesh) { return impl_->add(mesh); }
 std::size_t SolidSet::size() const { return impl_->longest.size(); }
 std::span<const Vec3> SolidSet::positions() const { return impl_->positions; }
 std::span<const std::uint32_t> SolidSet::first_vertices() const { return impl_->first_vertex; }
 const Particles& SolidSet::particles() const { return impl_->particles; }
+void SolidSet::remove(std::uint32_t solid) { impl_->remove(solid); }
+UpdateReport SolidSet::update_after_edit() { return impl_->update_after_edit(); }
+std::span<const SolidPlacement> SolidSet::stuck() const { return impl_->stuck; }
 SolidAudit SolidSet::audit() const { return impl_->audit(); }
 
 void SolidSet::set_inverse_masses(std::span<const double> inverse_masses) {

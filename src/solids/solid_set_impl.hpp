@@ -30,20 +30,31 @@ struct SolidSet::Impl {
   std::vector<double> longest;                     // side of each solid, when it was added
 
   [[nodiscard]] std::uint32_t count() const { return static_cast<std::uint32_t>(longest.size()); }
+  [[nodiscard]] std::uint32_t solid_of(std::size_t vertex) const {
+    const auto after = std::upper_bound(first_vertex.begin(), first_vertex.end(), vertex);
+    return static_cast<std::uint32_t>(after - first_vertex.begin()) - 1;
+  }
   [[nodiscard]] std::span<Vec3> of(std::vector<Vec3>& values, std::uint32_t solid) const {
     return {values.data() + first_vertex[solid], first_vertex[solid + 1] - first_vertex[solid]};
   }
 
   // --- adding (solid_set.cpp)
 
-  AddSolidResult add(const SolidMesh& given);
-  [[nodiscard]] AddSolidResult refusal(const SolidMesh& mesh, std::span<const SolidElement> elements_of_mesh,
-                                       std::span<const Location> places) const;
-  [[nodiscard]] bool encloses_wall(const SolidMesh& mesh, std::span<const Location> places) const;
+  SolidPlacement add(const SolidMesh& given);
   std::uint32_t append(const SolidMesh& mesh, std::span<const SolidElement> added);
   void keep_first(std::uint32_t solids);
   void check_current(const char* caller) const;
   [[nodiscard]] SolidAudit audit() const;
+
+  // --- edits (solid_edit.cpp)
+
+  void remove(std::uint32_t solid);
+  UpdateReport update_after_edit();
+  void find_stuck();
+  [[nodiscard]] bool is_stuck(std::uint32_t solid) const;
+  void carry_stuck(Particles& moved);
+
+  std::vector<SolidPlacement> stuck;  // by solid
 
   // --- a step (solid_step.cpp)
 
@@ -76,6 +87,7 @@ struct SolidSet::Impl {
   using Solids = std::vector<std::uint32_t>;
 
   [[nodiscard]] std::uint64_t pairs_so_far() const;
+  [[nodiscard]] Solids all_but_stuck() const;
   void start(std::span<const Vec3> given, const SolidStepOptions& options, const char* caller);
   void detect(const Solids& solids, std::span<const Vec3> to, const VertexMotion& walls);
   void gather(std::span<const Part> found);

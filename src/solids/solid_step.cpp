@@ -78,6 +78,14 @@ std::uint64_t SolidSet::Impl::pairs_so_far() const {
   return pairs;
 }
 
+SolidSet::Impl::Solids SolidSet::Impl::all_but_stuck() const {
+  Solids solids;
+  for (std::uint32_t s = 0; s < count(); ++s) {
+    if (!is_stuck(s)) solids.push_back(s);
+  }
+  return solids;
+}
+
 void SolidSet::Impl::start(std::span<const Vec3> given, const SolidStepOptions& options, const char* caller) {
   check(options, caller);
   check_current(caller);
@@ -97,6 +105,12 @@ void SolidSet::Impl::start(std::span<const Vec3> given, const SolidStepOptions& 
   pairs_before = pairs_so_far();
   last = {};
   last.made.assign(count(), 1.0);
+  for (const SolidPlacement& p : stuck) {  // no part of a step moves these
+    last.made[p.solid] = 0.0;
+    last.held.push_back(p.solid);
+    const auto place = of(positions, p.solid);
+    std::copy(place.begin(), place.end(), of(targets, p.solid).begin());
+  }
 }
 
 // All touches of these solids on the way from their positions, into `progress`.
@@ -207,8 +221,7 @@ void SolidSet::Impl::cut_each(Solids open) {
 // With walls that move, all stop together. `after`: the positions of all vertices of the environment after the move.
 void SolidSet::Impl::cut_all(const Solids& open, std::span<const Vec3> walls_to, std::vector<Vec3>& after) {
   const auto before = environment.complex().positions();
-  Solids all(count());
-  for (std::uint32_t s = 0; s < count(); ++s) all[s] = s;
+  const Solids all = all_but_stuck();
   double share = 1.0;
   for (const std::uint32_t s : open) share = std::min(share, cut_share * progress[s].free_until());
   for (;; share *= 0.5) {
@@ -218,7 +231,7 @@ void SolidSet::Impl::cut_all(const Solids& open, std::span<const Vec3> walls_to,
     for (std::size_t p = 0; p < walls_to.size(); ++p) after[p] = before[p] + (walls_to[p] - before[p]) * share;
     environment.complex().steiner_weights().compute(after);
     detect(all, reached, {before, after});
-    if (std::all_of(progress.begin(), progress.end(), [](const Progress& p) { return p.is_free(); })) break;
+    if (std::all_of(all.begin(), all.end(), [&](std::uint32_t s) { return progress[s].is_free(); })) break;
   }
   last.walls_made = share;
 }
@@ -240,6 +253,7 @@ std::vector<SimplexId> SolidSet::Impl::places_after(const VertexMotion& walls) {
   parallel_for(positions.size(), grain, environment.threads(), [&](std::size_t begin, std::size_t end) {
     NearWalls near;
     for (std::size_t v = begin; v < end; ++v) {
+      if (is_stuck(solid_of(v))) continue;
       MovingElement point;
       point.from[0] = positions[v];
       point.to[0] = reached[v];
@@ -257,11 +271,12 @@ void SolidSet::Impl::commit_moved(const VertexMotion& walls) {
   environment.move(walls.after.first(environment.complex().point_count()));
   Particles moved;
   for (std::size_t v = 0; v < places.size(); ++v) {
-    if (!environment.add(moved, places[v], reached[v]))
+    if (places[v].cell.valid() && !environment.add(moved, places[v], reached[v]))
       throw InternalError(fmt::format("solids: vertex {} is not in its cell after a move; please report it", v));
   }
+  if (!stuck.empty()) carry_stuck(moved);
   particles = std::move(moved);
-  positions = reached;
+  for (std::size_t v = 0; v < positions.size(); ++v) positions[v] = particles[v].position;
 }
 
 // Contacts that press at the end, and those that stopped a solid; by solid, then by time, each pair once.
@@ -281,12 +296,10 @@ void SolidSet::Impl::report() {
       if (contact.gap <= pressing_share * c.separation) last.contacts.push_back(contact);
     }
     last.corrected += corrected ? 1 : 0;
-    last.cut += last.made[s] < 1.0 ? 1 : 0;
+    last.cut += last.made[s] < 1.0 && !is_stuck(s) ? 1 : 0;
   }
-  for (const SolidConstraint& c : first_touches) {
-    const auto after = std::upper_bound(first_vertex.begin(), first_vertex.end(), c.touch.vertices[0]);
-    last.contacts.push_back(describe(c, static_cast<std::uint32_t>(after - first_vertex.begin()) - 1));
-  }
+  for (const SolidConstraint& c : first_touches) last.contacts.push_back(describe(c, solid_of(c.touch.vertices[0])));
+  std::sort(last.held.begin(), last.held.end());
   sort_and_join(last.contacts);
   last.pairs = pairs_so_far() - pairs_before;
 }
@@ -297,7 +310,7 @@ void SolidSet::Impl::advance(std::span<const Vec3> given, const SolidStepOptions
   Solids open;
   for (std::uint32_t s = 0; s < count(); ++s) {
     const auto from = of(positions, s);
-    if (!std::equal(from.begin(), from.end(), of(targets, s).begin())) open.push_back(s);
+    if (!is_stuck(s) && !std::equal(from.begin(), from.end(), of(targets, s).begin())) open.push_back(s);
   }
   correct_in_rounds(open, {rest, rest}, options);
   reached = targets;
@@ -318,8 +331,7 @@ void SolidSet::Impl::move_with(std::span<const Vec3> given, std::span<const Vec3
   std::copy(walls_to.begin(), walls_to.end(), after.begin());
   complex.steiner_weights().compute(after);
   const VertexMotion walls = {complex.positions(), after};
-  Solids open(count());
-  for (std::uint32_t s = 0; s < count(); ++s) open[s] = s;
+  Solids open = all_but_stuck();
   correct_in_rounds(open, walls, options);
   reached = targets;
   keep_first_touches(open, options);

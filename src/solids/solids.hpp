@@ -53,11 +53,11 @@ enum class SolidRefusal : std::uint8_t {
   cell_not_positive,  ///< a cell that an edge or a triangle reaches is flat or inverted
 };
 
-/// The answer to a request to add one solid.
-struct AddSolidResult {
+/// The answer to a request to add one solid; also the state of a solid after an edit.
+struct SolidPlacement {
   SolidRefusal refusal = SolidRefusal::none;
-  std::uint32_t solid = 0xffffffffU;  ///< its index in the set; none (0xffffffff) where it is refused
-  /// Where it is refused: the vertices (numbers in the mesh) of the place, the first `count` of these.
+  std::uint32_t solid = 0xffffffffU;  ///< its index in the set; none (0xffffffff) where it is not added
+  /// Where it is refused: the vertices (numbers in the solid) of the place, the first `count` of these.
   std::array<std::uint32_t, 3> vertices{};
   std::uint8_t count = 0;
 };
@@ -108,15 +108,16 @@ struct SolidStep {
   double walls_made = 1.0;             ///< of move_with(): the share of the motion that the walls made
   std::uint32_t corrected = 0;         ///< solids whose targets contacts changed
   std::uint32_t cut = 0;               ///< solids that went less than their way
-  std::vector<std::uint32_t> held;     ///< solids that stayed because a cell that they reach is flat or inverted
-  std::uint32_t rounds = 0;            ///< of corrections made, at most, by any solid
-  std::uint64_t pairs = 0;             ///< of parts of solids and walls, looked at
+  /// Solids that stayed because a cell that they reach is flat or inverted, or because they are stuck().
+  std::vector<std::uint32_t> held;
+  std::uint32_t rounds = 0;  ///< of corrections made, at most, by any solid
+  std::uint64_t pairs = 0;   ///< of parts of solids and walls, looked at
 };
 
 /// The outcome of an audit of solids.
 struct SolidAudit {
-  std::uint64_t checked = 0;  ///< edges, triangles and single points
-  std::uint64_t failed = 0;   ///< of these: those that meet a wall
+  std::uint64_t checked = 0;  ///< edges, triangles and single points, but for those of stuck solids
+  std::uint64_t failed = 0;   ///< those of them that meet a wall
   std::string first;          ///< the first that failed; empty: none failed
 };
 
@@ -138,7 +139,19 @@ class SolidSet {
   /// Adds a solid where it touches no wall and encloses none; else the answer says why, and nothing is added. Throws as
   /// check(), and InvalidArgument where the set missed a move or an edit. Cost: as a step, and a search for its points
   /// (Environment::locate()).
-  AddSolidResult add(const SolidMesh& mesh);
+  SolidPlacement add(const SolidMesh& mesh);
+
+  /// Removes a solid. Those after it move up. Throws InvalidArgument where there is no such solid.
+  void remove(std::uint32_t solid);
+
+  /// To be called after each edit of the environment, as Environment::update_after_edit(). A solid is stuck where a wall
+  /// that the edit made is in it, or leaves it no free place: where add() would refuse it as it is now. It stays until a
+  /// later edit frees it, and the cells around its vertices carry it along when they move. Vertices that are outside after
+  /// the edit move to the nearest free place. Throws InvalidArgument, nothing changed, where there is none, or the set
+  /// missed a move or an edit. Cost: that of Environment::update_after_edit(), and some 2 us for each edge and triangle.
+  UpdateReport update_after_edit();
+  /// All stuck solids, in order, and where each is stuck.
+  [[nodiscard]] std::span<const SolidPlacement> stuck() const;
 
   [[nodiscard]] std::size_t size() const;
   /// The vertices of all solids, one solid after another.

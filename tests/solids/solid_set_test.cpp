@@ -35,10 +35,10 @@ TEST(SolidSet, AddsOnlyWhereThereIsRoom) {
 
   SolidMesh open = moved(ball(1.5), {2.5, 2.5, 2.5});
   open.triangles.pop_back();
-  const AddSolidResult first = solids.add(open);
+  const SolidPlacement first = solids.add(open);
   EXPECT_EQ(first.refusal, SolidRefusal::none) << "an open surface encloses nothing";
   EXPECT_EQ(first.solid, 0U);
-  const AddSolidResult second = solids.add(moved(ball(0.4), {1.0, 1.0, 1.0}));
+  const SolidPlacement second = solids.add(moved(ball(0.4), {1.0, 1.0, 1.0}));
   EXPECT_EQ(second.solid, 1U);
   EXPECT_EQ(solids.size(), 2U);
   EXPECT_EQ(solids.first_vertices()[1], 12U);
@@ -51,7 +51,7 @@ TEST(SolidSet, SaysWhichPartIsRefused) {
   Environment environment(with_obstacle());
   SolidSet solids(environment);
   const std::vector<Vec3> line = {{0.5, 2.5, 2.5}, {1.5, 2.5, 2.5}, {3.5, 2.5, 2.5}};
-  const AddSolidResult result = solids.add(solid_of_polyline(line));
+  const SolidPlacement result = solids.add(solid_of_polyline(line));
   EXPECT_EQ(result.refusal, SolidRefusal::meets_wall);
   EXPECT_EQ(result.count, 2);
   EXPECT_EQ(result.vertices[0], 1U);

@@ -1,0 +1,108 @@
+// Solids after an edit of the environment: those that its walls pierce are stuck until another edit frees them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "dartcast/error.hpp"
+#include "dartcast/predicates.hpp"
+#include "solids/solid_refusal.hpp"
+#include "solids/solid_set_impl.hpp"
+#include "tracking/carry.hpp"
+
+namespace dartcast {
+
+namespace {
+
+template <class T>
+void erase(std::vector<T>& values, std::size_t begin, std::size_t end) {
+  values.erase(values.begin() + static_cast<std::ptrdiff_t>(begin), values.begin() + static_cast<std::ptrdiff_t>(end));
+}
+
+}  // namespace
+
+void SolidSet::Impl::remove(std::uint32_t solid) {
+  if (solid >= count())
+    throw InvalidArgument(fmt::format("solids: there is no solid {}: the set has {}", solid, count()));
+  const std::uint32_t vertex = first_vertex[solid];
+  const std::uint32_t vertices = first_vertex[solid + 1] - vertex;
+  const std::uint32_t element = first_element[solid];
+  const std::uint32_t parts_of_it = first_element[solid + 1] - element;
+  std::vector<std::uint8_t> marks(positions.size(), 0);
+  std::fill_n(marks.begin() + vertex, vertices, std::uint8_t{1});
+  particles.remove(marks);
+  erase(positions, vertex, vertex + vertices);
+  erase(inverse_masses, vertex, vertex + vertices);
+  erase(elements, element, element + parts_of_it);
+  erase(solid_of_element, element, element + parts_of_it);
+  erase(longest, solid, solid + 1);
+  erase(first_vertex, solid, solid + 1);
+  erase(first_element, solid, solid + 1);
+  for (std::size_t e = element; e < elements.size(); ++e) {
+    for (std::uint32_t& v : elements[e].vertex) v -= vertices;
+    --solid_of_element[e];
+  }
+  for (std::size_t s = solid; s < first_vertex.size(); ++s) {
+    first_vertex[s] -= vertices;
+    first_element[s] -= parts_of_it;
+  }
+  std::erase_if(stuck, [&](const SolidPlacement& p) { return p.solid == solid; });
+  for (SolidPlacement& p : stuck) p.solid -= p.solid > solid ? 1 : 0;
+}
+
+UpdateReport SolidSet::Impl::update_after_edit() {
+  if (particles.size() > 0 && environment.awaits_advance(particles))
+    throw InvalidArgument(
+        "solids: the environment was moved without its solids before the edit: move it by SolidSet::move_with()");
+  Particles updated = particles;
+  UpdateReport report = environment.update_after_edit(updated, OrphanPolicy::hold);
+  if (updated.size() != particles.size())
+    throw InvalidArgument("solids: the edit left no free cell for a vertex: remove its solid, or keep a free cell");
+  particles = std::move(updated);
+  for (std::size_t v = 0; v < positions.size(); ++v) positions[v] = particles[v].position;
+  find_stuck();
+  return report;
+}
+
+void SolidSet::Impl::find_stuck() {
+  stuck.clear();
+  const CellComplex& complex = environment.complex();
+  for (std::uint32_t s = 0; s < count(); ++s) {
+    std::vector<Cell> cells;
+    for (std::uint32_t v = first_vertex[s]; v < first_vertex[s + 1]; ++v)
+      cells.push_back(complex.map().is_free(particles[v].cell) ? particles[v].cell : Cell{});
+    std::vector<SolidElement> own(elements.begin() + first_element[s], elements.begin() + first_element[s + 1]);
+    for (SolidElement& e : own) {
+      for (std::uint32_t& v : e.vertex) v -= first_vertex[s];
+    }
+    SolidPlacement placement = find_refusal(complex, of(positions, s), own, cells);
+    placement.solid = s;
+    if (placement.refusal != SolidRefusal::none) stuck.push_back(placement);
+  }
+}
+
+bool SolidSet::Impl::is_stuck(std::uint32_t solid) const {
+  return std::binary_search(stuck.begin(), stuck.end(), SolidPlacement{SolidRefusal::none, solid},
+                            [](const SolidPlacement& a, const SolidPlacement& b) { return a.solid < b.solid; });
+}
+
+// After a move: the cells carry the vertices of stuck solids along. `moved` has those of all others, in order.
+void SolidSet::Impl::carry_stuck(Particles& moved) {
+  const CellComplex& complex = environment.complex();
+  std::vector<Vec3> carried(positions);
+  std::vector<std::uint32_t> others;
+  for (std::uint32_t s = 0; s < count(); ++s) {
+    for (std::uint32_t v = first_vertex[s]; v < first_vertex[s + 1]; ++v) {
+      const ParticleState& state = particles[v];
+      const Weights weights = detail::barycentric(complex.previous_corners(state.at()), state.position);
+      const Vec3 target = flushed(detail::combine(complex.corners(state.at()), weights));
+      if (!is_stuck(s)) others.push_back(v);
+      if (is_stuck(s) && in_exact_range(target)) carried[v] = target;
+    }
+  }
+  environment.advance(particles, carried);
+  particles.replace(others, moved);
+  moved = std::move(particles);
+}
+
+}  // namespace dartcast
