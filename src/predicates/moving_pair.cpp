@@ -129,20 +129,20 @@ struct TimePart {
   int halvings;
 };
 
-enum class PartFate : std::uint8_t { apart, touching, unknown };
+enum class PartFate : std::uint8_t { apart, touching, undecided };
 
 // Vertex and face: whether p is on no side, or on opposite sides, of two sides of the triangle.
 PartFate minors_fate(const std::array<int, 3>& sign) {
   if (sign[0] != 0 && sign[0] == sign[1] && sign[1] == sign[2]) return PartFate::touching;
   const bool positive = sign[0] > 0 || sign[1] > 0 || sign[2] > 0;
   const bool negative = sign[0] < 0 || sign[1] < 0 || sign[2] < 0;
-  return positive && negative ? PartFate::apart : PartFate::unknown;
+  return positive && negative ? PartFate::apart : PartFate::undecided;
 }
 
 // Edges: the sides of the second edge's line on which the ends of the first lie, and the other way round.
 PartFate minors_fate(const std::array<int, 4>& sign) {
   if (sign[0] * sign[1] > 0 || sign[2] * sign[3] > 0) return PartFate::apart;
-  return sign[0] * sign[1] < 0 && sign[2] * sign[3] < 0 ? PartFate::touching : PartFate::unknown;
+  return sign[0] * sign[1] < 0 && sign[2] * sign[3] < 0 ? PartFate::touching : PartFate::undecided;
 }
 
 template <std::size_t N>
@@ -188,8 +188,8 @@ class PairFilter {
   [[nodiscard]] PartFate fate_of(const TimePart<N>& part) const {
     const double bound = volume_bound(part.halvings);
     if (common_sign(part.volume, bound) != 0) return PartFate::apart;
-    PartFate fate = PartFate::unknown;
-    for (std::size_t k = 0; k < 3 && fate == PartFate::unknown; ++k) {
+    PartFate fate = PartFate::undecided;
+    for (std::size_t k = 0; k < 3 && fate == PartFate::undecided; ++k) {
       const double minor_bound = (10 + 4.0 * part.halvings) * rounding * m_.minor[k];
       std::array<int, N> signs;
       for (std::size_t i = 0; i < N; ++i) signs[i] = common_sign(part.minors[k][i], minor_bound);
@@ -197,7 +197,7 @@ class PairFilter {
     }
     if (fate != PartFate::touching) return fate;
     const bool crosses = sign_beyond(part.volume[0], bound) * sign_beyond(part.volume[3], bound) < 0;
-    return crosses ? PartFate::touching : PartFate::unknown;
+    return crosses ? PartFate::touching : PartFate::undecided;
   }
 
   // Replaces the last part by its halves, the earlier one on top.
@@ -273,7 +273,7 @@ std::optional<double> first_touch(const MovingPair& pair, PairKind kind) {
   switch (filtered.answer) {
     case FilterAnswer::apart: return std::nullopt;
     case FilterAnswer::touching: return filtered.time;
-    case FilterAnswer::unknown: break;
+    case FilterAnswer::undecided: break;
   }
   return exact_touch(pair, kind);
 }

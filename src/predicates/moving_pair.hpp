@@ -29,10 +29,10 @@ struct MovingPair {
 /// where the filter decides, some 70 us elsewhere.
 std::optional<double> first_touch(const MovingPair& pair, PairKind kind);
 
-enum class FilterAnswer : std::uint8_t { apart, touching, unknown };
+enum class FilterAnswer : std::uint8_t { apart, touching, undecided };
 
 struct FilteredTouch {
-  FilterAnswer answer = FilterAnswer::unknown;
+  FilterAnswer answer = FilterAnswer::undecided;
   double time = 0.0;  ///< The first touch, never late, at most 2^-20 early. Defined where the answer is `touching`.
 };
 
