@@ -4,7 +4,7 @@ set(core_rooms base predicates mesh generators topology complex editing surface 
 set(simulation_rooms dynamics spheres solids bodies catheter simulation)
 set(io_rooms formats meshing scene report output)
 # Public headers; core has all others.
-set(simulation_headers dynamics spheres bodies catheter simulation deformation vector_field events scene statistics)
+set(simulation_headers dynamics spheres solids bodies catheter simulation deformation vector_field events scene statistics)
 set(io_headers mesh_files scene_file report run trajectory statistics_files)
 
 # The files of the case that is not built: with VTK, or without it.

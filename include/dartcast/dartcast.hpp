@@ -32,6 +32,7 @@
 #include "dartcast/scene.hpp"
 #include "dartcast/scene_file.hpp"
 #include "dartcast/simulation.hpp"
+#include "dartcast/solids.hpp"
 #include "dartcast/spheres.hpp"
 #include "dartcast/statistics.hpp"
 #include "dartcast/statistics_files.hpp"

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "dartcast/cell_complex.hpp"
+#include "dartcast/solids.hpp"
 #include "dynamics/near_walls.hpp"
 #include "predicates/moving_pair.hpp"
 #include "solids/elements.hpp"
-#include "solids/solids.hpp"
 
 namespace dartcast {
 

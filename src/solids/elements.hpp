@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "solids/solids.hpp"
+#include "dartcast/solids.hpp"
 
 namespace dartcast {
 

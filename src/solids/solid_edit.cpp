@@ -1,4 +1,5 @@
-// Solids after an edit of the environment: those that its walls pierce are stuck until another edit frees them.
+// Solids after an edit of the environment, and from a checkpoint. A solid that walls pierce is stuck until another edit
+// frees it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -64,6 +65,25 @@ UpdateReport SolidSet::Impl::update_after_edit() {
   return report;
 }
 
+SolidCheckpoint SolidSet::Impl::checkpoint() const {
+  SolidCheckpoint saved;
+  for (std::size_t v = 0; v < particles.size(); ++v) {
+    saved.states.push_back(particles[v]);
+    saved.held_weights.push_back(particles.held_weights(v));
+  }
+  return saved;
+}
+
+void SolidSet::Impl::restore(const SolidCheckpoint& saved) {
+  if (saved.states.size() != positions.size())
+    throw InvalidArgument(
+        fmt::format("solids: the checkpoint has {} vertices, the set has {}: add the same solids first",
+                    saved.states.size(), positions.size()));
+  particles = environment.restored(saved.states, saved.held_weights);
+  for (std::size_t v = 0; v < positions.size(); ++v) positions[v] = particles[v].position;
+  find_stuck();
+}
+
 void SolidSet::Impl::find_stuck() {
   stuck.clear();
   const CellComplex& complex = environment.complex();
@@ -77,7 +97,9 @@ void SolidSet::Impl::find_stuck() {
     }
     SolidPlacement placement = find_refusal(complex, of(positions, s), own, cells);
     placement.solid = s;
-    if (placement.refusal != SolidRefusal::none) stuck.push_back(placement);
+    // Steps look at flat cells by themselves: vertices that move can make them positive again.
+    if (placement.refusal != SolidRefusal::none && placement.refusal != SolidRefusal::cell_not_positive)
+      stuck.push_back(placement);
   }
 }
 

@@ -6,8 +6,8 @@
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_check.hpp"
 #include "dartcast/predicates.hpp"
+#include "dartcast/solids.hpp"
 #include "mesh/faces.hpp"
-#include "solids/solids.hpp"
 #include "surface/triangles.hpp"
 
 namespace dartcast {

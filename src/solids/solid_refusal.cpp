@@ -99,12 +99,14 @@ SolidPlacement find_refusal(const CellComplex& complex, std::span<const Vec3> po
     if (!cells[i].valid()) return refused(SolidRefusal::vertex_not_free, {{i}, 1});
   }
   NearWalls near;
+  SolidPlacement flat;
   for (const SolidElement& e : elements) {
     const SolidRefusal why = refusal_of(complex, near, cells[e.vertex[0]], e, points);
-    if (why != SolidRefusal::none) return refused(why, e);
+    if (why == SolidRefusal::meets_wall) return refused(why, e);
+    if (why != SolidRefusal::none) flat = refused(why, e);
   }
   if (encloses_wall(complex, points, elements, cells)) return refused(SolidRefusal::encloses_wall, elements.front());
-  return {};
+  return flat;
 }
 
 }  // namespace dartcast

@@ -122,6 +122,8 @@ const Particles& SolidSet::particles() const { return impl_->particles; }
 void SolidSet::remove(std::uint32_t solid) { impl_->remove(solid); }
 UpdateReport SolidSet::update_after_edit() { return impl_->update_after_edit(); }
 std::span<const SolidPlacement> SolidSet::stuck() const { return impl_->stuck; }
+SolidCheckpoint SolidSet::checkpoint() const { return impl_->checkpoint(); }
+void SolidSet::restore(const SolidCheckpoint& saved) { impl_->restore(saved); }
 SolidAudit SolidSet::audit() const { return impl_->audit(); }
 
 void SolidSet::set_inverse_masses(std::span<const double> inverse_masses) {

@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
+#include "dartcast/solids.hpp"
 #include "solids/element_touches.hpp"
 #include "solids/elements.hpp"
 #include "solids/solid_constraint.hpp"
-#include "solids/solids.hpp"
 
 namespace dartcast {
 
@@ -54,6 +54,9 @@ struct SolidSet::Impl {
   [[nodiscard]] bool is_stuck(std::uint32_t solid) const;
   void carry_stuck(Particles& moved);
 
+  [[nodiscard]] SolidCheckpoint checkpoint() const;
+  void restore(const SolidCheckpoint& saved);
+
   std::vector<SolidPlacement> stuck;  // by solid
 
   // --- a step (solid_step.cpp)
@@ -94,8 +97,8 @@ struct SolidSet::Impl {
   void correct_in_rounds(Solids& open, const VertexMotion& walls, const SolidStepOptions& options);
   void correct(std::uint32_t solid, const SolidStepOptions& options);
   void go(std::uint32_t solid, double share);
-  void cut_each(Solids open);
-  void cut_all(const Solids& open, std::span<const Vec3> walls_to, std::vector<Vec3>& after);
+  void cut_each(Solids& open, const VertexMotion& walls);
+  void cut_all(const Solids& squeezed, std::span<const Vec3> walls_to, std::vector<Vec3>& after);
   void keep_first_touches(const Solids& cut, const SolidStepOptions& options);
   void commit_at_rest();
   [[nodiscard]] std::vector<SimplexId> places_after(const VertexMotion& walls);

@@ -2,8 +2,8 @@
 //
 //  1. start()               targets; all solids have their whole way before them
 //  2. correct_in_rounds()   detect() finds all touches on the way; correct() moves the targets away from these walls
-//  3. cut_each(), cut_all() what still touches goes a share of its way: each solid its own where walls are at rest, all
-//                           solids and the walls the same one where they move. The rounded share is detected again.
+//  3. cut_each(), cut_all() what still touches goes a share of its way, each solid its own. Walls that run into a solid
+//                           even so stop, and all solids with them. The rounded share is detected again.
 //  4. commit_at_rest(), commit_moved()   the vertices, which are particles, get there
 //  5. report()
 //
@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <tuple>
 #include <utility>
 
@@ -28,7 +29,8 @@ namespace {
 
 constexpr double cut_share = 15.0 / 16.0;  // of the way to the first touch: the next step must not start with one
 constexpr double least_share = 0x1p-30;    // of the way: less is none
-constexpr double pressing_share = 2.0;     // of the separation: a contact with a larger gap at the end has no effect
+constexpr double least_share_among_moving_walls = 0x1p-10;
+constexpr double pressing_share = 2.0;  // of the separation: a contact with a larger gap at the end has no effect
 
 void check(const SolidStepOptions& o, const char* caller) {
   if (o.iterations == 0) throw InvalidArgument(fmt::format("{}: iterations is 0: give at least 1", caller));
@@ -202,38 +204,45 @@ void SolidSet::Impl::keep_first_touches(const Solids& cut, const SolidStepOption
   }
 }
 
-// With walls at rest each solid stops by itself.
-void SolidSet::Impl::cut_each(Solids open) {
-  const auto rest = environment.complex().positions();
+// Each solid stops by itself. At the end `open` has those that walls run into even where they stay.
+void SolidSet::Impl::cut_each(Solids& open, const VertexMotion& walls) {
+  const double least = walls.at_rest() ? least_share : least_share_among_moving_walls;
+  Solids squeezed;
   for (const std::uint32_t s : open) last.made[s] = cut_share * progress[s].free_until();
   while (!open.empty()) {
-    std::erase_if(open, [&](std::uint32_t s) {
-      const bool too_short = last.made[s] < least_share;
-      go(s, too_short ? 0.0 : last.made[s]);
-      return too_short;
-    });
-    detect(open, reached, {rest, rest});
+    for (const std::uint32_t s : open) go(s, last.made[s] < least ? 0.0 : last.made[s]);
+    if (walls.at_rest()) std::erase_if(open, [&](std::uint32_t s) { return last.made[s] == 0.0; });
+    detect(open, reached, walls);
     std::erase_if(open, [&](std::uint32_t s) { return progress[s].is_free(); });
+    std::copy_if(open.begin(), open.end(), std::back_inserter(squeezed),
+                 [&](std::uint32_t s) { return last.made[s] == 0.0; });
+    std::erase_if(open, [&](std::uint32_t s) { return last.made[s] == 0.0; });
     for (const std::uint32_t s : open) last.made[s] *= 0.5;
   }
+  open = std::move(squeezed);
 }
 
-// With walls that move, all stop together. `after`: the positions of all vertices of the environment after the move.
-void SolidSet::Impl::cut_all(const Solids& open, std::span<const Vec3> walls_to, std::vector<Vec3>& after) {
+// Walls that would run into solids stop, and all solids with them, at one share of their ways as they are cut so far.
+// `after`: the positions of all vertices of the environment after the move.
+void SolidSet::Impl::cut_all(const Solids& squeezed, std::span<const Vec3> walls_to, std::vector<Vec3>& after) {
   const auto before = environment.complex().positions();
   const Solids all = all_but_stuck();
+  const std::vector<double> made = last.made;
+  targets = reached;
   double share = 1.0;
-  for (const std::uint32_t s : open) share = std::min(share, cut_share * progress[s].free_until());
+  for (const std::uint32_t s : squeezed) share = std::min(share, cut_share * progress[s].free_until());
   for (;; share *= 0.5) {
     if (share < least_share) share = 0.0;
     for (const std::uint32_t s : all) go(s, share);
-    if (share == 0.0) break;
     for (std::size_t p = 0; p < walls_to.size(); ++p) after[p] = before[p] + (walls_to[p] - before[p]) * share;
+    if (share == 0.0) std::copy(before.begin(), before.end(), after.begin());  // also where the way is not finite
+    if (share == 0.0) break;
     environment.complex().steiner_weights().compute(after);
     detect(all, reached, {before, after});
     if (std::all_of(all.begin(), all.end(), [&](std::uint32_t s) { return progress[s].is_free(); })) break;
   }
   last.walls_made = share;
+  for (const std::uint32_t s : all) last.made[s] = made[s] * share;
 }
 
 void SolidSet::Impl::commit_at_rest() {
@@ -315,7 +324,7 @@ void SolidSet::Impl::advance(std::span<const Vec3> given, const SolidStepOptions
   correct_in_rounds(open, {rest, rest}, options);
   reached = targets;
   keep_first_touches(open, options);
-  cut_each(open);
+  cut_each(open, {rest, rest});
   report();
   commit_at_rest();
 }
@@ -335,9 +344,10 @@ void SolidSet::Impl::move_with(std::span<const Vec3> given, std::span<const Vec3
   correct_in_rounds(open, walls, options);
   reached = targets;
   keep_first_touches(open, options);
+  cut_each(open, walls);
   if (!open.empty()) cut_all(open, walls_to, after);
   report();
-  if (last.walls_made > 0.0) commit_moved(walls);
+  commit_moved(walls);
 }
 
 }  // namespace dartcast

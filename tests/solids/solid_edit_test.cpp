@@ -132,4 +132,30 @@ TEST_F(Edited, ASolidThatIsRemovedLeavesTheOthers) {
   EXPECT_EQ(solids.audit().failed, 0U);
 }
 
+TEST_F(Edited, GoesOnFromACheckpointToTheLastBit) {
+  ASSERT_EQ(solids.add(moved(ball(0.4), {1.2, 1.2, 1.2})).solid, 0U);
+  const std::vector<Vec3> line = {{1.5, 2.5, 2.5}, {3.5, 2.5, 2.5}};
+  ASSERT_EQ(solids.add(solid_of_polyline(line)).solid, 1U);
+  set_free(cell_at({2.5, 2.5, 2.5}), false);
+  solids.update_after_edit();
+  solids.advance(places({-0.5, 0.1, -0.7}));
+  const SolidCheckpoint saved = solids.checkpoint();
+  const std::vector<Vec3> at = places();
+  const SolidStep first = solids.advance(places({0.3, -1.5, -0.4}));
+  const std::vector<Vec3> end = places();
+  ASSERT_NE(end, at);
+
+  SolidCheckpoint shorter = saved;
+  shorter.states.pop_back();
+  EXPECT_THROW(solids.restore(shorter), InvalidArgument);
+  solids.restore(saved);
+  EXPECT_EQ(places(), at);
+  ASSERT_EQ(solids.stuck().size(), 1U);
+  EXPECT_EQ(solids.stuck()[0].solid, 1U);
+  const SolidStep& second = solids.advance(places({0.3, -1.5, -0.4}));
+  EXPECT_EQ(places(), end);
+  EXPECT_EQ(second.made, first.made);
+  EXPECT_EQ(second.contacts.size(), first.contacts.size());
+}
+
 }  // namespace dartcast::solid_edit_test

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "solids/solids.hpp"
+#include "dartcast/solids.hpp"
 #include "support/element_checks.hpp"
 
 namespace dartcast::test {

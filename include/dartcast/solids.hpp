@@ -16,6 +16,7 @@
 #include "dartcast/audit.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/mesh_data.hpp"
+#include "dartcast/particle_state.hpp"
 #include "dartcast/step.hpp"
 #include "dartcast/vec3.hpp"
 
@@ -114,6 +115,13 @@ struct SolidStep {
   std::uint64_t pairs = 0;   ///< of parts of solids and walls, looked at
 };
 
+/// The state of a set of solids after a step. The solids themselves, their inverse masses and the environment are not in
+/// it.
+struct SolidCheckpoint {
+  std::vector<ParticleState> states;
+  std::vector<Weights> held_weights;
+};
+
 /// The outcome of an audit of solids.
 struct SolidAudit {
   std::uint64_t checked = 0;  ///< edges, triangles and single points, but for those of stuck solids
@@ -145,7 +153,7 @@ class SolidSet {
   void remove(std::uint32_t solid);
 
   /// To be called after each edit of the environment, as Environment::update_after_edit(). A solid is stuck where a wall
-  /// that the edit made is in it, or leaves it no free place: where add() would refuse it as it is now. It stays until a
+  /// that the edit made is in it, or leaves a vertex no free place. It stays until a
   /// later edit frees it, and the cells around its vertices carry it along when they move. Vertices that are outside after
   /// the edit move to the nearest free place. Throws InvalidArgument, nothing changed, where there is none, or the set
   /// missed a move or an edit. Cost: that of Environment::update_after_edit(), and some 2 us for each edge and triangle.
@@ -176,11 +184,16 @@ class SolidSet {
   const SolidStep& advance(std::span<const Vec3> targets, const SolidStepOptions& options = {});
 
   /// As advance(), while the vertices of the environment move straight to `positions`, those of all the mesh's points. It
-  /// makes that move. Where the walls squeeze a solid, the environment and all solids stop at the same share of their way,
-  /// SolidStep::walls_made. If that is 0, nothing has moved. Other sets of particles must then be advanced, as after
-  /// Environment::move(), unless it is 0. Throws as advance() and Environment::move().
+  /// makes that move. Where walls would run into a solid even if it stayed where it is, the environment and all solids
+  /// stop at the same share of their ways, SolidStep::walls_made; where it is 0, the move goes nowhere. Other sets of particles must then be advanced, as after
+  /// Environment::move(). Throws as advance() and Environment::move().
   const SolidStep& move_with(std::span<const Vec3> targets, std::span<const Vec3> positions,
                              const SolidStepOptions& options = {});
+
+  [[nodiscard]] SolidCheckpoint checkpoint() const;
+  /// Goes on from a checkpoint of a set with the same solids, in an equal environment after the same move. Every later
+  /// step is the same to the last bit. Throws InvalidArgument, nothing changed, where the checkpoint does not fit.
+  void restore(const SolidCheckpoint& saved);
 
   /// Whether any edge or triangle meets a wall, in integers of any length, by code that shares nothing with the steps.
   /// Cost: a tree over all walls; some 10 us for each pair whose boxes meet.
