@@ -56,7 +56,7 @@ struct Summary {
   std::vector<std::string> patch_names;
   double seconds_load = 0.0;
   double seconds_locate = 0.0;
-  double seconds_solids = 0.0;          ///< steps of bodies and catheters
+  double seconds_solids = 0.0;          ///< steps of bodies, catheters and solids
   double seconds_write = 0.0;           ///< the steps' thread, with output: copies for it, and waits
   double seconds_writing_thread = 0.0;  ///< the thread that writes files, at the same time as the steps
   double seconds_report = 0.0;          ///< recording for the report, and writing it
@@ -64,6 +64,7 @@ struct Summary {
   std::optional<EventLog> surgery;      ///< where the scene has events or is remeshed
   std::vector<BodySummary> bodies;
   std::vector<CatheterSummary> catheters;
+  std::vector<SolidSummary> solids;
   std::optional<StatisticsSummary> statistics;  ///< where the scene wants any
   std::optional<Audit> audit;
   std::string state_hash;

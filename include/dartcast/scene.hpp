@@ -161,6 +161,28 @@ struct CatheterScene {
   double camera = 0.0;      ///< spacing of the camera's places along it; 0: none
 };
 
+/// A rigid tool: a surface or a line, where it is put, and how it moves. No edge and no triangle of it crosses a wall: it
+/// stops there, and walls that move stop at it.
+struct SolidScene {
+  /// The motion from the end of the previous move.
+  struct Move {
+    double until = 0.0;  ///< s
+    Vec3 velocity;       ///< m / s
+    Vec3 turn;           ///< rad / s: axis times angular velocity, about the pivot
+  };
+
+  std::string name;  ///< of its files
+  std::variant<std::filesystem::path, MeshData, std::vector<Vec3>>
+      shape;                ///< the file: .stl, .obj, .ply, .off; or a line
+  double scale = 1.0;       ///< first
+  Vec3 rotate;              ///< then: axis times angle, rad
+  Vec3 at;                  ///< then: where the origin goes
+  Vec3 pivot;               ///< of turns, in the scene; moves with it
+  std::vector<Move> moves;  ///< by time; afterwards it is held
+  /// Whether it makes up for motion that a wall has stopped. Else that motion is lost.
+  bool catch_up = false;
+};
+
 /// A field: arrays of three components in the scene's mesh or in files, or samples in memory.
 struct FieldScene {
   /// Empty: there is no field. In the mesh, "U_*" stands for all arrays with a whole number in place of the star, by
@@ -250,6 +272,7 @@ struct Scene {
   BodyCollisionOptions body_collisions;        ///< of bodies with each other
   std::vector<BodyScene> bodies;
   std::vector<CatheterScene> catheters;
+  std::vector<SolidScene> solids;
   MotionScene motion;
   ContactScene contact;
   std::vector<EventScene> events;  ///< by time

@@ -22,6 +22,7 @@
 #include "dartcast/environment.hpp"
 #include "dartcast/remeshing.hpp"
 #include "dartcast/response.hpp"
+#include "dartcast/solids.hpp"
 #include "dartcast/spheres.hpp"
 #include "dartcast/vector_field.hpp"
 
@@ -31,6 +32,7 @@ struct AdaptiveSubdivisionReport;
 struct AdaptiveSubdivisionScene;
 struct BodyScene;
 struct CatheterScene;
+struct SolidScene;
 struct Event;
 struct EventLog;
 struct RemeshScene;
@@ -175,6 +177,16 @@ struct CatheterSummary {
   Vec3 tip;
 };
 
+/// The state of a solid of a scene, and sums over its steps.
+struct SolidSummary {
+  std::string name;
+  std::size_t vertices = 0;
+  Vec3 pivot;                  ///< now
+  std::uint64_t contacts = 0;  ///< that changed its motion
+  std::uint64_t stopped = 0;   ///< steps that it did not make in full
+  bool stuck = false;          ///< an edit left it no free place (SolidSet::stuck())
+};
+
 /// Runs any scene. Each step:
 ///  1. Events that are due edit the environment.
 ///  2. Inlets inject particles.
@@ -240,6 +252,8 @@ class Simulation {
   /// Adds a body or a catheter that is plain data. Throws Error that names it where it does not fit in.
   void add(const BodyScene& body);
   void add(const CatheterScene& catheter);
+  /// Likewise a solid. From then on the solids move with the vertices of the environment, and can stop these.
+  void add(const SolidScene& solid);
 
   /// Edits at given times, from now on; they replace those set before. Throws InvalidArgument where a time is negative
   /// or beyond 2^53 steps, or in the plane an event is not a ligature.
@@ -313,13 +327,18 @@ class Simulation {
   [[nodiscard]] const Catheter& catheter(std::size_t i) const;
   [[nodiscard]] const CatheterStep& catheter_step(std::size_t i) const;  ///< the last one
 
+  /// None where no solid has been added.
+  [[nodiscard]] const SolidSet* solids() const;
+  [[nodiscard]] const SolidStep& solids_step() const;  ///< the last one
+
   [[nodiscard]] const SimulationTotals& totals() const;
   [[nodiscard]] const StatisticsOptions& statistics_options() const;
   [[nodiscard]] const Statistics& statistics() const;  ///< empty where none are kept
-  [[nodiscard]] double seconds_solids() const;         ///< steps of bodies and catheters so far
+  [[nodiscard]] double seconds_solids() const;         ///< steps of bodies, catheters and solids so far
   [[nodiscard]] const EventLog& event_log() const;
   [[nodiscard]] std::vector<BodySummary> body_summaries() const;  ///< by id, those that left included
   [[nodiscard]] std::vector<CatheterSummary> catheter_summaries() const;
+  [[nodiscard]] std::vector<SolidSummary> solid_summaries() const;
   /// At the particles' places and velocities now. The same bits for any number of threads. Cost: linear, parallel.
   [[nodiscard]] SimulationEnergy energy() const;
   /// Checks all particles, those of bodies and catheters included.

@@ -272,6 +272,27 @@ void fields(Archive& a, StatisticsProgress& p) {
   a.list(p.at_begin, [&](StatisticsProgress::Plane& plane) { values(a, plane.forward, plane.backward, plane.ages); });
 }
 
+template <class Archive>
+void fields(Archive& a, RigidPose& p) {
+  fields(a, p.displacement);
+  a.value(p.rotation.w);
+  fields(a, p.rotation.v);
+}
+
+template <class Archive>
+void fields(Archive& a, SolidsState& s) {
+  a.list(s.set.states, [&](ParticleState& p) { fields(a, p); });
+  a.list(s.set.held_weights, [&](Weights& w) { values(a, w[0], w[1], w[2], w[3]); });
+  a.list(s.tools, [&](SolidsState::Tool& t) {
+    fields(a, t.pose);
+    fields(a, t.wanted);
+    values(a, t.contacts, t.stopped);
+  });
+  values(a, s.walls_before, s.walls_now);
+  a.list(s.before, [&](Vec3& x) { fields(a, x); });
+  a.list(s.now, [&](Vec3& x) { fields(a, x); });
+}
+
 // The fields that version 0.1 did not write.
 template <class Archive>
 void later_fields(Archive& a, SimulationState& s) {
@@ -303,6 +324,8 @@ void fields(Archive& a, Checkpoint& c) {
   fields(a, c.simulation.bodies);
   fields(a, c.simulation.catheters);
   values(a, c.solids_recording.bodies_bytes, c.solids_recording.catheters_bytes, c.report_recording.bytes);
+  fields(a, c.simulation.solids);
+  values(a, c.solids_recording.solids_bytes, c.solids_recording.solid_contacts_bytes);
   later_fields(a, c.simulation);
   if (has_statistics(c.simulation.statistics)) fields(a, c.statistics_recording);
 }

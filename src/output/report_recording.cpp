@@ -107,6 +107,15 @@ std::vector<RecordedSolid> recorded_solids(const Simulation& simulation, const R
     const CatheterScene& scene = simulation.parts().catheters.scenes()[i];
     solids.push_back({scene.name, SolidKind::catheter, 0.0F, {}, recorded(simulation.catheter(i).points(), header)});
   }
+  const SolidSet* tools = simulation.solids();
+  for (std::size_t i = 0; tools != nullptr && i < tools->size(); ++i) {
+    const SolidMesh& mesh = simulation.parts().solids.mesh(i);
+    RecordedSolid solid{simulation.parts().solids.name(i), SolidKind::body, 0.0F, {}, {}};
+    if (mesh.triangles.empty()) solid.kind = SolidKind::catheter;
+    solid.points = recorded(vertices_of(*tools, i), header);
+    for (const auto& t : mesh.triangles) solid.triangles.insert(solid.triangles.end(), t.begin(), t.end());
+    solids.push_back(std::move(solid));
+  }
   return solids;
 }
 

@@ -25,13 +25,14 @@ struct Series {
   std::string_view end;
   bool named;
 };
-constexpr std::array<Series, 7> all_series = {{{"particles_", ".vtp", false},
+constexpr std::array<Series, 8> all_series = {{{"particles_", ".vtp", false},
                                                {"environment_", ".vtu", false},
                                                {"walls_", ".vtp", false},
                                                {"body_", ".vtp", true},
                                                {"surface_", ".vtp", true},
                                                {"catheter_", ".vtp", true},
-                                               {"camera_", ".vtp", true}}};
+                                               {"camera_", ".vtp", true},
+                                               {"solid_", ".vtp", true}}};
 
 bool is_step(std::string_view text) {
   return text.size() >= 6 && text.find_first_not_of("0123456789") == std::string_view::npos;
@@ -61,10 +62,11 @@ bool is_list(std::string_view name) {
 
 bool is_run_file(std::string_view name) {
   if (is_part_of_run_file(name)) return true;
-  static constexpr std::array<std::string_view, 18> fixed = {
-      "summary.json",  "stats.csv",      "particles.pvd", "environment.pvd", "environment.vtu", "contacts.csv",
-      "scene.toml",    "checkpoint.bin", "bodies.csv",    "catheters.csv",   "walls.pvd",       "planes.csv",
-      "crossings.csv", "pathlines.bin",  "pathlines.vtp", "report.bin",      "report.html",     kept_mesh_name};
+  static constexpr std::array<std::string_view, 20> fixed = {
+      "summary.json", "stats.csv",   "particles.pvd",  "environment.pvd", "environment.vtu",
+      "contacts.csv", "scene.toml",  "checkpoint.bin", "bodies.csv",      "catheters.csv",
+      "walls.pvd",    "planes.csv",  "crossings.csv",  "pathlines.bin",   "pathlines.vtp",
+      "report.bin",   "report.html", kept_mesh_name,   "solids.csv",      "solid_contacts.csv"};
   if (std::find(fixed.begin(), fixed.end(), name) != fixed.end()) return true;
   return is_list(name) || frame_step(name);
 }

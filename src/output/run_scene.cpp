@@ -102,6 +102,7 @@ class Run {
     summary_.state_hash = simulation_.state_hash().hex();
     summary_.bodies = simulation_.body_summaries();
     summary_.catheters = simulation_.catheter_summaries();
+    summary_.solids = simulation_.solid_summaries();
     if (simulation_.statistics_options().any()) summary_.statistics = summary_of(simulation_);
   }
 

@@ -1,4 +1,4 @@
-// Writes the series and tables of bodies and catheters.
+// Writes the series and tables of bodies, catheters and solids.
 #include "output/solids_recording.hpp"
 
 #include <fmt/format.h>
@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "dartcast/catheter.hpp"
+#include "dartcast/trajectory.hpp"
 #include "formats/vtp_write.hpp"
 #include "output/camera_path_file.hpp"
 #include "output/frame_files.hpp"
@@ -24,6 +25,19 @@ constexpr std::string_view bodies_header = "step,time,name,x,y,z,kinetic,potenti
 constexpr std::string_view catheters_header =
     "step,time,name,inserted,turned,pushed,worst_segment,contacts,at_walls,held,tip_x,tip_y,tip_z";
 
+constexpr std::string_view solids_header = "step,time,name,made,walls_made,contacts,pivot_x,pivot_y,pivot_z";
+constexpr std::string_view solid_contacts_header =
+    "step,time,name,kind,wall_kind,patch,cell,time_of_impact,gap,x,y,z,wall_x,wall_y,wall_z,normal_x,normal_y,normal_z";
+
+const char* name_of(SolidContactKind kind) {
+  switch (kind) {
+    case SolidContactKind::vertex_face: return "vertex_face";
+    case SolidContactKind::edge_edge: return "edge_edge";
+    case SolidContactKind::face_vertex: return "face_vertex";
+  }
+  return "";
+}
+
 std::string series(std::string_view kind, const std::string& name) { return fmt::format("{}_{}", kind, name); }
 
 }  // namespace
@@ -32,6 +46,9 @@ SolidsRecording::SolidsRecording(WritingThread& writing, fs::path folder, const 
     : writing_(writing), folder_(std::move(folder)), compression_(scene.output.compression) {
   if (!scene.bodies.empty()) bodies_ = RunTable(folder_ / "bodies.csv", bodies_header);
   if (!scene.catheters.empty()) catheters_ = RunTable(folder_ / "catheters.csv", catheters_header);
+  if (scene.solids.empty()) return;
+  solids_ = RunTable(folder_ / "solids.csv", solids_header);
+  if (scene.output.contacts) solid_contacts_ = RunTable(folder_ / "solid_contacts.csv", solid_contacts_header);
 }
 
 SolidsRecording::SolidsRecording(WritingThread& writing, fs::path folder, const Scene& scene,
@@ -39,11 +56,16 @@ SolidsRecording::SolidsRecording(WritingThread& writing, fs::path folder, const 
     : writing_(writing), folder_(std::move(folder)), compression_(scene.output.compression) {
   if (!scene.bodies.empty()) bodies_ = RunTable(folder_ / "bodies.csv", progress.bodies_bytes);
   if (!scene.catheters.empty()) catheters_ = RunTable(folder_ / "catheters.csv", progress.catheters_bytes);
+  if (scene.solids.empty()) return;
+  solids_ = RunTable(folder_ / "solids.csv", progress.solids_bytes);
+  if (scene.output.contacts) solid_contacts_ = RunTable(folder_ / "solid_contacts.csv", progress.solid_contacts_bytes);
 }
 
 void SolidsRecording::add_step(const Simulation& simulation) {
   if (bodies_.is_open()) add_bodies(simulation);
   if (catheters_.is_open()) add_catheters(simulation);
+  if (solids_.is_open()) add_solids(simulation);
+  if (solid_contacts_.is_open()) add_solid_contacts(simulation);
 }
 
 void SolidsRecording::add_bodies(const Simulation& simulation) {
@@ -76,6 +98,31 @@ void SolidsRecording::add_catheters(const Simulation& simulation) {
   catheters_.send_many(writing_);
 }
 
+void SolidsRecording::add_solids(const Simulation& simulation) {
+  const SolidStep& last = simulation.solids_step();
+  const std::vector<SolidSummary> now = simulation.solid_summaries();
+  std::vector<std::uint64_t> contacts(now.size());
+  for (const SolidContact& c : last.contacts) ++contacts[c.solid];
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const Vec3& p = now[i].pivot;
+    solids_.print("{},{},{},{},{},{},{},{},{}\n", simulation.steps(), simulation.time(), now[i].name, last.made[i],
+                  last.walls_made, contacts[i], p.x, p.y, p.z);
+  }
+  solids_.send_many(writing_);
+}
+
+void SolidsRecording::add_solid_contacts(const Simulation& simulation) {
+  const CombinatorialMap& map = simulation.environment().map();
+  for (const SolidContact& c : simulation.solids_step().contacts) {
+    solid_contacts_.print("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", simulation.steps(),
+                          simulation.time(), simulation.parts().solids.name(c.solid), name_of(c.kind),
+                          name_of(c.wall_kind), map.patch_names()[c.patch.value], map.source(c.face.cell),
+                          c.time_of_impact, c.gap, c.point.x, c.point.y, c.point.z, c.wall_point.x, c.wall_point.y,
+                          c.wall_point.z, c.normal.x, c.normal.y, c.normal.z);
+  }
+  solid_contacts_.send_many(writing_);
+}
+
 void SolidsRecording::add_frame(const Simulation& simulation, std::span<const RecordingFrame> frames) {
   const std::uint64_t step = frames.back().step;
   const BodiesComponent& bodies = simulation.parts().bodies;
@@ -89,6 +136,10 @@ void SolidsRecording::add_frame(const Simulation& simulation, std::span<const Re
     write_catheter(simulation, i, step);
     write_series(series("catheter", scene.name), frames);
     if (scene.camera > 0.0) write_series(series("camera", scene.name), frames);
+  }
+  for (std::size_t i = 0; simulation.solids() != nullptr && i < simulation.solids()->size(); ++i) {
+    write_solid(simulation, i, step);
+    write_series(series("solid", simulation.parts().solids.name(i)), frames);
   }
 }
 
@@ -152,10 +203,29 @@ void SolidsRecording::write_catheter(const Simulation& simulation, std::size_t i
   write(series("camera", scene.name), step, camera_path_data(path));
 }
 
+void SolidsRecording::write_solid(const Simulation& simulation, std::size_t i, std::uint64_t step) const {
+  const SolidMesh& mesh = simulation.parts().solids.mesh(i);
+  VtpFile file(vertices_of(*simulation.solids(), i));
+  if (mesh.triangles.empty()) {
+    file.add_line();
+  } else {
+    std::vector<std::size_t> offsets = {0};
+    std::vector<std::uint32_t> corners;
+    for (const auto& t : mesh.triangles) {
+      corners.insert(corners.end(), t.begin(), t.end());
+      offsets.push_back(corners.size());
+    }
+    file.add_polygons(offsets, corners);
+  }
+  write(series("solid", simulation.parts().solids.name(i)), step, file.data());
+}
+
 SolidsProgress SolidsRecording::progress() {
   bodies_.send(writing_);
   catheters_.send(writing_);
-  return {bodies_.bytes(), catheters_.bytes()};
+  solids_.send(writing_);
+  solid_contacts_.send(writing_);
+  return {bodies_.bytes(), catheters_.bytes(), solids_.bytes(), solid_contacts_.bytes()};
 }
 
 }  // namespace dartcast

@@ -1,4 +1,4 @@
-// Frames and tables of bodies and catheters.
+// Frames and tables of bodies, catheters and solids.
 #pragma once
 
 #include <cstdint>
@@ -18,12 +18,16 @@ namespace dartcast {
 struct SolidsProgress {
   std::uint64_t bodies_bytes = 0;
   std::uint64_t catheters_bytes = 0;
+  std::uint64_t solids_bytes = 0;
+  std::uint64_t solid_contacts_bytes = 0;
 };
 
 /// For each body a series of its particles (body_NAME_000010.vtp, body_NAME.pvd) and of the surface that follows them
 /// (surface_NAME_...); for each catheter its points (catheter_NAME_...) and, where the scene wants them, a camera's
-/// places along it (camera_NAME_...). bodies.csv and catheters.csv: a row per step and body or catheter. A thread writes
-/// what is added, in that order. Its errors are thrown by what adds next. The thread outlives this.
+/// places along it (camera_NAME_...); for each solid its vertices and faces (solid_NAME_...). bodies.csv, catheters.csv and
+/// solids.csv: a row per step and body, catheter or solid. solid_contacts.csv: their contacts, where the scene wants
+/// contacts. A thread writes what is added, in that order. Its errors are thrown by what adds next. The thread outlives
+/// this.
 class SolidsRecording {
  public:
   /// The folder is there, and belongs to the run.
@@ -41,8 +45,11 @@ class SolidsRecording {
  private:
   void add_bodies(const Simulation& simulation);
   void add_catheters(const Simulation& simulation);
+  void add_solids(const Simulation& simulation);
+  void add_solid_contacts(const Simulation& simulation);
   void write_body(const Simulation& simulation, std::size_t body, std::uint64_t step) const;
   void write_catheter(const Simulation& simulation, std::size_t i, std::uint64_t step) const;
+  void write_solid(const Simulation& simulation, std::size_t i, std::uint64_t step) const;
 
   void write(const std::string& series, std::uint64_t step, const XmlDataSet& data) const;
   void write_series(const std::string& series, std::span<const RecordingFrame> frames) const;
@@ -52,6 +59,8 @@ class SolidsRecording {
   Compression compression_;
   RunTable bodies_;
   RunTable catheters_;
+  RunTable solids_;
+  RunTable solid_contacts_;
 };
 
 }  // namespace dartcast

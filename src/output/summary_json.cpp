@@ -45,7 +45,7 @@ Json seconds(const Summary& s) {
   if (s.deforms) json["deform"] = s.totals.seconds_deform;
   if (s.totals.seconds_collide > 0.0) json["collide"] = s.totals.seconds_collide;
   json["respond"] = s.totals.seconds_respond;
-  if (!s.bodies.empty() || !s.catheters.empty()) json["solids"] = s.seconds_solids;
+  if (!s.bodies.empty() || !s.catheters.empty() || !s.solids.empty()) json["solids"] = s.seconds_solids;
   if (s.statistics) json["statistics"] = s.statistics->seconds;
   json["write"] = s.seconds_write;
   json["writing_thread"] = s.seconds_writing_thread;
@@ -116,6 +116,19 @@ Json catheters(const std::vector<CatheterSummary>& all) {
                     {"worst_segment", c.totals.worst_segment},
                     {"refused", c.totals.refused},
                     {"tip", vector(c.tip)}});
+  }
+  return list;
+}
+
+Json solids(const std::vector<SolidSummary>& all) {
+  Json list = Json::array();
+  for (const SolidSummary& s : all) {
+    list.push_back({{"name", s.name},
+                    {"vertices", s.vertices},
+                    {"pivot", vector(s.pivot)},
+                    {"contacts", s.contacts},
+                    {"stopped_steps", s.stopped},
+                    {"stuck", s.stuck}});
   }
   return list;
 }
@@ -201,6 +214,7 @@ std::string summary_json(const Summary& s) {
   if (t.collisions.pairs_tested + t.wall_overlaps > 0) json["collisions"] = collisions(t);
   if (!s.bodies.empty()) json["bodies"] = bodies(s.bodies);
   if (!s.catheters.empty()) json["catheters"] = catheters(s.catheters);
+  if (!s.solids.empty()) json["tools"] = solids(s.solids);
   if (t.counters.particle_steps > 0) json["orientation_tests"] = orientation_tests(s);
   json["contacts"] = contacts(s);
   if (s.statistics) json["statistics"] = statistics(s);

@@ -124,6 +124,15 @@ void add_solids(SummaryTable& table, const Summary& s) {
   }
 }
 
+void add_tools(SummaryTable& table, const Summary& s) {
+  for (const SolidSummary& solid : s.solids) {
+    table.add("solids",
+              fmt::format("{}: {} vertices, {} contacts, stopped in {} steps{}, pivot ({:.4g}, {:.4g}, {:.4g})",
+                          solid.name, solid.vertices, grouped(solid.contacts), grouped(solid.stopped),
+                          solid.stuck ? " and stuck" : "", solid.pivot.x, solid.pivot.y, solid.pivot.z));
+  }
+}
+
 void add_edits(SummaryTable& table, const EventLog& log) {
   for (const EventReport& e : log.events) {
     table.add("events", fmt::format("{} at {:.6g} s: {} cells replaced by {}, {} opened, {} blocked", name_of(e.kind),
@@ -181,6 +190,7 @@ std::string summary_text(const Summary& s) {
   add_contact_rows(table, s);
   add_cost(table, s);
   add_solids(table, s);
+  add_tools(table, s);
   if (s.surgery) add_edits(table, *s.surgery);
   if (s.statistics) add_statistics(table, s);
   if (s.audit) table.add("audit", {grouped(s.audit->checked) + " checked", grouped(s.audit->failed) + " failed"});

@@ -39,6 +39,8 @@ class SceneReader {
       add_named(t, scene.bodies, read_body(t, folder_, scene.bodies.size() + 1, scene.seed));
     for (TomlTable& t : root.tables("catheter"))
       add_named(t, scene.catheters, read_catheter(t, scene.catheters.size() + 1));
+    for (TomlTable& t : root.tables("solid"))
+      add_named(t, scene.solids, read_solid(t, folder_, scene.solids.size() + 1));
     scene.motion = motion(root.table("motion"));
     scene.contact = contact(root.table("contact"));
     if (root.has("collisions")) collisions(root.table("collisions"), scene);

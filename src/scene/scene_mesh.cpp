@@ -77,6 +77,10 @@ LoadedScene load_scene_files(Scene scene, const ReadOptions& options, Threads th
     if (const auto* file = std::get_if<std::filesystem::path>(&body.surface))
       body.surface = with_name("body", body.name, [&] { return read_surface(*file, options).mesh; });
   }
+  for (SolidScene& solid : scene.solids) {
+    if (const auto* file = std::get_if<std::filesystem::path>(&solid.shape))
+      solid.shape = with_name("solid", solid.name, [&] { return read_surface(*file, options).mesh; });
+  }
   scene.environment = EnvironmentScene{};
   scene.environment.mesh = std::move(loaded.mesh);
   return {std::move(scene), std::move(loaded.skipped)};

@@ -1,8 +1,10 @@
-// Reads the bodies and catheters of a scene.
+// Reads the bodies, catheters and solids of a scene.
 #include "scene/scene_solids.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include <utility>
 
 #include "dartcast/mesh_files.hpp"
 
@@ -64,14 +66,42 @@ void body_matter(TomlTable& t, BodyScene& scene) {
   t.get("spin", body.angular_velocity);
 }
 
+// The end of a move that begins then.
+double move_end(TomlTable& t, double begin) {
+  double until = 0.0;
+  t.require("until", "the time of the scene at which it ends, in seconds");
+  t.get("until", until, Range::positive);
+  if (!(until > begin)) t.fail("until", fmt::format("until = {}: each move must end after the one before", until));
+  return until;
+}
+
 CatheterScene::Move catheter_move(TomlTable& t, double begin) {
   CatheterScene::Move move;
-  t.require("until", "the time of the scene at which it ends, in seconds");
-  t.get("until", move.until, Range::positive);
-  if (!(move.until > begin))
-    t.fail("until", fmt::format("until = {}: each move must end after the one before", move.until));
+  move.until = move_end(t, begin);
   t.get("push", move.push, {-Range::unlimited, Range::unlimited});
   t.get("turn", move.turn, {-Range::unlimited, Range::unlimited});
+  t.finish();
+  return move;
+}
+
+void solid_shape(TomlTable& t, const std::filesystem::path& folder, SolidScene& scene) {
+  std::string file;
+  std::vector<Vec3> points;
+  const bool has_file = t.get("surface", file);
+  if (has_file == t.get("points", points))
+    t.fail("surface", fmt::format("give either surface = \"FILE\" ({}) or points = [[0, 0, 0], ...]",
+                                  fmt::join(surface_endings(), ", ")));
+  if (has_file) scene.shape = folder / file;
+  if (has_file) return;
+  if (points.empty()) t.fail("points", "points is an empty list; give one or more");
+  scene.shape = std::move(points);
+}
+
+SolidScene::Move solid_move(TomlTable& t, double begin) {
+  SolidScene::Move move;
+  move.until = move_end(t, begin);
+  t.get("velocity", move.velocity);
+  t.get("turn", move.turn);
   t.finish();
   return move;
 }
@@ -110,6 +140,22 @@ CatheterScene read_catheter(TomlTable& t, std::size_t number) {
   t.get("camera", scene.camera, Range::not_negative);
   for (TomlTable& move : t.tables("moves"))
     scene.moves.push_back(catheter_move(move, scene.moves.empty() ? 0.0 : scene.moves.back().until));
+  t.finish();
+  return scene;
+}
+
+SolidScene read_solid(TomlTable& t, const std::filesystem::path& folder, std::size_t number) {
+  SolidScene scene;
+  scene.name = solid_name(t, "solid", number);
+  solid_shape(t, folder, scene);
+  t.get("scale", scene.scale, Range::positive);
+  t.get("rotate", scene.rotate);
+  t.get("at", scene.at);
+  scene.pivot = scene.at;
+  t.get("pivot", scene.pivot);
+  t.get("catch_up", scene.catch_up);
+  for (TomlTable& move : t.tables("moves"))
+    scene.moves.push_back(solid_move(move, scene.moves.empty() ? 0.0 : scene.moves.back().until));
   t.finish();
   return scene;
 }

@@ -1,4 +1,4 @@
-// The [[body]] and [[catheter]] tables of a scene.
+// The [[body]], [[catheter]] and [[solid]] tables of a scene.
 #pragma once
 
 #include <filesystem>
@@ -12,5 +12,6 @@ namespace dartcast {
 /// line and key.
 BodyScene read_body(TomlTable& t, const std::filesystem::path& folder, std::size_t number, std::uint64_t seed);
 CatheterScene read_catheter(TomlTable& t, std::size_t number);
+SolidScene read_solid(TomlTable& t, const std::filesystem::path& folder, std::size_t number);
 
 }  // namespace dartcast

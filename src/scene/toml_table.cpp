@@ -88,6 +88,21 @@ bool TomlTable::get(std::string_view key, Vec3& value) {
   return true;
 }
 
+bool TomlTable::get(std::string_view key, std::vector<Vec3>& value) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return false;
+  const toml::array* list = node->as_array();
+  if (list == nullptr) fail(key, fmt::format("{} must be a list of points; here is a {}", key, type_name(*node)));
+  value.clear();
+  for (const toml::node& item : *list) {
+    const toml::array* point = item.as_array();
+    if (point == nullptr || point->size() != 3)
+      fail(key, fmt::format("{}: point {} must be a list of 3 numbers", key, value.size() + 1));
+    value.push_back({number(key, (*point)[0]), number(key, (*point)[1]), number(key, (*point)[2])});
+  }
+  return true;
+}
+
 bool TomlTable::get(std::string_view key, std::uint64_t& value, std::uint64_t low, std::uint64_t high) {
   const toml::node* node = find(key);
   if (node == nullptr) return false;

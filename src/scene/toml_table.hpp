@@ -44,6 +44,8 @@ class TomlTable {
   bool get(std::string_view key, bool& value);
   bool get(std::string_view key, std::string& value);
   bool get(std::string_view key, Vec3& value);
+  /// A list of points: [[0, 0, 0], [1, 0, 0]].
+  bool get(std::string_view key, std::vector<Vec3>& value);
   bool get(std::string_view key, std::uint64_t& value, std::uint64_t low, std::uint64_t high);
   bool get(std::string_view key, std::uint32_t& value, std::uint32_t low, std::uint32_t high);
   /// A list of strings, or one.

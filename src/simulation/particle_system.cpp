@@ -133,7 +133,13 @@ void ParticleSystem::step(double /*begin*/) {
 void ParticleSystem::move_vertices() {
   if (!deformation_) return;
   const ScopeTimer timer(totals_.seconds_deform);
-  move_vertices_to(steps_ + 1);
+  if (!mover_) {
+    move_vertices_to(steps_ + 1);
+    return;
+  }
+  next_vertices_.resize(environment_.positions().size());
+  deformation_->positions(static_cast<double>(steps_ + 1) * options_.dt, next_vertices_, environment_.threads());
+  mover_(next_vertices_);
 }
 
 void ParticleSystem::advance_segment(unsigned segment) {

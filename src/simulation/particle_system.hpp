@@ -64,6 +64,9 @@ class ParticleSystem final : public SimulationComponent {
   void add_random(std::size_t count, const Vec3& velocity, double radius, std::span<const double> user_data);
   void pull(std::span<const Vec3> displacement, double duration);
   void go_to(std::uint64_t steps);
+  /// Moves the environment in a step to the positions that the deformation gives, or as far as something lets it.
+  using Mover = std::function<void(std::span<const Vec3>)>;
+  void set_mover(Mover mover) { mover_ = std::move(mover); }
   /// For put_back(). Cost: a copy of all positions, twice.
   [[nodiscard]] VertexPlaces vertex_places() const;
   /// Moves the vertices back, and counts steps from there. The caller restores all particles.
@@ -179,6 +182,8 @@ class ParticleSystem final : public SimulationComponent {
   std::optional<VelocityField> field_;
   std::optional<VectorField> force_;  // accelerations, on top of gravity
   std::optional<Deformation> deformation_;
+  Mover mover_;  // none: Environment::move()
+  std::vector<Vec3> next_vertices_;
   std::vector<Inlet> inlets_;
 
   Particles particles_;

@@ -30,6 +30,7 @@ void ParticleSystem::restore(const SimulationState& state) {
   if (saved.user_data.size() != saved.particles.size() * width())
     throw InvalidArgument("simulation: the checkpoint has other user data: give the options that it was saved with");
   if (steps_ != saved.steps) stand_at(saved.steps);
+  if (!state.solids.now.empty()) put_back({saved.steps, state.solids.before, state.solids.now});
   std::vector<ParticleState> states;
   std::vector<Weights> weights;
   for (const ParticleSystemState::Particle& p : saved.particles) {

@@ -24,7 +24,7 @@ Simulation::~Simulation() = default;
 // Files of the motion or of fields that cannot be read end a step before anything changes. Then a step goes through these phases:
 //  1. events that are due edit the environment;
 //  2. the particles step: inlets inject, vertices move, velocities change, particles advance, some leave;
-//  3. the other components step in the environment as it stands then: bodies, catheters, statistics;
+//  3. the other components step in the environment as it stands then: solids, bodies, catheters, statistics;
 //  4. invalid cells are remeshed and crowded cells are subdivided, where that is due.
 const SimulationStep& Simulation::step() {
   const double begin = time();
@@ -159,6 +159,14 @@ void Simulation::add(const BodyScene& body) {
 
 void Simulation::add(const CatheterScene& catheter) { parts_->catheters.add(catheter); }
 
+// From the first solid on, solids and walls move together.
+void Simulation::add(const SolidScene& solid) {
+  parts_->solids.add(solid);
+  parts_->particles.set_mover([parts = parts_.get()](std::span<const Vec3> positions) {
+    parts->solids.move_with(parts->particles.time(), positions);
+  });
+}
+
 const SimulationOptions& Simulation::options() const { return parts_->particles.options(); }
 std::uint64_t Simulation::steps() const { return parts_->particles.steps(); }
 const Environment& Simulation::environment() const { return parts_->environment; }
@@ -185,11 +193,18 @@ std::size_t Simulation::catheter_count() const { return parts_->catheters.cathet
 const Catheter& Simulation::catheter(std::size_t i) const { return parts_->catheters.catheters()[i]; }
 const CatheterStep& Simulation::catheter_step(std::size_t i) const { return parts_->catheters.last_steps()[i]; }
 
+const SolidSet* Simulation::solids() const {
+  const std::optional<SolidSet>& solids = parts_->solids.solids();
+  return solids ? &*solids : nullptr;
+}
+const SolidStep& Simulation::solids_step() const { return parts_->solids.last_step(); }
+
 const SimulationTotals& Simulation::totals() const { return parts_->particles.totals(); }
 double Simulation::seconds_solids() const { return parts_->seconds_solids; }
 const EventLog& Simulation::event_log() const { return parts_->events.log(); }
 std::vector<BodySummary> Simulation::body_summaries() const { return parts_->bodies.summaries(); }
 std::vector<CatheterSummary> Simulation::catheter_summaries() const { return parts_->catheters.summaries(); }
+std::vector<SolidSummary> Simulation::solid_summaries() const { return parts_->solids.summaries(); }
 SimulationEnergy Simulation::energy() const { return parts_->particles.energy(); }
 
 Audit Simulation::audit() const {

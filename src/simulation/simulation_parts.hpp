@@ -10,6 +10,7 @@
 #include "simulation/catheters_component.hpp"
 #include "simulation/event_scheduler.hpp"
 #include "simulation/particle_system.hpp"
+#include "simulation/solids_component.hpp"
 #include "simulation/statistics_component.hpp"
 
 namespace dartcast {
@@ -20,6 +21,7 @@ struct Simulation::Parts {
       : own_environment(std::move(own)),
         environment(used),
         particles(used, options),
+        solids(used, options.dt),
         bodies(used, particles.options(), particles.responses()),
         catheters(used, options.dt),
         statistics(particles),
@@ -28,14 +30,15 @@ struct Simulation::Parts {
   std::unique_ptr<Environment> own_environment;
   Environment& environment;
   ParticleSystem particles;
+  SolidsComponent solids;
   BodiesComponent bodies;
   CathetersComponent catheters;
   StatisticsComponent statistics;
   /// All components, in the order of a step. Particles come first: they move the environment.
-  std::vector<SimulationComponent*> components = {&particles, &bodies, &catheters, &statistics};
+  std::vector<SimulationComponent*> components = {&particles, &solids, &bodies, &catheters, &statistics};
   EventScheduler events;
   AfterEdit after_edit;
-  bool replaying = false;  // earlier edits: bodies and catheters are restored afterwards
+  bool replaying = false;  // earlier edits: all but the particles are restored afterwards
   double seconds_solids = 0.0;
 
   /// The clock of a component's steps. Particles have clocks of their own.

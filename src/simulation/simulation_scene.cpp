@@ -113,6 +113,7 @@ void Simulation::make(const Scene& scene, Threads threads) {
   set_statistics(scene.statistics.options);
   for (const BodyScene& body : scene.bodies) add(body);
   for (const CatheterScene& catheter : scene.catheters) add(catheter);
+  for (const SolidScene& solid : scene.solids) add(solid);
   add_inlets(*this, scene);
 }
 

@@ -8,8 +8,10 @@
 #include "dartcast/catheter.hpp"
 #include "dartcast/events.hpp"
 #include "dartcast/simulation.hpp"
+#include "dartcast/solids.hpp"
 #include "dartcast/statistics.hpp"
 #include "dynamics/contact_solver.hpp"
+#include "simulation/rigid_pose.hpp"
 #include "simulation/start_times.hpp"
 
 namespace dartcast {
@@ -38,6 +40,23 @@ struct CathetersState {
   std::vector<CatheterTotals> totals;
 };
 
+/// The solids; empty where there are none.
+struct SolidsState {
+  struct Tool {
+    RigidPose pose;
+    RigidPose wanted;
+    std::uint64_t contacts = 0;
+    std::uint64_t stopped = 0;
+  };
+  SolidCheckpoint set;
+  std::vector<Tool> tools;
+  double walls_before = 1.0;  ///< shares that the walls made of the last two moves
+  double walls_now = 1.0;
+  // Where a solid stopped the walls in one of these: the vertices before the last move, and now.
+  std::vector<Vec3> before;
+  std::vector<Vec3> now;
+};
+
 /// The statistics so far.
 struct StatisticsState {
   bool has_hits = false;
@@ -56,6 +75,7 @@ struct SimulationState {
   EventLog events;
   Bodies::Checkpoint bodies;
   CathetersState catheters;
+  SolidsState solids;
   StatisticsState statistics;
 };
 

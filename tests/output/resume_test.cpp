@@ -208,6 +208,37 @@ smallest = 0.02
 every = 10
 )";
 
+// A tool that a wall stops, and that stops a wall.
+const std::string tools_text = R"(
+[environment]
+generator = "box"
+cells = [4, 4, 4]
+size = [4.0, 4.0, 4.0]
+[[deformation]]
+kind = "bump"
+amplitude = 0.6
+period = 0.4
+axis = [0.0, 0.0, 1.0]
+centre = [2.0, 2.0, 0.0]
+length = 1.5
+[[particles]]
+count = 50
+velocity = [1.0, 0.5, -0.7]
+[[solid]]
+points = [[1.5, 2.0, 0.4], [2.0, 2.2, 0.3], [2.5, 2.0, 0.4]]
+[[solid]]
+name = "needle"
+points = [[0.5, 0.5, 1.0], [0.5, 0.5, 2.0]]
+catch_up = true
+moves = [{ until = 0.3, velocity = [0.0, 0.0, 10.0], turn = [0.1, 0.2, 0.0] }, { until = 0.5, velocity = [0.0, 0.0, -10.0] }]
+[motion]
+dt = 0.01
+steps = 47
+[output]
+every = 10
+contacts = true
+)";
+
 struct CutOff : std::exception {};
 
 class Resume : public testing::Test {
@@ -329,6 +360,25 @@ TEST_F(Resume, ARunCutOffAgainAndAgainComesToTheSameEnd) {
   const Summary whole = run(one, false, 47);
   for (const std::uint64_t cut : {12U, 13U, 25U, 46U}) EXPECT_THROW(run(two, true, 47, cut), CutOff);
   expect_same(whole, run(two, true, 47));
+}
+
+TEST_F(Resume, SolidsGoOnAtWalls) {
+  const Summary whole = run(one, false, 47, 0, tools_text);
+  ASSERT_EQ(whole.solids.size(), 2U);
+  for (const SolidSummary& solid : whole.solids) EXPECT_GT(solid.stopped, 0U) << solid.name;
+  EXPECT_EQ(whole.lost, 0U);
+  for (const std::uint64_t cut : {9U, 14U, 31U}) {
+    EXPECT_THROW(run(two, false, 47, cut, tools_text), CutOff);
+    const Summary resumed = run(two, true, 47, 0, tools_text);
+    expect_same(whole, resumed);
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_EQ(resumed.solids[i].contacts, whole.solids[i].contacts);
+      EXPECT_EQ(resumed.solids[i].stopped, whole.solids[i].stopped);
+    }
+  }
+  EXPECT_GT(fs::file_size(one / "solid_contacts.csv"), 500U);
+  EXPECT_TRUE(fs::exists(one / "solid_needle_000040.vtp"));
+  EXPECT_TRUE(fs::exists(one / "solid_solid1.pvd"));
 }
 
 TEST_F(Resume, ARunWithSurgeryIsOperatedOnAgain) {

@@ -12,26 +12,13 @@
 #include "dartcast/error.hpp"
 #include "dartcast/run.hpp"
 #include "scene/scene_mesh.hpp"
+#include "support/scene_text.hpp"
 
 namespace dartcast::scene_file_test {
 
-const std::string box = "[environment]\ngenerator = 'box'\n";
-
-// The text of the error that a scene gives; empty: none.
-std::string error_of(const std::string& text) {
-  try {
-    parse_scene(text, "folder/scene.toml");
-    return "";
-  } catch (const Error& e) {
-    return e.what();
-  }
-}
-
-void expect_error(const std::string& text, const std::string& start, const std::string& part) {
-  const std::string error = error_of(text);
-  EXPECT_EQ(error.rfind("folder/scene.toml:" + start, 0), 0U) << text << "\n-> " << error;
-  EXPECT_NE(error.find(part), std::string::npos) << text << "\n-> " << error;
-}
+using test::box;
+using test::error_of;
+using test::expect_error;
 
 TEST(SceneFile, DefaultsAreThoseOfTheDocumentation) {
   const Scene s = parse_scene(box, "folder/scene.toml");

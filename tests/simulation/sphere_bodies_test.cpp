@@ -12,6 +12,7 @@
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/simulation.hpp"
+#include "simulation/simulation_state.hpp"
 #include "support/meshes.hpp"
 #include "support/point_block.hpp"
 #include "support/tier.hpp"

@@ -1,0 +1,76 @@
+// Makes rigid tools from plain data, and moves them as a part of a simulation.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "dartcast/scene.hpp"
+#include "dartcast/simulation.hpp"
+#include "dartcast/solids.hpp"
+#include "simulation/component.hpp"
+#include "simulation/rigid_pose.hpp"
+
+namespace dartcast {
+
+/// The tools of a simulation. Where the vertices of the environment move, solids and walls make their step together: then
+/// the particles' step calls move_with() in place of Environment::move().
+class SolidsComponent final : public SimulationComponent {
+ public:
+  /// `dt`: s, of a step.
+  SolidsComponent(Environment& environment, double dt) : environment_(environment), dt_(dt) {}
+
+  /// Throws Error that names the solid: its shape is a file or has a defect, or its place is refused.
+  void add(const SolidScene& scene);
+  /// Moves the environment to these positions, as far as solids let it, and the solids from the time `begin` on.
+  void move_with(double begin, std::span<const Vec3> positions);
+
+  void step(double begin) override;
+  void update_after_edit(const ComplexEditReport& edit, OrphanPolicy orphaned) override;
+  void save(SimulationState& state) const override;
+  void restore(const SimulationState& state) override;
+  [[nodiscard]] Audit audit() const override;
+  [[nodiscard]] StateHash state_hash() const override;
+
+  /// None until the first is added.
+  [[nodiscard]] const std::optional<SolidSet>& solids() const { return solids_; }
+  [[nodiscard]] const SolidStep& last_step() const { return last_; }
+  [[nodiscard]] const std::string& name(std::size_t solid) const { return tools_[solid].scene.name; }
+  /// Its shape, where it was put first.
+  [[nodiscard]] const SolidMesh& mesh(std::size_t solid) const { return tools_[solid].mesh; }
+  [[nodiscard]] std::vector<SolidSummary> summaries() const;
+
+ private:
+  struct Tool {
+    SolidScene scene;  // without its shape
+    SolidMesh mesh;    // where it was put first
+    RigidPose pose;    // where it is
+    RigidPose wanted;  // where it should be
+    std::uint64_t contacts = 0;
+    std::uint64_t stopped = 0;
+  };
+
+  void add_named(const SolidScene& scene);
+  [[nodiscard]] std::vector<Vec3> targets(double begin);
+  void follow(const SolidStep& step);
+
+  Environment& environment_;
+  double dt_;
+  std::optional<SolidSet> solids_;
+  std::vector<Tool> tools_;
+  SolidStep last_;
+  bool moved_ = false;         // in this step, with the environment
+  double walls_before_ = 1.0;  // the shares that the walls made of the last two moves
+  double walls_now_ = 1.0;
+};
+
+/// The vertices of one solid.
+inline std::vector<Vec3> vertices_of(const SolidSet& solids, std::size_t solid) {
+  const auto first = solids.first_vertices();
+  const auto vertices = solids.positions().subspan(first[solid], first[solid + 1] - first[solid]);
+  return {vertices.begin(), vertices.end()};
+}
+
+}  // namespace dartcast
