@@ -18,6 +18,7 @@
 #include "bench/plan.hpp"
 #include "bench/report.hpp"
 #include "bench/run_parts.hpp"
+#include "bench/solids.hpp"
 #include "bench/spheres.hpp"
 #include "commands.hpp"
 #include "dartcast/error.hpp"
@@ -34,6 +35,7 @@ struct BenchArguments {
   bool json = false;
   bool edits = false;
   bool spheres = false;
+  bool solids = false;
   bool latency = false;
   bool runs = false;
   bench::RunPartsOptions run_options;
@@ -59,6 +61,19 @@ int run_spheres(const BenchArguments& a) {
     for (std::size_t count = 1000; count <= a.max_spheres; count *= 10) rows.push_back(bench::heap(count, crowded));
   }
   fmt::print("{}", a.json ? bench::spheres_json(rows) + "\n" : bench::spheres_text(rows));
+  return done;
+}
+
+int run_solids(const BenchArguments& a) {
+  std::vector<bench::SolidRow> rows;
+  for (const bool moving : {false, true}) {
+    for (const std::size_t across : {10U, 22U, 46U, 100U}) {
+      if (a.plan.quick && across > 22) continue;
+      rows.push_back(bench::time_edges(across, moving));
+    }
+  }
+  const bench::PairTimes pairs = bench::time_pairs();
+  fmt::print("{}", a.json ? bench::solids_json(pairs, rows) + "\n" : bench::solids_text(pairs, rows));
   return done;
 }
 
@@ -116,6 +131,7 @@ int run_runs(const BenchArguments& a) {
 int run(const BenchArguments& a) {
   if (a.edits) return run_edits(a.json);
   if (a.spheres) return run_spheres(a);
+  if (a.solids) return run_solids(a);
   if (a.latency) return run_latency(a);
   if (a.runs) return run_runs(a);
   return run_comparison(a);
@@ -149,6 +165,7 @@ void add_bench(CLI::App& app, int& status) {
   verb->add_flag("--json", a->json, "print one JSON object, and nothing else");
   verb->add_flag("--edits", a->edits, "edits per second at 10^3 and 10^6 cells, and nothing else");
   verb->add_flag("--spheres", a->spheres, "what colliding spheres cost, 10^3 and more, and nothing else");
+  verb->add_flag("--solids", a->solids, "what edges among walls cost, 10^3 to 10^6 cells, and nothing else");
   verb->add_option("--most", a->max_spheres, "with --spheres: their largest number (1000 to 10^8; 100000)")
       ->transform(whole_number(1000, 100000000));
   verb->add_flag("--latency", a->latency, "the time of single steps of a surgical scene, and nothing else");
