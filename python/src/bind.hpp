@@ -46,6 +46,7 @@ void bind_vector_field(pybind11::module_& m);
 void bind_statistics(pybind11::module_& m);
 void bind_surface(pybind11::module_& m);
 void bind_bodies(pybind11::module_& m);
+void bind_solids(pybind11::module_& m);
 void bind_catheter(pybind11::module_& m);
 void bind_simulation(pybind11::module_& m);
 void bind_events(pybind11::module_& m);

@@ -105,6 +105,7 @@ void bind_summary(py::module_& m) {
       .field("surgery", &Summary::surgery)
       .field("bodies", &Summary::bodies)
       .field("catheters", &Summary::catheters)
+      .field("solids", &Summary::solids)
       .field("statistics", &Summary::statistics)
       .field("audit", &Summary::audit)
       .field("state_hash", &Summary::state_hash)

@@ -80,7 +80,7 @@ void bind_particles_scene(py::module_& m) {
       .finish();
 }
 
-void bind_solids(py::module_& m) {
+void bind_solid_scenes(py::module_& m) {
   bind_enum<BodySamples>(
       m, "BodySamples",
       {{"SOLID", BodySamples::solid}, {"SURFACE", BodySamples::surface}, {"VOLUME", BodySamples::volume}});
@@ -104,6 +104,20 @@ void bind_solids(py::module_& m) {
       .field("until", &CatheterScene::Move::until)
       .field("push", &CatheterScene::Move::push)
       .field("turn", &CatheterScene::Move::turn)
+      .finish();
+  Record<SolidScene> solid(m, "SolidScene");
+  solid.field("name", &SolidScene::name)
+      .field("shape", &SolidScene::shape)
+      .field("scale", &SolidScene::scale)
+      .field("rotate", &SolidScene::rotate)
+      .field("at", &SolidScene::at)
+      .field("pivot", &SolidScene::pivot)
+      .field("moves", &SolidScene::moves)
+      .field("catch_up", &SolidScene::catch_up);
+  Record<SolidScene::Move>(solid.finish(), "Move", "SolidScene::Move")
+      .field("until", &SolidScene::Move::until)
+      .field("velocity", &SolidScene::Move::velocity)
+      .field("turn", &SolidScene::Move::turn)
       .finish();
 }
 
@@ -178,6 +192,7 @@ void bind_whole(py::module_& m) {
       .field("body_collisions", &Scene::body_collisions)
       .field("bodies", &Scene::bodies)
       .field("catheters", &Scene::catheters)
+      .field("solids", &Scene::solids)
       .field("motion", &Scene::motion)
       .field("contact", &Scene::contact)
       .field("events", &Scene::events)
@@ -213,7 +228,7 @@ void bind_scene(py::module_& m) {
   m.attr("MAX_STEPS") = max_steps;
   bind_environment_scene(m);
   bind_particles_scene(m);
-  bind_solids(m);
+  bind_solid_scenes(m);
   bind_motion(m);
   bind_changes(m);
   bind_whole(m);

@@ -185,9 +185,10 @@ void bind_adding(Class& simulation) {
       std::string(doc("Simulation::add")) +
       "\n\npositions: float64 (n, 3). velocity: three numbers, or float64 (n, 3). radius: a number, "
       "or float64 (n,). user_data: a number for each name, the same for all of these particles. "
-      "Instead of positions, a BodyScene or a CatheterScene.";
+      "Instead of positions, a BodyScene, a CatheterScene or a SolidScene.";
   simulation.def("add", &add_scene<BodyScene>, py::arg("body"), text.c_str())
       .def("add", &add_scene<CatheterScene>, py::arg("catheter"))
+      .def("add", &add_scene<SolidScene>, py::arg("solid"))
       .def("add", &add, py::arg("positions"), py::arg("velocity"), py::arg("radius") = 0.0,
            py::arg("user_data") = py::none())
       .def("add_random", &add_random, py::arg("count"), py::arg("velocity"), py::arg("radius") = 0.0,

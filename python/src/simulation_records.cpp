@@ -115,6 +115,14 @@ void bind_summaries(py::module_& m) {
       .field("worst_segment", &CatheterTotals::worst_segment)
       .field("refused", &CatheterTotals::refused)
       .finish();
+  Record<SolidSummary>(m, "SolidSummary")
+      .field("name", &SolidSummary::name)
+      .field("vertices", &SolidSummary::vertices)
+      .field("pivot", &SolidSummary::pivot)
+      .field("contacts", &SolidSummary::contacts)
+      .field("stopped", &SolidSummary::stopped)
+      .field("stuck", &SolidSummary::stuck)
+      .finish();
   Record<CatheterSummary>(m, "CatheterSummary")
       .field("name", &CatheterSummary::name)
       .field("inserted", &CatheterSummary::inserted)

@@ -151,6 +151,20 @@ void bind_solids(Class& simulation) {
       .def("catheter_step", &catheter_step, py::arg("i"), doc("Simulation::catheter_step"))
       .def("body_summaries", computed([](const Simulation& s) { return s.body_summaries(); }),
            doc("Simulation::body_summaries"))
+      .def_property_readonly(
+          "solids",
+          [](const Handle& self) -> py::object {
+            const Use use = self.use();
+            const SolidSet* solids = self.get().solids();
+            // Only its handle's reading functions reach the solids of a simulation.
+            return solids == nullptr ? py::object(py::none())
+                                     : py::cast(lent(self.environment, self.owner, const_cast<SolidSet*>(solids)));
+          },
+          "The solids, which the simulation moves; None where there are none.")
+      .def_property_readonly("solids_step", property([](const Simulation& s) { return SolidStep(s.solids_step()); }),
+                             "A copy of the last step of the solids.")
+      .def("solid_summaries", computed([](const Simulation& s) { return s.solid_summaries(); }),
+           doc("Simulation::solid_summaries"))
       .def("catheter_summaries", computed([](const Simulation& s) { return s.catheter_summaries(); }),
            "By the order of adding.");
 }

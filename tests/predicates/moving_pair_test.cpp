@@ -35,7 +35,7 @@ void expect_filter_agrees(const MovingPair& pair, PairKind kind, const std::stri
   const auto filtered = filtered_touch(pair, kind);
   const auto either = first_touch(pair, kind);
   ASSERT_EQ(either.has_value(), exact.has_value()) << where;
-  if (filtered.answer == FilterAnswer::unknown) return;
+  if (filtered.answer == FilterAnswer::undecided) return;
   ASSERT_EQ(filtered.answer == FilterAnswer::touching, exact.has_value()) << where;
   if (!exact) return;
   EXPECT_LE(filtered.time, *exact + 0x1p-40) << where;
@@ -295,7 +295,7 @@ TEST(MovingPair, FilterAgreesWithIntegers) {
                              "kind " + std::to_string(static_cast<int>(kind)) + ", motion " +
                                  std::to_string(static_cast<int>(motion)) + ", pair " + std::to_string(i));
         if (motion != Motion::generic) continue;
-        unknown += filtered_touch(pair, kind).answer == FilterAnswer::unknown ? 1 : 0;
+        unknown += filtered_touch(pair, kind).answer == FilterAnswer::undecided ? 1 : 0;
       }
     }
   }
@@ -354,7 +354,7 @@ TEST(MovingPair, TouchesAtDoubleRoot) {
   MovingPair lower = pair;
   lower.from[0].z = lower.to[0].z = 0;
   EXPECT_EQ(exact_touch(lower, PairKind::vertex_face), 0.5);
-  EXPECT_EQ(filtered_touch(lower, PairKind::vertex_face).answer, FilterAnswer::unknown);
+  EXPECT_EQ(filtered_touch(lower, PairKind::vertex_face).answer, FilterAnswer::undecided);
   EXPECT_EQ(first_touch(lower, PairKind::vertex_face), 0.5);
 }
 

@@ -54,6 +54,8 @@ void register_rows() {
   PYBIND11_NUMPY_DTYPE(HeldRow, particle, cell);
   PYBIND11_NUMPY_DTYPE(StoppedRow, particle, unused);
   PYBIND11_NUMPY_DTYPE(OverlapRow, particle, cell, face, depth, left, point, normal);
+  PYBIND11_NUMPY_DTYPE(SolidContactRow, solid, kind, count, wall_kind, vertices, weights, cell, face, triangle, dart,
+                       patch, time_of_impact, gap, point, wall_point, normal, displacement, wall_displacement);
   PYBIND11_NUMPY_DTYPE(OrphanRow, particle, place, outcome, position, distance);
 }
 
@@ -123,6 +125,29 @@ py::array rows_of(const std::vector<StoppedParticle>& stopped) {
 py::array rows_of(const std::vector<SphereOverlap>& overlaps) {
   return made_rows<OverlapRow>(overlaps, [](const SphereOverlap& o, OverlapRow& r) {
     r = {o.particle, o.face.cell.value, o.face.face, o.depth, o.left, row(o.point), row(o.normal)};
+  });
+}
+
+py::array rows_of(const std::vector<SolidContact>& contacts) {
+  return made_rows<SolidContactRow>(contacts, [](const SolidContact& c, SolidContactRow& r) {
+    r = {c.solid,
+         static_cast<std::uint8_t>(c.kind),
+         c.count,
+         static_cast<std::uint8_t>(c.wall_kind),
+         c.vertices,
+         c.weights,
+         c.face.cell.value,
+         c.face.face,
+         c.triangle,
+         c.dart.number,
+         c.patch.value,
+         c.time_of_impact,
+         c.gap,
+         row(c.point),
+         row(c.wall_point),
+         row(c.normal),
+         row(c.displacement),
+         row(c.wall_displacement)};
   });
 }
 

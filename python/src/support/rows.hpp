@@ -11,6 +11,7 @@
 #include "dartcast/contact.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/particle_state.hpp"
+#include "dartcast/solids.hpp"
 #include "dartcast/spheres.hpp"
 #include "dartcast/step.hpp"
 
@@ -66,6 +67,16 @@ struct OverlapRow {
   double depth, left;
   Row3 point, normal;
 };
+struct SolidContactRow {
+  std::uint32_t solid;
+  std::uint8_t kind, count, wall_kind;
+  std::array<std::uint32_t, 3> vertices;
+  Row3 weights;
+  std::uint32_t cell;
+  std::uint16_t face, triangle, dart, patch;
+  double time_of_impact, gap;
+  Row3 point, wall_point, normal, displacement, wall_displacement;
+};
 struct OrphanRow {
   std::uint32_t particle;
   std::uint8_t place, outcome;
@@ -84,6 +95,7 @@ pybind11::array rows_of(const std::vector<AddResult>& added);
 pybind11::array rows_of(const std::vector<HeldParticle>& held);
 pybind11::array rows_of(const std::vector<StoppedParticle>& stopped);
 pybind11::array rows_of(const std::vector<SphereOverlap>& overlaps);
+pybind11::array rows_of(const std::vector<SolidContact>& contacts);
 pybind11::array rows_of(const std::vector<OrphanedParticle>& orphaned);
 
 /// An array (n,) of this dtype, from one whose fields have the same names and types. Where they stand makes no

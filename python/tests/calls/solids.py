@@ -192,5 +192,57 @@ def of_catheters() -> Calls:
     }
 
 
+ROD = np.array([[1.2, 1.5, 1.5], [1.8, 1.5, 1.5]])
+
+
+def solid_set(env: dc.Environment) -> dc.SolidSet:
+    solids = dc.SolidSet(env)
+    solids.add(dc.solid_of_polyline(ROD))
+    return solids
+
+
+def of_solid_sets() -> Calls:
+    env = environment()
+    mesh, rod, solids = dc.generate_box(cells=[1, 1, 1]), dc.solid_of_polyline(ROD), solid_set(env)
+    down = ROD - np.array([0.0, 0.0, 0.1])
+
+    def added() -> None:
+        own = solid_set(env)
+        assert own.add(rod).solid == 1
+        own.remove(0)
+
+    def edited() -> None:
+        own = solid_set(environment())
+        own.environment.edit(lambda edit: dc.subdivide(edit, first(edit.map)))
+        own.update_after_edit()
+
+    def moved() -> None:
+        own = solid_set(environment())
+        assert own.move_with(down, own.environment.positions + 0.01).walls_made == 1.0
+
+    return {
+        "SolidMesh": lambda: dc.SolidMesh(ROD, edges=[[0, 1]]), "SolidMesh: refused": refused(lambda: dc.SolidMesh(3)),
+        "SolidMesh: refused edges": refused(lambda: dc.SolidMesh(ROD, [[0, 1, 2]])),
+        "SolidMesh: refused triangles": refused(lambda: dc.SolidMesh(ROD, triangles=[0.5])),
+        "solid_of_surface": lambda: dc.solid_of_surface(barrel()),
+        "solid_of_surface: refused": refused(lambda: dc.solid_of_surface(mesh)),
+        "solid_of_cells": lambda: dc.solid_of_cells(mesh),
+        "solid_of_cells: refused": refused(lambda: dc.solid_of_cells(barrel())),
+        "solid_of_polyline": lambda: dc.solid_of_polyline(ROD),
+        "solid_of_polyline: refused": refused(lambda: dc.solid_of_polyline(3)),
+        "SolidSet": lambda: dc.SolidSet(env), "SolidSet: refused": refused(lambda: dc.SolidSet(None)),
+        "SolidSet.add": added, "SolidSet.remove": added,
+        "SolidSet.add: refused": refused(lambda: solids.add(dc.SolidMesh(ROD[:0]))),
+        "SolidSet.remove: refused": refused(lambda: solids.remove(7)),
+        "SolidSet.update_after_edit": edited, "SolidSet.move_with": moved,
+        "SolidSet.move_with: refused": refused(lambda: solids.move_with(ROD, ROD)),
+        "SolidSet.set_inverse_masses": lambda: solids.set_inverse_masses(np.ones(2)),
+        "SolidSet.set_inverse_masses: refused": refused(lambda: solids.set_inverse_masses(np.ones(3))),
+        "SolidSet.advance": lambda: solids.advance(down, dc.SolidStepOptions(rounds=3)),
+        "SolidSet.advance: refused": refused(lambda: solids.advance(np.full((2, 3), np.nan))),
+        "SolidSet.audit": solids.audit,
+    }
+
+
 def calls() -> Calls:
-    return (of_surfaces() | of_surface_steps() | of_surface_edits() | of_bodies() | of_samples() | of_catheters())
+    return (of_solid_sets() | of_surfaces() | of_surface_steps() | of_surface_edits() | of_bodies() | of_samples() | of_catheters())
