@@ -25,7 +25,7 @@ using detail::MovingPair;
 using detail::PairKind;
 
 constexpr std::size_t edge_count = 1000;
-constexpr int steps = 15;
+constexpr int timed_steps = 15;
 
 double microseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
@@ -42,12 +42,12 @@ Vec3 random_vector(Random& random, double size) {
 }
 
 // The walls of all free cells, and which corner's edge a wall tests for all that share it.
-struct Walls {
+struct SweptWalls {
   std::vector<std::array<std::uint32_t, 3>> vertices;
   std::vector<std::uint8_t> own_edges;
   std::vector<MovingTriangle> now;
 
-  explicit Walls(const CellComplex& complex) {
+  explicit SweptWalls(const CellComplex& complex) {
     std::vector<std::array<std::uint32_t, 4>> edges;  // vertices, wall, corner
     for (const Cell c : complex.map().cells()) {
       const CellView cell = complex.map().view(c);
@@ -116,7 +116,7 @@ class EdgeBench {
   SolidRow run() {
     const auto tree = make_swept_tree();
     std::vector<double> search, step, by_tree, refit;
-    for (int s = 0; s < steps; ++s) {
+    for (int s = 0; s < timed_steps; ++s) {
       set_step(s);
       search.push_back(search_edges());
       if (tree) {
@@ -135,8 +135,8 @@ class EdgeBench {
     if (!step.empty()) row_.step_us = median(step);
     if (tree) row_.tree_us = median(by_tree);
     if (tree) row_.refit_us = median(refit);
-    row_.walls /= static_cast<double>(steps * edge_count);
-    row_.pairs = static_cast<double>(finder_.pairs()) / static_cast<double>(steps * edge_count);
+    row_.walls /= static_cast<double>(timed_steps * edge_count);
+    row_.pairs = static_cast<double>(finder_.pairs()) / static_cast<double>(timed_steps * edge_count);
     return row_;
   }
 
@@ -199,7 +199,7 @@ class EdgeBench {
 
   Environment environment_;
   SolidSet solids_;
-  Walls walls_;
+  SweptWalls walls_;
   Random random_;
   TouchFinder finder_;
   SolidRow row_;

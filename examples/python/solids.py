@@ -1,5 +1,6 @@
 """The figure 21 of the paper: edges between particles pass through a ridge; those of a solid do not."""
 import sys
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -14,7 +15,7 @@ block = dc.generate_box(cells=[1, 1, 1], size=[2.6, 0.8, 0.5], origin=[1.2, 1.1,
 fall = np.array([0.0, 0.0, -0.03])
 
 
-def by_particles(steps: int) -> np.ndarray:
+def by_particles(steps: int) -> Any:
     environment, corners = dc.Environment(mesh), dc.Particles()
     environment.add(corners, block.points)
     for _ in range(steps):
@@ -22,7 +23,7 @@ def by_particles(steps: int) -> np.ndarray:
     return corners.positions.copy()
 
 
-def by_solid(steps: int) -> np.ndarray:
+def by_solid(steps: int) -> Any:
     solids = dc.SolidSet(dc.Environment(mesh))
     solids.add(dc.solid_of_cells(block))
     for _ in range(steps):

@@ -164,7 +164,7 @@ void bind_solids(Class& simulation) {
       .def_property_readonly("solids_step", property([](const Simulation& s) { return SolidStep(s.solids_step()); }),
                              "A copy of the last step of the solids.")
       .def("solid_summaries", computed([](const Simulation& s) { return s.solid_summaries(); }),
-           doc("Simulation::solid_summaries"))
+           "The solids, by number.")
       .def("catheter_summaries", computed([](const Simulation& s) { return s.catheter_summaries(); }),
            "By the order of adding.");
 }

@@ -132,6 +132,16 @@ void bind_step_report(py::module_& m) {
       .def_readonly("pairs", &SolidStep::pairs, doc("SolidStep::pairs"));
 }
 
+// A checkpoint cannot be made or changed in Python.
+void bind_checkpoint(py::module_& m) {
+  py::class_<SolidCheckpoint>(m, "SolidCheckpoint", doc("SolidCheckpoint"))
+      .def_property_readonly(
+          "states", [](const SolidCheckpoint& c) { return without_writing(py::cast(c.states)); }, "Of all vertices.")
+      .def_property_readonly(
+          "held_weights", [](const SolidCheckpoint& c) { return without_writing(py::cast(c.held_weights)); },
+          "Of all vertices.");
+}
+
 std::shared_ptr<Handle> make_set(const std::shared_ptr<EnvironmentHandle>& environment) {
   const Use use(*environment->usage, "the Environment");
   auto made = std::make_shared<Handle>();
@@ -238,6 +248,17 @@ void bind_state(Class& solids) {
                              doc("SolidSet::stuck"))
       .def_property_readonly(
           "environment", [](const Handle& self) { return self.environment; }, "The environment.")
+      .def("checkpoint", of_set([](const SolidSet& s) { return s.checkpoint(); }), "The state, for restore().")
+      .def(
+          "restore",
+          [](Handle& self, const SolidCheckpoint& saved) {
+            const SolidCheckpoint own = saved;
+            const Use use = self.use();
+            SolidSet& set = self.changeable();
+            const py::gil_scoped_release release;
+            set.restore(own);
+          },
+          py::arg("saved"), doc("SolidSet::restore"))
       .def(
           "audit",
           [](const Handle& self) {
@@ -255,6 +276,7 @@ void bind_solids(py::module_& m) {
   bind_mesh(m);
   bind_records(m);
   bind_step_report(m);
+  bind_checkpoint(m);
   Class solids(m, "SolidSet", doc("SolidSet"));
   bind_changes(solids);
   bind_state(solids);

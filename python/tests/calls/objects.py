@@ -58,9 +58,9 @@ def of_solids() -> dict[str, object]:
     report = dc.advance(surface, dc.surface_places([place]), np.array([[0.0, 0.5, 0.1]]), threads=1)
     dc.step(surface, place, [0.0, 0.5, 0.1], trace=trace)
     solids = dc.SolidSet(scenes.environment())
-    rod = dc.solid_of_polyline(np.array([[1.2, 1.5, 1.5], [1.8, 1.5, 1.5]]))
+    rod = dc.solid_of_polyline(np.array([[0.4, 0.5, 0.5], [0.6, 0.5, 0.5]]))
     placement = solids.add(rod)
-    return {"SolidMesh": rod, "SolidSet": solids, "SolidPlacement": placement, "SolidAudit": solids.audit(),
+    return {"SolidMesh": rod, "SolidSet": solids, "SolidPlacement": placement, "SolidAudit": solids.audit(), "SolidCheckpoint": solids.checkpoint(),
             "SolidStep": solids.advance(solids.positions), "Bodies": bodies, "BodiesCheckpoint": saved, "BodiesCheckpoint.Particle": saved.particles[0],
             "Catheter": catheter, "CatheterCheckpoint": catheter.checkpoint(), "SurfaceTrace": trace,
             "SurfaceReport": report}

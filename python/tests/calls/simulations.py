@@ -62,6 +62,16 @@ def of_adding() -> Calls:
         made.catheter_step(0)
         made.catheter_summaries()
 
+    def add_solid() -> None:
+        line = dc.SolidScene("line", np.array([[0.4, 0.5, 0.5], [0.6, 0.5, 0.5]]))
+        line.moves = [dc.SolidScene.Move(until=1.0, velocity=[0.0, 0.0, 0.1])]
+        made = simulation()
+        made.add(line)
+        made.step()
+        assert made.solids is not None and made.solids_step.made[0] == 1.0
+        made.solids.audit()
+        made.solid_summaries()
+
     def add_body() -> None:
         made = simulation()
         made.add_body(BODY, dc.BodyOptions(mass=2.0))
@@ -78,6 +88,7 @@ def of_adding() -> Calls:
         "Simulation.add: body": add_body, "Simulation.add_body": add_body, "Simulation.body_summaries": add_body,
         "Simulation.add: catheter": add_catheter, "Simulation.catheter": add_catheter,
         "Simulation.catheter_step": add_catheter, "Simulation.catheter_summaries": add_catheter,
+        "Simulation.solid_summaries": add_solid,
         "Simulation.catheter: refused": refused(lambda: own.catheter(3)),
         "Simulation.add_body: refused": refused(lambda: own.add_body(BODY, dc.BodyOptions(mass=-1.0))),
         "Simulation.add_random": changed(lambda s: s.add_random(5, [1.0, 2.0, 3.0], 0.01)),

@@ -192,7 +192,7 @@ def of_catheters() -> Calls:
     }
 
 
-ROD = np.array([[1.2, 1.5, 1.5], [1.8, 1.5, 1.5]])
+ROD = np.array([[0.4, 0.5, 0.5], [0.6, 0.5, 0.5]])
 
 
 def solid_set(env: dc.Environment) -> dc.SolidSet:
@@ -240,7 +240,9 @@ def of_solid_sets() -> Calls:
         "SolidSet.set_inverse_masses: refused": refused(lambda: solids.set_inverse_masses(np.ones(3))),
         "SolidSet.advance": lambda: solids.advance(down, dc.SolidStepOptions(rounds=3)),
         "SolidSet.advance: refused": refused(lambda: solids.advance(np.full((2, 3), np.nan))),
-        "SolidSet.audit": solids.audit,
+        "SolidSet.audit": solids.audit, "SolidSet.checkpoint": solids.checkpoint, "SolidSet.__len__": lambda: len(solids),
+        "SolidSet.restore": lambda: solids.restore(solids.checkpoint()),
+        "SolidSet.restore: refused": refused(lambda: solids.restore(3)),
     }
 
 
