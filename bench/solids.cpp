@@ -97,13 +97,16 @@ void touch(const std::array<Vec3, 2>& from, const std::array<Vec3, 2>& to, const
   }
 }
 
+using FirstTouches = std::vector<std::optional<double>>;  // of each edge
+
 class EdgeBench {
  public:
   EdgeBench(std::size_t across, bool moving)
-      : environment_(box(across), Threads{1}), solids_(environment_), walls_(environment_.complex()), random_(3) {
-    row_.moving = moving;
-    row_.edges = edge_count;
-    for (const Cell c : environment_.map().cells()) row_.cells += c.valid() ? 1 : 0;
+      : environment_(box(across), Threads{1}),
+        solids_(environment_),
+        walls_(environment_.complex()),
+        random_(3),
+        moving_(moving) {
     const auto size = static_cast<double>(across);
     while (solids_.size() < edge_count) {
       const Vec3 a = {random_.uniform(0, size), random_.uniform(0, size), random_.uniform(0, size)};
@@ -113,32 +116,43 @@ class EdgeBench {
     before_.assign(environment_.complex().positions().begin(), environment_.complex().positions().end());
   }
 
-  SolidRow run() {
-    const auto tree = make_swept_tree();
-    std::vector<double> search, step, by_tree, refit;
+  // Through cells. Keeps the first touches of all steps.
+  void time_cells(SolidRow& row) {
+    std::vector<double> search, step;
     for (int s = 0; s < timed_steps; ++s) {
       set_step(s);
       search.push_back(search_edges());
-      if (tree) {
-        walls_.move(before_, after_);
-        const auto start = Clock::now();
-        if (row_.moving || s == 0) tree->fit(walls_.now);
-        refit.push_back(microseconds_since(start) / edge_count);
-        by_tree.push_back(refit.back() + search_tree(*tree));
-      }
-      if (row_.moving) continue;
+      firsts.push_back(first_);
       const auto start = Clock::now();
-      solids_.advance(to_);
+      if (!moving_) solids_.advance(to_);
       step.push_back(microseconds_since(start) / edge_count);
     }
-    row_.search_us = median(search);
-    if (!step.empty()) row_.step_us = median(step);
-    if (tree) row_.tree_us = median(by_tree);
-    if (tree) row_.refit_us = median(refit);
-    row_.walls /= static_cast<double>(timed_steps * edge_count);
-    row_.pairs = static_cast<double>(finder_.pairs()) / static_cast<double>(timed_steps * edge_count);
-    return row_;
+    row.cells = environment_.map().cell_count();
+    row.search_us = median(search);
+    row.step_us = moving_ ? 0.0 : median(step);
+    row.walls = walls_reached_ / static_cast<double>(timed_steps * edge_count);
+    row.pairs = static_cast<double>(finder_.pairs()) / static_cast<double>(timed_steps * edge_count);
   }
+
+  // The same steps by a tree. `expected`: the first touches of all of them.
+  void time_tree(SweptTree& tree, const std::vector<FirstTouches>& expected, SolidRow& row) {
+    std::vector<double> whole, refit;
+    for (int s = 0; s < timed_steps; ++s) {
+      set_step(s);
+      walls_.move(before_, after_);
+      const auto start = Clock::now();
+      if (moving_ || s == 0) tree.fit(walls_.now);
+      refit.push_back(microseconds_since(start) / edge_count);
+      whole.push_back(refit.back() + search_tree(tree));
+      for (std::size_t i = 0; i < edge_count; ++i)
+        row.unlike += first_[i] != expected[static_cast<std::size_t>(s)][i] ? 1 : 0;
+      if (!moving_) solids_.advance(to_);
+    }
+    row.tree_us = median(whole);
+    row.refit_us = median(refit);
+  }
+
+  std::vector<FirstTouches> firsts;
 
  private:
   static MeshData box(std::size_t across) {
@@ -158,13 +172,13 @@ class EdgeBench {
       for (std::size_t k = 2 * i; k < 2 * i + 2; ++k) to_[k] += way + random_vector(random_, 0.02);
     }
     after_ = before_;
-    if (!row_.moving) return;
+    if (!moving_) return;
     for (Vec3& p : after_)
       p += Vec3{0.05 * std::sin(0.7 * p.y + s), 0.05 * std::sin(0.7 * p.z + s), 0.05 * std::sin(0.7 * p.x)};
     environment_.complex().steiner_weights().compute(after_);
   }
   [[nodiscard]] VertexMotion wall_motion() const {
-    return row_.moving ? VertexMotion{before_, after_} : VertexMotion{before_, before_};
+    return moving_ ? VertexMotion{before_, after_} : VertexMotion{before_, before_};
   }
   double search_edges() {
     first_.assign(edge_count, std::nullopt);
@@ -175,12 +189,13 @@ class EdgeBench {
       touches.clear();
       const SolidElement edge = {{2 * i, 2 * i + 1, 2 * i + 1}, 2, 3, 1};
       finder_.find(environment_.complex(), solids_.particles()[2 * i].cell, edge, motion, wall_motion(), touches);
-      row_.walls += static_cast<double>(finder_.walls().size());
+      walls_reached_ += static_cast<double>(finder_.walls().size());
       for (const ElementTouch& t : touches) first_[i] = std::min(first_[i].value_or(2.0), t.time);
     }
     return microseconds_since(start) / edge_count;
   }
   double search_tree(SweptTree& tree) {
+    first_.assign(edge_count, std::nullopt);
     const auto x = solids_.positions();
     const auto start = Clock::now();
     for (std::size_t i = 0; i < edge_count; ++i) {
@@ -192,7 +207,7 @@ class EdgeBench {
       for (const std::size_t w : tree.query({least(&Vec3::x), least(&Vec3::y), least(&Vec3::z)},
                                             {most(&Vec3::x), most(&Vec3::y), most(&Vec3::z)}))
         touch(from, to, walls_.now[w], walls_.own_edges[w], first);
-      row_.unlike += first != first_[i] ? 1 : 0;
+      first_[i] = first;
     }
     return microseconds_since(start) / edge_count;
   }
@@ -202,9 +217,10 @@ class EdgeBench {
   SweptWalls walls_;
   Random random_;
   TouchFinder finder_;
-  SolidRow row_;
+  bool moving_;
+  double walls_reached_ = 0.0;
   std::vector<Vec3> before_, after_, to_;
-  std::vector<std::optional<double>> first_;
+  FirstTouches first_;
 };
 
 }  // namespace
@@ -240,7 +256,16 @@ PairTimes time_pairs() {
   return times;
 }
 
-SolidRow time_edges(std::size_t across, bool moving) { return EdgeBench(across, moving).run(); }
+// One after the other, so that neither finds its data thrown out of the caches by the other.
+SolidRow time_edges(std::size_t across, bool moving) {
+  SolidRow row;
+  row.moving = moving;
+  row.edges = edge_count;
+  EdgeBench ours(across, moving);
+  ours.time_cells(row);
+  if (const auto tree = make_swept_tree()) EdgeBench(across, moving).time_tree(*tree, ours.firsts, row);
+  return row;
+}
 
 std::string solids_text(const PairTimes& pairs, std::span<const SolidRow> rows) {
   std::string out = fmt::format("random pairs: the filter takes {:.0f} ns and leaves {:.2g}, integers take {:.0f} ns\n",
