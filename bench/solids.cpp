@@ -219,7 +219,8 @@ class EdgeBench {
   TouchFinder finder_;
   bool moving_;
   double walls_reached_ = 0.0;
-  std::vector<Vec3> before_, after_, to_;
+  AlignedVector<Vec3> before_, after_;  // in large pages, as those of the complex
+  std::vector<Vec3> to_;
   FirstTouches first_;
 };
 

@@ -98,13 +98,14 @@ struct SolidSet::Impl {
   void correct(std::uint32_t solid, const SolidStepOptions& options);
   void go(std::uint32_t solid, double share);
   void cut_each(Solids& open, const VertexMotion& walls);
-  void cut_all(const Solids& squeezed, std::span<const Vec3> walls_to, std::vector<Vec3>& after);
+  void cut_all(const Solids& squeezed, std::span<const Vec3> walls_to);
   void keep_first_touches(const Solids& cut, const SolidStepOptions& options);
   void commit_at_rest();
   [[nodiscard]] std::vector<SimplexId> places_after(const VertexMotion& walls);
   void commit_moved(const VertexMotion& walls);
   void report();
 
+  AlignedVector<Vec3> walls_after;             // positions of all vertices of the environment after the move
   std::vector<Vec3> wanted;                    // targets of the caller
   std::vector<Vec3> targets;                   // corrected
   std::vector<Vec3> reached;                   // a share of the way to them

@@ -223,8 +223,7 @@ void SolidSet::Impl::cut_each(Solids& open, const VertexMotion& walls) {
 }
 
 // Walls that would run into solids stop, and all solids with them, at one share of their ways as they are cut so far.
-// `after`: the positions of all vertices of the environment after the move.
-void SolidSet::Impl::cut_all(const Solids& squeezed, std::span<const Vec3> walls_to, std::vector<Vec3>& after) {
+void SolidSet::Impl::cut_all(const Solids& squeezed, std::span<const Vec3> walls_to) {
   const auto before = environment.complex().positions();
   const Solids all = all_but_stuck();
   const std::vector<double> made = last.made;
@@ -234,11 +233,11 @@ void SolidSet::Impl::cut_all(const Solids& squeezed, std::span<const Vec3> walls
   for (;; share *= 0.5) {
     if (share < least_share) share = 0.0;
     for (const std::uint32_t s : all) go(s, share);
-    for (std::size_t p = 0; p < walls_to.size(); ++p) after[p] = before[p] + (walls_to[p] - before[p]) * share;
-    if (share == 0.0) std::copy(before.begin(), before.end(), after.begin());  // also where the way is not finite
+    for (std::size_t p = 0; p < walls_to.size(); ++p) walls_after[p] = before[p] + (walls_to[p] - before[p]) * share;
+    if (share == 0.0) std::copy(before.begin(), before.end(), walls_after.begin());  // also where the way is not finite
     if (share == 0.0) break;
-    environment.complex().steiner_weights().compute(after);
-    detect(all, reached, {before, after});
+    environment.complex().steiner_weights().compute(walls_after);
+    detect(all, reached, {before, walls_after});
     if (std::all_of(all.begin(), all.end(), [&](std::uint32_t s) { return progress[s].is_free(); })) break;
   }
   last.walls_made = share;
@@ -336,16 +335,16 @@ void SolidSet::Impl::move_with(std::span<const Vec3> given, std::span<const Vec3
   if (walls_to.size() != complex.point_count())
     throw InvalidArgument(fmt::format("move_with: {} positions for {} points of the mesh: give one for each",
                                       walls_to.size(), complex.point_count()));
-  std::vector<Vec3> after(complex.positions().begin(), complex.positions().end());
-  std::copy(walls_to.begin(), walls_to.end(), after.begin());
-  complex.steiner_weights().compute(after);
-  const VertexMotion walls = {complex.positions(), after};
+  walls_after.assign(complex.positions().begin(), complex.positions().end());
+  std::copy(walls_to.begin(), walls_to.end(), walls_after.begin());
+  complex.steiner_weights().compute(walls_after);
+  const VertexMotion walls = {complex.positions(), walls_after};
   Solids open = all_but_stuck();
   correct_in_rounds(open, walls, options);
   reached = targets;
   keep_first_touches(open, options);
   cut_each(open, walls);
-  if (!open.empty()) cut_all(open, walls_to, after);
+  if (!open.empty()) cut_all(open, walls_to);
   report();
   commit_moved(walls);
 }
