@@ -36,15 +36,18 @@ btDbvtVolume volume(const MovingTriangle& w) {
 
 struct Collect : btDbvt::ICollide {
   std::vector<std::size_t> found;
-  void Process(const btDbvtNode* leaf) override { found.push_back(reinterpret_cast<std::size_t>(leaf->data)); }
+  void Process(const btDbvtNode* leaf) override { found.push_back(*static_cast<const std::size_t*>(leaf->data)); }
 };
 
 class BulletTree final : public SweptTree {
  public:
   void fit(std::span<const MovingTriangle> walls) override {
     if (leaves_.empty()) {
-      for (std::size_t i = 0; i < walls.size(); ++i)
-        leaves_.push_back(tree_.insert(volume(walls[i]), reinterpret_cast<void*>(i)));
+      numbers_.resize(walls.size());
+      for (std::size_t i = 0; i < walls.size(); ++i) {
+        numbers_[i] = i;
+        leaves_.push_back(tree_.insert(volume(walls[i]), &numbers_[i]));
+      }
       tree_.optimizeTopDown();
       return;
     }
@@ -61,6 +64,7 @@ class BulletTree final : public SweptTree {
 
  private:
   btDbvt tree_;
+  std::vector<std::size_t> numbers_;  // that leaves point to
   std::vector<btDbvtNode*> leaves_;
   Collect collect_;
 };
