@@ -289,8 +289,11 @@ void fields(Archive& a, SolidsState& s) {
     values(a, t.contacts, t.stopped);
   });
   values(a, s.walls_before, s.walls_now);
-  a.list(s.before, [&](Vec3& x) { fields(a, x); });
-  a.list(s.now, [&](Vec3& x) { fields(a, x); });
+  a.list(s.places, [&](VertexPlaces& p) {
+    a.value(p.steps);
+    a.list(p.before, [&](Vec3& x) { fields(a, x); });
+    a.list(p.now, [&](Vec3& x) { fields(a, x); });
+  });
 }
 
 // The fields that version 0.1 did not write.

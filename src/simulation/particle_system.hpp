@@ -31,13 +31,6 @@ inline bool leaves(ParticleStatus status) {
   return false;
 }
 
-/// Where all vertices were before the last move and after it, and after how many steps.
-struct VertexPlaces {
-  std::uint64_t steps = 0;
-  std::vector<Vec3> before;
-  std::vector<Vec3> now;
-};
-
 /// It also moves the vertices: with collisions that comes between the spheres' impulses and their walk. A function
 /// with the name of one of Simulation's does the work of that function.
 class ParticleSystem final : public SimulationComponent {
@@ -67,10 +60,13 @@ class ParticleSystem final : public SimulationComponent {
   /// Moves the environment in a step to the positions that the deformation gives, or as far as something lets it.
   using Mover = std::function<void(std::span<const Vec3>)>;
   void set_mover(Mover mover) { mover_ = std::move(mover); }
+  /// Where the vertices stood after some steps, if not where the deformation puts them. go_to() and restore() look there.
+  void set_known_places(std::vector<VertexPlaces> places) { known_places_ = std::move(places); }
   /// For put_back(). Cost: a copy of all positions, twice.
   [[nodiscard]] VertexPlaces vertex_places() const;
   /// Moves the vertices back, and counts steps from there. The caller restores all particles.
   void put_back(const VertexPlaces& places);
+  void put_back_known(const std::vector<VertexPlaces>& known, std::uint64_t steps);
 
   void step(double begin) override;
   void update_after_edit(const ComplexEditReport& edit, OrphanPolicy orphaned) override;
@@ -183,6 +179,7 @@ class ParticleSystem final : public SimulationComponent {
   std::optional<VectorField> force_;  // accelerations, on top of gravity
   std::optional<Deformation> deformation_;
   Mover mover_;  // none: Environment::move()
+  std::vector<VertexPlaces> known_places_;
   std::vector<Vec3> next_vertices_;
   std::vector<Inlet> inlets_;
 

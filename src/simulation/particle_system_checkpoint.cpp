@@ -30,7 +30,7 @@ void ParticleSystem::restore(const SimulationState& state) {
   if (saved.user_data.size() != saved.particles.size() * width())
     throw InvalidArgument("simulation: the checkpoint has other user data: give the options that it was saved with");
   if (steps_ != saved.steps) stand_at(saved.steps);
-  if (!state.solids.now.empty()) put_back({saved.steps, state.solids.before, state.solids.now});
+  put_back_known(state.solids.places, saved.steps);
   std::vector<ParticleState> states;
   std::vector<Weights> weights;
   for (const ParticleSystemState::Particle& p : saved.particles) {
@@ -68,7 +68,13 @@ void ParticleSystem::go_to(std::uint64_t steps) {
     throw InvalidArgument(
         "simulation: its particles cannot follow to another step: use a simulation without particles");
   if (steps_ != steps) stand_at(steps);
+  put_back_known(known_places_, steps);
   steps_ = steps;
+}
+
+void ParticleSystem::put_back_known(const std::vector<VertexPlaces>& known, std::uint64_t steps) {
+  const auto last = std::find_if(known.rbegin(), known.rend(), [&](const VertexPlaces& p) { return p.steps == steps; });
+  if (last != known.rend()) put_back(*last);
 }
 
 VertexPlaces ParticleSystem::vertex_places() const {

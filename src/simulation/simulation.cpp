@@ -84,6 +84,7 @@ SimulationCheckpoint Simulation::checkpoint() const {
 void Simulation::restore(const SimulationCheckpoint& saved) {
   parts_->statistics.check(saved.state());
   parts_->replaying = true;
+  parts_->particles.set_known_places(saved.state().solids.places);
   try {
     parts_->events.replay(saved.state().events);
   } catch (...) {
@@ -91,6 +92,7 @@ void Simulation::restore(const SimulationCheckpoint& saved) {
     throw;
   }
   parts_->replaying = false;
+  parts_->particles.set_known_places({});
   // Whether states fit is seen only where the vertices stand as they did then. So a refusal comes late, and is undone.
   const SimulationCheckpoint former = checkpoint();
   const VertexPlaces places = parts_->particles.vertex_places();

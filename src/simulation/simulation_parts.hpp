@@ -21,7 +21,7 @@ struct Simulation::Parts {
       : own_environment(std::move(own)),
         environment(used),
         particles(used, options),
-        solids(used, options.dt),
+        solids(used, particles),
         bodies(used, particles.options(), particles.responses()),
         catheters(used, options.dt),
         statistics(particles),

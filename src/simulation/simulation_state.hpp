@@ -40,6 +40,13 @@ struct CathetersState {
   std::vector<CatheterTotals> totals;
 };
 
+/// Where all vertices were before the last move and after it, and after how many steps.
+struct VertexPlaces {
+  std::uint64_t steps = 0;
+  std::vector<Vec3> before;
+  std::vector<Vec3> now;
+};
+
 /// The solids; empty where there are none.
 struct SolidsState {
   struct Tool {
@@ -52,9 +59,8 @@ struct SolidsState {
   std::vector<Tool> tools;
   double walls_before = 1.0;  ///< shares that the walls made of the last two moves
   double walls_now = 1.0;
-  // Where a solid stopped the walls in one of these: the vertices before the last move, and now.
-  std::vector<Vec3> before;
-  std::vector<Vec3> now;
+  /// After steps at which a solid had stopped the walls: those before an edit, and the last.
+  std::vector<VertexPlaces> places;
 };
 
 /// The statistics so far.

@@ -105,7 +105,10 @@ void SolidsComponent::step(double begin) {
 }
 
 void SolidsComponent::update_after_edit(const ComplexEditReport& /*edit*/, OrphanPolicy /*orphaned*/) {
-  if (solids_) solids_->update_after_edit();
+  if (!solids_) return;
+  solids_->update_after_edit();
+  const bool known = !places_at_edits_.empty() && places_at_edits_.back().steps == particles_.steps();
+  if (walls_were_stopped() && !known) places_at_edits_.push_back(particles_.vertex_places());
 }
 
 void SolidsComponent::save(SimulationState& state) const {
@@ -114,11 +117,8 @@ void SolidsComponent::save(SimulationState& state) const {
   for (const Tool& tool : tools_) state.solids.tools.push_back({tool.pose, tool.wanted, tool.contacts, tool.stopped});
   state.solids.walls_before = walls_before_;
   state.solids.walls_now = walls_now_;
-  if (walls_before_ == 1.0 && walls_now_ == 1.0) return;
-  const auto before = environment_.complex().previous_positions();
-  const auto now = environment_.positions();
-  state.solids.before.assign(before.begin(), before.begin() + static_cast<std::ptrdiff_t>(now.size()));
-  state.solids.now.assign(now.begin(), now.end());
+  state.solids.places = places_at_edits_;
+  if (walls_were_stopped()) state.solids.places.push_back(particles_.vertex_places());
 }
 
 void SolidsComponent::restore(const SimulationState& state) {
@@ -136,6 +136,8 @@ void SolidsComponent::restore(const SimulationState& state) {
   }
   walls_before_ = saved.walls_before;
   walls_now_ = saved.walls_now;
+  places_at_edits_ = saved.places;
+  if (walls_were_stopped()) places_at_edits_.pop_back();
 }
 
 Audit SolidsComponent::audit() const {

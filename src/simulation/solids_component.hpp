@@ -11,6 +11,7 @@
 #include "dartcast/simulation.hpp"
 #include "dartcast/solids.hpp"
 #include "simulation/component.hpp"
+#include "simulation/particle_system.hpp"
 #include "simulation/rigid_pose.hpp"
 
 namespace dartcast {
@@ -19,8 +20,8 @@ namespace dartcast {
 /// the particles' step calls move_with() in place of Environment::move().
 class SolidsComponent final : public SimulationComponent {
  public:
-  /// `dt`: s, of a step.
-  SolidsComponent(Environment& environment, double dt) : environment_(environment), dt_(dt) {}
+  SolidsComponent(Environment& environment, const ParticleSystem& particles)
+      : environment_(environment), particles_(particles), dt_(particles.options().dt) {}
 
   /// Throws Error that names the solid: its shape is a file or has a defect, or its place is refused.
   void add(const SolidScene& scene);
@@ -56,7 +57,10 @@ class SolidsComponent final : public SimulationComponent {
   [[nodiscard]] std::vector<Vec3> targets(double begin);
   void follow(const SolidStep& step);
 
+  [[nodiscard]] bool walls_were_stopped() const { return walls_before_ < 1.0 || walls_now_ < 1.0; }
+
   Environment& environment_;
+  const ParticleSystem& particles_;
   double dt_;
   std::optional<SolidSet> solids_;
   std::vector<Tool> tools_;
@@ -64,6 +68,7 @@ class SolidsComponent final : public SimulationComponent {
   bool moved_ = false;         // in this step, with the environment
   double walls_before_ = 1.0;  // the shares that the walls made of the last two moves
   double walls_now_ = 1.0;
+  std::vector<VertexPlaces> places_at_edits_;  // of steps at which the walls had been stopped
 };
 
 /// The vertices of one solid.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dartcast/cell_complex.hpp"
 #include "dartcast/complex_edit.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
@@ -11,6 +12,7 @@
 #include "dartcast/scene.hpp"
 #include "dartcast/simulation.hpp"
 #include "simulation/rigid_pose.hpp"
+#include "simulation/simulation_state.hpp"
 #include "support/meshes.hpp"
 #include "support/solid_scenes.hpp"
 
@@ -136,6 +138,52 @@ TEST(SolidsComponent, WallsStopAtAToolAndTheRunGoesOn) {
     whole.restore(back);
   }
   EXPECT_LT(least, 0.5);
+}
+
+// An edit is made again where the vertices stood, not where the deformation alone would have put them.
+TEST(SolidsComponent, EditsAtStoppedWallsAreMadeAgain) {
+  SolidScene tool;
+  tool.name = "tool";
+  tool.shape = block({1.0, 1.0, 0.5});
+  tool.at = {1.5, 1.5, 0.3};
+  Scene scene = scene_with(tool);
+  auto& mesh = std::get<MeshData>(scene.environment.mesh);
+  mesh.free.assign(mesh.cell_count(), 1);
+  std::fill(mesh.free.end() - 16, mesh.free.end(), std::uint8_t{0});  // the highest layer, to be cut
+  scene.deformation = {pulse(0.6)};
+  scene.deformation[0].step.length = 8.0;
+  ParticlesScene particles;
+  particles.source = RandomParticles{50};
+  particles.velocity = {1.0, 0.5, -0.7};
+  scene.particles = {particles};
+  for (const double at : {0.07, 0.14, 0.3}) {
+    Cut cut;
+    cut.surface = Plane{{0.6, 0.0, 0.8}, 3.0 + 5.0 * at};
+    cut.width = 0.02;
+    scene.events.push_back({{at, cut}});
+  }
+  Simulation whole(scene, Threads{1});
+  bool stopped_at_edit = false;
+  for (int s = 0; s < 40; ++s) {
+    const bool before = whole.solids_step().walls_made < 1.0;
+    const std::size_t edits = whole.event_log().changes.size();
+    whole.step();
+    stopped_at_edit = stopped_at_edit || (before && whole.event_log().changes.size() > edits);
+    ASSERT_EQ(whole.audit().failed, 0U) << whole.audit().first;
+    if (s % 6 != 5) continue;
+    Simulation restored(scene, whole.checkpoint(), Threads{1});
+    ASSERT_EQ(restored.state_hash(), whole.state_hash()) << s;
+    ASSERT_EQ(to_mesh(restored.environment().complex()).points, to_mesh(whole.environment().complex()).points) << s;
+    const SimulationCheckpoint back = whole.checkpoint();
+    for (int k = 0; k < 3; ++k) {
+      restored.step();
+      whole.step();
+    }
+    EXPECT_EQ(restored.state_hash(), whole.state_hash()) << s;
+    if (whole.event_log().changes.size() == back.state().events.changes.size()) whole.restore(back);
+  }
+  EXPECT_TRUE(stopped_at_edit);
+  for (const EventReport& e : whole.event_log().events) EXPECT_GT(e.cells_added, 0U) << e.time;
 }
 
 TEST(SolidsComponent, FollowsEdits) {
