@@ -170,7 +170,7 @@ void SolidSet::Impl::correct_in_rounds(Solids& open, const VertexMotion& walls, 
   }
 }
 
-// Gauss-Seidel's sweeps over all constraints found so far; Targets that leave the range of numbers are taken back.
+// Sweeps over all constraints found so far (Gauss-Seidel). Targets that leave the range of numbers are taken back.
 void SolidSet::Impl::correct(std::uint32_t solid, const SolidStepOptions& options) {
   Progress& p = progress[solid];
   const SolidMotion motion = {positions, targets};
