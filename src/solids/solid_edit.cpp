@@ -97,9 +97,11 @@ void SolidSet::Impl::find_stuck() {
     }
     SolidPlacement placement = find_refusal(complex, of(positions, s), own, cells);
     placement.solid = s;
-    // Steps look at flat cells by themselves: vertices that move can make them positive again.
-    if (placement.refusal != SolidRefusal::none && placement.refusal != SolidRefusal::cell_not_positive)
-      stuck.push_back(placement);
+    // Steps look at flat cells around a solid by themselves: vertices that move can make these positive again.
+    const auto states = particles.states().subspan(first_vertex[s], cells.size());
+    const bool in_flat_cell = std::any_of(states.begin(), states.end(), [](const ParticleState& v) { return v.held; });
+    const bool flat = placement.refusal == SolidRefusal::cell_not_positive;
+    if (in_flat_cell || (placement.refusal != SolidRefusal::none && !flat)) stuck.push_back(placement);
   }
 }
 

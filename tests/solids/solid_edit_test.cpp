@@ -99,6 +99,25 @@ TEST_F(Edited, AVertexInABlockedCellHoldsItsSolid) {
   EXPECT_EQ(solids.advance(places({0.1, 0.0, 0.0})).made[0], 1.0);
 }
 
+// A solid that is carried along within a cell that becomes flat stays stuck there when the cell is free again.
+TEST_F(Edited, AVertexInAFlatCellHoldsItsSolid) {
+  solids.add(moved(ball(0.3), {2.5, 2.5, 2.5}));
+  const Cell middle = cell_at({2.5, 2.5, 2.5});
+  set_free(middle, false);
+  solids.update_after_edit();
+  const std::vector<Vec3> rest(environment.positions().begin(), environment.positions().end());
+  std::vector<Vec3> flat = rest;
+  for (Vec3& p : flat) p.z = p.z == 3.0 ? 2.0 : p.z;
+  EXPECT_EQ(solids.move_with(places(), flat).walls_made, 1.0);
+  set_free(middle, true);
+  solids.update_after_edit();
+  ASSERT_EQ(solids.stuck().size(), 1U);
+  EXPECT_EQ(solids.stuck()[0].refusal, SolidRefusal::cell_not_positive);
+  EXPECT_EQ(solids.move_with(places(), rest).walls_made, 1.0);
+  EXPECT_EQ(solids.advance(places({0.1, 0.0, 0.0})).held, std::vector<std::uint32_t>{0});
+  EXPECT_EQ(audit(environment.complex(), solids.particles()).failed, 0U);
+}
+
 TEST_F(Edited, AWallWithinAClosedSolidHoldsIt) {
   solids.add(moved(ball(1.5), {2.5, 2.5, 2.5}));
   set_free(cell_at({2.5, 2.5, 2.5}), false);
