@@ -115,10 +115,12 @@ inline MovingElement element_at(Random& random, const Vec3& at, unsigned count, 
 }
 
 /// Positions pushed along waves of about eight units.
-inline std::vector<Vec3> waved(std::span<const Vec3> positions, double by) {
+inline std::vector<Vec3> waved(std::span<const Vec3> positions, double by, double unit = 1.0) {
   std::vector<Vec3> moved(positions.begin(), positions.end());
-  for (Vec3& p : moved)
-    p += Vec3{by * std::sin(0.8 * p.y + 0.3), by * std::sin(0.7 * p.z + 1.1), by * std::sin(0.9 * p.x - 0.4)};
+  for (Vec3& p : moved) {
+    const Vec3 x = p * (1.0 / unit);
+    p += Vec3{by * std::sin(0.8 * x.y + 0.3), by * std::sin(0.7 * x.z + 1.1), by * std::sin(0.9 * x.x - 0.4)};
+  }
   return moved;
 }
 
