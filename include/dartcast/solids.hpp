@@ -133,7 +133,7 @@ struct SolidAudit {
 ///
 /// Guarantees. After every step no edge and no triangle of a solid meets a wall. The straight motion between the
 /// positions before and after the step, as stored, is free of contact with the walls, by exact decisions. So what is
-/// outside a closed solid stays outside. A step ends after at most `rounds` corrections and 30 cuts. Results are the same
+/// outside a closed solid stays outside. A step ends after at most `rounds` corrections and 45 cuts. Results are the same
 /// bits for any number of threads. Not guaranteed: solids may pass through each other, and through themselves.
 class SolidSet {
  public:

@@ -12,7 +12,7 @@
 
 namespace dartcast {
 
-/// All walls of a complex as they stand, with the free cell of each.
+/// All walls of a complex as they stand, but for those with a corner outside the exact range: their cells are not valid.
 class WallAudit {
  public:
   /// Cost: n log n in the cells of the complex.
