@@ -200,6 +200,7 @@ class SolidSet {
   [[nodiscard]] SolidAudit audit() const;
 
  private:
+  friend struct JointMoves;
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

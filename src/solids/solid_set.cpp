@@ -39,17 +39,17 @@ SolidPlacement SolidSet::Impl::add(const SolidMesh& given) {
   check_current("add");
   SolidMesh mesh = given;
   std::transform(mesh.points.begin(), mesh.points.end(), mesh.points.begin(), flushed);
-  const std::vector<Location> places = environment.locate(mesh.points);
-  std::vector<Cell> cells(places.size());
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    if (places[i].place == Place::free) cells[i] = places[i].simplex.cell;
+  const std::vector<Location> located = environment.locate(mesh.points);
+  std::vector<Cell> cells(located.size());
+  for (std::size_t i = 0; i < located.size(); ++i) {
+    if (located[i].place == Place::free) cells[i] = located[i].simplex.cell;
   }
   const std::vector<SolidElement> added = elements_of(mesh);
   SolidPlacement result = find_refusal(environment.complex(), mesh.points, added, cells);
   if (result.refusal != SolidRefusal::none) return result;
   try {
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      if (!environment.add(particles, places[i].simplex, mesh.points[i]))
+    for (std::size_t i = 0; i < located.size(); ++i) {
+      if (!environment.add(particles, located[i].simplex, mesh.points[i]))
         throw InternalError(
             fmt::format("solids: point {} of the solid is not in the simplex that was found for it", i));
     }
@@ -145,8 +145,17 @@ const SolidStep& SolidSet::advance(std::span<const Vec3> targets, const SolidSte
 
 const SolidStep& SolidSet::move_with(std::span<const Vec3> targets, std::span<const Vec3> positions,
                                      const SolidStepOptions& options) {
-  impl_->move_with(targets, positions, options);
+  impl_->prepare(targets, options);
+  MovePartner* const self = impl_.get();
+  move_together(impl_->environment, {&self, 1}, positions);
   return impl_->last;
 }
+
+MovePartner& JointMoves::prepare(SolidSet& solids, std::span<const Vec3> targets, const SolidStepOptions& options) {
+  solids.impl_->prepare(targets, options);
+  return *solids.impl_;
+}
+
+const SolidStep& JointMoves::last_step(const SolidSet& solids) { return solids.impl_->last; }
 
 }  // namespace dartcast

@@ -10,11 +10,12 @@
 #include "dartcast/solids.hpp"
 #include "solids/element_touches.hpp"
 #include "solids/elements.hpp"
+#include "solids/joint_move.hpp"
 #include "solids/solid_constraint.hpp"
 
 namespace dartcast {
 
-struct SolidSet::Impl {
+struct SolidSet::Impl final : MovePartner {
   explicit Impl(Environment& e) : environment(e) {}
 
   // --- what the set is
@@ -62,7 +63,11 @@ struct SolidSet::Impl {
   // --- a step (solid_step.cpp)
 
   void advance(std::span<const Vec3> given, const SolidStepOptions& options);
-  void move_with(std::span<const Vec3> given, std::span<const Vec3> walls_to, const SolidStepOptions& options);
+  void prepare(std::span<const Vec3> given, const SolidStepOptions& options);
+  double plan(const VertexMotion& walls) override;
+  bool shorten(double share, const VertexMotion& walls) override;
+  void before_move(const VertexMotion& walls) override;
+  void after_move() override;
 
   // A cell that an element reaches, and when it becomes flat.
   struct Flat {
@@ -98,14 +103,13 @@ struct SolidSet::Impl {
   void correct(std::uint32_t solid, const SolidStepOptions& options);
   void go(std::uint32_t solid, double share);
   void cut_each(Solids& open, const VertexMotion& walls);
-  void cut_all(const Solids& squeezed, std::span<const Vec3> walls_to);
   void keep_first_touches(const Solids& cut, const SolidStepOptions& options);
   void commit_at_rest();
-  [[nodiscard]] std::vector<SimplexId> places_after(const VertexMotion& walls);
-  void commit_moved(const VertexMotion& walls);
   void report();
 
-  AlignedVector<Vec3> walls_after;             // positions of all vertices of the environment after the move
+  SolidStepOptions planned_options;            // of a joint move
+  std::vector<double> planned_made;            // the share of each solid's way, before walls stop it
+  std::vector<SimplexId> places;               // of vertices, after the move
   std::vector<Vec3> wanted;                    // targets of the caller
   std::vector<Vec3> targets;                   // corrected
   std::vector<Vec3> reached;                   // a share of the way to them

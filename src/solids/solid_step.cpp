@@ -2,10 +2,12 @@
 //
 //  1. start()               targets; all solids have their whole way before them
 //  2. correct_in_rounds()   detect() finds all touches on the way; correct() moves the targets away from these walls
-//  3. cut_each(), cut_all() what still touches goes a share of its way, each solid its own. Walls that run into a solid
-//                           even so stop, and all solids with them. The rounded share is detected again.
-//  4. commit_at_rest(), commit_moved()   the vertices, which are particles, get there
-//  5. report()
+//  3. cut_each()            what still touches goes a share of its way, each solid its own. Walls that run into a solid even
+//                           so stop, and all solids with them: shorten(). The rounded share is detected again.
+//  4. report()
+//  5. commit_at_rest(), after_move()   the vertices, which are particles, get there
+//
+// With moving walls solids are partners of a joint move (joint_move.hpp), which calls the phases.
 //
 // Whole solids are cut, because a part of a straight motion that is proved free is free. To stop vertices one by one
 // would make another motion, without a proof.
@@ -18,7 +20,6 @@
 #include <utility>
 
 #include "base/parallel.hpp"
-#include "complex/simplex.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/predicates.hpp"
 #include "solids/solid_set_impl.hpp"
@@ -27,8 +28,6 @@ namespace dartcast {
 
 namespace {
 
-constexpr double cut_share = 15.0 / 16.0;  // of the way to the first touch: the next step must not start with one
-constexpr double least_share = 0x1p-30;    // of the way: less is none
 constexpr double least_share_among_moving_walls = 0x1p-10;
 constexpr double pressing_share = 2.0;  // of the separation: a contact with a larger gap at the end has no effect
 
@@ -37,25 +36,6 @@ void check(const SolidStepOptions& o, const char* caller) {
   if (!(o.separation >= 0.0) || !std::isfinite(o.separation))
     throw InvalidArgument(
         fmt::format("{}: separation is {}: give a finite length of at least 0", caller, o.separation));
-}
-
-Vec3 on_way(const Vec3& from, const Vec3& to, double share) { return flushed(from + (to - from) * share); }
-
-// The first of these cells' simplices that holds a point, border included.
-SimplexId holding(const CellComplex& complex, std::span<const Cell> cells, std::span<const Vec3> positions,
-                  const Vec3& x) {
-  for (const Cell c : cells) {
-    const CellView cell = complex.map().view(c);
-    const auto& simplices = cell.shape().simplices();
-    for (std::uint16_t s = 0; s < simplices.size(); ++s) {
-      Corners v;
-      for (unsigned i = 0; i < 4; ++i) v[i] = positions[cell.vertex(simplices[s].vertex[i]).value];
-      bool holds = true;
-      for (unsigned f = 0; f < 4 && holds; ++f) holds = orient_facet(v, f, x) != Sign::negative;
-      if (holds) return {c, s};
-    }
-  }
-  return {};
 }
 
 // By solid, then by time. A pair that was found in several rounds counts once, as it was found first.
@@ -222,26 +202,15 @@ void SolidSet::Impl::cut_each(Solids& open, const VertexMotion& walls) {
   open = std::move(squeezed);
 }
 
-// Walls that would run into solids stop, and all solids with them, at one share of their ways as they are cut so far.
-void SolidSet::Impl::cut_all(const Solids& squeezed, std::span<const Vec3> walls_to) {
-  const auto before = environment.complex().positions();
+// The way so far, and where walls stop: at one share of their ways, with all solids.
+bool SolidSet::Impl::shorten(double share, const VertexMotion& walls) {
   const Solids all = all_but_stuck();
-  const std::vector<double> made = last.made;
-  targets = reached;
-  double share = 1.0;
-  for (const std::uint32_t s : squeezed) share = std::min(share, cut_share * progress[s].free_until());
-  for (;; share *= 0.5) {
-    if (share < least_share) share = 0.0;
-    for (const std::uint32_t s : all) go(s, share);
-    for (std::size_t p = 0; p < walls_to.size(); ++p) walls_after[p] = before[p] + (walls_to[p] - before[p]) * share;
-    if (share == 0.0) std::copy(before.begin(), before.end(), walls_after.begin());  // also where the way is not finite
-    if (share == 0.0) break;
-    environment.complex().steiner_weights().compute(walls_after);
-    detect(all, reached, {before, walls_after});
-    if (std::all_of(all.begin(), all.end(), [&](std::uint32_t s) { return progress[s].is_free(); })) break;
-  }
+  for (const std::uint32_t s : all) go(s, share);
   last.walls_made = share;
-  for (const std::uint32_t s : all) last.made[s] = made[s] * share;
+  for (const std::uint32_t s : all) last.made[s] = planned_made[s] * share;
+  if (share == 0.0) return true;
+  detect(all, reached, walls);
+  return std::all_of(all.begin(), all.end(), [&](std::uint32_t s) { return progress[s].is_free(); });
 }
 
 void SolidSet::Impl::commit_at_rest() {
@@ -254,29 +223,20 @@ void SolidSet::Impl::commit_at_rest() {
   positions = reached;
 }
 
-// The simplex of each vertex after the move. It is in one of the cells that the vertex reaches.
-std::vector<SimplexId> SolidSet::Impl::places_after(const VertexMotion& walls) {
+void SolidSet::Impl::before_move(const VertexMotion& walls) {
   constexpr std::size_t grain = 256;
-  std::vector<SimplexId> places(positions.size());
+  places.assign(positions.size(), {});
   parallel_for(positions.size(), grain, environment.threads(), [&](std::size_t begin, std::size_t end) {
     NearWalls near;
     for (std::size_t v = begin; v < end; ++v) {
       if (is_stuck(solid_of(v))) continue;
-      MovingElement point;
-      point.from[0] = positions[v];
-      point.to[0] = reached[v];
-      near.search(environment.complex(), particles[v].cell, point, walls);
-      places[v] = holding(environment.complex(), near.cells_reached(), walls.after, reached[v]);
-      if (!places[v].cell.valid())
-        throw InternalError(fmt::format("solids: no cell holds vertex {} after a move; please report it", v));
+      places[v] = simplex_after(environment.complex(), near, particles[v].cell, positions[v], reached[v], walls);
     }
   });
-  return places;
+  report();
 }
 
-void SolidSet::Impl::commit_moved(const VertexMotion& walls) {
-  const std::vector<SimplexId> places = places_after(walls);
-  environment.move(walls.after.first(environment.complex().point_count()));
+void SolidSet::Impl::after_move() {
   Particles moved;
   for (std::size_t v = 0; v < places.size(); ++v) {
     if (places[v].cell.valid() && !environment.add(moved, places[v], reached[v]))
@@ -328,25 +288,22 @@ void SolidSet::Impl::advance(std::span<const Vec3> given, const SolidStepOptions
   commit_at_rest();
 }
 
-void SolidSet::Impl::move_with(std::span<const Vec3> given, std::span<const Vec3> walls_to,
-                               const SolidStepOptions& options) {
+void SolidSet::Impl::prepare(std::span<const Vec3> given, const SolidStepOptions& options) {
   start(given, options, "move_with");
-  const CellComplex& complex = environment.complex();
-  if (walls_to.size() != complex.point_count())
-    throw InvalidArgument(fmt::format("move_with: {} positions for {} points of the mesh: give one for each",
-                                      walls_to.size(), complex.point_count()));
-  walls_after.assign(complex.positions().begin(), complex.positions().end());
-  std::copy(walls_to.begin(), walls_to.end(), walls_after.begin());
-  complex.steiner_weights().compute(walls_after);
-  const VertexMotion walls = {complex.positions(), walls_after};
+  planned_options = options;
+}
+
+double SolidSet::Impl::plan(const VertexMotion& walls) {
   Solids open = all_but_stuck();
-  correct_in_rounds(open, walls, options);
+  correct_in_rounds(open, walls, planned_options);
   reached = targets;
-  keep_first_touches(open, options);
+  keep_first_touches(open, planned_options);
   cut_each(open, walls);
-  if (!open.empty()) cut_all(open, walls_to);
-  report();
-  commit_moved(walls);
+  targets = reached;
+  planned_made = last.made;
+  double share = 1.0;
+  for (const std::uint32_t s : open) share = std::min(share, cut_share * progress[s].free_until());
+  return share;
 }
 
 }  // namespace dartcast

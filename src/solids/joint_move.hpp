@@ -1,0 +1,59 @@
+// The motion of an environment's walls together with what has edges among them: sets of solids, catheters.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "dartcast/environment.hpp"
+#include "dartcast/solids.hpp"
+#include "dynamics/near_walls.hpp"
+
+namespace dartcast {
+
+/// What moves at the same time as the walls, and stops them where it has no room. The calls come in this order; up to
+/// after_move() nothing that the caller can see changes.
+class MovePartner {
+ public:
+  MovePartner() = default;
+  MovePartner(const MovePartner&) = delete;
+  MovePartner& operator=(const MovePartner&) = delete;
+  virtual ~MovePartner() = default;
+
+  /// Plans a way for the time in which the walls make theirs. Returns the share of both up to which they are free of
+  /// contact, before rounding; 1: the whole way is, and is proved.
+  virtual double plan(const VertexMotion& walls) = 0;
+  /// Shortens the planned way to this share of it, at most 1, for walls that make the same share of theirs. Returns whether
+  /// that way is proved free. With a share of 0 it always is.
+  virtual bool shorten(double share, const VertexMotion& walls) = 0;
+  /// Finds the cells at the end of the way. The environment has not moved yet.
+  virtual void before_move(const VertexMotion& walls) = 0;
+  /// The environment has moved.
+  virtual void after_move() = 0;
+};
+
+/// Moves the environment straight to these positions of all the mesh's points, and its partners with it, as far as all of
+/// them have room. Returns the share of the ways that were made. Throws as Environment::move(), nothing changed.
+double move_together(Environment& environment, std::span<MovePartner* const> partners, std::span<const Vec3> positions);
+
+/// Sets of solids as partners of a joint move.
+struct JointMoves {
+  /// Checks as SolidSet::move_with() does, and throws as it does. The set is a partner of the next joint move.
+  static MovePartner& prepare(SolidSet& solids, std::span<const Vec3> targets, const SolidStepOptions& options);
+  /// The report of the set's last step.
+  static const SolidStep& last_step(const SolidSet& solids);
+};
+
+/// The simplex that holds `to` after the move. It is in one of the cells that a point reaches on its straight way from
+/// `from` in `cell`. Throws InternalError where there is none.
+SimplexId simplex_after(const CellComplex& complex, NearWalls& near, Cell cell, const Vec3& from, const Vec3& to,
+                        const VertexMotion& walls);
+
+/// A share of a straight way, rounded.
+Vec3 on_way(const Vec3& from, const Vec3& to, double share);
+
+/// Of the way to the first touch: the next step must not start with one.
+inline constexpr double cut_share = 15.0 / 16.0;
+/// Of a way: less is none.
+inline constexpr double least_share = 0x1p-30;
+
+}  // namespace dartcast
