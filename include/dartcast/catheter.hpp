@@ -16,13 +16,14 @@
 
 #include "dartcast/audit.hpp"
 #include "dartcast/environment.hpp"
+#include "dartcast/solids.hpp"
 
 namespace dartcast {
 
 /// SI units: metres, radians.
 struct CatheterOptions {
   double length = 0.1;  ///< of the whole catheter, in whole spacings
-  /// Between its points. Choose it smaller than the smallest feature of the vessel: edges do not meet walls.
+  /// Between its points. Without edges choose it smaller than the smallest feature of the vessel.
   double spacing = 1e-3;
   /// Bending stiffness (N m^2), over the resistance to sideways motion of a metre of catheter in one step (N / m^2):
   /// m^4. Bends that are longer than its fourth root outlast a step.
@@ -35,6 +36,9 @@ struct CatheterOptions {
   unsigned rounds = 24;        ///< of solving and walking, in one substep at most; > 0
   /// Largest relative error of a segment's length that a push may leave; below 0.01.
   double tolerance = 0.008;
+  /// Whether the segments between the points meet walls, too. They keep 2^-10 of the spacing from walls, or of the wall's
+  /// longest side where that is shorter.
+  bool edges = true;
 };
 
 /// The motion of the proximal end in one step.
@@ -54,6 +58,7 @@ struct CatheterStep {
   std::uint64_t contacts = 0;  ///< of points with walls, in all rounds
   std::uint32_t at_walls = 0;  ///< points held by a wall at the end
   std::uint32_t held = 0;      ///< points in cells that are not valid now
+  bool stuck = false;          ///< nothing moved: a wall that an edit made is in a segment, or leaves a point no place
 };
 
 /// Axes at a point: right-handed. Along the chain they do not twist, except by the turn of the proximal end.
@@ -63,13 +68,14 @@ struct CatheterFrame {
   Vec3 binormal;  ///< tangent x normal
 };
 
-/// A plane that a point of the chain must stay above: normal . (x - point) >= 0.
+/// A plane that a place on the chain must stay above: normal . (x - point) >= 0.
 struct ChainWall {
-  std::uint32_t index = 0;  ///< of the point
+  std::uint32_t index = 0;  ///< of the point before the place
+  double weight = 0.0;      ///< of the next point, in [0, 1]; 0: the place is the point itself
   Vec3 normal;              ///< unit
   Vec3 point;
-  double pressure = 0.0;   ///< of the point on it, from the last solve; 0: not in contact
-  std::uint32_t idle = 0;  ///< walks since the point met it
+  double pressure = 0.0;   ///< of the place on it, from the last solve; 0: not in contact
+  std::uint32_t idle = 0;  ///< walks since it was met. With edges: substeps in which it neither was met nor pressed
 };
 
 /// The state of a catheter after a step; environment and options are not in it.
@@ -86,17 +92,18 @@ struct CatheterCheckpoint {
 /// Points from the tip (0) to the proximal end, then one at the entry. Each is a particle of the environment, so it is
 /// in the lumen, exactly, at any time. Points that are not inserted yet wait at the entry, which the vessel carries.
 ///
-/// A step, after the environment's move if there is one: first the vessel carries all points along. Then the push and
-/// the turn are made in substeps of at most a quarter of the spacing and a fifth of a radian. In a substep points
-/// follow the chain's own path. Then rounds of solving alternate with walks, in which points slide at walls. A solve
-/// takes bending, lengths, friction and the walls met so far. A substep that leaves a segment off by more than the
-/// tolerance is undone and tried again with half the length, four times; the rest of the push is refused. The first
+/// A step makes the push and the turn in substeps of at most a quarter of the spacing and a fifth of a radian. In a substep
+/// points follow the chain's own path. Then rounds of solving alternate with looks at the straight way of all points and
+/// segments. A solve takes bending, lengths, friction and the walls met so far. The points go when that way is proved
+/// free: so with edges no segment meets a wall at any time. (Without edges, points walk in each round, and slide at walls.) A
+/// substep that leaves a segment off by more than the tolerance, or has no free way, is undone and tried again with half the
+/// length, four times; the rest of the push is refused. The first
 /// spacing beyond the entry is straight; a push is refused, too, where it has no room. Where the vessel's motion leaves
 /// no such solution, lengths come before bends. Twist reaches the tip at once: the chain is infinitely stiff against
 /// it. Results are the same bits for any number of threads.
 class Catheter {
  public:
-  /// Nothing is inserted yet. `environment` outlives the catheter; its owner moves and edits it. Throws
+  /// Nothing is inserted yet. `environment` outlives the catheter; its owner edits it, and moves it by move_with(). Throws
   /// InvalidArgument, which names the option, where one is out of range, the entry is in no free cell, the way from the
   /// entry by the spacing is not free, or the environment is not of space.
   Catheter(Environment& environment, const CatheterOptions& options);
@@ -104,13 +111,22 @@ class Catheter {
   Catheter(const Catheter&) = delete;
   Catheter& operator=(const Catheter&) = delete;
 
-  /// Once after each move of the environment, and any number of times between. Throws InvalidArgument, nothing changed,
-  /// where an input is not finite or too large, or the catheter missed a move or an edit. Where the vessel itself
-  /// leaves no room, a segment may be off without any push: see `worst_segment`. Cost: some 1 us per point and round.
+  /// Any number of times. Throws InvalidArgument, nothing changed, where an input is not finite or too large, or the
+  /// catheter missed a move or an edit. Where the vessel itself leaves no room, a segment may be off without any push: see
+  /// `worst_segment`. Cost: some 1 us per point and round; with edges 3 us.
   CatheterStep step(const CatheterInput& input);
 
+  /// Moves the environment straight to these positions of all the mesh's points. The vessel carries all points along, and
+  /// segments bend away from walls. Where these would run into a segment even so, the environment and the catheter stop at the
+  /// same share of their ways, which is returned. Other particles must then be advanced, as after Environment::move().
+  /// Without edges it is Environment::move(), and the owner may call that in its place. Throws as Environment::move(), and
+  /// InvalidArgument where the catheter missed a move or an edit; nothing is changed then. Cost: some 4 us per segment.
+  double move_with(std::span<const Vec3> positions);
+
   /// To be called after each edit of the environment, as Environment::update_after_edit(). Points without a place move
-  /// to the nearest free one. Where there is none they are held in their blocked cells until these are free again.
+  /// to the nearest free one. Where there is none they are held in their blocked cells until these are free again. With
+  /// edges the catheter is stuck where a wall that the edit made is in a segment: it stays until a later edit frees it, and
+  /// the cells around its points carry it along.
   /// Throws InvalidArgument, nothing changed, where a point's cell was removed and no free cell exists; the catheter
   /// cannot be used after that.
   UpdateReport update_after_edit();
@@ -128,6 +144,9 @@ class Catheter {
   [[nodiscard]] Vec3 entry() const;
   [[nodiscard]] Vec3 direction() const;
 
+  /// Whether any segment meets a wall, in integers, by code that shares nothing with the steps. Without edges, or where the
+  /// catheter is stuck, nothing is checked. Cost: as SolidSet::audit().
+  [[nodiscard]] SolidAudit audit() const;
   /// All points with the waiting ones, then the entry: for audits.
   [[nodiscard]] const Particles& particles() const;
   [[nodiscard]] const CatheterOptions& options() const;
@@ -140,6 +159,7 @@ class Catheter {
   void restore(const CatheterCheckpoint& saved);
 
  private:
+  friend struct CatheterMoves;
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -65,6 +65,7 @@ void bind_records(py::module_& m) {
       .field("friction", &CatheterOptions::friction)
       .field("rounds", &CatheterOptions::rounds)
       .field("tolerance", &CatheterOptions::tolerance)
+      .field("edges", &CatheterOptions::edges)
       .finish();
   Record<CatheterInput>(m, "CatheterInput")
       .field("push", &CatheterInput::push)
@@ -88,6 +89,7 @@ void bind_records(py::module_& m) {
       .finish();
   Record<ChainWall>(m, "ChainWall")
       .field("index", &ChainWall::index)
+      .field("weight", &ChainWall::weight)
       .field("normal", &ChainWall::normal)
       .field("point", &ChainWall::point)
       .field("pressure", &ChainWall::pressure)

@@ -61,10 +61,11 @@ Catheter::Impl::Impl(Environment& environment, const CatheterOptions& options)
   if (environment.advance(first, {&end, 1}).counters.contacts != std::array<std::uint64_t, 3>{})
     throw InvalidArgument("catheter: the way from the entry, by the spacing in its direction, is not free");
   targets_.resize(count_ + 1);
+  ends_.resize(count_ + 1);
   wanted_.resize(count_);
-  start_.resize(count_);
+  start_.resize(count_ + 1);
   bends_.resize(count_);
-  before_.resize(count_);
+  before_.resize(count_ + 1);
   hold();
 }
 
@@ -94,12 +95,23 @@ void Catheter::Impl::check(const CatheterInput& input) const {
     throw InvalidArgument("catheter: the load must not displace a point by more than the catheter's length in a step");
 }
 
-CatheterStep Catheter::Impl::step(const CatheterInput& input) {
-  check(input);
+void Catheter::Impl::check_current(const char* caller) const {
   if (edits_ != environment_.edit_count())
     throw InvalidArgument("catheter: the environment was edited: call update_after_edit() after each edit");
+  environment_.check_advance(particles_, StepOptions{}, caller);
+  if (options_.edges && environment_.awaits_advance(particles_))
+    throw InvalidArgument(
+        "catheter: the environment was moved without its edges: move it by Catheter::move_with(), or set edges to "
+        "false");
+}
+
+CatheterStep Catheter::Impl::step(const CatheterInput& input) {
+  check(input);
+  check_current("catheter");
   CatheterStep result;
-  move_with_vessel(result);
+  result.stuck = is_stuck();
+  if (result.stuck) return result;
+  if (!options_.edges) move_with_vessel(result);
   const double push = std::clamp(input.push, -inserted_, total_length() - inserted_);
   const double asked = std::max(std::abs(push) / (max_push * options_.spacing), std::abs(input.turn) / max_turn);
   const auto pieces = static_cast<std::uint32_t>(std::max(1.0, std::ceil(asked)));
@@ -168,7 +180,7 @@ void Catheter::Impl::move_with_vessel(CatheterStep& result) {
   for (ChainWall& w : moved) w.point += targets_[w.index] - particles_[w.index].position;
   const StepReport report = environment_.advance(particles_, targets_, slide_at_walls);
   walls_ = std::move(moved);
-  turn_with_vessel(corners);
+  turn_with_vessel(holds_.back().corners, corners);
   result.contacts += report.contacts.contacts.size();
   keep_walls(report.contacts);
 }
@@ -184,8 +196,7 @@ Vec3 Catheter::Impl::carried(std::size_t i) const {
 }
 
 // Turns the entry's direction like a line drawn in its simplex.
-void Catheter::Impl::turn_with_vessel(const Corners& now) {
-  const Corners& before = holds_.back().corners;
+void Catheter::Impl::turn_with_vessel(const Corners& before, const Corners& now) {
   std::array<Vec3, 3> edges;
   for (std::size_t k = 0; k < 3; ++k) edges[k] = before[k + 1] - before[0];
   const std::array<Vec3, 3> dual = detail::duals(edges);
@@ -233,6 +244,7 @@ Catheter::Catheter(Environment& environment, const CatheterOptions& options)
     : impl_(std::make_unique<Impl>(environment, options)) {}
 Catheter::~Catheter() = default;
 
+double Catheter::move_with(std::span<const Vec3> positions) { return impl_->move_with(positions); }
 CatheterStep Catheter::step(const CatheterInput& input) { return impl_->step(input); }
 UpdateReport Catheter::update_after_edit() { return impl_->update_after_edit(); }
 std::vector<Vec3> Catheter::points() const { return impl_->points(); }
@@ -243,6 +255,7 @@ double Catheter::total_length() const { return impl_->total_length(); }
 double Catheter::turned() const { return impl_->turned_; }
 Vec3 Catheter::entry() const { return impl_->entry(); }
 Vec3 Catheter::direction() const { return impl_->direction_; }
+SolidAudit Catheter::audit() const { return impl_->audit(); }
 const Particles& Catheter::particles() const { return impl_->particles_; }
 const CatheterOptions& Catheter::options() const { return impl_->options_; }
 StateHash Catheter::state_hash() const { return impl_->state_hash(); }

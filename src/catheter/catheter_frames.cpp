@@ -76,7 +76,8 @@ void Catheter::Impl::restore(const CatheterCheckpoint& saved) {
                     std::isfinite(saved.turned) && is_finite(saved.direction) && is_finite(saved.reference);
   const std::size_t count = count_;
   const bool walls_fit = std::all_of(saved.walls.begin(), saved.walls.end(), [count](const ChainWall& w) {
-    return w.index < count && is_finite(w.normal) && is_finite(w.point) && std::isfinite(w.pressure);
+    return w.index < count && w.weight >= 0.0 && w.weight <= 1.0 && is_finite(w.normal) && is_finite(w.point) &&
+           std::isfinite(w.pressure);
   });
   if (!fits || !walls_fit)
     throw InvalidArgument(
@@ -88,9 +89,13 @@ void Catheter::Impl::restore(const CatheterCheckpoint& saved) {
   direction_ = saved.direction;
   reference_ = saved.reference;
   hold();
+  find_stuck();
 }
 
 UpdateReport Catheter::Impl::update_after_edit() {
+  if (options_.edges && environment_.awaits_advance(particles_))
+    throw InvalidArgument(
+        "catheter: the environment was moved without its edges before the edit: move it by Catheter::move_with()");
   Particles moved;
   UpdateReport report;
   for (const OrphanPolicy orphaned : {OrphanPolicy::relocate, OrphanPolicy::hold}) {
@@ -103,10 +108,12 @@ UpdateReport Catheter::Impl::update_after_edit() {
         "catheter: the edit removed the cell of a point and left no free one: put a new catheter into the environment");
   const ParticleState entry = particles_[count_];
   const bool rode = environment_.awaits_advance(particles_) && !environment_.awaits_advance(moved);
-  if (rode && environment_.map().contains(entry.cell)) turn_with_vessel(environment_.complex().corners(entry.at()));
+  if (rode && environment_.map().contains(entry.cell))
+    turn_with_vessel(holds_.back().corners, environment_.complex().corners(entry.at()));
   particles_ = std::move(moved);
   walls_.clear();
   hold();
+  find_stuck();
   return report;
 }
 

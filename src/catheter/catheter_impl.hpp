@@ -8,10 +8,13 @@
 
 #include "catheter/chain_solver.hpp"
 #include "dartcast/catheter.hpp"
+#include "dynamics/near_walls.hpp"
+#include "solids/element_touches.hpp"
+#include "solids/joint_move.hpp"
 
 namespace dartcast {
 
-struct Catheter::Impl {
+struct Catheter::Impl final : MovePartner {
   // Where a point was in its simplex at the last look.
   struct Hold {
     Corners corners;
@@ -26,7 +29,8 @@ struct Catheter::Impl {
   };
   enum class Bending : std::uint8_t { stiff, limp };
   struct Outcome {
-    double worst = 0.0;
+    double worst = 0.0;  // error of a segment's length at the end; with edges infinite where no way was free
+    double now = 0.0;    // with edges: that of the way looked at last; infinite where it is not free
     std::uint32_t rounds = 0;
     std::uint32_t held = 0;
     std::uint64_t contacts = 0;
@@ -46,9 +50,10 @@ struct Catheter::Impl {
   bool make(const CatheterInput& piece, double share, CatheterStep& result);
   void make_less(const CatheterInput& piece, double share, CatheterStep& result);
   void relax(const Vec3& load, CatheterStep& result);
+  void check_current(const char* caller) const;
   void move_with_vessel(CatheterStep& result);
   [[nodiscard]] Vec3 carried(std::size_t i) const;
-  void turn_with_vessel(const Corners& now);
+  void turn_with_vessel(const Corners& before, const Corners& now);
   void hold();
   void save();
   void take_back();
@@ -61,7 +66,25 @@ struct Catheter::Impl {
   double walk(std::size_t free, Outcome& outcome);
   void keep_walls(const ContactList& contacts);
   [[nodiscard]] double worst_segment() const;
+  [[nodiscard]] double worst_segment(std::span<const Vec3> all) const;
   [[nodiscard]] std::uint32_t points_at_walls() const;
+  // catheter_edges.cpp: with edges.
+  [[nodiscard]] bool is_stuck() const { return stuck_; }
+  [[nodiscard]] std::size_t segments() const;
+  double find_touches(const VertexMotion& walls);
+  void add_touched_walls(std::size_t free);
+  double look_ahead(std::size_t free, Outcome& outcome);
+  bool go_ahead(Outcome& outcome);
+  [[nodiscard]] Corners corners_at(SimplexId s, std::span<const Vec3> positions) const;
+  void carry_along(const VertexMotion& walls);
+  double plan(const VertexMotion& walls) override;
+  double solve_way(const VertexMotion& walls);
+  bool shorten(double share, const VertexMotion& walls) override;
+  void before_move(const VertexMotion& walls) override;
+  void after_move() override;
+  double move_with(std::span<const Vec3> positions);
+  void find_stuck();
+  [[nodiscard]] SolidAudit audit() const;
   // catheter_frames.cpp: its points and frames, checkpoints, edits.
   [[nodiscard]] std::vector<Vec3> points() const;
   [[nodiscard]] std::vector<CatheterFrame> frames() const;
@@ -71,6 +94,11 @@ struct Catheter::Impl {
   void restore(const CatheterCheckpoint& saved);
   UpdateReport update_after_edit();
   [[nodiscard]] Vec3 base_normal() const;
+
+  // Shares of the spacing.
+  static constexpr double reach = 0.5;  // largest displacement of a point in one solve, and range of a wall's plane
+  static constexpr double same_wall = 0.9999;   // cosine between normals of one wall; no exact decision depends on it
+  static constexpr std::uint32_t max_idle = 3;  // walks after which a wall that is not met is forgotten
 
   Environment& environment_;
   CatheterOptions options_;
@@ -90,6 +118,15 @@ struct Catheter::Impl {
   std::vector<ChainWall> walls_;
   ChainSolver solver_;
   Saved saved_;
+  // With edges.
+  bool stuck_ = false;
+  std::size_t inserted_before_ = 0;  // points, before the substep
+  std::vector<Vec3> ends_;           // of the way that is looked at, from start_
+  std::vector<Vec3> planned_;        // of the way that will be made
+  std::vector<SimplexId> places_;
+  std::vector<ElementTouch> touches_;
+  TouchFinder finder_;
+  NearWalls near_;
 };
 
 }  // namespace dartcast

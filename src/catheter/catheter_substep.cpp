@@ -1,6 +1,7 @@
 // One substep of a catheter: points follow its own path, then rounds of solving and walking.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/elementary.hpp"
 #include "catheter/catheter_impl.hpp"
@@ -12,15 +13,8 @@ namespace dartcast {
 
 namespace {
 
-// Shares of the spacing.
-constexpr double reach = 0.5;           // largest displacement of a point in one solve, and range of a wall's plane
-constexpr double settled_share = 0.03;  // points that move less have arrived
-// Share of the tolerance: smaller errors of lengths end the rounds.
-constexpr double length_share = 0.05;
-
-constexpr double same_wall =
-    0.9999;  // cosine between normals of one wall; an estimate that no exact decision depends on
-constexpr std::uint32_t max_idle = 3;  // walks after which a wall that is not met is forgotten
+constexpr double settled_share = 0.03;  // of the spacing: points that move less have arrived
+constexpr double length_share = 0.05;   // of the tolerance: smaller errors of lengths end the rounds
 
 }  // namespace
 
@@ -31,23 +25,28 @@ AfterContact Catheter::Impl::slide_at_walls(const Contact& contact, std::span<co
 
 Catheter::Impl::Outcome Catheter::Impl::substep(const CatheterInput& piece, double share, Bending bending) {
   const double h = options_.spacing;
+  inserted_before_ = inserted_points();
   inserted_ = std::clamp(inserted_ + piece.push, 0.0, total_length());
   turned_ += piece.turn;
   const std::size_t free = free_points();
-  for (std::size_t i = 0; i < count_; ++i) start_[i] = particles_[i].position;
+  for (std::size_t i = 0; i <= count_; ++i) start_[i] = particles_[i].position;
+  before_ = start_;
   follow_path(piece.push, free);
   for (std::size_t i = 0; i < free; ++i) wanted_[i] = targets_[i] + piece.load;
   const double stiffness = bending == Bending::stiff ? options_.stiffness * share / (h * h * h * h) : 0.0;
   const ChainWeights weights = {h, stiffness, options_.friction, reach * h};
   Outcome outcome;
+  if (options_.edges) outcome.worst = std::numeric_limits<double>::infinity();
   while (outcome.rounds < options_.rounds) {
     ++outcome.rounds;
     bend_tip(free);
     solver_.solve({{targets_.data(), count_}, free, wanted_, start_, bends_}, weights, walls_);
-    const double moved = walk(free, outcome);
-    outcome.worst = worst_segment();
-    if (outcome.worst <= length_share * options_.tolerance && moved <= settled_share * h) break;
+    const double moved = options_.edges ? look_ahead(free, outcome) : walk(free, outcome);
+    if (!options_.edges) outcome.worst = outcome.now = worst_segment();
+    if (outcome.now <= length_share * options_.tolerance && moved <= settled_share * h) break;
   }
+  const bool goes = options_.edges && std::isfinite(outcome.worst);
+  if (goes && !go_ahead(outcome)) outcome.worst = std::numeric_limits<double>::infinity();
   return outcome;
 }
 
@@ -109,7 +108,7 @@ void Catheter::Impl::keep_walls(const ContactList& contacts) {
         return w.index == c.particle && dot(w.normal, hit.normal) > same_wall;
       });
       const double pressure = same == walls_.end() ? 0.0 : same->pressure;
-      const ChainWall met = {c.particle, hit.normal, c.point, pressure, 0};
+      const ChainWall met = {c.particle, 0.0, hit.normal, c.point, pressure, 0};
       if (same == walls_.end())
         walls_.push_back(met);
       else
@@ -122,14 +121,21 @@ void Catheter::Impl::keep_walls(const ContactList& contacts) {
 }
 
 double Catheter::Impl::worst_segment() const {
+  std::vector<Vec3> all;
+  for (std::size_t i = 0; i <= count_; ++i) all.push_back(particles_[i].position);
+  return worst_segment(all);
+}
+
+// With the entry as the last of all points.
+double Catheter::Impl::worst_segment(std::span<const Vec3> all) const {
   const std::size_t inserted = inserted_points();
   const double h = options_.spacing;
   double worst = 0.0;
   for (std::size_t i = 0; i < inserted; ++i) {
     const bool last = i + 1 == inserted;
-    const Vec3 next = last ? entry() : particles_[i + 1].position;
+    const Vec3& next = last ? all[count_] : all[i + 1];
     const double wanted = last ? inserted_ - static_cast<double>(i) * h : h;
-    worst = std::max(worst, std::abs(norm(particles_[i].position - next) - wanted) / h);
+    worst = std::max(worst, std::abs(norm(all[i] - next) - wanted) / h);
   }
   return worst;
 }

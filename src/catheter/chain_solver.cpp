@@ -25,6 +25,9 @@ double component(const Vec3& v, std::size_t i) { return i == 0 ? v.x : i == 1 ? 
 
 Vec3 across(const Vec3& v, const Vec3& n) { return v - n * dot(v, n); }
 
+// The number of points that a wall acts on.
+std::size_t points_of(const ChainWall& wall) { return wall.weight > 0.0 ? 2 : 1; }
+
 }  // namespace
 
 // Adds to the 3 x 3 block of points i and j <= i.
@@ -76,14 +79,29 @@ void ChainSolver::add_springs(const Chain& chain, const ChainWeights& weights) {
 }
 
 void ChainSolver::add_friction(const ChainWall& wall, const Chain& chain, const ChainWeights& weights) {
-  const Vec3 slip = across(chain.points[wall.index] - chain.start[wall.index], wall.normal);
+  const Vec3 slip = across(place_on(wall, chain.points) - place_on(wall, chain.start), wall.normal);
   // Limited to hardness, so that the system stays well conditioned.
   const double w =
       std::min(weights.friction * wall.pressure / std::max(norm(slip), creep * weights.spacing), hardness(weights));
   if (w == 0.0) return;
-  add_right(wall.index, slip * -w);
   const Vec3& n = wall.normal;
-  add_block(wall.index, wall.index, {across({w, 0.0, 0.0}, n), across({0.0, w, 0.0}, n), across({0.0, 0.0, w}, n)});
+  const std::array<double, 2> factors = {1.0 - wall.weight, wall.weight};
+  for (std::size_t k = 0; k < points_of(wall) && wall.index + k < chain.free; ++k) {
+    add_right(wall.index + k, slip * (-w * factors[k]));
+    for (std::size_t l = 0; l <= k; ++l) {
+      const double c = w * factors[k] * factors[l];
+      add_block(wall.index + k, wall.index + l,
+                {across({c, 0.0, 0.0}, n), across({0.0, c, 0.0}, n), across({0.0, 0.0, c}, n)});
+    }
+  }
+}
+
+// Keeps the place on the chain in the wall's plane.
+void ChainSolver::add_wall(const ChainWall& wall, const Chain& chain, const ChainWeights& weights) {
+  const std::array<double, 2> factors = {1.0 - wall.weight, wall.weight};
+  const double gap = dot(wall.normal, place_on(wall, chain.points) - wall.point);
+  add_spring(wall.index, std::span(factors).first(points_of(wall)), chain.free, hardness(weights), wall.normal * gap,
+             wall.normal);
 }
 
 // Cholesky's factors in place, then the solution in right_. Entries to the left of the first column are 0 in the
@@ -117,13 +135,21 @@ void ChainSolver::factor_and_solve() {
 
 Vec3 ChainSolver::displacement(std::size_t i) const { return {right_[3 * i], right_[3 * i + 1], right_[3 * i + 2]}; }
 
+// Of the place on the chain that a wall is for. Points from `free` on do not move.
+Vec3 ChainSolver::displacement_at(const ChainWall& wall, std::size_t free) const {
+  const Vec3 first = displacement(wall.index);
+  if (wall.weight == 0.0) return first;
+  const Vec3 next = wall.index + 1 < free ? displacement(wall.index + 1) : Vec3{};
+  return first * (1.0 - wall.weight) + next * wall.weight;
+}
+
 // Adds walls that points would pass to those that press, and removes walls that would pull points back. Returns
 // whether any changed.
 bool ChainSolver::change_walls(const Chain& chain, const ChainWeights& weights, std::span<ChainWall> walls) {
   bool changed = false;
   for (std::size_t k = 0; k < walls.size(); ++k) {
     ChainWall& wall = walls[k];
-    const double gap = dot(wall.normal, chain.points[wall.index] + displacement(wall.index) - wall.point);
+    const double gap = dot(wall.normal, place_on(wall, chain.points) + displacement_at(wall, chain.free) - wall.point);
     const bool press = pressing_[k] != 0 ? gap < 0.0 : gap < -gap_share * weights.spacing;
     changed = changed || press != (pressing_[k] != 0);
     pressing_[k] = press ? 1 : 0;
@@ -133,7 +159,6 @@ bool ChainSolver::change_walls(const Chain& chain, const ChainWeights& weights, 
 }
 
 void ChainSolver::solve(const Chain& chain, const ChainWeights& weights, std::span<ChainWall> walls) {
-  static constexpr std::array<double, 1> one = {1.0};
   if (chain.free == 0) return;
   matrix_.assign(3 * chain.free, {});
   right_.assign(3 * chain.free, 0.0);
@@ -151,9 +176,7 @@ void ChainSolver::solve(const Chain& chain, const ChainWeights& weights, std::sp
       right_ = springs_right_;
     }
     for (std::size_t k = 0; k < walls.size(); ++k) {
-      const ChainWall& wall = walls[k];
-      const double gap = dot(wall.normal, chain.points[wall.index] - wall.point);
-      if (pressing_[k] != 0) add_spring(wall.index, one, chain.free, hardness(weights), wall.normal * gap, wall.normal);
+      if (pressing_[k] != 0) add_wall(walls[k], chain, weights);
     }
     factor_and_solve();
     if (!change_walls(chain, weights, walls)) break;

@@ -19,6 +19,12 @@ struct ChainWeights {
   double reach = 0.0;     ///< largest displacement of a point in one solve
 };
 
+/// The place on the chain that a wall is for.
+inline Vec3 place_on(const ChainWall& wall, std::span<const Vec3> points) {
+  if (wall.weight == 0.0) return points[wall.index];
+  return points[wall.index] * (1.0 - wall.weight) + points[wall.index + 1] * wall.weight;
+}
+
 /// Minimizes an energy. With x the points and r = x[i - 1] - 2 x[i] + x[i + 1] - bends[i] it is
 ///
 ///   1/2 sum |x - wanted|^2 + 1/2 bending sum |r|^2,
@@ -32,11 +38,11 @@ class ChainSolver {
     std::span<Vec3> points;  ///< in: where they are. Out: the targets of the free ones.
     std::size_t free = 0;
     std::span<const Vec3> wanted;  ///< per free point
-    std::span<const Vec3> start;   ///< per free point
+    std::span<const Vec3> start;   ///< per free point, and per point that a wall is for
     std::span<const Vec3> bends;   ///< second difference at rest, per point
   };
 
-  /// Moves the free points, and sets the walls' pressures. Walls are of free points. Cost: linear.
+  /// Moves the free points, and sets the walls' pressures. Walls are of free points, or of segments that begin at one. Cost: linear.
   void solve(const Chain& chain, const ChainWeights& weights, std::span<ChainWall> walls);
 
  private:
@@ -48,7 +54,9 @@ class ChainSolver {
                   const Vec3& offset, const Vec3& direction);
   void add_springs(const Chain& chain, const ChainWeights& weights);
   void add_friction(const ChainWall& wall, const Chain& chain, const ChainWeights& weights);
+  void add_wall(const ChainWall& wall, const Chain& chain, const ChainWeights& weights);
   [[nodiscard]] Vec3 displacement(std::size_t i) const;
+  [[nodiscard]] Vec3 displacement_at(const ChainWall& wall, std::size_t free) const;
   bool change_walls(const Chain& chain, const ChainWeights& weights, std::span<ChainWall> walls);
   void factor_and_solve();
 

@@ -20,7 +20,7 @@ namespace dartcast {
 
 namespace {
 
-constexpr std::uint64_t magic = 0x34706b6374726164U;  // "dartckp4" on a machine of this byte order
+constexpr std::uint64_t magic = 0x35706b6374726164U;  // "dartckp5" on a machine of this byte order
 
 template <class T>
 std::string_view bytes_of(const std::vector<T>& values) {
@@ -310,7 +310,7 @@ void later_fields(Archive& a, SimulationState& s) {
       a.value(w.index);
       fields(a, w.normal);
       fields(a, w.point);
-      values(a, w.pressure, w.idle);
+      values(a, w.weight, w.pressure, w.idle);
     });
   }
   fields(a, s.statistics);

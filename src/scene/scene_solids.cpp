@@ -137,6 +137,7 @@ CatheterScene read_catheter(TomlTable& t, std::size_t number) {
   t.get("tip_curvature", o.tip_curvature, Range::not_negative);
   t.get("friction", o.friction, Range::not_negative);
   t.get("rounds", o.rounds, 1U, 10000U);
+  t.get("edges", o.edges);
   t.get("camera", scene.camera, Range::not_negative);
   for (TomlTable& move : t.tables("moves"))
     scene.moves.push_back(catheter_move(move, scene.moves.empty() ? 0.0 : scene.moves.back().until));

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catheter/catheter_moves.hpp"
 #include "dartcast/error.hpp"
 #include "simulation/simulation_state.hpp"
 #include "simulation/with_name.hpp"
@@ -30,6 +31,14 @@ void CathetersComponent::add(const CatheterScene& scene) {
   scenes_.push_back(scene);
   last_.emplace_back();
   totals_.emplace_back();
+}
+
+std::vector<MovePartner*> CathetersComponent::partners() {
+  std::vector<MovePartner*> all;
+  for (Catheter& c : catheters_) {
+    if (c.options().edges) all.push_back(&CatheterMoves::prepare(c));
+  }
+  return all;
 }
 
 void CathetersComponent::step(double begin) {
@@ -62,8 +71,11 @@ void CathetersComponent::restore(const SimulationState& state) {
 
 Audit CathetersComponent::audit() const {
   Audit all;
-  for (const Catheter& c : catheters_)
+  for (const Catheter& c : catheters_) {
     all += dartcast::audit(environment_.complex(), c.particles(), environment_.threads());
+    const SolidAudit segments = c.audit();
+    all += {segments.checked, segments.failed, segments.first};
+  }
   return all;
 }
 

@@ -9,6 +9,7 @@
 #include "dartcast/scene.hpp"
 #include "dartcast/simulation.hpp"
 #include "simulation/component.hpp"
+#include "solids/joint_move.hpp"
 
 namespace dartcast {
 
@@ -19,6 +20,9 @@ class CathetersComponent final : public SimulationComponent {
 
   /// Throws Error that names the catheter where its entry is not in the lumen.
   void add(const CatheterScene& scene);
+
+  /// Those with edges, each for one joint move.
+  [[nodiscard]] std::vector<MovePartner*> partners();
 
   void step(double begin) override;
   void update_after_edit(const ComplexEditReport& edit, OrphanPolicy orphaned) override;

@@ -159,14 +159,14 @@ void Simulation::add(const BodyScene& body) {
   introduce(parts_->particles, parts_->bodies);
 }
 
-void Simulation::add(const CatheterScene& catheter) { parts_->catheters.add(catheter); }
+void Simulation::add(const CatheterScene& catheter) {
+  parts_->catheters.add(catheter);
+  if (catheter.options.edges) parts_->move_walls_jointly();
+}
 
-// From the first solid on, solids and walls move together.
 void Simulation::add(const SolidScene& solid) {
   parts_->solids.add(solid);
-  parts_->particles.set_mover([parts = parts_.get()](std::span<const Vec3> positions) {
-    parts->solids.move_with(parts->particles.time(), positions);
-  });
+  parts_->move_walls_jointly();
 }
 
 const SimulationOptions& Simulation::options() const { return parts_->particles.options(); }

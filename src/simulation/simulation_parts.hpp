@@ -41,6 +41,13 @@ struct Simulation::Parts {
   bool replaying = false;  // earlier edits: all but the particles are restored afterwards
   double seconds_solids = 0.0;
 
+  /// From now on walls move together with the solids and catheters that stop them.
+  void move_walls_jointly() {
+    particles.set_mover([this](std::span<const Vec3> positions) {
+      solids.move_with(particles.time(), positions, catheters.partners());
+    });
+  }
+
   /// The clock of a component's steps. Particles have clocks of their own.
   [[nodiscard]] double& clock_of(const SimulationComponent* component) {
     if (component == &particles) return ignored;

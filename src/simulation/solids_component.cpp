@@ -94,10 +94,12 @@ void SolidsComponent::follow(const SolidStep& step) {
   }
 }
 
-void SolidsComponent::move_with(double begin, std::span<const Vec3> positions) {
-  follow(solids_->move_with(targets(begin), positions, {.rounds = 0}));
+void SolidsComponent::move_with(double begin, std::span<const Vec3> positions, std::vector<MovePartner*> partners) {
+  if (solids_) partners.push_back(&JointMoves::prepare(*solids_, targets(begin), {.rounds = 0}));
+  walls_before_ = std::exchange(walls_now_, move_together(environment_, partners, positions));
+  if (!solids_) return;
+  follow(JointMoves::last_step(*solids_));
   moved_ = true;
-  walls_before_ = std::exchange(walls_now_, last_.walls_made);
 }
 
 void SolidsComponent::step(double begin) {
@@ -105,15 +107,13 @@ void SolidsComponent::step(double begin) {
 }
 
 void SolidsComponent::update_after_edit(const ComplexEditReport& /*edit*/, OrphanPolicy /*orphaned*/) {
-  if (!solids_) return;
-  solids_->update_after_edit();
+  if (solids_) solids_->update_after_edit();
   const bool known = !places_at_edits_.empty() && places_at_edits_.back().steps == particles_.steps();
   if (walls_were_stopped() && !known) places_at_edits_.push_back(particles_.vertex_places());
 }
 
 void SolidsComponent::save(SimulationState& state) const {
-  if (!solids_) return;
-  state.solids.set = solids_->checkpoint();
+  if (solids_) state.solids.set = solids_->checkpoint();
   for (const Tool& tool : tools_) state.solids.tools.push_back({tool.pose, tool.wanted, tool.contacts, tool.stopped});
   state.solids.walls_before = walls_before_;
   state.solids.walls_now = walls_now_;
@@ -126,8 +126,7 @@ void SolidsComponent::restore(const SimulationState& state) {
   if (saved.tools.size() != tools_.size())
     throw InvalidArgument(fmt::format("solids: the checkpoint has {}, the simulation has {}: add the same solids first",
                                       saved.tools.size(), tools_.size()));
-  if (!solids_) return;
-  solids_->restore(saved.set);
+  if (solids_) solids_->restore(saved.set);
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     tools_[i].pose = saved.tools[i].pose;
     tools_[i].wanted = saved.tools[i].wanted;

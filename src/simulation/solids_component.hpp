@@ -13,11 +13,12 @@
 #include "simulation/component.hpp"
 #include "simulation/particle_system.hpp"
 #include "simulation/rigid_pose.hpp"
+#include "solids/joint_move.hpp"
 
 namespace dartcast {
 
-/// The tools of a simulation. Where the vertices of the environment move, solids and walls make their step together: then
-/// the particles' step calls move_with() in place of Environment::move().
+/// The tools of a simulation. Where the vertices of the environment move, solids and walls make their step together, with
+/// all else that stops walls: then the particles' step calls move_with() in place of Environment::move().
 class SolidsComponent final : public SimulationComponent {
  public:
   SolidsComponent(Environment& environment, const ParticleSystem& particles)
@@ -25,8 +26,9 @@ class SolidsComponent final : public SimulationComponent {
 
   /// Throws Error that names the solid: its shape is a file or has a defect, or its place is refused.
   void add(const SolidScene& scene);
-  /// Moves the environment to these positions, as far as solids let it, and the solids from the time `begin` on.
-  void move_with(double begin, std::span<const Vec3> positions);
+  /// Moves the environment to these positions, as far as the solids and these partners let it, and all of these with it: the
+  /// solids from the time `begin` on.
+  void move_with(double begin, std::span<const Vec3> positions, std::vector<MovePartner*> partners);
 
   void step(double begin) override;
   void update_after_edit(const ComplexEditReport& edit, OrphanPolicy orphaned) override;

@@ -63,10 +63,13 @@ std::optional<double> TouchFinder::find(const CellComplex& complex, Cell cell, c
   return first_flat_time(complex, cells_reached(), walls);
 }
 
-void TouchFinder::ask(PairKind kind, const MovingPair& pair, const ElementTouch& touch,
+// Whether the pair touches.
+bool TouchFinder::ask(PairKind kind, const MovingPair& pair, const ElementTouch& touch,
                       std::vector<ElementTouch>& touches) {
   ++pairs_;
-  if (const auto time = detail::first_touch(pair, kind)) touches.emplace_back(touch).time = *time;
+  const auto time = detail::first_touch(pair, kind);
+  if (time) touches.emplace_back(touch).time = *time;
+  return time.has_value();
 }
 
 void TouchFinder::ask_corners(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches) {
@@ -91,12 +94,15 @@ void TouchFinder::list_parts(unsigned size) {
     for (std::uint8_t k = 0; k < 3; ++k) {
       const std::uint32_t one = walls_[w].vertex[k].value;
       const std::uint32_t other = walls_[w].vertex[(k + size - 1) % 3].value;
-      parts_.push_back({std::min(one, other), std::max(one, other), w, k});
+      parts_.push_back({std::min(one, other), std::max(one, other), w, k, w});
     }
   }
   const auto key = [](const WallPart& p) { return std::tie(p.low, p.high, p.wall, p.corner); };
   std::sort(parts_.begin(), parts_.end(), [&](const WallPart& a, const WallPart& b) { return key(a) < key(b); });
   const auto same = [](const WallPart& a, const WallPart& b) { return a.low == b.low && a.high == b.high; };
+  for (std::size_t i = 0; i + 1 < parts_.size(); ++i) {
+    if (same(parts_[i], parts_[i + 1])) parts_[i].beside = parts_[i + 1].wall;
+  }
   parts_.erase(std::unique(parts_.begin(), parts_.end(), same), parts_.end());
 }
 
@@ -113,7 +119,9 @@ void TouchFinder::ask_sides(const SolidElement& e, const SolidMotion& motion, st
       const auto l = static_cast<std::uint8_t>((k + 1) % 3);
       const MovingPair pair = {{motion.from[a], motion.from[b], flushed(w.corners.from[k]), flushed(w.corners.from[l])},
                                {motion.to[a], motion.to[b], flushed(w.corners.to[k]), flushed(w.corners.to[l])}};
-      ask(PairKind::edge_edge, pair, {0.0, SolidContactKind::edge_edge, 2, 2, {a, b}, {k, l}, w}, touches);
+      if (!ask(PairKind::edge_edge, pair, {0.0, SolidContactKind::edge_edge, 2, 2, {a, b}, {k, l}, w}, touches))
+        continue;
+      if (p.beside != p.wall) touches.back().beside = walls_[p.beside].corners;
     }
   }
 }

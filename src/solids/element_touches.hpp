@@ -30,6 +30,7 @@ struct ElementTouch {
   std::array<std::uint32_t, 3> vertices{};
   std::array<std::uint8_t, 3> corners{};  ///< of the wall
   NearWall wall;
+  std::optional<MovingTriangle> beside = {};  ///< of an edge-edge touch: the other wall triangle at the edge
 };
 
 /// Memory of the search, for one thread at a time. After a few elements it allocates no more.
@@ -53,9 +54,10 @@ class TouchFinder {
     std::uint32_t high;
     std::uint32_t wall;
     std::uint8_t corner;
+    std::uint32_t beside;  // the next wall that has it; the same where there is none
   };
 
-  void ask(detail::PairKind kind, const detail::MovingPair& pair, const ElementTouch& touch,
+  bool ask(detail::PairKind kind, const detail::MovingPair& pair, const ElementTouch& touch,
            std::vector<ElementTouch>& touches);
   void ask_corners(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches);
   void ask_sides(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches);

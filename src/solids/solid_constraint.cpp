@@ -76,6 +76,36 @@ Vec3 normal_at(const ElementTouch& touch, const Points& solid, const Points& wal
   return norm(n) > parallel_sine ? unit_or_zero(n) : Vec3{};
 }
 
+Vec3 free_side(const MovingTriangle& t, double time) {
+  const auto corner = [&](std::size_t i) { return between(t.from[i], t.to[i], time); };
+  return unit_or_zero(cross(corner(2) - corner(0), corner(1) - corner(0)));
+}
+
+// The height of a wall triangle over the plane of another with an edge in common: its third corner's.
+double height_over(const Vec3& normal, const Vec3& edge_point, const MovingTriangle& t, double time) {
+  double height = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double h = dot(normal, between(t.from[i], t.to[i], time) - edge_point);
+    if (std::abs(h) > std::abs(height)) height = h;
+  }
+  return height;
+}
+
+// Turns the normal of an edge-edge touch to be between those of the two wall triangles at the edge. Where it is not, as at
+// any edge that is not convex, the nearer of these takes its place. (Else a point that slides over the edges of a smooth
+// wall would catch on each.)
+void put_between_faces(SolidConstraint& c) {
+  const ElementTouch& touch = c.touch;
+  const Vec3 one = free_side(touch.wall.corners, touch.time);
+  const Vec3 other = free_side(*touch.beside, touch.time);
+  c.is_exit = dot(c.normal, one) < 0.0 && dot(c.normal, other) < 0.0;
+  const Vec3 middle = unit_or_zero(one + other);
+  if (c.is_exit || middle == Vec3{}) return;
+  const bool convex = height_over(one, wall_points(touch, touch.time)[0], *touch.beside, touch.time) < 0.0;
+  const bool is_between = convex && dot(c.normal, middle) >= dot(one, middle);
+  if (!is_between) c.normal = dot(c.normal, one) >= dot(c.normal, other) ? one : other;
+}
+
 Vec3 place_in(const SolidConstraint& c, std::span<const Vec3> positions) {
   Vec3 place;
   for (unsigned i = 0; i < c.touch.count; ++i) place += positions[c.touch.vertices[i]] * c.weights[i];
@@ -111,6 +141,9 @@ SolidConstraint constraint_of(const ElementTouch& touch, const SolidMotion& moti
   const double side = dot(c.normal, apart);
   if (side == 0.0) c.normal = unit_or_zero(apart);
   if (side < 0.0) c.normal = -c.normal;
+  if (touch.kind == SolidContactKind::vertex_face)
+    c.is_exit = dot(c.normal, free_side(touch.wall.corners, touch.time)) < 0.0;
+  if (touch.beside && c.normal != Vec3{}) put_between_faces(c);
   c.wall_point = weighted(c.wall_weights, wall_points(touch, 1.0));
   const double side_of_wall = longest_side(touch.wall.corners.from);
   c.separation = separation > 0.0

@@ -154,8 +154,10 @@ void SolidSet::Impl::correct_in_rounds(Solids& open, const VertexMotion& walls, 
 void SolidSet::Impl::correct(std::uint32_t solid, const SolidStepOptions& options) {
   Progress& p = progress[solid];
   const SolidMotion motion = {positions, targets};
-  for (const ElementTouch& touch : p.touches)
-    p.constraints.push_back(constraint_of(touch, motion, options.separation, longest[solid]));
+  for (const ElementTouch& touch : p.touches) {
+    const SolidConstraint c = constraint_of(touch, motion, options.separation, longest[solid]);
+    if (!c.is_exit) p.constraints.push_back(c);
+  }
   for (unsigned i = 0; i < options.iterations; ++i) {
     for (SolidConstraint& c : p.constraints) satisfy(c, targets, inverse_masses);
   }

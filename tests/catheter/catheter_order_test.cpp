@@ -1,4 +1,4 @@
-// A catheter among moves and edits in any order: it follows both, and is never left behind.
+// A catheter among moves and edits in any order: it follows both, and refuses to be left behind.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,6 +7,7 @@
 #include "dartcast/audit.hpp"
 #include "dartcast/catheter.hpp"
 #include "dartcast/complex_edit.hpp"
+#include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/map_edits.hpp"
 #include "support/meshes.hpp"
@@ -33,7 +34,7 @@ struct Inserted {
     std::vector<Vec3> points(environment.positions().begin(), environment.positions().end());
     for (Vec3& x : points)
       x = {x.x * std::cos(angle) - x.y * std::sin(angle), x.x * std::sin(angle) + x.y * std::cos(angle), x.z};
-    environment.move(points);
+    catheter.move_with(points);
   }
 
   void split_an_edge_at(const Vec3& place) {
@@ -66,8 +67,9 @@ TEST(CatheterOrder, AnEditThenAMove) {
   in_turn.catheter.update_after_edit();
   in_turn.turn(0.1);
   late.split_an_edge_at({1.5, 1.5, 1.5});
-  late.turn(0.1);
+  EXPECT_THROW(late.turn(0.1), InvalidArgument);
   late.catheter.update_after_edit();
+  late.turn(0.1);
   in_turn.catheter.step({});
   late.catheter.step({});
   EXPECT_EQ(in_turn.catheter.state_hash(), late.catheter.state_hash());

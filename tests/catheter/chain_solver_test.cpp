@@ -30,10 +30,8 @@ Case random_case(Random& random, std::size_t free) {
     c.points.push_back(Vec3{0, 0, -static_cast<double>(i)} + random_vector(random, 0.2));
     c.bends.push_back(random_vector(random, 0.1));
   }
-  for (std::size_t i = 0; i < free; ++i) {
-    c.wanted.push_back(c.points[i] + random_vector(random, 0.2));
-    c.start.push_back(c.points[i] + random_vector(random, 0.2));
-  }
+  for (std::size_t i = 0; i < free; ++i) c.wanted.push_back(c.points[i] + random_vector(random, 0.2));
+  for (const Vec3& x : c.points) c.start.push_back(x + random_vector(random, 0.2));
   return c;
 }
 
@@ -135,21 +133,25 @@ TEST(ChainSolver, FindsTheWallsThatPress) {
     std::vector<ChainWall> none;
     const std::vector<Vec3> open = solved(c, none);
     std::vector<ChainWall> walls;
-    for (std::uint32_t i = 0; i < 12; i += 5) {
-      const Vec3 moved = open[i] - c.points[i];
+    for (std::uint32_t i = 0; i < 12; i += random.below(2) == 0 ? 5 : 11) {  // 11: a segment to a point that is not free
+      const double weight = random.below(2) == 0 ? 0.0 : random.uniform();
+      const Vec3 from = c.points[i] * (1.0 - weight) + c.points[i + 1] * weight;
+      const Vec3 moved = open[i] * (1.0 - weight) + open[i + 1] * weight - from;
       // Halfway on its way, or far on the other side of it.
       const double side = random.below(2) == 0 ? -1.0 : 1.0;
       const Vec3 n = moved * (side / norm(moved));
-      walls.push_back({i, n, side < 0 ? c.points[i] + moved * 0.5 : c.points[i] - n, 0.0, 0});
+      walls.push_back({i, weight, n, side < 0 ? from + moved * 0.5 : from - n, 0.0, 0});
     }
     const std::vector<Vec3> found = solved(c, walls);
     Dense d = dense(c, hardness_of(c));
     for (const ChainWall& w : walls) {
-      const double gap = dot(w.normal, found[w.index] - w.point);
+      const double gap = dot(w.normal, place_on(w, found) - w.point);
       EXPECT_GE(gap, -0.02);
       EXPECT_NEAR(w.pressure, std::max(0.0, -gap * hardness_of(c)), 1e-6 * hardness_of(c));
       (w.pressure > 0.0 ? pressing : idle) += 1;
-      if (w.pressure > 0.0) d.add({{w.index, w.normal}}, dot(w.normal, c.points[w.index] - w.point), hardness_of(c));
+      if (w.pressure > 0.0)
+        d.add({{w.index, w.normal * (1.0 - w.weight)}, {w.index + 1, w.normal * w.weight}},
+              dot(w.normal, place_on(w, c.points) - w.point), hardness_of(c));
     }
     expect_same(c, found, d.solved());
   }
@@ -167,7 +169,7 @@ TEST(ChainSolver, FrictionHoldsBack) {
     c.wanted = {{1.0, along, -0.5}};
     c.bends.resize(3);
     c.weights = {1.0, 0.0, friction, 1e9};
-    std::vector<ChainWall> walls = {{0, {0, 0, 1}, {1.0, 0, 0}, 0.0, 0}};
+    std::vector<ChainWall> walls = {{0, 0.0, {0, 0, 1}, {1.0, 0, 0}, 0.0, 0}};
     for (int i = 0; i < 200; ++i) {
       const std::vector<Vec3> points = solved(c, walls);
       c.points = points;

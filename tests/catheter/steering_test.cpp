@@ -37,6 +37,7 @@ struct Insertion {
   double worst_segment = 0.0;
   double worst_length = 0.0;
   double refused = 0.0;
+  double least_share = 1.0;  // of the walls' way, that the catheter left them
   std::uint64_t audited = 0;
   std::uint64_t failed = 0;
 
@@ -46,7 +47,7 @@ struct Insertion {
   }
 
   void step(double forward, double turn, bool audited_too = true) {
-    vessel.move_to(dt * ++steps);
+    least_share = std::min(least_share, vessel.move_to(dt * ++steps, catheter));
     const CatheterStep s = catheter.step({forward, turn});
     worst_segment = std::max(worst_segment, s.worst_segment);
     if (catheter.inserted() > 0.0)
@@ -55,7 +56,7 @@ struct Insertion {
     if (!audited_too) return;
     const Audit a = audit(vessel.environment.complex(), catheter.particles());
     audited += a.checked;
-    failed += a.failed;
+    failed += a.failed + catheter.audit().failed;
   }
 
   void insert(double length, double turn, bool audited_too = true) {
@@ -94,6 +95,7 @@ TEST(Steering, IntoEitherBranch) {
     EXPECT_LE(run.worst_segment, 0.01);
     EXPECT_LE(run.worst_length, 0.01);
     EXPECT_LE(run.refused, 1e-9);
+    EXPECT_EQ(run.least_share, 1.0);
     RecordProperty(side == 0 ? "left" : "right", std::to_string(run.worst_segment) + " " + std::to_string(tip.path));
   }
 }
@@ -122,15 +124,14 @@ TEST(Steering, IsTheSameForAnyThreadsAndGoesOnFromACheckpoint) {
     EXPECT_EQ(other.catheter.state_hash(), one.catheter.state_hash()) << threads;
   }
   Insertion again;
-  again.vessel.move_to(dt * one.steps);
+  again.vessel.move_to(dt * one.steps, again.catheter);
   again.steps = one.steps;
   Catheter& resumed = again.catheter;
-  resumed.step({});  // after the one move that it has not seen
   resumed.restore(one.catheter.checkpoint());
   EXPECT_EQ(resumed.state_hash(), one.catheter.state_hash());
   for (int i = 0; i < 20; ++i) {
     one.step(push, 0.02, false);
-    again.vessel.move_to(dt * ++again.steps);
+    again.vessel.move_to(dt * ++again.steps, resumed);
     resumed.step({push, 0.02});
     ASSERT_EQ(resumed.state_hash(), one.catheter.state_hash()) << i;
   }
@@ -160,12 +161,13 @@ TEST(Steering, KeepsItsLengthsWhateverIsAsked) {
     Catheter c(vessel.environment, o);
     const bool moving = k % 2 == 1;
     for (int i = 1; i <= std::max(10, test::scaled(60, 300)); ++i) {
-      if (moving) vessel.move_to(dt * i);
+      if (moving) vessel.move_to(dt * i, c);
       const double forward = random.below(5) == 0 ? -1e-3 * random.uniform() : 1.5e-3 * random.uniform();
       const CatheterStep s = c.step({forward, random.below(3) == 0 ? random.uniform(-1.0, 1.0) : 0.0});
       ASSERT_LE(s.worst_segment, 0.01) << k << " " << i;
       if (i % 10 == 0) {
         ASSERT_EQ(audit(vessel.environment.complex(), c.particles()).failed, 0U);
+        ASSERT_EQ(c.audit().failed, 0U) << k << " " << i;
       }
     }
     EXPECT_GT(c.inserted(), 0.0);

@@ -23,6 +23,11 @@ struct MovingVessel {
     deformation.positions(time, positions);
     environment.move(positions);
   }
+  /// With the catheter in it. Returns the share of the way that was made.
+  double move_to(double time, Catheter& catheter) {
+    deformation.positions(time, positions);
+    return catheter.move_with(positions);
+  }
 
   /// How far a point of the mesh is from the inlet, along the vessel.
   [[nodiscard]] double path(std::size_t point) const { return array("path_length").values[point]; }

@@ -1,0 +1,15 @@
+// Catheters with edges as partners of a joint move.
+#pragma once
+
+#include "dartcast/catheter.hpp"
+#include "solids/joint_move.hpp"
+
+namespace dartcast {
+
+struct CatheterMoves {
+  /// The catheter is a partner of the next joint move. Precondition: it has edges. Throws as Catheter::move_with() where it
+  /// missed a move or an edit.
+  static MovePartner& prepare(Catheter& catheter);
+};
+
+}  // namespace dartcast
