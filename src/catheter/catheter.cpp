@@ -111,6 +111,7 @@ CatheterStep Catheter::Impl::step(const CatheterInput& input) {
   CatheterStep result;
   result.stuck = is_stuck();
   if (result.stuck) return result;
+  surroundings_.clear();
   if (!options_.edges) move_with_vessel(result);
   const double push = std::clamp(input.push, -inserted_, total_length() - inserted_);
   const double asked = std::max(std::abs(push) / (max_push * options_.spacing), std::abs(input.turn) / max_turn);

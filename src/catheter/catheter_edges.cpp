@@ -28,8 +28,6 @@ namespace {
 
 constexpr double same_place = 0.125;  // of a segment: touches with one normal that are no farther apart are of one wall
 
-// A segment owns its first point and itself.
-SolidElement segment(std::uint32_t i) { return {{i, i + 1, i + 1}, 2, 1, 1}; }
 SolidElement point(std::uint32_t i) { return {{i, i, i}, 1, 1, 0}; }
 
 }  // namespace
@@ -37,21 +35,28 @@ SolidElement point(std::uint32_t i) { return {{i, i, i}, 1, 1, 0}; }
 // From the tip to the entry. Points that wait there have no segments.
 std::size_t Catheter::Impl::segments() const { return std::max(inserted_points(), inserted_before_); }
 
-// All touches on the way from start_ to ends_. Returns the time up to which it is free; above 1: all of it is.
+// All touches on the way from start_ to ends_ among walls at rest. Returns whether it is free.
+bool Catheter::Impl::find_touches() {
+  touches_.clear();
+  return surroundings_.find(environment_.complex(), particles_, segments(), {start_, ends_}, touches_) &&
+         touches_.empty();
+}
+
+// The same among moving walls. Returns the time up to which the way is free; above 1: all of it is. Segments share most of
+// the cells that they reach.
 double Catheter::Impl::find_touches(const VertexMotion& walls) {
   touches_.clear();
-  const SolidMotion motion = {start_, ends_};
-  double free_until = 2.0;
+  cells_.clear();
   const auto look_at = [&](const SolidElement& e) {
     const Cell cell = particles_[e.vertex[0]].cell;
-    const auto flat = finder_.find(environment_.complex(), cell, e, motion, walls, touches_);
-    if (flat) free_until = std::min(free_until, *flat);
+    finder_.find_touches(environment_.complex(), cell, e, {start_, ends_}, walls, touches_);
+    cells_.insert(cells_.end(), finder_.cells_reached().begin(), finder_.cells_reached().end());
   };
-  for (std::uint32_t i = 0; i < segments(); ++i) {
-    const bool rests = walls.at_rest() && start_[i] == ends_[i] && start_[i + 1] == ends_[i + 1];
-    if (!rests) look_at(segment(i));
-  }
-  if (!walls.at_rest()) look_at(point(static_cast<std::uint32_t>(count_)));
+  for (std::uint32_t i = 0; i < segments(); ++i) look_at(chain_segment(i));
+  look_at(point(static_cast<std::uint32_t>(count_)));
+  std::sort(cells_.begin(), cells_.end());
+  cells_.erase(std::unique(cells_.begin(), cells_.end()), cells_.end());
+  double free_until = first_flat_time(environment_.complex(), cells_, walls).value_or(2.0);
   for (const ElementTouch& t : touches_) free_until = std::min(free_until, t.time);
   return free_until;
 }
@@ -86,8 +91,7 @@ double Catheter::Impl::look_ahead(std::size_t free, Outcome& outcome) {
   double moved = 0.0;
   for (std::size_t i = 0; i < free; ++i) moved = std::max(moved, norm(ends_[i] - before_[i]));
   before_ = ends_;
-  const auto rest = environment_.complex().positions();
-  const bool is_free = find_touches({rest, rest}) > 1.0;
+  const bool is_free = find_touches();
   outcome.contacts += touches_.size();
   add_touched_walls(free);
   if (!is_free) return moved;
@@ -177,10 +181,10 @@ void Catheter::Impl::before_move(const VertexMotion& walls) {
   const std::size_t inserted = inserted_points();
   places_.resize(count_ + 1);
   if (is_stuck()) return;
-  places_[count_] = simplex_after(complex, near_, particles_[count_].cell, start_[count_], ends_[count_], walls);
+  places_[count_] = simplex_after(complex, near_, particles_[count_].at(), start_[count_], ends_[count_], walls);
   for (std::size_t i = 0; i < count_; ++i)
     places_[i] =
-        i < inserted ? simplex_after(complex, near_, particles_[i].cell, start_[i], ends_[i], walls) : places_[count_];
+        i < inserted ? simplex_after(complex, near_, particles_[i].at(), start_[i], ends_[i], walls) : places_[count_];
 }
 
 // Walls that were met before are near the points still: they moved as these did.
@@ -224,7 +228,7 @@ void Catheter::Impl::find_stuck() {
     const ParticleState& s = particles_[i];
     all.push_back(s.position);
     cells.push_back(map.is_free(s.cell) && !s.held ? s.cell : Cell{});
-    if (i < inserted) elements.push_back(segment(i));
+    if (i < inserted) elements.push_back(chain_segment(i));
   }
   const SolidRefusal why = find_refusal(environment_.complex(), all, elements, cells).refusal;
   stuck_ = why != SolidRefusal::none && why != SolidRefusal::cell_not_positive;
@@ -237,7 +241,7 @@ SolidAudit Catheter::Impl::audit() const {
   const std::vector<Vec3> all = points();
   for (std::uint32_t i = 0; i + 1 < all.size(); ++i) {
     ++audit.checked;
-    if (!walls.meets_wall(all, segment(i)) || audit.failed++ != 0) continue;
+    if (!walls.meets_wall(all, chain_segment(i)) || audit.failed++ != 0) continue;
     audit.first = fmt::format("catheter: the segment from point {} to point {} meets a wall", i, i + 1);
   }
   return audit;

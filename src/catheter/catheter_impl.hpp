@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "catheter/chain_solver.hpp"
+#include "catheter/chain_surroundings.hpp"
 #include "dartcast/catheter.hpp"
 #include "dynamics/near_walls.hpp"
 #include "solids/element_touches.hpp"
@@ -71,6 +72,7 @@ struct Catheter::Impl final : MovePartner {
   // catheter_edges.cpp: with edges.
   [[nodiscard]] bool is_stuck() const { return stuck_; }
   [[nodiscard]] std::size_t segments() const;
+  bool find_touches();
   double find_touches(const VertexMotion& walls);
   void add_touched_walls(std::size_t free);
   double look_ahead(std::size_t free, Outcome& outcome);
@@ -97,8 +99,9 @@ struct Catheter::Impl final : MovePartner {
 
   // Shares of the spacing.
   static constexpr double reach = 0.5;  // largest displacement of a point in one solve, and range of a wall's plane
-  static constexpr double same_wall = 0.9999;   // cosine between normals of one wall; no exact decision depends on it
-  static constexpr std::uint32_t max_idle = 3;  // walks after which a wall that is not met is forgotten
+  static constexpr double look_margin = 0.0625;  // of ways that are looked at together
+  static constexpr double same_wall = 0.9999;    // cosine between normals of one wall; no exact decision depends on it
+  static constexpr std::uint32_t max_idle = 3;   // walks after which a wall that is not met is forgotten
 
   Environment& environment_;
   CatheterOptions options_;
@@ -125,6 +128,8 @@ struct Catheter::Impl final : MovePartner {
   std::vector<Vec3> planned_;        // of the way that will be made
   std::vector<SimplexId> places_;
   std::vector<ElementTouch> touches_;
+  ChainSurroundings surroundings_{look_margin * options_.spacing};  // for one step
+  std::vector<Cell> cells_;
   TouchFinder finder_;
   NearWalls near_;
 };

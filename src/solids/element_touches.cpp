@@ -4,11 +4,13 @@
 #include "solids/element_touches.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <tuple>
 
 #include "complex/positive_cells.hpp"
 #include "dartcast/predicates.hpp"
 #include "dartcast/validity.hpp"
+#include "mesh/box_tree.hpp"
 
 namespace dartcast {
 
@@ -35,6 +37,13 @@ bool is_flat(const CellComplex& complex, Cell c, std::span<const Vec3> positions
          check_cell(complex.map(), positions, c).has_value();
 }
 
+// The box of a point's way.
+Box around(std::span<const Vec3> from, std::span<const Vec3> to, std::size_t i) {
+  const Vec3 a = flushed(from[i]);
+  const Vec3 b = flushed(to[i]);
+  return join({a, a}, {b, b});
+}
+
 }  // namespace
 
 std::optional<double> first_flat_time(const CellComplex& complex, std::span<const Cell> cells,
@@ -54,13 +63,36 @@ std::optional<double> first_flat_time(const CellComplex& complex, std::span<cons
 std::optional<double> TouchFinder::find(const CellComplex& complex, Cell cell, const SolidElement& element,
                                         const SolidMotion& motion, const VertexMotion& walls,
                                         std::vector<ElementTouch>& touches) {
-  walls_ = near_.search(complex, cell, moving(element, motion), walls);
-  if (!walls_.empty()) {
-    ask_corners(element, motion, touches);
-    ask_sides(element, motion, touches);
-    if (element.count == 3) ask_face(element, motion, touches);
-  }
+  find_touches(complex, cell, element, motion, walls, touches);
   return first_flat_time(complex, cells_reached(), walls);
+}
+
+void TouchFinder::find_touches(const CellComplex& complex, Cell cell, const SolidElement& element,
+                               const SolidMotion& motion, const VertexMotion& walls,
+                               std::vector<ElementTouch>& touches) {
+  walls_ = near_.search(complex, cell, moving(element, motion), walls);
+  ask_all(element, motion, touches);
+}
+
+void TouchFinder::find_among(std::span<const NearWall> walls, const SolidElement& element, const SolidMotion& motion,
+                             std::vector<ElementTouch>& touches) {
+  Box way = {motion.from[element.vertex[0]], motion.from[element.vertex[0]]};
+  for (unsigned i = 0; i < element.count; ++i) way = join(way, around(motion.from, motion.to, element.vertex[i]));
+  chosen_.clear();
+  std::copy_if(walls.begin(), walls.end(), std::back_inserter(chosen_), [&](const NearWall& w) {
+    Box swept = around(w.corners.from, w.corners.to, 0);
+    for (std::size_t k = 1; k < 3; ++k) swept = join(swept, around(w.corners.from, w.corners.to, k));
+    return overlap(swept, way);
+  });
+  walls_ = chosen_;
+  ask_all(element, motion, touches);
+}
+
+void TouchFinder::ask_all(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches) {
+  if (walls_.empty()) return;
+  ask_corners(e, motion, touches);
+  ask_sides(e, motion, touches);
+  if (e.count == 3) ask_face(e, motion, touches);
 }
 
 // Whether the pair touches.

@@ -42,6 +42,14 @@ class TouchFinder {
   std::optional<double> find(const CellComplex& complex, Cell cell, const SolidElement& element,
                              const SolidMotion& motion, const VertexMotion& walls, std::vector<ElementTouch>& touches);
 
+  /// find(), up to the cells that become flat.
+  void find_touches(const CellComplex& complex, Cell cell, const SolidElement& element, const SolidMotion& motion,
+                    const VertexMotion& walls, std::vector<ElementTouch>& touches);
+
+  /// Appends the touches with these walls alone. Precondition: no other is in the element's way.
+  void find_among(std::span<const NearWall> walls, const SolidElement& element, const SolidMotion& motion,
+                  std::vector<ElementTouch>& touches);
+
   /// Pairs that find() has looked at so far.
   [[nodiscard]] std::uint64_t pairs() const { return pairs_; }
   /// Those of the last find().
@@ -62,10 +70,12 @@ class TouchFinder {
   void ask_corners(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches);
   void ask_sides(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches);
   void ask_face(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches);
+  void ask_all(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches);
   void list_parts(unsigned size);
 
   NearWalls near_;
   std::span<const NearWall> walls_;
+  std::vector<NearWall> chosen_;
   std::vector<WallPart> parts_;  // edges or vertices of the walls, each once
   std::uint64_t pairs_ = 0;
 };

@@ -14,18 +14,24 @@ namespace dartcast {
 
 namespace {
 
-// The first of these cells' simplices that holds a point, border included.
+// Whether a simplex holds a point, border included.
+bool holds(const CellComplex& complex, SimplexId simplex, std::span<const Vec3> positions, const Vec3& x) {
+  const auto vertices = complex.vertices(simplex);
+  Corners v;
+  for (unsigned i = 0; i < 4; ++i) v[i] = positions[vertices[i].value];
+  for (unsigned f = 0; f < 4; ++f) {
+    if (orient_facet(v, f, x) == Sign::negative) return false;
+  }
+  return true;
+}
+
+// The first of these cells' simplices that does.
 SimplexId holding(const CellComplex& complex, std::span<const Cell> cells, std::span<const Vec3> positions,
                   const Vec3& x) {
   for (const Cell c : cells) {
-    const CellView cell = complex.map().view(c);
-    const auto& simplices = cell.shape().simplices();
-    for (std::uint16_t s = 0; s < simplices.size(); ++s) {
-      Corners v;
-      for (unsigned i = 0; i < 4; ++i) v[i] = positions[cell.vertex(simplices[s].vertex[i]).value];
-      bool holds = true;
-      for (unsigned f = 0; f < 4 && holds; ++f) holds = orient_facet(v, f, x) != Sign::negative;
-      if (holds) return {c, s};
+    const std::size_t count = complex.map().view(c).shape().simplices().size();
+    for (std::uint16_t s = 0; s < count; ++s) {
+      if (holds(complex, {c, s}, positions, x)) return {c, s};
     }
   }
   return {};
@@ -35,12 +41,13 @@ SimplexId holding(const CellComplex& complex, std::span<const Cell> cells, std::
 
 Vec3 on_way(const Vec3& from, const Vec3& to, double share) { return flushed(from + (to - from) * share); }
 
-SimplexId simplex_after(const CellComplex& complex, NearWalls& near, Cell cell, const Vec3& from, const Vec3& to,
+SimplexId simplex_after(const CellComplex& complex, NearWalls& near, SimplexId before, const Vec3& from, const Vec3& to,
                         const VertexMotion& walls) {
+  if (holds(complex, before, walls.after, to)) return before;
   MovingElement point;
   point.from[0] = from;
   point.to[0] = to;
-  near.search(complex, cell, point, walls);
+  near.search(complex, before.cell, point, walls);
   const SimplexId found = holding(complex, near.cells_reached(), walls.after, to);
   if (!found.cell.valid())
     throw InternalError(fmt::format("joint move: no cell holds the point ({}, {}, {}) after a move; please report it",
@@ -55,9 +62,11 @@ double move_together(Environment& environment, std::span<MovePartner* const> par
     throw InvalidArgument(fmt::format("move_with: {} positions for {} points of the mesh: give one for each",
                                       positions.size(), complex.point_count()));
   const auto before = complex.positions();
-  AlignedVector<Vec3> after(before.begin(), before.end());
+  AlignedVector<Vec3> after(before.size());
   const VertexMotion walls = {before, after};
   std::copy(positions.begin(), positions.end(), after.begin());
+  std::copy(before.begin() + static_cast<std::ptrdiff_t>(positions.size()), before.end(),
+            after.begin() + static_cast<std::ptrdiff_t>(positions.size()));
   complex.steiner_weights().compute(after);
   double made = 1.0;
   for (MovePartner* p : partners) made = std::min(made, p->plan(walls));

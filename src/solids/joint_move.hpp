@@ -43,9 +43,9 @@ struct JointMoves {
   static const SolidStep& last_step(const SolidSet& solids);
 };
 
-/// The simplex that holds `to` after the move. It is in one of the cells that a point reaches on its straight way from
-/// `from` in `cell`. Throws InternalError where there is none.
-SimplexId simplex_after(const CellComplex& complex, NearWalls& near, Cell cell, const Vec3& from, const Vec3& to,
+/// The simplex that holds `to` after the move: the same as before, or one of a cell that the point reaches on its straight
+/// way from `from`. Throws InternalError where there is none.
+SimplexId simplex_after(const CellComplex& complex, NearWalls& near, SimplexId before, const Vec3& from, const Vec3& to,
                         const VertexMotion& walls);
 
 /// A share of a straight way, rounded.

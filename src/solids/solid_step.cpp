@@ -232,7 +232,7 @@ void SolidSet::Impl::before_move(const VertexMotion& walls) {
     NearWalls near;
     for (std::size_t v = begin; v < end; ++v) {
       if (is_stuck(solid_of(v))) continue;
-      places[v] = simplex_after(environment.complex(), near, particles[v].cell, positions[v], reached[v], walls);
+      places[v] = simplex_after(environment.complex(), near, particles[v].at(), positions[v], reached[v], walls);
     }
   });
   report();

@@ -133,7 +133,8 @@ TEST(ChainSolver, FindsTheWallsThatPress) {
     std::vector<ChainWall> none;
     const std::vector<Vec3> open = solved(c, none);
     std::vector<ChainWall> walls;
-    for (std::uint32_t i = 0; i < 12; i += random.below(2) == 0 ? 5 : 11) {  // 11: a segment to a point that is not free
+    for (std::uint32_t i = 0; i < 12;
+         i += random.below(2) == 0 ? 5 : 11) {  // 11: a segment to a point that is not free
       const double weight = random.below(2) == 0 ? 0.0 : random.uniform();
       const Vec3 from = c.points[i] * (1.0 - weight) + c.points[i + 1] * weight;
       const Vec3 moved = open[i] * (1.0 - weight) + open[i + 1] * weight - from;

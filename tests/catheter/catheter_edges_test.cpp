@@ -1,0 +1,223 @@
+// Catheters with edges: no segment ever meets a wall. The truth is the audit of SolidSet, which shares no code with steps.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "base/random.hpp"
+#include "dartcast/audit.hpp"
+#include "dartcast/catheter.hpp"
+#include "dartcast/complex_edit.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/map_edits.hpp"
+#include "solids/audit_solids.hpp"
+#include "support/catheter_scenes.hpp"
+#include "support/element_checks.hpp"
+#include "support/meshes.hpp"
+#include "support/random_vectors.hpp"
+#include "support/tier.hpp"
+
+namespace dartcast::catheter_edges_test {
+
+// Segments that meet a wall, with edges or without.
+std::size_t pierced(const Environment& environment, const Catheter& c) {
+  const std::vector<Vec3> points = c.points();
+  const WallAudit walls(environment.complex());
+  std::size_t count = 0;
+  for (std::uint32_t i = 0; i + 1 < points.size(); ++i)
+    count += walls.meets_wall(points, {{i, i + 1, i + 1}, 2, 1, 1}) ? 1 : 0;
+  return count;
+}
+
+// A box of cubes or tetrahedra, every fifth blocked, in which a catheter with long segments goes its random way.
+class AmongObstacles {
+ public:
+  explicit AmongObstacles(std::uint64_t seed, bool edges = true)
+      : random_(seed),
+        environment(test::cubes(6, seed % 2 == 0 ? CellType::hexahedron : CellType::tetrahedron, 0.1, 0.2, seed),
+                    Threads{1 + static_cast<unsigned>(seed % 2)}) {
+    for (int tries = 0; !catheter; ++tries) {
+      CatheterOptions o;
+      o.spacing = random_.uniform(0.3, 1.5);
+      o.length = 8.0;
+      o.stiffness = random_.below(2) == 0 ? 0.01 : 10.0;
+      o.tip_length = 2.0;
+      o.tip_curvature = random_.uniform(0.0, 0.5 / o.spacing);
+      o.edges = edges;
+      o.entry = test::random_vector(random_, 3.0) + Vec3{3.0, 3.0, 3.0};
+      o.direction = test::random_vector(random_);
+      try {
+        catheter.emplace(environment, o);
+      } catch (const InvalidArgument&) {
+        if (tries > 10000) throw;
+      }
+    }
+  }
+
+  CatheterStep step() {
+    const double h = catheter->options().spacing;
+    const double push = random_.below(5) == 0 ? -h * random_.uniform() : 0.6 * h * random_.uniform();
+    return catheter->step({push, random_.uniform(-0.3, 0.3), test::random_vector(random_, 0.1)});
+  }
+  double move(double size) {
+    return catheter->move_with(test::waved(environment.positions(), random_.uniform(-size, size)));
+  }
+  void expect_sound() const {
+    const SolidAudit segments = catheter->audit();
+    EXPECT_EQ(segments.failed, 0U) << segments.first;
+    const Audit points = audit(environment.complex(), catheter->particles());
+    EXPECT_EQ(points.failed, 0U) << points.first;
+  }
+
+ private:
+  Random random_;
+
+ public:
+  Environment environment;
+  std::optional<Catheter> catheter;
+};
+
+TEST(CatheterEdges, NoSegmentMeetsAWall) {
+  std::size_t checked = 0;
+  std::size_t contacts = 0;
+  double least_share = 1.0;
+  for (std::uint64_t seed = 1; seed <= std::max<std::uint64_t>(2, test::scaled<std::uint64_t>(24, 400)); ++seed) {
+    AmongObstacles run(seed);
+    for (int i = 0; i < 60; ++i) {
+      if (seed % 3 != 0) least_share = std::min(least_share, run.move(seed % 3 == 1 ? 0.05 : 0.3));
+      contacts += run.step().contacts;
+      checked += run.catheter->audit().checked;
+      run.expect_sound();
+      ASSERT_FALSE(testing::Test::HasFailure()) << seed << " " << i;
+    }
+  }
+  EXPECT_GT(checked, 500U);
+  EXPECT_GT(contacts, 500U);
+  if (!test::sanitized()) EXPECT_LT(least_share, 1.0);  // walls stop, too
+}
+
+// The test above would see it.
+TEST(CatheterEdges, WithoutThemSegmentsCutCorners) {
+  std::size_t count = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    AmongObstacles run(seed, false);
+    for (int i = 0; i < 30; ++i) {
+      run.step();
+      count += pierced(run.environment, *run.catheter);
+    }
+    EXPECT_EQ(run.catheter->audit().checked, 0U);
+  }
+  EXPECT_GT(count, 20U);
+}
+
+// A pipe that a catheter lies in, and that is pinched: its walls stop at it.
+TEST(CatheterEdges, WallsStopWhereTheyWouldCrushIt) {
+  Environment environment(test::pipe(12));
+  CatheterOptions o;
+  o.length = 8.0;
+  o.spacing = 0.8;
+  o.stiffness = 1.0;
+  o.entry = {2.5, 2.5, 2.0};
+  o.direction = {0.0, 0.0, 1.0};
+  Catheter c(environment, o);
+  c.step({7.0});
+  const std::vector<Vec3> rest(environment.positions().begin(), environment.positions().end());
+  const auto pinched = [&](double to) {  // two sides come within `to` of the plane x = 2.9 half-way
+    std::vector<Vec3> now = rest;
+    for (Vec3& x : now) {
+      const double share = std::max(0.0, 1.0 - std::abs(x.z - 6.0) / 4.0);
+      x.x += (2.9 - x.x) * share * (1.0 - to);
+    }
+    return now;
+  };
+  double share = 1.0;
+  for (int i = 1; i <= 20; ++i) {
+    share = c.move_with(pinched(1.0 - 0.05 * i));
+    c.step({});
+    EXPECT_EQ(c.audit().failed, 0U) << i << " " << c.audit().first;
+  }
+  EXPECT_LT(share, 1.0);  // the last would leave no room at all
+  EXPECT_EQ(c.move_with(rest), 1.0);
+  EXPECT_EQ(c.audit().failed, 0U);
+}
+
+// Not inserted yet: the cell around the entry stays positive.
+TEST(CatheterEdges, WallsStopBeforeTheEntryIsFlat) {
+  Environment environment(test::pipe(12));
+  CatheterOptions o;
+  o.length = 8.0;
+  o.spacing = 0.8;
+  o.stiffness = 1.0;
+  o.entry = {2.5, 2.5, 2.0};
+  o.direction = {0.0, 0.0, 1.0};
+  Catheter c(environment, o);
+  std::vector<Vec3> flat(environment.positions().begin(), environment.positions().end());
+  for (Vec3& x : flat) x.x = 5.0 - x.x;
+  const double share = c.move_with(flat);
+  EXPECT_GT(share, 0.4);
+  EXPECT_LT(share, 0.5);
+  EXPECT_EQ(audit(environment.complex(), c.particles()).failed, 0U);
+}
+
+// A cell between two points is blocked, and opened again.
+TEST(CatheterEdges, AnEditThatPiercesASegmentHoldsTheCatheter) {
+  Environment environment(test::pipe(14));
+  CatheterOptions o;
+  o.length = 9.0;
+  o.spacing = 3.0;
+  o.stiffness = 1.0;
+  o.entry = {2.5, 2.5, 2.5};
+  o.direction = {0.0, 0.0, 1.0};
+  Catheter c(environment, o);
+  c.step({6.0});
+  ASSERT_GT(c.points().size(), 2U);
+  const Vec3 between = (c.points()[0] + c.points()[1]) * 0.5;
+  const Cell cell = environment.locate(between).simplex.cell;
+  const auto set_free = [&](bool free) {
+    environment.edit([&](ComplexEdit& e) { e.topology().set_free(cell, free); });
+    c.update_after_edit();
+  };
+  set_free(false);
+  const StateHash before = c.state_hash();
+  const CatheterStep held = c.step({0.5});
+  EXPECT_TRUE(held.stuck);
+  EXPECT_EQ(held.pushed, 0.0);
+  EXPECT_EQ(c.state_hash(), before);
+  EXPECT_EQ(pierced(environment, c), 1U);
+  EXPECT_EQ(c.audit().checked, 0U);
+  std::vector<Vec3> now(environment.positions().begin(), environment.positions().end());
+  for (Vec3& x : now) x += {0.25, 0.0, 0.0};
+  EXPECT_EQ(c.move_with(now), 1.0);  // it is carried along
+  EXPECT_TRUE(c.step({0.5}).stuck);
+  EXPECT_LE(norm((c.points()[0] + c.points()[1]) * 0.5 - between - Vec3{0.25, 0.0, 0.0}), 1e-12);
+  set_free(true);
+  const CatheterStep freed = c.step({0.5});
+  EXPECT_FALSE(freed.stuck);
+  EXPECT_NEAR(freed.pushed, 0.5, 1e-12);
+  EXPECT_EQ(c.audit().failed, 0U);
+}
+
+TEST(CatheterEdges, AMoveWithoutItIsRefused) {
+  Environment environment(test::pipe(14));
+  CatheterOptions o;
+  o.length = 5.0;
+  o.spacing = 0.5;
+  o.stiffness = 1.0;
+  o.entry = {2.5, 2.5, 2.0};
+  o.direction = {0.0, 0.0, 1.0};
+  Catheter with(environment, o);
+  o.edges = false;
+  Catheter without(environment, o);
+  const std::vector<Vec3> now(environment.positions().begin(), environment.positions().end());
+  const StateHash before = with.state_hash();
+  EXPECT_THROW(with.move_with(std::span(now).first(5)), InvalidArgument);
+  environment.move(now);
+  EXPECT_THROW(with.step({0.1}), InvalidArgument);
+  EXPECT_THROW(with.move_with(now), InvalidArgument);
+  EXPECT_EQ(with.state_hash(), before);
+  EXPECT_NO_THROW(without.step({0.1}));
+  EXPECT_EQ(without.move_with(now), 1.0);
+  EXPECT_NO_THROW(without.step({0.1}));
+}
+
+}  // namespace dartcast::catheter_edges_test
