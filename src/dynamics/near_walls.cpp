@@ -130,6 +130,7 @@ struct NearWalls::Reach {
     box.widen(r);
     is_long = norm(way) > 2.0 * radius;
   }
+  explicit Reach(const Box& b) : box{b.low, b.high} { box.widen(rounding()); }
   [[nodiscard]] double rounding() const {
     const Vec3 largest = extent_of(box.low, box.high);
     return box_margin * std::max({largest.x, largest.y, largest.z});
@@ -228,13 +229,13 @@ void NearWalls::visit(const CellComplex& complex, const Reach& reach, Cell c, co
   }
 }
 
-std::span<const NearWall> NearWalls::run(const CellComplex& complex, Cell cell, const Reach& reach,
+std::span<const NearWall> NearWalls::run(const CellComplex& complex, std::span<const Cell> starts, const Reach& reach,
                                          const VertexMotion& motion) {
   for (const std::size_t at : slots_) table_[at] = 0;
   slots_.clear();
   cells_.clear();
   walls_.clear();
-  add(cell);
+  for (const Cell c : starts) add(c);
   for (std::size_t i = 0; i < cells_.size(); ++i) visit(complex, reach, cells_[i], motion);
   return walls_;
 }
@@ -242,12 +243,17 @@ std::span<const NearWall> NearWalls::run(const CellComplex& complex, Cell cell, 
 std::span<const NearWall> NearWalls::search(const CellComplex& complex, Cell cell, const MovingSphere& sphere,
                                             bool moving) {
   const auto after = complex.positions();
-  return run(complex, cell, Reach(sphere), {moving ? complex.previous_positions() : after, after});
+  return run(complex, {&cell, 1}, Reach(sphere), {moving ? complex.previous_positions() : after, after});
 }
 
 std::span<const NearWall> NearWalls::search(const CellComplex& complex, Cell cell, const MovingElement& element,
                                             const VertexMotion& motion, double margin) {
-  return run(complex, cell, Reach(element, margin), motion);
+  return run(complex, {&cell, 1}, Reach(element, margin), motion);
+}
+
+std::span<const NearWall> NearWalls::search(const CellComplex& complex, std::span<const Cell> starts, const Box& box,
+                                            const VertexMotion& motion) {
+  return run(complex, starts, Reach(box), motion);
 }
 
 std::span<const NearestOnTriangle> NearWalls::nearest(const Vec3& centre) {

@@ -18,6 +18,7 @@
 #include "dartcast/dynamics.hpp"
 #include "dartcast/particle_state.hpp"
 #include "dynamics/swept_sphere.hpp"
+#include "mesh/box_tree.hpp"
 
 namespace dartcast {
 
@@ -81,6 +82,11 @@ class NearWalls {
   std::span<const NearWall> search(const CellComplex& complex, Cell cell, const MovingElement& element,
                                    const VertexMotion& motion, double margin = 0.0);
 
+  /// Walls that meet a box on their way, for all elements that stay in it: those of search() for each, and more. `starts`:
+  /// the cells that hold the elements' first corners before the move. All else is as above.
+  std::span<const NearWall> search(const CellComplex& complex, std::span<const Cell> starts, const Box& box,
+                                   const VertexMotion& motion);
+
   /// The nearest point to `centre` of each wall of the last search, as the wall was before the move. Valid until the
   /// next search or call of this.
   std::span<const NearestOnTriangle> nearest(const Vec3& centre);
@@ -106,7 +112,8 @@ class NearWalls {
   [[nodiscard]] std::size_t slot(Cell c) const;
   void grow();
   void add(Cell c);
-  std::span<const NearWall> run(const CellComplex& complex, Cell cell, const Reach& reach, const VertexMotion& motion);
+  std::span<const NearWall> run(const CellComplex& complex, std::span<const Cell> starts, const Reach& reach,
+                                const VertexMotion& motion);
   void visit(const CellComplex& complex, const Reach& reach, Cell c, const VertexMotion& motion);
   static void describe(const CellComplex& complex, const NearWall& wall, const NearestOnTriangle& nearest, bool moved,
                        WallFeature& feature);

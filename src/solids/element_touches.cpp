@@ -38,10 +38,42 @@ bool is_flat(const CellComplex& complex, Cell c, std::span<const Vec3> positions
 }
 
 // The box of a point's way.
-Box around(std::span<const Vec3> from, std::span<const Vec3> to, std::size_t i) {
-  const Vec3 a = flushed(from[i]);
-  const Vec3 b = flushed(to[i]);
-  return join({a, a}, {b, b});
+Box way_of(const Vec3& from, const Vec3& to) {
+  const auto low = [](double a, double b) { return std::min(a, b); };
+  const auto high = [](double a, double b) { return std::max(a, b); };
+  return {{low(from.x, to.x), low(from.y, to.y), low(from.z, to.z)},
+          {high(from.x, to.x), high(from.y, to.y), high(from.z, to.z)}};
+}
+
+Box way_of(const SolidElement& e, const SolidMotion& motion) {
+  Box box = way_of(motion.from[e.vertex[0]], motion.to[e.vertex[0]]);
+  for (unsigned i = 1; i < e.count; ++i) box = join(box, way_of(motion.from[e.vertex[i]], motion.to[e.vertex[i]]));
+  return box;
+}
+
+Box way_of(const NearWall& w) {
+  Box box = way_of(flushed(w.corners.from[0]), flushed(w.corners.to[0]));
+  for (std::size_t k = 1; k < 3; ++k) box = join(box, way_of(flushed(w.corners.from[k]), flushed(w.corners.to[k])));
+  return box;
+}
+
+Vec3 extent_of(const CellComplex& complex, Cell c, std::span<const Vec3> positions) {
+  const auto vertices = complex.map().view(c).vertices();
+  Box box = {positions[vertices[0]], positions[vertices[0]]};
+  for (const std::uint32_t v : vertices) box = join(box, {positions[v], positions[v]});
+  return box.high - box.low;
+}
+
+// Whether a search of the box around all is likely to reach fewer cells than one for each. `cell`: the extent of a cell. A
+// matter of speed alone.
+bool share_a_search(std::span<const Box> boxes, const Box& all, const Vec3& cell) {
+  const auto cells_in = [&](const Box& b) {
+    const Vec3 size = b.high - b.low;
+    return (1.0 + size.x / cell.x) * (1.0 + size.y / cell.y) * (1.0 + size.z / cell.z);
+  };
+  double each = 0.0;
+  for (const Box& b : boxes) each += cells_in(b);
+  return boxes.size() > 1 && cells_in(all) < 0.5 * each;
 }
 
 }  // namespace
@@ -76,16 +108,48 @@ void TouchFinder::find_touches(const CellComplex& complex, Cell cell, const Soli
 
 void TouchFinder::find_among(std::span<const NearWall> walls, const SolidElement& element, const SolidMotion& motion,
                              std::vector<ElementTouch>& touches) {
-  Box way = {motion.from[element.vertex[0]], motion.from[element.vertex[0]]};
-  for (unsigned i = 0; i < element.count; ++i) way = join(way, around(motion.from, motion.to, element.vertex[i]));
+  const Box way = way_of(element, motion);
   chosen_.clear();
-  std::copy_if(walls.begin(), walls.end(), std::back_inserter(chosen_), [&](const NearWall& w) {
-    Box swept = around(w.corners.from, w.corners.to, 0);
-    for (std::size_t k = 1; k < 3; ++k) swept = join(swept, around(w.corners.from, w.corners.to, k));
-    return overlap(swept, way);
-  });
+  std::copy_if(walls.begin(), walls.end(), std::back_inserter(chosen_),
+               [&](const NearWall& w) { return overlap(way_of(w), way); });
   walls_ = chosen_;
   ask_all(element, motion, touches);
+}
+
+std::optional<double> TouchFinder::find(const CellComplex& complex, std::span<const Cell> cells,
+                                        std::span<const SolidElement> elements, const SolidMotion& motion,
+                                        const VertexMotion& walls, std::vector<ElementTouch>& touches) {
+  boxes_.clear();
+  for (const SolidElement& e : elements) boxes_.push_back(way_of(e, motion));
+  Box all = boxes_.front();
+  for (const Box& b : boxes_) all = join(all, b);
+  if (!share_a_search(boxes_, all, extent_of(complex, cells.front(), walls.after)))
+    return find_each(complex, cells, elements, motion, walls, touches);
+  const auto near = near_.search(complex, cells, all, walls);
+  if (first_flat_time(complex, near_.cells_reached(), walls))  // perhaps of a cell that no element reaches
+    return find_each(complex, cells, elements, motion, walls, touches);
+  wall_boxes_.clear();
+  for (const NearWall& w : near) wall_boxes_.push_back(way_of(w));
+  for (std::size_t i = 0; i < elements.size() && !near.empty(); ++i) {
+    chosen_.clear();
+    for (std::size_t w = 0; w < near.size(); ++w) {
+      if (overlap(wall_boxes_[w], boxes_[i])) chosen_.push_back(near[w]);
+    }
+    walls_ = chosen_;
+    ask_all(elements[i], motion, touches);
+  }
+  return {};
+}
+
+std::optional<double> TouchFinder::find_each(const CellComplex& complex, std::span<const Cell> cells,
+                                             std::span<const SolidElement> elements, const SolidMotion& motion,
+                                             const VertexMotion& walls, std::vector<ElementTouch>& touches) {
+  std::optional<double> first;
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    const auto flat = find(complex, cells[i], elements[i], motion, walls, touches);
+    if (flat) first = std::min(first.value_or(*flat), *flat);
+  }
+  return first;
 }
 
 void TouchFinder::ask_all(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches) {

@@ -46,6 +46,12 @@ class TouchFinder {
   void find_touches(const CellComplex& complex, Cell cell, const SolidElement& element, const SolidMotion& motion,
                     const VertexMotion& walls, std::vector<ElementTouch>& touches);
 
+  /// find() for many elements, `cells` their first vertices' cells. Elements that are small and near each other share one
+  /// search.
+  std::optional<double> find(const CellComplex& complex, std::span<const Cell> cells,
+                             std::span<const SolidElement> elements, const SolidMotion& motion,
+                             const VertexMotion& walls, std::vector<ElementTouch>& touches);
+
   /// Appends the touches with these walls alone. Precondition: no other is in the element's way.
   void find_among(std::span<const NearWall> walls, const SolidElement& element, const SolidMotion& motion,
                   std::vector<ElementTouch>& touches);
@@ -70,12 +76,17 @@ class TouchFinder {
   void ask_corners(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches);
   void ask_sides(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches);
   void ask_face(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches);
+  std::optional<double> find_each(const CellComplex& complex, std::span<const Cell> cells,
+                                  std::span<const SolidElement> elements, const SolidMotion& motion,
+                                  const VertexMotion& walls, std::vector<ElementTouch>& touches);
   void ask_all(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches);
   void list_parts(unsigned size);
 
   NearWalls near_;
   std::span<const NearWall> walls_;
   std::vector<NearWall> chosen_;
+  std::vector<Box> boxes_;       // of elements' ways
+  std::vector<Box> wall_boxes_;  // of walls' ways
   std::vector<WallPart> parts_;  // edges or vertices of the walls, each once
   std::uint64_t pairs_ = 0;
 };

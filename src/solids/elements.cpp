@@ -1,8 +1,12 @@
-// Each corner and each side gets the first element that has it as its owner.
+// Each corner and each side gets the first element that has it as its owner. Then the elements are sorted in halves: those
+// on either side of the median along the longest extent, and so on.
 #include "solids/elements.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <set>
+#include <span>
+#include <utility>
 
 namespace dartcast {
 
@@ -34,6 +38,36 @@ class Owners {
   std::set<std::array<std::uint32_t, 3>> triangles_;
 };
 
+Vec3 middle_of(const SolidElement& e, std::span<const Vec3> points) {
+  Vec3 sum;
+  for (unsigned i = 0; i < e.count; ++i) sum += points[e.vertex[i]];
+  return sum * (1.0 / e.count);
+}
+
+void sort_in_halves(std::span<SolidElement> elements, std::span<const Vec3> points) {
+  constexpr std::size_t group = elements_in_group;
+  if (elements.size() <= group) return;
+  Vec3 low = middle_of(elements[0], points);
+  Vec3 high = low;
+  for (const SolidElement& e : elements) {
+    const Vec3 m = middle_of(e, points);
+    low = {std::min(low.x, m.x), std::min(low.y, m.y), std::min(low.z, m.z)};
+    high = {std::max(high.x, m.x), std::max(high.y, m.y), std::max(high.z, m.z)};
+  }
+  const Vec3 size = high - low;
+  const bool along_x = size.x >= size.y && size.x >= size.z;
+  const bool along_y = !along_x && size.y >= size.z;
+  const auto key = [&](const SolidElement& e) {
+    const Vec3 m = middle_of(e, points);
+    return std::pair(along_x ? m.x : along_y ? m.y : m.z, e.vertex);
+  };
+  const std::size_t half = std::max(group, elements.size() / 2 / group * group);  // whole groups on the left
+  std::nth_element(elements.begin(), elements.begin() + static_cast<std::ptrdiff_t>(half), elements.end(),
+                   [&](const SolidElement& a, const SolidElement& b) { return key(a) < key(b); });
+  sort_in_halves(elements.first(half), points);
+  sort_in_halves(elements.subspan(half), points);
+}
+
 }  // namespace
 
 std::vector<SolidElement> elements_of(const SolidMesh& mesh) {
@@ -44,6 +78,7 @@ std::vector<SolidElement> elements_of(const SolidMesh& mesh) {
   for (std::uint32_t p = 0; p < mesh.points.size(); ++p) {
     if (!owners.owned(p)) owners.add({{p, p, p}, 1}, elements);
   }
+  sort_in_halves(elements, mesh.points);
   return elements;
 }
 

@@ -21,8 +21,11 @@ struct SolidElement {
 /// The number of an element's sides.
 constexpr unsigned side_count(const SolidElement& e) { return e.count == 3 ? 3 : e.count - 1; }
 
-/// Triangles, then edges, then points, in the mesh's order. An edge or a triangle that is listed twice counts once.
-/// Precondition: check() accepts the mesh. Cost: n log n.
+/// Elements that one search for walls may serve.
+inline constexpr std::uint32_t elements_in_group = 64;
+
+/// All triangles, edges and points of a mesh, in an order in which each group has neighbours. An edge or a triangle that is
+/// listed twice counts once. Precondition: check() accepts the mesh. Cost: n log n.
 std::vector<SolidElement> elements_of(const SolidMesh& mesh);
 
 }  // namespace dartcast

@@ -74,9 +74,16 @@ struct SolidSet::Impl final : MovePartner {
     std::uint32_t solid = 0;
     double time = 0.0;
   };
-  // Part of a detection: consecutive elements.
+  // Consecutive elements of a solid, which are near each other (elements_of()).
+  struct Group {
+    std::uint32_t solid;
+    std::uint32_t begin;
+    std::uint32_t end;
+  };
+  // Part of a detection: consecutive groups.
   struct Part {
     TouchFinder finder;
+    std::vector<Cell> cells;
     std::vector<ElementTouch> touches;
     std::vector<std::uint32_t> owners;  // the solid of each touch
     std::vector<Flat> flats;
@@ -98,6 +105,7 @@ struct SolidSet::Impl final : MovePartner {
   [[nodiscard]] Solids all_but_stuck() const;
   void start(std::span<const Vec3> given, const SolidStepOptions& options, const char* caller);
   void detect(const Solids& solids, std::span<const Vec3> to, const VertexMotion& walls);
+  void look_at(const Group& group, const SolidMotion& motion, const VertexMotion& walls, Part& part);
   void gather(std::span<const Part> found);
   void correct_in_rounds(Solids& open, const VertexMotion& walls, const SolidStepOptions& options);
   void correct(std::uint32_t solid, const SolidStepOptions& options);
@@ -116,7 +124,7 @@ struct SolidSet::Impl final : MovePartner {
   std::vector<SolidConstraint> first_touches;  // of the solids that are cut
   std::vector<Progress> progress;
   std::vector<Part> parts;
-  std::vector<std::uint32_t> work;  // elements of a detection
+  std::vector<Group> work;  // of a detection
   std::uint64_t pairs_before = 0;
   SolidStep last;
 };

@@ -102,27 +102,30 @@ void SolidSet::Impl::detect(const Solids& solids, std::span<const Vec3> to, cons
     progress[s].touches.clear();
     progress[s].touch_time = 2.0;
     progress[s].flat_time = 2.0;
-    for (std::uint32_t e = first_element[s]; e < first_element[s + 1]; ++e) work.push_back(e);
+    for (std::uint32_t e = first_element[s]; e < first_element[s + 1]; e += elements_in_group)
+      work.push_back({s, e, std::min(e + elements_in_group, first_element[s + 1])});
   }
-  const std::size_t grain = std::max<std::size_t>(16, chunk_count(work.size(), 256));
+  const std::size_t grain = std::max<std::size_t>(4, chunk_count(work.size(), 256));
   const std::size_t used = chunk_count(work.size(), grain);
   if (parts.size() < used) parts.resize(used);
   const SolidMotion motion = {positions, to};
-  const CellComplex& complex = environment.complex();
   parallel_for(work.size(), grain, environment.threads(), [&](std::size_t begin, std::size_t end) {
     Part& part = parts[begin / grain];
     part.touches.clear();
     part.owners.clear();
     part.flats.clear();
-    for (std::size_t i = begin; i < end; ++i) {
-      const SolidElement& e = elements[work[i]];
-      const std::uint32_t solid = solid_of_element[work[i]];
-      const auto flat = part.finder.find(complex, particles[e.vertex[0]].cell, e, motion, walls, part.touches);
-      part.owners.resize(part.touches.size(), solid);
-      if (flat) part.flats.push_back({solid, *flat});
-    }
+    for (std::size_t i = begin; i < end; ++i) look_at(work[i], motion, walls, part);
   });
   gather(std::span<const Part>(parts).first(used));
+}
+
+void SolidSet::Impl::look_at(const Group& group, const SolidMotion& motion, const VertexMotion& walls, Part& part) {
+  const auto own = std::span<const SolidElement>(elements).subspan(group.begin, group.end - group.begin);
+  part.cells.clear();
+  for (const SolidElement& e : own) part.cells.push_back(particles[e.vertex[0]].cell);
+  const auto flat = part.finder.find(environment.complex(), part.cells, own, motion, walls, part.touches);
+  part.owners.resize(part.touches.size(), group.solid);
+  if (flat) part.flats.push_back({group.solid, *flat});
 }
 
 // By part, then by element: the order does not depend on the threads.

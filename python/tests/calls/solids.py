@@ -179,12 +179,18 @@ def of_catheters() -> Calls:
         own_env.edit(lambda edit: dc.subdivide(edit, first(edit.map)))
         own_catheter.update_after_edit()
 
+    def moved() -> None:
+        own_env = tube()
+        catheter(own_env).move_with(own_env.positions + [1e-4, 0.0, 0.0])
+
     return {
         "Catheter": lambda: dc.Catheter(env, options),
         "Catheter: refused": refused(lambda: dc.Catheter(env, dc.CatheterOptions(length=-1.0))),
         "Catheter.step": step, "Catheter.restore": step, "Catheter.checkpoint": own.checkpoint,
         "Catheter.step: refused": refused(lambda: own.step(dc.CatheterInput(push=np.nan))),
         "Catheter.restore: refused": refused(lambda: own.restore(3)),
+        "Catheter.move_with": moved, "Catheter.audit": own.audit,
+        "Catheter.move_with: refused": refused(lambda: own.move_with(np.zeros((2, 3)))),
         "Catheter.update_after_edit": edited, "Catheter.points": own.points, "Catheter.frames": own.frames,
         "Catheter.state_hash": own.state_hash,
         "camera_path": lambda: dc.camera_path(env, points, dc.CameraOptions(spacing=1e-3)),
