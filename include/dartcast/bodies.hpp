@@ -19,6 +19,7 @@
 #include "dartcast/environment.hpp"
 #include "dartcast/mesh_data.hpp"
 #include "dartcast/response.hpp"
+#include "dartcast/solids.hpp"
 
 namespace dartcast {
 
@@ -130,12 +131,16 @@ struct BodyOptions {
   Vec3 velocity = {};          ///< of the centre of mass
   Vec3 angular_velocity = {};  ///< 1 / s
   MatchOptions match = {};
+  /// A surface (or lines) at rest, in the place of the points at rest, that the particles carry. Its edges and triangles never
+  /// cross a wall. Each of its points follows some 12 of the particles next to it. Empty: particles alone meet walls.
+  SolidMesh surface = {};
 };
 
 /// The answer to a request to add a body.
 struct AddBodyResult {
-  std::uint32_t body = 0xffffffffU;    ///< its id; none (0xffffffff) where a point is in no free cell
-  std::vector<std::uint32_t> refused;  ///< those points
+  std::uint32_t body = 0xffffffffU;    ///< its id; none (0xffffffff) where it has no room
+  std::vector<std::uint32_t> refused;  ///< points in no free cell
+  SolidPlacement surface;              ///< where all points are: why its surface has no room, if it has none
 };
 
 /// Mechanical energy in joules. The potential energy counts from the corner of the box around the environment's first
@@ -191,6 +196,9 @@ struct BodiesStep {
   std::uint64_t fallbacks = 0;      ///< rotations left to Eigen's SVD
   std::uint64_t repeated = 0;       ///< bodies whose first pass was repeated with limited targets
   std::vector<std::uint32_t> gone;  ///< ids of bodies that left at an absorbing or escape wall
+  /// Of surfaces with walls: those that changed the motion, by body. `solid` is the body's index during the step.
+  std::vector<SolidContact> edges;
+  std::vector<std::uint32_t> stuck;  ///< ids of bodies that stayed, as an edit made a wall in their surfaces
 };
 
 /// The state of all bodies after a step. The mesh, the options and the bodies' shapes are not in it.
@@ -209,6 +217,7 @@ struct BodiesCheckpoint {
   std::vector<Fit> fits;           ///< body by body
   std::vector<CachedImpulse> impulses;
   std::vector<Particle> particles;
+  SolidCheckpoint surfaces;
 };
 
 /// Many bodies in one set of particles.
@@ -224,6 +233,9 @@ struct BodiesCheckpoint {
 ///  alone change, which takes out energy. The exact goal is the place of rest in the body: where the matching force is
 ///  in balance with the centrifugal force, or with gravity where the body has met a wall. Damping and drag act on
 ///  velocities between the passes.
+///  3. Edges, for bodies with a surface. Its targets are where the particles carry it. SolidSet::advance() takes it there,
+///  so that no edge and no triangle crosses a wall. Where it meets walls, the particles give way, as far as walls and
+///  energy let them, and lose the velocity towards these walls: there is no rebound from an edge.
 /// StepOptions::max_contacts bounds the contacts of a particle in a pass.
 ///
 /// Energy law: in a step the total energy of a body never grows by more than energy_slack of itself, plus
@@ -231,7 +243,7 @@ struct BodiesCheckpoint {
 /// total is the kinetic, the potential and the matching energy, none of them negative.
 ///
 /// Walls answer by their patch's response: reflect, slide, stick (the particle stays on the wall). A body leaves as a
-/// whole when a wall absorbs one of its particles or lets it escape. A caller may change velocities() between steps.
+/// whole when a wall absorbs one of its particles or lets it escape, or its surface meets such a wall. A caller may change velocities() between steps.
 /// Results are the same bits for any number of threads. A moved-from object has no bodies and can be used again.
 class Bodies {
  public:
@@ -246,14 +258,24 @@ class Bodies {
   Bodies& operator=(const Bodies&) = delete;
   Bodies& operator=(Bodies&&) = delete;
 
-  /// Adds a body whose rest shape is these points. Adds nothing where one of them is in no free cell. Throws
+  /// Adds a body whose rest shape is these points. Adds nothing where one of them is in no free cell, or its surface meets or
+  /// encloses a wall. Throws
   /// InvalidArgument where an option is out of range (the message about a stiffness above 1 / dt^2 gives the largest
   /// dt), there is no point, a mass is not is_mass(), or a cluster is empty, names no point or one twice, or leaves a
-  /// point in none. Throws as Environment::add().
+  /// point in none. Throws as Environment::add(); with a surface also as SolidSet::add(), and InvalidArgument where fewer
+  /// than four points or points in a plane carry it.
   AddBodyResult add(std::span<const Vec3> points, const BodyOptions& options);
 
-  /// One step; once after each Environment::move(). Throws as Environment::advance(). Cost: about 0.5 us per particle.
+  /// One step; once after each move. Throws as Environment::advance(), and InvalidArgument where a body has a surface and
+  /// missed a move. Cost: about 0.5 us per particle; for a surface some 0.3 us per vertex, more near walls.
   const BodiesStep& step();
+
+  /// Moves the environment straight to these positions of all the mesh's points. Cells carry particles and surfaces along;
+  /// surfaces that walls would run into give way, and where they cannot, walls and surfaces stop at the same share of their
+  /// ways, which is returned. Other particles must then be advanced, as after Environment::move(). Without any surface it is
+  /// Environment::move(), and the owner may call that in its place. Throws as Environment::move(), and InvalidArgument where
+  /// surfaces missed a move or an edit; nothing is changed then.
+  double move_with(std::span<const Vec3> positions);
 
   /// A body as a rigid one, with its velocity at the end of the next step if it has no contacts. Its inverse mass is
   /// 0 where a wall holds one of its particles. Cost: about 20 ns per particle.
@@ -263,8 +285,9 @@ class Bodies {
   /// BodiesStep::input counts the energy.
   void apply_impulse(std::size_t body, const RigidMover& solved);
 
-  /// To be called after each edit of the environment. A body leaves where the edit absorbs one of its particles. Throws
-  /// as Environment::update_after_edit().
+  /// To be called after each edit of the environment. A body leaves where the edit absorbs one of its particles. One with a
+  /// wall of the edit in its surface is stuck: it stays until a later edit frees it. Throws
+  /// as Environment::update_after_edit(), and as SolidSet::update_after_edit().
   UpdateReport update_after_edit(OrphanPolicy orphaned = OrphanPolicy::relocate);
 
   [[nodiscard]] const Environment& environment() const;
@@ -280,6 +303,11 @@ class Bodies {
   [[nodiscard]] BodyEnergy energy(std::size_t body) const;
   [[nodiscard]] RigidMotion rigid_motion_of(std::size_t body) const;
 
+  /// The points of its surface now. Empty without one.
+  [[nodiscard]] std::span<const Vec3> surface(std::size_t body) const;
+  /// As SolidSet::audit(), for all surfaces.
+  [[nodiscard]] SolidAudit audit() const;
+
   // All particles, body by body.
   [[nodiscard]] const Particles& particles() const;
   [[nodiscard]] std::span<const Vec3> positions() const;
@@ -294,7 +322,7 @@ class Bodies {
 
   /// Sums over all steps and both passes. Each pass counts `steps` times particles.
   [[nodiscard]] const Counters& counters() const;
-  /// The hash of all particles in the scene, by body id and number in the body.
+  /// The hash of all particles and points of surfaces in the scene, by body id and number in the body.
   [[nodiscard]] StateHash state_hash() const;
 
   /// The state now, for restore(). Cost: linear in the particles.
@@ -305,6 +333,7 @@ class Bodies {
   void restore(const BodiesCheckpoint& saved);
 
  private:
+  friend struct BodiesMoves;
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -143,7 +143,8 @@ struct BodyScene {
   BodySamples samples = BodySamples::solid;
   SamplingOptions sampling;
   double cluster = 0.0;  ///< edge of the regions that are matched each by itself; 0: the body as a whole
-  BodyOptions body;
+  bool edges = true;     ///< whether edges and triangles of the surface meet walls
+  BodyOptions body;      ///< its `surface` is set from the one above
 };
 
 /// A catheter: where it enters, and how its proximal end moves.

@@ -19,6 +19,7 @@ AddBodyResult Bodies::add(std::span<const Vec3> points, const BodyOptions& optio
   return impl_->add(points, options);
 }
 const BodiesStep& Bodies::step() { return impl_->step(); }
+double Bodies::move_with(std::span<const Vec3> positions) { return impl_->move_with(positions); }
 RigidMover Bodies::predicted_state(std::size_t body) const { return impl_->predicted_state(body); }
 void Bodies::apply_impulse(std::size_t body, const RigidMover& solved) { impl_->apply_impulse(body, solved); }
 UpdateReport Bodies::update_after_edit(OrphanPolicy orphaned) { return impl_->update_after_edit(orphaned); }
@@ -34,6 +35,8 @@ std::span<const Fit> Bodies::fits(std::size_t body) const { return impl_->bodies
 BodyEnergy Bodies::energy(std::size_t body) const { return impl_->energy(body); }
 RigidMotion Bodies::rigid_motion_of(std::size_t body) const { return impl_->rigid_motion_of(body); }
 
+std::span<const Vec3> Bodies::surface(std::size_t body) const { return impl_->surface(body); }
+SolidAudit Bodies::audit() const { return impl_->surfaces_.set ? impl_->surfaces_.set->audit() : SolidAudit{}; }
 const Particles& Bodies::particles() const { return impl_->particles_; }
 std::span<const Vec3> Bodies::positions() const { return impl_->positions_; }
 std::span<const Vec3> Bodies::velocities() const { return std::as_const(impl_->velocities_); }

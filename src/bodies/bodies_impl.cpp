@@ -86,12 +86,19 @@ AddBodyResult Bodies::Impl::add(std::span<const Vec3> points, const BodyOptions&
     if (locations[i].place != Place::free) added.refused.push_back(i);
   }
   if (!added.refused.empty()) return added;
+  std::optional<CarriedSurface> carried;
+  if (!options.surface.points.empty()) {
+    carried.emplace(options.surface.points, points);
+    added.surface = add_surface(options.surface);
+    if (added.surface.refusal != SolidRefusal::none) return added;
+  }
   for (std::size_t i = 0; i < size; ++i) environment_.add(particles_, locations[i].simplex, points[i]);
   added.body = next_id_++;
   const double stiffness = options.stiffness > 0.0 ? options.stiffness : 1.0 / (options_.dt * options_.dt);
   Body body{added.body, positions_.size(), std::move(shape),
             stiffness,  options.pull,      exponential(-options.damping * options_.dt),
             {}};
+  body.carried = std::move(carried);
   body.fits.resize(body.shape.cluster_count());
   body.shape.match(points, body.fits);
   positions_.insert(positions_.end(), points.begin(), points.end());
@@ -168,6 +175,13 @@ StateHash Bodies::Impl::state_hash() const {
                static_cast<std::uint64_t>(fates_[p]));
     }
   }
+  const std::vector<std::uint32_t> owners = bodies_with_surface();
+  for (std::size_t s = 0; s < owners.size(); ++s) {
+    const auto first = surfaces_.set->first_vertices();
+    const std::uint64_t id = std::uint64_t{bodies_[owners[s]].id} << 32U;
+    for (std::uint32_t v = first[s]; v < first[s + 1]; ++v)
+      hash.add(id | (1U << 31U) | (v - first[s]), surfaces_.set->particles()[v], {});
+  }
   return hash;
 }
 
@@ -185,6 +199,7 @@ UpdateReport Bodies::Impl::update_after_edit(OrphanPolicy orphaned) {
     if (absorbed[p] == 0) marks.push_back(leaving[body_of_[p]]);
   }
   particles_.remove(marks);
+  if (surfaces_.set) surfaces_.set->update_after_edit();
   remove_bodies(leaving);
   for (std::size_t p = 0; p < positions_.size(); ++p) positions_[p] = particles_[p].position;
   for (Body& body : bodies_) body.shape.match(of(body, positions_), body.fits);
@@ -209,6 +224,10 @@ void Bodies::Impl::remove_gone() {
 
 // Removes the entries of all arrays but `particles_`, whose owner removes its own.
 void Bodies::Impl::remove_bodies(std::span<const std::uint8_t> leaving) {
+  const std::vector<std::uint32_t> owners = bodies_with_surface();
+  for (std::size_t s = owners.size(); s-- > 0;) {
+    if (leaving[owners[s]] != 0) surfaces_.set->remove(static_cast<std::uint32_t>(s));
+  }
   std::size_t particle = 0;
   std::vector<Body> kept;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
@@ -247,6 +266,7 @@ BodiesCheckpoint Bodies::Impl::checkpoint() const {
   }
   for (std::size_t p = 0; p < fates_.size(); ++p)
     saved.particles.push_back({particles_[p], particles_.held_weights(p), velocities_[p], fates_[p], on_[p]});
+  if (surfaces_.set) saved.surfaces = surfaces_.set->checkpoint();
   return saved;
 }
 
@@ -255,14 +275,17 @@ void Bodies::Impl::restore(const BodiesCheckpoint& saved) {
   std::size_t next = 0;
   std::size_t particles = 0;
   std::size_t fits = 0;
+  std::size_t vertices = 0;
   for (std::size_t b = 0; b < bodies_.size() && next < saved.ids.size(); ++b) {
     if (bodies_[b].id != saved.ids[next]) continue;
     leaving[b] = 0;
     particles += bodies_[b].shape.size();
     fits += bodies_[b].fits.size();
+    vertices += bodies_[b].carried ? bodies_[b].carried->vertex_count() : 0;
     ++next;
   }
-  if (next != saved.ids.size() || particles != saved.particles.size() || fits != saved.fits.size())
+  if (next != saved.ids.size() || particles != saved.particles.size() || fits != saved.fits.size() ||
+      vertices != saved.surfaces.states.size())
     throw InvalidArgument("bodies: the checkpoint is of other bodies: add the same bodies in the same order first");
   std::vector<ParticleState> states;
   std::vector<Weights> weights;
@@ -272,6 +295,7 @@ void Bodies::Impl::restore(const BodiesCheckpoint& saved) {
   }
   particles_ = environment_.restored(states, weights);
   remove_bodies(leaving);
+  if (surfaces_.set) surfaces_.set->restore(saved.surfaces);
   for (std::size_t p = 0; p < saved.particles.size(); ++p) {
     positions_[p] = saved.particles[p].state.position;
     velocities_[p] = saved.particles[p].velocity;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,12 +13,15 @@
 #include "bodies/body_contact.hpp"
 #include "bodies/body_motion.hpp"
 #include "bodies/body_rebound.hpp"
+#include "bodies/body_surfaces.hpp"
+#include "bodies/carried_surface.hpp"
 #include "bodies/shape_matching.hpp"
 #include "dartcast/bodies.hpp"
+#include "solids/joint_move.hpp"
 
 namespace dartcast {
 
-struct Bodies::Impl {
+struct Bodies::Impl final : MovePartner {
   struct Body {
     std::uint32_t id;
     std::size_t first;  // particle
@@ -26,7 +30,8 @@ struct Bodies::Impl {
     double pull;
     double kept;  // share of velocities relative to the rigid motion that a step keeps
     std::vector<Fit> fits;
-    double constant = 0.0;  // of the energy for `fits`
+    double constant = 0.0;                       // of the energy for `fits`
+    std::optional<CarriedSurface> carried = {};  // how its surface follows the particles; none without edges
 
     // Scratch of one step.
     std::vector<Fit> trial = {};  // fits of a stage, or not accepted yet
@@ -95,6 +100,22 @@ struct Bodies::Impl {
   std::uint64_t rebound();
   void collide();
 
+  // bodies_edges.cpp: the surfaces that bodies carry.
+  SolidPlacement add_surface(const SolidMesh& mesh);
+  [[nodiscard]] std::vector<std::uint32_t> bodies_with_surface() const;
+  [[nodiscard]] std::span<const Vec3> surface(std::size_t body) const;
+  [[nodiscard]] std::vector<Vec3> surface_targets(std::vector<Vec3>& places) const;
+  void check_surfaces(const char* caller) const;
+  void move_surfaces();
+  [[nodiscard]] SurfaceRow row_of(const SolidContact& contact, const Body& body) const;
+  void answer_surfaces(std::span<const std::vector<SurfaceRow>> rows, std::span<const std::uint8_t> stuck);
+  void put_back(std::span<const std::uint32_t> which, const Particles& before);
+  double move_with(std::span<const Vec3> positions);
+  double plan(const VertexMotion& walls) override;
+  bool shorten(double share, const VertexMotion& walls) override;
+  void before_move(const VertexMotion& walls) override;
+  void after_move() override;
+
   // bodies_energy.cpp: the limits of energy.
   void measure();
   [[nodiscard]] double action_work(const Body& body) const;
@@ -158,6 +179,8 @@ struct Bodies::Impl {
   std::vector<Vec3> targets_;
   std::vector<Vec3> reached_;
   std::vector<Leg> legs_;
+  BodySurfaces surfaces_;
+  MovePartner* partner_ = nullptr;  // the surfaces, in a joint move
   // Collisions.
   BodyCollisions collisions_;
   BodyRebounds rebounds_;

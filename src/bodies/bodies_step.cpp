@@ -21,11 +21,14 @@ namespace dartcast {
 //  8. accept(), limit_energy()   new fits; velocities that the energy does not cover are cut (bodies_energy.cpp)
 //  9. aim_pull(), advance()  the second pass: particles go towards their goals; answer_pull() answers at walls
 // 10. fit(), damp(), limit_energy()   new fits, damping, and the limits of energy once more
-// 11. remove_gone(), find_pairs()   bodies that left; pairs that may touch in the next step
+// 11. move_surfaces()        surfaces follow; where they meet walls, particles give way (bodies_edges.cpp)
+// 12. remove_gone(), find_pairs()   bodies that left; pairs that may touch in the next step
 const BodiesStep& Bodies::Impl::step() {
+  check_surfaces("bodies");
   last_ = {};
   first_pass();
   second_pass();
+  move_surfaces();
   for (Body& body : bodies_) {
     last_.fallbacks += body.fallbacks;
     last_.input += body.input;

@@ -27,6 +27,17 @@ class CarriedSurface {
   /// threads. Throws InvalidArgument where a number does not match. Cost: 5 ns per neighbour.
   void positions(std::span<const Vec3> samples, std::span<Vec3> vertices, Threads threads = {}) const;
 
+  /// Calls visit(sample, weight) for each sample that a vertex follows. The weights sum to 1.
+  template <class Visit>
+  void for_each_weight(std::size_t vertex, const Visit& visit) const {
+    double rest = 1.0;
+    for (std::size_t k = first_[vertex] + 1; k < first_[vertex + 1]; ++k) {
+      visit(weights_[k].sample, weights_[k].weight);
+      rest -= weights_[k].weight;
+    }
+    visit(weights_[first_[vertex]].sample, rest);
+  }
+
   [[nodiscard]] std::size_t vertex_count() const { return first_.size() - 1; }
   [[nodiscard]] std::size_t sample_count() const { return samples_; }
   /// The largest sum of the magnitudes of a vertex's weights: the bound for the amplification of errors of samples.

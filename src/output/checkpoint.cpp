@@ -207,12 +207,19 @@ void fields(Archive& a, Bodies::Checkpoint::Particle& p) {
 }
 
 template <class Archive>
+void fields(Archive& a, SolidCheckpoint& c) {
+  a.list(c.states, [&](ParticleState& p) { fields(a, p); });
+  a.list(c.held_weights, [&](Weights& w) { fields(a, w); });
+}
+
+template <class Archive>
 void fields(Archive& a, Bodies::Checkpoint& c) {
   a.value(c.steps);
   fields(a, c.counters);
   a.list(c.ids, [&](std::uint32_t& id) { a.value(id); });
   a.list(c.fits, [&](Fit& f) { fields(a, f); });
   a.list(c.particles, [&](Bodies::Checkpoint::Particle& p) { fields(a, p); });
+  fields(a, c.surfaces);
 }
 
 template <class Archive>
@@ -281,8 +288,7 @@ void fields(Archive& a, RigidPose& p) {
 
 template <class Archive>
 void fields(Archive& a, SolidsState& s) {
-  a.list(s.set.states, [&](ParticleState& p) { fields(a, p); });
-  a.list(s.set.held_weights, [&](Weights& w) { values(a, w[0], w[1], w[2], w[3]); });
+  fields(a, s.set);
   a.list(s.tools, [&](SolidsState::Tool& t) {
     fields(a, t.pose);
     fields(a, t.wanted);

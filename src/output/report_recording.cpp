@@ -85,9 +85,7 @@ RecordedSolid recorded_body(const Simulation& simulation, std::size_t b, const R
     return solid;
   }
   const BodiesComponent::Skin& skin = *component.skin(b);
-  std::vector<Vec3> vertices(skin.mesh.points.size());
-  skin.carried.positions(positions, vertices, simulation.environment().threads());
-  solid.points = recorded(vertices, header);
+  solid.points = recorded(component.surface_points(b), header);
   for (std::size_t f = 0; f + 1 < skin.mesh.offsets.size(); ++f) {
     const std::size_t first = skin.mesh.offsets[f];
     for (std::size_t k = first + 2; k < skin.mesh.offsets[f + 1]; ++k) {

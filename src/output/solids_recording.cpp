@@ -175,9 +175,7 @@ void SolidsRecording::write_body(const Simulation& simulation, std::size_t body,
 
   if (!component.skin(body)) return;
   const BodiesComponent::Skin& skin = *component.skin(body);
-  std::vector<Vec3> vertices(skin.mesh.points.size());
-  skin.carried.positions(positions, vertices, simulation.environment().threads());
-  VtpFile surface(std::move(vertices));
+  VtpFile surface(component.surface_points(body));
   surface.add_polygons(skin.mesh.offsets, skin.mesh.connectivity);
   write(series("surface", component.name(body)), step, surface.data());
 }

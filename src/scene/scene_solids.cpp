@@ -62,6 +62,7 @@ void body_matter(TomlTable& t, BodyScene& scene) {
   t.get("linear", body.match.linear, {0.0, 1.0});
   t.get("keep_volume", body.match.keep_volume);
   t.get("cluster", scene.cluster, Range::not_negative);
+  t.get("edges", scene.edges);
   t.get("velocity", body.velocity);
   t.get("spin", body.angular_velocity);
 }

@@ -7,10 +7,13 @@
 #include <utility>
 
 #include "base/elementary.hpp"
+#include "bodies/bodies_moves.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
+#include "simulation/refusal_reason.hpp"
 #include "simulation/simulation_state.hpp"
 #include "simulation/with_name.hpp"
+#include "surface/triangles.hpp"
 
 namespace dartcast {
 
@@ -79,11 +82,17 @@ void BodiesComponent::add_named(const BodyScene& scene) {
   if (points.empty()) throw Error("no particle fits into it; make its spacing smaller");
   BodyOptions options = scene.body;
   if (scene.cluster > 0.0) options.match.clusters = overlapping_clusters(points, scene.cluster);
+  if (scene.edges) options.surface = {mesh.points, {}, surface_triangles(mesh)};
   const AddBodyResult added = made().add(points, options);
   if (!added.refused.empty()) {
     const Vec3& x = points[added.refused.front()];
     throw Error(fmt::format("{} of its {} particles are in no free cell, the first at ({}, {}, {}); move or turn it",
                             added.refused.size(), points.size(), x.x, x.y, x.z));
+  }
+  if (added.surface.refusal != SolidRefusal::none) {
+    const Vec3& x = mesh.points[added.surface.vertices[0]];
+    throw Error(fmt::format("its surface at ({}, {}, {}) {}; move or turn it, or set edges = false", x.x, x.y, x.z,
+                            reason(added.surface.refusal)));
   }
   CarriedSurface carried(mesh.points, points);
   names_.push_back(scene.name);
@@ -107,8 +116,23 @@ void BodiesComponent::restore(const SimulationState& state) {
 }
 
 Audit BodiesComponent::audit() const {
-  return bodies_ ? dartcast::audit(environment_.complex(), bodies_->particles(), environment_.threads()) : Audit{};
+  if (!bodies_) return {};
+  Audit all = dartcast::audit(environment_.complex(), bodies_->particles(), environment_.threads());
+  const SolidAudit surfaces = bodies_->audit();
+  return all += {surfaces.checked, surfaces.failed, surfaces.first};
 }
+
+std::vector<Vec3> BodiesComponent::surface_points(std::size_t body) const {
+  const auto with_edges = bodies_->surface(body);
+  if (!with_edges.empty()) return {with_edges.begin(), with_edges.end()};
+  const Skin& own = *skin(body);
+  std::vector<Vec3> points(own.mesh.points.size());
+  const auto particles = bodies_->positions().subspan(bodies_->first_particle(body), bodies_->particle_count(body));
+  own.carried.positions(particles, points, environment_.threads());
+  return points;
+}
+
+MovePartner* BodiesComponent::partner() { return bodies_ ? BodiesMoves::prepare(*bodies_) : nullptr; }
 
 StateHash BodiesComponent::state_hash() const { return bodies_ ? bodies_->state_hash() : StateHash{}; }
 

@@ -11,6 +11,7 @@
 #include "dartcast/scene.hpp"
 #include "dartcast/simulation.hpp"
 #include "simulation/component.hpp"
+#include "solids/joint_move.hpp"
 
 namespace dartcast {
 
@@ -31,6 +32,9 @@ class BodiesComponent final : public SimulationComponent {
   /// (how many, and the first).
   void add(const BodyScene& scene);
 
+  /// For one joint move; null where no body has edges.
+  [[nodiscard]] MovePartner* partner();
+
   void step(double begin) override;
   void update_after_edit(const ComplexEditReport& edit, OrphanPolicy orphaned) override;
   void save(SimulationState& state) const override;
@@ -46,6 +50,8 @@ class BodiesComponent final : public SimulationComponent {
   [[nodiscard]] const std::string& name(std::size_t body) const { return names_[bodies_->id(body)]; }
   /// None for a body without a surface.
   [[nodiscard]] const std::optional<Skin>& skin(std::size_t body) const { return skins_[bodies_->id(body)]; }
+  /// The points of the skin() now. Precondition: it has one.
+  [[nodiscard]] std::vector<Vec3> surface_points(std::size_t body) const;
   [[nodiscard]] std::vector<BodySummary> summaries() const;
 
  private:

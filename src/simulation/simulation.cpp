@@ -150,12 +150,14 @@ void introduce(ParticleSystem& particles, BodiesComponent& bodies) {
 
 AddBodyResult Simulation::add_body(std::span<const Vec3> points, const BodyOptions& options) {
   AddBodyResult added = parts_->bodies.add(points, options);
+  if (!options.surface.points.empty()) parts_->move_walls_jointly();
   introduce(parts_->particles, parts_->bodies);
   return added;
 }
 
 void Simulation::add(const BodyScene& body) {
   parts_->bodies.add(body);
+  if (body.edges) parts_->move_walls_jointly();
   introduce(parts_->particles, parts_->bodies);
 }
 

@@ -41,10 +41,12 @@ struct Simulation::Parts {
   bool replaying = false;  // earlier edits: all but the particles are restored afterwards
   double seconds_solids = 0.0;
 
-  /// From now on walls move together with the solids and catheters that stop them.
+  /// From now on walls move together with the solids, bodies and catheters that stop them.
   void move_walls_jointly() {
     particles.set_mover([this](std::span<const Vec3> positions) {
-      solids.move_with(particles.time(), positions, catheters.partners());
+      std::vector<MovePartner*> partners = catheters.partners();
+      if (MovePartner* const surfaces = bodies.partner()) partners.push_back(surfaces);
+      solids.move_with(particles.time(), positions, std::move(partners));
     });
   }
 

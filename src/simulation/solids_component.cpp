@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "dartcast/error.hpp"
+#include "simulation/refusal_reason.hpp"
 #include "simulation/simulation_state.hpp"
 #include "simulation/with_name.hpp"
 
@@ -25,17 +26,6 @@ SolidMesh shape_of(const SolidScene& scene) {
   const Quaternion rotation = rotation_of(scene.rotate);
   for (Vec3& x : mesh.points) x = rotated(rotation, x * scene.scale) + scene.at;
   return mesh;
-}
-
-const char* reason(SolidRefusal why) {
-  switch (why) {
-    case SolidRefusal::vertex_not_free: return "is in a blocked cell or outside";
-    case SolidRefusal::meets_wall: return "meets a wall";
-    case SolidRefusal::encloses_wall: return "encloses a wall";
-    case SolidRefusal::cell_not_positive: return "is in a cell that is flat or inverted";
-    case SolidRefusal::none: break;
-  }
-  return "has room";
 }
 
 RigidPose moved(const RigidPose& pose, const SolidScene& scene, double begin, double dt) {

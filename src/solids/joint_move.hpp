@@ -1,8 +1,8 @@
 // The motion of an environment's walls together with what has edges among them: sets of solids, catheters.
 #pragma once
 
+#include <memory>
 #include <span>
-#include <vector>
 
 #include "dartcast/environment.hpp"
 #include "dartcast/solids.hpp"
@@ -14,9 +14,6 @@ namespace dartcast {
 /// after_move() nothing that the caller can see changes.
 class MovePartner {
  public:
-  MovePartner() = default;
-  MovePartner(const MovePartner&) = delete;
-  MovePartner& operator=(const MovePartner&) = delete;
   virtual ~MovePartner() = default;
 
   /// Plans a way for the time in which the walls make theirs. Returns the share of both up to which they are free of
@@ -29,6 +26,11 @@ class MovePartner {
   virtual void before_move(const VertexMotion& walls) = 0;
   /// The environment has moved.
   virtual void after_move() = 0;
+
+ protected:
+  MovePartner() = default;
+  MovePartner(const MovePartner&) = default;
+  MovePartner& operator=(const MovePartner&) = default;
 };
 
 /// Moves the environment straight to these positions of all the mesh's points, and its partners with it, as far as all of
@@ -41,6 +43,8 @@ struct JointMoves {
   static MovePartner& prepare(SolidSet& solids, std::span<const Vec3> targets, const SolidStepOptions& options);
   /// The report of the set's last step.
   static const SolidStep& last_step(const SolidSet& solids);
+  /// A copy in the same environment.
+  static std::unique_ptr<SolidSet> copy(const SolidSet& solids);
 };
 
 /// The simplex that holds `to` after the move: the same as before, or one of a cell that the point reaches on its straight

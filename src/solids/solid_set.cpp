@@ -156,6 +156,12 @@ MovePartner& JointMoves::prepare(SolidSet& solids, std::span<const Vec3> targets
   return *solids.impl_;
 }
 
+std::unique_ptr<SolidSet> JointMoves::copy(const SolidSet& solids) {
+  auto made = std::make_unique<SolidSet>(solids.impl_->environment);
+  made->impl_ = std::make_unique<SolidSet::Impl>(*solids.impl_);
+  return made;
+}
+
 const SolidStep& JointMoves::last_step(const SolidSet& solids) { return solids.impl_->last; }
 
 }  // namespace dartcast
