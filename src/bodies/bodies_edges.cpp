@@ -40,8 +40,9 @@ std::span<const Vec3> Bodies::Impl::surface(std::size_t body) const {
   return surfaces_.set->positions().subspan(first[s], first[s + 1] - first[s]);
 }
 
-// Where particles at these places carry all surfaces. A surface that would leave the range of numbers stays.
-std::vector<Vec3> Bodies::Impl::surface_targets(std::vector<Vec3>& places) const {
+// Where particles at these places carry all surfaces. A surface stays where none of them moves (from `from`, if that is not
+// empty), or where it would leave the range of numbers.
+std::vector<Vec3> Bodies::Impl::surface_targets(std::vector<Vec3>& places, std::span<const Vec3> from) const {
   const auto now = surfaces_.set->positions();
   std::vector<Vec3> targets(now.begin(), now.end());
   const auto first = surfaces_.set->first_vertices();
@@ -49,7 +50,11 @@ std::vector<Vec3> Bodies::Impl::surface_targets(std::vector<Vec3>& places) const
   for (std::size_t s = 0; s < owners.size(); ++s) {
     const Body& body = bodies_[owners[s]];
     const auto own = std::span<Vec3>(targets).subspan(first[s], first[s + 1] - first[s]);
-    body.carried->positions(of(body, places), own);
+    const auto particles = of(body, places);
+    if (!from.empty() &&
+        std::equal(particles.begin(), particles.end(), from.begin() + static_cast<std::ptrdiff_t>(body.first)))
+      continue;
+    body.carried->positions(particles, own);
     if (!std::all_of(own.begin(), own.end(), in_exact_range))
       std::copy_n(now.begin() + first[s], own.size(), own.begin());
   }
@@ -68,7 +73,7 @@ void Bodies::Impl::check_surfaces(const char* caller) const {
 
 void Bodies::Impl::move_surfaces() {
   if (!surfaces_.set || surfaces_.set->size() == 0) return;
-  const SolidStep& step = surfaces_.set->advance(surface_targets(reached_));
+  const SolidStep& step = surfaces_.set->advance(surface_targets(reached_, {}));
   const std::vector<std::uint32_t> owners = bodies_with_surface();
   std::vector<std::vector<SurfaceRow>> rows(bodies_.size());
   std::vector<std::uint8_t> stuck(bodies_.size(), 0);
@@ -177,15 +182,15 @@ double Bodies::Impl::plan(const VertexMotion& walls) {
     };
     const Corners from = corners(walls.before);
     const Corners to = corners(walls.after);
+    if (from == to) continue;
     const Weights weights = detail::barycentric(from, carried[p]);
     for (std::size_t k = 0; k < 4; ++k) carried[p] += (to[k] - from[k]) * weights[k];
   }
-  partner_ = &JointMoves::prepare(*surfaces_.set, surface_targets(carried), {});
+  partner_ = &JointMoves::prepare(*surfaces_.set, surface_targets(carried, positions_), {});
   return partner_->plan(walls);
 }
 
 bool Bodies::Impl::shorten(double share, const VertexMotion& walls) { return partner_->shorten(share, walls); }
-void Bodies::Impl::before_move(const VertexMotion& walls) { partner_->before_move(walls); }
 void Bodies::Impl::after_move() { partner_->after_move(); }
 
 MovePartner* BodiesMoves::prepare(Bodies& bodies) {

@@ -104,7 +104,7 @@ struct Bodies::Impl final : MovePartner {
   SolidPlacement add_surface(const SolidMesh& mesh);
   [[nodiscard]] std::vector<std::uint32_t> bodies_with_surface() const;
   [[nodiscard]] std::span<const Vec3> surface(std::size_t body) const;
-  [[nodiscard]] std::vector<Vec3> surface_targets(std::vector<Vec3>& places) const;
+  [[nodiscard]] std::vector<Vec3> surface_targets(std::vector<Vec3>& places, std::span<const Vec3> from) const;
   void check_surfaces(const char* caller) const;
   void move_surfaces();
   [[nodiscard]] SurfaceRow row_of(const SolidContact& contact, const Body& body) const;
@@ -113,7 +113,6 @@ struct Bodies::Impl final : MovePartner {
   double move_with(std::span<const Vec3> positions);
   double plan(const VertexMotion& walls) override;
   bool shorten(double share, const VertexMotion& walls) override;
-  void before_move(const VertexMotion& walls) override;
   void after_move() override;
 
   // bodies_energy.cpp: the limits of energy.

@@ -4,7 +4,7 @@
 // While walls move, the catheter is a partner of a joint move (solids/joint_move.hpp):
 //  1. plan()         the vessel carries the points; what touches then is solved for, as in a substep
 //  2. shorten()      where that does not free the way, walls and catheter make one share of theirs
-//  3. before_move(), after_move()   the points get there
+//  3. after_move()   the points get there
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -176,17 +176,6 @@ bool Catheter::Impl::shorten(double share, const VertexMotion& walls) {
   return share == 0.0 || is_stuck() || find_touches(walls) > 1.0;
 }
 
-void Catheter::Impl::before_move(const VertexMotion& walls) {
-  const CellComplex& complex = environment_.complex();
-  const std::size_t inserted = inserted_points();
-  places_.resize(count_ + 1);
-  if (is_stuck()) return;
-  places_[count_] = simplex_after(complex, near_, particles_[count_].at(), start_[count_], ends_[count_], walls);
-  for (std::size_t i = 0; i < count_; ++i)
-    places_[i] =
-        i < inserted ? simplex_after(complex, near_, particles_[i].at(), start_[i], ends_[i], walls) : places_[count_];
-}
-
 // Walls that were met before are near the points still: they moved as these did.
 void Catheter::Impl::after_move() {
   const SimplexId at = particles_[count_].at();
@@ -196,12 +185,7 @@ void Catheter::Impl::after_move() {
     environment_.advance(particles_, ends_);
     return;
   }
-  Particles moved;
-  for (std::size_t i = 0; i <= count_; ++i) {
-    if (!environment_.add(moved, places_[i], ends_[i]))
-      throw InternalError("catheter: a point is not in its cell after a move; please report it");
-  }
-  particles_ = std::move(moved);
+  follow_move(environment_, particles_, ends_);
   for (ChainWall& w : walls_) w.point += place_on(w, ends_) - place_on(w, start_);
 }
 

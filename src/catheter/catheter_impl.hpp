@@ -82,7 +82,6 @@ struct Catheter::Impl final : MovePartner {
   double plan(const VertexMotion& walls) override;
   double solve_way(const VertexMotion& walls);
   bool shorten(double share, const VertexMotion& walls) override;
-  void before_move(const VertexMotion& walls) override;
   void after_move() override;
   double move_with(std::span<const Vec3> positions);
   void find_stuck();
@@ -126,12 +125,10 @@ struct Catheter::Impl final : MovePartner {
   std::size_t inserted_before_ = 0;  // points, before the substep
   std::vector<Vec3> ends_;           // of the way that is looked at, from start_
   std::vector<Vec3> planned_;        // of the way that will be made
-  std::vector<SimplexId> places_;
   std::vector<ElementTouch> touches_;
   ChainSurroundings surroundings_{look_margin * options_.spacing};  // for one step
   std::vector<Cell> cells_;
   TouchFinder finder_;
-  NearWalls near_;
 };
 
 }  // namespace dartcast

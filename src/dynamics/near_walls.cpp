@@ -235,7 +235,9 @@ std::span<const NearWall> NearWalls::run(const CellComplex& complex, std::span<c
   slots_.clear();
   cells_.clear();
   walls_.clear();
-  for (const Cell c : starts) add(c);
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    if (i == 0 || starts[i] != starts[i - 1]) add(starts[i]);
+  }
   for (std::size_t i = 0; i < cells_.size(); ++i) visit(complex, reach, cells_[i], motion);
   return walls_;
 }

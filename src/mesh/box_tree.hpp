@@ -1,6 +1,7 @@
 // A tree of axis-aligned boxes, to find those that overlap without looking at all pairs.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -15,10 +16,16 @@ struct Box {
 };
 
 /// The smallest box around both.
-Box join(const Box& a, const Box& b);
+inline Box join(const Box& a, const Box& b) {
+  return {{std::min(a.low.x, b.low.x), std::min(a.low.y, b.low.y), std::min(a.low.z, b.low.z)},
+          {std::max(a.high.x, b.high.x), std::max(a.high.y, b.high.y), std::max(a.high.z, b.high.z)}};
+}
 
 /// Whether two closed boxes have a point in common.
-bool overlap(const Box& a, const Box& b);
+inline bool overlap(const Box& a, const Box& b) {
+  return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y &&
+         a.low.z <= b.high.z && b.low.z <= a.high.z;
+}
 
 /// Built once over a list of boxes; cost n log n.
 class BoxTree {

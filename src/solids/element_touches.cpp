@@ -38,12 +38,7 @@ bool is_flat(const CellComplex& complex, Cell c, std::span<const Vec3> positions
 }
 
 // The box of a point's way.
-Box way_of(const Vec3& from, const Vec3& to) {
-  const auto low = [](double a, double b) { return std::min(a, b); };
-  const auto high = [](double a, double b) { return std::max(a, b); };
-  return {{low(from.x, to.x), low(from.y, to.y), low(from.z, to.z)},
-          {high(from.x, to.x), high(from.y, to.y), high(from.z, to.z)}};
-}
+Box way_of(const Vec3& from, const Vec3& to) { return join({from, from}, {to, to}); }
 
 Box way_of(const SolidElement& e, const SolidMotion& motion) {
   Box box = way_of(motion.from[e.vertex[0]], motion.to[e.vertex[0]]);
@@ -64,16 +59,23 @@ Vec3 extent_of(const CellComplex& complex, Cell c, std::span<const Vec3> positio
   return box.high - box.low;
 }
 
+Box around(std::span<const Box> boxes) {
+  Box all = boxes.front();
+  for (const Box& b : boxes) all = join(all, b);
+  return all;
+}
+
 // Whether a search of the box around all is likely to reach fewer cells than one for each. `cell`: the extent of a cell. A
 // matter of speed alone.
-bool share_a_search(std::span<const Box> boxes, const Box& all, const Vec3& cell) {
+bool share_a_search(std::span<const Box> boxes, const Vec3& cell) {
+  const Vec3 rate = {1.0 / cell.x, 1.0 / cell.y, 1.0 / cell.z};
   const auto cells_in = [&](const Box& b) {
     const Vec3 size = b.high - b.low;
-    return (1.0 + size.x / cell.x) * (1.0 + size.y / cell.y) * (1.0 + size.z / cell.z);
+    return (1.0 + size.x * rate.x) * (1.0 + size.y * rate.y) * (1.0 + size.z * rate.z);
   };
   double each = 0.0;
   for (const Box& b : boxes) each += cells_in(b);
-  return boxes.size() > 1 && cells_in(all) < 0.5 * each;
+  return cells_in(around(boxes)) < 0.5 * each;
 }
 
 }  // namespace
@@ -119,15 +121,46 @@ void TouchFinder::find_among(std::span<const NearWall> walls, const SolidElement
 std::optional<double> TouchFinder::find(const CellComplex& complex, std::span<const Cell> cells,
                                         std::span<const SolidElement> elements, const SolidMotion& motion,
                                         const VertexMotion& walls, std::vector<ElementTouch>& touches) {
+  const std::size_t touches_before = touches.size();
+  reached_.clear();
+  for (std::size_t first = 0; first < elements.size(); first += elements_in_group) {
+    const std::size_t count = std::min<std::size_t>(elements_in_group, elements.size() - first);
+    find_part(complex, cells.subspan(first, count), elements.subspan(first, count), motion, walls, touches);
+  }
+  if (!first_flat_of_reached(complex, walls)) return {};
+  touches.resize(touches_before);  // perhaps no element reaches the cell that is flat
+  reached_.clear();
+  find_each(complex, cells, elements, motion, walls, touches);
+  return first_flat_of_reached(complex, walls);
+}
+
+std::optional<double> TouchFinder::first_flat_of_reached(const CellComplex& complex, const VertexMotion& walls) {
+  std::sort(reached_.begin(), reached_.end());
+  reached_.erase(std::unique(reached_.begin(), reached_.end()), reached_.end());
+  return first_flat_time(complex, reached_, walls);
+}
+
+// By one search, if that is quicker than one for each; else both halves.
+void TouchFinder::find_part(const CellComplex& complex, std::span<const Cell> cells,
+                            std::span<const SolidElement> elements, const SolidMotion& motion,
+                            const VertexMotion& walls, std::vector<ElementTouch>& touches) {
+  constexpr std::size_t too_small = 4;
+  if (elements.size() <= too_small) return find_each(complex, cells, elements, motion, walls, touches);
   boxes_.clear();
   for (const SolidElement& e : elements) boxes_.push_back(way_of(e, motion));
-  Box all = boxes_.front();
-  for (const Box& b : boxes_) all = join(all, b);
-  if (!share_a_search(boxes_, all, extent_of(complex, cells.front(), walls.after)))
-    return find_each(complex, cells, elements, motion, walls, touches);
-  const auto near = near_.search(complex, cells, all, walls);
-  if (first_flat_time(complex, near_.cells_reached(), walls))  // perhaps of a cell that no element reaches
-    return find_each(complex, cells, elements, motion, walls, touches);
+  if (share_a_search(boxes_, extent_of(complex, cells.front(), walls.after)))
+    return find_together(complex, cells, elements, motion, walls, touches);
+  const std::size_t half = elements.size() / 2;
+  find_part(complex, cells.first(half), elements.first(half), motion, walls, touches);
+  find_part(complex, cells.subspan(half), elements.subspan(half), motion, walls, touches);
+}
+
+// `boxes_` has those of the elements.
+void TouchFinder::find_together(const CellComplex& complex, std::span<const Cell> cells,
+                                std::span<const SolidElement> elements, const SolidMotion& motion,
+                                const VertexMotion& walls, std::vector<ElementTouch>& touches) {
+  const auto near = near_.search(complex, cells, around(boxes_), walls);
+  reached_.insert(reached_.end(), near_.cells_reached().begin(), near_.cells_reached().end());
   wall_boxes_.clear();
   for (const NearWall& w : near) wall_boxes_.push_back(way_of(w));
   for (std::size_t i = 0; i < elements.size() && !near.empty(); ++i) {
@@ -138,18 +171,15 @@ std::optional<double> TouchFinder::find(const CellComplex& complex, std::span<co
     walls_ = chosen_;
     ask_all(elements[i], motion, touches);
   }
-  return {};
 }
 
-std::optional<double> TouchFinder::find_each(const CellComplex& complex, std::span<const Cell> cells,
-                                             std::span<const SolidElement> elements, const SolidMotion& motion,
-                                             const VertexMotion& walls, std::vector<ElementTouch>& touches) {
-  std::optional<double> first;
+void TouchFinder::find_each(const CellComplex& complex, std::span<const Cell> cells,
+                            std::span<const SolidElement> elements, const SolidMotion& motion,
+                            const VertexMotion& walls, std::vector<ElementTouch>& touches) {
   for (std::size_t i = 0; i < elements.size(); ++i) {
-    const auto flat = find(complex, cells[i], elements[i], motion, walls, touches);
-    if (flat) first = std::min(first.value_or(*flat), *flat);
+    find_touches(complex, cells[i], elements[i], motion, walls, touches);
+    reached_.insert(reached_.end(), cells_reached().begin(), cells_reached().end());
   }
-  return first;
 }
 
 void TouchFinder::ask_all(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches) {

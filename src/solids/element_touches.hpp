@@ -46,8 +46,8 @@ class TouchFinder {
   void find_touches(const CellComplex& complex, Cell cell, const SolidElement& element, const SolidMotion& motion,
                     const VertexMotion& walls, std::vector<ElementTouch>& touches);
 
-  /// find() for many elements, `cells` their first vertices' cells. Elements that are small and near each other share one
-  /// search.
+  /// find() for many elements of one solid, `cells` their first vertices' cells. Groups of elements that are small and near
+  /// each other share one search.
   std::optional<double> find(const CellComplex& complex, std::span<const Cell> cells,
                              std::span<const SolidElement> elements, const SolidMotion& motion,
                              const VertexMotion& walls, std::vector<ElementTouch>& touches);
@@ -76,15 +76,20 @@ class TouchFinder {
   void ask_corners(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches);
   void ask_sides(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches);
   void ask_face(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches);
-  std::optional<double> find_each(const CellComplex& complex, std::span<const Cell> cells,
-                                  std::span<const SolidElement> elements, const SolidMotion& motion,
-                                  const VertexMotion& walls, std::vector<ElementTouch>& touches);
+  void find_part(const CellComplex& complex, std::span<const Cell> cells, std::span<const SolidElement> elements,
+                 const SolidMotion& motion, const VertexMotion& walls, std::vector<ElementTouch>& touches);
+  void find_together(const CellComplex& complex, std::span<const Cell> cells, std::span<const SolidElement> elements,
+                     const SolidMotion& motion, const VertexMotion& walls, std::vector<ElementTouch>& touches);
+  void find_each(const CellComplex& complex, std::span<const Cell> cells, std::span<const SolidElement> elements,
+                 const SolidMotion& motion, const VertexMotion& walls, std::vector<ElementTouch>& touches);
+  std::optional<double> first_flat_of_reached(const CellComplex& complex, const VertexMotion& walls);
   void ask_all(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches);
   void list_parts(unsigned size);
 
   NearWalls near_;
   std::span<const NearWall> walls_;
   std::vector<NearWall> chosen_;
+  std::vector<Cell> reached_;    // by elements
   std::vector<Box> boxes_;       // of elements' ways
   std::vector<Box> wall_boxes_;  // of walls' ways
   std::vector<WallPart> parts_;  // edges or vertices of the walls, each once

@@ -46,7 +46,8 @@ Vec3 middle_of(const SolidElement& e, std::span<const Vec3> points) {
 
 void sort_in_halves(std::span<SolidElement> elements, std::span<const Vec3> points) {
   constexpr std::size_t group = elements_in_group;
-  if (elements.size() <= group) return;
+  constexpr std::size_t too_small = 8;
+  if (elements.size() <= too_small) return;
   Vec3 low = middle_of(elements[0], points);
   Vec3 high = low;
   for (const SolidElement& e : elements) {
@@ -61,7 +62,8 @@ void sort_in_halves(std::span<SolidElement> elements, std::span<const Vec3> poin
     const Vec3 m = middle_of(e, points);
     return std::pair(along_x ? m.x : along_y ? m.y : m.z, e.vertex);
   };
-  const std::size_t half = std::max(group, elements.size() / 2 / group * group);  // whole groups on the left
+  const std::size_t middle = elements.size() / 2;
+  const std::size_t half = elements.size() > group ? std::max(group, middle / group * group) : middle;  // whole groups
   std::nth_element(elements.begin(), elements.begin() + static_cast<std::ptrdiff_t>(half), elements.end(),
                    [&](const SolidElement& a, const SolidElement& b) { return key(a) < key(b); });
   sort_in_halves(elements.first(half), points);

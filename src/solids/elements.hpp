@@ -21,10 +21,11 @@ struct SolidElement {
 /// The number of an element's sides.
 constexpr unsigned side_count(const SolidElement& e) { return e.count == 3 ? 3 : e.count - 1; }
 
-/// Elements that one search for walls may serve.
-inline constexpr std::uint32_t elements_in_group = 64;
+/// The most elements that one search for walls serves.
+inline constexpr std::uint32_t elements_in_group = 512;
 
-/// All triangles, edges and points of a mesh, in an order in which each group has neighbours. An edge or a triangle that is
+/// All triangles, edges and points of a mesh, in an order in which each group has neighbours, and each half of
+/// it, and so on. An edge or a triangle that is
 /// listed twice counts once. Precondition: check() accepts the mesh. Cost: n log n.
 std::vector<SolidElement> elements_of(const SolidMesh& mesh);
 

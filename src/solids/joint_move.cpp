@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <vector>
 
-#include "complex/simplex.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/predicates.hpp"
 
@@ -14,45 +14,46 @@ namespace dartcast {
 
 namespace {
 
-// Whether a simplex holds a point, border included.
-bool holds(const CellComplex& complex, SimplexId simplex, std::span<const Vec3> positions, const Vec3& x) {
-  const auto vertices = complex.vertices(simplex);
-  Corners v;
-  for (unsigned i = 0; i < 4; ++i) v[i] = positions[vertices[i].value];
-  for (unsigned f = 0; f < 4; ++f) {
-    if (orient_facet(v, f, x) == Sign::negative) return false;
-  }
-  return true;
-}
-
-// The first of these cells' simplices that does.
-SimplexId holding(const CellComplex& complex, std::span<const Cell> cells, std::span<const Vec3> positions,
-                  const Vec3& x) {
+// Adds the particle to the first of these cells' simplices that holds it, border included.
+bool add_to_first(Environment& environment, std::span<const Cell> cells, const Vec3& x, Particles& moved) {
   for (const Cell c : cells) {
-    const std::size_t count = complex.map().view(c).shape().simplices().size();
+    const std::size_t count = environment.map().view(c).shape().simplices().size();
     for (std::uint16_t s = 0; s < count; ++s) {
-      if (holds(complex, {c, s}, positions, x)) return {c, s};
+      if (environment.add(moved, {c, s}, x)) return true;
     }
   }
-  return {};
+  return false;
+}
+
+// Adds the particle where it is after its way: in one of the cells that it reaches.
+void add_moved(Environment& environment, Cell cell, const Vec3& from, const Vec3& to, Particles& moved) {
+  const CellComplex& complex = environment.complex();
+  MovingElement point;
+  point.from[0] = from;
+  point.to[0] = to;
+  NearWalls near;
+  near.search(complex, cell, point, {complex.previous_positions(), complex.positions()});
+  if (!add_to_first(environment, near.cells_reached(), to, moved))
+    throw InternalError(fmt::format("joint move: no cell holds the point ({}, {}, {}) after a move; please report it",
+                                    to.x, to.y, to.z));
 }
 
 }  // namespace
 
 Vec3 on_way(const Vec3& from, const Vec3& to, double share) { return flushed(from + (to - from) * share); }
 
-SimplexId simplex_after(const CellComplex& complex, NearWalls& near, SimplexId before, const Vec3& from, const Vec3& to,
-                        const VertexMotion& walls) {
-  if (holds(complex, before, walls.after, to)) return before;
-  MovingElement point;
-  point.from[0] = from;
-  point.to[0] = to;
-  near.search(complex, before.cell, point, walls);
-  const SimplexId found = holding(complex, near.cells_reached(), walls.after, to);
-  if (!found.cell.valid())
-    throw InternalError(fmt::format("joint move: no cell holds the point ({}, {}, {}) after a move; please report it",
-                                    to.x, to.y, to.z));
-  return found;
+// Riding in its simplex and walking to its place is quick, but it is not the straight way: a wall may be in it.
+void follow_move(Environment& environment, Particles& particles, std::span<const Vec3> to) {
+  const std::vector<ParticleState> before(particles.states().begin(), particles.states().end());
+  environment.advance(particles, to);
+  std::vector<std::uint32_t> missed;
+  Particles moved;
+  for (std::uint32_t p = 0; p < to.size(); ++p) {
+    if (particles[p].position == to[p]) continue;
+    missed.push_back(p);
+    add_moved(environment, before[p].cell, before[p].position, to[p], moved);
+  }
+  if (!missed.empty()) particles.replace(missed, moved);
 }
 
 double move_together(Environment& environment, std::span<MovePartner* const> partners,
@@ -77,7 +78,6 @@ double move_together(Environment& environment, std::span<MovePartner* const> par
     complex.steiner_weights().compute(after);
     if (std::all_of(partners.begin(), partners.end(), [&](MovePartner* p) { return p->shorten(made, walls); })) break;
   }
-  for (MovePartner* p : partners) p->before_move(walls);
   environment.move(std::span<const Vec3>(after).first(positions.size()));
   for (MovePartner* p : partners) p->after_move();
   return made;

@@ -22,9 +22,7 @@ class MovePartner {
   /// Shortens the planned way to this share of it, at most 1, for walls that make the same share of theirs. Returns whether
   /// that way is proved free. With a share of 0 it always is.
   virtual bool shorten(double share, const VertexMotion& walls) = 0;
-  /// Finds the cells at the end of the way. The environment has not moved yet.
-  virtual void before_move(const VertexMotion& walls) = 0;
-  /// The environment has moved.
+  /// The environment has moved: goes the way.
   virtual void after_move() = 0;
 
  protected:
@@ -47,10 +45,9 @@ struct JointMoves {
   static std::unique_ptr<SolidSet> copy(const SolidSet& solids);
 };
 
-/// The simplex that holds `to` after the move: the same as before, or one of a cell that the point reaches on its straight
-/// way from `from`. Throws InternalError where there is none.
-SimplexId simplex_after(const CellComplex& complex, NearWalls& near, SimplexId before, const Vec3& from, const Vec3& to,
-                        const VertexMotion& walls);
+/// After the move: takes the particles straight to these places, on ways that are proved free. Throws InternalError where no
+/// cell on a particle's way holds its place.
+void follow_move(Environment& environment, Particles& particles, std::span<const Vec3> to);
 
 /// A share of a straight way, rounded.
 Vec3 on_way(const Vec3& from, const Vec3& to, double share);

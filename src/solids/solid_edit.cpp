@@ -110,23 +110,32 @@ bool SolidSet::Impl::is_stuck(std::uint32_t solid) const {
                             [](const SolidPlacement& a, const SolidPlacement& b) { return a.solid < b.solid; });
 }
 
-// After a move: the cells carry the vertices of stuck solids along. `moved` has those of all others, in order.
-void SolidSet::Impl::carry_stuck(Particles& moved) {
+// After a move: the cells carry the vertices of stuck solids along, all others go their ways.
+void SolidSet::Impl::move_all_but_stuck() {
   const CellComplex& complex = environment.complex();
   std::vector<Vec3> carried(positions);
   std::vector<std::uint32_t> others;
+  std::vector<std::uint8_t> held(positions.size(), 0);
+  std::vector<Vec3> to;
   for (std::uint32_t s = 0; s < count(); ++s) {
     for (std::uint32_t v = first_vertex[s]; v < first_vertex[s + 1]; ++v) {
+      if (!is_stuck(s)) {
+        others.push_back(v);
+        to.push_back(reached[v]);
+        continue;
+      }
+      held[v] = 1;
       const ParticleState& state = particles[v];
       const Weights weights = detail::barycentric(complex.previous_corners(state.at()), state.position);
       const Vec3 target = flushed(detail::combine(complex.corners(state.at()), weights));
-      if (!is_stuck(s)) others.push_back(v);
-      if (is_stuck(s) && in_exact_range(target)) carried[v] = target;
+      if (in_exact_range(target)) carried[v] = target;
     }
   }
+  Particles moved = particles;
+  moved.remove(held);
+  follow_move(environment, moved, to);
   environment.advance(particles, carried);
   particles.replace(others, moved);
-  moved = std::move(particles);
 }
 
 }  // namespace dartcast

@@ -53,7 +53,7 @@ struct SolidSet::Impl final : MovePartner {
   UpdateReport update_after_edit();
   void find_stuck();
   [[nodiscard]] bool is_stuck(std::uint32_t solid) const;
-  void carry_stuck(Particles& moved);
+  void move_all_but_stuck();
 
   [[nodiscard]] SolidCheckpoint checkpoint() const;
   void restore(const SolidCheckpoint& saved);
@@ -66,7 +66,6 @@ struct SolidSet::Impl final : MovePartner {
   void prepare(std::span<const Vec3> given, const SolidStepOptions& options);
   double plan(const VertexMotion& walls) override;
   bool shorten(double share, const VertexMotion& walls) override;
-  void before_move(const VertexMotion& walls) override;
   void after_move() override;
 
   // A cell that an element reaches, and when it becomes flat.
@@ -74,13 +73,14 @@ struct SolidSet::Impl final : MovePartner {
     std::uint32_t solid = 0;
     double time = 0.0;
   };
-  // Consecutive elements of a solid, which are near each other (elements_of()).
-  struct Group {
+  // Consecutive elements of a solid.
+  struct Run {
     std::uint32_t solid;
     std::uint32_t begin;
     std::uint32_t end;
   };
-  // Part of a detection: consecutive groups.
+  static constexpr std::uint32_t elements_in_part = 2 * elements_in_group;
+  // Part of a detection: consecutive runs.
   struct Part {
     TouchFinder finder;
     std::vector<Cell> cells;
@@ -105,7 +105,7 @@ struct SolidSet::Impl final : MovePartner {
   [[nodiscard]] Solids all_but_stuck() const;
   void start(std::span<const Vec3> given, const SolidStepOptions& options, const char* caller);
   void detect(const Solids& solids, std::span<const Vec3> to, const VertexMotion& walls);
-  void look_at(const Group& group, const SolidMotion& motion, const VertexMotion& walls, Part& part);
+  void look_at(const Run& run, const SolidMotion& motion, const VertexMotion& walls, Part& part);
   void gather(std::span<const Part> found);
   void correct_in_rounds(Solids& open, const VertexMotion& walls, const SolidStepOptions& options);
   void correct(std::uint32_t solid, const SolidStepOptions& options);
@@ -117,14 +117,13 @@ struct SolidSet::Impl final : MovePartner {
 
   SolidStepOptions planned_options;            // of a joint move
   std::vector<double> planned_made;            // the share of each solid's way, before walls stop it
-  std::vector<SimplexId> places;               // of vertices, after the move
   std::vector<Vec3> wanted;                    // targets of the caller
   std::vector<Vec3> targets;                   // corrected
   std::vector<Vec3> reached;                   // a share of the way to them
   std::vector<SolidConstraint> first_touches;  // of the solids that are cut
   std::vector<Progress> progress;
   std::vector<Part> parts;
-  std::vector<Group> work;  // of a detection
+  std::vector<Run> work;  // of a detection
   std::uint64_t pairs_before = 0;
   SolidStep last;
 };

@@ -102,30 +102,31 @@ void SolidSet::Impl::detect(const Solids& solids, std::span<const Vec3> to, cons
     progress[s].touches.clear();
     progress[s].touch_time = 2.0;
     progress[s].flat_time = 2.0;
-    for (std::uint32_t e = first_element[s]; e < first_element[s + 1]; e += elements_in_group)
-      work.push_back({s, e, std::min(e + elements_in_group, first_element[s + 1])});
+    for (std::uint32_t e = first_element[s]; e < first_element[s + 1]; e += elements_in_part)
+      work.push_back({s, e, std::min(e + elements_in_part, first_element[s + 1])});
   }
-  const std::size_t grain = std::max<std::size_t>(4, chunk_count(work.size(), 256));
-  const std::size_t used = chunk_count(work.size(), grain);
+  const std::size_t grain = chunk_count(work.size(), 256);
+  const std::size_t used = grain == 0 ? 0 : chunk_count(work.size(), grain);
   if (parts.size() < used) parts.resize(used);
   const SolidMotion motion = {positions, to};
-  parallel_for(work.size(), grain, environment.threads(), [&](std::size_t begin, std::size_t end) {
-    Part& part = parts[begin / grain];
-    part.touches.clear();
-    part.owners.clear();
-    part.flats.clear();
-    for (std::size_t i = begin; i < end; ++i) look_at(work[i], motion, walls, part);
-  });
+  parallel_for(work.size(), std::max<std::size_t>(grain, 1), environment.threads(),
+               [&](std::size_t begin, std::size_t end) {
+                 Part& part = parts[begin / grain];
+                 part.touches.clear();
+                 part.owners.clear();
+                 part.flats.clear();
+                 for (std::size_t i = begin; i < end; ++i) look_at(work[i], motion, walls, part);
+               });
   gather(std::span<const Part>(parts).first(used));
 }
 
-void SolidSet::Impl::look_at(const Group& group, const SolidMotion& motion, const VertexMotion& walls, Part& part) {
-  const auto own = std::span<const SolidElement>(elements).subspan(group.begin, group.end - group.begin);
+void SolidSet::Impl::look_at(const Run& run, const SolidMotion& motion, const VertexMotion& walls, Part& part) {
+  const auto own = std::span<const SolidElement>(elements).subspan(run.begin, run.end - run.begin);
   part.cells.clear();
   for (const SolidElement& e : own) part.cells.push_back(particles[e.vertex[0]].cell);
   const auto flat = part.finder.find(environment.complex(), part.cells, own, motion, walls, part.touches);
-  part.owners.resize(part.touches.size(), group.solid);
-  if (flat) part.flats.push_back({group.solid, *flat});
+  part.owners.resize(part.touches.size(), run.solid);
+  if (flat) part.flats.push_back({run.solid, *flat});
 }
 
 // By part, then by element: the order does not depend on the threads.
@@ -140,17 +141,26 @@ void SolidSet::Impl::gather(std::span<const Part> found) {
   }
 }
 
-// At the end `open` has the solids whose way is still not free.
+// At the end `open` has the solids whose way is still not free. Where a cell that becomes flat is all that is in a solid's
+// way, no correction helps.
 void SolidSet::Impl::correct_in_rounds(Solids& open, const VertexMotion& walls, const SolidStepOptions& options) {
+  Solids not_helped;
   for (unsigned round = 0;; ++round) {
     detect(open, targets, walls);
     std::erase_if(open, [&](std::uint32_t s) { return progress[s].is_free(); });
-    if (open.empty() || round == options.rounds) return;
+    if (round == options.rounds) break;
+    const auto has_touches = [&](std::uint32_t s) { return !progress[s].touches.empty(); };
+    const auto others = std::stable_partition(open.begin(), open.end(), has_touches);
+    not_helped.insert(not_helped.end(), others, open.end());
+    open.erase(others, open.end());
+    if (open.empty()) break;
     last.rounds = round + 1;
     parallel_for(open.size(), 1, environment.threads(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) correct(open[i], options);
     });
   }
+  open.insert(open.end(), not_helped.begin(), not_helped.end());
+  std::sort(open.begin(), open.end());
 }
 
 // Sweeps over all constraints found so far (Gauss-Seidel). Targets that leave the range of numbers are taken back.
@@ -228,27 +238,13 @@ void SolidSet::Impl::commit_at_rest() {
   positions = reached;
 }
 
-void SolidSet::Impl::before_move(const VertexMotion& walls) {
-  constexpr std::size_t grain = 256;
-  places.assign(positions.size(), {});
-  parallel_for(positions.size(), grain, environment.threads(), [&](std::size_t begin, std::size_t end) {
-    NearWalls near;
-    for (std::size_t v = begin; v < end; ++v) {
-      if (is_stuck(solid_of(v))) continue;
-      places[v] = simplex_after(environment.complex(), near, particles[v].at(), positions[v], reached[v], walls);
-    }
-  });
-  report();
-}
-
 void SolidSet::Impl::after_move() {
-  Particles moved;
-  for (std::size_t v = 0; v < places.size(); ++v) {
-    if (places[v].cell.valid() && !environment.add(moved, places[v], reached[v]))
-      throw InternalError(fmt::format("solids: vertex {} is not in its cell after a move; please report it", v));
+  report();
+  if (stuck.empty()) {
+    follow_move(environment, particles, reached);
+  } else {
+    move_all_but_stuck();
   }
-  if (!stuck.empty()) carry_stuck(moved);
-  particles = std::move(moved);
   for (std::size_t v = 0; v < positions.size(); ++v) positions[v] = particles[v].position;
 }
 
