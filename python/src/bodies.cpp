@@ -49,6 +49,18 @@ BodiesStep step(Handle& self) {
   return bodies.step();
 }
 
+double move_with(Handle& self, const py::object& given) {
+  const auto x = vectors(given, "positions");
+  const std::vector<Vec3> positions(x.begin(), x.end());
+  const Use use = self.use();
+  self.environment->expect_no_writing("move_with");
+  Bodies& bodies = self.changeable();
+  const py::gil_scoped_release release;
+  const double made = bodies.move_with(positions);
+  self.environment->overwritten = false;
+  return made;
+}
+
 UpdateReport update_after_edit(Handle& self, OrphanPolicy orphaned) {
   const Use use = self.use();
   Bodies& bodies = self.changeable();
@@ -136,6 +148,8 @@ void bind_calls(Class& bodies) {
            py::arg("responses") = py::none(), text.c_str())
       .def("add", &add, py::arg("points"), py::arg("options"), doc("Bodies::add"))
       .def("step", &step, doc("Bodies::step"))
+      .def("move_with", &move_with, py::arg("positions"),
+           (std::string(doc("Bodies::move_with")) + "\n\npositions: float64 (n, 3).").c_str())
       .def("predicted_state", of_body([](const Bodies& b, std::size_t i) { return b.predicted_state(i); }),
            py::arg("body"), doc("Bodies::predicted_state"))
       .def("apply_impulse", &apply_impulse, py::arg("body"), py::arg("solved"), doc("Bodies::apply_impulse"))
@@ -162,6 +176,8 @@ void bind_single(Class& bodies) {
              return std::vector<Fit>(fits.begin(), fits.end());
            }),
            py::arg("body"), doc("Bodies::fits"))
+      .def("surface", of_body([](const Bodies& b, std::size_t i) { return array_of(b.surface(i)); }), py::arg("body"),
+           (std::string(doc("Bodies::surface")) + "\n\nA copy: float64 (n, 3).").c_str())
       .def("energy", of_body([](const Bodies& b, std::size_t i) { return b.energy(i); }), py::arg("body"),
            "Its energy, J.")
       .def("rigid_motion_of", of_body([](const Bodies& b, std::size_t i) { return b.rigid_motion_of(i); }),
@@ -197,6 +213,7 @@ void bind_properties(Class& bodies) {
                              "Of all particles, uint8 (n,): values of ParticleStatus.")
       .def_property_readonly("counters", property([](const Bodies& b) { return py::cast(b.counters()); }),
                              doc("Bodies::counters"))
+      .def("audit", property([](const Bodies& b) { return py::cast(b.audit()); }), doc("Bodies::audit"))
       .def("state_hash", property([](const Bodies& b) { return py::cast(b.state_hash()); }), doc("Bodies::state_hash"));
 }
 

@@ -44,6 +44,7 @@ void bind_options(py::module_& m) {
       .field("velocity", &BodyOptions::velocity)
       .field("angular_velocity", &BodyOptions::angular_velocity)
       .field("match", &BodyOptions::match)
+      .field("surface", &BodyOptions::surface)
       .finish();
 }
 
@@ -51,6 +52,7 @@ void bind_states(py::module_& m) {
   Record<AddBodyResult>(m, "AddBodyResult")
       .field("body", &AddBodyResult::body)
       .field("refused", &AddBodyResult::refused)
+      .field("surface", &AddBodyResult::surface)
       .finish();
   Record<BodyEnergy>(m, "BodyEnergy")
       .field("kinetic", &BodyEnergy::kinetic)
@@ -91,6 +93,8 @@ void bind_reports(py::module_& m) {
       .field("fallbacks", &BodiesStep::fallbacks)
       .field("repeated", &BodiesStep::repeated)
       .field("gone", &BodiesStep::gone)
+      .field("edges", &BodiesStep::edges)
+      .field("stuck", &BodiesStep::stuck)
       .finish();
 }
 
@@ -119,7 +123,8 @@ void bind_checkpoint(py::module_& m) {
       .def_property_readonly("ids", reading(&Checkpoint::ids), doc("BodiesCheckpoint::ids"))
       .def_property_readonly("fits", reading(&Checkpoint::fits), doc("BodiesCheckpoint::fits"))
       .def_property_readonly("impulses", reading(&Checkpoint::impulses))
-      .def_property_readonly("particles", reading(&Checkpoint::particles));
+      .def_property_readonly("particles", reading(&Checkpoint::particles))
+      .def_property_readonly("surfaces", reading(&Checkpoint::surfaces));
 }
 
 // Calls f(surface) without Python's lock, on a surface that nobody else changes.

@@ -46,8 +46,8 @@ PYBIND11_MODULE(_core, m) {
   bind_vector_field(m);
 
   bind_surface(m);
-  bind_bodies(m);
   bind_solids(m);
+  bind_bodies(m);
   bind_catheter(m);
   bind_statistics(m);
   bind_simulation(m);

@@ -93,6 +93,7 @@ void bind_solid_scenes(py::module_& m) {
       .field("samples", &BodyScene::samples)
       .field("sampling", &BodyScene::sampling)
       .field("cluster", &BodyScene::cluster)
+      .field("edges", &BodyScene::edges)
       .field("body", &BodyScene::body)
       .finish();
   Record<CatheterScene> catheter(m, "CatheterScene");

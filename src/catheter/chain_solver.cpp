@@ -135,7 +135,7 @@ void ChainSolver::factor_and_solve() {
 
 Vec3 ChainSolver::displacement(std::size_t i) const { return {right_[3 * i], right_[3 * i + 1], right_[3 * i + 2]}; }
 
-// Of the place on the chain that a wall is for. Points from `free` on do not move.
+// The displacement of the place that a wall is for. Points from `free` on do not move.
 Vec3 ChainSolver::displacement_at(const ChainWall& wall, std::size_t free) const {
   const Vec3 first = displacement(wall.index);
   if (wall.weight == 0.0) return first;

@@ -42,7 +42,7 @@ void add_moved(Environment& environment, Cell cell, const Vec3& from, const Vec3
 
 Vec3 on_way(const Vec3& from, const Vec3& to, double share) { return flushed(from + (to - from) * share); }
 
-// Riding in its simplex and walking to its place is quick, but it is not the straight way: a wall may be in it.
+// Environment::advance() is quick, but it carries a particle along and then walks: a wall may be in that way.
 void follow_move(Environment& environment, Particles& particles, std::span<const Vec3> to) {
   const std::vector<ParticleState> before(particles.states().begin(), particles.states().end());
   environment.advance(particles, to);

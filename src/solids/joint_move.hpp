@@ -10,7 +10,7 @@
 
 namespace dartcast {
 
-/// What moves at the same time as the walls, and stops them where it has no room. The calls come in this order; up to
+/// A partner moves at the same time as the walls, and stops them where it has no room. The calls come in this order; up to
 /// after_move() nothing that the caller can see changes.
 class MovePartner {
  public:
@@ -52,9 +52,9 @@ void follow_move(Environment& environment, Particles& particles, std::span<const
 /// A share of a straight way, rounded.
 Vec3 on_way(const Vec3& from, const Vec3& to, double share);
 
-/// Of the way to the first touch: the next step must not start with one.
+/// A share of the way to the first touch: the next step must not start with one.
 inline constexpr double cut_share = 15.0 / 16.0;
-/// Of a way: less is none.
+/// A smaller share of a way is none.
 inline constexpr double least_share = 0x1p-30;
 
 }  // namespace dartcast

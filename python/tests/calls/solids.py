@@ -124,7 +124,8 @@ def of_bodies() -> Calls:
     own, mover = bodies(env), bodies(env)
     saved, state = mover.checkpoint(), own.predicted_state(0)
     table: Calls = {}
-    for name in ("predicted_state", "id", "first_particle", "particle_count", "fits", "energy", "rigid_motion_of"):
+    for name in ("predicted_state", "id", "first_particle", "particle_count", "fits", "surface", "energy",
+                 "rigid_motion_of"):
         table[f"Bodies.{name}"] = lambda f=getattr(own, name): f(0)
         table[f"Bodies.{name}: refused"] = refused(lambda f=getattr(own, name): f(9))
 
@@ -138,7 +139,13 @@ def of_bodies() -> Calls:
         own_env.edit(lambda edit: dc.subdivide(edit, first(edit.map)))
         own_bodies.update_after_edit()
 
+    def moved() -> None:
+        own_env = environment()
+        bodies(own_env).move_with(own_env.positions + [0.01, 0.0, 0.0])
+
     return table | {
+        "Bodies.move_with": moved, "Bodies.audit": own.audit,
+        "Bodies.move_with: refused": refused(lambda: own.move_with(np.zeros((2, 3)))),
         "Bodies": lambda: dc.Bodies(env, dc.BodiesOptions(dt=0.01), {"zmin": dc.Stick()}),
         "Bodies: refused": refused(lambda: dc.Bodies(env, dc.BodiesOptions(dt=0.01), {"nowhere": dc.Stick()})),
         "Bodies.add": lambda: bodies(env),
