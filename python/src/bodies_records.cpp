@@ -4,6 +4,7 @@
 
 #include "bodies_handle.hpp"
 #include "dartcast/bodies.hpp"
+#include "support/rows.hpp"
 
 namespace py = pybind11;
 
@@ -93,8 +94,11 @@ void bind_reports(py::module_& m) {
       .field("fallbacks", &BodiesStep::fallbacks)
       .field("repeated", &BodiesStep::repeated)
       .field("gone", &BodiesStep::gone)
-      .field("edges", &BodiesStep::edges)
       .field("stuck", &BodiesStep::stuck)
+      .def_property_readonly(
+          "edges", [](const BodiesStep& s) { return rows_of(s.edges); },
+          (std::string(doc("BodiesStep::edges")) + "\n\nA structured array with the columns of SolidStep.contacts.")
+              .c_str())
       .finish();
 }
 

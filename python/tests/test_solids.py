@@ -215,3 +215,35 @@ def test_cameras_are_evenly_spaced_along_a_line() -> None:
             dartcast.camera_path(tube(), wrong)
     with pytest.raises(dartcast.InvalidArgument, match="max_count|cameras"):
         dartcast.camera_path(tube(), points, dartcast.CameraOptions(spacing=1e-4, max_count=10))
+
+
+def test_segments_of_a_catheter_stay_out_of_walls() -> None:
+    environment = tube()
+    catheter = straight(environment)
+    catheter.step(dartcast.CatheterInput(push=1e-2))
+    assert catheter.options.edges
+    assert catheter.move_with(environment.positions + [1e-3, 0.0, 0.0]) == 1.0
+    assert not catheter.step(dartcast.CatheterInput()).stuck
+    audit = catheter.audit()
+    assert audit.checked == len(catheter.points()) - 1 and audit.failed == 0
+    environment.move(environment.positions)
+    with pytest.raises(dartcast.InvalidArgument, match="move_with"):
+        catheter.step(dartcast.CatheterInput())
+
+
+def test_the_surface_of_a_body_stays_out_of_walls() -> None:
+    mesh = dartcast.generate_box(cells=[4, 4, 4], size=[4.0, 4.0, 4.0])
+    environment = dartcast.Environment(mesh)
+    bodies = dartcast.Bodies(environment, dartcast.BodiesOptions(dt=0.01, gravity=[0.0, 0.0, -9.81]))
+    barrel = dartcast.generate_barrel(dartcast.BarrelOptions(radius=0.5, height=1.0))
+    barrel.points = barrel.points + [2.0, 2.0, 1.0]
+    particles = dartcast.sample_solid(barrel, dartcast.SamplingOptions(spacing=0.3)).points
+    surface = dartcast.solid_of_surface(barrel)
+    added = bodies.add(particles, dartcast.BodyOptions(mass=2.0, damping=10.0, surface=surface))
+    assert added.body == 0 and added.surface.refusal == dartcast.SolidRefusal.NONE
+    contacts = 0
+    for _ in range(60):
+        assert bodies.move_with(environment.positions) == 1.0
+        contacts += len(bodies.step().edges)
+    assert contacts > 0 and bodies.audit().failed == 0 and bodies.audit().checked > 0
+    assert bodies.surface(0).shape == barrel.points.shape and bodies.surface(0)[:, 2].min() > 0.0

@@ -239,6 +239,50 @@ every = 10
 contacts = true
 )";
 
+// A tool, a catheter and a body, all of which stop walls.
+const std::string edges_text = R"(
+[environment]
+generator = "box"
+cells = [4, 4, 4]
+size = [4.0, 4.0, 4.0]
+[[deformation]]
+kind = "bump"
+amplitude = 0.9
+period = 0.4
+axis = [0.0, 0.0, 1.0]
+centre = [2.0, 2.0, 0.0]
+length = 1.5
+[[particles]]
+count = 50
+velocity = [1.0, 0.5, -0.7]
+[[solid]]
+points = [[0.5, 3.0, 0.3], [3.0, 3.2, 0.2]]
+[[catheter]]
+entry = [0.3, 2.0, 0.4]
+direction = [1.0, 0.0, 0.0]
+length = 3.0
+spacing = 0.5
+stiffness = 0.05
+moves = [{ until = 0.2, push = 12.0 }]
+[[body]]
+generator = "barrel"
+radius = 0.4
+bulge = 0.1
+height = 0.8
+staves = 8
+spacing = 0.25
+at = [2.6, 1.2, 0.9]
+[contact]
+restitution = 0.5
+[motion]
+dt = 0.01
+steps = 47
+gravity = [0.0, 0.0, -9.81]
+[output]
+every = 10
+contacts = true
+)";
+
 struct CutOff : std::exception {};
 
 class Resume : public testing::Test {
@@ -379,6 +423,15 @@ TEST_F(Resume, SolidsGoOnAtWalls) {
   EXPECT_GT(fs::file_size(one / "solid_contacts.csv"), 500U);
   EXPECT_TRUE(fs::exists(one / "solid_needle_000040.vtp"));
   EXPECT_TRUE(fs::exists(one / "solid_solid1.pvd"));
+}
+
+TEST_F(Resume, EdgesGoOnAtWalls) {
+  const Summary whole = run(one, false, 47, 0, edges_text);
+  EXPECT_EQ(whole.lost, 0U);
+  for (const std::uint64_t cut : {9U, 14U, 31U}) {
+    EXPECT_THROW(run(two, false, 47, cut, edges_text), CutOff);
+    expect_same(whole, run(two, true, 47, 0, edges_text));
+  }
 }
 
 TEST_F(Resume, ARunWithSurgeryIsOperatedOnAgain) {
