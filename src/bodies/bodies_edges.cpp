@@ -66,14 +66,13 @@ void Bodies::Impl::check_surfaces(const char* caller) const {
   environment_.check_advance(surfaces_.set->particles(), options_.step, caller);
   if (environment_.awaits_advance(surfaces_.set->particles()))
     throw InvalidArgument(
-        "bodies: the environment was moved without the edges of its bodies: move it by Bodies::move_with(), or add "
-        "bodies "
-        "without a surface");
+        "bodies: the environment was moved without the surfaces of its bodies: move it by Bodies::move_with()");
 }
 
 void Bodies::Impl::move_surfaces() {
   if (!surfaces_.set || surfaces_.set->size() == 0) return;
   const SolidStep& step = surfaces_.set->advance(surface_targets(reached_, {}));
+  if (step.contacts.empty() && surfaces_.set->stuck().empty()) return;
   const std::vector<std::uint32_t> owners = bodies_with_surface();
   std::vector<std::vector<SurfaceRow>> rows(bodies_.size());
   std::vector<std::uint8_t> stuck(bodies_.size(), 0);
@@ -90,11 +89,10 @@ void Bodies::Impl::move_surfaces() {
     stuck[owners[p.solid]] = 1;
     last_.stuck.push_back(bodies_[owners[p.solid]].id);
   }
-  if (step.contacts.empty() && surfaces_.set->stuck().empty()) return;
   answer_surfaces(rows, stuck);
 }
 
-// The condition on the particles for a contact of their surface.
+// The condition on the particles for a contact of their surface. Those that a wall or an invalid cell holds do not move.
 SurfaceRow Bodies::Impl::row_of(const SolidContact& contact, const Body& body) const {
   std::map<std::uint32_t, double> weights;
   for (unsigned i = 0; i < contact.count; ++i) {
@@ -107,8 +105,12 @@ SurfaceRow Bodies::Impl::row_of(const SolidContact& contact, const Body& body) c
   row.least = contact.point;
   row.friction = responses_.of(contact.patch).friction;
   for (const auto& [p, weight] : weights) {
-    row.weights.emplace_back(p, weight);
-    row.mobility += weight * weight / masses_[p];
+    if (fates_[p] != ParticleStatus::alive || particles_[p].held) {
+      row.least -= reached_[p] * weight;
+    } else {
+      row.weights.emplace_back(p, weight);
+      row.mobility += weight * weight / masses_[p];
+    }
   }
   return row;
 }

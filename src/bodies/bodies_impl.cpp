@@ -186,6 +186,7 @@ StateHash Bodies::Impl::state_hash() const {
 }
 
 UpdateReport Bodies::Impl::update_after_edit(OrphanPolicy orphaned) {
+  if (surfaces_.set) surfaces_.set->update_after_edit();  // first: it may refuse
   UpdateReport report = environment_.update_after_edit(particles_, orphaned);
   std::vector<std::uint8_t> absorbed(positions_.size(), 0);
   std::vector<std::uint8_t> leaving(bodies_.size(), 0);
@@ -199,7 +200,6 @@ UpdateReport Bodies::Impl::update_after_edit(OrphanPolicy orphaned) {
     if (absorbed[p] == 0) marks.push_back(leaving[body_of_[p]]);
   }
   particles_.remove(marks);
-  if (surfaces_.set) surfaces_.set->update_after_edit();
   remove_bodies(leaving);
   for (std::size_t p = 0; p < positions_.size(); ++p) positions_[p] = particles_[p].position;
   for (Body& body : bodies_) body.shape.match(of(body, positions_), body.fits);

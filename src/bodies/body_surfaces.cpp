@@ -17,8 +17,9 @@ Vec3 place_of(const SurfaceRow& row, std::span<const Vec3> values) {
   return sum;
 }
 
-// Changes the values so that the value at the row's place changes by `change`.
+// Changes the values so that the value at the row's place changes by `change`, if any particle can move.
 void change_place(const SurfaceRow& row, std::span<const double> masses, const Vec3& change, std::span<Vec3> values) {
+  if (!(row.mobility > 0.0)) return;
   for (const auto& [p, weight] : row.weights) values[p] += change * (weight / (masses[p] * row.mobility));
 }
 

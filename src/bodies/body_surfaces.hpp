@@ -27,7 +27,7 @@ struct BodySurfaces {
 /// A contact of a surface, as a condition on the particles that carry it: normal . sum weight (x - least) >= 0.
 struct SurfaceRow {
   Vec3 normal;
-  Vec3 least;                                             ///< where the place on the surface is, at the wall
+  Vec3 least;  ///< where the place on the surface is, at the wall; less the part of particles that cannot move
   double friction = 0.0;                                  ///< Coulomb's coefficient of the wall
   double mobility = 0.0;                                  ///< sum of weight^2 times inverse mass
   std::vector<std::pair<std::uint32_t, double>> weights;  ///< of particles, by number; those that can move

@@ -223,6 +223,22 @@ TEST(BodiesEdges, AnEditThatPiercesASurfaceHoldsTheBody) {
   EXPECT_EQ(bodies.audit().failed, 0U);
 }
 
+// Particles that stick carry the surface, too, and do not move.
+TEST(BodiesEdges, ABodyThatSticksToAWallStaysThere) {
+  Environment environment(test::cubes(4), Threads{1});
+  Bodies bodies(environment, falling(), WallResponses(Stick{}));
+  Ball ball({2.0, 2.0, 1.5}, 0.8);
+  for (Vec3& x : ball.options.surface.points) x.z = std::max(x.z, 0.75);  // flat below: particles meet the floor first
+  ball.options.angular_velocity = {0.0, 3.0, 0.0};
+  ASSERT_EQ(bodies.add(ball.points, ball.options).body, 0U);
+  for (int i = 0; i < 400; ++i) {
+    bodies.step();
+    ASSERT_EQ(bodies.audit().failed, 0U) << i;
+    ASSERT_LE(bodies.energy(0).total(), 200.0) << i;
+  }
+  EXPECT_GT(std::count(bodies.fates().begin(), bodies.fates().end(), ParticleStatus::stuck), 0);
+}
+
 // Its surface meets the wall first.
 TEST(BodiesEdges, ASurfaceAtAnEscapeWallTakesItsBodyAway) {
   Environment environment(test::cubes(6), Threads{1});
