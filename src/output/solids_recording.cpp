@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numeric>
 #include <string>
 #include <string_view>
@@ -40,15 +41,21 @@ const char* name_of(SolidContactKind kind) {
 
 std::string series(std::string_view kind, const std::string& name) { return fmt::format("{}_{}", kind, name); }
 
+// Whether contacts of edges and faces have a table.
+bool lists_contacts(const Scene& scene) {
+  const auto has_edges = [](const BodyScene& body) { return body.edges; };
+  return scene.output.contacts &&
+         (!scene.solids.empty() || std::any_of(scene.bodies.begin(), scene.bodies.end(), has_edges));
+}
+
 }  // namespace
 
 SolidsRecording::SolidsRecording(WritingThread& writing, fs::path folder, const Scene& scene)
     : writing_(writing), folder_(std::move(folder)), compression_(scene.output.compression) {
   if (!scene.bodies.empty()) bodies_ = RunTable(folder_ / "bodies.csv", bodies_header);
   if (!scene.catheters.empty()) catheters_ = RunTable(folder_ / "catheters.csv", catheters_header);
-  if (scene.solids.empty()) return;
-  solids_ = RunTable(folder_ / "solids.csv", solids_header);
-  if (scene.output.contacts) solid_contacts_ = RunTable(folder_ / "solid_contacts.csv", solid_contacts_header);
+  if (!scene.solids.empty()) solids_ = RunTable(folder_ / "solids.csv", solids_header);
+  if (lists_contacts(scene)) solid_contacts_ = RunTable(folder_ / "solid_contacts.csv", solid_contacts_header);
 }
 
 SolidsRecording::SolidsRecording(WritingThread& writing, fs::path folder, const Scene& scene,
@@ -56,9 +63,8 @@ SolidsRecording::SolidsRecording(WritingThread& writing, fs::path folder, const 
     : writing_(writing), folder_(std::move(folder)), compression_(scene.output.compression) {
   if (!scene.bodies.empty()) bodies_ = RunTable(folder_ / "bodies.csv", progress.bodies_bytes);
   if (!scene.catheters.empty()) catheters_ = RunTable(folder_ / "catheters.csv", progress.catheters_bytes);
-  if (scene.solids.empty()) return;
-  solids_ = RunTable(folder_ / "solids.csv", progress.solids_bytes);
-  if (scene.output.contacts) solid_contacts_ = RunTable(folder_ / "solid_contacts.csv", progress.solid_contacts_bytes);
+  if (!scene.solids.empty()) solids_ = RunTable(folder_ / "solids.csv", progress.solids_bytes);
+  if (lists_contacts(scene)) solid_contacts_ = RunTable(folder_ / "solid_contacts.csv", progress.solid_contacts_bytes);
 }
 
 void SolidsRecording::add_step(const Simulation& simulation) {
@@ -75,6 +81,7 @@ void SolidsRecording::add_bodies(const Simulation& simulation) {
   std::vector<std::uint64_t> contacts(bodies.size());
   if (last.gone.empty()) {  // else its contacts' particles have other numbers now
     for (const Contact& c : last.motion.contacts.contacts) ++contacts[bodies.body_of()[c.particle]];
+    for (const SolidContact& c : last.edges) ++contacts[c.solid];
   }
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const BodyEnergy energy = bodies.energy(b);
@@ -111,16 +118,24 @@ void SolidsRecording::add_solids(const Simulation& simulation) {
   solids_.send_many(writing_);
 }
 
+// Those of tools, then those of the surfaces of bodies.
 void SolidsRecording::add_solid_contacts(const Simulation& simulation) {
-  const CombinatorialMap& map = simulation.environment().map();
-  for (const SolidContact& c : simulation.solids_step().contacts) {
-    solid_contacts_.print("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", simulation.steps(),
-                          simulation.time(), simulation.parts().solids.name(c.solid), name_of(c.kind),
-                          name_of(c.wall_kind), map.patch_names()[c.patch.value], map.source(c.face.cell),
-                          c.time_of_impact, c.gap, c.point.x, c.point.y, c.point.z, c.wall_point.x, c.wall_point.y,
-                          c.wall_point.z, c.normal.x, c.normal.y, c.normal.z);
+  for (const SolidContact& c : simulation.solids_step().contacts)
+    add_solid_contact(simulation, simulation.parts().solids.name(c.solid), c);
+  const BodiesComponent& bodies = simulation.parts().bodies;
+  if (bodies.bodies() && bodies.last_step().gone.empty()) {
+    for (const SolidContact& c : bodies.last_step().edges) add_solid_contact(simulation, bodies.name(c.solid), c);
   }
   solid_contacts_.send_many(writing_);
+}
+
+void SolidsRecording::add_solid_contact(const Simulation& simulation, const std::string& name, const SolidContact& c) {
+  const CombinatorialMap& map = simulation.environment().map();
+  solid_contacts_.print("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", simulation.steps(),
+                        simulation.time(), name, name_of(c.kind), name_of(c.wall_kind),
+                        map.patch_names()[c.patch.value], map.source(c.face.cell), c.time_of_impact, c.gap, c.point.x,
+                        c.point.y, c.point.z, c.wall_point.x, c.wall_point.y, c.wall_point.z, c.normal.x, c.normal.y,
+                        c.normal.z);
 }
 
 void SolidsRecording::add_frame(const Simulation& simulation, std::span<const RecordingFrame> frames) {

@@ -47,6 +47,7 @@ class SolidsRecording {
   void add_catheters(const Simulation& simulation);
   void add_solids(const Simulation& simulation);
   void add_solid_contacts(const Simulation& simulation);
+  void add_solid_contact(const Simulation& simulation, const std::string& name, const SolidContact& c);
   void write_body(const Simulation& simulation, std::size_t body, std::uint64_t step) const;
   void write_catheter(const Simulation& simulation, std::size_t i, std::uint64_t step) const;
   void write_solid(const Simulation& simulation, std::size_t i, std::uint64_t step) const;

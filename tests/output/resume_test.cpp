@@ -432,6 +432,9 @@ TEST_F(Resume, EdgesGoOnAtWalls) {
     EXPECT_THROW(run(two, false, 47, cut, edges_text), CutOff);
     expect_same(whole, run(two, true, 47, 0, edges_text));
   }
+  const std::string contacts = read_bytes(one / "solid_contacts.csv");
+  EXPECT_NE(contacts.find(",solid1,"), std::string::npos);
+  EXPECT_NE(contacts.find(",body1,"), std::string::npos);
 }
 
 TEST_F(Resume, ARunWithSurgeryIsOperatedOnAgain) {
