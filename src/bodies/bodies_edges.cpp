@@ -13,7 +13,6 @@
 #include "bodies/bodies_moves.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/predicates.hpp"
-#include "tracking/carry.hpp"
 
 namespace dartcast {
 
@@ -176,18 +175,9 @@ double Bodies::Impl::move_with(std::span<const Vec3> positions) {
 
 // The cells carry the particles along, and these the surfaces.
 double Bodies::Impl::plan(const VertexMotion& walls) {
-  std::vector<Vec3> carried(positions_);
-  for (std::size_t p = 0; p < carried.size(); ++p) {
-    const auto v = environment_.complex().vertices(particles_[p].at());
-    const auto corners = [&](std::span<const Vec3> x) {
-      return Corners{x[v[0].value], x[v[1].value], x[v[2].value], x[v[3].value]};
-    };
-    const Corners from = corners(walls.before);
-    const Corners to = corners(walls.after);
-    if (from == to) continue;
-    const Weights weights = detail::barycentric(from, carried[p]);
-    for (std::size_t k = 0; k < 4; ++k) carried[p] += (to[k] - from[k]) * weights[k];
-  }
+  std::vector<Vec3> carried;
+  for (const ParticleState& p : particles_.states())
+    carried.push_back(carried_by_cell(environment_.complex(), p, walls));
   partner_ = &JointMoves::prepare(*surfaces_.set, surface_targets(carried, positions_), {});
   return partner_->plan(walls);
 }

@@ -20,7 +20,6 @@
 #include "solids/audit_solids.hpp"
 #include "solids/solid_constraint.hpp"
 #include "solids/solid_refusal.hpp"
-#include "tracking/carry.hpp"
 
 namespace dartcast {
 
@@ -117,26 +116,14 @@ bool Catheter::Impl::go_ahead(Outcome& outcome) {
   return true;
 }
 
-// Where the vessel takes the points: each keeps its weights in its simplex, so that no point meets a wall.
+// The way on which the cells of the vessel carry the points.
 void Catheter::Impl::carry_along(const VertexMotion& walls) {
+  const CellComplex& complex = environment_.complex();
   const std::size_t inserted = inserted_points();
-  const auto carried_to = [&](std::size_t i) {
-    const ParticleState& s = particles_[i];
-    const Corners before = corners_at(s.at(), walls.before);
-    const Corners after = corners_at(s.at(), walls.after);
-    const Weights weights = detail::barycentric(before, s.position);
-    Vec3 x = s.position;
-    for (std::size_t k = 0; k < 4; ++k) x += (after[k] - before[k]) * weights[k];
-    return flushed(x);
-  };
   for (std::size_t i = 0; i <= count_; ++i) start_[i] = particles_[i].position;
-  ends_[count_] = carried_to(count_);
-  for (std::size_t i = 0; i < count_; ++i) ends_[i] = i < inserted ? carried_to(i) : ends_[count_];
-}
-
-Corners Catheter::Impl::corners_at(SimplexId s, std::span<const Vec3> positions) const {
-  const auto v = environment_.complex().vertices(s);
-  return {positions[v[0].value], positions[v[1].value], positions[v[2].value], positions[v[3].value]};
+  ends_[count_] = carried_by_cell(complex, particles_[count_], walls);
+  for (std::size_t i = 0; i < count_; ++i)
+    ends_[i] = i < inserted ? carried_by_cell(complex, particles_[i], walls) : ends_[count_];
 }
 
 double Catheter::Impl::plan(const VertexMotion& walls) {

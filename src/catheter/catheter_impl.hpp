@@ -77,7 +77,6 @@ struct Catheter::Impl final : MovePartner {
   void add_touched_walls(std::size_t free);
   double look_ahead(std::size_t free, Outcome& outcome);
   bool go_ahead(Outcome& outcome);
-  [[nodiscard]] Corners corners_at(SimplexId s, std::span<const Vec3> positions) const;
   void carry_along(const VertexMotion& walls);
   double plan(const VertexMotion& walls) override;
   double solve_way(const VertexMotion& walls);

@@ -9,6 +9,7 @@
 
 #include "dartcast/error.hpp"
 #include "dartcast/predicates.hpp"
+#include "tracking/carry.hpp"
 
 namespace dartcast {
 
@@ -39,6 +40,20 @@ void add_moved(Environment& environment, Cell cell, const Vec3& from, const Vec3
 }
 
 }  // namespace
+
+Vec3 carried_by_cell(const CellComplex& complex, const ParticleState& state, const VertexMotion& walls) {
+  const auto v = complex.vertices(state.at());
+  const auto corners = [&](std::span<const Vec3> x) {
+    return Corners{x[v[0].value], x[v[1].value], x[v[2].value], x[v[3].value]};
+  };
+  const Corners before = corners(walls.before);
+  const Corners after = corners(walls.after);
+  Vec3 x = state.position;
+  if (before == after) return x;
+  const Weights weights = detail::barycentric(before, x);
+  for (std::size_t k = 0; k < 4; ++k) x += (after[k] - before[k]) * weights[k];
+  return flushed(x);
+}
 
 Vec3 on_way(const Vec3& from, const Vec3& to, double share) { return flushed(from + (to - from) * share); }
 

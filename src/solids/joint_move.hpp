@@ -49,6 +49,9 @@ struct JointMoves {
 /// cell on a particle's way holds its place.
 void follow_move(Environment& environment, Particles& particles, std::span<const Vec3> to);
 
+/// Where its simplex carries a particle while the walls move: it keeps its weights there, so that it meets no wall.
+Vec3 carried_by_cell(const CellComplex& complex, const ParticleState& state, const VertexMotion& walls);
+
 /// A share of a straight way, rounded.
 Vec3 on_way(const Vec3& from, const Vec3& to, double share);
 

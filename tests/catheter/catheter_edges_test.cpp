@@ -110,15 +110,20 @@ TEST(CatheterEdges, WithoutThemSegmentsCutCorners) {
   EXPECT_GT(count, 20U);
 }
 
-// A pipe that a catheter lies in, and that is pinched: its walls stop at it.
-TEST(CatheterEdges, WallsStopWhereTheyWouldCrushIt) {
-  Environment environment(test::pipe(12));
+CatheterOptions in_pipe(double length, double spacing) {
   CatheterOptions o;
-  o.length = 8.0;
-  o.spacing = 0.8;
+  o.length = length;
+  o.spacing = spacing;
   o.stiffness = 1.0;
   o.entry = {2.5, 2.5, 2.0};
   o.direction = {0.0, 0.0, 1.0};
+  return o;
+}
+
+// A pipe that a catheter lies in, and that is pinched: its walls stop at it.
+TEST(CatheterEdges, WallsStopWhereTheyWouldCrushIt) {
+  Environment environment(test::pipe(12));
+  CatheterOptions o = in_pipe(8.0, 0.8);
   Catheter c(environment, o);
   c.step({7.0});
   const std::vector<Vec3> rest(environment.positions().begin(), environment.positions().end());
@@ -144,12 +149,7 @@ TEST(CatheterEdges, WallsStopWhereTheyWouldCrushIt) {
 // Not inserted yet: the cell around the entry stays positive.
 TEST(CatheterEdges, WallsStopBeforeTheEntryIsFlat) {
   Environment environment(test::pipe(12));
-  CatheterOptions o;
-  o.length = 8.0;
-  o.spacing = 0.8;
-  o.stiffness = 1.0;
-  o.entry = {2.5, 2.5, 2.0};
-  o.direction = {0.0, 0.0, 1.0};
+  CatheterOptions o = in_pipe(8.0, 0.8);
   Catheter c(environment, o);
   std::vector<Vec3> flat(environment.positions().begin(), environment.positions().end());
   for (Vec3& x : flat) x.x = 5.0 - x.x;
@@ -162,12 +162,8 @@ TEST(CatheterEdges, WallsStopBeforeTheEntryIsFlat) {
 // A cell between two points is blocked, and opened again.
 TEST(CatheterEdges, AnEditThatPiercesASegmentHoldsTheCatheter) {
   Environment environment(test::pipe(14));
-  CatheterOptions o;
-  o.length = 9.0;
-  o.spacing = 3.0;
-  o.stiffness = 1.0;
-  o.entry = {2.5, 2.5, 2.5};
-  o.direction = {0.0, 0.0, 1.0};
+  CatheterOptions o = in_pipe(9.0, 3.0);
+  o.entry.z = 2.5;
   Catheter c(environment, o);
   c.step({6.0});
   ASSERT_GT(c.points().size(), 2U);
@@ -199,12 +195,7 @@ TEST(CatheterEdges, AnEditThatPiercesASegmentHoldsTheCatheter) {
 
 TEST(CatheterEdges, AMoveWithoutItIsRefused) {
   Environment environment(test::pipe(14));
-  CatheterOptions o;
-  o.length = 5.0;
-  o.spacing = 0.5;
-  o.stiffness = 1.0;
-  o.entry = {2.5, 2.5, 2.0};
-  o.direction = {0.0, 0.0, 1.0};
+  CatheterOptions o = in_pipe(5.0, 0.5);
   Catheter with(environment, o);
   o.edges = false;
   Catheter without(environment, o);
