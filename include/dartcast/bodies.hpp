@@ -274,7 +274,7 @@ class Bodies {
   /// surfaces that walls would run into give way, and where they cannot, walls and surfaces stop at the same share of their
   /// ways, which is returned. Other particles must then be advanced, as after Environment::move(). Without any surface it is
   /// Environment::move(), and the owner may call that in its place. Throws as Environment::move(), and InvalidArgument where
-  /// surfaces missed a move or an edit; nothing is changed then.
+  /// the bodies missed a move or an edit, or no step() came after the last move; nothing is changed then.
   double move_with(std::span<const Vec3> positions);
 
   /// A body as a rigid one, with its velocity at the end of the next step if it has no contacts. Its inverse mass is

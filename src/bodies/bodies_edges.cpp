@@ -68,6 +68,14 @@ void Bodies::Impl::check_surfaces(const char* caller) const {
         "bodies: the environment was moved without the surfaces of its bodies: move it by Bodies::move_with()");
 }
 
+void Bodies::Impl::check_move() const {
+  check_surfaces("move_with");
+  if (bodies_.empty()) return;
+  environment_.check_advance(particles_, options_.step, "move_with");
+  if (environment_.awaits_advance(particles_))
+    throw InvalidArgument("bodies: the environment was moved before: call step() after each move");
+}
+
 void Bodies::Impl::move_surfaces() {
   if (!surfaces_.set || surfaces_.set->size() == 0) return;
   const SolidStep& step = surfaces_.set->advance(surface_targets(reached_, {}));
@@ -164,7 +172,7 @@ void Bodies::Impl::put_back(std::span<const std::uint32_t> which, const Particle
 }
 
 double Bodies::Impl::move_with(std::span<const Vec3> positions) {
-  check_surfaces("move_with");
+  check_move();
   if (!surfaces_.set) {
     environment_.move(positions);
     return 1.0;
@@ -186,7 +194,7 @@ bool Bodies::Impl::shorten(double share, const VertexMotion& walls) { return par
 void Bodies::Impl::after_move() { partner_->after_move(); }
 
 MovePartner* BodiesMoves::prepare(Bodies& bodies) {
-  bodies.impl_->check_surfaces("move_with");
+  bodies.impl_->check_move();
   return bodies.impl_->surfaces_.set ? bodies.impl_.get() : nullptr;
 }
 

@@ -106,6 +106,7 @@ struct Bodies::Impl final : MovePartner {
   [[nodiscard]] std::span<const Vec3> surface(std::size_t body) const;
   [[nodiscard]] std::vector<Vec3> surface_targets(std::vector<Vec3>& places, std::span<const Vec3> from) const;
   void check_surfaces(const char* caller) const;
+  void check_move() const;
   void move_surfaces();
   [[nodiscard]] SurfaceRow row_of(const SolidContact& contact, const Body& body) const;
   void answer_surfaces(std::span<const std::vector<SurfaceRow>> rows, std::span<const std::uint8_t> stuck);

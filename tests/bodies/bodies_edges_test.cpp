@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -279,6 +280,26 @@ TEST(BodiesEdges, RefusesWhatHasNoRoomAndMovesWithoutThem) {
   EXPECT_THROW(bodies.step(), InvalidArgument);
   EXPECT_THROW(bodies.move_with(rest), InvalidArgument);
   EXPECT_EQ(bodies.state_hash(), before);
+}
+
+// Positions that are no numbers are no way for the cells around a surface.
+TEST(BodiesEdges, WallsThatGoNowhereStayWhereTheyAre) {
+  Environment environment(test::cubes(4), Threads{1});
+  Bodies bodies(environment, falling());
+  Ball ball({2.0, 2.0, 2.0}, 0.5);
+  ASSERT_EQ(bodies.add(ball.points, ball.options).body, 0U);
+  bodies.step();
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e300}) {
+    const StateHash before = bodies.state_hash();
+    const std::vector<Vec3> rest(environment.positions().begin(), environment.positions().end());
+    const std::vector<Vec3> nowhere(rest.size(), Vec3{bad, bad, bad});
+    EXPECT_EQ(bodies.move_with(nowhere), 0.0);
+    EXPECT_TRUE(std::equal(rest.begin(), rest.end(), environment.positions().begin()));
+    EXPECT_EQ(bodies.state_hash(), before);
+    EXPECT_THROW(bodies.move_with(rest), InvalidArgument);  // before a step
+    bodies.step();
+    EXPECT_EQ(bodies.audit().failed, 0U);
+  }
 }
 
 // A row takes out the velocity towards its wall, and no energy is added.

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 
 #include "base/random.hpp"
@@ -157,6 +158,22 @@ TEST(CatheterEdges, WallsStopBeforeTheEntryIsFlat) {
   EXPECT_GT(share, 0.4);
   EXPECT_LT(share, 0.5);
   EXPECT_EQ(audit(environment.complex(), c.particles()).failed, 0U);
+}
+
+// Positions that are no numbers are no way for the cells around it.
+TEST(CatheterEdges, WallsThatGoNowhereStayWhereTheyAre) {
+  Environment environment(test::pipe(12));
+  Catheter c(environment, in_pipe(8.0, 0.8));
+  c.step({5.0});
+  const StateHash before = c.state_hash();
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e300}) {
+    const std::vector<Vec3> rest(environment.positions().begin(), environment.positions().end());
+    EXPECT_EQ(c.move_with(std::vector<Vec3>(rest.size(), Vec3{bad, bad, bad})), 0.0);
+    EXPECT_TRUE(std::equal(rest.begin(), rest.end(), environment.positions().begin()));
+    EXPECT_EQ(c.state_hash(), before);
+  }
+  EXPECT_NEAR(c.step({0.5}).pushed, 0.5, 1e-12);
+  EXPECT_EQ(c.audit().failed, 0U);
 }
 
 // A cell between two points is blocked, and opened again.
