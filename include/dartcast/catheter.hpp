@@ -113,14 +113,14 @@ class Catheter {
 
   /// Any number of times. Throws InvalidArgument, nothing changed, where an input is not finite or too large, or the
   /// catheter missed a move or an edit. Where the vessel itself leaves no room, a segment may be off without any push: see
-  /// `worst_segment`. Cost: some 1 us per point and round; with edges 3 us.
+  /// `worst_segment`. Cost: some 2 us per point and round.
   CatheterStep step(const CatheterInput& input);
 
   /// Moves the environment straight to these positions of all the mesh's points. The vessel carries all points along, and
   /// segments bend away from walls. Where these would run into a segment even so, the environment and the catheter stop at the
   /// same share of their ways, which is returned. Other particles must then be advanced, as after Environment::move().
   /// Without edges it is Environment::move(), and the owner may call that in its place. Throws as Environment::move(), and
-  /// InvalidArgument where the catheter missed a move or an edit; nothing is changed then. Cost: some 4 us per segment.
+  /// InvalidArgument where the catheter missed a move or an edit; nothing is changed then. Cost: some 6 us per segment.
   double move_with(std::span<const Vec3> positions);
 
   /// To be called after each edit of the environment, as Environment::update_after_edit(). Points without a place move

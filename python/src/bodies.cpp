@@ -49,18 +49,6 @@ BodiesStep step(Handle& self) {
   return bodies.step();
 }
 
-double move_with(Handle& self, const py::object& given) {
-  const auto x = vectors(given, "positions");
-  const std::vector<Vec3> positions(x.begin(), x.end());
-  const Use use = self.use();
-  self.environment->expect_no_writing("move_with");
-  Bodies& bodies = self.changeable();
-  const py::gil_scoped_release release;
-  const double made = bodies.move_with(positions);
-  self.environment->overwritten = false;
-  return made;
-}
-
 UpdateReport update_after_edit(Handle& self, OrphanPolicy orphaned) {
   const Use use = self.use();
   Bodies& bodies = self.changeable();
@@ -148,7 +136,7 @@ void bind_calls(Class& bodies) {
            py::arg("responses") = py::none(), text.c_str())
       .def("add", &add, py::arg("points"), py::arg("options"), doc("Bodies::add"))
       .def("step", &step, doc("Bodies::step"))
-      .def("move_with", &move_with, py::arg("positions"),
+      .def("move_with", &move_with<Bodies>, py::arg("positions"),
            (std::string(doc("Bodies::move_with")) + "\n\npositions: float64 (n, 3).").c_str())
       .def("predicted_state", of_body([](const Bodies& b, std::size_t i) { return b.predicted_state(i); }),
            py::arg("body"), doc("Bodies::predicted_state"))

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "dartcast/bodies.hpp"
 #include "dartcast/catheter.hpp"
@@ -27,6 +28,20 @@ struct SolidHandle {
 };
 using BodiesHandle = SolidHandle<Bodies>;
 using CatheterHandle = SolidHandle<Catheter>;
+
+/// The object and its environment move together, to positions of all points: T::move_with().
+template <class T>
+double move_with(SolidHandle<T>& self, const pybind11::object& given) {
+  const auto x = vectors(given, "positions");
+  const std::vector<Vec3> positions(x.begin(), x.end());
+  const Use use = self.use();
+  self.environment->expect_no_writing("move_with");
+  T& object = self.changeable();
+  const pybind11::gil_scoped_release release;
+  const double made = object.move_with(positions);
+  self.environment->overwritten = false;
+  return made;
+}
 
 /// Bodies of a simulation.
 template <class T>

@@ -3,7 +3,6 @@
 
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "bind.hpp"
 #include "bodies_handle.hpp"
@@ -36,18 +35,6 @@ CatheterStep step(Handle& self, const CatheterInput& input) {
   const CatheterInput own_input = input;
   const py::gil_scoped_release release;
   return catheter.step(own_input);
-}
-
-double move_with(Handle& self, const py::object& given) {
-  const auto x = vectors(given, "positions");
-  const std::vector<Vec3> positions(x.begin(), x.end());
-  const Use use = self.use();
-  self.environment->expect_no_writing("move_with");
-  Catheter& catheter = self.changeable();
-  const py::gil_scoped_release release;
-  const double made = catheter.move_with(positions);
-  self.environment->overwritten = false;
-  return made;
 }
 
 UpdateReport update_after_edit(Handle& self) {
@@ -161,7 +148,7 @@ void bind_class(py::module_& m) {
   catheter
       .def(py::init(&make_catheter), py::arg("environment").none(false), py::arg("options"), doc("Catheter::Catheter"))
       .def("step", &step, py::arg("input"), doc("Catheter::step"))
-      .def("move_with", &move_with, py::arg("positions"),
+      .def("move_with", &move_with<Catheter>, py::arg("positions"),
            (std::string(doc("Catheter::move_with")) + "\n\npositions: float64 (n, 3).").c_str())
       .def("update_after_edit", &update_after_edit, doc("Catheter::update_after_edit"))
       .def("checkpoint", of_catheter([](const Catheter& c) { return c.checkpoint(); }), "The state, for restore().")
