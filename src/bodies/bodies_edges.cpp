@@ -7,7 +7,7 @@
 // While walls move, surfaces are partners of a joint move: the cells around the particles carry them along.
 #include <algorithm>
 #include <cstddef>
-#include <map>
+#include <utility>
 
 #include "bodies/bodies_impl.hpp"
 #include "bodies/bodies_moves.hpp"
@@ -15,6 +15,22 @@
 #include "dartcast/predicates.hpp"
 
 namespace dartcast {
+
+namespace {
+
+// Sorts weights by particle, and leaves one for each.
+void add_up(std::vector<std::pair<std::uint32_t, double>>& weights) {
+  const auto by_particle = [](const auto& a, const auto& b) { return a.first < b.first; };
+  std::stable_sort(weights.begin(), weights.end(), by_particle);
+  std::size_t last = 0;
+  for (std::size_t i = 1; i < weights.size(); ++i) {
+    if (weights[i].first == weights[last].first) weights[last].second += weights[i].second;
+    if (weights[i].first != weights[last].first) weights[++last] = weights[i];
+  }
+  if (!weights.empty()) weights.resize(last + 1);
+}
+
+}  // namespace
 
 // Adds a body's surface, where it has room.
 SolidPlacement Bodies::Impl::add_surface(const SolidMesh& mesh) {
@@ -101,24 +117,22 @@ void Bodies::Impl::move_surfaces() {
 
 // The condition on the particles for a contact of their surface. Those that a wall or an invalid cell holds do not move.
 SurfaceRow Bodies::Impl::row_of(const SolidContact& contact, const Body& body) const {
-  std::map<std::uint32_t, double> weights;
+  SurfaceRow row;
   for (unsigned i = 0; i < contact.count; ++i) {
     body.carried->for_each_weight(contact.vertices[i], [&](std::uint32_t sample, double weight) {
-      weights[static_cast<std::uint32_t>(body.first) + sample] += weight * contact.weights[i];
+      row.weights.emplace_back(static_cast<std::uint32_t>(body.first) + sample, weight * contact.weights[i]);
     });
   }
-  SurfaceRow row;
+  add_up(row.weights);
   row.normal = contact.normal;
   row.least = contact.point;
   row.friction = responses_.of(contact.patch).friction;
-  for (const auto& [p, weight] : weights) {
-    if (fates_[p] != ParticleStatus::alive || particles_[p].held) {
-      row.least -= reached_[p] * weight;
-    } else {
-      row.weights.emplace_back(p, weight);
-      row.mobility += weight * weight / masses_[p];
-    }
+  const auto is_fixed = [&](std::uint32_t p) { return fates_[p] != ParticleStatus::alive || particles_[p].held; };
+  for (const auto& [p, weight] : row.weights) {
+    if (is_fixed(p)) row.least -= reached_[p] * weight;
+    if (!is_fixed(p)) row.mobility += weight * weight / masses_[p];
   }
+  std::erase_if(row.weights, [&](const auto& w) { return is_fixed(w.first); });
   return row;
 }
 

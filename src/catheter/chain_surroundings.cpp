@@ -27,8 +27,7 @@ void ChainSurroundings::look_up(const CellComplex& complex, Cell cell, std::size
     element.from[k] = known.from[k] = motion.from[segment + k];
     element.to[k] = known.to[k] = motion.to[segment + k];
   }
-  const auto walls = near_.search(complex, cell, element, {complex.positions(), complex.positions()}, margin_);
-  known.walls.assign(walls.begin(), walls.end());
+  known.walls.set(near_.search(complex, cell, element, {complex.positions(), complex.positions()}, margin_));
   known.is_set = true;
   reached_.insert(reached_.end(), near_.cells_reached().begin(), near_.cells_reached().end());
 }

@@ -9,6 +9,7 @@
 #include "dartcast/environment.hpp"
 #include "dynamics/near_walls.hpp"
 #include "solids/element_touches.hpp"
+#include "solids/wall_parts.hpp"
 
 namespace dartcast {
 
@@ -35,7 +36,7 @@ class ChainSurroundings {
     std::array<Vec3, 2> from;
     std::array<Vec3, 2> to;
     bool is_set = false;
-    std::vector<NearWall> walls;
+    WallParts walls;
   };
 
   [[nodiscard]] bool covers(std::size_t segment, const SolidMotion& motion) const;

@@ -4,13 +4,10 @@
 #include "solids/element_touches.hpp"
 
 #include <algorithm>
-#include <iterator>
-#include <tuple>
 
 #include "complex/positive_cells.hpp"
 #include "dartcast/predicates.hpp"
 #include "dartcast/validity.hpp"
-#include "mesh/box_tree.hpp"
 
 namespace dartcast {
 
@@ -37,18 +34,9 @@ bool is_flat(const CellComplex& complex, Cell c, std::span<const Vec3> positions
          check_cell(complex.map(), positions, c).has_value();
 }
 
-// The box of a point's way.
-Box way_of(const Vec3& from, const Vec3& to) { return join({from, from}, {to, to}); }
-
 Box way_of(const SolidElement& e, const SolidMotion& motion) {
   Box box = way_of(motion.from[e.vertex[0]], motion.to[e.vertex[0]]);
   for (unsigned i = 1; i < e.count; ++i) box = join(box, way_of(motion.from[e.vertex[i]], motion.to[e.vertex[i]]));
-  return box;
-}
-
-Box way_of(const NearWall& w) {
-  Box box = way_of(flushed(w.corners.from[0]), flushed(w.corners.to[0]));
-  for (std::size_t k = 1; k < 3; ++k) box = join(box, way_of(flushed(w.corners.from[k]), flushed(w.corners.to[k])));
   return box;
 }
 
@@ -104,33 +92,33 @@ std::optional<double> TouchFinder::find(const CellComplex& complex, Cell cell, c
 void TouchFinder::find_touches(const CellComplex& complex, Cell cell, const SolidElement& element,
                                const SolidMotion& motion, const VertexMotion& walls,
                                std::vector<ElementTouch>& touches) {
-  walls_ = near_.search(complex, cell, moving(element, motion), walls);
-  ask_all(element, motion, touches);
+  parts_.set(near_.search(complex, cell, moving(element, motion), walls));
+  find_among(parts_, element, motion, touches);
 }
 
-void TouchFinder::find_among(std::span<const NearWall> walls, const SolidElement& element, const SolidMotion& motion,
+void TouchFinder::find_among(WallParts& walls, const SolidElement& e, const SolidMotion& motion,
                              std::vector<ElementTouch>& touches) {
-  const Box way = way_of(element, motion);
-  chosen_.clear();
-  std::copy_if(walls.begin(), walls.end(), std::back_inserter(chosen_),
-               [&](const NearWall& w) { return overlap(way_of(w), way); });
-  walls_ = chosen_;
-  ask_all(element, motion, touches);
+  if (walls.walls().empty()) return;
+  ask_corners(walls, e, motion, touches);
+  ask_sides(walls, e, motion, touches);
+  if (e.count == 3) ask_face(walls, e, motion, touches);
 }
 
-std::optional<double> TouchFinder::find(const CellComplex& complex, std::span<const Cell> cells,
-                                        std::span<const SolidElement> elements, const SolidMotion& motion,
-                                        const VertexMotion& walls, std::vector<ElementTouch>& touches) {
+std::optional<double> TouchFinder::find(const CellComplex& complex, const ElementGroup& group,
+                                        const SolidMotion& motion, const VertexMotion& walls,
+                                        std::vector<ElementTouch>& touches) {
+  const Search search = {complex, group, motion, walls, touches};
   const std::size_t touches_before = touches.size();
+  const std::size_t size = group.elements.size();
   reached_.clear();
-  for (std::size_t first = 0; first < elements.size(); first += elements_in_group) {
-    const std::size_t count = std::min<std::size_t>(elements_in_group, elements.size() - first);
-    find_part(complex, cells.subspan(first, count), elements.subspan(first, count), motion, walls, touches);
-  }
+  boxes_.clear();
+  for (const SolidElement& e : group.elements) boxes_.push_back(way_of(e, motion));
+  for (std::size_t first = 0; first < size; first += elements_in_group)
+    find_part(search, first, std::min<std::size_t>(first + elements_in_group, size));
   if (!first_flat_of_reached(complex, walls)) return {};
   touches.resize(touches_before);  // perhaps no element reaches the cell that is flat
   reached_.clear();
-  find_each(complex, cells, elements, motion, walls, touches);
+  find_each(search, 0, size);
   return first_flat_of_reached(complex, walls);
 }
 
@@ -141,52 +129,43 @@ std::optional<double> TouchFinder::first_flat_of_reached(const CellComplex& comp
 }
 
 // By one search, if that is quicker than one for each; else both halves.
-void TouchFinder::find_part(const CellComplex& complex, std::span<const Cell> cells,
-                            std::span<const SolidElement> elements, const SolidMotion& motion,
-                            const VertexMotion& walls, std::vector<ElementTouch>& touches) {
+void TouchFinder::find_part(const Search& search, std::size_t begin, std::size_t end) {
   constexpr std::size_t too_small = 4;
-  if (elements.size() <= too_small) return find_each(complex, cells, elements, motion, walls, touches);
-  boxes_.clear();
-  for (const SolidElement& e : elements) boxes_.push_back(way_of(e, motion));
-  if (share_a_search(boxes_, extent_of(complex, cells.front(), walls.after)))
-    return find_together(complex, cells, elements, motion, walls, touches);
-  const std::size_t half = elements.size() / 2;
-  find_part(complex, cells.first(half), elements.first(half), motion, walls, touches);
-  find_part(complex, cells.subspan(half), elements.subspan(half), motion, walls, touches);
+  if (end - begin <= too_small) return find_each(search, begin, end);
+  const auto boxes = std::span<const Box>(boxes_).subspan(begin, end - begin);
+  if (share_a_search(boxes, extent_of(search.complex, search.group.cells[begin], search.walls.after)))
+    return find_together(search, begin, end);
+  const std::size_t middle = begin + (end - begin) / 2;
+  find_part(search, begin, middle);
+  find_part(search, middle, end);
 }
 
-// `boxes_` has those of the elements.
-void TouchFinder::find_together(const CellComplex& complex, std::span<const Cell> cells,
-                                std::span<const SolidElement> elements, const SolidMotion& motion,
-                                const VertexMotion& walls, std::vector<ElementTouch>& touches) {
-  const auto near = near_.search(complex, cells, around(boxes_), walls);
+void TouchFinder::find_together(const Search& search, std::size_t begin, std::size_t end) {
+  const auto cells = search.group.cells.subspan(begin, end - begin);
+  const auto boxes = std::span<const Box>(boxes_).subspan(begin, end - begin);
+  parts_.set(near_.search(search.complex, cells, around(boxes), search.walls));
   reached_.insert(reached_.end(), near_.cells_reached().begin(), near_.cells_reached().end());
-  wall_boxes_.clear();
-  for (const NearWall& w : near) wall_boxes_.push_back(way_of(w));
-  for (std::size_t i = 0; i < elements.size() && !near.empty(); ++i) {
-    chosen_.clear();
-    for (std::size_t w = 0; w < near.size(); ++w) {
-      if (overlap(wall_boxes_[w], boxes_[i])) chosen_.push_back(near[w]);
-    }
-    walls_ = chosen_;
-    ask_all(elements[i], motion, touches);
+  if (parts_.walls().empty()) return;
+  const Box walls = around(parts_.ways());
+  for (std::size_t i = begin; i < end; ++i) {
+    if (overlap(boxes_[i], walls)) ask_all(search, i);
   }
 }
 
-void TouchFinder::find_each(const CellComplex& complex, std::span<const Cell> cells,
-                            std::span<const SolidElement> elements, const SolidMotion& motion,
-                            const VertexMotion& walls, std::vector<ElementTouch>& touches) {
-  for (std::size_t i = 0; i < elements.size(); ++i) {
-    find_touches(complex, cells[i], elements[i], motion, walls, touches);
+void TouchFinder::find_each(const Search& search, std::size_t begin, std::size_t end) {
+  for (std::size_t i = begin; i < end; ++i) {
+    parts_.set(near_.search(search.complex, search.group.cells[i], moving(search.group.elements[i], search.motion),
+                            search.walls));
+    ask_all(search, i);
     reached_.insert(reached_.end(), cells_reached().begin(), cells_reached().end());
   }
 }
 
-void TouchFinder::ask_all(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches) {
-  if (walls_.empty()) return;
-  ask_corners(e, motion, touches);
-  ask_sides(e, motion, touches);
-  if (e.count == 3) ask_face(e, motion, touches);
+void TouchFinder::ask_all(const Search& search, std::size_t element) {
+  const std::size_t touches_before = search.touches.size();
+  find_among(parts_, search.group.elements[element], search.motion, search.touches);
+  for (std::size_t i = touches_before; i < search.touches.size(); ++i)
+    search.touches[i].element = static_cast<std::uint32_t>(element);
 }
 
 // Whether the pair touches.
@@ -198,65 +177,51 @@ bool TouchFinder::ask(PairKind kind, const MovingPair& pair, const ElementTouch&
   return time.has_value();
 }
 
-void TouchFinder::ask_corners(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches) {
+void TouchFinder::ask_corners(const WallParts& walls, const SolidElement& e, const SolidMotion& motion,
+                              std::vector<ElementTouch>& touches) {
   for (unsigned i = 0; i < e.count; ++i) {
     if (((e.own_corners >> i) & 1U) == 0) continue;
     const std::uint32_t v = e.vertex[i];
-    for (const NearWall& w : walls_) {
-      MovingPair pair = {{motion.from[v]}, {motion.to[v]}};
-      for (unsigned k = 0; k < 3; ++k) {
-        pair.from[k + 1] = flushed(w.corners.from[k]);
-        pair.to[k + 1] = flushed(w.corners.to[k]);
-      }
+    const Box way = way_of(motion.from[v], motion.to[v]);
+    for (std::size_t n = 0; n < walls.walls().size(); ++n) {
+      if (!overlap(way, walls.ways()[n])) continue;
+      const NearWall& w = walls.walls()[n];
+      const auto& [from, to] = w.corners;
+      const MovingPair pair = {{motion.from[v], from[0], from[1], from[2]}, {motion.to[v], to[0], to[1], to[2]}};
       ask(PairKind::vertex_face, pair, {0.0, SolidContactKind::vertex_face, 1, 3, {v}, {0, 1, 2}, w}, touches);
     }
   }
 }
 
-// Lists the edges (size 2) or vertices (1) of the walls. A part that several walls share counts as the first one's.
-void TouchFinder::list_parts(unsigned size) {
-  parts_.clear();
-  for (std::uint32_t w = 0; w < walls_.size(); ++w) {
-    for (std::uint8_t k = 0; k < 3; ++k) {
-      const std::uint32_t one = walls_[w].vertex[k].value;
-      const std::uint32_t other = walls_[w].vertex[(k + size - 1) % 3].value;
-      parts_.push_back({std::min(one, other), std::max(one, other), w, k, w});
-    }
-  }
-  const auto key = [](const WallPart& p) { return std::tie(p.low, p.high, p.wall, p.corner); };
-  std::sort(parts_.begin(), parts_.end(), [&](const WallPart& a, const WallPart& b) { return key(a) < key(b); });
-  const auto same = [](const WallPart& a, const WallPart& b) { return a.low == b.low && a.high == b.high; };
-  for (std::size_t i = 0; i + 1 < parts_.size(); ++i) {
-    if (same(parts_[i], parts_[i + 1])) parts_[i].beside = parts_[i + 1].wall;
-  }
-  parts_.erase(std::unique(parts_.begin(), parts_.end(), same), parts_.end());
-}
-
-void TouchFinder::ask_sides(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches) {
-  if (e.own_sides == 0) return;
-  list_parts(2);
+void TouchFinder::ask_sides(WallParts& walls, const SolidElement& e, const SolidMotion& motion,
+                            std::vector<ElementTouch>& touches) {
   for (unsigned i = 0; i < side_count(e); ++i) {
     if (((e.own_sides >> i) & 1U) == 0) continue;
     const std::uint32_t a = e.vertex[i];
     const std::uint32_t b = e.vertex[(i + 1) % e.count];
-    for (const WallPart& p : parts_) {
-      const NearWall& w = walls_[p.wall];
+    const Box way = join(way_of(motion.from[a], motion.to[a]), way_of(motion.from[b], motion.to[b]));
+    for (const WallParts::Part& p : walls.edges()) {
+      if (!overlap(way, p.way)) continue;
+      const NearWall& w = walls.walls()[p.wall];
+      const auto& [from, to] = w.corners;
       const auto k = p.corner;
       const auto l = static_cast<std::uint8_t>((k + 1) % 3);
-      const MovingPair pair = {{motion.from[a], motion.from[b], flushed(w.corners.from[k]), flushed(w.corners.from[l])},
-                               {motion.to[a], motion.to[b], flushed(w.corners.to[k]), flushed(w.corners.to[l])}};
+      const MovingPair pair = {{motion.from[a], motion.from[b], from[k], from[l]},
+                               {motion.to[a], motion.to[b], to[k], to[l]}};
       if (!ask(PairKind::edge_edge, pair, {0.0, SolidContactKind::edge_edge, 2, 2, {a, b}, {k, l}, w}, touches))
         continue;
-      if (p.beside != p.wall) touches.back().beside = walls_[p.beside].corners;
+      if (p.beside != p.wall) touches.back().beside = walls.walls()[p.beside].corners;
     }
   }
 }
 
-void TouchFinder::ask_face(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches) {
-  list_parts(1);
-  for (const WallPart& p : parts_) {
-    const NearWall& w = walls_[p.wall];
-    MovingPair pair = {{flushed(w.corners.from[p.corner])}, {flushed(w.corners.to[p.corner])}};
+void TouchFinder::ask_face(WallParts& walls, const SolidElement& e, const SolidMotion& motion,
+                           std::vector<ElementTouch>& touches) {
+  const Box way = way_of(e, motion);
+  for (const WallParts::Part& p : walls.vertices()) {
+    if (!overlap(way, p.way)) continue;
+    const NearWall& w = walls.walls()[p.wall];
+    MovingPair pair = {{w.corners.from[p.corner]}, {w.corners.to[p.corner]}};
     for (unsigned i = 0; i < 3; ++i) {
       pair.from[i + 1] = motion.from[e.vertex[i]];
       pair.to[i + 1] = motion.to[e.vertex[i]];

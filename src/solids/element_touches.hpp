@@ -12,6 +12,7 @@
 #include "dynamics/near_walls.hpp"
 #include "predicates/moving_pair.hpp"
 #include "solids/elements.hpp"
+#include "solids/wall_parts.hpp"
 
 namespace dartcast {
 
@@ -31,6 +32,13 @@ struct ElementTouch {
   std::array<std::uint8_t, 3> corners{};  ///< of the wall
   NearWall wall;
   std::optional<MovingTriangle> beside = {};  ///< of an edge-edge touch: the other wall triangle at the edge
+  std::uint32_t element = 0;                  ///< its place in the group of find()
+};
+
+/// Elements of one solid, and the cell of each one's first vertex at the start.
+struct ElementGroup {
+  std::span<const SolidElement> elements;
+  std::span<const Cell> cells;
 };
 
 /// Memory of the search, for one thread at a time. After a few elements it allocates no more.
@@ -46,53 +54,45 @@ class TouchFinder {
   void find_touches(const CellComplex& complex, Cell cell, const SolidElement& element, const SolidMotion& motion,
                     const VertexMotion& walls, std::vector<ElementTouch>& touches);
 
-  /// find() for many elements of one solid, `cells` their first vertices' cells. Groups of elements that are small and near
-  /// each other share one search.
-  std::optional<double> find(const CellComplex& complex, std::span<const Cell> cells,
-                             std::span<const SolidElement> elements, const SolidMotion& motion,
+  /// find() for many elements. Those that are small and near each other share one search.
+  std::optional<double> find(const CellComplex& complex, const ElementGroup& group, const SolidMotion& motion,
                              const VertexMotion& walls, std::vector<ElementTouch>& touches);
 
   /// Appends the touches with these walls alone. Precondition: no other is in the element's way.
-  void find_among(std::span<const NearWall> walls, const SolidElement& element, const SolidMotion& motion,
+  void find_among(WallParts& walls, const SolidElement& element, const SolidMotion& motion,
                   std::vector<ElementTouch>& touches);
 
   /// Pairs that find() has looked at so far.
   [[nodiscard]] std::uint64_t pairs() const { return pairs_; }
   /// Those of the last find().
   [[nodiscard]] std::span<const Cell> cells_reached() const { return near_.cells_reached(); }
-  [[nodiscard]] std::span<const NearWall> walls() const { return walls_; }
+  [[nodiscard]] std::span<const NearWall> walls() const { return parts_.walls(); }
 
  private:
-  struct WallPart {
-    std::uint32_t low;  // numbers of the vertices, sorted; both the same for a vertex
-    std::uint32_t high;
-    std::uint32_t wall;
-    std::uint8_t corner;
-    std::uint32_t beside;  // the next wall that has it; the same where there is none
+  struct Search {
+    const CellComplex& complex;
+    const ElementGroup& group;
+    const SolidMotion& motion;
+    const VertexMotion& walls;
+    std::vector<ElementTouch>& touches;
   };
 
   bool ask(detail::PairKind kind, const detail::MovingPair& pair, const ElementTouch& touch,
            std::vector<ElementTouch>& touches);
-  void ask_corners(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches);
-  void ask_sides(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches);
-  void ask_face(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches);
-  void find_part(const CellComplex& complex, std::span<const Cell> cells, std::span<const SolidElement> elements,
-                 const SolidMotion& motion, const VertexMotion& walls, std::vector<ElementTouch>& touches);
-  void find_together(const CellComplex& complex, std::span<const Cell> cells, std::span<const SolidElement> elements,
-                     const SolidMotion& motion, const VertexMotion& walls, std::vector<ElementTouch>& touches);
-  void find_each(const CellComplex& complex, std::span<const Cell> cells, std::span<const SolidElement> elements,
-                 const SolidMotion& motion, const VertexMotion& walls, std::vector<ElementTouch>& touches);
+  void ask_corners(const WallParts& walls, const SolidElement& e, const SolidMotion& motion,
+                   std::vector<ElementTouch>& touches);
+  void ask_sides(WallParts& walls, const SolidElement& e, const SolidMotion& motion,
+                 std::vector<ElementTouch>& touches);
+  void ask_face(WallParts& walls, const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches);
+  void find_part(const Search& search, std::size_t begin, std::size_t end);
+  void find_together(const Search& search, std::size_t begin, std::size_t end);
+  void find_each(const Search& search, std::size_t begin, std::size_t end);
+  void ask_all(const Search& search, std::size_t element);
   std::optional<double> first_flat_of_reached(const CellComplex& complex, const VertexMotion& walls);
-  void ask_all(const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches);
-  void list_parts(unsigned size);
-
   NearWalls near_;
-  std::span<const NearWall> walls_;
-  std::vector<NearWall> chosen_;
-  std::vector<Cell> reached_;    // by elements
-  std::vector<Box> boxes_;       // of elements' ways
-  std::vector<Box> wall_boxes_;  // of walls' ways
-  std::vector<WallPart> parts_;  // edges or vertices of the walls, each once
+  WallParts parts_;            // of the last search
+  std::vector<Cell> reached_;  // by elements
+  std::vector<Box> boxes_;     // of the elements' ways
   std::uint64_t pairs_ = 0;
 };
 

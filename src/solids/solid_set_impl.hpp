@@ -73,24 +73,24 @@ struct SolidSet::Impl final : MovePartner {
     std::uint32_t solid = 0;
     double time = 0.0;
   };
-  // Consecutive elements of a solid.
+  // Consecutive places in `looked_at`: elements of one solid.
   struct Run {
-    std::uint32_t solid;
-    std::uint32_t begin;
-    std::uint32_t end;
+    std::size_t begin;
+    std::size_t end;
   };
-  static constexpr std::uint32_t elements_in_part = 2 * elements_in_group;
+  static constexpr std::uint32_t elements_in_run = 2 * elements_in_group;
   // Part of a detection: consecutive runs.
   struct Part {
     TouchFinder finder;
-    std::vector<Cell> cells;
-    std::vector<ElementTouch> touches;
-    std::vector<std::uint32_t> owners;  // the solid of each touch
+    std::vector<SolidElement> elements;  // of a run
+    std::vector<Cell> cells;             // theirs
+    std::vector<ElementTouch> touches;   // of all runs; their elements are numbers in SolidSet::Impl::elements
     std::vector<Flat> flats;
   };
   struct Progress {
     // From the last detection. Times above 1: none in the step.
     std::vector<ElementTouch> touches;
+    std::size_t known_touches = 0;  // the first of them: from an earlier detection, and as they were then
     double touch_time = 2.0;
     double flat_time = 2.0;  // when a cell that the solid reaches becomes flat
     // From all detections of the step.
@@ -98,15 +98,13 @@ struct SolidSet::Impl final : MovePartner {
 
     [[nodiscard]] double free_until() const { return std::min(touch_time, flat_time); }
     [[nodiscard]] bool is_free() const { return free_until() > 1.0; }
+    // Before a detection that looks at the elements of the other touches again.
+    void keep_touches(std::size_t first);
   };
   using Solids = std::vector<std::uint32_t>;
 
-  [[nodiscard]] std::uint64_t pairs_so_far() const;
   [[nodiscard]] Solids all_but_stuck() const;
   void start(std::span<const Vec3> given, const SolidStepOptions& options, const char* caller);
-  void detect(const Solids& solids, std::span<const Vec3> to, const VertexMotion& walls);
-  void look_at(const Run& run, const SolidMotion& motion, const VertexMotion& walls, Part& part);
-  void gather(std::span<const Part> found);
   void correct_in_rounds(Solids& open, const VertexMotion& walls, const SolidStepOptions& options);
   void correct(std::uint32_t solid, const SolidStepOptions& options);
   void go(std::uint32_t solid, double share);
@@ -115,15 +113,29 @@ struct SolidSet::Impl final : MovePartner {
   void commit_at_rest();
   void report();
 
+  // --- what touches on the way (solid_detection.cpp)
+
+  [[nodiscard]] std::uint64_t pairs_so_far() const;
+  void detect(const Solids& solids, std::span<const Vec3> to, const VertexMotion& walls);
+  void detect_corrected(const Solids& solids, const VertexMotion& walls);
+  void look_at_all_of(std::uint32_t solid);
+  void look_at_corrected_of(std::uint32_t solid);
+  void add_runs(std::size_t begin);
+  void look(const SolidMotion& motion, const VertexMotion& walls);
+  void look_at(const Run& run, const SolidMotion& motion, const VertexMotion& walls, Part& part);
+  void gather(std::span<const Part> found);
+
   SolidStepOptions planned_options;            // of a joint move
   std::vector<double> planned_made;            // the share of each solid's way, before walls stop it
   std::vector<Vec3> wanted;                    // targets of the caller
   std::vector<Vec3> targets;                   // corrected
+  std::vector<Vec3> uncorrected;               // before the last correction
   std::vector<Vec3> reached;                   // a share of the way to them
   std::vector<SolidConstraint> first_touches;  // of the solids that are cut
   std::vector<Progress> progress;
   std::vector<Part> parts;
-  std::vector<Run> work;  // of a detection
+  std::vector<std::uint32_t> looked_at;  // elements, in a detection
+  std::vector<Run> work;                 // all of them
   std::uint64_t pairs_before = 0;
   SolidStep last;
 };

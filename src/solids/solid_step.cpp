@@ -1,7 +1,8 @@
 // A step of solids: detect, correct, cut, commit. docs/method.md, "Solids", has the proofs.
 //
 //  1. start()               targets; all solids have their whole way before them
-//  2. correct_in_rounds()   detect() finds all touches on the way; correct() moves the targets away from these walls
+//  2. correct_in_rounds()   detect() finds all touches on the way (solid_detection.cpp); correct() moves the targets away from
+//                           these walls
 //  3. cut_each()            what still touches goes a share of its way, each solid its own. Walls that run into a solid even
 //                           so stop, and all solids with them: shorten(). The rounded share is detected again.
 //  4. report()
@@ -54,12 +55,6 @@ void sort_and_join(std::vector<SolidContact>& contacts) {
 
 }  // namespace
 
-std::uint64_t SolidSet::Impl::pairs_so_far() const {
-  std::uint64_t pairs = 0;
-  for (const Part& part : parts) pairs += part.finder.pairs();
-  return pairs;
-}
-
 SolidSet::Impl::Solids SolidSet::Impl::all_but_stuck() const {
   Solids solids;
   for (std::uint32_t s = 0; s < count(); ++s) {
@@ -81,7 +76,7 @@ void SolidSet::Impl::start(std::span<const Vec3> given, const SolidStepOptions& 
   wanted.resize(given.size());
   std::transform(given.begin(), given.end(), wanted.begin(), flushed);
   targets = wanted;
-  reached = positions;
+  uncorrected.resize(given.size());
   progress.resize(count());
   for (Progress& p : progress) p.constraints.clear();
   pairs_before = pairs_so_far();
@@ -95,58 +90,13 @@ void SolidSet::Impl::start(std::span<const Vec3> given, const SolidStepOptions& 
   }
 }
 
-// All touches of these solids on the way from their positions, into `progress`.
-void SolidSet::Impl::detect(const Solids& solids, std::span<const Vec3> to, const VertexMotion& walls) {
-  work.clear();
-  for (const std::uint32_t s : solids) {
-    progress[s].touches.clear();
-    progress[s].touch_time = 2.0;
-    progress[s].flat_time = 2.0;
-    for (std::uint32_t e = first_element[s]; e < first_element[s + 1]; e += elements_in_part)
-      work.push_back({s, e, std::min(e + elements_in_part, first_element[s + 1])});
-  }
-  const std::size_t grain = chunk_count(work.size(), 256);
-  const std::size_t used = grain == 0 ? 0 : chunk_count(work.size(), grain);
-  if (parts.size() < used) parts.resize(used);
-  const SolidMotion motion = {positions, to};
-  parallel_for(work.size(), std::max<std::size_t>(grain, 1), environment.threads(),
-               [&](std::size_t begin, std::size_t end) {
-                 Part& part = parts[begin / grain];
-                 part.touches.clear();
-                 part.owners.clear();
-                 part.flats.clear();
-                 for (std::size_t i = begin; i < end; ++i) look_at(work[i], motion, walls, part);
-               });
-  gather(std::span<const Part>(parts).first(used));
-}
-
-void SolidSet::Impl::look_at(const Run& run, const SolidMotion& motion, const VertexMotion& walls, Part& part) {
-  const auto own = std::span<const SolidElement>(elements).subspan(run.begin, run.end - run.begin);
-  part.cells.clear();
-  for (const SolidElement& e : own) part.cells.push_back(particles[e.vertex[0]].cell);
-  const auto flat = part.finder.find(environment.complex(), part.cells, own, motion, walls, part.touches);
-  part.owners.resize(part.touches.size(), run.solid);
-  if (flat) part.flats.push_back({run.solid, *flat});
-}
-
-// By part, then by element: the order does not depend on the threads.
-void SolidSet::Impl::gather(std::span<const Part> found) {
-  for (const Part& part : found) {
-    for (std::size_t i = 0; i < part.touches.size(); ++i) {
-      Progress& p = progress[part.owners[i]];
-      p.touches.push_back(part.touches[i]);
-      p.touch_time = std::min(p.touch_time, part.touches[i].time);
-    }
-    for (const Flat& f : part.flats) progress[f.solid].flat_time = std::min(progress[f.solid].flat_time, f.time);
-  }
-}
-
 // At the end `open` has the solids whose way is still not free. Where a cell that becomes flat is all that is in a solid's
 // way, no correction helps.
 void SolidSet::Impl::correct_in_rounds(Solids& open, const VertexMotion& walls, const SolidStepOptions& options) {
   Solids not_helped;
   for (unsigned round = 0;; ++round) {
-    detect(open, targets, walls);
+    if (round == 0) detect(open, targets, walls);
+    if (round > 0) detect_corrected(open, walls);
     std::erase_if(open, [&](std::uint32_t s) { return progress[s].is_free(); });
     if (round == options.rounds) break;
     const auto has_touches = [&](std::uint32_t s) { return !progress[s].touches.empty(); };
@@ -163,18 +113,19 @@ void SolidSet::Impl::correct_in_rounds(Solids& open, const VertexMotion& walls, 
   std::sort(open.begin(), open.end());
 }
 
-// Sweeps over all constraints found so far (Gauss-Seidel). Targets that leave the range of numbers are taken back.
+// Adds the constraints that the last detection found, and sweeps over all so far (Gauss-Seidel). Targets that leave the range of numbers are taken back.
 void SolidSet::Impl::correct(std::uint32_t solid, const SolidStepOptions& options) {
   Progress& p = progress[solid];
+  const std::span<Vec3> mine = of(targets, solid);
+  std::copy(mine.begin(), mine.end(), of(uncorrected, solid).begin());
   const SolidMotion motion = {positions, targets};
-  for (const ElementTouch& touch : p.touches) {
-    const SolidConstraint c = constraint_of(touch, motion, options.separation, longest[solid]);
+  for (std::size_t i = p.known_touches; i < p.touches.size(); ++i) {
+    const SolidConstraint c = constraint_of(p.touches[i], motion, options.separation, longest[solid]);
     if (!c.is_exit) p.constraints.push_back(c);
   }
   for (unsigned i = 0; i < options.iterations; ++i) {
     for (SolidConstraint& c : p.constraints) satisfy(c, targets, inverse_masses);
   }
-  const std::span<Vec3> mine = of(targets, solid);
   const bool good = std::all_of(mine.begin(), mine.end(), in_exact_range);
   if (good) std::transform(mine.begin(), mine.end(), mine.begin(), flushed);
   if (!good) std::copy_n(wanted.begin() + first_vertex[solid], mine.size(), mine.begin());

@@ -65,7 +65,7 @@ TEST(ElementTouches, ASharedSearchFindsTheSameFirstTouches) {
       if (now) flat = std::min(flat.value_or(*now), *now);
     }
     std::vector<ElementTouch> together;
-    EXPECT_EQ(finder.find(environment.complex(), cells, elements, {from, to}, motion, together), flat);
+    EXPECT_EQ(finder.find(environment.complex(), {elements, cells}, {from, to}, motion, together), flat);
     double first = 2.0;
     for (const ElementTouch& t : each) first = std::min(first, t.time);
     double first_together = 2.0;
