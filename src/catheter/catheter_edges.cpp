@@ -17,6 +17,7 @@
 #include "catheter/transport.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/predicates.hpp"
+#include "dynamics/flat_cells.hpp"
 #include "solids/audit_solids.hpp"
 #include "solids/solid_constraint.hpp"
 #include "solids/solid_refusal.hpp"

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "dynamics/flat_cells.hpp"
+
 namespace dartcast {
 
 void ChainSurroundings::clear() {

@@ -5,9 +5,7 @@
 
 #include <algorithm>
 
-#include "complex/positive_cells.hpp"
-#include "dartcast/predicates.hpp"
-#include "dartcast/validity.hpp"
+#include "dynamics/flat_cells.hpp"
 
 namespace dartcast {
 
@@ -24,14 +22,6 @@ MovingElement moving(const SolidElement& e, const SolidMotion& motion) {
     m.to[i] = motion.to[e.vertex[i]];
   }
   return m;
-}
-
-// Whether a cell has a simplex that is not positive.
-bool is_flat(const CellComplex& complex, Cell c, std::span<const Vec3> positions) {
-  const CellView cell = complex.map().view(c);
-  const std::uint32_t* v = cell.vertices().data();
-  return detail::not_proved_positive(cell.shape(), {v, v, v, v}, positions.data()) != 0 &&
-         check_cell(complex.map(), positions, c).has_value();
 }
 
 Box way_of(const SolidElement& e, const SolidMotion& motion) {
@@ -67,20 +57,6 @@ bool share_a_search(std::span<const Box> boxes, const Vec3& cell) {
 }
 
 }  // namespace
-
-std::optional<double> first_flat_time(const CellComplex& complex, std::span<const Cell> cells,
-                                      const VertexMotion& walls) {
-  std::optional<double> first;
-  for (const Cell c : cells) {
-    if (walls.at_rest()) {
-      if (is_flat(complex, c, walls.after)) return 0.0;
-      continue;
-    }
-    const auto flat = first_inversion(complex.map(), walls.before, walls.after, c, first.value_or(1.0));
-    if (flat) first = flat->how.safe_time;
-  }
-  return first;
-}
 
 std::optional<double> TouchFinder::find(const CellComplex& complex, Cell cell, const SolidElement& element,
                                         const SolidMotion& motion, const VertexMotion& walls,

@@ -96,8 +96,4 @@ class TouchFinder {
   std::uint64_t pairs_ = 0;
 };
 
-/// The last time known before a simplex of these cells becomes flat, or nothing: 0 where one is from the start.
-std::optional<double> first_flat_time(const CellComplex& complex, std::span<const Cell> cells,
-                                      const VertexMotion& walls);
-
 }  // namespace dartcast

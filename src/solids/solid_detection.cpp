@@ -69,7 +69,7 @@ void SolidSet::Impl::look_at_corrected_of(std::uint32_t solid) {
   add_runs(begin);
 }
 
-// Of all that is listed from here on.
+// Runs for all that is listed from here on.
 void SolidSet::Impl::add_runs(std::size_t begin) {
   for (; begin < looked_at.size(); begin += elements_in_run)
     work.push_back({begin, std::min<std::size_t>(begin + elements_in_run, looked_at.size())});

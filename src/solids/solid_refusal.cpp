@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dartcast/predicates.hpp"
+#include "dynamics/flat_cells.hpp"
 #include "dynamics/near_walls.hpp"
 #include "solids/audit_solids.hpp"
 #include "solids/element_touches.hpp"
