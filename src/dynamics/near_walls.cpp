@@ -202,6 +202,7 @@ void NearWalls::add_walls(const CellComplex& complex, const Reach& reach, CellFa
 void NearWalls::visit(const CellComplex& complex, const Reach& reach, Cell c, const VertexMotion& motion) {
   const CellView cell = complex.map().view(c);
   const Shape& shape = cell.shape();
+  if (motion.places != nullptr) motion.places->reach(cell.vertices());
   const Vec3* after = motion.after.data();
   const Vec3* before = motion.before.data();
   const bool moving = !motion.at_rest();

@@ -17,6 +17,7 @@
 #include "dartcast/contact.hpp"
 #include "dartcast/dynamics.hpp"
 #include "dartcast/particle_state.hpp"
+#include "dynamics/places_between.hpp"
 #include "dynamics/swept_sphere.hpp"
 #include "mesh/box_tree.hpp"
 
@@ -42,6 +43,7 @@ struct MovingElement {
 struct VertexMotion {
   std::span<const Vec3> before;
   std::span<const Vec3> after;
+  PlacesBetween* places = nullptr;  ///< computes both for each cell that a search comes to; none: all are there
 
   [[nodiscard]] bool at_rest() const { return before.data() == after.data(); }
 };

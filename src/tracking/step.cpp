@@ -43,4 +43,11 @@ StepResult Stepper::resume(std::uint32_t particle, ParticleState& state, Weights
   return step_in<4>(particle, state, weights, target, contacts, counters, &partial, none);
 }
 
+StepResult Stepper::ride_on(std::uint32_t particle, ParticleState& state, Weights& weights, const TakenPart& taken,
+                            ContactList& contacts, Counters& counters) const {
+  constexpr NoRecorder none;
+  if (complex_.map().dimension() == 2) return ride_on_in<3>(particle, state, weights, taken, contacts, counters, none);
+  return ride_on_in<4>(particle, state, weights, taken, contacts, counters, none);
+}
+
 }  // namespace dartcast

@@ -60,6 +60,14 @@ struct PausedStep {
   unsigned parts = 1;       ///< in which the step is taken
 };
 
+/// The first part of a step, taken while the walls moved: see Stepper::ride_on().
+struct TakenPart {
+  double time = 0.0;             ///< up to which
+  std::optional<Vec3> target;    ///< at the end of the step; none: the particle stays at the wall that it met last
+  unsigned contact_count = 0;    ///< so far
+  std::uint32_t first_wall = 0;  ///< of this particle in this step
+};
+
 /// Carries particles through one step of a complex. A plain reader of the complex: any number may run at once.
 class Stepper {
  public:
@@ -75,6 +83,12 @@ class Stepper {
   /// The same step, continued from its first wall. Precondition: the step is taken in one part.
   StepResult resume(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
                     ContactList& contacts, Counters& counters, const PartialStep& partial) const;
+
+  /// The rest of a step whose first part has been taken in another way: the vertices carry the particle along from where
+  /// they are at `taken.time`, and it walks to the target. Preconditions: `moved`; the particle is in its simplex as it is
+  /// then.
+  StepResult ride_on(std::uint32_t particle, ParticleState& state, Weights& weights, const TakenPart& taken,
+                     ContactList& contacts, Counters& counters) const;
 
   /// The same step to the same bits, which also records its crossings. Cost: some exact values for each crossing.
   StepResult trace(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
@@ -96,6 +110,9 @@ class Stepper {
   StepResult step_in(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
                      ContactList& contacts, Counters& counters, const PartialStep* partial,
                      const Recorder& recorder) const;
+  template <std::size_t N, class Recorder>
+  StepResult ride_on_in(std::uint32_t particle, ParticleState& state, Weights& weights, const TakenPart& taken,
+                        ContactList& contacts, Counters& counters, const Recorder& recorder) const;
   template <std::size_t N>
   StepResult step_on_in(const ContactList& met, const Contact& contact, const AfterContact& next, ParticleState& state,
                         Weights& weights, ContactList& contacts, Counters& counters, PausedStep& paused) const;

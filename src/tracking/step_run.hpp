@@ -267,6 +267,15 @@ class MovingStep {
     in_parts(run, weights, target, target - run.state.position, 1, parts);
   }
 
+  // The rest of a step from `time` on, in one part.
+  void ride_on(Run& run, Weights& weights, double time, const std::optional<Vec3>& target) const {
+    weights = barycentric(space_between<N>(complex_, time).corners(run.state.at()), run.state.position);
+    if (!positive(space_.corners(run.state.at()))) return hold(run, weights, weights, run.state.cell);
+    carry(space_, run, weights, time);
+    if (!target) return;
+    StepPart<Stored, N, Recorder>(complex_, true, space_, options_, respond_).move(run, *target, {time, 1.0, {}});
+  }
+
   // The same from a contact on, after its answer. Precondition: it was in that part of several.
   void move_on(Run& run, Weights& weights, const Contact& contact, const AfterContact& next,
                const TimeInterval& interval, unsigned part, unsigned parts) const {
@@ -389,6 +398,19 @@ StepResult Stepper::step_in(std::uint32_t particle, ParticleState& state, Weight
           .move(run, target, {0.0, 1.0, {}});
     }
   }
+  return detail::finish<N>(complex_, moved_, run, start, p);
+}
+
+template <std::size_t N, class Recorder>
+StepResult Stepper::ride_on_in(std::uint32_t particle, ParticleState& state, Weights& weights, const TakenPart& taken,
+                               ContactList& contacts, Counters& counters, const Recorder& recorder) const {
+  detail::RunOf<Recorder> run{particle, state, contacts, counters, {}, 0, 0, 0, -1.0, {}, recorder};
+  run.contact_count = taken.contact_count;
+  run.first_wall = taken.first_wall;
+  run.first_here = taken.first_wall;
+  const SimplexId start = state.at();
+  const Vec3 p = state.position;
+  detail::MovingStep<N, Recorder>(complex_, options_, respond_).ride_on(run, weights, taken.time, taken.target);
   return detail::finish<N>(complex_, moved_, run, start, p);
 }
 

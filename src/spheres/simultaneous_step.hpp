@@ -1,0 +1,79 @@
+// The step of one point while point and walls move at the same time. docs/method.md, "Points and walls that move at the
+// same time".
+//
+// A leg is a straight way of the point from a time to the end of the step, among vertices on their straight ways.
+//  1. look()          the walls that the point comes to in the leg, with the exact time of each touch
+//  2. no touch        the point ends at its target, in the simplex among the cells reached that holds it
+//  3. stop_before()   else the point goes on to just before the first touch, once this rounded way is proved free
+//  4. describe()      the contact; the response gives the next leg
+// Where a leg cannot be decided so, the vertices carry the point for the rest of the step: Stepper::ride_on(). That is so
+// where a cell in reach becomes flat, where the point is on a wall already, and after the last contact allowed.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "dartcast/cell_complex.hpp"
+#include "dartcast/contact.hpp"
+#include "dartcast/particle_state.hpp"
+#include "dartcast/step.hpp"
+#include "dynamics/near_walls.hpp"
+#include "dynamics/places_between.hpp"
+#include "tracking/step.hpp"
+
+namespace dartcast {
+
+/// A point's way in the rest of a step, and the walls met so far.
+struct SimultaneousLeg {
+  SimplexId at;  ///< holds `from` at `begin`
+  Vec3 from;     ///< at the time `begin`
+  Vec3 to;       ///< at the time 1
+  double begin = 0.0;
+};
+
+class SimultaneousStep {
+ public:
+  /// Memory of steps, for one thread at a time. After a few steps it allocates no more.
+  struct Memory {
+    struct Touch {
+      double time = 0.0;  ///< a share of the way that was looked at
+      NearWall wall;
+    };
+
+    NearWalls near;
+    PlacesBetween places;
+    std::vector<Touch> touches;  ///< of the last look
+    std::vector<Touch> met;      ///< of the contact
+    std::uint64_t pairs = 0;     ///< of this step
+  };
+
+  /// The references must outlive it. The complex has been moved for this step.
+  SimultaneousStep(const CellComplex& complex, const StepOptions& options, const ContactCallback& respond)
+      : complex_(complex), options_(options), respond_(respond), stepper_(complex, true, options, respond) {}
+
+  /// As Stepper::step().
+  StepResult step(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
+                  ContactList& contacts, Counters& counters, Memory& memory) const;
+
+ private:
+  struct Run;
+  struct Stop;
+  enum class LegEnd : std::uint8_t { arrived, stopped, goes_on, undecided };
+
+  LegEnd take(Run& run, SimultaneousLeg& leg) const;
+  bool look(Memory& memory, const SimultaneousLeg& leg, const Vec3& to, double end) const;
+  [[nodiscard]] SimplexId holding(const Memory& memory, const Vec3& x) const;
+  bool keep_first_touches(Memory& memory) const;
+  [[nodiscard]] std::optional<Stop> stop_before(Memory& memory, const SimultaneousLeg& leg, double time) const;
+  const Contact& describe(Run& run, const SimultaneousLeg& leg) const;
+  [[nodiscard]] Vec3 aim(const Run& run, const Contact& contact, const AfterContact& next, const Stop& stop) const;
+  void count(const Run& run) const;
+
+  const CellComplex& complex_;
+  const StepOptions& options_;
+  const ContactCallback& respond_;
+  Stepper stepper_;
+};
+
+}  // namespace dartcast
