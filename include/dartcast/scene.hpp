@@ -215,6 +215,7 @@ struct MotionScene {
   double drag = 0.0;
   unsigned substeps = 1;
   Integrator integrator = Integrator::euler;
+  WallMotion wall_motion = WallMotion::carried;
 };
 
 /// The responses of walls.

@@ -65,6 +65,13 @@ enum class Integrator : std::uint8_t {
   rk4
 };
 
+/// How points move in a step in which the walls move, too.
+enum class WallMotion : std::uint8_t {
+  carried,  ///< the cells carry them along first; then they walk among walls at rest (Environment::advance())
+  /// Both move at the same time (SimultaneousStepper). For points alone, without collisions, in steps of one segment.
+  simultaneous
+};
+
 /// SI units: seconds, metres per square second, 1 / second.
 struct SimulationOptions {
   double dt = 1e-3;  ///< of a step
@@ -74,6 +81,7 @@ struct SimulationOptions {
   std::map<std::string, WallResponse> patch_responses = {};  ///< at the walls of these patches, by name
   unsigned substeps = 1;  ///< > 0: a step's way is a polyline of so many segments; vertices move with the first one
   Integrator integrator = Integrator::euler;
+  WallMotion wall_motion = WallMotion::carried;
   std::uint64_t seed = 1;  ///< for all that is random
   StepOptions step = {};
   /// With it spheres meet each other and bodies, and rest on each other and on walls. Without it they pass through.

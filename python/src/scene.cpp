@@ -144,6 +144,7 @@ void bind_motion(py::module_& m) {
       .field("drag", &MotionScene::drag)
       .field("substeps", &MotionScene::substeps)
       .field("integrator", &MotionScene::integrator)
+      .field("wall_motion", &MotionScene::wall_motion)
       .finish();
   Record<ContactScene>(m, "ContactScene")
       .field("general", &ContactScene::general)

@@ -28,6 +28,8 @@ py::array left_rows(const std::vector<LeftParticle>& left) {
 
 void bind_options(py::module_& m) {
   bind_enum<Integrator>(m, "Integrator", {{"EULER", Integrator::euler}, {"RK4", Integrator::rk4}});
+  bind_enum<WallMotion>(m, "WallMotion",
+                        {{"CARRIED", WallMotion::carried}, {"SIMULTANEOUS", WallMotion::simultaneous}});
   Record<CollisionOptions>(m, "CollisionOptions")
       .field("restitution", &CollisionOptions::restitution)
       .field("friction", &CollisionOptions::friction)
@@ -43,6 +45,7 @@ void bind_options(py::module_& m) {
       .field("patch_responses", &SimulationOptions::patch_responses)
       .field("substeps", &SimulationOptions::substeps)
       .field("integrator", &SimulationOptions::integrator)
+      .field("wall_motion", &SimulationOptions::wall_motion)
       .field("seed", &SimulationOptions::seed)
       .field("step", &SimulationOptions::step)
       .field("collisions", &SimulationOptions::collisions)

@@ -42,6 +42,28 @@ SphereReport advance(StepperHandle& s, const EnvironmentHandle& h, ParticlesHand
   return s.stepper.advance(e, p.particles, radii, targets.get(), each, chosen, clearances);
 }
 
+struct SimultaneousHandle {
+  SimultaneousStepper stepper;
+  Usage usage = {};
+};
+
+StepReport advance_simultaneously(SimultaneousHandle& s, const EnvironmentHandle& h, ParticlesHandle& p,
+                                  const py::object& given, const py::object& respond, const py::object& velocities,
+                                  const py::object& statuses, const py::object& dt, const py::object& acceleration,
+                                  bool per_contact, const StepOptions& options) {
+  const RespondArguments arguments{respond, velocities, statuses, dt, acceleration, per_contact};
+  const Targets targets(given, arguments);
+  const Use use_stepper(s.usage, "the SimultaneousStepper");
+  const UseBoth use(h, p);
+  expect_positions_before(h, p, "advance");
+  Environment& e = h.changeable("step the simulation");
+  const Answers answers(arguments, e.map(), p.particles.size());
+  const ContactCallback& each = answers.each("points");
+  const StepOptions chosen = options;
+  const py::gil_scoped_release release;
+  return s.stepper.advance(e, p.particles, targets.get(), each, chosen);
+}
+
 SphereReport advance_once(const EnvironmentHandle& h, ParticlesHandle& p, const py::object& radii,
                           const py::object& targets, const py::object& respond, const py::object& velocities,
                           const py::object& statuses, const py::object& dt, const py::object& acceleration,
@@ -70,6 +92,15 @@ void bind_spheres(py::module_& m) {
       .def("advance", &advance, py::arg("environment"), py::arg("particles"), py::arg("radii"), py::arg("targets"),
            DARTCAST_RESPOND_ARGUMENTS, py::arg("clearances") = py::none(),
            (std::string(doc("SphereStepper::advance")) + arguments).c_str());
+  py::class_<SimultaneousHandle>(m, "SimultaneousStepper", doc("SimultaneousStepper"))
+      .def(py::init<>())
+      .def(
+          "advance", &advance_simultaneously, py::arg("environment"), py::arg("particles"), py::arg("targets"),
+          DARTCAST_RESPOND_ARGUMENTS,
+          (std::string(doc("SimultaneousStepper::advance")) + "\n\ntargets: float64 (n, 3). The other arguments are as "
+                                                              "in Environment.advance(), but a function answers one "
+                                                              "contact at a time.")
+              .c_str());
   m.def("advance_spheres", &advance_once, py::arg("environment"), py::arg("particles"), py::arg("radii"),
         py::arg("targets"), DARTCAST_RESPOND_ARGUMENTS, (std::string(doc("advance_spheres")) + arguments).c_str());
 }

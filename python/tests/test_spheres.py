@@ -30,6 +30,19 @@ def test_a_radius_of_zero_is_a_point():
     assert parts.states.tobytes() == other.states.tobytes()
 
 
+def test_points_and_walls_move_at_the_same_time():
+    env, parts = scene()
+    x = parts.positions
+    env.move(env.positions * [1, 1, 0.5] + [0, 0, 0.5])  # the floor rises to the middle
+    velocities = np.array([[0.0, 0.0, -0.1]])
+    report = dartcast.SimultaneousStepper().advance(env, parts, x + velocities, dartcast.Reflect(),
+                                                    velocities=velocities, dt=1.0)
+    time = x[0, 2] / 0.6  # they meet where x - 0.1 t = 0.5 t
+    assert np.isclose(report.contacts["time_of_impact"][0], time, atol=1e-5)
+    assert np.allclose(velocities, [[0, 0, 1.1]])  # twice the wall's, and its own turned round
+    assert np.allclose(parts.positions[0, 2], 0.5 * time + 1.1 * (1 - time), atol=1e-5)
+
+
 def test_responses_work_as_for_points():
     for respond in (dartcast.Reflect(), lambda c, w, e: c.unused * [1, 1, -1]):
         env, parts = scene()

@@ -167,6 +167,10 @@ class SceneReader {
     t.get("gravity", scene.gravity);
     t.get("drag", scene.drag, Range::not_negative);
     t.get("substeps", scene.substeps, 1U, 1000U);
+    t.get("wall_motion", scene.wall_motion,
+          {{"carried", WallMotion::carried}, {"simultaneous", WallMotion::simultaneous}});
+    if (scene.wall_motion == WallMotion::simultaneous && scene.substeps != 1)
+      t.fail("wall_motion", "wall_motion = \"simultaneous\" takes a step as one segment: leave substeps out");
     read_fields(t, folder_, scene);
     t.finish();
     return scene;

@@ -55,6 +55,19 @@ void check_integrator(const SimulationOptions& o) {
         "take the integrator euler");
 }
 
+void check_wall_motion(const SimulationOptions& o) {
+  if (o.wall_motion == WallMotion::carried) return;
+  if (o.substeps != 1)
+    throw InvalidArgument(
+        "simulation: points and walls that move at the same time take a step as one segment: substeps must be 1; or "
+        "take the wall motion carried");
+  if (o.collisions)
+    throw InvalidArgument(
+        "simulation: points that move at the same time as the walls do not meet: leave collisions out, or take the "
+        "wall "
+        "motion carried");
+}
+
 void check(const SimulationOptions& o) {
   if (!(o.dt >= smallest_dt && o.dt <= largest_dt))
     throw InvalidArgument(fmt::format("simulation: dt is {}: it must be between 2^-100 and 2^100 s", o.dt));
@@ -63,6 +76,7 @@ void check(const SimulationOptions& o) {
   if (!is_finite(o.gravity)) throw InvalidArgument("simulation: gravity must be finite");
   if (o.substeps == 0) throw InvalidArgument("simulation: substeps must be at least 1");
   check_integrator(o);
+  check_wall_motion(o);
   check(o.step, "simulation");
   check_names(o.user_data);
   if (!o.collisions) return;
@@ -166,7 +180,9 @@ void ParticleSystem::advance_segment(unsigned segment) {
   const ScopeTimer timer(totals_.seconds_detect);
   const ContactCallback respond = respond_with(responses_, velocities_, fates_, options_.dt, acceleration(dt));
   if (spheres_ == 0) {
-    StepReport report = environment_.advance(particles_, targets_, respond, options_.step);
+    StepReport report = options_.wall_motion == WallMotion::simultaneous
+                            ? simultaneous_stepper_.advance(environment_, particles_, targets_, respond, options_.step)
+                            : environment_.advance(particles_, targets_, respond, options_.step);
     hold_stopped(report, responses_, velocities_, fates_, options_.dt, acceleration(dt));
     append_segment(last_.report, std::move(report), segment, options_.substeps);
     return;

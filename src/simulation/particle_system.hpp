@@ -194,6 +194,7 @@ class ParticleSystem final : public SimulationComponent {
   std::size_t spheres_ = 0;        // of a radius above 0
   std::vector<Vec3> targets_;
   SphereStepper stepper_;
+  SimultaneousStepper simultaneous_stepper_;
   Collider collider_;
   Bodies* bodies_ = nullptr;
   SphereBodyCollider body_collider_;  // in place of the other one while there are bodies

@@ -35,6 +35,11 @@ void ParticleSystem::check_motion(const Vec3& velocity, double radius, std::stri
   check_plane(environment_, velocity, fmt::format("{} velocity", whose));
   if (!is_radius(radius))
     throw InvalidArgument(fmt::format("simulation: {} radius is {}: it must be between 0 and 2^100", whose, radius));
+  if (radius > 0.0 && options_.wall_motion == WallMotion::simultaneous)
+    throw InvalidArgument(fmt::format(
+        "simulation: {} radius is {}: points alone move at the same time as the walls: leave it out, or take "
+        "the wall motion carried",
+        whose, radius));
 }
 
 void ParticleSystem::check_user_data(std::span<const double> values) const {

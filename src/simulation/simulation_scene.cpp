@@ -24,6 +24,7 @@ SimulationOptions options_of(const Scene& scene) {
   options.patch_responses = scene.contact.by_patch;
   options.substeps = scene.motion.substeps;
   options.integrator = scene.motion.integrator;
+  options.wall_motion = scene.motion.wall_motion;
   options.seed = scene.seed;
   options.collisions = scene.collisions;
   options.body_collisions = scene.body_collisions;

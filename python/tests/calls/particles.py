@@ -120,9 +120,27 @@ def of_spheres() -> Calls:
         if not name.startswith("rounds"):
             table[f"advance_spheres: {name}"] = lambda o=options: advance(o, dc.advance_spheres)
             table[f"SphereStepper.advance: {name}"] = lambda o=options: advance(o, stepper.advance)
+    table |= of_points_among_moving_walls()
     wrong = {"respond": raising, "per_contact": True}
     table["SphereStepper.advance: raised"] = refused(lambda: advance(wrong, stepper.advance))
     table["advance_spheres: refused"] = refused(lambda: dc.advance_spheres(env, particles, radii[1:], targets))
+    return table
+
+
+def of_points_among_moving_walls() -> Calls:
+    env, particles = with_particles()
+    targets, stepper = particles.positions, dc.SimultaneousStepper()
+
+    def advance(options: dict[str, object]) -> None:
+        env.move(np.array(env.positions))
+        stepper.advance(env, particles, targets, **options)
+
+    table: Calls = {"SimultaneousStepper": dc.SimultaneousStepper}
+    for name, options in answers().items():
+        if not name.startswith("rounds"):
+            table[f"SimultaneousStepper.advance: {name}"] = lambda o=options: advance(o)
+    table["SimultaneousStepper.advance: refused"] = refused(
+        lambda: stepper.advance(env, particles, targets[1:]))
     return table
 
 
