@@ -131,7 +131,7 @@ SimultaneousStep::LegEnd SimultaneousStep::take(Run& run, SimultaneousLeg& leg) 
     run.state.put(holding(memory, leg.to), leg.to);
     return LegEnd::arrived;
   }
-  if (!keep_first_touches(memory)) return LegEnd::undecided;
+  keep_first_touches(memory);
   const auto stop = stop_before(memory, leg, memory.met.front().time);
   if (!stop) return LegEnd::undecided;
   const Contact& contact = describe(run, leg);
@@ -182,8 +182,8 @@ SimplexId SimultaneousStep::holding(const Memory& memory, const Vec3& x) const {
   throw InternalError("advance: no cell in reach holds the end of a free way; please report it");
 }
 
-// The walls touched first, into `met`, in the order of time. Returns false where the point starts on a wall.
-bool SimultaneousStep::keep_first_touches(Memory& memory) const {
+// The walls touched first, into `met`, in the order of time.
+void SimultaneousStep::keep_first_touches(Memory& memory) {
   double first = 2.0;
   for (const auto& t : memory.touches) first = std::min(first, t.time);
   memory.met.clear();
@@ -191,10 +191,9 @@ bool SimultaneousStep::keep_first_touches(Memory& memory) const {
     if (t.time <= first + share_together) memory.met.push_back(t);
   }
   std::stable_sort(memory.met.begin(), memory.met.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
-  return first > 0.0;
 }
 
-// `time`: of the touch, in the leg.
+// `time`: of the touch, in the leg. Nothing where the point is on a wall already, or no place is proved free.
 std::optional<SimultaneousStep::Stop> SimultaneousStep::stop_before(Memory& memory, const SimultaneousLeg& leg,
                                                                     double time) const {
   for (const double less : left_out) {

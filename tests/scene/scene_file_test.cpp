@@ -307,6 +307,7 @@ TEST(SceneFile, EveryKeyIsRead) {
   EXPECT_EQ(s.motion.field.frame, FieldFrame::mesh);
   EXPECT_EQ(s.motion.drag, 3.0);
   EXPECT_EQ(s.motion.substeps, 4U);
+  EXPECT_EQ(s.motion.wall_motion, WallMotion::carried);
   EXPECT_EQ(s.contact.general.kind, WallResponseKind::slide);
   EXPECT_EQ(s.contact.by_patch.at("outlet").kind, WallResponseKind::escape);
   EXPECT_EQ(s.contact.by_patch.at("outlet").friction, 0.5);  // the rest as in [contact]
@@ -401,6 +402,8 @@ TEST(SceneFile, MistakesAreNamedWithLineAndRemedy) {
   expect_error(box + "[motion]\nsteps = -1\n", "4:", "between 0");
   expect_error(box + "[motion]\nfield_frame = 'mesh'\n", "4:", "needs a field");
   expect_error(box + "[motion]\ndrags = 1\n", "4:", "'drags' is unknown");
+  expect_error(box + "[motion]\nwall_motion = 'both'\n", "4:", "carried, simultaneous");
+  expect_error(box + "[motion]\nwall_motion = 'simultaneous'\nsubsteps = 2\n", "4:", "leave substeps out");
   expect_error(box + "[contact]\nresponse = 'bounce'\n", "4:", "reflect, slide, stick, absorb, escape");
   expect_error(box + "[contact]\nrestitution = 1.5\n", "4:", "at most 1");
   expect_error(box + "[contact.patch.a]\nrestitutions = 1\n", "4:", "unknown");
