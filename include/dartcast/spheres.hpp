@@ -102,7 +102,7 @@ class SimultaneousStepper {
   /// - Contacts. A contact's time is never late, and early by at most 2^-20 of the way that leads to it. Walls that are
   ///   touched within share_together count together. The particle then is where it was just before the touch, and its
   ///   new way among the walls as they are then is a straight motion of its own.
-  /// - Along walls. A way along a wall ends 2^-30 of the wall's longest side off it.
+  /// - Along walls. A way along a wall ends 2^-20 of the wall's longest side off it.
   /// - Where the particle is carried along instead, as by Environment::advance(), in the rest of its step: a cell in its
   ///   reach becomes flat, it starts on a wall or was stopped at one in its last step, or it has had options.max_contacts
   ///   contacts.

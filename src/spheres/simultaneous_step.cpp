@@ -17,7 +17,7 @@ namespace {
 
 // Where a point goes on along a wall, it ends this share of the wall's longest side off it: rounding then does not put
 // it onto the wall.
-constexpr double rest_gap = 0x1p-30;
+constexpr double rest_gap = 0x1p-20;
 // Shares of the way to a touch that are left out. A rounded place on the way is the nearer to the wall, the likelier it is
 // not proved free.
 constexpr std::array<double, 3> left_out = {0x1p-20, 0x1p-10, 0.5};
@@ -133,10 +133,12 @@ SimultaneousStep::LegEnd SimultaneousStep::take(Run& run, SimultaneousLeg& leg) 
   }
   keep_first_touches(memory);
   const auto stop = stop_before(memory, leg, memory.met.front().time);
-  if (!stop) return LegEnd::undecided;
+  if (!stop && !presses(memory, leg)) return LegEnd::undecided;
   const Contact& contact = describe(run, leg);
-  run.state.put(stop->at, stop->place);
-  leg = {stop->at, stop->place, stop->place, stop->time};
+  if (stop) {
+    run.state.put(stop->at, stop->place);
+    leg = {stop->at, stop->place, stop->place, stop->time};
+  }
   if (!respond_) {
     run.result.stopped = true;
     run.result.unused = contact.unused;
@@ -144,8 +146,27 @@ SimultaneousStep::LegEnd SimultaneousStep::take(Run& run, SimultaneousLeg& leg) 
   }
   const AfterContact next = respond_(contact, run.contacts.walls_of(contact), run.contacts.earlier_walls_of(contact));
   if (next.displacement == Vec3{}) return LegEnd::stopped;
-  leg.to = aim(run, contact, next, *stop);
-  return LegEnd::goes_on;
+  leg.to = aim(run, contact, next, leg);
+  return stop ? LegEnd::goes_on : LegEnd::on_wall;
+}
+
+// The displacement of a wall's point in the whole step: of the one nearest to x at a time.
+Vec3 SimultaneousStep::wall_displacement(const NearWall& wall, const Vec3& x, double time) const {
+  const Triangle before = corners_at(complex_, wall.vertex, 0.0);
+  const Triangle after = corners_at(complex_, wall.vertex, 1.0);
+  const auto nearest = nearest_on_triangle(corners_at(complex_, wall.vertex, time), x);
+  Vec3 displacement;
+  for (std::size_t k = 0; k < 3; ++k) displacement += (after[k] - before[k]) * nearest.weights[k];
+  return displacement;
+}
+
+// Whether the point goes towards the wall in `met`, on which it is. Only whether there is a contact now depends on it: in
+// both cases the cells carry the point.
+bool SimultaneousStep::presses(const Memory& memory, const SimultaneousLeg& leg) const {
+  const NearWall& wall = memory.met.front().wall;
+  const Vec3 normal = normal_of(corners_at(complex_, wall.vertex, leg.begin), complex_.map().dimension());
+  const Vec3 walls = wall_displacement(wall, leg.from, leg.begin) * (1.0 - leg.begin);
+  return dot(leg.to - leg.from - walls, normal) < 0.0;
 }
 
 // The touches on the way to a place at a time. Returns false where a cell in reach becomes flat: they are not known then.
@@ -232,10 +253,7 @@ const Contact& SimultaneousStep::describe(Run& run, const SimultaneousLeg& leg) 
   const Shape::Feature feature = complex_.map().shape(wall.face.cell).feature(common_points(met, dimension));
   contact.kind = feature.kind;
   contact.dart = {wall.face.cell, feature.dart};
-  const auto nearest = nearest_on_triangle(corners_at(complex_, wall.vertex, contact.time_of_impact), contact.point);
-  const Triangle before = corners_at(complex_, wall.vertex, 0.0);
-  const Triangle after = corners_at(complex_, wall.vertex, 1.0);
-  for (std::size_t k = 0; k < 3; ++k) contact.wall_displacement += (after[k] - before[k]) * nearest.weights[k];
+  contact.wall_displacement = wall_displacement(wall, contact.point, contact.time_of_impact);
   contact.displacement = motion - contact.wall_displacement * (1.0 - leg.begin);
   contact.unused = contact.displacement * (1.0 - share);
   contact.earlier = contact.first_wall - run.first_wall;
@@ -251,10 +269,11 @@ const Contact& SimultaneousStep::describe(Run& run, const SimultaneousLeg& leg) 
   return contact;
 }
 
-// The target at the end of the step. Along walls it is a little off them.
-Vec3 SimultaneousStep::aim(const Run& run, const Contact& contact, const AfterContact& next, const Stop& stop) const {
+// The target at the end of the step, from the start of a leg. Along walls it is a little off them.
+Vec3 SimultaneousStep::aim(const Run& run, const Contact& contact, const AfterContact& next,
+                           const SimultaneousLeg& leg) const {
   const Vec3& d = next.displacement;
-  Vec3 q = flushed(stop.place + d + contact.wall_displacement * (1.0 - stop.time));
+  Vec3 q = flushed(leg.from + d + contact.wall_displacement * (1.0 - leg.begin));
   if (!in_exact_range(q))
     throw InvalidArgument("the response for particle " + std::to_string(run.particle) +
                           " returned a displacement that is not finite, or out of range");

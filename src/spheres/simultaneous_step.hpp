@@ -7,7 +7,8 @@
 //  3. stop_before()   else the point goes on to just before the first touch, once this rounded way is proved free
 //  4. describe()      the contact; the response gives the next leg
 // Where a leg cannot be decided so, the vertices carry the point for the rest of the step: Stepper::ride_on(). That is so
-// where a cell in reach becomes flat, where the point is on a wall already, and after the last contact allowed.
+// where a cell in reach becomes flat, where the point is on a wall already, and after the last contact allowed. A point on
+// a wall that goes towards it has a contact there first, and then a target off that wall: its next step has legs again.
 #pragma once
 
 #include <cstdint>
@@ -59,7 +60,7 @@ class SimultaneousStep {
  private:
   struct Run;
   struct Stop;
-  enum class LegEnd : std::uint8_t { arrived, stopped, goes_on, undecided };
+  enum class LegEnd : std::uint8_t { arrived, stopped, goes_on, on_wall, undecided };
 
   LegEnd take(Run& run, SimultaneousLeg& leg) const;
   bool look(Memory& memory, const SimultaneousLeg& leg, const Vec3& to, double end) const;
@@ -67,7 +68,10 @@ class SimultaneousStep {
   static void keep_first_touches(Memory& memory);
   [[nodiscard]] std::optional<Stop> stop_before(Memory& memory, const SimultaneousLeg& leg, double time) const;
   const Contact& describe(Run& run, const SimultaneousLeg& leg) const;
-  [[nodiscard]] Vec3 aim(const Run& run, const Contact& contact, const AfterContact& next, const Stop& stop) const;
+  [[nodiscard]] bool presses(const Memory& memory, const SimultaneousLeg& leg) const;
+  [[nodiscard]] Vec3 wall_displacement(const NearWall& wall, const Vec3& x, double time) const;
+  [[nodiscard]] Vec3 aim(const Run& run, const Contact& contact, const AfterContact& next,
+                         const SimultaneousLeg& leg) const;
   void count(const Run& run) const;
 
   const CellComplex& complex_;

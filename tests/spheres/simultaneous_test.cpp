@@ -395,19 +395,41 @@ TEST(Simultaneous, StickingPoints) {
   }
 }
 
-// A point that starts on a wall is carried along by it, as by Environment::advance(), to the last bit.
-TEST(Simultaneous, PointsThatStartOnAWall) {
+// A point that starts on a wall and leaves it is carried along, as by Environment::advance(), to the last bit.
+TEST(Simultaneous, PointsThatLeaveAWall) {
   Cloud cloud(cubes(4, CellType::tetrahedron));
-  for (const Vec3& x : {Vec3{1.25, 2.5, 0.0}, Vec3{1.0, 2.0, 0.0}, Vec3{0.0, 0.0, 0.0}, Vec3{4.0, 1.5, 4.0}})
-    ASSERT_TRUE(cloud.add(x, {0.125, 0.0, 0.25}));
+  for (const Vec3& x : {Vec3{1.25, 2.5, 0.0}, Vec3{1.0, 2.0, 0.0}, Vec3{0.0, 0.0, 0.0}})
+    ASSERT_TRUE(cloud.add(x, {0.25, 0.25, 1.5}));
   Particles carried = cloud.particles;
   std::vector<Vec3> velocities = cloud.velocities;
   const auto targets = cloud.targets();
   cloud.move([](const Vec3& x) { return turned(x, 0.1, {2.0, 2.0, 2.0}) + Vec3{0.0, 0.0, 0.25}; });
-  cloud.step(elastic());
+  EXPECT_TRUE(cloud.step(elastic()).contacts.contacts.empty());
   cloud.environment.advance(carried, targets, respond_with(elastic(), velocities, cloud.fates, 1.0));
   EXPECT_EQ(hash_of(cloud.particles), hash_of(carried));
   cloud.expect_valid();
+}
+
+// One that is pressed against its wall has a contact there, and is off it afterwards.
+TEST(Simultaneous, PointsThatArePressedAgainstAWall) {
+  for (const CellType type : {CellType::hexahedron, CellType::tetrahedron}) {
+    Cloud cloud(cubes(4, type));
+    ASSERT_TRUE(cloud.add({1.25, 2.5, 0.0}));
+    double floor = 0.0;
+    for (int step = 0; step < 40; ++step) {
+      const double rise = 0.01 * std::sin(0.5 * step);
+      cloud.velocities[0].x = 0.02;
+      cloud.velocities[0].z -= 0.001;
+      cloud.move([&](const Vec3& x) { return x + Vec3{0.0, 0.0, rise * (1.0 - 0.1 * x.z)}; });
+      floor += rise * (1.0 - 0.1 * floor);
+      const StepReport report = cloud.step(test::sliding());
+      for (const Contact& c : report.contacts.contacts) EXPECT_EQ(c.time_of_impact > 0.0, step > 0) << step;
+      EXPECT_EQ(report.contacts.contacts.size() > 0, cloud.particles[0].position.z < floor + 1e-5) << step;
+      EXPECT_GT(cloud.particles[0].position.z, floor);
+      cloud.expect_valid();
+    }
+    EXPECT_NEAR(cloud.particles[0].position.x, 2.05, 1e-6);
+  }
 }
 
 // Without a response a point stays at the wall.
