@@ -84,7 +84,7 @@ SphereReport advance_spheres(Environment& environment, Particles& particles, std
 /// Advances points while they and the walls move at the same time. It keeps its memory from call to call: use one for each
 /// set of particles. Results depend on the arguments alone. A moved-from object can be used again.
 ///
-/// Environment::advance() first lets the cells carry a particle along, and then walks among walls at rest. That is right
+/// Environment::advance() first lets the cells carry a particle along, and then walks among walls at rest. This is right
 /// where no wall is in reach, and quick. Where walls turn much in a step it can miss a contact, invent one, or give the
 /// time of another (docs/method.md has measurements).
 class SimultaneousStepper {

@@ -6,8 +6,8 @@
 //  2. no touch        the point ends at its target, in the simplex among the cells reached that holds it
 //  3. stop_before()   else the point goes on to just before the first touch, once this rounded way is proved free
 //  4. describe()      the contact; the response gives the next leg
-// Where a leg cannot be decided so, the vertices carry the point for the rest of the step: Stepper::ride_on(). That is so
-// where a cell in reach becomes flat, where the point is on a wall already, and after the last contact allowed. A point on
+// Where a cell in reach becomes flat, where the point is on a wall already, and after the last contact allowed a leg cannot
+// be decided so. The vertices then carry the point for the rest of the step: Stepper::ride_on(). A point on
 // a wall that goes towards it has a contact there first, and then a target off that wall: its next step has legs again.
 #pragma once
 
