@@ -5,13 +5,14 @@
 
 namespace dartcast {
 
-/// CSS. The colours c0 to c7 are those of M. Okabe and K. Ito, which colour-blind people distinguish. The viewer and the
+/// CSS. Each of the colours c0 to c7 has a contrast of 3 or more to the page, and any two of them differ for all kinds of
+/// colour-blind people (tests/report/colours_test.cpp); the first two are of M. Okabe and K. Ito. The viewer and the
 /// charts use the variables.
 inline constexpr std::string_view page_style = R"css(
 :root{--background:#fff;--panel:#f6f7f9;--text:#1b1f24;--muted:#5b6570;--line:#aab3bd;--faint:#e3e7eb;--accent:#0072b2;
---c0:#0072b2;--c1:#d55e00;--c2:#009e73;--c3:#cc79a7;--c4:#e69f00;--c5:#56b4e9;--c6:#8a8f96;--c7:#b8a800}
+--c0:#0072b2;--c1:#d55e00;--c2:#8c00ff;--c3:#c76c8f;--c4:#782900;--c5:#3f1da3;--c6:#53393b;--c7:#a3895b}
 @media (prefers-color-scheme:dark){:root{--background:#14171b;--panel:#1d2127;--text:#e6e9ed;--muted:#9aa4af;--line:#5a6572;
---faint:#2b313a;--accent:#56b4e9;--c0:#56b4e9;--c1:#f08040;--c2:#2fc496;--c3:#e59cc4;--c4:#f0b93a;--c5:#9fd3f5;--c6:#aab0b8;--c7:#e0d860}}
+--faint:#2b313a;--accent:#56b4e9;--c0:#56b4e9;--c1:#f08040;--c2:#41825a;--c3:#a930ff;--c4:#ffc700;--c5:#bbffc9;--c6:#a3b2b6;--c7:#f3ff8e}}
 *{box-sizing:border-box}
 body{margin:0;background:var(--background);color:var(--text);font:15px/1.45 system-ui,sans-serif}
 header,main{max-width:1180px;margin:0 auto;padding:0 16px}
