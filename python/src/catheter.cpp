@@ -6,6 +6,7 @@
 
 #include "bind.hpp"
 #include "bodies_handle.hpp"
+#include "support/rows.hpp"
 
 namespace py = pybind11;
 
@@ -119,6 +120,8 @@ void bind_state(Class& catheter) {
       .def("points", of_catheter([](const Catheter& c) { return c.points(); }),
            (std::string(doc("Catheter::points")) + "\n\nfloat64 (n, 3).").c_str())
       .def("frames", of_catheter([](const Catheter& c) { return c.frames(); }), doc("Catheter::frames"))
+      .def("contacts", of_catheter([](const Catheter& c) { return rows_of(c.contacts()); }),
+           (std::string(doc("Catheter::contacts")) + "\n\nA structured array, as SolidStep.contacts.").c_str())
       .def_property_readonly("inserted", of_catheter([](const Catheter& c) { return c.inserted(); }),
                              doc("Catheter::inserted"))
       .def_property_readonly("measured_length", of_catheter([](const Catheter& c) { return c.measured_length(); }),

@@ -146,6 +146,18 @@ def tube() -> dartcast.Environment:
                                                       origin=[-0.005, -0.005, 0.0]))
 
 
+def test_contacts_are_the_walls_that_a_catheter_presses_on() -> None:
+    catheter = straight(tube(), stiffness=1e-14, direction=[0.5, 0.0, 1.0])
+    for _ in range(12):
+        catheter.step(dartcast.CatheterInput(push=1e-3))
+    contacts, points = catheter.contacts(), catheter.points()
+    assert len(contacts) > 0
+    for c in contacts:
+        place = c["weights"][:c["count"]] @ points[c["vertices"][:c["count"]]]
+        assert np.allclose(place, c["point"]) and 0.0 < c["gap"] < 1e-4
+        assert np.allclose(c["point"] - c["wall_point"], c["gap"] * c["normal"])
+
+
 def straight(environment: dartcast.Environment, **options: object) -> dartcast.Catheter:
     return dartcast.Catheter(environment, dartcast.CatheterOptions(
         **({"length": 0.03, "spacing": 1e-3, "entry": [0.0, 0.0, 1e-3], "direction": [0.0, 0.0, 1.0]} | options)))

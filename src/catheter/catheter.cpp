@@ -250,6 +250,7 @@ CatheterStep Catheter::step(const CatheterInput& input) { return impl_->step(inp
 UpdateReport Catheter::update_after_edit() { return impl_->update_after_edit(); }
 std::vector<Vec3> Catheter::points() const { return impl_->points(); }
 std::vector<CatheterFrame> Catheter::frames() const { return impl_->frames(); }
+std::vector<SolidContact> Catheter::contacts() const { return impl_->contacts(); }
 double Catheter::inserted() const { return impl_->inserted_; }
 double Catheter::measured_length() const { return impl_->measured_length(); }
 double Catheter::total_length() const { return impl_->total_length(); }

@@ -42,6 +42,55 @@ std::vector<CatheterFrame> Catheter::Impl::frames() const {
   return frames;
 }
 
+// The contact of a place on the chain with the wall nearest to it; nothing where none is near.
+std::optional<SolidContact> Catheter::Impl::contact_at(const ChainWall& w, NearWalls& near) const {
+  const CellComplex& complex = environment_.complex();
+  const Vec3& next = w.index + 1 < inserted_points() ? particles_[w.index + 1].position : entry();
+  MovingElement part;
+  part.count = w.weight > 0.0 ? 2 : 1;
+  part.from = part.to = {particles_[w.index].position, next, next};
+  const double margin = look_margin * options_.spacing;
+  const auto walls =
+      near.search(complex, particles_[w.index].cell, part, {complex.positions(), complex.positions()}, margin);
+  SolidContact c;
+  c.count = static_cast<std::uint8_t>(part.count);
+  c.kind = part.count == 2 ? SolidContactKind::edge_edge : SolidContactKind::vertex_face;
+  c.vertices = {w.index, part.count == 2 ? w.index + 1 : 0, 0};
+  c.weights = {1.0 - w.weight, w.weight, 0.0};
+  c.point = part.from[0] * c.weights[0] + next * c.weights[1];
+  c.time_of_impact = 1.0;
+  const NearWall* nearest = nullptr;
+  double least = margin;
+  for (const NearWall& wall : walls) {
+    const double distance = nearest_on_triangle(wall.corners.to, c.point).distance;
+    if (!(distance < least)) continue;
+    least = distance;
+    nearest = &wall;
+  }
+  if (nearest == nullptr) return {};
+  const WallFeature place = NearWalls::place_on(complex, nearest->face, nearest->triangle, c.point, false);
+  c.face = place.face;
+  c.triangle = place.triangle;
+  c.wall_kind = place.kind;
+  c.dart = place.dart;
+  c.patch = place.patch;
+  c.wall_point = place.point;
+  c.normal = place.normal;
+  c.gap = place.distance;
+  return c;
+}
+
+std::vector<SolidContact> Catheter::Impl::contacts() const {
+  NearWalls near;
+  std::vector<SolidContact> all;
+  for (const ChainWall& w : walls_) {
+    if (!(w.pressure > 0.0) || w.index >= inserted_points()) continue;
+    const auto contact = contact_at(w, near);
+    if (contact) all.push_back(*contact);
+  }
+  return all;
+}
+
 double Catheter::Impl::measured_length() const {
   const std::vector<Vec3> all = points();
   double length = 0.0;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -88,6 +89,8 @@ struct Catheter::Impl final : MovePartner {
   // catheter_frames.cpp: its points and frames, checkpoints, edits.
   [[nodiscard]] std::vector<Vec3> points() const;
   [[nodiscard]] std::vector<CatheterFrame> frames() const;
+  [[nodiscard]] std::vector<SolidContact> contacts() const;
+  [[nodiscard]] std::optional<SolidContact> contact_at(const ChainWall& w, NearWalls& near) const;
   [[nodiscard]] double measured_length() const;
   [[nodiscard]] StateHash state_hash() const;
   [[nodiscard]] CatheterCheckpoint checkpoint() const;

@@ -44,8 +44,8 @@ std::string series(std::string_view kind, const std::string& name) { return fmt:
 // Whether contacts of edges and faces have a table.
 bool lists_contacts(const Scene& scene) {
   const auto has_edges = [](const BodyScene& body) { return body.edges; };
-  return scene.output.contacts &&
-         (!scene.solids.empty() || std::any_of(scene.bodies.begin(), scene.bodies.end(), has_edges));
+  return scene.output.contacts && (!scene.solids.empty() || !scene.catheters.empty() ||
+                                   std::any_of(scene.bodies.begin(), scene.bodies.end(), has_edges));
 }
 
 }  // namespace
@@ -118,13 +118,17 @@ void SolidsRecording::add_solids(const Simulation& simulation) {
   solids_.send_many(writing_);
 }
 
-// Those of tools, then those of the surfaces of bodies.
+// Those of tools, then those of the surfaces of bodies, then those of catheters.
 void SolidsRecording::add_solid_contacts(const Simulation& simulation) {
   for (const SolidContact& c : simulation.solids_step().contacts)
     add_solid_contact(simulation, simulation.parts().solids.name(c.solid), c);
   const BodiesComponent& bodies = simulation.parts().bodies;
   if (bodies.bodies() && bodies.last_step().gone.empty()) {
     for (const SolidContact& c : bodies.last_step().edges) add_solid_contact(simulation, bodies.name(c.solid), c);
+  }
+  for (std::size_t i = 0; i < simulation.catheter_count(); ++i) {
+    for (const SolidContact& c : simulation.catheter(i).contacts())
+      add_solid_contact(simulation, simulation.parts().catheters.scenes()[i].name, c);
   }
   solid_contacts_.send_many(writing_);
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -75,6 +76,30 @@ class Steps {
 
   std::vector<Column> columns_;
 };
+
+// The sum of a column in each step, of a table with a row per step and solid. Steps count from 1, as in stats.csv.
+std::vector<double> contacts_of_solids(const fs::path& path, std::size_t steps, std::string_view column) {
+  std::ifstream file(path);
+  std::string line;
+  if (!std::getline(file, line)) return {};
+  const auto fields = [](const std::string& row) {
+    std::vector<std::string> all;
+    std::stringstream in(row);
+    for (std::string field; std::getline(in, field, ',');) all.push_back(field);
+    return all;
+  };
+  const std::vector<std::string> names = fields(line);
+  const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), column) - names.begin());
+  std::vector<double> sums(steps);
+  while (std::getline(file, line)) {
+    const std::vector<std::string> row = fields(line);
+    if (at >= row.size()) continue;
+    const double step = std::strtod(row[0].c_str(), nullptr);
+    if (step >= 1.0 && step <= static_cast<double>(steps))
+      sums[static_cast<std::size_t>(step) - 1] += std::strtod(row[at].c_str(), nullptr);
+  }
+  return sums;
+}
 
 std::vector<double> ratio(const std::vector<double>& a, const std::vector<double>& b, double factor) {
   std::vector<double> out(std::min(a.size(), b.size()));
@@ -173,6 +198,13 @@ std::string run_charts(const fs::path& folder) {
                    {{"kept", ratio(steps["forecast_kept"], alive, 100.0)},
                     {"updated by deformation", ratio(steps["updated_by_deformation"], alive, 100.0)}});
   out += over_time("Contacts", "contacts in a step", time, {{"contacts", steps["contacts"]}});
+  const auto of_solids = [&](const char* table, const char* column) {
+    return contacts_of_solids(folder / table, time.size(), column);
+  };
+  out += over_time("Contacts of bodies, catheters and solids", "contacts at the end of a step", time,
+                   {{"bodies", of_solids("bodies.csv", "contacts")},
+                    {"catheters", of_solids("catheters.csv", "at_walls")},
+                    {"solids", of_solids("solids.csv", "contacts")}});
   out += bar_chart({.title = "Contacts by patch"},
                    bars_of(summary.value("/contacts/by_patch"_json_pointer, RunJson()), ""));
   out += over_time("Particles", "particles", time,

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <optional>
 
@@ -95,6 +96,53 @@ TEST(CatheterEdges, NoSegmentMeetsAWall) {
   EXPECT_GT(checked, test::sanitized() ? 100U : 500U);
   EXPECT_GT(contacts, test::sanitized() ? 50U : 500U);
   if (!test::sanitized()) EXPECT_LT(least_share, 1.0);  // walls stop, too
+}
+
+// Each contact is a place on the chain that is close to a wall, on its free side, by the corners of that wall.
+TEST(CatheterEdges, ContactsAreWhereTheChainPresses) {
+  std::array<std::size_t, 2> count{};
+  for (std::uint64_t seed = 1; seed <= test::scaled<std::uint64_t>(80, 800); ++seed) {
+    AmongObstacles scene(seed);
+    const auto walls = test::all_walls(scene.environment.complex(), false);
+    const CombinatorialMap& map = scene.environment.map();
+    for (int i = 0; i < 15; ++i) {
+      scene.step();
+      const std::vector<Vec3> points = scene.catheter->points();
+      const std::vector<SolidContact> contacts = scene.catheter->contacts();
+      for (const SolidContact& c : contacts) {
+        ASSERT_LT(c.vertices[c.count - 1U], points.size());
+        Vec3 place = points[c.vertices[0]] * c.weights[0];
+        if (c.count == 2) place += points[c.vertices[1]] * c.weights[1];
+        EXPECT_LE(norm(place - c.point), 1e-12);
+        const CellView cell = map.view(c.face.cell);
+        ASSERT_TRUE(cell.is_wall(c.face.face));
+        std::array<Vec3, 3> wall;
+        for (std::size_t k = 0; k < 3; ++k)
+          wall[k] = scene.environment.complex()
+                        .positions()[cell.vertex(cell.shape().triangle(c.face.face, c.triangle)[k]).value];
+        const Vec3 free_side = cross(wall[2] - wall[0], wall[1] - wall[0]);
+        EXPECT_NEAR(dot(c.wall_point - wall[0], free_side), 0.0, 1e-9);
+        EXPECT_GT(c.gap, 0.0);
+        EXPECT_NEAR(c.gap, test::clearance(walls, c.point), 1e-9);
+        EXPECT_NEAR(dot(c.point - c.wall_point, c.normal), c.gap, 1e-9);
+        EXPECT_LT(norm(c.point - c.wall_point), 0.1 * scene.catheter->options().spacing);
+        EXPECT_EQ(c.patch, map.patch(c.face));
+        EXPECT_EQ(c.kind, c.count == 2 ? SolidContactKind::edge_edge : SolidContactKind::vertex_face);
+        ++count[c.count - 1U];
+      }
+      if (i != 10 || contacts.empty()) continue;
+      Catheter other(scene.environment, scene.catheter->options());
+      other.restore(scene.catheter->checkpoint());
+      const std::vector<SolidContact> again = other.contacts();
+      ASSERT_EQ(again.size(), contacts.size());
+      for (std::size_t k = 0; k < again.size(); ++k) {
+        EXPECT_EQ(again[k].dart, contacts[k].dart);
+        EXPECT_EQ(again[k].point, contacts[k].point);
+      }
+    }
+  }
+  EXPECT_GT(count[0], test::sanitized() ? 1U : 100U);
+  if (!test::sanitized()) EXPECT_GT(count[1], 20U);
 }
 
 // The test above would see it.

@@ -196,7 +196,7 @@ def of_catheters() -> Calls:
         "Catheter.step": step, "Catheter.restore": step, "Catheter.checkpoint": own.checkpoint,
         "Catheter.step: refused": refused(lambda: own.step(dc.CatheterInput(push=np.nan))),
         "Catheter.restore: refused": refused(lambda: own.restore(3)),
-        "Catheter.move_with": moved, "Catheter.audit": own.audit,
+        "Catheter.move_with": moved, "Catheter.contacts": own.contacts, "Catheter.audit": own.audit,
         "Catheter.move_with: refused": refused(lambda: own.move_with(np.zeros((2, 3)))),
         "Catheter.update_after_edit": edited, "Catheter.points": own.points, "Catheter.frames": own.frames,
         "Catheter.state_hash": own.state_hash,
