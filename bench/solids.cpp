@@ -185,10 +185,13 @@ class EdgeBench {
     const SolidMotion motion = {solids_.positions(), to_};
     std::vector<ElementTouch> touches;
     const auto start = Clock::now();
+    const auto cell_of = [&](std::size_t i) { return solids_.particles()[2 * i].cell; };
     for (std::uint32_t i = 0; i < edge_count; ++i) {
+      if (i + 2 < edge_count) prefetch_record(environment_.complex(), cell_of(i + 2));  // as SolidSet does
+      if (i + 1 < edge_count) prefetch_cell(environment_.complex(), cell_of(i + 1), wall_motion());
       touches.clear();
       const SolidElement edge = {{2 * i, 2 * i + 1, 2 * i + 1}, 2, 3, 1};
-      finder_.find(environment_.complex(), solids_.particles()[2 * i].cell, edge, motion, wall_motion(), touches);
+      finder_.find(environment_.complex(), cell_of(i), edge, motion, wall_motion(), touches);
       walls_reached_ += static_cast<double>(finder_.walls().size());
       for (const ElementTouch& t : touches) first_[i] = std::min(first_[i].value_or(2.0), t.time);
     }

@@ -239,7 +239,10 @@ std::span<const NearWall> NearWalls::run(const CellComplex& complex, std::span<c
   for (std::size_t i = 0; i < starts.size(); ++i) {
     if (i == 0 || starts[i] != starts[i - 1]) add(starts[i]);
   }
-  for (std::size_t i = 0; i < cells_.size(); ++i) visit(complex, reach, cells_[i], motion);
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    if (i + 1 < cells_.size()) prefetch_cell(complex, cells_[i + 1], motion);
+    visit(complex, reach, cells_[i], motion);
+  }
   return walls_;
 }
 

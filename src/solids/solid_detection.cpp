@@ -83,7 +83,12 @@ void SolidSet::Impl::look(const SolidMotion& motion, const VertexMotion& walls) 
     Part& part = parts[begin / grain];
     part.touches.clear();
     part.flats.clear();
-    for (std::size_t i = begin; i < end; ++i) look_at(work[i], motion, walls, part);
+    const auto cell_of = [&](std::size_t i) { return particles[elements[looked_at[work[i].begin]].vertex[0]].cell; };
+    for (std::size_t i = begin; i < end; ++i) {
+      if (i + 2 < end) prefetch_record(environment.complex(), cell_of(i + 2));
+      if (i + 1 < end) prefetch_cell(environment.complex(), cell_of(i + 1), walls);
+      look_at(work[i], motion, walls, part);
+    }
   });
   gather(std::span<const Part>(parts).first(used));
 }

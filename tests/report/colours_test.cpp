@@ -1,4 +1,4 @@
-// Whether people see the colours of pages, and tell them apart: contrasts after WCAG 2.2, and distances in CIELAB as seen
+// Whether people see the colours of pages, and distinguish them: contrasts after WCAG 2.2, and distances in CIELAB as seen
 // by people who lack one kind of cones (G. Machado, M. Oliveira, L. Fernandes, "A physiologically-based model for
 // simulation of color vision deficiency", 2009).
 #include <gtest/gtest.h>

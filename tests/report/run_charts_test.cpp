@@ -42,7 +42,7 @@ TEST_F(RunCharts, ContactsOfSolids) {
   EXPECT_EQ(all.find(">solids<"), std::string::npos);
 }
 
-// What a crash left of a table is no reason for a run without charts.
+// A row that a crash cut off is no reason for a run without charts.
 TEST_F(RunCharts, RowsThatAreCutOff) {
   write("solids.csv", "step,time,name,contacts\n1,0.1,a,2\n2,0.2,a,5\n3,0.3");
   EXPECT_TRUE(shows("Contacts of bodies, catheters and solids"));
