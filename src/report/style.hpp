@@ -10,7 +10,7 @@ namespace dartcast {
 /// charts use the variables.
 inline constexpr std::string_view page_style = R"css(
 :root{--background:#fff;--panel:#f6f7f9;--text:#1b1f24;--muted:#5b6570;--line:#aab3bd;--faint:#e3e7eb;--accent:#0072b2;
---c0:#0072b2;--c1:#d55e00;--c2:#8c00ff;--c3:#c76c8f;--c4:#782900;--c5:#3f1da3;--c6:#53393b;--c7:#a3895b}
+--c0:#0072b2;--c1:#d55e00;--c2:#8c00ff;--c3:#c76c8f;--c4:#782900;--c5:#3f1da3;--c6:#454545;--c7:#a3895b}
 @media (prefers-color-scheme:dark){:root{--background:#14171b;--panel:#1d2127;--text:#e6e9ed;--muted:#9aa4af;--line:#5a6572;
 --faint:#2b313a;--accent:#56b4e9;--c0:#56b4e9;--c1:#f08040;--c2:#41825a;--c3:#a930ff;--c4:#ffc700;--c5:#bbffc9;--c6:#a3b2b6;--c7:#f3ff8e}}
 *{box-sizing:border-box}
