@@ -6,9 +6,9 @@
 //  2. no touch        the point ends at its target, in the simplex among the cells reached that holds it
 //  3. stop_before()   else the point goes on to just before the first touch, once this rounded way is proved free
 //  4. describe()      the contact; the response gives the next leg
-// Where a cell in reach becomes flat, where the point is on a wall already, and after the last contact allowed a leg cannot
-// be decided so. The vertices then carry the point for the rest of the step: Stepper::ride_on(). A point on
-// a wall that goes towards it has a contact there first, and then a target off that wall: its next step has legs again.
+// A leg cannot be decided so where a cell in reach becomes flat, where the point is on a wall already, and after the last
+// contact allowed. The vertices then carry the point for the rest of the step: Stepper::ride_on(). A point on a wall that
+// goes towards it has a contact there first, and then a target off that wall: its next step has legs again.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@
 
 namespace dartcast {
 
-/// A point's way in the rest of a step, and the walls met so far.
+/// A point's straight way to the end of a step.
 struct SimultaneousLeg {
   SimplexId at;  ///< holds `from` at `begin`
   Vec3 from;     ///< at the time `begin`
@@ -33,6 +33,7 @@ struct SimultaneousLeg {
   double begin = 0.0;
 };
 
+/// Takes steps of points. A plain reader of the complex: any number may run at once, each with memory of its own.
 class SimultaneousStep {
  public:
   /// Memory of steps, for one thread at a time. After a few steps it allocates no more.
