@@ -61,7 +61,7 @@ void bind_steps(py::module_& m) {
 py::object positions(const DeformationHandle& h, double time, const py::object& given, Threads threads) {
   check_threads(threads);
   const Use use(h.usage, the_deformation);
-  const py::object out =
+  py::object out =
       given.is_none()
           ? py::object(py::array_t<double>({static_cast<py::ssize_t>(h.deformation.size()), py::ssize_t{3}}))
           : given;
