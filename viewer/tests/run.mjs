@@ -4,7 +4,7 @@
 import { spawnSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { join } from 'node:path';
+import { join, resolve } from 'node:path';
 import { launch, withoutWebGL } from './browser.mjs';
 import { checkFallback, checkReport } from './page_checks.mjs';
 
@@ -31,7 +31,7 @@ function makeSurfaceReport(command, folder, work) {
   const scene = join(work, 'surface.toml');
   writeFileSync(scene, `
 [environment]
-mesh = { surface = ${JSON.stringify(join(folder, 'forceps_jaw.obj'))}, size = 0.2 }
+mesh = { surface = ${JSON.stringify(resolve(folder, 'forceps_jaw.obj'))}, size = 0.2 }
 [[particles]]
 count = 300
 velocity = [0.5, 0.3, 0.4]
