@@ -107,7 +107,8 @@ class SimultaneousStepper {
   ///   reach becomes flat, it starts on a wall or was stopped at one in its last step, or it has had options.max_contacts
   ///   contacts.
   ///
-  /// Throws as Environment::advance(). Cost: some 1 us for a particle, and 3 us for each contact.
+  /// Throws as Environment::advance(). Cost: some 1 us for a particle, and the same again for each
+  /// contact's legs.
   StepReport advance(Environment& environment, Particles& particles, std::span<const Vec3> targets,
                      const ContactCallback& respond = {}, const StepOptions& options = {});
 
