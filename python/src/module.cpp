@@ -7,7 +7,7 @@
 namespace py = pybind11;
 
 PYBIND11_MODULE(_core, m) {
-  using namespace dartcast::python;
+  using namespace dartcast::python;  // NOLINT(google-build-using-namespace): a function for each header
   m.doc() = "Bindings of the C++ library dartcast.";
   m.attr("__version__") = dartcast::version();
   py::options options;

@@ -81,8 +81,8 @@ void bind_responses(py::module_& m) {
 }
 
 void bind_callback(py::module_& m) {
-  py::class_<LibraryAnswers, std::shared_ptr<LibraryAnswers>>(m, "ContactCallback",
-                                                              "What respond_with() makes: to be passed as `respond`.");
+  const py::class_<LibraryAnswers, std::shared_ptr<LibraryAnswers>> callback(
+      m, "ContactCallback", "What respond_with() makes: to be passed as `respond`.");
   m.def(
       "respond_with",
       [](const py::object& responses, const py::object& velocities, const py::object& statuses, double dt,

@@ -151,7 +151,7 @@ void bind_transaction(py::module_& m) {
                                              "block without commit() undoes the edits. "
                                              "While it is open, the map can be read through `transaction.map` only.")
               .c_str());
-  py::class_<SavepointHandle>(c, "Savepoint", doc("Transaction::Savepoint"));
+  const py::class_<SavepointHandle> savepoint(c, "Savepoint", doc("Transaction::Savepoint"));
   c.def(py::init([](const std::shared_ptr<MapHandle>& map) {
           auto made = std::make_shared<TransactionHandle>();
           const py::gil_scoped_release release;

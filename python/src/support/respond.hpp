@@ -31,8 +31,7 @@ struct LibraryAnswers {
   std::size_t size = 0;                   ///< number of particles
   ContactCallback callback;
 
-  LibraryAnswers(WallResponses responses, pybind11::object velocities, pybind11::object statuses, double dt,
-                 const Acceleration& acceleration);
+  LibraryAnswers(WallResponses by, pybind11::object v, pybind11::object s, double dt, const Acceleration& acceleration);
   LibraryAnswers(const LibraryAnswers&) = delete;
   LibraryAnswers& operator=(const LibraryAnswers&) = delete;
   ~LibraryAnswers() = default;
