@@ -21,6 +21,10 @@
 
 namespace dartcast {
 
+namespace detail {
+class ExitTable;
+}
+
 // The simplices of one shape around its corners and edges, and the triangles of faces at which they end. A search uses
 // them to go from cell to cell around a vertex or an edge without a look at every simplex.
 
@@ -138,7 +142,7 @@ class Shape {
   Shape& operator=(const Shape&) = delete;
   Shape(Shape&&) = delete;
   Shape& operator=(Shape&&) = delete;
-  ~Shape() { delete stars_.load(std::memory_order_acquire); }
+  ~Shape();
 
   /// 2: a polygon; 3: a polyhedron.
   [[nodiscard]] unsigned dimension() const { return dimension_; }
@@ -175,6 +179,11 @@ class Shape {
   [[nodiscard]] const Stars& stars() const {
     const Stars* made = stars_.load(std::memory_order_acquire);
     return made != nullptr ? *made : make_stars();
+  }
+  /// For walks: made by the first call, as the stars are.
+  [[nodiscard]] const detail::ExitTable& exits() const {
+    const detail::ExitTable* made = exits_.load(std::memory_order_acquire);
+    return made != nullptr ? *made : make_exits();
   }
   /// Number of triangles in a face's fan: degree - 2, or degree where the face has a Steiner point. In the plane a face
   /// is one facet of a simplex, as a triangle is.
@@ -216,6 +225,7 @@ class Shape {
   [[nodiscard]] bool is_flat() const;
   [[nodiscard]] Stars::Fans fans() const;
   [[nodiscard]] const Stars& make_stars() const;
+  [[nodiscard]] const detail::ExitTable& make_exits() const;
   [[nodiscard]] bool is_on_face(std::uint16_t point, std::uint16_t face) const;
   [[nodiscard]] std::span<const std::uint16_t> darts_at(std::uint16_t corner) const {
     return {darts_at_.data() + first_dart_at_[corner], darts_at_.data() + first_dart_at_[corner + 1U]};
@@ -228,7 +238,9 @@ class Shape {
   std::vector<std::uint16_t> origin_, face_of_, first_dart_, phi2_;
   std::vector<std::uint16_t> darts_at_, first_dart_at_;  // by corner: those with this origin
   std::vector<ImplicitSimplex> simplices_;
-  mutable std::atomic<const Stars*> stars_ = nullptr;  // owned; null until they are needed
+  // Owned; null until they are needed.
+  mutable std::atomic<const Stars*> stars_ = nullptr;
+  mutable std::atomic<const detail::ExitTable*> exits_ = nullptr;
   std::vector<std::uint16_t> first_entry_;
   std::vector<Across> entries_;
 };

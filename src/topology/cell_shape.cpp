@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "dartcast/error.hpp"
+#include "topology/exit_table.hpp"
 #include "topology/key_table.hpp"
 
 namespace dartcast {
@@ -52,6 +53,14 @@ std::uint64_t facet_key(std::array<std::uint16_t, 3> t) {
   if (t[1] > t[2]) std::swap(t[1], t[2]);
   if (t[0] > t[1]) std::swap(t[0], t[1]);
   return (std::uint64_t{t[0]} << 32U) | (std::uint64_t{t[1]} << 16U) | t[2];
+}
+
+// The first of several threads keeps its table. Those of the others are equal.
+template <class T>
+const T& keep_first(std::atomic<const T*>& kept, std::unique_ptr<const T> made) {
+  const T* first = nullptr;
+  if (!kept.compare_exchange_strong(first, made.get(), std::memory_order_acq_rel)) return *first;
+  return *made.release();
 }
 
 }  // namespace
@@ -249,13 +258,18 @@ Shape::Feature Shape::feature(std::span<const std::uint16_t> points) const {
 
 bool Shape::is_flat() const { return simplices_[0].vertex[0] == simplices_[0].vertex[1]; }
 
-// The first of several threads keeps its stars. Those of the others are equal.
+Shape::~Shape() {
+  delete stars_.load(std::memory_order_acquire);
+  delete exits_.load(std::memory_order_acquire);
+}
+
 const Stars& Shape::make_stars() const {
-  std::unique_ptr<const Stars> made =
-      dimension_ == 2 || is_flat() ? std::make_unique<Stars>() : std::make_unique<Stars>(simplices_, fans());
-  const Stars* known = nullptr;
-  if (!stars_.compare_exchange_strong(known, made.get(), std::memory_order_acq_rel)) return *known;
-  return *made.release();
+  const bool none = dimension_ == 2 || is_flat();
+  return keep_first<Stars>(stars_, none ? std::make_unique<Stars>() : std::make_unique<Stars>(simplices_, fans()));
+}
+
+const detail::ExitTable& Shape::make_exits() const {
+  return keep_first<detail::ExitTable>(exits_, std::make_unique<detail::ExitTable>(*this));
 }
 
 Stars::Fans Shape::fans() const {
@@ -270,10 +284,11 @@ Stars::Fans Shape::fans() const {
 }
 
 std::size_t Shape::bytes() const {
-  const Stars* made = stars_.load(std::memory_order_acquire);
+  const Stars* stars = stars_.load(std::memory_order_acquire);
+  const detail::ExitTable* exits = exits_.load(std::memory_order_acquire);
   return sizeof(Shape) + (dart_count() * 5U + key_.corner_count) * sizeof(std::uint16_t) +
          simplices_.size() * sizeof(ImplicitSimplex) + entries_.size() * sizeof(Across) +
-         (made == nullptr ? 0 : made->bytes());
+         (stars == nullptr ? 0 : stars->bytes()) + (exits == nullptr ? 0 : exits->bytes());
 }
 
 }  // namespace dartcast

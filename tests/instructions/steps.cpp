@@ -1,5 +1,5 @@
-// Fixed small scenes to count instructions in: `steps still`, `steps moving` or `steps lattice`, and in the plane
-// `steps plane` or `steps plane_moving`; `steps corner` for particles that rest in a vertex. The count is the code that
+// Fixed small scenes to count instructions in: `steps still`, `steps moving`, `steps lattice` or `steps long`, and in the
+// plane `steps plane` or `steps plane_moving`; `steps corner` for particles that rest in a vertex. The count is the code that
 // Environment::advance() executes (run.cmake); the number of particle-steps is printed. And `steps edits EDGE COUNT`:
 // edits of a box of EDGE^3 cells, each followed by the particles. `steps cut`: one cut through the wall of a vessel.
 #include <algorithm>
@@ -61,13 +61,13 @@ void shear(std::span<const Vec3> rest, double time, std::span<Vec3> out) {
     out[i] = rest[i] + Vec3{0.03 * std::sin(2e-2 * std::numbers::pi * time) * rest[i].y, 0, 0};
 }
 
-// A tenth of a cell a step: any way, or along the lattice's lines, or in the plane.
-std::vector<Vec3> random_velocities(Random& random, bool along_lattice, bool plane) {
+// Any way, or along the lattice's lines, or in the plane.
+std::vector<Vec3> random_velocities(Random& random, double cells, bool along_lattice, bool plane) {
   std::vector<Vec3> velocities;
   while (velocities.size() < particles) {
     Vec3 v{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
     if (plane) v.z = 0;
-    velocities.push_back(along_lattice ? Vec3{v.x < 0 ? -0.125 : 0.125, 0, 0} : v * (0.1 / norm(v)));
+    velocities.push_back(along_lattice ? Vec3{v.x < 0 ? -0.125 : 0.125, 0, 0} : v * (cells / norm(v)));
   }
   return velocities;
 }
@@ -168,7 +168,8 @@ int main(int argc, char** argv) {
       environment.add(set, s.simplex, s.position);
     }
   }
-  std::vector<Vec3> velocities = random_velocities(random, lattice, plane);
+  const double cells = std::strcmp(kind, "long") == 0 ? 3.0 : 0.1;  // a step
+  std::vector<Vec3> velocities = random_velocities(random, cells, lattice, plane);
   std::vector<Vec3> targets(particles);
   std::uint64_t contacts = 0;
   for (std::size_t step = 1; step <= steps; ++step) {

@@ -14,7 +14,7 @@ DARTCAST_BEGIN_KERNEL
 namespace dartcast::detail::DARTCAST_SIMD {
 namespace {
 
-// The first simplex of each step, tested against its corners. Returns the number of walks that go on.
+// The first simplex of each step, tested against its corners. Returns the number of exits.
 template <CacheKind kind>
 inline std::size_t Batch<kind>::start() {
   std::size_t count = 0;
@@ -27,7 +27,9 @@ inline std::size_t Batch<kind>::start() {
       const std::uint32_t i = first + remaining_[l];
       const std::uint32_t* record = map_.record(states_[i].cell);
       const FacetSigns4 signs(signs_[remaining_[l]]);
-      if (signs.negative() != 0 && signs.is_known()) {
+      if (((far_away_ >> remaining_[l]) & 1U) != 0) {
+        far_walks_[far_count_++] = {i, record};
+      } else if (signs.negative() != 0 && signs.is_known()) {
         exits_[count++] = exit_candidate(i, signs.negative(), signs.open(), record);
       } else {
         WalkCursor cursor = first_cursor(i, states_[i], record, 4, 0);
@@ -35,7 +37,7 @@ inline std::size_t Batch<kind>::start() {
       }
     }
   }
-  return take_exits(count);
+  return count;
 }
 
 // The same by barycentric coordinates, where vertices stand still. Only steps that leave the simplex read the scene.
@@ -54,19 +56,33 @@ inline std::size_t Batch<kind>::start_by_coordinates() {
       const FacetSigns4 signs(signs_[remaining_[l]]);
       const unsigned behind = signs.negative();
       exits_[count] = exit_candidate(i, behind, signs.zero(), record);
-      undecided_[undecided_count_] = {i, record};
+      far_walks_[far_count_] = {i, record};
       if ((behind & (behind - 1)) != 0) prefetch(now_, vertices_[i]);
       const std::size_t proved = behind != 0 ? 1 : 0;
+      const std::size_t far = (far_away_ >> remaining_[l]) & 1U;
       count += proved;
-      undecided_count_ += 1 - proved;
+      far_count_ += far;
+      if (proved + far == 0) walk_undecided(i, record);
     }
   }
-  return take_exits(count);
+  return count;
+}
+
+// Coordinates say nothing, or too little: the step's length decides how it walks.
+template <CacheKind kind>
+void Batch<kind>::walk_undecided(std::uint32_t i, const std::uint32_t* record) {
+  const Vec3x4 edge = splat(now_[vertices_[i][1]] - now_[vertices_[i][0]]);
+  const Vec3x4 way = splat(targets_[i] - states_[i].position);
+  if (largest(magnitude(way))[0] > max_for_sign * largest(magnitude(edge))[0])
+    far_walks_[far_count_++] = {i, record};
+  else
+    add_to_rounds(first_cursor(i, states_[i], record, 1, 0));  // walk_on() counts three more
 }
 
 template <CacheKind kind>
 inline void Batch<kind>::test_block(std::uint32_t first, std::uint32_t n) {
   inside_ = 0;
+  far_away_ = 0;
   one_part_ = 0;
   carried_inside_ = 0;
   arrivals_ = 0;
@@ -79,6 +95,7 @@ inline void Batch<kind>::test_block(std::uint32_t first, std::uint32_t n) {
     const Mask4 signs = d.signs(now, q);
     store_signs(signs, k);
     inside_ |= lanes_set(signs == splat_bits(FacetSigns4::valid)) << k;
+    far_away_ |= lanes_set(d.lowest() < -max_for_sign * d.volume6()) << k;
     if constexpr (moved) {
       SimplexCache4& previous_caches = caches_[i.at[0] / 4];
       const OnePart one(previous_caches, d.relative, places_of(i), q, tolerance_);
@@ -96,6 +113,7 @@ inline void Batch<kind>::test_block(std::uint32_t first, std::uint32_t n) {
 template <CacheKind kind>
 inline void Batch<kind>::test_coordinates(std::uint32_t first, std::uint32_t n) {
   inside_ = 0;
+  far_away_ = 0;
   on_facets_ = 0;
   still_free_ = 0;
   for (std::uint32_t k = 0; k < n; k += 4) {
@@ -106,7 +124,9 @@ inline void Batch<kind>::test_coordinates(std::uint32_t first, std::uint32_t n) 
     const Double4 m[4] = {magnitude(c[0]), magnitude(c[1]), magnitude(c[2]), magnitude(c[3])};
     const Double4 lowest = smaller(smaller(c[0], c[1]), smaller(c[2], c[3]));
     inside_ |= lanes_set(lowest > coordinate_margin) << k;
-    const Mask4 in_range = larger(larger(m[0], m[1]), larger(m[2], m[3])) <= max_for_sign;
+    const Double4 largest_of_four = larger(larger(m[0], m[1]), larger(m[2], m[3]));
+    const Mask4 in_range = largest_of_four <= max_for_sign;
+    far_away_ |= lanes_set(largest_of_four > max_for_sign) << k;  // not where it is unknown
     const Mask4 known = (smaller(smaller(m[0], m[1]), smaller(m[2], m[3])) > coordinate_margin) & in_range;
     const Mask4 negative = facet_bits(c[0] < 0.0, c[1] < 0.0, c[2] < 0.0, c[3] < 0.0);
     store_signs(known & negative, k);
@@ -267,17 +287,13 @@ inline std::uint32_t Batch<kind>::carry_four(const Index4& i, std::uint32_t coun
   return going_on;
 }
 
-// Takes each walk out of its first simplex. Walks that leave their cell come last, in a row: no branch could predict
-// which they are. Particles whose exit is undecided come first: they are tested again in their current simplex.
+// Takes each walk out of its first simplex. Those that leave their cell come last, in a row: no branch could predict
+// which they are. Returns the number of all walks in rounds.
 template <CacheKind kind>
-inline std::size_t Batch<kind>::take_exits(std::size_t count) {
-  std::size_t next = 0;
-  for (; next < undecided_count_; ++next) {
-    const auto [i, record] = undecided_[next];
-    walks_[next] = first_cursor(i, states_[i], record, 1, 0);  // walk_on() counts three more
-  }
+inline std::size_t Batch<kind>::take_exits(std::size_t exits) {
+  std::size_t next = in_rounds_;
   std::size_t out_of_cell = 0;
-  for (std::size_t k = 0; k < count; ++k) {
+  for (std::size_t k = 0; k < exits; ++k) {
     auto [i, behind, exact, record] = exits_[k];
     const ParticleState& s = states_[i];
     std::uint16_t tests = 4;

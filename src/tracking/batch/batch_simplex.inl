@@ -92,6 +92,7 @@ struct BatchDeterminants {
   }
 
   [[nodiscard]] Double4 volume6() const { return (value[0] + value[1]) + (value[2] + value[3]); }
+  [[nodiscard]] Double4 lowest() const { return smaller(smaller(value[0], value[1]), smaller(value[2], value[3])); }
   [[nodiscard]] Mask4 proves_coordinates() const { return volume6() > 0x1p+30 * bound; }
   [[nodiscard]] Mask4 all_positive() const {
     return ((value[0] > bound) & (value[1] > bound)) & ((value[2] > bound) & (value[3] > bound));
@@ -101,7 +102,7 @@ struct BatchDeterminants {
   }
 
   // The bits of FacetSigns4 in each lane. `v`, `x`: the corners and points of the determinants.
-  [[nodiscard]] Mask4 signs(const Corners4& v, const Vec3x4& x) const {
+  [[nodiscard]] [[gnu::always_inline]] Mask4 signs(const Corners4& v, const Vec3x4& x) const {
     Mask4 negative = facet_bits(value[0] < -bound, value[1] < -bound, value[2] < -bound, value[3] < -bound);
     const Mask4 positive = facet_bits(value[0] > bound, value[1] > bound, value[2] > bound, value[3] > bound);
     const Mask4 open = (negative | positive) ^ splat_bits(15);

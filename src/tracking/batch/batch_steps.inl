@@ -12,6 +12,7 @@
 #include "tracking/batch/batch.hpp"
 #include "tracking/batch/batch_caches.inl"
 #include "tracking/batch/batch_impacts.inl"
+#include "tracking/batch/batch_line_walks.inl"
 #include "tracking/batch/batch_records.inl"
 #include "tracking/batch/batch_simplex.inl"
 
@@ -47,7 +48,9 @@ class Batch {
     if (kind != CacheKind::none && !caches_match_) make_caches();
     if (kind == CacheKind::barycentric && !walls_match_) std::fill_n(flags_, size_, CacheFlags{0});
     std::fill_n(status_, size_, step_complete);
-    std::size_t count = kind == CacheKind::barycentric ? start_by_coordinates() : start();
+    const std::size_t exits = kind == CacheKind::barycentric ? start_by_coordinates() : start();
+    if (far_count_ != 0) walk_lines();
+    std::size_t count = take_exits(exits);
     for (std::uint64_t round = 1; count > 0; ++round) {
       if (round > max_rounds) {
         for (std::size_t k = 0; k < count; ++k) defer(walks_[k].particle);
@@ -61,6 +64,7 @@ class Batch {
 
  private:
   static constexpr std::uint32_t block = 32;
+  static constexpr std::uint32_t lines = 32;
   static constexpr bool moved = kind == CacheKind::previous_geometry;
   static constexpr std::uint16_t short_tests = 13;  // three simplices
 
@@ -96,6 +100,7 @@ class Batch {
   // The first simplex: batch_first_simplex.inl.
   std::size_t start();
   std::size_t start_by_coordinates();
+  void walk_undecided(std::uint32_t i, const std::uint32_t* record);
   void test_block(std::uint32_t first, std::uint32_t n);
   void test_coordinates(std::uint32_t first, std::uint32_t n);
   [[gnu::noinline]] void test_zeros(std::uint32_t first, std::uint32_t k, const Vec3x4& q, const Mask4& in_range,
@@ -109,9 +114,26 @@ class Batch {
   [[nodiscard]] bool rests(std::uint32_t i) const;
   std::uint32_t carry_remaining(std::uint32_t first, std::uint32_t remaining);
   std::uint32_t carry_four(const Index4& i, std::uint32_t count, std::uint32_t going_on, std::uint32_t first);
-  std::size_t take_exits(std::size_t count);
+  std::size_t take_exits(std::size_t exits);
+  void add_to_rounds(const WalkCursor& cursor) { walks_[in_rounds_++] = cursor; }
 
-  // The other simplices: batch_walk.inl.
+  // The other simplices along lines: batch_far_walks.inl.
+  [[gnu::noinline]] void walk_lines();
+  bool find_corners(std::uint32_t l);
+  void stage_lines();
+  bool start_next_line(std::uint32_t l);
+  bool start_line(std::uint32_t l, std::uint32_t i, const std::uint32_t* record, unsigned from);
+  std::uint32_t pass_simplices(std::uint32_t l, std::uint32_t live);
+  bool goes_on(std::uint32_t l);
+  static WalkCursor passed_cursor(const LinePlace& at);
+  bool leave_to_rounds(const LinePlace& at);
+  [[gnu::cold, gnu::noinline]] void leave_unlisted(const LinePlace& at);
+  [[nodiscard]] VertexNumbers corners_of_walk(const WalkCursor& cursor) const;
+  bool arrive_by_line(const WalkCursor& cursor);
+  void cache_line_arrivals();
+  [[nodiscard]] Vec3x4 starts_of(const Index4& i, const Corners4& now) const;
+
+  // And in rounds: batch_walk.inl.
   std::size_t walk_on(std::size_t count);
   void enter(WalkCursor& cursor, VertexNumbers& corners) const;
   [[gnu::always_inline]] void test_four(const WalkCursor* walks, std::size_t k, std::size_t last);
@@ -165,6 +187,7 @@ class Batch {
   std::uint32_t on_facets_ = 0;                 // targets on facets, and maybe on walls
   std::uint32_t still_free_;                    // targets on facets, but on no wall
   std::uint32_t one_part_;                      // steps that need no splitting
+  std::uint32_t far_away_;                      // targets many simplices away
   std::uint32_t carried_inside_;                // starts that the mesh carries to strictly inside
   std::array<std::uint32_t, block> remaining_;  // steps that have not ended
   std::array<Arrival, block> arrival_;
@@ -174,12 +197,20 @@ class Batch {
   std::array<AtWall, max_batch> at_walls_;
   std::uint32_t at_wall_count_ = 0;
   std::array<WalkCursor, max_batch> walks_;  // those that go on
+  std::size_t in_rounds_ = 0;                // walks that begin there
   std::array<ExitCandidate, max_batch> exits_;
-  std::array<UndecidedExit, max_batch> undecided_;
-  std::size_t undecided_count_ = 0;
+  std::array<FarWalk, max_batch> far_walks_;
+  std::size_t far_count_ = 0;
   std::array<CellExit, max_batch> cell_exits_;
   std::array<SimplexCache4::Table<double>, max_batch / 4> previous_determinants_;  // before the move
   std::array<bool, max_batch> left_behind_;
+  std::array<LineWalks4, lines / 4> line_walks_;
+  std::array<LinePlace, lines> line_places_;
+  LineStarts4 line_starts_;  // of four walks
+  std::size_t next_line_;    // walk to begin
+  std::size_t staged_;       // walks before this one are in line_starts_
+  std::array<std::uint32_t, max_batch> line_arrival_;
+  std::uint32_t line_arrivals_;
   std::array<FacetArrival, max_batch> facet_arrival_;
   std::uint32_t facet_arrivals_ = 0;
 };

@@ -1,0 +1,62 @@
+// The ways from simplex to simplex of a shape, for walks that must not branch: a facet within the cell and a triangle
+// of a face are passed by the same operations (tracking/batch/batch_line_walks.inl).
+//
+// A *row* is a simplex and one of its facets: 4 * simplex + facet. Its corners have an order: where the simplex is
+// entered by the facet that of facet_corners, and where it is left by it the opposite one, from the same corner on. So
+// they turn the same way around the direction of travel. A *turn* is a shift of the corners in that order.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "dartcast/cell_shape.hpp"
+#include "topology/facet_corners.hpp"
+
+namespace dartcast::detail {
+
+/// The way out of a simplex by one of its facets.
+struct SimplexExit {
+  std::uint16_t place = 0;       ///< the row beyond; or the triangle of the face, as the neighbour numbers it
+  std::uint16_t word = 0;        ///< of the cell's record: the neighbour. 0 within the cell
+  std::uint8_t outer = 0;        ///< 1: a triangle of a face; 0: within the cell
+  std::uint8_t face_shift = 0;   ///< standard types, in the record's second word: the number that the neighbour gives
+  std::uint8_t wall_shift = 31;  ///< the same: whether the face is a wall; within the cell a bit that is never set
+  std::uint8_t turn = 0;         ///< which corner is the first one of the row beyond, or of the face's fan
+};
+
+/// Those of one shape. Empty for polygons, flat shapes, and shapes that have too many simplices for numbers of 16 bits.
+class ExitTable {
+ public:
+  static constexpr std::size_t max_simplices = 4095;
+
+  explicit ExitTable(const Shape& shape);
+
+  [[nodiscard]] bool empty() const { return exits_.empty(); }
+  /// Those of a simplex, by facets.
+  [[nodiscard]] const SimplexExit* exits_of(unsigned simplex) const { return exits_.data() + 4 * std::size_t{simplex}; }
+  /// The corner opposite to a row's facet: its local number.
+  [[nodiscard]] unsigned apex(unsigned row) const { return apexes_[row]; }
+  /// The row beyond an exit to a place: 4 * row + turn. `face`: 0 within the cell; else 1 + its number.
+  [[nodiscard]] unsigned entry(unsigned face, unsigned place) const { return entries_[first_[face] + place]; }
+  [[nodiscard]] std::size_t bytes() const {
+    return exits_.size() * (sizeof(SimplexExit) + 2) + (entries_.size() + first_.size()) * 2;
+  }
+
+ private:
+  void add_exits(const Shape& shape);
+  void add_entries(const Shape& shape);
+
+  std::vector<SimplexExit> exits_;
+  std::vector<std::uint16_t> apexes_;
+  std::vector<std::uint16_t> first_;    // entry of each face, after that of the rows themselves
+  std::vector<std::uint16_t> entries_;  // all rows; then the triangles of each face
+};
+
+/// The corners by which a row's facet is left.
+constexpr std::array<std::uint8_t, 3> exit_corners(unsigned facet) {
+  return {facet_corners[facet][0], facet_corners[facet][2], facet_corners[facet][1]};
+}
+
+}  // namespace dartcast::detail

@@ -1,0 +1,346 @@
+// Walks along their lines: from simplex to simplex by the side on which the line passes the new corner. Four walks at a
+// time, one in each lane. Part of the batch's kernel.
+//
+// Each corner is projected along the line once (tracking/batch/line_bounds.hpp). The triangle that a walk enters a
+// simplex by turns around the line. The simplex brings one more corner. Its sides towards the three others say by which
+// facet the line leaves: it replaces the corner opposite to that facet, and the next triangle turns around the line
+// again. No determinant of the target is needed before the end is near.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "base/double4.inl"
+#include "dartcast/combinatorial_map.hpp"
+#include "topology/exit_table.hpp"
+#include "tracking/batch/batch_simplex.inl"
+#include "tracking/batch/line_bounds.hpp"
+
+DARTCAST_BEGIN_KERNEL
+namespace dartcast::detail::DARTCAST_SIMD {
+namespace {
+
+inline Double4 with_signs(const Double4& x, const Mask4& signs) {
+  return reinterpret_cast<Double4>(reinterpret_cast<Mask4>(x) ^ signs);
+}
+inline Mask4 sign_bits(const Double4& x) {
+  return reinterpret_cast<Mask4>(x) & splat_bits(static_cast<long long>(1ULL << 63U));
+}
+
+// The axis on which a line is longest.
+inline Mask4 longest_axis(const Vec3x4& d) {
+  const Vec3x4 m = magnitude(d);
+  return m.z > larger(m.x, m.y) ? splat_bits(2) : m.y > m.x ? splat_bits(1) : splat_bits(0);
+}
+// Coordinates in the order of axes (axis + 1, axis + 2, axis).
+inline Vec3x4 ordered(const Vec3x4& x, const Mask4& axis) {
+  const Mask4 first = axis == splat_bits(0);
+  const Mask4 second = axis == splat_bits(1);
+  return {first ? x.y : second ? x.z : x.x, first ? x.z : second ? x.x : x.y, first ? x.x : second ? x.y : x.z};
+}
+
+// The lines from p to q, and the bounds of what is said about them.
+struct Lines4 {
+  Mask4 axis;    // of z
+  Mask4 flip;    // signs of v and z: D_z is positive, and space is not mirrored
+  Vec3x4 start;  // p, in the order of axes
+  Double4 slope_u, slope_v;
+  Double4 length;  // D_z
+  Double4 reach;   // G
+  Double4 side_bound;
+
+  Lines4() = default;
+  // Without bounds.
+  Lines4(const Vec3x4& p, const Vec3x4& q) : axis(longest_axis(q - p)), start(ordered(p, axis)) {
+    const Vec3x4 d = ordered(q, axis) - start;
+    flip = sign_bits(d.z);
+    length = magnitude(d.z);
+    slope_u = d.x / length;
+    slope_v = with_signs(d.y, flip) / length;
+  }
+
+  // Coordinates along the lines. x: points in the order of axes.
+  [[nodiscard]] [[gnu::always_inline]] Vec3x4 project(const Vec3x4& x) const {
+    const Vec3x4 r = x - start;
+    const Double4 z = with_signs(r.z, flip);
+    return {r.x - slope_u * z, with_signs(r.y, flip) - slope_v * z, z};
+  }
+
+  void set_reach(const Double4& largest_coordinate) {
+    reach = splat(reach_of_first_simplex) * largest_coordinate + (length + length);
+    side_bound = splat(side_error) * (reach * reach);
+  }
+  [[nodiscard]] Mask4 in_range() const { return (reach > nearest_reach) & (reach < farthest_reach); }
+  [[nodiscard]] Double4 bound3(double error) const { return splat(error / side_error) * (side_bound * reach); }
+};
+
+inline Double4 side(const Vec3x4& a, const Vec3x4& b) { return a.x * b.y - a.y * b.x; }
+
+// Walks that begin in simplices. Sides are of the edges in this order.
+inline constexpr std::array<std::array<std::uint8_t, 2>, 6> line_edges = {
+    {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {2, 3}, {3, 1}}};
+struct LineStarts4 {
+  Lines4 line;
+  Vec3x4 corner[4];
+  Double4 edge_side[6];
+  Mask4 turns;  // a bit for each edge that turns around the line
+  Mask4 in_range;
+
+  LineStarts4() = default;
+  LineStarts4(const Corners4& v, const Vec3x4& p, const Vec3x4& q) : line(p, q) {
+    for (unsigned i = 0; i < 4; ++i) corner[i] = line.project(ordered(v.corner[i], line.axis));
+    Vec3x4 far = magnitude(corner[0]);
+    for (unsigned i = 1; i < 4; ++i) far = larger(far, magnitude(corner[i]));
+    line.set_reach(largest(far));
+    in_range = line.in_range();
+    turns = Mask4{};
+    for (unsigned e = 0; e < 6; ++e) {
+      edge_side[e] = side(corner[line_edges[e][0]], corner[line_edges[e][1]]);
+      turns |= (edge_side[e] > 0.0) & splat_bits(1LL << e);
+    }
+  }
+};
+
+// An edge of a facet among the six, and its direction: 1, or -1 for the opposite one.
+struct LineEdge {
+  unsigned number;
+  double direction;
+};
+constexpr LineEdge line_edge(unsigned a, unsigned b) {
+  for (unsigned e = 0; e < 6; ++e) {
+    if (line_edges[e][0] == a && line_edges[e][1] == b) return {e, 1.0};
+    if (line_edges[e][0] == b && line_edges[e][1] == a) return {e, -1.0};
+  }
+  return {0, 0.0};
+}
+// [facet][i]: from corner i + 1 of its corners to corner i + 2.
+inline constexpr auto facet_edges = [] {
+  std::array<std::array<LineEdge, 3>, 4> edges{};
+  for (unsigned f = 0; f < 4; ++f) {
+    for (unsigned i = 0; i < 3; ++i)
+      edges[f][i] = line_edge(facet_corners[f][(i + 1) % 3], facet_corners[f][(i + 2) % 3]);
+  }
+  return edges;
+}();
+// The facet that a line enters a simplex by, by the bits of LineStarts4::turns. 4: none.
+inline constexpr auto facets_entered = [] {
+  std::array<std::uint8_t, 64> facets{};
+  for (unsigned bits = 0; bits < 64; ++bits) {
+    facets[bits] = 4;
+    for (std::uint8_t f = 0; f < 4; ++f) {
+      bool all = true;
+      for (const LineEdge& e : facet_edges[f]) all = all && ((bits >> e.number) & 1U) == (e.direction > 0.0 ? 1U : 0U);
+      if (all) facets[bits] = f;
+    }
+  }
+  return facets;
+}();
+
+// Corner j of a simplex that is entered by `facet` gives way to the new one: by which facet the walk leaves, and how the
+// turn of that facet's corners, as exit_corners() has them, differs.
+struct LineTurn {
+  std::uint8_t facet;
+  std::uint8_t turn;
+};
+constexpr LineTurn turn_of(unsigned facet, unsigned turn, unsigned slot) {
+  const unsigned j = (slot + 3 - turn) % 3;
+  const unsigned left_by = facet_corners[facet][j];
+  const unsigned first = j == 0 ? facet : facet_corners[facet][0];
+  unsigned n = 0;
+  while (n < 2 && exit_corners(left_by)[n] != first) ++n;
+  return {static_cast<std::uint8_t>(left_by), static_cast<std::uint8_t>((turn + 3 - n) % 3)};
+}
+// [facet][turn][slot]
+inline constexpr auto line_turns = [] {
+  std::array<std::array<std::array<LineTurn, 4>, 4>, 4> turns{};
+  for (unsigned facet = 0; facet < 4; ++facet) {
+    for (unsigned turn = 0; turn < 3; ++turn) {
+      for (unsigned slot = 0; slot < 3; ++slot) turns[facet][turn][slot] = turn_of(facet, turn, slot);
+    }
+  }
+  return turns;
+}();
+inline constexpr std::array<std::uint8_t, 8> modulo_3 = {0, 1, 2, 0, 1, 2, 0, 1};
+
+// Four walks. Slot i of a triangle: its corner i, and the side of the edge from the next corner to the one after.
+struct LineWalks4 {
+  Lines4 line;
+  Vec3x4 corner[3];
+  Double4 edge_side[3];
+  // The last simplex passed: a bit for each lane.
+  unsigned undecided;
+  unsigned near_end;     // not all corners of the exit are before the target
+  unsigned replaced[3];  // slot that the new corner has taken
+
+  // Passes simplices by their new corners, in the order of axes.
+  [[gnu::always_inline]] void pass(const Vec3x4& x) {
+    const Vec3x4 d = line.project(x);
+    const Double4 a = side(d, corner[0]);
+    const Double4 b = side(d, corner[1]);
+    const Double4 c = side(d, corner[2]);
+    const Mask4 proved = (smaller(smaller(magnitude(a), magnitude(b)), magnitude(c)) > line.side_bound) &
+                         (largest(magnitude(d)) <= line.reach) & (volume(d, a, b, c) > line.bound3(volume_error));
+    undecided = lanes_set(~proved);
+    const Mask4 slot0 = (b > 0.0) & (c < 0.0);
+    const Mask4 slot1 = (c > 0.0) & (a < 0.0);
+    const Mask4 slot2 = (a > 0.0) & (b < 0.0);
+    replaced[0] = lanes_set(slot0);
+    replaced[1] = lanes_set(slot1);
+    replaced[2] = lanes_set(slot2);
+    corner[0] = choose(slot0, d, corner[0]);
+    corner[1] = choose(slot1, d, corner[1]);
+    corner[2] = choose(slot2, d, corner[2]);
+    edge_side[0] = slot1 ? c : slot2 ? -b : edge_side[0];
+    edge_side[1] = slot2 ? a : slot0 ? -c : edge_side[1];
+    edge_side[2] = slot0 ? b : slot1 ? -a : edge_side[2];
+    near_end = lanes_set(larger(larger(corner[0].z, corner[1].z), corner[2].z) >= line.length);
+  }
+
+  // Six times the volume of the triangle's and the corner's simplex. a, b, c: sides of the corner and the triangle's.
+  [[nodiscard]] [[gnu::always_inline]] Double4 volume(const Vec3x4& d, const Double4& a, const Double4& b,
+                                                      const Double4& c) const {
+    const Double4 around = edge_side[0] + edge_side[1] + edge_side[2];
+    const Double4 triangle = corner[0].z * (edge_side[0] + (b - c)) + corner[1].z * (edge_side[1] + (c - a)) +
+                             corner[2].z * (edge_side[2] + (a - b));
+    return d.z * around - triangle;
+  }
+
+  // Where the target is, seen from the exit: +1 before it, -1 beyond, 0 undecided.
+  [[nodiscard]] int side_of_target(unsigned lane) const {
+    const double length = line.length[lane];
+    const double reach = line.reach[lane];
+    const double sum = edge_side[0][lane] * (corner[0].z[lane] - length) +
+                       edge_side[1][lane] * (corner[1].z[lane] - length) +
+                       edge_side[2][lane] * (corner[2].z[lane] - length);
+    const double bound = end_error / side_error * (line.side_bound[lane] * reach);
+    return sum > bound ? 1 : sum < -bound ? -1 : 0;
+  }
+
+  // Lane `to` is the walk of lane `from` of those that begin, in the simplex that it enters by this facet.
+  void begin(unsigned to, const LineStarts4& starts, unsigned from, unsigned facet) {
+    const auto copy = [&](Double4& x, const Double4& of) { x[to] = of[from]; };
+    const auto copy_bits = [&](Mask4& x, const Mask4& of) { x[to] = of[from]; };
+    copy_bits(line.axis, starts.line.axis);
+    copy_bits(line.flip, starts.line.flip);
+    copy(line.start.x, starts.line.start.x);
+    copy(line.start.y, starts.line.start.y);
+    copy(line.start.z, starts.line.start.z);
+    copy(line.slope_u, starts.line.slope_u);
+    copy(line.slope_v, starts.line.slope_v);
+    copy(line.length, starts.line.length);
+    copy(line.reach, starts.line.reach);
+    copy(line.side_bound, starts.line.side_bound);
+    for (unsigned i = 0; i < 3; ++i) {
+      const Vec3x4& x = starts.corner[facet_corners[facet][i]];
+      copy(corner[i].x, x.x);
+      copy(corner[i].y, x.y);
+      copy(corner[i].z, x.z);
+      const LineEdge e = facet_edges[facet][i];
+      edge_side[i][to] = e.direction * starts.edge_side[e.number][from];
+    }
+  }
+  // Whether it is proved that the line passes inside of the triangle.
+  [[nodiscard]] bool is_inside(unsigned lane) const {
+    const double bound = line.side_bound[lane];
+    return std::min({edge_side[0][lane], edge_side[1][lane], edge_side[2][lane]}) > bound;
+  }
+};
+
+// Where a walk is: its next simplex, and the last one that it has passed.
+struct LinePlace {
+  const std::uint32_t* record;  // of the cell
+  const double* corner;         // the new corner of the next simplex
+  const SimplexExit* exits;     // of that simplex
+  std::uint32_t particle;
+  std::uint32_t cell;
+  std::uint32_t passed;  // simplices
+  std::uint32_t tests;   // besides the three of each simplex
+  std::uint32_t face;    // entered by, and
+  std::uint32_t place;   // its triangle, as in ExitTable::entry()
+  std::uint32_t turn;    // of that triangle's corners
+  std::uint32_t row;
+  bool wall;  // the exit is a wall
+  std::uint8_t exit_facet;
+  std::uint32_t passed_cell;
+  const std::uint32_t* passed_record;
+};
+
+// Out of a cell, or on within it.
+struct LineCrossing {
+  std::uint32_t cell;
+  std::uint32_t face;  // 0: within the cell; else 1 + its number in the cell beyond
+  bool wall;
+};
+
+inline LineCrossing cross_general(const CellView& cell, const LinePlace& at, const SimplexExit& exit) {
+  if (exit.outer == 0) return {at.cell, 0, false};
+  const auto face = static_cast<std::uint16_t>(exit.word - 2U - cell.shape().point_count());
+  if (cell.is_wall(face)) return {at.cell, 0, true};
+  return {cell.neighbour(face).value, 1U + cell.neighbour_face(face), false};
+}
+
+// The same for standard types, without branches.
+[[gnu::always_inline]] inline LineCrossing cross_standard(const CombinatorialMap& map, const LinePlace& at,
+                                                          const SimplexExit& exit) {
+  const std::uint32_t bits = at.record[1];
+  const unsigned wall = (bits >> exit.wall_shift) & 1U;
+  const std::uint32_t passes = 0U - (exit.outer & ~wall);
+  std::uint32_t number = (bits >> exit.face_shift) & 7U & passes;
+  if (number == 7) [[unlikely]] {
+    const CellView cell = map.view(Cell(at.cell), at.record);
+    number = cell.neighbour_face(static_cast<std::uint16_t>(exit.word - 2U - cell.shape().point_count()));
+  }
+  return {at.cell ^ ((at.cell ^ at.record[exit.word]) & passes), (number + 1) & passes, wall != 0};
+}
+
+// Finds the next simplex, and prefetches its new corner. Returns false where the shape has no table.
+[[gnu::always_inline]] inline bool find_corner(LinePlace& at, const CombinatorialMap& map, const Vec3* positions) {
+  const ExitTable& table = map.view(Cell(at.cell), at.record).shape().exits();
+  if (table.empty()) [[unlikely]]
+    return false;
+  const unsigned entry = table.entry(at.face, at.place);
+  at.row = entry / 4;
+  at.turn = modulo_3[at.turn + 3 - entry % 4];
+  at.exits = table.exits_of(at.row / 4);
+  at.corner = &positions[at.record[2 + table.apex(at.row)]].x;
+  __builtin_prefetch(at.corner);
+  __builtin_prefetch(at.corner + 2);
+  return true;
+}
+
+// Leaves the simplex, where the new corner has taken a slot of the triangle's, and prefetches the next cell.
+[[gnu::always_inline]] inline void leave(LinePlace& at, unsigned slot, const CombinatorialMap& map) {
+  const LineTurn way = line_turns[at.row % 4][at.turn][slot];
+  const SimplexExit exit = at.exits[way.facet];
+  const bool general = Cell(at.cell).pool() == CombinatorialMap::general_pool;
+  const LineCrossing next =
+      general ? cross_general(map.view(Cell(at.cell), at.record), at, exit) : cross_standard(map, at, exit);
+  at.passed_cell = at.cell;
+  at.passed_record = at.record;
+  at.exit_facet = way.facet;
+  at.wall = next.wall;
+  ++at.passed;
+  at.cell = next.cell;
+  at.record = map.record(Cell(next.cell));
+  __builtin_prefetch(at.record);
+  at.face = next.face;
+  at.place = exit.place;
+  at.turn = way.turn + exit.turn;
+}
+
+// Points of four walks, each in the order of its axes.
+inline Vec3x4 load_ordered(const double* a, const double* b, const double* c, const double* d, const Mask4& axis) {
+  constexpr std::array<std::array<std::uint8_t, 4>, 3> orders = {{{1, 2, 0}, {2, 0, 1}, {0, 1, 2}}};
+  const auto& oa = orders[static_cast<std::size_t>(axis[0])];
+  const auto& ob = orders[static_cast<std::size_t>(axis[1])];
+  const auto& oc = orders[static_cast<std::size_t>(axis[2])];
+  const auto& od = orders[static_cast<std::size_t>(axis[3])];
+  return {Double4{a[oa[0]], b[ob[0]], c[oc[0]], d[od[0]]}, Double4{a[oa[1]], b[ob[1]], c[oc[1]], d[od[1]]},
+          Double4{a[oa[2]], b[ob[2]], c[oc[2]], d[od[2]]}};
+}
+
+}  // namespace
+}  // namespace dartcast::detail::DARTCAST_SIMD
+DARTCAST_END_KERNEL

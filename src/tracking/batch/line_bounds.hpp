@@ -1,0 +1,28 @@
+// The bounds within which coordinates along a particle's line prove signs.
+#pragma once
+
+namespace dartcast::detail {
+
+/// The line of a step from p to q, with D = q - p, has coordinates of its own. z goes along the axis on which |D| is
+/// largest. (u, v) = (x - s_x z, y - s_y z) are those of a point relative to p, sheared along the line, with
+/// s = (D_x, D_y) / D_z. So the line is the axis u = v = 0, and det(a - p, b - p, q - p) = D_z (u_a v_b - v_a u_b):
+/// subtracting multiples of D changes no determinant.
+///
+/// Let G be at least |u|, |v|, |z| of all points used, and D_z; all between 2^-200 and 2^200; e = 2^-53. All below
+/// follows from the roundings of doubles.
+///
+/// - u and v are off by e (|x| + 5 |z| + |u|) <= 8 e G. So the side u_a v_b - v_a u_b is off by 32 e G^2 from these, and
+///   by 4 e G^2 from its own rounding: less than 64 e G^2.
+/// - The end: det(a - q, b - q, c - q) is the sum of three sides times z - D_z, over D_z. It is off by
+///   3 (36 e G^2) (2 G) + 3 (2 G^2) (4 e G) + 36 e G^3 = 276 e G^3: less than 384 e G^3.
+/// - The volume: of three differences of such points, each off by 18 e G and at most 2 G. It is off by
+///   6 (3 (18 e G) (2 G)^2) + 240 e G^3 = 1536 e G^3: less than 2048 e G^3.
+/// - z is monotone: where the rounded z of a point is below the rounded D_z, the point itself is.
+inline constexpr double side_error = 0x1p-47;          ///< over G^2
+inline constexpr double end_error = 0x1.8p-45;         ///< over G^3
+inline constexpr double volume_error = 0x1p-42;        ///< over G^3
+inline constexpr double nearest_reach = 0x1p-200;      ///< G
+inline constexpr double farthest_reach = 0x1p+200;     ///< G
+inline constexpr double reach_of_first_simplex = 8.0;  ///< G over the largest coordinate there, but for 2 D_z
+
+}  // namespace dartcast::detail
