@@ -158,6 +158,8 @@ class CombinatorialMap {
     return pool.words.data() +
            (c.pool() == general_pool ? pool.offsets[c.index()] : std::size_t{c.index()} * pool.stride);
   }
+  /// Words from one record of a pool to the next; 0 in the general pool, whose records have different lengths.
+  [[nodiscard]] std::uint32_t record_stride(std::uint32_t pool) const { return pools_[pool].stride; }
   // Inlined: every walk calls it for each cell that it enters, and a call costs as much as the work.
   [[nodiscard]] [[gnu::always_inline]] CellView view(Cell c) const { return view(c, record(c)); }
   /// The same for a caller that has the record.

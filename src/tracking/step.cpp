@@ -37,10 +37,42 @@ StepResult Stepper::step(std::uint32_t particle, ParticleState& state, Weights& 
 
 StepResult Stepper::resume(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
                            ContactList& contacts, Counters& counters, const PartialStep& partial) const {
+  if (partial.impact && !respond_) return stop_at_impact(particle, state, target, contacts, counters, partial);
   constexpr NoRecorder none;
   if (complex_.map().dimension() == 2)
     return step_in<3>(particle, state, weights, target, contacts, counters, &partial, none);
   return step_in<4>(particle, state, weights, target, contacts, counters, &partial, none);
+}
+
+// As StepPart::move(), handle_contact() and finish() in step_run.hpp, sum by sum, for the first contact of a step.
+StepResult Stepper::stop_at_impact(std::uint32_t particle, ParticleState& state, const Vec3& target,
+                                   ContactList& contacts, Counters& counters, const PartialStep& partial) const {
+  const WallImpact& impact = *partial.impact;
+  const SimplexId at_wall = partial.walk.wall_simplex;
+  if (moved_ && state.at() != at_wall &&
+      detail::left_behind(current_space<4>(complex_).corners(state.at()), state.position))
+    ++counters.updated_by_deformation;
+  Contact& contact = contacts.contacts.emplace_back();
+  detail::describe_impact(complex_.map(), partial.walk, impact, contact, contacts);
+  constexpr Vec3 no_later_part;
+  const Vec3 way = target - partial.from;
+  contact.particle = particle;
+  contact.last = options_.max_contacts == 1;
+  contact.time_of_impact = 0.0 + impact.fraction;
+  contact.displacement = way + no_later_part;
+  contact.unused = way * (1.0 - impact.fraction) + no_later_part;
+  state.put(at_wall, impact.position);
+  state.touching_count = 1;
+  state.touching[0] = contacts.walls.back().face;
+  ++counters.contacts[static_cast<std::size_t>(contact.kind)];
+  ++counters.particle_steps;
+  counters.orientation.tests += partial.tests.tests;
+  counters.orientation.exact += partial.tests.exact;
+  ++counters.histogram[std::min<std::size_t>(partial.tests.tests, Counters::histogram_size - 1)];
+  StepResult result;
+  result.stopped = true;
+  result.unused = contact.unused;
+  return result;
 }
 
 StepResult Stepper::ride_on(std::uint32_t particle, ParticleState& state, Weights& weights, const TakenPart& taken,

@@ -106,6 +106,10 @@ class Stepper {
                      Weights& weights, ContactList& contacts, Counters& counters, PausedStep& paused) const;
 
  private:
+  // resume() where the impact is known and nothing responds: the step ends there.
+  StepResult stop_at_impact(std::uint32_t particle, ParticleState& state, const Vec3& target, ContactList& contacts,
+                            Counters& counters, const PartialStep& partial) const;
+
   template <std::size_t N, class Recorder>
   StepResult step_in(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
                      ContactList& contacts, Counters& counters, const PartialStep* partial,

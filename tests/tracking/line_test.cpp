@@ -77,19 +77,15 @@ std::string check(const Segment& s, const LineStarts4& starts, unsigned lane, Li
   ++tally.begun;
   if (!passes(s, facet_corners[facet])) return "enters by another facet";
   LineWalks4 passed = walks;
-  const Vec3x4 x = splat(s.v[facet]);
-  passed.pass(ordered(x, walks.line.axis));
+  passed.pass(splat(s.v[facet]));
   if (((passed.undecided >> lane) & 1U) != 0) return "";
   ++tally.decided;
   if (volume_sign(s.v) != Sign::positive) return "passes a simplex that is not positive";
-  unsigned slot = 0;
-  while (slot < 3 && ((passed.replaced[slot] >> lane) & 1U) == 0) ++slot;
-  if (slot == 3) return "no way out";
-  const LineTurn way = line_turns[facet][0][slot];
+  const LineTurn way = line_turns[facet][0][static_cast<std::size_t>(passed.slot[lane])];
   const auto corners = exit_corners(way.facet);
   if (!passes(s, corners)) return "leaves by another facet";
   for (unsigned k = 0; k < 3; ++k) {
-    const Vec3x4 corner = walks.line.project(ordered(splat(s.v[corners[k]]), walks.line.axis));
+    const Vec3x4 corner = walks.line.project(splat(s.v[corners[k]]));
     const Vec3x4& kept = passed.corner[(k + way.turn) % 3];
     if (corner.x[lane] != kept.x[lane] || corner.y[lane] != kept.y[lane] || corner.z[lane] != kept.z[lane])
       return "corners in other slots";

@@ -21,8 +21,9 @@ template <CacheKind kind>
 void Batch<kind>::walk_lines() {
   next_line_ = staged_ = 0;
   line_arrivals_ = 0;
-  for (LinePlace& at : line_places_) at.corner = &now_->x;  // lanes without a walk read it, too
-  for (LineWalks4& walks : line_walks_) walks.line.axis = Mask4{};
+  for (LinePlace& at : line_places_) at.corner = now_;  // lanes without a walk read it, too
+  for (std::uint32_t pool = 0; pool < CombinatorialMap::general_pool; ++pool)
+    record_pools_[pool] = {map_.record(Cell(pool, 0)), map_.record_stride(pool)};
   std::uint32_t live = 0;
   for (std::uint32_t l = 0; l < lines; ++l) live |= (start_next_line(l) ? 1U : 0U) << l;
   while (live != 0) {
@@ -107,13 +108,13 @@ template <CacheKind kind>
 [[gnu::always_inline]] inline std::uint32_t Batch<kind>::pass_simplices(std::uint32_t l, std::uint32_t live) {
   LineWalks4& walks = line_walks_[l / 4];
   LinePlace* const at = &line_places_[l];
-  walks.pass(load_ordered(at[0].corner, at[1].corner, at[2].corner, at[3].corner, walks.line.axis));
+  walks.pass(load_vec3x4(*at[0].corner, *at[1].corner, *at[2].corner, *at[3].corner));
   std::uint32_t walls = 0;
   for (std::uint32_t k = 0; k < 4; ++k) {
     if (((live >> k) & 1U) == 0) continue;
-    leave(at[k], ((walks.replaced[1] >> k) & 1U) + 2 * ((walks.replaced[2] >> k) & 1U), map_);
-    walls |= at[k].wall << k;
+    walls |= leave(at[k], static_cast<unsigned>(walks.slot[k]), map_, record_pools_.data()) << k;
   }
+  at_wall_lanes_[l / 4] = walls;
   return (walks.undecided | walks.near_end | walls) & live;
 }
 
@@ -129,14 +130,14 @@ inline bool Batch<kind>::goes_on(std::uint32_t l) {
     ++at.tests;
     if (side > 0) return arrive_by_line(passed_cursor(at));
   }
-  if (!at.wall) return true;
+  if (((at_wall_lanes_[l / 4] >> (l % 4)) & 1U) == 0) return true;
   const WalkCursor cursor = passed_cursor(at);
   return end_at_wall(cursor, corners_of_walk(cursor), at.exit_facet);
 }
 
 // In the simplex that the walk has passed.
 template <CacheKind kind>
-inline WalkCursor Batch<kind>::passed_cursor(const LinePlace& at) {
+inline WalkCursor Batch<kind>::passed_cursor(const LinePlace& at) const {
   const unsigned entered_by = at.passed == 1 ? no_facet : at.row % 4;
   return {at.particle,
           at.passed_cell,
@@ -145,7 +146,7 @@ inline WalkCursor Batch<kind>::passed_cursor(const LinePlace& at) {
           static_cast<std::uint16_t>(at.tests + 3 * at.passed),
           0,
           false,
-          at.passed_record};
+          map_.record(Cell(at.passed_cell))};
 }
 
 // Returns false: the walk does not go on along its line. The rounds test, and count, the simplex that it has passed.

@@ -29,23 +29,28 @@ inline Mask4 sign_bits(const Double4& x) {
   return reinterpret_cast<Mask4>(x) & splat_bits(static_cast<long long>(1ULL << 63U));
 }
 
-// The axis on which a line is longest.
-inline Mask4 longest_axis(const Vec3x4& d) {
-  const Vec3x4 m = magnitude(d);
-  return m.z > larger(m.x, m.y) ? splat_bits(2) : m.y > m.x ? splat_bits(1) : splat_bits(0);
-}
-// Coordinates in the order of axes (axis + 1, axis + 2, axis).
-inline Vec3x4 ordered(const Vec3x4& x, const Mask4& axis) {
-  const Mask4 first = axis == splat_bits(0);
-  const Mask4 second = axis == splat_bits(1);
-  return {first ? x.y : second ? x.z : x.x, first ? x.z : second ? x.x : x.y, first ? x.x : second ? x.y : x.z};
-}
+// The order of coordinates in which the axis where a line is longest comes last: (y, z, x), (z, x, y) or (x, y, z).
+struct AxisOrder4 {
+  Mask4 x_last, y_last;
+
+  AxisOrder4() = default;
+  explicit AxisOrder4(const Vec3x4& d) {
+    const Vec3x4 m = magnitude(d);
+    const Mask4 z_last = m.z > larger(m.x, m.y);
+    y_last = (m.y > m.x) & ~z_last;
+    x_last = ~(y_last | z_last);
+  }
+
+  [[nodiscard]] [[gnu::always_inline]] Vec3x4 order(const Vec3x4& a) const {
+    return {x_last ? a.y : y_last ? a.z : a.x, x_last ? a.z : y_last ? a.x : a.y, x_last ? a.x : y_last ? a.y : a.z};
+  }
+};
 
 // The lines from p to q, and the bounds of what is said about them.
 struct Lines4 {
-  Mask4 axis;    // of z
+  AxisOrder4 axes;
   Mask4 flip;    // signs of v and z: D_z is positive, and space is not mirrored
-  Vec3x4 start;  // p, in the order of axes
+  Vec3x4 start;  // p, in that order
   Double4 slope_u, slope_v;
   Double4 length;  // D_z
   Double4 reach;   // G
@@ -53,17 +58,17 @@ struct Lines4 {
 
   Lines4() = default;
   // Without bounds.
-  Lines4(const Vec3x4& p, const Vec3x4& q) : axis(longest_axis(q - p)), start(ordered(p, axis)) {
-    const Vec3x4 d = ordered(q, axis) - start;
+  Lines4(const Vec3x4& p, const Vec3x4& q) : axes(q - p), start(axes.order(p)) {
+    const Vec3x4 d = axes.order(q) - start;
     flip = sign_bits(d.z);
     length = magnitude(d.z);
     slope_u = d.x / length;
     slope_v = with_signs(d.y, flip) / length;
   }
 
-  // Coordinates along the lines. x: points in the order of axes.
+  // Coordinates along the lines.
   [[nodiscard]] [[gnu::always_inline]] Vec3x4 project(const Vec3x4& x) const {
-    const Vec3x4 r = x - start;
+    const Vec3x4 r = axes.order(x) - start;
     const Double4 z = with_signs(r.z, flip);
     return {r.x - slope_u * z, with_signs(r.y, flip) - slope_v * z, z};
   }
@@ -90,7 +95,7 @@ struct LineStarts4 {
 
   LineStarts4() = default;
   LineStarts4(const Corners4& v, const Vec3x4& p, const Vec3x4& q) : line(p, q) {
-    for (unsigned i = 0; i < 4; ++i) corner[i] = line.project(ordered(v.corner[i], line.axis));
+    for (unsigned i = 0; i < 4; ++i) corner[i] = line.project(v.corner[i]);
     Vec3x4 far = magnitude(corner[0]);
     for (unsigned i = 1; i < 4; ++i) far = larger(far, magnitude(corner[i]));
     line.set_reach(largest(far));
@@ -172,9 +177,9 @@ struct LineWalks4 {
   // The last simplex passed: a bit for each lane.
   unsigned undecided;
   unsigned near_end;     // not all corners of the exit are before the target
-  unsigned replaced[3];  // slot that the new corner has taken
+  Mask4 slot;  // in each lane: of the triangle's corner that the new one has replaced
 
-  // Passes simplices by their new corners, in the order of axes.
+  // Passes simplices by their new corners.
   [[gnu::always_inline]] void pass(const Vec3x4& x) {
     const Vec3x4 d = line.project(x);
     const Double4 a = side(d, corner[0]);
@@ -186,9 +191,7 @@ struct LineWalks4 {
     const Mask4 slot0 = (b > 0.0) & (c < 0.0);
     const Mask4 slot1 = (c > 0.0) & (a < 0.0);
     const Mask4 slot2 = (a > 0.0) & (b < 0.0);
-    replaced[0] = lanes_set(slot0);
-    replaced[1] = lanes_set(slot1);
-    replaced[2] = lanes_set(slot2);
+    slot = (slot1 & splat_bits(1)) | (slot2 & splat_bits(2));
     corner[0] = choose(slot0, d, corner[0]);
     corner[1] = choose(slot1, d, corner[1]);
     corner[2] = choose(slot2, d, corner[2]);
@@ -222,7 +225,8 @@ struct LineWalks4 {
   void begin(unsigned to, const LineStarts4& starts, unsigned from, unsigned facet) {
     const auto copy = [&](Double4& x, const Double4& of) { x[to] = of[from]; };
     const auto copy_bits = [&](Mask4& x, const Mask4& of) { x[to] = of[from]; };
-    copy_bits(line.axis, starts.line.axis);
+    copy_bits(line.axes.x_last, starts.line.axes.x_last);
+    copy_bits(line.axes.y_last, starts.line.axes.y_last);
     copy_bits(line.flip, starts.line.flip);
     copy(line.start.x, starts.line.start.x);
     copy(line.start.y, starts.line.start.y);
@@ -251,34 +255,46 @@ struct LineWalks4 {
 // Where a walk is: its next simplex, and the last one that it has passed.
 struct LinePlace {
   const std::uint32_t* record;  // of the cell
-  const double* corner;         // the new corner of the next simplex
+  const Vec3* corner;           // the new corner of the next simplex
   const SimplexExit* exits;     // of that simplex
-  std::uint32_t particle;
   std::uint32_t cell;
+  std::uint32_t passed_cell;
+  std::uint32_t particle;
   std::uint32_t passed;  // simplices
   std::uint32_t tests;   // besides the three of each simplex
   std::uint32_t face;    // entered by, and
   std::uint32_t place;   // its triangle, as in ExitTable::entry()
   std::uint32_t turn;    // of that triangle's corners
   std::uint32_t row;
-  bool wall;  // the exit is a wall
-  std::uint8_t exit_facet;
-  std::uint32_t passed_cell;
-  const std::uint32_t* passed_record;
+  std::uint32_t exit_facet;
+};
+
+// Records of the standard types of cells, by pools.
+struct RecordPool {
+  const std::uint32_t* words;
+  std::size_t stride;
 };
 
 // Out of a cell, or on within it.
 struct LineCrossing {
   std::uint32_t cell;
   std::uint32_t face;  // 0: within the cell; else 1 + its number in the cell beyond
-  bool wall;
+  unsigned wall;
 };
 
-inline LineCrossing cross_general(const CellView& cell, const LinePlace& at, const SimplexExit& exit) {
-  if (exit.outer == 0) return {at.cell, 0, false};
+inline LineCrossing cross_general(const CombinatorialMap& map, const LinePlace& at, const SimplexExit& exit) {
+  if (exit.outer == 0) return {at.cell, 0, 0};
+  const CellView cell = map.view(Cell(at.cell), at.record);
   const auto face = static_cast<std::uint16_t>(exit.word - 2U - cell.shape().point_count());
-  if (cell.is_wall(face)) return {at.cell, 0, true};
-  return {cell.neighbour(face).value, 1U + cell.neighbour_face(face), false};
+  if (cell.is_wall(face)) return {at.cell, 0, 1};
+  return {cell.neighbour(face).value, 1U + cell.neighbour_face(face), 0};
+}
+
+// The number of a face's neighbour that may not fit in its 3 bits.
+[[gnu::cold, gnu::noinline]] inline std::uint32_t wide_number(const CombinatorialMap& map, const LinePlace& at,
+                                                              const SimplexExit& exit) {
+  const CellView cell = map.view(Cell(at.cell), at.record);
+  return cell.neighbour_face(static_cast<std::uint16_t>(exit.word - 2U - cell.shape().point_count()));
 }
 
 // The same for standard types, without branches.
@@ -288,11 +304,9 @@ inline LineCrossing cross_general(const CellView& cell, const LinePlace& at, con
   const unsigned wall = (bits >> exit.wall_shift) & 1U;
   const std::uint32_t passes = 0U - (exit.outer & ~wall);
   std::uint32_t number = (bits >> exit.face_shift) & 7U & passes;
-  if (number == 7) [[unlikely]] {
-    const CellView cell = map.view(Cell(at.cell), at.record);
-    number = cell.neighbour_face(static_cast<std::uint16_t>(exit.word - 2U - cell.shape().point_count()));
-  }
-  return {at.cell ^ ((at.cell ^ at.record[exit.word]) & passes), (number + 1) & passes, wall != 0};
+  if (number == 7) [[unlikely]]
+    number = wide_number(map, at, exit);
+  return {at.cell ^ ((at.cell ^ at.record[exit.word]) & passes), (number + 1) & passes, wall};
 }
 
 // Finds the next simplex, and prefetches its new corner. Returns false where the shape has no table.
@@ -304,41 +318,32 @@ inline LineCrossing cross_general(const CellView& cell, const LinePlace& at, con
   at.row = entry / 4;
   at.turn = modulo_3[at.turn + 3 - entry % 4];
   at.exits = table.exits_of(at.row / 4);
-  at.corner = &positions[at.record[2 + table.apex(at.row)]].x;
+  at.corner = &positions[at.record[2 + table.apex(at.row)]];
   __builtin_prefetch(at.corner);
-  __builtin_prefetch(at.corner + 2);
+  __builtin_prefetch(&at.corner->z);
   return true;
 }
 
-// Leaves the simplex, where the new corner has taken a slot of the triangle's, and prefetches the next cell.
-[[gnu::always_inline]] inline void leave(LinePlace& at, unsigned slot, const CombinatorialMap& map) {
+// Leaves the simplex, where the new corner has taken a slot of the triangle's, and prefetches the next cell. Returns
+// whether the exit is a wall.
+[[gnu::always_inline]] inline unsigned leave(LinePlace& at, unsigned slot, const CombinatorialMap& map,
+                                             const RecordPool* pools) {
   const LineTurn way = line_turns[at.row % 4][at.turn][slot];
   const SimplexExit exit = at.exits[way.facet];
   const bool general = Cell(at.cell).pool() == CombinatorialMap::general_pool;
-  const LineCrossing next =
-      general ? cross_general(map.view(Cell(at.cell), at.record), at, exit) : cross_standard(map, at, exit);
+  const LineCrossing next = general ? cross_general(map, at, exit) : cross_standard(map, at, exit);
   at.passed_cell = at.cell;
-  at.passed_record = at.record;
   at.exit_facet = way.facet;
-  at.wall = next.wall;
   ++at.passed;
   at.cell = next.cell;
-  at.record = map.record(Cell(next.cell));
+  const Cell cell(next.cell);
+  const RecordPool& pool = pools[cell.pool() & 3U];
+  at.record = cell.pool() == CombinatorialMap::general_pool ? map.record(cell) : pool.words + cell.index() * pool.stride;
   __builtin_prefetch(at.record);
   at.face = next.face;
   at.place = exit.place;
   at.turn = way.turn + exit.turn;
-}
-
-// Points of four walks, each in the order of its axes.
-inline Vec3x4 load_ordered(const double* a, const double* b, const double* c, const double* d, const Mask4& axis) {
-  constexpr std::array<std::array<std::uint8_t, 4>, 3> orders = {{{1, 2, 0}, {2, 0, 1}, {0, 1, 2}}};
-  const auto& oa = orders[static_cast<std::size_t>(axis[0])];
-  const auto& ob = orders[static_cast<std::size_t>(axis[1])];
-  const auto& oc = orders[static_cast<std::size_t>(axis[2])];
-  const auto& od = orders[static_cast<std::size_t>(axis[3])];
-  return {Double4{a[oa[0]], b[ob[0]], c[oc[0]], d[od[0]]}, Double4{a[oa[1]], b[ob[1]], c[oc[1]], d[od[1]]},
-          Double4{a[oa[2]], b[ob[2]], c[oc[2]], d[od[2]]}};
+  return next.wall;
 }
 
 }  // namespace

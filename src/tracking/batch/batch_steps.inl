@@ -125,7 +125,7 @@ class Batch {
   bool start_line(std::uint32_t l, std::uint32_t i, const std::uint32_t* record, unsigned from);
   std::uint32_t pass_simplices(std::uint32_t l, std::uint32_t live);
   bool goes_on(std::uint32_t l);
-  static WalkCursor passed_cursor(const LinePlace& at);
+  [[nodiscard]] WalkCursor passed_cursor(const LinePlace& at) const;
   bool leave_to_rounds(const LinePlace& at);
   [[gnu::cold, gnu::noinline]] void leave_unlisted(const LinePlace& at);
   [[nodiscard]] VertexNumbers corners_of_walk(const WalkCursor& cursor) const;
@@ -206,6 +206,8 @@ class Batch {
   std::array<bool, max_batch> left_behind_;
   std::array<LineWalks4, lines / 4> line_walks_;
   std::array<LinePlace, lines> line_places_;
+  std::array<std::uint32_t, lines / 4> at_wall_lanes_;  // a bit for each
+  std::array<RecordPool, CombinatorialMap::general_pool> record_pools_;
   LineStarts4 line_starts_;  // of four walks
   std::size_t next_line_;    // walk to begin
   std::size_t staged_;       // walks before this one are in line_starts_
