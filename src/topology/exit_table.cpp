@@ -35,6 +35,7 @@ void ExitTable::add_exits(const Shape& shape) {
         const std::uint16_t face = across.face();
         exit.place = shape.triangle_from_other_side(face, across.place);
         exit.word = static_cast<std::uint16_t>(2U + shape.point_count() + face);
+        exit.extra = static_cast<std::uint16_t>(exit.word + shape.face_count());
         exit.outer = 1;
         exit.face_shift = static_cast<std::uint8_t>(3U * face);
         exit.wall_shift = static_cast<std::uint8_t>(18U + face);

@@ -20,6 +20,7 @@ namespace dartcast::detail {
 struct SimplexExit {
   std::uint16_t place = 0;       ///< the row beyond; or the triangle of the face, as the neighbour numbers it
   std::uint16_t word = 0;        ///< of the cell's record: the neighbour. 0 within the cell
+  std::uint16_t extra = 0;       ///< the same in the general pool: the number that the neighbour gives, and the wall
   std::uint8_t outer = 0;        ///< 1: a triangle of a face; 0: within the cell
   std::uint8_t face_shift = 0;   ///< standard types, in the record's second word: the number that the neighbour gives
   std::uint8_t wall_shift = 31;  ///< the same: whether the face is a wall; within the cell a bit that is never set

@@ -55,7 +55,11 @@ std::string check_cell(const CombinatorialMap& map, Cell c, std::size_t& outer) 
     const Triangle left = in_slots(cell, row, detail::exit_corners(row % 4), 0);
     const Triangle entered = in_slots(next, entry / 4, facet_corners[entry / 4 % 4], (exit.turn + 3 - entry % 4) % 3);
     if (left != entered) return fmt::format("row {}: corners in other slots", row);
-    if (!across.outer() || cell.is_wall(across.face()) || c.pool() == CombinatorialMap::general_pool) continue;
+    if (!across.outer() || cell.is_wall(across.face())) continue;
+    if (c.pool() == CombinatorialMap::general_pool) {
+      if (cell.words()[exit.extra] != face - 1) return fmt::format("row {}: another face, or a wall", row);
+      continue;
+    }
     if (((cell.words()[1] >> exit.wall_shift) & 1U) != 0) return fmt::format("row {}: a wall", row);
     if (((cell.words()[1] >> exit.face_shift) & 7U) != std::min(face - 1, 7U))
       return fmt::format("row {}: another face", row);

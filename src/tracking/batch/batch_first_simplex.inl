@@ -58,8 +58,8 @@ inline std::size_t Batch<kind>::start_by_coordinates() {
       exits_[count] = exit_candidate(i, behind, signs.zero(), record);
       far_walks_[far_count_] = {i, record};
       if ((behind & (behind - 1)) != 0) prefetch(now_, vertices_[i]);
-      const std::size_t proved = behind != 0 ? 1 : 0;
       const std::size_t far = (far_away_ >> remaining_[l]) & 1U;
+      const std::size_t proved = behind != 0 && far == 0 ? 1 : 0;
       count += proved;
       far_count_ += far;
       if (proved + far == 0) walk_undecided(i, record);
@@ -73,7 +73,7 @@ template <CacheKind kind>
 void Batch<kind>::walk_undecided(std::uint32_t i, const std::uint32_t* record) {
   const Vec3x4 edge = splat(now_[vertices_[i][1]] - now_[vertices_[i][0]]);
   const Vec3x4 way = splat(targets_[i] - states_[i].position);
-  if (largest(magnitude(way))[0] > max_for_sign * largest(magnitude(edge))[0])
+  if (largest(magnitude(way))[0] > far_coordinate * largest(magnitude(edge))[0])
     far_walks_[far_count_++] = {i, record};
   else
     add_to_rounds(first_cursor(i, states_[i], record, 1, 0));  // walk_on() counts three more
@@ -95,7 +95,7 @@ inline void Batch<kind>::test_block(std::uint32_t first, std::uint32_t n) {
     const Mask4 signs = d.signs(now, q);
     store_signs(signs, k);
     inside_ |= lanes_set(signs == splat_bits(FacetSigns4::valid)) << k;
-    far_away_ |= lanes_set(d.lowest() < -max_for_sign * d.volume6()) << k;
+    far_away_ |= lanes_set(d.lowest() < -far_coordinate * d.volume6()) << k;
     if constexpr (moved) {
       SimplexCache4& previous_caches = caches_[i.at[0] / 4];
       const OnePart one(previous_caches, d.relative, places_of(i), q, tolerance_);
@@ -126,7 +126,7 @@ inline void Batch<kind>::test_coordinates(std::uint32_t first, std::uint32_t n) 
     inside_ |= lanes_set(lowest > coordinate_margin) << k;
     const Double4 largest_of_four = larger(larger(m[0], m[1]), larger(m[2], m[3]));
     const Mask4 in_range = largest_of_four <= max_for_sign;
-    far_away_ |= lanes_set(largest_of_four > max_for_sign) << k;  // not where it is unknown
+    far_away_ |= lanes_set(largest_of_four > far_coordinate) << k;  // not where it is unknown
     const Mask4 known = (smaller(smaller(m[0], m[1]), smaller(m[2], m[3])) > coordinate_margin) & in_range;
     const Mask4 negative = facet_bits(c[0] < 0.0, c[1] < 0.0, c[2] < 0.0, c[3] < 0.0);
     store_signs(known & negative, k);

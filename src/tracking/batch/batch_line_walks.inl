@@ -176,8 +176,8 @@ struct LineWalks4 {
   Double4 edge_side[3];
   // The last simplex passed: a bit for each lane.
   unsigned undecided;
-  unsigned near_end;     // not all corners of the exit are before the target
-  Mask4 slot;  // in each lane: of the triangle's corner that the new one has replaced
+  unsigned near_end;  // not all corners of the exit are before the target
+  Mask4 slot;         // in each lane: of the triangle's corner that the new one has replaced
 
   // Passes simplices by their new corners.
   [[gnu::always_inline]] void pass(const Vec3x4& x) {
@@ -282,12 +282,17 @@ struct LineCrossing {
   unsigned wall;
 };
 
-inline LineCrossing cross_general(const CombinatorialMap& map, const LinePlace& at, const SimplexExit& exit) {
-  if (exit.outer == 0) return {at.cell, 0, 0};
-  const CellView cell = map.view(Cell(at.cell), at.record);
-  const auto face = static_cast<std::uint16_t>(exit.word - 2U - cell.shape().point_count());
-  if (cell.is_wall(face)) return {at.cell, 0, 1};
-  return {cell.neighbour(face).value, 1U + cell.neighbour_face(face), 0};
+// Without branches.
+[[gnu::always_inline]] inline LineCrossing cross(const LinePlace& at, const SimplexExit& exit, std::uint32_t number,
+                                                 unsigned wall) {
+  const std::uint32_t passes = 0U - (exit.outer & ~wall);
+  return {at.cell ^ ((at.cell ^ at.record[exit.word]) & passes), (number + 1) & passes, wall};
+}
+
+[[gnu::always_inline]] inline LineCrossing cross_general(const LinePlace& at, const SimplexExit& exit) {
+  const std::uint32_t bits = at.record[exit.extra];
+  const unsigned wall = exit.outer & static_cast<unsigned>(bits >> 16U != 0);
+  return cross(at, exit, bits & 0xffffU, wall);
 }
 
 // The number of a face's neighbour that may not fit in its 3 bits.
@@ -297,16 +302,14 @@ inline LineCrossing cross_general(const CombinatorialMap& map, const LinePlace& 
   return cell.neighbour_face(static_cast<std::uint16_t>(exit.word - 2U - cell.shape().point_count()));
 }
 
-// The same for standard types, without branches.
 [[gnu::always_inline]] inline LineCrossing cross_standard(const CombinatorialMap& map, const LinePlace& at,
                                                           const SimplexExit& exit) {
   const std::uint32_t bits = at.record[1];
   const unsigned wall = (bits >> exit.wall_shift) & 1U;
-  const std::uint32_t passes = 0U - (exit.outer & ~wall);
-  std::uint32_t number = (bits >> exit.face_shift) & 7U & passes;
-  if (number == 7) [[unlikely]]
+  std::uint32_t number = (bits >> exit.face_shift) & 7U;
+  if (number == 7 && exit.outer > wall) [[unlikely]]
     number = wide_number(map, at, exit);
-  return {at.cell ^ ((at.cell ^ at.record[exit.word]) & passes), (number + 1) & passes, wall};
+  return cross(at, exit, number, wall);
 }
 
 // Finds the next simplex, and prefetches its new corner. Returns false where the shape has no table.
@@ -331,14 +334,15 @@ inline LineCrossing cross_general(const CombinatorialMap& map, const LinePlace& 
   const LineTurn way = line_turns[at.row % 4][at.turn][slot];
   const SimplexExit exit = at.exits[way.facet];
   const bool general = Cell(at.cell).pool() == CombinatorialMap::general_pool;
-  const LineCrossing next = general ? cross_general(map, at, exit) : cross_standard(map, at, exit);
+  const LineCrossing next = general ? cross_general(at, exit) : cross_standard(map, at, exit);
   at.passed_cell = at.cell;
   at.exit_facet = way.facet;
   ++at.passed;
   at.cell = next.cell;
   const Cell cell(next.cell);
   const RecordPool& pool = pools[cell.pool() & 3U];
-  at.record = cell.pool() == CombinatorialMap::general_pool ? map.record(cell) : pool.words + cell.index() * pool.stride;
+  at.record =
+      cell.pool() == CombinatorialMap::general_pool ? map.record(cell) : pool.words + cell.index() * pool.stride;
   __builtin_prefetch(at.record);
   at.face = next.face;
   at.place = exit.place;

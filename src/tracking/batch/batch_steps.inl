@@ -66,7 +66,7 @@ class Batch {
   static constexpr std::uint32_t block = 32;
   static constexpr std::uint32_t lines = 32;
   static constexpr bool moved = kind == CacheKind::previous_geometry;
-  static constexpr std::uint16_t short_tests = 13;  // three simplices
+  static constexpr std::uint16_t short_tests = 16;  // four simplices
 
   // Four particles in a row from i on.
   Vec3x4 targets_from(std::uint32_t i) const {
