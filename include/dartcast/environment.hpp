@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -81,6 +82,26 @@ struct AddResult {
   std::uint32_t particle = 0xffffffffU;  ///< its index in the set; none (0xffffffff) unless the place is free
 };
 
+/// The first wall that a ray meets: see Environment::cast_rays().
+struct RayHit {
+  Place origin = Place::outside;  ///< where the ray begins. Only a ray that begins in a free cell is cast
+  bool hit = false;               ///< whether it meets a wall
+  Kind kind = Kind::volume;       ///< of the place on the wall: face, edge or vertex
+  CellFace face;                  ///< the wall, in the free cell in front of it
+  std::uint16_t triangle = 0;     ///< of the face's fan
+  Patch patch;
+  double distance = std::numeric_limits<double>::infinity();  ///< from the origin
+  Vec3 point;                                                 ///< on the wall
+  Vec3 normal;                                                ///< of the wall, on its free side
+  Cell invalid_cell;  ///< where the ray ends at an invalid cell instead (validity())
+};
+
+/// The cells that rays pass, from the one that holds the origin to the one at the wall, or where the ray ends.
+struct RayCells {
+  std::vector<Cell> cells;         ///< of all rays, one after another
+  std::vector<std::size_t> first;  ///< of each ray, and at the end the number of cells
+};
+
 /// How update_after_edit() treats an orphaned particle: one that is in a blocked cell, or outside, after an edit.
 enum class OrphanPolicy : std::uint8_t {
   hold,      ///< held in the blocked cell, and carried along with it, until it is free again; outside: as relocate
@@ -135,6 +156,17 @@ class Environment {
   [[nodiscard]] Location locate(const Vec3& x);
   /// Locates many points, in parallel. Throws as locate(), naming the point.
   [[nodiscard]] std::vector<Location> locate(std::span<const Vec3> points);
+
+  /// The first wall that each ray meets within `max_distance` of its origin; infinite: within the scene. Rays see walls
+  /// from their free side. Directions have any length. Every decision is exact for the segment whose end has been
+  /// rounded: no ray passes between two faces or through an edge. `passed`: where not null, the cells on the way. Throws
+  /// InvalidArgument, naming the ray, where the numbers differ, an origin is as locate() refuses it, a direction is zero
+  /// or not finite, or in the plane its z is not 0, or the segment's end is out of the exact range; and where the
+  /// distance is negative or not a number. Precondition: as for locate(). Cost: locate() and a step for each ray, in
+  /// parallel; with `passed` a second walk.
+  [[nodiscard]] std::vector<RayHit> cast_rays(std::span<const Vec3> origins, std::span<const Vec3> directions,
+                                              double max_distance = std::numeric_limits<double>::infinity(),
+                                              RayCells* passed = nullptr);
 
   /// Adds a particle for every position in a free cell, in their order. Returns one result per position: those in a
   /// blocked cell or outside are not added. Throws as locate(), and InvalidArgument where the particles are of another
