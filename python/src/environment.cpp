@@ -2,6 +2,7 @@
 // their own.
 #include "dartcast/environment.hpp"
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -106,7 +107,35 @@ py::object locate(const EnvironmentHandle& h, const py::object& x) {
   return py::cast(found);
 }
 
+py::object cast_rays(const EnvironmentHandle& h, const py::object& origins, const py::object& directions,
+                     double max_distance, bool cells) {
+  const Use use(*h.usage, "the environment");
+  const auto starts = vectors(origins, "origins");
+  const auto ways = vectors(directions, "directions");
+  std::vector<RayHit> hits;
+  RayCells passed;
+  {
+    const py::gil_scoped_release release;
+    hits = h.environment->cast_rays(starts, ways, max_distance, cells ? &passed : nullptr);
+  }
+  if (!cells) return rows_of(hits);
+  std::vector<std::uint32_t> numbers;
+  numbers.reserve(passed.cells.size());
+  for (const Cell cell : passed.cells) numbers.push_back(cell.value);
+  return py::make_tuple(rows_of(hits), array_of(std::move(numbers)),
+                        array_of(std::vector<std::uint64_t>(passed.first.begin(), passed.first.end())));
+}
+
 void bind_queries(EnvironmentClass& c) {
+  c.def(
+      "cast_rays", &cast_rays, py::arg("origins"), py::arg("directions"),
+      py::arg("max_distance") = std::numeric_limits<double>::infinity(), py::arg("cells") = false,
+      (std::string(doc("Environment::cast_rays")) +
+       "\n\norigins, directions: float64 (n, 3). Returns a structured array, one row for each ray: origin (place), "
+       "hit, "
+       "kind, cell, face, triangle, patch, distance, point, normal, invalid_cell. With cells=True a tuple: these rows, "
+       "the cells that all rays pass, and of each ray the first of its cells, with their number at the end.")
+          .c_str());
   c.def("locate", &locate, py::arg("x"),
         (std::string(doc("Environment::locate")) +
          "\n\nx: one point, or float64 (n, 3). Returns a Location; or a structured array: place, kind, simplex, dart, "

@@ -51,6 +51,7 @@ void register_rows() {
   PYBIND11_NUMPY_DTYPE(StateRow, position, cell, simplex, touching_count, held, touching_cell, touching_face);
   PYBIND11_NUMPY_DTYPE(LocationRow, place, kind, simplex, dart, cell, dart_cell);
   PYBIND11_NUMPY_DTYPE(AddRow, particle, place, kind, simplex, dart, cell, dart_cell);
+  PYBIND11_NUMPY_DTYPE(RayRow, origin, hit, kind, cell, face, triangle, patch, distance, point, normal, invalid_cell);
   PYBIND11_NUMPY_DTYPE(HeldRow, particle, cell);
   PYBIND11_NUMPY_DTYPE(StoppedRow, particle, unused);
   PYBIND11_NUMPY_DTYPE(OverlapRow, particle, cell, face, depth, left, point, normal);
@@ -109,6 +110,22 @@ py::array rows_of(const std::vector<AddResult>& added) {
   return made_rows<AddRow>(added, [](const AddResult& a, AddRow& r) {
     r.particle = a.particle;
     fill_location(a.location, r);
+  });
+}
+
+py::array rows_of(const std::vector<RayHit>& hits) {
+  return made_rows<RayRow>(hits, [](const RayHit& h, RayRow& r) {
+    r = {static_cast<std::uint8_t>(h.origin),
+         h.hit,
+         static_cast<std::uint8_t>(h.kind),
+         h.face.cell.value,
+         h.face.face,
+         h.triangle,
+         h.patch.value,
+         h.distance,
+         row(h.point),
+         row(h.normal),
+         h.invalid_cell.value};
   });
 }
 

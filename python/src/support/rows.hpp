@@ -54,6 +54,16 @@ struct AddRow {
   std::uint16_t simplex, dart;
   std::uint32_t cell, dart_cell;
 };
+struct RayRow {
+  std::uint8_t origin;
+  bool hit;
+  std::uint8_t kind;
+  std::uint32_t cell;
+  std::uint16_t face, triangle, patch;
+  double distance;
+  Row3 point, normal;
+  std::uint32_t invalid_cell;
+};
 struct HeldRow {
   std::uint32_t particle, cell;
 };
@@ -92,6 +102,7 @@ pybind11::array rows_of(std::span<const WallHit> walls);
 pybind11::array rows_of(std::span<const ParticleState> states);
 pybind11::array rows_of(const std::vector<Location>& locations);
 pybind11::array rows_of(const std::vector<AddResult>& added);
+pybind11::array rows_of(const std::vector<RayHit>& hits);
 pybind11::array rows_of(const std::vector<HeldParticle>& held);
 pybind11::array rows_of(const std::vector<StoppedParticle>& stopped);
 pybind11::array rows_of(const std::vector<SphereOverlap>& overlaps);

@@ -27,6 +27,9 @@ def of_making() -> Calls:
         "Environment: refused": refused(lambda: dc.Environment(mesh, threads=1, free=["bone"])),
         "Environment.locate": lambda: env.locate([0.25, 0.25, 0.25]), "Environment.locate: many": lambda: env.locate(x),
         "Environment.locate: refused": refused(lambda: env.locate([np.nan, 0.0, 0.0])),
+        "Environment.cast_rays": lambda: env.cast_rays(x, x), "Environment.cast_rays: cells": lambda: env.cast_rays(
+            x, x, 0.5, cells=True),
+        "Environment.cast_rays: refused": refused(lambda: env.cast_rays(x, np.zeros_like(x))),
         "Environment.validity": env.validity, "Environment.awaits_advance": lambda: env.awaits_advance(particles),
         "Environment.check_advance": lambda: env.check_advance(particles),
         "Environment.check_advance: refused": refused(
