@@ -65,7 +65,8 @@ void add_crossover(std::vector<Figure>& list, std::span<const Row> rows) {
   double crossover = std::numeric_limits<double>::infinity();
   std::size_t measured = 0;
   for (const Row& row : rows) {  // the steps grow from row to row
-    if (row.workload.name != "W5" || row.workload.scene != Scene::box) continue;
+    const WorkloadOptions& w = row.workload;
+    if (w.name != "W5" || w.scene != Scene::box || w.deforms || w.blocked_share != 0.1) continue;
     ++measured;
     const bool beaten = std::any_of(row.all_series.begin(), row.all_series.end(), [&](const Series& series) {
       return series.name != "dartcast" && series.name != "paper" && ratio_to_dartcast(row, series) < 1.0;

@@ -1,8 +1,11 @@
 // Makes pages of measurements.
 #include "bench/pages.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <functional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -32,7 +35,7 @@ std::string label_of(const std::string& competitor) {
 }
 
 struct Axis {
-  const char* title;
+  std::string title;
   const char* label;
   std::function<bool(const Row&)> shows;
   std::function<double(const Row&)> x;
@@ -70,22 +73,29 @@ std::string chart_of(std::span<const Row> rows, const Axis& axis) {
 auto is_workload(const char* name, bool deforms) {
   return [name, deforms](const Row& r) { return r.workload.name == name && r.workload.deforms == deforms; };
 }
-auto is_range(Scene scene) {
-  return [scene](const Row& r) { return r.workload.name == "W5" && r.workload.scene == scene; };
+bool is_tube(const Row& r) { return r.workload.scene == Scene::tube; }
+bool is_range(const Row& r, double blocked_share, bool deforms) {
+  const WorkloadOptions& w = r.workload;
+  return w.name == "W5" && w.scene == Scene::box && w.blocked_share == blocked_share && w.deforms == deforms;
 }
 
 }  // namespace
 
 std::string comparison_page(std::span<const Row> rows) {
   const auto cells = [](const Row& r) { return static_cast<double>(r.cells); };
-  const std::vector<Axis> axes = {
+  std::vector<Axis> axes = {
       {"Standing still", "cells of the scene", is_workload("W1", false), cells},
       {"Every vertex moving", "cells of the scene", is_workload("W2", true), cells},
       {"In the plane, standing still", "faces of the scene", is_workload("W6", false), cells},
       {"In the plane, moving", "faces of the scene", is_workload("W6", true), cells},
-      {"Length of a step", "cells a step", is_range(Scene::box), [](const Row& r) { return r.workload.step_length; }},
-      {"Faces of a cell", "faces", is_range(Scene::tube),
-       [](const Row& r) { return static_cast<double>(r.workload.size + 2); }}};
+      {"Faces of a cell", "faces", is_tube, [](const Row& r) { return static_cast<double>(r.workload.size + 2); }}};
+  for (const bool deforms : {false, true}) {
+    for (const double share : {0.1, 0.01, 0.001}) {
+      axes.push_back({fmt::format("Length of a step, {}% blocked, {}", 100.0 * share, deforms ? "moving" : "still"),
+                      "cells a step", [=](const Row& r) { return is_range(r, share, deforms); },
+                      [](const Row& r) { return r.workload.step_length; }});
+    }
+  }
   std::string charts;
   for (const Axis& axis : axes) charts += chart_of(rows, axis);
   return page_of("Comparison on this machine", charts, report_text(rows));

@@ -66,9 +66,15 @@ void add_many_particles(std::vector<WorkloadOptions>& list) {
 }
 
 void add_ranges(std::vector<WorkloadOptions>& list) {
-  for (const double length : {0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0}) {
-    list.push_back(workload("W5", Scene::box, 46, 300));
-    list.back().step_length = length;
+  for (const bool deforms : {false, true}) {
+    for (const double share : {0.1, 0.01, 0.001}) {
+      for (const double length : {0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0}) {
+        list.push_back(workload("W5", Scene::box, 46, deforms ? 50 : 300));
+        list.back().deforms = deforms;
+        list.back().blocked_share = share;
+        list.back().step_length = length;
+      }
+    }
   }
   for (const std::uint32_t faces : {6, 8, 14, 20, 32, 60}) list.push_back(workload("W5", Scene::tube, faces - 2, 500));
 }

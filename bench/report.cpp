@@ -29,6 +29,7 @@ Json workload_json(const Row& row) {
   if (w.name == "W3") json["order"] = w.cell_order ? "cell" : "random";
   if (w.scene == Scene::box || w.scene == Scene::squares || w.scene == Scene::tube)
     json["step_length_in_cells"] = w.step_length;
+  if (w.scene == Scene::box || w.scene == Scene::squares) json["blocked_share"] = w.blocked_share;
   json["steps"] = row.all_series[0].step_ns.size();
   json["threads"] = row.threads;
   if (w.against_competitors) json["wall_triangles"] = row.wall_triangles;
@@ -72,7 +73,8 @@ std::string report_json(std::span<const Row> rows) {
 
 std::string report_csv(std::span<const Row> rows) {
   std::string out =
-      "workload,cells,deforms,faces_of_a_cell,particles,order,step_length_in_cells,steps,threads,competitor,"
+      "workload,cells,deforms,faces_of_a_cell,particles,order,step_length_in_cells,blocked_share,steps,threads,"
+      "competitor,"
       "ns_per_particle_step,mean_ns_per_particle_step,step_us_median,step_us_p99,step_us_longest,"
       "orientation_tests_per_particle_step,disagreements,disagreements_at_start,failed,passed_through_wall,stopped_at_"
       "no_wall,wrong_cell\n";
@@ -80,10 +82,10 @@ std::string report_csv(std::span<const Row> rows) {
     const WorkloadOptions& w = row.workload;
     for (const Series& series : row.all_series) {
       out += fmt::format(
-          "{},{},{:d},{},{},{},{},{},{},{},{:.2f},{:.2f},{:.2f},{:.2f},{:.2f},{:.3f},{},{},{},{},{},{}\n", w.name,
+          "{},{},{:d},{},{},{},{},{},{},{},{},{:.2f},{:.2f},{:.2f},{:.2f},{:.2f},{:.3f},{},{},{},{},{},{}\n", w.name,
           row.cells, w.deforms, w.scene == Scene::tube ? fmt::to_string(w.size + 2) : "", w.particles,
-          w.cell_order ? "cell" : "random", w.step_length, series.step_ns.size(), row.threads, series.name,
-          series.ns_per_particle_step(w.particles), series.mean_ns_per_particle_step(w.particles),
+          w.cell_order ? "cell" : "random", w.step_length, w.blocked_share, series.step_ns.size(), row.threads,
+          series.name, series.ns_per_particle_step(w.particles), series.mean_ns_per_particle_step(w.particles),
           series.quantile_ns(0.5) / 1e3, series.quantile_ns(0.99) / 1e3, series.quantile_ns(1.0) / 1e3,
           per_step(row, series.tests), series.disagreements, series.at_start, series.failed, series.through,
           series.stopped, series.wrong_cells);

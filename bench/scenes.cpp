@@ -13,16 +13,16 @@ namespace {
 
 constexpr double turn = 2.0 * std::numbers::pi;
 
-MeshData box(std::uint32_t size) {
+MeshData box(std::uint32_t size, double blocked_share) {
   BoxOptions options;
   options.cells = {size, size, size};
   options.size = Vec3{1.0, 1.0, 1.0} * size;
   options.blocked_layer = true;
-  options.blocked_share = 0.1;
+  options.blocked_share = blocked_share;
   return generate_box(options);
 }
 
-MeshData squares(std::uint32_t size) {
+MeshData squares(std::uint32_t size, double blocked_share) {
   RectangleOptions options;
   options.cells = {size, size};
   options.size = {double(size), double(size)};
@@ -31,7 +31,7 @@ MeshData squares(std::uint32_t size) {
   for (std::uint32_t i = 0; i < size; ++i) {
     for (const std::uint32_t cell : {i, size * (size - 1) + i, size * i, size * i + size - 1}) blocked[cell] = 1;
   }
-  block_share(blocked, 0.1, options.seed);
+  block_share(blocked, blocked_share, options.seed);
   mesh.free.assign(blocked.size(), 1);
   for (std::size_t cell = 0; cell < blocked.size(); ++cell) mesh.free[cell] = blocked[cell] == 0 ? 1 : 0;
   return mesh;
@@ -142,11 +142,11 @@ MeshData mesh_of(const WorkloadOptions& options) {
     case Scene::tube: return tube(options.size);
     case Scene::bar: return generate_bar();
     case Scene::vessel: return generate_vessel();
-    case Scene::squares: return squares(options.size);
+    case Scene::squares: return squares(options.size, options.blocked_share);
     case Scene::box:
     case Scene::lattice: break;
   }
-  return box(options.size);
+  return box(options.size, options.blocked_share);
 }
 
 std::vector<DeformationStep> deformation_of(const WorkloadOptions& options, const MeshData& mesh) {

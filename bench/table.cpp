@@ -100,7 +100,9 @@ std::string title(const WorkloadOptions& w) {
   if (w.particles != 1000) out += fmt::format(", {} particles", w.particles);
   if (w.cell_order) out += ", in cell order";
   if (w.scene == Scene::tube) out += fmt::format(", cells of {} faces", w.size + 2);
-  if (w.scene == Scene::box && w.name == "W5") out += fmt::format(", steps of {} cells", w.step_length);
+  if (w.scene == Scene::box && w.name == "W5")
+    out += fmt::format(", {}% blocked, {}, steps of {} cells", 100.0 * w.blocked_share, w.deforms ? "moving" : "still",
+                       w.step_length);
   return out;
 }
 

@@ -16,7 +16,7 @@
 namespace dartcast::bench {
 
 enum class Scene : std::uint8_t {
-  box,      ///< size^3 unit cubes, the outer layer and a tenth of the others blocked; particles fly at random
+  box,      ///< size^3 unit cubes, the outer layer and a share of the others blocked; particles fly at random
   lattice,  ///< the same box; particles on its planes, lines and points, that move along its directions
   squares,  ///< size^2 unit squares of the plane, the outer layer and a tenth of the others blocked, as the box
   tube,     ///< 1,000 prisms over a regular polygon of `size` corners, one upon another
@@ -33,6 +33,7 @@ struct WorkloadOptions {
   bool cell_order = false;  ///< particles sorted by cell at the start, else at random
   std::size_t steps = 1000;
   double step_length = 0.1;             ///< of a particle, in cells
+  double blocked_share = 0.1;           ///< boxes and squares: of the cells that are not in the outer layer
   std::vector<unsigned> threads = {1};  ///< of dartcast; several take turns, a step each
   bool against_competitors = true;
 };
