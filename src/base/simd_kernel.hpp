@@ -20,7 +20,8 @@
 #include <immintrin.h>
 #define DARTCAST_SIMD avx2
 #if defined(__clang__)
-#define DARTCAST_BEGIN_KERNEL _Pragma("clang attribute push(__attribute__((target(\"avx2,bmi2\"))), apply_to = function)")
+#define DARTCAST_BEGIN_KERNEL \
+  _Pragma("clang attribute push(__attribute__((target(\"avx2,bmi2\"))), apply_to = function)")
 #define DARTCAST_END_KERNEL _Pragma("clang attribute pop")
 #else
 #define DARTCAST_BEGIN_KERNEL _Pragma("GCC push_options") _Pragma("GCC target(\"avx2,bmi2\")")
