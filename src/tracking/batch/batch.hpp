@@ -3,8 +3,8 @@
 // The batch makes no decision of its own. Where a sign is not proved, or anything else is out of the ordinary, it
 // defers the step to Stepper (tracking/step.hpp) and leaves it as it was. Both have the same result wherever both take
 // a step: ties between facets are broken by the walk's own functions. The batch walks up to the first wall; Stepper
-// continues from there. Only the counts may differ, where rounding carries a particle out of its simplex: Stepper puts
-// it back and walks from there, though its target is inside.
+// continues from there. Only the counts may differ. Walks to far targets ask other questions. And where rounding carries
+// a particle out of its simplex, Stepper puts it back and walks from there, though its target is inside.
 #pragma once
 
 #include <cstddef>

@@ -12,11 +12,13 @@ namespace dartcast::detail {
 /// follows from the roundings of doubles.
 ///
 /// - u and v are off by e (|x| + 5 |z| + |u|) <= 8 e G. So the side u_a v_b - v_a u_b is off by 32 e G^2 from these, and
-///   by 4 e G^2 from its own rounding: less than 64 e G^2.
-/// - The end: det(a - q, b - q, c - q) is the sum of three sides times z - D_z, over D_z. It is off by
+///   by 4 e G^2 from its own rounding: less than 64 e G^2. It is at most 2 G^2. z is off by e G.
+/// - The end: det(a - q, b - q, c - q) is the sum of three sides times z - D_z. It is off by
 ///   3 (36 e G^2) (2 G) + 3 (2 G^2) (4 e G) + 36 e G^3 = 276 e G^3: less than 384 e G^3.
-/// - The volume: of three differences of such points, each off by 18 e G and at most 2 G. It is off by
-///   6 (3 (18 e G) (2 G)^2) + 240 e G^3 = 1536 e G^3: less than 2048 e G^3.
+/// - The volume, of a triangle a, b, c and a corner d, is z_d (bc + ca + ab), less z_a (bc + db - dc) and two more sums like
+///   this, where bc is the side of b and c. A sum of three sides is off by 3 (36 e G^2) + 10 e G^2 = 118 e G^2, and at most
+///   6 G^2. So each product is off by 118 e G^3 + 6 e G^3 + 6 e G^3 = 130 e G^3, and the whole by
+///   4 (130 e G^3) + (12 + 18 + 24) e G^3 = 574 e G^3: less than 2048 e G^3.
 /// - z is monotone: where the rounded z of a point is below the rounded D_z, the point itself is.
 inline constexpr double side_error = 0x1p-47;          ///< over G^2
 inline constexpr double end_error = 0x1.8p-45;         ///< over G^3
