@@ -42,6 +42,25 @@ def test_many_points_are_located_as_one_by_one():
         assert one.simplex is None or one.simplex == (row["cell"], row["simplex"])
 
 
+def test_rays_leave_the_unit_cube_where_they_must():
+    env = box(3)
+    random = np.random.default_rng(2)
+    x = random.uniform(0.1, 0.9, (100, 3))
+    d = random.normal(size=(100, 3))
+    hits, cells, first = env.cast_rays(x, d, cells=True)
+    unit = d / np.linalg.norm(d, axis=1)[:, None]
+    away = (np.where(d > 0, 1.0, 0.0) - x) / unit
+    assert hits["hit"].all() and (hits["origin"] == dartcast.Place.FREE).all()
+    assert np.allclose(hits["distance"], away.min(axis=1), rtol=1e-12)
+    assert np.allclose(hits["point"], x + unit * hits["distance"][:, None])
+    wall = away.argmin(axis=1)
+    assert (hits["normal"][np.arange(100), wall] == -np.sign(d[np.arange(100), wall])).all()
+    assert len(first) == 101 and first[-1] == len(cells) and (np.diff(first) > 0).all()
+    assert (cells[first[1:] - 1] == hits["cell"])[hits["kind"] == dartcast.Kind.FACE].all()
+    near = env.cast_rays(x, d, 1e-3)
+    assert not near["hit"].any() and np.isinf(near["distance"]).all() and (near["cell"] == dartcast.NONE).all()
+
+
 def test_locate_refuses_what_is_no_point():
     env = box()
     with pytest.raises(ValueError, match="finite|range"):
