@@ -16,6 +16,7 @@
 #include "bench/latency.hpp"
 #include "bench/pages.hpp"
 #include "bench/plan.hpp"
+#include "bench/rays.hpp"
 #include "bench/report.hpp"
 #include "bench/run_parts.hpp"
 #include "bench/solids.hpp"
@@ -36,6 +37,7 @@ struct BenchArguments {
   bool edits = false;
   bool spheres = false;
   bool solids = false;
+  bool rays = false;
   bool latency = false;
   bool runs = false;
   bench::RunPartsOptions run_options;
@@ -74,6 +76,16 @@ int run_solids(const BenchArguments& a) {
   }
   const bench::PairTimes pairs = bench::time_pairs();
   fmt::print("{}", a.json ? bench::solids_json(pairs, rows) + "\n" : bench::solids_text(pairs, rows));
+  return done;
+}
+
+int run_rays(const BenchArguments& a) {
+  std::vector<bench::RayBenchRow> rows;
+  for (const std::size_t across : {10U, 46U, 100U}) {
+    if (a.plan.quick && across > 46) continue;
+    for (const double share : {0.1, 0.01}) rows.push_back(bench::time_rays(across, share));
+  }
+  fmt::print("{}", a.json ? bench::rays_json(rows) + "\n" : bench::rays_text(rows));
   return done;
 }
 
@@ -132,6 +144,7 @@ int run(const BenchArguments& a) {
   if (a.edits) return run_edits(a.json);
   if (a.spheres) return run_spheres(a);
   if (a.solids) return run_solids(a);
+  if (a.rays) return run_rays(a);
   if (a.latency) return run_latency(a);
   if (a.runs) return run_runs(a);
   return run_comparison(a);
@@ -166,6 +179,7 @@ void add_bench(CLI::App& app, int& status) {
   verb->add_flag("--edits", a->edits, "edits per second at 10^3 and 10^6 cells, and nothing else");
   verb->add_flag("--spheres", a->spheres, "what colliding spheres cost, 10^3 and more, and nothing else");
   verb->add_flag("--solids", a->solids, "what edges among walls cost, 10^3 to 10^6 cells, and nothing else");
+  verb->add_flag("--rays", a->rays, "what rays cost, 10^3 to 10^6 cells, and nothing else");
   verb->add_option("--most", a->max_spheres, "with --spheres: their largest number (1000 to 10^8; 100000)")
       ->transform(whole_number(1000, 100000000));
   verb->add_flag("--latency", a->latency, "the time of single steps of a surgical scene, and nothing else");
