@@ -115,10 +115,6 @@ inline void forget(SimplexCache4* caches, CacheFlags* marks, std::uint32_t i) {
   for (auto& of_corner : caches[i / 4].w) of_corner[i % 4] = unknown;
   marks[i] = 0;
 }
-inline void expect_far(SimplexCache4* caches, CacheFlags* marks, std::uint32_t i) {
-  for (unsigned c = 0; c < 4; ++c) caches[i / 4].w[c][i % 4] = far_walker[c];
-  marks[i] = 0;
-}
 
 // As flushed() in tracking/representable_point.hpp.
 inline Double4 without_tiny(const Double4& x) { return magnitude(x) < smallest_magnitude ? Double4{} : x; }

@@ -127,7 +127,7 @@ inline bool Batch<kind>::goes_on(std::uint32_t l) {
   if (((walks.near_end >> (l % 4)) & 1U) != 0) {
     const int side = walks.side_of_target(l % 4);
     if (side == 0) return leave_to_rounds(at);
-    ++at.tests;
+    at.tests += at.passed > 1 ? 1 : 0;  // in the first simplex the sides of all facets are counted
     if (side > 0) return arrive_by_line(passed_cursor(at));
   }
   if (((at_wall_lanes_[l / 4] >> (l % 4)) & 1U) == 0) return true;

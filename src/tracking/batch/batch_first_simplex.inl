@@ -44,6 +44,7 @@ inline std::size_t Batch<kind>::start() {
 template <CacheKind kind>
 inline std::size_t Batch<kind>::start_by_coordinates() {
   std::size_t count = 0;
+  std::size_t undecided = 0;
   for (std::uint32_t first = 0; first < size_; first += block) {
     const std::uint32_t n = std::min(block, size_ - first);
     test_coordinates(first, n);
@@ -56,27 +57,21 @@ inline std::size_t Batch<kind>::start_by_coordinates() {
       const FacetSigns4 signs(signs_[remaining_[l]]);
       const unsigned behind = signs.negative();
       exits_[count] = exit_candidate(i, behind, signs.zero(), record);
-      far_walks_[far_count_] = {i, record};
-      if ((behind & (behind - 1)) != 0) prefetch(now_, vertices_[i]);
-      const std::size_t far = (far_away_ >> remaining_[l]) & 1U;
-      const std::size_t proved = behind != 0 && far == 0 ? 1 : 0;
+      undecided_[undecided] = {i, record};
+      if ((behind & (behind - 1)) != 0 || behind == 0) prefetch(now_, vertices_[i]);
+      const std::size_t proved = behind != 0 ? 1 : 0;
       count += proved;
-      far_count_ += far;
-      if (proved + far == 0) walk_undecided(i, record);
+      undecided += 1 - proved;
     }
   }
+  for (std::size_t k = 0; k < undecided; ++k) {
+    const auto [i, record] = undecided_[k];
+    if (is_far(Determinants(corners_of(now_, vertices_[i]), targets_[i])))
+      far_walks_[far_count_++] = {i, record};
+    else
+      add_to_rounds(first_cursor(i, states_[i], record, 1, 0));  // walk_on() counts three more
+  }
   return count;
-}
-
-// Coordinates say nothing, or too little: the step's length decides how it walks.
-template <CacheKind kind>
-void Batch<kind>::walk_undecided(std::uint32_t i, const std::uint32_t* record) {
-  const Vec3x4 edge = splat(now_[vertices_[i][1]] - now_[vertices_[i][0]]);
-  const Vec3x4 way = splat(targets_[i] - states_[i].position);
-  if (largest(magnitude(way))[0] > far_coordinate * largest(magnitude(edge))[0])
-    far_walks_[far_count_++] = {i, record};
-  else
-    add_to_rounds(first_cursor(i, states_[i], record, 1, 0));  // walk_on() counts three more
 }
 
 template <CacheKind kind>
@@ -113,7 +108,6 @@ inline void Batch<kind>::test_block(std::uint32_t first, std::uint32_t n) {
 template <CacheKind kind>
 inline void Batch<kind>::test_coordinates(std::uint32_t first, std::uint32_t n) {
   inside_ = 0;
-  far_away_ = 0;
   on_facets_ = 0;
   still_free_ = 0;
   for (std::uint32_t k = 0; k < n; k += 4) {
@@ -124,9 +118,7 @@ inline void Batch<kind>::test_coordinates(std::uint32_t first, std::uint32_t n) 
     const Double4 m[4] = {magnitude(c[0]), magnitude(c[1]), magnitude(c[2]), magnitude(c[3])};
     const Double4 lowest = smaller(smaller(c[0], c[1]), smaller(c[2], c[3]));
     inside_ |= lanes_set(lowest > coordinate_margin) << k;
-    const Double4 largest_of_four = larger(larger(m[0], m[1]), larger(m[2], m[3]));
-    const Mask4 in_range = largest_of_four <= max_for_sign;
-    far_away_ |= lanes_set(largest_of_four > far_coordinate) << k;  // not where it is unknown
+    const Mask4 in_range = larger(larger(m[0], m[1]), larger(m[2], m[3])) <= max_for_sign;
     const Mask4 known = (smaller(smaller(m[0], m[1]), smaller(m[2], m[3])) > coordinate_margin) & in_range;
     const Mask4 negative = facet_bits(c[0] < 0.0, c[1] < 0.0, c[2] < 0.0, c[3] < 0.0);
     store_signs(known & negative, k);

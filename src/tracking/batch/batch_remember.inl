@@ -37,7 +37,7 @@ inline bool Batch<kind>::needs_coordinates(const WalkCursor& cursor) {
   }
   flags_[i] = 0;
   if (cursor.tests <= short_tests) return true;
-  expect_far(caches_, flags_, i);
+  forget(caches_, flags_, i);
   return false;
 }
 

@@ -9,6 +9,7 @@
 #include "base/double4.inl"
 #include "complex/simplex.hpp"
 #include "dartcast/predicates.hpp"
+#include "tracking/batch/coordinate_bounds.hpp"
 #include "tracking/batch/particle_cache.hpp"
 
 DARTCAST_BEGIN_KERNEL
@@ -29,6 +30,18 @@ inline int filtered_sign(const Vec3& u, const Vec3& v, const Vec3& w) {
 
 inline Corners corners_of(const Vec3* positions, const VertexNumbers& v) {
   return {positions[v[0]], positions[v[1]], positions[v[2]], positions[v[3]]};
+}
+
+// A coordinate below minus this: the target is some simplices away, and the walk goes along its line. So that the counts
+// of tests do not depend on caches, the limit is well above that of coordinates which caches prove
+// (max_for_sign in tracking/batch/coordinate_bounds.hpp): those are never far.
+inline constexpr double far_coordinate = 2.25;
+static_assert(far_coordinate >= 1.125 * max_for_sign);
+
+// The same test as that of four in test_block().
+inline bool is_far(const Determinants<4>& d) {
+  const double lowest = std::min({d.value[0], d.value[1], d.value[2], d.value[3]});
+  return lowest < -far_coordinate * d.volume6();
 }
 
 struct Corners4 {

@@ -100,7 +100,6 @@ class Batch {
   // The first simplex: batch_first_simplex.inl.
   std::size_t start();
   std::size_t start_by_coordinates();
-  void walk_undecided(std::uint32_t i, const std::uint32_t* record);
   void test_block(std::uint32_t first, std::uint32_t n);
   void test_coordinates(std::uint32_t first, std::uint32_t n);
   [[gnu::noinline]] void test_zeros(std::uint32_t first, std::uint32_t k, const Vec3x4& q, const Mask4& in_range,
@@ -187,7 +186,7 @@ class Batch {
   std::uint32_t on_facets_ = 0;                 // targets on facets, and maybe on walls
   std::uint32_t still_free_;                    // targets on facets, but on no wall
   std::uint32_t one_part_;                      // steps that need no splitting
-  std::uint32_t far_away_;                      // targets many simplices away
+  std::uint32_t far_away_;                      // targets some simplices away
   std::uint32_t carried_inside_;                // starts that the mesh carries to strictly inside
   std::array<std::uint32_t, block> remaining_;  // steps that have not ended
   std::array<Arrival, block> arrival_;
@@ -199,6 +198,7 @@ class Batch {
   std::array<WalkCursor, max_batch> walks_;  // those that go on
   std::size_t in_rounds_ = 0;                // walks that begin there
   std::array<ExitCandidate, max_batch> exits_;
+  std::array<FarWalk, max_batch> undecided_;  // by coordinates
   std::array<FarWalk, max_batch> far_walks_;
   std::size_t far_count_ = 0;
   std::array<CellExit, max_batch> cell_exits_;

@@ -79,7 +79,7 @@ inline void Batch<kind>::compute_impact4(std::uint32_t k) {
       caches_[i / 4].put(i % 4, caches.of(l));
       if (!moved) flags_[i] = 0;
     } else {
-      expect_far(caches_, flags_, i);
+      forget(caches_, flags_, i);
     }
   }
 }

@@ -26,7 +26,6 @@ namespace dartcast::detail {
 /// cases the error is less than 2^-14.3.
 inline constexpr double coordinate_margin = 0x1p-12;
 inline constexpr double max_for_sign = 2.0;
-inline constexpr double far_coordinate = 2.0;           ///< in magnitude: such a target is some simplices away
 inline constexpr double min_volume = 0x1p-20;           ///< V over E^3
 inline constexpr double farthest_corner = 0x1p+100;     ///< E
 inline constexpr double steepest_gradient = 64.0;       ///< |g|_1 E

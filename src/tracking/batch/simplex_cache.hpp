@@ -30,9 +30,6 @@ inline SimplexCacheEntry unknown_entry() { return {{}, {}, {}, {unknown, unknown
 /// w of a simplex whose coordinates are not accurate enough: with it no sign of a coordinate is proved.
 inline constexpr double proves_nothing = -std::numeric_limits<double>::infinity();
 
-/// w of a particle that has passed many simplices, and is likely to do so again: unknown, and every target is far away.
-inline constexpr std::array<double, 4> far_walker = {unknown, proves_nothing, proves_nothing, proves_nothing};
-
 enum class CacheKind : std::uint8_t { none, previous_geometry, barycentric };
 
 /// The entries of four particles in a row, as vectors load them: [corner][particle].
