@@ -45,10 +45,12 @@ template <CacheKind kind>
 inline std::size_t Batch<kind>::start_by_coordinates() {
   std::size_t count = 0;
   std::size_t undecided = 0;
+  std::size_t sorted = 0;
   for (std::uint32_t first = 0; first < size_; first += block) {
     const std::uint32_t n = std::min(block, size_ - first);
     test_coordinates(first, n);
     const std::uint32_t remaining = end_inside(first, n);
+    const std::size_t prefetched = undecided;  // their corners
     if (on_facets_ != 0) end_on_facets(first);
     for (std::uint32_t l = 0; l < remaining; ++l) {
       const std::uint32_t i = first + remaining_[l];
@@ -58,20 +60,31 @@ inline std::size_t Batch<kind>::start_by_coordinates() {
       const unsigned behind = signs.negative();
       exits_[count] = exit_candidate(i, behind, signs.zero(), record);
       undecided_[undecided] = {i, record};
-      if ((behind & (behind - 1)) != 0 || behind == 0) prefetch(now_, vertices_[i]);
+      if (!std::has_single_bit(behind)) prefetch(now_, vertices_[i]);
       const std::size_t proved = behind != 0 ? 1 : 0;
       count += proved;
       undecided += 1 - proved;
     }
+    for (; sorted + 4 <= prefetched; sorted += 4) sort_undecided(sorted, undecided);
   }
-  for (std::size_t k = 0; k < undecided; ++k) {
-    const auto [i, record] = undecided_[k];
-    if (is_far(Determinants(corners_of(now_, vertices_[i]), targets_[i])))
-      far_walks_[far_count_++] = {i, record};
-    else
-      add_to_rounds(first_cursor(i, states_[i], record, 1, 0));  // walk_on() counts three more
-  }
+  for (; sorted < undecided; sorted += 4) sort_undecided(sorted, undecided);
   return count;
+}
+
+// Four steps of `count` that coordinates do not decide, from number k on: walks to far targets, and others in rounds.
+template <CacheKind kind>
+inline void Batch<kind>::sort_undecided(std::size_t k, std::size_t count) {
+  const std::size_t last = count - 1;
+  const auto particle = [&](std::size_t l) { return undecided_[std::min(k + l, last)].particle; };
+  const Index4 i = {{particle(0), particle(1), particle(2), particle(3)}};
+  const unsigned far = lanes_set(BatchDeterminants(simplices_of(now_, i), targets_of(i)).far_away());
+  for (std::size_t l = 0; l < std::min<std::size_t>(4, count - k); ++l) {
+    const Departure& d = undecided_[k + l];
+    if (((far >> l) & 1U) != 0)
+      far_walks_[far_count_++] = d;
+    else
+      add_to_rounds(first_cursor(d.particle, states_[d.particle], d.record, 1, 0));  // walk_on() counts three more
+  }
 }
 
 template <CacheKind kind>
@@ -90,7 +103,7 @@ inline void Batch<kind>::test_block(std::uint32_t first, std::uint32_t n) {
     const Mask4 signs = d.signs(now, q);
     store_signs(signs, k);
     inside_ |= lanes_set(signs == splat_bits(FacetSigns4::valid)) << k;
-    far_away_ |= lanes_set(d.lowest() < -far_coordinate * d.volume6()) << k;
+    far_away_ |= lanes_set(d.far_away()) << k;
     if constexpr (moved) {
       SimplexCache4& previous_caches = caches_[i.at[0] / 4];
       const OnePart one(previous_caches, d.relative, places_of(i), q, tolerance_);
@@ -118,7 +131,7 @@ inline void Batch<kind>::test_coordinates(std::uint32_t first, std::uint32_t n) 
     const Double4 m[4] = {magnitude(c[0]), magnitude(c[1]), magnitude(c[2]), magnitude(c[3])};
     const Double4 lowest = smaller(smaller(c[0], c[1]), smaller(c[2], c[3]));
     inside_ |= lanes_set(lowest > coordinate_margin) << k;
-    const Mask4 in_range = larger(larger(m[0], m[1]), larger(m[2], m[3])) <= max_for_sign;
+    const Mask4 in_range = (larger(larger(m[0], m[1]), larger(m[2], m[3])) <= max_for_sign) & (lowest > -surely_near);
     const Mask4 known = (smaller(smaller(m[0], m[1]), smaller(m[2], m[3])) > coordinate_margin) & in_range;
     const Mask4 negative = facet_bits(c[0] < 0.0, c[1] < 0.0, c[2] < 0.0, c[3] < 0.0);
     store_signs(known & negative, k);

@@ -62,8 +62,8 @@ inline ExitCandidate exit_candidate(std::uint32_t particle, unsigned behind, uns
                                     const std::uint32_t* record) {
   return {particle, static_cast<std::uint16_t>(behind), static_cast<std::uint16_t>(std::popcount(exact)), record};
 }
-// A walk that does not leave by an exit which is known.
-struct FarWalk {
+// A walk in its first simplex.
+struct Departure {
   std::uint32_t particle;
   const std::uint32_t* record;  // of its cell
 };

@@ -32,18 +32,6 @@ inline Corners corners_of(const Vec3* positions, const VertexNumbers& v) {
   return {positions[v[0]], positions[v[1]], positions[v[2]], positions[v[3]]};
 }
 
-// A coordinate below minus this: the target is some simplices away, and the walk goes along its line. So that the counts
-// of tests do not depend on caches, the limit is well above that of coordinates which caches prove
-// (max_for_sign in tracking/batch/coordinate_bounds.hpp): those are never far.
-inline constexpr double far_coordinate = 2.25;
-static_assert(far_coordinate >= 1.125 * max_for_sign);
-
-// The same test as that of four in test_block().
-inline bool is_far(const Determinants<4>& d) {
-  const double lowest = std::min({d.value[0], d.value[1], d.value[2], d.value[3]});
-  return lowest < -far_coordinate * d.volume6();
-}
-
 struct Corners4 {
   Vec3x4 corner[4];
 
@@ -105,7 +93,11 @@ struct BatchDeterminants {
   }
 
   [[nodiscard]] Double4 volume6() const { return (value[0] + value[1]) + (value[2] + value[3]); }
-  [[nodiscard]] Double4 lowest() const { return smaller(smaller(value[0], value[1]), smaller(value[2], value[3])); }
+  // Whether the points are some simplices away.
+  [[nodiscard]] Mask4 far_away() const {
+    const Double4 lowest = smaller(smaller(value[0], value[1]), smaller(value[2], value[3]));
+    return lowest < -far_coordinate * volume6();
+  }
   [[nodiscard]] Mask4 proves_coordinates() const { return volume6() > 0x1p+30 * bound; }
   [[nodiscard]] Mask4 all_positive() const {
     return ((value[0] > bound) & (value[1] > bound)) & ((value[2] > bound) & (value[3] > bound));

@@ -100,6 +100,7 @@ class Batch {
   // The first simplex: batch_first_simplex.inl.
   std::size_t start();
   std::size_t start_by_coordinates();
+  void sort_undecided(std::size_t k, std::size_t count);
   void test_block(std::uint32_t first, std::uint32_t n);
   void test_coordinates(std::uint32_t first, std::uint32_t n);
   [[gnu::noinline]] void test_zeros(std::uint32_t first, std::uint32_t k, const Vec3x4& q, const Mask4& in_range,
@@ -198,8 +199,8 @@ class Batch {
   std::array<WalkCursor, max_batch> walks_;  // those that go on
   std::size_t in_rounds_ = 0;                // walks that begin there
   std::array<ExitCandidate, max_batch> exits_;
-  std::array<FarWalk, max_batch> undecided_;  // by coordinates
-  std::array<FarWalk, max_batch> far_walks_;
+  std::array<Departure, max_batch> undecided_;  // by coordinates
+  std::array<Departure, max_batch> far_walks_;
   std::size_t far_count_ = 0;
   std::array<CellExit, max_batch> cell_exits_;
   std::array<SimplexCache4::Table<double>, max_batch / 4> previous_determinants_;  // before the move

@@ -26,6 +26,11 @@ namespace dartcast::detail {
 /// cases the error is less than 2^-14.3.
 inline constexpr double coordinate_margin = 0x1p-12;
 inline constexpr double max_for_sign = 2.0;
+/// A coordinate below minus this: the target is some simplices away, and the walk goes along its line. Determinants say
+/// so. Where a kept coordinate is above minus the second number, they are known to deny it: no count of tests depends on
+/// what is kept.
+inline constexpr double far_coordinate = 1.5;
+inline constexpr double surely_near = far_coordinate - 0x1p-10;
 inline constexpr double min_volume = 0x1p-20;           ///< V over E^3
 inline constexpr double farthest_corner = 0x1p+100;     ///< E
 inline constexpr double steepest_gradient = 64.0;       ///< |g|_1 E
