@@ -74,6 +74,8 @@ class BothWays {
     if (!std::ranges::equal(portable.taken, best.taken)) return "instruction sets leave different steps";
     if (!same_caches(best, portable)) return "instruction sets keep different coordinates";
     if (!same(best.counters, portable.counters)) return "instruction sets count differently";
+    if (std::ranges::equal(best.taken, uncached.taken) && !same(best.counters, uncached.counters))
+      return "caches change the counts";
     const StepOptions options;
     const ContactCallback none;
     const Stepper stepper(complex_, moves_, options, none);
