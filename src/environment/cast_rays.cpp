@@ -36,12 +36,6 @@ double scene_size(std::span<const Vec3> points) {
   return 2.0 * (size.x + size.y + size.z);
 }
 
-// The ends of the rays whose origins are free.
-struct CastRays {
-  std::vector<std::uint32_t> ray;  // of each particle
-  std::vector<Vec3> ends;
-};
-
 Vec3 end_of_ray(const Vec3& origin, const Vec3& direction, double length, std::size_t i, unsigned dimension) {
   const Vec3 unit = unit_of(direction);
   if (unit == Vec3{})
@@ -77,31 +71,26 @@ void list_cells(const CellComplex& complex, SimplexId start, const Vec3& p, cons
 
 // In chunks, which are joined in the order of the rays.
 RayCells cells_passed(const CellComplex& complex, std::span<const Location> at, std::span<const Vec3> origins,
-                      const CastRays& cast, Threads threads) {
-  const std::size_t rays = cast.ray.size();
+                      std::span<const Vec3> ends, Threads threads) {
+  const std::size_t rays = origins.size();
   std::vector<RayCells> chunks(chunk_count(rays, rays_at_once));
   parallel_for(rays, rays_at_once, threads, [&](std::size_t begin, std::size_t end) {
     RayCells& chunk = chunks[begin / rays_at_once];
-    for (std::size_t k = begin; k < end; ++k) {
-      const std::uint32_t i = cast.ray[k];
+    for (std::size_t i = begin; i < end; ++i) {
       chunk.first.push_back(chunk.cells.size());
+      if (at[i].place != Place::free) continue;
       if (complex.map().dimension() == 2)
-        list_cells<3>(complex, at[i].simplex, flushed(origins[i]), cast.ends[k], chunk.cells);
+        list_cells<3>(complex, at[i].simplex, flushed(origins[i]), ends[i], chunk.cells);
       else
-        list_cells<4>(complex, at[i].simplex, flushed(origins[i]), cast.ends[k], chunk.cells);
+        list_cells<4>(complex, at[i].simplex, flushed(origins[i]), ends[i], chunk.cells);
     }
   });
   RayCells all;
-  std::size_t next = 0;  // ray
   for (const RayCells& chunk : chunks) {
-    const std::size_t before = all.cells.size();
-    for (const std::size_t first : chunk.first) {
-      const std::uint32_t ray = cast.ray[next++];
-      all.first.resize(ray + 1, before + first);  // rays in between pass no cell
-    }
+    for (const std::size_t first : chunk.first) all.first.push_back(all.cells.size() + first);
     all.cells.insert(all.cells.end(), chunk.cells.begin(), chunk.cells.end());
   }
-  all.first.resize(origins.size() + 1, all.cells.size());
+  all.first.push_back(all.cells.size());
   return all;
 }
 
@@ -115,23 +104,29 @@ std::vector<RayHit> Environment::cast_rays(std::span<const Vec3> origins, std::s
   const double length = std::min(max_distance, scene_size(complex.positions()));
   const std::vector<Location> at = locate(origins);
   std::vector<RayHit> hits(origins.size());
-  CastRays cast;
-  Particles particles;
+  std::vector<Vec3> ends(origins.size());
+  std::vector<std::uint32_t> cast;  // rays whose origins are free
   for (std::size_t i = 0; i < origins.size(); ++i) {
     hits[i].origin = at[i].place;
-    const Vec3 end = end_of_ray(origins[i], directions[i], length, i, dimension);
-    if (at[i].place != Place::free) continue;
-    cast.ray.push_back(static_cast<std::uint32_t>(i));
-    cast.ends.push_back(end);
+    ends[i] = end_of_ray(origins[i], directions[i], length, i, dimension);
+    if (at[i].place == Place::free) cast.push_back(static_cast<std::uint32_t>(i));
+  }
+  // By cells: rays that begin near one another find the scene in the processor's caches.
+  std::stable_sort(cast.begin(), cast.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return at[a].simplex.cell < at[b].simplex.cell; });
+  Particles particles;
+  std::vector<Vec3> targets;
+  for (const std::uint32_t i : cast) {
+    targets.push_back(ends[i]);
     members_->add_to(particles, at[i].simplex, flushed(origins[i]));
   }
   const StepOptions options;
   const ContactCallback none;
   const detail::BatchStepper stepper(complex, false, threads(), options, none, false);
-  const StepReport report = members_->advance(particles, cast.ends, stepper);
+  const StepReport report = members_->advance(particles, targets, stepper);
   for (const Contact& contact : report.contacts.contacts) {
     const WallHit& wall = report.contacts.walls_of(contact).front();
-    RayHit& hit = hits[cast.ray[contact.particle]];
+    RayHit& hit = hits[cast[contact.particle]];
     hit.hit = true;
     hit.kind = contact.kind;
     hit.face = wall.face;
@@ -141,8 +136,8 @@ std::vector<RayHit> Environment::cast_rays(std::span<const Vec3> origins, std::s
     hit.point = contact.point;
     hit.normal = wall.normal;
   }
-  for (const HeldParticle& held : report.held) hits[cast.ray[held.particle]].invalid_cell = held.cell;
-  if (passed != nullptr) *passed = cells_passed(complex, at, origins, cast, threads());
+  for (const HeldParticle& held : report.held) hits[cast[held.particle]].invalid_cell = held.cell;
+  if (passed != nullptr) *passed = cells_passed(complex, at, origins, ends, threads());
   return hits;
 }
 
