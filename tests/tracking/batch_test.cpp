@@ -497,7 +497,8 @@ TEST(FilteredBatch, ShapesWithoutATable) {
   ASSERT_FALSE(complex.map().shape(door).exits().empty());
   const double y = std::numbers::pi / corners;  // in the middle of the door
   const std::vector<Vec3> starts = {{1.3, y, 0.4}, {1.2, 0.9 * y, 0.3}, {-0.2, 0.3, 0.6}, {1.1, y, 0.7}};
-  const std::vector<Vec3> targets = {{-0.7, 2.1 * y, 0.5}, {-1.7, 0.2, 0.4}, {-0.19, 0.31, 0.55}, {1.3, 1.001 * y, 0.6}};
+  const std::vector<Vec3> targets = {
+      {-0.7, 2.1 * y, 0.5}, {-1.7, 0.2, 0.4}, {-0.19, 0.31, 0.55}, {1.3, 1.001 * y, 0.6}};
   const Locator locator(complex);
   std::vector<ParticleState> states(starts.size());
   std::vector<detail::VertexNumbers> vertices;
