@@ -131,6 +131,7 @@ ReportRecording::ReportRecording(WritingThread& writing, const fs::path& folder,
   header_.every = scene.output.every;
   header_.origin = middle_of(simulation.environment());
   file_.append(chunk_of(header_));
+  add_arrivals(simulation, simulation.time());
 }
 
 ReportRecording::ReportRecording(WritingThread& writing, const fs::path& folder, const Simulation& simulation,
@@ -145,6 +146,7 @@ ReportRecording::ReportRecording(WritingThread& writing, const fs::path& folder,
 void ReportRecording::restore(const fs::path& path, const Simulation& simulation) {
   const RecordedFile file(path);
   header_ = file.header();
+  ids_ = ids_so_far(simulation);
   events_ = simulation.event_log().events.size();
   const auto& chunks = file.chunks();
   const auto last = [&](std::string_view tag) {
@@ -175,7 +177,14 @@ void ReportRecording::update_after_edit(const Environment& environment) {
   if (counts_hits_) own_hits_.update_after_edit(environment);
 }
 
+void ReportRecording::add_arrivals(const Simulation& simulation, double time) {
+  if (ids_so_far(simulation) == ids_) return;
+  ids_ = ids_so_far(simulation);
+  file_.append(chunk_of(RecordedArrivals{time, ids_}));
+}
+
 void ReportRecording::add_step(const Simulation& simulation, const SimulationStep& step) {
+  add_arrivals(simulation, simulation.time() - step.duration);
   const EventLog& log = simulation.event_log();
   for (; events_ < log.events.size(); ++events_) {
     const EventReport& e = log.events[events_];

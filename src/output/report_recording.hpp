@@ -37,6 +37,7 @@ class ReportRecording {
   ReportProgress progress();
 
  private:
+  void add_arrivals(const Simulation& simulation, double time);
   void add_walls(const Simulation& simulation);
   [[nodiscard]] std::vector<RecordedPoint> wall_points(const Environment& environment) const;
   [[nodiscard]] const WallHits& hits(const Simulation& simulation) const;
@@ -51,6 +52,7 @@ class ReportRecording {
   bool has_walls_ = false;
   std::uint64_t edits_ = 0;      // those that the last walls have
   std::size_t events_ = 0;       // of the log, that the file has
+  std::uint64_t ids_ = 0;        // below it particles are known to have come
   std::vector<CellFace> faces_;  // of the last walls
   std::vector<Vertex> wall_vertices_;
   std::vector<RecordedPoint> wall_points_;  // as the file has them with the walls

@@ -123,6 +123,14 @@ RecordedContacts unpack(ByteReader& in, const RecordedContacts* /*kind*/) {
   return c;
 }
 
+RecordedArrivals unpack(ByteReader& in, const RecordedArrivals* /*kind*/) {
+  RecordedArrivals a;
+  a.time = in.take<double>();
+  a.all = in.take<std::uint64_t>();
+  expect(std::isfinite(a.time), "the time of arrivals is not finite");
+  return a;
+}
+
 RecordedEvent unpack(ByteReader& in, const RecordedEvent* /*kind*/) {
   RecordedEvent e;
   e.step = in.take<std::uint64_t>();
@@ -187,6 +195,13 @@ std::string chunk_of(const RecordedContacts& c) {
   ByteWriter out;
   out.put(c.contacts);
   return chunk(RecordedContacts::tag, out);
+}
+
+std::string chunk_of(const RecordedArrivals& arrivals) {
+  ByteWriter out;
+  out.put(arrivals.time);
+  out.put(arrivals.all);
+  return chunk(RecordedArrivals::tag, out);
 }
 
 std::string chunk_of(const RecordedEvent& e) {
@@ -274,6 +289,7 @@ template RecordedHeader RecordedFile::read(const Chunk& chunk) const;
 template RecordedWalls RecordedFile::read(const Chunk& chunk) const;
 template RecordedFrame RecordedFile::read(const Chunk& chunk) const;
 template RecordedContacts RecordedFile::read(const Chunk& chunk) const;
+template RecordedArrivals RecordedFile::read(const Chunk& chunk) const;
 template RecordedEvent RecordedFile::read(const Chunk& chunk) const;
 
 }  // namespace dartcast

@@ -89,6 +89,14 @@ struct RecordedContacts {
   std::vector<RecordedContact> contacts;
 };
 
+/// The particles that have come by a moment.
+struct RecordedArrivals {
+  static constexpr std::string_view tag = "COME";
+
+  double time = 0.0;      ///< s
+  std::uint64_t all = 0;  ///< ids are below it
+};
+
 /// A change of the scene that the time line names.
 struct RecordedEvent {
   static constexpr std::string_view tag = "EVNT";
@@ -103,6 +111,7 @@ std::string chunk_of(const RecordedHeader& header);
 std::string chunk_of(const RecordedWalls& walls);
 std::string chunk_of(const RecordedFrame& frame);
 std::string chunk_of(const RecordedContacts& contacts);
+std::string chunk_of(const RecordedArrivals& arrivals);
 std::string chunk_of(const RecordedEvent& event);
 
 /// Reads report.bin, or a recording in memory. Every function throws Error, which names the file, where it cannot be read, or is damaged.

@@ -16,6 +16,7 @@
 #include "report/encode.hpp"
 #include "report/picture.hpp"
 #include "report/selection.hpp"
+#include "simulation/start_times.hpp"
 
 namespace dartcast {
 
@@ -172,6 +173,22 @@ class Builder {
     return values;
   }
 
+  // When each slot's particle came into the scene.
+  std::vector<float> start_times() const {
+    StartTimes times;
+    for (const RecordedFile::Chunk& chunk : file_.chunks()) {
+      if (chunk.tag != RecordedArrivals::tag) continue;
+      const auto arrivals = file_.read<RecordedArrivals>(chunk);
+      times.add(arrivals.all, arrivals.time);
+    }
+    std::vector<float> start(slots_);
+    for (std::size_t slot = 0; slot < slots_; ++slot) {
+      const bool known = chosen_.ids[slot] < times.next_id();
+      start[slot] = static_cast<float>(known ? times.of(chosen_.ids[slot]) : frames_[first_[slot]].time);
+    }
+    return start;
+  }
+
   void describe_particles() {
     if (slots_ == 0) return;
     find_life();
@@ -179,7 +196,7 @@ class Builder {
     std::vector<RecordedPoint> positions(n);
     std::vector<float> speeds(n);
     std::vector<std::uint8_t> kinds(n);
-    std::vector<float> start(slots_);
+    std::vector<float> start = start_times();
     std::vector<float> radii(slots_);
     float fastest = 0.0F;
     for_each_particle([&](std::size_t k, std::size_t slot, std::size_t i) {
@@ -188,7 +205,6 @@ class Builder {
       kinds[k * slots_ + slot] = frames_[k].kinds[i];
       fastest = std::max(fastest, frames_[k].speeds[i]);
       if (!frames_[k].radii.empty()) radii[slot] = frames_[k].radii[i];
-      if (k == first_[slot]) start[slot] = static_cast<float>(frames_[k].time);
     });
     std::vector<std::uint8_t> speed_bytes(n);
     std::transform(speeds.begin(), speeds.end(), speed_bytes.begin(), [&](float v) {

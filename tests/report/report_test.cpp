@@ -68,6 +68,25 @@ every = 4
 contacts = true
 )";
 
+// Particles come through a wall all the time.
+const std::string injecting = R"(
+[environment]
+generator = "box"
+cells = [4, 4, 4]
+[[particles]]
+count = 7
+velocity = [0.1, 0.0, 0.0]
+[[particles]]
+inlet = "xmin"
+rate = 60.0
+velocity = [1.0, 0.1, 0.0]
+[motion]
+dt = 0.05
+steps = 40
+[output]
+every = 4
+)";
+
 class Report : public testing::Test {
  protected:
   void SetUp() override {
@@ -125,6 +144,35 @@ TEST_F(Report, ParticlesAreWhereTheSimulationHasThem) {
       EXPECT_NEAR(speeds[k * count + slot] / 255.0 * fastest, norm(simulation.velocities()[i]), fastest * 0.51 / 255.0);
       EXPECT_FLOAT_EQ(radii[slot], static_cast<float>(simulation.radii()[i]));
     }
+  }
+}
+
+// Frames are four steps apart, and particles come at each: the time in the scene counts from the step of their coming.
+TEST_F(Report, KnowsWhenEachParticleCame) {
+  run(injecting, "a");
+  run(injecting, "b", {}, [](std::uint64_t done, std::uint64_t) { return done < 18; });
+  RunOptions rest;
+  rest.resume = true;
+  run(injecting, "b", rest);
+  Simulation simulation(load_scene_files(parse_scene(injecting, "scene.toml")).scene);
+  std::map<std::uint64_t, double> came;
+  for (const std::uint64_t id : simulation.ids()) came[id] = 0.0;
+  while (simulation.steps() < 40) {
+    const double before = simulation.time();
+    simulation.step();
+    for (const std::uint64_t id : simulation.ids()) came.try_emplace(id, before);
+  }
+  for (const char* name : {"a", "b"}) {
+    const PageReader report = page(name);
+    const auto ids = report.block<std::uint32_t>(report.meta["particles"]["id"]);
+    const auto start = report.block<float>(report.meta["particles"]["start"]);
+    std::size_t between = 0;
+    for (std::size_t slot = 0; slot < ids.size(); ++slot) {
+      EXPECT_FLOAT_EQ(start[slot], static_cast<float>(came.at(ids[slot]))) << name << ", particle " << ids[slot];
+      const double in_frames = came.at(ids[slot]) / report.meta["frames"][1]["time"].get<double>();
+      between += std::abs(in_frames - std::round(in_frames)) > 0.1 ? 1 : 0;
+    }
+    EXPECT_GT(between, 10U);
   }
 }
 

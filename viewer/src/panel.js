@@ -1,4 +1,5 @@
 // The panel beside the stage: colours of particles, walls by patch, the cutting plane.
+import { Vector3 } from 'three';
 import { css, checkbox, choice, element } from './dom.js';
 import { pageColours, scaleGradient, shortNumber } from './colours.js';
 import { wallColour, wallModes } from './walls.js';
@@ -60,15 +61,24 @@ export class Panel {
 
   cutPart() {
     const share = element('input', { type: 'range', min: 0, max: 1000, value: 500, 'aria-label': 'Place of the cut' });
-    const axes = this.stage.dimension === 2 ? ['x', 'y'] : ['x', 'y', 'z'];
-    const axis = choice('Cut', [['', 'none'], ...axes.map((a) => [a, `across ${a}`])], '', () => change());
-    const change = () => {
-      share.disabled = axis.value === '';
-      this.stage.clip(axis.value, Number(share.value) / 1000);
+    const isFlat = this.stage.dimension === 2;
+    const axes = isFlat ? ['x', 'y'] : ['x', 'y', 'z'];
+    const views = isFlat ? [] : [['view', 'across the view']];
+    let direction = null;
+    const change = () => this.stage.clip(direction, Number(share.value) / 1000);
+    // The plane keeps its direction when the scene turns, so that one can look at the cut.
+    const turn = () => {
+      const k = axes.indexOf(axis.value);
+      direction = axis.value === '' ? null : k < 0 ? this.stage.towardsViewer : new Vector3().setComponent(k, 1);
+      share.disabled = direction === null;
+      again.hidden = axis.value !== 'view';
+      change();
     };
+    const axis = choice('Cut', [['', 'none'], ...axes.map((a) => [a, `across ${a}`]), ...views], '', turn);
+    const again = element('button', { type: 'button', hidden: true, onclick: turn }, 'Cut across the present view');
     share.disabled = true;
     share.addEventListener('input', change);
-    return [element('h2', {}, 'Cutting plane'), element('label', {}, 'cut', axis), share];
+    return [element('h2', {}, 'Cutting plane'), element('label', {}, 'cut', axis), share, again];
   }
 
   /** Legends and patches with the colours of the page as they are now. */

@@ -108,18 +108,19 @@ export class Stage {
     this.scene.background = new Color().setRGB(...linear(pageColours().background));
   }
 
-  /** Cuts away what lies beyond a share of the box along an axis; null: nothing. */
-  clip(axis, share) {
-    const k = 'xyz'.indexOf(axis);
-    if (k < 0) {
-      this.renderer.clippingPlanes = [];
-    } else {
-      const normal = [0, 0, 0];
-      normal[k] = -1;
-      this.plane.set(new Vector3(...normal), (share - 0.5) * this.box.size[k] * 1.002);
-      this.renderer.clippingPlanes = [this.plane];
+  /** Cuts away what lies beyond a share of the box along a direction; null: nothing. */
+  clip(direction, share) {
+    if (direction) {
+      const extent = this.box.size.reduce((sum, size, k) => sum + size * Math.abs(direction.getComponent(k)), 0);
+      this.plane.set(direction.clone().negate(), (share - 0.5) * extent * 1.002);
     }
+    this.renderer.clippingPlanes = direction ? [this.plane] : [];
     this.draw();
+  }
+
+  /** The direction to the viewer. */
+  get towardsViewer() {
+    return this.camera.position.clone().sub(this.controls.target).normalize();
   }
 
   /** Draws at the next occasion of the screen, once for all that ask. */

@@ -88,6 +88,32 @@ async function clickNamesParticle({ page }) {
   assert(await page.evaluate(() => document.querySelector('#view .picked').hidden), 'Escape does not close the panel');
 }
 
+// The plane is the one that the viewer looks at; it stays in the scene when that turns, until it is asked for again.
+async function checkCutAcrossTheView(page) {
+  const cut = page.getByRole('combobox', { name: 'Cut', exact: true });
+  const again = page.getByRole('button', { name: 'Cut across the present view' });
+  if (await page.evaluate(() => window.dartcastReport.viewer.stage.dimension) === 2) {
+    assert.equal(await again.count(), 0, 'the plane has one view');
+    return;
+  }
+  const angle = () => page.evaluate(() => {
+    const { stage } = window.dartcastReport.viewer;
+    return -stage.renderer.clippingPlanes[0].normal.dot(stage.towardsViewer);
+  });
+  await cut.selectOption('view');
+  assert(await angle() > 0.999, 'the cut is not across the view');
+  await page.evaluate(() => {
+    const { stage } = window.dartcastReport.viewer;
+    stage.camera.position.applyAxisAngle(stage.camera.up, 1);
+    stage.controls.update();
+  });
+  assert(await angle() < 0.9, 'the cut turns with the viewer');
+  await again.click();
+  assert(await angle() > 0.999, 'the cut does not follow when it is asked to');
+  await cut.selectOption('');
+  await page.getByRole('button', { name: 'Show all' }).click();
+}
+
 async function optionsChangeThePicture({ page }) {
   const picture = () => page.evaluate(() => {
     const { stage } = window.dartcastReport.viewer;
@@ -104,6 +130,7 @@ async function optionsChangeThePicture({ page }) {
   await page.getByRole('combobox', { name: 'Cut', exact: true }).selectOption('x');
   assert(await ink(page) < before, 'the cutting plane removes nothing');
   await page.getByRole('combobox', { name: 'Cut', exact: true }).selectOption('');
+  await checkCutAcrossTheView(page);
   const walls = page.locator('#view .patch select');
   for (let i = 0; i < await walls.count(); ++i) await walls.nth(i).selectOption('shown');
   const shown = await ink(page);
