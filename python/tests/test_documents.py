@@ -1,29 +1,56 @@
-"""The code of docs/python.md runs, block after block, and what it prints is what the page says."""
+"""The code of the documents runs, block after block, and what it prints is what the page says; their scenes are scenes."""
 from __future__ import annotations
 
 import contextlib
 import io
 import pathlib
 import re
+import subprocess
+import sys
 from typing import Any
 
 import pytest
 
+import dartcast
+
 BLOCK = re.compile(r"```python\n(.*?)```(?:\s*```text\n(.*?)```)?", re.DOTALL)
+SCENE = re.compile(r"```toml\n(.*?)```", re.DOTALL)
+PAGES = ["python.md", "start.md", "howto/deformation.md", "howto/response.md", "howto/results.md"]
 
 
-def test_code_of_the_tour_runs(root: pathlib.Path, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    page = (root / "docs" / "python.md").read_text(encoding="utf-8")
+def test_all_pages_with_code_are_here(root: pathlib.Path) -> None:
+    found = [p for p in (root / "docs").rglob("*.md") if BLOCK.search(p.read_text(encoding="utf-8"))]
+    assert sorted(p.relative_to(root / "docs").as_posix() for p in found) == sorted(PAGES)
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_code_of_a_page_runs(root: pathlib.Path, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    page = (root / "docs" / name).read_text(encoding="utf-8")
     monkeypatch.chdir(tmp_path)
-    names: dict[str, Any] = {"__name__": "tour"}
-    blocks = list(BLOCK.finditer(page))
-    assert len(blocks) >= 10
-    for block in blocks:
+    names: dict[str, Any] = {"__name__": "page"}
+    for block in BLOCK.finditer(page):
         code, expected = block.groups()
         line = page[: block.start()].count("\n") + 2
         printed = io.StringIO()
         with contextlib.redirect_stdout(printed):
             # Line numbers of errors are those of the page.
-            exec(compile("\n" * (line - 1) + code, "docs/python.md", "exec"), names)
+            exec(compile("\n" * (line - 1) + code, f"docs/{name}", "exec"), names)
         if expected is not None:
-            assert printed.getvalue().strip() == expected.strip(), f"docs/python.md:{line}"
+            assert printed.getvalue().strip() == expected.strip(), f"docs/{name}:{line}"
+
+
+@pytest.mark.parametrize("name", ["start.md", "howto.md"])
+def test_scenes_of_a_page_are_scenes(root: pathlib.Path, name: str) -> None:
+    scenes = SCENE.findall((root / "docs" / name).read_text(encoding="utf-8"))
+    assert scenes
+    for text in scenes:
+        dartcast.parse_scene(text, f"docs/{name}")
+
+
+def test_figures_of_the_concepts_are_drawn(root: pathlib.Path, tmp_path: pathlib.Path) -> None:
+
+    subprocess.run([sys.executable, str(root / "site" / "figures.py"), str(tmp_path)], check=True)
+    drawn = sorted(p.name for p in tmp_path.glob("*.svg"))
+    assert drawn == sorted(p.name for p in (root / "docs" / "concepts").glob("*.svg"))
+    pages = "".join(p.read_text(encoding="utf-8") for p in (root / "docs" / "concepts").glob("*.md"))
+    assert all(f"({name})" in pages for name in drawn)
