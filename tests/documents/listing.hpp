@@ -6,7 +6,12 @@
 
 #include "dartcast/dartcast.hpp"
 
-#pragma GCC diagnostic ignored "-Wshadow"  // a listing may give a name of its place another meaning
+// A listing may give a name of its place another meaning, and name what only the text after it speaks of.
+#pragma GCC diagnostic ignored "-Wshadow"
+#pragma GCC diagnostic ignored "-Wunused-variable"
+#ifndef __clang__
+#pragma GCC diagnostic ignored "-Wunused-but-set-variable"
+#endif
 
 using namespace dartcast;
 
