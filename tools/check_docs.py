@@ -36,8 +36,9 @@ def verbs_of_app() -> set[str]:
 def check_document(path: pathlib.Path, commands: set[str], verbs: set[str]) -> list[str]:
     text = path.read_text(encoding="utf-8")
     found = []
+    folder = pathlib.Path("docs") if path.parent.name == "site" else path.parent  # the site's own pages are beside those
     for target in LINK.findall(CODE.sub("", text)):
-        if not re.match(r"[a-z]+:", target) and not (path.parent / target).exists():
+        if not re.match(r"[a-z]+:", target) and not (folder / target).exists():
             found.append(f"{path}: the link to {target} leads nowhere")
     for code in CODE.findall(text):
         found += [f"{path}: ./dev {c} does not exist" for c in DEV_COMMAND.findall(code) if c not in commands]

@@ -30,7 +30,8 @@ PROJECT_PAGES = {"README.md": "readme.md", "CONTRIBUTING.md": "contributing.md",
 
 def example_pages() -> dict[pathlib.Path, str]:
     """The sources of the examples, and the heading of each on its page."""
-    found = {path: "examples.md" for path in sorted((ROOT / "examples").glob("*.cpp"))}
+    sources = [*sorted((ROOT / "examples").glob("*.cpp")), *sorted((ROOT / "examples").glob("degenerate/*.cpp"))]
+    found = {path: "examples.md" for path in sources}
     found |= {path: "examples_python.md" for path in sorted((ROOT / "examples" / "python").glob("*.py"))}
     found |= {path: "examples_scenes.md" for path in sorted((ROOT / "scenes").glob("*.toml"))}
     return found
@@ -79,6 +80,12 @@ def copy_documents(out: pathlib.Path, examples: dict[pathlib.Path, str]) -> None
         (out / page).write_text(led_to_pages(text, ROOT / name, pathlib.PurePosixPath(page), examples), encoding="utf-8")
 
 
+def list_decisions(out: pathlib.Path) -> None:
+    names = sorted(p.stem for p in (out / "decisions").glob("[0-9]*.md"))
+    with (out / "decisions" / "README.md").open("a", encoding="utf-8") as page:
+        page.write("\n```{toctree}\n:hidden:\n\n" + "\n".join(names) + "\n```\n")
+
+
 def write_examples(out: pathlib.Path, examples: dict[pathlib.Path, str]) -> None:
     titles = {"examples.md": ("Examples in C++", "cpp"), "examples_python.md": ("Examples in Python", "python"),
               "examples_scenes.md": ("Scenes", "toml")}
@@ -100,23 +107,30 @@ def heading_of(header: pathlib.Path) -> str:
 
 
 def write_cpp(out: pathlib.Path) -> None:
+    """A page for each part of the library, with its headers."""
     folder = out / "cpp"
     folder.mkdir()
-    headers = [name for names in check_includes.PUBLIC.values() for name in names.split()]
     rows = []
-    for name in headers:
-        header = ROOT / "include" / "dartcast" / f"{name}.hpp"
-        title = heading_of(header)
-        rows.append(f"| [dartcast/{name}.hpp]({name}.md) | {title} |")
-        page = [f"# dartcast/{name}.hpp", "", f"{title}.", "", "```{eval-rst}", f".. doxygenfile:: {name}.hpp",
-                "   :project: dartcast", "   :sections: func typedef enum var innerclass public-func public-attrib "
-                "public-static-func public-static-attrib public-type", "```", ""]
-        (folder / f"{name}.md").write_text("\n".join(page), encoding="utf-8")
-    toc = "\n".join(headers)
+    for room, names in check_includes.PUBLIC.items():
+        page = [f"# {room} (C++)", ""]
+        for name in names.split():
+            title = heading_of(ROOT / "include" / "dartcast" / f"{name}.hpp")
+            rows.append(f"| [dartcast/{name}.hpp]({room}.md#{anchor(f'dartcast/{name}.hpp')}) | {title} |")
+            page += [f"## dartcast/{name}.hpp", "", f"{title}.", "", "```{eval-rst}", f".. doxygenfile:: {name}.hpp",
+                     "   :project: dartcast", "```", ""]
+        (folder / f"{room}.md").write_text("\n".join(page), encoding="utf-8")
+    toc = "\n".join(check_includes.PUBLIC)
     (folder / "index.md").write_text(
         "# C++\n\n`#include \"dartcast/dartcast.hpp\"` includes all of these. Link `dartcast::dartcast`; the libraries "
         "`dartcast::core`, `dartcast::simulation` and `dartcast::io` are its parts.\n\n| header | subject |\n|---|---|\n"
         + "\n".join(rows) + f"\n\n```{{toctree}}\n:hidden:\n\n{toc}\n```\n", encoding="utf-8")
+
+
+def without_aliases(stub: str) -> str:
+    """With what the short private names of types stand for in their place: a reader does not know them."""
+    for name, meaning in re.findall(r"^(_\w+) = (.{1,80})$", stub, re.MULTILINE):
+        stub = re.sub(rf"(?<![\w.]){name}\b(?! =)", lambda _, text=meaning: text, stub)
+    return stub
 
 
 class PythonPages:
@@ -131,7 +145,15 @@ class PythonPages:
     def text_of(self, name: str, indent: str) -> list[str]:
         doc = self.docs.get(name, "")
         escaped = re.sub(r"([*_|\\])", r"\\\1", re.sub(r"`([^`]*)`", r"``\1``", doc))
-        return [f"{indent}{line}".rstrip() for line in escaped.splitlines()] + [""]
+        lines = []
+        in_list = False
+        for line in (line.strip() for line in escaped.splitlines()):
+            is_item = line.startswith("- ")
+            if is_item and not in_list:
+                lines.append("")
+            in_list = is_item or (in_list and line != "")
+            lines.append(f"{indent}{'  ' if in_list and not is_item else ''}{line}".rstrip())
+        return [*lines, ""]
 
     def function(self, node: ast.FunctionDef, prefix: str, indent: str) -> list[str]:
         names = [ast.unparse(d) for d in node.decorator_list]
@@ -174,7 +196,7 @@ class PythonPages:
     def write(self, out: pathlib.Path) -> None:
         folder = out / "py"
         folder.mkdir()
-        stub = (ROOT / "python" / "dartcast" / "_core.pyi").read_text(encoding="utf-8")
+        stub = without_aliases((ROOT / "python" / "dartcast" / "_core.pyi").read_text(encoding="utf-8"))
         names = []
         for header, section in SECTION.findall(stub):
             path = ROOT / "include" / "dartcast" / header
@@ -197,6 +219,7 @@ def main() -> int:
     shutil.copytree(ROOT / "site", out, ignore=shutil.ignore_patterns("Doxyfile"))
     examples = example_pages()
     copy_documents(out, examples)
+    list_decisions(out)
     write_examples(out, examples)
     write_cpp(out)
     PythonPages().write(out)

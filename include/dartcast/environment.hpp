@@ -129,10 +129,10 @@ struct UpdateReport {
 /// bodies and catheters keep a reference to it.
 ///
 /// Two rules hold for every set of particles that is not empty:
-/// - Before the next move() it takes part in the last one. It does so by advance(), or, where an edit was made after
-/// that
-///   move, by update_after_edit().
+/// - Before the next move() it takes part in the last one, by advance(). Where an edit was made after that move, it does
+///   so by update_after_edit().
 /// - Before the next edit() it follows the last one, by update_after_edit().
+///
 /// Any order of calls that keeps these rules is allowed. advance(), update_after_edit() and add() refuse a set that has
 /// missed a move or an edit; its positions can be added to a new set.
 class Environment {

@@ -56,8 +56,7 @@ Sign orient3d_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 /// The bound of a filter. A determinant u . (v x w) of differences of stored doubles, evaluated in doubles in this
 /// order, is off by at most determinant_error times m, as long as bound_holds(). Here m is the product of the largest
-/// |x|, |y| and
-/// | among u, v and w. Shewchuk's bound is (7 + 56 e) e of the permanent, with e = 2^-53, and the permanent is at most
+/// |x|, |y| and |z| among u, v and w. Shewchuk's bound is (7 + 56 e) e of the permanent, with e = 2^-53, and the permanent is at most
 /// 6 m. The last factor covers three things:
 ///
 ///  - the rounding of m;
