@@ -1,14 +1,42 @@
+# Installed files, each in the component that a package takes it from (cmake/packages.cmake).
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/dartcast)
-list(TRANSFORM DARTCAST_LIBRARIES PREPEND dartcast_ OUTPUT_VARIABLE targets)
-install(TARGETS dartcast ${targets} EXPORT dartcastTargets FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(EXPORT dartcastTargets NAMESPACE dartcast:: DESTINATION ${package_dir})
-if(TARGET dartcast_command)
-  install(TARGETS dartcast_command)
-endif()
+foreach(library IN LISTS DARTCAST_LIBRARIES)
+  set(component libraries)
+  if(library STREQUAL "core")
+    set(component core)
+  endif()
+  install(TARGETS dartcast_${library} EXPORT dartcastTargets
+          LIBRARY COMPONENT ${component} NAMELINK_COMPONENT dev
+          ARCHIVE COMPONENT dev
+          FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
+endforeach()
+install(TARGETS dartcast EXPORT dartcastTargets)
+install(EXPORT dartcastTargets NAMESPACE dartcast:: DESTINATION ${package_dir} COMPONENT dev)
 configure_package_config_file(cmake/dartcastConfig.cmake.in dartcastConfig.cmake INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(dartcastConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/dartcastConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/dartcastConfigVersion.cmake
-        DESTINATION ${package_dir})
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+        DESTINATION ${package_dir} COMPONENT dev)
+
+# For programs that are built without CMake: pkg-config --cflags --libs dartcast.
+list(TRANSFORM DARTCAST_LIBRARIES PREPEND -ldartcast_ OUTPUT_VARIABLE all_libraries)
+list(JOIN all_libraries " " all_libraries)
+foreach(name IN ITEMS dartcast dartcast-core)
+  set(pkgconfig_name ${name})
+  set(pkgconfig_libraries "${all_libraries}")
+  if(name STREQUAL "dartcast-core")
+    set(pkgconfig_libraries -ldartcast_core)
+  endif()
+  configure_file(cmake/dartcast.pc.in ${name}.pc @ONLY)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
+endforeach()
+
+if(TARGET dartcast_command)
+  install(TARGETS dartcast_command COMPONENT command)
+  if(NOT DARTCAST_PACKAGES)  # Debian wants it compressed
+    install(FILES docs/dartcast.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT command)
+  endif()
+  install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT command)
+endif()
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT command)

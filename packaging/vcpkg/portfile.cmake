@@ -1,0 +1,10 @@
+# A port for vcpkg, as an overlay. Untested: nobody has run vcpkg on it. It is built without VTK.
+set(SOURCE_PATH "${CMAKE_CURRENT_LIST_DIR}/../..")
+vcpkg_cmake_configure(
+  SOURCE_PATH "${SOURCE_PATH}"
+  OPTIONS -DDARTCAST_VTK=OFF -DDARTCAST_BENCH=OFF -DDARTCAST_TESTS=OFF -DDARTCAST_EXAMPLES=OFF)
+vcpkg_cmake_install()
+vcpkg_cmake_config_fixup(CONFIG_PATH lib/cmake/dartcast)
+vcpkg_copy_tools(TOOL_NAMES dartcast AUTO_CLEAN)
+file(REMOVE_RECURSE "${CURRENT_PACKAGES_DIR}/debug/include" "${CURRENT_PACKAGES_DIR}/debug/share")
+vcpkg_install_copyright(FILE_LIST "${SOURCE_PATH}/LICENSE")
