@@ -5,6 +5,8 @@ import pathlib
 import re
 import sys
 
+MOST_COLUMNS = 110
+MOST_IN_CELL = 120
 SKIPPED_FOLDERS = {".git", "build", "__pycache__", ".cache", ".mypy_cache", ".pytest_cache", "node_modules"}
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s#]+)(?:#[^)\s]*)?\)")
 CODE = re.compile(r"```.*?```|`[^`\n]+`", re.DOTALL)
@@ -33,9 +35,21 @@ def verbs_of_app() -> set[str]:
     return {verb for p in sources for verb in re.findall(r'add_subcommand\(\s*"([a-z]+)"', p.read_text(encoding="utf-8"))}
 
 
+def long_lines(path: pathlib.Path, text: str) -> list[str]:
+    """Lines that are too long to read, but for addresses and for what the command prints; and cells of tables."""
+    found = []
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.startswith("|"):
+            found += [f"{path}:{number}: a cell of over {MOST_IN_CELL} characters" for cell in line.split("|")
+                      if len(cell.strip()) > MOST_IN_CELL]
+        elif len(line) > MOST_COLUMNS and "http" not in line and path.name != "command.md":
+            found.append(f"{path}:{number}: a line of over {MOST_COLUMNS} columns")
+    return found
+
+
 def check_document(path: pathlib.Path, commands: set[str], verbs: set[str]) -> list[str]:
     text = path.read_text(encoding="utf-8")
-    found = []
+    found = long_lines(path, text) if path.parts[0] in ("docs", "site") or path.name == "README.md" else []
     folder = pathlib.Path("docs") if path.parent.name == "site" else path.parent  # the site's own pages are beside those
     for target in LINK.findall(CODE.sub("", text)):
         if not re.match(r"[a-z]+:", target) and not (folder / target).exists():
