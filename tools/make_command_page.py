@@ -7,6 +7,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import textwrap
 
 DOCS = pathlib.Path(__file__).resolve().parent.parent / "docs"
 STATUS = ("Each verb ends with 0 where all is well, 1 where something is wrong with its input, 2 where it was called in a "
@@ -25,7 +26,8 @@ def verbs_of(command: str) -> dict[str, tuple[str, str]]:
 
 
 def page_of(verbs: dict[str, tuple[str, str]]) -> str:
-    parts = [f"# The command\n\n`dartcast VERB ...`. {STATUS}\n\n"
+    status = "\n".join(textwrap.wrap(f"`dartcast VERB ...`. {STATUS}", 100))
+    parts = [f"# The command\n\n{status}\n\n"
              "`tools/make_command_page.py` has made this page from `dartcast VERB --help`.\n"]
     for verb, (first, rest) in verbs.items():
         parts.append(f"## {verb}\n\n{first}\n\n```text\n{rest}\n```\n")
