@@ -10,7 +10,7 @@ MOST_IN_CELL = 120
 SKIPPED_FOLDERS = {".git", "build", "__pycache__", ".cache", ".mypy_cache", ".pytest_cache", "node_modules"}
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s#]+)(?:#[^)\s]*)?\)")
 CODE = re.compile(r"```.*?```|`[^`\n]+`", re.DOTALL)
-DEV_COMMAND = re.compile(r"\./dev ([a-z]+)")
+DEV_COMMAND = re.compile(r"\./dev ([a-z][a-z0-9]*)")
 VERB = re.compile(r"(?:^|[\s`/$])(?<!import )dartcast ([a-z]+)\b")
 MACHINE_PATH = re.compile(r"(?<![\w.])/(?:home/\w|root/|work/|Users/\w)")
 
@@ -26,7 +26,7 @@ def own_files() -> list[pathlib.Path]:
 def commands_of_dev() -> set[str]:
     """The commands that ./dev takes: the labels of its last case."""
     cases = pathlib.Path("dev").read_text(encoding="utf-8").rsplit("\ncase ", 1)[1]
-    labels = re.findall(r"^  ([a-z][a-z |-]*)\)", cases, re.MULTILINE)
+    labels = re.findall(r"^  ([a-z][a-z0-9 |-]*)\)", cases, re.MULTILINE)
     return {word.strip() for label in labels for word in label.split("|")}
 
 

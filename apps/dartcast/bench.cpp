@@ -154,7 +154,8 @@ void add_run_options(CLI::App& verb, BenchArguments& a) {
   bench::RunPartsOptions& options = a.run_options;
   CLI::Option* runs = verb.add_flag("--run", a.runs, "the time of the demo by part, and nothing else");
   verb.add_option("SCENE", options.scene, "with --run: a scene in TOML, instead of the demo")->needs(runs);
-  verb.add_option("--against", options.against, "with --run: the command of another build, which runs in turn with this")
+  verb.add_option("--against", options.against,
+                  "with --run: the command of another build, which runs in turn with this")
       ->needs(runs)
       ->check(CLI::ExistingFile);
   verb.add_option("--repeat", options.repeat, "with --run: runs of each command (3)")
