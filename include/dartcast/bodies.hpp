@@ -259,10 +259,10 @@ class Bodies {
   Bodies& operator=(Bodies&&) = delete;
 
   /// Adds a body whose rest shape is these points. Adds nothing where one of them is in no free cell, or its surface meets or
-  /// encloses a wall. Throws
-  /// InvalidArgument where an option is out of range (the message about a stiffness above 1 / dt^2 gives the largest
-  /// dt), there is no point, a mass is not is_mass(), or a cluster is empty, names no point or one twice, or leaves a
-  /// point in none. Throws as Environment::add(); with a surface also as SolidSet::add(), and InvalidArgument where fewer
+  /// encloses a wall.
+  /// Throws InvalidArgument where an option is out of range; the message about a stiffness above 1 / dt^2 gives the
+  /// largest dt. Throws it where there is no point, or a mass is not is_mass(). And where a cluster is empty, names a
+  /// missing point or one twice, or leaves a point in none. Throws as Environment::add(); with a surface also as SolidSet::add(), and InvalidArgument where fewer
   /// than four points or points in a plane carry it.
   AddBodyResult add(std::span<const Vec3> points, const BodyOptions& options);
 

@@ -96,9 +96,9 @@ struct CatheterCheckpoint {
 /// points follow the chain's own path. Then rounds of solving alternate with looks at the straight way of all points and
 /// segments. A solve takes bending, lengths, friction and the walls met so far. The points go when that way is proved
 /// free: so with edges no segment meets a wall at any time. (Without edges, points walk in each round, and slide at walls.) A
-/// substep that leaves a segment off by more than the tolerance, or has no free way, is undone and tried again with half the
-/// length, four times; the rest of the push is refused. The first
-/// spacing beyond the entry is straight; a push is refused, too, where it has no room. Where the vessel's motion leaves
+/// substep that leaves a segment off by more than the tolerance, or has no free way, is undone. It is tried again with half
+/// the length, four times; then the rest of the push is refused. The first spacing beyond the entry is straight; a push is
+/// refused, too, where it has no room. Where the vessel's motion leaves
 /// no such solution, lengths come before bends. Twist reaches the tip at once: the chain is infinitely stiff against
 /// it. Results are the same bits for any number of threads.
 class Catheter {

@@ -98,9 +98,9 @@ class Deformation {
   [[nodiscard]] std::size_t size() const { return size_; }
 
   /// For a mesh of the plane. Throws InvalidArgument, naming the step and the member, unless every point with z = 0
-  /// keeps z = 0 exactly at all times: rotate, swing and twist about [0, 0, 1]; bend and bump with vectors of the
-  /// plane; stretch and pulse with an axis in the plane or across it; fields and frames with z = 0; every centre in the
-  /// plane. Cost: linear where there are fields, frames or pulls. Frames with a reader are checked, too, from now on
+  /// keeps z = 0 exactly at all times. Every centre is in the plane. Rotate, swing and twist are about [0, 0, 1]. Bend
+  /// and bump have vectors of the plane. Stretch and pulse have an axis in the plane or across it. Fields and frames
+  /// have z = 0. Cost: linear where there are fields, frames or pulls. Frames with a reader are checked, too, from now on
   /// when they are needed.
   void check_plane();
 

@@ -160,9 +160,9 @@ class Environment {
   /// The first wall that each ray meets within `max_distance` of its origin; infinite: within the scene. Rays see walls
   /// from their free side. Directions have any length. Every decision is exact for the segment whose end has been
   /// rounded: no ray passes between two faces or through an edge. `passed`: where not null, the cells on the way. Throws
-  /// InvalidArgument, naming the ray, where the numbers differ, an origin is as locate() refuses it, a direction is zero
-  /// or not finite, or in the plane its z is not 0, or the segment's end is out of the exact range; and where the
-  /// distance is negative or not a number. Precondition: as for locate(). Cost: locate() and a step for each ray, in
+  /// InvalidArgument, naming the ray, where its origin is as locate() refuses it, or its direction is zero, not finite,
+  /// or in the plane has a z that is not 0. Throws also where the segment's end is out of the exact range, the distance is
+  /// negative or not a number, or the numbers differ. Precondition: as for locate(). Cost: locate() and a step for each ray, in
   /// parallel; with `passed` a second walk.
   [[nodiscard]] std::vector<RayHit> cast_rays(std::span<const Vec3> origins, std::span<const Vec3> directions,
                                               double max_distance = std::numeric_limits<double>::infinity(),
@@ -231,8 +231,9 @@ class Environment {
   /// Advances every particle towards its target. After a move() the vertices also carry it along (docs/method.md).
   /// Without `respond` a particle stops at its first contact. Results are the same bits for any number of threads and
   /// any order of particles. Throws InvalidArgument, nothing changed, where a target is not finite or outside the exact
-  /// range, the sizes do not match, an option is not positive, the particles are of another environment or missed a
-  /// move or an edit, or a response throws or returns such a displacement. Cost: a few orientation tests per particle,
+  /// range, or the sizes do not match. It does so, too, where an option is not positive, or the particles are of another
+  /// environment or missed a move or an edit. And it throws what a response throws, and where a response returns a
+  /// displacement that leads out of the exact range. Cost: a few orientation tests per particle,
   /// whatever the size of the scene.
   StepReport advance(Particles& particles, std::span<const Vec3> targets, const ContactCallback& respond = {},
                      const StepOptions& options = {});

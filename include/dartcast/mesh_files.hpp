@@ -51,10 +51,11 @@ struct MeshFile {
   MeshReport report;
 };
 
-/// Reads .vtu, .vtk (legacy), .msh, .msh2, .msh4 (Gmsh 1, 2 and 4), .mesh or .meshb (Medit), .node or .ele with the
-/// other beside it (TetGen), by ending and content, or the folder of an OpenFOAM case (formats/openfoam.hpp) or of
-/// SimVascular (formats/vtp_surface.hpp), and checks and repairs it. .vtu and .vtk need VTK (has_vtk()). Nothing in the file makes this throw: a file that cannot be read
-/// has a defect of kind "file" in the report, with line or byte. Cost: a few times the file's size in memory.
+/// Reads a mesh by the file's ending and content, and checks and repairs it: .vtu and .vtk (legacy), which need VTK
+/// (has_vtk()); .msh, .msh2, .msh4 (Gmsh 1, 2 and 4); .mesh and .meshb (Medit); .node or .ele, with the other beside it
+/// (TetGen). Or the folder of an OpenFOAM case (formats/openfoam.hpp) or of SimVascular (formats/vtp_surface.hpp).
+/// Nothing in the file makes this throw: a file that cannot be read has a defect of kind "file" in the report, with line
+/// or byte. Cost: a few times the file's size in memory.
 MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// The same, but throws InvalidMesh, with the file's name and the first defect, where the mesh is refused.

@@ -200,14 +200,14 @@ struct SolidSummary {
 ///  2. Inlets inject particles.
 ///  3. Vertices move.
 ///  4. Velocities change. Without a field, or with drag, dv/dt = g - drag (v - u) is solved exactly for constant g
-///     (gravity and the force's acceleration at the particle) and u (the field's velocity there, or 0), taken at the
-///     start of the step or segment. With a field and no drag v = u, and g has no effect.
+///     and u, taken at the start of the step or segment. Here g is gravity and the force's acceleration at the
+///     particle, and u is the field's velocity there, or 0. With a field and no drag v = u, and g has no effect.
 ///  5. Particles advance by v dt, wall responses included. Those absorbed or escaped leave.
 ///  6. Bodies step, then catheters. Statistics take what happened.
 ///  7. Where it is due, invalid cells are remeshed and crowded cells are subdivided.
-/// With collisions the vertices move after 4 (velocities are those at the places before), and spheres get impulses
-/// before they move and advance: from each other, from bodies, and from walls that reflect or let slide within a
-/// quarter of their radius (these walls go on as in the last step). Other walls respond as they do to points. Results
+/// With collisions the vertices move after 4; velocities are those at the places before. Spheres get impulses before they
+/// move and advance: from each other, from bodies, and from walls within a quarter of their radius that reflect or let
+/// slide. These walls go on as in the last step. Other walls respond as they do to points. Results
 /// are the same bits for any number of threads.
 ///
 /// In the plane every vector given to a simulation must have z = 0.

@@ -63,9 +63,9 @@ class SphereStepper {
   /// sphere's way is within its clearance no walls are searched for. After a move() they are ignored.
   ///
   /// Throws as Environment::advance(), and InvalidArgument where a radius is out of range or their number does not
-  /// match; then nothing is changed. Cost: that of a point; where the clearance does not suffice, 0.1 to 0.3 us for
-  /// each cell that the sphere reaches (three of them at a radius of 0.2 cell sizes), 0.1 to 0.4 us for each wall
-  /// triangle there, and some us for each contact.
+  /// match; then nothing is changed. Cost: that of a point where the clearance suffices. Else 0.1 to 0.3 us for each
+  /// cell that the sphere reaches (three of them at a radius of 0.2 cell sizes), 0.1 to 0.4 us for each wall triangle
+  /// there, and some us for each contact.
   SphereReport advance(Environment& environment, Particles& particles, std::span<const double> radii,
                        std::span<const Vec3> targets, const ContactCallback& respond = {},
                        const StepOptions& options = {}, std::span<const double> clearances = {});
@@ -103,9 +103,9 @@ class SimultaneousStepper {
   ///   touched within share_together count together. The particle then is where it was just before the touch, and its
   ///   new way among the walls as they are then is a straight motion of its own.
   /// - Along walls. A way along a wall ends 2^-20 of the wall's longest side off it.
-  /// - Where the particle is carried along instead, as by Environment::advance(), in the rest of its step: a cell in its
-  ///   reach becomes flat, it starts on a wall or was stopped at one in its last step, or it has had options.max_contacts
-  ///   contacts.
+  /// - Where the particle is carried along instead, as by Environment::advance(), in the rest of its step. This is so
+  ///   where a cell in its reach becomes flat, where it starts on a wall or was stopped at one in its last step, and
+  ///   after options.max_contacts contacts.
   ///
   /// Throws as Environment::advance(). Cost: some 1 us for a particle, and the same again for each
   /// contact's legs.

@@ -82,8 +82,9 @@ struct SectionPlane {
   double radius = 0.0;  ///< of the disc around `point`; 0: the whole plane
 };
 
-/// Throws InvalidArgument, which names the plane, where the name is not as above, the point is not finite or outside
-/// the exact range, the normal is not finite or zero, or the radius is not finite or negative; or two have one name.
+/// Throws InvalidArgument, which names the plane, where its name is not as above, or another plane has it. So do a point
+/// that is not finite or outside the exact range, a normal that is not finite or zero, and a radius that is not finite
+/// or negative.
 void check(std::span<const SectionPlane> planes);
 
 /// A particle that passed a plane.

@@ -28,9 +28,9 @@ struct TrajectoryPoint {
   Cell next;                 ///< at a crossing: the one entered; else invalid
 };
 
-/// The points of a particle's way, in the order of time: the start; the crossings and contacts on the way to each
-/// target, and the target if it was reached; the end of the last trace, where the particle arrived, stopped or was
-/// held.
+/// The points of a particle's way, in the order of time. The start comes first. Then follow, for each target, the
+/// crossings and contacts on the way to it, and the target if it was reached. The last point is the end of the last
+/// trace, where the particle arrived, stopped or was held.
 std::vector<TrajectoryPoint> trajectory_points(std::span<const Trace> traces);
 
 /// "vertex", "edge", "face", "volume".
@@ -40,19 +40,20 @@ std::string_view name_of(TrajectoryMark mark);
 
 // One trajectory as a table: a row for the start, for each crossing, contact and target, and for the end.
 
-/// Columns: step (from 1, one for each target), time (fraction of the step), event (start, crossing, contact, target,
-/// end), kind (vertex, edge, face, volume: of the cell of the map that the particle is in, or passes), x, y, z, cell
-/// and next (indices in the mesh; next: the one entered at a crossing, else empty). Numbers are the shortest that give
+/// Columns: step, time, event, kind, x, y, z, cell and next. A step is a target, from 1 on; the time is a fraction of
+/// it. Events are start, crossing, contact, target and end. The kind is that of the map's cell that the particle is in
+/// or passes: vertex, edge, face or volume. Cells are indices in the mesh; `next` is the one entered at a crossing, else
+/// empty. Numbers are the shortest that give
 /// the same bits back, for any locale. `map`: the one that the traces were made in. Cost: linear.
 std::string trajectory_csv(const CombinatorialMap& map, std::span<const Trace> traces);
 
 // One trajectory in the plane as a drawing, in the manner of figures 5 and 6 of T. Jund, D. Cazier, J.-F. Dufourd, SPM
 // 2009: cut where it passes from cell to cell, with the particle's state at each crossing.
 
-/// SVG: the cells around those passed (these tinted, blocked ones filled), the trajectory in pieces of alternating
-/// colours (one more than there are crossings), a dot and a letter at the start, each crossing, target and the end (f
-/// face, e edge, v vertex: the cell of the map that the particle is in there), a cross at each contact. Their
-/// titles describe them. The size of the text depends on the cells passed, not on the scene. The longer side has 800
+/// SVG: the cells passed, tinted, and those around them, with blocked ones filled. The trajectory changes its colour at
+/// each crossing. A dot and a letter mark the start, each crossing, each target and the end. The letter is the kind of
+/// the map's cell that the particle is in there: f face, e edge, v vertex. A cross marks each contact. Titles describe
+/// all of them. The size of the text depends on the cells passed, not on the scene. The longer side has 800
 /// pixels; positions are rounded to 1/100 of a pixel. The bytes are the same for any locale.
 ///
 /// `complex`: the one that the traces were made in, drawn as it stands. Throws InvalidArgument where there is no trace,
@@ -61,9 +62,9 @@ std::string trajectory_svg(const CellComplex& complex, std::span<const Trace> tr
 
 // One trajectory as a page that turns in the browser, in the plane and in space.
 
-/// HTML in one file, in the style of the report of a run (docs/report.md): the walls of the scene, the cells passed as a
-/// patch of its own, the way as a line with its crossings and contacts, a time line of them, and the table of
-/// trajectory_csv(). Walls are those of the whole scene; beyond 200,000 faces those around the cells passed. If there are
+/// HTML in one file, in the style of the report of a run (docs/report.md). It shows the walls of the scene, the cells
+/// passed as a patch of its own, and the way as a line with its crossings and contacts. Below are a time line and the
+/// table of trajectory_csv(). Walls are those of the whole scene; beyond 200,000 faces those around the cells passed. If there are
 /// more than 2,000 points, the page shows an even choice of them and says so.
 ///
 /// `complex`: the one that the traces were made in, drawn as it stands. Throws InvalidArgument where there is no trace.

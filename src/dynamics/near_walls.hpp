@@ -117,9 +117,9 @@ class NearWalls {
   /// next search or call of this.
   std::span<const NearestOnTriangle> nearest(const Vec3& centre);
 
-  /// The places on walls that are no farther from `centre` than `reach`, as the walls stand now, and nearer than all
-  /// of the wall around them (so that a vertex or an edge of a wall that is nearer elsewhere does not count), each
-  /// once, however many triangles share it. Sorted by distance, equal ones in the order of the search. `displacement`
+  /// The places on walls that are no farther from `centre` than `reach`, as the walls stand now, and nearer than all of
+  /// the wall around them. So a vertex or an edge of a wall that is nearer elsewhere does not count. Each is there once,
+  /// however many triangles share it. Sorted by distance, equal ones in the order of the search. `displacement`
   /// is that of the last move where `moved` is set, else 0. Valid until the next search. Cost: that of the search,
   /// and 0.1 us a triangle.
   std::span<const WallFeature> within(const CellComplex& complex, Cell cell, const Vec3& centre, double reach,

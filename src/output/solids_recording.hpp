@@ -22,11 +22,11 @@ struct SolidsProgress {
   std::uint64_t solid_contacts_bytes = 0;
 };
 
-/// For each body a series of its particles (body_NAME_000010.vtp, body_NAME.pvd) and of the surface that follows them
-/// (surface_NAME_...); for each catheter its points (catheter_NAME_...) and, where the scene wants them, a camera's
-/// places along it (camera_NAME_...); for each solid its vertices and faces (solid_NAME_...). bodies.csv, catheters.csv and
-/// solids.csv: a row per step and body, catheter or solid. solid_contacts.csv: their contacts, where the scene wants
-/// contacts. A thread writes what is added, in that order. Its errors are thrown by what adds next. The thread outlives
+/// For each body there is a series of its particles (body_NAME_000010.vtp, body_NAME.pvd) and of the surface that follows
+/// them (surface_NAME_...). For each catheter there are its points (catheter_NAME_...) and, where the scene wants them, a
+/// camera's places along it (camera_NAME_...). For each solid there are its vertices and faces (solid_NAME_...).
+/// bodies.csv, catheters.csv and solids.csv have a row per step and body, catheter or solid. solid_contacts.csv has their
+/// contacts, where the scene wants contacts. A thread writes what is added, in that order. Its errors are thrown by what adds next. The thread outlives
 /// this.
 class SolidsRecording {
  public:

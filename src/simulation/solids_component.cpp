@@ -1,5 +1,6 @@
-// Rigid tools of a simulation. A step, in order: each tool's wanted pose goes on by its move; the vertices of the wanted
-// poses are the targets of the set of solids; a tool that was stopped takes the pose at the share of its way.
+// Rigid tools of a simulation. A step has three parts, in order. Each tool's wanted pose goes on by its move. The
+// vertices of the wanted poses are the targets of the set of solids. A tool that was stopped takes the pose at the share
+// of its way.
 #include "simulation/solids_component.hpp"
 
 #include <fmt/format.h>
