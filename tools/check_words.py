@@ -10,7 +10,7 @@ import pathlib
 import re
 import sys
 
-DOCUMENTS = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/*.md"]
+DOCUMENTS = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/**/*.md", "site/*.md"]
 SOURCES = ["include", "src", "apps", "bench", "examples", "python", "tests"]
 SUFFIXES = {".cpp", ".hpp", ".inl"}
 
