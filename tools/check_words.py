@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks the English of documents and of comments in C++: banned words and phrases (tools/banned_words.txt), and how
+"""Checks the English of documents, of comments in C++, and of the names of tests: banned words and phrases (tools/banned_words.txt), and how
 sentences start.
 
 Prose is read paragraph by paragraph, so that a phrase is found across the end of a line. Code in documents is left out,
@@ -17,6 +17,7 @@ SUFFIXES = {".cpp", ".hpp", ".inl"}
 COMMENT = re.compile(r'"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'|//[/!]?<?(?P<text>[^\n]*)')
 CODE_BLOCK = re.compile(r"^```.*?^```", re.DOTALL | re.MULTILINE)
 CODE_SPAN = re.compile(r"`[^`\n]+`")
+TEST_NAME = re.compile(r"\bTEST(?:_F|_P)?\(\w+, (\w+)\)")
 # What opens a sentence in the wrong way. A question may start with "What" or "Who".
 OPENING = re.compile(r"(?:(?<=^)|(?<=[.!?:;] )|(?<=\| ))(Of|What|Who|That)\b(?P<rest>[^.!?]*)(?P<end>[.!?]?)")
 REMEDIES = {
@@ -103,6 +104,13 @@ def paragraphs_of_source(path: pathlib.Path) -> list[Paragraph]:
     return found
 
 
+def names_of_tests(path: pathlib.Path) -> list[Paragraph]:
+    """The name of each test as words. A name may start with any of them: it goes on what the suite's name begins."""
+    lines = enumerate(path.read_text(encoding="utf-8").splitlines(), 1)
+    names = [(number, match.group(1)) for number, line in lines for match in TEST_NAME.finditer(line)]
+    return [Paragraph(path, [(number, "... " + re.sub(r"(?<=[a-z0-9])(?=[A-Z])", " ", name).lower())]) for number, name in names]
+
+
 def findings_of(paragraph: Paragraph, bans: list[Ban]) -> list[str]:
     whole = paragraph.text()
     prose = CODE_SPAN.sub(lambda m: "`" + "_" * (len(m.group()) - 2) + "`", whole)
@@ -123,6 +131,7 @@ def main() -> int:
     sources = [p for root in SOURCES for p in sorted(pathlib.Path(root).rglob("*")) if p.suffix in SUFFIXES]
     paragraphs = [p for path in documents for p in paragraphs_of_document(path)]
     paragraphs += [p for path in sources for p in paragraphs_of_source(path)]
+    paragraphs += [p for path in sources if path.parts[0] == "tests" for p in names_of_tests(path)]
     found = [line for paragraph in paragraphs for line in findings_of(paragraph, bans)]
     print("\n".join(found))
     print(f"{len(documents)} documents, {len(sources)} sources, {len(found)} mistakes")

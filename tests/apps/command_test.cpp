@@ -298,7 +298,7 @@ TEST_F(Command, CheckFindsCellsThatNoPointSees) {
   EXPECT_EQ(nlohmann::json::parse(r.out)["defects"][0]["kind"], "not_star_shaped") << r.out;
 }
 
-TEST_F(Command, InfoTellsOfMeshesAndScenes) {
+TEST_F(Command, InfoDescribesMeshesAndScenes) {
   (void)write("good.mesh", tetrahedron());
   Result r = run("info good.mesh --json");
   ASSERT_EQ(r.status, 0) << r.error;
@@ -358,7 +358,7 @@ TEST_F(Command, TraceListsAndDrawsTheCellsPassed) {
   EXPECT_EQ(content(folder / "a.svg").rfind("<svg ", 0), 0U);
 }
 
-TEST_F(Command, TraceTellsWhatItCannotDo) {
+TEST_F(Command, TraceSaysWhatItCannotDo) {
   (void)write("good.mesh", tetrahedron());
   const Result r = run("trace good.mesh --from 0.1,0.1,0.1 --to 0.2,0.1,2e-1");
   EXPECT_EQ(r.out,

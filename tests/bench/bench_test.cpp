@@ -188,7 +188,7 @@ std::unique_ptr<Competitor> make_self_hit_epsilon(const PeerScene&) { return std
 std::unique_ptr<Competitor> make_timid(const PeerScene&) { return std::make_unique<Constant>(Hit{0, 1.0}); }
 std::unique_ptr<Competitor> make_lost(const PeerScene&) { return std::make_unique<Constant>(Hit{Hit::failed, 1.0}); }
 
-TEST(Comparison, TellsErrorsApart) {
+TEST(Comparison, DistinguishesErrors) {
   const std::vector<PeerKind> kinds = {{"blind", make_self_hit_epsilon, true},
                                        {"timid", make_timid, true},
                                        {"lost", make_lost, true},

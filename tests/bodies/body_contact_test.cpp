@@ -7,7 +7,7 @@
 namespace dartcast::body_contact_test {
 
 // The share is the largest one whose potential energy the kinetic energy covers. Every smaller share is covered, too.
-TEST(PotentialEnergy, PayableShareIsAsFarAsTheEnergyReaches) {
+TEST(PotentialEnergy, EnergyLimitedShareIsAsFarAsTheEnergyReaches) {
   Random random(1);
   const auto vector = [&] { return Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)}; };
   int limited = 0;

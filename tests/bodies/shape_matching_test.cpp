@@ -89,7 +89,7 @@ TEST(ShapeMatching, ReproducesRigidMotions) {
   EXPECT_LE(rounded, cases / 500);
 }
 
-TEST(ShapeMatching, ReproducesLinearMapsWhereItIsToldTo) {
+TEST(ShapeMatching, ReproducesLinearMapsWhereItIsAskedTo) {
   Random random(2);
   for (int i = 0; i < scaled(200, 5'000); ++i) {
     const auto points = random_points(30, random);

@@ -218,7 +218,7 @@ TEST(Catheter, FramesAreRightHandedAndDoNotTwist) {
 
 // Where the vessel turns as a whole, the catheter does as it would in one that stands still: its entry, its shape and
 // what presses on walls are carried along.
-TEST(Catheter, RidesAlongWithTheVessel) {
+TEST(Catheter, IsCarriedAlongByTheVessel) {
   Environment environment(test::pipe(20));
   Environment still(test::pipe(20));
   CatheterOptions o = in_pipe(12.0);

@@ -295,7 +295,7 @@ TEST(ComplexEdit, RefusesPlacesThatAreNone) {
 }
 
 // A quadrilateral wall of a warped cell, split along its other diagonal.
-TEST(ComplexEdit, TellsHowFarAWarpedWallMoved) {
+TEST(ComplexEdit, ReportsHowFarAWarpedWallMoved) {
   BoxOptions o;
   o.cells = {1, 1, 1};
   o.blocked_layer = false;

@@ -99,7 +99,7 @@ TEST(FirstFlattening, IsThatOfAllSimplicesOneByOne) {
   EXPECT_GT(none, 5);
 }
 
-TEST(FirstFlattening, OfMotionsThatFlattenNothing) {
+TEST(FirstFlattening, IsNoneForMotionsThatInvertNothing) {
   for (int kind = 0; kind < mesh_kinds; ++kind) {
     const CellComplex complex(mesh_of(kind));
     const auto found = [&](const std::function<Vec3(const Vec3&)>& to) {
@@ -239,7 +239,7 @@ struct Scene {
 };
 
 // As a mechanical system does: stop at the inversion, choose another motion there, and continue.
-TEST(FollowUntil, LeavesAValidSceneCloseToTheFlattening) {
+TEST(FollowUntil, LeavesAValidSceneCloseToTheInversion) {
   int stopped = 0, at_once = 0;
   for (int kind = 0; kind < mesh_kinds; ++kind) {
     Scene scene(mesh_of(kind));
@@ -273,7 +273,7 @@ TEST(FollowUntil, LeavesAValidSceneCloseToTheFlattening) {
 
 // Far from the origin rounding leaves no room at the inversion, and earlier times are taken. In a scene that leaves no
 // room at all, nothing moves.
-TEST(FollowUntil, GoesBackWhereRoundingFlattens) {
+TEST(FollowUntil, GoesBackWhereRoundingInverts) {
   Scene scene(generate_box({.cells = {2, 2, 2}, .origin = {0x1p+40, 0, 0}, .size = {2, 2, 2}}));
   const auto after = mapped(scene.positions, [](const Vec3& p) {
     return Vec3{0x1p+40 - 0.7 * (p.x - 0x1p+40), p.y, p.z};

@@ -71,7 +71,7 @@ class RepairOn : public testing::TestWithParam<test::EditMesh> {};
 class RepairAmong : public testing::TestWithParam<test::EditMesh> {};
 
 // One vertex with cells of one kind around it: whatever happened to it, its place is among them.
-TEST_P(RepairOn, MendsOneVertexGoneAstray) {
+TEST_P(RepairOn, MendsOneVertexOutOfPlace) {
   Random random(3);
   std::size_t repaired = 0;
   for (int i = 0; i < std::max(1, test::scaled(6, 1000)); ++i) {
@@ -224,7 +224,7 @@ TEST(Repair, MovesAVertexBack) {
 }
 
 // Two neighbours that swapped places: no single one can be moved back, nor is the surface around one good.
-TEST(Repair, CutsWhereTwoWentAstray) {
+TEST(Repair, CutsWhereTwoAreOutOfPlace) {
   CellComplex complex(grid(5));
   const test::Dyadic before = volume6(complex);
   displace(complex, {{grid_vertex(5, 2, 2, 2), {1.75, 0.25, 0.0}}, {grid_vertex(5, 3, 2, 2), {-1.75, 0.0, 0.25}}});

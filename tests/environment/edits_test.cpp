@@ -313,7 +313,7 @@ TEST_F(LeftInABlockedCell, MovesToTheNearestFreePlace) {
   test::expect_audited(environment.complex(), particles);
 }
 
-TEST_F(LeftInABlockedCell, StaysAndRidesAlongUntilItsCellIsFree) {
+TEST_F(LeftInABlockedCell, StaysAndIsCarriedAlongUntilItsCellIsFree) {
   block_the_middle();
   const UpdateReport report = environment.update_after_edit(particles, OrphanPolicy::hold);
   ASSERT_EQ(report.orphaned.size(), 1U);

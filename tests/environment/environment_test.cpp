@@ -477,7 +477,7 @@ TEST(EnvironmentHolds, AParticleOnItsWayIntoAnInvalidCellWaitsBeforeIt) {
   EXPECT_EQ(test::check_states(environment, particles), "");
 }
 
-TEST(EnvironmentHolds, ParticlesOfAnInvertedCellRideAlong) {
+TEST(EnvironmentHolds, ParticlesOfAnInvertedCellAreCarriedAlong) {
   for (int which = 0; which < 5; ++which) {
     const MeshData mesh = box(3, which);
     Environment environment(mesh);

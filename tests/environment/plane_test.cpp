@@ -353,7 +353,7 @@ TEST(Plane, WhatNeedsSpaceIsRefused) {
   EXPECT_TRUE(check_validity(environment.complex(), {}).valid());
 }
 
-TEST(Plane, SaysWhenATriangleIsFlattened) {
+TEST(Plane, SaysWhenATriangleInverts) {
   MeshData mesh;
   mesh.points = {{0, 0, 0}, {4, 0, 0}, {1, 2, 0}};
   mesh.add_cell(CellType::triangle, std::vector<std::uint32_t>{0, 1, 2});

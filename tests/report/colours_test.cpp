@@ -86,7 +86,7 @@ TEST(Colours, StandOutFromThePage) {
   }
 }
 
-TEST(Colours, AreToldApartByColourBlindPeople) {
+TEST(Colours, AreDistinctToColourBlindPeople) {
   constexpr double clearly = 20.0;  // a distance of 2 can just be seen
   for (const int scheme : {0, 1}) {
     const std::vector<Colour> all = categories(scheme);

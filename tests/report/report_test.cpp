@@ -291,7 +291,7 @@ TEST_F(Report, ARunThatWasCutOffGivesTheSameReport) {
   }
 }
 
-TEST_F(Report, HitsAreTheSameWhoeverCountsThem) {
+TEST_F(Report, HitsAreTheSameByEitherCount) {
   run(busy, "counted");
   run(without(busy, "[statistics]\nhits = true\n"), "own");
   EXPECT_EQ(page("counted").meta["hits_max"], page("own").meta["hits_max"]);

@@ -227,7 +227,7 @@ TEST(RespondWith, RestitutionAndSlideLoseTheNormalPart) {
   EXPECT_EQ(s.velocities[1], (Vec3{1, 0, 0.25}));
 }
 
-TEST(RespondWith, FatesPerPatch) {
+TEST(RespondWith, StatusPerPatch) {
   Scene s;
   s.responses.set(s.environment.map().patch("xmax"), {WallResponseKind::absorb});
   s.responses.set(s.environment.map().patch("xmin"), {WallResponseKind::escape});

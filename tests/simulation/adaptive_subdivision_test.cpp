@@ -110,7 +110,7 @@ TEST(AdaptiveSubdivision, SubdividesAndMergesAgain) {
 }
 
 // A report names what was not done: cells too small, and more of them than one call edits.
-TEST(AdaptiveSubdivision, TellsWhatItLeaves) {
+TEST(AdaptiveSubdivision, ReportsWhatItLeaves) {
   Environment environment(test::cubes(4), Threads{1});
   Simulation simulation(environment, SimulationOptions{});
   simulation.add(cluster(400, {1.1, 1.1, 1.1}, {2.9, 1.9, 1.9}), {});

@@ -156,7 +156,7 @@ std::unique_ptr<Simulation> plug_flow(Environment& environment, const Statistics
   return simulation;
 }
 
-TEST(Flux, OfAPlugFlowIsTheInletsRateAndTheAgeIsTheWayByTheSpeed) {
+TEST(Flux, APlugFlowHasTheInletsRateAndAgesByWayOverSpeed) {
   Environment environment(channel());
   StatisticsOptions statistics;
   statistics.residence = true;

@@ -175,7 +175,7 @@ TEST(SurfaceEdits, ATriangleWithoutAreaIsRefusedAndNothingChanges) {
   EXPECT_TRUE(std::ranges::equal(surface.positions(), positions));
 }
 
-TEST(SurfaceEdits, PlacesOfARemovedFaceAreTold) {
+TEST(SurfaceEdits, PlacesOfARemovedFaceAreReported) {
   Surface surface(test::sphere(1));
   Random random(2);
   std::vector<SurfacePlace> places = random_places(surface, 200, random);

@@ -43,7 +43,7 @@ void shuffle(Loops& loops, Random& random) {
     std::rotate(loop.begin(), loop.begin() + random.below(static_cast<std::uint32_t>(loop.size())), loop.end());
 }
 
-TEST(Draft, StandardTypesAreKnownHoweverTheyAreTold) {
+TEST(Draft, StandardTypesAreKnownHoweverTheyAreGiven) {
   Random random(3);
   for (const CellType type : {CellType::tetrahedron, CellType::hexahedron, CellType::prism, CellType::pyramid}) {
     for (int i = 0; i < 500; ++i) {

@@ -56,7 +56,7 @@ TEST(Oracle, SeesTheWallThatIsPassed) {
   EXPECT_EQ(open.exit_time, 0.75);
 }
 
-TEST(Oracle, TellsEdgesAndCornersFromFaces) {
+TEST(Oracle, DistinguishesEdgesAndCornersFromFaces) {
   const Oracle oracle(cubes(false));
   const auto dimension = [&](const Vec3& q) { return oracle.trace({1.0, 1.0, 1.0}, q).touches.at(0).dimension; };
   EXPECT_EQ(dimension({3.0, 3.0, 3.0}), 0);
@@ -65,7 +65,7 @@ TEST(Oracle, TellsEdgesAndCornersFromFaces) {
   EXPECT_EQ(oracle.trace({1.0, 1.0, 1.0}, {3.0, 3.0, 3.0}).touches.size(), oracle.walls_at({2.0, 2.0, 2.0}).size());
 }
 
-TEST(Oracle, TellsAGrazeAndASlideFromAPassage) {
+TEST(Oracle, DistinguishesAGrazeAndASlideFromAPassage) {
   const Oracle oracle(cubes(false));
   const Trace slide = oracle.trace({0.5, 0.25, 0.0}, {1.5, 1.75, 0.0});
   EXPECT_FALSE(slide.leaves);

@@ -149,7 +149,7 @@ TEST(StarSearch, GoesOnWhereAVertexHasMoreCellsThanFitOnTheStack) {
   EXPECT_EQ(compare(map, with_walls, without), "");
 }
 
-TEST(Stars, TellWhereAPointIsHeldTwice) {
+TEST(Stars, SayWhereAPointIsHeldTwice) {
   const auto facet = [](std::uint16_t simplex, std::uint16_t place) { return Across{simplex, place}; };
   const auto face = [](std::uint16_t f) { return Across{static_cast<std::uint16_t>(Across::outer_bit | f), 0}; };
   // A chain of three; the first and the last both have point 0, and no facet between them.
