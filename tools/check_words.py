@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Checks the English of documents, of comments in C++, and of the names of tests: banned words and phrases (tools/banned_words.txt), and how
-sentences start.
+"""Checks the English of documents, of comments in C++ and of names of tests: banned words and phrases
+(tools/banned_words.txt), and how sentences start.
 
 Prose is read paragraph by paragraph, so that a phrase is found across the end of a line. Code in documents is left out,
 but for names that are no longer in use.
