@@ -14,6 +14,7 @@ import matplotlib
 matplotlib.use("svg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # noqa: E402
 
 import dartcast as dc  # noqa: E402
 
@@ -93,8 +94,6 @@ def draw_simplices(figure: Any) -> None:
         corners = places[list(simplex["vertex"])]
         corners = corners + 0.45 * (corners.mean(axis=0) - places.mean(axis=0))
         faces = [corners[[i for i in range(4) if i != j]] for j in range(4)]
-        from mpl_toolkits.mplot3d.art3d import Poly3DCollection
-
         right.add_collection3d(Poly3DCollection(faces, facecolor=plt.cm.viridis(k / 6), edgecolor=INK, alpha=0.55, linewidth=0.7))
     right.set_title(f"its {len(shape.simplices)} tetrahedra, pulled apart", fontsize=9)
     for axis in (left, right):
