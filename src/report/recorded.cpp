@@ -13,8 +13,8 @@
 #include <sstream>
 #include <utility>
 
+#include "base/bytes.hpp"
 #include "dartcast/error.hpp"
-#include "report/bytes.hpp"
 
 namespace dartcast {
 
