@@ -3,6 +3,7 @@
 #include <numbers>
 #include <vector>
 
+#include "base/exact_sum.hpp"
 #include "base/parallel.hpp"
 #include "simulation/particle_system.hpp"
 
@@ -10,7 +11,12 @@ namespace dartcast {
 
 namespace {
 
-constexpr std::size_t energy_grain = 4096;  // sums of so many are added up in order: the same bits for any threads
+constexpr std::size_t energy_grain = 4096;
+
+struct ExactEnergy {
+  ExactSum kinetic;
+  ExactSum potential;
+};
 
 }  // namespace
 
@@ -23,22 +29,23 @@ double ParticleSystem::mass(std::size_t i) const {
   return options_.collisions->density * (plane ? std::numbers::pi * r * r : 4.0 / 3.0 * std::numbers::pi * r * r * r);
 }
 
+// Sums are exact: they do not depend on how particles are shared among threads.
 SimulationEnergy ParticleSystem::energy() const {
-  std::vector<SimulationEnergy> parts(chunk_count(particles_.size(), energy_grain));
+  std::vector<ExactEnergy> parts(chunk_count(particles_.size(), energy_grain));
   parallel_for(particles_.size(), energy_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
-    SimulationEnergy& part = parts[begin / energy_grain];
+    ExactEnergy& part = parts[begin / energy_grain];
     for (std::size_t i = begin; i < end; ++i) {
       const double m = options_.collisions ? mass(i) : 1.0;
-      part.kinetic += 0.5 * m * dot(velocities_[i], velocities_[i]);
-      part.potential -= m * dot(options_.gravity, particles_[i].position);
+      part.kinetic.add(0.5 * m * dot(velocities_[i], velocities_[i]));
+      part.potential.add(-(m * dot(options_.gravity, particles_[i].position)));
     }
   });
-  SimulationEnergy all;
-  for (const SimulationEnergy& part : parts) {
+  ExactEnergy all;
+  for (const ExactEnergy& part : parts) {
     all.kinetic += part.kinetic;
     all.potential += part.potential;
   }
-  return all;
+  return {all.kinetic.value(), all.potential.value()};
 }
 
 }  // namespace dartcast
