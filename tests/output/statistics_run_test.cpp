@@ -14,97 +14,14 @@
 #include "dartcast/scene_file.hpp"
 #include "formats/file_text.hpp"
 #include "formats/file_write.hpp"
+#include "support/run_scenes.hpp"
 #include "support/sample_mesh.hpp"
 
 namespace dartcast::statistics_run_test {
 
 namespace fs = std::filesystem;
-
-// A plug flow of 2 m/s: 100 particles per second, and one that stands still.
-const std::string plug_flow = R"(
-[environment]
-generator = "box"
-cells = [8, 2, 2]
-[[particles]]
-inlet = "xmin"
-rate = 100.0
-velocity = [2.0, 0.0, 0.0]
-[motion]
-dt = 0.01
-steps = 655
-[contact.patch.xmax]
-response = "escape"
-[statistics]
-hits = true
-residence = true
-crossings = true
-pathlines = { every = 100, ids = [5, 6] }
-[[statistics.plane]]
-name = "middle"
-point = [4.0, 0.0, 0.0]
-normal = [1.0, 0.0, 0.0]
-[[statistics.plane]]
-name = "axis"
-point = [2.0, 1.0, 1.0]
-normal = [-1.0, 0.0, 0.0]
-radius = 0.5
-[output]
-every = 100
-)";
-
-// Particles that are injected, absorbed and cut free in a mesh that deforms and is edited.
-const std::string surgery = R"(
-[environment]
-generator = "box"
-cells = [8, 5, 5]
-blocked_layer = true
-[[deformation]]
-kind = "twist"
-amplitude = 0.3
-axis = [1.0, 0.0, 0.0]
-centre = [4.0, 2.5, 2.5]
-length = 8.0
-period = 0.7
-[[particles]]
-count = 300
-velocity = [3.0, 0.5, -0.5]
-[motion]
-dt = 0.02
-steps = 47
-substeps = 2
-gravity = [0.0, 0.0, -5.0]
-[[event]]
-at = 0.3
-kind = "cut"
-surface = "disc"
-point = [4.0, 2.5, 0.5]
-normal = [1.0, 0.0, 0.0]
-radius = 1.5
-width = 0.5
-[[event]]
-at = 0.6
-kind = "carve"
-tool = "box"
-low = [5.0, -1.0, -1.0]
-high = [6.0, 6.0, 6.0]
-what = "remove"
-stranded = "absorb"
-[crowding]
-every = 5
-most = 15
-least = 6
-[statistics]
-hits = true
-residence = true
-crossings = true
-pathlines = { every = 10 }
-[[statistics.plane]]
-name = "middle"
-point = [4.0, 2.5, 2.5]
-normal = [1.0, 0.3, 0.0]
-[output]
-every = 10
-)";
+using test::plug_flow_text;
+using test::statistics_text;
 
 struct CutOff : std::exception {};
 
@@ -166,7 +83,7 @@ class StatisticsRun : public testing::Test {
 
 // 4 m at 2 m/s take 2 s, less the way that an inlet saves: at most 1/64 m.
 TEST_F(StatisticsRun, APlugFlowHasTheFluxOfItsInlet) {
-  const Summary summary = run(plug_flow, one);
+  const Summary summary = run(plug_flow_text, one);
   const auto rows = rows_of(one / "planes.csv");
   ASSERT_EQ(rows.size(), 1U + 7 * 2);
   EXPECT_EQ(rows[0], (std::vector<std::string>{"step", "time", "name", "forward", "backward", "flux", "mean_age"}));
@@ -207,29 +124,29 @@ TEST_F(StatisticsRun, APlugFlowHasTheFluxOfItsInlet) {
 }
 
 TEST_F(StatisticsRun, TheFilesAreTheSameForAnyThreads) {
-  run(surgery, one, 1);
-  run(surgery, two, 3);
+  run(statistics_text, one, 1);
+  run(statistics_text, two, 3);
   expect_same_files();
 }
 
 TEST_F(StatisticsRun, ARunCutOffAnywhereEndsAsIfItWereNot) {
-  run(surgery, one);
+  run(statistics_text, one);
   const nlohmann::json whole = statistics_of(one);
   EXPECT_GT(whole.at("hits").at("ended"), 0);
   EXPECT_GT(whole.at("residence_time").at("absorbed_by_edits").at("count"), 0);
   EXPECT_GT(whole.at("planes").at(0).at("backward"), 0);
   for (const std::uint64_t cut : {4U, 17U, 31U, 46U}) {
-    EXPECT_THROW(run(surgery, two, 1, false, {}, cut), CutOff);
+    EXPECT_THROW(run(statistics_text, two, 1, false, {}, cut), CutOff);
     // Rows behind those that the checkpoint counts on.
     for (const char* name : {"planes.csv", "crossings.csv", "pathlines.bin"}) append_bytes(two / name, "more\n");
-    run(surgery, two, 2, true);
+    run(statistics_text, two, 2, true);
     expect_same_files();
     EXPECT_EQ(statistics_of(two), whole);
   }
 }
 
 TEST_F(StatisticsRun, ResidenceTimesOfBothEndsGoOn) {
-  std::string text = plug_flow;
+  std::string text = plug_flow_text;
   text.replace(text.find("2.0, 0.0, 0.0]"), 8, "2.0, 0.3");
   text += "[contact.patch.ymax]\nresponse = \"absorb\"\n";
   run(text, one);
@@ -244,20 +161,20 @@ TEST_F(StatisticsRun, ResidenceTimesOfBothEndsGoOn) {
 
 // The rows of a last, shorter interval and the pathlines are taken back.
 TEST_F(StatisticsRun, AFinishedRunGoesOnToMoreSteps) {
-  run(surgery, one);
-  run(surgery, two, 1, false, 25);
+  run(statistics_text, one);
+  run(statistics_text, two, 1, false, 25);
   EXPECT_EQ(rows_of(two / "planes.csv").size(), 1U + 3);
-  run(surgery, two, 1, true, 47);
+  run(statistics_text, two, 1, true, 47);
   expect_same_files();
   EXPECT_EQ(statistics_of(two), statistics_of(one));
-  run(surgery, two, 1, true, 47);  // nothing left to do
+  run(statistics_text, two, 1, true, 47);  // nothing left to do
   expect_same_files();
 }
 
 TEST_F(StatisticsRun, WithoutTheTableNothingIsWritten) {
-  const std::string text = plug_flow.substr(0, plug_flow.find("[statistics]")) + "[output]\nevery = 100\n";
-  run(plug_flow, one);
-  const Summary with = run(plug_flow, two);
+  const std::string text = plug_flow_text.substr(0, plug_flow_text.find("[statistics]")) + "[output]\nevery = 100\n";
+  run(plug_flow_text, one);
+  const Summary with = run(plug_flow_text, two);
   const Summary without = run(text, two);  // removes the earlier run's files
   EXPECT_EQ(with.state_hash, without.state_hash);
   for (const auto& [name, content] : files(two)) {
