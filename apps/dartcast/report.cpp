@@ -17,6 +17,7 @@
 #include "commands.hpp"
 #include "dartcast/error.hpp"
 #include "limits.hpp"
+#include "terminal.hpp"
 
 namespace dartcast::app {
 
@@ -52,11 +53,6 @@ int report(const ReportArguments& a) {
   fmt::print("{}: {:.1f} MB, {} particles, {} frames\n", summary.file.string(),
              static_cast<double>(summary.bytes) / 1e6, summary.particles, summary.frames);
   return done;
-}
-
-bool is_set(const char* variable) {
-  const char* value = std::getenv(variable);
-  return value != nullptr && *value != '\0';
 }
 
 // Whether the desktop's program for opening files took it. No shell sees the path.

@@ -14,11 +14,6 @@ namespace dartcast::app {
 
 namespace {
 
-bool is_set(const char* variable) {
-  const char* value = std::getenv(variable);
-  return value != nullptr && *value != '\0';
-}
-
 std::size_t width_of(std::FILE* file) {
   winsize size{};
   const bool known = ioctl(fileno(file), TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
@@ -34,6 +29,11 @@ std::string duration(double seconds) {
 }
 
 }  // namespace
+
+bool is_set(const char* variable) {
+  const char* value = std::getenv(variable);
+  return value != nullptr && *value != '\0';
+}
 
 bool is_terminal(std::FILE* file) { return isatty(fileno(file)) != 0; }
 

@@ -10,6 +10,9 @@ namespace dartcast::app {
 
 bool is_terminal(std::FILE* file);
 
+/// Whether there is an environment variable of this name, and it is not empty.
+bool is_set(const char* variable);
+
 /// Whether to print colours: on a terminal that has them, unless the environment variable NO_COLOR is set and not empty
 /// (no-color.org).
 bool has_colours(std::FILE* file);
