@@ -25,6 +25,7 @@
 #include "dartcast/mesh_selection.hpp"
 #include "dartcast/particle_state.hpp"
 #include "dartcast/predicates.hpp"
+#include "dartcast/ranks.hpp"
 #include "dartcast/remeshing.hpp"
 #include "dartcast/report.hpp"
 #include "dartcast/response.hpp"

@@ -6,7 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "dartcast/error.hpp"
+
 namespace dartcast {
+
+/// Another rank has failed, and says why.
+class RankFailed : public Error {
+ public:
+  using Error::Error;
+};
 
 /// Processes of equal rights but for the first, which writes what all have done. They are numbered from 0, their ranks.
 ///
@@ -31,8 +39,9 @@ class Ranks {
   virtual std::vector<std::string> exchange(std::vector<std::string> bytes) = 0;
   /// Each value becomes the sum of those of all ranks, modulo 2^64.
   virtual void sum(std::span<std::uint64_t> values) = 0;
-  /// Says to the others that this rank has failed, and why. No other function is called after it.
-  virtual void fail(const std::string& why) noexcept = 0;
+  /// Says to the others that this rank has failed, and why. Returns whether it is the lowest of those that have failed
+  /// now: it alone should print why. No other function is called after it.
+  virtual bool fail(const std::string& why) noexcept = 0;
 };
 
 }  // namespace dartcast

@@ -11,6 +11,7 @@
 #include "dartcast/audit.hpp"
 #include "dartcast/events.hpp"
 #include "dartcast/mesh_check.hpp"
+#include "dartcast/ranks.hpp"
 #include "dartcast/report.hpp"
 #include "dartcast/scene.hpp"
 #include "dartcast/simulation.hpp"
@@ -38,6 +39,7 @@ struct StatisticsSummary {
 struct Summary {
   std::string scene;
   unsigned threads = 1;
+  unsigned ranks = 1;  ///< processes that shared the particles
   std::uint64_t steps = 0;
   bool cancelled = false;  ///< the progress callback ended it before its last step
   bool deforms = false;
@@ -97,14 +99,19 @@ struct RunOptions {
   /// run that was never cut off.
   bool resume = false;
   std::uint64_t max_memory = 0;  ///< as in ReadOptions, for each file that is read
+  /// The processes that share the particles (Simulation): all call run_scene() with the same scene and options, and share
+  /// the folder. None: one process.
+  Ranks* ranks = nullptr;
 };
 
 /// Called after each step with the number of steps done and of all. Returns whether to go on. Where it returns false
-/// the run is cancelled: the output folder is complete up to this step, and `resume` can go on from there.
+/// the run is cancelled: the output folder is complete up to this step, and `resume` can go on from there. Where ranks
+/// share the run, each calls its own, and one that returns false cancels the run on all.
 using Progress = std::function<bool(std::uint64_t done, std::uint64_t all)>;
 
 /// Runs a scene, and reads the files that it names. Throws Error and its kinds where the scene, its mesh or its
-/// positions cannot be used, or output cannot be written.
+/// positions cannot be used, or output cannot be written; and RankFailed where another rank has failed. Where ranks share
+/// the run, the first returns the summary of all.
 Summary run_scene(const Scene& scene, const RunOptions& options, const Progress& progress = {});
 
 // Results for other programs.

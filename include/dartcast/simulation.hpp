@@ -20,6 +20,7 @@
 #include "dartcast/deformation.hpp"
 #include "dartcast/dynamics.hpp"
 #include "dartcast/environment.hpp"
+#include "dartcast/ranks.hpp"
 #include "dartcast/remeshing.hpp"
 #include "dartcast/response.hpp"
 #include "dartcast/solids.hpp"
@@ -91,6 +92,8 @@ struct SimulationOptions {
   /// Names of numbers that each particle carries for its user (Simulation::user_data()). Output writes an array of each
   /// name. A name is not empty, not used twice, and none that output uses itself (id, radius, velocity, ...).
   std::vector<std::string> user_data = {};
+  /// The processes that share the particles, by their ids (Simulation); none: this one has all. They outlive it.
+  Ranks* ranks = nullptr;
 };
 
 /// A particle that left at a wall.
@@ -101,10 +104,11 @@ struct LeftParticle {
   std::uint32_t contact = 0;  ///< its last contact: an index into those of the step
 };
 
-/// The results of one step.
+/// The results of one step. Where ranks share the particles, the first rank has those of all, the others their own.
 struct SimulationStep {
-  double duration = 0.0;                   ///< s
-  StepReport report;                       ///< of the particles; it names them by their index during the step
+  double duration = 0.0;  ///< s
+  /// Of the particles; it names them by their index during the step, and those of another rank by none (0xffffffff).
+  StepReport report;
   std::vector<std::uint64_t> contact_ids;  ///< the id of each contact's particle
   /// The source of the cell at each contact's first wall. Edits at the end of the step may have replaced the cell.
   std::vector<std::uint32_t> contact_sources;
@@ -119,7 +123,8 @@ struct SimulationStep {
   [[nodiscard]] std::span<const Contact> contacts() const { return report.contacts.contacts; }
 };
 
-/// Sums over all steps so far.
+/// Sums over all steps so far. Where ranks share the particles, each has its own; but `start` and `injected` are those of
+/// all.
 struct SimulationTotals {
   std::uint64_t start = 0;  ///< particles added by add() and add_random()
   std::uint64_t injected = 0;
@@ -147,6 +152,10 @@ class SimulationCheckpoint {
  private:
   std::shared_ptr<const SimulationState> state_;
 };
+
+/// One checkpoint of those that the ranks of a simulation have saved after the same step. Throws InvalidArgument where
+/// there is none, or they are of different steps.
+SimulationCheckpoint joined(std::span<const SimulationCheckpoint> parts);
 
 /// The energy of all particles. Without collisions particles have no mass: each counts as 1 kg. With collisions a
 /// sphere counts by its mass. A point has no mass, and does not count.
@@ -211,6 +220,10 @@ struct SolidSummary {
 /// are the same bits for any number of threads.
 ///
 /// In the plane every vector given to a simulation must have z = 0.
+///
+/// Ranks (SimulationOptions::ranks) share the particles: each makes the same simulation with the same calls, and has the
+/// particles of some ids. Environment, edits, bodies, catheters and solids are repeated on each. Every call then waits for
+/// the other ranks. Results are the same bits for any number of ranks. Spheres that collide are refused.
 class Simulation {
  public:
   using AfterEdit = std::function<void(const Environment&)>;
@@ -221,10 +234,11 @@ class Simulation {
   /// Makes the environment, and all that the scene has in it. The scene is plain data: files that it names have been
   /// read (load_scene_files() in dartcast/scene_file.hpp). Throws InvalidArgument where one has not been; InvalidMesh;
   /// Error that names the particles, body, catheter or event that cannot be used.
-  explicit Simulation(const Scene& scene, Threads threads = {});
+  explicit Simulation(const Scene& scene, Threads threads = {}, Ranks* ranks = nullptr);
   /// The same, but particles, bodies and catheters go on from a checkpoint of such a simulation. Throws as restore().
   /// `after_edit`: as set_after_edit(), for the edits that are made again, too.
-  Simulation(const Scene& scene, const SimulationCheckpoint& saved, Threads threads = {}, AfterEdit after_edit = {});
+  Simulation(const Scene& scene, const SimulationCheckpoint& saved, Threads threads = {}, AfterEdit after_edit = {},
+             Ranks* ranks = nullptr);
   Simulation(const Simulation&) = delete;  // nor moved: parts keep references to it
   Simulation& operator=(const Simulation&) = delete;
   ~Simulation();
@@ -296,12 +310,14 @@ class Simulation {
   /// one per position of the environment. Throws as Deformation::add_pull(), and in the plane where one leaves it.
   void pull(std::span<const Vec3> displacement, double duration);
 
+  /// Where ranks share the particles, each has a part: its own particles. joined() makes them one.
   [[nodiscard]] SimulationCheckpoint checkpoint() const;
   /// Goes on from a checkpoint of a simulation made in the same way: every later step is then the same to the last bit.
   /// Repeats those edits by events that this simulation has not made yet. The caller makes other edits before
   /// (go_to()). Replaces all particles; vertices move to the checkpoint's time. Throws InvalidArgument where a state
   /// does not hold in this environment, and where edits must be repeated but there are particles. The particles are
-  /// then unchanged; edits that it has repeated remain.
+  /// then unchanged; edits that it has repeated remain. Each rank takes its own particles out of a checkpoint, which
+  /// any number of ranks has saved.
   void restore(const SimulationCheckpoint& saved);
   /// Moves the vertices to their positions after so many steps, to repeat edits there before restore(). Throws
   /// InvalidArgument where there are particles.
@@ -340,6 +356,9 @@ class Simulation {
   [[nodiscard]] const SolidStep& solids_step() const;  ///< the last one
 
   [[nodiscard]] const SimulationTotals& totals() const;
+  // These are of all ranks that share the particles. So they are collective, as those of Ranks.
+  [[nodiscard]] SimulationTotals totals_of_all() const;
+  [[nodiscard]] std::uint64_t alive() const;  ///< the number of particles in the scene
   [[nodiscard]] const StatisticsOptions& statistics_options() const;
   [[nodiscard]] const Statistics& statistics() const;  ///< empty where none are kept
   [[nodiscard]] double seconds_solids() const;         ///< steps of bodies, catheters and solids so far
@@ -347,7 +366,8 @@ class Simulation {
   [[nodiscard]] std::vector<BodySummary> body_summaries() const;  ///< by id, those that left included
   [[nodiscard]] std::vector<CatheterSummary> catheter_summaries() const;
   [[nodiscard]] std::vector<SolidSummary> solid_summaries() const;
-  /// At the particles' places and velocities now. The same bits for any number of threads. Cost: linear, parallel.
+  /// At the particles' places and velocities now. The same bits for any number of threads and ranks. Cost: linear,
+  /// parallel.
   [[nodiscard]] SimulationEnergy energy() const;
   /// Checks all particles, those of bodies and catheters included.
   [[nodiscard]] Audit audit() const;
@@ -358,7 +378,7 @@ class Simulation {
   [[nodiscard]] const Parts& parts() const { return *parts_; }
 
  private:
-  void make(const Scene& scene, Threads threads);
+  void make(const Scene& scene, Threads threads, Ranks* ranks);
 
   std::unique_ptr<Parts> parts_;
 };

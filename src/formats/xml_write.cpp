@@ -8,6 +8,8 @@
 #include <iterator>
 #include <string>
 
+#include "formats/file_write.hpp"
+
 namespace dartcast {
 
 namespace {
@@ -20,6 +22,8 @@ std::string_view compressor(Compression compression) {
   }
   return "";
 }
+
+constexpr std::string_view byte_order = std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
 
 std::string escaped(std::string_view text) {
   std::string out;
@@ -44,7 +48,7 @@ class XmlFile {
  public:
   XmlFile(const XmlDataSet& data, Compression compression) : compression_(compression) {
     add("<?xml version=\"1.0\"?>\n<VTKFile type=\"{}\" version=\"1.0\" byte_order=\"{}\" header_type=\"UInt64\"{}>\n",
-        data.kind, std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian", compressor(compression));
+        data.kind, byte_order, compressor(compression));
     add("<{}>\n", data.kind);
     if (!data.field.empty()) add_section("FieldData", data.field);
     add("<Piece");
@@ -112,6 +116,30 @@ std::size_t XmlDataSet::bytes() const {
 void write_xml(const std::filesystem::path& path, const XmlDataSet& data, Compression compression, WritePieces write) {
   const XmlFile file(data, compression);
   write(path, file.pieces());
+}
+
+// VTK's names for a data set of pieces have a P in front. Cells and lines are in the pieces alone.
+void write_xml_of_pieces(const std::filesystem::path& path, const XmlDataSet& data,
+                         std::span<const std::string> pieces) {
+  std::string text;
+  const auto add = [&text]<class... Values>(fmt::format_string<Values...> form, Values&&... values) {
+    fmt::format_to(std::back_inserter(text), form, std::forward<Values>(values)...);
+  };
+  add("<?xml version=\"1.0\"?>\n<VTKFile type=\"P{}\" version=\"1.0\" byte_order=\"{}\" header_type=\"UInt64\">\n",
+      data.kind, byte_order);
+  add("<P{} GhostLevel=\"0\">\n", data.kind);
+  for (const XmlSection& section : data.sections) {
+    if (section.name != "PointData" && section.name != "CellData" && section.name != "Points") continue;
+    add("<P{}>\n", section.name);
+    for (const XmlArray& a : section.arrays)
+      add("<PDataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\"/>\n", a.type(), escaped(a.name()),
+          a.components());
+    add("</P{}>\n", section.name);
+  }
+  for (const std::string& piece : pieces) add("<Piece Source=\"{}\"/>\n", escaped(piece));
+  add("</P{}>\n</VTKFile>\n", data.kind);
+  const std::string_view whole = text;
+  replace_file(path, {&whole, 1});
 }
 
 }  // namespace dartcast

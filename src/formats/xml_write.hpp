@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -34,5 +36,10 @@ using WritePieces = void (*)(const std::filesystem::path& path, std::span<const 
 
 /// Throws Error where the file cannot be written.
 void write_xml(const std::filesystem::path& path, const XmlDataSet& data, Compression compression, WritePieces write);
+
+/// A data set of several pieces, in files of their own that hold the same arrays as `data`. `pieces`: their names, from
+/// the folder of `path`. Throws as write_xml().
+void write_xml_of_pieces(const std::filesystem::path& path, const XmlDataSet& data,
+                         std::span<const std::string> pieces);
 
 }  // namespace dartcast

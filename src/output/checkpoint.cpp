@@ -1,4 +1,4 @@
-// The layout of checkpoint.bin, and its digest.
+// The layout of checkpoint.bin and of the parts of other ranks, and their digests.
 #include "output/checkpoint.hpp"
 
 #include <fmt/format.h>
@@ -20,7 +20,8 @@ namespace dartcast {
 
 namespace {
 
-constexpr std::uint64_t magic = 0x35706b6374726164U;  // "dartckp5" on a machine of this byte order
+constexpr std::uint64_t magic = 0x36706b6374726164U;       // "dartckp6" on a machine of this byte order
+constexpr std::uint64_t part_magic = 0x31747270746b6364U;  // "dcktprt1"
 
 template <class T>
 std::string_view bytes_of(const std::vector<T>& values) {
@@ -327,9 +328,10 @@ void fields(Archive& a, Checkpoint& c) {
   fields(a, c.run);
   fields(a, c.simulation.particles);
   values(a, c.recording.stats_bytes, c.recording.contacts_bytes);
-  a.list(c.recording.frames, [&](RecordingFrame& f) { values(a, f.step, f.time); });
+  a.list(c.recording.frames, [&](RecordingFrame& f) { values(a, f.step, f.time, f.pieces); });
   fields(a, c.simulation.events);
   values(a, c.held, c.audited);
+  a.list(c.parts, [&](std::uint64_t& sum) { a.value(sum); });
   fields(a, c.simulation.bodies);
   fields(a, c.simulation.catheters);
   values(a, c.solids_recording.bodies_bytes, c.solids_recording.catheters_bytes, c.report_recording.bytes);
@@ -349,14 +351,25 @@ void check_same(const RunIdentity& saved, const RunIdentity& run) {
   if (saved.seed != run.seed) differs(fmt::format("it was run with seed {}, not {}", saved.seed, run.seed));
 }
 
-Checkpoint parse(const std::string& text, const RunIdentity& run) {
+// The bytes behind the mark and the digest at the start of a file.
+struct CheckedBody {
+  std::string_view bytes;
+  std::uint64_t digest = 0;
+};
+
+CheckedBody checked_body(const std::string& text, std::uint64_t expected_mark) {
   std::uint64_t mark = 0;
   std::uint64_t sum = 0;
   CheckpointReader head(text);
   values(head, mark, sum);
-  if (mark != magic) throw Error("this is no checkpoint of this machine's kind");
+  if (mark != expected_mark) throw Error("this is no checkpoint of this machine's kind");
   const std::string_view body = std::string_view(text).substr(16);
   if (digest(body) != sum) throw Error("it is damaged");
+  return {body, sum};
+}
+
+Checkpoint parse(const std::string& text, const RunIdentity& run) {
+  const std::string_view body = checked_body(text, magic).bytes;
   CheckpointReader reader(body);
   RunIdentity saved;  // checked first: what follows may be of another version
   fields(reader, saved);
@@ -366,6 +379,32 @@ Checkpoint parse(const std::string& text, const RunIdentity& run) {
   fields(whole, checkpoint);
   if (!whole.at_end()) throw Error("it is longer than it says");
   return checkpoint;
+}
+
+// One list of fields for reading and writing.
+template <class Archive>
+void part_fields(Archive& a, ParticleSystemState& part) {
+  fields(a, part);
+  a.list(part.user_data, [&](double& d) { a.value(d); });
+}
+
+ParticleSystemState parse_part(const std::string& text, std::uint64_t expected) {
+  const CheckedBody body = checked_body(text, part_magic);
+  if (body.digest != expected) throw Error("it is of another checkpoint");
+  CheckpointReader reader(body.bytes);
+  ParticleSystemState part;
+  part_fields(reader, part);
+  if (!reader.at_end()) throw Error("it is longer than it says");
+  return part;
+}
+
+std::uint64_t write_checked(const std::filesystem::path& path, std::uint64_t mark, const CheckpointWriter& body) {
+  CheckpointWriter head;
+  std::uint64_t sum = digest(body.text());
+  values(head, mark, sum);
+  const std::array<std::string_view, 2> pieces = {head.text(), body.text()};
+  replace_file(path, pieces);
+  return sum;
 }
 
 }  // namespace
@@ -380,12 +419,13 @@ RunIdentity run_identity(const std::string& scene_text, const MeshData& mesh, st
 void write_checkpoint(const std::filesystem::path& path, Checkpoint& checkpoint) {
   CheckpointWriter body;
   fields(body, checkpoint);
-  CheckpointWriter head;
-  std::uint64_t mark = magic;
-  std::uint64_t sum = digest(body.text());
-  values(head, mark, sum);
-  const std::array<std::string_view, 2> pieces = {head.text(), body.text()};
-  replace_file(path, pieces);
+  write_checked(path, magic, body);
+}
+
+std::uint64_t write_checkpoint_part(const std::filesystem::path& path, ParticleSystemState& part) {
+  CheckpointWriter body;
+  part_fields(body, part);
+  return write_checked(path, part_magic, body);
 }
 
 std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& path, const RunIdentity& run) {
@@ -394,6 +434,15 @@ std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& path, con
     return parse(read_bytes(path), run);
   } catch (const Error& e) {
     throw Error(fmt::format("{}: the run cannot be resumed: {}", path.string(), e.what()));
+  }
+}
+
+ParticleSystemState read_checkpoint_part(const std::filesystem::path& path, std::uint64_t digest) {
+  try {
+    if (!std::filesystem::exists(path)) throw Error("a part of the checkpoint is missing");
+    return parse_part(read_bytes(path), digest);
+  } catch (const Error& e) {
+    throw Error(fmt::format("{}: the run cannot be resumed: {}; run without --resume", path.string(), e.what()));
   }
 }
 

@@ -1,10 +1,12 @@
-// Where a run can go on from: checkpoint.bin in its output folder.
+// Where a run can go on from: checkpoint.bin in its output folder; and, where ranks share the particles, a part for each
+// of the others, written before it.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "dartcast/audit.hpp"
 #include "dartcast/mesh_data.hpp"
@@ -31,6 +33,7 @@ struct Checkpoint {
   RecordingProgress recording;
   std::uint64_t held = 0;  ///< in the last step
   std::uint64_t audited = 0;
+  std::vector<std::uint64_t> parts;  ///< digests of the files of the other ranks, which hold their particles
   SolidsProgress solids_recording;
   StatisticsProgress statistics_recording;
   ReportProgress report_recording;
@@ -40,6 +43,13 @@ struct Checkpoint {
 /// Throws Error where it cannot be written. `checkpoint`: stays as it is, although the list of its fields, which is one
 /// for reading and writing, does not say so.
 void write_checkpoint(const std::filesystem::path& path, Checkpoint& checkpoint);
+
+/// Writes what a rank but the first adds to the checkpoint: its particles and their sums. Returns the file's digest.
+/// Throws Error where it cannot be written.
+std::uint64_t write_checkpoint_part(const std::filesystem::path& path, ParticleSystemState& part);
+
+/// Throws Error where there is no such file, or it is damaged or has another digest.
+ParticleSystemState read_checkpoint_part(const std::filesystem::path& path, std::uint64_t digest);
 
 /// None where there is no such file. Throws Error where it is damaged, or of a run that differs from `run`: says in
 /// what.

@@ -16,7 +16,7 @@ void write_frame_file(WritingThread& writing, std::filesystem::path path, XmlDat
 }
 
 void write_list(WritingThread& writing, std::filesystem::path path, std::span<const RecordingFrame> frames,
-                std::function<std::string(std::uint64_t step)> name) {
+                std::function<std::string(const RecordingFrame&)> name) {
   std::vector<RecordingFrame> copy(frames.begin(), frames.end());
   writing.add(frames.size_bytes(), [path = std::move(path), frames = std::move(copy), name = std::move(name)] {
     write_pvd(path, frames, name);

@@ -17,6 +17,6 @@ void write_frame_file(WritingThread& writing, std::filesystem::path path, XmlDat
 
 /// The same for a list of frames, as write_pvd().
 void write_list(WritingThread& writing, std::filesystem::path path, std::span<const RecordingFrame> frames,
-                std::function<std::string(std::uint64_t step)> name);
+                std::function<std::string(const RecordingFrame&)> name);
 
 }  // namespace dartcast

@@ -13,11 +13,9 @@
 
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_files.hpp"
-#include "dartcast/particle_state.hpp"
 #include "formats/file_write.hpp"
-#include "formats/vtp_write.hpp"
 #include "output/frame_files.hpp"
-#include "output/particle_kinds.hpp"
+#include "output/particle_frame.hpp"
 #include "output/run_files.hpp"
 #include "output/run_lock.hpp"
 
@@ -41,40 +39,7 @@ bool holds_a_run(const fs::path& folder) {
   return std::getline(file, line) && line.starts_with(stats_header);
 }
 
-std::string particles_name(std::uint64_t step) { return frame_name("particles", step, ".vtp"); }
-std::string environment_name(std::uint64_t step) { return frame_name("environment", step, ".vtu"); }
-
-// The value of each particle.
-template <class Value>
-auto each(std::size_t count, Value&& value) {
-  std::vector<decltype(value(std::size_t{}))> values(count);
-  for (std::size_t i = 0; i < count; ++i) values[i] = value(i);
-  return values;
-}
-
-template <class T>
-std::vector<T> copy(std::span<const T> values) {
-  return {values.begin(), values.end()};
-}
-
-VtpFile particles_file(const Simulation& simulation) {
-  const Particles& particles = simulation.particles();
-  const CellComplex& complex = simulation.environment().complex();
-  const std::size_t n = particles.size();
-  VtpFile file(each(n, [&](std::size_t i) { return particles[i].position; }));
-  file.add_vertices();
-  file.add("id", copy(simulation.ids()));
-  file.add("radius", copy(simulation.radii()));
-  file.add("velocity", copy(simulation.velocities()));
-  file.add("cell", each(n, [&](std::size_t i) { return complex.map().source(particles[i].cell); }));
-  file.add("kind", each(n, [&](std::size_t i) { return static_cast<std::uint8_t>(kind_of(complex, particles[i])); }));
-  file.add("held", copy(simulation.held()));
-  file.add("contacts", copy(simulation.contact_counts()));
-  const std::vector<std::string>& names = simulation.options().user_data;
-  for (std::size_t k = 0; k < names.size(); ++k)
-    file.add(names[k], each(n, [&](std::size_t i) { return simulation.user_data(i)[k]; }));
-  return file;
-}
+std::string environment_name(const RecordingFrame& frame) { return frame_name("environment", frame.step, ".vtu"); }
 
 // A copy of the names: the folder changes while they are used.
 std::vector<std::string> run_files(const fs::path& folder) {
@@ -161,22 +126,22 @@ void Recording::update_after_edit(const Environment& environment) {
 }
 
 void Recording::add_frame(const Simulation& simulation) {
-  const std::uint64_t step = simulation.steps();
-  write_frame_file(writing_, options_.folder / particles_name(step), particles_file(simulation).data(),
-                   options_.compression);
+  const RecordingFrame frame{simulation.steps(), simulation.time(), options_.pieces};
+  write_particles(writing_, options_.folder, simulation, frame, 0, options_.compression);
+  if (frame.pieces > 1) write_index(writing_, options_.folder, simulation, frame);
   if (environment_)
-    write_frame_file(writing_, options_.folder / environment_name(step),
+    write_frame_file(writing_, options_.folder / environment_name(frame),
                      environment_->data_set(simulation.environment()), options_.compression);
-  if (frames_.empty() || frames_.back().step != step) frames_.push_back({step, simulation.time()});
+  if (frames_.empty() || frames_.back().step != frame.step) frames_.push_back(frame);
   write_lists();
 }
 
 void Recording::write_lists() const {
-  write_list(writing_, options_.folder / "particles.pvd", frames_, particles_name);
+  write_list(writing_, options_.folder / "particles.pvd", frames_, particle_frame_name);
   if (options_.changes) return write_list(writing_, options_.folder / "environment.pvd", frames_, environment_name);
   const RecordingFrame at_rest;
   write_list(writing_, options_.folder / "environment.pvd", {&at_rest, 1},
-             [](std::uint64_t) { return "environment.vtu"; });
+             [](const RecordingFrame&) { return "environment.vtu"; });
 }
 
 RecordingProgress Recording::progress() {
@@ -185,15 +150,13 @@ RecordingProgress Recording::progress() {
   return {stats_.bytes(), contacts_.bytes(), frames_};
 }
 
-void Recording::add_step(const Simulation& simulation, const SimulationStep& step, std::uint64_t in_opened) {
+void Recording::add_step(const Simulation& simulation, const SimulationStep& step, const StepSums& sums) {
   const Counters& c = step.report.counters;
-  stats_.print("{},{},{},{},{},{},{},{},{},{},{},{}", simulation.steps(), simulation.time(),
-               simulation.particles().size(), step.injected, step.absorbed, step.escaped, step.report.held.size(),
-               step.report.contacts.contacts.size(), c.orientation.tests, c.orientation.exact, c.forecast_kept,
-               c.updated_by_deformation);
-  if (options_.surgery) stats_.print(",{}", in_opened);
-  const SimulationEnergy energy = simulation.energy();
-  stats_.print(",{},{}\n", energy.kinetic, energy.potential);
+  stats_.print("{},{},{},{},{},{},{},{},{},{},{},{}", simulation.steps(), simulation.time(), sums.alive, step.injected,
+               step.absorbed, step.escaped, step.report.held.size(), step.report.contacts.contacts.size(),
+               c.orientation.tests, c.orientation.exact, c.forecast_kept, c.updated_by_deformation);
+  if (options_.surgery) stats_.print(",{}", simulation.event_log().in_opened);
+  stats_.print(",{},{}\n", sums.energy.kinetic, sums.energy.potential);
   if (options_.contacts) write_contacts(simulation, step);
   stats_.send_many(writing_);
   contacts_.send_many(writing_);

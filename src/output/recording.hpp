@@ -20,8 +20,15 @@ struct RecordingProgress {
   std::vector<RecordingFrame> frames;
 };
 
+/// Sums over all ranks, after a step.
+struct StepSums {
+  std::uint64_t alive = 0;
+  SimulationEnergy energy;
+};
+
 /// Writes particles.pvd with a .vtp per frame, environment.pvd with a .vtu per frame (one where nothing changes),
-/// stats.csv, contacts.csv on request, and scene.toml. A thread writes what is added, in that order. Its errors are thrown
+/// stats.csv, contacts.csv on request, and scene.toml. Where ranks share the particles, it is the first rank's, and a frame
+/// is made of the pieces that all have written. A thread writes what is added, in that order. Its errors are thrown
 /// by what adds next. The thread outlives this.
 class Recording {
  public:
@@ -31,6 +38,7 @@ class Recording {
     bool surgery = false;  ///< the table has a column for particles in opened cells
     bool contacts = false;
     Compression compression = Compression::none;
+    std::uint32_t pieces = 1;  ///< of a frame of particles: one for each rank
   };
 
   /// Makes the folder, or takes over one that is empty or holds an earlier run, whose files are removed. Throws Error,
@@ -45,8 +53,8 @@ class Recording {
   void add_frame(const Simulation& simulation);
   /// To be called after each edit of the environment.
   void update_after_edit(const Environment& environment);
-  /// Adds a step's row to stats.csv, and its contacts. `in_opened`: see EventLog.
-  void add_step(const Simulation& simulation, const SimulationStep& step, std::uint64_t in_opened = 0);
+  /// Adds a step's row to stats.csv, and its contacts.
+  void add_step(const Simulation& simulation, const SimulationStep& step, const StepSums& sums);
   [[nodiscard]] std::span<const RecordingFrame> frames() const { return frames_; }
   /// Leaves the rows of the tables to the thread, and says how far all will have come then.
   RecordingProgress progress();

@@ -14,6 +14,7 @@
 #include "output/particle_kinds.hpp"
 #include "output/wall_faces.hpp"
 #include "report/recorded.hpp"
+#include "simulation/gathered_step.hpp"
 #include "simulation/simulation_parts.hpp"
 
 namespace dartcast {
@@ -44,24 +45,34 @@ std::uint64_t ids_so_far(const Simulation& simulation) {
   return t.start + t.injected;
 }
 
-RecordedFrame particles_of(const Simulation& simulation, std::uint64_t stride, const RecordedHeader& header) {
-  RecordedFrame frame;
-  frame.stride = stride;
-  frame.all = ids_so_far(simulation);
+struct ReportedParticle {
+  std::uint64_t id;
+  RecordedPoint position;
+  float speed;
+  float radius;
+  Kind kind;
+};
+
+// The particles of this rank.
+std::vector<ReportedParticle> own_particles(const Simulation& simulation, const ReportView& view) {
   const Particles& particles = simulation.particles();
   const CellComplex& complex = simulation.environment().complex();
-  const bool has_radii =
-      std::any_of(simulation.radii().begin(), simulation.radii().end(), [](double r) { return r > 0.0; });
+  std::vector<ReportedParticle> found;
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const std::uint64_t id = simulation.ids()[i];
-    if (id % stride != 0) continue;
-    frame.ids.push_back(id);
-    frame.positions.push_back(recorded(particles[i].position, header));
-    frame.speeds.push_back(static_cast<float>(norm(simulation.velocities()[i])));
-    frame.kinds.push_back(static_cast<std::uint8_t>(kind_of(complex, particles[i])));
-    if (has_radii) frame.radii.push_back(static_cast<float>(simulation.radii()[i]));
+    if (id % view.stride != 0) continue;
+    found.push_back({id, recorded(particles[i].position, view.header),
+                     static_cast<float>(norm(simulation.velocities()[i])), static_cast<float>(simulation.radii()[i]),
+                     kind_of(complex, particles[i])});
   }
-  return frame;
+  return found;
+}
+
+ReportView view_of_all(const ReportView& view, Ranks* ranks) {
+  if (ranks == nullptr || ranks->size() == 1) return view;
+  ByteWriter bytes;
+  bytes.put(view);
+  return ByteReader(ranks->broadcast(bytes.bytes())).take<ReportView>();
 }
 
 std::vector<RecordedPoint> recorded(std::span<const Vec3> points, const RecordedHeader& header) {
@@ -228,11 +239,16 @@ std::vector<RecordedPoint> ReportRecording::wall_points(const Environment& envir
   return points;
 }
 
-void ReportRecording::add_frame(const Simulation& simulation) {
+ReportView ReportRecording::next_view(const Simulation& simulation) {
+  while (ids_so_far(simulation) / stride_ > most_particles) stride_ *= 2;
+  return {header_, stride_};
+}
+
+void ReportRecording::add_frame(const Simulation& simulation, RecordedFrame frame) {
   const Environment& environment = simulation.environment();
   if (!has_walls_ || edits_ != environment.edit_count()) add_walls(simulation);
-  while (ids_so_far(simulation) / stride_ > most_particles) stride_ *= 2;
-  RecordedFrame frame = particles_of(simulation, stride_, header_);
+  frame.stride = stride_;
+  frame.all = ids_so_far(simulation);
   frame.step = simulation.steps();
   frame.time = simulation.time();
   frame.wall_points = wall_points(environment);
@@ -240,6 +256,22 @@ void ReportRecording::add_frame(const Simulation& simulation) {
   for (const CellFace f : faces_) frame.hits.push_back(static_cast<std::uint32_t>(hits(simulation).of(f)));
   frame.solids = recorded_solids(simulation, header_);
   file_.append(chunk_of(frame));
+}
+
+RecordedFrame reported_particles(const Simulation& simulation, const ReportView& view) {
+  Ranks* const ranks = simulation.options().ranks;
+  RecordedFrame frame;
+  const auto particles = gathered_by_id(ranks, own_particles(simulation, view_of_all(view, ranks)));
+  const bool has_radii =
+      std::any_of(particles.begin(), particles.end(), [](const ReportedParticle& p) { return p.radius > 0.0F; });
+  for (const ReportedParticle& p : particles) {
+    frame.ids.push_back(p.id);
+    frame.positions.push_back(p.position);
+    frame.speeds.push_back(p.speed);
+    frame.kinds.push_back(static_cast<std::uint8_t>(p.kind));
+    if (has_radii) frame.radii.push_back(p.radius);
+  }
+  return frame;
 }
 
 ReportProgress ReportRecording::progress() {

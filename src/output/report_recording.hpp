@@ -18,6 +18,15 @@ struct ReportProgress {
   std::uint64_t bytes = 0;
 };
 
+/// Which particles a frame shows, and how points are kept.
+struct ReportView {
+  RecordedHeader header;
+  std::uint64_t stride = 1;
+};
+
+/// The particles of a view, of all ranks. Collective; the view is the first rank's.
+RecordedFrame reported_particles(const Simulation& simulation, const ReportView& view);
+
 /// Records particles whose id is a multiple of a stride: the smallest power of two with which at most 20,000 are left.
 /// It grows with the number of ids. Cost: some 30 bytes for each of these particles in each frame, 32 for each contact.
 class ReportRecording {
@@ -33,7 +42,10 @@ class ReportRecording {
   void update_after_edit(const Environment& environment);
   /// After each step.
   void add_step(const Simulation& simulation, const SimulationStep& step);
-  void add_frame(const Simulation& simulation);
+  /// Which particles the next frame shows.
+  [[nodiscard]] ReportView next_view(const Simulation& simulation);
+  /// `frame`: with the particles of that view.
+  void add_frame(const Simulation& simulation, RecordedFrame frame);
   ReportProgress progress();
 
  private:

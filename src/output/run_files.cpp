@@ -25,7 +25,8 @@ struct Series {
   std::string_view end;
   bool named;
 };
-constexpr std::array<Series, 8> all_series = {{{"particles_", ".vtp", false},
+constexpr std::array<Series, 9> all_series = {{{"particles_", ".vtp", false},
+                                               {"particles_", ".pvtp", false},
                                                {"environment_", ".vtu", false},
                                                {"walls_", ".vtp", false},
                                                {"body_", ".vtp", true},
@@ -48,8 +49,15 @@ std::string_view step_digits(std::string_view name, const Series& series) {
     if (last == std::string_view::npos || last == 0) return {};
     digits = digits.substr(last + 1);
   }
+  if (const std::size_t dot = digits.find('.'); dot != std::string_view::npos) {
+    const std::string_view rank = digits.substr(dot + 1);  // of a piece
+    if (rank.empty() || rank.find_first_not_of("0123456789") != std::string_view::npos) return {};
+    digits = digits.substr(0, dot);
+  }
   return is_step(digits) ? digits : std::string_view{};
 }
+
+constexpr Series checkpoint_parts = {"checkpoint_", ".bin", false};
 
 // The list of a series with a name: body_NAME.pvd.
 bool is_list(std::string_view name) {
@@ -68,7 +76,16 @@ bool is_run_file(std::string_view name) {
       "walls.pvd",    "planes.csv",  "crossings.csv",  "pathlines.bin",   "pathlines.vtp",
       "report.bin",   "report.html", kept_mesh_name,   "solids.csv",      "solid_contacts.csv"};
   if (std::find(fixed.begin(), fixed.end(), name) != fixed.end()) return true;
-  return is_list(name) || frame_step(name);
+  return is_list(name) || frame_step(name) || !step_digits(name, checkpoint_parts).empty();
+}
+
+std::string checkpoint_part_name(std::uint64_t step, unsigned rank) {
+  return frame_name("checkpoint", step, fmt::format(".{}.bin", rank));
+}
+
+bool is_checkpoint_part_of_another(std::string_view name, std::uint64_t step) {
+  const std::string_view digits = step_digits(name, checkpoint_parts);
+  return !digits.empty() && digits != fmt::format("{:06}", step);
 }
 
 bool is_part_of_run_file(std::string_view name) {
@@ -90,10 +107,10 @@ std::string frame_name(std::string_view series, std::uint64_t step, std::string_
 }
 
 void write_pvd(const fs::path& path, std::span<const RecordingFrame> frames,
-               const std::function<std::string(std::uint64_t step)>& name) {
+               const std::function<std::string(const RecordingFrame&)>& name) {
   std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n <Collection>\n";
   for (const RecordingFrame& frame : frames) {
-    text += fmt::format("  <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", frame.time, name(frame.step));
+    text += fmt::format("  <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", frame.time, name(frame));
   }
   text += " </Collection>\n</VTKFile>\n";
   const std::string_view whole = text;

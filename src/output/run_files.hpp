@@ -20,7 +20,8 @@ namespace dartcast {
 
 struct RecordingFrame {
   std::uint64_t step = 0;
-  double time = 0.0;  ///< s
+  double time = 0.0;         ///< s
+  std::uint32_t pieces = 1;  ///< files of particles: one of each rank
 };
 
 /// The mesh that was made around a scene's surfaces. A run that starts anew leaves it where it is.
@@ -32,6 +33,12 @@ bool is_run_file(std::string_view name);
 /// The step of a frame's file, by its name; none where it is no frame's.
 std::optional<std::uint64_t> frame_step(std::string_view name);
 
+/// Where a rank but the first leaves its part of a checkpoint: checkpoint_000010.2.bin.
+std::string checkpoint_part_name(std::uint64_t step, unsigned rank);
+
+/// Whether a file is such a part of another step than this.
+bool is_checkpoint_part_of_another(std::string_view name, std::uint64_t step);
+
 /// "particles", step 10, ".vtp": particles_000010.vtp.
 std::string frame_name(std::string_view series, std::uint64_t step, std::string_view ending);
 
@@ -40,7 +47,7 @@ bool is_part_of_run_file(std::string_view name);
 
 /// A collection for ParaView, in place of the one before: a file per frame.
 void write_pvd(const std::filesystem::path& path, std::span<const RecordingFrame> frames,
-               const std::function<std::string(std::uint64_t step)>& name);
+               const std::function<std::string(const RecordingFrame&)>& name);
 
 /// Takes the frames of other steps than `kept` out of a list.
 void keep_in_pvd(const std::filesystem::path& path, const std::set<std::uint64_t>& kept);

@@ -1,4 +1,7 @@
 // Opens, fills and closes the output folder of a run.
+//
+// Where ranks share the particles, all make the same calls. The first writes all files but the pieces and parts that hold
+// the others' particles; each of these writes its own, and the first names them once they are whole.
 #include "output/run_output.hpp"
 
 #include <fmt/format.h>
@@ -8,23 +11,45 @@
 #include <utility>
 #include <variant>
 
+#include "base/bytes.hpp"
+#include "base/kept_runs.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/report.hpp"
 #include "formats/file_write.hpp"
+#include "output/particle_frame.hpp"
 #include "simulation/timer.hpp"
 
 namespace dartcast {
 
+namespace {
+
+// Those of checkpoints before this step's.
+void remove_other_parts(const std::filesystem::path& folder, std::uint64_t step) {
+  std::vector<std::filesystem::path> others;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (is_checkpoint_part_of_another(entry.path().filename().string(), step)) others.push_back(entry.path());
+  }
+  for (const std::filesystem::path& path : others) std::filesystem::remove(path);
+}
+
+}  // namespace
+
 RunOutput::RunOutput(const Scene& scene, const RunOptions& options, Summary& summary)
     : scene_(scene),
-      recording_options_{options.folder, summary.deforms || summary.surgery, summary.surgery.has_value(),
-                         scene.output.contacts, scene.output.compression},
+      recording_options_{options.folder,
+                         summary.deforms || summary.surgery,
+                         summary.surgery.has_value(),
+                         scene.output.contacts,
+                         scene.output.compression,
+                         options.ranks != nullptr ? options.ranks->size() : 1},
       every_(scene.output.every),
       resume_(options.resume),
       threads_(options.threads),
+      ranks_(options.ranks),
+      share_(options.ranks),
       summary_(summary) {
   if (folder().empty()) return;
-  if (std::filesystem::exists(folder())) lock_.take(folder());
+  if (share_.is_first() && std::filesystem::exists(folder())) lock_.take(folder());
   identity_ = run_identity(scene.text, std::get<MeshData>(scene.environment.mesh), scene.seed);
 }
 
@@ -32,12 +57,46 @@ void RunOutput::find_checkpoint(std::uint64_t steps) {
   if (folder().empty() || !resume_) return;
   found_ = read_checkpoint(file(), identity_);
   if (!found_) return;
+  add_parts(*found_);
   record_.emplace(std::get<MeshData>(scene_.environment.mesh));  // it follows the edits that are made again
   const std::uint64_t done = found_->simulation.particles.steps;
   if (done > steps)
     throw Error(
         fmt::format("{}: {} steps are done already; ask for as many or more with --steps", folder().string(), done));
   if (done < steps) std::erase_if(found_->recording.frames, [&](const auto& f) { return !on_schedule(f.step); });
+}
+
+// Only those particles stay that are now this rank's: the others need not fit into its memory.
+void RunOutput::add_parts(Checkpoint& checkpoint) const {
+  std::vector<SimulationState> states(1, std::move(checkpoint.simulation));
+  keep_own(states.front().particles);
+  for (unsigned rank = 1; rank <= checkpoint.parts.size(); ++rank) {
+    SimulationState& state = states.emplace_back();
+    const std::filesystem::path name = checkpoint_part_name(states.front().particles.steps, rank);
+    state.particles = read_checkpoint_part(folder() / name, checkpoint.parts[rank - 1]);
+    keep_own(state.particles);
+  }
+  std::vector<SimulationCheckpoint> parts;
+  for (SimulationState& state : states) parts.emplace_back(std::move(state));
+  checkpoint.simulation = joined(parts).state();
+}
+
+void RunOutput::keep_own(ParticleSystemState& state) const {
+  const std::size_t width = scene_.user_data.size();
+  const std::vector<std::uint8_t> gone = [&] {
+    std::vector<std::uint8_t> marks;
+    for (const auto& p : state.particles) marks.push_back(share_.holds(p.id) ? 0 : 1);
+    return marks;
+  }();
+  const KeptRuns runs(gone);
+  runs.keep_in(state.particles);
+  runs.keep_in(state.user_data, width);
+}
+
+// Waits for the other ranks, or throws what one of them has failed of.
+void RunOutput::meet() const {
+  std::uint64_t nothing = 0;
+  sum_over(ranks_, {&nothing, 1});
 }
 
 void RunOutput::update_after_edit(const Environment& environment) {
@@ -49,6 +108,12 @@ void RunOutput::update_after_edit(const Environment& environment) {
 void RunOutput::open(MeshData mesh, const Simulation& simulation) {
   if (folder().empty()) return;
   const ScopeTimer timer(summary_.seconds_write);
+  if (share_.is_first()) open_files(std::move(mesh), simulation);
+  meet();
+  if (!share_.is_first()) writing_ = std::make_unique<WritingThread>();
+}
+
+void RunOutput::open_files(MeshData mesh, const Simulation& simulation) {
   if (!record_) record_.emplace(std::move(mesh));
   make_output_folder(folder());
   lock_.take(folder());
@@ -61,7 +126,7 @@ void RunOutput::open(MeshData mesh, const Simulation& simulation) {
   statistics_ = found_
                     ? std::make_unique<StatisticsRecording>(*writing_, folder(), scene_, found_->statistics_recording)
                     : std::make_unique<StatisticsRecording>(*writing_, folder(), scene_);
-  if (scene_.output.report && every_ > 0) open_report(simulation);
+  if (wants_report()) open_report(simulation);
 }
 
 void RunOutput::open_report(const Simulation& simulation) {
@@ -74,8 +139,10 @@ void RunOutput::add_step(const Simulation& simulation, const SimulationStep& ste
   if (folder().empty()) return;
   {
     const ScopeTimer timer(summary_.seconds_write);
+    const StepSums sums{simulation.alive(), simulation.energy()};
     writing_->check();
-    recording_->add_step(simulation, step, simulation.event_log().in_opened);
+    if (!share_.is_first()) return;
+    recording_->add_step(simulation, step, sums);
     solids_->add_step(simulation);
     statistics_->add_step(simulation);
   }
@@ -86,15 +153,46 @@ void RunOutput::add_step(const Simulation& simulation, const SimulationStep& ste
 
 void RunOutput::add_frame(const Simulation& simulation, bool last) {
   if (folder().empty() || (!last && !on_schedule(simulation.steps()))) return;
-  if (report_) {
+  if (wants_report()) {
     const ScopeTimer timer(summary_.seconds_report);
-    report_->add_frame(simulation);
+    const ReportView view = report_ ? report_->next_view(simulation) : ReportView();
+    RecordedFrame particles = reported_particles(simulation, view);
+    if (report_) report_->add_frame(simulation, std::move(particles));
   }
   const ScopeTimer timer(summary_.seconds_write);
-  write_frame(simulation);
+  if (share_.is_first())
+    write_frame(simulation);
+  else
+    write_part(simulation);
+}
+
+// A rank but the first: it goes on when its files are whole.
+void RunOutput::write_part(const Simulation& simulation) {
+  const RecordingFrame frame{simulation.steps(), simulation.time(), recording_options_.pieces};
+  if (every_ > 0)
+    write_particles(*writing_, folder(), simulation, frame, ranks_->rank(), recording_options_.compression);
+  ParticleSystemState part = simulation.checkpoint().state().particles;
+  part.totals.seconds_detect = part.totals.seconds_deform = 0.0;
+  part.totals.seconds_collide = part.totals.seconds_respond = 0.0;
+  const std::uint64_t digest = write_checkpoint_part(folder() / checkpoint_part_name(frame.step, ranks_->rank()), part);
+  writing_->finish();
+  ByteWriter bytes;
+  bytes.put(digest);
+  ranks_->gather(bytes.bytes());
+}
+
+// The digests of the other ranks' parts, which are then whole.
+std::vector<std::uint64_t> RunOutput::written_parts() const {
+  if (share_.has_all()) return {};
+  std::vector<std::uint64_t> digests;
+  for (const std::string& bytes : ranks_->gather(std::string(sizeof(std::uint64_t), '\0')))
+    digests.push_back(ByteReader(bytes).take<std::uint64_t>());
+  digests.erase(digests.begin());
+  return digests;
 }
 
 void RunOutput::write_frame(const Simulation& simulation) {
+  std::vector<std::uint64_t> parts = written_parts();
   if (every_ > 0) {
     recording_->add_frame(simulation);
     solids_->add_frame(simulation, recording_->frames());
@@ -102,16 +200,23 @@ void RunOutput::write_frame(const Simulation& simulation) {
   }
   if (on_schedule(simulation.steps())) statistics_->end_interval(simulation);
   const std::uint64_t audited = summary_.audit ? summary_.audit->checked : 0;
-  auto checkpoint = std::make_shared<Checkpoint>(
-      Checkpoint{identity_, simulation.checkpoint().state(), recording_->progress(), summary_.held, audited,
-                 solids_->progress(), statistics_->progress(), report_ ? report_->progress() : ReportProgress{}});
+  auto checkpoint = std::make_shared<Checkpoint>(Checkpoint{
+      identity_, simulation.checkpoint().state(), recording_->progress(), summary_.held, audited, std::move(parts),
+      solids_->progress(), statistics_->progress(), report_ ? report_->progress() : ReportProgress{}});
   const ParticleSystemState& particles = checkpoint->simulation.particles;
-  writing_->add(particles.particles.size() * sizeof(ParticleSystemState::Particle),
-                [checkpoint, path = file()] { write_checkpoint(path, *checkpoint); });
+  writing_->add(particles.particles.size() * sizeof(ParticleSystemState::Particle), [checkpoint, path = file()] {
+    write_checkpoint(path, *checkpoint);
+    remove_other_parts(path.parent_path(), checkpoint->simulation.particles.steps);
+  });
 }
 
 void RunOutput::finish(const Simulation& simulation) {
   if (!writing_) return;
+  if (share_.is_first()) finish_files(simulation);
+  meet();
+}
+
+void RunOutput::finish_files(const Simulation& simulation) {
   {
     const ScopeTimer timer(summary_.seconds_write);
     recording_->progress();

@@ -18,12 +18,14 @@
 #include "output/solids_recording.hpp"
 #include "output/statistics_recording.hpp"
 #include "output/writing_thread.hpp"
+#include "simulation/particle_share.hpp"
 
 namespace dartcast {
 
 /// Without a folder it does nothing. Every function throws Error where a file cannot be read or written; frames, tables
 /// and checkpoints are written by a thread, and the next function throws its errors. The order is that of the calls, and
-/// a checkpoint comes after all that it counts on: a run that is cut off anywhere can go on.
+/// a checkpoint comes after all that it counts on: a run that is cut off anywhere can go on. Where ranks share the
+/// particles, each has one, and every function is collective.
 class RunOutput {
  public:
   /// Takes the folder, if it exists, before anything is read from it. `scene`: with its files loaded. All outlive it.
@@ -47,7 +49,15 @@ class RunOutput {
   [[nodiscard]] const std::filesystem::path& folder() const { return recording_options_.folder; }
   [[nodiscard]] std::filesystem::path file() const { return folder() / "checkpoint.bin"; }
   [[nodiscard]] bool on_schedule(std::uint64_t step) const { return every_ > 0 && step % every_ == 0; }
+  [[nodiscard]] bool wants_report() const { return scene_.output.report && every_ > 0; }
+  void meet() const;
+  void add_parts(Checkpoint& checkpoint) const;
+  void keep_own(ParticleSystemState& state) const;
+  void open_files(MeshData mesh, const Simulation& simulation);
+  void write_part(const Simulation& simulation);
+  [[nodiscard]] std::vector<std::uint64_t> written_parts() const;
   void write_frame(const Simulation& simulation);
+  void finish_files(const Simulation& simulation);
   void open_report(const Simulation& simulation);
   void write_summary() const;
   void write_report_of_run();
@@ -57,6 +67,8 @@ class RunOutput {
   std::uint64_t every_;
   bool resume_;
   Threads threads_;
+  Ranks* ranks_;
+  ParticleShare share_;
   Summary& summary_;
   RunIdentity identity_;
   RunLock lock_;

@@ -13,6 +13,7 @@
 #include "dartcast/scene_file.hpp"
 #include "output/run_output.hpp"
 #include "scene/scene_mesh.hpp"
+#include "simulation/particle_share.hpp"
 
 namespace dartcast {
 
@@ -75,12 +76,19 @@ class Run {
       if (summary_.audit) *summary_.audit += simulation_.audit();
       output_.add_step(simulation_, step);
       output_.add_frame(simulation_, simulation_.steps() == steps_);
-      if (progress) cancel_unless(progress(simulation_.steps(), steps_));
+      cancel_unless(goes_on(!progress || progress(simulation_.steps(), steps_)));
     }
     finish();
   }
 
  private:
+  // Where all ranks do.
+  [[nodiscard]] bool goes_on(bool own) const {
+    std::uint64_t stops = own ? 0 : 1;
+    sum_over(simulation_.options().ranks, {&stops, 1});
+    return stops == 0;
+  }
+
   void cancel_unless(bool goes_on) {
     if (goes_on || simulation_.steps() == steps_) return;
     summary_.cancelled = true;
@@ -89,9 +97,9 @@ class Run {
 
   void finish() {
     summary_.steps = simulation_.steps();
-    summary_.totals = simulation_.totals();
+    summary_.totals = simulation_.totals_of_all();
     summary_.seconds_solids = simulation_.seconds_solids();
-    summary_.alive = simulation_.particles().size();
+    summary_.alive = simulation_.alive();
     if (summary_.surgery) {
       summary_.surgery = simulation_.event_log();
       describe(simulation_.environment(), summary_);
@@ -121,15 +129,25 @@ Scene scene_to_run(const Scene& scene, const RunOptions& options) {
 }
 
 // With the output's record of the environment following the edits that a checkpoint repeats.
-std::unique_ptr<Simulation> make_simulation(const Scene& scene, RunOutput& output, Threads threads) {
+std::unique_ptr<Simulation> make_simulation(const Scene& scene, RunOutput& output, const RunOptions& options) {
   const auto follow = [&output](const Environment& environment) { output.update_after_edit(environment); };
   if (!output.found()) {
-    auto simulation = std::make_unique<Simulation>(scene, threads);
+    auto simulation = std::make_unique<Simulation>(scene, options.threads, options.ranks);
     simulation->set_after_edit(follow);
     return simulation;
   }
   const SimulationCheckpoint saved(output.found()->simulation);
-  return std::make_unique<Simulation>(scene, saved, threads, follow);
+  return std::make_unique<Simulation>(scene, saved, options.threads, follow, options.ranks);
+}
+
+// Where a program makes a mesh around surfaces, the first rank has it made, and the others find it in the folder.
+LoadedScene loaded_scene(Scene scene, const ReadOptions& read, const RunOptions& options) {
+  const bool waits = std::holds_alternative<SurfaceScene>(scene.environment.mesh) && !read.kept_mesh.empty();
+  std::uint64_t nothing = 0;
+  if (waits && !ParticleShare(options.ranks).is_first()) sum_over(options.ranks, {&nothing, 1});
+  LoadedScene loaded = load_scene_files(std::move(scene), read, options.threads);
+  if (waits && ParticleShare(options.ranks).is_first()) sum_over(options.ranks, {&nothing, 1});
+  return loaded;
 }
 
 }  // namespace
@@ -140,6 +158,7 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
     throw InvalidArgument(fmt::format("run: {} steps; give at most {}", *options.steps, max_steps));
   Summary summary;
   summary.scene = scene.name;
+  summary.ranks = options.ranks != nullptr ? options.ranks->size() : 1;
   summary.deforms = !scene.deformation.empty();
   if (!scene.events.empty() || scene.remesh.every > 0 || scene.adaptive_subdivision.every > 0)
     summary.surgery.emplace();
@@ -147,7 +166,7 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
   const Stopwatch load;
   ReadOptions read{{}, options.max_memory, false, {}};
   if (!options.folder.empty()) read.kept_mesh = options.folder / kept_mesh_name;
-  LoadedScene loaded = load_scene_files(scene_to_run(scene, options), read, options.threads);
+  LoadedScene loaded = loaded_scene(scene_to_run(scene, options), read, options);
   summary.skipped = std::move(loaded.skipped);
   const std::uint64_t steps = options.steps.value_or(scene.motion.steps);
   RunOutput output(loaded.scene, options, summary);
@@ -155,7 +174,7 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
   summary.seconds_load = load.seconds();
   const Stopwatch locate;
   const std::unique_ptr<Simulation> simulation =
-      with_mesh_name(scene.environment.mesh, [&] { return make_simulation(loaded.scene, output, options.threads); });
+      with_mesh_name(scene.environment.mesh, [&] { return make_simulation(loaded.scene, output, options); });
   describe(simulation->environment(), summary);
   summary.seconds_locate = locate.seconds();
   output.open(std::move(std::get<MeshData>(loaded.scene.environment.mesh)), *simulation);

@@ -168,7 +168,7 @@ void SolidsRecording::write(const std::string& series, std::uint64_t step, const
 
 void SolidsRecording::write_series(const std::string& series, std::span<const RecordingFrame> frames) const {
   write_list(writing_, folder_ / (series + ".pvd"), frames,
-             [series](std::uint64_t step) { return frame_name(series, step, ".vtp"); });
+             [series](const RecordingFrame& frame) { return frame_name(series, frame.step, ".vtp"); });
 }
 
 void SolidsRecording::write_body(const Simulation& simulation, std::size_t body, std::uint64_t step) const {

@@ -19,7 +19,7 @@ namespace {
 constexpr std::string_view planes_header = "step,time,name,forward,backward,flux,mean_age";
 constexpr std::string_view crossings_header = "step,time,name,id,direction,age,x,y,z";
 
-std::string walls_name(std::uint64_t step) { return frame_name("walls", step, ".vtp"); }
+std::string walls_name(const RecordingFrame& frame) { return frame_name("walls", frame.step, ".vtp"); }
 
 }  // namespace
 
@@ -69,7 +69,7 @@ void StatisticsRecording::add_crossings(const Simulation& simulation) {
 
 void StatisticsRecording::add_frame(const Simulation& simulation, std::span<const RecordingFrame> frames) {
   if (!scene_.options.hits) return;
-  write_frame_file(writing_, folder_ / walls_name(frames.back().step),
+  write_frame_file(writing_, folder_ / walls_name(frames.back()),
                    wall_faces_file(simulation.environment(), simulation.statistics().hits).data(), compression_);
   write_list(writing_, folder_ / "walls.pvd", frames, walls_name);
 }

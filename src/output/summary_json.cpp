@@ -187,6 +187,7 @@ std::string summary_json(const Summary& s) {
   Json json = {{"version", version()},
                {"scene", s.scene},
                {"threads", s.threads},
+               {"ranks", s.ranks},
                {"steps", s.steps},
                {"particle_steps", t.counters.particle_steps},
                {"environment",

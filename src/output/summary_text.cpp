@@ -47,8 +47,9 @@ class SummaryTable {
 };
 
 void add_scene(SummaryTable& table, const Summary& s) {
-  table.add("scene", fmt::format("{}: {} steps with {} thread{}", s.scene, grouped(s.steps), s.threads,
-                                 s.threads == 1 ? "" : "s"));
+  std::string with = fmt::format("{} thread{}", s.threads, s.threads == 1 ? "" : "s");
+  if (s.ranks > 1) with = fmt::format("{} processes of {}", s.ranks, with);
+  table.add("scene", fmt::format("{}: {} steps with {}", s.scene, grouped(s.steps), with));
   if (s.cancelled) table.add("scene", fmt::format("cancelled after {} steps", grouped(s.steps)));
   table.add("environment", {fmt::format("{} cells ({} free)", grouped(s.cells), grouped(s.free_cells)),
                             fmt::format("{} wall faces", grouped(s.wall_faces)),

@@ -61,21 +61,16 @@ void AdaptiveSubdivision::update_after_edit(const CombinatorialMap& map, std::sp
 }
 
 // The cell with the most particles; the lowest number where several have as many.
-AdaptiveSubdivision::Fullest AdaptiveSubdivision::fullest(const Particles& particles) const {
-  std::vector<Cell> full;
-  for (const ParticleState& s : particles.states()) {
-    if (lists_.count(s.cell) > options_.max_particles) full.push_back(s.cell);
-  }
-  std::sort(full.begin(), full.end());
-  full.erase(std::unique(full.begin(), full.end()), full.end());
+AdaptiveSubdivision::Fullest AdaptiveSubdivision::fullest(const CombinatorialMap& map) const {
   Fullest result;
-  for (const Cell c : full) {
+  for (const Cell c : map.cells()) {
+    const std::uint32_t count = counts_.of(c);
+    if (count <= options_.max_particles) continue;
     if (std::find(passed_over_.begin(), passed_over_.end(), c) != passed_over_.end()) continue;
     ++result.others;
-    if (lists_.count(c) > result.particles) {
-      result.cell = c;
-      result.particles = lists_.count(c);
-    }
+    if (count < result.particles || (count == result.particles && !(c < result.cell))) continue;
+    result.cell = c;
+    result.particles = count;
   }
   if (result.others > 0) --result.others;
   return result;
@@ -123,8 +118,8 @@ void AdaptiveSubdivision::subdivide_fullest(const CellComplex& complex, const Pa
                                             AdaptiveSubdivisionReport& report) {
   passed_over_.clear();
   while (true) {
-    lists_.update(complex.map(), particles.states());
-    const Fullest full = fullest(particles);
+    counts_.update(complex.map(), particles.states(), ranks_);
+    const Fullest full = fullest(complex.map());
     if (!full.cell.valid()) return;
     const SubdivisionRefusal refusal = {full.cell, full.particles, {}};
     if (report.subdivided == options_.edits) {
@@ -163,9 +158,9 @@ void AdaptiveSubdivision::merge_emptiest(const CellComplex& complex, const Parti
   for (std::size_t i = subdivisions_.size(); i-- > 0 && report.merged < options_.edits;) {
     if (!is_whole(map, i)) continue;
     const Subdivision& s = subdivisions_[i];
-    lists_.update(map, particles.states());
+    counts_.update(map, particles.states(), ranks_);
     std::uint32_t held = 0;
-    for (const Cell c : cells_around(map, s.part.cell, s.middle)) held += lists_.count(c);
+    for (const Cell c : cells_around(map, s.part.cell, s.middle)) held += counts_.of(c);
     if (held >= options_.min_particles) continue;
     const SubdivisionRefusal refusal = {s.part.cell, held, {}};
     if (try_edit(complex, {true, static_cast<std::uint32_t>(i)}, edit, refusal, report)) ++report.merged;
@@ -173,7 +168,8 @@ void AdaptiveSubdivision::merge_emptiest(const CellComplex& complex, const Parti
 }
 
 AdaptiveSubdivisionReport AdaptiveSubdivision::adapt(const CellComplex& complex, const Particles& particles,
-                                                     const Edit& edit) {
+                                                     const Edit& edit, Ranks* ranks) {
+  ranks_ = ranks;
   AdaptiveSubdivisionReport report;
   subdivide_fullest(complex, particles, edit, report);
   merge_emptiest(complex, particles, edit, report);

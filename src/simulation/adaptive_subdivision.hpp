@@ -8,7 +8,7 @@
 
 #include "dartcast/environment.hpp"
 #include "dartcast/events.hpp"
-#include "dynamics/cell_lists.hpp"
+#include "simulation/cell_counts.hpp"
 
 namespace dartcast {
 
@@ -24,9 +24,10 @@ class AdaptiveSubdivision {
 
   /// Subdivides cells that hold too many particles, then merges parts that hold few enough: each by an edit of its own.
   /// The report names cells that could not be subdivided or merged. `particles`: those that `edit` takes along. Throws
-  /// what `edit` throws but EditRefused. Cost: for each edit linear in the particles and subdivisions, and that of the
-  /// edit.
-  AdaptiveSubdivisionReport adapt(const CellComplex& complex, const Particles& particles, const Edit& edit);
+  /// what `edit` throws but EditRefused. `ranks`: that share the particles, and all make the same call; none: there is one
+  /// process. Cost: for each edit linear in the particles, cells and subdivisions, and that of the edit.
+  AdaptiveSubdivisionReport adapt(const CellComplex& complex, const Particles& particles, const Edit& edit,
+                                  Ranks* ranks = nullptr);
 
   /// Repeats an edit, after all edits before it. Throws EditRefused, or InvalidArgument where there
   /// is no such cell or subdivision.
@@ -46,7 +47,7 @@ class AdaptiveSubdivision {
     std::uint64_t others = 0;  // above the threshold, too
   };
 
-  [[nodiscard]] Fullest fullest(const Particles& particles) const;
+  [[nodiscard]] Fullest fullest(const CombinatorialMap& map) const;
   void subdivide_fullest(const CellComplex& complex, const Particles& particles, const Edit& edit,
                          AdaptiveSubdivisionReport& report);
   void merge_emptiest(const CellComplex& complex, const Particles& particles, const Edit& edit,
@@ -57,7 +58,8 @@ class AdaptiveSubdivision {
                 SubdivisionRefusal refusal, AdaptiveSubdivisionReport& report);
 
   AdaptiveSubdivisionOptions options_;
-  CellLists lists_;
+  CellCounts counts_;
+  Ranks* ranks_ = nullptr;  // in this call
   std::vector<Subdivision> subdivisions_;
   std::vector<Cell> passed_over_;  // in this call
 };

@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "dartcast/error.hpp"
+#include "simulation/particle_share.hpp"
 
 namespace dartcast {
 
@@ -23,6 +25,16 @@ bool is_possible_in_plane(EventKind kind) {
     case EventKind::reconnect: return false;
   }
   return false;
+}
+
+// Each rank has counted its own.
+void sum_particles(EventReport& report, Ranks* ranks) {
+  std::array<std::uint64_t*, 5> counts = {&report.particles_touched, &report.particles_located, &report.particles_moved,
+                                          &report.particles_held, &report.particles_absorbed};
+  std::array<std::uint64_t, 5> sums{};
+  for (std::size_t i = 0; i < counts.size(); ++i) sums[i] = *counts[i];
+  sum_over(ranks, sums);
+  for (std::size_t i = 0; i < counts.size(); ++i) *counts[i] = sums[i];
 }
 
 }  // namespace
@@ -83,7 +95,9 @@ void EventScheduler::before_step() {
 
 EventReport EventScheduler::carry_out(std::uint32_t event) {
   try {
-    return apply(simulation_, events_[event]);
+    EventReport report = apply(simulation_, events_[event]);
+    sum_particles(report, simulation_.options().ranks);
+    return report;
   } catch (const Error& e) {
     throw Error(fmt::format("event {} ({} at {} s): {}", event + 1, name_of(kind_of(events_[event])), events_[event].at,
                             e.what()));
@@ -104,9 +118,10 @@ void EventScheduler::after_step() {
 RepairReport EventScheduler::remesh() { return simulation_.repair(remeshing_.options); }
 
 AdaptiveSubdivisionReport EventScheduler::adapt() {
-  AdaptiveSubdivisionReport report =
-      subdivision_.adapt(environment_.complex(), simulation_.particles(),
-                         [&](const std::function<void(ComplexEdit&)>& make) { return simulation_.edit(make).edit; });
+  AdaptiveSubdivisionReport report = subdivision_.adapt(
+      environment_.complex(), simulation_.particles(),
+      [&](const std::function<void(ComplexEdit&)>& make) { return simulation_.edit(make).edit; },
+      simulation_.options().ranks);
   log_.subdivided += report.subdivided;
   log_.merged += report.merged;
   log_.refused = report.refused.size();
@@ -153,10 +168,13 @@ void EventScheduler::repeat_subdivision(const EventLog::Change& change) {
 std::uint64_t EventScheduler::count_in_opened() const {
   const CombinatorialMap& map = environment_.map();
   const auto states = simulation_.particles().states();
-  return static_cast<std::uint64_t>(std::count_if(states.begin(), states.end(), [&](const ParticleState& s) {
+  std::uint64_t count = 0;
+  for (const ParticleState& s : states) {
     const std::uint32_t source = map.source(s.cell);
-    return !s.held && source < blocked_.size() && blocked_[source];
-  }));
+    count += !s.held && source < blocked_.size() && blocked_[source] ? 1 : 0;
+  }
+  sum_over(simulation_.options().ranks, {&count, 1});
+  return count;
 }
 
 }  // namespace dartcast

@@ -80,6 +80,11 @@ void check(const SimulationOptions& o) {
   check(o.step, "simulation");
   check_names(o.user_data);
   if (!o.collisions) return;
+  if (o.ranks != nullptr && o.ranks->size() > 1)
+    throw InvalidArgument(
+        "simulation: spheres that collide need all others, and ranks have some each: run this scene with one process, "
+        "or "
+        "leave collisions out");
   const CollisionOptions& c = *o.collisions;
   if (!(c.restitution >= 0.0 && c.restitution <= 1.0))
     throw InvalidArgument("simulation: the spheres' restitution must be between 0 and 1");
@@ -94,7 +99,10 @@ void check(const SimulationOptions& o) {
 }  // namespace
 
 ParticleSystem::ParticleSystem(Environment& environment, const SimulationOptions& options)
-    : environment_(environment), options_(options), responses_(responses_of(options, environment.map())) {
+    : environment_(environment),
+      options_(options),
+      share_(options.ranks),
+      responses_(responses_of(options, environment.map())) {
   check(options);
   if (environment.map().dimension() == 2 && options.gravity.z != 0.0)
     throw InvalidArgument(fmt::format("simulation: gravity is ({}, {}, {}): in the plane its z must be 0",

@@ -14,6 +14,7 @@
 #include "dynamics/near_walls.hpp"
 #include "simulation/component.hpp"
 #include "simulation/flow_aim.hpp"
+#include "simulation/particle_share.hpp"
 #include "simulation/seeding.hpp"
 #include "simulation/simulation_state.hpp"
 #include "simulation/sphere_bodies.hpp"
@@ -80,6 +81,10 @@ class ParticleSystem final : public SimulationComponent {
   [[nodiscard]] const WallResponses& responses() const { return responses_; }
   [[nodiscard]] const Environment& environment() const { return environment_; }
   [[nodiscard]] const SimulationStep& last_step() const { return last_; }
+  /// Takes the step of all ranks in place of this one's.
+  void set_last_step(SimulationStep step) { last_ = std::move(step); }
+  [[nodiscard]] const ParticleShare& share() const { return share_; }
+  [[nodiscard]] std::uint64_t next_id() const { return next_id_; }
   [[nodiscard]] const UpdateReport& last_update() const { return last_update_; }  ///< of the last edit
   [[nodiscard]] std::span<const std::uint64_t> absorbed_by_edit() const {
     return absorbed_by_edit_;
@@ -150,7 +155,7 @@ class ParticleSystem final : public SimulationComponent {
   void inject();
   void check_motion(const Vec3& velocity, double radius, std::string_view whose) const;
   void check_user_data(std::span<const double> values) const;
-  void complete(const Vec3& velocity, double radius, std::span<const double> user_data);
+  std::vector<AddResult> add_own(std::span<const Vec3> positions);
   void complete_next(const Vec3& velocity, double radius, std::span<const double> user_data);
   template <class Sampler>
   void add_sampled(const Sampler& sampler, std::size_t count, const Vec3& velocity, double radius,
@@ -161,6 +166,7 @@ class ParticleSystem final : public SimulationComponent {
   void reopen_inlets();
   // In particle_system_checkpoint.cpp.
   void stand_at(std::uint64_t steps);
+  void put_in_place_of_all(const ParticleSystemState& saved);
   // With collisions, in particle_system_collide.cpp.
   [[nodiscard]] bool collides() const { return options_.collisions && spheres_ > 0; }
   [[nodiscard]] double mass(std::size_t i) const;
@@ -174,6 +180,7 @@ class ParticleSystem final : public SimulationComponent {
 
   Environment& environment_;
   SimulationOptions options_;
+  ParticleShare share_;
   WallResponses responses_;
   std::optional<VelocityField> field_;
   std::optional<VectorField> force_;  // accelerations, on top of gravity

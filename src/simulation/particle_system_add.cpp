@@ -1,4 +1,5 @@
-// Adding particles: at given positions, at random, and at inlets.
+// Adding particles: at given positions, at random, and at inlets. Where ranks share the particles, each goes through all,
+// and adds its own.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -111,8 +112,10 @@ std::vector<AddResult> ParticleSystem::add(std::span<const Vec3> positions, cons
   check_motion(velocity, radius, "a particle's");
   check_user_data(user_data);
   SystemAddition addition(*this);
-  std::vector<AddResult> added = environment_.add(particles_, positions);
-  complete(velocity, radius, user_data);
+  std::vector<AddResult> added = add_own(positions);
+  for (const AddResult& a : added) {
+    if (a.location.place == Place::free) complete_next(velocity, radius, user_data);
+  }
   addition.keep();
   totals_.start = next_id_ - totals_.injected;
   return added;
@@ -129,7 +132,7 @@ std::vector<AddResult> ParticleSystem::add(std::span<const Vec3> positions, std:
     if (!good) check_motion(velocities[i], radii[i], fmt::format("particle {}'s", i));
   }
   SystemAddition addition(*this);
-  std::vector<AddResult> added = environment_.add(particles_, positions);
+  std::vector<AddResult> added = add_own(positions);
   for (std::size_t i = 0; i < added.size(); ++i) {
     if (added[i].location.place == Place::free) complete_next(velocities[i], radii[i], user_data);
   }
@@ -138,13 +141,30 @@ std::vector<AddResult> ParticleSystem::add(std::span<const Vec3> positions, std:
   return added;
 }
 
-// Gives ids, velocities and radii to the particles added last.
-void ParticleSystem::complete(const Vec3& velocity, double radius, std::span<const double> user_data) {
-  while (ids_.size() < particles_.size()) complete_next(velocity, radius, user_data);
+// Adds those of this rank to the environment, and says of all where they are.
+std::vector<AddResult> ParticleSystem::add_own(std::span<const Vec3> positions) {
+  if (share_.has_all()) return environment_.add(particles_, positions);
+  const std::vector<Location> locations = environment_.locate(positions);
+  std::vector<AddResult> added(positions.size());
+  std::vector<Vec3> own;
+  std::vector<std::size_t> which;
+  std::uint64_t id = next_id_;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    added[i].location = locations[i];
+    if (locations[i].place != Place::free || !share_.holds(id++)) continue;
+    own.push_back(positions[i]);
+    which.push_back(i);
+  }
+  const std::vector<AddResult> results = environment_.add(particles_, own);
+  for (std::size_t k = 0; k < which.size(); ++k) added[which[k]].particle = results[k].particle;
+  return added;
 }
 
+// Gives the next id to a particle; where it is this rank's, it is the next one in the environment's set.
 void ParticleSystem::complete_next(const Vec3& velocity, double radius, std::span<const double> user_data) {
-  ids_.push_back(next_id_++);
+  const std::uint64_t id = next_id_++;
+  if (!share_.holds(id)) return;
+  ids_.push_back(id);
   velocities_.push_back(velocity);
   fates_.push_back(ParticleStatus::alive);
   contact_counts_.push_back(0);
@@ -162,6 +182,7 @@ void ParticleSystem::add_sampled(const Sampler& sampler, std::size_t count, cons
   constexpr int max_tries = 1000;
   SystemAddition addition(*this);
   for (std::size_t i = 0; i < count; ++i) {
+    if (!share_.holds(next_id_ + i)) continue;
     KeyedRandom random(options_.seed, RandomPurpose::place, next_id_ + i);
     int tries = 0;
     while (true) {
@@ -173,7 +194,7 @@ void ParticleSystem::add_sampled(const Sampler& sampler, std::size_t count, cons
             "valid");
     }
   }
-  complete(velocity, radius, user_data);
+  for (std::size_t i = 0; i < count; ++i) complete_next(velocity, radius, user_data);
   addition.keep();
 }
 

@@ -31,11 +31,34 @@ void ParticleSystem::restore(const SimulationState& state) {
     throw InvalidArgument("simulation: the checkpoint has other user data: give the options that it was saved with");
   if (steps_ != saved.steps) stand_at(saved.steps);
   put_back_known(state.solids.places, saved.steps);
+  put_in_place_of_all(saved);
+  clear_.clear();
+  count_spheres();
+  body_collider_.solver().set_cached_impulses(saved.impulses);  // the one that continues drops the other's
+  collider_.solver().set_cached_impulses(saved.impulses);
+  steps_ = saved.steps;
+  next_id_ = saved.next_id;
+  totals_ = {};
+  totals_.start = saved.totals.start;
+  totals_.injected = saved.totals.injected;
+  totals_.contacts_by_patch.resize(saved.totals.contacts_by_patch.size());
+  gone_ = {};
+  if (!share_.is_first()) return;  // sums over all ranks have them once
+  totals_ = saved.totals;
+  gone_ = saved.gone;
+}
+
+// Those that this rank holds.
+void ParticleSystem::put_in_place_of_all(const ParticleSystemState& saved) {
+  std::vector<std::size_t> own;
+  for (std::size_t i = 0; i < saved.particles.size(); ++i) {
+    if (share_.holds(saved.particles[i].id)) own.push_back(i);
+  }
   std::vector<ParticleState> states;
   std::vector<Weights> weights;
-  for (const ParticleSystemState::Particle& p : saved.particles) {
-    states.push_back(p.state);
-    weights.push_back(p.held_weights);
+  for (const std::size_t i : own) {
+    states.push_back(saved.particles[i].state);
+    weights.push_back(saved.particles[i].held_weights);
   }
   particles_ = environment_.restored(states, weights);
   ids_.clear();
@@ -44,23 +67,18 @@ void ParticleSystem::restore(const SimulationState& state) {
   contact_counts_.clear();
   radii_.clear();
   held_.clear();
-  for (const ParticleSystemState::Particle& p : saved.particles) {
+  user_data_.clear();
+  for (const std::size_t i : own) {
+    const ParticleSystemState::Particle& p = saved.particles[i];
     ids_.push_back(p.id);
     velocities_.push_back(p.velocity);
     fates_.push_back(p.fate);
     contact_counts_.push_back(p.contacts);
     radii_.push_back(p.radius);
     held_.push_back(p.state.held ? 1 : 0);
+    const auto data = saved.user_data.begin() + static_cast<std::ptrdiff_t>(i * width());
+    user_data_.insert(user_data_.end(), data, data + static_cast<std::ptrdiff_t>(width()));
   }
-  user_data_ = saved.user_data;
-  clear_.clear();
-  count_spheres();
-  body_collider_.solver().set_cached_impulses(saved.impulses);  // the one that continues drops the other's
-  collider_.solver().set_cached_impulses(saved.impulses);
-  steps_ = saved.steps;
-  next_id_ = saved.next_id;
-  totals_ = saved.totals;
-  gone_ = saved.gone;
 }
 
 void ParticleSystem::go_to(std::uint64_t steps) {

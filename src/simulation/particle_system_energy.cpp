@@ -1,8 +1,10 @@
 // The masses and the energy of particles.
 #include <algorithm>
 #include <numbers>
+#include <string>
 #include <vector>
 
+#include "base/bytes.hpp"
 #include "base/exact_sum.hpp"
 #include "base/parallel.hpp"
 #include "simulation/particle_system.hpp"
@@ -18,6 +20,22 @@ struct ExactEnergy {
   ExactSum potential;
 };
 
+SimulationEnergy of_all_ranks(const ExactEnergy& own, Ranks* ranks) {
+  const auto rounded = [](const ExactEnergy& e) { return SimulationEnergy{e.kinetic.value(), e.potential.value()}; };
+  if (ranks == nullptr || ranks->size() == 1) return rounded(own);
+  ByteWriter bytes;
+  bytes.put(own);
+  ExactEnergy all;
+  for (const std::string& b : ranks->gather(bytes.bytes())) {
+    const auto part = ByteReader(b).take<ExactEnergy>();
+    all.kinetic += part.kinetic;
+    all.potential += part.potential;
+  }
+  ByteWriter sum;
+  sum.put(rounded(all));
+  return ByteReader(ranks->broadcast(sum.bytes())).take<SimulationEnergy>();
+}
+
 }  // namespace
 
 // Precondition: there are collisions.
@@ -29,7 +47,7 @@ double ParticleSystem::mass(std::size_t i) const {
   return options_.collisions->density * (plane ? std::numbers::pi * r * r : 4.0 / 3.0 * std::numbers::pi * r * r * r);
 }
 
-// Sums are exact: they do not depend on how particles are shared among threads.
+// Sums are exact: they do not depend on how threads and ranks share the particles.
 SimulationEnergy ParticleSystem::energy() const {
   std::vector<ExactEnergy> parts(chunk_count(particles_.size(), energy_grain));
   parallel_for(particles_.size(), energy_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
@@ -45,7 +63,7 @@ SimulationEnergy ParticleSystem::energy() const {
     all.kinetic += part.kinetic;
     all.potential += part.potential;
   }
-  return {all.kinetic.value(), all.potential.value()};
+  return of_all_ranks(all, options_.ranks);
 }
 
 }  // namespace dartcast

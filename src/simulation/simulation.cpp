@@ -5,6 +5,7 @@
 
 #include "dartcast/error.hpp"
 #include "dartcast/validity.hpp"
+#include "simulation/gathered_step.hpp"
 #include "simulation/simulation_parts.hpp"
 #include "simulation/simulation_state.hpp"
 #include "simulation/timer.hpp"
@@ -25,7 +26,8 @@ Simulation::~Simulation() = default;
 //  1. events that are due edit the environment;
 //  2. the particles step: inlets inject, vertices move, velocities change, particles advance, some leave;
 //  3. the other components step in the environment as it stands then: solids, bodies, catheters, statistics;
-//  4. invalid cells are remeshed and crowded cells are subdivided, where that is due.
+//  4. the first rank gets what happened on all, and statistics count it;
+//  5. invalid cells are remeshed and crowded cells are subdivided, where that is due.
 const SimulationStep& Simulation::step() {
   const double begin = time();
   parts_->particles.load_step();
@@ -34,6 +36,9 @@ const SimulationStep& Simulation::step() {
     const ScopeTimer timer(parts_->clock_of(component));
     component->step(begin);
   }
+  Ranks* const ranks = options().ranks;
+  if (ranks != nullptr && ranks->size() > 1) gather_step(*ranks, parts_->particles, parts_->statistics);
+  parts_->statistics.count();
   parts_->events.after_step();
   return parts_->particles.last_step();
 }
@@ -209,18 +214,5 @@ const EventLog& Simulation::event_log() const { return parts_->events.log(); }
 std::vector<BodySummary> Simulation::body_summaries() const { return parts_->bodies.summaries(); }
 std::vector<CatheterSummary> Simulation::catheter_summaries() const { return parts_->catheters.summaries(); }
 std::vector<SolidSummary> Simulation::solid_summaries() const { return parts_->solids.summaries(); }
-SimulationEnergy Simulation::energy() const { return parts_->particles.energy(); }
-
-Audit Simulation::audit() const {
-  Audit all;
-  for (const SimulationComponent* component : parts_->components) all += component->audit();
-  return all;
-}
-
-StateHash Simulation::state_hash() const {
-  StateHash all;
-  for (const SimulationComponent* component : parts_->components) all += component->state_hash();
-  return all;
-}
 
 }  // namespace dartcast

@@ -15,7 +15,7 @@ namespace dartcast {
 
 namespace {
 
-SimulationOptions options_of(const Scene& scene) {
+SimulationOptions options_of(const Scene& scene, Ranks* ranks) {
   SimulationOptions options;
   options.dt = scene.motion.dt;
   options.gravity = scene.motion.gravity;
@@ -29,6 +29,7 @@ SimulationOptions options_of(const Scene& scene) {
   options.collisions = scene.collisions;
   options.body_collisions = scene.body_collisions;
   options.user_data = scene.user_data;
+  options.ranks = ranks;
   return options;
 }
 
@@ -97,13 +98,13 @@ void add_inlets(Simulation& simulation, const Scene& scene) {
 }  // namespace
 
 // All but the particles.
-void Simulation::make(const Scene& scene, Threads threads) {
+void Simulation::make(const Scene& scene, Threads threads, Ranks* ranks) {
   MeshData made;
   if (!is_ready(scene.environment)) made = scene_mesh(scene.environment);
   const MeshData& mesh = is_ready(scene.environment) ? std::get<MeshData>(scene.environment.mesh) : made;
   auto own = std::make_unique<Environment>(mesh, threads);
   Environment& environment = *own;
-  parts_ = std::make_unique<Parts>(*this, std::move(own), environment, options_of(scene));
+  parts_ = std::make_unique<Parts>(*this, std::move(own), environment, options_of(scene, ranks));
   const CellComplex& complex = environment.complex();
   if (const auto field = scene_field(scene.motion.field, "the velocity field", mesh, complex)) set_field(*field);
   if (const auto force = scene_field(scene.motion.force, "the force", mesh, complex)) set_force(*force);
@@ -118,13 +119,14 @@ void Simulation::make(const Scene& scene, Threads threads) {
   add_inlets(*this, scene);
 }
 
-Simulation::Simulation(const Scene& scene, Threads threads) {
-  make(scene, threads);
+Simulation::Simulation(const Scene& scene, Threads threads, Ranks* ranks) {
+  make(scene, threads, ranks);
   for (const ParticlesScene& p : scene.particles) std::visit(ParticleSource(*this, p), p.source);
 }
 
-Simulation::Simulation(const Scene& scene, const SimulationCheckpoint& saved, Threads threads, AfterEdit after_edit) {
-  make(scene, threads);
+Simulation::Simulation(const Scene& scene, const SimulationCheckpoint& saved, Threads threads, AfterEdit after_edit,
+                       Ranks* ranks) {
+  make(scene, threads, ranks);
   set_after_edit(std::move(after_edit));
   restore(saved);
 }

@@ -2,7 +2,8 @@
 //
 // Phases of a step, in order:
 //  1. after the injection, in the middle of the particles' step: positions and new particles are noted;
-//  2. after the particles' step: hits, crossings, residence times of those that left, points of pathlines.
+//  2. after the particles' step: crossings, residence times of those that left, points of pathlines are found;
+//  3. count() adds them and the hits to the totals.
 #include "simulation/statistics_component.hpp"
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 
 #include "dartcast/combinatorial_map.hpp"
 #include "dartcast/error.hpp"
+#include "simulation/gathered_step.hpp"
 #include "simulation/timer.hpp"
 
 namespace dartcast {
@@ -49,16 +51,36 @@ void StatisticsComponent::note_start() {
   before_ = positions_of(particles_.particles());
   first_new_ = static_cast<std::size_t>(std::lower_bound(ids.begin(), ids.end(), starts_.next_id()) - ids.begin());
   start_velocities_.assign(velocities.begin() + static_cast<std::ptrdiff_t>(first_new_), velocities.end());
-  if (!ids.empty()) starts_.add(ids.back() + 1, particles_.time());
+  starts_.add(particles_.next_id(), particles_.time());
 }
 
 void StatisticsComponent::step(double begin) {
-  if (options_.hits) statistics_.hits.add(particles_.environment(), particles_.last_step().report.contacts);
   if (!observes_motion()) return;
   find_ends();
-  count_crossings(begin);
-  if (options_.residence) count_left(begin);
+  find_passages(begin);
+  find_leavings(begin);
   add_path_points(begin);
+}
+
+void StatisticsComponent::count() {
+  const ScopeTimer timer(statistics_.seconds);
+  if (options_.hits) statistics_.hits.add(particles_.environment(), particles_.last_step().report.contacts);
+  const double dt = particles_.options().dt;
+  for (const PlanePassage& passage : statistics_.passages) {
+    PlaneTotals& totals = statistics_.planes[passage.crossing.plane];
+    (passage.crossing.forward ? totals.forward : totals.backward).add(passage.age, dt);
+  }
+  for (const Leaving& p : leavings_) {
+    LeaveTotals& totals = statistics_.left[p.patch.value];
+    (p.status == ParticleStatus::escaped ? totals.escaped : totals.absorbed).add(p.age, dt);
+  }
+}
+
+void StatisticsComponent::set_found(std::vector<PlanePassage> passages, std::vector<PathPoint> points,
+                                    std::vector<Leaving> leavings) {
+  statistics_.passages = std::move(passages);
+  statistics_.path_points = std::move(points);
+  leavings_ = std::move(leavings);
 }
 
 // Both lists of ids ascend. The particles that are in the first alone have left.
@@ -79,27 +101,26 @@ void StatisticsComponent::find_ends() {
   }
 }
 
-void StatisticsComponent::count_crossings(double begin) {
+void StatisticsComponent::find_passages(double begin) {
   const double dt = particles_.options().dt;
   statistics_.passages.clear();
   if (options_.planes.empty()) return;
   for (const PlaneCrossing& c : find_crossings(options_.planes, before_, after_, particles_.environment().threads())) {
     PlanePassage passage{c, ids_[c.particle], begin + c.share * dt, 0.0};
     passage.age = passage.time - starts_.of(passage.id);
-    PlaneTotals& totals = statistics_.planes[c.plane];
-    (c.forward ? totals.forward : totals.backward).add(passage.age, dt);
     statistics_.passages.push_back(passage);
   }
 }
 
-void StatisticsComponent::count_left(double begin) {
+void StatisticsComponent::find_leavings(double begin) {
+  leavings_.clear();
+  if (!options_.residence) return;
   const double dt = particles_.options().dt;
   const ContactList& list = particles_.last_step().report.contacts;
   for (const LeftParticle& p : particles_.last_step().left) {
     const Contact& last = list.contacts[p.contact];
-    LeaveTotals& totals = statistics_.left[list.walls_of(last).front().patch.value];
     const double time = begin + last.time_of_impact * dt;
-    (p.status == ParticleStatus::escaped ? totals.escaped : totals.absorbed).add(time - starts_.of(p.id), dt);
+    leavings_.push_back({p.id, p.status, list.walls_of(last).front().patch, time - starts_.of(p.id)});
   }
 }
 
@@ -144,10 +165,12 @@ void StatisticsComponent::add_contacts(std::size_t i, std::size_t first, std::si
 void StatisticsComponent::update_after_edit(const ComplexEditReport& /*edit*/, OrphanPolicy /*orphaned*/) {
   if (options_.hits) statistics_.hits.update_after_edit(particles_.environment());
   if (!options_.residence) return;
-  for (const std::uint64_t id : particles_.absorbed_by_edit()) {
-    starts_.add(id + 1, particles_.time());
-    statistics_.absorbed_by_edits.add(particles_.time() - starts_.of(id), particles_.options().dt);
-  }
+  starts_.add(particles_.next_id(), particles_.time());
+  std::vector<Leaving> absorbed;
+  for (const std::uint64_t id : particles_.absorbed_by_edit())
+    absorbed.push_back({id, ParticleStatus::absorbed, {}, particles_.time() - starts_.of(id)});
+  for (const Leaving& p : gathered_by_id(particles_.options().ranks, std::move(absorbed)))
+    statistics_.absorbed_by_edits.add(p.age, particles_.options().dt);
 }
 
 void StatisticsComponent::check(const SimulationState& state) const {
@@ -178,6 +201,7 @@ void StatisticsComponent::restore(const SimulationState& state) {
   statistics_.absorbed_by_edits = saved.absorbed_by_edits;
   statistics_.passages.clear();
   statistics_.path_points.clear();
+  leavings_.clear();
   starts_ = StartTimes(saved.starts, saved.next_id);
 }
 

@@ -11,7 +11,16 @@
 
 namespace dartcast {
 
-/// It steps after the particles and before edits that end a step: contacts then still name cells that exist.
+/// A particle that left in the last step.
+struct Leaving {
+  std::uint64_t id = 0;
+  ParticleStatus status = ParticleStatus::escaped;  // or absorbed
+  Patch patch;                                      // where it left
+  double age = 0.0;                                 // s
+};
+
+/// It steps after the particles and before edits that end a step: contacts then still name cells that exist. A step
+/// finds what has happened; count() adds that to the totals. In between the first rank gets what all have found.
 class StatisticsComponent final : public SimulationComponent {
  public:
   explicit StatisticsComponent(ParticleSystem& particles) : particles_(particles) {}
@@ -25,6 +34,11 @@ class StatisticsComponent final : public SimulationComponent {
   void check(const SimulationState& state) const;
 
   void step(double begin) override;
+  /// Adds what the last step has found to the totals.
+  void count();
+  [[nodiscard]] const std::vector<Leaving>& leavings() const { return leavings_; }
+  /// In place of what this rank has found.
+  void set_found(std::vector<PlanePassage> passages, std::vector<PathPoint> points, std::vector<Leaving> leavings);
   void update_after_edit(const ComplexEditReport& edit, OrphanPolicy orphaned) override;
   void save(SimulationState& state) const override;
   void restore(const SimulationState& state) override;
@@ -37,8 +51,8 @@ class StatisticsComponent final : public SimulationComponent {
   }
   void note_start();
   void find_ends();
-  void count_crossings(double begin);
-  void count_left(double begin);
+  void find_passages(double begin);
+  void find_leavings(double begin);
   void add_path_points(double begin);
   void add_contacts(std::size_t i, std::size_t first, std::size_t end, double begin);
   [[nodiscard]] bool has_pathline(std::uint64_t id) const;
@@ -47,6 +61,7 @@ class StatisticsComponent final : public SimulationComponent {
   StatisticsOptions options_;
   Statistics statistics_;
   StartTimes starts_;
+  std::vector<Leaving> leavings_;  // of the last step, by id
   // The particles of the step, as they were after the injection.
   std::vector<std::uint64_t> ids_;
   std::vector<Vec3> before_;

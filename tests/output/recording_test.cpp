@@ -44,6 +44,11 @@ contacts = true
 )";
 const std::string twist = "[[deformation]]\nkind = 'twist'\namplitude = 0.5\nlength = 4.0\n";
 
+void add_step(Recording& recording, Simulation& simulation) {
+  const SimulationStep& step = simulation.step();
+  recording.add_step(simulation, step, {simulation.alive(), simulation.energy()});
+}
+
 std::string content(const fs::path& path) {
   std::ifstream file(path);
   std::stringstream text;
@@ -99,7 +104,7 @@ TEST_F(RecordingTest, FramesReadBackBitByBit) {
   simulation.add_random(50, {1.0, -2.0, 0.1});
   WritingThread writing;
   Recording recording(writing, {folder, false, false}, EnvironmentRecord(mesh), "");
-  for (int i = 0; i < 5; ++i) recording.add_step(simulation, simulation.step());
+  for (int i = 0; i < 5; ++i) add_step(recording, simulation);
   recording.add_frame(simulation);
   writing.finish();
   const PointFile file = read_points(folder / "particles_000005.vtp");
@@ -299,9 +304,15 @@ TEST(RunFiles, FramesAreKnownByTheirNames) {
   EXPECT_EQ(frame_step("particles_000010.vtp"), 10U);
   EXPECT_EQ(frame_step("environment_1000000.vtu"), 1000000U);
   EXPECT_EQ(frame_step("surface_a_000002_000010.vtp"), 10U);
-  for (const char* other : {"particles_10.vtp", "particles_000010.vtu", "body_000010.vtp", "body__000010.vtp",
+  EXPECT_EQ(frame_step("particles_000010.12.vtp"), 10U);  // a piece
+  EXPECT_EQ(frame_step("particles_000010.pvtp"), 10U);
+  for (const char* other : {"particles_000010.a.vtp", "particles_000010..vtp", "checkpoint_000010.2.bin",
+                            "particles_10.vtp", "particles_000010.vtu", "body_000010.vtp", "body__000010.vtp",
                             "mine_000010.vtp", "particles_00001x.vtp", "environment.vtu"})
     EXPECT_FALSE(frame_step(other)) << other;
+  EXPECT_TRUE(is_run_file(checkpoint_part_name(10, 2)));
+  EXPECT_TRUE(is_checkpoint_part_of_another("checkpoint_000010.2.bin", 20));
+  EXPECT_FALSE(is_checkpoint_part_of_another("checkpoint_000020.2.bin", 20));
 }
 
 }  // namespace dartcast::recording_test

@@ -1,0 +1,162 @@
+// A simulation's sums over all ranks that share its particles, and one checkpoint of their parts.
+//
+// Particles count on each rank. Bodies and other parts that are repeated on each count on the first alone.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/bytes.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/simulation.hpp"
+#include "simulation/particle_share.hpp"
+#include "simulation/simulation_parts.hpp"
+#include "simulation/simulation_state.hpp"
+
+namespace dartcast {
+
+namespace {
+
+bool share(const Ranks* ranks) { return ranks != nullptr && ranks->size() > 1; }
+
+// All but what is the same on each rank, and times.
+void add_sums(SimulationTotals& all, const SimulationTotals& t) {
+  all.absorbed += t.absorbed;
+  all.escaped += t.escaped;
+  all.counters += t.counters;
+  all.collisions += t.collisions;
+  all.wall_overlaps += t.wall_overlaps;
+  all.deepest_in_wall = std::max(all.deepest_in_wall, t.deepest_in_wall);
+  for (std::size_t i = 0; i < all.contacts_by_patch.size(); ++i) all.contacts_by_patch[i] += t.contacts_by_patch[i];
+}
+
+std::string packed(const SimulationTotals& t) {
+  ByteWriter out;
+  out.put(t.absorbed);
+  out.put(t.escaped);
+  out.put(t.counters);
+  out.put(t.collisions);
+  out.put(t.wall_overlaps);
+  out.put(t.deepest_in_wall);
+  out.put(t.contacts_by_patch);
+  return out.bytes();
+}
+
+// In place of these fields of `t`.
+void unpack(const std::string& bytes, SimulationTotals& t) {
+  ByteReader in(bytes);
+  t.absorbed = in.take<std::uint64_t>();
+  t.escaped = in.take<std::uint64_t>();
+  t.counters = in.take<Counters>();
+  t.collisions = in.take<CollisionCounts>();
+  t.wall_overlaps = in.take<std::uint64_t>();
+  t.deepest_in_wall = in.take<double>();
+  t.contacts_by_patch = in.take_list<std::uint64_t>();
+}
+
+std::string packed(const Audit& audit) {
+  ByteWriter out;
+  out.put(audit.checked);
+  out.put(audit.failed);
+  out.put(audit.first);
+  return out.bytes();
+}
+
+Audit unpacked_audit(const std::string& bytes) {
+  ByteReader in(bytes);
+  Audit audit;
+  audit.checked = in.take<std::uint64_t>();
+  audit.failed = in.take<std::uint64_t>();
+  audit.first = in.take_text();
+  return audit;
+}
+
+// By id, as one process has them.
+void put_in_order(ParticleSystemState& s) {
+  const std::size_t count = s.particles.size();
+  const std::size_t width = count > 0 ? s.user_data.size() / count : 0;
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return s.particles[a].id < s.particles[b].id; });
+  std::vector<ParticleSystemState::Particle> particles;
+  std::vector<double> user_data;
+  particles.reserve(count);
+  user_data.reserve(s.user_data.size());
+  for (const std::size_t i : order) {
+    particles.push_back(s.particles[i]);
+    for (std::size_t k = 0; k < width; ++k) user_data.push_back(s.user_data[i * width + k]);
+  }
+  s.particles = std::move(particles);
+  s.user_data = std::move(user_data);
+}
+
+}  // namespace
+
+SimulationTotals Simulation::totals_of_all() const {
+  SimulationTotals all = totals();
+  Ranks* const ranks = options().ranks;
+  if (!share(ranks)) return all;
+  const std::vector<std::string> theirs = ranks->gather(packed(all));
+  for (std::size_t r = 1; r < theirs.size(); ++r) {
+    SimulationTotals t;
+    unpack(theirs[r], t);
+    add_sums(all, t);
+  }
+  unpack(ranks->broadcast(packed(all)), all);
+  return all;
+}
+
+std::uint64_t Simulation::alive() const {
+  std::uint64_t count = particles().size();
+  sum_over(options().ranks, {&count, 1});
+  return count;
+}
+
+SimulationEnergy Simulation::energy() const { return parts_->particles.energy(); }
+
+Audit Simulation::audit() const {
+  Ranks* const ranks = options().ranks;
+  Audit own = parts_->particles.audit();
+  for (const SimulationComponent* component : parts_->components) {
+    if (component != &parts_->particles && parts_->particles.share().is_first()) own += component->audit();
+  }
+  if (!share(ranks)) return own;
+  Audit all;
+  for (const std::string& bytes : ranks->gather(packed(own))) all += unpacked_audit(bytes);
+  return unpacked_audit(ranks->broadcast(packed(all)));
+}
+
+StateHash Simulation::state_hash() const {
+  StateHash own = parts_->particles.state_hash();
+  for (const SimulationComponent* component : parts_->components) {
+    if (component != &parts_->particles && parts_->particles.share().is_first()) own += component->state_hash();
+  }
+  StateHash::Words words = own.words();
+  sum_over(options().ranks, words);
+  return StateHash(words);
+}
+
+SimulationCheckpoint joined(std::span<const SimulationCheckpoint> parts) {
+  if (parts.empty()) throw InvalidArgument("joined: there is no checkpoint");
+  SimulationState all = parts.front().state();
+  for (const SimulationCheckpoint& part : parts.subspan(1)) {
+    const ParticleSystemState& p = part.state().particles;
+    if (p.steps != all.particles.steps)
+      throw InvalidArgument(
+          fmt::format("joined: one checkpoint is of step {}, another of step {}: join those that the "
+                      "ranks have saved after the same step",
+                      all.particles.steps, p.steps));
+    all.particles.particles.insert(all.particles.particles.end(), p.particles.begin(), p.particles.end());
+    all.particles.user_data.insert(all.particles.user_data.end(), p.user_data.begin(), p.user_data.end());
+    all.particles.gone += p.gone;
+    add_sums(all.particles.totals, p.totals);
+  }
+  put_in_order(all.particles);
+  return SimulationCheckpoint(std::move(all));
+}
+
+}  // namespace dartcast

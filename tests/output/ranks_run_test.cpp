@@ -1,0 +1,233 @@
+// Runs that ranks share, against the run of one process: the same files, numbers and hash. Here ranks are threads; with
+// processes under MPI: tests/mpi.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dartcast/error.hpp"
+#include "dartcast/mesh_files.hpp"
+#include "dartcast/run.hpp"
+#include "dartcast/scene_file.hpp"
+#include "formats/file_text.hpp"
+#include "formats/point_file.hpp"
+#include "output/run_files.hpp"
+#include "support/run_scenes.hpp"
+#include "support/sample_mesh.hpp"
+#include "support/thread_ranks.hpp"
+
+namespace dartcast::ranks_run_test {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+struct CutOff : std::exception {
+  [[nodiscard]] const char* what() const noexcept override { return "cut off"; }
+};
+
+// Runs the scene on so many ranks; `cut`: after so many steps rank 1, or the only one, fails.
+Summary run(const std::string& text, const fs::path& to, unsigned ranks, bool resume = false,
+            std::optional<std::uint64_t> steps = {}, std::uint64_t cut = 0) {
+  const Scene scene = parse_scene(text, "test.toml");
+  RunOptions options;
+  options.folder = to;
+  options.resume = resume;
+  options.steps = steps;
+  options.threads = Threads{1};
+  options.audit = true;
+  Summary summary;
+  test::on_ranks(ranks, [&](Ranks& r) {
+    RunOptions own = options;
+    own.ranks = &r;
+    const Summary s = run_scene(scene, own, [&](std::uint64_t done, std::uint64_t) {
+      if (done == cut && r.rank() == std::min(1U, ranks - 1)) throw CutOff();
+      return true;
+    });
+    if (r.rank() == 0) summary = s;
+  });
+  return summary;
+}
+
+// The particles of a frame, by id: each array's values of a particle one after another.
+std::vector<std::vector<double>> particles_of(const fs::path& folder, std::uint64_t step) {
+  std::vector<std::vector<double>> rows;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename();
+    if (!name.starts_with("particles_") || !name.ends_with(".vtp") || frame_step(name) != step) continue;
+    const PointFile frame = read_points(entry.path());
+    for (std::size_t i = 0; i < frame.points.size(); ++i) {
+      const Vec3& x = frame.points[i];
+      std::vector<double>& row = rows.emplace_back(std::vector{x.x, x.y, x.z});
+      for (const DataArray& a : frame.arrays) {
+        const auto first = a.values.begin() + static_cast<std::ptrdiff_t>(i * a.components);
+        row.insert(a.name == "id" ? row.begin() : row.end(), first, first + static_cast<std::ptrdiff_t>(a.components));
+      }
+    }
+  }
+  std::sort(rows.begin(), rows.end());
+  return rows;
+}
+
+// Particles of all frames, whatever the number of pieces; all other files as they are, but those that hold times.
+struct Outcome {
+  std::map<std::uint64_t, std::vector<std::vector<double>>> frames;
+  std::map<std::string, std::string> files;
+  Json summary;
+};
+
+void erase_times(Json& json) {
+  for (const char* key : {"seconds", "ns_per_particle_step", "ranks"}) {
+    if (json.is_object()) json.erase(key);
+  }
+  if (!json.is_structured()) return;
+  for (Json& part : json) erase_times(part);
+}
+
+Outcome outcome_of(const fs::path& folder) {
+  Outcome outcome;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename();
+    if (name == "summary.json" || name == "report.html" || name.starts_with("checkpoint")) continue;
+    if (const auto step = frame_step(name); step && name.starts_with("particles_")) {
+      if (has_vtk()) outcome.frames[*step] = particles_of(folder, *step);
+    } else if (name != "particles.pvd") {
+      outcome.files[name] = read_bytes(entry.path());
+    }
+  }
+  outcome.summary = Json::parse(read_bytes(folder / "summary.json"));
+  erase_times(outcome.summary);
+  return outcome;
+}
+
+void expect_same(const Outcome& one, const Outcome& many, const std::string& name) {
+  EXPECT_EQ(one.summary, many.summary) << name;
+  EXPECT_TRUE(one.frames == many.frames) << name;
+  for (const auto& [file, content] : one.files) {
+    ASSERT_TRUE(many.files.contains(file)) << name << ": " << file;
+    EXPECT_TRUE(many.files.at(file) == content) << name << ": " << file;
+  }
+  EXPECT_EQ(one.files.size(), many.files.size()) << name;
+}
+
+// Data of a user, and particles that a deforming mesh absorbs, lets go, and injects.
+std::string with_user_data() { return "particle_data = [\"age\", \"load\"]\n" + test::scene_text; }
+
+const std::map<std::string, std::string>& scenes() {
+  static const std::map<std::string, std::string> all = {
+      {"scene", test::scene_text}, {"surgery", test::surgery_text},     {"solids", test::solids_text},
+      {"tools", test::tools_text}, {"plug flow", test::plug_flow_text}, {"statistics", test::statistics_text}};
+  return all;
+}
+
+class RanksRun : public testing::Test {
+ protected:
+  test::Folder folder;
+  [[nodiscard]] fs::path at(const std::string& name) const { return folder / name; }
+};
+
+TEST_F(RanksRun, OfAnyNumberAreThatOfOneProcess) {
+  for (const auto& [name, text] : scenes()) {
+    const std::uint64_t steps = name == "plug flow" ? 150 : 47;
+    run(text, at(name + "1"), 1, false, steps);
+    const Outcome one = outcome_of(at(name + "1"));
+    for (const unsigned ranks : {2U, 3U, 4U}) {
+      const fs::path to = at(name + std::to_string(ranks));
+      const Summary summary = run(text, to, ranks, false, steps);
+      EXPECT_EQ(summary.ranks, ranks);
+      expect_same(one, outcome_of(to), name + " on " + std::to_string(ranks) + " ranks");
+    }
+  }
+}
+
+// Every rank has something to do in these tests.
+TEST_F(RanksRun, ShareTheParticles) {
+  run(test::scene_text, at("shared"), 3);
+  for (const char* piece : {"particles_000040.0.vtp", "particles_000040.1.vtp", "particles_000040.2.vtp"}) {
+    ASSERT_TRUE(fs::exists(at("shared") / piece)) << piece;
+    if (has_vtk()) EXPECT_GT(read_points(at("shared") / piece).points.size(), 20U) << piece;
+  }
+  EXPECT_NE(read_bytes(at("shared") / "particles_000040.pvtp").find("Source=\"particles_000040.2.vtp\""),
+            std::string::npos);
+  EXPECT_NE(read_bytes(at("shared") / "particles.pvd").find("particles_000040.pvtp"), std::string::npos);
+}
+
+TEST_F(RanksRun, GoOnWithAnyOtherNumber) {
+  for (const char* name : {"scene", "statistics", "solids"}) {
+    const std::string& text = scenes().at(name);
+    run(text, at("whole"), 1, false, 47);
+    const Outcome whole = outcome_of(at("whole"));
+    for (const auto [first, second, third] : {std::array{1U, 3U, 2U}, std::array{4U, 1U, 3U}, std::array{2U, 4U, 1U}}) {
+      const fs::path to = at(std::string(name) + std::to_string(first));
+      EXPECT_THROW(run(text, to, first, false, 47, 13), std::exception);
+      EXPECT_THROW(run(text, to, second, true, 47, 34), std::exception);
+      run(text, to, third, true, 47);
+      Outcome found = outcome_of(to);
+      found.files.erase("report.bin");  // it may hold a frame of the moment when the run was cut off
+      Outcome expected = whole;
+      expected.files.erase("report.bin");
+      expect_same(expected, found, name);
+    }
+    fs::remove_all(at("whole"));
+  }
+}
+
+// A failure of one rank ends the run on all.
+TEST_F(RanksRun, FailTogether) {
+  try {
+    run(test::scene_text, at("failed"), 3, false, 47, 20);
+    FAIL();
+  } catch (const RankFailed& e) {
+    EXPECT_STREQ(e.what(), "rank 1: cut off");
+  }
+}
+
+TEST_F(RanksRun, RefuseTornAndMissingParts) {
+  const fs::path to = at("torn");
+  EXPECT_THROW(run(test::scene_text, to, 3, false, 47, 25), std::exception);
+  const fs::path part = to / "checkpoint_000020.2.bin";
+  ASSERT_TRUE(fs::exists(part));
+  EXPECT_FALSE(fs::exists(to / "checkpoint_000010.2.bin"));
+  const std::string whole = read_bytes(part);
+  const auto refusal = [&] {
+    try {
+      run(test::scene_text, to, 2, true, 47);
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  for (const std::size_t at : {std::size_t{20}, whole.size() / 2, whole.size() - 1}) {
+    std::string damaged = whole;
+    damaged[at] = static_cast<char>(damaged[at] + 1);
+    std::ofstream(part, std::ios::binary) << damaged;
+    EXPECT_NE(refusal().find("checkpoint_000020.2.bin: the run cannot be resumed: it is damaged"), std::string::npos)
+        << at;
+  }
+  std::ofstream(part, std::ios::binary) << whole.substr(0, whole.size() / 3);
+  EXPECT_NE(refusal().find("cannot be resumed"), std::string::npos);
+  fs::copy_file(to / "checkpoint_000020.1.bin", part, fs::copy_options::overwrite_existing);
+  EXPECT_NE(refusal().find("it is of another checkpoint"), std::string::npos);
+  fs::remove(part);
+  EXPECT_NE(refusal().find("a part of the checkpoint is missing"), std::string::npos);
+  std::ofstream(part, std::ios::binary) << whole;
+  EXPECT_EQ(refusal(), "");
+}
+
+TEST_F(RanksRun, RefuseSpheresThatCollide) {
+  try {
+    run(test::spheres_text, at("spheres"), 2);
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("run this scene with one process"), std::string::npos) << e.what();
+  }
+}
+
+}  // namespace dartcast::ranks_run_test
