@@ -1,10 +1,13 @@
-# Three libraries over the rooms of src/, each on top of the one before, and dartcast::dartcast for all of them.
+# Libraries over the rooms of src/, each on top of the one before, and dartcast::dartcast for all of them. The library mpi
+# stands beside: it needs core alone.
 # tools/check_includes.py has the order of the rooms, and checks that these lists agree with it.
 set(core_rooms base predicates mesh generators topology complex editing surface tracking response environment)
 set(simulation_rooms dynamics spheres solids bodies catheter simulation)
+set(mpi_rooms distributed)
 set(io_rooms formats meshing scene report output)
 # Public headers; core has all others.
 set(simulation_headers dynamics spheres solids bodies catheter simulation deformation vector_field events scene statistics)
+set(mpi_headers mpi_ranks)
 set(io_headers mesh_files scene_file report run trajectory statistics_files)
 
 # The files of the case that is not built: with VTK, or without it.
@@ -61,7 +64,7 @@ endfunction()
 
 file(GLOB core_headers RELATIVE ${PROJECT_SOURCE_DIR}/include/dartcast CONFIGURE_DEPENDS include/dartcast/*.hpp)
 list(TRANSFORM core_headers REPLACE "\\.hpp$" "")
-list(REMOVE_ITEM core_headers dartcast ${simulation_headers} ${io_headers})
+list(REMOVE_ITEM core_headers dartcast ${simulation_headers} ${io_headers} ${mpi_headers})
 if(DARTCAST_THREADS STREQUAL "std")
   set_source_files_properties(src/base/parallel.cpp PROPERTIES COMPILE_DEFINITIONS DARTCAST_THREADS_STD)
 endif()
@@ -77,6 +80,12 @@ if(DARTCAST_IO)
   target_include_directories(dartcast_io PRIVATE ${LZ4_INCLUDE_DIR})
   target_link_libraries(dartcast_io PUBLIC dartcast_simulation)
   include(cmake/viewer.cmake)
+endif()
+
+if(DARTCAST_MPI)
+  list(APPEND DARTCAST_LIBRARIES mpi)
+  add_dartcast_library(mpi MPI::MPI_CXX)
+  target_link_libraries(dartcast_mpi PUBLIC dartcast_core)
 endif()
 
 # All libraries that are built, for users; for our own programs, with the headers of the rooms.

@@ -13,6 +13,7 @@
 #include "interruption.hpp"
 #include "limits.hpp"
 #include "max_memory.hpp"
+#include "processes.hpp"
 #include "terminal.hpp"
 
 namespace dartcast::app {
@@ -82,18 +83,21 @@ int status_of(const RunArguments& a, const Summary& summary, const std::string& 
   return interrupted + Interruption::signal();
 }
 
-int run(const RunArguments& a) {
+// Where ranks share the run, the first speaks for all.
+int run(const RunArguments& a, Ranks* ranks) {
   const Scene scene = read_scene(a.scene);
   RunOptions options;
   options.folder = a.folder.empty() ? scene.name + "-out" : a.folder;
-  options.threads = Threads{a.threads};
+  options.threads = a.threads > 0 ? Threads{a.threads} : threads_of_rank(ranks);
+  options.ranks = ranks;
   options.steps = a.steps;
   options.seed = a.seed;
   options.audit = a.audit;
   options.resume = a.resume;
   options.skip_bad_cells = a.skip_bad_cells;
   options.max_memory = a.max_memory;
-  const bool shows_progress = !a.quiet && !a.json && is_terminal(stderr);
+  const bool speaks = ranks == nullptr || ranks->rank() == 0;
+  const bool shows_progress = speaks && !a.quiet && !a.json && is_terminal(stderr);
   ProgressLine line;
   const Interruption interruption;
   const Summary summary = run_scene(scene, options, [&](std::uint64_t step, std::uint64_t all) {
@@ -101,6 +105,7 @@ int run(const RunArguments& a) {
     return Interruption::signal() == 0;
   });
   line.clear();
+  if (!speaks) return done;
   report(a, summary, options.folder.string());
   return status_of(a, summary, options.folder.string());
 }
@@ -126,7 +131,7 @@ void add_run(CLI::App& app, int& status) {
   auto* quiet = verb->add_flag("-q,--quiet", a->quiet, "print nothing but errors");
   verb->add_flag("-v,--verbose", a->verbose, "print more")->excludes(quiet);
   verb->add_flag("--json", a->json, "print the summary as one JSON object, and nothing else");
-  verb->callback([a, &status] { status = run(*a); });
+  verb->callback([a, &status] { status = on_ranks([&](Ranks* ranks) { return run(*a, ranks); }); });
 }
 
 }  // namespace dartcast::app
