@@ -57,6 +57,13 @@ std::string_view step_digits(std::string_view name, const Series& series) {
   return is_step(digits) ? digits : std::string_view{};
 }
 
+std::optional<std::uint64_t> step_of(std::string_view digits) {
+  std::uint64_t step = 0;
+  if (digits.empty() || std::from_chars(digits.data(), digits.data() + digits.size(), step).ec != std::errc())
+    return {};
+  return step;
+}
+
 constexpr Series checkpoint_parts = {"checkpoint_", ".bin", false};
 
 // The list of a series with a name: body_NAME.pvd.
@@ -76,16 +83,15 @@ bool is_run_file(std::string_view name) {
       "walls.pvd",    "planes.csv",  "crossings.csv",  "pathlines.bin",   "pathlines.vtp",
       "report.bin",   "report.html", kept_mesh_name,   "solids.csv",      "solid_contacts.csv"};
   if (std::find(fixed.begin(), fixed.end(), name) != fixed.end()) return true;
-  return is_list(name) || frame_step(name) || !step_digits(name, checkpoint_parts).empty();
+  return is_list(name) || frame_step(name) || checkpoint_part_step(name);
 }
 
 std::string checkpoint_part_name(std::uint64_t step, unsigned rank) {
   return frame_name("checkpoint", step, fmt::format(".{}.bin", rank));
 }
 
-bool is_checkpoint_part_of_another(std::string_view name, std::uint64_t step) {
-  const std::string_view digits = step_digits(name, checkpoint_parts);
-  return !digits.empty() && digits != fmt::format("{:06}", step);
+std::optional<std::uint64_t> checkpoint_part_step(std::string_view name) {
+  return step_of(step_digits(name, checkpoint_parts));
 }
 
 bool is_part_of_run_file(std::string_view name) {
@@ -94,10 +100,7 @@ bool is_part_of_run_file(std::string_view name) {
 
 std::optional<std::uint64_t> frame_step(std::string_view name) {
   for (const Series& series : all_series) {
-    const std::string_view digits = step_digits(name, series);
-    std::uint64_t step = 0;
-    if (!digits.empty() && std::from_chars(digits.data(), digits.data() + digits.size(), step).ec == std::errc())
-      return step;
+    if (const auto step = step_of(step_digits(name, series))) return step;
   }
   return {};
 }

@@ -36,8 +36,8 @@ std::optional<std::uint64_t> frame_step(std::string_view name);
 /// Where a rank but the first leaves its part of a checkpoint: checkpoint_000010.2.bin.
 std::string checkpoint_part_name(std::uint64_t step, unsigned rank);
 
-/// Whether a file is such a part of another step than this.
-bool is_checkpoint_part_of_another(std::string_view name, std::uint64_t step);
+/// The step of such a part, by its name; none where it is none.
+std::optional<std::uint64_t> checkpoint_part_step(std::string_view name);
 
 /// "particles", step 10, ".vtp": particles_000010.vtp.
 std::string frame_name(std::string_view series, std::uint64_t step, std::string_view ending);

@@ -23,13 +23,14 @@ namespace dartcast {
 
 namespace {
 
-// Those of checkpoints before this step's.
-void remove_other_parts(const std::filesystem::path& folder, std::uint64_t step) {
-  std::vector<std::filesystem::path> others;
+// The parts of checkpoints that this one replaces. Those of later ones may be on their way.
+void remove_earlier_parts(const std::filesystem::path& folder, std::uint64_t step) {
+  std::vector<std::filesystem::path> earlier;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (is_checkpoint_part_of_another(entry.path().filename().string(), step)) others.push_back(entry.path());
+    const auto of = checkpoint_part_step(entry.path().filename().string());
+    if (of && *of < step) earlier.push_back(entry.path());
   }
-  for (const std::filesystem::path& path : others) std::filesystem::remove(path);
+  for (const std::filesystem::path& path : earlier) std::filesystem::remove(path);
 }
 
 }  // namespace
@@ -206,7 +207,7 @@ void RunOutput::write_frame(const Simulation& simulation) {
   const ParticleSystemState& particles = checkpoint->simulation.particles;
   writing_->add(particles.particles.size() * sizeof(ParticleSystemState::Particle), [checkpoint, path = file()] {
     write_checkpoint(path, *checkpoint);
-    remove_other_parts(path.parent_path(), checkpoint->simulation.particles.steps);
+    remove_earlier_parts(path.parent_path(), checkpoint->simulation.particles.steps);
   });
 }
 

@@ -311,8 +311,8 @@ TEST(RunFiles, FramesAreKnownByTheirNames) {
                             "mine_000010.vtp", "particles_00001x.vtp", "environment.vtu"})
     EXPECT_FALSE(frame_step(other)) << other;
   EXPECT_TRUE(is_run_file(checkpoint_part_name(10, 2)));
-  EXPECT_TRUE(is_checkpoint_part_of_another("checkpoint_000010.2.bin", 20));
-  EXPECT_FALSE(is_checkpoint_part_of_another("checkpoint_000020.2.bin", 20));
+  EXPECT_EQ(checkpoint_part_step("checkpoint_000010.2.bin"), 10U);
+  EXPECT_FALSE(checkpoint_part_step("checkpoint.bin"));
 }
 
 }  // namespace dartcast::recording_test

@@ -48,9 +48,10 @@ class CommandTest : public testing::Test {
   }
 
   // Runs the command in the test's folder.
-  [[nodiscard]] Result run(const std::string& arguments) const {
+  [[nodiscard]] Result run(const std::string& arguments) const { return run_program(binary, arguments); }
+  [[nodiscard]] Result run_program(const std::string& program, const std::string& arguments) const {
     Result result;
-    const std::string line = "cd '" + folder.string() + "' && '" + binary + "' " + arguments + " 2> error.txt";
+    const std::string line = "cd '" + folder.string() + "' && '" + program + "' " + arguments + " 2> error.txt";
     FILE* pipe = popen(line.c_str(), "r");
     std::array<char, 4096> buffer{};
     for (std::size_t n = 0; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
