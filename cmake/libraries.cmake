@@ -1,7 +1,7 @@
 # Libraries over the rooms of src/, each on top of the one before, and dartcast::dartcast for all of them. The library mpi
 # stands beside: it needs core alone.
 # tools/check_includes.py has the order of the rooms, and checks that these lists agree with it.
-set(core_rooms base predicates mesh generators topology complex editing surface tracking response environment)
+set(core_rooms base predicates mesh generators topology complex editing surface parts tracking response environment)
 set(simulation_rooms dynamics spheres solids bodies catheter simulation)
 set(mpi_rooms distributed)
 set(io_rooms formats meshing scene report output)

@@ -9,7 +9,7 @@ import sys
 
 # The rooms in order: one may include those before it. CMakeLists.txt makes one library of each line.
 LIBRARIES = {
-    "core": ["base", "predicates", "mesh", "generators", "topology", "complex", "editing", "surface", "tracking",
+    "core": ["base", "predicates", "mesh", "generators", "topology", "complex", "editing", "surface", "parts", "tracking",
              "tracking/batch", "response", "environment"],
     "simulation": ["dynamics", "spheres", "solids", "bodies", "catheter", "simulation"],
     "mpi": ["distributed"],

@@ -67,6 +67,7 @@ class Particles {
  private:
   friend class Environment;
   friend class EditFollower;
+  friend class PartEnvironment;
 
   struct Details;  // src/environment/particle_details.hpp
   Details& details();
@@ -272,6 +273,8 @@ class Environment {
   [[nodiscard]] Threads threads() const;
 
  private:
+  friend class PartEnvironment;
+
   struct Members;  // src/environment/environment_members.hpp
   std::unique_ptr<Members> members_;
 };

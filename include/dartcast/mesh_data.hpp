@@ -68,6 +68,8 @@ struct MeshData {
   std::vector<std::int32_t> patch_tags;          ///< tag per patch face
   std::vector<std::uint32_t> patch_source;       ///< the face's index in the input file; empty: its own index
   std::map<std::int32_t, std::string> patch_names;
+  std::vector<std::int32_t>
+      patch_order;  ///< tags, in the order of the patches' numbers; those left out follow, by face
 
   std::vector<std::uint8_t> free;  ///< 1 free, 0 blocked, per cell; empty: all free
 

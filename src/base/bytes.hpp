@@ -52,6 +52,7 @@ class ByteReader {
     if (count > 0) std::memcpy(values.data(), next(count * sizeof(T)), count * sizeof(T));
     return values;
   }
+  [[nodiscard]] bool at_end() const { return bytes_.empty(); }
   std::string take_text() {
     const auto size = take<std::uint64_t>();
     if (size > bytes_.size()) fail();

@@ -267,6 +267,7 @@ class MapBuilder {
 
   void add_patches() {
     std::map<std::int32_t, Patch> by_tag;
+    for (const std::int32_t tag : mesh_.patch_order) by_tag.try_emplace(tag, patch_of(tag));
     for (std::size_t i = 0; i + 1 < mesh_.patch_offsets.size(); ++i) {
       const std::int32_t tag = mesh_.patch_tags[i];
       const auto [found, fresh] = by_tag.try_emplace(tag);

@@ -11,6 +11,7 @@ namespace {
 class PauseRecorder {
  public:
   static constexpr bool pausing = true;
+  static constexpr bool travels = false;
 
   explicit PauseRecorder(PausedStep& step) : step_(&step) {}
 
@@ -42,16 +43,6 @@ class PauseRecorder {
   PausedStep* step_;
 };
 
-// The contact as one of `contacts`, to which its walls and the earlier ones are added.
-Contact with_walls(const ContactList& met, const Contact& contact, ContactList& contacts) {
-  const auto walls =
-      std::span(met.walls).subspan(contact.first_wall - contact.earlier, contact.earlier + contact.wall_count);
-  Contact here = contact;
-  here.first_wall = static_cast<std::uint32_t>(contacts.walls.size()) + contact.earlier;
-  contacts.walls.insert(contacts.walls.end(), walls.begin(), walls.end());
-  return here;
-}
-
 }  // namespace
 
 StepResult Stepper::step_to_contact(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
@@ -70,7 +61,7 @@ StepResult Stepper::step_on_in(const ContactList& met, const Contact& contact, c
                                PausedStep& paused) const {
   const std::size_t contact_count = contacts.contacts.size();
   const std::size_t wall_count = contacts.walls.size();
-  const Contact here = with_walls(met, contact, contacts);
+  const Contact here = detail::with_walls(met, contact, contacts);
   const TimeInterval interval = paused.interval;
   paused.waits = false;
   detail::RunOf<PauseRecorder> run{paused.particle,

@@ -1,6 +1,7 @@
 // The step of one particle. step.cpp compiles it without a recorder, trace.cpp with one that records crossings,
 // pausing_step.cpp with one that stops at each contact. They are three files so that the compiler inlines functions that
-// are called from one place.
+// are called from one place. travelling_step.cpp compiles it for a part of an environment: a step leaves where it needs
+// cells around a cell that is another's.
 //
 // The phases of a step, in order (Stepper::step_in()):
 // 1. Where the mesh has moved (MovingStep): a particle whose simplex is not positive before or after is held. Otherwise
@@ -41,6 +42,7 @@ struct RunOf {
 // The base of recorders whose steps call the response at each contact, and do not wait there for an answer.
 struct NeverWaits {
   static constexpr bool pausing = false;
+  static constexpr bool travels = false;
   static constexpr bool waits() { return false; }
   static void in_part(unsigned, unsigned) {}
   template <class Run>
@@ -70,13 +72,20 @@ class StepPart {
   // Walks to q, with the contacts on the way. Returns the displacement still planned after this interval.
   Vec3 move(Run& run, Vec3 q, TimeInterval interval, const PartialStep* partial = nullptr) const {
     while (q != run.state.position) {
+      if constexpr (Recorder::travels) {
+        if (partial == nullptr && run.recorder.leaves_to_walk(run, q, interval)) return {};
+      }
       const Vec3 p = run.state.position;
       const WallImpact* const impact = partial != nullptr && partial->impact ? &*partial->impact : nullptr;
       Walk walked;
-      if (partial == nullptr)
+      if constexpr (Recorder::travels) {
+        if (impact == nullptr) walked = run.recorder.walk(space_, run, partial, p, q, interval);
+        if (run.recorder.waits()) return {};
+      } else if (partial == nullptr) {
         walked = walk(space_, run.state.at(), p, q, run.tests, run.recorder.visitor());
-      else if (impact == nullptr)
+      } else if (impact == nullptr) {
         walked = end_walk(space_, partial->walk, p, q, run.tests, run.recorder.visitor());
+      }
       const Walk& w = impact != nullptr ? partial->walk : walked;
       partial = nullptr;
       if (w.end == WalkEnd::invalid_cell) {
@@ -205,9 +214,7 @@ class StepPart {
     WallPlanes<N> planes;
     const auto add = [&](std::span<const WallHit> walls) {
       for (const WallHit& wall : walls) {
-        const CellView cell = space_.map->view(wall.face.cell);
-        const Across behind = cell.shape().entry(wall.face.face, wall.triangle);
-        const WallPlane plane = facet_plane(space_.corners(cell, cell.shape().simplices()[behind.index]), behind.place);
+        const WallPlane plane = plane_of(run, wall);
         if (dot(d, plane.normal) >= -slack) planes.add(plane);
       }
     };
@@ -215,6 +222,15 @@ class StepPart {
     add(run.contacts.earlier_walls_of(contact));
     lift_off(planes, run.state.position, q, lift_doublings);
     return flushed(q);
+  }
+
+  [[gnu::always_inline]] WallPlane plane_of(const Run& run, const WallHit& wall) const {
+    if constexpr (Recorder::travels) {
+      if (!wall.face.valid()) return run.recorder.carried_plane(space_, run, wall);
+    }
+    const CellView cell = space_.map->view(wall.face.cell);
+    const Across behind = cell.shape().entry(wall.face.face, wall.triangle);
+    return facet_plane(space_.corners(cell, cell.shape().simplices()[behind.index]), behind.place);
   }
 
   const CellComplex& complex_;
@@ -276,6 +292,11 @@ class MovingStep {
     StepPart<Stored, N, Recorder>(complex_, true, space_, options_, respond_).move(run, *target, {time, 1.0, {}});
   }
 
+  // The rest of a step from the start of a part on.
+  void go_on(Run& run, Weights& weights, const Vec3& target, const Vec3& planned, unsigned part, unsigned parts) const {
+    in_parts(run, weights, target, planned, part, parts);
+  }
+
   // The same from a contact on, after its answer. Precondition: it was in that part of several.
   void move_on(Run& run, Weights& weights, const Contact& contact, const AfterContact& next,
                const TimeInterval& interval, unsigned part, unsigned parts) const {
@@ -326,6 +347,9 @@ class MovingStep {
   void in_parts(Run& run, Weights& weights, const Vec3& target, Vec3 planned, unsigned first, unsigned parts) const {
     bool own_motion = !run.result.stopped && !run.result.held;
     for (unsigned j = first; j <= parts; ++j) {
+      if constexpr (Recorder::travels) {
+        if (run.recorder.leaves_to_carry(run, planned, j, parts)) return;
+      }
       const Space<Between, N> from = space_between<N>(complex_, static_cast<double>(j - 1) / parts);
       const Space<Between, N> to = space_between<N>(complex_, static_cast<double>(j) / parts);
       const Simplex before = from.corners(run.state.at());
@@ -350,6 +374,16 @@ class MovingStep {
   Space<Stored, N> space_ = current_space<N>(complex_);
 };
 
+// The contact as one of `contacts`, to which its walls and the earlier ones are added.
+inline Contact with_walls(const ContactList& met, const Contact& contact, ContactList& contacts) {
+  const auto walls =
+      std::span(met.walls).subspan(contact.first_wall - contact.earlier, contact.earlier + contact.wall_count);
+  Contact here = contact;
+  here.first_wall = static_cast<std::uint32_t>(contacts.walls.size()) + contact.earlier;
+  contacts.walls.insert(contacts.walls.end(), walls.begin(), walls.end());
+  return here;
+}
+
 // Saves a step that waits at a contact, and counts one that is complete. It started at p in the simplex `start`.
 template <std::size_t N, class Recorder>
 [[gnu::always_inline]] inline StepResult finish(const CellComplex& complex, bool moved, RunOf<Recorder>& run,
@@ -357,6 +391,12 @@ template <std::size_t N, class Recorder>
   if (run.recorder.waits()) {
     run.recorder.save(run, start, p);
     return {};
+  }
+  if constexpr (Recorder::travels) {
+    if (run.recorder.has_travelled()) {
+      run.recorder.count(run, moved);
+      return run.result;
+    }
   }
   Counters& counters = run.counters;
   ++counters.particle_steps;

@@ -74,6 +74,11 @@ class Ties {
   Ties(const Space<Positions, N>& space, SimplexId start, const Vec3& p, const Vec3& q,
        std::optional<unsigned> zeros = {})
       : space_(space), start_(start), p_(p), q_(q), zeros_(zeros) {}
+  /// `opposite`: the corners opposite to the facets that p lies on, where the walk started.
+  Ties(const Space<Positions, N>& space, const Vec3& p, const Vec3& q, std::span<const Vec3> opposite)
+      : space_(space), p_(p), q_(q) {
+    shift_.emplace(p, opposite);
+  }
 
   /// Sign of orient3d(a, b, p, q) of the shifted segment, where it is zero.
   [[nodiscard]] Sign line(const Vec3& a, const Vec3& b) {
@@ -99,7 +104,7 @@ class Ties {
   }
 
   const Space<Positions, N>& space_;
-  SimplexId start_;
+  SimplexId start_ = {};
   const Vec3& p_;
   const Vec3& q_;
   std::optional<unsigned> zeros_;
@@ -141,15 +146,16 @@ unsigned exit_facet(const std::array<Vec3, N>& v, unsigned behind, const Vec3& p
   return best;
 }
 
-/// The walk of the shifted segment: up to the closed simplex that holds q, or to the first wall facet that q is beyond.
+/// The walk of the shifted segment from a simplex that it passes through on: up to the closed simplex that holds q, or to
+/// the first wall facet that q is beyond. `tested`: all facets but the one entered by, because q is strictly on this side
+/// of that one; `tests`: their number.
 template <class Positions, std::size_t N, class Visitor>
-Walk walk_to_wall(const Space<Positions, N>& space, SimplexId start, const Vec3& p, const Vec3& q, TestCounts& counts,
-                  Visitor& visit) {
+[[gnu::always_inline]] inline Walk walk_on(const Space<Positions, N>& space, SimplexId start, unsigned tested,
+                                           unsigned tests, const Vec3& p, const Vec3& q, Ties<Positions, N>& ties,
+                                           TestCounts& counts, Visitor& visit) {
   constexpr unsigned all = (1U << N) - 1U;
-  Ties<Positions, N> ties(space, start, p, q);
   Walk walk;
   walk.simplex = start;
-  unsigned tested = all;  // all facets but the one entered by: q is strictly on this side of that one
   for (std::uint64_t met = 0; met <= space.simplex_count; ++met) {
     const CellView cell = space.map->view(walk.simplex.cell);
     const ImplicitSimplex& s = cell.shape().simplices()[walk.simplex.simplex];
@@ -160,7 +166,7 @@ Walk walk_to_wall(const Space<Positions, N>& space, SimplexId start, const Vec3&
       return walk;
     }
     const DeterminantSigns signs = signs_of(d, v, q, tested, counts.exact);
-    counts.tests += met == 0 ? N : N - 1;
+    counts.tests += met == 0 ? tests : N - 1;
     if (signs.negative == 0) {
       walk.zeros = static_cast<std::uint8_t>(signs.zero);
       return walk;
@@ -179,6 +185,14 @@ Walk walk_to_wall(const Space<Positions, N>& space, SimplexId start, const Vec3&
     tested = all & ~(1U << next.facet);
   }
   throw_overrun(*space.map, start, p, q);
+}
+
+/// The same from the simplex that holds p on.
+template <class Positions, std::size_t N, class Visitor>
+Walk walk_to_wall(const Space<Positions, N>& space, SimplexId start, const Vec3& p, const Vec3& q, TestCounts& counts,
+                  Visitor& visit) {
+  Ties<Positions, N> ties(space, start, p, q);
+  return walk_on(space, start, (1U << N) - 1U, N, p, q, ties, counts, visit);
 }
 
 /// The corners that span the feature of a simplex in whose interior a point with these zero facets lies.

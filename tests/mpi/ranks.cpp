@@ -10,7 +10,7 @@
 
 namespace {
 
-// Bytes that tell their sender, their receiver and their length.
+// Bytes that name their sender, their receiver and their length.
 std::string message(unsigned from, unsigned to, std::size_t size) {
   std::string bytes(size, '\0');
   for (std::size_t i = 0; i < size; ++i) bytes[i] = static_cast<char>(from * 31 + to * 7 + i * 13);

@@ -118,14 +118,19 @@ void BatchStepper::step_chunk(const BatchScene& scene, const BatchParticles& par
   }
 }
 
-StepReport BatchStepper::step_all(const BatchParticles& particles, std::span<const Vec3> targets) const {
-  ParticleCache& cache = particles.cache;
+// Also makes the cache that of the step.
+BatchScene BatchStepper::scene_of(ParticleCache& cache, std::size_t count) const {
   const CacheKind kind = cache_kind(cache);
   const BatchScene scene{&complex_, moved_, kind == cache.kind_, options_.tolerance, !cache.walls_changed_};
   cache.kind_ = kind;
-  cache.simplices_.resize(kind == CacheKind::none ? 0 : targets.size());
+  cache.simplices_.resize(kind == CacheKind::none ? 0 : count);
   cache.stood_still_ = !moved_;
   cache.walls_changed_ = false;
+  return scene;
+}
+
+StepReport BatchStepper::step_all(const BatchParticles& particles, std::span<const Vec3> targets) const {
+  const BatchScene scene = scene_of(particles.cache, targets.size());
   std::vector<ChunkSteps> chunks(chunk_count(targets.size(), chunk));
   parallel_for(targets.size(), chunk, threads_, [&](std::size_t begin, std::size_t end) {
     step_chunk(scene, particles, targets, begin, end, chunks[begin / chunk]);

@@ -15,6 +15,7 @@
 #include "tracking/batch/batch.hpp"
 #include "tracking/batch/particle_cache.hpp"
 #include "tracking/step.hpp"
+#include "tracking/travelling_step.hpp"
 
 namespace dartcast::detail {
 
@@ -30,6 +31,28 @@ struct ChunkSteps {
   StepReport report;
   std::vector<PausedStep>
       waiting;  ///< one at each of the report's contacts; or none, where these are not to be answered
+};
+
+/// A set of particles that grows while it steps: particles come from other ranks.
+struct GrowingParticles {
+  std::vector<ParticleState>& states;
+  std::vector<Weights>& weights;
+  ParticleCache& cache;
+};
+
+/// The ranks that have an environment's parts, as the steps of one of them see them.
+class PartTraffic {
+ public:
+  PartTraffic() = default;
+  PartTraffic(const PartTraffic&) = delete;
+  PartTraffic& operator=(const PartTraffic&) = delete;
+  virtual ~PartTraffic() = default;
+
+  [[nodiscard]] virtual const PartCells& cells() const = 0;
+  /// Sends steps away, each to the rank Traveller::to, and returns those that come here, in an order that depends on the
+  /// ranks alone. Where no rank has sent any, `over` becomes true. The data that users keep of a particle go along:
+  /// Traveller::particle is its index here. Those that come get the next indices, in their order. Collective.
+  virtual std::vector<Traveller> exchange(std::vector<Traveller> leaving, bool& over) = 0;
 };
 
 /// The steps of consecutive chunks.
@@ -57,10 +80,19 @@ class BatchStepper {
   /// 20 ns a particle, and 1 us for each that meets a wall; and a few us for each round.
   StepReport advance(const BatchParticles& particles, std::span<const Vec3> targets) const;
 
+  /// The same in a part of an environment, in space: steps go on where their cells are. Particles in `gone` are now on
+  /// another rank; those behind the first ones have come. The report has what happened here, of both. Collective.
+  StepReport advance_in_part(const GrowingParticles& particles, std::span<const Vec3> targets,
+                             const ContactCallback& respond, PartTraffic& traffic,
+                             std::vector<std::uint8_t>& gone) const;
+
  private:
   [[nodiscard]] std::vector<Vec3> decided_targets(std::span<const Vec3> targets) const;
   [[nodiscard]] CacheKind cache_kind(const ParticleCache& cache) const;
+  friend class PartSteps;
+
   [[nodiscard]] StepReport step_all(const BatchParticles& particles, std::span<const Vec3> targets) const;
+  [[nodiscard]] BatchScene scene_of(ParticleCache& cache, std::size_t count) const;
   void step_chunk(const BatchScene& scene, const BatchParticles& particles, std::span<const Vec3> targets,
                   std::size_t begin, std::size_t end, ChunkSteps& steps) const;
   // In rounds.

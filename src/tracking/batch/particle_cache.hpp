@@ -55,6 +55,7 @@ class ParticleCache {
 
  private:
   friend class BatchStepper;
+  friend class PartSteps;
 
   std::vector<VertexNumbers> vertices_;
   CacheKind kind_ = CacheKind::none;

@@ -1,0 +1,91 @@
+// The exchange of travellers between ranks, with the data of their users.
+#include "environment/part_environment.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "base/bytes.hpp"
+#include "dartcast/error.hpp"
+#include "environment/environment_members.hpp"
+#include "environment/particle_details.hpp"
+#include "tracking/batch/batch_stepper.hpp"
+
+namespace dartcast {
+
+namespace {
+
+class RankTraffic final : public detail::PartTraffic {
+ public:
+  RankTraffic(const PartCells& cells, Ranks& ranks, TravelData& data, TrafficCounts& counts)
+      : cells_(cells), ranks_(ranks), data_(data), counts_(counts) {}
+
+  [[nodiscard]] const PartCells& cells() const override { return cells_; }
+
+  std::vector<Traveller> exchange(std::vector<Traveller> leaving, bool& over) override {
+    std::uint64_t sent = leaving.size();
+    ranks_.sum({&sent, 1});
+    over = sent == 0;
+    if (over) return {};
+    std::vector<ByteWriter> to(ranks_.size());
+    for (const Traveller& t : leaving) {
+      pack(t, to[t.to]);
+      to[t.to].put(data_.leave(t.particle, t.met));
+    }
+    std::vector<std::string> bytes;
+    for (const ByteWriter& w : to) {
+      bytes.push_back(w.bytes());
+      counts_.bytes += w.bytes().size();
+    }
+    ++counts_.rounds;
+    counts_.sent += leaving.size();
+    std::vector<Traveller> come;
+    for (const std::string& b : ranks_.exchange(std::move(bytes))) {
+      for (ByteReader in(b); !in.at_end();) {
+        come.push_back(unpacked_traveller(in));
+        data_.come(in.take_text());
+      }
+    }
+    return come;
+  }
+
+ private:
+  const PartCells& cells_;
+  Ranks& ranks_;
+  TravelData& data_;
+  TrafficCounts& counts_;
+};
+
+}  // namespace
+
+PartEnvironment::PartEnvironment(Environment& environment, const MeshPart& part, Ranks& ranks)
+    : environment_(environment), ranks_(ranks), cells_(part_cells(part, ranks.rank())) {
+  if (environment.map().dimension() != 3)
+    throw InvalidArgument("partition: meshes of the plane cannot be spread by cells; spread the particles");
+  std::uint64_t steiner = environment.complex().positions().size() - environment.positions().size();
+  ranks.sum({&steiner, 1});
+  if (steiner > 0)
+    throw InvalidArgument(
+        "partition: some cells need Steiner points, and cannot be spread by cells; spread the particles, or mend the "
+        "mesh");
+}
+
+StepReport PartEnvironment::advance(Particles& particles, std::span<const Vec3> targets, const ContactCallback& respond,
+                                    const StepOptions& options, TravelData& data, std::vector<std::uint8_t>& gone) {
+  environment_.check_advance(particles, options);
+  if (targets.size() != particles.size())
+    throw InvalidArgument(fmt::format("advance: {} targets for {} particles", targets.size(), particles.size()));
+  const Environment::Members& members = *environment_.members_;
+  members.adopt(particles);
+  Particles::Details& details = particles.details();
+  details.index.reset();
+  const detail::BatchStepper stepper(environment_.complex(), environment_.awaits_advance(particles),
+                                     environment_.threads(), options, respond, true);
+  RankTraffic traffic(cells_, ranks_, data, traffic_);
+  StepReport report =
+      stepper.advance_in_part({particles.states_, details.weights, details.cache}, targets, respond, traffic, gone);
+  details.moves = members.moves;
+  return report;
+}
+
+}  // namespace dartcast
