@@ -141,7 +141,7 @@ double edit_some(std::uint32_t edge, std::size_t count, EditRow& row) {
   const VolumeSampler sampler(environment.complex());
   Particles set;
   while (set.size() < row.particles) {
-    const Sample s = sampler.sample(environment.complex(), random);
+    const Sample s = *sampler.sample(environment.complex(), random);
     environment.add(set, s.simplex, s.position);
   }
   row.cells = environment.map().cell_count();

@@ -62,7 +62,7 @@ class RayBench {
     while (origins_.size() < ray_count) {
       Vec3 d{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
       if (norm(d) > 1.0 || norm(d) < 0.1) continue;
-      origins_.push_back(sampler.sample(environment_.complex(), places).position);
+      origins_.push_back(sampler.sample(environment_.complex(), places)->position);
       directions_.push_back(d);
       segments_.push_back({origins_.back(), origins_.back() + d * (far / norm(d))});
     }

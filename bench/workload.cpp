@@ -79,7 +79,7 @@ void Workload::add_particles() {
     const VolumeSampler sampler(environment_.complex());
     KeyedRandom places(seed, RandomPurpose::place, 0);
     while (particles_.size() < options_.particles) {
-      const Sample sample = sampler.sample(environment_.complex(), places);
+      const Sample sample = *sampler.sample(environment_.complex(), places);
       environment_.add(particles_, sample.simplex, sample.position);
     }
   }
@@ -92,7 +92,7 @@ void Workload::add_on_lattice(std::size_t count, Random& random) {
   const VolumeSampler sampler(environment_.complex());
   KeyedRandom near(seed, RandomPurpose::place, 0);
   std::vector<Vec3> places(count);
-  for (Vec3& place : places) place = on_lattice(sampler.sample(environment_.complex(), near).position, random);
+  for (Vec3& place : places) place = on_lattice(sampler.sample(environment_.complex(), near)->position, random);
   environment_.add(particles_, places);
 }
 

@@ -29,6 +29,7 @@ struct RunArguments {
   bool audit = false;
   bool resume = false;
   bool skip_bad_cells = false;
+  std::string partition = "particles";
   bool quiet = false;
   bool verbose = false;
   bool json = false;
@@ -90,6 +91,7 @@ int run(const RunArguments& a, Ranks* ranks) {
   options.folder = a.folder.empty() ? scene.name + "-out" : a.folder;
   options.threads = a.threads > 0 ? Threads{a.threads} : threads_of_rank(ranks);
   options.ranks = ranks;
+  options.partition = a.partition == "cells" ? Partition::cells : Partition::particles;
   options.steps = a.steps;
   options.seed = a.seed;
   options.audit = a.audit;
@@ -127,6 +129,9 @@ void add_run(CLI::App& app, int& status) {
   verb->add_flag("--resume", a->resume, "go on where an earlier run in the folder was cut off, or to more --steps");
   verb->add_flag("--skip-bad-cells", a->skip_bad_cells,
                  "block flat, inverted and indivisible cells: they are left out, and their faces are walls");
+  verb->add_option("--partition", a->partition,
+                   "under mpirun: each process has some of the particles, or some of the cells (particles)")
+      ->check(CLI::IsMember({"particles", "cells"}));
   add_max_memory(*verb, a->max_memory);
   auto* quiet = verb->add_flag("-q,--quiet", a->quiet, "print nothing but errors");
   verb->add_flag("-v,--verbose", a->verbose, "print more")->excludes(quiet);

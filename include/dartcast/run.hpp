@@ -102,6 +102,8 @@ struct RunOptions {
   /// The processes that share the particles (Simulation): all call run_scene() with the same scene and options, and share
   /// the folder. None: one process.
   Ranks* ranks = nullptr;
+  /// By cells there are frames of each rank's part of the environment, and no report.
+  Partition partition = Partition::particles;
 };
 
 /// Called after each step with the number of steps done and of all. Returns whether to go on. Where it returns false

@@ -73,6 +73,14 @@ enum class WallMotion : std::uint8_t {
   simultaneous
 };
 
+/// How ranks share a scene.
+enum class Partition : std::uint8_t {
+  particles,  ///< each has the whole environment, and some of the particles
+  /// Each has a part of the environment, and the particles in it: points in space, in steps of one segment (euler, carried),
+  /// without edits, bodies, catheters, solids and statistics.
+  cells
+};
+
 /// SI units: seconds, metres per square second, 1 / second.
 struct SimulationOptions {
   double dt = 1e-3;  ///< of a step
@@ -104,7 +112,7 @@ struct LeftParticle {
   std::uint32_t contact = 0;  ///< its last contact: an index into those of the step
 };
 
-/// The results of one step. Where ranks share the particles, the first rank has those of all, the others their own.
+/// The results of one step. Where ranks share the particles, the first has those of all, the others their own.
 struct SimulationStep {
   double duration = 0.0;  ///< s
   /// Of the particles; it names them by their index during the step, and those of another rank by none (0xffffffff).
@@ -123,8 +131,7 @@ struct SimulationStep {
   [[nodiscard]] std::span<const Contact> contacts() const { return report.contacts.contacts; }
 };
 
-/// Sums over all steps so far. Where ranks share the particles, each has its own; but `start` and `injected` are those of
-/// all.
+/// Sums over all steps so far. Where ranks share the particles, each has its own, but those of `start` and `injected`.
 struct SimulationTotals {
   std::uint64_t start = 0;  ///< particles added by add() and add_random()
   std::uint64_t injected = 0;
@@ -222,8 +229,8 @@ struct SolidSummary {
 /// In the plane every vector given to a simulation must have z = 0.
 ///
 /// Ranks (SimulationOptions::ranks) share the particles: each makes the same simulation with the same calls, and has the
-/// particles of some ids. Environment, edits, bodies, catheters and solids are repeated on each. Every call then waits for
-/// the other ranks. Results are the same bits for any number of ranks. Spheres that collide are refused.
+/// particles of some ids; all else is repeated on each. Every call waits for the other ranks. Results are the same bits for
+/// any number of them. Spheres that collide are refused. By cells (Partition) each has a part of the environment.
 class Simulation {
  public:
   using AfterEdit = std::function<void(const Environment&)>;
@@ -234,11 +241,12 @@ class Simulation {
   /// Makes the environment, and all that the scene has in it. The scene is plain data: files that it names have been
   /// read (load_scene_files() in dartcast/scene_file.hpp). Throws InvalidArgument where one has not been; InvalidMesh;
   /// Error that names the particles, body, catheter or event that cannot be used.
-  explicit Simulation(const Scene& scene, Threads threads = {}, Ranks* ranks = nullptr);
+  explicit Simulation(const Scene& scene, Threads threads = {}, Ranks* ranks = nullptr,
+                      Partition partition = Partition::particles);
   /// The same, but particles, bodies and catheters go on from a checkpoint of such a simulation. Throws as restore().
   /// `after_edit`: as set_after_edit(), for the edits that are made again, too.
   Simulation(const Scene& scene, const SimulationCheckpoint& saved, Threads threads = {}, AfterEdit after_edit = {},
-             Ranks* ranks = nullptr);
+             Ranks* ranks = nullptr, Partition partition = Partition::particles);
   Simulation(const Simulation&) = delete;  // nor moved: parts keep references to it
   Simulation& operator=(const Simulation&) = delete;
   ~Simulation();
@@ -310,7 +318,7 @@ class Simulation {
   /// one per position of the environment. Throws as Deformation::add_pull(), and in the plane where one leaves it.
   void pull(std::span<const Vec3> displacement, double duration);
 
-  /// Where ranks share the particles, each has a part: its own particles. joined() makes them one.
+  /// Where ranks share the particles, each has its own; joined() makes them one.
   [[nodiscard]] SimulationCheckpoint checkpoint() const;
   /// Goes on from a checkpoint of a simulation made in the same way: every later step is then the same to the last bit.
   /// Repeats those edits by events that this simulation has not made yet. The caller makes other edits before
@@ -338,8 +346,7 @@ class Simulation {
   [[nodiscard]] std::span<const double> radii() const;
   /// 1 for those that were held in the last step: they moved along with their cell instead of on their own.
   [[nodiscard]] std::span<const std::uint8_t> held() const;
-  /// A number for each name in SimulationOptions::user_data. It stays with the particle through removals, edits and
-  /// checkpoints. Precondition: there is such a particle.
+  /// A number for each name in SimulationOptions::user_data. It stays with the particle. Precondition: there is one.
   [[nodiscard]] std::span<const double> user_data(std::size_t particle) const;
   [[nodiscard]] std::span<double> user_data(std::size_t particle);
 
@@ -356,7 +363,7 @@ class Simulation {
   [[nodiscard]] const SolidStep& solids_step() const;  ///< the last one
 
   [[nodiscard]] const SimulationTotals& totals() const;
-  // These are of all ranks that share the particles. So they are collective, as those of Ranks.
+  // These are of all ranks that share the particles, and so collective.
   [[nodiscard]] SimulationTotals totals_of_all() const;
   [[nodiscard]] std::uint64_t alive() const;  ///< the number of particles in the scene
   [[nodiscard]] const StatisticsOptions& statistics_options() const;
@@ -378,7 +385,7 @@ class Simulation {
   [[nodiscard]] const Parts& parts() const { return *parts_; }
 
  private:
-  void make(const Scene& scene, Threads threads, Ranks* ranks);
+  void make(const Scene& scene, Threads threads, Ranks* ranks, Partition partition);
 
   std::unique_ptr<Parts> parts_;
 };

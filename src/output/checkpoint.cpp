@@ -328,7 +328,7 @@ void fields(Archive& a, Checkpoint& c) {
   fields(a, c.run);
   fields(a, c.simulation.particles);
   values(a, c.recording.stats_bytes, c.recording.contacts_bytes);
-  a.list(c.recording.frames, [&](RecordingFrame& f) { values(a, f.step, f.time, f.pieces); });
+  a.list(c.recording.frames, [&](RecordingFrame& f) { values(a, f.step, f.time, f.pieces, f.environment_pieces); });
   fields(a, c.simulation.events);
   values(a, c.held, c.audited);
   a.list(c.parts, [&](std::uint64_t& sum) { a.value(sum); });

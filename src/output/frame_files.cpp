@@ -15,6 +15,17 @@ void write_frame_file(WritingThread& writing, std::filesystem::path path, XmlDat
   });
 }
 
+void write_index(WritingThread& writing, const std::filesystem::path& folder, const RecordingFrame& frame,
+                 std::string_view series, std::string_view ending, std::uint32_t pieces, const XmlDataSet& data) {
+  std::vector<std::string> names;
+  for (std::uint32_t piece = 0; piece < pieces; ++piece) names.push_back(piece_name(series, frame.step, piece, ending));
+  const std::string index = ".p" + std::string(ending.substr(1));
+  writing.add(names.size() * sizeof(std::string),
+              [path = folder / frame_name(series, frame.step, index), data, names = std::move(names)] {
+                write_xml_of_pieces(path, data, names);
+              });
+}
+
 void write_list(WritingThread& writing, std::filesystem::path path, std::span<const RecordingFrame> frames,
                 std::function<std::string(const RecordingFrame&)> name) {
   std::vector<RecordingFrame> copy(frames.begin(), frames.end());

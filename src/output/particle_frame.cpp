@@ -47,29 +47,19 @@ VtpFile particles_file(const Simulation& simulation) {
   return file;
 }
 
-std::string piece_name(const RecordingFrame& frame, unsigned piece) {
-  return frame_name("particles", frame.step, fmt::format(".{}.vtp", piece));
-}
-
 }  // namespace
 
 std::string particle_frame_name(const RecordingFrame& frame) {
   return frame_name("particles", frame.step, frame.pieces > 1 ? ".pvtp" : ".vtp");
 }
 
-void write_particles(WritingThread& writing, const std::filesystem::path& folder, const Simulation& simulation,
-                     const RecordingFrame& frame, unsigned piece, Compression compression) {
-  const std::string name = frame.pieces > 1 ? piece_name(frame, piece) : particle_frame_name(frame);
-  write_frame_file(writing, folder / name, particles_file(simulation).data(), compression);
-}
-
-void write_index(WritingThread& writing, const std::filesystem::path& folder, const Simulation& simulation,
-                 const RecordingFrame& frame) {
-  std::vector<std::string> names;
-  for (std::uint32_t piece = 0; piece < frame.pieces; ++piece) names.push_back(piece_name(frame, piece));
-  const std::size_t bytes = names.size() * sizeof(std::string);
-  writing.add(bytes, [path = folder / particle_frame_name(frame), data = particles_file(simulation).data(),
-                      names = std::move(names)] { write_xml_of_pieces(path, data, names); });
+XmlDataSet write_particles(WritingThread& writing, const std::filesystem::path& folder, const Simulation& simulation,
+                           const RecordingFrame& frame, unsigned piece, Compression compression) {
+  const std::string name =
+      frame.pieces > 1 ? piece_name("particles", frame.step, piece, ".vtp") : particle_frame_name(frame);
+  XmlDataSet data = particles_file(simulation).data();
+  write_frame_file(writing, folder / name, data, compression);
+  return data;
 }
 
 }  // namespace dartcast

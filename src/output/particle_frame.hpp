@@ -11,12 +11,9 @@ namespace dartcast {
 /// particles_000010.vtp; where there are several pieces, their index particles_000010.pvtp.
 std::string particle_frame_name(const RecordingFrame& frame);
 
-/// Leaves the particles of this rank to the thread: the frame, where it has one piece, or the piece of this number.
-void write_particles(WritingThread& writing, const std::filesystem::path& folder, const Simulation& simulation,
-                     const RecordingFrame& frame, unsigned piece, Compression compression);
-
-/// The same for the index of a frame of several pieces.
-void write_index(WritingThread& writing, const std::filesystem::path& folder, const Simulation& simulation,
-                 const RecordingFrame& frame);
+/// Leaves the particles of this rank to the thread: the frame, where it has one piece, or the piece of this number. Returns
+/// the data, as other pieces have it.
+XmlDataSet write_particles(WritingThread& writing, const std::filesystem::path& folder, const Simulation& simulation,
+                           const RecordingFrame& frame, unsigned piece, Compression compression);
 
 }  // namespace dartcast

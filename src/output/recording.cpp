@@ -39,7 +39,9 @@ bool holds_a_run(const fs::path& folder) {
   return std::getline(file, line) && line.starts_with(stats_header);
 }
 
-std::string environment_name(const RecordingFrame& frame) { return frame_name("environment", frame.step, ".vtu"); }
+std::string environment_name(const RecordingFrame& frame) {
+  return frame_name("environment", frame.step, frame.environment_pieces > 1 ? ".pvtu" : ".vtu");
+}
 
 // A copy of the names: the folder changes while they are used.
 std::vector<std::string> run_files(const fs::path& folder) {
@@ -126,14 +128,28 @@ void Recording::update_after_edit(const Environment& environment) {
 }
 
 void Recording::add_frame(const Simulation& simulation) {
-  const RecordingFrame frame{simulation.steps(), simulation.time(), options_.pieces};
-  write_particles(writing_, options_.folder, simulation, frame, 0, options_.compression);
-  if (frame.pieces > 1) write_index(writing_, options_.folder, simulation, frame);
-  if (environment_)
-    write_frame_file(writing_, options_.folder / environment_name(frame),
-                     environment_->data_set(simulation.environment()), options_.compression);
+  const RecordingFrame frame{simulation.steps(), simulation.time(), options_.pieces, options_.environment_pieces};
+  const fs::path& folder = options_.folder;
+  const XmlDataSet particles = write_particles(writing_, folder, simulation, frame, 0, options_.compression);
+  if (frame.pieces > 1) write_index(writing_, folder, frame, "particles", ".vtp", frame.pieces, particles);
+  if (environment_) {
+    const XmlDataSet data =
+        write_environment(writing_, folder, simulation, *environment_, frame, 0, options_.compression);
+    if (frame.environment_pieces > 1)
+      write_index(writing_, folder, frame, "environment", ".vtu", frame.environment_pieces, data);
+  }
   if (frames_.empty() || frames_.back().step != frame.step) frames_.push_back(frame);
   write_lists();
+}
+
+XmlDataSet write_environment(WritingThread& writing, const fs::path& folder, const Simulation& simulation,
+                             EnvironmentRecord& record, const RecordingFrame& frame, unsigned piece,
+                             Compression compression) {
+  const std::string name =
+      frame.environment_pieces > 1 ? piece_name("environment", frame.step, piece, ".vtu") : environment_name(frame);
+  XmlDataSet data = record.data_set(simulation.environment());
+  write_frame_file(writing, folder / name, data, compression);
+  return data;
 }
 
 void Recording::write_lists() const {

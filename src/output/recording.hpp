@@ -38,7 +38,8 @@ class Recording {
     bool surgery = false;  ///< the table has a column for particles in opened cells
     bool contacts = false;
     Compression compression = Compression::none;
-    std::uint32_t pieces = 1;  ///< of a frame of particles: one for each rank
+    std::uint32_t pieces = 1;              ///< of a frame of particles: one for each rank
+    std::uint32_t environment_pieces = 1;  ///< of a frame of the environment, where ranks have parts of it
   };
 
   /// Makes the folder, or takes over one that is empty or holds an earlier run, whose files are removed. Throws Error,
@@ -70,6 +71,11 @@ class Recording {
   RunTable contacts_;
   std::vector<RecordingFrame> frames_;
 };
+
+/// Leaves a frame of the environment to the thread, or a rank's piece of it; as write_particles().
+XmlDataSet write_environment(WritingThread& writing, const std::filesystem::path& folder, const Simulation& simulation,
+                             EnvironmentRecord& record, const RecordingFrame& frame, unsigned piece,
+                             Compression compression);
 
 /// Whether a run may write to this folder: it does not exist, is empty, or holds an earlier run. Throws Error that says
 /// why not.

@@ -25,15 +25,16 @@ struct Series {
   std::string_view end;
   bool named;
 };
-constexpr std::array<Series, 9> all_series = {{{"particles_", ".vtp", false},
-                                               {"particles_", ".pvtp", false},
-                                               {"environment_", ".vtu", false},
-                                               {"walls_", ".vtp", false},
-                                               {"body_", ".vtp", true},
-                                               {"surface_", ".vtp", true},
-                                               {"catheter_", ".vtp", true},
-                                               {"camera_", ".vtp", true},
-                                               {"solid_", ".vtp", true}}};
+constexpr std::array<Series, 10> all_series = {{{"particles_", ".vtp", false},
+                                                {"particles_", ".pvtp", false},
+                                                {"environment_", ".vtu", false},
+                                                {"environment_", ".pvtu", false},
+                                                {"walls_", ".vtp", false},
+                                                {"body_", ".vtp", true},
+                                                {"surface_", ".vtp", true},
+                                                {"catheter_", ".vtp", true},
+                                                {"camera_", ".vtp", true},
+                                                {"solid_", ".vtp", true}}};
 
 bool is_step(std::string_view text) {
   return text.size() >= 6 && text.find_first_not_of("0123456789") == std::string_view::npos;
@@ -103,6 +104,10 @@ std::optional<std::uint64_t> frame_step(std::string_view name) {
     if (const auto step = step_of(step_digits(name, series))) return step;
   }
   return {};
+}
+
+std::string piece_name(std::string_view series, std::uint64_t step, unsigned piece, std::string_view ending) {
+  return frame_name(series, step, fmt::format(".{}{}", piece, ending));
 }
 
 std::string frame_name(std::string_view series, std::uint64_t step, std::string_view ending) {

@@ -20,8 +20,9 @@ namespace dartcast {
 
 struct RecordingFrame {
   std::uint64_t step = 0;
-  double time = 0.0;         ///< s
-  std::uint32_t pieces = 1;  ///< files of particles: one of each rank
+  double time = 0.0;                     ///< s
+  std::uint32_t pieces = 1;              ///< files of particles: one of each rank
+  std::uint32_t environment_pieces = 1;  ///< of the environment, where it is spread
 };
 
 /// The mesh that was made around a scene's surfaces. A run that starts anew leaves it where it is.
@@ -38,6 +39,9 @@ std::string checkpoint_part_name(std::uint64_t step, unsigned rank);
 
 /// The step of such a part, by its name; none where it is none.
 std::optional<std::uint64_t> checkpoint_part_step(std::string_view name);
+
+/// Piece 2 of the series "particles" at step 10, ".vtp": particles_000010.2.vtp.
+std::string piece_name(std::string_view series, std::uint64_t step, unsigned piece, std::string_view ending);
 
 /// "particles", step 10, ".vtp": particles_000010.vtp.
 std::string frame_name(std::string_view series, std::uint64_t step, std::string_view ending);

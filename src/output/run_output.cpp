@@ -17,11 +17,16 @@
 #include "dartcast/report.hpp"
 #include "formats/file_write.hpp"
 #include "output/particle_frame.hpp"
+#include "simulation/simulation_parts.hpp"
 #include "simulation/timer.hpp"
 
 namespace dartcast {
 
 namespace {
+
+bool is_spread(const RunOptions& options) {
+  return options.partition == Partition::cells && options.ranks != nullptr && options.ranks->size() > 1;
+}
 
 // The parts of checkpoints that this one replaces. Those of later ones may be on their way.
 void remove_earlier_parts(const std::filesystem::path& folder, std::uint64_t step) {
@@ -42,7 +47,8 @@ RunOutput::RunOutput(const Scene& scene, const RunOptions& options, Summary& sum
                          summary.surgery.has_value(),
                          scene.output.contacts,
                          scene.output.compression,
-                         options.ranks != nullptr ? options.ranks->size() : 1},
+                         options.ranks != nullptr ? options.ranks->size() : 1,
+                         is_spread(options) ? options.ranks->size() : 1},
       every_(scene.output.every),
       resume_(options.resume),
       threads_(options.threads),
@@ -83,6 +89,7 @@ void RunOutput::add_parts(Checkpoint& checkpoint) const {
 }
 
 void RunOutput::keep_own(ParticleSystemState& state) const {
+  if (recording_options_.environment_pieces > 1) return;  // whose they are is seen in the environment
   const std::size_t width = scene_.user_data.size();
   const std::vector<std::uint8_t> gone = [&] {
     std::vector<std::uint8_t> marks;
@@ -109,6 +116,8 @@ void RunOutput::update_after_edit(const Environment& environment) {
 void RunOutput::open(MeshData mesh, const Simulation& simulation) {
   if (folder().empty()) return;
   const ScopeTimer timer(summary_.seconds_write);
+  if (recording_options_.environment_pieces > 1 && recording_options_.changes)
+    record_.emplace(own_mesh(*simulation.parts().part_mesh, ranks_->rank()));
   if (share_.is_first()) open_files(std::move(mesh), simulation);
   meet();
   if (!share_.is_first()) writing_ = std::make_unique<WritingThread>();
@@ -169,9 +178,13 @@ void RunOutput::add_frame(const Simulation& simulation, bool last) {
 
 // A rank but the first: it goes on when its files are whole.
 void RunOutput::write_part(const Simulation& simulation) {
-  const RecordingFrame frame{simulation.steps(), simulation.time(), recording_options_.pieces};
-  if (every_ > 0)
-    write_particles(*writing_, folder(), simulation, frame, ranks_->rank(), recording_options_.compression);
+  const Recording::Options& o = recording_options_;
+  const RecordingFrame frame{simulation.steps(), simulation.time(), o.pieces, o.environment_pieces};
+  if (every_ > 0) {
+    write_particles(*writing_, folder(), simulation, frame, ranks_->rank(), o.compression);
+    if (o.changes && frame.environment_pieces > 1)
+      write_environment(*writing_, folder(), simulation, *record_, frame, ranks_->rank(), o.compression);
+  }
   ParticleSystemState part = simulation.checkpoint().state().particles;
   part.totals.seconds_detect = part.totals.seconds_deform = 0.0;
   part.totals.seconds_collide = part.totals.seconds_respond = 0.0;

@@ -49,7 +49,9 @@ class RunOutput {
   [[nodiscard]] const std::filesystem::path& folder() const { return recording_options_.folder; }
   [[nodiscard]] std::filesystem::path file() const { return folder() / "checkpoint.bin"; }
   [[nodiscard]] bool on_schedule(std::uint64_t step) const { return every_ > 0 && step % every_ == 0; }
-  [[nodiscard]] bool wants_report() const { return scene_.output.report && every_ > 0; }
+  [[nodiscard]] bool wants_report() const {
+    return scene_.output.report && every_ > 0 && recording_options_.environment_pieces == 1;
+  }
   void meet() const;
   void add_parts(Checkpoint& checkpoint) const;
   void keep_own(ParticleSystemState& state) const;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <memory>
 #include <thread>
@@ -14,6 +15,7 @@
 #include "output/run_output.hpp"
 #include "scene/scene_mesh.hpp"
 #include "simulation/particle_share.hpp"
+#include "simulation/simulation_parts.hpp"
 
 namespace dartcast {
 
@@ -40,6 +42,33 @@ void describe(const Environment& environment, Summary& summary) {
   summary.wall_faces = map.wall_face_count();
   summary.bytes = environment.complex().bytes();
   summary.patch_names = map.patch_names();
+}
+
+// Where ranks have parts of the environment: the cells of each count once, and so does what belongs to the lowest of them.
+void describe_parts(const Simulation& simulation, Summary& summary) {
+  const PartCells& part = simulation.parts().part->cells();
+  const CombinatorialMap& map = simulation.environment().map();
+  std::array<std::uint64_t, 5> sums{};
+  std::vector<Cell> lowest(simulation.environment().positions().size());
+  for (const Cell c : map.cells()) {
+    const CellView view = map.view(c);
+    for (const std::uint32_t v : view.vertices()) {
+      if (v < lowest.size() && !lowest[v].valid()) lowest[v] = c;
+    }
+    if (!part.is_own(c)) continue;
+    ++sums[0];
+    sums[1] += view.is_free() ? 1 : 0;
+    for (std::uint16_t f = 0; view.is_free() && f < view.shape().face_count(); ++f) sums[2] += view.is_wall(f) ? 1 : 0;
+  }
+  for (const Cell c : lowest) sums[3] += c.valid() && part.is_own(c) ? 1 : 0;
+  sums[4] = simulation.environment().complex().bytes();
+  simulation.options().ranks->sum(sums);
+  summary.cells = sums[0];
+  summary.free_cells = sums[1];
+  summary.wall_faces = sums[2];
+  summary.vertices = sums[3];
+  summary.bytes = sums[4];
+  summary.patch_names.pop_back();  // behind the ghosts
 }
 
 StatisticsSummary summary_of(const Simulation& simulation) {
@@ -132,12 +161,12 @@ Scene scene_to_run(const Scene& scene, const RunOptions& options) {
 std::unique_ptr<Simulation> make_simulation(const Scene& scene, RunOutput& output, const RunOptions& options) {
   const auto follow = [&output](const Environment& environment) { output.update_after_edit(environment); };
   if (!output.found()) {
-    auto simulation = std::make_unique<Simulation>(scene, options.threads, options.ranks);
+    auto simulation = std::make_unique<Simulation>(scene, options.threads, options.ranks, options.partition);
     simulation->set_after_edit(follow);
     return simulation;
   }
   const SimulationCheckpoint saved(output.found()->simulation);
-  return std::make_unique<Simulation>(scene, saved, options.threads, follow, options.ranks);
+  return std::make_unique<Simulation>(scene, saved, options.threads, follow, options.ranks, options.partition);
 }
 
 // Where a program makes a mesh around surfaces, the first rank has it made, and the others find it in the folder.
@@ -176,6 +205,7 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
   const std::unique_ptr<Simulation> simulation =
       with_mesh_name(scene.environment.mesh, [&] { return make_simulation(loaded.scene, output, options); });
   describe(simulation->environment(), summary);
+  if (simulation->parts().part) describe_parts(*simulation, summary);
   summary.seconds_locate = locate.seconds();
   output.open(std::move(std::get<MeshData>(loaded.scene.environment.mesh)), *simulation);
   Run(*simulation, output, steps, summary).run(progress);

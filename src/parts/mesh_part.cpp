@@ -43,6 +43,19 @@ void for_each_point(const MeshData& mesh, std::size_t c, Visit&& visit) {
   for_each_entry(mesh, c, visit, [](std::uint32_t) {});
 }
 
+// The values of some items.
+std::vector<DataArray> taken(const std::vector<DataArray>& arrays, std::span<const std::uint32_t> which) {
+  std::vector<DataArray> result;
+  for (const DataArray& a : arrays) {
+    DataArray& some = result.emplace_back(DataArray{a.name, a.components, {}});
+    for (const std::uint32_t i : which) {
+      const auto first = a.values.begin() + static_cast<std::ptrdiff_t>(i * a.components);
+      some.values.insert(some.values.end(), first, first + static_cast<std::ptrdiff_t>(a.components));
+    }
+  }
+  return result;
+}
+
 class PartBuilder {
  public:
   PartBuilder(const MeshData& whole, std::span<const std::uint32_t> parts, std::uint32_t part)
@@ -149,18 +162,6 @@ class PartBuilder {
     return result;
   }
 
-  static std::vector<DataArray> taken(const std::vector<DataArray>& arrays, std::span<const std::uint32_t> which) {
-    std::vector<DataArray> result;
-    for (const DataArray& a : arrays) {
-      DataArray& some = result.emplace_back(DataArray{a.name, a.components, {}});
-      for (const std::uint32_t i : which) {
-        const auto first = a.values.begin() + static_cast<std::ptrdiff_t>(i * a.components);
-        some.values.insert(some.values.end(), first, first + static_cast<std::ptrdiff_t>(a.components));
-      }
-    }
-    return result;
-  }
-
   const MeshData& whole_;
   std::span<const std::uint32_t> parts_;
   std::uint32_t part_;
@@ -172,6 +173,25 @@ class PartBuilder {
 
 MeshPart mesh_part(const MeshData& whole, std::span<const std::uint32_t> parts, std::uint32_t part) {
   return PartBuilder(whole, parts, part).build();
+}
+
+MeshData own_mesh(const MeshPart& part, std::uint32_t rank) {
+  const MeshData& all = part.mesh;
+  MeshData own;
+  own.points = all.points;
+  own.region_names = all.region_names;
+  own.point_data = all.point_data;
+  std::vector<std::uint32_t> which;
+  for (std::uint32_t c = 0; c < all.cell_count(); ++c) {
+    if (part.owners[c] != rank) continue;
+    which.push_back(c);
+    own.add_cell(all.types[c], all.cell(c));
+    own.source.push_back(all.source[c]);
+    if (!all.regions.empty()) own.regions.push_back(all.regions[c]);
+    if (!all.free.empty()) own.free.push_back(all.free[c]);
+  }
+  own.cell_data = taken(all.cell_data, which);
+  return own;
 }
 
 PartCells part_cells(const MeshPart& part, unsigned rank) {

@@ -27,6 +27,9 @@ struct MeshPart {
 /// in the whole mesh.
 MeshPart mesh_part(const MeshData& whole, std::span<const std::uint32_t> parts, std::uint32_t part);
 
+/// The part without its ghosts; points are those of the part.
+MeshData own_mesh(const MeshPart& part, std::uint32_t rank);
+
 /// The cells of a part by their handles. `rank`: that has the part.
 PartCells part_cells(const MeshPart& part, unsigned rank);
 

@@ -23,8 +23,8 @@ void add_random(Environment& environment, Particles& particles, std::size_t coun
             "add_random: random points fall outside the free cells again and again: their cells are too thin or not "
             "valid");
       }
-      const Sample s = sampler.sample(environment.complex(), random);
-      if (environment.add(particles, s.simplex, flushed(s.position))) break;
+      const std::optional<Sample> s = sampler.sample(environment.complex(), random);
+      if (s && environment.add(particles, s->simplex, flushed(s->position))) break;
     }
   }
   addition.keep();

@@ -69,9 +69,11 @@ void forget_indices(std::vector<T>& entries) {
   for (T& e : entries) e.particle = of_another_rank;
 }
 
-// The contacts of one particle: consecutive, as are their walls.
+// The contacts of one particle on one rank: consecutive, as are their walls. Where the environment is spread over ranks, it
+// may have had others before, whose walls are in front of the first.
 struct ContactRun {
   std::uint64_t id;
+  std::uint32_t earlier;  // walls
   std::size_t rank;
   std::size_t begin, end;
 };
@@ -80,12 +82,15 @@ std::vector<ContactRun> runs_of(std::span<const RankStep> ranks) {
   std::vector<ContactRun> runs;
   for (std::size_t r = 0; r < ranks.size(); ++r) {
     const std::vector<std::uint64_t>& ids = ranks[r].step.contact_ids;
+    const std::vector<Contact>& contacts = ranks[r].step.report.contacts.contacts;
     for (std::size_t begin = 0, end = 0; begin < ids.size(); begin = end) {
-      while (end < ids.size() && ids[end] == ids[begin]) ++end;
-      runs.push_back({ids[begin], r, begin, end});
+      while (end < ids.size() && contacts[end].particle == contacts[begin].particle) ++end;
+      runs.push_back({ids[begin], contacts[begin].earlier, r, begin, end});
     }
   }
-  std::sort(runs.begin(), runs.end(), [](const ContactRun& a, const ContactRun& b) { return a.id < b.id; });
+  std::sort(runs.begin(), runs.end(), [](const ContactRun& a, const ContactRun& b) {
+    return std::pair{a.id, a.earlier} < std::pair{b.id, b.earlier};
+  });
   return runs;
 }
 

@@ -188,7 +188,8 @@ void ParticleSystem::advance_segment(unsigned segment) {
   const ScopeTimer timer(totals_.seconds_detect);
   const ContactCallback respond = respond_with(responses_, velocities_, fates_, options_.dt, acceleration(dt));
   if (spheres_ == 0) {
-    StepReport report = options_.wall_motion == WallMotion::simultaneous
+    StepReport report = part_ != nullptr ? advance_in_part(acceleration(dt))
+                        : options_.wall_motion == WallMotion::simultaneous
                             ? simultaneous_stepper_.advance(environment_, particles_, targets_, respond, options_.step)
                             : environment_.advance(particles_, targets_, respond, options_.step);
     hold_stopped(report, responses_, velocities_, fates_, options_.dt, acceleration(dt));
@@ -219,7 +220,7 @@ void ParticleSystem::count_contacts() {
 }
 
 void ParticleSystem::mark_held() {
-  std::fill(held_.begin(), held_.end(), std::uint8_t{0});
+  std::fill(held_.begin(), held_.end(), std::uint8_t{0});  // those that left are not removed yet
   for (const HeldParticle& h : last_.report.held) held_[h.particle] = 1;
 }
 
@@ -229,19 +230,22 @@ void ParticleSystem::remove_gone() {
   const std::vector<Contact>& contacts = last_.report.contacts.contacts;
   std::uint32_t next = 0;  // the first contact of a particle behind the last one that left
   for (std::size_t i = 0; i < gone.size(); ++i) {
-    if (!leaves(fates_[i])) continue;
+    gone[i] = departed_.empty() ? 0 : departed_[i];
+    if (!leaves(fates_[i]) || gone[i] != 0) continue;
     gone[i] = 1;
     while (next < contacts.size() && contacts[next].particle <= i) ++next;
     last_.left.push_back({ids_[i], fates_[i], particles_[i].position, next - 1});
     ++(fates_[i] == ParticleStatus::absorbed ? absorbed : last_.escaped);
-    gone_.add(ids_[i], particles_[i], velocities_[i], static_cast<std::uint64_t>(fates_[i]));
+    gone_.add(ids_[i], whole_state(i), velocities_[i], static_cast<std::uint64_t>(fates_[i]));
   }
   last_.absorbed += absorbed;
   totals_.absorbed += absorbed;
   totals_.escaped += last_.escaped;
-  if (absorbed + last_.escaped == 0) return;
+  if (absorbed + last_.escaped == 0 && departed_.empty()) return;
   particles_.remove(gone);
   remove_marked(gone);
+  departed_.clear();
+  if (part_ != nullptr) put_in_order_of_ids();
 }
 
 // Removes the same particles from the arrays beside the particles.

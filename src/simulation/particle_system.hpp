@@ -12,6 +12,7 @@
 #include "dartcast/simulation.hpp"
 #include "dynamics/collider.hpp"
 #include "dynamics/near_walls.hpp"
+#include "environment/part_environment.hpp"
 #include "simulation/component.hpp"
 #include "simulation/flow_aim.hpp"
 #include "simulation/particle_share.hpp"
@@ -50,6 +51,8 @@ class ParticleSystem final : public SimulationComponent {
   void set_after_injection(std::function<void()> call) { after_injection_ = std::move(call); }
   /// Bodies that the spheres meet; they step after each step of the particles. Precondition: there are collisions.
   void set_bodies(Bodies& bodies) { bodies_ = &bodies; }
+  /// The environment is a part of one that ranks share by cells. Precondition: there are no particles.
+  void set_part(PartEnvironment& part);
   void add_inlet(Patch patch, double rate, const Vec3& velocity, double radius, std::span<const double> user_data);
   std::vector<AddResult> add(std::span<const Vec3> positions, const Vec3& velocity, double radius,
                              std::span<const double> user_data);
@@ -83,6 +86,7 @@ class ParticleSystem final : public SimulationComponent {
   [[nodiscard]] const SimulationStep& last_step() const { return last_; }
   /// Takes the step of all ranks in place of this one's.
   void set_last_step(SimulationStep step) { last_ = std::move(step); }
+  [[nodiscard]] const PartEnvironment* part() const { return part_; }
   [[nodiscard]] const ParticleShare& share() const { return share_; }
   [[nodiscard]] std::uint64_t next_id() const { return next_id_; }
   [[nodiscard]] const UpdateReport& last_update() const { return last_update_; }  ///< of the last edit
@@ -156,16 +160,32 @@ class ParticleSystem final : public SimulationComponent {
   void check_motion(const Vec3& velocity, double radius, std::string_view whose) const;
   void check_user_data(std::span<const double> values) const;
   std::vector<AddResult> add_own(std::span<const Vec3> positions);
-  void complete_next(const Vec3& velocity, double radius, std::span<const double> user_data);
+  void complete_next(const AddResult& added, const Vec3& velocity, double radius, std::span<const double> user_data);
+  void complete(std::uint64_t id, const Vec3& velocity, double radius, std::span<const double> user_data);
   template <class Sampler>
   void add_sampled(const Sampler& sampler, std::size_t count, const Vec3& velocity, double radius,
                    std::span<const double> user_data);
+  template <class Sampler>
+  std::vector<std::uint64_t> place(const Sampler& sampler, std::uint64_t first, std::uint64_t count);
   [[nodiscard]] std::size_t width() const { return options_.user_data.size(); }
+  // In particle_system_part.cpp.
+  class PartData;
+  [[nodiscard]] std::optional<SampledPart> sampled_part() const;
+  [[nodiscard]] ParticleState whole_state(std::size_t i) const;
+  StepReport advance_in_part(const Acceleration& acceleration);
+  std::vector<AddResult> add_in_part(std::span<const Vec3> positions);
+  template <class Sampler>
+  std::vector<std::uint64_t> place_in_part(const Sampler& sampler, std::uint64_t first, std::uint64_t count);
+  [[nodiscard]] std::vector<std::uint64_t> of_all_ranks(const std::vector<std::uint64_t>& ids) const;
+  template <class T>
+  static void put_in_order(std::vector<T>& values, std::span<const std::uint32_t> order, std::size_t width = 1);
+  void put_in_order_of_ids();
   // In particle_system_edit.cpp.
   void remove_absorbed(const UpdateReport& report, std::span<const ParticleState> before);
   void reopen_inlets();
   // In particle_system_checkpoint.cpp.
   void stand_at(std::uint64_t steps);
+  [[nodiscard]] bool is_mine(const ParticleSystemState::Particle& p) const;
   void put_in_place_of_all(const ParticleSystemState& saved);
   // With collisions, in particle_system_collide.cpp.
   [[nodiscard]] bool collides() const { return options_.collisions && spheres_ > 0; }
@@ -181,6 +201,7 @@ class ParticleSystem final : public SimulationComponent {
   Environment& environment_;
   SimulationOptions options_;
   ParticleShare share_;
+  PartEnvironment* part_ = nullptr;  // none: the environment is whole
   WallResponses responses_;
   std::optional<VelocityField> field_;
   std::optional<VectorField> force_;  // accelerations, on top of gravity
@@ -197,8 +218,9 @@ class ParticleSystem final : public SimulationComponent {
   std::vector<std::uint32_t> contact_counts_;
   std::vector<double> radii_;
   std::vector<std::uint8_t> held_;
-  std::vector<double> user_data_;  // particle by particle
-  std::size_t spheres_ = 0;        // of a radius above 0
+  std::vector<std::uint8_t> departed_;  // in this step, to other ranks; empty: none
+  std::vector<double> user_data_;       // particle by particle
+  std::size_t spheres_ = 0;             // of a radius above 0
   std::vector<Vec3> targets_;
   SphereStepper stepper_;
   SimultaneousStepper simultaneous_stepper_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -59,7 +60,7 @@ void ParticleSystem::add_inlet(Patch patch, double rate, const Vec3& velocity, d
   check_motion(velocity, radius, "an inlet's");
   check_user_data(user_data);
   inlets_.push_back({patch,
-                     PatchSampler(environment_.complex(), patch),
+                     PatchSampler(environment_.complex(), patch, sampled_part()),
                      rate,
                      velocity,
                      radius,
@@ -113,9 +114,7 @@ std::vector<AddResult> ParticleSystem::add(std::span<const Vec3> positions, cons
   check_user_data(user_data);
   SystemAddition addition(*this);
   std::vector<AddResult> added = add_own(positions);
-  for (const AddResult& a : added) {
-    if (a.location.place == Place::free) complete_next(velocity, radius, user_data);
-  }
+  for (const AddResult& a : added) complete_next(a, velocity, radius, user_data);
   addition.keep();
   totals_.start = next_id_ - totals_.injected;
   return added;
@@ -133,9 +132,7 @@ std::vector<AddResult> ParticleSystem::add(std::span<const Vec3> positions, std:
   }
   SystemAddition addition(*this);
   std::vector<AddResult> added = add_own(positions);
-  for (std::size_t i = 0; i < added.size(); ++i) {
-    if (added[i].location.place == Place::free) complete_next(velocities[i], radii[i], user_data);
-  }
+  for (std::size_t i = 0; i < added.size(); ++i) complete_next(added[i], velocities[i], radii[i], user_data);
   addition.keep();
   totals_.start = next_id_ - totals_.injected;
   return added;
@@ -144,6 +141,7 @@ std::vector<AddResult> ParticleSystem::add(std::span<const Vec3> positions, std:
 // Adds those of this rank to the environment, and says of all where they are.
 std::vector<AddResult> ParticleSystem::add_own(std::span<const Vec3> positions) {
   if (share_.has_all()) return environment_.add(particles_, positions);
+  if (part_ != nullptr) return add_in_part(positions);
   const std::vector<Location> locations = environment_.locate(positions);
   std::vector<AddResult> added(positions.size());
   std::vector<Vec3> own;
@@ -160,10 +158,17 @@ std::vector<AddResult> ParticleSystem::add_own(std::span<const Vec3> positions) 
   return added;
 }
 
-// Gives the next id to a particle; where it is this rank's, it is the next one in the environment's set.
-void ParticleSystem::complete_next(const Vec3& velocity, double radius, std::span<const double> user_data) {
+// Gives the next id to a particle that is in the scene; where it is this rank's, completes it.
+void ParticleSystem::complete_next(const AddResult& added, const Vec3& velocity, double radius,
+                                   std::span<const double> user_data) {
+  if (added.location.place != Place::free) return;
   const std::uint64_t id = next_id_++;
-  if (!share_.holds(id)) return;
+  if (added.particle != AddResult().particle) complete(id, velocity, radius, user_data);
+}
+
+// Completes the next one in the environment's set.
+void ParticleSystem::complete(std::uint64_t id, const Vec3& velocity, double radius,
+                              std::span<const double> user_data) {
   ids_.push_back(id);
   velocities_.push_back(velocity);
   fates_.push_back(ParticleStatus::alive);
@@ -179,23 +184,39 @@ void ParticleSystem::complete_next(const Vec3& velocity, double radius, std::spa
 template <class Sampler>
 void ParticleSystem::add_sampled(const Sampler& sampler, std::size_t count, const Vec3& velocity, double radius,
                                  std::span<const double> user_data) {
-  constexpr int max_tries = 1000;
+  constexpr std::size_t at_once = std::size_t{1} << 20U;
   SystemAddition addition(*this);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!share_.holds(next_id_ + i)) continue;
-    KeyedRandom random(options_.seed, RandomPurpose::place, next_id_ + i);
+  while (count > 0) {
+    const std::size_t some = std::min(count, at_once);
+    const auto placed = part_ != nullptr ? place_in_part(sampler, next_id_, some) : place(sampler, next_id_, some);
+    for (const std::uint64_t id : placed) complete(id, velocity, radius, user_data);
+    next_id_ += some;
+    count -= some;
+  }
+  if (part_ != nullptr) put_in_order_of_ids();
+  addition.keep();
+}
+
+// Puts the particles of these ids that are this rank's at random places; returns their ids.
+template <class Sampler>
+std::vector<std::uint64_t> ParticleSystem::place(const Sampler& sampler, std::uint64_t first, std::uint64_t count) {
+  constexpr int max_tries = 1000;
+  std::vector<std::uint64_t> placed;
+  for (std::uint64_t id = first; id < first + count; ++id) {
+    if (!share_.holds(id)) continue;
+    placed.push_back(id);
+    KeyedRandom random(options_.seed, RandomPurpose::place, id);
     int tries = 0;
     while (true) {
-      const Sample s = sampler.sample(environment_.complex(), random);
-      if (environment_.add(particles_, s.simplex, flushed(s.position))) break;
+      const std::optional<Sample> s = sampler.sample(environment_.complex(), random);
+      if (s && environment_.add(particles_, s->simplex, flushed(s->position))) break;
       if (++tries == max_tries)
         throw InvalidArgument(
             "simulation: random points fall outside the free cells again and again: their cells are too thin or not "
             "valid");
     }
   }
-  for (std::size_t i = 0; i < count; ++i) complete_next(velocity, radius, user_data);
-  addition.keep();
+  return placed;
 }
 
 void ParticleSystem::add_random(std::size_t count, const Vec3& velocity, double radius,
@@ -204,7 +225,8 @@ void ParticleSystem::add_random(std::size_t count, const Vec3& velocity, double 
   check_motion(velocity, radius, "a particle's");
   check_user_data(user_data);
   if (count > 0)
-    add_sampled(VolumeSampler(environment_.complex(), environment_.threads()), count, velocity, radius, user_data);
+    add_sampled(VolumeSampler(environment_.complex(), environment_.threads(), sampled_part()), count, velocity, radius,
+                user_data);
   totals_.start = next_id_ - totals_.injected;
 }
 

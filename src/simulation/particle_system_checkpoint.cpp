@@ -3,6 +3,7 @@
 
 #include "dartcast/error.hpp"
 #include "simulation/particle_system.hpp"
+#include "tracking/traveller.hpp"
 
 namespace dartcast {
 
@@ -11,8 +12,8 @@ void ParticleSystem::save(SimulationState& state) const {
   saved.steps = steps_;
   saved.next_id = next_id_;
   for (std::size_t i = 0; i < particles_.size(); ++i) {
-    saved.particles.push_back(
-        {ids_[i], particles_[i], particles_.held_weights(i), velocities_[i], fates_[i], contact_counts_[i], radii_[i]});
+    saved.particles.push_back({ids_[i], whole_state(i), particles_.held_weights(i), velocities_[i], fates_[i],
+                               contact_counts_[i], radii_[i]});
   }
   saved.totals = totals_;
   saved.gone = gone_;
@@ -48,16 +49,23 @@ void ParticleSystem::restore(const SimulationState& state) {
   gone_ = saved.gone;
 }
 
+bool ParticleSystem::is_mine(const ParticleSystemState::Particle& p) const {
+  if (part_ == nullptr) return share_.holds(p.id);
+  const Cell here = part_->cells().here(p.state.cell);
+  return here.valid() && part_->cells().is_own(here);
+}
+
 // Those that this rank holds.
 void ParticleSystem::put_in_place_of_all(const ParticleSystemState& saved) {
   std::vector<std::size_t> own;
   for (std::size_t i = 0; i < saved.particles.size(); ++i) {
-    if (share_.holds(saved.particles[i].id)) own.push_back(i);
+    if (is_mine(saved.particles[i])) own.push_back(i);
   }
   std::vector<ParticleState> states;
   std::vector<Weights> weights;
   for (const std::size_t i : own) {
-    states.push_back(saved.particles[i].state);
+    const ParticleState& state = saved.particles[i].state;
+    states.push_back(part_ == nullptr ? state : state_here(part_->cells(), state));
     weights.push_back(saved.particles[i].held_weights);
   }
   particles_ = environment_.restored(states, weights);
@@ -124,7 +132,7 @@ Audit ParticleSystem::audit() const {
 StateHash ParticleSystem::state_hash() const {
   StateHash hash = gone_;
   for (std::size_t i = 0; i < ids_.size(); ++i) {
-    hash.add(ids_[i], particles_[i], velocities_[i], static_cast<std::uint64_t>(fates_[i]));
+    hash.add(ids_[i], whole_state(i), velocities_[i], static_cast<std::uint64_t>(fates_[i]));
   }
   return hash;
 }

@@ -20,7 +20,7 @@ struct ExactEnergy {
   ExactSum potential;
 };
 
-SimulationEnergy of_all_ranks(const ExactEnergy& own, Ranks* ranks) {
+SimulationEnergy energy_of_all(const ExactEnergy& own, Ranks* ranks) {
   const auto rounded = [](const ExactEnergy& e) { return SimulationEnergy{e.kinetic.value(), e.potential.value()}; };
   if (ranks == nullptr || ranks->size() == 1) return rounded(own);
   ByteWriter bytes;
@@ -63,7 +63,7 @@ SimulationEnergy ParticleSystem::energy() const {
     all.kinetic += part.kinetic;
     all.potential += part.potential;
   }
-  return of_all_ranks(all, options_.ranks);
+  return energy_of_all(all, options_.ranks);
 }
 
 }  // namespace dartcast

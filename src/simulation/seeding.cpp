@@ -8,7 +8,10 @@
 #include <bit>
 #include <cmath>
 #include <numeric>
+#include <string>
+#include <utility>
 
+#include "base/bytes.hpp"
 #include "complex/simplex.hpp"
 #include "dartcast/error.hpp"
 
@@ -31,13 +34,9 @@ std::array<double, N> random_weights(KeyedRandom& random) {
 }
 
 // The first entry of a table of sums above a place in it. Where all are 0, the last.
-std::size_t entry_at(const std::vector<std::uint64_t>& up_to, std::uint64_t place) {
+std::size_t entry_above(const std::vector<std::uint64_t>& up_to, std::uint64_t place) {
   const auto found = std::upper_bound(up_to.begin(), up_to.end(), place);
   return std::min<std::size_t>(static_cast<std::size_t>(found - up_to.begin()), up_to.size() - 1);
-}
-
-std::size_t choose(const std::vector<std::uint64_t>& up_to, KeyedRandom& random) {
-  return entry_at(up_to, random.below(up_to.back()));
 }
 
 std::size_t simplex_count(const CellComplex& complex, Cell cell) {
@@ -68,9 +67,113 @@ std::uint64_t FixedPointScale::operator()(double size) const {
   return static_cast<std::uint64_t>(std::nearbyint(size * factor_));
 }
 
-VolumeSampler::VolumeSampler(const CellComplex& complex, Threads threads) {
+namespace {
+
+// The largest size and the number of sizes, over all ranks.
+struct SizeRange {
+  double largest = 0.0;
+  std::uint64_t count = 0;
+};
+
+SizeRange range_of_all(const SizeRange& own, Ranks& ranks) {
+  ByteWriter bytes;
+  bytes.put(own);
+  SizeRange all;
+  for (const std::string& b : ranks.gather(bytes.bytes())) {
+    const auto part = ByteReader(b).take<SizeRange>();
+    all.largest = std::max(all.largest, part.largest);
+    all.count += part.count;
+  }
+  ByteWriter sum;
+  sum.put(all);
+  return ByteReader(ranks.broadcast(sum.bytes())).take<SizeRange>();
+}
+
+// Where a rank's sizes of one cell are on the line.
+struct Stretch {
+  Cell cell;  // in the whole environment
+  std::uint64_t size = 0;
+  std::uint64_t begin = 0;
+};
+
+// The line of all ranks: cells in their order. The first rank puts it together.
+std::vector<std::vector<Stretch>> placed(std::vector<std::vector<Stretch>> ranks, std::uint64_t& length) {
+  std::vector<Stretch*> line;
+  for (std::vector<Stretch>& stretches : ranks) {
+    for (Stretch& s : stretches) line.push_back(&s);
+  }
+  std::sort(line.begin(), line.end(), [](const Stretch* a, const Stretch* b) { return a->cell < b->cell; });
+  for (Stretch* s : line) {
+    s->begin = length;
+    length += s->size;
+  }
+  return ranks;
+}
+
+// Sets where each begins; returns the line's length. Collective.
+std::uint64_t place_on_line(std::vector<Stretch>& own, Ranks& ranks) {
+  ByteWriter bytes;
+  bytes.put(own);
+  std::vector<std::vector<Stretch>> all;
+  for (const std::string& b : ranks.gather(bytes.bytes())) all.push_back(ByteReader(b).take_list<Stretch>());
+  std::uint64_t length = 0;
+  all = placed(std::move(all), length);
+  all.resize(ranks.size());
+  std::vector<std::string> back;
+  for (const std::vector<Stretch>& stretches : all) {
+    ByteWriter out;
+    out.put(stretches);
+    back.push_back(out.bytes());
+  }
+  own = ByteReader(ranks.exchange(std::move(back)).front()).take_list<Stretch>();
+  ranks.sum({&length, 1});
+  return length;
+}
+
+}  // namespace
+
+FixedPointScale scale_of(double largest, std::size_t count, const std::optional<SampledPart>& part) {
+  SizeRange range{largest, count};
+  if (part) range = range_of_all(range, part->ranks);
+  return {range.largest, range.count};
+}
+
+SizeTable::SizeTable(std::vector<std::uint64_t> sizes, std::span<const Cell> cells,
+                     const std::optional<SampledPart>& part)
+    : size_(std::move(sizes)) {
+  for (const std::uint64_t size : size_) {
+    begin_.push_back(length_);
+    length_ += size;
+  }
+  if (!part) return;
+  const auto is_first = [&](std::size_t i) { return i == 0 || cells[i] != cells[i - 1]; };
+  std::vector<Stretch> own;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (is_first(i)) own.push_back({part->cells.whole(cells[i]), 0, 0});
+    own.back().size += size_[i];
+  }
+  length_ = place_on_line(own, part->ranks);
+  std::size_t stretch = 0;
+  std::uint64_t at = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (is_first(i)) at = own[stretch++].begin;
+    begin_[i] = at;
+    at += size_[i];
+  }
+}
+
+// The last of those that begin at the same place is the one that is not empty.
+std::optional<std::size_t> SizeTable::entry_at(std::uint64_t place) const {
+  const auto after = std::upper_bound(begin_.begin(), begin_.end(), place);
+  if (after == begin_.begin()) return {};
+  const auto entry = static_cast<std::size_t>(after - begin_.begin()) - 1;
+  if (place - begin_[entry] >= size_[entry]) return {};
+  return entry;
+}
+
+VolumeSampler::VolumeSampler(const CellComplex& complex, Threads threads, const std::optional<SampledPart>& part) {
   for (const Cell c : complex.map().cells()) {
-    if (complex.map().is_free(c)) cells_.push_back(c);
+    if (complex.map().is_free(c) && (!part || part->cells.is_own(c))) cells_.push_back(c);
   }
   std::vector<double> largest(chunk_count(cells_.size(), sampler_grain));
   std::vector<std::size_t> count(largest.size());
@@ -83,37 +186,41 @@ VolumeSampler::VolumeSampler(const CellComplex& complex, Threads threads) {
         largest[chunk] = std::max(largest[chunk], simplex_volume(complex, cells_[i], s));
     }
   });
-  if (!cells_.empty())
-    scale_ = FixedPointScale(*std::max_element(largest.begin(), largest.end()),
-                             std::accumulate(count.begin(), count.end(), std::size_t{0}));
-  volume_up_to_.resize(cells_.size());
+  scale_ = scale_of(largest.empty() ? 0.0 : *std::max_element(largest.begin(), largest.end()),
+                    std::accumulate(count.begin(), count.end(), std::size_t{0}), part);
+  std::vector<std::uint64_t> volumes(cells_.size());
   parallel_for(cells_.size(), sampler_grain, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       for (std::size_t s = 0; s < simplex_count(complex, cells_[i]); ++s)
-        volume_up_to_[i] += scale_(simplex_volume(complex, cells_[i], s));
+        volumes[i] += scale_(simplex_volume(complex, cells_[i], s));
     }
   });
-  std::partial_sum(volume_up_to_.begin(), volume_up_to_.end(), volume_up_to_.begin());
-  if (cells_.empty() || volume_up_to_.back() == 0) throw InvalidArgument("there is no free cell to put particles into");
+  volumes_ = SizeTable(std::move(volumes), cells_, part);
+  if (volumes_.length() == 0) throw InvalidArgument("there is no free cell to put particles into");
 }
 
-// One number chooses the cell, and the simplex within it.
-Sample VolumeSampler::sample(const CellComplex& complex, KeyedRandom& random) const {
-  const std::uint64_t place = random.below(volume_up_to_.back());
-  const std::size_t entry = entry_at(volume_up_to_, place);
-  const Cell cell = cells_[entry];
+// One number chooses the cell, and the simplex within it. Every rank takes as many numbers, so that all draw again alike.
+std::optional<Sample> VolumeSampler::sample(const CellComplex& complex, KeyedRandom& random) const {
+  const std::uint64_t place = random.below(volumes_.length());
+  const bool plane = complex.map().dimension() == 2;
+  std::array<double, 4> w{};
+  if (plane) {
+    const auto three = random_weights<3>(random);
+    std::copy(three.begin(), three.end(), w.begin());
+  } else {
+    w = random_weights<4>(random);
+  }
+  const std::optional<std::size_t> entry = volumes_.entry_at(place);
+  if (!entry) return {};
+  const Cell cell = cells_[*entry];
   std::vector<std::uint64_t> up_to;
-  std::uint64_t sum = entry == 0 ? 0 : volume_up_to_[entry - 1];
+  std::uint64_t sum = volumes_.begin(*entry);
   for (std::size_t s = 0; s < simplex_count(complex, cell); ++s)
     up_to.push_back(sum += scale_(simplex_volume(complex, cell, s)));
-  const SimplexId simplex{cell, static_cast<std::uint16_t>(entry_at(up_to, place))};
+  const SimplexId simplex{cell, static_cast<std::uint16_t>(entry_above(up_to, place))};
   const Corners v = complex.corners(simplex);
-  if (complex.map().dimension() == 2) {
-    const auto w = random_weights<3>(random);
-    return {simplex, (v[0] * w[0] + v[1] * w[1]) + v[2] * w[2]};
-  }
-  const auto w = random_weights<4>(random);
-  return {simplex, (v[0] * w[0] + v[1] * w[1]) + (v[2] * w[2] + v[3] * w[3])};
+  if (plane) return Sample{simplex, (v[0] * w[0] + v[1] * w[1]) + v[2] * w[2]};
+  return Sample{simplex, (v[0] * w[0] + v[1] * w[1]) + (v[2] * w[2] + v[3] * w[3])};
 }
 
 namespace {
@@ -125,21 +232,23 @@ double facet_size(unsigned dimension, const Corners& v, unsigned facet) {
   return norm(cross(v[f[1]] - v[f[0]], v[f[2]] - v[f[0]]));
 }
 
-Vec3 random_on_facet(unsigned dimension, const Corners& v, unsigned facet, KeyedRandom& random) {
-  if (dimension == 2) {
-    const auto w = random_weights<2>(random);
-    return v[plane_facet_corners[facet][0]] * w[0] + v[plane_facet_corners[facet][1]] * w[1];
-  }
+// `w`: of the facet's corners.
+Vec3 on_facet(unsigned dimension, const Corners& v, unsigned facet, const std::array<double, 3>& w) {
+  if (dimension == 2) return v[plane_facet_corners[facet][0]] * w[0] + v[plane_facet_corners[facet][1]] * w[1];
   const auto& f = facet_corners[facet];
-  const auto w = random_weights<3>(random);
   return v[f[0]] * w[0] + v[f[1]] * w[1] + v[f[2]] * w[2];
 }
 
 }  // namespace
 
-PatchSampler::PatchSampler(const CellComplex& complex, Patch patch) : patch_(patch) {
-  for (const Cell c : complex.map().cells()) add(complex.map(), c);
-  if (triangles_.empty()) throw InvalidArgument("the patch has no wall face at a free cell");
+PatchSampler::PatchSampler(const CellComplex& complex, Patch patch, const std::optional<SampledPart>& part)
+    : patch_(patch), part_(part) {
+  for (const Cell c : complex.map().cells()) {
+    if (!part || part->cells.is_own(c)) add(complex.map(), c);
+  }
+  std::uint64_t count = triangles_.size();
+  if (part) part->ranks.sum({&count, 1});
+  if (count == 0) throw InvalidArgument("the patch has no wall face at a free cell");
   update(complex);
 }
 
@@ -174,24 +283,37 @@ void PatchSampler::update_after_edit(const CellComplex& complex, const ComplexEd
 }
 
 void PatchSampler::update(const CellComplex& complex) {
-  areas_.resize(triangles_.size());
-  area_up_to_.resize(triangles_.size());
-  double largest = 0.0;
-  for (std::size_t i = 0; i < triangles_.size(); ++i) {
-    const Triangle& t = triangles_[i];
-    areas_[i] = facet_size(complex.map().dimension(), complex.corners(t.simplex), t.facet);
-    largest = std::max(largest, areas_[i]);
+  std::vector<double> areas;
+  std::vector<Cell> cells;
+  for (const Triangle& t : triangles_) {
+    areas.push_back(facet_size(complex.map().dimension(), complex.corners(t.simplex), t.facet));
+    cells.push_back(t.simplex.cell);
   }
-  const FixedPointScale scale(largest, areas_.size());
-  std::uint64_t sum = 0;
-  for (std::size_t i = 0; i < areas_.size(); ++i) area_up_to_[i] = sum += scale(areas_[i]);
+  const FixedPointScale scale =
+      scale_of(areas.empty() ? 0.0 : *std::max_element(areas.begin(), areas.end()), areas.size(), part_);
+  std::vector<std::uint64_t> sizes;
+  for (const double area : areas) sizes.push_back(scale(area));
+  areas_ = SizeTable(std::move(sizes), cells, part_);
 }
 
-Sample PatchSampler::sample(const CellComplex& complex, KeyedRandom& random) const {
-  const Triangle& t = triangles_[choose(area_up_to_, random)];
+// Where all areas are 0, the last triangle.
+std::optional<Sample> PatchSampler::sample(const CellComplex& complex, KeyedRandom& random) const {
+  const std::uint64_t place = random.below(areas_.length());
+  const unsigned dimension = complex.map().dimension();
+  std::array<double, 3> w{};
+  if (dimension == 2) {
+    const auto two = random_weights<2>(random);
+    std::copy(two.begin(), two.end(), w.begin());
+  } else {
+    w = random_weights<3>(random);
+  }
+  std::optional<std::size_t> entry = areas_.entry_at(place);
+  if (!entry && areas_.length() == 0 && !triangles_.empty()) entry = triangles_.size() - 1;
+  if (!entry) return {};
+  const Triangle& t = triangles_[*entry];
   const Corners v = complex.corners(t.simplex);
-  const Vec3 on_face = random_on_facet(complex.map().dimension(), v, t.facet, random);
-  return {t.simplex, on_face + (v[t.facet] - on_face) * 0x1p-6};
+  const Vec3 on_face = on_facet(dimension, v, t.facet, w);
+  return Sample{t.simplex, on_face + (v[t.facet] - on_face) * 0x1p-6};
 }
 
 }  // namespace dartcast

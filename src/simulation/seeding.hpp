@@ -2,12 +2,16 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "base/keyed_random.hpp"
 #include "base/parallel.hpp"
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/complex_edit.hpp"
+#include "dartcast/ranks.hpp"
+#include "parts/part_cells.hpp"
 
 namespace dartcast {
 
@@ -35,19 +39,48 @@ class FixedPointScale {
   double factor_ = 0.0;
 };
 
+/// One rank's part of an environment, for samplers; none: this process has all.
+struct SampledPart {
+  const PartCells& cells;
+  Ranks& ranks;
+};
+
+/// The scale for sizes of which this rank has so many, and this largest one. Collective where there is a part.
+FixedPointScale scale_of(double largest, std::size_t count, const std::optional<SampledPart>& part);
+
+/// Sizes in a row, each as long a piece of a line as it is large: a place on the line chooses an entry. Where ranks have an
+/// environment's parts, each has its own entries, and the line is that of one process.
+class SizeTable {
+ public:
+  SizeTable() = default;
+  /// `cells`: of each size, ascending. Collective where there is a part.
+  SizeTable(std::vector<std::uint64_t> sizes, std::span<const Cell> cells, const std::optional<SampledPart>& part);
+
+  /// Over all ranks; 0: there is nothing to choose.
+  [[nodiscard]] std::uint64_t length() const { return length_; }
+  [[nodiscard]] std::uint64_t begin(std::size_t entry) const { return begin_[entry]; }
+  /// None: it is another rank's.
+  [[nodiscard]] std::optional<std::size_t> entry_at(std::uint64_t place) const;
+
+ private:
+  std::vector<std::uint64_t> begin_;
+  std::vector<std::uint64_t> size_;
+  std::uint64_t length_ = 0;
+};
+
 /// Points of equal likelihood by volume in the free cells, at the complex's positions when it was made. Cost to make:
 /// linear.
 class VolumeSampler {
  public:
   /// Throws InvalidArgument where no cell is free.
-  explicit VolumeSampler(const CellComplex& complex, Threads threads = {});
-  /// In a free cell. Cost: the logarithm of the cells.
-  [[nodiscard]] Sample sample(const CellComplex& complex, KeyedRandom& random) const;
+  explicit VolumeSampler(const CellComplex& complex, Threads threads = {}, const std::optional<SampledPart>& part = {});
+  /// In a free cell; none: in another rank's. Cost: the logarithm of the cells.
+  [[nodiscard]] std::optional<Sample> sample(const CellComplex& complex, KeyedRandom& random) const;
 
  private:
   std::vector<Cell> cells_;
   FixedPointScale scale_;
-  std::vector<std::uint64_t> volume_up_to_;
+  SizeTable volumes_;
 };
 
 /// Points of equal likelihood by area on a patch's faces, moved inwards by 1/64 of the way to the opposite corner of
@@ -55,15 +88,15 @@ class VolumeSampler {
 class PatchSampler {
  public:
   /// Throws InvalidArgument where the patch has no face at a free cell. Cost: linear in the cells.
-  PatchSampler(const CellComplex& complex, Patch patch);
+  PatchSampler(const CellComplex& complex, Patch patch, const std::optional<SampledPart>& part = {});
   /// After an edit it is as a new one, but it may be empty. Cost: the cells touched, and the patch's faces.
   void update_after_edit(const CellComplex& complex, const ComplexEditReport& edit);
   /// Takes the areas at the complex's current positions. Cost: the patch's faces.
   void update(const CellComplex& complex);
   /// Whether the patch has no face at a free cell.
-  [[nodiscard]] bool empty() const { return triangles_.empty(); }
-  /// Precondition: it is not empty.
-  [[nodiscard]] Sample sample(const CellComplex& complex, KeyedRandom& random) const;
+  [[nodiscard]] bool empty() const { return !part_ && triangles_.empty(); }
+  /// None: on another rank's face. Precondition: it is not empty.
+  [[nodiscard]] std::optional<Sample> sample(const CellComplex& complex, KeyedRandom& random) const;
 
  private:
   void add(const CombinatorialMap& map, Cell c);
@@ -73,9 +106,9 @@ class PatchSampler {
     std::uint16_t facet;
   };
   Patch patch_;
+  std::optional<SampledPart> part_;
   std::vector<Triangle> triangles_;
-  std::vector<double> areas_;
-  std::vector<std::uint64_t> area_up_to_;
+  SizeTable areas_;
 };
 
 }  // namespace dartcast

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dartcast/simulation.hpp"
+#include "environment/part_environment.hpp"
 #include "simulation/bodies_component.hpp"
 #include "simulation/catheters_component.hpp"
 #include "simulation/event_scheduler.hpp"
@@ -27,7 +28,16 @@ struct Simulation::Parts {
         statistics(particles),
         events(simulation, used, options.dt) {}
 
+  /// The environment is this part of one.
+  void spread(MeshPart mesh, Ranks& ranks) {
+    part = std::make_unique<PartEnvironment>(environment, mesh, ranks);
+    part_mesh = std::make_unique<MeshPart>(std::move(mesh));
+    particles.set_part(*part);
+  }
+
   std::unique_ptr<Environment> own_environment;
+  std::unique_ptr<PartEnvironment> part;  // none: the environment is whole
+  std::unique_ptr<MeshPart> part_mesh;
   Environment& environment;
   ParticleSystem particles;
   SolidsComponent solids;

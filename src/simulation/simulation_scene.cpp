@@ -1,6 +1,7 @@
 // Makes a simulation from a scene.
 #include <fmt/format.h>
 
+#include <optional>
 #include <utility>
 #include <variant>
 
@@ -9,6 +10,7 @@
 #include "dartcast/scene.hpp"
 #include "simulation/scene_environment.hpp"
 #include "simulation/scene_field.hpp"
+#include "simulation/scene_part.hpp"
 #include "simulation/simulation_parts.hpp"
 
 namespace dartcast {
@@ -98,17 +100,28 @@ void add_inlets(Simulation& simulation, const Scene& scene) {
 }  // namespace
 
 // All but the particles.
-void Simulation::make(const Scene& scene, Threads threads, Ranks* ranks) {
+void Simulation::make(const Scene& scene, Threads threads, Ranks* ranks, Partition partition) {
   MeshData made;
   if (!is_ready(scene.environment)) made = scene_mesh(scene.environment);
-  const MeshData& mesh = is_ready(scene.environment) ? std::get<MeshData>(scene.environment.mesh) : made;
+  const MeshData& whole = is_ready(scene.environment) ? std::get<MeshData>(scene.environment.mesh) : made;
+  std::optional<MeshPart> part;
+  if (partition == Partition::cells && ranks != nullptr && ranks->size() > 1) {
+    check_can_be_spread(scene);
+    part = scene_part(whole, *ranks);
+  }
+  const MeshData& mesh = part ? part->mesh : whole;
   auto own = std::make_unique<Environment>(mesh, threads);
   Environment& environment = *own;
   parts_ = std::make_unique<Parts>(*this, std::move(own), environment, options_of(scene, ranks));
   const CellComplex& complex = environment.complex();
   if (const auto field = scene_field(scene.motion.field, "the velocity field", mesh, complex)) set_field(*field);
   if (const auto force = scene_field(scene.motion.force, "the force", mesh, complex)) set_force(*force);
-  if (!scene.deformation.empty()) set_deformation(Deformation(deformation_steps(scene.deformation, mesh), mesh.points));
+  if (!scene.deformation.empty()) {
+    std::vector<DeformationStep> steps = deformation_steps(scene.deformation, mesh);
+    if (part) steps = steps_of_part(std::move(steps), part->points);
+    set_deformation(Deformation(std::move(steps), mesh.points));
+  }
+  if (part) parts_->spread(std::move(*part), *ranks);
   set_events(events_of(scene, mesh, environment.map()));
   set_remeshing(scene.remesh);
   set_adaptive_subdivision(scene.adaptive_subdivision);
@@ -119,14 +132,14 @@ void Simulation::make(const Scene& scene, Threads threads, Ranks* ranks) {
   add_inlets(*this, scene);
 }
 
-Simulation::Simulation(const Scene& scene, Threads threads, Ranks* ranks) {
-  make(scene, threads, ranks);
+Simulation::Simulation(const Scene& scene, Threads threads, Ranks* ranks, Partition partition) {
+  make(scene, threads, ranks, partition);
   for (const ParticlesScene& p : scene.particles) std::visit(ParticleSource(*this, p), p.source);
 }
 
 Simulation::Simulation(const Scene& scene, const SimulationCheckpoint& saved, Threads threads, AfterEdit after_edit,
-                       Ranks* ranks) {
-  make(scene, threads, ranks);
+                       Ranks* ranks, Partition partition) {
+  make(scene, threads, ranks, partition);
   set_after_edit(std::move(after_edit));
   restore(saved);
 }

@@ -24,6 +24,7 @@
 #include "support/stepped_scenes.hpp"
 #include "support/thread_ranks.hpp"
 #include "support/tier.hpp"
+#include "tracking/traveller.hpp"
 
 namespace dartcast::part_environment_test {
 
@@ -267,7 +268,9 @@ TEST(PartEnvironment, StepsAreThoseOfOneEnvironment) {
       test::SteppedScene slower = scene;
       slower.speed *= share;
       for (const std::uint32_t count : {1U, 2U, 3U, 8U}) {
-        const std::uint64_t sent = compare(slower, {}, count, test::scaled(12, 60), share < 1.0);
+        // Walks to far targets have other counts of tests where they go from rank to rank: a vessel's cells are small.
+        const bool near = share < 1.0 && !scene.name.starts_with("vessel");
+        const std::uint64_t sent = compare(slower, {}, count, test::scaled(12, 60), near);
         if (count > 1) EXPECT_GT(sent, 20U) << scene.name;
         if (HasFailure()) return;
       }

@@ -82,7 +82,7 @@ int edit(std::uint32_t box_edge, std::uint32_t count) {
   const VolumeSampler sampler(environment.complex());
   Particles set;
   while (set.size() < particles) {
-    const Sample s = sampler.sample(environment.complex(), random);
+    const Sample s = *sampler.sample(environment.complex(), random);
     environment.add(set, s.simplex, s.position);
   }
   const std::vector<Cell> cells = environment.map().cells();
@@ -159,7 +159,7 @@ int main(int argc, char** argv) {
   const VolumeSampler sampler(environment.complex());
   Particles set;
   while (set.size() < particles) {
-    const Sample s = sampler.sample(environment.complex(), places);
+    const Sample s = *sampler.sample(environment.complex(), places);
     const auto nearest = [](double x) { return std::round(8.0 * x) / 8.0; };
     const Vec3 on_lattice{nearest(s.position.x), std::round(s.position.y), std::round(s.position.z)};
     if (lattice) {

@@ -33,16 +33,20 @@ struct CutOff : std::exception {
   [[nodiscard]] const char* what() const noexcept override { return "cut off"; }
 };
 
-// Runs the scene on so many ranks; `cut`: after so many steps rank 1, or the only one, fails.
+// Runs the scene on so many ranks, with data of a user on each particle; `cut`: after so many steps rank 1, or the only one, fails.
 Summary run(const std::string& text, const fs::path& to, unsigned ranks, bool resume = false,
-            std::optional<std::uint64_t> steps = {}, std::uint64_t cut = 0) {
-  const Scene scene = parse_scene(text, "test.toml");
+            std::optional<std::uint64_t> steps = {}, std::uint64_t cut = 0,
+            Partition partition = Partition::particles) {
+  Scene scene = parse_scene(text, "test.toml");
+  scene.user_data = {"age", "load"};
+  for (std::size_t i = 0; i < scene.particles.size(); ++i) scene.particles[i].user_data = {static_cast<double>(i), 0.5};
   RunOptions options;
   options.folder = to;
   options.resume = resume;
   options.steps = steps;
   options.threads = Threads{1};
   options.audit = true;
+  options.partition = partition;
   Summary summary;
   test::on_ranks(ranks, [&](Ranks& r) {
     RunOptions own = options;
@@ -116,9 +120,6 @@ void expect_same(const Outcome& one, const Outcome& many, const std::string& nam
   }
   EXPECT_EQ(one.files.size(), many.files.size()) << name;
 }
-
-// Data of a user, and particles that a deforming mesh absorbs, lets go, and injects.
-std::string with_user_data() { return "particle_data = [\"age\", \"load\"]\n" + test::scene_text; }
 
 const std::map<std::string, std::string>& scenes() {
   static const std::map<std::string, std::string> all = {
@@ -228,6 +229,154 @@ TEST_F(RanksRun, RefuseSpheresThatCollide) {
   } catch (const Error& e) {
     EXPECT_NE(std::string(e.what()).find("run this scene with one process"), std::string::npos) << e.what();
   }
+}
+
+// --- by cells
+
+// Inlets, outlets, walls that absorb and that hold, contacts, and a mesh that twists.
+const std::string spread_text = R"(
+# with seeds
+seed = 5
+[environment]
+generator = "box"
+cells = [5, 5, 5]
+blocked_share = 0.1
+[[deformation]]
+kind = "twist"
+amplitude = 0.4
+length = 5.0
+period = 0.7
+[[particles]]
+count = 300
+velocity = [3.0, 1.0, 0.5]
+[[particles]]
+inlet = "xmin"
+rate = 170.0
+velocity = [4.0, 0.5, 0.0]
+[motion]
+dt = 0.02
+steps = 47
+gravity = [0.0, 0.0, -5.0]
+[contact]
+restitution = 0.5
+[contact.patch.xmax]
+response = "escape"
+[contact.patch.zmin]
+response = "stick"
+[contact.patch.ymax]
+response = "absorb"
+[output]
+every = 10
+contacts = true
+report = false
+)";
+
+// A vessel that beats, with an inlet and two outlets.
+const std::string spread_vessel = R"(
+[environment]
+generator = "vessel"
+core = 3
+rings = 2
+[[deformation]]
+kind = "pulse"
+amplitude = 0.1
+period = 0.1
+[[particles]]
+count = 500
+[[particles]]
+inlet = "inlet"
+rate = 2000.0
+velocity = [0.0, 0.0, 0.2]
+[motion]
+dt = 0.001
+steps = 47
+gravity = [0.0, 0.0, 2.0]
+[contact]
+restitution = 0.8
+[contact.patch.outlet_left]
+response = "escape"
+[contact.patch.outlet_right]
+response = "escape"
+[output]
+every = 10
+contacts = true
+report = false
+)";
+
+Outcome without_environment(Outcome outcome) {
+  std::erase_if(outcome.files, [](const auto& file) { return file.first.starts_with("environment"); });
+  outcome.summary["environment"].erase("bytes");
+  return outcome;
+}
+
+TEST_F(RanksRun, ByCellsAreThatOfOneProcess) {
+  for (const auto& [name, text] : {std::pair{"box", spread_text}, std::pair{"vessel", spread_vessel}}) {
+    run(text, at(std::string(name) + "1"), 1);
+    const Outcome one = without_environment(outcome_of(at(std::string(name) + "1")));
+    EXPECT_GT(one.files.at("contacts.csv").size(), 10'000U);
+    for (const unsigned ranks : {2U, 3U, 4U, 7U}) {
+      const fs::path to = at(name + std::to_string(ranks));
+      run(text, to, ranks, false, {}, 0, Partition::cells);
+      expect_same(one, without_environment(outcome_of(to)), std::string(name) + " on " + std::to_string(ranks));
+    }
+  }
+}
+
+// A checkpoint does not depend on how the ranks shared the run.
+TEST_F(RanksRun, ByCellsGoOnWithAnyOtherNumber) {
+  run(spread_text, at("whole"), 1);
+  const Outcome whole = without_environment(outcome_of(at("whole")));
+  const fs::path to = at("in turn");
+  EXPECT_THROW(run(spread_text, to, 3, false, 47, 13, Partition::cells), std::exception);
+  EXPECT_THROW(run(spread_text, to, 2, true, 47, 24), std::exception);
+  EXPECT_THROW(run(spread_text, to, 4, true, 47, 34, Partition::cells), std::exception);
+  run(spread_text, to, 1, true, 47);
+  expect_same(whole, without_environment(outcome_of(to)), "in turn");
+}
+
+// Each cell is in one piece, at the places of its rank's vertices.
+TEST_F(RanksRun, ByCellsHaveFramesOfEachPart) {
+  if (!has_vtk()) GTEST_SKIP() << "reading .vtu files needs VTK";
+  run(spread_text, at("one"), 1);
+  run(spread_text, at("parts"), 3, false, {}, 0, Partition::cells);
+  const MeshData whole = read_mesh(at("one") / "environment_000040.vtu").mesh;
+  std::size_t cells = 0;
+  for (int piece = 0; piece < 3; ++piece) {
+    const MeshData part = read_mesh(at("parts") / ("environment_000040." + std::to_string(piece) + ".vtu")).mesh;
+    const auto source = std::find_if(part.cell_data.begin(), part.cell_data.end(),
+                                     [](const DataArray& a) { return a.name == "source"; });
+    ASSERT_NE(source, part.cell_data.end());
+    for (std::size_t c = 0; c < part.cell_count(); ++c) {
+      const auto corners = part.cell(c);
+      const auto expected = whole.cell(static_cast<std::size_t>(source->values[c]));
+      for (std::size_t k = 0; k < corners.size(); ++k) EXPECT_EQ(part.points[corners[k]], whole.points[expected[k]]);
+    }
+    cells += part.cell_count();
+  }
+  EXPECT_EQ(cells, whole.cell_count());
+  EXPECT_NE(read_bytes(at("parts") / "environment_000040.pvtu").find("environment_000040.2.vtu"), std::string::npos);
+  EXPECT_NE(read_bytes(at("parts") / "environment.pvd").find("environment_000040.pvtu"), std::string::npos);
+}
+
+TEST_F(RanksRun, ByCellsSayWhatCannotBeSpread) {
+  const auto refusal = [&](const std::string& text) {
+    try {
+      run(text, at("refused"), 2, false, 1, 0, Partition::cells);
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  for (const auto& [text, part] : {std::pair{test::surgery_text, "edits"}, std::pair{test::solids_text, "bodies"},
+                                   std::pair{test::tools_text, "solids"}, std::pair{test::plug_flow_text, "statistics"},
+                                   std::pair{test::scene_text, "substeps"}}) {
+    const std::string error = refusal(text);
+    EXPECT_NE(error.find(std::string("a scene with ") + part), std::string::npos) << error;
+    EXPECT_NE(error.find("leave --partition cells out"), std::string::npos) << error;
+  }
+  EXPECT_NE(refusal("[environment]\ngenerator = 'maze'\n").find("meshes of the plane"), std::string::npos);
+  EXPECT_NE(refusal("[environment]\ngenerator = 'box'\ncells = [1, 1, 1]\n").find("2 parts of 1 cells"),
+            std::string::npos);
 }
 
 }  // namespace dartcast::ranks_run_test

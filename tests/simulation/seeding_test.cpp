@@ -40,7 +40,7 @@ TEST(VolumeSampler, FillsATetrahedronEvenly) {
   std::array<int, 4> near_corner{};
   for (int i = 0; i < count; ++i) {
     KeyedRandom random(1, RandomPurpose::place, static_cast<std::uint64_t>(i));
-    const Vec3 p = sampler.sample(complex, random).position;
+    const Vec3 p = sampler.sample(complex, random)->position;
     const std::array<double, 4> w = {1 - p.x - p.y - p.z, p.x, p.y, p.z};
     for (std::size_t k = 0; k < 4; ++k) {
       ASSERT_GE(w[k], -1e-15);
@@ -57,7 +57,7 @@ TEST(PatchSampler, FillsATriangleEvenlyJustInside) {
   std::array<int, 3> near_corner{};
   for (int i = 0; i < count; ++i) {
     KeyedRandom random(1, RandomPurpose::place, static_cast<std::uint64_t>(i));
-    const Vec3 p = sampler.sample(complex, random).position;
+    const Vec3 p = sampler.sample(complex, random)->position;
     ASSERT_DOUBLE_EQ(p.z, 1.0 / 64);
     const std::array<double, 3> w = {1 - (p.x + p.y) * 64 / 63, p.x * 64 / 63, p.y * 64 / 63};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -110,7 +110,7 @@ void expect_as_new(const PatchSampler& sampler, const CellComplex& complex, Patc
   for (std::uint64_t i = 0; i < 50; ++i) {
     KeyedRandom random(2, RandomPurpose::place, i);
     KeyedRandom same(2, RandomPurpose::place, i);
-    const Sample drawn = sampler.sample(complex, random);
+    const Sample drawn = *sampler.sample(complex, random);
     const Sample expected = fresh->sample(complex, same);
     EXPECT_EQ(drawn.simplex, expected.simplex);
     EXPECT_EQ(drawn.position, expected.position);

@@ -1,0 +1,169 @@
+// Particles of an environment that ranks share by cells: each rank has those in its own cells.
+//
+// A step: particles that end in another rank's cell, or cross one on their way to a wall, go there with all their data.
+// At the end of the step their former entries are removed, and the others are put in the order of ids.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "base/bytes.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/predicates.hpp"
+#include "simulation/particle_system.hpp"
+#include "tracking/traveller.hpp"
+
+namespace dartcast {
+
+// The arrays beside the particles, one entry at a time.
+class ParticleSystem::PartData final : public TravelData {
+ public:
+  explicit PartData(ParticleSystem& system) : s_(system) {}
+
+  [[nodiscard]] std::string leave(std::uint32_t i, std::uint32_t contacts) const override {
+    ByteWriter out;
+    out.put(s_.ids_[i]);
+    out.put(s_.velocities_[i]);
+    out.put(s_.fates_[i]);
+    out.put(s_.contact_counts_[i] + contacts);
+    for (const double value : std::as_const(s_).user_data(i)) out.put(value);
+    return out.bytes();
+  }
+
+  void come(std::string_view data) override {
+    ByteReader in(data);
+    s_.ids_.push_back(in.take<std::uint64_t>());
+    s_.velocities_.push_back(in.take<Vec3>());
+    s_.fates_.push_back(in.take<ParticleStatus>());
+    s_.contact_counts_.push_back(in.take<std::uint32_t>());
+    s_.radii_.push_back(0.0);
+    s_.held_.push_back(0);
+    for (std::size_t k = 0; k < s_.width(); ++k) s_.user_data_.push_back(in.take<double>());
+  }
+
+ private:
+  ParticleSystem& s_;
+};
+
+void ParticleSystem::set_part(PartEnvironment& part) {
+  part_ = &part;
+  totals_.contacts_by_patch.pop_back();  // behind the ghosts
+}
+
+std::optional<SampledPart> ParticleSystem::sampled_part() const {
+  if (part_ == nullptr) return {};
+  return SampledPart{part_->cells(), *options_.ranks};
+}
+
+ParticleState ParticleSystem::whole_state(std::size_t i) const {
+  return part_ == nullptr ? particles_[i] : dartcast::whole_state(part_->cells(), particles_[i]);
+}
+
+// The arrays that responses change may move while particles come.
+StepReport ParticleSystem::advance_in_part(const Acceleration& acceleration) {
+  const ContactCallback respond = [&](const Contact& c, std::span<const WallHit> walls,
+                                      std::span<const WallHit> earlier) {
+    return respond_with(responses_, velocities_, fates_, options_.dt, acceleration)(c, walls, earlier);
+  };
+  PartData data(*this);
+  return part_->advance(particles_, targets_, respond, options_.step, data, departed_);
+}
+
+// One rank finds each position in a cell of its own.
+std::vector<AddResult> ParticleSystem::add_in_part(std::span<const Vec3> positions) {
+  constexpr std::uint64_t free = 1;
+  constexpr std::uint64_t blocked = std::uint64_t{1} << 32U;
+  const std::vector<Location> locations = environment_.locate(positions);
+  std::vector<std::uint64_t> found(positions.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const bool own = locations[i].place != Place::outside && part_->cells().is_own(locations[i].simplex.cell);
+    if (own) found[i] = locations[i].place == Place::free ? free : blocked;
+  }
+  const std::vector<std::uint64_t> own = found;
+  options_.ranks->sum(found);
+  std::vector<AddResult> added(positions.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    added[i].location.place = found[i] == free ? Place::free : found[i] == 0 ? Place::outside : Place::blocked;
+    if (own[i] != free) continue;
+    added[i].location = locations[i];
+    added[i].particle = static_cast<std::uint32_t>(particles_.size());
+    if (!environment_.add(particles_, locations[i].simplex, positions[i]))
+      throw InvalidArgument(fmt::format("simulation: position {} is in a cell that is not valid; mend the mesh", i));
+  }
+  return added;
+}
+
+// All ranks draw for each particle. The one whose cell it is adds it; where rounding has put the point outside, all draw
+// again, with the next numbers of the same id.
+template <class Sampler>
+std::vector<std::uint64_t> ParticleSystem::place_in_part(const Sampler& sampler, std::uint64_t first,
+                                                         std::uint64_t count) {
+  constexpr int max_tries = 1000;
+  struct Waiting {
+    std::uint64_t id;
+    KeyedRandom random;
+  };
+  std::vector<Waiting> waiting;
+  for (std::uint64_t id = first; id < first + count; ++id)
+    waiting.push_back({id, KeyedRandom(options_.seed, RandomPurpose::place, id)});
+  std::vector<std::uint64_t> placed;
+  for (int tries = 0; !waiting.empty(); ++tries) {
+    if (tries == max_tries)
+      throw InvalidArgument(
+          "simulation: random points fall outside the free cells again and again: their cells are too thin or not "
+          "valid");
+    std::vector<std::uint64_t> failed;
+    for (Waiting& w : waiting) {
+      const std::optional<Sample> s = sampler.sample(environment_.complex(), w.random);
+      if (!s) continue;
+      (environment_.add(particles_, s->simplex, flushed(s->position)) ? placed : failed).push_back(w.id);
+    }
+    const std::vector<std::uint64_t> again = of_all_ranks(failed);
+    std::erase_if(waiting, [&](const Waiting& w) { return !std::binary_search(again.begin(), again.end(), w.id); });
+  }
+  return placed;
+}
+
+template std::vector<std::uint64_t> ParticleSystem::place_in_part(const VolumeSampler&, std::uint64_t, std::uint64_t);
+template std::vector<std::uint64_t> ParticleSystem::place_in_part(const PatchSampler&, std::uint64_t, std::uint64_t);
+
+std::vector<std::uint64_t> ParticleSystem::of_all_ranks(const std::vector<std::uint64_t>& ids) const {
+  ByteWriter out;
+  out.put(ids);
+  std::vector<std::uint64_t> all;
+  for (const std::string& b : options_.ranks->exchange(std::vector<std::string>(options_.ranks->size(), out.bytes()))) {
+    const auto list = ByteReader(b).take_list<std::uint64_t>();
+    all.insert(all.end(), list.begin(), list.end());
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+template <class T>
+void ParticleSystem::put_in_order(std::vector<T>& values, std::span<const std::uint32_t> order, std::size_t width) {
+  std::vector<T> sorted;
+  sorted.reserve(values.size());
+  for (const std::uint32_t i : order) {
+    const auto first = values.begin() + static_cast<std::ptrdiff_t>(i * width);
+    sorted.insert(sorted.end(), first, first + static_cast<std::ptrdiff_t>(width));
+  }
+  values = std::move(sorted);
+}
+
+void ParticleSystem::put_in_order_of_ids() {
+  if (std::is_sorted(ids_.begin(), ids_.end())) return;
+  std::vector<std::uint32_t> order(ids_.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return ids_[a] < ids_[b]; });
+  particles_.reorder(order);
+  put_in_order(ids_, order);
+  put_in_order(velocities_, order);
+  put_in_order(fates_, order);
+  put_in_order(contact_counts_, order);
+  put_in_order(radii_, order);
+  put_in_order(held_, order);
+  put_in_order(user_data_, order, width());
+}
+
+}  // namespace dartcast
