@@ -15,6 +15,8 @@ from ._ids import Dart as Dart
 from ._ids import Patch as Patch
 from ._ids import SimplexId as SimplexId
 from ._ids import Vertex as Vertex
+from ._ranks import Ranks as Ranks
+from ._ranks import mpi_ranks as mpi_ranks
 from ._run import load_scene as load_scene
 from ._run import run as run
 from ._run import scene_text as scene_text

@@ -11,6 +11,7 @@ from typing import Any, Optional, Union
 import numpy
 
 from . import _core
+from ._ranks import Ranks
 
 SceneLike = Union[str, "os.PathLike[str]", Mapping[str, Any], _core.Scene]
 
@@ -71,15 +72,16 @@ def _plain(scene: SceneLike) -> _core.Scene:
 def run(scene: SceneLike, out: Union[str, "os.PathLike[str]", None] = None, *, threads: int = 0,
         steps: Optional[int] = None, seed: Optional[int] = None, audit: bool = False, resume: bool = False,
         skip_bad_cells: bool = False, progress: Optional[Callable[[int, int], Optional[bool]]] = None,
-        max_memory: int = 0) -> _core.Summary:
+        max_memory: int = 0, ranks: Optional[Ranks] = None, partition: str = "particles") -> _core.Summary:
     """Runs a scene: a .toml file, a dict with the keys of docs/scene.md, or a Scene.
 
     out: the folder for frames and summary.json; None: nothing is written. The other arguments are those of RunOptions.
-    progress: see run_scene(). Ctrl-C ends the run between two steps, and resume=True goes on from there. Raises as
-    run_scene().
+    progress: see run_scene(). Ctrl-C ends the run between two steps, and resume=True goes on from there. ranks: the
+    processes that share the run, as mpi_ranks(); all call run() with the same arguments, and the first returns the
+    summary of all. partition: "particles" or "cells". Raises as run_scene().
     """
     options = _core.RunOptions(threads=threads, steps=steps, seed=seed, audit=audit, resume=resume,
-                               skip_bad_cells=skip_bad_cells, max_memory=max_memory)
+                               skip_bad_cells=skip_bad_cells, max_memory=max_memory, partition=partition)
     if out is not None:
         options.folder = pathlib.Path(out)
-    return _core.run_scene(_plain(scene), options, progress)
+    return _core.run_scene(_plain(scene), options, progress, ranks)

@@ -3,6 +3,7 @@
 
 #include "bind.hpp"
 #include "dartcast/error.hpp"
+#include "dartcast/ranks.hpp"
 #include "support/docs.hpp"
 #include "support/in_use.hpp"
 
@@ -13,7 +14,7 @@ namespace {
 
 // The classes live as long as the process: a translator may need them until the end.
 struct ErrorClasses {
-  py::handle error, invalid_argument, invalid_mesh, edit_refused, internal_error, in_use;
+  py::handle error, invalid_argument, invalid_mesh, edit_refused, internal_error, in_use, rank_failed;
 };
 ErrorClasses& error_classes() {
   static ErrorClasses classes;
@@ -41,6 +42,8 @@ void translate(std::exception_ptr thrown) {
     set(c.invalid_mesh, e);
   } catch (const EditRefused& e) {
     set(c.edit_refused, e);
+  } catch (const RankFailed& e) {
+    set(c.rank_failed, e);
   } catch (const InternalError& e) {
     set(c.internal_error, e);
   } catch (const Error& e) {
@@ -63,6 +66,7 @@ void bind_errors(py::module_& m) {
   c.invalid_mesh = make_error(m, "InvalidMesh", doc("InvalidMesh"), py::make_tuple(c.error));
   c.edit_refused = make_error(m, "EditRefused", doc("EditRefused"), py::make_tuple(c.error));
   c.internal_error = make_error(m, "InternalError", doc("InternalError"), py::make_tuple(c.error));
+  c.rank_failed = make_error(m, "RankFailed", doc("RankFailed"), py::make_tuple(c.error));
   c.in_use = make_error(m, "InUse",
                         "An object that serves a call is asked for another: by a second thread, or by a response that "
                         "the call waits for.",

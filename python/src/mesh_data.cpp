@@ -73,6 +73,7 @@ void add_arrays(py::class_<MeshData, std::shared_ptr<MeshData>>& c) {
   add_array(c, "patch_offsets", &MeshData::patch_offsets);
   add_array(c, "patch_tags", &MeshData::patch_tags);
   add_array(c, "patch_source", &MeshData::patch_source);
+  add_array(c, "patch_order", &MeshData::patch_order);
   c.def_property(
       "free", [](const MeshData& m) { return read_only(array_of(std::span<const std::uint8_t>(m.free))); },
       [](MeshData& m, const py::object& x) {
@@ -176,10 +177,10 @@ void add_methods(py::class_<MeshData, std::shared_ptr<MeshData>>& c) {
 }
 
 // Attributes in the order of a pickle.
-constexpr std::array<const char*, 15> pickled = {"points",        "types",      "offsets",      "connectivity",
+constexpr std::array<const char*, 16> pickled = {"points",        "types",      "offsets",      "connectivity",
                                                  "source",        "regions",    "region_names", "patch_faces",
                                                  "patch_offsets", "patch_tags", "patch_source", "patch_names",
-                                                 "free",          "point_data", "cell_data"};
+                                                 "patch_order",   "free",       "point_data",   "cell_data"};
 
 py::tuple state_of(const py::object& mesh) {
   py::tuple state(pickled.size());

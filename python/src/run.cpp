@@ -3,10 +3,12 @@
 
 #include <chrono>
 #include <exception>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "bind.hpp"
+#include "ranks.hpp"
 #include "support/python.hpp"
 
 namespace py = pybind11;
@@ -53,14 +55,28 @@ class Asking {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-Summary run(const Scene& scene, const RunOptions& options, const py::object& progress) {
+// A rank that cannot go on says so to the others.
+Summary run_shared(const Scene& scene, const RunOptions& options, Asking& asking) {
+  try {
+    return run_scene(scene, options, std::ref(asking));
+  } catch (const RankFailed&) {
+    throw;
+  } catch (const std::exception& e) {
+    if (options.ranks != nullptr) options.ranks->fail(e.what());
+    throw;
+  }
+}
+
+Summary run(const Scene& scene, const RunOptions& options, const py::object& progress, const py::object& ranks) {
   const Scene own_scene = scene;
-  const RunOptions own_options = options;
+  RunOptions own_options = options;
+  std::optional<PythonRanks> shared;
+  if (!ranks.is_none()) own_options.ranks = &shared.emplace(ranks);
   Asking asking(progress);
   Summary summary;
   {
     const py::gil_scoped_release release;
-    summary = run_scene(own_scene, own_options, std::ref(asking));
+    summary = run_shared(own_scene, own_options, asking);
   }
   asking.rethrow();
   return summary;
@@ -81,6 +97,7 @@ void bind_summary(py::module_& m) {
   Record<Summary>(m, "Summary")
       .field("scene", &Summary::scene)
       .field("threads", &Summary::threads)
+      .field("ranks", &Summary::ranks)
       .field("steps", &Summary::steps)
       .field("cancelled", &Summary::cancelled)
       .field("deforms", &Summary::deforms)
@@ -137,13 +154,17 @@ void bind_run(py::module_& m) {
       .field("skip_bad_cells", &RunOptions::skip_bad_cells)
       .field("resume", &RunOptions::resume)
       .field("max_memory", &RunOptions::max_memory)
+      .field("partition", &RunOptions::partition)
       .finish();
-  const std::string text = std::string(doc("run_scene")) +
-                           "\n\nprogress: a function of the number of steps done and of all. It returns False to "
-                           "cancel the run; None goes on. Ctrl-C, and an exception of progress, end the run between "
-                           "two steps: the output folder is complete up to there, and resume goes on from there.";
+  const std::string text =
+      std::string(doc("run_scene")) +
+      "\n\nprogress: a function of the number of steps done and of all. It returns False to "
+      "cancel the run; None goes on. Ctrl-C, and an exception of progress, end the run between "
+      "two steps: the output folder is complete up to there, and resume goes on from there.\n\nranks: the "
+      "processes that share the run (Ranks); None: this one alone. Where one raises an error, the "
+      "others raise RankFailed; where progress raises or cancels on one, the run ends on all.";
   m.def("run_scene", &run, py::arg("scene"), py::arg("options") = RunOptions{}, py::arg("progress") = py::none(),
-        text.c_str());
+        py::arg("ranks") = py::none(), text.c_str());
 }
 
 }  // namespace dartcast::python

@@ -30,6 +30,7 @@ void bind_options(py::module_& m) {
   bind_enum<Integrator>(m, "Integrator", {{"EULER", Integrator::euler}, {"RK4", Integrator::rk4}});
   bind_enum<WallMotion>(m, "WallMotion",
                         {{"CARRIED", WallMotion::carried}, {"SIMULTANEOUS", WallMotion::simultaneous}});
+  bind_enum<Partition>(m, "Partition", {{"PARTICLES", Partition::particles}, {"CELLS", Partition::cells}});
   Record<CollisionOptions>(m, "CollisionOptions")
       .field("restitution", &CollisionOptions::restitution)
       .field("friction", &CollisionOptions::friction)

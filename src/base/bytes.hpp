@@ -28,6 +28,8 @@ class ByteWriter {
     bytes_ += text;
   }
   [[nodiscard]] const std::string& bytes() const { return bytes_; }
+  /// Keeps the memory.
+  void clear() { bytes_.clear(); }
 
  private:
   std::string bytes_;

@@ -17,8 +17,10 @@ namespace {
 
 class RankTraffic final : public detail::PartTraffic {
  public:
-  RankTraffic(const PartCells& cells, Ranks& ranks, TravelData& data, TrafficCounts& counts)
-      : cells_(cells), ranks_(ranks), data_(data), counts_(counts) {}
+  /// `to`: for the bytes to each rank; it keeps its memory.
+  RankTraffic(const PartCells& cells, Ranks& ranks, std::vector<ByteWriter>& to, TravelData& data,
+              TrafficCounts& counts)
+      : cells_(cells), ranks_(ranks), to_(to), data_(data), counts_(counts) {}
 
   [[nodiscard]] const PartCells& cells() const override { return cells_; }
 
@@ -27,13 +29,13 @@ class RankTraffic final : public detail::PartTraffic {
     ranks_.sum({&sent, 1});
     over = sent == 0;
     if (over) return {};
-    std::vector<ByteWriter> to(ranks_.size());
+    for (ByteWriter& w : to_) w.clear();
     for (const Traveller& t : leaving) {
-      pack(t, to[t.to]);
-      to[t.to].put(data_.leave(t.particle, t.met));
+      pack(t, to_[t.to]);
+      to_[t.to].put(data_.leave(t.particle, t.met));
     }
     std::vector<std::string> bytes;
-    for (const ByteWriter& w : to) {
+    for (const ByteWriter& w : to_) {
       bytes.push_back(w.bytes());
       counts_.bytes += w.bytes().size();
     }
@@ -42,7 +44,7 @@ class RankTraffic final : public detail::PartTraffic {
     std::vector<Traveller> come;
     for (const std::string& b : ranks_.exchange(std::move(bytes))) {
       for (ByteReader in(b); !in.at_end();) {
-        come.push_back(unpacked_traveller(in));
+        unpack(in, come.emplace_back());
         data_.come(in.take_text());
       }
     }
@@ -52,6 +54,7 @@ class RankTraffic final : public detail::PartTraffic {
  private:
   const PartCells& cells_;
   Ranks& ranks_;
+  std::vector<ByteWriter>& to_;
   TravelData& data_;
   TrafficCounts& counts_;
 };
@@ -59,7 +62,7 @@ class RankTraffic final : public detail::PartTraffic {
 }  // namespace
 
 PartEnvironment::PartEnvironment(Environment& environment, const MeshPart& part, Ranks& ranks)
-    : environment_(environment), ranks_(ranks), cells_(part_cells(part, ranks.rank())) {
+    : environment_(environment), ranks_(ranks), cells_(part_cells(part, ranks.rank())), to_(ranks.size()) {
   if (environment.map().dimension() != 3)
     throw InvalidArgument("partition: meshes of the plane cannot be spread by cells; spread the particles");
   std::uint64_t steiner = environment.complex().positions().size() - environment.positions().size();
@@ -81,7 +84,7 @@ StepReport PartEnvironment::advance(Particles& particles, std::span<const Vec3> 
   details.index.reset();
   const detail::BatchStepper stepper(environment_.complex(), environment_.awaits_advance(particles),
                                      environment_.threads(), options, respond, true);
-  RankTraffic traffic(cells_, ranks_, data, traffic_);
+  RankTraffic traffic(cells_, ranks_, to_, data, traffic_);
   StepReport report =
       stepper.advance_in_part({particles.states_, details.weights, details.cache}, targets, respond, traffic, gone);
   details.moves = members.moves;

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/bytes.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/ranks.hpp"
 #include "parts/mesh_part.hpp"
@@ -56,6 +57,7 @@ class PartEnvironment {
   Environment& environment_;
   Ranks& ranks_;
   PartCells cells_;
+  std::vector<ByteWriter> to_;  // by rank
   TrafficCounts traffic_;
 };
 

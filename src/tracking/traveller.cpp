@@ -1,5 +1,8 @@
-// Travellers as bytes. Fields that a step does not have are left out: most steps travel with no walls and no ties.
+// Travellers as bytes: some plain records one after another. Those that a step does not have are left out: most steps
+// travel with no walls, no ties and in one part.
 #include "tracking/traveller.hpp"
+
+#include <type_traits>
 
 #include "base/bytes.hpp"
 
@@ -13,102 +16,41 @@ constexpr std::uint8_t has_restarted = 4;
 constexpr std::uint8_t is_held = 8;
 constexpr std::uint8_t has_parts = 16;
 
-// Writer and reader go through the same list, below.
-class TravellerWriter {
- public:
-  explicit TravellerWriter(ByteWriter& out) : out_(out) {}
-  template <class T>
-  void value(T& v) {
-    out_.put(v);
-  }
-
- private:
-  ByteWriter& out_;
+struct PackedState {
+  Vec3 position;
+  Cell cell;
+  std::uint16_t simplex;
+  std::uint8_t touching_count;
+  TravelStage stage;
+  std::array<CellFace, 3> touching;
+  std::uint32_t walls;
+  std::uint8_t flags;
+  std::uint8_t ties;
 };
 
-class TravellerReader {
- public:
-  explicit TravellerReader(ByteReader& in) : in_(in) {}
-  template <class T>
-  void value(T& v) {
-    v = in_.take<T>();
-  }
-
- private:
-  ByteReader& in_;
+struct PackedStep {
+  TestCounts tests;
+  double last_time;
+  TimeInterval interval;
+  Vec3 target;
+  SimplexId start;
+  std::uint32_t home;
+  std::uint32_t contact_count;
+  std::uint32_t together;
 };
 
-template <class Archive>
-void result_fields(Archive& a, StepResult& r) {
-  a.value(r.held);
-  a.value(r.invalid_cell.value);
-  a.value(r.stopped);
-  a.value(r.unused);
-}
+struct PackedParts {
+  Vec3 step_target;
+  std::uint32_t part;
+  std::uint32_t parts;
+};
 
-template <class Archive>
-void state_fields(Archive& a, ParticleState& s) {
-  a.value(s.position);
-  a.value(s.cell.value);
-  a.value(s.simplex);
-  a.value(s.touching_count);
-  for (unsigned i = 0; i < s.touching_count; ++i) {
-    a.value(s.touching[i].cell.value);
-    a.value(s.touching[i].face);
-  }
-}
-
-template <class Archive>
-void wall_fields(Archive& a, CarriedWall& w) {
-  a.value(w.hit.triangle);
-  a.value(w.hit.patch.value);
-  a.value(w.hit.normal);
-  for (Vec3& v : w.before) a.value(v);
-  for (Vec3& v : w.now) a.value(v);
-}
-
-template <class Archive>
-void walk_fields(Archive& a, Traveller& t) {
-  a.value(t.walk.end);
-  a.value(t.walk.simplex.cell.value);
-  a.value(t.walk.simplex.simplex);
-  a.value(t.walk.zeros);
-  a.value(t.walk.wall_facet);
-  a.value(t.ties.count);
-  for (unsigned i = 0; i < t.ties.count; ++i) a.value(t.ties.corner[i]);
-}
-
-template <class Archive>
-void step_fields(Archive& a, Traveller& t, std::uint8_t flags) {
-  a.value(t.start.cell.value);
-  a.value(t.start.simplex);
-  a.value(t.tests);
-  a.value(t.contact_count);
-  if (t.contact_count > 0) {
-    a.value(t.together);
-    a.value(t.last_time);
-  }
-  a.value(t.interval);
-  a.value(t.target);
-  if ((flags & has_parts) != 0) {
-    a.value(t.part);
-    a.value(t.parts);
-    a.value(t.step_target);
-  }
-  if (t.stage == TravelStage::on_way) walk_fields(a, t);
-}
-
-template <class Archive>
-void fields(Archive& a, Traveller& t, std::uint8_t flags, std::uint32_t walls) {
-  state_fields(a, t.state);
-  for (double& w : t.weights) a.value(w);
-  if ((flags & has_result) != 0) result_fields(a, t.result);
-  if (t.stage == TravelStage::done) return;
-  a.value(t.home);
-  step_fields(a, t, flags);
-  t.walls.resize(walls);
-  for (CarriedWall& w : t.walls) wall_fields(a, w);
-}
+struct PackedWalk {
+  SimplexId simplex;
+  WalkEnd end;
+  std::uint8_t zeros;
+  std::uint8_t wall_facet;
+};
 
 std::uint8_t flags_of(const Traveller& t) {
   const auto flag = [](bool set, std::uint8_t f) { return set ? f : std::uint8_t{0}; };
@@ -131,30 +73,59 @@ ParticleState state_here(const PartCells& cells, ParticleState s) {
   return s;
 }
 
-void pack(const Traveller& traveller, ByteWriter& out) {
-  Traveller t = traveller;
+void pack(const Traveller& t, ByteWriter& out) {
   const std::uint8_t flags = flags_of(t);
-  const auto walls = static_cast<std::uint32_t>(t.walls.size());
-  out.put(t.stage);
-  out.put(flags);
-  out.put(walls);
-  TravellerWriter writer(out);
-  fields(writer, t, flags, walls);
+  const auto walls = static_cast<std::uint32_t>(t.stage == TravelStage::done ? 0 : t.walls.size());
+  out.put(PackedState{t.state.position, t.state.cell, t.state.simplex, t.state.touching_count, t.stage,
+                      t.state.touching, walls, flags, t.ties.count});
+  if ((flags & is_held) != 0) out.put(t.weights);
+  if ((flags & has_result) != 0) out.put(t.result);
+  if (t.stage == TravelStage::done) return;
+  out.put(PackedStep{t.tests, t.last_time, t.interval, t.target, t.start, t.home, t.contact_count, t.together});
+  if ((flags & has_parts) != 0) out.put(PackedParts{t.step_target, t.part, t.parts});
+  for (const CarriedWall& w : t.walls) out.put(w);
+  if (t.stage != TravelStage::on_way) return;
+  out.put(PackedWalk{t.walk.simplex, t.walk.end, t.walk.zeros, t.walk.wall_facet});
+  for (unsigned i = 0; i < t.ties.count; ++i) out.put(t.ties.corner[i]);
 }
 
-Traveller unpacked_traveller(ByteReader& in) {
-  Traveller t;
-  t.stage = in.take<TravelStage>();
-  const auto flags = in.take<std::uint8_t>();
-  const auto walls = in.take<std::uint32_t>();
-  TravellerReader reader(in);
-  fields(reader, t, flags, walls);
-  t.travelled = t.stage != TravelStage::done;
-  t.left_behind = (flags & has_left_behind) != 0;
-  t.restarted = (flags & has_restarted) != 0;
-  t.state.held = (flags & is_held) != 0;
-  t.walk.wall_simplex = t.walk.simplex;
-  return t;
+void unpack(ByteReader& in, Traveller& t) {
+  const auto s = in.take<PackedState>();
+  t.stage = s.stage;
+  t.state.put({s.cell, s.simplex}, s.position);
+  t.state.touching_count = s.touching_count;
+  t.state.touching = s.touching;
+  t.state.held = (s.flags & is_held) != 0;
+  t.left_behind = (s.flags & has_left_behind) != 0;
+  t.restarted = (s.flags & has_restarted) != 0;
+  if (t.state.held) t.weights = in.take<Weights>();
+  if ((s.flags & has_result) != 0) t.result = in.take<StepResult>();
+  if (t.stage == TravelStage::done) return;
+  t.travelled = true;
+  const auto step = in.take<PackedStep>();
+  t.tests = step.tests;
+  t.last_time = step.last_time;
+  t.interval = step.interval;
+  t.target = step.target;
+  t.start = step.start;
+  t.home = step.home;
+  t.contact_count = step.contact_count;
+  t.together = step.together;
+  if ((s.flags & has_parts) != 0) {
+    const auto parts = in.take<PackedParts>();
+    t.step_target = parts.step_target;
+    t.part = parts.part;
+    t.parts = parts.parts;
+  }
+  for (std::uint32_t i = 0; i < s.walls; ++i) t.walls.push_back(in.take<CarriedWall>());
+  if (t.stage != TravelStage::on_way) return;
+  const auto walk = in.take<PackedWalk>();
+  t.walk.simplex = t.walk.wall_simplex = walk.simplex;
+  t.walk.end = walk.end;
+  t.walk.zeros = walk.zeros;
+  t.walk.wall_facet = walk.wall_facet;
+  t.ties.count = s.ties;
+  for (unsigned i = 0; i < s.ties; ++i) t.ties.corner[i] = in.take<Vec3>();
 }
 
 }  // namespace dartcast

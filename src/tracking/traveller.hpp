@@ -72,9 +72,11 @@ struct Traveller {
 class ByteReader;
 class ByteWriter;
 
-/// A traveller as bytes of this machine's kind. `particle`, `to` and `met` do not travel.
+/// A traveller as bytes of this machine's kind. `particle`, `to` and `met` do not travel; `weights`
+/// do where the particle is held: else a step makes them anew.
 void pack(const Traveller& traveller, ByteWriter& out);
-Traveller unpacked_traveller(ByteReader& in);
+/// `traveller`: a new one.
+void unpack(ByteReader& in, Traveller& traveller);
 
 /// A step that waits for an answer to a contact, with what it has brought along.
 struct TravellingPause {

@@ -67,6 +67,21 @@ TEST_F(Mpi, RunsAreThoseOfOneProcess) {
   }
 }
 
+TEST_F(Mpi, RunsByCellsAreThoseOfOneProcess) {
+  const std::string steps = std::to_string(test::scaled(50, 400));
+  for (const char* name : {"vessel.toml", "bar_deforming.toml", "box.toml"}) {
+    const std::string arguments = "run " + scene(name) + " --steps " + steps + " -j 1 -q -o ";
+    ASSERT_EQ(run(arguments + "one").status, 0) << name;
+    for (const unsigned ranks : {1U, 2U, 3U, 4U}) {
+      const std::string to = "on" + std::to_string(ranks);
+      const test::Result r = shared(ranks, arguments + to + " --partition cells");
+      ASSERT_EQ(r.status, 0) << name << ": " << r.error;
+      EXPECT_EQ(hash_of(to), hash_of("one")) << name << " on " << ranks;
+      EXPECT_EQ(text_of(to, "stats.csv"), text_of("one", "stats.csv")) << name << " on " << ranks;
+    }
+  }
+}
+
 TEST_F(Mpi, AnErrorIsOneLineWithItsRank) {
   const test::Result r = shared(3, "run no_such_scene.toml");
   EXPECT_EQ(r.status, 1);

@@ -111,7 +111,7 @@ void expect_as_new(const PatchSampler& sampler, const CellComplex& complex, Patc
     KeyedRandom random(2, RandomPurpose::place, i);
     KeyedRandom same(2, RandomPurpose::place, i);
     const Sample drawn = *sampler.sample(complex, random);
-    const Sample expected = fresh->sample(complex, same);
+    const Sample expected = *fresh->sample(complex, same);
     EXPECT_EQ(drawn.simplex, expected.simplex);
     EXPECT_EQ(drawn.position, expected.position);
   }

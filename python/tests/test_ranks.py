@@ -1,0 +1,138 @@
+"""Ranks: those of threads, as another transport would be, and those of mpi4py."""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import threading
+
+import dartcast
+import numpy
+import pytest
+
+SCENE = {
+    "environment": {"generator": "box", "cells": [5, 5, 5], "blocked_share": 0.1},
+    "particles": [{"count": 300, "velocity": [3.0, 1.0, 0.5]}],
+    "motion": {"dt": 0.02, "steps": 30},
+    "contact": {"restitution": 0.5},
+    "output": {"every": 10, "report": False},
+}
+
+
+class Group:
+    """What the threads of a group leave for each other."""
+
+    def __init__(self, size):
+        self.barrier = threading.Barrier(size)
+        self.rows = [None] * size
+
+
+class ThreadRanks(dartcast.Ranks):
+    def __init__(self, group, rank):
+        self.group = group
+        self.number = rank
+
+    @property
+    def rank(self):
+        return self.number
+
+    @property
+    def size(self):
+        return len(self.group.rows)
+
+    def exchange(self, data):
+        self.group.rows[self.number] = data
+        self.group.barrier.wait()
+        received = [row[self.number] for row in self.group.rows]
+        self.group.barrier.wait()
+        return received
+
+    def gather(self, data):
+        received = self.exchange([data] + [b""] * (self.size - 1))
+        return received if self.number == 0 else []
+
+    def broadcast(self, data):
+        return self.exchange([data] * self.size)[0]
+
+    def sum(self, values):
+        parts = self.exchange([values.tobytes()] * self.size)
+        return numpy.sum([numpy.frombuffer(p, numpy.uint64) for p in parts], axis=0, dtype=numpy.uint64)
+
+    def fail(self, why):
+        self.group.barrier.abort()
+        return True
+
+
+def run_on_threads(size, **arguments):
+    group = Group(size)
+    results = [None] * size
+
+    def work(rank):
+        try:
+            results[rank] = dartcast.run(SCENE, threads=1, ranks=ThreadRanks(group, rank), **arguments)
+        except Exception as error:  # looked at by the test
+            results[rank] = error
+
+    threads = [threading.Thread(target=work, args=(rank,)) for rank in range(size)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    return results
+
+
+@pytest.mark.parametrize("partition", ["particles", "cells"])
+def test_runs_are_those_of_one_process(tmp_path, partition):
+    one = dartcast.run(SCENE, tmp_path / "one", threads=1)
+    results = run_on_threads(3, out=tmp_path / "three", partition=partition)
+    assert [r.ranks for r in results] == [3, 3, 3]
+    assert results[0].state_hash == one.state_hash
+    assert results[0].totals.counters.contacts == one.totals.counters.contacts
+    assert (tmp_path / "three/stats.csv").read_bytes() == (tmp_path / "one/stats.csv").read_bytes()
+
+
+def test_a_rank_that_cancels_ends_the_run_on_all(tmp_path):
+    def progress(done, _):
+        if done == 10 and threading.current_thread() is not threading.main_thread() and next(turns) == 0:
+            raise ValueError("no more")
+
+    turns = iter(range(100))
+    results = run_on_threads(2, out=tmp_path, progress=progress)
+    assert sorted(type(r).__name__ for r in results) == ["Summary", "ValueError"]
+    assert all(r.cancelled and r.steps == 10 for r in results if isinstance(r, dartcast.Summary))
+
+
+def test_a_rank_that_fails_ends_the_others(tmp_path):
+    (tmp_path / "other.txt").write_text("not a run")
+    results = run_on_threads(2, out=tmp_path)
+    assert "the folder holds other files" in str(results[0])
+    assert isinstance(results[1], Exception)
+
+
+PROGRAM = """
+import sys
+import dartcast
+from mpi4py import MPI
+ranks = dartcast.mpi_ranks(MPI.COMM_WORLD)
+assert ranks.size == MPI.COMM_WORLD.size and ranks.rank == MPI.COMM_WORLD.rank
+scene = {scene!r}
+summary = dartcast.run(scene, sys.argv[1], threads=1, ranks=ranks, partition=sys.argv[2])
+if ranks.rank == 0:
+    print(summary.state_hash)
+"""
+
+
+@pytest.mark.parametrize("partition", ["particles", "cells"])
+def test_mpi4py_gives_ranks(tmp_path, partition):
+    pytest.importorskip("mpi4py")
+    if shutil.which("mpirun") is None:
+        pytest.skip("mpirun is not installed")
+    program = tmp_path / "program.py"
+    program.write_text(PROGRAM.format(scene=SCENE))
+    environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+                   "OMPI_MCA_rmaps_base_oversubscribe": "1",
+                   "PYTHONPATH": str(pathlib.Path(dartcast.__file__).parent.parent)}
+    done = subprocess.run(["mpirun", "-n", "3", sys.executable, program, tmp_path / "out", partition], env=environment,
+                          capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.strip() == dartcast.run(SCENE, threads=1).state_hash

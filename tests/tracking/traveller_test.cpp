@@ -1,0 +1,145 @@
+// Travellers as bytes: all that a step needs comes back, in few bytes.
+#include "tracking/traveller.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <string>
+
+#include "base/bytes.hpp"
+
+namespace dartcast::traveller_test {
+
+class RandomTravellers {
+ public:
+  Traveller next(TravelStage stage, std::size_t walls, std::uint8_t ties) {
+    Traveller t;
+    t.stage = stage;
+    t.home = number();
+    t.state.position = vector();
+    t.state.cell = Cell(number());
+    t.state.simplex = static_cast<std::uint16_t>(number());
+    t.state.touching_count = static_cast<std::uint8_t>(number() % 4);
+    for (unsigned i = 0; i < t.state.touching_count; ++i) t.state.touching[i] = {Cell(number()), 3};
+    t.state.held = number() % 2 == 0;
+    for (double& w : t.weights) w = real();
+    t.result = {number() % 2 == 0, Cell(number()), number() % 2 == 0, vector()};
+    if (stage == TravelStage::done) return t;
+    t.travelled = true;
+    t.start = {Cell(number()), 5};
+    t.left_behind = number() % 2 == 0;
+    t.tests = {number(), number()};
+    t.contact_count = static_cast<std::uint32_t>(walls);
+    t.together = walls > 0 ? number() : 0;
+    t.last_time = walls > 0 ? real() : -1.0;
+    t.interval = {real(), real(), vector()};
+    t.parts = 1 + number() % 2 * 7;
+    t.part = t.parts > 1 ? 3 : 1;
+    if (t.parts > 1) t.step_target = vector();
+    t.target = vector();
+    for (std::size_t i = 0; i < walls; ++i) {
+      CarriedWall& w = t.walls.emplace_back();
+      w.hit.triangle = 2;
+      w.hit.patch = Patch{7};
+      w.hit.normal = vector();
+      for (Vec3& v : w.before) v = vector();
+      for (Vec3& v : w.now) v = vector();
+    }
+    if (stage != TravelStage::on_way) return t;
+    t.walk.end = number() % 2 == 0 ? WalkEnd::wall : WalkEnd::arrived;
+    t.walk.simplex = {Cell(number()), 4};
+    t.walk.zeros = 5;
+    t.walk.wall_facet = 2;
+    t.restarted = number() % 2 == 0;
+    t.ties.count = ties;
+    for (unsigned i = 0; i < ties; ++i) t.ties.corner[i] = vector();
+    return t;
+  }
+
+ private:
+  std::uint32_t number() { return static_cast<std::uint32_t>(random_()); }
+  double real() { return static_cast<double>(random_() >> 11U) * 0x1p-53; }
+  Vec3 vector() { return {real(), real(), real()}; }
+  std::mt19937_64 random_{1};
+};
+
+std::string bytes_of(const Traveller& t) {
+  ByteWriter out;
+  pack(t, out);
+  return out.bytes();
+}
+
+TEST(Traveller, ComesBackFromItsBytes) {
+  RandomTravellers travellers;
+  for (int round = 0; round < 1000; ++round) {
+    for (const TravelStage stage : {TravelStage::walk, TravelStage::on_way, TravelStage::carry, TravelStage::done}) {
+      const Traveller sent =
+          travellers.next(stage, static_cast<std::size_t>(round % 4), static_cast<std::uint8_t>(round % 4));
+      const std::string bytes = bytes_of(sent);
+      ByteReader in(bytes);
+      Traveller come;
+      unpack(in, come);
+      EXPECT_TRUE(in.at_end());
+      EXPECT_EQ(come.stage, sent.stage);
+      EXPECT_EQ(come.state.position, sent.state.position);
+      EXPECT_EQ(come.state.at(), sent.state.at());
+      EXPECT_EQ(come.state.held, sent.state.held);
+      EXPECT_EQ(come.state.touching_count, sent.state.touching_count);
+      EXPECT_EQ(come.state.touching, sent.state.touching);
+      if (sent.state.held) EXPECT_EQ(come.weights, sent.weights);
+      const bool has_result = sent.result.held || sent.result.stopped;
+      EXPECT_EQ(come.result.held, sent.result.held);
+      EXPECT_EQ(come.result.stopped, sent.result.stopped);
+      if (has_result) EXPECT_EQ(come.result.invalid_cell, sent.result.invalid_cell);
+      if (has_result) EXPECT_EQ(come.result.unused, sent.result.unused);
+      if (stage == TravelStage::done) continue;
+      EXPECT_TRUE(come.travelled);
+      EXPECT_EQ(come.home, sent.home);
+      EXPECT_EQ(come.start, sent.start);
+      EXPECT_EQ(come.left_behind, sent.left_behind);
+      EXPECT_EQ(come.tests.tests, sent.tests.tests);
+      EXPECT_EQ(come.tests.exact, sent.tests.exact);
+      EXPECT_EQ(come.contact_count, sent.contact_count);
+      EXPECT_EQ(come.together, sent.together);
+      EXPECT_EQ(come.last_time, sent.last_time);
+      EXPECT_EQ(come.interval.begin, sent.interval.begin);
+      EXPECT_EQ(come.interval.end, sent.interval.end);
+      EXPECT_EQ(come.interval.later, sent.interval.later);
+      EXPECT_EQ(come.part, sent.part);
+      EXPECT_EQ(come.parts, sent.parts);
+      EXPECT_EQ(come.target, sent.target);
+      EXPECT_EQ(come.step_target, sent.step_target);
+      ASSERT_EQ(come.walls.size(), sent.walls.size());
+      for (std::size_t i = 0; i < sent.walls.size(); ++i) {
+        EXPECT_EQ(come.walls[i].hit.triangle, sent.walls[i].hit.triangle);
+        EXPECT_EQ(come.walls[i].hit.patch, sent.walls[i].hit.patch);
+        EXPECT_EQ(come.walls[i].hit.normal, sent.walls[i].hit.normal);
+        EXPECT_EQ(come.walls[i].before, sent.walls[i].before);
+        EXPECT_EQ(come.walls[i].now, sent.walls[i].now);
+      }
+      if (stage != TravelStage::on_way) continue;
+      EXPECT_EQ(come.walk.end, sent.walk.end);
+      EXPECT_EQ(come.walk.simplex, sent.walk.simplex);
+      EXPECT_EQ(come.walk.wall_simplex, sent.walk.simplex);
+      EXPECT_EQ(come.walk.zeros, sent.walk.zeros);
+      EXPECT_EQ(come.walk.wall_facet, sent.walk.wall_facet);
+      EXPECT_EQ(come.restarted, sent.restarted);
+      EXPECT_EQ(come.ties.count, sent.ties.count);
+      EXPECT_EQ(come.ties.corner, sent.ties.corner);
+    }
+  }
+}
+
+// A walk handed over that has met no wall, whatever it starts on. The data of a simulation are 45 bytes more.
+TEST(Traveller, IsSmall) {
+  RandomTravellers travellers;
+  for (int round = 0; round < 100; ++round) {
+    Traveller t = travellers.next(TravelStage::on_way, 0, 3);
+    t.state.held = false;
+    t.result = {};
+    EXPECT_LE(bytes_of(t).size(), 355U);
+  }
+  EXPECT_LE(bytes_of(travellers.next(TravelStage::done, 0, 0)).size(), 170U);
+}
+
+}  // namespace dartcast::traveller_test
