@@ -130,7 +130,7 @@ TEST(Traveller, ComesBackFromItsBytes) {
   }
 }
 
-// A walk handed over that has met no wall, whatever it starts on. The data of a simulation are 45 bytes more.
+// A walk that has met no wall, whatever it starts on. The data of a simulation are 45 bytes more.
 TEST(Traveller, IsSmall) {
   RandomTravellers travellers;
   for (int round = 0; round < 100; ++round) {
