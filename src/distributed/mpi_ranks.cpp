@@ -8,7 +8,6 @@
 #include <mpi.h>
 
 #include <algorithm>
-#include <cstring>
 #include <numeric>
 #include <utility>
 
@@ -177,7 +176,7 @@ MpiSession::~MpiSession() {
 
 std::unique_ptr<Ranks> mpi_ranks(const void* communicator) {
   MPI_Comm comm = MPI_COMM_WORLD;
-  if (communicator != nullptr) std::memcpy(&comm, communicator, sizeof comm);
+  if (communicator != nullptr) comm = *static_cast<const MPI_Comm*>(communicator);
   return std::make_unique<MpiRanks>(comm);
 }
 

@@ -20,10 +20,8 @@ void write_index(WritingThread& writing, const std::filesystem::path& folder, co
   std::vector<std::string> names;
   for (std::uint32_t piece = 0; piece < pieces; ++piece) names.push_back(piece_name(series, frame.step, piece, ending));
   const std::string index = ".p" + std::string(ending.substr(1));
-  writing.add(names.size() * sizeof(std::string),
-              [path = folder / frame_name(series, frame.step, index), data, names = std::move(names)] {
-                write_xml_of_pieces(path, data, names);
-              });
+  writing.add(pieces * sizeof(std::string), [path = folder / frame_name(series, frame.step, index), data,
+                                             names = std::move(names)] { write_xml_of_pieces(path, data, names); });
 }
 
 void write_list(WritingThread& writing, std::filesystem::path path, std::span<const RecordingFrame> frames,

@@ -75,7 +75,9 @@ void RunOutput::find_checkpoint(std::uint64_t steps) {
 
 // Only those particles stay that are now this rank's: the others need not fit into its memory.
 void RunOutput::add_parts(Checkpoint& checkpoint) const {
-  std::vector<SimulationState> states(1, std::move(checkpoint.simulation));
+  if (checkpoint.parts.empty() && share_.has_all()) return;
+  std::vector<SimulationState> states;
+  states.push_back(std::move(checkpoint.simulation));
   keep_own(states.front().particles);
   for (unsigned rank = 1; rank <= checkpoint.parts.size(); ++rank) {
     SimulationState& state = states.emplace_back();
