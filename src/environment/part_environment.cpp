@@ -73,17 +73,24 @@ PartEnvironment::PartEnvironment(Environment& environment, const MeshPart& part,
         "mesh");
 }
 
+// An empty set does not know whether it has followed the last move; those of the other ranks do.
+bool PartEnvironment::moves_any(const Particles& particles) const {
+  std::uint64_t count = particles.size() > 0 && environment_.awaits_advance(particles) ? 1 : 0;
+  ranks_.sum({&count, 1});
+  return count > 0;
+}
+
 StepReport PartEnvironment::advance(Particles& particles, std::span<const Vec3> targets, const ContactCallback& respond,
                                     const StepOptions& options, TravelData& data, std::vector<std::uint8_t>& gone) {
   environment_.check_advance(particles, options);
   if (targets.size() != particles.size())
     throw InvalidArgument(fmt::format("advance: {} targets for {} particles", targets.size(), particles.size()));
   const Environment::Members& members = *environment_.members_;
+  const bool moved = moves_any(particles);
   members.adopt(particles);
   Particles::Details& details = particles.details();
   details.index.reset();
-  const detail::BatchStepper stepper(environment_.complex(), environment_.awaits_advance(particles),
-                                     environment_.threads(), options, respond, true);
+  const detail::BatchStepper stepper(environment_.complex(), moved, environment_.threads(), options, respond, true);
   RankTraffic traffic(cells_, ranks_, to_, data, traffic_);
   StepReport report =
       stepper.advance_in_part({particles.states_, details.weights, details.cache}, targets, respond, traffic, gone);

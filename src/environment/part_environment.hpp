@@ -54,6 +54,8 @@ class PartEnvironment {
                      const StepOptions& options, TravelData& data, std::vector<std::uint8_t>& gone);
 
  private:
+  [[nodiscard]] bool moves_any(const Particles& particles) const;
+
   Environment& environment_;
   Ranks& ranks_;
   PartCells cells_;

@@ -182,7 +182,7 @@ LoadedScene loaded_scene(Scene scene, const ReadOptions& read, const RunOptions&
 }  // namespace
 
 Summary run_scene(const Scene& scene, const RunOptions& options, const Progress& progress) {
-  if (!options.folder.empty()) check_output_folder(options.folder);
+  if (!options.folder.empty() && ParticleShare(options.ranks).is_first()) check_output_folder(options.folder);
   if (options.steps.value_or(0) > max_steps)
     throw InvalidArgument(fmt::format("run: {} steps; give at most {}", *options.steps, max_steps));
   Summary summary;
