@@ -1,14 +1,18 @@
-// Reads points from .vtp and .csv files.
+// Reads points from .vtp, .pvtp and .csv files.
 #include "formats/point_file.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <string>
 #include <string_view>
 
 #include "dartcast/error.hpp"
 #include "formats/csv_table.hpp"
+#include "formats/file_text.hpp"
 #include "formats/vtk_functions.hpp"
+#include "formats/xml_tags.hpp"
 
 namespace dartcast {
 
@@ -30,13 +34,49 @@ PointFile read_vtp(const std::filesystem::path& path, const ReadOptions& options
   return vtk_functions.read_vtp(path, options);
 }
 
+// Behind the points and values of the pieces so far.
+void append(const PointFile& piece, PointFile& all, const std::filesystem::path& path) {
+  if (piece.points.empty()) return;
+  if (all.points.empty())
+    for (const DataArray& a : piece.arrays) all.arrays.push_back({a.name, a.components, {}});
+  const bool same = std::equal(
+      piece.arrays.begin(), piece.arrays.end(), all.arrays.begin(), all.arrays.end(),
+      [](const DataArray& a, const DataArray& b) { return a.name == b.name && a.components == b.components; });
+  if (!same) throw Error(fmt::format("{}: the piece has other arrays than those before it", path.string()));
+  all.points.insert(all.points.end(), piece.points.begin(), piece.points.end());
+  for (std::size_t k = 0; k < piece.arrays.size(); ++k) {
+    const std::vector<double>& values = piece.arrays[k].values;
+    all.arrays[k].values.insert(all.arrays[k].values.end(), values.begin(), values.end());
+  }
+}
+
+// The pieces stand beside the file that names them.
+PointFile read_pieces(const std::filesystem::path& path, const ReadOptions& options) {
+  PointFile all;
+  const std::string text = read_bytes(path);
+  try {
+    XmlTags tags(text);
+    for (XmlTag tag; tags.next(tag);) {
+      if (tag.name != "Piece" || !tag.opens) continue;
+      const std::string& source = tag.attributes["Source"];
+      if (source.find('/') != std::string::npos || !source.ends_with(".vtp"))
+        tags.fail(fmt::format("the piece '{}' is no .vtp file in this folder", source));
+      append(read_vtp(path.parent_path() / source, options), all, path.parent_path() / source);
+    }
+  } catch (const InvalidMesh& e) {
+    throw Error(fmt::format("{}: the points cannot be read: {}", path.string(), e.what()));
+  }
+  return all;
+}
+
 }  // namespace
 
 PointFile read_points(const std::filesystem::path& path, const ReadOptions& options) {
   if (!std::filesystem::is_regular_file(path)) throw Error(fmt::format("{}: there is no such file", path.string()));
   if (path.extension() == ".vtp") return read_vtp(path, options);
+  if (path.extension() == ".pvtp") return read_pieces(path, options);
   if (path.extension() == ".csv") return {read_csv(path, options), {}};
-  throw Error(fmt::format("{}: points are read from .vtp and .csv files", path.string()));
+  throw Error(fmt::format("{}: points are read from .vtp, .pvtp and .csv files", path.string()));
 }
 
 }  // namespace dartcast

@@ -160,6 +160,30 @@ TEST_F(RanksRun, ShareTheParticles) {
   EXPECT_NE(read_bytes(at("shared") / "particles.pvd").find("particles_000040.pvtp"), std::string::npos);
 }
 
+// Readers of frames take the index for the whole, also where a rank has no particles.
+TEST_F(RanksRun, AnIndexIsReadAsTheWholeFrame) {
+  if (!has_vtk()) GTEST_SKIP() << "reading .vtp files needs VTK";
+  run(test::scene_text, at("one"), 1);
+  run(test::scene_text, at("three"), 3);
+  const PointFile one = read_points(at("one") / "particles_000040.vtp");
+  const PointFile all = read_points(at("three") / "particles_000040.pvtp");
+  EXPECT_EQ(all.points.size(), one.points.size());
+  ASSERT_EQ(all.arrays.size(), one.arrays.size());
+  for (std::size_t k = 0; k < one.arrays.size(); ++k) {
+    EXPECT_EQ(all.arrays[k].name, one.arrays[k].name);
+    std::vector<double> expected = one.arrays[k].values;
+    std::vector<double> found = all.arrays[k].values;
+    std::sort(expected.begin(), expected.end());
+    std::sort(found.begin(), found.end());
+    EXPECT_EQ(found, expected) << one.arrays[k].name;
+  }
+  run("[environment]\ngenerator = 'box'\n[[particles]]\ncount = 3\n[output]\nevery = 1\n", at("few"), 3, false, 1);
+  EXPECT_EQ(read_points(at("few") / "particles_000001.pvtp").points.size(), 3U);
+  std::ofstream(at("few") / "outside.pvtp") << "<VTKFile><PPolyData><Piece Source=\"../one/particles_000040.vtp\"/>"
+                                               "</PPolyData></VTKFile>";
+  EXPECT_THROW(read_points(at("few") / "outside.pvtp"), Error);
+}
+
 TEST_F(RanksRun, GoOnWithAnyOtherNumber) {
   for (const char* name : {"scene", "statistics", "solids"}) {
     const std::string& text = scenes().at(name);
