@@ -22,7 +22,9 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/dartcastConfig.cmake ${CMAKE_CURRENT_B
 # For programs that are built without CMake: pkg-config --cflags --libs dartcast.
 # Paths are relative to the file, wherever cmake --install --prefix puts it.
 file(RELATIVE_PATH pkgconfig_to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
-list(TRANSFORM DARTCAST_LIBRARIES PREPEND -ldartcast_ OUTPUT_VARIABLE all_libraries)
+set(all_libraries ${DARTCAST_LIBRARIES})
+list(REMOVE_ITEM all_libraries mpi)
+list(TRANSFORM all_libraries PREPEND -ldartcast_)
 list(JOIN all_libraries " " all_libraries)
 foreach(name IN ITEMS dartcast dartcast-core)
   set(pkgconfig_name ${name})

@@ -1,5 +1,5 @@
 # Libraries over the rooms of src/, each on top of the one before, and dartcast::dartcast for all of them. The library mpi
-# stands beside: it needs core alone.
+# stands beside: it needs core alone, and is a component of its own.
 # tools/check_includes.py has the order of the rooms, and checks that these lists agree with it.
 set(core_rooms base predicates mesh generators topology complex editing surface parts tracking response environment)
 set(simulation_rooms dynamics spheres solids bodies catheter simulation)
@@ -82,8 +82,8 @@ if(DARTCAST_IO)
   include(cmake/viewer.cmake)
 endif()
 
+# Not in dartcast::dartcast: programs that run alone need no MPI.
 if(DARTCAST_MPI)
-  list(APPEND DARTCAST_LIBRARIES mpi)
   add_dartcast_library(mpi MPI::MPI_CXX)
   target_link_libraries(dartcast_mpi PUBLIC dartcast_core)
 endif()
@@ -93,6 +93,9 @@ add_library(dartcast INTERFACE)
 add_library(dartcast::dartcast ALIAS dartcast)
 list(TRANSFORM DARTCAST_LIBRARIES PREPEND dartcast_ OUTPUT_VARIABLE targets)
 target_link_libraries(dartcast INTERFACE ${targets})
+if(DARTCAST_MPI)
+  list(APPEND DARTCAST_LIBRARIES mpi)  # is installed, too
+endif()
 add_library(dartcast_rooms INTERFACE)
 target_include_directories(dartcast_rooms INTERFACE ${PROJECT_SOURCE_DIR}/src)
 target_link_libraries(dartcast_rooms INTERFACE dartcast dartcast_flags)

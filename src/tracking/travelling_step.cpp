@@ -267,6 +267,14 @@ TravelResult result_of(const detail::RunOf<TravelRecorder<N>>& run, const StepRe
   return {pause.step.waits, run.recorder.left(), result};
 }
 
+// The part of a step that the traveller is in, in its geometry. Returns as StepPart::move().
+template <class Positions, std::size_t N>
+Vec3 rest_of_walk(const CellComplex& complex, bool moved, const StepOptions& options, const Space<Positions, N>& space,
+                  detail::RunOf<TravelRecorder<N>>& run, const Traveller& t, const PartialStep* partial) {
+  return detail::StepPart<Positions, N, TravelRecorder<N>>(complex, moved, space, options, no_response)
+      .move(run, t.target, t.interval, partial);
+}
+
 }  // namespace
 
 template <std::size_t N>
@@ -332,14 +340,12 @@ TravelResult TravellingStepper::go_on_in(ParticleState& state, Weights& weights,
     const PartialStep on_way(state.position, t.walk, {});
     const PartialStep* const partial = t.stage == TravelStage::on_way ? &on_way : nullptr;
     if (partial != nullptr) run.recorder.take_up_walk();
-    const auto walk = [&](const auto& space) {
-      using Part = detail::StepPart<std::decay_t<decltype(space.positions)>, N, Recorder>;
-      return Part(complex_, moved_, space, options_, no_response).move(run, t.target, t.interval, partial);
-    };
     if (t.parts == 1) {
-      walk(current_space<N>(complex_));
+      rest_of_walk(complex_, moved_, options_, current_space<N>(complex_), run, t, partial);
     } else {
-      const Vec3 planned = walk(space_between<N>(complex_, static_cast<double>(t.part) / t.parts));
+      const Vec3 planned =
+          rest_of_walk(complex_, moved_, options_, space_between<N>(complex_, static_cast<double>(t.part) / t.parts),
+                       run, t, partial);
       if (run.recorder.waits())
         run.recorder.in_part(t.part, t.parts);
       else

@@ -18,11 +18,6 @@ constexpr std::size_t continued_at_once = 128;  // steps, by one thread
 
 const ContactCallback no_response;
 
-// A contact's walls, behind those that the particle met earlier.
-std::span<const WallHit> all_walls_of(const ContactList& list, const Contact& c) {
-  return std::span(list.walls).subspan(c.first_wall - c.earlier, c.earlier + c.wall_count);
-}
-
 // The contacts of all rounds. Round k has the k-th contact of each particle.
 ContactList by_particle(std::vector<ContactList> rounds) {
   if (rounds.size() == 1) return std::move(rounds.front());

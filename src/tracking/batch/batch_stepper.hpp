@@ -55,6 +55,11 @@ class PartTraffic {
   virtual std::vector<Traveller> exchange(std::vector<Traveller> leaving, bool& over) = 0;
 };
 
+/// A contact's walls, behind those that the particle met earlier.
+inline std::span<const WallHit> all_walls_of(const ContactList& list, const Contact& c) {
+  return std::span(list.walls).subspan(c.first_wall - c.earlier, c.earlier + c.wall_count);
+}
+
 /// The steps of consecutive chunks.
 ChunkSteps joined(std::vector<ChunkSteps> chunks);
 

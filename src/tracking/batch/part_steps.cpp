@@ -19,11 +19,6 @@ namespace dartcast::detail {
 
 namespace {
 
-// A contact's walls, behind those that the particle met earlier.
-std::span<const WallHit> all_walls_of(const ContactList& list, const Contact& c) {
-  return std::span(list.walls).subspan(c.first_wall - c.earlier, c.earlier + c.wall_count);
-}
-
 void subtract(Counters& from, const Counters& one) {
   from.particle_steps -= one.particle_steps;
   from.orientation.tests -= one.orientation.tests;
