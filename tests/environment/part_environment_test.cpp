@@ -163,7 +163,6 @@ class PartRun {
           Ranks& ranks, const Particles& start)
       : scene_(scene),
         options_(options),
-        ranks_(ranks),
         part_(mesh_part(checked(scene.mesh), parts, ranks.rank())),
         environment_(part_.mesh, Threads{1}),
         distributed_(environment_, part_, ranks) {
@@ -222,7 +221,6 @@ class PartRun {
  private:
   const test::SteppedScene& scene_;
   StepOptions options_;
-  Ranks& ranks_;
   MeshPart part_;
   Environment environment_;
   PartEnvironment distributed_;
