@@ -8,6 +8,7 @@
 
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <variant>
 
@@ -31,11 +32,12 @@ bool is_spread(const RunOptions& options) {
 // The parts of checkpoints that this one replaces. Those of later ones may be on their way.
 void remove_earlier_parts(const std::filesystem::path& folder, std::uint64_t step) {
   std::vector<std::filesystem::path> earlier;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+  std::error_code gone;  // a folder that goes away is an error of what is written next
+  for (const auto& entry : std::filesystem::directory_iterator(folder, gone)) {
     const auto of = checkpoint_part_step(entry.path().filename().string());
     if (of && *of < step) earlier.push_back(entry.path());
   }
-  for (const std::filesystem::path& path : earlier) std::filesystem::remove(path);
+  for (const std::filesystem::path& path : earlier) std::filesystem::remove(path, gone);
 }
 
 }  // namespace
