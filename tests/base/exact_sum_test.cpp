@@ -1,4 +1,6 @@
 // Exact sums against fractions, in any order.
+#include "base/exact_sum.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,15 +12,14 @@
 #include <random>
 #include <vector>
 
-#include "base/exact_sum.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::test {
 namespace {
 
 // Wide enough for any sum of doubles: 2098 bits and the carries of 2^40 of them.
-using Wide = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<
-    2200, boost::multiprecision::digit_base_2, void, std::int32_t, -5000, 5000>>;
+using Wide = boost::multiprecision::number<
+    boost::multiprecision::cpp_bin_float<2200, boost::multiprecision::digit_base_2, void, std::int32_t, -5000, 5000>>;
 
 double true_sum(const std::vector<double>& values) {
   Wide sum = 0;
