@@ -48,7 +48,7 @@ class PartEnvironment {
 
   /// Environment::advance() over all parts, to the same bits, for points in space. Particles must be in own cells; they
   /// are afterwards, too. Marks in `gone` those that are now on another rank; those that have come are behind the others.
-  /// The report has the contacts that were met here. `respond`: not empty; it is called on the rank of the wall. Counts of
+  /// The report has the contacts that were met here. `respond`: not empty; it is called on a rank that knows all cells around the contact. It uses one thread. Counts of
   /// tests are those of one process but for walks to far targets.
   StepReport advance(Particles& particles, std::span<const Vec3> targets, const ContactCallback& respond,
                      const StepOptions& options, TravelData& data, std::vector<std::uint8_t>& gone);

@@ -69,7 +69,7 @@ std::vector<ReportedParticle> own_particles(const Simulation& simulation, const 
 }
 
 ReportView view_of_all(const ReportView& view, Ranks* ranks) {
-  if (ranks == nullptr || ranks->size() == 1) return view;
+  if (!are_several(ranks)) return view;
   ByteWriter bytes;
   bytes.put(view);
   return ByteReader(ranks->broadcast(bytes.bytes())).take<ReportView>();

@@ -26,7 +26,7 @@ namespace dartcast {
 namespace {
 
 bool is_spread(const RunOptions& options) {
-  return options.partition == Partition::cells && options.ranks != nullptr && options.ranks->size() > 1;
+  return options.partition == Partition::cells && are_several(options.ranks);
 }
 
 // The parts of checkpoints that this one replaces. Those of later ones may be on their way.

@@ -21,7 +21,7 @@ class CellCounts {
   void update(const CombinatorialMap& map, std::span<const ParticleState> states, Ranks* ranks) {
     lists_.update(map, states);
     sums_.clear();
-    if (ranks == nullptr || ranks->size() == 1) return;
+    if (!are_several(ranks)) return;
     for (std::uint32_t pool = 0; pool + 1 < first_.size(); ++pool)
       first_[pool + 1] = first_[pool] + map.slot_count(pool);
     sums_.resize(first_.back());

@@ -26,7 +26,7 @@ std::vector<T> merged_by_id(const std::vector<std::vector<T>>& lists) {
 /// The first rank gets the entries of all ranks, by id; the others keep their own. Collective.
 template <class T>
 std::vector<T> gathered_by_id(Ranks* ranks, std::vector<T> own) {
-  if (ranks == nullptr || ranks->size() == 1) return own;
+  if (!are_several(ranks)) return own;
   ByteWriter bytes;
   bytes.put(own);
   const std::vector<std::string> all = ranks->gather(bytes.bytes());

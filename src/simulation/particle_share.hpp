@@ -28,7 +28,7 @@ class ParticleShare {
 
 /// Each value becomes the sum of those of all ranks; none: it stays.
 inline void sum_over(Ranks* ranks, std::span<std::uint64_t> values) {
-  if (ranks != nullptr && ranks->size() > 1) ranks->sum(values);
+  if (are_several(ranks)) ranks->sum(values);
 }
 
 }  // namespace dartcast

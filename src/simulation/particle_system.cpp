@@ -80,7 +80,7 @@ void check(const SimulationOptions& o) {
   check(o.step, "simulation");
   check_names(o.user_data);
   if (!o.collisions) return;
-  if (o.ranks != nullptr && o.ranks->size() > 1)
+  if (are_several(o.ranks))
     throw InvalidArgument(
         "simulation: spheres that collide need all others, and ranks have some each: run this scene with one process, "
         "or "

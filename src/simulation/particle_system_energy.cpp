@@ -1,12 +1,11 @@
 // The masses and the energy of particles.
 #include <algorithm>
 #include <numbers>
-#include <string>
 #include <vector>
 
-#include "base/bytes.hpp"
 #include "base/exact_sum.hpp"
 #include "base/parallel.hpp"
+#include "base/reduced.hpp"
 #include "simulation/particle_system.hpp"
 
 namespace dartcast {
@@ -19,22 +18,6 @@ struct ExactEnergy {
   ExactSum kinetic;
   ExactSum potential;
 };
-
-SimulationEnergy energy_of_all(const ExactEnergy& own, Ranks* ranks) {
-  const auto rounded = [](const ExactEnergy& e) { return SimulationEnergy{e.kinetic.value(), e.potential.value()}; };
-  if (ranks == nullptr || ranks->size() == 1) return rounded(own);
-  ByteWriter bytes;
-  bytes.put(own);
-  ExactEnergy all;
-  for (const std::string& b : ranks->gather(bytes.bytes())) {
-    const auto part = ByteReader(b).take<ExactEnergy>();
-    all.kinetic += part.kinetic;
-    all.potential += part.potential;
-  }
-  ByteWriter sum;
-  sum.put(rounded(all));
-  return ByteReader(ranks->broadcast(sum.bytes())).take<SimulationEnergy>();
-}
 
 }  // namespace
 
@@ -58,12 +41,14 @@ SimulationEnergy ParticleSystem::energy() const {
       part.potential.add(-(m * dot(options_.gravity, particles_[i].position)));
     }
   });
-  ExactEnergy all;
-  for (const ExactEnergy& part : parts) {
-    all.kinetic += part.kinetic;
-    all.potential += part.potential;
-  }
-  return energy_of_all(all, options_.ranks);
+  const auto add = [](ExactEnergy& sum, const ExactEnergy& part) {
+    sum.kinetic += part.kinetic;
+    sum.potential += part.potential;
+  };
+  ExactEnergy own;
+  for (const ExactEnergy& part : parts) add(own, part);
+  const ExactEnergy all = reduced(options_.ranks, own, add);
+  return {all.kinetic.value(), all.potential.value()};
 }
 
 }  // namespace dartcast

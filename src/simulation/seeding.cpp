@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/bytes.hpp"
+#include "base/reduced.hpp"
 #include "complex/simplex.hpp"
 #include "dartcast/error.hpp"
 
@@ -75,20 +76,6 @@ struct SizeRange {
   std::uint64_t count = 0;
 };
 
-SizeRange range_of_all(const SizeRange& own, Ranks& ranks) {
-  ByteWriter bytes;
-  bytes.put(own);
-  SizeRange all;
-  for (const std::string& b : ranks.gather(bytes.bytes())) {
-    const auto part = ByteReader(b).take<SizeRange>();
-    all.largest = std::max(all.largest, part.largest);
-    all.count += part.count;
-  }
-  ByteWriter sum;
-  sum.put(all);
-  return ByteReader(ranks.broadcast(sum.bytes())).take<SizeRange>();
-}
-
 // Where a rank's sizes of one cell are on the line.
 struct Stretch {
   Cell cell;  // in the whole environment
@@ -133,8 +120,11 @@ std::uint64_t place_on_line(std::vector<Stretch>& own, Ranks& ranks) {
 }  // namespace
 
 FixedPointScale scale_of(double largest, std::size_t count, const std::optional<SampledPart>& part) {
-  SizeRange range{largest, count};
-  if (part) range = range_of_all(range, part->ranks);
+  const SizeRange range =
+      reduced(part ? &part->ranks : nullptr, SizeRange{largest, count}, [](SizeRange& sum, const SizeRange& other) {
+        sum.largest = std::max(sum.largest, other.largest);
+        sum.count += other.count;
+      });
   return {range.largest, range.count};
 }
 

@@ -36,8 +36,7 @@ const SimulationStep& Simulation::step() {
     const ScopeTimer timer(parts_->clock_of(component));
     component->step(begin);
   }
-  Ranks* const ranks = options().ranks;
-  if (ranks != nullptr && ranks->size() > 1) gather_step(*ranks, parts_->particles, parts_->statistics);
+  if (are_several(options().ranks)) gather_step(*options().ranks, parts_->particles, parts_->statistics);
   parts_->statistics.count();
   parts_->events.after_step();
   return parts_->particles.last_step();

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/bytes.hpp"
+#include "base/reduced.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/simulation.hpp"
 #include "simulation/particle_share.hpp"
@@ -19,8 +19,6 @@
 namespace dartcast {
 
 namespace {
-
-bool share(const Ranks* ranks) { return ranks != nullptr && ranks->size() > 1; }
 
 // All but what is the same on each rank, and times.
 void add_sums(SimulationTotals& all, const SimulationTotals& t) {
@@ -97,17 +95,13 @@ void put_in_order(ParticleSystemState& s) {
 }  // namespace
 
 SimulationTotals Simulation::totals_of_all() const {
-  SimulationTotals all = totals();
-  Ranks* const ranks = options().ranks;
-  if (!share(ranks)) return all;
-  const std::vector<std::string> theirs = ranks->gather(packed(all));
-  for (std::size_t r = 1; r < theirs.size(); ++r) {
-    SimulationTotals t;
-    unpack(theirs[r], t);
-    add_sums(all, t);
-  }
-  unpack(ranks->broadcast(packed(all)), all);
-  return all;
+  const auto unpacked = [this](const std::string& bytes) {
+    SimulationTotals t = totals();
+    unpack(bytes, t);
+    return t;
+  };
+  const auto pack = [](const SimulationTotals& t) { return packed(t); };
+  return reduced(options().ranks, totals(), add_sums, pack, unpacked);
 }
 
 std::uint64_t Simulation::alive() const {
@@ -119,15 +113,13 @@ std::uint64_t Simulation::alive() const {
 SimulationEnergy Simulation::energy() const { return parts_->particles.energy(); }
 
 Audit Simulation::audit() const {
-  Ranks* const ranks = options().ranks;
   Audit own = parts_->particles.audit();
   for (const SimulationComponent* component : parts_->components) {
     if (component != &parts_->particles && parts_->particles.share().is_first()) own += component->audit();
   }
-  if (!share(ranks)) return own;
-  Audit all;
-  for (const std::string& bytes : ranks->gather(packed(own))) all += unpacked_audit(bytes);
-  return unpacked_audit(ranks->broadcast(packed(all)));
+  const auto add = [](Audit& sum, const Audit& other) { sum += other; };
+  const auto pack = [](const Audit& audit) { return packed(audit); };
+  return reduced(options().ranks, own, add, pack, unpacked_audit);
 }
 
 StateHash Simulation::state_hash() const {

@@ -105,7 +105,7 @@ void Simulation::make(const Scene& scene, Threads threads, Ranks* ranks, Partiti
   if (!is_ready(scene.environment)) made = scene_mesh(scene.environment);
   const MeshData& whole = is_ready(scene.environment) ? std::get<MeshData>(scene.environment.mesh) : made;
   std::optional<MeshPart> part;
-  if (partition == Partition::cells && ranks != nullptr && ranks->size() > 1) {
+  if (partition == Partition::cells && are_several(ranks)) {
     check_can_be_spread(scene);
     part = scene_part(whole, *ranks);
   }

@@ -384,6 +384,15 @@ inline Contact with_walls(const ContactList& met, const Contact& contact, Contac
   return here;
 }
 
+// Counts a complete step's tests.
+template <class Run>
+[[gnu::always_inline]] inline void count_tests(Run& run) {
+  ++run.counters.particle_steps;
+  run.counters.orientation.tests += run.tests.tests;
+  run.counters.orientation.exact += run.tests.exact;
+  ++run.counters.histogram[std::min<std::size_t>(run.tests.tests, Counters::histogram_size - 1)];
+}
+
 // Saves a step that waits at a contact, and counts one that is complete. It started at p in the simplex `start`.
 template <std::size_t N, class Recorder>
 [[gnu::always_inline]] inline StepResult finish(const CellComplex& complex, bool moved, RunOf<Recorder>& run,
@@ -399,10 +408,7 @@ template <std::size_t N, class Recorder>
     }
   }
   Counters& counters = run.counters;
-  ++counters.particle_steps;
-  counters.orientation.tests += run.tests.tests;
-  counters.orientation.exact += run.tests.exact;
-  ++counters.histogram[std::min<std::size_t>(run.tests.tests, Counters::histogram_size - 1)];
+  count_tests(run);
   const bool kept = run.state.at() == start && run.contact_count == 0 && !run.result.held;
   counters.forecast_kept += kept ? 1 : 0;
   if (moved && run.state.at() != start && left_behind(current_space<N>(complex).corners(start), p))

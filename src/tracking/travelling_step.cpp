@@ -123,10 +123,7 @@ class TravelRecorder {
   // Counts a step that is complete here and began elsewhere.
   void count(const Run& run, bool moved) const {
     Counters& counters = run.counters;
-    ++counters.particle_steps;
-    counters.orientation.tests += run.tests.tests;
-    counters.orientation.exact += run.tests.exact;
-    ++counters.histogram[std::min<std::size_t>(run.tests.tests, Counters::histogram_size - 1)];
+    detail::count_tests(run);
     const bool in_start = cells_->whole(run.state.at()) == traveller().start;
     counters.forecast_kept += in_start && run.contact_count == 0 && !run.result.held ? 1 : 0;
     counters.updated_by_deformation += moved && !in_start && traveller().left_behind ? 1 : 0;

@@ -257,43 +257,13 @@ TEST_F(RanksRun, RefuseSpheresThatCollide) {
 
 // --- by cells
 
-// Inlets, outlets, walls that absorb and that hold, contacts, and a mesh that twists.
-const std::string spread_text = R"(
-# with seeds
-seed = 5
-[environment]
-generator = "box"
-cells = [5, 5, 5]
-blocked_share = 0.1
-[[deformation]]
-kind = "twist"
-amplitude = 0.4
-length = 5.0
-period = 0.7
-[[particles]]
-count = 300
-velocity = [3.0, 1.0, 0.5]
-[[particles]]
-inlet = "xmin"
-rate = 170.0
-velocity = [4.0, 0.5, 0.0]
-[motion]
-dt = 0.02
-steps = 47
-gravity = [0.0, 0.0, -5.0]
-[contact]
-restitution = 0.5
-[contact.patch.xmax]
-response = "escape"
-[contact.patch.zmin]
-response = "stick"
-[contact.patch.ymax]
-response = "absorb"
-[output]
-every = 10
-contacts = true
-report = false
-)";
+// In one segment a step, and without a report; run() adds seeds.
+std::string spread_scene() {
+  std::string text = "# with seeds\n" + test::scene_text + "report = false\n";
+  const std::string substeps = "substeps = 2\n";
+  return text.erase(text.find(substeps), substeps.size());
+}
+const std::string spread_text = spread_scene();
 
 // A vessel that beats, with an inlet and two outlets.
 const std::string spread_vessel = R"(
