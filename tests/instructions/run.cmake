@@ -63,6 +63,22 @@ message(STATUS "cut: ${millions} million instructions; ${output}")
 if(millions GREATER 30 OR millions LESS 1)
   set(wrong "${wrong} cut")
 endif()
+# A walk that goes to another rank: packed there, and unpacked here.
+execute_process(
+  COMMAND ${VALGRIND} --tool=callgrind --callgrind-out-file=/dev/null "--toggle-collect=dartcast::pack(*" "--toggle-collect=dartcast::unpack(*"
+          ${PROGRAM} travel
+  RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE log)
+if(NOT status EQUAL 0)
+  message(FATAL_ERROR "travel: ${output}${log}")
+endif()
+string(REGEX MATCH "([0-9]+) travellers" ignored "${output}")
+set(travellers ${CMAKE_MATCH_1})
+string(REGEX MATCH "Collected : ([0-9]+)" ignored "${log}")
+math(EXPR each "${CMAKE_MATCH_1} / ${travellers}")
+message(STATUS "travel: ${each} instructions each; ${output}")
+if(each GREATER 348 OR each LESS 50)
+  set(wrong "${wrong} travel")
+endif()
 if(wrong)
   message(FATAL_ERROR "more instructions than allowed, or fewer than there can be:${wrong}")
 endif()

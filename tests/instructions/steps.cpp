@@ -1,8 +1,10 @@
 // Fixed small scenes to count instructions in: `steps still`, `steps moving`, `steps lattice` or `steps long`, and in the
 // plane `steps plane` or `steps plane_moving`; `steps corner` for particles that rest in a vertex. The count is the code that
 // Environment::advance() executes (run.cmake); the number of particle-steps is printed. And `steps edits EDGE COUNT`:
-// edits of a box of EDGE^3 cells, each followed by the particles. `steps cut`: one cut through the wall of a vessel.
+// edits of a box of EDGE^3 cells, each followed by the particles. `steps cut`: one cut through the wall of a vessel. `steps
+// travel`: walks that have met no wall are packed for another rank, and unpacked, 10,000 at a time; it also prints times.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -10,6 +12,7 @@
 #include <numbers>
 #include <vector>
 
+#include "base/bytes.hpp"
 #include "base/random.hpp"
 #include "dartcast/complex_edit.hpp"
 #include "dartcast/cutting.hpp"
@@ -18,6 +21,7 @@
 #include "dartcast/map_edits.hpp"
 #include "dartcast/response.hpp"
 #include "simulation/seeding.hpp"
+#include "tracking/traveller.hpp"
 
 namespace {
 
@@ -141,6 +145,33 @@ int rest_in_corner() {
   return 0;
 }
 
+int travel() {
+  constexpr std::size_t batch = 10'000;
+  constexpr std::size_t batches = 21;
+  using Clock = std::chrono::steady_clock;
+  Traveller walk;
+  walk.stage = TravelStage::on_way;
+  walk.travelled = true;
+  walk.walk.end = WalkEnd::wall;
+  const std::vector<Traveller> leaving(batch, walk);
+  std::vector<Traveller> come;
+  come.reserve(batch);
+  ByteWriter bytes;
+  std::vector<double> times;
+  for (std::size_t b = 0; b < batches; ++b) {
+    bytes.clear();
+    come.clear();
+    const auto start = Clock::now();
+    for (const Traveller& t : leaving) pack(t, bytes);
+    for (ByteReader in(bytes.bytes()); !in.at_end();) unpack(in, come.emplace_back());
+    times.push_back(std::chrono::duration<double, std::nano>(Clock::now() - start).count() / batch);
+  }
+  std::sort(times.begin(), times.end());
+  std::printf("%zu travellers, %zu bytes each, %.0f ns each\n", batch * batches, bytes.bytes().size() / batch,
+              times[batches / 2]);
+  return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -149,6 +180,7 @@ int main(int argc, char** argv) {
   const char* kind = argc == 2 ? argv[1] : "";
   if (std::strcmp(kind, "corner") == 0) return rest_in_corner();
   if (std::strcmp(kind, "cut") == 0) return cut_vessel();
+  if (std::strcmp(kind, "travel") == 0) return travel();
   const bool plane = std::strncmp(kind, "plane", 5) == 0;
   const bool moving = std::strcmp(kind, plane ? "plane_moving" : "moving") == 0;
   const bool lattice = std::strcmp(kind, "lattice") == 0;

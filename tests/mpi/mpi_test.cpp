@@ -2,11 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "support/command.hpp"
 #include "support/tier.hpp"
@@ -38,6 +40,29 @@ class Mpi : public test::CommandTest {
       if (line.starts_with("dartcast: ")) lines += line + "\n";
     return lines;
   }
+  [[nodiscard]] std::uint64_t number_of(const std::string& run, const std::string& key) const {
+    const std::string text = text_of(run, "summary.json");
+    const std::size_t at = text.find("\"" + key + "\": ");
+    return at == std::string::npos ? 0 : std::strtoull(text.c_str() + at + key.size() + 4, nullptr, 10);
+  }
+  // Runs on 1 to 4 ranks, shared in each of these ways, have the hash and the files of one process.
+  void expect_same_runs(const std::string& of, std::uint64_t steps, const std::vector<std::string>& partitions,
+                        const std::vector<std::string>& files) const {
+    const std::string arguments = "run " + of + " --steps " + std::to_string(steps) + " -j 1 -q -o ";
+    ASSERT_EQ(run(arguments + "one").status, 0) << of;
+    for (const std::string& partition : partitions) {
+      for (const unsigned ranks : {1U, 2U, 3U, 4U}) {
+        const std::string name = of + " by " + partition + " on " + std::to_string(ranks);
+        const std::string to = "on" + std::to_string(ranks);
+        const test::Result r = shared(ranks, arguments + to + " --partition " + partition);
+        ASSERT_EQ(r.status, 0) << name << ": " << r.error;
+        EXPECT_EQ(r.error, "") << name;
+        EXPECT_EQ(hash_of(to), hash_of("one")) << name;
+        for (const std::string& file : files)
+          EXPECT_TRUE(text_of(to, file) == text_of("one", file)) << name << ": " << file;
+      }
+    }
+  }
   [[nodiscard]] fs::path long_scene() const {
     return write(
         "long.toml",
@@ -50,36 +75,25 @@ class Mpi : public test::CommandTest {
   }
 };
 
-TEST_F(Mpi, RunsAreThoseOfOneProcess) {
-  const std::string steps = std::to_string(test::scaled(50, 400));
-  for (const char* name : {"vessel.toml", "bar_deforming.toml", "maze.toml", "surgery.toml", "catheter_left.toml"}) {
-    const std::string arguments = "run " + scene(name) + " --steps " + steps + " -j 1 -q -o ";
-    ASSERT_EQ(run(arguments + "one").status, 0) << name;
-    for (const unsigned ranks : {1U, 2U, 3U, 4U}) {
-      const std::string to = "on" + std::to_string(ranks);
-      const test::Result r = shared(ranks, arguments + to);
-      ASSERT_EQ(r.status, 0) << name << ": " << r.error;
-      EXPECT_EQ(r.error, "") << name;
-      EXPECT_EQ(hash_of(to), hash_of("one")) << name << " on " << ranks;
-      EXPECT_EQ(text_of(to, "stats.csv"), text_of("one", "stats.csv")) << name << " on " << ranks;
-      EXPECT_EQ(text_of(to, "report.bin"), text_of("one", "report.bin")) << name << " on " << ranks;
-    }
-  }
+TEST_F(Mpi, RunsByParticlesAreThoseOfOneProcess) {
+  for (const char* name : {"vessel.toml", "bar_deforming.toml", "maze.toml", "surgery.toml", "catheter_left.toml"})
+    expect_same_runs(scene(name), test::scaled(50, 400), {"particles"}, {"stats.csv", "report.bin"});
 }
 
 TEST_F(Mpi, RunsByCellsAreThoseOfOneProcess) {
-  const std::string steps = std::to_string(test::scaled(50, 400));
-  for (const char* name : {"vessel.toml", "bar_deforming.toml", "box.toml"}) {
-    const std::string arguments = "run " + scene(name) + " --steps " + steps + " -j 1 -q -o ";
-    ASSERT_EQ(run(arguments + "one").status, 0) << name;
-    for (const unsigned ranks : {1U, 2U, 3U, 4U}) {
-      const std::string to = "on" + std::to_string(ranks);
-      const test::Result r = shared(ranks, arguments + to + " --partition cells");
-      ASSERT_EQ(r.status, 0) << name << ": " << r.error;
-      EXPECT_EQ(hash_of(to), hash_of("one")) << name << " on " << ranks;
-      EXPECT_EQ(text_of(to, "stats.csv"), text_of("one", "stats.csv")) << name << " on " << ranks;
-    }
-  }
+  for (const char* name : {"vessel.toml", "bar_deforming.toml", "box.toml"})
+    expect_same_runs(scene(name), test::scaled(50, 400), {"cells"}, {"stats.csv"});
+}
+
+// 10^6 particle-steps a run, and 10^8 in the full tier, which the scene has in a hundred times the steps.
+TEST_F(Mpi, MillionsOfStepsAreThoseOfOneProcess) {
+  std::string text = content(fs::path(scenes_folder) / "vessel.toml");
+  const std::string often = "every = 20";
+  ASSERT_NE(text.find(often), std::string::npos);
+  text.replace(text.find(often), often.size(), "every = 1000\ncontacts = true");
+  const std::uint64_t steps = test::scaled(105, 10'500);
+  expect_same_runs(write("vessel.toml", text), steps, {"particles", "cells"}, {"stats.csv", "contacts.csv"});
+  EXPECT_GE(number_of("one", "particle_steps"), steps * 9'600);
 }
 
 TEST_F(Mpi, AnErrorIsOneLineWithItsRank) {
