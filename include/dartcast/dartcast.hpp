@@ -22,6 +22,7 @@
 #include "dartcast/mesh_check.hpp"
 #include "dartcast/mesh_data.hpp"
 #include "dartcast/mesh_files.hpp"
+#include "dartcast/mesh_part.hpp"
 #include "dartcast/mesh_selection.hpp"
 #include "dartcast/particle_state.hpp"
 #include "dartcast/predicates.hpp"

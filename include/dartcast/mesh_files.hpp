@@ -9,6 +9,7 @@
 
 #include "dartcast/mesh_check.hpp"
 #include "dartcast/mesh_data.hpp"
+#include "dartcast/mesh_part.hpp"
 #include "dartcast/threads.hpp"
 
 namespace dartcast {
@@ -109,6 +110,20 @@ MeshFile mesh_surfaces(const SurfaceScene& scene, const ReadOptions& options = {
 /// Throws InvalidArgument where the ending is none of writable_mesh_endings(), or where .msh or .mesh should hold
 /// polyhedra, or polygons or faces of more than four corners; Error where the file cannot be written.
 void write_mesh(const MeshData& mesh, const std::filesystem::path& path);
+
+// Meshes in pieces, for ranks.
+
+/// Writes a mesh in pieces: a .pvtu file that names a .vtu file beside it for each part, which ParaView opens as one mesh.
+/// read_mesh() reads them as the whole mesh, read_mesh_part() as parts. Each piece has its ghosts, and the numbers that its
+/// points and cells have in the whole. Precondition: check_and_repair() found the mesh valid. Throws as partition();
+/// InvalidArgument where the path does not end in .pvtu; Error where a file cannot be written.
+void write_mesh_parts(const MeshData& mesh, std::uint32_t parts, const std::filesystem::path& path);
+
+/// Reads the pieces of part `part` of `parts` and puts them together; the pieces are shared out in their order. Throws
+/// InvalidMesh, with file and reason, where there are fewer pieces than parts, and where one is damaged, of another mesh,
+/// or none of write_mesh_parts(). Needs VTK (has_vtk()). Only the option `max_memory` has an effect.
+MeshPart read_mesh_part(const std::filesystem::path& path, std::uint32_t parts, std::uint32_t part,
+                        const ReadOptions& options = {});
 
 /// Writes bytes to a file. Throws Error where that fails.
 void write_bytes(const std::filesystem::path& path, std::string_view bytes);

@@ -44,7 +44,4 @@ class Ranks {
   virtual bool fail(const std::string& why) noexcept = 0;
 };
 
-/// Whether there is somebody to share with. None, and one rank, are a process alone.
-inline bool are_several(const Ranks* ranks) { return ranks != nullptr && ranks->size() > 1; }
-
 }  // namespace dartcast

@@ -18,6 +18,7 @@
 #include "dartcast/events.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/mesh_data.hpp"
+#include "dartcast/mesh_part.hpp"
 #include "dartcast/response.hpp"
 #include "dartcast/simulation.hpp"
 #include "dartcast/statistics.hpp"
@@ -56,9 +57,9 @@ struct SurfaceScene {
   double seconds = 600.0;  ///< that the program may take
 };
 
-/// A mesh file, a generator's options, surfaces to mesh around, or a mesh.
+/// A mesh file, a generator's options, surfaces to mesh around, a mesh, or a rank's part of one (Partition::cells).
 using MeshSource = std::variant<std::filesystem::path, BoxOptions, OctahedraOptions, VesselOptions, RectangleOptions,
-                                MazeOptions, SurfaceScene, MeshData>;
+                                MazeOptions, SurfaceScene, MeshData, MeshPart>;
 
 /// The regions whose cells are free, by name.
 struct FreeRegions {

@@ -14,6 +14,9 @@ class Random {
     state_ = next() ^ (stream * 0xd1342543de82ef95U);
   }
 
+  /// As after so many calls of next().
+  constexpr void skip(std::uint64_t count) { state_ += count * 0x9e3779b97f4a7c15U; }
+
   /// 64 random bits.
   constexpr std::uint64_t next() {
     state_ += 0x9e3779b97f4a7c15U;

@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "base/are_several.hpp"
 #include "base/bytes.hpp"
 #include "dartcast/ranks.hpp"
 

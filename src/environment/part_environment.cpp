@@ -3,12 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <unordered_map>
 #include <utility>
 
 #include "base/bytes.hpp"
+#include "base/digest.hpp"
 #include "dartcast/error.hpp"
 #include "environment/environment_members.hpp"
 #include "environment/particle_details.hpp"
+#include "mesh/cell_types.hpp"
 #include "tracking/batch/batch_stepper.hpp"
 
 namespace dartcast {
@@ -62,7 +65,7 @@ class RankTraffic final : public detail::PartTraffic {
 }  // namespace
 
 PartEnvironment::PartEnvironment(Environment& environment, const MeshPart& part, Ranks& ranks)
-    : environment_(environment), ranks_(ranks), cells_(part_cells(part, ranks.rank())), to_(ranks.size()) {
+    : environment_(environment), ranks_(ranks), cells_(part_cells(part)), to_(ranks.size()) {
   if (environment.map().dimension() != 3)
     throw InvalidArgument("partition: meshes of the plane cannot be spread by cells; spread the particles");
   std::uint64_t steiner = environment.complex().positions().size() - environment.positions().size();
@@ -71,6 +74,51 @@ PartEnvironment::PartEnvironment(Environment& environment, const MeshPart& part,
     throw InvalidArgument(
         "partition: some cells need Steiner points, and cannot be spread by cells; spread the particles, or mend the "
         "mesh");
+  check_ghosts(part);
+}
+
+namespace {
+
+std::uint64_t digest_of(const MeshData& mesh, std::size_t c) {
+  ByteWriter corners;
+  for_each_face(mesh, c, [&](std::span<const std::uint32_t> face) {
+    for (const std::uint32_t p : face) corners.put(mesh.points[p]);
+  });
+  return digest(corners.bytes());
+}
+
+}  // namespace
+
+// Each rank says to the others which of their cells it has as ghosts.
+void PartEnvironment::check_ghosts(const MeshPart& part) const {
+  std::vector<ByteWriter> ghosts(ranks_.size());
+  std::unordered_map<std::uint32_t, std::size_t> own;
+  for (std::size_t c = 0; c < part.cells.size(); ++c) {
+    if (part.owners[c] >= ranks_.size())
+      throw InvalidMesh(
+          fmt::format("partition: cell {} is of part {} of {}", part.cells[c], part.owners[c], ranks_.size()));
+    if (part.owners[c] == ranks_.rank()) {
+      own.emplace(part.handles[c].value, c);
+    } else {
+      ghosts[part.owners[c]].put(part.handles[c]);
+      ghosts[part.owners[c]].put(digest_of(part.mesh, c));
+    }
+  }
+  std::vector<std::string> bytes;
+  for (const ByteWriter& g : ghosts) bytes.push_back(g.bytes());
+  bytes = ranks_.exchange(std::move(bytes));
+  for (std::size_t rank = 0; rank < bytes.size(); ++rank) {
+    for (ByteReader in(bytes[rank]); !in.at_end();) {
+      const auto handle = in.take<Cell>();
+      const auto seen = in.take<std::uint64_t>();
+      const auto found = own.find(handle.value);
+      if (found == own.end() || digest_of(part.mesh, found->second) != seen)
+        throw InvalidMesh(fmt::format(
+            "partition: ranks {} and {} have parts of different meshes: the first has a cell beside its own that "
+            "the second does not have",
+            rank, ranks_.rank()));
+    }
+  }
 }
 
 // An empty set does not know whether it has followed the last move; those of the other ranks do.

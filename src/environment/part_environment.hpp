@@ -11,7 +11,7 @@
 #include "base/bytes.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/ranks.hpp"
-#include "parts/mesh_part.hpp"
+#include "parts/part_of_rank.hpp"
 
 namespace dartcast {
 
@@ -40,7 +40,9 @@ struct TrafficCounts {
 /// One rank's part. Its functions are collective.
 class PartEnvironment {
  public:
-  /// `environment`: made of the part's mesh. All outlive it.
+  /// `environment`: made of the part's mesh. All outlive it. Throws InvalidMesh where the ranks' parts are not of one mesh:
+  /// a ghost is not, corner by corner, a cell of the rank that should have it. Throws InvalidArgument in the plane, and where
+  /// cells need Steiner points.
   PartEnvironment(Environment& environment, const MeshPart& part, Ranks& ranks);
 
   [[nodiscard]] const PartCells& cells() const { return cells_; }
@@ -54,6 +56,7 @@ class PartEnvironment {
                      const StepOptions& options, TravelData& data, std::vector<std::uint8_t>& gone);
 
  private:
+  void check_ghosts(const MeshPart& part) const;
   [[nodiscard]] bool moves_any(const Particles& particles) const;
 
   Environment& environment_;

@@ -9,6 +9,7 @@
 
 #include "formats/gmsh.hpp"
 #include "formats/medit.hpp"
+#include "formats/mesh_pieces.hpp"
 #include "formats/meshb.hpp"
 #include "formats/obj.hpp"
 #include "formats/off.hpp"
@@ -40,6 +41,10 @@ ParsedSurface read_surface_text(std::string_view content, std::uint64_t /*max_me
   return parse(content);
 }
 
+// The pieces are checked one by one.
+std::uint64_t memory_of_index(std::uint64_t file) { return file; }
+auto read_pieces_or_none() { return has_vtk() ? read_pieces : nullptr; }
+
 // VTK keeps the text of inline arrays beside their values.
 std::uint64_t memory_of_xml(std::uint64_t file) { return memory_of_vtk({.file = 2 * file}); }
 
@@ -48,6 +53,7 @@ std::uint64_t memory_of_xml(std::uint64_t file) { return memory_of_vtk({.file = 
 std::span<const MeshFormat> mesh_formats() {
   static const std::vector<MeshFormat> formats = {
       {"VTK", "", {{".vtu", write_vtu}}, true, true, memory_of_xml, vtk_functions.read_vtu},
+      {"VTK", "pieces of dartcast partition", {{".pvtu", nullptr}}, true, true, memory_of_index, read_pieces_or_none()},
       {"VTK", "legacy", {{".vtk", vtk_functions.write_legacy}}, true, true, memory_of_text, vtk_functions.read_legacy},
       {"Gmsh",
        "Gmsh 1, 2 or 4",

@@ -12,7 +12,7 @@
 #include "formats/csv_table.hpp"
 #include "formats/file_text.hpp"
 #include "formats/vtk_functions.hpp"
-#include "formats/xml_tags.hpp"
+#include "formats/xml_pieces.hpp"
 
 namespace dartcast {
 
@@ -53,16 +53,8 @@ void append(const PointFile& piece, PointFile& all, const std::filesystem::path&
 // The pieces stand beside the file that names them.
 PointFile read_pieces(const std::filesystem::path& path, const ReadOptions& options) {
   PointFile all;
-  const std::string text = read_bytes(path);
   try {
-    XmlTags tags(text);
-    for (XmlTag tag; tags.next(tag);) {
-      if (tag.name != "Piece" || !tag.opens) continue;
-      const std::string& source = tag.attributes["Source"];
-      if (source.find('/') != std::string::npos || !source.ends_with(".vtp"))
-        tags.fail(fmt::format("the piece '{}' is no .vtp file in this folder", source));
-      append(read_vtp(path.parent_path() / source, options), all, path.parent_path() / source);
-    }
+    for (const auto& piece : named_pieces(path, read_bytes(path), ".vtp")) append(read_vtp(piece, options), all, piece);
   } catch (const InvalidMesh& e) {
     throw Error(fmt::format("{}: the points cannot be read: {}", path.string(), e.what()));
   }

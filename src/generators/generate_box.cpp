@@ -8,6 +8,7 @@
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/ids.hpp"
+#include "generators/box_window.hpp"
 #include "generators/generate_blocked.hpp"
 #include "mesh/cell_types.hpp"
 
@@ -69,7 +70,7 @@ void check(const BoxOptions& o) {
   if (o.type == CellType::polyhedron) {
     throw InvalidArgument("box: no polyhedra; take another type, or the octahedra generator");
   }
-  std::uint64_t max_per_cube = o.type == CellType::hexahedron ? 1 : (o.type == CellType::prism ? 2 : 6);
+  std::uint64_t max_per_cube = cells_per_cube(o.type);
   if (o.mixed) max_per_cube = 12;
   std::uint64_t room = Cell::index_mask / max_per_cube;
   for (const std::uint32_t n : o.cells) room /= n;
@@ -80,11 +81,11 @@ void check(const BoxOptions& o) {
   }
 }
 
-// Lattice, patterns and marks of one box while it is built.
+// Lattice, patterns and marks of the cubes of one box in a window while they are built.
 class BoxBuilder {
  public:
-  explicit BoxBuilder(const BoxOptions& options) : o_(options), n_(options.cells) {
-    cubes_ = std::size_t{n_[0]} * n_[1] * n_[2];
+  BoxBuilder(const BoxOptions& options, const BoxWindow& window) : o_(options), n_(options.cells), w_(window) {
+    cubes_ = window.cubes();
     for (unsigned cut = 0; cut <= all_sides; ++cut) middle_patterns_.push_back(from_middle(cut));
   }
 
@@ -98,9 +99,9 @@ class BoxBuilder {
     mesh_.offsets.reserve(cubes_ * per_cube + 1);
     mesh_.connectivity.reserve(cubes_ * per_cube * corners);
     std::size_t cube = 0;
-    for (std::uint32_t k = 0; k < n_[2]; ++k) {
-      for (std::uint32_t j = 0; j < n_[1]; ++j) {
-        for (std::uint32_t i = 0; i < n_[0]; ++i, ++cube) {
+    for (std::uint32_t k = w_.low[2]; k < w_.high[2]; ++k) {
+      for (std::uint32_t j = w_.low[1]; j < w_.high[1]; ++j) {
+        for (std::uint32_t i = w_.low[0]; i < w_.high[0]; ++i, ++cube) {
           add_cube(cube, {i, j, k});
           if (!blocked.empty()) mesh_.free.resize(mesh_.types.size(), blocked[cube] == 0 ? 1 : 0);
         }
@@ -113,7 +114,11 @@ class BoxBuilder {
  private:
   using Place = std::array<std::uint32_t, 3>;
 
-  [[nodiscard]] std::uint32_t point(const Place& p) const { return p[0] + (n_[0] + 1) * (p[1] + (n_[1] + 1) * p[2]); }
+  [[nodiscard]] std::uint32_t point(const Place& p) const {
+    const std::uint32_t x = w_.high[0] - w_.low[0] + 1;
+    const std::uint32_t y = w_.high[1] - w_.low[1] + 1;
+    return p[0] - w_.low[0] + x * (p[1] - w_.low[1] + y * (p[2] - w_.low[2]));
+  }
 
   [[nodiscard]] bool outermost(const Place& p) const {
     for (std::size_t a = 0; a < 3; ++a) {
@@ -126,23 +131,26 @@ class BoxBuilder {
     return origin + (i == n ? size : size * i / n);
   }
 
-  void add_points() {
-    Random random(o_.seed, 1);
-    const auto shift = [&](double edge) { return o_.jitter * (random.uniform() - 0.5) * edge; };
-    mesh_.points.reserve(std::size_t{n_[0] + 1} * (n_[1] + 1) * (n_[2] + 1));
-    for (std::uint32_t k = 0; k <= n_[2]; ++k) {
-      for (std::uint32_t j = 0; j <= n_[1]; ++j) {
-        for (std::uint32_t i = 0; i <= n_[0]; ++i) {
-          Vec3 p = {coordinate(o_.origin.x, o_.size.x, i, n_[0]), coordinate(o_.origin.y, o_.size.y, j, n_[1]),
+  // The lattice's inner points have three random numbers each, in their order.
+  [[nodiscard]] Vec3 lattice_point(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
+    const Vec3 p = {coordinate(o_.origin.x, o_.size.x, i, n_[0]), coordinate(o_.origin.y, o_.size.y, j, n_[1]),
                     coordinate(o_.origin.z, o_.size.z, k, n_[2])};
-          const bool inner = i > 0 && j > 0 && k > 0 && i < n_[0] && j < n_[1] && k < n_[2];
-          if (inner && o_.jitter > 0) {
-            p.x += shift(o_.size.x / n_[0]);
-            p.y += shift(o_.size.y / n_[1]);
-            p.z += shift(o_.size.z / n_[2]);
-          }
-          mesh_.points.push_back(p);
-        }
+    const bool inner = i > 0 && j > 0 && k > 0 && i < n_[0] && j < n_[1] && k < n_[2];
+    if (!inner || o_.jitter == 0) return p;
+    Random random(o_.seed, 1);
+    random.skip(3 * (i - 1 + std::uint64_t{n_[0] - 1} * (j - 1 + std::uint64_t{n_[1] - 1} * (k - 1))));
+    const auto shift = [&](double edge) { return o_.jitter * (random.uniform() - 0.5) * edge; };
+    const double dx = shift(o_.size.x / n_[0]);
+    const double dy = shift(o_.size.y / n_[1]);
+    const double dz = shift(o_.size.z / n_[2]);
+    return {p.x + dx, p.y + dy, p.z + dz};
+  }
+
+  void add_points() {
+    mesh_.points.reserve(point(w_.high) + std::size_t{1});
+    for (std::uint32_t k = w_.low[2]; k <= w_.high[2]; ++k) {
+      for (std::uint32_t j = w_.low[1]; j <= w_.high[1]; ++j) {
+        for (std::uint32_t i = w_.low[0]; i <= w_.high[0]; ++i) mesh_.points.push_back(lattice_point(i, j, k));
       }
     }
   }
@@ -152,9 +160,10 @@ class BoxBuilder {
     std::vector<std::uint8_t> blocked;
     if (!o_.blocked_layer && o_.blocked_share == 0.0) return blocked;
     blocked.reserve(cubes_);
-    for (std::uint32_t k = 0; k < n_[2]; ++k) {
-      for (std::uint32_t j = 0; j < n_[1]; ++j) {
-        for (std::uint32_t i = 0; i < n_[0]; ++i) blocked.push_back(o_.blocked_layer && outermost({i, j, k}) ? 1 : 0);
+    for (std::uint32_t k = w_.low[2]; k < w_.high[2]; ++k) {
+      for (std::uint32_t j = w_.low[1]; j < w_.high[1]; ++j) {
+        for (std::uint32_t i = w_.low[0]; i < w_.high[0]; ++i)
+          blocked.push_back(o_.blocked_layer && outermost({i, j, k}) ? 1 : 0);
       }
     }
     block_share(blocked, o_.blocked_share, o_.seed);
@@ -233,6 +242,7 @@ class BoxBuilder {
 
   const BoxOptions& o_;
   const std::array<std::uint32_t, 3> n_;
+  const BoxWindow w_;
   std::size_t cubes_ = 0;
   std::vector<std::uint8_t> wishes_;
   std::vector<Pattern> middle_patterns_;
@@ -241,9 +251,15 @@ class BoxBuilder {
 
 }  // namespace
 
-MeshData generate_box(const BoxOptions& options) {
+MeshData generate_box(const BoxOptions& options) { return generate_box_window(options, {{0, 0, 0}, options.cells}); }
+
+MeshData generate_box_window(const BoxOptions& options, const BoxWindow& window) {
   check(options);
-  return BoxBuilder(options).build();
+  return BoxBuilder(options, window).build();
+}
+
+std::uint32_t cells_per_cube(CellType type) {
+  return type == CellType::hexahedron ? 1 : (type == CellType::prism ? 2 : 6);
 }
 
 BoxOptions bar_options() {

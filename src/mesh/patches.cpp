@@ -129,6 +129,7 @@ void select_patches(MeshData& mesh, std::span<const std::string> names) {
     }
     kept.insert(found->second.begin(), found->second.end());
   }
+  std::erase_if(mesh.patch_order, [&](std::int32_t tag) { return kept.count(tag) == 0; });
   const MeshData all = take_patch_faces(mesh);
   for (std::size_t f = 0; f < all.patch_tags.size(); ++f) {
     if (kept.count(all.patch_tags[f]) == 0) continue;
@@ -151,6 +152,7 @@ void divide_walls(MeshData& mesh, double degrees) {
     return std::lexicographical_compare(x.begin(), x.end(), y.begin(), y.end());
   });
   take_patch_faces(mesh);
+  mesh.patch_order.clear();
   mesh.patch_names.clear();
   std::map<std::uint32_t, std::int32_t> tags;
   for (const std::uint32_t w : order) {

@@ -10,11 +10,13 @@
 #include <string_view>
 #include <type_traits>
 
+#include "base/bytes.hpp"
 #include "base/digest.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/run.hpp"
 #include "formats/file_text.hpp"
 #include "formats/file_write.hpp"
+#include "mesh/cell_types.hpp"
 
 namespace dartcast {
 
@@ -407,13 +409,33 @@ std::uint64_t write_checked(const std::filesystem::path& path, std::uint64_t mar
   return sum;
 }
 
+// A sum of these does not depend on which rank has which cell. `number`: of the cell in the whole mesh.
+std::uint64_t cell_digest(const MeshData& mesh, std::size_t c, std::uint64_t number) {
+  ByteWriter bytes;
+  bytes.put(number);
+  bytes.put(mesh.types[c]);
+  bytes.put(mesh.free.empty() ? std::uint8_t{1} : mesh.free[c]);
+  for_each_face(mesh, c, [&](std::span<const std::uint32_t> face) {
+    for (const std::uint32_t p : face) bytes.put(mesh.points[p]);
+  });
+  return digest(bytes.bytes());
+}
+
 }  // namespace
 
 RunIdentity run_identity(const std::string& scene_text, const MeshData& mesh, std::uint64_t seed) {
-  std::uint64_t cells = digest(bytes_of(mesh.points));
-  for (const std::string_view bytes : {bytes_of(mesh.types), bytes_of(mesh.connectivity), bytes_of(mesh.free)})
-    cells = digest(bytes, cells);
-  return {version(), digest(scene_text), cells, seed};
+  std::uint64_t sum = 0;
+  for (std::size_t c = 0; c < mesh.cell_count(); ++c) sum += cell_digest(mesh, c, c);
+  return {version(), digest(scene_text), sum, seed};
+}
+
+RunIdentity run_identity(const std::string& scene_text, const MeshPart& part, Ranks& ranks, std::uint64_t seed) {
+  std::uint64_t sum = 0;
+  for (std::size_t c = 0; c < part.cells.size(); ++c) {
+    if (part.owners[c] == part.part) sum += cell_digest(part.mesh, c, part.cells[c]);
+  }
+  ranks.sum({&sum, 1});
+  return {version(), digest(scene_text), sum, seed};
 }
 
 void write_checkpoint(const std::filesystem::path& path, Checkpoint& checkpoint) {

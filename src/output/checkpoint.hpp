@@ -10,6 +10,8 @@
 
 #include "dartcast/audit.hpp"
 #include "dartcast/mesh_data.hpp"
+#include "dartcast/mesh_part.hpp"
+#include "dartcast/ranks.hpp"
 #include "output/recording.hpp"
 #include "output/report_recording.hpp"
 #include "output/solids_recording.hpp"
@@ -22,10 +24,12 @@ namespace dartcast {
 struct RunIdentity {
   std::string version;      ///< of the library: other versions may round elsewhere
   std::uint64_t scene = 0;  ///< digest of the scene's text
-  std::uint64_t mesh = 0;   ///< digest of points, cells and free marks
+  std::uint64_t mesh = 0;   ///< sum of the digests of the cells, with their numbers, corners and free marks
   std::uint64_t seed = 0;
 };
 RunIdentity run_identity(const std::string& scene_text, const MeshData& mesh, std::uint64_t seed);
+/// The same of the whole mesh, whose parts the ranks have. Collective.
+RunIdentity run_identity(const std::string& scene_text, const MeshPart& part, Ranks& ranks, std::uint64_t seed);
 
 struct Checkpoint {
   RunIdentity run;

@@ -108,8 +108,9 @@ Recording::Recording(WritingThread& writing, Options options, EnvironmentRecord 
                     fmt::format("{}{}{}", stats_header, options_.surgery ? ",in_opened" : "", energy_header));
   if (options_.contacts) contacts_ = RunTable(folder / "contacts.csv", contacts_header);
   if (!scene_text.empty()) write_bytes(folder / "scene.toml", scene_text);
-  if (!options_.changes) write_frame_file(writing_, folder / "environment.vtu", record.at_rest(), options_.compression);
-  if (options_.changes) environment_ = std::move(record);
+  const bool in_frames = options_.changes || options_.environment_pieces > 1;
+  if (!in_frames) write_frame_file(writing_, folder / "environment.vtu", record.at_rest(), options_.compression);
+  if (in_frames) environment_ = std::move(record);
 }
 
 Recording::Recording(WritingThread& writing, Options options, EnvironmentRecord record,
@@ -117,7 +118,7 @@ Recording::Recording(WritingThread& writing, Options options, EnvironmentRecord 
     : writing_(writing), options_(std::move(options)), frames_(progress.frames) {
   stats_ = RunTable(options_.folder / "stats.csv", progress.stats_bytes);
   if (options_.contacts) contacts_ = RunTable(options_.folder / "contacts.csv", progress.contacts_bytes);
-  if (options_.changes) environment_ = std::move(record);
+  if (options_.changes || options_.environment_pieces > 1) environment_ = std::move(record);
   std::set<std::uint64_t> kept;
   for (const RecordingFrame& frame : frames_) kept.insert(frame.step);
   remove_later_frames(options_.folder, kept);
@@ -132,7 +133,7 @@ void Recording::add_frame(const Simulation& simulation) {
   const fs::path& folder = options_.folder;
   const XmlDataSet particles = write_particles(writing_, folder, simulation, frame, 0, options_.compression);
   if (frame.pieces > 1) write_index(writing_, folder, frame, "particles", ".vtp", frame.pieces, particles);
-  if (environment_) {
+  if (environment_ && shows_environment(options_, frame)) {
     const XmlDataSet data =
         write_environment(writing_, folder, simulation, *environment_, frame, 0, options_.compression);
     if (frame.environment_pieces > 1)
@@ -141,6 +142,12 @@ void Recording::add_frame(const Simulation& simulation) {
   if (frames_.empty() || frames_.back().step != frame.step) frames_.push_back(frame);
   write_lists();
 }
+
+bool shows_environment(const Recording::Options& options, const RecordingFrame& frame) {
+  return options.changes || (frame.environment_pieces > 1 && frame.step == 0);
+}
+
+void Recording::set_environment(EnvironmentRecord record) { environment_ = std::move(record); }
 
 XmlDataSet write_environment(WritingThread& writing, const fs::path& folder, const Simulation& simulation,
                              EnvironmentRecord& record, const RecordingFrame& frame, unsigned piece,
@@ -155,9 +162,10 @@ XmlDataSet write_environment(WritingThread& writing, const fs::path& folder, con
 void Recording::write_lists() const {
   write_list(writing_, options_.folder / "particles.pvd", frames_, particle_frame_name);
   if (options_.changes) return write_list(writing_, options_.folder / "environment.pvd", frames_, environment_name);
-  const RecordingFrame at_rest;
-  write_list(writing_, options_.folder / "environment.pvd", {&at_rest, 1},
-             [](const RecordingFrame&) { return "environment.vtu"; });
+  const RecordingFrame at_rest = frames_.empty() ? RecordingFrame{} : frames_.front();
+  write_list(writing_, options_.folder / "environment.pvd", {&at_rest, 1}, [](const RecordingFrame& f) {
+    return f.environment_pieces > 1 ? environment_name(f) : std::string("environment.vtu");
+  });
 }
 
 RecordingProgress Recording::progress() {

@@ -52,6 +52,8 @@ class Recording {
 
   /// Adds the particles, and the environment where it deforms, as they are now.
   void add_frame(const Simulation& simulation);
+  /// Where ranks have parts of the environment: `record` is of other cells now.
+  void set_environment(EnvironmentRecord record);
   /// To be called after each edit of the environment.
   void update_after_edit(const Environment& environment);
   /// Adds a step's row to stats.csv, and its contacts.
@@ -66,11 +68,14 @@ class Recording {
 
   WritingThread& writing_;
   Options options_;
-  std::optional<EnvironmentRecord> environment_;  // where it changes
+  std::optional<EnvironmentRecord> environment_;  // where frames show it
   RunTable stats_;
   RunTable contacts_;
   std::vector<RecordingFrame> frames_;
 };
+
+/// Whether a frame has the environment: one that stands still and is in pieces is in the first.
+bool shows_environment(const Recording::Options& options, const RecordingFrame& frame);
 
 /// Leaves a frame of the environment to the thread, or a rank's piece of it; as write_particles().
 XmlDataSet write_environment(WritingThread& writing, const std::filesystem::path& folder, const Simulation& simulation,

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/are_several.hpp"
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/combinatorial_map.hpp"
 #include "dartcast/events.hpp"

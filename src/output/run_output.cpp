@@ -12,6 +12,7 @@
 #include <utility>
 #include <variant>
 
+#include "base/are_several.hpp"
 #include "base/bytes.hpp"
 #include "base/kept_runs.hpp"
 #include "dartcast/error.hpp"
@@ -59,7 +60,9 @@ RunOutput::RunOutput(const Scene& scene, const RunOptions& options, Summary& sum
       summary_(summary) {
   if (folder().empty()) return;
   if (share_.is_first() && std::filesystem::exists(folder())) lock_.take(folder());
-  identity_ = run_identity(scene.text, std::get<MeshData>(scene.environment.mesh), scene.seed);
+  const auto* part = std::get_if<MeshPart>(&scene.environment.mesh);
+  identity_ = part != nullptr ? run_identity(scene.text, *part, *ranks_, scene.seed)
+                              : run_identity(scene.text, std::get<MeshData>(scene.environment.mesh), scene.seed);
 }
 
 void RunOutput::find_checkpoint(std::uint64_t steps) {
@@ -67,7 +70,8 @@ void RunOutput::find_checkpoint(std::uint64_t steps) {
   found_ = read_checkpoint(file(), identity_);
   if (!found_) return;
   add_parts(*found_);
-  record_.emplace(std::get<MeshData>(scene_.environment.mesh));  // it follows the edits that are made again
+  if (const auto* mesh = std::get_if<MeshData>(&scene_.environment.mesh))
+    record_.emplace(*mesh);  // it follows the edits that are made again
   const std::uint64_t done = found_->simulation.particles.steps;
   if (done > steps)
     throw Error(
@@ -117,18 +121,19 @@ void RunOutput::update_after_edit(const Environment& environment) {
   if (record_) record_->update_after_edit(environment);
 }
 
-void RunOutput::open(MeshData mesh, const Simulation& simulation) {
+void RunOutput::open(MeshSource mesh, const Simulation& simulation) {
   if (folder().empty()) return;
   const ScopeTimer timer(summary_.seconds_write);
-  if (recording_options_.environment_pieces > 1 && recording_options_.changes)
-    record_.emplace(own_mesh(*simulation.parts().part_mesh, ranks_->rank()));
-  if (share_.is_first()) open_files(std::move(mesh), simulation);
+  if (recording_options_.environment_pieces > 1)
+    record_.emplace(own_mesh(*simulation.parts().part_mesh));
+  else if (!record_ && share_.is_first())
+    record_.emplace(std::move(std::get<MeshData>(mesh)));
+  if (share_.is_first()) open_files(simulation);
   meet();
   if (!share_.is_first()) writing_ = std::make_unique<WritingThread>();
 }
 
-void RunOutput::open_files(MeshData mesh, const Simulation& simulation) {
-  if (!record_) record_.emplace(std::move(mesh));
+void RunOutput::open_files(const Simulation& simulation) {
   make_output_folder(folder());
   lock_.take(folder());
   writing_ = std::make_unique<WritingThread>();
@@ -186,7 +191,7 @@ void RunOutput::write_part(const Simulation& simulation) {
   const RecordingFrame frame{simulation.steps(), simulation.time(), o.pieces, o.environment_pieces};
   if (every_ > 0) {
     write_particles(*writing_, folder(), simulation, frame, ranks_->rank(), o.compression);
-    if (o.changes && frame.environment_pieces > 1)
+    if (frame.environment_pieces > 1 && shows_environment(o, frame))
       write_environment(*writing_, folder(), simulation, *record_, frame, ranks_->rank(), o.compression);
   }
   ParticleSystemState part = simulation.checkpoint().state().particles;

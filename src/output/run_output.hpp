@@ -38,7 +38,7 @@ class RunOutput {
   /// After each edit of the environment.
   void update_after_edit(const Environment& environment);
   /// Makes the folder, or goes on with the one that there is. `mesh`: the scene's. `simulation`: before the next step.
-  void open(MeshData mesh, const Simulation& simulation);
+  void open(MeshSource mesh, const Simulation& simulation);
   /// After each step, before add_frame().
   void add_step(const Simulation& simulation, const SimulationStep& step);
   /// Before the first step and after each: a frame and a checkpoint where the scene wants one, and for the last step.
@@ -55,7 +55,7 @@ class RunOutput {
   void meet() const;
   void add_parts(Checkpoint& checkpoint) const;
   void keep_own(ParticleSystemState& state) const;
-  void open_files(MeshData mesh, const Simulation& simulation);
+  void open_files(const Simulation& simulation);
   void write_part(const Simulation& simulation);
   [[nodiscard]] std::vector<std::uint64_t> written_parts() const;
   void write_frame(const Simulation& simulation);

@@ -9,6 +9,7 @@
 #include <utility>
 #include <variant>
 
+#include "base/are_several.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/run.hpp"
 #include "dartcast/scene_file.hpp"
@@ -171,6 +172,8 @@ std::unique_ptr<Simulation> make_simulation(const Scene& scene, RunOutput& outpu
 
 // Where a program makes a mesh around surfaces, the first rank has it made, and the others find it in the folder.
 LoadedScene loaded_scene(Scene scene, const ReadOptions& read, const RunOptions& options) {
+  if (options.partition == Partition::cells && are_several(options.ranks))
+    return load_scene_part(std::move(scene), *options.ranks, read, options.threads);
   const bool waits = std::holds_alternative<SurfaceScene>(scene.environment.mesh) && !read.kept_mesh.empty();
   std::uint64_t nothing = 0;
   if (waits && !ParticleShare(options.ranks).is_first()) sum_over(options.ranks, {&nothing, 1});
@@ -207,7 +210,7 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
   describe(simulation->environment(), summary);
   if (simulation->parts().part) describe_parts(*simulation, summary);
   summary.seconds_locate = locate.seconds();
-  output.open(std::move(std::get<MeshData>(loaded.scene.environment.mesh)), *simulation);
+  output.open(std::move(loaded.scene.environment.mesh), *simulation);
   Run(*simulation, output, steps, summary).run(progress);
   output.finish(*simulation);
   return summary;

@@ -27,14 +27,14 @@ namespace fs = std::filesystem;
 
 class FrameFiles {
  public:
-  FrameFiles(std::vector<fs::path> files, const MeshData& mesh, const EnvironmentScene& environment,
+  FrameFiles(std::vector<fs::path> files, const MeshData* mesh, const EnvironmentScene& environment,
              const ReadOptions& options)
       : files_(std::move(files)),
-        points_(mesh.points.size()),
+        points_(mesh != nullptr ? std::optional(mesh->points.size()) : std::nullopt),
         scale_(environment.scale),
         options_{{}, options.max_memory, options.linearise, {}},
         skips_cells_(environment.skip_bad_cells),
-        cells_(skips_cells_ ? std::set<std::uint32_t>(mesh.source.begin(), mesh.source.end())
+        cells_(skips_cells_ ? std::set<std::uint32_t>(mesh->source.begin(), mesh->source.end())
                             : std::set<std::uint32_t>()) {
     check_exist(files_);
     read_first();
@@ -71,9 +71,9 @@ class FrameFiles {
   }
 
   void check_count(const fs::path& file, std::size_t points) const {
-    if (points == points_) return;
+    if (!points_ || points == *points_) return;
     throw InvalidMesh(fmt::format("{}: {} points; the scene's mesh has {}: frames must have the same points",
-                                  file.string(), points, points_));
+                                  file.string(), points, *points_));
   }
 
   // A .vtp file has no cells of the mesh: its points are the mesh's, in their order.
@@ -98,10 +98,11 @@ class FrameFiles {
 
   void read_first() {
     if (has_points_alone(files_.front())) {
-      static_cast<void>(read_points_alone(files_.front()));
+      points_ = read_points_alone(files_.front()).size();
       return;
     }
     MeshData first = read_whole(files_.front());
+    points_ = first.points.size();
     const std::optional<VtuPoints> plain = skips_cells_ ? std::nullopt : read_points_of(files_.front());
     if (!plain || plain->points != first.points) return;
     first_cells_ = plain->cells;
@@ -124,7 +125,7 @@ class FrameFiles {
     if (!first_cells_) return std::nullopt;
     try {
       std::optional<VtuPoints> plain = read_points_of(file);
-      if (!plain || plain->cells != *first_cells_ || plain->points.size() != points_ ||
+      if (!plain || plain->cells != *first_cells_ || plain->points.size() != *points_ ||
           !stays_valid(first_, plain->points))
         return std::nullopt;
       return std::move(plain->points);
@@ -134,7 +135,7 @@ class FrameFiles {
   }
 
   const std::vector<fs::path> files_;
-  const std::size_t points_;
+  std::optional<std::size_t> points_;
   const double scale_;
   const ReadOptions options_;
   const bool skips_cells_;
@@ -145,7 +146,7 @@ class FrameFiles {
 
 }  // namespace
 
-FrameReader frame_reader(std::vector<fs::path> files, const MeshData& mesh, const EnvironmentScene& environment,
+FrameReader frame_reader(std::vector<fs::path> files, const MeshData* mesh, const EnvironmentScene& environment,
                          const ReadOptions& options) {
   const auto all = std::make_shared<const FrameFiles>(std::move(files), mesh, environment, options);
   return [all](std::size_t frame) { return all->read(frame); };

@@ -55,18 +55,19 @@ SceneMesh load_scene_mesh(const EnvironmentScene& scene, const ReadOptions& opti
   return result;
 }
 
-LoadedScene load_scene_files(Scene scene, const ReadOptions& options, Threads threads) {
-  SceneMesh loaded = load_scene_mesh(scene.environment, options, threads);
+void load_all_but_mesh(Scene& scene, const MeshData* mesh, const ReadOptions& options) {
   ReadOptions read = options;
   read.linearise = scene.environment.linearise;
   for (DeformationScene& s : scene.deformation) {
     if (s.frames.empty()) continue;
     FieldSeries series = file_series({"deformation", {}, std::exchange(s.frames, {}), s.step.times, s.spacing});
     s.step.times = std::move(series.times);
-    s.step.reader = frame_reader(std::move(series.files), loaded.mesh, scene.environment, read);
+    s.step.reader = frame_reader(std::move(series.files), mesh, scene.environment, read);
   }
-  for (FieldScene* field : {&scene.motion.field, &scene.motion.force})
-    load_field(*field, scene.environment, loaded.mesh, read);
+  if (mesh != nullptr) {
+    for (FieldScene* field : {&scene.motion.field, &scene.motion.force})
+      load_field(*field, scene.environment, *mesh, read);
+  }
   for (ParticlesScene& p : scene.particles) {
     auto* placed = std::get_if<PlacedParticles>(&p.source);
     if (placed == nullptr) continue;
@@ -81,6 +82,11 @@ LoadedScene load_scene_files(Scene scene, const ReadOptions& options, Threads th
     if (const auto* file = std::get_if<std::filesystem::path>(&solid.shape))
       solid.shape = with_name("solid", solid.name, [&] { return read_surface(*file, options).mesh; });
   }
+}
+
+LoadedScene load_scene_files(Scene scene, const ReadOptions& options, Threads threads) {
+  SceneMesh loaded = load_scene_mesh(scene.environment, options, threads);
+  load_all_but_mesh(scene, &loaded.mesh, options);
   scene.environment = EnvironmentScene{};
   scene.environment.mesh = std::move(loaded.mesh);
   return {std::move(scene), std::move(loaded.skipped)};

@@ -41,4 +41,8 @@ auto with_mesh_name(const MeshSource& mesh, Make&& make) {
 /// mesh is refused, or a region, array or patch that the scene names is not in it.
 SceneMesh load_scene_mesh(const EnvironmentScene& scene, const ReadOptions& options = {}, Threads threads = {});
 
+/// Reads all other files that the scene names. `mesh`: the scene's, loaded; null: this process has a part of it at most,
+/// and the scene has no fields from files.
+void load_all_but_mesh(Scene& scene, const MeshData* mesh, const ReadOptions& options);
+
 }  // namespace dartcast

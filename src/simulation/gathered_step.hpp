@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/are_several.hpp"
 #include "base/bytes.hpp"
 #include "dartcast/ranks.hpp"
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "base/are_several.hpp"
 #include "dartcast/ranks.hpp"
 
 namespace dartcast {

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/are_several.hpp"
 #include "base/kept_runs.hpp"
 #include "complex/simplex.hpp"
 #include "dartcast/error.hpp"

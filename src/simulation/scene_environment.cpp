@@ -28,6 +28,10 @@ struct Generator {
     throw InvalidArgument("no mesh has been made around the surfaces; call load_scene_files() first");
   }
   MeshData operator()(const MeshData& mesh) const { return mesh; }
+  MeshData operator()(const MeshPart& part) const {
+    throw InvalidArgument(
+        fmt::format("the scene's mesh is part {} of {}: so many ranks share it by cells", part.part, part.parts));
+  }
 };
 
 void select_free_by_value(MeshData& mesh, const FreeValues& by_value) {

@@ -8,6 +8,7 @@
 
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_check.hpp"
+#include "simulation/scene_environment.hpp"
 
 namespace dartcast {
 
@@ -42,8 +43,8 @@ void check_can_be_spread(const Scene& scene) {
   refuse_if(scene.motion.substeps > 1, "substeps");
   refuse_if(scene.motion.integrator != Integrator::euler, "the integrator rk4");
   refuse_if(scene.motion.wall_motion != WallMotion::carried, "points that move at the same time as the walls");
-  refuse_if(static_cast<bool>(scene.motion.field.samples.read) || static_cast<bool>(scene.motion.force.samples.read),
-            "a field from files");
+  for (const FieldScene* field : {&scene.motion.field, &scene.motion.force})
+    refuse_if(!field->files.empty() || static_cast<bool>(field->samples.read), "a field from files");
   for (const ParticlesScene& p : scene.particles) {
     refuse_if(p.radius > 0.0, "spheres");
     const auto* placed = std::get_if<PlacedParticles>(&p.source);
@@ -53,13 +54,16 @@ void check_can_be_spread(const Scene& scene) {
   }
 }
 
-MeshPart scene_part(const MeshData& mesh, const Ranks& ranks) {
-  MeshData whole = mesh;
-  check_and_repair(whole);                // a part of it must not be repaired in another way
-  constexpr double blocked_weight = 0.1;  // they take memory, and no time
-  std::vector<double> weights;
-  for (const std::uint8_t free : whole.free) weights.push_back(free != 0 ? 1.0 : blocked_weight);
-  return mesh_part(whole, bisected(whole, ranks.size(), weights), ranks.rank());
+MeshPart scene_part(const EnvironmentScene& scene, const Ranks& ranks) {
+  if (const auto* part = std::get_if<MeshPart>(&scene.mesh)) {
+    if (part->parts != ranks.size() || part->part != ranks.rank())
+      throw InvalidArgument(fmt::format("the scene's mesh is part {} of {}, and this is rank {} of {}", part->part,
+                                        part->parts, ranks.rank(), ranks.size()));
+    return *part;
+  }
+  MeshData whole = std::holds_alternative<MeshData>(scene.mesh) ? std::get<MeshData>(scene.mesh) : scene_mesh(scene);
+  check_and_repair(whole);  // a part of it must not be repaired in another way
+  return mesh_part(whole, partition(whole, ranks.size()), ranks.size(), ranks.rank());
 }
 
 std::vector<DeformationStep> steps_of_part(std::vector<DeformationStep> steps, std::span<const std::uint32_t> points) {

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "base/are_several.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/validity.hpp"
 #include "simulation/gathered_step.hpp"

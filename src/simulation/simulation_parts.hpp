@@ -29,8 +29,9 @@ struct Simulation::Parts {
         events(simulation, used, options.dt) {}
 
   /// The environment is this part of one.
-  void spread(MeshPart mesh, Ranks& ranks) {
-    part = std::make_unique<PartEnvironment>(environment, mesh, ranks);
+  void spread(MeshPart mesh, const Scene& scene) {
+    static_cast<void>(scene);
+    part = std::make_unique<PartEnvironment>(environment, mesh, *particles.options().ranks);
     part_mesh = std::make_unique<MeshPart>(std::move(mesh));
     particles.set_part(*part);
   }

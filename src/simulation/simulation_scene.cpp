@@ -5,6 +5,7 @@
 #include <utility>
 #include <variant>
 
+#include "base/are_several.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_selection.hpp"
 #include "dartcast/scene.hpp"
@@ -101,27 +102,21 @@ void add_inlets(Simulation& simulation, const Scene& scene) {
 
 // All but the particles.
 void Simulation::make(const Scene& scene, Threads threads, Ranks* ranks, Partition partition) {
-  MeshData made;
-  if (!is_ready(scene.environment)) made = scene_mesh(scene.environment);
-  const MeshData& whole = is_ready(scene.environment) ? std::get<MeshData>(scene.environment.mesh) : made;
   std::optional<MeshPart> part;
   if (partition == Partition::cells && are_several(ranks)) {
     check_can_be_spread(scene);
-    part = scene_part(whole, *ranks);
+    part = scene_part(scene.environment, *ranks);
   }
-  const MeshData& mesh = part ? part->mesh : whole;
+  MeshData made;
+  if (!part && !is_ready(scene.environment)) made = scene_mesh(scene.environment);
+  const MeshData& mesh = part                          ? part->mesh
+                         : is_ready(scene.environment) ? std::get<MeshData>(scene.environment.mesh)
+                                                       : made;
   auto own = std::make_unique<Environment>(mesh, threads);
   Environment& environment = *own;
   parts_ = std::make_unique<Parts>(*this, std::move(own), environment, options_of(scene, ranks));
-  const CellComplex& complex = environment.complex();
-  if (const auto field = scene_field(scene.motion.field, "the velocity field", mesh, complex)) set_field(*field);
-  if (const auto force = scene_field(scene.motion.force, "the force", mesh, complex)) set_force(*force);
-  if (!scene.deformation.empty()) {
-    std::vector<DeformationStep> steps = deformation_steps(scene.deformation, mesh);
-    if (part) steps = steps_of_part(std::move(steps), part->points);
-    set_deformation(Deformation(std::move(steps), mesh.points));
-  }
-  if (part) parts_->spread(std::move(*part), *ranks);
+  furnish(scene, mesh, part ? std::span<const std::uint32_t>(part->points) : std::span<const std::uint32_t>());
+  if (part) parts_->spread(std::move(*part), scene);
   set_events(events_of(scene, mesh, environment.map()));
   set_remeshing(scene.remesh);
   set_adaptive_subdivision(scene.adaptive_subdivision);
@@ -130,6 +125,17 @@ void Simulation::make(const Scene& scene, Threads threads, Ranks* ranks, Partiti
   for (const CatheterScene& catheter : scene.catheters) add(catheter);
   for (const SolidScene& solid : scene.solids) add(solid);
   add_inlets(*this, scene);
+}
+
+// What belongs to the points. `points`: of the part's mesh in the whole; empty: it is the whole.
+void Simulation::furnish(const Scene& scene, const MeshData& mesh, std::span<const std::uint32_t> points) {
+  const CellComplex& complex = environment().complex();
+  if (const auto field = scene_field(scene.motion.field, "the velocity field", mesh, complex)) set_field(*field);
+  if (const auto force = scene_field(scene.motion.force, "the force", mesh, complex)) set_force(*force);
+  if (scene.deformation.empty()) return;
+  std::vector<DeformationStep> steps = deformation_steps(scene.deformation, mesh);
+  if (!points.empty()) steps = steps_of_part(std::move(steps), points);
+  set_deformation(Deformation(std::move(steps), mesh.points));
 }
 
 Simulation::Simulation(const Scene& scene, Threads threads, Ranks* ranks, Partition partition) {

@@ -20,6 +20,7 @@
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/mesh_check.hpp"
+#include "parts/bisected.hpp"
 #include "support/meshes.hpp"
 #include "support/stepped_scenes.hpp"
 #include "support/thread_ranks.hpp"
@@ -163,7 +164,7 @@ class PartRun {
           Ranks& ranks, const Particles& start)
       : scene_(scene),
         options_(options),
-        part_(mesh_part(checked(scene.mesh), parts, ranks.rank())),
+        part_(mesh_part(checked(scene.mesh), parts, ranks.size(), ranks.rank())),
         environment_(part_.mesh, Threads{1}),
         distributed_(environment_, part_, ranks) {
     for (std::size_t i = 0; i < start.size(); ++i) {
@@ -246,7 +247,8 @@ std::uint64_t compare(const test::SteppedScene& scene, const StepOptions& option
   const Particles start = whole.particles();
   std::vector<Outcome> expected;
   for (int s = 0; s < steps; ++s) expected.push_back(whole.step(s));
-  const std::vector<std::uint32_t> parts = bisected(scene.mesh, count);
+  const std::vector<std::uint32_t> parts =
+      bisected(middles_of(scene.mesh), {}, std::vector<std::uint64_t>(scene.mesh.cell_count(), 1), count);
   std::vector<Outcome> found(expected.size());
   std::mutex mutex;
   std::uint64_t sent = 0;

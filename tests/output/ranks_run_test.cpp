@@ -316,6 +316,41 @@ TEST_F(RanksRun, ByCellsAreThatOfOneProcess) {
   }
 }
 
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  return text.replace(text.find(what), what.size(), by);
+}
+
+// The mesh of the vessel from pieces, with its patches, and from one file: no difference but in its name.
+TEST_F(RanksRun, ByCellsReadPieces) {
+  if (!has_vtk()) GTEST_SKIP() << "reading .vtu files needs VTK";
+  MeshData mesh = generate_vessel({.core = 3, .rings = 2});
+  check_and_repair(mesh);
+  write_mesh(mesh, at("vessel.vtu"));
+  write_mesh_parts(mesh, 6, at("vessel.pvtu"));
+  const std::string generated = "generator = \"vessel\"\ncore = 3\nrings = 2\n";
+  std::string text = replaced(spread_vessel, "kind = \"pulse\"", "kind = \"pulse\"\nfield = \"pulse_direction\"");
+  const auto with_mesh = [&](const char* name) {
+    std::string file = "mesh = \"" + at(name).string() + "\"\nscale = 0.5\n";
+    file += "patches = [\"inlet\", \"outlet_left\", \"outlet_right\"]\n[environment.free]\nregion = [\"lumen\"]\n";
+    return replaced(text, generated, file);
+  };
+  run(with_mesh("vessel.vtu"), at("whole"), 1);
+  Outcome whole = without_environment(outcome_of(at("whole")));
+  whole.files.erase("scene.toml");
+  run(with_mesh("vessel.pvtu"), at("one"), 1);
+  for (const unsigned ranks : {2U, 4U, 6U}) {
+    run(with_mesh("vessel.pvtu"), at("pieces"), ranks, false, {}, 0, Partition::cells);
+    Outcome pieces = without_environment(outcome_of(at("pieces")));
+    pieces.files.erase("scene.toml");
+    expect_same(whole, pieces, std::to_string(ranks));
+    fs::remove_all(at("pieces"));
+  }
+  Outcome one = without_environment(outcome_of(at("one")));
+  one.files.erase("scene.toml");
+  expect_same(whole, one, "one process");
+  EXPECT_THROW(run(with_mesh("vessel.pvtu"), at("too many"), 7, false, {}, 0, Partition::cells), Error);
+}
+
 // A checkpoint does not depend on how the ranks shared the run.
 TEST_F(RanksRun, ByCellsGoOnWithAnyOtherNumber) {
   run(spread_text, at("whole"), 1);
@@ -369,7 +404,7 @@ TEST_F(RanksRun, ByCellsSayWhatCannotBeSpread) {
     EXPECT_NE(error.find("leave --partition cells out"), std::string::npos) << error;
   }
   EXPECT_NE(refusal("[environment]\ngenerator = 'maze'\n").find("meshes of the plane"), std::string::npos);
-  EXPECT_NE(refusal("[environment]\ngenerator = 'box'\ncells = [1, 1, 1]\n").find("2 parts of 1 cells"),
+  EXPECT_NE(refusal("[environment]\ngenerator = 'box'\ncells = [1, 1, 1]\n").find("2 parts of 1 cubes"),
             std::string::npos);
 }
 

@@ -1,0 +1,24 @@
+// Reads the names of pieces.
+#include "formats/xml_pieces.hpp"
+
+#include <fmt/format.h>
+
+#include "formats/xml_tags.hpp"
+
+namespace dartcast {
+
+std::vector<std::filesystem::path> named_pieces(const std::filesystem::path& path, const std::string& text,
+                                                std::string_view ending) {
+  std::vector<std::filesystem::path> pieces;
+  XmlTags tags(text);
+  for (XmlTag tag; tags.next(tag);) {
+    if (tag.name != "Piece" || !tag.opens) continue;
+    const std::string& source = tag.attributes["Source"];
+    if (source.find('/') != std::string::npos || !source.ends_with(ending))
+      tags.fail(fmt::format("the piece '{}' is no {} file in this folder", source, ending));
+    pieces.push_back(path.parent_path() / source);
+  }
+  return pieces;
+}
+
+}  // namespace dartcast

@@ -1,0 +1,16 @@
+// The pieces that a parallel file of VTK names.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dartcast {
+
+/// The files of the pieces, which stand beside the file at `path`. Throws InvalidMesh, with the line, where the text is no XML
+/// of this kind, or one does not have this ending or is in another folder.
+std::vector<std::filesystem::path> named_pieces(const std::filesystem::path& path, const std::string& text,
+                                                std::string_view ending);
+
+}  // namespace dartcast

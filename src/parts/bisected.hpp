@@ -1,0 +1,28 @@
+// Parts of equal weight by recursive bisection, also of cells that lie on several ranks. Not installed.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "dartcast/mesh_data.hpp"
+#include "dartcast/ranks.hpp"
+
+namespace dartcast {
+
+// Blocked cells take memory, and no time.
+inline constexpr std::uint64_t weight_of_free_cell = 10;
+inline constexpr std::uint64_t weight_of_blocked_cell = 1;
+
+/// A point in each cell: the mean of the corners of its faces.
+std::vector<Vec3> middles_of(const MeshData& mesh);
+
+/// The part of each cell: halves of equal weight along the longest side of the middles' box, again and again, until there
+/// are so many parts. `numbers`: of the cells in the whole, which order those at the same place; empty: their own indices.
+/// `ranks`: each gives other cells, and gets the parts of these; the result for a cell does not depend on how they are
+/// spread. Throws InvalidArgument where there are fewer cells than parts. `weights`: > 0.
+std::vector<std::uint32_t> bisected(std::span<const Vec3> middles, std::span<const std::uint32_t> numbers,
+                                    std::span<const std::uint64_t> weights, std::uint32_t parts,
+                                    Ranks* ranks = nullptr);
+
+}  // namespace dartcast
