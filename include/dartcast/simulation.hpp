@@ -386,7 +386,6 @@ class Simulation {
 
  private:
   void make(const Scene& scene, Threads threads, Ranks* ranks, Partition partition);
-  void furnish(const Scene& scene, const MeshData& mesh, std::span<const std::uint32_t> points);
 
   std::unique_ptr<Parts> parts_;
 };

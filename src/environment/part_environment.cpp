@@ -66,10 +66,21 @@ class RankTraffic final : public detail::PartTraffic {
 
 PartEnvironment::PartEnvironment(Environment& environment, const MeshPart& part, Ranks& ranks)
     : environment_(environment), ranks_(ranks), cells_(part_cells(part)), to_(ranks.size()) {
-  if (environment.map().dimension() != 3)
+  check(part);
+}
+
+void PartEnvironment::change(const MeshPart& part) {
+  Environment next(part.mesh, environment_.threads());
+  std::swap(environment_.members_, next.members_);
+  cells_ = part_cells(part);
+  check(part);
+}
+
+void PartEnvironment::check(const MeshPart& part) const {
+  if (environment_.map().dimension() != 3)
     throw InvalidArgument("partition: meshes of the plane cannot be spread by cells; spread the particles");
-  std::uint64_t steiner = environment.complex().positions().size() - environment.positions().size();
-  ranks.sum({&steiner, 1});
+  std::uint64_t steiner = environment_.complex().positions().size() - environment_.positions().size();
+  ranks_.sum({&steiner, 1});
   if (steiner > 0)
     throw InvalidArgument(
         "partition: some cells need Steiner points, and cannot be spread by cells; spread the particles, or mend the "

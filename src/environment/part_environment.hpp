@@ -45,6 +45,10 @@ class PartEnvironment {
   /// cells need Steiner points.
   PartEnvironment(Environment& environment, const MeshPart& part, Ranks& ranks);
 
+  /// Replaces the environment by one of this part, which the rank has from now on, as PartEnvironment() takes it. References
+  /// to it stay valid, and sets of particles are of another environment.
+  void change(const MeshPart& part);
+
   [[nodiscard]] const PartCells& cells() const { return cells_; }
   [[nodiscard]] const TrafficCounts& traffic() const { return traffic_; }  ///< so far
 
@@ -56,6 +60,7 @@ class PartEnvironment {
                      const StepOptions& options, TravelData& data, std::vector<std::uint8_t>& gone);
 
  private:
+  void check(const MeshPart& part) const;
   void check_ghosts(const MeshPart& part) const;
   [[nodiscard]] bool moves_any(const Particles& particles) const;
 

@@ -172,6 +172,7 @@ void RunOutput::add_step(const Simulation& simulation, const SimulationStep& ste
 
 void RunOutput::add_frame(const Simulation& simulation, bool last) {
   if (folder().empty() || (!last && !on_schedule(simulation.steps()))) return;
+  follow_balance(simulation);
   if (wants_report()) {
     const ScopeTimer timer(summary_.seconds_report);
     const ReportView view = report_ ? report_->next_view(simulation) : ReportView();
@@ -183,6 +184,17 @@ void RunOutput::add_frame(const Simulation& simulation, bool last) {
     write_frame(simulation);
   else
     write_part(simulation);
+}
+
+// The record is of the cells that the rank has now.
+void RunOutput::follow_balance(const Simulation& simulation) {
+  if (recording_options_.environment_pieces == 1 || balanced_ == simulation.parts().balanced) return;
+  balanced_ = simulation.parts().balanced;
+  EnvironmentRecord record(own_mesh(*simulation.parts().part_mesh));
+  if (recording_)
+    recording_->set_environment(std::move(record));
+  else
+    record_ = std::move(record);
 }
 
 // A rank but the first: it goes on when its files are whole.

@@ -56,6 +56,7 @@ class RunOutput {
   void add_parts(Checkpoint& checkpoint) const;
   void keep_own(ParticleSystemState& state) const;
   void open_files(const Simulation& simulation);
+  void follow_balance(const Simulation& simulation);
   void write_part(const Simulation& simulation);
   [[nodiscard]] std::vector<std::uint64_t> written_parts() const;
   void write_frame(const Simulation& simulation);
@@ -75,6 +76,7 @@ class RunOutput {
   RunIdentity identity_;
   RunLock lock_;
   std::optional<EnvironmentRecord> record_;  // until the recording has it
+  std::uint64_t balanced_ = 0;               // how often cells had moved to other ranks when it was made
   std::optional<Checkpoint> found_;
   std::unique_ptr<WritingThread> writing_;  // before what leaves files to it
   std::unique_ptr<Recording> recording_;

@@ -53,6 +53,11 @@ class ParticleSystem final : public SimulationComponent {
   void set_bodies(Bodies& bodies) { bodies_ = &bodies; }
   /// The environment is a part of one that ranks share by cells. Precondition: there are no particles.
   void set_part(PartEnvironment& part);
+  /// The particles as bytes, for each rank those in the cells that owner(cell) gives it.
+  [[nodiscard]] std::vector<std::string> packed_for(const std::function<std::uint32_t(Cell)>& owner) const;
+  /// Puts these in place of all particles: those that all ranks have packed for this one, whose environment is at rest and of
+  /// another part. The vertices move to where they were.
+  void take_over(const std::vector<std::string>& packed);
   void add_inlet(Patch patch, double rate, const Vec3& velocity, double radius, std::span<const double> user_data);
   std::vector<AddResult> add(std::span<const Vec3> positions, const Vec3& velocity, double radius,
                              std::span<const double> user_data);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <type_traits>
 #include <utility>
 
 #include "base/bytes.hpp"
@@ -49,6 +50,49 @@ class ParticleSystem::PartData final : public TravelData {
 void ParticleSystem::set_part(PartEnvironment& part) {
   part_ = &part;
   totals_.contacts_by_patch.pop_back();  // behind the ghosts
+}
+
+std::vector<std::string> ParticleSystem::packed_for(const std::function<std::uint32_t(Cell)>& owner) const {
+  static_assert(std::is_trivially_copyable_v<ParticleSystemState::Particle>);
+  SimulationState all;
+  save(all);
+  const std::vector<ParticleSystemState::Particle>& particles = all.particles.particles;
+  std::vector<std::vector<ParticleSystemState::Particle>> lists(options_.ranks->size());
+  std::vector<std::vector<double>> data(lists.size());
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    const std::uint32_t to = owner(particles_[i].cell);
+    lists[to].push_back(particles[i]);
+    const std::span<const double> own = user_data(i);
+    data[to].insert(data[to].end(), own.begin(), own.end());
+  }
+  std::vector<std::string> packed;
+  for (std::size_t r = 0; r < lists.size(); ++r) {
+    ByteWriter out;
+    out.put(lists[r]);
+    out.put(data[r]);
+    packed.push_back(out.bytes());
+  }
+  return packed;
+}
+
+// Inlets draw from the areas at rest.
+void ParticleSystem::take_over(const std::vector<std::string>& packed) {
+  std::vector<Inlet> inlets;
+  for (Inlet& i : inlets_)
+    inlets.push_back({i.patch, PatchSampler(environment_.complex(), i.patch, sampled_part()), i.rate, i.velocity,
+                      i.radius, std::move(i.user_data)});
+  inlets_ = std::move(inlets);
+  stand_at(steps_);
+  ParticleSystemState all;
+  for (const std::string& bytes : packed) {
+    ByteReader in(bytes);
+    const auto particles = in.take_list<ParticleSystemState::Particle>();
+    const auto data = in.take_list<double>();
+    all.particles.insert(all.particles.end(), particles.begin(), particles.end());
+    all.user_data.insert(all.user_data.end(), data.begin(), data.end());
+  }
+  put_in_place_of_all(all);
+  put_in_order_of_ids();
 }
 
 std::optional<SampledPart> ParticleSystem::sampled_part() const {

@@ -6,6 +6,7 @@
 #include "base/are_several.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/validity.hpp"
+#include "simulation/balance.hpp"
 #include "simulation/gathered_step.hpp"
 #include "simulation/simulation_parts.hpp"
 #include "simulation/simulation_state.hpp"
@@ -23,13 +24,16 @@ Simulation::Simulation(Environment& environment, const SimulationOptions& option
 
 Simulation::~Simulation() = default;
 
-// Files of the motion or of fields that cannot be read end a step before anything changes. Then a step goes through these phases:
+// Where ranks share the simulation by cells, these may first move between them. Files of the motion or of fields that cannot
+// be read end a step before anything changes. Then a step goes through these phases:
 //  1. events that are due edit the environment;
 //  2. the particles step: inlets inject, vertices move, velocities change, particles advance, some leave;
 //  3. the other components step in the environment as it stands then: solids, bodies, catheters, statistics;
 //  4. the first rank gets what happened on all, and statistics count it;
 //  5. invalid cells are remeshed and crowded cells are subdivided, where that is due.
 const SimulationStep& Simulation::step() {
+  constexpr std::uint64_t steps_between_balances = 10;
+  if (parts_->spread_scene && steps() % steps_between_balances == 0) balance(*parts_);
   const double begin = time();
   parts_->particles.load_step();
   parts_->events.before_step();
@@ -113,16 +117,27 @@ void Simulation::restore(const SimulationCheckpoint& saved) {
 
 void Simulation::go_to(std::uint64_t steps) { parts_->particles.go_to(steps); }
 
-void Simulation::set_field(VelocityField field) { parts_->particles.set_field(std::move(field)); }
-void Simulation::set_force(VectorField force) { parts_->particles.set_force(std::move(force)); }
-void Simulation::set_deformation(Deformation deformation) { parts_->particles.set_deformation(std::move(deformation)); }
+void Simulation::set_field(VelocityField field) {
+  parts_->spread_scene.reset();
+  parts_->particles.set_field(std::move(field));
+}
+void Simulation::set_force(VectorField force) {
+  parts_->spread_scene.reset();
+  parts_->particles.set_force(std::move(force));
+}
+void Simulation::set_deformation(Deformation deformation) {
+  parts_->spread_scene.reset();
+  parts_->particles.set_deformation(std::move(deformation));
+}
 
 void Simulation::pull(std::span<const Vec3> displacement, double duration) {
+  parts_->spread_scene.reset();
   parts_->particles.pull(displacement, duration);
 }
 
 void Simulation::add_inlet(Patch patch, double rate, const Vec3& velocity, double radius,
                            std::span<const double> user_data) {
+  parts_->spread_scene.reset();
   parts_->particles.add_inlet(patch, rate, velocity, radius, user_data);
 }
 

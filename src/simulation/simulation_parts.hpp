@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "dartcast/scene.hpp"
 #include "dartcast/simulation.hpp"
 #include "environment/part_environment.hpp"
 #include "simulation/bodies_component.hpp"
@@ -30,7 +31,9 @@ struct Simulation::Parts {
 
   /// The environment is this part of one.
   void spread(MeshPart mesh, const Scene& scene) {
-    static_cast<void>(scene);
+    Scene rest = scene;
+    rest.environment = {};  // its mesh is the part from now on
+    spread_scene = std::make_unique<Scene>(std::move(rest));
     part = std::make_unique<PartEnvironment>(environment, mesh, *particles.options().ranks);
     part_mesh = std::make_unique<MeshPart>(std::move(mesh));
     particles.set_part(*part);
@@ -39,6 +42,8 @@ struct Simulation::Parts {
   std::unique_ptr<Environment> own_environment;
   std::unique_ptr<PartEnvironment> part;  // none: the environment is whole
   std::unique_ptr<MeshPart> part_mesh;
+  std::unique_ptr<Scene> spread_scene;  // all that the simulation was made of; none: its user has changed it since
+  std::uint64_t balanced = 0;           // how often cells have moved to other ranks
   Environment& environment;
   ParticleSystem particles;
   SolidsComponent solids;

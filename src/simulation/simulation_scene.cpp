@@ -9,8 +9,8 @@
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_selection.hpp"
 #include "dartcast/scene.hpp"
+#include "simulation/balance.hpp"
 #include "simulation/scene_environment.hpp"
-#include "simulation/scene_field.hpp"
 #include "simulation/scene_part.hpp"
 #include "simulation/simulation_parts.hpp"
 
@@ -90,11 +90,11 @@ class ParticleSource {
   const ParticlesScene& scene_;
 };
 
-void add_inlets(Simulation& simulation, const Scene& scene) {
+void add_inlets(ParticleSystem& particles, const Scene& scene) {
   for (const ParticlesScene& p : scene.particles) {
     if (const auto* inlet = std::get_if<InletParticles>(&p.source))
-      simulation.add_inlet(simulation.environment().map().patch(inlet->patch), inlet->rate, p.velocity, p.radius,
-                           p.user_data);
+      particles.add_inlet(particles.environment().map().patch(inlet->patch), inlet->rate, p.velocity, p.radius,
+                          p.user_data);
   }
 }
 
@@ -115,7 +115,7 @@ void Simulation::make(const Scene& scene, Threads threads, Ranks* ranks, Partiti
   auto own = std::make_unique<Environment>(mesh, threads);
   Environment& environment = *own;
   parts_ = std::make_unique<Parts>(*this, std::move(own), environment, options_of(scene, ranks));
-  furnish(scene, mesh, part ? std::span<const std::uint32_t>(part->points) : std::span<const std::uint32_t>());
+  furnish(parts_->particles, scene, mesh, part ? part->points : std::vector<std::uint32_t>());
   if (part) parts_->spread(std::move(*part), scene);
   set_events(events_of(scene, mesh, environment.map()));
   set_remeshing(scene.remesh);
@@ -124,18 +124,7 @@ void Simulation::make(const Scene& scene, Threads threads, Ranks* ranks, Partiti
   for (const BodyScene& body : scene.bodies) add(body);
   for (const CatheterScene& catheter : scene.catheters) add(catheter);
   for (const SolidScene& solid : scene.solids) add(solid);
-  add_inlets(*this, scene);
-}
-
-// What belongs to the points. `points`: of the part's mesh in the whole; empty: it is the whole.
-void Simulation::furnish(const Scene& scene, const MeshData& mesh, std::span<const std::uint32_t> points) {
-  const CellComplex& complex = environment().complex();
-  if (const auto field = scene_field(scene.motion.field, "the velocity field", mesh, complex)) set_field(*field);
-  if (const auto force = scene_field(scene.motion.force, "the force", mesh, complex)) set_force(*force);
-  if (scene.deformation.empty()) return;
-  std::vector<DeformationStep> steps = deformation_steps(scene.deformation, mesh);
-  if (!points.empty()) steps = steps_of_part(std::move(steps), points);
-  set_deformation(Deformation(std::move(steps), mesh.points));
+  add_inlets(parts_->particles, scene);
 }
 
 Simulation::Simulation(const Scene& scene, Threads threads, Ranks* ranks, Partition partition) {

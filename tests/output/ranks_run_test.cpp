@@ -1,5 +1,6 @@
 // Runs that ranks share, against the run of one process: the same files, numbers and hash. Here ranks are threads; with
 // processes under MPI: tests/mpi.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,6 +21,7 @@
 #include "formats/file_text.hpp"
 #include "formats/point_file.hpp"
 #include "output/run_files.hpp"
+#include "simulation/simulation_parts.hpp"
 #include "support/run_scenes.hpp"
 #include "support/sample_mesh.hpp"
 #include "support/thread_ranks.hpp"
@@ -318,6 +320,49 @@ TEST_F(RanksRun, ByCellsAreThatOfOneProcess) {
 
 std::string replaced(std::string text, const std::string& what, const std::string& by) {
   return text.replace(text.find(what), what.size(), by);
+}
+
+// All particles start in one corner of a box that twists, and spread: the cells must move again and again.
+std::string crowd(const fs::path& file, unsigned count) {
+  std::ofstream out(file);
+  out << "x,y,z\n";
+  for (unsigned i = 0; i < count; ++i)
+    out << fmt::format("{},{},{}\n", 0.1 + 0.1 * (i % 7), 0.1 + 0.1 * (i % 5), 0.1 + 0.05 * (i % 11));
+  std::string fine = replaced(spread_text, "cells = [5, 5, 5]", "cells = [16, 16, 16]\nsize = [5.0, 5.0, 5.0]");
+  fine = replaced(fine, "blocked_share", "jitter");
+  return replaced(replaced(fine, "count = 200", "positions = \"" + file.string() + "\""), "steps = 47", "steps = 120");
+}
+
+TEST_F(RanksRun, ByCellsAreBalanced) {
+  const std::string text = crowd(at("crowd.csv"), 500);
+  run(text, at("one"), 1);
+  const Outcome one = without_environment(outcome_of(at("one")));
+  for (const unsigned ranks : {2U, 3U, 5U}) {
+    const fs::path to = at(std::to_string(ranks));
+    run(text, to, ranks, false, {}, 0, Partition::cells);
+    expect_same(one, without_environment(outcome_of(to)), std::to_string(ranks));
+    for (const char* frame : {"environment_000000", "environment_000050", "environment_000120"}) {
+      std::size_t cells = 0;
+      for (unsigned r = 0; has_vtk() && r < ranks; ++r)
+        cells += read_mesh(to / fmt::format("{}.{}.vtu", frame, r)).mesh.cell_count();
+      if (has_vtk()) EXPECT_EQ(cells, 4096U) << frame;
+    }
+  }
+  Scene scene = parse_scene(text, "test.toml");
+  test::on_ranks(4, [&](Ranks& ranks) {
+    Simulation simulation(load_scene_part(scene, ranks).scene, Threads{1}, &ranks, Partition::cells);
+    double excess = 0.0;  // of the largest rank over the mean
+    for (int step = 0; step < 120; ++step) {
+      simulation.step();
+      std::vector<std::uint64_t> count(ranks.size());
+      count[ranks.rank()] = simulation.particles().size();
+      ranks.sum(count);
+      const auto all = static_cast<double>(std::accumulate(count.begin(), count.end(), std::uint64_t{0}));
+      excess += static_cast<double>(ranks.size() * *std::max_element(count.begin(), count.end())) / all / 120.0;
+    }
+    EXPECT_LE(excess, 1.7);  // 3.4 where the cells stay
+    EXPECT_GE(simulation.parts().balanced, 3U);
+  });
 }
 
 // The mesh of the vessel from pieces, with its patches, and from one file: no difference but in its name.
