@@ -19,6 +19,7 @@ void add_info(CLI::App& app, int& status);
 void add_convert(CLI::App& app, int& status);
 void add_mesh(CLI::App& app, int& status);
 void add_partition(CLI::App& app, int& status);
+void add_plan(CLI::App& app, int& status);
 void add_lagrangian(CLI::App& app, int& status);
 void add_trace(CLI::App& app, int& status);
 #ifdef DARTCAST_BENCH

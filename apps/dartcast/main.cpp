@@ -38,6 +38,7 @@ Outcome run(int argc, char** argv) {
   verbs::add_convert(app, status);
   verbs::add_mesh(app, status);
   verbs::add_partition(app, status);
+  verbs::add_plan(app, status);
   verbs::add_lagrangian(app, status);
   verbs::add_trace(app, status);
 #ifdef DARTCAST_BENCH

@@ -25,6 +25,7 @@
 #include "dartcast/mesh_part.hpp"
 #include "dartcast/mesh_selection.hpp"
 #include "dartcast/particle_state.hpp"
+#include "dartcast/plan.hpp"
 #include "dartcast/predicates.hpp"
 #include "dartcast/ranks.hpp"
 #include "dartcast/remeshing.hpp"

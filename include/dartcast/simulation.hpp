@@ -112,7 +112,8 @@ struct LeftParticle {
   std::uint32_t contact = 0;  ///< its last contact: an index into those of the step
 };
 
-/// The results of one step. Where ranks share the particles, the first has those of all, the others their own.
+/// The results of one step. Where ranks share the particles, the first has those of all, the others their own. In a scene
+/// whose output needs no contacts (contacts, statistics, report) it has its own alone; LeftParticle::contact is none then.
 struct SimulationStep {
   double duration = 0.0;  ///< s
   /// Of the particles; it names them by their index during the step, and those of another rank by none (0xffffffff).

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 namespace dartcast {
@@ -45,6 +46,31 @@ class ExactSum {
     waiting_ = 2;
     special_ += other.special_;
     return *this;
+  }
+
+  static constexpr std::size_t word_count = 71;  // the digits, and three numbers of specials
+  using Words = std::array<std::uint64_t, word_count>;
+  /// The sum as words. Those of several sums, each word added to its like modulo 2^64, are words of the sum of all.
+  [[nodiscard]] Words words() const {
+    ExactSum sum = *this;
+    sum.carry();
+    Words result{};
+    for (std::size_t i = 0; i < digit_count; ++i) result[i] = static_cast<std::uint64_t>(sum.digits_[i]);
+    if (std::isnan(special_)) result[digit_count] = 1;
+    if (special_ > 0.0) result[digit_count + 1] = 1;
+    if (special_ < 0.0) result[digit_count + 2] = 1;
+    return result;
+  }
+  /// `words`: of at most 2^30 sums.
+  static ExactSum of(const Words& words) {
+    ExactSum sum;
+    for (std::size_t i = 0; i < digit_count; ++i) sum.digits_[i] = static_cast<std::int64_t>(words[i]);
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    if (words[digit_count] > 0) sum.special_ = std::numeric_limits<double>::quiet_NaN();
+    if (words[digit_count + 1] > 0) sum.special_ += infinite;
+    if (words[digit_count + 2] > 0) sum.special_ -= infinite;
+    sum.carry();
+    return sum;
   }
 
   /// The sum, rounded to the nearest double.

@@ -177,7 +177,7 @@ RecordingProgress Recording::progress() {
 void Recording::add_step(const Simulation& simulation, const SimulationStep& step, const StepSums& sums) {
   const Counters& c = step.report.counters;
   stats_.print("{},{},{},{},{},{},{},{},{},{},{},{}", simulation.steps(), simulation.time(), sums.alive, step.injected,
-               step.absorbed, step.escaped, step.report.held.size(), step.report.contacts.contacts.size(),
+               step.absorbed, step.escaped, step.report.held.size(), c.contacts[0] + c.contacts[1] + c.contacts[2],
                c.orientation.tests, c.orientation.exact, c.forecast_kept, c.updated_by_deformation);
   if (options_.surgery) stats_.print(",{}", simulation.event_log().in_opened);
   stats_.print(",{},{}\n", sums.energy.kinetic, sums.energy.potential);

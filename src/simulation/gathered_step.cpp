@@ -1,9 +1,11 @@
 // Sends what happened in a step to the first rank, which puts it in the order of one process: by id.
 //
-// Phases: each rank packs its step; the first unpacks all and merges them, contacts with their walls first, because
-// particles that left name their last contact.
+// Phases: counts are summed, and entries of lists counted. Where there are any, each rank packs its own; the first unpacks
+// all and merges them, contacts with their walls first, because particles that left name their last contact.
 #include "simulation/gathered_step.hpp"
 
+#include <array>
+#include <bit>
 #include <cstdint>
 #include <numeric>
 #include <span>
@@ -24,17 +26,33 @@ struct RankStep {
   std::vector<Leaving> leavings;
 };
 
-std::string packed(const SimulationStep& s, const StatisticsComponent& statistics) {
+// Words whose sums are those of all ranks.
+struct StepSums {
+  Counters counters;
+  std::uint64_t absorbed = 0;
+  std::uint64_t escaped = 0;
+  std::uint64_t entries = 0;  // of lists that the first rank needs
+
+  using Words = std::array<std::uint64_t, sizeof(Counters) / sizeof(std::uint64_t) + 3>;
+};
+static_assert(sizeof(StepSums) == sizeof(StepSums::Words));
+
+std::uint64_t entries(const SimulationStep& s, const StatisticsComponent& statistics, bool with_contacts) {
+  return (with_contacts ? s.contact_ids.size() : 0) + s.report.held.size() + s.report.stopped.size() + s.left.size() +
+         s.overlaps.size() + statistics.statistics().passages.size() + statistics.statistics().path_points.size() +
+         statistics.leavings().size();
+}
+
+std::string packed(const SimulationStep& s, const StatisticsComponent& statistics, bool with_contacts) {
+  const SimulationStep none;
+  const SimulationStep& met = with_contacts ? s : none;
   ByteWriter out;
-  out.put(s.report.contacts.contacts);
-  out.put(s.report.contacts.walls);
+  out.put(met.report.contacts.contacts);
+  out.put(met.report.contacts.walls);
   out.put(s.report.held);
   out.put(s.report.stopped);
-  out.put(s.report.counters);
-  out.put(s.contact_ids);
-  out.put(s.contact_sources);
-  out.put(s.absorbed);
-  out.put(s.escaped);
+  out.put(met.contact_ids);
+  out.put(met.contact_sources);
   out.put(s.left);
   out.put(s.overlaps);
   out.put(statistics.statistics().passages);
@@ -50,11 +68,8 @@ RankStep unpacked(const std::string& bytes) {
   r.step.report.contacts.walls = in.take_list<WallHit>();
   r.step.report.held = in.take_list<HeldParticle>();
   r.step.report.stopped = in.take_list<StoppedParticle>();
-  r.step.report.counters = in.take<Counters>();
   r.step.contact_ids = in.take_list<std::uint64_t>();
   r.step.contact_sources = in.take_list<std::uint32_t>();
-  r.step.absorbed = in.take<std::uint64_t>();
-  r.step.escaped = in.take<std::uint64_t>();
   r.step.left = in.take_list<LeftParticle>();
   r.step.overlaps = in.take_list<SphereOverlap>();
   r.passages = in.take_list<PlanePassage>();
@@ -128,16 +143,32 @@ void merge_contacts(std::span<RankStep> ranks, SimulationStep& all) {
   }
 }
 
+// The first rank's own alone.
+void keep_contacts(std::span<RankStep> ranks, const SimulationStep& own, SimulationStep& all) {
+  all.report.contacts = own.report.contacts;
+  all.contact_ids = own.contact_ids;
+  all.contact_sources = own.contact_sources;
+  for (RankStep& r : ranks.subspan(1)) {
+    for (LeftParticle& p : r.step.left) p.contact = of_another_rank;
+  }
+}
+
 template <class T>
 void append(const std::vector<T>& from, std::vector<T>& to) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
-SimulationStep merged(std::span<RankStep> ranks, const SimulationStep& own) {
+SimulationStep merged(std::span<RankStep> ranks, const SimulationStep& own, bool with_contacts) {
   SimulationStep all;
   all.duration = own.duration;
   all.injected = own.injected;
-  merge_contacts(ranks, all);
+  all.absorbed = own.absorbed;
+  all.escaped = own.escaped;
+  all.report.counters = own.report.counters;
+  if (with_contacts)
+    merge_contacts(ranks, all);
+  else
+    keep_contacts(ranks, own, all);
   std::vector<std::vector<LeftParticle>> left;
   for (std::size_t r = 0; r < ranks.size(); ++r) {
     SimulationStep& s = ranks[r].step;
@@ -149,9 +180,6 @@ SimulationStep merged(std::span<RankStep> ranks, const SimulationStep& own) {
     append(s.report.held, all.report.held);
     append(s.report.stopped, all.report.stopped);
     append(s.overlaps, all.overlaps);
-    all.report.counters += s.report.counters;
-    all.absorbed += s.absorbed;
-    all.escaped += s.escaped;
     left.push_back(s.left);
   }
   all.left = merged_by_id(left);
@@ -167,12 +195,22 @@ std::vector<T> merged_member(std::span<const RankStep> ranks, std::vector<T> Ran
 
 }  // namespace
 
-void gather_step(Ranks& ranks, ParticleSystem& particles, StatisticsComponent& statistics) {
-  const std::vector<std::string> bytes = ranks.gather(packed(particles.last_step(), statistics));
+void gather_step(Ranks& ranks, ParticleSystem& particles, StatisticsComponent& statistics, bool with_contacts) {
+  SimulationStep own = particles.last_step();
+  StepSums sums{own.report.counters, own.absorbed, own.escaped, entries(own, statistics, with_contacts)};
+  auto words = std::bit_cast<StepSums::Words>(sums);
+  ranks.sum(words);
+  sums = std::bit_cast<StepSums>(words);
+  std::vector<std::string> bytes;
+  if (sums.entries > 0) bytes = ranks.gather(packed(own, statistics, with_contacts));
   if (ranks.rank() != 0) return;
+  own.report.counters = sums.counters;
+  own.absorbed = sums.absorbed;
+  own.escaped = sums.escaped;
+  if (sums.entries == 0) return particles.set_last_step(std::move(own));
   std::vector<RankStep> all;
   for (const std::string& b : bytes) all.push_back(unpacked(b));
-  particles.set_last_step(merged(all, particles.last_step()));
+  particles.set_last_step(merged(all, own, with_contacts));
   statistics.set_found(merged_member(all, &RankStep::passages), merged_member(all, &RankStep::points),
                        merged_member(all, &RankStep::leavings));
 }

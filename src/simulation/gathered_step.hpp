@@ -38,6 +38,6 @@ std::vector<T> gathered_by_id(Ranks* ranks, std::vector<T> own) {
 }
 
 /// The first rank's last step, and what its statistics have found, become those of all ranks. Collective.
-void gather_step(Ranks& ranks, ParticleSystem& particles, StatisticsComponent& statistics);
+void gather_step(Ranks& ranks, ParticleSystem& particles, StatisticsComponent& statistics, bool with_contacts);
 
 }  // namespace dartcast

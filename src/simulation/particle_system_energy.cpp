@@ -47,8 +47,9 @@ SimulationEnergy ParticleSystem::energy() const {
   };
   ExactEnergy own;
   for (const ExactEnergy& part : parts) add(own, part);
-  const ExactEnergy all = reduced(options_.ranks, own, add);
-  return {all.kinetic.value(), all.potential.value()};
+  std::array<ExactSum::Words, 2> words = {own.kinetic.words(), own.potential.words()};
+  for (ExactSum::Words& w : words) sum_over(options_.ranks, w);
+  return {ExactSum::of(words[0]).value(), ExactSum::of(words[1]).value()};
 }
 
 }  // namespace dartcast

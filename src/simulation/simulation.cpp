@@ -41,7 +41,8 @@ const SimulationStep& Simulation::step() {
     const ScopeTimer timer(parts_->clock_of(component));
     component->step(begin);
   }
-  if (are_several(options().ranks)) gather_step(*options().ranks, parts_->particles, parts_->statistics);
+  if (are_several(options().ranks))
+    gather_step(*options().ranks, parts_->particles, parts_->statistics, parts_->gathers_contacts);
   parts_->statistics.count();
   parts_->events.after_step();
   return parts_->particles.last_step();

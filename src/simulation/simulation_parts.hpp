@@ -54,7 +54,8 @@ struct Simulation::Parts {
   std::vector<SimulationComponent*> components = {&particles, &solids, &bodies, &catheters, &statistics};
   EventScheduler events;
   AfterEdit after_edit;
-  bool replaying = false;  // earlier edits: all but the particles are restored afterwards
+  bool gathers_contacts = true;  // of all ranks, on the first
+  bool replaying = false;        // earlier edits: all but the particles are restored afterwards
   double seconds_solids = 0.0;
 
   /// From now on walls move together with the solids, bodies and catheters that stop them.

@@ -115,6 +115,8 @@ void Simulation::make(const Scene& scene, Threads threads, Ranks* ranks, Partiti
   auto own = std::make_unique<Environment>(mesh, threads);
   Environment& environment = *own;
   parts_ = std::make_unique<Parts>(*this, std::move(own), environment, options_of(scene, ranks));
+  const bool reported = partition == Partition::particles && scene.output.report && scene.output.every > 0;
+  parts_->gathers_contacts = scene.output.contacts || reported || scene.statistics.options.any();
   furnish(parts_->particles, scene, mesh, part ? part->points : std::vector<std::uint32_t>());
   if (part) parts_->spread(std::move(*part), scene);
   set_events(events_of(scene, mesh, environment.map()));

@@ -67,6 +67,11 @@ TEST(ExactSum, IsTheSameInAnyOrderAndInParts) {
     ASSERT_EQ(sum_of(values), sum);
     ExactSum parts[3];
     for (const double v : values) parts[random() % 3].add(v);
+    ExactSum::Words words = parts[0].words();
+    for (const ExactSum& p : {parts[1], parts[2]}) {
+      for (std::size_t i = 0; i < words.size(); ++i) words[i] += p.words()[i];
+    }
+    ASSERT_EQ(ExactSum::of(words).value(), sum);
     parts[0] += parts[1];
     parts[0] += parts[2];
     ASSERT_EQ(parts[0].value(), sum);
@@ -85,6 +90,14 @@ TEST(ExactSum, KeepsWhatIsNotFinite) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   EXPECT_EQ(sum_of({1.0, infinity, -5.0}), infinity);
   EXPECT_TRUE(std::isnan(sum_of({infinity, 1.0, -infinity})));
+  ExactSum::Words words{};
+  for (const double x : {infinity, 1.0, -infinity}) {
+    ExactSum sum;
+    sum.add(x);
+    for (std::size_t i = 0; i < words.size(); ++i) words[i] += sum.words()[i];
+    if (x > 0.0) EXPECT_EQ(ExactSum::of(words).value(), infinity);
+  }
+  EXPECT_TRUE(std::isnan(ExactSum::of(words).value()));
 }
 
 }  // namespace
