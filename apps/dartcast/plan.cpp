@@ -46,7 +46,7 @@ int plan(PlanArguments a, bool has_particles) {
   MeshData mesh;
   if (std::filesystem::path(a.path).extension() == ".toml") {
     Scene scene = load_scene_files(read_scene(a.path), a.read).scene;
-    a.options.deforms = !scene.deformation.empty();
+    a.options.deforms = a.options.deforms || !scene.deformation.empty();
     if (!has_particles) a.options.particles = particles_of(scene) / a.options.ranks;
     mesh = std::move(std::get<MeshData>(scene.environment.mesh));
   } else {

@@ -34,6 +34,7 @@
 #include "dartcast/run.hpp"
 #include "dartcast/scene.hpp"
 #include "dartcast/scene_file.hpp"
+#include "dartcast/shared_environment.hpp"
 #include "dartcast/simulation.hpp"
 #include "dartcast/solids.hpp"
 #include "dartcast/spheres.hpp"

@@ -1,0 +1,169 @@
+// The public face of an environment in parts: ids and data of particles that go along with them.
+#include "dartcast/shared_environment.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+#include <utility>
+
+#include "base/bytes.hpp"
+#include "base/kept_runs.hpp"
+#include "base/reduced.hpp"
+#include "dartcast/error.hpp"
+#include "environment/part_environment.hpp"
+
+namespace dartcast {
+
+namespace {
+
+// The arrays beside the particles.
+class SharedData final : public TravelData {
+ public:
+  SharedData(std::vector<std::uint64_t>& ids, std::vector<double>& numbers, std::size_t width)
+      : ids_(ids), numbers_(numbers), width_(width) {}
+
+  [[nodiscard]] std::string leave(std::uint32_t i, std::uint32_t /*contacts*/) const override {
+    ByteWriter out;
+    out.put(ids_[i]);
+    for (std::size_t k = 0; k < width_; ++k) out.put(numbers_[i * width_ + k]);
+    return out.bytes();
+  }
+  void come(std::string_view data) override {
+    ByteReader in(data);
+    ids_.push_back(in.take<std::uint64_t>());
+    for (std::size_t k = 0; k < width_; ++k) numbers_.push_back(in.take<double>());
+  }
+
+ private:
+  std::vector<std::uint64_t>& ids_;
+  std::vector<double>& numbers_;
+  std::size_t width_;
+};
+
+}  // namespace
+
+struct SharedEnvironment::Members {
+  Members(MeshPart mesh, Ranks& all, Threads threads)
+      : ranks(all), part(std::move(mesh)), environment(part.mesh, threads), steps(environment, part, all) {}
+
+  Ranks& ranks;
+  MeshPart part;
+  Environment environment;
+  PartEnvironment steps;
+};
+
+SharedEnvironment::SharedEnvironment(MeshPart part, Ranks& ranks, Threads threads) {
+  if (part.part != ranks.rank() || part.parts != ranks.size())
+    throw InvalidArgument(fmt::format("SharedEnvironment: part {} of {} on rank {} of {}", part.part, part.parts,
+                                      ranks.rank(), ranks.size()));
+  members_ = std::make_unique<Members>(std::move(part), ranks, threads);
+}
+
+SharedEnvironment::~SharedEnvironment() = default;
+
+const MeshPart& SharedEnvironment::part() const { return members_->part; }
+const Environment& SharedEnvironment::environment() const { return members_->environment; }
+Cell SharedEnvironment::whole(Cell here) const { return members_->steps.cells().whole(here); }
+
+// One rank at most finds a position in a cell of its own.
+std::vector<Place> SharedEnvironment::add(SharedParticles& particles, std::span<const Vec3> positions) {
+  constexpr std::uint64_t free = 1;
+  constexpr std::uint64_t blocked = std::uint64_t{1} << 32U;
+  Environment& e = members_->environment;
+  const std::vector<Location> locations = e.locate(positions);
+  std::vector<std::uint64_t> found(positions.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const bool own = locations[i].place != Place::outside && members_->steps.cells().is_own(locations[i].simplex.cell);
+    if (own) found[i] = locations[i].place == Place::free ? free : blocked;
+  }
+  const std::vector<std::uint64_t> own = found;
+  members_->ranks.sum(found);
+  const std::size_t before = particles.size();
+  std::vector<Place> places;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    places.push_back(found[i] == free ? Place::free : found[i] == 0 ? Place::outside : Place::blocked);
+    if (found[i] != free) continue;
+    if (own[i] == free) {
+      if (!e.add(particles.particles_, locations[i].simplex, positions[i])) {
+        std::vector<std::uint8_t> added(particles.particles_.size(), 1);
+        std::fill_n(added.begin(), before, 0);
+        particles.particles_.remove(added);
+        throw InvalidArgument(fmt::format("add: position {} is in a cell that is not valid; mend the mesh", i));
+      }
+    }
+  }
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (own[i] == free) particles.ids_.push_back(particles.next_id_);
+    if (found[i] == free) ++particles.next_id_;
+  }
+  particles.user_data_.resize(particles.size() * particles.width_);
+  return places;
+}
+
+void SharedEnvironment::move(std::span<const Vec3> positions) { members_->environment.move(positions); }
+
+// Particles that have come are behind the others; all are put in the order of ids.
+SharedStep SharedEnvironment::advance(SharedParticles& particles, std::span<const Vec3> targets,
+                                      const ContactCallback& respond, const StepOptions& options) {
+  const ContactCallback stay = [](const Contact&, std::span<const WallHit>, std::span<const WallHit>) {
+    return AfterContact{};
+  };
+  SharedData data(particles.ids_, particles.user_data_, particles.width_);
+  std::vector<std::uint8_t> gone;
+  const std::size_t before = particles.size();
+  SharedStep step;
+  step.report = members_->steps.advance(particles.particles_, targets, respond ? respond : stay, options, data, gone);
+  for (const Contact& c : step.report.contacts.contacts) step.contact_ids.push_back(particles.ids_[c.particle]);
+  step.left = static_cast<std::uint64_t>(std::count(gone.begin(), gone.end(), 1));
+  step.come = particles.size() - before;
+  particles.particles_.remove(gone);
+  const KeptRuns runs(gone);
+  runs.keep_in(particles.ids_);
+  runs.keep_in(particles.user_data_, particles.width_);
+  if (std::is_sorted(particles.ids_.begin(), particles.ids_.end())) return step;
+  std::vector<std::uint32_t> order(particles.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return particles.ids_[a] < particles.ids_[b]; });
+  particles.particles_.reorder(order);
+  std::vector<double> numbers;
+  for (const std::uint32_t i : order) {
+    const auto own = std::as_const(particles).user_data(i);
+    numbers.insert(numbers.end(), own.begin(), own.end());
+  }
+  particles.user_data_ = std::move(numbers);
+  std::sort(particles.ids_.begin(), particles.ids_.end());
+  return step;
+}
+
+std::uint64_t SharedEnvironment::count(const SharedParticles& particles) const {
+  std::uint64_t count = particles.size();
+  members_->ranks.sum({&count, 1});
+  return count;
+}
+
+Audit SharedEnvironment::audit(const SharedParticles& particles) const {
+  const Environment& e = members_->environment;
+  const auto pack = [](const Audit& a) {
+    ByteWriter out;
+    out.put(a.checked);
+    out.put(a.failed);
+    out.put(a.first);
+    return out.bytes();
+  };
+  const auto unpack = [](const std::string& bytes) {
+    ByteReader in(bytes);
+    Audit a;
+    a.checked = in.take<std::uint64_t>();
+    a.failed = in.take<std::uint64_t>();
+    a.first = in.take_text();
+    return a;
+  };
+  return reduced(
+      &members_->ranks, dartcast::audit(e.complex(), particles.particles_, e.threads()),
+      [](Audit& sum, const Audit& other) { sum += other; }, pack, unpack);
+}
+
+}  // namespace dartcast
