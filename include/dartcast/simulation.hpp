@@ -76,8 +76,7 @@ enum class WallMotion : std::uint8_t {
 /// How ranks share a scene.
 enum class Partition : std::uint8_t {
   particles,  ///< each has the whole environment, and some of the particles
-  /// Each has a part of the environment, and the particles in it: points in space, in steps of one segment (euler, carried),
-  /// without edits, bodies, catheters, solids and statistics.
+  /// Each has a part of the environment, and the particles in it. Not all scenes can be shared so (docs/howto/clusters.md).
   cells
 };
 
@@ -364,7 +363,7 @@ class Simulation {
   [[nodiscard]] const SolidStep& solids_step() const;  ///< the last one
 
   [[nodiscard]] const SimulationTotals& totals() const;
-  // These are of all ranks that share the particles, and so collective.
+  /// Of all ranks that share the particles, and so collective. So is alive().
   [[nodiscard]] SimulationTotals totals_of_all() const;
   [[nodiscard]] std::uint64_t alive() const;  ///< the number of particles in the scene
   [[nodiscard]] const StatisticsOptions& statistics_options() const;

@@ -16,6 +16,7 @@ void bind_mesh_files(pybind11::module_& m);
 void bind_mesh_selection(pybind11::module_& m);
 void bind_decompose(pybind11::module_& m);
 void bind_generators(pybind11::module_& m);
+void bind_mesh_part(pybind11::module_& m);
 
 // Maps and their edits.
 void bind_predicates(pybind11::module_& m);
@@ -36,6 +37,7 @@ void bind_step(pybind11::module_& m);
 void bind_response(pybind11::module_& m);
 void bind_environment(pybind11::module_& m);
 void bind_audit(pybind11::module_& m);
+void bind_shared_environment(pybind11::module_& m);
 void bind_spheres(pybind11::module_& m);
 void bind_dynamics(pybind11::module_& m);
 void bind_trajectory(pybind11::module_& m);

@@ -21,6 +21,7 @@ PYBIND11_MODULE(_core, m) {
   bind_mesh_selection(m);
   bind_decompose(m);
   bind_generators(m);
+  bind_mesh_part(m);
 
   bind_predicates(m);
   bind_cell_shape(m);
@@ -39,6 +40,7 @@ PYBIND11_MODULE(_core, m) {
   bind_response(m);
   bind_environment(m);
   bind_audit(m);
+  bind_shared_environment(m);
   bind_spheres(m);
   bind_dynamics(m);
   bind_trajectory(m);

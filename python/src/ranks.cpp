@@ -17,6 +17,15 @@ PythonRanks::PythonRanks(py::object object)
       rank_(object_.attr("rank").cast<unsigned>()),
       size_(object_.attr("size").cast<unsigned>()) {}
 
+PythonRanks::~PythonRanks() {
+  const py::gil_scoped_acquire acquire;
+  object_ = py::object();
+}
+
+std::unique_ptr<PythonRanks> python_ranks(const py::object& object) {
+  return object.is_none() ? nullptr : std::make_unique<PythonRanks>(object);
+}
+
 std::vector<std::string> PythonRanks::gather(std::string bytes) {
   const py::gil_scoped_acquire acquire;
   return object_.attr("gather")(py::bytes(bytes)).cast<std::vector<std::string>>();

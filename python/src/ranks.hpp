@@ -4,14 +4,19 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <memory>
+
 #include "dartcast/ranks.hpp"
 
 namespace dartcast::python {
 
-/// Calls the object's functions of the same names. To be made and destroyed with Python's lock; the functions take it.
+/// Calls the object's functions of the same names. To be made with Python's lock; the functions take it.
 class PythonRanks final : public Ranks {
  public:
   explicit PythonRanks(pybind11::object object);
+  PythonRanks(const PythonRanks&) = delete;
+  PythonRanks& operator=(const PythonRanks&) = delete;
+  ~PythonRanks() override;
 
   [[nodiscard]] unsigned rank() const override { return rank_; }
   [[nodiscard]] unsigned size() const override { return size_; }
@@ -26,5 +31,8 @@ class PythonRanks final : public Ranks {
   unsigned rank_;
   unsigned size_;
 };
+
+/// None where the object is None.
+std::unique_ptr<PythonRanks> python_ranks(const pybind11::object& object);
 
 }  // namespace dartcast::python

@@ -27,25 +27,27 @@ std::shared_ptr<Handle> of_environment(const std::shared_ptr<EnvironmentHandle>&
   return std::make_shared<Handle>(std::make_shared<SimulationOwner>(environment, options));
 }
 
-std::shared_ptr<Handle> of_scene(const Scene& scene, Threads threads) {
+std::shared_ptr<Handle> of_scene(const Scene& scene, Threads threads, const py::object& ranks, Partition partition) {
   const Scene own = scene;
+  std::unique_ptr<PythonRanks> all = python_ranks(ranks);
   std::shared_ptr<SimulationOwner> made;
   {
     const py::gil_scoped_release release;
-    made = std::make_shared<SimulationOwner>(own, threads);
+    made = std::make_shared<SimulationOwner>(own, threads, std::move(all), partition);
   }
   return std::make_shared<Handle>(std::move(made));
 }
 
 std::shared_ptr<Handle> of_checkpoint(const Scene& scene, const SimulationCheckpoint& saved, Threads threads,
-                                      const py::object& after_edit) {
+                                      const py::object& after_edit, const py::object& ranks, Partition partition) {
   const Scene own = scene;
+  std::unique_ptr<PythonRanks> all = python_ranks(ranks);
   const SimulationCheckpoint own_saved = saved;
   Simulation::AfterEdit callback = after_edit_callback(after_edit);
   std::shared_ptr<SimulationOwner> made;
   {
     const py::gil_scoped_release release;
-    made = std::make_shared<SimulationOwner>(own, own_saved, threads, std::move(callback));
+    made = std::make_shared<SimulationOwner>(own, own_saved, threads, std::move(callback), std::move(all), partition);
   }
   return std::make_shared<Handle>(std::move(made));
 }
@@ -121,9 +123,17 @@ void bind_making(Class& simulation) {
            (std::string(doc("Simulation::Simulation")) +
             "\n\nAs long as the simulation lives, the environment cannot be changed in another way.")
                .c_str())
-      .def(py::init(&of_scene), py::arg("scene"), py::arg("threads") = Threads{})
+      .def(py::init(&of_scene), py::arg("scene"), py::arg("threads") = Threads{}, py::arg("ranks") = py::none(),
+           py::arg("partition") = Partition::particles)
       .def(py::init(&of_checkpoint), py::arg("scene"), py::arg("saved"), py::arg("threads") = Threads{},
-           py::arg("after_edit") = py::none());
+           py::arg("after_edit") = py::none(), py::arg("ranks") = py::none(),
+           py::arg("partition") = Partition::particles)
+      .def(
+          "totals_of_all", [](const Handle& h) { return compute(h, [](Simulation& s) { return s.totals_of_all(); }); },
+          doc("Simulation::totals_of_all"))
+      .def(
+          "alive", [](const Handle& h) { return compute(h, [](Simulation& s) { return s.alive(); }); },
+          doc("Simulation::alive"));
 }
 
 // A copy. Throws InvalidArgument where it was made for another complex, or has missed an edit.

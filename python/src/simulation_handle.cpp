@@ -49,12 +49,16 @@ SimulationOwner::SimulationOwner(std::shared_ptr<EnvironmentHandle> environment,
   callers_->borrowed = true;
 }
 
-SimulationOwner::SimulationOwner(const Scene& scene, Threads threads)
-    : simulation_(std::make_unique<Simulation>(scene, threads)) {}
+SimulationOwner::SimulationOwner(const Scene& scene, Threads threads, std::unique_ptr<PythonRanks> ranks,
+                                 Partition partition)
+    : ranks_(std::move(ranks)), simulation_(std::make_unique<Simulation>(scene, threads, ranks_.get(), partition)) {}
 
 SimulationOwner::SimulationOwner(const Scene& scene, const SimulationCheckpoint& saved, Threads threads,
-                                 Simulation::AfterEdit after_edit)
-    : simulation_(std::make_unique<Simulation>(scene, saved, threads, std::move(after_edit))) {}
+                                 Simulation::AfterEdit after_edit, std::unique_ptr<PythonRanks> ranks,
+                                 Partition partition)
+    : ranks_(std::move(ranks)),
+      simulation_(std::make_unique<Simulation>(scene, saved, threads, std::move(after_edit), ranks_.get(), partition)) {
+}
 
 // A thread that reads frames for the simulation may wait for Python's lock.
 SimulationOwner::~SimulationOwner() {

@@ -6,6 +6,7 @@
 
 #include "dartcast/scene.hpp"
 #include "dartcast/simulation.hpp"
+#include "ranks.hpp"
 #include "support/handles.hpp"
 #include "support/python.hpp"
 
@@ -16,9 +17,10 @@ namespace dartcast::python {
 class SimulationOwner {
  public:
   SimulationOwner(std::shared_ptr<EnvironmentHandle> environment, const SimulationOptions& options);
-  SimulationOwner(const Scene& scene, Threads threads);
+  // `ranks`: none: one process.
+  SimulationOwner(const Scene& scene, Threads threads, std::unique_ptr<PythonRanks> ranks, Partition partition);
   SimulationOwner(const Scene& scene, const SimulationCheckpoint& saved, Threads threads,
-                  Simulation::AfterEdit after_edit);
+                  Simulation::AfterEdit after_edit, std::unique_ptr<PythonRanks> ranks, Partition partition);
   SimulationOwner(const SimulationOwner&) = delete;
   SimulationOwner& operator=(const SimulationOwner&) = delete;
   ~SimulationOwner();
@@ -29,6 +31,7 @@ class SimulationOwner {
 
  private:
   std::shared_ptr<EnvironmentHandle> callers_;
+  std::unique_ptr<PythonRanks> ranks_;
   std::unique_ptr<Simulation> simulation_;
 };
 

@@ -1,6 +1,7 @@
 """Ranks: those of threads, as another transport would be, and those of mpi4py."""
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -17,6 +18,20 @@ SCENE = {
     "contact": {"restitution": 0.5},
     "output": {"every": 10, "report": False},
 }
+
+
+SCENE_TEXT = """
+[environment]
+generator = "box"
+cells = [5, 5, 5]
+[[particles]]
+count = 300
+velocity = [3.0, 1.0, 0.5]
+[motion]
+dt = 0.02
+[contact]
+restitution = 0.5
+"""
 
 
 class Group:
@@ -64,12 +79,16 @@ class ThreadRanks(dartcast.Ranks):
 
 
 def run_on_threads(size, **arguments):
+    return on_threads(size, lambda ranks: dartcast.run(SCENE, threads=1, ranks=ranks, **arguments))
+
+
+def on_threads(size, call):
     group = Group(size)
     results = [None] * size
 
     def work(rank):
         try:
-            results[rank] = dartcast.run(SCENE, threads=1, ranks=ThreadRanks(group, rank), **arguments)
+            results[rank] = call(ThreadRanks(group, rank))
         except Exception as error:  # looked at by the test
             results[rank] = error
 
@@ -89,6 +108,92 @@ def test_runs_are_those_of_one_process(tmp_path, partition):
     assert results[0].state_hash == one.state_hash
     assert results[0].totals.counters.contacts == one.totals.counters.contacts
     assert (tmp_path / "three/stats.csv").read_bytes() == (tmp_path / "one/stats.csv").read_bytes()
+
+
+def twisted(points, step):
+    return points + 0.05 * numpy.sin(0.4 * step) * numpy.sin(points[:, [1, 2, 0]])
+
+
+BOX = dartcast.BoxOptions(cells=[6, 5, 5], size=[6.0, 5.0, 5.0], jitter=0.2)
+
+
+def starts():
+    return numpy.random.default_rng(3).uniform(0.1, 4.9, (200, 3))
+
+
+def ways(ids, step):
+    return numpy.array([numpy.random.default_rng([i, step]).uniform(-0.8, 0.8, 3) for i in ids]).reshape(-1, 3)
+
+
+def back(contact, walls, earlier):
+    return -0.5 * contact.unused
+
+
+def stepped_alone():
+    environment = dartcast.Environment(dartcast.generate_box(BOX), threads=1)
+    particles = dartcast.Particles()
+    environment.add(particles, starts())
+    rest = environment.positions
+    for step in range(8):
+        environment.move(twisted(rest, step))
+        targets = particles.positions + ways(range(len(particles)), step)
+        environment.advance(particles, targets, back, per_contact=True)
+    return dict(zip(range(len(particles)), map(tuple, particles.positions)))
+
+
+def stepped(ranks):
+    environment = dartcast.SharedEnvironment(dartcast.box_part(BOX, ranks.size, ranks.rank), ranks, threads=1)
+    particles = dartcast.SharedParticles(1)
+    assert (environment.add(particles, starts()) == dartcast.Place.FREE).all()
+    for i, identity in enumerate(particles.ids):
+        particles.set_user_data(i, [float(identity)])
+    rest = environment.positions
+    left = 0
+    for step in range(8):
+        environment.move(twisted(rest, step))
+        left += environment.advance(particles, particles.positions + ways(particles.ids, step), back).left
+        assert [particles.user_data(i)[0] for i in range(len(particles))] == list(particles.ids)
+    assert left > 10 and environment.count(particles) == 200
+    assert environment.audit(particles).failed == 0
+    return dict(zip(particles.ids, map(tuple, particles.positions)))
+
+
+def test_a_shared_environment_steps_as_one():
+    parts = on_threads(3, stepped)
+    assert all(isinstance(p, dict) for p in parts), parts
+    assert {i: x for p in parts for i, x in p.items()} == stepped_alone()
+
+
+def test_simulations_are_shared():
+    scene = dartcast.parse_scene(SCENE_TEXT, "scene.toml")
+
+    def simulate(ranks, partition="particles"):
+        simulation = dartcast.Simulation(scene, 1, ranks, partition)
+        for _ in range(20):
+            simulation.step()
+        return simulation.state_hash(), simulation.alive(), simulation.totals_of_all().counters.particle_steps
+
+    alone = simulate(None)
+    for partition in ("particles", "cells"):
+        results = on_threads(3, lambda ranks, p=partition: simulate(ranks, p))
+        assert results == [alone] * 3
+
+
+def test_a_part_may_be_the_mesh_of_a_scene():
+    scene = dartcast.parse_scene(SCENE_TEXT, "scene.toml")
+
+    def simulate(ranks):
+        own = dartcast.parse_scene(SCENE_TEXT, "scene.toml")
+        own.environment.mesh = dartcast.box_part(scene.environment.mesh, ranks.size, ranks.rank)
+        simulation = dartcast.Simulation(own, 1, ranks, "cells")
+        for _ in range(20):
+            simulation.step()
+        return simulation.state_hash()
+
+    alone = dartcast.Simulation(scene, 1)
+    for _ in range(20):
+        alone.step()
+    assert on_threads(2, simulate) == [alone.state_hash()] * 2
 
 
 def test_a_rank_that_cancels_ends_the_run_on_all(tmp_path):
@@ -122,6 +227,12 @@ if ranks.rank == 0:
 """
 
 
+def mpi_environment():
+    return {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+            "OMPI_MCA_rmaps_base_oversubscribe": "1",
+            "PYTHONPATH": str(pathlib.Path(dartcast.__file__).parent.parent)}
+
+
 @pytest.mark.parametrize("partition", ["particles", "cells"])
 def test_mpi4py_gives_ranks(tmp_path, partition):
     pytest.importorskip("mpi4py")
@@ -129,10 +240,18 @@ def test_mpi4py_gives_ranks(tmp_path, partition):
         pytest.skip("mpirun is not installed")
     program = tmp_path / "program.py"
     program.write_text(PROGRAM.format(scene=SCENE))
-    environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-                   "OMPI_MCA_rmaps_base_oversubscribe": "1",
-                   "PYTHONPATH": str(pathlib.Path(dartcast.__file__).parent.parent)}
-    done = subprocess.run(["mpirun", "-n", "3", sys.executable, program, tmp_path / "out", partition], env=environment,
-                          capture_output=True, text=True, timeout=120, check=False)
+    done = subprocess.run(["mpirun", "-n", "3", sys.executable, program, tmp_path / "out", partition],
+                          env=mpi_environment(), capture_output=True, text=True, timeout=120, check=False)
     assert done.returncode == 0, done.stderr
     assert done.stdout.strip() == dartcast.run(SCENE, threads=1).state_hash
+
+
+def test_the_example_runs(tmp_path):
+    pytest.importorskip("mpi4py")
+    if shutil.which("mpirun") is None:
+        pytest.skip("mpirun is not installed")
+    example = pathlib.Path(__file__).resolve().parent.parent.parent / "examples" / "mpi" / "shared.py"
+    done = subprocess.run(["mpirun", "-n", "3", sys.executable, example], env=mpi_environment(), capture_output=True,
+                          text=True, timeout=120, check=False)
+    assert done.returncode == 0, done.stderr
+    assert re.match(r"3 ranks: 1000 particles, [1-9]\d* went to another rank, 0 are not", done.stdout), done.stdout

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "dartcast/environment.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/mesh_part.hpp"
@@ -69,11 +70,33 @@ TEST(Plan, LargerPartsFollowFromTheirSurface) {
   const RunPlan planned = plan_run(generate_box(cubes(n)), options);
   EXPECT_NEAR(planned.cells.largest, real.cells.largest, 0.05 * real.cells.largest);
   EXPECT_NEAR(planned.ghosts.mean, real.ghosts.mean, 0.15 * real.ghosts.mean);
-  EXPECT_EQ(planned.neighbours.largest, real.neighbours.largest);
+  EXPECT_NEAR(planned.neighbours.largest, real.neighbours.largest, 4.0);  // parts touch at corners in one of them alone
   EXPECT_NEAR(planned.bytes.largest, real.bytes.largest, 0.1 * real.bytes.largest);
   EXPECT_NEAR(planned.efficiency(), real.efficiency(), 0.1);
   std::printf("ghosts %.1f planned, %.1f real; efficiency %.3f and %.3f\n", planned.ghosts.mean, real.ghosts.mean,
               planned.efficiency(), real.efficiency());
+}
+
+// In the full tier 10^8 cubes, which no array holds together: each part is made, built, and dropped.
+TEST(Plan, LargeBoxesAreBuiltInParts) {
+  const std::uint32_t n = test::full_tier() ? 465 : 40;
+  constexpr std::uint32_t parts = 64;
+  std::uint64_t own = 0;
+  std::uint64_t most_cells = 0;
+  std::size_t most_bytes = 0;
+  for (std::uint32_t p = 0; p < parts; ++p) {
+    MeshPart part = box_part(cubes(n), parts, p);
+    own += static_cast<std::uint64_t>(std::count(part.owners.begin(), part.owners.end(), p));
+    const std::uint64_t cells = part.cells.size();
+    const Environment environment(std::move(part.mesh));
+    most_cells = std::max(most_cells, cells);
+    most_bytes = std::max(most_bytes, environment.complex().bytes());
+  }
+  EXPECT_EQ(own, std::uint64_t{n} * n * n);
+  EXPECT_LE(static_cast<double>(most_bytes), 160.0 * static_cast<double>(most_cells));
+  std::printf("%llu cells; the largest of %u parts has %llu with its ghosts, and takes %.3f GB\n",
+              static_cast<unsigned long long>(own), parts, static_cast<unsigned long long>(most_cells),
+              1e-9 * static_cast<double>(most_bytes));
 }
 
 TEST(Plan, OfOneRankIsAStepAlone) {

@@ -8,7 +8,7 @@ import numpy as np
 import dartcast as dc
 
 from . import Calls, refused
-from .scenes import COUNT, box, environment, first, with_particles
+from .scenes import COUNT, OneRank, box, environment, first, with_particles
 
 
 def of_making() -> Calls:
@@ -175,5 +175,45 @@ def of_steps() -> Calls:
     return table
 
 
+def of_shared() -> Calls:
+    part = dc.box_part(dc.BoxOptions(cells=[3, 3, 3]), 1, 0)
+    env = dc.SharedEnvironment(part, OneRank(), 1)
+    particles = dc.SharedParticles(2)
+    env.add(particles, np.full((5, 3), 0.4))
+    grown = np.zeros((1, 3)) + 0.5
+
+    def add() -> None:
+        env.add(dc.SharedParticles(), grown)
+
+    def advance(respond: object = None) -> None:
+        env.move(env.positions)
+        env.advance(particles, particles.positions + 0.25, respond)
+
+    return {
+        "SharedParticles": lambda: dc.SharedParticles(3), "SharedParticles: refused": refused(
+            lambda: dc.SharedParticles(10**9)),
+        "SharedParticles.__len__": lambda: len(particles),
+        "SharedParticles.user_data": lambda: particles.user_data(1),
+        "SharedParticles.user_data: refused": refused(lambda: particles.user_data(99)),
+        "SharedParticles.set_user_data": lambda: particles.set_user_data(1, [1.0, 2.0]),
+        "SharedParticles.set_user_data: refused": refused(lambda: particles.set_user_data(1, [1.0])),
+        "SharedStep": lambda: dc.SharedStep(left=1),
+        "SharedEnvironment": lambda: dc.SharedEnvironment(part, OneRank(), threads=1),
+        "SharedEnvironment: refused": refused(lambda: dc.SharedEnvironment(
+            dc.box_part(dc.BoxOptions(cells=[3, 3, 3]), 2, 0), OneRank())),
+        "SharedEnvironment.whole": lambda: env.whole(int(particles.cells[0])),
+        "SharedEnvironment.whole: refused": refused(lambda: env.whole(10**6)),
+        "SharedEnvironment.add": add,
+        "SharedEnvironment.add: refused": refused(lambda: env.add(particles, grown[0])),
+        "SharedEnvironment.move": advance,
+        "SharedEnvironment.move: refused": refused(lambda: env.move(grown)),
+        "SharedEnvironment.advance": advance,
+        "SharedEnvironment.advance: function": lambda: advance(lambda contact, walls, earlier: None),
+        "SharedEnvironment.advance: refused": refused(lambda: env.advance(particles, grown)),
+        "SharedEnvironment.count": lambda: env.count(particles),
+        "SharedEnvironment.audit": lambda: env.audit(particles),
+    }
+
+
 def calls() -> Calls:
-    return of_making() | of_moves() | of_edits() | of_steps()
+    return of_shared() | of_making() | of_moves() | of_edits() | of_steps()

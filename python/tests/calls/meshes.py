@@ -151,5 +151,26 @@ def of_meshio() -> Calls:
     return {"to_meshio": lambda: dc.to_meshio(mesh), "from_meshio": lambda: dc.from_meshio(made)}
 
 
+def of_parts() -> Calls:
+    mesh = box(mixed=True)
+    owners = dc.partition(mesh, 3)
+    part = dc.mesh_part(mesh, owners, 3, 1)
+    path = FOLDER / "pieces.pvtu"
+    dc.write_mesh_parts(mesh, 2, path)
+    return {
+        "MeshPart.__repr__": lambda: repr(part),
+        "partition": lambda: dc.partition(mesh, 4), "partition: refused": refused(lambda: dc.partition(mesh, 0)),
+        "mesh_part": lambda: dc.mesh_part(mesh, owners, 3, 2),
+        "mesh_part: refused": refused(lambda: dc.mesh_part(mesh, owners[:4], 3, 2)),
+        "has_parts": lambda: dc.has_parts(dc.BoxOptions()),
+        "box_part": lambda: dc.box_part(dc.BoxOptions(cells=[4, 4, 4]), 3, 1),
+        "box_part: refused": refused(lambda: dc.box_part(dc.BoxOptions(mixed=True), 1, 0)),
+        "write_mesh_parts": lambda: dc.write_mesh_parts(mesh, 2, path),
+        "write_mesh_parts: refused": refused(lambda: dc.write_mesh_parts(mesh, 2, FOLDER / "pieces.vtu")),
+        "read_mesh_part": lambda: dc.read_mesh_part(path, 2, 1) if dc.has_vtk() else None,
+        "read_mesh_part: refused": refused(lambda: dc.read_mesh_part(path, 3, 1)),
+    }
+
+
 def calls() -> Calls:
-    return of_data() | of_checks() | of_selections() | of_generators() | of_files() | of_meshio()
+    return of_parts() | of_data() | of_checks() | of_selections() | of_generators() | of_files() | of_meshio()

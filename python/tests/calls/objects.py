@@ -77,8 +77,16 @@ def of_simulations() -> dict[str, object]:
             "Statistics": simulation.statistics}
 
 
+def of_parts() -> dict[str, object]:
+    part = dc.box_part(dc.BoxOptions(cells=[3, 3, 3]), 1, 0)
+    environment = dc.SharedEnvironment(part, scenes.OneRank(), 1)
+    particles = dc.SharedParticles(2)
+    environment.add(particles, np.full((5, 3), 0.4))
+    return {"MeshPart": part, "SharedEnvironment": environment, "SharedParticles": particles}
+
+
 def living() -> dict[str, object]:
-    return of_meshes() | of_edits() | of_particles() | of_solids() | of_simulations()
+    return of_parts() | of_meshes() | of_edits() | of_particles() | of_solids() | of_simulations()
 
 
 def calls() -> Calls:

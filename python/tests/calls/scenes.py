@@ -82,3 +82,24 @@ def undone(c: dc.CellComplex, edit: Callable[[dc.ComplexEdit], object]) -> Calla
         with dc.ComplexEdit(c) as open_edit:
             edit(open_edit)
     return call
+
+
+class OneRank(dc.Ranks):
+    """A process alone."""
+
+    rank, size = 0, 1
+
+    def gather(self, data: bytes) -> list[bytes]:
+        return [data]
+
+    def broadcast(self, data: bytes) -> bytes:
+        return data
+
+    def exchange(self, data: list[bytes]) -> list[bytes]:
+        return data
+
+    def sum(self, values: np.ndarray) -> np.ndarray:
+        return values
+
+    def fail(self, why: str) -> bool:
+        return True
