@@ -1,4 +1,4 @@
-// What a run by cells (Partition::cells) would take on many ranks: planned on one machine.
+// Plans of runs by cells (Partition::cells) on many ranks, made on one machine.
 #pragma once
 
 #include <cstddef>

@@ -47,7 +47,7 @@ class SharedParticles {
 
 /// The results of one step on this rank.
 struct SharedStep {
-  /// Of the contacts and particles here; it names them by their index during the step.
+  /// The contacts and particles here. It names them by their index during the step.
   StepReport report;
   std::vector<std::uint64_t> contact_ids;  ///< the id of each contact's particle
   std::uint64_t left = 0;                  ///< particles that have gone to other ranks
@@ -88,7 +88,7 @@ class SharedEnvironment {
   SharedStep advance(SharedParticles& particles, std::span<const Vec3> targets, const ContactCallback& respond = {},
                      const StepOptions& options = {});
 
-  /// Of all ranks.
+  /// The number of particles on all ranks.
   [[nodiscard]] std::uint64_t count(const SharedParticles& particles) const;
   /// Checks the particles of all ranks.
   [[nodiscard]] Audit audit(const SharedParticles& particles) const;

@@ -363,7 +363,7 @@ class Simulation {
   [[nodiscard]] const SolidStep& solids_step() const;  ///< the last one
 
   [[nodiscard]] const SimulationTotals& totals() const;
-  /// Of all ranks that share the particles, and so collective. So is alive().
+  /// The sums over all ranks that share the particles. Collective, and so is alive().
   [[nodiscard]] SimulationTotals totals_of_all() const;
   [[nodiscard]] std::uint64_t alive() const;  ///< the number of particles in the scene
   [[nodiscard]] const StatisticsOptions& statistics_options() const;

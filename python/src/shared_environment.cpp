@@ -140,6 +140,29 @@ void bind_shared_particles(py::module_& m) {
           py::arg("particle"), py::arg("values"), "Sets the particle's numbers.");
 }
 
+void bind_steps(EnvironmentOf& c) {
+  c.def("advance", &advance, py::arg("particles"), py::arg("targets"), py::arg("respond") = py::none(),
+        py::arg("options") = StepOptions{},
+        (std::string(doc("SharedEnvironment::advance")) +
+         "\n\ntargets: float64 (n, 3). respond(contact, walls, earlier) answers one contact at a time, as with "
+         "Environment.advance(per_contact=True); None: a particle stays at its first contact.")
+            .c_str())
+      .def(
+          "count",
+          [](EnvironmentOfRanks& e, ParticlesOfRanks& p) {
+            return compute(e, p,
+                           [](SharedEnvironment& own, SharedParticles& particles) { return own.count(particles); });
+          },
+          py::arg("particles"), doc("SharedEnvironment::count"))
+      .def(
+          "audit",
+          [](EnvironmentOfRanks& e, ParticlesOfRanks& p) {
+            return compute(e, p,
+                           [](SharedEnvironment& own, SharedParticles& particles) { return own.audit(particles); });
+          },
+          py::arg("particles"), doc("SharedEnvironment::audit"));
+}
+
 }  // namespace
 
 void bind_shared_environment(py::module_& m) {
@@ -188,27 +211,8 @@ void bind_shared_environment(py::module_& m) {
             const auto x = vectors(positions, "positions");
             compute(e, [&](SharedEnvironment& own) { own.move(x); });
           },
-          py::arg("positions"), doc("SharedEnvironment::move"))
-      .def("advance", &advance, py::arg("particles"), py::arg("targets"), py::arg("respond") = py::none(),
-           py::arg("options") = StepOptions{},
-           (std::string(doc("SharedEnvironment::advance")) +
-            "\n\ntargets: float64 (n, 3). respond(contact, walls, earlier) answers one contact at a time, as with "
-            "Environment.advance(per_contact=True); None: a particle stays at its first contact.")
-               .c_str())
-      .def(
-          "count",
-          [](EnvironmentOfRanks& e, ParticlesOfRanks& p) {
-            return compute(e, p,
-                           [](SharedEnvironment& own, SharedParticles& particles) { return own.count(particles); });
-          },
-          py::arg("particles"), doc("SharedEnvironment::count"))
-      .def(
-          "audit",
-          [](EnvironmentOfRanks& e, ParticlesOfRanks& p) {
-            return compute(e, p,
-                           [](SharedEnvironment& own, SharedParticles& particles) { return own.audit(particles); });
-          },
-          py::arg("particles"), doc("SharedEnvironment::audit"));
+          py::arg("positions"), doc("SharedEnvironment::move"));
+  bind_steps(c);
 }
 
 }  // namespace dartcast::python

@@ -23,7 +23,7 @@ struct BoxWindow {
 /// the box; where it is not all of it, nothing is mixed or blocked at random. Throws as generate_box().
 MeshData generate_box_window(const BoxOptions& options, const BoxWindow& window);
 
-/// Of a box that is not mixed.
+/// The number in a box that is not mixed.
 std::uint32_t cells_per_cube(CellType type);
 
 }  // namespace dartcast

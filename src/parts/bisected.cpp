@@ -42,13 +42,13 @@ std::uint64_t ordered_bits(double x) {
   return (bits >> 63U) != 0 ? ~bits : bits | std::uint64_t{1} << 63U;
 }
 
-struct Box {
+struct MiddlesBox {
   Vec3 low = {std::numeric_limits<double>::max(), std::numeric_limits<double>::max(),
               std::numeric_limits<double>::max()};
   Vec3 high = {std::numeric_limits<double>::lowest(), std::numeric_limits<double>::lowest(),
                std::numeric_limits<double>::lowest()};
 
-  void add(const Box& b) {
+  void add(const MiddlesBox& b) {
     low = {std::min(low.x, b.low.x), std::min(low.y, b.low.y), std::min(low.z, b.low.z)};
     high = {std::max(high.x, b.high.x), std::max(high.y, b.high.y), std::max(high.z, b.high.z)};
   }
@@ -116,17 +116,17 @@ class Bisection {
   }
 
   void find_axes() {
-    std::vector<Box> boxes(groups_.size());
+    std::vector<MiddlesBox> boxes(groups_.size());
     for (std::size_t c = 0; c < group_.size(); ++c) boxes[group_[c]].add({middles_[c], middles_[c]});
-    const auto add = [](std::vector<Box>& all, const std::vector<Box>& other) {
+    const auto add = [](std::vector<MiddlesBox>& all, const std::vector<MiddlesBox>& other) {
       for (std::size_t g = 0; g < all.size(); ++g) all[g].add(other[g]);
     };
-    const auto pack = [](const std::vector<Box>& all) {
+    const auto pack = [](const std::vector<MiddlesBox>& all) {
       ByteWriter out;
       out.put(all);
       return out.bytes();
     };
-    const auto unpack = [](const std::string& bytes) { return ByteReader(bytes).take_list<Box>(); };
+    const auto unpack = [](const std::string& bytes) { return ByteReader(bytes).take_list<MiddlesBox>(); };
     boxes = reduced(ranks_, boxes, add, pack, unpack);
     for (std::size_t g = 0; g < groups_.size(); ++g) groups_[g].axis = boxes[g].longest();
   }

@@ -14,10 +14,10 @@ namespace dartcast {
 
 namespace {
 
-using Place = std::array<std::uint32_t, 3>;
+using CubePlace = std::array<std::uint32_t, 3>;
 
 // Blocks of cubes: halves along the longest side, again and again.
-struct Block {
+struct CubeBlock {
   BoxWindow window;
   std::uint32_t first = 0;  // parts [first, first + count)
   std::uint32_t count = 1;
@@ -30,7 +30,7 @@ struct Block {
   }
   // The half that has a part, or a cube. Each half has a cube for each of its parts.
   template <class IsLow>
-  [[nodiscard]] Block half(IsLow&& is_low) const {
+  [[nodiscard]] CubeBlock half(IsLow&& is_low) const {
     const std::size_t axis = longest();
     const std::uint64_t length = window.high[axis] - window.low[axis];
     const std::uint64_t layer = window.cubes() / length;  // cubes in each
@@ -39,7 +39,7 @@ struct Block {
     const auto low = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(
         count / 2, count > beyond ? count - beyond : 1, std::min<std::uint64_t>(count - 1, at * layer)));
     const std::uint32_t cut = window.low[axis] + static_cast<std::uint32_t>(at);
-    Block result = *this;
+    CubeBlock result = *this;
     if (is_low(axis, cut, first + low)) {
       result.window.high[axis] = cut;
       result.count = low;
@@ -53,14 +53,14 @@ struct Block {
 };
 
 BoxWindow window_of(const BoxOptions& o, std::uint32_t parts, std::uint32_t part) {
-  Block block{{{0, 0, 0}, o.cells}, 0, parts};
+  CubeBlock block{{{0, 0, 0}, o.cells}, 0, parts};
   while (block.count > 1)
     block = block.half([&](std::size_t, std::uint32_t, std::uint32_t upper) { return part < upper; });
   return block.window;
 }
 
-std::uint32_t owner_of(const BoxOptions& o, std::uint32_t parts, const Place& cube) {
-  Block block{{{0, 0, 0}, o.cells}, 0, parts};
+std::uint32_t owner_of(const BoxOptions& o, std::uint32_t parts, const CubePlace& cube) {
+  CubeBlock block{{{0, 0, 0}, o.cells}, 0, parts};
   while (block.count > 1)
     block = block.half([&](std::size_t axis, std::uint32_t cut, std::uint32_t) { return cube[axis] < cut; });
   return block.first;
@@ -84,22 +84,22 @@ std::vector<std::int32_t> patch_order_of(const BoxOptions& o) {
 
 // Calls visit(place) for the places of a window, x fastest.
 template <class Visit>
-void for_each_place(const Place& low, const Place& high, Visit&& visit) {
+void for_each_place(const CubePlace& low, const CubePlace& high, Visit&& visit) {
   for (std::uint32_t k = low[2]; k < high[2]; ++k) {
     for (std::uint32_t j = low[1]; j < high[1]; ++j) {
-      for (std::uint32_t i = low[0]; i < high[0]; ++i) visit(Place{i, j, k});
+      for (std::uint32_t i = low[0]; i < high[0]; ++i) visit(CubePlace{i, j, k});
     }
   }
 }
 
 // Lattice points first, then the cubes' middles, where they are cut from these.
 void number_points(const BoxOptions& o, const BoxWindow& w, MeshPart& part) {
-  const Place n = {o.cells[0] + 1, o.cells[1] + 1, o.cells[2] + 1};
+  const CubePlace n = {o.cells[0] + 1, o.cells[1] + 1, o.cells[2] + 1};
   for_each_place(w.low, {w.high[0] + 1, w.high[1] + 1, w.high[2] + 1},
-                 [&](const Place& p) { part.points.push_back(p[0] + n[0] * (p[1] + n[1] * p[2])); });
+                 [&](const CubePlace& p) { part.points.push_back(p[0] + n[0] * (p[1] + n[1] * p[2])); });
   if (o.type != CellType::pyramid) return;
   const std::uint32_t lattice = n[0] * n[1] * n[2];
-  for_each_place(w.low, w.high, [&](const Place& c) {
+  for_each_place(w.low, w.high, [&](const CubePlace& c) {
     part.points.push_back(lattice + c[0] + o.cells[0] * (c[1] + o.cells[1] * c[2]));
   });
 }
@@ -107,7 +107,7 @@ void number_points(const BoxOptions& o, const BoxWindow& w, MeshPart& part) {
 void number_cells(const BoxOptions& o, const BoxWindow& w, MeshPart& part) {
   const std::uint32_t each = cells_per_cube(o.type);
   const std::uint32_t pool = CombinatorialMap::pool_of(o.type);
-  for_each_place(w.low, w.high, [&](const Place& c) {
+  for_each_place(w.low, w.high, [&](const CubePlace& c) {
     const std::uint32_t cube = c[0] + o.cells[0] * (c[1] + o.cells[1] * c[2]);
     const std::uint32_t owner = owner_of(o, part.parts, c);
     for (std::uint32_t k = 0; k < each; ++k) {

@@ -39,7 +39,7 @@ class PlacesInMesh {
   std::array<std::vector<std::uint32_t>, 5> places_;
 };
 
-// Of each cell of the part; ghosts weigh nothing here.
+// The weight of each cell of the part; ghosts weigh nothing here.
 std::vector<std::uint64_t> weights_of(const MeshPart& part, const Particles& particles, const PlacesInMesh& places) {
   std::vector<std::uint64_t> weights(part.cells.size());
   for (std::size_t c = 0; c < weights.size(); ++c) {

@@ -27,7 +27,7 @@ struct RankStep {
 };
 
 // Words whose sums are those of all ranks.
-struct StepSums {
+struct SummedStep {
   Counters counters;
   std::uint64_t absorbed = 0;
   std::uint64_t escaped = 0;
@@ -35,7 +35,7 @@ struct StepSums {
 
   using Words = std::array<std::uint64_t, sizeof(Counters) / sizeof(std::uint64_t) + 3>;
 };
-static_assert(sizeof(StepSums) == sizeof(StepSums::Words));
+static_assert(sizeof(SummedStep) == sizeof(SummedStep::Words));
 
 std::uint64_t entries(const SimulationStep& s, const StatisticsComponent& statistics, bool with_contacts) {
   return (with_contacts ? s.contact_ids.size() : 0) + s.report.held.size() + s.report.stopped.size() + s.left.size() +
@@ -197,10 +197,10 @@ std::vector<T> merged_member(std::span<const RankStep> ranks, std::vector<T> Ran
 
 void gather_step(Ranks& ranks, ParticleSystem& particles, StatisticsComponent& statistics, bool with_contacts) {
   SimulationStep own = particles.last_step();
-  StepSums sums{own.report.counters, own.absorbed, own.escaped, entries(own, statistics, with_contacts)};
-  auto words = std::bit_cast<StepSums::Words>(sums);
+  SummedStep sums{own.report.counters, own.absorbed, own.escaped, entries(own, statistics, with_contacts)};
+  auto words = std::bit_cast<SummedStep::Words>(sums);
   ranks.sum(words);
-  sums = std::bit_cast<StepSums>(words);
+  sums = std::bit_cast<SummedStep>(words);
   std::vector<std::string> bytes;
   if (sums.entries > 0) bytes = ranks.gather(packed(own, statistics, with_contacts));
   if (ranks.rank() != 0) return;

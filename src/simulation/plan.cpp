@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/random.hpp"
+#include "dartcast/cell_complex.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_part.hpp"
@@ -26,7 +27,7 @@ namespace dartcast {
 
 namespace {
 
-// What happens around the points that parts share.
+// Counts of all parts.
 struct PartCounts {
   std::vector<double> cells;
   std::vector<double> free_cells;

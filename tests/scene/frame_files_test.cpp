@@ -49,7 +49,7 @@ class FrameFilesTest : public testing::Test {
     EnvironmentScene environment;
     environment.scale = scale;
     const MeshData mesh = read_valid_mesh(files.front()).mesh;
-    return frame_reader(std::move(files), mesh, environment, {});
+    return frame_reader(std::move(files), &mesh, environment, {});
   }
   // The frame of `second` after `first`, and the same by reading it as a mesh of its own.
   void expect_same(const fs::path& first, const fs::path& second) const {
@@ -174,7 +174,7 @@ TEST_F(FrameFilesTest, PointsAloneAreThoseOfTheMesh) {
   doubling.scale = 2.0;
   const FrameReader read = frame_reader({first, write("b.vtp", test::vtp_text(swayed, {})), write("c.vtu", mesh),
                                          write("d.vtp", test::vtp_text({swayed.begin(), swayed.end() - 1}, {}))},
-                                        mesh, doubling, {});
+                                        &mesh, doubling, {});
   const auto doubled = [](std::vector<Vec3> points) {
     for (Vec3& x : points) x *= 2.0;
     return points;

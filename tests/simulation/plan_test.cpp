@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "dartcast/cell_complex.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
