@@ -53,7 +53,13 @@ std::uint64_t memory_of_xml(std::uint64_t file) { return memory_of_vtk({.file = 
 std::span<const MeshFormat> mesh_formats() {
   static const std::vector<MeshFormat> formats = {
       {"VTK", "", {{".vtu", write_vtu}}, true, true, memory_of_xml, vtk_functions.read_vtu},
-      {"VTK", "pieces of dartcast partition", {{".pvtu", nullptr}}, true, true, memory_of_index, read_pieces_or_none()},
+      {"VTK",
+       "pieces of dartcast partition",
+       {{".pvtu", nullptr}},
+       false,
+       true,
+       memory_of_index,
+       read_pieces_or_none()},
       {"VTK", "legacy", {{".vtk", vtk_functions.write_legacy}}, true, true, memory_of_text, vtk_functions.read_legacy},
       {"Gmsh",
        "Gmsh 1, 2 or 4",

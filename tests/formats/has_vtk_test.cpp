@@ -34,7 +34,7 @@ TEST(HasVtk, IsThatOfTheBuild) { EXPECT_EQ(has_vtk(), DARTCAST_TEST_VTK == 1); }
 
 TEST(HasVtk, EndingsAreThoseOfThisBuild) {
   const Endings read = with(other_endings, {".meshb", ".ele", ".node"});
-  EXPECT_EQ(mesh_endings(), has_vtk() ? with({".vtu", ".vtk"}, read) : read);
+  EXPECT_EQ(mesh_endings(), has_vtk() ? with({".vtu", ".pvtu", ".vtk"}, read) : read);
   EXPECT_EQ(writable_mesh_endings(), with(has_vtk() ? Endings{".vtu", ".vtk"} : Endings{".vtu"}, other_endings));
 }
 
