@@ -7,12 +7,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <numeric>
 #include <utility>
 #include <vector>
 
+#include "base/elementary.hpp"
 #include "base/random.hpp"
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/environment.hpp"
@@ -132,7 +134,7 @@ class SamplePart {
       std::vector<std::uint32_t> corners;
       for_each_point(part_.mesh, c, [&](std::uint32_t p) { corners.push_back(p); });
       const Vec3& corner = part_.mesh.points[corners[random_.below(static_cast<std::uint32_t>(corners.size()))]];
-      const double share = std::cbrt(random_.uniform());
+      const double share = cube_root(random_.uniform());
       points.push_back(middles[c] + 0.999 * share * (corner - middles[c]));
       edges_ += 2.0 * norm(corner - middles[c]) / std::sqrt(3.0) / static_cast<double>(count);
     }
@@ -151,10 +153,10 @@ class SamplePart {
   double move() {
     const auto start = std::chrono::steady_clock::now();
     const std::span<Vec3> next = environment_.next_positions();
-    const double angle = 1e-3 * ++moves_;
+    const double shear = ++moves_ % 2 == 0 ? 0.0 : 1e-3;
     for (std::size_t p = 0; p < next.size(); ++p) {
       const Vec3& x = part_.mesh.points[p];
-      next[p] = {x.x + 1e-3 * edges_ * std::sin(angle + x.y), x.y, x.z};
+      next[p] = {x.x + shear * x.y, x.y, x.z};
     }
     environment_.move();
     return seconds_since(start);
@@ -172,7 +174,7 @@ class SamplePart {
   std::vector<Vec3> targets_;
   Random random_{1};
   double edges_ = 0.0;  // their mean length, as of a cube with such a diagonal
-  double moves_ = 0.0;
+  int moves_ = 0;
   double left_ = 0.0;
 };
 
@@ -211,8 +213,7 @@ void check(const MeshData& mesh, const PlanOptions& o) {
 // The network as docs/scale.md has it: trees of messages, each with a latency and a time for its bytes.
 class Network {
  public:
-  explicit Network(const PlanOptions& o)
-      : o_(o), depth_(std::ceil(std::log2(static_cast<double>(std::max(1U, o.ranks))))) {}
+  explicit Network(const PlanOptions& o) : o_(o), depth_(std::bit_width(std::max(1U, o.ranks) - 1)) {}
 
   [[nodiscard]] double sum(double bytes) const { return depth_ * (o_.latency + bytes / o_.bandwidth); }
   // All ranks say how many bytes they send to each.
@@ -245,7 +246,7 @@ RunPlan plan_run(const MeshData& mesh, const PlanOptions& options) {
   plan.options = options;
   const double mean = spread_of(counts.cells).mean;
   const double volume = options.cells > 0.0 ? options.cells / mean : 1.0;
-  const double surface = std::pow(volume, 2.0 / 3.0);
+  const double surface = volume / cube_root(volume);
   plan.cells = spread_of(counts.cells, volume);
   plan.ghosts = spread_of(counts.ghosts, surface);
   plan.neighbours = spread_of(counts.neighbours);
