@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <unordered_map>
 #include <utility>
 
@@ -137,6 +138,33 @@ bool PartEnvironment::moves_any(const Particles& particles) const {
   std::uint64_t count = particles.size() > 0 && environment_.awaits_advance(particles) ? 1 : 0;
   ranks_.sum({&count, 1});
   return count > 0;
+}
+
+// One rank at most finds a position in a cell of its own.
+std::vector<AddResult> PartEnvironment::add(Particles& particles, std::span<const Vec3> positions) {
+  constexpr std::uint64_t free = 1;
+  constexpr std::uint64_t blocked = std::uint64_t{1} << 32U;
+  const std::vector<Location> locations = environment_.locate(positions);
+  std::vector<std::uint64_t> found(positions.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const bool own = locations[i].place != Place::outside && cells_.is_own(locations[i].simplex.cell);
+    if (own) found[i] = locations[i].place == Place::free ? free : blocked;
+  }
+  const std::vector<std::uint64_t> own = found;
+  ranks_.sum(found);
+  const std::size_t before = particles.size();
+  std::vector<AddResult> added(positions.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    added[i].location.place = found[i] == free ? Place::free : found[i] == 0 ? Place::outside : Place::blocked;
+    if (own[i] != free) continue;
+    added[i] = {locations[i], static_cast<std::uint32_t>(particles.size())};
+    if (environment_.add(particles, locations[i].simplex, positions[i])) continue;
+    std::vector<std::uint8_t> marks(particles.size(), 1);
+    std::fill_n(marks.begin(), before, 0);
+    particles.remove(marks);
+    throw InvalidArgument(fmt::format("add: position {} is in a cell that is not valid; mend the mesh", i));
+  }
+  return added;
 }
 
 StepReport PartEnvironment::advance(Particles& particles, std::span<const Vec3> targets, const ContactCallback& respond,

@@ -52,6 +52,10 @@ class PartEnvironment {
   [[nodiscard]] const PartCells& cells() const { return cells_; }
   [[nodiscard]] const TrafficCounts& traffic() const { return traffic_; }  ///< so far
 
+  /// As Environment::add(), with the same positions on all ranks. The one that has the cell as its own adds the particle, and
+  /// it alone gets its index; all get its place. Throws as that, nothing added, and InvalidArgument where a cell is not valid.
+  std::vector<AddResult> add(Particles& particles, std::span<const Vec3> positions);
+
   /// Environment::advance() over all parts, to the same bits, for points in space. Particles must be in own cells; they
   /// are afterwards, too. Marks in `gone` those that are now on another rank; those that have come are behind the others.
   /// The report has the contacts that were met here. `respond`: not empty; it is called on a rank that knows all cells around the contact. It uses one thread. Counts of

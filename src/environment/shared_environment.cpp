@@ -4,14 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 #include <string>
 #include <utility>
 
 #include "base/bytes.hpp"
 #include "base/kept_runs.hpp"
-#include "base/reduced.hpp"
+#include "base/put_in_order.hpp"
 #include "dartcast/error.hpp"
+#include "environment/audit_of_all.hpp"
 #include "environment/part_environment.hpp"
 
 namespace dartcast {
@@ -67,36 +67,14 @@ const MeshPart& SharedEnvironment::part() const { return members_->part; }
 const Environment& SharedEnvironment::environment() const { return members_->environment; }
 Cell SharedEnvironment::whole(Cell here) const { return members_->steps.cells().whole(here); }
 
-// One rank at most finds a position in a cell of its own.
 std::vector<Place> SharedEnvironment::add(SharedParticles& particles, std::span<const Vec3> positions) {
-  constexpr std::uint64_t free = 1;
-  constexpr std::uint64_t blocked = std::uint64_t{1} << 32U;
-  Environment& e = members_->environment;
-  const std::vector<Location> locations = e.locate(positions);
-  std::vector<std::uint64_t> found(positions.size());
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    const bool own = locations[i].place != Place::outside && members_->steps.cells().is_own(locations[i].simplex.cell);
-    if (own) found[i] = locations[i].place == Place::free ? free : blocked;
-  }
-  const std::vector<std::uint64_t> own = found;
-  members_->ranks.sum(found);
-  const std::size_t before = particles.size();
   std::vector<Place> places;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    places.push_back(found[i] == free ? Place::free : found[i] == 0 ? Place::outside : Place::blocked);
-    if (found[i] != free) continue;
-    if (own[i] == free) {
-      if (!e.add(particles.particles_, locations[i].simplex, positions[i])) {
-        std::vector<std::uint8_t> added(particles.particles_.size(), 1);
-        std::fill_n(added.begin(), before, 0);
-        particles.particles_.remove(added);
-        throw InvalidArgument(fmt::format("add: position {} is in a cell that is not valid; mend the mesh", i));
-      }
-    }
-  }
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (own[i] == free) particles.ids_.push_back(particles.next_id_);
-    if (found[i] == free) ++particles.next_id_;
+  for (const AddResult& a : members_->steps.add(particles.particles_, positions)) {
+    places.push_back(a.location.place);
+    if (a.location.place != Place::free) continue;
+    if (a.particle == particles.ids_.size())
+      particles.ids_.push_back(particles.next_id_);  // else it is on another rank
+    ++particles.next_id_;
   }
   particles.user_data_.resize(particles.size() * particles.width_);
   return places;
@@ -122,19 +100,11 @@ SharedStep SharedEnvironment::advance(SharedParticles& particles, std::span<cons
   const KeptRuns runs(gone);
   runs.keep_in(particles.ids_);
   runs.keep_in(particles.user_data_, particles.width_);
-  if (std::is_sorted(particles.ids_.begin(), particles.ids_.end())) return step;
-  std::vector<std::uint32_t> order(particles.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::sort(order.begin(), order.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return particles.ids_[a] < particles.ids_[b]; });
+  const std::vector<std::uint32_t> order = order_of(particles.ids_);
+  if (order.empty()) return step;
   particles.particles_.reorder(order);
-  std::vector<double> numbers;
-  for (const std::uint32_t i : order) {
-    const auto own = std::as_const(particles).user_data(i);
-    numbers.insert(numbers.end(), own.begin(), own.end());
-  }
-  particles.user_data_ = std::move(numbers);
-  std::sort(particles.ids_.begin(), particles.ids_.end());
+  put_in_order(particles.ids_, order);
+  put_in_order(particles.user_data_, order, particles.width_);
   return step;
 }
 
@@ -146,24 +116,7 @@ std::uint64_t SharedEnvironment::count(const SharedParticles& particles) const {
 
 Audit SharedEnvironment::audit(const SharedParticles& particles) const {
   const Environment& e = members_->environment;
-  const auto pack = [](const Audit& a) {
-    ByteWriter out;
-    out.put(a.checked);
-    out.put(a.failed);
-    out.put(a.first);
-    return out.bytes();
-  };
-  const auto unpack = [](const std::string& bytes) {
-    ByteReader in(bytes);
-    Audit a;
-    a.checked = in.take<std::uint64_t>();
-    a.failed = in.take<std::uint64_t>();
-    a.first = in.take_text();
-    return a;
-  };
-  return reduced(
-      &members_->ranks, dartcast::audit(e.complex(), particles.particles_, e.threads()),
-      [](Audit& sum, const Audit& other) { sum += other; }, pack, unpack);
+  return audit_of_all(&members_->ranks, dartcast::audit(e.complex(), particles.particles_, e.threads()));
 }
 
 }  // namespace dartcast

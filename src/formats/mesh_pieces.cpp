@@ -23,6 +23,7 @@
 #include "formats/xml_pieces.hpp"
 #include "parts/merged_parts.hpp"
 #include "parts/part_cutter.hpp"
+#include "parts/part_of_rank.hpp"
 
 namespace dartcast {
 
@@ -217,12 +218,8 @@ ParsedMesh read_pieces(const std::filesystem::path& path, std::string_view conte
   for (std::size_t c = 0; c < all.cells.size(); ++c) {
     if (all.cells[c] != c) throw InvalidMesh(fmt::format("cell {} is in no piece: a piece is missing", c));
   }
-  MeshData& mesh = all.mesh;
-  const std::int32_t unknown = unknown_tag_of(mesh);
-  mesh.patch_names.erase(unknown);
-  std::erase(mesh.patch_order, unknown);
   ParsedMesh parsed;
-  parsed.mesh = std::move(mesh);
+  parsed.mesh = whole_mesh(std::move(all));
   parsed.format = "VTK, in pieces";
   return parsed;
 }

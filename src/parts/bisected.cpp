@@ -23,7 +23,7 @@ namespace dartcast {
 namespace {
 
 constexpr unsigned digits = 12;  // of 8 bits: 8 of the coordinate, 4 of the number
-constexpr std::size_t values = 256;
+constexpr std::size_t digit_values = 256;
 
 // A cell's place along an axis. No two cells have the same.
 struct Key {
@@ -165,15 +165,16 @@ class Bisection {
     }
     std::vector<std::uint64_t> sums;  // by group and digit: weights, then numbers
     for (unsigned d = 0; d < digits; ++d) {
-      sums.assign(2 * values * groups_.size(), 0);
+      sums.assign(2 * digit_values * groups_.size(), 0);
       for (const std::uint32_t c : candidates) {
-        const std::size_t at = 2 * (values * group_[c] + key(c).digit(d));
+        const std::size_t at = 2 * (digit_values * group_[c] + key(c).digit(d));
         sums[at] += groups_[group_[c]].by_count ? 1 : weights_[c];
         ++sums[at + 1];
       }
       if (are_several(ranks_)) ranks_->sum(sums);
       for (std::size_t g = 0; g < groups_.size(); ++g) {
-        if (groups_[g].count > 1) choose(groups_[g], std::span(sums).subspan(2 * values * g, 2 * values), d);
+        if (groups_[g].count > 1)
+          choose(groups_[g], std::span(sums).subspan(2 * digit_values * g, 2 * digit_values), d);
       }
       std::erase_if(candidates, [&](std::uint32_t c) { return key(c).digit(d) != groups_[group_[c]].digit; });
     }

@@ -10,9 +10,11 @@
 
 namespace dartcast {
 
-// Blocked cells take memory, and no time.
 inline constexpr std::uint64_t weight_of_free_cell = 10;
-inline constexpr std::uint64_t weight_of_blocked_cell = 1;
+/// Blocked cells take memory, and no time.
+inline std::uint64_t weight_of_cell(const MeshData& mesh, std::size_t c) {
+  return mesh.free.empty() || mesh.free[c] != 0 ? weight_of_free_cell : 1;
+}
 
 /// A point in each cell: the mean of the corners of its faces.
 std::vector<Vec3> middles_of(const MeshData& mesh);

@@ -126,17 +126,13 @@ void name_unknown_faces(const BoxOptions& o, MeshPart& part) {
   mesh.patch_order = patch_order_of(o);
   mesh.patch_order.push_back(tag);
   mesh.patch_names[tag] = unknown_patch;
-  const auto key = [](std::span<const std::uint32_t> face) {
-    std::vector<std::uint32_t> sorted(face.begin(), face.end());
-    std::sort(sorted.begin(), sorted.end());
-    return sorted;
-  };
   std::vector<std::vector<std::uint32_t>> sides;
-  for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) sides.push_back(key(mesh.patch_face(f)));
+  for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) sides.push_back(sorted_corners(mesh.patch_face(f)));
   std::sort(sides.begin(), sides.end());
   const BoundaryFaces around = match_faces(mesh).boundary;
   for (std::size_t f = 0; f < around.size(); ++f) {
-    if (!std::binary_search(sides.begin(), sides.end(), key(around.face(f)))) mesh.add_patch_face(around.face(f), tag);
+    if (!std::binary_search(sides.begin(), sides.end(), sorted_corners(around.face(f))))
+      mesh.add_patch_face(around.face(f), tag);
   }
 }
 

@@ -145,8 +145,7 @@ class Merger {
       for (std::size_t f = 0; f < from_[k].mesh.patch_tags.size(); ++f) {
         std::vector<std::uint32_t> corners;
         for (const std::uint32_t p : from_[k].mesh.patch_face(f)) corners.push_back(numbers_[k][p]);
-        std::vector<std::uint32_t> sorted = corners;
-        std::sort(sorted.begin(), sorted.end());
+        std::vector<std::uint32_t> sorted = sorted_corners(corners);
         const std::int32_t tag = from_[k].mesh.patch_tags[f];
         if (tag == unknown)
           unknown_faces.insert(std::move(sorted));
@@ -158,9 +157,7 @@ class Merger {
     mesh.patch_order = from_.front().mesh.patch_order;
     const BoundaryFaces around = match_faces(mesh).boundary;
     for (std::size_t f = 0; f < around.size(); ++f) {
-      std::vector<std::uint32_t> sorted(around.face(f).begin(), around.face(f).end());
-      std::sort(sorted.begin(), sorted.end());
-      if (!unknown_faces.contains(sorted)) continue;
+      if (!unknown_faces.contains(sorted_corners(around.face(f)))) continue;
       if (out_.owners[around.cells[f]] == out_.part)
         throw InvalidMesh(fmt::format("cell {} has an unknown cell beside it: a part is missing, or is another one",
                                       out_.cells[around.cells[f]]));
@@ -175,41 +172,74 @@ class Merger {
   MeshPart out_;
 };
 
-void put(ByteWriter& out, const std::map<std::int32_t, std::string>& names) {
-  out.put(static_cast<std::uint64_t>(names.size()));
-  for (const auto& [tag, name] : names) {
-    out.put(tag);
-    out.put(name);
+// A part as bytes is a sequence of fields. Writer and reader go through the same list of them, below.
+class PartWriter {
+ public:
+  template <class T>
+  void operator()(const T& value) {
+    out_.put(value);
   }
+  void operator()(const std::map<std::int32_t, std::string>& names) {
+    out_.put(static_cast<std::uint64_t>(names.size()));
+    for (const auto& [tag, name] : names) {
+      out_.put(tag);
+      out_.put(name);
+    }
+  }
+  void operator()(const std::vector<DataArray>& arrays) {
+    out_.put(static_cast<std::uint64_t>(arrays.size()));
+    for (const DataArray& a : arrays) {
+      out_.put(a.name);
+      out_.put(static_cast<std::uint64_t>(a.components));
+      out_.put(a.values);
+    }
+  }
+  [[nodiscard]] const std::string& bytes() const { return out_.bytes(); }
+
+ private:
+  ByteWriter out_;
+};
+
+class PartReader {
+ public:
+  explicit PartReader(std::string_view bytes) : in_(bytes) {}
+  void operator()(std::uint32_t& value) { value = in_.take<std::uint32_t>(); }
+  template <class T>
+  void operator()(std::vector<T>& values) {
+    values = in_.take_list<T>();
+  }
+  void operator()(std::map<std::int32_t, std::string>& names) {
+    for (auto left = in_.take<std::uint64_t>(); left > 0; --left) {
+      const auto tag = in_.take<std::int32_t>();
+      names[tag] = in_.take_text();
+    }
+  }
+  void operator()(std::vector<DataArray>& arrays) {
+    for (auto left = in_.take<std::uint64_t>(); left > 0; --left) {
+      DataArray& a = arrays.emplace_back();
+      a.name = in_.take_text();
+      a.components = in_.take<std::uint64_t>();
+      a.values = in_.take_list<double>();
+    }
+  }
+
+ private:
+  ByteReader in_;
+};
+
+template <class Archive, class... T>
+void in_turn(Archive& a, T&... fields) {
+  (a(fields), ...);
 }
 
-std::map<std::int32_t, std::string> take_names(ByteReader& in) {
-  std::map<std::int32_t, std::string> names;
-  for (auto left = in.take<std::uint64_t>(); left > 0; --left) {
-    const auto tag = in.take<std::int32_t>();
-    names[tag] = in.take_text();
-  }
-  return names;
-}
-
-void put(ByteWriter& out, const std::vector<DataArray>& arrays) {
-  out.put(static_cast<std::uint64_t>(arrays.size()));
-  for (const DataArray& a : arrays) {
-    out.put(a.name);
-    out.put(static_cast<std::uint64_t>(a.components));
-    out.put(a.values);
-  }
-}
-
-std::vector<DataArray> take_arrays(ByteReader& in) {
-  std::vector<DataArray> arrays;
-  for (auto left = in.take<std::uint64_t>(); left > 0; --left) {
-    DataArray& a = arrays.emplace_back();
-    a.name = in.take_text();
-    a.components = in.take<std::uint64_t>();
-    a.values = in.take_list<double>();
-  }
-  return arrays;
+// `Part`: MeshPart, or const.
+template <class Archive, class Part>
+void all_fields(Archive& a, Part& part) {
+  auto& m = part.mesh;
+  in_turn(a, part.part, part.parts, part.points, part.cells, part.owners, part.handles);
+  in_turn(a, m.points, m.types, m.offsets, m.connectivity, m.source, m.regions, m.region_names);
+  in_turn(a, m.patch_faces, m.patch_offsets, m.patch_tags, m.patch_names, m.patch_order);
+  in_turn(a, m.free, m.point_data, m.cell_data);
 }
 
 }  // namespace
@@ -219,57 +249,15 @@ MeshPart merged_parts(const std::vector<MeshPart>& from, std::uint32_t parts, st
 }
 
 std::string packed(const MeshPart& part) {
-  const MeshData& m = part.mesh;
-  ByteWriter out;
-  out.put(part.part);
-  out.put(part.parts);
-  out.put(part.points);
-  out.put(part.cells);
-  out.put(part.owners);
-  out.put(part.handles);
-  out.put(m.points);
-  out.put(m.types);
-  out.put(m.offsets);
-  out.put(m.connectivity);
-  out.put(m.source);
-  out.put(m.regions);
-  put(out, m.region_names);
-  out.put(m.patch_faces);
-  out.put(m.patch_offsets);
-  out.put(m.patch_tags);
-  put(out, m.patch_names);
-  out.put(m.patch_order);
-  out.put(m.free);
-  put(out, m.point_data);
-  put(out, m.cell_data);
-  return out.bytes();
+  PartWriter writer;
+  all_fields(writer, part);
+  return writer.bytes();
 }
 
 MeshPart unpacked_part(std::string_view bytes) {
-  ByteReader in(bytes);
+  PartReader reader(bytes);
   MeshPart part;
-  MeshData& m = part.mesh;
-  part.part = in.take<std::uint32_t>();
-  part.parts = in.take<std::uint32_t>();
-  part.points = in.take_list<std::uint32_t>();
-  part.cells = in.take_list<std::uint32_t>();
-  part.owners = in.take_list<std::uint32_t>();
-  part.handles = in.take_list<Cell>();
-  m.points = in.take_list<Vec3>();
-  m.types = in.take_list<CellType>();
-  m.offsets = in.take_list<std::size_t>();
-  m.connectivity = in.take_list<std::uint32_t>();
-  m.source = in.take_list<std::uint32_t>();
-  m.regions = in.take_list<std::int32_t>();
-  m.region_names = take_names(in);
-  m.patch_faces = in.take_list<std::uint32_t>();
-  m.patch_offsets = in.take_list<std::size_t>();
-  m.patch_tags = in.take_list<std::int32_t>();
-  m.patch_names = take_names(in);
-  m.patch_order = in.take_list<std::int32_t>();
-  m.free = in.take_list<std::uint8_t>();
-  m.point_data = take_arrays(in);
-  m.cell_data = take_arrays(in);
+  all_fields(reader, part);
   return part;
 }
 

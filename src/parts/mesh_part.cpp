@@ -14,10 +14,8 @@
 namespace dartcast {
 
 std::vector<std::uint32_t> partition(const MeshData& mesh, std::uint32_t parts) {
-  std::vector<std::uint64_t> weights(mesh.cell_count(), weight_of_free_cell);
-  for (std::size_t c = 0; c < mesh.free.size(); ++c) {
-    if (mesh.free[c] == 0) weights[c] = weight_of_blocked_cell;
-  }
+  std::vector<std::uint64_t> weights(mesh.cell_count());
+  for (std::size_t c = 0; c < weights.size(); ++c) weights[c] = weight_of_cell(mesh, c);
   return bisected(middles_of(mesh), {}, weights, parts);
 }
 
@@ -50,6 +48,13 @@ MeshData own_mesh(const MeshPart& part) {
   }
   own.cell_data = taken(all.cell_data, which);
   return own;
+}
+
+MeshData whole_mesh(MeshPart part) {
+  const std::int32_t unknown = unknown_tag_of(part.mesh);
+  part.mesh.patch_names.erase(unknown);
+  std::erase(part.mesh.patch_order, unknown);
+  return std::move(part.mesh);
 }
 
 PartCells part_cells(const MeshPart& part) {

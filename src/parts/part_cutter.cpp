@@ -18,12 +18,6 @@ namespace {
 
 constexpr std::uint32_t none = 0xffffffffU;
 
-std::vector<std::uint32_t> sorted(std::span<const std::uint32_t> corners) {
-  std::vector<std::uint32_t> result(corners.begin(), corners.end());
-  std::sort(result.begin(), result.end());
-  return result;
-}
-
 // By the numbers that the map gives them.
 std::vector<std::int32_t> patch_order_of(const MeshData& mesh) {
   std::vector<std::int32_t> order = mesh.patch_order;
@@ -35,6 +29,12 @@ std::vector<std::int32_t> patch_order_of(const MeshData& mesh) {
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> sorted_corners(std::span<const std::uint32_t> face) {
+  std::vector<std::uint32_t> result(face.begin(), face.end());
+  std::sort(result.begin(), result.end());
+  return result;
+}
 
 std::vector<DataArray> taken(const std::vector<DataArray>& arrays, std::span<const std::uint32_t> which) {
   std::vector<DataArray> result;
@@ -201,14 +201,16 @@ void PartCutter::name_unknown_faces(MeshPart& out) const {
   for (std::size_t f = 0; f < around.size(); ++f) {
     corners.clear();
     for (const std::uint32_t p : around.face(f)) corners.push_back(out.points[p]);
-    if (!is_outer(out.cells[around.cells[f]], sorted(corners))) out.mesh.add_patch_face(around.face(f), unknown_tag_);
+    if (!is_outer(out.cells[around.cells[f]], sorted_corners(corners)))
+      out.mesh.add_patch_face(around.face(f), unknown_tag_);
   }
 }
 
 bool PartCutter::is_outer(std::uint32_t cell, std::span<const std::uint32_t> sorted_face) const {
   const auto faces = boundary_of_cell_[cell];
-  return std::any_of(faces.begin(), faces.end(),
-                     [&](std::uint32_t f) { return std::ranges::equal(sorted(boundary_.face(f)), sorted_face); });
+  return std::any_of(faces.begin(), faces.end(), [&](std::uint32_t f) {
+    return std::ranges::equal(sorted_corners(boundary_.face(f)), sorted_face);
+  });
 }
 
 }  // namespace dartcast

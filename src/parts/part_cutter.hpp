@@ -56,6 +56,9 @@ void for_each_point(const MeshData& mesh, std::size_t c, Visit&& visit) {
   for_each_entry(mesh, c, visit, [](std::uint32_t) {});
 }
 
+/// The corners of a face by number, to compare faces.
+std::vector<std::uint32_t> sorted_corners(std::span<const std::uint32_t> face);
+
 /// The values of some items.
 std::vector<DataArray> taken(const std::vector<DataArray>& arrays, std::span<const std::uint32_t> which);
 

@@ -43,8 +43,7 @@ class PlacesInMesh {
 std::vector<std::uint64_t> weights_of(const MeshPart& part, const Particles& particles, const PlacesInMesh& places) {
   std::vector<std::uint64_t> weights(part.cells.size());
   for (std::size_t c = 0; c < weights.size(); ++c) {
-    if (part.owners[c] != part.part) continue;
-    weights[c] = part.mesh.free.empty() || part.mesh.free[c] != 0 ? weight_of_free_cell : weight_of_blocked_cell;
+    if (part.owners[c] == part.part) weights[c] = weight_of_cell(part.mesh, c);
   }
   for (const ParticleState& p : particles.states()) weights[places[p.cell]] += weight_of_particle;
   return weights;

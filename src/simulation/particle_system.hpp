@@ -178,12 +178,9 @@ class ParticleSystem final : public SimulationComponent {
   [[nodiscard]] std::optional<SampledPart> sampled_part() const;
   [[nodiscard]] ParticleState whole_state(std::size_t i) const;
   StepReport advance_in_part(const Acceleration& acceleration);
-  std::vector<AddResult> add_in_part(std::span<const Vec3> positions);
   template <class Sampler>
   std::vector<std::uint64_t> place_in_part(const Sampler& sampler, std::uint64_t first, std::uint64_t count);
   [[nodiscard]] std::vector<std::uint64_t> of_all_ranks(const std::vector<std::uint64_t>& ids) const;
-  template <class T>
-  static void put_in_order(std::vector<T>& values, std::span<const std::uint32_t> order, std::size_t width = 1);
   void put_in_order_of_ids();
   // In particle_system_edit.cpp.
   void remove_absorbed(const UpdateReport& report, std::span<const ParticleState> before);

@@ -141,7 +141,7 @@ std::vector<AddResult> ParticleSystem::add(std::span<const Vec3> positions, std:
 // Adds those of this rank to the environment, and says of all where they are.
 std::vector<AddResult> ParticleSystem::add_own(std::span<const Vec3> positions) {
   if (share_.has_all()) return environment_.add(particles_, positions);
-  if (part_ != nullptr) return add_in_part(positions);
+  if (part_ != nullptr) return part_->add(particles_, positions);
   const std::vector<Location> locations = environment_.locate(positions);
   std::vector<AddResult> added(positions.size());
   std::vector<Vec3> own;

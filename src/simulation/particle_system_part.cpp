@@ -5,11 +5,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 #include <type_traits>
 #include <utility>
 
 #include "base/bytes.hpp"
+#include "base/put_in_order.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/predicates.hpp"
 #include "simulation/particle_system.hpp"
@@ -114,30 +114,6 @@ StepReport ParticleSystem::advance_in_part(const Acceleration& acceleration) {
   return part_->advance(particles_, targets_, respond, options_.step, data, departed_);
 }
 
-// One rank finds each position in a cell of its own.
-std::vector<AddResult> ParticleSystem::add_in_part(std::span<const Vec3> positions) {
-  constexpr std::uint64_t free = 1;
-  constexpr std::uint64_t blocked = std::uint64_t{1} << 32U;
-  const std::vector<Location> locations = environment_.locate(positions);
-  std::vector<std::uint64_t> found(positions.size());
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    const bool own = locations[i].place != Place::outside && part_->cells().is_own(locations[i].simplex.cell);
-    if (own) found[i] = locations[i].place == Place::free ? free : blocked;
-  }
-  const std::vector<std::uint64_t> own = found;
-  options_.ranks->sum(found);
-  std::vector<AddResult> added(positions.size());
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    added[i].location.place = found[i] == free ? Place::free : found[i] == 0 ? Place::outside : Place::blocked;
-    if (own[i] != free) continue;
-    added[i].location = locations[i];
-    added[i].particle = static_cast<std::uint32_t>(particles_.size());
-    if (!environment_.add(particles_, locations[i].simplex, positions[i]))
-      throw InvalidArgument(fmt::format("simulation: position {} is in a cell that is not valid; mend the mesh", i));
-  }
-  return added;
-}
-
 // All ranks draw for each particle. The one whose cell it is adds it; where rounding has put the point outside, all draw
 // again, with the next numbers of the same id.
 template <class Sampler>
@@ -184,22 +160,9 @@ std::vector<std::uint64_t> ParticleSystem::of_all_ranks(const std::vector<std::u
   return all;
 }
 
-template <class T>
-void ParticleSystem::put_in_order(std::vector<T>& values, std::span<const std::uint32_t> order, std::size_t width) {
-  std::vector<T> sorted;
-  sorted.reserve(values.size());
-  for (const std::uint32_t i : order) {
-    const auto first = values.begin() + static_cast<std::ptrdiff_t>(i * width);
-    sorted.insert(sorted.end(), first, first + static_cast<std::ptrdiff_t>(width));
-  }
-  values = std::move(sorted);
-}
-
 void ParticleSystem::put_in_order_of_ids() {
-  if (std::is_sorted(ids_.begin(), ids_.end())) return;
-  std::vector<std::uint32_t> order(ids_.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return ids_[a] < ids_[b]; });
+  const std::vector<std::uint32_t> order = order_of(ids_);
+  if (order.empty()) return;
   particles_.reorder(order);
   put_in_order(ids_, order);
   put_in_order(velocities_, order);

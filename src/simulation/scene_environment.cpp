@@ -10,6 +10,7 @@
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_check.hpp"
 #include "dartcast/mesh_selection.hpp"
+#include "parts/part_of_rank.hpp"
 
 namespace dartcast {
 
@@ -29,6 +30,7 @@ struct Generator {
   }
   MeshData operator()(const MeshData& mesh) const { return mesh; }
   MeshData operator()(const MeshPart& part) const {
+    if (part.parts == 1) return whole_mesh(part);
     throw InvalidArgument(
         fmt::format("the scene's mesh is part {} of {}: so many ranks share it by cells", part.part, part.parts));
   }

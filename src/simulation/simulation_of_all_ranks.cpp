@@ -12,6 +12,7 @@
 #include "base/reduced.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/simulation.hpp"
+#include "environment/audit_of_all.hpp"
 #include "simulation/particle_share.hpp"
 #include "simulation/simulation_parts.hpp"
 #include "simulation/simulation_state.hpp"
@@ -53,23 +54,6 @@ void unpack(const std::string& bytes, SimulationTotals& t) {
   t.wall_overlaps = in.take<std::uint64_t>();
   t.deepest_in_wall = in.take<double>();
   t.contacts_by_patch = in.take_list<std::uint64_t>();
-}
-
-std::string packed(const Audit& audit) {
-  ByteWriter out;
-  out.put(audit.checked);
-  out.put(audit.failed);
-  out.put(audit.first);
-  return out.bytes();
-}
-
-Audit unpacked_audit(const std::string& bytes) {
-  ByteReader in(bytes);
-  Audit audit;
-  audit.checked = in.take<std::uint64_t>();
-  audit.failed = in.take<std::uint64_t>();
-  audit.first = in.take_text();
-  return audit;
 }
 
 // By id, as one process has them.
@@ -117,9 +101,7 @@ Audit Simulation::audit() const {
   for (const SimulationComponent* component : parts_->components) {
     if (component != &parts_->particles && parts_->particles.share().is_first()) own += component->audit();
   }
-  const auto add = [](Audit& sum, const Audit& other) { sum += other; };
-  const auto pack = [](const Audit& audit) { return packed(audit); };
-  return reduced(options().ranks, own, add, pack, unpacked_audit);
+  return audit_of_all(options().ranks, own);
 }
 
 StateHash Simulation::state_hash() const {

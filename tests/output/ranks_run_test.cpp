@@ -398,6 +398,25 @@ TEST_F(RanksRun, ByCellsReadPieces) {
   EXPECT_THROW(run(with_mesh("vessel.pvtu"), at("too many"), 7, false, {}, 0, Partition::cells), Error);
 }
 
+// A part of one is the whole mesh, with its patches alone.
+TEST_F(RanksRun, OneMayHaveTheOnlyPart) {
+  Scene scene = parse_scene(spread_text, "test.toml");
+  const auto hash_of = [&] {
+    Simulation simulation(scene, Threads{1});
+    for (int step = 0; step < 20; ++step) simulation.step();
+    EXPECT_EQ(simulation.totals().contacts_by_patch.size(), 7U);
+    return simulation.state_hash();
+  };
+  BoxOptions box = std::get<BoxOptions>(scene.environment.mesh);
+  box.blocked_share = 0.0;
+  scene.environment.mesh = box;
+  const StateHash whole = hash_of();
+  scene.environment.mesh = box_part(box, 1, 0);
+  EXPECT_EQ(hash_of(), whole);
+  scene.environment.mesh = box_part(box, 2, 0);
+  EXPECT_THROW(Simulation(scene, Threads{1}), InvalidArgument);
+}
+
 // A checkpoint does not depend on how the ranks shared the run.
 TEST_F(RanksRun, ByCellsGoOnWithAnyOtherNumber) {
   run(spread_text, at("whole"), 1);
