@@ -10,13 +10,12 @@
 #include <string_view>
 #include <type_traits>
 
-#include "base/bytes.hpp"
 #include "base/digest.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/run.hpp"
 #include "formats/file_text.hpp"
 #include "formats/file_write.hpp"
-#include "mesh/cell_types.hpp"
+#include "parts/part_cutter.hpp"
 
 namespace dartcast {
 
@@ -409,30 +408,43 @@ std::uint64_t write_checked(const std::filesystem::path& path, std::uint64_t mar
   return sum;
 }
 
-// A sum of these does not depend on which rank has which cell. `number`: of the cell in the whole mesh.
-std::uint64_t cell_digest(const MeshData& mesh, std::size_t c, std::uint64_t number) {
-  ByteWriter bytes;
-  bytes.put(number);
-  bytes.put(mesh.types[c]);
-  bytes.put(mesh.free.empty() ? std::uint8_t{1} : mesh.free[c]);
-  for_each_face(mesh, c, [&](std::span<const std::uint32_t> face) {
-    for (const std::uint32_t p : face) bytes.put(mesh.points[p]);
-  });
-  return digest(bytes.bytes());
-}
+// The sum of these over cells does not depend on which rank has which.
+class CellDigests {
+ public:
+  explicit CellDigests(const MeshData& mesh) : mesh_(mesh) {
+    for (const Vec3& x : mesh.points) points_.push_back(digest({reinterpret_cast<const char*>(&x), sizeof x}));
+  }
+
+  /// `number`: of the cell in the whole mesh.
+  [[nodiscard]] std::uint64_t operator()(std::size_t c, std::uint64_t number) {
+    const bool is_free = mesh_.free.empty() || mesh_.free[c] != 0;
+    words_ = {number, static_cast<std::uint64_t>(mesh_.types[c]), is_free ? 1U : 0U};
+    for_each_entry(
+        mesh_, c, [&](std::uint32_t p) { words_.push_back(points_[p]); },
+        [&](std::uint32_t n) { words_.push_back(n); });
+    return digest(bytes_of(words_));
+  }
+
+ private:
+  const MeshData& mesh_;
+  std::vector<std::uint64_t> points_;
+  std::vector<std::uint64_t> words_;  // keeps its memory
+};
 
 }  // namespace
 
 RunIdentity run_identity(const std::string& scene_text, const MeshData& mesh, std::uint64_t seed) {
+  CellDigests digests(mesh);
   std::uint64_t sum = 0;
-  for (std::size_t c = 0; c < mesh.cell_count(); ++c) sum += cell_digest(mesh, c, c);
+  for (std::size_t c = 0; c < mesh.cell_count(); ++c) sum += digests(c, c);
   return {version(), digest(scene_text), sum, seed};
 }
 
 RunIdentity run_identity(const std::string& scene_text, const MeshPart& part, Ranks& ranks, std::uint64_t seed) {
+  CellDigests digests(part.mesh);
   std::uint64_t sum = 0;
   for (std::size_t c = 0; c < part.cells.size(); ++c) {
-    if (part.owners[c] == part.part) sum += cell_digest(part.mesh, c, part.cells[c]);
+    if (part.owners[c] == part.part) sum += digests(c, part.cells[c]);
   }
   ranks.sum({&sum, 1});
   return {version(), digest(scene_text), sum, seed};
