@@ -3,7 +3,7 @@
 
 #include "dartcast/error.hpp"
 #include "simulation/particle_system.hpp"
-#include "tracking/traveller.hpp"
+#include "tracking/batch/traveller.hpp"
 
 namespace dartcast {
 

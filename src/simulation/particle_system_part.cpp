@@ -13,7 +13,7 @@
 #include "dartcast/error.hpp"
 #include "dartcast/predicates.hpp"
 #include "simulation/particle_system.hpp"
-#include "tracking/traveller.hpp"
+#include "tracking/batch/traveller.hpp"
 
 namespace dartcast {
 

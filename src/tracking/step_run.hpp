@@ -1,7 +1,7 @@
 // The step of one particle. step.cpp compiles it without a recorder, trace.cpp with one that records crossings,
 // pausing_step.cpp with one that stops at each contact. They are three files so that the compiler inlines functions that
-// are called from one place. travelling_step.cpp compiles it for a part of an environment: a step leaves where it needs
-// cells around a cell that is another's.
+// are called from one place. batch/travelling_step.cpp compiles it for a part of an environment: a step leaves where it
+// needs cells around a cell that is another's.
 //
 // The phases of a step, in order (Stepper::step_in()):
 // 1. Where the mesh has moved (MovingStep): a particle whose simplex is not positive before or after is held. Otherwise

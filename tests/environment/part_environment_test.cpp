@@ -25,7 +25,7 @@
 #include "support/stepped_scenes.hpp"
 #include "support/thread_ranks.hpp"
 #include "support/tier.hpp"
-#include "tracking/traveller.hpp"
+#include "tracking/batch/traveller.hpp"
 
 namespace dartcast::part_environment_test {
 

@@ -21,7 +21,7 @@
 #include "dartcast/map_edits.hpp"
 #include "dartcast/response.hpp"
 #include "simulation/seeding.hpp"
-#include "tracking/traveller.hpp"
+#include "tracking/batch/traveller.hpp"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // Travellers as bytes: all that a step needs comes back, in few bytes.
-#include "tracking/traveller.hpp"
+#include "tracking/batch/traveller.hpp"
 
 #include <gtest/gtest.h>
 

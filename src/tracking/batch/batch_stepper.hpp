@@ -14,8 +14,8 @@
 #include "dartcast/threads.hpp"
 #include "tracking/batch/batch.hpp"
 #include "tracking/batch/particle_cache.hpp"
+#include "tracking/batch/travelling_step.hpp"
 #include "tracking/step.hpp"
-#include "tracking/travelling_step.hpp"
 
 namespace dartcast::detail {
 

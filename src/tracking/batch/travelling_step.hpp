@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
+#include "tracking/batch/traveller.hpp"
 #include "tracking/step.hpp"
-#include "tracking/traveller.hpp"
 
 namespace dartcast {
 

@@ -3,7 +3,7 @@
 //
 // The phases of a walk here: go to the wall or to the target's simplex; if that is another rank's, and its surroundings
 // matter, leave; else end the walk as tracking/walk.hpp does.
-#include "tracking/travelling_step.hpp"
+#include "tracking/batch/travelling_step.hpp"
 
 #include "tracking/step_run.hpp"
 

@@ -1,6 +1,6 @@
 // Travellers as bytes: some plain records one after another. Those that a step does not have are left out: most steps
 // travel with no walls, no ties and in one part.
-#include "tracking/traveller.hpp"
+#include "tracking/batch/traveller.hpp"
 
 #include <type_traits>
 
