@@ -168,8 +168,10 @@ Vec3 wall_displacement(const CellComplex& complex, SimplexId simplex, unsigned f
   for (unsigned i = 0; i < N - 1; ++i) {
     const std::uint32_t vertex = vertices[facet_corner<N>(facet, i)].value;
     const Vec3& before = complex.previous_positions()[vertex];
-    if (!in_exact_range(before)) continue;  // the vertex came back from out of range: the wall did not move
-    Vec3 moved = complex.positions()[vertex] - before;
+    const Vec3& now = complex.positions()[vertex];
+    // A vertex that comes from out of range, or goes there, does not move the wall.
+    if (!in_exact_range(before) || !in_exact_range(now)) continue;
+    Vec3 moved = now - before;
     if constexpr (N == 3) moved.z = 0.0;  // as Space::corners()
     result += moved * (sum > 0.0 ? weight[i] / sum : 1.0 / (N - 1.0));
   }

@@ -423,7 +423,7 @@ TEST_P(FilteredBatch, TakesStepsAsOneParticleDoes) {
   for (const std::string& wrong : complaints) ADD_FAILURE() << wrong;
   // Not in slivers, nor in a few scenes, and not in so many cells that have no way on.
   if (kind == oracle::SceneKind::slivers || sanitized()) return;
-  EXPECT_GT(tally.taken, tally.steps / (moves ? 8 : 4));
+  EXPECT_GT(tally.taken, tally.steps / (moves ? 8 : 5));
   EXPECT_GT(tally.moved_on, tally.steps / 50);
   EXPECT_GT(tally.resumed, tally.steps / 100);
   EXPECT_GT(tally.landed, tally.resumed / 6);
@@ -469,6 +469,11 @@ TEST(FilteredBatch, SeedsThatWentWrong) {
   // Far off: steps that the rule splits, as it rounds the motion up.
   EXPECT_EQ(run_scene(oracle::SceneKind::pyramids, true, 51, tally), "");
   EXPECT_EQ(run_scene(oracle::SceneKind::flat_corners, true, 43, tally), "");
+  // A walk that ends on a wall of a cell that has lost a vertex: its wall's displacement was infinite.
+  EXPECT_EQ(run_scene(oracle::SceneKind::prisms, true, 283, tally), "");
+  EXPECT_EQ(run_scene(oracle::SceneKind::prisms, true, 435, tally), "");
+  EXPECT_EQ(run_scene(oracle::SceneKind::octahedra, true, 1819, tally), "");
+  EXPECT_EQ(run_scene(oracle::SceneKind::flat_corners, true, 1027, tally), "");
   // A walk through all simplices of a small scene, of which the first is tested in a round of its own.
   EXPECT_EQ(run_scene(oracle::SceneKind::prisms, false, 1949, tally), "");
 }
