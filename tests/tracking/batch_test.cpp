@@ -10,7 +10,6 @@
 #include <cstring>
 #include <limits>
 #include <numbers>
-#include <numeric>
 
 #include "base/random.hpp"
 #include "oracle/scenes.hpp"
@@ -18,6 +17,7 @@
 #include "support/seeds.hpp"
 #include "support/tier.hpp"
 #include "topology/exit_table.hpp"
+#include "tracking/batch/far_walk_counts.hpp"
 #include "tracking/carry.hpp"
 #include "tracking/locate.hpp"
 #include "tracking/step.hpp"
@@ -80,7 +80,6 @@ class BothWays {
     const ContactCallback none;
     const Stepper stepper(complex_, moves_, options, none);
     Counters counters;  // of the steps taken
-    Counters far;       // and of those to far targets alone
     std::vector<ParticleState> next = states_;
     detail::SimplexCache next_caches;
     for (std::size_t i = 0; i < particles; ++i) {
@@ -89,6 +88,9 @@ class BothWays {
       const bool taken = best.taken[i] == detail::step_complete;
       bool landed = false;
       std::string error = something_in_the_way(one, i, targets[i]);
+      // Where the mesh moves there are other reasons to leave a step to one particle's.
+      if (!moves_ && best.taken[i] == detail::step_untouched && !same(one.counters, one.counters_in_batch))
+        error = "other counts of a step that a batch leaves";
       if (error.empty() && !taken && best.taken[i] != detail::step_untouched) {
         for (const Filtered* f : {&portable, &best}) {
           if (error.empty()) error = compare_resumed(stepper, *f, one, i, targets[i], landed);
@@ -104,15 +106,14 @@ class BothWays {
         next_caches.push_back(best.caches[i], best.caches.flags(i));
       else
         next_caches.push_back(cache_entry(one.state));
-      if (taken) counters += is_carried_to(i, targets[i]) ? counts_of_a_kept_forecast() : one.counters;
-      if (taken && is_far(states_[i].at(), targets[i])) far += one.counters;
+      if (taken) counters += is_carried_to(i, targets[i]) ? counts_of_a_kept_forecast() : one.counters_in_batch;
       tally.steps += 1;
       tally.taken += taken ? 1 : 0;
       tally.moved_on += taken && next[i].at() != states_[i].at() ? 1 : 0;
     }
     states_ = next;
     caches_ = random_.below(8) == 0 ? detail::SimplexCache{} : next_caches;
-    return agree(best.counters, counters, far) ? "" : "other counts";
+    return same(best.counters, counters) ? "" : "other counts";
   }
 
  private:
@@ -131,13 +132,40 @@ class BothWays {
     StepResult result;
     ContactList contacts;
     Counters counters;
+    Counters counters_in_batch;
   };
 
   ScalarStep scalar_step(const Stepper& stepper, std::size_t i, const Vec3& target) const {
-    ScalarStep one{states_[i], {}, {}, {}};
+    ScalarStep one{states_[i], {}, {}, {}, {}};
     Weights weights{};
     one.result = stepper.step(static_cast<std::uint32_t>(i), one.state, weights, target, one.contacts, one.counters);
+    one.counters_in_batch = one.counters;
+    if (one.counters.orientation.tests > 0 && one.counters.steps_split == 0 && !one.result.held) {
+      const TestCounts counts = counts_in_batch(i, target);
+      one.counters_in_batch.orientation = counts;
+      one.counters_in_batch.histogram = {};
+      one.counters_in_batch.histogram[std::min<std::size_t>(counts.tests, Counters::histogram_size - 1)] = 1;
+    }
     return one;
+  }
+
+  // Those of a walk that a batch takes, up to its first wall.
+  [[nodiscard]] TestCounts counts_in_batch(std::size_t i, const Vec3& q) const {
+    const ParticleState& s = states_[i];
+    SimplexPlacement start{s.at(), s.position};
+    if (moves_) {
+      const Weights weights = detail::barycentric(previous_space(complex_).corners(s.at()), s.position);
+      start = detail::carried(current_space(complex_), s.at(), weights);
+    }
+    const auto space = current_space(complex_);
+    TestCounts counts;
+    detail::FarWalkCounts far(complex_.map(), complex_.positions().data(), start.position, q, counts);
+    far.begin(start.simplex);
+    const Walk walk = detail::walk_to_wall(space, start.simplex, start.position, q, counts, far);
+    far.end(walk);
+    counts = far.walk().counted(counts);
+    detail::end_walk(space, walk, start.position, q, counts);
+    return counts;
   }
 
   // A step whose target is inside the simplex must have no contact and no other simplex.
@@ -159,13 +187,11 @@ class BothWays {
     stepper.resume(static_cast<std::uint32_t>(i), state, unused, target, resumed, counts, partial);
     if (!same_bits(state, one.state)) return "another state, resumed";
     if (!same(resumed, one.contacts)) return "other contacts, resumed";
-    const Counters far = is_far(states_[i].at(), target) ? one.counters : Counters{};
-    if (!agree(counts, one.counters, far)) return "other counts, resumed";
+    if (!same(counts, one.counters_in_batch)) return "other counts, resumed";
     landed = partial.impact.has_value();
     return landed && !partial.stays(state) ? "not where it landed" : "";
   }
 
-  // Without caches other walks may go along their lines.
   std::string compare_uncached(const Stepper& stepper, const Filtered& batch, const ScalarStep& one, std::size_t i,
                                const Vec3& target) const {
     if (batch.taken[i] == detail::step_complete)
@@ -263,29 +289,6 @@ class BothWays {
            a.histogram == b.histogram && a.forecast_kept == b.forecast_kept &&
            a.updated_by_deformation == b.updated_by_deformation && a.contacts == b.contacts &&
            a.orientation.exact == b.orientation.exact;
-  }
-
-  // Whether the walk goes along its line: a coordinate of the target is below -1.5.
-  [[nodiscard]] bool is_far(SimplexId at, const Vec3& target) const {
-    const Determinants d(complex_.corners(at), target);
-    return *std::min_element(d.value.begin(), d.value.end()) < -1.5 * d.volume6();
-  }
-
-  // Walks along lines ask other questions: in each simplex for three sides, and near the end for one more. In return
-  // they do not ask which of several facets comes first. All others count as the scalar step does. far: the scalar
-  // counts of walks along lines.
-  static bool agree(const Counters& batch, const Counters& scalar, const Counters& far) {
-    if (far.particle_steps == 0) return same(batch, scalar);
-    const auto total = [](const Counters& c) {
-      return std::accumulate(c.histogram.begin(), c.histogram.end(), std::uint64_t{0});
-    };
-    const std::uint64_t near_tests = scalar.orientation.tests - far.orientation.tests;
-    const std::uint64_t far_tests = batch.orientation.tests - near_tests;
-    return batch.particle_steps == scalar.particle_steps && total(batch) == total(scalar) &&
-           batch.forecast_kept == scalar.forecast_kept &&
-           batch.updated_by_deformation == scalar.updated_by_deformation && batch.contacts == scalar.contacts &&
-           batch.orientation.tests >= near_tests && 2 * far_tests >= far.orientation.tests &&
-           2 * far_tests <= 3 * far.orientation.tests;
   }
 
   Vec3 point_of(const dartcast::Corners& v) {

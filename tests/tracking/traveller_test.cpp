@@ -45,18 +45,24 @@ class RandomTravellers {
       for (Vec3& v : w.before) v = vector();
       for (Vec3& v : w.now) v = vector();
     }
-    if (stage != TravelStage::on_way) return t;
-    t.walk.end = number() % 2 == 0 ? WalkEnd::wall : WalkEnd::arrived;
-    t.walk.simplex = {Cell(number()), 4};
-    t.walk.zeros = 5;
-    t.walk.wall_facet = 2;
-    t.restarted = number() % 2 == 0;
-    t.ties.count = ties;
-    for (unsigned i = 0; i < ties; ++i) t.ties.corner[i] = vector();
+    if (stage == TravelStage::on_way) put_walk(t, ties);
     return t;
   }
 
  private:
+  void put_walk(Traveller& t, std::uint8_t ties) {
+    t.walk.end = number() % 2 == 0 ? WalkEnd::wall : WalkEnd::arrived;
+    t.walk.simplex = {Cell(number()), 4};
+    t.walk.zeros = 5;
+    t.walk.wall_facet = 2;
+    t.far.by = FarWalk::By{static_cast<std::uint8_t>(number() % 3)};
+    t.far.slots = {0, 3, 1};
+    t.far.reach = real();
+    t.far.counts = {number(), number()};
+    t.restarted = number() % 2 == 0;
+    t.ties.count = ties;
+    for (unsigned i = 0; i < ties; ++i) t.ties.corner[i] = vector();
+  }
   std::uint32_t number() { return static_cast<std::uint32_t>(random_()); }
   double real() { return static_cast<double>(random_() >> 11U) * 0x1p-53; }
   Vec3 vector() { return {real(), real(), real()}; }
@@ -67,6 +73,24 @@ std::string bytes_of(const Traveller& t) {
   ByteWriter out;
   pack(t, out);
   return out.bytes();
+}
+
+void expect_same_walk(const Traveller& come, const Traveller& sent) {
+  EXPECT_EQ(come.walk.end, sent.walk.end);
+  EXPECT_EQ(come.walk.simplex, sent.walk.simplex);
+  EXPECT_EQ(come.walk.wall_simplex, sent.walk.simplex);
+  EXPECT_EQ(come.walk.zeros, sent.walk.zeros);
+  EXPECT_EQ(come.walk.wall_facet, sent.walk.wall_facet);
+  EXPECT_EQ(come.far.by, sent.far.by);
+  if (sent.far.by != FarWalk::By::determinants) {
+    EXPECT_EQ(come.far.slots, sent.far.slots);
+    EXPECT_EQ(come.far.reach, sent.far.reach);
+    EXPECT_EQ(come.far.counts.tests, sent.far.counts.tests);
+    EXPECT_EQ(come.far.counts.exact, sent.far.counts.exact);
+  }
+  EXPECT_EQ(come.restarted, sent.restarted);
+  EXPECT_EQ(come.ties.count, sent.ties.count);
+  EXPECT_EQ(come.ties.corner, sent.ties.corner);
 }
 
 TEST(Traveller, ComesBackFromItsBytes) {
@@ -117,15 +141,7 @@ TEST(Traveller, ComesBackFromItsBytes) {
         EXPECT_EQ(come.walls[i].before, sent.walls[i].before);
         EXPECT_EQ(come.walls[i].now, sent.walls[i].now);
       }
-      if (stage != TravelStage::on_way) continue;
-      EXPECT_EQ(come.walk.end, sent.walk.end);
-      EXPECT_EQ(come.walk.simplex, sent.walk.simplex);
-      EXPECT_EQ(come.walk.wall_simplex, sent.walk.simplex);
-      EXPECT_EQ(come.walk.zeros, sent.walk.zeros);
-      EXPECT_EQ(come.walk.wall_facet, sent.walk.wall_facet);
-      EXPECT_EQ(come.restarted, sent.restarted);
-      EXPECT_EQ(come.ties.count, sent.ties.count);
-      EXPECT_EQ(come.ties.corner, sent.ties.corner);
+      if (stage == TravelStage::on_way) expect_same_walk(come, sent);
     }
   }
 }

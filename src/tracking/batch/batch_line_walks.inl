@@ -74,7 +74,10 @@ struct Lines4 {
   }
 
   void set_reach(const Double4& largest_coordinate) {
-    reach = splat(reach_of_first_simplex) * largest_coordinate + (length + length);
+    reach_to(splat(reach_of_first_simplex) * largest_coordinate + (length + length));
+  }
+  void reach_to(const Double4& most) {
+    reach = most;
     side_bound = splat(side_error) * (reach * reach);
   }
   [[nodiscard]] Mask4 in_range() const { return (reach > nearest_reach) & (reach < farthest_reach); }

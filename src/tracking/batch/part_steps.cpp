@@ -17,22 +17,6 @@
 
 namespace dartcast::detail {
 
-namespace {
-
-void subtract(Counters& from, const Counters& one) {
-  from.particle_steps -= one.particle_steps;
-  from.orientation.tests -= one.orientation.tests;
-  from.orientation.exact -= one.orientation.exact;
-  for (std::size_t i = 0; i < Counters::histogram_size; ++i) from.histogram[i] -= one.histogram[i];
-  from.forecast_kept -= one.forecast_kept;
-  from.updated_by_deformation -= one.updated_by_deformation;
-  from.steps_split -= one.steps_split;
-}
-
-const ContactCallback nobody;
-
-}  // namespace
-
 class PartSteps {
  public:
   PartSteps(const BatchStepper& batch, const ContactCallback& respond, const GrowingParticles& particles,
@@ -95,17 +79,20 @@ class PartSteps {
     step_batch(scene, steps, report_.counters);
     for (std::size_t i = 0; i < size; ++i) {
       const std::size_t p = begin + i;
-      if (status[i] == step_complete) {
+      const bool complete = status[i] == step_complete;
+      if (complete) {
         if (!must_be_taken_back(particles_.states[p])) continue;
-        take_back(p, before[p], weights_before[p], targets[p]);
+        particles_.states[p] = before[p];
+        particles_.weights[p] = weights_before[p];
       }
-      const bool untouched = status[i] == step_complete || status[i] == step_untouched;
+      const bool untouched = complete || status[i] == step_untouched;
       const PartialStep* const so_far =
           untouched || !cells_.is_own(partial[status[i]].walk.simplex.cell) ? nullptr : &partial[status[i]];
       TravellingPause pause;
       const TravelResult result =
           stepper_.start(static_cast<std::uint32_t>(p), particles_.states[p], particles_.weights[p], targets[p], met,
-                         report_.counters, so_far, pause);
+                         report_.counters, so_far, status[i] != step_untouched, pause);
+      if (complete) take_back(pause.traveller);
       take(result, std::move(pause), static_cast<std::uint32_t>(p), met, waiting_);
     }
   }
@@ -115,17 +102,15 @@ class PartSteps {
     return !cells_.is_own(s.cell) && zeros_of(complex_.corners(s.at()), s.position) != 0;
   }
 
-  // The same step one by one has the same counts.
-  void take_back(std::size_t p, const ParticleState& before, const Weights& weights, const Vec3& target) {
-    ParticleState state = before;
-    Weights copy = weights;
-    ContactList none;
-    Counters counted;
-    Stepper(complex_, batch_.moved_, batch_.options_, nobody)
-        .step(static_cast<std::uint32_t>(p), state, copy, target, none, counted);
-    subtract(report_.counters, counted);
-    particles_.states[p] = before;
-    particles_.weights[p] = weights;
+  // The batch has counted a step that leaves, and has counted it up to here.
+  void take_back(const Traveller& t) {
+    const TestCounts counted = t.far.counted(t.tests);
+    Counters& c = report_.counters;
+    --c.particle_steps;
+    c.orientation.tests -= counted.tests;
+    c.orientation.exact -= counted.exact;
+    --c.histogram[std::min<std::size_t>(counted.tests, Counters::histogram_size - 1)];
+    c.updated_by_deformation -= t.left_behind ? 1 : 0;
   }
 
   // A step that has come as far as it can, here and now.

@@ -15,6 +15,7 @@ constexpr std::uint8_t has_left_behind = 2;
 constexpr std::uint8_t has_restarted = 4;
 constexpr std::uint8_t is_held = 8;
 constexpr std::uint8_t has_parts = 16;
+constexpr std::uint8_t is_far = 32;
 
 struct PackedState {
   Vec3 position;
@@ -56,7 +57,8 @@ std::uint8_t flags_of(const Traveller& t) {
   const auto flag = [](bool set, std::uint8_t f) { return set ? f : std::uint8_t{0}; };
   return static_cast<std::uint8_t>(flag(t.result.held || t.result.stopped, has_result) |
                                    flag(t.left_behind, has_left_behind) | flag(t.restarted, has_restarted) |
-                                   flag(t.state.held, is_held) | flag(t.parts > 1, has_parts));
+                                   flag(t.state.held, is_held) | flag(t.parts > 1, has_parts) |
+                                   flag(t.far.by != FarWalk::By::determinants, is_far));
 }
 
 }  // namespace
@@ -87,6 +89,7 @@ void pack(const Traveller& t, ByteWriter& out) {
   if (t.stage != TravelStage::on_way) return;
   out.put(PackedWalk{t.walk.simplex, t.walk.end, t.walk.zeros, t.walk.wall_facet});
   for (unsigned i = 0; i < t.ties.count; ++i) out.put(t.ties.corner[i]);
+  if ((flags & is_far) != 0) out.put(t.far);
 }
 
 void unpack(ByteReader& in, Traveller& t) {
@@ -126,6 +129,7 @@ void unpack(ByteReader& in, Traveller& t) {
   t.walk.wall_facet = walk.wall_facet;
   t.ties.count = s.ties;
   for (unsigned i = 0; i < s.ties; ++i) t.ties.corner[i] = in.take<Vec3>();
+  if ((s.flags & is_far) != 0) t.far = in.take<FarWalk>();
 }
 
 }  // namespace dartcast

@@ -9,6 +9,7 @@
 #include "dartcast/particle_state.hpp"
 #include "dartcast/step.hpp"
 #include "parts/part_cells.hpp"
+#include "tracking/batch/far_walk_counts.hpp"
 #include "tracking/step.hpp"
 
 namespace dartcast {
@@ -64,6 +65,7 @@ struct Traveller {
   Vec3 target;       ///< of the walk
   Vec3 step_target;  ///< of the whole step
   Walk walk;         ///< on_way: as far as it has come
+  FarWalk far;       ///< on_way: the same walk in a batch
   bool restarted = false;
   TieCorners ties;
   std::vector<CarriedWall> walls;  ///< met earlier in this step, oldest first

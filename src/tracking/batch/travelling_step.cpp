@@ -5,6 +5,8 @@
 // matter, leave; else end the walk as tracking/walk.hpp does.
 #include "tracking/batch/travelling_step.hpp"
 
+#include <utility>
+
 #include "tracking/step_run.hpp"
 
 namespace dartcast {
@@ -38,6 +40,8 @@ class TravelRecorder {
       : complex_(&complex), cells_(&cells), pause_(&pause) {
     pause.step.waits = false;
   }
+  /// The first walk is counted as in a batch.
+  void begin_in_batch() { in_batch_ = true; }
 
   // As the recorder of steps that pause.
   static NoVisitor visitor() { return {}; }
@@ -80,16 +84,20 @@ class TravelRecorder {
   template <class Positions>
   Walk walk(const Space<Positions, N>& space, Run& run, const PartialStep* partial, const Vec3& p, const Vec3& q,
             const TimeInterval& interval) {
-    NoVisitor none;
+    detail::FarWalkCounts far(complex_->map(), complex_->positions().data(), p, q, run.tests);
     if (takes_up_) {
       takes_up_ = false;
       const TieCorners ties = traveller().ties;
       const bool restarted = traveller().restarted;
-      return end(space, run, take_up(space, ties, p, q, run.tests), ties, restarted, p, q, interval);
+      return end(space, run, take_up(space, ties, p, q, run.tests, far), far, ties, restarted, p, q, interval);
     }
     const SimplexId start = run.state.at();
-    const Walk walk = partial != nullptr ? partial->walk : detail::walk_to_wall(space, start, p, q, run.tests, none);
-    return end(space, run, walk, ties_of(space, start, p), false, p, q, interval);
+    const TieCorners ties = ties_of(space, start, p);
+    if (partial != nullptr) return end(space, run, partial->walk, far, ties, false, p, q, interval);
+    if (std::exchange(in_batch_, false)) far.begin(start);
+    const Walk walk = detail::walk_to_wall(space, start, p, q, run.tests, far);
+    far.end(walk);
+    return end(space, run, walk, far, ties, false, p, q, interval);
   }
 
   template <class Positions>
@@ -142,6 +150,7 @@ class TravelRecorder {
     t.target = q;
     t.interval = interval;
     t.part = t.parts = 1;
+    t.far = {};
   }
 
   // Whether cells around the end of a walk matter that this rank may not know.
@@ -164,26 +173,29 @@ class TravelRecorder {
   // The traveller's walk as this rank's own cells have it: it leaves its simplex by the facet, or meets a wall there.
   template <class Positions>
   Walk take_up(const Space<Positions, N>& space, const TieCorners& ties, const Vec3& p, const Vec3& q,
-               TestCounts& counts) const {
+               TestCounts& counts, detail::FarWalkCounts& far) const {
     Walk walk = traveller().walk;
     walk.simplex = cells_->here(walk.simplex);
     walk.wall_simplex = walk.simplex;
+    far.go_on(traveller().far, walk.simplex, walk.wall_facet);
     if (walk.end == WalkEnd::arrived) return walk;
     const CellView cell = space.map->view(walk.simplex.cell);
     const Across across = cell.shape().simplices()[walk.simplex.simplex].across[walk.wall_facet];
     if (across.outer() && cell.is_wall(across.face())) return walk;
     constexpr unsigned all = (1U << N) - 1U;
     const Passage next = pass(*space.map, walk.simplex, cell, across);
-    NoVisitor none;
     detail::Ties<Positions, N> tie_breaker(space, p, q, std::span(ties.corner).first(ties.count));
-    return detail::walk_on(space, next.simplex, all & ~(1U << next.facet), N - 1, p, q, tie_breaker, counts, none);
+    walk = detail::walk_on(space, next.simplex, all & ~(1U << next.facet), N - 1, p, q, tie_breaker, counts, far);
+    far.end(walk);
+    return walk;
   }
 
-  void leave_on_way(const Walk& walk, const TieCorners& ties, bool restarted, const Vec3& q,
+  void leave_on_way(const Walk& walk, const FarWalk& far, const TieCorners& ties, bool restarted, const Vec3& q,
                     const TimeInterval& interval) {
     leave(TravelStage::on_way, q, interval);
     Traveller& t = traveller();
     t.walk = walk;
+    t.far = far;
     t.walk.simplex = t.walk.wall_simplex = cells_->whole(walk.simplex);
     t.to = cells_->owner(walk.simplex.cell);
     t.ties = ties;
@@ -192,12 +204,13 @@ class TravelRecorder {
 
   // As detail::end_walk(), where it does not leave.
   template <class Positions>
-  Walk end(const Space<Positions, N>& space, Run& run, Walk walk, const TieCorners& ties, bool restarted, const Vec3& p,
-           const Vec3& q, const TimeInterval& interval) {
+  Walk end(const Space<Positions, N>& space, Run& run, Walk walk, const detail::FarWalkCounts& far,
+           const TieCorners& ties, bool restarted, const Vec3& p, const Vec3& q, const TimeInterval& interval) {
     if (needs_others(walk)) {
-      leave_on_way(walk, ties, restarted, q, interval);
+      leave_on_way(walk, far.walk(), ties, restarted, q, interval);
       return walk;
     }
+    run.tests = far.walk().counted(run.tests);
     if (walk.end == WalkEnd::wall && !walk.at_end && !restarted) {
       ++run.tests.tests;
       if (orient_facet(space.corners(walk.wall_simplex), walk.wall_facet, p) == Sign::zero) {
@@ -207,7 +220,7 @@ class TravelRecorder {
           NoVisitor none;
           walk = detail::walk_to_wall(space, restart, p, q, run.tests, none);
           if (needs_others(walk)) {
-            leave_on_way(walk, ties_of(space, restart, p), true, q, interval);
+            leave_on_way(walk, {}, ties_of(space, restart, p), true, q, interval);
             return walk;
           }
         }
@@ -256,6 +269,7 @@ class TravelRecorder {
   bool moved_ = false;
   bool left_ = false;
   bool takes_up_ = false;
+  bool in_batch_ = false;
 };
 
 template <std::size_t N>
@@ -277,7 +291,7 @@ Vec3 rest_of_walk(const CellComplex& complex, bool moved, const StepOptions& opt
 template <std::size_t N>
 TravelResult TravellingStepper::start_in(std::uint32_t particle, ParticleState& state, Weights& weights,
                                          const Vec3& target, ContactList& contacts, Counters& counters,
-                                         const PartialStep* partial, TravellingPause& pause) const {
+                                         const PartialStep* partial, bool in_batch, TravellingPause& pause) const {
   using Recorder = TravelRecorder<N>;
   pause.traveller = {};
   pause.traveller.step_target = target;
@@ -285,6 +299,7 @@ TravelResult TravellingStepper::start_in(std::uint32_t particle, ParticleState& 
   detail::RunOf<Recorder> run{
       particle, state, contacts, counters, {}, 0, 0, 0, -1.0, {}, Recorder(complex_, cells_, pause)};
   run.recorder.set_moved(moved_);
+  if (N == 4 && in_batch) run.recorder.begin_in_batch();
   run.first_wall = run.first_here = static_cast<std::uint32_t>(contacts.walls.size());
   const SimplexId start = state.at();
   const Vec3 p = state.position;
@@ -388,10 +403,10 @@ TravelResult TravellingStepper::answer_in(const ContactList& met, const Contact&
 
 TravelResult TravellingStepper::start(std::uint32_t particle, ParticleState& state, Weights& weights,
                                       const Vec3& target, ContactList& contacts, Counters& counters,
-                                      const PartialStep* partial, TravellingPause& pause) const {
+                                      const PartialStep* partial, bool in_batch, TravellingPause& pause) const {
   if (complex_.map().dimension() == 2)
-    return start_in<3>(particle, state, weights, target, contacts, counters, partial, pause);
-  return start_in<4>(particle, state, weights, target, contacts, counters, partial, pause);
+    return start_in<3>(particle, state, weights, target, contacts, counters, partial, in_batch, pause);
+  return start_in<4>(particle, state, weights, target, contacts, counters, partial, in_batch, pause);
 }
 
 TravelResult TravellingStepper::go_on(ParticleState& state, Weights& weights, ContactList& contacts, Counters& counters,

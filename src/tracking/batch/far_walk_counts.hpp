@@ -1,0 +1,82 @@
+// The tests that a batch counts on a far walk (tracking/batch/batch_far_walks.inl), for one particle that walks from rank
+// to rank: a batch on one rank would walk along the line, which asks other questions. Not installed.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "tracking/batch/particle_cache.hpp"
+#include "tracking/walk.hpp"
+
+namespace dartcast {
+
+/// Where a batch would be in its walk, at a place where the walk leaves a rank.
+struct FarWalk {
+  enum class By : std::uint8_t {
+    determinants,  ///< as one particle walks, from the start of the step
+    line,
+    rounds  ///< as one particle walks, from a simplex in which the line was undecided
+  };
+  By by = By::determinants;
+  std::array<std::uint8_t, 3>
+      slots{};         ///< by line: the triangle's corners, by their places in the simplex that it leaves
+  double reach = 0.0;  ///< by line: that of its first simplex
+  TestCounts counts;   ///< by line: so far; in rounds: what they add to those of one particle
+
+  /// The tests that the batch has counted, where one particle has counted `scalar`.
+  [[nodiscard]] TestCounts counted(const TestCounts& scalar) const {
+    if (by == By::line) return counts;
+    return {scalar.tests + counts.tests, scalar.exact + counts.exact};  // modulo 2^64: less may be added than counted
+  }
+};
+
+namespace detail {
+
+/// Visits the simplices of one particle's walk in space, and asks there what a batch asks, to the same bits.
+class FarWalkCounts {
+ public:
+  /// The walk from p to q. `scalar`: what the walk itself counts.
+  FarWalkCounts(const CombinatorialMap& map, const Vec3* positions, const Vec3& p, const Vec3& q,
+                const TestCounts& scalar)
+      : map_(map), positions_(positions), p_(p), q_(q), scalar_(scalar) {}
+
+  /// The walk begins there, in a batch. Where its target is near, both count the same.
+  void begin(SimplexId start);
+  /// The walk has left a rank by that facet.
+  void go_on(const FarWalk& walk, SimplexId left, unsigned facet);
+
+  /// The walk leaves a simplex by this facet.
+  void operator()(SimplexId simplex, unsigned facet) {
+    if (now_.by != FarWalk::By::determinants) pass(simplex, facet);
+  }
+  /// The walk has ended, at a wall, in a simplex or for want of one.
+  void end(const Walk& walk);
+
+  /// For go_on(), after the facet that was passed last.
+  [[nodiscard]] const FarWalk& walk() const { return now_; }
+
+ private:
+  using Triangle = std::array<std::uint32_t, 3>;
+
+  void look_at(SimplexId simplex, const VertexNumbers& v);
+  void look_along_line(const VertexNumbers& v, unsigned apex);
+  void go_to_rounds();
+  [[nodiscard]] bool is_known_in_rounds(const VertexNumbers& v, unsigned tested) const;
+  void pass(SimplexId simplex, unsigned facet);
+  [[nodiscard]] VertexNumbers vertices_of(SimplexId simplex) const;
+  [[nodiscard]] Corners corners_of(const VertexNumbers& v) const;
+
+  const CombinatorialMap& map_;
+  const Vec3* positions_;
+  const Vec3& p_;
+  const Vec3& q_;
+  const TestCounts& scalar_;
+  TestCounts scalar_before_;  // the next simplex
+  FarWalk now_;
+  Triangle triangle_{};  // the vertices that the next simplex is entered by
+  bool in_first_ = false;
+};
+
+}  // namespace detail
+
+}  // namespace dartcast

@@ -1,0 +1,152 @@
+// The counts of far walks: the code of the batch's own walks along lines (batch_line_walks.inl), with the same walk in
+// all four lanes. A line is projected anew in each simplex, because few walks leave a rank.
+#include <algorithm>
+#include <cmath>
+
+#include "complex/simplex.hpp"
+#include "tracking/batch/batch_line_walks.inl"
+#include "tracking/batch/coordinate_bounds.hpp"
+#include "tracking/batch/far_walk_counts.hpp"
+
+namespace dartcast::detail {
+
+namespace {
+
+using By = FarWalk::By;
+using portable::LineStarts4;
+using portable::LineWalks4;
+using portable::Vec3x4;
+
+constexpr unsigned all_facets = 15;
+constexpr unsigned none = 4;
+
+Vec3x4 in_all_lanes(const Vec3& x) { return portable::load_vec3x4(x, x, x, x); }
+
+// A walk along the line, in the simplex behind this triangle.
+LineWalks4 walk_behind(const std::array<Vec3, 3>& triangle, const Vec3& p, const Vec3& q, double reach) {
+  LineWalks4 walk;
+  walk.line = portable::Lines4(in_all_lanes(p), in_all_lanes(q));
+  walk.line.reach_to(portable::splat(reach));
+  for (unsigned i = 0; i < 3; ++i) walk.corner[i] = walk.line.project(in_all_lanes(triangle[i]));
+  for (unsigned i = 0; i < 3; ++i)
+    walk.edge_side[i] = portable::side(walk.corner[(i + 1) % 3], walk.corner[(i + 2) % 3]);
+  return walk;
+}
+
+unsigned place_in(const VertexNumbers& v, std::uint32_t vertex) {
+  return static_cast<unsigned>(std::find(v.begin(), v.end(), vertex) - v.begin());
+}
+
+// The corner of a simplex that is not in the triangle.
+unsigned apex_of(const VertexNumbers& v, const std::array<std::uint32_t, 3>& triangle) {
+  unsigned i = 0;
+  while (std::find(triangle.begin(), triangle.end(), v[i]) != triangle.end()) ++i;
+  return i;
+}
+
+bool is_far(const Determinants<4>& d) {
+  return *std::min_element(d.value.begin(), d.value.end()) < -far_coordinate * d.volume6();
+}
+
+}  // namespace
+
+void FarWalkCounts::begin(SimplexId start) {
+  const VertexNumbers v = vertices_of(start);
+  const Corners corners = corners_of(v);
+  if (!is_far(Determinants(corners, q_))) return;
+  scalar_before_ = scalar_;
+  in_first_ = true;
+  go_to_rounds();
+  if (map_.view(start.cell).shape().exits().empty()) return;
+  const portable::Corners4 lanes(corners.data(), {0, 1, 2, 3}, {0, 1, 2, 3}, {0, 1, 2, 3}, {0, 1, 2, 3});
+  const LineStarts4 starts(lanes, in_all_lanes(p_), in_all_lanes(q_));
+  const unsigned facet = portable::facets_entered[static_cast<std::size_t>(starts.turns[0])];
+  if (facet == none || starts.in_range[0] == 0) return;
+  LineWalks4 walk;
+  walk.begin(0, starts, 0, facet);
+  if (!walk.is_inside(0)) return;
+  for (unsigned i = 0; i < 3; ++i) triangle_[i] = v[facet_corners[facet][i]];
+  now_.by = By::line;
+  now_.reach = starts.line.reach[0];
+  now_.counts = {1, 0};  // with the three of the simplex: the sides of all its facets
+}
+
+void FarWalkCounts::go_on(const FarWalk& walk, SimplexId left, unsigned facet) {
+  now_ = walk;
+  scalar_before_ = scalar_;
+  const VertexNumbers v = vertices_of(left);
+  if (now_.by == By::line) {
+    for (unsigned i = 0; i < 3; ++i) triangle_[i] = v[now_.slots[i]];
+  } else {
+    for (unsigned i = 0; i < 3; ++i) triangle_[i] = v[facet_corners[facet][i]];
+  }
+}
+
+void FarWalkCounts::pass(SimplexId simplex, unsigned facet) {
+  const VertexNumbers v = vertices_of(simplex);
+  look_at(simplex, v);
+  const bool by_line = now_.by == By::line;
+  for (unsigned i = 0; i < 3; ++i) {
+    if (!by_line) triangle_[i] = v[facet_corners[facet][i]];
+    now_.slots[i] = static_cast<std::uint8_t>(place_in(v, triangle_[i]));
+  }
+  scalar_before_ = scalar_;
+  in_first_ = false;
+}
+
+void FarWalkCounts::end(const Walk& walk) {
+  if (now_.by == By::determinants || walk.end == WalkEnd::wall) return;
+  if (walk.end == WalkEnd::invalid_cell) now_ = {};
+  if (walk.end == WalkEnd::arrived) look_at(walk.simplex, vertices_of(walk.simplex));
+}
+
+// A batch leaves the step to one particle's walk where a sign is not known in a round.
+void FarWalkCounts::look_at(SimplexId simplex, const VertexNumbers& v) {
+  if (now_.by == By::line && map_.view(simplex.cell).shape().exits().empty()) go_to_rounds();
+  const bool is_first_round = in_first_ && now_.by == By::rounds;
+  const unsigned apex = is_first_round ? none : apex_of(v, triangle_);
+  if (now_.by == By::line) look_along_line(v, apex);
+  const unsigned tested = in_first_ ? all_facets : all_facets & ~(1U << apex);
+  if (now_.by == By::rounds && !is_known_in_rounds(v, tested)) now_ = {};
+}
+
+// As Batch::goes_on().
+void FarWalkCounts::look_along_line(const VertexNumbers& v, unsigned apex) {
+  LineWalks4 walk =
+      walk_behind({positions_[triangle_[0]], positions_[triangle_[1]], positions_[triangle_[2]]}, p_, q_, now_.reach);
+  walk.pass(in_all_lanes(positions_[v[apex]]));
+  const bool near_end = (walk.near_end & 1U) != 0;
+  if ((walk.undecided & 1U) != 0 || (near_end && walk.side_of_target(0) == 0)) return go_to_rounds();
+  now_.counts.tests += near_end && !in_first_ ? 4 : 3;
+  triangle_[static_cast<std::size_t>(walk.slot[0])] = v[apex];
+}
+
+// In the next simplex. Those of the first one are not asked twice.
+void FarWalkCounts::go_to_rounds() {
+  const TestCounts so_far = in_first_ ? TestCounts{} : now_.counts;
+  now_.by = By::rounds;
+  now_.counts = {so_far.tests - scalar_before_.tests, so_far.exact - scalar_before_.exact};
+}
+
+// As FacetSigns4::is_known() in batch_simplex.inl.
+bool FarWalkCounts::is_known_in_rounds(const VertexNumbers& v, unsigned tested) const {
+  const Corners corners = corners_of(v);
+  const Determinants d(corners, q_);
+  unsigned open = 0;
+  for (unsigned i = 0; i < 4; ++i) open |= d.decides(i) ? 0U : 1U << i;
+  if (!d.all_proved_positive() && !d.proves_positive()) return false;
+  return (open & tested) == 0 || d.exact(corners, q_);
+}
+
+VertexNumbers FarWalkCounts::vertices_of(SimplexId simplex) const {
+  const CellView cell = map_.view(simplex.cell);
+  const auto& local = cell.shape().simplices()[simplex.simplex].vertex;
+  return {cell.vertex(local[0]).value, cell.vertex(local[1]).value, cell.vertex(local[2]).value,
+          cell.vertex(local[3]).value};
+}
+
+Corners FarWalkCounts::corners_of(const VertexNumbers& v) const {
+  return {positions_[v[0]], positions_[v[1]], positions_[v[2]], positions_[v[3]]};
+}
+
+}  // namespace dartcast::detail
