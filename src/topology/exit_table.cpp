@@ -22,11 +22,11 @@ ExitTable::ExitTable(const Shape& shape) {
   const std::vector<ImplicitSimplex>& simplices = shape.simplices();
   const bool flat = simplices[0].vertex[0] == simplices[0].vertex[1];
   if (shape.dimension() != 3 || flat || simplices.size() > max_simplices) return;
-  add_exits(shape);
-  add_entries(shape);
+  add_rows(shape);
+  add_faces(shape);
 }
 
-void ExitTable::add_exits(const Shape& shape) {
+void ExitTable::add_rows(const Shape& shape) {
   for (const ImplicitSimplex& s : shape.simplices()) {
     for (unsigned facet = 0; facet < 4; ++facet) {
       const Across across = s.across[facet];
@@ -45,20 +45,20 @@ void ExitTable::add_exits(const Shape& shape) {
         exit.place = row_of(across);
         exit.turn = corner_at(s, exit_corners(facet), next.vertex[facet_corners[across.place][0]]);
       }
-      apexes_.push_back(s.vertex[facet]);
+      entries_.push_back({static_cast<std::uint16_t>(4U * entries_.size()), s.vertex[facet]});
     }
   }
 }
 
-void ExitTable::add_entries(const Shape& shape) {
+void ExitTable::add_faces(const Shape& shape) {
   first_.push_back(0);
-  for (std::size_t row = 0; row < exits_.size(); ++row) entries_.push_back(static_cast<std::uint16_t>(4 * row));
   for (std::uint16_t face = 0; face < shape.face_count(); ++face) {
     first_.push_back(static_cast<std::uint16_t>(entries_.size()));
     for (std::uint16_t t = 0; t < shape.triangle_count(face); ++t) {
       const Across at = shape.entry(face, t);
-      const unsigned turn = corner_at(shape.simplices()[at.index], facet_corners[at.place], shape.triangle(face, t)[0]);
-      entries_.push_back(static_cast<std::uint16_t>(4U * row_of(at) + turn));
+      const ImplicitSimplex& s = shape.simplices()[at.index];
+      const unsigned turn = corner_at(s, facet_corners[at.place], shape.triangle(face, t)[0]);
+      entries_.push_back({static_cast<std::uint16_t>(4U * row_of(at) + turn), s.vertex[at.place]});
     }
   }
 }

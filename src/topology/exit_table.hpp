@@ -27,6 +27,15 @@ struct SimplexExit {
   std::uint8_t turn = 0;         ///< which corner is the first one of the row beyond, or of the face's fan
 };
 
+/// The row that a simplex is entered by.
+struct SimplexEntry {
+  std::uint16_t row_and_turn = 0;  ///< 4 * row + turn
+  std::uint16_t apex = 0;          ///< the corner opposite to the row's facet: its local number
+
+  [[nodiscard]] unsigned row() const { return row_and_turn / 4; }
+  [[nodiscard]] unsigned turn() const { return row_and_turn % 4; }
+};
+
 /// Those of one shape. Empty for polygons, flat shapes, and shapes that have too many simplices for numbers of 16 bits.
 class ExitTable {
  public:
@@ -34,25 +43,24 @@ class ExitTable {
 
   explicit ExitTable(const Shape& shape);
 
-  [[nodiscard]] bool empty() const { return exits_.empty(); }
+  [[nodiscard]] bool empty() const { return first_.data() == nullptr; }
   /// Those of a simplex, by facets.
   [[nodiscard]] const SimplexExit* exits_of(unsigned simplex) const { return exits_.data() + 4 * std::size_t{simplex}; }
-  /// The corner opposite to a row's facet: its local number.
-  [[nodiscard]] unsigned apex(unsigned row) const { return apexes_[row]; }
-  /// The row beyond an exit to a place: 4 * row + turn. `face`: 0 within the cell; else 1 + its number.
-  [[nodiscard]] unsigned entry(unsigned face, unsigned place) const { return entries_[first_[face] + place]; }
+  /// The row beyond an exit to a place. `face`: 0 within the cell; else 1 + its number.
+  [[nodiscard]] const SimplexEntry& entry(unsigned face, unsigned place) const {
+    return entries_[first_[face] + place];
+  }
   [[nodiscard]] std::size_t bytes() const {
-    return exits_.size() * (sizeof(SimplexExit) + 2) + (entries_.size() + first_.size()) * 2;
+    return exits_.size() * sizeof(SimplexExit) + entries_.size() * sizeof(SimplexEntry) + first_.size() * 2;
   }
 
  private:
-  void add_exits(const Shape& shape);
-  void add_entries(const Shape& shape);
+  void add_rows(const Shape& shape);
+  void add_faces(const Shape& shape);
 
   std::vector<SimplexExit> exits_;
-  std::vector<std::uint16_t> apexes_;
-  std::vector<std::uint16_t> first_;    // entry of each face, after that of the rows themselves
-  std::vector<std::uint16_t> entries_;  // all rows; then the triangles of each face
+  std::vector<std::uint16_t> first_;   // entry of each face, after that of the rows themselves
+  std::vector<SimplexEntry> entries_;  // all rows; then the triangles of each face
 };
 
 /// The corners by which a row's facet is left.

@@ -36,7 +36,9 @@ std::string check_cell(const CombinatorialMap& map, Cell c, std::size_t& outer) 
     const ImplicitSimplex& s = shape.simplices()[row / 4];
     const Across across = s.across[row % 4];
     const detail::SimplexExit exit = table.exits_of(row / 4)[row % 4];
-    if (table.apex(row) != s.vertex[row % 4]) return fmt::format("row {}: another apex", row);
+    const detail::SimplexEntry& itself = table.entry(0, row);
+    if (itself.row() != row || itself.turn() != 0) return fmt::format("row {}: not itself", row);
+    if (itself.apex != s.vertex[row % 4]) return fmt::format("row {}: another apex", row);
     if ((exit.outer != 0) != across.outer()) return fmt::format("row {}: within the cell or not", row);
     unsigned face = 0;
     CellView next = cell;
@@ -47,13 +49,16 @@ std::string check_cell(const CombinatorialMap& map, Cell c, std::size_t& outer) 
       face = 1U + cell.neighbour_face(across.face());
       ++outer;
     }
-    const unsigned entry = next.shape().exits().entry(face, exit.place);
+    const detail::SimplexEntry& entry = next.shape().exits().entry(face, exit.place);
     const Passage expected = pass(map, {c, static_cast<std::uint16_t>(row / 4)}, cell, across);
-    if (entry / 16 != expected.simplex.simplex || entry / 4 % 4 != expected.facet)
+    if (entry.row() / 4 != expected.simplex.simplex || entry.row() % 4 != expected.facet)
       return fmt::format("row {}: leads elsewhere", row);
     // The turn of corners in slots: those of the exit from corner 0 on, and those of the entry.
     const Triangle left = in_slots(cell, row, detail::exit_corners(row % 4), 0);
-    const Triangle entered = in_slots(next, entry / 4, facet_corners[entry / 4 % 4], (exit.turn + 3 - entry % 4) % 3);
+    const Triangle entered =
+        in_slots(next, entry.row(), facet_corners[entry.row() % 4], (exit.turn + 3 - entry.turn()) % 3);
+    if (entry.apex != next.shape().simplices()[entry.row() / 4].vertex[entry.row() % 4])
+      return fmt::format("row {}: another apex beyond", row);
     if (left != entered) return fmt::format("row {}: corners in other slots", row);
     if (!across.outer() || cell.is_wall(across.face())) continue;
     if (c.pool() == CombinatorialMap::general_pool) {

@@ -81,7 +81,7 @@ std::string check(const Segment& s, const LineStarts4& starts, unsigned lane, Li
   if (((passed.undecided >> lane) & 1U) != 0) return "";
   ++tally.decided;
   if (volume_sign(s.v) != Sign::positive) return "passes a simplex that is not positive";
-  const LineTurn way = line_turns[facet][0][static_cast<std::size_t>(passed.slot[lane])];
+  const LineTurn way = line_turns[4 * facet][static_cast<std::size_t>(passed.slot[lane])];
   const auto corners = exit_corners(way.facet);
   if (!passes(s, corners)) return "leaves by another facet";
   for (unsigned k = 0; k < 3; ++k) {

@@ -145,7 +145,7 @@ inline WalkCursor Batch<kind>::passed_cursor(const LinePlace& at) const {
           static_cast<std::uint16_t>(entered_by),
           static_cast<std::uint16_t>(at.tests + 3 * at.passed),
           0,
-          false,
+          entered,
           map_.record(Cell(at.passed_cell))};
 }
 
@@ -164,9 +164,8 @@ void Batch<kind>::leave_unlisted(const LinePlace& at) {
   WalkCursor cursor = passed_cursor(at);
   cursor.cell = at.cell;
   cursor.record = at.record;
-  cursor.through_face = at.face != 0;
-  cursor.index = static_cast<std::uint16_t>(cursor.through_face ? at.face - 1 : at.place / 4);
-  cursor.place = cursor.through_face ? static_cast<std::uint16_t>(at.place) : no_facet;
+  cursor.face = static_cast<std::uint16_t>(at.face);
+  cursor.place = static_cast<std::uint16_t>(at.place);
   add_to_rounds(cursor);
 }
 

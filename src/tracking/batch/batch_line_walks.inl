@@ -160,12 +160,12 @@ constexpr LineTurn turn_of(unsigned facet, unsigned turn, unsigned slot) {
   while (n < 2 && exit_corners(left_by)[n] != first) ++n;
   return {static_cast<std::uint8_t>(left_by), static_cast<std::uint8_t>((turn + 3 - n) % 3)};
 }
-// [facet][turn][slot]
+// [4 * facet + turn][slot]
 inline constexpr auto line_turns = [] {
-  std::array<std::array<std::array<LineTurn, 4>, 4>, 4> turns{};
+  std::array<std::array<LineTurn, 4>, 16> turns{};
   for (unsigned facet = 0; facet < 4; ++facet) {
     for (unsigned turn = 0; turn < 3; ++turn) {
-      for (unsigned slot = 0; slot < 3; ++slot) turns[facet][turn][slot] = turn_of(facet, turn, slot);
+      for (unsigned slot = 0; slot < 3; ++slot) turns[4 * facet + turn][slot] = turn_of(facet, turn, slot);
     }
   }
   return turns;
@@ -269,6 +269,7 @@ struct LinePlace {
   std::uint32_t place;   // its triangle, as in ExitTable::entry()
   std::uint32_t turn;    // of that triangle's corners
   std::uint32_t row;
+  std::uint32_t turned_facet;  // 4 times the row's facet, and its turn
   std::uint32_t exit_facet;
 };
 
@@ -286,33 +287,34 @@ struct LineCrossing {
 };
 
 // Without branches.
-[[gnu::always_inline]] inline LineCrossing cross(const LinePlace& at, const SimplexExit& exit, std::uint32_t number,
-                                                 unsigned wall) {
+[[gnu::always_inline]] inline LineCrossing cross(std::uint32_t cell, const std::uint32_t* record,
+                                                 const SimplexExit& exit, std::uint32_t number, unsigned wall) {
   const std::uint32_t passes = 0U - (exit.outer & ~wall);
-  return {at.cell ^ ((at.cell ^ at.record[exit.word]) & passes), (number + 1) & passes, wall};
+  return {cell ^ ((cell ^ record[exit.word]) & passes), (number + 1) & passes, wall};
 }
 
-[[gnu::always_inline]] inline LineCrossing cross_general(const LinePlace& at, const SimplexExit& exit) {
-  const std::uint32_t bits = at.record[exit.extra];
+[[gnu::always_inline]] inline LineCrossing cross_general(std::uint32_t cell, const std::uint32_t* record,
+                                                         const SimplexExit& exit) {
+  const std::uint32_t bits = record[exit.extra];
   const unsigned wall = exit.outer & static_cast<unsigned>(bits >> 16U != 0);
-  return cross(at, exit, bits & 0xffffU, wall);
+  return cross(cell, record, exit, bits & 0xffffU, wall);
 }
 
 // The number of a face's neighbour that may not fit in its 3 bits.
-[[gnu::cold, gnu::noinline]] inline std::uint32_t wide_number(const CombinatorialMap& map, const LinePlace& at,
-                                                              const SimplexExit& exit) {
-  const CellView cell = map.view(Cell(at.cell), at.record);
-  return cell.neighbour_face(static_cast<std::uint16_t>(exit.word - 2U - cell.shape().point_count()));
+[[gnu::cold, gnu::noinline]] inline std::uint32_t wide_number(const CombinatorialMap& map, std::uint32_t cell,
+                                                              const std::uint32_t* record, const SimplexExit& exit) {
+  const CellView view = map.view(Cell(cell), record);
+  return view.neighbour_face(static_cast<std::uint16_t>(exit.word - 2U - view.shape().point_count()));
 }
 
-[[gnu::always_inline]] inline LineCrossing cross_standard(const CombinatorialMap& map, const LinePlace& at,
-                                                          const SimplexExit& exit) {
-  const std::uint32_t bits = at.record[1];
+[[gnu::always_inline]] inline LineCrossing cross_standard(const CombinatorialMap& map, std::uint32_t cell,
+                                                          const std::uint32_t* record, const SimplexExit& exit) {
+  const std::uint32_t bits = record[1];
   const unsigned wall = (bits >> exit.wall_shift) & 1U;
   std::uint32_t number = (bits >> exit.face_shift) & 7U;
   if (number == 7 && exit.outer > wall) [[unlikely]]
-    number = wide_number(map, at, exit);
-  return cross(at, exit, number, wall);
+    number = wide_number(map, cell, record, exit);
+  return cross(cell, record, exit, number, wall);
 }
 
 // Finds the next simplex, and prefetches its new corner. Returns false where the shape has no table.
@@ -320,11 +322,11 @@ struct LineCrossing {
   const ExitTable& table = map.view(Cell(at.cell), at.record).shape().exits();
   if (table.empty()) [[unlikely]]
     return false;
-  const unsigned entry = table.entry(at.face, at.place);
-  at.row = entry / 4;
-  at.turn = modulo_3[at.turn + 3 - entry % 4];
+  const SimplexEntry entry = table.entry(at.face, at.place);
+  at.corner = &positions[at.record[2U + entry.apex]];
+  at.row = entry.row();
+  at.turned_facet = 4 * (at.row % 4) + modulo_3[at.turn + 3 - entry.turn()];
   at.exits = table.exits_of(at.row / 4);
-  at.corner = &positions[at.record[2 + table.apex(at.row)]];
   __builtin_prefetch(at.corner);
   __builtin_prefetch(&at.corner->z);
   return true;
@@ -334,10 +336,13 @@ struct LineCrossing {
 // whether the exit is a wall.
 [[gnu::always_inline]] inline unsigned leave(LinePlace& at, unsigned slot, const CombinatorialMap& map,
                                              const RecordPool* pools) {
-  const LineTurn way = line_turns[at.row % 4][at.turn][slot];
-  const SimplexExit exit = at.exits[way.facet];
+  const LineTurn way = line_turns[at.turned_facet][slot];
+  const SimplexExit& exit = at.exits[way.facet];
+  const std::uint32_t place = exit.place;
+  const std::uint32_t turn = exit.turn;
   const bool general = Cell(at.cell).pool() == CombinatorialMap::general_pool;
-  const LineCrossing next = general ? cross_general(at, exit) : cross_standard(map, at, exit);
+  const LineCrossing next =
+      general ? cross_general(at.cell, at.record, exit) : cross_standard(map, at.cell, at.record, exit);
   at.passed_cell = at.cell;
   at.exit_facet = way.facet;
   ++at.passed;
@@ -348,8 +353,8 @@ struct LineCrossing {
       cell.pool() == CombinatorialMap::general_pool ? map.record(cell) : pool.words + cell.index() * pool.stride;
   __builtin_prefetch(at.record);
   at.face = next.face;
-  at.place = exit.place;
-  at.turn = way.turn + exit.turn;
+  at.place = place;
+  at.turn = way.turn + turn;
   return next.wall;
 }
 

@@ -23,24 +23,25 @@ DARTCAST_BEGIN_KERNEL
 namespace dartcast::detail::DARTCAST_SIMD {
 namespace {
 
-// A simplex that a walk has come to.
+// A simplex that a walk has come to. Before it is entered: `face` and `place` are those of ExitTable::entry().
 struct WalkCursor {
   std::uint32_t particle;
-  std::uint32_t cell;   // its value
-  std::uint16_t index;  // of the simplex, or of the face that was entered through
-  std::uint16_t place;  // facet that was entered by (no_facet: none), or triangle of that face
-  std::uint16_t tests;  // so far
-  std::uint16_t exact;  // of these, those that the filter left open
-  bool through_face;
+  std::uint32_t cell;           // its value
+  std::uint16_t index;          // of the simplex
+  std::uint16_t place;          // facet that was entered by (no_facet: none)
+  std::uint16_t tests;          // so far
+  std::uint16_t exact;          // of these, those that the filter left open
+  std::uint16_t face;           // `entered`: index and place are known
   const std::uint32_t* record;  // of the cell
 };
 
 inline constexpr std::uint8_t no_facet = 4;
+inline constexpr std::uint16_t entered = 0xffff;
 
 // In the simplex where a step starts.
 inline WalkCursor first_cursor(std::uint32_t particle, const ParticleState& s, const std::uint32_t* record,
                                std::uint16_t tests, int exact) {
-  return {particle, s.cell.value, s.simplex, no_facet, tests, static_cast<std::uint16_t>(exact), false, record};
+  return {particle, s.cell.value, s.simplex, no_facet, tests, static_cast<std::uint16_t>(exact), entered, record};
 }
 
 // The wall that a target is on, where the target is on these facets of its simplex.

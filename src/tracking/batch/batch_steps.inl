@@ -135,13 +135,14 @@ class Batch {
 
   // And in rounds: batch_walk.inl.
   std::size_t walk_on(std::size_t count);
-  void enter(WalkCursor& cursor, VertexNumbers& corners) const;
+  void enter(WalkCursor& cursor, std::size_t k);
   [[gnu::always_inline]] void test_four(const WalkCursor* walks, std::size_t k, std::size_t last);
   bool leave_simplex(WalkCursor& cursor, const VertexNumbers& corners, std::size_t k);
   unsigned first_exit(WalkCursor& cursor, const VertexNumbers& corners, unsigned behind) const;
   [[gnu::noinline]] bool passes_before(std::uint32_t i, const Vec3& a, const Vec3& b, const Vec3& p,
                                        const Vec3& q) const;
-  bool pass_on(WalkCursor& cursor, const VertexNumbers& corners, unsigned facet);
+  bool pass_on(WalkCursor& cursor, const VertexNumbers& corners, unsigned facet, const SimplexExit* exits);
+  bool pass_general(WalkCursor& cursor, const VertexNumbers& corners, unsigned facet);
   bool pass_face(WalkCursor& cursor, const VertexNumbers& corners, unsigned facet, Across across);
   void arrive(const WalkCursor& cursor, const VertexNumbers& corners, std::size_t k);
   void end(const WalkCursor& cursor);
@@ -180,6 +181,7 @@ class Batch {
 
   // Scratch of the block. In bit sets there is one bit per particle.
   std::array<VertexNumbers, block> corners_;
+  std::array<const SimplexExit*, block> exits_here_;  // null in general cells
   std::array<BatchDeterminants, block / 4> determinants_;
   std::array<Vec3x4, block / 4> ends_;  // targets
   std::array<long long, block> signs_;

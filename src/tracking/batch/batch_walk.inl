@@ -23,7 +23,7 @@ inline std::size_t Batch<kind>::walk_on(std::size_t count) {
   std::size_t next = 0;
   for (std::size_t first = 0; first < count; first += block) {
     const std::size_t n = std::min<std::size_t>(block, count - first);
-    for (std::size_t k = 0; k < n; ++k) enter(walks_[first + k], corners_[k]);
+    for (std::size_t k = 0; k < n; ++k) enter(walks_[first + k], k);
     for (std::size_t k = 0; k < n; k += 4) test_four(&walks_[first], k, n - 1);
     arrivals_ = 0;
     for (std::size_t k = 0; k < n; ++k) {
@@ -40,23 +40,37 @@ inline std::size_t Batch<kind>::walk_on(std::size_t count) {
   return next;
 }
 
-// Finds the simplex behind the face that the walk passes, and prefetches its corners.
+// As in ExitTable, that shapes of general cells need not have.
+[[gnu::always_inline]] inline unsigned general_row(const Shape& shape, const WalkCursor& cursor) {
+  if (cursor.face == 0) return cursor.place;
+  const Across at = shape.entry(static_cast<std::uint16_t>(cursor.face - 1), cursor.place);
+  return 4U * at.index + at.place;
+}
+
+// Finds the simplex behind the facet that the walk passes, and prefetches its new corner. k: its place in the block.
 template <CacheKind kind>
-inline void Batch<kind>::enter(WalkCursor& cursor, VertexNumbers& corners) const {
-  if (kind == CacheKind::barycentric && !cursor.through_face && cursor.place == no_facet) {  // where the step started
-    corners = vertices_[cursor.particle];
-    prefetch(now_, corners);
-    return;
-  }
+inline void Batch<kind>::enter(WalkCursor& cursor, std::size_t k) {
+  VertexNumbers& corners = corners_[k];
   const CellView cell = map_.view(Cell(cursor.cell), cursor.record);
-  if (cursor.through_face) {
-    const Across at = cell.shape().entry(cursor.index, cursor.place);
-    cursor.index = at.index;
-    cursor.place = at.place;
+  const Shape& shape = cell.shape();
+  const ExitTable* const table = Cell(cursor.cell).pool() == CombinatorialMap::general_pool ? nullptr : &shape.exits();
+  if (cursor.face != entered) {
+    const unsigned row = table != nullptr ? table->entry(cursor.face, cursor.place).row() : general_row(shape, cursor);
+    cursor.index = static_cast<std::uint16_t>(row / 4);
+    cursor.place = static_cast<std::uint16_t>(row % 4);
+    cursor.face = entered;
   }
-  const auto& local = cell.shape().simplices()[cursor.index].vertex;
+  exits_here_[k] = table != nullptr ? table->exits_of(cursor.index) : nullptr;
+  if (kind == CacheKind::barycentric && cursor.place == no_facet) {  // where the step started
+    corners = vertices_[cursor.particle];
+    return prefetch(now_, corners);
+  }
+  const auto& local = shape.simplices()[cursor.index].vertex;
   for (unsigned i = 0; i < 4; ++i) corners[i] = cell.vertex(local[i]).value;
-  prefetch(now_, corners);
+  if (cursor.place == no_facet) return prefetch(now_, corners);
+  const Vec3* const apex = now_ + corners[cursor.place];
+  __builtin_prefetch(apex);
+  __builtin_prefetch(&apex->z);
 }
 
 template <CacheKind kind>
@@ -89,8 +103,8 @@ inline bool Batch<kind>::leave_simplex(WalkCursor& cursor, const VertexNumbers& 
     return false;
   }
   const bool single = std::has_single_bit(behind);
-  return pass_on(cursor, corners,
-                 single ? static_cast<unsigned>(std::countr_zero(behind)) : first_exit(cursor, corners, behind));
+  const unsigned facet = single ? static_cast<unsigned>(std::countr_zero(behind)) : first_exit(cursor, corners, behind);
+  return pass_on(cursor, corners, facet, exits_here_[k]);
 }
 
 // The facet by which the segment leaves, of several that the target is behind.
@@ -126,11 +140,26 @@ bool Batch<kind>::passes_before(std::uint32_t i, const Vec3& a, const Vec3& b, c
   return s == Sign::positive;
 }
 
+// Within the cell or out of it without a branch: none could predict which.
 template <CacheKind kind>
-inline bool Batch<kind>::pass_on(WalkCursor& cursor, const VertexNumbers& corners, unsigned facet) {
+inline bool Batch<kind>::pass_on(WalkCursor& cursor, const VertexNumbers& corners, unsigned facet,
+                                 const SimplexExit* exits) {
+  if (exits == nullptr) return pass_general(cursor, corners, facet);
+  const SimplexExit& exit = exits[facet];
+  const LineCrossing next = cross_standard(map_, cursor.cell, cursor.record, exit);
+  if (next.wall != 0) return end_at_wall(cursor, corners, facet);
+  cursor.cell = next.cell;
+  cursor.face = static_cast<std::uint16_t>(next.face);
+  cursor.place = exit.place;
+  cursor.record = map_.record(Cell(next.cell));
+  __builtin_prefetch(cursor.record);
+  return true;
+}
+
+template <CacheKind kind>
+inline bool Batch<kind>::pass_general(WalkCursor& cursor, const VertexNumbers& corners, unsigned facet) {
   const Across across = across_of(cursor, facet);
   if (across.outer()) return pass_face(cursor, corners, facet, across);
-  cursor.through_face = false;
   cursor.index = across.index;
   cursor.place = across.place;
   return true;
@@ -142,9 +171,8 @@ inline bool Batch<kind>::pass_face(WalkCursor& cursor, const VertexNumbers& corn
   const CellView cell = map_.view(Cell(cursor.cell), cursor.record);
   const std::uint16_t face = across.face();
   if (cell.is_wall(face)) return end_at_wall(cursor, corners, facet);
-  cursor.through_face = true;
   cursor.cell = cell.neighbour(face).value;
-  cursor.index = cell.neighbour_face(face);
+  cursor.face = static_cast<std::uint16_t>(1 + cell.neighbour_face(face));
   cursor.place = cell.shape().triangle_from_other_side(face, across.place);
   cursor.record = map_.record(Cell(cursor.cell));
   __builtin_prefetch(cursor.record);
