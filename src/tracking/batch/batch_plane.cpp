@@ -7,60 +7,12 @@
 #include <cmath>
 
 #include "complex/simplex.hpp"
+#include "tracking/batch/plane_block.hpp"
 #include "tracking/carry.hpp"
 
 namespace dartcast::detail {
 
 namespace {
-
-// A vector of the plane.
-struct Vec2x4 {
-  double x, y;
-
-  Vec2x4 operator-(const Vec2x4& b) const { return {x - b.x, y - b.y}; }
-  [[nodiscard]] double square() const { return x * x + y * y; }
-};
-Vec2x4 from_to(const Vec3& a, const Vec3& b) { return {b.x - a.x, b.y - a.y}; }
-
-// The data of its first triangle that a step among moving vertices reads.
-struct PlaneMove {
-  const PlaneCorners& before;
-  const PlaneCorners& after;
-  const Determinants<3>& was;   // of p, before
-  const Determinants<3>& will;  // of q, after
-  const Vec3& p;
-  const Vec3& q;
-};
-
-// Whether the step surely needs no splitting (tracking/step.hpp): |A| |r| <= 2 tolerance edge.
-//
-// |A| V, V and the edge are the doubles of the rule, up to a root and a quotient. Let d_i be the corners' displacements
-// less q - p. Then -r is their mean, weighted by the particle's coordinates: |r| <= max |d_i|. The rule's r is off from
-// that by at most m: its coordinates are right to 2^-26, and points are rounded. In squares, (a + b)^2 <= 17/16 a^2 +
-// 17 b^2 bounds that. The last line excludes overflow and underflow.
-bool surely_one_part(const PlaneMove& move, double tolerance) {
-  const auto& [v, w, was, will, p, q] = move;
-  const Vec2x4 own = from_to(p, q);
-  const Vec2x4 d0 = from_to(v[0], w[0]);
-  const Vec2x4 d1 = from_to(v[1], w[1]);
-  const Vec2x4 d2 = from_to(v[2], w[2]);
-  const double m = 0x1p-22 * (was.extent.x + was.extent.y + will.extent.x + will.extent.y) +
-                   0x1p-48 * (std::abs(q.x) + std::abs(q.y) + std::abs(own.x) + std::abs(own.y));
-  const double farthest = std::max(std::max((d0 - own).square(), (d1 - own).square()), (d2 - own).square());
-  const double r2 = 0x1.1p+0 * farthest + 17.0 * m * m;
-  const Vec2x4 e0 = from_to(v[0], v[1]);
-  const Vec2x4 e1 = from_to(v[0], v[2]);
-  const Vec2x4 u0 = d1 - d0;
-  const Vec2x4 u1 = d2 - d0;
-  const Vec2x4 ax = {e1.y * u0.x - e0.y * u1.x, e0.x * u1.x - e1.x * u0.x};
-  const Vec2x4 ay = {e1.y * u0.y - e0.y * u1.y, e0.x * u1.y - e1.x * u0.y};
-  const double volume = e0.x * e1.y - e0.y * e1.x;
-  const double limit = 1.98 * tolerance * volume;
-  const double edge2 = std::min(std::min(e0.square(), e1.square()), from_to(v[1], v[2]).square());
-  const double right = limit * limit * edge2;
-  return (ax.square() + ay.square()) * r2 <= right && volume > 0x1p-200 && r2 < 0x1p+200 && right > 0x1p-700 &&
-         right < 0x1p+1000;
-}
 
 // A walk, and the triangle that it has come to. Without initializers: a batch has room for many, and uses few.
 struct PlaneWalkCursor {
@@ -76,8 +28,9 @@ struct PlaneWalkCursor {
 // Triangles are taken block by block, in passes, as in tracking/batch/batch_steps.inl.
 class PlaneBatch {
  public:
-  PlaneBatch(const BatchScene& scene, const BatchSteps& steps, Counters& counters)
+  PlaneBatch(const BatchScene& scene, const BatchSteps& steps, Counters& counters, InstructionSet set)
       : scene_(scene),
+        set_(set),
         space_(current_space<3>(*scene.complex)),
         before_(scene.moved ? scene.complex->previous_positions().data() : nullptr),
         steps_(steps),
@@ -94,64 +47,83 @@ class PlaneBatch {
   }
 
  private:
-  static constexpr std::uint32_t block = 32;
   static constexpr std::uint8_t all_facets = 7;
 
-  // Ends the steps whose targets lie strictly inside the first triangle: nothing in a triangle is in the way. Returns
-  // the number of walks that go on.
+  // The first triangle of each step, where most steps end. Returns the number of walks that go on.
   template <bool moved>
   std::size_t start() {
     std::size_t count = 0;
-    for (std::uint32_t i = 0; i < std::min(size_, block); ++i) prefetch<moved>(i);
-    for (std::uint32_t i = 0; i < size_; ++i) {
-      if (i + block < size_) prefetch<moved>(i + block);
-      if (!goes_on<moved>(i)) continue;
-      const ParticleState& s = steps_.states[i];
-      walks_[count++] = {i, s.cell.value, s.simplex, all_facets, false, 0, 0};
-      __builtin_prefetch(space_.map->record(s.cell));
+    for (std::uint32_t i = 0; i < std::min(size_, plane_block); ++i) prefetch<moved>(i);
+    for (std::uint32_t first = 0; first < size_; first += plane_block) {
+      const std::uint32_t n = std::min(plane_block, size_ - first);
+      for (std::uint32_t i = first + n; i < std::min(first + n + plane_block, size_); ++i) prefetch<moved>(i);
+      const PlaneBlock block = look_at(first, n);
+      for (std::uint32_t bits = block.deferred; bits != 0; bits &= bits - 1) defer(first + lowest(bits));
+      end_inside(first, block.inside);
+      const std::uint32_t leaving = all_of(n) & ~(block.deferred | block.inside);
+      for (std::uint32_t bits = leaving; bits != 0; bits &= bits - 1)
+        __builtin_prefetch(space_.map->record(steps_.states[first + lowest(bits)].cell));
+      for (std::uint32_t bits = leaving; bits != 0; bits &= bits - 1) {
+        const std::uint32_t k = lowest(bits);
+        if (moved && !carry(first + k, block, k)) continue;
+        const unsigned behind = ((block.decided >> k) & 1U) != 0 ? block.behind[k] : 0U;
+        if (leave_first(first + k, behind, walks_[count])) ++count;
+      }
     }
     return count;
   }
 
-  // Whether the step goes on from its first triangle; otherwise it has ended, or is deferred.
-  template <bool moved>
-  bool goes_on(std::uint32_t i) {
-    ParticleState& s = steps_.states[i];
-    const Vec3& q = steps_.targets[i];
-    const PlaneCorners now = corners(space_.positions.at, i);
-    const Determinants d(now, q);
-    bool inside = d.all_proved_positive() && s.touching_count == 0;
-    if constexpr (moved) {
-      const PlaneCorners old = corners(before_, i);
-      const Determinants was(old, s.position);
-      if (s.held || !was.proves_coordinates() || !surely_one_part({old, now, was, d, s.position, q}, scene_.tolerance))
-        return defer(i);
-      if (!inside) return carry(i, old, now);
-    } else if (s.held || s.position == q) {
-      return defer(i);
+  [[nodiscard]] PlaneBlock look_at(std::uint32_t first, std::uint32_t count) const {
+    const PlaneVertices vertices = {space_.positions.at, before_};
+#if defined(__x86_64__)
+    if (set_ == InstructionSet::avx2) return avx2::look_at_triangles(vertices, steps_, first, count, scene_.tolerance);
+#endif
+    return portable::look_at_triangles(vertices, steps_, first, count, scene_.tolerance);
+  }
+
+  static std::uint32_t lowest(std::uint32_t bits) { return static_cast<std::uint32_t>(std::countr_zero(bits)); }
+
+  // Nothing in a triangle is in the way of steps that end strictly inside.
+  void end_inside(std::uint32_t first, std::uint32_t inside) {
+    for (std::uint32_t bits = inside; bits != 0; bits &= bits - 1) {
+      const std::uint32_t i = first + lowest(bits);
+      steps_.states[i].position = steps_.targets[i];
     }
-    if (!inside) return true;
-    s.position = q;
-    count_step({3, 0}, true);
-    return false;
+    const auto ended = static_cast<std::uint64_t>(std::popcount(inside));
+    counters_.particle_steps += ended;
+    counters_.orientation.tests += 3 * ended;
+    counters_.histogram[3] += ended;
+    counters_.forecast_kept += ended;
+  }
+
+  // `behind`: the facets that the target is behind, where they are known. Fills the walk. False where it has ended.
+  bool leave_first(std::uint32_t i, unsigned behind, PlaneWalkCursor& cursor) {
+    const ParticleState& s = steps_.states[i];
+    cursor = {i, s.cell.value, s.simplex, all_facets, false, 0, 0};
+    if (behind == 0) return true;
+    TestCounts counts{3, 0};
+    const bool single = std::has_single_bit(behind);
+    const unsigned facet = single ? static_cast<unsigned>(std::countr_zero(behind))
+                                  : exit_by(cursor, corners(space_.positions.at, i), behind, counts);
+    cursor.tests = static_cast<std::uint32_t>(counts.tests);
+    cursor.exact = static_cast<std::uint32_t>(counts.exact);
+    const CellView cell = space_.map->view(s.cell);
+    return pass_on(cursor, cell, cell.shape().simplices()[s.simplex].across[facet], facet);
   }
 
   // Carries the start of a walk along with the mesh; false where the step is deferred.
-  bool carry(std::uint32_t i, const PlaneCorners& old, const PlaneCorners& now) {
-    const Vec3& p = steps_.states[i].position;
-    const Determinants d(now, p);
-    left_behind_[i] = std::any_of(d.value.begin(), d.value.end(), [&](double v) { return v < -d.bound; });
-    const Vec3 carried = flushed(combine(now, barycentric(old, p)));
-    if (carried == steps_.targets[i] || !Determinants(now, carried).all_proved_positive()) return defer(i);
-    carried_[i] = {carried.x, carried.y, carried.z};
+  bool carry(std::uint32_t i, const PlaneBlock& block, std::uint32_t k) {
+    if (((block.carried_inside >> k) & 1U) == 0) return defer(i);
+    left_behind_[i] = ((block.left_behind >> k) & 1U) != 0;
+    carried_[i] = block.carried[k];
     return true;
   }
 
   // One triangle of every walk. Returns the number of walks that go on.
   std::size_t walk_on(std::size_t count) {
     std::size_t next = 0;
-    for (std::size_t first = 0; first < count; first += block) {
-      const std::size_t n = std::min<std::size_t>(block, count - first);
+    for (std::size_t first = 0; first < count; first += plane_block) {
+      const std::size_t n = std::min<std::size_t>(plane_block, count - first);
       for (std::size_t k = 0; k < n; ++k) enter(walks_[first + k]);
       for (std::size_t k = 0; k < n; ++k) {
         PlaneWalkCursor& cursor = walks_[next] = walks_[first + k];
@@ -260,7 +232,7 @@ class PlaneBatch {
   }
 
   [[nodiscard]] Vec3 start_of(std::uint32_t i) const {
-    return before_ == nullptr ? steps_.states[i].position : Vec3{carried_[i][0], carried_[i][1], carried_[i][2]};
+    return before_ == nullptr ? steps_.states[i].position : Vec3{carried_[i][0], carried_[i][1], 0.0};
   }
   [[nodiscard]] PlaneCorners corners(const Vec3* positions, std::uint32_t i) const {
     const VertexNumbers& v = steps_.vertices[i];
@@ -276,6 +248,7 @@ class PlaneBatch {
   }
 
   const BatchScene& scene_;
+  InstructionSet set_;
   const Space<Stored, 3> space_;
   const Vec3* before_;  // null where the scene stands still
   const BatchSteps& steps_;
@@ -283,14 +256,14 @@ class PlaneBatch {
   Counters& counters_;
 
   std::array<PlaneWalkCursor, max_batch> walks_;          // walks that go on
-  std::array<std::array<double, 3>, max_batch> carried_;  // where the mesh has carried particles to
+  std::array<std::array<double, 2>, max_batch> carried_;  // where the mesh has carried particles to
   std::array<bool, max_batch> left_behind_;
 };
 
 }  // namespace
 
-void step_plane(const BatchScene& scene, const BatchSteps& steps, Counters& counters) {
-  PlaneBatch(scene, steps, counters).run();
+void step_plane(const BatchScene& scene, const BatchSteps& steps, Counters& counters, InstructionSet set) {
+  PlaneBatch(scene, steps, counters, set).run();
 }
 
 }  // namespace dartcast::detail

@@ -12,7 +12,8 @@
 namespace dartcast::detail {
 
 /// Takes the steps that it can, and counts them. Caches are neither read nor written. Preconditions: the complex is of
-/// the plane; else as for Stepper::step(). Cost: about 20 ns a step.
-void step_plane(const BatchScene& scene, const BatchSteps& steps, Counters& counters);
+/// the plane; else as for Stepper::step(). Cost: about 15 ns a step.
+void step_plane(const BatchScene& scene, const BatchSteps& steps, Counters& counters,
+                InstructionSet set = best_instruction_set());
 
 }  // namespace dartcast::detail
