@@ -181,7 +181,7 @@ class Batch {
 
   // Scratch of the block. In bit sets there is one bit per particle.
   std::array<VertexNumbers, block> corners_;
-  std::array<const SimplexExit*, block> exits_here_;  // null in general cells
+  std::array<const SimplexExit*, block> exits_here_;  // null without a table
   std::array<BatchDeterminants, block / 4> determinants_;
   std::array<Vec3x4, block / 4> ends_;  // targets
   std::array<long long, block> signs_;

@@ -40,7 +40,12 @@ inline std::size_t Batch<kind>::walk_on(std::size_t count) {
   return next;
 }
 
-// As in ExitTable, that shapes of general cells need not have.
+// The ways through a cell of a standard type. Null for others: many have shapes of their own, and tables take memory.
+[[gnu::always_inline]] inline const ExitTable* table_of(std::uint32_t cell, const Shape& shape) {
+  if (Cell(cell).pool() == CombinatorialMap::general_pool || shape.exits().empty()) return nullptr;
+  return &shape.exits();
+}
+// The row without a table.
 [[gnu::always_inline]] inline unsigned general_row(const Shape& shape, const WalkCursor& cursor) {
   if (cursor.face == 0) return cursor.place;
   const Across at = shape.entry(static_cast<std::uint16_t>(cursor.face - 1), cursor.place);
@@ -53,7 +58,7 @@ inline void Batch<kind>::enter(WalkCursor& cursor, std::size_t k) {
   VertexNumbers& corners = corners_[k];
   const CellView cell = map_.view(Cell(cursor.cell), cursor.record);
   const Shape& shape = cell.shape();
-  const ExitTable* const table = Cell(cursor.cell).pool() == CombinatorialMap::general_pool ? nullptr : &shape.exits();
+  const ExitTable* const table = table_of(cursor.cell, shape);
   if (cursor.face != entered) {
     const unsigned row = table != nullptr ? table->entry(cursor.face, cursor.place).row() : general_row(shape, cursor);
     cursor.index = static_cast<std::uint16_t>(row / 4);
