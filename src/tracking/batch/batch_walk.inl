@@ -42,8 +42,9 @@ inline std::size_t Batch<kind>::walk_on(std::size_t count) {
 
 // The ways through a cell of a standard type. Null for others: many have shapes of their own, and tables take memory.
 [[gnu::always_inline]] inline const ExitTable* table_of(std::uint32_t cell, const Shape& shape) {
-  if (Cell(cell).pool() == CombinatorialMap::general_pool || shape.exits().empty()) return nullptr;
-  return &shape.exits();
+  if (Cell(cell).pool() == CombinatorialMap::general_pool) return nullptr;
+  const ExitTable& table = shape.exits();
+  return table.empty() ? nullptr : &table;
 }
 // The row without a table.
 [[gnu::always_inline]] inline unsigned general_row(const Shape& shape, const WalkCursor& cursor) {
