@@ -283,12 +283,10 @@ Stars::Fans Shape::fans() const {
   return fans;
 }
 
+// Without stars and exits, which walks make on demand: which ranks make them depends on where their particles are.
 std::size_t Shape::bytes() const {
-  const Stars* stars = stars_.load(std::memory_order_acquire);
-  const detail::ExitTable* exits = exits_.load(std::memory_order_acquire);
   return sizeof(Shape) + (dart_count() * 5U + key_.corner_count) * sizeof(std::uint16_t) +
-         simplices_.size() * sizeof(ImplicitSimplex) + entries_.size() * sizeof(Across) +
-         (stars == nullptr ? 0 : stars->bytes()) + (exits == nullptr ? 0 : exits->bytes());
+         simplices_.size() * sizeof(ImplicitSimplex) + entries_.size() * sizeof(Across);
 }
 
 }  // namespace dartcast

@@ -50,9 +50,6 @@ class ExitTable {
   [[nodiscard]] const SimplexEntry& entry(unsigned face, unsigned place) const {
     return entries_[first_[face] + place];
   }
-  [[nodiscard]] std::size_t bytes() const {
-    return exits_.size() * sizeof(SimplexExit) + entries_.size() * sizeof(SimplexEntry) + first_.size() * 2;
-  }
 
  private:
   void add_rows(const Shape& shape);
