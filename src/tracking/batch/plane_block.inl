@@ -120,7 +120,8 @@ PlaneBlock look_at_triangles(const PlaneVertices& vertices, const BatchSteps& st
                              std::uint32_t count, double tolerance) {
   PlaneBlock block;
   std::uint32_t going = 0;  // neither held nor at rest
-  const std::uint32_t unusual = held_or_touching(steps.states.data(), first + count, first, count);
+  const std::uint32_t all = all_of(count);
+  const std::uint32_t unusual = all & held_or_touching(steps.states.data(), first + count, first, count);
   for (std::uint32_t k = 0; k < count; k += 4) {
     const Index4 four = index4_from(first + k, first + count);
     Triangles4 now;
@@ -150,7 +151,6 @@ PlaneBlock look_at_triangles(const PlaneVertices& vertices, const BatchSteps& st
     for (unsigned l = 0; l < 4; ++l) block.behind[k + l] = static_cast<std::uint8_t>(behind[l]);
   }
   leave_out(unusual, &steps.states[first], block, going);
-  const std::uint32_t all = all_of(count);
   block.deferred = all & ~going;
   block.inside &= all & going;
   return block;
