@@ -162,7 +162,7 @@ class BothWays {
     }
     const auto space = current_space(complex_);
     TestCounts counts;
-    detail::FarWalkCounts far(complex_.map(), complex_.positions().data(), start.position, q, counts);
+    detail::FarWalkCounts far(complex_, start.position, q, counts);
     far.begin(start.simplex);
     const Walk walk = detail::walk_to_wall(space, start.simplex, start.position, q, counts, far);
     far.end(walk);
@@ -440,7 +440,7 @@ TEST_P(FilteredBatch, TakesStepsAsOneParticleDoes) {
   for (const std::string& wrong : complaints) ADD_FAILURE() << wrong;
   // Not in slivers, nor in a few scenes, and not in so many cells that have no way on.
   if (kind == oracle::SceneKind::slivers || sanitized()) return;
-  EXPECT_GT(tally.taken, tally.steps / (moves ? 8 : 5));
+  EXPECT_GT(tally.taken, moves ? tally.steps / 8 : tally.steps * 6 / 25);  // of 2,000 seeds 0.243
   EXPECT_GT(tally.moved_on, tally.steps / 50);
   EXPECT_GT(tally.resumed, tally.steps / 100);
   EXPECT_GT(tally.landed, tally.resumed / 6);

@@ -36,9 +36,8 @@ namespace detail {
 class FarWalkCounts {
  public:
   /// The walk from p to q. `scalar`: what the walk itself counts.
-  FarWalkCounts(const CombinatorialMap& map, const Vec3* positions, const Vec3& p, const Vec3& q,
-                const TestCounts& scalar)
-      : map_(map), positions_(positions), p_(p), q_(q), scalar_(scalar) {}
+  FarWalkCounts(const CellComplex& complex, const Vec3& p, const Vec3& q, const TestCounts& scalar)
+      : complex_(complex), positions_(complex.positions().data()), p_(p), q_(q), scalar_(scalar) {}
 
   /// The walk begins there, in a batch. Where its target is near, both count the same.
   void begin(SimplexId start);
@@ -63,10 +62,8 @@ class FarWalkCounts {
   void go_to_rounds();
   [[nodiscard]] bool is_known_in_rounds(const VertexNumbers& v, unsigned tested) const;
   void pass(SimplexId simplex, unsigned facet);
-  [[nodiscard]] VertexNumbers vertices_of(SimplexId simplex) const;
-  [[nodiscard]] Corners corners_of(const VertexNumbers& v) const;
 
-  const CombinatorialMap& map_;
+  const CellComplex& complex_;
   const Vec3* positions_;
   const Vec3& p_;
   const Vec3& q_;

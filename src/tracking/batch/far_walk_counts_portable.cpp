@@ -51,13 +51,13 @@ bool is_far(const Determinants<4>& d) {
 }  // namespace
 
 void FarWalkCounts::begin(SimplexId start) {
-  const VertexNumbers v = vertices_of(start);
-  const Corners corners = corners_of(v);
+  const VertexNumbers v = vertex_numbers(complex_, start);
+  const Corners corners = portable::corners_of(positions_, v);
   if (!is_far(Determinants(corners, q_))) return;
   scalar_before_ = scalar_;
   in_first_ = true;
   go_to_rounds();
-  if (map_.view(start.cell).shape().exits().empty()) return;
+  if (complex_.map().view(start.cell).shape().exits().empty()) return;
   const portable::Corners4 lanes(corners.data(), {0, 1, 2, 3}, {0, 1, 2, 3}, {0, 1, 2, 3}, {0, 1, 2, 3});
   const LineStarts4 starts(lanes, in_all_lanes(p_), in_all_lanes(q_));
   const unsigned facet = portable::facets_entered[static_cast<std::size_t>(starts.turns[0])];
@@ -74,7 +74,7 @@ void FarWalkCounts::begin(SimplexId start) {
 void FarWalkCounts::go_on(const FarWalk& walk, SimplexId left, unsigned facet) {
   now_ = walk;
   scalar_before_ = scalar_;
-  const VertexNumbers v = vertices_of(left);
+  const VertexNumbers v = vertex_numbers(complex_, left);
   if (now_.by == By::line) {
     for (unsigned i = 0; i < 3; ++i) triangle_[i] = v[now_.slots[i]];
   } else {
@@ -83,7 +83,7 @@ void FarWalkCounts::go_on(const FarWalk& walk, SimplexId left, unsigned facet) {
 }
 
 void FarWalkCounts::pass(SimplexId simplex, unsigned facet) {
-  const VertexNumbers v = vertices_of(simplex);
+  const VertexNumbers v = vertex_numbers(complex_, simplex);
   look_at(simplex, v);
   const bool by_line = now_.by == By::line;
   for (unsigned i = 0; i < 3; ++i) {
@@ -97,12 +97,12 @@ void FarWalkCounts::pass(SimplexId simplex, unsigned facet) {
 void FarWalkCounts::end(const Walk& walk) {
   if (now_.by == By::determinants || walk.end == WalkEnd::wall) return;
   if (walk.end == WalkEnd::invalid_cell) now_ = {};
-  if (walk.end == WalkEnd::arrived) look_at(walk.simplex, vertices_of(walk.simplex));
+  if (walk.end == WalkEnd::arrived) look_at(walk.simplex, vertex_numbers(complex_, walk.simplex));
 }
 
 // A batch leaves the step to one particle's walk where a sign is not known in a round.
 void FarWalkCounts::look_at(SimplexId simplex, const VertexNumbers& v) {
-  if (now_.by == By::line && map_.view(simplex.cell).shape().exits().empty()) go_to_rounds();
+  if (now_.by == By::line && complex_.map().view(simplex.cell).shape().exits().empty()) go_to_rounds();
   const bool is_first_round = in_first_ && now_.by == By::rounds;
   const unsigned apex = is_first_round ? none : apex_of(v, triangle_);
   if (now_.by == By::line) look_along_line(v, apex);
@@ -130,23 +130,12 @@ void FarWalkCounts::go_to_rounds() {
 
 // As FacetSigns4::is_known() in batch_simplex.inl.
 bool FarWalkCounts::is_known_in_rounds(const VertexNumbers& v, unsigned tested) const {
-  const Corners corners = corners_of(v);
+  const Corners corners = portable::corners_of(positions_, v);
   const Determinants d(corners, q_);
   unsigned open = 0;
   for (unsigned i = 0; i < 4; ++i) open |= d.decides(i) ? 0U : 1U << i;
   if (!d.all_proved_positive() && !d.proves_positive()) return false;
   return (open & tested) == 0 || d.exact(corners, q_);
-}
-
-VertexNumbers FarWalkCounts::vertices_of(SimplexId simplex) const {
-  const CellView cell = map_.view(simplex.cell);
-  const auto& local = cell.shape().simplices()[simplex.simplex].vertex;
-  return {cell.vertex(local[0]).value, cell.vertex(local[1]).value, cell.vertex(local[2]).value,
-          cell.vertex(local[3]).value};
-}
-
-Corners FarWalkCounts::corners_of(const VertexNumbers& v) const {
-  return {positions_[v[0]], positions_[v[1]], positions_[v[2]], positions_[v[3]]};
 }
 
 }  // namespace dartcast::detail

@@ -84,7 +84,7 @@ class TravelRecorder {
   template <class Positions>
   Walk walk(const Space<Positions, N>& space, Run& run, const PartialStep* partial, const Vec3& p, const Vec3& q,
             const TimeInterval& interval) {
-    detail::FarWalkCounts far(complex_->map(), complex_->positions().data(), p, q, run.tests);
+    detail::FarWalkCounts far(*complex_, p, q, run.tests);
     if (takes_up_) {
       takes_up_ = false;
       const TieCorners ties = traveller().ties;
