@@ -24,6 +24,7 @@ ExitTable::ExitTable(const Shape& shape) {
   if (shape.dimension() != 3 || flat || simplices.size() > max_simplices) return;
   add_rows(shape);
   add_faces(shape);
+  cell_rows_ = CellRows(shape);
 }
 
 void ExitTable::add_rows(const Shape& shape) {

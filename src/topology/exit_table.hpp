@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "dartcast/cell_shape.hpp"
+#include "topology/cell_rows.hpp"
 #include "topology/facet_corners.hpp"
 
 namespace dartcast::detail {
@@ -50,6 +51,8 @@ class ExitTable {
   [[nodiscard]] const SimplexEntry& entry(unsigned face, unsigned place) const {
     return entries_[first_[face] + place];
   }
+  /// Those through the whole cell.
+  [[nodiscard]] const CellRows& cell_rows() const { return cell_rows_; }
 
  private:
   void add_rows(const Shape& shape);
@@ -58,6 +61,7 @@ class ExitTable {
   std::vector<SimplexExit> exits_;
   std::vector<std::uint16_t> first_;   // entry of each face, after that of the rows themselves
   std::vector<SimplexEntry> entries_;  // all rows; then the triangles of each face
+  CellRows cell_rows_;
 };
 
 /// The corners by which a row's facet is left.
