@@ -212,4 +212,21 @@ MeshData random_scene(SceneKind kind, std::uint64_t seed, double warp) {
   return mesh;
 }
 
+MeshData long_box(std::uint64_t seed) {
+  Random random(seed, 3);
+  BoxOptions o;
+  for (std::uint32_t& n : o.cells) n = 4 + random.below(7);
+  o.size = {edge * o.cells[0], edge * o.cells[1], edge * o.cells[2]};
+  o.mixed = seed % 4 == 1;
+  o.blocked_share = pick(random, {0.0, 0.02, 0.1});
+  o.seed = random.next();
+  MeshData mesh = generate_box(o);
+  renumber(mesh, random);
+  if (seed % 4 == 0) return mesh;
+  displace(mesh.points, random, 0.15 * edge * pick(random, {0.0, 0.01, 0.6, 1.0}));
+  if (random.below(2) == 0) rotate(mesh.points, random);
+  scale_and_shift(mesh.points, random);
+  return mesh;
+}
+
 }  // namespace dartcast::oracle

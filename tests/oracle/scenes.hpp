@@ -25,4 +25,8 @@ MeshData random_scene(SceneKind kind, std::uint64_t seed, double warp);
 /// more (4 sqrt(2) and the like in octahedra: their corners are integers too).
 MeshData lattice_scene(SceneKind kind, std::uint64_t seed);
 
+/// Some hundred hexahedra, and among them other cells where seed % 4 is 1; on integers where it is 0, else as
+/// random_scene().
+MeshData long_box(std::uint64_t seed);
+
 }  // namespace dartcast::oracle

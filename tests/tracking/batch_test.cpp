@@ -9,14 +9,13 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <numbers>
 
 #include "base/random.hpp"
 #include "oracle/scenes.hpp"
 #include "support/particle_checks.hpp"
+#include "support/random_vectors.hpp"
 #include "support/seeds.hpp"
 #include "support/tier.hpp"
-#include "topology/exit_table.hpp"
 #include "tracking/batch/far_walk_counts.hpp"
 #include "tracking/carry.hpp"
 #include "tracking/locate.hpp"
@@ -35,6 +34,7 @@ struct Tally {
   std::atomic<std::uint64_t> landed{0};      // of these, the contact is known
   std::atomic<std::uint64_t> remembered{0};  // taken, and coordinates are kept for the next
   std::atomic<std::uint64_t> exact{0};       // of these, exact ones
+  std::atomic<std::uint64_t> by_cells{0};    // to a wall behind whole hexahedra
 };
 
 // A scene whose particles are stepped both ways.
@@ -64,6 +64,9 @@ class BothWays {
   // Half of the targets are in planes across axes through vertices.
   void aim_at_planes() { at_planes_ = true; }
 
+  // Half of the targets are many cells away.
+  void aim_far_away() { far_away_ = true; }
+
   [[nodiscard]] bool usable() const { return complex_.invalid_cells().empty(); }
 
   // One step of all particles; what differs.
@@ -86,7 +89,7 @@ class BothWays {
     std::vector<ParticleState> next = states_;
     detail::SimplexCache next_caches;
     for (std::size_t i = 0; i < particles; ++i) {
-      const ScalarStep one = scalar_step(stepper, i, targets[i]);
+      const ScalarStep one = scalar_step(stepper, i, targets[i], tally);
       next[i] = one.state;
       const bool taken = best.taken[i] == detail::step_complete;
       bool landed = false;
@@ -138,13 +141,13 @@ class BothWays {
     Counters counters_in_batch;
   };
 
-  ScalarStep scalar_step(const Stepper& stepper, std::size_t i, const Vec3& target) const {
+  ScalarStep scalar_step(const Stepper& stepper, std::size_t i, const Vec3& target, Tally& tally) const {
     ScalarStep one{states_[i], {}, {}, {}, {}};
     Weights weights{};
     one.result = stepper.step(static_cast<std::uint32_t>(i), one.state, weights, target, one.contacts, one.counters);
     one.counters_in_batch = one.counters;
     if (one.counters.orientation.tests > 0 && one.counters.steps_split == 0 && !one.result.held) {
-      const TestCounts counts = counts_in_batch(i, target);
+      const TestCounts counts = counts_in_batch(i, target, tally);
       one.counters_in_batch.orientation = counts;
       one.counters_in_batch.histogram = {};
       one.counters_in_batch.histogram[std::min<std::size_t>(counts.tests, Counters::histogram_size - 1)] = 1;
@@ -153,7 +156,7 @@ class BothWays {
   }
 
   // Those of a walk that a batch takes, up to its first wall.
-  [[nodiscard]] TestCounts counts_in_batch(std::size_t i, const Vec3& q) const {
+  [[nodiscard]] TestCounts counts_in_batch(std::size_t i, const Vec3& q, Tally& tally) const {
     const ParticleState& s = states_[i];
     SimplexPlacement start{s.at(), s.position};
     if (moves_) {
@@ -167,6 +170,7 @@ class BothWays {
     const Walk walk = detail::walk_to_wall(space, start.simplex, start.position, q, counts, far);
     far.end(walk);
     counts = far.walk().counted(counts);
+    tally.by_cells += far.walk().by == FarWalk::By::cells ? 1 : 0;
     detail::end_walk(space, walk, start.position, q, counts);
     return counts;
   }
@@ -326,6 +330,8 @@ class BothWays {
     const double edge = norm(v[1] - v[0]);
     const std::uint32_t kind = random_.below(16);
     if (at_planes_ && kind > 7) return plane_target();
+    if (far_away_ && kind > 7)
+      return s.position + random_vector(random_) * (edge * std::exp2(random_.uniform(2.0, 5.0)));
     if (kind == 0) return s.position;
     if (kind == 1) return v[random_.below(4)];
     if (on_lattice_ && kind > 2)
@@ -394,6 +400,7 @@ class BothWays {
   bool on_lattice_;
   bool on_facets_;
   bool at_planes_ = false;  // some particles begin there
+  bool far_away_ = false;
   std::vector<ParticleState> states_;
   detail::SimplexCache caches_;  // of these, once a step has been taken
 };
@@ -490,6 +497,20 @@ TEST(FilteredBatch, WalksToFarPlanes) {
   }
 }
 
+// Targets far away in long boxes: bent hexahedra, some of them blocked, and on integers. Walks go in and out of cells of
+// another type.
+TEST(FilteredBatch, WalksThroughWholeCells) {
+  Tally tally;
+  const auto complaints = run_seeds(scaled(12, 1000), [&](std::uint64_t seed) {
+    BothWays both(oracle::long_box(seed), seed, false, false, seed % 4 == 0);
+    both.aim_far_away();
+    return run(std::move(both), fmt::format("long box, seed {}", seed), tally);
+  });
+  for (const std::string& wrong : complaints) ADD_FAILURE() << wrong;
+  EXPECT_GT(tally.by_cells, tally.steps / 8);
+  EXPECT_GT(tally.landed, tally.steps / 8);
+}
+
 TEST(FilteredBatch, SeedsThatWentWrong) {
   Tally tally;
   // A determinant below the filter's bound, exact and not zero: no wall is to be looked for.
@@ -506,95 +527,6 @@ TEST(FilteredBatch, SeedsThatWentWrong) {
   EXPECT_EQ(run_scene(oracle::SceneKind::flat_corners, true, 1027, tally), "");
   // A walk through all simplices of a small scene, of which the first is tested in a round of its own.
   EXPECT_EQ(run_scene(oracle::SceneKind::prisms, false, 1949, tally), "");
-}
-
-// A prism over a polygon of so many corners, and a hexahedron at one of its sides.
-MeshData prism_with_a_door(std::uint32_t corners) {
-  MeshData mesh;
-  for (const double z : {0.0, 1.0}) {
-    for (std::uint32_t i = 0; i < corners; ++i) {
-      const double angle = 2.0 * std::numbers::pi * i / corners;
-      mesh.points.push_back({std::cos(angle), std::sin(angle), z});
-    }
-  }
-  std::vector<std::uint32_t> faces = {corners + 2, corners};
-  for (std::uint32_t i = corners; i > 0; --i) faces.push_back(i - 1);
-  faces.push_back(corners);
-  for (std::uint32_t i = 0; i < corners; ++i) faces.push_back(corners + i);
-  for (std::uint32_t i = 0; i < corners; ++i) {
-    const std::uint32_t j = (i + 1) % corners;
-    faces.insert(faces.end(), {4, i, j, corners + j, corners + i});
-  }
-  mesh.add_cell(CellType::polyhedron, faces);
-  const std::uint32_t outer = 2 * corners;
-  for (const std::uint32_t i : {0U, 1U, corners + 1, corners}) mesh.points.push_back(mesh.points[i] + Vec3{0.5, 0, 0});
-  mesh.add_cell(CellType::hexahedron,
-                std::vector<std::uint32_t>{0, outer, outer + 1, 1, corners, outer + 3, outer + 2, corners + 1});
-  return mesh;
-}
-
-// Shapes of many simplices have no table of exits: walks along lines are left to rounds there, and where they come to
-// one.
-TEST(FilteredBatch, ShapesWithoutATable) {
-  constexpr std::uint32_t corners = 1500;
-  const CellComplex complex(prism_with_a_door(corners));
-  ASSERT_TRUE(complex.invalid_cells().empty());
-  const Cell prism = complex.map().cells().back();
-  const Cell door = complex.map().cells().front();
-  ASSERT_TRUE(complex.map().shape(prism).exits().empty());
-  ASSERT_FALSE(complex.map().shape(door).exits().empty());
-  const double y = std::numbers::pi / corners;  // in the middle of the door
-  const std::vector<Vec3> starts = {{1.3, y, 0.4}, {1.2, 0.9 * y, 0.3}, {-0.2, 0.3, 0.6}, {1.1, y, 0.7}};
-  const std::vector<Vec3> targets = {
-      {-0.7, 2.1 * y, 0.5}, {-1.7, 0.2, 0.4}, {-0.19, 0.31, 0.55}, {1.3, 1.001 * y, 0.6}};
-  const Locator locator(complex);
-  std::vector<ParticleState> states(starts.size());
-  std::vector<detail::VertexNumbers> vertices;
-  for (std::size_t i = 0; i < starts.size(); ++i) {
-    const Location at = locator.locate(complex, starts[i]);
-    ASSERT_EQ(at.place, Place::free);
-    states[i].put(at.simplex, starts[i]);
-    vertices.push_back(detail::vertex_numbers(complex, at.simplex));
-  }
-  std::vector<ParticleState> taken = states;
-  std::vector<detail::StepStatus> status(starts.size());
-  std::vector<PartialStep> partial;
-  Counters counters;
-  detail::step_batch({&complex, false, false, StepOptions{}.tolerance}, {taken, vertices, {}, targets, status, partial},
-                     counters);
-  const StepOptions options;
-  const ContactCallback none;
-  const Stepper stepper(complex, false, options, none);
-  for (std::size_t i = 0; i < starts.size(); ++i) {
-    Weights unused{};
-    ContactList contacts;
-    Counters counts;
-    ASSERT_NE(status[i], detail::step_untouched) << i;
-    if (status[i] != detail::step_complete)
-      stepper.resume(static_cast<std::uint32_t>(i), taken[i], unused, targets[i], contacts, counts, partial[status[i]]);
-    stepper.step(static_cast<std::uint32_t>(i), states[i], unused, targets[i], contacts, counts);
-    EXPECT_TRUE(same_bits(taken[i], states[i])) << i;
-  }
-}
-
-TEST(FilteredBatch, RangesAreCheckedToTheLastNumber) {
-  const double good[] = {0.0, -0.0, smallest_magnitude, -largest_magnitude, 1.0};
-  const double bad[] = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
-                        largest_magnitude * 1.0000000000000002, -smallest_magnitude * 0.9999999999999999, 5e-324};
-  for (std::size_t count = 0; count < 9; ++count) {
-    std::vector<Vec3> points(count, Vec3{good[count % 5], good[(count + 1) % 5], good[(count + 2) % 5]});
-    EXPECT_TRUE(detail::all_as_decided(points));
-    for (Vec3& p : points) {
-      for (double* c : {&p.x, &p.y, &p.z}) {
-        const double kept = *c;
-        for (const double b : bad) {
-          *c = b;
-          EXPECT_FALSE(detail::all_as_decided(points)) << b;
-        }
-        *c = kept;
-      }
-    }
-  }
 }
 
 }  // namespace dartcast::test::batch_test

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "tracking/batch/batch_cell_walks.inl"
 #include "tracking/batch/batch_line_walks.inl"
 #include "tracking/batch/batch_steps.inl"
 
@@ -15,42 +16,79 @@ DARTCAST_BEGIN_KERNEL
 namespace dartcast::detail::DARTCAST_SIMD {
 namespace {
 
-// The walks in far_walks_. In turns, each of three passes: the new corners of all walks are found, and prefetched; four
-// walks at a time pass their simplices, and their next cells are prefetched; walks that may have ended are looked at.
+// The far walks: simplices of all; then, in turns, whole cells and simplices of those that pass cells.
 template <CacheKind kind>
 void Batch<kind>::walk_lines() {
-  next_line_ = staged_ = 0;
   line_arrivals_ = 0;
+  to_cells_ = 0;
   for (LinePlace& at : line_places_) at.corner = now_;  // lanes without a walk read it, too
   for (std::uint32_t pool = 0; pool < CombinatorialMap::general_pool; ++pool)
     record_pools_[pool] = {map_.record(Cell(pool, 0)), map_.record_stride(pool)};
+  begin_lines(far_walks_.data(), far_count_);
+  pass_simplices<false>([&](std::uint32_t l) { return start_next_line(l); });
+  if constexpr (!moved) walk_farther();
+  if constexpr (kind != CacheKind::none) cache_line_arrivals();
+}
+
+template <CacheKind kind>
+void Batch<kind>::walk_farther() {
+  if (farther_count_ == 0) return;
+  begin_lines(farther_walks_.data(), farther_count_);
+  pass_simplices<true>([&](std::uint32_t l) {
+    const bool begins = start_next_line(l);
+    set_to_cells(l, begins && in_range_of_floats(line_walks_[l / 4].line, l % 4));
+    return begins;
+  });
+  while (by_cells_.written != 0) {
+    by_cells_.read_again();
+    walk_cells();
+    by_cells_.read_again();
+    staged_ = 0;
+    pass_simplices<true>([&](std::uint32_t l) { return resume_next_line(l); });
+  }
+}
+
+// Walks to begin next.
+template <CacheKind kind>
+inline void Batch<kind>::begin_lines(const Departure* walks, std::size_t count) {
+  departures_ = walks;
+  departure_count_ = count;
+  next_line_ = staged_ = 0;
+}
+
+// Walks that start_next(lane) begins. In turns, each of three passes: the new corners of all walks are found, and
+// prefetched; four walks at a time pass their simplices, and their next cells are prefetched; walks that may have ended,
+// or with `to_cells` those that go on to pass cells, are looked at.
+template <CacheKind kind>
+template <bool to_cells, class StartNext>
+inline void Batch<kind>::pass_simplices(const StartNext& start_next) {
   std::uint32_t live = 0;
-  for (std::uint32_t l = 0; l < lines; ++l) live |= (start_next_line(l) ? 1U : 0U) << l;
+  for (std::uint32_t l = 0; l < lines; ++l) live |= (start_next(l) ? 1U : 0U) << l;
   while (live != 0) {
     for (std::uint32_t left = live; left != 0; left &= left - 1) {
       const auto l = static_cast<std::uint32_t>(std::countr_zero(left));
-      if (!find_corners(l)) live ^= 1U << l;
+      if (!find_corners(l, start_next)) live ^= 1U << l;
     }
     std::uint32_t marked = 0;
     for (std::uint32_t l = 0; l < lines; l += 4) {
       const std::uint32_t here = (live >> l) & 15U;
-      if (here != 0) marked |= pass_simplices(l, here) << l;
+      if (here != 0) marked |= pass_four<to_cells>(l, here) << l;
     }
     for (; marked != 0; marked &= marked - 1) {
       const auto l = static_cast<std::uint32_t>(std::countr_zero(marked));
-      if (!goes_on(l) && !start_next_line(l)) live ^= 1U << l;
+      if (!goes_on<to_cells>(l) && !start_next(l)) live ^= 1U << l;
     }
   }
-  if constexpr (kind != CacheKind::none) cache_line_arrivals();
 }
 
 // Finds the new corner of the walk in lane l, or of the first one after it that has one. Returns false where there is
 // none.
 template <CacheKind kind>
-inline bool Batch<kind>::find_corners(std::uint32_t l) {
+template <class StartNext>
+inline bool Batch<kind>::find_corners(std::uint32_t l, const StartNext& start_next) {
   while (!find_corner(line_places_[l], map_, now_)) {
     leave_unlisted(line_places_[l]);
-    if (!start_next_line(l)) return false;
+    if (!start_next(l)) return false;
   }
   return true;
 }
@@ -58,13 +96,13 @@ inline bool Batch<kind>::find_corners(std::uint32_t l) {
 // Prepares four walks from number next_line_ on.
 template <CacheKind kind>
 inline void Batch<kind>::stage_lines() {
-  const std::size_t end = std::min(next_line_ + block, far_count_);
+  const std::size_t end = std::min(next_line_ + block, departure_count_);
   for (std::size_t k = std::min(next_line_ + block - 4, end); k < end; ++k) {
-    __builtin_prefetch(far_walks_[k].record);
-    prefetch(now_, vertices_[far_walks_[k].particle]);
+    __builtin_prefetch(departures_[k].record);
+    prefetch(now_, vertices_[departures_[k].particle]);
   }
-  const std::size_t last = far_count_ - 1;
-  const auto particle = [&](std::size_t k) { return far_walks_[std::min(next_line_ + k, last)].particle; };
+  const std::size_t last = departure_count_ - 1;
+  const auto particle = [&](std::size_t k) { return departures_[std::min(next_line_ + k, last)].particle; };
   const Index4 i = {{particle(0), particle(1), particle(2), particle(3)}};
   const Corners4 v = simplices_of(now_, i);
   line_starts_ = LineStarts4(v, starts_of(i, v), targets_of(i));
@@ -74,9 +112,9 @@ inline void Batch<kind>::stage_lines() {
 // Begins the next walk that can begin, in lane l. Returns false where there is none.
 template <CacheKind kind>
 inline bool Batch<kind>::start_next_line(std::uint32_t l) {
-  while (next_line_ < far_count_) {
+  while (next_line_ < departure_count_) {
     if (next_line_ == staged_) stage_lines();
-    const auto [i, record] = far_walks_[next_line_];
+    const auto [i, record] = departures_[next_line_];
     const auto from = static_cast<unsigned>(next_line_ + 4 - staged_);
     ++next_line_;
     if (start_line(l, i, record, from)) return true;
@@ -103,23 +141,83 @@ inline bool Batch<kind>::start_line(std::uint32_t l, std::uint32_t i, const std:
   return walks.is_inside(l % 4);
 }
 
+// Resumes the next walk that has passed cells, in lane l. Returns false where there is none.
+template <CacheKind kind>
+inline bool Batch<kind>::resume_next_line(std::uint32_t l) {
+  if (by_cells_.next == by_cells_.count) return false;
+  if (by_cells_.next == staged_) stage_resumed_lines();
+  const auto from = static_cast<unsigned>(by_cells_.next + 4 - staged_);
+  const CellWalk& walk = by_cells_.take();
+  line_walks_[l / 4].go_on(l % 4, resumed_lines_, from);
+  LinePlace& at = line_places_[l];
+  at.record = walk.record;
+  at.particle = walk.particle;
+  at.cell = walk.cell;
+  at.passed = walk.passed;
+  at.tests = walk.tests;
+  at.face = 0;
+  at.place = row_behind(walk);
+  at.turn = 0;
+  set_to_cells(l, walk.to_cells);
+  return true;
+}
+
+// Prepares four walks.
+template <CacheKind kind>
+inline void Batch<kind>::stage_resumed_lines() {
+  const Index4 k = by_cells_.next_four();
+  VertexNumbers triangle[4];
+  for (unsigned l = 0; l < 4; ++l) {
+    const CellWalk& walk = by_cells_.walks[k.at[l]];
+    const unsigned row = row_behind(walk);
+    const Shape& shape = map_.view(Cell(walk.cell), walk.record).shape();
+    for (unsigned i = 0; i < 3; ++i)
+      triangle[l][i] = walk.record[2U + shape.simplices()[row / 4].vertex[facet_corners[row % 4][i]]];
+  }
+  Vec3x4 corner[3];
+  for (unsigned i = 0; i < 3; ++i)
+    corner[i] = load_vec3x4(now_[triangle[0][i]], now_[triangle[1][i]], now_[triangle[2][i]], now_[triangle[3][i]]);
+  const Index4 particles = by_cells_.particles(k);
+  resumed_lines_ = LineResumptions4(places_of(particles), targets_of(particles), by_cells_.reaches(k), corner);
+  staged_ = by_cells_.next + 4;
+}
+
+// 4 * simplex + facet, behind the triangle that the walk has entered its cell by.
+template <CacheKind kind>
+inline unsigned Batch<kind>::row_behind(const CellWalk& walk) const {
+  const Across at =
+      map_.view(Cell(walk.cell), walk.record)
+          .shape()
+          .entry(static_cast<std::uint16_t>(walk.entry.face()), static_cast<std::uint16_t>(walk.entry.triangle()));
+  return 4U * at.index + at.place;
+}
+
+template <CacheKind kind>
+inline void Batch<kind>::set_to_cells(std::uint32_t l, bool to_cells) {
+  to_cells_ = (to_cells_ & ~(1U << l)) | (to_cells ? 1U : 0U) << l;
+}
+
 // Passes a simplex of each walk in the lanes from l on that are in the mask `live`. Returns a mask of those to look at.
 template <CacheKind kind>
-[[gnu::always_inline]] inline std::uint32_t Batch<kind>::pass_simplices(std::uint32_t l, std::uint32_t live) {
+template <bool to_cells>
+[[gnu::always_inline]] inline std::uint32_t Batch<kind>::pass_four(std::uint32_t l, std::uint32_t live) {
   LineWalks4& walks = line_walks_[l / 4];
   LinePlace* const at = &line_places_[l];
   walks.pass(load_vec3x4(*at[0].corner, *at[1].corner, *at[2].corner, *at[3].corner));
   std::uint32_t walls = 0;
+  std::uint32_t crossed = 0;
   for (std::uint32_t k = 0; k < 4; ++k) {
     if (((live >> k) & 1U) == 0) continue;
     walls |= leave(at[k], static_cast<unsigned>(walks.slot[k]), map_, record_pools_.data()) << k;
+    if constexpr (to_cells) crossed |= (at[k].face != 0 ? 1U : 0U) << k;
   }
   at_wall_lanes_[l / 4] = walls;
-  return (walks.undecided | walks.near_end | walls) & live;
+  return (walks.undecided | walks.near_end | walls | (crossed & (to_cells_ >> l))) & live;
 }
 
 // Looks at a walk that needs it. Returns whether it goes on.
 template <CacheKind kind>
+template <bool to_cells>
 inline bool Batch<kind>::goes_on(std::uint32_t l) {
   LinePlace& at = line_places_[l];
   const LineWalks4& walks = line_walks_[l / 4];
@@ -129,10 +227,26 @@ inline bool Batch<kind>::goes_on(std::uint32_t l) {
     if (side == 0) return leave_to_rounds(at);
     at.tests += at.passed > 1 ? 1 : 0;  // in the first simplex the sides of all facets are counted
     if (side > 0) return arrive_by_line(passed_cursor(at));
+    if constexpr (to_cells) set_to_cells(l, false);
   }
-  if (((at_wall_lanes_[l / 4] >> (l % 4)) & 1U) == 0) return true;
-  const WalkCursor cursor = passed_cursor(at);
-  return end_at_wall(cursor, corners_of_walk(cursor), at.exit_facet);
+  if (((at_wall_lanes_[l / 4] >> (l % 4)) & 1U) != 0) {
+    const WalkCursor cursor = passed_cursor(at);
+    return end_at_wall(cursor, corners_of_walk(cursor), at.exit_facet);
+  }
+  if constexpr (to_cells) {
+    if (((to_cells_ >> l) & 1U) != 0 && at.face != 0 && Cell(at.cell).pool() == hexahedra) return leave_to_cells(l);
+  }
+  return true;
+}
+
+// Returns false: the walk does not go on from simplex to simplex.
+template <CacheKind kind>
+inline bool Batch<kind>::leave_to_cells(std::uint32_t l) {
+  const LinePlace& at = line_places_[l];
+  const CellEntry entry(at.face - 1, at.place);
+  by_cells_.add(
+      {at.record, line_walks_[l / 4].line.reach[l % 4], at.particle, at.cell, entry, at.passed, at.tests, true});
+  return false;
 }
 
 // In the simplex that the walk has passed.
@@ -141,10 +255,10 @@ inline WalkCursor Batch<kind>::passed_cursor(const LinePlace& at) const {
   const unsigned entered_by = at.passed == 1 ? no_facet : at.row % 4;
   return {at.particle,
           at.passed_cell,
+          at.tests + 3 * at.passed,
+          0,
           static_cast<std::uint16_t>(at.row / 4),
           static_cast<std::uint16_t>(entered_by),
-          static_cast<std::uint16_t>(at.tests + 3 * at.passed),
-          0,
           entered,
           map_.record(Cell(at.passed_cell))};
 }
@@ -153,7 +267,7 @@ inline WalkCursor Batch<kind>::passed_cursor(const LinePlace& at) const {
 template <CacheKind kind>
 inline bool Batch<kind>::leave_to_rounds(const LinePlace& at) {
   WalkCursor cursor = passed_cursor(at);
-  cursor.tests = static_cast<std::uint16_t>(cursor.tests - 3);
+  cursor.tests -= 3;
   add_to_rounds(cursor);
   return false;
 }

@@ -28,7 +28,7 @@ inline std::size_t Batch<kind>::start() {
       const std::uint32_t* record = map_.record(states_[i].cell);
       const FacetSigns4 signs(signs_[remaining_[l]]);
       if (((far_away_ >> remaining_[l]) & 1U) != 0) {
-        far_walks_[far_count_++] = {i, record};
+        add_far_walk({i, record}, ((farther_away_ >> remaining_[l]) & 1U) != 0);
       } else if (signs.negative() != 0 && signs.is_known()) {
         exits_[count++] = exit_candidate(i, signs.negative(), signs.open(), record);
       } else {
@@ -77,20 +77,31 @@ inline void Batch<kind>::sort_undecided(std::size_t k, std::size_t count) {
   const std::size_t last = count - 1;
   const auto particle = [&](std::size_t l) { return undecided_[std::min(k + l, last)].particle; };
   const Index4 i = {{particle(0), particle(1), particle(2), particle(3)}};
-  const unsigned far = lanes_set(BatchDeterminants(simplices_of(now_, i), targets_of(i)).far_away());
+  const BatchDeterminants determinants(simplices_of(now_, i), targets_of(i));
+  const unsigned far = lanes_set(determinants.far_away());
+  const unsigned farther = lanes_set(determinants.far_away(farther_coordinate));
   for (std::size_t l = 0; l < std::min<std::size_t>(4, count - k); ++l) {
     const Departure& d = undecided_[k + l];
     if (((far >> l) & 1U) != 0)
-      far_walks_[far_count_++] = d;
+      add_far_walk(d, ((farther >> l) & 1U) != 0);
     else
       add_to_rounds(first_cursor(d.particle, states_[d.particle], d.record, 1, 0));  // walk_on() counts three more
   }
 }
 
 template <CacheKind kind>
+inline void Batch<kind>::add_far_walk(const Departure& walk, bool farther) {
+  if (!moved && farther && cells_positive_)
+    farther_walks_[farther_count_++] = walk;
+  else
+    far_walks_[far_count_++] = walk;
+}
+
+template <CacheKind kind>
 inline void Batch<kind>::test_block(std::uint32_t first, std::uint32_t n) {
   inside_ = 0;
   far_away_ = 0;
+  farther_away_ = 0;
   one_part_ = 0;
   carried_inside_ = 0;
   arrivals_ = 0;
@@ -104,6 +115,7 @@ inline void Batch<kind>::test_block(std::uint32_t first, std::uint32_t n) {
     store_signs(signs, k);
     inside_ |= lanes_set(signs == splat_bits(FacetSigns4::valid)) << k;
     far_away_ |= lanes_set(d.far_away()) << k;
+    if constexpr (!moved) farther_away_ |= lanes_set(d.far_away(farther_coordinate)) << k;
     if constexpr (moved) {
       SimplexCache4& previous_caches = caches_[i.at[0] / 4];
       const OnePart one(previous_caches, d.relative, places_of(i), q, tolerance_);
@@ -202,7 +214,8 @@ void Batch<kind>::end_on_facets(std::uint32_t first) {
     const auto k = static_cast<std::uint32_t>(std::countr_zero(bits));
     const std::uint32_t i = first + k;
     const unsigned on = FacetSigns4(signs_[k]).zero();
-    const WalkCursor cursor = first_cursor(i, states_[i], map_.record(states_[i].cell), 4, std::popcount(on));
+    const WalkCursor cursor =
+        first_cursor(i, states_[i], map_.record(states_[i].cell), 4, static_cast<unsigned>(std::popcount(on)));
     if (const auto wall = find_touched_wall(map_, cursor, vertices_[i], on)) {
       end_on_wall(cursor, on, *wall);
     } else {
@@ -299,9 +312,10 @@ inline std::size_t Batch<kind>::take_exits(std::size_t exits) {
   std::size_t next = in_rounds_;
   std::size_t out_of_cell = 0;
   for (std::size_t k = 0; k < exits; ++k) {
-    auto [i, behind, exact, record] = exits_[k];
+    const auto [i, behind, open, record] = exits_[k];
     const ParticleState& s = states_[i];
-    std::uint16_t tests = 4;
+    std::uint32_t tests = 4;
+    std::uint32_t exact = open;
     auto facet = static_cast<unsigned>(std::countr_zero(behind));
     if (!std::has_single_bit(behind)) {
       WalkCursor cursor = first_cursor(i, s, record, tests, exact);
@@ -311,8 +325,8 @@ inline std::size_t Batch<kind>::take_exits(std::size_t exits) {
     }
     // From registers: a record that was just written in parts could not be loaded as a whole yet.
     const Across across = map_.view(s.cell, record).shape().simplices()[s.simplex].across[facet];
-    walks_[next] = {i, s.cell.value, across.index, across.place, tests, exact, entered, record};
-    cell_exits_[out_of_cell] = {i, across, static_cast<std::uint16_t>(facet), tests, exact, record};
+    walks_[next] = {i, s.cell.value, tests, exact, across.index, across.place, entered, record};
+    cell_exits_[out_of_cell] = {i, across, facet, tests, exact, record};
     const std::size_t leaves = across.index / Across::outer_bit;
     next += 1 - leaves;
     out_of_cell += leaves;

@@ -42,7 +42,9 @@ struct AxisOrder4 {
   }
 
   [[nodiscard]] [[gnu::always_inline]] Vec3x4 order(const Vec3x4& a) const {
-    return {x_last ? a.y : y_last ? a.z : a.x, x_last ? a.z : y_last ? a.x : a.y, x_last ? a.x : y_last ? a.y : a.z};
+    const Mask4 x = x_last < 0;  // the blend itself takes the sign
+    const Mask4 y = y_last < 0;
+    return {x ? a.y : y ? a.z : a.x, x ? a.z : y ? a.x : a.y, x ? a.x : y ? a.y : a.z};
   }
 };
 
@@ -82,9 +84,30 @@ struct Lines4 {
   }
   [[nodiscard]] Mask4 in_range() const { return (reach > nearest_reach) & (reach < farthest_reach); }
   [[nodiscard]] Double4 bound3(double error) const { return splat(error / side_error) * (side_bound * reach); }
+
+  // Lane `to` becomes lane `from` of others.
+  void take(unsigned to, const Lines4& others, unsigned from) {
+    axes.x_last[to] = others.axes.x_last[from];
+    axes.y_last[to] = others.axes.y_last[from];
+    flip[to] = others.flip[from];
+    start.x[to] = others.start.x[from];
+    start.y[to] = others.start.y[from];
+    start.z[to] = others.start.z[from];
+    slope_u[to] = others.slope_u[from];
+    slope_v[to] = others.slope_v[from];
+    length[to] = others.length[from];
+    reach[to] = others.reach[from];
+    side_bound[to] = others.side_bound[from];
+  }
 };
 
 inline Double4 side(const Vec3x4& a, const Vec3x4& b) { return a.x * b.y - a.y * b.x; }
+
+inline void take(Vec3x4& points, unsigned to, const Vec3x4& others, unsigned from) {
+  points.x[to] = others.x[from];
+  points.y[to] = others.y[from];
+  points.z[to] = others.z[from];
+}
 
 // Walks that begin in simplices. Sides are of the edges in this order.
 inline constexpr std::array<std::array<std::uint8_t, 2>, 6> line_edges = {
@@ -172,6 +195,20 @@ inline constexpr auto line_turns = [] {
 }();
 inline constexpr std::array<std::uint8_t, 8> modulo_3 = {0, 1, 2, 0, 1, 2, 0, 1};
 
+// Walks that go on behind triangles, where they are known to be.
+struct LineResumptions4 {
+  Lines4 line;
+  Vec3x4 corner[3];  // of the triangles, as in LineWalks4
+  Double4 edge_side[3];
+
+  LineResumptions4() = default;
+  LineResumptions4(const Vec3x4& p, const Vec3x4& q, const Double4& reach, const Vec3x4 (&triangle)[3]) : line(p, q) {
+    line.reach_to(reach);
+    for (unsigned i = 0; i < 3; ++i) corner[i] = line.project(triangle[i]);
+    for (unsigned i = 0; i < 3; ++i) edge_side[i] = side(corner[(i + 1) % 3], corner[(i + 2) % 3]);
+  }
+};
+
 // Four walks. Slot i of a triangle: its corner i, and the side of the edge from the next corner to the one after.
 struct LineWalks4 {
   Lines4 line;
@@ -226,26 +263,19 @@ struct LineWalks4 {
 
   // Lane `to` is the walk of lane `from` of those that begin, in the simplex that it enters by this facet.
   void begin(unsigned to, const LineStarts4& starts, unsigned from, unsigned facet) {
-    const auto copy = [&](Double4& x, const Double4& of) { x[to] = of[from]; };
-    const auto copy_bits = [&](Mask4& x, const Mask4& of) { x[to] = of[from]; };
-    copy_bits(line.axes.x_last, starts.line.axes.x_last);
-    copy_bits(line.axes.y_last, starts.line.axes.y_last);
-    copy_bits(line.flip, starts.line.flip);
-    copy(line.start.x, starts.line.start.x);
-    copy(line.start.y, starts.line.start.y);
-    copy(line.start.z, starts.line.start.z);
-    copy(line.slope_u, starts.line.slope_u);
-    copy(line.slope_v, starts.line.slope_v);
-    copy(line.length, starts.line.length);
-    copy(line.reach, starts.line.reach);
-    copy(line.side_bound, starts.line.side_bound);
+    line.take(to, starts.line, from);
     for (unsigned i = 0; i < 3; ++i) {
-      const Vec3x4& x = starts.corner[facet_corners[facet][i]];
-      copy(corner[i].x, x.x);
-      copy(corner[i].y, x.y);
-      copy(corner[i].z, x.z);
+      take(corner[i], to, starts.corner[facet_corners[facet][i]], from);
       const LineEdge e = facet_edges[facet][i];
       edge_side[i][to] = e.direction * starts.edge_side[e.number][from];
+    }
+  }
+  // Lane `to` is the walk of lane `from` of those that go on, in the simplex behind its triangle.
+  void go_on(unsigned to, const LineResumptions4& walks, unsigned from) {
+    line.take(to, walks.line, from);
+    for (unsigned i = 0; i < 3; ++i) {
+      take(corner[i], to, walks.corner[i], from);
+      edge_side[i][to] = walks.edge_side[i][from];
     }
   }
   // Whether it is proved that the line passes inside of the triangle.

@@ -27,10 +27,10 @@ namespace {
 struct WalkCursor {
   std::uint32_t particle;
   std::uint32_t cell;           // its value
+  std::uint32_t tests;          // so far
+  std::uint32_t exact;          // of these, those that the filter left open
   std::uint16_t index;          // of the simplex
   std::uint16_t place;          // facet that was entered by (no_facet: none)
-  std::uint16_t tests;          // so far
-  std::uint16_t exact;          // of these, those that the filter left open
   std::uint16_t face;           // `entered`: index and place are known
   const std::uint32_t* record;  // of the cell
 };
@@ -40,8 +40,8 @@ inline constexpr std::uint16_t entered = 0xffff;
 
 // In the simplex where a step starts.
 inline WalkCursor first_cursor(std::uint32_t particle, const ParticleState& s, const std::uint32_t* record,
-                               std::uint16_t tests, int exact) {
-  return {particle, s.cell.value, s.simplex, no_facet, tests, static_cast<std::uint16_t>(exact), entered, record};
+                               std::uint32_t tests, unsigned exact) {
+  return {particle, s.cell.value, tests, exact, s.simplex, no_facet, entered, record};
 }
 
 // The wall that a target is on, where the target is on these facets of its simplex.
@@ -72,9 +72,9 @@ struct Departure {
 struct CellExit {
   std::uint32_t particle;
   Across across;
-  std::uint16_t facet;
-  std::uint16_t tests;
-  std::uint16_t exact;
+  std::uint32_t facet;
+  std::uint32_t tests;
+  std::uint32_t exact;
   const std::uint32_t* record;
 };
 struct Arrival {

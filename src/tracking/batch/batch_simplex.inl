@@ -93,10 +93,10 @@ struct BatchDeterminants {
   }
 
   [[nodiscard]] Double4 volume6() const { return (value[0] + value[1]) + (value[2] + value[3]); }
-  // Whether the points are some simplices away.
-  [[nodiscard]] Mask4 far_away() const {
+  // Whether the points are some simplices away: a coordinate is below minus this.
+  [[nodiscard]] Mask4 far_away(double coordinate = far_coordinate) const {
     const Double4 lowest = smaller(smaller(value[0], value[1]), smaller(value[2], value[3]));
-    return lowest < -far_coordinate * volume6();
+    return lowest < -coordinate * volume6();
   }
   [[nodiscard]] Mask4 proves_coordinates() const { return volume6() > 0x1p+30 * bound; }
   [[nodiscard]] Mask4 all_positive() const {

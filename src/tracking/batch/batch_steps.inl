@@ -11,6 +11,8 @@
 #include "base/double4.inl"
 #include "tracking/batch/batch.hpp"
 #include "tracking/batch/batch_caches.inl"
+#include "tracking/batch/batch_cell_lanes.inl"
+#include "tracking/batch/batch_cell_records.inl"
 #include "tracking/batch/batch_impacts.inl"
 #include "tracking/batch/batch_line_walks.inl"
 #include "tracking/batch/batch_records.inl"
@@ -33,6 +35,7 @@ class Batch {
         before_(scene.moved ? scene.complex->previous_positions().data() : nullptr),
         caches_match_(scene.caches_match),
         walls_match_(scene.walls_match),
+        cells_positive_(!moved && are_known_positive(*scene.complex)),
         tolerance_(scene.tolerance),
         size_(static_cast<std::uint32_t>(steps.states.size())),
         states_(steps.states.data()),
@@ -49,7 +52,7 @@ class Batch {
     if (kind == CacheKind::barycentric && !walls_match_) std::fill_n(flags_, size_, CacheFlags{0});
     std::fill_n(status_, size_, step_complete);
     const std::size_t exits = kind == CacheKind::barycentric ? start_by_coordinates() : start();
-    if (far_count_ != 0) walk_lines();
+    if (far_count_ != 0 || farther_count_ != 0) walk_lines();
     std::size_t count = take_exits(exits);
     for (std::uint64_t round = 1; count > 0; ++round) {
       if (round > max_rounds) {
@@ -65,6 +68,7 @@ class Batch {
  private:
   static constexpr std::uint32_t block = 32;
   static constexpr std::uint32_t lines = 32;
+  static constexpr std::uint32_t cell_lanes = 16;
   static constexpr bool moved = kind == CacheKind::previous_geometry;
   static constexpr std::uint16_t short_tests = 16;  // four simplices
 
@@ -119,11 +123,24 @@ class Batch {
 
   // The other simplices along lines: batch_far_walks.inl.
   [[gnu::noinline]] void walk_lines();
-  bool find_corners(std::uint32_t l);
+  [[gnu::noinline]] void walk_farther();
+  bool leave_to_cells(std::uint32_t l);
+  void begin_lines(const Departure* walks, std::size_t count);
+  template <bool to_cells, class StartNext>
+  void pass_simplices(const StartNext& start_next);
+  template <class StartNext>
+  bool find_corners(std::uint32_t l, const StartNext& start_next);
   void stage_lines();
   bool start_next_line(std::uint32_t l);
   bool start_line(std::uint32_t l, std::uint32_t i, const std::uint32_t* record, unsigned from);
-  std::uint32_t pass_simplices(std::uint32_t l, std::uint32_t live);
+  bool resume_next_line(std::uint32_t l);
+  void stage_resumed_lines();
+  void set_to_cells(std::uint32_t l, bool to_cells);
+  void add_far_walk(const Departure& walk, bool farther);
+  [[nodiscard]] unsigned row_behind(const CellWalk& walk) const;
+  template <bool to_cells>
+  std::uint32_t pass_four(std::uint32_t l, std::uint32_t live);
+  template <bool to_cells>
   bool goes_on(std::uint32_t l);
   [[nodiscard]] WalkCursor passed_cursor(const LinePlace& at) const;
   bool leave_to_rounds(const LinePlace& at);
@@ -132,6 +149,14 @@ class Batch {
   bool arrive_by_line(const WalkCursor& cursor);
   void cache_line_arrivals();
   [[nodiscard]] Vec3x4 starts_of(const Index4& i, const Corners4& now) const;
+
+  // Whole cells of these: batch_cell_walks.inl.
+  [[gnu::noinline]] void walk_cells();
+  bool start_next_cell(std::uint32_t l);
+  void stage_cell_walks();
+  void find_rows(std::uint32_t l, std::uint32_t live);
+  std::uint32_t pass_eight(std::uint32_t l, std::uint32_t live);
+  void leave_cells(std::uint32_t l);
 
   // And in rounds: batch_walk.inl.
   std::size_t walk_on(std::size_t count);
@@ -168,6 +193,7 @@ class Batch {
   const Vec3* before_;  // null where the scene stands still
   bool caches_match_;
   bool walls_match_;
+  bool cells_positive_;  // all are known to be
   double tolerance_;
   std::uint32_t size_;
   ParticleState* states_;
@@ -190,6 +216,7 @@ class Batch {
   std::uint32_t still_free_;                    // targets on facets, but on no wall
   std::uint32_t one_part_;                      // steps that need no splitting
   std::uint32_t far_away_;                      // targets some simplices away
+  std::uint32_t farther_away_;                  // targets some cells away
   std::uint32_t carried_inside_;                // starts that the mesh carries to strictly inside
   std::array<std::uint32_t, block> remaining_;  // steps that have not ended
   std::array<Arrival, block> arrival_;
@@ -204,6 +231,8 @@ class Batch {
   std::array<Departure, max_batch> undecided_;  // by coordinates
   std::array<Departure, max_batch> far_walks_;
   std::size_t far_count_ = 0;
+  std::array<Departure, max_batch> farther_walks_;  // those that may pass whole cells
+  std::size_t farther_count_ = 0;
   std::array<CellExit, max_batch> cell_exits_;
   std::array<SimplexCache4::Table<double>, max_batch / 4> previous_determinants_;  // before the move
   std::array<bool, max_batch> left_behind_;
@@ -211,13 +240,22 @@ class Batch {
   std::array<LinePlace, lines> line_places_;
   std::array<std::uint32_t, lines / 4> at_wall_lanes_;  // a bit for each
   std::array<RecordPool, CombinatorialMap::general_pool> record_pools_;
-  LineStarts4 line_starts_;  // of four walks
-  std::size_t next_line_;    // walk to begin
-  std::size_t staged_;       // walks before this one are in line_starts_
+  LineStarts4 line_starts_;      // of four walks
+  const Departure* departures_;  // walks to begin
+  std::size_t departure_count_;
+  std::size_t next_line_;  // the next of these
+  std::size_t staged_;     // walks before this one are in line_starts_
   std::array<std::uint32_t, max_batch> line_arrival_;
   std::uint32_t line_arrivals_;
   std::array<FacetArrival, max_batch> facet_arrival_;
   std::uint32_t facet_arrivals_ = 0;
+  std::uint32_t to_cells_;  // a bit for each lane: from the next face on the walk may pass whole hexahedra
+  LineResumptions4 resumed_lines_;
+  CellWalkQueue by_cells_;
+  std::array<CellWalks8, cell_lanes / 8> cell_walks_;
+  std::array<CellPlace, cell_lanes> cell_places_;
+  std::array<FarCorners8, cell_lanes / 8> far_corners_;
+  CellStarts4 cell_starts_;
 };
 
 }  // namespace

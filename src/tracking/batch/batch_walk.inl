@@ -28,7 +28,7 @@ inline std::size_t Batch<kind>::walk_on(std::size_t count) {
     arrivals_ = 0;
     for (std::size_t k = 0; k < n; ++k) {
       WalkCursor& cursor = walks_[next] = walks_[first + k];
-      cursor.tests = static_cast<std::uint16_t>(cursor.tests + 3);
+      cursor.tests += 3;
       if (FacetSigns4(signs_[k]).is_inside()) {
         arrive(cursor, corners_[k], k);
       } else if (leave_simplex(cursor, corners_[k], k)) {
@@ -98,7 +98,7 @@ inline bool Batch<kind>::leave_simplex(WalkCursor& cursor, const VertexNumbers& 
   const unsigned tested = 15U & ~(1U << cursor.place);
   if (!signs.is_known(tested)) return defer(cursor.particle);
   const unsigned open = signs.open() & tested;
-  cursor.exact = static_cast<std::uint16_t>(cursor.exact + std::popcount(open));
+  cursor.exact += static_cast<unsigned>(std::popcount(open));
   const unsigned behind = signs.negative() & tested;
   if (behind == 0) {
     const unsigned on = signs.zero() & tested;
@@ -127,7 +127,7 @@ inline unsigned Batch<kind>::first_exit(WalkCursor& cursor, const VertexNumbers&
     const Vec3& b = now_[corners[edge[1]]];
     const int first = filtered_sign(a - q, p - q, b - q);
     ++cursor.tests;
-    cursor.exact = static_cast<std::uint16_t>(cursor.exact + (first == 0 ? 1 : 0));
+    cursor.exact += first == 0 ? 1 : 0;
     if (first < 0 || (first == 0 && !passes_before(i, a, b, p, q))) facet = other;
   }
   return facet;

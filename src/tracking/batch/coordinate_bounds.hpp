@@ -31,6 +31,8 @@ inline constexpr double max_for_sign = 2.0;
 /// what is kept.
 inline constexpr double far_coordinate = 1.5;
 inline constexpr double surely_near = far_coordinate - 0x1p-10;
+/// Below minus this the target is some cells away, and the walk may pass whole cells. Measured.
+inline constexpr double farther_coordinate = 4.0;
 inline constexpr double min_volume = 0x1p-20;           ///< V over E^3
 inline constexpr double farthest_corner = 0x1p+100;     ///< E
 inline constexpr double steepest_gradient = 64.0;       ///< |g|_1 E

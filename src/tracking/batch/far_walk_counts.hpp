@@ -13,19 +13,23 @@ namespace dartcast {
 /// Where a batch would be in its walk, at a place where the walk leaves a rank.
 struct FarWalk {
   enum class By : std::uint8_t {
-    determinants,  ///< as one particle walks, from the start of the step
-    line,
-    rounds  ///< as one particle walks, from a simplex in which the line was undecided
+    determinants,   ///< as one particle walks, from the start of the step
+    line,           ///< simplex by simplex, to the end
+    line_to_cells,  ///< the same up to the next hexahedron
+    cells,          ///< one whole hexahedron after the other
+    rounds          ///< as one particle walks, from a simplex in which the line was undecided
   };
   By by = By::determinants;
   std::array<std::uint8_t, 3>
       slots{};         ///< by line: the triangle's corners, by their places in the simplex that it leaves
-  double reach = 0.0;  ///< by line: that of its first simplex
-  TestCounts counts;   ///< by line: so far; in rounds: what they add to those of one particle
+  double reach = 0.0;  ///< by line, and by cells: that of its first simplex
+  TestCounts counts;   ///< by line, and by cells: so far; in rounds: what they add to those of one particle
+
+  [[nodiscard]] bool by_line() const { return by == By::line || by == By::line_to_cells; }
 
   /// The tests that the batch has counted, where one particle has counted `scalar`.
   [[nodiscard]] TestCounts counted(const TestCounts& scalar) const {
-    if (by == By::line) return counts;
+    if (by_line() || by == By::cells) return counts;
     return {scalar.tests + counts.tests, scalar.exact + counts.exact};  // modulo 2^64: less may be added than counted
   }
 };
@@ -58,6 +62,7 @@ class FarWalkCounts {
   using Triangle = std::array<std::uint32_t, 3>;
 
   void look_at(SimplexId simplex, const VertexNumbers& v);
+  void look_at_cell(SimplexId entered, const VertexNumbers& v, unsigned facet);
   void look_along_line(const VertexNumbers& v, unsigned apex);
   void go_to_rounds();
   [[nodiscard]] bool is_known_in_rounds(const VertexNumbers& v, unsigned tested) const;
@@ -72,6 +77,7 @@ class FarWalkCounts {
   FarWalk now_;
   Triangle triangle_{};  // the vertices that the next simplex is entered by
   bool in_first_ = false;
+  bool enters_cell_ = false;  // the next simplex is the first one of its cell
 };
 
 }  // namespace detail

@@ -1,9 +1,10 @@
-// The counts of far walks: the code of the batch's own walks along lines (batch_line_walks.inl), with the same walk in
-// all four lanes. A line is projected anew in each simplex, because few walks leave a rank.
+// The counts of far walks: the code of the batch's own walks along lines (batch_line_walks.inl, batch_cell_lanes.inl),
+// with the same walk in all lanes. A line is projected anew in each simplex, because few walks leave a rank.
 #include <algorithm>
 #include <cmath>
 
 #include "complex/simplex.hpp"
+#include "tracking/batch/batch_cell_lanes.inl"
 #include "tracking/batch/batch_line_walks.inl"
 #include "tracking/batch/coordinate_bounds.hpp"
 #include "tracking/batch/far_walk_counts.hpp"
@@ -13,6 +14,7 @@ namespace dartcast::detail {
 namespace {
 
 using By = FarWalk::By;
+using portable::CellWalks8;
 using portable::LineStarts4;
 using portable::LineWalks4;
 using portable::Vec3x4;
@@ -24,12 +26,28 @@ Vec3x4 in_all_lanes(const Vec3& x) { return portable::load_vec3x4(x, x, x, x); }
 
 // A walk along the line, in the simplex behind this triangle.
 LineWalks4 walk_behind(const std::array<Vec3, 3>& triangle, const Vec3& p, const Vec3& q, double reach) {
+  const Vec3x4 corner[3] = {in_all_lanes(triangle[0]), in_all_lanes(triangle[1]), in_all_lanes(triangle[2])};
+  const portable::LineResumptions4 lines(in_all_lanes(p), in_all_lanes(q), portable::splat(reach), corner);
   LineWalks4 walk;
-  walk.line = portable::Lines4(in_all_lanes(p), in_all_lanes(q));
-  walk.line.reach_to(portable::splat(reach));
-  for (unsigned i = 0; i < 3; ++i) walk.corner[i] = walk.line.project(in_all_lanes(triangle[i]));
-  for (unsigned i = 0; i < 3; ++i)
-    walk.edge_side[i] = portable::side(walk.corner[(i + 1) % 3], walk.corner[(i + 2) % 3]);
+  for (unsigned l = 0; l < 4; ++l) walk.go_on(l, lines, l);
+  return walk;
+}
+
+// A walk through the hexahedron that it has entered by this face.
+CellWalks8 walk_through(const CellView& cell, const CellRow& row, const Vec3* positions, const Vec3& p, const Vec3& q,
+                        double reach) {
+  portable::CellStarts4 starts;
+  starts.line = portable::Lines4(in_all_lanes(p), in_all_lanes(q));
+  starts.line.reach_to(portable::splat(reach));
+  portable::FarCorners8 far;
+  far.diagonals = portable::splat_int(static_cast<int>(row.diagonals));
+  for (unsigned i = 0; i < 4; ++i) {
+    starts.near[i] = starts.line.project(in_all_lanes(positions[cell.vertex(row.near[i]).value]));
+    std::fill_n(far.at[i], 8, positions + cell.vertex(row.far[i]).value);
+  }
+  CellWalks8 walk;
+  for (unsigned l = 0; l < 8; ++l) walk.begin(l, starts, l % 4);
+  walk.pass(far);
   return walk;
 }
 
@@ -44,8 +62,8 @@ unsigned apex_of(const VertexNumbers& v, const std::array<std::uint32_t, 3>& tri
   return i;
 }
 
-bool is_far(const Determinants<4>& d) {
-  return *std::min_element(d.value.begin(), d.value.end()) < -far_coordinate * d.volume6();
+bool is_far(const Determinants<4>& d, double coordinate) {
+  return *std::min_element(d.value.begin(), d.value.end()) < -coordinate * d.volume6();
 }
 
 }  // namespace
@@ -53,7 +71,8 @@ bool is_far(const Determinants<4>& d) {
 void FarWalkCounts::begin(SimplexId start) {
   const VertexNumbers v = vertex_numbers(complex_, start);
   const Corners corners = portable::corners_of(positions_, v);
-  if (!is_far(Determinants(corners, q_))) return;
+  const Determinants determinants(corners, q_);
+  if (!is_far(determinants, far_coordinate)) return;
   scalar_before_ = scalar_;
   in_first_ = true;
   go_to_rounds();
@@ -66,7 +85,9 @@ void FarWalkCounts::begin(SimplexId start) {
   walk.begin(0, starts, 0, facet);
   if (!walk.is_inside(0)) return;
   for (unsigned i = 0; i < 3; ++i) triangle_[i] = v[facet_corners[facet][i]];
-  now_.by = By::line;
+  const bool to_cells = is_far(determinants, farther_coordinate) && portable::are_known_positive(complex_) &&
+                        portable::in_range_of_floats(starts.line, 0);
+  now_.by = to_cells ? By::line_to_cells : By::line;
   now_.reach = starts.line.reach[0];
   now_.counts = {1, 0};  // with the three of the simplex: the sides of all its facets
 }
@@ -75,7 +96,8 @@ void FarWalkCounts::go_on(const FarWalk& walk, SimplexId left, unsigned facet) {
   now_ = walk;
   scalar_before_ = scalar_;
   const VertexNumbers v = vertex_numbers(complex_, left);
-  if (now_.by == By::line) {
+  enters_cell_ = true;
+  if (now_.by_line()) {
     for (unsigned i = 0; i < 3; ++i) triangle_[i] = v[now_.slots[i]];
   } else {
     for (unsigned i = 0; i < 3; ++i) triangle_[i] = v[facet_corners[facet][i]];
@@ -85,13 +107,13 @@ void FarWalkCounts::go_on(const FarWalk& walk, SimplexId left, unsigned facet) {
 void FarWalkCounts::pass(SimplexId simplex, unsigned facet) {
   const VertexNumbers v = vertex_numbers(complex_, simplex);
   look_at(simplex, v);
-  const bool by_line = now_.by == By::line;
   for (unsigned i = 0; i < 3; ++i) {
-    if (!by_line) triangle_[i] = v[facet_corners[facet][i]];
+    if (!now_.by_line()) triangle_[i] = v[facet_corners[facet][i]];
     now_.slots[i] = static_cast<std::uint8_t>(place_in(v, triangle_[i]));
   }
   scalar_before_ = scalar_;
   in_first_ = false;
+  enters_cell_ = complex_.map().view(simplex.cell).shape().simplices()[simplex.simplex].across[facet].outer();
 }
 
 void FarWalkCounts::end(const Walk& walk) {
@@ -102,12 +124,38 @@ void FarWalkCounts::end(const Walk& walk) {
 
 // A batch leaves the step to one particle's walk where a sign is not known in a round.
 void FarWalkCounts::look_at(SimplexId simplex, const VertexNumbers& v) {
-  if (now_.by == By::line && complex_.map().view(simplex.cell).shape().exits().empty()) go_to_rounds();
   const bool is_first_round = in_first_ && now_.by == By::rounds;
   const unsigned apex = is_first_round ? none : apex_of(v, triangle_);
-  if (now_.by == By::line) look_along_line(v, apex);
+  if (enters_cell_ && (now_.by == By::line_to_cells || now_.by == By::cells)) look_at_cell(simplex, v, apex);
+  if (now_.by == By::cells) return;
+  if (now_.by_line() && complex_.map().view(simplex.cell).shape().exits().empty()) go_to_rounds();
+  if (now_.by_line()) look_along_line(v, apex);
   const unsigned tested = in_first_ ? all_facets : all_facets & ~(1U << apex);
   if (now_.by == By::rounds && !is_known_in_rounds(v, tested)) now_ = {};
+}
+
+// As Batch::leave_cells().
+void FarWalkCounts::look_at_cell(SimplexId entered, const VertexNumbers& v, unsigned facet) {
+  const CellView cell = complex_.map().view(entered.cell);
+  bool passes = entered.cell.pool() == portable::hexahedra;
+  bool is_near_end = false;
+  if (passes) {
+    const std::uint16_t face = cell.shape().simplices()[entered.simplex].across[facet].face();
+    const CellWalks8 walk =
+        walk_through(cell, cell.shape().exits().cell_rows()[4U * face], positions_, p_, q_, now_.reach);
+    const bool is_undecided = (walk.undecided & 1U) != 0;
+    passes = !is_undecided && (walk.near_end & 1U) == 0;
+    is_near_end = !passes && !is_undecided;
+  }
+  if (passes) {
+    now_.by = By::cells;
+    now_.counts.tests += CellWalks8::sides_asked;
+    return;
+  }
+  if (now_.by == By::cells || entered.cell.pool() == portable::hexahedra) {
+    for (unsigned i = 0; i < 3; ++i) triangle_[i] = v[facet_corners[facet][i]];
+  }
+  now_.by = is_near_end ? By::line : By::line_to_cells;
 }
 
 // As Batch::goes_on().
@@ -117,6 +165,7 @@ void FarWalkCounts::look_along_line(const VertexNumbers& v, unsigned apex) {
   walk.pass(in_all_lanes(positions_[v[apex]]));
   const bool near_end = (walk.near_end & 1U) != 0;
   if ((walk.undecided & 1U) != 0 || (near_end && walk.side_of_target(0) == 0)) return go_to_rounds();
+  if (near_end) now_.by = By::line;
   now_.counts.tests += near_end && !in_first_ ? 4 : 3;
   triangle_[static_cast<std::size_t>(walk.slot[0])] = v[apex];
 }

@@ -20,11 +20,28 @@ namespace dartcast::detail {
 ///   6 G^2. So each product is off by 118 e G^3 + 6 e G^3 + 6 e G^3 = 130 e G^3, and the whole by
 ///   4 (130 e G^3) + (12 + 18 + 24) e G^3 = 574 e G^3: less than 2048 e G^3.
 /// - z is monotone: where the rounded z of a point is below the rounded D_z, the point itself is.
+///
+/// Walks that pass whole cells round u, v, z to floats. Let M be at least |u|, |v| of the floats, f = 2^-24, and G
+/// between 2^-40 and 2^40, so that no product overflows, and what underflows is less than 2^-20 e G^2.
+///
+/// - A side of floats is off by 4 f M^2 as u and v are rounded, by 4 f M^2 from its own rounding, and by 32 e G^2 as
+///   above; terms of f^2 are less than f M^2 / 2^20. So by less than 2^-20 M^2 + 64 e G^2, and by so much less than this
+///   that the bound may be rounded, too.
+/// - z stays monotone.
+/// - Let all cells be positive, and the line pass no edge of a cell. It leaves the cell at a triangle if it passes it on
+///   its way out. Where there is one such triangle alone, the walk through the simplices leaves by it, if it leaves at
+///   all. It does if all corners of that face are before the target: then so is every simplex on the way.
+/// - The triangles of the face that was entered by are not asked about. To leave by one of them, and come back by the
+///   other, the line must pass two edges in a row of this face on their outer side. So walks are asked for no such edges.
 inline constexpr double side_error = 0x1p-47;          ///< over G^2
 inline constexpr double end_error = 0x1.8p-45;         ///< over G^3
 inline constexpr double volume_error = 0x1p-42;        ///< over G^3
 inline constexpr double nearest_reach = 0x1p-200;      ///< G
 inline constexpr double farthest_reach = 0x1p+200;     ///< G
 inline constexpr double reach_of_first_simplex = 8.0;  ///< G over the largest coordinate there, but for 2 D_z
+
+inline constexpr float rounded_side_error = 0x1p-20F;        ///< over M^2
+inline constexpr double nearest_reach_of_floats = 0x1p-40;   ///< G
+inline constexpr double farthest_reach_of_floats = 0x1p+40;  ///< G
 
 }  // namespace dartcast::detail
