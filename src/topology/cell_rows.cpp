@@ -25,27 +25,16 @@ std::uint16_t dart_at(const Shape& shape, std::uint16_t face, unsigned i, unsign
   return static_cast<std::uint16_t>(shape.first_dart(face) + (turn + 4 - i) % 4);
 }
 
-// The face with all of these corners.
-std::uint8_t face_with(const Shape& shape, const FaceCorners& corners) {
-  std::uint8_t face = 0;
-  const auto is_on = [&](std::uint8_t corner) {
-    const auto of_face = shape.corners(face);
-    return std::find(of_face.begin(), of_face.end(), corner) != of_face.end();
-  };
-  while (face < 5 && !std::all_of(corners.begin(), corners.end(), is_on)) ++face;
-  return face;
-}
-
-// The way out by the triangle of the face with these corners, in the order of the next row, that holds corners u and v.
-CellWay way_out(const Shape& shape, const FaceCorners& corners, std::uint8_t u, std::uint8_t v) {
+// The way out by the triangle of a face that holds corners u and v. `corners`: of the face, in the order of the next
+// row.
+CellWay way_out(const Shape& shape, std::uint16_t face, const FaceCorners& corners, std::uint8_t u, std::uint8_t v) {
   CellWay way;
-  way.face = face_with(shape, corners);
-  const auto holds = [&](std::uint8_t t) {
-    const auto triangle = shape.triangle(way.face, t);
-    return std::find(triangle.begin(), triangle.end(), u) != triangle.end() &&
-           std::find(triangle.begin(), triangle.end(), v) != triangle.end();
+  way.face = static_cast<std::uint8_t>(face);
+  const auto first_triangle = shape.triangle(face, 0);
+  const auto holds = [&](std::uint8_t x) {
+    return first_triangle[0] == x || first_triangle[1] == x || first_triangle[2] == x;
   };
-  way.triangle = holds(0) ? 0 : 1;
+  way.triangle = holds(u) && holds(v) ? 0 : 1;
   const auto first = static_cast<std::uint8_t>(shape.corners(way.face)[0]);
   const auto turn = static_cast<unsigned>(std::find(corners.begin(), corners.end(), first) - corners.begin());
   way.beyond = static_cast<std::uint8_t>(turn + 32U * shape.triangle_from_other_side(way.face, way.triangle));
@@ -63,22 +52,27 @@ bool ends_diagonal(const Shape& shape, std::uint8_t face, std::uint8_t u) {
 
 CellRow row_of(const Shape& shape, std::uint16_t face, unsigned turn) {
   CellRow row;
+  std::array<std::uint16_t, 4> lateral_face{};
+  std::uint16_t far_face = 0;
   for (unsigned i = 0; i < 4; ++i) {
     const std::uint16_t dart = dart_at(shape, face, i, turn);
+    const std::uint16_t opposite = shape.phi1(shape.phi1(shape.phi2(dart)));  // edge, in the same lateral face
     row.near[i] = local(shape, dart);
-    row.far[i] = local(shape, shape.phi1(shape.phi1(shape.phi2(dart))));
+    row.far[i] = local(shape, opposite);
+    lateral_face[(i + 3) % 4] = shape.face_of(opposite);  // its dart leads from a_i to a_(i-1)
+    far_face = shape.face_of(shape.phi2(opposite));
   }
   const FaceCorners& a = row.near;
   const FaceCorners& b = row.far;
   for (unsigned i = 0; i < 4; ++i) {
     const unsigned j = (i + 1) % 4;
     const FaceCorners lateral = {a[i], a[j], b[j], b[i]};
-    row.ways[2 * i] = way_out(shape, lateral, a[i], a[j]);
-    row.ways[2 * i + 1] = way_out(shape, lateral, b[i], b[j]);
+    row.ways[2 * i] = way_out(shape, lateral_face[i], lateral, a[i], a[j]);
+    row.ways[2 * i + 1] = way_out(shape, lateral_face[i], lateral, b[i], b[j]);
     row.diagonals |= (ends_diagonal(shape, row.ways[2 * i].face, a[j]) ? 1U : 0U) << i;
   }
-  row.ways[8] = way_out(shape, b, b[1], b[2]);
-  row.ways[9] = way_out(shape, b, b[3], b[0]);
+  row.ways[8] = way_out(shape, far_face, b, b[1], b[2]);
+  row.ways[9] = way_out(shape, far_face, b, b[3], b[0]);
   row.diagonals |= (ends_diagonal(shape, row.ways[8].face, b[1]) ? 1U : 0U) << 4U;
   return row;
 }

@@ -123,8 +123,8 @@ inline void Batch<kind>::leave_cells(std::uint32_t l) {
   const CellWay& way = place.row->ways[static_cast<unsigned>(walks.exit[l % 8])];
   if (place.wall != 0) {
     const Across wall = cell.shape().entry(way.face, way.triangle);
-    const WalkCursor cursor = {walk.particle, walk.cell,  walk.tests + 3 * walk.passed, 0, wall.index, wall.place,
-                               entered,       walk.record};
+    const std::uint32_t tests = walk.tests + 3 * walk.passed;
+    const WalkCursor cursor = {walk.particle, walk.cell, wall.index, wall.place, tests, 0, entered, walk.record};
     end_at_wall(cursor, corners_of_walk(cursor), wall.place);
     return;
   }

@@ -255,10 +255,10 @@ inline WalkCursor Batch<kind>::passed_cursor(const LinePlace& at) const {
   const unsigned entered_by = at.passed == 1 ? no_facet : at.row % 4;
   return {at.particle,
           at.passed_cell,
-          at.tests + 3 * at.passed,
-          0,
           static_cast<std::uint16_t>(at.row / 4),
           static_cast<std::uint16_t>(entered_by),
+          at.tests + 3 * at.passed,
+          0,
           entered,
           map_.record(Cell(at.passed_cell))};
 }
@@ -284,7 +284,7 @@ void Batch<kind>::leave_unlisted(const LinePlace& at) {
 }
 
 template <CacheKind kind>
-inline VertexNumbers Batch<kind>::corners_of_walk(const WalkCursor& cursor) const {
+[[gnu::always_inline]] inline VertexNumbers Batch<kind>::corners_of_walk(const WalkCursor& cursor) const {
   const CellView cell = map_.view(Cell(cursor.cell), cursor.record);
   const auto& local = cell.shape().simplices()[cursor.index].vertex;
   return {cell.vertex(local[0]).value, cell.vertex(local[1]).value, cell.vertex(local[2]).value,

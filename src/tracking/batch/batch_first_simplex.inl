@@ -325,7 +325,7 @@ inline std::size_t Batch<kind>::take_exits(std::size_t exits) {
     }
     // From registers: a record that was just written in parts could not be loaded as a whole yet.
     const Across across = map_.view(s.cell, record).shape().simplices()[s.simplex].across[facet];
-    walks_[next] = {i, s.cell.value, tests, exact, across.index, across.place, entered, record};
+    walks_[next] = {i, s.cell.value, across.index, across.place, tests, exact, entered, record};
     cell_exits_[out_of_cell] = {i, across, facet, tests, exact, record};
     const std::size_t leaves = across.index / Across::outer_bit;
     next += 1 - leaves;

@@ -48,7 +48,7 @@ struct AtWall {
 using AtWalls = const AtWall* [4];
 
 // Corner i of the facets at the wall.
-inline Vec3x4 load_corners(const Vec3* positions, const AtWalls& at, unsigned i) {
+[[gnu::always_inline]] inline Vec3x4 load_corners(const Vec3* positions, const AtWalls& at, unsigned i) {
   return load_vec3x4(positions[at[0]->corner(i)], positions[at[1]->corner(i)], positions[at[2]->corner(i)],
                      positions[at[3]->corner(i)]);
 }

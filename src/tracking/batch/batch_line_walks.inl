@@ -120,7 +120,7 @@ struct LineStarts4 {
   Mask4 in_range;
 
   LineStarts4() = default;
-  LineStarts4(const Corners4& v, const Vec3x4& p, const Vec3x4& q) : line(p, q) {
+  [[gnu::always_inline]] LineStarts4(const Corners4& v, const Vec3x4& p, const Vec3x4& q) : line(p, q) {
     for (unsigned i = 0; i < 4; ++i) corner[i] = line.project(v.corner[i]);
     Vec3x4 far = magnitude(corner[0]);
     for (unsigned i = 1; i < 4; ++i) far = larger(far, magnitude(corner[i]));

@@ -27,10 +27,10 @@ namespace {
 struct WalkCursor {
   std::uint32_t particle;
   std::uint32_t cell;           // its value
-  std::uint32_t tests;          // so far
-  std::uint32_t exact;          // of these, those that the filter left open
   std::uint16_t index;          // of the simplex
   std::uint16_t place;          // facet that was entered by (no_facet: none)
+  std::uint32_t tests;          // so far
+  std::uint32_t exact;          // of these, those that the filter left open
   std::uint16_t face;           // `entered`: index and place are known
   const std::uint32_t* record;  // of the cell
 };
@@ -41,7 +41,7 @@ inline constexpr std::uint16_t entered = 0xffff;
 // In the simplex where a step starts.
 inline WalkCursor first_cursor(std::uint32_t particle, const ParticleState& s, const std::uint32_t* record,
                                std::uint32_t tests, unsigned exact) {
-  return {particle, s.cell.value, tests, exact, s.simplex, no_facet, entered, record};
+  return {particle, s.cell.value, s.simplex, no_facet, tests, exact, entered, record};
 }
 
 // The wall that a target is on, where the target is on these facets of its simplex.
