@@ -90,6 +90,17 @@ TEST_F(Mpi, RunsByCellsAreThoseOfOneProcess) {
     expect_same_runs(scene(name), test::scaled(50, 400), {"cells"}, {"stats.csv"});
 }
 
+// Walks that pass whole hexahedra, with ranks between them.
+TEST_F(Mpi, RunsOfLongStepsAreThoseOfOneProcess) {
+  const fs::path path =
+      write("far.toml",
+            "[environment]\ngenerator = 'box'\ncells = [24, 12, 12]\nblocked_share = 0.02\n[[particles]]\ncount = "
+            "3000\nvelocity = [90.0, 31.0, 17.0]\n[motion]\ndt = 0.1\nsteps = 2000\n[contact]\nrestitution = 1.0\n"
+            "[output]\nevery = 1000\ncontacts = true\n");
+  expect_same_runs(path.string(), test::scaled(30, 1000), {"particles", "cells"}, {"stats.csv", "contacts.csv"});
+  EXPECT_GT(number_of("one", "mean"), 100U);  // tests in a step: 17 in each cell
+}
+
 // 10^6 particle-steps a run, and 10^8 in the full tier: ten times the particles, ten times the steps.
 class MpiMillions : public Mpi {
  protected:
