@@ -13,6 +13,8 @@
 #include "base/random.hpp"
 #include "complex/simplex.hpp"
 #include "dartcast/cell_complex.hpp"
+#include "dartcast/environment.hpp"
+#include "dartcast/generators.hpp"
 #include "support/random_vectors.hpp"
 #include "support/tier.hpp"
 #include "topology/exit_table.hpp"
@@ -204,6 +206,21 @@ TEST(CellWalks, DecideOnlyWhatIsSo) {
   EXPECT_GT(tally.decided, rounds / 8);
   EXPECT_GT(tally.far_face, tally.decided / 16);
   EXPECT_GT(tally.undecided, rounds / 1000);
+}
+
+// Through more cells than 16 bits have room for tests.
+TEST(CellWalks, CountTheTestsOfVeryLongSteps) {
+  constexpr std::uint32_t cells = 5000;
+  BoxOptions row;
+  row.cells = {1, 1, cells};
+  row.size = {1.0, 1.0, cells};
+  Environment environment(generate_box(row));
+  Particles particles;
+  environment.add(particles, std::vector<Vec3>{{0.4, 0.3, 0.2}});
+  const StepReport report = environment.advance(particles, std::vector<Vec3>{{0.6, 0.55, cells - 0.3}});
+  EXPECT_TRUE(report.contacts.contacts.empty());
+  EXPECT_EQ(particles[0].cell.index(), cells - 1);
+  EXPECT_GT(report.counters.orientation.tests, std::uint64_t{CellWalks8::sides_asked} * (cells - 100));
 }
 
 }  // namespace dartcast::test::cell_walk_test

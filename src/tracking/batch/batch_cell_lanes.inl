@@ -146,7 +146,8 @@ struct CellWalks8 {
     const Bits8 from_next = negative_bits(diagonal[0], diagonal[1], diagonal[2], diagonal[3]);
     const Bits8 from_1 = negative_bits(diagonal[4]);
     const Bits8 next = next_numbers(l);
-    // Where its diagonal is from a_(i+1) to b_i: at the near edge all of (-entry, -d, l) are behind. And so on.
+    // A triangle is left by where all its edges turn around the line, in their order as seen from outside. In each row
+    // the first case is that of a diagonal that ends at a_(i+1) or b1.
     return {
         ~entry_behind & ((from_next & ~d & l) | (~from_next & ~next & d)),
         e & ((from_next & ~next & d) | (~from_next & ~d & l)),

@@ -272,15 +272,12 @@ inline bool Batch<kind>::leave_to_rounds(const LinePlace& at) {
   return false;
 }
 
-// The same where the walk has come to a shape without a table, or begins in one.
+// Leaves a walk to rounds that has come to a shape without a table, or begins in one.
 template <CacheKind kind>
 void Batch<kind>::leave_unlisted(const LinePlace& at) {
-  WalkCursor cursor = passed_cursor(at);
-  cursor.cell = at.cell;
-  cursor.record = at.record;
-  cursor.face = static_cast<std::uint16_t>(at.face);
-  cursor.place = static_cast<std::uint16_t>(at.place);
-  add_to_rounds(cursor);
+  const auto place = static_cast<std::uint16_t>(at.place);
+  const auto face = static_cast<std::uint16_t>(at.face);
+  add_to_rounds({at.particle, at.cell, 0, place, at.tests + 3 * at.passed, 0, face, at.record});
 }
 
 template <CacheKind kind>
