@@ -43,10 +43,11 @@ struct TrianglesLeft {
 // The far corners of eight cells, and their diagonals (CellRow).
 struct FarCorners8 {
   const Vec3* at[4][8];
-  Mask8 diagonals{};
+  Mask8 diagonals;
 
   void set_all(const Vec3* corner) {
     for (auto& lanes : at) std::fill_n(lanes, 8, corner);
+    diagonals = splat_int(0);
   }
 };
 
