@@ -38,7 +38,7 @@ CellWay way_out(const Shape& shape, std::uint16_t face, const FaceCorners& corne
   const auto first = static_cast<std::uint8_t>(shape.corners(way.face)[0]);
   const auto turn = static_cast<unsigned>(std::find(corners.begin(), corners.end(), first) - corners.begin());
   way.beyond = static_cast<std::uint8_t>(turn + 32U * shape.triangle_from_other_side(way.face, way.triangle));
-  way.word = static_cast<std::uint8_t>(10U + way.face);
+  way.word = static_cast<std::uint8_t>(2U + shape.point_count() + face);
   way.face_shift = static_cast<std::uint8_t>(3U * way.face);
   way.wall_shift = static_cast<std::uint8_t>(18U + way.face);
   return way;

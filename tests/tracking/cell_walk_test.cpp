@@ -208,6 +208,11 @@ TEST(CellWalks, DecideOnlyWhatIsSo) {
   EXPECT_GT(tally.undecided, rounds / 1000);
 }
 
+TEST(CellWalks, KnowTheSizeOfRecords) {
+  const CombinatorialMap map;
+  EXPECT_EQ(map.record_stride(hexahedra), words_of_hexahedron);
+}
+
 // Through more cells than 16 bits have room for tests.
 TEST(CellWalks, CountTheTestsOfVeryLongSteps) {
   constexpr std::uint32_t cells = 5000;

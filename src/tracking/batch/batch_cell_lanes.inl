@@ -203,6 +203,7 @@ inline bool in_range_of_floats(const Lines4& line, unsigned lane) {
 }
 
 constexpr std::uint32_t hexahedra = CombinatorialMap::pool_of(CellType::hexahedron);
+constexpr std::uint32_t words_of_hexahedron = 16;  // their pool's record_stride()
 
 }  // namespace
 }  // namespace dartcast::detail::DARTCAST_SIMD

@@ -94,13 +94,13 @@ struct CellPlace {
     const Cell beyond(record[way.word]);
     wall = (bits >> (way.wall_shift & 31U)) & 1U;
     next_entry = CellEntry((bits >> (way.face_shift & 31U)) & 7U, way);
-    next_record = records + std::size_t{16} * beyond.index();
+    next_record = records + std::size_t{words_of_hexahedron} * beyond.index();
     __builtin_prefetch(next_record);
     return wall | (beyond.pool() != hexahedra ? 1U : 0U);
   }
 
   [[nodiscard]] Cell cell(const std::uint32_t* records) const {
-    return {hexahedra, static_cast<std::uint32_t>((record - records) / 16)};
+    return {hexahedra, static_cast<std::uint32_t>((record - records) / words_of_hexahedron)};
   }
 };
 

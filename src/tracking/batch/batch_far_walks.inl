@@ -30,6 +30,7 @@ void Batch<kind>::walk_lines() {
   if constexpr (kind != CacheKind::none) cache_line_arrivals();
 }
 
+// The walks in farther_walks_. They pass simplices up to their first hexahedron, and wherever a cell is undecided.
 template <CacheKind kind>
 void Batch<kind>::walk_farther() {
   if (farther_count_ == 0) return;

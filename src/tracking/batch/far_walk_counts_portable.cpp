@@ -136,26 +136,18 @@ void FarWalkCounts::look_at(SimplexId simplex, const VertexNumbers& v) {
 
 // As Batch::leave_cells().
 void FarWalkCounts::look_at_cell(SimplexId entered, const VertexNumbers& v, unsigned facet) {
+  const bool is_hexahedron = entered.cell.pool() == portable::hexahedra;
+  if (!is_hexahedron && now_.by == By::line_to_cells) return;
+  for (unsigned i = 0; i < 3; ++i) triangle_[i] = v[facet_corners[facet][i]];
+  now_.by = By::line_to_cells;
+  if (!is_hexahedron) return;
   const CellView cell = complex_.map().view(entered.cell);
-  bool passes = entered.cell.pool() == portable::hexahedra;
-  bool is_near_end = false;
-  if (passes) {
-    const std::uint16_t face = cell.shape().simplices()[entered.simplex].across[facet].face();
-    const CellWalks8 walk =
-        walk_through(cell, cell.shape().exits().cell_rows()[4U * face], positions_, p_, q_, now_.reach);
-    const bool is_undecided = (walk.undecided & 1U) != 0;
-    passes = !is_undecided && (walk.near_end & 1U) == 0;
-    is_near_end = !passes && !is_undecided;
-  }
-  if (passes) {
-    now_.by = By::cells;
-    now_.counts.tests += CellWalks8::sides_asked;
-    return;
-  }
-  if (now_.by == By::cells || entered.cell.pool() == portable::hexahedra) {
-    for (unsigned i = 0; i < 3; ++i) triangle_[i] = v[facet_corners[facet][i]];
-  }
-  now_.by = is_near_end ? By::line : By::line_to_cells;
+  const std::uint16_t face = cell.shape().simplices()[entered.simplex].across[facet].face();
+  const CellWalks8 walk =
+      walk_through(cell, cell.shape().exits().cell_rows()[4U * face], positions_, p_, q_, now_.reach);
+  if ((walk.undecided & 1U) != 0) return;
+  now_.by = (walk.near_end & 1U) != 0 ? By::line : By::cells;
+  if (now_.by == By::cells) now_.counts.tests += CellWalks8::sides_asked;
 }
 
 // As Batch::goes_on().
