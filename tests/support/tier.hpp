@@ -1,7 +1,8 @@
-// The size of tests: quick, full (DARTCAST_FULL is set), and a twentieth of either under sanitizers
+// The size of tests: quick, full (DARTCAST_FULL is set), and a twentieth of either, at least one case, under sanitizers
 // (DARTCAST_SANITIZED).
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdlib>
 
@@ -14,7 +15,7 @@ inline bool sanitized() { return std::getenv("DARTCAST_SANITIZED") != nullptr; }
 template <class Count>
 Count scaled(Count quick, Count full) {
   const Count count = full_tier() ? full : quick;
-  return sanitized() ? count / 20 : count;
+  return sanitized() && count > 0 ? std::max(Count{1}, static_cast<Count>(count / 20)) : count;
 }
 
 /// The distance between the cases of a list that are taken: all in the full tier, fewer in the quick one and under
