@@ -23,19 +23,20 @@ struct WallImpact {
   Vec3 wall_displacement;
 };
 
-/// A step that has been walked up to its first wall: see Stepper::resume().
+/// A step that has been walked up to its first wall, or to the end of the first of several parts: see Stepper::resume().
 struct PartialStep {
   Vec3 from;                         ///< where the walk started: the particle's place, carried along with the mesh
-  Walk walk;                         ///< ends at a wall that the target is beyond, or that it lies on
+  Walk walk;                         ///< ends at a wall that the target is beyond, or that it lies on; or at the end of the part
   TestCounts tests;                  ///< made so far
   std::optional<WallImpact> impact;  ///< where it has been computed
+  unsigned parts = 1;                ///< that the step is taken in; the walk is that of the first one
 
   PartialStep(const Vec3& start, const Walk& first, const TestCounts& counts)
       : from(start), walk(first), tests(counts) {}
 
   /// Whether the step has put the particle where the impact says, and it has stayed there.
   [[nodiscard]] bool stays(const ParticleState& after) const {
-    return impact && after.at() == walk.wall_simplex && after.position == impact->position;
+    return impact && parts == 1 && after.at() == walk.wall_simplex && after.position == impact->position;
   }
 };
 
@@ -80,7 +81,7 @@ class Stepper {
   StepResult step(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
                   ContactList& contacts, Counters& counters) const;
 
-  /// The same step, continued from its first wall. Precondition: the step is taken in one part.
+  /// The same step, continued from where its walk has ended.
   StepResult resume(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
                     ContactList& contacts, Counters& counters, const PartialStep& partial) const;
 

@@ -269,7 +269,7 @@ class MovingStep {
       weights = barycentric(before, run.state.position);
     }
     if (!positive(after) || !is_free(run)) return hold(run, weights, weights, run.state.cell);
-    const unsigned parts = run.state.held ? 1 : part_count(before, after, weights, target);
+    const unsigned parts = run.state.held ? 1 : part_count(before, after, weights, target, options_);
     run.state.held = false;
     if (parts == 1) {
       const SimplexId start = run.state.at();
@@ -290,6 +290,21 @@ class MovingStep {
     carry(space_, run, weights, time);
     if (!target) return;
     StepPart<Stored, N, Recorder>(complex_, true, space_, options_, respond_).move(run, *target, {time, 1.0, {}});
+  }
+
+  // The rest of a step of several parts, from where the walk of the first one has ended.
+  void resume(Run& run, Weights& weights, const Vec3& target, const PartialStep& partial) const {
+    ++run.counters.steps_split;
+    const unsigned parts = partial.parts;
+    const double time = 1.0 / parts;
+    const auto [share, end] = next_part(run.state.position, target - run.state.position, parts);
+    const Vec3 later = (target - run.state.position) - share;
+    run.state.position = partial.from;
+    const Space<Between, N> to = space_between<N>(complex_, time);
+    const Vec3 planned = StepPart<Between, N, Recorder>(complex_, true, to, options_, respond_)
+                             .move(run, end, {0.0, time, later}, &partial);
+    if (run.recorder.waits()) return run.recorder.in_part(1, parts);
+    in_parts(run, weights, target, planned, 2, parts);
   }
 
   // The rest of a step from the start of a part on.
@@ -333,15 +348,6 @@ class MovingStep {
     run.recorder.put(run.state, time);
   }
 
-  [[nodiscard]] unsigned part_count(const Simplex& before, const Simplex& after, const Weights& weights,
-                                    const Vec3& target) const {
-    const auto [gradient, edge] = displacement_gradient(before, after);
-    const double own = norm(target - combine(after, weights));
-    const double parts = std::ceil(std::sqrt(gradient * own / (2.0 * options_.tolerance * edge)));
-    if (!(parts > 1.0)) return 1;
-    return parts < options_.max_parts ? static_cast<unsigned>(parts) : options_.max_parts;
-  }
-
   // Each part, from `first` on, is carried and walks in the geometry at its end. Its target lies on the line along the
   // remaining motion. Without a contact so far, that of the last part is `target`.
   void in_parts(Run& run, Weights& weights, const Vec3& target, Vec3 planned, unsigned first, unsigned parts) const {
@@ -358,8 +364,8 @@ class MovingStep {
       if (!positive(to.corners(run.state.at()))) return hold(run, weights, weights, run.state.cell);
       carry(to, run, weights, static_cast<double>(j - 1) / parts);
       if (!own_motion) continue;
-      const Vec3 share = planned * (1.0 / (parts - j + 1));
-      const Vec3 q = j == parts && run.contact_count == 0 ? target : flushed(here + share);
+      const auto [share, end] = next_part(here, planned, parts - j + 1);
+      const Vec3 q = j == parts && run.contact_count == 0 ? target : end;
       planned =
           StepPart<Between, N, Recorder>(complex_, true, to, options_, respond_)
               .move(run, q, {static_cast<double>(j - 1) / parts, static_cast<double>(j) / parts, planned - share});
@@ -428,9 +434,13 @@ StepResult Stepper::step_in(std::uint32_t particle, ParticleState& state, Weight
   const Vec3 p = state.position;
   if (partial != nullptr) {
     run.tests = partial->tests;
-    state.position = partial->from;
-    detail::StepPart<Stored, N, Recorder>(complex_, moved_, current_space<N>(complex_), options_, respond_)
-        .move(run, target, {0.0, 1.0, {}}, partial);
+    if (partial->parts > 1) {
+      detail::MovingStep<N, Recorder>(complex_, options_, respond_).resume(run, weights, target, *partial);
+    } else {
+      state.position = partial->from;
+      detail::StepPart<Stored, N, Recorder>(complex_, moved_, current_space<N>(complex_), options_, respond_)
+          .move(run, target, {0.0, 1.0, {}}, partial);
+    }
   } else if (moved_) {
     detail::MovingStep<N, Recorder>(complex_, options_, respond_).run(run, weights, target);
   } else {

@@ -68,10 +68,9 @@ struct Outcome {
   Counters counters;
 };
 
-Words words_of(const Counters& c, bool tests) {
+Words words_of(const Counters& c) {
   Words words = {c.particle_steps, c.forecast_kept, c.updated_by_deformation, c.steps_split, c.unfinished};
   words.insert(words.end(), c.contacts.begin(), c.contacts.end());
-  if (!tests) return words;
   words.insert(words.end(), {c.orientation.tests, c.orientation.exact});
   words.insert(words.end(), c.histogram.begin(), c.histogram.end());
   return words;
@@ -229,11 +228,11 @@ class PartRun {
   Travellers own_;
 };
 
-void expect_equal(const Outcome& one, const Outcome& many, bool tests, const std::string& name) {
+void expect_equal(const Outcome& one, const Outcome& many, const std::string& name) {
   EXPECT_TRUE(one.states == many.states) << name;
   EXPECT_TRUE(one.contacts == many.contacts) << name;
   EXPECT_EQ(one.held, many.held) << name;
-  EXPECT_EQ(words_of(one.counters, tests), words_of(many.counters, tests)) << name;
+  EXPECT_EQ(words_of(one.counters), words_of(many.counters)) << name;
 }
 
 // Particles that must change ranks, so that the test says something; one under sanitizers, which take three steps.
@@ -241,7 +240,7 @@ std::uint64_t at_least(std::uint64_t particles) { return test::sanitized() ? 1 :
 
 // Runs the scene on parts and as a whole. Returns the particles that went from rank to rank.
 std::uint64_t compare(const test::SteppedScene& scene, const StepOptions& options, std::uint32_t count, int steps,
-                      bool tests, std::size_t particles = 1000) {
+                      std::size_t particles = 1000) {
   steps = std::max(steps, 3);
   WholeRun whole(scene, options, 7, particles);
   const Particles start = whole.particles();
@@ -260,7 +259,7 @@ std::uint64_t compare(const test::SteppedScene& scene, const StepOptions& option
   });
   for (std::size_t s = 0; s < expected.size(); ++s) {
     const std::string name = scene.name + ", " + std::to_string(count) + " parts, step " + std::to_string(s);
-    expect_equal(expected[s], found[s], tests, name);
+    expect_equal(expected[s], found[s], name);
     if (testing::Test::HasFailure()) break;
   }
   return sent;
@@ -273,9 +272,7 @@ TEST(PartEnvironment, StepsAreThoseOfOneEnvironment) {
       test::SteppedScene slower = scene;
       slower.speed *= share;
       for (const std::uint32_t count : {1U, 2U, 3U, 8U}) {
-        // Walks to far targets have other counts of tests where they go from rank to rank: a vessel's cells are small.
-        const bool near = share < 1.0 && !scene.name.starts_with("vessel");
-        const std::uint64_t sent = compare(slower, {}, count, test::scaled(12, 60), near);
+        const std::uint64_t sent = compare(slower, {}, count, test::scaled(12, 60));
         if (count > 1) EXPECT_GE(sent, at_least(20)) << scene.name;
         if (HasFailure()) return;
       }
@@ -288,7 +285,7 @@ TEST(PartEnvironment, LatticeMotionsPassTheBordersOfParts) {
   for (const CellType type : {CellType::hexahedron, CellType::tetrahedron, CellType::prism}) {
     test::SteppedScene scene{"lattice", test::cubes(4, type, 0.1), {}, 0.0};
     for (const std::uint32_t count : {2U, 4U, 8U, 27U})
-      EXPECT_GE(compare(scene, {}, count, test::scaled(20, 200), false), at_least(100));
+      EXPECT_GE(compare(scene, {}, count, test::scaled(20, 200)), at_least(100));
     if (HasFailure()) return;
   }
 }
@@ -301,8 +298,8 @@ TEST(PartEnvironment, PolyhedraAreSpread) {
   const test::SteppedScene still{"octahedra", generate_octahedra(options), {}, 0.5};
   const test::SteppedScene moved{"octahedra that deform", still.mesh, test::sheared, 0.5};
   for (const std::uint32_t count : {2U, 4U, 8U}) {
-    EXPECT_GE(compare(still, {}, count, test::scaled(20, 200), false), at_least(100));
-    EXPECT_GE(compare(moved, {}, count, test::scaled(20, 200), false), at_least(100));
+    EXPECT_GE(compare(still, {}, count, test::scaled(20, 200)), at_least(100));
+    EXPECT_GE(compare(moved, {}, count, test::scaled(20, 200)), at_least(100));
   }
 }
 
@@ -314,7 +311,26 @@ TEST(PartEnvironment, SplitStepsGoOnInTheirParts) {
   for (const test::SteppedScene& scene : test::make_scenes()) {
     if (scene.mesh.dimension() == 2 || !scene.moved) continue;
     for (const std::uint32_t count : {2U, 5U, 8U})
-      EXPECT_GE(compare(scene, options, count, test::scaled(10, 100), false), at_least(20));
+      EXPECT_GE(compare(scene, options, count, test::scaled(10, 100)), at_least(20));
+    if (HasFailure()) return;
+  }
+}
+
+// Batches walk the first parts of these; walks pass several ranks, and meet walls on them.
+TEST(PartEnvironment, LongStepsThatAreSplit) {
+  BoxOptions box;
+  box.cells = {16, 8, 8};
+  box.size = {16.0, 8.0, 8.0};
+  box.blocked_share = 0.05;
+  OctahedraOptions octahedra;
+  octahedra.cells = {4, 4, 4};
+  octahedra.blocked_share = 0.1;
+  StepOptions options;
+  options.max_contacts = 3;
+  for (const MeshData& mesh : {generate_box(box), generate_octahedra(octahedra)}) {
+    const test::SteppedScene scene{"long steps", mesh, test::sheared, 9.0};
+    for (const std::uint32_t count : {2U, 4U, 8U})
+      EXPECT_GE(compare(scene, options, count, test::scaled(20, 400)), at_least(100));
     if (HasFailure()) return;
   }
 }
@@ -324,7 +340,7 @@ TEST(PartEnvironment, MostRanksMayBeEmpty) {
   std::uint64_t sent = 0;
   for (const test::SteppedScene& scene : test::make_scenes()) {
     if (scene.mesh.dimension() == 2) continue;
-    sent += compare(scene, {}, 8, test::scaled(40, 400), false, 3);
+    sent += compare(scene, {}, 8, test::scaled(40, 400), 3);
     if (HasFailure()) return;
   }
   EXPECT_GE(sent, at_least(100));
@@ -337,7 +353,7 @@ TEST(PartEnvironment, APartMayBeOneCell) {
   box.size = {3, 2, 2};
   box.jitter = 0.2;
   const test::SteppedScene scene{"small", generate_box(box), test::sheared, 0.7};
-  EXPECT_GE(compare(scene, {}, 12, test::scaled(10, 50), false), at_least(1000));
+  EXPECT_GE(compare(scene, {}, 12, test::scaled(10, 50)), at_least(1000));
 }
 
 }  // namespace dartcast::part_environment_test

@@ -67,7 +67,7 @@ TEST(FilteredBatch, ShapesWithoutATable) {
   std::vector<detail::StepStatus> status(starts.size());
   std::vector<PartialStep> partial;
   Counters counters;
-  detail::step_batch({&complex, false, false, StepOptions{}.tolerance}, {taken, vertices, {}, targets, status, partial},
+  detail::step_batch({&complex, false, false, StepOptions{}}, {taken, vertices, {}, targets, status, partial},
                      counters);
   const StepOptions options;
   const ContactCallback none;

@@ -56,7 +56,7 @@ detail::SimplexCacheEntry cache_at(const CellComplex& complex, SimplexId at, con
   std::vector<detail::StepStatus> taken(1);
   std::vector<PartialStep> partial;
   Counters counters;
-  detail::step_batch({&complex, false, false, StepOptions{}.tolerance},
+  detail::step_batch({&complex, false, false, StepOptions{}},
                      {states, vertices, caches.from(0), targets, taken, partial}, counters);
   return caches[0];
 }

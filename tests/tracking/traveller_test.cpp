@@ -55,7 +55,7 @@ class RandomTravellers {
     t.walk.simplex = {Cell(number()), 4};
     t.walk.zeros = 5;
     t.walk.wall_facet = 2;
-    t.far.by = FarWalk::By{static_cast<std::uint8_t>(number() % 5)};
+    t.far.by = FarWalk::By{static_cast<std::uint8_t>(number() % 6)};
     t.far.slots = {0, 3, 1};
     t.far.reach = real();
     t.far.counts = {number(), number()};

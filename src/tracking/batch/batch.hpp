@@ -3,8 +3,9 @@
 // The batch makes no decision of its own. Where a sign is not proved, or anything else is out of the ordinary, it
 // defers the step to Stepper (tracking/step.hpp) and leaves it as it was. Both have the same result wherever both take
 // a step: ties between facets are broken by the walk's own functions. The batch walks up to the first wall; Stepper
-// continues from there. Only the counts may differ. Walks to far targets ask other questions. And where rounding carries
-// a particle out of its simplex, Stepper puts it back and walks from there, though its target is inside.
+// continues from there. Where a step is split, the batch walks its first part, if the target is far. Only the counts may
+// differ. Walks to far targets ask other questions. And where rounding carries a particle out of its simplex, Stepper
+// puts it back and walks from there, though its target is inside.
 #pragma once
 
 #include <cstddef>
@@ -29,12 +30,12 @@ struct BatchScene {
   const CellComplex* complex = nullptr;
   bool moved = false;         ///< as for Stepper
   bool caches_match = false;  ///< the caches are of these states, before the move
-  double tolerance = 0.0;     ///< as in StepOptions
-  bool walls_match = true;    ///< no wall is new since the caches' flags were set
+  StepOptions options;
+  bool walls_match = true;  ///< no wall is new since the caches' flags were set
 };
 
-/// How much of a step the batch did: all, nothing, or, where the step has come to its first wall, the number of its
-/// PartialStep; its state is unchanged then.
+/// How much of a step the batch did: all, nothing, or, where the step has come to its first wall or to the end of the
+/// first of its parts, the number of its PartialStep; its state is unchanged then.
 using StepStatus = std::uint16_t;
 inline constexpr StepStatus step_complete = 0xffff;
 inline constexpr StepStatus step_untouched = 0xfffe;

@@ -10,13 +10,15 @@
 
 #include "tracking/batch/batch_cell_walks.inl"
 #include "tracking/batch/batch_line_walks.inl"
+#include "tracking/batch/batch_part_walks.inl"
 #include "tracking/batch/batch_steps.inl"
 
 DARTCAST_BEGIN_KERNEL
 namespace dartcast::detail::DARTCAST_SIMD {
 namespace {
 
-// The far walks: simplices of all; then, in turns, whole cells and simplices of those that pass cells.
+// The far walks: simplices of all; then, in turns, whole cells and simplices of those that pass cells; or, where vertices
+// move, those that walk apart.
 template <CacheKind kind>
 void Batch<kind>::walk_lines() {
   line_arrivals_ = 0;
@@ -25,8 +27,11 @@ void Batch<kind>::walk_lines() {
   for (std::uint32_t pool = 0; pool < CombinatorialMap::general_pool; ++pool)
     record_pools_[pool] = {map_.record(Cell(pool, 0)), map_.record_stride(pool)};
   begin_lines(far_walks_.data(), far_count_);
-  pass_simplices<false>([&](std::uint32_t l) { return start_next_line(l); });
-  if constexpr (!moved) walk_farther();
+  pass_simplices<LineKind::to_target>([&](std::uint32_t l) { return start_next_line(l); });
+  if constexpr (moved)
+    walk_first_parts();
+  else
+    walk_farther();
   if constexpr (kind != CacheKind::none) cache_line_arrivals();
 }
 
@@ -35,7 +40,7 @@ template <CacheKind kind>
 void Batch<kind>::walk_farther() {
   if (farther_count_ == 0) return;
   begin_lines(farther_walks_.data(), farther_count_);
-  pass_simplices<true>([&](std::uint32_t l) {
+  pass_simplices<LineKind::to_cells>([&](std::uint32_t l) {
     const bool begins = start_next_line(l);
     set_to_cells(l, begins && in_range_of_floats(line_walks_[l / 4].line, l % 4));
     return begins;
@@ -45,7 +50,7 @@ void Batch<kind>::walk_farther() {
     walk_cells();
     by_cells_.read_again();
     staged_ = 0;
-    pass_simplices<true>([&](std::uint32_t l) { return resume_next_line(l); });
+    pass_simplices<LineKind::to_cells>([&](std::uint32_t l) { return resume_next_line(l); });
   }
 }
 
@@ -59,25 +64,25 @@ inline void Batch<kind>::begin_lines(const Departure* walks, std::size_t count) 
 
 // Walks that start_next(lane) begins. In turns, each of three passes: the new corners of all walks are found, and
 // prefetched; four walks at a time pass their simplices, and their next cells are prefetched; walks that may have ended,
-// or with `to_cells` those that go on to pass cells, are looked at.
+// or those that go on to pass cells, are looked at.
 template <CacheKind kind>
-template <bool to_cells, class StartNext>
+template <LineKind line, class StartNext>
 inline void Batch<kind>::pass_simplices(const StartNext& start_next) {
   std::uint32_t live = 0;
   for (std::uint32_t l = 0; l < lines; ++l) live |= (start_next(l) ? 1U : 0U) << l;
   while (live != 0) {
     for (std::uint32_t left = live; left != 0; left &= left - 1) {
       const auto l = static_cast<std::uint32_t>(std::countr_zero(left));
-      if (!find_corners(l, start_next)) live ^= 1U << l;
+      if (!find_corners<line>(l, start_next)) live ^= 1U << l;
     }
     std::uint32_t marked = 0;
     for (std::uint32_t l = 0; l < lines; l += 4) {
       const std::uint32_t here = (live >> l) & 15U;
-      if (here != 0) marked |= pass_four<to_cells>(l, here) << l;
+      if (here != 0) marked |= pass_four<line>(l, here) << l;
     }
     for (; marked != 0; marked &= marked - 1) {
       const auto l = static_cast<std::uint32_t>(std::countr_zero(marked));
-      if (!goes_on<to_cells>(l) && !start_next(l)) live ^= 1U << l;
+      if (!goes_on<line>(l) && !start_next(l)) live ^= 1U << l;
     }
   }
 }
@@ -85,11 +90,20 @@ inline void Batch<kind>::pass_simplices(const StartNext& start_next) {
 // Finds the new corner of the walk in lane l, or of the first one after it that has one. Returns false where there is
 // none.
 template <CacheKind kind>
-template <class StartNext>
+template <LineKind line, class StartNext>
 inline bool Batch<kind>::find_corners(std::uint32_t l, const StartNext& start_next) {
-  while (!find_corner(line_places_[l], map_, now_)) {
-    leave_unlisted(line_places_[l]);
+  LinePlace& at = line_places_[l];
+  while (!find_corner(at, map_, now_)) {
+    if constexpr (line == LineKind::apart)
+      defer(at.particle);
+    else
+      leave_unlisted(at);
     if (!start_next(l)) return false;
+  }
+  if constexpr (line == LineKind::apart) {
+    const Vec3* const was = before_move(at.corner);
+    __builtin_prefetch(was);
+    __builtin_prefetch(&was->z);
   }
   return true;
 }
@@ -200,17 +214,20 @@ inline void Batch<kind>::set_to_cells(std::uint32_t l, bool to_cells) {
 
 // Passes a simplex of each walk in the lanes from l on that are in the mask `live`. Returns a mask of those to look at.
 template <CacheKind kind>
-template <bool to_cells>
+template <LineKind line>
 [[gnu::always_inline]] inline std::uint32_t Batch<kind>::pass_four(std::uint32_t l, std::uint32_t live) {
   LineWalks4& walks = line_walks_[l / 4];
   LinePlace* const at = &line_places_[l];
-  walks.pass(load_vec3x4(*at[0].corner, *at[1].corner, *at[2].corner, *at[3].corner));
+  if constexpr (line == LineKind::apart)
+    walks.pass(corners_in_parts(at, l));
+  else
+    walks.pass(load_vec3x4(*at[0].corner, *at[1].corner, *at[2].corner, *at[3].corner));
   std::uint32_t walls = 0;
   std::uint32_t crossed = 0;
   for (std::uint32_t k = 0; k < 4; ++k) {
     if (((live >> k) & 1U) == 0) continue;
     walls |= leave(at[k], static_cast<unsigned>(walks.slot[k]), map_, record_pools_.data()) << k;
-    if constexpr (to_cells) crossed |= (at[k].face != 0 ? 1U : 0U) << k;
+    if constexpr (line == LineKind::to_cells) crossed |= (at[k].face != 0 ? 1U : 0U) << k;
   }
   at_wall_lanes_[l / 4] = walls;
   return (walks.undecided | walks.near_end | walls | (crossed & (to_cells_ >> l))) & live;
@@ -218,8 +235,9 @@ template <bool to_cells>
 
 // Looks at a walk that needs it. Returns whether it goes on.
 template <CacheKind kind>
-template <bool to_cells>
+template <LineKind line>
 inline bool Batch<kind>::goes_on(std::uint32_t l) {
+  if constexpr (line == LineKind::apart) return goes_on_in_part(l);
   LinePlace& at = line_places_[l];
   const LineWalks4& walks = line_walks_[l / 4];
   if (((walks.undecided >> (l % 4)) & 1U) != 0) return leave_to_rounds(at);
@@ -228,13 +246,13 @@ inline bool Batch<kind>::goes_on(std::uint32_t l) {
     if (side == 0) return leave_to_rounds(at);
     at.tests += at.passed > 1 ? 1 : 0;  // in the first simplex the sides of all facets are counted
     if (side > 0) return arrive_by_line(passed_cursor(at));
-    if constexpr (to_cells) set_to_cells(l, false);
+    if constexpr (line == LineKind::to_cells) set_to_cells(l, false);
   }
   if (((at_wall_lanes_[l / 4] >> (l % 4)) & 1U) != 0) {
     const WalkCursor cursor = passed_cursor(at);
     return end_at_wall(cursor, corners_of_walk(cursor), at.exit_facet);
   }
-  if constexpr (to_cells) {
+  if constexpr (line == LineKind::to_cells) {
     if (((to_cells_ >> l) & 1U) != 0 && at.face != 0 && Cell(at.cell).pool() == hexahedra) return leave_to_cells(l);
   }
   return true;

@@ -118,7 +118,7 @@ inline void Batch<kind>::test_block(std::uint32_t first, std::uint32_t n) {
     if constexpr (!moved) farther_away_ |= lanes_set(d.far_away(farther_coordinate)) << k;
     if constexpr (moved) {
       SimplexCache4& previous_caches = caches_[i.at[0] / 4];
-      const OnePart one(previous_caches, d.relative, places_of(i), q, tolerance_);
+      const OnePart one(previous_caches, d.relative, places_of(i), q, options_.tolerance);
       Mask4 proved = one.by_size();
       if (lanes_set(proved) != 15U) proved |= one.by_shape();
       one_part_ |= lanes_set(proved) << k;
@@ -179,8 +179,9 @@ template <CacheKind kind>
 inline std::uint32_t Batch<kind>::end_inside(std::uint32_t first, std::uint32_t n) {
   const std::uint32_t all = n == block ? ~std::uint32_t{0} : (std::uint32_t{1} << n) - 1;
   std::uint32_t deferred = 0;
-  for (std::uint32_t unusual = all & (held_or_touching(states_, size_, first, n) | (moved ? ~one_part_ : 0));
-       unusual != 0; unusual &= unusual - 1) {
+  std::uint32_t unusual = all & (held_or_touching(states_, size_, first, n) | (moved ? ~one_part_ : 0));
+  if constexpr (moved) prefetch_before(first, unusual & ~one_part_);
+  for (; unusual != 0; unusual &= unusual - 1) {
     const auto k = static_cast<std::uint32_t>(std::countr_zero(unusual));
     if (defer_unusual(first + k, k)) deferred |= std::uint32_t{1} << k;
   }
@@ -207,6 +208,13 @@ inline std::uint32_t Batch<kind>::end_inside(std::uint32_t first, std::uint32_t 
   return remaining;
 }
 
+// Prefetches what the rule of splitting needs of these steps.
+template <CacheKind kind>
+inline void Batch<kind>::prefetch_before(std::uint32_t first, std::uint32_t which) const {
+  for (; which != 0; which &= which - 1)
+    prefetch(before_, vertices_[first + static_cast<std::uint32_t>(std::countr_zero(which))]);
+}
+
 // Ends the steps whose targets lie on facets of the simplex that the particle is in.
 template <CacheKind kind>
 void Batch<kind>::end_on_facets(std::uint32_t first) {
@@ -225,12 +233,18 @@ void Batch<kind>::end_on_facets(std::uint32_t first) {
   }
 }
 
-// Defers a step that is held, or must be split, or rests on a wall. k: its place in the block. Returns whether it did.
+// Takes out a step that is held, or rests on a wall, or must be split: it is deferred, or walks apart. k: its place in the
+// block. Returns false where the step is none of these.
 template <CacheKind kind>
 inline bool Batch<kind>::defer_unusual(std::uint32_t i, std::uint32_t k) {
   const ParticleState& s = states_[i];
   const bool one_part = !moved || ((one_part_ >> k) & 1U) != 0;
-  if (!s.held && (one_part || is_one_part_by_rule(i)) && (s.touching_count == 0 || !rests(i))) return false;
+  const unsigned parts = s.held ? 0 : one_part ? 1 : parts_by_rule(i);
+  const bool far = moved && ((far_away_ >> k) & 1U) != 0;
+  if (parts == 1 && (s.touching_count == 0 || far || !rests(i))) return false;
+  if constexpr (moved) {
+    if (parts > 1 && add_part_walk(i, parts)) return true;
+  }
   defer(i);
   return true;
 }
@@ -248,14 +262,14 @@ inline std::optional<Vec3> Batch<kind>::carried_position_inside(std::uint32_t i)
   return Determinants(corners_of(now_, vertices_[i]), x).all_proved_positive() ? std::optional(x) : std::nullopt;
 }
 
-// The splitting rule itself (tracking/step.hpp).
+// The splitting rule itself; 0 where the particle's coordinates are not known, or its simplex is not proved to be
+// positive.
 template <CacheKind kind>
-inline bool Batch<kind>::is_one_part_by_rule(std::uint32_t i) const {
-  const auto carried = carried_position_inside(i);
-  if (!carried) return false;
-  const auto [gradient, edge] =
-      displacement_gradient(corners_of(before_, vertices_[i]), corners_of(now_, vertices_[i]));
-  return gradient * norm(targets_[i] - *carried) <= 2.0 * tolerance_ * edge;
+inline unsigned Batch<kind>::parts_by_rule(std::uint32_t i) const {
+  const Weights weights = determinants_of(previous_determinants_.data(), i);
+  const Corners after = corners_of(now_, vertices_[i]);
+  if (std::isnan(weights[0]) || !Determinants(after, after[0]).proves_positive()) return 0;
+  return part_count(corners_of(before_, vertices_[i]), after, shares_of(weights), targets_[i], options_);
 }
 
 // Whether a particle that touches a wall stays where it is: then it keeps touching the wall.
@@ -284,7 +298,7 @@ inline std::uint32_t Batch<kind>::carry_remaining(std::uint32_t first, std::uint
 }
 
 // Appends to the first `going_on` entries of remaining_ those of four walks that go on: their starts, carried with the
-// mesh, are proved to lie inside. The others are deferred.
+// mesh, are proved to lie inside. The others walk apart where their targets are far, and are deferred elsewhere.
 template <CacheKind kind>
 inline std::uint32_t Batch<kind>::carry_four(const Index4& i, std::uint32_t count, std::uint32_t going_on,
                                              std::uint32_t first) {
@@ -296,7 +310,7 @@ inline std::uint32_t Batch<kind>::carry_four(const Index4& i, std::uint32_t coun
   for (std::uint32_t l = 0; l < count; ++l) {
     const std::uint32_t particle = i.at[l];
     if (((on >> l) & 1U) == 0) {
-      defer(particle);
+      if (((far_away_ >> (particle - first)) & 1U) == 0 || !add_part_walk(particle, 1)) defer(particle);
       continue;
     }
     left_behind_[particle] = ((behind >> l) & 1U) != 0;

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <limits>
-#include <vector>
 
 #include "base/double4.inl"
 #include "tracking/batch/batch_caches.inl"
@@ -45,13 +44,27 @@ struct AtWall {
 
   [[nodiscard]] std::uint32_t corner(unsigned i) const { return corners[facet_corners[facet][i]]; }
 };
-using AtWalls = const AtWall* [4];
 
-// Corner i of the facets at the wall.
-[[gnu::always_inline]] inline Vec3x4 load_corners(const Vec3* positions, const AtWalls& at, unsigned i) {
-  return load_vec3x4(positions[at[0]->corner(i)], positions[at[1]->corner(i)], positions[at[2]->corner(i)],
-                     positions[at[3]->corner(i)]);
-}
+// Four of these.
+struct AtWalls {
+  const AtWall* walls[4];
+  const PartialStep* steps;
+
+  const AtWall* operator[](unsigned l) const { return walls[l]; }
+  [[nodiscard]] const PartialStep& step(unsigned l) const { return steps[walls[l]->partial]; }
+  // The times at which the vertices are where the walks find them.
+  [[nodiscard]] Double4 times() const {
+    return Double4{1.0 / step(0).parts, 1.0 / step(1).parts, 1.0 / step(2).parts, 1.0 / step(3).parts};
+  }
+  [[nodiscard]] [[gnu::always_inline]] Corners4 simplices(const Vec3* positions) const {
+    return Corners4(positions, walls[0]->corners, walls[1]->corners, walls[2]->corners, walls[3]->corners);
+  }
+  // Corner i of the facets at the walls.
+  [[nodiscard]] [[gnu::always_inline]] Vec3x4 corners(const Vec3* positions, unsigned i) const {
+    return load_vec3x4(positions[walls[0]->corner(i)], positions[walls[1]->corner(i)], positions[walls[2]->corner(i)],
+                       positions[walls[3]->corner(i)]);
+  }
+};
 
 class WallImpact4 {
  public:
@@ -59,18 +72,16 @@ class WallImpact4 {
   Vec3x4 position;
   Mask4 known;
 
-  WallImpact4(const AtWalls& at, const std::vector<PartialStep>& partial, const Vec3* positions, const Vec3* targets)
-      : corner_{without_tiny(load_corners(positions, at, 0)), without_tiny(load_corners(positions, at, 1)),
-                without_tiny(load_corners(positions, at, 2))},
+  // `facets`: corner i of the facets at the walls.
+  [[gnu::always_inline]] WallImpact4(const AtWalls& at, const Vec3x4 (&facets)[3], const Vec3x4& targets)
+      : corner_{without_tiny(facets[0]), without_tiny(facets[1]), without_tiny(facets[2])},
         facet_{at[0]->facet, at[1]->facet, at[2]->facet, at[3]->facet} {
     const auto& [a, b, c] = corner_;
     gradient_ = cross(b - a, c - a);
     const Double4 square = dot(gradient_, gradient_);
     normal_ = gradient_ * (1.0 / root(square));
     known = (square > 0x1p-600) & (square < 0x1p+600);
-    const auto p = [&](unsigned l) -> const Vec3& { return partial[at[l]->partial].from; };
-    const auto q = [&](unsigned l) -> const Vec3& { return targets[at[l]->particle]; };
-    pass(load_vec3x4(p(0), p(1), p(2), p(3)), load_vec3x4(q(0), q(1), q(2), q(3)));
+    pass(load_vec3x4(at.step(0).from, at.step(1).from, at.step(2).from, at.step(3).from), targets);
   }
 
   // As proved_inside(). The point is next to the wall's facet.
@@ -99,17 +110,17 @@ class WallImpact4 {
   }
 
   // As wall_displacement().
-  void move_walls(const AtWalls& at, const Vec3* before) {
+  void move_walls(const AtWalls& at, const Vec3* before, const Vec3* now) {
     Double4 weight[3];
     for (unsigned i = 0; i < 3; ++i)
       weight[i] = larger(dot(normal_, cross(corner_[(i + 1) % 3] - point_, corner_[(i + 2) % 3] - point_)), Double4{});
     const Double4 sum = weight[0] + weight[1] + weight[2];
     known &= sum > 0.0;
     for (unsigned i = 0; i < 3; ++i) {
-      const Vec3x4 was = load_corners(before, at, i);
-      const Vec3x4 m = magnitude(was);
-      known &= (m.x <= largest_magnitude) & (m.y <= largest_magnitude) & (m.z <= largest_magnitude);
-      const Vec3x4 moved = corner_[i] - was;
+      const Vec3x4 was = at.corners(before, i);
+      const Vec3x4 is = at.corners(now, i);
+      known &= in_range(was) & in_range(is);
+      const Vec3x4 moved = is - was;
       wall_displacement_ = wall_displacement_ + moved * (weight[i] / sum);
     }
   }
@@ -137,6 +148,12 @@ class WallImpact4 {
     const Double4 from_0 = t < 0.0 ? Double4{} : t;
     fraction_ = from_0 > 1.0 ? splat(1.0) : from_0;
     point_ = without_tiny(p + way * fraction_);
+  }
+
+  // Not so where a component is not a number.
+  static Mask4 in_range(const Vec3x4& x) {
+    const Vec3x4 m = magnitude(x);
+    return (m.x <= largest_magnitude) & (m.y <= largest_magnitude) & (m.z <= largest_magnitude);
   }
 
   // As on_level_facet().

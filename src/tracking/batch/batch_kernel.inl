@@ -2,10 +2,12 @@
 //
 // 1. Caches that do not fit the scene are made or emptied (batch_remember.inl).
 // 2. First simplex (batch_first_simplex.inl). Four targets are tested at a time: against the corners, or by
-//    barycentric coordinates. Targets that are proved inside end the step. Steps that are held, or must be split, are
-//    deferred to Stepper. The others are carried along with the mesh. Those with near targets leave by their exit facet.
+//    barycentric coordinates. Targets that are proved inside end the step. Steps that are held, or must be split and have
+//    a near target, are deferred to Stepper. The others are carried along with the mesh. Those with near targets leave by
+//    their exit facet.
 // 3. Far walks (batch_far_walks.inl) go along their lines. Where a sign is not proved they go on in rounds. The farthest
-//    pass whole hexahedra (batch_cell_walks.inl).
+//    pass whole hexahedra (batch_cell_walks.inl). Those of steps that are split end with the first part
+//    (batch_part_walks.inl).
 // 4. Rounds (batch_walk.inl). In each, every walk finds its next simplex, is tested there, and arrives, goes on, stops
 //    at a wall, or is deferred where a sign is not proved. Arrivals leave a cache entry (batch_remember.inl).
 // 5. Impacts (batch_walls.inl). Four walks that end at walls at a time: the places where they meet them, where doubles
@@ -24,6 +26,7 @@
 #include "tracking/batch/batch_cell_walks.inl"
 #include "tracking/batch/batch_far_walks.inl"
 #include "tracking/batch/batch_first_simplex.inl"
+#include "tracking/batch/batch_part_walks.inl"
 #include "tracking/batch/batch_remember.inl"
 #include "tracking/batch/batch_walk.inl"
 #include "tracking/batch/batch_walls.inl"
@@ -33,10 +36,9 @@ DARTCAST_BEGIN_KERNEL
 namespace dartcast::detail::DARTCAST_SIMD {
 
 void step(const BatchScene& scene, const BatchSteps& steps, Counters& counters) {
-  const std::uint64_t max_rounds = scene.complex->simplex_count();
-  if (scene.moved) return Batch<CacheKind::previous_geometry>(scene, steps, counters).run(max_rounds);
-  if (steps.caches.empty()) return Batch<CacheKind::none>(scene, steps, counters).run(max_rounds);
-  Batch<CacheKind::barycentric>(scene, steps, counters).run(max_rounds);
+  if (scene.moved) return Batch<CacheKind::previous_geometry>(scene, steps, counters).run();
+  if (steps.caches.empty()) return Batch<CacheKind::none>(scene, steps, counters).run();
+  Batch<CacheKind::barycentric>(scene, steps, counters).run();
 }
 
 // Whether every number is 0 or between the two magnitudes.

@@ -68,6 +68,15 @@ struct Departure {
   std::uint32_t particle;
   const std::uint32_t* record;  // of its cell
 };
+// A walk in the first part of a step of several.
+struct PartWalk {
+  std::uint32_t particle;
+  std::uint32_t parts;
+  const std::uint32_t* record;  // of its cell
+  double start[3];              // carried along
+
+  [[nodiscard]] Vec3 start_point() const { return {start[0], start[1], start[2]}; }
+};
 // A walk that leaves its cell with its first simplex.
 struct CellExit {
   std::uint32_t particle;

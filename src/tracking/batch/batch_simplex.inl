@@ -35,12 +35,18 @@ inline Corners corners_of(const Vec3* positions, const VertexNumbers& v) {
 struct Corners4 {
   Vec3x4 corner[4];
 
+  Corners4() = default;
   [[gnu::always_inline]] Corners4(const Vec3* positions, const VertexNumbers& a, const VertexNumbers& b,
                                   const VertexNumbers& c, const VertexNumbers& d) {
     for (unsigned i = 0; i < 4; ++i)
       corner[i] = load_vec3x4(positions[a[i]], positions[b[i]], positions[c[i]], positions[d[i]]);
   }
 };
+
+// As Between in tracking/space.hpp: at the time s, 1 at most.
+inline Vec3x4 between(const Vec3x4& from, const Vec3x4& to, const Double4& s) {
+  return choose(s == 1.0, to, from + (to - from) * s);
+}
 
 // In each lane a bit for each facet.
 inline Mask4 facet_bits(const Mask4& m0, const Mask4& m1, const Mask4& m2, const Mask4& m3) {

@@ -121,7 +121,7 @@ void BatchStepper::step_chunk(const BatchScene& scene, const BatchParticles& par
 // Also makes the cache that of the step.
 BatchScene BatchStepper::scene_of(ParticleCache& cache, std::size_t count) const {
   const CacheKind kind = cache_kind(cache);
-  const BatchScene scene{&complex_, moved_, kind == cache.kind_, options_.tolerance, !cache.walls_changed_};
+  const BatchScene scene{&complex_, moved_, kind == cache.kind_, options_, !cache.walls_changed_};
   cache.kind_ = kind;
   cache.simplices_.resize(kind == CacheKind::none ? 0 : count);
   cache.stood_still_ = !moved_;

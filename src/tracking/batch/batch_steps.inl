@@ -36,7 +36,8 @@ class Batch {
         caches_match_(scene.caches_match),
         walls_match_(scene.walls_match),
         cells_positive_(!moved && are_known_positive(*scene.complex)),
-        tolerance_(scene.tolerance),
+        options_(scene.options),
+        simplex_count_(scene.complex->simplex_count()),
         size_(static_cast<std::uint32_t>(steps.states.size())),
         states_(steps.states.data()),
         vertices_(steps.vertices.data()),
@@ -47,15 +48,15 @@ class Batch {
         partial_(steps.partial),
         counters_(counters) {}
 
-  void run(std::uint64_t max_rounds) {
+  void run() {
     if (kind != CacheKind::none && !caches_match_) make_caches();
     if (kind == CacheKind::barycentric && !walls_match_) std::fill_n(flags_, size_, CacheFlags{0});
     std::fill_n(status_, size_, step_complete);
     const std::size_t exits = kind == CacheKind::barycentric ? start_by_coordinates() : start();
-    if (far_count_ != 0 || farther_count_ != 0) walk_lines();
+    if ((far_count_ | farther_count_ | part_count_) != 0) walk_lines();
     std::size_t count = take_exits(exits);
     for (std::uint64_t round = 1; count > 0; ++round) {
-      if (round > max_rounds) {
+      if (round > simplex_count_) {
         for (std::size_t k = 0; k < count; ++k) defer(walks_[k].particle);
         break;
       }
@@ -109,12 +110,13 @@ class Batch {
   void test_coordinates(std::uint32_t first, std::uint32_t n);
   [[gnu::noinline]] void test_zeros(std::uint32_t first, std::uint32_t k, const Vec3x4& q, const Mask4& in_range,
                                     const Mask4& proved, const Mask4& negative);
+  void prefetch_before(std::uint32_t first, std::uint32_t which) const;
   std::uint32_t end_inside(std::uint32_t first, std::uint32_t n);
   [[gnu::noinline]] void end_on_facets(std::uint32_t first);
   bool defer_unusual(std::uint32_t i, std::uint32_t k);
   [[nodiscard]] Vec3 carried_position(std::uint32_t i, const Weights& w) const;
   [[nodiscard]] std::optional<Vec3> carried_position_inside(std::uint32_t i) const;
-  [[nodiscard]] bool is_one_part_by_rule(std::uint32_t i) const;
+  [[nodiscard]] unsigned parts_by_rule(std::uint32_t i) const;
   [[nodiscard]] bool rests(std::uint32_t i) const;
   std::uint32_t carry_remaining(std::uint32_t first, std::uint32_t remaining);
   std::uint32_t carry_four(const Index4& i, std::uint32_t count, std::uint32_t going_on, std::uint32_t first);
@@ -126,9 +128,9 @@ class Batch {
   [[gnu::noinline]] void walk_farther();
   bool leave_to_cells(std::uint32_t l);
   void begin_lines(const Departure* walks, std::size_t count);
-  template <bool to_cells, class StartNext>
+  template <LineKind line, class StartNext>
   void pass_simplices(const StartNext& start_next);
-  template <class StartNext>
+  template <LineKind line, class StartNext>
   bool find_corners(std::uint32_t l, const StartNext& start_next);
   void stage_lines();
   bool start_next_line(std::uint32_t l);
@@ -138,9 +140,9 @@ class Batch {
   void set_to_cells(std::uint32_t l, bool to_cells);
   void add_far_walk(const Departure& walk, bool farther);
   [[nodiscard]] unsigned row_behind(const CellWalk& walk) const;
-  template <bool to_cells>
+  template <LineKind line>
   std::uint32_t pass_four(std::uint32_t l, std::uint32_t live);
-  template <bool to_cells>
+  template <LineKind line>
   bool goes_on(std::uint32_t l);
   [[nodiscard]] WalkCursor passed_cursor(const LinePlace& at) const;
   bool leave_to_rounds(const LinePlace& at);
@@ -149,6 +151,17 @@ class Batch {
   bool arrive_by_line(const WalkCursor& cursor);
   void cache_line_arrivals();
   [[nodiscard]] Vec3x4 starts_of(const Index4& i, const Corners4& now) const;
+
+  // Walks apart, in the first parts of steps: batch_part_walks.inl.
+  [[gnu::noinline]] bool add_part_walk(std::uint32_t i, unsigned parts);
+  [[gnu::noinline]] void walk_first_parts();
+  bool start_next_part(std::uint32_t l);
+  void stage_parts();
+  [[nodiscard]] Vec3 target_of(std::uint32_t i, unsigned parts) const;
+  [[nodiscard]] const Vec3* before_move(const Vec3* now) const;
+  [[nodiscard]] Vec3x4 corners_in_parts(const LinePlace* at, std::uint32_t l) const;
+  bool goes_on_in_part(std::uint32_t l);
+  bool end_part(std::uint32_t l, bool at_wall);
 
   // Whole cells of these: batch_cell_walks.inl.
   [[gnu::noinline]] void walk_cells();
@@ -177,6 +190,9 @@ class Batch {
   [[gnu::cold, gnu::noinline]] bool end_at_wall(const WalkCursor& cursor, const VertexNumbers& corners, unsigned facet);
   [[gnu::cold, gnu::noinline]] bool end_on_wall(const WalkCursor& cursor, unsigned on, const SimplexFacet& wall);
   bool defer_at_wall(const WalkCursor& cursor, const Walk& walk);
+  [[nodiscard]] Vec3x4 targets_at(const AtWalls& at) const;
+  [[nodiscard]] Vec3x4 facet_corners_at(const AtWalls& at, unsigned i) const;
+  [[nodiscard]] Corners4 simplices_at(const AtWalls& at) const;
   void compute_impacts();
   void compute_impact4(std::uint32_t k);
 
@@ -194,7 +210,8 @@ class Batch {
   bool caches_match_;
   bool walls_match_;
   bool cells_positive_;  // all are known to be
-  double tolerance_;
+  StepOptions options_;
+  std::uint64_t simplex_count_;
   std::uint32_t size_;
   ParticleState* states_;
   VertexNumbers* vertices_;
@@ -250,6 +267,10 @@ class Batch {
   std::array<FacetArrival, max_batch> facet_arrival_;
   std::uint32_t facet_arrivals_ = 0;
   std::uint32_t to_cells_;  // a bit for each lane: from the next face on the walk may pass whole hexahedra
+  std::array<PartWalk, max_batch> part_walks_;
+  std::size_t part_count_ = 0;
+  std::array<std::uint32_t, lines> part_of_line_;  // the number of its PartWalk
+  std::array<Double4, lines / 4> part_times_;      // of the step: the vertices are where they are then
   LineResumptions4 resumed_lines_;
   CellWalkQueue by_cells_;
   std::array<CellWalks8, cell_lanes / 8> cell_walks_;

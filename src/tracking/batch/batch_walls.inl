@@ -55,15 +55,39 @@ inline void Batch<kind>::compute_impacts() {
   for (std::uint32_t k = 0; k < at_wall_count_; k += 4) compute_impact4(k);
 }
 
+// Four walks to walls: their targets, the facets at the walls and the simplices there, where they are at these times.
+template <CacheKind kind>
+[[gnu::always_inline]] inline Vec3x4 Batch<kind>::targets_at(const AtWalls& at) const {
+  if constexpr (!moved) return targets_of({{at[0]->particle, at[1]->particle, at[2]->particle, at[3]->particle}});
+  const auto target = [&](unsigned l) { return target_of(at[l]->particle, at.step(l).parts); };
+  return load_vec3x4(target(0), target(1), target(2), target(3));
+}
+template <CacheKind kind>
+[[gnu::always_inline]] inline Vec3x4 Batch<kind>::facet_corners_at(const AtWalls& at, unsigned i) const {
+  const Vec3x4 now = at.corners(now_, i);
+  if constexpr (!moved) return now;
+  return between(at.corners(before_, i), now, at.times());
+}
+template <CacheKind kind>
+[[gnu::always_inline]] inline Corners4 Batch<kind>::simplices_at(const AtWalls& at) const {
+  Corners4 now = at.simplices(now_);
+  if constexpr (!moved) return now;
+  const Corners4 before = at.simplices(before_);
+  for (unsigned i = 0; i < 4; ++i) now.corner[i] = between(before.corner[i], now.corner[i], at.times());
+  return now;
+}
+
 template <CacheKind kind>
 inline void Batch<kind>::compute_impact4(std::uint32_t k) {
   const std::uint32_t last = at_wall_count_ - 1;
-  const AtWalls at = {&at_walls_[k], &at_walls_[std::min(k + 1, last)], &at_walls_[std::min(k + 2, last)],
-                      &at_walls_[std::min(k + 3, last)]};
-  WallImpact4 impacts(at, partial_, now_, targets_);
+  const AtWalls at = {{&at_walls_[k], &at_walls_[std::min(k + 1, last)], &at_walls_[std::min(k + 2, last)],
+                       &at_walls_[std::min(k + 3, last)]},
+                      partial_.data()};
+  const Vec3x4 facets[3] = {facet_corners_at(at, 0), facet_corners_at(at, 1), facet_corners_at(at, 2)};
+  WallImpact4 impacts(at, facets, targets_at(at));
   if (lanes_set(impacts.known) == 0) return;
-  impacts.put(Corners4(now_, at[0]->corners, at[1]->corners, at[2]->corners, at[3]->corners));
-  if constexpr (moved) impacts.move_walls(at, before_);
+  impacts.put(simplices_at(at));
+  if constexpr (moved) impacts.move_walls(at, before_, now_);
   SimplexCache4 caches;
   if constexpr (moved) store_previous_geometry(impacts.there, caches);
   if constexpr (kind == CacheKind::barycentric) store_barycentric<false>(impacts.there, impacts.position, caches);
@@ -72,7 +96,8 @@ inline void Batch<kind>::compute_impact4(std::uint32_t k) {
     const std::uint32_t i = at[l]->particle;
     PartialStep& partial = partial_[at[l]->partial];
     partial.impact = impacts.of(l);
-    ++partial.tests.tests;  // on which side p is
+    ++partial.tests.tests;                     // on which side p is
+    if (moved && partial.parts > 1) continue;  // the mesh carries the particle on
     vertices_[i] = at[l]->corners;
     if constexpr (kind == CacheKind::none) continue;
     if (moved || partial.tests.tests <= short_tests) {

@@ -15,6 +15,7 @@ struct FarWalk {
   enum class By : std::uint8_t {
     determinants,   ///< as one particle walks, from the start of the step
     line,           ///< simplex by simplex, to the end
+    line_alone,     ///< the same; where the line is undecided, the whole step is left to one particle's walk
     line_to_cells,  ///< the same up to the next hexahedron
     cells,          ///< one whole hexahedron after the other
     rounds          ///< as one particle walks, from a simplex in which the line was undecided
@@ -25,7 +26,7 @@ struct FarWalk {
   double reach = 0.0;  ///< by line, and by cells: that of its first simplex
   TestCounts counts;   ///< by line, and by cells: so far; in rounds: what they add to those of one particle
 
-  [[nodiscard]] bool by_line() const { return by == By::line || by == By::line_to_cells; }
+  [[nodiscard]] bool by_line() const { return by == By::line || by == By::line_alone || by == By::line_to_cells; }
 
   /// The tests that the batch has counted, where one particle has counted `scalar`.
   [[nodiscard]] TestCounts counted(const TestCounts& scalar) const {
@@ -39,12 +40,17 @@ namespace detail {
 /// Visits the simplices of one particle's walk in space, and asks there what a batch asks, to the same bits.
 class FarWalkCounts {
  public:
-  /// The walk from p to q. `scalar`: what the walk itself counts.
-  FarWalkCounts(const CellComplex& complex, const Vec3& p, const Vec3& q, const TestCounts& scalar)
-      : complex_(complex), positions_(complex.positions().data()), p_(p), q_(q), scalar_(scalar) {}
+  /// The walk from p to q, among vertices where they are at this time of the step. `scalar`: what the walk itself counts.
+  FarWalkCounts(const CellComplex& complex, double time, const Vec3& p, const Vec3& q, const TestCounts& scalar)
+      : complex_(complex),
+        positions_{complex.previous_positions().data(), complex.positions().data(), time},
+        p_(p),
+        q_(q),
+        scalar_(scalar) {}
 
-  /// The walk begins there, in a batch. Where its target is near, both count the same.
-  void begin(SimplexId start);
+  /// The walk begins there, in a batch. Where its target is near, both count the same. `carried`: vertices have moved, and
+  /// have carried p along.
+  void begin(SimplexId start, bool carried);
   /// The walk has left a rank by that facet.
   void go_on(const FarWalk& walk, SimplexId left, unsigned facet);
 
@@ -65,11 +71,12 @@ class FarWalkCounts {
   void look_at_cell(SimplexId entered, const VertexNumbers& v, unsigned facet);
   void look_along_line(const VertexNumbers& v, unsigned apex);
   void go_to_rounds();
+  [[nodiscard]] Corners corners_of(const VertexNumbers& v) const;
   [[nodiscard]] bool is_known_in_rounds(const VertexNumbers& v, unsigned tested) const;
   void pass(SimplexId simplex, unsigned facet);
 
   const CellComplex& complex_;
-  const Vec3* positions_;
+  Between positions_;
   const Vec3& p_;
   const Vec3& q_;
   const TestCounts& scalar_;

@@ -68,14 +68,16 @@ bool is_far(const Determinants<4>& d, double coordinate) {
 
 }  // namespace
 
-void FarWalkCounts::begin(SimplexId start) {
+// As Batch::carry_four() and Batch::add_part_walk().
+void FarWalkCounts::begin(SimplexId start, bool carried) {
   const VertexNumbers v = vertex_numbers(complex_, start);
-  const Corners corners = portable::corners_of(positions_, v);
+  const Corners corners = corners_of(v);
   const Determinants determinants(corners, q_);
   if (!is_far(determinants, far_coordinate)) return;
   scalar_before_ = scalar_;
   in_first_ = true;
-  go_to_rounds();
+  const bool alone = carried && (positions_.s < 1.0 || !Determinants(corners, p_).all_proved_positive());
+  if (!alone) go_to_rounds();
   if (complex_.map().view(start.cell).shape().exits().empty()) return;
   const portable::Corners4 lanes(corners.data(), {0, 1, 2, 3}, {0, 1, 2, 3}, {0, 1, 2, 3}, {0, 1, 2, 3});
   const LineStarts4 starts(lanes, in_all_lanes(p_), in_all_lanes(q_));
@@ -87,7 +89,7 @@ void FarWalkCounts::begin(SimplexId start) {
   for (unsigned i = 0; i < 3; ++i) triangle_[i] = v[facet_corners[facet][i]];
   const bool to_cells = is_far(determinants, farther_coordinate) && portable::are_known_positive(complex_) &&
                         portable::in_range_of_floats(starts.line, 0);
-  now_.by = to_cells ? By::line_to_cells : By::line;
+  now_.by = to_cells ? By::line_to_cells : alone ? By::line_alone : By::line;
   now_.reach = starts.line.reach[0];
   now_.counts = {1, 0};  // with the three of the simplex: the sides of all its facets
 }
@@ -144,7 +146,7 @@ void FarWalkCounts::look_at_cell(SimplexId entered, const VertexNumbers& v, unsi
   const CellView cell = complex_.map().view(entered.cell);
   const std::uint16_t face = cell.shape().simplices()[entered.simplex].across[facet].face();
   const CellWalks8 walk =
-      walk_through(cell, cell.shape().exits().cell_rows()[4U * face], positions_, p_, q_, now_.reach);
+      walk_through(cell, cell.shape().exits().cell_rows()[4U * face], positions_.to, p_, q_, now_.reach);
   if ((walk.undecided & 1U) != 0) return;
   now_.by = (walk.near_end & 1U) != 0 ? By::line : By::cells;
   if (now_.by == By::cells) now_.counts.tests += CellWalks8::sides_asked;
@@ -152,18 +154,22 @@ void FarWalkCounts::look_at_cell(SimplexId entered, const VertexNumbers& v, unsi
 
 // As Batch::goes_on().
 void FarWalkCounts::look_along_line(const VertexNumbers& v, unsigned apex) {
-  LineWalks4 walk =
-      walk_behind({positions_[triangle_[0]], positions_[triangle_[1]], positions_[triangle_[2]]}, p_, q_, now_.reach);
-  walk.pass(in_all_lanes(positions_[v[apex]]));
+  const auto at = [&](std::uint32_t vertex) { return positions_[Vertex{vertex}]; };
+  LineWalks4 walk = walk_behind({at(triangle_[0]), at(triangle_[1]), at(triangle_[2])}, p_, q_, now_.reach);
+  walk.pass(in_all_lanes(at(v[apex])));
   const bool near_end = (walk.near_end & 1U) != 0;
   if ((walk.undecided & 1U) != 0 || (near_end && walk.side_of_target(0) == 0)) return go_to_rounds();
-  if (near_end) now_.by = By::line;
+  if (near_end && now_.by == By::line_to_cells) now_.by = By::line;
   now_.counts.tests += near_end && !in_first_ ? 4 : 3;
   triangle_[static_cast<std::size_t>(walk.slot[0])] = v[apex];
 }
 
 // In the next simplex. Those of the first one are not asked twice.
 void FarWalkCounts::go_to_rounds() {
+  if (now_.by == By::line_alone) {
+    now_ = {};
+    return;
+  }
   const TestCounts so_far = in_first_ ? TestCounts{} : now_.counts;
   now_.by = By::rounds;
   now_.counts = {so_far.tests - scalar_before_.tests, so_far.exact - scalar_before_.exact};
@@ -171,12 +177,16 @@ void FarWalkCounts::go_to_rounds() {
 
 // As FacetSigns4::is_known() in batch_simplex.inl.
 bool FarWalkCounts::is_known_in_rounds(const VertexNumbers& v, unsigned tested) const {
-  const Corners corners = portable::corners_of(positions_, v);
+  const Corners corners = corners_of(v);
   const Determinants d(corners, q_);
   unsigned open = 0;
   for (unsigned i = 0; i < 4; ++i) open |= d.decides(i) ? 0U : 1U << i;
   if (!d.all_proved_positive() && !d.proves_positive()) return false;
   return (open & tested) == 0 || d.exact(corners, q_);
+}
+
+Corners FarWalkCounts::corners_of(const VertexNumbers& v) const {
+  return {positions_[Vertex{v[0]}], positions_[Vertex{v[1]}], positions_[Vertex{v[2]}], positions_[Vertex{v[3]}]};
 }
 
 }  // namespace dartcast::detail

@@ -21,6 +21,10 @@ Vec3 place_of(const Between& positions, const CarriedWall& wall, unsigned i) {
   return wall.before[i] + (wall.now[i] - wall.before[i]) * positions.s;
 }
 
+// The time of the step at which vertices are there.
+double time_of(const Stored&) { return 1.0; }
+double time_of(const Between& positions) { return positions.s; }
+
 // Whether this rank has its cell, and those of the walls that it touches.
 bool is_known(const ParticleState& s) {
   const auto touching = std::span(s.touching).first(s.touching_count);
@@ -84,7 +88,8 @@ class TravelRecorder {
   template <class Positions>
   Walk walk(const Space<Positions, N>& space, Run& run, const PartialStep* partial, const Vec3& p, const Vec3& q,
             const TimeInterval& interval) {
-    detail::FarWalkCounts far(*complex_, p, q, run.tests);
+    const bool in_batch = std::exchange(in_batch_, false);
+    detail::FarWalkCounts far(*complex_, time_of(space.positions), p, q, run.tests);
     if (takes_up_) {
       takes_up_ = false;
       const TieCorners ties = traveller().ties;
@@ -94,7 +99,7 @@ class TravelRecorder {
     const SimplexId start = run.state.at();
     const TieCorners ties = ties_of(space, start, p);
     if (partial != nullptr) return end(space, run, partial->walk, far, ties, false, p, q, interval);
-    if (std::exchange(in_batch_, false)) far.begin(start);
+    if (in_batch) far.begin(start, moved_);
     const Walk walk = detail::walk_to_wall(space, start, p, q, run.tests, far);
     far.end(walk);
     return end(space, run, walk, far, ties, false, p, q, interval);
@@ -307,8 +312,12 @@ TravelResult TravellingStepper::start_in(std::uint32_t particle, ParticleState& 
   const detail::StepPart<Stored, N, Recorder> whole(complex_, moved_, space, options_, no_response);
   if (partial != nullptr) {
     run.tests = partial->tests;
-    state.position = partial->from;
-    whole.move(run, target, {0.0, 1.0, {}}, partial);
+    if (partial->parts > 1) {
+      detail::MovingStep<N, Recorder>(complex_, options_, no_response).resume(run, weights, target, *partial);
+    } else {
+      state.position = partial->from;
+      whole.move(run, target, {0.0, 1.0, {}}, partial);
+    }
   } else if (moved_) {
     detail::MovingStep<N, Recorder>(complex_, options_, no_response).run(run, weights, target);
   } else if (state.held && (!detail::positive(space.corners(start)) || !complex_.map().is_free(start.cell))) {
