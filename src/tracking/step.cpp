@@ -37,7 +37,8 @@ StepResult Stepper::step(std::uint32_t particle, ParticleState& state, Weights& 
 
 StepResult Stepper::resume(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
                            ContactList& contacts, Counters& counters, const PartialStep& partial) const {
-  if (partial.impact && partial.parts == 1 && !respond_) return stop_at_impact(particle, state, target, contacts, counters, partial);
+  if (partial.impact && partial.parts == 1 && !respond_)
+    return stop_at_impact(particle, state, target, contacts, counters, partial);
   constexpr NoRecorder none;
   if (complex_.map().dimension() == 2)
     return step_in<3>(particle, state, weights, target, contacts, counters, &partial, none);

@@ -25,9 +25,9 @@ struct WallImpact {
 
 /// A step that has been walked up to its first wall, or to the end of the first of several parts: see Stepper::resume().
 struct PartialStep {
-  Vec3 from;                         ///< where the walk started: the particle's place, carried along with the mesh
-  Walk walk;                         ///< ends at a wall that the target is beyond, or that it lies on; or at the end of the part
-  TestCounts tests;                  ///< made so far
+  Vec3 from;         ///< where the walk started: the particle's place, carried along with the mesh
+  Walk walk;         ///< ends at a wall that the target is beyond, or that it lies on; or at the end of the part
+  TestCounts tests;  ///< made so far
   std::optional<WallImpact> impact;  ///< where it has been computed
   unsigned parts = 1;                ///< that the step is taken in; the walk is that of the first one
 

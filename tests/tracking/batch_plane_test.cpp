@@ -88,8 +88,8 @@ class BothWaysInThePlane {
     Counters counters;
     const StepOptions options;
     const bool portable = tally.steps / particle_count % 2 == 1;
-    detail::step_plane({&complex_, moves_, false, options}, {states, vertices, {}, targets, taken, partial},
-                       counters, portable ? detail::InstructionSet::portable : detail::best_instruction_set());
+    detail::step_plane({&complex_, moves_, false, options}, {states, vertices, {}, targets, taken, partial}, counters,
+                       portable ? detail::InstructionSet::portable : detail::best_instruction_set());
     const ContactCallback none;
     const Stepper stepper(complex_, moves_, options, none);
     Counters expected;

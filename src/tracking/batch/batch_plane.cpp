@@ -76,7 +76,8 @@ class PlaneBatch {
   [[nodiscard]] PlaneBlock look_at(std::uint32_t first, std::uint32_t count) const {
     const PlaneVertices vertices = {space_.positions.at, before_};
 #if defined(__x86_64__)
-    if (set_ == InstructionSet::avx2) return avx2::look_at_triangles(vertices, steps_, first, count, scene_.options.tolerance);
+    if (set_ == InstructionSet::avx2)
+      return avx2::look_at_triangles(vertices, steps_, first, count, scene_.options.tolerance);
 #endif
     return portable::look_at_triangles(vertices, steps_, first, count, scene_.options.tolerance);
   }
