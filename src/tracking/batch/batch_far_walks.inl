@@ -237,18 +237,19 @@ template <LineKind line>
 template <CacheKind kind>
 template <LineKind line>
 inline bool Batch<kind>::goes_on(std::uint32_t l) {
-  if constexpr (line == LineKind::apart) return goes_on_in_part(l);
   LinePlace& at = line_places_[l];
   const LineWalks4& walks = line_walks_[l / 4];
-  if (((walks.undecided >> (l % 4)) & 1U) != 0) return leave_to_rounds(at);
+  constexpr bool apart = line == LineKind::apart;
+  if (((walks.undecided >> (l % 4)) & 1U) != 0) return apart ? defer(at.particle) : leave_to_rounds(at);
   if (((walks.near_end >> (l % 4)) & 1U) != 0) {
     const int side = walks.side_of_target(l % 4);
-    if (side == 0) return leave_to_rounds(at);
+    if (side == 0) return apart ? defer(at.particle) : leave_to_rounds(at);
     at.tests += at.passed > 1 ? 1 : 0;  // in the first simplex the sides of all facets are counted
-    if (side > 0) return arrive_by_line(passed_cursor(at));
+    if (side > 0) return apart ? end_part(l, false) : arrive_by_line(passed_cursor(at));
     if constexpr (line == LineKind::to_cells) set_to_cells(l, false);
   }
   if (((at_wall_lanes_[l / 4] >> (l % 4)) & 1U) != 0) {
+    if (apart) return end_part(l, true);
     const WalkCursor cursor = passed_cursor(at);
     return end_at_wall(cursor, corners_of_walk(cursor), at.exit_facet);
   }

@@ -25,13 +25,10 @@ bool Batch<kind>::add_part_walk(std::uint32_t i, unsigned parts) {
   const Space<Between> space{&map_, {before_, now_, 1.0 / parts}, simplex_count_};
   const SimplexId at = states_[i].at();
   __builtin_prefetch(map_.record(at.cell));
-  const VertexNumbers& v = vertices_[i];
-  const auto corner = [&](unsigned c) { return space.positions[Vertex{v[c]}]; };
-  const Corners corners = {corner(0), corner(1), corner(2), corner(3)};
+  const Corners corners = corners_of(space.positions, vertices_[i]);
   const Determinants d(corners, target_of(i, parts));
   const Weights weights = determinants_of(previous_determinants_.data(), i);
-  if (std::isnan(weights[0]) || !d.proves_positive()) return false;
-  if (!(*std::min_element(d.value.begin(), d.value.end()) < -far_coordinate * d.volume6())) return false;
+  if (std::isnan(weights[0]) || !d.proves_positive() || !is_far_away(d)) return false;
   const SimplexPlacement start = place_in_simplex(space, at, corners, combine(corners, shares_of(weights)));
   if (start.simplex != at) return false;
   const Vec3& x = start.position;
@@ -101,21 +98,6 @@ template <CacheKind kind>
   for (unsigned k = 0; k < 4; ++k) before[k] = before_move(at[k].corner);
   return between(load_vec3x4(*before[0], *before[1], *before[2], *before[3]),
                  load_vec3x4(*at[0].corner, *at[1].corner, *at[2].corner, *at[3].corner), part_times_[l / 4]);
-}
-
-// As goes_on().
-template <CacheKind kind>
-inline bool Batch<kind>::goes_on_in_part(std::uint32_t l) {
-  LinePlace& at = line_places_[l];
-  const LineWalks4& walks = line_walks_[l / 4];
-  if (((walks.undecided >> (l % 4)) & 1U) != 0) return defer(at.particle);
-  if (((walks.near_end >> (l % 4)) & 1U) != 0) {
-    const int side = walks.side_of_target(l % 4);
-    if (side == 0) return defer(at.particle);
-    at.tests += at.passed > 1 ? 1 : 0;
-    if (side > 0) return end_part(l, false);
-  }
-  return ((at_wall_lanes_[l / 4] >> (l % 4)) & 1U) == 0 || end_part(l, true);
 }
 
 // Leaves the rest of the step to Stepper. Returns false: the walk does not go on.

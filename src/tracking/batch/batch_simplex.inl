@@ -11,6 +11,7 @@
 #include "dartcast/predicates.hpp"
 #include "tracking/batch/coordinate_bounds.hpp"
 #include "tracking/batch/particle_cache.hpp"
+#include "tracking/space.hpp"
 
 DARTCAST_BEGIN_KERNEL
 namespace dartcast::detail::DARTCAST_SIMD {
@@ -30,6 +31,14 @@ inline int filtered_sign(const Vec3& u, const Vec3& v, const Vec3& w) {
 
 inline Corners corners_of(const Vec3* positions, const VertexNumbers& v) {
   return {positions[v[0]], positions[v[1]], positions[v[2]], positions[v[3]]};
+}
+inline Corners corners_of(const Between& positions, const VertexNumbers& v) {
+  return {positions[Vertex{v[0]}], positions[Vertex{v[1]}], positions[Vertex{v[2]}], positions[Vertex{v[3]}]};
+}
+
+// As BatchDeterminants::far_away(), of one point.
+inline bool is_far_away(const Determinants<4>& d, double coordinate = far_coordinate) {
+  return *std::min_element(d.value.begin(), d.value.end()) < -coordinate * d.volume6();
 }
 
 struct Corners4 {

@@ -160,7 +160,6 @@ class Batch {
   [[nodiscard]] Vec3 target_of(std::uint32_t i, unsigned parts) const;
   [[nodiscard]] const Vec3* before_move(const Vec3* now) const;
   [[nodiscard]] Vec3x4 corners_in_parts(const LinePlace* at, std::uint32_t l) const;
-  bool goes_on_in_part(std::uint32_t l);
   bool end_part(std::uint32_t l, bool at_wall);
 
   // Whole cells of these: batch_cell_walks.inl.

@@ -71,7 +71,6 @@ class FarWalkCounts {
   void look_at_cell(SimplexId entered, const VertexNumbers& v, unsigned facet);
   void look_along_line(const VertexNumbers& v, unsigned apex);
   void go_to_rounds();
-  [[nodiscard]] Corners corners_of(const VertexNumbers& v) const;
   [[nodiscard]] bool is_known_in_rounds(const VertexNumbers& v, unsigned tested) const;
   void pass(SimplexId simplex, unsigned facet);
 

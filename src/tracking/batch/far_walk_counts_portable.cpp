@@ -62,18 +62,14 @@ unsigned apex_of(const VertexNumbers& v, const std::array<std::uint32_t, 3>& tri
   return i;
 }
 
-bool is_far(const Determinants<4>& d, double coordinate) {
-  return *std::min_element(d.value.begin(), d.value.end()) < -coordinate * d.volume6();
-}
-
 }  // namespace
 
 // As Batch::carry_four() and Batch::add_part_walk().
 void FarWalkCounts::begin(SimplexId start, bool carried) {
   const VertexNumbers v = vertex_numbers(complex_, start);
-  const Corners corners = corners_of(v);
+  const Corners corners = portable::corners_of(positions_, v);
   const Determinants determinants(corners, q_);
-  if (!is_far(determinants, far_coordinate)) return;
+  if (!portable::is_far_away(determinants)) return;
   scalar_before_ = scalar_;
   in_first_ = true;
   const bool alone = carried && (positions_.s < 1.0 || !Determinants(corners, p_).all_proved_positive());
@@ -87,8 +83,8 @@ void FarWalkCounts::begin(SimplexId start, bool carried) {
   walk.begin(0, starts, 0, facet);
   if (!walk.is_inside(0)) return;
   for (unsigned i = 0; i < 3; ++i) triangle_[i] = v[facet_corners[facet][i]];
-  const bool to_cells = is_far(determinants, farther_coordinate) && portable::are_known_positive(complex_) &&
-                        portable::in_range_of_floats(starts.line, 0);
+  const bool to_cells = portable::is_far_away(determinants, farther_coordinate) &&
+                        portable::are_known_positive(complex_) && portable::in_range_of_floats(starts.line, 0);
   now_.by = to_cells ? By::line_to_cells : alone ? By::line_alone : By::line;
   now_.reach = starts.line.reach[0];
   now_.counts = {1, 0};  // with the three of the simplex: the sides of all its facets
@@ -177,16 +173,12 @@ void FarWalkCounts::go_to_rounds() {
 
 // As FacetSigns4::is_known() in batch_simplex.inl.
 bool FarWalkCounts::is_known_in_rounds(const VertexNumbers& v, unsigned tested) const {
-  const Corners corners = corners_of(v);
+  const Corners corners = portable::corners_of(positions_, v);
   const Determinants d(corners, q_);
   unsigned open = 0;
   for (unsigned i = 0; i < 4; ++i) open |= d.decides(i) ? 0U : 1U << i;
   if (!d.all_proved_positive() && !d.proves_positive()) return false;
   return (open & tested) == 0 || d.exact(corners, q_);
-}
-
-Corners FarWalkCounts::corners_of(const VertexNumbers& v) const {
-  return {positions_[Vertex{v[0]}], positions_[Vertex{v[1]}], positions_[Vertex{v[2]}], positions_[Vertex{v[3]}]};
 }
 
 }  // namespace dartcast::detail
