@@ -59,6 +59,14 @@ TEST(Plan, CountsThePartsOfARun) {
   EXPECT_GT(plan.bytes.largest, 60.0 * own);
 }
 
+// As if a step of one rank alone took 0.2 ms: what a plan measures differs from one measurement to the next.
+double efficiency_at_one_speed(RunPlan plan) {
+  const double speed = 2e-4 / plan.seconds_alone;
+  plan.seconds_walk *= speed;
+  plan.seconds_alone *= speed;
+  return plan.efficiency();
+}
+
 // The ghosts of larger parts follow from their surface: 64 parts of a mesh against 64 of one with eight times the cells.
 TEST(Plan, LargerPartsFollowFromTheirSurface) {
   const std::uint32_t n = test::full_tier() ? 93 : 36;  // full: 800,000 and 6,400,000 cells
@@ -73,9 +81,9 @@ TEST(Plan, LargerPartsFollowFromTheirSurface) {
   EXPECT_NEAR(planned.ghosts.mean, real.ghosts.mean, 0.15 * real.ghosts.mean);
   EXPECT_NEAR(planned.neighbours.largest, real.neighbours.largest, 4.0);  // parts touch at corners in one of them alone
   EXPECT_NEAR(planned.bytes.largest, real.bytes.largest, 0.1 * real.bytes.largest);
-  EXPECT_NEAR(planned.efficiency(), real.efficiency(), 0.1);
+  EXPECT_NEAR(efficiency_at_one_speed(planned), efficiency_at_one_speed(real), 0.02);
   std::printf("ghosts %.1f planned, %.1f real; efficiency %.3f and %.3f\n", planned.ghosts.mean, real.ghosts.mean,
-              planned.efficiency(), real.efficiency());
+              efficiency_at_one_speed(planned), efficiency_at_one_speed(real));
 }
 
 // In the full tier 10^8 cubes, which no array holds together: each part is made, built, and dropped.
