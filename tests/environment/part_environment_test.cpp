@@ -76,13 +76,15 @@ Words words_of(const Counters& c) {
   return words;
 }
 
-// A particle's way in a step. Without a speed: along the lattice of halves, to faces, edges and vertices of unit cells.
+// A particle's way in a step. Without a speed, along the lattice of halves, to faces, edges and vertices of unit cells;
+// with a negative one as well, and that far.
 Vec3 way(std::uint64_t id, int step, double speed) {
   Random random(id * 1000 + static_cast<std::uint64_t>(step));
   const auto number = [&] { return 2.0 * random.uniform() - 1.0; };
   const Vec3 v = {number(), number(), number()};
-  if (speed == 0.0) return {std::round(v.x * 3.0) * 0.5, std::round(v.y * 3.0) * 0.5, std::round(v.z * 3.0) * 0.5};
-  return v * speed;
+  if (speed > 0.0) return v * speed;
+  const double halves = speed == 0.0 ? 3.0 : -2.0 * speed;
+  return {std::round(v.x * halves) * 0.5, std::round(v.y * halves) * 0.5, std::round(v.z * halves) * 0.5};
 }
 
 // One rank's particles.
@@ -333,6 +335,19 @@ TEST(PartEnvironment, LongStepsThatAreSplit) {
       EXPECT_GE(compare(scene, options, count, test::scaled(20, 400)), at_least(100));
     if (HasFailure()) return;
   }
+}
+
+// Cubes that move as a whole, by parts of the lattice: steps have one part, start on faces and vertices, and their lines
+// pass edges and vertices exactly.
+TEST(PartEnvironment, LongStepsAlongALatticeThatMoves) {
+  BoxOptions box;
+  box.cells = {16, 8, 8};
+  box.size = {16.0, 8.0, 8.0};
+  box.blocked_share = 0.05;
+  const auto along = [](const Vec3& p, int step) { return Vec3{p.x + 0.25 * step, p.y, p.z - 0.125 * step}; };
+  const test::SteppedScene scene{"lattice that moves", generate_box(box), along, -9.0};
+  for (const std::uint32_t count : {2U, 4U, 8U})
+    EXPECT_GE(compare(scene, {}, count, test::scaled(20, 400)), at_least(100));
 }
 
 // A rank without particles takes part in the moves of the others: walls move where a particle comes to it.
