@@ -37,8 +37,7 @@ StepResult Stepper::step(std::uint32_t particle, ParticleState& state, Weights& 
 
 StepResult Stepper::resume(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
                            ContactList& contacts, Counters& counters, const PartialStep& partial) const {
-  if (partial.impact && partial.parts == 1 && !respond_)
-    return stop_at_impact(particle, state, target, contacts, counters, partial);
+  if (partial.knows_end() && !respond_) return stop_at_impact(particle, state, target, contacts, counters, partial);
   constexpr NoRecorder none;
   if (complex_.map().dimension() == 2)
     return step_in<3>(particle, state, weights, target, contacts, counters, &partial, none);
@@ -50,18 +49,24 @@ StepResult Stepper::stop_at_impact(std::uint32_t particle, ParticleState& state,
                                    ContactList& contacts, Counters& counters, const PartialStep& partial) const {
   const WallImpact& impact = *partial.impact;
   const SimplexId at_wall = partial.walk.wall_simplex;
-  if (moved_ && state.at() != at_wall &&
-      detail::left_behind(current_space<4>(complex_).corners(state.at()), state.position))
-    ++counters.updated_by_deformation;
+  counters.updated_by_deformation += partial.left_behind && state.at() != at_wall ? 1 : 0;
+  Vec3 q = target;
+  Vec3 later;
+  if (partial.parts > 1) {
+    ++counters.steps_split;
+    const Vec3 planned = target - state.position;
+    const auto [share, end] = detail::next_part(state.position, planned, partial.parts);
+    q = end;
+    later = (planned - share) - impact.wall_displacement * (1.0 - 1.0 / partial.parts);
+  }
   Contact& contact = contacts.contacts.emplace_back();
   detail::describe_impact(complex_.map(), partial.walk, impact, contact, contacts);
-  constexpr Vec3 no_later_part;
-  const Vec3 way = target - partial.from;
+  const Vec3 way = q - partial.from;
   contact.particle = particle;
   contact.last = options_.max_contacts == 1;
-  contact.time_of_impact = 0.0 + impact.fraction;
-  contact.displacement = way + no_later_part;
-  contact.unused = way * (1.0 - impact.fraction) + no_later_part;
+  contact.time_of_impact = 0.0 + impact.fraction * (1.0 / partial.parts);
+  contact.displacement = way + later;
+  contact.unused = way * (1.0 - impact.fraction) + later;
   state.put(at_wall, impact.position);
   state.touching_count = 1;
   state.touching[0] = contacts.walls.back().face;

@@ -30,13 +30,19 @@ struct PartialStep {
   TestCounts tests;  ///< made so far
   std::optional<WallImpact> impact;  ///< where it has been computed
   unsigned parts = 1;                ///< that the step is taken in; the walk is that of the first one
+  /// Where an impact has been computed: whether the place where the step started would be left behind by the vertices.
+  bool left_behind = false;
+  /// Of several parts: the particle stops at the impact, whose position is where the vertices carry it to by the end.
+  bool carried_on = false;
 
   PartialStep(const Vec3& start, const Walk& first, const TestCounts& counts)
       : from(start), walk(first), tests(counts) {}
 
-  /// Whether the step has put the particle where the impact says, and it has stayed there.
+  /// Whether the impact says where a particle that stops there is at the end of the step.
+  [[nodiscard]] bool knows_end() const { return impact && (parts == 1 || carried_on); }
+  /// Whether the step has put the particle there, and it has stayed there.
   [[nodiscard]] bool stays(const ParticleState& after) const {
-    return impact && parts == 1 && after.at() == walk.wall_simplex && after.position == impact->position;
+    return knows_end() && after.at() == walk.wall_simplex && after.position == impact->position;
   }
 };
 
@@ -77,6 +83,9 @@ class Stepper {
   Stepper(const CellComplex& complex, bool moved, const StepOptions& options, const ContactCallback& respond)
       : complex_(complex), moved_(moved), options_(options), respond_(respond) {}
 
+  /// Whether anything does: else particles stop at the first wall.
+  [[nodiscard]] bool responds() const { return static_cast<bool>(respond_); }
+
   /// Steps one particle to `target`, a finite point in the exact range. Adds its contacts in order of time.
   StepResult step(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
                   ContactList& contacts, Counters& counters) const;
@@ -107,7 +116,7 @@ class Stepper {
                      Weights& weights, ContactList& contacts, Counters& counters, PausedStep& paused) const;
 
  private:
-  // resume() where the impact is known and nothing responds: the step ends there.
+  // resume() where the end is known and nothing responds.
   StepResult stop_at_impact(std::uint32_t particle, ParticleState& state, const Vec3& target, ContactList& contacts,
                             Counters& counters, const PartialStep& partial) const;
 

@@ -29,14 +29,16 @@ constexpr std::size_t steps_per_scene = 30;
 struct Tally {
   std::atomic<std::uint64_t> steps{0};
   std::atomic<std::uint64_t> taken{0};
-  std::atomic<std::uint64_t> moved_on{0};    // taken into another simplex
-  std::atomic<std::uint64_t> resumed{0};     // taken up to a wall
-  std::atomic<std::uint64_t> landed{0};      // of these, the contact is known
-  std::atomic<std::uint64_t> remembered{0};  // taken, and coordinates are kept for the next
-  std::atomic<std::uint64_t> exact{0};       // of these, exact ones
-  std::atomic<std::uint64_t> by_cells{0};    // to a wall behind whole hexahedra
-  std::atomic<std::uint64_t> in_parts{0};    // resumed in the first of several parts, at a wall
-  std::atomic<std::uint64_t> parts_on{0};    // the same at the part's end
+  std::atomic<std::uint64_t> moved_on{0};       // taken into another simplex
+  std::atomic<std::uint64_t> resumed{0};        // taken up to a wall
+  std::atomic<std::uint64_t> landed{0};         // of these, the contact is known
+  std::atomic<std::uint64_t> remembered{0};     // taken, and coordinates are kept for the next
+  std::atomic<std::uint64_t> exact{0};          // of these, exact ones
+  std::atomic<std::uint64_t> by_cells{0};       // to a wall behind whole hexahedra
+  std::atomic<std::uint64_t> in_parts{0};       // resumed in the first of several parts, at a wall
+  std::atomic<std::uint64_t> carried_on{0};     // of these, where the vertices carry the particle to is known
+  std::atomic<std::uint64_t> carried_often{0};  // in more than one part
+  std::atomic<std::uint64_t> parts_on{0};       // resumed in the first of several parts, at its end
 };
 
 // A scene whose particles are stepped both ways.
@@ -46,6 +48,7 @@ class BothWays {
       : mesh_(std::move(mesh)),
         complex_(mesh_),
         random_(seed, 9),
+        stops_at_random_(seed, 10),
         moves_(moves),
         on_lattice_(on_lattice),
         on_facets_(on_facets) {
@@ -74,6 +77,7 @@ class BothWays {
   // One step of all particles; what differs.
   std::string step(Tally& tally) {
     if (moves_) move();
+    stops_ = stops_at_random_.below(4) != 0;
     std::vector<Vec3> targets;
     for (const ParticleState& s : states_) targets.push_back(target(s));
     const Filtered portable = filtered(targets, detail::InstructionSet::portable, true, caches_);
@@ -191,6 +195,8 @@ class BothWays {
     if (partial.parts == 1) return;
     const bool at_wall = partial.walk.end == WalkEnd::wall;
     tally.in_parts += at_wall ? 1 : 0;
+    tally.carried_on += partial.carried_on ? 1 : 0;
+    tally.carried_often += partial.carried_on && partial.parts > 2 ? 1 : 0;
     tally.parts_on += at_wall ? 0 : 1;
   }
 
@@ -214,7 +220,8 @@ class BothWays {
     if (!same_bits(state, one.state)) return "another state, resumed";
     if (!same(resumed, one.contacts)) return "other contacts, resumed";
     if (!same(counts, one.counters_in_batch)) return "other counts, resumed";
-    landed = partial.impact && partial.parts == 1;
+    landed = partial.knows_end();
+    if (partial.carried_on && !stops_) return "carried on from a wall that it might leave";
     return landed && !partial.stays(state) ? "not where it landed" : "";
   }
 
@@ -265,7 +272,7 @@ class BothWays {
     Filtered f{states_, {}, caches, std::vector<detail::StepStatus>(particles), {}, {}};
     f.caches.resize(with_caches ? particles : 0);
     for (const ParticleState& s : states_) f.vertices.push_back(detail::vertex_numbers(complex_, s.at()));
-    detail::step_batch({&complex_, moves_, !caches.empty(), StepOptions{}},
+    detail::step_batch({&complex_, moves_, !caches.empty(), StepOptions{}, true, stops_},
                        {f.states, f.vertices, f.caches.from(0), targets, f.taken, f.partial}, f.counters, set);
     return f;
   }
@@ -417,6 +424,8 @@ class BothWays {
   MeshData mesh_;
   CellComplex complex_;
   Random random_;
+  Random stops_at_random_;
+  bool stops_ = true;  // nothing responds
   bool moves_;
   bool on_lattice_;
   bool on_facets_;
@@ -547,6 +556,8 @@ TEST(FilteredBatch, WalksFirstPartsOfSteps) {
   });
   for (const std::string& wrong : complaints) ADD_FAILURE() << wrong;
   EXPECT_GT(tally.in_parts, tally.steps / 20);
+  EXPECT_GT(tally.carried_on, tally.steps / 40);
+  EXPECT_GT(tally.carried_often, tally.steps / 200);
   EXPECT_GT(tally.parts_on, tally.steps / 100);
 }
 

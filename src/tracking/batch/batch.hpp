@@ -32,6 +32,7 @@ struct BatchScene {
   bool caches_match = false;  ///< the caches are of these states, before the move
   StepOptions options;
   bool walls_match = true;  ///< no wall is new since the caches' flags were set
+  bool stops = false;       ///< particles stop at the first wall: nothing responds
 };
 
 /// How much of a step the batch did: all, nothing, or, where the step has come to its first wall or to the end of the

@@ -52,10 +52,14 @@ struct AtWalls {
 
   const AtWall* operator[](unsigned l) const { return walls[l]; }
   [[nodiscard]] const PartialStep& step(unsigned l) const { return steps[walls[l]->partial]; }
-  // The times at which the vertices are where the walks find them.
-  [[nodiscard]] Double4 times() const {
-    return Double4{1.0 / step(0).parts, 1.0 / step(1).parts, 1.0 / step(2).parts, 1.0 / step(3).parts};
+  [[nodiscard]] Index4 particles() const {
+    return {{walls[0]->particle, walls[1]->particle, walls[2]->particle, walls[3]->particle}};
   }
+  [[nodiscard]] Double4 parts() const {
+    return Double4{double(step(0).parts), double(step(1).parts), double(step(2).parts), double(step(3).parts)};
+  }
+  // The times at which the vertices are where the walks find them.
+  [[nodiscard]] Double4 times() const { return 1.0 / parts(); }
   [[nodiscard]] [[gnu::always_inline]] Corners4 simplices(const Vec3* positions) const {
     return Corners4(positions, walls[0]->corners, walls[1]->corners, walls[2]->corners, walls[3]->corners);
   }

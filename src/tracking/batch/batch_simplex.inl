@@ -107,6 +107,18 @@ struct BatchDeterminants {
         applies ? determinant_error * (extent.x * extent.y * extent.z) : splat(std::numeric_limits<double>::infinity());
   }
 
+  [[gnu::always_inline]] static BatchDeterminants choose(const Mask4& m, const BatchDeterminants& a,
+                                                         const BatchDeterminants& b) {
+    BatchDeterminants d;
+    for (unsigned i = 0; i < 4; ++i) {
+      d.relative[i] = DARTCAST_SIMD::choose(m, a.relative[i], b.relative[i]);
+      d.value[i] = m ? a.value[i] : b.value[i];
+    }
+    d.extent = DARTCAST_SIMD::choose(m, a.extent, b.extent);
+    d.bound = m ? a.bound : b.bound;
+    return d;
+  }
+
   [[nodiscard]] Double4 volume6() const { return (value[0] + value[1]) + (value[2] + value[3]); }
   // Whether the points are some simplices away: a coordinate is below minus this.
   [[nodiscard]] Mask4 far_away(double coordinate = far_coordinate) const {

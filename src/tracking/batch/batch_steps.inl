@@ -35,6 +35,7 @@ class Batch {
         before_(scene.moved ? scene.complex->previous_positions().data() : nullptr),
         caches_match_(scene.caches_match),
         walls_match_(scene.walls_match),
+        stops_(scene.stops),
         cells_positive_(!moved && are_known_positive(*scene.complex)),
         options_(scene.options),
         simplex_count_(scene.complex->simplex_count()),
@@ -192,6 +193,8 @@ class Batch {
   [[nodiscard]] Vec3x4 targets_at(const AtWalls& at) const;
   [[nodiscard]] Vec3x4 facet_corners_at(const AtWalls& at, unsigned i) const;
   [[nodiscard]] Corners4 simplices_at(const AtWalls& at) const;
+  [[nodiscard]] Mask4 carry_on(const AtWalls& at, WallImpact4& impacts) const;
+  [[nodiscard]] Mask4 are_left_behind(const AtWalls& at) const;
   void compute_impacts();
   void compute_impact4(std::uint32_t k);
 
@@ -208,6 +211,7 @@ class Batch {
   const Vec3* before_;  // null where the scene stands still
   bool caches_match_;
   bool walls_match_;
+  bool stops_;           // at walls
   bool cells_positive_;  // all are known to be
   StepOptions options_;
   std::uint64_t simplex_count_;

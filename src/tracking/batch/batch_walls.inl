@@ -77,6 +77,39 @@ template <CacheKind kind>
   return now;
 }
 
+// Particles that stop at walls in the first of several parts: the vertices carry them along to the end of the step, as in
+// MovingStep::in_parts(). Returns a mask of those for which doubles prove all that is asked there.
+template <CacheKind kind>
+inline Mask4 Batch<kind>::carry_on(const AtWalls& at, WallImpact4& impacts) const {
+  const Double4 parts = at.parts();
+  Mask4 carried = impacts.known & (parts > 1.0);
+  if (!stops_ || !any(carried)) return Mask4{};
+  const Corners4 from = at.simplices(before_);
+  const Corners4 to = at.simplices(now_);
+  Vec3x4 position = impacts.position;
+  BatchDeterminants there = impacts.there;
+  for (double part = 2.0; any(carried & (parts >= part)); ++part) {
+    const Mask4 goes_on = parts >= part;
+    Corners4 v;
+    for (unsigned i = 0; i < 4; ++i) v.corner[i] = between(from.corner[i], to.corner[i], part / parts);
+    const Vec3x4 x = carry_along(there.value, v);
+    const BatchDeterminants d(v, x);
+    carried &= ~goes_on | (there.proves_coordinates() & d.all_positive());
+    position = choose(goes_on, x, position);
+    there = BatchDeterminants::choose(goes_on, d, there);
+  }
+  impacts.position = choose(carried, position, impacts.position);
+  impacts.there = BatchDeterminants::choose(carried, there, impacts.there);
+  return carried;
+}
+
+// As left_behind() in tracking/step_run.hpp.
+template <CacheKind kind>
+inline Mask4 Batch<kind>::are_left_behind(const AtWalls& at) const {
+  const Index4 i = at.particles();
+  return BatchDeterminants(simplices_of(now_, i), places_of(i)).any_negative();
+}
+
 template <CacheKind kind>
 inline void Batch<kind>::compute_impact4(std::uint32_t k) {
   const std::uint32_t last = at_wall_count_ - 1;
@@ -87,7 +120,13 @@ inline void Batch<kind>::compute_impact4(std::uint32_t k) {
   WallImpact4 impacts(at, facets, targets_at(at));
   if (lanes_set(impacts.known) == 0) return;
   impacts.put(simplices_at(at));
-  if constexpr (moved) impacts.move_walls(at, before_, now_);
+  Mask4 carried{};
+  Mask4 left_behind{};
+  if constexpr (moved) {
+    impacts.move_walls(at, before_, now_);
+    carried = carry_on(at, impacts);
+    left_behind = are_left_behind(at);
+  }
   SimplexCache4 caches;
   if constexpr (moved) store_previous_geometry(impacts.there, caches);
   if constexpr (kind == CacheKind::barycentric) store_barycentric<false>(impacts.there, impacts.position, caches);
@@ -96,8 +135,10 @@ inline void Batch<kind>::compute_impact4(std::uint32_t k) {
     const std::uint32_t i = at[l]->particle;
     PartialStep& partial = partial_[at[l]->partial];
     partial.impact = impacts.of(l);
-    ++partial.tests.tests;                     // on which side p is
-    if (moved && partial.parts > 1) continue;  // the mesh carries the particle on
+    partial.left_behind = left_behind[l] != 0;
+    partial.carried_on = carried[l] != 0;
+    ++partial.tests.tests;  // on which side p is
+    if (!partial.knows_end()) continue;
     vertices_[i] = at[l]->corners;
     if constexpr (kind == CacheKind::none) continue;
     if (moved || partial.tests.tests <= short_tests) {
