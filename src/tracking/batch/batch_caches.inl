@@ -118,17 +118,19 @@ inline void forget(SimplexCache4* caches, CacheFlags* marks, std::uint32_t i) {
 
 // As flushed() in tracking/representable_point.hpp.
 inline Double4 without_tiny(const Double4& x) { return magnitude(x) < smallest_magnitude ? Double4{} : x; }
+inline Vec3x4 without_tiny(const Vec3x4& x) { return {without_tiny(x.x), without_tiny(x.y), without_tiny(x.z)}; }
 
-// As carried() in tracking/carry.hpp: the points of the moved simplices whose coordinates are proportional to w.
-inline Vec3x4 carry_along(const Double4 (&w)[4], const Corners4& now) {
+// As combine() in tracking/carry.hpp: the points of simplices whose coordinates are proportional to w.
+inline Vec3x4 combined(const Double4 (&w)[4], const Corners4& v) {
   Double4 share[4];
   for (unsigned i = 0; i < 4; ++i) share[i] = larger(w[i], Double4{});
   const Double4 sum = ((share[0] + share[1]) + share[2]) + share[3];
   for (Double4& s : share) s = s / sum;
-  const Vec3x4 x =
-      (now.corner[0] * share[0] + now.corner[1] * share[1]) + (now.corner[2] * share[2] + now.corner[3] * share[3]);
-  return {without_tiny(x.x), without_tiny(x.y), without_tiny(x.z)};
+  return (v.corner[0] * share[0] + v.corner[1] * share[1]) + (v.corner[2] * share[2] + v.corner[3] * share[3]);
 }
+
+// As carried() there: the same points, as decisions see them.
+inline Vec3x4 carry_along(const Double4 (&w)[4], const Corners4& now) { return without_tiny(combined(w, now)); }
 
 // The coordinates that these determinants are proportional to.
 inline Weights shares_of(Weights w) {

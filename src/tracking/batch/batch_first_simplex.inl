@@ -179,8 +179,8 @@ template <CacheKind kind>
 inline std::uint32_t Batch<kind>::end_inside(std::uint32_t first, std::uint32_t n) {
   const std::uint32_t all = n == block ? ~std::uint32_t{0} : (std::uint32_t{1} << n) - 1;
   std::uint32_t deferred = 0;
-  std::uint32_t unusual = all & (held_or_touching(states_, size_, first, n) | (moved ? ~one_part_ : 0));
-  if constexpr (moved) prefetch_before(first, unusual & ~one_part_);
+  if constexpr (moved) deferred = split_steps(first, all & ~one_part_);
+  std::uint32_t unusual = all & ~deferred & held_or_touching(states_, size_, first, n);
   for (; unusual != 0; unusual &= unusual - 1) {
     const auto k = static_cast<std::uint32_t>(std::countr_zero(unusual));
     if (defer_unusual(first + k, k)) deferred |= std::uint32_t{1} << k;
@@ -208,13 +208,6 @@ inline std::uint32_t Batch<kind>::end_inside(std::uint32_t first, std::uint32_t 
   return remaining;
 }
 
-// Prefetches what the rule of splitting needs of these steps.
-template <CacheKind kind>
-inline void Batch<kind>::prefetch_before(std::uint32_t first, std::uint32_t which) const {
-  for (; which != 0; which &= which - 1)
-    prefetch(before_, vertices_[first + static_cast<std::uint32_t>(std::countr_zero(which))]);
-}
-
 // Ends the steps whose targets lie on facets of the simplex that the particle is in.
 template <CacheKind kind>
 void Batch<kind>::end_on_facets(std::uint32_t first) {
@@ -233,18 +226,13 @@ void Batch<kind>::end_on_facets(std::uint32_t first) {
   }
 }
 
-// Takes out a step that is held, or rests on a wall, or must be split: it is deferred, or walks apart. k: its place in the
-// block. Returns false where the step is none of these.
+// Defers a step in one part that is held, or rests on a wall. k: its place in the block. Returns false where the step is
+// neither.
 template <CacheKind kind>
 inline bool Batch<kind>::defer_unusual(std::uint32_t i, std::uint32_t k) {
   const ParticleState& s = states_[i];
-  const bool one_part = !moved || ((one_part_ >> k) & 1U) != 0;
-  const unsigned parts = s.held ? 0 : one_part ? 1 : parts_by_rule(i);
   const bool far = moved && ((far_away_ >> k) & 1U) != 0;
-  if (parts == 1 && (s.touching_count == 0 || far || !rests(i))) return false;
-  if constexpr (moved) {
-    if (parts > 1 && add_part_walk(i, parts)) return true;
-  }
+  if (!s.held && (s.touching_count == 0 || far || !rests(i))) return false;
   defer(i);
   return true;
 }
@@ -260,16 +248,6 @@ template <CacheKind kind>
 inline std::optional<Vec3> Batch<kind>::carried_position_inside(std::uint32_t i) const {
   const Vec3 x = carried_position(i, determinants_of(previous_determinants_.data(), i));
   return Determinants(corners_of(now_, vertices_[i]), x).all_proved_positive() ? std::optional(x) : std::nullopt;
-}
-
-// The splitting rule itself; 0 where the particle's coordinates are not known, or its simplex is not proved to be
-// positive.
-template <CacheKind kind>
-inline unsigned Batch<kind>::parts_by_rule(std::uint32_t i) const {
-  const Weights weights = determinants_of(previous_determinants_.data(), i);
-  const Corners after = corners_of(now_, vertices_[i]);
-  if (std::isnan(weights[0]) || !Determinants(after, after[0]).proves_positive()) return 0;
-  return part_count(corners_of(before_, vertices_[i]), after, shares_of(weights), targets_[i], options_);
 }
 
 // Whether a particle that touches a wall stays where it is: then it keeps touching the wall.

@@ -33,8 +33,6 @@ struct BoundedProducts {
   }
 };
 
-inline Vec3x4 without_tiny(const Vec3x4& x) { return {without_tiny(x.x), without_tiny(x.y), without_tiny(x.z)}; }
-
 // A walk that has come to a wall's facet; its target is beyond.
 struct AtWall {
   std::uint32_t particle;

@@ -3,15 +3,16 @@
 // 1. Caches that do not fit the scene are made or emptied (batch_remember.inl).
 // 2. First simplex (batch_first_simplex.inl). Four targets are tested at a time: against the corners, or by
 //    barycentric coordinates. Targets that are proved inside end the step. Steps that are held, or must be split and have
-//    a near target, are deferred to Stepper. The others are carried along with the mesh. Those with near targets leave by
-//    their exit facet.
+//    a near target, are deferred to Stepper (batch_split_steps.inl). The others are carried along with the mesh. Those
+//    with near targets leave by their exit facet.
 // 3. Far walks (batch_far_walks.inl) go along their lines. Where a sign is not proved they go on in rounds. The farthest
 //    pass whole hexahedra (batch_cell_walks.inl). Those of steps that are split end with the first part
 //    (batch_part_walks.inl).
 // 4. Rounds (batch_walk.inl). In each, every walk finds its next simplex, is tested there, and arrives, goes on, stops
 //    at a wall, or is deferred where a sign is not proved. Arrivals leave a cache entry (batch_remember.inl).
 // 5. Impacts (batch_walls.inl). Four walks that end at walls at a time: the places where they meet them, where doubles
-//    prove these. Stepper resumes from there.
+//    prove these. Where nothing responds, the mesh carries particles along from walls to the end of steps that are split.
+//    Stepper resumes from there.
 // 6. Exact coordinates of those that arrived on facets (batch_remember.inl).
 //
 // Below these: batch_simplex.inl (determinants and signs), batch_line_walks.inl, batch_cell_lanes.inl, batch_caches.inl,
@@ -28,6 +29,7 @@
 #include "tracking/batch/batch_first_simplex.inl"
 #include "tracking/batch/batch_part_walks.inl"
 #include "tracking/batch/batch_remember.inl"
+#include "tracking/batch/batch_split_steps.inl"
 #include "tracking/batch/batch_walk.inl"
 #include "tracking/batch/batch_walls.inl"
 #include "tracking/batch/simplex_cache.hpp"

@@ -125,6 +125,7 @@ struct BatchDeterminants {
     const Double4 lowest = smaller(smaller(value[0], value[1]), smaller(value[2], value[3]));
     return lowest < -coordinate * volume6();
   }
+  [[nodiscard]] Mask4 proves_positive() const { return volume6() > 8.0 * bound; }
   [[nodiscard]] Mask4 proves_coordinates() const { return volume6() > 0x1p+30 * bound; }
   [[nodiscard]] Mask4 all_positive() const {
     return ((value[0] > bound) & (value[1] > bound)) & ((value[2] > bound) & (value[3] > bound));

@@ -111,13 +111,11 @@ class Batch {
   void test_coordinates(std::uint32_t first, std::uint32_t n);
   [[gnu::noinline]] void test_zeros(std::uint32_t first, std::uint32_t k, const Vec3x4& q, const Mask4& in_range,
                                     const Mask4& proved, const Mask4& negative);
-  void prefetch_before(std::uint32_t first, std::uint32_t which) const;
   std::uint32_t end_inside(std::uint32_t first, std::uint32_t n);
   [[gnu::noinline]] void end_on_facets(std::uint32_t first);
   bool defer_unusual(std::uint32_t i, std::uint32_t k);
   [[nodiscard]] Vec3 carried_position(std::uint32_t i, const Weights& w) const;
   [[nodiscard]] std::optional<Vec3> carried_position_inside(std::uint32_t i) const;
-  [[nodiscard]] unsigned parts_by_rule(std::uint32_t i) const;
   [[nodiscard]] bool rests(std::uint32_t i) const;
   std::uint32_t carry_remaining(std::uint32_t first, std::uint32_t remaining);
   std::uint32_t carry_four(const Index4& i, std::uint32_t count, std::uint32_t going_on, std::uint32_t first);
@@ -152,6 +150,10 @@ class Batch {
   bool arrive_by_line(const WalkCursor& cursor);
   void cache_line_arrivals();
   [[nodiscard]] Vec3x4 starts_of(const Index4& i, const Corners4& now) const;
+
+  // Steps of several parts: batch_split_steps.inl.
+  std::uint32_t split_steps(std::uint32_t first, std::uint32_t which);
+  [[gnu::noinline]] unsigned split_four(const Index4& i, std::uint32_t count);
 
   // Walks apart, in the first parts of steps: batch_part_walks.inl.
   [[gnu::noinline]] bool add_part_walk(std::uint32_t i, unsigned parts);
