@@ -37,7 +37,10 @@ StepResult Stepper::step(std::uint32_t particle, ParticleState& state, Weights& 
 
 StepResult Stepper::resume(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
                            ContactList& contacts, Counters& counters, const PartialStep& partial) const {
-  if (partial.knows_end() && !respond_) return stop_at_impact(particle, state, target, contacts, counters, partial);
+  if (partial.knows_end() && !respond_) {
+    return partial.parts == 1 ? stop_at_impact<false>(particle, state, target, contacts, counters, partial)
+                              : stop_at_impact<true>(particle, state, target, contacts, counters, partial);
+  }
   constexpr NoRecorder none;
   if (complex_.map().dimension() == 2)
     return step_in<3>(particle, state, weights, target, contacts, counters, &partial, none);
@@ -45,26 +48,29 @@ StepResult Stepper::resume(std::uint32_t particle, ParticleState& state, Weights
 }
 
 // As StepPart::move(), handle_contact() and finish() in step_run.hpp, sum by sum, for the first contact of a step.
+template <bool split>
 StepResult Stepper::stop_at_impact(std::uint32_t particle, ParticleState& state, const Vec3& target,
                                    ContactList& contacts, Counters& counters, const PartialStep& partial) const {
   const WallImpact& impact = *partial.impact;
   const SimplexId at_wall = partial.walk.wall_simplex;
-  counters.updated_by_deformation += partial.left_behind && state.at() != at_wall ? 1 : 0;
+  if (partial.left_behind && state.at() != at_wall) ++counters.updated_by_deformation;
   Vec3 q = target;
   Vec3 later;
-  if (partial.parts > 1) {
+  double end_of_part = 1.0;
+  if constexpr (split) {
     ++counters.steps_split;
+    end_of_part = 1.0 / partial.parts;
     const Vec3 planned = target - state.position;
     const auto [share, end] = detail::next_part(state.position, planned, partial.parts);
     q = end;
-    later = (planned - share) - impact.wall_displacement * (1.0 - 1.0 / partial.parts);
+    later = (planned - share) - impact.wall_displacement * (1.0 - end_of_part);
   }
   Contact& contact = contacts.contacts.emplace_back();
   detail::describe_impact(complex_.map(), partial.walk, impact, contact, contacts);
   const Vec3 way = q - partial.from;
   contact.particle = particle;
   contact.last = options_.max_contacts == 1;
-  contact.time_of_impact = 0.0 + impact.fraction * (1.0 / partial.parts);
+  contact.time_of_impact = 0.0 + impact.fraction * end_of_part;
   contact.displacement = way + later;
   contact.unused = way * (1.0 - impact.fraction) + later;
   state.put(at_wall, impact.position);

@@ -116,7 +116,8 @@ class Stepper {
                      Weights& weights, ContactList& contacts, Counters& counters, PausedStep& paused) const;
 
  private:
-  // resume() where the end is known and nothing responds.
+  // resume() where the end is known and nothing responds; `split`: of a step in several parts.
+  template <bool split>
   StepResult stop_at_impact(std::uint32_t particle, ParticleState& state, const Vec3& target, ContactList& contacts,
                             Counters& counters, const PartialStep& partial) const;
 

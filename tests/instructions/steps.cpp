@@ -1,6 +1,7 @@
-// Fixed small scenes to count instructions in: `steps still`, `steps moving`, `steps lattice` or `steps long`, and in the
-// plane `steps plane` or `steps plane_moving`; `steps corner` for particles that rest in a vertex. The count is the code that
-// Environment::advance() executes (run.cmake); the number of particle-steps is printed. And `steps edits EDGE COUNT`:
+// Fixed small scenes to count instructions in: `steps still`, `steps moving`, `steps lattice`, `steps long` or
+// `steps long_moving`, and in the plane `steps plane` or `steps plane_moving`; `steps corner` for particles that rest in a
+// vertex. The count is the code that Environment::advance() executes (run.cmake); the number of particle-steps is printed,
+// and how many steps were split. And `steps edits EDGE COUNT`:
 // edits of a box of EDGE^3 cells, each followed by the particles. `steps cut`: one cut through the wall of a vessel. `steps
 // travel`: walks that have met no wall are packed for another rank, and unpacked, 10,000 at a time; it also prints times.
 #include <algorithm>
@@ -182,7 +183,7 @@ int main(int argc, char** argv) {
   if (std::strcmp(kind, "cut") == 0) return cut_vessel();
   if (std::strcmp(kind, "travel") == 0) return travel();
   const bool plane = std::strncmp(kind, "plane", 5) == 0;
-  const bool moving = std::strcmp(kind, plane ? "plane_moving" : "moving") == 0;
+  const bool moving = std::strstr(kind, "moving") != nullptr;
   const bool lattice = std::strcmp(kind, "lattice") == 0;
   Environment environment = plane ? make_plane() : make_environment();
   const std::vector<Vec3> rest(environment.positions().begin(), environment.positions().end());
@@ -200,10 +201,12 @@ int main(int argc, char** argv) {
       environment.add(set, s.simplex, s.position);
     }
   }
-  const double cells = std::strcmp(kind, "long") == 0 ? 3.0 : 0.1;  // a step
+  const bool far = std::strncmp(kind, "long", 4) == 0;
+  const double cells = far ? (moving ? 200.0 : 3.0) : 0.1;  // a step
   std::vector<Vec3> velocities = random_velocities(random, cells, lattice, plane);
   std::vector<Vec3> targets(particles);
   std::uint64_t contacts = 0;
+  std::uint64_t split = 0;
   for (std::size_t step = 1; step <= steps; ++step) {
     for (std::size_t i = 0; i < particles; ++i) targets[i] = set[i].position + velocities[i];
     if (moving) {
@@ -212,6 +215,7 @@ int main(int argc, char** argv) {
     }
     const StepReport report = environment.advance(set, targets);
     contacts += report.contacts.contacts.size();
+    split += report.counters.steps_split;
     for (const Contact& c : report.contacts.contacts) {
       Vec3& v = velocities[c.particle];
       if (lattice) {
@@ -222,5 +226,6 @@ int main(int argc, char** argv) {
       v -= n * (2.0 * std::min(0.0, dot(v, n)));
     }
   }
-  std::printf("%zu particle-steps, %llu contacts\n", particles * steps, static_cast<unsigned long long>(contacts));
+  std::printf("%zu particle-steps, %llu contacts, %llu split\n", particles * steps,
+              static_cast<unsigned long long>(contacts), static_cast<unsigned long long>(split));
 }

@@ -135,10 +135,12 @@ inline void Batch<kind>::compute_impact4(std::uint32_t k) {
     const std::uint32_t i = at[l]->particle;
     PartialStep& partial = partial_[at[l]->partial];
     partial.impact = impacts.of(l);
-    partial.left_behind = left_behind[l] != 0;
-    partial.carried_on = carried[l] != 0;
+    if constexpr (moved) {
+      partial.left_behind = left_behind[l] != 0;
+      partial.carried_on = carried[l] != 0;
+    }
     ++partial.tests.tests;  // on which side p is
-    if (!partial.knows_end()) continue;
+    if (moved && !partial.knows_end()) continue;
     vertices_[i] = at[l]->corners;
     if constexpr (kind == CacheKind::none) continue;
     if (moved || partial.tests.tests <= short_tests) {
