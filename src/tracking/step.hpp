@@ -30,9 +30,9 @@ struct PartialStep {
   TestCounts tests;  ///< made so far
   std::optional<WallImpact> impact;  ///< where it has been computed
   unsigned parts = 1;                ///< that the step is taken in; the walk is that of the first one
-  /// Where an impact has been computed: whether the place where the step started would be left behind by the vertices.
+  /// Where an impact has been computed: whether the vertices leave behind the place where the step started.
   bool left_behind = false;
-  /// Of several parts: the particle stops at the impact, whose position is where the vertices carry it to by the end.
+  /// In a step of several parts: the particle stops at the impact, whose position is where it is at the step's end.
   bool carried_on = false;
 
   PartialStep(const Vec3& start, const Walk& first, const TestCounts& counts)
