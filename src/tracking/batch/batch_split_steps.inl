@@ -93,12 +93,11 @@ unsigned Batch<kind>::split_four(const Index4& i, std::uint32_t count) {
     taken_out |= 1U << l;
     const auto number = static_cast<std::uint32_t>(parts[l]);
     const std::uint32_t* const record = map_.record(states_[particle].cell);
-    if (unknown || far[l] == 0) {
-      defer(particle);
-    } else if (inside[l] != 0) {
+    const bool walks = !unknown && far[l] != 0;
+    if (walks && inside[l] != 0) {
       __builtin_prefetch(record);
       part_walks_[part_count_++] = {particle, number, record, {start.x[l], start.y[l], start.z[l]}};
-    } else if (!add_part_walk(particle, number)) {
+    } else if (!walks || !add_part_walk(particle, number)) {
       defer(particle);
     }
   }
