@@ -83,7 +83,7 @@ class Stepper {
   Stepper(const CellComplex& complex, bool moved, const StepOptions& options, const ContactCallback& respond)
       : complex_(complex), moved_(moved), options_(options), respond_(respond) {}
 
-  /// Whether anything does: else particles stop at the first wall.
+  /// Whether anything responds at walls: else particles stop at the first one.
   [[nodiscard]] bool responds() const { return static_cast<bool>(respond_); }
 
   /// Steps one particle to `target`, a finite point in the exact range. Adds its contacts in order of time.

@@ -3,9 +3,10 @@
 // The batch makes no decision of its own. Where a sign is not proved, or anything else is out of the ordinary, it
 // defers the step to Stepper (tracking/step.hpp) and leaves it as it was. Both have the same result wherever both take
 // a step: ties between facets are broken by the walk's own functions. The batch walks up to the first wall; Stepper
-// continues from there. Where a step is split, the batch walks its first part, if the target is far. Only the counts may
-// differ. Walks to far targets ask other questions. And where rounding carries a particle out of its simplex, Stepper
-// puts it back and walks from there, though its target is inside.
+// continues from there. Where a step is split, the batch walks its first part, if the target is far; and where particles
+// stop at walls, it says where the mesh carries them by the end. Only the counts may differ. Walks to far targets ask
+// other questions. And where rounding carries a particle out of its simplex, Stepper puts it back and walks from there,
+// though its target is inside.
 #pragma once
 
 #include <cstddef>
