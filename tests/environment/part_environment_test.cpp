@@ -76,14 +76,13 @@ Words words_of(const Counters& c) {
   return words;
 }
 
-// A particle's way in a step. Without a speed, along the lattice of halves, to faces, edges and vertices of unit cells;
-// with a negative one as well, and that far.
-Vec3 way(std::uint64_t id, int step, double speed) {
+// A particle's way in a step. Along a lattice of halves it leads to faces, edges and vertices of unit cells.
+Vec3 way(std::uint64_t id, int step, const test::SteppedScene& scene) {
   Random random(id * 1000 + static_cast<std::uint64_t>(step));
   const auto number = [&] { return 2.0 * random.uniform() - 1.0; };
   const Vec3 v = {number(), number(), number()};
-  if (speed > 0.0) return v * speed;
-  const double halves = speed == 0.0 ? 3.0 : -2.0 * speed;
+  if (scene.lattice == 0.0) return v * scene.speed;
+  const double halves = 2.0 * scene.lattice;
   return {std::round(v.x * halves) * 0.5, std::round(v.y * halves) * 0.5, std::round(v.z * halves) * 0.5};
 }
 
@@ -133,7 +132,7 @@ class WholeRun {
     }
     std::vector<Vec3> targets;
     for (std::size_t i = 0; i < particles_.size(); ++i)
-      targets.push_back(particles_[i].position + way(i, step, scene_.speed));
+      targets.push_back(particles_[i].position + way(i, step, scene_));
     std::vector<unsigned> answered(particles_.size());
     const ContactCallback respond = [&](const Contact& c, auto walls, auto earlier) {
       return answer(c.particle, answered[c.particle]++, c, walls, earlier);
@@ -190,7 +189,7 @@ class PartRun {
     }
     std::vector<Vec3> targets;
     for (std::size_t i = 0; i < particles_.size(); ++i)
-      targets.push_back(particles_[i].position + way(own_.ids[i], step, scene_.speed));
+      targets.push_back(particles_[i].position + way(own_.ids[i], step, scene_));
     own_.answered.assign(particles_.size(), 0);
     const ContactCallback respond = [&](const Contact& c, auto walls, auto earlier) {
       return answer(own_.ids[c.particle], own_.answered[c.particle]++, c, walls, earlier);
@@ -285,7 +284,7 @@ TEST(PartEnvironment, StepsAreThoseOfOneEnvironment) {
 // Ends of steps and contacts lie on faces, edges and vertices that 2, 4 and 8 parts share.
 TEST(PartEnvironment, LatticeMotionsPassTheBordersOfParts) {
   for (const CellType type : {CellType::hexahedron, CellType::tetrahedron, CellType::prism}) {
-    test::SteppedScene scene{"lattice", test::cubes(4, type, 0.1), {}, 0.0};
+    test::SteppedScene scene{"lattice", test::cubes(4, type, 0.1), {}, 0.0, 1.5};
     for (const std::uint32_t count : {2U, 4U, 8U, 27U})
       EXPECT_GE(compare(scene, {}, count, test::scaled(20, 200)), at_least(100));
     if (HasFailure()) return;
@@ -345,7 +344,7 @@ TEST(PartEnvironment, LongStepsAlongALatticeThatMoves) {
   box.size = {16.0, 8.0, 8.0};
   box.blocked_share = 0.05;
   const auto along = [](const Vec3& p, int step) { return Vec3{p.x + 0.25 * step, p.y, p.z - 0.125 * step}; };
-  const test::SteppedScene scene{"lattice that moves", generate_box(box), along, -9.0};
+  const test::SteppedScene scene{"lattice that moves", generate_box(box), along, 0.0, 9.0};
   for (const std::uint32_t count : {2U, 4U, 8U})
     EXPECT_GE(compare(scene, {}, count, test::scaled(20, 400)), at_least(100));
 }

@@ -23,6 +23,7 @@ struct SteppedScene {
   MeshData mesh;
   std::function<Vec3(const Vec3&, int step)> moved;  // none: it stands still
   double speed;                                      // of particles, length per step
+  double lattice = 0.0;  // > 0: ways are along the lattice of halves instead, as far as that in each coordinate
 };
 
 // A swirl and a squeeze; every eighth step so strong that cells turn invalid.

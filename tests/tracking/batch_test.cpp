@@ -69,6 +69,8 @@ class BothWays {
   // Half of the targets are in planes across axes through vertices.
   void aim_at_planes() { at_planes_ = true; }
 
+  void split_at_most(unsigned parts) { options_.max_parts = parts; }
+
   // Half of the targets are many cells away.
   void aim_far_away() { far_away_ = true; }
 
@@ -88,9 +90,8 @@ class BothWays {
     if (!same(best.counters, portable.counters)) return "instruction sets count differently";
     if (std::ranges::equal(best.taken, uncached.taken) && !same(best.counters, uncached.counters))
       return "caches change the counts";
-    const StepOptions options;
     const ContactCallback none;
-    const Stepper stepper(complex_, moves_, options, none);
+    const Stepper stepper(complex_, moves_, options_, none);
     Counters counters;  // of the steps taken
     std::vector<ParticleState> next = states_;
     detail::SimplexCache next_caches;
@@ -176,7 +177,7 @@ class BothWays {
     if (moves_) {
       const auto before = previous_space(complex_).corners(s.at());
       const Weights weights = detail::barycentric(before, s.position);
-      const unsigned parts = detail::part_count(before, complex_.corners(s.at()), weights, q, StepOptions{});
+      const unsigned parts = detail::part_count(before, complex_.corners(s.at()), weights, q, options_);
       time = 1.0 / parts;
       if (parts > 1) q = detail::next_part(s.position, q - s.position, parts).target;
       start = detail::carried(space_between(complex_, time), s.at(), weights);
@@ -272,7 +273,7 @@ class BothWays {
     Filtered f{states_, {}, caches, std::vector<detail::StepStatus>(particles), {}, {}};
     f.caches.resize(with_caches ? particles : 0);
     for (const ParticleState& s : states_) f.vertices.push_back(detail::vertex_numbers(complex_, s.at()));
-    detail::step_batch({&complex_, moves_, !caches.empty(), StepOptions{}, true, stops_},
+    detail::step_batch({&complex_, moves_, !caches.empty(), options_, true, stops_},
                        {f.states, f.vertices, f.caches.from(0), targets, f.taken, f.partial}, f.counters, set);
     return f;
   }
@@ -425,6 +426,7 @@ class BothWays {
   CellComplex complex_;
   Random random_;
   Random stops_at_random_;
+  StepOptions options_;
   bool stops_ = true;  // nothing responds
   bool moves_;
   bool on_lattice_;
@@ -552,6 +554,7 @@ TEST(FilteredBatch, WalksFirstPartsOfSteps) {
     }
     BothWays both(std::move(mesh), seed, true, false, seed % 4 == 0);
     both.aim_far_away();
+    if (seed % 5 == 0) both.split_at_most(3);
     return run(std::move(both), fmt::format("first parts, seed {}", seed), tally);
   });
   for (const std::string& wrong : complaints) ADD_FAILURE() << wrong;
