@@ -339,10 +339,7 @@ inline void Batch<kind>::cache_line_arrivals() {
 template <CacheKind kind>
 inline Vec3x4 Batch<kind>::starts_of(const Index4& i, const Corners4& now) const {
   if constexpr (!moved) return places_of(i);
-  const auto* const d = previous_determinants_.data();
-  const Double4 w[4] = {determinants_of(d, i, 0), determinants_of(d, i, 1), determinants_of(d, i, 2),
-                        determinants_of(d, i, 3)};
-  return carry_along(w, now);
+  return carry_along(determinants_of(previous_determinants_.data(), i).of_corner, now);
 }
 
 }  // namespace

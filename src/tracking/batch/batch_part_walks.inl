@@ -73,10 +73,7 @@ inline void Batch<kind>::stage_parts() {
   const auto walk = [&](std::size_t k) -> const PartWalk& { return part_walks_[std::min(next_line_ + k, last)]; };
   const Index4 i = {{walk(0).particle, walk(1).particle, walk(2).particle, walk(3).particle}};
   const Double4 time = {1.0 / walk(0).parts, 1.0 / walk(1).parts, 1.0 / walk(2).parts, 1.0 / walk(3).parts};
-  const Corners4 from = simplices_of(before_, i);
-  const Corners4 to = simplices_of(now_, i);
-  Corners4 v;
-  for (unsigned c = 0; c < 4; ++c) v.corner[c] = between(from.corner[c], to.corner[c], time);
+  const Corners4 v = between(simplices_of(before_, i), simplices_of(now_, i), time);
   const auto start = [&](std::size_t k) { return walk(k).start_point(); };
   const auto target = [&](std::size_t k) { return target_of(walk(k).particle, walk(k).parts); };
   line_starts_ = LineStarts4(v, load_vec3x4(start(0), start(1), start(2), start(3)),

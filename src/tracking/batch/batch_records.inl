@@ -116,22 +116,26 @@ inline Index4 particles_of(const FacetArrival* arrivals, const Index4& i) {
       {arrivals[i.at[0]].particle, arrivals[i.at[1]].particle, arrivals[i.at[2]].particle, arrivals[i.at[3]].particle}};
 }
 
-// Determinants kept in caches: of all corners of one particle, and of one corner of four.
+// Determinants kept in caches, of one particle, and of four.
 inline Weights determinants_of(const SimplexCache4::Table<double>* w, std::uint32_t i) {
   Weights of_corner;
   for (unsigned c = 0; c < 4; ++c) of_corner[c] = w[i / 4][c][i % 4];
   return of_corner;
 }
-inline Double4 determinants_of(const SimplexCache4::Table<double>* w, const Index4& i, unsigned corner) {
-  const auto of = [&](std::uint32_t particle) { return w[particle / 4][corner][particle % 4]; };
-  return Double4{of(i.at[0]), of(i.at[1]), of(i.at[2]), of(i.at[3])};
+struct KeptDeterminants4 {
+  Double4 of_corner[4];
+};
+inline KeptDeterminants4 determinants_of(const SimplexCache4::Table<double>* w, const Index4& i) {
+  const auto of = [&](unsigned corner, unsigned l) { return w[i.at[l] / 4][corner][i.at[l] % 4]; };
+  KeptDeterminants4 d;
+  for (unsigned c = 0; c < 4; ++c) d.of_corner[c] = Double4{of(c, 0), of(c, 1), of(c, 2), of(c, 3)};
+  return d;
 }
 
 // Bits of the lanes where the result of carry_along(), as computed, is proved to lie strictly inside and is not q.
 inline unsigned carried_inside(const SimplexCache4::Table<double>* previous_caches, const Index4& i,
                                const Corners4& now, const Vec3x4& q) {
-  const Double4 w[4] = {determinants_of(previous_caches, i, 0), determinants_of(previous_caches, i, 1),
-                        determinants_of(previous_caches, i, 2), determinants_of(previous_caches, i, 3)};
+  const auto [w] = determinants_of(previous_caches, i);
   const Vec3x4 x = carry_along(w, now);
   const Mask4 proved = (w[0] == w[0]) & BatchDeterminants(now, x).all_positive();
   return lanes_set(proved & ((x.x != q.x) | (x.y != q.y) | (x.z != q.z)));

@@ -56,6 +56,11 @@ struct Corners4 {
 inline Vec3x4 between(const Vec3x4& from, const Vec3x4& to, const Double4& s) {
   return choose(s == 1.0, to, from + (to - from) * s);
 }
+[[gnu::always_inline]] inline Corners4 between(const Corners4& from, const Corners4& to, const Double4& s) {
+  Corners4 v;
+  for (unsigned i = 0; i < 4; ++i) v.corner[i] = between(from.corner[i], to.corner[i], s);
+  return v;
+}
 
 // In each lane a bit for each facet.
 inline Mask4 facet_bits(const Mask4& m0, const Mask4& m1, const Mask4& m2, const Mask4& m3) {
@@ -107,18 +112,6 @@ struct BatchDeterminants {
         applies ? determinant_error * (extent.x * extent.y * extent.z) : splat(std::numeric_limits<double>::infinity());
   }
 
-  [[gnu::always_inline]] static BatchDeterminants choose(const Mask4& m, const BatchDeterminants& a,
-                                                         const BatchDeterminants& b) {
-    BatchDeterminants d;
-    for (unsigned i = 0; i < 4; ++i) {
-      d.relative[i] = DARTCAST_SIMD::choose(m, a.relative[i], b.relative[i]);
-      d.value[i] = m ? a.value[i] : b.value[i];
-    }
-    d.extent = DARTCAST_SIMD::choose(m, a.extent, b.extent);
-    d.bound = m ? a.bound : b.bound;
-    return d;
-  }
-
   [[nodiscard]] Double4 volume6() const { return (value[0] + value[1]) + (value[2] + value[3]); }
   // Whether the points are some simplices away: a coordinate is below minus this.
   [[nodiscard]] Mask4 far_away(double coordinate = far_coordinate) const {
@@ -163,6 +156,18 @@ struct BatchDeterminants {
   }
   static Mask4 is_rounded(const Double4& m, const Double4& unit) { return ((m + unit) - unit) != m; }
 };
+
+[[gnu::always_inline]] inline BatchDeterminants choose(const Mask4& m, const BatchDeterminants& a,
+                                                       const BatchDeterminants& b) {
+  BatchDeterminants d;
+  for (unsigned i = 0; i < 4; ++i) {
+    d.relative[i] = choose(m, a.relative[i], b.relative[i]);
+    d.value[i] = m ? a.value[i] : b.value[i];
+  }
+  d.extent = choose(m, a.extent, b.extent);
+  d.bound = m ? a.bound : b.bound;
+  return d;
+}
 
 }  // namespace
 }  // namespace dartcast::detail::DARTCAST_SIMD

@@ -65,9 +65,7 @@ inline std::uint32_t Batch<kind>::split_steps(std::uint32_t first, std::uint32_t
 
 template <CacheKind kind>
 unsigned Batch<kind>::split_four(const Index4& i, std::uint32_t count) {
-  const auto* const d = previous_determinants_.data();
-  const Double4 w[4] = {determinants_of(d, i, 0), determinants_of(d, i, 1), determinants_of(d, i, 2),
-                        determinants_of(d, i, 3)};
+  const auto [w] = determinants_of(previous_determinants_.data(), i);
   const Corners4 before = simplices_of(before_, i);
   const Corners4 now = simplices_of(now_, i);
   const Vec3x4 here = places_of(i);
@@ -79,8 +77,7 @@ unsigned Batch<kind>::split_four(const Index4& i, std::uint32_t count) {
   for (unsigned l = 0; l < 4; ++l)
     parts[l] = root_of_parts[l] > 1.0 ? std::min(std::ceil(root_of_parts[l]), double(options_.max_parts)) : 1.0;
   const Double4 time = 1.0 / parts;
-  Corners4 v;
-  for (unsigned c = 0; c < 4; ++c) v.corner[c] = between(before.corner[c], now.corner[c], time);
+  const Corners4 v = between(before, now, time);
   const BatchDeterminants at_target(v, without_tiny(here + (q - here) * time));
   const Mask4 far = at_target.proves_positive() & at_target.far_away();
   const Vec3x4 start = carry_along(w, v);

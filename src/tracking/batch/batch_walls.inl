@@ -58,7 +58,7 @@ inline void Batch<kind>::compute_impacts() {
 // Four walks to walls: their targets, the facets at the walls and the simplices there, where they are at these times.
 template <CacheKind kind>
 [[gnu::always_inline]] inline Vec3x4 Batch<kind>::targets_at(const AtWalls& at) const {
-  if constexpr (!moved) return targets_of({{at[0]->particle, at[1]->particle, at[2]->particle, at[3]->particle}});
+  if constexpr (!moved) return targets_of(at.particles());
   const auto target = [&](unsigned l) { return target_of(at[l]->particle, at.step(l).parts); };
   return load_vec3x4(target(0), target(1), target(2), target(3));
 }
@@ -70,11 +70,10 @@ template <CacheKind kind>
 }
 template <CacheKind kind>
 [[gnu::always_inline]] inline Corners4 Batch<kind>::simplices_at(const AtWalls& at) const {
-  Corners4 now = at.simplices(now_);
-  if constexpr (!moved) return now;
-  const Corners4 before = at.simplices(before_);
-  for (unsigned i = 0; i < 4; ++i) now.corner[i] = between(before.corner[i], now.corner[i], at.times());
-  return now;
+  if constexpr (moved)
+    return between(at.simplices(before_), at.simplices(now_), at.times());
+  else
+    return at.simplices(now_);
 }
 
 // Particles that stop at walls in the first of several parts: the vertices carry them along to the end of the step, as in
@@ -90,16 +89,15 @@ inline Mask4 Batch<kind>::carry_on(const AtWalls& at, WallImpact4& impacts) cons
   BatchDeterminants there = impacts.there;
   for (double part = 2.0; any(carried & (parts >= part)); ++part) {
     const Mask4 goes_on = parts >= part;
-    Corners4 v;
-    for (unsigned i = 0; i < 4; ++i) v.corner[i] = between(from.corner[i], to.corner[i], part / parts);
+    const Corners4 v = between(from, to, part / parts);
     const Vec3x4 x = carry_along(there.value, v);
     const BatchDeterminants d(v, x);
     carried &= ~goes_on | (there.proves_coordinates() & d.all_positive());
     position = choose(goes_on, x, position);
-    there = BatchDeterminants::choose(goes_on, d, there);
+    there = choose(goes_on, d, there);
   }
   impacts.position = choose(carried, position, impacts.position);
-  impacts.there = BatchDeterminants::choose(carried, there, impacts.there);
+  impacts.there = choose(carried, there, impacts.there);
   return carried;
 }
 
