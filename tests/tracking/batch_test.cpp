@@ -322,7 +322,7 @@ class BothWays {
     return a.particle_steps == b.particle_steps && a.orientation.tests == b.orientation.tests &&
            a.histogram == b.histogram && a.forecast_kept == b.forecast_kept &&
            a.updated_by_deformation == b.updated_by_deformation && a.contacts == b.contacts &&
-           a.orientation.exact == b.orientation.exact;
+           a.orientation.exact == b.orientation.exact && a.steps_split == b.steps_split;
   }
 
   Vec3 point_of(const dartcast::Corners& v) {
