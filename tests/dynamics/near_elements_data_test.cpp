@@ -5,6 +5,7 @@
 #include "dartcast/mesh_selection.hpp"
 #include "support/placed_elements.hpp"
 #include "support/shared_data.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::near_elements_data_test {
 
@@ -13,7 +14,7 @@ using test::scaled;
 TEST(NearElementsOfOthers, FindsWhatIsTouchedFirst) {
   NEED_DATA("elements in an aneurysm and a femur");
   test::ElementOutcome outcome;
-  for (const char* file : {"aneurysm3d.box.msh", "femur.lumen.msh"}) {
+  for (const char* file : test::all_or_first({"aneurysm3d.box.msh", "femur.lumen.msh"})) {
     MeshData mesh = read_mesh(test::data_folder() / "derived" / file).mesh;
     const std::vector<std::string> lumen = {"lumen"};
     select_free_regions(mesh, lumen);

@@ -112,6 +112,7 @@ TEST(Subdivide, PartsOfEachType) {
 
 // One cell after another, in any order, and the parts before the neighbours are: what comes out is the fine grid.
 TEST(Subdivide, AnyOrderGivesTheFineGrid) {
+  std::size_t edits = 0;
   for (std::uint64_t seed = 0; seed < test::scaled<std::uint64_t>(3, 500); ++seed) {
     Random random(seed);
     CellComplex complex(unit_boxes(2, CellType::hexahedron));
@@ -132,7 +133,7 @@ TEST(Subdivide, AnyOrderGivesTheFineGrid) {
       std::erase_if(coarse, [&](Cell c) { return edge(c) <= 1.0; });
       if (coarse.empty()) break;
       refinement.subdivide(coarse[random.below(static_cast<std::uint32_t>(coarse.size()))]);
-      if (seed < 3) expect_good(complex);
+      if (seed < 3 && edits++ % test::stride(1, 8) == 0) expect_good(complex);
     }
     expect_good(complex);
     EXPECT_EQ(complex.map().cell_count(static_cast<std::uint32_t>(CellType::hexahedron)), 512U);
@@ -141,7 +142,7 @@ TEST(Subdivide, AnyOrderGivesTheFineGrid) {
     EXPECT_FALSE(has_flat(complex.map()));
     while (refinement.size() > 0) {
       refinement.coarsen(random.below(static_cast<std::uint32_t>(refinement.size())));
-      if (seed < 3) expect_good(complex);
+      if (seed < 3 && edits++ % test::stride(1, 8) == 0) expect_good(complex);
     }
     EXPECT_EQ(written(complex.map()), before);
     EXPECT_EQ(vertices_in_use(complex.map()), 27U);

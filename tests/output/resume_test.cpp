@@ -12,6 +12,7 @@
 #include "formats/file_text.hpp"
 #include "support/run_scenes.hpp"
 #include "support/sample_mesh.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::resume_test {
 
@@ -89,7 +90,7 @@ TEST_F(Resume, ARunCutOffAnywhereEndsAsIfItWereNot) {
   const Summary whole = run(one, false, 47);
   EXPECT_GT(whole.totals.absorbed, 0U);
   EXPECT_GT(whole.totals.escaped, 0U);
-  for (const std::uint64_t cut : {1U, 9U, 10U, 23U, 46U}) {
+  for (const std::uint64_t cut : test::all_or_first({10U, 1U, 9U, 23U, 46U})) {
     EXPECT_THROW(run(two, false, 47, cut), CutOff);
     expect_same(whole, run(two, true, 47));
   }
@@ -134,7 +135,7 @@ every = 10
 )";
   const Summary whole = run(one, false, 80, 0, scene);
   EXPECT_GT(whole.catheters.at(0).inserted, 0.5);  // longer than the box
-  for (const std::uint64_t cut : {35U, 55U, 75U}) {
+  for (const std::uint64_t cut : test::all_or_first({55U, 35U, 75U})) {
     EXPECT_THROW(run(two, false, 80, cut, scene), CutOff);
     expect_same(whole, run(two, true, 80, 0, scene));
   }
@@ -151,7 +152,7 @@ TEST_F(Resume, SolidsGoOnAtWalls) {
   ASSERT_EQ(whole.solids.size(), 2U);
   for (const SolidSummary& solid : whole.solids) EXPECT_GT(solid.stopped, 0U) << solid.name;
   EXPECT_EQ(whole.lost, 0U);
-  for (const std::uint64_t cut : {9U, 14U, 31U}) {
+  for (const std::uint64_t cut : test::all_or_first({14U, 9U, 31U})) {
     EXPECT_THROW(run(two, false, 47, cut, tools_text), CutOff);
     const Summary resumed = run(two, true, 47, 0, tools_text);
     expect_same(whole, resumed);
@@ -168,7 +169,7 @@ TEST_F(Resume, SolidsGoOnAtWalls) {
 TEST_F(Resume, EdgesGoOnAtWalls) {
   const Summary whole = run(one, false, 47, 0, edges_text);
   EXPECT_EQ(whole.lost, 0U);
-  for (const std::uint64_t cut : {9U, 14U, 31U}) {
+  for (const std::uint64_t cut : test::all_or_first({14U, 9U, 31U})) {
     EXPECT_THROW(run(two, false, 47, cut, edges_text), CutOff);
     expect_same(whole, run(two, true, 47, 0, edges_text));
   }
@@ -184,7 +185,7 @@ TEST_F(Resume, ARunWithSurgeryIsOperatedOnAgain) {
   EXPECT_GT(whole.surgery->mended, 0U);
   EXPECT_GT(whole.totals.absorbed, 0U);
   EXPECT_EQ(whole.lost, 0U);
-  for (const std::uint64_t cut : {4U, 11U, 16U, 46U}) {
+  for (const std::uint64_t cut : test::all_or_first({16U, 4U, 11U, 46U})) {
     EXPECT_THROW(run(two, false, 47, cut, surgery_text), CutOff);
     const Summary resumed = run(two, true, 47, 0, surgery_text);
     expect_same(whole, resumed);
@@ -204,7 +205,7 @@ TEST_F(Resume, ARunWithSpheresAndCrowdedCellsGoesOn) {
   EXPECT_GT(whole.surgery->subdivided, 0U);
   EXPECT_GT(whole.surgery->merged, 0U);
   EXPECT_EQ(whole.lost, 0U);
-  for (const std::uint64_t cut : {4U, 16U, 31U, 46U}) {
+  for (const std::uint64_t cut : test::all_or_first({31U, 4U, 16U, 46U})) {
     EXPECT_THROW(run(two, false, 47, cut, spheres_text), CutOff);
     const Summary resumed = run(two, true, 47, 0, spheres_text);
     expect_same(whole, resumed);
@@ -222,7 +223,7 @@ TEST_F(Resume, ARunWithBodiesAndACatheterGoesOn) {
   ASSERT_EQ(whole.catheters.size(), 1U);
   EXPECT_GT(whole.catheters[0].inserted, 0.1);
   EXPECT_LE(whole.catheters[0].totals.worst_segment, 0.01);
-  for (const std::uint64_t cut : {4U, 11U, 26U, 46U}) {
+  for (const std::uint64_t cut : test::all_or_first({26U, 4U, 11U, 46U})) {
     EXPECT_THROW(run(two, false, 47, cut, solids_text), CutOff);
     const Summary resumed = run(two, true, 47, 0, solids_text);
     expect_same(whole, resumed);
@@ -245,7 +246,7 @@ body_restitution = 0.5
   const Summary whole = run(one, false, 47, 0, text);
   EXPECT_GT(whole.totals.collisions.pairs_touching, 0U);
   EXPECT_EQ(whole.audit->failed, 0U);
-  for (const std::uint64_t cut : {4U, 26U, 46U}) {
+  for (const std::uint64_t cut : test::all_or_first({26U, 4U, 46U})) {
     EXPECT_THROW(run(two, false, 47, cut, text), CutOff);
     const Summary resumed = run(two, true, 47, 0, text);
     expect_same(whole, resumed);

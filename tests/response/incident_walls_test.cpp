@@ -54,7 +54,7 @@ Vec3 projected(const Vec3& v, const std::vector<WallHit>& walls) {
 TEST(IncidentWalls, HoldBackToTheNearestVelocity) {
   Random random(1);
   std::array<int, 4> counts{};
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < std::max(100, test::scaled(300, 3000)); ++i) {
     std::vector<Vec3> normals;
     const Vec3 common = direction(random);  // so that something is free
     for (int k = 0; k < 1 + i % 6; ++k) {

@@ -195,7 +195,7 @@ TEST(Collisions, HeapsAreTheSameOnAnyNumberOfThreads) {
     return simulation.state_hash().hex();
   };
   const std::string one = run(1, -1);
-  for (const unsigned threads : {2U, 3U, 7U}) EXPECT_EQ(run(threads, -1), one) << threads;
+  for (const unsigned threads : test::all_or_first({3U, 2U, 7U})) EXPECT_EQ(run(threads, -1), one) << threads;
   EXPECT_EQ(run(2, steps / 3), one);
 }
 

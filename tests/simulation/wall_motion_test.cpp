@@ -9,6 +9,7 @@
 #include "dartcast/error.hpp"
 #include "dartcast/simulation.hpp"
 #include "support/meshes.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::wall_motion_test {
 
@@ -46,7 +47,7 @@ std::string hash_after(unsigned threads, int steps, int restart) {
   const MeshData mesh = test::cubes(6, CellType::tetrahedron, 0.1, 0.2, 5);
   Environment environment(mesh, {threads});
   auto simulation = made(environment);
-  simulation->add_random(500, {});
+  simulation->add_random(test::sanitized() ? 100 : 500, {});
   for (int i = 0; i < (restart > 0 ? restart : steps); ++i) simulation->step();
   EXPECT_GT(simulation->totals().counters.contacts[2], 0U);
   if (restart == 0) {

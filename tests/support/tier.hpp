@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdlib>
+#include <initializer_list>
+#include <vector>
 
 namespace dartcast::test {
 
@@ -22,6 +24,12 @@ Count scaled(Count quick, Count full) {
 /// sanitizers.
 inline std::size_t stride(std::size_t quick, std::size_t under_sanitizers) {
   return full_tier() ? 1 : sanitized() ? under_sanitizers : quick;
+}
+
+/// The cases of a list; under sanitizers the first alone.
+template <class Case>
+std::vector<Case> all_or_first(std::initializer_list<Case> cases) {
+  return {cases.begin(), sanitized() ? cases.begin() + 1 : cases.end()};
 }
 
 /// Whether a mesh of so many points only repeats smaller ones at a larger size. Under sanitizers such meshes are left
