@@ -10,8 +10,6 @@ endif()
 if(DARTCAST_SANITIZE)
   add_compile_options(-fsanitize=${DARTCAST_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${DARTCAST_SANITIZE})
-  # Precompiled, to save time; only here, so that a forgotten include is still found by the other builds.
-  set(DARTCAST_COMMON_HEADERS <algorithm> <array> <cmath> <functional> <map> <span> <string> <unordered_map> <vector>)
 endif()
 
 set(CMAKE_CXX_EXTENSIONS OFF)

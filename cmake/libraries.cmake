@@ -42,9 +42,6 @@ function(add_dartcast_library name)
   if(NOT DARTCAST_SANITIZE AND CMAKE_SYSTEM_NAME STREQUAL "Linux")
     target_link_options(${target} PRIVATE LINKER:-z,defs)  # a library that uses what is above it does not link
   endif()
-  if(DARTCAST_SANITIZE)
-    target_precompile_headers(${target} PRIVATE ${DARTCAST_COMMON_HEADERS} <fmt/format.h>)
-  endif()
   # Where CMAKE_UNITY_BUILD is set (in all presets for tests: half of the time), the files of a folder are compiled as one.
   # Those of tracking are not where speed counts: what is called from one place of a file alone is inlined there.
   set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
