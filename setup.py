@@ -15,7 +15,7 @@ from setuptools.command.build_ext import build_ext
 
 ROOT = pathlib.Path(__file__).resolve().parent
 OPTIONS = ["CMAKE_BUILD_TYPE=Release", "CMAKE_UNITY_BUILD=ON", "BUILD_SHARED_LIBS=OFF", "CMAKE_POSITION_INDEPENDENT_CODE=ON",
-           "DARTCAST_PYTHON=ON", "DARTCAST_APP=OFF", "DARTCAST_TESTS=OFF", "DARTCAST_EXAMPLES=OFF"]
+           "DARTCAST_PYTHON=ON", "DARTCAST_APP=OFF"]
 
 
 def version() -> str:

@@ -30,7 +30,5 @@ class Dartcast(CMakePackage):
         return [
             self.define_from_variant("DARTCAST_VTK", "vtk"),
             self.define_from_variant("DARTCAST_PYTHON", "python"),
-            self.define("DARTCAST_TESTS", False),
-            self.define("DARTCAST_EXAMPLES", False),
             self.define("DARTCAST_BENCH", False),
         ]

@@ -1,4 +1,4 @@
-// Runs a scene from a mesh file, writes its frames compressed, and asks for a .vtu file.
+// Runs a scene from a mesh file, writes its frames compressed, and reads one again.
 #include <cstdio>
 
 #include "dartcast/generators.hpp"
@@ -6,7 +6,7 @@
 #include "dartcast/run.hpp"
 #include "dartcast/scene_file.hpp"
 
-void run_without_vtk(const char* folder) {
+void run_part(const char* folder) {
   const std::filesystem::path path(folder);
   write_mesh(dartcast::generate_bar(), path / "bar.msh");
   const char* text = R"(
@@ -26,7 +26,5 @@ compression = "fast"
   options.folder = path / "run";
   const dartcast::Summary summary = dartcast::run_scene(dartcast::parse_scene(text, path / "scene.toml"), options);
   std::printf("%llu particles\n", static_cast<unsigned long long>(summary.alive));
-  const dartcast::MeshFile frame = dartcast::read_mesh(path / "run" / "environment.vtu");
-  std::printf("VTK %d: %s\n", dartcast::has_vtk() ? 1 : 0,
-              frame.report.valid() ? "valid" : frame.report.defects.front().message.c_str());
+  std::printf("%zu cells\n", dartcast::read_mesh(path / "run" / "environment.vtu").mesh.cell_count());
 }
