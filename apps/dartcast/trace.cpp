@@ -79,8 +79,8 @@ int trace(const TraceArguments& arguments) {
   for (const std::string& text : arguments.to) numbers_of(text, "--to");
   numbers_of(arguments.from, "--from");
   const std::string ending = std::filesystem::path(arguments.output).extension().string();
-  if (!arguments.output.empty() && ending != ".svg" && ending != ".csv" && ending != ".html")
-    throw CLI::ValidationError("-o", fmt::format("'{}' ends in neither .html, .svg nor .csv", arguments.output));
+  if (!arguments.output.empty() && ending != ".svg" && ending != ".csv")
+    throw CLI::ValidationError("-o", fmt::format("'{}' ends in neither .svg nor .csv", arguments.output));
   Environment environment = load_environment(arguments.input, arguments.max_memory);
   const unsigned dimension = environment.map().dimension();
   Particles particles;
@@ -88,9 +88,8 @@ int trace(const TraceArguments& arguments) {
   std::vector<Vec3> targets;
   for (const std::string& text : arguments.to) targets.push_back(point_of(text, "--to", dimension));
   const std::vector<Trace> traces = environment.trace(particles, 0, targets);
-  const std::string text = ending == ".html"  ? trajectory_html(environment.complex(), traces)
-                           : ending == ".svg" ? trajectory_svg(environment.complex(), traces)
-                                              : trajectory_csv(environment.map(), traces);
+  const std::string text = ending == ".svg" ? trajectory_svg(environment.complex(), traces)
+                                            : trajectory_csv(environment.map(), traces);
   if (arguments.output.empty()) {
     fmt::print("{}", text);
     return done;
@@ -115,7 +114,7 @@ void add_trace(CLI::App& app, int& status) {
       ->required()
       ->allow_extra_args(false);
   verb->add_option("-o", arguments->output,
-                   "a page (.html), a drawing (.svg, in the plane), or a table (.csv); else a table is printed");
+                   "a drawing (.svg, in the plane) or a table (.csv); else a table is printed");
   add_max_memory(*verb, arguments->max_memory);
   verb->callback([arguments, &status] { status = trace(*arguments); });
 }

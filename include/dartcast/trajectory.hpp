@@ -60,15 +60,4 @@ std::string trajectory_csv(const CombinatorialMap& map, std::span<const Trace> t
 /// or where the complex is not of the plane. Cost: one look at each cell of the scene.
 std::string trajectory_svg(const CellComplex& complex, std::span<const Trace> traces);
 
-// One trajectory as a page that turns in the browser, in the plane and in space.
-
-/// HTML in one file, in the style of the report of a run (docs/report.md). It shows the walls of the scene, the cells
-/// passed as a patch of its own, and the way as a line with its crossings and contacts. Below are a time line and the
-/// table of trajectory_csv(). Walls are those of the whole scene; beyond 200,000 faces those around the cells passed. If there are
-/// more than 2,000 points, the page shows an even choice of them and says so.
-///
-/// `complex`: the one that the traces were made in, drawn as it stands. Throws InvalidArgument where there is no trace.
-/// Cost: one look at each cell of the scene.
-std::string trajectory_html(const CellComplex& complex, std::span<const Trace> traces);
-
 }  // namespace dartcast

@@ -67,15 +67,6 @@ void bind_trajectory(py::module_& m) {
         });
       },
       py::arg("complex"), py::arg("traces"), doc("trajectory_svg"));
-  m.def(
-      "trajectory_html",
-      [](const ComplexHandle& h, const std::vector<Trace>& traces) {
-        return read_long(h, [&](const CellComplex& complex) {
-          expect_cells_of(complex.map(), traces);
-          return trajectory_html(complex, traces);
-        });
-      },
-      py::arg("complex"), py::arg("traces"), doc("trajectory_html"));
 }
 
 }  // namespace dartcast::python

@@ -1,10 +1,7 @@
 // The points of a trajectory, from the traces of a particle.
 #include "dartcast/trajectory.hpp"
 
-#include <algorithm>
 #include <array>
-
-#include "output/cells_passed.hpp"
 
 namespace dartcast {
 
@@ -40,17 +37,6 @@ std::vector<TrajectoryPoint> trajectory_points(std::span<const Trace> traces) {
     points.push_back({mark, step, 1.0, trace.after.position, trace.end.kind, trace.after.cell, {}});
   }
   return points;
-}
-
-std::vector<Cell> cells_passed(std::span<const TrajectoryPoint> points) {
-  std::vector<Cell> cells;
-  for (const TrajectoryPoint& p : points) {
-    cells.push_back(p.cell);
-    if (p.next.valid()) cells.push_back(p.next);
-  }
-  std::sort(cells.begin(), cells.end());
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-  return cells;
 }
 
 std::string_view name_of(Kind kind) {

@@ -9,7 +9,6 @@
 
 #include "dartcast/error.hpp"
 #include "dartcast/trajectory.hpp"
-#include "output/cells_passed.hpp"
 
 namespace dartcast {
 
@@ -27,6 +26,18 @@ constexpr std::string_view svg_style =
     ".even{stroke:#1d4ed8}.contact{fill:none;stroke:#b91c1c;stroke-width:2}circle{stroke:#111}.dot{fill:#111}"
     ".start{fill:#fff}.end{fill:#111}text{font:italic 15px serif;fill:#111;stroke:#fff;stroke-width:3;"
     "paint-order:stroke}</style>\n";
+
+// Each once, ascending.
+std::vector<Cell> cells_passed(std::span<const TrajectoryPoint> points) {
+  std::vector<Cell> cells;
+  for (const TrajectoryPoint& p : points) {
+    cells.push_back(p.cell);
+    if (p.next.valid()) cells.push_back(p.next);
+  }
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  return cells;
+}
 
 // The part of the plane that is drawn, y upwards.
 class SvgView {

@@ -28,8 +28,7 @@ std::vector<ReportSelection::Frame> frames_of(const RecordedFile& file) {
   return frames;
 }
 
-}  // namespace
-
+// `count` of `size` places: the first and the last are among them.
 std::vector<std::size_t> evenly(std::size_t size, std::size_t count) {
   std::vector<std::size_t> places;
   const std::size_t n = std::min(size, count);
@@ -38,6 +37,8 @@ std::vector<std::size_t> evenly(std::size_t size, std::size_t count) {
         n == 1 ? 0 : static_cast<std::size_t>((static_cast<unsigned long long>(size - 1) * i + (n - 1) / 2) / (n - 1)));
   return places;
 }
+
+}  // namespace
 
 ReportSelection select(const RecordedFile& file, const ReportOptions& options) {
   ReportSelection s;

@@ -31,7 +31,4 @@ struct ReportSelection {
 /// Throws Error where there is no frame, or one has other walls than were recorded.
 ReportSelection select(const RecordedFile& file, const ReportOptions& options);
 
-/// `count` of `size` places, evenly: the first and the last are among them.
-std::vector<std::size_t> evenly(std::size_t size, std::size_t count);
-
 }  // namespace dartcast

@@ -36,7 +36,6 @@ table{border-collapse:collapse;margin:8px 0;font-variant-numeric:tabular-nums}
 th,td{padding:2px 14px 2px 0;text-align:left;vertical-align:top;font-weight:400;border-bottom:1px solid var(--faint)}
 th{color:var(--muted)}
 td{overflow-wrap:anywhere}
-.trajectory td{overflow-wrap:normal;white-space:nowrap}
 pre{overflow-x:auto;font-size:13px}
 @media print{#view .controls{display:none}details{break-inside:avoid}}
 )css";

@@ -50,10 +50,9 @@ class Builder {
         threads_(options.threads),
         frames_(std::move(chosen_.recorded)) {}
 
-  ViewerData build(std::optional<TrajectorySubject> trajectory) {
+  ViewerData build() {
     read_frames();
     describe_scene();
-    if (trajectory) json_["trajectory"] = {{"patch", trajectory->patch}};
     describe_particles();
     describe_contacts();
     describe_walls();
@@ -403,9 +402,8 @@ class Builder {
 
 }  // namespace
 
-ViewerData viewer_data(const RecordedFile& file, const ReportOptions& options,
-                       std::optional<TrajectorySubject> trajectory) {
-  return Builder(file, options).build(trajectory);
+ViewerData viewer_data(const RecordedFile& file, const ReportOptions& options) {
+  return Builder(file, options).build();
 }
 
 }  // namespace dartcast

@@ -2,8 +2,6 @@
 // format. Not installed.
 #pragma once
 
-#include <cstddef>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,15 +17,8 @@ struct ViewerData {
   std::string picture;              ///< SVG of the first frame, for pages that cannot draw it
 };
 
-/// The trajectory of one particle as the subject of a page: its frames are the points of the trajectory, and each has
-/// an event that describes it. Times are steps.
-struct TrajectorySubject {
-  std::size_t patch = 0;  ///< of the faces around the cells passed
-};
-
 /// The frames that are shown: those that a run writes every so many steps, and the last one. At most `options.frames`
 /// and `options.particles`, evenly chosen. Throws Error as RecordedFile.
-ViewerData viewer_data(const RecordedFile& file, const ReportOptions& options,
-                       std::optional<TrajectorySubject> trajectory = {});
+ViewerData viewer_data(const RecordedFile& file, const ReportOptions& options);
 
 }  // namespace dartcast

@@ -29,10 +29,6 @@ class Viewer {
     viewer.layOut(view);
     viewer.player.go(0);
     viewer.frame();
-    if (data.trajectory) {
-      await viewer.pick(-1);
-      viewer.frameTrajectory();
-    }
     viewer.stage.drawNow();
     api.firstDrawMs = performance.now() - began;
     api.ready = true;
@@ -95,9 +91,8 @@ class Viewer {
     const picked = element('aside', { class: 'picked', 'aria-live': 'polite' });
     picked.hidden = true;
     this.player = new Player(data, (f) => this.show(f), () => this.decoded);
-    if (data.trajectory) this.particles.colourBy('kind');
-    this.panel = new Panel(data.trajectory ? null : this.particles, this.walls, stage, () => this.show(this.player.frame), () => this.frame());
-    this.selection = new Selection(this.particles, new Contacts(data.contacts), stage, picked, data.trajectory);
+    this.panel = new Panel(this.particles, this.walls, stage, () => this.show(this.player.frame), () => this.frame());
+    this.selection = new Selection(this.particles, new Contacts(data.contacts), stage, picked);
     this.selection.onClose = () => this.pick(-1);
     const box = element('div', { class: 'stage' }, stage.canvas, this.loading, picked);
     view.replaceChildren(box, this.panel.element, this.player.element);
@@ -140,20 +135,14 @@ class Viewer {
     this.stage.draw();
   }
 
-  /** The cells that a trajectory passes come into view. */
-  frameTrajectory() {
-    this.stage.frame(this.walls.pointsOf(this.data.trajectory.patch));
-  }
-
   /** All that can be seen comes into view. */
   frame() {
     this.stage.frame([...this.walls.visiblePoints(), ...this.solids.points(), ...(this.particles?.visiblePoints() ?? [])]);
   }
 
-  /** Chooses a particle; below 0 none. A trajectory's particle stays chosen, without its panel. */
+  /** Chooses a particle; below 0 none. */
   async pick(slot) {
-    this.selection.quiet = slot < 0;
-    await this.selection.pick(this.data.trajectory ? 0 : slot);
+    await this.selection.pick(slot);
     this.show(this.player.frame);
     return slot;
   }

@@ -5,10 +5,8 @@ const secondsOfAll = 10; // of a whole run at speed 1
 
 export class Player {
   /** @param data the description; @param show called with a frame; @param ready how many frames can be shown */
-  constructor({ frames, events, trajectory }, show, ready) {
+  constructor({ frames, events }, show, ready) {
     Object.assign(this, { frames, show, ready, frame: 0, speed: 1, playing: false });
-    // A trajectory has an event for each frame, which says all of it.
-    this.texts = trajectory ? events.map((e) => e.text) : null;
     this.button = element('button', { type: 'button', 'aria-label': 'Play', onclick: () => this.toggle() }, '▶');
     this.slider = element('input', { type: 'range', min: 0, max: Math.max(frames.length - 1, 0), step: 1, value: 0, 'aria-label': 'Time' });
     this.slider.addEventListener('input', () => this.go(Number(this.slider.value)));
@@ -21,7 +19,6 @@ export class Player {
   marks(events) {
     const first = this.frames[0]?.time ?? 0;
     const span = (this.frames[this.frames.length - 1]?.time ?? 0) - first;
-    if (this.texts) return [];
     return events.map((e) => {
       const mark = element('span', { class: 'mark', title: `${e.time.toPrecision(4)} s: ${e.text}` });
       mark.style.left = `${span > 0 ? Math.max(0, Math.min(1, (e.time - first) / span)) * 100 : 0}%`;
@@ -34,7 +31,7 @@ export class Player {
     this.frame = Math.max(0, Math.min(f, this.frames.length - 1, this.ready() - 1));
     this.slider.value = this.frame;
     const { time, step } = this.frames[this.frame] ?? { time: 0, step: 0 };
-    const text = this.texts?.[this.frame] ?? `${time.toPrecision(4)} s, step ${step}`;
+    const text = `${time.toPrecision(4)} s, step ${step}`;
     this.label.textContent = text;
     this.slider.setAttribute('aria-valuetext', text);
     this.show(this.frame);

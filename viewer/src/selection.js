@@ -28,9 +28,8 @@ export class Contacts {
 }
 
 export class Selection {
-  /** @param trajectory of the description: the frames are the points of one particle's way */
-  constructor(particles, contacts, stage, panel, trajectory) {
-    Object.assign(this, { particles, contacts, stage, panel, trajectory, slot: -1, quiet: true, object: new Group(), list: [] });
+  constructor(particles, contacts, stage, panel) {
+    Object.assign(this, { particles, contacts, stage, panel, slot: -1, object: new Group(), list: [] });
     stage.scene.add(this.object);
   }
 
@@ -109,7 +108,7 @@ export class Selection {
 
   show(f) {
     this.clearObject();
-    this.panel.hidden = this.slot < 0 || this.quiet;
+    this.panel.hidden = this.slot < 0;
     if (this.slot < 0) return;
     const { accent, categories } = pageColours();
     const places = this.path();
@@ -117,7 +116,6 @@ export class Selection {
     if (places.length > 0) {
       this.line(places.slice(0, now + 1).flat(), accent, 1);
       this.line(places.slice(now).flat(), accent, 0.4);
-      if (this.trajectory) this.marks(places.flat(), accent, 4);
       this.marks(places[now], accent, 11);
     }
     const { box } = this.particles;
@@ -134,14 +132,13 @@ export class Selection {
       const x = particles.box.toRun(particles.position.frame(f), slot);
       const speed = shortNumber((particles.speed.frame(f)[slot] / 255) * particles.speedMax);
       facts.append(row('position', x.map(shortNumber).join(', ') + ' m'),
-        this.trajectory ? row('length of the step', speed + ' m') : row('speed', speed + ' m/s'),
-        row('is in a', particles.kindName(slot, f)));
-      if (!this.trajectory)
-        facts.append(row('in the scene for', shortNumber(Math.max(0, particles.frames[f].time - particles.start[slot])) + ' s'));
+        row('speed', speed + ' m/s'),
+        row('is in a', particles.kindName(slot, f)),
+        row('in the scene for', shortNumber(Math.max(0, particles.frames[f].time - particles.start[slot])) + ' s'));
     }
     if (particles.radius && particles.radius[slot] > 0) facts.append(row('radius', shortNumber(particles.radius[slot]) + ' m'));
     const close = element('button', { type: 'button', 'aria-label': 'Close', onclick: () => this.onClose?.() }, '×');
-    panel.replaceChildren(element('header', {}, this.trajectory ? 'The particle (0)' : `Particle ${particles.id[slot]}`, close),
+    panel.replaceChildren(element('header', {}, `Particle ${particles.id[slot]}`, close),
       alive ? facts : element('p', {}, 'It is not in the scene now.'), ...this.contactRows());
   }
 
@@ -152,7 +149,7 @@ export class Selection {
     const table = element('table', {}, element('tr', {}, ...['time', 'patch', 'with a'].map((t) => element('th', { scope: 'col' }, t))));
     const names = this.particles.patches;
     for (const c of this.list.slice(0, mostRows))
-      table.append(element('tr', {}, ...[`${shortNumber(c.time)} ${this.trajectory ? 'steps' : 's'}`, names[c.patch - 1] || 'no patch', c.kind].map((t) => element('td', {}, t))));
+      table.append(element('tr', {}, ...[`${shortNumber(c.time)} s`, names[c.patch - 1] || 'no patch', c.kind].map((t) => element('td', {}, t))));
     const more = this.list.length - mostRows;
     return [element('p', {}, `${this.list.length} contact${this.list.length === 1 ? '' : 's'}`), table, more > 0 ? element('p', {}, `and ${more} more`) : ''];
   }

@@ -171,11 +171,6 @@ export class Walls {
     return points;
   }
 
-  /** Coordinates of the walls of a patch. */
-  pointsOf(patch) {
-    return (this.parts ?? []).filter((part) => part.patch === patch).flatMap((part) => [...part.object.geometry.getAttribute('position').array]);
-  }
-
   show(f) {
     if (this.sets.length === 0) return;
     const at = this.setAt(f);

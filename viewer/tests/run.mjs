@@ -11,21 +11,6 @@ import { checkFallback, checkReport } from './page_checks.mjs';
 // Steps of each scene, which has some seven frames then.
 const scenes = { vessel: 60, surgery: 460, barrel: 60, catheter_left: 120, grains: 60, maze: 60 };
 
-// In the plane and in space: MESH_OR_SCENE, from, targets.
-const trajectories = [
-  ['maze', '0,3', ['2.7,1.8', '6.7,6.2', '2,9.6']],
-  ['vessel', '0.00144,-0.0052,-0.0277', ['-0.0022,0.0023,-0.01', '-0.0022,0.0023,0.004']],
-];
-
-function makeTrajectories(command, folder, work) {
-  return trajectories.map(([name, from, targets]) => {
-    const out = join(work, `trajectory_${name}.html`);
-    const done = spawnSync(command, ['trace', join(folder, `${name}.toml`), '--from', from, ...targets.flatMap((t) => ['--to', t]), '-o', out], { encoding: 'utf8' });
-    if (done.status !== 0) throw new Error(`${name}: ${done.stderr}`);
-    return out;
-  });
-}
-
 // Inside a closed surface, which an external program meshes.
 function makeSurfaceReport(command, folder, work) {
   const scene = join(work, 'surface.toml');
@@ -94,7 +79,7 @@ if (first.endsWith('.html')) {
 } else {
   const work = mkdtempSync(join(tmpdir(), 'dartcast_viewer_'));
   try {
-    process.exitCode = await check(() => [...makeReports(first, second, work), ...makeSurfaceReport(first, second, work), ...makeTrajectories(first, second, work)]);
+    process.exitCode = await check(() => [...makeReports(first, second, work), ...makeSurfaceReport(first, second, work)]);
   } finally {
     rmSync(work, { recursive: true });
   }

@@ -152,7 +152,6 @@ def of_trajectories() -> Calls:
     return {
         "trajectory_points": lambda: dc.trajectory_points(traces),
         "trajectory_csv": lambda: dc.trajectory_csv(plane.map, traces),
-        "trajectory_html": lambda: dc.trajectory_html(plane.complex, traces),
         "trajectory_svg": lambda: dc.trajectory_svg(plane.complex, traces),
         "trajectory_svg: refused": refused(lambda: dc.trajectory_svg(plane.complex, [])),
         "Trace.walls_of": lambda: trace.walls_of(0), "Trace.earlier_walls_of": lambda: trace.earlier_walls_of(0),
