@@ -1,15 +1,16 @@
-// The verb bench: runs comparisons, and writes their tables and charts.
+// The program dartcast-bench: runs comparisons, and writes their tables and charts.
 #include <fmt/format.h>
 
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "apps/dartcast/limits.hpp"
+#include "apps/dartcast/program.hpp"
 #include "bench/chart.hpp"
 #include "bench/comparison.hpp"
 #include "bench/edits.hpp"
@@ -21,14 +22,14 @@
 #include "bench/run_parts.hpp"
 #include "bench/solids.hpp"
 #include "bench/spheres.hpp"
-#include "commands.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/threads.hpp"
-#include "limits.hpp"
-
-namespace dartcast::app {
 
 namespace {
+
+namespace bench = dartcast::bench;
+using dartcast::app::done;
+using dartcast::app::whole_number;
 
 struct BenchArguments {
   bench::PlanOptions plan;
@@ -47,7 +48,7 @@ struct BenchArguments {
 void write(const std::filesystem::path& file, const std::string& text) {
   std::ofstream out(file);
   out << text;
-  if (!out.flush()) throw Error(fmt::format("{}: cannot be written", file.string()));
+  if (!out.flush()) throw dartcast::Error(fmt::format("{}: cannot be written", file.string()));
 }
 
 int run_edits(bool json) {
@@ -129,7 +130,7 @@ int run_comparison(const BenchArguments& a) {
 
 int run_runs(const BenchArguments& a) {
   bench::RunPartsOptions options = a.run_options;
-  options.command = std::filesystem::read_symlink("/proc/self/exe");
+  options.command = std::filesystem::read_symlink("/proc/self/exe").replace_filename("dartcast");
   options.folder = a.folder;
   options.steps = a.plan.steps;
   const std::vector<bench::RunPairs> runs = bench::measure_runs(options);
@@ -150,42 +151,45 @@ int run(const BenchArguments& a) {
   return run_comparison(a);
 }
 
-void add_run_options(CLI::App& verb, BenchArguments& a) {
+void add_run_options(CLI::App& app, BenchArguments& a) {
   bench::RunPartsOptions& options = a.run_options;
-  CLI::Option* runs = verb.add_flag("--run", a.runs, "the time of the demo by part, and nothing else");
-  verb.add_option("SCENE", options.scene, "with --run: a scene in TOML, instead of the demo")->needs(runs);
-  verb.add_option("--against", options.against,
-                  "with --run: the command of another build, which runs in turn with this")
+  CLI::Option* runs = app.add_flag("--run", a.runs, "the time of the demo by part, and nothing else");
+  app.add_option("SCENE", options.scene, "with --run: a scene in TOML, instead of the demo")->needs(runs);
+  app.add_option("--against", options.against, "with --run: the command of another build, which runs in turn with this")
       ->needs(runs)
       ->check(CLI::ExistingFile);
-  verb.add_option("--repeat", options.repeat, "with --run: runs of each command (3)")
+  app.add_option("--repeat", options.repeat, "with --run: runs of each command (3)")
       ->needs(runs)
       ->transform(whole_number(1, 1000));
-  verb.add_option("-j,--threads", options.threads, "with --run: threads (all the machine has)")
+  app.add_option("-j,--threads", options.threads, "with --run: threads (all the machine has)")
       ->needs(runs)
-      ->transform(whole_number(1, max_threads()));
+      ->transform(whole_number(1, dartcast::max_threads()));
+}
+
+void add_options(CLI::App& app, BenchArguments& a) {
+  app.add_flag("--quick", a.plan.quick, "the main figures only, in under two minutes");
+  app.add_option("--only", a.plan.only, "workloads to run, as in W1,W3 (all)")->delimiter(',');
+  app.add_option("--steps", a.plan.steps, "steps of a workload or scene at most (its own number)")
+      ->transform(whole_number(1, 1000000));
+  app.add_option("-o,--output", a.folder, "folder for tables and drawings (bench-out)")->take_last();
+  app.add_flag("--json", a.json, "print one JSON object, and nothing else");
+  app.add_flag("--edits", a.edits, "edits per second at 10^3 and 10^6 cells, and nothing else");
+  app.add_flag("--spheres", a.spheres, "what colliding spheres cost, 10^3 and more, and nothing else");
+  app.add_flag("--solids", a.solids, "what edges among walls cost, 10^3 to 10^6 cells, and nothing else");
+  app.add_flag("--rays", a.rays, "what rays cost, 10^3 to 10^6 cells, and nothing else");
+  app.add_option("--most", a.max_spheres, "with --spheres: their largest number (1000 to 10^8; 100000)")
+      ->transform(whole_number(1000, 100000000));
+  app.add_flag("--latency", a.latency, "the time of single steps of a surgical scene, and nothing else");
+  add_run_options(app, a);
 }
 
 }  // namespace
 
-void add_bench(CLI::App& app, int& status) {
-  const auto a = std::make_shared<BenchArguments>();
-  CLI::App* verb = app.add_subcommand("bench", "Compare with bounding volume hierarchies on this machine.");
-  verb->add_flag("--quick", a->plan.quick, "the main figures only, in under two minutes");
-  verb->add_option("--only", a->plan.only, "workloads to run, as in W1,W3 (all)")->delimiter(',');
-  verb->add_option("--steps", a->plan.steps, "steps of a workload or scene at most (its own number)")
-      ->transform(whole_number(1, 1000000));
-  verb->add_option("-o,--output", a->folder, "folder for tables and drawings (bench-out)")->take_last();
-  verb->add_flag("--json", a->json, "print one JSON object, and nothing else");
-  verb->add_flag("--edits", a->edits, "edits per second at 10^3 and 10^6 cells, and nothing else");
-  verb->add_flag("--spheres", a->spheres, "what colliding spheres cost, 10^3 and more, and nothing else");
-  verb->add_flag("--solids", a->solids, "what edges among walls cost, 10^3 to 10^6 cells, and nothing else");
-  verb->add_flag("--rays", a->rays, "what rays cost, 10^3 to 10^6 cells, and nothing else");
-  verb->add_option("--most", a->max_spheres, "with --spheres: their largest number (1000 to 10^8; 100000)")
-      ->transform(whole_number(1000, 100000000));
-  verb->add_flag("--latency", a->latency, "the time of single steps of a surgical scene, and nothing else");
-  add_run_options(*verb, *a);
-  verb->callback([a, &status] { status = run(*a); });
+int main(int argc, char** argv) {
+  CLI::App app("Compares with bounding volume hierarchies on this machine.", "dartcast-bench");
+  BenchArguments arguments;
+  int status = done;
+  add_options(app, arguments);
+  app.callback([&] { status = run(arguments); });
+  return dartcast::app::run_program(app, argc, argv, status);
 }
-
-}  // namespace dartcast::app

@@ -20,7 +20,7 @@ namespace {
 std::string page_of(const std::string& title, const std::string& charts, const std::string& table) {
   Page page;
   page.title = title;
-  page.subtitle = "Measured by dartcast bench";
+  page.subtitle = "Measured by dartcast-bench";
   page.body = "<section class=\"charts\" aria-label=\"Charts\">\n" + charts +
               "</section>\n<section class=\"wide\"><pre>" + html(table) + "</pre></section>\n";
   return page_html(page);

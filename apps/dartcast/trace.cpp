@@ -88,8 +88,8 @@ int trace(const TraceArguments& arguments) {
   std::vector<Vec3> targets;
   for (const std::string& text : arguments.to) targets.push_back(point_of(text, "--to", dimension));
   const std::vector<Trace> traces = environment.trace(particles, 0, targets);
-  const std::string text = ending == ".svg" ? trajectory_svg(environment.complex(), traces)
-                                            : trajectory_csv(environment.map(), traces);
+  const std::string text =
+      ending == ".svg" ? trajectory_svg(environment.complex(), traces) : trajectory_csv(environment.map(), traces);
   if (arguments.output.empty()) {
     fmt::print("{}", text);
     return done;

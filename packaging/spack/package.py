@@ -30,5 +30,4 @@ class Dartcast(CMakePackage):
         return [
             self.define_from_variant("DARTCAST_VTK", "vtk"),
             self.define_from_variant("DARTCAST_PYTHON", "python"),
-            self.define("DARTCAST_BENCH", False),
         ]

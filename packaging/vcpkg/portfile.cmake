@@ -2,7 +2,7 @@
 set(SOURCE_PATH "${CMAKE_CURRENT_LIST_DIR}/../..")
 vcpkg_cmake_configure(
   SOURCE_PATH "${SOURCE_PATH}"
-  OPTIONS -DDARTCAST_VTK=OFF -DDARTCAST_BENCH=OFF)
+  OPTIONS -DDARTCAST_VTK=OFF)
 vcpkg_cmake_install()
 vcpkg_cmake_config_fixup(CONFIG_PATH lib/cmake/dartcast)
 vcpkg_copy_tools(TOOL_NAMES dartcast AUTO_CLEAN)

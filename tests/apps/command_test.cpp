@@ -93,39 +93,9 @@ TEST_F(Command, TheVesselsParticlesComeInAndLeave) {
   EXPECT_GT(json["contacts"]["by_patch"]["outlet_right"], 0);
 }
 
-// A run against itself: both sides end in the same state.
-TEST_F(Command, BenchRunTakesTheTimeOfEachPart) {
-  if (run("bench --help").out.find("--run") == std::string::npos) GTEST_SKIP() << "built without bench";
-  const Result r = run("bench --run --steps 5 --repeat 1 -j 1 --json --against '" + binary + "'");
-  ASSERT_EQ(r.status, 0) << r.error;
-  const auto json = nlohmann::json::parse(r.out);
-  EXPECT_EQ(json, nlohmann::json::parse(content(folder / "bench-out/run.json")));
-  EXPECT_EQ(json["steps"], 5);
-  EXPECT_EQ(json["threads"], 1);
-  for (const char* kind : {"with_output", "without_output"}) {
-    for (const char* part : {"load", "locate", "deform", "detect", "respond", "write", "other"}) {
-      EXPECT_TRUE(json[kind]["own"]["parts"].contains(part)) << kind << " " << part;
-      EXPECT_TRUE(json[kind]["against"]["parts"].contains(part)) << kind << " " << part;
-    }
-    EXPECT_GT(json[kind]["own"]["wall"], json[kind]["own"]["parts"]["detect"]);
-    EXPECT_EQ(json[kind]["own"]["state_hash"], json["with_output"]["against"]["state_hash"]);
-  }
-  EXPECT_EQ(content(folder / "bench-out/run.svg").rfind("<svg ", 0), 0U);
-  EXPECT_EQ(content(folder / "bench-out/vessel.toml"), content(fs::path(scenes_folder) / "vessel.toml"));
-  EXPECT_TRUE(fs::exists(folder / "bench-out/run/own/particles_000000.vtp"));
-  EXPECT_FALSE(fs::exists(folder / "bench-out/run_without_output/own/particles_000000.vtp"));
-  expect_failure("bench box.toml", 2, "--run");
-  expect_failure("bench --run --against nowhere", 2, "nowhere");
-}
-
-TEST_F(Command, BenchLatencySaysWhetherBoundsWereKept) {
-  if (run("bench --help").out.find("--latency") == std::string::npos) GTEST_SKIP() << "built without bench";
-  const Result r = run("bench --latency --steps 20 -o lat");
-  ASSERT_EQ(r.status, 0) << r.error;
-  for (const char* word : {"median", "99.9%", "longest", "other steps", "steps with cuts", "bounds: "})
-    EXPECT_NE(r.out.find(word), std::string::npos) << r.out;
-  EXPECT_EQ(nlohmann::json::parse(content(folder / "lat/latency.json"))["steps"]["count"], 20);
-  EXPECT_EQ(content(folder / "lat/latency.svg").rfind("<svg ", 0), 0U);
+TEST_F(Command, BenchIsAProgramOfItsOwn) {
+  for (const std::string options : {"", " --quick", " --run box.toml -j 1"})
+    expect_failure("bench" + options, 2, "dartcast-bench");
 }
 
 TEST_F(Command, WrongUsageIsTwo) {
@@ -159,10 +129,6 @@ TEST_F(Command, NumbersHaveLimits) {
   const Result r = run(start + "--steps 010 --seed 9223372036854775807 -j 1");  // ten, not eight
   EXPECT_EQ(r.status, 0) << r.error;
   EXPECT_EQ(nlohmann::json::parse(content(folder / "box-out/summary.json"))["steps"], 10);
-  if (run("bench --help").out.find("--quick") == std::string::npos) return;  // built without
-  expect_failure("bench --steps 0", 2, "--steps: '0' is no whole number from 1 to 1000000");
-  expect_failure("bench --spheres --most 18446744073709551615", 2, "from 1000 to 100000000");
-  expect_failure("bench --spheres --most -1", 2, "from 1000 to 100000000");
 }
 
 TEST_F(Command, WhatCannotBePrintedIsAnError) {
