@@ -3428,6 +3428,44 @@ def summary_text(summary: Summary) -> str: ...
 def version() -> str: ...
 # --- end of run.hpp
 
+# --- plan.hpp
+class PlanOptions:
+    ranks: int
+    particles: float
+    cells: float
+    step: float
+    deforms: bool
+    latency: float
+    bandwidth: float
+    samples: int
+    def __init__(self, ranks: int = ..., particles: float = ..., cells: float = ..., step: float = ..., deforms: bool = ..., latency: float = ..., bandwidth: float = ..., samples: int = ...) -> None: ...
+    def __eq__(self, other: object) -> bool: ...
+class RankSpread:
+    mean: float
+    largest: float
+    def __init__(self, mean: float = ..., largest: float = ...) -> None: ...
+    def __eq__(self, other: object) -> bool: ...
+class RunPlan:
+    options: PlanOptions
+    cells: RankSpread
+    ghosts: RankSpread
+    neighbours: RankSpread
+    bytes: RankSpread
+    sent: RankSpread
+    sent_bytes: float
+    rounds: float
+    seconds_walk: float
+    seconds_pack: float
+    seconds_messages: float
+    seconds_all: float
+    seconds_alone: float
+    def seconds(self) -> float: ...
+    def efficiency(self) -> float: ...
+    def __init__(self, options: PlanOptions = ..., cells: RankSpread = ..., ghosts: RankSpread = ..., neighbours: RankSpread = ..., bytes: RankSpread = ..., sent: RankSpread = ..., sent_bytes: float = ..., rounds: float = ..., seconds_walk: float = ..., seconds_pack: float = ..., seconds_messages: float = ..., seconds_all: float = ..., seconds_alone: float = ...) -> None: ...
+    def __eq__(self, other: object) -> bool: ...
+def plan_run(mesh: MeshData, options: PlanOptions) -> RunPlan: ...
+# --- end of plan.hpp
+
 # --- statistics.hpp
 class LeaveTotals:
     escaped: ResidenceTimes

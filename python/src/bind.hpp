@@ -54,6 +54,7 @@ void bind_simulation(pybind11::module_& m);
 void bind_events(pybind11::module_& m);
 void bind_scene(pybind11::module_& m);
 void bind_report(pybind11::module_& m);
+void bind_plan(pybind11::module_& m);
 void bind_run(pybind11::module_& m);
 
 }  // namespace dartcast::python

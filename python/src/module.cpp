@@ -57,4 +57,5 @@ PYBIND11_MODULE(_core, m) {
   bind_scene(m);
   bind_report(m);
   bind_run(m);
+  bind_plan(m);
 }

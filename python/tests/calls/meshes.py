@@ -169,6 +169,8 @@ def of_parts() -> Calls:
         "write_mesh_parts: refused": refused(lambda: dc.write_mesh_parts(mesh, 2, FOLDER / "pieces.vtu")),
         "read_mesh_part": lambda: dc.read_mesh_part(path, 2, 1) if dc.has_vtk() else None,
         "read_mesh_part: refused": refused(lambda: dc.read_mesh_part(path, 3, 1)),
+        "plan_run": lambda: dc.plan_run(mesh, dc.PlanOptions(ranks=2, particles=20.0, samples=1)),
+        "plan_run: refused": refused(lambda: dc.plan_run(mesh, dc.PlanOptions(ranks=2, step=2.0))),
     }
 
 
