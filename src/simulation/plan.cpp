@@ -210,7 +210,7 @@ void check(const MeshData& mesh, const PlanOptions& o) {
   refuse_unless(o.samples > 0, "the number of samples", o.samples);
 }
 
-// The network as docs/scale.md has it: trees of messages, each with a latency and a time for its bytes.
+// The network as docs/benchmark.md has it: trees of messages, each with a latency and a time for its bytes.
 class Network {
  public:
   explicit Network(const PlanOptions& o) : o_(o), depth_(std::bit_width(std::max(1U, o.ranks) - 1)) {}
