@@ -74,7 +74,7 @@ std::vector<SpherePair> all_that_meet(std::span<const SphereMotion> spheres) {
   std::vector<SpherePair> pairs;
   for (std::uint32_t a = 0; a < spheres.size(); ++a) {
     for (std::uint32_t b = a + 1; b < spheres.size(); ++b) {
-      if (spheres[a].radius > 0.0 && spheres[b].radius > 0.0 && first_meeting(spheres[a], spheres[b]))
+      if (spheres[a].radius > 0.0 && spheres[b].radius > 0.0 && approach(spheres[a], spheres[b]).distance <= 0.0)
         pairs.push_back({a, b});
     }
   }
