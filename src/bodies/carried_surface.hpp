@@ -39,7 +39,6 @@ class CarriedSurface {
   }
 
   [[nodiscard]] std::size_t vertex_count() const { return first_.size() - 1; }
-  [[nodiscard]] std::size_t sample_count() const { return samples_; }
   /// The largest sum of the magnitudes of a vertex's weights: the bound for the amplification of errors of samples.
   [[nodiscard]] double amplification() const { return amplification_; }
 

@@ -1,13 +1,9 @@
-// Writes a camera path as a file for ParaView.
+// A camera path as the content of a file for ParaView.
 #include "output/camera_path_file.hpp"
-
-#include <fmt/format.h>
 
 #include <utility>
 #include <vector>
 
-#include "dartcast/error.hpp"
-#include "formats/file_write.hpp"
 #include "formats/vtp_write.hpp"
 
 namespace dartcast {
@@ -30,12 +26,6 @@ XmlDataSet camera_path_data(const CameraPath& path) {
   file.add("up", std::move(ups));
   file.add("arc_length", std::move(arcs));
   return file.data();
-}
-
-void write_camera_path(const CameraPath& path, const std::filesystem::path& file) {
-  if (path.cameras.empty()) throw InvalidArgument("camera path: there is no camera to write");
-  if (file.extension() != ".vtp") throw InvalidArgument(fmt::format("{}: name the file .vtp", file.string()));
-  write_xml(file, camera_path_data(path), Compression::none, write_pieces);
 }
 
 }  // namespace dartcast

@@ -6,8 +6,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
+#include "formats/file_write.hpp"
 #include "formats/point_file.hpp"
 #include "support/with_vtk.hpp"
 
@@ -25,7 +25,7 @@ TEST(CameraPathFile, HoldsTheCamerasAsALine) {
   const fs::path file = fs::path(testing::TempDir()) / "dartcast_camera.vtp";
   const CameraPath path = path_in_a_bar();
   ASSERT_GT(path.cameras.size(), 20U);
-  write_camera_path(path, file);
+  write_xml(file, camera_path_data(path), Compression::none, write_pieces);
   const PointFile read = read_points(file);
   ASSERT_EQ(read.points.size(), path.cameras.size());
   ASSERT_EQ(read.arrays.size(), 3U);
@@ -46,13 +46,6 @@ TEST(CameraPathFile, HoldsTheCamerasAsALine) {
   EXPECT_EQ(read.arrays[1].name, "up");
   EXPECT_EQ(read.arrays[2].name, "arc_length");
   fs::remove(file);
-}
-
-TEST(CameraPathFile, SaysWhatItCannotWrite) {
-  const CameraPath path = path_in_a_bar();
-  EXPECT_THROW(write_camera_path({}, "x.vtp"), InvalidArgument);
-  EXPECT_THROW(write_camera_path(path, "x.vtk"), InvalidArgument);
-  EXPECT_THROW(write_camera_path(path, "/nowhere/at/all/x.vtp"), Error);
 }
 
 }  // namespace dartcast::camera_path_file_test

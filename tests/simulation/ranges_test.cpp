@@ -12,7 +12,6 @@
 #include "dartcast/events.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/simulation.hpp"
-#include "simulation/polyline.hpp"
 #include "support/expectations.hpp"
 #include "support/meshes.hpp"
 
@@ -117,41 +116,6 @@ TEST(PairRanges, SpheresThatReachTooFar) {
   }
   std::vector<SphereMotion> large(2, SphereMotion{{0x1p+300, 1, 1}, {0x1p+300, 0, 0}, 0x1p+300});
   EXPECT_EQ(finder.find(large).size(), 1U);
-}
-
-TEST(PolylineRanges, SegmentsWhoseNumberWraps) {
-  Environment environment(cubes(2));
-  Particles particles;
-  environment.add(particles, std::vector<Vec3>{{0.5, 0.5, 0.5}, {1.5, 0.5, 0.5}});
-  const std::vector<Vec3> targets(2, Vec3{0.5, 0.5, 0.5});
-  for (const std::size_t segments : {std::size_t{1} << 63U, (std::size_t{1} << 63U) + 1})
-    expect_refused(
-        [&] {
-          advance_polyline(environment, particles, {targets.data(), 2 * (segments & 1)}, segments);
-        },
-        "targets for 2 particles");
-  Particles nobody;
-  EXPECT_EQ(advance_polyline(environment, nobody, {}, ~std::size_t{0}).counters.particle_steps, 0U);
-}
-
-// Refused before anything is changed: in the plane, too.
-TEST(PolylineRanges, TargetsOutOfThePlane) {
-  Environment environment(generate_rectangle(RectangleOptions{}));
-  Particles particles;
-  environment.add(particles, std::vector<Vec3>{{0.5, 0.5, 0.0}});
-  const std::vector<Vec3> targets = {{0.75, 0.5, 0.0}, {0.75, 0.75, 0.5}};
-  expect_refused([&] { advance_polyline(environment, particles, targets, 2); }, "target 1 of particle 0");
-  EXPECT_EQ(particles[0].position, (Vec3{0.5, 0.5, 0.0}));
-}
-
-TEST(PolylineRanges, AResponseThatThrowsInALaterSegment) {
-  Environment environment(cubes(2));
-  Particles particles;
-  environment.add(particles, std::vector<Vec3>{{0.5, 0.5, 0.5}});
-  const std::vector<Vec3> targets = {{1.5, 0.5, 0.5}, {2.5, 0.5, 0.5}};
-  const ContactCallback thrower = [](const Contact&, auto, auto) -> AfterContact { throw Error("mine"); };
-  EXPECT_THROW(advance_polyline(environment, particles, targets, 2, thrower), Error);
-  EXPECT_EQ(particles[0].position, (Vec3{0.5, 0.5, 0.5}));
 }
 
 TEST(SurgeryRanges, TimesOfEvents) {
