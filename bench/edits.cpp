@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "base/random.hpp"
+#include "bench/timing.hpp"
 #include "dartcast/complex_edit.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/error.hpp"
@@ -20,10 +20,6 @@
 namespace dartcast::bench {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 Environment box(std::uint32_t edge) {
   BoxOptions o;

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "base/keyed_random.hpp"
 #include "base/random.hpp"
 #include "bench/competitors.hpp"
+#include "bench/timing.hpp"
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/generators.hpp"
@@ -21,8 +21,6 @@ namespace dartcast::bench {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr std::size_t ray_count = 20000;
 constexpr int rounds = 9;
 
@@ -30,13 +28,7 @@ template <class Work>
 double nanoseconds_each(Work&& work) {
   const auto start = Clock::now();
   work();
-  return std::chrono::duration<double, std::nano>(Clock::now() - start).count() / ray_count;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return 1e9 * seconds_since(start) / ray_count;
 }
 
 MeshData box(std::size_t across, double blocked_share) {

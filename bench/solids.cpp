@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/random.hpp"
+#include "bench/timing.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/solids.hpp"
 #include "predicates/moving_pair.hpp"
@@ -27,15 +28,7 @@ using detail::PairKind;
 constexpr std::size_t edge_count = 1000;
 constexpr int timed_steps = 15;
 
-double microseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
+double microseconds_since(Clock::time_point start) { return 1e6 * seconds_since(start); }
 
 Vec3 random_vector(Random& random, double size) {
   return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};

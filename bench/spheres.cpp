@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "base/random.hpp"
+#include "bench/timing.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/simulation.hpp"
 #include "simulation/simulation_parts.hpp"
@@ -17,12 +17,8 @@ namespace dartcast::bench {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr double radius = 0.01;
 constexpr double spacing = 2.05 * radius;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 Environment box_for(std::uint32_t across, bool crowded) {
   BoxOptions o;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/vec3_parts.hpp"
 #include "catheter/transport.hpp"
 
 namespace dartcast {
@@ -22,8 +23,6 @@ constexpr double gap_share = 1e-9;
 constexpr int max_solves = 4;
 
 double component(const Vec3& v, std::size_t i) { return i == 0 ? v.x : i == 1 ? v.y : v.z; }
-
-Vec3 across(const Vec3& v, const Vec3& n) { return v - n * dot(v, n); }
 
 // The number of points that a wall acts on.
 std::size_t points_of(const ChainWall& wall) { return wall.weight > 0.0 ? 2 : 1; }
@@ -79,7 +78,7 @@ void ChainSolver::add_springs(const Chain& chain, const ChainWeights& weights) {
 }
 
 void ChainSolver::add_friction(const ChainWall& wall, const Chain& chain, const ChainWeights& weights) {
-  const Vec3 slip = across(place_on(wall, chain.points) - place_on(wall, chain.start), wall.normal);
+  const Vec3 slip = across_normal(place_on(wall, chain.points) - place_on(wall, chain.start), wall.normal);
   // Limited to hardness, so that the system stays well conditioned.
   const double w =
       std::min(weights.friction * wall.pressure / std::max(norm(slip), creep * weights.spacing), hardness(weights));
@@ -91,7 +90,7 @@ void ChainSolver::add_friction(const ChainWall& wall, const Chain& chain, const 
     for (std::size_t l = 0; l <= k; ++l) {
       const double c = w * factors[k] * factors[l];
       add_block(wall.index + k, wall.index + l,
-                {across({c, 0.0, 0.0}, n), across({0.0, c, 0.0}, n), across({0.0, 0.0, c}, n)});
+                {across_normal({c, 0.0, 0.0}, n), across_normal({0.0, c, 0.0}, n), across_normal({0.0, 0.0, c}, n)});
     }
   }
 }

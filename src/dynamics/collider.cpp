@@ -30,9 +30,6 @@ void check_spheres(const CollidingSpheres& s) {
     throw InvalidArgument("collide: one id, radius, mass, velocity and displacement per particle are needed");
 }
 
-// Impulses may stop or turn a sphere. Another one that moves along with it then comes nearer by its own motion.
-double room_of(const SphereMotion& s) { return s.radius * near_share + std::min(norm(s.displacement), s.radius); }
-
 // Whether the balls without walls around the two centres hold the way between them. A share of each clearance is
 // given up, because it is a rounded distance.
 bool in_clear(const CollidingSpheres& s, std::uint32_t a, std::uint32_t b) {
@@ -107,7 +104,7 @@ void Collider::sweep(const CollidingSpheres& spheres, double dt, Threads threads
     for (std::size_t i = begin; i < end; ++i) {
       moving_[i] = {spheres.states[i].position, spheres.velocities[i] * dt, spheres.radii[i]};
       swept_[i] = moving_[i];
-      const double room = room_of(moving_[i]);
+      const double room = near_room(moving_[i]);
       swept_[i].radius += room;
       reaches_[i] = {moving_[i].centre, moving_[i].radius + norm(moving_[i].displacement), room};
     }

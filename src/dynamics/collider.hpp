@@ -1,6 +1,7 @@
 // One step's collisions of the spheres in an environment: lists, pairs, contacts, impulses.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -23,6 +24,11 @@ inline constexpr double resting_gap = 0x1p-10;
 /// impulse elsewhere may bring them together within the step. Walls count within this share. Pairs that are further
 /// apart and still meet overlap; the next steps part them.
 inline constexpr double near_share = 0x1p-4;
+/// The distance within which a sphere counts as near. An impulse may stop or turn it; another sphere that moves along
+/// with it then comes nearer by its own motion.
+inline double near_room(const SphereMotion& s) {
+  return s.radius * near_share + std::min(norm(s.displacement), s.radius);
+}
 
 /// Time spent in all calls so far.
 struct CollisionSeconds {

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/vec3_parts.hpp"
 #include "dartcast/error.hpp"
 
 namespace dartcast {
@@ -43,8 +44,6 @@ void check_contacts(std::span<const PairContact> pairs, std::span<const WallCont
       throw InvalidArgument("contacts: a wall's restitution or friction is out of range");
   }
 }
-
-Vec3 on_tangent(const Vec3& v, const Vec3& normal) { return v - normal * dot(v, normal); }
 
 }  // namespace
 
@@ -121,7 +120,7 @@ void ContactSolver::set_row(std::size_t row, detail::ContactEnds ends, const Sur
   if (nearing > options.resting_speed) terms.rebound = surface.restitution * nearing;
   if (cached_impulses != nullptr) {
     terms.normal_impulse = cached_impulses->normal_impulse;
-    terms.tangent_impulse = on_tangent(cached_impulses->tangent_impulse, surface.normal);
+    terms.tangent_impulse = across_normal(cached_impulses->tangent_impulse, surface.normal);
   }
   terms_[row] = terms;
 }
@@ -280,7 +279,7 @@ void ContactSolver::solve(std::span<const PairContact> pairs, std::span<const Wa
   packets_.start(bodies_, threads);
   packets_.solve(bodies_, options.iterations, threads);
   position_correction(spheres, options, threads);
-  if (packets_.rebound()) packets_.solve(bodies_, options.rebound_iterations, threads);
+  if (packets_.rebound()) packets_.solve(bodies_, rebound_iterations, threads);
   parallel_for(spheres.ids.size(), row_grain, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) spheres.velocities[i] = bodies_[i].velocity;
   });

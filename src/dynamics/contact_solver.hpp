@@ -36,13 +36,15 @@ struct WallContact {
   double friction = 0.0;
 };
 
+/// Iterations for velocities after rebounds.
+inline constexpr unsigned rebound_iterations = 4;
+
 struct SolverOptions {
   double dt = 1e-3;                  ///< duration of the step, > 0
   double restitution = 0.0;          ///< between spheres, in [0, 1]
   double friction = 0.0;             ///< between spheres, >= 0
   unsigned iterations = 10;          ///< over all contacts, for velocities
   unsigned position_iterations = 4;  ///< for displacements, which take out penetration
-  unsigned rebound_iterations = 4;   ///< for velocities after rebounds
   /// Contacts that approach slower than this do not rebound. Gravity alone makes g dt in a step at rest: 2 g dt is a
   /// good choice.
   double resting_speed = 0.0;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "base/vec3_parts.hpp"
+
 namespace dartcast {
 
 namespace {
@@ -36,8 +38,6 @@ void position_correction(const RigidMover& m, const Vec3& lever, const Vec3& imp
   velocity += impulse * m.inverse_mass;
   if (m.turns) angular_velocity += m.inverse_inertia * cross(lever, impulse);
 }
-
-Vec3 across_normal(const Vec3& v, const Vec3& normal) { return v - normal * dot(v, normal); }
 
 // Forwards and backwards in turn. The last pass is forwards, so that it ends with the walls.
 template <class Each>
@@ -222,7 +222,7 @@ void RigidSolver::solve(std::span<const RigidContact> contacts, std::span<RigidM
   }
   back_and_forth(rows_.size(), options.iterations, [&](std::size_t i) { solve_row(rows_[i], rows_[i].bound, movers); });
   correct_positions(movers, options);
-  rebound(movers, options.rebound_iterations);
+  rebound(movers, rebound_iterations);
   keep();
 }
 

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <limits>
 
+#include "base/vec3_parts.hpp"
+
 namespace dartcast {
 
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-double largest_part(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
 // The second sphere as seen from the first: a point that meets a ball of the sum of the radii, when
 // a t^2 + 2 b t + c <= 0. Lengths are scaled by a power of two, so that nothing overflows.
@@ -29,7 +29,7 @@ struct Relative {
       : place(second.centre - first.centre),
         motion(second.displacement - first.displacement),
         radius(first.radius + second.radius) {
-    const double size = std::max({largest_part(place), largest_part(motion), radius});
+    const double size = std::max({largest_component(place), largest_component(motion), radius});
     if (size > 0.0 && !(size > 0x1p-100 && size < 0x1p+100)) {
       scale = std::ldexp(1.0, std::ilogb(size));
       place *= 1.0 / scale;
@@ -47,7 +47,7 @@ struct Relative {
   // From the first centre to the second at time t.
   [[nodiscard]] Vec3 normal(double t) const {
     for (const Vec3& along : {at(t), motion}) {
-      const double size = largest_part(along);
+      const double size = largest_component(along);
       if (!(size > 0.0)) continue;
       const Vec3 v = along * (1.0 / size);  // squares of lengths that are small beside the scale vanish
       return v * (1.0 / norm(v));

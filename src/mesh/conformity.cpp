@@ -6,6 +6,7 @@
 #include <cmath>
 #include <span>
 
+#include "base/vec3_parts.hpp"
 #include "dartcast/predicates.hpp"
 #include "mesh/box_tree.hpp"
 #include "mesh/plane.hpp"
@@ -17,8 +18,6 @@ constexpr double flatness = 1e-9;  // off the plane by rounding, relative to the
 constexpr std::size_t pairs_a_face = 200;
 
 using FaceTriangle = std::array<std::uint32_t, 3>;
-
-double largest(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
 /// A triangle of a face's fan, with its box and normal, which many tests use.
 struct FacePiece {
@@ -32,10 +31,10 @@ Vec3 normal_of(const MeshData& mesh, const FaceTriangle& t) {
   const auto& p = mesh.points;
   Vec3 u = p[t[1]] - p[t[0]];
   Vec3 v = p[t[2]] - p[t[0]];
-  if (largest(u) > 0.0) u = u * (1.0 / largest(u));
-  if (largest(v) > 0.0) v = v * (1.0 / largest(v));
+  if (largest_component(u) > 0.0) u = u * (1.0 / largest_component(u));
+  if (largest_component(v) > 0.0) v = v * (1.0 / largest_component(v));
   const Vec3 n = cross(u, v);
-  return largest(n) > 0.0 ? n * (1.0 / largest(n)) : n;
+  return largest_component(n) > 0.0 ? n * (1.0 / largest_component(n)) : n;
 }
 
 int main_axis(const Vec3& n) {
@@ -74,7 +73,7 @@ bool areas_overlap(const MeshData& mesh, const FaceTriangle& s, const FaceTriang
 
 double size_of(const MeshData& mesh, const FaceTriangle& t) {
   const auto& p = mesh.points;
-  return std::max(largest(p[t[1]] - p[t[0]]), largest(p[t[2]] - p[t[0]]));
+  return std::max(largest_component(p[t[1]] - p[t[0]]), largest_component(p[t[2]] - p[t[0]]));
 }
 
 /// Whether the two ranges of coordinates have more than an end in common.
@@ -135,7 +134,7 @@ bool pieces_lie_against(const MeshData& mesh, std::span<const FacePiece> f, std:
 Box box_of(const MeshData& mesh, std::span<const std::uint32_t> face) {
   Box box = {mesh.points[face[0]], mesh.points[face[0]]};
   for (const std::uint32_t v : face) box = join(box, {mesh.points[v], mesh.points[v]});
-  const double margin = flatness * largest(box.high - box.low);
+  const double margin = flatness * largest_component(box.high - box.low);
   const Vec3 m = {margin, margin, margin};
   return {box.low - m, box.high + m};
 }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/elementary.hpp"
+#include "base/vec3_parts.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_selection.hpp"
 #include "mesh/faces.hpp"
@@ -47,14 +48,12 @@ MeshData free_cells(const MeshData& mesh) {
   return out;
 }
 
-double largest_of(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
-
 /// Twice the projected area of a face, or the normal of an edge in the plane, over the square of the face's size: no
 /// product of coordinates overflows or vanishes. Outwards.
 Vec3 wall_normal(const MeshData& mesh, std::span<const std::uint32_t> face) {
   const Vec3& first = mesh.points[face[0]];
   double size = 0.0;
-  for (const std::uint32_t v : face) size = std::max(size, largest_of(mesh.points[v] - first));
+  for (const std::uint32_t v : face) size = std::max(size, largest_component(mesh.points[v] - first));
   if (!(size > 0.0)) return {};
   const auto at = [&](std::size_t k) { return (mesh.points[face[k]] - first) * (1.0 / size); };
   if (face.size() == 2) return {at(1).y, -at(1).x, 0.0};

@@ -15,6 +15,7 @@
 #include "formats/field_series.hpp"
 #include "formats/openfoam.hpp"
 #include "formats/point_file.hpp"
+#include "output/recording.hpp"
 
 namespace dartcast {
 
@@ -41,14 +42,8 @@ std::string head(std::string_view type, std::string_view location, std::string_v
   return header(type, location, object) + fmt::format("{}\n(\n", count);
 }
 
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw Error(fmt::format("{}: the folder cannot be made: {}", folder.string(), error.message()));
-}
-
 void write_properties(const PointFile& frame, const fs::path& root, const std::string& location) {
-  make_folder(root / location);
+  make_output_folder(root / location);
   write_bytes(
       root / location / "cloudProperties",
       header("dictionary", location, "cloudProperties") +
@@ -71,7 +66,7 @@ void write_cloud(const PointFile& frame, const fs::path& file, const fs::path& r
     fmt::format_to(std::back_inserter(id), "{:.0f}\n", ids[i]);
   }
   const fs::path folder = root / location;
-  make_folder(folder);
+  make_output_folder(folder);
   write_bytes(folder / "positions", positions + ")\n");
   write_bytes(folder / "U", u + ")\n");
   write_bytes(folder / "origId", id + ")\n");

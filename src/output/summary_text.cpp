@@ -8,17 +8,11 @@
 
 #include "dartcast/run.hpp"
 #include "output/summary.hpp"
+#include "report/grouped.hpp"
 
 namespace dartcast {
 
 namespace {
-
-// "10,269".
-std::string grouped(std::uint64_t n) {
-  std::string digits = std::to_string(n);
-  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, ",");
-  return digits;
-}
 
 class SummaryTable {
  public:

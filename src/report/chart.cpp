@@ -147,7 +147,7 @@ std::string legend(const std::vector<ChartSeries>& series) {
 std::string line_chart(const Chart& chart, const std::vector<ChartSeries>& series) {
   ChartRange xs;
   ChartRange ys;
-  if (chart.from_zero && !chart.log_y) ys.add(0.0);
+  if (!chart.log_y) ys.add(0.0);
   for (const ChartSeries& s : series) {
     for (std::size_t i = 0; i < std::min(s.x.size(), s.y.size()); ++i) {
       if (!is_shown(chart, s.x[i], s.y[i])) continue;

@@ -19,8 +19,7 @@ struct Chart {
   std::string x_label{};
   std::string y_label{};
   bool log_x = false;
-  bool log_y = false;
-  bool from_zero = true;  ///< the axis of values has 0, where it is not logarithmic
+  bool log_y = false;  ///< if not, the axis has 0
 };
 
 /// Lines, each with its name in the legend where there are several. Series of many points are thinned out, with their

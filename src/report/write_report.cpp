@@ -11,6 +11,7 @@
 #include "dartcast/error.hpp"
 #include "dartcast/report.hpp"
 #include "formats/file_write.hpp"
+#include "report/grouped.hpp"
 #include "report/run_charts.hpp"
 #include "report/viewer_page.hpp"
 
@@ -21,12 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t most_frames = 65535;  // 16 bits number them
-
-std::string grouped(std::uint64_t n) {
-  std::string digits = std::to_string(n);
-  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, ",");
-  return digits;
-}
 
 void add_notes(ReportSummary& taken) {
   if (taken.particles < taken.particles_of_run)

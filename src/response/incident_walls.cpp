@@ -3,6 +3,8 @@
 
 #include <tuple>
 
+#include "base/vec3_parts.hpp"
+
 namespace dartcast {
 
 namespace {
@@ -51,14 +53,12 @@ class WallSubset {
   std::size_t count_ = 0;
 };
 
-Vec3 into_plane(const Vec3& v, const Vec3& n) { return v - n * dot(v, n); }
-
 // The unit vector of the plane of both normals that is perpendicular to the first; zero where they are the same.
 Vec3 beside(const Vec3& first, const Vec3& second) {
-  const Vec3 raw = into_plane(second, first);
+  const Vec3 raw = across_normal(second, first);
   const double length = norm(raw);
   if (length == 0.0) return {};
-  const Vec3 again = into_plane(raw * (1.0 / length), first);
+  const Vec3 again = across_normal(raw * (1.0 / length), first);
   const double left = norm(again);
   return left > 0.0 ? again * (1.0 / left) : Vec3{};
 }
@@ -99,14 +99,14 @@ bool leads_there(const Vec3& v, HeldBack& held) {
 bool hold_by_two(const Vec3& v, const WallSubset& walls, double limit, HeldBack& held) {
   for (std::size_t i = 0; i < walls.size(); ++i) {
     const Vec3& n = walls[i].normal;
-    const Vec3 plane = into_plane(v, n);
+    const Vec3 plane = across_normal(v, n);
     for (std::size_t j = i + 1; j < walls.size(); ++j) {
       const Vec3 m = beside(n, walls[j].normal);
       const double sine = dot(m, walls[j].normal);
       if (!(sine > 0.0)) continue;
       const double second = -dot(plane, m) / sine;
       const double first = -dot(v, n) - second * dot(n, walls[j].normal);
-      held = {into_plane(plane, m), {&walls[i], &walls[j]}, {first, second}, 2};
+      held = {across_normal(plane, m), {&walls[i], &walls[j]}, {first, second}, 2};
       if (walls.permit(held.velocity, limit) && leads_there(v, held)) return true;
     }
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "base/vec3_parts.hpp"
 #include "dartcast/error.hpp"
 #include "response/incident_walls.hpp"
 #include "response/library_response.hpp"
@@ -43,8 +44,6 @@ const WallHit* opposed(const Vec3& v, std::span<const WallHit> walls) {
   return wall != nullptr && dot(v, wall->normal) < -opposed_share * norm(v) ? wall : nullptr;
 }
 
-Vec3 on_plane(const Vec3& v, const Vec3& n) { return v - n * dot(v, n); }
-
 }  // namespace
 
 WallResponses::WallResponses(const WallResponse& general) : general_(general) { check(general); }
@@ -62,13 +61,13 @@ Vec3 reflected(const Vec3& v, std::span<const WallHit> walls, double restitution
 Vec3 slid(const Vec3& v, std::span<const WallHit> walls, std::span<const WallHit> earlier) {
   const WallHit* newest = max_opposed(v, walls);
   if (newest == nullptr) return v;
-  const Vec3 plane = on_plane(v, newest->normal);
+  const Vec3 plane = across_normal(v, newest->normal);
   const WallHit* second = opposed(plane, walls);
   if (second == nullptr) second = opposed(plane, earlier);
   if (second == nullptr) return plane;
   const Vec3 crease = cross(newest->normal, second->normal);
   const double length = dot(crease, crease);
-  if (length < opposed_share) return on_plane(plane, second->normal);
+  if (length < opposed_share) return across_normal(plane, second->normal);
   const Vec3 line = crease * (dot(v, crease) / length);
   const bool corner = opposed(line, walls) != nullptr || opposed(line, earlier) != nullptr;
   return corner ? Vec3{} : line;

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "base/parallel.hpp"
+#include "base/vec3_parts.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/predicates.hpp"
 #include "dartcast/statistics.hpp"
@@ -20,8 +21,6 @@ constexpr std::string_view plane_name_characters = "abcdefghijklmnopqrstuvwxyzAB
 [[noreturn]] void refuse(const SectionPlane& plane, std::string_view why) {
   throw InvalidArgument(fmt::format("plane \"{}\": {}", plane.name, why));
 }
-
-double largest_component(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
 void check(const SectionPlane& plane) {
   if (plane.name.empty() || plane.name.size() > 64 ||

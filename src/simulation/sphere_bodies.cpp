@@ -14,10 +14,6 @@ constexpr std::size_t pair_grain = 512;
 // Above the ids of spheres.
 constexpr std::uint64_t of_body = std::uint64_t{1} << 63U;
 
-// The distance within which a sphere counts as near. An impulse may stop or turn it; another sphere that moves along
-// with it then comes nearer by its own motion.
-double near_room(const SphereMotion& s) { return s.radius * near_share + std::min(norm(s.displacement), s.radius); }
-
 // Whether the balls without walls around the two centres hold the way between them. Clearances are distances that were
 // rounded: a share of them is given up.
 bool clear_between(std::span<const double> clearances, std::uint32_t a, std::uint32_t b, const Vec3& way) {
