@@ -64,8 +64,6 @@ class Stars {
   [[nodiscard]] std::uint16_t star_behind(std::uint16_t face, std::uint16_t triangle, unsigned held) const {
     return behind_[(first_triangle_[face] + triangle) * masks + held];
   }
-  /// Stars are numbered from 0 on.
-  [[nodiscard]] std::size_t size() const { return first_.size() - 1; }
   /// The star's triangles of faces that hold the point or the edge. Those of one face are adjacent in the list.
   [[nodiscard]] std::span<const Facet> outer_facets(std::uint16_t star) const {
     return {facets_.data() + first_[star], facets_.data() + first_[star + 1U]};
@@ -73,8 +71,6 @@ class Stars {
   [[nodiscard]] bool empty() const { return star_.empty(); }
   /// Whether no point and no edge has two stars.
   [[nodiscard]] bool one_each() const { return one_each_; }
-
-  [[nodiscard]] std::size_t bytes() const;
 
  private:
   static constexpr std::size_t masks = 8;      // of a triangle's corners

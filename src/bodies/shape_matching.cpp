@@ -86,7 +86,6 @@ std::vector<double> counted(const std::vector<std::vector<std::uint32_t>>& clust
 RestShape::RestShape(std::span<const Vec3> points, std::span<const double> masses, const MatchOptions& options)
     : linear_(options.linear), keep_volume_(options.keep_volume), masses_(masses.begin(), masses.end()) {
   check_shape(points, masses, options);
-  for (const double m : masses_) mass_ += m;
   auto clusters = options.clusters;
   if (clusters.empty()) {
     clusters.emplace_back();

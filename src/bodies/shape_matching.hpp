@@ -28,7 +28,6 @@ class RestShape {
   [[nodiscard]] std::size_t size() const { return masses_.size(); }
   [[nodiscard]] std::size_t cluster_count() const { return first_.size() - 1; }
   [[nodiscard]] std::span<const double> masses() const { return masses_; }
-  [[nodiscard]] double mass() const { return mass_; }
   /// Whether match() gives the fits of least energy.
   [[nodiscard]] bool has_least_fits() const { return !keep_volume_ || linear_ == 0.0; }
 
@@ -60,7 +59,6 @@ class RestShape {
 
   double linear_ = 0.0;
   bool keep_volume_ = true;
-  double mass_ = 0.0;
   std::vector<double> masses_;
   std::vector<double> shares_;  // 1 / number of regions, per particle
   std::vector<std::size_t> first_ = {0};

@@ -60,7 +60,6 @@ class Collider {
   CollisionCounts collide(const CellComplex& complex, const CollidingSpheres& spheres,
                           std::span<const WallContact> walls, const SolverOptions& options, Threads threads);
 
-  [[nodiscard]] const CellLists& lists() const { return lists_; }
   [[nodiscard]] ContactSolver& solver() { return solver_; }
   [[nodiscard]] const ContactSolver& solver() const { return solver_; }
   [[nodiscard]] const PairFinder& finder() const { return finder_; }

@@ -92,8 +92,6 @@ class ContactPackets {
               Threads threads);
 
   [[nodiscard]] std::size_t packet_count() const { return packets_.size(); }
-  /// The contact in a lane of a packet, by packet_lanes * packet + lane; `nothing` where there is none.
-  [[nodiscard]] std::span<const std::uint32_t> order() const { return order_; }
   [[nodiscard]] double normal_impulse(std::size_t i) const { return impulses_[packet(i)].normal_impulse[lane(i)]; }
   [[nodiscard]] Vec3 tangent_impulse(std::size_t i) const {
     const PacketVectors& v = impulses_[packet(i)].tangent_impulse;

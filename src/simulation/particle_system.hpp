@@ -91,7 +91,6 @@ class ParticleSystem final : public SimulationComponent {
   [[nodiscard]] const SimulationStep& last_step() const { return last_; }
   /// Takes the step of all ranks in place of this one's.
   void set_last_step(SimulationStep step) { last_ = std::move(step); }
-  [[nodiscard]] const PartEnvironment* part() const { return part_; }
   [[nodiscard]] const ParticleShare& share() const { return share_; }
   [[nodiscard]] std::uint64_t next_id() const { return next_id_; }
   [[nodiscard]] const UpdateReport& last_update() const { return last_update_; }  ///< of the last edit

@@ -58,13 +58,6 @@ bool share_a_search(std::span<const Box> boxes, const Vec3& cell) {
 
 }  // namespace
 
-std::optional<double> TouchFinder::find(const CellComplex& complex, Cell cell, const SolidElement& element,
-                                        const SolidMotion& motion, const VertexMotion& walls,
-                                        std::vector<ElementTouch>& touches) {
-  find_touches(complex, cell, element, motion, walls, touches);
-  return first_flat_time(complex, cells_reached(), walls);
-}
-
 void TouchFinder::find_touches(const CellComplex& complex, Cell cell, const SolidElement& element,
                                const SolidMotion& motion, const VertexMotion& walls,
                                std::vector<ElementTouch>& touches) {

@@ -44,17 +44,14 @@ struct ElementGroup {
 /// Memory of the search, for one thread at a time. After a few elements it allocates no more.
 class TouchFinder {
  public:
-  /// Appends the touches to `touches`, in the order of the search. `cell` holds the element's first vertex at the start.
-  /// Returns the last time known before a cell that the element reaches becomes flat, if one does: touches are complete up
-  /// to there alone. Preconditions: the element touches no wall at the start; `walls` covers all vertices of the complex.
-  std::optional<double> find(const CellComplex& complex, Cell cell, const SolidElement& element,
-                             const SolidMotion& motion, const VertexMotion& walls, std::vector<ElementTouch>& touches);
-
-  /// find(), up to the cells that become flat.
+  /// Appends the touches to `touches`, in the order of the search, up to the cells that become flat. `cell` holds the
+  /// element's first vertex at the start. Preconditions: the element touches no wall at the start; `walls` covers all
+  /// vertices of the complex.
   void find_touches(const CellComplex& complex, Cell cell, const SolidElement& element, const SolidMotion& motion,
                     const VertexMotion& walls, std::vector<ElementTouch>& touches);
 
-  /// find() for many elements. Those that are small and near each other share one search.
+  /// The touches of many elements. Those that are small and near each other share one search. Returns the last time
+  /// known before a cell that an element reaches becomes flat, if one does: touches are complete up to there alone.
   std::optional<double> find(const CellComplex& complex, const ElementGroup& group, const SolidMotion& motion,
                              const VertexMotion& walls, std::vector<ElementTouch>& touches);
 

@@ -38,7 +38,6 @@ class SphereRun {
   void hold(Cell invalid) { held_ = HeldParticle{particle_, invalid}; }
 
   [[nodiscard]] std::uint32_t particle() const { return particle_; }
-  [[nodiscard]] const Vec3& target() const { return way_.target; }
   [[nodiscard]] std::vector<SphereOverlap>& overlaps() { return overlaps_; }
   /// Adds contacts, overlaps and counts.
   void report(SphereReport& report) const;

@@ -59,7 +59,6 @@ class CellRows {
   CellRows() = default;
   explicit CellRows(const Shape& shape);
 
-  [[nodiscard]] bool empty() const { return rows_.data() == nullptr; }
   /// Number 4 * face + turn.
   [[nodiscard]] const CellRow& operator[](unsigned row) const { return rows_[row]; }
   [[nodiscard]] const CellRow* data() const { return rows_.data(); }

@@ -105,9 +105,4 @@ void Stars::add_triangles(std::span<const ImplicitSimplex> simplices, const Fans
   }
 }
 
-std::size_t Stars::bytes() const {
-  return (star_.size() + behind_.size()) * sizeof(std::uint16_t) +
-         (first_triangle_.size() + first_.size()) * sizeof(std::uint32_t) + facets_.size() * sizeof(Facet);
-}
-
 }  // namespace dartcast

@@ -61,7 +61,8 @@ TEST(ElementTouches, ASharedSearchFindsTheSameFirstTouches) {
     std::vector<ElementTouch> each;
     std::optional<double> flat;
     for (std::size_t i = 0; i < elements.size(); ++i) {
-      const auto now = finder.find(environment.complex(), cells[i], elements[i], {from, to}, motion, each);
+      const ElementGroup one = {{&elements[i], 1}, {&cells[i], 1}};
+      const auto now = finder.find(environment.complex(), one, {from, to}, motion, each);
       if (now) flat = std::min(flat.value_or(*now), *now);
     }
     std::vector<ElementTouch> together;
