@@ -1,6 +1,6 @@
 """Builds the Python package: CMake makes the extension module, setuptools the wheel.
 
-Environment: CMAKE_ARGS has further arguments for CMake (-DDARTCAST_VTK=OFF). DARTCAST_BUILD names a build folder that
+Environment: CMAKE_ARGS has further arguments for CMake. DARTCAST_BUILD names a build folder that
 has the module already, as ./dev python makes it: it is taken from there.
 """
 import os

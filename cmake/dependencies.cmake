@@ -12,17 +12,9 @@ if(DARTCAST_IO)
   find_package(nlohmann_json 3.11 REQUIRED)
   find_package(tomlplusplus 3.3 REQUIRED)
   find_package(ZLIB REQUIRED)
+  find_package(EXPAT REQUIRED)
   find_path(LZ4_INCLUDE_DIR lz4.h REQUIRED)  # liblz4-dev has no package file for CMake
   find_library(LZ4_LIBRARY lz4 REQUIRED)
-endif()
-set(DARTCAST_VTK_LIBRARIES)
-if(DARTCAST_IO AND DARTCAST_VTK)
-  find_package(VTK 9.1 QUIET COMPONENTS CommonCore CommonDataModel IOCore IOLegacy IOXML)
-  if(NOT VTK_FOUND)
-    message(FATAL_ERROR "VTK 9.1 or later is not there: install it (libvtk9-dev), or configure with -DDARTCAST_VTK=OFF, "
-                        "which builds dartcast without reading .vtu, .vtk and .vtp files. ${VTK_NOT_FOUND_MESSAGE}")
-  endif()
-  set(DARTCAST_VTK_LIBRARIES VTK::CommonCore VTK::CommonDataModel VTK::IOCore VTK::IOLegacy VTK::IOXML)
 endif()
 if(DARTCAST_MPI)
   set(MPI_CXX_SKIP_MPICXX ON)  # the C functions alone

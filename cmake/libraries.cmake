@@ -10,20 +10,12 @@ set(simulation_headers dynamics spheres solids bodies catheter simulation plan d
 set(mpi_headers mpi_ranks)
 set(io_headers mesh_files scene_file report run trajectory statistics_files)
 
-# The files of the case that is not built: with VTK, or without it.
-if(DARTCAST_VTK)
-  set(DARTCAST_LEFT_OUT "/src/formats/without_vtk\\.cpp$")
-else()
-  set(DARTCAST_LEFT_OUT "/src/formats/vtk/")
-endif()
-
 # Adds dartcast_NAME, known as dartcast::NAME, from its rooms and public headers. Further arguments: libraries it uses.
 function(add_dartcast_library name)
   set(target dartcast_${name})
   set(sources)
   foreach(room IN LISTS ${name}_rooms)
     file(GLOB_RECURSE found CONFIGURE_DEPENDS src/${room}/*.cpp)
-    list(FILTER found EXCLUDE REGEX "${DARTCAST_LEFT_OUT}")
     list(APPEND sources ${found})
   endforeach()
   list(TRANSFORM ${name}_headers REPLACE "(.+)" "include/dartcast/\\1.hpp" OUTPUT_VARIABLE headers)
@@ -73,7 +65,7 @@ if(DARTCAST_IO)
   list(APPEND DARTCAST_LIBRARIES io)
   list(APPEND io_headers dartcast)  # the header that includes all others
   add_dartcast_library(io $<BUILD_INTERFACE:nlohmann_json::nlohmann_json> fmt::fmt tomlplusplus::tomlplusplus
-                       ${DARTCAST_VTK_LIBRARIES} ZLIB::ZLIB ${LZ4_LIBRARY})
+                       EXPAT::EXPAT ZLIB::ZLIB ${LZ4_LIBRARY})
   target_include_directories(dartcast_io PRIVATE ${LZ4_INCLUDE_DIR})
   target_link_libraries(dartcast_io PUBLIC dartcast_simulation)
   include(cmake/viewer.cmake)

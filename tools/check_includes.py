@@ -16,8 +16,8 @@ LIBRARIES = {
     "io": ["formats", "formats/vtk", "formats/openfoam", "meshing", "scene", "report", "output"],
 }
 ROOMS = [room for rooms in LIBRARIES.values() for room in rooms]
-# Rooms side by side. VTK is reached through formats/vtk_functions.hpp, because a build may be without
-# it, and OpenFOAM's cases through formats/openfoam.hpp.
+# Rooms side by side. Readers of VTK's formats are reached through formats/vtk.hpp, those of OpenFOAM's cases through
+# formats/openfoam.hpp.
 DENIED = {("tracking", "surface"), ("tracking/batch", "surface"), ("spheres", "surface"),
           ("formats/openfoam", "formats/vtk")} | {
     (room, part) for room in ("meshing", "scene", "report", "output") for part in ("formats/vtk", "formats/openfoam")} | {
@@ -58,9 +58,10 @@ MOST_LINES = 400
 
 # Third-party headers, and the rooms that may include them; never in public headers, for users need only our own.
 THIRD_PARTY = [
-    (re.compile(r"^vtk"), {"formats/vtk"}),
-    (re.compile(r"^lz4\.h"), {"formats"}),
-    (re.compile(r"^zlib\.h"), {"formats", "formats/openfoam", "report"}),
+    (re.compile(r"^vtk[A-Z]"), set()),
+    (re.compile(r"^expat\.h"), {"formats"}),
+    (re.compile(r"^lz4\.h"), {"formats", "formats/vtk"}),
+    (re.compile(r"^zlib\.h"), {"formats", "formats/vtk", "formats/openfoam", "report"}),
     (re.compile(r"^mpi\.h"), {"distributed"}),
     (re.compile(r"^(tbb|oneapi)/"), {"base"}),
     (re.compile(r"^(Eigen|boost|fmt)/"), set(ROOMS)),

@@ -14,13 +14,9 @@
 
 namespace dartcast {
 
-/// Whether dartcast was built with VTK (CMake: DARTCAST_VTK). Without it .vtu, .vtk and .vtp files are not read, and .vtk
-/// files are not written. All else is there: .vtu files of meshes and the frames of runs are written without VTK.
-bool has_vtk();
-
-/// Endings of the files that read_mesh() takes in this build, as ".vtu".
+/// Endings of the files that read_mesh() takes, as ".vtu".
 std::vector<std::string> mesh_endings();
-/// Endings of the files that write_mesh() takes in this build.
+/// Endings of the files that write_mesh() takes.
 std::vector<std::string> writable_mesh_endings();
 /// Endings of the files that check_surface() takes, as ".stl".
 std::vector<std::string> surface_endings();
@@ -52,8 +48,8 @@ struct MeshFile {
   MeshReport report;
 };
 
-/// Reads a mesh by the file's ending and content, and checks and repairs it: .vtu and .vtk (legacy), which need VTK
-/// (has_vtk()); .msh, .msh2, .msh4 (Gmsh 1, 2 and 4); .mesh and .meshb (Medit); .node or .ele, with the other beside it
+/// Reads a mesh by the file's ending and content, and checks and repairs it: .vtu and .vtk (legacy);
+/// .msh, .msh2, .msh4 (Gmsh 1, 2 and 4); .mesh and .meshb (Medit); .node or .ele, with the other beside it
 /// (TetGen). Or the folder of an OpenFOAM case (formats/openfoam.hpp) or of SimVascular (formats/vtp_surface.hpp).
 /// Nothing in the file makes this throw: a file that cannot be read has a defect of kind "file" in the report, with line
 /// or byte. Cost: a few times the file's size in memory.
@@ -67,7 +63,7 @@ MeshFile read_valid_mesh(const std::filesystem::path& path, const ReadOptions& o
 /// Whether the ending is one of those that check_surface() reads.
 bool is_surface_file(const std::filesystem::path& path);
 
-/// Reads .stl (ASCII, binary), .obj, .ply (ASCII, binary), .off or, with VTK, .vtp, by ending and content, and then calls
+/// Reads .stl (ASCII, binary), .obj, .ply (ASCII, binary), .off or .vtp, by ending and content, and then calls
 /// check_and_repair_surface(). Nothing in the file makes this throw: a file that cannot be read has a defect of kind
 /// "file" in the report, with line or byte. Points keep their order, and points that no face uses are kept, so that
 /// Surface::move() can take the positions of another file of the same faces; formats/stl.hpp says which points a .stl
@@ -121,7 +117,7 @@ void write_mesh_parts(const MeshData& mesh, std::uint32_t parts, const std::file
 
 /// Reads the pieces of part `part` of `parts` and puts them together; the pieces are shared out in their order. Throws
 /// InvalidMesh, with file and reason, where there are fewer pieces than parts, and where one is damaged, of another mesh,
-/// or none of write_mesh_parts(). Needs VTK (has_vtk()). Only the option `max_memory` has an effect.
+/// or none of write_mesh_parts(). Only the option `max_memory` has an effect.
 MeshPart read_mesh_part(const std::filesystem::path& path, std::uint32_t parts, std::uint32_t part,
                         const ReadOptions& options = {});
 

@@ -121,8 +121,7 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
 /// Writes the particles of a run's frames into an OpenFOAM case, as the cloud of this name: positions with their cells,
 /// U and origId, in TIME/lagrangian/CLOUD, which OpenFOAM's programs and ParaView read. Files of an earlier cloud of the
 /// same name and time are replaced, and nothing else is changed. Returns the number of frames. Precondition: the run's
-/// mesh is that of the case, and was not edited. Needs VTK (has_vtk()). Throws InvalidArgument where there is no such
-/// case, or the name is none; Error where a frame cannot be read or a file cannot be written.
+/// mesh is that of the case, and was not edited. Throws InvalidArgument where there is no such case, or the name is none; Error where a frame cannot be read or a file cannot be written.
 std::size_t write_lagrangian(const std::filesystem::path& run_folder, const std::filesystem::path& openfoam_case,
                              const std::string& cloud = "particles");
 

@@ -54,7 +54,6 @@ void bind_mesh_files(py::module_& m) {
       .field("kept_mesh", &ReadOptions::kept_mesh)
       .finish();
   bind_mesh_file(m);
-  m.def("has_vtk", &has_vtk, doc("has_vtk"));
   m.def("writable_mesh_endings", &writable_mesh_endings, doc("writable_mesh_endings"));
   m.def("mesh_endings", &mesh_endings, doc("mesh_endings"));
   m.def("surface_endings", &surface_endings, doc("surface_endings"));

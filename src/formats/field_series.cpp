@@ -17,26 +17,25 @@ namespace dartcast {
 
 namespace {
 
-double time_of(const XmlTag& tag, const XmlTags& tags) {
-  const auto found = tag.attributes.find("timestep");
-  if (found == tag.attributes.end()) tags.fail("a DataSet has no timestep");
-  const std::string& text = found->second;
+double time_of(const XmlTag& tag) {
+  const std::string text = tag.attribute("timestep", "");
+  if (text.empty()) tag.fail("a DataSet has no timestep");
   double time = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), time);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(time))
-    tags.fail(fmt::format("timestep \"{}\" is not a finite number", text));
+    tag.fail(fmt::format("timestep \"{}\" is not a finite number", text));
   return time;
 }
 
-void add_dataset(const XmlTag& tag, const XmlTags& tags, const std::filesystem::path& folder, FieldSeries& series) {
-  const auto file = tag.attributes.find("file");
-  if (file == tag.attributes.end() || file->second.empty()) tags.fail("a DataSet has no file");
-  const double time = time_of(tag, tags);
+void add_dataset(const XmlTag& tag, const std::filesystem::path& folder, FieldSeries& series) {
+  const std::string file = tag.attribute("file", "");
+  if (file.empty()) tag.fail("a DataSet has no file");
+  const double time = time_of(tag);
   if (!series.times.empty() && time == series.times.back())
-    tags.fail(fmt::format("two files at the time {}: collections of several parts are not supported", time));
+    tag.fail(fmt::format("two files at the time {}: collections of several parts are not supported", time));
   if (!series.times.empty() && time < series.times.back())
-    tags.fail(fmt::format("the time {} stands after {}: times must increase", time, series.times.back()));
-  series.files.push_back(folder / file->second);
+    tag.fail(fmt::format("the time {} stands after {}: times must increase", time, series.times.back()));
+  series.files.push_back(folder / file);
   series.times.push_back(time);
 }
 
@@ -63,11 +62,9 @@ FieldSeries read_pvd(const std::filesystem::path& path) {
   FieldSeries series;
   try {
     const std::string content = read_bytes(path);
-    XmlTags tags(content);
-    XmlTag tag;
-    while (tags.next(tag)) {
-      if (tag.name == "DataSet" && tag.opens) add_dataset(tag, tags, path.parent_path(), series);
-    }
+    read_xml(content, [&](const XmlTag& tag) {
+      if (tag.name == "DataSet" && tag.opens) add_dataset(tag, path.parent_path(), series);
+    });
     if (series.files.empty()) throw InvalidMesh("the collection has no DataSet");
   } catch (const InvalidMesh& e) {
     throw Error(fmt::format("{}: the collection cannot be read: {}", path.string(), e.what()));

@@ -108,16 +108,20 @@ std::int64_t FileText::integer(std::string_view what, std::int64_t low, std::int
   return value;
 }
 
-double FileText::number(std::string_view what) {
+template <class Real>
+Real FileText::number(std::string_view what) {
   const std::string_view found = without_plus(word(what));
-  double value = 0.0;
+  Real value = 0;
   const auto [end, error] = std::from_chars(found.data(), found.data() + found.size(), value);
   if (error == std::errc::invalid_argument || end != found.data() + found.size()) {
     fail(fmt::format("'{}' is not a number, where {} should stand", shown(found), what));
   }
-  if (error == std::errc::result_out_of_range) return std::strtod(std::string(found).c_str(), nullptr);
-  return value;
+  if (error != std::errc::result_out_of_range) return value;
+  if constexpr (sizeof(Real) == sizeof(float)) return std::strtof(std::string(found).c_str(), nullptr);
+  return static_cast<Real>(std::strtod(std::string(found).c_str(), nullptr));
 }
+template float FileText::number(std::string_view what);
+template double FileText::number(std::string_view what);
 
 void FileText::check_count(std::string_view what, std::uint64_t n, std::size_t bytes_each) const {
   if (n > left() / bytes_each) {

@@ -38,7 +38,9 @@ class FileText {
   [[nodiscard]] bool line_ends() const;
 
   std::int64_t integer(std::string_view what, std::int64_t low, std::int64_t high);
-  double number(std::string_view what);
+  /// Real: double or float. A number that a float cannot hold is infinite.
+  template <class Real = double>
+  Real number(std::string_view what);
   /// A count of items that take at least `bytes_each` bytes each in the rest of the file.
   std::size_t count(std::string_view what, std::size_t bytes_each);
   /// Throws where `n` items cannot fit into the rest of the file.

@@ -17,7 +17,7 @@
 #include "formats/read_memory.hpp"
 #include "formats/stl.hpp"
 #include "formats/tetgen_files.hpp"
-#include "formats/vtk_functions.hpp"
+#include "formats/vtk.hpp"
 #include "formats/vtp_surface.hpp"
 #include "formats/vtu_write.hpp"
 
@@ -43,24 +43,15 @@ ParsedSurface read_surface_text(std::string_view content, std::uint64_t /*max_me
 
 // The pieces are checked one by one.
 std::uint64_t memory_of_index(std::uint64_t file) { return file; }
-auto read_pieces_or_none() { return has_vtk() ? read_pieces : nullptr; }
-
-// VTK keeps the text of inline arrays beside their values.
-std::uint64_t memory_of_xml(std::uint64_t file) { return memory_of_vtk({.file = 2 * file}); }
+std::uint64_t memory_of_xml(std::uint64_t file) { return memory_of_vtk({.file = file}); }
 
 }  // namespace
 
 std::span<const MeshFormat> mesh_formats() {
   static const std::vector<MeshFormat> formats = {
-      {"VTK", "", {{".vtu", write_vtu}}, true, true, memory_of_xml, vtk_functions.read_vtu},
-      {"VTK",
-       "pieces of dartcast partition",
-       {{".pvtu", nullptr}},
-       false,
-       true,
-       memory_of_index,
-       read_pieces_or_none()},
-      {"VTK", "legacy", {{".vtk", vtk_functions.write_legacy}}, true, true, memory_of_text, vtk_functions.read_legacy},
+      {"VTK", "", {{".vtu", write_vtu}}, true, true, memory_of_xml, parse_vtu},
+      {"VTK", "pieces of dartcast partition", {{".pvtu", nullptr}}, false, true, memory_of_index, read_pieces},
+      {"VTK", "legacy", {{".vtk", write_legacy_vtk}}, true, true, memory_of_text, parse_legacy_vtk},
       {"Gmsh",
        "Gmsh 1, 2 or 4",
        {{".msh", write_text<format_gmsh_2>},
@@ -81,7 +72,7 @@ std::span<const SurfaceFormat> surface_formats() {
                                                      {"Wavefront", ".obj", read_surface_text<parse_obj>},
                                                      {"Stanford", ".ply", read_surface_text<parse_ply>},
                                                      {"Geomview", ".off", read_surface_text<parse_off>},
-                                                     {"VTK", ".vtp", has_vtk() ? parse_vtp_surface : nullptr}};
+                                                     {"VTK", ".vtp", parse_vtp_surface}};
   return formats;
 }
 
@@ -128,7 +119,6 @@ std::string in_words(std::span<const std::string> items, std::string_view last) 
 std::vector<std::string> mesh_endings() {
   std::vector<std::string> endings;
   for (const MeshFormat& format : mesh_formats()) {
-    if (format.read == nullptr) continue;
     for (const FormatEnding& e : format.endings) endings.emplace_back(e.ending);
   }
   return endings;
@@ -147,7 +137,7 @@ std::vector<std::string> writable_mesh_endings() {
 std::vector<std::string> surface_endings() {
   std::vector<std::string> endings;
   for (const SurfaceFormat& format : surface_formats()) {
-    if (format.read != nullptr) endings.emplace_back(format.ending);
+    endings.emplace_back(format.ending);
   }
   return endings;
 }

@@ -15,7 +15,7 @@
 
 namespace dartcast {
 
-/// An ending, with its dot, in lower case, and the function that writes such files; null where this build cannot.
+/// An ending, with its dot, in lower case, and the function that writes such files; null where none does.
 struct FormatEnding {
   std::string_view ending;
   void (*write)(const MeshData& mesh, const std::filesystem::path& file);
@@ -30,14 +30,13 @@ struct MeshFormat {
   bool polyhedra;  ///< and polygons and faces of more than four corners
   /// Memory that reading a file of so many bytes takes at least.
   std::uint64_t (*memory)(std::uint64_t file);
-  /// Null where this build cannot read such files.
   ParsedMesh (*read)(const std::filesystem::path& path, std::string_view content, const ReadOptions& options);
 };
 
 struct SurfaceFormat {
   std::string_view name;
   std::string_view ending;
-  ParsedSurface (*read)(std::string_view content, std::uint64_t max_memory);  ///< null where this build cannot
+  ParsedSurface (*read)(std::string_view content, std::uint64_t max_memory);
 };
 
 std::span<const MeshFormat> mesh_formats();

@@ -11,7 +11,8 @@
 #include "dartcast/error.hpp"
 #include "formats/csv_table.hpp"
 #include "formats/file_text.hpp"
-#include "formats/vtk_functions.hpp"
+#include "formats/read_memory.hpp"
+#include "formats/vtk.hpp"
 #include "formats/xml_pieces.hpp"
 
 namespace dartcast {
@@ -29,9 +30,12 @@ std::vector<Vec3> read_csv(const std::filesystem::path& path, const ReadOptions&
 }
 
 PointFile read_vtp(const std::filesystem::path& path, const ReadOptions& options) {
-  if (vtk_functions.read_vtp == nullptr)
-    throw Error(fmt::format("{}: {}", path.string(), needs_vtk("read .vtp files", "write the points to a .csv file")));
-  return vtk_functions.read_vtp(path, options);
+  try {
+    check_memory(memory_of_vtk({.file = file_bytes(path)}), options.max_memory);
+    return read_vtp_points(read_bytes(path), options.max_memory);
+  } catch (const InvalidMesh& e) {
+    throw Error(fmt::format("{}: the points cannot be read: {}", path.string(), e.what()));
+  }
 }
 
 // Behind the points and values of the pieces so far.

@@ -15,7 +15,7 @@ struct PointFile {
 };
 
 /// Reads .vtp (its points and their arrays), .pvtp (those of all its pieces, which are in its folder) or .csv (columns x, y, z by name in the first line; others are ignored).
-/// .vtp and .pvtp need VTK (has_vtk()). The option `max_memory` counts, the other does not. Throws Error with file and, for .csv,
+/// The option `max_memory` counts, the other does not. Throws Error with file and, for .csv,
 /// line.
 PointFile read_points(const std::filesystem::path& path, const ReadOptions& options = {});
 

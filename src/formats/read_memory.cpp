@@ -54,8 +54,8 @@ std::uint64_t machine_bytes() {
 }  // namespace
 
 std::uint64_t memory_of_vtk(const ReadSizes& s) {
-  const std::uint64_t in_vtk = ByteSum().add(s.vtk).add(s.corners, 18).add(s.cells, 20).bytes();
-  return ByteSum().add(program_bytes).add(s.file).add(mesh_bytes(s)).add(std::max(in_vtk, use_bytes(s))).bytes();
+  const std::uint64_t reading = ByteSum().add(s.decoded).add(s.corners, 18).add(s.cells, 20).bytes();
+  return ByteSum().add(program_bytes).add(s.file).add(mesh_bytes(s)).add(std::max(reading, use_bytes(s))).bytes();
 }
 
 std::uint64_t memory_of_text(std::uint64_t file) { return ByteSum().add(program_bytes).add(file, 10).bytes(); }

@@ -10,18 +10,18 @@ namespace dartcast {
 
 /// Sizes that a file announces, summed up.
 struct ReadSizes {
-  std::uint64_t file = 0;  ///< bytes; where arrays are inline in XML: twice, since VTK keeps them, too
+  std::uint64_t file = 0;  ///< bytes
   std::uint64_t points = 0;
   std::uint64_t cells = 0;
   std::uint64_t corners = 0;  ///< numbers of their connectivity, and of the faces of polyhedra
   std::uint64_t values = 0;   ///< numbers at points and cells
-  std::uint64_t vtk = 0;      ///< bytes of all arrays as VTK holds them, those of cells apart
+  std::uint64_t decoded = 0;  ///< bytes of all arrays as they are decoded, those of cells apart
 };
 
 /// Bytes that the process takes at most while it reads a file of VTK with these sizes and builds the map from the
 /// mesh. The sum in bytes: 48 * 2^20 for the program and for free small blocks that the allocator keeps; the file;
-/// and the largest of three stages. VTK: its arrays, 18 a corner and 20 a cell for its cells and their copies, and
-/// the mesh. Check: the mesh, 32 a corner for faces, 48 a point, 8 a cell. The map: the mesh, 32 a corner, 24 a point
+/// and the largest of three stages. Reading: the decoded arrays, 18 a corner and 20 a cell for cells as they are read,
+/// and the mesh. Check: the mesh, 32 a corner for faces, 48 a point, 8 a cell. The map: the mesh, 32 a corner, 24 a point
 /// and a cell. The mesh takes 32 a point, 10 a corner, 32 a cell and 8 a value. Sums stop at 2^63. Steiner points
 /// inside cells are not counted.
 std::uint64_t memory_of_vtk(const ReadSizes& sizes);

@@ -13,7 +13,6 @@
 #include "formats/format_table.hpp"
 #include "formats/openfoam.hpp"
 #include "formats/read_memory.hpp"
-#include "formats/vtk_functions.hpp"
 #include "formats/vtp_surface.hpp"
 
 namespace dartcast {
@@ -30,9 +29,7 @@ std::string described(const MeshFormat& format) {
 
 std::string supported() {
   std::vector<std::string> list;
-  for (const MeshFormat& format : mesh_formats()) {
-    if (format.read != nullptr) list.push_back(described(format));
-  }
+  for (const MeshFormat& format : mesh_formats()) list.push_back(described(format));
   list.emplace_back("folders of OpenFOAM and SimVascular");
   return in_words(list, "and");
 }
@@ -63,8 +60,6 @@ ParsedMesh parse(const std::filesystem::path& path, const ReadOptions& options) 
                                   supported(),
                                   is_surface_file(path) ? "; a surface in space is read by read_surface()" : ""));
   }
-  if (format->read == nullptr)
-    throw InvalidMesh(needs_vtk(fmt::format("read {} files", ending_of(path)), "convert the file to .msh"));
   if (!format->arrays && !options.patch_array.empty())
     throw InvalidMesh(fmt::format(
         "patches from the cell array '{}': arrays are in {} files; in this one groups of faces are the patches",

@@ -10,7 +10,6 @@
 #include "formats/file_text.hpp"
 #include "formats/format_table.hpp"
 #include "formats/read_memory.hpp"
-#include "formats/vtk_functions.hpp"
 #include "surface/check_surface.hpp"
 
 namespace dartcast {
@@ -21,7 +20,6 @@ ParsedSurface parse_surface(const std::filesystem::path& path, std::uint64_t max
     throw InvalidMesh(fmt::format("surfaces in files that end in '{}' are not supported; supported are {}",
                                   ending_of(path), in_words(surface_endings(), "and")));
   }
-  if (format->read == nullptr) throw InvalidMesh(needs_vtk("read .vtp files", "convert the surface to .stl"));
   check_memory(memory_of_text(file_bytes(path)), max_memory);
   const std::string content = read_bytes(path);
   if (content.empty()) throw InvalidMesh("the file is empty");

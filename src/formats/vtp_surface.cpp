@@ -14,7 +14,7 @@
 #include "formats/file_text.hpp"
 #include "formats/format_table.hpp"
 #include "formats/read_memory.hpp"
-#include "formats/vtk_functions.hpp"
+#include "formats/vtk.hpp"
 
 namespace dartcast {
 
@@ -71,8 +71,8 @@ class MeshPoints {
 };
 
 void add_patch(const fs::path& file, const MeshPoints& points, std::uint64_t max_memory, MeshData& mesh) {
-  check_memory(memory_of_vtk({.file = 2 * file_bytes(file)}), max_memory);
-  const VtpFaces faces = vtk_functions.read_vtp_faces(read_bytes(file), max_memory);
+  check_memory(memory_of_vtk({.file = file_bytes(file)}), max_memory);
+  const VtpFaces faces = read_vtp_faces(read_bytes(file), max_memory);
   const auto tag = static_cast<std::int32_t>(mesh.patch_names.size() + 1);
   mesh.patch_names[tag] = file.stem().string();
   for (std::size_t f = 0; f < faces.faces.size(); ++f) {
@@ -89,7 +89,7 @@ void add_patch(const fs::path& file, const MeshPoints& points, std::uint64_t max
 }  // namespace
 
 ParsedSurface parse_vtp_surface(std::string_view content, std::uint64_t max_memory) {
-  const VtpFaces faces = vtk_functions.read_vtp_faces(content, max_memory);
+  const VtpFaces faces = read_vtp_faces(content, max_memory);
   const FileText text(content);
   ParsedSurface surface;
   surface.format = "VTK XML (.vtp)";
@@ -108,7 +108,6 @@ bool is_simvascular(const fs::path& folder) {
 }
 
 ParsedMesh parse_simvascular(const fs::path& folder, const ReadOptions& options) {
-  if (!has_vtk()) throw InvalidMesh(needs_vtk("read SimVascular's folders", "convert the mesh to .msh"));
   const fs::path file = mesh_file(folder);
   const auto named = [](const fs::path& path, auto&& read) {
     try {
@@ -118,8 +117,8 @@ ParsedMesh parse_simvascular(const fs::path& folder, const ReadOptions& options)
     }
   };
   ParsedMesh parsed = named(file, [&] {
-    check_memory(memory_of_vtk({.file = 2 * file_bytes(file)}), options.max_memory);
-    return vtk_functions.read_vtu(file, read_bytes(file), options);
+    check_memory(memory_of_vtk({.file = file_bytes(file)}), options.max_memory);
+    return parse_vtu(file, read_bytes(file), options);
   });
   parsed.format = "SimVascular";
   MeshData& mesh = parsed.mesh;

@@ -12,7 +12,7 @@
 namespace dartcast {
 
 /// The polygons of the file. The cell array patch, else region, else ModelFaceID gives their groups: whole numbers, where
-/// 0 is none, or texts. Precondition: a build with VTK.
+/// 0 is none, or texts.
 ParsedSurface parse_vtp_surface(std::string_view content, std::uint64_t max_memory);
 
 /// Whether the folder is SimVascular's "mesh-complete": it has mesh-surfaces, and a file that ends in .mesh.vtu or one

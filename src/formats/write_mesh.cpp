@@ -8,7 +8,6 @@
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_files.hpp"
 #include "formats/format_table.hpp"
-#include "formats/vtk_functions.hpp"
 
 namespace dartcast {
 
@@ -75,14 +74,9 @@ void check_cells(const MeshData& mesh, const MeshFormat& format) {
 
 void write_mesh(const MeshData& mesh, const std::filesystem::path& path) {
   const FormatEnding* ending = mesh_ending_of(path);
-  const bool needs = ending != nullptr && ending->write == nullptr && ending->ending == ".vtk";
-  if (ending == nullptr || (ending->write == nullptr && !needs)) {
+  if (ending == nullptr || ending->write == nullptr) {
     throw InvalidArgument(fmt::format("{}: cannot write files that end in '{}'; use {}", path.string(), ending_of(path),
                                       in_words(writable_mesh_endings(), "or")));
-  }
-  if (needs) {
-    throw InvalidArgument(
-        fmt::format("{}: {}", path.string(), needs_vtk(fmt::format("write {} files", ending->ending), "write .vtu")));
   }
   check_cells(mesh, *mesh_format_of(path));
   write_beside(path, [&](const fs::path& file) { ending->write(mesh, file); });

@@ -10,14 +10,13 @@ namespace dartcast {
 std::vector<std::filesystem::path> named_pieces(const std::filesystem::path& path, const std::string& text,
                                                 std::string_view ending) {
   std::vector<std::filesystem::path> pieces;
-  XmlTags tags(text);
-  for (XmlTag tag; tags.next(tag);) {
-    if (tag.name != "Piece" || !tag.opens) continue;
-    const std::string& source = tag.attributes["Source"];
+  read_xml(text, [&](const XmlTag& tag) {
+    if (tag.name != "Piece" || !tag.opens) return;
+    const std::string source = tag.attribute("Source", "");
     if (source.find('/') != std::string::npos || !source.ends_with(ending))
-      tags.fail(fmt::format("the piece '{}' is no {} file in this folder", source, ending));
+      tag.fail(fmt::format("the piece '{}' is no {} file in this folder", source, ending));
     pieces.push_back(path.parent_path() / source);
-  }
+  });
   return pieces;
 }
 

@@ -16,7 +16,7 @@
 #include "formats/format_table.hpp"
 #include "formats/openfoam.hpp"
 #include "formats/point_file.hpp"
-#include "formats/vtk_functions.hpp"
+#include "formats/vtk.hpp"
 #include "mesh/same_cells.hpp"
 #include "scene/file_series.hpp"
 
@@ -116,7 +116,7 @@ class FrameFiles {
       return VtuPoints{openfoam_points_at(file, options_), 0};  // all times of a case have the same cells
     }
     if (ending_of(file) != ".vtu") return std::nullopt;
-    return vtk_functions.read_vtu_points(read_bytes(file), options_.max_memory);
+    return read_vtu_points(read_bytes(file), options_.max_memory);
   }
 
   // The points of a file with the cells of the first; none where it must be checked as a mesh of its own. This second reading

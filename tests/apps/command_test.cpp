@@ -17,7 +17,6 @@
 
 #include "dartcast/mesh_files.hpp"
 #include "support/shared_data.hpp"
-#include "support/with_vtk.hpp"
 
 namespace dartcast::command_test {
 
@@ -283,7 +282,6 @@ TEST_F(Command, InfoDescribesMeshesAndScenes) {
 }
 
 TEST_F(Command, InfoListsArraysWithTheirRanges) {
-  SKIP_WITHOUT_VTK();
   (void)write("a.vtk",
               "# vtk DataFile Version 3.0\na\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n"
               "0 0 0  1 0 0  0 1 0  0 0 1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n"
@@ -364,7 +362,6 @@ TEST_F(Command, ConvertGoesRoundThroughAllFormats) {
 
 // A disk that is full at 1 KiB: what stood at the target stays, and nothing is left beside it.
 TEST_F(Command, ConvertLeavesTheTargetWhereItFails) {
-  SKIP_WITHOUT_VTK();
   (void)write("box.toml", "[environment]\ngenerator = 'box'\ncells = [6, 6, 6]\njitter = 0.5\n[motion]\nsteps = 0\n");
   ASSERT_EQ(run("run box.toml -q -o box").status, 0);
   const std::string limited =
@@ -456,7 +453,6 @@ TEST_F(Command, CheckTakesSurfaces) {
 
 // Real meshes: all that are well formed are accepted, divided into simplices, and can be run.
 TEST_F(Command, SharedDataIsAccepted) {
-  SKIP_WITHOUT_VTK();
   NEED_DATA("dartcast check over real meshes");
   int count = 0;
   for (const auto& entry : fs::recursive_directory_iterator(dartcast::test::data_folder() / "volumes")) {

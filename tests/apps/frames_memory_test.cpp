@@ -16,7 +16,6 @@
 #include "support/meshes.hpp"
 #include "support/sample_mesh.hpp"
 #include "support/tier.hpp"
-#include "support/with_vtk.hpp"
 
 namespace dartcast::frames_memory_test {
 
@@ -73,7 +72,6 @@ std::uint64_t peak_of(const char* binary, const std::vector<std::string>& argume
 
 // In the full tier 1,000 frames of 103,776 points: 2.5 GB. In the quick one 300 frames of 24,389: 176 MB.
 TEST(FramesMemory, ARunHoldsFewOfItsFrames) {
-  SKIP_WITHOUT_VTK();
   const char* binary = std::getenv("DARTCAST_BINARY");
   ASSERT_TRUE(binary != nullptr) << "run this through ctest";
   if (test::sanitized()) GTEST_SKIP() << "left out under sanitizers, which take memory of their own";

@@ -37,7 +37,6 @@ TEST_F(SceneVerbs, AMeshAroundASurface) {
 }
 
 TEST_F(SceneVerbs, ParticlesGoBackIntoAnOpenFoamCase) {
-  if (!has_vtk()) GTEST_SKIP() << "frames of a run are read with VTK";
   BoxOptions options;
   options.cells = {3, 3, 3};
   test::FoamWriter(folder / "case", {}).write(test::foam_mesh(generate_box(options)));

@@ -9,7 +9,6 @@
 #include "formats/medit.hpp"
 #include "output/mesh_report_text.hpp"
 #include "support/round_trip.hpp"
-#include "support/with_vtk.hpp"
 
 namespace dartcast::test::formats_test {
 
@@ -70,7 +69,6 @@ TEST(Formats, MeditByHand) {
 }
 
 TEST(Formats, LegacyVtkOfBothWaysToWriteCells) {
-  SKIP_WITHOUT_VTK();
   const std::string head = "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\n";
   const std::string points = "POINTS 8 float\n0 0 0 1 0 0 0 1 0 1 1 0 0 0 1 1 0 1 0 1 1 1 1 1\n";
   const std::string data =
@@ -97,7 +95,6 @@ TEST(Formats, LegacyVtkOfBothWaysToWriteCells) {
 }
 
 TEST(Formats, PrismsInEitherOrderOfVtk) {
-  SKIP_WITHOUT_VTK();
   const std::string head =
       "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 6 float\n0 0 0 1 0 0 0 1 0 0 0 1 1 0 1 "
       "0 1 1\n";
@@ -112,7 +109,6 @@ TEST(Formats, PrismsInEitherOrderOfVtk) {
 }
 
 TEST(Formats, VtuAsciiByHand) {
-  SKIP_WITHOUT_VTK();
   const std::string text = R"(<?xml version="1.0"?>
 <!-- > a comment < -->
 <VTKFile type="UnstructuredGrid" version="0.1" byte_order="BigEndian"><UnstructuredGrid>
@@ -132,7 +128,6 @@ TEST(Formats, VtuAsciiByHand) {
 }
 
 TEST(Formats, VtuBinaryInEitherByteOrder) {
-  SKIP_WITHOUT_VTK();
   const Folder folder;
   for (const std::string format : {"binary", "appended"}) {
     for (const bool big_endian : {false, true}) {
@@ -149,7 +144,6 @@ TEST(Formats, VtuBinaryInEitherByteOrder) {
 TEST(RoundTrip, EveryFormatKeepsPointsCellsRegionsAndPatches) { expect_round_trips(mixed_mesh()); }
 
 TEST(RoundTrip, VtkKeepsPolyhedraArraysAndFree) {
-  SKIP_WITHOUT_VTK();
   MeshData mesh = polyhedra();
   mesh.point_data = {{"velocity", 3, std::vector<double>(27, 1.0 / 3.0)}};
   mesh.cell_data = {{"heat", 1, {0.1, -0.0}}};
@@ -169,7 +163,6 @@ TEST(RoundTrip, WhatAFormatCannotHoldIsRefused) {
 }
 
 TEST(Formats, OthersAreRefusedByName) {
-  SKIP_WITHOUT_VTK();
   const Folder folder;
   const auto message = [&](const std::string& name, const std::string& content) {
     const MeshFile file = read_mesh(folder.file(name, content));
@@ -194,7 +187,6 @@ TEST(Formats, OthersAreRefusedByName) {
 }
 
 TEST(Formats, NumbersThatNameNoPointAreFound) {
-  SKIP_WITHOUT_VTK();
   const Folder folder;
   for (const std::string number : {"0", "-1", "5", "4294967297", "4294967296"}) {
     const std::string medit =
@@ -220,7 +212,6 @@ TEST(Formats, NumbersThatNameNoPointAreFound) {
 }
 
 TEST(Formats, SecondOrderCellsAreRefusedByName) {
-  SKIP_WITHOUT_VTK();
   const Folder folder;
   const std::string gmsh =
       "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n"
@@ -315,7 +306,6 @@ TEST(Formats, GmshSizesOfFourBytesBelongToVersion41) {
 
 /// VTK's types of one cell that has any number of corners, in both of its formats.
 TEST(Formats, EveryCellTypeOfVtkGetsAVerdict) {
-  SKIP_WITHOUT_VTK();
   const Folder folder;
   for (int type = 0; type < 90; ++type) {
     const bool curve = type == 21 || type == 35 || type == 51 || type == 60 || type == 68 || type == 75;
@@ -341,6 +331,13 @@ TEST(Formats, EveryCellTypeOfVtkGetsAVerdict) {
       }
     }
   }
+}
+
+TEST(Formats, EndingsAreListed) {
+  using Endings = std::vector<std::string>;
+  EXPECT_EQ(mesh_endings(),
+            (Endings{".vtu", ".pvtu", ".vtk", ".msh", ".msh2", ".msh4", ".mesh", ".meshb", ".ele", ".node"}));
+  EXPECT_EQ(writable_mesh_endings(), (Endings{".vtu", ".vtk", ".msh", ".msh2", ".msh4", ".mesh"}));
 }
 
 TEST(Report, JsonHasTheFieldsOfTheInterface) {

@@ -11,7 +11,6 @@
 #include "output/mesh_report_text.hpp"
 #include "support/sample_mesh.hpp"
 #include "support/tier.hpp"
-#include "support/with_vtk.hpp"
 
 namespace dartcast::test::hostile_test {
 
@@ -88,7 +87,6 @@ bool expect_verdict(const Folder& folder, const std::string& name, const std::st
 
 class Hostile : public testing::Test {
  protected:
-  void SetUp() override { SKIP_WITHOUT_VTK(); }  // a third of the samples need it
   void TearDown() override {
     if (test::sanitized()) return;
     rusage usage{};

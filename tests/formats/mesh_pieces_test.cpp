@@ -14,7 +14,6 @@
 #include "support/part_checks.hpp"
 #include "support/sample_mesh.hpp"
 #include "support/stepped_scenes.hpp"
-#include "support/with_vtk.hpp"
 
 namespace dartcast::mesh_pieces_test {
 
@@ -48,7 +47,6 @@ std::vector<MeshData> meshes() {
 
 class MeshPieces : public testing::Test {
  protected:
-  void SetUp() override { SKIP_WITHOUT_VTK(); }
   test::Folder folder;
   [[nodiscard]] std::string reason(const fs::path& path, std::uint32_t parts = 1) const {
     try {

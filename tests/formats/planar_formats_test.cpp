@@ -11,7 +11,6 @@
 #include "output/info.hpp"
 #include "output/mesh_report_text.hpp"
 #include "support/round_trip.hpp"
-#include "support/with_vtk.hpp"
 
 namespace dartcast::test::planar_formats_test {
 
@@ -81,7 +80,6 @@ TEST(PlanarFormats, MeditWithAndWithoutZ) {
 
 // A square as a pixel, a triangle, and a pentagon; lines in one piece and in three; a point.
 TEST(PlanarFormats, LegacyVtkByHand) {
-  SKIP_WITHOUT_VTK();
   const std::string text =
       "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 double\n"
       "0 0 1 1 0 1 0 1 1 1 1 1 2 0 1 0 2 1 1 2 1 -1 1.5 1\n"
@@ -103,7 +101,6 @@ TEST(PlanarFormats, LegacyVtkByHand) {
 }
 
 TEST(PlanarFormats, VtuAsciiByHand) {
-  SKIP_WITHOUT_VTK();
   const std::string text = R"(<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian">
 <UnstructuredGrid><Piece NumberOfPoints="5" NumberOfCells="3">
 <Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">
@@ -177,7 +174,6 @@ TEST(PlanarFormats, RefusedMeshesThrowWhereAValidOneIsNeeded) {
 TEST(PlanarRoundTrip, EveryFormatKeepsPointsCellsRegionsAndPatches) { expect_round_trips(planar_mesh()); }
 
 TEST(PlanarRoundTrip, VtkKeepsPolygonsArraysAndFree) {
-  SKIP_WITHOUT_VTK();
   MeshData mesh = planar_polygons();
   mesh.point_data = {{"velocity", 3, std::vector<double>(36, 1.0 / 3.0)}};
   mesh.cell_data = {{"heat", 1, {0.1, -0.0, 3, 4, 5}}};
@@ -186,7 +182,6 @@ TEST(PlanarRoundTrip, VtkKeepsPolygonsArraysAndFree) {
 }
 
 TEST(PlanarRoundTrip, GeneratedMeshes) {
-  SKIP_WITHOUT_VTK();
   const Folder folder;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     RectangleOptions o;

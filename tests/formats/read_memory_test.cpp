@@ -109,7 +109,7 @@ TEST(ReadMemory, EveryReaderKeepsTheLimit) {
 // Whatever sizes a file announces, sums do not overflow.
 TEST(ReadMemory, SumsStop) {
   ReadSizes sizes;
-  sizes.file = sizes.points = sizes.cells = sizes.corners = sizes.values = sizes.vtk = UINT64_MAX;
+  sizes.file = sizes.points = sizes.cells = sizes.corners = sizes.values = sizes.decoded = UINT64_MAX;
   EXPECT_EQ(memory_of_vtk(sizes), std::uint64_t{1} << 63U);
   EXPECT_EQ(memory_of_text(UINT64_MAX), std::uint64_t{1} << 63U);
   EXPECT_THROW(check_memory(memory_of_vtk(sizes), 0), InvalidMesh);

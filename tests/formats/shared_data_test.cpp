@@ -13,7 +13,6 @@
 #include "support/same_mesh.hpp"
 #include "support/sample_mesh.hpp"
 #include "support/tier.hpp"
-#include "support/with_vtk.hpp"
 
 namespace dartcast::test::shared_data_test {
 
@@ -87,7 +86,6 @@ std::vector<ExpectedPlanar> planar_files() {
 }
 
 TEST(SharedData, EveryPlanarMeshLoadsAndSurvivesARoundTrip) {
-  SKIP_WITHOUT_VTK();
   NEED_DATA("meshes made by others");
   const Folder folder;
   for (const ExpectedPlanar& expected : planar_files()) {
@@ -139,7 +137,6 @@ TEST(SharedData, PatchesOfPlanarMeshesAreTheirNamedLines) {
 }
 
 TEST(SharedData, EveryVolumeLoadsWithoutAWarning) {
-  SKIP_WITHOUT_VTK();
   NEED_DATA("meshes made by others");
   for (const Expected& expected : volumes()) {
     const MeshReport report = read_mesh(data_folder() / expected.file).report;
@@ -170,7 +167,6 @@ TEST(SharedData, NoVolumeIsForgotten) {
 }
 
 TEST(SharedData, DefectiveFilesGetTheRightVerdict) {
-  SKIP_WITHOUT_VTK();
   NEED_DATA("meshes made by others");
   std::ifstream table(data_folder() / "EXPECTED.csv");
   std::string line;
@@ -196,7 +192,6 @@ std::map<std::string, std::size_t> kinds(const std::vector<Finding>& findings) {
 }
 
 TEST(SharedData, DefectsAreCountedAsTheListSays) {
-  SKIP_WITHOUT_VTK();
   NEED_DATA("meshes made by others");
   const auto report = [](const char* file) { return read_mesh(data_folder() / "defective" / file).report; };
   EXPECT_EQ(kinds(report("sfepy/elbow2.mesh").repairs), (Counts{{"orientation", 8161}}));
@@ -218,7 +213,6 @@ TEST(SharedData, DefectsAreCountedAsTheListSays) {
 }
 
 TEST(SharedData, EveryVolumeSurvivesARoundTrip) {
-  SKIP_WITHOUT_VTK();
   NEED_DATA("meshes made by others");
   const Folder folder;
   for (const Expected& expected : volumes()) {

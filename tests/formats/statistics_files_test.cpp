@@ -1,18 +1,7 @@
-// Files of statistics, read back by VTK.
+// Files of statistics, read back.
 #include "dartcast/statistics_files.hpp"
 
 #include <gtest/gtest.h>
-#include <vtkCellArray.h>
-#include <vtkCellData.h>
-#include <vtkDataArray.h>
-#include <vtkFieldData.h>
-#include <vtkIdList.h>
-#include <vtkNew.h>
-#include <vtkPointData.h>
-#include <vtkPolyData.h>
-#include <vtkSmartPointer.h>
-#include <vtkStringArray.h>
-#include <vtkXMLPolyDataReader.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -24,20 +13,28 @@
 #include "dartcast/generators.hpp"
 #include "dartcast/run.hpp"
 #include "dartcast/scene_file.hpp"
+#include "formats/file_text.hpp"
+#include "formats/vtk/vtk_grid.hpp"
 #include "support/sample_mesh.hpp"
 
 namespace dartcast::statistics_files_test {
 
-vtkSmartPointer<vtkPolyData> read(const std::filesystem::path& file) {
-  vtkNew<vtkXMLPolyDataReader> reader;
-  reader->SetFileName(file.c_str());
-  reader->Update();
-  return reader->GetOutput();
-}
+struct Vtp : VtkGrid {
+  [[nodiscard]] std::size_t count(std::uint8_t type) const {
+    return static_cast<std::size_t>(std::count(types.begin(), types.end(), type));
+  }
+  [[nodiscard]] std::vector<std::uint32_t> cell(std::size_t c) const {
+    const auto begin = connectivity.begin();
+    return {begin + static_cast<std::ptrdiff_t>(offsets[c]), begin + static_cast<std::ptrdiff_t>(offsets[c + 1])};
+  }
+};
 
-double value(vtkDataArray* array, vtkIdType i, int component = 0) {
+Vtp read(const std::filesystem::path& file) { return {read_vtk_xml_grid(read_bytes(file), "PolyData", 0)}; }
+
+double value(const std::vector<VtkArray>& arrays, const char* name, std::size_t i, std::size_t component = 0) {
+  const VtkArray* array = find_array(arrays, name);
   if (array == nullptr) throw Error("the array is not there");
-  return array->GetComponent(i, component);
+  return array->values.at(i * array->components + component);
 }
 
 TEST(WallHitsFile, HasEveryWallWithItsHitsAndArea) {
@@ -56,26 +53,28 @@ TEST(WallHitsFile, HasEveryWallWithItsHitsAndArea) {
   const test::Folder folder;
   write_wall_hits(environment, hits, folder / "walls.vtp");
   const auto walls = read(folder / "walls.vtp");
-  ASSERT_EQ(walls->GetNumberOfPolys(), 10);
-  EXPECT_EQ(walls->GetNumberOfPoints(), 12);
-  vtkCellData* data = walls->GetCellData();
-  auto* names = vtkStringArray::SafeDownCast(walls->GetFieldData()->GetAbstractArray("patch_names"));
+  ASSERT_EQ(walls.count(vtk_polygon), 10U);
+  EXPECT_EQ(walls.points.size(), 12U);
+  const auto& data = walls.cell_data;
+  const VtkArray* names = find_array(walls.field, "patch_names");
   ASSERT_NE(names, nullptr);
-  ASSERT_EQ(names->GetNumberOfValues(), 6);
+  ASSERT_EQ(names->texts.size(), 6U);
   double sum = 0.0;
-  for (vtkIdType c = 0; c < 10; ++c) {
-    const auto patch = static_cast<vtkIdType>(value(data->GetArray("patch"), c));
-    const std::string name = names->GetValue(patch - 1);
-    double bounds[6];
-    walls->GetCellBounds(c, bounds);
-    const double middle = 0.5 * (bounds[0] + bounds[1]);
+  for (std::size_t c = 0; c < 10; ++c) {
+    const auto patch = static_cast<std::size_t>(value(data, "patch", c));
+    const std::string name = names->texts.at(patch - 1);
+    const auto corners = walls.cell(c);
+    const auto [low, high] = std::minmax_element(corners.begin(), corners.end(), [&](std::uint32_t p, std::uint32_t q) {
+      return walls.points[p].x < walls.points[q].x;
+    });
+    const double middle = 0.5 * (walls.points[*low].x + walls.points[*high].x);
     const double area = name.ends_with("xmin") || name.ends_with("xmax") ? 15.0 : name.find("y") < 9 ? 10.0 : 6.0;
     const bool hit = (name.ends_with("zmin") && middle == 1.0) || (name.ends_with("ymax") && middle == 1.0) ||
                      name.ends_with("xmax");
-    EXPECT_EQ(value(data->GetArray("hits"), c), hit ? 2.0 : 0.0) << name;
-    EXPECT_DOUBLE_EQ(value(data->GetArray("hits_per_area"), c), hit ? 2.0 / area : 0.0) << name;
-    EXPECT_EQ(value(data->GetArray("cell"), c), middle > 2.0 ? 1.0 : 0.0);
-    sum += value(data->GetArray("hits"), c);
+    EXPECT_EQ(value(data, "hits", c), hit ? 2.0 : 0.0) << name;
+    EXPECT_DOUBLE_EQ(value(data, "hits_per_area", c), hit ? 2.0 / area : 0.0) << name;
+    EXPECT_EQ(value(data, "cell", c), middle > 2.0 ? 1.0 : 0.0);
+    sum += value(data, "hits", c);
   }
   EXPECT_EQ(sum, 6.0);
   EXPECT_THROW(write_wall_hits(environment, hits, folder / "walls.vtu"), InvalidArgument);
@@ -86,8 +85,8 @@ TEST(WallHitsFile, HasTheWallsOfFreeCellsAlone) {
   const test::Folder folder;
   write_wall_hits(environment, {}, folder / "walls.vtp");
   const auto walls = read(folder / "walls.vtp");
-  EXPECT_EQ(walls->GetNumberOfPolys(), static_cast<vtkIdType>(environment.map().wall_face_count()));
-  EXPECT_EQ(walls->GetNumberOfPolys(), 3 * 26 * 4 + 2 * 9);
+  EXPECT_EQ(walls.count(vtk_polygon), environment.map().wall_face_count());
+  EXPECT_EQ(walls.count(vtk_polygon), 3U * 26 * 4 + 2 * 9);
 }
 
 TEST(WallHitsFile, InThePlaneTheWallsAreLines) {
@@ -102,9 +101,9 @@ TEST(WallHitsFile, InThePlaneTheWallsAreLines) {
   const test::Folder folder;
   write_wall_hits(environment, hits, folder / "walls.vtp");
   const auto walls = read(folder / "walls.vtp");
-  ASSERT_EQ(walls->GetNumberOfLines(), 6);
+  ASSERT_EQ(walls.count(vtk_poly_line), 6U);
   double sum = 0.0;
-  for (vtkIdType c = 0; c < 6; ++c) sum += value(walls->GetCellData()->GetArray("hits_per_area"), c);
+  for (std::size_t c = 0; c < 6; ++c) sum += value(walls.cell_data, "hits_per_area", c);
   EXPECT_DOUBLE_EQ(sum, 0.5);
 }
 
@@ -121,28 +120,27 @@ TEST(PathlinesFile, HasAPolylineForEachParticle) {
   const test::Folder folder;
   write_pathlines(points, folder / "lines.vtp");
   const auto lines = read(folder / "lines.vtp");
-  ASSERT_EQ(lines->GetNumberOfLines(), 3);
-  ASSERT_EQ(lines->GetNumberOfPoints(), 12);
+  ASSERT_EQ(lines.count(vtk_poly_line), 3U);
+  ASSERT_EQ(lines.points.size(), 12U);
   const std::vector<double> ids = {3.0, 7.0, 12.0};
-  vtkNew<vtkIdList> corners;
-  for (vtkIdType line = 0; line < 3; ++line) {
-    const double id = ids[static_cast<std::size_t>(line)];
-    EXPECT_EQ(value(lines->GetCellData()->GetArray("id"), line), id);
-    lines->GetCellPoints(line, corners);
-    const vtkIdType size = id == 12.0 ? 2 : 5;
-    ASSERT_EQ(corners->GetNumberOfIds(), size);
-    for (vtkIdType k = 0; k < size; ++k) {
-      const vtkIdType p = corners->GetId(k);
+  for (std::size_t line = 0; line < 3; ++line) {
+    const double id = ids[line];
+    EXPECT_EQ(value(lines.cell_data, "id", line), id);
+    const std::vector<std::uint32_t> corners = lines.cell(line);
+    const std::size_t size = id == 12.0 ? 2 : 5;
+    ASSERT_EQ(corners.size(), size);
+    for (std::size_t k = 0; k < size; ++k) {
+      const std::uint32_t p = corners[k];
       const double step = static_cast<double>(k + 5 - size);
-      EXPECT_EQ(lines->GetPoint(p)[0], id);
-      EXPECT_EQ(lines->GetPoint(p)[1], step);
-      EXPECT_EQ(value(lines->GetPointData()->GetArray("time"), p), 0.5 * step);
-      EXPECT_EQ(value(lines->GetPointData()->GetArray("velocity"), p, 2), id);
-      EXPECT_EQ(value(lines->GetPointData()->GetArray("contact"), p), step == 4.0 ? 1.0 : 0.0);
+      EXPECT_EQ(lines.points[p].x, id);
+      EXPECT_EQ(lines.points[p].y, step);
+      EXPECT_EQ(value(lines.point_data, "time", p), 0.5 * step);
+      EXPECT_EQ(value(lines.point_data, "velocity", p, 2), id);
+      EXPECT_EQ(value(lines.point_data, "contact", p), step == 4.0 ? 1.0 : 0.0);
     }
   }
   write_pathlines({}, folder / "none.vtp");
-  EXPECT_EQ(read(folder / "none.vtp")->GetNumberOfLines(), 0);
+  EXPECT_EQ(read(folder / "none.vtp").count(vtk_poly_line), 0U);
   EXPECT_THROW(write_pathlines({}, folder / "lines.csv"), InvalidArgument);
 }
 
@@ -171,23 +169,22 @@ every = 50
                         "test.toml"),
             options);
   const auto lines = read(folder / "out" / "pathlines.vtp");
-  ASSERT_EQ(lines->GetNumberOfLines(), 10);
-  vtkNew<vtkIdList> corners;
+  ASSERT_EQ(lines.count(vtk_poly_line), 10U);
   std::size_t contacts = 0;
   std::size_t rebounds = 0;
-  for (vtkIdType line = 0; line < 10; ++line) {
-    EXPECT_EQ(value(lines->GetCellData()->GetArray("id"), line), 2.0 * static_cast<double>(line));
-    lines->GetCellPoints(line, corners);
-    const double start = lines->GetPoint(corners->GetId(0))[0];
-    for (vtkIdType k = 0; k < corners->GetNumberOfIds(); ++k) {
-      const vtkIdType p = corners->GetId(k);
-      const double way = start + 2.0 * value(lines->GetPointData()->GetArray("time"), p);
-      EXPECT_NEAR(lines->GetPoint(p)[0], way <= 4.0 ? way : 8.0 - way, 1e-9);
-      contacts += value(lines->GetPointData()->GetArray("contact"), p) > 0.0 ? 1 : 0;
+  for (std::size_t line = 0; line < 10; ++line) {
+    EXPECT_EQ(value(lines.cell_data, "id", line), 2.0 * static_cast<double>(line));
+    const std::vector<std::uint32_t> corners = lines.cell(line);
+    const double start = lines.points[corners[0]].x;
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const std::uint32_t p = corners[k];
+      const double way = start + 2.0 * value(lines.point_data, "time", p);
+      EXPECT_NEAR(lines.points[p].x, way <= 4.0 ? way : 8.0 - way, 1e-9);
+      contacts += value(lines.point_data, "contact", p) > 0.0 ? 1 : 0;
     }
     const bool met = start > 2.0;
     rebounds += met ? 1 : 0;
-    EXPECT_EQ(corners->GetNumberOfIds(), 101 + (met ? 1 : 0));
+    EXPECT_EQ(corners.size(), 101U + (met ? 1 : 0));
   }
   EXPECT_EQ(contacts, rebounds);
   EXPECT_GT(rebounds, 0U);

@@ -11,7 +11,6 @@
 #include "support/same_mesh.hpp"
 #include "support/sample_mesh.hpp"
 #include "support/tier.hpp"
-#include "support/with_vtk.hpp"
 
 namespace dartcast::test::tetrahedra_files_test {
 
@@ -287,7 +286,6 @@ TEST(SecondOrder, CornersOfATetrahedronInEveryFormat) {
          1);
   (void)folder.file("a.node", "10 3 0 0\n" + msh_points);
   expect("a.ele", "1 10 0\n1 " + numbers + "\n", 1);
-  if (!has_vtk()) return;
   const std::string head =
       "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 10 double\n" + points;
   for (const char* type : {"24", "71"})

@@ -17,7 +17,6 @@
 #include "support/surface_files.hpp"
 #include "support/tier.hpp"
 #include "support/vtp_text.hpp"
-#include "support/with_vtk.hpp"
 #include "surface/check_surface.hpp"
 
 namespace dartcast::test::vtp_surface_test {
@@ -33,7 +32,6 @@ std::string cube_vtp(const std::string& at_cells = "") {
 }
 
 TEST(VtpSurface, FacesAndGroups) {
-  SKIP_WITHOUT_VTK();
   const Folder folder;
   const MeshFile plain = check_surface(folder.file("a.vtp", cube_vtp()));
   EXPECT_EQ(plain.report.verdict(), Verdict::accept) << report_text(plain.report);
@@ -51,7 +49,6 @@ TEST(VtpSurface, FacesAndGroups) {
 }
 
 TEST(VtpSurface, FilesThatAreNotRight) {
-  SKIP_WITHOUT_VTK();
   const Folder folder;
   const auto refused = [&](const std::string& content) {
     const MeshFile file = check_surface(folder.file("a.vtp", content));
@@ -68,7 +65,6 @@ TEST(VtpSurface, FilesThatAreNotRight) {
 }
 
 TEST(VtpSurface, MutantsGetAVerdict) {
-  SKIP_WITHOUT_VTK();
   const Folder folder;
   const std::string whole = cube_vtp(vtp_array("patch", {7, 7, 0, 8, 8, 8}));
   Mutants mutants(29);
@@ -140,7 +136,6 @@ SimVascularCase write_case(const std::filesystem::path& folder, bool with_ids) {
 }
 
 TEST(SimVascular, SurfacesNameThePatches) {
-  SKIP_WITHOUT_VTK();
   for (const bool with_ids : {true, false}) {
     const Folder folder;
     const SimVascularCase made = write_case(folder / "mesh-complete", with_ids);
@@ -159,7 +154,6 @@ TEST(SimVascular, SurfacesNameThePatches) {
 }
 
 TEST(SimVascular, FoldersThatAreNotRight) {
-  SKIP_WITHOUT_VTK();
   const Folder folder;
   (void)write_case(folder / "a", true);
   write_bytes(folder / "a/mesh-surfaces/far.vtp", vtp_text({{9, 9, 9}, {9, 9, 8}, {9, 8, 9}}, {{0, 1, 2}}));

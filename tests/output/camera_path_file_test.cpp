@@ -9,7 +9,6 @@
 #include "dartcast/generators.hpp"
 #include "formats/file_write.hpp"
 #include "formats/point_file.hpp"
-#include "support/with_vtk.hpp"
 
 namespace dartcast::camera_path_file_test {
 
@@ -21,7 +20,6 @@ CameraPath path_in_a_bar() {
 }
 
 TEST(CameraPathFile, HoldsTheCamerasAsALine) {
-  SKIP_WITHOUT_VTK();
   const fs::path file = fs::path(testing::TempDir()) / "dartcast_camera.vtp";
   const CameraPath path = path_in_a_bar();
   ASSERT_GT(path.cameras.size(), 20U);

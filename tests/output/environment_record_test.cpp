@@ -19,7 +19,6 @@
 #include "output/recording.hpp"
 #include "support/data_arrays.hpp"
 #include "support/sample_mesh.hpp"
-#include "support/with_vtk.hpp"
 
 namespace dartcast::environment_record_test {
 
@@ -119,7 +118,6 @@ class EnvironmentRecordTest : public testing::Test {
 
 // Sources as those of a file in which other things stand between the cells.
 TEST_F(EnvironmentRecordTest, CellsAndParticlesAreJoinedBySource) {
-  SKIP_WITHOUT_VTK();
   MeshData mesh = labelled_box();
   for (std::uint32_t c = 0; c < mesh.cell_count(); ++c) mesh.source.push_back(7 + 2 * c);
   Environment environment(mesh);
@@ -151,7 +149,6 @@ TEST_F(EnvironmentRecordTest, CellsAndParticlesAreJoinedBySource) {
 }
 
 TEST_F(EnvironmentRecordTest, AFileOfFacesAndCellsIsKept) {
-  SKIP_WITHOUT_VTK();
   MeshData mesh = labelled_box();
   mesh.cell_data.push_back({"source", 1, std::vector<double>(mesh.cell_count(), -1.0)});
   mesh.cell_data.push_back({"free", 1, std::vector<double>(mesh.cell_count(), 0.5)});
@@ -173,7 +170,6 @@ TEST_F(EnvironmentRecordTest, AFileOfFacesAndCellsIsKept) {
 
 // The arrays of a run that was cut off and resumed after edits are those of one that was not.
 TEST_F(EnvironmentRecordTest, ResumedRunsKeepTheArrays) {
-  SKIP_WITHOUT_VTK();
   write_mesh(labelled_box(), temporary / "in.vtu");
   const Scene scene = parse_scene("[environment]\nmesh = '" + (temporary / "in.vtu").string() + R"('
 free = { array = "free", values = [1] }

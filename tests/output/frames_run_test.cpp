@@ -40,7 +40,7 @@ class FramesRun : public testing::Test {
         "= 10\n";
   }
   fs::path file(std::size_t frame) const {
-    return temporary / ("f" + std::to_string(frame) + (has_vtk() ? ".vtu" : ".msh"));
+    return temporary / ("f" + std::to_string(frame) + ".vtu");
   }
 
   Summary run(const std::string& folder, bool resume = false, std::uint64_t steps = 50) const {

@@ -104,7 +104,7 @@ Outcome outcome_of(const fs::path& folder) {
     const std::string name = entry.path().filename();
     if (name == "summary.json" || name == "report.html" || name.starts_with("checkpoint")) continue;
     if (const auto step = frame_step(name); step && name.starts_with("particles_")) {
-      if (has_vtk()) outcome.frames[*step] = particles_of(folder, *step);
+      outcome.frames[*step] = particles_of(folder, *step);
     } else if (name != "particles.pvd") {
       outcome.files[name] = read_bytes(entry.path());
     }
@@ -156,7 +156,7 @@ TEST_F(RanksRun, ShareTheParticles) {
   run(test::scene_text, at("shared"), 3);
   for (const char* piece : {"particles_000040.0.vtp", "particles_000040.1.vtp", "particles_000040.2.vtp"}) {
     ASSERT_TRUE(fs::exists(at("shared") / piece)) << piece;
-    if (has_vtk()) EXPECT_GT(read_points(at("shared") / piece).points.size(), 20U) << piece;
+    EXPECT_GT(read_points(at("shared") / piece).points.size(), 20U) << piece;
   }
   EXPECT_NE(read_bytes(at("shared") / "particles_000040.pvtp").find("Source=\"particles_000040.2.vtp\""),
             std::string::npos);
@@ -165,7 +165,6 @@ TEST_F(RanksRun, ShareTheParticles) {
 
 // Readers of frames take the index for the whole, also where a rank has no particles.
 TEST_F(RanksRun, AnIndexIsReadAsTheWholeFrame) {
-  if (!has_vtk()) GTEST_SKIP() << "reading .vtp files needs VTK";
   run(test::scene_text, at("one"), 1);
   run(test::scene_text, at("three"), 3);
   const PointFile one = read_points(at("one") / "particles_000040.vtp");
@@ -347,9 +346,9 @@ TEST_F(RanksRun, ByCellsAreBalanced) {
     expect_same(one, without_environment(outcome_of(to)), std::to_string(ranks));
     for (const char* frame : {"environment_000000", "environment_000050", "environment_000120"}) {
       std::size_t cells = 0;
-      for (unsigned r = 0; has_vtk() && r < ranks; ++r)
+      for (unsigned r = 0; r < ranks; ++r)
         cells += read_mesh(to / fmt::format("{}.{}.vtu", frame, r)).mesh.cell_count();
-      if (has_vtk()) EXPECT_EQ(cells, 4096U) << frame;
+      EXPECT_EQ(cells, 4096U) << frame;
     }
   }
   Scene scene = parse_scene(text, "test.toml");
@@ -371,7 +370,6 @@ TEST_F(RanksRun, ByCellsAreBalanced) {
 
 // The mesh of the vessel from pieces, with its patches, and from one file: no difference but in its name.
 TEST_F(RanksRun, ByCellsReadPieces) {
-  if (!has_vtk()) GTEST_SKIP() << "reading .vtu files needs VTK";
   MeshData mesh = generate_vessel({.core = 3, .rings = 2});
   check_and_repair(mesh);
   write_mesh(mesh, at("vessel.vtu"));
@@ -433,7 +431,6 @@ TEST_F(RanksRun, ByCellsGoOnWithAnyOtherNumber) {
 
 // Each cell is in one piece, at the places of its rank's vertices.
 TEST_F(RanksRun, ByCellsHaveFramesOfEachPart) {
-  if (!has_vtk()) GTEST_SKIP() << "reading .vtu files needs VTK";
   run(spread_text, at("one"), 1);
   run(spread_text, at("parts"), 3, false, {}, 0, Partition::cells);
   const MeshData whole = read_mesh(at("one") / "environment_000040.vtu").mesh;

@@ -16,7 +16,6 @@
 #include "support/data_arrays.hpp"
 #include "support/sample_mesh.hpp"
 #include "support/with_response.hpp"
-#include "support/with_vtk.hpp"
 
 namespace dartcast::recording_test {
 
@@ -93,7 +92,6 @@ TEST_F(RecordingTest, AStaticRunLeavesItsFilesAndNoOthers) {
 }
 
 TEST_F(RecordingTest, FramesReadBackBitByBit) {
-  SKIP_WITHOUT_VTK();
   const Scene scene = parse_scene(scene_text, "test.toml");
   BoxOptions box = std::get<BoxOptions>(scene.environment.mesh);
   const MeshData mesh = generate_box(box);
@@ -128,7 +126,6 @@ TEST_F(RecordingTest, FramesReadBackBitByBit) {
 }
 
 TEST_F(RecordingTest, RunsInThePlaneLeaveTheSameFiles) {
-  SKIP_WITHOUT_VTK();
   const std::string text =
       "[environment]\ngenerator = 'maze'\nrooms = [3, 2]\nsize = [26.0, 17.0]\ntype = 'mixed'\njitter = 0.2\n"
       "[[deformation]]\nkind = 'bend'\namplitude = 0.3\nlength = 20.0\naxis = [0.0, 1.0, 0.0]\n"
@@ -151,7 +148,6 @@ TEST_F(RecordingTest, RunsInThePlaneLeaveTheSameFiles) {
 }
 
 TEST_F(RecordingTest, TheKindOfAParticleOnAWallIsSaid) {
-  SKIP_WITHOUT_VTK();
   const MeshData mesh = generate_box({});
   Environment environment(mesh);
   SimulationOptions options;
@@ -170,7 +166,6 @@ TEST_F(RecordingTest, TheKindOfAParticleOnAWallIsSaid) {
 }
 
 TEST_F(RecordingTest, ADeformingRunHasAnEnvironmentPerFrame) {
-  SKIP_WITHOUT_VTK();
   run(scene_text + twist, folder);
   EXPECT_FALSE(fs::exists(folder / "environment.vtu"));
   const MeshFile first = read_mesh(folder / "environment_000000.vtu");
@@ -252,7 +247,6 @@ TEST_F(RecordingTest, FoldersOfOthersAreLeftAlone) {
 }
 
 TEST_F(RecordingTest, PositionsComeFromVtpAndCsv) {
-  SKIP_WITHOUT_VTK();
   const fs::path csv = temporary / "seeds.csv";
   write_bytes(csv, "id,\"z\",y,x\n1, 0.5,0.25,0.125\n\n2,1e-1,0.1,0.1\r\n");
   const auto points = read_points(csv).points;

@@ -26,7 +26,6 @@
 #include "scene/seed_file.hpp"
 #include "support/data_arrays.hpp"
 #include "support/sample_mesh.hpp"
-#include "support/with_vtk.hpp"
 
 namespace dartcast::run_files_test {
 
@@ -102,7 +101,6 @@ class RunFilesTest : public testing::Test {
 };
 
 TEST_F(RunFilesTest, SeedsInACsvFileHaveVelocitiesAndRadii) {
-  SKIP_WITHOUT_VTK();
   (void)temporary.file("a.csv", "radius, vx,vy,vz,x,y,z\n0.25,1,0,0,1,2,3\n0,0,-1,0.5,2,2,2\n");
   EXPECT_EQ(run(seeded("a.csv", "velocity = [9, 9, 9]\nradius = 0.1\n")).audit->failed, 0U);
   const PointFile after = read_points(folder / "particles_000001.vtp");
@@ -115,7 +113,6 @@ TEST_F(RunFilesTest, SeedsInACsvFileHaveVelocitiesAndRadii) {
 }
 
 TEST_F(RunFilesTest, SeedsInAVtpFileHaveVelocitiesAndRadii) {
-  SKIP_WITHOUT_VTK();
   const std::string radius = "<DataArray type='Float64' Name='radius' format='ascii'>0 0.25</DataArray>";
   const std::string velocity =
       "<DataArray type='Float64' Name='velocity' NumberOfComponents='3' format='ascii'>1 0 0 1 0 1</DataArray>";
@@ -157,7 +154,6 @@ TEST_F(RunFilesTest, ColumnsOfSeedsThatHaveNoMeaningAreRefused) {
 
 // Free fall: each row's energies are those of the frame's particles.
 TEST_F(RunFilesTest, EnergiesStandInTheTable) {
-  SKIP_WITHOUT_VTK();
   (void)run(
       "[environment]\ngenerator = 'box'\ncells = [4, 4, 4]\n[[particles]]\ncount = 50\nvelocity = [1.0, 2.0, 0.5]\n"
       "[motion]\ndt = 0.02\nsteps = 20\ngravity = [0.0, -1.0, -9.5]\n[output]\nevery = 1\n");
@@ -195,7 +191,6 @@ TEST_F(RunFilesTest, EnergiesAreThoseOfTheMasses) {
 }
 
 TEST_F(RunFilesTest, ParticlesThatAreHeldSaySo) {
-  SKIP_WITHOUT_VTK();
   // The whole box is turned inside out along z: everybody is held.
   const MeshData mesh = generate_box({});
   write_mesh(mesh, temporary / "a.vtu");

@@ -13,7 +13,6 @@
 #include "formats/file_text.hpp"
 #include "formats/point_file.hpp"
 #include "support/sample_mesh.hpp"
-#include "support/with_vtk.hpp"
 
 namespace dartcast::scene_in_code_test {
 
@@ -191,7 +190,7 @@ TEST(SceneInCode, ARunCanBeCancelledBetweenSteps) {
   const auto json = nlohmann::json::parse(std::ifstream(options.folder / "summary.json"));
   EXPECT_EQ(json["steps"], 13);
   EXPECT_EQ(json["cancelled"], true);
-  if (has_vtk()) EXPECT_EQ(read_points(options.folder / "particles_000013.vtp").points.size(), cancelled.alive);
+  EXPECT_EQ(read_points(options.folder / "particles_000013.vtp").points.size(), cancelled.alive);
   EXPECT_NE(read_bytes(options.folder / "particles.pvd").find("particles_000013.vtp"), std::string::npos);
 
   options.resume = true;
@@ -205,7 +204,6 @@ TEST(SceneInCode, ARunCanBeCancelledBetweenSteps) {
 }
 
 TEST(SceneInCode, UserDataIsWrittenWithFramesAndResumed) {
-  SKIP_WITHOUT_VTK();
   const test::Folder folder;
   RunOptions options;
   options.folder = folder / "out";

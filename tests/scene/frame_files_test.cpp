@@ -17,7 +17,7 @@
 #include "dartcast/generators.hpp"
 #include "dartcast/scene_file.hpp"
 #include "formats/file_text.hpp"
-#include "formats/vtk/vtu_points.hpp"
+#include "formats/vtk.hpp"
 #include "mesh/same_cells.hpp"
 #include "support/expectations.hpp"
 #include "support/meshes.hpp"
@@ -84,21 +84,19 @@ TEST_F(FrameFilesTest, EveryFormatGivesThePointsOfItsMesh) {
   expect_same(write("p.vtu", plane), write("q.vtu", moved(plane, [](Vec3& x) { x.z = 2.0; })));  // put in the plane
 }
 
-// Without VTK: the numbers of all encodings.
+// The numbers of all encodings.
 TEST_F(FrameFilesTest, PointsOfVtuFilesAreDecodedToTheBit) {
   for (const test::XmlData how : test::xml_data_kinds()) {
     const std::string text = test::cubes_vtu(how);
-    const auto found = read_vtu_points(text, 0);
-    ASSERT_EQ(found.has_value(), how != test::XmlData::ascii);
-    if (found) EXPECT_EQ(found->points, read_valid_mesh(write("x.vtu", text)).mesh.points);
-    EXPECT_FALSE(read_vtu_points(test::cubes_vtu(how, 2), 0).has_value());  // pieces
-    if (found) EXPECT_EQ(found->cells, read_vtu_points(test::cubes_vtu(test::XmlData::appended_raw), 0)->cells);
+    const VtuPoints found = read_vtu_points(text, 0);
+    EXPECT_EQ(found.points, read_valid_mesh(write("x.vtu", text)).mesh.points);
+    EXPECT_EQ(found.cells, read_vtu_points(test::cubes_vtu(test::XmlData::appended_raw), 0).cells);
+    EXPECT_NE(found.cells, read_vtu_points(test::cubes_vtu(how, 2), 0).cells);  // pieces
   }
   const MeshData mesh = moved(test::cubes(3), sway);  // compressed
-  const auto found = read_vtu_points(read_bytes(write("x.vtu", mesh)), 0);
-  ASSERT_TRUE(found.has_value());
-  EXPECT_EQ(found->points, mesh.points);
-  EXPECT_NE(found->cells, read_vtu_points(read_bytes(write("y.vtu", test::cubes(3, CellType::prism))), 0)->cells);
+  const VtuPoints found = read_vtu_points(read_bytes(write("x.vtu", mesh)), 0);
+  EXPECT_EQ(found.points, mesh.points);
+  EXPECT_NE(found.cells, read_vtu_points(read_bytes(write("y.vtu", test::cubes(3, CellType::prism))), 0).cells);
 }
 
 TEST_F(FrameFilesTest, FilesOfOtherCellsAreReadAsMeshes) {

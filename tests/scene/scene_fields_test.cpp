@@ -21,7 +21,6 @@
 #include "simulation/scene_field.hpp"
 #include "support/expectations.hpp"
 #include "support/refusals.hpp"
-#include "support/with_vtk.hpp"
 
 namespace dartcast::scene_fields_test {
 
@@ -60,7 +59,6 @@ void add_arrays(MeshData& mesh, const std::string& points, const std::string& ce
 class SceneFields : public ::testing::Test {
  protected:
   void SetUp() override {
-    SKIP_WITHOUT_VTK();
     folder_ = fs::path(::testing::TempDir()) /
               fmt::format("scene_fields_{}", ::testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::remove_all(folder_);

@@ -12,7 +12,6 @@
 #include "simulation/bodies_component.hpp"
 #include "support/expectations.hpp"
 #include "support/sample_mesh.hpp"
-#include "support/with_vtk.hpp"
 
 namespace dartcast::solids_test {
 
@@ -68,7 +67,6 @@ std::size_t line_count(const fs::path& path) {
 }
 
 TEST(SolidsInScenes, WriteSeriesTablesAndSummary) {
-  SKIP_WITHOUT_VTK();
   const test::Folder folder;
   const Summary summary = run(box + barrel + catheter + motion, folder / "out");
   for (const char* name : {"body_barrel", "surface_barrel", "catheter_line", "camera_line"}) {

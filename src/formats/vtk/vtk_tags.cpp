@@ -3,14 +3,10 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <vtkCellData.h>
-#include <vtkDataArray.h>
-#include <vtkFieldData.h>
-#include <vtkStringArray.h>
-#include <vtkUnstructuredGrid.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <map>
 #include <utility>
@@ -27,27 +23,24 @@ struct Tags {
 };
 
 /// Whether the array's values can be tags: whole numbers of 32 bits, or texts, one each.
-bool are_tags(vtkAbstractArray* array, const std::vector<std::uint32_t>& rows) {
-  if (array == nullptr || array->GetNumberOfComponents() != 1) return false;
-  if (vtkStringArray::SafeDownCast(array) != nullptr) return true;
-  auto* numbers = vtkDataArray::SafeDownCast(array);
-  return numbers != nullptr && std::all_of(rows.begin(), rows.end(), [&](std::uint32_t row) {
-           const double x = numbers->GetComponent(row, 0);
+bool are_tags(const VtkArray* array, const std::vector<std::uint32_t>& rows) {
+  if (array == nullptr || array->components != 1) return false;
+  return array->is_text || std::all_of(rows.begin(), rows.end(), [&](std::uint32_t row) {
+           const double x = array->values[row];
            return std::abs(x) <= INT32_MAX && x == std::floor(x);
          });
 }
 
 /// Texts get tags from 1 on, by their first row; an empty one 0. Precondition: are_tags().
-Tags tags_of(vtkAbstractArray& array, const std::vector<std::uint32_t>& rows) {
+Tags tags_of(const VtkArray& array, const std::vector<std::uint32_t>& rows) {
   Tags tags;
-  auto* texts = vtkStringArray::SafeDownCast(&array);
   std::map<std::string, std::int32_t> known = {{"", 0}};
   for (const std::uint32_t row : rows) {
-    if (texts == nullptr) {
-      tags.values.push_back(static_cast<std::int32_t>(vtkDataArray::SafeDownCast(&array)->GetComponent(row, 0)));
+    if (!array.is_text) {
+      tags.values.push_back(static_cast<std::int32_t>(array.values[row]));
       continue;
     }
-    const auto [found, fresh] = known.try_emplace(texts->GetValue(row), static_cast<std::int32_t>(known.size()));
+    const auto [found, fresh] = known.try_emplace(array.texts[row], static_cast<std::int32_t>(known.size()));
     if (fresh) tags.names[found->second] = found->first;
     tags.values.push_back(found->second);
   }
@@ -55,11 +48,11 @@ Tags tags_of(vtkAbstractArray& array, const std::vector<std::uint32_t>& rows) {
 }
 
 /// Names written as "tag name".
-std::map<std::int32_t, std::string> written_names(vtkUnstructuredGrid& grid, const char* array_name) {
+std::map<std::int32_t, std::string> written_names(const VtkGrid& grid, const char* array_name) {
   std::map<std::int32_t, std::string> names;
-  auto* array = vtkStringArray::SafeDownCast(grid.GetFieldData()->GetAbstractArray(array_name));
-  for (vtkIdType i = 0; array != nullptr && i < array->GetNumberOfValues(); ++i) {
-    const std::string text = array->GetValue(i);
+  const VtkArray* array = find_array(grid.field, array_name);
+  for (std::size_t i = 0; array != nullptr && i < array->texts.size(); ++i) {
+    const std::string& text = array->texts[i];
     const std::size_t space = text.find(' ');
     if (space == std::string::npos || space == 0 || space > 11) continue;
     const long tag = std::strtol(text.c_str(), nullptr, 10);
@@ -69,10 +62,11 @@ std::map<std::int32_t, std::string> written_names(vtkUnstructuredGrid& grid, con
 }
 
 /// Sets regions, and patches by the same array.
-void copy_regions(vtkUnstructuredGrid& grid, const Places& places, MeshData& mesh) {
+void copy_regions(const VtkGrid& grid, const Places& places, MeshData& mesh) {
   for (const char* name : {"region", "gmsh:physical", "medit:ref"}) {
-    vtkDataArray* array = grid.GetCellData()->GetArray(name);
-    if (!are_tags(array, places.cells) || !are_tags(array, places.faces)) continue;
+    const VtkArray* array = find_array(grid.cell_data, name);
+    if (array == nullptr || array->is_text || !are_tags(array, places.cells) || !are_tags(array, places.faces))
+      continue;
     mesh.regions = tags_of(*array, places.cells).values;
     mesh.patch_tags = tags_of(*array, places.faces).values;
     break;
@@ -81,18 +75,15 @@ void copy_regions(vtkUnstructuredGrid& grid, const Places& places, MeshData& mes
   mesh.patch_names = written_names(grid, "patch_names");
 }
 
-[[noreturn]] void refuse_patches(vtkUnstructuredGrid& grid, const std::string& name, const std::string& why) {
+[[noreturn]] void refuse_patches(const VtkGrid& grid, const std::string& name, const std::string& why) {
   std::vector<std::string> known;
-  for (int a = 0; a < grid.GetCellData()->GetNumberOfArrays(); ++a) {
-    const char* other = grid.GetCellData()->GetAbstractArray(a)->GetName();
-    known.emplace_back(other == nullptr ? "" : other);
-  }
+  for (const VtkArray& other : grid.cell_data) known.push_back(other.name);
   throw InvalidMesh(fmt::format("patches from the cell array '{}': {}; the cell arrays are: {}", name, why,
                                 known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))));
 }
 
-vtkAbstractArray& array_of_patches(vtkUnstructuredGrid& grid, const Places& places, const std::string& name) {
-  vtkAbstractArray* array = grid.GetCellData()->GetAbstractArray(name.c_str());
+const VtkArray& array_of_patches(const VtkGrid& grid, const Places& places, const std::string& name) {
+  const VtkArray* array = find_array(grid.cell_data, name);
   if (array == nullptr) refuse_patches(grid, name, "there is no such array");
   if (places.faces.empty())
     refuse_patches(grid, name,
@@ -105,23 +96,22 @@ vtkAbstractArray& array_of_patches(vtkUnstructuredGrid& grid, const Places& plac
 
 }  // namespace
 
-bool copy_tags(vtkUnstructuredGrid& grid, const Places& places, const std::string& patch_array, MeshData& mesh) {
+bool copy_tags(const VtkGrid& grid, const Places& places, const std::string& patch_array, MeshData& mesh) {
   copy_regions(grid, places, mesh);
   if (!patch_array.empty()) {
     Tags tags = tags_of(array_of_patches(grid, places, patch_array), places.faces);
     mesh.patch_tags = std::move(tags.values);
     if (patch_array != "patch" || !tags.names.empty()) mesh.patch_names = std::move(tags.names);
   }
-  vtkAbstractArray* array = grid.GetCellData()->GetAbstractArray("patch");
+  const VtkArray* array = find_array(grid.cell_data, "patch");
   if (places.faces.empty() || !are_tags(array, places.faces)) return false;
   if (patch_array.empty()) {
     Tags tags = tags_of(*array, places.faces);
     mesh.patch_tags = std::move(tags.values);
     if (!tags.names.empty()) mesh.patch_names = std::move(tags.names);
   }
-  auto* numbers = vtkDataArray::SafeDownCast(array);
-  return numbers != nullptr && std::all_of(places.cells.begin(), places.cells.end(),
-                                           [&](std::uint32_t row) { return numbers->GetComponent(row, 0) == 0.0; });
+  return !array->is_text && std::all_of(places.cells.begin(), places.cells.end(),
+                                        [&](std::uint32_t row) { return array->values[row] == 0.0; });
 }
 
 }  // namespace dartcast

@@ -1,13 +1,12 @@
 // Regions and patches of a VTK grid, from its arrays at cells.
 #pragma once
 
-#include <vtkUnstructuredGrid.h>
-
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "dartcast/mesh_data.hpp"
+#include "formats/vtk/vtk_grid.hpp"
 
 namespace dartcast {
 
@@ -21,6 +20,6 @@ struct Places {
 /// Sets the regions of the cells and the tags of the patch faces, with their names. `patch_array`: see
 /// ReadOptions::patch_array. Returns whether the cell array `patch` is one that write_vtu() adds, so that it has no
 /// data of the cells. Throws InvalidMesh, which names the arrays of the file, where the requested one cannot be used.
-bool copy_tags(vtkUnstructuredGrid& grid, const Places& places, const std::string& patch_array, MeshData& mesh);
+bool copy_tags(const VtkGrid& grid, const Places& places, const std::string& patch_array, MeshData& mesh);
 
 }  // namespace dartcast

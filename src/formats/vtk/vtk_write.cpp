@@ -1,132 +1,108 @@
-// Writes legacy .vtk: a VTK grid from the mesh, then VTK's writer.
+// Writes legacy .vtk: the arrays of write_vtu(), big-endian, in sections.
 #include <fmt/format.h>
-#include <vtkCellArray.h>
-#include <vtkCellData.h>
-#include <vtkCellType.h>
-#include <vtkDoubleArray.h>
-#include <vtkFieldData.h>
-#include <vtkIntArray.h>
-#include <vtkPointData.h>
-#include <vtkPoints.h>
-#include <vtkSmartPointer.h>
-#include <vtkUnstructuredGrid.h>
-#include <vtkUnstructuredGridWriter.h>
 
 #include <algorithm>
-#include <array>
+#include <bit>
+#include <cstdint>
+#include <iterator>
+#include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
-#include "dartcast/error.hpp"
-#include "formats/vtk/vtk_errors.hpp"
-#include "formats/vtk/vtk_mesh.hpp"
+#include "formats/file_write.hpp"
+#include "formats/vtk.hpp"
 #include "formats/vtu_write.hpp"
-#include "mesh/cell_types.hpp"
 
 namespace dartcast {
 namespace {
 
-int vtk_type(CellType type) {
-  static constexpr std::array<int, 8> types = {VTK_TETRA,      VTK_HEXAHEDRON, VTK_WEDGE, VTK_PYRAMID,
-                                               VTK_POLYHEDRON, VTK_TRIANGLE,   VTK_QUAD,  VTK_POLYGON};
-  return types[static_cast<std::size_t>(type)];
-}
-
-void add_polyhedron(vtkUnstructuredGrid& grid, std::span<const std::uint32_t> stream) {
-  std::vector<vtkIdType> faces;
-  std::size_t at = 1;
-  for (std::uint32_t f = 0; f < stream[0]; ++f) {
-    for (std::size_t k = 0; k <= stream[at]; ++k) faces.push_back(stream[at + k]);
-    at += stream[at] + 1;
+/// A name without blanks: %41 is A.
+std::string encoded(std::string_view name) {
+  std::string out;
+  for (const char c : name) {
+    const bool plain = c > ' ' && c < '\x7f' && c != '"' && c != '%';
+    out += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
   }
-  grid.InsertNextCell(VTK_POLYHEDRON, static_cast<vtkIdType>(stream[0]), faces.data());
+  return out.empty() ? "unnamed" : out;
 }
 
-void add_cells(const MeshData& mesh, vtkUnstructuredGrid& grid) {
-  for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
-    const auto corners = mesh.cell(c);
-    if (mesh.types[c] == CellType::polyhedron) {
-      add_polyhedron(grid, corners);
-      continue;
+class LegacyText {
+ public:
+  template <class... Values>
+  void line(fmt::format_string<Values...> form, Values&&... values) {
+    fmt::format_to(std::back_inserter(text_), form, std::forward<Values>(values)...);
+    text_ += '\n';
+  }
+  /// Numbers of so many bytes each, as they are in memory.
+  void numbers(std::string_view bytes, std::size_t each) {
+    const std::size_t begin = text_.size();
+    text_ += bytes;
+    if constexpr (std::endian::native == std::endian::little) {
+      for (std::size_t at = begin; at < text_.size(); at += each)
+        std::reverse(text_.begin() + static_cast<std::ptrdiff_t>(at),
+                     text_.begin() + static_cast<std::ptrdiff_t>(at + each));
     }
-    std::vector<vtkIdType> ids(corners.begin(), corners.end());
-    if (mesh.types[c] == CellType::prism) {
-      std::swap(ids[1], ids[2]);
-      std::swap(ids[4], ids[5]);
+    text_ += '\n';
+  }
+  template <class T>
+  void numbers(const std::vector<T>& values) {
+    numbers({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)}, sizeof(T));
+  }
+  [[nodiscard]] std::string_view text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+/// A polyhedron's corners are its face stream here, else they are those of the .vtu file.
+void add_cells(const MeshData& mesh, std::string_view types, LegacyText& to) {
+  const std::size_t n = mesh.cell_count() + mesh.patch_tags.size();
+  std::vector<std::int64_t> offsets = {0};
+  std::vector<std::int64_t> ids;
+  for (std::size_t c = 0; c < n; ++c) {
+    const auto corners = c < mesh.cell_count() ? mesh.cell(c) : mesh.patch_face(c - mesh.cell_count());
+    ids.insert(ids.end(), corners.begin(), corners.end());
+    if (c < mesh.cell_count() && mesh.types[c] == CellType::prism) {
+      std::swap(ids[ids.size() - 5], ids[ids.size() - 4]);
+      std::swap(ids[ids.size() - 2], ids[ids.size() - 1]);
     }
-    grid.InsertNextCell(vtk_type(mesh.types[c]), static_cast<vtkIdType>(corners.size()), ids.data());
+    offsets.push_back(static_cast<std::int64_t>(ids.size()));
   }
-  for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) {
-    const std::vector<vtkIdType> ids(mesh.patch_faces.begin() + static_cast<std::ptrdiff_t>(mesh.patch_offsets[f]),
-                                     mesh.patch_faces.begin() + static_cast<std::ptrdiff_t>(mesh.patch_offsets[f + 1]));
-    static constexpr std::array<int, 5> types = {0, 0, VTK_LINE, VTK_TRIANGLE, VTK_QUAD};
-    grid.InsertNextCell(ids.size() < types.size() ? types[ids.size()] : VTK_POLYGON, static_cast<vtkIdType>(ids.size()),
-                        ids.data());
-  }
+  to.line("CELLS {} {}", n + 1, ids.size());
+  to.line("OFFSETS vtktypeint64");
+  to.numbers(offsets);
+  to.line("CONNECTIVITY vtktypeint64");
+  to.numbers(ids);
+  to.line("CELL_TYPES {}", n);
+  to.numbers(std::vector<std::int32_t>(types.begin(), types.end()));
 }
 
-/// An array with a row of zeros for each item that it has no values for.
-void add_array(vtkFieldData& to, const DataArray& from, vtkIdType items) {
-  vtkNew<vtkDoubleArray> array;
-  array->SetName(from.name.c_str());
-  array->SetNumberOfComponents(static_cast<int>(from.components));
-  array->SetNumberOfTuples(items);
-  array->Fill(0.0);
-  for (std::size_t i = 0; i < from.values.size(); ++i) array->SetValue(static_cast<vtkIdType>(i), from.values[i]);
-  to.AddArray(array);
-}
-
-/// Adds regions at the cells, and tags of patches at the patch faces, which come after them.
-void add_tags(const MeshData& mesh, vtkUnstructuredGrid& grid) {
-  const auto add = [&](const char* name, auto&& cell_tag, auto&& face_tag) {
-    vtkNew<vtkIntArray> array;
-    array->SetName(name);
-    for (std::size_t c = 0; c < mesh.cell_count(); ++c) array->InsertNextValue(cell_tag(c));
-    for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) array->InsertNextValue(face_tag(f));
-    grid.GetCellData()->AddArray(array);
-  };
-  const auto none = [](std::size_t) { return 0; };
-  if (!mesh.regions.empty())
-    add(
-        "region", [&](std::size_t c) { return mesh.regions[c]; }, none);
-  if (!mesh.patch_tags.empty()) add("patch", none, [&](std::size_t f) { return mesh.patch_tags[f]; });
-}
-
-vtkSmartPointer<vtkUnstructuredGrid> make_grid(const MeshData& mesh) {
-  auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(static_cast<vtkIdType>(mesh.points.size()));
-  for (std::size_t p = 0; p < mesh.points.size(); ++p) {
-    points->SetPoint(static_cast<vtkIdType>(p), mesh.points[p].x, mesh.points[p].y, mesh.points[p].z);
+void add_arrays(std::string_view section, std::size_t items, const std::vector<XmlArray>& arrays, LegacyText& to) {
+  if (arrays.empty()) return;
+  to.line("{} {}", section, items);
+  to.line("FIELD FieldData {}", arrays.size());
+  for (const XmlArray& a : arrays) {
+    const bool real = a.type() == "Float64";
+    const bool byte = a.type() == "UInt8";
+    to.line("{} {} {} {}", encoded(a.name()), a.components(), items, real ? "double" : byte ? "unsigned_char" : "int");
+    to.numbers(a.bytes(), real ? 8 : byte ? 1 : 4);
   }
-  grid->SetPoints(points);
-  grid->AllocateEstimate(static_cast<vtkIdType>(mesh.cell_count()) + static_cast<vtkIdType>(mesh.patch_tags.size()), 8);
-  add_cells(mesh, *grid);
-  for (const DataArray& a : mesh.point_data) add_array(*grid->GetPointData(), a, grid->GetNumberOfPoints());
-  for (const DataArray& a : mesh.cell_data) {
-    if (!is_replaced(mesh, a.name)) add_array(*grid->GetCellData(), a, grid->GetNumberOfCells());
-  }
-  if (!mesh.free.empty()) {
-    add_array(*grid->GetCellData(), DataArray{"free", 1, {mesh.free.begin(), mesh.free.end()}},
-              grid->GetNumberOfCells());
-  }
-  add_tags(mesh, *grid);
-  return grid;
 }
 
 }  // namespace
 
 void write_legacy_vtk(const MeshData& mesh, const std::filesystem::path& path) {
-  const VtkErrors errors;
-  vtkNew<vtkUnstructuredGridWriter> writer;
-  writer->SetFileTypeToBinary();
-  writer->SetFileName(path.c_str());
-  writer->SetInputData(make_grid(mesh));
-  if (writer->Write() != 1 || writer->GetErrorCode() != 0 || !errors.first().empty()) {
-    throw Error(fmt::format(
-        "{}: the file cannot be written; {}", path.string(),
-        errors.first().empty() ? "check the folder, its permissions and the disk's space" : errors.first()));
-  }
+  XmlDataSet data = vtu_data_set(std::shared_ptr<const MeshData>(std::shared_ptr<const void>(), &mesh));
+  LegacyText to;
+  to.line("# vtk DataFile Version 5.1\ndartcast\nBINARY\nDATASET UNSTRUCTURED_GRID");
+  to.line("POINTS {} double", mesh.points.size());
+  to.numbers(data.section("Points").arrays.front().bytes(), sizeof(double));
+  add_cells(mesh, data.section("Cells").arrays.at(2).bytes(), to);
+  add_arrays("CELL_DATA", mesh.cell_count() + mesh.patch_tags.size(), data.section("CellData").arrays, to);
+  add_arrays("POINT_DATA", mesh.points.size(), data.section("PointData").arrays, to);
+  const std::string_view text = to.text();
+  write_pieces(path, {&text, 1});
 }
 
 }  // namespace dartcast

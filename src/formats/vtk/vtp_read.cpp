@@ -1,69 +1,55 @@
-// Reads points from .vtp files, after a check of their content.
-#include "formats/vtk/vtp_read.hpp"
-
+// Points and faces of .vtp files.
 #include <fmt/format.h>
-#include <vtkDataArray.h>
-#include <vtkNew.h>
-#include <vtkPointData.h>
-#include <vtkPoints.h>
-#include <vtkPolyData.h>
-#include <vtkXMLPolyDataReader.h>
+
+#include <cmath>
 
 #include "dartcast/error.hpp"
-#include "formats/file_text.hpp"
-#include "formats/read_memory.hpp"
-#include "formats/vtk/vtk_errors.hpp"
-#include "formats/vtk/vtu_check.hpp"
+#include "formats/vtk.hpp"
+#include "formats/vtk/vtk_grid.hpp"
 
 namespace dartcast {
 
 namespace {
 
-DataArray to_array(vtkDataArray& from) {
-  DataArray array{
-      from.GetName() != nullptr ? from.GetName() : "", static_cast<std::size_t>(from.GetNumberOfComponents()), {}};
-  for (vtkIdType i = 0; i < from.GetNumberOfTuples(); ++i) {
-    for (int k = 0; k < from.GetNumberOfComponents(); ++k) array.values.push_back(from.GetComponent(i, k));
-  }
-  return array;
+std::string group_of(const VtkArray& array, std::size_t row) {
+  if (array.is_text) return array.texts[row];
+  const double value = array.values[row];
+  return std::abs(value) < 1e15 && value == std::floor(value) ? fmt::format("{:.0f}", value)
+                                                              : fmt::format("{:g}", value);
 }
 
-// Calls check(), and adds the file's name to its errors.
-template <class Check>
-void with_file_name(const std::filesystem::path& path, Check&& check) {
-  try {
-    check();
-  } catch (const InvalidMesh& e) {
-    throw Error(fmt::format("{}: the points cannot be read: {}", path.string(), e.what()));
+/// The array of the groups: the first name that there is.
+const VtkArray* groups_in(const VtkGrid& grid) {
+  for (const char* name : {"patch", "region", "ModelFaceID"}) {
+    const VtkArray* array = find_array(grid.cell_data, name);
+    if (array != nullptr && array->components == 1) return array;
   }
+  return nullptr;
 }
 
 }  // namespace
 
-PointFile read_vtp(const std::filesystem::path& path, const ReadOptions& options) {
-  with_file_name(path, [&] {
-    check_memory(memory_of_vtk({.file = 2 * file_bytes(path)}), options.max_memory);
-    check_vtu(read_bytes(path), "PolyData", options.max_memory);
-  });
-  const VtkErrors errors;
-  vtkNew<vtkXMLPolyDataReader> reader;
-  reader->SetFileName(path.c_str());
-  reader->Update();
-  vtkPolyData& data = *reader->GetOutput();
-  vtkPoints* points = data.GetPoints();
-  if (reader->GetErrorCode() != 0 || !errors.first().empty() || points == nullptr) {
-    throw Error(fmt::format("{}: the points cannot be read: {}", path.string(),
-                            errors.first().empty() ? "this is no .vtp file with points" : errors.first()));
-  }
-  PointFile file;
-  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i) {
-    const double* p = points->GetPoint(i);
-    file.points.push_back({p[0], p[1], p[2]});
-  }
-  for (int i = 0; i < data.GetPointData()->GetNumberOfArrays(); ++i) {
-    if (vtkDataArray* array = data.GetPointData()->GetArray(i)) file.arrays.push_back(to_array(*array));
-  }
+PointFile read_vtp_points(std::string_view content, std::uint64_t max_memory) {
+  VtkGrid grid = read_vtk_xml_grid(content, "PolyData", max_memory);
+  PointFile file{std::move(grid.points), {}};
+  for (VtkArray& a : grid.point_data) file.arrays.push_back({std::move(a.name), a.components, std::move(a.values)});
   return file;
+}
+
+VtpFaces read_vtp_faces(std::string_view content, std::uint64_t max_memory) {
+  VtkGrid grid = read_vtk_xml_grid(content, "PolyData", max_memory);
+  VtpFaces out{std::move(grid.points), {}, {}, {}};
+  const VtkArray* groups = groups_in(grid);
+  for (std::size_t c = 0; c < grid.types.size(); ++c) {
+    if (grid.types[c] == vtk_triangle_strip) throw InvalidMesh("triangle strips are not read: write triangles");
+    if (grid.types[c] != vtk_polygon) continue;
+    out.faces.emplace_back(grid.connectivity.begin() + static_cast<std::ptrdiff_t>(grid.offsets[c]),
+                           grid.connectivity.begin() + static_cast<std::ptrdiff_t>(grid.offsets[c + 1]));
+    if (groups != nullptr) out.groups.push_back(group_of(*groups, c));
+  }
+  const VtkArray* ids = find_array(grid.point_data, "GlobalNodeID");
+  for (std::size_t p = 0; ids != nullptr && p < ids->items(); ++p) out.ids.push_back(ids->values[p * ids->components]);
+  return out;
 }
 
 }  // namespace dartcast

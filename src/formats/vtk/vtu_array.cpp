@@ -2,48 +2,40 @@
 #include "formats/vtk/vtu_array.hpp"
 
 #include <fmt/format.h>
-#include <vtkDataCompressor.h>
-#include <vtkLZ4DataCompressor.h>
-#include <vtkLZMADataCompressor.h>
-#include <vtkSmartPointer.h>
-#include <vtkZLibDataCompressor.h>
+#include <lz4.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <climits>
+#include <concepts>
+#include <limits>
+#include <numeric>
 #include <optional>
+#include <span>
 
 #include "dartcast/error.hpp"
 #include "formats/file_text.hpp"
-#include "formats/vtk/vtk_errors.hpp"
+#include "formats/raw_number.hpp"
 
 namespace dartcast {
 namespace {
 
-struct Type {
-  std::string_view name;
-  std::size_t bytes;
-  bool real;
-  std::int64_t low;
-  std::int64_t high;
-};
-
-constexpr std::array<Type, 11> array_types = {{{"Int8", 1, false, INT8_MIN, INT8_MAX},
-                                               {"UInt8", 1, false, 0, UINT8_MAX},
-                                               {"Int16", 2, false, INT16_MIN, INT16_MAX},
-                                               {"UInt16", 2, false, 0, UINT16_MAX},
-                                               {"Int32", 4, false, INT32_MIN, INT32_MAX},
-                                               {"UInt32", 4, false, 0, UINT32_MAX},
-                                               {"Int64", 8, false, INT64_MIN, INT64_MAX},
-                                               {"UInt64", 8, false, 0, INT64_MAX},
-                                               {"Float32", 4, true, 0, 0},
-                                               {"Float64", 8, true, 0, 0},
-                                               {"String", 1, false, INT8_MIN, UINT8_MAX}}};
-
-const Type* find_type(std::string_view name) {
-  const auto* found =
-      std::find_if(array_types.begin(), array_types.end(), [&](const Type& t) { return t.name == name; });
-  return found == array_types.end() ? nullptr : found;
+/// Calls use(T()) with the type of an array's numbers; returns false where the name is none.
+template <class Use>
+bool with_type(std::string_view name, Use&& use) {
+  if (name == "Int8") return use(std::int8_t()), true;
+  if (name == "UInt8" || name == "String") return use(std::uint8_t()), true;
+  if (name == "Int16") return use(std::int16_t()), true;
+  if (name == "UInt16") return use(std::uint16_t()), true;
+  if (name == "Int32") return use(std::int32_t()), true;
+  if (name == "UInt32") return use(std::uint32_t()), true;
+  if (name == "Int64") return use(std::int64_t()), true;
+  if (name == "UInt64") return use(std::uint64_t()), true;
+  if (name == "Float32") return use(float()), true;
+  if (name == "Float64") return use(double()), true;
+  return false;
 }
 
 /// Bytes in base64, read from the start; each call of take() decodes one run with its own padding.
@@ -76,15 +68,17 @@ class Base64 {
   /// Value of the next digit, 64 for padding; nothing at the end or at a byte that is no digit, because VTK skips
   /// none either.
   std::optional<unsigned> next() {
+    static constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/=";
+    static constexpr auto values = [] {
+      std::array<unsigned char, 256> table{};
+      table.fill(255);
+      for (std::size_t v = 0; v < digits.size(); ++v)
+        table[static_cast<unsigned char>(digits[v])] = static_cast<unsigned char>(v);
+      return table;
+    }();
     if (at_ >= text_.size()) return std::nullopt;
-    const char c = text_[at_++];
-    if (c >= 'A' && c <= 'Z') return static_cast<unsigned>(c - 'A');
-    if (c >= 'a' && c <= 'z') return static_cast<unsigned>(c - 'a') + 26;
-    if (c >= '0' && c <= '9') return static_cast<unsigned>(c - '0') + 52;
-    if (c == '+') return 62;
-    if (c == '/') return 63;
-    if (c == '=') return 64;
-    return std::nullopt;
+    const unsigned value = values[static_cast<unsigned char>(text_[at_++])];
+    return value == 255 ? std::nullopt : std::optional(value);
   }
 
   std::string_view text_;
@@ -123,12 +117,16 @@ class Source {
   Base64 base64_;
 };
 
-std::uint64_t integer_at(std::string_view bytes, std::size_t at, std::size_t size, bool big_endian) {
-  std::uint64_t value = 0;
-  for (std::size_t b = 0; b < size; ++b) {
-    value = (value << 8U) | static_cast<unsigned char>(bytes[at + (big_endian ? b : size - 1 - b)]);
-  }
-  return value;
+std::endian order_of(const VtuEncoding& encoding) {
+  return encoding.big_endian ? std::endian::big : std::endian::little;
+}
+
+/// Number i of a header.
+std::uint64_t header_number(std::string_view header, std::size_t i, const VtuEncoding& encoding) {
+  const std::size_t h = encoding.header_bytes;
+  const std::string_view bytes = header.substr(i * h, h);
+  return h == 8 ? raw_number<std::uint64_t>(bytes, order_of(encoding))
+                : raw_number<std::uint32_t>(bytes, order_of(encoding));
 }
 
 /// Sizes that the header of compressed data announces.
@@ -142,11 +140,18 @@ struct Blocks {
   }
 };
 
+bool is_lz4(const VtuArray& array, const VtuEncoding& encoding) {
+  const bool lz4 = encoding.compressor == "vtkLZ4DataCompressor";
+  if (!lz4 && encoding.compressor != "vtkZLibDataCompressor")
+    fail_array(array, fmt::format("the compressor '{}' is not supported: write it with vtkZLibDataCompressor",
+                                  encoding.compressor.substr(0, 40)));
+  return lz4;
+}
+
 Blocks read_blocks(const VtuArray& array, const VtuEncoding& encoding, Source& source, std::uint64_t available) {
+  (void)is_lz4(array, encoding);
   const std::size_t h = encoding.header_bytes;
-  const auto get = [&](std::string_view bytes, std::size_t i) {
-    return integer_at(bytes, i * h, h, encoding.big_endian);
-  };
+  const auto get = [&](std::string_view bytes, std::size_t i) { return header_number(bytes, i, encoding); };
   std::string head = source.take(3 * h);
   if (head.size() < 3 * h) fail_array(array, "its header is cut off; the file is truncated");
   Blocks blocks;
@@ -183,19 +188,22 @@ std::uint64_t total_bytes(const Blocks& blocks) {
   return total;
 }
 
-vtkSmartPointer<vtkDataCompressor> make_compressor(const VtuArray& array, const std::string& name) {
-  if (name == "vtkZLibDataCompressor") return vtkSmartPointer<vtkZLibDataCompressor>::New();
-  if (name == "vtkLZ4DataCompressor") return vtkSmartPointer<vtkLZ4DataCompressor>::New();
-  if (name == "vtkLZMADataCompressor") return vtkSmartPointer<vtkLZMADataCompressor>::New();
-  fail_array(array, fmt::format("the compressor '{}' is not known", name.substr(0, 40)));
+/// Decompresses a block; false where it does not give exactly the bytes of `out`.
+bool unpack(std::string_view packed, std::span<char> out, bool lz4) {
+  if (lz4) {
+    if (packed.size() > INT_MAX || out.size() > INT_MAX) return false;
+    return LZ4_decompress_safe(packed.data(), out.data(), static_cast<int>(packed.size()),
+                               static_cast<int>(out.size())) == static_cast<int>(out.size());
+  }
+  uLongf size = out.size();
+  return ::uncompress(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(packed.data()),
+                      packed.size()) == Z_OK &&
+         size == out.size();
 }
 
 std::string decompress(const VtuArray& array, const VtuEncoding& encoding, Source& source) {
   const Blocks blocks = read_blocks(array, encoding, source, available_bytes(array, encoding));
-  const VtkErrors errors;  // the size that the compressor returns reports its errors
-  const auto compressor = make_compressor(array, encoding.compressor);
-  std::uint64_t all = 0;
-  for (const std::uint64_t c : blocks.compressed) all += c;
+  const std::uint64_t all = std::accumulate(blocks.compressed.begin(), blocks.compressed.end(), std::uint64_t{0});
   const std::string packed = source.take(all);
   if (packed.size() < all) fail_array(array, "its compressed data are cut off; the file is truncated");
   std::string out(total_bytes(blocks), '\0');
@@ -203,10 +211,9 @@ std::string decompress(const VtuArray& array, const VtuEncoding& encoding, Sourc
   std::size_t to = 0;
   for (std::size_t b = 0; b < blocks.compressed.size(); ++b) {
     const std::size_t size = blocks.size_of(b);
-    const std::size_t done =
-        compressor->Uncompress(reinterpret_cast<const unsigned char*>(packed.data()) + from, blocks.compressed[b],
-                               reinterpret_cast<unsigned char*>(out.data()) + to, size);
-    if (done != size) fail_array(array, fmt::format("block {} cannot be decompressed; the file is damaged", b));
+    if (!unpack(std::string_view(packed).substr(from, blocks.compressed[b]), std::span(out).subspan(to, size),
+                is_lz4(array, encoding)))
+      fail_array(array, fmt::format("block {} cannot be decompressed; the file is damaged", b));
     from += blocks.compressed[b];
     to += size;
   }
@@ -217,31 +224,59 @@ std::string decompress(const VtuArray& array, const VtuEncoding& encoding, Sourc
 std::string decode_bytes(const VtuArray& array, const VtuEncoding& encoding) {
   const std::uint64_t size = count_numbers(array, encoding) * vtu_type_bytes(array.type);
   Source source(array, encoding);
-  // VTK encodes the header and the data in one run where they are not compressed.
-  std::string bytes = encoding.compressor.empty()
-                          ? source.take(encoding.header_bytes + size).substr(encoding.header_bytes)
-                          : decompress(array, encoding, source);
+  std::string bytes;
+  if (encoding.compressor.empty()) {
+    // Where they are not compressed, VTK encodes the header and the data in one run. Others encode the header apart.
+    const std::size_t head = encoding.header_bytes;
+    bytes = source.take(head + size);
+    if (bytes.size() == head) bytes += source.take(size);
+    bytes.erase(0, head);
+  } else {
+    bytes = decompress(array, encoding, source);
+  }
   if (bytes.size() != size) fail_array(array, "its data are cut off; the file is truncated");
   return bytes;
 }
 
-/// Calls take(value) for every number of ASCII data; returns how many there are.
-template <class Take>
-std::uint64_t read_ascii(const VtuArray& array, const Type& type, Take&& take) {
+/// Calls take(value) for every number of ASCII data.
+template <class T, class Take>
+void read_ascii(const VtuArray& array, Take&& take) {
+  // Characters of texts may be written with a sign.
+  const std::int64_t low = array.type == "String" ? INT8_MIN : static_cast<std::int64_t>(std::numeric_limits<T>::min());
+  constexpr std::uint64_t high = std::min<std::uint64_t>(std::numeric_limits<T>::max(), INT64_MAX);
   FileText text(array.text);
-  std::uint64_t n = 0;
   try {
-    for (; !text.at_end(); ++n) {
-      if (!type.real) {
-        take(text.integer("a whole number", type.low, type.high));
-      } else if (const double x = text.number("a number"); !(x - x == 0.0)) {
-        text.fail("a number is not finite");
-      }
+    while (!text.at_end()) take(static_cast<T>(text.integer("a whole number", low, static_cast<std::int64_t>(high))));
+  } catch (const InvalidMesh& error) {
+    fail_array(array, error.what());
+  }
+}
+template <std::floating_point T, class Take>
+void read_ascii(const VtuArray& array, Take&& take) {
+  FileText text(array.text);
+  try {
+    while (!text.at_end()) {
+      const T x = text.number<T>("a number");
+      if (!(x - x == 0)) text.fail("a number is not finite");
+      take(x);
     }
   } catch (const InvalidMesh& error) {
     fail_array(array, error.what());
   }
-  return n;
+}
+
+template <class Out>
+std::vector<Out> decode(const VtuArray& array, const VtuEncoding& encoding) {
+  std::vector<Out> out;
+  with_type(array.type, [&]<class T>(T /*type*/) {
+    if (array.format == "ascii") return read_ascii<T>(array, [&](T x) { out.push_back(static_cast<Out>(x)); });
+    const std::string bytes = decode_bytes(array, encoding);
+    out.resize(bytes.size() / sizeof(T));
+    for (std::size_t i = 0; i < out.size(); ++i)
+      out[i] = static_cast<Out>(
+          +raw_number<T>(std::string_view(bytes).substr(i * sizeof(T), sizeof(T)), order_of(encoding)));
+  });
+  return out;
 }
 
 }  // namespace
@@ -251,20 +286,19 @@ void fail_array(const VtuArray& array, std::string_view message) {
 }
 
 std::size_t vtu_type_bytes(std::string_view type) {
-  const Type* found = find_type(type);
-  return found == nullptr ? 0 : found->bytes;
+  std::size_t bytes = 0;
+  with_type(type, [&]<class T>(T /*type*/) { bytes = sizeof(T); });
+  return bytes;
 }
 
 std::uint64_t count_numbers(const VtuArray& array, const VtuEncoding& encoding) {
-  const Type& type = *find_type(array.type);
-  if (array.format == "ascii") return read_ascii(array, type, [](std::int64_t) {});
   Source source(array, encoding);
   const std::uint64_t available = available_bytes(array, encoding);
   std::uint64_t bytes = 0;
   if (encoding.compressor.empty()) {
     const std::string head = source.take(encoding.header_bytes);
     if (head.size() < encoding.header_bytes) fail_array(array, "its header is cut off; the file is truncated");
-    bytes = integer_at(head, 0, encoding.header_bytes, encoding.big_endian);
+    bytes = header_number(head, 0, encoding);
     const bool raw = array.format == "appended" && encoding.appended_raw;
     if (bytes > (raw ? available - encoding.header_bytes : available / 4 * 3)) {
       fail_array(array,
@@ -273,45 +307,22 @@ std::uint64_t count_numbers(const VtuArray& array, const VtuEncoding& encoding) 
   } else {
     bytes = total_bytes(read_blocks(array, encoding, source, available));
   }
-  if (bytes % type.bytes != 0) fail_array(array, "its size is not a multiple of the size of its numbers");
-  return bytes / type.bytes;
+  const std::size_t each = vtu_type_bytes(array.type);
+  if (bytes % each != 0) fail_array(array, "its size is not a multiple of the size of its numbers");
+  return bytes / each;
 }
 
 std::uint64_t max_numbers(const VtuArray& array, const VtuEncoding& encoding) {
   return array.format == "ascii" ? (array.text.size() + 1) / 2 : count_numbers(array, encoding);
 }
 
-void check_bytes(const VtuArray& array, const VtuEncoding& encoding) {
-  if (array.format != "ascii") decode_bytes(array, encoding);
+std::vector<double> decode_numbers(const VtuArray& array, const VtuEncoding& encoding) {
+  return decode<double>(array, encoding);
 }
 
 std::vector<std::int64_t> decode_integers(const VtuArray& array, const VtuEncoding& encoding) {
-  const Type& type = *find_type(array.type);
-  if (type.real) fail_array(array, "it must be of whole numbers");
-  std::vector<std::int64_t> out;
-  if (array.format == "ascii") {
-    read_ascii(array, type, [&](std::int64_t value) { out.push_back(value); });
-    return out;
-  }
-  const std::string bytes = decode_bytes(array, encoding);
-  for (std::uint64_t at = 0; at < bytes.size(); at += type.bytes) {
-    const std::uint64_t bits = integer_at(bytes, at, type.bytes, encoding.big_endian);
-    const unsigned shift = 64 - 8 * static_cast<unsigned>(type.bytes);
-    out.push_back(type.low < 0 ? static_cast<std::int64_t>(bits << shift) >> shift : static_cast<std::int64_t>(bits));
-  }
-  return out;
-}
-
-std::optional<std::vector<double>> decode_reals(const VtuArray& array, const VtuEncoding& encoding) {
-  const Type& type = *find_type(array.type);
-  if (!type.real || array.format == "ascii") return std::nullopt;
-  const std::string bytes = decode_bytes(array, encoding);
-  std::vector<double> out(bytes.size() / type.bytes);
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const std::uint64_t bits = integer_at(bytes, i * type.bytes, type.bytes, encoding.big_endian);
-    out[i] = type.bytes == 8 ? std::bit_cast<double>(bits) : std::bit_cast<float>(static_cast<std::uint32_t>(bits));
-  }
-  return out;
+  if (array.type.starts_with("Float")) fail_array(array, "it must be of whole numbers");
+  return decode<std::int64_t>(array, encoding);
 }
 
 }  // namespace dartcast

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,21 +34,17 @@ struct VtuArray {
 /// Bytes of one number of a type; 0 for a type that is not known, 1 for strings.
 std::size_t vtu_type_bytes(std::string_view type);
 
-/// The number of numbers that the data announce. The bytes for them are checked to exist; for compressed data, the
-/// compressed ones. For ASCII every number is read. Throws InvalidMesh.
+/// The number of numbers that data announce which are not ASCII. The bytes for them are checked to exist; for
+/// compressed data, the compressed ones. Throws InvalidMesh.
 std::uint64_t count_numbers(const VtuArray& array, const VtuEncoding& encoding);
 
 /// At least as many numbers as count_numbers() finds, without a look at ASCII data. Throws InvalidMesh.
 std::uint64_t max_numbers(const VtuArray& array, const VtuEncoding& encoding);
 
-/// Decodes the data, and discards them: this checks the sizes that count_numbers() assumes. ASCII data have nothing
-/// more to check. Throws InvalidMesh.
-void check_bytes(const VtuArray& array, const VtuEncoding& encoding);
+/// All numbers of an array, of any type. Throws InvalidMesh.
+std::vector<double> decode_numbers(const VtuArray& array, const VtuEncoding& encoding);
 
 /// All numbers of an array of whole numbers. Throws InvalidMesh.
 std::vector<std::int64_t> decode_integers(const VtuArray& array, const VtuEncoding& encoding);
-
-/// All numbers of an array of Float32 or Float64 that is not ASCII; nothing for other arrays. Throws InvalidMesh.
-std::optional<std::vector<double>> decode_reals(const VtuArray& array, const VtuEncoding& encoding);
 
 }  // namespace dartcast
