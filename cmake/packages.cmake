@@ -41,7 +41,7 @@ endfunction()
 set(same "(= ${PROJECT_VERSION})")
 set(CPACK_COMPONENTS_ALL)
 add_package(core libdartcast-core libs "" "collisions of particles in deforming meshes: the core"
-  "The combinatorial map, exact predicates, walks, contacts and edits. It needs\n neither VTK nor a format of files.")
+  "The combinatorial map, exact predicates, walks, contacts and edits. It needs\n no format of files.")
 add_package(libraries libdartcast libs "libdartcast-core ${same}" "collisions of particles in deforming meshes"
   "Simulations, spheres, bodies, catheters and solids; meshes and scenes from\n files, and the output of runs.")
 add_package(dev libdartcast-dev libdevel "libdartcast ${same}, libdartcast-core ${same}"

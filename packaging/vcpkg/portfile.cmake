@@ -1,8 +1,7 @@
-# A port for vcpkg, as an overlay. Untested: nobody has run vcpkg on it. It is built without VTK.
+# A port for vcpkg, as an overlay. Untested: nobody has run vcpkg on it.
 set(SOURCE_PATH "${CMAKE_CURRENT_LIST_DIR}/../..")
 vcpkg_cmake_configure(
-  SOURCE_PATH "${SOURCE_PATH}"
-  OPTIONS -DDARTCAST_VTK=OFF)
+  SOURCE_PATH "${SOURCE_PATH}")
 vcpkg_cmake_install()
 vcpkg_cmake_config_fixup(CONFIG_PATH lib/cmake/dartcast)
 vcpkg_copy_tools(TOOL_NAMES dartcast AUTO_CLEAN)
