@@ -10,7 +10,7 @@
 #include "dartcast/environment.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
-#include "support/checked_scene.hpp"
+#include "oracle/checked_scene.hpp"
 #include "support/random_vectors.hpp"
 #include "support/seeds.hpp"
 #include "support/tier.hpp"

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "base/random.hpp"
-#include "support/checked_scene.hpp"
+#include "oracle/checked_scene.hpp"
 #include "support/seeds.hpp"
 
 namespace dartcast::test::lattice_oracle_test {

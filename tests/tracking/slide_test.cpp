@@ -11,7 +11,7 @@
 #include "base/random.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/response.hpp"
-#include "support/checked_scene.hpp"
+#include "oracle/checked_scene.hpp"
 #include "support/seeds.hpp"
 #include "tracking/step.hpp"
 

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "base/random.hpp"
-#include "support/checked_scene.hpp"
+#include "oracle/checked_scene.hpp"
 #include "support/seeds.hpp"
 
 namespace dartcast::test::walk_oracle_test {

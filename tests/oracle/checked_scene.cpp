@@ -1,4 +1,4 @@
-#include "support/checked_scene.hpp"
+#include "oracle/checked_scene.hpp"
 
 #include <fmt/format.h>
 
