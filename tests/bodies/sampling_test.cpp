@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <boost/multiprecision/cpp_int.hpp>
 #include <limits>
 
 #include "base/random.hpp"
@@ -10,7 +9,7 @@
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_files.hpp"
 #include "support/closed_surfaces.hpp"
-#include "support/exact_vectors.hpp"
+#include "support/dyadic.hpp"
 #include "support/shared_data.hpp"
 #include "support/tier.hpp"
 #include "surface/inside.hpp"
@@ -19,10 +18,10 @@ namespace dartcast::sampling_test {
 
 using test::cross;
 using test::dot;
+using test::Dyadic;
 using test::exact;
 using test::minus;
-using test::Rational;
-using Exact3 = test::Exact3<Rational>;
+using Exact3 = test::Exact3<Dyadic>;
 
 // A triangle, and its edges and normal.
 struct Facet {
@@ -33,27 +32,27 @@ struct Facet {
       : t(corners), e(minus(t[1], t[0])), f(minus(t[2], t[0])), n(cross(e, f)) {}
 
   // For scale (> 0) times a point of its plane, relative to the first corner: 1 inside, 0 on the border, -1 outside.
-  [[nodiscard]] int place(const Exact3& r, const Rational& scale) const {
-    const Rational v = dot(cross(e, r), n);
-    const Rational u = dot(cross(r, f), n);
-    const Rational w = dot(n, n) * scale - u - v;
+  [[nodiscard]] int place(const Exact3& r, const Dyadic& scale) const {
+    const Dyadic v = dot(cross(e, r), n);
+    const Dyadic u = dot(cross(r, f), n);
+    const Dyadic w = dot(n, n) * scale - u - v;
     if (u < 0 || v < 0 || w < 0) return -1;
     return u == 0 || v == 0 || w == 0 ? 0 : 1;
   }
 };
 
-// Where a ray meets a triangle, by solving for its parameters in rationals: 1 inside of it and ahead, 0 not at all, -1
+// Where a ray meets a triangle, by solving for its parameters exactly: 1 inside of it and ahead, 0 not at all, -1
 // on its border or in its plane (ask again with another ray); 2 where the ray starts on it.
 int ray_meets(const Exact3& x, const Exact3& d, const Facet& facet) {
   const Exact3 from = minus(x, facet.t[0]);
-  const Rational speed = dot(facet.n, d);
-  const Rational height = dot(facet.n, from);
+  const Dyadic speed = dot(facet.n, d);
+  const Dyadic height = dot(facet.n, from);
   if (height == 0 && facet.place(from, 1) >= 0) return 2;
   if (speed == 0) return height == 0 ? -1 : 0;
   if ((height > 0) == (speed > 0) || height == 0) return 0;
   // Where it meets the plane: from - d height / speed, times |speed|.
-  const Rational scale = speed > 0 ? speed : Rational(-speed);
-  const Rational gone = speed > 0 ? Rational(-height) : height;
+  const Dyadic scale = speed > 0 ? speed : Dyadic(-speed);
+  const Dyadic gone = speed > 0 ? Dyadic(-height) : height;
   const Exact3 r = {from[0] * scale + d[0] * gone, from[1] * scale + d[1] * gone, from[2] * scale + d[2] * gone};
   const int where = facet.place(r, scale);
   return where < 0 ? 0 : where == 0 ? -1 : 1;
@@ -69,8 +68,8 @@ class Truth {
 
   PointSide side(const Vec3& x) {
     while (true) {
-      const Exact3 d = {Rational(int(random_.below(2001)) - 1000), Rational(int(random_.below(2001)) - 1000),
-                        Rational(int(random_.below(2001)) - 1000)};
+      const Exact3 d = {double(random_.below(2001)) - 1000, double(random_.below(2001)) - 1000,
+                        double(random_.below(2001)) - 1000};
       int layers = 0;
       bool tie = false;
       for (const Facet& t : triangles_) {

@@ -16,7 +16,6 @@
 
 namespace dartcast::flattening_test {
 
-using test::DyadicTime;
 using test::Motion;
 using test::MotionKind;
 using test::Motions;
@@ -30,7 +29,7 @@ struct Tally {
 
 void expect_first_root(const Motion& m, const std::optional<SimplexInversion>& found, Tally& tally) {
   const MovingSimplex truth(m.before, m.after);
-  const DyadicTime end{1, 0};
+  const test::Dyadic end = 1.0;
   if (!found) {
     ASSERT_EQ(truth.sign_of_volume({}), 1);
     ASSERT_FALSE(truth.has_root_by(end)) << "missed";
@@ -45,8 +44,8 @@ void expect_first_root(const Motion& m, const std::optional<SimplexInversion>& f
   }
   ASSERT_NE(found->kind, InversionKind::undecidable);
   ASSERT_EQ(truth.sign_of_volume({}), 1);
-  ASSERT_FALSE(truth.has_root_by(DyadicTime::of(found->safe_time))) << "too late";
-  const DyadicTime next = DyadicTime::of(found->safe_time + inversion_resolution);
+  ASSERT_FALSE(truth.has_root_by(found->safe_time)) << "too late";
+  const test::Dyadic next = found->safe_time + inversion_resolution;
   ASSERT_TRUE(truth.has_root_by(next)) << "too early, or invented";
   ++tally.by_kind[static_cast<int>(found->kind)];
   tally.touching += truth.sign_of_volume(next) > 0 ? 1 : 0;
@@ -136,12 +135,12 @@ TEST(SimplexInversion, UntilAGivenTimeIsTheSameOrNothing) {
 std::array<test::Dyadic, 4> coefficients(const Motion& m) {
   const auto det = [&](unsigned moved) {
     Corners v;
-    std::array<test::DyadicVec3, 3> e;
+    std::array<test::Exact3<test::Dyadic>, 3> e;
     for (unsigned i = 0; i < 3; ++i) {
       v = ((moved >> i) & 1U) != 0 ? m.after : m.before;
-      e[i] = test::DyadicVec3(v[i + 1]) - test::DyadicVec3(v[0]);
+      e[i] = minus(test::exact(v[i + 1]), test::exact(v[0]));
     }
-    return test::determinant(test::DyadicVec3(), e[0], e[1], e[2]);
+    return test::determinant(test::Exact3<test::Dyadic>(), e[0], e[1], e[2]);
   };
   return {det(0), det(1) + det(2) + det(4), det(3) + det(5) + det(6), det(7)};
 }
@@ -182,7 +181,7 @@ TEST(VolumeCubic, HalvingProvesWhatIsTrueAndMuchOfIt) {
     const detail::VolumeCubic cubic(m.before, m.after);
     const MovingSimplex truth(m.before, m.after);
     for (const double t : {std::floor(motions.random().uniform() * 1024.0) / 1024.0, 1.0}) {
-      const bool positive = truth.sign_of_volume({}) > 0 && !truth.has_root_by(DyadicTime::of(t));
+      const bool positive = truth.sign_of_volume({}) > 0 && !truth.has_root_by(t);
       const bool is_proved = cubic.proves_positive_until(t);
       if (is_proved) ASSERT_TRUE(positive) << "motion " << i;
       if (kind == MotionKind::nearly_multiple_root || !cubic.applies) continue;

@@ -3,18 +3,17 @@
 
 #include <gtest/gtest.h>
 
-#include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "base/random.hpp"
-#include "support/exact_vectors.hpp"
+#include "support/dyadic.hpp"
 
 namespace dartcast::simplex_test {
 
-using test::exact_volume6;
-using test::Rational;
+using test::determinant;
+using test::Dyadic;
 
 // Random simplices, from fat ones to exactly flat ones and slivers a rounding apart; a point in, on or near them.
 class Sample {
@@ -52,18 +51,18 @@ class Sample {
   Random random_;
 };
 
-TEST(Determinants, SignsAndProofsAgreeWithRationals) {
+TEST(Determinants, SignsAndProofsAgreeWithDyadics) {
   int undecided = 0, on_lattice = 0, proved = 0, not_positive = 0;
   for (std::uint64_t seed = 1; seed <= 3000; ++seed) {
     const Sample s(seed);
     const Determinants d(s.v, s.x);
-    Rational sum = 0;
+    Dyadic sum;
     std::uint64_t exact = 0;
     unsigned negative = 0, zero = 0;
     for (unsigned i = 0; i < 4; ++i) {
       Corners replaced = s.v;
       replaced[i] = s.x;
-      const Rational truth = exact_volume6(replaced[0], replaced[1], replaced[2], replaced[3]);
+      const Dyadic truth = determinant(replaced[0], replaced[1], replaced[2], replaced[3]);
       sum += truth;
       negative |= truth < 0 ? 1U << i : 0U;
       zero |= truth == 0 ? 1U << i : 0U;
@@ -71,9 +70,9 @@ TEST(Determinants, SignsAndProofsAgreeWithRationals) {
       EXPECT_EQ(static_cast<int>(sign_of(d, i, s.v, s.x, exact)), truth.sign()) << "seed " << seed << ", det " << i;
       EXPECT_EQ(static_cast<int>(orient_facet(s.v, i, s.x)), truth.sign());
       EXPECT_EQ(exact - before, d.decides(i) ? 0U : 1U);
-      if (d.exact(s.v, s.x)) EXPECT_EQ(Rational(d.value[i]), truth) << "seed " << seed << ", det " << i;
+      if (d.exact(s.v, s.x)) EXPECT_EQ(Dyadic(d.value[i]), truth) << "seed " << seed << ", det " << i;
       if (std::isfinite(d.bound))
-        EXPECT_LE(abs(Rational(d.value[i]) - truth), Rational(d.bound)) << "seed " << seed << ", det " << i;
+        EXPECT_LE((Dyadic(d.value[i]) - truth).abs(), Dyadic(d.bound)) << "seed " << seed << ", det " << i;
     }
     for (unsigned asked = 0; asked < 16; ++asked) {
       std::uint64_t left = 0;
@@ -84,7 +83,7 @@ TEST(Determinants, SignsAndProofsAgreeWithRationals) {
     }
     undecided += exact > 0 ? 1 : 0;
     on_lattice += exact > 0 && d.exact(s.v, s.x) ? 1 : 0;
-    const Rational volume = exact_volume6(s.v[0], s.v[1], s.v[2], s.v[3]);
+    const Dyadic volume = determinant(s.v[0], s.v[1], s.v[2], s.v[3]);
     EXPECT_EQ(sum, volume);
     EXPECT_EQ(static_cast<int>(volume_sign(s.v)), volume.sign());
     if (d.proves_positive()) EXPECT_GT(volume, 0) << "seed " << seed;

@@ -13,6 +13,7 @@
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/validity.hpp"
+#include "support/dyadic.hpp"
 #include "support/generate_checks.hpp"
 #include "support/meshes.hpp"
 

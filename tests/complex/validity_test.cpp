@@ -11,6 +11,7 @@
 #include "base/random.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/map_edits.hpp"
+#include "support/dyadic.hpp"
 #include "support/generate_checks.hpp"
 #include "support/meshes.hpp"
 

@@ -7,7 +7,7 @@
 #include "dartcast/environment.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
-#include "support/refusals.hpp"
+#include "support/expectations.hpp"
 #include "support/surgery_checks.hpp"
 #include "support/tier.hpp"
 

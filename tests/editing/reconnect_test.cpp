@@ -5,7 +5,7 @@
 #include "dartcast/cutting.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
-#include "support/refusals.hpp"
+#include "support/expectations.hpp"
 #include "support/surgery_checks.hpp"
 #include "support/tier.hpp"
 

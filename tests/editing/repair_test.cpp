@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <set>
 
+#include "dartcast/error.hpp"
 #include "dartcast/remeshing.hpp"
 #include "editing/kernel_point.hpp"
 #include "editing/region.hpp"
 #include "support/astray.hpp"
 #include "support/edit_meshes.hpp"
-#include "support/refusals.hpp"
+#include "support/expectations.hpp"
 #include "support/remesh_checks.hpp"
 #include "support/tier.hpp"
 
@@ -88,7 +89,7 @@ TEST_P(RepairOn, MendsOneVertexOutOfPlace) {
     const RepairReport report = repair(edit, bad);
     EXPECT_TRUE(report.left.empty());
     edit.commit();
-    test::expect_good(complex);
+    test::expect_sound(complex);
     EXPECT_EQ(walls(complex), walls_before);
     EXPECT_TRUE(free_volume6(complex) == free_before);
     EXPECT_TRUE(volume6(complex) == before);
@@ -245,7 +246,7 @@ TEST(Repair, CutsWhereTwoAreOutOfPlace) {
     EXPECT_GT(p.of.size(), 20U);  // goes along with all around it
     EXPECT_EQ(p.offset, Vec3{});
   }
-  test::expect_good(complex);
+  test::expect_sound(complex);
   EXPECT_TRUE(volume6(complex) == before);
 }
 
@@ -254,7 +255,7 @@ std::vector<MendedRegion> repaired(CellComplex& complex) {
   RepairReport report = repair(edit, invalid_cells(complex));
   EXPECT_TRUE(report.left.empty());
   edit.commit();
-  test::expect_good(complex);
+  test::expect_sound(complex);
   return std::move(report.mended);
 }
 

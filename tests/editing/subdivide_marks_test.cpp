@@ -6,7 +6,7 @@
 #include "dartcast/remeshing.hpp"
 #include "editing/outline.hpp"
 #include "support/edit_meshes.hpp"
-#include "support/refusals.hpp"
+#include "support/expectations.hpp"
 #include "support/remesh_checks.hpp"
 #include "support/tier.hpp"
 

@@ -4,15 +4,16 @@
 #include <set>
 
 #include "base/random.hpp"
+#include "dartcast/error.hpp"
 #include "dartcast/remeshing.hpp"
 #include "support/edit_meshes.hpp"
-#include "support/refusals.hpp"
+#include "support/expectations.hpp"
 #include "support/remesh_checks.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::subdivide_test {
 
-using test::expect_good;
+using test::expect_sound;
 using test::volume6;
 using test::written;
 
@@ -80,7 +81,7 @@ TEST(Subdivide, HexahedronGivesEightHexahedra) {
   const ComplexEditReport done = edit.commit();
   EXPECT_EQ(done.placed.size(), 19U);
   for (const PlacedVertex& p : done.placed) EXPECT_EQ(p.offset, Vec3{});  // all are means of others
-  expect_good(complex);
+  expect_sound(complex);
   EXPECT_EQ(complex.map().cell_count(static_cast<std::uint32_t>(CellType::hexahedron)), 8U);
   EXPECT_EQ(complex.map().cell_count(), 8U);
   EXPECT_EQ(complex.positions()[s.subdivision.middle.value], (Vec3{2.0, 2.0, 2.0}));
@@ -106,7 +107,7 @@ TEST(Subdivide, PartsOfEachType) {
     for (std::size_t i = 0; i < c.parts; ++i) hexahedra += edit.map().type(s.cells[i]) == CellType::hexahedron ? 1 : 0;
     EXPECT_EQ(hexahedra, c.hexahedra);
     edit.commit();
-    expect_good(complex);
+    expect_sound(complex);
   }
 }
 
@@ -133,16 +134,16 @@ TEST(Subdivide, AnyOrderGivesTheFineGrid) {
       std::erase_if(coarse, [&](Cell c) { return edge(c) <= 1.0; });
       if (coarse.empty()) break;
       refinement.subdivide(coarse[random.below(static_cast<std::uint32_t>(coarse.size()))]);
-      if (seed < 3 && edits++ % test::stride(1, 8) == 0) expect_good(complex);
+      if (seed < 3 && edits++ % test::stride(1, 8) == 0) expect_sound(complex);
     }
-    expect_good(complex);
+    expect_sound(complex);
     EXPECT_EQ(complex.map().cell_count(static_cast<std::uint32_t>(CellType::hexahedron)), 512U);
     EXPECT_EQ(complex.map().cell_count(), 512U);
     EXPECT_EQ(vertices_in_use(complex.map()), 729U);
     EXPECT_FALSE(has_flat(complex.map()));
     while (refinement.size() > 0) {
       refinement.coarsen(random.below(static_cast<std::uint32_t>(refinement.size())));
-      if (seed < 3 && edits++ % test::stride(1, 8) == 0) expect_good(complex);
+      if (seed < 3 && edits++ % test::stride(1, 8) == 0) expect_sound(complex);
     }
     EXPECT_EQ(written(complex.map()), before);
     EXPECT_EQ(vertices_in_use(complex.map()), 27U);
@@ -162,9 +163,9 @@ TEST_P(OnMeshes, CoarsenRestores) {
     const auto cells = complex.map().cells();
     Refinement refinement(complex);
     refinement.subdivide(cells[random.below(static_cast<std::uint32_t>(cells.size()))]);
-    if (i < 5) expect_good(complex);
+    if (i < 5) expect_sound(complex);
     ASSERT_TRUE(refinement.coarsen(0));
-    if (i < 5) expect_good(complex);
+    if (i < 5) expect_sound(complex);
     ASSERT_EQ(written(complex.map()), before);
     EXPECT_TRUE(std::equal(positions.begin(), positions.end(), complex.positions().begin()));
   }
@@ -220,14 +221,14 @@ TEST_P(OnMeshes, RandomSequences) {
       ++refused;
       ASSERT_EQ(written(complex.map()), here);
     }
-    expect_good(complex);
+    expect_sound(complex);
     if (i % 20 != 0) continue;
     const test::Dyadic change = volume6(complex) - volume;
     EXPECT_TRUE(exact ? change.sign() == 0 : change.abs() < test::Dyadic(1e-12) * volume);
   }
   EXPECT_LE(refused, exact ? 0 : edits / 10);
   while (refinement.size() > 0) refinement.coarsen(random.below(static_cast<std::uint32_t>(refinement.size())));
-  expect_good(complex);
+  expect_sound(complex);
   EXPECT_EQ(written(complex.map()), before);
 }
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <set>
@@ -15,6 +14,7 @@
 #include "dartcast/generators.hpp"
 #include "dartcast/validity.hpp"
 #include "mesh/cell_types.hpp"
+#include "support/dyadic.hpp"
 #include "support/expectations.hpp"
 #include "support/meshes.hpp"
 #include "support/particle_checks.hpp"

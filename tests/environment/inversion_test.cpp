@@ -40,7 +40,7 @@ bool stays_positive(const CellComplex& complex) {
         after[i] = complex.positions()[cell.vertex(s.vertex[i]).value];
       }
       const MovingSimplex moving(before, after);
-      if (moving.sign_of_volume({0, 0}) <= 0 || moving.has_root_by({1, 0})) return false;
+      if (moving.sign_of_volume(0.0) <= 0 || moving.has_root_by(1.0)) return false;
     }
   }
   return true;

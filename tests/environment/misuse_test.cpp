@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <string>
 #include <type_traits>
@@ -43,7 +42,7 @@ TEST(OtherEnvironment, ItsParticlesAreRefusedUnchanged) {
     const std::vector<ParticleState> before = test::copy_of(particles);
     const std::vector<double> radii(particles.size(), 0.1);
     SphereStepper stepper;
-    const auto refuses = [&](const std::function<void()>& call) {
+    const auto refuses = [&](const test::Call& call) {
       expect_refused(call, "the particles are of another environment: add() their positions to a new set");
       EXPECT_TRUE(test::same_bits(before, particles));
     };
@@ -110,7 +109,7 @@ TEST(OtherEnvironment, CannotTakeItsPlace) {
 
 class Indices : public testing::Test {
  protected:
-  void refuses(const std::function<void()>& call, const std::string& words) {
+  void refuses(const test::Call& call, const std::string& words) {
     expect_refused(call, words);
     EXPECT_TRUE(test::same_bits(before, particles));
   }

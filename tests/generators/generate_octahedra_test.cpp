@@ -2,6 +2,7 @@
 
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
+#include "support/dyadic.hpp"
 #include "support/generate_checks.hpp"
 
 namespace dartcast::generate_octahedra_test {

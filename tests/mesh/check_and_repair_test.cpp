@@ -15,6 +15,7 @@
 #include "mesh/conformity.hpp"
 #include "support/findings.hpp"
 #include "support/meshes.hpp"
+#include "support/mixed_mesh.hpp"
 
 namespace dartcast::inspect_test {
 

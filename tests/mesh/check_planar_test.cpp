@@ -14,6 +14,7 @@
 #include "mesh/orientation.hpp"
 #include "support/findings.hpp"
 #include "support/meshes.hpp"
+#include "support/mixed_mesh.hpp"
 #include "support/planar_checks.hpp"
 #include "support/tier.hpp"
 

@@ -26,7 +26,6 @@
 #include "output/mesh_report_text.hpp"
 #include "support/closed_surfaces.hpp"
 #include "support/expectations.hpp"
-#include "support/refusals.hpp"
 #include "support/shared_data.hpp"
 #include "support/tier.hpp"
 

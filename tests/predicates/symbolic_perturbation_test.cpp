@@ -29,8 +29,12 @@ std::vector<Vec3> some_points(Quadruples& quadruples, std::uint32_t count, int l
 
 Sign shifted_line(const Vec3& a, const Vec3& b, const Vec3& p, const Vec3& q, const std::vector<Vec3>& opposite,
                   int bits = shift_bits) {
-  const DyadicVec3 s = small_shift(p, opposite, bits);
-  return static_cast<Sign>(determinant(DyadicVec3(a), DyadicVec3(b), DyadicVec3(p) + s, DyadicVec3(q) + s).sign());
+  const Exact3<Dyadic> shift = small_shift(p, opposite, bits);
+  const auto shifted = [&](const Vec3& x) {
+    const Exact3<Dyadic> at = exact(x);
+    return Exact3<Dyadic>{at[0] + shift[0], at[1] + shift[1], at[2] + shift[2]};
+  };
+  return static_cast<Sign>(determinant(exact(a), exact(b), shifted(p), shifted(q)).sign());
 }
 
 // Few integers, so that w, n.w and single coordinates of n vanish often; or many, so that products have many digits.

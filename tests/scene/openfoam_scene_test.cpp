@@ -15,8 +15,8 @@
 #include "dartcast/mesh_files.hpp"
 #include "dartcast/scene_file.hpp"
 #include "dartcast/simulation.hpp"
+#include "support/expectations.hpp"
 #include "support/foam_case.hpp"
-#include "support/refusals.hpp"
 #include "support/shared_data.hpp"
 
 namespace dartcast::openfoam_scene_test {

@@ -20,7 +20,6 @@
 #include "formats/field_series.hpp"
 #include "simulation/scene_field.hpp"
 #include "support/expectations.hpp"
-#include "support/refusals.hpp"
 
 namespace dartcast::scene_fields_test {
 

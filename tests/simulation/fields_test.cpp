@@ -18,7 +18,6 @@
 #include "dartcast/simulation.hpp"
 #include "support/expectations.hpp"
 #include "support/meshes.hpp"
-#include "support/refusals.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::fields_test {
@@ -396,7 +395,7 @@ TEST(Fields, TheSameBitsForAnyThreadsAndAfterARestart) {
   }
 }
 
-std::string refused(const std::function<void()>& make) { return test::refusal(make); }
+std::string refused(const test::Call& make) { return test::refusal(make); }
 
 TEST(Fields, RefusesSamplesThatDoNotFit) {
   const MeshData mesh = test::cube_of(1, 1.0);

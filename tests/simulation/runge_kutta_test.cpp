@@ -13,7 +13,6 @@
 #include "dartcast/simulation.hpp"
 #include "support/expectations.hpp"
 #include "support/meshes.hpp"
-#include "support/refusals.hpp"
 
 namespace dartcast::runge_kutta_test {
 

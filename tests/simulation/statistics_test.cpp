@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -16,12 +15,11 @@
 #include "dartcast/generators.hpp"
 #include "dartcast/scene.hpp"
 #include "dartcast/simulation.hpp"
+#include "support/dyadic.hpp"
 #include "support/tier.hpp"
 #include "support/with_response.hpp"
 
 namespace dartcast::statistics_test {
-
-using Rational = boost::multiprecision::cpp_rational;
 
 SectionPlane plane_at(double x, const std::string& name = "plane") { return {name, {x, 0.0, 0.0}, {1.0, 0.0, 0.0}}; }
 
@@ -86,10 +84,7 @@ TEST(Crossings, AreDecidedByExactSigns) {
     Vec3 y = x;
     for (int k = i % 4; k > 0; --k) y.z = std::nextafter(y.z, i % 2 == 0 ? 9.0 : -9.0);
     const auto is_behind = [&](const Vec3& p) {
-      return Rational(plane.normal.x) * (Rational(p.x) - Rational(plane.point.x)) +
-                 Rational(plane.normal.y) * (Rational(p.y) - Rational(plane.point.y)) +
-                 Rational(plane.normal.z) * (Rational(p.z) - Rational(plane.point.z)) <
-             0;
+      return dot(test::exact(plane.normal), minus(test::exact(p), test::exact(plane.point))).sign() < 0;
     };
     if ((dot(plane.normal, x - plane.point) < 0.0) != is_behind(x)) ++undecided;
     const auto c = crossings(plane, x, y);

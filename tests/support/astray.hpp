@@ -10,7 +10,6 @@
 #include "base/random.hpp"
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/validity.hpp"
-#include "support/dyadic.hpp"
 
 namespace dartcast::test {
 
@@ -55,18 +54,6 @@ inline std::multiset<std::string> walls(const CellComplex& complex) {
     }
   }
   return walls;
-}
-
-inline Dyadic free_volume6(const CellComplex& complex) {
-  Dyadic sum;
-  for (const Cell c : complex.map().cells()) {
-    if (!complex.map().is_free(c)) continue;
-    for (std::uint16_t s = 0; s < complex.map().shape(c).simplices().size(); ++s) {
-      const Corners v = complex.corners({c, s});
-      sum = sum + determinant(v[0], v[1], v[2], v[3]);
-    }
-  }
-  return sum;
 }
 
 /// In the plane where that is the dimension.

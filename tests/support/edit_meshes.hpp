@@ -1,11 +1,10 @@
 // Meshes of every cell type for edits to work on.
 #pragma once
 
-#include <ostream>
+#include <iosfwd>
 #include <vector>
 
 #include "dartcast/generators.hpp"
-#include "support/mixed_mesh.hpp"
 
 namespace dartcast::test {
 
@@ -13,53 +12,17 @@ struct EditMesh {
   const char* name;
   MeshData (*make)();
 };
-inline void PrintTo(const EditMesh& m, std::ostream* out) { *out << m.name; }
+void PrintTo(const EditMesh& m, std::ostream* out);
 
-inline MeshData edit_box(CellType type, bool mixed = false, std::uint32_t size = 4) {
-  BoxOptions o;
-  o.cells = {size, size, size};
-  o.type = type;
-  o.mixed = mixed;
-  o.blocked_share = 0.1;
-  return generate_box(o);
-}
+MeshData edit_box(CellType type, bool mixed = false, std::uint32_t size = 4);
 
-inline std::vector<EditMesh> edit_meshes() {
-  return {{"tetrahedra", [] { return edit_box(CellType::tetrahedron, false, 3); }},
-          {"hexahedra", [] { return edit_box(CellType::hexahedron); }},
-          {"prisms", [] { return edit_box(CellType::prism, false, 3); }},
-          {"pyramids", [] { return edit_box(CellType::pyramid, false, 3); }},
-          {"mixed", [] { return edit_box(CellType::hexahedron, true); }},
-          {"octahedra",
-           [] {
-             OctahedraOptions o;
-             o.cells = {3, 2, 2};
-             o.blocked_share = 0.1;
-             return generate_octahedra(o);
-           }},
-          {"handmade", [] { return mixed_mesh(); }}};
-}
+std::vector<EditMesh> edit_meshes();
 
-inline MeshData edit_rectangle(CellType type, bool mixed = false) {
-  RectangleOptions o;
-  o.cells = {8, 8};
-  o.type = type;
-  o.mixed = mixed;
-  o.blocked_share = 0.1;
-  return generate_rectangle(o);
-}
+MeshData edit_rectangle(CellType type, bool mixed = false);
 
 /// Meshes of the plane.
-inline std::vector<EditMesh> planar_edit_meshes() {
-  return {{"triangles", [] { return edit_rectangle(CellType::triangle); }},
-          {"quadrilaterals", [] { return edit_rectangle(CellType::quadrilateral); }},
-          {"polygons", [] { return edit_rectangle(CellType::quadrilateral, true); }}};
-}
+std::vector<EditMesh> planar_edit_meshes();
 
-inline std::vector<EditMesh> all_edit_meshes() {
-  std::vector<EditMesh> all = edit_meshes();
-  for (const EditMesh& m : planar_edit_meshes()) all.push_back(m);
-  return all;
-}
+std::vector<EditMesh> all_edit_meshes();
 
 }  // namespace dartcast::test

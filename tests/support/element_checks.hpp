@@ -1,127 +1,40 @@
 // Edges and triangles among walls, and the truth about them from all walls of the scene, without a search.
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "dartcast/predicates.hpp"
 #include "dynamics/near_walls.hpp"
-#include "predicates/moving_pair.hpp"
 #include "support/random_vectors.hpp"
 #include "support/sphere_checks.hpp"
 
 namespace dartcast::test {
 
 /// The sides of an element, by its corners.
-inline std::vector<std::array<unsigned, 2>> sides_of(unsigned corners) {
-  if (corners < 3)
-    return corners == 2 ? std::vector<std::array<unsigned, 2>>{{0, 1}} : std::vector<std::array<unsigned, 2>>{};
-  return {{0, 1}, {1, 2}, {2, 0}};
-}
+std::vector<std::array<unsigned, 2>> sides_of(unsigned corners);
 
 /// The first touch of an element and one wall: of every corner, side and face of the one with those of the other.
-inline std::optional<double> first_touch_of(const MovingElement& e, const MovingTriangle& w) {
-  using detail::MovingPair;
-  using detail::PairKind;
-  std::optional<double> first;
-  const auto ask = [&](const MovingPair& pair, PairKind kind) {
-    const auto time = detail::first_touch(pair, kind);
-    if (time && (!first || *time < *first)) first = time;
-  };
-  for (unsigned i = 0; i < e.count; ++i)
-    ask({{e.from[i], w.from[0], w.from[1], w.from[2]}, {e.to[i], w.to[0], w.to[1], w.to[2]}}, PairKind::vertex_face);
-  for (const auto& [i, j] : sides_of(e.count)) {
-    for (unsigned k = 0; k < 3; ++k) {
-      const unsigned l = (k + 1) % 3;
-      ask({{e.from[i], e.from[j], w.from[k], w.from[l]}, {e.to[i], e.to[j], w.to[k], w.to[l]}}, PairKind::edge_edge);
-    }
-  }
-  for (unsigned k = 0; k < 3 && e.count == 3; ++k)
-    ask({{w.from[k], e.from[0], e.from[1], e.from[2]}, {w.to[k], e.to[0], e.to[1], e.to[2]}}, PairKind::vertex_face);
-  return first;
-}
+std::optional<double> first_touch_of(const MovingElement& e, const MovingTriangle& w);
 
 /// Whether the boxes of an element and a wall over the whole step meet.
-inline bool boxes_meet(const MovingElement& e, const MovingTriangle& w) {
-  const auto apart = [&](double Vec3::*axis) {
-    double low = e.from[0].*axis;
-    double high = low;
-    for (unsigned i = 0; i < e.count; ++i) {
-      low = std::min({low, e.from[i].*axis, e.to[i].*axis});
-      high = std::max({high, e.from[i].*axis, e.to[i].*axis});
-    }
-    double low_wall = w.from[0].*axis;
-    double high_wall = low_wall;
-    for (unsigned i = 0; i < 3; ++i) {
-      low_wall = std::min({low_wall, w.from[i].*axis, w.to[i].*axis});
-      high_wall = std::max({high_wall, w.from[i].*axis, w.to[i].*axis});
-    }
-    return high < low_wall || high_wall < low;
-  };
-  return !apart(&Vec3::x) && !apart(&Vec3::y) && !apart(&Vec3::z);
-}
+bool boxes_meet(const MovingElement& e, const MovingTriangle& w);
 
 /// The first touch of any of these walls.
-inline std::optional<double> first_touch_of(const MovingElement& e, std::span<const MovingTriangle> walls) {
-  std::optional<double> first;
-  for (const MovingTriangle& w : walls) {
-    const auto time = boxes_meet(e, w) ? first_touch_of(e, w) : std::nullopt;
-    if (time && (!first || *time < *first)) first = time;
-  }
-  return first;
-}
+std::optional<double> first_touch_of(const MovingElement& e, std::span<const MovingTriangle> walls);
 
 /// Whether the segment from a to b passes through the inside of a triangle.
-inline bool passes(const Vec3& a, const Vec3& b, const std::array<Vec3, 3>& v) {
-  const auto opposite = [](Sign s, Sign t) { return static_cast<int>(s) * static_cast<int>(t) < 0; };
-  if (!opposite(orient3d(v[0], v[1], v[2], a), orient3d(v[0], v[1], v[2], b))) return false;
-  const Sign first = orient3d(a, b, v[0], v[1]);
-  return first != Sign::zero && first == orient3d(a, b, v[1], v[2]) && first == orient3d(a, b, v[2], v[0]);
-}
+bool passes(const Vec3& a, const Vec3& b, const std::array<Vec3, 3>& v);
 
 /// Whether the element meets a wall at the time 0. Two that pass through each other need not touch with a corner or a
 /// side.
-inline bool meets_at_start(MovingElement e, std::span<const MovingTriangle> walls) {
-  e.to = e.from;
-  for (MovingTriangle w : walls) {
-    w.to = w.from;
-    if (!boxes_meet(e, w)) continue;
-    if (first_touch_of(e, w)) return true;
-    for (const auto& [i, j] : sides_of(e.count)) {
-      if (passes(e.from[i], e.from[j], w.from)) return true;
-    }
-    for (unsigned k = 0; k < 3 && e.count == 3; ++k) {
-      if (passes(w.from[k], w.from[(k + 1) % 3], e.from)) return true;
-    }
-  }
-  return false;
-}
+bool meets_at_start(MovingElement e, std::span<const MovingTriangle> walls);
 
 /// A point, an edge or a triangle at rest around `at`, some `size` long.
-inline MovingElement element_at(Random& random, const Vec3& at, unsigned count, double size) {
-  MovingElement e;
-  e.count = count;
-  for (unsigned i = 0; i < count; ++i) {
-    Vec3 way = random_vector(random);
-    way = norm(way) > 0.0 ? way * (size / norm(way)) : Vec3{size, 0.0, 0.0};
-    e.from[i] = i == 0 ? at : at + way;
-    e.to[i] = e.from[i];
-  }
-  return e;
-}
+MovingElement element_at(Random& random, const Vec3& at, unsigned count, double size);
 
 /// Positions pushed along waves of about eight units.
-inline std::vector<Vec3> waved(std::span<const Vec3> positions, double by, double unit = 1.0) {
-  std::vector<Vec3> moved(positions.begin(), positions.end());
-  for (Vec3& p : moved) {
-    const Vec3 x = p * (1.0 / unit);
-    p += Vec3{by * std::sin(0.8 * x.y + 0.3), by * std::sin(0.7 * x.z + 1.1), by * std::sin(0.9 * x.x - 0.4)};
-  }
-  return moved;
-}
+std::vector<Vec3> waved(std::span<const Vec3> positions, double by, double unit = 1.0);
 
 }  // namespace dartcast::test

@@ -1,10 +1,9 @@
-// The findings of a mesh check, by kind; cells written in short.
+// The findings of a mesh check, by kind.
 #pragma once
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -23,10 +22,6 @@ inline Kinds kinds(const std::vector<Finding>& findings) {
     out[f.kind] += f.count;
   }
   return out;
-}
-
-inline void add(MeshData& mesh, CellType type, const std::vector<std::uint32_t>& corners) {
-  mesh.add_cell(type, corners);
 }
 
 }  // namespace dartcast::test

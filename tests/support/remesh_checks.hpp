@@ -1,8 +1,6 @@
 // Checks that hold for a complex after every edit, and the differences of two complexes apart from cell numbers.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -14,12 +12,7 @@
 
 namespace dartcast::test {
 
-inline void expect_good(const CellComplex& complex) {
-  const auto violations = check_integrity(complex.map(), 3);
-  for (const Violation& v : violations) ADD_FAILURE() << v.constraint << ": " << v.message;
-  const Validity validity = check_validity(complex, Threads{1}, 3);
-  for (const InvalidCell& c : validity.first) ADD_FAILURE() << c.message;
-}
+void expect_sound(const CellComplex& complex);
 
 /// A cell by the names of its vertices: source, mark, and each face with its patch, its marks, and what is beyond.
 template <class Name>
@@ -54,16 +47,9 @@ std::vector<std::string> written(const CombinatorialMap& map, Name&& name) {
   return cells;
 }
 
-inline std::vector<std::string> written(const CombinatorialMap& map) {
-  return written(map, [](Vertex v) { return std::to_string(v.value); });
-}
+std::vector<std::string> written(const CombinatorialMap& map);
 
 /// Vertices by where they are: what does not depend on the order of edits.
-inline std::vector<std::string> written_by_place(const CellComplex& complex) {
-  return written(complex.map(), [&](Vertex v) {
-    const Vec3 x = complex.positions()[v.value];
-    return std::to_string(x.x) + "," + std::to_string(x.y) + "," + std::to_string(x.z);
-  });
-}
+std::vector<std::string> written_by_place(const CellComplex& complex);
 
 }  // namespace dartcast::test

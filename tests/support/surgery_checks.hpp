@@ -12,9 +12,8 @@
 #include "dartcast/complex_edit.hpp"
 #include "dartcast/map_edits.hpp"
 #include "dartcast/mesh_data.hpp"
-#include "dartcast/validity.hpp"
-#include "support/dyadic.hpp"
 #include "support/edit_meshes.hpp"
+#include "support/remesh_checks.hpp"
 #include "support/volume.hpp"
 
 namespace dartcast::test {
@@ -35,12 +34,6 @@ inline std::vector<Cell> now(const ComplexEditReport& report, std::vector<Cell> 
 
 /// Whether two exact numbers are nearer than this.
 inline bool near(const Dyadic& a, const Dyadic& b, double within) { return (a - b).abs() < Dyadic(within); }
-
-inline void expect_sound(const CellComplex& complex) {
-  for (const Violation& v : check_integrity(complex.map(), 1)) FAIL() << v.constraint << ": " << v.message;
-  const Validity validity = check_validity(complex, {});
-  ASSERT_TRUE(validity.valid()) << validity.first.front().message;
-}
 
 /// All free cells that are reached from one over faces that are no walls.
 inline std::unordered_set<std::uint32_t> flood(const CombinatorialMap& map, Cell start) {

@@ -7,7 +7,6 @@
 #include "dartcast/error.hpp"
 #include "support/expectations.hpp"
 #include "support/mixed_mesh.hpp"
-#include "support/refusals.hpp"
 
 namespace dartcast::build_test {
 

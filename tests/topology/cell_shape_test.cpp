@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <boost/multiprecision/cpp_int.hpp>
 #include <numeric>
 #include <set>
 
@@ -12,14 +11,14 @@
 #include "dartcast/combinatorial_map.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
-#include "support/exact_vectors.hpp"
+#include "support/dyadic.hpp"
 #include "support/meshes.hpp"
 #include "support/mixed_mesh.hpp"
 
 namespace dartcast::shape_test {
 
-using test::exact_volume6;
-using test::Rational;
+using test::determinant;
+using test::Dyadic;
 
 // One separate cell of the type for every numbering of its corners.
 CombinatorialMap every_numbering(CellType type, std::uint32_t corners) {
@@ -127,21 +126,21 @@ TEST(Shapes, SimplicesSumToTheVolumeWithinTheFans) {
       for (const Cell c : map.cells()) {
         const CellView v = map.view(c);
         const auto at = [&](std::uint16_t k) { return mesh.points[v.vertex(k).value]; };
-        Rational simplices = 0;
+        Dyadic simplices;
         for (const auto& s : v.shape().simplices()) {
-          const Rational volume = exact_volume6(at(s.vertex[0]), at(s.vertex[1]), at(s.vertex[2]), at(s.vertex[3]));
+          const Dyadic volume = determinant(at(s.vertex[0]), at(s.vertex[1]), at(s.vertex[2]), at(s.vertex[3]));
           EXPECT_GT(volume, 0);
           simplices += volume;
         }
         // Divergence theorem, from a point anywhere, over each face's own corners: fanned from its lowest-numbered
         // vertex.
         const Vec3 anywhere{0.3, -2.7, 11.1};
-        Rational surface = 0;
+        Dyadic surface;
         for (std::uint16_t f = 0; f < v.shape().face_count(); ++f) {
           const auto corners = v.shape().corners(f);
           for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
             EXPECT_LT(v.vertex(corners[0]), v.vertex(corners[k]));
-            surface += exact_volume6(anywhere, at(corners[0]), at(corners[k]), at(corners[k + 1]));
+            surface += determinant(anywhere, at(corners[0]), at(corners[k]), at(corners[k + 1]));
           }
         }
         EXPECT_EQ(simplices, surface) << "cell " << map.source(c);

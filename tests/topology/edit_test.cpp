@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <functional>
+#include <map>
 #include <numeric>
 #include <set>
 
@@ -10,7 +10,8 @@
 #include "dartcast/map_edits.hpp"
 #include "mesh/cell_types.hpp"
 #include "support/edit_meshes.hpp"
-#include "support/refusals.hpp"
+#include "support/expectations.hpp"
+#include "support/mixed_mesh.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::edit_test {
@@ -202,7 +203,7 @@ TEST_F(Handmade, WhatIsUnsewnCanBeSewn) {
 
 TEST_F(Handmade, ImpossibleEditsSayWhy) {
   const CombinatorialMap before = map;
-  const auto said = [&](const std::function<void()>& act) {
+  const auto said = [&](const test::Call& act) {
     const std::string text = test::refusal(act);
     EXPECT_TRUE(map == before) << text;
     return text;

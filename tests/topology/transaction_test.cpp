@@ -1,14 +1,15 @@
 // The reports of transactions. A transaction that is undone leaves nothing behind.
 #include <gtest/gtest.h>
 
-#include <functional>
+#include <map>
 #include <set>
 
 #include "dartcast/error.hpp"
 #include "dartcast/map_edits.hpp"
 #include "support/edit_meshes.hpp"
+#include "support/expectations.hpp"
+#include "support/mixed_mesh.hpp"
 #include "support/random_edits.hpp"
-#include "support/refusals.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::transaction_test {

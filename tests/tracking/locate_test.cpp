@@ -9,6 +9,7 @@
 
 #include "base/random.hpp"
 #include "dartcast/generators.hpp"
+#include "support/dyadic.hpp"
 #include "support/generate_checks.hpp"
 #include "support/meshes.hpp"
 #include "support/tier.hpp"
