@@ -8,7 +8,7 @@
 #include "dartcast/mesh_check.hpp"
 #include "dartcast/mesh_files.hpp"
 #include "output/mesh_report_text.hpp"
-#include "support/refusals.hpp"
+#include "support/expectations.hpp"
 #include "support/same_mesh.hpp"
 #include "support/sample_mesh.hpp"
 #include "support/shared_data.hpp"
