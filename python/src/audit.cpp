@@ -7,13 +7,13 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::audit {
 namespace {
 
 Audit audit_of(const ComplexHandle& h, const ParticlesHandle& p, Threads threads) {
   check_threads(threads);
   const Use use(*p.usage, "the set of particles");
-  return read_long(h, [&](const CellComplex& complex) { return audit(complex, p.particles, threads); });
+  return read_long(h, [&](const CellComplex& complex) { return dartcast::audit(complex, p.particles, threads); });
 }
 
 // All particles of a set in one call.
@@ -32,7 +32,7 @@ void add_all(StateHash& hash, const py::object& given_ids, const ParticlesHandle
 
 }  // namespace
 
-void bind_audit(py::module_& m) {
+void bind(py::module_& m) {
   Record<Audit>(m, "Audit")
       .field("checked", &Audit::checked)
       .field("failed", &Audit::failed)
@@ -61,4 +61,4 @@ void bind_audit(py::module_& m) {
       .def("__repr__", [](const StateHash& h) { return "<StateHash " + h.hex() + ">"; });
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::audit

@@ -1,4 +1,4 @@
-// The functions that bind the public headers, one for each: bind_environment() is in environment.cpp, and binds
+// The functions that bind the public headers, one for each: environment::bind() is in environment.cpp, and binds
 // include/dartcast/environment.hpp.
 #pragma once
 
@@ -6,55 +6,57 @@
 
 namespace dartcast::python {
 
-void bind_errors(pybind11::module_& m);
-void bind_ids(pybind11::module_& m);
+// clang-format off
+namespace errors { void bind(pybind11::module_& m); }
+namespace ids { void bind(pybind11::module_& m); }
 
 // Meshes.
-void bind_mesh_data(pybind11::module_& m);
-void bind_mesh_check(pybind11::module_& m);
-void bind_mesh_files(pybind11::module_& m);
-void bind_mesh_selection(pybind11::module_& m);
-void bind_decompose(pybind11::module_& m);
-void bind_generators(pybind11::module_& m);
-void bind_mesh_part(pybind11::module_& m);
+namespace mesh_data { void bind(pybind11::module_& m); }
+namespace mesh_check { void bind(pybind11::module_& m); }
+namespace mesh_files { void bind(pybind11::module_& m); }
+namespace mesh_selection { void bind(pybind11::module_& m); }
+namespace decompose { void bind(pybind11::module_& m); }
+namespace generators { void bind(pybind11::module_& m); }
+namespace mesh_part { void bind(pybind11::module_& m); }
 
 // Maps and their edits.
-void bind_predicates(pybind11::module_& m);
-void bind_cell_shape(pybind11::module_& m);
-void bind_combinatorial_map(pybind11::module_& m);
-void bind_map_edits(pybind11::module_& m);
-void bind_cell_complex(pybind11::module_& m);
-void bind_complex_edit(pybind11::module_& m);
-void bind_cutting(pybind11::module_& m);
-void bind_remeshing(pybind11::module_& m);
-void bind_validity(pybind11::module_& m);
+namespace predicates { void bind(pybind11::module_& m); }
+namespace cell_shape { void bind(pybind11::module_& m); }
+namespace combinatorial_map { void bind(pybind11::module_& m); }
+namespace map_edits { void bind(pybind11::module_& m); }
+namespace cell_complex { void bind(pybind11::module_& m); }
+namespace complex_edit { void bind(pybind11::module_& m); }
+namespace cutting { void bind(pybind11::module_& m); }
+namespace remeshing { void bind(pybind11::module_& m); }
+namespace validity { void bind(pybind11::module_& m); }
 
 // Particles.
-void bind_threads(pybind11::module_& m);
-void bind_particle_state(pybind11::module_& m);
-void bind_contact(pybind11::module_& m);
-void bind_step(pybind11::module_& m);
-void bind_response(pybind11::module_& m);
-void bind_environment(pybind11::module_& m);
-void bind_audit(pybind11::module_& m);
-void bind_shared_environment(pybind11::module_& m);
-void bind_spheres(pybind11::module_& m);
-void bind_dynamics(pybind11::module_& m);
-void bind_trajectory(pybind11::module_& m);
-void bind_deformation(pybind11::module_& m);
-void bind_vector_field(pybind11::module_& m);
+namespace threads { void bind(pybind11::module_& m); }
+namespace particle_state { void bind(pybind11::module_& m); }
+namespace contact { void bind(pybind11::module_& m); }
+namespace step { void bind(pybind11::module_& m); }
+namespace response { void bind(pybind11::module_& m); }
+namespace environment { void bind(pybind11::module_& m); }
+namespace audit { void bind(pybind11::module_& m); }
+namespace shared_environment { void bind(pybind11::module_& m); }
+namespace spheres { void bind(pybind11::module_& m); }
+namespace dynamics { void bind(pybind11::module_& m); }
+namespace trajectory { void bind(pybind11::module_& m); }
+namespace deformation { void bind(pybind11::module_& m); }
+namespace vector_field { void bind(pybind11::module_& m); }
 
 // All that runs.
-void bind_statistics(pybind11::module_& m);
-void bind_surface(pybind11::module_& m);
-void bind_bodies(pybind11::module_& m);
-void bind_solids(pybind11::module_& m);
-void bind_catheter(pybind11::module_& m);
-void bind_simulation(pybind11::module_& m);
-void bind_events(pybind11::module_& m);
-void bind_scene(pybind11::module_& m);
-void bind_report(pybind11::module_& m);
-void bind_plan(pybind11::module_& m);
-void bind_run(pybind11::module_& m);
+namespace statistics { void bind(pybind11::module_& m); }
+namespace surface { void bind(pybind11::module_& m); }
+namespace bodies { void bind(pybind11::module_& m); }
+namespace solids { void bind(pybind11::module_& m); }
+namespace catheter { void bind(pybind11::module_& m); }
+namespace simulation { void bind(pybind11::module_& m); }
+namespace events { void bind(pybind11::module_& m); }
+namespace scene { void bind(pybind11::module_& m); }
+namespace report { void bind(pybind11::module_& m); }
+namespace plan { void bind(pybind11::module_& m); }
+namespace run { void bind(pybind11::module_& m); }
+// clang-format on
 
 }  // namespace dartcast::python

@@ -12,7 +12,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::bodies {
 namespace {
 
 using Handle = BodiesHandle;
@@ -207,12 +207,12 @@ void bind_properties(Class& bodies) {
 
 }  // namespace
 
-void bind_bodies(py::module_& m) {
-  bind_bodies_records(m);
+void bind(py::module_& m) {
+  bodies_records::bind(m);
   Class bodies(m, "Bodies", doc("Bodies"));
   bind_calls(bodies);
   bind_single(bodies);
   bind_properties(bodies);
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::bodies

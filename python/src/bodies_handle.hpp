@@ -54,7 +54,9 @@ std::shared_ptr<SolidHandle<T>> lent(std::shared_ptr<EnvironmentHandle> environm
   return handle;
 }
 
-/// A part of bind_bodies().
-void bind_bodies_records(pybind11::module_& m);
+/// A part of bodies::bind().
+namespace bodies_records {
+void bind(pybind11::module_& m);
+}
 
 }  // namespace dartcast::python

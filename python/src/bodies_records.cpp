@@ -8,7 +8,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::bodies_records {
 namespace {
 
 void bind_options(py::module_& m) {
@@ -174,7 +174,7 @@ void bind_sampling(py::module_& m) {
 
 }  // namespace
 
-void bind_bodies_records(py::module_& m) {
+void bind(py::module_& m) {
   m.attr("SURFACE_COVER") = surface_cover;
   m.attr("CELL_DIAGONAL") = cell_diagonal;
   m.attr("VOLUME_COVER") = volume_cover;
@@ -187,4 +187,4 @@ void bind_bodies_records(py::module_& m) {
   bind_sampling(m);
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::bodies_records

@@ -10,7 +10,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::catheter {
 namespace {
 
 using Handle = CatheterHandle;
@@ -179,7 +179,7 @@ CameraPath cameras(const std::shared_ptr<EnvironmentHandle>& environment, const 
 
 }  // namespace
 
-void bind_catheter(py::module_& m) {
+void bind(py::module_& m) {
   bind_records(m);
   bind_checkpoint(m);
   bind_class(m);
@@ -202,4 +202,4 @@ void bind_catheter(py::module_& m) {
         py::arg("options") = CameraOptions{}, doc("camera_path"));
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::catheter

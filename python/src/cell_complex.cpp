@@ -8,7 +8,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::cell_complex {
 namespace {
 
 using Class = py::class_<ComplexHandle, std::shared_ptr<ComplexHandle>>;
@@ -111,7 +111,7 @@ py::object mesh_of(const ComplexHandle& h, bool with_vertices) {
 
 }  // namespace
 
-void bind_cell_complex(py::module_& m) {
+void bind(py::module_& m) {
   Record<InvalidCell>(m, "InvalidCell")
       .field("cell", &InvalidCell::cell)
       .field("simplex", &InvalidCell::simplex)
@@ -147,4 +147,4 @@ void bind_cell_complex(py::module_& m) {
         "with_vertices: (mesh, the vertex of each point). Cost: linear.");
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::cell_complex

@@ -9,7 +9,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::cell_shape {
 namespace {
 
 constexpr std::size_t max_points = 0x7fff;
@@ -154,7 +154,7 @@ void bind_keys(py::module_& m) {
 
 }  // namespace
 
-void bind_cell_shape(py::module_& m) {
+void bind(py::module_& m) {
   PYBIND11_NUMPY_DTYPE(Across, index, place);
   PYBIND11_NUMPY_DTYPE(ImplicitSimplex, vertex, across);
   bind_keys(m);
@@ -173,4 +173,4 @@ void bind_cell_shape(py::module_& m) {
   bind_fans(c);
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::cell_shape

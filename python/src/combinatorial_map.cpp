@@ -9,7 +9,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::combinatorial_map {
 namespace {
 
 using Map = CombinatorialMap;
@@ -296,7 +296,7 @@ bool are_equal(const MapHandle& a, const MapHandle& b) {
 
 }  // namespace
 
-void bind_combinatorial_map(py::module_& m) {
+void bind(py::module_& m) {
   bind_view(m);
   Class c(
       m, "CombinatorialMap",
@@ -330,4 +330,4 @@ void bind_combinatorial_map(py::module_& m) {
   c.def("__deepcopy__", [](const MapHandle& h, const py::dict& /*memo*/) { return copy_of(h); });
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::combinatorial_map

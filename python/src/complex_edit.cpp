@@ -10,7 +10,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::complex_edit {
 namespace {
 
 using Class = py::class_<EditHandle, std::shared_ptr<EditHandle>>;
@@ -122,7 +122,7 @@ void bind_ends(Class& c) {
 
 }  // namespace
 
-void bind_complex_edit(py::module_& m) {
+void bind(py::module_& m) {
   bind_reports(m);
   Class c(m, "ComplexEdit",
           (std::string(doc("ComplexEdit")) + "\n\nAn edit of a complex of its own is a context manager: leaving its "
@@ -160,4 +160,4 @@ void bind_complex_edit(py::module_& m) {
             .c_str());
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::complex_edit

@@ -7,9 +7,9 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::contact {
 
-void bind_contact(py::module_& m) {
+void bind(py::module_& m) {
   register_rows();
   m.attr("SHARE_TOGETHER") = share_together;
   m.attr("ALONG_SHARE") = along_share;
@@ -40,4 +40,4 @@ void bind_contact(py::module_& m) {
       .finish();
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::contact

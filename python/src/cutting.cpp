@@ -8,7 +8,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::cutting {
 namespace {
 
 using Cells = std::vector<Cell>;
@@ -190,7 +190,7 @@ void bind_joining(py::module_& m) {
 
 }  // namespace
 
-void bind_cutting(py::module_& m) {
+void bind(py::module_& m) {
   bind_planes(m);
   bind_tools(m);
   bind_carving(m);
@@ -198,4 +198,4 @@ void bind_cutting(py::module_& m) {
   bind_joining(m);
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::cutting

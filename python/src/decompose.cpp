@@ -6,9 +6,9 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::decompose {
 
-void bind_decompose(py::module_& m) {
+void bind(py::module_& m) {
   Record<Ring>(m, "Ring").field("points", &Ring::points).field("name", &Ring::name).finish();
   Record<DecomposeOptions>(m, "DecomposeOptions")
       .field("with_outside", &DecomposeOptions::with_outside)
@@ -20,9 +20,9 @@ void bind_decompose(py::module_& m) {
       [](const std::vector<Ring>& rings, const DecomposeOptions& options) {
         const DecomposeOptions own = options;
         const py::gil_scoped_release release;
-        return decompose(rings, own);
+        return dartcast::decompose(rings, own);
       },
       py::arg("rings"), py::arg("options") = DecomposeOptions{}, doc("decompose"));
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::decompose

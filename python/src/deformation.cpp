@@ -13,7 +13,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::deformation {
 namespace {
 
 constexpr const char* the_deformation = "the deformation";
@@ -82,7 +82,7 @@ void update_after_edit(DeformationHandle& h, const ComplexEditReport& edit, std:
 
 }  // namespace
 
-void bind_deformation(py::module_& m) {
+void bind(py::module_& m) {
   bind_steps(m);
   py::class_<DeformationHandle, std::shared_ptr<DeformationHandle>> c(m, "Deformation", doc("Deformation"));
   c.def(py::init([](const std::vector<DeformationStep>& steps, const py::object& given) {
@@ -133,4 +133,4 @@ void bind_deformation(py::module_& m) {
             .c_str());
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::deformation

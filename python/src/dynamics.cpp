@@ -6,9 +6,9 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::dynamics {
 
-void bind_dynamics(py::module_& m) {
+void bind(py::module_& m) {
   m.attr("LARGEST_RADIUS") = largest_radius;
   m.attr("SMALLEST_MASS") = smallest_mass;
   m.attr("LARGEST_MASS") = largest_mass;
@@ -49,4 +49,4 @@ void bind_dynamics(py::module_& m) {
       .def("velocity_at", &RigidMover::velocity_at, py::arg("x"), doc("RigidMover::velocity_at"));
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::dynamics

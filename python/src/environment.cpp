@@ -15,7 +15,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::environment {
 namespace {
 
 EnvironmentPointer make(const MeshData& mesh, Threads threads, const std::optional<std::vector<std::string>>& free) {
@@ -168,8 +168,8 @@ void bind_queries(EnvironmentClass& c) {
 
 }  // namespace
 
-void bind_environment(py::module_& m) {
-  bind_particles(m);
+void bind(py::module_& m) {
+  particles::bind(m);
   bind_enum<OrphanPolicy>(
       m, "OrphanPolicy",
       {{"HOLD", OrphanPolicy::hold}, {"RELOCATE", OrphanPolicy::relocate}, {"ABSORB", OrphanPolicy::absorb}});
@@ -183,9 +183,9 @@ void bind_environment(py::module_& m) {
             .c_str());
   bind_parts(c);
   bind_queries(c);
-  bind_environment_adding(c);
-  bind_environment_moves(m, c);
-  bind_environment_steps(c);
+  environment_adding::bind(c);
+  environment_moves::bind(m, c);
+  environment_steps::bind(c);
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::environment

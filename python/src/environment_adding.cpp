@@ -9,7 +9,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::environment_adding {
 namespace {
 
 constexpr const char* remedy = "add particles by the simulation";
@@ -73,7 +73,7 @@ ParticlesPointer restored(const EnvironmentHandle& h, const py::object& given, c
 
 }  // namespace
 
-void bind_environment_adding(EnvironmentClass& c) {
+void bind(EnvironmentClass& c) {
   c.def("add", &add, py::arg("particles"), py::arg("positions"),
         (std::string(doc("Environment::add")) +
          "\n\npositions: float64 (n, 3). Returns a structured array, one row for each position: particle (its index in "
@@ -90,4 +90,4 @@ void bind_environment_adding(EnvironmentClass& c) {
             .c_str());
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::environment_adding

@@ -11,7 +11,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::environment_moves {
 namespace {
 
 constexpr const char* remedy = "it is moved by its deformation";
@@ -122,7 +122,7 @@ void bind_next_points(py::module_& m, EnvironmentClass& c) {
 
 }  // namespace
 
-void bind_environment_moves(py::module_& m, EnvironmentClass& c) {
+void bind(py::module_& m, EnvironmentClass& c) {
   bind_next_points(m, c);
   py::class_<UpdateReport>(m, "UpdateReport", doc("UpdateReport"))
       .def_readonly("touched", &UpdateReport::touched, doc("UpdateReport::touched"))
@@ -155,4 +155,4 @@ void bind_environment_moves(py::module_& m, EnvironmentClass& c) {
         doc("Environment::update_after_edit"));
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::environment_moves

@@ -39,6 +39,7 @@ Targets::Targets(const py::object& given, const RespondArguments& arguments, con
   targets_ = own_;
 }
 
+namespace environment_steps {
 namespace {
 
 StepReport advance(const EnvironmentHandle& h, ParticlesHandle& p, const py::object& given, const py::object& respond,
@@ -72,7 +73,7 @@ std::vector<Trace> trace(const EnvironmentHandle& h, const ParticlesHandle& p, s
 
 }  // namespace
 
-void bind_environment_steps(EnvironmentClass& c) {
+void bind(EnvironmentClass& c) {
   c.def("advance", &advance, py::arg("particles"), py::arg("targets"), DARTCAST_RESPOND_ARGUMENTS,
         (std::string(doc("Environment::advance")) + "\n\ntargets: float64 (n, 3)." + respond_text).c_str());
   c.def(
@@ -83,4 +84,5 @@ void bind_environment_steps(EnvironmentClass& c) {
           .c_str());
 }
 
+}  // namespace environment_steps
 }  // namespace dartcast::python

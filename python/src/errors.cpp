@@ -9,7 +9,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::errors {
 namespace {
 
 // The classes live as long as the process: a translator may need them until the end.
@@ -58,7 +58,7 @@ void translate(std::exception_ptr thrown) {
 
 }  // namespace
 
-void bind_errors(py::module_& m) {
+void bind(py::module_& m) {
   ErrorClasses& c = error_classes();
   c.error = make_error(m, "Error", doc("Error"), py::make_tuple(py::handle(PyExc_Exception)));
   c.invalid_argument =
@@ -74,4 +74,4 @@ void bind_errors(py::module_& m) {
   py::register_exception_translator(translate);
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::errors

@@ -8,7 +8,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::events {
 namespace {
 
 void bind_subdivision(py::module_& m) {
@@ -125,7 +125,7 @@ void bind_log(py::module_& m) {
 
 }  // namespace
 
-void bind_events(py::module_& m) {
+void bind(py::module_& m) {
   bind_subdivision(m);
   bind_kinds(m);
   bind_log(m);
@@ -140,4 +140,4 @@ void bind_events(py::module_& m) {
       py::arg("simulation"), py::arg("event"), doc("apply"));
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::events

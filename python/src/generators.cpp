@@ -6,7 +6,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::generators {
 namespace {
 
 template <class Options>
@@ -114,10 +114,10 @@ void bind_planar(py::module_& m) {
 
 }  // namespace
 
-void bind_generators(py::module_& m) {
+void bind(py::module_& m) {
   bind_boxes(m);
   bind_vessels(m);
   bind_planar(m);
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::generators

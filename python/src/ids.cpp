@@ -2,11 +2,11 @@
 #include "bind.hpp"
 #include "support/python.hpp"
 
-namespace dartcast::python {
+namespace dartcast::python::ids {
 
-void bind_ids(pybind11::module_& m) {
+void bind(pybind11::module_& m) {
   bind_enum<Kind>(m, "Kind",
                   {{"VERTEX", Kind::vertex}, {"EDGE", Kind::edge}, {"FACE", Kind::face}, {"VOLUME", Kind::volume}});
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::ids

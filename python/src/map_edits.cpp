@@ -9,7 +9,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::map_edits {
 namespace {
 
 void bind_drafts(py::module_& m) {
@@ -177,13 +177,13 @@ void bind_questions(py::module_& m) {
 
 }  // namespace
 
-void bind_map_edits(py::module_& m) {
+void bind(py::module_& m) {
   bind_drafts(m);
   bind_forms(m);
   bind_reports(m);
-  bind_transaction(m);
+  transaction::bind(m);
   bind_edits(m);
   bind_questions(m);
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::map_edits

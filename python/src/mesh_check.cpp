@@ -7,9 +7,9 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::mesh_check {
 
-void bind_mesh_check(py::module_& m) {
+void bind(py::module_& m) {
   bind_enum<Verdict>(
       m, "Verdict",
       {{"ACCEPT", Verdict::accept}, {"REPAIR", Verdict::repair}, {"WARN", Verdict::warn}, {"REFUSE", Verdict::refuse}});
@@ -47,4 +47,4 @@ void bind_mesh_check(py::module_& m) {
       py::arg("mesh"), doc("check_and_repair"));
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::mesh_check

@@ -9,7 +9,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::mesh_data {
 namespace {
 
 constexpr const char* constructor_doc = R"(A mesh from arrays.
@@ -197,7 +197,7 @@ MeshData from_state(const py::tuple& state) {
 
 }  // namespace
 
-void bind_mesh_data(py::module_& m) {
+void bind(py::module_& m) {
   bind_enum<CellType>(m, "CellType",
                       {{"TETRAHEDRON", CellType::tetrahedron},
                        {"HEXAHEDRON", CellType::hexahedron},
@@ -230,4 +230,4 @@ void bind_mesh_data(py::module_& m) {
   c.def(py::pickle(&state_of, &from_state));
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::mesh_data

@@ -7,7 +7,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::mesh_files {
 namespace {
 
 namespace fs = std::filesystem;
@@ -46,7 +46,7 @@ void bind_mesh_file(py::module_& m) {
 
 }  // namespace
 
-void bind_mesh_files(py::module_& m) {
+void bind(py::module_& m) {
   Record<ReadOptions>(m, "ReadOptions")
       .field("patch_array", &ReadOptions::patch_array)
       .field("max_memory", &ReadOptions::max_memory)
@@ -94,4 +94,4 @@ void bind_mesh_files(py::module_& m) {
       py::arg("path"), py::arg("bytes"), doc("write_bytes"));
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::mesh_files

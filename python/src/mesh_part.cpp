@@ -10,7 +10,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::mesh_part {
 namespace {
 
 namespace fs = std::filesystem;
@@ -48,7 +48,7 @@ void bind_part(py::module_& m) {
 
 }  // namespace
 
-void bind_mesh_part(py::module_& m) {
+void bind(py::module_& m) {
   bind_part(m);
   m.attr("UNKNOWN_PATCH") = unknown_patch;
   m.def(
@@ -71,7 +71,7 @@ void bind_mesh_part(py::module_& m) {
         check_arrays(whole);
         const MeshUse use(whole);
         const py::gil_scoped_release release;
-        return mesh_part(whole, values, parts, part);
+        return dartcast::mesh_part(whole, values, parts, part);
       },
       py::arg("whole"), py::arg("owners"), py::arg("parts"), py::arg("part"), doc("mesh_part"));
   m.def("has_parts", &has_parts, py::arg("options"), doc("has_parts"));
@@ -102,4 +102,4 @@ void bind_mesh_part(py::module_& m) {
       py::arg("path"), py::arg("parts"), py::arg("part"), py::arg("options") = ReadOptions{}, doc("read_mesh_part"));
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::mesh_part

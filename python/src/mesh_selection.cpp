@@ -7,7 +7,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::mesh_selection {
 namespace {
 
 // Calls a function that changes the mesh.
@@ -21,7 +21,7 @@ void change(MeshData& mesh, const Function& function) {
 
 }  // namespace
 
-void bind_mesh_selection(py::module_& m) {
+void bind(py::module_& m) {
   using Texts = std::vector<std::string>;
   m.def(
       "select_free_regions",
@@ -63,4 +63,4 @@ void bind_mesh_selection(py::module_& m) {
           .c_str());
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::mesh_selection

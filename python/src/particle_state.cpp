@@ -7,7 +7,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::particle_state {
 namespace {
 
 void check_state(const CombinatorialMap& map, const ParticleState& s) {
@@ -39,7 +39,7 @@ void bind_functions(py::module_& m) {
 
 }  // namespace
 
-void bind_particle_state(py::module_& m) {
+void bind(py::module_& m) {
   bind_enum<Place>(m, "Place", {{"FREE", Place::free}, {"BLOCKED", Place::blocked}, {"OUTSIDE", Place::outside}});
   Record<ParticleState>(m, "ParticleState")
       .field("position", &ParticleState::position)
@@ -66,4 +66,4 @@ void bind_particle_state(py::module_& m) {
   bind_functions(m);
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::particle_state

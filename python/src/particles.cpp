@@ -6,7 +6,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::particles {
 namespace {
 
 using Class = py::class_<ParticlesHandle, ParticlesPointer>;
@@ -164,7 +164,7 @@ ParticlesPointer copy_of(const ParticlesHandle& h) {
 
 }  // namespace
 
-void bind_particles(py::module_& m) {
+void bind(py::module_& m) {
   Class c(m, "Particles", doc("Particles"));
   c.def(py::init([] { return make({}); }), "An empty set.");
   const auto size = [](const ParticlesHandle& h) {
@@ -188,4 +188,4 @@ void bind_particles(py::module_& m) {
   bind_changes(c);
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::particles

@@ -7,9 +7,9 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::plan {
 
-void bind_plan(py::module_& m) {
+void bind(py::module_& m) {
   Record<PlanOptions>(m, "PlanOptions")
       .field("ranks", &PlanOptions::ranks)
       .field("particles", &PlanOptions::particles)
@@ -50,4 +50,4 @@ void bind_plan(py::module_& m) {
       py::arg("mesh"), py::arg("options"), doc("plan_run"));
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::plan

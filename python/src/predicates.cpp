@@ -9,7 +9,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::predicates {
 namespace {
 
 constexpr std::array<const char*, 4> point_names = {"a", "b", "c", "d"};
@@ -204,11 +204,11 @@ void bind_perturbations(py::module_& m) {
 
 }  // namespace
 
-void bind_predicates(py::module_& m) {
+void bind(py::module_& m) {
   bind_signs(m);
   bind_bounds(m);
   bind_ranges(m);
   bind_perturbations(m);
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::predicates

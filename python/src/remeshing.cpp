@@ -8,7 +8,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::remeshing {
 namespace {
 
 /// A subdivision, and the map that it is of. Only subdivide() makes one, so that its vertices are what they say.
@@ -102,9 +102,9 @@ void bind_repair(py::module_& m) {
 
 }  // namespace
 
-void bind_remeshing(py::module_& m) {
+void bind(py::module_& m) {
   bind_subdivision(m);
   bind_repair(m);
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::remeshing

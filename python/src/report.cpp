@@ -6,9 +6,9 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::report {
 
-void bind_report(py::module_& m) {
+void bind(py::module_& m) {
   Record<ReportOptions>(m, "ReportOptions")
       .field("particles", &ReportOptions::particles)
       .field("frames", &ReportOptions::frames)
@@ -36,4 +36,4 @@ void bind_report(py::module_& m) {
   m.def("report_file", &report_file, py::arg("run_folder"), doc("report_file"));
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::report

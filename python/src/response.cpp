@@ -10,7 +10,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::response {
 namespace {
 
 void bind_values(py::module_& m) {
@@ -141,11 +141,11 @@ void bind_functions(py::module_& m) {
 
 }  // namespace
 
-void bind_response(py::module_& m) {
+void bind(py::module_& m) {
   bind_values(m);
   bind_responses(m);
   bind_callback(m);
   bind_functions(m);
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::response

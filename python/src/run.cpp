@@ -13,7 +13,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::run {
 namespace {
 
 // Asks Python after each step whether to go on. An exception cancels the run, whose output is then complete.
@@ -143,7 +143,7 @@ void bind_summary(py::module_& m) {
 
 }  // namespace
 
-void bind_run(py::module_& m) {
+void bind(py::module_& m) {
   bind_summary(m);
   Record<RunOptions>(m, "RunOptions")
       .field("folder", &RunOptions::folder)
@@ -167,4 +167,4 @@ void bind_run(py::module_& m) {
         py::arg("ranks") = py::none(), text.c_str());
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::run

@@ -10,7 +10,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::scene {
 namespace {
 
 void bind_environment_scene(py::module_& m) {
@@ -225,7 +225,7 @@ void bind_files(py::module_& m) {
 
 }  // namespace
 
-void bind_scene(py::module_& m) {
+void bind(py::module_& m) {
   m.attr("MAX_SEED") = max_seed;
   m.attr("MAX_STEPS") = max_steps;
   bind_environment_scene(m);
@@ -237,4 +237,4 @@ void bind_scene(py::module_& m) {
   bind_files(m);
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::scene

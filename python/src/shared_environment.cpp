@@ -10,7 +10,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::shared_environment {
 namespace {
 
 constexpr const char* the_environment = "the SharedEnvironment";
@@ -165,7 +165,7 @@ void bind_steps(EnvironmentOf& c) {
 
 }  // namespace
 
-void bind_shared_environment(py::module_& m) {
+void bind(py::module_& m) {
   bind_shared_particles(m);
   Record<SharedStep>(m, "SharedStep")
       .field("report", &SharedStep::report)
@@ -215,4 +215,4 @@ void bind_shared_environment(py::module_& m) {
   bind_steps(c);
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::shared_environment

@@ -16,7 +16,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::simulation {
 namespace {
 
 using Handle = SimulationHandle;
@@ -271,15 +271,15 @@ void bind_steps(Class& simulation) {
 
 }  // namespace
 
-void bind_simulation(py::module_& m) {
-  bind_simulation_records(m);
+void bind(py::module_& m) {
+  simulation_records::bind(m);
   Class simulation(m, "Simulation", doc("Simulation"));
   bind_making(simulation);
   bind_motion(simulation);
   bind_adding(simulation);
   bind_changes(simulation);
   bind_steps(simulation);
-  bind_simulation_state(simulation);
+  simulation_state::bind(simulation);
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::simulation

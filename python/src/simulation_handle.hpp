@@ -53,8 +53,12 @@ Simulation::AfterEdit after_edit_callback(pybind11::object function);
 /// The answers at walls: WallResponses, a single response, a dict of them by the names of patches, or None.
 WallResponses wall_responses(const pybind11::object& given, const Environment& environment);
 
-// The parts of bind_simulation().
-void bind_simulation_records(pybind11::module_& m);
-void bind_simulation_state(pybind11::class_<SimulationHandle, std::shared_ptr<SimulationHandle>>& simulation);
+// The parts of simulation::bind().
+namespace simulation_records {
+void bind(pybind11::module_& m);
+}
+namespace simulation_state {
+void bind(pybind11::class_<SimulationHandle, std::shared_ptr<SimulationHandle>>& simulation);
+}
 
 }  // namespace dartcast::python

@@ -7,7 +7,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::simulation_records {
 namespace {
 
 struct LeftRow {
@@ -138,7 +138,7 @@ void bind_summaries(py::module_& m) {
 
 }  // namespace
 
-void bind_simulation_records(py::module_& m) {
+void bind(py::module_& m) {
   PYBIND11_NUMPY_DTYPE(LeftRow, id, status, position, contact);
   m.attr("SMALLEST_DT") = smallest_dt;
   m.attr("LARGEST_DT") = largest_dt;
@@ -150,4 +150,4 @@ void bind_simulation_records(py::module_& m) {
   bind_summaries(m);
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::simulation_records

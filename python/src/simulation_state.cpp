@@ -11,7 +11,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::simulation_state {
 namespace {
 
 using Handle = SimulationHandle;
@@ -189,7 +189,7 @@ void bind_sums(Class& simulation) {
 
 }  // namespace
 
-void bind_simulation_state(Class& simulation) {
+void bind(Class& simulation) {
   simulation
       .def_property_readonly("options", property([](const Simulation& s) { return SimulationOptions(s.options()); }),
                              "A copy.")
@@ -205,4 +205,4 @@ void bind_simulation_state(Class& simulation) {
   bind_sums(simulation);
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::simulation_state

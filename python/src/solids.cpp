@@ -11,7 +11,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::solids {
 namespace {
 
 using Handle = SolidHandle<SolidSet>;
@@ -272,7 +272,7 @@ void bind_state(Class& solids) {
 
 }  // namespace
 
-void bind_solids(py::module_& m) {
+void bind(py::module_& m) {
   bind_mesh(m);
   bind_records(m);
   bind_step_report(m);
@@ -282,4 +282,4 @@ void bind_solids(py::module_& m) {
   bind_state(solids);
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::solids

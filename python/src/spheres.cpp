@@ -7,7 +7,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::spheres {
 namespace {
 
 struct StepperHandle {
@@ -75,7 +75,7 @@ SphereReport advance_once(const EnvironmentHandle& h, ParticlesHandle& p, const 
 
 }  // namespace
 
-void bind_spheres(py::module_& m) {
+void bind(py::module_& m) {
   const std::string arguments =
       "\n\nradii: float64 (n,). targets: float64 (n, 3). The other arguments are as in Environment.advance(), but a "
       "function answers one contact at a time.";
@@ -105,4 +105,4 @@ void bind_spheres(py::module_& m) {
         py::arg("targets"), DARTCAST_RESPOND_ARGUMENTS, (std::string(doc("advance_spheres")) + arguments).c_str());
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::spheres

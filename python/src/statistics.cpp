@@ -13,7 +13,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::statistics {
 namespace {
 
 struct FaceHitsRow {
@@ -269,7 +269,7 @@ void bind_files(py::module_& m) {
 
 }  // namespace
 
-void bind_statistics(py::module_& m) {
+void bind(py::module_& m) {
   PYBIND11_NUMPY_DTYPE(FaceHitsRow, cell, face, patch, hits);
   PYBIND11_NUMPY_DTYPE(CrossingRow, plane, particle, forward, share, point);
   PYBIND11_NUMPY_DTYPE(PassageRow, plane, particle, forward, share, point, id, time, age);
@@ -280,4 +280,4 @@ void bind_statistics(py::module_& m) {
   bind_files(m);
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::statistics

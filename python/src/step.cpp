@@ -7,7 +7,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::step {
 namespace {
 
 void bind_options(py::module_& m) {
@@ -119,11 +119,11 @@ void bind_trace(py::module_& m) {
 
 }  // namespace
 
-void bind_step(py::module_& m) {
+void bind(py::module_& m) {
   bind_options(m);
   bind_counters(m);
   bind_step_report(m);
   bind_trace(m);
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::step

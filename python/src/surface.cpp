@@ -11,7 +11,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::surface {
 namespace {
 
 using Handle = SurfaceHandle;
@@ -151,8 +151,8 @@ void bind_class(py::module_& m) {
 
 }  // namespace
 
-void bind_surface(py::module_& m) {
-  bind_surface_places(m);
+void bind(py::module_& m) {
+  surface_places::bind(m);
   Record<AcrossEdge>(m, "AcrossEdge")
       .field("face", &AcrossEdge::face)
       .field("triangle", &AcrossEdge::triangle)
@@ -160,8 +160,8 @@ void bind_surface(py::module_& m) {
       .field("wall", &AcrossEdge::wall)
       .finish();
   bind_class(m);
-  bind_surface_steps(m);
-  bind_surface_edit(m);
+  surface_steps::bind(m);
+  surface_edit::bind(m);
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::surface

@@ -10,7 +10,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::surface_edit {
 namespace {
 
 // An edit is open from its making to its commit, or to the end of its block. Calls on the surface are refused until
@@ -123,7 +123,7 @@ void bind_records(py::module_& m) {
 
 }  // namespace
 
-void bind_surface_edit(py::module_& m) {
+void bind(py::module_& m) {
   bind_records(m);
   const std::string text =
       std::string(doc("SurfaceEdit")) +
@@ -157,4 +157,4 @@ void bind_surface_edit(py::module_& m) {
   m.def("followed", &follow, py::arg("surface"), py::arg("report"), py::arg("place"), follows.c_str());
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::surface_edit

@@ -51,7 +51,7 @@ py::object nearest(const LocatorHandle& self, const std::shared_ptr<SurfaceHandl
   return py::make_tuple(array_of(std::move(places)), array_of(std::move(distances)));
 }
 
-py::array_t<PlaceRow> surface_places(const std::vector<SurfacePlace>& places) {
+py::array_t<PlaceRow> array_of_places(const std::vector<SurfacePlace>& places) {
   std::vector<PlaceRow> rows;
   rows.reserve(places.size());
   for (const SurfacePlace& p : places) rows.push_back(row_of(p));
@@ -121,7 +121,9 @@ void check_places(const Surface& surface, std::span<const SurfacePlace> places, 
   }
 }
 
-void bind_surface_places(py::module_& m) {
+namespace surface_places {
+
+void bind(py::module_& m) {
   PYBIND11_NUMPY_DTYPE(PlaceRow, cell, simplex, weights);
   m.attr("SURFACE_PLACE") = py::dtype::of<PlaceRow>();
   Record<SurfacePlace>(m, "SurfacePlace")
@@ -133,7 +135,7 @@ void bind_surface_places(py::module_& m) {
       .field("place", &SurfaceLocation::place)
       .field("distance", &SurfaceLocation::distance)
       .finish();
-  m.def("surface_places", &surface_places, py::arg("places"),
+  m.def("surface_places", &array_of_places, py::arg("places"),
         "An array of places from a list of SurfacePlace: a structured array of the dtype SURFACE_PLACE, with the "
         "fields cell (uint32), simplex (uint16) and weights (3 float64).");
   m.def(
@@ -152,4 +154,5 @@ void bind_surface_places(py::module_& m) {
       .def("nearest", &nearest, py::arg("surface").none(false), py::arg("x"), text.c_str());
 }
 
+}  // namespace surface_places
 }  // namespace dartcast::python

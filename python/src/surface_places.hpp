@@ -57,9 +57,15 @@ void check_place(const Surface& surface, const SurfacePlace& place, const char* 
 /// The same for all; the message names the place.
 void check_places(const Surface& surface, std::span<const SurfacePlace> places, const char* caller);
 
-// The parts of bind_surface().
-void bind_surface_places(pybind11::module_& m);
-void bind_surface_steps(pybind11::module_& m);
-void bind_surface_edit(pybind11::module_& m);
+// The parts of surface::bind().
+namespace surface_places {
+void bind(pybind11::module_& m);
+}
+namespace surface_steps {
+void bind(pybind11::module_& m);
+}
+namespace surface_edit {
+void bind(pybind11::module_& m);
+}
 
 }  // namespace dartcast::python

@@ -7,7 +7,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::surface_steps {
 namespace {
 
 // Rows of the arrays of many steps and contacts.
@@ -122,8 +122,8 @@ SurfaceStep step_one(SurfaceHandle& surface, SurfacePlace& place, const Vec3& di
   SurfaceStep result;
   {
     const py::gil_scoped_release release;
-    result =
-        step(surface.surface, moved, displacement, answer, own_options, {&lists.contacts, &lists.crossings}, particle);
+    result = dartcast::step(surface.surface, moved, displacement, answer, own_options,
+                            {&lists.contacts, &lists.crossings}, particle);
   }
   place = moved;
   if (trace != nullptr) {
@@ -228,7 +228,7 @@ void bind_records(py::module_& m) {
 
 }  // namespace
 
-void bind_surface_steps(py::module_& m) {
+void bind(py::module_& m) {
   PYBIND11_NUMPY_DTYPE(StepRow, end, contacts, crossings, length, direction, remaining);
   PYBIND11_NUMPY_DTYPE(ContactRow, particle, kind, dart_cell, dart, patch, time_of_impact, place, point, normal, sides,
                        displacement, unused);
@@ -251,4 +251,4 @@ void bind_surface_steps(py::module_& m) {
         many.c_str());
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::surface_steps

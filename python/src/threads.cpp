@@ -6,12 +6,12 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::threads {
 
-void bind_threads(py::module_& m) {
+void bind(py::module_& m) {
   m.def("max_threads", &max_threads, doc("max_threads"));
   m.def("check_threads", &check_threads, py::arg("threads"), py::call_guard<py::gil_scoped_release>(),
         doc("check_threads"));
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::threads

@@ -7,7 +7,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::trajectory {
 namespace {
 
 // Traces may be of another map, or older than an edit.
@@ -30,7 +30,7 @@ void expect_cells_of(const CombinatorialMap& map, const std::vector<Trace>& trac
 
 }  // namespace
 
-void bind_trajectory(py::module_& m) {
+void bind(py::module_& m) {
   bind_enum<TrajectoryMark>(m, "TrajectoryMark",
                             {{"START", TrajectoryMark::start},
                              {"CROSSING", TrajectoryMark::crossing},
@@ -69,4 +69,4 @@ void bind_trajectory(py::module_& m) {
       py::arg("complex"), py::arg("traces"), doc("trajectory_svg"));
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::trajectory

@@ -7,7 +7,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::transaction {
 namespace {
 
 using Class = py::class_<TransactionHandle, std::shared_ptr<TransactionHandle>>;
@@ -145,7 +145,7 @@ void bind_reads(Class& c) {
 
 }  // namespace
 
-void bind_transaction(py::module_& m) {
+void bind(py::module_& m) {
   Class c(m, "Transaction",
           (std::string(doc("Transaction")) + "\n\nA transaction on a map of its own is a context manager: leaving its "
                                              "block without commit() undoes the edits. "
@@ -171,4 +171,4 @@ void bind_transaction(py::module_& m) {
   c.def("__exit__", [](TransactionHandle& h, const py::args& /*raised*/) { h.end(); });
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::transaction

@@ -5,6 +5,8 @@
 
 namespace dartcast::python {
 
-void bind_transaction(pybind11::module_& m);
+namespace transaction {
+void bind(pybind11::module_& m);
+}
 
 }  // namespace dartcast::python

@@ -7,7 +7,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::validity {
 namespace {
 
 void expect_time(double time, const char* name) {
@@ -134,10 +134,10 @@ void bind_inversions(py::module_& m) {
 
 }  // namespace
 
-void bind_validity(py::module_& m) {
+void bind(py::module_& m) {
   bind_records(m);
   bind_checks(m);
   bind_inversions(m);
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::validity

@@ -12,7 +12,7 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python {
+namespace dartcast::python::vector_field {
 namespace {
 
 constexpr const char* the_field = "the field";
@@ -115,7 +115,7 @@ void bind_members(py::class_<FieldHandle, FieldPointer>& c) {
 
 }  // namespace
 
-void bind_vector_field(py::module_& m) {
+void bind(py::module_& m) {
   bind_samples(m);
   py::class_<FieldHandle, FieldPointer> c(m, "VectorField", "A field of vectors at the points or cells of a mesh.");
   c.def(py::init(&make<FieldSamples>), py::arg("complex").none(false), py::arg("samples"),
@@ -144,4 +144,4 @@ void bind_vector_field(py::module_& m) {
   m.attr("VelocityField") = m.attr("VectorField");
 }
 
-}  // namespace dartcast::python
+}  // namespace dartcast::python::vector_field

@@ -46,10 +46,18 @@ class Targets {
   std::span<const Vec3> targets_;
 };
 
-void bind_particles(pybind11::module_& m);
+namespace particles {
+void bind(pybind11::module_& m);
+}
 using EnvironmentClass = pybind11::class_<EnvironmentHandle, EnvironmentPointer>;
-void bind_environment_adding(EnvironmentClass& c);
-void bind_environment_moves(pybind11::module_& m, EnvironmentClass& c);
-void bind_environment_steps(EnvironmentClass& c);
+namespace environment_adding {
+void bind(EnvironmentClass& c);
+}
+namespace environment_moves {
+void bind(pybind11::module_& m, EnvironmentClass& c);
+}
+namespace environment_steps {
+void bind(EnvironmentClass& c);
+}
 
 }  // namespace dartcast::python
