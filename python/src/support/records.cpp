@@ -49,35 +49,59 @@ bool equal(const py::object& a, const py::object& b, const Members& members) {
   });
 }
 
-void expect_record(const py::object& self, py::handle record) {
-  if (!py::isinstance(self, record))
-    throw py::type_error("expected " + record.attr("__name__").cast<std::string>() + ", got " +
-                         py::type::of(self).attr("__name__").cast<std::string>());
+const py::detail::type_info* type_info_of(py::handle record) {
+  return py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(record.ptr()));
 }
 
-template <class F>
-void define(py::handle record, const char* name, F&& f) {
-  record.attr(name) = py::cpp_function(std::forward<F>(f), py::name(name), py::is_method(record));
+// The C++ record in an object of Python. Throws TypeError where the object is none of this class.
+std::byte* record_in(const py::object& self, py::handle record) {
+  py::detail::type_caster_generic caster(type_info_of(record));
+  if (!py::isinstance(self, record) || !caster.load(self, false)) {
+    throw py::type_error("expected " + record.attr("__name__").cast<std::string>() + ", got " +
+                         py::type::of(self).attr("__name__").cast<std::string>());
+  }
+  return static_cast<std::byte*>(caster.value);
+}
+
+template <class F, class... Extra>
+void define(py::handle record, const char* name, F&& f, const Extra&... extra) {
+  record.attr(name) = py::cpp_function(std::forward<F>(f), py::name(name), py::is_method(record), extra...);
 }
 
 }  // namespace
 
-void RecordMembers::add(const char* name, const Getter& get, const Setter& set, const char* doc) {
+void RecordMembers::add(const char* name, const char* cpp_name, std::ptrdiff_t offset, Getter get, Setter set) {
   members_.emplace_back(name);
-  const auto checked_get = [get, record = record_](const py::object& self) {
-    expect_record(self, record);
-    return get(self);
+  const auto getter = [record = record_, offset, get](const py::object& self) {
+    return get(record_in(self, record) + offset);
   };
-  const auto checked_set = [set, record = record_](const py::object& self, const py::object& value) {
-    expect_record(self, record);
-    set(self, value);
+  const auto setter = [record = record_, offset, set, full_name = name_ + "." + name](const py::object& self,
+                                                                                      const py::object& value) {
+    set(record_in(self, record) + offset, value, full_name);
   };
   const py::object property = py::module_::import("builtins").attr("property");
-  record_.attr(name) = property(py::cpp_function(checked_get, py::is_method(record_)),
-                                py::cpp_function(checked_set, py::is_method(record_)), py::none(), doc);
+  record_.attr(name) =
+      property(py::cpp_function(getter, py::is_method(record_)), py::cpp_function(setter, py::is_method(record_)),
+               py::none(), doc(cpp_ + "::" + cpp_name));
 }
 
-void RecordMembers::finish() const {
+// The values are set through an object of Python that does not own the record.
+void RecordMembers::define_constructor(Maker make) const {
+  const auto construct = [members = *this, make](py::detail::value_and_holder& self, const py::args& values,
+                                                 const py::kwargs& named) {
+    auto made = make();
+    const auto reference = py::return_value_policy::reference;
+    members.set_all(py::reinterpret_steal<py::object>(py::detail::type_caster_generic::cast(
+                        made.get(), reference, {}, type_info_of(members.record_), nullptr, nullptr)),
+                    values, named);
+    self.value_ptr() = made.release();
+  };
+  const py::sibling others(py::getattr(record_, "__init__", py::none()));  // a record may have further constructors
+  define(record_, "__init__", construct, py::detail::is_new_style_constructor(), others);
+}
+
+void RecordMembers::finish(Maker make) const {
+  define_constructor(make);
   define(record_, "__repr__",
          [name = name_, members = members_](const py::object& self) { return representation(self, name, members); });
   define(record_, "__eq__", [record = record_, members = members_](const py::object& self, const py::object& other) {
@@ -95,7 +119,7 @@ void RecordMembers::finish() const {
   record_.attr("__hash__") = py::none();
 }
 
-void RecordMembers::set(const py::object& self, const py::args& values, const py::kwargs& named) const {
+void RecordMembers::set_all(const py::object& self, const py::args& values, const py::kwargs& named) const {
   if (values.size() > members_.size()) {
     throw py::type_error(name_ + ": " + std::to_string(values.size()) + " values, but it has " +
                          std::to_string(members_.size()) + " members");
