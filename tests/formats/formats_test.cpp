@@ -13,7 +13,7 @@
 namespace dartcast::test::formats_test {
 
 TEST(Formats, GmshOfEveryVersion) {
-  const MeshData mesh = mixed_mesh();
+  const MeshData mesh = sample_mesh();
   const Folder folder;
   for (const auto& [format, content] : gmsh_files(mesh)) {
     const MeshFile file = read_mesh(folder.file("a.msh", content));
@@ -141,7 +141,7 @@ TEST(Formats, VtuBinaryInEitherByteOrder) {
   }
 }
 
-TEST(RoundTrip, EveryFormatKeepsPointsCellsRegionsAndPatches) { expect_round_trips(mixed_mesh()); }
+TEST(RoundTrip, EveryFormatKeepsPointsCellsRegionsAndPatches) { expect_round_trips(sample_mesh()); }
 
 TEST(RoundTrip, VtkKeepsPolyhedraArraysAndFree) {
   MeshData mesh = polyhedra();
@@ -156,9 +156,9 @@ TEST(RoundTrip, WhatAFormatCannotHoldIsRefused) {
   for (const std::string ending : {"msh", "msh4", "mesh"}) {
     EXPECT_THROW(write_mesh(polyhedra(), folder / ("p." + ending)), InvalidArgument) << ending;
   }
-  EXPECT_THROW(write_mesh(mixed_mesh(), folder / "a.obj"), InvalidArgument);
+  EXPECT_THROW(write_mesh(sample_mesh(), folder / "a.obj"), InvalidArgument);
   for (const std::string ending : {"vtu", "vtk", "msh", "mesh"}) {
-    EXPECT_THROW(write_mesh(mixed_mesh(), folder / ("no/such/folder/a." + ending)), Error) << ending;
+    EXPECT_THROW(write_mesh(sample_mesh(), folder / ("no/such/folder/a." + ending)), Error) << ending;
   }
 }
 
@@ -342,7 +342,7 @@ TEST(Formats, EndingsAreListed) {
 
 TEST(Report, JsonHasTheFieldsOfTheInterface) {
   const Folder folder;
-  write_mesh(mixed_mesh(), folder / "a.msh");
+  write_mesh(sample_mesh(), folder / "a.msh");
   const auto json = nlohmann::json::parse(report_json(read_mesh(folder / "a.msh").report));
   EXPECT_EQ(json["file"], (folder / "a.msh").string());
   EXPECT_EQ(json["format"], "Gmsh 2.2 ASCII");

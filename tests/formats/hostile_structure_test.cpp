@@ -157,7 +157,7 @@ TEST_F(HostileStructure, VtuOfEveryDataAndInPieces) {
 
 // VTK's own compressed files; where their data are damaged it looks for names of sections that need not be there.
 TEST_F(HostileStructure, VtuCompressed) {
-  MeshData mesh = mixed_mesh();
+  MeshData mesh = sample_mesh();
   mesh.cell_data = {{"heat", 1, {1, 2, 3, 4}}};
   write_mesh(mesh, folder_ / "b.vtu");
   std::string xml = slurp(folder_ / "b.vtu");

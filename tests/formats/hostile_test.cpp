@@ -47,7 +47,7 @@ std::string written(const MeshData& mesh, const std::string& name) {
 }
 
 std::vector<Sample> samples() {
-  const MeshData mesh = mixed_mesh();
+  const MeshData mesh = sample_mesh();
   return {{"a.msh", gmsh_1(mesh)},
           {"b.msh", written(mesh, "b.msh")},
           {"c.msh", gmsh_22_binary(mesh, false)},

@@ -31,9 +31,9 @@ Case case_at(const std::filesystem::path& folder) {
 /// Every form of a case, whole and in parts; each has a field at a time.
 std::vector<Case> cases(const Folder& folder) {
   std::vector<Case> all;
-  FoamMesh mesh = foam_mesh(mixed_mesh());
+  FoamMesh mesh = foam_mesh(sample_mesh());
   mesh.face_zones = {{"between", {0, 2}}};
-  const std::vector<Vec3> values(mixed_mesh().cell_count(), {1, 2, 3});
+  const std::vector<Vec3> values(sample_mesh().cell_count(), {1, 2, 3});
   for (const FoamStyle& style : foam_styles()) {
     const std::string name = "case" + std::to_string(all.size());
     const FoamWriter writer(folder / name, style);

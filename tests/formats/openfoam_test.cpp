@@ -95,7 +95,7 @@ MeshData box() {
 }
 
 TEST(OpenFoam, EveryFormGivesTheSameMesh) {
-  for (const MeshData& mesh : {box(), mixed_mesh(), polyhedra()}) {
+  for (const MeshData& mesh : {box(), sample_mesh(), polyhedra()}) {
     for (const FoamStyle& style : foam_styles()) {
       SCOPED_TRACE(testing::Message() << style.binary << style.label_bytes << style.big_endian << style.gzip);
       const Folder folder;
@@ -106,7 +106,7 @@ TEST(OpenFoam, EveryFormGivesTheSameMesh) {
 }
 
 TEST(OpenFoam, SinglePrecisionIsReadAsItIs) {
-  const MeshData mesh = mixed_mesh();
+  const MeshData mesh = sample_mesh();
   const Folder folder;
   FoamWriter(folder / "case", {.binary = true, .scalar_bytes = 4}).write(foam_mesh(mesh));
   const MeshFile file = read_mesh(folder / "case");
@@ -124,7 +124,7 @@ TEST(OpenFoam, ShapesAreRecognised) {
 }
 
 TEST(OpenFoam, PathsThatNameACase) {
-  const MeshData mesh = mixed_mesh();
+  const MeshData mesh = sample_mesh();
   const Folder folder;
   FoamWriter(folder / "case", {}).write(foam_mesh(mesh));
   std::filesystem::create_directories(folder / "case/0.5");
@@ -136,7 +136,7 @@ TEST(OpenFoam, PathsThatNameACase) {
 }
 
 TEST(OpenFoam, ListsInOtherWords) {
-  const MeshData mesh = mixed_mesh();
+  const MeshData mesh = sample_mesh();
   const Folder folder;
   const FoamWriter writer(folder / "case", {});
   FoamMesh foam = foam_mesh(mesh);
@@ -153,7 +153,7 @@ TEST(OpenFoam, ListsInOtherWords) {
 
 TEST(OpenFoam, ACellInSeveralZonesHasTheFirst) {
   const Folder folder;
-  FoamMesh foam = foam_mesh(mixed_mesh());
+  FoamMesh foam = foam_mesh(sample_mesh());
   foam.cell_zones = {{"a", {0, 1}}, {"b", {1, 2, 3}}};
   FoamWriter(folder / "case", {}).write(foam);
   const MeshFile file = read_mesh(folder / "case");
@@ -219,14 +219,14 @@ TEST(OpenFoam, PlanesThatAreNone) {
 }
 
 TEST(OpenFoam, EmptyPatchesWithoutFacesAreNoPlane) {
-  FoamMesh foam = foam_mesh(mixed_mesh());
+  FoamMesh foam = foam_mesh(sample_mesh());
   foam.patches.push_back({"frontAndBack", "empty"});
   foam.patches.push_back({"axis", "wedge"});
-  expect_case(read_foam(foam), mixed_mesh());
+  expect_case(read_foam(foam), sample_mesh());
 }
 
 TEST(OpenFoam, PatchTypes) {
-  const MeshData mesh = mixed_mesh();
+  const MeshData mesh = sample_mesh();
   expect_refused(read_foam(foam_mesh(mesh, {{"inlet", "wedge"}})), {"the patch inlet is a wedge"});
   expect_refused(read_foam(foam_mesh(mesh, {{"inlet", "processor"}})), {"inlet", "reconstructParMesh"});
   for (const char* type : {"cyclic", "cyclicAMI"}) {
@@ -325,7 +325,7 @@ TEST(OpenFoam, FilesThatAreNotRight) {
     SCOPED_TRACE(wrong.file + ": " + wrong.content);
     const Folder folder;
     const FoamWriter writer(folder / "case", {});
-    writer.write(foam_mesh(mixed_mesh()));
+    writer.write(foam_mesh(sample_mesh()));
     writer.file("constant/polyMesh/" + wrong.file, wrong.type, wrong.content);
     const MeshFile file = read_mesh(folder / "case");
     const std::string text = report_text(file.report);
@@ -337,7 +337,7 @@ TEST(OpenFoam, FilesThatAreNotRight) {
 TEST(OpenFoam, HeadersAndFolders) {
   const Folder folder;
   const auto refused = [&](const std::string& head, const std::string& word) {
-    FoamWriter(folder / "case", {}).write(foam_mesh(mixed_mesh()));
+    FoamWriter(folder / "case", {}).write(foam_mesh(sample_mesh()));
     write_bytes(folder / "case/constant/polyMesh/owner", head);
     expect_refused(read_mesh(folder / "case"), {"owner", word});
   };
@@ -354,7 +354,7 @@ TEST(OpenFoam, HeadersAndFolders) {
   expect_refused(read_mesh(folder / "none.foam"), {"no case of OpenFOAM"});
   ReadOptions options;
   options.patch_array = "patch";
-  FoamWriter(folder / "case", {}).write(foam_mesh(mixed_mesh()));
+  FoamWriter(folder / "case", {}).write(foam_mesh(sample_mesh()));
   expect_refused(read_mesh(folder / "case", options), {"patches of its own"});
   options = {};
   options.max_memory = 1000;
@@ -363,7 +363,7 @@ TEST(OpenFoam, HeadersAndFolders) {
 
 TEST(OpenFoam, AFileThatUnpacksToMoreThanTheMemoryIsRefused) {
   const Folder folder;
-  FoamWriter(folder / "case", {}).write(foam_mesh(mixed_mesh()));
+  FoamWriter(folder / "case", {}).write(foam_mesh(sample_mesh()));
   std::filesystem::remove(folder / "case/constant/polyMesh/owner");
   FoamWriter(folder / "case", {.gzip = true})
       .file("constant/polyMesh/owner", "labelList", "1(0)" + std::string(100'000'000, ' '));

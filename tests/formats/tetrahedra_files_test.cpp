@@ -178,7 +178,7 @@ MeshData as_floats(MeshData mesh) {
 
 TEST(Meshb, EveryVersionAndByteOrder) {
   const Folder folder;
-  for (const MeshData& mesh : {mixed_mesh(), planar_mesh()}) {
+  for (const MeshData& mesh : {sample_mesh(), planar_mesh()}) {
     for (const int version : {1, 2, 3, 4}) {
       for (const bool swapped : {false, true}) {
         const MeshFile file = read_mesh(folder.file("a.meshb", meshb_of(mesh, version, swapped)));
@@ -197,13 +197,13 @@ TEST(Meshb, FilesThatAreNotRight) {
     return file.report.valid() ? std::string() : file.report.defects[0].message;
   };
   expect_parts(message("MeshVersionFormatted 2\n"), {"not of Medit"});
-  std::string version = meshb_of(mixed_mesh(), 2, false);
+  std::string version = meshb_of(sample_mesh(), 2, false);
   version[4] = 5;
   expect_parts(message(version), {"byte 8", "version 5"});
-  std::string back = meshb_of(mixed_mesh(), 2, false);
+  std::string back = meshb_of(sample_mesh(), 2, false);
   back[12] = 3;  // where the section behind Dimension begins
   expect_parts(message(back), {"byte 20", "is not behind this one"});
-  std::string many = meshb_of(mixed_mesh(), 4, false);
+  std::string many = meshb_of(sample_mesh(), 4, false);
   many[39] = 127;  // of the number of vertices
   expect_parts(message(many), {"byte 44", "vertices are announced"});
 }
@@ -214,8 +214,8 @@ TEST(TetrahedraFiles, MutantsGetAVerdict) {
   const Folder folder;
   const MeshData mesh = box();
   const TetgenFiles whole = tetgen_files(mesh, 1);
-  const std::vector<std::string> meshb = {meshb_of(mixed_mesh(), 1, false), meshb_of(mixed_mesh(), 2, true),
-                                          meshb_of(planar_mesh(), 3, false), meshb_of(mixed_mesh(), 4, false)};
+  const std::vector<std::string> meshb = {meshb_of(sample_mesh(), 1, false), meshb_of(sample_mesh(), 2, true),
+                                          meshb_of(planar_mesh(), 3, false), meshb_of(sample_mesh(), 4, false)};
   Mutants mutants(17);
   int accepted = 0;
   const int rounds = scaled(40000, 400000);  // 20,000 for each reader

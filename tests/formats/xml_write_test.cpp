@@ -74,7 +74,7 @@ void expect_alike(const MeshData& mesh) {
 }
 
 TEST(XmlWrite, EveryTypeOfCell) {
-  MeshData mesh = test::mixed_mesh();
+  MeshData mesh = test::sample_mesh();
   expect_alike(mesh);
   mesh.region_names[-8] = "a <wall> & \"more\"";
   mesh.free = {1, 0, 1, 0};

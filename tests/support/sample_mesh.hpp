@@ -26,7 +26,7 @@ inline void add_face(MeshData& mesh, std::vector<std::uint32_t> corners, std::in
 
 /// A hexahedron, a prism beside it, a pyramid on top and a tetrahedron on that: every standard type, three regions, two
 /// patches, coordinates that need all their digits.
-inline MeshData mixed_mesh() {
+inline MeshData sample_mesh() {
   MeshData mesh;
   mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0},  {0, 1, 0},  {0, 0, 1},   {1, 0, 1},
                  {1, 1, 1}, {0, 1, 1}, {2, .5, 0}, {2, .5, 1}, {.5, .5, 2}, {.5, -1, 1.5}};
@@ -45,7 +45,7 @@ inline MeshData mixed_mesh() {
 
 /// A cube as a polyhedron, with a tetrahedron-like cap of five faces (a pyramid as polyhedron) on top.
 inline MeshData polyhedra() {
-  MeshData mesh = mixed_mesh();
+  MeshData mesh = sample_mesh();
   MeshData out;
   out.points.assign(mesh.points.begin(), mesh.points.begin() + 8);
   out.points.push_back(mesh.points[10]);

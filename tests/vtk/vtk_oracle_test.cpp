@@ -162,11 +162,11 @@ std::vector<Sample> made_here() {
     for (const char* format : {"binary", "appended"}) all.push_back({"order.vtu", binary_vtu(format, other)});
   }
   const Folder folder;
-  MeshData mesh = mixed_mesh();
+  MeshData mesh = sample_mesh();
   mesh.free = {1, 0, 1, 0};
   mesh.cell_data = {{"heat", 1, {0.1, -0.0, 1e-310, 1e300}}, {"a <b> & \"c\" 100%", 2, {1, 2, 3}}};
   mesh.point_data = {{"short", 3, {1.0 / 3.0, 2.0}}};
-  for (const MeshData& m : {mesh, mixed_mesh(), polyhedra(), planar_mesh(), planar_polygons()}) {
+  for (const MeshData& m : {mesh, sample_mesh(), polyhedra(), planar_mesh(), planar_polygons()}) {
     for (const char* name : {"written.vtu", "written.vtk"}) {
       write_mesh(m, folder / name);
       all.push_back({name, slurp(folder / name)});
