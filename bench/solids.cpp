@@ -184,7 +184,7 @@ class EdgeBench {
       if (i + 1 < edge_count) prefetch_cell(environment_.complex(), cell_of(i + 1), wall_motion());
       touches.clear();
       const SolidElement edge = {{2 * i, 2 * i + 1, 2 * i + 1}, 2, 3, 1};
-      finder_.find(environment_.complex(), cell_of(i), edge, motion, wall_motion(), touches);
+      finder_.find_touches(environment_.complex(), cell_of(i), edge, motion, wall_motion(), touches);
       walls_reached_ += static_cast<double>(finder_.walls().size());
       for (const ElementTouch& t : touches) first_[i] = std::min(first_[i].value_or(2.0), t.time);
     }

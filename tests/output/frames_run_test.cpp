@@ -39,9 +39,7 @@ class FramesRun : public testing::Test {
         "]\n[[particles]]\ncount = 100\nvelocity = [1.0, 2.0, 3.0]\n[motion]\ndt = 0.02\nsteps = 50\n[output]\nevery "
         "= 10\n";
   }
-  fs::path file(std::size_t frame) const {
-    return temporary / ("f" + std::to_string(frame) + ".vtu");
-  }
+  fs::path file(std::size_t frame) const { return temporary / ("f" + std::to_string(frame) + ".vtu"); }
 
   Summary run(const std::string& folder, bool resume = false, std::uint64_t steps = 50) const {
     RunOptions options;

@@ -102,7 +102,7 @@ class Record {
  private:
   pybind11::class_<T> class_;
   RecordMembers members_;
-  T sample_{};  // tells where its members are
+  T sample_{};  // its members show where they are in a record
 };
 
 }  // namespace dartcast::python

@@ -157,6 +157,7 @@ def of_parts() -> Calls:
     part = dc.mesh_part(mesh, owners, 3, 1)
     path = FOLDER / "pieces.pvtu"
     dc.write_mesh_parts(mesh, 2, path)
+    plan = dc.plan_run(mesh, dc.PlanOptions(ranks=2, samples=1))
     return {
         "MeshPart.__repr__": lambda: repr(part),
         "partition": lambda: dc.partition(mesh, 4), "partition: refused": refused(lambda: dc.partition(mesh, 0)),
@@ -170,6 +171,8 @@ def of_parts() -> Calls:
         "read_mesh_part": lambda: dc.read_mesh_part(path, 2, 1),
         "read_mesh_part: refused": refused(lambda: dc.read_mesh_part(path, 3, 1)),
         "plan_run": lambda: dc.plan_run(mesh, dc.PlanOptions(ranks=2, particles=20.0, samples=1)),
+        "RunPlan.seconds": lambda: plan.seconds(),
+        "RunPlan.efficiency": lambda: plan.efficiency(),
         "plan_run: refused": refused(lambda: dc.plan_run(mesh, dc.PlanOptions(ranks=2, step=2.0))),
     }
 
