@@ -204,9 +204,9 @@ std::uint64_t VtkXmlPiece::cells() const {
 }
 
 const std::vector<VtuArray>& VtkXmlPiece::arrays(std::string_view section) const {
-  static const std::vector<VtuArray> none;
+  static const std::vector<VtuArray> empty;
   const auto found = sections.find(section);
-  return found == sections.end() ? none : found->second;
+  return found == sections.end() ? empty : found->second;
 }
 
 VtkXmlFile read_vtk_xml(std::string_view content, std::string_view kind) { return VtkXmlReader(content, kind).read(); }
