@@ -1,10 +1,12 @@
-# cmake -DBUILD=... -DDEV=... -P tiers.cmake
+# cmake -DBUILD=... -DWORK=... -DDEV=... -P tiers.cmake
 # Each test that ctest knows in the build is in just one tier that ./dev test runs, and each of these tiers has tests.
 cmake_minimum_required(VERSION 3.25)
 file(STRINGS ${DEV} line REGEX "^tiers=\\(.*\\)")
 string(REGEX REPLACE "^tiers=\\((.*)\\).*$" "\\1" tiers "${line}")
 separate_arguments(tiers UNIX_COMMAND "${tiers}")
-execute_process(COMMAND ${CMAKE_CTEST_COMMAND} --show-only=json-v1 WORKING_DIRECTORY ${BUILD} OUTPUT_VARIABLE json
+# From a folder of its own: ctest would write over the log of the run that this test is part of.
+file(WRITE ${WORK}/CTestTestfile.cmake "subdirs(\"${BUILD}\")\n")
+execute_process(COMMAND ${CMAKE_CTEST_COMMAND} --show-only=json-v1 WORKING_DIRECTORY ${WORK} OUTPUT_VARIABLE json
                 COMMAND_ERROR_IS_FATAL ANY)
 string(JSON count LENGTH "${json}" tests)
 if(count EQUAL 0 OR NOT tiers)
