@@ -31,13 +31,9 @@ class Memory(NamedTuple):
     objects: int  # small ones of Python
 
 
-def bound(calls: int) -> Memory:
-    """What calls may leave: tables of Python and NumPy that become larger once.
-
-    A leak in each of 200 calls leaves at least 6400 bytes or 200 objects; a list that keeps a pointer of each has 1600
-    bytes.
-    """
-    return Memory(5 * min(calls, 200), min(calls, 200) // 2)
+#: What any number of calls may leave: tables of Python and NumPy that become larger once. A leak in each of 200 calls
+#: leaves at least 6400 bytes or 200 objects; a list that keeps a pointer of each has 1600 bytes.
+BOUND = Memory(1024, 100)
 
 
 class MallInfo(ctypes.Structure):
@@ -60,7 +56,7 @@ def in_use() -> Memory:
 
 
 def growth(call: Callable[[], object], calls: int) -> Memory:
-    """By how much memory grows in `calls` calls; 0 where it is within its bound.
+    """By how much memory grows in `calls` calls; 0 where it is at most BOUND.
 
     A table that becomes larger once is no leak: the calls are then repeated. Each round has at least as many calls as
     all before it. A list that doubles its memory grows in every round.
@@ -77,7 +73,7 @@ def growth(call: Callable[[], object], calls: int) -> Memory:
         after = in_use()
         done += more
         grown = Memory(after.bytes - before.bytes, after.objects - before.objects)
-        if grown.bytes <= bound(more).bytes and grown.objects <= bound(more).objects:
+        if grown.bytes <= BOUND.bytes and grown.objects <= BOUND.objects:
             return Memory(0, 0)
     return grown
 

@@ -1,17 +1,14 @@
 """Every example runs, is short, and draws its picture."""
 from __future__ import annotations
 
-import contextlib
-import functools
-import io
+import os
 import pathlib
 import runpy
+import subprocess
 import sys
-import tempfile
-from typing import Any, NamedTuple
+from typing import Any
 
 import dartcast
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
@@ -19,45 +16,35 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 SCRIPTS = sorted((ROOT / "examples" / "python").glob("*.py"))
 
 
-class Run(NamedTuple):
-    """What an example leaves."""
-
-    variables: dict[str, Any]
-    printed: str
-    picture: bytes
-
-
-@functools.cache
-def run(name: str) -> Run:
-    """Runs an example once, in a folder of its own and as a program does."""
-    with tempfile.TemporaryDirectory() as folder, pytest.MonkeyPatch.context() as patch:
-        patch.chdir(folder)
-        patch.setattr(sys, "argv", [name, "picture.png"])
-        plt.rcdefaults()
-        with contextlib.redirect_stdout(io.StringIO()) as printed:
-            found = runpy.run_path(str(ROOT / "examples" / "python" / f"{name}.py"), run_name="__main__")
-        plt.close("all")
-        return Run(found, printed.getvalue(), pathlib.Path("picture.png").read_bytes())
-
-
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
-def test_example(script: pathlib.Path) -> None:
+def test_example(script: pathlib.Path, tmp_path: pathlib.Path) -> None:
     lines = script.read_text(encoding="utf-8").splitlines()
     assert len(lines) <= 40, f"{script.name} has {len(lines)} lines"
     assert (ROOT / "docs" / "python" / f"{script.stem}.png").exists(), "its picture is missing in docs/python"
-    assert run(script.stem).picture.startswith(b"\x89PNG")
+    picture = tmp_path / "picture.png"
+    done = subprocess.run([sys.executable, str(script), str(picture)], cwd=tmp_path, capture_output=True, text=True,
+                          check=False, env=os.environ | {"MPLBACKEND": "agg"})
+    assert done.returncode == 0, done.stderr
+    assert picture.read_bytes().startswith(b"\x89PNG")
 
 
-def test_each_hit_of_deposition_is_a_contact() -> None:
-    found = run("deposition").variables
+def variables(name: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+    """The variables of an example when it has run."""
+    monkeypatch.setattr(sys, "argv", [name, str(tmp_path / "picture.png")])
+    monkeypatch.setenv("MPLBACKEND", "agg")
+    return runpy.run_path(str(ROOT / "examples" / "python" / f"{name}.py"))
+
+
+def test_each_hit_of_deposition_is_a_contact(tmp_path, monkeypatch, capsys):
+    found = variables("deposition", tmp_path, monkeypatch)
     contacts = found["simulation"].totals.contacts_by_patch
     names = found["environment"].map.patch_names
-    assert run("deposition").printed.splitlines() == [f"{n or '(others)'}: {c}" for n, c in zip(names, contacts)]
+    assert capsys.readouterr().out.splitlines() == [f"{n or '(others)'}: {c}" for n, c in zip(names, contacts)]
     assert contacts[names.index("wall")] > 10_000 and found["faces"]["hits"].sum() == sum(contacts)
 
 
-def test_each_tracer_is_in_the_scene_or_has_an_age() -> None:
-    found = run("tracers").variables
+def test_each_tracer_is_in_the_scene_or_has_an_age(tmp_path, monkeypatch):
+    found = variables("tracers", tmp_path, monkeypatch)
     totals = found["simulation"].totals
     ages = np.concatenate(list(found["ages"].values()))
     assert totals.injected == 4000 and len(ages) == totals.escaped == 4000 - len(found["simulation"].particles)
@@ -65,16 +52,16 @@ def test_each_tracer_is_in_the_scene_or_has_an_age() -> None:
     assert ages.min() > 0.15 and ages.max() <= found["simulation"].time
 
 
-def test_a_cut_replaces_the_cells_that_it_names() -> None:
-    found = run("cut").variables
-    removed, added = (int(word) for word in run("cut").printed.split() if word.isdigit())
+def test_a_cut_replaces_the_cells_that_it_names(tmp_path, monkeypatch, capsys):
+    found = variables("cut", tmp_path, monkeypatch)
+    removed, added = (int(word) for word in capsys.readouterr().out.split() if word.isdigit())
     before = dartcast.Environment(dartcast.generate_vessel()).map
     assert found["environment"].map.cell_count() == before.cell_count() - removed + added
     assert dartcast.audit(found["environment"].complex, found["particles"]).failed == 0
 
 
-def test_points_are_in_the_cells_that_contain_them() -> None:
-    found = run("location").variables
+def test_points_are_in_the_cells_that_contain_them(tmp_path, monkeypatch):
+    found = variables("location", tmp_path, monkeypatch)
     environment, points = found["environment"], found["points"]
     positions, map_ = environment.positions, environment.map
     planes = []
