@@ -25,16 +25,18 @@ struct CellWay {
   std::uint8_t triangle = 0;  ///< of that face's fan
 };
 
-/// Where a walk has entered a cell: a row, and which triangle.
+/// Where a walk has entered a hexahedron: a row, and which triangle. A row has 5 bits: cells of other kinds may have more
+/// than eight faces, and no walk passes them whole.
 class CellEntry {
  public:
   CellEntry() = default;
+  /// Precondition: `face` is below 6, and `triangle` below 2.
   CellEntry(unsigned face, unsigned triangle) : bits_(4 * face + 32 * triangle) {}
-  /// Beyond a way out. `face`: as the cell there numbers it.
+  /// Beyond a way out. `face`: as the cell there numbers it, and below 8. Where that cell is no hexahedron, only the
+  /// triangle counts.
   CellEntry(unsigned face, const CellWay& way) : bits_(4 * face + way.beyond) {}
 
   [[nodiscard]] unsigned row() const { return bits_ % 32; }
-  [[nodiscard]] unsigned face() const { return row() / 4; }
   [[nodiscard]] unsigned triangle() const { return bits_ / 32; }
 
  private:

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -19,6 +18,7 @@
 #include "support/expectations.hpp"
 #include "support/meshes.hpp"
 #include "support/particle_checks.hpp"
+#include "support/report_words.hpp"
 #include "support/stepped_scenes.hpp"
 #include "support/tier.hpp"
 
@@ -28,48 +28,8 @@ using test::Answers;
 using test::make_scenes;
 using test::scattered;
 using test::swirled;
+using test::words_of;
 using Scene = test::SteppedScene;
-
-// --- everything that a step reports, to the bit
-
-void append(std::vector<std::uint64_t>& words, const Vec3& p) {
-  const auto b = test::bits(p);
-  words.insert(words.end(), b.begin(), b.end());
-}
-
-std::vector<std::uint64_t> words_of(const ContactList& list) {
-  std::vector<std::uint64_t> words;
-  for (const Contact& c : list.contacts) {
-    words.insert(words.end(), {c.particle, static_cast<std::uint64_t>(c.kind), c.dart.cell.value, c.dart.number,
-                               c.first_wall, c.wall_count, c.earlier, c.together, c.last ? 1U : 0U,
-                               std::bit_cast<std::uint64_t>(c.time_of_impact)});
-    for (const Vec3& v : {c.point, c.wall_displacement, c.displacement, c.unused}) append(words, v);
-  }
-  for (const WallHit& w : list.walls) {
-    words.insert(words.end(), {w.face.cell.value, w.face.face, w.triangle, w.patch.value});
-    append(words, w.normal);
-  }
-  return words;
-}
-
-std::vector<std::uint64_t> words_of(const StepReport& report) {
-  std::vector<std::uint64_t> words = words_of(report.contacts);
-  for (const HeldParticle& held : report.held) words.insert(words.end(), {held.particle, held.cell.value});
-  for (const StoppedParticle& stopped : report.stopped) {
-    words.push_back(stopped.particle);
-    append(words, stopped.unused);
-  }
-  return words;
-}
-
-std::vector<std::uint64_t> words_of(const Counters& c) {
-  std::vector<std::uint64_t> words = {c.particle_steps, c.orientation.tests,      c.orientation.exact,
-                                      c.forecast_kept,  c.updated_by_deformation, c.steps_split,
-                                      c.unfinished};
-  words.insert(words.end(), c.histogram.begin(), c.histogram.end());
-  words.insert(words.end(), c.contacts.begin(), c.contacts.end());
-  return words;
-}
 
 void expect_equal(const StepReport& rounds, const StepReport& one_by_one) {
   ASSERT_EQ(rounds.contacts.contacts.size(), one_by_one.contacts.contacts.size());

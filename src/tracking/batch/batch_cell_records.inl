@@ -20,7 +20,8 @@ struct CellWalk {
   double reach;                 // as in Lines4
   std::uint32_t particle;
   std::uint32_t cell;
-  CellEntry entry;
+  std::uint16_t face;  // as the cell numbers it, of whatever kind it is
+  std::uint16_t triangle;
   std::uint32_t passed;  // simplices
   std::uint32_t tests;   // besides the three of each of these
   bool to_cells;         // from the next face on it may pass whole hexahedra again
@@ -69,7 +70,7 @@ struct CellPlace {
   void begin(const CellWalk& w) {
     walk = w;
     next_record = w.record;
-    next_entry = w.entry;
+    next_entry = CellEntry(w.face, w.triangle);
     cells = 0;
   }
 

@@ -27,6 +27,8 @@ void Batch<kind>::walk_cells() {
   std::uint32_t live = 0;
   for (std::uint32_t l = 0; l < cell_lanes; ++l) live |= (start_next_cell(l) ? 1U : 0U) << l;
   while (live != 0) {
+    if (++turns_ % turns_at_once == 0) [[unlikely]]
+      live = stop_cells(live);
     for (std::uint32_t l = 0; l < cell_lanes; l += 8) find_rows(l, live >> l);
     std::uint32_t marked = 0;
     for (std::uint32_t l = 0; l < cell_lanes; l += 8) {
@@ -39,6 +41,20 @@ void Batch<kind>::walk_cells() {
       if (!start_next_cell(l)) live ^= 1U << l;
     }
   }
+}
+
+// As stop_lines().
+template <CacheKind kind>
+std::uint32_t Batch<kind>::stop_cells(std::uint32_t live) {
+  for (std::uint32_t l = 0; l < cell_lanes; ++l) {
+    const CellPlace& place = cell_places_[l];
+    const CellWalk& walk = place.walk;
+    const std::uint64_t tests = walk.tests + 3ULL * walk.passed + std::uint64_t{CellWalks8::sides_asked} * place.cells;
+    if (((live >> l) & 1U) == 0 || tests <= most_line_tests_) continue;
+    defer(walk.particle);
+    if (!start_next_cell(l)) live ^= 1U << l;
+  }
+  return live;
 }
 
 // Begins the next walk in lane l. Returns false where there is none.
@@ -59,7 +75,8 @@ inline void Batch<kind>::stage_cell_walks() {
   const std::uint32_t* near[4][4];
   for (unsigned l = 0; l < 4; ++l) {
     const CellWalk& walk = by_cells_.walks[k.at[l]];
-    const CellRow& row = map_.view(Cell(walk.cell), walk.record).shape().exits().cell_rows()[walk.entry.row()];
+    const CellRow& row =
+        map_.view(Cell(walk.cell), walk.record).shape().exits().cell_rows()[CellEntry(walk.face, walk.triangle).row()];
     for (unsigned i = 0; i < 4; ++i) near[i][l] = walk.record + 2U + row.near[i];
   }
   const Index4 particles = by_cells_.particles(k);
@@ -115,7 +132,8 @@ inline void Batch<kind>::leave_cells(std::uint32_t l) {
   CellWalk walk = place.walk;
   walk.record = place.record;
   walk.cell = place.cell(record_pools_[hexahedra].words).value;
-  walk.entry = place.entry;
+  walk.face = static_cast<std::uint16_t>(place.entry.row() / 4);
+  walk.triangle = static_cast<std::uint16_t>(place.entry.triangle());
   walk.tests += CellWalks8::sides_asked * (place.cells - (passed ? 0 : 1));
   walk.to_cells = undecided != 0;
   if (!passed) return by_cells_.add(walk);
@@ -131,7 +149,8 @@ inline void Batch<kind>::leave_cells(std::uint32_t l) {
   const Cell beyond = cell.neighbour(way.face);
   walk.record = map_.record(beyond);
   walk.cell = beyond.value;
-  walk.entry = CellEntry(cell.neighbour_face(way.face), place.next_entry.triangle());
+  walk.face = cell.neighbour_face(way.face);
+  walk.triangle = static_cast<std::uint16_t>(place.next_entry.triangle());
   walk.to_cells = true;
   by_cells_.add(walk);
 }

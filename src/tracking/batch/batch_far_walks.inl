@@ -71,6 +71,8 @@ inline void Batch<kind>::pass_simplices(const StartNext& start_next) {
   std::uint32_t live = 0;
   for (std::uint32_t l = 0; l < lines; ++l) live |= (start_next(l) ? 1U : 0U) << l;
   while (live != 0) {
+    if (++turns_ % turns_at_once == 0) [[unlikely]]
+      live = stop_lines(live, start_next);
     for (std::uint32_t left = live; left != 0; left &= left - 1) {
       const auto l = static_cast<std::uint32_t>(std::countr_zero(left));
       if (!find_corners<line>(l, start_next)) live ^= 1U << l;
@@ -85,6 +87,19 @@ inline void Batch<kind>::pass_simplices(const StartNext& start_next) {
       if (!goes_on<line>(l) && !start_next(l)) live ^= 1U << l;
     }
   }
+}
+
+// Leaves to Stepper the walks that have asked more tests than any can. Returns the lanes that still have a walk.
+template <CacheKind kind>
+template <class StartNext>
+std::uint32_t Batch<kind>::stop_lines(std::uint32_t live, const StartNext& start_next) {
+  for (std::uint32_t l = 0; l < lines; ++l) {
+    const LinePlace& at = line_places_[l];
+    if (((live >> l) & 1U) == 0 || at.tests + 3ULL * at.passed <= most_line_tests_) continue;
+    defer(at.particle);
+    if (!start_next(l)) live ^= 1U << l;
+  }
+  return live;
 }
 
 // Finds the new corner of the walk in lane l, or of the first one after it that has one. Returns false where there is
@@ -163,6 +178,10 @@ inline bool Batch<kind>::resume_next_line(std::uint32_t l) {
   if (by_cells_.next == staged_) stage_resumed_lines();
   const auto from = static_cast<unsigned>(by_cells_.next + 4 - staged_);
   const CellWalk& walk = by_cells_.take();
+  if (walk.tests + 3ULL * walk.passed > most_line_tests_) [[unlikely]] {
+    defer(walk.particle);
+    return resume_next_line(l);
+  }
   line_walks_[l / 4].go_on(l % 4, resumed_lines_, from);
   LinePlace& at = line_places_[l];
   at.record = walk.record;
@@ -200,10 +219,7 @@ inline void Batch<kind>::stage_resumed_lines() {
 // 4 * simplex + facet, behind the triangle that the walk has entered its cell by.
 template <CacheKind kind>
 inline unsigned Batch<kind>::row_behind(const CellWalk& walk) const {
-  const Across at =
-      map_.view(Cell(walk.cell), walk.record)
-          .shape()
-          .entry(static_cast<std::uint16_t>(walk.entry.face()), static_cast<std::uint16_t>(walk.entry.triangle()));
+  const Across at = map_.view(Cell(walk.cell), walk.record).shape().entry(walk.face, walk.triangle);
   return 4U * at.index + at.place;
 }
 
@@ -263,9 +279,10 @@ inline bool Batch<kind>::goes_on(std::uint32_t l) {
 template <CacheKind kind>
 inline bool Batch<kind>::leave_to_cells(std::uint32_t l) {
   const LinePlace& at = line_places_[l];
-  const CellEntry entry(at.face - 1, at.place);
-  by_cells_.add(
-      {at.record, line_walks_[l / 4].line.reach[l % 4], at.particle, at.cell, entry, at.passed, at.tests, true});
+  const auto face = static_cast<std::uint16_t>(at.face - 1);
+  const auto triangle = static_cast<std::uint16_t>(at.place);
+  by_cells_.add({at.record, line_walks_[l / 4].line.reach[l % 4], at.particle, at.cell, face, triangle, at.passed,
+                 at.tests, true});
   return false;
 }
 

@@ -39,6 +39,7 @@ class Batch {
         cells_positive_(!moved && are_known_positive(*scene.complex)),
         options_(scene.options),
         simplex_count_(scene.complex->simplex_count()),
+        most_line_tests_(std::min<std::uint64_t>(4 * simplex_count_ + 16, 1U << 31U)),
         size_(static_cast<std::uint32_t>(steps.states.size())),
         states_(steps.states.data()),
         vertices_(steps.vertices.data()),
@@ -71,6 +72,7 @@ class Batch {
   static constexpr std::uint32_t block = 32;
   static constexpr std::uint32_t lines = 32;
   static constexpr std::uint32_t cell_lanes = 16;
+  static constexpr std::uint32_t turns_at_once = 1024;  // of walks along lines, before their tests are counted
   static constexpr bool moved = kind == CacheKind::previous_geometry;
   static constexpr std::uint16_t short_tests = 16;  // four simplices
 
@@ -143,6 +145,8 @@ class Batch {
   std::uint32_t pass_four(std::uint32_t l, std::uint32_t live);
   template <LineKind line>
   bool goes_on(std::uint32_t l);
+  template <class StartNext>
+  [[gnu::cold, gnu::noinline]] std::uint32_t stop_lines(std::uint32_t live, const StartNext& start_next);
   [[nodiscard]] WalkCursor passed_cursor(const LinePlace& at) const;
   bool leave_to_rounds(const LinePlace& at);
   [[gnu::cold, gnu::noinline]] void leave_unlisted(const LinePlace& at);
@@ -172,6 +176,7 @@ class Batch {
   void find_rows(std::uint32_t l, std::uint32_t live);
   std::uint32_t pass_eight(std::uint32_t l, std::uint32_t live);
   void leave_cells(std::uint32_t l);
+  [[gnu::cold, gnu::noinline]] std::uint32_t stop_cells(std::uint32_t live);
 
   // And in rounds: batch_walk.inl.
   std::size_t walk_on(std::size_t count);
@@ -217,6 +222,10 @@ class Batch {
   bool cells_positive_;  // all are known to be
   StepOptions options_;
   std::uint64_t simplex_count_;
+  // A walk along a line asks no more tests. It passes each simplex once at most: by three tests, or five or more in a
+  // whole cell by 17. A few others are asked at its ends.
+  std::uint64_t most_line_tests_;
+  std::uint32_t turns_ = 0;  // of walks along lines
   std::uint32_t size_;
   ParticleState* states_;
   VertexNumbers* vertices_;
