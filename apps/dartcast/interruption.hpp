@@ -3,8 +3,8 @@
 
 namespace dartcast::app {
 
-/// While it lives, the first SIGINT (Ctrl-C) or SIGTERM only asks for an end. A second one ends the program at once. At
-/// most one at a time.
+/// While it lives, the first SIGINT (Ctrl-C) or SIGTERM only asks for an end. A second one ends the program at once. So
+/// does the first one, after a second in which no step has ended. At most one at a time.
 class Interruption {
  public:
   Interruption();
@@ -14,6 +14,10 @@ class Interruption {
 
   /// The signal that asked for an end; 0: none.
   [[nodiscard]] static int signal();
+  /// To be asked after each step: whether a signal has asked for an end. Then the program has any time to end in order.
+  [[nodiscard]] static bool asked_after_step();
+  /// From now on there is any time, too: no step is left.
+  static void last_step();
 };
 
 }  // namespace dartcast::app

@@ -104,7 +104,8 @@ int run(const RunArguments& a, Ranks* ranks) {
   const Interruption interruption;
   const Summary summary = run_scene(scene, options, [&](std::uint64_t step, std::uint64_t all) {
     if (shows_progress) line.show(step, all);
-    return Interruption::signal() == 0;
+    if (step == all) Interruption::last_step();
+    return !Interruption::asked_after_step();
   });
   line.clear();
   if (!speaks) return done;

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -117,6 +118,20 @@ TEST_F(Terminal, ASecondCtrlCEndsAtOnce) {
                                          "[contact]\nresponse = \"reflect\"\n[output]\nevery = 0\n";
   const Session s = run({"run", "many.toml", "-o", "a"}, {"step 1 ", "ends after this step"});
   EXPECT_EQ(s.status, -1) << s.screen;
+}
+
+// Each particle meets 17 walls a step. So one step takes several seconds.
+TEST_F(Terminal, ASignalEndsAStepThatTakesLongWithinASecond) {
+  std::ofstream(folder / "long.toml") << "[environment]\ngenerator = \"box\"\n[[particles]]\ncount = 200000\n"
+                                         "velocity = [1e5, 7e4, 3e4]\n[motion]\ndt = 1.0\nsteps = 10\n"
+                                         "[contact]\nresponse = \"reflect\"\n";
+  const auto begin = std::chrono::steady_clock::now();
+  const auto r = run_program("timeout", "--preserve-status -s TERM 1 '" + binary + "' run long.toml -o a -j 1");
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+  EXPECT_EQ(r.status, 143) << r.error;
+  EXPECT_LT(seconds.count(), 3.0);
+  EXPECT_TRUE(has(r.error, "--resume goes on from the last checkpoint")) << r.error;
+  EXPECT_TRUE(fs::exists(folder / "a" / "checkpoint.bin"));
 }
 
 }  // namespace
