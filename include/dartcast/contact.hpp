@@ -37,10 +37,10 @@ struct Contact {
   std::uint32_t earlier = 0;    ///< number of walls in front of these that the particle met earlier in this step
   std::uint32_t together = 0;   ///< number of those, the last ones, that were met at this place (share_together)
   bool last = false;            ///< no further contact is allowed in this step
-  double time_of_impact = 0.0;  ///< fraction of the step, in [0, 1]
+  double time_of_impact = 0.0;  ///< fraction of the step, in [0, 1]; that of a particle's contacts never falls
   /// On the wall, rounded. The particle is put into the free closed cell there, at most 256 units in the last place of
-  /// the point's largest coordinate away. Where that is impossible, it is no farther away than the start of its motion
-  /// to the wall.
+  /// the point's largest coordinate away, or 256 times 2^-300, if that is more. Where that is impossible, it is no farther
+  /// away than the start of its motion to the wall.
   Vec3 point;
   Vec3 wall_displacement;  ///< motion of the wall at that point over the whole step; zero in a scene at rest
   Vec3 displacement;       ///< motion that led to the contact, relative to the wall, up to its planned end

@@ -234,7 +234,8 @@ class Environment {
   /// any order of particles. Throws InvalidArgument, nothing changed, where a target is not finite or outside the exact
   /// range, or the sizes do not match. It does so, too, where an option is not positive, or the particles are of another
   /// environment or missed a move or an edit. And it throws what a response throws, and where a response returns a
-  /// displacement that leads out of the exact range. Cost: a few orientation tests per particle,
+  /// displacement that is not finite. Where one leads out of the exact range, the particle stops at the wall: the report
+  /// names it, and Counters::unfinished counts it. Cost: a few orientation tests per particle,
   /// whatever the size of the scene.
   StepReport advance(Particles& particles, std::span<const Vec3> targets, const ContactCallback& respond = {},
                      const StepOptions& options = {});

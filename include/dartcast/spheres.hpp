@@ -99,9 +99,10 @@ class SimultaneousStepper {
   ///
   /// - Motion. The particle goes straight from where it was before the move to its target, each vertex straight from its
   ///   previous position to its current one. Whether the particle touches a wall is decided exactly for that motion.
-  /// - Contacts. A contact's time is never late, and early by at most 2^-20 of the way that leads to it. Walls that are
-  ///   touched within share_together count together. The particle then is where it was just before the touch, and its
-  ///   new way among the walls as they are then is a straight motion of its own.
+  /// - Contacts. The time of the first one is never late, and early by at most 2^-20 of the step. Walls that are touched
+  ///   within share_together count together. The particle then is where it was before the touch: 2^-20 of its way, or up to
+  ///   half of it where no nearer place is proved free. From there, and then, its new way is a straight motion of its own.
+  ///   So a later contact may lie before the one that led to it; it gets that one's time. Times never fall.
   /// - Along walls. A way along a wall ends 2^-20 of the wall's longest side off it.
   /// - Where the particle is carried along instead, as by Environment::advance(), in the rest of its step. This is so
   ///   where a cell in its reach becomes flat, where it starts on a wall or was stopped at one in its last step, and

@@ -31,7 +31,8 @@ struct Counters {
   std::uint64_t updated_by_deformation = 0;  ///< changed simplex, as the vertices' motion alone would have done
   std::uint64_t steps_split = 0;  ///< taken in several parts, because the vertices turned or stretched too much
   std::array<std::uint64_t, 3> contacts{};  ///< by kind: vertex, edge, face
-  std::uint64_t unfinished = 0;             ///< stopped at the last contact allowed in a step
+  std::uint64_t unfinished =
+      0;  ///< stopped at the last contact allowed in a step, or where the way leads out of the exact range
 
   Counters& operator+=(const Counters& other) {
     particle_steps += other.particle_steps;
@@ -72,7 +73,7 @@ struct HeldParticle {
 struct StepResult {
   bool held = false;
   Cell invalid_cell;
-  bool stopped = false;  ///< at a contact without a response
+  bool stopped = false;  ///< at a contact without a response, or before a target out of the exact range
   Vec3 unused;           ///< displacement left when it stopped, relative to the wall
 };
 

@@ -126,8 +126,15 @@ struct LibraryResponse {
     return {rebound(contact.unused, met, {}), true};
   }
 
+  // A step never throws for it: where a velocity is not finite, the particle stays at the wall.
   AfterContact operator()(const Contact& contact, std::span<const WallHit> walls,
                           std::span<const WallHit> earlier) const {
+    const AfterContact next = answer(contact, walls, earlier);
+    return is_finite(next.displacement) ? next : AfterContact{};
+  }
+
+  [[nodiscard]] AfterContact answer(const Contact& contact, std::span<const WallHit> walls,
+                                    std::span<const WallHit> earlier) const {
     ParticleStatus& fate = fates[contact.particle];
     if (fate != ParticleStatus::alive) return {};
     const Vec3 wall_velocity = contact.wall_displacement * (1.0 / dt);

@@ -112,6 +112,14 @@ Vec3 place_in(const SolidConstraint& c, std::span<const Vec3> positions) {
   return place;
 }
 
+// Where the parts have none, and lay on each other when the step began: the wall's, or else the one opposite to the motion.
+Vec3 any_normal(const ElementTouch& touch, const SolidMotion& motion) {
+  const Vec3 of_wall = free_side(touch.wall.corners, touch.time);
+  if (of_wall != Vec3{}) return of_wall;
+  const Vec3 against = unit_or_zero(solid_points(touch, motion, 0.0)[0] - solid_points(touch, motion, 1.0)[0]);
+  return against != Vec3{} ? against : Vec3{0.0, 0.0, 1.0};
+}
+
 }  // namespace
 
 SolidConstraint constraint_of(const ElementTouch& touch, const SolidMotion& motion, double separation, double longest) {
@@ -144,6 +152,7 @@ SolidConstraint constraint_of(const ElementTouch& touch, const SolidMotion& moti
   if (touch.kind == SolidContactKind::vertex_face)
     c.is_exit = dot(c.normal, free_side(touch.wall.corners, touch.time)) < 0.0;
   if (touch.beside && c.normal != Vec3{}) put_between_faces(c);
+  if (c.normal == Vec3{}) c.normal = any_normal(touch, motion);
   c.wall_point = weighted(c.wall_weights, wall_points(touch, 1.0));
   const double side_of_wall = longest_side(touch.wall.corners.from);
   c.separation = separation > 0.0

@@ -116,7 +116,7 @@ StepResult SimultaneousStep::step(std::uint32_t particle, ParticleState& state, 
     return run.result;
   }
   if (run.contact_count == 0) return stepper_.step(particle, state, weights, target, contacts, counters);
-  TakenPart taken = {leg.begin, leg.to, run.contact_count, run.first_wall};
+  TakenPart taken = {leg.begin, leg.to, run.contact_count, run.first_wall, run.last_time};
   if (end == LegEnd::stopped) taken.target.reset();
   const StepResult rest = stepper_.ride_on(particle, state, weights, taken, contacts, counters);
   if (end != LegEnd::stopped || rest.held) run.result = rest;
@@ -147,6 +147,12 @@ SimultaneousStep::LegEnd SimultaneousStep::take(Run& run, SimultaneousLeg& leg) 
   const AfterContact next = respond_(contact, run.contacts.walls_of(contact), run.contacts.earlier_walls_of(contact));
   if (next.displacement == Vec3{}) return LegEnd::stopped;
   leg.to = aim(run, contact, next, leg);
+  if (!in_exact_range(leg.to)) {  // no test can be made there
+    ++run.counters.unfinished;
+    run.result.stopped = true;
+    run.result.unused = contact.unused;
+    return LegEnd::stopped;
+  }
   return stop ? LegEnd::goes_on : LegEnd::on_wall;
 }
 
@@ -234,12 +240,13 @@ const Contact& SimultaneousStep::describe(Run& run, const SimultaneousLeg& leg) 
   const double share = met.front().time;
   Contact& contact = run.contacts.contacts.emplace_back();
   contact.particle = run.particle;
-  contact.time_of_impact = leg.begin + share * (1.0 - leg.begin);
+  const double time = leg.begin + share * (1.0 - leg.begin);
+  contact.time_of_impact = std::max(time, run.last_time);  // a leg begins before the contact that it comes from
   contact.point = flushed(leg.from + (leg.to - leg.from) * share);
   contact.first_wall = static_cast<std::uint32_t>(run.contacts.walls.size());
   const Vec3 motion = leg.to - leg.from;
   for (const auto& m : met) {
-    Vec3 normal = normal_of(corners_at(complex_, m.wall.vertex, contact.time_of_impact), dimension);
+    Vec3 normal = normal_of(corners_at(complex_, m.wall.vertex, time), dimension);
     if (normal == Vec3{}) normal = motion * (-1.0 / std::max(norm(motion), 0x1p-300));
     const auto first = run.contacts.walls.begin() + contact.first_wall;
     const bool known = std::any_of(first, run.contacts.walls.end(), [&](const WallHit& h) {
@@ -253,12 +260,12 @@ const Contact& SimultaneousStep::describe(Run& run, const SimultaneousLeg& leg) 
   const Shape::Feature feature = complex_.map().shape(wall.face.cell).feature(common_points(met, dimension));
   contact.kind = feature.kind;
   contact.dart = {wall.face.cell, feature.dart};
-  contact.wall_displacement = wall_displacement(wall, contact.point, contact.time_of_impact);
+  contact.wall_displacement = wall_displacement(wall, contact.point, time);
   contact.displacement = motion - contact.wall_displacement * (1.0 - leg.begin);
   contact.unused = contact.displacement * (1.0 - share);
   contact.earlier = contact.first_wall - run.first_wall;
   contact.last = ++run.contact_count >= options_.max_contacts;
-  if (contact.time_of_impact - run.last_time >= share_together) run.first_here = contact.first_wall;
+  if (time - run.last_time >= share_together) run.first_here = contact.first_wall;
   contact.together = contact.first_wall - run.first_here;
   run.last_time = contact.time_of_impact;
   ++run.counters.contacts[static_cast<std::size_t>(contact.kind)];
@@ -273,11 +280,11 @@ const Contact& SimultaneousStep::describe(Run& run, const SimultaneousLeg& leg) 
 Vec3 SimultaneousStep::aim(const Run& run, const Contact& contact, const AfterContact& next,
                            const SimultaneousLeg& leg) const {
   const Vec3& d = next.displacement;
-  Vec3 q = flushed(leg.from + d + contact.wall_displacement * (1.0 - leg.begin));
-  if (!in_exact_range(q))
+  if (!is_finite(d))
     throw InvalidArgument("the response for particle " + std::to_string(run.particle) +
-                          " returned a displacement that is not finite, or out of range");
-  if (!next.along) return q;
+                          " returned a displacement that is not finite");
+  Vec3 q = flushed(leg.from + d + contact.wall_displacement * (1.0 - leg.begin));
+  if (!next.along || !in_exact_range(q)) return q;
   const double slack = along_share * std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
   for (const auto& m : run.memory.met) {
     const WallCorners t = corners_at(complex_, m.wall.vertex, 1.0);

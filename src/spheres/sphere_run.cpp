@@ -135,21 +135,25 @@ bool SphereRun::follow(const SphereScene& scene, const ParticleState& state, Con
   contact.together = contact.first_wall - first_here_;
   time_ = contact.time_of_impact;
   const bool asked = static_cast<bool>(*scene.respond);
-  if (!asked || count > scene.options->max_contacts) {
-    unfinished_ = asked;
-    stopped_ = StoppedParticle{particle_, contact.unused};
-    aim_ = state.position;
-    return moving_;
-  }
+  if (!asked || count > scene.options->max_contacts) return stop(state, contact.unused, asked);
   const std::span<const WallHit> all = walls_;
   const AfterContact next = (*scene.respond)(contact, all.subspan(contact.first_wall), all.first(contact.first_wall));
+  if (!is_finite(next.displacement))
+    throw InvalidArgument(
+        fmt::format("the response for particle {} returned a displacement that is not finite", particle_));
   Vec3 q = flushed(state.position + next.displacement);
-  if (!in_exact_range(q))
-    throw InvalidArgument(fmt::format(
-        "the response for particle {} returned a displacement that is not finite, or out of range", particle_));
+  if (!in_exact_range(q)) return stop(state, contact.unused, true);  // no test can be made there
   if (next.along && q != state.position) lift(state.position, q);
   aim_ = q;
   return moving_ || q != state.position;
+}
+
+// The walls that move carry it on. Returns whether they do.
+bool SphereRun::stop(const ParticleState& state, const Vec3& unused, bool unfinished) {
+  unfinished_ = unfinished;
+  stopped_ = StoppedParticle{particle_, unused};
+  aim_ = state.position;
+  return moving_;
 }
 
 // Corrects slides that rounding turned into a wall.

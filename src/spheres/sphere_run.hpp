@@ -46,6 +46,7 @@ class SphereRun {
   bool touched(const SphereScene& scene, const ParticleState& state, NearWalls& near);
   bool touched_by_centre(const SphereScene& scene, const ParticleState& state, CentreContact centre);
   bool follow(const SphereScene& scene, const ParticleState& state, Contact& contact);
+  bool stop(const ParticleState& state, const Vec3& unused, bool unfinished);
   bool moved_out(const SphereScene& scene, const ParticleState& state, NearWalls& near);
   void lift(const Vec3& position, Vec3& q) const;
   [[nodiscard]] double slack(const Vec3& centre) const { return touching_slack(centre, radius_); }

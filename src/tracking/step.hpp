@@ -73,6 +73,7 @@ struct TakenPart {
   std::optional<Vec3> target;    ///< at the end of the step; none: the particle stays at the wall that it met last
   unsigned contact_count = 0;    ///< so far
   std::uint32_t first_wall = 0;  ///< of this particle in this step
+  double last_contact = -1.0;    ///< time of the last one: no later one is reported before it
 };
 
 /// Carries particles through one step of a complex. A plain reader of the complex: any number may run at once.

@@ -72,6 +72,10 @@ class StepPart {
   // Walks to q, with the contacts on the way. Returns the displacement still planned after this interval.
   Vec3 move(Run& run, Vec3 q, TimeInterval interval, const PartialStep* partial = nullptr) const {
     while (q != run.state.position) {
+      if (!in_exact_range(q)) [[unlikely]] {
+        stop(run, q - run.state.position);
+        return {};
+      }
       if constexpr (Recorder::travels) {
         if (partial == nullptr && run.recorder.leaves_to_walk(run, q, interval)) return {};
       }
@@ -113,6 +117,12 @@ class StepPart {
   }
 
  private:
+  static void stop(Run& run, const Vec3& unused) {
+    ++run.counters.unfinished;
+    run.result.stopped = true;
+    run.result.unused = unused;
+  }
+
   // The target after a contact. Sets the displacement planned after the interval.
   [[gnu::always_inline]] Vec3 redirect(const Run& run, const Contact& contact, const AfterContact& next,
                                        TimeInterval& interval) const {
@@ -130,10 +140,10 @@ class StepPart {
     contact.earlier = contact.first_wall - run.first_wall;
     contact.last = ++run.contact_count >= options_.max_contacts;
     interval.begin += t * (interval.end - interval.begin);
-    contact.time_of_impact = interval.begin;
+    contact.time_of_impact = std::max(interval.begin, run.last_time);
     if (interval.begin - run.last_time >= share_together) run.first_here = contact.first_wall;
     contact.together = contact.first_wall - run.first_here;
-    run.last_time = interval.begin;
+    run.last_time = contact.time_of_impact;
     run.recorder.put(run.state, contact.time_of_impact);
     const Vec3 later = interval.later - contact.wall_displacement * (1.0 - interval.end);
     contact.displacement = (q - p) + later;
@@ -202,13 +212,14 @@ class StepPart {
   }
 
   // The target after a contact. Along walls, it is lifted off the planes that rounding put it behind. It is not lifted
-  // off planes that the response wants it to be behind: those walls are met again.
+  // off planes that the response wants it to be behind: those walls are met again. It may be out of the exact range: then
+  // the particle stops here (move()), because no test can be made there.
   [[nodiscard]] Vec3 aim(const Run& run, const Contact& contact, const AfterContact& next, double share) const {
-    Vec3 q = flushed(run.state.position + next.displacement * share);
-    if (!in_exact_range(q))
+    if (!is_finite(next.displacement))
       throw InvalidArgument("the response for particle " + std::to_string(run.particle) +
-                            " returned a displacement that is not finite, or out of range");
-    if (!next.along || q == run.state.position) return q;
+                            " returned a displacement that is not finite");
+    Vec3 q = flushed(run.state.position + next.displacement * share);
+    if (!next.along || q == run.state.position || !in_exact_range(q)) return q;
     const Vec3& d = next.displacement;
     const double slack = along_share * std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
     WallPlanes<N> planes;
@@ -464,6 +475,7 @@ StepResult Stepper::ride_on_in(std::uint32_t particle, ParticleState& state, Wei
   run.contact_count = taken.contact_count;
   run.first_wall = taken.first_wall;
   run.first_here = taken.first_wall;
+  run.last_time = taken.last_contact;
   const SimplexId start = state.at();
   const Vec3 p = state.position;
   detail::MovingStep<N, Recorder>(complex_, options_, respond_).ride_on(run, weights, taken.time, taken.target);

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,8 +15,10 @@
 #include "dartcast/environment.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/response.hpp"
+#include "dartcast/spheres.hpp"
 #include "dartcast/validity.hpp"
 #include "support/particle_checks.hpp"
+#include "support/seeds.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::range_test {
@@ -170,6 +174,88 @@ TEST(Range, ACoordinateAtTheEndOfTheRangeLosesNobody) {
       world.expect_sound(name_of(dimension, vertex, far));
     });
   }
+}
+
+// Vertices that come and go, to infinity or almost out of the range: responses of the library never end a call, whatever
+// takes the step. Velocities that lead out of the range are given up.
+class Extremes {
+ public:
+  explicit Extremes(std::uint64_t seed) : random_(seed), dimension_(2 + random_.below(2)), mesh_(mesh(seed)) {
+    environment_ = std::make_unique<Environment>(mesh_, Threads{1});
+    environment_->add(particles_, test::random_points(40, {}, {4.0, 4.0, dimension_ == 2 ? 0.0 : 3.0}, random_));
+    for (std::size_t i = 0; i < particles_.size(); ++i) velocities_.push_back(vector(3.0));
+    fates_.resize(particles_.size());
+    options_.tolerance = random_.below(2) == 0 ? 1e9 : 0.05;
+    simultaneous_ = random_.below(4) == 0;
+    responses_ = WallResponses(random_.below(2) == 0 ? Reflect{1.0, 0.0} : Reflect{0.24, 0.86});
+  }
+
+  std::string run() {
+    for (int step = 0; step < 12; ++step) {
+      environment_->move(moved());
+      std::vector<Vec3> targets = test::positions_of(particles_);
+      for (std::size_t i = 0; i < targets.size(); ++i) {
+        if (!simultaneous_ && random_.below(3) == 0) velocities_[i] = vector(0x1p+300);
+        if (!in_exact_range(targets[i] + velocities_[i])) velocities_[i] = {};
+        targets[i] += velocities_[i];
+      }
+      const ContactCallback respond = respond_with(responses_, velocities_, fates_, 1.0);
+      if (simultaneous_)
+        stepper_.advance(*environment_, particles_, targets, respond, options_);
+      else
+        environment_->advance(particles_, targets, respond, options_);
+      const Audit a = audit(environment_->complex(), particles_);
+      if (a.failed > 0) return a.first;
+      if (!std::all_of(velocities_.begin(), velocities_.end(), is_finite)) return "a velocity that is not finite";
+    }
+    return "";
+  }
+
+ private:
+  MeshData mesh(std::uint64_t seed) {
+    const double blocked = random_.below(2) == 0 ? 0.2 : 0.0;
+    if (dimension_ == 2) {
+      return generate_rectangle(
+          {.cells = {4, 4}, .size = {4.0, 4.0}, .mixed = true, .blocked_share = blocked, .seed = seed});
+    }
+    return generate_box(
+        {.cells = {3, 3, 3}, .size = {3.0, 3.0, 3.0}, .mixed = true, .blocked_share = blocked, .seed = seed});
+  }
+  Vec3 vector(double size) {
+    Vec3 v = {random_.uniform(-size, size), random_.uniform(-size, size), random_.uniform(-size, size)};
+    if (dimension_ == 2) v.z = 0.0;
+    return v;
+  }
+  std::vector<Vec3> moved() {
+    constexpr std::array<double, 8> extremes = {
+        infinity,   std::numeric_limits<double>::quiet_NaN(), 1e300, -1e160, 0x1p+300, -0x1p+300, 0x1.8p+299,
+        -0x1.8p+299};
+    std::vector<Vec3> next = mesh_.points;
+    for (Vec3& x : next) {
+      if (random_.below(12) == 0)
+        x.*axes[random_.below(dimension_)] = extremes[random_.below(8)];
+      else if (random_.below(3) == 0)
+        x += vector(0.1);
+    }
+    return next;
+  }
+
+  Random random_;
+  unsigned dimension_;
+  MeshData mesh_;
+  std::unique_ptr<Environment> environment_;
+  Particles particles_;
+  std::vector<Vec3> velocities_;
+  std::vector<ParticleStatus> fates_;
+  WallResponses responses_;
+  StepOptions options_;
+  SimultaneousStepper stepper_;
+  bool simultaneous_ = false;
+};
+
+TEST(Range, ResponsesOfTheLibraryNeverEndACall) {
+  const auto wrong = test::run_seeds(test::scaled(40, 20000), [](std::uint64_t seed) { return Extremes(seed).run(); });
+  EXPECT_EQ(wrong, std::vector<std::string>{});
 }
 
 // The whole scene beyond the range, its cells as they were.

@@ -31,9 +31,9 @@ class RandomCalls {
       case 1: add(); break;
       case 2: remove(); break;
       case 3:
-      case 4: solids_.advance(targets(), options()); break;
+      case 4: expect_unit_normals(solids_.advance(targets(), options())); break;
       case 5:
-      case 6: solids_.move_with(targets(), walls(), options()); break;
+      case 6: expect_unit_normals(solids_.move_with(targets(), walls(), options())); break;
       case 7: edit(); break;
       case 8: solids_.restore(solids_.checkpoint()); break;
     }
@@ -51,6 +51,9 @@ class RandomCalls {
   std::size_t steps = 0;
 
  private:
+  static void expect_unit_normals(const SolidStep& step) {
+    for (const SolidContact& c : step.contacts) EXPECT_NEAR(norm(c.normal), 1.0, 1e-12);
+  }
   void add() {
     if (solids_.size() > 6) return;
     const Vec3 at = {random_.uniform(0, 5), random_.uniform(0, 5), random_.uniform(0, 5)};
