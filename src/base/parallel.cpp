@@ -69,6 +69,11 @@ void check_threads(Threads threads) {
   given = limit;
 }
 
+unsigned thread_count(Threads threads) {
+  static const unsigned all = given_by_system(machine_threads());
+  return threads.count == 0 ? all : threads.count;
+}
+
 }  // namespace dartcast
 
 namespace dartcast::detail {
@@ -104,13 +109,6 @@ class Chunks {
   void* context_;
   std::vector<std::exception_ptr> errors_;
 };
-
-unsigned all_threads() {
-  static const unsigned all = given_by_system(machine_threads());
-  return all;
-}
-
-unsigned resolved(Threads threads) { return threads.count == 0 ? all_threads() : threads.count; }
 
 #ifdef DARTCAST_THREADS_STD
 void run_parallel(Chunks& chunks, unsigned threads) {
@@ -226,7 +224,7 @@ void parallel_chunks(std::size_t count, std::size_t grain, Threads threads, Chun
   check_threads(threads);
   if (count == 0) return;
   Chunks chunks(count, std::max<std::size_t>(grain, 1), body, context);
-  const unsigned wanted = chunks.size() == 1 ? 1 : resolved(threads);
+  const unsigned wanted = chunks.size() == 1 ? 1 : thread_count(threads);
   if (wanted == 1) {
     for (std::size_t c = 0; c < chunks.size(); ++c) chunks.run(c);
   } else {
@@ -240,7 +238,7 @@ void parallel_stages(std::span<const std::size_t> counts, std::size_t grain, Thr
   check_threads(threads);
   std::size_t most = 0;
   for (const std::size_t count : counts) most = std::max(most, chunk_count(count, grain));
-  const auto slices = most <= 1 ? 1U : static_cast<unsigned>(std::min<std::size_t>(resolved(threads), most));
+  const auto slices = most <= 1 ? 1U : static_cast<unsigned>(std::min<std::size_t>(thread_count(threads), most));
   if (slices == 1) {
     for (std::size_t stage = 0; stage < counts.size(); ++stage) {
       if (counts[stage] > 0) body(context, stage, 0, counts[stage]);

@@ -45,6 +45,9 @@ void parallel_stages(std::span<const std::size_t> counts, std::size_t grain, Thr
       const_cast<std::remove_const_t<B>*>(&body));
 }
 
+/// The number of threads that a loop may use, where 0 stands for all.
+unsigned thread_count(Threads threads);
+
 /// Number of chunks that parallel_for makes.
 constexpr std::size_t chunk_count(std::size_t count, std::size_t grain) { return (count + grain - 1) / grain; }
 

@@ -52,7 +52,8 @@ Catheter::Impl::Impl(Environment& environment, const CatheterOptions& options)
   reference_ = any_normal(direction_);
   Particles first;
   if (environment.add(first, {&options_.entry, 1}).front().location.place != Place::free)
-    throw InvalidArgument("catheter: the entry is in no free cell");
+    throw InvalidArgument(fmt::format("catheter: the entry ({}, {}, {}) is in no free cell: put it inside of one",
+                                      options.entry.x, options.entry.y, options.entry.z));
   const SimplexId at = first[0].at();
   for (std::size_t i = 0; i <= count_; ++i) {
     if (!environment.add(particles_, at, options.entry)) throw InternalError("catheter: the entry was lost");

@@ -1,15 +1,14 @@
 // Runs a scene: loads its files, makes the simulation, and steps it while output and audit observe.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <chrono>
 #include <memory>
-#include <thread>
 #include <utility>
 #include <variant>
 
 #include "base/are_several.hpp"
+#include "base/parallel.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/run.hpp"
 #include "dartcast/scene_file.hpp"
@@ -34,8 +33,7 @@ class Stopwatch {
 
 void describe(const Environment& environment, Summary& summary) {
   const CombinatorialMap& map = environment.map();
-  summary.threads = environment.threads().count;
-  if (summary.threads == 0) summary.threads = std::max(1U, std::thread::hardware_concurrency());
+  summary.threads = thread_count(environment.threads());
   summary.cells = map.cell_count();
   summary.free_cells = 0;
   for (const Cell c : map.cells()) summary.free_cells += map.is_free(c) ? 1 : 0;

@@ -38,7 +38,7 @@ StepReport SimultaneousStepper::advance(Environment& environment, Particles& par
   b.states.assign(particles.states().begin(), particles.states().end());
   b.weights.resize(count);
   for (std::size_t i = 0; i < count; ++i) b.weights[i] = particles.held_weights(i);
-  const std::size_t grain = std::max<std::size_t>(256, chunk_count(count, environment.threads().count));
+  const std::size_t grain = std::max<std::size_t>(256, chunk_count(count, 256));
   std::vector<StepReport> reports(chunk_count(count, grain));
   if (b.memory.size() < reports.size()) b.memory.resize(reports.size());
   const SimultaneousStep stepper(environment.complex(), options, respond);

@@ -63,6 +63,7 @@ std::string hash_after(unsigned threads, int steps, int restart) {
 
 TEST(WallMotion, TheSameBitsForAnyThreadsAndAfterARestart) {
   const std::string one = hash_after(1, 40, 0);
+  EXPECT_EQ(hash_after(0, 40, 0), one);
   EXPECT_EQ(hash_after(3, 40, 0), one);
   EXPECT_EQ(hash_after(2, 40, 17), one);
 }

@@ -373,7 +373,7 @@ TEST(Simultaneous, InThePlane) {
 
 TEST(Simultaneous, AnyNumberOfThreads) {
   std::vector<std::string> hashes;
-  for (const unsigned threads : {1U, 2U, 5U}) {
+  for (const unsigned threads : {0U, 1U, 2U, 5U}) {
     Cloud cloud(cubes(6, CellType::prism, 0.1, 0.2, 3), Threads{threads});
     Random random(5);
     for (int k = 0; k < 2000; ++k) cloud.add(random_vector(random, 3.0) + Vec3{3, 3, 3}, random_vector(random, 0.4));
@@ -385,8 +385,7 @@ TEST(Simultaneous, AnyNumberOfThreads) {
     EXPECT_GT(contacts, 100U);
     hashes.push_back(hash_of(cloud.particles));
   }
-  EXPECT_EQ(hashes[0], hashes[1]);
-  EXPECT_EQ(hashes[0], hashes[2]);
+  for (const std::string& hash : hashes) EXPECT_EQ(hash, hashes[0]);
 }
 
 // A point that sticks is carried by its wall from then on, and meets no other.
