@@ -228,6 +228,10 @@ void bind(py::module_& m) {
   add_names_and_data(c);
   add_methods(c);
   c.def(py::pickle(&state_of, &from_state));
+  c.def("__reduce__", [](const py::object& mesh) {  // without it, protocols 0 and 1 would ask for a base class's state
+    return py::make_tuple(py::module_::import("copyreg").attr("__newobj__"), py::make_tuple(py::type::of(mesh)),
+                          state_of(mesh));
+  });
 }
 
 }  // namespace dartcast::python::mesh_data
