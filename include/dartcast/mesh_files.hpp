@@ -79,7 +79,7 @@ MeshFile read_surface(const std::filesystem::path& path, const ReadOptions& opti
 struct SurfaceScene;  // dartcast/scene.hpp
 
 /// Makes tetrahedra inside and around closed surfaces (section 3.2 of the paper) with tetgen or gmsh, which runs as a
-/// program of its own in a temporary folder.
+/// program of its own in a temporary folder. Folder and program are gone when this process ends, also by a signal.
 ///
 /// The surfaces are checked first, by exact signs: closed, oriented (or made so), no triangle without area, no two that
 /// cross or touch. The tetrahedra are checked then: each triangle of the surfaces is a face of two of them, with its

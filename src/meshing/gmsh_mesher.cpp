@@ -162,7 +162,7 @@ Tetrahedra run_gmsh(const ClosedSurfaces& surfaces, const SurfaceScene& scene, s
   write_bytes(folder.path() / "scene.msh", msh_of(surfaces, shell));
   write_bytes(folder.path() / "scene.geo", geo_of(surfaces, scene, shell, count));
   const ProgramEnd end =
-      run_program({"gmsh", "-3", "scene.geo", "-o", "made.msh", "-format", "msh22", "-bin", "-nt", "1"}, folder.path(),
+      run_program({"gmsh", "-3", "scene.geo", "-o", "made.msh", "-format", "msh22", "-bin", "-nt", "1"}, folder,
                   scene.seconds, memory);
   if (!end.found) throw Error("gmsh is not installed: install the package gmsh");
   if (!end.in_time) throw Error(fmt::format("gmsh took more than {} s", scene.seconds));

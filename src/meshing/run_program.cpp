@@ -5,10 +5,12 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -57,6 +59,19 @@ int wait_for(pid_t child, double seconds, bool& in_time) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
+// Waits until the process that it guards has ended. Then it ends the last program of which it has heard, and removes the
+// folder. It is in a group of its own: Ctrl-C is not for it.
+[[noreturn]] void guard(int from, const char* folder) {
+  ::setpgid(0, 0);
+  pid_t program = 0;
+  pid_t next = 0;
+  while (::read(from, &next, sizeof next) == sizeof next) program = next;
+  if (program > 0) ::kill(-program, SIGKILL);
+  ::usleep(100'000);  // the program's last file is there
+  ::execlp("rm", "rm", "-rf", "--", folder, nullptr);
+  ::_exit(126);
+}
+
 std::string last_words(const fs::path& output) {
   std::ifstream in(output, std::ios::binary);
   std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
@@ -71,19 +86,21 @@ std::string last_words(const fs::path& output) {
 
 }  // namespace
 
-ProgramEnd run_program(const std::vector<std::string>& words, const fs::path& folder, double seconds,
+ProgramEnd run_program(const std::vector<std::string>& words, const TemporaryFolder& folder, double seconds,
                        std::uint64_t memory) {
   std::vector<std::string> own = words;
   std::vector<char*> pointers;
   for (std::string& word : own) pointers.push_back(word.data());
   pointers.push_back(nullptr);
-  const std::string place = folder.string();
-  const std::string output = (folder / "output.txt").string();
+  const std::string place = folder.path().string();
+  const std::string output = (folder.path() / "output.txt").string();
   const pid_t child = ::fork();
   if (child < 0) throw Error(fmt::format("no process can be made for {}: {}", words[0], std::strerror(errno)));
   if (child == 0) become(pointers.data(), place.c_str(), output.c_str(), static_cast<rlim_t>(memory));
+  folder.set_program(child);
   ProgramEnd end;
   end.status = wait_for(child, seconds, end.in_time);
+  folder.set_program(0);
   end.found = end.status != not_found;
   end.last_words = last_words(output);
   return end;
@@ -94,11 +111,27 @@ TemporaryFolder::TemporaryFolder() {
   if (::mkdtemp(name.data()) == nullptr)
     throw Error(fmt::format("{}: no temporary folder can be made: {}", name, std::strerror(errno)));
   path_ = name;
+  std::array<int, 2> ends = {-1, -1};
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) return;  // without a guard, then
+  guard_ = ::fork();
+  if (guard_ == 0) {
+    ::close(ends[1]);
+    guard(ends[0], name.c_str());
+  }
+  ::close(ends[0]);
+  to_guard_ = ends[1];
 }
 
 TemporaryFolder::~TemporaryFolder() {
+  if (guard_ > 0) {
+    ::kill(guard_, SIGKILL);
+    ::waitpid(guard_, nullptr, 0);
+  }
+  if (to_guard_ >= 0) ::close(to_guard_);
   std::error_code ignored;
   fs::remove_all(path_, ignored);
 }
+
+void TemporaryFolder::set_program(int process) const { ::send(to_guard_, &process, sizeof process, MSG_NOSIGNAL); }
 
 }  // namespace dartcast

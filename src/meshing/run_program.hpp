@@ -17,12 +17,8 @@ struct ProgramEnd {
   [[nodiscard]] bool well() const { return found && in_time && status == 0; }
 };
 
-/// Runs words[0], found as a shell finds it, with the other words. Its output goes to a file in the folder. It is stopped
-/// after so many seconds, and cannot take more memory than so many bytes. Throws Error where no process can be made.
-ProgramEnd run_program(const std::vector<std::string>& words, const std::filesystem::path& folder, double seconds,
-                       std::uint64_t memory);
-
-/// A new folder for temporary files, removed with all that is in it at the end.
+/// A new folder for temporary files, removed with all that is in it at the end: that of the object, or that of this
+/// process if a signal ends it before. A small process of its own waits for that.
 class TemporaryFolder {
  public:
   /// Throws Error where none can be made.
@@ -31,9 +27,18 @@ class TemporaryFolder {
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  /// The program that runs in it, which ends with this process. 0: none.
+  void set_program(int process) const;
 
  private:
   std::filesystem::path path_;
+  int guard_ = -1;     // a process
+  int to_guard_ = -1;  // a connection, open as long as this process is there
 };
+
+/// Runs words[0], found as a shell finds it, with the other words. Its output goes to a file in the folder. It is stopped
+/// after so many seconds, and cannot take more memory than so many bytes. Throws Error where no process can be made.
+ProgramEnd run_program(const std::vector<std::string>& words, const TemporaryFolder& folder, double seconds,
+                       std::uint64_t memory);
 
 }  // namespace dartcast

@@ -98,7 +98,7 @@ Tetrahedra run_tetgen(const ClosedSurfaces& surfaces, const SurfaceScene& scene,
   for (const Attempt& attempt : {Attempt{"-pYMgQq1.4", box}, Attempt{"-pYMgQ", box}, Attempt{"-pYMgQ", uneven}}) {
     write_bytes(folder.path() / "scene.smesh", smesh_of(surfaces, attempt.box));
     const ProgramEnd end =
-        run_program({"tetgen", attempt.flags + volume, "scene.smesh"}, folder.path(), scene.seconds, memory);
+        run_program({"tetgen", attempt.flags + volume, "scene.smesh"}, folder, scene.seconds, memory);
     if (!end.found) throw Error("tetgen is not installed: install the package tetgen");
     if (end.well()) return read_result(folder.path() / "scene.1.mesh", surfaces);
     if (!end.in_time) throw Error(fmt::format("tetgen took more than {} s", scene.seconds));

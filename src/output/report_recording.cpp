@@ -147,33 +147,45 @@ ReportRecording::ReportRecording(WritingThread& writing, const fs::path& folder,
 }
 
 ReportRecording::ReportRecording(WritingThread& writing, const fs::path& folder, const Simulation& simulation,
-                                 const ReportProgress& progress)
+                                 const ReportProgress& progress, bool goes_on)
     : writing_(writing),
       file_(folder / file_name, progress.bytes),
       counts_hits_(!simulation.statistics_options().hits) {
-  restore(folder / file_name, simulation);
+  restore(folder / file_name, simulation, goes_on);
 }
 
-// The walls of a map are listed in one order, so that the hits of the last frame find their faces again.
-void ReportRecording::restore(const fs::path& path, const Simulation& simulation) {
+// Where the run goes on, a last frame off the schedule is cut off, and so are walls that came with it. Its hits count.
+void ReportRecording::restore(const fs::path& path, const Simulation& simulation, bool goes_on) {
   const RecordedFile file(path);
   header_ = file.header();
   ids_ = ids_so_far(simulation);
   events_ = simulation.event_log().events.size();
-  const auto& chunks = file.chunks();
+  auto chunks = file.chunks();
   const auto last = [&](std::string_view tag) {
     return std::find_if(chunks.rbegin(), chunks.rend(), [&](const auto& c) { return c.tag == tag; });
   };
   if (last(RecordedFrame::tag) == chunks.rend() || last(RecordedWalls::tag) == chunks.rend()) return;
   const auto frame = file.read<RecordedFrame>(*last(RecordedFrame::tag));
-  wall_points_ = file.read<RecordedWalls>(*last(RecordedWalls::tag)).points;
-  stride_ = frame.stride;
+  has_walls_ = true;
+  if (goes_on && frame.step % std::max<std::uint64_t>(header_.every, 1) != 0) {
+    chunks.pop_back();
+    has_walls_ = chunks.back().tag != RecordedWalls::tag;
+    if (!has_walls_) chunks.pop_back();
+    file_ = RunTable(path, chunks.back().at + chunks.back().size);
+  }
+  if (const auto shown = last(RecordedFrame::tag); shown != chunks.rend())
+    stride_ = file.read<RecordedFrame>(*shown).stride;
   WallFaceList walls = wall_face_list(simulation.environment().map());
   faces_ = std::move(walls.faces);
   wall_vertices_ = std::move(walls.vertices);
   edits_ = simulation.environment().edit_count();
-  has_walls_ = true;
-  if (!counts_hits_ || frame.hits.size() != faces_.size()) return;
+  if (has_walls_) wall_points_ = file.read<RecordedWalls>(*last(RecordedWalls::tag)).points;
+  if (counts_hits_) restore_hits(simulation, frame);
+}
+
+// The walls of a map are listed in one order, so that the hits of the last frame find their faces again.
+void ReportRecording::restore_hits(const Simulation& simulation, const RecordedFrame& frame) {
+  if (frame.hits.size() != faces_.size()) return;
   std::vector<FaceHits> hits;
   for (std::size_t f = 0; f < faces_.size(); ++f) {
     if (frame.hits[f] > 0) hits.push_back({faces_[f], simulation.environment().map().patch(faces_[f]), frame.hits[f]});

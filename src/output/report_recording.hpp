@@ -34,9 +34,9 @@ class ReportRecording {
   /// A new file.
   ReportRecording(WritingThread& writing, const std::filesystem::path& folder, const Scene& scene,
                   const Simulation& simulation);
-  /// Goes on with the file of an earlier run. `simulation`: in the state of the checkpoint.
+  /// Goes on with the file of an earlier run. `simulation`: in the state of the checkpoint. `goes_on`: it has steps to do.
   ReportRecording(WritingThread& writing, const std::filesystem::path& folder, const Simulation& simulation,
-                  const ReportProgress& progress);
+                  const ReportProgress& progress, bool goes_on);
 
   /// After each edit of the environment.
   void update_after_edit(const Environment& environment);
@@ -53,7 +53,8 @@ class ReportRecording {
   void add_walls(const Simulation& simulation);
   [[nodiscard]] std::vector<RecordedPoint> wall_points(const Environment& environment) const;
   [[nodiscard]] const WallHits& hits(const Simulation& simulation) const;
-  void restore(const std::filesystem::path& path, const Simulation& simulation);
+  void restore(const std::filesystem::path& path, const Simulation& simulation, bool goes_on);
+  void restore_hits(const Simulation& simulation, const RecordedFrame& frame);
 
   WritingThread& writing_;
   RunTable file_;

@@ -76,7 +76,8 @@ void RunOutput::find_checkpoint(std::uint64_t steps) {
   if (done > steps)
     throw Error(
         fmt::format("{}: {} steps are done already; ask for as many or more with --steps", folder().string(), done));
-  if (done < steps) std::erase_if(found_->recording.frames, [&](const auto& f) { return !on_schedule(f.step); });
+  goes_on_ = done < steps;
+  if (goes_on_) std::erase_if(found_->recording.frames, [&](const auto& f) { return !on_schedule(f.step); });
 }
 
 // Only those particles stay that are now this rank's: the others need not fit into its memory.
@@ -150,8 +151,9 @@ void RunOutput::open_files(const Simulation& simulation) {
 
 void RunOutput::open_report(const Simulation& simulation) {
   const ScopeTimer timer(summary_.seconds_report);
-  report_ = found_ ? std::make_unique<ReportRecording>(*writing_, folder(), simulation, found_->report_recording)
-                   : std::make_unique<ReportRecording>(*writing_, folder(), scene_, simulation);
+  report_ = found_
+                ? std::make_unique<ReportRecording>(*writing_, folder(), simulation, found_->report_recording, goes_on_)
+                : std::make_unique<ReportRecording>(*writing_, folder(), scene_, simulation);
 }
 
 void RunOutput::add_step(const Simulation& simulation, const SimulationStep& step) {

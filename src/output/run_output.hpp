@@ -41,6 +41,8 @@ class RunOutput {
   void open(MeshSource mesh, const Simulation& simulation);
   /// After each step, before add_frame().
   void add_step(const Simulation& simulation, const SimulationStep& step);
+  /// Whether the scene wants a frame after this step.
+  [[nodiscard]] bool on_schedule(std::uint64_t step) const { return every_ > 0 && step % every_ == 0; }
   /// Before the first step and after each: a frame and a checkpoint where the scene wants one, and for the last step.
   void add_frame(const Simulation& simulation, bool last);
   void finish(const Simulation& simulation);
@@ -48,7 +50,6 @@ class RunOutput {
  private:
   [[nodiscard]] const std::filesystem::path& folder() const { return recording_options_.folder; }
   [[nodiscard]] std::filesystem::path file() const { return folder() / "checkpoint.bin"; }
-  [[nodiscard]] bool on_schedule(std::uint64_t step) const { return every_ > 0 && step % every_ == 0; }
   [[nodiscard]] bool wants_report() const {
     return scene_.output.report && every_ > 0 && recording_options_.environment_pieces == 1;
   }
@@ -69,6 +70,7 @@ class RunOutput {
   Recording::Options recording_options_;
   std::uint64_t every_;
   bool resume_;
+  bool goes_on_ = false;  // it was resumed, and has steps to do
   Threads threads_;
   Ranks* ranks_;
   ParticleShare share_;

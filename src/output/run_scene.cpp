@@ -97,7 +97,7 @@ class Run {
   }
 
   void run(const Progress& progress) {
-    if (simulation_.steps() == 0) output_.add_frame(simulation_, steps_ == 0);
+    if (!output_.found()) output_.add_frame(simulation_, steps_ == 0);
     while (simulation_.steps() < steps_ && !summary_.cancelled) {
       const SimulationStep& step = simulation_.step();
       summary_.held = step.report.held.size();
@@ -120,7 +120,7 @@ class Run {
   void cancel_unless(bool goes_on) {
     if (goes_on || simulation_.steps() == steps_) return;
     summary_.cancelled = true;
-    output_.add_frame(simulation_, true);
+    if (!output_.on_schedule(simulation_.steps())) output_.add_frame(simulation_, true);
   }
 
   void finish() {

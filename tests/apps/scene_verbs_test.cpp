@@ -9,6 +9,7 @@
 #include "dartcast/mesh_files.hpp"
 #include "support/command.hpp"
 #include "support/foam_case.hpp"
+#include "support/surface_files.hpp"
 
 namespace dartcast::scene_verbs_test {
 
@@ -34,6 +35,26 @@ TEST_F(SceneVerbs, AMeshAroundASurface) {
   expect_failure("mesh cube.off -o a.doc", 1, "a.doc: a mesh is written to files that end in");
   expect_failure("mesh cube.off", 2, "-o");
   expect_failure("mesh cube.off -o a.vtu --with netgen", 2, "netgen");
+}
+
+// A mesher that takes long. The signal ends it, too.
+TEST_F(SceneVerbs, ASignalLeavesNothingOfAMesh) {
+  (void)write("cube.off", test::off(test::cube_squares));
+  (void)write("tetgen", "#!/bin/sh\necho $$ > ../../started\nexec sleep 60\n");
+  (void)write("s.toml", "[environment]\nmesh = { surface = 'cube.off' }\n[[particles]]\ncount = 1\n");
+  for (const std::string signal : {"TERM", "HUP", "KILL"}) {
+    for (const std::string verb : {"mesh cube.off -o a.vtu", "run s.toml -q -o out"}) {
+      if (signal == "TERM" && verb.starts_with("run")) continue;  // it asks a run for its end
+      const Result r =
+          run("--version; chmod +x tetgen; rm -rf started tmp out; mkdir tmp; TMPDIR=$PWD/tmp PATH=$PWD:$PATH '" +
+              binary + "' " + verb + " & for i in $(seq 400); do test -s started && break; sleep 0.05; done; " +
+              "kill -" + signal + " $!; wait $!; echo ended $?; for i in $(seq 100); do test -z \"$(ls tmp)\" " +
+              "&& break; sleep 0.05; done; ls tmp; grep '^State' /proc/$(cat started)/status");
+      EXPECT_NE(r.out.find("ended 1"), std::string::npos) << r.out;
+      const std::string left = r.out.substr(r.out.find("ended 1") + 10);
+      EXPECT_TRUE(left.empty() || left.starts_with("State:\tZ")) << signal << ", " << verb << ": " << left;
+    }
+  }
 }
 
 TEST_F(SceneVerbs, ParticlesGoBackIntoAnOpenFoamCase) {
