@@ -126,10 +126,10 @@ void write_bytes(const std::filesystem::path& path, std::string_view bytes);
 
 // The full check of a mesh file: `dartcast check`.
 
-/// Reads and checks a file, one of a surface as check_surface() does. A mesh without a defect is also divided into
-/// simplices. A cell that has no division into positive ones, not even around a Steiner point, is a defect of kind
-/// "not_star_shaped". With `without_bad_cells` these cells, and flat or inverted ones, are left out, and are a warning
-/// (see complex/skip_bad_cells.hpp). Nothing in the file makes this throw.
+/// Reads and checks a file, one of a surface as mesh_surfaces() does: it must be closed, and no triangles may cross or
+/// touch. A mesh without a defect is also divided into simplices. A cell that has no division into positive ones, not
+/// even around a Steiner point, is a defect of kind "not_star_shaped". With `without_bad_cells` these cells, and flat or
+/// inverted ones, are left out, and are a warning (see complex/skip_bad_cells.hpp). Nothing in the file makes this throw.
 MeshFile check_mesh(const std::filesystem::path& path, Threads threads = {}, const ReadOptions& options = {},
                     bool without_bad_cells = false);
 

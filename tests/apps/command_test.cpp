@@ -443,11 +443,11 @@ TEST_F(Command, InfoSaysWherePatchesLie) {
 TEST_F(Command, CheckTakesSurfaces) {
   (void)write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2\n");
   const Result r = run("check a.obj --json");
-  EXPECT_EQ(r.status, 0) << r.out;
+  EXPECT_EQ(r.status, 1) << r.out;  // as a run refuses it
   const auto json = nlohmann::json::parse(r.out);
-  EXPECT_EQ(json["verdict"], "warn");
+  EXPECT_EQ(json["verdict"], "refuse");
   EXPECT_EQ(json["warnings"][0]["kind"], "short_faces");
-  EXPECT_EQ(json["warnings"][1]["kind"], "open_border");
+  EXPECT_EQ(json["defects"][0]["kind"], "open");
   EXPECT_NE(run("check a.obj").out.find("a surface in space"), std::string::npos);
 }
 

@@ -126,6 +126,13 @@ void expect_defect(const MeshFile& file, const std::string& kind, std::initializ
   test::expect_parts(defect.message, words);
 }
 
+// As the check of the file itself refuses it.
+void expect_refused(const SurfaceScene& scene, const std::string& kind, std::initializer_list<const char*> words) {
+  expect_defect(mesh_surfaces(scene), kind, words);
+  const fs::path& file = scene.surfaces.front().file;
+  if (scene.surfaces.size() == 1 && is_surface_file(file)) expect_defect(check_mesh(file), kind, words);
+}
+
 // Regions.
 
 TEST_F(MeshSurfaces, ACubeInABox) {
@@ -290,22 +297,22 @@ TEST_F(MeshSurfaces, SurfacesThatAreRefused) {
   open.types.pop_back();
   open.offsets.pop_back();
   open.connectivity.resize(open.offsets.back());
-  expect_defect(mesh_surfaces(scene_of({{"a", open}})), "open", {"around (1, 0, 0)", "4 edges"});
-  expect_defect(mesh_surfaces(scene_of({{"a", joined(cube(1.0), cuboid({0.5, 0.5, 0.5}, {2, 2, 2}))}})),
-                "self_intersection", {"cross or touch", "face"});
-  expect_defect(mesh_surfaces(scene_of({{"a", cube(1.0)}, {"b", cuboid({1, -1, -1}, {2, 1, 1})}})), "self_intersection",
-                {"a.off", "b.off"});  // they touch
-  expect_defect(mesh_surfaces(scene_of({{"a", joined(cube(1.0), cube(1.0))}})), "self_intersection", {"face"});
+  expect_refused(scene_of({{"a", open}}), "open", {"around (1, 0, 0)", "4 edges"});
+  expect_refused(scene_of({{"a", joined(cube(1.0), cuboid({0.5, 0.5, 0.5}, {2, 2, 2}))}}), "self_intersection",
+                 {"cross or touch", "face"});
+  expect_refused(scene_of({{"a", cube(1.0)}, {"b", cuboid({1, -1, -1}, {2, 1, 1})}}), "self_intersection",
+                 {"a.off", "b.off"});  // they touch
+  expect_refused(scene_of({{"a", joined(cube(1.0), cube(1.0))}}), "self_intersection", {"face"});
   MeshData flat;
   flat.points = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}};
   for (const auto& t : {std::array{0U, 1U, 2U}, {0U, 3U, 1U}, {1U, 3U, 2U}, {0U, 2U, 3U}})
     add_face(flat, {t[0], t[1], t[2]});
-  expect_defect(mesh_surfaces(scene_of({{"a", flat}})), "flat", {"without area"});
+  expect_refused(scene_of({{"a", flat}}), "flat", {"without area"});
   SurfaceScene missing;
   missing.surfaces = {{"a", folder_ / "none.stl"}};
-  expect_defect(mesh_surfaces(missing), "file", {"no such file"});
+  expect_refused(missing, "file", {"no such file"});
   missing.surfaces = {{"a", write("a.doc", "x")}};
-  expect_defect(mesh_surfaces(missing), "file", {".doc", "supported"});
+  expect_refused(missing, "file", {".doc", "supported"});
 }
 
 TEST_F(MeshSurfaces, MembersOutOfRange) {

@@ -1,10 +1,11 @@
-// The full check of a mesh file, with the division of its cells into simplices.
-#include <fmt/format.h>
+// The full check of a file: of a mesh, with the division of its cells into simplices; of a surface, as one to mesh around.
+#include <utility>
 
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_files.hpp"
 #include "formats/skip_in_file.hpp"
+#include "meshing/closed_surfaces.hpp"
 
 namespace dartcast {
 
@@ -18,11 +19,23 @@ Finding indivisible_cells(const MeshData& mesh, Threads threads) {
   return finding;
 }
 
+// The counts are of the faces as they are in the file, not of the triangles that they are cut into.
+MeshFile check_closed_surface(const std::filesystem::path& path, const ReadOptions& options) {
+  MeshFile file = check_surface(path, options);
+  SurfaceScene alone;
+  alone.surfaces = {{"inside", path}};
+  MeshReport closed = read_closed_surfaces(alone, options).report;
+  file.report.repairs = std::move(closed.repairs);
+  file.report.warnings = std::move(closed.warnings);
+  file.report.defects = std::move(closed.defects);
+  return file;
+}
+
 }  // namespace
 
 MeshFile check_mesh(const std::filesystem::path& path, Threads threads, const ReadOptions& options,
                     bool without_bad_cells) {
-  if (is_surface_file(path)) return check_surface(path, options);
+  if (is_surface_file(path)) return check_closed_surface(path, options);
   MeshFile file = read_mesh(path, options);
   if (without_bad_cells) skip_bad_cells(file, threads);
   if (!file.report.valid()) return file;
