@@ -138,7 +138,11 @@ std::string text_of(const EventReport& e) {
 
 ReportRecording::ReportRecording(WritingThread& writing, const fs::path& folder, const Scene& scene,
                                  const Simulation& simulation)
-    : writing_(writing), file_(folder / file_name, recorded_line), counts_hits_(!simulation.statistics_options().hits) {
+    : writing_(writing),
+      simulation_(simulation),
+      file_(folder / file_name, recorded_line),
+      counts_hits_(!simulation.statistics_options().hits),
+      counted_(simulation.steps()) {
   header_.dimension = simulation.environment().map().dimension();
   header_.every = scene.output.every;
   header_.origin = middle_of(simulation.environment());
@@ -149,8 +153,10 @@ ReportRecording::ReportRecording(WritingThread& writing, const fs::path& folder,
 ReportRecording::ReportRecording(WritingThread& writing, const fs::path& folder, const Simulation& simulation,
                                  const ReportProgress& progress, bool goes_on)
     : writing_(writing),
+      simulation_(simulation),
       file_(folder / file_name, progress.bytes),
-      counts_hits_(!simulation.statistics_options().hits) {
+      counts_hits_(!simulation.statistics_options().hits),
+      counted_(simulation.steps()) {
   restore(folder / file_name, simulation, goes_on);
 }
 
@@ -197,7 +203,15 @@ const WallHits& ReportRecording::hits(const Simulation& simulation) const {
   return counts_hits_ ? own_hits_ : simulation.statistics().hits;
 }
 
+// The contacts of a step are with the walls before the edits that follow it.
+void ReportRecording::count_hits() {
+  if (!counts_hits_ || counted_ == simulation_.steps()) return;
+  counted_ = simulation_.steps();
+  own_hits_.add(simulation_.environment(), simulation_.parts().particles.last_step().report.contacts);
+}
+
 void ReportRecording::update_after_edit(const Environment& environment) {
+  count_hits();
   if (counts_hits_) own_hits_.update_after_edit(environment);
 }
 
@@ -215,7 +229,7 @@ void ReportRecording::add_step(const Simulation& simulation, const SimulationSte
     file_.append(chunk_of(RecordedEvent{e.step, e.time, text_of(e)}));
   }
   const ContactList& list = step.report.contacts;
-  if (counts_hits_) own_hits_.add(simulation.environment(), list);
+  count_hits();
   RecordedContacts kept;
   for (std::size_t i = 0; i < step.contact_ids.size(); ++i) {
     if (step.contact_ids[i] % stride_ != 0) continue;

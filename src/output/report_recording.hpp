@@ -31,10 +31,11 @@ RecordedFrame reported_particles(const Simulation& simulation, const ReportView&
 /// It grows with the number of ids. Cost: some 30 bytes for each of these particles in each frame, 32 for each contact.
 class ReportRecording {
  public:
-  /// A new file.
+  /// A new file. The simulation outlives it.
   ReportRecording(WritingThread& writing, const std::filesystem::path& folder, const Scene& scene,
                   const Simulation& simulation);
-  /// Goes on with the file of an earlier run. `simulation`: in the state of the checkpoint. `goes_on`: it has steps to do.
+  /// Goes on with the file of an earlier run. `simulation`: as above, in the state of the checkpoint. `goes_on`: it has
+  /// steps to do.
   ReportRecording(WritingThread& writing, const std::filesystem::path& folder, const Simulation& simulation,
                   const ReportProgress& progress, bool goes_on);
 
@@ -55,13 +56,16 @@ class ReportRecording {
   [[nodiscard]] const WallHits& hits(const Simulation& simulation) const;
   void restore(const std::filesystem::path& path, const Simulation& simulation, bool goes_on);
   void restore_hits(const Simulation& simulation, const RecordedFrame& frame);
+  void count_hits();
 
   WritingThread& writing_;
+  const Simulation& simulation_;
   RunTable file_;
   RecordedHeader header_;
   std::uint64_t stride_ = 1;
   WallHits own_hits_;  // where the simulation keeps none
   bool counts_hits_;
+  std::uint64_t counted_;  // steps whose hits it has
   bool has_walls_ = false;
   std::uint64_t edits_ = 0;      // those that the last walls have
   std::size_t events_ = 0;       // of the log, that the file has

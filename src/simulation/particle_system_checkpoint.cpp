@@ -118,10 +118,11 @@ void ParticleSystem::put_back(const VertexPlaces& places) {
   steps_ = places.steps;
 }
 
-// As after the last of these steps: where vertices were before it counts, too.
+// As after the last of these steps: where vertices were before it counts, too. Those that an edit made stand then where
+// the edit put them, not where the motion would.
 void ParticleSystem::stand_at(std::uint64_t steps) {
   if (steps > 0) load_motion(steps);
-  if (steps > 1) move_vertices_to(steps - 1);
+  if (steps > 1 && steps_ + 1 != steps) move_vertices_to(steps - 1);
   move_vertices_to(steps);
 }
 

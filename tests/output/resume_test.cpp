@@ -203,15 +203,14 @@ TEST_F(Resume, ARunWithSurgeryIsOperatedOnAgain) {
 }
 
 TEST_F(Resume, ARunWithSpheresAndCrowdedCellsGoesOn) {
-  const std::string text = spheres_text + "report = false\n";  // of contacts with merged cells it has other last bits
-  const Summary whole = run(one, false, 47, 0, text);
+  const Summary whole = run(one, false, 47, 0, spheres_text);
   EXPECT_GT(whole.totals.collisions.pairs_touching, 0U);
   EXPECT_GT(whole.surgery->subdivided, 0U);
   EXPECT_GT(whole.surgery->merged, 0U);
   EXPECT_EQ(whole.lost, 0U);
   for (const std::uint64_t cut : test::all_or_first({31U, 4U, 16U, 46U})) {
-    EXPECT_THROW(run(two, false, 47, cut, text), CutOff);
-    const Summary resumed = run(two, true, 47, 0, text);
+    EXPECT_THROW(run(two, false, 47, cut, spheres_text), CutOff);
+    const Summary resumed = run(two, true, 47, 0, spheres_text);
     expect_same(whole, resumed);
     EXPECT_EQ(resumed.totals.collisions.pairs_touching, whole.totals.collisions.pairs_touching);
     EXPECT_EQ(resumed.surgery->subdivided, whole.surgery->subdivided);
@@ -259,9 +258,10 @@ body_restitution = 0.5
   }
 }
 
-// A signal stops it so: it writes a frame of that moment, which no run has that goes through.
+// A signal stops it so: it writes a frame of that moment, which no run has that goes through. Cells are edited before
+// step 16 and 31.
 TEST_F(Resume, ARunStoppedAnywhereEndsAsIfItWereNot) {
-  for (const std::string& text : {surgery_text, test::statistics_text}) {
+  for (const std::string& text : {surgery_text, test::statistics_text, spheres_text}) {
     const Summary whole = run(one, false, 47, 0, text);
     for (const std::uint64_t stop : test::all_or_first({16U, 4U, 20U, 31U})) {
       const auto goes_on = [&](std::uint64_t done, std::uint64_t) { return done < stop; };
