@@ -32,6 +32,11 @@ struct ImplicitSimplex;
 
 /// Simplices that hold the same point or edge are one *star* if facets that hold it connect them. In a cell that is a
 /// ball, as all valid cells are, a point or an edge has one star.
+///
+/// Numbers of stars fit in 16 bits: there are at most 15/4 for each of the simplices and of the other triangles of the
+/// fans, of which there are at most Shape::max_darts. Around a Steiner point of the cell these are 3/2 around edges of
+/// the triangles, 1 around their points, 1 around edges to the Steiner point, and 1/4 around itself, since at least
+/// three triangles meet in each point. Around a corner they are fewer.
 class Stars {
  public:
   /// A facet of a simplex that is a triangle of a face.
@@ -129,8 +134,14 @@ struct ImplicitSimplex {
 /// Immutable. Darts are numbered face by face, from the face's lowest-numbered vertex.
 class Shape {
  public:
-  /// Throws InvalidMesh where the faces do not close: an edge is not used once in each direction, or in the plane the
-  /// edges are not one cycle in the given order. Faces that meet in an edge with a corner on it may have fans with a
+  /// A cell has at most so many darts; a polygon has one for each edge. A point has two darts or more, and a face three.
+  /// So numbers of darts, faces, points, triangles of fans and simplices fit in 15 bits.
+  static constexpr std::size_t max_darts = 0x3fff;
+  static_assert(max_darts < Across::outer_bit);
+
+  /// Throws InvalidArgument where the apex is no corner, a corner is in no face, or an edge of a polygon has a Steiner
+  /// point. Throws InvalidMesh where there are more than max_darts, or where the faces do not close: an edge is not used
+  /// once in each direction, or in the plane the edges are not one cycle in the given order. Faces that meet in an edge with a corner on it may have fans with a
   /// common triangle. Then the fans bound no solid. The shape has one simplex that is flat at any positions, so that
   /// the cell is invalid until such faces get Steiner points.
   explicit Shape(ShapeKey key);

@@ -111,6 +111,7 @@ class CombinatorialMap {
  public:
   /// Pools 0 to 3: tetrahedra, hexahedra, prisms, pyramids; in the plane 0 and 1: triangles, quadrilaterals.
   static constexpr std::uint32_t general_pool = 4;
+  static_assert(general_pool < Cell::invalid_value >> Cell::index_bits);  // no cell is the invalid one
   /// The pool of the cells of a type. Cells with Steiner points are in the general pool instead.
   static constexpr std::uint32_t pool_of(CellType type) {
     if (dartcast::dimension(type) == 3) return static_cast<std::uint32_t>(type);

@@ -12,26 +12,6 @@ namespace py = pybind11;
 namespace dartcast::python::cell_shape {
 namespace {
 
-constexpr std::size_t max_points = 0x7fff;
-
-// The numbers that the constructor of Shape takes for granted.
-void check_key(const ShapeKey& key) {
-  const bool polygon = !key.faces.empty() && key.faces.front().corners.size() == 2;
-  std::vector<bool> used(key.corner_count);
-  std::size_t points = key.corner_count + (key.has_point ? std::size_t{1} : 0);
-  for (const ShapeKey::Face& face : key.faces) {
-    for (const std::uint16_t c : face.corners) {
-      if (c < used.size()) used[c] = true;
-    }
-    if (face.has_point && polygon) throw InvalidArgument("faces: an edge has no Steiner point");
-    points += face.has_point ? 1 : 0;
-  }
-  if (key.faces.empty() || !std::all_of(used.begin(), used.end(), [](bool u) { return u; }))
-    throw InvalidArgument("faces: each corner below corner_count must be in a face");
-  if (key.apex >= key.corner_count) throw InvalidArgument("apex: it is no corner");
-  if (points > max_points) throw InvalidArgument("the shape has more than " + std::to_string(max_points) + " points");
-}
-
 using Class = py::class_<Shape, std::shared_ptr<Shape>>;
 using Number = std::uint16_t;
 
@@ -159,11 +139,7 @@ void bind(py::module_& m) {
   PYBIND11_NUMPY_DTYPE(ImplicitSimplex, vertex, across);
   bind_keys(m);
   Class c(m, "Shape", doc("Shape"));
-  c.def(py::init([](const ShapeKey& key) {
-          check_key(key);
-          return std::make_shared<Shape>(key);
-        }),
-        py::arg("key"), doc("Shape::Shape"));
+  c.def(py::init<ShapeKey>(), py::arg("key"), doc("Shape::Shape"));
   Record<Shape::Feature>(c, "Feature", "Shape::Feature")
       .field("kind", &Shape::Feature::kind)
       .field("dart", &Shape::Feature::dart)

@@ -138,10 +138,12 @@ class MapBuilder {
         first = static_cast<std::size_t>(std::min_element(corners.begin(), corners.end()) - corners.begin());
       for (std::size_t i = 0; i < corners.size(); ++i) number(corners[(first + i) % corners.size()]);
     }
+    std::size_t darts = 0;
     for_each_face(mesh_, c, [&](std::span<const std::uint32_t> corners) {
+      darts += map_.dimension_ == 2 ? 1 : corners.size();
+      if (darts > Shape::max_darts) throw InvalidMesh("more than 16383 darts: split the cell");
       auto& face = faces.emplace_back();
       for (const std::uint32_t v : corners) face.push_back(number(v));
-      if (vertices.size() > 0x3fffU) throw InvalidMesh("more than 16383 corners: split the cell");
     });
     if (map_.dimension_ == 2) {
       const auto first_edge = std::find_if(faces.begin(), faces.end(), [](const auto& edge) { return edge[0] == 0; });
@@ -283,11 +285,12 @@ class MapBuilder {
     const auto named = mesh_.patch_names.find(tag);
     const std::string name = named != mesh_.patch_names.end() ? named->second : std::to_string(tag);
     auto& names = map_.patch_names_;
-    const auto known = std::find(names.begin() + 1, names.end(), name);
-    if (names.size() > 0xffffU) throw InvalidMesh("more than 65535 patches");
-    const auto number = static_cast<std::uint16_t>(known - names.begin());
-    if (known == names.end()) names.push_back(name);
-    return Patch{number};
+    const auto [patch, fresh] = patches_.try_emplace(name, Patch{static_cast<std::uint16_t>(names.size())});
+    if (!fresh) return patch->second;
+    if (names.size() > 0xffffU)
+      throw InvalidMesh("more than 65535 patches: give several groups of faces one name, or select those of interest");
+    names.push_back(name);
+    return patch->second;
   }
 
   // A patch face is matched to the cells' faces by its corners. One that belongs to no cell is not a wall, and is left
@@ -316,6 +319,7 @@ class MapBuilder {
   const MeshData& mesh_;
   const SteinerPoints& steiner_;
   std::vector<Cell> place_;
+  std::unordered_map<std::string, Patch> patches_;  // by name
   std::vector<std::size_t> bucket_;
   std::vector<FaceEntry> entries_;
 };

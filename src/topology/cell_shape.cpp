@@ -24,13 +24,14 @@ void check_polygon(const ShapeKey& key) {
     const auto& next = key.faces[(f + 1) % key.faces.size()].corners;
     if (edge.size() != 2 || next.size() != 2 || edge[1] != next[0])
       throw InvalidMesh("the edges of the cell do not close");
+    if (key.faces[f].has_point) throw InvalidArgument("an edge of a polygon has a Steiner point: it has none");
     if (edge[0] >= key.corner_count || seen[edge[0]]) throw InvalidMesh("the cell has a corner twice");
     seen[edge[0]] = true;
   }
   if (key.faces.size() < 3) throw InvalidMesh("the cell has fewer than three corners");
 }
 
-// Throws where a face is not a cycle of distinct corners, or numbers would not fit in 15 bits.
+// Throws where a face is not a cycle of distinct corners, a number names no corner, or there are too many darts.
 void check_key(const ShapeKey& key) {
   if (is_polygon(key)) check_polygon(key);
   std::size_t darts = 0;
@@ -42,9 +43,12 @@ void check_key(const ShapeKey& key) {
       if (distinct) last[corner] = f + 1;
     }
     if (!distinct) throw InvalidMesh("a face of the cell has fewer than three distinct corners");
-    darts += key.faces[f].corners.size();
+    darts += is_polygon(key) ? 1 : key.faces[f].corners.size();
   }
-  if (darts > 0x3fffU) throw InvalidMesh("the cell has more than 16383 darts: split it");
+  if (darts > Shape::max_darts) throw InvalidMesh("the cell has more than 16383 darts: split it");
+  if (key.apex >= key.corner_count) throw InvalidArgument("the apex of the cell is none of its corners");
+  if (std::find(last.begin(), last.end(), 0) != last.end())
+    throw InvalidArgument("a corner of the cell is in none of its faces: each below corner_count must be");
 }
 
 // One number for three numbers in any order.

@@ -36,8 +36,6 @@ CellDraft draft_of(const CombinatorialMap& map, Cell c) {
 
 namespace {
 
-constexpr std::size_t max_darts = 0x3fff;
-
 class DraftChecker {
  public:
   DraftForm form(const CellDraft& draft) {
@@ -61,8 +59,8 @@ class DraftChecker {
     draft_ = &draft;
     std::size_t darts = 0;
     for (const DraftFace& face : draft.faces) darts += face.corners.size();
-    local_.reset(std::min(darts, max_darts) / 3);  // each corner has three faces or more, mostly
-    edges_.reset(std::min(darts, max_darts));
+    local_.reset(std::min(darts, Shape::max_darts) / 3);  // each corner has three faces or more, mostly
+    edges_.reset(std::min(darts, Shape::max_darts));
     corners_.clear();
     origin_.clear();
     face_of_.clear();
@@ -84,7 +82,7 @@ class DraftChecker {
     first_.push_back(0);
     std::vector<std::uint16_t> last;  // last face that had the corner
     for (const DraftFace& face : draft_->faces) {
-      if (origin_.size() + face.corners.size() > max_darts) return "would have more than 16383 darts";
+      if (origin_.size() + face.corners.size() > Shape::max_darts) return "would have more than 16383 darts";
       const auto f = static_cast<std::uint16_t>(first_.size());
       bool distinct = face.corners.size() >= 3;
       for (const DraftCorner& c : face.corners) {
@@ -230,7 +228,7 @@ class DraftChecker {
 
 std::string polygon_defect(const CellDraft& draft) {
   if (draft.faces.size() < 3) return "would have fewer than three edges";
-  if (draft.faces.size() > max_darts) return "would have more than 16383 darts";
+  if (draft.faces.size() > Shape::max_darts) return "would have more than 16383 darts";
   std::vector<std::uint32_t> vertices;
   for (std::size_t f = 0; f < draft.faces.size(); ++f) {
     const auto& edge = draft.faces[f].corners;

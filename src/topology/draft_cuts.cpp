@@ -2,11 +2,17 @@
 #include "topology/draft_cuts.hpp"
 
 #include <algorithm>
+#include <string>
 #include <utility>
+
+#include "dartcast/error.hpp"
 
 namespace dartcast::detail {
 
 void cut_face(CellDraft& draft, std::uint16_t face, Vertex u, Vertex v) {
+  if (draft.faces.size() >= 0xffffU)
+    throw EditRefused("cell " + std::to_string(draft.source) +
+                      " would have more than 65535 faces on the way: cut it in several edits");
   DraftFace& first = draft.faces[face];
   std::vector<DraftCorner> all = std::move(first.corners);
   const auto is = [](Vertex w) { return [w](const DraftCorner& c) { return c.vertex == w; }; };

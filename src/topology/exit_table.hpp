@@ -41,6 +41,8 @@ struct SimplexEntry {
 class ExitTable {
  public:
   static constexpr std::size_t max_simplices = 4095;
+  static_assert(4 * (4 * max_simplices - 1) + 3 <= 0xffffU);       // SimplexEntry::row_and_turn
+  static_assert(4 * max_simplices + Shape::max_darts <= 0xffffU);  // numbers of entries
 
   explicit ExitTable(const Shape& shape);
 

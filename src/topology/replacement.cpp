@@ -60,6 +60,9 @@ class ReplacementPlanner {
     for (const std::uint32_t v : form.corners) check_vertex(Vertex(v));
     for (const DraftFace& f : drafts_[number].faces) {
       if (f.point.valid()) check_vertex(f.point);
+      if (f.patch.value >= map_.patch_names().size())
+        throw InvalidArgument("there is no patch " + std::to_string(f.patch.value) +
+                              ": name one by its place in patch_names()");
     }
     if (drafts_[number].point.valid()) check_vertex(drafts_[number].point);
   }

@@ -97,8 +97,11 @@ void ShapeTable::undo(const Interned& interned) {
   if (standard) std::erase_if(standard_, [&](const auto& entry) { return entry.second == number; });
   drop(number);
   if (interned.appended) {
-    shapes_.pop_back();
-    uses_.pop_back();
+    // The first one behind the numbers kept for standard shapes has made places for those, too.
+    do {
+      shapes_.pop_back();
+      uses_.pop_back();
+    } while (number == kept_end && shapes_.size() > kept_begin && !shapes_.back());
   } else if (!standard) {
     vacant_.push_back(number);
   }

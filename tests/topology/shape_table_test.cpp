@@ -122,6 +122,11 @@ TEST(ShapeTable, StandardShapesHaveSmallNumbers) {
   for (std::uint32_t i = 0; i < count; ++i) {
     ShapeKey key = cone(17);
     for (unsigned f = 0; f < 17; ++f) key.faces[f].has_point = ((i >> f) & 1U) != 0;
+    if (i == ShapeTable::kept_begin) {
+      const ShapeTable before = table;
+      table.undo(table.intern(key));
+      EXPECT_TRUE(table == before);
+    }
     const std::uint32_t number = table.intern(key).number;
     ASSERT_TRUE(number < ShapeTable::kept_begin || number >= ShapeTable::kept_end);
   }
