@@ -26,11 +26,10 @@ using ViewerJson = nlohmann::ordered_json;
 
 constexpr std::size_t group_size = 16;          // frames
 constexpr std::size_t most_contacts = 250'000;  // beyond it, those of some slots are left out
-constexpr std::uint8_t unknown_patch = 255;     // any beyond those that a byte can name
 
-// A byte that names a patch: 0 is none.
-std::uint8_t patch_byte(std::uint16_t patch) {
-  return static_cast<std::uint8_t>(std::min<unsigned>(patch + 1U, unknown_patch));
+// A number that names a patch: 0 is none. Where a map has as many patches as it can, the last two share one.
+std::uint16_t patch_or_none(std::uint16_t patch) {
+  return static_cast<std::uint16_t>(std::min<unsigned>(patch + 1U, UINT16_MAX));
 }
 
 // A list of solids changes over time: each is known by its kind and name.
@@ -242,17 +241,17 @@ class Builder {
 
   // The patch that each particle met last, frame by frame.
   ViewerJson patch_series(const std::vector<std::vector<RecordedContact>>& by_slot) {
-    std::vector<std::uint8_t> met(frames_.size() * slots_);
+    std::vector<std::uint16_t> met(frames_.size() * slots_);
     for (std::size_t slot = 0; slot < slots_; ++slot) {
       std::size_t next = 0;
-      std::uint8_t last = 0;
+      std::uint16_t last = 0;
       for (std::size_t k = 0; k < frames_.size(); ++k) {
         for (; next < by_slot[slot].size() && by_slot[slot][next].time <= frames_[k].time; ++next)
-          last = patch_byte(by_slot[slot][next].patch);
+          last = patch_or_none(by_slot[slot][next].patch);
         met[k * slots_ + slot] = last;
       }
     }
-    return series(met, slots_, first_differences);
+    return series(met, slots_, second_differences);
   }
 
   void describe_contacts() {
@@ -264,14 +263,14 @@ class Builder {
     const std::size_t kept_every = std::max<std::size_t>((all + most_contacts - 1) / most_contacts, 1);
     std::vector<std::uint32_t> offset = {0};
     std::vector<float> time;
-    std::vector<std::uint8_t> patch;
+    std::vector<std::uint16_t> patch;
     std::vector<std::uint8_t> kind;
     std::vector<std::uint16_t> point;
     for (std::size_t slot = 0; slot < slots_; ++slot) {
       for (const RecordedContact& c : by_slot[slot]) {
         if (slot % kept_every != 0) break;
         time.push_back(static_cast<float>(c.time));
-        patch.push_back(patch_byte(c.patch));
+        patch.push_back(patch_or_none(c.patch));
         kind.push_back(c.kind);
         for (const std::uint16_t q : box_.quantised(c.point)) point.push_back(q);
       }

@@ -42,7 +42,7 @@ export class ParticleCloud {
     cloud.position = new Series(data.position, 3 * data.count, 16);
     cloud.speed = new Series(data.speed, data.count, 8);
     cloud.kind = new Series(data.kind, data.count, 8);
-    cloud.patch = new Series(data.patch, data.count, 8);
+    cloud.patch = new Series(data.patch, data.count, 16);
     cloud.makeObject();
     return cloud;
   }

@@ -17,7 +17,7 @@ export class Contacts {
     if (!this.data) return [];
     const d = this.data;
     this.loaded ??= Promise.all([readNumbers(d.offset, Uint32Array), readNumbers(d.time, Float32Array),
-      readNumbers(d.patch, Uint8Array), readNumbers(d.kind, Uint8Array), readNumbers(d.point, Uint16Array)]);
+      readNumbers(d.patch, Uint16Array), readNumbers(d.kind, Uint8Array), readNumbers(d.point, Uint16Array)]);
     if (slot % d.kept_every !== 0) return null;
     const [offset, time, patch, kind, point] = await this.loaded;
     const list = [];
