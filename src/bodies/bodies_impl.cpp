@@ -76,6 +76,8 @@ void Bodies::Impl::check(const BodyOptions& o) const {
 
 AddBodyResult Bodies::Impl::add(std::span<const Vec3> points, const BodyOptions& options) {
   check(options);
+  if (next_id_ >> 31U != 0)  // ids of their particles have 31 bits for the body's
+    throw Error("bodies: 2^31 bodies have been added to the set: make a new one");
   const std::size_t size = points.size();
   std::vector<double> masses = options.masses;
   if (masses.empty()) masses.assign(size, options.mass / static_cast<double>(std::max<std::size_t>(size, 1)));

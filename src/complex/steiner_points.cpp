@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "complex/cone_point.hpp"
+#include "dartcast/error.hpp"
 #include "mesh/cell_types.hpp"
 
 namespace dartcast {
@@ -108,7 +109,10 @@ class SteinerSolver {
   }
 
   Vertex add_vertex(const std::vector<std::uint32_t>& corners, const std::vector<double>& weights) {
-    const Vertex v(static_cast<std::uint32_t>(mesh_.points.size() + solution_.weights.count()));
+    const std::size_t number = mesh_.points.size() + solution_.weights.count();
+    if (number >= Vertex::invalid_value)
+      throw InvalidMesh("more than 2^32 - 2 vertices, with those that cells need inside: split the mesh");
+    const Vertex v(static_cast<std::uint32_t>(number));
     solution_.weights.add(v, corners, weights);
     return v;
   }

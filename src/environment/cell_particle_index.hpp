@@ -40,25 +40,25 @@ class CellParticleIndex {
   void for_each(Cell c, Visit&& visit) const {
     const auto found = first_.find(c.value);
     if (found == first_.end()) return;
-    for (std::uint32_t e = found->second; e != none; e = entries_[e].next) visit(entries_[e].particle);
+    for (std::size_t e = found->second; e != none; e = entries_[e].next) visit(entries_[e].particle);
   }
 
  private:
-  static constexpr std::uint32_t none = 0xffffffffU;
+  static constexpr std::size_t none = ~std::size_t{0};
   static constexpr std::size_t smallest = 64;  // entries for which a new index is not worth it
 
   struct Entry {
     std::uint32_t particle;
-    std::uint32_t next;
+    std::size_t next;  // there may be more entries than particles
   };
 
   void add(std::uint32_t particle, Cell c) {
     const auto [found, fresh] = first_.try_emplace(c.value, none);
     entries_.push_back({particle, found->second});
-    found->second = static_cast<std::uint32_t>(entries_.size() - 1);
+    found->second = entries_.size() - 1;
   }
 
-  std::unordered_map<std::uint32_t, std::uint32_t> first_;  // entry of a cell
+  std::unordered_map<std::uint32_t, std::size_t> first_;  // entry of a cell
   std::vector<Entry> entries_;
   std::size_t made_with_ = 0;  // entries of the first lists
 };

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "mesh/cell_types.hpp"
+#include "mesh/polyhedron.hpp"
 
 namespace dartcast {
 namespace {
@@ -16,11 +17,13 @@ constexpr std::uint32_t no_corner = 0xffffffffU;
 struct FaceKey {
   std::array<std::uint32_t, 4> corners;  // ascending; `no_corner` where the face has fewer
   std::uint32_t cell;
-  std::uint32_t place;  // from the cell's start in connectivity for a polyhedron; else the face's number
-  std::uint32_t size : 16;
+  std::uint32_t place;         // from the cell's start in connectivity for a polyhedron; else the face's number
+  std::uint32_t size : 16;     // at most polyhedron_limit
   std::uint32_t forward : 1;   // the corner after the smallest is smaller than the one before it; edges: the first is
   std::uint32_t opposite : 2;  // of a quadrangle: which of corners[1..3] lies opposite the smallest
 };
+
+static_assert(polyhedron_limit <= 0xffffU);
 
 FaceKey make_key(std::span<const std::uint32_t> face, std::size_t cell, std::size_t place) {
   FaceKey key{};

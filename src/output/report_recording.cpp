@@ -280,7 +280,8 @@ void ReportRecording::add_frame(const Simulation& simulation, RecordedFrame fram
   frame.time = simulation.time();
   frame.wall_points = wall_points(environment);
   if (frame.wall_points == wall_points_) frame.wall_points.clear();
-  for (const CellFace f : faces_) frame.hits.push_back(static_cast<std::uint32_t>(hits(simulation).of(f)));
+  for (const CellFace f : faces_)
+    frame.hits.push_back(static_cast<std::uint32_t>(std::min<std::uint64_t>(hits(simulation).of(f), UINT32_MAX)));
   frame.solids = recorded_solids(simulation, header_);
   file_.append(chunk_of(frame));
 }

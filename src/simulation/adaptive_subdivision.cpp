@@ -159,10 +159,10 @@ void AdaptiveSubdivision::merge_emptiest(const CellComplex& complex, const Parti
     if (!is_whole(map, i)) continue;
     const Subdivision& s = subdivisions_[i];
     counts_.update(map, particles.states(), ranks_);
-    std::uint32_t held = 0;
+    std::uint64_t held = 0;
     for (const Cell c : cells_around(map, s.part.cell, s.middle)) held += counts_.of(c);
     if (held >= options_.min_particles) continue;
-    const SubdivisionRefusal refusal = {s.part.cell, held, {}};
+    const SubdivisionRefusal refusal = {s.part.cell, static_cast<std::uint32_t>(held), {}};
     if (try_edit(complex, {true, static_cast<std::uint32_t>(i)}, edit, refusal, report)) ++report.merged;
   }
 }

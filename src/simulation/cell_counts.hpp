@@ -1,6 +1,7 @@
 // How many particles each cell holds, over all ranks that share them. Not installed.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -29,8 +30,10 @@ class CellCounts {
     ranks->sum(sums_);
   }
 
+  /// At most 2^32 - 1.
   [[nodiscard]] std::uint32_t of(Cell c) const {
-    return sums_.empty() ? lists_.count(c) : static_cast<std::uint32_t>(sums_[place(c)]);
+    if (sums_.empty()) return lists_.count(c);
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(sums_[place(c)], UINT32_MAX));
   }
 
  private:

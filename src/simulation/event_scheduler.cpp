@@ -44,7 +44,7 @@ EventScheduler::EventScheduler(Simulation& simulation, const Environment& enviro
   const CombinatorialMap& map = environment.map();
   for (const Cell c : map.cells()) {
     if (map.is_free(c)) continue;
-    blocked_.resize(std::max<std::size_t>(blocked_.size(), map.source(c) + 1U));
+    blocked_.resize(std::max<std::size_t>(blocked_.size(), map.source(c) + std::size_t{1}));
     blocked_[map.source(c)] = true;
   }
 }

@@ -213,7 +213,7 @@ void ParticleSystem::count_contacts() {
   last_.contact_sources.reserve(list.contacts.size());
   for (const Contact& c : list.contacts) {
     last_.contact_ids.push_back(ids_[c.particle]);
-    ++contact_counts_[c.particle];
+    contact_counts_[c.particle] += contact_counts_[c.particle] == UINT32_MAX ? 0 : 1;
     const WallHit& wall = list.walls_of(c).front();
     last_.contact_sources.push_back(environment_.map().source(wall.face.cell));
     ++totals_.contacts_by_patch[wall.patch.value];

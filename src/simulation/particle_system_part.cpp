@@ -27,7 +27,7 @@ class ParticleSystem::PartData final : public TravelData {
     out.put(s_.ids_[i]);
     out.put(s_.velocities_[i]);
     out.put(s_.fates_[i]);
-    out.put(s_.contact_counts_[i] + contacts);
+    out.put(contacts + std::min(s_.contact_counts_[i], UINT32_MAX - contacts));
     for (const double value : std::as_const(s_).user_data(i)) out.put(value);
     return out.bytes();
   }

@@ -322,6 +322,16 @@ TEST(Events, CellsThatAreOpenStayOpen) {
 }
 
 // The parts of a cell that was cut follow it.
+// A blocked cell has the largest number that a cell can have in a file.
+TEST(Events, CellsHaveAnyNumberInTheirFile) {
+  if (test::sanitized()) GTEST_SKIP() << "takes half a GB";
+  MeshData mesh = channel();
+  for (std::uint32_t c = 0; c < mesh.cell_count(); ++c) mesh.source.push_back(mesh.free[c] != 0 ? c : ~0U - c);
+  Environment environment(std::move(mesh));
+  const Simulation simulation(environment, falling(0.02));
+  EXPECT_EQ(simulation.event_log().in_opened, 0U);
+}
+
 TEST(Events, PartsOfCutCellsCloseWithTheirRegion) {
   MeshData mesh = valve_mesh(3);
   const std::vector<std::uint32_t> valve = cells_of_region(mesh, "valve");
