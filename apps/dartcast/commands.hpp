@@ -1,9 +1,15 @@
 // The verbs of the command. Each adds itself to the command line, and writes its exit status when it has run.
 #pragma once
 
+#include <string>
+
+#include "dartcast/mesh_data.hpp"
 #include "program.hpp"
 
 namespace dartcast::app {
+
+/// Writes a mesh by the file's ending. A format without a place for the free cells is a note on standard error.
+void write_noting_loss(const MeshData& mesh, const std::string& file);
 
 void add_run(CLI::App& app, int& status);
 void add_report(CLI::App& app, int& status);

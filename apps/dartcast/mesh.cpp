@@ -51,7 +51,7 @@ int mesh(const MeshArguments& a) {
   const MeshFile made = mesh_surfaces(scene, {{}, a.max_memory, false, {}});
   fmt::print("{}", report_text(made.report));
   if (!made.report.valid()) return failed;
-  write_mesh(made.mesh, a.out);
+  write_noting_loss(made.mesh, a.out);
   fmt::print("{}\n", a.out);
   return done;
 }

@@ -11,6 +11,7 @@
 #include "dartcast/mesh_files.hpp"
 #include "dartcast/run.hpp"
 #include "dartcast/scene_file.hpp"
+#include "formats/format_table.hpp"
 #include "max_memory.hpp"
 #include "output/info.hpp"
 #include "output/mesh_report_text.hpp"
@@ -38,7 +39,7 @@ int info(const std::string& path, bool json, const ReadOptions& options) {
 }
 
 int convert(const std::string& in, const std::string& out, const ReadOptions& options) {
-  write_mesh(read_valid_mesh(in, options).mesh, out);
+  write_noting_loss(read_valid_mesh(in, options).mesh, out);
   return done;
 }
 
@@ -48,6 +49,15 @@ void add_read_options(CLI::App& verb, ReadOptions& options) {
 }
 
 }  // namespace
+
+void write_noting_loss(const MeshData& mesh, const std::string& file) {
+  write_mesh(mesh, file);
+  if (!mesh.free.empty() && !mesh_format_of(file)->arrays)
+    fmt::print(stderr,
+               "dartcast: {}: this format has no place for which cells are free: give scenes the key free, or write "
+               ".vtu\n",
+               file);
+}
 
 void add_check(CLI::App& app, int& status) {
   const auto mesh = std::make_shared<std::string>();

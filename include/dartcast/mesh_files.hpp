@@ -48,9 +48,10 @@ struct MeshFile {
   MeshReport report;
 };
 
-/// Reads a mesh by the file's ending and content, and checks and repairs it: .vtu and .vtk (legacy);
+/// Reads a mesh by the file's ending and content, and checks and repairs it: .vtu, .pvtu and .vtk (legacy);
 /// .msh, .msh2, .msh4 (Gmsh 1, 2 and 4); .mesh and .meshb (Medit); .node or .ele, with the other beside it
 /// (TetGen). Or the folder of an OpenFOAM case (formats/openfoam.hpp) or of SimVascular (formats/vtp_surface.hpp).
+/// The cell array `free` of a .vtu or .vtk file becomes MeshData::free where write_mesh() has written it.
 /// Nothing in the file makes this throw: a file that cannot be read has a defect of kind "file" in the report, with line
 /// or byte. Cost: a few times the file's size in memory.
 MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
@@ -101,7 +102,7 @@ MeshFile mesh_surfaces(const SurfaceScene& scene, const ReadOptions& options = {
 /// Writes a mesh in the format of the path's ending: .vtu, .vtk (legacy), .msh or .msh2 (Gmsh 2.2 ASCII), .msh4
 /// (Gmsh 4.1 ASCII), .mesh (Medit). read_mesh() reads the same cells, points bit by bit, regions and patches back. Data
 /// without a place in the format are left out: arrays and `free` outside VTK's formats; names of regions and patches in
-/// .vtk and .mesh. The bytes go to a file beside the path, with ".part" in its name. When it is whole it takes the
+/// .mesh. The bytes go to a file beside the path, with ".part" in its name. When it is whole it takes the
 /// path's place; on failure the file at the path is unchanged. Precondition: check_and_repair() found the mesh valid.
 /// Throws InvalidArgument where the ending is none of writable_mesh_endings(), or where .msh or .mesh should hold
 /// polyhedra, or polygons or faces of more than four corners; Error where the file cannot be written.

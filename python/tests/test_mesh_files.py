@@ -26,6 +26,15 @@ def test_a_written_mesh_is_read_back(tmp_path, ending):
     assert len(back.patch_tags) == len(mesh.patch_tags)
 
 
+@pytest.mark.parametrize("ending", ["vtu", "vtk"])
+def test_free_cells_are_read_back(tmp_path, ending):
+    mesh = dartcast.generate_box(cells=[3, 3, 3], blocked_layer=True)
+    assert sum(mesh.free) == 1
+    dartcast.write_mesh(mesh, tmp_path / f"box.{ending}")
+    back, _ = dartcast.read_mesh(tmp_path / f"box.{ending}")
+    assert list(back.free) == list(mesh.free)
+
+
 def test_a_meshb_of_meshio_is_read(tmp_path):
     mesh = dartcast.generate_box(cells=[3, 2, 2], type="tetrahedron")
     path = tmp_path / "box.meshb"

@@ -20,14 +20,15 @@ namespace dartcast {
 /// cell array options.patch_array. Where that is empty, the array `patch` counts, else the array of the regions
 /// (ReadOptions). Names come from arrays of texts, or from the field arrays `region_names` and `patch_names` of
 /// write_vtu(). In a file without cells of three dimensions those of two are the cells, and lines of two points
-/// (poly-lines piece by piece) the faces that patches are made of; points, and otherwise lines, are left out.
+/// (poly-lines piece by piece) the faces that patches are made of; points, and otherwise lines, are left out. The cell
+/// array `free` says which cells are free if the field array free_writer of write_vtu() stands in the file.
 /// `content` is the content of the file, and the path is not used. Throws InvalidMesh.
 ParsedMesh parse_vtu(const std::filesystem::path& path, std::string_view content, const ReadOptions& options = {});
 ParsedMesh parse_legacy_vtk(const std::filesystem::path& path, std::string_view content,
                             const ReadOptions& options = {});
 
-/// Writes legacy .vtk (5.1, binary) so that parse_legacy_vtk() finds the same bits, without the names of regions and
-/// patches. Cell arrays as write_vtu() writes them. Throws Error where the file cannot be written.
+/// Writes legacy .vtk (5.1, binary) so that parse_legacy_vtk() finds the same bits. Cell arrays and texts as write_vtu()
+/// writes them. Throws Error where the file cannot be written.
 void write_legacy_vtk(const MeshData& mesh, const std::filesystem::path& path);
 
 /// The points of a .vtu file alone, for a series of files with the same cells.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <limits>
 #include <numeric>
 #include <set>
@@ -133,15 +134,18 @@ std::vector<XmlArray> cell_data_of(const Mesh& mesh, std::size_t items) {
   return arrays;
 }
 
+void add_texts(const char* array_name, const std::vector<std::string>& texts, std::vector<XmlArray>& to) {
+  if (texts.empty()) return;
+  std::vector<char> characters;  // each text ended by a 0
+  for (const std::string& text : texts)
+    characters.insert(characters.end(), text.c_str(), text.c_str() + std::strlen(text.c_str()) + 1);
+  to.emplace_back(array_name, std::move(characters));
+  to.back().set_tuples(texts.size());
+}
 void add_names(const char* array_name, const std::map<std::int32_t, std::string>& names, std::vector<XmlArray>& to) {
-  if (names.empty()) return;
-  std::vector<char> texts;  // each ended by a 0
-  for (const auto& [tag, name] : names) {
-    fmt::format_to(std::back_inserter(texts), "{} {}", tag, name.c_str());
-    texts.push_back('\0');
-  }
-  to.emplace_back(array_name, std::move(texts));
-  to.back().set_tuples(names.size());
+  std::vector<std::string> texts;
+  for (const auto& [tag, name] : names) texts.push_back(fmt::format("{} {}", tag, name));
+  add_texts(array_name, texts, to);
 }
 
 }  // namespace
@@ -162,6 +166,7 @@ XmlDataSet vtu_data_set(const Mesh& mesh) {
     data.section("PointData").arrays.push_back(padded(a.name, a.values, a.components, points, mesh));
   add_names("region_names", mesh->region_names, data.field);
   add_names("patch_names", mesh->patch_names, data.field);
+  if (!mesh->free.empty()) add_texts(free_writer, {"dartcast"}, data.field);
   return data;
 }
 

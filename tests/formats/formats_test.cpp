@@ -5,9 +5,11 @@
 
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_files.hpp"
+#include "dartcast/scene_file.hpp"
 #include "formats/gmsh.hpp"
 #include "formats/medit.hpp"
 #include "output/mesh_report_text.hpp"
+#include "scene/scene_mesh.hpp"
 #include "support/round_trip.hpp"
 
 namespace dartcast::test::formats_test {
@@ -125,6 +127,33 @@ TEST(Formats, VtuAsciiByHand) {
   EXPECT_EQ(cells_of(file.mesh), (Cells{{CellType::tetrahedron, 0, {0, 1, 2, 3}}}));
   ASSERT_EQ(file.mesh.cell_data.size(), 1U);
   EXPECT_EQ(file.mesh.cell_data[0].values, std::vector<double>{0.5});
+}
+
+TEST(Formats, FreeCellsCountWhereDartcastHasWrittenThem) {
+  const Folder folder;
+  MeshData mesh = sample_mesh();
+  mesh.free = {1, 0, 1, 0};
+  write_mesh(mesh, folder / "own.vtu");
+  const MeshData own = read_valid_mesh(folder / "own.vtu").mesh;
+  EXPECT_EQ(own.free, mesh.free);
+  // An array of that name in another program's file stays an array, also when dartcast copies it.
+  mesh.cell_data.push_back({"free", 1, {1, 0, 1, 0}});
+  mesh.free.clear();
+  for (const std::string name : {"other.vtu", "other.vtk"}) {
+    write_mesh(mesh, folder / name);
+    const MeshData other = read_valid_mesh(folder / name).mesh;
+    EXPECT_TRUE(other.free.empty()) << name;
+    EXPECT_EQ(other.cell_data.at(0).values, mesh.cell_data[0].values) << name;
+  }
+  const auto scene = [&](const std::string& keys) {
+    return load_scene_mesh(
+               parse_scene("[environment]\nmesh = '" + (folder / "own.vtu").string() + "'\n" + keys, "s.toml")
+                   .environment)
+        .mesh.free;
+  };
+  EXPECT_EQ(scene(""), own.free);
+  EXPECT_EQ(scene("free = { region = ['rest'] }\n"), (std::vector<std::uint8_t>{0, 0, 0, 1}));
+  EXPECT_EQ(scene("free = { array = 'free', values = [0] }\n"), (std::vector<std::uint8_t>{0, 1, 0, 1}));
 }
 
 TEST(Formats, VtuBinaryInEitherByteOrder) {

@@ -41,7 +41,6 @@ std::vector<MeshData> meshes() {
   tagged.cell_data.push_back({"depth", 1, std::vector<double>(tagged.cell_count(), 0.25)});
   tagged.point_data.push_back({"flow", 3, std::vector<double>(3 * tagged.points.size(), 0.5)});
   all.push_back(tagged);
-  for (MeshData& m : all) m.free.clear();  // an array in a file, which scenes may name
   return all;
 }
 

@@ -11,6 +11,7 @@
 #include "formats/vtk.hpp"
 #include "formats/vtk/vtk_grid.hpp"
 #include "formats/vtk/vtk_tags.hpp"
+#include "formats/vtu_write.hpp"
 
 namespace dartcast {
 namespace {
@@ -137,6 +138,17 @@ std::vector<double> take_rows(VtkArray& array, const std::vector<std::uint32_t>&
   return std::move(array.values);
 }
 
+/// The cells that are free, by the array `free` of a file that dartcast has written. Other programs' arrays of this name
+/// may mean something else.
+void take_free(const VtkGrid& grid, MeshData& mesh) {
+  const VtkArray* writer = find_array(grid.field, free_writer);
+  if (writer == nullptr || writer->texts != std::vector<std::string>{"dartcast"}) return;
+  for (const DataArray& a : mesh.cell_data) {
+    if (a.name != "free" || a.components != 1) continue;
+    for (const double value : a.values) mesh.free.push_back(value != 0.0 ? 1 : 0);
+  }
+}
+
 /// All must have a value for each of n items.
 void check_items(const std::vector<VtkArray>& arrays, std::size_t n) {
   for (const VtkArray& a : arrays) {
@@ -165,6 +177,7 @@ ParsedMesh mesh_of(VtkGrid grid, std::string format, const ReadOptions& options)
     if (!a.is_text && !(patch_is_ours && a.name == "patch"))
       mesh.cell_data.push_back({std::move(a.name), a.components, take_rows(a, places.cells)});
   }
+  take_free(grid, mesh);
   const bool anything = !mesh.types.empty() || parsed.second_order.count + parsed.unsupported.count > 0;
   if (!anything) throw InvalidMesh("the file has no cells");
   mesh.source = places.cells;

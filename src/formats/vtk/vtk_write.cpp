@@ -49,7 +49,13 @@ class LegacyText {
   void numbers(const std::vector<T>& values) {
     numbers({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)}, sizeof(T));
   }
-  [[nodiscard]] std::string_view text() const { return text_; }
+  /// A text behind its length: 62 bits in eight bytes, of which the first starts with two zeros.
+  void text(std::string_view characters) {
+    for (unsigned shift = 64; shift > 0; shift -= 8)
+      text_ += static_cast<char>(characters.size() >> (shift - 8) & 0xffU);
+    text_ += characters;
+  }
+  [[nodiscard]] std::string_view all() const { return text_; }
 
  private:
   std::string text_;
@@ -78,6 +84,22 @@ void add_cells(const MeshData& mesh, std::string_view types, LegacyText& to) {
   to.numbers(std::vector<std::int32_t>(types.begin(), types.end()));
 }
 
+/// Field data: texts, each behind its length.
+void add_field(const std::vector<XmlArray>& arrays, LegacyText& to) {
+  if (arrays.empty()) return;
+  to.line("FIELD FieldData {}", arrays.size());
+  for (const XmlArray& a : arrays) {
+    to.line("{} 1 {} string", encoded(a.name()), a.tuples());
+    std::string_view left = a.bytes();
+    for (std::size_t i = 0; i < a.tuples(); ++i) {
+      const std::string_view text = left.substr(0, left.find('\0'));
+      to.text(text);
+      left.remove_prefix(text.size() + 1);
+    }
+    to.line("");
+  }
+}
+
 void add_arrays(std::string_view section, std::size_t items, const std::vector<XmlArray>& arrays, LegacyText& to) {
   if (arrays.empty()) return;
   to.line("{} {}", section, items);
@@ -96,12 +118,13 @@ void write_legacy_vtk(const MeshData& mesh, const std::filesystem::path& path) {
   XmlDataSet data = vtu_data_set(std::shared_ptr<const MeshData>(std::shared_ptr<const void>(), &mesh));
   LegacyText to;
   to.line("# vtk DataFile Version 5.1\ndartcast\nBINARY\nDATASET UNSTRUCTURED_GRID");
+  add_field(data.field, to);
   to.line("POINTS {} double", mesh.points.size());
   to.numbers(data.section("Points").arrays.front().bytes(), sizeof(double));
   add_cells(mesh, data.section("Cells").arrays.at(2).bytes(), to);
   add_arrays("CELL_DATA", mesh.cell_count() + mesh.patch_tags.size(), data.section("CellData").arrays, to);
   add_arrays("POINT_DATA", mesh.points.size(), data.section("PointData").arrays, to);
-  const std::string_view text = to.text();
+  const std::string_view text = to.all();
   write_pieces(path, {&text, 1});
 }
 
