@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "commands.hpp"
 #include "dartcast/mesh_files.hpp"
@@ -32,8 +33,12 @@ int info(const std::string& path, bool json, const ReadOptions& options) {
   scene.mesh = std::filesystem::path(path);
   if (std::filesystem::path(path).extension() == ".toml") scene = read_scene(path).environment;
   scene.linearise = scene.linearise || options.linearise;
-  const MeshInfo result =
-      with_mesh_name(scene.mesh, [&] { return mesh_info(load_scene_mesh(scene, options).mesh, path); });
+  const MeshInfo result = with_mesh_name(scene.mesh, [&] {
+    SceneMesh loaded = load_scene_mesh(scene, options);
+    MeshInfo of_mesh = mesh_info(loaded.mesh, path);
+    of_mesh.warnings = std::move(loaded.warnings);
+    return of_mesh;
+  });
   fmt::print("{}{}", json ? info_json(result) : info_text(result), json ? "\n" : "");
   return done;
 }

@@ -77,6 +77,7 @@ inline void add_finding(std::vector<Finding>& list, Finding finding) {
 ///  - non_conforming: cells next to each other without matching faces. Particles meet a wall there;
 ///  - boundary_edges and boundary_points: pinched;
 ///  - patch_faces: faces that are not a cell's face; dropped;
+///  - inner_faces, of check_mesh() alone: patch faces between two free cells, which are no walls;
 ///  - unfinished.
 ///
 /// Refuses a mesh for:

@@ -63,13 +63,16 @@ struct MeshData {
   std::vector<std::int32_t> regions;  ///< tag per cell; empty: all 0
   std::map<std::int32_t, std::string> region_names;
 
-  std::vector<std::uint32_t> patch_faces;        ///< faces in named groups: corners, one face after another
-  std::vector<std::size_t> patch_offsets = {0};  ///< patch faces + 1, into patch_faces
-  std::vector<std::int32_t> patch_tags;          ///< tag per patch face
-  std::vector<std::uint32_t> patch_source;       ///< the face's index in the input file; empty: its own index
-  std::map<std::int32_t, std::string> patch_names;
+  std::vector<std::uint32_t> patch_faces;           ///< faces in named groups: corners, one face after another
+  std::vector<std::size_t> patch_offsets = {0};     ///< patch faces + 1, into patch_faces
+  std::vector<std::int32_t> patch_tags;             ///< tag per patch face
+  std::vector<std::uint32_t> patch_source;          ///< the face's index in the input file; empty: its own index
+  std::map<std::int32_t, std::string> patch_names;  ///< an empty name: no patch
   std::vector<std::int32_t>
       patch_order;  ///< tags, in the order of the patches' numbers; those left out follow, by face
+  /// Tags of patches whose faces are walls although two cells have them, as OpenFOAM's baffles. Where both cells' sides
+  /// are patch faces, each has the corners as its cell has them.
+  std::vector<std::int32_t> baffle_tags;
 
   std::vector<std::uint8_t> free;  ///< 1 free, 0 blocked, per cell; empty: all free
 

@@ -105,7 +105,7 @@ MeshFile mesh_surfaces(const SurfaceScene& scene, const ReadOptions& options = {
 /// .mesh. The bytes go to a file beside the path, with ".part" in its name. When it is whole it takes the
 /// path's place; on failure the file at the path is unchanged. Precondition: check_and_repair() found the mesh valid.
 /// Throws InvalidArgument where the ending is none of writable_mesh_endings(), or where .msh or .mesh should hold
-/// polyhedra, or polygons or faces of more than four corners; Error where the file cannot be written.
+/// polyhedra, polygons or faces of more than four corners, or baffles; Error where the file cannot be written.
 void write_mesh(const MeshData& mesh, const std::filesystem::path& path);
 
 // Meshes in pieces, for ranks.

@@ -49,7 +49,8 @@ struct Summary {
   std::size_t vertices = 0;
   std::size_t wall_faces = 0;
   std::size_t bytes = 0;
-  Finding skipped;  ///< bad cells that were left out
+  Finding skipped;                ///< bad cells that were left out
+  std::vector<Finding> warnings;  ///< LoadedScene::warnings
 
   SimulationTotals totals;
   std::uint64_t alive = 0;

@@ -23,6 +23,8 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& path);
 struct LoadedScene {
   Scene scene;      ///< names no file but frames to read later: a Simulation can be made of it
   Finding skipped;  ///< bad cells that were left out, where the scene wants that
+  /// Of the mesh, about its walls: faces of cyclic patches (walls here), and of named groups between two free cells (none).
+  std::vector<Finding> warnings;
 };
 
 /// Reads the files that a scene names: its mesh, positions, surfaces of bodies. It reads the first of the deformation's

@@ -74,6 +74,7 @@ void add_arrays(py::class_<MeshData, std::shared_ptr<MeshData>>& c) {
   add_array(c, "patch_tags", &MeshData::patch_tags);
   add_array(c, "patch_source", &MeshData::patch_source);
   add_array(c, "patch_order", &MeshData::patch_order);
+  add_array(c, "baffle_tags", &MeshData::baffle_tags);
   c.def_property(
       "free", [](const MeshData& m) { return read_only(array_of(std::span<const std::uint8_t>(m.free))); },
       [](MeshData& m, const py::object& x) {
@@ -177,10 +178,10 @@ void add_methods(py::class_<MeshData, std::shared_ptr<MeshData>>& c) {
 }
 
 // Attributes in the order of a pickle.
-constexpr std::array<const char*, 16> pickled = {"points",        "types",      "offsets",      "connectivity",
-                                                 "source",        "regions",    "region_names", "patch_faces",
-                                                 "patch_offsets", "patch_tags", "patch_source", "patch_names",
-                                                 "patch_order",   "free",       "point_data",   "cell_data"};
+constexpr std::array<const char*, 17> pickled = {
+    "points",       "types",       "offsets",       "connectivity", "source",       "regions",
+    "region_names", "patch_faces", "patch_offsets", "patch_tags",   "patch_source", "patch_names",
+    "patch_order",  "baffle_tags", "free",          "point_data",   "cell_data"};
 
 py::tuple state_of(const py::object& mesh) {
   py::tuple state(pickled.size());

@@ -107,6 +107,7 @@ void bind_summary(py::module_& m) {
       .field("wall_faces", &Summary::wall_faces)
       .field("bytes", &Summary::bytes)
       .field("skipped", &Summary::skipped)
+      .field("warnings", &Summary::warnings)
       .field("totals", &Summary::totals)
       .field("alive", &Summary::alive)
       .field("held", &Summary::held)

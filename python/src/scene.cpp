@@ -211,6 +211,7 @@ void bind_files(py::module_& m) {
   Record<LoadedScene>(m, "LoadedScene")
       .field("scene", &LoadedScene::scene)
       .field("skipped", &LoadedScene::skipped)
+      .field("warnings", &LoadedScene::warnings)
       .finish();
   m.def(
       "load_scene_files",

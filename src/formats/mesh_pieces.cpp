@@ -21,6 +21,7 @@
 #include "formats/format_table.hpp"
 #include "formats/vtu_write.hpp"
 #include "formats/xml_pieces.hpp"
+#include "mesh/baffles.hpp"
 #include "parts/merged_parts.hpp"
 #include "parts/part_cutter.hpp"
 #include "parts/part_of_rank.hpp"
@@ -44,15 +45,17 @@ void number_patches(MeshData& mesh) {
     if (std::find(order.begin(), order.end(), tag) == order.end()) order.push_back(tag);
   }
   std::map<std::int32_t, std::int32_t> number;
-  std::map<std::string, std::int32_t> of_name;
+  std::map<std::pair<std::string, bool>, std::int32_t> of_name;  // and whether they are baffles
   std::map<std::int32_t, std::string> names;
   for (const std::int32_t tag : order) {
     const auto named = mesh.patch_names.find(tag);
     const std::string name = named != mesh.patch_names.end() ? named->second : std::to_string(tag);
-    number[tag] = of_name.try_emplace(name, static_cast<std::int32_t>(of_name.size()) + 1).first->second;
+    number[tag] =
+        of_name.try_emplace({name, is_baffle(mesh, tag)}, static_cast<std::int32_t>(of_name.size()) + 1).first->second;
     names[number[tag]] = name;
   }
   for (std::int32_t& tag : mesh.patch_tags) tag = number[tag];
+  for (std::int32_t& tag : mesh.baffle_tags) tag = number[tag];
   mesh.patch_names = std::move(names);
   mesh.patch_order.clear();
 }
@@ -154,7 +157,7 @@ void check_like(const MeshPart& part, const MeshPart& first, const std::filesyst
   const MeshData& a = part.mesh;
   const MeshData& b = first.mesh;
   if (!same(a.point_data, b.point_data) || !same(a.cell_data, b.cell_data) || a.patch_names != b.patch_names ||
-      a.regions.empty() != b.regions.empty() || a.free.empty() != b.free.empty())
+      a.baffle_tags != b.baffle_tags || a.regions.empty() != b.regions.empty() || a.free.empty() != b.free.empty())
     throw InvalidMesh(fmt::format("{}: the piece has other arrays or patches than the first one", path.string()));
 }
 

@@ -166,6 +166,9 @@ XmlDataSet vtu_data_set(const Mesh& mesh) {
     data.section("PointData").arrays.push_back(padded(a.name, a.values, a.components, points, mesh));
   add_names("region_names", mesh->region_names, data.field);
   add_names("patch_names", mesh->patch_names, data.field);
+  std::vector<std::string> baffles;
+  for (const std::int32_t tag : mesh->baffle_tags) baffles.push_back(std::to_string(tag));
+  add_texts(baffle_patches, baffles, data.field);
   if (!mesh->free.empty()) add_texts(free_writer, {"dartcast"}, data.field);
   return data;
 }

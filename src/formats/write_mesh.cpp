@@ -53,9 +53,12 @@ void write_beside(const fs::path& path, Write&& write) {
   }
 }
 
-/// Throws InvalidArgument where the format has no place for a cell or a face.
+/// Throws InvalidArgument where the format has no place for a cell, a face or a baffle.
 void check_cells(const MeshData& mesh, const MeshFormat& format) {
   if (format.polyhedra) return;
+  if (!mesh.baffle_tags.empty())
+    throw InvalidArgument(
+        fmt::format("{}'s format cannot hold baffles, walls between two cells; write .vtu", format.name));
   const auto check_face = [&](std::size_t corners) {
     if (corners > 4)
       throw InvalidArgument(

@@ -5,6 +5,7 @@
 #include <array>
 #include <numeric>
 
+#include "mesh/baffles.hpp"
 #include "mesh/cell_types.hpp"
 #include "mesh/polyhedron.hpp"
 
@@ -133,8 +134,9 @@ std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
 
 }  // namespace
 
-FaceMatch match_faces(const MeshData& mesh) {
+FaceMatch match_faces(const MeshData& mesh, bool with_baffles) {
   FaceMatch out;
+  const Baffles baffles(mesh);
   Buckets buckets = fill_buckets(mesh);
   std::vector<std::uint32_t> parent(mesh.cell_count());
   std::iota(parent.begin(), parent.end(), 0U);
@@ -147,12 +149,15 @@ FaceMatch match_faces(const MeshData& mesh) {
     parent[b] = a;
     --out.parts;
   };
+  const auto add_boundary = [&](const FaceKey& key) {
+    const auto corners = corners_of(mesh, key);
+    out.boundary.corners.insert(out.boundary.corners.end(), corners.begin(), corners.end());
+    out.boundary.offsets.push_back(out.boundary.corners.size());
+    out.boundary.cells.push_back(key.cell);
+  };
   const auto take_group = [&](std::span<const FaceKey> group) {
     if (group.size() == 1) {
-      const auto corners = corners_of(mesh, group[0]);
-      out.boundary.corners.insert(out.boundary.corners.end(), corners.begin(), corners.end());
-      out.boundary.offsets.push_back(out.boundary.corners.size());
-      out.boundary.cells.push_back(group[0].cell);
+      add_boundary(group[0]);
     } else if (group.size() > 2) {
       out.crowded.push_back(group[0].cell);
     } else {
@@ -162,6 +167,10 @@ FaceMatch match_faces(const MeshData& mesh) {
         return;
       }
       if (how == FaceUse::twisted) out.twisted.push_back(group[0].cell);
+      if (baffles.contains(corners_of(mesh, group[0]))) {
+        for (std::size_t side = 0; with_baffles && side < 2; ++side) add_boundary(group[side]);
+        return;
+      }
     }
     for (const FaceKey& key : group) unite(group[0].cell, key.cell);
   };

@@ -33,8 +33,9 @@ struct FaceMatch {
   std::vector<std::uint32_t> part;     ///< per cell: one cell of its group, the same for all of them
 };
 
-/// Matches all faces by their corners. Precondition: connectivity is well formed and no face repeats a corner.
-/// Cost: linear in the number of faces, apart from a sort of the faces around each point; 28 bytes a face.
-FaceMatch match_faces(const MeshData& mesh);
+/// Matches all faces by their corners. Baffles (MeshData::baffle_tags) do not connect cells; `with_baffles`: both their
+/// sides are on the boundary. Precondition: connectivity is well formed and no face repeats a corner. Cost: linear in the
+/// number of faces, apart from a sort of the faces around each point; 28 bytes a face.
+FaceMatch match_faces(const MeshData& mesh, bool with_baffles = false);
 
 }  // namespace dartcast

@@ -16,6 +16,7 @@
 #include "base/vec3_parts.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_selection.hpp"
+#include "mesh/baffles.hpp"
 #include "mesh/faces.hpp"
 
 namespace dartcast {
@@ -44,6 +45,10 @@ MeshData free_cells(const MeshData& mesh) {
     if (!mesh.free.empty() && mesh.free[c] == 0) continue;
     out.add_cell(mesh.types[c], mesh.cell(c));
     out.source.push_back(mesh.source.empty() ? static_cast<std::uint32_t>(c) : mesh.source[c]);
+  }
+  out.baffle_tags = mesh.baffle_tags;
+  for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) {
+    if (is_baffle(mesh, mesh.patch_tags[f])) out.add_patch_face(mesh.patch_face(f), mesh.patch_tags[f]);
   }
   return out;
 }
@@ -128,6 +133,9 @@ void select_patches(MeshData& mesh, std::span<const std::string> names) {
     }
     kept.insert(found->second.begin(), found->second.end());
   }
+  for (const std::int32_t tag : mesh.baffle_tags) {
+    if (kept.insert(tag).second) mesh.patch_names[tag] = "";
+  }
   std::erase_if(mesh.patch_order, [&](std::int32_t tag) { return kept.count(tag) == 0; });
   const MeshData all = take_patch_faces(mesh);
   for (std::size_t f = 0; f < all.patch_tags.size(); ++f) {
@@ -139,7 +147,7 @@ void select_patches(MeshData& mesh, std::span<const std::string> names) {
 
 void divide_walls(MeshData& mesh, double degrees) {
   const MeshData free = free_cells(mesh);
-  const BoundaryFaces walls = match_faces(free).boundary;
+  const BoundaryFaces walls = match_faces(free, true).boundary;
   SmoothParts parts(free, walls, degrees);
   std::vector<std::uint32_t> order(walls.size());
   std::iota(order.begin(), order.end(), 0U);
@@ -153,11 +161,13 @@ void divide_walls(MeshData& mesh, double degrees) {
   take_patch_faces(mesh);
   mesh.patch_order.clear();
   mesh.patch_names.clear();
+  mesh.baffle_tags.clear();
   std::map<std::uint32_t, std::int32_t> tags;
   for (const std::uint32_t w : order) {
     const auto [found, fresh] = tags.try_emplace(parts.root(w), static_cast<std::int32_t>(tags.size() + 1));
     if (fresh) mesh.patch_names[found->second] = fmt::format("patch{}", found->second);
     mesh.add_patch_face(walls.face(w), found->second);
+    if (fresh && !free.baffle_tags.empty()) mesh.baffle_tags.push_back(found->second);
   }
 }
 

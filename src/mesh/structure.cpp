@@ -270,7 +270,8 @@ std::vector<std::uint32_t> drop_unused_points(MeshData& mesh, MeshReport& report
   return old;
 }
 
-void drop_stray_patch_faces(MeshData& mesh, MeshReport& report) {
+void for_each_patch_face_of_cells(const MeshData& mesh,
+                                  const std::function<void(std::size_t face, std::size_t cell)>& visit) {
   struct Key {
     std::vector<std::uint32_t> corners;
     std::size_t face;
@@ -284,16 +285,20 @@ void drop_stray_patch_faces(MeshData& mesh, MeshReport& report) {
   }
   if (keys.empty()) return;
   std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) { return a.corners < b.corners; });
-  std::vector<bool> keep(keys.size(), false);
   for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
     for_each_face(mesh, c, [&](std::span<const std::uint32_t> face) {
       if (!starts[*std::min_element(face.begin(), face.end())]) return;
       const auto corners = sorted_face(face);
       auto at = std::lower_bound(keys.begin(), keys.end(), corners,
                                  [](const Key& key, const auto& wanted) { return key.corners < wanted; });
-      for (; at != keys.end() && at->corners == corners && !keep[at->face]; ++at) keep[at->face] = true;
+      for (; at != keys.end() && at->corners == corners; ++at) visit(at->face, c);
     });
   }
+}
+
+void drop_stray_patch_faces(MeshData& mesh, MeshReport& report) {
+  std::vector<bool> keep(mesh.patch_tags.size(), false);
+  for_each_patch_face_of_cells(mesh, [&](std::size_t face, std::size_t /*cell*/) { keep[face] = true; });
   drop_patch_faces(mesh, keep, report);
 }
 

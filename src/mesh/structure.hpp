@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "dartcast/mesh_check.hpp"
@@ -20,6 +21,10 @@ void check_structure(const MeshData& mesh, MeshReport& report);
 /// Drops points that no cell uses, with patch faces that name them and the values of point_data. Returns the index that
 /// each point that is left had before. Precondition: the two checks above found no defect.
 std::vector<std::uint32_t> drop_unused_points(MeshData& mesh, MeshReport& report);
+
+/// Calls visit(patch face, cell) for each cell that has a patch face among its faces.
+void for_each_patch_face_of_cells(const MeshData& mesh,
+                                  const std::function<void(std::size_t face, std::size_t cell)>& visit);
 
 /// Drops patch faces that are no face of any cell.
 void drop_stray_patch_faces(MeshData& mesh, MeshReport& report);

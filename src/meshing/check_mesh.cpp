@@ -5,6 +5,7 @@
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_files.hpp"
 #include "formats/skip_in_file.hpp"
+#include "mesh/patch_walls.hpp"
 #include "meshing/closed_surfaces.hpp"
 
 namespace dartcast {
@@ -39,6 +40,7 @@ MeshFile check_mesh(const std::filesystem::path& path, Threads threads, const Re
   MeshFile file = read_mesh(path, options);
   if (without_bad_cells) skip_bad_cells(file, threads);
   if (!file.report.valid()) return file;
+  add_finding(file.report.warnings, inner_patch_faces(file.mesh));
   try {
     add_finding(file.report.defects, indivisible_cells(file.mesh, threads));
   } catch (const InvalidMesh& e) {

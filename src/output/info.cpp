@@ -168,6 +168,8 @@ std::string info_json(const MeshInfo& i) {
                                  {"bytes", i.bytes},
                                  {"point_arrays", arrays_json(i.point_arrays)},
                                  {"cell_arrays", arrays_json(i.cell_arrays)}};
+  for (const Finding& f : i.warnings)
+    json["warnings"].push_back({{"kind", f.kind}, {"count", f.count}, {"message", f.message}});
   if (i.bytes > 0 && i.cell_count() > 0)
     json["bytes_per_cell"] = static_cast<double>(i.bytes) / static_cast<double>(i.cell_count());
   return json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace);
@@ -188,6 +190,7 @@ std::string info_text(const MeshInfo& i) {
                              i.high.z);
   out += fmt::format("{} shapes, {} simplices, {} interior points\n", i.shapes, i.simplices, i.steiner_points);
   out += arrays_text("point", i.point_arrays) + arrays_text("cell", i.cell_arrays);
+  for (const Finding& warning : i.warnings) out += fmt::format("warning: {} {}\n", warning.count, warning.message);
   const double per_cell = static_cast<double>(i.bytes) / static_cast<double>(std::max<std::size_t>(1, i.cell_count()));
   return out + fmt::format("memory: {} bytes, {:.1f} per cell\n", i.bytes, per_cell);
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/parallel.hpp"
+#include "dartcast/mesh_check.hpp"
 #include "dartcast/mesh_data.hpp"
 
 namespace dartcast {
@@ -44,6 +45,7 @@ struct MeshInfo {
   std::size_t bytes = 0;           ///< of the map, its positions and tables
   std::vector<ArrayInfo> point_arrays;
   std::vector<ArrayInfo> cell_arrays;
+  std::vector<Finding> warnings;  ///< LoadedScene::warnings
 
   [[nodiscard]] std::size_t cell_count() const;
 };

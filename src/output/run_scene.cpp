@@ -198,6 +198,7 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
   if (!options.folder.empty()) read.kept_mesh = options.folder / kept_mesh_name;
   LoadedScene loaded = loaded_scene(scene_to_run(scene, options), read, options);
   summary.skipped = std::move(loaded.skipped);
+  summary.warnings = std::move(loaded.warnings);
   const std::uint64_t steps = options.steps.value_or(scene.motion.steps);
   RunOutput output(loaded.scene, options, summary);
   output.find_checkpoint(steps);

@@ -205,6 +205,8 @@ std::string summary_json(const Summary& s) {
                  {"held", s.held},
                  {"lost", s.lost}}}};
   if (s.skipped.count > 0) json["environment"]["bad_cells"] = {{"count", s.skipped.count}, {"first", s.skipped.first}};
+  for (const Finding& f : s.warnings)
+    json["environment"]["warnings"].push_back({{"kind", f.kind}, {"count", f.count}, {"message", f.message}});
   if (s.surgery) {
     json["particles"]["in_opened"] = s.surgery->in_opened;
     json["events"] = events(*s.surgery);

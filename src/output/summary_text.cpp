@@ -51,6 +51,8 @@ void add_scene(SummaryTable& table, const Summary& s) {
   if (s.skipped.count > 0)
     table.add("environment", fmt::format("{} {}; the first: {}", grouped(s.skipped.count), s.skipped.message,
                                          fmt::join(s.skipped.first, ", ")));
+  for (const Finding& warning : s.warnings)
+    table.add("environment", fmt::format("warning: {} {}", grouped(warning.count), warning.message));
 }
 
 void add_particle_rows(SummaryTable& table, const Summary& s) {

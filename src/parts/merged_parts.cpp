@@ -11,6 +11,7 @@
 
 #include "base/bytes.hpp"
 #include "dartcast/error.hpp"
+#include "mesh/baffles.hpp"
 #include "mesh/faces.hpp"
 #include "parts/part_cutter.hpp"
 
@@ -139,7 +140,8 @@ class Merger {
   void add_patches() {
     MeshData& mesh = out_.mesh;
     const std::int32_t unknown = unknown_tag_of(from_.front().mesh);
-    std::set<std::pair<std::vector<std::uint32_t>, std::int32_t>> known;
+    mesh.baffle_tags = from_.front().mesh.baffle_tags;
+    std::set<std::pair<std::vector<std::uint32_t>, std::int32_t>> known;  // of baffles each side
     std::set<std::vector<std::uint32_t>> unknown_faces;
     for (std::size_t k = 0; k < from_.size(); ++k) {
       for (std::size_t f = 0; f < from_[k].mesh.patch_tags.size(); ++f) {
@@ -149,7 +151,7 @@ class Merger {
         const std::int32_t tag = from_[k].mesh.patch_tags[f];
         if (tag == unknown)
           unknown_faces.insert(std::move(sorted));
-        else if (known.emplace(std::move(sorted), tag).second)
+        else if (known.emplace(is_baffle(mesh, tag) ? corners : std::move(sorted), tag).second)
           mesh.add_patch_face(corners, tag);
       }
     }
@@ -238,7 +240,7 @@ void all_fields(Archive& a, Part& part) {
   auto& m = part.mesh;
   in_turn(a, part.part, part.parts, part.points, part.cells, part.owners, part.handles);
   in_turn(a, m.points, m.types, m.offsets, m.connectivity, m.source, m.regions, m.region_names);
-  in_turn(a, m.patch_faces, m.patch_offsets, m.patch_tags, m.patch_names, m.patch_order);
+  in_turn(a, m.patch_faces, m.patch_offsets, m.patch_tags, m.patch_names, m.patch_order, m.baffle_tags);
   in_turn(a, m.free, m.point_data, m.cell_data);
 }
 

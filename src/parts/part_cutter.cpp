@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "dartcast/combinatorial_map.hpp"
+#include "mesh/baffles.hpp"
 
 namespace dartcast {
 
@@ -192,16 +193,18 @@ void PartCutter::copy_patches(MeshPart& out) const {
   out.mesh.patch_names = mesh_.patch_names;
   out.mesh.patch_names[unknown_tag_] = unknown_patch;
   out.mesh.patch_order = patch_order_;
+  out.mesh.baffle_tags = mesh_.baffle_tags;
 }
 
 // Those on the boundary of the part that are not on the boundary of the mesh, or have a cell behind them there.
 void PartCutter::name_unknown_faces(MeshPart& out) const {
   const BoundaryFaces around = match_faces(out.mesh).boundary;
+  const Baffles baffles(out.mesh);
   std::vector<std::uint32_t> corners;
   for (std::size_t f = 0; f < around.size(); ++f) {
     corners.clear();
     for (const std::uint32_t p : around.face(f)) corners.push_back(out.points[p]);
-    if (!is_outer(out.cells[around.cells[f]], sorted_corners(corners)))
+    if (!baffles.contains(around.face(f)) && !is_outer(out.cells[around.cells[f]], sorted_corners(corners)))
       out.mesh.add_patch_face(around.face(f), unknown_tag_);
   }
 }

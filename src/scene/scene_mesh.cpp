@@ -9,6 +9,7 @@
 #include "dartcast/scene_file.hpp"
 #include "formats/checked_file.hpp"
 #include "formats/skip_in_file.hpp"
+#include "mesh/patch_walls.hpp"
 #include "scene/file_series.hpp"
 #include "scene/frame_files.hpp"
 #include "scene/kept_mesh.hpp"
@@ -48,10 +49,13 @@ SceneMesh load_scene_mesh(const EnvironmentScene& scene, const ReadOptions& opti
   scale_points(file, scene.scale);
   if (scene.skip_bad_cells) skip_bad_cells(file, threads);
   file = valid_file(std::move(file));
-  SceneMesh result{std::move(file.mesh), std::move(file.report), {}};
-  const std::vector<Finding>& warnings = result.report.warnings;
-  if (!warnings.empty() && warnings.front().kind == "bad_cells") result.skipped = warnings.front();
+  SceneMesh result{std::move(file.mesh), std::move(file.report), {}, {}};
+  for (const Finding& warning : result.report.warnings) {
+    if (warning.kind == "bad_cells") result.skipped = warning;
+    if (warning.kind == "cyclic") result.warnings.push_back(warning);
+  }
   with_mesh_name(scene.mesh, [&] { select_cells_and_patches(result.mesh, scene); });
+  add_finding(result.warnings, inner_patch_faces(result.mesh));
   return result;
 }
 
@@ -86,10 +90,11 @@ void load_all_but_mesh(Scene& scene, const MeshData* mesh, const ReadOptions& op
 
 LoadedScene load_scene_files(Scene scene, const ReadOptions& options, Threads threads) {
   SceneMesh loaded = load_scene_mesh(scene.environment, options, threads);
+  with_mesh_name(scene.environment.mesh, [&] { check_patches(scene, loaded.mesh); });
   load_all_but_mesh(scene, &loaded.mesh, options);
   scene.environment = EnvironmentScene{};
   scene.environment.mesh = std::move(loaded.mesh);
-  return {std::move(scene), std::move(loaded.skipped)};
+  return {std::move(scene), std::move(loaded.skipped), std::move(loaded.warnings)};
 }
 
 }  // namespace dartcast

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "base/parallel.hpp"
 #include "dartcast/error.hpp"
@@ -16,9 +17,10 @@
 namespace dartcast {
 
 struct SceneMesh {
-  MeshData mesh;      ///< checked and repaired, with `free` and patches as the scene says
-  MeshReport report;  ///< of a file: repairs and warnings; of a generator: counts alone
-  Finding skipped;    ///< bad cells that were left out, where the scene wants that
+  MeshData mesh;                  ///< checked and repaired, with `free` and patches as the scene says
+  MeshReport report;              ///< of a file: repairs and warnings; of a generator: counts alone
+  Finding skipped;                ///< bad cells that were left out, where the scene wants that
+  std::vector<Finding> warnings;  ///< as of LoadedScene
 };
 
 /// Calls make(). Where make() throws InvalidMesh, puts the mesh file's name before the message.

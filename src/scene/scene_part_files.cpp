@@ -13,6 +13,7 @@
 #include "parts/merged_parts.hpp"
 #include "parts/part_cutter.hpp"
 #include "scene/scene_mesh.hpp"
+#include "simulation/scene_environment.hpp"
 #include "simulation/scene_part.hpp"
 
 namespace dartcast {
@@ -83,12 +84,13 @@ void finish_piece(MeshData& mesh, const EnvironmentScene& scene, Ranks& ranks) {
 }
 
 // The first rank cuts the whole, and keeps its own part.
-MeshPart sent_part(const EnvironmentScene& scene, Ranks& ranks, const ReadOptions& options, Threads threads,
-                   Finding& skipped) {
+MeshPart sent_part(const Scene& scene, Ranks& ranks, const ReadOptions& options, Threads threads, LoadedScene& loaded) {
   std::vector<std::string> parts(ranks.size());
   if (ranks.rank() == 0) {
-    SceneMesh whole = load_scene_mesh(scene, options, threads);
-    skipped = std::move(whole.skipped);
+    SceneMesh whole = load_scene_mesh(scene.environment, options, threads);
+    with_mesh_name(scene.environment.mesh, [&] { check_patches(scene, whole.mesh); });
+    loaded.skipped = std::move(whole.skipped);
+    loaded.warnings = std::move(whole.warnings);
     const std::vector<std::uint32_t> owners = partition(whole.mesh, ranks.size());
     PartCutter cutter(whole.mesh, owners, ranks.size());
     for (std::uint32_t p = 0; p < ranks.size(); ++p) parts[p] = packed(cutter.cut(cutter.cells_of(p), p));
@@ -117,7 +119,7 @@ LoadedScene load_scene_part(Scene scene, Ranks& ranks, const ReadOptions& option
     part = read_mesh_part(*path, ranks.size(), ranks.rank(), options);
     finish_piece(part.mesh, e, ranks);
   } else {
-    part = sent_part(e, ranks, options, threads, loaded.skipped);
+    part = sent_part(scene, ranks, options, threads, loaded);
   }
   load_all_but_mesh(scene, nullptr, options);
   scene.environment = EnvironmentScene{};

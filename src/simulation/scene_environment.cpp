@@ -10,6 +10,7 @@
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_check.hpp"
 #include "dartcast/mesh_selection.hpp"
+#include "mesh/patch_walls.hpp"
 #include "parts/part_of_rank.hpp"
 
 namespace dartcast {
@@ -68,6 +69,17 @@ void select_cells_and_patches(MeshData& mesh, const EnvironmentScene& scene) {
   if (const auto* by_value = std::get_if<FreeValues>(&scene.free)) select_free_by_value(mesh, *by_value);
   if (const auto* names = std::get_if<std::vector<std::string>>(&scene.patches)) select_patches(mesh, *names);
   if (const auto* angle = std::get_if<PatchAngle>(&scene.patches)) divide_walls(mesh, angle->degrees);
+}
+
+void check_patches(const Scene& scene, const MeshData& mesh) {
+  if (!scene.events.empty()) return;
+  std::vector<std::string> named;
+  if (const auto* names = std::get_if<std::vector<std::string>>(&scene.environment.patches)) named = *names;
+  for (const auto& entry : scene.contact.by_patch) named.push_back(entry.first);
+  for (const ParticlesScene& p : scene.particles) {
+    if (const auto* inlet = std::get_if<InletParticles>(&p.source)) named.push_back(inlet->patch);
+  }
+  expect_walls(mesh, named);
 }
 
 MeshData scene_mesh(const EnvironmentScene& scene) {

@@ -18,6 +18,10 @@ MeshData generated_mesh(const MeshSource& source);
 /// is not in the mesh.
 void select_cells_and_patches(MeshData& mesh, const EnvironmentScene& scene);
 
+/// Throws InvalidMesh where a patch that the scene names has no face that is a wall. An event may make one: where the
+/// scene has any, nothing is checked. `mesh`: as select_cells_and_patches() leaves it.
+void check_patches(const Scene& scene, const MeshData& mesh);
+
 /// The mesh with scale, free cells and patches as the scene says. Throws InvalidArgument where something must be read
 /// first, and InvalidMesh.
 MeshData scene_mesh(const EnvironmentScene& scene);

@@ -112,6 +112,7 @@ void Simulation::make(const Scene& scene, Threads threads, Ranks* ranks, Partiti
   const MeshData& mesh = part                          ? part->mesh
                          : is_ready(scene.environment) ? std::get<MeshData>(scene.environment.mesh)
                                                        : made;
+  if (!part) check_patches(scene, mesh);
   auto own = std::make_unique<Environment>(mesh, threads);
   Environment& environment = *own;
   parts_ = std::make_unique<Parts>(*this, std::move(own), environment, options_of(scene, ranks));

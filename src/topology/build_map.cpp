@@ -6,6 +6,7 @@
 
 #include "dartcast/combinatorial_map.hpp"
 #include "dartcast/error.hpp"
+#include "mesh/baffles.hpp"
 #include "mesh/cell_types.hpp"
 #include "topology/cell_form.hpp"
 
@@ -14,7 +15,7 @@ namespace dartcast {
 class MapBuilder {
  public:
   MapBuilder(CombinatorialMap& map, const MeshData& mesh, const SteinerPoints& steiner)
-      : map_(map), mesh_(mesh), steiner_(steiner) {}
+      : map_(map), mesh_(mesh), steiner_(steiner), baffles_(mesh) {}
 
   void build() {
     if (mesh_.dimension() == 2) enter_plane();
@@ -257,6 +258,7 @@ class MapBuilder {
       if (!opposite)
         throw InvalidMesh(describe({f, others[0]}) +
                           " lie on the same side of their common face: one of them is inverted");
+      if (baffles_.contains(face_vertices(f))) continue;
       map_.set_neighbour(f, others[0]);
     }
   }
@@ -307,19 +309,27 @@ class MapBuilder {
     const auto end = entries_.begin() + static_cast<std::ptrdiff_t>(bucket_[*lowest + 1U]);
     auto entry = std::lower_bound(entries_.begin() + static_cast<std::ptrdiff_t>(bucket_[*lowest]), end, ends,
                                   [](const FaceEntry& e, std::uint64_t key) { return e.ends < key; });
+    std::vector<CellFace> found;
     for (; entry != end && entry->ends == ends; ++entry) {
       auto candidate = face_vertices(entry->face);
       std::sort(candidate.begin(), candidate.end());
+      if (candidate == sorted) found.push_back(entry->face);
+    }
+    const bool one_sided = found.size() > 1 && baffles_.contains(corners);
+    for (const CellFace f : found) {
+      const std::vector<std::uint32_t> own = face_vertices(f);
+      if (one_sided && (corners.size() == 2 ? own[0] != corners[0] : own[1] != next)) continue;
       // A face that is listed twice keeps its first patch.
-      if (candidate == sorted && map_.patch(entry->face) == Patch{}) map_.set_patch(entry->face, patch);
+      if (map_.patch(f) == Patch{}) map_.set_patch(f, patch);
     }
   }
 
   CombinatorialMap& map_;
   const MeshData& mesh_;
   const SteinerPoints& steiner_;
+  const Baffles baffles_;
   std::vector<Cell> place_;
-  std::unordered_map<std::string, Patch> patches_;  // by name
+  std::unordered_map<std::string, Patch> patches_ = {{"", Patch{}}};  // by name
   std::vector<std::size_t> bucket_;
   std::vector<FaceEntry> entries_;
 };

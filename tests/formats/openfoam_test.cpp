@@ -6,10 +6,14 @@
 #include <random>
 #include <set>
 
+#include "dartcast/combinatorial_map.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/mesh_files.hpp"
+#include "dartcast/mesh_selection.hpp"
+#include "mesh/baffles.hpp"
 #include "output/mesh_report_text.hpp"
+#include "support/expectations.hpp"
 #include "support/foam_case.hpp"
 #include "support/foam_layer.hpp"
 #include "support/same_mesh.hpp"
@@ -236,6 +240,126 @@ TEST(OpenFoam, PatchTypes) {
     EXPECT_EQ(file.report.warnings[0].count, 1U);
     EXPECT_NE(file.report.warnings[0].message.find("inlet"), std::string::npos);
     EXPECT_EQ(patches_of(file.mesh).count({"inlet", {0, 1, 2, 3}}), 1U);
+  }
+}
+
+// Baffles.
+
+/// A case where some faces inside are two faces of the boundary: the owner's in the patch here, the other in there.
+FoamMesh with_baffles(const FoamMesh& mesh, const std::set<std::size_t>& baffles) {
+  FoamMesh out = mesh;
+  out.faces.clear();
+  out.owner.clear();
+  out.neighbour.clear();
+  out.face_zones.clear();
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    if (baffles.contains(f)) continue;
+    out.faces.push_back(mesh.faces[f]);
+    out.owner.push_back(mesh.owner[f]);
+    if (f < mesh.neighbour.size()) out.neighbour.push_back(mesh.neighbour[f]);
+  }
+  for (const bool here : {true, false}) {
+    for (const std::size_t f : baffles) {
+      out.faces.push_back(mesh.faces[f]);
+      if (!here) std::reverse(out.faces.back().begin(), out.faces.back().end());
+      out.owner.push_back(here ? mesh.owner[f] : mesh.neighbour[f]);
+    }
+    out.patches.push_back({here ? "here" : "there", "wall", baffles.size()});
+  }
+  return out;
+}
+
+/// The walls of the map: their cells and corners, and the names of their patches.
+std::map<std::pair<std::uint32_t, std::set<std::uint32_t>>, std::string> walls_of(const MeshData& mesh) {
+  std::map<std::pair<std::uint32_t, std::set<std::uint32_t>>, std::string> walls;
+  const CombinatorialMap map(mesh);
+  for (const Cell c : map.cells()) {
+    const CellView view = map.view(c);
+    for (std::uint16_t f = 0; f < view.shape().face_count(); ++f) {
+      if (!view.is_wall(f)) continue;
+      std::set<std::uint32_t> corners;
+      for (const std::uint16_t k : view.shape().corners(f)) corners.insert(view.vertex(k).value);
+      walls[{map.source(c), corners}] = map.patch_names()[map.patch({c, f}).value];
+    }
+  }
+  return walls;
+}
+
+template <class Walls>
+std::set<typename Walls::key_type> places_of(const Walls& walls) {
+  std::set<typename Walls::key_type> places;
+  for (const auto& [place, name] : walls) places.insert(place);
+  return places;
+}
+
+/// In files, in pieces, and with other patches the walls are the same.
+void expect_kept(const MeshData& mesh) {
+  const auto walls = walls_of(mesh);
+  const Folder folder;
+  for (const std::string name : {"a.vtu", "a.vtk"}) {
+    write_mesh(mesh, folder / name);
+    EXPECT_EQ(walls_of(read_valid_mesh(folder / name).mesh), walls) << name;
+  }
+  for (const std::string name : {"a.msh", "a.mesh"})
+    expect_parts(error_text([&] { write_mesh(mesh, folder / name); }), {"baffles", ".vtu"});
+  MeshData few = mesh;
+  select_patches(few, std::vector<std::string>{"here"});
+  auto unnamed = walls;
+  for (auto& [place, name] : unnamed) name = name == "here" ? name : "";
+  EXPECT_EQ(walls_of(few), unnamed);
+  MeshData turned = mesh;  // a face of one cell may run in either sense
+  for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) {
+    if (is_baffle(mesh, mesh.patch_tags[f])) continue;
+    turned.baffle_tags.push_back(mesh.patch_tags[f]);
+    std::reverse(turned.patch_faces.begin() + static_cast<std::ptrdiff_t>(mesh.patch_offsets[f]),
+                 turned.patch_faces.begin() + static_cast<std::ptrdiff_t>(mesh.patch_offsets[f + 1]));
+  }
+  EXPECT_EQ(walls_of(turned), walls);
+  MeshData divided = mesh;
+  divide_walls(divided, 30.0);
+  EXPECT_EQ(places_of(walls_of(divided)), places_of(walls));
+  for (const MeshData& whole : {mesh, few}) {
+    if (mesh.dimension() == 2) continue;
+    write_mesh_parts(whole, 3, folder / "a.pvtu");
+    EXPECT_EQ(walls_of(read_valid_mesh(folder / "a.pvtu").mesh), walls_of(whole));
+  }
+}
+
+void expect_baffles(const MeshData& mesh, const std::set<std::size_t>& baffles, const FoamMesh& foam) {
+  SCOPED_TRACE(baffles.size());
+  const MeshFile file = read_foam(with_baffles(foam, baffles));
+  ASSERT_TRUE(file.report.valid()) << report_text(file.report);
+  auto wanted = walls_of(mesh);
+  for (auto& [place, name] : wanted) name = name.empty() ? "walls" : name;
+  for (const std::size_t f : baffles) {
+    std::set<std::uint32_t> corners;
+    for (const std::int64_t p : foam.faces[f]) {
+      if (mesh.dimension() == 3 || p < static_cast<std::int64_t>(mesh.points.size()))
+        corners.insert(static_cast<std::uint32_t>(p));
+    }
+    wanted[{static_cast<std::uint32_t>(foam.owner[f]), corners}] = "here";
+    wanted[{static_cast<std::uint32_t>(foam.neighbour[f]), corners}] = "there";
+  }
+  EXPECT_EQ(walls_of(file.mesh), wanted);
+  expect_kept(file.mesh);
+}
+
+TEST(OpenFoam, BafflesAreWallsOnBothSides) {
+  OctahedraOptions octahedra;
+  octahedra.cells = {2, 2, 2};
+  RectangleOptions rectangle;
+  rectangle.cells = {4, 3};
+  rectangle.mixed = true;
+  const MeshData plane = generate_rectangle(rectangle);
+  std::mt19937 random(5);
+  for (const MeshData& mesh : {box(), generate_octahedra(octahedra), plane}) {
+    const bool flat = mesh.dimension() == 2;
+    const FoamMesh foam = flat ? foam_mesh(layer(mesh, 0.0, 1.0), {{"sides", "empty"}}) : foam_mesh(mesh);
+    std::vector<std::size_t> inside(foam.neighbour.size());
+    std::iota(inside.begin(), inside.end(), 0U);
+    std::shuffle(inside.begin(), inside.end(), random);
+    for (const std::size_t n : {std::size_t{1}, inside.size() / 3})
+      expect_baffles(mesh, {inside.begin(), inside.begin() + static_cast<std::ptrdiff_t>(n)}, foam);
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "dartcast/error.hpp"
 #include "formats/openfoam/poly_cells.hpp"
+#include "mesh/baffles.hpp"
 
 namespace dartcast {
 namespace {
@@ -51,14 +52,8 @@ std::vector<std::int32_t> face_tags(const PolyMesh& mesh, ParsedMesh& parsed) {
   for (std::size_t f = 0; f < tags.size(); ++f) tags[f] = static_cast<std::int32_t>(mesh.patch[f] + 1);  // none: 0
   for (std::size_t z = 0; z < mesh.face_zones.size(); ++z) {
     const PolyZone& zone = mesh.face_zones[z];
-    const auto named = std::find_if(parsed.mesh.patch_names.begin(), parsed.mesh.patch_names.end(),
-                                    [&](const auto& name) { return name.second == zone.name; });
-    auto tag = static_cast<std::int32_t>(mesh.patches.size() + z + 1);
-    if (named != parsed.mesh.patch_names.end()) {
-      tag = named->first;
-    } else {
-      parsed.mesh.patch_names[tag] = zone.name;
-    }
+    const auto tag = static_cast<std::int32_t>(mesh.patches.size() + z + 1);  // also where a patch has the name
+    parsed.mesh.patch_names[tag] = zone.name;
     for (const std::uint32_t f : zone.labels) {
       if (tags[f] == 0) tags[f] = tag;
     }
@@ -106,13 +101,18 @@ void add_zones_and_patches(const PolyMesh& mesh, const CornersOfFace& corners, P
   warn_of_cyclic(mesh, parsed);
   add_regions(mesh, parsed);
   const std::vector<std::int32_t> tags = face_tags(mesh, parsed);
-  for (std::uint32_t f = 0; f < tags.size(); ++f) {
-    if (tags[f] == 0) continue;
-    const auto face = corners(f);
-    if (face.empty()) continue;
-    parsed.mesh.add_patch_face(face, tags[f]);
-    parsed.mesh.patch_source.push_back(f);
-  }
+  const auto add_faces = [&](bool of_boundary) {
+    for (std::uint32_t f = 0; f < tags.size(); ++f) {
+      if (tags[f] == 0 || (mesh.patch[f] != none) != of_boundary) continue;
+      const auto face = corners(f);
+      if (face.empty()) continue;
+      parsed.mesh.add_patch_face(face, tags[f]);
+      parsed.mesh.patch_source.push_back(f);
+    }
+  };
+  add_faces(true);
+  parsed.mesh.baffle_tags = tags_of_coinciding_faces(parsed.mesh);
+  add_faces(false);
 }
 
 }  // namespace dartcast

@@ -102,12 +102,15 @@ ParsedMesh mesh_in_plane(const PolyMesh& mesh, std::vector<std::uint32_t>& kept)
     const std::size_t n = corners.size();
     parsed.mesh.add_cell(n == 3 ? CellType::triangle : (n == 4 ? CellType::quadrilateral : CellType::polygon), corners);
   }
+  // As the owner has it.
   const auto edge = [&](std::uint32_t f) -> std::span<const std::uint32_t> {
     corners.clear();
     for (const std::uint32_t p : mesh.faces[f]) {
       if (number[p] != none) corners.push_back(number[p]);
     }
     const bool side = corners.size() == 2 && mesh.faces[f].size() == 4;
+    if (side && corners[0] == number[mesh.faces[f][0]] && corners[1] == number[mesh.faces[f][3]])
+      std::swap(corners[0], corners[1]);  // from the last to the first
     return side ? std::span<const std::uint32_t>(corners) : std::span<const std::uint32_t>();
   };
   add_zones_and_patches(mesh, edge, parsed);

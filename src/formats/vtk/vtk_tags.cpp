@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "dartcast/error.hpp"
+#include "formats/vtu_write.hpp"
 
 namespace dartcast {
 namespace {
@@ -98,6 +99,12 @@ const VtkArray& array_of_patches(const VtkGrid& grid, const Places& places, cons
 
 bool copy_tags(const VtkGrid& grid, const Places& places, const std::string& patch_array, MeshData& mesh) {
   copy_regions(grid, places, mesh);
+  if (const VtkArray* baffles = find_array(grid.field, baffle_patches)) {
+    for (const std::string& tag : baffles->texts)
+      mesh.baffle_tags.push_back(static_cast<std::int32_t>(std::strtol(tag.c_str(), nullptr, 10)));
+    if (!patch_array.empty() && patch_array != "patch")
+      refuse_patches(grid, patch_array, "the walls of the file's baffles are in the array patch");
+  }
   if (!patch_array.empty()) {
     Tags tags = tags_of(array_of_patches(grid, places, patch_array), places.faces);
     mesh.patch_tags = std::move(tags.values);
