@@ -30,7 +30,8 @@ struct SolidMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// The solid of a surface, closed or open. Each face is a fan from its lowest-numbered corner. Points that no face uses are
+/// The solid of a surface, closed or open. Each face is a fan from its lowest-numbered corner. One that is not convex is
+/// divided by cutting ears off, exactly. Points that no face uses are
 /// left out; the others keep their order. Throws InvalidMesh where check_and_repair_surface() refuses the surface.
 SolidMesh solid_of_surface(const MeshData& surface);
 

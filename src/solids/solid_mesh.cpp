@@ -8,6 +8,7 @@
 #include "dartcast/predicates.hpp"
 #include "dartcast/solids.hpp"
 #include "mesh/faces.hpp"
+#include "surface/ears.hpp"
 #include "surface/triangles.hpp"
 
 namespace dartcast {
@@ -63,7 +64,9 @@ SolidMesh solid_of_cells(const MeshData& mesh) {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   for (std::size_t f = 0; f < boundary.size(); ++f) {
     const auto face = boundary.face(f);
-    for (std::size_t i = 1; i + 1 < face.size(); ++i) triangles.push_back({face[0], face[i], face[i + 1]});
+    std::vector<TriangleCorners> parts = fan_from(face, 0);
+    if (!do_not_overlap(repaired.points, face, parts)) parts = ears(repaired.points, face);
+    triangles.insert(triangles.end(), parts.begin(), parts.end());
   }
   return used_part(repaired.points, std::move(triangles));
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "dartcast/predicates.hpp"
 #include "mesh/cell_types.hpp"
 #include "mesh/structure.hpp"
+#include "surface/ears.hpp"
 #include "surface/surface_warnings.hpp"
 #include "surface/unfold.hpp"
 
@@ -127,6 +129,63 @@ void check_surface_points(const MeshData& mesh, MeshReport& report) {
   add_finding(report.defects, out);
 }
 
+/// The triangles to divide a face into; none: it stays. Faces of which no division is known stay, too.
+std::vector<TriangleCorners> division_of(const MeshData& mesh, std::size_t c) {
+  const auto face = mesh.cell(c);
+  if (face.size() == 3) return {};
+  const auto lowest = static_cast<std::size_t>(std::min_element(face.begin(), face.end()) - face.begin());
+  if (do_not_overlap(mesh.points, face, fan_from(face, lowest))) return {};
+  std::vector<TriangleCorners> triangles = ears(mesh.points, face);
+  if (!do_not_overlap(mesh.points, face, triangles)) triangles.clear();
+  return triangles;
+}
+
+template <class T>
+void take_rows(std::vector<T>& values, std::span<const std::uint32_t> rows, std::size_t components = 1) {
+  if (values.empty()) return;
+  std::vector<T> taken;
+  for (const std::uint32_t row : rows) {
+    const auto from = values.begin() + static_cast<std::ptrdiff_t>(row * components);
+    taken.insert(taken.end(), from, from + static_cast<std::ptrdiff_t>(components));
+  }
+  values = std::move(taken);
+}
+
+void divide_faces(MeshData& mesh, MeshReport& report) {
+  Finding divided{"not_convex", 0, {}, "faces that are not convex; they have been divided into triangles"};
+  std::map<std::uint32_t, std::vector<TriangleCorners>> divisions;
+  for (std::uint32_t c = 0; c < mesh.cell_count(); ++c) {
+    std::vector<TriangleCorners> triangles = division_of(mesh, c);
+    if (triangles.empty()) continue;
+    divided.add(surface_source(mesh, c));
+    divisions[c] = std::move(triangles);
+  }
+  if (divisions.empty()) return;
+  MeshData out;
+  std::vector<std::uint32_t> rows;
+  for (std::uint32_t c = 0; c < mesh.cell_count(); ++c) {
+    const auto division = divisions.find(c);
+    if (division == divisions.end()) {
+      out.add_cell(mesh.types[c], mesh.cell(c));
+    } else {
+      for (const TriangleCorners& t : division->second) out.add_cell(CellType::triangle, t);
+    }
+    rows.resize(out.cell_count(), c);
+  }
+  if (mesh.source.empty()) {
+    mesh.source = rows;
+  } else {
+    take_rows(mesh.source, rows);
+  }
+  mesh.types = std::move(out.types);
+  mesh.offsets = std::move(out.offsets);
+  mesh.connectivity = std::move(out.connectivity);
+  take_rows(mesh.regions, rows);
+  take_rows(mesh.free, rows);
+  for (DataArray& array : mesh.cell_data) take_rows(array.values, rows, array.components);
+  report.repairs.push_back(divided);
+}
+
 void check_areas(const MeshData& mesh, MeshReport& report) {
   Finding flat{"flat", 0, {}, "faces with a triangle without area in their fan: remove them, or move their corners"};
   for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
@@ -150,7 +209,11 @@ MeshReport check_and_repair_surface(MeshData& mesh) {
   report.points = mesh.points.size();
   check_arrays(mesh, report);
   if (!report.valid()) return report;
-  for (const CellType t : mesh.types) ++report.cells[std::string(cell_type_names[static_cast<std::size_t>(t)])];
+  const auto count_cells = [&] {
+    report.cells.clear();
+    for (const CellType t : mesh.types) ++report.cells[std::string(cell_type_names[static_cast<std::size_t>(t)])];
+  };
+  count_cells();
   if (mesh.dimension() != 2) {
     report.defects.push_back({"structure", 1, {0}, "cells of space, not faces of a surface: take the mesh's boundary"});
     return report;
@@ -159,6 +222,8 @@ MeshReport check_and_repair_surface(MeshData& mesh) {
   if (!report.valid()) return report;
   check_surface_points(mesh, report);
   if (!report.valid()) return report;
+  divide_faces(mesh, report);
+  count_cells();
   agree_on_orientation(mesh, report);
   check_areas(mesh, report);
   if (report.valid()) add_surface_warnings(mesh, report);

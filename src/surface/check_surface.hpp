@@ -12,6 +12,8 @@ namespace dartcast {
 ///
 /// Repairs in place:
 ///
+///  - not_convex: faces whose fan overlaps itself, as seen along the axis nearest to their normal, or has a triangle
+///    without area. Triangles take their place (ears()), with the face's index as their source.
 ///  - orientation: faces that ran against their neighbours are turned; in each part the first face decides.
 ///
 /// Warns about findings with which the surface can be used with care:

@@ -1,6 +1,7 @@
 // Cuts ears off a polygon: corners that are convex and have no other corner in their triangle.
 #include "surface/ears.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "dartcast/predicates.hpp"
@@ -38,15 +39,15 @@ class SeenPolygon {
 
   void cut(std::size_t i) { left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(i)); }
 
+  [[nodiscard]] int turn(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+    const int sign = static_cast<int>(orient2d(seen(a), seen(b), seen(c)));
+    return turned_ ? -sign : sign;
+  }
+
  private:
   [[nodiscard]] Vec3 seen(std::uint32_t p) const {
     const Vec3 x = flushed(points_[p]);
     return axis_ == 0 ? Vec3{x.y, x.z, 0.0} : (axis_ == 1 ? Vec3{x.z, x.x, 0.0} : Vec3{x.x, x.y, 0.0});
-  }
-
-  [[nodiscard]] int turn(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
-    const int sign = static_cast<int>(orient2d(seen(a), seen(b), seen(c)));
-    return turned_ ? -sign : sign;
   }
 
   std::span<const Vec3> points_;
@@ -55,13 +56,21 @@ class SeenPolygon {
   bool turned_ = false;
 };
 
-std::vector<TriangleCorners> fan(std::span<const std::uint32_t> corners) {
+}  // namespace
+
+std::vector<TriangleCorners> fan_from(std::span<const std::uint32_t> corners, std::size_t first) {
+  const auto at = [&](std::size_t k) { return corners[(first + k) % corners.size()]; };
   std::vector<TriangleCorners> triangles;
-  for (std::size_t k = 2; k < corners.size(); ++k) triangles.push_back({corners[0], corners[k - 1], corners[k]});
+  for (std::size_t k = 2; k < corners.size(); ++k) triangles.push_back({at(0), at(k - 1), at(k)});
   return triangles;
 }
 
-}  // namespace
+bool do_not_overlap(std::span<const Vec3> points, std::span<const std::uint32_t> corners,
+                    std::span<const TriangleCorners> triangles) {
+  const SeenPolygon polygon(points, corners);
+  return std::all_of(triangles.begin(), triangles.end(),
+                     [&](const TriangleCorners& t) { return polygon.turn(t[0], t[1], t[2]) > 0; });
+}
 
 Vec3 vector_area(std::span<const Vec3> points, std::span<const std::uint32_t> corners) {
   Vec3 sum;
@@ -71,13 +80,13 @@ Vec3 vector_area(std::span<const Vec3> points, std::span<const std::uint32_t> co
 }
 
 std::vector<TriangleCorners> ears(std::span<const Vec3> points, std::span<const std::uint32_t> corners) {
-  if (corners.size() == 3) return fan(corners);
+  if (corners.size() == 3) return fan_from(corners, 0);
   SeenPolygon polygon(points, corners);
   std::vector<TriangleCorners> triangles;
   while (polygon.size() > 3) {
     std::size_t i = 0;
     while (i < polygon.size() && !polygon.is_ear(i)) ++i;
-    if (i == polygon.size()) return fan(corners);
+    if (i == polygon.size()) return fan_from(corners, 0);
     triangles.push_back(polygon.around(i));
     polygon.cut(i);
   }

@@ -18,4 +18,12 @@ Vec3 vector_area(std::span<const Vec3> points, std::span<const std::uint32_t> co
 /// Where it does, the result is a fan. Cost: the square of the corners. Precondition: at least three corners.
 std::vector<TriangleCorners> ears(std::span<const Vec3> points, std::span<const std::uint32_t> corners);
 
+/// Whether the triangles run counterclockwise, as ears() sees the polygon: then those of a fan, or of ears(), do not
+/// overlap. Exact.
+bool do_not_overlap(std::span<const Vec3> points, std::span<const std::uint32_t> corners,
+                    std::span<const TriangleCorners> triangles);
+
+/// The triangles of a polygon from one of its corners on.
+std::vector<TriangleCorners> fan_from(std::span<const std::uint32_t> corners, std::size_t first);
+
 }  // namespace dartcast

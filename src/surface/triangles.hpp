@@ -13,7 +13,7 @@ namespace dartcast {
 using SurfaceTriangle = std::array<std::uint32_t, 3>;
 
 /// The triangles of a surface's faces, oriented alike across edges. Each face gives a fan from its lowest-numbered
-/// corner. Throws InvalidMesh, with the kind of the first defect and its first face, where check_and_repair_surface()
+/// corner, and one that is not convex the triangles of ears(). Throws InvalidMesh, with the kind of the first defect and its first face, where check_and_repair_surface()
 /// refuses the surface. Cost: n log n.
 std::vector<SurfaceTriangle> surface_triangles(const MeshData& surface);
 

@@ -1,14 +1,18 @@
 // Meshes of solids: where they come from, what is refused, and the elements that own corners and sides.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 
 #include "dartcast/error.hpp"
+#include "dartcast/surface.hpp"
 #include "solids/elements.hpp"
 #include "support/closed_surfaces.hpp"
 #include "support/meshes.hpp"
 #include "support/solid_scenes.hpp"
+#include "surface/check_surface.hpp"
+#include "surface/triangle_pairs.hpp"
 
 namespace dartcast::solid_mesh_test {
 
@@ -37,6 +41,53 @@ TEST(SolidMesh, TakesSurfacesAndLines) {
   const SolidMesh line = test::rod(4, 1.0);
   EXPECT_EQ(line.edges.size(), 3U);
   EXPECT_EQ(solid_of_polyline(std::vector<Vec3>{{1, 2, 3}}).edges.size(), 0U);
+}
+
+// A prism over a C, with any corner the lowest, on any axis and in both senses: its triangles cover it once.
+TEST(SolidMesh, FacesThatAreNotConvexAreCoveredOnce) {
+  const std::vector<std::array<double, 2>> c = {{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 2}, {3, 2}, {3, 3}, {0, 3}};
+  const auto n = static_cast<std::uint32_t>(c.size());
+  for (std::uint32_t shift = 0; shift < 6 * n; ++shift) {
+    SCOPED_TRACE(shift);
+    const unsigned axis = shift / n % 3;
+    const bool turned = shift / n >= 3;
+    MeshData prism;
+    for (const double z : {0.0, 1.0}) {
+      for (std::uint32_t i = 0; i < n; ++i) {
+        const auto& [x, y] = c[(i + shift) % n];
+        prism.points.push_back(axis == 0 ? Vec3{x, y, z} : axis == 1 ? Vec3{z, x, y} : Vec3{y, z, x});
+      }
+    }
+    std::vector<std::uint32_t> low, high;
+    for (std::uint32_t i = 0; i < n; ++i) {
+      low.push_back(n - 1 - i);
+      high.push_back(n + i);
+      std::array<std::uint32_t, 4> side = {i, (i + 1) % n, n + (i + 1) % n, n + i};
+      if (turned) std::reverse(side.begin(), side.end());
+      prism.add_cell(CellType::quadrilateral, side);
+    }
+    for (auto* cap : {&low, &high}) {
+      if (turned) std::reverse(cap->begin(), cap->end());
+      prism.add_cell(CellType::polygon, *cap);
+    }
+    const SolidMesh solid = solid_of_surface(prism);
+    double area = 0.0;
+    for (const auto& t : solid.triangles) {
+      const auto at = [&](unsigned k) { return solid.points[t[k]]; };
+      area += 0.5 * norm(cross(at(1) - at(0), at(2) - at(0)));
+    }
+    EXPECT_EQ(area, 7.0 + 7.0 + 16.0);
+    EXPECT_TRUE(crossing_pairs(solid.points, solid.triangles, 1).empty());
+    MeshData repaired = prism;
+    repaired.regions.assign(prism.cell_count(), 1);
+    repaired.regions.back() = 2;
+    const MeshReport report = check_and_repair_surface(repaired);
+    EXPECT_LE(report.verdict(), Verdict::repair);
+    EXPECT_EQ(repaired.source.back(), n + 1);
+    EXPECT_EQ(std::count(repaired.regions.begin(), repaired.regions.end(), 2), n - 2);
+    const Surface surface(prism);
+    EXPECT_EQ(surface.triangles().size(), solid.triangles.size());
+  }
 }
 
 TEST(SolidMesh, NamesTheFirstDefect) {
