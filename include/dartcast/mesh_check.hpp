@@ -66,6 +66,8 @@ inline void add_finding(std::vector<Finding>& list, Finding finding) {
 
 /// Repairs a mesh in place where no guess is needed, and reports it:
 ///
+///  - collapsed: cells with repeated corners, as a prism in the form of a hexahedron, get the type that they have
+///    without;
 ///  - orientation: cells that were inside out;
 ///  - polyhedron_faces: faces that disagreed with their neighbours;
 ///  - unused_points: dropped;

@@ -12,6 +12,7 @@
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_check.hpp"
+#include "mesh/collapsed.hpp"
 #include "mesh/faces.hpp"
 #include "mesh/orientation.hpp"
 
@@ -52,6 +53,12 @@ CellMarks shapeless_cells(MeshData& mesh) {
     const Orientation found = orient_cell(mesh, c);
     bad[c] = found == Orientation::flat || found == Orientation::inverted ? 1 : 0;
   }
+  return bad;
+}
+
+CellMarks repeating_cells(const MeshData& mesh) {
+  CellMarks bad(mesh.cell_count(), 0);
+  for (std::size_t c = 0; c < bad.size(); ++c) bad[c] = repeats_corner(mesh, c) ? 1 : 0;
   return bad;
 }
 
@@ -121,8 +128,9 @@ CellMarks some_bad_cells(MeshData& mesh, const MeshReport& report, Threads threa
     if (!is_of_bad_cells(defect.kind)) throw InvalidMesh(defect.message);
   }
   if (report.valid()) return indivisible_cells(mesh, threads);
-  CellMarks bad = shapeless_cells(mesh);
-  if (!has_any(bad)) {
+  const bool repeats = report.defects.front().kind == "repeated_corner";
+  CellMarks bad = repeats ? repeating_cells(mesh) : shapeless_cells(mesh);
+  if (!has_any(bad) && !repeats) {
     const FaceMatch match = match_faces(mesh);
     bad = OverlappingGroups(match).smaller_side();
   }
@@ -133,7 +141,7 @@ CellMarks some_bad_cells(MeshData& mesh, const MeshReport& report, Threads threa
 }  // namespace
 
 bool is_of_bad_cells(std::string_view defect) {
-  return defect == "flat" || defect == "inverted" || defect == "same_side";
+  return defect == "flat" || defect == "inverted" || defect == "same_side" || defect == "repeated_corner";
 }
 
 Finding skip_bad_cells(MeshData& mesh, Threads threads) {

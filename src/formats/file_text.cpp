@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstdlib>
 #include <fstream>
@@ -34,11 +35,28 @@ std::string_view from_first_word(std::string_view content) {
   return content.substr(std::min(content.find_first_not_of(" \t\r\n"), content.size()));
 }
 
+std::string_view without_byte_order_mark(std::string_view content) {
+  if (content.starts_with("\xff\xfe") || content.starts_with("\xfe\xff"))
+    throw InvalidMesh("byte 0: the text is in UTF-16; save it in UTF-8 or ASCII");
+  return content.starts_with("\xef\xbb\xbf") ? content.substr(3) : content;
+}
+
 std::uint64_t file_bytes(const std::filesystem::path& path) {
   std::error_code error;
   const std::uintmax_t size =
       std::filesystem::is_regular_file(path, error) ? std::filesystem::file_size(path, error) : 0;
   return error ? 0 : size;
+}
+
+void refuse_zeros(const std::filesystem::path& path) {
+  if (file_bytes(path) == 0) return;  // a pipe would wait
+  std::ifstream in(path, std::ios::binary);
+  std::array<char, 4096> first{};
+  in.read(first.data(), first.size());
+  const std::string_view bytes(first.data(), static_cast<std::size_t>(in.gcount()));
+  if (!bytes.empty() && bytes.find_first_not_of('\0') == std::string_view::npos)
+    throw InvalidMesh(
+        fmt::format("the first {} bytes are zeros: it is damaged, or has never been written", bytes.size()));
 }
 
 std::string read_bytes(const std::filesystem::path& path) {

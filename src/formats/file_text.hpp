@@ -15,6 +15,13 @@ std::uint64_t file_bytes(const std::filesystem::path& path);
 /// All bytes of a regular file. Throws InvalidMesh where it cannot be read.
 std::string read_bytes(const std::filesystem::path& path);
 
+/// Throws InvalidMesh where a regular file starts with zeros, so that a sparse file is not read for nothing. Its first
+/// 4096 bytes are looked at.
+void refuse_zeros(const std::filesystem::path& path);
+
+/// The content behind a byte-order mark of UTF-8. Throws InvalidMesh where it starts with one of UTF-16.
+std::string_view without_byte_order_mark(std::string_view content);
+
 /// The content from its first byte that is not white space.
 std::string_view from_first_word(std::string_view content);
 

@@ -50,7 +50,7 @@ std::uint64_t memory_of_xml(std::uint64_t file) { return memory_of_vtk({.file = 
 std::span<const MeshFormat> mesh_formats() {
   static const std::vector<MeshFormat> formats = {
       {"VTK", "", {{".vtu", write_vtu}}, true, true, memory_of_xml, parse_vtu},
-      {"VTK", "pieces of dartcast partition", {{".pvtu", nullptr}}, false, true, memory_of_index, read_pieces},
+      {"VTK", "in pieces", {{".pvtu", nullptr}}, false, true, memory_of_index, read_pieces},
       {"VTK", "legacy", {{".vtk", write_legacy_vtk}}, true, true, memory_of_text, parse_legacy_vtk},
       {"Gmsh",
        "Gmsh 1, 2 or 4",

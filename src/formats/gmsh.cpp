@@ -57,10 +57,10 @@ void read_names(FileText& text, Model& model) {
   }
 }
 
-void read_nodes(NumberReader& in, Model& model, Version version) {
+void read_nodes(NumberReader& in, Model& model, Version version, bool parametric) {
   if (model.nodes.closed()) in.text.fail("a second section of nodes");
   if (version == Version::v1 || version == Version::v2) {
-    read_nodes_2(in, model);
+    read_nodes_2(in, model, parametric);
   } else {
     read_nodes_4(in, model, version == Version::v41);
   }
@@ -74,6 +74,7 @@ void read_elements(NumberReader& in, Model& model, Version version) {
   } else if (version == Version::v2) {
     read_elements_2(in, model);
   } else {
+    model.repeats_elements = false;
     read_elements_4(in, model, version == Version::v41);
   }
 }
@@ -88,10 +89,11 @@ bool read_section(std::string_view name, NumberReader& in, Model& model, Version
     version = read_format(in, model);
   } else if (name == "PhysicalNames") {
     read_names(in.text, model);
-  } else if (name == "Entities" && (version == Version::v40 || version == Version::v41)) {
-    read_entities_4(in, model, version == Version::v41);
-  } else if (name == "Nodes" || name == "NOD") {
-    read_nodes(in, model, version);
+  } else if ((name == "Entities" || name == "PartitionedEntities") &&
+             (version == Version::v40 || version == Version::v41)) {
+    read_entities_4(in, model, version == Version::v41, name == "PartitionedEntities");
+  } else if (name == "Nodes" || name == "NOD" || name == "ParametricNodes") {
+    read_nodes(in, model, version, name == "ParametricNodes");
   } else if (name == "Elements" || name == "ELM") {
     read_elements(in, model, version);
   } else {
@@ -138,6 +140,8 @@ ParsedMesh parse_gmsh(std::string_view content, bool linearise) {
       model.parsed.second_order.count + model.parsed.unsupported.count == 0) {
     throw InvalidMesh("the file has points or lines only; write its cells too");
   }
+  add_finding(model.parsed.warnings, model.repeated);
+  add_finding(model.parsed.warnings, model.unknown);
   finish(model.parsed);
   return std::move(model.parsed);
 }

@@ -11,7 +11,7 @@ std::uint64_t node_number(NumberReader& in) { return static_cast<std::uint64_t>(
 
 }  // namespace
 
-void read_nodes_2(NumberReader& in, Model& model) {
+void read_nodes_2(NumberReader& in, Model& model, bool parametric) {
   const std::size_t n = in.text.count("nodes", in.binary ? 28 : 8);
   if (in.binary) in.text.line();
   for (std::size_t i = 0; i < n; ++i) {
@@ -21,6 +21,10 @@ void read_nodes_2(NumberReader& in, Model& model) {
     p.y = in.real("a coordinate");
     p.z = in.real("a coordinate");
     model.nodes.add(number, p, model.parsed.mesh);
+    if (!parametric) continue;
+    const std::int32_t dimension = in.int32("the dimension of an entity");
+    in.int32("an entity");
+    for (int k = 0; k < dimension && dimension < 3; ++k) in.real("a parameter");
   }
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <utility>
 
 #include "dartcast/error.hpp"
 #include "formats/second_order.hpp"
@@ -132,6 +133,13 @@ void Model::add_element(int type, std::span<const std::uint64_t> numbers, std::i
     (contains(unusable, type) ? parsed.unsupported : parsed.second_order).add(place);
     return;
   }
+  const std::int32_t group_before = std::exchange(last_group_, physical_tag);
+  if (repeats_elements && type == last_type_ && physical_tag != group_before && std::ranges::equal(numbers, last_)) {
+    repeated.add(place);
+    return;
+  }
+  last_type_ = type;
+  last_.assign(numbers.begin(), numbers.end());
   std::array<std::uint32_t, 8> corners{};
   for (std::size_t k = 0; k < numbers.size(); ++k) corners[k] = nodes.find(numbers[k]);
   const std::span<const std::uint32_t> used(corners.data(), numbers.size());

@@ -61,19 +61,31 @@ struct Model {
   ParsedMesh parsed;
   NodeTable nodes;
   std::size_t elements = 0;
+  bool repeats_elements = true;                                   ///< versions 1 and 2
   std::map<std::pair<int, std::int32_t>, std::int32_t> physical;  ///< version 4: (dimension, entity) to physical group
 
-  /// Adds an element of a known type whose nodes are given by number.
+  /// Adds an element of a known type whose nodes are given by number. Versions 1 and 2 have an element once for each of
+  /// its groups, one after the other: only the first counts.
   void add_element(int type, std::span<const std::uint64_t> numbers, std::int32_t physical_tag);
+
+  Finding unknown{
+      "unknown_entities", 0, {}, "elements of entities that the file does not describe; they are in no group"};
+  Finding repeated{
+      "several_groups", 0, {}, "elements that the file has again for another group; the first group counts"};
+
+ private:
+  int last_type_ = 0;
+  std::int32_t last_group_ = 0;
+  std::vector<std::uint64_t> last_;  // the nodes of the element before
 };
 
 /// The sections of version 4.0 and 4.1; each leaves the reader before its end mark.
-void read_entities_4(NumberReader& in, Model& model, bool v41);
+void read_entities_4(NumberReader& in, Model& model, bool v41, bool of_parts);
 void read_nodes_4(NumberReader& in, Model& model, bool v41);
 void read_elements_4(NumberReader& in, Model& model, bool v41);
 
 /// The sections of version 1 and 2.
-void read_nodes_2(NumberReader& in, Model& model);
+void read_nodes_2(NumberReader& in, Model& model, bool parametric);
 void read_elements_1(NumberReader& in, Model& model);
 void read_elements_2(NumberReader& in, Model& model);
 

@@ -48,9 +48,16 @@ void read_elements(FileText& text, ParsedMesh& parsed, const MeditSection& secti
   }
 }
 
-/// Skips the numbers of a section that this library does not use.
+/// Skips the numbers and quoted texts of a section that this library does not use.
 void skip_numbers(FileText& text) {
-  while (!text.at_end() && std::isalpha(static_cast<unsigned char>(text.peek()[0])) == 0) text.word("a number");
+  while (!text.at_end() && std::isalpha(static_cast<unsigned char>(text.peek()[0])) == 0) {
+    if (text.peek()[0] != '"') {
+      text.word("a number");
+      continue;
+    }
+    text.skip_past("\"");
+    text.skip_past("\"");
+  }
 }
 
 /// Names the other formats that end in .mesh.

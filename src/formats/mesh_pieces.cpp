@@ -19,6 +19,7 @@
 #include "formats/checked_file.hpp"
 #include "formats/file_text.hpp"
 #include "formats/format_table.hpp"
+#include "formats/vtk.hpp"
 #include "formats/vtu_write.hpp"
 #include "formats/xml_pieces.hpp"
 #include "mesh/baffles.hpp"
@@ -217,6 +218,7 @@ MeshPart read_mesh_part(const std::filesystem::path& path, std::uint32_t parts, 
 ParsedMesh read_pieces(const std::filesystem::path& path, std::string_view content, const ReadOptions& options) {
   const std::vector<std::filesystem::path> pieces = named_pieces(path, std::string(content), ".vtu");
   if (pieces.empty()) throw InvalidMesh("it names no pieces");
+  if (content.find(point_numbers) == std::string_view::npos) return parse_vtu_pieces(pieces, options);  // of others
   MeshPart all = read_range(pieces, 0, pieces.size(), 1, 0, options, [](std::uint32_t) { return 0U; });
   for (std::size_t c = 0; c < all.cells.size(); ++c) {
     if (all.cells[c] != c) throw InvalidMesh(fmt::format("cell {} is in no piece: a piece is missing", c));

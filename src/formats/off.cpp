@@ -11,9 +11,15 @@
 namespace dartcast {
 namespace {
 
-void read_off_header(FileText& text) {
-  if (!text.peek().ends_with("OFF")) return;
-  std::string_view word = text.word("'OFF'");
+void read_off_header(FileText& text, ParsedSurface& surface) {
+  std::string_view word = text.peek();
+  if (const std::size_t end = word.find("OFF") + 3;
+      end > 2 && end < word.size() && word[end] >= '0' && word[end] <= '9') {
+    word = word.substr(0, end);
+    surface.warn("a number stands right behind 'OFF'");
+  }
+  if (!word.ends_with("OFF")) return;
+  text.move_to(text.position() + word.size());
   const auto drop = [&](std::string_view prefix) {
     if (word.starts_with(prefix)) word.remove_prefix(prefix.size());
   };
@@ -59,7 +65,7 @@ ParsedSurface parse_off(std::string_view content) {
   text.set_comment('#');
   ParsedSurface surface;
   surface.format = "OFF ASCII";
-  read_off_header(text);
+  read_off_header(text, surface);
   const std::size_t points = text.count("vertices", 6);
   const std::size_t faces = text.count("faces", 6);
   text.line();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -19,11 +20,15 @@ bool is_openfoam(const std::filesystem::path& path);
 /// Whether the path is a case itself: its folder, or a file in it that ends in .foam.
 bool is_openfoam_case(const std::filesystem::path& path);
 
+/// The kind of a warning about a field that cannot be read, before its name.
+inline const std::string unread_field = "field ";
+
 /// The mesh of a case, of constant/polyMesh or else put together from the processors' folders; of CASE/TIME with the
 /// points of that time, and with its fields at cells and points as arrays. Zones of cells become regions. Patches keep
 /// their names; so do zones of faces, for faces that are in no patch. A mesh of one layer between patches of the type
-/// `empty` becomes a mesh of the plane. Cells and faces keep their labels as sources. Throws InvalidMesh, with file and
-/// line, or byte, where the content is not right or cannot be used.
+/// `empty` becomes a mesh of the plane. Cells and faces keep their labels as sources. A field that
+/// cannot be read is left out, which is a warning. Throws InvalidMesh, with file and line, or byte, where the content is
+/// not right or cannot be used.
 ParsedMesh parse_openfoam(const std::filesystem::path& path, const ReadOptions& options);
 
 /// The times of a case with points, as paths CASE/TIME; before them CASE/constant at 0 if no other is at 0 or before.

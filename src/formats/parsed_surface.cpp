@@ -66,7 +66,16 @@ void ParsedSurface::enter_region(std::string_view name) {
   region_ = found->second;
 }
 
+void ParsedSurface::warn(std::string_view message) {
+  const auto known =
+      std::find_if(warnings.begin(), warnings.end(), [&](const Finding& w) { return w.message == message; });
+  Finding& warning =
+      known != warnings.end() ? *known : warnings.emplace_back(Finding{"form", 0, {}, std::string(message)});
+  ++warning.count;
+}
+
 void ParsedSurface::finish() {
+  add_finding(warnings, short_faces);
   if (mesh.types.empty()) throw InvalidMesh("the file has no faces; it is truncated, or has points and lines only");
   std::vector<bool> used(tags_.size() + 1, false);
   for (const std::int32_t tag : mesh.regions) used[static_cast<std::size_t>(tag)] = true;

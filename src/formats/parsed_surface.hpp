@@ -22,6 +22,7 @@ struct ParsedSurface {
   MeshData mesh;
   std::string format;
   std::vector<Finding> repairs;
+  std::vector<Finding> warnings;  ///< of the format itself; finish() adds short_faces
   Finding short_faces{"short_faces", 0, {}, "faces of one or two corners; they have been left out"};
 
   /// Adds a face of 3 to 1000 corners; a face of one or two is left out. Throws InvalidMesh with the line, or with
@@ -31,6 +32,8 @@ struct ParsedSurface {
   void add_point(const Vec3& point, const FileText& text, bool binary = false);
   /// Faces that follow are in the region of this name (without the white space around it); with an empty one in none.
   void enter_region(std::string_view name);
+  /// Counts one more place where the file is not written as the format says.
+  void warn(std::string_view message);
   /// To be called at the end: without a region regions stay empty. Throws InvalidMesh where there is no face.
   void finish();
 

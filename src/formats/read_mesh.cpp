@@ -64,10 +64,11 @@ ParsedMesh parse(const std::filesystem::path& path, const ReadOptions& options) 
     throw InvalidMesh(fmt::format(
         "patches from the cell array '{}': arrays are in {} files; in this one groups of faces are the patches",
         options.patch_array, endings_with_arrays()));
+  refuse_zeros(path);
   check_memory(format->memory(file_bytes(path)), options.max_memory);
   const std::string content = read_bytes(path);
   if (content.empty()) throw InvalidMesh("the file is empty");
-  return format->read(path, content, options);
+  return format->read(path, without_byte_order_mark(content), options);
 }
 
 }  // namespace

@@ -20,10 +20,12 @@ ParsedSurface parse_surface(const std::filesystem::path& path, std::uint64_t max
     throw InvalidMesh(fmt::format("surfaces in files that end in '{}' are not supported; supported are {}",
                                   ending_of(path), in_words(surface_endings(), "and")));
   }
+  refuse_zeros(path);
   check_memory(memory_of_text(file_bytes(path)), max_memory);
   const std::string content = read_bytes(path);
   if (content.empty()) throw InvalidMesh("the file is empty");
-  return format->read(content, max_memory);
+  // The bytes of a binary .stl may be any: its reader decides.
+  return format->read(format->ending == ".stl" ? content : without_byte_order_mark(content), max_memory);
 }
 
 bool is_surface_file(const std::filesystem::path& path) { return surface_format_of(path) != nullptr; }
@@ -35,8 +37,7 @@ MeshFile check_surface(const std::filesystem::path& path, const ReadOptions& opt
     out.mesh = std::move(parsed.mesh);
     out.report = check_and_repair_surface(out.mesh);
     out.report.format = parsed.format;
-    if (parsed.short_faces.count > 0)
-      out.report.warnings.insert(out.report.warnings.begin(), std::move(parsed.short_faces));
+    out.report.warnings.insert(out.report.warnings.begin(), parsed.warnings.begin(), parsed.warnings.end());
     out.report.repairs.insert(out.report.repairs.begin(), parsed.repairs.begin(), parsed.repairs.end());
   });
 }

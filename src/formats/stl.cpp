@@ -36,12 +36,11 @@ std::uint64_t announced_triangles(std::string_view content) {
   return raw_number<std::uint32_t>(content.substr(stl_head - 4, 4), std::endian::little);
 }
 
-/// Decided by the size, because the comment of a binary file may start with "solid", too; for a damaged file by its
-/// zeros.
+/// Decided by the size, because the comment of a binary file may start with "solid", too; for another file by its zeros.
 bool is_text_stl(std::string_view content) {
   if (content.size() >= stl_head && content.size() == stl_head + stl_triangle * announced_triangles(content))
     return false;
-  const std::string_view body = content.substr(std::min(content.find_first_not_of(" \t\r\n"), content.size()));
+  const std::string_view body = from_first_word(without_byte_order_mark(content));
   return lower_stl(body.substr(0, 5)) == "solid" && content.substr(0, stl_head).find('\0') == std::string_view::npos;
 }
 
@@ -56,18 +55,21 @@ void read_binary_stl(std::string_view content, ParsedSurface& surface) {
   surface.format = "STL binary";
   if (content.size() < stl_head) throw InvalidMesh("the file is too short for .stl, ASCII or binary; it is truncated");
   const std::uint64_t n = announced_triangles(content);
-  if (content.size() != stl_head + stl_triangle * n) {
+  const std::uint64_t bytes = stl_head + stl_triangle * n;
+  if (n > 0 && content.size() > bytes && content.size() - bytes < stl_triangle) {
+    surface.warn(fmt::format("{} bytes behind the last triangle are left out", content.size() - bytes));
+  } else if (content.size() != bytes) {
     throw InvalidMesh(
         fmt::format("byte {}: {} triangles are announced, of {} bytes in all, but the file has {}; it is "
                     "truncated or damaged, or no .stl",
-                    stl_head - 4, n, stl_head + stl_triangle * n, content.size()));
+                    stl_head - 4, n, bytes, content.size()));
   }
   FileText text(content);
   text.move_to(stl_head);
   for (std::uint64_t i = 0; i < n; ++i) {
-    const std::string_view bytes = text.raw(stl_triangle, "a triangle");
+    const std::string_view triangle = text.raw(stl_triangle, "a triangle");
     const auto number = [&](std::size_t k) {
-      return static_cast<double>(raw_number<float>(bytes.substr(4 * k, 4), std::endian::little));
+      return static_cast<double>(raw_number<float>(triangle.substr(4 * k, 4), std::endian::little));
     };
     const auto corner = [&](std::size_t k) { return Vec3{number(k), number(k + 1), number(k + 2)}; };
     add_stl_triangle(surface, {corner(3), corner(6), corner(9)}, text, true);
@@ -77,6 +79,28 @@ void read_binary_stl(std::string_view content, ParsedSurface& surface) {
 void expect_stl(FileText& text, std::string_view wanted) {
   if (lower_stl(text.word(fmt::format("'{}'", wanted))) != wanted)
     text.fail(fmt::format("'{}' should stand here", wanted));
+}
+
+/// As "endloop"; some programs write "end loop".
+void expect_stl_end(FileText& text, std::string_view what, ParsedSurface& surface) {
+  if (lower_stl(text.peek()) != "end") return expect_stl(text, fmt::format("end{}", what));
+  text.word("'end'");
+  expect_stl(text, what);
+  surface.warn(fmt::format("'end {0}' stands in place of 'end{0}'", what));
+}
+
+/// The end of a solid, to the end of its line. None where a facet follows.
+bool take_stl_end(FileText& text, ParsedSurface& surface) {
+  const std::string word = lower_stl(text.peek());
+  if (word == "end") {
+    expect_stl_end(text, "solid", surface);
+  } else if (!word.starts_with("endsolid")) {
+    return false;
+  } else if (word != "endsolid") {
+    surface.warn("a name stands right behind 'endsolid'");
+  }
+  text.line();
+  return true;
 }
 
 void read_stl_facet(FileText& text, ParsedSurface& surface) {
@@ -93,8 +117,8 @@ void read_stl_facet(FileText& text, ParsedSurface& surface) {
     p.z = text.number("a coordinate");
   }
   add_stl_triangle(surface, corners, text, false);
-  expect_stl(text, "endloop");
-  expect_stl(text, "endfacet");
+  expect_stl_end(text, "loop", surface);
+  expect_stl_end(text, "facet", surface);
 }
 
 void read_text_stl(std::string_view content, ParsedSurface& surface) {
@@ -103,8 +127,7 @@ void read_text_stl(std::string_view content, ParsedSurface& surface) {
   while (!text.at_end()) {
     expect_stl(text, "solid");
     surface.enter_region(text.line());
-    while (lower_stl(text.peek()) != "endsolid") read_stl_facet(text, surface);
-    text.line();
+    while (!take_stl_end(text, surface)) read_stl_facet(text, surface);
   }
 }
 
@@ -162,7 +185,7 @@ void leave_out_collapsed(ParsedSurface& surface) {
 ParsedSurface parse_stl(std::string_view content) {
   ParsedSurface surface;
   if (is_text_stl(content)) {
-    read_text_stl(content, surface);
+    read_text_stl(without_byte_order_mark(content), surface);
   } else {
     read_binary_stl(content, surface);
   }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -45,32 +46,52 @@ fs::path mesh_file(const fs::path& folder) {
 class MeshPoints {
  public:
   explicit MeshPoints(const MeshData& mesh) {
-    for (std::uint32_t p = 0; p < mesh.points.size(); ++p) by_place_[key(mesh.points[p])] = p;
+    Vec3 low, high;
+    for (std::uint32_t p = 0; p < mesh.points.size(); ++p) {
+      const Vec3& x = mesh.points[p];
+      by_place_[key(x)] = p;
+      low = p == 0 ? x : Vec3{std::min(low.x, x.x), std::min(low.y, x.y), std::min(low.z, x.z)};
+      high = p == 0 ? x : Vec3{std::max(high.x, x.x), std::max(high.y, x.y), std::max(high.z, x.z)};
+    }
+    rounding_ = 1e-4 * norm(high - low);
+    points_ = mesh.points;
     const auto ids = std::find_if(mesh.point_data.begin(), mesh.point_data.end(),
                                   [](const DataArray& a) { return a.name == "GlobalNodeID" && a.components == 1; });
     if (ids == mesh.point_data.end()) return;
     for (std::uint32_t p = 0; p < ids->values.size(); ++p) by_id_[ids->values[p]] = p;
   }
 
+  /// Places may be rounded where there are numbers. Throws InvalidMesh where the two name different points.
   [[nodiscard]] std::uint32_t find(const VtpFaces& faces, std::uint32_t point) const {
     if (point >= faces.points.size()) return no_point;
-    if (!by_id_.empty() && !faces.ids.empty()) {
-      const auto found = by_id_.find(faces.ids[point]);
-      return found == by_id_.end() ? no_point : found->second;
-    }
-    const auto found = by_place_.find(key(faces.points[point]));
-    return found == by_place_.end() ? no_point : found->second;
+    const Vec3& x = faces.points[point];
+    const auto place = by_place_.find(key(x));
+    const std::uint32_t here = place == by_place_.end() ? no_point : place->second;
+    if (by_id_.empty() || faces.ids.empty()) return here;
+    const auto found = by_id_.find(faces.ids[point]);
+    if (found == by_id_.end()) return no_point;
+    if (!(norm(points_[found->second] - x) <= rounding_) || (here != no_point && points_[found->second] != x))
+      throw InvalidMesh(
+          fmt::format("point {} has the GlobalNodeID {}, but lies at ({}, {}, {}), where the mesh has another point: "
+                      "write the surfaces again, or leave GlobalNodeID out",
+                      point, faces.ids[point], x.x, x.y, x.z));
+    return found->second;
   }
 
  private:
   using Key = std::tuple<double, double, double>;
   static Key key(const Vec3& p) { return {p.x, p.y, p.z}; }
 
+  std::span<const Vec3> points_;
+  double rounding_ = 0.0;
   std::map<Key, std::uint32_t> by_place_;
   std::map<double, std::uint32_t> by_id_;
 };
 
-void add_patch(const fs::path& file, const MeshPoints& points, std::uint64_t max_memory, MeshData& mesh) {
+using FilesOfFaces = std::map<std::vector<std::uint32_t>, std::string>;  // by sorted corners
+
+void add_patch(const fs::path& file, const MeshPoints& points, std::uint64_t max_memory, FilesOfFaces& known,
+               MeshData& mesh) {
   check_memory(memory_of_vtk({.file = file_bytes(file)}), max_memory);
   const VtpFaces faces = read_vtp_faces(read_bytes(file), max_memory);
   const auto tag = static_cast<std::int32_t>(mesh.patch_names.size() + 1);
@@ -81,6 +102,10 @@ void add_patch(const fs::path& file, const MeshPoints& points, std::uint64_t max
       p = points.find(faces, p);
       if (p == no_point) throw InvalidMesh(fmt::format("face {} has a point that the mesh does not have", f));
     }
+    std::vector<std::uint32_t> sorted = corners;
+    std::sort(sorted.begin(), sorted.end());
+    const auto [before, added] = known.try_emplace(std::move(sorted), file.filename().string());
+    if (!added) throw InvalidMesh(fmt::format("face {} is in {}, too: a face has one patch", f, before->second));
     mesh.add_patch_face(corners, tag);
     mesh.patch_source.push_back(static_cast<std::uint32_t>(mesh.patch_tags.size() - 1));
   }
@@ -128,8 +153,9 @@ ParsedMesh parse_simvascular(const fs::path& folder, const ReadOptions& options)
   mesh.patch_source.clear();
   mesh.patch_names.clear();
   const MeshPoints points(mesh);
+  FilesOfFaces known;
   for (const fs::path& surface : files_in(folder / "mesh-surfaces", ".vtp"))
-    named(surface, [&] { add_patch(surface, points, options.max_memory, mesh); });
+    named(surface, [&] { add_patch(surface, points, options.max_memory, known, mesh); });
   return parsed;
 }
 

@@ -142,6 +142,7 @@ void add_texts(const char* array_name, const std::vector<std::string>& texts, st
   to.emplace_back(array_name, std::move(characters));
   to.back().set_tuples(texts.size());
 }
+
 void add_names(const char* array_name, const std::map<std::int32_t, std::string>& names, std::vector<XmlArray>& to) {
   std::vector<std::string> texts;
   for (const auto& [tag, name] : names) texts.push_back(fmt::format("{} {}", tag, name));

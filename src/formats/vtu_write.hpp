@@ -13,8 +13,10 @@ namespace dartcast {
 /// The field array that names the program which wrote the cell array `free`: "dartcast". Other programs may have an array
 /// of that name, with another meaning.
 inline constexpr const char* free_writer = "free_written_by";
+
 /// The field array of MeshData::baffle_tags, as texts.
 inline constexpr const char* baffle_patches = "baffle_patches";
+
 /// Cells, patch faces and data as write_vtu() writes them. Arrays that stand in the mesh as in the file are not copied:
 /// the mesh stays as it is while the data set is used.
 XmlDataSet vtu_data_set(const std::shared_ptr<const MeshData>& mesh);

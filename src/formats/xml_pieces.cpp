@@ -13,8 +13,8 @@ std::vector<std::filesystem::path> named_pieces(const std::filesystem::path& pat
   read_xml(text, [&](const XmlTag& tag) {
     if (tag.name != "Piece" || !tag.opens) return;
     const std::string source = tag.attribute("Source", "");
-    if (source.find('/') != std::string::npos || !source.ends_with(ending))
-      tag.fail(fmt::format("the piece '{}' is no {} file in this folder", source, ending));
+    if (source.starts_with('/') || source.find("..") != std::string::npos || !source.ends_with(ending))
+      tag.fail(fmt::format("the piece '{}' is no {} file in this folder or one in it", source, ending));
     pieces.push_back(path.parent_path() / source);
   });
   return pieces;

@@ -171,7 +171,7 @@ MeshReport check_and_repair(MeshData& mesh) {
   MeshReport report;
   check_arrays(mesh, report);
   if (!report.valid()) return report;
-  check_structure(mesh, report);
+  check_and_repair_structure(mesh, report);
   if (report.valid()) {
     const std::vector<std::uint32_t> point_source = drop_unused_points(mesh, report);
     check_coordinates(mesh, point_source, report);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "mesh/cell_types.hpp"
+#include "mesh/collapsed.hpp"
 #include "mesh/polyhedron.hpp"
 
 namespace dartcast {
@@ -46,20 +47,6 @@ bool visit_corners(const MeshData& mesh, std::size_t c, Visit&& visit) {
 bool repeats(std::vector<std::uint32_t>& corners) {
   std::sort(corners.begin(), corners.end());
   return std::adjacent_find(corners.begin(), corners.end()) != corners.end();
-}
-
-/// Whether a corner repeats in the cell; of a polyhedron, in a face.
-bool repeats_corner(const MeshData& mesh, std::size_t c, std::vector<std::uint32_t>& work) {
-  if (mesh.types[c] != CellType::polyhedron) {
-    work.assign(mesh.cell(c).begin(), mesh.cell(c).end());
-    return repeats(work);
-  }
-  bool found = false;
-  for_each_face(mesh, c, [&](std::span<const std::uint32_t> face) {
-    work.assign(face.begin(), face.end());
-    found = found || repeats(work);
-  });
-  return found;
 }
 
 bool too_many_corners(const MeshData& mesh, std::size_t c, std::vector<std::uint32_t>& work) {
@@ -200,6 +187,18 @@ void check_arrays(const MeshData& mesh, MeshReport& report) {
   }
 }
 
+void check_and_repair_structure(MeshData& mesh, MeshReport& report) {
+  MeshReport first;
+  check_structure(mesh, first);
+  const auto is_repeated = [](const Finding& defect) { return defect.kind == "repeated_corner"; };
+  if (!first.valid() && std::all_of(first.defects.begin(), first.defects.end(), is_repeated)) {
+    retype_collapsed(mesh, report);
+    first.defects.clear();
+    check_structure(mesh, first);
+  }
+  report.defects.insert(report.defects.end(), first.defects.begin(), first.defects.end());
+}
+
 void check_structure(const MeshData& mesh, MeshReport& report) {
   Finding size{
       "structure",
@@ -225,7 +224,7 @@ void check_structure(const MeshData& mesh, MeshReport& report) {
       range.add(place);
     } else if (too_many_corners(mesh, c, work)) {
       polyhedron.add(place);
-    } else if (repeats_corner(mesh, c, work)) {
+    } else if (repeats_corner(mesh, c)) {
       repeated.add(place);
     }
   }

@@ -50,7 +50,7 @@ MeshFile read_one(const std::filesystem::path& file, const SurfaceScene& scene, 
     out.mesh = in_triangles(std::move(parsed.mesh));
     out.report = check_and_repair_surface(out.mesh);
     out.report.repairs.insert(out.report.repairs.begin(), parsed.repairs.begin(), parsed.repairs.end());
-    add_finding(out.report.warnings, parsed.short_faces);
+    out.report.warnings.insert(out.report.warnings.end(), parsed.warnings.begin(), parsed.warnings.end());
     std::erase_if(out.report.warnings, [](const Finding& w) { return w.kind == "open_border"; });
     if (!out.report.valid()) return;
     if (scene.cap) close_holes(out.mesh, out.report);

@@ -93,6 +93,9 @@ class FieldFiles {
   /// The mesh in file k, with its arrays.
   [[nodiscard]] MeshData read(std::size_t k) const {
     MeshFile file = read_mesh(files_[k], options_);
+    for (const Finding& warning : file.report.warnings) {
+      if (warning.kind == unread_field + array_) throw InvalidMesh(warning.message);
+    }
     if (!kept_.empty() && !file.mesh.types.empty()) {
       file.mesh = with_cells_of_scene(std::move(file.mesh));
     } else {

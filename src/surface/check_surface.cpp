@@ -218,7 +218,7 @@ MeshReport check_and_repair_surface(MeshData& mesh) {
     report.defects.push_back({"structure", 1, {0}, "cells of space, not faces of a surface: take the mesh's boundary"});
     return report;
   }
-  check_structure(mesh, report);
+  check_and_repair_structure(mesh, report);
   if (!report.valid()) return report;
   check_surface_points(mesh, report);
   if (!report.valid()) return report;

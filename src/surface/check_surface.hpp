@@ -12,6 +12,7 @@ namespace dartcast {
 ///
 /// Repairs in place:
 ///
+///  - collapsed: faces that named a point twice in a row;
 ///  - not_convex: faces whose fan overlaps itself, as seen along the axis nearest to their normal, or has a triangle
 ///    without area. Triangles take their place (ears()), with the face's index as their source.
 ///  - orientation: faces that ran against their neighbours are turned; in each part the first face decides.

@@ -2,8 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+#include <sstream>
 
 #include "dartcast/error.hpp"
+#include "dartcast/generators.hpp"
 #include "dartcast/mesh_files.hpp"
 #include "dartcast/scene_file.hpp"
 #include "formats/gmsh.hpp"
@@ -127,6 +131,182 @@ TEST(Formats, VtuAsciiByHand) {
   EXPECT_EQ(cells_of(file.mesh), (Cells{{CellType::tetrahedron, 0, {0, 1, 2, 3}}}));
   ASSERT_EQ(file.mesh.cell_data.size(), 1U);
   EXPECT_EQ(file.mesh.cell_data[0].values, std::vector<double>{0.5});
+}
+
+TEST(Formats, GmshEntitiesOfPartsHaveTheirGroups) {
+  const std::string text =
+      "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 5 \"wall\"\n3 6 \"inside\"\n$EndPhysicalNames\n"
+      "$Entities\n0 0 1 1\n3 0 0 0 1 1 1 1 5 0\n4 0 0 0 1 1 1 1 6 0\n$EndEntities\n"
+      "$PartitionedEntities\n2\n1\n9 1\n1 0 2 2\n1 3 4 2 1 2 0 0 0 0\n"
+      "11 2 3 1 1 0 0 0 1 1 1 1 5 0\n12 2 3 1 2 0 0 0 1 1 1 0 0\n"
+      "21 3 4 1 1 0 0 0 1 1 1 1 6 0\n22 3 4 1 2 0 0 0 1 1 1 0 0\n$EndPartitionedEntities\n"
+      "$Nodes\n1 5 1 5\n3 21 0 5\n1\n2\n3\n4\n5\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 0 -1\n$EndNodes\n"
+      "$Elements\n4 4 1 4\n2 11 2 1\n1 1 2 4\n2 12 2 1\n2 1 5 2\n3 21 4 1\n3 1 2 3 4\n3 22 4 1\n4 1 3 2 5\n"
+      "$EndElements\n";
+  const ParsedMesh parsed = parse_gmsh(text);
+  EXPECT_EQ(parsed.mesh.regions, (std::vector<std::int32_t>{6, 6}));
+  EXPECT_EQ(parsed.mesh.patch_tags, (std::vector<std::int32_t>{5, 5}));
+  EXPECT_TRUE(parsed.warnings.empty());
+  const ParsedMesh unknown = parse_gmsh(std::regex_replace(text, std::regex("2 12 2 1\n2 1 5"), "2 13 2 1\n2 1 5"));
+  ASSERT_EQ(unknown.warnings.size(), 1U);
+  EXPECT_EQ(unknown.warnings[0].kind, "unknown_entities");
+  EXPECT_EQ(unknown.warnings[0].count, 1U);
+}
+
+TEST(Formats, GmshElementsOfSeveralGroupsCountOnce) {
+  const MeshData mesh = sample_mesh();
+  const std::string text = format_gmsh_2(mesh);
+  const std::size_t begin = text.find("$Elements\n") + 10;
+  const std::size_t lines = text.find('\n', begin) + 1;
+  const std::size_t end = text.find("$EndElements");
+  const int n = std::stoi(text.substr(begin));
+  std::istringstream in(text.substr(lines, end - lines));
+  std::string all;
+  for (std::string line; std::getline(in, line);)
+    all += line + "\n" + std::regex_replace(line, std::regex("^(\\d+ \\d+ 2) \\d+"), "$1 77") + "\n";
+  const MeshFile file =
+      read_mesh(Folder().file("a.msh", text.substr(0, begin) + std::to_string(2 * n) + "\n" + all + text.substr(end)));
+  ASSERT_TRUE(file.report.valid()) << report_text(file.report);
+  expect_same(file.mesh, mesh);
+  ASSERT_EQ(file.report.warnings.size(), 1U);
+  EXPECT_EQ(file.report.warnings[0].kind, "several_groups");
+  EXPECT_EQ(file.report.warnings[0].count, static_cast<std::size_t>(n));
+}
+
+TEST(Formats, GmshNodesMayHaveParameters) {
+  const MeshData mesh = sample_mesh();
+  const std::string text = format_gmsh_2(mesh);
+  const std::size_t begin = text.find("$Nodes\n");
+  const std::size_t end = text.find("$EndNodes");
+  std::istringstream in(text.substr(begin + 7, end - begin - 7));
+  std::string nodes = "$ParametricNodes\n", line;
+  std::getline(in, line);
+  nodes += line + "\n";
+  const std::vector<std::string> parameters = {" 0 4", " 1 2 0.5", " 2 1 0.25 -1e3", " 3 1"};
+  for (std::size_t i = 0; std::getline(in, line); ++i) nodes += line + parameters[i % 4] + "\n";
+  const MeshFile file =
+      read_mesh(Folder().file("a.msh", text.substr(0, begin) + nodes + "$EndParametricNodes" + text.substr(end + 9)));
+  expect_accepted(file);
+  expect_same(file.mesh, mesh);
+}
+
+TEST(Formats, MeditTextsInQuotesMayHoldKeywords) {
+  const MeshData mesh = sample_mesh();
+  std::string text = format_medit(mesh);
+  text.insert(text.find("Vertices"),
+              "Identifier\n\"made by hand, End of Vertices # \"\nGeometry\n\"/data/My Triangles 2/a.mesh\"\n");
+  const MeshFile file = read_mesh(Folder().file("a.mesh", text));
+  expect_accepted(file);
+  expect_same(file.mesh, mesh);
+}
+
+TEST(Formats, ByteOrderMarksAndZerosAtTheStart) {
+  const Folder folder;
+  write_mesh(sample_mesh(), folder / "a.vtu");
+  std::vector<std::string> names = mesh_endings();
+  for (const std::string& ending : surface_endings()) names.push_back(ending);
+  for (const auto& [name, text] :
+       std::vector<std::pair<std::string, std::string>>{{"b.vtu", slurp(folder / "a.vtu")},
+                                                        {"b.msh", format_gmsh_2(sample_mesh())},
+                                                        {"b.mesh", format_medit(sample_mesh())}}) {
+    expect_same(read_mesh(folder.file(name, "\xef\xbb\xbf" + text)).mesh, sample_mesh());
+    EXPECT_NE(read_mesh(folder.file(name, "\xff\xfe" + text)).report.defects.at(0).message.find("UTF-16"),
+              std::string::npos);
+  }
+  for (const std::string& ending : names) {
+    if (ending == ".node" || ending == ".ele") continue;
+    const std::filesystem::path path = folder.file("zeros" + ending, "");
+    std::filesystem::resize_file(path, std::uintmax_t{1} << 36U);
+    const MeshFile file = is_surface_file(path) ? check_surface(path) : read_mesh(path);
+    EXPECT_NE(file.report.defects.at(0).message.find("are zeros"), std::string::npos)
+        << ending << report_text(file.report);
+    std::filesystem::remove(path);
+  }
+}
+
+// Two tetrahedra, each in a piece of its own; and as one that is a ghost in the second piece.
+TEST(Formats, PiecesAreJoinedByTheirPoints) {
+  const auto piece = [](const std::string& points, const std::string& corners, const std::string& ghosts) {
+    const std::string n = ghosts.size() == 1 ? "1" : "2";
+    return "<Piece NumberOfPoints='5' NumberOfCells='" + n +
+           "'><PointData><DataArray type='Float64' Name='u' format='ascii'>"
+           "0 1 2 3 4</DataArray></PointData><CellData><DataArray type='UInt8' Name='vtkGhostType' format='ascii'>" +
+           ghosts + "</DataArray></CellData><Points><DataArray type='Float64' NumberOfComponents='3' format='ascii'>" +
+           points + "</DataArray></Points><Cells><DataArray type='Int32' Name='connectivity' format='ascii'>" +
+           corners + "</DataArray><DataArray type='Int32' Name='offsets' format='ascii'>" + (n == "1" ? "4" : "4 8") +
+           "</DataArray><DataArray type='UInt8' Name='types' format='ascii'>" + (n == "1" ? "10" : "10 10") +
+           "</DataArray></Cells></Piece>";
+  };
+  const auto file = [](const std::string& pieces) {
+    return "<VTKFile type='UnstructuredGrid' version='1.0'><UnstructuredGrid>" + pieces +
+           "</UnstructuredGrid></VTKFile>";
+  };
+  const std::string up = "0 0 0 1 0 0 0 1 0 0 0 1 0 0 -1";
+  const std::string down = "0 0 -1 0 1 0 1 0 0 -0 0 0 0 0 1";
+  const Folder folder;
+  for (const bool ghost : {false, true}) {
+    const std::string first = piece(up, ghost ? "0 1 2 3 0 2 1 4" : "0 1 2 3", ghost ? "0 1" : "0");
+    const std::string second = piece(down, ghost ? "3 1 2 0 3 2 1 4" : "3 1 2 0", ghost ? "0 1" : "0");
+    (void)folder.file("one.vtu", file(first));
+    std::filesystem::create_directories(folder / "parts");
+    write_bytes(folder / "parts" / "two.vtu", file(second));
+    const std::string index =
+        "<VTKFile type='PUnstructuredGrid'><PUnstructuredGrid><Piece Source='one.vtu'/><Piece "
+        "Source='parts/two.vtu'/></PUnstructuredGrid></VTKFile>";
+    for (const std::filesystem::path& path :
+         {folder.file("a.vtu", file(first + second)), folder.file("a.pvtu", index)}) {
+      const MeshFile read = read_mesh(path);
+      ASSERT_TRUE(read.report.valid()) << report_text(read.report);
+      EXPECT_EQ(read.report.points, 5U);
+      EXPECT_EQ(read.report.parts, 1U);
+      EXPECT_EQ(read.report.cells, (std::map<std::string, std::size_t>{{"tetrahedron", 2}}));
+      EXPECT_EQ(read.mesh.point_data.at(0).values, (std::vector<double>{0, 1, 2, 3, 4}));
+    }
+  }
+  const std::string other = std::regex_replace(file(piece(down, "3 1 2 0", "0")), std::regex("'u'"), "'v'");
+  write_bytes(folder / "parts" / "two.vtu", other);
+  EXPECT_NE(read_mesh(folder / "a.pvtu").report.defects.at(0).message.find("two.vtu: it has other arrays"),
+            std::string::npos);
+}
+
+// A prism, a pyramid and a tetrahedron in the form of a hexahedron, in each of its 24 orders.
+TEST(Formats, CollapsedHexahedraGetTheirOwnTypes) {
+  using Corners = std::array<std::uint32_t, 8>;
+  const std::vector<std::pair<CellType, Corners>> forms = {{CellType::prism, {0, 1, 1, 2, 4, 5, 5, 6}},
+                                                           {CellType::pyramid, {0, 1, 2, 3, 4, 4, 4, 4}},
+                                                           {CellType::tetrahedron, {0, 1, 2, 2, 4, 4, 4, 4}}};
+  for (const auto& [type, corners] : forms) {
+    std::set<Corners> orders = {corners};
+    for (bool grows = true; grows;) {
+      std::set<Corners> more = orders;
+      for (const Corners& c : orders) {
+        more.insert({c[1], c[2], c[3], c[0], c[5], c[6], c[7], c[4]});
+        more.insert({c[4], c[5], c[1], c[0], c[7], c[6], c[2], c[3]});
+      }
+      grows = more.size() > orders.size();
+      orders = more;
+    }
+    EXPECT_GE(orders.size(), 3U);
+    for (const Corners& c : orders) {
+      MeshData mesh;
+      mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}};
+      mesh.add_cell(CellType::hexahedron, c);
+      const std::array<std::uint32_t, 4> side = {0, 1, 1, 2};
+      mesh.add_patch_face(side, 3);
+      const MeshReport report = check_and_repair(mesh);
+      ASSERT_TRUE(report.valid()) << report_text(report);
+      EXPECT_EQ(mesh.types, std::vector<CellType>{type});
+      EXPECT_EQ(report.repairs.at(0).kind, "collapsed");
+    }
+  }
+  MeshData mesh = generate_box({.cells = {2, 1, 1}});
+  mesh.connectivity[8] = mesh.connectivity[14];  // a diagonal: no cell
+  const Folder folder;
+  write_mesh(mesh, folder / "a.vtu");
+  EXPECT_EQ(check_mesh(folder / "a.vtu").report.defects.at(0).kind, "repeated_corner");
+  const MeshFile skipped = check_mesh(folder / "a.vtu", {}, {}, true);
+  EXPECT_TRUE(skipped.report.valid()) << report_text(skipped.report);
+  EXPECT_EQ(skipped.report.cells.at("hexahedron"), 1U);
 }
 
 TEST(Formats, FreeCellsCountWhereDartcastHasWrittenThem) {

@@ -382,6 +382,19 @@ TEST(OpenFoam, PartsMakeUpTheWhole) {
   }
 }
 
+TEST(OpenFoam, PartsWithHalvesOfCyclicPairs) {
+  const MeshData mesh = generate_box({.cells = {4, 2, 2}});
+  std::vector<std::size_t> part;
+  for (std::size_t c = 0; c < mesh.cell_count(); ++c) part.push_back(c % 3);
+  const Folder folder;
+  write_foam_parts(folder / "case", {}, foam_mesh(mesh, {{"xmin", "cyclic"}, {"xmax", "cyclic"}}), part);
+  const MeshFile file = read_mesh(folder / "case");
+  ASSERT_TRUE(file.report.valid()) << report_text(file.report);
+  EXPECT_EQ(patches_of(file.mesh), patches_of(mesh));
+  ASSERT_EQ(file.report.warnings.size(), 1U);
+  EXPECT_EQ(file.report.warnings[0].count, 8U);
+}
+
 TEST(OpenFoam, PartsThatDoNotFit) {
   const MeshData mesh = box();
   const FoamMesh whole = foam_mesh(mesh);

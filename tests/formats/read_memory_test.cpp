@@ -77,7 +77,7 @@ TEST(ReadMemory, ASmallFileThatGrowsIsRefusedInWordsBeforeItGrows) {
   EXPECT_NE(message.find("--max-memory"), std::string::npos) << message;
   const std::uint64_t idle = peak_of([] {});
   const std::uint64_t of_sanitizers = test::sanitized() ? 64 * mebi : 0;
-  EXPECT_LT(peak_of([&] { (void)read_mesh(path, options); }), idle + 4 * mebi + of_sanitizers);
+  EXPECT_LT(peak_of([&] { (void)read_mesh(path, options); }), idle + 6 * mebi + of_sanitizers);
   options.max_memory = 400 * mebi;
   EXPECT_EQ(refusal(read_mesh(path, options)), "accepted");
 }

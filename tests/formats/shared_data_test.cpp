@@ -166,6 +166,57 @@ TEST(SharedData, NoVolumeIsForgotten) {
   }
 }
 
+/// Files that were misread once, and counts of what they hold: of points, cells, regions and patches.
+TEST(SharedData, FilesThatWereMisreadAreReadRight) {
+  NEED_DATA("files of turn 3");
+  struct Right {
+    const char* file;
+    std::size_t points;
+    Counts cells, regions, patches;
+  };
+  const Counts halves = {{"lumen", 100}, {"tissue", 100}};
+  const std::vector<Right> files = {
+      {"gmsh/parts41.msh", 78, {{"tetrahedron", 200}}, halves, {{"inlet", 14}, {"outlet", 14}}},
+      {"gmsh/groups22.msh",
+       78,
+       {{"tetrahedron", 200}},
+       {{"grain", 100}, {"phase", 100}},
+       {{"hull", 140}, {"inlet", 14}}},
+      {"gmsh/par22.msh", 78, {{"tetrahedron", 200}}, halves, {{"inlet", 14}, {"outlet", 14}}},
+      {"medit/words_in_text.mesh", 5, {{"triangle", 4}}, {{"7", 4}}, {{"11", 1}, {"12", 1}, {"13", 1}, {"14", 1}}},
+      {"vtk/new_2.3.vtu", 12, {{"hexahedron", 1}, {"polyhedron", 1}}, {}, {}},
+      {"vtk/plain.pvtu", 20, {{"hexahedron", 4}}, {}, {}},
+      {"vtk/ghost.pvtu", 20, {{"hexahedron", 4}}, {}, {}},
+      {"vtk/two_pieces.vtu", 20, {{"hexahedron", 4}}, {}, {}},
+      {"vtk/wedge_pyramid_as_hex.vtu", 11, {{"hexahedron", 1}, {"prism", 1}, {"pyramid", 1}}, {}, {}},
+      {"vtk/app_b64sep_u32_le.vtu", 5, {{"tetrahedron", 2}}, {}, {}},
+      {"processor_cyclic/case", 20, {{"hexahedron", 4}}, {}, {{"left", 1}, {"right", 1}, {"walls", 16}}},
+      {"field_macros/case/0", 12, {{"hexahedron", 2}}, {}, {}}};
+  const std::filesystem::path folder = data_folder() / "regressions" / "turn3";
+  for (const Right& right : files) {
+    const MeshFile file = read_mesh(folder / right.file);
+    SCOPED_TRACE(report_text(file.report));
+    ASSERT_TRUE(file.report.valid());
+    EXPECT_EQ(file.report.points, right.points);
+    EXPECT_EQ(file.report.parts, 1U);
+    EXPECT_EQ(file.report.cells, right.cells);
+    if (!right.regions.empty()) EXPECT_EQ(file.report.regions, right.regions);
+    Counts patches;
+    for (const std::int32_t tag : file.mesh.patch_tags) {
+      const auto name = file.mesh.patch_names.find(tag);
+      ++patches[name == file.mesh.patch_names.end() ? std::to_string(tag) : name->second];
+    }
+    if (!right.patches.empty()) EXPECT_EQ(patches, right.patches);
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "surfaces")) {
+    const MeshFile file = check_surface(entry.path());
+    EXPECT_TRUE(file.report.valid() && file.report.points == 8 && file.mesh.cell_count() == 12)
+        << report_text(file.report);
+  }
+  EXPECT_TRUE(read_mesh(folder / "simvascular" / "good").report.valid());
+  EXPECT_FALSE(read_mesh(folder / "simvascular" / "swapped_ids").report.valid());
+}
+
 TEST(SharedData, DefectiveFilesGetTheRightVerdict) {
   NEED_DATA("meshes made by others");
   std::ifstream table(data_folder() / "EXPECTED.csv");

@@ -1,6 +1,7 @@
 // Surfaces from .stl, .obj, .ply and .off, written by hand.
 #include "support/surface_files.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <limits>
 #include <map>
 #include <random>
+#include <regex>
 #include <set>
 #include <string>
 #include <vector>
@@ -56,6 +58,46 @@ TEST(SurfaceFiles, LinesMayEndInTwoBytes) {
     ASSERT_TRUE(file.report.valid()) << s.name << report_text(file.report);
     EXPECT_EQ(loops_of(file.mesh),
               loops_of(file.mesh.types[0] == CellType::triangle ? cube_triangles() : cube_squares));
+  }
+}
+
+// As other programs write it: read with a warning.
+TEST(SurfaceFiles, SmallFlawsAreWarnings) {
+  std::string plain = "solid part\n";
+  for (const Ids& t : cube_triangles()) {
+    plain += "facet normal 0 0 0\nouter loop\n";
+    for (const std::uint32_t v : t)
+      plain += fmt::format("vertex {} {} {}\n", cube_points[v][0], cube_points[v][1], cube_points[v][2]);
+    plain += "endloop\nendfacet\n";
+  }
+  const auto with = [&](const char* what, const char* instead) {
+    return std::regex_replace(plain, std::regex(what), instead);
+  };
+  std::string off, binary;
+  for (const SurfaceSample& s : cube_files()) {
+    if (off.empty() && s.content.starts_with("OFF\n")) off = "OFF" + s.content.substr(4);
+    if (binary.empty() && s.name.ends_with(".stl") && s.content.find('\0') != std::string::npos) binary = s.content;
+  }
+  const Folder folder;
+  for (const auto& [name, content, warning] :
+       std::vector<std::array<std::string, 3>>{{"a.stl", with("endloop", "end loop") + "endsolid part\n", "'end loop'"},
+                                               {"a.stl", with("endfacet", "end facet") + "end solid\n", "'end facet'"},
+                                               {"a.stl", plain + "endsolidpart\n", "right behind 'endsolid'"},
+                                               {"a.stl", binary + "the end", "7 bytes behind"},
+                                               {"a.off", off, "right behind 'OFF'"},
+                                               {"a.stl", "\xef\xbb\xbf" + plain + "endsolid part\n", ""},
+                                               {"a.off", "\xef\xbb\xbf" + off, "right behind 'OFF'"}}) {
+    SCOPED_TRACE(warning);
+    const MeshFile file = check_surface(folder.file(name, content));
+    ASSERT_TRUE(file.report.valid()) << report_text(file.report);
+    EXPECT_EQ(loops_of(file.mesh),
+              loops_of(file.mesh.types[0] == CellType::triangle ? cube_triangles() : cube_squares));
+    if (warning.empty()) {
+      EXPECT_TRUE(file.report.warnings.empty());
+      continue;
+    }
+    ASSERT_FALSE(file.report.warnings.empty());
+    EXPECT_NE(file.report.warnings[0].message.find(warning), std::string::npos) << file.report.warnings[0].message;
   }
 }
 

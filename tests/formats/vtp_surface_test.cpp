@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <set>
+#include <sstream>
 
 #include "dartcast/generators.hpp"
 #include "dartcast/mesh_check.hpp"
@@ -109,6 +110,25 @@ TEST(SimVascular, SurfacesNameThePatches) {
     EXPECT_EQ(patches, made.patches);
     EXPECT_EQ(patches.size(), 6U);
   }
+}
+
+TEST(SimVascular, NumbersAndPlacesAgreeAndAFaceHasOnePatch) {
+  const Folder folder;
+  write_case(folder / "case", true);
+  const std::filesystem::path surfaces = folder / "case" / "mesh-surfaces";
+  const std::string whole = slurp(surfaces / "xmin.vtp");
+  std::filesystem::copy_file(surfaces / "xmin.vtp", surfaces / "z_copy.vtp");
+  expect_parts(report_text(read_mesh(folder / "case").report), {"z_copy.vtp", "face 0 is in xmin.vtp, too"});
+  std::filesystem::remove(surfaces / "z_copy.vtp");
+  // The first two numbers change places.
+  const std::size_t ids = whole.find('>', whole.find("GlobalNodeID")) + 1;
+  std::istringstream in(whole.substr(ids));
+  std::string a, b;
+  in >> a >> b;
+  std::string swapped = whole;
+  swapped.replace(ids, swapped.find(b, ids + a.size()) + b.size() - ids, b + " " + a);
+  write_bytes(surfaces / "xmin.vtp", swapped);
+  expect_parts(report_text(read_mesh(folder / "case").report), {"xmin.vtp", "GlobalNodeID", "another point"});
 }
 
 TEST(SimVascular, FoldersThatAreNotRight) {

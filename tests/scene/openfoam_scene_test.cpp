@@ -173,6 +173,36 @@ TEST_F(OpenFoamScene, UniformAndPointFields) {
   EXPECT_EQ(samples("W").read(0), swayed(box().points, 2.0));
 }
 
+TEST_F(OpenFoamScene, FieldsWithMacrosAndIncludedFiles) {
+  write_case("case", {});
+  const FoamWriter writer(folder_ / "case", {});
+  const auto field = [&](const std::string& name, const std::string& text) {
+    writer.file("1/" + name, "volVectorField", text);
+  };
+  fs::create_directories(folder_ / "case/1/include");
+  write_bytes(folder_ / "case/1/include/values", "x 0.5; // m/s\nall (1 $x 3);\n#include \"more\"\nnever { x 1; }\n");
+  write_bytes(folder_ / "case/1/include/more", "y $x;");
+  const std::string include = "#include \"include/values\"\n#inputMode merge\n";
+  const std::string rest =
+      "boundaryField\n{\n  #includeEtc \"caseDicts/setConstraintTypes\"\n  a { value $internalField; }\n}\n";
+  field("V", include + "internalField uniform ($x ${y} 2);\n" + rest);
+  field("W", include + "whole uniform $all;\ninternalField $whole;\n" + rest);
+  field("unknown", "#includeEtc \"values\"\ninternalField uniform\n  $all;\n");
+  field("round", "a $b;\nb $a;\ninternalField uniform $a;\n");
+  const auto read = [&](const std::string& array) {
+    const std::string text = fmt::format("[motion]\nfield = {{ array = '{}', files = ['case'] }}\n", array);
+    return load(text).motion.field.samples.read(0).front();
+  };
+  EXPECT_EQ(read("V"), (Vec3{0.5, 0.5, 2}));
+  EXPECT_EQ(read("W"), (Vec3{1, 0.5, 3}));
+  expect_error("[motion]\nfield = { array = 'unknown', files = ['case'] }\n", {"1/unknown", "line 14", "'$all'"});
+  expect_error("[motion]\nfield = { array = 'round', files = ['case'] }\n", {"1/round", "'$"});
+  // Nobody asks for the others: what is wrong there is a warning.
+  const MeshFile file = read_mesh(folder_ / "case/1");
+  ASSERT_TRUE(file.report.valid());
+  EXPECT_EQ(file.report.warnings.size(), 2U);
+}
+
 TEST_F(OpenFoamScene, ATimeIsAMeshWithItsArrays) {
   write_case("case", {});
   const MeshFile file = read_mesh(folder_ / "case/10");

@@ -44,6 +44,7 @@ struct FoamMesh {
   struct Patch {
     std::string name, type;
     std::size_t size = 0;
+    std::string refers{};  ///< of a processorCyclic
   };
   using Zones = std::vector<std::pair<std::string, std::vector<std::int64_t>>>;
 
@@ -213,8 +214,9 @@ class FoamWriter {
     std::string text = std::to_string(mesh.patches.size()) + "\n(\n";
     std::size_t start = mesh.neighbour.size();
     for (const auto& p : mesh.patches) {
-      text += "  " + p.name + "\n  {\n    type " + p.type + ";\n    inGroups 1(" + p.type + ");\n    nFaces " +
-              std::to_string(p.size) + ";\n    startFace " + std::to_string(start) + ";\n  }\n";
+      text += "  " + p.name + "\n  {\n    type " + p.type + ";\n    inGroups 1(" + p.type + ");\n    " +
+              (p.refers.empty() ? "" : "referPatch " + p.refers + ";\n    ") + "nFaces " + std::to_string(p.size) +
+              ";\n    startFace " + std::to_string(start) + ";\n  }\n";
       start += p.size;
     }
     file("constant/polyMesh/boundary", "polyBoundaryMesh", text + ")\n");
@@ -255,6 +257,7 @@ class FoamPart {
     for (std::size_t other = 0; other <= *std::max_element(part.begin(), part.end()); ++other) {
       if (other != own) add_faces_to(other);
     }
+    add_cyclic();
     mesh_.cell_zones = own_zones(whole.cell_zones, cell_number_);
     mesh_.face_zones = own_zones(whole.face_zones, face_number_);
   }
@@ -283,10 +286,23 @@ class FoamPart {
       mesh_.patches.push_back({patch.name, patch.type, 0});
       for (std::size_t f = first; f < first + patch.size; ++f) {
         if (part_of(whole_.owner[f]) != own_) continue;
+        if (patch.type == "cyclic") {
+          cyclic_[patch.name].push_back(f);
+          continue;
+        }
         add_face(f, false);
         ++mesh_.patches.back().size;
       }
       first += patch.size;
+    }
+  }
+
+  // As if the other half of each cyclic patch were on another processor.
+  void add_cyclic() {
+    for (const auto& [name, faces] : cyclic_) {
+      for (const std::size_t f : faces) add_face(f, false);
+      mesh_.patches.push_back(
+          {"procBoundary" + std::to_string(own_) + "through" + name, "processorCyclic", faces.size(), name});
     }
   }
 
@@ -337,6 +353,7 @@ class FoamPart {
   std::size_t own_;
   FoamMesh mesh_;
   std::vector<std::int64_t> cells_, points_, faces_;  // their labels in the whole
+  std::map<std::string, std::vector<std::size_t>> cyclic_;
   Numbers cell_number_, point_number_, face_number_;
 };
 

@@ -50,7 +50,7 @@ TEST(Surfaces, AreRefusedWithAReason) {
   mesh.connectivity[5] = 8;
   EXPECT_EQ(first_defect(mesh), "id_out_of_range");
   mesh = good;
-  mesh.connectivity[0] = mesh.connectivity[1];
+  mesh.connectivity[0] = mesh.connectivity[2];
   EXPECT_EQ(first_defect(mesh), "repeated_corner");
   mesh = good;
   mesh.offsets[2] = 7;

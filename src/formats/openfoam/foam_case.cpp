@@ -208,30 +208,52 @@ constexpr std::array<FieldClass, 8> field_classes = {{{"volScalarField", true, 1
                                                       {"pointSymmTensorField", false, 6},
                                                       {"pointTensorField", false, 9}}};
 
+/// Moves to the value of internalField; false where there is none. Collects the values that stand before it, also in
+/// files that this one includes. Other directives are passed over: their values are missed where they are needed.
+bool find_internal_field(FoamFile& file, const fs::path& folder, std::uint64_t max_memory, FoamMacros& values,
+                         unsigned depth = 0) {
+  constexpr unsigned deepest = 10;
+  while (file.next() != '\0') {
+    if (file.next() == '#') {
+      const std::string name = file.directive();
+      if (name.empty() || depth == deepest || !has_foam_file(folder, name)) continue;
+      FoamFile included(folder, name, max_memory, true);
+      find_internal_field(included, (folder / name).parent_path(), max_memory, values, depth + 1);
+    } else if (file.next() == '$') {
+      file.skip_entry();
+    } else {
+      const std::string key(file.word("a key"));
+      if (key == "internalField" && depth == 0) return true;
+      values[key] = file.entry();
+    }
+  }
+  return false;
+}
+
 std::vector<double> internal_field(const fs::path& folder, std::string_view name, std::size_t components,
                                    std::size_t items, std::uint64_t max_memory) {
   FoamFile file(folder, name, max_memory);
-  while (file.next() != '\0') {
-    if (file.word("a key") != "internalField") {
-      file.skip_entry();
-      continue;
-    }
-    const std::string_view kind = file.word("'uniform' or 'nonuniform'");
-    if (kind == "nonuniform") {
-      std::vector<double> values = file.numbers("values", components);
-      if (values.size() != components * items)
-        file.fail(fmt::format("{} values for {} cells or points", values.size() / components, items));
-      return values;
-    }
-    if (kind != "uniform") file.fail(fmt::format("internalField {}: it must be uniform or nonuniform", kind));
-    std::vector<double> one;
-    if (components > 1) file.expect('(', "before the value of all");
-    for (std::size_t k = 0; k < components; ++k) one.push_back(file.number("a number"));
-    std::vector<double> values;
-    for (std::size_t i = 0; i < items; ++i) values.insert(values.end(), one.begin(), one.end());
+  FoamMacros macros;
+  if (!find_internal_field(file, folder, max_memory, macros)) file.fail("there is no internalField");
+  file.expand(macros);
+  const std::string kind(file.word("'uniform' or 'nonuniform'"));
+  if (kind == "nonuniform") {
+    std::vector<double> values = file.numbers("values", components);
+    if (values.size() != components * items)
+      file.fail(fmt::format("{} values for {} cells or points", values.size() / components, items));
     return values;
   }
-  file.fail("there is no internalField");
+  if (kind != "uniform") file.fail(fmt::format("internalField {}: it must be uniform or nonuniform", kind));
+  std::vector<double> one;
+  file.expand(macros);
+  if (components > 1) file.expect('(', "before the value of all");
+  for (std::size_t k = 0; k < components; ++k) {
+    file.expand(macros);
+    one.push_back(file.number("a number"));
+  }
+  std::vector<double> values;
+  for (std::size_t i = 0; i < items; ++i) values.insert(values.end(), one.begin(), one.end());
+  return values;
 }
 
 }  // namespace

@@ -108,7 +108,7 @@ FoamFile::FoamFile(std::string name, std::string bytes) : name_(std::move(name))
   read_header();
 }
 
-FoamFile::FoamFile(const fs::path& folder, std::string_view name, std::uint64_t max_memory) {
+FoamFile::FoamFile(const fs::path& folder, std::string_view name, std::uint64_t max_memory, bool included) {
   const fs::path path = found_file(folder, name);
   name_ = short_name(path);
   try {
@@ -116,7 +116,7 @@ FoamFile::FoamFile(const fs::path& folder, std::string_view name, std::uint64_t 
   } catch (const InvalidMesh& e) {
     throw InvalidMesh(fmt::format("{}: {}", name_, e.what()));
   }
-  read_header();
+  if (!included || (next() == 'F' && std::string_view(bytes_).substr(at_).starts_with("FoamFile"))) read_header();
 }
 
 void FoamFile::read_header() {
@@ -231,6 +231,45 @@ void FoamFile::skip_entry() {
     if (c == '(' || c == '{') ++depth;
     if ((c == ')' || c == '}') && depth-- == 0) fail(fmt::format("'{}' closes what was not opened", c));
     if (depth == 0 && c == (block ? '}' : ';')) return;
+  }
+}
+
+std::string FoamFile::entry() {
+  constexpr std::size_t longest = 4096;
+  const bool block = next() == '{';
+  const std::size_t begin = at_;
+  skip_entry();
+  return block || at_ - begin > longest ? std::string() : bytes_.substr(begin, at_ - 1 - begin);
+}
+
+std::string FoamFile::directive() {
+  const std::size_t end = std::min(bytes_.find('\n', at_), bytes_.size());
+  const std::string_view line = std::string_view(bytes_).substr(at_, end - at_);
+  at_ = end;
+  const std::size_t open = line.find('"');
+  const std::string_view name = line.substr(0, line.find_first_of(" \t\""));
+  if (open == std::string_view::npos || (name != "#include" && name != "#includeIfPresent" && name != "#sinclude"))
+    return {};
+  const std::string_view path = line.substr(open + 1, line.find('"', open + 1) - open - 1);
+  return path.starts_with('/') || path.find_first_of("$<~") != std::string_view::npos ? std::string()
+                                                                                      : std::string(path);
+}
+
+void FoamFile::expand(const FoamMacros& values) {
+  constexpr unsigned most = 100;  // more stand for themselves
+  for (unsigned n = 0; next() == '$'; ++n) {
+    std::size_t end = at_ + 1;
+    while (end < bytes_.size() && (!ends_word(bytes_[end]) || (bytes_[end] == '{' && end == at_ + 1))) ++end;
+    std::string_view name = std::string_view(bytes_).substr(at_ + 1, end - at_ - 1);
+    if (name.starts_with('{')) {
+      name.remove_prefix(1);
+      if (end < bytes_.size() && bytes_[end] == '}') ++end;
+    }
+    const auto found = values.find(name);
+    if (found == values.end() || found->second.empty() || n == most)
+      fail(fmt::format("'${}' has no plain value in this file or in one that it includes: write the value here",
+                       printable(name)));
+    bytes_.replace(at_, end - at_, found->second);
   }
 }
 

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -34,12 +36,16 @@ struct FoamLists {
   }
 };
 
+/// The values of entries, by name.
+using FoamMacros = std::map<std::string, std::string, std::less<>>;
+
 /// Reads a file from its first byte to its last. Errors are InvalidMesh, and name the file, and the line, or in binary
 /// files the byte.
 class FoamFile {
  public:
-  /// Reads the file, or the file with .gz, and its header FoamFile { ... }. `max_memory` as ReadOptions.
-  FoamFile(const std::filesystem::path& folder, std::string_view name, std::uint64_t max_memory);
+  /// Reads the file, or the file with .gz, and its header FoamFile { ... }, which a file to be included may lack.
+  /// `max_memory` as ReadOptions.
+  FoamFile(const std::filesystem::path& folder, std::string_view name, std::uint64_t max_memory, bool included = false);
 
   /// Takes bytes that have been read; `name` for messages.
   FoamFile(std::string name, std::string bytes);
@@ -58,6 +64,12 @@ class FoamFile {
   double number(std::string_view what);
   /// The rest of an entry, whose key has been read: up to its ';', or a block in braces.
   void skip_entry();
+  /// The same, and the text of the value; empty for a block and a long one.
+  std::string entry();
+  /// Takes a line that starts with '#'. The file that it includes, if that is named by a plain relative path; else empty.
+  std::string directive();
+  /// Where a macro is next, $NAME or ${NAME}, puts its value in its place. Throws where it has none.
+  void expand(const FoamMacros& values);
 
   // Lists: `N ( items )`, `N { item }`, `( items )`, each behind the name of a type or not; binary `N` and the bytes in
   // parentheses.

@@ -1,5 +1,6 @@
 // The addressing files of each part say which label of the whole a point, face or cell has. A face between two parts is
-// in both: in the part of its owner with a positive sign, in the other one turned over, with a negative sign.
+// in both: in the part of its owner with a positive sign, in the other one turned over, with a negative sign. The two faces
+// of a cyclic pair on two parts are in a patch of each (processorCyclic), and belong to the patch that this one refers to.
 #include "formats/openfoam/merge_parts.hpp"
 
 #include <fmt/format.h>
@@ -125,8 +126,14 @@ class Whole {
     if (mesh.neighbour[f] != none)
       set_cell(part, turned ? mesh_.owner[label] : mesh_.neighbour[label], mesh.neighbour[f], label);
     if (places_[label].part == nullptr || places_[label].turned) places_[label] = {&part, f, turned};
-    if (mesh.patch[f] == none || between_parts(mesh.patches[mesh.patch[f]])) return;
-    mesh_.patch[label] = patch_of(mesh.patches[mesh.patch[f]]);
+    if (mesh.patch[f] == none) return;
+    const PolyPatch& patch = mesh.patches[mesh.patch[f]];
+    if (!between_parts(patch)) mesh_.patch[label] = patch_of(patch);
+    if (patch.refers.empty()) return;
+    const auto whole = patches_.find(patch.refers);
+    if (whole == patches_.end())
+      refuse(part, fmt::format("the patch {} refers to {}, which is none", patch.name, patch.refers));
+    mesh_.patch[label] = whole->second;
   }
 
   void set_cell(const Part& part, std::uint32_t& of_face, std::uint32_t cell, std::size_t label) const {

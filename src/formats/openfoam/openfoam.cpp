@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <utility>
 
 #include "dartcast/error.hpp"
@@ -38,9 +39,15 @@ std::vector<double> selected(std::vector<double> values, std::size_t components,
 }
 
 void add_fields(const FoamCase& from, std::size_t cells, std::size_t points, std::uint64_t max_memory,
-                const std::vector<std::uint32_t>& kept_points, MeshData& mesh) {
+                const std::vector<std::uint32_t>& kept_points, ParsedMesh& parsed) {
+  MeshData& mesh = parsed.mesh;
   for (const std::string& name : from.files()) {
-    auto field = from.field(name, cells, points, max_memory);
+    std::optional<FoamCase::Field> field;
+    try {
+      field = from.field(name, cells, points, max_memory);
+    } catch (const InvalidMesh& e) {
+      parsed.warnings.push_back({unread_field + name, 1, {}, fmt::format("it is left out: {}", e.what())});
+    }
     if (!field) continue;
     DataArray array{name, field->components, {}};
     array.values =
@@ -79,7 +86,7 @@ ParsedMesh parse_openfoam(const fs::path& path, const ReadOptions& options) {
   const std::size_t points = mesh.points.size();
   std::vector<std::uint32_t> kept;
   ParsedMesh parsed = has_empty_faces(mesh) ? mesh_in_plane(mesh, kept) : mesh_in_space(std::move(mesh));
-  if (from.names_time()) add_fields(from, cells, points, options.max_memory, kept, parsed.mesh);
+  if (from.names_time()) add_fields(from, cells, points, options.max_memory, kept, parsed);
   parsed.format = from.parts().empty() ? "OpenFOAM polyMesh"
                                        : fmt::format("OpenFOAM polyMesh, of {} processors", from.parts().size());
   finish(parsed);

@@ -47,6 +47,7 @@ PatchEntry read_patch(FoamFile& file) {
   while (!file.take('}')) {
     const std::string key(file.word("a key of a patch"));
     if (key == "type") entry.patch.type = file.word("the type of a patch");
+    if (key == "referPatch") entry.patch.refers = file.word("the name of a patch");
     if (key == "nFaces") entry.size = file.integer("the number of faces", 0, no_label_limit);
     if (key == "startFace") entry.start = file.integer("the first face", 0, no_label_limit);
     file.skip_entry();

@@ -17,7 +17,8 @@ inline constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
 struct PolyPatch {
   std::string name;
-  std::string type;  ///< as "wall", "patch", "empty", "cyclic", "processor"
+  std::string type;      ///< as "wall", "patch", "empty", "cyclic", "processor"
+  std::string refers{};  ///< processorCyclic: the patch of the whole that its faces are of
 };
 
 struct PolyZone {

@@ -39,6 +39,8 @@ struct VtkArray {
   std::vector<std::string> texts;  ///< one each
 
   [[nodiscard]] std::size_t items() const { return is_text ? texts.size() : values.size() / components; }
+  /// Keeps these rows, which ascend. Precondition: it holds numbers.
+  void take_rows(std::span<const std::uint32_t> rows);
 };
 
 /// The first array of this name; null where there is none.
@@ -52,8 +54,15 @@ struct VtkGrid {
   std::vector<std::uint32_t> connectivity;
   std::vector<VtkArray> point_data;
   std::vector<VtkArray> cell_data;
-  std::vector<VtkArray> field;  ///< of texts alone
+  std::vector<VtkArray> field;      ///< of texts alone
+  std::vector<std::size_t> pieces;  ///< the first point of each piece; one or none: the grid is in one
 };
+
+/// Adds the pieces of another file, as they are. Throws InvalidMesh where it has other arrays.
+void add_pieces(VtkGrid&& from, VtkGrid& to);
+
+/// Points of different pieces at one place become the first of them. Cost: n log n.
+void join_pieces(VtkGrid& grid);
 
 /// The points of a file that the numbers of one of its pieces name.
 struct PointRange {

@@ -7,6 +7,7 @@
 
 #include "dartcast/error.hpp"
 #include "formats/file_text.hpp"
+#include "formats/read_memory.hpp"
 #include "formats/second_order.hpp"
 #include "formats/vtk.hpp"
 #include "formats/vtk/vtk_grid.hpp"
@@ -119,23 +120,18 @@ void add_cell(const VtkGrid& grid, std::size_t c, std::vector<std::uint32_t>& co
   }
 }
 
+/// Not 0 at cells that another piece has, too, and at hidden ones: they are left out.
+constexpr const char* ghost_array = "vtkGhostType";
+
 Places copy_cells(const VtkGrid& grid, ParsedMesh& parsed) {
   Places places;
   std::vector<std::uint32_t> corners;
-  for (std::size_t c = 0; c < grid.types.size(); ++c) add_cell(grid, c, corners, parsed, places);
-  return places;
-}
-
-/// The rows of an array, which ascend; the array itself where they are all of it.
-std::vector<double> take_rows(VtkArray& array, const std::vector<std::uint32_t>& rows) {
-  const std::size_t n = array.components;
-  if (rows.size() < array.items()) {
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      std::copy_n(array.values.begin() + static_cast<std::ptrdiff_t>(rows[i] * n), n,
-                  array.values.begin() + static_cast<std::ptrdiff_t>(i * n));
-    array.values.resize(rows.size() * n);
+  const VtkArray* ghosts = find_array(grid.cell_data, ghost_array);
+  for (std::size_t c = 0; c < grid.types.size(); ++c) {
+    if (ghosts == nullptr || ghosts->is_text || ghosts->values[c * ghosts->components] == 0.0)
+      add_cell(grid, c, corners, parsed, places);
   }
-  return std::move(array.values);
+  return places;
 }
 
 /// The cells that are free, by the array `free` of a file that dartcast has written. Other programs' arrays of this name
@@ -161,8 +157,9 @@ ParsedMesh mesh_of(VtkGrid grid, std::string format, const ReadOptions& options)
   parsed.linearise = options.linearise;
   parsed.format = std::move(format);
   MeshData& mesh = parsed.mesh;
+  check_items(grid.point_data, grid.points.size());
+  join_pieces(grid);
   mesh.points = std::move(grid.points);
-  check_items(grid.point_data, mesh.points.size());
   check_items(grid.cell_data, grid.types.size());
   Places places = copy_cells(grid, parsed);
   if (take_plane(parsed)) {
@@ -174,8 +171,9 @@ ParsedMesh mesh_of(VtkGrid grid, std::string format, const ReadOptions& options)
     if (!a.is_text) mesh.point_data.push_back({std::move(a.name), a.components, std::move(a.values)});
   }
   for (VtkArray& a : grid.cell_data) {
-    if (!a.is_text && !(patch_is_ours && a.name == "patch"))
-      mesh.cell_data.push_back({std::move(a.name), a.components, take_rows(a, places.cells)});
+    if (a.is_text || (patch_is_ours && a.name == "patch") || a.name == ghost_array) continue;
+    a.take_rows(places.cells);
+    mesh.cell_data.push_back({std::move(a.name), a.components, std::move(a.values)});
   }
   take_free(grid, mesh);
   const bool anything = !mesh.types.empty() || parsed.second_order.count + parsed.unsupported.count > 0;
@@ -190,6 +188,20 @@ ParsedMesh mesh_of(VtkGrid grid, std::string format, const ReadOptions& options)
 
 ParsedMesh parse_vtu(const std::filesystem::path& /*path*/, std::string_view content, const ReadOptions& options) {
   return mesh_of(read_vtk_xml_grid(content, "UnstructuredGrid", options.max_memory), "VTK XML (.vtu)", options);
+}
+
+ParsedMesh parse_vtu_pieces(std::span<const std::filesystem::path> pieces, const ReadOptions& options) {
+  VtkGrid grid;
+  for (const std::filesystem::path& piece : pieces) {
+    try {
+      check_memory(memory_of_vtk({.file = file_bytes(piece)}), options.max_memory);
+      const std::string content = read_bytes(piece);
+      add_pieces(read_vtk_xml_grid(content, "UnstructuredGrid", options.max_memory), grid);
+    } catch (const InvalidMesh& e) {
+      throw InvalidMesh(fmt::format("{}: {}", piece.filename().string(), e.what()));
+    }
+  }
+  return mesh_of(std::move(grid), "VTK XML, in pieces (.pvtu)", options);
 }
 
 ParsedMesh parse_legacy_vtk(const std::filesystem::path& /*path*/, std::string_view content,

@@ -166,6 +166,7 @@ class GridReader {
  private:
   void add_piece(const VtkXmlPiece& piece) {
     const PointRange range{grid_.points.size(), static_cast<std::size_t>(piece.points())};
+    grid_.pieces.push_back(grid_.points.size());
     add_points(piece);
     add_data(piece, "PointData", piece.points(), grid_.point_data);
     add_data(piece, "CellData", piece.cells(), grid_.cell_data);

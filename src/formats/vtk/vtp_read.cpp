@@ -38,6 +38,7 @@ PointFile read_vtp_points(std::string_view content, std::uint64_t max_memory) {
 
 VtpFaces read_vtp_faces(std::string_view content, std::uint64_t max_memory) {
   VtkGrid grid = read_vtk_xml_grid(content, "PolyData", max_memory);
+  join_pieces(grid);
   VtpFaces out{std::move(grid.points), {}, {}, {}};
   const VtkArray* groups = groups_in(grid);
   for (std::size_t c = 0; c < grid.types.size(); ++c) {

@@ -15,6 +15,7 @@ std::uint64_t mixed(std::uint64_t hash, std::uint64_t value) {
 
 VtuPoints read_vtu_points(std::string_view content, std::uint64_t max_memory) {
   VtkGrid grid = read_vtk_xml_grid(content, "UnstructuredGrid", max_memory, false);
+  join_pieces(grid);
   std::uint64_t hash = grid.types.size();
   for (const std::uint8_t type : grid.types) hash = mixed(hash, type);
   for (const std::size_t offset : grid.offsets) hash = mixed(hash, offset);
