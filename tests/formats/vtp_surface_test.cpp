@@ -114,7 +114,7 @@ TEST(SimVascular, SurfacesNameThePatches) {
 
 TEST(SimVascular, NumbersAndPlacesAgreeAndAFaceHasOnePatch) {
   const Folder folder;
-  write_case(folder / "case", true);
+  write_simvascular_case(folder / "case", tetrahedra(), true);
   const std::filesystem::path surfaces = folder / "case" / "mesh-surfaces";
   const std::string whole = slurp(surfaces / "xmin.vtp");
   std::filesystem::copy_file(surfaces / "xmin.vtp", surfaces / "z_copy.vtp");
