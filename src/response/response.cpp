@@ -122,19 +122,15 @@ struct LibraryResponse {
     const Vec3 lead = acceleration.value * (acceleration.duration * (time - 0.5));
     const Vec3 relative = rebound(velocity - wall_velocity, met, lead);
     velocity = wall_velocity + relative;
-    if (acceleration.value != Vec3{}) return {relative * ((1.0 - time) * acceleration.duration), true};
+    if (acceleration.value != Vec3{}) {
+      const Vec3 way = relative * ((1.0 - time) * acceleration.duration);
+      return {is_finite(way) ? way : Vec3{}, true};  // a step never throws for a velocity
+    }
     return {rebound(contact.unused, met, {}), true};
   }
 
-  // A step never throws for it: where a velocity is not finite, the particle stays at the wall.
   AfterContact operator()(const Contact& contact, std::span<const WallHit> walls,
                           std::span<const WallHit> earlier) const {
-    const AfterContact next = answer(contact, walls, earlier);
-    return is_finite(next.displacement) ? next : AfterContact{};
-  }
-
-  [[nodiscard]] AfterContact answer(const Contact& contact, std::span<const WallHit> walls,
-                                    std::span<const WallHit> earlier) const {
     ParticleStatus& fate = fates[contact.particle];
     if (fate != ParticleStatus::alive) return {};
     const Vec3 wall_velocity = contact.wall_displacement * (1.0 / dt);

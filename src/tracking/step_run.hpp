@@ -39,6 +39,18 @@ struct RunOf {
   [[no_unique_address]] Recorder recorder{};
 };
 
+// No test can be made out of the exact range: the particle stops where it is. Returns that place.
+template <class Run>
+[[gnu::cold]] Vec3 stop_out_of_range(Run& run, const Vec3& unused) {
+  if (!is_finite(unused))
+    throw InvalidArgument("the response for particle " + std::to_string(run.particle) +
+                          " returned a displacement that is not finite");
+  ++run.counters.unfinished;
+  run.result.stopped = true;
+  run.result.unused = unused;
+  return run.state.position;
+}
+
 // The base of recorders whose steps call the response at each contact, and do not wait there for an answer.
 struct NeverWaits {
   static constexpr bool pausing = false;
@@ -72,10 +84,6 @@ class StepPart {
   // Walks to q, with the contacts on the way. Returns the displacement still planned after this interval.
   Vec3 move(Run& run, Vec3 q, TimeInterval interval, const PartialStep* partial = nullptr) const {
     while (q != run.state.position) {
-      if (!in_exact_range(q)) [[unlikely]] {
-        stop(run, q - run.state.position);
-        return {};
-      }
       if constexpr (Recorder::travels) {
         if (partial == nullptr && run.recorder.leaves_to_walk(run, q, interval)) return {};
       }
@@ -117,14 +125,8 @@ class StepPart {
   }
 
  private:
-  static void stop(Run& run, const Vec3& unused) {
-    ++run.counters.unfinished;
-    run.result.stopped = true;
-    run.result.unused = unused;
-  }
-
   // The target after a contact. Sets the displacement planned after the interval.
-  [[gnu::always_inline]] Vec3 redirect(const Run& run, const Contact& contact, const AfterContact& next,
+  [[gnu::always_inline]] Vec3 redirect(Run& run, const Contact& contact, const AfterContact& next,
                                        TimeInterval& interval) const {
     const double share = interval.end < 1.0 ? (interval.end - interval.begin) / (1.0 - interval.begin) : 1.0;
     interval.later = next.displacement * (1.0 - share) + contact.wall_displacement * (1.0 - interval.end);
@@ -212,14 +214,11 @@ class StepPart {
   }
 
   // The target after a contact. Along walls, it is lifted off the planes that rounding put it behind. It is not lifted
-  // off planes that the response wants it to be behind: those walls are met again. It may be out of the exact range: then
-  // the particle stops here (move()), because no test can be made there.
-  [[nodiscard]] Vec3 aim(const Run& run, const Contact& contact, const AfterContact& next, double share) const {
-    if (!is_finite(next.displacement))
-      throw InvalidArgument("the response for particle " + std::to_string(run.particle) +
-                            " returned a displacement that is not finite");
+  // off planes that the response wants it to be behind: those walls are met again.
+  [[nodiscard]] Vec3 aim(Run& run, const Contact& contact, const AfterContact& next, double share) const {
     Vec3 q = flushed(run.state.position + next.displacement * share);
-    if (!next.along || q == run.state.position || !in_exact_range(q)) return q;
+    if (!in_exact_range(q)) return stop_out_of_range(run, next.displacement);
+    if (!next.along || q == run.state.position) return q;
     const Vec3& d = next.displacement;
     const double slack = along_share * std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
     WallPlanes<N> planes;
@@ -377,6 +376,11 @@ class MovingStep {
       if (!own_motion) continue;
       const auto [share, end] = next_part(here, planned, parts - j + 1);
       const Vec3 q = j == parts && run.contact_count == 0 ? target : end;
+      if (!in_exact_range(q)) {
+        own_motion = false;
+        stop_out_of_range(run, planned);
+        continue;
+      }
       planned =
           StepPart<Between, N, Recorder>(complex_, true, to, options_, respond_)
               .move(run, q, {static_cast<double>(j - 1) / parts, static_cast<double>(j) / parts, planned - share});
