@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cstdlib>
 #include <fstream>
@@ -13,17 +14,24 @@
 #include "dartcast/error.hpp"
 
 namespace dartcast {
-namespace {
 
 bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
-/// For messages: a word cut short, without bytes that a terminal would take for commands.
-std::string shown(std::string_view word) {
+std::string printable(std::string_view word) {
   std::string out(word.substr(0, 40));
   std::replace_if(
       out.begin(), out.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
   return out;
 }
+
+std::string in_lower_case(std::string_view word) {
+  std::string out(word);
+  std::transform(out.begin(), out.end(), out.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return out;
+}
+
+namespace {
 
 std::string_view without_plus(std::string_view word) {
   return word.size() > 1 && word[0] == '+' && word[1] != '-' ? word.substr(1) : word;
@@ -118,10 +126,10 @@ std::int64_t FileText::integer(std::string_view what, std::int64_t low, std::int
   std::int64_t value = 0;
   const auto [end, error] = std::from_chars(found.data(), found.data() + found.size(), value);
   if (error == std::errc::invalid_argument || end != found.data() + found.size()) {
-    fail(fmt::format("'{}' is not a whole number, where {} should stand", shown(found), what));
+    fail(fmt::format("'{}' is not a whole number, where {} should stand", printable(found), what));
   }
   if (error != std::errc() || value < low || value > high) {
-    fail(fmt::format("{} is out of range as {}", shown(found), what));
+    fail(fmt::format("{} is out of range as {}", printable(found), what));
   }
   return value;
 }
@@ -132,7 +140,7 @@ Real FileText::number(std::string_view what) {
   Real value = 0;
   const auto [end, error] = std::from_chars(found.data(), found.data() + found.size(), value);
   if (error == std::errc::invalid_argument || end != found.data() + found.size()) {
-    fail(fmt::format("'{}' is not a number, where {} should stand", shown(found), what));
+    fail(fmt::format("'{}' is not a number, where {} should stand", printable(found), what));
   }
   if (error != std::errc::result_out_of_range) return value;
   if constexpr (sizeof(Real) == sizeof(float)) return std::strtof(std::string(found).c_str(), nullptr);
@@ -162,7 +170,7 @@ std::string_view FileText::raw(std::size_t n, std::string_view what) {
 
 void FileText::skip_past(std::string_view mark) {
   const std::size_t found = text_.find(mark, position_);
-  if (found == std::string_view::npos) fail(fmt::format("'{}' is missing; the file is truncated", shown(mark)));
+  if (found == std::string_view::npos) fail(fmt::format("'{}' is missing; the file is truncated", printable(mark)));
   position_ = found + mark.size();
 }
 

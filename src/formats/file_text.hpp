@@ -22,6 +22,13 @@ void refuse_zeros(const std::filesystem::path& path);
 /// The content behind a byte-order mark of UTF-8. Throws InvalidMesh where it starts with one of UTF-16.
 std::string_view without_byte_order_mark(std::string_view content);
 
+bool is_space(char c);
+
+/// For messages: a word cut short, without bytes that a terminal would take for commands.
+std::string printable(std::string_view word);
+
+std::string in_lower_case(std::string_view word);
+
 /// The content from its first byte that is not white space.
 std::string_view from_first_word(std::string_view content);
 

@@ -4,9 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <cctype>
-
+#include "formats/file_text.hpp"
 #include "formats/gmsh.hpp"
 #include "formats/medit.hpp"
 #include "formats/mesh_pieces.hpp"
@@ -76,12 +74,7 @@ std::span<const SurfaceFormat> surface_formats() {
   return formats;
 }
 
-std::string ending_of(const fs::path& path) {
-  std::string ending = path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
-}
+std::string ending_of(const fs::path& path) { return in_lower_case(path.extension().string()); }
 
 const FormatEnding* mesh_ending_of(const fs::path& path) {
   const std::string ending = ending_of(path);

@@ -8,6 +8,7 @@
 
 #include "dartcast/error.hpp"
 #include "formats/gmsh.hpp"
+#include "mesh/cell_types.hpp"
 
 namespace dartcast {
 namespace {
@@ -29,8 +30,6 @@ int element_type(CellType type, std::size_t corners) {
 
 /// The same, for an edge, a triangle or a quadrilateral.
 int face_type(std::size_t corners) { return static_cast<int>(corners) - 1; }
-
-std::int32_t region_of(const MeshData& mesh, std::size_t c) { return mesh.regions.empty() ? 0 : mesh.regions[c]; }
 
 /// Elements in the order of the file: patch faces, then cells.
 struct Element {

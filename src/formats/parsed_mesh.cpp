@@ -5,14 +5,9 @@
 #include <span>
 #include <utility>
 
+#include "mesh/cell_types.hpp"
+
 namespace dartcast {
-namespace {
-
-CellType plane_type(std::size_t corners) {
-  return corners == 3 ? CellType::triangle : (corners == 4 ? CellType::quadrilateral : CellType::polygon);
-}
-
-}  // namespace
 
 bool take_plane(ParsedMesh& parsed) {
   MeshData& mesh = parsed.mesh;

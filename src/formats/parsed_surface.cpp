@@ -8,16 +8,13 @@
 
 #include "dartcast/error.hpp"
 #include "formats/parsed_mesh.hpp"
+#include "mesh/cell_types.hpp"
 #include "mesh/polyhedron.hpp"
 
 namespace dartcast {
 namespace {
 
 constexpr std::size_t surface_face_limit = std::size_t{1} << 29U;
-
-CellType surface_face_type(std::size_t corners) {
-  return corners == 3 ? CellType::triangle : (corners == 4 ? CellType::quadrilateral : CellType::polygon);
-}
 
 [[noreturn]] void fail_in_surface(const FileText& text, bool binary, std::string_view message) {
   if (binary) text.fail_at_byte(message);
@@ -42,7 +39,7 @@ void ParsedSurface::add_face(std::span<const std::uint32_t> corners, const FileT
                                 polyhedron_limit));
   }
   if (number >= surface_face_limit) fail_in_surface(text, binary, "more than 2^29 faces");
-  mesh.add_cell(surface_face_type(corners.size()), corners);
+  mesh.add_cell(plane_type(corners.size()), corners);
   mesh.regions.push_back(region_);
   if (short_faces.count > 0) mesh.source.push_back(static_cast<std::uint32_t>(number));
 }

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cctype>
 #include <cstdint>
 #include <numeric>
 #include <string>
@@ -25,13 +24,6 @@ namespace {
 constexpr std::size_t stl_head = 84;      // bytes: 80 of a comment, 4 of the number of triangles
 constexpr std::size_t stl_triangle = 50;  // bytes: a normal and three corners of three floats, 2 bytes more
 
-std::string lower_stl(std::string_view word) {
-  std::string out(word);
-  std::transform(out.begin(), out.end(), out.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return out;
-}
-
 std::uint64_t announced_triangles(std::string_view content) {
   return raw_number<std::uint32_t>(content.substr(stl_head - 4, 4), std::endian::little);
 }
@@ -41,7 +33,8 @@ bool is_text_stl(std::string_view content) {
   if (content.size() >= stl_head && content.size() == stl_head + stl_triangle * announced_triangles(content))
     return false;
   const std::string_view body = from_first_word(without_byte_order_mark(content));
-  return lower_stl(body.substr(0, 5)) == "solid" && content.substr(0, stl_head).find('\0') == std::string_view::npos;
+  return in_lower_case(body.substr(0, 5)) == "solid" &&
+         content.substr(0, stl_head).find('\0') == std::string_view::npos;
 }
 
 /// All corners as points, three a triangle; equal ones are joined at the end.
@@ -77,13 +70,13 @@ void read_binary_stl(std::string_view content, ParsedSurface& surface) {
 }
 
 void expect_stl(FileText& text, std::string_view wanted) {
-  if (lower_stl(text.word(fmt::format("'{}'", wanted))) != wanted)
+  if (in_lower_case(text.word(fmt::format("'{}'", wanted))) != wanted)
     text.fail(fmt::format("'{}' should stand here", wanted));
 }
 
 /// As "endloop"; some programs write "end loop".
 void expect_stl_end(FileText& text, std::string_view what, ParsedSurface& surface) {
-  if (lower_stl(text.peek()) != "end") return expect_stl(text, fmt::format("end{}", what));
+  if (in_lower_case(text.peek()) != "end") return expect_stl(text, fmt::format("end{}", what));
   text.word("'end'");
   expect_stl(text, what);
   surface.warn(fmt::format("'end {0}' stands in place of 'end{0}'", what));
@@ -91,7 +84,7 @@ void expect_stl_end(FileText& text, std::string_view what, ParsedSurface& surfac
 
 /// The end of a solid, to the end of its line. None where a facet follows.
 bool take_stl_end(FileText& text, ParsedSurface& surface) {
-  const std::string word = lower_stl(text.peek());
+  const std::string word = in_lower_case(text.peek());
   if (word == "end") {
     expect_stl_end(text, "solid", surface);
   } else if (!word.starts_with("endsolid")) {

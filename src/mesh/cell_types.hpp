@@ -1,6 +1,7 @@
 // The faces of the standard cell types, as corner numbers, counterclockwise seen from the outside.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -11,6 +12,16 @@ namespace dartcast {
 
 /// Number of corners of a standard type; 0 for a polyhedron or a polygon.
 std::size_t corner_count(CellType type);
+
+/// The type of a cell of the plane with so many corners.
+constexpr CellType plane_type(std::size_t corners) {
+  return corners == 3 ? CellType::triangle : corners == 4 ? CellType::quadrilateral : CellType::polygon;
+}
+
+/// The tag of a cell's region.
+inline std::int32_t region_of(const MeshData& mesh, std::size_t c) {
+  return mesh.regions.empty() ? 0 : mesh.regions[c];
+}
 
 /// Faces of a standard type as lists of corner numbers in the order of MeshData. Empty for a polyhedron or a
 /// polygon.

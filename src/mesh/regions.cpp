@@ -8,11 +8,10 @@
 
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_selection.hpp"
+#include "mesh/cell_types.hpp"
 
 namespace dartcast {
 namespace {
-
-std::int32_t tag_at(const MeshData& mesh, std::size_t c) { return mesh.regions.empty() ? 0 : mesh.regions[c]; }
 
 std::string name_of(const MeshData& mesh, std::int32_t tag) {
   const auto name = mesh.region_names.find(tag);
@@ -22,7 +21,7 @@ std::string name_of(const MeshData& mesh, std::int32_t tag) {
 // The tags of the named regions.
 std::set<std::int32_t> tags_of(const MeshData& mesh, std::span<const std::string> regions) {
   std::set<std::int32_t> present;
-  for (std::size_t c = 0; c < mesh.cell_count(); ++c) present.insert(tag_at(mesh, c));
+  for (std::size_t c = 0; c < mesh.cell_count(); ++c) present.insert(region_of(mesh, c));
   std::set<std::int32_t> wanted;
   for (const std::string& region : regions) {
     const std::size_t before = wanted.size();
@@ -47,7 +46,7 @@ std::vector<std::uint32_t> cells_of_region(const MeshData& mesh, const std::stri
   const std::set<std::int32_t> wanted = tags_of(mesh, {&region, 1});
   std::vector<std::uint32_t> cells;
   for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
-    if (wanted.count(tag_at(mesh, c)) > 0) cells.push_back(static_cast<std::uint32_t>(c));
+    if (wanted.count(region_of(mesh, c)) > 0) cells.push_back(static_cast<std::uint32_t>(c));
   }
   return cells;
 }
@@ -55,7 +54,7 @@ std::vector<std::uint32_t> cells_of_region(const MeshData& mesh, const std::stri
 void select_free_regions(MeshData& mesh, std::span<const std::string> regions) {
   const std::set<std::int32_t> wanted = tags_of(mesh, regions);
   std::vector<std::uint8_t> free(mesh.cell_count());
-  for (std::size_t c = 0; c < free.size(); ++c) free[c] = wanted.count(tag_at(mesh, c)) > 0 ? 1 : 0;
+  for (std::size_t c = 0; c < free.size(); ++c) free[c] = wanted.count(region_of(mesh, c)) > 0 ? 1 : 0;
   mesh.free = std::move(free);
 }
 

@@ -183,7 +183,6 @@ class ParticleSystem final : public SimulationComponent {
   void put_in_order_of_ids();
   // In particle_system_edit.cpp.
   void remove_absorbed(const UpdateReport& report, std::span<const ParticleState> before);
-  void reopen_inlets();
   // In particle_system_checkpoint.cpp.
   void stand_at(std::uint64_t steps);
   [[nodiscard]] bool is_mine(const ParticleSystemState::Particle& p) const;

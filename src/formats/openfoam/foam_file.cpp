@@ -22,16 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
-
-bool ends_word(char c) { return is_blank(c) || std::string_view("(){};\"").find(c) != std::string_view::npos; }
-
-std::string printable(std::string_view word) {
-  std::string out(word.substr(0, 40));
-  std::replace_if(
-      out.begin(), out.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return out;
-}
+bool ends_word(char c) { return is_space(c) || std::string_view("(){};\"").find(c) != std::string_view::npos; }
 
 /// The path from its time on, or from its processor's folder on, as "constant/polyMesh/faces".
 std::string short_name(const fs::path& file) {
@@ -147,7 +138,7 @@ void FoamFile::read_header() {
 
 void FoamFile::skip_blank() {
   while (at_ < bytes_.size()) {
-    if (is_blank(bytes_[at_])) {
+    if (is_space(bytes_[at_])) {
       ++at_;
     } else if (bytes_[at_] == '/' && at_ + 1 < bytes_.size() && bytes_[at_ + 1] == '/') {
       at_ = std::min(bytes_.find('\n', at_), bytes_.size());

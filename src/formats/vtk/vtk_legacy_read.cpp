@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cctype>
 #include <charconv>
 #include <cstdint>
 #include <optional>
@@ -22,13 +21,6 @@
 
 namespace dartcast {
 namespace {
-
-std::string lower(std::string_view word) {
-  std::string out(word);
-  std::transform(out.begin(), out.end(), out.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return out;
-}
 
 /// A name as VTK reads it: %41 is A, and a '%' among the last two characters is dropped. None where VTK would read
 /// beyond the name's end, would read a character from uninitialized memory, or would cut the name.
@@ -122,21 +114,21 @@ class LegacyReader {
     }
     with_offsets_ = version[0] == '5';
     text_.line();  // the title
-    const std::string kind = lower(text_.word("ASCII or BINARY"));
+    const std::string kind = in_lower_case(text_.word("ASCII or BINARY"));
     if (kind != "ascii" && kind != "binary") text_.fail("ASCII or BINARY should stand here");
     binary_ = kind == "binary";
     if (!binary_ && content_.find_first_of("\f\v") != std::string_view::npos)
       throw InvalidMesh("the file has form feeds or vertical tabs, which VTK takes for text: write line ends");
-    if (lower(text_.word("DATASET")) != "dataset") text_.fail("DATASET should stand here");
+    if (in_lower_case(text_.word("DATASET")) != "dataset") text_.fail("DATASET should stand here");
     const std::string data_set(text_.word("the kind of data set"));
-    if (lower(data_set) != "unstructured_grid") {
+    if (in_lower_case(data_set) != "unstructured_grid") {
       text_.fail(fmt::format("the data set is {}, not UNSTRUCTURED_GRID: it has no volume cells to use",
                              data_set.substr(0, 40)));
     }
   }
 
   void section() {
-    const std::string name = lower(text_.word("a section"));
+    const std::string name = in_lower_case(text_.word("a section"));
     if (name == "points") {
       if (points_.has_value()) text_.fail("a second section of points");
       points_ = text_.count("points", binary_ ? 3 : 6);
@@ -178,7 +170,7 @@ class LegacyReader {
     if (name == "scalars") {
       std::uint64_t components = 1;
       if (!text_.line_ends()) components = static_cast<std::uint64_t>(text_.integer("a number of components", 1, 4));
-      if (lower(text_.word("LOOKUP_TABLE")) != "lookup_table") text_.fail("LOOKUP_TABLE should stand here");
+      if (in_lower_case(text_.word("LOOKUP_TABLE")) != "lookup_table") text_.fail("LOOKUP_TABLE should stand here");
       short_word("the name of a table");
       return add_array(array, items_, components, kind);
     }
@@ -231,13 +223,13 @@ class LegacyReader {
     short_word("the name of a field");
     const std::size_t arrays = text_.count("arrays", 1);
     for (std::size_t i = 0; i < arrays; ++i) {
-      if (lower(text_.peek()).starts_with("metadata")) metadata();  // VTK looks at eight letters
+      if (in_lower_case(text_.peek()).starts_with("metadata")) metadata();  // VTK looks at eight letters
       const std::string_view word = short_word("the name of an array");
       if (word == "NULL_ARRAY") continue;
       const std::string name = take_name(word);
       const auto components = static_cast<std::uint64_t>(text_.integer("a number of components", 0, INT32_MAX));
       const auto items = static_cast<std::uint64_t>(text_.integer("a number of items", 0, INT64_MAX));
-      if (lower(text_.peek()) == "string") {
+      if (in_lower_case(text_.peek()) == "string") {
         text_.word("a type");
         arrays_here().push_back({name, 1, true, {}, texts(items, components)});
       } else {
@@ -286,7 +278,7 @@ class LegacyReader {
   void metadata() {
     text_.line();
     while (text_.left() > 0) {
-      const std::string line = lower(text_.line());
+      const std::string line = in_lower_case(text_.line());
       if (line.empty()) return;
       if (line.starts_with("component_names")) {
         for (std::uint64_t k = 0; k < components_; ++k) {
@@ -325,7 +317,7 @@ class LegacyReader {
   }
 
   const NumberType& find_type(std::string_view name) {
-    const std::string wanted = lower(name);
+    const std::string wanted = in_lower_case(name);
     const auto* found =
         std::find_if(number_types.begin(), number_types.end(), [&](const NumberType& t) { return t.name == wanted; });
     if (found == number_types.end())
@@ -421,9 +413,9 @@ class LegacyReader {
     take_memory(0);
     Cells cells;
     if (with_offsets_) {
-      if (lower(text_.word("OFFSETS")) != "offsets") text_.fail("OFFSETS should stand here");
+      if (in_lower_case(text_.word("OFFSETS")) != "offsets") text_.fail("OFFSETS should stand here");
       cells.offsets = integers("offsets", first, type());
-      if (lower(text_.word("CONNECTIVITY")) != "connectivity") text_.fail("CONNECTIVITY should stand here");
+      if (in_lower_case(text_.word("CONNECTIVITY")) != "connectivity") text_.fail("CONNECTIVITY should stand here");
       cells.points = integers("corners", second, type());
       if (cells.offsets.empty() || cells.offsets.front() != 0 ||
           !std::is_sorted(cells.offsets.begin(), cells.offsets.end()) ||
