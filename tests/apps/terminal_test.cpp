@@ -126,7 +126,8 @@ TEST_F(Terminal, ASignalEndsAStepThatTakesLongWithinASecond) {
                                          "velocity = [1e5, 7e4, 3e4]\n[motion]\ndt = 1.0\nsteps = 10\n"
                                          "[contact]\nresponse = \"reflect\"\n";
   const auto begin = std::chrono::steady_clock::now();
-  const auto r = run_program("timeout", "--preserve-status -s TERM 1 '" + binary + "' run long.toml -o a -j 1");
+  const auto r =
+      run_program("timeout", "--foreground --preserve-status -s TERM 1 '" + binary + "' run long.toml -o a -j 1");
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
   EXPECT_EQ(r.status, 143) << r.error;
   EXPECT_LT(seconds.count(), 3.0);
