@@ -107,6 +107,7 @@ struct Event {
   double at = 0.0;  ///< s: before the first step that begins at this time or later
   std::variant<Cut, Carve, Ligature, Reconnect, OpenCells, CloseCells> what;
   OrphanPolicy orphaned = OrphanPolicy::relocate;
+  bool required = false;  ///< whether a simulation ends where it is refused (EditRefused); else it goes on as it was
 };
 /// The kind of an event.
 [[nodiscard]] EventKind kind_of(const Event& event);
@@ -129,6 +130,7 @@ struct EventReport {
   std::uint64_t particles_absorbed = 0;
   double boundary_shift = 0.0;  ///< m
   double seconds = 0.0;
+  std::string refused;  ///< why it was refused, and nothing was changed; empty: it was carried out
 };
 
 /// The changes of the topology by events, remeshing and subdivision, in order. The log is enough to repeat them.

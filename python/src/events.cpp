@@ -78,6 +78,7 @@ void bind_kinds(py::module_& m) {
       .field("at", &Event::at)
       .field("what", &Event::what)
       .field("orphaned", &Event::orphaned)
+      .field("required", &Event::required)
       .finish();
   m.def(
       "name_of", [](EventKind kind) { return name_of(kind); }, py::arg("kind"), doc("name_of"));
@@ -102,6 +103,7 @@ void bind_log(py::module_& m) {
       .field("particles_absorbed", &EventReport::particles_absorbed)
       .field("boundary_shift", &EventReport::boundary_shift)
       .field("seconds", &EventReport::seconds)
+      .field("refused", &EventReport::refused)
       .finish();
   Record<EventLog> log(m, "EventLog");
   log.field("changes", &EventLog::changes)

@@ -21,7 +21,7 @@ namespace dartcast {
 
 namespace {
 
-constexpr std::uint64_t magic = 0x36706b6374726164U;       // "dartckp6" on a machine of this byte order
+constexpr std::uint64_t magic = 0x37706b6374726164U;       // "dartckp7" on a machine of this byte order
 constexpr std::uint64_t part_magic = 0x31747270746b6364U;  // "dcktprt1"
 
 template <class T>
@@ -179,6 +179,7 @@ void fields(Archive& a, EventReport& e) {
   values(a, e.step, e.time, e.cells_removed, e.cells_added, e.cells_opened, e.cells_blocked, e.cells_whole,
          e.particles_in_opened, e.particles_touched, e.particles_located, e.particles_moved, e.particles_held,
          e.particles_absorbed, e.boundary_shift, e.seconds);
+  a.characters(e.refused);
   if (name_of(e.kind).empty()) throw Error("an event has an unknown kind");
 }
 

@@ -130,6 +130,7 @@ std::vector<RecordedSolid> recorded_solids(const Simulation& simulation, const R
 }
 
 std::string text_of(const EventReport& e) {
+  if (!e.refused.empty()) return fmt::format("{}: refused: {}", name_of(e.kind), e.refused);
   return fmt::format("{}: {} cells replaced by {}, {} opened, {} blocked", name_of(e.kind), e.cells_removed,
                      e.cells_added, e.cells_opened, e.cells_blocked);
 }

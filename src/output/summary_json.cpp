@@ -74,6 +74,7 @@ Json events(const EventLog& log) {
                       {"absorbed", e.particles_absorbed}}},
                     {"boundary_shift", e.boundary_shift},
                     {"seconds", e.seconds}});
+    if (!e.refused.empty()) list.back()["refused"] = e.refused;
   }
   return list;
 }

@@ -132,6 +132,11 @@ void add_tools(SummaryTable& table, const Summary& s) {
 
 void add_edits(SummaryTable& table, const EventLog& log) {
   for (const EventReport& e : log.events) {
+    if (!e.refused.empty()) {
+      table.add("events",
+                fmt::format("{} at {:.6g} s: refused, nothing changed: {}", name_of(e.kind), e.time, e.refused));
+      continue;
+    }
     table.add("events", fmt::format("{} at {:.6g} s: {} cells replaced by {}, {} opened, {} blocked", name_of(e.kind),
                                     e.time, grouped(e.cells_removed), grouped(e.cells_added), grouped(e.cells_opened),
                                     grouped(e.cells_blocked)));

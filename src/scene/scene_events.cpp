@@ -157,6 +157,7 @@ EventScene read_event(TomlTable& t) {
   }
   t.get("stranded", scene.event.orphaned,
         {{"move", OrphanPolicy::relocate}, {"stay", OrphanPolicy::hold}, {"absorb", OrphanPolicy::absorb}});
+  t.get("required", scene.event.required);
   t.finish();
   return scene;
 }

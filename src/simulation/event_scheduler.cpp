@@ -93,14 +93,25 @@ void EventScheduler::before_step() {
   }
 }
 
-EventReport EventScheduler::carry_out(std::uint32_t event) {
+EventReport EventScheduler::carry_out(std::uint32_t number) {
+  const Event& event = events_[number];
+  const auto named = [&](const Error& e) {
+    return Error(fmt::format("event {} ({} at {} s): {}", number + 1, name_of(kind_of(event)), event.at, e.what()));
+  };
   try {
-    EventReport report = apply(simulation_, events_[event]);
+    EventReport report = apply(simulation_, event);
     sum_particles(report, simulation_.options().ranks);
     return report;
+  } catch (const EditRefused& e) {
+    if (event.required) throw named(e);
+    EventReport report;
+    report.kind = kind_of(event);
+    report.step = simulation_.steps();
+    report.time = simulation_.time();
+    report.refused = e.what();
+    return report;
   } catch (const Error& e) {
-    throw Error(fmt::format("event {} ({} at {} s): {}", event + 1, name_of(kind_of(events_[event])), events_[event].at,
-                            e.what()));
+    throw named(e);
   }
 }
 

@@ -38,7 +38,7 @@ class EventScheduler {
 
  private:
   [[nodiscard]] std::uint64_t step_of(const Event& event) const;
-  EventReport carry_out(std::uint32_t event);
+  EventReport carry_out(std::uint32_t number);
   RepairReport remesh();
   void repeat(const EventLog::Change& change);
   void repeat_subdivision(const EventLog::Change& change);

@@ -109,8 +109,9 @@ at = [3.0, 3.0, 2.5]
 moves = [{ until = 1.0, velocity = [2.0, 0.0, 0.0], turn = [0, 1, 0] }]
 )",
                                              R"([[event]]
-at = 0.0
+at = 0.1
 kind = "cut"
+required = false
 surface = "disc"
 point = [3.0, 3.0, 0.5]
 normal = [1.0, 0.0, 0.0]

@@ -236,6 +236,44 @@ TEST(Events, SayWhichIsRefused) {
   EXPECT_EQ(environment.edit_count(), 0U);
 }
 
+// A cut through cells that are strongly bent is refused. The run goes on as without it, unless the event is required.
+TEST(Events, WhatIsRefusedIsReported) {
+  BoxOptions box;
+  box.cells = {6, 6, 6};
+  box.size = {6.0, 6.0, 6.0};
+  box.blocked_layer = true;
+  DeformationStep twist;
+  twist.kind = DeformationKind::twist;
+  twist.amplitude = 0.3;
+  twist.period = 2.0;
+  twist.centre = {3.0, 3.0, 3.0};
+  twist.length = 6.0;
+  Event cut = {0.1, Cut{Disc{{3.0, 3.0, 0.5}, {1.0, 0.0, 0.0}, 1.0}, 0.25}, OrphanPolicy::relocate};
+  const auto end_of_run = [&](const std::vector<Event>& events) {
+    Environment environment(generate_box(box));
+    Simulation simulation(environment, falling(0.02));
+    simulation.set_deformation(Deformation({twist}, environment.positions()));
+    simulation.add(std::vector<Vec3>{{2.5, 3.0, 2.0}}, {});
+    simulation.set_events(events);
+    for (int i = 0; i < 10; ++i) simulation.step();
+    EXPECT_EQ(environment.edit_count(), 0U);
+    EXPECT_EQ(simulation.event_log().events.size(), events.size());
+    for (const EventReport& report : simulation.event_log().events) {
+      EXPECT_EQ(report.step, 5U);
+      EXPECT_NE(report.refused.find("no Steiner point mends it"), std::string::npos) << report.refused;
+    }
+    return simulation.particles()[0].position;
+  };
+  EXPECT_EQ(end_of_run({cut}), end_of_run({}));
+  cut.required = true;
+  try {
+    end_of_run({cut});
+    FAIL() << "it is required";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("event 1 (cut at 0.1 s)"), std::string::npos) << e.what();
+  }
+}
+
 // A ligature across a strip in the plane stops who comes from the left; cuts are refused before anything is done.
 // A box of three regions: the middle one is a valve.
 MeshData valve_mesh(unsigned dimension) {
