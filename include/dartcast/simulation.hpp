@@ -298,9 +298,8 @@ class Simulation {
   /// them, too. Throws InvalidArgument, nothing changed, where an option is out of range.
   void set_statistics(const StatisticsOptions& options);
 
-  /// Throws as Environment::advance(), and Error that names the event that cannot be carried out. One that is refused
-  /// (EditRefused), and not required, is reported in event_log() instead. Throws as
-  /// Deformation::load_frames(), nothing changed: the step may be repeated.
+  /// Throws as Environment::advance(), and Error that names the event that cannot be carried out (Event::required). Throws
+  /// as Deformation::load_frames(), nothing changed: the step may be repeated.
   const SimulationStep& step();
 
   /// Edits the environment between two steps, as Environment::edit(), and updates all that depends on it: particles
