@@ -121,13 +121,9 @@ class SphereCall {
     plan_all();
     StepReport first = advance_all();
     start_runs(first);
-    SphereReport report;
-    if (b_.run_count == 0) {
-      report.step = std::move(first);
-      return report;
-    }
-    land(particles_, b_.active);
+    if (b_.run_count > 0) land(particles_, b_.active);
     while (!b_.active.empty()) next_round(first.counters);
+    SphereReport report;
     merge(first, report);
     return report;
   }
@@ -166,10 +162,10 @@ class SphereCall {
     chunk.planned.push_back({particle, state.position, way});
   }
 
-  // Points go all their way, spheres to the end of their first stretch, or to a wall that the centre meets.
+  // Points go all their way, spheres to the end of their first stretch, or to a wall that the centre meets. There they
+  // stay by an answer, also where there are no points: a step without answers may give other last digits.
   StepReport advance_all() {
-    const bool points = std::any_of(radii_.begin(), radii_.end(), [](double r) { return r == 0.0; });
-    if (!respond_ || !points) return environment_.advance(particles_, b_.targets, {}, options_);
+    if (!respond_) return environment_.advance(particles_, b_.targets, {}, options_);
     const ContactCallback points_only = [this](const Contact& contact, std::span<const WallHit> walls,
                                                std::span<const WallHit> earlier) {
       return radii_[contact.particle] == 0.0 ? respond_(contact, walls, earlier) : AfterContact{};
