@@ -59,7 +59,7 @@ struct BatchSteps {
 void step_batch(const BatchScene& scene, const BatchSteps& steps, Counters& counters,
                 InstructionSet set = best_instruction_set());
 
-/// Whether all points are in the exact range, and flushed() (dartcast/predicates.hpp).
+/// Whether all points are in the exact range, and have the bits of flushed() (dartcast/predicates.hpp).
 bool all_as_decided(std::span<const Vec3> points);
 
 }  // namespace dartcast::detail

@@ -7,7 +7,7 @@
 
 namespace dartcast::detail {
 
-// step(): as step_batch(). all_between(): whether every number is 0, or has a magnitude between the two.
+// step(): as step_batch(). all_between(): whether every number is 0 (not -0), or has a magnitude between the two.
 namespace portable {
 void step(const BatchScene& scene, const BatchSteps& steps, Counters& counters);
 bool all_between(const double* x, std::size_t count, double low, double high);

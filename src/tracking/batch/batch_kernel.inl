@@ -19,6 +19,7 @@
 // batch_impacts.inl, and batch_records.inl (scratch records).
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -51,10 +52,11 @@ bool all_between(const double* x, std::size_t count, double low, double high) {
   for (; i + 4 <= count; i += 4) {
     const Double4 numbers = *reinterpret_cast<const UnalignedDouble4*>(x + i);
     const Double4 m = magnitude(numbers);
-    between &= ((m >= low) & (m <= high)) | (m == 0.0);
+    between &= ((m >= low) & (m <= high)) | (reinterpret_cast<Mask4>(numbers) == splat_bits(0));
   }
   bool rest = true;
-  for (; i < count; ++i) rest = rest && (x[i] == 0.0 || (std::abs(x[i]) >= low && std::abs(x[i]) <= high));
+  for (; i < count; ++i)
+    rest = rest && (std::bit_cast<std::uint64_t>(x[i]) == 0 || (std::abs(x[i]) >= low && std::abs(x[i]) <= high));
   return rest && lanes_set(between) == 15U;
 }
 
