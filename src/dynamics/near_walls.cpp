@@ -285,7 +285,10 @@ void NearWalls::describe(const CellComplex& complex, const NearWall& wall, const
     points[count++] = wall.local[i];
     const std::size_t v = wall.vertex[i].value;
     const Vec3& before = complex.previous_positions()[v];
-    if (moved && in_exact_range(before)) feature.displacement += (complex.positions()[v] - before) * nearest.weights[i];
+    const Vec3& now = complex.positions()[v];
+    // As wall_displacement() in tracking/contact_geometry.hpp.
+    if (moved && in_exact_range(before) && in_exact_range(now) && std::isfinite(nearest.weights[i]))
+      feature.displacement += (now - before) * nearest.weights[i];
   }
   const Shape::Feature place =
       complex.map().shape(wall.face.cell).feature(std::span<const std::uint16_t>(points).first(count));

@@ -164,6 +164,7 @@ Vec3 wall_displacement(const CellComplex& complex, SimplexId simplex, unsigned f
   const std::array<double, N - 1> weight = weights_in(v, plane, x);
   double sum = 0.0;
   for (const double w : weight) sum += w;
+  const bool known = sum > 0.0 && std::isfinite(sum);  // a corner far beyond the range makes it infinite
   Vec3 result;
   for (unsigned i = 0; i < N - 1; ++i) {
     const std::uint32_t vertex = vertices[facet_corner<N>(facet, i)].value;
@@ -173,7 +174,7 @@ Vec3 wall_displacement(const CellComplex& complex, SimplexId simplex, unsigned f
     if (!in_exact_range(before) || !in_exact_range(now)) continue;
     Vec3 moved = now - before;
     if constexpr (N == 3) moved.z = 0.0;  // as Space::corners()
-    result += moved * (sum > 0.0 ? weight[i] / sum : 1.0 / (N - 1.0));
+    result += moved * (known ? weight[i] / sum : 1.0 / (N - 1.0));
   }
   return result;
 }
