@@ -9,6 +9,7 @@
 #include "catheter/catheter_impl.hpp"
 #include "catheter/transport.hpp"
 #include "dartcast/error.hpp"
+#include "dartcast/predicates.hpp"
 #include "tracking/carry.hpp"
 #include "tracking/representable_point.hpp"
 
@@ -194,7 +195,7 @@ Vec3 Catheter::Impl::carried(std::size_t i) const {
   const Corners now = environment_.complex().corners(s.at());
   Vec3 x = s.position;
   for (std::size_t k = 0; k < 4; ++k) x += (now[k] - h.corners[k]) * h.weights[k];
-  return x;
+  return in_exact_range(x) ? x : s.position;  // else a corner has gone out of range, and the point is held
 }
 
 // Turns the entry's direction like a line drawn in its simplex.
