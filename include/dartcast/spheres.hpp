@@ -105,8 +105,8 @@ class SimultaneousStepper {
   ///   So a later contact may lie before the one that led to it; it gets that one's time. Times never fall.
   /// - Along walls. A way along a wall ends 2^-20 of the wall's longest side off it.
   /// - Where the particle is carried along instead, as by Environment::advance(), in the rest of its step. This is so
-  ///   where a cell in its reach becomes flat, where it starts on a wall or was stopped at one in its last step, and
-  ///   after options.max_contacts contacts.
+  ///   where a cell in its reach becomes flat, and after options.max_contacts contacts. It is so, too, where the particle
+  ///   starts on a wall, or as near as rounding, or was stopped at one in its last step.
   ///
   /// Throws as Environment::advance(). Cost: some 1 us for a particle, and the same again for each
   /// contact's legs.
