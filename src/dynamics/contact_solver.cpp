@@ -2,6 +2,7 @@
 #include "dynamics/contact_solver.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 #include <utility>
@@ -46,6 +47,24 @@ void check_contacts(std::span<const PairContact> pairs, std::span<const WallCont
 }
 
 }  // namespace
+
+std::array<Vec3, 2> rebound_alone(const Vec3& normal, double bound, const Vec3& impulse, detail::ContactBody& a,
+                                  detail::ContactBody& b, const SolverOptions& options) {
+  const Vec3 a_before = a.velocity + impulse * a.inverse_mass;
+  const Vec3 b_before = b.velocity - impulse * b.inverse_mass;
+  const double before = dot(b_before - a_before, normal);
+  const double time = before < bound ? bound / before : 1.0;
+  detail::ContactBody* const mover = b.inverse_mass > 0.0 ? &b : &a;
+  if (!(a.inverse_mass > 0.0 && b.inverse_mass > 0.0)) {
+    const Vec3 away = mover == &b ? normal : -normal;
+    const double after = dot(b.velocity - a.velocity, normal);
+    const double lead = (time - 0.5) * options.dt * dot(options.acceleration, away);
+    const double square = after * after + lead * lead + 2.0 * lead * before;
+    mover->velocity += away * ((square > 0.0 ? std::max(0.0, std::sqrt(square) - lead) : 0.0) - after);
+  }
+  return {(a_before * time + a.velocity * (1.0 - time)) * options.dt,
+          (b_before * time + b.velocity * (1.0 - time)) * options.dt};
+}
 
 // Spheres, then the walls of contacts.
 void ContactSolver::make_bodies(std::span<const WallContact> walls, const SolverSpheres& spheres, Threads threads) {
@@ -216,6 +235,25 @@ void ContactSolver::position_correction(const SolverSpheres& spheres, const Solv
   });
 }
 
+// Lone contacts rebound at their time, but where spheres overlap.
+void ContactSolver::rebound(const SolverSpheres& spheres, const SolverOptions& options, Threads threads) {
+  if (!packets_.rebound()) return;
+  packets_.solve(bodies_, rebound_iterations, threads);
+  rows_of_.assign(bodies_.size(), 0);
+  for (const detail::ContactEnds& c : ends_) {
+    for (const std::uint32_t end : {c.a, c.b}) rows_of_[end] = rows_of_[end] == 0 ? 1 : 2;
+  }
+  for (std::size_t row = 0; row < ends_.size(); ++row) {
+    const auto [a, b, loaded] = ends_[row];
+    const detail::ContactTerms& terms = terms_[row];
+    if (rows_of_[a] != 1 || rows_of_[b] != 1 || !packets_.rebounds(row) || terms.position_bound > 0.0) continue;
+    const Vec3 impulse = terms.normal * packets_.normal_impulse(row) + packets_.tangent_impulse(row);
+    const auto ways = rebound_alone(terms.normal, terms.bound, impulse, bodies_[a], bodies_[b], options);
+    if (bodies_[a].inverse_mass > 0.0) spheres.displacements[a] = ways[0];
+    if (bodies_[b].inverse_mass > 0.0) spheres.displacements[b] = ways[1];
+  }
+}
+
 // A contact that rebounds needs no impulse in the next step.
 bool ContactSolver::is_kept(std::size_t row) const {
   return packets_.normal_impulse(row) > 0.0 && !packets_.rebounds(row);
@@ -259,6 +297,10 @@ void ContactSolver::keep(std::span<const std::uint64_t> ids, std::span<const Wal
       cached_[next++] = {a, b, terms_[row].normal, packets_.normal_impulse(row), packets_.tangent_impulse(row)};
     }
   });
+  new_walls_.clear();
+  for (std::size_t row = pair_rows_; row < ends_.size(); ++row) {
+    if (!ends_[row].loaded && packets_.normal_impulse(row) > 0.0) new_walls_.push_back(wall_order_[row - pair_rows_]);
+  }
 }
 
 void ContactSolver::solve(std::span<const PairContact> pairs, std::span<const WallContact> walls,
@@ -279,7 +321,7 @@ void ContactSolver::solve(std::span<const PairContact> pairs, std::span<const Wa
   packets_.start(bodies_, threads);
   packets_.solve(bodies_, options.iterations, threads);
   position_correction(spheres, options, threads);
-  if (packets_.rebound()) packets_.solve(bodies_, rebound_iterations, threads);
+  rebound(spheres, options, threads);
   parallel_for(spheres.ids.size(), row_grain, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) spheres.velocities[i] = bodies_[i].velocity;
   });

@@ -4,6 +4,7 @@
 // temporal coherence", 2005. Spheres do not rotate: friction acts on the velocities of the centres.
 #pragma once
 
+#include <array>
 #include <compare>
 #include <cstddef>
 #include <cstdint>
@@ -12,6 +13,7 @@
 
 #include "base/parallel.hpp"
 #include "dartcast/dynamics.hpp"
+#include "dartcast/ids.hpp"
 #include "dartcast/storage.hpp"
 #include "dartcast/vec3.hpp"
 #include "dynamics/contact_packets.hpp"
@@ -34,6 +36,8 @@ struct WallContact {
   Vec3 wall_velocity;
   double restitution = 0.0;
   double friction = 0.0;
+  CellFace face = {};  ///< of the free cell; the solver does not read it, nor the fan triangle
+  std::uint16_t triangle = 0;
 };
 
 /// Iterations for velocities after rebounds.
@@ -49,15 +53,23 @@ struct SolverOptions {
   /// good choice.
   double resting_speed = 0.0;
   double position_correction = 0.2;  ///< share of a penetration taken out in one step, in [0, 1]
+  Vec3 acceleration;  ///< that the velocities of all spheres have got in this step; only lone rebounds use it
 };
+
+/// A rebound at a contact whose two sides have no other, at its time within the step. Where one side does not move, the
+/// speed of the other is that which keeps the energy of this moment, as for a particle at a wall (docs/method.md,
+/// "Reflection"). `bound`: the velocity along the normal, from a to b, that just comes to the contact in the step, <= 0.
+/// `impulse`: on b; the velocities hold it already. Returns the displacements of a and b.
+std::array<Vec3, 2> rebound_alone(const Vec3& normal, double bound, const Vec3& impulse, detail::ContactBody& a,
+                                  detail::ContactBody& b, const SolverOptions& options);
 
 /// Data of the spheres: entry i of each belongs to sphere i.
 struct SolverSpheres {
   std::span<const std::uint64_t> ids;      ///< distinct; contacts are taken in their order
   std::span<const double> inverse_masses;  ///< 0: nothing can push it
   std::span<Vec3> velocities;              ///< in: after all other forces; out: after the impulses, with rebounds
-  std::span<Vec3> displacements;  ///< out: of this step; that of the impulses without rebounds, which begin with the
-                                  ///< next step, and with the penetration taken out
+  /// Out: of this step, with the penetration taken out. Rebounds start with the next step, but lone ones at their time.
+  std::span<Vec3> displacements;
   std::span<const std::uint8_t> regions = {};  ///< threads share the work by regions; empty: there is one
   std::size_t region_count = 1;
 };
@@ -66,7 +78,8 @@ class ContactSolver {
  public:
   /// Each impulse is applied to both spheres, equal and opposite: momentum changes by rounding alone. Taking out
   /// penetration changes displacements, never velocities. A contact with approach speed u above the resting speed ends
-  /// with restitution u along its normal if it was given an impulse (rebounds are solved once more over all contacts).
+  /// with restitution u along its normal if it was given an impulse (rebounds are solved once more over all contacts;
+  /// rebound_alone() where it is the only one of its sides).
   /// The result depends on the contacts and ids, not on the order of spheres or contacts. Throws InvalidArgument where
   /// an option is out of range, spans differ in length, or a contact names no sphere; nothing changed. It
   /// depends on the regions, too, but not on the number of threads. Cost: linear in the contacts times the
@@ -82,6 +95,9 @@ class ContactSolver {
   /// Numbers of contacts that got an impulse in the last step.
   [[nodiscard]] std::size_t loaded_pairs() const { return loaded_pairs_; }
   [[nodiscard]] std::size_t loaded_walls() const { return loaded_walls_; }
+  /// The walls of the last step that got an impulse and started without one: the spheres came to them. Indices into
+  /// the walls, by the ids of their spheres.
+  [[nodiscard]] std::span<const std::uint32_t> new_walls() const { return new_walls_; }
 
  private:
   struct PairKey {
@@ -118,6 +134,7 @@ class ContactSolver {
   void set_row(std::size_t row, detail::ContactEnds ends, const Surface& surface, const CachedImpulse* cached_impulses,
                const SolverOptions& options);
   void position_correction(const SolverSpheres& spheres, const SolverOptions& options, Threads threads);
+  void rebound(const SolverSpheres& spheres, const SolverOptions& options, Threads threads);
   void keep(std::span<const std::uint64_t> ids, std::span<const WallContact> walls, Threads threads);
   [[nodiscard]] bool is_kept(std::size_t row) const;
 
@@ -137,6 +154,8 @@ class ContactSolver {
   std::size_t cached_pairs_ = 0;
   std::size_t loaded_pairs_ = 0;
   std::size_t loaded_walls_ = 0;
+  std::vector<std::uint32_t> new_walls_;
+  std::vector<std::uint8_t> rows_of_;  // by body: 0, 1, or 2 for more
 };
 
 }  // namespace dartcast

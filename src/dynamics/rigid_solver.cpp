@@ -2,6 +2,7 @@
 #include "dynamics/rigid_solver.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 
@@ -139,6 +140,7 @@ void RigidSolver::load_cached_impulses() {
     if (best == nullptr) continue;
     row.normal_impulse = best->normal_impulse;
     row.tangent_impulse = across_normal(best->tangent_impulse, c.normal);
+    row.loaded = true;
   }
 }
 
@@ -184,27 +186,59 @@ void RigidSolver::correct_positions(std::span<RigidMover> movers, const SolverOp
   }
 }
 
-void RigidSolver::rebound(std::span<RigidMover> movers, unsigned iterations) {
+// As in ContactSolver. Bodies take their ways in a step of their own.
+void RigidSolver::rebound_lone_spheres(std::span<RigidMover> movers, const SolverOptions& options) {
+  rows_of_.assign(movers.size(), 0);
+  const auto count = [&](std::uint32_t m) { rows_of_[m] = rows_of_[m] == 0 ? 1 : 2; };
+  for (const Row& row : rows_) {
+    count(row.contact->b);
+    if (row.contact->a != RigidContact::wall) count(row.contact->a);
+  }
+  const auto is_lone = [&](std::uint32_t m) {
+    return m == RigidContact::wall || (!movers[m].turns && (rows_of_[m] == 1 || !(movers[m].inverse_mass > 0.0)));
+  };
+  for (const Row& row : rows_) {
+    const RigidContact& c = *row.contact;
+    if (!is_lone(c.a) || !is_lone(c.b) || !(row.rebound > 0.0) || row.position_bound > 0.0) continue;
+    const auto side = [&](std::uint32_t m) {
+      return m == RigidContact::wall ? detail::ContactBody{c.wall_velocity, 0.0}
+                                     : detail::ContactBody{movers[m].velocity, movers[m].inverse_mass};
+    };
+    std::array<detail::ContactBody, 2> sides = {side(c.a), side(c.b)};
+    const Vec3 impulse = c.normal * row.normal_impulse + row.tangent_impulse;
+    const auto ways = rebound_alone(c.normal, row.bound, impulse, sides[0], sides[1], options);
+    for (const std::size_t k : {0U, 1U}) {
+      if (!(sides[k].inverse_mass > 0.0)) continue;
+      movers[k == 0 ? c.a : c.b].velocity = sides[k].velocity;
+      movers[k == 0 ? c.a : c.b].position_delta = ways[k];
+    }
+  }
+}
+
+void RigidSolver::rebound(std::span<RigidMover> movers, const SolverOptions& options) {
   bool any = false;
   for (Row& row : rows_) {
     if (!(row.normal_impulse > 0.0)) row.rebound = 0.0;
     any = any || row.rebound > 0.0;
   }
   if (!any) return;
-  back_and_forth(rows_.size(), iterations, [&](std::size_t i) {
+  back_and_forth(rows_.size(), rebound_iterations, [&](std::size_t i) {
     solve_row(rows_[i], rows_[i].rebound > 0.0 ? rows_[i].rebound : rows_[i].bound, movers);
   });
+  rebound_lone_spheres(movers, options);
 }
 
 // A contact that rebounds needs no impulse in the next step.
-void RigidSolver::keep() {
+void RigidSolver::keep(std::span<const RigidContact> contacts) {
   cached_.clear();
+  new_walls_.clear();
   loaded_pairs_ = loaded_walls_ = 0;
   for (const Row& row : rows_) {
     if (!(row.normal_impulse > 0.0)) continue;
     const RigidContact& c = *row.contact;
     const auto [wall, a, b] = ids_of(c);
     ++(wall ? loaded_walls_ : loaded_pairs_);
+    if (wall && !row.loaded) new_walls_.push_back(static_cast<std::uint32_t>(&c - contacts.data()));
     if (row.rebound > 0.0) continue;
     cached_.push_back({a, b, c.normal, row.normal_impulse, row.tangent_impulse});
   }
@@ -222,8 +256,8 @@ void RigidSolver::solve(std::span<const RigidContact> contacts, std::span<RigidM
   }
   back_and_forth(rows_.size(), options.iterations, [&](std::size_t i) { solve_row(rows_[i], rows_[i].bound, movers); });
   correct_positions(movers, options);
-  rebound(movers, rebound_iterations);
-  keep();
+  rebound(movers, options);
+  keep(contacts);
 }
 
 }  // namespace dartcast

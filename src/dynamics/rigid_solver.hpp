@@ -50,6 +50,8 @@ class RigidSolver {
   /// Numbers of contacts that got an impulse in the last step.
   [[nodiscard]] std::size_t loaded_pairs() const { return loaded_pairs_; }
   [[nodiscard]] std::size_t loaded_walls() const { return loaded_walls_; }
+  /// As ContactSolver::new_walls(): indices into the contacts.
+  [[nodiscard]] std::span<const std::uint32_t> new_walls() const { return new_walls_; }
 
  private:
   struct Row {
@@ -64,6 +66,7 @@ class RigidSolver {
     double normal_impulse = 0.0;  // impulses so far
     Vec3 tangent_impulse;
     double position_correction = 0.0;
+    bool loaded = false;  // starts with an impulse of the last step
   };
 
   void make_rows(std::span<const RigidContact> contacts, std::span<const RigidMover> movers,
@@ -71,13 +74,16 @@ class RigidSolver {
   void load_cached_impulses();
   void solve_row(Row& row, double bound, std::span<RigidMover> movers);
   void correct_positions(std::span<RigidMover> movers, const SolverOptions& options);
-  void rebound(std::span<RigidMover> movers, unsigned iterations);
-  void keep();
+  void rebound(std::span<RigidMover> movers, const SolverOptions& options);
+  void rebound_lone_spheres(std::span<RigidMover> movers, const SolverOptions& options);
+  void keep(std::span<const RigidContact> contacts);
 
   std::vector<Row> rows_;
   std::vector<CachedImpulse> cached_;
   std::size_t loaded_pairs_ = 0;
   std::size_t loaded_walls_ = 0;
+  std::vector<std::uint32_t> new_walls_;
+  std::vector<std::uint8_t> rows_of_;  // by mover: 0, 1, or 2 for more
 };
 
 }  // namespace dartcast

@@ -223,10 +223,71 @@ TEST(ContactSolver, WallsMoveAndRebound) {
   crowd.walls = {{0, {0, 0, 1}, 0.0, {0.0, 0.0, 2.0}, 0.5, 0.0}};
   crowd.step();
   EXPECT_DOUBLE_EQ(crowd.velocities[0].z, 2.0 + 0.5 * 3.0);
-  EXPECT_DOUBLE_EQ(crowd.displacements[0].z, 2.0);
+  EXPECT_DOUBLE_EQ(crowd.displacements[0].z, 2.0 + 0.5 * 3.0);     // it is there, and rebounds at once
   crowd.walls = {{0, {0, 0, 1}, 0.0, {0.0, 0.0, 3.4}, 1.0, 0.0}};  // slower than it: no contact
   crowd.step();
   EXPECT_DOUBLE_EQ(crowd.velocities[0].z, 3.5);
+}
+
+// A pair that has no other contact moves to where it touches, and on from there; another contact stops it there.
+TEST(ContactSolver, LonePairsReboundAtTheirTime) {
+  Random random(7);
+  for (int i = 0; i < 50; ++i) {
+    Crowd crowd;
+    crowd.options.dt = 0.5;
+    crowd.options.restitution = random.uniform(0.1, 1.0);
+    crowd.add({0, 0, 0}, {random.uniform(1.0, 2.0), 0, 0.25}, 0.5, random.uniform(0.5, 2.0));
+    const double gap = random.uniform(0.0, 0.5);
+    crowd.add({1.0 + gap, 0, 0}, {random.uniform(-1.0, 0.0), 0, 0.25}, 0.5, random.uniform(0.5, 2.0));
+    const std::vector<Vec3> before = crowd.velocities;
+    const std::vector<Vec3> start = crowd.positions;
+    const double nearing = before[0].x - before[1].x;
+    crowd.step();
+    const double touch = std::min(gap / nearing, crowd.options.dt);
+    for (const std::size_t k : {0U, 1U}) {
+      const Vec3 expected = start[k] + before[k] * touch + crowd.velocities[k] * (crowd.options.dt - touch);
+      EXPECT_LE(norm(crowd.positions[k] - expected), 1e-14) << i;
+    }
+    if (gap >= nearing * crowd.options.dt) continue;
+    EXPECT_NEAR(crowd.velocities[1].x - crowd.velocities[0].x, crowd.options.restitution * nearing, 1e-14);
+    crowd.positions = start;
+    crowd.velocities = before;
+    crowd.walls = {{0, {0, 1, 0}, 1.0, {}, 0.0, 0.0}};
+    crowd.solver.set_cached_impulses({});
+    crowd.step();
+    EXPECT_NEAR(crowd.positions[1].x - crowd.positions[0].x, 1.0, 1e-14);
+  }
+}
+
+// A lone sphere that meets what cannot move keeps the energy of the moment, of which the acceleration is a part: one half
+// of |v + a dt / 2|^2, less a x (docs/method.md, "Reflection").
+TEST(ContactSolver, LoneReboundsKeepTheEnergyOfTheMoment) {
+  Random random(8);
+  for (int i = 0; i < 50; ++i) {
+    Crowd crowd;
+    crowd.options.dt = 0.1;
+    crowd.options.restitution = 1.0;
+    crowd.options.acceleration = random_vector(random, 2.0);
+    crowd.add({0, 0, 0}, {random.uniform(2.0, 3.0), 0.5, 0.25}, 0.5, random.uniform(0.5, 2.0));
+    const double gap = random.uniform(0.0, 0.17);
+    const bool wall = i % 2 == 0;
+    if (wall) {
+      crowd.walls = {{0, {-1, 0, 0}, gap, {}, 1.0, 0.0}};
+    } else {
+      crowd.add({1.0 + gap, 0, 0}, {}, 0.5, 1.0);
+      crowd.inverse_masses[1] = 0.0;
+    }
+    const auto energy = [&] {
+      const Vec3 v = crowd.velocities[0] + crowd.options.acceleration * (0.5 * crowd.options.dt);
+      return 0.5 * dot(v, v) - dot(crowd.options.acceleration, crowd.positions[0]);
+    };
+    const double start = energy();
+    crowd.velocities[0] += crowd.options.acceleration * crowd.options.dt;
+    const std::vector<PairContact> pair = {{0, 1, {1, 0, 0}, gap}};
+    crowd.step(wall ? std::span<const PairContact>{} : pair);
+    EXPECT_LT(crowd.velocities[0].x, -1.5);
+    EXPECT_NEAR(energy(), start, 1e-13) << i;
+  }
 }
 
 // One that cannot be pushed stays; the result does not depend on the order of spheres and contacts.

@@ -236,6 +236,46 @@ TEST(RigidSolver, SpheresAreAsInTheContactSolver) {
   }
 }
 
+// Spheres with one contact each, with another, a wall or one that cannot be pushed: as in ContactSolver, which rebounds
+// them at their time.
+TEST(RigidSolver, LoneSpheresAreAsInTheContactSolver) {
+  Draw draw(9);
+  constexpr std::uint32_t count = 60;
+  std::vector<RigidMover> movers(count);
+  std::vector<std::uint64_t> ids(count);
+  std::vector<double> inverse(count);
+  std::vector<Vec3> velocities(count);
+  std::vector<Vec3> displacements(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    ids[i] = i;
+    inverse[i] = movers[i].inverse_mass = i % 12 == 1 ? 0.0 : draw.in(0.5, 2.0);
+    velocities[i] = movers[i].velocity = inverse[i] > 0.0 ? draw.vector() : Vec3{};
+  }
+  SolverOptions o = options();
+  o.restitution = 0.8;
+  o.acceleration = draw.vector(5.0);
+  std::vector<PairContact> pairs;
+  std::vector<WallContact> walls;
+  for (std::uint32_t i = 0; i < 40; i += 2) pairs.push_back({i, i + 1, draw.direction(), draw.in(0.0, 0.5 * o.dt)});
+  for (std::uint32_t i = 40; i < count; ++i)
+    walls.push_back({i, draw.direction(), draw.in(0.0, 0.5 * o.dt), draw.vector(0.1), o.restitution, 0.0});
+  ContactSolver expected;
+  expected.solve(pairs, walls, {ids, inverse, velocities, displacements}, o);
+  RigidSolver solver;
+  std::vector<RigidContact> contacts = as_rigid(pairs, walls, ids);
+  for (RigidContact& c : contacts) c.restitution = o.restitution;
+  solver.solve(contacts, movers, o);
+  EXPECT_GT(expected.loaded_pairs(), 3U);
+  EXPECT_GT(expected.loaded_walls(), 3U);
+  EXPECT_EQ(solver.new_walls().size(), expected.new_walls().size());
+  for (std::size_t k = 0; k < expected.new_walls().size(); ++k)
+    EXPECT_EQ(solver.new_walls()[k], expected.new_walls()[k] + pairs.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    EXPECT_LE(norm(movers[i].velocity - velocities[i]), 1e-12) << i;
+    EXPECT_LE(norm(movers[i].position_delta - displacements[i]), 1e-14) << i;
+  }
+}
+
 // Many contacts of bodies: the result does not hang on the order, and goes on from what was kept.
 TEST(RigidSolver, OrderDoesNotMatterAndKeptImpulsesGoOn) {
   Draw draw(4);
