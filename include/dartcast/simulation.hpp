@@ -222,9 +222,9 @@ struct SolidSummary {
 ///  6. Bodies step, then catheters. Statistics take what happened.
 ///  7. Where it is due, invalid cells are remeshed and crowded cells are subdivided.
 /// With collisions the vertices move after 4; velocities are those at the places before. Spheres get impulses before they
-/// move and advance: from each other, from bodies, and from walls within a quarter of their radius that reflect or let
-/// slide. These walls go on as in the last step. Other walls respond as they do to points. Results
-/// are the same bits for any number of threads.
+/// move and advance: from each other, from bodies and, at rest or among others, from walls within a quarter of their
+/// radius that reflect or let slide. These go on as in the last step, and are contacts when a sphere comes to them. Other
+/// walls respond as they do to points (docs/method.md). Results are the same bits for any number of threads.
 ///
 /// In the plane every vector given to a simulation must have z = 0.
 ///

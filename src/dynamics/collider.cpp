@@ -56,6 +56,19 @@ double Vec3::*axis_to_divide(const Vec3& extent, const Vec3& gravity) {
 
 }  // namespace
 
+void leave_lone_spheres(std::span<const Vec3> velocities, const SolverOptions& options,
+                        std::vector<std::uint8_t>& shared, std::vector<WallContact>& walls) {
+  constexpr std::uint8_t solved = 1;
+  constexpr std::uint8_t own = 2;
+  for (const WallContact& w : walls) {
+    const double nearing = -dot(velocities[w.sphere] - w.wall_velocity, w.normal);
+    const bool leaves = !(nearing > 0.0);
+    if (!leaves && nearing * options.dt <= w.gap) continue;
+    shared[w.sphere] |= leaves || nearing > options.resting_speed ? own : solved;
+  }
+  std::erase_if(walls, [&](const WallContact& w) { return shared[w.sphere] == own; });
+}
+
 CollisionCounts& CollisionCounts::operator+=(const CollisionCounts& other) {
   pairs_tested += other.pairs_tested;
   pairs_near += other.pairs_near;
@@ -177,11 +190,18 @@ CollisionCounts Collider::collide(const CellComplex& complex, const CollidingSph
   took(seconds_.contacts);
   walls_.assign(walls.begin(), walls.end());
   for (WallContact& w : walls_) w.gap -= resting_gap * spheres.radii[w.sphere];
+  shared_.assign(spheres.states.size(), 0);
+  for (const PairContact& p : pairs_) {
+    if (in_reach(p.gap, spheres.velocities[p.a], spheres.velocities[p.b], options.dt)) shared_[p.a] = shared_[p.b] = 1;
+  }
+  leave_lone_spheres(spheres.velocities, options, shared_, walls_);
   divide(spheres);
   solver_.solve(
       pairs_, walls_,
       {spheres.ids, spheres.inverse_masses, spheres.velocities, spheres.displacements, regions_, region_count_},
       options, threads);
+  new_walls_.clear();
+  for (const std::uint32_t w : solver_.new_walls()) new_walls_.push_back(walls_[w]);
   took(seconds_.impulses);
   counts.pairs_touching = solver_.loaded_pairs();
   counts.walls_touching = solver_.loaded_walls();

@@ -30,6 +30,16 @@ inline double near_room(const SphereMotion& s) {
   return s.radius * near_share + std::min(norm(s.displacement), s.radius);
 }
 
+/// Whether a sphere comes so near to another in the step that both are solved together: `gap` is the contact's, without
+/// the resting gap, and the velocities are those before impulses. Their directions do not matter, because walls turn them.
+inline bool in_reach(double gap, const Vec3& a, const Vec3& b, double dt) { return gap <= (norm(a) + norm(b)) * dt; }
+
+/// Removes the walls of lone spheres, which meet them by their own step, at the time of the contact. A sphere is lone
+/// where `shared` is 0 (no other is in_reach()), where it comes to no wall at the resting speed or slower, and where it
+/// comes to a wall faster or leaves one. `shared`: by sphere; changed. Gaps are without the resting gaps.
+void leave_lone_spheres(std::span<const Vec3> velocities, const SolverOptions& options,
+                        std::vector<std::uint8_t>& shared, std::vector<WallContact>& walls);
+
 /// Time spent in all calls so far.
 struct CollisionSeconds {
   double lists = 0.0;     ///< updating each cell's particles
@@ -54,11 +64,14 @@ struct CollidingSpheres {
 class Collider {
  public:
   /// Finds the pairs and solves them together with `walls`, whose gaps are those of the geometry; this function
-  /// subtracts the resting gaps. Pairs with a wall between their centres do not meet. Precondition: the states are of
-  /// the complex as it stands. Throws as ContactSolver::solve(). The result is the same for any number of threads and
-  /// any order of particles.
+  /// subtracts the resting gaps, and leaves lone spheres to their own step (leave_lone_spheres()). Pairs with a wall
+  /// between their centres do not meet. Precondition: the states are of the complex as it stands. Throws as
+  /// ContactSolver::solve(). The result is the same for any number of threads and any order of particles.
   CollisionCounts collide(const CellComplex& complex, const CollidingSpheres& spheres,
                           std::span<const WallContact> walls, const SolverOptions& options, Threads threads);
+
+  /// The walls to which spheres came in the last step (ContactSolver::new_walls()). Gaps are without the resting gaps.
+  [[nodiscard]] std::span<const WallContact> new_walls() const { return new_walls_; }
 
   [[nodiscard]] ContactSolver& solver() { return solver_; }
   [[nodiscard]] const ContactSolver& solver() const { return solver_; }
@@ -96,6 +109,8 @@ class Collider {
   std::vector<Part> parts_;  // by chunk of candidates
   std::vector<PairContact> pairs_;
   std::vector<WallContact> walls_;
+  std::vector<WallContact> new_walls_;
+  std::vector<std::uint8_t> shared_;   // by sphere
   std::vector<std::uint8_t> regions_;  // by sphere
   std::size_t region_count_ = 1;
   CollisionSeconds seconds_;

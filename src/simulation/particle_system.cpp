@@ -187,7 +187,7 @@ void ParticleSystem::advance_segment(unsigned segment) {
     }
   }
   const ScopeTimer timer(totals_.seconds_detect);
-  const ContactCallback respond = respond_with(responses_, velocities_, fates_, options_.dt, acceleration(dt));
+  const ContactCallback respond = response(dt);
   if (spheres_ == 0) {
     StepReport report = part_ != nullptr ? advance_in_part(acceleration(dt))
                         : options_.wall_motion == WallMotion::simultaneous
@@ -201,10 +201,21 @@ void ParticleSystem::advance_segment(unsigned segment) {
   SphereReport report =
       stepper_.advance(environment_, particles_, radii_, targets_, respond, options_.step, clearances);
   hold_stopped(report.step, responses_, velocities_, fates_, options_.dt, acceleration(dt));
+  add_solved_contacts(report.step);
   append_segment(last_.report, std::move(report.step), segment, options_.substeps);
   for (const SphereOverlap& o : report.overlaps) totals_.deepest_in_wall = std::max(totals_.deepest_in_wall, o.depth);
   totals_.wall_overlaps += report.overlaps.size();
   last_.overlaps.insert(last_.overlaps.end(), report.overlaps.begin(), report.overlaps.end());
+}
+
+// Impulses of other spheres change velocities, too: contacts of pushed spheres know of no acceleration.
+ContactCallback ParticleSystem::response(double dt) {
+  ContactCallback free = respond_with(responses_, velocities_, fates_, options_.dt, acceleration(dt));
+  if (!collides()) return free;
+  return [this, free, pushed = respond_with(responses_, velocities_, fates_, options_.dt)](
+             const Contact& contact, std::span<const WallHit> walls, std::span<const WallHit> earlier) {
+    return (pushed_[contact.particle] != 0 ? pushed : free)(contact, walls, earlier);
+  };
 }
 
 void ParticleSystem::count_contacts() {

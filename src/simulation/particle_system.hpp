@@ -196,6 +196,10 @@ class ParticleSystem final : public SimulationComponent {
   void find_walls(double dt, bool moving);
   [[nodiscard]] double clearance(std::size_t i) const;
   void walls_of(std::size_t i, double dt, bool moving, NearWalls& near, std::vector<WallContact>& found);
+  void note_contacts(std::span<const WallContact> walls, double dt);
+  void add_solved_contacts(StepReport& report);
+  void take_targets();
+  [[nodiscard]] ContactCallback response(double dt);
   void aim_stuck(double dt);
 
   Environment& environment_;
@@ -239,6 +243,8 @@ class ParticleSystem final : public SimulationComponent {
   std::vector<NearWalls> near_;  // by chunk
   std::vector<std::vector<WallContact>> near_contacts_;
   std::vector<WallContact> walls_;
+  ContactList solved_;                // of this segment, with walls whose impulses the solver gave
+  std::vector<std::uint8_t> pushed_;  // by particle: whether the solver changed its way
   std::uint64_t next_id_ = 0;
   std::uint64_t steps_ = 0;
   std::uint64_t absorbed_between_ = 0;  // by edits since the last step

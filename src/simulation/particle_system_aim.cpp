@@ -96,10 +96,9 @@ ParticleSystem::Forces ParticleSystem::forces_of(double dt) const {
   return {dt, options_.drag > 0.0 ? lost_to_drag(dt) : 0.0};
 }
 
-// The acceleration that contacts know of: none where a field, a force or other spheres change velocities,
-// too. Drag reduces it.
+// The acceleration that contacts know of: none where a field or a force changes velocities, too. Drag reduces it.
 Acceleration ParticleSystem::acceleration(double dt) const {
-  if (field_ || force_ || collides()) return {};
+  if (field_ || force_) return {};
   if (options_.drag == 0.0) return {options_.gravity, dt};
   return {options_.gravity * (lost_to_drag(dt) / (options_.drag * dt)), dt};
 }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <tuple>
 
 #include "base/parallel.hpp"
 #include "response/incident_walls.hpp"
@@ -72,7 +73,8 @@ void ParticleSystem::walls_of(std::size_t i, double dt, bool moving, NearWalls& 
     const double gap = w.distance - r;
     const bool meets = gap <= wall_share * r && dot(velocities_[i] - velocity, w.normal) * dt <= -gap;
     if (gap > near_share * r && !meets) continue;
-    found.push_back({static_cast<std::uint32_t>(i), w.normal, gap, velocity, surface->restitution, surface->friction});
+    found.push_back({static_cast<std::uint32_t>(i), w.normal, gap, velocity, surface->restitution, surface->friction,
+                     w.face, w.triangle});
   }
 }
 
@@ -102,6 +104,62 @@ void ParticleSystem::aim_stuck(double dt) {
   }
 }
 
+// The contacts of spheres that came to walls among others. The time is that of the way without impulses; the end of the
+// step where only another sphere brings it there.
+void ParticleSystem::note_contacts(std::span<const WallContact> walls, double dt) {
+  solved_.clear();
+  for (const WallContact& w : walls) {
+    const Vec3& x = particles_[w.sphere].position;
+    Contact c;
+    c.particle = w.sphere;
+    c.wall_displacement = w.wall_velocity * dt;
+    c.displacement = targets_[w.sphere] - x - c.wall_displacement;
+    const double nearing = -dot(c.displacement, w.normal);
+    c.time_of_impact = w.gap <= 0.0 ? 0.0 : nearing > w.gap ? w.gap / nearing : 1.0;
+    c.unused = c.displacement * (1.0 - c.time_of_impact);
+    WallFeature place =
+        NearWalls::place_on(environment_.complex(), w.face, w.triangle, x + c.displacement * c.time_of_impact, false);
+    place.normal = w.normal;
+    c.kind = place.kind;
+    c.dart = place.dart;
+    c.point = place.point + c.wall_displacement;
+    c.first_wall = static_cast<std::uint32_t>(solved_.walls.size());
+    c.wall_count = 1;
+    solved_.walls.push_back(place.hit());
+    solved_.contacts.push_back(c);
+  }
+  std::sort(solved_.contacts.begin(), solved_.contacts.end(), [](const Contact& a, const Contact& b) {
+    return std::tuple(a.particle, a.time_of_impact, a.first_wall) <
+           std::tuple(b.particle, b.time_of_impact, b.first_wall);
+  });
+}
+
+// Puts them before those of the spheres' own steps, with times that do not fall.
+void ParticleSystem::add_solved_contacts(StepReport& report) {
+  if (solved_.contacts.empty()) return;
+  for (const Contact& c : solved_.contacts) ++report.counters.contacts[static_cast<std::size_t>(c.kind)];
+  solved_.append(report.contacts);
+  std::vector<Contact>& all = solved_.contacts;
+  std::stable_sort(all.begin(), all.end(), [](const Contact& a, const Contact& b) { return a.particle < b.particle; });
+  for (std::size_t k = all.size() - 1; k > 0; --k) {
+    if (all[k - 1].particle == all[k].particle)
+      all[k - 1].time_of_impact = std::min(all[k - 1].time_of_impact, all[k].time_of_impact);
+  }
+  std::swap(report.contacts, solved_);
+  solved_.clear();
+}
+
+// The ways that the solver leaves to the spheres.
+void ParticleSystem::take_targets() {
+  pushed_.assign(targets_.size(), 0);
+  for (std::size_t i = 0; i < targets_.size(); ++i) {
+    if (fates_[i] != ParticleStatus::alive || particles_[i].held) continue;
+    const Vec3 target = flushed(particles_[i].position + displacements_[i]);
+    pushed_[i] = target != targets_[i] ? 1 : 0;
+    targets_[i] = target;
+  }
+}
+
 void ParticleSystem::collide(double dt, bool moving) {
   aim(dt, false);
   weigh();
@@ -114,20 +172,20 @@ void ParticleSystem::collide(double dt, bool moving) {
   solver.iterations = c.iterations;
   solver.position_iterations = c.position_iterations;
   solver.resting_speed = 2.0 * norm(options_.gravity) * dt;
+  solver.acceleration = acceleration(dt).value;
   const CellComplex& complex = environment_.complex();
   const CollidingSpheres spheres = {particles_.states(), ids_,        met_radii_,     inverse_masses_,
                                     clearances_,         velocities_, displacements_, options_.gravity};
   if (meets_bodies()) {
     last_.collisions += body_collider_.collide(complex, spheres, walls_, *bodies_, solver, environment_.threads());
     collider_.solver().set_cached_impulses({});
+    note_contacts(body_collider_.new_walls(), dt);
   } else {
     last_.collisions += collider_.collide(complex, spheres, walls_, solver, environment_.threads());
     body_collider_.solver().set_cached_impulses({});
+    note_contacts(collider_.new_walls(), dt);
   }
-  for (std::size_t i = 0; i < targets_.size(); ++i) {
-    if (fates_[i] == ParticleStatus::alive && !particles_[i].held)
-      targets_[i] = flushed(particles_[i].position + displacements_[i]);
-  }
+  take_targets();
 }
 
 }  // namespace dartcast

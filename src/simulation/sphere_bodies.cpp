@@ -113,14 +113,23 @@ void SphereBodyCollider::find_contacts(const CellComplex& complex, const Collidi
   counts.pairs_near = contacts_.size();
 }
 
-void SphereBodyCollider::add_walls(const CollidingSpheres& spheres, std::span<const WallContact> walls) {
-  for (const WallContact& w : walls) {
+void SphereBodyCollider::add_walls(const CollidingSpheres& spheres, std::span<const WallContact> walls,
+                                   const SolverOptions& options) {
+  walls_.assign(walls.begin(), walls.end());
+  for (WallContact& w : walls_) w.gap -= resting_gap * spheres.radii[w.sphere];
+  shared_.assign(movers_.size(), 0);
+  for (const RigidContact& c : contacts_) {
+    if (in_reach(c.gap, movers_[c.a].velocity_at(c.point_a), movers_[c.b].velocity_at(c.point_b), options.dt))
+      shared_[c.a] = shared_[c.b] = 1;
+  }
+  leave_lone_spheres(spheres.velocities, options, shared_, walls_);
+  for (const WallContact& w : walls_) {
     RigidContact c;
     c.b = w.sphere;
     c.b_id = ids_[w.sphere];
     c.normal = w.normal;
     c.point_b = moving_[w.sphere].centre;
-    c.gap = w.gap - resting_gap * spheres.radii[w.sphere];
+    c.gap = w.gap;
     c.restitution = w.restitution;
     c.friction = w.friction;
     c.wall_velocity = w.wall_velocity;
@@ -135,8 +144,11 @@ CollisionCounts SphereBodyCollider::collide(const CellComplex& complex, const Co
   const std::size_t count = spheres.states.size();
   gather(spheres, bodies, options.dt);
   find_contacts(complex, spheres, options, threads, counts);
-  add_walls(spheres, walls);
+  add_walls(spheres, walls, options);
   solver_.solve(contacts_, movers_, options);
+  new_walls_.clear();
+  for (const std::uint32_t c : solver_.new_walls())
+    new_walls_.push_back(walls_[c - (contacts_.size() - walls_.size())]);
   for (std::size_t i = 0; i < count; ++i) {
     spheres.velocities[i] = movers_[i].velocity;
     spheres.displacements[i] = movers_[i].position_delta;

@@ -24,6 +24,9 @@ class SphereBodyCollider {
                           std::span<const WallContact> walls, Bodies& bodies, const SolverOptions& options,
                           Threads threads);
 
+  /// As Collider::new_walls().
+  [[nodiscard]] std::span<const WallContact> new_walls() const { return new_walls_; }
+
   [[nodiscard]] RigidSolver& solver() { return solver_; }
   [[nodiscard]] const RigidSolver& solver() const { return solver_; }
 
@@ -40,7 +43,7 @@ class SphereBodyCollider {
                      std::span<const SpherePair> candidates, const SolverOptions& options, Part& part) const;
   void find_contacts(const CellComplex& complex, const CollidingSpheres& spheres, const SolverOptions& options,
                      Threads threads, CollisionCounts& counts);
-  void add_walls(const CollidingSpheres& spheres, std::span<const WallContact> walls);
+  void add_walls(const CollidingSpheres& spheres, std::span<const WallContact> walls, const SolverOptions& options);
 
   CellLists lists_;
   PairFinder finder_;
@@ -54,6 +57,9 @@ class SphereBodyCollider {
   std::vector<RigidMover> movers_;   // spheres, then bodies
   std::vector<Part> parts_;          // by chunk of candidates
   std::vector<RigidContact> contacts_;
+  std::vector<WallContact> walls_;
+  std::vector<WallContact> new_walls_;
+  std::vector<std::uint8_t> shared_;  // by mover
 };
 
 }  // namespace dartcast

@@ -451,6 +451,45 @@ TEST_F(Command, CheckTakesSurfaces) {
   EXPECT_NE(run("check a.obj").out.find("a surface in space"), std::string::npos);
 }
 
+// A sphere that bounces on a floor: contacts.csv, the counts and the hits of walls are those of a run without collisions.
+class Bounces : public Command {
+ public:
+  void expect_same_contacts(const std::string& scene_text) {
+    const auto results = [&](const std::string& name, const std::string& more) {
+      (void)write(name + ".toml", scene_text + more + "[output]\ncontacts = true\nevery = 1000\nreport = false\n");
+      const Result r = run("run " + name + ".toml --json -o " + name);
+      EXPECT_EQ(r.status, 0) << r.error;
+      return std::pair(content(folder / name / "contacts.csv"), nlohmann::json::parse(r.out));
+    };
+    const auto [rows, summary] = results("colliding", "[collisions]\n");
+    const auto [expected, expected_summary] = results("alone", "");
+    EXPECT_EQ(rows, expected);
+    EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 3) << rows;  // the names, and two contacts
+    EXPECT_EQ(summary["contacts"], expected_summary["contacts"]);
+    EXPECT_EQ(summary["statistics"]["hits"]["total"], 2);
+    EXPECT_EQ(summary["statistics"]["hits"], expected_summary["statistics"]["hits"]);
+  }
+};
+
+constexpr const char* bouncing =
+    "[motion]\ndt = 0.01\nsteps = 240\ngravity = [0.0, 0.0, -9.81]\n[contact]\nresponse = 'reflect'\nrestitution = "
+    "0.5\n"
+    "[statistics]\nhits = true\n";
+
+TEST_F(Bounces, OfCollidingSpheresAreReported) {
+  (void)write("seed.csv", "x,y,z,vx,vy,vz,radius\n2.5,1.5,6,0,0,0,0.5\n");
+  expect_same_contacts(std::string("[environment]\ngenerator = 'box'\ncells = [4, 4, 8]\nsize = [4, 4, 8]\n"
+                                   "[[particles]]\npositions = 'seed.csv'\n") +
+                       bouncing);
+}
+
+TEST_F(Bounces, OnABoxOfOthersAreReported) {
+  NEED_DATA("a sphere on a box");
+  const std::string from = (dartcast::test::data_folder() / "regressions/turn3/sphere_on_box").string();
+  expect_same_contacts("[environment]\nmesh = '" + from + "/hex.msh'\nfree = { region = ['air'] }\n" +
+                       "[[particles]]\npositions = '" + from + "/seed.csv'\n" + bouncing);
+}
+
 // Real meshes: all that are well formed are accepted, divided into simplices, and can be run.
 TEST_F(Command, SharedDataIsAccepted) {
   NEED_DATA("dartcast check over real meshes");
