@@ -170,7 +170,7 @@ struct SolidScene {
   struct Move {
     double until = 0.0;  ///< s
     Vec3 velocity;       ///< m / s
-    Vec3 turn;           ///< rad / s: axis times angular velocity, about the pivot
+    Vec3 turn;           ///< rad / s: axis times angular velocity, about the pivot; any angle in a step
   };
 
   std::string name;  ///< of its files
@@ -181,7 +181,7 @@ struct SolidScene {
   Vec3 at;                  ///< then: where the origin goes
   Vec3 pivot;               ///< of turns, in the scene; moves with it
   std::vector<Move> moves;  ///< by time; afterwards it is held
-  /// Whether it makes up for motion that a wall has stopped. Else that motion is lost.
+  /// Whether it makes up for motion that a wall has stopped, up to a turn of 3.125 rad. Else that motion is lost.
   bool catch_up = false;
 };
 

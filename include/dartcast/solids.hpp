@@ -174,7 +174,7 @@ class SolidSet {
   /// InvalidArgument where the number does not match, or one is negative or not finite.
   void set_inverse_masses(std::span<const double> inverse_masses);
 
-  /// Moves the vertices of all solids straight towards these targets, with walls at rest. A step, in order:
+  /// Moves the vertices of all solids straight (a turn by its chord) towards these targets, with walls at rest. In order:
   ///  1. Detect: all contacts on the way to the targets. Without one the targets are reached.
   ///  2. Correct the targets, so that the contacts found so far keep their separation, and detect again; in rounds.
   ///  3. Cut: what still meets a wall goes 15/16 of the way to its first contact, as a whole. The rounded positions are

@@ -200,7 +200,7 @@ double Bodies::Impl::plan(const VertexMotion& walls) {
   std::vector<Vec3> carried;
   for (const ParticleState& p : particles_.states())
     carried.push_back(carried_by_cell(environment_.complex(), p, walls));
-  partner_ = &JointMoves::prepare(*surfaces_.set, surface_targets(carried, positions_), {});
+  partner_ = &JointMoves::prepare(*surfaces_.set, {surface_targets(carried, positions_)}, {});
   return partner_->plan(walls);
 }
 

@@ -1,5 +1,8 @@
-// Rigid poses: a turn about the pivot, then a displacement.
+// Rigid poses, which are a turn about the pivot and then a displacement, and the ways between them.
 #pragma once
+
+#include <algorithm>
+#include <cmath>
 
 #include "base/elementary.hpp"
 #include "dartcast/vec3.hpp"
@@ -25,12 +28,39 @@ inline Vec3 rotated(const Quaternion& q, const Vec3& x) {
   return x + twice * q.w + cross(q.v, twice);
 }
 
-/// A pose on the way from a to b. Precondition: their rotations are less than a half turn apart.
-inline RigidPose between(const RigidPose& a, const RigidPose& b, double share) {
-  const double side = a.rotation.w * b.rotation.w + dot(a.rotation.v, b.rotation.v) < 0.0 ? -1.0 : 1.0;
-  const Quaternion mixed = {a.rotation.w * (1.0 - share) + b.rotation.w * (side * share),
-                            a.rotation.v * (1.0 - share) + b.rotation.v * (side * share)};
-  return {a.displacement + (b.displacement - a.displacement) * share, normalized(mixed)};
+/// First the rotation, then the turn.
+inline Quaternion turned(const Quaternion& rotation, const Vec3& turn) {
+  return normalized(rotation_of(turn) * rotation);
+}
+
+/// The turn from a to b the shorter way, of at most a half turn; exactly 0 where they are equal.
+inline Vec3 turn_between(const Quaternion& a, const Quaternion& b) {
+  const Quaternion q = b * Quaternion{a.w, -a.v};
+  const double sine = norm(q.v);
+  if (!(sine > 0.0)) return {};
+  return q.v * ((q.w < 0.0 ? -2.0 : 2.0) * polar_angle(sine, std::abs(q.w)) / sine);
+}
+
+/// A way at constant velocities, of the pivot and around it.
+struct RigidWay {
+  RigidPose from;
+  RigidPose to;
+  Vec3 turn;  ///< from the one to the other: axis times angle, which may be several turns
+
+  [[nodiscard]] RigidPose at(double share) const {
+    if (share == 0.0) return from;
+    if (share == 1.0) return to;
+    return {from.displacement + (to.displacement - from.displacement) * share, turned(from.rotation, turn * share)};
+  }
+};
+
+/// How many equal slices a way needs, so that chords are at most `distance` off it at any time, for all points within `arm`
+/// of the axis. Preconditions: angle, arm, distance >= 0, and distance > 0 where arm is.
+///
+/// In a slice of angle a the acceleration of such a point is at most a^2 arm, where the slice takes the time 1. So a chord,
+/// which interpolates the way, is off by at most a^2 arm / 8.
+inline double slice_count(double angle, double arm, double distance) {
+  return arm > 0.0 ? std::max(1.0, std::ceil(angle * std::sqrt(arm / (8.0 * distance)))) : 1.0;
 }
 
 }  // namespace dartcast

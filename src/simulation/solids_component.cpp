@@ -1,12 +1,17 @@
 // Rigid tools of a simulation. A step has three parts, in order. Each tool's wanted pose goes on by its move. The
 // vertices of the wanted poses are the targets of the set of solids. A tool that was stopped takes the pose at the share
 // of its way.
+//
+// A tool that turns goes on chords, from pose to pose. Its step is cut into slices, so that no point leaves its arc by more
+// than the tool's separation from walls. Where it stops in a slice, the set tries poses of the slice until the chord to one
+// is free. So a tool is rigid at the end of each slice.
 #include "simulation/solids_component.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "dartcast/error.hpp"
@@ -29,13 +34,34 @@ SolidMesh shape_of(const SolidScene& scene) {
   return mesh;
 }
 
-RigidPose moved(const RigidPose& pose, const SolidScene& scene, double begin, double dt) {
+// A tool that walls hold back by more than this angle, which is less than a half turn, loses the rest. So the shorter way
+// to its wanted pose goes the same way round as its moves.
+constexpr double max_lag = 3.125;
+constexpr double max_slices = 0x1p16;
+
+// The way of a step: from the pose to where a move takes the wanted one.
+RigidWay way_of(const RigidPose& pose, const RigidPose& wanted, const SolidScene& scene, double begin, double dt) {
+  RigidWay way = {pose, wanted, {}};
+  const Vec3 lag = turn_between(pose.rotation, wanted.rotation);
   const double middle = begin + 0.5 * dt;
-  for (const SolidScene::Move& move : scene.moves) {
-    if (middle >= move.until) continue;
-    return {pose.displacement + move.velocity * dt, normalized(rotation_of(move.turn * dt) * pose.rotation)};
+  const auto move =
+      std::find_if(scene.moves.begin(), scene.moves.end(), [&](const auto& m) { return middle < m.until; });
+  if (move != scene.moves.end()) {
+    way.turn = move->turn * dt;
+    way.to = {wanted.displacement + move->velocity * dt, turned(wanted.rotation, way.turn)};
   }
-  return pose;
+  if (lag == Vec3{}) return way;
+  const bool is_short = norm(lag) + norm(way.turn) <= max_lag;
+  way.turn = is_short ? turn_between(pose.rotation, way.to.rotation) : lag + way.turn;
+  if (!is_short) way.to.rotation = turned(pose.rotation, way.turn);
+  return way;
+}
+
+// The largest distance of a tool's points from the pivot.
+double arm_of(const SolidMesh& mesh, const Vec3& pivot) {
+  double arm = 0.0;
+  for (const Vec3& x : mesh.points) arm = std::max(arm, norm(x - pivot));
+  return arm;
 }
 
 }  // namespace
@@ -57,36 +83,74 @@ void SolidsComponent::add_named(const SolidScene& scene) {
     throw Error(fmt::format("its part with the vertices {} at ({}, {}, {}) {}; move or turn it",
                             fmt::join(vertices, ", "), x.x, x.y, x.z, reason(placed.refusal)));
   }
+  tool.separation = JointMoves::separation(*solids_, placed.solid);
+  if (tool.separation == 0.0) tool.separation = JointMoves::default_separation * arm_of(tool.mesh, scene.pivot);
+  try {
+    check_turns(tool);
+  } catch (...) {
+    solids_->remove(placed.solid);
+    throw;
+  }
   last_.made.push_back(1.0);
   tools_.push_back(std::move(tool));
 }
 
-std::vector<Vec3> SolidsComponent::targets(double begin) {
-  std::vector<Vec3> all;
-  for (Tool& tool : tools_) {
-    tool.wanted = moved(tool.wanted, tool.scene, begin, dt_);
-    const Vec3 pivot = tool.scene.pivot + tool.wanted.displacement;
-    for (const Vec3& x : tool.mesh.points) all.push_back(pivot + rotated(tool.wanted.rotation, x - tool.scene.pivot));
+void SolidsComponent::check_turns(const Tool& tool) const {
+  const double arm = arm_of(tool.mesh, tool.scene.pivot);
+  for (std::size_t i = 0; i < tool.scene.moves.size(); ++i) {
+    const double angle = norm(tool.scene.moves[i].turn) * dt_;
+    const double slices = slice_count(angle, arm, tool.separation);
+    if (!(slices <= max_slices))
+      throw InvalidArgument(fmt::format(
+          "its move {} turns it by {} rad in a step, which takes {} slices; {} is the limit: make dt smaller, "
+          "or turn more slowly",
+          i + 1, angle, slices, max_slices));
   }
+}
+
+// Gives each tool its way of the step, and the set the way of all.
+SolidWay SolidsComponent::way(double begin) {
+  SolidWay all;
+  double slices = 1.0;
+  bool turns = false;
+  for (Tool& tool : tools_) {
+    tool.way = way_of(tool.pose, tool.wanted, tool.scene, begin, dt_);
+    tool.wanted = tool.way.to;
+    tool.put(tool.wanted, std::back_inserter(all.targets));
+    const double angle = norm(tool.way.turn);
+    if (angle == 0.0) continue;
+    turns = true;
+    double arm = 0.0;
+    for (const Vec3& x : tool.mesh.points)
+      arm = std::max(arm, norm(cross(tool.way.turn, rotated(tool.pose.rotation, x - tool.scene.pivot))) / angle);
+    slices = std::max(slices, slice_count(angle, arm, tool.separation));
+  }
+  if (!turns) return all;  // straight
+  all.slices = static_cast<unsigned>(slices);
+  all.place = [this](std::uint32_t solid, double share, std::span<Vec3> vertices) {
+    tools_[solid].put(tools_[solid].way.at(share), vertices.begin());
+  };
   return all;
 }
 
-// A tool that was cut is where a straight way to its target took its vertices. Its pose there is rigid, so that the next
-// step gives it its shape again.
+// The lag of a tool that makes up for it is limited.
 void SolidsComponent::follow(const SolidStep& step) {
   last_ = step;
   for (const SolidContact& c : last_.contacts) ++tools_[c.solid].contacts;
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     Tool& tool = tools_[i];
     const double made = last_.made[i];
-    tool.pose = made == 1.0 ? tool.wanted : between(tool.pose, tool.wanted, made);
+    const double angle = norm(tool.way.turn);
+    tool.pose = tool.way.at(made);
     if (!tool.scene.catch_up) tool.wanted = tool.pose;
+    if (tool.scene.catch_up && angle * (1.0 - made) > max_lag)
+      tool.wanted.rotation = turned(tool.pose.rotation, tool.way.turn * (max_lag / angle));
     tool.stopped += made < 1.0 ? 1 : 0;
   }
 }
 
 void SolidsComponent::move_with(double begin, std::span<const Vec3> positions, std::vector<MovePartner*> partners) {
-  if (solids_) partners.push_back(&JointMoves::prepare(*solids_, targets(begin), {.rounds = 0}));
+  if (solids_) partners.push_back(&JointMoves::prepare(*solids_, way(begin), {.rounds = 0}));
   walls_before_ = std::exchange(walls_now_, move_together(environment_, partners, positions));
   if (!solids_) return;
   follow(JointMoves::last_step(*solids_));
@@ -94,7 +158,7 @@ void SolidsComponent::move_with(double begin, std::span<const Vec3> positions, s
 }
 
 void SolidsComponent::step(double begin) {
-  if (solids_ && !std::exchange(moved_, false)) follow(solids_->advance(targets(begin), {.rounds = 0}));
+  if (solids_ && !std::exchange(moved_, false)) follow(JointMoves::advance(*solids_, way(begin), {.rounds = 0}));
 }
 
 void SolidsComponent::update_after_edit(const ComplexEditReport& /*edit*/, OrphanPolicy /*orphaned*/) {

@@ -17,8 +17,9 @@
 
 namespace dartcast {
 
-/// The tools of a simulation. Where the vertices of the environment move, solids and walls make their step together, with
-/// all else that stops walls: then the particles' step calls move_with() in place of Environment::move().
+/// The tools of a simulation. One that turns goes on chords of its arcs, in slices of a step. Where the vertices of the
+/// environment move, solids and walls make their step together, with all else that stops walls: then the particles' step
+/// calls move_with() in place of Environment::move().
 class SolidsComponent final : public SimulationComponent {
  public:
   SolidsComponent(Environment& environment, const ParticleSystem& particles)
@@ -47,16 +48,26 @@ class SolidsComponent final : public SimulationComponent {
 
  private:
   struct Tool {
-    SolidScene scene;  // without its shape
-    SolidMesh mesh;    // where it was put first
-    RigidPose pose;    // where it is
-    RigidPose wanted;  // where it should be
+    SolidScene scene;         // without its shape
+    SolidMesh mesh;           // where it was put first
+    RigidPose pose;           // where it is
+    RigidPose wanted;         // where it should be
+    RigidWay way;             // of the step
+    double separation = 0.0;  // chords stay as near to the arcs
     std::uint64_t contacts = 0;
     std::uint64_t stopped = 0;
+
+    // Writes where its points are at a pose.
+    template <class Out>
+    void put(const RigidPose& at, Out out) const {
+      const Vec3 pivot = scene.pivot + at.displacement;
+      for (const Vec3& x : mesh.points) *out++ = pivot + rotated(at.rotation, x - scene.pivot);
+    }
   };
 
   void add_named(const SolidScene& scene);
-  [[nodiscard]] std::vector<Vec3> targets(double begin);
+  void check_turns(const Tool& tool) const;
+  [[nodiscard]] SolidWay way(double begin);
   void follow(const SolidStep& step);
 
   [[nodiscard]] bool walls_were_stopped() const { return walls_before_ < 1.0 || walls_now_ < 1.0; }

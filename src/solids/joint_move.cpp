@@ -10,44 +10,38 @@
 #include "dartcast/error.hpp"
 #include "dartcast/predicates.hpp"
 #include "tracking/carry.hpp"
+#include "tracking/representable_point.hpp"
 
 namespace dartcast {
 
 namespace {
 
-// Adds the particle to the first of these cells' simplices that holds it, border included.
-bool add_to_first(Environment& environment, std::span<const Cell> cells, const Vec3& x, Particles& moved) {
-  for (const Cell c : cells) {
-    const std::size_t count = environment.map().view(c).shape().simplices().size();
-    for (std::uint16_t s = 0; s < count; ++s) {
-      if (environment.add(moved, {c, s}, x)) return true;
-    }
-  }
-  return false;
-}
-
-// Adds the particle where it is after its way: in one of the cells that it reaches.
-void add_moved(Environment& environment, Cell cell, const Vec3& from, const Vec3& to, Particles& moved) {
-  const CellComplex& complex = environment.complex();
-  MovingElement point;
-  point.from[0] = from;
-  point.to[0] = to;
-  NearWalls near;
-  near.search(complex, cell, point, {complex.previous_positions(), complex.positions()});
-  if (!add_to_first(environment, near.cells_reached(), to, moved))
-    throw InternalError(fmt::format("joint move: no cell holds the point ({}, {}, {}) after a move; please report it",
-                                    to.x, to.y, to.z));
+Corners corners_of(const CellComplex& complex, SimplexId simplex, std::span<const Vec3> x) {
+  const auto v = complex.vertices(simplex);
+  return {x[v[0].value], x[v[1].value], x[v[2].value], x[v[3].value]};
 }
 
 }  // namespace
 
+SimplexId simplex_after(const CellComplex& complex, Cell cell, const Vec3& from, const Vec3& to,
+                        const VertexMotion& walls, NearWalls& near) {
+  MovingElement point;
+  point.from[0] = from;
+  point.to[0] = to;
+  near.search(complex, cell, point, walls);
+  for (const Cell c : near.cells_reached()) {
+    const std::size_t count = complex.map().view(c).shape().simplices().size();
+    for (std::uint16_t s = 0; s < count; ++s) {
+      if (detail::in_closed_simplex(corners_of(complex, {c, s}, walls.after), to)) return {c, s};
+    }
+  }
+  throw InternalError(
+      fmt::format("joint move: no cell holds the point ({}, {}, {}) after a move; please report it", to.x, to.y, to.z));
+}
+
 Vec3 carried_by_cell(const CellComplex& complex, const ParticleState& state, const VertexMotion& walls) {
-  const auto v = complex.vertices(state.at());
-  const auto corners = [&](std::span<const Vec3> x) {
-    return Corners{x[v[0].value], x[v[1].value], x[v[2].value], x[v[3].value]};
-  };
-  const Corners before = corners(walls.before);
-  const Corners after = corners(walls.after);
+  const Corners before = corners_of(complex, state.at(), walls.before);
+  const Corners after = corners_of(complex, state.at(), walls.after);
   Vec3 x = state.position;
   if (before == after) return x;
   const Weights weights = detail::barycentric(before, x);
@@ -58,15 +52,24 @@ Vec3 carried_by_cell(const CellComplex& complex, const ParticleState& state, con
 Vec3 on_way(const Vec3& from, const Vec3& to, double share) { return flushed(from + (to - from) * share); }
 
 // Environment::advance() is quick, but it carries a particle along and then walks: a wall may be in that way.
-void follow_move(Environment& environment, Particles& particles, std::span<const Vec3> to) {
+void follow_move(Environment& environment, Particles& particles, std::span<const Vec3> to,
+                 std::span<const SimplexId> simplices) {
+  const CellComplex& complex = environment.complex();
+  const VertexMotion walls = {complex.previous_positions(), complex.positions()};
   const std::vector<ParticleState> before(particles.states().begin(), particles.states().end());
   environment.advance(particles, to);
   std::vector<std::uint32_t> missed;
   Particles moved;
+  NearWalls near;
   for (std::uint32_t p = 0; p < to.size(); ++p) {
     if (particles[p].position == to[p]) continue;
     missed.push_back(p);
-    add_moved(environment, before[p].cell, before[p].position, to[p], moved);
+    const SimplexId at = simplices.empty()
+                             ? simplex_after(complex, before[p].cell, before[p].position, to[p], walls, near)
+                             : simplices[p];
+    if (!environment.add(moved, at, to[p]))
+      throw InternalError(fmt::format("joint move: cell {} does not hold the point ({}, {}, {}); please report it",
+                                      at.cell.value, to[p].x, to[p].y, to[p].z));
   }
   if (!missed.empty()) particles.replace(missed, moved);
 }

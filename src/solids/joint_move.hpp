@@ -1,8 +1,10 @@
 // The motion of an environment's walls together with what has edges among them: sets of solids, catheters.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "dartcast/environment.hpp"
 #include "dartcast/solids.hpp"
@@ -35,19 +37,39 @@ class MovePartner {
 /// them have room. Returns the share of the ways that were made. Throws as Environment::move(), nothing changed.
 double move_together(Environment& environment, std::span<MovePartner* const> partners, std::span<const Vec3> positions);
 
+/// The way of a set of solids in a step: straight, or cut into slices of equal length, each of which is straight.
+struct SolidWay {
+  std::vector<Vec3> targets;  ///< of all vertices: the end of the way
+  unsigned slices = 1;        ///< > 0
+  /// Writes where the vertices of a solid are at a share of its way, in (0, 1). None: the way is straight.
+  std::function<void(std::uint32_t solid, double share, std::span<Vec3> vertices)> place = {};
+};
+
 /// Sets of solids as partners of a joint move.
 struct JointMoves {
   /// Checks as SolidSet::move_with() does, and throws as it does. The set is a partner of the next joint move.
-  static MovePartner& prepare(SolidSet& solids, std::span<const Vec3> targets, const SolidStepOptions& options);
+  static MovePartner& prepare(SolidSet& solids, SolidWay way, const SolidStepOptions& options);
+  /// As SolidSet::advance(), on this way. A solid that stops in a slice stays there to the end of the step. Precondition,
+  /// also of prepare(): options.rounds is 0 where the way is not straight.
+  static const SolidStep& advance(SolidSet& solids, SolidWay way, const SolidStepOptions& options);
+  /// The separation of a solid from walls where the options give none, but for walls with shorter sides; 0: it has no side.
+  static double separation(const SolidSet& solids, std::size_t solid);
+  static constexpr double default_separation = 0x1p-10;  ///< of a side
   /// The report of the set's last step.
   static const SolidStep& last_step(const SolidSet& solids);
   /// A copy in the same environment.
   static std::unique_ptr<SolidSet> copy(const SolidSet& solids);
 };
 
-/// After the move: takes the particles straight to these places, on ways that are proved free. Throws InternalError where no
-/// cell on a particle's way holds its place.
-void follow_move(Environment& environment, Particles& particles, std::span<const Vec3> to);
+/// A simplex that holds the end of a particle's straight way, border included, after the walls made theirs. `cell` holds
+/// its start. Throws InternalError where no cell on the way does. Precondition: the way is free, and cells stay positive.
+SimplexId simplex_after(const CellComplex& complex, Cell cell, const Vec3& from, const Vec3& to,
+                        const VertexMotion& walls, NearWalls& scratch);
+
+/// After the move: takes the particles to these places, on ways that are proved free. `simplices` hold the places; where
+/// there are none, the ways are straight. Throws as simplex_after().
+void follow_move(Environment& environment, Particles& particles, std::span<const Vec3> to,
+                 std::span<const SimplexId> simplices = {});
 
 /// Where its simplex carries a particle while the walls move: it keeps its weights there, so that it meets no wall.
 Vec3 carried_by_cell(const CellComplex& complex, const ParticleState& state, const VertexMotion& walls);

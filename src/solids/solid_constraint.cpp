@@ -6,12 +6,12 @@
 #include <utility>
 
 #include "dynamics/swept_sphere.hpp"
+#include "solids/joint_move.hpp"
 
 namespace dartcast {
 
 namespace {
 
-constexpr double default_separation = 0x1p-10;  // of a side
 // Edges with a smaller sine than this between them have no useful normal of their own.
 constexpr double parallel_sine = 0x1p-26;
 
@@ -155,9 +155,9 @@ SolidConstraint constraint_of(const ElementTouch& touch, const SolidMotion& moti
   if (c.normal == Vec3{}) c.normal = any_normal(touch, motion);
   c.wall_point = weighted(c.wall_weights, wall_points(touch, 1.0));
   const double side_of_wall = longest_side(touch.wall.corners.from);
-  c.separation = separation > 0.0
-                     ? separation
-                     : default_separation * (longest > 0.0 ? std::min(longest, side_of_wall) : side_of_wall);
+  c.separation = separation > 0.0 ? separation
+                                  : JointMoves::default_separation *
+                                        (longest > 0.0 ? std::min(longest, side_of_wall) : side_of_wall);
   return c;
 }
 

@@ -18,6 +18,7 @@ struct SolidConstraint {
   Vec3 wall_point;                       ///< at the end of the step
   double separation = 0.0;
   double pressed = 0.0;  ///< sum of the corrections
+  unsigned slice = 0;    ///< of the step, in which the touch is
   /// The way leaves the wall here: it has entered it at an earlier touch, and a correction would keep it in.
   bool is_exit = false;
 };

@@ -30,7 +30,7 @@ void SolidSet::Impl::detect(const Solids& solids, std::span<const Vec3> to, cons
   looked_at.clear();
   work.clear();
   for (const std::uint32_t s : solids) look_at_all_of(s);
-  look({positions, to}, walls);
+  look({from, to}, walls);
 }
 
 // Precondition: the last detection looked at the way of these solids to `uncorrected`, and correct() made `targets` of it.
@@ -41,7 +41,7 @@ void SolidSet::Impl::detect_corrected(const Solids& solids, const VertexMotion& 
     if (progress[s].flat_time > 1.0) look_at_corrected_of(s);
     if (progress[s].flat_time <= 1.0) look_at_all_of(s);  // which element reached the cell is not known
   }
-  look({positions, targets}, walls);
+  look({from, targets}, walls);
 }
 
 void SolidSet::Impl::look_at_all_of(std::uint32_t solid) {
@@ -83,7 +83,7 @@ void SolidSet::Impl::look(const SolidMotion& motion, const VertexMotion& walls) 
     Part& part = parts[begin / grain];
     part.touches.clear();
     part.flats.clear();
-    const auto cell_of = [&](std::size_t i) { return particles[elements[looked_at[work[i].begin]].vertex[0]].cell; };
+    const auto cell_of = [&](std::size_t i) { return simplices[elements[looked_at[work[i].begin]].vertex[0]].cell; };
     for (std::size_t i = begin; i < end; ++i) {
       if (i + 2 < end) prefetch_record(environment.complex(), cell_of(i + 2));
       if (i + 1 < end) prefetch_cell(environment.complex(), cell_of(i + 1), walls);
@@ -99,7 +99,7 @@ void SolidSet::Impl::look_at(const Run& run, const SolidMotion& motion, const Ve
   part.cells.resize(numbers.size());
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     part.elements[i] = elements[numbers[i]];
-    part.cells[i] = particles[part.elements[i].vertex[0]].cell;
+    part.cells[i] = simplices[part.elements[i].vertex[0]].cell;
   }
   const std::size_t first = part.touches.size();
   const auto flat = part.finder.find(environment.complex(), {part.elements, part.cells}, motion, walls, part.touches);

@@ -115,6 +115,7 @@ void SolidSet::Impl::move_all_but_stuck() {
   const CellComplex& complex = environment.complex();
   std::vector<Vec3> carried(positions);
   std::vector<std::uint32_t> others;
+  std::vector<SimplexId> at;
   std::vector<std::uint8_t> held(positions.size(), 0);
   std::vector<Vec3> to;
   for (std::uint32_t s = 0; s < count(); ++s) {
@@ -122,6 +123,7 @@ void SolidSet::Impl::move_all_but_stuck() {
       if (!is_stuck(s)) {
         others.push_back(v);
         to.push_back(reached[v]);
+        if (!ends().empty()) at.push_back(ends()[v]);
         continue;
       }
       held[v] = 1;
@@ -133,7 +135,7 @@ void SolidSet::Impl::move_all_but_stuck() {
   }
   Particles moved = particles;
   moved.remove(held);
-  follow_move(environment, moved, to);
+  follow_move(environment, moved, to, at);
   environment.advance(particles, carried);
   particles.replace(others, moved);
 }

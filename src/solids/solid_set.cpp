@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/parallel.hpp"
 #include "dartcast/error.hpp"
@@ -139,21 +140,30 @@ void SolidSet::set_inverse_masses(std::span<const double> inverse_masses) {
 }
 
 const SolidStep& SolidSet::advance(std::span<const Vec3> targets, const SolidStepOptions& options) {
-  impl_->advance(targets, options);
+  impl_->advance({{targets.begin(), targets.end()}}, options);
   return impl_->last;
 }
 
 const SolidStep& SolidSet::move_with(std::span<const Vec3> targets, std::span<const Vec3> positions,
                                      const SolidStepOptions& options) {
-  impl_->prepare(targets, options);
+  impl_->prepare({{targets.begin(), targets.end()}}, options);
   MovePartner* const self = impl_.get();
   move_together(impl_->environment, {&self, 1}, positions);
   return impl_->last;
 }
 
-MovePartner& JointMoves::prepare(SolidSet& solids, std::span<const Vec3> targets, const SolidStepOptions& options) {
-  solids.impl_->prepare(targets, options);
+MovePartner& JointMoves::prepare(SolidSet& solids, SolidWay way, const SolidStepOptions& options) {
+  solids.impl_->prepare(std::move(way), options);
   return *solids.impl_;
+}
+
+const SolidStep& JointMoves::advance(SolidSet& solids, SolidWay way, const SolidStepOptions& options) {
+  solids.impl_->advance(std::move(way), options);
+  return solids.impl_->last;
+}
+
+double JointMoves::separation(const SolidSet& solids, std::size_t solid) {
+  return default_separation * solids.impl_->longest[solid];
 }
 
 std::unique_ptr<SolidSet> JointMoves::copy(const SolidSet& solids) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -62,8 +63,8 @@ struct SolidSet::Impl final : MovePartner {
 
   // --- a step (solid_step.cpp)
 
-  void advance(std::span<const Vec3> given, const SolidStepOptions& options);
-  void prepare(std::span<const Vec3> given, const SolidStepOptions& options);
+  void advance(SolidWay given, const SolidStepOptions& options);
+  void prepare(SolidWay given, const SolidStepOptions& options);
   double plan(const VertexMotion& walls) override;
   bool shorten(double share, const VertexMotion& walls) override;
   void after_move() override;
@@ -101,10 +102,30 @@ struct SolidSet::Impl final : MovePartner {
     // Before a detection that looks at the elements of the other touches again.
     void keep_touches(std::size_t first);
   };
+  // Where a solid stops: after a share of a slice.
+  struct Stop {
+    unsigned slice = 0;  // the number of slices: it does not stop
+    double share = 0.0;
+  };
   using Solids = std::vector<std::uint32_t>;
 
   [[nodiscard]] Solids all_but_stuck() const;
-  void start(std::span<const Vec3> given, const SolidStepOptions& options, const char* caller);
+  [[nodiscard]] Solids movers(const VertexMotion& walls) const;
+  void start(SolidWay given, const SolidStepOptions& options, const char* caller);
+  static void check_range(std::span<const Vec3> given, const char* caller);
+  void aim();
+  void put_on_way(std::uint32_t solid, double share, std::span<Vec3> place) const;
+  [[nodiscard]] bool has_stopped(std::uint32_t solid) const { return stops[solid].slice < slice; }
+  [[nodiscard]] double way_made(std::uint32_t solid, double walls_made) const;
+  double plan_slice(const VertexMotion& walls);
+  void begin_way();
+  void end_slice(const VertexMotion& walls);
+  // The simplices that hold the vertices at the end of the way; none: it is straight.
+  [[nodiscard]] std::span<const SimplexId> ends() const {
+    return way.slices == 1 ? std::span<const SimplexId>() : std::span<const SimplexId>(simplices);
+  }
+  VertexMotion walls_in(unsigned piece, unsigned pieces, const VertexMotion& walls);
+  void go_on(std::uint32_t solid, double walls_made);
   void correct_in_rounds(Solids& open, const VertexMotion& walls, const SolidStepOptions& options);
   void correct(std::uint32_t solid, const SolidStepOptions& options);
   void go(std::uint32_t solid, double share);
@@ -125,12 +146,18 @@ struct SolidSet::Impl final : MovePartner {
   void look_at(const Run& run, const SolidMotion& motion, const VertexMotion& walls, Part& part);
   void gather(std::span<const Part> found);
 
-  SolidStepOptions planned_options;            // of a joint move
-  std::vector<double> planned_made;            // the share of each solid's way, before walls stop it
+  SolidStepOptions step_options;
+  SolidWay way;
+  unsigned slice = 0;
+  std::vector<Stop> stops;
+  std::vector<double> shares;                  // of the slice, for each solid
+  std::vector<Vec3> from;                      // where the slice starts
+  std::vector<SimplexId> simplices;            // there
+  std::array<AlignedVector<Vec3>, 2> between;  // the walls where slices end
   std::vector<Vec3> wanted;                    // targets of the caller
-  std::vector<Vec3> targets;                   // corrected
+  std::vector<Vec3> targets;                   // of the slice, corrected
   std::vector<Vec3> uncorrected;               // before the last correction
-  std::vector<Vec3> reached;                   // a share of the way to them
+  std::vector<Vec3> reached;                   // a share of the slice
   std::vector<SolidConstraint> first_touches;  // of the solids that are cut
   std::vector<Progress> progress;
   std::vector<Part> parts;

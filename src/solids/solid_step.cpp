@@ -8,6 +8,9 @@
 //  4. report()
 //  5. commit_at_rest(), after_move()   the vertices, which are particles, get there
 //
+// A way that is not straight (SolidWay) is taken in slices, each with 2 and 3, before the vertices go. The walls make
+// equal parts of their way in the meantime.
+//
 // With moving walls solids are partners of a joint move (joint_move.hpp), which calls the phases.
 //
 // Whole solids are cut, because a part of a straight motion that is proved free is free. To stop vertices one by one
@@ -63,26 +66,48 @@ SolidSet::Impl::Solids SolidSet::Impl::all_but_stuck() const {
   return solids;
 }
 
-void SolidSet::Impl::start(std::span<const Vec3> given, const SolidStepOptions& options, const char* caller) {
-  check(options, caller);
-  check_current(caller);
-  if (given.size() != positions.size())
-    throw InvalidArgument(
-        fmt::format("{}: {} targets for {} vertices: give one for each", caller, given.size(), positions.size()));
+void SolidSet::Impl::check_range(std::span<const Vec3> given, const char* caller) {
   const auto bad = std::find_if_not(given.begin(), given.end(), in_exact_range);
   if (bad != given.end())
     throw InvalidArgument(fmt::format("{}: the target of vertex {} is not finite or outside the exact range", caller,
                                       bad - given.begin()));
-  wanted.resize(given.size());
-  std::transform(given.begin(), given.end(), wanted.begin(), flushed);
+}
+
+// All that may touch a wall.
+SolidSet::Impl::Solids SolidSet::Impl::movers(const VertexMotion& walls) const {
+  Solids solids = all_but_stuck();
+  if (!walls.at_rest()) return solids;
+  std::erase_if(solids, [&](std::uint32_t s) {
+    return std::equal(from.begin() + first_vertex[s], from.begin() + first_vertex[s + 1],
+                      targets.begin() + first_vertex[s]);
+  });
+  return solids;
+}
+
+void SolidSet::Impl::start(SolidWay given, const SolidStepOptions& options, const char* caller) {
+  check(options, caller);
+  check_current(caller);
+  if (given.targets.size() != positions.size())
+    throw InvalidArgument(fmt::format("{}: {} targets for {} vertices: give one for each", caller, given.targets.size(),
+                                      positions.size()));
+  check_range(given.targets, caller);
+  way = std::move(given);
+  step_options = options;
+  wanted.resize(positions.size());
+  std::transform(way.targets.begin(), way.targets.end(), wanted.begin(), flushed);
   targets = wanted;
-  uncorrected.resize(given.size());
+  uncorrected.resize(positions.size());
+  stops.assign(count(), {way.slices, 0.0});
+  shares.assign(count(), 1.0);
+  first_touches.clear();
+  begin_way();
   progress.resize(count());
   for (Progress& p : progress) p.constraints.clear();
   pairs_before = pairs_so_far();
   last = {};
   last.made.assign(count(), 1.0);
   for (const SolidPlacement& p : stuck) {  // no part of a step moves these
+    stops[p.solid] = {};
     last.made[p.solid] = 0.0;
     last.held.push_back(p.solid);
     const auto place = of(positions, p.solid);
@@ -118,7 +143,7 @@ void SolidSet::Impl::correct(std::uint32_t solid, const SolidStepOptions& option
   Progress& p = progress[solid];
   const std::span<Vec3> mine = of(targets, solid);
   std::copy(mine.begin(), mine.end(), of(uncorrected, solid).begin());
-  const SolidMotion motion = {positions, targets};
+  const SolidMotion motion = {from, targets};
   for (std::size_t i = p.known_touches; i < p.touches.size(); ++i) {
     const SolidConstraint c = constraint_of(p.touches[i], motion, options.separation, longest[solid]);
     if (!c.is_exit) p.constraints.push_back(c);
@@ -131,22 +156,24 @@ void SolidSet::Impl::correct(std::uint32_t solid, const SolidStepOptions& option
   if (!good) std::copy_n(wanted.begin() + first_vertex[solid], mine.size(), mine.begin());
 }
 
-// Where a share of the way to its targets takes a solid.
+// Where a share of the slice takes a solid.
 void SolidSet::Impl::go(std::uint32_t solid, double share) {
-  last.made[solid] = share;
+  shares[solid] = share;
+  if (way.place && share > 0.0 && share < 1.0 && !has_stopped(solid))
+    return put_on_way(solid, (slice + share) / way.slices, of(reached, solid));
   for (std::uint32_t v = first_vertex[solid]; v < first_vertex[solid + 1]; ++v)
-    reached[v] = share == 0.0 ? positions[v] : share == 1.0 ? targets[v] : on_way(positions[v], targets[v], share);
+    reached[v] = share == 0.0 ? from[v] : share == 1.0 ? targets[v] : on_way(from[v], targets[v], share);
 }
 
 void SolidSet::Impl::keep_first_touches(const Solids& cut, const SolidStepOptions& options) {
-  first_touches.clear();
   for (const std::uint32_t s : cut) {
     const Progress& p = progress[s];
     const auto earlier = [](const ElementTouch& a, const ElementTouch& b) { return a.time < b.time; };
     const auto first = std::min_element(p.touches.begin(), p.touches.end(), earlier);
-    if (p.flat_time == 0.0) last.held.push_back(s);
+    if (p.flat_time == 0.0 && slice == 0) last.held.push_back(s);
     if (first == p.touches.end() || p.flat_time < first->time) continue;
-    first_touches.push_back(constraint_of(*first, {positions, targets}, options.separation, longest[s]));
+    first_touches.push_back(constraint_of(*first, {from, targets}, options.separation, longest[s]));
+    first_touches.back().slice = slice;
   }
 }
 
@@ -154,16 +181,16 @@ void SolidSet::Impl::keep_first_touches(const Solids& cut, const SolidStepOption
 void SolidSet::Impl::cut_each(Solids& open, const VertexMotion& walls) {
   const double least = walls.at_rest() ? least_share : least_share_among_moving_walls;
   Solids squeezed;
-  for (const std::uint32_t s : open) last.made[s] = cut_share * progress[s].free_until();
+  for (const std::uint32_t s : open) shares[s] = cut_share * progress[s].free_until();
   while (!open.empty()) {
-    for (const std::uint32_t s : open) go(s, last.made[s] < least ? 0.0 : last.made[s]);
-    if (walls.at_rest()) std::erase_if(open, [&](std::uint32_t s) { return last.made[s] == 0.0; });
+    for (const std::uint32_t s : open) go(s, shares[s] < least ? 0.0 : shares[s]);
+    if (walls.at_rest()) std::erase_if(open, [&](std::uint32_t s) { return shares[s] == 0.0; });
     detect(open, reached, walls);
     std::erase_if(open, [&](std::uint32_t s) { return progress[s].is_free(); });
     std::copy_if(open.begin(), open.end(), std::back_inserter(squeezed),
-                 [&](std::uint32_t s) { return last.made[s] == 0.0; });
-    std::erase_if(open, [&](std::uint32_t s) { return last.made[s] == 0.0; });
-    for (const std::uint32_t s : open) last.made[s] *= 0.5;
+                 [&](std::uint32_t s) { return shares[s] == 0.0; });
+    std::erase_if(open, [&](std::uint32_t s) { return shares[s] == 0.0; });
+    for (const std::uint32_t s : open) shares[s] *= 0.5;
   }
   open = std::move(squeezed);
 }
@@ -171,16 +198,31 @@ void SolidSet::Impl::cut_each(Solids& open, const VertexMotion& walls) {
 // The way so far, and where walls stop: at one share of their ways, with all solids.
 bool SolidSet::Impl::shorten(double share, const VertexMotion& walls) {
   const Solids all = all_but_stuck();
-  for (const std::uint32_t s : all) go(s, share);
   last.walls_made = share;
-  for (const std::uint32_t s : all) last.made[s] = planned_made[s] * share;
-  if (share == 0.0) return true;
-  detect(all, reached, walls);
-  return std::all_of(all.begin(), all.end(), [&](std::uint32_t s) { return progress[s].is_free(); });
+  begin_way();
+  const auto pieces = static_cast<unsigned>(std::max(1.0, std::ceil(share * way.slices)));
+  for (unsigned piece = 0; piece < pieces; ++piece) {
+    for (const std::uint32_t s : all) go_on(s, share * ((piece + 1.0) / pieces));
+    if (share == 0.0) return true;
+    const VertexMotion now = walls_in(piece, pieces, walls);
+    detect(all, reached, now);
+    if (!std::all_of(all.begin(), all.end(), [&](std::uint32_t s) { return progress[s].is_free(); })) return false;
+    end_slice(now);
+  }
+  return true;
+}
+
+// Where the planned way takes a solid while the walls make this share of theirs.
+void SolidSet::Impl::go_on(std::uint32_t solid, double walls_made) {
+  const double made = last.made[solid] = way_made(solid, walls_made);
+  if (way.place && made > 0.0) return put_on_way(solid, made, of(reached, solid));
+  for (std::uint32_t v = first_vertex[solid]; v < first_vertex[solid + 1]; ++v)
+    reached[v] = made == 0.0 ? positions[v] : on_way(positions[v], targets[v], walls_made);
 }
 
 void SolidSet::Impl::commit_at_rest() {
-  environment.advance(particles, reached);
+  if (way.slices > 1) follow_move(environment, particles, reached, ends());
+  if (way.slices == 1) environment.advance(particles, reached);
   for (std::size_t v = 0; v < reached.size(); ++v) {
     if (particles[v].position != reached[v])
       throw InternalError(
@@ -192,7 +234,7 @@ void SolidSet::Impl::commit_at_rest() {
 void SolidSet::Impl::after_move() {
   report();
   if (stuck.empty()) {
-    follow_move(environment, particles, reached);
+    follow_move(environment, particles, reached, ends());
   } else {
     move_all_but_stuck();
   }
@@ -202,8 +244,11 @@ void SolidSet::Impl::after_move() {
 // Contacts that press at the end, and those that stopped a solid; by solid, then by time, each pair once.
 void SolidSet::Impl::report() {
   const auto describe = [&](const SolidConstraint& c, std::uint32_t solid) {
-    SolidContact contact = contact_of(c, environment.map(), {positions, wanted}, reached, last.walls_made);
+    const double walls_made = last.walls_made * way.slices - c.slice;  // in multiples of that slice
+    SolidContact contact = contact_of(c, environment.map(), {positions, wanted}, reached, walls_made);
     contact.solid = solid;
+    contact.time_of_impact = (c.slice + c.touch.time) / way.slices;
+    contact.wall_displacement = contact.wall_displacement * way.slices;
     for (unsigned i = 0; i < contact.count; ++i) contact.vertices[i] -= first_vertex[solid];
     return contact;
   };
@@ -224,35 +269,43 @@ void SolidSet::Impl::report() {
   last.pairs = pairs_so_far() - pairs_before;
 }
 
-void SolidSet::Impl::advance(std::span<const Vec3> given, const SolidStepOptions& options) {
-  start(given, options, "advance");
+void SolidSet::Impl::advance(SolidWay given, const SolidStepOptions& options) {
+  start(std::move(given), options, "advance");
   const auto rest = environment.complex().positions();
-  Solids open;
-  for (std::uint32_t s = 0; s < count(); ++s) {
-    const auto from = of(positions, s);
-    if (!is_stuck(s) && !std::equal(from.begin(), from.end(), of(targets, s).begin())) open.push_back(s);
-  }
-  correct_in_rounds(open, {rest, rest}, options);
-  reached = targets;
-  keep_first_touches(open, options);
-  cut_each(open, {rest, rest});
+  plan({rest, rest});
   report();
   commit_at_rest();
 }
 
-void SolidSet::Impl::prepare(std::span<const Vec3> given, const SolidStepOptions& options) {
-  start(given, options, "move_with");
-  planned_options = options;
+void SolidSet::Impl::prepare(SolidWay given, const SolidStepOptions& options) {
+  start(std::move(given), options, "move_with");
 }
 
 double SolidSet::Impl::plan(const VertexMotion& walls) {
-  Solids open = all_but_stuck();
-  correct_in_rounds(open, walls, planned_options);
-  reached = targets;
-  keep_first_touches(open, planned_options);
-  cut_each(open, walls);
+  double walls_made = 1.0;
+  for (; slice < way.slices && walls_made == 1.0; ++slice) {
+    const VertexMotion now = walls_in(slice, way.slices, walls);
+    aim();
+    const double share = plan_slice(now);
+    for (std::uint32_t s = 0; s < count(); ++s) {
+      if (shares[s] < 1.0 && !has_stopped(s)) stops[s] = {slice, shares[s]};
+    }
+    if (share < 1.0) walls_made = (slice + share) / way.slices;
+    if (share == 1.0) end_slice(now);
+  }
   targets = reached;
-  planned_made = last.made;
+  for (std::uint32_t s = 0; s < count(); ++s) last.made[s] = way_made(s, 1.0);
+  return walls_made;
+}
+
+// Returns the share of the slice up to which walls need not stop.
+double SolidSet::Impl::plan_slice(const VertexMotion& walls) {
+  Solids open = movers(walls);
+  shares.assign(count(), 1.0);
+  correct_in_rounds(open, walls, step_options);
+  reached = targets;
+  keep_first_touches(open, step_options);
+  cut_each(open, walls);
   double share = 1.0;
   for (const std::uint32_t s : open) share = std::min(share, cut_share * progress[s].free_until());
   return share;

@@ -14,6 +14,7 @@
 #include "simulation/rigid_pose.hpp"
 #include "simulation/simulation_state.hpp"
 #include "support/meshes.hpp"
+#include "support/random_vectors.hpp"
 #include "support/solid_scenes.hpp"
 
 namespace dartcast::solids_component_test {
@@ -49,17 +50,46 @@ DeformationScene pulse(double amplitude) {
   return deformation;
 }
 
-TEST(RigidPose, TurnsAndMixes) {
+TEST(RigidPose, TurnsAndGoesOnArcs) {
   const double quarter = 1.57079632679489662;
   const Quaternion q = rotation_of({0.0, 0.0, quarter});
   EXPECT_NEAR(norm(rotated(q, {1.0, 0.0, 5.0}) - (Vec3{0.0, 1.0, 5.0})), 0.0, 1e-15);
   EXPECT_EQ(rotated(rotation_of({}), {1.0, 2.0, 3.0}), (Vec3{1.0, 2.0, 3.0}));
-  const RigidPose half = between({}, {{2.0, 0.0, 0.0}, q}, 0.5);
-  EXPECT_EQ(half.displacement, (Vec3{1.0, 0.0, 0.0}));
-  EXPECT_NEAR(norm(rotated(half.rotation, {1.0, 0.0, 0.0}) - Vec3{1.0, 1.0, 0.0} * std::sqrt(0.5)), 0.0, 1e-15);
-  const Quaternion other = {-q.w, q.v * -1.0};  // the same rotation
-  EXPECT_NEAR(norm(rotated(between({}, {{}, other}, 1.0).rotation, {1.0, 0.0, 0.0}) - (Vec3{0.0, 1.0, 0.0})), 0.0,
-              1e-15);
+  const RigidWay way = {{}, {{2.0, 0.0, 0.0}, q}, {0.0, 0.0, quarter}};
+  EXPECT_EQ(way.at(0.5).displacement, (Vec3{1.0, 0.0, 0.0}));
+  EXPECT_NEAR(norm(rotated(way.at(0.5).rotation, {1.0, 0.0, 0.0}) - Vec3{1.0, 1.0, 0.0} * std::sqrt(0.5)), 0.0, 1e-15);
+  EXPECT_EQ(way.at(1.0).rotation.w, q.w);
+  const Quaternion start = turned({}, {0.3, -0.2, 0.9});
+  const Quaternion end = turned(start, {0.0, 3.0, 0.0});
+  for (const Quaternion& same : {end, Quaternion{-end.w, -end.v}})
+    EXPECT_NEAR(norm(turn_between(start, same) - Vec3{0.0, 3.0, 0.0}), 0.0, 1e-14);
+  EXPECT_EQ(turn_between(start, start), (Vec3{}));
+}
+
+// At the same time a chord is as near to the way as the count of slices promises.
+TEST(RigidPose, SlicesKeepChordsNearTheWay) {
+  Random random(8);
+  for (int k = 0; k < 200; ++k) {
+    RigidWay way = {{}, {}, test::random_vector(random, 8.0)};
+    way.to = {test::random_vector(random), turned({}, way.turn)};
+    const double arm = random.uniform(0.1, 2.0);
+    const Vec3 aside = cross(way.turn, test::random_vector(random));
+    const Vec3 x = aside * (arm / norm(aside)) + way.turn;
+    const double distance = arm * std::pow(2.0, -random.uniform(2.0, 14.0));
+    const double count = slice_count(norm(way.turn), arm, distance);
+    const auto place = [&](double share) {
+      const RigidPose pose = way.at(share);
+      return pose.displacement + rotated(pose.rotation, x);
+    };
+    const double slice = std::floor(random.uniform(0.0, count));
+    double farthest = 0.0;
+    for (double t = 0.0; t <= 1.0; t += 0.0625) {
+      const Vec3 chord = place(slice / count) * (1.0 - t) + place((slice + 1.0) / count) * t;
+      farthest = std::max(farthest, norm(chord - place((slice + t) / count)));
+    }
+    EXPECT_LE(farthest, distance * (1.0 + 1e-9));
+    if (count > 20.0) EXPECT_GT(farthest, 0.8 * distance) << "no more slices than that takes";
+  }
 }
 
 TEST(SolidsComponent, ANeedleStopsAtAWall) {
@@ -99,7 +129,7 @@ TEST(SolidsComponent, AToolKeepsItsShape) {
   for (int s = 0; s < 300; ++s) {
     simulation.step();
     EXPECT_EQ(simulation.audit().failed, 0U) << simulation.audit().first;
-    EXPECT_NEAR(side(), length, 0.01 * length) << s;  // a step that is cut goes along a chord
+    EXPECT_NEAR(side(), length, 1e-14) << s;
   }
   EXPECT_GT(simulation.solid_summaries()[0].contacts, 10U);
 }

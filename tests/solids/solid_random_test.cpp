@@ -8,6 +8,7 @@
 #include "dartcast/error.hpp"
 #include "dartcast/map_edits.hpp"
 #include "dartcast/remeshing.hpp"
+#include "solids/joint_move.hpp"
 #include "support/meshes.hpp"
 #include "support/solid_scenes.hpp"
 #include "support/tier.hpp"
@@ -31,9 +32,9 @@ class RandomCalls {
       case 1: add(); break;
       case 2: remove(); break;
       case 3:
-      case 4: expect_unit_normals(solids_.advance(targets(), options())); break;
+      case 4: expect_unit_normals(advance()); break;
       case 5:
-      case 6: expect_unit_normals(solids_.move_with(targets(), walls(), options())); break;
+      case 6: expect_unit_normals(move()); break;
       case 7: edit(); break;
       case 8: solids_.restore(solids_.checkpoint()); break;
     }
@@ -68,6 +69,29 @@ class RandomCalls {
     const Vec3 way = test::random_vector(random_, size);
     for (Vec3& x : to) x += way + test::random_vector(random_, 0.1 * size);
     return to;
+  }
+  const SolidStep& advance() {
+    if (random_.below(2) == 0) return solids_.advance(targets(), options());
+    return JointMoves::advance(solids_, way(), {.rounds = 0});
+  }
+  const SolidStep& move() {
+    if (random_.below(2) == 0) return solids_.move_with(targets(), walls(), options());
+    MovePartner* const solids = &JointMoves::prepare(solids_, way(), {.rounds = 0});
+    move_together(environment_, {&solids, 1}, walls());
+    return JointMoves::last_step(solids_);
+  }
+  // In slices, on a path that bulges.
+  SolidWay way() {
+    SolidWay all = {targets(), 1 + random_.below(5)};
+    const std::vector<Vec3> from(solids_.positions().begin(), solids_.positions().end());
+    const Vec3 bulge = test::random_vector(random_, 2.0);
+    const std::vector<std::uint32_t> first(solids_.first_vertices().begin(), solids_.first_vertices().end());
+    all.place = [=, to = all.targets](std::uint32_t solid, double share, std::span<Vec3> place) {
+      const std::size_t v = first[solid];
+      for (std::size_t i = 0; i < place.size(); ++i)
+        place[i] = from[v + i] + (to[v + i] - from[v + i]) * share + bulge * (share * (1.0 - share));
+    };
+    return all;
   }
   // Large waves invert cells.
   std::vector<Vec3> walls() {
