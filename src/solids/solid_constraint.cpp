@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/elementary.hpp"
 #include "dynamics/swept_sphere.hpp"
 #include "solids/joint_move.hpp"
 
@@ -38,15 +39,18 @@ Vec3 weighted(const std::array<double, 3>& weights, const Points& points) {
 }
 
 Vec3 unit_or_zero(const Vec3& v) {
-  const double length = norm(v);
+  const double length = hypotenuse(v.x, v.y, v.z);
   return length > 0.0 && std::isfinite(length) ? v * (1.0 / length) : Vec3{};
 }
 
-// Shares of the ends of two edges at their nearest points.
+// Shares of the ends of two edges at their nearest points. The unit is a power of two, so that products of four lengths stay
+// in the range of numbers.
 std::pair<double, double> nearest_shares(const Points& a, const Points& b) {
-  const Vec3 u = a[1] - a[0];
-  const Vec3 v = b[1] - b[0];
-  const Vec3 r = a[0] - b[0];
+  const double longest = std::max({norm(a[1] - a[0]), norm(b[1] - b[0]), norm(a[0] - b[0])});
+  const double unit = longest > 0.0 ? std::ldexp(1.0, -std::ilogb(longest)) : 1.0;
+  const Vec3 u = (a[1] - a[0]) * unit;
+  const Vec3 v = (b[1] - b[0]) * unit;
+  const Vec3 r = (a[0] - b[0]) * unit;
   const double uu = dot(u, u);
   const double uv = dot(u, v);
   const double vv = dot(v, v);
