@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "dartcast/combinatorial_map.hpp"
@@ -37,18 +38,22 @@ class SteinerWeights {
   /// Removes a vertex; nothing happens if it is not a Steiner point. The first call lists the vertices, once. After
   /// that the cost is constant on average.
   void remove(Vertex v);
+  /// The corners of a Steiner point, and their weights. Empty where the vertex is none. The first call lists the
+  /// vertices, once. After that the cost is constant on average. The spans are valid until a vertex is added.
+  [[nodiscard]] std::pair<std::span<const std::uint32_t>, std::span<const double>> of(Vertex v);
   /// Writes the positions of the vertices, in a fixed order of operations. `positions`: of all vertices.
   void compute(std::span<Vec3> positions) const;
 
  private:
   void close_gaps();
+  void list_places();
 
   std::vector<Vertex> vertex_;              // invalid: removed
   std::vector<std::size_t> offsets_ = {0};  // one more than vertices
   std::vector<std::uint32_t> corner_;
   std::vector<double> weight_;
   std::size_t removed_ = 0;
-  std::unordered_map<std::uint32_t, std::size_t> place_;  // of a vertex; empty until one is removed
+  std::unordered_map<std::uint32_t, std::size_t> place_;  // of a vertex; empty until one is asked for
 };
 
 /// A cell with a simplex that is flat, inverted or not representable, and why.

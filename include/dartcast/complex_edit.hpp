@@ -19,7 +19,8 @@ namespace dartcast {
 
 /// A vertex that an edit made, and the rule by which data at the vertices follow. It lies at the sum of `weights` times
 /// the positions of `of`, plus `offset`. For a vertex on an edge, `of` are the ends of the edge. For a copy of a
-/// vertex, made where faces were opened, `of` is that vertex.
+/// vertex, made where faces were opened, `of` is that vertex. For a vertex in the place of a Steiner point, `of` are
+/// the corners that the point depended on.
 struct PlacedVertex {
   Vertex vertex;
   std::vector<Vertex> of;  ///< older ones
@@ -38,7 +39,8 @@ struct ComplexEditReport {
   /// Unchanged cells next to touched cells.
   std::vector<Cell> around;
   /// Bound on the motion of walls and of the boundary where an edit split, merged or fanned faces anew (m). No point of
-  /// them lies farther than this from its old position. It is rounding where the faces are planar, else their warp.
+  /// them lies farther than this from its old position. It is rounding where the faces are planar, or
+  /// split along their fans; else their warp.
   /// Faces that became walls do not count.
   double boundary_shift = 0.0;
 
@@ -93,6 +95,12 @@ class ComplexEdit {
   [[nodiscard]] Transaction::Savepoint savepoint() const { return transaction_.savepoint(); }
   /// Undoes everything after the savepoint. Do not use topology().roll_back() for it: positions would stay.
   void roll_back(const Transaction::Savepoint& to);
+
+  /// The cells that commit() would refuse as they are now: of the given ones, and of their neighbours at faces that
+  /// would get Steiner points. Sorted. `cells`: some that this edit made. `keep_faces`: also cells with a bent face that
+  /// would get a Steiner point, which moves it. Throws InvalidArgument where there is no such cell. Cost: linear in the
+  /// cells.
+  [[nodiscard]] std::vector<Cell> refused_cells(std::span<const Cell> cells, bool keep_faces = false);
 
   /// Gives touched cells the Steiner points that they need (see ComplexEditReport::now()), and makes everything final.
   /// Throws EditRefused, which names the cell, where a new cell has a simplex that is not positive and no Steiner point

@@ -106,6 +106,12 @@ void bind_ends(Class& c) {
       py::arg("to"),
       "Undoes everything after the savepoint. Raises InvalidArgument where that is none of this edit, or was itself "
       "undone.");
+  c.def(
+      "refused_cells",
+      [](const EditHandle& h, const std::vector<Cell>& cells, bool keep_faces) {
+        return change(h, [&](ComplexEdit& e) { return e.refused_cells(cells, keep_faces); });
+      },
+      py::arg("cells"), py::arg("keep_faces") = false, doc("ComplexEdit::refused_cells"));
   c.def("commit", &commit,
         (std::string(doc("ComplexEdit::commit")) +
          "\n\nRaises InvalidArgument in an edit of an environment: that commits it when the function returns.")

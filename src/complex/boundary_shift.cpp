@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -173,8 +174,29 @@ class BoundaryWalls {
     const BoundaryWall& before = old_[old];
     const bool part =
         std::all_of(origins_.begin(), origins_.end(), [&](std::uint32_t v) { return holds(before.corners, v); });
+    if (before.point.valid() || (part && before.corners.size() > 3)) {
+      if (const auto t = triangle_around(before)) {
+        const BoundaryPlane plane{positions_[(*t)[0]], positions_[(*t)[1]], positions_[(*t)[2]], *t};
+        return extent_over(plane, {}, after, positions_);
+      }
+    }
     if (!part && !is_whole_of(after, old)) return 0.0;
     return extent_over(plane_of(part ? before.corners : after.corners, positions_), before, after, positions_);
+  }
+
+  // The triangle of an old wall's fan that has all origins of the new wall, which then lies in it.
+  [[nodiscard]] std::optional<std::array<std::uint32_t, 3>> triangle_around(const BoundaryWall& before) const {
+    const VertexNumbering& c = before.corners;
+    const std::size_t ends = before.point.valid() ? 0 : 1;  // corners at each end that no triangle starts at
+    for (std::size_t i = ends; i + ends < c.size(); ++i) {
+      const std::array<std::uint32_t, 3> triangle = {before.point.valid() ? before.point.value : c[0], c[i],
+                                                     c[i + 1 < c.size() ? i + 1 : 0]};
+      const auto in_triangle = [&](std::uint32_t v) {
+        return v == triangle[0] || v == triangle[1] || v == triangle[2];
+      };
+      if (std::all_of(origins_.begin(), origins_.end(), in_triangle)) return triangle;
+    }
+    return {};
   }
 
   // Whether the new wall has all corners of the old wall that its cells have kept: at least an edge, in the plane a

@@ -11,6 +11,7 @@
 #include "complex/place_steiner_points.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/validity.hpp"
+#include "topology/rework.hpp"
 
 namespace dartcast {
 
@@ -64,6 +65,15 @@ void ComplexEdit::roll_back(const Transaction::Savepoint& to) {
   created_->take();
 }
 
+std::vector<Cell> ComplexEdit::refused_cells(std::span<const Cell> cells, bool keep_faces) {
+  for (const Cell c : cells) detail::expect_cell(map(), c);
+  created_->take();
+  const Transaction::Savepoint before = savepoint();
+  std::vector<Cell> refused = cells_without_cone(transaction_, complex_.front_, cells, keep_faces);
+  roll_back(before);
+  return refused;
+}
+
 ComplexEditReport ComplexEdit::commit() {
   try {
     created_->take();
@@ -96,6 +106,12 @@ PlacedVertex ComplexEdit::placed(std::size_t created) const {
   const auto position = [&](Vertex w) { return complex_.front_[w.value]; };
   const auto mean = means_.find(created);
   if (mean != means_.end()) return {v.vertex, mean->second.of, mean->second.weights, {}};
+  if (v.from == v.other) {
+    const auto [of, weights] = complex_.steiner_.of(v.from);
+    PlacedVertex copy{v.vertex, {}, {weights.begin(), weights.end()}, {}};
+    for (const std::uint32_t w : of) copy.of.emplace_back(w);
+    if (!of.empty()) return copy;
+  }
   if (v.from == v.other) return {v.vertex, {v.from}, {1.0}, position(v.vertex) - position(v.from)};
   const Vec3 edge = position(v.other) - position(v.from);
   const Vec3 way = position(v.vertex) - position(v.from);

@@ -27,11 +27,24 @@ void SteinerWeights::add(const SteinerWeights& other) {
   }
 }
 
-void SteinerWeights::remove(Vertex v) {
-  if (vertex_.empty()) return;
-  if (place_.empty()) {
-    for (std::size_t i = 0; i < vertex_.size(); ++i) place_[vertex_[i].value] = i;
+void SteinerWeights::list_places() {
+  if (!place_.empty()) return;
+  for (std::size_t i = 0; i < vertex_.size(); ++i) {
+    if (vertex_[i].valid()) place_[vertex_[i].value] = i;
   }
+}
+
+std::pair<std::span<const std::uint32_t>, std::span<const double>> SteinerWeights::of(Vertex v) {
+  list_places();
+  const auto found = place_.find(v.value);
+  if (found == place_.end()) return {};
+  const std::size_t first = offsets_[found->second];
+  const std::size_t size = offsets_[found->second + 1] - first;
+  return {std::span(corner_).subspan(first, size), std::span(weight_).subspan(first, size)};
+}
+
+void SteinerWeights::remove(Vertex v) {
+  list_places();
   const auto found = place_.find(v.value);
   if (found == place_.end()) return;
   vertex_[found->second] = {};
