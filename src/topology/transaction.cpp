@@ -16,8 +16,11 @@ Transaction::~Transaction() { roll_back(); }
 void Transaction::prepare() {
   if (map_.cells_at_.size() == map_.vertex_count_) return;
   map_.cells_at_.assign(map_.vertex_count_, 0);
-  for (const Cell c : map_.cells()) count_vertices(c, true);
-  for (CombinatorialMap::Pool& pool : map_.pools_) {
+  for (std::uint32_t number = 0; number <= CombinatorialMap::general_pool; ++number) {
+    CombinatorialMap::Pool& pool = map_.pools_[number];
+    map_.for_each_cell(number, 0, pool.count, [&](Cell /*c*/, const CellView& view) {
+      for (const std::uint32_t v : view.vertices()) ++map_.cells_at_[v];
+    });
     if (!pool.source.empty()) continue;
     pool.source.resize(pool.count);
     std::iota(pool.source.begin(), pool.source.end(), 0U);
