@@ -44,8 +44,8 @@ struct SectionOptions {
 /// final cells.
 struct Section {
   std::vector<Cell> below, above;
-  /// The cells among these that the plane does not cross in a simple loop, because their faces are strongly warped.
-  /// They stay whole, on the side of the mean of their corners.
+  /// The cells among these that the plane does not cross in a simple loop, even after a division into simplices. They
+  /// stay whole, on the side of the mean of their corners.
   std::vector<Cell> whole;
 };
 
@@ -53,6 +53,10 @@ struct Section {
 /// lies where the plane crosses it, rounded. Cells around that are not named take the new vertices and edges into their
 /// faces, and stay whole. Parts keep the free mark of the cell and the patches of its faces. The new faces have no
 /// patch.
+///
+/// A cell with bent faces may have no valid parts, or none at all. Then it is divided into its simplices first (see
+/// divide_into_simplices()), whether it is named or beside one that is. If vertices that snap to the plane still bend
+/// thin parts inside out, the cut is made with `min_snap`. Other cuts stay as they are.
 ///
 /// Throws InvalidArgument where there is no such cell, where a cell is named twice, or where snap is not in [2^-30,
 /// 1/4]. Throws as the edits of dartcast/map_edits.hpp. Then everything is unchanged. commit() checks whether the parts
@@ -130,8 +134,8 @@ struct Carved {
 
 /// Opens or removes the cells in some tools. Cells that a tool meets are split by its planes, one after another. Only
 /// the part inside a plane is split by the next plane, so a tool may end inside cells. `cells`: the cells that may be
-/// split, such as cells_near() finds; other cells stay whole. The scene stays watertight where tissue becomes free: no
-/// face is opened.
+/// split, such as cells_near() finds; other cells stay whole. Bent cells are divided first as in split_by_plane(). The
+/// scene stays watertight where tissue becomes free: no face is opened.
 ///
 /// Throws InvalidArgument where a cell does not exist or is named twice, or snap is not in [2^-30, 1/4]. Throws as
 /// split_by_plane(). Then everything is unchanged. Cost: that of the cells named and those around them.

@@ -62,6 +62,17 @@ std::vector<Cell> coarsen(ComplexEdit& edit, const Subdivision& subdivision);
 /// `added`: cells that the edit made (EditReport::added). Cost: the corners of these cells, if the named part is gone.
 void update_after_edit(const CombinatorialMap& map, std::span<const Cell> added, Subdivision& subdivision);
 
+/// Divides cells into their simplices, in which particles already are. So these stay where they are, and no wall moves.
+/// Faces are split along their fans, on both sides. A Steiner point becomes a vertex at its place. Parts keep the free
+/// mark and the source, faces their patch. Cells with one simplex stay as they are. A neighbour that would not be valid
+/// with its split faces, or only with others that move, is divided, too. Returns the cells in the place of the given
+/// ones. They are convex, so any plane can cut them.
+///
+/// Throws InvalidArgument where there is no such cell, or in the plane. Throws EditRefused, nothing changed, where a
+/// cell has a simplex that is not positive; or where it needs a Steiner point after earlier edits, before commit().
+/// Cost: that of the cells and their neighbours.
+std::vector<Cell> divide_into_simplices(ComplexEdit& edit, std::span<const Cell> cells);
+
 /// How far a repair may reach.
 struct RepairOptions {
   std::size_t max_cells = 64;  ///< the largest region that is merged

@@ -76,6 +76,12 @@ void bind_subdivision(py::module_& m) {
 }
 
 void bind_repair(py::module_& m) {
+  m.def(
+      "divide_into_simplices",
+      [](const EditHandle& h, const std::vector<Cell>& cells) {
+        return change(h, [&](ComplexEdit& e) { return divide_into_simplices(e, cells); });
+      },
+      py::arg("edit"), py::arg("cells"), doc("divide_into_simplices"));
   Record<RepairOptions>(m, "RepairOptions").field("max_cells", &RepairOptions::max_cells).finish();
   bind_enum<Mending>(m, "Mending", {{"POINT", Mending::point}, {"MOVED", Mending::moved}, {"CUT", Mending::cut}});
   Record<MendedRegion>(m, "MendedRegion")

@@ -65,6 +65,19 @@ def test_a_stale_subdivision_is_refused():
             dartcast.subdivide(edit, 3)
 
 
+def test_a_cell_becomes_its_simplices():
+    c = dartcast.CellComplex(dartcast.generate_box(dartcast.BoxOptions(cells=[2, 2, 2], size=[2, 2, 2])))
+    before = c.simplex_count
+    with dartcast.ComplexEdit(c) as edit:
+        parts = dartcast.divide_into_simplices(edit, [first(edit.map)])
+        assert len(parts) == 6
+        assert len(edit.refused_cells(parts, keep_faces=True)) == 0
+        report = edit.commit()
+    assert report.boundary_shift == 0.0
+    assert c.simplex_count > before
+    assert dartcast.check_validity(c).invalid_count == 0
+
+
 def test_an_inverted_cell_is_repaired():
     c = box(3)
     points = np.array(c.positions)

@@ -28,9 +28,11 @@ class Carver {
     taken_.insert(taken_.end(), inside.begin(), inside.end());
   }
 
-  Carved finish() {
-    Carved carved;
-    cutter_.put();
+  detail::CutAttempt<Carved> finish() {
+    detail::CutAttempt<Carved> attempt;
+    Carved& carved = attempt.effects;
+    attempt.whole = cutter_.cells(whole_);
+    attempt.succession = cutter_.put();
     const std::vector<Cell> taken = cutter_.cells(taken_);
     carved.whole = cutter_.cells(whole_);
     if (what_ == Carving::open) {
@@ -41,7 +43,7 @@ class Carver {
       carved.removed = taken.size();
       std::erase_if(carved.whole, [&](Cell c) { return !edit_.map().contains(c); });
     }
-    return carved;
+    return attempt;
   }
 
  private:
@@ -90,8 +92,8 @@ class Carver {
 Carved carve(ComplexEdit& edit, std::span<const Cell> cells, std::span<const ConvexTool> tools, Carving what,
              const CarveOptions& options) {
   detail::check_snap(options.snap);
-  return detail::all_or_nothing(edit, [&] {
-    Carver carver(edit, cells, what, options);
+  return detail::cut_with_division(edit, cells, options.snap, {}, [&](const std::vector<Cell>& given, double snap) {
+    Carver carver(edit, given, what, {options.whole_cells, snap});
     for (const ConvexTool& tool : tools) carver.take(tool);
     return carver.finish();
   });

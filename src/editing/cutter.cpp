@@ -147,12 +147,16 @@ Cutter::Parts Cutter::split(std::span<const std::uint32_t> numbers, std::size_t 
   return parts;
 }
 
-void Cutter::put() {
+Succession Cutter::put() {
   for (std::uint32_t n = 0; n < size(); ++n) find_draft(n);
   const std::vector<Cell> now = work_.put();
   for (Piece& piece : pieces_) {
     if (piece.draft != DraftLink::no_draft) piece.cell = now[piece.draft];
   }
+  Succession succession;
+  succession.pairs.reserve(now.size());
+  for (std::uint32_t i = 0; i < now.size(); ++i) succession.pairs.emplace_back(work_.whole(i), now[i]);
+  return succession;
 }
 
 std::vector<Cell> Cutter::cells(std::span<const std::uint32_t> numbers) const {

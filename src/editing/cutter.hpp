@@ -6,22 +6,11 @@
 #include <span>
 #include <vector>
 
+#include "editing/division.hpp"
 #include "editing/sides.hpp"
 #include "topology/workpiece.hpp"
 
 namespace dartcast::detail {
-
-/// Undoes the work of an action on an edit if the action throws.
-template <class Action>
-auto all_or_nothing(ComplexEdit& edit, Action&& action) {
-  const Transaction::Savepoint before = edit.savepoint();
-  try {
-    return action();
-  } catch (...) {
-    edit.roll_back(before);
-    throw;
-  }
-}
 
 /// Cells, and parts of cells, by private numbers. The map keeps the whole cells until put().
 class Cutter {
@@ -47,8 +36,9 @@ class Cutter {
   /// As split_by_plane(). The part below keeps the number of the piece. The part above gets the next number.
   Parts split(std::span<const std::uint32_t> numbers, std::size_t plane);
 
-  /// Puts the parts into the map. Nothing can be split afterwards.
-  void put();
+  /// Puts the parts into the map. Nothing can be split afterwards. Returns all cells that this changed, each with the
+  /// one that it is a part of.
+  Succession put();
   /// The cells of the map. After put().
   [[nodiscard]] std::vector<Cell> cells(std::span<const std::uint32_t> numbers) const;
 

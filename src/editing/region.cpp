@@ -6,7 +6,19 @@
 #include <optional>
 #include <utility>
 
+#include "complex/simplex.hpp"
+
 namespace dartcast::detail {
+
+bool is_positive(ComplexEdit& edit, Cell c) {
+  const CellView v = edit.map().view(c);
+  const auto& simplices = v.shape().simplices();
+  return std::all_of(simplices.begin(), simplices.end(), [&](const ImplicitSimplex& s) {
+    Corners corners;
+    for (unsigned i = 0; i < 4; ++i) corners[i] = edit.position(v.vertex(s.vertex[i]));
+    return volume_sign(edit.map().dimension() == 2 ? raised(corners) : corners) == Sign::positive;
+  });
+}
 
 Star star_of(const CombinatorialMap& map, Cell first, Vertex v, std::size_t limit) {
   Star star{v, {first}, true, false};

@@ -6,11 +6,15 @@
 #include <vector>
 
 #include "complex/cone_point.hpp"
+#include "dartcast/complex_edit.hpp"
 #include "dartcast/map_edits.hpp"
 
 namespace dartcast::detail {
 
 using Position = std::function<Vec3(Vertex)>;
+
+/// Whether all simplices of a cell are positive. Precondition: it exists.
+bool is_positive(ComplexEdit& edit, Cell c);
 
 /// The cells of one kind, free or blocked, around a vertex. They are connected to the first one through faces with that
 /// vertex.

@@ -3,7 +3,6 @@
 #include <optional>
 #include <unordered_set>
 
-#include "complex/simplex.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/remeshing.hpp"
 #include "editing/kernel_point.hpp"
@@ -47,16 +46,7 @@ class Repairer {
  private:
   [[nodiscard]] bool planar() const { return map_.dimension() == 2; }
 
-  [[nodiscard]] bool sound(Cell c) {
-    if (mended_.contains(c.value)) return true;
-    const CellView v = map_.view(c);
-    const auto& simplices = v.shape().simplices();
-    return std::all_of(simplices.begin(), simplices.end(), [&](const ImplicitSimplex& s) {
-      Corners corners;
-      for (unsigned i = 0; i < 4; ++i) corners[i] = edit_.position(v.vertex(s.vertex[i]));
-      return volume_sign(planar() ? raised(corners) : corners) == Sign::positive;
-    });
-  }
+  [[nodiscard]] bool sound(Cell c) { return mended_.contains(c.value) || detail::is_positive(edit_, c); }
 
   [[nodiscard]] detail::Position position() {
     return [this](Vertex v) { return edit_.position(v); };

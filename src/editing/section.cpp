@@ -20,14 +20,18 @@ Plane plane_through(const Vec3& point, const Vec3& normal) {
 Section split_by_plane(ComplexEdit& edit, std::span<const Cell> cells, const Plane& plane,
                        const SectionOptions& options) {
   detail::check_snap(options.snap);
-  return detail::all_or_nothing(edit, [&] {
-    detail::Cutter cutter(edit, cells);
-    std::vector<std::uint32_t> numbers(cells.size());
+  return detail::cut_with_division(edit, cells, options.snap, {}, [&](const std::vector<Cell>& given, double snap) {
+    detail::Cutter cutter(edit, given);
+    std::vector<std::uint32_t> numbers(given.size());
     std::iota(numbers.begin(), numbers.end(), 0U);
-    cutter.take({&plane, 1}, cutter.snap_distance(numbers, options));
+    cutter.take({&plane, 1}, cutter.snap_distance(numbers, {snap, options.finest}));
     const auto parts = cutter.split(numbers, 0);
-    cutter.put();
-    return Section{cutter.cells(parts.below), cutter.cells(parts.above), cutter.cells(parts.whole)};
+    std::vector<Cell> whole = cutter.cells(parts.whole);
+    detail::Succession succession = cutter.put();
+    return detail::CutAttempt<Section>{
+        {cutter.cells(parts.below), cutter.cells(parts.above), cutter.cells(parts.whole)},
+        std::move(succession),
+        std::move(whole)};
   });
 }
 

@@ -10,7 +10,10 @@ namespace dartcast::detail {
 
 std::uint32_t Workpiece::take(Cell c) {
   const std::uint32_t number = rework_.take(c);
-  if (number == next_part_.size()) next_part_.push_back(DraftLink::no_draft);
+  if (number == next_part_.size()) {
+    next_part_.push_back(DraftLink::no_draft);
+    whole_.push_back(c);
+  }
   return number;
 }
 
@@ -78,6 +81,7 @@ std::uint32_t Workpiece::split_cell(std::uint32_t number, std::span<const std::u
   const std::uint32_t added = rework_.add(std::move(part));
   next_part_.push_back(next_part_[number]);
   next_part_[number] = added;
+  whole_.push_back(whole_[number]);
   sew_again(number);
   sew_again(added);
   sew({number, static_cast<std::uint16_t>(kept)}, {added, static_cast<std::uint16_t>(faces - 1)});

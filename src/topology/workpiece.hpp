@@ -26,6 +26,8 @@ class Workpiece {
   /// The number of the draft of a cell: that of its first part, if it was split. The first call for a cell makes it.
   std::uint32_t take(Cell c);
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(next_part_.size()); }
+  /// The cell that a draft is a part of.
+  [[nodiscard]] Cell whole(std::uint32_t number) const { return whole_[number]; }
   [[nodiscard]] const CellDraft& draft(std::uint32_t number) const { return rework_.draft(number); }
   CellDraft& draft(std::uint32_t number) { return rework_.draft(number); }
 
@@ -48,6 +50,7 @@ class Workpiece {
 
   Rework rework_;
   std::vector<std::uint32_t> next_part_;  // of the same cell, by draft
+  std::vector<Cell> whole_;               // by draft
 };
 
 }  // namespace dartcast::detail

@@ -5,6 +5,7 @@
 
 #include <functional>
 
+#include "base/random.hpp"
 #include "dartcast/audit.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
@@ -12,6 +13,7 @@
 #include "dartcast/simulation.hpp"
 #include "dartcast/validity.hpp"
 #include "support/expectations.hpp"
+#include "support/particle_checks.hpp"
 #include "support/tier.hpp"
 #include "support/with_response.hpp"
 
@@ -236,8 +238,41 @@ TEST(Events, SayWhichIsRefused) {
   EXPECT_EQ(environment.edit_count(), 0U);
 }
 
-// A cut through cells that are strongly bent is refused. The run goes on as without it, unless the event is required.
+// Ends with a corner in common cannot be joined. The run goes on as without the event, unless it is required.
 TEST(Events, WhatIsRefusedIsReported) {
+  BoxOptions box;
+  box.cells = {6, 6, 6};
+  box.size = {6.0, 6.0, 6.0};
+  box.blocked_layer = true;
+  const Plane low = plane_through({0.0, 0.0, 0.0}, {0.0, 0.0, 1.0});
+  const Plane left = plane_through({0.0, 0.0, 0.0}, {1.0, 0.0, 0.0});
+  Event join = {0.1, Reconnect{low, left, 1e-9, {}}, OrphanPolicy::relocate};
+  const auto end_of_run = [&](const std::vector<Event>& events) {
+    Environment environment(generate_box(box));
+    Simulation simulation(environment, falling(0.02));
+    simulation.add(std::vector<Vec3>{{2.5, 3.0, 2.0}}, {});
+    simulation.set_events(events);
+    for (int i = 0; i < 10; ++i) simulation.step();
+    EXPECT_EQ(environment.edit_count(), 0U);
+    EXPECT_EQ(simulation.event_log().events.size(), events.size());
+    for (const EventReport& report : simulation.event_log().events) {
+      EXPECT_EQ(report.step, 5U);
+      EXPECT_NE(report.refused.find("with one corner twice"), std::string::npos) << report.refused;
+    }
+    return simulation.particles()[0].position;
+  };
+  EXPECT_EQ(end_of_run({join}), end_of_run({}));
+  join.required = true;
+  try {
+    end_of_run({join});
+    FAIL() << "it is required";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("event 1 (reconnect at 0.1 s)"), std::string::npos) << e.what();
+  }
+}
+
+// A box that twists: walls of the disc run close along those of bent cells. No part of these is valid as they are.
+TEST(Events, ACutDividesBentCells) {
   BoxOptions box;
   box.cells = {6, 6, 6};
   box.size = {6.0, 6.0, 6.0};
@@ -248,30 +283,22 @@ TEST(Events, WhatIsRefusedIsReported) {
   twist.period = 2.0;
   twist.centre = {3.0, 3.0, 3.0};
   twist.length = 6.0;
-  Event cut = {0.1, Cut{Disc{{3.0, 3.0, 0.5}, {1.0, 0.0, 0.0}, 1.0}, 0.25}, OrphanPolicy::relocate};
-  const auto end_of_run = [&](const std::vector<Event>& events) {
-    Environment environment(generate_box(box));
-    Simulation simulation(environment, falling(0.02));
-    simulation.set_deformation(Deformation({twist}, environment.positions()));
-    simulation.add(std::vector<Vec3>{{2.5, 3.0, 2.0}}, {});
-    simulation.set_events(events);
-    for (int i = 0; i < 10; ++i) simulation.step();
-    EXPECT_EQ(environment.edit_count(), 0U);
-    EXPECT_EQ(simulation.event_log().events.size(), events.size());
-    for (const EventReport& report : simulation.event_log().events) {
-      EXPECT_EQ(report.step, 5U);
-      EXPECT_NE(report.refused.find("no Steiner point mends it"), std::string::npos) << report.refused;
-    }
-    return simulation.particles()[0].position;
-  };
-  EXPECT_EQ(end_of_run({cut}), end_of_run({}));
-  cut.required = true;
-  try {
-    end_of_run({cut});
-    FAIL() << "it is required";
-  } catch (const Error& e) {
-    EXPECT_NE(std::string(e.what()).find("event 1 (cut at 0.1 s)"), std::string::npos) << e.what();
-  }
+  Environment environment(generate_box(box));
+  Simulation simulation(environment, falling(0.02));
+  simulation.set_deformation(Deformation({twist}, environment.positions()));
+  Random random(3);
+  simulation.add(test::random_points(200, {2.8, 2.2, 1.1}, {3.2, 3.8, 1.5}, random), {});
+  simulation.set_events({{0.1, Cut{Disc{{3.0, 3.0, 0.5}, {1.0, 0.0, 0.0}, 1.0}, 0.25}, OrphanPolicy::relocate}});
+  for (int i = 0; i < 60; ++i) simulation.step();
+  ASSERT_EQ(simulation.event_log().events.size(), 1U);
+  const EventReport& report = simulation.event_log().events[0];
+  EXPECT_EQ(report.refused, "");
+  EXPECT_GT(report.cells_opened, 0U);
+  EXPECT_EQ(report.cells_whole, 0U);
+  EXPECT_EQ(environment.edit_count(), 1U);
+  EXPECT_EQ(simulation.particles().size(), 200U);
+  EXPECT_GT(simulation.event_log().in_opened, 0U);
+  test::expect_audited(environment.complex(), simulation.particles());
 }
 
 // A ligature across a strip in the plane stops who comes from the left; cuts are refused before anything is done.
