@@ -238,7 +238,7 @@ TEST_P(Divisions, CutsThroughWarpedCells) {
   if (test::full_tier()) turns.insert(turns.end(), {0.01, 0.1, 0.15, 0.2, 0.5, 1.0});
   for (const double turn : turns) {
     SCOPED_TRACE(turn);
-    const Tally tally = cut_at_random(GetParam(), turn, test::scaled(12, 300), 5);
+    const Tally tally = cut_at_random(GetParam(), turn, test::scaled(12, 100), 5);
     EXPECT_EQ(tally.refused, 0) << tally.last;
   }
 }
