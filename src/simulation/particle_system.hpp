@@ -69,13 +69,12 @@ class ParticleSystem final : public SimulationComponent {
   /// Moves the environment in a step to the positions that the deformation gives, or as far as something lets it.
   using Mover = std::function<void(std::span<const Vec3>)>;
   void set_mover(Mover mover) { mover_ = std::move(mover); }
-  /// Where the vertices stood after some steps, if not where the deformation puts them. go_to() and restore() look there.
+  /// Where the vertices stood after some steps, if not where the deformation puts them. go_to() looks there.
   void set_known_places(std::vector<VertexPlaces> places) { known_places_ = std::move(places); }
   /// For put_back(). Cost: a copy of all positions, twice.
   [[nodiscard]] VertexPlaces vertex_places() const;
   /// Moves the vertices back, and counts steps from there. The caller restores all particles.
   void put_back(const VertexPlaces& places);
-  void put_back_known(const std::vector<VertexPlaces>& known, std::uint64_t steps);
 
   void step(double begin) override;
   void update_after_edit(const ComplexEditReport& edit, OrphanPolicy orphaned) override;

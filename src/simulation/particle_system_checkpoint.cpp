@@ -31,7 +31,8 @@ void ParticleSystem::restore(const SimulationState& state) {
   if (saved.user_data.size() != saved.particles.size() * width())
     throw InvalidArgument("simulation: the checkpoint has other user data: give the options that it was saved with");
   if (steps_ != saved.steps) stand_at(saved.steps);
-  put_back_known(state.solids.places, saved.steps);
+  const std::vector<VertexPlaces>& places = state.solids.places;
+  if (!places.empty() && places.back().steps == saved.steps) put_back(places.back());
   put_in_place_of_all(saved);
   clear_.clear();
   count_spheres();
@@ -96,13 +97,11 @@ void ParticleSystem::go_to(std::uint64_t steps) {
   // Edits of one step follow each other where the vertices stand. Those that the first of them made are in no known place.
   if (steps_ == steps) return;
   stand_at(steps);
-  put_back_known(known_places_, steps);
+  // The first of this step: later ones have the vertices that later edits gave the numbers of others.
+  const auto known =
+      std::find_if(known_places_.begin(), known_places_.end(), [&](const VertexPlaces& p) { return p.steps == steps; });
+  if (known != known_places_.end()) put_back(*known);
   steps_ = steps;
-}
-
-void ParticleSystem::put_back_known(const std::vector<VertexPlaces>& known, std::uint64_t steps) {
-  const auto last = std::find_if(known.rbegin(), known.rend(), [&](const VertexPlaces& p) { return p.steps == steps; });
-  if (last != known.rend()) put_back(*last);
 }
 
 VertexPlaces ParticleSystem::vertex_places() const {
