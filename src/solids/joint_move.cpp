@@ -46,7 +46,7 @@ Vec3 carried_by_cell(const CellComplex& complex, const ParticleState& state, con
   if (before == after) return x;
   const Weights weights = detail::barycentric(before, x);
   for (std::size_t k = 0; k < 4; ++k) x += (after[k] - before[k]) * weights[k];
-  return flushed(x);
+  return in_exact_range(x) ? flushed(x) : state.position;  // else a corner has gone out of range
 }
 
 Vec3 on_way(const Vec3& from, const Vec3& to, double share) { return flushed(from + (to - from) * share); }

@@ -71,7 +71,8 @@ SimplexId simplex_after(const CellComplex& complex, Cell cell, const Vec3& from,
 void follow_move(Environment& environment, Particles& particles, std::span<const Vec3> to,
                  std::span<const SimplexId> simplices = {});
 
-/// Where its simplex carries a particle while the walls move: it keeps its weights there, so that it meets no wall.
+/// Where its simplex carries a particle while the walls move: it keeps its weights there, so that it meets no wall. Its own
+/// place where that is out of the exact range.
 Vec3 carried_by_cell(const CellComplex& complex, const ParticleState& state, const VertexMotion& walls);
 
 /// A share of a straight way, rounded.
