@@ -25,7 +25,7 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-// What a child tells its parent, in memory that both have.
+// The news of a child to its parent, in memory that both have.
 struct Slot {
   std::atomic<std::uint64_t> seed{0};
   std::atomic<std::uint64_t> begun{0};  // cases

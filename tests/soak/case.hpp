@@ -11,7 +11,7 @@
 
 namespace dartcast::soak {
 
-/// What a case chooses. Each is a number below the number of its values; 0 is the simplest.
+/// The choices of a case. Each is a number below the number of its values; 0 is the simplest.
 enum class Knob : std::uint8_t {
   mesh,          ///< the cells
   size,          ///< of the mesh

@@ -59,7 +59,7 @@ class Crowd {
   std::string change_state(const Environment& environment, std::uint64_t step);
   /// Keeps the chambers of all particles, for stayed_in_chambers().
   void keep_chambers(const Chambers& chambers);
-  /// What is wrong with the particles, in integers: their simplices, their chambers, their numbers.
+  /// The first fault of the particles, in integers: their simplices, their chambers, their numbers.
   [[nodiscard]] std::string check(const Environment& environment, const Chambers& chambers) const;
   /// In another environment, from the same places: for meshes that were made again.
   void add_again(Environment& environment);
@@ -76,7 +76,7 @@ class Crowd {
   std::vector<std::uint32_t> chambers_;
 };
 
-/// What is wrong with a report by itself: order of contacts, counts. `particles`: their number.
+/// The first fault of a report by itself: order of contacts, counts. `particles`: their number.
 std::string check_report(const StepReport& report, std::size_t particles);
 
 }  // namespace dartcast::soak

@@ -30,7 +30,7 @@ struct Result {
 };
 using Results = std::map<std::uint64_t, Result>;
 
-// What each particle heads for and how walls answer depends on its id and the step.
+// The ways of particles and the answers of walls depend on ids and the step alone.
 class Script {
  public:
   Script(const Case& c, const SceneMesh& scene, std::vector<Vec3> points, std::uint64_t step)
@@ -46,7 +46,7 @@ class Script {
     const double far = scene_.edge * std::pow(10.0, random.uniform(-3.0, 1.0));
     return Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)} * far;
   }
-  // Of a point of the whole mesh; the first step is one at rest.
+  // The place of a point of the whole mesh. The first step is one at rest.
   [[nodiscard]] Vec3 moved(std::uint32_t point, std::uint64_t k) const {
     if (case_[Knob::motion] == 0 || k == 0) return points_[point];
     Random random = random_for(case_, Use::motion, 1000 + step_ * 8 + k, point);

@@ -163,6 +163,7 @@ class Run {
     if (!case_.is(Knob::mover, "environment")) return "";
     MeshData mesh = to_mesh(environment_->complex());
     mesh.source.clear();
+    if (!environment_->validity(1).valid()) return "";  // no mesh of an environment
     environment_ = std::make_unique<Environment>(std::move(mesh), Threads{1U << case_[Knob::threads]});
     mover_ = make_mover(case_, scene_, *environment_);
     for (const auto& guest : guests_) guest->crowd().add_again(*environment_);

@@ -9,10 +9,10 @@
 
 namespace dartcast::soak {
 
-/// What is wrong: the step, who, what; empty: nothing.
+/// The fault of a case: the step, who, in which way; empty: it has none.
 std::string run_case(const Case& c, Seen& seen);
 
-/// What is wrong with a case, in words; empty: nothing.
+/// Gives the fault of a case in words; empty: it has none.
 using Check = std::function<std::string(const Case&)>;
 
 /// The simplest case that was found that fails, too: fewer cells, particles, steps, features.

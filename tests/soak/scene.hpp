@@ -17,7 +17,7 @@
 
 namespace dartcast::soak {
 
-/// What a random number is for: numbers of one use do not depend on those of others.
+/// The use of a random number: numbers of one use do not depend on those of others.
 enum class Use : std::uint64_t { mesh = 2, edit, motion, place, target, answer, mover, throwing, state };
 Random random_for(const Case& c, Use use, std::uint64_t step = 0, std::uint64_t id = 0);
 

@@ -12,7 +12,7 @@
 
 namespace dartcast::soak {
 
-/// What a step may meet besides what its case chooses.
+/// Marks that a step may have besides the choices of its case.
 enum class Mark : std::uint8_t {
   face_contact,
   edge_contact,

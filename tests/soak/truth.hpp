@@ -20,7 +20,7 @@ class Walls {
   /// `moved`: whether they go from where they were before the last move to where they are; else they stand.
   Walls(const Environment& environment, bool moved);
 
-  /// What is wrong with the first contact of a step among walls at rest. `first`: null where there was none.
+  /// The fault of the first contact of a step among walls at rest; empty: it has none. `first`: null where there was none.
   [[nodiscard]] std::string check_first(const ParticleState& before, const Vec3& target, const Contact* first,
                                         std::span<const WallHit> hits) const;
   /// The same where the walls move at the same time.
