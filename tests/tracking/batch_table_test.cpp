@@ -85,9 +85,13 @@ TEST(FilteredBatch, ShapesWithoutATable) {
 }
 
 TEST(FilteredBatch, RangesAreCheckedToTheLastNumber) {
-  const double good[] = {0.0, -0.0, smallest_magnitude, -largest_magnitude, 1.0};
-  const double bad[] = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
-                        largest_magnitude * 1.0000000000000002, -smallest_magnitude * 0.9999999999999999, 5e-324};
+  const double good[] = {0.0, -1.0, smallest_magnitude, -largest_magnitude, 1.0};
+  const double bad[] = {std::numeric_limits<double>::quiet_NaN(),
+                        std::numeric_limits<double>::infinity(),
+                        largest_magnitude * 1.0000000000000002,
+                        -smallest_magnitude * 0.9999999999999999,
+                        5e-324,
+                        -0.0};  // counts as 0
   for (std::size_t count = 0; count < 9; ++count) {
     std::vector<Vec3> points(count, Vec3{good[count % 5], good[(count + 1) % 5], good[(count + 2) % 5]});
     EXPECT_TRUE(detail::all_as_decided(points));

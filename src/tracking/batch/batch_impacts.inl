@@ -78,8 +78,8 @@ class WallImpact4 {
   [[gnu::always_inline]] WallImpact4(const AtWalls& at, const Vec3x4 (&facets)[3], const Vec3x4& targets)
       : corner_{without_tiny(facets[0]), without_tiny(facets[1]), without_tiny(facets[2])},
         facet_{at[0]->facet, at[1]->facet, at[2]->facet, at[3]->facet} {
-    const auto& [a, b, c] = corner_;
-    gradient_ = cross(b - a, c - a);
+    // From the corners as they are: facet_normal() has the same signs of zeros.
+    gradient_ = cross(facets[1] - facets[0], facets[2] - facets[0]);
     const Double4 square = dot(gradient_, gradient_);
     normal_ = gradient_ * (1.0 / root(square));
     known = (square > 0x1p-600) & (square < 0x1p+600);
