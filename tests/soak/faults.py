@@ -1,0 +1,91 @@
+#!/usr/bin/env python3
+"""Plants faults in a copy of the sources, one after another, and says how long dartcast-soak takes to find each.
+
+    tests/soak/faults.py FOLDER [NAME...]     FOLDER: for the copy and its build; NAME: of a fault; none: all
+
+A fault that is not found within ten minutes fails. The build is that of the preset release.
+"""
+import pathlib
+import subprocess
+import sys
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+MINUTES = 10
+
+# Name: file, text, the text in its place.
+FAULTS = {
+    # A walk kept the face that it entered a cell by in 3 bits, whatever the cell: steps beside polyhedra of nine faces
+    # ended at wrong walls, or never.
+    "face in 3 bits": ("src/tracking/batch/batch_far_walks.inl", ".entry(walk.face, walk.triangle);",
+                       ".entry(static_cast<std::uint16_t>(walk.face % 8), "
+                       "static_cast<std::uint16_t>((walk.triangle + walk.face / 8) % 2));"),
+    "batch: a filter without its bound": ("src/tracking/batch/batch_simplex.inl",
+                                          "((value[0] > bound) & (value[1] > bound)) &",
+                                          "((value[0] > -bound) & (value[1] > bound)) &"),
+    "batch: -0 is not flushed": ("src/tracking/batch/batch_kernel.inl",
+                                 "(reinterpret_cast<Mask4>(numbers) == splat_bits(0))", "(m == 0.0)"),
+    "contacts: rounded places": ("src/tracking/step_run.hpp",
+                                 "  if (w.at_end) return run.state.put(w.simplex, contact.point);",
+                                 "  return run.state.put(w.at_end ? w.simplex : w.wall_simplex, contact.point);"),
+    "contacts: a call that throws keeps what it did": ("src/environment/environment.cpp",
+                                                       "respond && !detail::is_library_response(respond);",
+                                                       "respond && false;"),
+    "edits: particles stay in blocked cells": ("src/environment/update_after_edit.cpp",
+                                               "if (!map().is_free(at.cell)) return orphan(i, Place::blocked, at);",
+                                               ""),
+    "edits: a refused edit loses free numbers": ("src/topology/transaction.cpp",
+                                                 "      map_.cells_at_[v.value] = CombinatorialMap::vacant_vertex;\n"
+                                                 "      map_.vacant_vertices_.push_back(v);\n    }\n  }\n  merged_",
+                                                 "      map_.cells_at_[v.value] = CombinatorialMap::vacant_vertex;\n"
+                                                 "    }\n  }\n  merged_"),
+    "solids: edges are not asked": ("src/solids/element_touches.cpp", "  ask_sides(walls, e, motion, touches);\n", ""),
+    "simultaneous: walls stand still": ("src/spheres/simultaneous_step.cpp",
+                                        "pair.to[k + 1] = flushed(wall.corners.to[k]);",
+                                        "pair.to[k + 1] = flushed(wall.corners.from[k]);"),
+    "spheres: walls out of reach": ("src/spheres/sphere_way.cpp", "(sphere_.radius + slack_ + fastest) * (1.0 + 0x1p-20)",
+                                    "(sphere_.radius + slack_ + 0.5 * fastest)"),
+    "checkpoint: without velocities": ("src/simulation/particle_system_checkpoint.cpp",
+                                       "velocities_.push_back(p.velocity);", "velocities_.emplace_back();"),
+    "ranks: walls where they were": ("src/tracking/batch/travelling_step.cpp",
+                                     "wall.now[i] = complex_->positions()[v];",
+                                     "wall.now[i] = complex_->previous_positions()[v];"),
+}
+
+
+def run(*command: str, cwd: pathlib.Path, quiet: bool = True) -> int:
+    return subprocess.run(command, cwd=cwd, stdout=subprocess.DEVNULL if quiet else None, check=False).returncode
+
+
+def build(copy: pathlib.Path) -> None:
+    if run("cmake", "--build", "build/release", "--target", "dartcast_soak", cwd=copy) != 0:
+        sys.exit(f"{copy}: the build failed")
+
+
+def main() -> int:
+    copy = pathlib.Path(sys.argv[1]).resolve()
+    names = sys.argv[2:] or list(FAULTS)
+    if not copy.exists() and run("git", "clone", "-q", str(ROOT), str(copy), cwd=ROOT) != 0:
+        return 2
+    run("cmake", "--preset", "release", "-DDARTCAST_TESTS=ON", cwd=copy)
+    missed = 0
+    for name in names:
+        file, old, new = FAULTS[name]
+        path = copy / file
+        text = path.read_text()
+        if text.count(old) != 1:
+            sys.exit(f"{file}: the text of '{name}' is there {text.count(old)} times: write the fault anew")
+        path.write_text(text.replace(old, new))
+        try:
+            build(copy)
+            start = time.monotonic()
+            found = run("build/release/bin/dartcast-soak", str(MINUTES), "--as-found", "--limit", "60", cwd=copy) == 1
+            print(f"{name}: {'found' if found else 'NOT found'} in {(time.monotonic() - start) / 60:.1f} min", flush=True)
+            missed += not found
+        finally:
+            path.write_text(text)
+    return 1 if missed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
