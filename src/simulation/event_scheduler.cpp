@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "dartcast/error.hpp"
+#include "dartcast/validity.hpp"
 #include "simulation/particle_share.hpp"
 
 namespace dartcast {
@@ -126,7 +127,17 @@ void EventScheduler::after_step() {
   if (!log_.changes.empty()) log_.in_opened = count_in_opened();
 }
 
-RepairReport EventScheduler::remesh() { return simulation_.repair(remeshing_.options); }
+// Cells beside a repaired region that stay inverted may refuse the whole repair. All cells are left then.
+RepairReport EventScheduler::remesh() {
+  try {
+    return simulation_.repair(remeshing_.options);
+  } catch (const EditRefused& e) {
+    RepairReport report;
+    for (const InvalidCell& bad : environment_.validity(environment_.map().cell_count()).first)
+      report.left.push_back({bad.cell, environment_.map().source(bad.cell), e.what()});
+    return report;
+  }
+}
 
 AdaptiveSubdivisionReport EventScheduler::adapt() {
   AdaptiveSubdivisionReport report = subdivision_.adapt(
