@@ -115,7 +115,8 @@ class Child {
   }
   void work(unsigned job) {
     Seen seen(slot_->counts);
-    for (std::uint64_t seed = options_.seed + job; !slot_->stop; seed += options_.jobs) {
+    for (std::uint64_t k = job; k < options_.cases && !slot_->stop; k += options_.jobs) {
+      const std::uint64_t seed = options_.seed + k;
       slot_->seed = seed;
       ++slot_->begun;
       const std::string wrong = run_case(case_of_seed(seed), seen);

@@ -24,6 +24,7 @@ std::string run_apart(const Case& c, double limit, Counts* counts = nullptr);
 /// Which cases to run, and how long.
 struct SoakOptions {
   double seconds = 60.0;
+  std::uint64_t cases = ~std::uint64_t{0};                 ///< at most
   std::uint64_t seed = 1;                                  ///< of the first case
   unsigned jobs = 1;                                       ///< processes
   double limit = 120.0;                                    ///< seconds for a case
@@ -31,7 +32,7 @@ struct SoakOptions {
   std::function<void(double seconds, const Counts&)> say;  ///< from time to time
 };
 
-/// Runs one case after another, until one fails or the time is over.
+/// Runs one case after another, until one fails, or the time or the number of cases is over.
 struct SoakResult {
   Counts counts;
   std::vector<Failure> failures;

@@ -82,6 +82,7 @@ int main(int argc, char** argv) {
   Arguments a;
   CLI::App app("Takes random steps in random scenes by every feature, and checks each in exact numbers.");
   app.add_option("minutes", a.minutes, "How long")->check(CLI::PositiveNumber);
+  app.add_option("--cases", a.options.cases, "At most how many");
   app.add_option("--seed", a.options.seed, "Of the first case");
   app.add_option("--jobs", a.options.jobs, "Processes")->check(CLI::Range(1, 1000));
   app.add_option("--limit", a.options.limit, "Seconds for a case")->check(CLI::PositiveNumber);
