@@ -176,7 +176,8 @@ def of_subdivision() -> Calls:
         "subdivide: refused": undone(c, lambda e: refused(lambda: dc.subdivide(e, 3))()),
         "divide_into_simplices": undone(c, lambda e: dc.divide_into_simplices(e, e.map.cells()[:3])),
         "divide_into_simplices: refused": undone(c, lambda e: refused(lambda: dc.divide_into_simplices(e, [3]))()),
-        "refused_cells": undone(c, lambda e: e.refused_cells(dc.divide_into_simplices(e, e.map.cells()[:3]))),
+        "ComplexEdit.refused_cells": undone(
+            c, lambda e: e.refused_cells(dc.divide_into_simplices(e, e.map.cells()[:3]))),
         "coarsen": undone(coarse, lambda e: dc.coarsen(e, s)),
         "coarsen: refused": undone(c, lambda e: refused(lambda: dc.coarsen(e, s))()),
         "update_after_edit: subdivision": lambda: dc.update_after_edit(coarse.map, added, s),
