@@ -64,7 +64,7 @@ struct JointMoves {
 /// A simplex that holds the end of a particle's straight way, border included, after the walls made theirs. `cell` holds
 /// its start. Throws InternalError where no cell on the way does. Precondition: the way is free, and cells stay positive.
 SimplexId simplex_after(const CellComplex& complex, Cell cell, const Vec3& from, const Vec3& to,
-                        const VertexMotion& walls, NearWalls& scratch);
+                        const VertexMotion& walls, NearWalls& near);
 
 /// After the move: takes the particles to these places, on ways that are proved free. `simplices` hold the places; where
 /// there are none, the ways are straight. Throws as simplex_after().
