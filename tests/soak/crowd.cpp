@@ -98,6 +98,20 @@ Crowd::Crowd(const Case& c, const SceneMesh& scene, Environment& environment, st
   fates.resize(ids.size());
 }
 
+void Crowd::head_for(std::span<const Vec3> targets) {
+  for (std::size_t i = 0; i < targets.size(); ++i) velocities[i] = targets[i] - particles[i].position;
+}
+
+std::unique_ptr<Answers> Crowd::answers(std::uint64_t step, std::size_t first, std::size_t count) const {
+  const auto some = [&](const auto& column) { return std::span(column).subspan(first, count); };
+  return std::make_unique<Answers>(case_, step, some(ids), some(velocities), some(fates));
+}
+
+void Crowd::answered(const Answers& answers) {
+  velocities = answers.velocities;
+  fates = answers.fates;
+}
+
 std::vector<Vec3> Crowd::targets(const Environment& environment, std::uint64_t step) const {
   std::vector<Vec3> targets;
   const bool plane = scene_.low.z == scene_.high.z;
@@ -130,11 +144,15 @@ void Crowd::follow(const Environment& environment) {
   constexpr std::array policies = {OrphanPolicy::hold, OrphanPolicy::relocate, OrphanPolicy::absorb};
   const OrphanPolicy policy = policies[case_.seed % 3];
   const UpdateReport report = environment.update_after_edit(particles, policy);
-  std::vector<bool> gone(ids.size());
-  for (const OrphanedParticle& o : report.orphaned) gone[o.particle] = o.outcome == OrphanPolicy::absorb;
+  std::vector<bool> stays(ids.size(), true);
+  for (const OrphanedParticle& o : report.orphaned) stays[o.particle] = o.outcome != OrphanPolicy::absorb;
+  keep(stays);
+}
+
+void Crowd::keep(const std::vector<bool>& stays) {
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < gone.size(); ++i) {
-    if (gone[i]) continue;
+  for (std::size_t i = 0; i < stays.size(); ++i) {
+    if (!stays[i]) continue;
     ids[kept] = ids[i];
     velocities[kept] = velocities[i];
     fates[kept++] = fates[i];
@@ -203,17 +221,9 @@ std::string Crowd::check(const Environment& environment, const Chambers& chamber
 void Crowd::add_again(Environment& environment) {
   const std::vector<Vec3> places = test::positions_of(particles);
   particles = {};
-  const auto added = environment.add(particles, places);
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < added.size(); ++i) {
-    if (added[i].location.place != Place::free) continue;
-    ids[kept] = ids[i];
-    velocities[kept] = velocities[i];
-    fates[kept++] = fates[i];
-  }
-  ids.resize(kept);
-  velocities.resize(kept);
-  fates.resize(kept);
+  std::vector<bool> stays;
+  for (const AddResult& a : environment.add(particles, places)) stays.push_back(a.location.place == Place::free);
+  keep(stays);
 }
 
 std::string check_report(const StepReport& report, std::size_t particles) {

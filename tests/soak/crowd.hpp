@@ -53,6 +53,13 @@ class Crowd {
 
   [[nodiscard]] std::size_t size() const { return particles.size(); }
   [[nodiscard]] std::vector<Vec3> targets(const Environment& environment, std::uint64_t step) const;
+  /// The velocities of a step to these targets.
+  void head_for(std::span<const Vec3> targets);
+  /// The answers to the contacts of some particles, of `first` on; all without numbers.
+  [[nodiscard]] std::unique_ptr<Answers> answers(std::uint64_t step, std::size_t first, std::size_t count) const;
+  [[nodiscard]] std::unique_ptr<Answers> answers(std::uint64_t step) const { return answers(step, 0, size()); }
+  /// Takes what they have changed.
+  void answered(const Answers& answers);
   /// Follows the last edit.
   void follow(const Environment& environment);
   /// As the case says: copies, restores, reorders. Returns what is wrong.
@@ -70,6 +77,8 @@ class Crowd {
   std::vector<ParticleStatus> fates;
 
  private:
+  void keep(const std::vector<bool>& stays);
+
   const Case& case_;
   const SceneMesh& scene_;
   std::uint64_t kind_;

@@ -86,33 +86,32 @@ class Points : public Guest {
 
   std::string step(Environment& environment, const Step& step, Seen& seen) override {
     const std::vector<Vec3> targets = crowd_.targets(environment, step.number);
-    set_velocities(targets);
-    Answers answers = answers_for(step), in_rounds = answers_for(step), alone = answers_for(step),
-            thrown = answers_for(step);
-    std::string wrong = throw_first(case_, step, crowd_, thrown, seen, [&](const ContactCallback& f) {
+    crowd_.head_for(targets);
+    const auto answers = crowd_.answers(step.number), in_rounds = crowd_.answers(step.number),
+               alone = crowd_.answers(step.number), thrown = crowd_.answers(step.number);
+    std::string wrong = throw_first(case_, step, crowd_, *thrown, seen, [&](const ContactCallback& f) {
       environment.advance(crowd_.particles, targets, f, options());
     });
     if (!wrong.empty()) return wrong;
     const Particles before = crowd_.particles;
-    const StepReport report = environment.advance(crowd_.particles, targets, answers.one_by_one(), options());
+    const StepReport report = environment.advance(crowd_.particles, targets, answers->one_by_one(), options());
     note_report(report, seen);
     wrong = check_report(report, crowd_.size());
-    if (wrong.empty()) wrong = compare_with_traces(environment, before, targets, report, alone);
-    if (wrong.empty() && (alone.velocities != answers.velocities || alone.fates != answers.fates))
+    if (wrong.empty()) wrong = compare_with_traces(environment, before, targets, report, *alone);
+    if (wrong.empty() && (alone->velocities != answers->velocities || alone->fates != answers->fates))
       wrong = "traces have other velocities";
     if (wrong.empty() && case_[Knob::rounds] != 0) {
       Particles again = before;
-      const StepReport rounds = environment.advance_in_rounds(again, targets, in_rounds.in_rounds(), options());
+      const StepReport rounds = environment.advance_in_rounds(again, targets, in_rounds->in_rounds(), options());
       if (!test::same_bits(test::copy_of(crowd_.particles), again)) wrong = "rounds have other states";
       if (test::words_of(report) != test::words_of(rounds)) wrong = "rounds have another report";
       if (test::words_of(report.counters) != test::words_of(rounds.counters)) wrong = "rounds have other counts";
-      if (in_rounds.velocities != answers.velocities) wrong = "rounds have other velocities";
+      if (in_rounds->velocities != answers->velocities) wrong = "rounds have other velocities";
     }
     if (wrong.empty() && step.valid && !step.moved)
       wrong = compare_with_walls(environment, before, targets, report, seen);
-    if (wrong.empty() && !step.moved) wrong = check_energy(answers);
-    crowd_.velocities = answers.velocities;
-    crowd_.fates = answers.fates;
+    if (wrong.empty() && !step.moved) wrong = check_energy(*answers);
+    crowd_.answered(*answers);
     return wrong;
   }
 
@@ -123,12 +122,6 @@ class Points : public Guest {
     if (case_.seed % 7 == 0) o.max_parts = 3;
     if (case_.seed % 11 == 0) o.tolerance = 1e-3;
     return o;
-  }
-  [[nodiscard]] Answers answers_for(const Step& step) const {
-    return Answers(case_, step.number, crowd_.ids, crowd_.velocities, crowd_.fates);
-  }
-  void set_velocities(const std::vector<Vec3>& targets) {
-    for (std::size_t i = 0; i < targets.size(); ++i) crowd_.velocities[i] = targets[i] - crowd_.particles[i].position;
   }
 
   std::string compare_with_traces(const Environment& environment, const Particles& before,
@@ -212,14 +205,8 @@ class Simultaneous : public Guest {
 
   std::string step(Environment& environment, const Step& step, Seen& seen) override {
     const std::vector<Vec3> targets = crowd_.targets(environment, step.number);
-    for (std::size_t i = 0; i < targets.size(); ++i) crowd_.velocities[i] = targets[i] - crowd_.particles[i].position;
-    const auto answers_of = [&](std::size_t first, std::size_t count) {
-      return std::make_unique<Answers>(case_, step.number, std::span(crowd_.ids).subspan(first, count),
-                                       std::span(crowd_.velocities).subspan(first, count),
-                                       std::span(crowd_.fates).subspan(first, count));
-    };
-    const auto all = answers_of(0, crowd_.size());
-    const auto thrown = answers_of(0, crowd_.size());
+    crowd_.head_for(targets);
+    const auto all = crowd_.answers(step.number), thrown = crowd_.answers(step.number);
     std::string wrong = throw_first(case_, step, crowd_, *thrown, seen, [&](const ContactCallback& f) {
       stepper_.advance(environment, crowd_.particles, targets, f);
     });
@@ -230,13 +217,12 @@ class Simultaneous : public Guest {
     wrong = check_report(report, crowd_.size());
     if (wrong.empty())
       wrong = compare_with_single(before, crowd_, report, [&](Particles& one, std::uint32_t i) {
-        const auto answers = answers_of(i, 1);
+        const auto answers = crowd_.answers(step.number, i, 1);
         return single_.advance(environment, one, {&targets[i], 1}, answers->one_by_one());
       });
     if (wrong.empty() && step.valid && step.moved)
       wrong = compare_with_walls(environment, step.number, before, targets, report, seen);
-    crowd_.velocities = all->velocities;
-    crowd_.fates = all->fates;
+    crowd_.answered(*all);
     return wrong;
   }
 
@@ -276,14 +262,8 @@ class Spheres : public Guest {
       const bool point = random.below(4) == 0;
       radii.push_back(point ? 0.0 : random.uniform(0.01, 0.4) * scene_.edge);
     }
-    for (std::size_t i = 0; i < targets.size(); ++i) crowd_.velocities[i] = targets[i] - crowd_.particles[i].position;
-    const auto answers_of = [&](std::size_t first, std::size_t count) {
-      return std::make_unique<Answers>(case_, step.number, std::span(crowd_.ids).subspan(first, count),
-                                       std::span(crowd_.velocities).subspan(first, count),
-                                       std::span(crowd_.fates).subspan(first, count));
-    };
-    const auto all = answers_of(0, crowd_.size());
-    const auto thrown = answers_of(0, crowd_.size());
+    crowd_.head_for(targets);
+    const auto all = crowd_.answers(step.number), thrown = crowd_.answers(step.number);
     std::string wrong = throw_first(case_, step, crowd_, *thrown, seen, [&](const ContactCallback& f) {
       stepper_.advance(environment, crowd_.particles, radii, targets, f);
     });
@@ -295,13 +275,12 @@ class Spheres : public Guest {
     wrong = check_report(report.step, crowd_.size());
     if (wrong.empty())
       wrong = compare_with_single(before, crowd_, report.step, [&](Particles& one, std::uint32_t i) {
-        const auto answers = answers_of(i, 1);
+        const auto answers = crowd_.answers(step.number, i, 1);
         return single_.advance(environment, one, {&radii[i], 1}, {&targets[i], 1}, answers->one_by_one()).step;
       });
     if (wrong.empty() && step.valid && !step.moved)
       wrong = compare_with_walls(environment, before, radii, targets, report, seen);
-    crowd_.velocities = all->velocities;
-    crowd_.fates = all->fates;
+    crowd_.answered(*all);
     return wrong;
   }
 
