@@ -8,7 +8,7 @@ set(io_rooms formats meshing scene report output)
 # Public headers; core has all others.
 set(simulation_headers dynamics spheres solids bodies catheter simulation plan deformation vector_field events scene statistics)
 set(mpi_headers mpi_ranks)
-set(io_headers mesh_files scene_file report run trajectory statistics_files)
+set(io_headers mesh_files scene_file report replay run trajectory statistics_files)
 
 # Adds dartcast_NAME, known as dartcast::NAME, from its rooms and public headers. Further arguments: libraries it uses.
 function(add_dartcast_library name)

@@ -22,5 +22,6 @@ void add_partition(CLI::App& app, int& status);
 void add_plan(CLI::App& app, int& status);
 void add_lagrangian(CLI::App& app, int& status);
 void add_trace(CLI::App& app, int& status);
+void add_replay(CLI::App& app, int& status);
 
 }  // namespace dartcast::app

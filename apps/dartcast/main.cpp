@@ -46,6 +46,7 @@ int main(int argc, char** argv) {
   verbs::add_plan(app, status);
   verbs::add_lagrangian(app, status);
   verbs::add_trace(app, status);
+  verbs::add_replay(app, status);
   verbs::add_bench(app, status);
   return verbs::run_program(app, argc, argv, status);
 }

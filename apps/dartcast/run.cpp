@@ -77,6 +77,8 @@ int status_of(const RunArguments& a, const Summary& summary, const std::string& 
   if (summary.audit && summary.audit->failed > 0) {
     fmt::print(stderr, "dartcast: the audit failed {} times; the first: {}\n", summary.audit->failed,
                summary.audit->first);
+    if (!summary.replay.empty())
+      fmt::print(stderr, "dartcast: the step is in {0}: dartcast replay {0}\n", quoted(summary.replay.string()));
     return failed;
   }
   if (!summary.cancelled) return done;

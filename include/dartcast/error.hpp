@@ -1,10 +1,14 @@
 // Errors: bad input raises an exception that says what, where and what to do. A collision is a result, never an error.
 #pragma once
 
+#include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace dartcast {
+
+struct StepReplay;  // dartcast/step_replay.hpp
 
 /// Base of all exceptions of dartcast. After a throw the state is unchanged, unless the contract of a function says
 /// otherwise.
@@ -32,10 +36,17 @@ class EditRefused : public Error {
   using Error::Error;
 };
 
-/// A broken invariant of dartcast itself: please report it, with the replay in the text.
+/// A broken invariant of dartcast itself: please report it, with the replay if there is one.
 class InternalError : public Error {
  public:
   using Error::Error;
+  InternalError(const std::string& text, std::shared_ptr<const StepReplay> replay)
+      : Error(text), replay_(std::move(replay)) {}
+  /// The step that met it, with the cells around (write_replay() in dartcast/replay.hpp); null: none was recorded.
+  [[nodiscard]] const std::shared_ptr<const StepReplay>& replay() const { return replay_; }
+
+ private:
+  std::shared_ptr<const StepReplay> replay_;
 };
 
 }  // namespace dartcast

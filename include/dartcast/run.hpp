@@ -70,6 +70,7 @@ struct Summary {
   std::vector<SolidSummary> solids;
   std::optional<StatisticsSummary> statistics;  ///< where the scene wants any
   std::optional<Audit> audit;
+  std::filesystem::path replay;  ///< of the first step that failed the audit; empty: none did, or there is no folder
   std::string state_hash;
 };
 

@@ -336,6 +336,7 @@ class Simulation {
   [[nodiscard]] std::uint64_t steps() const;
   [[nodiscard]] const Environment& environment() const;
   [[nodiscard]] bool deforms() const;
+  void set_replay_hook(ReplayHook hook);  ///< Environment::set_replay_hook()
 
   // Particles in the scene; entry i of each belongs to the same particle. Ids persist, in the order of adding from 0.
   [[nodiscard]] const Particles& particles() const;
@@ -373,8 +374,7 @@ class Simulation {
   [[nodiscard]] std::vector<BodySummary> body_summaries() const;  ///< by id, those that left included
   [[nodiscard]] std::vector<CatheterSummary> catheter_summaries() const;
   [[nodiscard]] std::vector<SolidSummary> solid_summaries() const;
-  /// At the particles' places and velocities now. The same bits for any number of threads and ranks. Cost: linear,
-  /// parallel.
+  /// At the particles' places and velocities now. The same bits for any threads and ranks. Cost: linear, parallel.
   [[nodiscard]] SimulationEnergy energy() const;
   /// Checks all particles, those of bodies and catheters included.
   [[nodiscard]] Audit audit() const;

@@ -11,6 +11,7 @@
 #include "base/parallel.hpp"
 #include "dartcast/cell_complex.hpp"
 #include "environment/audit_integers.hpp"
+#include "environment/audit_state.hpp"
 
 namespace dartcast {
 
@@ -43,17 +44,19 @@ std::string check_held(const Weights& weights) {
   return good ? "" : "a held particle's coordinates are not all finite and at least 0";
 }
 
-// The fault of a particle; empty where there is none.
-std::string check(const CellComplex& complex, const Particles& particles, std::size_t i) {
-  const ParticleState& s = particles[i];
+}  // namespace
+
+std::string detail::fault_of(const CellComplex& complex, const ParticleState& s, const Weights& held_weights) {
   const CombinatorialMap& map = complex.map();
   if (!map.contains(s.cell)) return "there is no such cell";
   if (s.simplex >= map.shape(s.cell).simplices().size()) return "the cell has no such simplex";
-  if (s.held) return check_held(particles.held_weights(i));
+  if (s.held) return check_held(held_weights);
   if (!map.is_free(s.cell)) return "the cell is blocked";
   if (map.dimension() == 2 && s.position.z != 0.0) return "the position is not in the plane";
   return check_inside(complex.corners({s.cell, s.simplex}), s.position);
 }
+
+namespace {
 
 std::string describe(const CellComplex& complex, const ParticleState& s, std::size_t i, const std::string& what) {
   const std::string cell = complex.map().contains(s.cell) ? fmt::format("{}", complex.map().source(s.cell)) : "none";
@@ -76,7 +79,7 @@ Audit audit(const CellComplex& complex, const Particles& particles, Threads thre
     Audit& part = parts[begin / grain];
     part.checked = end - begin;
     for (std::size_t i = begin; i < end; ++i) {
-      const std::string what = check(complex, particles, i);
+      const std::string what = detail::fault_of(complex, particles[i], particles.held_weights(i));
       if (what.empty()) continue;
       ++part.failed;
       if (part.first.empty()) part.first = describe(complex, particles[i], i, what);

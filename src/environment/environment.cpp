@@ -17,6 +17,7 @@
 #include "environment/addition.hpp"
 #include "environment/environment_members.hpp"
 #include "environment/particle_details.hpp"
+#include "environment/watched_step.hpp"
 #include "response/library_response.hpp"
 #include "tracking/batch/batch_stepper.hpp"
 #include "tracking/checked_point.hpp"
@@ -44,12 +45,13 @@ Threads checked(Threads threads) {
   return threads;
 }
 
+[[noreturn]] void refuse(const Finding& f) {
+  throw InvalidMesh(fmt::format("{}: {}, the first: {}", f.message, f.count, fmt::join(f.first, ", ")));
+}
+
 MeshData checked_mesh(MeshData mesh) {
   const MeshReport report = check_and_repair(mesh);
-  if (!report.defects.empty()) {
-    const Finding& f = report.defects.front();
-    throw InvalidMesh(fmt::format("{}: {}, the first: {}", f.message, f.count, fmt::join(f.first, ", ")));
-  }
+  if (!report.defects.empty()) refuse(report.defects.front());
   return mesh;
 }
 
@@ -84,8 +86,8 @@ bool can_be(const CellComplex& complex, const ParticleState& s, const Weights& w
 
 }  // namespace
 
-Environment::Members::Members(MeshData mesh, Threads all)
-    : complex(checked_mesh(std::move(mesh)), checked(all)), threads(all), id(next_id()) {
+Environment::Members::Members(const MeshData& checked_mesh, Threads all)
+    : complex(checked_mesh, checked(all)), threads(all), id(next_id()) {
   const auto& invalid = complex.invalid_cells();
   if (invalid.empty()) return;
   throw InvalidMesh(fmt::format("{} cells can't be divided into positive simplices; the first: {}; mend or remesh them",
@@ -169,7 +171,8 @@ std::vector<Vec3> Environment::Members::with_steiner_points(std::span<const Vec3
 }
 
 Environment::Environment(MeshData mesh, Threads threads)
-    : members_(std::make_unique<Members>(std::move(mesh), threads)) {}
+    : Environment(std::make_unique<Members>(checked_mesh(std::move(mesh)), threads)) {}
+Environment::Environment(std::unique_ptr<Members> members) : members_(std::move(members)) {}
 Environment::~Environment() = default;
 
 const CellComplex& Environment::complex() const { return members_->complex; }
@@ -299,18 +302,61 @@ void Environment::check_advance(const Particles& particles, const StepOptions& o
 StepReport Environment::advance(Particles& particles, std::span<const Vec3> targets, const ContactCallback& respond,
                                 const StepOptions& options) {
   check_advance(particles, options);
-  const bool may_throw = respond && !detail::is_library_response(respond);  // the caller's code may throw
-  return members_->advance(
-      particles, targets,
-      detail::BatchStepper(complex(), awaits_advance(particles), threads(), options, respond, may_throw));
+  const auto take = [&](const ContactCallback& answer) {
+    const bool may_throw = answer && !detail::is_library_response(answer);  // the caller's code may throw
+    return members_->advance(
+        particles, targets,
+        detail::BatchStepper(complex(), awaits_advance(particles), threads(), options, answer, may_throw));
+  };
+  if (!members_->replay_hook) return take(respond);
+  WatchedStep watched(*this, particles, targets, options, false);
+  const ContactCallback noted = watched.noted(respond);
+  StepReport report = watched.run([&] { return take(noted); });
+  watched.check(particles.states(), particles.details().weights);
+  return report;
 }
 
 StepReport Environment::advance_in_rounds(Particles& particles, std::span<const Vec3> targets,
                                           const RoundCallback& respond, const StepOptions& options) {
   check_advance(particles, options, "advance_in_rounds");
   if (!respond) return advance(particles, targets, {}, options);
-  return members_->advance(particles, targets,
-                           detail::BatchStepper(complex(), awaits_advance(particles), threads(), options, respond));
+  const auto take = [&](const RoundCallback& answer) {
+    return members_->advance(particles, targets,
+                             detail::BatchStepper(complex(), awaits_advance(particles), threads(), options, answer));
+  };
+  if (!members_->replay_hook) return take(respond);
+  WatchedStep watched(*this, particles, targets, options, false);
+  const RoundCallback noted = watched.noted(respond);
+  StepReport report = watched.run([&] { return take(noted); });
+  watched.check(particles.states(), particles.details().weights);
+  return report;
+}
+
+void Environment::set_replay_hook(ReplayHook hook) { members_->replay_hook = std::move(hook); }
+const ReplayHook& Environment::replay_hook() const { return members_->replay_hook; }
+
+// Repairs would turn the corners of cells that look inside out.
+std::unique_ptr<Environment> environment_as_it_is(MeshData mesh) {
+  MeshData copy = mesh;
+  for (const Finding& f : check_and_repair(copy).defects)
+    if (f.kind != "inverted" && f.kind != "flat") refuse(f);
+  return std::unique_ptr<Environment>(new Environment(std::make_unique<Environment::Members>(mesh, Threads{1})));
+}
+
+StepReplay Environment::record(const Particles& particles, std::size_t particle, const Vec3& target,
+                               const ContactCallback& respond, const StepOptions& options) const {
+  std::vector<Vec3> targets(particles.size());
+  if (particle < targets.size()) targets[particle] = target;
+  WatchedStep watched(*this, particles, targets, options, false);
+  const ContactCallback noted = watched.noted(respond);
+  std::optional<Vec3> end;
+  try {
+    end = trace(particles, particle, {&target, 1}, noted, options).at(0).after.position;
+  } catch (const InternalError&) {  // it is recorded all the same
+  }
+  StepReplay replay = watched.replay_of(static_cast<std::uint32_t>(particle));
+  replay.end = end;
+  return replay;
 }
 
 std::vector<Trace> Environment::trace(const Particles& particles, std::size_t particle, std::span<const Vec3> targets,

@@ -17,8 +17,12 @@ class BatchStepper;
 
 namespace dartcast {
 
+/// An environment of cells that were once valid, in positions that they have come to: corners may turn inwards where all
+/// simplices are positive. Throws InvalidMesh as Environment's constructor for all other defects.
+std::unique_ptr<Environment> environment_as_it_is(MeshData mesh);
+
 struct Environment::Members {
-  Members(MeshData mesh, Threads all);
+  Members(const MeshData& checked_mesh, Threads all);
 
   /// Makes an empty set one of this environment, as it is now.
   void adopt(Particles& particles) const;
@@ -40,6 +44,7 @@ struct Environment::Members {
   std::uint64_t edits = 0;
   std::uint64_t moves_at_edit = 0;  ///< when the last edit was made
   ComplexEditReport last_edit;
+  ReplayHook replay_hook;
   std::unique_ptr<Locator> locator;  ///< of the current positions, made by the first locate()
 };
 

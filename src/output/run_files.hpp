@@ -28,6 +28,9 @@ struct RecordingFrame {
 /// The mesh that was made around a scene's surfaces. A run that starts anew leaves it where it is.
 inline constexpr std::string_view kept_mesh_name = "surface_mesh.msh";
 
+/// The step that the audit or the library found wrong, to be taken again (dartcast/replay.hpp).
+inline constexpr std::string_view replay_name = "replay.json";
+
 /// Whether a file is one that a run writes, or began to write and did not end: by its name.
 bool is_run_file(std::string_view name);
 

@@ -10,8 +10,10 @@
 #include "base/are_several.hpp"
 #include "base/parallel.hpp"
 #include "dartcast/error.hpp"
+#include "dartcast/replay.hpp"
 #include "dartcast/run.hpp"
 #include "dartcast/scene_file.hpp"
+#include "output/run_files.hpp"
 #include "output/run_output.hpp"
 #include "scene/scene_mesh.hpp"
 #include "simulation/particle_share.hpp"
@@ -180,6 +182,21 @@ LoadedScene loaded_scene(Scene scene, const ReadOptions& read, const RunOptions&
   return loaded;
 }
 
+// Writes the first step that went wrong.
+void keep_first(const StepReplay& step, const std::filesystem::path& folder, Summary& summary) {
+  if (!summary.replay.empty()) return;
+  const std::filesystem::path file = folder / replay_name;
+  write_replay(step, file);
+  summary.replay = file;
+}
+
+[[noreturn]] void throw_with_file(const InternalError& e, const std::filesystem::path& folder, Summary& summary) {
+  if (folder.empty() || !e.replay()) throw e;
+  keep_first(*e.replay(), folder, summary);
+  throw InternalError(fmt::format("{} ({}: take it again by dartcast replay)", e.what(), summary.replay.string()),
+                      e.replay());
+}
+
 }  // namespace
 
 Summary run_scene(const Scene& scene, const RunOptions& options, const Progress& progress) {
@@ -210,7 +227,13 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
   if (simulation->parts().part) describe_parts(*simulation, summary);
   summary.seconds_locate = locate.seconds();
   output.open(std::move(loaded.scene.environment.mesh), *simulation);
-  Run(*simulation, output, steps, summary).run(progress);
+  if (options.audit && !options.folder.empty())
+    simulation->set_replay_hook([&](const StepReplay& step) { keep_first(step, options.folder, summary); });
+  try {
+    Run(*simulation, output, steps, summary).run(progress);
+  } catch (const InternalError& e) {
+    throw_with_file(e, options.folder, summary);
+  }
   output.finish(*simulation);
   return summary;
 }

@@ -226,6 +226,7 @@ std::string summary_json(const Summary& s) {
   if (t.counters.particle_steps > 0) json["ns_per_particle_step"] = ns_per_particle_step(s);
   if (s.cancelled) json["cancelled"] = true;
   if (s.audit) json["audit"] = {{"checked", s.audit->checked}, {"failed", s.audit->failed}};
+  if (!s.replay.empty()) json["replay"] = s.replay.string();
   json["state_hash"] = s.state_hash;
   return json.dump(1, ' ', false, Json::error_handler_t::replace);
 }

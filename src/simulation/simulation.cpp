@@ -195,6 +195,7 @@ void Simulation::add(const SolidScene& solid) {
 const SimulationOptions& Simulation::options() const { return parts_->particles.options(); }
 std::uint64_t Simulation::steps() const { return parts_->particles.steps(); }
 const Environment& Simulation::environment() const { return parts_->environment; }
+void Simulation::set_replay_hook(ReplayHook hook) { parts_->environment.set_replay_hook(std::move(hook)); }
 bool Simulation::deforms() const { return parts_->particles.deforms(); }
 const Particles& Simulation::particles() const { return parts_->particles.particles(); }
 std::span<const std::uint64_t> Simulation::ids() const { return parts_->particles.ids(); }

@@ -5,11 +5,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "dartcast/error.hpp"
 #include "dartcast/predicates.hpp"
 #include "tracking/carry.hpp"
+#include "tracking/cells_around.hpp"
 #include "tracking/representable_point.hpp"
 
 namespace dartcast {
@@ -35,8 +37,18 @@ SimplexId simplex_after(const CellComplex& complex, Cell cell, const Vec3& from,
       if (detail::in_closed_simplex(corners_of(complex, {c, s}, walls.after), to)) return {c, s};
     }
   }
-  throw InternalError(
-      fmt::format("joint move: no cell holds the point ({}, {}, {}) after a move; please report it", to.x, to.y, to.z));
+  ParticleState state;
+  state.put({cell, 0}, from);
+  const std::size_t count = complex.map().view(cell).shape().simplices().size();
+  for (std::uint16_t s = 0; s < count; ++s) {
+    if (detail::in_closed_simplex(corners_of(complex, {cell, s}, walls.before), from)) state.simplex = s;
+  }
+  StepReplay replay =
+      detail::replay_of(complex.map(), {walls.before, walls.after}, state, to, std::array{std::pair{from, to}});
+  replay.simultaneous = true;
+  throw detail::error_with_replay(
+      fmt::format("joint move: no cell holds the point ({}, {}, {}) after a move", to.x, to.y, to.z),
+      std::move(replay));
 }
 
 Vec3 carried_by_cell(const CellComplex& complex, const ParticleState& state, const VertexMotion& walls) {

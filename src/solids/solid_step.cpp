@@ -18,6 +18,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <tuple>
@@ -27,6 +28,7 @@
 #include "dartcast/error.hpp"
 #include "dartcast/predicates.hpp"
 #include "solids/solid_set_impl.hpp"
+#include "tracking/cells_around.hpp"
 
 namespace dartcast {
 
@@ -54,6 +56,16 @@ void sort_and_join(std::vector<SolidContact>& contacts) {
   std::stable_sort(contacts.begin(), contacts.end(), [](const SolidContact& a, const SolidContact& b) {
     return std::tie(a.solid, a.time_of_impact) < std::tie(b.solid, b.time_of_impact);
   });
+}
+
+// The vertex's way as a step of a particle that nothing answers.
+[[noreturn]] void throw_met_wall(Environment& environment, std::size_t vertex, const Vec3& from, const Vec3& to) {
+  ParticleState state;
+  state.put(environment.locate(from).simplex, from);
+  const CellComplex& complex = environment.complex();
+  throw detail::error_with_replay(fmt::format("solids: vertex {} met a wall on a way that was proved free", vertex),
+                                  detail::replay_of(complex.map(), {complex.positions(), complex.positions()}, state,
+                                                    to, std::array{std::pair{from, to}}));
 }
 
 }  // namespace
@@ -224,9 +236,7 @@ void SolidSet::Impl::commit_at_rest() {
   if (way.slices > 1) follow_move(environment, particles, reached, ends());
   if (way.slices == 1) environment.advance(particles, reached);
   for (std::size_t v = 0; v < reached.size(); ++v) {
-    if (particles[v].position != reached[v])
-      throw InternalError(
-          fmt::format("solids: vertex {} met a wall on a way that was proved free; please report it", v));
+    if (particles[v].position != reached[v]) throw_met_wall(environment, v, positions[v], reached[v]);
   }
   positions = reached;
 }

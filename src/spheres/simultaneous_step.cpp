@@ -8,6 +8,7 @@
 #include "dartcast/predicates.hpp"
 #include "dynamics/flat_cells.hpp"
 #include "predicates/moving_pair.hpp"
+#include "tracking/cells_around.hpp"
 #include "tracking/place_in_simplex.hpp"
 #include "tracking/space.hpp"
 
@@ -128,7 +129,7 @@ SimultaneousStep::LegEnd SimultaneousStep::take(Run& run, SimultaneousLeg& leg) 
   Memory& memory = run.memory;
   if (!look(memory, leg, leg.to, 1.0)) return LegEnd::undecided;
   if (memory.touches.empty()) {
-    run.state.put(holding(memory, leg.to), leg.to);
+    run.state.put(holding(memory, leg, leg.to, 1.0), leg.to);
     return LegEnd::arrived;
   }
   keep_first_touches(memory);
@@ -195,7 +196,7 @@ bool SimultaneousStep::look(Memory& memory, const SimultaneousLeg& leg, const Ve
 }
 
 // The simplex that holds a point at the end of the way that was looked at last, which is free.
-SimplexId SimultaneousStep::holding(const Memory& memory, const Vec3& x) const {
+SimplexId SimultaneousStep::holding(const Memory& memory, const SimultaneousLeg& leg, const Vec3& x, double end) const {
   const auto positions = memory.places.after();
   for (const Cell c : memory.near.cells_reached()) {
     const std::size_t count = complex_.map().view(c).shape().simplices().size();
@@ -206,7 +207,19 @@ SimplexId SimultaneousStep::holding(const Memory& memory, const Vec3& x) const {
       if (detail::in_closed_simplex(corners, x)) return {c, s};
     }
   }
-  throw InternalError("advance: no cell in reach holds the end of a free way; please report it");
+  std::vector<Vec3> before, after;
+  const auto place = [&](double time, Vertex v) {
+    return Between{complex_.previous_positions().data(), complex_.positions().data(), time}[v];
+  };
+  for (std::uint32_t v = 0; v < complex_.map().vertex_count(); ++v) {
+    before.push_back(place(leg.begin, Vertex{v}));
+    after.push_back(place(end, Vertex{v}));
+  }
+  ParticleState state;
+  state.put(leg.at, leg.from);
+  StepReplay replay = detail::replay_of(complex_.map(), {before, after}, state, x, std::array{std::pair{leg.from, x}});
+  replay.simultaneous = true;
+  throw detail::error_with_replay("advance: no cell in reach holds the end of a free way", std::move(replay));
 }
 
 // The walls touched first, into `met`, in the order of time.
@@ -228,7 +241,8 @@ std::optional<SimultaneousStep::Stop> SimultaneousStep::stop_before(Memory& memo
     const double end = leg.begin + share * (1.0 - leg.begin);
     if (!(end > leg.begin)) return {};
     const Vec3 place = flushed(leg.from + (leg.to - leg.from) * share);
-    if (look(memory, leg, place, end) && memory.touches.empty()) return Stop{end, place, holding(memory, place)};
+    if (look(memory, leg, place, end) && memory.touches.empty())
+      return Stop{end, place, holding(memory, leg, place, end)};
   }
   return {};
 }

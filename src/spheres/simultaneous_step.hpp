@@ -65,7 +65,7 @@ class SimultaneousStep {
 
   LegEnd take(Run& run, SimultaneousLeg& leg) const;
   bool look(Memory& memory, const SimultaneousLeg& leg, const Vec3& to, double end) const;
-  [[nodiscard]] SimplexId holding(const Memory& memory, const Vec3& x) const;
+  [[nodiscard]] SimplexId holding(const Memory& memory, const SimultaneousLeg& leg, const Vec3& x, double end) const;
   static void keep_first_touches(Memory& memory);
   [[nodiscard]] std::optional<Stop> stop_before(Memory& memory, const SimultaneousLeg& leg, double time) const;
   const Contact& describe(Run& run, const SimultaneousLeg& leg) const;

@@ -2,11 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "base/parallel.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/spheres.hpp"
+#include "environment/watched_step.hpp"
 #include "spheres/simultaneous_step.hpp"
 #include "tracking/checked_point.hpp"
 
@@ -38,11 +40,14 @@ StepReport SimultaneousStepper::advance(Environment& environment, Particles& par
   b.states.assign(particles.states().begin(), particles.states().end());
   b.weights.resize(count);
   for (std::size_t i = 0; i < count; ++i) b.weights[i] = particles.held_weights(i);
+  std::optional<WatchedStep> watched;
+  if (environment.replay_hook()) watched.emplace(environment, particles, targets, options, true);
+  const ContactCallback noted = watched ? watched->noted(respond) : ContactCallback{};
   const std::size_t grain = std::max<std::size_t>(256, chunk_count(count, 256));
   std::vector<StepReport> reports(chunk_count(count, grain));
   if (b.memory.size() < reports.size()) b.memory.resize(reports.size());
-  const SimultaneousStep stepper(environment.complex(), options, respond);
-  parallel_for(count, grain, environment.threads(), [&](std::size_t begin, std::size_t end) {
+  const SimultaneousStep stepper(environment.complex(), options, watched ? noted : respond);
+  const auto take_some = [&](std::size_t begin, std::size_t end) {
     StepReport& report = reports[begin / grain];
     for (std::size_t i = begin; i < end; ++i) {
       const auto particle = static_cast<std::uint32_t>(i);
@@ -51,7 +56,14 @@ StepReport SimultaneousStepper::advance(Environment& environment, Particles& par
       if (result.held) report.held.push_back({particle, result.invalid_cell});
       if (result.stopped) report.stopped.push_back({particle, result.unused});
     }
-  });
+  };
+  const auto take = [&] { parallel_for(count, grain, environment.threads(), take_some); };
+  if (watched) {
+    watched->run(take);
+    watched->check(b.states, b.weights);
+  } else {
+    take();
+  }
   StepReport all;
   for (StepReport& part : reports) {
     all.contacts.append(part.contacts);

@@ -111,7 +111,10 @@ class Ties {
   std::optional<std::conditional_t<N == 4, SymbolicPerturbation, PlanarSymbolicPerturbation>> shift_;
 };
 
-[[noreturn]] void throw_overrun(const CombinatorialMap& map, SimplexId start, const Vec3& p, const Vec3& q);
+[[noreturn]] void throw_overrun(const CombinatorialMap& map, Stored places, SimplexId start, const Vec3& p,
+                                const Vec3& q);
+[[noreturn]] void throw_overrun(const CombinatorialMap& map, Between places, SimplexId start, const Vec3& p,
+                                const Vec3& q);
 
 /// Whether the shifted segment leaves by facet i before facet j, both of which q is strictly beyond.
 template <class Positions>
@@ -184,7 +187,7 @@ template <class Positions, std::size_t N, class Visitor>
     walk.simplex = next.simplex;
     tested = all & ~(1U << next.facet);
   }
-  throw_overrun(*space.map, start, p, q);
+  throw_overrun(*space.map, space.positions, start, p, q);
 }
 
 /// The same from the simplex that holds p on.

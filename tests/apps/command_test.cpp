@@ -16,6 +16,7 @@
 #include <string>
 
 #include "dartcast/mesh_files.hpp"
+#include "support/expectations.hpp"
 #include "support/shared_data.hpp"
 
 namespace dartcast::command_test {
@@ -340,6 +341,23 @@ TEST_F(Command, TraceSaysWhatItCannotDo) {
   for (const std::string point : {"1", "1,", "1,2,3,4", "1;2", "1,2,x", "''"})
     expect_failure("trace good.mesh --from '" + point + "' --to 0,0,0", 2, "--from");
   expect_failure("trace no.vtu" + ends, 1, "no.vtu");
+}
+
+TEST_F(Command, ReplayTakesARecordedStepAgain) {
+  (void)write("step.json", R"({"kind": "dartcast replay 1", "reason": "the position is outside its simplex",
+    "motion": "carried", "particle": {"position": [0.125, 0.125, 0.25], "cell": 0, "simplex": 0, "touching": []},
+    "target": [0.125, 0.125, -0.75], "options": {"max_contacts": 16, "tolerance": 0.05, "max_parts": 256},
+    "end": [0.125, 0.125, -0.75], "answers": [{"displacement": [0.0, 0.0, 0.125], "along": false}],
+    "points": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], "moved": [],
+    "cells": [{"type": "tetrahedron", "free": true, "points": [0, 1, 2, 3]}], "faces": []})");
+  const Result r = run("replay step.json");
+  EXPECT_EQ(r.status, 0) << r.error;
+  test::expect_parts(r.out, {"recorded: the position is outside its simplex", "it ended at (0.125, 0.125, -0.75)",
+                             "contact at (0.125, 0.125, 0), at 0.25 of the step",
+                             "now it ends at (0.125, 0.125, 0.125)", "nothing is wrong"});
+  (void)write("good.mesh", tetrahedron());
+  expect_failure("replay good.mesh", 1, "good.mesh: this is no replay");
+  expect_failure("replay none.json", 1, "none.json");
 }
 
 TEST_F(Command, ConvertGoesRoundThroughAllFormats) {
