@@ -15,6 +15,7 @@
 #include <system_error>
 #include <thread>
 
+#include "dartcast/replay.hpp"
 #include "soak/run.hpp"
 
 namespace dartcast::soak {
@@ -135,12 +136,16 @@ class Child {
 
 }  // namespace
 
-std::string run_apart(const Case& c, double limit, Counts* counts) {
+std::string run_apart(const Case& c, double limit, const std::string& file) {
   SharedSlot slot;
   const pid_t child = child_of([&] {
     Seen seen(slot->counts);
     const std::string wrong = run_case(c, seen);
     tell(*slot, wrong);
+    if (seen.replay && !file.empty()) {
+      seen.replay->reason = wrong;
+      write_replay(*seen.replay, file);
+    }
     _exit(wrong.empty() ? 0 : 1);
   });
   const auto start = Clock::now();
@@ -153,7 +158,6 @@ std::string run_apart(const Case& c, double limit, Counts* counts) {
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
-  if (counts != nullptr) *counts += slot->counts;
   return ending(status, *slot);
 }
 
@@ -181,6 +185,7 @@ SoakResult soak(const SoakOptions& options) {
       return true;
     });
   }
+  result.seconds = seconds_since(start);
   return result;
 }
 

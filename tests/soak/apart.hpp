@@ -17,9 +17,9 @@ struct Failure {
   std::string wrong;
 };
 
-/// Runs one case in a child process. A case that takes longer than `limit` seconds fails. `counts`: unless null, gets what
-/// it has seen.
-std::string run_apart(const Case& c, double limit, Counts* counts = nullptr);
+/// Runs one case in a child process. A case that takes longer than `limit` seconds fails. `file`: unless empty, gets the
+/// replay of the step that fails, if there is one.
+std::string run_apart(const Case& c, double limit, const std::string& file = {});
 
 /// Which cases to run, and how long.
 struct SoakOptions {
@@ -35,6 +35,7 @@ struct SoakOptions {
 /// Runs one case after another, until one fails, or the time or the number of cases is over.
 struct SoakResult {
   Counts counts;
+  double seconds = 0.0;
   std::vector<Failure> failures;
 };
 SoakResult soak(const SoakOptions& options);

@@ -31,8 +31,8 @@ std::span<const KnobText> knob_texts() {
        {"rest", "turn", "twist", "wave", "frames", "near inversion", "inversion and back", "infinite vertices"}},
       {Knob::mover, "mover", {"environment", "solids", "bodies", "catheter", "simulation"}},
       {Knob::steps, "steps", {}, 12},
-      {Knob::first, "first", {}, 1000},
-      {Knob::particles, "particles", {}, 400},
+      {Knob::first, "first", {}, 20000},
+      {Knob::particles, "particles", {}, 20000},
       {Knob::places, "places", {"at random", "at vertices", "mixed"}},
       {Knob::targets, "targets", {"at random", "lattice", "vertices", "mixed"}},
       {Knob::length, "length", {"a cell", "10^-6 cells", "300 cells", "mixed"}},
@@ -43,6 +43,7 @@ std::span<const KnobText> knob_texts() {
       {Knob::spheres, "spheres", {"off", "on"}},
       {Knob::ranks, "ranks", {"off", "2", "3"}},
       {Knob::throws, "throws", {"off", "on"}},
+      {Knob::surface, "surface", {"off", "on"}},
   };
   return texts;
 }
@@ -90,6 +91,9 @@ Case draw_case(std::uint64_t seed) {
   c[Knob::particles] = 8 + random.below(random.below(4) == 0 ? 392 : 72);
   for (const Knob k : {Knob::mover, Knob::ranks, Knob::throws, Knob::simultaneous, Knob::spheres, Knob::state})
     if (random.below(2) == 0) c[k] = 0;
+  // A crowd costs little beside the edits and the checks of cells. The first seeds are a short test.
+  if (seed > 1000 && random.below(6) == 0 && !c.is(Knob::mover, "simulation"))
+    c[Knob::particles] = 1000 + random.below(19000);
   return c;
 }
 

@@ -33,9 +33,10 @@ enum class Knob : std::uint8_t {
   simultaneous,  ///< whether points and walls move at the same time, too
   spheres,       ///< whether there are spheres
   ranks,         ///< how many share the cells
-  throws         ///< whether responses and edits throw in their middle
+  throws,        ///< whether responses and edits throw in their middle
+  surface        ///< whether particles step on the walls, too
 };
-inline constexpr std::size_t knob_count = 21;
+inline constexpr std::size_t knob_count = 22;
 
 /// A knob's name and the names of its values. A knob whose values are amounts has one name and a number of values.
 struct KnobText {

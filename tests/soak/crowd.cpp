@@ -79,7 +79,7 @@ Crowd::Crowd(const Case& c, const SceneMesh& scene, Environment& environment, st
   std::vector<Vec3> places;
   std::vector<std::uint64_t> numbers;
   const auto positions = environment.positions();
-  const std::uint64_t most = kind == spheres ? 60 : 1000;  // spheres take long
+  const std::uint64_t most = kind == spheres ? 60 : kind == simultaneous ? 400 : 20000;  // as long as they take
   const std::uint64_t count = std::min<std::uint64_t>(c[Knob::particles], most);
   for (std::uint64_t id = c[Knob::first]; id < c[Knob::first] + count; ++id) {
     Random random = random_for(c, Use::place, kind, id);

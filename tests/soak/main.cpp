@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -59,19 +60,23 @@ void report(const Failure& failure, const Arguments& a) {
     if (!wrong.empty()) last = wrong;
     return wrong;
   });
-  const std::string file = fmt::format("soak-{}.case", failure.c.seed);
-  std::ofstream(file) << "# " << last << "\n" << text_of(simple);
-  fmt::print("simpler: {}\n{}written to {}: dartcast-soak --replay {}\n", last, text_of(simple), file, file);
+  const std::string name = fmt::format("soak-{}", failure.c.seed);
+  std::ofstream(name + ".case") << "# " << last << "\n" << text_of(simple);
+  fmt::print("simpler: {}\n{}written to {}.case: dartcast-soak --replay {}.case\n", last, text_of(simple), name, name);
+  run_apart(simple, a.options.limit, name + ".json");
+  if (std::filesystem::exists(name + ".json")) fmt::print("the step alone: dartcast replay {}.json\n", name);
 }
 
 int run(Arguments& a) {
   if (!a.replay.empty()) return replay(a);
   a.options.seconds = a.minutes * 60.0;
   a.options.change = [&](Case& c) { change(c, a.only); };
-  a.options.say = say;
+  a.options.say = [&](double seconds, const Counts& counts) {
+    say(seconds, counts);
+    if (!a.table.empty()) std::ofstream(a.table) << table_of(counts);
+  };
   const SoakResult result = soak(a.options);
-  say(a.options.seconds, result.counts);
-  if (!a.table.empty()) std::ofstream(a.table) << table_of(result.counts);
+  a.options.say(result.seconds, result.counts);
   for (const Failure& failure : result.failures) report(failure, a);
   return result.failures.empty() ? 0 : 1;
 }

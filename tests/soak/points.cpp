@@ -4,6 +4,7 @@
 #include <atomic>
 
 #include "dartcast/cell_complex.hpp"
+#include "dartcast/replay.hpp"
 #include "dartcast/spheres.hpp"
 #include "soak/guests.hpp"
 #include "soak/truth.hpp"
@@ -98,6 +99,7 @@ class Points : public Guest {
     note_report(report, seen);
     wrong = check_report(report, crowd_.size());
     if (wrong.empty()) wrong = compare_with_traces(environment, before, targets, report, *alone);
+    if (wrong.empty()) wrong = take_again(environment, step, before, targets, seen);
     if (wrong.empty() && (alone->velocities != answers->velocities || alone->fates != answers->fates))
       wrong = "traces have other velocities";
     if (wrong.empty() && case_[Knob::rounds] != 0) {
@@ -111,11 +113,34 @@ class Points : public Guest {
     if (wrong.empty() && step.valid && !step.moved)
       wrong = compare_with_walls(environment, before, targets, report, seen);
     if (wrong.empty() && !step.moved) wrong = check_energy(*answers);
+    if (!wrong.empty() && at_fault_) seen.replay = record(environment, step, before, targets, *at_fault_);
     crowd_.answered(*answers);
     return wrong;
   }
 
  private:
+  [[nodiscard]] StepReplay record(const Environment& environment, const Step& step, const Particles& before,
+                                  const std::vector<Vec3>& targets, std::size_t particle) const {
+    const auto answers = crowd_.answers(step.number);
+    return environment.record(before, particle, targets[particle], answers->one_by_one(), options());
+  }
+
+  // A step that is recorded, written and read does the same among its few cells.
+  std::string take_again(const Environment& environment, const Step& step, const Particles& before,
+                         const std::vector<Vec3>& targets, Seen& seen) {
+    if (before.size() == 0 || !step.valid || environment.complex().steiner_point_count() > 0) return "";
+    const std::size_t i = random_for(case_, Use::throwing, step.number, 1).below(std::uint32_t(before.size()));
+    const StepReplay recorded = record(environment, step, before, targets, i);
+    const ReplayResult result = replay(replay_of_text(replay_text(recorded)));
+    std::string wrong = result.wrong;
+    if (wrong.empty() && !result.cut && test::bits(result.state.position) != test::bits(crowd_.particles[i].position))
+      wrong = "it ends elsewhere";
+    seen.note(Mark::taken_again);
+    if (wrong.empty()) return "";
+    seen.replay = recorded;
+    return fmt::format("the replay of particle {}: {}", crowd_.ids[i], wrong);
+  }
+
   [[nodiscard]] StepOptions options() const {
     StepOptions o;
     if (case_.seed % 5 == 0) o.max_contacts = 1 + static_cast<unsigned>(case_.seed % 3);
@@ -142,7 +167,9 @@ class Points : public Guest {
         if (trace.crossings[k].time < trace.crossings[k - 1].time ||
             trace.crossings[k].from != trace.crossings[k - 1].to)
           difference += ", crossings out of order";
-      if (!difference.empty()) return fmt::format("particle {} alone has {}", crowd_.ids[i], difference);
+      if (difference.empty()) continue;
+      at_fault_ = i;
+      return fmt::format("particle {} alone has {}", crowd_.ids[i], difference);
     }
     return next == contacts.size() ? "" : "contacts that no particle alone has";
   }
@@ -154,8 +181,10 @@ class Points : public Guest {
     for_each_first(report, before.size(), [&](std::size_t i, const Contact* first, std::span<const WallHit> hits) {
       if (!wrong.empty() || before[i].held || crowd_.particles[i].held) return;
       wrong = walls.check_first(before[i], targets[i], first, hits);
-      if (!wrong.empty()) wrong = fmt::format("particle {}: {}", crowd_.ids[i], wrong);
       seen.note_true_step();
+      if (wrong.empty()) return;
+      at_fault_ = i;
+      wrong = fmt::format("particle {}: {}", crowd_.ids[i], wrong);
     });
     return wrong;
   }
@@ -171,6 +200,7 @@ class Points : public Guest {
 
   const Case& case_;
   Crowd crowd_;
+  std::optional<std::size_t> at_fault_;  // the particle whose step is wrong
 };
 
 // Steps of one particle alone, to compare with those of many.

@@ -22,6 +22,7 @@
 #include "soak/movers.hpp"
 #include "soak/ranks.hpp"
 #include "soak/scene.hpp"
+#include "soak/surface.hpp"
 #include "support/particle_checks.hpp"
 
 namespace dartcast::soak {
@@ -100,6 +101,10 @@ class Run {
     if (case_[Knob::ranks] != 0) {
       wrong = step_on_ranks(case_, scene_, environment_->complex(), number);
       if (!wrong.empty()) return "ranks: " + wrong;
+    }
+    if (case_[Knob::surface] != 0) {
+      wrong = step_on_surface(case_, environment_->complex(), number);
+      if (!wrong.empty()) return "surface: " + wrong;
     }
     seen_.end_step(particles);
     return "";
@@ -234,7 +239,7 @@ Case shrunk(const Case& c, const Check& check) {
     // Particles are left out at the front, too.
     for (std::uint32_t part = best[Knob::particles] / 2; part > 0; part /= 2) {
       Case candidate = best;
-      if (candidate[Knob::particles] <= part || candidate[Knob::first] + part > 1000) continue;
+      if (candidate[Knob::particles] <= part || candidate[Knob::first] + part > 20000) continue;
       candidate[Knob::first] += part;
       candidate[Knob::particles] -= part;
       if (!fails(candidate)) continue;

@@ -13,6 +13,7 @@
 #include "dartcast/cutting.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/map_edits.hpp"
+#include "dartcast/mesh_check.hpp"
 #include "dartcast/validity.hpp"
 #include "mesh/cell_types.hpp"
 #include "support/meshes.hpp"
@@ -141,6 +142,7 @@ SceneMesh make_mesh(const Case& c) {
   if (walls == "a few cells") block(scene.mesh, 12, random);
   if (walls == "many cells") block(scene.mesh, 3, random);
   if (walls == "baffles" && scene.mesh.dimension() == 3) add_baffles(scene.mesh, random);
+  check_and_repair(scene.mesh);  // points that no cell has
   scene.low = scene.high = scene.mesh.points.front();
   for (const Vec3& p : scene.mesh.points) {
     scene.low = {std::min(scene.low.x, p.x), std::min(scene.low.y, p.y), std::min(scene.low.z, p.z)};

@@ -57,6 +57,11 @@ std::string_view name_of(Mark e) {
     case Mark::steiner_point: return "a Steiner point";
     case Mark::overlap: return "a sphere in a wall";
     case Mark::left: return "a particle left or absorbed";
+    case Mark::field: return "a field of velocities";
+    case Mark::inlet: return "an inlet";
+    case Mark::statistics: return "statistics";
+    case Mark::by_cells: return "a simulation shared by cells";
+    case Mark::taken_again: return "a replay";
   }
   return {};
 }

@@ -4,10 +4,12 @@
 #include <array>
 #include <bitset>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "dartcast/step_replay.hpp"
 #include "soak/case.hpp"
 
 namespace dartcast::soak {
@@ -34,9 +36,14 @@ enum class Mark : std::uint8_t {
   large_polyhedron,
   steiner_point,
   overlap,
-  left
+  left,
+  field,
+  inlet,
+  statistics,
+  by_cells,
+  taken_again
 };
-inline constexpr std::size_t mark_count = 21;
+inline constexpr std::size_t mark_count = 26;
 std::string_view name_of(Mark e);
 
 /// Plain numbers, so that processes can share them.
@@ -67,6 +74,8 @@ class Seen {
   void note_true_step() { ++counts_.true_steps; }
   /// Ends a step of so many particles.
   void end_step(std::uint64_t particles);
+
+  std::optional<StepReplay> replay;  ///< the step that went wrong, if it was that of a point
 
  private:
   using Features = std::bitset<Counts::most>;

@@ -1,207 +1,22 @@
-// Simulations of a case: particles, spheres, bodies, a catheter, solids, a field, events, remeshing, subdivision and
-// statistics, each there or not. All that is made alike takes equal steps: with other threads, on ranks, from a checkpoint.
+// Simulations of a case: what is made alike takes equal steps, with other threads, on ranks, from a checkpoint.
 #include "soak/simulation.hpp"
 
 #include <fmt/format.h>
 
-#include <array>
-#include <cmath>
-#include <vector>
-
 #include "dartcast/audit.hpp"
-#include "dartcast/deformation.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/events.hpp"
-#include "dartcast/scene.hpp"
+#include "dartcast/scene_file.hpp"
 #include "dartcast/simulation.hpp"
 #include "dartcast/statistics.hpp"
 #include "dartcast/validity.hpp"
+#include "soak/plan.hpp"
 #include "support/particle_checks.hpp"
-#include "support/random_vectors.hpp"
-#include "support/solid_scenes.hpp"
 #include "support/thread_ranks.hpp"
 
 namespace dartcast::soak {
 
 namespace {
-
-constexpr double dt = 0.05;
-
-// The parts of a case's simulation that are there or not.
-class Plan {
- public:
-  Plan(const Case& c, const SceneMesh& scene)
-      : case_(c), scene_(scene), space_(scene.mesh.dimension() == 3), choice_(random_for(c, Use::mover, 77).next()) {}
-
-  [[nodiscard]] SimulationOptions options(Ranks* ranks) const {
-    SimulationOptions o;
-    o.dt = dt;
-    o.seed = case_.seed;
-    o.ranks = ranks;
-    o.gravity = Vec3{has(0) ? 3.0 : 0.0, has(1) ? -9.81 : 0.0, 0.0} * scene_.edge;
-    o.drag = has(2) ? 2.0 : 0.0;
-    o.response = response();
-    if (has(3)) o.user_data = {"first", "second"};
-    if (collides()) o.collisions = CollisionOptions{.restitution = 0.5, .friction = 0.2};
-    if (case_[Knob::simultaneous] != 0 && !collides() && !has_spheres())
-      o.wall_motion = WallMotion::simultaneous;
-    else if (!collides() && !has(14))
-      o.substeps = 1 + static_cast<unsigned>(choice_ >> 60U) % 3;
-    return o;
-  }
-  [[nodiscard]] bool collides() const { return has_spheres() && has(4); }
-
-  // Adds all parts. Those that find no place are left out, alike in all that are made so.
-  // `particles`: whether there are any; a checkpoint brings them.
-  void fill(Simulation& s, bool particles) const {
-    if (case_[Knob::motion] != 0) s.set_deformation({deformation(), s.environment().positions()});
-    if (has(5)) s.set_statistics(statistics());
-    if (case_[Knob::edit] != 0) s.set_events(events());
-    if (space_ && has(6)) s.set_remeshing({.every = 2, .options = {}});
-    if (space_ && has(7)) s.set_adaptive_subdivision({.every = 2, .options = {.max_particles = 6, .min_particles = 2}});
-    const Vec3 velocity = test::random_vector(*in(1), scene_.edge * 20.0);
-    if (particles) s.add_random(has(8) ? 60 : 12, space_ ? velocity : Vec3{velocity.x, velocity.y, 0.0});
-    if (particles && has_spheres()) s.add_random(10, {}, 0.15 * scene_.edge);
-    if (space_ && has(9)) add_body(s);
-    if (space_ && has(10)) add_solid(s);
-    if (space_ && has(11)) add_catheter(s);
-  }
-
- private:
-  [[nodiscard]] bool has(unsigned bit) const { return ((choice_ >> bit) & 1U) != 0; }
-  [[nodiscard]] bool has_spheres() const { return case_[Knob::spheres] != 0; }
-  [[nodiscard]] std::unique_ptr<Random> in(std::uint64_t part) const {
-    return std::make_unique<Random>(random_for(case_, Use::mover, 78, part));
-  }
-  [[nodiscard]] Vec3 place(Random& random) const {
-    return {random.uniform(scene_.low.x, scene_.high.x), random.uniform(scene_.low.y, scene_.high.y),
-            random.uniform(scene_.low.z, scene_.high.z)};
-  }
-  [[nodiscard]] WallResponse response() const {
-    const std::string_view name = case_.name(Knob::response);
-    if (name == "slide") return Slide{};
-    if (name == "stick") return Stick{};
-    if (name == "absorb") return Absorb{};
-    if (name == "stop") return Escape{};
-    return Reflect{0.7, 0.1};
-  }
-
-  [[nodiscard]] std::vector<DeformationStep> deformation() const {
-    const auto random = in(2);
-    DeformationStep d;
-    d.centre = (scene_.low + scene_.high) * 0.5;
-    d.period = random->uniform(0.2, 2.0);
-    d.length = norm(scene_.high - scene_.low);
-    const std::string_view kind = case_.name(Knob::motion);
-    d.kind = DeformationKind::swing;
-    d.amplitude = random->uniform(0.0, 0.5);
-    if (kind == "twist" && space_) d.kind = DeformationKind::twist;
-    if (kind == "frames") {
-      d.kind = DeformationKind::bump;
-      d.axis = {1.0, 0.0, 0.0};
-      d.amplitude = random->uniform(0.0, 0.3) * scene_.edge;
-    }
-    const bool strong = kind == "near inversion" || kind == "inversion and back" || kind == "infinite vertices";
-    if (kind == "wave" || strong) {
-      d.kind = DeformationKind::pulse;
-      d.axis = space_ ? Vec3{0.0, 0.0, 1.0} : Vec3{1.0, 0.0, 0.0};
-      d.amplitude = strong ? 0.9 : 0.1;
-      d.wavelength = strong ? 1.5 * scene_.edge : 0.5 * d.length;
-    }
-    return {d};
-  }
-
-  [[nodiscard]] StatisticsOptions statistics() const {
-    StatisticsOptions o;
-    o.hits = true;
-    o.residence = true;
-    o.planes = {{"middle", (scene_.low + scene_.high) * 0.5, {1.0, 0.5, 0.0}, 0.0}};
-    o.pathlines_every = 3;
-    return o;
-  }
-
-  [[nodiscard]] std::vector<Event> events() const {
-    const auto random = in(3);
-    std::vector<Event> events;
-    for (std::uint32_t i = 0; i < 1 + case_[Knob::edits] / 4; ++i) {
-      Event e;
-      e.at = dt * random->below(5);
-      e.orphaned = std::array{OrphanPolicy::hold, OrphanPolicy::relocate, OrphanPolicy::absorb}[random->below(3)];
-      const Vec3 at = place(*random);
-      const Vec3 normal = test::random_vector(*random, 1.0);
-      std::vector<std::uint32_t> cells;
-      for (int k = 0; k < 4; ++k) cells.push_back(random->below(static_cast<std::uint32_t>(scene_.mesh.cell_count())));
-      switch (random->below(space_ ? 5 : 1)) {
-        case 0: e.what = Ligature{plane_through(at, space_ ? normal : Vec3{normal.x, normal.y, 0.0}), at}; break;
-        case 1: e.what = OpenCells{cells}; break;
-        case 2: e.what = CloseCells{cells}; break;
-        case 3: e.what = Cut{Disc{at, normal, scene_.edge, 6}, 0.2 * scene_.edge}; break;
-        default:
-          e.what = Carve{capsule_tool(at, at + normal * scene_.edge, 0.3 * scene_.edge), Carving::open, false};
-          break;
-      }
-      events.push_back(e);
-    }
-    return events;
-  }
-
-  void add_body(Simulation& s) const {
-    const auto random = in(4);
-    for (int tries = 0; tries < 20; ++tries) {
-      const double size = scene_.edge * random->uniform(0.1, 0.5);
-      const SolidMesh ball = test::moved(test::ball(size), place(*random));
-      BodyOptions body;
-      body.radius = 0.2 * size;
-      body.velocity = test::random_vector(*random, 5.0 * scene_.edge);
-      if (random->below(2) == 0) body.surface = ball;
-      try {
-        if (s.add_body(ball.points, body).body != 0xffffffffU) return;
-      } catch (const InvalidArgument&) {  // as with substeps
-        return;
-      }
-    }
-  }
-  void add_solid(Simulation& s) const {
-    const auto random = in(5);
-    for (int tries = 0; tries < 20; ++tries) {
-      SolidScene solid;
-      solid.name = "tool";
-      const double size = scene_.edge * random->uniform(0.05, 0.4);
-      solid.shape = std::vector<Vec3>{{}, {size, 0.0, 0.0}, {size, size, 0.0}};
-      solid.at = place(*random);
-      solid.pivot = solid.at;
-      solid.moves = {{10.0, test::random_vector(*random, 3.0 * scene_.edge), test::random_vector(*random, 3.0)}};
-      solid.catch_up = random->below(2) == 0;
-      try {
-        return s.add(solid);
-      } catch (const Error&) {  // no place there
-      }
-    }
-  }
-  void add_catheter(Simulation& s) const {
-    const auto random = in(6);
-    for (int tries = 0; tries < 20; ++tries) {
-      CatheterScene catheter;
-      catheter.name = "catheter";
-      catheter.options.spacing = 0.2 * scene_.edge;
-      catheter.options.length = 2.0 * scene_.edge;
-      catheter.options.stiffness = 1e-2 * std::pow(scene_.edge, 4.0);
-      catheter.options.entry = place(*random);
-      catheter.options.direction = test::random_vector(*random, 1.0);
-      catheter.options.edges = random->below(4) != 0;
-      catheter.moves = {{10.0, 4.0 * scene_.edge, 1.0}};
-      try {
-        return s.add(catheter);
-      } catch (const Error&) {  // no room there
-      }
-    }
-  }
-
-  const Case& case_;
-  const SceneMesh& scene_;
-  bool space_;
-  std::uint64_t choice_;
-};
 
 class SimulationMover : public Mover {
  public:
@@ -230,7 +45,7 @@ class SimulationMover : public Mover {
     if (simulation_->steps() == (case_[Knob::steps] + 1) / 2) saved_ = simulation_->checkpoint();
     note(made, seen);
     std::string wrong = check(made);
-    if (wrong.empty() && step + 1 == case_[Knob::steps]) wrong = compare_with_twins();
+    if (wrong.empty() && step + 1 == case_[Knob::steps]) wrong = compare_with_twins(seen);
     return wrong;
   }
   void edit(const std::function<void(ComplexEdit&)>& make) override { simulation_->edit(make); }
@@ -245,6 +60,9 @@ class SimulationMover : public Mover {
     for (std::size_t i = 0; i < simulation_->catheter_count(); ++i)
       if (simulation_->catheter_step(i).pushed != 0.0) seen.note(Mark::pushed_catheter);
     if (!simulation_->event_log().changes.empty()) seen.note(Mark::after_edit);
+    if (plan_.has_field()) seen.note(Mark::field);
+    if (plan_.has_inlet()) seen.note(Mark::inlet);
+    if (simulation_->statistics_options().any()) seen.note(Mark::statistics);
   }
 
   [[nodiscard]] std::string check(const SimulationStep& made) const {
@@ -269,7 +87,7 @@ class SimulationMover : public Mover {
   }
 
   // Simulations that are made alike, up to the same step.
-  [[nodiscard]] std::string compare_with_twins() const {
+  [[nodiscard]] std::string compare_with_twins(Seen& seen) const {
     const std::string hash = simulation_->state_hash().hex();
     if (run_twin(nullptr, 3, nullptr) != hash) return "other threads reach another state";
     if (saved_ && run_twin(nullptr, 1, &*saved_) != hash) return "a checkpoint leads to another state";
@@ -278,6 +96,31 @@ class SimulationMover : public Mover {
     test::on_ranks(case_[Knob::ranks] + 1, [&](Ranks& ranks) {
       const std::string shared = run_twin(&ranks, 1, nullptr);
       if (ranks.rank() == 0 && shared != hash) wrong = "ranks reach another state";
+    });
+    return wrong.empty() && plan_.allows_cells() ? compare_by_cells(seen) : wrong;
+  }
+
+  // The same scene by one process, and by ranks with some of the cells each.
+  [[nodiscard]] std::string compare_by_cells(Seen& seen) const {
+    if (environment_.complex().steiner_point_count() > 0) return "";  // ranks refuse these
+    const unsigned count = case_[Knob::ranks] + 1;
+    if (mesh_.cell_count() < count) return "";
+    seen.note(Mark::by_cells);
+    const Scene scene = plan_.scene();
+    const auto run = [&](Simulation& s) {
+      while (s.steps() < 6) s.step();
+      const SimulationTotals t = s.totals_of_all();
+      return fmt::format("{} {} {} {} {}", s.state_hash().hex(), t.injected, t.absorbed, t.escaped,
+                         fmt::join(t.contacts_by_patch, " "));
+    };
+    Simulation whole(scene, Threads{1});
+    const std::string expected = run(whole);
+    std::string wrong;
+    test::on_ranks(count, [&](Ranks& ranks) {
+      Simulation own(load_scene_part(scene, ranks).scene, Threads{1}, &ranks, Partition::cells);
+      const std::string shared = run(own);
+      if (ranks.rank() == 0 && shared != expected)
+        wrong = fmt::format("ranks by cells reach {} instead of {}", shared, expected);
     });
     return wrong;
   }

@@ -1,0 +1,244 @@
+// Draws and makes the parts of a case's simulation.
+#include "soak/plan.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "dartcast/error.hpp"
+#include "support/random_vectors.hpp"
+#include "support/solid_scenes.hpp"
+
+namespace dartcast::soak {
+
+namespace {
+
+constexpr double dt = 0.05;
+
+}  // namespace
+
+// A patch may lie between blocked cells, and a baffle anywhere: inlets need faces of free cells.
+Plan::Plan(const Case& c, const SceneMesh& scene)
+    : case_(c),
+      scene_(scene),
+      space_(scene.mesh.dimension() == 3),
+      has_patches_(!scene.mesh.patch_tags.empty() && scene.mesh.baffle_tags.empty() && scene.mesh.free.empty()),
+      choice_(random_for(c, Use::mover, 77).next()) {}
+
+bool Plan::has_inlet() const { return has(16) && has_patches_ && case_[Knob::edit] == 0; }
+
+std::vector<double> Plan::user_data() const { return has(3) ? std::vector{1.5, -0.0} : std::vector<double>{}; }
+
+Vec3 Plan::velocity() const {
+  const Vec3 v = test::random_vector(*in(1), scene_.edge * 20.0);
+  return space_ ? v : Vec3{v.x, v.y, 0.0};
+}
+
+bool Plan::allows_cells() const {
+  const bool carried = options(nullptr).wall_motion == WallMotion::carried;
+  return space_ && carried && case_[Knob::edit] == 0 && !has_spheres() && !has(6) && !has(7) && !has(9) && !has(10) &&
+         !has(11);
+}
+
+Scene Plan::scene() const {
+  const SimulationOptions o = options(nullptr);
+  Scene s;
+  s.seed = o.seed;
+  s.environment.mesh = scene_.mesh;
+  if (case_[Knob::motion] != 0) s.deformation.push_back({deformation(), {}, {}, {}, 0.0});
+  s.particles.push_back({RandomParticles{60}, velocity(), 0.0, user_data()});
+  if (has_inlet())
+    s.particles.push_back(
+        {InletParticles{scene_.mesh.patch_names.at(scene_.mesh.patch_tags[0]), 40.0}, {}, 0.0, user_data()});
+  s.user_data = o.user_data;
+  s.motion = {.dt = o.dt,
+              .gravity = o.gravity,
+              .field = {},
+              .force = {},
+              .drag = o.drag,
+              .substeps = o.substeps,
+              .integrator = o.integrator};
+  if (has_field()) {
+    s.motion.field.frame = has(15) ? FieldFrame::mesh : FieldFrame::space;
+    s.motion.field.samples = field_samples({0.0}, {field()});
+  }
+  s.contact.general = o.response;
+  if (has(5)) s.statistics.options = statistics();
+  return s;
+}
+
+SimulationOptions Plan::options(Ranks* ranks) const {
+  SimulationOptions o;
+  o.dt = dt;
+  o.seed = case_.seed;
+  o.ranks = ranks;
+  o.gravity = Vec3{has(0) ? 3.0 : 0.0, has(1) ? -9.81 : 0.0, 0.0} * scene_.edge;
+  o.drag = has(2) ? 2.0 : 0.0;
+  o.response = response();
+  if (has(3)) o.user_data = {"first", "second"};
+  if (has_field() && has(13) && o.drag == 0.0 && !collides() && case_[Knob::simultaneous] == 0)
+    o.integrator = Integrator::rk4;
+  if (collides()) o.collisions = CollisionOptions{.restitution = 0.5, .friction = 0.2};
+  if (case_[Knob::simultaneous] != 0 && !collides() && !has_spheres())
+    o.wall_motion = WallMotion::simultaneous;
+  else if (!collides() && !has(14) && o.integrator == Integrator::euler)
+    o.substeps = 1 + static_cast<unsigned>(choice_ >> 60U) % 3;
+  return o;
+}
+
+void Plan::fill(Simulation& s, bool particles) const {
+  if (case_[Knob::motion] != 0) s.set_deformation({{deformation()}, s.environment().positions()});
+  if (has(5)) s.set_statistics(statistics());
+  if (has_field()) s.set_field({s.environment().complex(), field(), has(15) ? FieldFrame::mesh : FieldFrame::space});
+  if (has_inlet()) s.add_inlet(Patch{1}, 40.0, {}, 0.0, user_data());
+  if (case_[Knob::edit] != 0) s.set_events(events());
+  if (space_ && has(6)) s.set_remeshing({.every = 2, .options = {}});
+  if (space_ && has(7)) s.set_adaptive_subdivision({.every = 2, .options = {.max_particles = 6, .min_particles = 2}});
+  if (particles) s.add_random(has(8) ? 60 : 12, velocity(), 0.0, user_data());
+  if (particles && has_spheres()) s.add_random(10, {}, 0.15 * scene_.edge);
+  if (space_ && has(9)) add_body(s);
+  if (space_ && has(10)) add_solid(s);
+  if (space_ && has(11)) add_catheter(s);
+}
+
+std::unique_ptr<Random> Plan::in(std::uint64_t part) const {
+  return std::make_unique<Random>(random_for(case_, Use::mover, 78, part));
+}
+
+Vec3 Plan::place(Random& random) const {
+  return {random.uniform(scene_.low.x, scene_.high.x), random.uniform(scene_.low.y, scene_.high.y),
+          random.uniform(scene_.low.z, scene_.high.z)};
+}
+
+WallResponse Plan::response() const {
+  const std::string_view name = case_.name(Knob::response);
+  if (name == "slide") return Slide{};
+  if (name == "stick") return Stick{};
+  if (name == "absorb") return Absorb{};
+  if (name == "stop") return Escape{};
+  return Reflect{0.7, 0.1};
+}
+
+std::vector<Vec3> Plan::field() const {
+  const auto random = in(7);
+  std::vector<Vec3> values;
+  for (std::size_t i = 0; i < scene_.mesh.points.size(); ++i) {
+    const Vec3 v = test::random_vector(*random, 5.0 * scene_.edge);
+    values.push_back(space_ ? v : Vec3{v.x, v.y, 0.0});
+  }
+  return values;
+}
+
+DeformationStep Plan::deformation() const {
+  const auto random = in(2);
+  DeformationStep d;
+  d.centre = (scene_.low + scene_.high) * 0.5;
+  d.period = random->uniform(0.2, 2.0);
+  d.length = norm(scene_.high - scene_.low);
+  const std::string_view kind = case_.name(Knob::motion);
+  d.kind = DeformationKind::swing;
+  d.amplitude = random->uniform(0.0, 0.5);
+  if (kind == "twist" && space_) d.kind = DeformationKind::twist;
+  if (kind == "frames") {
+    d.kind = DeformationKind::bump;
+    d.axis = {1.0, 0.0, 0.0};
+    d.amplitude = random->uniform(0.0, 0.3) * scene_.edge;
+  }
+  const bool strong = kind == "near inversion" || kind == "inversion and back" || kind == "infinite vertices";
+  if (kind == "wave" || strong) {
+    d.kind = DeformationKind::pulse;
+    d.axis = space_ ? Vec3{0.0, 0.0, 1.0} : Vec3{1.0, 0.0, 0.0};
+    d.amplitude = strong ? 0.9 : 0.1;
+    d.wavelength = strong ? 1.5 * scene_.edge : 0.5 * d.length;
+  }
+  return d;
+}
+
+StatisticsOptions Plan::statistics() const {
+  StatisticsOptions o;
+  o.hits = true;
+  o.residence = true;
+  o.planes = {{"middle", (scene_.low + scene_.high) * 0.5, {1.0, 0.5, 0.0}, 0.0}};
+  o.pathlines_every = 3;
+  return o;
+}
+
+std::vector<Event> Plan::events() const {
+  const auto random = in(3);
+  std::vector<Event> events;
+  for (std::uint32_t i = 0; i < 1 + case_[Knob::edits] / 4; ++i) {
+    Event e;
+    e.at = dt * random->below(5);
+    e.orphaned = std::array{OrphanPolicy::hold, OrphanPolicy::relocate, OrphanPolicy::absorb}[random->below(3)];
+    const Vec3 at = place(*random);
+    const Vec3 normal = test::random_vector(*random, 1.0);
+    std::vector<std::uint32_t> cells;
+    for (int k = 0; k < 4; ++k) cells.push_back(random->below(static_cast<std::uint32_t>(scene_.mesh.cell_count())));
+    switch (random->below(space_ ? 5 : 1)) {
+      case 0: e.what = Ligature{plane_through(at, space_ ? normal : Vec3{normal.x, normal.y, 0.0}), at}; break;
+      case 1: e.what = OpenCells{cells}; break;
+      case 2: e.what = CloseCells{cells}; break;
+      case 3: e.what = Cut{Disc{at, normal, scene_.edge, 6}, 0.2 * scene_.edge}; break;
+      default:
+        e.what = Carve{capsule_tool(at, at + normal * scene_.edge, 0.3 * scene_.edge), Carving::open, false};
+        break;
+    }
+    events.push_back(e);
+  }
+  return events;
+}
+
+void Plan::add_body(Simulation& s) const {
+  const auto random = in(4);
+  for (int tries = 0; tries < 20; ++tries) {
+    const double size = scene_.edge * random->uniform(0.1, 0.5);
+    const SolidMesh ball = test::moved(test::ball(size), place(*random));
+    BodyOptions body;
+    body.radius = 0.2 * size;
+    body.velocity = test::random_vector(*random, 5.0 * scene_.edge);
+    if (random->below(2) == 0) body.surface = ball;
+    try {
+      if (s.add_body(ball.points, body).body != 0xffffffffU) return;
+    } catch (const InvalidArgument&) {  // as with substeps
+      return;
+    }
+  }
+}
+
+void Plan::add_solid(Simulation& s) const {
+  const auto random = in(5);
+  for (int tries = 0; tries < 20; ++tries) {
+    SolidScene solid;
+    solid.name = "tool";
+    const double size = scene_.edge * random->uniform(0.05, 0.4);
+    solid.shape = std::vector<Vec3>{{}, {size, 0.0, 0.0}, {size, size, 0.0}};
+    solid.at = place(*random);
+    solid.pivot = solid.at;
+    solid.moves = {{10.0, test::random_vector(*random, 3.0 * scene_.edge), test::random_vector(*random, 3.0)}};
+    solid.catch_up = random->below(2) == 0;
+    try {
+      return s.add(solid);
+    } catch (const Error&) {  // no place there
+    }
+  }
+}
+
+void Plan::add_catheter(Simulation& s) const {
+  const auto random = in(6);
+  for (int tries = 0; tries < 20; ++tries) {
+    CatheterScene catheter;
+    catheter.name = "catheter";
+    catheter.options.spacing = 0.2 * scene_.edge;
+    catheter.options.length = 2.0 * scene_.edge;
+    catheter.options.stiffness = 1e-2 * std::pow(scene_.edge, 4.0);
+    catheter.options.entry = place(*random);
+    catheter.options.direction = test::random_vector(*random, 1.0);
+    catheter.options.edges = random->below(4) != 0;
+    catheter.moves = {{10.0, 4.0 * scene_.edge, 1.0}};
+    try {
+      return s.add(catheter);
+    } catch (const Error&) {  // no room there
+    }
+  }
+}
+
+}  // namespace dartcast::soak
